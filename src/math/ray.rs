@@ -1,0 +1,47 @@
+//! Rays and intervals along them.
+
+use glam::DVec3;
+
+/// A half-line: origin [L] and unit direction of travel.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Ray {
+    /// Where it starts [L].
+    pub origin: DVec3,
+    /// Unit direction of travel.
+    pub dir: DVec3,
+}
+
+impl Ray {
+    /// The ray from `origin` along the unit vector `dir`.
+    pub fn new(origin: DVec3, dir: DVec3) -> Self {
+        Ray { origin, dir }
+    }
+
+    /// The point at distance `t` [L].
+    pub fn at(&self, t: f64) -> DVec3 {
+        self.origin + self.dir * t
+    }
+}
+
+/// A stretch of a ray, from `start` to `end` [L]; `end` may be infinite.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Interval {
+    /// Nearer end [L].
+    pub start: f64,
+    /// Farther end [L].
+    pub end: f64,
+}
+
+impl Interval {
+    /// Length [L]; zero if the ends are swapped.
+    pub fn length(&self) -> f64 {
+        (self.end - self.start).max(0.0)
+    }
+
+    /// The common part of two intervals, if it has a length.
+    pub fn intersection(self, other: Interval) -> Option<Interval> {
+        let start = self.start.max(other.start);
+        let end = self.end.min(other.end);
+        (end > start).then_some(Interval { start, end })
+    }
+}

@@ -1,0 +1,94 @@
+//! Random streams: the only place where random bits become numbers.
+//!
+//! Histories own streams, not threads: a stream is a function of seed, purpose, replicate and history, and of
+//! nothing else, so that results do not depend on the number of threads, the block size, or what is measured.
+
+use rand::Rng;
+use rand_pcg::Pcg64;
+
+/// What a stream is used for. Streams of different purposes are independent.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Purpose {
+    /// Photon histories.
+    Photons,
+    /// Camera and sensor paths.
+    Paths,
+    /// Photon histories connected to a sensor.
+    LightTracing,
+    /// Points drawn from a known density.
+    Synthetic,
+    /// Bootstrap and other resampling.
+    Resampling,
+}
+
+/// The random numbers of one history.
+#[derive(Debug, Clone)]
+pub struct Stream(Pcg64);
+
+/// Output function of SplitMix64 (Steele, Lea and Flood 2014): a bijection of 64 bits without structure.
+fn mix(word: u64) -> u64 {
+    let mut z = word.wrapping_add(0x9e37_79b9_7f4a_7c15);
+    z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+    z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+    z ^ (z >> 31)
+}
+
+impl Stream {
+    /// The stream of one history.
+    ///
+    /// The four words are mixed into both state and stream of the generator: streams that differ in high bits
+    /// only would be identical or correlated (`Pcg64` drops the top bit of its stream).
+    pub fn new(seed: u64, purpose: Purpose, replicate: u64, history: u64) -> Self {
+        let a = mix(mix(mix(mix(seed) ^ (purpose as u64)) ^ replicate) ^ history);
+        let b = mix(a);
+        let c = mix(b);
+        let d = mix(c);
+        let state = (u128::from(a) << 64) | u128::from(b);
+        let stream = (u128::from(c) << 64) | u128::from(d);
+        Stream(Pcg64::new(state, stream))
+    }
+
+    /// 64 random bits.
+    pub fn bits(&mut self) -> u64 {
+        self.0.next_u64()
+    }
+
+    /// Uniform in [0, 1): multiples of 2^-53.
+    pub fn unit(&mut self) -> f64 {
+        (self.bits() >> 11) as f64 * (1.0 / 9_007_199_254_740_992.0)
+    }
+
+    /// Uniform in (0, 1): odd multiples of 2^-54.
+    pub fn open_unit(&mut self) -> f64 {
+        ((self.bits() >> 11) as f64 + 0.5) * (1.0 / 9_007_199_254_740_992.0)
+    }
+
+    /// Two numbers uniform in [0, 1).
+    pub fn pair(&mut self) -> [f64; 2] {
+        [self.unit(), self.unit()]
+    }
+
+    /// Uniform index below `count`, which is at least 1. The bias of the multiplication is below `count`/2^53.
+    pub fn index(&mut self, count: usize) -> usize {
+        ((self.unit() * count as f64) as usize).min(count - 1)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use rand::SeedableRng;
+
+    #[test]
+    fn words_of_the_generator_stay() {
+        let mut words = Pcg64::seed_from_u64(42);
+        assert_eq!(words.next_u64(), 0x39fc_b970_a300_1809);
+        assert_eq!(words.next_u64(), 0x3d36_1897_2c55_d911);
+    }
+
+    #[test]
+    fn open_unit_excludes_both_ends() {
+        let largest = ((u64::MAX >> 11) as f64 + 0.5) * (1.0 / 9_007_199_254_740_992.0);
+        assert!(largest < 1.0);
+    }
+}
