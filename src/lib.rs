@@ -8,3 +8,11 @@ pub mod spectrum;
 
 pub use error::{Error, Result};
 pub use spectrum::Spectrum;
+pub mod geometry;
+pub mod integrators;
+pub mod light;
+pub mod medium;
+pub mod phase;
+pub mod scene;
+pub mod surface;
+pub mod transport;

@@ -1,0 +1,137 @@
+//! A box along the axes.
+
+use super::Hit;
+use crate::error::{Error, Result};
+use crate::math::{Interval, Ray};
+use glam::DVec3;
+
+/// All points between two corners.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Cuboid {
+    min: DVec3,
+    max: DVec3,
+}
+
+/// The unit vector along an axis.
+fn axis(index: usize) -> DVec3 {
+    DVec3::AXES[index]
+}
+
+impl Cuboid {
+    /// A box from its lower and upper corners [L].
+    pub fn new(min: DVec3, max: DVec3) -> Result<Self> {
+        if !(min.is_finite() && max.is_finite() && min.cmplt(max).all()) {
+            return Err(Error::Scene(
+                "a cuboid needs finite corners with min below max on every axis".into(),
+            ));
+        }
+        Ok(Cuboid { min, max })
+    }
+
+    /// Lower corner [L].
+    pub fn min(&self) -> DVec3 {
+        self.min
+    }
+
+    /// Upper corner [L].
+    pub fn max(&self) -> DVec3 {
+        self.max
+    }
+
+    /// Entry and exit along the line: distance and axis of each, or none if it misses.
+    fn crossings(&self, ray: &Ray) -> Option<((f64, usize), (f64, usize))> {
+        let (mut entry, mut exit) = ((f64::NEG_INFINITY, 0), (f64::INFINITY, 0));
+        for i in 0..3 {
+            let (o, d) = (ray.origin[i], ray.dir[i]);
+            if d == 0.0 {
+                if o < self.min[i] || o > self.max[i] {
+                    return None;
+                }
+                continue;
+            }
+            let (a, b) = ((self.min[i] - o) / d, (self.max[i] - o) / d);
+            let (near, far) = (a.min(b), a.max(b));
+            if near > entry.0 {
+                entry = (near, i);
+            }
+            if far < exit.0 {
+                exit = (far, i);
+            }
+        }
+        (entry.0 < exit.0).then_some((entry, exit))
+    }
+
+    /// Axis and outward sign of the face that the point lies on, the nearest one.
+    fn face_at(&self, p: DVec3) -> (usize, f64) {
+        let mut best = (f64::INFINITY, 0, 1.0);
+        for i in 0..3 {
+            for (plane, sign) in [(self.min[i], -1.0), (self.max[i], 1.0)] {
+                let distance = (p[i] - plane).abs();
+                if distance < best.0 {
+                    best = (distance, i, sign);
+                }
+            }
+        }
+        (best.1, best.2)
+    }
+
+    pub(super) fn hit(&self, ray: &Ray, from_here: bool) -> Option<Hit> {
+        let exit_hit = |(t, i): (f64, usize)| Hit { t, normal: axis(i) * ray.dir[i].signum() };
+        if from_here {
+            let (i, sign) = self.face_at(ray.origin);
+            if ray.dir[i] * sign >= 0.0 {
+                return None;
+            }
+            return self.crossings(ray).map(|(_, exit)| exit_hit(exit));
+        }
+        let (entry, exit) = self.crossings(ray)?;
+        if entry.0 > 0.0 {
+            return Some(Hit { t: entry.0, normal: -axis(entry.1) * ray.dir[entry.1].signum() });
+        }
+        (exit.0 > 0.0).then(|| exit_hit(exit))
+    }
+
+    pub(super) fn interval(&self, ray: &Ray) -> Option<Interval> {
+        let (entry, exit) = self.crossings(ray)?;
+        (exit.0 > 0.0).then_some(Interval { start: entry.0.max(0.0), end: exit.0 })
+    }
+
+    pub(super) fn contains(&self, p: DVec3) -> bool {
+        p.cmpge(self.min).all() && p.cmple(self.max).all()
+    }
+
+    /// Surface area [L^2].
+    pub fn area(&self) -> f64 {
+        let e = self.max - self.min;
+        2.0 * (e.x * e.y + e.y * e.z + e.z * e.x)
+    }
+
+    /// Volume [L^3].
+    pub fn volume(&self) -> f64 {
+        (self.max - self.min).element_product()
+    }
+
+    /// A uniform point on the surface and the outward normal there, from three numbers in [0, 1).
+    pub fn sample_surface(&self, [u, v, w]: [f64; 3]) -> (DVec3, DVec3) {
+        let e = self.max - self.min;
+        let areas = [e.y * e.z, e.z * e.x, e.x * e.y];
+        let mut target = u * (areas[0] + areas[1] + areas[2]);
+        let mut i = 0;
+        while i < 2 && target >= areas[i] {
+            target -= areas[i];
+            i += 1;
+        }
+        // What is left of the first number says which of the two opposite faces.
+        let is_upper = target >= 0.5 * areas[i];
+        let mut p = self.min;
+        p[(i + 1) % 3] = self.min[(i + 1) % 3] + e[(i + 1) % 3] * v;
+        p[(i + 2) % 3] = self.min[(i + 2) % 3] + e[(i + 2) % 3] * w;
+        p[i] = if is_upper { self.max[i] } else { self.min[i] };
+        (p, axis(i) * if is_upper { 1.0 } else { -1.0 })
+    }
+
+    /// A uniform point inside.
+    pub fn sample_inside(&self, u: [f64; 3]) -> DVec3 {
+        self.min + (self.max - self.min) * DVec3::from_array(u)
+    }
+}

@@ -1,0 +1,102 @@
+//! Shapes with exact hits in f64: one file each.
+//!
+//! A ray that starts on a shape says so (`from_here`), and the hit it starts from is excluded by algebra, so that no
+//! shape needs an epsilon.
+
+mod cuboid;
+mod rectangle;
+mod slab;
+mod sphere;
+
+pub use cuboid::Cuboid;
+pub use rectangle::Rectangle;
+pub use slab::{Face, Slab};
+pub use sphere::Sphere;
+
+use crate::math::{Interval, Ray};
+use glam::DVec3;
+
+/// Where a ray meets a shape.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Hit {
+    /// Distance along the ray [L].
+    pub t: f64,
+    /// Unit normal: outwards for closed shapes, the front for a rectangle.
+    pub normal: DVec3,
+}
+
+/// The shapes at hand.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Shape {
+    /// A ball and its surface.
+    Sphere(Sphere),
+    /// A flat rectangle, without inside.
+    Rectangle(Rectangle),
+    /// The layer between two planes of constant z.
+    Slab(Slab),
+    /// A box along the axes.
+    Cuboid(Cuboid),
+}
+
+macro_rules! each {
+    ($self:ident, $inner:ident => $body:expr) => {
+        match $self {
+            Shape::Sphere($inner) => $body,
+            Shape::Rectangle($inner) => $body,
+            Shape::Slab($inner) => $body,
+            Shape::Cuboid($inner) => $body,
+        }
+    };
+}
+
+impl Shape {
+    /// The first crossing of the surface ahead of the ray; `from_here` if the ray starts on this very surface.
+    pub fn hit(&self, ray: &Ray, from_here: bool) -> Option<Hit> {
+        each!(self, s => s.hit(ray, from_here))
+    }
+
+    /// The part of the ray inside, from 0 on; none for a shape without inside. Shapes are convex.
+    pub fn interval(&self, ray: &Ray) -> Option<Interval> {
+        match self {
+            Shape::Sphere(s) => s.interval(ray),
+            Shape::Rectangle(_) => None,
+            Shape::Slab(s) => s.interval(ray),
+            Shape::Cuboid(s) => s.interval(ray),
+        }
+    }
+
+    /// Whether the point is inside or on the surface.
+    pub fn contains(&self, p: DVec3) -> bool {
+        match self {
+            Shape::Sphere(s) => s.contains(p),
+            Shape::Rectangle(_) => false,
+            Shape::Slab(s) => s.contains(p),
+            Shape::Cuboid(s) => s.contains(p),
+        }
+    }
+
+    /// Surface area [L^2]; infinite for a slab.
+    pub fn area(&self) -> f64 {
+        each!(self, s => s.area())
+    }
+
+    /// Volume [L^3]; infinite for a slab, 0 for a rectangle.
+    pub fn volume(&self) -> f64 {
+        match self {
+            Shape::Sphere(s) => s.volume(),
+            Shape::Rectangle(_) => 0.0,
+            Shape::Slab(_) => f64::INFINITY,
+            Shape::Cuboid(s) => s.volume(),
+        }
+    }
+
+    /// Shortest extent [L]: what the mean free path is compared with.
+    pub fn shortest_extent(&self) -> f64 {
+        match self {
+            Shape::Sphere(s) => 2.0 * s.radius(),
+            Shape::Rectangle(_) => 0.0,
+            Shape::Slab(s) => s.thickness(),
+            Shape::Cuboid(s) => (s.max() - s.min()).min_element(),
+        }
+    }
+}

@@ -1,0 +1,63 @@
+//! A flat rectangle.
+
+use super::Hit;
+use crate::error::{Error, Result};
+use crate::math::Ray;
+use glam::DVec3;
+
+/// The points `corner + a u + b v` for a, b in [0, 1]; the edges u and v are perpendicular, the front is u x v.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Rectangle {
+    corner: DVec3,
+    u: DVec3,
+    v: DVec3,
+    normal: DVec3,
+}
+
+impl Rectangle {
+    /// A rectangle from a corner and two perpendicular edges [L].
+    pub fn new(corner: DVec3, u: DVec3, v: DVec3) -> Result<Self> {
+        let (lu, lv) = (u.length(), v.length());
+        if !(lu > 0.0 && lv > 0.0 && (lu * lv).is_finite() && corner.is_finite()) {
+            return Err(Error::Scene("a rectangle needs a finite corner and two edges longer than 0".into()));
+        }
+        // Rounding of the given numbers may tilt the edges by a few units in the last place, no more.
+        if u.dot(v).abs() > 1e-12 * lu * lv {
+            return Err(Error::Scene(format!(
+                "the edges of a rectangle are perpendicular; these have cosine {:.3e}",
+                u.dot(v) / (lu * lv)
+            )));
+        }
+        Ok(Rectangle { corner, u, v, normal: u.cross(v).normalize() })
+    }
+
+    /// The front's unit normal.
+    pub fn normal(&self) -> DVec3 {
+        self.normal
+    }
+
+    pub(super) fn hit(&self, ray: &Ray, from_here: bool) -> Option<Hit> {
+        let denominator = ray.dir.dot(self.normal);
+        if from_here || denominator == 0.0 {
+            return None;
+        }
+        let t = (self.corner - ray.origin).dot(self.normal) / denominator;
+        if !(t > 0.0) {
+            return None;
+        }
+        let p = ray.at(t) - self.corner;
+        let (a, b) = (p.dot(self.u) / self.u.length_squared(), p.dot(self.v) / self.v.length_squared());
+        let inside = (0.0..=1.0).contains(&a) && (0.0..=1.0).contains(&b);
+        inside.then_some(Hit { t, normal: self.normal })
+    }
+
+    /// Area [L^2] of one side.
+    pub fn area(&self) -> f64 {
+        self.u.length() * self.v.length()
+    }
+
+    /// A uniform point.
+    pub fn sample(&self, [a, b]: [f64; 2]) -> DVec3 {
+        self.corner + self.u * a + self.v * b
+    }
+}

@@ -1,0 +1,305 @@
+//! The unbiased path tracer.
+//!
+//! Each ray collects in closed form what it would meet by itself (lights' bodies, incidence, volume sources), times
+//! the transmittance; each event connects to every light that can be aimed at. Where both can find the same light,
+//! the balance heuristic shares it between them. Towards a point light a second point on the ray is sampled with
+//! equal angles, in multiple importance with the free flight: connections from free flights alone would have an
+//! infinite variance.
+
+use crate::Spectrum;
+use crate::light::{Light, LightSample, Point};
+use crate::math::{FOUR_PI, Interval, Ray, atan2, cosine_pair, warp};
+use crate::phase::PhaseFunction;
+use crate::rng::Stream;
+use crate::scene::{Orders, Scene, SceneHit, Target};
+use crate::surface::Surface;
+use crate::transport::{Arrival, Roulette, Step, Visitor, Walker, walk};
+use glam::DVec3;
+
+/// Throughput below which paths play roulette. Any value gives the same mean; this one spends little on paths that
+/// carry under a tenth of what they started with.
+const ROULETTE: Roulette = Roulette::Below(0.1);
+
+/// What reaches a path's origin, split by the caller: called with the order and the contribution.
+struct PathVisitor<'a, F: FnMut(u32, Spectrum)> {
+    scene: &'a Scene,
+    orders: Orders,
+    collect: F,
+}
+
+impl<F: FnMut(u32, Spectrum)> PathVisitor<'_, F> {
+    fn add(&mut self, order: u32, value: Spectrum) {
+        if self.orders.contains(order) && !value.is_black() {
+            (self.collect)(order, value);
+        }
+    }
+
+    /// What the ray ahead meets by itself.
+    fn ahead(&mut self, walker: &Walker, hit: Option<&SceneHit>) {
+        if !self.orders.contains(walker.order) {
+            return;
+        }
+        let end = hit.map_or(f64::INFINITY, |h| h.hit.t);
+        if let Some(found) = hit
+            && let Target::Light(index) = found.target
+        {
+            let (radiance, pdf_light) = self.scene.lights()[index].emitted(&walker.ray, &found.hit);
+            let share = walker.pdf_solid_angle.map_or(1.0, |pdf| pdf / (pdf + pdf_light));
+            let seen = radiance * self.scene.transmittance(&walker.ray, end) * share;
+            self.add(walker.order, walker.weight * seen);
+        }
+        for light in self.scene.lights() {
+            let seen = uncollided(self.scene, light, &walker.ray, end);
+            self.add(walker.order, walker.weight * seen);
+        }
+    }
+
+    /// Connects an event to every light; `scattered` is the fraction scattered into a direction [1/sr].
+    fn connect(
+        &mut self,
+        walker: &Walker,
+        position: DVec3,
+        from: Option<Target>,
+        stream: &mut Stream,
+        scattered: impl Fn(DVec3) -> (Spectrum, f64),
+        point_share: impl Fn(&Point) -> f64,
+    ) {
+        if !self.orders.contains(walker.order + 1) || !self.scene.plan().has_next_event {
+            return;
+        }
+        for index in 0..self.scene.lights().len() {
+            let light = &self.scene.lights()[index];
+            let Some((sample, received)) = next_event(self.scene, index, position, from, stream) else {
+                continue;
+            };
+            let (fraction, pdf) = scattered(sample.dir);
+            let share = match (light, sample.pdf_solid_angle) {
+                (Light::Point(point), _) => point_share(point),
+                (_, Some(pdf_light)) => pdf_light / (pdf_light + pdf),
+                (_, None) => 1.0,
+            };
+            self.add(walker.order + 1, walker.weight * fraction * received * share);
+        }
+    }
+
+    /// A connection from a point chosen with equal angles about each point light.
+    fn equiangular(&mut self, walker: &Walker, hit: Option<&SceneHit>, stream: &mut Stream) {
+        let (scene, ray) = (self.scene, &walker.ray);
+        let plan = scene.plan();
+        if plan.point_lights.is_empty() || !plan.has_media || !self.orders.contains(walker.order + 1) {
+            return;
+        }
+        let end = hit.map_or(f64::INFINITY, |h| h.hit.t);
+        let Some(span) = span(scene, ray, end) else { return };
+        for &index in &plan.point_lights {
+            let Light::Point(point) = &scene.lights()[index] else { continue };
+            let equal_angles = EqualAngles::new(ray, point.position(), span);
+            let Some(t) = equal_angles.sample(stream.unit()) else { continue };
+            let Some(segment) = scene.segments(ray, end).iter().find(|s| t <= s.interval.end).copied() else {
+                continue;
+            };
+            if t < segment.interval.start {
+                continue;
+            }
+            let medium = &scene.regions()[segment.region].medium;
+            let position = ray.at(t);
+            let Some((sample, received)) = next_event(scene, index, position, None, stream) else { continue };
+            let (one_minus_mu, one_plus_mu) = cosine_pair(ray.dir, sample.dir);
+            let fraction = medium.albedo() * medium.phase().eval(one_minus_mu, one_plus_mu);
+            let density = scene.transmittance(ray, t) * medium.sigma_t();
+            // Balance heuristic of the two densities; their sum divides, so neither can be small alone.
+            let sum = equal_angles.pdf(t) + flight_pdf(scene, walker, density, ray, end);
+            self.add(walker.order + 1, walker.weight * fraction * density * received / sum);
+        }
+    }
+}
+
+/// Density of the free flight at a distance where transmittance times extinction is `density` [1/L]: the mixture
+/// over channels, and conditioned on a collision where the flight is forced.
+fn flight_pdf(scene: &Scene, walker: &Walker, density: Spectrum, ray: &Ray, end: f64) -> f64 {
+    let mixture =
+        if density.is_grey() { density[0] } else { (walker.weight * density).sum() / walker.weight.sum() };
+    let forced = scene.plan().forces_first_collision && walker.order == 0 && end.is_infinite();
+    if forced { mixture / -crate::math::exp_m1(-scene.optical_depth(ray, end)[0]) } else { mixture }
+}
+
+/// The stretch of a ray from the first medium to the last.
+fn span(scene: &Scene, ray: &Ray, end: f64) -> Option<Interval> {
+    let segments = scene.segments(ray, end);
+    let first = segments.iter().next()?;
+    let last = segments.iter().last()?;
+    Some(Interval { start: first.interval.start, end: last.interval.end })
+}
+
+/// Distances along a ray such that the angle seen from a point is uniform (Kulla and Fajardo 2012).
+struct EqualAngles {
+    nearest: f64,
+    distance: f64,
+    angle: (f64, f64),
+    span: Interval,
+}
+
+impl EqualAngles {
+    fn new(ray: &Ray, point: DVec3, span: Interval) -> Self {
+        let nearest = (point - ray.origin).dot(ray.dir);
+        let distance = point.distance(ray.at(nearest));
+        let angle = |t: f64| atan2(t - nearest, distance);
+        EqualAngles { nearest, distance, angle: (angle(span.start), angle(span.end)), span }
+    }
+
+    /// None where the ray runs through the point itself: then the angle is no longer a coordinate.
+    fn sample(&self, u: f64) -> Option<f64> {
+        let t = self.nearest + self.distance * libm::tan(self.angle.0 + u * (self.angle.1 - self.angle.0));
+        (self.distance > 0.0 && t.is_finite()).then(|| t.clamp(self.span.start, self.span.end))
+    }
+
+    /// [1/L]
+    fn pdf(&self, t: f64) -> f64 {
+        let along = t - self.nearest;
+        let range = self.angle.1 - self.angle.0;
+        if self.distance == 0.0 || range <= 0.0 {
+            return 0.0;
+        }
+        self.distance / (range * (self.distance * self.distance + along * along))
+    }
+}
+
+impl<F: FnMut(u32, Spectrum)> Visitor for PathVisitor<'_, F> {
+    fn visit(&mut self, walker: &Walker, step: Step, stream: &mut Stream) {
+        match step {
+            Step::Ahead(hit) => {
+                self.ahead(walker, hit);
+                self.equiangular(walker, hit, stream);
+            }
+            Step::Collision(Arrival { position, .. }, region) => {
+                let medium = self.scene.regions()[region].medium;
+                let before = walker.ray.dir;
+                let scattered = |towards: DVec3| {
+                    let (one_minus_mu, one_plus_mu) = cosine_pair(before, towards);
+                    let p = medium.phase().eval(one_minus_mu, one_plus_mu);
+                    (medium.albedo() * p, p)
+                };
+                let scene = self.scene;
+                let point_share = |point: &Point| {
+                    let t = position.distance(walker.ray.origin);
+                    let hit = scene.hit(&walker.ray, walker.from);
+                    let end = hit.map_or(f64::INFINITY, |h| h.hit.t);
+                    let Some(span) = span(scene, &walker.ray, end) else { return 1.0 };
+                    let density = scene.transmittance(&walker.ray, t) * medium.sigma_t();
+                    let flight = flight_pdf(scene, walker, density, &walker.ray, end);
+                    let pdf = EqualAngles::new(&walker.ray, point.position(), span).pdf(t);
+                    flight / (flight + pdf)
+                };
+                self.connect(walker, position, None, stream, scattered, point_share);
+            }
+            Step::Surface(Arrival { position, .. }, found) => {
+                let Target::Object(index) = found.target else { return };
+                let Surface::Lambertian(surface) = self.scene.objects()[index].surface else { return };
+                let outward = found.hit.normal;
+                let normal = if walker.ray.dir.dot(outward) < 0.0 { outward } else { -outward };
+                let scattered = |towards: DVec3| {
+                    let cosine = towards.dot(normal).max(0.0);
+                    (surface.eval() * cosine, warp::pdf_cosine_hemisphere(cosine))
+                };
+                self.connect(walker, position, Some(found.target), stream, scattered, |_| 1.0);
+            }
+            Step::Passed(..) | Step::Absorbed(..) | Step::Escaped(_) => {}
+        }
+    }
+}
+
+/// Uncollided radiance from a light that fills the ray's far end or its way [W/(L^2 sr)]: incidence and volume
+/// sources, which no sampler aims at.
+fn uncollided(scene: &Scene, light: &Light, ray: &Ray, end: f64) -> Spectrum {
+    match light {
+        Light::Isotropic(light) if light.is_lit_against(ray.dir) => match light.shape().interval(ray) {
+            Some(inside) if inside.end < end => light.radiance() * scene.transmittance(ray, inside.end),
+            _ => Spectrum::ZERO,
+        },
+        Light::VolumeSource(light) => {
+            let inside =
+                light.shape().interval(ray).and_then(|i| i.intersection(Interval { start: 0.0, end }));
+            inside.map_or(Spectrum::ZERO, |inside| scene.collected(ray, inside, light.emission()))
+        }
+        _ => Spectrum::ZERO,
+    }
+}
+
+/// Light that arrives at `position` straight from the light of this index, along one sampled direction: radiance
+/// over density, or the irradiance of a delta light [W/L^2].
+fn next_event(
+    scene: &Scene,
+    index: usize,
+    position: DVec3,
+    from: Option<Target>,
+    stream: &mut Stream,
+) -> Option<(LightSample, Spectrum)> {
+    let light = &scene.lights()[index];
+    if !light.has_direction() {
+        return None;
+    }
+    let sample = light.sample(position, stream.pair())?;
+    let ray = Ray::new(position, sample.dir);
+    if !scene.is_clear(&ray, from, sample.distance, Target::Light(index)) {
+        return None;
+    }
+    Some((sample, sample.value * scene.transmittance(&ray, sample.distance)))
+}
+
+/// Power that uncollided light of beams and point lights carries through a surface element along its normal
+/// [W/L^2]: rays cannot meet it, so that it is added to what they find.
+pub fn direct_flux(scene: &Scene, position: DVec3, normal: DVec3, stream: &mut Stream) -> Spectrum {
+    let mut sum = Spectrum::ZERO;
+    for (index, light) in scene.lights().iter().enumerate() {
+        if light.is_delta()
+            && let Some((sample, received)) = next_event(scene, index, position, None, stream)
+        {
+            sum += received * (-sample.dir.dot(normal)).max(0.0);
+        }
+    }
+    sum
+}
+
+/// One sample of the radiance that arrives at the origin of `ray` from ahead [W/(L^2 sr)], by order: `collect` is
+/// called with the order and the contribution.
+pub fn radiance(
+    scene: &Scene,
+    ray: Ray,
+    from: Option<Target>,
+    orders: Orders,
+    stream: &mut Stream,
+    collect: impl FnMut(u32, Spectrum),
+) {
+    let mut visitor = PathVisitor { scene, orders, collect };
+    let start = Walker { from, ..Walker::new(ray, Spectrum::ONE) };
+    walk(scene, start, ROULETTE, orders.max, stream, &mut visitor);
+}
+
+/// One sample of the fluence at a point [W/L^2], by order.
+///
+/// Uncollided light from lights that can be aimed at comes by next-event estimation, in multiple importance with
+/// the uniform direction that everything else comes by.
+pub fn fluence(
+    scene: &Scene,
+    position: DVec3,
+    orders: Orders,
+    stream: &mut Stream,
+    mut collect: impl FnMut(u32, Spectrum),
+) {
+    if orders.contains(0) {
+        for index in 0..scene.lights().len() {
+            if let Some((sample, received)) = next_event(scene, index, position, None, stream) {
+                let share = sample.pdf_solid_angle.map_or(1.0, |pdf| pdf / (pdf + warp::pdf_sphere()));
+                collect(0, received * share);
+            }
+        }
+    }
+    let dir = warp::square_to_sphere(stream.pair()).normalize();
+    let mut visitor = PathVisitor { scene, orders, collect };
+    let start = Walker {
+        pdf_solid_angle: Some(warp::pdf_sphere()),
+        ..Walker::new(Ray::new(position, dir), Spectrum::grey(FOUR_PI))
+    };
+    // The walk's weight starts at 4 pi; roulette compares with what it started with.
+    walk(scene, start, Roulette::Below(0.1 * FOUR_PI), orders.max, stream, &mut visitor);
+}

@@ -1,0 +1,120 @@
+//! Collimated light.
+
+use super::{LightSample, Stage, emissive};
+use crate::Spectrum;
+use crate::error::{Error, Result};
+use crate::geometry::{Face, Rectangle, Shape, Sphere};
+use crate::math::{Frame, Ray, warp};
+use crate::rng::Stream;
+use glam::DVec3;
+use std::f64::consts::PI;
+
+/// The cross-section of a beam, perpendicular to its direction.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Section {
+    /// Without edge: enters a slab through the whole of one face.
+    Unbounded,
+    /// A disc about a point.
+    Disc {
+        /// Where the axis starts [L].
+        center: DVec3,
+        /// Radius [L].
+        radius: f64,
+    },
+    /// A rectangle whose front faces along the beam.
+    Rectangle(Rectangle),
+}
+
+/// Parallel light of the same irradiance over its section.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Beam {
+    dir: DVec3,
+    irradiance: Spectrum,
+    section: Section,
+}
+
+impl Beam {
+    /// A beam along `dir` (of any length but 0) with `irradiance` [W/L^2] on a plane perpendicular to it.
+    pub fn new(dir: DVec3, irradiance: Spectrum, section: Section) -> Result<Self> {
+        let Some(dir) = dir.try_normalize() else {
+            return Err(Error::Scene("a beam needs a finite direction other than 0 0 0".into()));
+        };
+        match section {
+            Section::Unbounded => {}
+            Section::Disc { center, radius } => {
+                Sphere::new(center, radius)?;
+            }
+            // The rectangle's own rounding: its normal is a cross product of two rounded edges.
+            Section::Rectangle(r) if (r.normal() - dir).length() > 1e-12 => {
+                return Err(Error::Scene("the front of a beam's rectangle faces along the beam".into()));
+            }
+            Section::Rectangle(_) => {}
+        }
+        Ok(Beam { dir, irradiance: emissive("irradiance", irradiance)?, section })
+    }
+
+    /// Unit direction of travel.
+    pub fn dir(&self) -> DVec3 {
+        self.dir
+    }
+
+    /// Irradiance on a perpendicular plane [W/L^2].
+    pub fn irradiance(&self) -> Spectrum {
+        self.irradiance
+    }
+
+    /// Cross-section.
+    pub fn section(&self) -> Section {
+        self.section
+    }
+
+    /// The face that an unbounded beam enters.
+    fn entry(&self) -> Face {
+        if self.dir.z > 0.0 { Face::Top } else { Face::Bottom }
+    }
+
+    pub(super) fn power(&self, stage: Option<&Stage>) -> Spectrum {
+        let area = match (self.section, stage) {
+            (Section::Unbounded, Some(stage)) => stage.side * stage.side * self.dir.z.abs(),
+            (Section::Unbounded, None) => f64::INFINITY,
+            (Section::Disc { radius, .. }, _) => PI * radius * radius,
+            (Section::Rectangle(r), _) => r.area(),
+        };
+        self.irradiance * area
+    }
+
+    pub(super) fn emit(&self, stage: Option<&Stage>, stream: &mut Stream) -> Ray {
+        let u = stream.pair();
+        let origin = match (self.section, stage) {
+            (Section::Unbounded, stage) => {
+                let (side, z) = stage.map_or((0.0, 0.0), |s| (s.side, s.slab.face(self.entry())));
+                DVec3::new(u[0] * side, u[1] * side, z)
+            }
+            (Section::Disc { center, radius }, _) => {
+                let p = warp::square_to_disc(u) * radius;
+                center + Frame::new(self.dir).to_world(DVec3::new(p.x, p.y, 0.0))
+            }
+            (Section::Rectangle(r), _) => r.sample(u),
+        };
+        Ray::new(origin, self.dir)
+    }
+
+    /// How far back along the beam its section lies, or none outside the beam.
+    pub(super) fn distance_back(&self, p: DVec3) -> Option<f64> {
+        match self.section {
+            Section::Unbounded => Some(f64::INFINITY),
+            Section::Disc { center, radius } => {
+                let v = p - center;
+                let along = v.dot(self.dir);
+                let off = v - self.dir * along;
+                (along >= 0.0 && off.length_squared() <= radius * radius).then_some(along)
+            }
+            Section::Rectangle(r) => Shape::Rectangle(r).hit(&Ray::new(p, -self.dir), false).map(|hit| hit.t),
+        }
+    }
+
+    pub(super) fn sample(&self, p: DVec3) -> Option<LightSample> {
+        let distance = self.distance_back(p)?;
+        Some(LightSample { dir: -self.dir, distance, value: self.irradiance, pdf_solid_angle: None })
+    }
+}

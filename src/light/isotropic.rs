@@ -1,0 +1,83 @@
+//! The same radiance from all directions into a shape.
+
+use super::{Stage, emissive};
+use crate::Spectrum;
+use crate::error::{Error, Result};
+use crate::geometry::{Face, Shape};
+use crate::math::{Frame, Ray, warp};
+use crate::rng::Stream;
+use glam::DVec3;
+use std::f64::consts::PI;
+
+/// Which faces of a slab let the light in.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Faces {
+    /// The top face: Lambertian incidence on one side.
+    Top,
+    /// Both faces.
+    Both,
+}
+
+/// Isotropic incidence: every inward direction brings the same radiance to every point of a convex boundary.
+/// A radiance of 1/pi is an irradiance of 1.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Isotropic {
+    shape: Shape,
+    faces: Faces,
+    radiance: Spectrum,
+}
+
+impl Isotropic {
+    /// Incidence on a sphere, a cuboid, or faces of a slab, of the given radiance [W/(L^2 sr)].
+    pub fn new(shape: Shape, faces: Faces, radiance: Spectrum) -> Result<Self> {
+        if matches!(shape, Shape::Rectangle(_)) {
+            return Err(Error::Scene(
+                "isotropic incidence needs a closed shape or a slab, not a rectangle".into(),
+            ));
+        }
+        Ok(Isotropic { shape, faces, radiance: emissive("radiance", radiance)? })
+    }
+
+    /// The shape that is lit.
+    pub fn shape(&self) -> &Shape {
+        &self.shape
+    }
+
+    /// Radiance [W/(L^2 sr)].
+    pub fn radiance(&self) -> Spectrum {
+        self.radiance
+    }
+
+    /// Whether light comes in against a ray that leaves along `dir`.
+    pub fn is_lit_against(&self, dir: DVec3) -> bool {
+        !matches!(self.shape, Shape::Slab(_)) || self.faces == Faces::Both || dir.z < 0.0
+    }
+
+    pub(super) fn power(&self, stage: Option<&Stage>) -> Spectrum {
+        let area = match (self.shape, stage) {
+            (Shape::Slab(_), Some(stage)) => {
+                stage.side * stage.side * if self.faces == Faces::Both { 2.0 } else { 1.0 }
+            }
+            (shape, _) => shape.area(),
+        };
+        self.radiance * (PI * area)
+    }
+
+    pub(super) fn emit(&self, stage: Option<&Stage>, stream: &mut Stream) -> Ray {
+        let (origin, outward) = match self.shape {
+            Shape::Sphere(s) => s.sample_surface(stream.pair()),
+            Shape::Cuboid(c) => c.sample_surface([stream.unit(), stream.unit(), stream.unit()]),
+            Shape::Slab(slab) => {
+                let face =
+                    if self.faces == Faces::Both && stream.unit() < 0.5 { Face::Bottom } else { Face::Top };
+                let side = stage.map_or(0.0, |s| s.side);
+                let [u, v] = stream.pair();
+                (DVec3::new(u * side, v * side, slab.face(face)), face.normal())
+            }
+            Shape::Rectangle(r) => (r.sample(stream.pair()), -r.normal()),
+        };
+        let local = warp::square_to_cosine_hemisphere(stream.pair());
+        Ray::new(origin, Frame::new(-outward).to_world(local))
+    }
+}

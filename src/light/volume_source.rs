@@ -1,0 +1,58 @@
+//! A uniform isotropic source filling a shape.
+
+use super::{Stage, emissive};
+use crate::Spectrum;
+use crate::error::{Error, Result};
+use crate::geometry::Shape;
+use crate::math::{FOUR_PI, Ray, warp};
+use crate::rng::Stream;
+use glam::DVec3;
+
+/// Every volume element of a shape emits the same power, alike in all directions.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct VolumeSource {
+    shape: Shape,
+    density: Spectrum,
+}
+
+impl VolumeSource {
+    /// A source in a sphere, a cuboid or a slab, of the given power per volume [W/L^3].
+    pub fn new(shape: Shape, density: Spectrum) -> Result<Self> {
+        if matches!(shape, Shape::Rectangle(_)) {
+            return Err(Error::Scene("a volume source needs a shape with an inside, not a rectangle".into()));
+        }
+        Ok(VolumeSource { shape, density: emissive("density", density)? })
+    }
+
+    /// The shape that it fills.
+    pub fn shape(&self) -> &Shape {
+        &self.shape
+    }
+
+    /// Emission coefficient [W/(L^3 sr)].
+    pub fn emission(&self) -> Spectrum {
+        self.density / FOUR_PI
+    }
+
+    pub(super) fn power(&self, stage: Option<&Stage>) -> Spectrum {
+        let volume = match (self.shape, stage) {
+            (Shape::Slab(slab), Some(stage)) => stage.side * stage.side * slab.thickness(),
+            (shape, _) => shape.volume(),
+        };
+        self.density * volume
+    }
+
+    pub(super) fn emit(&self, stage: Option<&Stage>, stream: &mut Stream) -> Ray {
+        let u = [stream.unit(), stream.unit(), stream.unit()];
+        let origin = match self.shape {
+            Shape::Sphere(s) => s.sample_inside(u),
+            Shape::Cuboid(c) => c.sample_inside(u),
+            Shape::Slab(slab) => {
+                let side = stage.map_or(0.0, |s| s.side);
+                DVec3::new(u[0] * side, u[1] * side, slab.top() + u[2] * slab.thickness())
+            }
+            Shape::Rectangle(r) => r.sample([u[0], u[1]]),
+        };
+        Ray::new(origin, warp::square_to_sphere(stream.pair()).normalize())
+    }
+}

@@ -1,0 +1,5 @@
+//! scene files
+/// x
+pub struct SceneFile;
+/// x
+pub struct Parameters;

@@ -1,0 +1,98 @@
+//! What a scene requires of the simulator: computed from the scene, printed by `turbid check`, and obeyed.
+
+use super::Parts;
+use crate::light::Light;
+
+/// What a scene requires; what it does not require costs nothing.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Plan {
+    /// Whether light can collide at all.
+    pub has_media: bool,
+    /// Whether every medium has the same extinction in all channels, so that one flight serves all.
+    pub has_grey_extinction: bool,
+    /// Whether every number is the same in all channels, so that one channel is reported.
+    pub is_grey: bool,
+    /// Whether light can meet a surface.
+    pub has_surfaces: bool,
+    /// Whether light can meet a specular surface.
+    pub has_specular: bool,
+    /// Whether some light has a direction to aim at.
+    pub has_next_event: bool,
+    /// Indices of point lights: equiangular sampling towards them.
+    pub point_lights: Vec<usize>,
+    /// Whether the first collision is forced: the media are so thin that free flights would rarely meet them.
+    pub forces_first_collision: bool,
+    /// Path classes that the path tracer cannot sample, in words; photons reach them all.
+    pub unreachable: Vec<String>,
+}
+
+/// Below this optical thickness fewer than one free flight in ten collides, and forcing pays.
+const THIN: f64 = 0.1;
+
+impl Plan {
+    pub(super) fn of(parts: &Parts) -> Self {
+        let media: Vec<_> = parts.regions.iter().filter(|r| r.medium.sigma_t().max() > 0.0).collect();
+        let thickness = media.iter().map(|r| r.shape.shortest_extent() * r.medium.sigma_t().max());
+        let thickest = thickness.fold(0.0, f64::max);
+        let has_specular = parts.objects.iter().any(|o| o.surface.is_specular());
+        let has_delta = parts.lights.iter().any(Light::is_delta);
+        let has_event = !media.is_empty() || parts.objects.iter().any(|o| !o.surface.is_specular());
+        let mut unreachable = Vec::new();
+        if has_specular && has_delta {
+            if has_event {
+                unreachable.push(
+                    "L S+ (D|M) ... : from a beam or point light by mirrors to the first scattering".into(),
+                );
+            }
+            unreachable.push("L S+ E : from a beam or point light by mirrors to the sensor".into());
+        }
+        Plan {
+            has_media: !media.is_empty(),
+            has_grey_extinction: media.iter().all(|r| r.medium.sigma_t().is_grey()),
+            is_grey: parts
+                .regions
+                .iter()
+                .all(|r| r.medium.sigma_t().is_grey() && r.medium.albedo().is_grey())
+                && parts.objects.iter().all(|o| o.surface.reflectance().is_grey())
+                && parts.lights.iter().all(Light::is_grey),
+            has_surfaces: !parts.objects.is_empty(),
+            has_specular,
+            has_next_event: parts.lights.iter().any(Light::has_direction),
+            point_lights: (0..parts.lights.len())
+                .filter(|&i| matches!(parts.lights[i], Light::Point(_)))
+                .collect(),
+            forces_first_collision: !media.is_empty() && thickest < THIN,
+            unreachable,
+        }
+    }
+
+    /// The plan in words, one line each.
+    pub fn lines(&self) -> Vec<String> {
+        let mut lines = vec![
+            match (self.has_media, self.forces_first_collision) {
+                (false, _) => "no medium: no flights, no volume map".to_string(),
+                (true, false) => "homogeneous media: flights and transmittance in closed form".to_string(),
+                (true, true) => "thin homogeneous media: closed form, first collision forced".to_string(),
+            },
+            if self.is_grey { "grey: one channel reported" } else { "in colour: three channels reported" }
+                .to_string(),
+        ];
+        if !self.has_grey_extinction {
+            lines.push("extinction differs by channel: flights by channel, balance weights".to_string());
+        }
+        lines.push(match (self.has_surfaces, self.has_specular) {
+            (false, _) => "no surface: nothing to intersect but media and lights".to_string(),
+            (true, false) => "matt or black surfaces: no caustic, no mirror paths".to_string(),
+            (true, true) => "mirrors: specular paths".to_string(),
+        });
+        if !self.has_next_event {
+            lines.push("no light to aim at: no next-event estimation".to_string());
+        }
+        if !self.point_lights.is_empty() {
+            lines.push(
+                "point lights: equiangular sampling, in multiple importance with free flight".to_string(),
+            );
+        }
+        lines
+    }
+}

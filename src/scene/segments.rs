@@ -1,0 +1,73 @@
+//! The stretches of medium that a ray passes, nearest first.
+
+use super::Region;
+use crate::math::{Interval, Ray};
+
+/// The most regions a scene may have: stretches live on the stack.
+pub const MAX_REGIONS: usize = 8;
+/// n convex shapes have 2n ends on a ray, and 2n-1 stretches between them.
+const MAX_SEGMENTS: usize = 2 * MAX_REGIONS - 1;
+
+/// A stretch of one medium.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Segment {
+    /// Where it is on the ray [L].
+    pub interval: Interval,
+    /// Index of the region.
+    pub region: usize,
+}
+
+/// Disjoint stretches in the order in which the ray passes them.
+#[derive(Debug, Clone, Copy)]
+pub struct Segments {
+    items: [Segment; MAX_SEGMENTS],
+    len: usize,
+}
+
+const NOTHING: Segment = Segment { interval: Interval { start: 0.0, end: 0.0 }, region: 0 };
+
+impl Segments {
+    /// The stretches of `regions` on `ray` up to distance `end`; where shapes overlap, the later one counts.
+    pub(super) fn new(regions: &[Region], ray: &Ray, end: f64) -> Self {
+        let whole = Interval { start: 0.0, end };
+        let mut segments = Segments { items: [NOTHING; MAX_SEGMENTS], len: 0 };
+        if let [region] = regions {
+            if let Some(interval) = region.shape.interval(ray).and_then(|i| i.intersection(whole)) {
+                segments.push(Segment { interval, region: 0 });
+            }
+            return segments;
+        }
+        let mut found = [NOTHING; MAX_REGIONS];
+        let mut ends = [0.0f64; 2 * MAX_REGIONS];
+        let mut count = 0;
+        for (index, region) in regions.iter().enumerate() {
+            if let Some(interval) = region.shape.interval(ray).and_then(|i| i.intersection(whole)) {
+                found[count] = Segment { interval, region: index };
+                (ends[2 * count], ends[2 * count + 1]) = (interval.start, interval.end);
+                count += 1;
+            }
+        }
+        let ends = &mut ends[..2 * count];
+        ends.sort_unstable_by(f64::total_cmp);
+        for pair in ends.windows(2) {
+            let part = Interval { start: pair[0], end: pair[1] };
+            if part.length() > 0.0 {
+                let covers = |s: &&Segment| s.interval.start <= part.start && part.end <= s.interval.end;
+                if let Some(last) = found[..count].iter().rev().find(covers) {
+                    segments.push(Segment { interval: part, region: last.region });
+                }
+            }
+        }
+        segments
+    }
+
+    fn push(&mut self, segment: Segment) {
+        self.items[self.len] = segment;
+        self.len += 1;
+    }
+
+    /// The stretches, nearest first.
+    pub fn iter(&self) -> std::slice::Iter<'_, Segment> {
+        self.items[..self.len].iter()
+    }
+}

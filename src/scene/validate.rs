@@ -1,0 +1,129 @@
+//! Checks on the parts of a scene together. Each part has checked its own numbers when it was made.
+
+use super::{MAX_REGIONS, Parts, Quantity};
+use crate::error::{Error, Result};
+use crate::geometry::{Shape, Slab};
+use crate::light::{Light, Section, Stage};
+
+/// Positions keep a part in 2^53 of the scene's extent: a mean free path must stay well above that step for a
+/// flight to be resolved to 1e-6 of itself.
+const MAX_EXTENT_OVER_MFP: f64 = 1e9;
+
+fn refuse<T>(text: impl Into<String>) -> Result<T> {
+    Err(Error::Scene(text.into()))
+}
+
+/// The slab and its cell, if the scene has a cell; an error where parts do not fit together.
+pub(super) fn check(parts: &Parts) -> Result<Option<Stage>> {
+    if parts.regions.len() > MAX_REGIONS {
+        return refuse(format!("{} regions; allowed: at most {MAX_REGIONS}", parts.regions.len()));
+    }
+    if parts.regions.iter().any(|r| matches!(r.shape, Shape::Rectangle(_))) {
+        return refuse("a medium needs a shape with an inside, not a rectangle");
+    }
+    if parts.lights.is_empty() {
+        return refuse("a scene needs at least one light");
+    }
+    let stage = stage(parts)?;
+    for light in &parts.lights {
+        if light.needs_stage() && stage.is_none() {
+            return refuse(
+                "an unbounded light needs a slab of medium and `cell`, the side of the cell that stands for it",
+            );
+        }
+        if let Light::Beam(beam) = light
+            && beam.section() == Section::Unbounded
+            && beam.dir().z == 0.0
+        {
+            return refuse("an unbounded beam must not run along the faces of its slab");
+        }
+    }
+    check_fold(parts, stage.as_ref())?;
+    for region in &parts.regions {
+        let far = extent(&region.shape) * region.medium.sigma_t().max();
+        if far > MAX_EXTENT_OVER_MFP {
+            return Err(Error::out_of_range(
+                "distance from the origin over the mean free path",
+                far,
+                "at most 1e9",
+            ));
+        }
+    }
+    for sensor in &parts.sensors {
+        let is_finite = match sensor.quantity {
+            Quantity::Fluence(p) => p.is_finite(),
+            Quantity::Radiance(ray) => ray.origin.is_finite() && ray.dir.is_finite(),
+            Quantity::Outflow { shape, .. } => {
+                if matches!(shape, Shape::Slab(_)) && stage.is_none() {
+                    return refuse(format!("sensor {} is on a slab, so the scene needs `cell`", sensor.name));
+                }
+                true
+            }
+            Quantity::Absorbed(region) => {
+                if region >= parts.regions.len() {
+                    return refuse(format!(
+                        "sensor {} names region {region}; allowed: 0 to {}",
+                        sensor.name,
+                        parts.regions.len() as i64 - 1
+                    ));
+                }
+                true
+            }
+        };
+        if !is_finite {
+            return refuse(format!("sensor {} has a position or direction that is not finite", sensor.name));
+        }
+    }
+    Ok(stage)
+}
+
+fn stage(parts: &Parts) -> Result<Option<Stage>> {
+    let Some(side) = parts.cell else { return Ok(None) };
+    if !(side > 0.0 && side.is_finite()) {
+        return Err(Error::out_of_range("cell", side, "finite and above 0"));
+    }
+    let slabs: Vec<Slab> = parts
+        .regions
+        .iter()
+        .filter_map(|r| if let Shape::Slab(slab) = r.shape { Some(slab) } else { None })
+        .collect();
+    match slabs[..] {
+        [slab] => Ok(Some(Stage { slab, side })),
+        _ => refuse(format!("`cell` stands for one slab of medium; this scene has {}", slabs.len())),
+    }
+}
+
+/// Folding positions into a cell is exact only where every part looks the same after a step along x or y.
+fn check_fold(parts: &Parts, stage: Option<&Stage>) -> Result<()> {
+    let Some(stage) = stage else { return Ok(()) };
+    let is_unbounded = |shape: &Shape| matches!(shape, Shape::Slab(_));
+    let all_unbounded = parts.regions.iter().all(|r| is_unbounded(&r.shape))
+        && parts.objects.iter().all(|o| is_unbounded(&o.shape))
+        && parts.lights.iter().all(Light::needs_stage);
+    if !all_unbounded {
+        return refuse("with `cell`, every medium, surface and light must be laterally unbounded");
+    }
+    for light in &parts.lights {
+        let shape = match light {
+            Light::Isotropic(l) => Some(l.shape()),
+            Light::VolumeSource(l) => Some(l.shape()),
+            _ => None,
+        };
+        if let Some(shape) = shape
+            && *shape != Shape::Slab(stage.slab)
+        {
+            return refuse("an unbounded light's slab must be the slab of the medium");
+        }
+    }
+    Ok(())
+}
+
+/// Largest distance of a shape's points from the origin, along any axis that is bounded [L].
+fn extent(shape: &Shape) -> f64 {
+    match shape {
+        Shape::Sphere(s) => s.center().abs().max_element() + s.radius(),
+        Shape::Cuboid(c) => c.min().abs().max_element().max(c.max().abs().max_element()),
+        Shape::Slab(s) => s.top().abs() + s.thickness(),
+        Shape::Rectangle(_) => 0.0,
+    }
+}

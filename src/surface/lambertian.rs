@@ -1,0 +1,44 @@
+//! A matt surface.
+
+use crate::Spectrum;
+use crate::error::{Error, Result};
+use crate::math::{Frame, warp};
+use glam::DVec3;
+use std::f64::consts::PI;
+
+/// Reflected radiance is the same in all directions: `f_r = reflectance / pi`.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Lambertian {
+    reflectance: Spectrum,
+}
+
+/// A reflectance whose channels are all in [0, 1].
+pub(super) fn checked(reflectance: Spectrum) -> Result<Spectrum> {
+    match (0..3).map(|c| reflectance[c]).find(|r| !(0.0..=1.0).contains(r)) {
+        Some(bad) => Err(Error::out_of_range("reflectance", bad, "0 to 1")),
+        None => Ok(reflectance),
+    }
+}
+
+impl Lambertian {
+    /// A surface of the given reflectance [1], each channel in [0, 1].
+    pub fn new(reflectance: Spectrum) -> Result<Self> {
+        Ok(Lambertian { reflectance: checked(reflectance)? })
+    }
+
+    /// Fraction of the arriving power that is reflected.
+    pub fn reflectance(&self) -> Spectrum {
+        self.reflectance
+    }
+
+    /// Reflection function [1/sr].
+    pub fn eval(&self) -> Spectrum {
+        self.reflectance / PI
+    }
+
+    /// A direction about `normal` with density cos/pi, and that density.
+    pub fn scatter(normal: DVec3, u: [f64; 2]) -> (DVec3, f64) {
+        let local = warp::square_to_cosine_hemisphere(u);
+        (Frame::new(normal).to_world(local), warp::pdf_cosine_hemisphere(local.z))
+    }
+}

@@ -1,0 +1,62 @@
+//! Histories in fixed blocks, merged in block order: the same bits on any number of threads.
+
+use crate::error::{Error, Result};
+use rayon::prelude::*;
+use std::ops::Range;
+
+/// Histories a block, whatever the total and the threads.
+pub const BLOCK: u64 = 4096;
+
+/// Who watches a long computation.
+pub trait Progress: Sync {
+    /// So many more histories are done.
+    fn advance(&self, histories: u64);
+
+    /// Whether to stop.
+    fn is_cancelled(&self) -> bool {
+        false
+    }
+}
+
+/// Nobody watches.
+pub struct NoProgress;
+
+impl Progress for NoProgress {
+    fn advance(&self, _histories: u64) {}
+}
+
+/// Runs `histories` in blocks, in parallel, and merges the results pairwise in block order.
+///
+/// # Errors
+/// `Error::Cancelled` if the progress says so.
+pub fn run_blocks<T: Send>(
+    histories: u64,
+    progress: &dyn Progress,
+    block: impl Fn(Range<u64>) -> T + Sync,
+    merge: impl Fn(T, T) -> T,
+) -> Result<Option<T>> {
+    let one = |index: u64| {
+        if progress.is_cancelled() {
+            return Err(Error::Cancelled);
+        }
+        let range = index * BLOCK..((index + 1) * BLOCK).min(histories);
+        let count = range.end - range.start;
+        let result = block(range);
+        progress.advance(count);
+        Ok(result)
+    };
+    let mut results: Vec<T> =
+        (0..histories.div_ceil(BLOCK)).into_par_iter().map(one).collect::<Result<_>>()?;
+    while results.len() > 1 {
+        let mut pairs = results.into_iter();
+        let mut merged = Vec::with_capacity(pairs.len().div_ceil(2));
+        while let Some(first) = pairs.next() {
+            merged.push(match pairs.next() {
+                Some(second) => merge(first, second),
+                None => first,
+            });
+        }
+        results = merged;
+    }
+    Ok(results.pop())
+}

@@ -1,0 +1,102 @@
+//! Free flight: how far light goes before it collides.
+
+use crate::Spectrum;
+use crate::math::{Ray, exp_m1, ln_1p};
+use crate::rng::Stream;
+use crate::scene::{Scene, decay};
+
+/// How a flight ends.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Flight {
+    /// With a collision.
+    Collision {
+        /// Distance flown [L].
+        t: f64,
+        /// Index of the region.
+        region: usize,
+        /// Weight after the flight.
+        weight: Spectrum,
+    },
+    /// At the end of the ray, with this weight.
+    Passed(Spectrum),
+}
+
+/// Samples the distance to the next collision on a ray, up to distance `end` [L].
+///
+/// Grey media: the optical depth is -ln(1-u), exactly, and the weight is unchanged. Where extinction differs by
+/// channel, one channel is chosen in proportion to its weight and the result is weighted by the balance heuristic,
+/// which keeps the summed weight. If `forced`, the flight collides for certain (where anything is in its way) and
+/// the weight carries the probability: the caller owns what passes.
+pub fn free_flight(
+    scene: &Scene,
+    ray: &Ray,
+    end: f64,
+    weight: Spectrum,
+    forced: bool,
+    stream: &mut Stream,
+) -> Flight {
+    if !scene.plan().has_media {
+        return Flight::Passed(weight);
+    }
+    let is_grey = scene.plan().has_grey_extinction;
+    let channel = if is_grey { 0 } else { choose(weight, stream.unit()) };
+    let mut target = -ln_1p(-stream.unit());
+    let mut weight = weight;
+    if forced {
+        let depth = scene.optical_depth(ray, end)[channel];
+        if depth == 0.0 {
+            return Flight::Passed(weight);
+        }
+        // exp(-target) is uniform in (0, 1]: stretched over [exp(-depth), 1].
+        let collides = -exp_m1(-depth);
+        target = -ln_1p(collides * exp_m1(-target)).min(depth);
+        weight *= collides;
+    }
+    let segments = scene.segments(ray, end);
+    let mut last = None;
+    for segment in segments.iter() {
+        let sigma_t = scene.regions()[segment.region].medium.sigma_t();
+        if sigma_t[channel] == 0.0 {
+            continue;
+        }
+        let depth = sigma_t[channel] * segment.interval.length();
+        if target < depth || (forced && target == depth) {
+            let t = segment.interval.start + target / sigma_t[channel];
+            return collision(scene, ray, t, segment.region, weight, is_grey);
+        }
+        target -= depth;
+        last = Some(segment);
+    }
+    match last {
+        // A forced flight whose rounding carried it past the end collides at the end.
+        Some(segment) if forced => {
+            collision(scene, ray, segment.interval.end, segment.region, weight, is_grey)
+        }
+        _ if is_grey => Flight::Passed(weight),
+        _ => {
+            let passed = scene.transmittance(ray, end);
+            Flight::Passed(weight * passed * (weight.sum() / (weight * passed).sum()))
+        }
+    }
+}
+
+fn collision(scene: &Scene, ray: &Ray, t: f64, region: usize, weight: Spectrum, is_grey: bool) -> Flight {
+    if is_grey {
+        return Flight::Collision { t, region, weight };
+    }
+    let density = decay(scene.optical_depth(ray, t)) * scene.regions()[region].medium.sigma_t();
+    let weighted = weight * density;
+    Flight::Collision { t, region, weight: weighted * (weight.sum() / weighted.sum()) }
+}
+
+/// A channel, in proportion to its weight.
+fn choose(weight: Spectrum, u: f64) -> usize {
+    let target = u * weight.sum();
+    if target < weight[0] {
+        0
+    } else if target < weight[0] + weight[1] || weight[2] == 0.0 {
+        1
+    } else {
+        2
+    }
+}

@@ -1,0 +1,39 @@
+//! Russian roulette: who survives an event, and with what weight.
+
+use crate::Spectrum;
+use crate::rng::Stream;
+
+/// How survival is decided.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Roulette {
+    /// Photons: survive with the probability that the albedo keeps of the summed power, so that powers stay equal.
+    Analog,
+    /// Paths: carry the albedo as a weight, and play only once the largest channel is below this value.
+    Below(f64),
+}
+
+impl Roulette {
+    /// The weight after an event that keeps `albedo` of each channel, or none if the history ends there.
+    ///
+    /// Analog: survival with q = sum(a_c P_c) / sum(P_c), then P_c a_c / q: the summed power is unchanged, exactly
+    /// so for a grey albedo; each channel holds in expectation.
+    pub fn survive(self, weight: Spectrum, albedo: Spectrum, stream: &mut Stream) -> Option<Spectrum> {
+        let kept = weight * albedo;
+        match self {
+            Roulette::Analog if albedo.is_grey() => (stream.unit() < albedo[0]).then_some(weight),
+            Roulette::Analog => {
+                let q = kept.sum() / weight.sum();
+                (stream.unit() < q).then(|| kept / q)
+            }
+            Roulette::Below(threshold) => {
+                let largest = kept.max();
+                if largest >= threshold {
+                    Some(kept)
+                } else {
+                    let q = largest / threshold;
+                    (stream.unit() < q).then(|| kept / q)
+                }
+            }
+        }
+    }
+}

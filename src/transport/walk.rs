@@ -1,0 +1,170 @@
+//! The one random walk that paths and photons share.
+
+use super::{Flight, Roulette, free_flight};
+use crate::Spectrum;
+use crate::math::Ray;
+use crate::phase::PhaseFunction;
+use crate::photons::Flags;
+use crate::rng::Stream;
+use crate::scene::{Scene, SceneHit, Target};
+use glam::DVec3;
+
+/// Where a walk stands: a ray about to be followed.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Walker {
+    /// The ray ahead.
+    pub ray: Ray,
+    /// Power of a photon [W], or throughput of a path.
+    pub weight: Spectrum,
+    /// Number of scatterings so far by media and non-specular surfaces.
+    pub order: u32,
+    /// What has been met.
+    pub flags: Flags,
+    /// The body that the ray starts on.
+    pub from: Option<Target>,
+    /// Density with which the ray's direction was chosen [1/sr]; none where no other sampler could have chosen it.
+    pub pdf_solid_angle: Option<f64>,
+}
+
+impl Walker {
+    /// A walk that starts along a ray.
+    pub fn new(ray: Ray, weight: Spectrum) -> Self {
+        Walker { ray, weight, order: 0, flags: Flags::NONE, from: None, pdf_solid_angle: None }
+    }
+}
+
+/// An event: the walker as it arrives, before the albedo decides.
+#[derive(Debug, Clone, Copy)]
+pub struct Arrival<'a> {
+    /// The walker, its weight as it arrives.
+    pub walker: &'a Walker,
+    /// Where [L].
+    pub position: DVec3,
+}
+
+/// What a step of the walk tells its visitor.
+#[derive(Debug, Clone, Copy)]
+pub enum Step<'a> {
+    /// A ray is about to be followed up to the body ahead, if there is one.
+    Ahead(Option<&'a SceneHit>),
+    /// Light went from the ray's origin to this distance without an event, with this weight.
+    Passed(f64, Spectrum),
+    /// A collision in the region of this index.
+    Collision(Arrival<'a>, usize),
+    /// An arrival at a body.
+    Surface(Arrival<'a>, &'a SceneHit),
+    /// The history ended at an event: this weight is absorbed there; the index of the region, if in a medium.
+    Absorbed(Spectrum, Option<usize>),
+    /// The weight leaves the scene.
+    Escaped(Spectrum),
+}
+
+/// Who watches a walk.
+pub trait Visitor {
+    /// One step of the walk.
+    fn visit(&mut self, walker: &Walker, step: Step, stream: &mut Stream);
+}
+
+/// Follows one history to its end.
+///
+/// It ends by absorption, by escape, or with a ray of order `limit`, which is looked along but not flown.
+pub fn walk(
+    scene: &Scene,
+    start: Walker,
+    roulette: Roulette,
+    limit: Option<u32>,
+    stream: &mut Stream,
+    visitor: &mut impl Visitor,
+) {
+    let mut walker = start;
+    loop {
+        let hit = scene.hit(&walker.ray, walker.from);
+        visitor.visit(&walker, Step::Ahead(hit.as_ref()), stream);
+        if limit.is_some_and(|limit| walker.order >= limit) {
+            return;
+        }
+        let end = hit.map_or(f64::INFINITY, |h| h.hit.t);
+        let forced = scene.plan().forces_first_collision && walker.order == 0 && hit.is_none();
+        let arrived = walker.weight;
+        match free_flight(scene, &walker.ray, end, arrived, forced, stream) {
+            Flight::Collision { t, region, weight } => {
+                if forced {
+                    let passed = arrived - weight;
+                    visitor.visit(&walker, Step::Passed(end, passed), stream);
+                    visitor.visit(&walker, Step::Escaped(passed), stream);
+                }
+                visitor.visit(&walker, Step::Passed(t, weight), stream);
+                walker.weight = weight;
+                let position = walker.ray.at(t);
+                visitor.visit(
+                    &walker,
+                    Step::Collision(Arrival { walker: &walker, position }, region),
+                    stream,
+                );
+                let medium = &scene.regions()[region].medium;
+                let Some(kept) = roulette.survive(weight, medium.albedo(), stream) else {
+                    visitor.visit(&walker, Step::Absorbed(weight, Some(region)), stream);
+                    return;
+                };
+                let before = walker.ray.dir;
+                let dir = medium.phase().scatter(before, stream.pair());
+                let (one_minus_mu, one_plus_mu) = crate::math::cosine_pair(before, dir);
+                walker = Walker {
+                    ray: Ray::new(position, dir),
+                    weight: kept,
+                    order: walker.order + 1,
+                    flags: walker.flags.with(Flags::MEDIUM),
+                    from: None,
+                    pdf_solid_angle: Some(medium.phase().eval(one_minus_mu, one_plus_mu)),
+                };
+            }
+            Flight::Passed(weight) => {
+                visitor.visit(&walker, Step::Passed(end, weight), stream);
+                walker.weight = weight;
+                let Some(found) = hit else {
+                    visitor.visit(&walker, Step::Escaped(weight), stream);
+                    return;
+                };
+                match reflect(scene, &walker, &found, roulette, stream, visitor) {
+                    Some(next) => walker = next,
+                    None => return,
+                }
+            }
+        }
+    }
+}
+
+/// The walker after a body, or none if it ends there.
+fn reflect(
+    scene: &Scene,
+    walker: &Walker,
+    found: &SceneHit,
+    roulette: Roulette,
+    stream: &mut Stream,
+    visitor: &mut impl Visitor,
+) -> Option<Walker> {
+    let position = walker.ray.at(found.hit.t);
+    visitor.visit(walker, Step::Surface(Arrival { walker, position }, found), stream);
+    let next = match found.target {
+        Target::Light(_) => None,
+        Target::Object(index) => {
+            let surface = &scene.objects()[index].surface;
+            let dir = walker.ray.dir;
+            let normal = if dir.dot(found.hit.normal) < 0.0 { found.hit.normal } else { -found.hit.normal };
+            let survivor = roulette.survive(walker.weight, surface.reflectance(), stream);
+            let scattered = surface.scatter(dir, normal, stream.pair());
+            survivor.zip(scattered).map(|(weight, (dir, pdf))| Walker {
+                ray: Ray::new(position, dir),
+                weight,
+                order: walker.order + u32::from(pdf.is_some()),
+                flags: walker.flags.with(if pdf.is_some() { Flags::DIFFUSE } else { Flags::SPECULAR }),
+                from: Some(found.target),
+                pdf_solid_angle: pdf,
+            })
+        }
+    };
+    if next.is_none() {
+        visitor.visit(walker, Step::Absorbed(walker.weight, None), stream);
+    }
+    next
+}
