@@ -5,6 +5,7 @@ pub mod math;
 pub mod photons;
 pub mod rng;
 pub mod spectrum;
+pub mod stats;
 
 pub use error::{Error, Result};
 pub use spectrum::Spectrum;
