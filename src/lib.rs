@@ -1,19 +1,26 @@
 //! turbid: what does photon mapping's speed cost in accuracy, when light travels through fog, water or smoke?
+//!
+//! By meaning, from the bottom up: [`math`], [`spectrum`], [`rng`] and [`stats`] know no light; [`phase`],
+//! [`medium`], [`surface`], [`light`] and [`geometry`] are what a [`scene`] is made of; [`transport`] is the random
+//! walk that paths and photons share; [`photons`] keeps what it meets, [`estimators`] read it; [`integrators`] trace
+//! paths; [`sensor`] turns both into numbers with standard errors; [`output`] writes files that appear whole or not
+//! at all.
 
 pub mod error;
-pub mod math;
-pub mod photons;
-pub mod rng;
-pub mod spectrum;
-pub mod stats;
-
-pub use error::{Error, Result};
-pub use spectrum::Spectrum;
 pub mod geometry;
 pub mod integrators;
 pub mod light;
+pub mod math;
 pub mod medium;
 pub mod phase;
+pub mod photons;
+pub mod rng;
 pub mod scene;
+pub mod sensor;
+pub mod spectrum;
+pub mod stats;
 pub mod surface;
 pub mod transport;
+
+pub use error::{Error, Result};
+pub use spectrum::Spectrum;

@@ -68,6 +68,11 @@ impl Stream {
         [self.unit(), self.unit()]
     }
 
+    /// Three numbers uniform in [0, 1).
+    pub fn triple(&mut self) -> [f64; 3] {
+        [self.unit(), self.unit(), self.unit()]
+    }
+
     /// Uniform index below `count`, which is at least 1. The bias of the multiplication is below `count`/2^53.
     pub fn index(&mut self, count: usize) -> usize {
         ((self.unit() * count as f64) as usize).min(count - 1)

@@ -90,6 +90,37 @@ impl Shape {
         }
     }
 
+    /// A uniform point on the boundary from three numbers in [0, 1), the outward normal there, and the boundary's
+    /// area [L^2]. Of a slab: one face, over the square cell [0, side) x [0, side).
+    pub fn sample_boundary(&self, face: Face, side: f64, u: [f64; 3]) -> (DVec3, DVec3, f64) {
+        match self {
+            Shape::Sphere(s) => {
+                let (p, normal) = s.sample_surface([u[0], u[1]]);
+                (p, normal, s.area())
+            }
+            Shape::Rectangle(r) => (r.sample([u[0], u[1]]), r.normal(), r.area()),
+            Shape::Slab(s) => (DVec3::new(u[0] * side, u[1] * side, s.face(face)), face.normal(), side * side),
+            Shape::Cuboid(c) => {
+                let (p, normal) = c.sample_surface(u);
+                (p, normal, c.area())
+            }
+        }
+    }
+
+    /// A uniform point inside from three numbers in [0, 1), and the volume [L^3]; of a slab, the part under the
+    /// square cell [0, side) x [0, side).
+    pub fn sample_inside(&self, side: f64, u: [f64; 3]) -> (DVec3, f64) {
+        match self {
+            Shape::Sphere(s) => (s.sample_inside(u), s.volume()),
+            Shape::Rectangle(r) => (r.sample([u[0], u[1]]), 0.0),
+            Shape::Slab(s) => {
+                let p = DVec3::new(u[0] * side, u[1] * side, s.top() + u[2] * s.thickness());
+                (p, side * side * s.thickness())
+            }
+            Shape::Cuboid(c) => (c.sample_inside(u), c.volume()),
+        }
+    }
+
     /// Shortest extent [L]: what the mean free path is compared with.
     pub fn shortest_extent(&self) -> f64 {
         match self {

@@ -55,28 +55,18 @@ impl Isotropic {
     }
 
     pub(super) fn power(&self, stage: Option<&Stage>) -> Spectrum {
-        let area = match (self.shape, stage) {
-            (Shape::Slab(_), Some(stage)) => {
-                stage.side * stage.side * if self.faces == Faces::Both { 2.0 } else { 1.0 }
-            }
-            (shape, _) => shape.area(),
-        };
-        self.radiance * (PI * area)
+        let (_, _, area) = self.shape.sample_boundary(Face::Top, Stage::side(stage), [0.0; 3]);
+        let faces = if self.has_two_faces() { 2.0 } else { 1.0 };
+        self.radiance * (PI * area * faces)
+    }
+
+    fn has_two_faces(&self) -> bool {
+        matches!(self.shape, Shape::Slab(_)) && self.faces == Faces::Both
     }
 
     pub(super) fn emit(&self, stage: Option<&Stage>, stream: &mut Stream) -> Ray {
-        let (origin, outward) = match self.shape {
-            Shape::Sphere(s) => s.sample_surface(stream.pair()),
-            Shape::Cuboid(c) => c.sample_surface([stream.unit(), stream.unit(), stream.unit()]),
-            Shape::Slab(slab) => {
-                let face =
-                    if self.faces == Faces::Both && stream.unit() < 0.5 { Face::Bottom } else { Face::Top };
-                let side = stage.map_or(0.0, |s| s.side);
-                let [u, v] = stream.pair();
-                (DVec3::new(u * side, v * side, slab.face(face)), face.normal())
-            }
-            Shape::Rectangle(r) => (r.sample(stream.pair()), -r.normal()),
-        };
+        let face = if self.has_two_faces() && stream.unit() < 0.5 { Face::Bottom } else { Face::Top };
+        let (origin, outward, _) = self.shape.sample_boundary(face, Stage::side(stage), stream.triple());
         let local = warp::square_to_cosine_hemisphere(stream.pair());
         Ray::new(origin, Frame::new(-outward).to_world(local))
     }

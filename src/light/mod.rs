@@ -47,6 +47,13 @@ pub struct Stage {
     pub side: f64,
 }
 
+impl Stage {
+    /// Side of the cell [L]; 0 where there is none.
+    pub fn side(stage: Option<&Stage>) -> f64 {
+        stage.map_or(0.0, |s| s.side)
+    }
+}
+
 /// A photon on its way.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Emission {

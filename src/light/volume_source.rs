@@ -6,7 +6,6 @@ use crate::error::{Error, Result};
 use crate::geometry::Shape;
 use crate::math::{FOUR_PI, Ray, warp};
 use crate::rng::Stream;
-use glam::DVec3;
 
 /// Every volume element of a shape emits the same power, alike in all directions.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -35,24 +34,11 @@ impl VolumeSource {
     }
 
     pub(super) fn power(&self, stage: Option<&Stage>) -> Spectrum {
-        let volume = match (self.shape, stage) {
-            (Shape::Slab(slab), Some(stage)) => stage.side * stage.side * slab.thickness(),
-            (shape, _) => shape.volume(),
-        };
-        self.density * volume
+        self.density * self.shape.sample_inside(Stage::side(stage), [0.0; 3]).1
     }
 
     pub(super) fn emit(&self, stage: Option<&Stage>, stream: &mut Stream) -> Ray {
-        let u = [stream.unit(), stream.unit(), stream.unit()];
-        let origin = match self.shape {
-            Shape::Sphere(s) => s.sample_inside(u),
-            Shape::Cuboid(c) => c.sample_inside(u),
-            Shape::Slab(slab) => {
-                let side = stage.map_or(0.0, |s| s.side);
-                DVec3::new(u[0] * side, u[1] * side, slab.top() + u[2] * slab.thickness())
-            }
-            Shape::Rectangle(r) => r.sample([u[0], u[1]]),
-        };
+        let (origin, _) = self.shape.sample_inside(Stage::side(stage), stream.triple());
         Ray::new(origin, warp::square_to_sphere(stream.pair()).normalize())
     }
 }

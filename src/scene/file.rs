@@ -1,5 +1,268 @@
-//! scene files
-/// x
-pub struct SceneFile;
-/// x
-pub struct Parameters;
+//! The scene file: TOML, strict. Every error names the line, the column and the key, and says what is allowed.
+
+use super::{Object, Orders, Parts, Quantity, Region, Scene, Sensor};
+use crate::Spectrum;
+use crate::error::{Error, Result};
+use crate::geometry::{Cuboid, Face, Rectangle, Shape, Slab, Sphere};
+use crate::light::{Area, Beam, EmittingSphere, Faces, Isotropic, Light, Point, Section, VolumeSource};
+use crate::math::{Albedo, Asymmetry, NonNegative, Positive, Ray};
+use crate::medium::Homogeneous;
+use crate::phase::Phase;
+use crate::surface::{Black, Lambertian, Mirror, Surface};
+use glam::DVec3;
+use serde::de::{IntoDeserializer, SeqAccess, Visitor};
+use serde::{Deserialize, Deserializer, Serialize, Serializer};
+
+/// A number for all channels, or one a channel.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Channels<T>(pub [T; 3]);
+
+impl<T: Into<f64> + Copy> Channels<T> {
+    fn spectrum(self) -> Spectrum {
+        let [r, g, b] = self.0;
+        Spectrum::rgb(r.into(), g.into(), b.into())
+    }
+}
+
+impl<'de, T: Deserialize<'de> + Copy> Deserialize<'de> for Channels<T> {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> std::result::Result<Self, D::Error> {
+        struct Either<T>(std::marker::PhantomData<T>);
+        impl<'de, T: Deserialize<'de> + Copy> Visitor<'de> for Either<T> {
+            type Value = Channels<T>;
+            fn expecting(&self, f: &mut std::fmt::Formatter) -> std::fmt::Result {
+                f.write_str("a number, or three numbers for red, green and blue")
+            }
+            fn visit_f64<E: serde::de::Error>(self, v: f64) -> std::result::Result<Self::Value, E> {
+                T::deserialize(v.into_deserializer()).map(|x| Channels([x; 3]))
+            }
+            fn visit_i64<E: serde::de::Error>(self, v: i64) -> std::result::Result<Self::Value, E> {
+                self.visit_f64(v as f64)
+            }
+            fn visit_seq<A: SeqAccess<'de>>(self, seq: A) -> std::result::Result<Self::Value, A::Error> {
+                <[T; 3]>::deserialize(serde::de::value::SeqAccessDeserializer::new(seq)).map(Channels)
+            }
+        }
+        deserializer.deserialize_any(Either(std::marker::PhantomData))
+    }
+}
+
+impl<T: Serialize + PartialEq> Serialize for Channels<T> {
+    fn serialize<S: Serializer>(&self, serializer: S) -> std::result::Result<S::Ok, S::Error> {
+        let [r, g, b] = &self.0;
+        if r == g && g == b { r.serialize(serializer) } else { self.0.serialize(serializer) }
+    }
+}
+
+/// A whole scene file.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct SceneFile {
+    /// Side of the cell that stands for an unbounded slab [L].
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub cell: Option<Positive>,
+    /// Media.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub regions: Vec<RegionFile>,
+    /// Surfaces.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub objects: Vec<ObjectFile>,
+    /// Lights.
+    pub lights: Vec<LightFile>,
+    /// What is measured.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub sensors: Vec<SensorFile>,
+}
+
+/// A shape; lengths in scene units.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+#[allow(missing_docs, reason = "the names are those of the shapes' own constructors, which say their meaning")]
+pub enum ShapeFile {
+    Sphere { center: [f64; 3], radius: Positive },
+    Rectangle { corner: [f64; 3], u: [f64; 3], v: [f64; 3] },
+    Slab { top: f64, thickness: Positive },
+    Cuboid { min: [f64; 3], max: [f64; 3] },
+}
+
+/// A medium in a shape.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct RegionFile {
+    /// Where.
+    pub shape: ShapeFile,
+    /// Extinction [1/L].
+    pub sigma_t: Channels<NonNegative>,
+    /// Single-scattering albedo.
+    pub albedo: Channels<Albedo>,
+    /// Asymmetry of the Henyey-Greenstein phase function; 0 is isotropic.
+    pub g: Asymmetry,
+}
+
+/// A surface on a shape.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct ObjectFile {
+    /// Where.
+    pub shape: ShapeFile,
+    /// How it reflects.
+    pub surface: SurfaceFile,
+}
+
+/// A surface.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+#[allow(missing_docs, reason = "the names are those of the surfaces' own constructors, which say their meaning")]
+pub enum SurfaceFile {
+    Lambertian { reflectance: Channels<Albedo> },
+    Mirror { reflectance: Channels<Albedo> },
+    Black,
+}
+
+/// The section of a beam.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+#[allow(missing_docs, reason = "the names are those of `light::Section`, which says their meaning")]
+pub enum SectionFile {
+    Unbounded,
+    Disc { center: [f64; 3], radius: Positive },
+    Rectangle { corner: [f64; 3], u: [f64; 3], v: [f64; 3] },
+}
+
+/// A light.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+#[allow(missing_docs, reason = "the names are those of the lights' own constructors, which say their meaning")]
+pub enum LightFile {
+    Beam { dir: [f64; 3], irradiance: Channels<NonNegative>, section: SectionFile },
+    Area { corner: [f64; 3], u: [f64; 3], v: [f64; 3], radiance: Channels<NonNegative> },
+    EmittingSphere { center: [f64; 3], radius: Positive, radiance: Channels<NonNegative> },
+    Point { position: [f64; 3], power: Channels<NonNegative> },
+    Isotropic { shape: ShapeFile, faces: Faces, radiance: Channels<NonNegative> },
+    VolumeSource { shape: ShapeFile, density: Channels<NonNegative> },
+}
+
+/// A sensor.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct SensorFile {
+    /// Where or of what.
+    pub name: String,
+    /// Name of the quantity in tables; that of the sensor's kind if absent.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub label: Option<String>,
+    /// What is measured.
+    pub measure: QuantityFile,
+    /// Smallest order that counts.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub min_order: Option<u32>,
+    /// Largest order that counts.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub max_order: Option<u32>,
+}
+
+/// What a sensor measures.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+#[allow(missing_docs, reason = "the names are those of `scene::Quantity`, which says their meaning")]
+pub enum QuantityFile {
+    Fluence { at: [f64; 3] },
+    Radiance { origin: [f64; 3], dir: [f64; 3] },
+    Outflow { shape: ShapeFile, face: Face },
+    Absorbed { region: usize },
+}
+
+impl ShapeFile {
+    fn shape(self) -> Result<Shape> {
+        Ok(match self {
+            ShapeFile::Sphere { center, radius } => Shape::Sphere(Sphere::new(center.into(), radius.get())?),
+            ShapeFile::Rectangle { corner, u, v } => Shape::Rectangle(rectangle(corner, u, v)?),
+            ShapeFile::Slab { top, thickness } => Shape::Slab(Slab::new(top, thickness.get())?),
+            ShapeFile::Cuboid { min, max } => Shape::Cuboid(Cuboid::new(min.into(), max.into())?),
+        })
+    }
+}
+
+fn rectangle(corner: [f64; 3], u: [f64; 3], v: [f64; 3]) -> Result<Rectangle> {
+    Rectangle::new(corner.into(), u.into(), v.into())
+}
+
+impl SurfaceFile {
+    fn surface(self) -> Result<Surface> {
+        Ok(match self {
+            SurfaceFile::Lambertian { reflectance } => Surface::Lambertian(Lambertian::new(reflectance.spectrum())?),
+            SurfaceFile::Mirror { reflectance } => Surface::Mirror(Mirror::new(reflectance.spectrum())?),
+            SurfaceFile::Black => Surface::Black(Black),
+        })
+    }
+}
+
+impl LightFile {
+    fn light(self) -> Result<Light> {
+        Ok(match self {
+            LightFile::Beam { dir, irradiance, section } => {
+                let section = match section {
+                    SectionFile::Unbounded => Section::Unbounded,
+                    SectionFile::Disc { center, radius } => {
+                        Section::Disc { center: center.into(), radius: radius.get() }
+                    }
+                    SectionFile::Rectangle { corner, u, v } => Section::Rectangle(rectangle(corner, u, v)?),
+                };
+                Light::Beam(Beam::new(dir.into(), irradiance.spectrum(), section)?)
+            }
+            LightFile::Area { corner, u, v, radiance } => {
+                Light::Area(Area::new(rectangle(corner, u, v)?, radiance.spectrum())?)
+            }
+            LightFile::EmittingSphere { center, radius, radiance } => {
+                let sphere = Sphere::new(center.into(), radius.get())?;
+                Light::EmittingSphere(EmittingSphere::new(sphere, radiance.spectrum())?)
+            }
+            LightFile::Point { position, power } => Light::Point(Point::new(position.into(), power.spectrum())?),
+            LightFile::Isotropic { shape, faces, radiance } => {
+                Light::Isotropic(Isotropic::new(shape.shape()?, faces, radiance.spectrum())?)
+            }
+            LightFile::VolumeSource { shape, density } => {
+                Light::VolumeSource(VolumeSource::new(shape.shape()?, density.spectrum())?)
+            }
+        })
+    }
+}
+
+impl SensorFile {
+    fn sensor(&self) -> Result<Sensor> {
+        let (kind, quantity) = match self.measure {
+            QuantityFile::Fluence { at } => ("fluence", Quantity::Fluence(at.into())),
+            QuantityFile::Radiance { origin, dir } => {
+                let Some(dir) = DVec3::from(dir).try_normalize() else {
+                    return Err(Error::Scene(format!("sensor {} needs a finite direction other than 0 0 0", self.name)));
+                };
+                ("radiance", Quantity::Radiance(Ray::new(origin.into(), dir)))
+            }
+            QuantityFile::Outflow { shape, face } => ("outflow", Quantity::Outflow { shape: shape.shape()?, face }),
+            QuantityFile::Absorbed { region } => ("absorptance", Quantity::Absorbed(region)),
+        };
+        let label = self.label.clone().unwrap_or_else(|| kind.to_string());
+        let orders = Orders { min: self.min_order.unwrap_or(0), max: self.max_order };
+        Ok(Sensor { name: self.name.clone(), label, quantity, orders })
+    }
+}
+
+impl SceneFile {
+    /// The validated scene.
+    pub fn scene(&self) -> Result<Scene> {
+        let regions = self.regions.iter().map(|r| {
+            let phase = Phase::with_asymmetry(r.g);
+            let medium = Homogeneous::new(r.sigma_t.spectrum(), r.albedo.spectrum(), phase)?;
+            Ok(Region { shape: r.shape.shape()?, medium })
+        });
+        let objects = self.objects.iter().map(|o| {
+            Ok(Object { shape: o.shape.shape()?, surface: o.surface.surface()? })
+        });
+        Scene::new(Parts {
+            regions: regions.collect::<Result<_>>()?,
+            objects: objects.collect::<Result<_>>()?,
+            lights: self.lights.iter().map(|l| l.light()).collect::<Result<_>>()?,
+            cell: self.cell.map(Positive::get),
+            sensors: self.sensors.iter().map(SensorFile::sensor).collect::<Result<_>>()?,
+        })
+    }
+}

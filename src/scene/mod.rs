@@ -8,7 +8,7 @@ mod sensor;
 mod validate;
 
 pub use builtin::{BUILTIN, Builtin};
-pub use file::{Parameters, SceneFile};
+pub use file::SceneFile;
 pub use plan::Plan;
 pub use segments::{MAX_REGIONS, Segment, Segments};
 pub use sensor::{Orders, Quantity, Sensor};

@@ -1,0 +1,162 @@
+//! Scenes from a file or by name, with `--set` on top.
+
+use anyhow::{Context, anyhow, bail};
+use std::ops::Range;
+use std::path::Path;
+use turbid::scene::{BUILTIN, Builtin, Scene, SceneFile};
+
+/// Which scene, and what to change in it.
+#[derive(clap::Args)]
+pub struct Source {
+    /// A built-in scene (see `turbid scenes`) or a scene file.
+    scene: String,
+    /// Change a value before the scene is made: `albedo=0.5` of a built-in scene, `regions.0.albedo=0.5` of a file.
+    #[arg(long = "set", value_name = "KEY=VALUE")]
+    sets: Vec<String>,
+}
+
+impl Source {
+    /// A scene as it stands.
+    pub fn plain(scene: String) -> Self {
+        Source { scene, sets: Vec::new() }
+    }
+
+    /// The validated scene.
+    pub fn load(&self) -> anyhow::Result<Scene> {
+        let file = self.resolve()?;
+        file.scene().with_context(|| self.scene.clone())
+    }
+
+    /// The scene file with every change made.
+    pub fn resolve(&self) -> anyhow::Result<SceneFile> {
+        match BUILTIN.iter().find(|b| b.name == self.scene) {
+            Some(builtin) => self.resolve_builtin(builtin),
+            None => self.resolve_file(),
+        }
+    }
+
+    fn resolve_builtin(&self, builtin: &Builtin) -> anyhow::Result<SceneFile> {
+        let mut text = builtin.defaults.to_string();
+        let mut table: toml::Table = toml::from_str(&text).context("built-in defaults")?;
+        for set in &self.sets {
+            let (key, value) = split(set)?;
+            let Some(slot) = table.get_mut(key) else {
+                bail!("--set {set}: {}", unknown(key, table.keys().map(String::as_str)));
+            };
+            *slot = value;
+            text = toml::to_string(&table)?;
+            let checked = (builtin.resolve)(&text).map_err(|e| anyhow!("--set {set}: {}", say(&text, &e)))?;
+            checked.with_context(|| format!("--set {set}"))?;
+        }
+        let file = (builtin.resolve)(&text).map_err(|e| anyhow!(say(&text, &e)))?;
+        Ok(file?)
+    }
+
+    fn resolve_file(&self) -> anyhow::Result<SceneFile> {
+        let path = Path::new(&self.scene);
+        let is_bare_name = !path.exists() && path.extension().is_none();
+        if is_bare_name {
+            bail!("no such scene: {}", unknown_scene(&self.scene));
+        }
+        let text = std::fs::read_to_string(path).with_context(|| self.scene.clone())?;
+        let mut file: SceneFile = toml::from_str(&text).map_err(|e| anyhow!(located(&self.scene, &text, &e)))?;
+        if self.sets.is_empty() {
+            return Ok(file);
+        }
+        let mut root = toml::Value::Table(toml::from_str(&text)?);
+        for set in &self.sets {
+            let (key, value) = split(set)?;
+            *slot(&mut root, key).with_context(|| format!("--set {set}"))? = value;
+            let changed = toml::to_string(&root)?;
+            file = toml::from_str(&changed).map_err(|e| anyhow!("--set {set}: {}", say(&changed, &e)))?;
+        }
+        Ok(file)
+    }
+}
+
+/// Key and value of `key=value`; a value that is no TOML is a word.
+fn split(set: &str) -> anyhow::Result<(&str, toml::Value)> {
+    let Some((key, value)) = set.split_once('=') else { bail!("--set {set}: allowed: KEY=VALUE") };
+    let parsed = toml::from_str::<toml::Table>(&format!("value = {value}")).ok().and_then(|mut t| t.remove("value"));
+    Ok((key.trim(), parsed.unwrap_or_else(|| toml::Value::String(value.trim().to_string()))))
+}
+
+/// The place of a dotted key, where numbers count list entries from 0. Only the last part may be new.
+fn slot<'a>(root: &'a mut toml::Value, key: &str) -> anyhow::Result<&'a mut toml::Value> {
+    let parts: Vec<&str> = key.split('.').collect();
+    let mut place = root;
+    for (depth, part) in parts.iter().enumerate() {
+        place = match place {
+            toml::Value::Table(table) if depth + 1 == parts.len() => {
+                table.entry(*part).or_insert(toml::Value::Boolean(false))
+            }
+            toml::Value::Table(table) => {
+                let known: Vec<String> = table.keys().cloned().collect();
+                match table.get_mut(*part) {
+                    Some(inner) => inner,
+                    None => bail!("{}", unknown(part, known.iter().map(String::as_str))),
+                }
+            }
+            toml::Value::Array(list) => {
+                let count = list.len();
+                let found = part.parse::<usize>().ok().and_then(|i| list.get_mut(i));
+                found.ok_or_else(|| anyhow!("`{part}` is no entry of a list of {count}, counted from 0"))?
+            }
+            other => bail!("`{part}` is inside `{other}`, which has no parts"),
+        };
+    }
+    Ok(place)
+}
+
+/// An unknown key, and the nearest known one.
+fn unknown<'a>(key: &str, known: impl Iterator<Item = &'a str> + Clone) -> String {
+    let list = known.clone().collect::<Vec<_>>().join(", ");
+    match nearest(key, known) {
+        Some(name) => format!("unknown key `{key}`; nearest: `{name}`; allowed: {list}"),
+        None => format!("unknown key `{key}`; allowed: {list}"),
+    }
+}
+
+fn unknown_scene(name: &str) -> String {
+    let list = BUILTIN.iter().map(|b| b.name).collect::<Vec<_>>().join(", ");
+    format!("`{name}` is neither a file nor built in; allowed: {list}, or the path of a scene file")
+}
+
+fn nearest<'a>(key: &str, known: impl Iterator<Item = &'a str>) -> Option<&'a str> {
+    known.max_by(|a, b| strsim::jaro_winkler(a, key).total_cmp(&strsim::jaro_winkler(b, key)))
+}
+
+/// The error in one line with file, line and column.
+fn located(file: &str, text: &str, error: &toml::de::Error) -> String {
+    let start = error.span().map_or(0, |span| span.start).min(text.len());
+    let before = &text[..start];
+    let line = before.matches('\n').count() + 1;
+    let column = before.rsplit('\n').next().map_or(0, |tail| tail.chars().count()) + 1;
+    format!("{file}:{line}:{column}: {}", say(text, error))
+}
+
+/// The error's message in one line, with the key in the place of "the value", and the nearest known key.
+fn say(text: &str, error: &toml::de::Error) -> String {
+    let message = error.message().replace('\n', " ");
+    if let Some(rest) = message.strip_prefix("unknown field `").or_else(|| message.strip_prefix("unknown variant `")) {
+        let mut words = rest.split('`').step_by(2);
+        let key = words.next().unwrap_or_default();
+        let known: Vec<&str> = rest.split('`').skip(2).step_by(2).collect();
+        return unknown(key, known.into_iter());
+    }
+    match error.span().and_then(|span| key_before(text, span)) {
+        Some(key) => match message.strip_prefix("the value") {
+            Some(rest) => format!("{key}{rest}"),
+            None => format!("{key}: {message}"),
+        },
+        None => message,
+    }
+}
+
+/// The key whose value stands at a place of the text: the last `key =` before it, on its line.
+fn key_before(text: &str, span: Range<usize>) -> Option<&str> {
+    let line = text.get(..span.start)?.rsplit('\n').next()?;
+    let before = line.rsplit_once('=')?.0.trim_end();
+    let start = before.rfind(|c: char| !(c.is_alphanumeric() || "_-.".contains(c))).map_or(0, |i| i + 1);
+    (start < before.len()).then(|| &before[start..])
+}

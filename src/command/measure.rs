@@ -1,0 +1,174 @@
+//! `turbid measure`: the sensors of a scene, by paths or by photons.
+
+use super::load::Source;
+use super::progress::Bar;
+use super::parse_count;
+use anyhow::{Context, bail};
+use clap::ValueEnum;
+use std::io::Write;
+use turbid::estimators::{Gather, Kernel};
+use turbid::output::{Format, print, write_rows};
+use turbid::scene::{Orders, Scene};
+use turbid::sensor::{PathSettings, PhotonSettings, Reading, by_paths, by_photons};
+
+/// Measure the sensors of a scene by paths or by photons.
+///
+/// Prints the columns sensor, quantity, unit, mean, std_error, n. Paths and tallies have n = histories; estimates
+/// from photon maps have n = maps, and no standard error from a single map, since all estimates of one map share
+/// its photons.
+#[derive(clap::Args)]
+pub struct Measure {
+    #[command(flatten)]
+    source: Source,
+    /// Who measures.
+    #[arg(long = "with", value_enum)]
+    with: With,
+    /// Paths a sensor, such as 1e6.
+    #[arg(long, value_parser = parse_count, default_value = "100000")]
+    samples: u64,
+    /// Photons emitted a map, such as 1e7.
+    #[arg(long, value_parser = parse_count, default_value = "1000000")]
+    photons: u64,
+    /// Independent photon maps.
+    #[arg(long, value_parser = parse_count, default_value = "1")]
+    maps: u64,
+    /// Photons an estimate takes: the k nearest [default: 50].
+    #[arg(long, conflicts_with = "radius")]
+    k: Option<usize>,
+    /// Radius within which an estimate takes all photons [L].
+    #[arg(long)]
+    radius: Option<f64>,
+    /// The farthest that the k nearest photons are sought [L; default: half the cell, or a mean free path].
+    #[arg(long, conflicts_with = "radius")]
+    max_radius: Option<f64>,
+    /// How an estimate weights its photons.
+    #[arg(long, value_enum, default_value = "uniform")]
+    kernel: KernelName,
+    /// Orders of scattering that count: `1`, `0..3` (both ends included), `1..`.
+    #[arg(long, value_parser = parse_orders, default_value = "0..")]
+    orders: Orders,
+    /// Seed: the same seed gives the same numbers, on any number of threads.
+    #[arg(long, default_value_t = 1)]
+    seed: u64,
+    /// Threads [default: all cores].
+    #[arg(long, value_parser = clap::value_parser!(u16).range(1..))]
+    threads: Option<u16>,
+    /// Form of the output.
+    #[arg(long, value_enum, default_value = "table")]
+    format: FormatName,
+}
+
+#[derive(Clone, Copy, ValueEnum)]
+enum With {
+    /// The unbiased path tracer.
+    Path,
+    /// Photons: tallies and photon maps.
+    Photons,
+}
+
+#[derive(Clone, Copy, ValueEnum)]
+enum KernelName {
+    Uniform,
+    Epanechnikov,
+    Cone,
+    Biweight,
+    Gaussian,
+}
+
+#[derive(Clone, Copy, ValueEnum)]
+enum FormatName {
+    Table,
+    Csv,
+    Json,
+}
+
+/// Orders on the command line.
+fn parse_orders(text: &str) -> Result<Orders, String> {
+    const ALLOWED: &str = "allowed: an order such as 1, or a range such as 0..3 or 1.. (both ends included)";
+    let number = |part: &str| part.trim().parse::<u32>().map_err(|_| ALLOWED.to_string());
+    let orders = match text.split_once("..") {
+        None => Orders::only(number(text)?),
+        Some((min, "")) => Orders { min: number(min)?, max: None },
+        Some((min, max)) => Orders { min: number(min)?, max: Some(number(max)?) },
+    };
+    if orders.max.is_some_and(|max| max < orders.min) { Err(ALLOWED.to_string()) } else { Ok(orders) }
+}
+
+impl Measure {
+    /// Measures and prints.
+    pub fn run(self) -> anyhow::Result<()> {
+        let scene = self.source.load()?;
+        if scene.sensors().is_empty() {
+            bail!("the scene has no sensors: nothing to measure");
+        }
+        let threads = self.threads.map_or(0, usize::from);
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().context("--threads")?;
+        let readings = pool.install(|| match self.with {
+            With::Path => self.measure_by_paths(&scene),
+            With::Photons => self.measure_by_photons(&scene),
+        })?;
+        let format = match self.format {
+            FormatName::Table => Format::Text,
+            FormatName::Csv => Format::Csv,
+            FormatName::Json => Format::Json,
+        };
+        Ok(print(|out| write_rows(out, &readings, format))?)
+    }
+
+    fn measure_by_paths(&self, scene: &Scene) -> anyhow::Result<Vec<Reading>> {
+        let settings =
+            PathSettings { samples: self.samples, seed: self.seed, replicate: 0, orders: self.orders };
+        let bar = Bar::new(self.samples.saturating_mul(scene.sensors().len() as u64));
+        let readings = by_paths(scene, &settings, &bar);
+        bar.finish();
+        Ok(readings?)
+    }
+
+    fn measure_by_photons(&self, scene: &Scene) -> anyhow::Result<Vec<Reading>> {
+        let gather = match self.radius {
+            Some(radius) => Gather::radius(radius).context("--radius")?,
+            None => {
+                let cap = self.max_radius.unwrap_or_else(|| default_cap(scene));
+                Gather::nearest(self.k.unwrap_or(50), cap).context("--k, --max-radius")?
+            }
+        };
+        let settings = PhotonSettings {
+            photons: self.photons,
+            maps: self.maps,
+            seed: self.seed,
+            orders: self.orders,
+            gather,
+            kernel: match self.kernel {
+                KernelName::Uniform => Kernel::Uniform,
+                KernelName::Epanechnikov => Kernel::Epanechnikov,
+                KernelName::Cone => Kernel::Cone,
+                KernelName::Biweight => Kernel::Biweight,
+                KernelName::Gaussian => Kernel::Gaussian,
+            },
+        };
+        let bar = Bar::new(self.photons.saturating_mul(self.maps));
+        let result = by_photons(scene, &settings, &bar);
+        bar.finish();
+        let result = result?;
+        if result.underfull > 0 {
+            writeln!(
+                std::io::stderr().lock(),
+                "turbid: note: {} of {} estimates found fewer than k photons within the cap of {} L, and used those",
+                result.underfull,
+                result.gathers,
+                gather.cap()
+            )?;
+        }
+        Ok(result.readings)
+    }
+}
+
+/// Half the cell, or a mean free path of the densest medium.
+fn default_cap(scene: &Scene) -> f64 {
+    let densest = scene.regions().iter().map(|r| r.medium.sigma_t().max()).fold(0.0, f64::max);
+    match scene.stage() {
+        Some(stage) => 0.5 * stage.side,
+        None if densest > 0.0 => 1.0 / densest,
+        None => 1.0,
+    }
+}

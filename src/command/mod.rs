@@ -1,0 +1,69 @@
+//! The commands, one file each, and what they share: loading scenes, counts, progress, exit codes.
+
+mod check;
+mod load;
+mod measure;
+mod progress;
+mod scenes;
+
+use clap::Subcommand;
+use std::io::{ErrorKind, Write};
+use std::process::ExitCode;
+
+/// What can be asked.
+#[derive(Subcommand)]
+pub enum Command {
+    /// Measure the sensors of a scene by paths or by photons.
+    Measure(measure::Measure),
+    /// Say what a scene requires, and which path classes no sampler reaches.
+    Check(check::Check),
+    /// List the built-in scenes, or print one.
+    Scenes(scenes::Scenes),
+}
+
+impl Command {
+    /// Answers; what it prints goes to stdout.
+    pub fn run(self) -> anyhow::Result<()> {
+        match self {
+            Command::Measure(command) => command.run(),
+            Command::Check(command) => command.run(),
+            Command::Scenes(command) => command.run(),
+        }
+    }
+}
+
+/// Exit code of an outcome: 2 for an error, told in one line on stderr; a reader that closed the pipe is no error.
+pub fn exit_code(program: &str, outcome: anyhow::Result<()>) -> ExitCode {
+    let Err(error) = outcome else { return ExitCode::SUCCESS };
+    let is_closed_pipe = error
+        .chain()
+        .any(|cause| cause.downcast_ref::<std::io::Error>().is_some_and(|e| e.kind() == ErrorKind::BrokenPipe));
+    if is_closed_pipe {
+        return ExitCode::SUCCESS;
+    }
+    // If even stderr is closed there is nobody left to tell.
+    let _ = writeln!(std::io::stderr().lock(), "{program}: error: {error:#}");
+    ExitCode::from(2)
+}
+
+/// Writes text to stdout.
+fn print(text: &str) -> anyhow::Result<()> {
+    let mut out = std::io::stdout().lock();
+    out.write_all(text.as_bytes())?;
+    out.flush()?;
+    Ok(())
+}
+
+/// A count on the command line: 1000000, 1_000_000 or 1e6; at least 1.
+fn parse_count(text: &str) -> Result<u64, String> {
+    let plain = text.replace('_', "");
+    let count = plain.parse::<u64>().ok().or_else(|| {
+        let x = plain.parse::<f64>().ok()?;
+        // Above 2^53 not every whole number is an f64; no run is that long.
+        (x.fract() == 0.0 && (0.0..=9e15).contains(&x)).then_some(x as u64)
+    });
+    match count {
+        Some(n) if n >= 1 => Ok(n),
+        _ => Err("allowed: whole numbers from 1 to 9e15, such as 1000000 or 1e6".to_string()),
+    }
+}

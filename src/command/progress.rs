@@ -1,0 +1,30 @@
+//! Progress and remaining time on stderr, where it is a terminal.
+
+use indicatif::{ProgressBar, ProgressStyle};
+use turbid::transport::Progress;
+
+/// A bar that counts histories.
+pub struct Bar(ProgressBar);
+
+impl Bar {
+    /// A bar for so many histories; hidden where stderr is no terminal.
+    pub fn new(histories: u64) -> Self {
+        let bar = ProgressBar::new(histories);
+        let template = "{bar:40} {percent:>3} %  {human_pos} of {human_len} histories, {eta} left";
+        Bar(match ProgressStyle::with_template(template) {
+            Ok(style) => bar.with_style(style),
+            Err(_) => bar,
+        })
+    }
+
+    /// Takes the bar away.
+    pub fn finish(&self) {
+        self.0.finish_and_clear();
+    }
+}
+
+impl Progress for Bar {
+    fn advance(&self, histories: u64) {
+        self.0.inc(histories);
+    }
+}

@@ -1,0 +1,30 @@
+//! `turbid scenes`: the built-in ones.
+
+use super::load::Source;
+use turbid::scene::BUILTIN;
+
+/// List the built-in scenes, or print one.
+#[derive(clap::Args)]
+pub struct Scenes {
+    /// Print the parameters of this built-in scene.
+    name: Option<String>,
+    /// Print the whole scene file that results, instead of the parameters.
+    #[arg(long, requires = "name")]
+    resolved: bool,
+}
+
+impl Scenes {
+    /// Prints the list, the parameters or the file.
+    pub fn run(self) -> anyhow::Result<()> {
+        let Some(name) = self.name else {
+            let lines: String = BUILTIN.iter().map(|b| format!("{:8} {}\n", b.name, b.about)).collect();
+            return super::print(&format!("{lines}\n`turbid scenes NAME` prints the parameters of one.\n"));
+        };
+        match BUILTIN.iter().find(|b| b.name == name) {
+            Some(builtin) if !self.resolved => {
+                super::print(&format!("# {}: {}\n{}", builtin.name, builtin.about, builtin.defaults))
+            }
+            _ => super::print(&toml::to_string(&Source::plain(name).resolve()?)?),
+        }
+    }
+}

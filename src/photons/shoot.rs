@@ -1,0 +1,235 @@
+//! Shooting: histories from the lights, photons kept where they collide, powers tallied where they leave.
+
+use super::{Flags, Photon, fold};
+use crate::Spectrum;
+use crate::error::{Error, Result};
+use crate::geometry::{Face, Shape};
+use crate::light::Light;
+use crate::math::Ray;
+use crate::rng::{Purpose, Stream};
+use crate::scene::{Orders, Quantity, Scene, Sensor, Target};
+use crate::stats::Moments;
+use crate::transport::{Progress, Roulette, Step, Visitor, Walker, run_blocks, walk};
+
+/// Which histories to run.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Histories {
+    /// How many.
+    pub count: u64,
+    /// Seed of the whole computation.
+    pub seed: u64,
+    /// Which independent repetition.
+    pub replicate: u64,
+    /// Largest order of a collision that anybody asks for, if there is one: histories stop behind it.
+    pub max_order: Option<u32>,
+}
+
+/// Where the emitted power went [W], summed over channels and histories; each history counts as though it were the
+/// only one, so that divided by the histories these are the powers of the scene.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Ledger {
+    /// Sent out.
+    pub emitted: f64,
+    /// Ended in a medium or on a body.
+    pub absorbed: f64,
+    /// Left the scene.
+    pub escaped: f64,
+    /// Followed no further, since nobody asked for higher orders.
+    pub abandoned: f64,
+}
+
+impl Ledger {
+    /// Adds the powers of another.
+    pub fn add(&mut self, other: &Ledger) {
+        self.emitted += other.emitted;
+        self.absorbed += other.absorbed;
+        self.escaped += other.escaped;
+        self.abandoned += other.abandoned;
+    }
+}
+
+/// What one pass of histories brought.
+#[derive(Debug, Clone, Default)]
+pub struct Pass {
+    /// Photons kept, in the order of their histories.
+    pub photons: Vec<Photon>,
+    /// Histories run: what estimates divide by.
+    pub emitted: u64,
+    /// One a sensor and channel, over histories; 0 for sensors that photons in a map answer.
+    pub tallies: Vec<[Moments; 3]>,
+    /// Where the power went.
+    pub ledger: Ledger,
+    /// Collisions in media, kept or not.
+    pub collisions: u64,
+    /// Contributions that were not finite; each fails the run.
+    pub non_finite: u64,
+}
+
+/// Runs histories, keeping the photons that `keep` accepts and tallying the sensors that need no map.
+///
+/// # Errors
+/// `Error::Cancelled`, or `Error::NonFinite` if a contribution was not finite.
+pub fn shoot(
+    scene: &Scene,
+    histories: Histories,
+    sensors: &[Sensor],
+    keep: impl Fn(&Photon) -> bool + Sync,
+    progress: &dyn Progress,
+) -> Result<Pass> {
+    let power = scene.power();
+    let block = |range: std::ops::Range<u64>| {
+        let mut visitor = Tallier {
+            scene,
+            sensors,
+            keep: &keep,
+            power,
+            scores: vec![Spectrum::ZERO; sensors.len()],
+            pass: Pass { tallies: vec![Default::default(); sensors.len()], ..Pass::default() },
+        };
+        for history in range {
+            let mut stream = Stream::new(histories.seed, Purpose::Photons, histories.replicate, history);
+            visitor.run(histories.max_order, &mut stream);
+        }
+        visitor.pass
+    };
+    let pass = run_blocks(histories.count, progress, block, Pass::merged)?;
+    let pass = pass.unwrap_or_else(|| Pass { tallies: vec![Default::default(); sensors.len()], ..Pass::default() });
+    if pass.non_finite > 0 {
+        return Err(Error::NonFinite { count: pass.non_finite, place: "photon histories" });
+    }
+    Ok(pass)
+}
+
+impl Pass {
+    fn merged(mut self, other: Pass) -> Pass {
+        self.photons.extend(other.photons);
+        self.emitted += other.emitted;
+        for (mine, others) in self.tallies.iter_mut().zip(&other.tallies) {
+            for (m, o) in mine.iter_mut().zip(others) {
+                m.merge(o);
+            }
+        }
+        self.ledger.add(&other.ledger);
+        self.collisions += other.collisions;
+        self.non_finite += other.non_finite;
+        self
+    }
+}
+
+/// Follows the histories of one block.
+struct Tallier<'a, K: Fn(&Photon) -> bool> {
+    scene: &'a Scene,
+    sensors: &'a [Sensor],
+    keep: &'a K,
+    power: Spectrum,
+    /// What the present history brought each sensor [W].
+    scores: Vec<Spectrum>,
+    pass: Pass,
+}
+
+impl<K: Fn(&Photon) -> bool> Tallier<'_, K> {
+    fn run(&mut self, max_order: Option<u32>, stream: &mut Stream) {
+        self.scores.fill(Spectrum::ZERO);
+        let start = self.emit(stream);
+        self.pass.emitted += 1;
+        self.pass.ledger.emitted += start.weight.sum();
+        let settled = self.pass.ledger.absorbed + self.pass.ledger.escaped;
+        // Photons of order n arrive by a flight of order n: flights stop one later.
+        walk(self.scene, start, Roulette::Analog, max_order.map(|n| n + 1), stream, self);
+        if max_order.is_some() {
+            let now = self.pass.ledger.absorbed + self.pass.ledger.escaped;
+            self.pass.ledger.abandoned += start.weight.sum() - (now - settled);
+        }
+        for (tally, score) in self.pass.tallies.iter_mut().zip(&self.scores) {
+            for (channel, moments) in tally.iter_mut().enumerate() {
+                let power = self.power[channel];
+                let fraction = if power == 0.0 { 0.0 } else { score[channel] / power };
+                self.pass.non_finite += u64::from(!fraction.is_finite());
+                moments.push(fraction);
+            }
+        }
+    }
+
+    /// A photon from one of the lights, chosen in proportion to power.
+    fn emit(&self, stream: &mut Stream) -> Walker {
+        let (lights, stage) = (self.scene.lights(), self.scene.stage());
+        let total = self.power.sum();
+        let mut index = 0;
+        if lights.len() > 1 {
+            let mut target = stream.unit() * total;
+            while index + 1 < lights.len() && target >= lights[index].power(stage).sum() {
+                target -= lights[index].power(stage).sum();
+                index += 1;
+            }
+        }
+        let emission = lights[index].emit(stage, stream);
+        let weight = if lights.len() > 1 { emission.power * (total / emission.power.sum()) } else { emission.power };
+        let has_body = matches!(lights[index], Light::Area(_) | Light::EmittingSphere(_));
+        Walker { from: has_body.then_some(Target::Light(index)), ..Walker::new(emission.ray, weight) }
+    }
+
+    fn score(&mut self, sensor: usize, order: u32, weight: Spectrum) {
+        if self.sensors[sensor].orders.contains(order) {
+            self.scores[sensor] += weight;
+        }
+    }
+}
+
+/// Whether going from the ray's origin to distance `t` leaves the shape, through `face` if it is a slab.
+fn leaves(shape: &Shape, face: Face, ray: &Ray, t: f64) -> bool {
+    let is_through = !matches!(shape, Shape::Slab(_)) || ray.dir.dot(face.normal()) > 0.0;
+    is_through && shape.interval(ray).is_some_and(|inside| inside.end <= t && inside.end.is_finite())
+}
+
+impl<K: Fn(&Photon) -> bool> Visitor for Tallier<'_, K> {
+    fn visit(&mut self, walker: &Walker, step: Step, _stream: &mut Stream) {
+        match step {
+            Step::Passed(t, weight) => {
+                for sensor in 0..self.sensors.len() {
+                    if let Quantity::Outflow { shape, face } = self.sensors[sensor].quantity
+                        && leaves(&shape, face, &walker.ray, t)
+                    {
+                        self.score(sensor, walker.order, weight);
+                    }
+                }
+            }
+            Step::Collision(arrival, _) => {
+                self.pass.collisions += 1;
+                let weight = arrival.walker.weight;
+                self.pass.non_finite += u64::from(!weight.is_finite() || !arrival.position.is_finite());
+                let photon = Photon {
+                    position: self.scene.stage().map_or(arrival.position, |s| fold::into_cell(arrival.position, s.side)),
+                    dir: walker.ray.dir.as_vec3(),
+                    power: weight.0.as_vec3(),
+                    order: u16::try_from(walker.order).unwrap_or(u16::MAX),
+                    flags: walker.flags,
+                };
+                if (self.keep)(&photon) {
+                    self.pass.photons.push(photon);
+                }
+            }
+            Step::Absorbed(weight, region) => {
+                self.pass.ledger.absorbed += weight.sum();
+                for sensor in 0..self.sensors.len() {
+                    if let Quantity::Absorbed(of) = self.sensors[sensor].quantity
+                        && region == Some(of)
+                    {
+                        self.score(sensor, walker.order, weight);
+                    }
+                }
+            }
+            Step::Escaped(weight) => self.pass.ledger.escaped += weight.sum(),
+            Step::Ahead(_) | Step::Surface(..) => {}
+        }
+    }
+}
+
+/// Whether a photon is in a range of orders.
+pub fn is_in(orders: Orders) -> impl Fn(&Photon) -> bool + Sync {
+    move |photon| orders.contains(u32::from(photon.order))
+}
+
+/// Whether a photon belongs in the volume map of Jensen and Christensen (1998): it does not come straight from a light.
+pub fn is_indirect(photon: &Photon) -> bool {
+    photon.flags != Flags::NONE
+}

@@ -1,0 +1,115 @@
+//! Sensors read by the path tracer.
+
+use super::{Reading, readings};
+use crate::Spectrum;
+use crate::error::{Error, Result};
+use crate::light::Stage;
+use crate::integrators::{direct_flux, fluence, radiance};
+use crate::math::{Frame, Ray, warp};
+use crate::rng::{Purpose, Stream};
+use crate::scene::{Orders, Quantity, Scene, Sensor};
+use crate::stats::Moments;
+use crate::transport::{Progress, run_blocks};
+use std::f64::consts::PI;
+
+/// How many paths, and which.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct PathSettings {
+    /// Paths a sensor.
+    pub samples: u64,
+    /// Seed of the whole computation.
+    pub seed: u64,
+    /// Which independent repetition.
+    pub replicate: u64,
+    /// Orders that count, beside each sensor's own range.
+    pub orders: Orders,
+}
+
+/// Reads every sensor of the scene by paths from it; samples of different sensors are independent.
+///
+/// # Errors
+/// `Error::Unreachable` if the scene has path classes that paths cannot sample; `Error::NonFinite`;
+/// `Error::Cancelled`.
+pub fn by_paths(scene: &Scene, settings: &PathSettings, progress: &dyn Progress) -> Result<Vec<Reading>> {
+    if !scene.plan().unreachable.is_empty() {
+        return Err(Error::Unreachable(format!(
+            "the path tracer cannot sample every path of this scene ({}): use photons, or a light with an extent",
+            scene.plan().unreachable.join("; ")
+        )));
+    }
+    let mut all = Vec::new();
+    for (index, sensor) in scene.sensors().iter().enumerate() {
+        let moments = read(scene, sensor, index as u64, settings, progress)?;
+        all.extend(readings(sensor, scene.plan().is_grey, &moments));
+    }
+    Ok(all)
+}
+
+/// Moments by channel of one sensor; `index` keeps the streams of sensors apart.
+fn read(
+    scene: &Scene,
+    sensor: &Sensor,
+    index: u64,
+    settings: &PathSettings,
+    progress: &dyn Progress,
+) -> Result<[Moments; 3]> {
+    let orders = sensor.orders.and(&settings.orders);
+    let block = |range: std::ops::Range<u64>| {
+        let (mut moments, mut non_finite) = ([Moments::new(); 3], 0u64);
+        for history in range {
+            // The sensor takes the upper bits of the history: no run has 2^40 of them.
+            let mut stream =
+                Stream::new(settings.seed, Purpose::Paths, settings.replicate, index << 40 | history);
+            let value = sample(scene, &sensor.quantity, orders, &mut stream);
+            non_finite += u64::from(!value.is_finite());
+            for (channel, m) in moments.iter_mut().enumerate() {
+                m.push(value[channel]);
+            }
+        }
+        (moments, non_finite)
+    };
+    let merge = |mut a: ([Moments; 3], u64), b: ([Moments; 3], u64)| {
+        for (mine, others) in a.0.iter_mut().zip(&b.0) {
+            mine.merge(others);
+        }
+        (a.0, a.1 + b.1)
+    };
+    let (moments, non_finite) = run_blocks(settings.samples, progress, block, merge)?.unwrap_or_default();
+    if non_finite > 0 {
+        return Err(Error::NonFinite { count: non_finite, place: "paths" });
+    }
+    Ok(moments)
+}
+
+/// One sample of a quantity.
+pub fn sample(scene: &Scene, quantity: &Quantity, orders: Orders, stream: &mut Stream) -> Spectrum {
+    let side = Stage::side(scene.stage());
+    let mut sum = Spectrum::ZERO;
+    match *quantity {
+        Quantity::Fluence(p) => fluence(scene, p, orders, stream, |_, value| sum += value),
+        Quantity::Radiance(ray) => radiance(scene, ray, None, orders, stream, |_, value| sum += value),
+        Quantity::Outflow { shape, face } => {
+            let (position, normal, area) = shape.sample_boundary(face, side, stream.triple());
+            let dir = Frame::new(-normal).to_world(warp::square_to_cosine_hemisphere(stream.pair()));
+            radiance(scene, Ray::new(position, dir), None, orders, stream, |_, value| sum += value);
+            sum *= PI;
+            if orders.contains(0) {
+                sum += direct_flux(scene, position, normal, stream);
+            }
+            sum = per_power(sum * area, scene.power());
+        }
+        Quantity::Absorbed(region) => {
+            let (position, volume) = scene.regions()[region].shape.sample_inside(side, stream.triple());
+            fluence(scene, position, orders, stream, |_, value| sum += value);
+            sum = sum * scene.regions()[region].medium.sigma_a() * volume;
+            sum = per_power(sum, scene.power());
+        }
+    }
+    sum
+}
+
+/// By channel, 0 where nothing is emitted.
+fn per_power(value: Spectrum, power: Spectrum) -> Spectrum {
+    let ratio = |c: usize| if power[c] == 0.0 { 0.0 } else { value[c] / power[c] };
+    Spectrum::rgb(ratio(0), ratio(1), ratio(2))
+}

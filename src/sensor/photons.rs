@@ -1,0 +1,216 @@
+//! Sensors read by photons: powers tallied where photons leave or end, fluence and radiance from photon maps.
+
+use super::{Reading, readings};
+use crate::Spectrum;
+use crate::error::{Error, Result};
+use crate::estimators::{Gather, Kernel, fluence, in_scattered};
+use crate::math::{Ray, exp_m1, ln_1p};
+use crate::phase::PhaseFunction;
+use crate::photons::{Histories, Ledger, PhotonMap, fold, shoot};
+use crate::rng::{Purpose, Stream};
+use crate::scene::{Orders, Quantity, Scene, Sensor, decay};
+use crate::stats::Moments;
+use crate::transport::Progress;
+use glam::DVec3;
+
+/// How many photons and maps, and how maps are read.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct PhotonSettings {
+    /// Photons emitted a map.
+    pub photons: u64,
+    /// Independent maps.
+    pub maps: u64,
+    /// Seed of the whole computation.
+    pub seed: u64,
+    /// Orders that count, beside each sensor's own range.
+    pub orders: Orders,
+    /// Which photons an estimate takes.
+    pub gather: Gather,
+    /// How it weights them.
+    pub kernel: Kernel,
+}
+
+/// What photons read, and where their power went.
+#[derive(Debug, Clone, PartialEq)]
+pub struct PhotonReadings {
+    /// One a sensor and channel: tallies have n = histories, maps n = maps.
+    pub readings: Vec<Reading>,
+    /// Powers [W] by history.
+    pub ledger: Ledger,
+    /// Estimates that found fewer than k photons within the cap.
+    pub underfull: u64,
+    /// Estimates made.
+    pub gathers: u64,
+}
+
+/// Points on a ray at which in-scattered radiance is estimated, one in each of as many equal parts of what the ray
+/// collects.
+const STRATA: usize = 64;
+
+/// Reads every sensor of the scene by photons.
+///
+/// # Errors
+/// `Error::Scene` for a sensor that a volume map cannot answer: a fluence outside all media, or a radiance where
+/// surfaces reflect; `Error::OutOfRange`; `Error::NonFinite`; `Error::Cancelled`.
+pub fn by_photons(scene: &Scene, settings: &PhotonSettings, progress: &dyn Progress) -> Result<PhotonReadings> {
+    let sensors: Vec<Sensor> = scene
+        .sensors()
+        .iter()
+        .map(|s| Sensor { orders: s.orders.and(&settings.orders), ..s.clone() })
+        .collect();
+    for sensor in &sensors {
+        check(scene, sensor)?;
+    }
+    let mut moments = vec![[Moments::new(); 3]; sensors.len()];
+    let mut result =
+        PhotonReadings { readings: Vec::new(), ledger: Ledger::default(), underfull: 0, gathers: 0 };
+    let mut ranges: Vec<Orders> = Vec::new();
+    for range in sensors.iter().filter_map(map_orders) {
+        if !ranges.contains(&range) {
+            ranges.push(range);
+        }
+    }
+    let max_order = sensors.iter().map(|s| s.orders.max).try_fold(0, |most, max| max.map(|m| most.max(m)));
+    for replicate in 0..settings.maps {
+        let histories = Histories { count: settings.photons, seed: settings.seed, replicate, max_order };
+        let is_needed = |order| ranges.iter().any(|r| r.contains(u32::from(order)));
+        let mut pass = shoot(scene, histories, &sensors, |photon| is_needed(photon.order), progress)?;
+        result.ledger.add(&pass.ledger);
+        let tallied = sensors.iter().zip(moments.iter_mut()).zip(&pass.tallies);
+        for ((_, mine), tally) in tallied.filter(|((s, _), _)| map_orders(s).is_none()) {
+            for (m, t) in mine.iter_mut().zip(tally) {
+                m.merge(t);
+            }
+        }
+        if let Some(stage) = scene.stage() {
+            fold::surround(&mut pass.photons, stage.side, settings.gather.cap().min(stage.side));
+        }
+        for range in &ranges {
+            let in_range = pass.photons.iter().filter(|p| range.contains(u32::from(p.order))).copied().collect();
+            let map = PhotonMap::new(in_range, pass.emitted)?;
+            let here = sensors.iter().zip(&mut moments).filter(|(s, _)| map_orders(s) == Some(*range));
+            for (index, (sensor, moments)) in here.enumerate() {
+                let mut stream = Stream::new(settings.seed, Purpose::Resampling, replicate, index as u64);
+                let value = read(scene, &map, sensor, settings, &mut stream, &mut result);
+                for (channel, m) in moments.iter_mut().enumerate() {
+                    m.push(value[channel]);
+                }
+            }
+        }
+    }
+    for (sensor, moments) in sensors.iter().zip(moments) {
+        let non_finite = moments.iter().filter(|m| !m.mean().is_finite()).count() as u64;
+        if non_finite > 0 {
+            return Err(Error::NonFinite { count: non_finite, place: "estimates from photon maps" });
+        }
+        result.readings.extend(readings(sensor, scene.plan().is_grey, &moments));
+    }
+    Ok(result)
+}
+
+/// The orders of the photons that answer a sensor; none where tallies do. Photons of order n are the fluence of
+/// order n, and scatter into the radiance of order n + 1.
+fn map_orders(sensor: &Sensor) -> Option<Orders> {
+    let Orders { min, max } = sensor.orders;
+    match sensor.quantity {
+        Quantity::Fluence(_) => Some(sensor.orders),
+        Quantity::Radiance(_) if max == Some(0) => Some(Orders { min: 1, max: Some(0) }),
+        Quantity::Radiance(_) => Some(Orders { min: min.saturating_sub(1), max: max.map(|m| m - 1) }),
+        Quantity::Outflow { .. } | Quantity::Absorbed(_) => None,
+    }
+}
+
+/// Whether a volume map can answer a sensor.
+fn check(scene: &Scene, sensor: &Sensor) -> Result<()> {
+    match sensor.quantity {
+        Quantity::Fluence(p) if scene.medium_at(p).is_none_or(|m| m.sigma_t().min() == 0.0) => {
+            Err(Error::Scene(format!(
+                "sensor {}: a photon map knows the fluence inside a medium only, and ({}, {}, {}) is outside: use paths",
+                sensor.name, p.x, p.y, p.z
+            )))
+        }
+        Quantity::Radiance(_) if scene.plan().has_surfaces => Err(Error::Scene(format!(
+            "sensor {}: the volume map alone does not know what surfaces reflect: use paths",
+            sensor.name
+        ))),
+        _ => Ok(()),
+    }
+}
+
+/// One estimate from a map.
+fn read(
+    scene: &Scene,
+    map: &PhotonMap,
+    sensor: &Sensor,
+    settings: &PhotonSettings,
+    stream: &mut Stream,
+    result: &mut PhotonReadings,
+) -> Spectrum {
+    match sensor.quantity {
+        Quantity::Fluence(p) => {
+            let p = scene.stage().map_or(p, |s| fold::into_cell(p, s.side));
+            let sigma_t = scene.medium_at(p).map_or(Spectrum::ONE, |m| m.sigma_t());
+            let estimate = fluence(map, p, sigma_t, settings.kernel, settings.gather);
+            result.gathers += 1;
+            result.underfull += u64::from(estimate.underfull);
+            estimate.value
+        }
+        Quantity::Radiance(ray) => radiance(scene, map, &ray, sensor.orders, settings, stream, result),
+        Quantity::Outflow { .. } | Quantity::Absorbed(_) => Spectrum::ZERO,
+    }
+}
+
+/// Radiance along a ray: uncollided light in closed form, and the in-scattered radiance at points chosen in
+/// proportion to what the ray collects, so that the integral along the ray has no step bias.
+fn radiance(
+    scene: &Scene,
+    map: &PhotonMap,
+    ray: &Ray,
+    orders: Orders,
+    settings: &PhotonSettings,
+    stream: &mut Stream,
+    result: &mut PhotonReadings,
+) -> Spectrum {
+    let mut sum = Spectrum::ZERO;
+    let end = scene.hit(ray, None).map_or(f64::INFINITY, |h| h.hit.t);
+    if orders.contains(0) {
+        let only_direct = Orders::only(0);
+        crate::integrators::radiance(scene, *ray, None, only_direct, stream, |_, value| sum += value);
+    }
+    for segment in scene.segments(ray, end).iter() {
+        let medium = &scene.regions()[segment.region].medium;
+        let before = scene.transmittance(ray, segment.interval.start);
+        let rate = medium.sigma_t().mean();
+        if rate == 0.0 {
+            continue;
+        }
+        let collects = -exp_m1(-rate * segment.interval.length());
+        for stratum in 0..STRATA {
+            let u = (stratum as f64 + stream.unit()) / STRATA as f64;
+            let inside = -ln_1p(-u * collects) / rate;
+            let t = segment.interval.start + inside.min(segment.interval.length());
+            let p = ray.at(t);
+            let p = scene.stage().map_or(p, |s| fold::into_cell(p, s.side));
+            let estimate = in_scattered_at(map, p, -ray.dir, medium, settings, result);
+            // Density of t is rate exp(-rate t') / collects.
+            let weight = decay(medium.sigma_t() * inside) / crate::math::exp(-rate * inside);
+            sum += before * weight * medium.sigma_t() * medium.albedo() * estimate * (collects / (rate * STRATA as f64));
+        }
+    }
+    sum
+}
+
+fn in_scattered_at(
+    map: &PhotonMap,
+    p: DVec3,
+    wo: DVec3,
+    medium: &crate::medium::Medium,
+    settings: &PhotonSettings,
+    result: &mut PhotonReadings,
+) -> Spectrum {
+    let phase = |one_minus_mu: f64, one_plus_mu: f64| medium.phase().eval(one_minus_mu, one_plus_mu);
+    let estimate = in_scattered(map, p, wo, &phase, medium.sigma_t(), settings.kernel, settings.gather);
+    result.gathers += 1;
+    result.underfull += u64::from(estimate.underfull);
+    estimate.value
+}
