@@ -1,6 +1,7 @@
 //! turbid: what does photon mapping's speed cost in accuracy, when light travels through fog, water or smoke?
 
 pub mod error;
+pub mod estimators;
 pub mod math;
 pub mod photons;
 pub mod rng;
