@@ -7,6 +7,7 @@
 //! at all.
 
 pub mod error;
+pub mod estimators;
 pub mod geometry;
 pub mod integrators;
 pub mod light;

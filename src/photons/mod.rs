@@ -1,8 +1,13 @@
 //! Photons: the record, shooting, the folded cell, the tree over their positions, maps.
 
 pub mod fold;
+mod map;
 mod record;
 mod shoot;
+pub mod synthetic;
+pub mod tree;
 
+pub use map::PhotonMap;
 pub use record::{Flags, Photon};
 pub use shoot::{Histories, Ledger, Pass, is_in, is_indirect, shoot};
+pub use tree::PhotonTree;

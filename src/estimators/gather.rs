@@ -1,0 +1,145 @@
+//! Gathers: which photons an estimate uses, and the bias and variance expected of it.
+
+use super::Kernel;
+use super::kernel::UNIT_BALL;
+use crate::error::{Error, Result};
+use crate::math::{Positive, exp};
+
+/// The k of a k-nearest gather: at least 2, since k-1 photons are summed.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub struct NeighborCount(usize);
+
+impl NeighborCount {
+    /// # Errors
+    /// [`Error::OutOfRange`] below 2.
+    pub fn new(k: usize) -> Result<Self> {
+        if k < 2 { Err(Error::out_of_range("k", k as f64, "at least 2")) } else { Ok(NeighborCount(k)) }
+    }
+
+    /// The plain number.
+    pub fn get(self) -> usize {
+        self.0
+    }
+}
+
+/// Which photons an estimate uses.
+///
+/// With fewer than k photons within `max_radius` a nearest gather is **under-full**: the estimate is then that of
+/// the fixed radius `max_radius`, all its photons counted. In a uniform field of independent photons the mixture
+/// of the two rules is still unbiased.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Gather {
+    /// All photons at most this far away [L].
+    Radius(Positive),
+    /// The k-th photon sets the radius and contributes nothing; the k-1 nearer ones are summed.
+    Nearest {
+        /// Which photon sets the radius.
+        k: NeighborCount,
+        /// Photons farther away are not used [L].
+        max_radius: Positive,
+    },
+    /// The rule as it is often written: the k-th photon sets the radius and is summed too. A kernel that does not
+    /// vanish at its edge then reads high, the uniform one by 1/(k-1).
+    NearestBiased {
+        /// Which photon sets the radius.
+        k: NeighborCount,
+        /// Photons farther away are not used [L].
+        max_radius: Positive,
+    },
+}
+
+impl Gather {
+    /// All photons within `radius` [L].
+    ///
+    /// # Errors
+    /// [`Error::OutOfRange`] unless `radius` is finite and above zero.
+    pub fn radius(radius: f64) -> Result<Self> {
+        Ok(Gather::Radius(Positive::new("the gather radius", radius)?))
+    }
+
+    /// The k nearest photons within `max_radius` [L].
+    ///
+    /// # Errors
+    /// [`Error::OutOfRange`] if k is below 2, or `max_radius` not finite and above zero.
+    pub fn nearest(k: usize, max_radius: f64) -> Result<Self> {
+        let max_radius = Positive::new("the largest gather radius", max_radius)?;
+        Ok(Gather::Nearest { k: NeighborCount::new(k)?, max_radius })
+    }
+
+    /// [`Gather::nearest`] with the biased rule.
+    ///
+    /// # Errors
+    /// As [`Gather::nearest`].
+    pub fn nearest_biased(k: usize, max_radius: f64) -> Result<Self> {
+        let max_radius = Positive::new("the largest gather radius", max_radius)?;
+        Ok(Gather::NearestBiased { k: NeighborCount::new(k)?, max_radius })
+    }
+
+    /// The squared radius that the curvature bias is proportional to [L^2], for independent photons.
+    ///
+    /// For the k-nearest rule that is E[r_{k-1}^2] = (3/(4 pi n))^(2/3) Gamma(k-1/3)/Gamma(k-1), n the photons per
+    /// volume, and not E[r_k^2]: the estimate carries 1/r_k^3, which favours small radii. The cap is left out.
+    pub fn effective_squared_radius(self, photons_per_volume: f64) -> f64 {
+        match self {
+            Gather::Radius(radius) => radius.get() * radius.get(),
+            Gather::Nearest { k, .. } | Gather::NearestBiased { k, .. } => {
+                let below = k.get() as f64 - 1.0;
+                let one_photon = libm::cbrt(1.0 / (photons_per_volume * UNIT_BALL));
+                let ratio = exp(libm::lgamma(below + 2.0 / 3.0) - libm::lgamma(below));
+                one_photon * one_photon * ratio
+            }
+        }
+    }
+
+    /// Bias expected of an estimate of a field from independent photons, to second order in the radius.
+    ///
+    /// Blur, (m2/6) r^2 laplacian with the effective radius, the same law for every gather; and, of the biased
+    /// rule only, the k-th photon's own weight, field x K(1) V/(k-1) with V the unit ball's volume.
+    ///
+    /// # Arguments `field` and its `laplacian` (per L^2) at the point; `photons_per_volume` [1/L^3], stored
+    /// # Returns   in the unit of the field
+    pub fn expected_bias(self, kernel: Kernel, field: f64, laplacian: f64, photons_per_volume: f64) -> f64 {
+        let blur = kernel.m2() / 6.0 * self.effective_squared_radius(photons_per_volume) * laplacian;
+        match self {
+            Gather::NearestBiased { k, .. } => blur + field * edge(kernel) / (k.get() as f64 - 1.0),
+            _ => blur,
+        }
+    }
+
+    /// Variance expected of an estimate from independent photons in a uniform field, over the square of the field.
+    ///
+    /// With R the roughness times the unit ball's volume, q = E\[p^2\]/E\[p\]^2 of the photons' powers:
+    /// q R/n for a ball that holds n photons on average, q R/(k-2) for the k-nearest rule (infinite for k = 2). The
+    /// latter is E\[S^2\] E\[1/V_k^2\] - 1: the sum S over k-1 uniform places has E\[S^2\] = (k-1) q R + (k-1)(k-2),
+    /// and the volume V_k, a gamma variable of order k, has E\[1/V_k^2\] = 1/((k-1)(k-2)). The number of photons is
+    /// taken to be Poisson.
+    ///
+    /// # Arguments `power_ratio` q, at least 1; `photons_per_volume` [1/L^3], stored
+    pub fn expected_relative_variance(
+        self,
+        kernel: Kernel,
+        photons_per_volume: f64,
+        power_ratio: f64,
+    ) -> f64 {
+        let roughness = power_ratio * kernel.roughness() * UNIT_BALL;
+        match self {
+            Gather::Radius(radius) => {
+                let r = radius.get();
+                roughness / (photons_per_volume * UNIT_BALL * r * r * r)
+            }
+            Gather::Nearest { k, .. } => roughness / (k.get() as f64 - 2.0),
+            Gather::NearestBiased { k, .. } => {
+                let (k, edge) = (k.get() as f64, edge(kernel));
+                let square =
+                    (k - 1.0) * (roughness + k - 2.0) + 2.0 * edge * (k - 1.0) + power_ratio * edge * edge;
+                let mean = 1.0 + edge / (k - 1.0);
+                square / ((k - 1.0) * (k - 2.0)) - mean * mean
+            }
+        }
+    }
+}
+
+/// The kernel at its edge over its mean in the ball.
+fn edge(kernel: Kernel) -> f64 {
+    kernel.peak() * kernel.profile(1.0) * UNIT_BALL
+}

@@ -1,0 +1,54 @@
+//! A photon map: the photons that one pass stored, and how many that pass emitted.
+
+use super::{Photon, PhotonTree};
+use crate::error::{Error, Result};
+
+/// Stored photons and the number **emitted** by the pass that stored them: estimates divide by that number, never
+/// by the number stored. It holds no estimator.
+#[derive(Debug)]
+pub struct PhotonMap {
+    tree: PhotonTree,
+    emitted: u64,
+}
+
+impl PhotonMap {
+    /// The map of one pass, its tree built by the calling thread.
+    ///
+    /// # Errors
+    /// [`Error::OutOfRange`] if `emitted` is zero, and those of [`PhotonTree::new`].
+    pub fn new(photons: Vec<Photon>, emitted: u64) -> Result<Self> {
+        check_emitted(emitted)?;
+        Ok(PhotonMap { tree: PhotonTree::new(photons)?, emitted })
+    }
+
+    /// The same map, bit for bit, built by the threads of the current pool.
+    ///
+    /// # Errors
+    /// As [`PhotonMap::new`].
+    pub fn new_parallel(photons: Vec<Photon>, emitted: u64) -> Result<Self> {
+        check_emitted(emitted)?;
+        Ok(PhotonMap { tree: PhotonTree::new_parallel(photons)?, emitted })
+    }
+
+    /// The photons.
+    pub fn tree(&self) -> &PhotonTree {
+        &self.tree
+    }
+
+    /// Number of photons that the pass sent out.
+    pub fn emitted(&self) -> u64 {
+        self.emitted
+    }
+
+    /// Number of photons that the pass stored.
+    pub fn stored(&self) -> usize {
+        self.tree.len()
+    }
+}
+
+fn check_emitted(emitted: u64) -> Result<()> {
+    if emitted == 0 {
+        return Err(Error::out_of_range("the number of emitted photons", 0.0, "at least 1"));
+    }
+    Ok(())
+}

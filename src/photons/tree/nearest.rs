@@ -1,0 +1,275 @@
+//! The k nearest photons, without a heap: a bound, every squared distance below it, the k-th of them.
+
+use super::boxes::Probe;
+use super::units::LIMIT;
+use super::within::Neighbors;
+use super::{BLOCK, PhotonTree};
+use glam::DVec3;
+use std::cell::Cell;
+use std::sync::atomic::{AtomicU64, Ordering};
+use wide::f32x16;
+
+/// What a search for the k nearest photons found.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Nearest {
+    /// The k-th photon is within the cap.
+    Found(Shell),
+    /// Fewer than k photons are within the cap, or all that are coincide with the query point; none was visited.
+    Underfull,
+}
+
+/// The sphere through the k-th photon.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Shell {
+    /// Distance of the k-th photon [L], above zero.
+    pub radius: f64,
+    /// Photons strictly nearer.
+    pub closer: usize,
+    /// Photons at that distance, the k-th among them.
+    pub tied: usize,
+    /// Photons at distance zero if there were k or more of them, so that the shell is the next one out; else 0.
+    pub coincident: usize,
+}
+
+/// Which photons of the shell count.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Counted {
+    /// The k-1 nearer ones.
+    BelowKth,
+    /// The k-th too.
+    UpToKth,
+}
+
+/// Working memory of one thread, and what its last search found, as a guess for the next.
+#[derive(Default)]
+struct Scratch {
+    blocks: Vec<u32>,
+    squared: Vec<f32x16>,
+    near: Vec<u32>,
+    last: Option<Last>,
+}
+
+/// A finished search: whose, for how many, where, and how far the k-th was.
+#[derive(Clone, Copy)]
+struct Last {
+    identity: u64,
+    k: usize,
+    point: [f32; 3],
+    squared: f32,
+}
+
+thread_local! {
+    static SCRATCH: Cell<Option<Box<Scratch>>> = const { Cell::new(None) };
+}
+
+/// A number that no other tree of this process has; results do not depend on it.
+pub(super) fn new_identity() -> u64 {
+    static NEXT: AtomicU64 = AtomicU64::new(0);
+    NEXT.fetch_add(1, Ordering::Relaxed)
+}
+
+/// The sphere in the tree's units.
+struct Sphere {
+    squared: f32,
+    closer: usize,
+    tied: usize,
+    coincident: usize,
+}
+
+impl PhotonTree {
+    /// Visits the photons nearer to `centre` than the `k`-th, in the tree's order, and says how far the k-th is.
+    ///
+    /// The k-1 nearer photons count in full. Photons that tie with the k-th, as stored, share what is missing from
+    /// k-1 (from k for [`Counted::UpToKth`]) in equal parts, so that exactly k-1 (k) count, whatever their order.
+    ///
+    /// If k or more photons coincide with `centre`, no ball of positive volume has the k-th on its surface: the
+    /// search goes out to the next distance at which there is a photon, all those at the centre count, and
+    /// [`Shell::coincident`] tells how many they were.
+    ///
+    /// `k` is at least 1; photons beyond `max_radius` [L] are not looked at.
+    pub fn nearest(
+        &self,
+        centre: DVec3,
+        k: usize,
+        max_radius: f64,
+        counted: Counted,
+        mut visit: impl FnMut(Neighbors<'_>),
+    ) -> Nearest {
+        if self.stored < k {
+            return Nearest::Underfull;
+        }
+        let point = self.units.relative(centre);
+        let cap = self.units.shrink(max_radius);
+        if point.abs().max_element() > LIMIT {
+            return self.nearest_point(centre, k, max_radius, counted, visit);
+        }
+        let mut scratch = SCRATCH.take().unwrap_or_default();
+        let cap2 = (cap.min(4.0 * LIMIT) * cap.min(4.0 * LIMIT)) as f32;
+        let found = scratch.find(self, point.as_vec3().to_array(), k, cap2);
+        let result = match &found {
+            None => Nearest::Underfull,
+            Some(sphere) => {
+                let share = share(sphere, k, counted);
+                for (&block, &squared) in scratch.blocks.iter().zip(&scratch.squared) {
+                    self.visit_shell(block as usize, squared, sphere.squared, share, &mut visit);
+                }
+                Nearest::Found(Shell {
+                    radius: self.units.stretch(f64::from(sphere.squared).sqrt()),
+                    closer: sphere.closer,
+                    tied: sphere.tied,
+                    coincident: sphere.coincident,
+                })
+            }
+        };
+        SCRATCH.set(Some(scratch));
+        result
+    }
+
+    /// From more than 2^60 times its size away the map is one point: every photon ties.
+    fn nearest_point(
+        &self,
+        centre: DVec3,
+        k: usize,
+        max_radius: f64,
+        counted: Counted,
+        mut visit: impl FnMut(Neighbors<'_>),
+    ) -> Nearest {
+        let away = centre - self.units.absolute([0.0; 3]);
+        let longest = away.abs().max_element();
+        let radius = (away / longest).length() * longest;
+        if radius > max_radius {
+            return Nearest::Underfull;
+        }
+        let sphere = Sphere { squared: 1.0, closer: 0, tied: self.stored, coincident: 0 };
+        let share = share(&sphere, k, counted);
+        for (block, squared) in self.all_at(1.0) {
+            self.visit_shell(block, squared, 1.0, share, &mut visit);
+        }
+        Nearest::Found(Shell { radius, closer: 0, tied: self.stored, coincident: 0 })
+    }
+
+    #[inline(always)]
+    fn visit_shell(
+        &self,
+        block: usize,
+        squared: f32x16,
+        r2: f32,
+        share: f32,
+        visit: &mut impl FnMut(Neighbors<'_>),
+    ) {
+        let (radius, inverse_r2) = (f32x16::splat(r2), f32x16::splat(1.0 / r2));
+        let closer = squared.simd_lt(radius);
+        if closer.any() {
+            visit(Neighbors::new(self, block, squared, inverse_r2, closer, 1.0));
+        }
+        if share > 0.0 {
+            let tied = squared.simd_eq(radius);
+            if tied.any() {
+                visit(Neighbors::new(self, block, squared, inverse_r2, tied, share));
+            }
+        }
+    }
+
+    /// The squared distance within which k photons are certain to be: the k-th of the nearest node that has as
+    /// many, a node of the finest level at least.
+    fn bound(&self, probe: &Probe, k: usize, near: &mut Vec<u32>) -> f32 {
+        let (mut first, mut blocks) = (0, self.positions.len());
+        let mut node = 0;
+        for level in (1..self.levels.len()).rev() {
+            let to_boxes = probe.squared_distances_to_boxes(&self.levels[level][node]).to_array();
+            let nearest =
+                (0..16).fold(0, |best, lane| if to_boxes[lane] < to_boxes[best] { lane } else { best });
+            let child = node * 16 + nearest;
+            let width = 1usize << (4 * level);
+            let child_blocks = width.min(self.positions.len() - child * width);
+            let photons = (child_blocks * BLOCK).min(self.stored - child * width * BLOCK);
+            if photons < k {
+                break;
+            }
+            (node, first, blocks) = (child, child * width, child_blocks);
+        }
+        near.clear();
+        for positions in &self.positions[first..first + blocks] {
+            near.extend(probe.squared_distances(positions).as_array().iter().map(|d| d.to_bits()));
+        }
+        f32::from_bits(*near.select_nth_unstable(k - 1).1)
+    }
+}
+
+/// The part of each tied photon that counts.
+fn share(sphere: &Sphere, k: usize, counted: Counted) -> f32 {
+    let nearer = if sphere.coincident > 0 { sphere.closer } else { k - 1 };
+    let counts = nearer + usize::from(counted == Counted::UpToKth);
+    ((counts - sphere.closer) as f64 / sphere.tied as f64) as f32
+}
+
+impl Scratch {
+    /// The sphere through the k-th photon; `blocks` and `squared` then hold every block that touches it.
+    fn find(&mut self, tree: &PhotonTree, point: [f32; 3], k: usize, cap2: f32) -> Option<Sphere> {
+        let probe = Probe::new(point);
+        let guess = self.guess(tree, point, k).filter(|&guess| guess < cap2);
+        let mut enough = false;
+        if let Some(guess) = guess {
+            self.collect(tree, &probe, guess);
+            enough = self.near.len() >= k;
+        }
+        if !enough {
+            let bound = tree.bound(&probe, k, &mut self.near).min(cap2);
+            self.collect(tree, &probe, bound);
+            if self.near.len() < k {
+                return None;
+            }
+        }
+        let (nearer, &mut kth, farther) = self.near.select_nth_unstable(k - 1);
+        let kth = f32::from_bits(kth);
+        if kth < (1.0 / (LIMIT * LIMIT)) as f32 {
+            return self.beyond_coincident(tree, &probe, cap2);
+        }
+        let closer = nearer.iter().filter(|&&d| f32::from_bits(d) < kth).count();
+        let tied = k - closer + farther.iter().filter(|&&d| f32::from_bits(d) == kth).count();
+        self.last = Some(Last { identity: tree.identity, k, point, squared: kth });
+        Some(Sphere { squared: kth, closer, tied, coincident: 0 })
+    }
+
+    /// Half as many photons again as the last search found, if that was nearby: a guess that may fail.
+    fn guess(&self, tree: &PhotonTree, point: [f32; 3], k: usize) -> Option<f32> {
+        let last = self.last.filter(|last| last.identity == tree.identity && last.k == k)?;
+        let step = [0, 1, 2].map(|axis| point[axis] - last.point[axis]);
+        let moved = step[0] * step[0] + step[1] * step[1] + step[2] * step[2];
+        (moved < last.squared).then_some(last.squared * 1.3)
+    }
+
+    /// Every squared distance of at most `bound`, and the blocks they are in.
+    fn collect(&mut self, tree: &PhotonTree, probe: &Probe, bound: f32) {
+        self.blocks.clear();
+        self.squared.clear();
+        self.near.clear();
+        let lanes = f32x16::splat(bound);
+        tree.touched_blocks(probe, lanes, &mut |block| {
+            let squared = probe.squared_distances(&tree.positions[block]);
+            let inside = squared.simd_le(lanes);
+            if inside.any() {
+                self.blocks.push(block as u32);
+                self.squared.push(squared);
+                let mut kept = [0u32; BLOCK];
+                let mut count = 0;
+                for &d in squared.as_array() {
+                    kept[count & (BLOCK - 1)] = d.to_bits();
+                    count += usize::from(d <= bound);
+                }
+                self.near.extend_from_slice(&kept[..count]);
+            }
+        });
+    }
+
+    /// The sphere through the nearest photon that is not at the centre, where k or more are.
+    fn beyond_coincident(&mut self, tree: &PhotonTree, probe: &Probe, cap2: f32) -> Option<Sphere> {
+        self.collect(tree, probe, cap2);
+        let resolved = (1.0 / (LIMIT * LIMIT)) as f32;
+        let distances = || self.near.iter().map(|&d| f32::from_bits(d));
+        let squared = distances().filter(|&d| d >= resolved).reduce(f32::min)?;
+        let closer = distances().filter(|&d| d < squared).count();
+        let tied = distances().filter(|&d| d == squared).count();
+        Some(Sphere { squared, closer, tied, coincident: closer })
+    }
+}

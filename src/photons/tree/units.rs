@@ -1,0 +1,51 @@
+//! The tree's own unit of length: a power of two, about half the map's box.
+
+use glam::DVec3;
+
+/// Distances beyond this many units see the whole map as one point, and distances below its inverse are not
+/// told apart from zero: squares of both stay far inside the range of f32 (2^-126 to 2^127).
+pub(super) const LIMIT: f64 = (1u64 << 60) as f64;
+
+/// Where the map's box is and how large: positions relative to its centre lie in [-1, 1].
+///
+/// The unit is a power of two, so a map scaled by a power of two has the same relative positions, bit for bit.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Units {
+    origin: DVec3,
+    exponent: i32,
+    scale: f64,
+}
+
+impl Units {
+    /// The units of the box from `lower` to `upper`.
+    pub(super) fn new(lower: DVec3, upper: DVec3) -> Self {
+        // Halved before they are added or subtracted: the largest finite box does not overflow.
+        let origin = lower * 0.5 + upper * 0.5;
+        let half = (upper * 0.5 - lower * 0.5).max_element();
+        // A box without extent has no length of its own; its distance from zero serves.
+        let size = if half > 0.0 { half } else { lower.abs().max_element() };
+        let exponent = libm::frexp(size).1.max(-1022);
+        Units { origin, exponent, scale: libm::ldexp(1.0, -exponent) }
+    }
+
+    /// A point relative to the centre of the box, in units.
+    pub(super) fn relative(&self, point: DVec3) -> DVec3 {
+        (point - self.origin) * self.scale
+    }
+
+    /// The place of a stored position.
+    pub(super) fn absolute(&self, [x, y, z]: [f32; 3]) -> DVec3 {
+        let length = |c: f32| libm::ldexp(f64::from(c), self.exponent);
+        self.origin + DVec3::new(length(x), length(y), length(z))
+    }
+
+    /// A length in units.
+    pub(super) fn shrink(&self, length: f64) -> f64 {
+        length * self.scale
+    }
+
+    /// A length given in units.
+    pub(super) fn stretch(&self, units: f64) -> f64 {
+        libm::ldexp(units, self.exponent)
+    }
+}
