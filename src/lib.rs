@@ -2,6 +2,7 @@
 
 pub mod error;
 pub mod math;
+pub mod output;
 pub mod photons;
 pub mod rng;
 pub mod spectrum;
