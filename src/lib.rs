@@ -13,6 +13,7 @@ pub mod integrators;
 pub mod light;
 pub mod math;
 pub mod medium;
+pub mod output;
 pub mod phase;
 pub mod photons;
 pub mod rng;

@@ -40,10 +40,10 @@ impl Source {
         let mut table: toml::Table = toml::from_str(&text).context("built-in defaults")?;
         for set in &self.sets {
             let (key, value) = split(set)?;
-            let Some(slot) = table.get_mut(key) else {
-                bail!("--set {set}: {}", unknown(key, table.keys().map(String::as_str)));
-            };
-            *slot = value;
+            if !table.contains_key(key) {
+                bail!("--set {set}: {}", unknown(key, &table.keys().map(String::as_str).collect::<Vec<_>>()));
+            }
+            table.insert(key.to_string(), value);
             text = toml::to_string(&table)?;
             let checked = (builtin.resolve)(&text).map_err(|e| anyhow!("--set {set}: {}", say(&text, &e)))?;
             checked.with_context(|| format!("--set {set}"))?;
@@ -59,7 +59,8 @@ impl Source {
             bail!("no such scene: {}", unknown_scene(&self.scene));
         }
         let text = std::fs::read_to_string(path).with_context(|| self.scene.clone())?;
-        let mut file: SceneFile = toml::from_str(&text).map_err(|e| anyhow!(located(&self.scene, &text, &e)))?;
+        let mut file: SceneFile =
+            toml::from_str(&text).map_err(|e| anyhow!(located(&self.scene, &text, &e)))?;
         if self.sets.is_empty() {
             return Ok(file);
         }
@@ -77,53 +78,49 @@ impl Source {
 /// Key and value of `key=value`; a value that is no TOML is a word.
 fn split(set: &str) -> anyhow::Result<(&str, toml::Value)> {
     let Some((key, value)) = set.split_once('=') else { bail!("--set {set}: allowed: KEY=VALUE") };
-    let parsed = toml::from_str::<toml::Table>(&format!("value = {value}")).ok().and_then(|mut t| t.remove("value"));
+    let parsed =
+        toml::from_str::<toml::Table>(&format!("value = {value}")).ok().and_then(|mut t| t.remove("value"));
     Ok((key.trim(), parsed.unwrap_or_else(|| toml::Value::String(value.trim().to_string()))))
 }
 
 /// The place of a dotted key, where numbers count list entries from 0. Only the last part may be new.
-fn slot<'a>(root: &'a mut toml::Value, key: &str) -> anyhow::Result<&'a mut toml::Value> {
-    let parts: Vec<&str> = key.split('.').collect();
-    let mut place = root;
-    for (depth, part) in parts.iter().enumerate() {
-        place = match place {
-            toml::Value::Table(table) if depth + 1 == parts.len() => {
-                table.entry(*part).or_insert(toml::Value::Boolean(false))
+fn slot<'a>(place: &'a mut toml::Value, key: &str) -> anyhow::Result<&'a mut toml::Value> {
+    let (part, rest) = key.split_once('.').map_or((key, None), |(part, rest)| (part, Some(rest)));
+    let inner = match place {
+        toml::Value::Table(table) => {
+            if rest.is_some() && !table.contains_key(part) {
+                bail!("{}", unknown(part, &table.keys().map(String::as_str).collect::<Vec<_>>()));
             }
-            toml::Value::Table(table) => {
-                let known: Vec<String> = table.keys().cloned().collect();
-                match table.get_mut(*part) {
-                    Some(inner) => inner,
-                    None => bail!("{}", unknown(part, known.iter().map(String::as_str))),
-                }
-            }
-            toml::Value::Array(list) => {
-                let count = list.len();
-                let found = part.parse::<usize>().ok().and_then(|i| list.get_mut(i));
-                found.ok_or_else(|| anyhow!("`{part}` is no entry of a list of {count}, counted from 0"))?
-            }
-            other => bail!("`{part}` is inside `{other}`, which has no parts"),
-        };
+            // A new key gets its value at once, from the caller.
+            table.entry(part).or_insert(toml::Value::Boolean(false))
+        }
+        toml::Value::Array(list) => {
+            let count = list.len();
+            let found = part.parse::<usize>().ok().and_then(|i| list.get_mut(i));
+            found.ok_or_else(|| anyhow!("`{part}` is no entry of a list of {count}, counted from 0"))?
+        }
+        other => bail!("`{part}` is inside `{other}`, which has no parts"),
+    };
+    match rest {
+        Some(rest) => slot(inner, rest),
+        None => Ok(inner),
     }
-    Ok(place)
 }
 
 /// An unknown key, and the nearest known one.
-fn unknown<'a>(key: &str, known: impl Iterator<Item = &'a str> + Clone) -> String {
-    let list = known.clone().collect::<Vec<_>>().join(", ");
-    match nearest(key, known) {
+fn unknown(key: &str, known: &[&str]) -> String {
+    let nearest =
+        known.iter().max_by(|a, b| strsim::jaro_winkler(a, key).total_cmp(&strsim::jaro_winkler(b, key)));
+    let list = known.join(", ");
+    match nearest {
         Some(name) => format!("unknown key `{key}`; nearest: `{name}`; allowed: {list}"),
-        None => format!("unknown key `{key}`; allowed: {list}"),
+        None => format!("unknown key `{key}`"),
     }
 }
 
 fn unknown_scene(name: &str) -> String {
     let list = BUILTIN.iter().map(|b| b.name).collect::<Vec<_>>().join(", ");
     format!("`{name}` is neither a file nor built in; allowed: {list}, or the path of a scene file")
-}
-
-fn nearest<'a>(key: &str, known: impl Iterator<Item = &'a str>) -> Option<&'a str> {
-    known.max_by(|a, b| strsim::jaro_winkler(a, key).total_cmp(&strsim::jaro_winkler(b, key)))
 }
 
 /// The error in one line with file, line and column.
@@ -138,11 +135,13 @@ fn located(file: &str, text: &str, error: &toml::de::Error) -> String {
 /// The error's message in one line, with the key in the place of "the value", and the nearest known key.
 fn say(text: &str, error: &toml::de::Error) -> String {
     let message = error.message().replace('\n', " ");
-    if let Some(rest) = message.strip_prefix("unknown field `").or_else(|| message.strip_prefix("unknown variant `")) {
+    if let Some(rest) =
+        message.strip_prefix("unknown field `").or_else(|| message.strip_prefix("unknown variant `"))
+    {
         let mut words = rest.split('`').step_by(2);
         let key = words.next().unwrap_or_default();
         let known: Vec<&str> = rest.split('`').skip(2).step_by(2).collect();
-        return unknown(key, known.into_iter());
+        return unknown(key, &known);
     }
     match error.span().and_then(|span| key_before(text, span)) {
         Some(key) => match message.strip_prefix("the value") {

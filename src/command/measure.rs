@@ -1,8 +1,8 @@
 //! `turbid measure`: the sensors of a scene, by paths or by photons.
 
 use super::load::Source;
-use super::progress::Bar;
 use super::parse_count;
+use super::progress::Bar;
 use anyhow::{Context, bail};
 use clap::ValueEnum;
 use std::io::Write;

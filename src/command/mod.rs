@@ -35,9 +35,9 @@ impl Command {
 /// Exit code of an outcome: 2 for an error, told in one line on stderr; a reader that closed the pipe is no error.
 pub fn exit_code(program: &str, outcome: anyhow::Result<()>) -> ExitCode {
     let Err(error) = outcome else { return ExitCode::SUCCESS };
-    let is_closed_pipe = error
-        .chain()
-        .any(|cause| cause.downcast_ref::<std::io::Error>().is_some_and(|e| e.kind() == ErrorKind::BrokenPipe));
+    let is_closed_pipe = error.chain().any(|cause| {
+        cause.downcast_ref::<std::io::Error>().is_some_and(|e| e.kind() == ErrorKind::BrokenPipe)
+    });
     if is_closed_pipe {
         return ExitCode::SUCCESS;
     }

@@ -66,6 +66,14 @@ impl Gather {
         Ok(Gather::Nearest { k: NeighborCount::new(k)?, max_radius })
     }
 
+    /// The farthest that a photon may be taken from [L].
+    pub fn cap(self) -> f64 {
+        match self {
+            Gather::Radius(radius) => radius.get(),
+            Gather::Nearest { max_radius, .. } | Gather::NearestBiased { max_radius, .. } => max_radius.get(),
+        }
+    }
+
     /// [`Gather::nearest`] with the biased rule.
     ///
     /// # Errors

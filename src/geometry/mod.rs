@@ -99,7 +99,9 @@ impl Shape {
                 (p, normal, s.area())
             }
             Shape::Rectangle(r) => (r.sample([u[0], u[1]]), r.normal(), r.area()),
-            Shape::Slab(s) => (DVec3::new(u[0] * side, u[1] * side, s.face(face)), face.normal(), side * side),
+            Shape::Slab(s) => {
+                (DVec3::new(u[0] * side, u[1] * side, s.face(face)), face.normal(), side * side)
+            }
             Shape::Cuboid(c) => {
                 let (p, normal) = c.sample_surface(u);
                 (p, normal, c.area())

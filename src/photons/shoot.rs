@@ -53,6 +53,8 @@ impl Ledger {
 pub struct Pass {
     /// Photons kept, in the order of their histories.
     pub photons: Vec<Photon>,
+    /// The same while the pass runs, a block each: joined once at its end.
+    blocks: Vec<Vec<Photon>>,
     /// Histories run: what estimates divide by.
     pub emitted: u64,
     /// One a sensor and channel, over histories; 0 for sensors that photons in a map answer.
@@ -90,10 +92,14 @@ pub fn shoot(
             let mut stream = Stream::new(histories.seed, Purpose::Photons, histories.replicate, history);
             visitor.run(histories.max_order, &mut stream);
         }
-        visitor.pass
+        let mut pass = visitor.pass;
+        pass.blocks.push(std::mem::take(&mut pass.photons));
+        pass
     };
     let pass = run_blocks(histories.count, progress, block, Pass::merged)?;
-    let pass = pass.unwrap_or_else(|| Pass { tallies: vec![Default::default(); sensors.len()], ..Pass::default() });
+    let pass =
+        pass.unwrap_or_else(|| Pass { tallies: vec![Default::default(); sensors.len()], ..Pass::default() });
+    let pass = Pass { photons: pass.blocks.concat(), blocks: Vec::new(), ..pass };
     if pass.non_finite > 0 {
         return Err(Error::NonFinite { count: pass.non_finite, place: "photon histories" });
     }
@@ -102,7 +108,7 @@ pub fn shoot(
 
 impl Pass {
     fn merged(mut self, other: Pass) -> Pass {
-        self.photons.extend(other.photons);
+        self.blocks.extend(other.blocks);
         self.emitted += other.emitted;
         for (mine, others) in self.tallies.iter_mut().zip(&other.tallies) {
             for (m, o) in mine.iter_mut().zip(others) {
@@ -163,7 +169,8 @@ impl<K: Fn(&Photon) -> bool> Tallier<'_, K> {
             }
         }
         let emission = lights[index].emit(stage, stream);
-        let weight = if lights.len() > 1 { emission.power * (total / emission.power.sum()) } else { emission.power };
+        let weight =
+            if lights.len() > 1 { emission.power * (total / emission.power.sum()) } else { emission.power };
         let has_body = matches!(lights[index], Light::Area(_) | Light::EmittingSphere(_));
         Walker { from: has_body.then_some(Target::Light(index)), ..Walker::new(emission.ray, weight) }
     }
@@ -198,7 +205,10 @@ impl<K: Fn(&Photon) -> bool> Visitor for Tallier<'_, K> {
                 let weight = arrival.walker.weight;
                 self.pass.non_finite += u64::from(!weight.is_finite() || !arrival.position.is_finite());
                 let photon = Photon {
-                    position: self.scene.stage().map_or(arrival.position, |s| fold::into_cell(arrival.position, s.side)),
+                    position: self
+                        .scene
+                        .stage()
+                        .map_or(arrival.position, |s| fold::into_cell(arrival.position, s.side)),
                     dir: walker.ray.dir.as_vec3(),
                     power: weight.0.as_vec3(),
                     order: u16::try_from(walker.order).unwrap_or(u16::MAX),

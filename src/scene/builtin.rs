@@ -1,6 +1,8 @@
 //! The built-in scenes: a few parameters each, from which the whole scene file follows.
 
-use super::file::{Channels, LightFile, QuantityFile, RegionFile, SceneFile, SectionFile, SensorFile, ShapeFile};
+use super::file::{
+    Channels, LightFile, QuantityFile, RegionFile, SceneFile, SectionFile, SensorFile, ShapeFile,
+};
 use crate::error::{Error, Result};
 use crate::geometry::Face;
 use crate::light::Faces;
@@ -81,7 +83,11 @@ impl TryFrom<toml::Value> for Incidence {
             toml::Value::Integer(x) => *x as f64,
             other => return Err(format!("the value is {other}; {ALLOWED}")),
         };
-        if number > 0.0 && number <= 1.0 { Ok(Incidence::Beam(number)) } else { Err(format!("the value is {number}; {ALLOWED}")) }
+        if number > 0.0 && number <= 1.0 {
+            Ok(Incidence::Beam(number))
+        } else {
+            Err(format!("the value is {number}; {ALLOWED}"))
+        }
     }
 }
 
@@ -139,7 +145,12 @@ fn region(shape: ShapeFile, sigma_t: f64, albedo: Albedo, g: Asymmetry) -> Resul
     Ok(RegionFile { shape, sigma_t: grey(NonNegative::new("sigma_t", sigma_t)?), albedo: grey(albedo), g })
 }
 
-fn sensor(name: impl Into<String>, label: Option<&str>, min_order: Option<u32>, measure: QuantityFile) -> SensorFile {
+fn sensor(
+    name: impl Into<String>,
+    label: Option<&str>,
+    min_order: Option<u32>,
+    measure: QuantityFile,
+) -> SensorFile {
     SensorFile { name: name.into(), label: label.map(str::to_string), measure, min_order, max_order: None }
 }
 
@@ -154,18 +165,30 @@ fn slab(p: SlabParameters) -> Result<SceneFile> {
             irradiance: emission(1.0 / mu0)?,
             section: SectionFile::Unbounded,
         },
-        Incidence::Diffuse => LightFile::Isotropic { shape, faces: Faces::Top, radiance: emission(1.0 / PI)? },
+        Incidence::Diffuse => {
+            LightFile::Isotropic { shape, faces: Faces::Top, radiance: emission(1.0 / PI)? }
+        }
     };
     let middle = 0.5 * side.get();
     let mut sensors = vec![
         sensor("slab", Some("reflectance"), None, QuantityFile::Outflow { shape, face: Face::Top }),
         sensor("slab", Some("transmittance"), None, QuantityFile::Outflow { shape, face: Face::Bottom }),
-        sensor("slab", Some("transmittance_diffuse"), Some(1), QuantityFile::Outflow { shape, face: Face::Bottom }),
+        sensor(
+            "slab",
+            Some("transmittance_diffuse"),
+            Some(1),
+            QuantityFile::Outflow { shape, face: Face::Bottom },
+        ),
         sensor("slab", Some("absorptance"), None, QuantityFile::Absorbed { region: 0 }),
     ];
     for part in &p.probes {
         let at = [middle, middle, part.get() * thickness];
-        sensors.push(sensor(format!("depth {}", part.get() * p.tau.get()), None, None, QuantityFile::Fluence { at }));
+        sensors.push(sensor(
+            format!("depth {}", part.get() * p.tau.get()),
+            None,
+            None,
+            QuantityFile::Fluence { at },
+        ));
     }
     let regions = vec![region(shape, 1.0 / scale, p.albedo, p.g)?];
     Ok(SceneFile { cell: Some(side), regions, objects: Vec::new(), lights: vec![light], sensors })
@@ -179,7 +202,9 @@ fn sphere(p: SphereParameters) -> Result<SceneFile> {
             LightFile::VolumeSource { shape, density: emission(3.0 / (FOUR_PI * radius * radius * radius))? }
         }
         SphereSource::Point => LightFile::Point { position: [0.0; 3], power: emission(1.0)? },
-        SphereSource::Incidence => LightFile::Isotropic { shape, faces: Faces::Both, radiance: emission(1.0 / PI)? },
+        SphereSource::Incidence => {
+            LightFile::Isotropic { shape, faces: Faces::Both, radiance: emission(1.0 / PI)? }
+        }
     };
     let mut sensors = vec![
         sensor("sphere", Some("escape"), None, QuantityFile::Outflow { shape, face: Face::Top }),
@@ -189,7 +214,12 @@ fn sphere(p: SphereParameters) -> Result<SceneFile> {
         let r = part.get() * radius;
         // The fluence of a point source is infinite at the source.
         if r > 0.0 || !matches!(p.source, SphereSource::Point) {
-            sensors.push(sensor(format!("radius {r}"), None, None, QuantityFile::Fluence { at: [r, 0.0, 0.0] }));
+            sensors.push(sensor(
+                format!("radius {r}"),
+                None,
+                None,
+                QuantityFile::Fluence { at: [r, 0.0, 0.0] },
+            ));
         }
     }
     let regions = vec![region(shape, 1.0, p.albedo, p.g)?];

@@ -76,7 +76,10 @@ pub struct SceneFile {
 /// A shape; lengths in scene units.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
-#[allow(missing_docs, reason = "the names are those of the shapes' own constructors, which say their meaning")]
+#[allow(
+    missing_docs,
+    reason = "the names are those of the shapes' own constructors, which say their meaning"
+)]
 pub enum ShapeFile {
     Sphere { center: [f64; 3], radius: Positive },
     Rectangle { corner: [f64; 3], u: [f64; 3], v: [f64; 3] },
@@ -111,7 +114,10 @@ pub struct ObjectFile {
 /// A surface.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
-#[allow(missing_docs, reason = "the names are those of the surfaces' own constructors, which say their meaning")]
+#[allow(
+    missing_docs,
+    reason = "the names are those of the surfaces' own constructors, which say their meaning"
+)]
 pub enum SurfaceFile {
     Lambertian { reflectance: Channels<Albedo> },
     Mirror { reflectance: Channels<Albedo> },
@@ -131,7 +137,10 @@ pub enum SectionFile {
 /// A light.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
-#[allow(missing_docs, reason = "the names are those of the lights' own constructors, which say their meaning")]
+#[allow(
+    missing_docs,
+    reason = "the names are those of the lights' own constructors, which say their meaning"
+)]
 pub enum LightFile {
     Beam { dir: [f64; 3], irradiance: Channels<NonNegative>, section: SectionFile },
     Area { corner: [f64; 3], u: [f64; 3], v: [f64; 3], radiance: Channels<NonNegative> },
@@ -189,7 +198,9 @@ fn rectangle(corner: [f64; 3], u: [f64; 3], v: [f64; 3]) -> Result<Rectangle> {
 impl SurfaceFile {
     fn surface(self) -> Result<Surface> {
         Ok(match self {
-            SurfaceFile::Lambertian { reflectance } => Surface::Lambertian(Lambertian::new(reflectance.spectrum())?),
+            SurfaceFile::Lambertian { reflectance } => {
+                Surface::Lambertian(Lambertian::new(reflectance.spectrum())?)
+            }
             SurfaceFile::Mirror { reflectance } => Surface::Mirror(Mirror::new(reflectance.spectrum())?),
             SurfaceFile::Black => Surface::Black(Black),
         })
@@ -216,7 +227,9 @@ impl LightFile {
                 let sphere = Sphere::new(center.into(), radius.get())?;
                 Light::EmittingSphere(EmittingSphere::new(sphere, radiance.spectrum())?)
             }
-            LightFile::Point { position, power } => Light::Point(Point::new(position.into(), power.spectrum())?),
+            LightFile::Point { position, power } => {
+                Light::Point(Point::new(position.into(), power.spectrum())?)
+            }
             LightFile::Isotropic { shape, faces, radiance } => {
                 Light::Isotropic(Isotropic::new(shape.shape()?, faces, radiance.spectrum())?)
             }
@@ -233,11 +246,16 @@ impl SensorFile {
             QuantityFile::Fluence { at } => ("fluence", Quantity::Fluence(at.into())),
             QuantityFile::Radiance { origin, dir } => {
                 let Some(dir) = DVec3::from(dir).try_normalize() else {
-                    return Err(Error::Scene(format!("sensor {} needs a finite direction other than 0 0 0", self.name)));
+                    return Err(Error::Scene(format!(
+                        "sensor {} needs a finite direction other than 0 0 0",
+                        self.name
+                    )));
                 };
                 ("radiance", Quantity::Radiance(Ray::new(origin.into(), dir)))
             }
-            QuantityFile::Outflow { shape, face } => ("outflow", Quantity::Outflow { shape: shape.shape()?, face }),
+            QuantityFile::Outflow { shape, face } => {
+                ("outflow", Quantity::Outflow { shape: shape.shape()?, face })
+            }
             QuantityFile::Absorbed { region } => ("absorptance", Quantity::Absorbed(region)),
         };
         let label = self.label.clone().unwrap_or_else(|| kind.to_string());
@@ -254,9 +272,10 @@ impl SceneFile {
             let medium = Homogeneous::new(r.sigma_t.spectrum(), r.albedo.spectrum(), phase)?;
             Ok(Region { shape: r.shape.shape()?, medium })
         });
-        let objects = self.objects.iter().map(|o| {
-            Ok(Object { shape: o.shape.shape()?, surface: o.surface.surface()? })
-        });
+        let objects = self
+            .objects
+            .iter()
+            .map(|o| Ok(Object { shape: o.shape.shape()?, surface: o.surface.surface()? }));
         Scene::new(Parts {
             regions: regions.collect::<Result<_>>()?,
             objects: objects.collect::<Result<_>>()?,

@@ -3,8 +3,8 @@
 use super::{Reading, readings};
 use crate::Spectrum;
 use crate::error::{Error, Result};
-use crate::light::Stage;
 use crate::integrators::{direct_flux, fluence, radiance};
+use crate::light::Stage;
 use crate::math::{Frame, Ray, warp};
 use crate::rng::{Purpose, Stream};
 use crate::scene::{Orders, Quantity, Scene, Sensor};

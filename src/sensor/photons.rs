@@ -52,7 +52,11 @@ const STRATA: usize = 64;
 /// # Errors
 /// `Error::Scene` for a sensor that a volume map cannot answer: a fluence outside all media, or a radiance where
 /// surfaces reflect; `Error::OutOfRange`; `Error::NonFinite`; `Error::Cancelled`.
-pub fn by_photons(scene: &Scene, settings: &PhotonSettings, progress: &dyn Progress) -> Result<PhotonReadings> {
+pub fn by_photons(
+    scene: &Scene,
+    settings: &PhotonSettings,
+    progress: &dyn Progress,
+) -> Result<PhotonReadings> {
     let sensors: Vec<Sensor> = scene
         .sensors()
         .iter()
@@ -83,10 +87,17 @@ pub fn by_photons(scene: &Scene, settings: &PhotonSettings, progress: &dyn Progr
             }
         }
         if let Some(stage) = scene.stage() {
-            fold::surround(&mut pass.photons, stage.side, settings.gather.cap().min(stage.side));
+            let margin = margin(&sensors, stage.side, settings.gather.cap());
+            if margin > 0.0 {
+                fold::surround(&mut pass.photons, stage.side, margin.min(stage.side));
+            }
         }
         for range in &ranges {
-            let in_range = pass.photons.iter().filter(|p| range.contains(u32::from(p.order))).copied().collect();
+            let in_range = if ranges.len() == 1 {
+                std::mem::take(&mut pass.photons)
+            } else {
+                pass.photons.iter().filter(|p| range.contains(u32::from(p.order))).copied().collect()
+            };
             let map = PhotonMap::new(in_range, pass.emitted)?;
             let here = sensors.iter().zip(&mut moments).filter(|(s, _)| map_orders(s) == Some(*range));
             for (index, (sensor, moments)) in here.enumerate() {
@@ -118,6 +129,19 @@ fn map_orders(sensor: &Sensor) -> Option<Orders> {
         Quantity::Radiance(_) => Some(Orders { min: min.saturating_sub(1), max: max.map(|m| m - 1) }),
         Quantity::Outflow { .. } | Quantity::Absorbed(_) => None,
     }
+}
+
+/// How far beyond the cell's edges the sensors' balls of radius `cap` may reach [L]; rays may pass any point.
+fn margin(sensors: &[Sensor], side: f64, cap: f64) -> f64 {
+    let beyond = sensors.iter().map(|sensor| match sensor.quantity {
+        Quantity::Fluence(p) => {
+            let p = fold::into_cell(p, side);
+            cap - p.x.min(p.y).min(side - p.x).min(side - p.y)
+        }
+        Quantity::Radiance(_) => cap,
+        Quantity::Outflow { .. } | Quantity::Absorbed(_) => 0.0,
+    });
+    beyond.fold(0.0, f64::max)
 }
 
 /// Whether a volume map can answer a sensor.
@@ -194,7 +218,12 @@ fn radiance(
             let estimate = in_scattered_at(map, p, -ray.dir, medium, settings, result);
             // Density of t is rate exp(-rate t') / collects.
             let weight = decay(medium.sigma_t() * inside) / crate::math::exp(-rate * inside);
-            sum += before * weight * medium.sigma_t() * medium.albedo() * estimate * (collects / (rate * STRATA as f64));
+            sum += before
+                * weight
+                * medium.sigma_t()
+                * medium.albedo()
+                * estimate
+                * (collects / (rate * STRATA as f64));
         }
     }
     sum

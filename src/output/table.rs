@@ -1,0 +1,166 @@
+//! Tables of measured quantities, as aligned text, CSV or JSON.
+
+use crate::sensor::Reading;
+use serde::Serialize;
+use std::io::{self, Write};
+
+/// The form of a table.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Format {
+    /// Aligned columns to read.
+    Text,
+    /// Comma-separated values with a header; every bit is kept.
+    Csv,
+    /// A list of objects; every bit is kept.
+    Json,
+}
+
+/// Writes rows in the given form.
+///
+/// # Errors
+/// Those of the writer.
+pub fn write_rows(out: &mut dyn Write, rows: &[Reading], format: Format) -> io::Result<()> {
+    match format {
+        Format::Text => write_text(out, rows),
+        Format::Csv if rows.is_empty() => writeln!(out, "{}", COLUMNS.join(",")),
+        Format::Csv => write_csv(out, rows),
+        Format::Json => write_json(out, rows),
+    }
+}
+
+const COLUMNS: [&str; 6] = ["sensor", "quantity", "unit", "mean", "std_error", "n"];
+
+fn write_text(out: &mut dyn Write, rows: &[Reading]) -> io::Result<()> {
+    let mut lines = vec![COLUMNS.map(str::to_string)];
+    for r in rows {
+        let numbers =
+            (format!("{:.6e}", r.mean), r.std_error.map_or_else(String::new, |e| format!("{e:.1e}")));
+        lines.push([
+            r.sensor.clone(),
+            r.quantity.clone(),
+            r.unit.to_string(),
+            numbers.0,
+            numbers.1,
+            r.n.to_string(),
+        ]);
+    }
+    let width = |column: usize| lines.iter().map(|l| l[column].chars().count()).max().unwrap_or(0);
+    let widths: Vec<usize> = (0..COLUMNS.len()).map(width).collect();
+    for line in &lines {
+        let mut text = String::new();
+        for (column, (cell, &width)) in line.iter().zip(&widths).enumerate() {
+            let cell = if column < 3 { format!("{cell:<width$}  ") } else { format!("{cell:>width$}  ") };
+            text.push_str(&cell);
+        }
+        writeln!(out, "{}", text.trim_end())?;
+    }
+    Ok(())
+}
+
+/// Writes any rows as CSV, with a header from their field names; every bit of an f64 is kept.
+///
+/// # Errors
+/// Those of the writer, and rows that are not flat.
+pub fn write_csv<T: Serialize>(out: &mut dyn Write, rows: &[T]) -> io::Result<()> {
+    let mut csv = csv::Writer::from_writer(out);
+    for row in rows {
+        csv.serialize(row).map_err(into_io)?;
+    }
+    csv.flush()
+}
+
+/// The error of the writer underneath, so that a closed pipe still looks like one.
+fn into_io(error: csv::Error) -> io::Error {
+    match error.into_kind() {
+        csv::ErrorKind::Io(cause) => cause,
+        kind => io::Error::other(format!("{kind:?}")),
+    }
+}
+
+/// Writes any value as indented JSON with a final newline; every bit of a finite f64 is kept.
+///
+/// # Errors
+/// Those of the writer.
+pub fn write_json<T: Serialize + ?Sized>(out: &mut dyn Write, value: &T) -> io::Result<()> {
+    serde_json::to_writer_pretty(&mut *out, value)?;
+    writeln!(out)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn row(mean: f64, std_error: f64) -> Reading {
+        Reading {
+            sensor: "probe, centre".into(),
+            quantity: "fluence".into(),
+            unit: "W/L^2",
+            mean,
+            std_error: (std_error > 0.0).then_some(std_error),
+            n: 64,
+        }
+    }
+
+    fn text(rows: &[Reading], format: Format) -> String {
+        let mut out = Vec::new();
+        write_rows(&mut out, rows, format).unwrap();
+        String::from_utf8(out).unwrap()
+    }
+
+    const AWKWARD: [f64; 7] =
+        [0.1, 1.0 / 3.0, 5e-324, 1.797_693_134_862_315_7e308, -0.0, 1e-12, 123_456_789.123_456_79];
+
+    #[test]
+    fn csv_keeps_every_bit() {
+        for x in AWKWARD.into_iter().chain([f64::INFINITY, f64::NAN]) {
+            let text = text(&[row(x, 1.0)], Format::Csv);
+            let mut reader = csv::Reader::from_reader(text.as_bytes());
+            assert_eq!(reader.headers().unwrap(), COLUMNS.as_slice());
+            let record = reader.records().next().unwrap().unwrap();
+            assert_eq!(&record[0], "probe, centre");
+            let back: f64 = record[3].parse().unwrap();
+            assert!(back.to_bits() == x.to_bits() || x.is_nan() && back.is_nan());
+        }
+    }
+
+    #[test]
+    fn json_keeps_every_bit_and_knows_no_error_from_an_error_of_zero() {
+        for x in AWKWARD {
+            let value: serde_json::Value = serde_json::from_str(&text(&[row(x, 1.0)], Format::Json)).unwrap();
+            assert_eq!(value[0]["mean"].as_f64().unwrap().to_bits(), x.to_bits());
+        }
+        assert!(text(&[row(1.0, 0.0)], Format::Json).contains("\"std_error\": null"));
+    }
+
+    #[test]
+    fn text_is_aligned() {
+        let text = text(&[row(0.25, 1e-3), row(-12.5, 2e-10)], Format::Text);
+        let lines: Vec<&str> = text.lines().collect();
+        assert_eq!(lines.len(), 3);
+        assert!(lines.iter().all(|l| l.len() == lines[0].len()), "{text}");
+        assert!(lines[1].contains("2.500000e-1") && lines[1].contains("1.0e-3"));
+    }
+
+    #[test]
+    fn no_rows_are_still_a_table() {
+        assert_eq!(text(&[], Format::Csv), "sensor,quantity,unit,mean,std_error,n\n");
+        assert_eq!(text(&[], Format::Json), "[]\n");
+    }
+
+    #[test]
+    fn a_closed_pipe_is_recognised_through_csv_and_json() {
+        struct Closed;
+        impl Write for Closed {
+            fn write(&mut self, _: &[u8]) -> io::Result<usize> {
+                Err(io::ErrorKind::BrokenPipe.into())
+            }
+            fn flush(&mut self) -> io::Result<()> {
+                Ok(())
+            }
+        }
+        for format in [Format::Text, Format::Csv, Format::Json] {
+            let error = write_rows(&mut Closed, &[row(1.0, 1.0)], format).unwrap_err();
+            assert_eq!(error.kind(), io::ErrorKind::BrokenPipe, "{format:?}");
+        }
+    }
+}
