@@ -1,0 +1,323 @@
+//! The layers of a panel as marks.
+
+use crate::clip;
+use crate::extent::{Spans, colors};
+use crate::layer::{Align, Along, At, Band, Heatmap, Histogram, Layer, Note, Points};
+use crate::mark::{Mark, Paint, Point, Rect};
+use crate::palette::{Color, Dash};
+use crate::shape;
+use crate::text::{Fonts, SMALL, plain};
+
+/// Width of lines of data [pt].
+pub(crate) const LINE: f64 = 1.1;
+/// Width of rules [pt].
+pub(crate) const RULE: f64 = 0.7;
+/// Opacity of bands and bars.
+pub(crate) const LIGHT: f64 = 0.28;
+/// Beyond this many points in a panel, markers and bars are drawn smaller.
+const CROWD: usize = 60;
+
+/// A rectangle on the page with its axes.
+pub(crate) struct Plot {
+    pub(crate) rect: Rect,
+    pub(crate) spans: Spans,
+}
+
+impl Plot {
+    /// The place of data coordinates.
+    pub(crate) fn at(&self, x: f64, y: f64) -> Point {
+        (self.x_at(self.spans.x.unit(x)), self.y_at(self.spans.y.unit(y)))
+    }
+
+    pub(crate) fn x_at(&self, unit: f64) -> f64 {
+        self.rect.left + unit * self.rect.width
+    }
+
+    pub(crate) fn y_at(&self, unit: f64) -> f64 {
+        self.rect.bottom() - unit * self.rect.height
+    }
+
+    fn path(&self, x: &[f64], y: impl IntoIterator<Item = f64>) -> Vec<Point> {
+        x.iter().zip(y).map(|(&x, y)| self.at(x, y)).collect()
+    }
+
+    fn outline(&self, band: &Band) -> Vec<Point> {
+        let mut points = self.path(&band.x, band.interval.iter().map(|i| i.0));
+        points.extend(self.path(&band.x, band.interval.iter().map(|i| i.1)).into_iter().rev());
+        points
+    }
+
+    /// The outline of a bar, from its lower left corner; it stands on zero, on a logarithmic axis below the border.
+    fn bar(&self, edges: &[f64], height: f64) -> Vec<Point> {
+        let (a, b) = (self.at(edges[0], height), self.at(edges[1], 0.0));
+        vec![(a.0, b.1), a, (b.0, a.1), b]
+    }
+
+    fn rule(&self, along: Along) -> [Point; 2] {
+        let r = &self.rect;
+        match along {
+            Along::Horizontal(v) => {
+                let y = self.y_at(self.spans.y.unit(v));
+                [(r.left, y), (r.right(), y)]
+            }
+            Along::Vertical(v) => {
+                let x = self.x_at(self.spans.x.unit(v));
+                [(x, r.bottom()), (x, r.top)]
+            }
+            Along::Diagonal => [(0.0, 0.0), (1.0, 1.0)].map(|(a, b)| (self.x_at(a), self.y_at(b))),
+        }
+    }
+
+    /// The line y = x, bent where the scales differ.
+    fn diagonal(&self) -> Vec<Point> {
+        let (x, y) = (&self.spans.x, &self.spans.y);
+        if x.scale == y.scale {
+            let (low, high) = (x.low.max(y.low), x.high.min(y.high));
+            return [low, high]
+                .map(|t| (self.x_at(x.unit_of_transformed(t)), self.y_at(y.unit_of_transformed(t))))
+                .to_vec();
+        }
+        (0..=400)
+            .map(|i| x.scale.backward(x.low + (x.high - x.low) * f64::from(i) / 400.0))
+            .map(|v| self.at(v, v))
+            .collect()
+    }
+}
+
+/// Draws all layers: what covers areas first, then rules, lines, bars of intervals, points, notes.
+pub(crate) fn draw(plot: &Plot, layers: &[Layer], fonts: &Fonts, marks: &mut Vec<Mark>) {
+    let crowded =
+        layers.iter().map(|l| if let Layer::Points(p) = l { p.x.len() } else { 0 }).sum::<usize>() > CROWD;
+    let mut late = Vec::new();
+    let mut last = Vec::new();
+    let mut lines = Vec::new();
+    for layer in layers {
+        match layer {
+            Layer::Heatmap(l) => heatmap(plot, l, marks),
+            Layer::Band(l) => {
+                let points = clip::polygon(&plot.rect, &plot.outline(l));
+                marks.push(Mark::Area { points, paint: light(l.color) });
+            }
+            Layer::Histogram(l) => histogram(plot, l, fonts, marks, &mut last),
+            Layer::Rule(l) => {
+                let points =
+                    if l.along == Along::Diagonal { plot.diagonal() } else { plot.rule(l.along).to_vec() };
+                stroke(&plot.rect, &points, RULE, l.color, l.dash, &mut late);
+            }
+            Layer::Line(l) => {
+                stroke(&plot.rect, &plot.path(&l.x, l.y.iter().copied()), LINE, l.color, l.dash, &mut lines)
+            }
+            Layer::Points(_) => {}
+            Layer::Note(l) => note(plot, l, fonts, &mut last),
+        }
+    }
+    marks.append(&mut late);
+    marks.append(&mut lines);
+    for layer in layers {
+        if let Layer::Points(l) = layer {
+            bars(plot, l, crowded, marks);
+        }
+    }
+    for layer in layers {
+        if let Layer::Points(l) = layer {
+            points(plot, l, crowded, marks);
+        }
+    }
+    marks.append(&mut last);
+}
+
+pub(crate) fn light(color: Color) -> Paint {
+    Paint { rgb: color.rgb(), alpha: LIGHT }
+}
+
+/// A line in its pattern, cut at the border.
+pub(crate) fn stroke(
+    rect: &Rect,
+    points: &[Point],
+    width: f64,
+    color: Color,
+    dash: Dash,
+    marks: &mut Vec<Mark>,
+) {
+    let pattern: Vec<f64> = dash.pattern().iter().map(|d| d * width).collect();
+    let paint = Paint::solid(color.rgb());
+    for piece in clip::polyline(rect, points) {
+        marks.extend(clip::dashes(&piece, &pattern).into_iter().map(|points| Mark::Stroke {
+            points,
+            width,
+            paint,
+        }));
+    }
+}
+
+/// Bars of intervals with caps; an end beyond the border has no cap.
+fn bars(plot: &Plot, l: &Points, crowded: bool, marks: &mut Vec<Mark>) {
+    let (width, cap) = if crowded { (0.45, 0.9) } else { (0.75, 1.8) };
+    let mut bar = |a: Point, b: Point, across: Point| {
+        if let Some((p, q)) = clip::segment(&plot.rect, a, b) {
+            let paint = Paint::solid(l.color.rgb());
+            marks.push(Mark::Stroke { points: vec![p, q], width, paint });
+            for end in [a, b] {
+                if plot.rect.grown(1e-6).contains(end) {
+                    let points =
+                        vec![(end.0 - across.0, end.1 - across.1), (end.0 + across.0, end.1 + across.1)];
+                    marks.push(Mark::Stroke { points, width, paint });
+                }
+            }
+        }
+    };
+    for (i, (&x, &y)) in l.x.iter().zip(&l.y).enumerate() {
+        if let Some(intervals) = &l.x_interval {
+            bar(plot.at(intervals[i].0, y), plot.at(intervals[i].1, y), (0.0, cap));
+        }
+        if let Some(intervals) = &l.y_interval {
+            bar(plot.at(x, intervals[i].0), plot.at(x, intervals[i].1), (cap, 0.0));
+        }
+    }
+}
+
+/// Markers; arrows at the border for points beyond it.
+fn points(plot: &Plot, l: &Points, crowded: bool, marks: &mut Vec<Mark>) {
+    let radius = if crowded { 1.5 } else { 2.1 };
+    let side = |unit: f64| if unit < -1e-9 { -1.0 } else { f64::from(unit > 1.0 + 1e-9) };
+    for (&x, &y) in l.x.iter().zip(&l.y) {
+        let (u, v) = (plot.spans.x.unit(x), plot.spans.y.unit(y));
+        let (right, up) = (side(u), side(v));
+        if right == 0.0 && up == 0.0 {
+            shape::marker(l.marker, plot.at(x, y), radius, l.color, marks);
+        } else {
+            let border = (plot.x_at(u.clamp(0.0, 1.0)), plot.y_at(v.clamp(0.0, 1.0)));
+            shape::arrow(border, (right, -up), l.color, marks);
+        }
+    }
+}
+
+fn histogram(plot: &Plot, l: &Histogram, fonts: &Fonts, marks: &mut Vec<Mark>, last: &mut Vec<Mark>) {
+    let mut top: Vec<Point> = Vec::new();
+    for (edges, &height) in l.edges.windows(2).zip(&l.heights) {
+        let bar = plot.bar(edges, height);
+        let area = clip::polygon(&plot.rect, &bar);
+        if area.len() > 2 {
+            marks.push(Mark::Area { points: area, paint: light(l.color) });
+        }
+        if top.is_empty() {
+            top.push(bar[0]);
+        }
+        top.extend([bar[1], bar[2]]);
+        // A stroke between neighbours keeps the bins countable.
+        stroke(&plot.rect, &[bar[2], bar[3]], 0.35, l.color, Dash::Solid, marks);
+    }
+    if let (Some(&end), Some(&edge)) = (top.last(), l.edges.last()) {
+        top.push((end.0, plot.at(edge, 0.0).1));
+    }
+    stroke(&plot.rect, &top, 0.8, l.color, Dash::Solid, marks);
+    for (count, text, at, align) in [
+        (l.below, format!("← {}", l.below), 0.012, Align::Start),
+        (l.above, format!("{} →", l.above), 0.988, Align::End),
+    ] {
+        if count > 0 {
+            let note = Note { text, at: At::Fraction(at, 0.16), align };
+            self::note(plot, &note, fonts, last);
+        }
+    }
+}
+
+fn heatmap(plot: &Plot, l: &Heatmap, marks: &mut Vec<Mark>) {
+    /// Neighbours overlap by this much, or seams would show between them [pt].
+    const OVERLAP: f64 = 0.12;
+    let span = colors(l);
+    let columns = l.x_edges.len() - 1;
+    for (row, y) in l.values.chunks(columns).zip(l.y_edges.windows(2)) {
+        let shade = |v: f64| l.shading.rgb(span.unit(v));
+        let mut start = 0;
+        for end in 1..=columns {
+            if end < columns && shade(row[end]) == shade(row[start]) {
+                continue;
+            }
+            let (a, b) = (plot.at(l.x_edges[start], y[0]), plot.at(l.x_edges[end], y[1]));
+            let cell =
+                [(a.0, a.1), (a.0, b.1 - OVERLAP), (b.0 + OVERLAP, b.1 - OVERLAP), (b.0 + OVERLAP, a.1)];
+            let points = clip::polygon(&plot.rect, &cell);
+            if points.len() > 2 {
+                marks.push(Mark::Area { points, paint: Paint::solid(shade(row[start])) });
+            }
+            start = end;
+        }
+    }
+}
+
+fn note_box(plot: &Plot, l: &Note, fonts: &Fonts) -> (Point, Rect) {
+    let at = match l.at {
+        At::Data(x, y) => plot.at(x, y),
+        At::Fraction(x, y) => (plot.x_at(x), plot.y_at(y)),
+    };
+    let width = fonts.width(&l.text, SMALL, false);
+    let left = match l.align {
+        Align::Start => at.0,
+        Align::Middle => at.0 - 0.5 * width,
+        Align::End => at.0 - width,
+    };
+    (at, Rect { left, top: at.1 - SMALL, width, height: 1.3 * SMALL })
+}
+
+fn note(plot: &Plot, l: &Note, fonts: &Fonts, marks: &mut Vec<Mark>) {
+    let (at, rect) = note_box(plot, l, fonts);
+    marks.push(Mark::Area { points: rect.corners(), paint: Paint { alpha: 0.8, ..Paint::PAPER } });
+    marks.push(Mark::Text(plain(&l.text, at, l.align, SMALL)));
+}
+
+/// Places that a legend should leave free, close enough together that none slips through it.
+pub(crate) fn obstacles(plot: &Plot, layers: &[Layer], fonts: &Fonts) -> Vec<Point> {
+    let mut out = Vec::new();
+    let mut along = |path: &[Point]| {
+        for piece in clip::polyline(&plot.rect, path) {
+            for w in piece.windows(2) {
+                let steps = (libm::hypot(w[1].0 - w[0].0, w[1].1 - w[0].1) / 3.0).ceil().max(1.0) as usize;
+                let part = |i: usize| i as f64 / steps as f64;
+                out.extend(
+                    (0..=steps).map(|i| {
+                        (w[0].0 + part(i) * (w[1].0 - w[0].0), w[0].1 + part(i) * (w[1].1 - w[0].1))
+                    }),
+                );
+            }
+        }
+    };
+    for layer in layers {
+        match layer {
+            Layer::Points(l) => {
+                for (i, (&x, &y)) in l.x.iter().zip(&l.y).enumerate() {
+                    let u = (plot.spans.x.unit(x).clamp(0.0, 1.0), plot.spans.y.unit(y).clamp(0.0, 1.0));
+                    let p = (plot.x_at(u.0), plot.y_at(u.1));
+                    along(&[p, p]);
+                    if let Some(intervals) = &l.x_interval {
+                        along(&[plot.at(intervals[i].0, y), plot.at(intervals[i].1, y)]);
+                    }
+                    if let Some(intervals) = &l.y_interval {
+                        along(&[plot.at(x, intervals[i].0), plot.at(x, intervals[i].1)]);
+                    }
+                }
+            }
+            Layer::Line(l) => along(&plot.path(&l.x, l.y.iter().copied())),
+            Layer::Band(l) => {
+                for (i, w) in l.x.windows(2).enumerate() {
+                    for part in 0..=8 {
+                        let f = f64::from(part) / 8.0;
+                        let mix = |a: f64, b: f64| a + f * (b - a);
+                        let (p, q) = (l.interval[i], l.interval[i + 1]);
+                        along(&[plot.at(w[0], mix(p.0, p.1)), plot.at(w[1], mix(q.0, q.1))]);
+                    }
+                }
+            }
+            Layer::Histogram(l) => {
+                for (edges, &height) in l.edges.windows(2).zip(&l.heights) {
+                    let bar = plot.bar(edges, height);
+                    along(&bar);
+                }
+            }
+            Layer::Note(l) => along(&note_box(plot, l, fonts).1.corners()),
+            // A map is everywhere; a rule may pass behind a legend, whose paper is opaque.
+            Layer::Heatmap(_) | Layer::Rule(_) => {}
+        }
+    }
+    out
+}
