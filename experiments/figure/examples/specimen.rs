@@ -102,7 +102,7 @@ fn convergence() -> Figure {
 fn depth() -> Figure {
     let mut noise = Noise(3);
     let depths = grid(0.0, 2.0, 17);
-    let fine = grid(0.0, 2.0, 161);
+    let fine = grid(0.0, 2.0, 801);
     let x = Axis::linear("Depth", "mean free paths");
     let mut panel = Panel::new(x, Axis::linear("Error of fluence", "%").with_range(-20.0, 8.0));
     panel = panel.with(Rule::new(Along::Horizontal(0.0)));

@@ -67,8 +67,9 @@ fn axis(place: &str, name: &'static str, axis: &Axis, fonts: &Fonts) -> Result<(
         });
     }
     if let Some((low, high)) = axis.range {
-        let room = high - low;
-        if !(room.is_finite() && room > 0.0 && low.is_finite()) || (axis.scale.is_log() && low <= 0.0) {
+        // Compared on the scale: limits that differ may still share a logarithm.
+        let room = axis.scale.forward(high) - axis.scale.forward(low);
+        if !((high - low).is_finite() && room.is_finite() && room > 0.0) {
             return Err(Error::Range { place: place.to_owned(), axis: name, low, high });
         }
     }

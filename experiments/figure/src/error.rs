@@ -113,7 +113,7 @@ pub enum Error {
     Narrow {
         /// Columns of panels.
         columns: usize,
-        /// What is left for each plot [pt].
+        /// What is left for each plot, in points.
         left: f64,
     },
     /// The font or a drawing backend failed.

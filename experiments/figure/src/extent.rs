@@ -1,6 +1,6 @@
 //! The limits of a panel's axes, from its data.
 
-use crate::axis::Axis;
+use crate::axis::{Axis, Scale};
 use crate::error::Error;
 use crate::figure::Panel;
 use crate::layer::{Along, Heatmap, Layer};
@@ -84,12 +84,18 @@ pub(crate) fn spans(number: usize, panel: &Panel) -> Result<Spans, Error> {
         // Only numbers without a place on a clipped logarithmic axis: any decade shows their arrows.
         None if e.axis.scale.is_log() => Ok(Span::of(e.axis, (1.0, 10.0), false)),
         None => Err(Error::Empty { place: format!("panel {number}") }),
-        Some(limits) if edge_to_edge && e.axis.range.is_none() && limits.0 < limits.1 => {
+        Some(limits) if edge_to_edge && e.axis.range.is_none() && apart(e.axis.scale, limits) => {
             Ok(Span::exact(e.axis.scale, limits))
         }
         Some(limits) => Ok(Span::of(e.axis, limits, floor && limits.0 == 0.0)),
     };
     Ok(Spans { x: span(&x, false)?, y: span(&y, bars)? })
+}
+
+/// Whether the limits differ on the scale, and not by rounding alone.
+fn apart(scale: Scale, (low, high): (f64, f64)) -> bool {
+    let (low, high) = (scale.forward(low), scale.forward(high));
+    high - low > 1e-12 * low.abs().max(high.abs())
 }
 
 /// The limits of a colour bar: symmetric about zero where the colours are.
@@ -106,5 +112,5 @@ pub(crate) fn colors(map: &Heatmap) -> Span {
         }
         _ => (low, high),
     };
-    if limits.0 < limits.1 { Span::exact(scale, limits) } else { Span::around(scale, limits, false) }
+    if apart(scale, limits) { Span::exact(scale, limits) } else { Span::around(scale, limits, false) }
 }

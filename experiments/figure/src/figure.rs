@@ -12,12 +12,12 @@ pub enum Width {
     Single,
     /// Both columns, 175 mm.
     Double,
-    /// Any other width [mm].
+    /// Any other width, in millimetres.
     Millimetres(f64),
 }
 
 impl Width {
-    /// The width [mm].
+    /// The width in millimetres.
     #[must_use]
     pub fn millimetres(self) -> f64 {
         match self {

@@ -18,6 +18,8 @@ const GAP: f64 = 2.5;
 /// Least distance between neighbouring tick labels along x [pt], and least distance of ticks along y [pt].
 const LABEL_GAP: f64 = 6.0;
 const ROW: f64 = 15.0;
+/// Ticks nearer than this run together; the minor ones are then left out [pt].
+const CLOSEST: f64 = 0.9;
 const BAR_GAP: f64 = 6.0;
 const BAR: f64 = 7.0;
 const INK: Paint = Paint::solid((60, 60, 60));
@@ -61,6 +63,10 @@ impl AxisFrame {
             major.sort_by(|a, b| a.at.total_cmp(&b.at));
             Ticks { major, ..Ticks::default() }
         };
+        let mut ticks = ticks;
+        if closest(&ticks) * length / (span.high - span.low) < CLOSEST {
+            ticks.minor.clear();
+        }
         let widest = ticks.major.iter().map(width).fold(0.0, f64::max);
         let label = fonts.wrap(&heading(axis, ticks.exponent), NORMAL, false, length.max(60.0));
         Self { span, ticks, label, widest }
@@ -91,6 +97,13 @@ impl AxisFrame {
         };
         (reach(self.ticks.major.first(), 0.0), reach(self.ticks.major.last(), 1.0))
     }
+}
+
+/// The least distance of two ticks, in transformed numbers.
+fn closest(ticks: &Ticks) -> f64 {
+    let mut at: Vec<f64> = ticks.major.iter().map(|t| t.at).chain(ticks.minor.iter().copied()).collect();
+    at.sort_by(f64::total_cmp);
+    at.windows(2).map(|w| w[1] - w[0]).fold(f64::INFINITY, f64::min)
 }
 
 /// `label [10³ unit]`.
@@ -233,7 +246,8 @@ fn color_bar(frame: &AxisFrame, map: &Heatmap, plot: &Rect, marks: &mut Vec<Mark
     let at = |u: f64| bar.bottom() - u * bar.height;
     for i in 0..STEPS {
         let (u, v) = (f64::from(i) / f64::from(STEPS), f64::from(i + 1) / f64::from(STEPS));
-        let top = (at(v) - if i + 1 < STEPS { 0.12 } else { 0.0 }).max(bar.top);
+        // Each step reaches under the next, or seams would show.
+        let top = (at(v) - 1.0).max(bar.top);
         let points = vec![(bar.left, at(u)), (bar.left, top), (bar.right(), top), (bar.right(), at(u))];
         marks.push(Mark::Area { points, paint: Paint::solid(map.shading.rgb(0.5 * (u + v))) });
     }

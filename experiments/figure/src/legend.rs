@@ -159,7 +159,7 @@ fn swatch(layer: &Layer, rect: Rect, marks: &mut Vec<Mark>) {
         Layer::Points(l) => {
             let paint = Paint::solid(l.color.rgb());
             if l.y_interval.is_some() {
-                let points = vec![(center.0, rect.top - 0.6), (center.0, rect.bottom() + 0.6)];
+                let points = vec![(center.0, rect.top - 1.0), (center.0, rect.bottom() + 1.0)];
                 marks.push(Mark::Stroke { points, width: 0.6, paint });
             }
             if l.x_interval.is_some() {

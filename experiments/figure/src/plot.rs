@@ -16,6 +16,8 @@ pub(crate) const RULE: f64 = 0.7;
 pub(crate) const LIGHT: f64 = 0.28;
 /// Beyond this many points in a panel, markers and bars are drawn smaller.
 const CROWD: usize = 60;
+/// At most this many arrows stand in a row before they hide each other.
+const STACK: usize = 8;
 
 /// A rectangle on the page with its axes.
 pub(crate) struct Plot {
@@ -118,9 +120,10 @@ pub(crate) fn draw(plot: &Plot, layers: &[Layer], fonts: &Fonts, marks: &mut Vec
             bars(plot, l, crowded, marks);
         }
     }
+    let mut tips = Vec::new();
     for layer in layers {
         if let Layer::Points(l) = layer {
-            points(plot, l, crowded, marks);
+            points(plot, l, crowded, &mut tips, marks);
         }
     }
     marks.append(&mut last);
@@ -176,19 +179,26 @@ fn bars(plot: &Plot, l: &Points, crowded: bool, marks: &mut Vec<Mark>) {
     }
 }
 
-/// Markers; arrows at the border for points beyond it.
-fn points(plot: &Plot, l: &Points, crowded: bool, marks: &mut Vec<Mark>) {
-    let radius = if crowded { 1.5 } else { 2.1 };
+/// Markers; arrows at the border for points beyond it, moved inwards where they would hide each other.
+fn points(plot: &Plot, l: &Points, crowded: bool, tips: &mut Vec<Point>, marks: &mut Vec<Mark>) {
+    let radius = if crowded { 1.4 } else { 2.1 };
     let side = |unit: f64| if unit < -1e-9 { -1.0 } else { f64::from(unit > 1.0 + 1e-9) };
     for (&x, &y) in l.x.iter().zip(&l.y) {
         let (u, v) = (plot.spans.x.unit(x), plot.spans.y.unit(y));
-        let (right, up) = (side(u), side(v));
-        if right == 0.0 && up == 0.0 {
+        let (right, down) = (side(u), -side(v));
+        if right == 0.0 && down == 0.0 {
             shape::marker(l.marker, plot.at(x, y), radius, l.color, marks);
-        } else {
-            let border = (plot.x_at(u.clamp(0.0, 1.0)), plot.y_at(v.clamp(0.0, 1.0)));
-            shape::arrow(border, (right, -up), l.color, marks);
+            continue;
         }
+        let mut tip = (plot.x_at(u.clamp(0.0, 1.0)), plot.y_at(v.clamp(0.0, 1.0)));
+        let taken = |p: Point| tips.iter().any(|t| libm::hypot(t.0 - p.0, t.1 - p.1) < 0.9 * shape::ARROW);
+        for _ in 0..STACK {
+            if taken(tip) {
+                tip = (tip.0 - shape::ARROW * right, tip.1 - shape::ARROW * down);
+            }
+        }
+        tips.push(tip);
+        shape::arrow(tip, (right, down), l.color, marks);
     }
 }
 
@@ -212,8 +222,8 @@ fn histogram(plot: &Plot, l: &Histogram, fonts: &Fonts, marks: &mut Vec<Mark>, l
     }
     stroke(&plot.rect, &top, 0.8, l.color, Dash::Solid, marks);
     for (count, text, at, align) in [
-        (l.below, format!("← {}", l.below), 0.012, Align::Start),
-        (l.above, format!("{} →", l.above), 0.988, Align::End),
+        (l.below, format!("← {} below", l.below), 0.012, Align::Start),
+        (l.above, format!("{} above →", l.above), 0.988, Align::End),
     ] {
         if count > 0 {
             let note = Note { text, at: At::Fraction(at, 0.16), align };
@@ -223,8 +233,8 @@ fn histogram(plot: &Plot, l: &Histogram, fonts: &Fonts, marks: &mut Vec<Mark>, l
 }
 
 fn heatmap(plot: &Plot, l: &Heatmap, marks: &mut Vec<Mark>) {
-    /// Neighbours overlap by this much, or seams would show between them [pt].
-    const OVERLAP: f64 = 0.12;
+    /// Each cell reaches this far under the next ones, or seams would show between them [pt].
+    const OVERLAP: f64 = 1.0;
     let span = colors(l);
     let columns = l.x_edges.len() - 1;
     for (row, y) in l.values.chunks(columns).zip(l.y_edges.windows(2)) {
@@ -320,4 +330,61 @@ pub(crate) fn obstacles(plot: &Plot, layers: &[Layer], fonts: &Fonts) -> Vec<Poi
         }
     }
     out
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::axis::Scale;
+    use crate::layer::Line;
+    use crate::scale::Span;
+
+    fn plot(x: Span, y: Span) -> Plot {
+        Plot { rect: Rect { left: 30.0, top: 10.0, width: 200.0, height: 100.0 }, spans: Spans { x, y } }
+    }
+
+    #[test]
+    fn data_land_where_the_scales_say() {
+        let p = plot(Span::exact(Scale::Log, (1.0, 1e4)), Span::exact(Scale::Linear, (-1.0, 1.0)));
+        assert_eq!(p.at(1.0, -1.0), (30.0, 110.0));
+        assert_eq!(p.at(100.0, 0.5), (130.0, 35.0));
+        assert_eq!(p.at(1e4, 1.0), (230.0, 10.0));
+    }
+
+    #[test]
+    fn a_line_keeps_its_slope_beyond_the_border() {
+        // From (0, 0) to (1, 1e6): at the upper border, y = 1, x is 1e-6 of the width.
+        let p = plot(Span::exact(Scale::Linear, (0.0, 1.0)), Span::exact(Scale::Linear, (0.0, 1.0)));
+        let mut marks = Vec::new();
+        let line = Line::new("", 0, vec![0.0, 1.0], vec![0.0, 1e6]);
+        draw(&p, &[line.into()], &Fonts::load().unwrap(), &mut marks);
+        let [Mark::Stroke { points, .. }] = marks.as_slice() else { panic!("{marks:?}") };
+        assert!(
+            (points[1].0 - 30.0 - 200e-6).abs() < 1e-9 && (points[1].1 - 10.0).abs() < 1e-9,
+            "{points:?}"
+        );
+    }
+
+    #[test]
+    fn arrows_at_one_place_stand_in_a_row() {
+        let p = plot(Span::exact(Scale::Linear, (0.0, 1.0)), Span::exact(Scale::Linear, (0.0, 1.0)));
+        let mut marks = Vec::new();
+        let points = Points::new("", 0, vec![0.5; 3], vec![-1.0, -2.0, -3.0]);
+        draw(&p, &[points.into()], &Fonts::load().unwrap(), &mut marks);
+        let tips: Vec<f64> = marks
+            .iter()
+            .filter_map(|m| if let Mark::Area { points, .. } = m { Some(points[0].1) } else { None })
+            .collect();
+        assert_eq!(tips, [110.0, 110.0, 105.0, 105.0, 100.0, 100.0]);
+    }
+
+    #[test]
+    fn the_diagonal_is_where_y_is_x_even_between_unlike_scales() {
+        let p = plot(Span::exact(Scale::Linear, (0.0, 10.0)), Span::exact(Scale::Log, (1.0, 100.0)));
+        for q in p.diagonal().iter().filter(|q| p.rect.contains(**q)) {
+            let x = 10.0 * (q.0 - 30.0) / 200.0;
+            let y = libm::exp10(2.0 * (110.0 - q.1) / 100.0);
+            assert!((x / y - 1.0).abs() < 1e-12, "{x} {y}");
+        }
+    }
 }

@@ -5,6 +5,8 @@ use crate::palette::{Color, Marker};
 
 /// White rim that keeps neighbours apart [pt].
 const RIM: f64 = 0.35;
+/// Length of an arrow [pt].
+pub(crate) const ARROW: f64 = 5.0;
 
 /// A marker about as heavy as a disc of this radius.
 pub(crate) fn marker(shape: Marker, (x, y): Point, radius: f64, color: Color, marks: &mut Vec<Mark>) {
@@ -43,7 +45,7 @@ pub(crate) fn marker(shape: Marker, (x, y): Point, radius: f64, color: Color, ma
 pub(crate) fn arrow(tip: Point, (dx, dy): (f64, f64), color: Color, marks: &mut Vec<Mark>) {
     let norm = libm::hypot(dx, dy);
     let (dx, dy) = (dx / norm, dy / norm);
-    for (length, half, paint) in [(5.8, 2.9, Paint::PAPER), (5.0, 2.1, Paint::solid(color.rgb()))] {
+    for (length, half, paint) in [(ARROW + 0.8, 2.9, Paint::PAPER), (ARROW, 2.1, Paint::solid(color.rgb()))] {
         let foot = (tip.0 - length * dx, tip.1 - length * dy);
         let points =
             vec![tip, (foot.0 - half * dy, foot.1 + half * dx), (foot.0 + half * dy, foot.1 - half * dx)];

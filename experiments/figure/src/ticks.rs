@@ -45,7 +45,7 @@ fn multiples(low: f64, high: f64, m: i64, k: i32) -> std::ops::RangeInclusive<i6
 fn nice_step(low: f64, high: f64, most: usize) -> (i64, i32) {
     let count = |(m, k)| {
         let range = multiples(low, high, m, k);
-        (range.end() - range.start() + 1).max(0) as usize
+        range.end().saturating_sub(*range.start()).saturating_add(1).max(0) as usize
     };
     let mut k = libm::floor(libm::log10((high - low) / most as f64)) as i32;
     let mut finer = (1, k);
@@ -108,11 +108,13 @@ fn log(span: &Span, most: usize) -> Ticks {
             .filter(|&(m, k)| inside(place(m, k)))
             .collect()
     };
-    // The richest of these that fits: 1 2 5, 1 3, whole decades, every n-th decade.
+    // The richest of these that fits; beyond three decades, whole ones, or every n-th.
     let chosen = if high - low < 0.5 {
         return narrow_log(low, high, most);
     } else if high - low < 3.0 {
-        [&[1_i64, 2, 5][..], &[1, 3], &[1]].into_iter().map(choose).find(|c| c.len() <= most && c.len() >= 2)
+        let steps: [&[i64]; 5] = [&[1, 2, 3, 4, 5, 6, 7, 8, 9], &[1, 2, 3, 5], &[1, 2, 5], &[1, 3], &[1]];
+        let richest = if high - low < 1.0 { 0 } else { 2 };
+        steps[richest..].iter().map(|s| choose(s)).find(|c| c.len() <= most && c.len() >= 2)
     } else {
         None
     };
@@ -252,6 +254,7 @@ mod tests {
         assert_eq!(labels(Scale::Log, (0.005, 200.0), 8), ["0.01", "0.1", "1", "10", "100"]);
         assert_eq!(labels(Scale::Log, (0.5, 30.0), 8), ["0.5", "1", "2", "5", "10", "20"]);
         assert_eq!(labels(Scale::Log, (1e-12, 1.0), 5), ["10⁻¹²", "10⁻⁹", "10⁻⁶", "10⁻³", "10⁰"]);
+        assert_eq!(labels(Scale::Log, (0.9, 4.0), 8), ["0.9", "1", "2", "3", "4"]);
         assert_eq!(labels(Scale::Log, (2.1, 3.9), 5), ["2.5", "3.0", "3.5"]);
         let minor = ticks(&Span::exact(Scale::Log, (1e3, 1e6)), 8).minor;
         assert_eq!(minor.len(), 3 * 8);
