@@ -3,8 +3,8 @@
 use std::error::Error;
 use std::path::PathBuf;
 use turbid_figure::{
-    Align, Along, At, Axis, Band, Dash, Figure, Heatmap, Histogram, Line, Note, Panel, Points, Rule, Scale,
-    Shading, Width,
+    Align, Along, At, Axis, Band, Dash, Figure, Heatmap, Histogram, Legend, Line, Note, Panel, Points, Rule,
+    Scale, Shading, Width,
 };
 
 /// Numbers that look measured: a fixed sequence, the same on every run.
@@ -276,6 +276,7 @@ fn odds() -> Figure {
     dashes = dashes.with(Note { text: "no counts".to_owned(), at: At::Data(0.7, 0.8), align: Align::Start });
     let narrow = Panel::new(Axis::log("Narrow logarithmic axis", "m"), Axis::linear("Large numbers", "1/s"))
         .with_title("(d) ranges")
+        .with_legend(Legend::Right)
         .with(Line::new("a line", 0, vec![2.2, 3.7], vec![1.2e9, 1.9e9]))
         .with(Band::new(
             "a band",

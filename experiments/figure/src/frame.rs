@@ -15,8 +15,9 @@ const TICK: f64 = 3.0;
 const MINOR_TICK: f64 = 1.7;
 /// Distance between a tick and its label, and between labels and the axis label [pt].
 const GAP: f64 = 2.5;
-/// Least distance between neighbouring tick labels along x [pt], and least distance of ticks along y [pt].
+/// Least distance between neighbouring tick labels along x [pt].
 const LABEL_GAP: f64 = 6.0;
+/// Least distance of ticks along y [pt].
 const ROW: f64 = 15.0;
 /// Ticks nearer than this run together; the minor ones are then left out [pt].
 const CLOSEST: f64 = 0.9;

@@ -18,6 +18,7 @@
 //! # Ok::<(), turbid_figure::Error>(())
 //! ```
 
+mod areas;
 mod axis;
 mod check;
 mod clip;
@@ -29,6 +30,7 @@ mod layer;
 mod legend;
 mod mark;
 mod number;
+mod obstacles;
 mod page;
 mod palette;
 mod plot;

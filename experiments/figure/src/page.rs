@@ -8,6 +8,7 @@ use crate::frame::Frame;
 use crate::layer::Align;
 use crate::legend::Legend;
 use crate::mark::{Mark, Page, Rect, Text};
+use crate::obstacles;
 use crate::plot::{self, Plot};
 use crate::text::{Fonts, LARGE, LEADING, SMALL, plain};
 
@@ -49,7 +50,7 @@ pub(crate) fn compose(figure: &Figure) -> Result<Page, Error> {
     for (i, panel) in figure.panels.iter().enumerate() {
         if places[i] == Place::Auto {
             let plot = Plot { rect: layout.rects[i], spans: spans[i] };
-            let obstacles = plot::obstacles(&plot, &panel.layers, &fonts);
+            let obstacles = obstacles::between(&plot, &panel.layers, &fonts);
             let free = Legend::new(panel.layers.iter(), plot.rect.width, false, &fonts)
                 .map(|l| l.free_corner(&plot.rect, &obstacles));
             places[i] = match free {

@@ -1,8 +1,9 @@
 //! The layers of a panel as marks.
 
+use crate::areas::{heatmap, histogram};
 use crate::clip;
-use crate::extent::{Spans, colors};
-use crate::layer::{Align, Along, At, Band, Heatmap, Histogram, Layer, Note, Points};
+use crate::extent::Spans;
+use crate::layer::{Align, Along, At, Band, Layer, Note, Points};
 use crate::mark::{Mark, Paint, Point, Rect};
 use crate::palette::{Color, Dash};
 use crate::shape;
@@ -39,7 +40,7 @@ impl Plot {
         self.rect.bottom() - unit * self.rect.height
     }
 
-    fn path(&self, x: &[f64], y: impl IntoIterator<Item = f64>) -> Vec<Point> {
+    pub(crate) fn path(&self, x: &[f64], y: impl IntoIterator<Item = f64>) -> Vec<Point> {
         x.iter().zip(y).map(|(&x, y)| self.at(x, y)).collect()
     }
 
@@ -50,7 +51,7 @@ impl Plot {
     }
 
     /// The outline of a bar, from its lower left corner; it stands on zero, on a logarithmic axis below the border.
-    fn bar(&self, edges: &[f64], height: f64) -> Vec<Point> {
+    pub(crate) fn bar(&self, edges: &[f64], height: f64) -> Vec<Point> {
         let (a, b) = (self.at(edges[0], height), self.at(edges[1], 0.0));
         vec![(a.0, b.1), a, (b.0, a.1), b]
     }
@@ -202,61 +203,8 @@ fn points(plot: &Plot, l: &Points, crowded: bool, tips: &mut Vec<Point>, marks: 
     }
 }
 
-fn histogram(plot: &Plot, l: &Histogram, fonts: &Fonts, marks: &mut Vec<Mark>, last: &mut Vec<Mark>) {
-    let mut top: Vec<Point> = Vec::new();
-    for (edges, &height) in l.edges.windows(2).zip(&l.heights) {
-        let bar = plot.bar(edges, height);
-        let area = clip::polygon(&plot.rect, &bar);
-        if area.len() > 2 {
-            marks.push(Mark::Area { points: area, paint: light(l.color) });
-        }
-        if top.is_empty() {
-            top.push(bar[0]);
-        }
-        top.extend([bar[1], bar[2]]);
-        // A stroke between neighbours keeps the bins countable.
-        stroke(&plot.rect, &[bar[2], bar[3]], 0.35, l.color, Dash::Solid, marks);
-    }
-    if let (Some(&end), Some(&edge)) = (top.last(), l.edges.last()) {
-        top.push((end.0, plot.at(edge, 0.0).1));
-    }
-    stroke(&plot.rect, &top, 0.8, l.color, Dash::Solid, marks);
-    for (count, text, at, align) in [
-        (l.below, format!("← {} below", l.below), 0.012, Align::Start),
-        (l.above, format!("{} above →", l.above), 0.988, Align::End),
-    ] {
-        if count > 0 {
-            let note = Note { text, at: At::Fraction(at, 0.16), align };
-            self::note(plot, &note, fonts, last);
-        }
-    }
-}
-
-fn heatmap(plot: &Plot, l: &Heatmap, marks: &mut Vec<Mark>) {
-    /// Each cell reaches this far under the next ones, or seams would show between them [pt].
-    const OVERLAP: f64 = 1.0;
-    let span = colors(l);
-    let columns = l.x_edges.len() - 1;
-    for (row, y) in l.values.chunks(columns).zip(l.y_edges.windows(2)) {
-        let shade = |v: f64| l.shading.rgb(span.unit(v));
-        let mut start = 0;
-        for end in 1..=columns {
-            if end < columns && shade(row[end]) == shade(row[start]) {
-                continue;
-            }
-            let (a, b) = (plot.at(l.x_edges[start], y[0]), plot.at(l.x_edges[end], y[1]));
-            let cell =
-                [(a.0, a.1), (a.0, b.1 - OVERLAP), (b.0 + OVERLAP, b.1 - OVERLAP), (b.0 + OVERLAP, a.1)];
-            let points = clip::polygon(&plot.rect, &cell);
-            if points.len() > 2 {
-                marks.push(Mark::Area { points, paint: Paint::solid(shade(row[start])) });
-            }
-            start = end;
-        }
-    }
-}
-
-fn note_box(plot: &Plot, l: &Note, fonts: &Fonts) -> (Point, Rect) {
+/// Where a note is put, and the paper behind it.
+pub(crate) fn note_box(plot: &Plot, l: &Note, fonts: &Fonts) -> (Point, Rect) {
     let at = match l.at {
         At::Data(x, y) => plot.at(x, y),
         At::Fraction(x, y) => (plot.x_at(x), plot.y_at(y)),
@@ -270,66 +218,10 @@ fn note_box(plot: &Plot, l: &Note, fonts: &Fonts) -> (Point, Rect) {
     (at, Rect { left, top: at.1 - SMALL, width, height: 1.3 * SMALL })
 }
 
-fn note(plot: &Plot, l: &Note, fonts: &Fonts, marks: &mut Vec<Mark>) {
+pub(crate) fn note(plot: &Plot, l: &Note, fonts: &Fonts, marks: &mut Vec<Mark>) {
     let (at, rect) = note_box(plot, l, fonts);
     marks.push(Mark::Area { points: rect.corners(), paint: Paint { alpha: 0.8, ..Paint::PAPER } });
     marks.push(Mark::Text(plain(&l.text, at, l.align, SMALL)));
-}
-
-/// Places that a legend should leave free, close enough together that none slips through it.
-pub(crate) fn obstacles(plot: &Plot, layers: &[Layer], fonts: &Fonts) -> Vec<Point> {
-    let mut out = Vec::new();
-    let mut along = |path: &[Point]| {
-        for piece in clip::polyline(&plot.rect, path) {
-            for w in piece.windows(2) {
-                let steps = (libm::hypot(w[1].0 - w[0].0, w[1].1 - w[0].1) / 3.0).ceil().max(1.0) as usize;
-                let part = |i: usize| i as f64 / steps as f64;
-                out.extend(
-                    (0..=steps).map(|i| {
-                        (w[0].0 + part(i) * (w[1].0 - w[0].0), w[0].1 + part(i) * (w[1].1 - w[0].1))
-                    }),
-                );
-            }
-        }
-    };
-    for layer in layers {
-        match layer {
-            Layer::Points(l) => {
-                for (i, (&x, &y)) in l.x.iter().zip(&l.y).enumerate() {
-                    let u = (plot.spans.x.unit(x).clamp(0.0, 1.0), plot.spans.y.unit(y).clamp(0.0, 1.0));
-                    let p = (plot.x_at(u.0), plot.y_at(u.1));
-                    along(&[p, p]);
-                    if let Some(intervals) = &l.x_interval {
-                        along(&[plot.at(intervals[i].0, y), plot.at(intervals[i].1, y)]);
-                    }
-                    if let Some(intervals) = &l.y_interval {
-                        along(&[plot.at(x, intervals[i].0), plot.at(x, intervals[i].1)]);
-                    }
-                }
-            }
-            Layer::Line(l) => along(&plot.path(&l.x, l.y.iter().copied())),
-            Layer::Band(l) => {
-                for (i, w) in l.x.windows(2).enumerate() {
-                    for part in 0..=8 {
-                        let f = f64::from(part) / 8.0;
-                        let mix = |a: f64, b: f64| a + f * (b - a);
-                        let (p, q) = (l.interval[i], l.interval[i + 1]);
-                        along(&[plot.at(w[0], mix(p.0, p.1)), plot.at(w[1], mix(q.0, q.1))]);
-                    }
-                }
-            }
-            Layer::Histogram(l) => {
-                for (edges, &height) in l.edges.windows(2).zip(&l.heights) {
-                    let bar = plot.bar(edges, height);
-                    along(&bar);
-                }
-            }
-            Layer::Note(l) => along(&note_box(plot, l, fonts).1.corners()),
-            // A map is everywhere; a rule may pass behind a legend, whose paper is opaque.
-            Layer::Heatmap(_) | Layer::Rule(_) => {}
-        }
-    }
-    out
 }
 
 #[cfg(test)]
