@@ -1,0 +1,71 @@
+//! Histograms and heat maps as marks.
+
+use crate::clip;
+use crate::extent::colors;
+use crate::layer::{Align, At, Heatmap, Histogram, Note};
+use crate::mark::{Mark, Paint, Point};
+use crate::palette::Dash;
+use crate::plot::{Plot, light, note, stroke};
+use crate::text::Fonts;
+
+/// Bars with their outline, and the counts of what lies beyond them.
+pub(crate) fn histogram(
+    plot: &Plot,
+    l: &Histogram,
+    fonts: &Fonts,
+    marks: &mut Vec<Mark>,
+    last: &mut Vec<Mark>,
+) {
+    let mut top: Vec<Point> = Vec::new();
+    for (edges, &height) in l.edges.windows(2).zip(&l.heights) {
+        let bar = plot.bar(edges, height);
+        let area = clip::polygon(&plot.rect, &bar);
+        if area.len() > 2 {
+            marks.push(Mark::Area { points: area, paint: light(l.color) });
+        }
+        if top.is_empty() {
+            top.push(bar[0]);
+        }
+        top.extend([bar[1], bar[2]]);
+        // A stroke between neighbours keeps the bins countable.
+        stroke(&plot.rect, &[bar[2], bar[3]], 0.35, l.color, Dash::Solid, marks);
+    }
+    if let (Some(&end), Some(&edge)) = (top.last(), l.edges.last()) {
+        top.push((end.0, plot.at(edge, 0.0).1));
+    }
+    stroke(&plot.rect, &top, 0.8, l.color, Dash::Solid, marks);
+    for (count, text, at, align) in [
+        (l.below, format!("← {} below", l.below), 0.012, Align::Start),
+        (l.above, format!("{} above →", l.above), 0.988, Align::End),
+    ] {
+        if count > 0 {
+            let note = Note { text, at: At::Fraction(at, 0.16), align };
+            self::note(plot, &note, fonts, last);
+        }
+    }
+}
+
+/// Cells row by row; neighbours of one colour are drawn as one.
+pub(crate) fn heatmap(plot: &Plot, l: &Heatmap, marks: &mut Vec<Mark>) {
+    /// Each cell reaches this far under the next ones, or seams would show between them [pt].
+    const OVERLAP: f64 = 1.0;
+    let span = colors(l);
+    let columns = l.x_edges.len() - 1;
+    for (row, y) in l.values.chunks(columns).zip(l.y_edges.windows(2)) {
+        let shade = |v: f64| l.shading.rgb(span.unit(v));
+        let mut start = 0;
+        for end in 1..=columns {
+            if end < columns && shade(row[end]) == shade(row[start]) {
+                continue;
+            }
+            let (a, b) = (plot.at(l.x_edges[start], y[0]), plot.at(l.x_edges[end], y[1]));
+            let cell =
+                [(a.0, a.1), (a.0, b.1 - OVERLAP), (b.0 + OVERLAP, b.1 - OVERLAP), (b.0 + OVERLAP, a.1)];
+            let points = clip::polygon(&plot.rect, &cell);
+            if points.len() > 2 {
+                marks.push(Mark::Area { points, paint: Paint::solid(shade(row[start])) });
+            }
+            start = end;
+        }
+    }
+}

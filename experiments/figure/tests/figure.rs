@@ -1,0 +1,255 @@
+//! Whole figures: what they show, what they refuse, that they repeat.
+#![allow(clippy::unwrap_used, reason = "tests")]
+
+use turbid_figure::{
+    Along, Axis, Band, Error, Figure, Heatmap, Histogram, Legend, Line, Panel, Points, Rule, Scale, Shading,
+    Width,
+};
+
+fn axes() -> Panel {
+    Panel::new(Axis::linear("depth", "m"), Axis::linear("fluence", "W/m²"))
+}
+
+fn points(y: Vec<f64>) -> Points {
+    Points::new("measured", 0, (0..y.len()).map(|i| i as f64).collect(), y)
+}
+
+fn refusal(panel: Panel) -> Error {
+    Figure::new(vec![panel]).svg().unwrap_err()
+}
+
+/// The number in `name="..."`.
+fn attribute(line: &str, name: &str) -> f64 {
+    let (_, rest) = line.split_once(&format!(" {name}=\"")).unwrap();
+    rest.split_once('"').unwrap().0.parse().unwrap()
+}
+
+/// Centres of the coloured discs, rims left out.
+fn discs(svg: &str) -> Vec<(f64, f64)> {
+    let coloured = |l: &&str| l.starts_with("<circle") && !l.contains("fill=\"#FFFFFF\"");
+    svg.lines().filter(coloured).map(|l| (attribute(l, "cx"), attribute(l, "cy"))).collect()
+}
+
+#[test]
+fn the_document_says_every_label_unit_and_title() {
+    let mut figure = Figure::new(vec![
+        axes()
+            .with_title("(a) a < b & c")
+            .with(points(vec![1.0, 2.0, 3.0]))
+            .with(Line::theory("exact", vec![0.0, 2.0], vec![1.0, 3.0]))
+            .with(Rule::new(Along::Horizontal(2.0)).with_label("plateau")),
+    ]);
+    figure.title = "A figure".to_owned();
+    let svg = figure.svg().unwrap();
+    for text in
+        ["A figure", "(a) a &lt; b &amp; c", "depth [m]", "fluence [W/m²]", "measured", "exact", "plateau"]
+    {
+        assert!(svg.contains(&format!("\n{text}\n")), "{text}");
+    }
+    assert!(svg.contains("font-family=\"DejaVu Sans, Verdana, sans-serif\""));
+    assert!(svg.starts_with("<svg width=\"85.00mm\""));
+}
+
+#[test]
+fn equal_ratios_are_equal_lengths_on_a_logarithmic_axis() {
+    let panel = Panel::new(Axis::log("N", ""), Axis::linear("y", ""))
+        .with_legend(Legend::Hidden)
+        .with(Points::new("", 0, vec![1e2, 1e3, 1e5], vec![0.0, 1.0, 3.0]));
+    let at = discs(&Figure::new(vec![panel]).svg().unwrap());
+    assert_eq!(at.len(), 3);
+    // Places are whole units of the canvas, so that each length is known within one, twice it within three.
+    assert!(((at[2].0 - at[1].0) - 2.0 * (at[1].0 - at[0].0)).abs() <= 3.0, "{at:?}");
+    assert!(((at[1].1 - at[2].1) - 2.0 * (at[0].1 - at[1].1)).abs() <= 3.0, "{at:?}");
+}
+
+#[test]
+fn numbers_that_are_not_finite_are_refused_by_name() {
+    for bad in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
+        let error = refusal(axes().with(points(vec![1.0, bad])));
+        assert!(matches!(&error, Error::NotFinite { column: "y", index: 1, .. }), "{error}");
+        assert!(error.to_string().starts_with("panel 1, points \"measured\": y[1] is"), "{error}");
+        let bars = points(vec![1.0, 2.0]).with_y_interval(vec![(0.0, 1.0), (bad, bad)]);
+        assert!(matches!(
+            refusal(axes().with(bars)),
+            Error::NotFinite { column: "y_interval", index: 1, .. }
+        ));
+        assert!(matches!(
+            refusal(axes().with(Line::theory("", vec![bad], vec![0.0]))),
+            Error::NotFinite { column: "x", .. }
+        ));
+        let band = Band::new("", 0, vec![0.0], vec![(0.0, bad)]);
+        assert!(matches!(refusal(axes().with(band)), Error::NotFinite { column: "interval", .. }));
+        let bars = Histogram::new("", 0, vec![0.0, 1.0], vec![bad]);
+        assert!(matches!(refusal(axes().with(bars)), Error::NotFinite { column: "heights", .. }));
+        assert!(matches!(refusal(axes().with(Rule::new(Along::Vertical(bad)))), Error::NotFinite { .. }));
+        assert!(matches!(
+            refusal(axes().with(map(vec![0.0, bad]))),
+            Error::NotFinite { column: "values", index: 1, .. }
+        ));
+    }
+}
+
+fn map(values: Vec<f64>) -> Heatmap {
+    let x_edges = (0..=values.len()).map(|i| i as f64).collect();
+    Heatmap {
+        x_edges,
+        y_edges: vec![0.0, 1.0],
+        values,
+        shading: Shading::Diverging,
+        quantity: Axis::linear("error", "%"),
+    }
+}
+
+#[test]
+fn logarithms_need_positive_numbers_or_leave_to_clip() {
+    let panel = |scale| {
+        Panel::new(Axis::linear("x", ""), Axis::new("y", "", scale)).with(points(vec![1.0, 0.0, 10.0]))
+    };
+    assert!(matches!(refusal(panel(Scale::Log)), Error::NotPositive { column: "y", index: 1, .. }));
+    let svg = Figure::new(vec![panel(Scale::LogClipped)]).svg().unwrap();
+    // Two discs and one in the legend; the zero is an arrow: a white and a coloured triangle.
+    assert_eq!(discs(&svg).len(), 3);
+    let triangles = |l: &&str| l.starts_with("<polygon") && l.matches(',').count() == 3;
+    assert_eq!(svg.lines().filter(triangles).count(), 2);
+}
+
+#[test]
+fn points_beyond_a_range_become_arrows() {
+    let mut panel = axes().with(points(vec![1.0, 2.0, 30.0])).with_legend(Legend::Hidden);
+    panel.y = panel.y.with_range(0.0, 5.0);
+    let svg = Figure::new(vec![panel]).svg().unwrap();
+    assert_eq!(discs(&svg).len(), 2);
+    assert_eq!(svg.lines().filter(|l| l.starts_with("<polygon") && l.matches(',').count() == 3).count(), 2);
+}
+
+#[test]
+fn lists_intervals_edges_and_ranges_are_checked() {
+    let bad = Points::new("", 0, vec![0.0, 1.0], vec![0.0]);
+    assert!(matches!(refusal(axes().with(bad)), Error::Length { column: "y", found: 1, expected: 2, .. }));
+    let bad = points(vec![0.0]).with_x_interval(vec![(1.0, -1.0)]);
+    assert!(matches!(refusal(axes().with(bad)), Error::Interval { column: "x_interval", .. }));
+    let bad = Histogram::new("", 0, vec![0.0, 1.0, 1.0], vec![1.0, 1.0]);
+    assert!(matches!(refusal(axes().with(bad)), Error::Edges { index: 2, .. }));
+    let bad = Heatmap { values: vec![0.0; 3], ..map(vec![0.0; 2]) };
+    assert!(matches!(refusal(axes().with(bad)), Error::Length { column: "values", expected: 2, .. }));
+    for (low, high) in [(1.0, 1.0), (2.0, 1.0), (f64::NAN, 1.0), (0.0, f64::INFINITY)] {
+        let mut panel = axes().with(points(vec![1.0]));
+        panel.x = panel.x.with_range(low, high);
+        assert!(matches!(refusal(panel), Error::Range { axis: "x", .. }));
+    }
+    let mut panel =
+        Panel::new(Axis::log("x", ""), Axis::linear("y", "")).with(Line::theory("", vec![1.0], vec![1.0]));
+    panel.x = panel.x.with_range(0.0, 1.0);
+    assert!(matches!(refusal(panel), Error::Range { axis: "x", .. }));
+    assert!(matches!(refusal(axes()), Error::Empty { .. }));
+    assert!(matches!(refusal(axes().with(points(vec![]))), Error::Empty { .. }));
+    assert!(matches!(
+        refusal(axes().with(points(vec![1.0])).with_title("霧")),
+        Error::Glyph { character: '霧', .. }
+    ));
+    let crowd = Figure { columns: 9, ..Figure::new(vec![axes().with(points(vec![1.0])); 9]) };
+    assert!(matches!(crowd.svg(), Err(Error::Narrow { columns: 9, .. })));
+}
+
+#[test]
+fn the_legend_stands_where_no_data_are_or_outside() {
+    let n = 40;
+    let x: Vec<f64> = (0..n).map(f64::from).collect();
+    let shapes: [Box<dyn Fn(f64) -> f64>; 3] =
+        [Box::new(|x| x), Box::new(|x| -x), Box::new(|x| (x - 20.0) * (x - 20.0))];
+    let boxes = |svg: &str| {
+        let mut all: Vec<Vec<(f64, f64)>> = Vec::new();
+        for line in svg.lines().filter(|l| l.starts_with("<polygon opacity=\"0.9\"")) {
+            let (_, rest) = line.split_once("points=\"").unwrap();
+            let pairs =
+                rest.split_once('"').unwrap().0.split_whitespace().map(|p| p.split_once(',').unwrap());
+            all.push(pairs.map(|(a, b)| (a.parse().unwrap(), b.parse().unwrap())).collect());
+        }
+        all
+    };
+    for shape in shapes {
+        let y: Vec<f64> = x.iter().map(|&x| shape(x)).collect();
+        let svg = Figure::new(vec![axes().with(Points::new("a label", 0, x.clone(), y))]).svg().unwrap();
+        let boxes = boxes(&svg);
+        assert_eq!(boxes.len(), 1);
+        let (low, high) = (boxes[0][0], boxes[0][2]);
+        let covered = discs(&svg)
+            .into_iter()
+            .filter(|p| p.0 > low.0 && p.0 < high.0 && p.1 > low.1 && p.1 < high.1)
+            .count();
+        assert_eq!(covered, 1, "only its own swatch");
+    }
+    // A grid of points leaves no corner: the legend goes below, without a box.
+    let (mut gx, mut gy) = (Vec::new(), Vec::new());
+    for i in 0..20 {
+        for j in 0..20 {
+            gx.push(f64::from(i));
+            gy.push(f64::from(j));
+        }
+    }
+    let svg = Figure::new(vec![axes().with(Points::new("a label", 0, gx, gy))]).svg().unwrap();
+    assert!(boxes(&svg).is_empty());
+    assert!(svg.contains("\na label\n"));
+}
+
+#[test]
+fn a_shared_legend_says_each_label_once() {
+    let panel =
+        || axes().with(points(vec![1.0, 2.0])).with(Line::new("theory", 1, vec![0.0, 1.0], vec![1.0, 2.0]));
+    let mut figure = Figure { columns: 2, width: Width::Double, ..Figure::new(vec![panel(); 4]) };
+    assert_eq!(figure.svg().unwrap().matches("\ntheory\n").count(), 4);
+    figure.shared_legend = true;
+    assert_eq!(figure.svg().unwrap().matches("\ntheory\n").count(), 1);
+}
+
+#[test]
+fn a_histogram_says_what_lies_beyond_it() {
+    let svg =
+        Figure::new(vec![axes().with(Histogram::density("z", 0, &[-9.0, 0.5, 7.0, 8.0], vec![0.0, 1.0]))])
+            .svg()
+            .unwrap();
+    assert!(svg.contains("\n← 1 below\n") && svg.contains("\n2 above →\n"));
+}
+
+#[test]
+fn signed_colours_are_symmetric_about_white() {
+    let svg = Figure::new(vec![axes().with(map(vec![-2.0, 0.0, 1.0]))]).svg().unwrap();
+    // -2 is the end of the scale, 0 its middle, 1 half way to the other end: the mean of the third and fourth reds of the table, (244, 165, 130) and (214, 96, 77).
+    for color in ["#053061", "#F7F7F7", "#E58368"] {
+        assert!(svg.contains(color), "{color}");
+    }
+}
+
+#[test]
+fn pictures_have_300_pixels_to_the_inch_and_ink() {
+    for (width, pixels) in [(Width::Single, 1004), (Width::Double, 2067), (Width::Millimetres(50.8), 600)] {
+        let figure = Figure { width, ..Figure::new(vec![axes().with(points(vec![1.0, 2.0]))]) };
+        let image = image::load_from_memory(&figure.png().unwrap()).unwrap().to_rgb8();
+        assert_eq!(image.width(), pixels);
+        assert_eq!(image.get_pixel(0, 0).0, [255, 255, 255]);
+        assert!(image.pixels().any(|p| p.0 == [0, 114, 178]), "the blue of class 0");
+        assert!(image.pixels().any(|p| p.0 == [0, 0, 0]), "black text");
+    }
+}
+
+#[test]
+fn the_same_figure_gives_the_same_bytes() {
+    let figure =
+        Figure::new(vec![axes().with(points(vec![1.0, 4.0, 2.0])), axes().with(map(vec![0.3, -0.7, 2.0]))]);
+    assert_eq!(figure.svg().unwrap(), figure.svg().unwrap());
+    assert_eq!(figure.png().unwrap(), figure.clone().png().unwrap());
+}
+
+#[test]
+fn extremes_are_drawn() {
+    for scale in [1e-300, 1e-12, 1.0, 1e15, 1e300] {
+        let y = vec![scale, 2.0 * scale, -scale];
+        Figure::new(vec![axes().with(points(y))]).svg().unwrap();
+    }
+    for y in [vec![0.0], vec![1e17, 1e17 + 16.0], vec![-5.0, -5.0]] {
+        Figure::new(vec![axes().with(points(y.clone())).with(Rule::new(Along::Diagonal))]).png().unwrap();
+    }
+    let sym = Panel::new(Axis::linear("x", ""), Axis::new("y", "", Scale::SymLog { threshold: 1e-9 }))
+        .with(points(vec![-1e9, 0.0, 1e12]));
+    Figure::new(vec![sym]).svg().unwrap();
+}
