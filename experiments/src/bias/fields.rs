@@ -1,0 +1,134 @@
+//! The fields: which slab, which photons, where it is probed, and the exact answer.
+
+use crate::harness::{Preset, Settings};
+use anyhow::Context;
+use glam::DVec3;
+use turbid::Spectrum;
+use turbid::geometry::{Shape, Slab};
+use turbid::light::{Beam, Light, Section};
+use turbid::math::Asymmetry;
+use turbid::medium::Homogeneous;
+use turbid::phase::Phase;
+use turbid::scene::{Orders, Parts, Region, Scene};
+use turbid_analytic::{AnisotropicSlab, Incidence, IsotropicSlab};
+
+/// Side of the cell that stands for the slab [mfp].
+pub const CELL: f64 = 4.0;
+
+/// One field.
+#[derive(Debug, PartialEq)]
+pub struct Field {
+    /// Short name in cases.
+    pub name: &'static str,
+    /// What it is, for readers.
+    pub title: &'static str,
+    /// Optical thickness.
+    pub tau: f64,
+    /// Single-scattering albedo.
+    pub albedo: f64,
+    /// Asymmetry.
+    pub g: f64,
+    /// Orders of scattering of the photons in the map.
+    pub orders: Orders,
+    /// Depths of the probes [mfp].
+    pub depths: &'static [f64],
+    /// Emitted photons a map, by preset.
+    quick: &'static [u64],
+    full: &'static [u64],
+}
+
+/// Every field, in the order of the report.
+pub const FIELDS: [Field; 4] = [
+    Field {
+        name: "uncollided",
+        title: "uncollided photons, field e^-t",
+        tau: 4.0,
+        albedo: 0.0,
+        g: 0.0,
+        orders: Orders { min: 0, max: Some(0) },
+        depths: &[0.0, 0.25, 1.0, 2.0],
+        quick: &[10_000, 100_000, 1_000_000],
+        full: &[10_000, 100_000, 1_000_000, 10_000_000],
+    },
+    Field {
+        name: "albedo0.5",
+        title: "all orders, albedo 0.5, isotropic",
+        tau: 2.0,
+        albedo: 0.5,
+        g: 0.0,
+        orders: Orders::ALL,
+        depths: &[0.0, 0.25, 1.0, 1.75],
+        quick: &[200_000],
+        full: &[200_000, 2_000_000],
+    },
+    Field {
+        name: "albedo0.9",
+        title: "all orders, albedo 0.9, isotropic",
+        tau: 2.0,
+        albedo: 0.9,
+        g: 0.0,
+        orders: Orders::ALL,
+        depths: &[0.0, 0.25, 1.0, 1.75],
+        quick: &[20_000, 200_000],
+        full: &[20_000, 200_000, 2_000_000],
+    },
+    Field {
+        name: "albedo0.9g0.75",
+        title: "all orders, albedo 0.9, g = 0.75",
+        tau: 2.0,
+        albedo: 0.9,
+        g: 0.75,
+        orders: Orders::ALL,
+        depths: &[0.0, 0.25, 1.0, 1.75],
+        quick: &[200_000],
+        full: &[200_000, 2_000_000],
+    },
+];
+
+/// An exact fluence at a depth, per unit irradiance, with its bound.
+pub type Exact = Box<dyn Fn(f64) -> anyhow::Result<(f64, f64)> + Sync + Send>;
+
+impl Field {
+    /// The field of a name.
+    pub fn named(name: &str) -> anyhow::Result<&'static Field> {
+        FIELDS.iter().find(|f| f.name == name).with_context(|| format!("no field is called {name}"))
+    }
+
+    /// Emitted photons a map.
+    pub fn photons(&self, settings: &Settings) -> Vec<u64> {
+        let counts = match settings.preset {
+            Preset::Quick => self.quick,
+            Preset::Full => self.full,
+        };
+        counts.iter().map(|&n| ((n as f64 * settings.photon_scale) as u64).max(1)).collect()
+    }
+
+    /// Whether photons of one history can be near each other in the map.
+    pub fn has_clusters(&self) -> bool {
+        self.orders != Orders::only(0)
+    }
+
+    /// The slab under a normal beam of irradiance 1; lengths are mean free paths.
+    pub fn scene(&self) -> anyhow::Result<Scene> {
+        let phase = Phase::with_asymmetry(Asymmetry::new("g", self.g)?);
+        let medium = Homogeneous::new(Spectrum::ONE, Spectrum::grey(self.albedo), phase)?;
+        let region = Region { shape: Shape::Slab(Slab::new(0.0, self.tau)?), medium };
+        let beam = Beam::new(DVec3::Z, Spectrum::ONE, Section::Unbounded)?;
+        let lights = vec![Light::Beam(beam)];
+        Ok(Scene::new(Parts { regions: vec![region], lights, cell: Some(CELL), ..Parts::default() })?)
+    }
+
+    /// The exact fluence.
+    pub fn exact(&self) -> anyhow::Result<Exact> {
+        let beam = Incidence::Beam { mu0: 1.0 };
+        if !self.has_clusters() {
+            return Ok(Box::new(|t| Ok((libm::exp(-t), 0.0))));
+        }
+        if self.g == 0.0 {
+            let slab = IsotropicSlab::new(self.tau, self.albedo, beam)?;
+            return Ok(Box::new(move |t| slab.fluence_interpolated(t).map(|v| (v.value, v.error)).map_err(Into::into)));
+        }
+        let slab = AnisotropicSlab::new(self.tau, self.albedo, self.g, beam)?;
+        Ok(Box::new(move |t| slab.fluence(t).map(|v| (v.value, v.error)).map_err(Into::into)))
+    }
+}

@@ -1,0 +1,180 @@
+//! What theory predicts of every case, in parts, before anything is measured.
+
+use super::cases::{Case, Size};
+use super::fields::{CELL, Exact, FIELDS};
+use crate::harness::{Prediction, Settings, Unit};
+use anyhow::Context;
+use rayon::prelude::*;
+use std::collections::HashMap;
+use std::f64::consts::PI;
+use turbid::estimators::Kernel;
+use turbid_analytic::kernel as referee;
+
+/// The predicted error of a case in parts, each as a fraction of the exact fluence.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Parts {
+    /// Exact fluence per unit irradiance.
+    pub exact: f64,
+    /// Bound on its error.
+    pub exact_error: f64,
+    /// The medium ends inside the ball: what is missing of a uniform field.
+    pub edge: f64,
+    /// The field bends inside the ball: all else that independent photons do to the right rule.
+    pub blur: f64,
+    /// The wrong rule counts the k-th photon.
+    pub rule: f64,
+    /// Photons of one history cluster, which draws the k-th photon nearer.
+    pub clusters: f64,
+    /// Bound on the numerical error of the sum.
+    pub error: f64,
+}
+
+/// The parts by name, in the order of figures.
+pub const PART_NAMES: [&str; 4] = ["edge", "blur", "rule", "clusters"];
+
+impl Parts {
+    /// The parts in the order of [`PART_NAMES`].
+    pub fn list(&self) -> [f64; 4] {
+        [self.edge, self.blur, self.rule, self.clusters]
+    }
+
+    /// Predicted relative error.
+    pub fn total(&self) -> f64 {
+        self.list().iter().sum()
+    }
+
+    /// Index of the largest part.
+    pub fn dominant(&self) -> usize {
+        let sizes = self.list().map(f64::abs);
+        (0..sizes.len()).fold(0, |best, i| if sizes[i] > sizes[best] { i } else { best })
+    }
+}
+
+/// The kernel as the referee knows it.
+fn referee_kernel(kernel: Kernel) -> referee::Kernel {
+    match kernel {
+        Kernel::Uniform => referee::Kernel::Uniform,
+        Kernel::Epanechnikov => referee::Kernel::Epanechnikov,
+        Kernel::Cone => referee::Kernel::Cone { kappa: 1.0 },
+        Kernel::Biweight => referee::Kernel::Biweight,
+        Kernel::Gaussian => referee::Kernel::TruncatedGaussian,
+    }
+}
+
+/// Extra photons of the same history around each photon of a ball of radius `r` [mfp]: to first order in r, whatever
+/// the asymmetry.
+pub fn clustering(albedo: f64, r: f64) -> f64 {
+    1.5 * albedo * r
+}
+
+/// The parts of one case.
+pub fn parts(case: &Case, exact: &Exact) -> anyhow::Result<Parts> {
+    let (tau, t) = (case.field.tau, case.depth);
+    let kernel = referee_kernel(case.kernel);
+    let (here, here_error) = exact(t)?;
+    let field = |depth: f64| exact(depth).map_or(f64::NAN, |(value, _)| value);
+    let mean = |kernel, r: f64, f: &dyn Fn(f64) -> f64| {
+        referee::slab_kernel_mean(kernel, r, t, tau, f).map(|v| (v.value, v.error))
+    };
+    let mut parts =
+        Parts { exact: here, exact_error: here_error, edge: 0.0, blur: 0.0, rule: 0.0, clusters: 0.0, error: 0.0 };
+    match case.size {
+        Size::Radius(r) => {
+            let (blurred, blurred_error) = mean(kernel, r, &field)?;
+            let (inside, _) = mean(kernel, r, &|_| 1.0)?;
+            parts.edge = inside - 1.0;
+            parts.blur = blurred / here - inside;
+            parts.error = (blurred_error + here_error) / here;
+        }
+        Size::Nearest(k) | Size::NearestBiased(k) => {
+            // Photons per volume where the fluence is 1.
+            let density = case.photons as f64 / (CELL * CELL);
+            let expect = |f: &dyn Fn(f64) -> f64, k_summed: bool| {
+                let value = |kernel, r| mean(kernel, r, f).map_or(f64::NAN, |(value, _)| value);
+                let number = |r: f64| density * 4.0 / 3.0 * PI * r * r * r * value(referee::Kernel::Uniform, r);
+                let kernel_mean = |r: f64| value(kernel, r);
+                let rule = if k_summed { referee::Rule::Biased } else { referee::Rule::Unbiased };
+                referee::nearest_expectation(k, case.cap(), rule, number, kernel_mean)
+            };
+            let right = expect(&field, false)?;
+            let uniform = expect(&|_| here, false)?;
+            parts.edge = uniform.value / here - 1.0;
+            parts.blur = (right.value - uniform.value) / here;
+            parts.error = (right.error + here_error) / here;
+            if case.is_biased() {
+                let biased = expect(&field, true)?;
+                parts.rule = (biased.value - right.value) / here;
+                parts.error += biased.error / here;
+            }
+            if case.field.has_clusters() {
+                // One photon is expected in the ball of radius r_1; an edge is left out of this small term.
+                let r1 = libm::cbrt(3.0 / (4.0 * PI * density * here));
+                let k = k as f64;
+                let factor = libm::exp(libm::lgamma(k - 5.0 / 3.0) - libm::lgamma(k - 1.0)) / 3.0;
+                parts.clusters = clustering(case.field.albedo, r1) * factor;
+            }
+        }
+    }
+    Ok(parts)
+}
+
+/// All cases of a study with their parts, computed in parallel.
+pub fn budget(settings: &Settings) -> anyhow::Result<Vec<(Case, Parts)>> {
+    let mut all = Vec::new();
+    for field in &FIELDS {
+        let exact = field.exact()?;
+        let cases: Vec<Case> = field.photons(settings).into_iter().flat_map(|n| Case::all(field, n)).collect();
+        let predicted: Vec<anyhow::Result<(Case, Parts)>> =
+            cases.into_par_iter().map(|case| parts(&case, &exact).map(|p| (case, p))).collect();
+        for item in predicted {
+            all.push(item?);
+        }
+    }
+    Ok(all)
+}
+
+/// The parts of a case, as they were written down.
+pub fn recall(predictions: &HashMap<(&str, &str), (f64, f64)>, case: &Case) -> anyhow::Result<Parts> {
+    let name = case.name();
+    let find = |quantity: &str| {
+        let found = predictions.get(&(name.as_str(), quantity));
+        found.copied().with_context(|| format!("no prediction of {quantity} of {name}"))
+    };
+    let part = |name: &str| find(&format!("error from {name}")).map(|(value, _)| value / 100.0);
+    let (exact, exact_error) = find("exact fluence")?;
+    let [edge, blur, rule, clusters] = PART_NAMES;
+    Ok(Parts {
+        exact,
+        exact_error,
+        edge: part(edge)?,
+        blur: part(blur)?,
+        rule: part(rule)?,
+        clusters: part(clusters)?,
+        error: find("error")?.1 / 100.0,
+    })
+}
+
+/// The predictions, as they are written down before the measurement.
+pub fn predict(settings: &Settings) -> anyhow::Result<Vec<Prediction>> {
+    let mut predictions = Vec::new();
+    for (case, parts) in budget(settings)? {
+        let mut add = |quantity: &str, unit, value: f64, error: f64, source: &str| {
+            let (case, quantity, source) = (case.name(), quantity.to_string(), source.to_string());
+            predictions.push(Prediction { case, quantity, unit, value, error, source });
+        };
+        let fluence = parts.exact * (1.0 + parts.total());
+        add("exact fluence", Unit::FLUENCE, parts.exact, parts.exact_error, "exact solution of the slab");
+        add("fluence", Unit::FLUENCE, fluence, parts.exact * parts.error, "exact field, kernel mean, k-nearest law");
+        add("error", Unit::PERCENT, 100.0 * parts.total(), 100.0 * parts.error, "sum of the parts");
+        let sources = [
+            "kernel mean of a uniform field in the medium, less 1",
+            "kernel mean of the exact field, less the edge",
+            "expectation with the k-th photon summed, less without",
+            "photons of one history, first order in the radius",
+        ];
+        for ((name, value), source) in PART_NAMES.iter().zip(parts.list()).zip(sources) {
+            add(&format!("error from {name}"), Unit::PERCENT, 100.0 * value, 100.0 * parts.error, source);
+        }
+    }
+    Ok(predictions)
+}
