@@ -64,14 +64,15 @@ impl Claim {
         Claim { id: id.to_string(), text: text.to_string(), unit, statistic, kind }
     }
 
-    /// What the claim demands, in words.
+    /// What the claim demands, in words, with its unit.
     pub fn margin(&self) -> String {
+        let with_unit = |x: f64| self.unit.after(&number(x));
         match self.kind {
-            Kind::Within(m) if m.low == f64::NEG_INFINITY => format!("at most {}", number(m.high)),
-            Kind::Within(m) if m.high == f64::INFINITY => format!("at least {}", number(m.low)),
-            Kind::Within(m) => format!("{} to {}", number(m.low), number(m.high)),
-            Kind::Differs { from, by: 0.0 } => format!("not {}", number(from)),
-            Kind::Differs { from, by } => format!("not {} (by {} or more)", number(from), number(by)),
+            Kind::Within(m) if m.low == f64::NEG_INFINITY => format!("at most {}", with_unit(m.high)),
+            Kind::Within(m) if m.high == f64::INFINITY => format!("at least {}", with_unit(m.low)),
+            Kind::Within(m) => format!("{} to {}", number(m.low), with_unit(m.high)),
+            Kind::Differs { from, by: 0.0 } => format!("not {}", with_unit(from)),
+            Kind::Differs { from, by } => format!("{} or more from {}", with_unit(by), number(from)),
         }
     }
 
@@ -181,10 +182,11 @@ fn decide(claim: &Claim, interval: &Interval, is_significant: bool) -> Verdict {
     match claim.kind {
         Kind::Within(_) if is_significant => Verdict::Rejected,
         Kind::Within(margin) if interval.is_within(&margin) => Verdict::Upheld,
-        Kind::Differs { .. } if is_significant => Verdict::Upheld,
-        Kind::Differs { from, by } if by > 0.0 && interval.low > from - by && interval.high < from + by => {
+        // A difference that is seen but excluded from being as large as stated rejects the claim.
+        Kind::Differs { from, by } if by > 0.0 && from - by < interval.low && interval.high < from + by => {
             Verdict::Rejected
         }
+        Kind::Differs { .. } if is_significant => Verdict::Upheld,
         _ => Verdict::Undecided,
     }
 }
@@ -245,6 +247,8 @@ mod tests {
         assert_eq!(verdict(fault(estimate(0, 64, 1.1, 0.05))), Verdict::Upheld);
         assert_eq!(verdict(fault(estimate(0, 64, 1.0, 0.05))), Verdict::Rejected);
         assert_eq!(verdict(fault(estimate(0, 64, 1.0, 1.0))), Verdict::Undecided);
+        // Seen, but too small to be the fault that was planted.
+        assert_eq!(verdict(fault(estimate(0, 64, 1.01, 0.001))), Verdict::Rejected);
     }
 
     #[test]

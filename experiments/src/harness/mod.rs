@@ -13,6 +13,7 @@ mod experiment;
 mod format;
 mod manifest;
 mod measure;
+mod outputs;
 mod progress;
 mod provenance;
 mod results;

@@ -29,7 +29,7 @@ pub struct Provenance {
     pub cpu: String,
     /// Logical cores.
     pub cores: usize,
-    /// Memory [GiB].
+    /// Memory, in GiB.
     pub memory_gib: f64,
     /// Operating system.
     pub system: String,

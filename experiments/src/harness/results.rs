@@ -32,10 +32,11 @@ impl Unit {
         self.0
     }
 
-    /// A number in text followed by the unit.
+    /// A number in text followed by the unit; a number with its error is put in brackets.
     pub fn after(self, text: &str) -> String {
         match self.0 {
             "1" => text.to_string(),
+            name if text.contains('±') => format!("({text}) {}", name.replace("^2", "²").replace("^3", "³")),
             name => format!("{text} {}", name.replace("^2", "²").replace("^3", "³")),
         }
     }
@@ -116,7 +117,7 @@ impl Row {
         }
     }
 
-    /// What was predicted for it. Rows of the same case and quantity as a prediction get it by themselves.
+    /// What was predicted for it, where [`Row::predicted_from`] cannot know.
     #[must_use]
     pub fn predicted(self, value: f64) -> Self {
         Row { predicted: Some(value), ..self }
@@ -134,12 +135,12 @@ impl Row {
         Row { cost: Some((count, of)), ..self }
     }
 
-    /// Takes the prediction that belongs to this row, if there is one.
-    pub(super) fn fill_prediction(&mut self, predictions: &[Prediction]) {
-        if self.predicted.is_none() {
-            let own = predictions.iter().find(|p| p.case == self.case && p.quantity == self.quantity);
-            self.predicted = own.map(|p| p.value);
-        }
+    /// Takes the prediction of the same case and quantity, unless it has one. The study does this for every row of
+    /// a section; an experiment does it for rows that it prints in a table.
+    #[must_use]
+    pub fn predicted_from(self, predictions: &[Prediction]) -> Self {
+        let own = predictions.iter().find(|p| p.case == self.case && p.quantity == self.quantity);
+        Row { predicted: self.predicted.or(own.map(|p| p.value)), ..self }
     }
 
     /// Case and quantity.

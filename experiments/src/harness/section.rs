@@ -41,12 +41,15 @@ impl Table {
                 with_error(value, error),
                 optional(row.prediction().map(number)),
                 optional(row.exact_value().map(|(value, error)| with_error(value, error))),
-                optional(row.z_and_p().map(|(z, _)| format!("{z:.1}").replace('-', "−"))),
+                optional(
+                    row.z_and_p().map(|(z, _)| format!("{z:.1}").replace("-0.0", "0.0").replace('-', "−")),
+                ),
                 row.verdict().to_string(),
             ]
         };
-        let columns =
-            ["case", "quantity", "measured", "predicted", "exact", "z", ""].map(String::from).to_vec();
+        let columns = ["case", "quantity", "measured", "predicted", "exact", "z", "against exact"]
+            .map(String::from)
+            .to_vec();
         Table { caption: caption.to_string(), columns, rows: rows.iter().map(cells).collect() }
             .without_empty_columns()
     }

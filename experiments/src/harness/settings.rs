@@ -141,7 +141,12 @@ impl Settings {
     /// What a cell depends on, in words: two cells of equal words and equal program are equal.
     pub fn words(&self) -> String {
         let preset = self.pick("quick", "full");
-        format!("{preset}, seed {}, photons x {}", self.seed, self.photon_scale)
+        let scale = if self.photon_scale == 1.0 {
+            String::new()
+        } else {
+            format!(", photons × {}", self.photon_scale)
+        };
+        format!("{preset}, seed {}{scale}", self.seed)
     }
 
     /// The command that repeats the study's results; the folder is left out where it is absolute.

@@ -35,7 +35,7 @@ pub fn page(study: &str, settings: &Settings, sections: &[SectionReport], proven
             }
             body {
                 header {
-                    div.kicker { "turbid · " (study) " study" }
+                    div.kicker { "turbid · " @if study == "study" { "the whole study" } @else { "experiment " (study) } }
                     h1 { (title) }
                     div.byline { (provenance.date) " · " (provenance.settings) " · version " (provenance.version) ", revision " (provenance.revision) }
                 }
@@ -75,12 +75,12 @@ fn overview(sections: &[SectionReport], numbers: &mut Numbers) -> Markup {
                 }
             }
         }
-        @if claims > 0 {
+        @if claims > 0 && sections.len() > 1 {
             (table_frame(numbers, "All claims with their verdicts. Measured values carry one standard error over independent maps.", html! {
                 thead { tr { th { "claim" } th.n { "measured" } th.n { "claimed" } th.n { "maps" } th { "verdict" } } }
                 tbody {
                     @for part in sections {
-                        @if sections.len() > 1 && !part.judged.is_empty() {
+                        @if !part.judged.is_empty() {
                             tr.group { td colspan="5" { a href=(format!("#{}", part.experiment.name)) { (part.experiment.title) } } }
                         }
                         @for judged in &part.judged {
@@ -270,8 +270,8 @@ fn methods(sections: &[SectionReport], numbers: &mut Numbers) -> Markup {
             "A claim is " b { "upheld" } " if the whole interval lies within the margin that it states; " b { "rejected" }
             " if the measurement lies outside significantly, after Holm’s correction over all " (claims) " claims of the study; "
             b { "undecided" } " if neither holds. A planted fault is upheld if it is seen with the same significance. "
-            "Over the whole study, a wrong verdict of either kind has a probability of at most " (number(FAMILY_WISE))
-            ". Intervals of 95 per cent are drawn in figures and decide nothing."
+            "The probability of any wrong rejection or detection in the whole study is at most " (number(FAMILY_WISE))
+            ", and so is that of anything upheld wrongly. Intervals of 95 per cent are drawn in figures and decide nothing."
         }
         @if !sections.is_empty() {
             (table_frame(numbers, "Work done. Counts are results and repeat exactly; seconds belong to this machine.", html! {

@@ -87,6 +87,7 @@ fn conclude(_: &Settings, predictions: &[Prediction], cells: &Cells) -> anyhow::
         rows.push(
             Row::measured(&p.case, "bias", Unit::ONE, &bias)?
                 .reference(p.value, 0.0)
+                .predicted_from(predictions)
                 .cost(cells.counter("photons"), "photons"),
         );
     }
