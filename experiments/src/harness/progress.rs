@@ -76,7 +76,8 @@ impl Progress {
 
 /// Seconds in the unit a person would use.
 pub(crate) fn duration(seconds: f64) -> String {
-    match seconds {
+    // The sum of no f64 is -0.
+    match seconds.abs() {
         s if s < 10.0 => format!("{s:.1} s"),
         s if s < 120.0 => format!("{s:.0} s"),
         s if s < 7200.0 => format!("{:.0} min", s / 60.0),
