@@ -1,13 +1,13 @@
 //! The k nearest photons, without a heap: a bound, every squared distance below it, the k-th of them.
 
 use super::boxes::Probe;
+use super::scratch::{Last, Scratch, with_scratch};
 use super::units::LIMIT;
-use super::within::Neighbors;
-use super::{BLOCK, PhotonTree};
+use super::within::{Neighbors, rows};
+use super::{BLOCK, PhotonTree, ROW};
 use glam::DVec3;
-use std::cell::Cell;
 use std::sync::atomic::{AtomicU64, Ordering};
-use wide::f32x16;
+use wide::f32x8;
 
 /// What a search for the k nearest photons found.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -40,28 +40,6 @@ pub enum Counted {
     UpToKth,
 }
 
-/// Working memory of one thread, and what its last search found, as a guess for the next.
-#[derive(Default)]
-struct Scratch {
-    blocks: Vec<u32>,
-    squared: Vec<f32x16>,
-    near: Vec<u32>,
-    last: Option<Last>,
-}
-
-/// A finished search: whose, for how many, where, and how far the k-th was.
-#[derive(Clone, Copy)]
-struct Last {
-    identity: u64,
-    k: usize,
-    point: [f32; 3],
-    squared: f32,
-}
-
-thread_local! {
-    static SCRATCH: Cell<Option<Box<Scratch>>> = const { Cell::new(None) };
-}
-
 /// A number that no other tree of this process has; results do not depend on it.
 pub(super) fn new_identity() -> u64 {
     static NEXT: AtomicU64 = AtomicU64::new(0);
@@ -87,6 +65,7 @@ impl PhotonTree {
     /// [`Shell::coincident`] tells how many they were.
     ///
     /// `k` is at least 1; photons beyond `max_radius` [L] are not looked at.
+    #[inline(always)]
     pub fn nearest(
         &self,
         centre: DVec3,
@@ -101,17 +80,27 @@ impl PhotonTree {
         let point = self.units.relative(centre);
         let cap = self.units.shrink(max_radius);
         if point.abs().max_element() > LIMIT {
-            return self.nearest_point(centre, k, max_radius, counted, visit);
+            return self.nearest_point(centre, k, max_radius, counted, &mut visit);
         }
-        let mut scratch = SCRATCH.take().unwrap_or_default();
         let cap2 = (cap.min(4.0 * LIMIT) * cap.min(4.0 * LIMIT)) as f32;
-        let found = scratch.find(self, point.as_vec3().to_array(), k, cap2);
-        let result = match &found {
+        with_scratch(|scratch| match scratch.find(self, point.as_vec3().to_array(), k, cap2) {
             None => Nearest::Underfull,
             Some(sphere) => {
-                let share = share(sphere, k, counted);
-                for (&block, &squared) in scratch.blocks.iter().zip(&scratch.squared) {
-                    self.visit_shell(block as usize, squared, sphere.squared, share, &mut visit);
+                let share = share(&sphere, k, counted);
+                let (radius, inverse_r2) = (f32x8::splat(sphere.squared), 1.0 / sphere.squared);
+                // Tied photons are visited only where some of them count, which is where several tie.
+                let counting = if share > 0.0 { radius } else { f32x8::splat(-1.0) };
+                for (&block, pair) in scratch.touched.iter().zip(scratch.squared.chunks_exact(BLOCK / ROW)) {
+                    for (row, &squared) in rows(block).zip(pair) {
+                        let inside = squared.simd_lt(radius);
+                        if inside.any() {
+                            visit(Neighbors { tree: self, row, squared, inverse_r2, inside, share: 1.0 });
+                        }
+                        let inside = squared.simd_eq(counting);
+                        if inside.any() {
+                            visit(Neighbors { tree: self, row, squared, inverse_r2, inside, share });
+                        }
+                    }
                 }
                 Nearest::Found(Shell {
                     radius: self.units.stretch(f64::from(sphere.squared).sqrt()),
@@ -120,19 +109,18 @@ impl PhotonTree {
                     coincident: sphere.coincident,
                 })
             }
-        };
-        SCRATCH.set(Some(scratch));
-        result
+        })
     }
 
     /// From more than 2^60 times its size away the map is one point: every photon ties.
+    #[cold]
     fn nearest_point(
         &self,
         centre: DVec3,
         k: usize,
         max_radius: f64,
         counted: Counted,
-        mut visit: impl FnMut(Neighbors<'_>),
+        visit: &mut dyn FnMut(Neighbors<'_>),
     ) -> Nearest {
         let away = centre - self.units.absolute([0.0; 3]);
         let longest = away.abs().max_element();
@@ -142,46 +130,25 @@ impl PhotonTree {
         }
         let sphere = Sphere { squared: 1.0, closer: 0, tied: self.stored, coincident: 0 };
         let share = share(&sphere, k, counted);
-        for (block, squared) in self.all_at(1.0) {
-            self.visit_shell(block, squared, 1.0, share, &mut visit);
+        for (row, squared) in self.all_at(1.0) {
+            let inside = squared.simd_le(f32x8::ONE);
+            visit(Neighbors { tree: self, row, squared, inverse_r2: 1.0, inside, share });
         }
         Nearest::Found(Shell { radius, closer: 0, tied: self.stored, coincident: 0 })
-    }
-
-    #[inline(always)]
-    fn visit_shell(
-        &self,
-        block: usize,
-        squared: f32x16,
-        r2: f32,
-        share: f32,
-        visit: &mut impl FnMut(Neighbors<'_>),
-    ) {
-        let (radius, inverse_r2) = (f32x16::splat(r2), f32x16::splat(1.0 / r2));
-        let closer = squared.simd_lt(radius);
-        if closer.any() {
-            visit(Neighbors::new(self, block, squared, inverse_r2, closer, 1.0));
-        }
-        if share > 0.0 {
-            let tied = squared.simd_eq(radius);
-            if tied.any() {
-                visit(Neighbors::new(self, block, squared, inverse_r2, tied, share));
-            }
-        }
     }
 
     /// The squared distance within which k photons are certain to be: the k-th of the nearest node that has as
     /// many, a node of the finest level at least.
     fn bound(&self, probe: &Probe, k: usize, near: &mut Vec<u32>) -> f32 {
-        let (mut first, mut blocks) = (0, self.positions.len());
+        let (mut first, mut blocks) = (0, self.positions.len() / 2);
         let mut node = 0;
         for level in (1..self.levels.len()).rev() {
-            let to_boxes = probe.squared_distances_to_boxes(&self.levels[level][node]).to_array();
+            let to_boxes = probe.squared_distances_to_boxes(&self.levels[level][node]);
             let nearest =
                 (0..16).fold(0, |best, lane| if to_boxes[lane] < to_boxes[best] { lane } else { best });
             let child = node * 16 + nearest;
             let width = 1usize << (4 * level);
-            let child_blocks = width.min(self.positions.len() - child * width);
+            let child_blocks = width.min(self.positions.len() / 2 - child * width);
             let photons = (child_blocks * BLOCK).min(self.stored - child * width * BLOCK);
             if photons < k {
                 break;
@@ -189,7 +156,7 @@ impl PhotonTree {
             (node, first, blocks) = (child, child * width, child_blocks);
         }
         near.clear();
-        for positions in &self.positions[first..first + blocks] {
+        for positions in &self.positions[2 * first..2 * (first + blocks)] {
             near.extend(probe.squared_distances(positions).as_array().iter().map(|d| d.to_bits()));
         }
         f32::from_bits(*near.select_nth_unstable(k - 1).1)
@@ -204,7 +171,7 @@ fn share(sphere: &Sphere, k: usize, counted: Counted) -> f32 {
 }
 
 impl Scratch {
-    /// The sphere through the k-th photon; `blocks` and `squared` then hold every block that touches it.
+    /// The sphere through the k-th photon; `touched` and `squared` then hold every block that touches it.
     fn find(&mut self, tree: &PhotonTree, point: [f32; 3], k: usize, cap2: f32) -> Option<Sphere> {
         let probe = Probe::new(point);
         let guess = self.guess(tree, point, k).filter(|&guess| guess < cap2);
@@ -241,25 +208,22 @@ impl Scratch {
 
     /// Every squared distance of at most `bound`, and the blocks they are in.
     fn collect(&mut self, tree: &PhotonTree, probe: &Probe, bound: f32) {
-        self.blocks.clear();
+        tree.touch(probe, bound, self);
         self.squared.clear();
+        for &block in &self.touched {
+            self.squared.extend(rows(block).map(|row| probe.squared_distances(&tree.positions[row])));
+        }
+        // Every distance is written and only those below the bound are kept: no branch to mispredict.
         self.near.clear();
-        let lanes = f32x16::splat(bound);
-        tree.touched_blocks(probe, lanes, &mut |block| {
-            let squared = probe.squared_distances(&tree.positions[block]);
-            let inside = squared.simd_le(lanes);
-            if inside.any() {
-                self.blocks.push(block as u32);
-                self.squared.push(squared);
-                let mut kept = [0u32; BLOCK];
-                let mut count = 0;
-                for &d in squared.as_array() {
-                    kept[count & (BLOCK - 1)] = d.to_bits();
-                    count += usize::from(d <= bound);
-                }
-                self.near.extend_from_slice(&kept[..count]);
+        self.near.resize(self.squared.len() * ROW + 1, 0);
+        let mut end = 0;
+        for squared in &self.squared {
+            for &d in squared.as_array() {
+                self.near[end] = d.to_bits();
+                end += usize::from(d <= bound);
             }
-        });
+        }
+        self.near.truncate(end);
     }
 
     /// The sphere through the nearest photon that is not at the centre, where k or more are.

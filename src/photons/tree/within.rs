@@ -1,44 +1,33 @@
 //! Every photon within a fixed radius: boxes that touch the ball, then one masked pass a block; no list is kept.
 
 use super::boxes::Probe;
+use super::scratch::{Scratch, with_scratch};
 use super::units::LIMIT;
-use super::{BLOCK, PhotonTree};
+use super::{BLOCK, PhotonTree, ROW, Row};
 use glam::DVec3;
-use wide::f32x16;
+use wide::f32x8;
 
-/// Photons of one block that a search found.
-#[derive(Debug)]
+/// Photons of one row that a search found.
+#[derive(Debug, Clone, Copy)]
 pub struct Neighbors<'a> {
-    tree: &'a PhotonTree,
-    block: usize,
-    squared: f32x16,
-    inverse_r2: f32x16,
-    inside: f32x16,
-    share: f32,
+    pub(super) tree: &'a PhotonTree,
+    pub(super) row: usize,
+    pub(super) squared: f32x8,
+    pub(super) inverse_r2: f32,
+    pub(super) inside: f32x8,
+    pub(super) share: f32,
 }
 
 impl<'a> Neighbors<'a> {
-    #[inline(always)]
-    pub(super) fn new(
-        tree: &'a PhotonTree,
-        block: usize,
-        squared: f32x16,
-        inverse_r2: f32x16,
-        inside: f32x16,
-        share: f32,
-    ) -> Self {
-        Neighbors { tree, block, squared, inverse_r2, inside, share }
-    }
-
     /// Squared distances over the squared radius, at most 1. Lanes that were not found mean nothing.
     #[inline(always)]
-    pub fn u2(&self) -> f32x16 {
-        (self.squared * self.inverse_r2).fast_min(f32x16::ONE)
+    pub fn u2(&self) -> f32x8 {
+        (self.squared * f32x8::splat(self.inverse_r2)).fast_min(f32x8::ONE)
     }
 
     /// Which lanes were found: all bits set, or none.
     #[inline(always)]
-    pub fn inside(&self) -> f32x16 {
+    pub fn inside(&self) -> f32x8 {
         self.inside
     }
 
@@ -50,19 +39,19 @@ impl<'a> Neighbors<'a> {
 
     /// Powers [W], an array a channel.
     #[inline(always)]
-    pub fn power(&self) -> &'a [f32x16; 3] {
-        &self.tree.powers[self.block]
+    pub fn power(&self) -> &'a Row {
+        &self.tree.powers[self.row]
     }
 
     /// Directions of travel, an array a coordinate.
     #[inline(always)]
-    pub fn dir(&self) -> &'a [f32x16; 3] {
-        &self.tree.dirs[self.block]
+    pub fn dir(&self) -> &'a Row {
+        &self.tree.dirs[self.row]
     }
 
     /// Lanes found, each with its photon's place in the tree's order ([`PhotonTree::photon`]).
     pub fn places(&self) -> impl Iterator<Item = (usize, usize)> + use<> {
-        let (first, mask) = (self.block * BLOCK, self.inside.to_bitmask());
+        let (first, mask) = (self.row * ROW, self.inside.to_bitmask());
         bits(mask).map(move |lane| (lane, first + lane))
     }
 }
@@ -85,62 +74,80 @@ impl PhotonTree {
     ///
     /// Distances below 2^-60 of the map's box count as zero, and a radius above 2^60 of it sees the map as one
     /// point.
+    #[inline(always)]
     pub fn within(&self, centre: DVec3, radius: f64, mut visit: impl FnMut(Neighbors<'_>)) {
         let point = self.units.relative(centre);
         let r = self.units.shrink(radius);
         if r > LIMIT {
-            self.within_point(centre, radius, visit);
+            self.within_point(centre, radius, &mut visit);
         } else if point.abs().max_element() <= 4.0 * LIMIT {
             let r2 = ((r * r) as f32).max((1.0 / (LIMIT * LIMIT)) as f32);
-            let (r2, inverse_r2) = (f32x16::splat(r2), f32x16::splat(1.0 / r2));
+            let inverse_r2 = 1.0 / r2;
             let probe = Probe::new(point.as_vec3().to_array());
-            self.touched_blocks(&probe, r2, &mut |block| {
-                let squared = probe.squared_distances(&self.positions[block]);
-                let inside = squared.simd_le(r2);
-                if inside.any() {
-                    visit(Neighbors::new(self, block, squared, inverse_r2, inside, 1.0));
+            with_scratch(|scratch| {
+                self.touch(&probe, r2, scratch);
+                for &block in &scratch.touched {
+                    for row in rows(block) {
+                        let squared = probe.squared_distances(&self.positions[row]);
+                        let inside = squared.simd_le(f32x8::splat(r2));
+                        if inside.any() {
+                            visit(Neighbors { tree: self, row, squared, inverse_r2, inside, share: 1.0 });
+                        }
+                    }
                 }
             });
         }
     }
 
     /// The whole map at one distance from `centre`, which a radius of 2^60 times the map cannot tell from it.
-    fn within_point(&self, centre: DVec3, radius: f64, mut visit: impl FnMut(Neighbors<'_>)) {
+    #[cold]
+    fn within_point(&self, centre: DVec3, radius: f64, visit: &mut dyn FnMut(Neighbors<'_>)) {
         let u2 = ((centre - self.units.absolute([0.0; 3])) / radius).length_squared();
         if u2 <= 1.0 {
-            for (block, squared) in self.all_at(u2 as f32) {
-                let inside = squared.simd_le(f32x16::ONE);
-                visit(Neighbors::new(self, block, squared, f32x16::ONE, inside, 1.0));
+            for (row, squared) in self.all_at(u2 as f32) {
+                let inside = squared.simd_le(f32x8::ONE);
+                visit(Neighbors { tree: self, row, squared, inverse_r2: 1.0, inside, share: 1.0 });
             }
         }
     }
 
-    /// Every block, as though all photons were at the same squared distance, padding still beyond it.
-    pub(super) fn all_at(&self, squared: f32) -> impl Iterator<Item = (usize, f32x16)> + '_ {
-        (0..self.positions.len()).map(move |block| {
-            let stored = (self.stored - block * BLOCK).min(BLOCK);
-            let mut lanes = [f32::INFINITY; BLOCK];
+    /// Every row with photons, as though all were at the same squared distance, padding still beyond it.
+    pub(super) fn all_at(&self, squared: f32) -> impl Iterator<Item = (usize, f32x8)> + '_ {
+        (0..self.stored.div_ceil(ROW)).map(move |row| {
+            let stored = (self.stored - row * ROW).min(ROW);
+            let mut lanes = [f32::INFINITY; ROW];
             lanes[..stored].fill(squared);
-            (block, f32x16::new(lanes))
+            (row, f32x8::new(lanes))
         })
     }
 
-    /// Visits the blocks whose boxes touch the ball of squared radius `r2`, in the tree's order.
-    #[inline(always)]
-    pub(super) fn touched_blocks(&self, probe: &Probe, r2: f32x16, visit: &mut impl FnMut(usize)) {
-        if let Some(top) = self.levels.len().checked_sub(1) {
-            self.descend(top, 0, probe, r2, visit);
-        }
-    }
-
-    fn descend(&self, level: usize, node: usize, probe: &Probe, r2: f32x16, visit: &mut impl FnMut(usize)) {
-        for child in bits(probe.touched(&self.levels[level][node], r2)) {
-            let child = node * 16 + child;
-            if level == 0 {
-                visit(child);
-            } else {
-                self.descend(level - 1, child, probe, r2, visit);
+    /// Lists the blocks whose boxes touch the ball of squared radius `r2`, in the tree's order.
+    pub(super) fn touch(&self, probe: &Probe, r2: f32, scratch: &mut Scratch) {
+        let Scratch { touched, parents, .. } = scratch;
+        touched.clear();
+        touched.extend((!self.levels.is_empty()).then_some(0));
+        for level in self.levels.iter().rev() {
+            std::mem::swap(touched, parents);
+            touched.clear();
+            for &node in parents.iter() {
+                // Sixteen places are kept ready, so that a child costs no growth check.
+                let mut mask = probe.touched(&level[node as usize], r2);
+                let mut end = touched.len();
+                touched.resize(end + 16, 0);
+                while mask != 0 {
+                    touched[end] = node * 16 + mask.trailing_zeros();
+                    mask &= mask - 1;
+                    end += 1;
+                }
+                touched.truncate(end);
             }
         }
     }
+}
+
+/// The rows of a block.
+#[inline(always)]
+pub(super) fn rows(block: u32) -> std::ops::Range<usize> {
+    let first = block as usize * (BLOCK / ROW);
+    first..first + BLOCK / ROW
 }
