@@ -1,7 +1,7 @@
 //! Estimates at a point.
 
 use super::{CosinePairs, Directional, Gather, Kernel};
-use crate::photons::tree::{Counted, Nearest, Neighbors};
+use crate::photons::tree::{Counted, Nearest, Neighbors, Visit};
 use crate::photons::{Photon, PhotonMap, PhotonTree};
 use crate::spectrum::Spectrum;
 use glam::DVec3;
@@ -101,7 +101,7 @@ pub fn ball_sum(map: &PhotonMap, point: DVec3, kernel: Kernel, gather: Gather) -
 /// Number of photons at most `radius` [L] from a point.
 pub fn count_within(map: &PhotonMap, point: DVec3, radius: f64) -> usize {
     let mut count = 0;
-    map.tree().within(point, radius, |neighbors| count += number(&neighbors));
+    map.tree().within(point, radius, &mut |neighbors: Neighbors<'_>| count += number(&neighbors));
     count
 }
 
@@ -115,7 +115,7 @@ pub fn for_each_photon(
     mut visit: impl FnMut(Photon, f64),
 ) -> Ball {
     let tree = map.tree();
-    gathered(tree, point, gather, |neighbors| {
+    gathered(tree, point, gather, &mut |neighbors: Neighbors<'_>| {
         let u2 = neighbors.u2().to_array();
         let scale = kernel.peak() * f64::from(neighbors.share());
         for (lane, place) in neighbors.places() {
@@ -129,6 +129,7 @@ fn per_emitted(map: &PhotonMap, BallSum { sum, ball }: BallSum) -> Estimate {
     Estimate { value: sum / map.emitted() as f64, radius, found, underfull, coincident }
 }
 
+#[inline(always)]
 fn number(neighbors: &Neighbors<'_>) -> usize {
     neighbors.inside().to_bitmask().count_ones() as usize
 }
@@ -142,38 +143,62 @@ fn weighted_sum(
     gather: Gather,
     weight: impl Fn(&Neighbors<'_>) -> f32x8,
 ) -> BallSum {
-    let mut sum = LaneSum::default();
-    let ball = gathered(tree, point, gather, |neighbors| {
-        let profile = match kernel {
-            Kernel::Uniform => f32x8::splat(neighbors.share()),
-            kernel => kernel.profiles(neighbors.u2()) * f32x8::splat(neighbors.share()),
-        };
-        sum.add(neighbors.inside() & (profile * weight(&neighbors)), neighbors.power());
-    });
+    let mut sum = Weighted { kernel, weight, sum: LaneSum::default() };
+    let ball = gathered(tree, point, gather, &mut sum);
     let r = ball.radius;
-    BallSum { sum: sum.total() * kernel.peak() / (r * r * r), ball }
+    BallSum { sum: sum.sum.total() * kernel.peak() / (r * r * r), ball }
 }
 
 /// Visits the photons of a gather.
 #[inline(always)]
-fn gathered(tree: &PhotonTree, point: DVec3, gather: Gather, mut visit: impl FnMut(Neighbors<'_>)) -> Ball {
+fn gathered(tree: &PhotonTree, point: DVec3, gather: Gather, visitor: &mut impl Visit) -> Ball {
     let (k, cap, counted) = match gather {
         Gather::Radius(radius) => (None, radius.get(), Counted::BelowKth),
         Gather::Nearest { k, max_radius } => (Some(k.get()), max_radius.get(), Counted::BelowKth),
         Gather::NearestBiased { k, max_radius } => (Some(k.get()), max_radius.get(), Counted::UpToKth),
     };
     if let Some(k) = k
-        && let Nearest::Found(shell) = tree.nearest(point, k, cap, counted, &mut visit)
+        && let Nearest::Found(shell) = tree.nearest(point, k, cap, counted, visitor)
     {
         let found = shell.closer + shell.tied;
         return Ball { radius: shell.radius, found, underfull: false, coincident: shell.coincident };
     }
-    let mut found = 0;
-    tree.within(point, cap, |neighbors| {
-        found += number(&neighbors);
-        visit(neighbors);
-    });
-    Ball { radius: cap, found, underfull: k.is_some(), coincident: 0 }
+    let mut counting = Counting { found: 0, visitor };
+    tree.within(point, cap, &mut counting);
+    Ball { radius: cap, found: counting.found, underfull: k.is_some(), coincident: 0 }
+}
+
+/// A visitor that also counts.
+struct Counting<'v, V> {
+    found: usize,
+    visitor: &'v mut V,
+}
+
+impl<V: Visit> Visit for Counting<'_, V> {
+    #[inline(always)]
+    fn visit(&mut self, neighbors: Neighbors<'_>) {
+        self.found += number(&neighbors);
+        self.visitor.visit(neighbors);
+    }
+}
+
+/// The sum while photons are found.
+struct Weighted<W> {
+    kernel: Kernel,
+    weight: W,
+    sum: LaneSum,
+}
+
+impl<W: Fn(&Neighbors<'_>) -> f32x8> Visit for Weighted<W> {
+    #[inline(always)]
+    fn visit(&mut self, neighbors: Neighbors<'_>) {
+        let share = f32x8::splat(neighbors.share());
+        let profile = match self.kernel {
+            Kernel::Uniform => share,
+            kernel => kernel.profiles(neighbors.u2()) * share,
+        };
+        self.sum.add(neighbors.inside() & (profile * (self.weight)(&neighbors)), neighbors.power());
+    }
 }
 
 /// A sum that does not stall: a few rows in single precision lanes, everything else in f64.

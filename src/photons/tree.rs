@@ -16,8 +16,8 @@ use units::Units;
 use wide::f32x8;
 
 pub use nearest::{Counted, Nearest, Shell};
-pub use within::Neighbors;
 pub(crate) use within::bits;
+pub use within::{Neighbors, Visit};
 
 /// Photons in a block: two rows of eight, what the registers of every processor hold without spilling.
 const BLOCK: usize = 16;

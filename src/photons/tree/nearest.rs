@@ -3,7 +3,7 @@
 use super::boxes::Probe;
 use super::scratch::{Last, Scratch, with_scratch};
 use super::units::LIMIT;
-use super::within::{Neighbors, rows};
+use super::within::{Neighbors, Visit, rows};
 use super::{BLOCK, PhotonTree, ROW};
 use glam::DVec3;
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -72,7 +72,7 @@ impl PhotonTree {
         k: usize,
         max_radius: f64,
         counted: Counted,
-        mut visit: impl FnMut(Neighbors<'_>),
+        visitor: &mut impl Visit,
     ) -> Nearest {
         if self.stored < k {
             return Nearest::Underfull;
@@ -80,7 +80,7 @@ impl PhotonTree {
         let point = self.units.relative(centre);
         let cap = self.units.shrink(max_radius);
         if point.abs().max_element() > LIMIT {
-            return self.nearest_point(centre, k, max_radius, counted, &mut visit);
+            return self.nearest_point(centre, k, max_radius, counted, visitor);
         }
         let cap2 = (cap.min(4.0 * LIMIT) * cap.min(4.0 * LIMIT)) as f32;
         with_scratch(|scratch| match scratch.find(self, point.as_vec3().to_array(), k, cap2) {
@@ -88,19 +88,23 @@ impl PhotonTree {
             Some(sphere) => {
                 let share = share(&sphere, k, counted);
                 let (radius, inverse_r2) = (f32x8::splat(sphere.squared), 1.0 / sphere.squared);
-                // Tied photons are visited only where some of them count, which is where several tie.
-                let counting = if share > 0.0 { radius } else { f32x8::splat(-1.0) };
                 for (&block, pair) in scratch.touched.iter().zip(scratch.squared.chunks_exact(BLOCK / ROW)) {
                     for (row, &squared) in rows(block).zip(pair) {
                         let inside = squared.simd_lt(radius);
                         if inside.any() {
-                            visit(Neighbors { tree: self, row, squared, inverse_r2, inside, share: 1.0 });
-                        }
-                        let inside = squared.simd_eq(counting);
-                        if inside.any() {
-                            visit(Neighbors { tree: self, row, squared, inverse_r2, inside, share });
+                            visitor.visit(Neighbors {
+                                tree: self,
+                                row,
+                                squared,
+                                inverse_r2,
+                                inside,
+                                share: 1.0,
+                            });
                         }
                     }
+                }
+                if share > 0.0 {
+                    self.visit_tied(scratch, sphere.squared, share, visitor);
                 }
                 Nearest::Found(Shell {
                     radius: self.units.stretch(f64::from(sphere.squared).sqrt()),
@@ -112,6 +116,26 @@ impl PhotonTree {
         })
     }
 
+    /// Photons exactly as far as the k-th, where some of them count.
+    #[cold]
+    fn visit_tied(&self, scratch: &Scratch, r2: f32, share: f32, visitor: &mut dyn Visit) {
+        for (&block, pair) in scratch.touched.iter().zip(scratch.squared.chunks_exact(BLOCK / ROW)) {
+            for (row, &squared) in rows(block).zip(pair) {
+                let inside = squared.simd_eq(f32x8::splat(r2));
+                if inside.any() {
+                    visitor.visit(Neighbors {
+                        tree: self,
+                        row,
+                        squared,
+                        inverse_r2: 1.0 / r2,
+                        inside,
+                        share,
+                    });
+                }
+            }
+        }
+    }
+
     /// From more than 2^60 times its size away the map is one point: every photon ties.
     #[cold]
     fn nearest_point(
@@ -120,7 +144,7 @@ impl PhotonTree {
         k: usize,
         max_radius: f64,
         counted: Counted,
-        visit: &mut dyn FnMut(Neighbors<'_>),
+        visitor: &mut dyn Visit,
     ) -> Nearest {
         let away = centre - self.units.absolute([0.0; 3]);
         let longest = away.abs().max_element();
@@ -132,7 +156,7 @@ impl PhotonTree {
         let share = share(&sphere, k, counted);
         for (row, squared) in self.all_at(1.0) {
             let inside = squared.simd_le(f32x8::ONE);
-            visit(Neighbors { tree: self, row, squared, inverse_r2: 1.0, inside, share });
+            visitor.visit(Neighbors { tree: self, row, squared, inverse_r2: 1.0, inside, share });
         }
         Nearest::Found(Shell { radius, closer: 0, tied: self.stored, coincident: 0 })
     }

@@ -56,6 +56,19 @@ impl<'a> Neighbors<'a> {
     }
 }
 
+/// What a search does with the photons it finds. Closures are visitors.
+pub trait Visit {
+    /// Takes the photons of one row.
+    fn visit(&mut self, neighbors: Neighbors<'_>);
+}
+
+impl<F: FnMut(Neighbors<'_>)> Visit for F {
+    #[inline(always)]
+    fn visit(&mut self, neighbors: Neighbors<'_>) {
+        self(neighbors);
+    }
+}
+
 /// The set bits of a mask, lowest first.
 #[inline(always)]
 pub(crate) fn bits(mut mask: u32) -> impl Iterator<Item = usize> {
@@ -75,11 +88,11 @@ impl PhotonTree {
     /// Distances below 2^-60 of the map's box count as zero, and a radius above 2^60 of it sees the map as one
     /// point.
     #[inline(always)]
-    pub fn within(&self, centre: DVec3, radius: f64, mut visit: impl FnMut(Neighbors<'_>)) {
+    pub fn within(&self, centre: DVec3, radius: f64, visitor: &mut impl Visit) {
         let point = self.units.relative(centre);
         let r = self.units.shrink(radius);
         if r > LIMIT {
-            self.within_point(centre, radius, &mut visit);
+            self.within_point(centre, radius, visitor);
         } else if point.abs().max_element() <= 4.0 * LIMIT {
             let r2 = ((r * r) as f32).max((1.0 / (LIMIT * LIMIT)) as f32);
             let inverse_r2 = 1.0 / r2;
@@ -91,7 +104,14 @@ impl PhotonTree {
                         let squared = probe.squared_distances(&self.positions[row]);
                         let inside = squared.simd_le(f32x8::splat(r2));
                         if inside.any() {
-                            visit(Neighbors { tree: self, row, squared, inverse_r2, inside, share: 1.0 });
+                            visitor.visit(Neighbors {
+                                tree: self,
+                                row,
+                                squared,
+                                inverse_r2,
+                                inside,
+                                share: 1.0,
+                            });
                         }
                     }
                 }
@@ -101,12 +121,12 @@ impl PhotonTree {
 
     /// The whole map at one distance from `centre`, which a radius of 2^60 times the map cannot tell from it.
     #[cold]
-    fn within_point(&self, centre: DVec3, radius: f64, visit: &mut dyn FnMut(Neighbors<'_>)) {
+    fn within_point(&self, centre: DVec3, radius: f64, visitor: &mut dyn Visit) {
         let u2 = ((centre - self.units.absolute([0.0; 3])) / radius).length_squared();
         if u2 <= 1.0 {
             for (row, squared) in self.all_at(u2 as f32) {
                 let inside = squared.simd_le(f32x8::ONE);
-                visit(Neighbors { tree: self, row, squared, inverse_r2: 1.0, inside, share: 1.0 });
+                visitor.visit(Neighbors { tree: self, row, squared, inverse_r2: 1.0, inside, share: 1.0 });
             }
         }
     }
