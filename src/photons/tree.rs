@@ -42,7 +42,7 @@ pub struct PhotonTree {
     units: Units,
     stored: usize,
     identity: u64,
-    positions: Vec<Row>,
+    positions: Vec<[Row; 2]>,
     dirs: Vec<Row>,
     powers: Vec<Row>,
     histories: Vec<(u16, Flags)>,
@@ -84,12 +84,13 @@ impl PhotonTree {
             .collect();
         order::kd_order(&mut entries, &photons, parallel);
 
-        let rows = stored.div_ceil(BLOCK) * (BLOCK / ROW);
+        let blocks = stored.div_ceil(BLOCK);
+        let rows = 2 * blocks;
         let mut tree = PhotonTree {
             units,
             stored,
             identity: nearest::new_identity(),
-            positions: Vec::with_capacity(rows),
+            positions: Vec::with_capacity(blocks),
             dirs: Vec::with_capacity(rows),
             powers: Vec::with_capacity(rows),
             histories: Vec::with_capacity(stored),
@@ -117,12 +118,12 @@ impl PhotonTree {
             }
             self.histories.push((photon.order, photon.flags));
         }
-        for first in [0, ROW] {
-            let row = |lanes: &[f32; BLOCK]| f32x8::from(&lanes[first..first + ROW]);
-            self.positions.push([0, 1, 2].map(|axis| row(&position[axis])));
-            self.dirs.push([0, 1, 2].map(|axis| row(&dir[axis])));
-            self.powers.push([0, 1, 2].map(|axis| row(&power[axis])));
-        }
+        let rows = |lanes: &[[f32; BLOCK]; 3]| {
+            [0, ROW].map(|first| [0, 1, 2].map(|axis| f32x8::from(&lanes[axis][first..first + ROW])))
+        };
+        self.positions.push(rows(&position));
+        self.dirs.extend(rows(&dir));
+        self.powers.extend(rows(&power));
     }
 
     /// Number of photons.
@@ -143,7 +144,7 @@ impl PhotonTree {
     /// Memory that the photons and the boxes above them occupy [bytes].
     pub fn bytes(&self) -> usize {
         let boxes: usize = self.levels.iter().map(Vec::len).sum();
-        self.positions.len() * size_of::<[Row; 3]>()
+        self.dirs.len() * size_of::<[Row; 3]>()
             + self.histories.len() * size_of::<(u16, Flags)>()
             + boxes * size_of::<Boxes>()
     }
@@ -154,7 +155,7 @@ impl PhotonTree {
         let vector = |row: &Row| [0, 1, 2].map(|axis| row[axis].as_array()[lane]);
         let (order, flags) = self.histories[place];
         Photon {
-            position: self.units.absolute(vector(&self.positions[row])),
+            position: self.units.absolute(vector(&self.positions[row / 2][row % 2])),
             dir: Vec3::from_array(vector(&self.dirs[row])),
             power: Vec3::from_array(vector(&self.powers[row])),
             order,

@@ -69,7 +69,7 @@ struct Extent {
 impl Extent {
     const NONE: Extent = Extent { lower: [f32::INFINITY; 3], upper: [f32::INFINITY; 3] };
 
-    fn of_block(rows: &[Row], stored: usize) -> Extent {
+    fn of_block(rows: &[Row; 2], stored: usize) -> Extent {
         let along = |axis: usize| rows.iter().flat_map(move |row| row[axis].to_array()).take(stored);
         let bound =
             |axis: usize, better: fn(f32, f32) -> f32| along(axis).reduce(better).unwrap_or(f32::INFINITY);
@@ -85,9 +85,9 @@ impl Extent {
 }
 
 /// The levels over the blocks, finest first: level 0 holds the boxes of blocks, the last level is one node.
-pub(super) fn levels(rows: &[Row], stored: usize) -> Vec<Vec<Boxes>> {
-    let mut extents: Vec<Extent> = rows
-        .chunks(2)
+pub(super) fn levels(blocks: &[[Row; 2]], stored: usize) -> Vec<Vec<Boxes>> {
+    let mut extents: Vec<Extent> = blocks
+        .iter()
         .enumerate()
         .map(|(block, rows)| Extent::of_block(rows, (stored - block * BLOCK).min(BLOCK)))
         .collect();

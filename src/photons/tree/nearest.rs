@@ -3,7 +3,7 @@
 use super::boxes::Probe;
 use super::scratch::{Last, Scratch, with_scratch};
 use super::units::LIMIT;
-use super::within::{Neighbors, Visit, rows};
+use super::within::{Neighbors, Visit};
 use super::{BLOCK, PhotonTree, ROW};
 use glam::DVec3;
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -88,19 +88,10 @@ impl PhotonTree {
             Some(sphere) => {
                 let share = share(&sphere, k, counted);
                 let (radius, inverse_r2) = (f32x8::splat(sphere.squared), 1.0 / sphere.squared);
-                for (&block, pair) in scratch.touched.iter().zip(scratch.squared.chunks_exact(BLOCK / ROW)) {
-                    for (row, &squared) in rows(block).zip(pair) {
-                        let inside = squared.simd_lt(radius);
-                        if inside.any() {
-                            visitor.visit(Neighbors {
-                                tree: self,
-                                row,
-                                squared,
-                                inverse_r2,
-                                inside,
-                                share: 1.0,
-                            });
-                        }
+                for (&row, &squared) in scratch.rows[..scratch.end].iter().zip(&scratch.squared) {
+                    let (row, inside) = (row as usize, squared.simd_lt(radius));
+                    if inside.any() {
+                        visitor.visit(Neighbors { tree: self, row, squared, inverse_r2, inside, share: 1.0 });
                     }
                 }
                 if share > 0.0 {
@@ -119,19 +110,10 @@ impl PhotonTree {
     /// Photons exactly as far as the k-th, where some of them count.
     #[cold]
     fn visit_tied(&self, scratch: &Scratch, r2: f32, share: f32, visitor: &mut dyn Visit) {
-        for (&block, pair) in scratch.touched.iter().zip(scratch.squared.chunks_exact(BLOCK / ROW)) {
-            for (row, &squared) in rows(block).zip(pair) {
-                let inside = squared.simd_eq(f32x8::splat(r2));
-                if inside.any() {
-                    visitor.visit(Neighbors {
-                        tree: self,
-                        row,
-                        squared,
-                        inverse_r2: 1.0 / r2,
-                        inside,
-                        share,
-                    });
-                }
+        for (&row, &squared) in scratch.rows[..scratch.end].iter().zip(&scratch.squared) {
+            let (row, inside) = (row as usize, squared.simd_eq(f32x8::splat(r2)));
+            if inside.any() {
+                visitor.visit(Neighbors { tree: self, row, squared, inverse_r2: 1.0 / r2, inside, share });
             }
         }
     }
@@ -164,7 +146,7 @@ impl PhotonTree {
     /// The squared distance within which k photons are certain to be: the k-th of the nearest node that has as
     /// many, a node of the finest level at least.
     fn bound(&self, probe: &Probe, k: usize, near: &mut Vec<u32>) -> f32 {
-        let (mut first, mut blocks) = (0, self.positions.len() / 2);
+        let (mut first, mut blocks) = (0, self.positions.len());
         let mut node = 0;
         for level in (1..self.levels.len()).rev() {
             let to_boxes = probe.squared_distances_to_boxes(&self.levels[level][node]);
@@ -172,7 +154,7 @@ impl PhotonTree {
                 (0..16).fold(0, |best, lane| if to_boxes[lane] < to_boxes[best] { lane } else { best });
             let child = node * 16 + nearest;
             let width = 1usize << (4 * level);
-            let child_blocks = width.min(self.positions.len() / 2 - child * width);
+            let child_blocks = width.min(self.positions.len() - child * width);
             let photons = (child_blocks * BLOCK).min(self.stored - child * width * BLOCK);
             if photons < k {
                 break;
@@ -180,7 +162,7 @@ impl PhotonTree {
             (node, first, blocks) = (child, child * width, child_blocks);
         }
         near.clear();
-        for positions in &self.positions[2 * first..2 * (first + blocks)] {
+        for positions in self.positions[first..first + blocks].iter().flatten() {
             near.extend(probe.squared_distances(positions).as_array().iter().map(|d| d.to_bits()));
         }
         f32::from_bits(*near.select_nth_unstable(k - 1).1)
@@ -195,7 +177,7 @@ fn share(sphere: &Sphere, k: usize, counted: Counted) -> f32 {
 }
 
 impl Scratch {
-    /// The sphere through the k-th photon; `touched` and `squared` then hold every block that touches it.
+    /// The sphere through the k-th photon; `rows` and `squared` then hold every row that it meets.
     fn find(&mut self, tree: &PhotonTree, point: [f32; 3], k: usize, cap2: f32) -> Option<Sphere> {
         let probe = Probe::new(point);
         let guess = self.guess(tree, point, k).filter(|&guess| guess < cap2);
@@ -233,15 +215,12 @@ impl Scratch {
     /// Every squared distance of at most `bound`, and the blocks they are in.
     fn collect(&mut self, tree: &PhotonTree, probe: &Probe, bound: f32) {
         tree.touch(probe, bound, self);
-        self.squared.clear();
-        for &block in &self.touched {
-            self.squared.extend(rows(block).map(|row| probe.squared_distances(&tree.positions[row])));
-        }
+        self.measure(tree, probe, bound);
         // Every distance is written and only those below the bound are kept: no branch to mispredict.
         self.near.clear();
-        self.near.resize(self.squared.len() * ROW + 1, 0);
+        self.near.resize(self.end * ROW + 1, 0);
         let mut end = 0;
-        for squared in &self.squared {
+        for squared in &self.squared[..self.end] {
             for &d in squared.as_array() {
                 self.near[end] = d.to_bits();
                 end += usize::from(d <= bound);

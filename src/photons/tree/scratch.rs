@@ -10,8 +10,12 @@ pub(super) struct Scratch {
     pub(super) touched: Vec<u32>,
     /// The level above, while `touched` is being filled.
     pub(super) parents: Vec<u32>,
-    /// Squared distances of the photons of each touched block, two rows a block.
+    /// Rows that have photons in the ball, the first `end` of them.
+    pub(super) rows: Vec<u32>,
+    /// Squared distances of the photons of those rows.
     pub(super) squared: Vec<f32x8>,
+    /// How many rows there are.
+    pub(super) end: usize,
     /// Squared distances below the bound, as bits, which are ordered as the numbers are.
     pub(super) near: Vec<u32>,
     /// The last search for k nearest photons.

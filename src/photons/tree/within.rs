@@ -3,7 +3,7 @@
 use super::boxes::Probe;
 use super::scratch::{Scratch, with_scratch};
 use super::units::LIMIT;
-use super::{BLOCK, PhotonTree, ROW, Row};
+use super::{PhotonTree, ROW, Row};
 use glam::DVec3;
 use wide::f32x8;
 
@@ -81,6 +81,26 @@ pub(crate) fn bits(mut mask: u32) -> impl Iterator<Item = usize> {
     })
 }
 
+/// The set bits of each number of four bits, lowest first, and how many they are.
+const SET_BITS: [([u32; 4], usize); 16] = set_bits();
+
+const fn set_bits() -> [([u32; 4], usize); 16] {
+    let mut table = [([0; 4], 0); 16];
+    let mut number = 0;
+    while number < 16 {
+        let mut bit = 0;
+        while bit < 4 {
+            if number >> bit & 1 == 1 {
+                table[number].0[table[number].1] = bit;
+                table[number].1 += 1;
+            }
+            bit += 1;
+        }
+        number += 1;
+    }
+    table
+}
+
 impl PhotonTree {
     /// Visits every photon at most `radius` [L] from `centre`, by blocks, in the tree's order; a photon exactly
     /// at `radius` is inside. `radius` is above zero.
@@ -99,21 +119,17 @@ impl PhotonTree {
             let probe = Probe::new(point.as_vec3().to_array());
             with_scratch(|scratch| {
                 self.touch(&probe, r2, scratch);
-                for &block in &scratch.touched {
-                    for row in rows(block) {
-                        let squared = probe.squared_distances(&self.positions[row]);
-                        let inside = squared.simd_le(f32x8::splat(r2));
-                        if inside.any() {
-                            visitor.visit(Neighbors {
-                                tree: self,
-                                row,
-                                squared,
-                                inverse_r2,
-                                inside,
-                                share: 1.0,
-                            });
-                        }
-                    }
+                scratch.measure(self, &probe, r2);
+                for (&row, &squared) in scratch.rows[..scratch.end].iter().zip(&scratch.squared) {
+                    let inside = squared.simd_le(f32x8::splat(r2));
+                    visitor.visit(Neighbors {
+                        tree: self,
+                        row: row as usize,
+                        squared,
+                        inverse_r2,
+                        inside,
+                        share: 1.0,
+                    });
                 }
             });
         }
@@ -148,26 +164,48 @@ impl PhotonTree {
         touched.extend((!self.levels.is_empty()).then_some(0));
         for level in self.levels.iter().rev() {
             std::mem::swap(touched, parents);
+            // Four places beyond what can count, since children are written four by four, whether they count or
+            // not: no branch to mispredict.
             touched.clear();
+            touched.resize(parents.len() * 16 + 4, 0);
+            let mut end = 0;
             for &node in parents.iter() {
-                // Sixteen places are kept ready, so that a child costs no growth check.
-                let mut mask = probe.touched(&level[node as usize], r2);
-                let mut end = touched.len();
-                touched.resize(end + 16, 0);
-                while mask != 0 {
-                    touched[end] = node * 16 + mask.trailing_zeros();
-                    mask &= mask - 1;
-                    end += 1;
+                let mask = probe.touched(&level[node as usize], r2) as usize;
+                for first in [0, 4, 8, 12] {
+                    let (set, count) = SET_BITS[mask >> first & 15];
+                    for (child, bit) in touched[end..end + 4].iter_mut().zip(set) {
+                        *child = node * 16 + first as u32 + bit;
+                    }
+                    end += count;
                 }
-                touched.truncate(end);
             }
+            touched.truncate(end);
         }
     }
 }
 
-/// The rows of a block.
-#[inline(always)]
-pub(super) fn rows(block: u32) -> std::ops::Range<usize> {
-    let first = block as usize * (BLOCK / ROW);
-    first..first + BLOCK / ROW
+impl Scratch {
+    /// Lists the rows of the touched blocks that have photons in the ball of squared radius `r2`, and their squared
+    /// distances.
+    ///
+    /// Every row is written and only those that count are kept: no branch to mispredict.
+    #[inline(always)]
+    pub(super) fn measure(&mut self, tree: &PhotonTree, probe: &Probe, r2: f32) {
+        let most = self.touched.len() * 2 + 1;
+        if self.rows.len() < most {
+            self.rows.resize(most, 0);
+            self.squared.resize(most, f32x8::ZERO);
+        }
+        let (rows, squared) = (&mut self.rows[..most], &mut self.squared[..most]);
+        let mut end = 0;
+        for &block in &self.touched {
+            for (half, positions) in tree.positions[block as usize].iter().enumerate() {
+                let distances = probe.squared_distances(positions);
+                rows[end] = 2 * block + half as u32;
+                squared[end] = distances;
+                end += usize::from(distances.simd_le(f32x8::splat(r2)).to_bitmask() != 0);
+            }
+        }
+        self.end = end;
+    }
 }
