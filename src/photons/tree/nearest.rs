@@ -180,15 +180,13 @@ impl Scratch {
     /// The sphere through the k-th photon; `rows` and `squared` then hold every row that it meets.
     fn find(&mut self, tree: &PhotonTree, point: [f32; 3], k: usize, cap2: f32) -> Option<Sphere> {
         let probe = Probe::new(point);
-        let guess = self.guess(tree, point, k).filter(|&guess| guess < cap2);
-        let mut enough = false;
-        if let Some(guess) = guess {
+        let guess = self.guess(tree, point, k).unwrap_or(0.0);
+        if guess > 0.0 && guess < cap2 {
             self.collect(tree, &probe, guess);
-            enough = self.near.len() >= k;
         }
-        if !enough {
+        if guess == 0.0 || guess >= cap2 || self.near.len() < k {
             let bound = tree.bound(&probe, k, &mut self.near).min(cap2);
-            self.collect(tree, &probe, bound);
+            self.collect_enough(tree, &probe, k, guess, bound);
             if self.near.len() < k {
                 return None;
             }
@@ -210,6 +208,23 @@ impl Scratch {
         let step = [0, 1, 2].map(|axis| point[axis] - last.point[axis]);
         let moved = step[0] * step[0] + step[1] * step[1] + step[2] * step[2];
         (moved < last.squared).then_some(last.squared * 1.3)
+    }
+
+    /// Collects at least k photons if `bound` holds as many, and not many more: beside a dense region a ball that
+    /// is certain to hold k may hold thousands of times as many. `below` is known to hold fewer than k.
+    fn collect_enough(&mut self, tree: &PhotonTree, probe: &Probe, k: usize, below: f32, bound: f32) {
+        let many = k / 4 + 64;
+        let mut trial = bound;
+        tree.touch(probe, trial, self);
+        while self.touched.len() > many && 0.5 * trial > below {
+            trial *= 0.5;
+            tree.touch(probe, trial, self);
+        }
+        self.collect(tree, probe, trial);
+        while self.near.len() < k && trial < bound {
+            trial = (trial * 1.25).min(bound);
+            self.collect(tree, probe, trial);
+        }
     }
 
     /// Every squared distance of at most `bound`, and the blocks they are in.
