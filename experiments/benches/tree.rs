@@ -1,6 +1,8 @@
 //! The photon tree against kiddo 6, in one run on one thread: 10^6 photons, uniform and in a light shaft, queries in
 //! the order of a ray march, power x phase function summed on both sides.
 //!
+//! `cargo bench --bench tree -- build` runs the rows whose name contains the word.
+//!
 //! kiddo is used at its best for this: an immutable tree of f32, its payload in the order of its leaves as one
 //! record a photon, unsorted results, a visitor for the fixed radius and reused scratch memory.
 
@@ -25,6 +27,8 @@ const IN_RANGE: f64 = 75.0;
 const G: f64 = 0.75;
 
 fn main() -> anyhow::Result<()> {
+    let wanted: Vec<String> = std::env::args().skip(1).filter(|word| !word.starts_with('-')).collect();
+    let is_wanted = |what: &str| wanted.is_empty() || wanted.iter().any(|word| what.contains(word));
     let mut out = std::io::stdout().lock();
     writeln!(out, "{PHOTONS} photons, one thread, {ROUNDS} rounds; times faster than kiddo, 95 % interval")?;
     for (name, photons) in [("uniform", uniform()), ("light shaft", shaft())] {
@@ -33,30 +37,33 @@ fn main() -> anyhow::Result<()> {
         let ours = PhotonMap::new(photons.clone(), PHOTONS)?;
         let radius = radius_holding(&ours, &queries);
         let (r2, phase) = ((radius * radius) as f32, HenyeyGreensteinLanes::new(Asymmetry::new("g", G)?));
-
+        let (fixed, nearest) = (Gather::radius(radius)?, Gather::nearest(K, 10.0)?);
         let mut scratch = peer.tree.create_scratch::<SquaredEuclidean<f32>>();
-        let fixed = Gather::radius(radius)?;
-        let ratio = compare(
-            ROUNDS,
-            || queries.iter().for_each(|q| _ = black_box(peer.within(q, r2, &mut scratch))),
-            || queries.iter().for_each(|q| _ = black_box(scattered(&ours, q, &phase, fixed))),
-        );
-        row(&mut out, name, "fixed radius", ratio, queries.len())?;
 
-        let nearest = Gather::nearest(K, 10.0)?;
-        let ratio = compare(
-            ROUNDS,
-            || queries.iter().for_each(|q| _ = black_box(peer.nearest(q, &mut scratch))),
-            || queries.iter().for_each(|q| _ = black_box(scattered(&ours, q, &phase, nearest))),
-        );
-        row(&mut out, name, "k = 100", ratio, queries.len())?;
-
-        let ratio = compare(
-            ROUNDS,
-            || _ = black_box(Peer::ordered(&photons)),
-            || _ = black_box(PhotonTree::new(photons.clone())),
-        );
-        row(&mut out, name, "build", ratio, 1)?;
+        if is_wanted("fixed radius") {
+            let ratio = compare(
+                ROUNDS,
+                || queries.iter().for_each(|q| _ = black_box(peer.within(q, r2, &mut scratch))),
+                || queries.iter().for_each(|q| _ = black_box(scattered(&ours, q, &phase, fixed))),
+            );
+            row(&mut out, name, "fixed radius", ratio, queries.len())?;
+        }
+        if is_wanted("k = 100") {
+            let ratio = compare(
+                ROUNDS,
+                || queries.iter().for_each(|q| _ = black_box(peer.nearest(q, &mut scratch))),
+                || queries.iter().for_each(|q| _ = black_box(scattered(&ours, q, &phase, nearest))),
+            );
+            row(&mut out, name, "k = 100", ratio, queries.len())?;
+        }
+        if is_wanted("build") {
+            let ratio = compare(
+                ROUNDS,
+                || _ = black_box(Peer::ordered(&photons)),
+                || _ = black_box(PhotonTree::new(photons.clone())),
+            );
+            row(&mut out, name, "build", ratio, 1)?;
+        }
     }
     Ok(())
 }

@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 use std::f64::consts::PI;
-use wide::f32x16;
+use wide::f32x8;
 
 /// Volume of the ball of radius 1.
 pub const UNIT_BALL: f64 = 4.0 / 3.0 * PI;
@@ -67,14 +67,14 @@ impl Kernel {
         }
     }
 
-    /// [`Kernel::profile`] for sixteen photons, within 1e-6 of it (tested), that is a few roundings of f32.
+    /// [`Kernel::profile`] for eight photons, within 1e-6 of it (tested), that is a few roundings of f32.
     #[inline(always)]
-    pub fn profiles(self, u2: f32x16) -> f32x16 {
+    pub fn profiles(self, u2: f32x8) -> f32x8 {
         match self {
-            Kernel::Uniform => f32x16::ONE,
-            Kernel::Epanechnikov => f32x16::ONE - u2,
-            Kernel::Cone => f32x16::ONE - u2.sqrt(),
-            Kernel::Biweight => (f32x16::ONE - u2) * (f32x16::ONE - u2),
+            Kernel::Uniform => f32x8::ONE,
+            Kernel::Epanechnikov => f32x8::ONE - u2,
+            Kernel::Cone => f32x8::ONE - u2.sqrt(),
+            Kernel::Biweight => (f32x8::ONE - u2) * (f32x8::ONE - u2),
             Kernel::Gaussian => gaussian_profiles(u2),
         }
     }
@@ -119,12 +119,12 @@ impl Kernel {
 /// Taylor's series about the middle c = 9/32 to the seventh power: the remainder is below c^8/8! = 9.7e-10, eight
 /// times that after the powers, so rounding dominates. Made of products and sums only: the same bits everywhere.
 #[inline(always)]
-fn gaussian_profiles(u2: f32x16) -> f32x16 {
+fn gaussian_profiles(u2: f32x8) -> f32x8 {
     const AT_MIDDLE: f32 = 0.754_839_6; // exp(-9/32)
-    let x = f32x16::splat(9.0 / 32.0) - u2 * f32x16::splat(9.0 / 16.0);
-    let mut sum = f32x16::splat(AT_MIDDLE / 5040.0);
+    let x = f32x8::splat(9.0 / 32.0) - u2 * f32x8::splat(9.0 / 16.0);
+    let mut sum = f32x8::splat(AT_MIDDLE / 5040.0);
     for coefficient in [720.0, 120.0, 24.0, 6.0, 2.0, 1.0, 1.0] {
-        sum = sum * x + f32x16::splat(AT_MIDDLE / coefficient);
+        sum = sum * x + f32x8::splat(AT_MIDDLE / coefficient);
     }
     let squared = sum * sum;
     let fourth = squared * squared;

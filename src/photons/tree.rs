@@ -3,6 +3,7 @@
 mod boxes;
 mod nearest;
 mod order;
+mod scratch;
 mod units;
 mod within;
 
@@ -12,17 +13,20 @@ use boxes::Boxes;
 use glam::{DVec3, Vec3};
 use order::Entry;
 use units::Units;
-use wide::f32x16;
+use wide::f32x8;
 
 pub use nearest::{Counted, Nearest, Shell};
-pub use within::Neighbors;
 pub(crate) use within::bits;
+pub use within::{Neighbors, Visit};
 
-/// Photons in a block.
-pub const BLOCK: usize = 16;
+/// Photons in a block: two rows of eight, what the registers of every processor hold without spilling.
+const BLOCK: usize = 16;
 
-/// Sixteen vectors, an array a coordinate.
-type Positions = [f32x16; 3];
+/// Photons in a row, and lanes of its arrays.
+pub const ROW: usize = 8;
+
+/// Eight vectors, an array a coordinate.
+type Row = [f32x8; 3];
 
 /// Photons, ordered so that neighbours in space are neighbours in memory; the only copy of them.
 ///
@@ -38,9 +42,9 @@ pub struct PhotonTree {
     units: Units,
     stored: usize,
     identity: u64,
-    positions: Vec<Positions>,
-    dirs: Vec<[f32x16; 3]>,
-    powers: Vec<[f32x16; 3]>,
+    positions: Vec<[Row; 2]>,
+    dirs: Vec<Row>,
+    powers: Vec<Row>,
     histories: Vec<(u16, Flags)>,
     levels: Vec<Vec<Boxes>>,
 }
@@ -81,13 +85,14 @@ impl PhotonTree {
         order::kd_order(&mut entries, &photons, parallel);
 
         let blocks = stored.div_ceil(BLOCK);
+        let rows = 2 * blocks;
         let mut tree = PhotonTree {
             units,
             stored,
             identity: nearest::new_identity(),
             positions: Vec::with_capacity(blocks),
-            dirs: Vec::with_capacity(blocks),
-            powers: Vec::with_capacity(blocks),
+            dirs: Vec::with_capacity(rows),
+            powers: Vec::with_capacity(rows),
             histories: Vec::with_capacity(stored),
             levels: Vec::new(),
         };
@@ -113,9 +118,12 @@ impl PhotonTree {
             }
             self.histories.push((photon.order, photon.flags));
         }
-        self.positions.push(position.map(f32x16::new));
-        self.dirs.push(dir.map(f32x16::new));
-        self.powers.push(power.map(f32x16::new));
+        let rows = |lanes: &[[f32; BLOCK]; 3]| {
+            [0, ROW].map(|first| [0, 1, 2].map(|axis| f32x8::from(&lanes[axis][first..first + ROW])))
+        };
+        self.positions.push(rows(&position));
+        self.dirs.extend(rows(&dir));
+        self.powers.extend(rows(&power));
     }
 
     /// Number of photons.
@@ -136,20 +144,20 @@ impl PhotonTree {
     /// Memory that the photons and the boxes above them occupy [bytes].
     pub fn bytes(&self) -> usize {
         let boxes: usize = self.levels.iter().map(Vec::len).sum();
-        self.positions.len() * size_of::<[Positions; 3]>()
+        self.dirs.len() * size_of::<[Row; 3]>()
             + self.histories.len() * size_of::<(u16, Flags)>()
             + boxes * size_of::<Boxes>()
     }
 
     /// The photon of a place in the tree's order, below [`PhotonTree::len`]; its position as it is stored.
     pub fn photon(&self, place: usize) -> Photon {
-        let (block, lane) = (place / BLOCK, place % BLOCK);
-        let vector = |lanes: &[f32x16; 3]| [0, 1, 2].map(|axis| lanes[axis].as_array()[lane]);
+        let (row, lane) = (place / ROW, place % ROW);
+        let vector = |row: &Row| [0, 1, 2].map(|axis| row[axis].as_array()[lane]);
         let (order, flags) = self.histories[place];
         Photon {
-            position: self.units.absolute(vector(&self.positions[block])),
-            dir: Vec3::from_array(vector(&self.dirs[block])),
-            power: Vec3::from_array(vector(&self.powers[block])),
+            position: self.units.absolute(vector(&self.positions[row / 2][row % 2])),
+            dir: Vec3::from_array(vector(&self.dirs[row])),
+            power: Vec3::from_array(vector(&self.powers[row])),
             order,
             flags,
         }

@@ -22,7 +22,12 @@ pub(super) struct Entry {
 pub(super) fn kd_order(entries: &mut [Entry], photons: &[Photon], parallel: bool) {
     let blocks = entries.len().div_ceil(BLOCK);
     if blocks <= 1 {
-        entries.sort_unstable_by(|a, b| compare::<0>(a, b, photons));
+        // Rows are halves of a block across its widest axis.
+        match widest_axis(entries) {
+            0 => entries.sort_unstable_by(|a, b| compare::<0>(a, b, photons)),
+            1 => entries.sort_unstable_by(|a, b| compare::<1>(a, b, photons)),
+            _ => entries.sort_unstable_by(|a, b| compare::<2>(a, b, photons)),
+        }
         return;
     }
     let middle = blocks.next_power_of_two() / 2 * BLOCK;
