@@ -3,10 +3,11 @@
 //! Each experiment is a module with a constant `EXPERIMENT`, listed in [`ALL`]; [`harness`] runs them, and
 //! [`report`] writes what they found.
 
+pub mod bias;
 pub mod harness;
 pub mod report;
 
 use harness::Experiment;
 
 /// All experiments, in the order of the report.
-pub const ALL: &[Experiment] = &[];
+pub const ALL: &[Experiment] = &[bias::EXPERIMENT];

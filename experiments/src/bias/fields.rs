@@ -1,6 +1,6 @@
 //! The fields: which slab, which photons, where it is probed, and the exact answer.
 
-use crate::harness::{Preset, Settings};
+use crate::harness::Settings;
 use anyhow::Context;
 use glam::DVec3;
 use turbid::Spectrum;
@@ -32,9 +32,9 @@ pub struct Field {
     pub orders: Orders,
     /// Depths of the probes [mfp].
     pub depths: &'static [f64],
-    /// Emitted photons a map, by preset.
-    quick: &'static [u64],
-    full: &'static [u64],
+    /// Emitted photons a map, and maps, by preset.
+    quick: &'static [(u64, u64)],
+    full: &'static [(u64, u64)],
 }
 
 /// Every field, in the order of the report.
@@ -47,41 +47,41 @@ pub const FIELDS: [Field; 4] = [
         g: 0.0,
         orders: Orders { min: 0, max: Some(0) },
         depths: &[0.0, 0.25, 1.0, 2.0],
-        quick: &[10_000, 100_000, 1_000_000],
-        full: &[10_000, 100_000, 1_000_000, 10_000_000],
+        quick: &[(10_000, 256), (100_000, 256), (1_000_000, 64)],
+        full: &[(10_000, 1024), (100_000, 1024), (1_000_000, 512), (10_000_000, 128)],
     },
     Field {
         name: "albedo0.5",
-        title: "all orders, albedo 0.5, isotropic",
+        title: "albedo 0.5, isotropic",
         tau: 2.0,
         albedo: 0.5,
         g: 0.0,
         orders: Orders::ALL,
         depths: &[0.0, 0.25, 1.0, 1.75],
-        quick: &[200_000],
-        full: &[200_000, 2_000_000],
+        quick: &[(200_000, 64)],
+        full: &[(200_000, 512), (2_000_000, 128)],
     },
     Field {
         name: "albedo0.9",
-        title: "all orders, albedo 0.9, isotropic",
+        title: "albedo 0.9, isotropic",
         tau: 2.0,
         albedo: 0.9,
         g: 0.0,
         orders: Orders::ALL,
         depths: &[0.0, 0.25, 1.0, 1.75],
-        quick: &[20_000, 200_000],
-        full: &[20_000, 200_000, 2_000_000],
+        quick: &[(20_000, 256), (200_000, 64)],
+        full: &[(20_000, 1024), (200_000, 512), (2_000_000, 128)],
     },
     Field {
         name: "albedo0.9g0.75",
-        title: "all orders, albedo 0.9, g = 0.75",
+        title: "albedo 0.9, g = 0.75",
         tau: 2.0,
         albedo: 0.9,
         g: 0.75,
         orders: Orders::ALL,
         depths: &[0.0, 0.25, 1.0, 1.75],
-        quick: &[200_000],
-        full: &[200_000, 2_000_000],
+        quick: &[(200_000, 64)],
+        full: &[(200_000, 512), (2_000_000, 128)],
     },
 ];
 
@@ -94,13 +94,15 @@ impl Field {
         FIELDS.iter().find(|f| f.name == name).with_context(|| format!("no field is called {name}"))
     }
 
+    /// Emitted photons a map, and maps: at least as many as verdicts ask for.
+    pub fn sizes(&self, settings: &Settings) -> Vec<(u64, u64)> {
+        let sizes = settings.pick(self.quick, self.full);
+        sizes.iter().map(|&(n, maps)| (((n as f64 * settings.photon_scale) as u64).max(1), maps)).collect()
+    }
+
     /// Emitted photons a map.
     pub fn photons(&self, settings: &Settings) -> Vec<u64> {
-        let counts = match settings.preset {
-            Preset::Quick => self.quick,
-            Preset::Full => self.full,
-        };
-        counts.iter().map(|&n| ((n as f64 * settings.photon_scale) as u64).max(1)).collect()
+        self.sizes(settings).into_iter().map(|(photons, _)| photons).collect()
     }
 
     /// Whether photons of one history can be near each other in the map.

@@ -4,11 +4,11 @@ use super::cases::{Case, Size};
 use super::conclude::{Mistake, Result, exact_at, fano, largest, predicted_fano};
 use super::fields::{FIELDS, Field};
 use super::measure::{is_fano_case, path_case};
-use super::predict::{PART_NAMES, parts};
+use super::predict::{PART_NAMES, Theory};
 use crate::harness::{Cells, FigureFiles, Settings};
 use turbid::estimators::Kernel;
 use turbid::stats::{Moments, mean_interval};
-use turbid_figure::{Along, Axis, Figure, Histogram, Legend, Line, Panel, Points, Rule, Scale, Width};
+use turbid_figure::{Along, Axis, Color, Figure, Histogram, Legend, Line, Panel, Points, Rule, Scale, Width};
 
 /// 95 per cent interval over maps.
 fn bar(moments: &Moments) -> (f64, f64) {
@@ -40,10 +40,20 @@ fn budget(results: &[Result], mistakes: &[Mistake]) -> anyhow::Result<FigureFile
     let axis = |label: &str| Axis::new(label, "%", Scale::SymLog { threshold: 1.0 });
     let mut panel = Panel::new(axis("predicted error"), axis("measured error"))
         .with(Rule::new(Along::Diagonal).with_label("measured = predicted"));
+    let blind: Vec<&Result> = results.iter().filter(|r| !r.case.is_biased() && !r.sees_prediction()).collect();
+    let x = blind.iter().map(|r| r.predicted()).collect();
+    let y = blind.iter().map(|r| r.error.mean()).collect();
+    let bars = blind.iter().map(|r| bar(&r.error)).collect();
+    let label = "too noisy to see its prediction";
+    let noisy = Points::new(label, 0, x, y).with_y_interval(bars);
+    panel = panel.with(Points { color: Color::Grey, ..noisy });
     for (class, part) in PART_NAMES.iter().enumerate() {
         // The rule's own part is a fault, and drawn as one.
         let chosen: Vec<&Result> =
-            results.iter().filter(|r| !r.case.is_biased() && r.parts.dominant() == class).collect();
+            results
+            .iter()
+            .filter(|r| !r.case.is_biased() && r.sees_prediction() && r.parts.dominant() == class)
+            .collect();
         if chosen.is_empty() {
             continue;
         }
@@ -105,27 +115,48 @@ fn orders(results: &[Result]) -> anyhow::Result<FigureFiles> {
             c.field == free && c.photons == photons && c.depth == depth && c.kernel == Kernel::Uniform && fits
         })
     };
+    let known = Theory::new(free)?;
+    let theory = |photons, depth, sizes: &[Size]| {
+        let one = |&size: &Size| {
+            let case = Case { field: free, photons, depth, size, kernel: Kernel::Uniform };
+            known.parts(&case).map(|p| 100.0 * p.total())
+        };
+        sizes.iter().map(one).collect::<anyhow::Result<Vec<f64>>>()
+    };
     let size = |case: &Case| match case.size {
         Size::Radius(r) => r,
         Size::Nearest(k) | Size::NearestBiased(k) => k as f64,
     };
-    let add = |mut panel: Panel, chosen: Vec<&Result>, label: &str, class: usize| {
+    let points = |chosen: &[&Result], label: &str, class: usize| {
         let x: Vec<f64> = chosen.iter().map(|r| size(&r.case)).collect();
         let bars = chosen.iter().map(|r| bar(&r.error)).collect();
         let y = chosen.iter().map(|r| r.error.mean()).collect();
-        panel = panel.with(Line::new(label, class, x.clone(), chosen.iter().map(|r| r.predicted()).collect()));
-        panel.with(Points::new(label, class, x, y).with_y_interval(bars))
+        Points::new(label, class, x, y).with_y_interval(bars)
     };
-    let mut left = Panel::new(Axis::log("radius", "mfp"), Axis::linear("error", "%")).with_title("fixed radius");
+    let mut left = Panel::new(Axis::log("radius", "mfp"), Axis::new("error", "%", Scale::LogClipped)).with_title("fixed radius");
+    let radii: Vec<f64> = (0..=40).map(|i| 0.08 * libm::exp(0.06 * f64::from(i))).collect();
+    let sizes: Vec<Size> = radii.iter().map(|&r| Size::Radius(r)).collect();
     for (class, depth) in [(0, 1.0), (1, 2.0)] {
-        left = add(left, of(depth, most, true).collect(), &format!("depth {depth}"), class);
+        let label = format!("depth {depth}");
+        let whole: usize = radii.iter().filter(|&&r| r <= depth).count();
+        let line = theory(most, depth, &sizes[..whole])?;
+        left = left.with(Line::new(&label, class, radii[..whole].to_vec(), line));
+        left = left.with(points(&of(depth, most, true).collect::<Vec<_>>(), &label, class));
     }
     let mut right = Panel::new(Axis::log("k", ""), Axis::linear("error", "%")).with_title("k nearest, depth 1");
     let mut counts: Vec<u64> = results.iter().filter(|r| r.case.field == free).map(|r| r.case.photons).collect();
     counts.dedup();
+    let ks: Vec<usize> = vec![5, 7, 10, 15, 20, 30, 50, 70, 100, 150, 200, 300, 500, 700];
     for (class, &photons) in counts.iter().enumerate() {
-        let label = format!("{:.0e} photons", photons as f64);
-        right = add(right, of(1.0, photons, false).collect(), &label, class + 2);
+        let label = format!("{photons} photons");
+        // Lines stop where the measured cases do.
+        let measured: Vec<&Result> = of(1.0, photons, false).collect();
+        let most = measured.iter().map(|r| size(&r.case)).fold(0.0, f64::max);
+        let ks: Vec<usize> = ks.iter().copied().filter(|&k| k as f64 <= 1.5 * most).collect();
+        let sizes: Vec<Size> = ks.iter().map(|&k| Size::Nearest(k)).collect();
+        let x = ks.iter().map(|&k| k as f64).collect();
+        right = right.with(Line::new(&label, class + 2, x, theory(photons, 1.0, &sizes)?));
+        right = right.with(points(&measured, &label, class + 2));
     }
     let figure = Figure { width: Width::Double, columns: 2, ..Figure::new(vec![left, right]) };
     let caption = "Uncollided photons, whole balls: error against gather size, measured (points, 95 % intervals over \
@@ -139,7 +170,7 @@ fn orders(results: &[Result]) -> anyhow::Result<FigureFiles> {
 fn depths(settings: &Settings, cells: &Cells, results: &[Result]) -> anyhow::Result<FigureFiles> {
     let mut panels = Vec::new();
     for field in FIELDS.iter().filter(|f| f.has_clusters()) {
-        let exact = field.exact()?;
+        let known = Theory::new(field)?;
         let photons = field.photons(settings).last().copied().unwrap_or(1);
         let axis = Axis::new("error", "%", Scale::SymLog { threshold: 1.0 }).with_range(-100.0, 10.0);
         let mut panel = Panel::new(Axis::linear("depth", "mfp"), axis).with_title(field.title);
@@ -148,7 +179,7 @@ fn depths(settings: &Settings, cells: &Cells, results: &[Result]) -> anyhow::Res
             let grid: Vec<f64> = (0..=80).map(|i| field.tau * f64::from(i) / 80.0).collect();
             let theory = grid.iter().map(|&depth| {
                 let case = Case { field, photons, depth, size, kernel: Kernel::Uniform };
-                parts(&case, &exact).map(|p| 100.0 * p.total())
+                known.parts(&case).map(|p| 100.0 * p.total())
             });
             let theory = theory.collect::<anyhow::Result<Vec<f64>>>()?;
             let chosen: Vec<&Result> = results

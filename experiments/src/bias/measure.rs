@@ -14,8 +14,8 @@ use turbid::sensor::sample;
 use turbid::stats::Moments;
 use turbid::transport::NoProgress;
 
-/// Independent maps of a case: what verdicts ask for at least.
-pub const MAPS: u64 = 64;
+/// Batches of paths.
+const BATCHES: u64 = 64;
 /// Paths of one batch at one depth.
 const PATHS: u64 = 16_384;
 /// Name of the groups of path batches.
@@ -35,14 +35,14 @@ pub fn map_case(field: &Field, photons: u64) -> String {
 pub fn cells(settings: &Settings) -> Vec<CellId> {
     let mut cells = Vec::new();
     for field in &FIELDS {
-        for photons in field.photons(settings) {
+        for (photons, maps) in field.sizes(settings) {
             // A history of all orders has a few collisions, and each photon is stored, sorted and gathered.
             let cost = photons as f64 * if field.has_clusters() { 4.0 } else { 1.0 };
-            cells.extend(CellId::replicates(&Case::group(field, photons), MAPS, cost));
+            cells.extend(CellId::replicates(&Case::group(field, photons), maps, cost));
         }
         if field.has_clusters() {
             let cost = (PATHS * field.depths.len() as u64) as f64;
-            cells.extend(CellId::replicates(&format!("{}-{BY_PATHS}", field.name), MAPS, cost));
+            cells.extend(CellId::replicates(&format!("{}-{BY_PATHS}", field.name), BATCHES, cost));
         }
     }
     cells

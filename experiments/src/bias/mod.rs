@@ -13,6 +13,7 @@ mod fields;
 mod figures;
 mod measure;
 mod predict;
+mod profile;
 
 use crate::harness::Experiment;
 

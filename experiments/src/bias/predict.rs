@@ -1,7 +1,8 @@
 //! What theory predicts of every case, in parts, before anything is measured.
 
 use super::cases::{Case, Size};
-use super::fields::{CELL, Exact, FIELDS};
+use super::fields::{CELL, Exact, FIELDS, Field};
+use super::profile::Profile;
 use crate::harness::{Prediction, Settings, Unit};
 use anyhow::Context;
 use rayon::prelude::*;
@@ -9,6 +10,8 @@ use std::collections::HashMap;
 use std::f64::consts::PI;
 use turbid::estimators::Kernel;
 use turbid_analytic::kernel as referee;
+use turbid_analytic::nearest::{nearest_expectation, nearest_expectation_biased};
+use turbid_analytic::slab_kernel::{edge_loss, slab_moment};
 
 /// The predicted error of a case in parts, each as a fraction of the exact fluence.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -67,65 +70,94 @@ pub fn clustering(albedo: f64, r: f64) -> f64 {
     1.5 * albedo * r
 }
 
-/// The parts of one case.
-pub fn parts(case: &Case, exact: &Exact) -> anyhow::Result<Parts> {
-    let (tau, t) = (case.field.tau, case.depth);
-    let kernel = referee_kernel(case.kernel);
-    let (here, here_error) = exact(t)?;
-    let field = |depth: f64| exact(depth).map_or(f64::NAN, |(value, _)| value);
-    let mean = |kernel, r: f64, f: &dyn Fn(f64) -> f64| {
-        referee::slab_kernel_mean(kernel, r, t, tau, f).map(|v| (v.value, v.error))
-    };
-    let mut parts =
-        Parts { exact: here, exact_error: here_error, edge: 0.0, blur: 0.0, rule: 0.0, clusters: 0.0, error: 0.0 };
-    match case.size {
-        Size::Radius(r) => {
-            let (blurred, blurred_error) = mean(kernel, r, &field)?;
-            let (inside, _) = mean(kernel, r, &|_| 1.0)?;
-            parts.edge = inside - 1.0;
-            parts.blur = blurred / here - inside;
-            parts.error = (blurred_error + here_error) / here;
-        }
-        Size::Nearest(k) | Size::NearestBiased(k) => {
-            // Photons per volume where the fluence is 1.
-            let density = case.photons as f64 / (CELL * CELL);
-            let expect = |f: &dyn Fn(f64) -> f64, k_summed: bool| {
-                let value = |kernel, r| mean(kernel, r, f).map_or(f64::NAN, |(value, _)| value);
-                let number = |r: f64| density * 4.0 / 3.0 * PI * r * r * r * value(referee::Kernel::Uniform, r);
-                let kernel_mean = |r: f64| value(kernel, r);
-                let rule = if k_summed { referee::Rule::Biased } else { referee::Rule::Unbiased };
-                referee::nearest_expectation(k, case.cap(), rule, number, kernel_mean)
-            };
-            let right = expect(&field, false)?;
-            let uniform = expect(&|_| here, false)?;
-            parts.edge = uniform.value / here - 1.0;
-            parts.blur = (right.value - uniform.value) / here;
-            parts.error = (right.error + here_error) / here;
-            if case.is_biased() {
-                let biased = expect(&field, true)?;
-                parts.rule = (biased.value - right.value) / here;
-                parts.error += biased.error / here;
-            }
-            if case.field.has_clusters() {
-                // One photon is expected in the ball of radius r_1; an edge is left out of this small term.
-                let r1 = libm::cbrt(3.0 / (4.0 * PI * density * here));
-                let k = k as f64;
-                let factor = libm::exp(libm::lgamma(k - 5.0 / 3.0) - libm::lgamma(k - 1.0)) / 3.0;
-                parts.clusters = clustering(case.field.albedo, r1) * factor;
-            }
-        }
+/// A field with all that predictions ask of it.
+pub struct Theory {
+    field: &'static Field,
+    exact: Exact,
+    /// Kernel means by depth and kernel, the uniform one among them.
+    profiles: Vec<(f64, Kernel, Profile)>,
+}
+
+/// What interpolation of the kernel means adds to the error of a nearest expectation, tested in `profile`.
+const INTERPOLATION: f64 = 1e-8;
+
+impl Theory {
+    /// Tabulates a field's kernel means at its depths.
+    pub fn new(field: &'static Field) -> anyhow::Result<Self> {
+        let exact = field.exact()?;
+        let places: Vec<(f64, Kernel)> =
+            field.depths.iter().flat_map(|&depth| Kernel::ALL.map(|kernel| (depth, kernel))).collect();
+        let profiles = places.into_par_iter().map(|(depth, kernel)| {
+            Profile::new(referee_kernel(kernel), depth, field.tau, &exact).map(|p| (depth, kernel, p))
+        });
+        let profiles = profiles.collect::<anyhow::Result<_>>()?;
+        Ok(Theory { field, exact, profiles })
     }
-    Ok(parts)
+
+    fn profile(&self, depth: f64, kernel: Kernel) -> anyhow::Result<&Profile> {
+        let found = self.profiles.iter().find(|(d, k, _)| *d == depth && *k == kernel);
+        found.map(|(_, _, p)| p).with_context(|| format!("depth {depth} is none of {}", self.field.name))
+    }
+
+    /// The parts of one case. Fixed radii may be asked at any depth, nearest gathers at the field's own.
+    pub fn parts(&self, case: &Case) -> anyhow::Result<Parts> {
+        let (tau, t) = (case.field.tau, case.depth);
+        let kernel = referee_kernel(case.kernel);
+        let (here, here_error) = (self.exact)(t)?;
+        let field = |depth: f64| (self.exact)(depth).map_or(f64::NAN, |(value, _)| value);
+        let mut parts =
+            Parts { exact: here, exact_error: here_error, edge: 0.0, blur: 0.0, rule: 0.0, clusters: 0.0, error: 0.0 };
+        match case.size {
+            Size::Radius(r) => {
+                let split = edge_loss(kernel, r, t, tau, field)?;
+                parts.edge = split.edge.value / here;
+                parts.blur = split.blur.value / here;
+                parts.error = (split.edge.error + split.blur.error + here_error) / here;
+            }
+            Size::Nearest(k) | Size::NearestBiased(k) => {
+                let (neighbors, cap) = (u32::try_from(k)?, case.cap());
+                // Photons per volume where the fluence is 1.
+                let density = case.photons as f64 / (CELL * CELL);
+                let ball = |r: f64| density * 4.0 / 3.0 * PI * r * r * r;
+                let (counted, summed) = (self.profile(t, Kernel::Uniform)?, self.profile(t, case.kernel)?);
+                let number = |r: f64| ball(r) * counted.at(r);
+                let right = nearest_expectation(neighbors, cap, number, |r| summed.at(r))?;
+                let inside = |kernel, r| slab_moment(kernel, 0, r, t, tau).map_or(f64::NAN, |v| here * v.value);
+                let number_uniform = |r: f64| ball(r) * inside(referee::Kernel::Uniform, r);
+                let uniform = nearest_expectation(neighbors, cap, number_uniform, |r| inside(kernel, r))?;
+                parts.edge = uniform.value / here - 1.0;
+                parts.blur = (right.value - uniform.value) / here;
+                parts.error = (right.error + uniform.error + here_error) / here + INTERPOLATION;
+                if case.is_biased() {
+                    let biased = nearest_expectation_biased(neighbors, cap, number, |r| summed.at(r))?;
+                    parts.rule = (biased.value - right.value) / here;
+                    parts.error += biased.error / here;
+                }
+                if case.field.has_clusters() {
+                    parts.clusters = nearest_clustering(case.field.albedo, density * here, k);
+                }
+            }
+        }
+        Ok(parts)
+    }
+}
+
+/// What clusters add to a nearest estimate, relative: to first order in the radius r_1 of the ball in which one
+/// photon is expected, and without the edges of the medium.
+fn nearest_clustering(albedo: f64, photons_per_volume: f64, k: usize) -> f64 {
+    let r1 = libm::cbrt(3.0 / (4.0 * PI * photons_per_volume));
+    let k = k as f64;
+    clustering(albedo, r1) * libm::exp(libm::lgamma(k - 5.0 / 3.0) - libm::lgamma(k - 1.0)) / 3.0
 }
 
 /// All cases of a study with their parts, computed in parallel.
 pub fn budget(settings: &Settings) -> anyhow::Result<Vec<(Case, Parts)>> {
     let mut all = Vec::new();
     for field in &FIELDS {
-        let exact = field.exact()?;
+        let theory = Theory::new(field)?;
         let cases: Vec<Case> = field.photons(settings).into_iter().flat_map(|n| Case::all(field, n)).collect();
         let predicted: Vec<anyhow::Result<(Case, Parts)>> =
-            cases.into_par_iter().map(|case| parts(&case, &exact).map(|p| (case, p))).collect();
+            cases.into_par_iter().map(|case| theory.parts(&case).map(|p| (case, p))).collect();
         for item in predicted {
             all.push(item?);
         }

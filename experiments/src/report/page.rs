@@ -85,7 +85,7 @@ fn overview(sections: &[SectionReport], numbers: &mut Numbers) -> Markup {
                         }
                         @for judged in &part.judged {
                             tr {
-                                td { (judged.claim.text) (advice(judged)) }
+                                td.claim { (judged.claim.text) (advice(judged)) }
                                 td.n { (judged.measured()) }
                                 td.n { (judged.claim.margin()) }
                                 td.n { (maps(judged)) }
@@ -117,8 +117,9 @@ fn section(part: &SectionReport, has_heading: bool, numbers: &mut Numbers) -> Ma
             @if has_heading { h2 { (part.experiment.title) } }
             p.question { (part.experiment.question) }
             @for paragraph in &part.section.summary { p { (paragraph) } }
+            @for figure in part.section.figures.iter().take(1) { (draw(figure, numbers)) }
             @if !part.judged.is_empty() { (claims(&part.judged, numbers)) }
-            @for figure in &part.section.figures { (draw(figure, numbers)) }
+            @for figure in part.section.figures.iter().skip(1) { (draw(figure, numbers)) }
             @for table in &part.section.tables { (print_table(table, numbers)) }
             @if !part.predictions.is_empty() { (predictions(part, numbers)) }
             @if !part.section.notes.is_empty() {
@@ -139,7 +140,7 @@ fn claims(judged: &[Judged], numbers: &mut Numbers) -> Markup {
             tbody {
                 @for judged in judged {
                     tr {
-                        td { (judged.claim.text) (advice(judged)) }
+                        td.claim { (judged.claim.text) (advice(judged)) }
                         td.n { (judged.measured()) }
                         td.n { (interval(judged)) }
                         td.n { (judged.claim.margin()) }

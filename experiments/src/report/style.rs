@@ -5,7 +5,7 @@ pub(super) const CSS: &str = "
 :root { --ink: #1c1f23; --soft: #5b6470; --line: #d5dae0; --wash: #f5f6f8; --good: #1d6b3a; --bad: #a3231f; --open: #8a5a00; }
 * { box-sizing: border-box; }
 html { background: #fff; color: var(--ink); }
-body { max-width: 960px; margin: 0 auto; padding: 48px 28px 80px; font: 17px/1.55 Charter, 'Bitstream Charter', Georgia, 'Times New Roman', serif; }
+body { max-width: 1080px; margin: 0 auto; padding: 48px 28px 80px; font: 17px/1.55 Charter, 'Bitstream Charter', Georgia, 'Times New Roman', serif; }
 h1 { font-size: 34px; line-height: 1.2; margin: 4px 0 10px; font-weight: 600; }
 h2 { font-size: 25px; line-height: 1.25; margin: 64px 0 8px; padding-top: 18px; border-top: 2px solid var(--ink); font-weight: 600; }
 h3 { font-size: 18px; margin: 32px 0 8px; font-weight: 600; }
@@ -24,7 +24,8 @@ table { border-collapse: collapse; width: 100%; font-size: 14px; line-height: 1.
 caption, figcaption { text-align: left; font-size: 14px; line-height: 1.45; color: var(--ink); padding-bottom: 8px; caption-side: top; }
 caption b, figcaption b { margin-right: 4px; }
 th { text-align: left; font-weight: 600; border-bottom: 1.5px solid var(--ink); border-top: 1.5px solid var(--ink); padding: 6px 14px 6px 0; vertical-align: bottom; }
-td { border-bottom: 1px solid var(--line); padding: 6px 14px 6px 0; vertical-align: top; }
+td { border-bottom: 1px solid var(--line); padding: 5px 12px 5px 0; vertical-align: top; }
+td.claim { min-width: 24em; }
 th.n, td.n { text-align: right; white-space: nowrap; }
 th:last-child, td:last-child { padding-right: 0; }
 tr.group td { font-weight: 600; border-bottom: none; padding-top: 14px; }
