@@ -12,26 +12,26 @@
 //! * Kernel density estimation: [`kernel`], [`ball_mean`], [`blur`], [`volumes`], [`slab_kernel`], [`nearest`],
 //!   [`progressive`]
 
-//pub mod ball_mean;
+pub mod ball_mean;
 pub mod beer_lambert;
-//pub mod blur;
+pub mod blur;
 pub mod error;
 pub mod exponential_integral;
 pub mod incidence;
-//pub mod kernel;
-//pub mod nearest;
+pub mod kernel;
+pub mod nearest;
 mod peierls;
-//mod poisson;
-//pub mod progressive;
+mod poisson;
+pub mod progressive;
 pub mod quadrature;
 pub mod slab_isotropic;
-//pub mod slab_kernel;
+pub mod slab_kernel;
 pub mod slab_single;
 pub mod value;
-//pub mod volumes;
+pub mod volumes;
 
 pub use error::{Error, Result};
 pub use incidence::Incidence;
-//pub use kernel::{Dimension, Kernel};
+pub use kernel::{Dimension, Kernel};
 pub use slab_isotropic::IsotropicSlab;
 pub use value::Value;
