@@ -111,20 +111,20 @@ impl PhotonTree {
         let mut power = [[0.0; BLOCK]; 3];
         for (lane, entry) in entries.iter().enumerate() {
             let photon = &photons[entry.index as usize];
-            let (d, p) = (photon.dir.to_array(), photon.power.to_array());
             for axis in 0..3 {
                 position[axis][lane] = entry.position[axis];
-                dir[axis][lane] = d[axis];
-                power[axis][lane] = p[axis];
+                dir[axis][lane] = photon.dir[axis];
+                power[axis][lane] = photon.power[axis];
             }
             self.histories.push((photon.order, photon.flags));
         }
-        let rows = |lanes: &[[f32; BLOCK]; 3]| {
-            [0, ROW].map(|first| [0, 1, 2].map(|axis| f32x8::from(&lanes[axis][first..first + ROW])))
+        let row = |lanes: &[[f32; BLOCK]; 3], first: usize| {
+            let part = |axis: usize| f32x8::from(&lanes[axis][first..first + ROW]);
+            [part(0), part(1), part(2)]
         };
-        self.positions.push(rows(&position));
-        self.dirs.extend(rows(&dir));
-        self.powers.extend(rows(&power));
+        self.positions.push([row(&position, 0), row(&position, ROW)]);
+        self.dirs.extend([row(&dir, 0), row(&dir, ROW)]);
+        self.powers.extend([row(&power, 0), row(&power, ROW)]);
     }
 
     /// Number of photons.

@@ -27,7 +27,8 @@ impl Entry {
 /// photons and not of how they came.
 pub(super) fn kd_order(entries: &mut [Entry], photons: &[Photon], parallel: bool) {
     let mut spare = vec![Entry::NONE; entries.len()];
-    Order { photons, parallel }.sort(entries, &mut spare, true);
+    let mut band = vec![Entry::NONE; entries.len() / 2];
+    Order { photons, parallel }.sort(entries, &mut spare, &mut band, true);
 }
 
 /// What the whole recursion shares.
@@ -38,37 +39,57 @@ struct Order<'a> {
 }
 
 impl Order<'_> {
-    /// Orders `entries`, with `spare` to work in; the result is left in `entries` if `in_place`, else in `spare`.
-    fn sort(self, entries: &mut [Entry], spare: &mut [Entry], in_place: bool) {
+    /// Orders `entries`, with `spare` and `band`, half as long, to work in; the result is left in `entries` if `in_place`, else in `spare`.
+    fn sort(self, entries: &mut [Entry], spare: &mut [Entry], band: &mut [Entry], in_place: bool) {
         let blocks = entries.len().div_ceil(BLOCK);
         let axis = widest_axis(entries);
         if blocks <= 1 {
-            // Rows are halves of a block across its widest axis.
-            entries.sort_unstable_by(|a, b| self.compare(axis, a, b));
-            if !in_place {
-                spare.copy_from_slice(entries);
-            }
-            return;
+            return self.sort_block(axis, entries, spare, in_place);
         }
         let middle = blocks.next_power_of_two() / 2 * BLOCK;
         let moved = match axis {
-            0 => self.split::<0>(entries, spare, middle),
-            1 => self.split::<1>(entries, spare, middle),
-            _ => self.split::<2>(entries, spare, middle),
+            0 => self.split::<0>(entries, spare, band, middle),
+            1 => self.split::<1>(entries, spare, band, middle),
+            _ => self.split::<2>(entries, spare, band, middle),
         };
         let ((from, to), in_place) =
             if moved { ((spare, entries), !in_place) } else { ((entries, spare), in_place) };
         let (nearer, farther) = from.split_at_mut(middle);
         let (nearer_spare, farther_spare) = to.split_at_mut(middle);
+        let (nearer_band, farther_band) = band.split_at_mut(middle / 2);
         if self.parallel && nearer.len() > SERIAL {
             rayon::join(
-                || self.sort(nearer, nearer_spare, in_place),
-                || self.sort(farther, farther_spare, in_place),
+                || self.sort(nearer, nearer_spare, nearer_band, in_place),
+                || self.sort(farther, farther_spare, farther_band, in_place),
             );
         } else {
             let this = Order { parallel: false, ..self };
-            this.sort(nearer, nearer_spare, in_place);
-            this.sort(farther, farther_spare, in_place);
+            this.sort(nearer, nearer_spare, nearer_band, in_place);
+            this.sort(farther, farther_spare, farther_band, in_place);
+        }
+    }
+
+    /// Sorts a block across its widest axis: its two rows are halves of it.
+    fn sort_block(self, axis: usize, entries: &mut [Entry], spare: &mut [Entry], in_place: bool) {
+        // By rank, which is the number of smaller coordinates: no branch to mispredict.
+        let mut coordinates = [f32::INFINITY; BLOCK];
+        for (c, entry) in coordinates.iter_mut().zip(entries.iter()) {
+            *c = entry.position[axis];
+        }
+        let ranks = coordinates.map(|c| coordinates.iter().map(|&other| u32::from(other < c)).sum::<u32>());
+        let seen = ranks[..entries.len()].iter().fold(0u32, |seen, rank| seen | 1 << rank);
+        if seen.count_ones() as usize == entries.len() {
+            for (entry, rank) in entries.iter().zip(ranks) {
+                spare[rank as usize] = *entry;
+            }
+            if in_place {
+                entries.copy_from_slice(spare);
+            }
+        } else {
+            entries.sort_unstable_by(|a, b| self.compare(axis, a, b));
+            if !in_place {
+                spare.copy_from_slice(entries);
+            }
         }
     }
 
@@ -76,38 +97,51 @@ impl Order<'_> {
     ///
     /// One pass moves what lies clearly below or above the middle, by two pivots from a sample (Floyd and Rivest
     /// 1975), and only the band between them is searched. Which entries come first does not depend on the sample.
-    fn split<const AXIS: usize>(self, entries: &mut [Entry], spare: &mut [Entry], middle: usize) -> bool {
-        let count = entries.len();
-        if let Some([low, high]) = pivots::<AXIS>(entries, middle) {
-            let (mut below, mut above) = (0, count);
-            let mut band = vec![Entry::NONE; count / 4 + 1];
-            let mut between = 0;
-            for entry in entries.iter() {
-                // Written to all three, kept in one: no branch to mispredict. What is still to come always has
-                // room between `below` and `above`.
-                let c = entry.position[AXIS];
-                let (is_below, is_above) = (c < low, c > high);
-                spare[below] = *entry;
-                spare[above - 1] = *entry;
-                band[between] = *entry;
-                below += usize::from(is_below);
-                above -= usize::from(is_above);
-                between += usize::from(!is_below & !is_above);
-                if between == band.len() {
-                    break;
-                }
-            }
-            if between < band.len() && below <= middle && middle < above {
-                spare[below..above].copy_from_slice(&band[..between]);
-                let rest = &mut spare[below..above];
-                if !rest.is_empty() {
-                    rest.select_nth_unstable_by(middle - below, |a, b| self.compare(AXIS, a, b));
-                }
-                return true;
+    fn split<const AXIS: usize>(
+        self,
+        entries: &mut [Entry],
+        spare: &mut [Entry],
+        band: &mut [Entry],
+        middle: usize,
+    ) -> bool {
+        let Some([low, high]) = pivots::<AXIS>(entries, middle) else {
+            self.select::<AXIS>(entries, middle);
+            return false;
+        };
+        let (mut below, mut above, mut between) = (0, entries.len(), 0);
+        for entry in entries.iter() {
+            // Written to all three places, kept in one: no branch to mispredict. What is still to come always has
+            // room between `below` and `above`.
+            let c = entry.position[AXIS];
+            let (is_below, is_above) = (c < low, c > high);
+            spare[below] = *entry;
+            spare[above - 1] = *entry;
+            band[between] = *entry;
+            below += usize::from(is_below);
+            above -= usize::from(is_above);
+            between += usize::from(!is_below & !is_above);
+            if between == band.len() {
+                break;
             }
         }
-        entries.select_nth_unstable_by(middle, |a, b| self.compare(AXIS, a, b));
-        false
+        if between == band.len() || below > middle || middle >= above {
+            self.select::<AXIS>(entries, middle);
+            return false;
+        }
+        spare[below..above].copy_from_slice(&band[..between]);
+        self.select::<AXIS>(&mut spare[below..above], middle - below);
+        true
+    }
+
+    /// Brings the `middle` nearest entries along an axis before the others.
+    fn select<const AXIS: usize>(self, entries: &mut [Entry], middle: usize) {
+        let along = |entry: &Entry| entry.position[AXIS];
+        let by_coordinate = |a: &Entry, b: &Entry| along(a).partial_cmp(&along(b)).unwrap_or(Ordering::Equal);
+        let (nearer, &mut pivot, _) = entries.select_nth_unstable_by(middle, by_coordinate);
+        // Only where coordinates tie across the middle do the records decide.
+        if nearer.iter().fold(false, |tie, entry| tie | (along(entry) == along(&pivot))) {
+            entries.select_nth_unstable_by(middle, |a, b| self.compare(AXIS, a, b));
+        }
     }
 
     #[inline]
