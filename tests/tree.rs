@@ -182,7 +182,11 @@ fn duplicates_of_the_query_point_are_counted_and_stepped_over() -> Result<()> {
     }
     let (shell, _) = nearest(&tree, centre, 41, 10.0);
     assert_eq!(shell, Some(Shell { radius: 0.5, closer: 40, tied: 1, coincident: 0 }));
-    assert_eq!(nearest(&tree, centre, 10, 0.4), (None, vec![]), "none but those at the centre is within the cap");
+    assert_eq!(
+        nearest(&tree, centre, 10, 0.4),
+        (None, vec![]),
+        "none but those at the centre is within the cap"
+    );
     Ok(())
 }
 
@@ -209,10 +213,7 @@ fn refuses_what_is_not_finite() {
     given[3].position.y = f64::NAN;
     given[8].position.x = f64::INFINITY;
     given[9].power.x = f32::NAN;
-    assert_eq!(
-        PhotonTree::new(given).err(),
-        Some(Error::NonFinite { count: 3, place: "stored photons" })
-    );
+    assert_eq!(PhotonTree::new(given).err(), Some(Error::NonFinite { count: 3, place: "stored photons" }));
 }
 
 /// Everything the tree holds, in its order.
