@@ -10,7 +10,7 @@ mod within;
 use super::{Flags, Photon};
 use crate::error::{Error, Result};
 use boxes::Boxes;
-use glam::{DVec3, Vec3};
+use glam::Vec3;
 use order::Entry;
 use units::Units;
 use wide::f32x8;
@@ -72,8 +72,7 @@ impl PhotonTree {
         if u32::try_from(stored).is_err() {
             return Err(Error::out_of_range("the number of photons in one map", stored as f64, "below 2^32"));
         }
-        refuse_non_finite(&photons)?;
-        let units = Units::new(corner(&photons, DVec3::min), corner(&photons, DVec3::max));
+        let units = Units::of(&photons)?;
         let mut entries: Vec<Entry> = photons
             .iter()
             .enumerate()
@@ -82,7 +81,9 @@ impl PhotonTree {
                 index: index as u32,
             })
             .collect();
-        order::kd_order(&mut entries, &photons, parallel);
+        if stored > 0 {
+            order::kd_order(&mut entries, &photons, parallel);
+        }
 
         let blocks = stored.div_ceil(BLOCK);
         let rows = 2 * blocks;
@@ -110,20 +111,20 @@ impl PhotonTree {
         let mut power = [[0.0; BLOCK]; 3];
         for (lane, entry) in entries.iter().enumerate() {
             let photon = &photons[entry.index as usize];
-            let (d, p) = (photon.dir.to_array(), photon.power.to_array());
             for axis in 0..3 {
                 position[axis][lane] = entry.position[axis];
-                dir[axis][lane] = d[axis];
-                power[axis][lane] = p[axis];
+                dir[axis][lane] = photon.dir[axis];
+                power[axis][lane] = photon.power[axis];
             }
             self.histories.push((photon.order, photon.flags));
         }
-        let rows = |lanes: &[[f32; BLOCK]; 3]| {
-            [0, ROW].map(|first| [0, 1, 2].map(|axis| f32x8::from(&lanes[axis][first..first + ROW])))
+        let row = |lanes: &[[f32; BLOCK]; 3], first: usize| {
+            let part = |axis: usize| f32x8::from(&lanes[axis][first..first + ROW]);
+            [part(0), part(1), part(2)]
         };
-        self.positions.push(rows(&position));
-        self.dirs.extend(rows(&dir));
-        self.powers.extend(rows(&power));
+        self.positions.push([row(&position, 0), row(&position, ROW)]);
+        self.dirs.extend([row(&dir, 0), row(&dir, ROW)]);
+        self.powers.extend([row(&power, 0), row(&power, ROW)]);
     }
 
     /// Number of photons.
@@ -166,17 +167,5 @@ impl PhotonTree {
     /// Every photon, in the tree's order.
     pub fn photons(&self) -> impl Iterator<Item = Photon> + '_ {
         (0..self.stored).map(|place| self.photon(place))
-    }
-}
-
-fn corner(photons: &[Photon], better: fn(DVec3, DVec3) -> DVec3) -> DVec3 {
-    photons.iter().map(|photon| photon.position).reduce(better).unwrap_or(DVec3::ZERO)
-}
-
-fn refuse_non_finite(photons: &[Photon]) -> Result<()> {
-    let is_finite = |p: &Photon| p.position.is_finite() && p.dir.is_finite() && p.power.is_finite();
-    match photons.iter().filter(|photon| !is_finite(photon)).count() as u64 {
-        0 => Ok(()),
-        count => Err(Error::NonFinite { count, place: "stored photons" }),
     }
 }

@@ -1,6 +1,6 @@
 //! Levels of boxes, sixteen wide, above the blocks.
 
-use super::{BLOCK, Row};
+use super::{BLOCK, ROW, Row};
 use wide::f32x8;
 
 /// Sixteen boxes as arrays, in two rows of eight. Places without a box hold one that is infinitely far away.
@@ -67,20 +67,30 @@ struct Extent {
 }
 
 impl Extent {
+    /// No box, infinitely far away.
     const NONE: Extent = Extent { lower: [f32::INFINITY; 3], upper: [f32::INFINITY; 3] };
 
+    /// The box of the first `stored` positions of a block.
     fn of_block(rows: &[Row; 2], stored: usize) -> Extent {
-        let along = |axis: usize| rows.iter().flat_map(move |row| row[axis].to_array()).take(stored);
-        let bound =
-            |axis: usize, better: fn(f32, f32) -> f32| along(axis).reduce(better).unwrap_or(f32::INFINITY);
-        Extent { lower: [0, 1, 2].map(|a| bound(a, f32::min)), upper: [0, 1, 2].map(|a| bound(a, f32::max)) }
+        let at = |lane: usize| [0, 1, 2].map(|axis| rows[lane / ROW][axis].as_array()[lane % ROW]);
+        let mut extent = Extent { lower: at(0), upper: at(0) };
+        for lane in 1..stored {
+            extent = extent.union(Extent { lower: at(lane), upper: at(lane) });
+        }
+        extent
     }
 
     fn union(self, other: Extent) -> Extent {
-        Extent {
-            lower: [0, 1, 2].map(|a| self.lower[a].min(other.lower[a])),
-            upper: [0, 1, 2].map(|a| self.upper[a].max(other.upper[a])),
+        let mut union = self;
+        for axis in 0..3 {
+            if other.lower[axis] < union.lower[axis] {
+                union.lower[axis] = other.lower[axis];
+            }
+            if other.upper[axis] > union.upper[axis] {
+                union.upper[axis] = other.upper[axis];
+            }
         }
+        union
     }
 }
 
