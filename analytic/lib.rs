@@ -24,6 +24,7 @@ mod peierls;
 mod poisson;
 pub mod progressive;
 pub mod quadrature;
+pub mod slab_anisotropic;
 pub mod slab_isotropic;
 pub mod slab_kernel;
 pub mod slab_single;
