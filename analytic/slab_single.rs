@@ -28,7 +28,7 @@ const EXPONENT_ULPS: f64 = 750.0;
 /// # Errors     `Error::OutOfRange` naming the parameter
 /// # Limits     mu -> 0: albedo p e^(-t/mu0)/mu0, the source function over the extinction
 /// # Source     Chandrasekhar 1960, chapter III
-#[expect(clippy::too_many_arguments, reason = "one number for each symbol of the formula")]
+#[allow(clippy::too_many_arguments, reason = "one number for each symbol of the formula")]
 pub fn single_radiance(tau: f64, albedo: f64, g: f64, mu0: f64, t: f64, mu: f64, dphi: f64) -> Result<Value> {
     check_tau(tau)?;
     check_albedo(albedo)?;

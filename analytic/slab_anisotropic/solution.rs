@@ -76,7 +76,9 @@ impl Solution {
         }
         let slope = |j: usize| tanh(0.5 * modes.k[j] * tau);
         let system = |scale_even: &dyn Fn(usize) -> f64, scale_odd: &dyn Fn(usize) -> f64| {
-            DMatrix::from_fn(n, n, |i, j| modes.even[(i, j)] * scale_even(j) + modes.odd[(i, j)] * scale_odd(j))
+            DMatrix::from_fn(n, n, |i, j| {
+                modes.even[(i, j)] * scale_even(j) + modes.odd[(i, j)] * scale_odd(j)
+            })
         };
         let even = system(&|_| 1.0, &|j| modes.k[j] * slope(j));
         let odd = system(&|j| half_width(modes.k[j], tau), &|_| 1.0);

@@ -77,7 +77,14 @@ impl Case {
 
     /// The name in tables.
     pub fn name(&self) -> String {
-        format!("{} n={} t={} {} {}", self.field.name, self.photons, self.depth, self.gather_name(), self.kernel_name())
+        format!(
+            "{} n={} t={} {} {}",
+            self.field.name,
+            self.photons,
+            self.depth,
+            self.gather_name(),
+            self.kernel_name()
+        )
     }
 
     /// The gather in words.

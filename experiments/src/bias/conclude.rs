@@ -89,7 +89,9 @@ fn mistakes(cells: &Cells, results: &[Result]) -> anyhow::Result<Vec<Mistake>> {
     let mut mistakes = Vec::new();
     for result in results {
         let Case { field, photons, depth, size, kernel } = result.case;
-        let is_shown = depth == 1.0 && kernel == Kernel::Uniform && matches!(size, Size::Nearest(50) | Size::Radius(0.4));
+        let is_shown = depth == 1.0
+            && kernel == Kernel::Uniform
+            && matches!(size, Size::Nearest(50) | Size::Radius(0.4));
         if !is_shown || photons != largest(results, field) || !field.has_clusters() {
             continue;
         }
@@ -127,11 +129,13 @@ fn rows(cells: &Cells, results: &[Result], mistakes: &[Mistake]) -> anyhow::Resu
         rows.push(Row::measured(&name, "error", Unit::PERCENT, &result.error)?.predicted(result.predicted()));
         let left: Moments = result.errors.iter().map(|e| e - result.predicted()).collect();
         rows.push(
-            Row::measured(&name, "error left over", Unit::PERCENT, &left)?.reference(0.0, 100.0 * parts.error),
+            Row::measured(&name, "error left over", Unit::PERCENT, &left)?
+                .reference(0.0, 100.0 * parts.error),
         );
         if let Some(fano) = fano(cells, &result.case)? {
             rows.push(
-                Row::measured(&name, "Fano factor", Unit::ONE, &fano)?.predicted(1.0 + predicted_fano(&result.case)),
+                Row::measured(&name, "Fano factor", Unit::ONE, &fano)?
+                    .predicted(1.0 + predicted_fano(&result.case)),
             );
         }
     }
@@ -229,25 +233,34 @@ fn add_claims(
     amplitude_claim(
         "uncollided-radius",
         "uncollided photons, fixed radius 0.1 to 0.8, whole balls: measured over predicted error is 1",
-        pick(results, |r| is_free(r) && is_fixed(r) && r.case.kernel == Kernel::Uniform && r.case.photons == most),
+        pick(results, |r| {
+            is_free(r) && is_fixed(r) && r.case.kernel == Kernel::Uniform && r.case.photons == most
+        }),
         0.05,
     );
     amplitude_claim(
         "uncollided-kernels",
         "the same for the other four kernels at radius 0.4",
-        pick(results, |r| is_free(r) && is_fixed(r) && r.case.kernel != Kernel::Uniform && r.case.photons == most),
+        pick(results, |r| {
+            is_free(r) && is_fixed(r) && r.case.kernel != Kernel::Uniform && r.case.photons == most
+        }),
         0.1,
     );
     amplitude_claim(
         "uncollided-nearest",
         "uncollided photons, k nearest below the face, every k, all but the largest maps: measured over predicted error is 1",
-        pick(results, |r| r.case.field == free && r.case.depth >= 1.0 && !is_fixed(r) && r.case.photons < most),
+        pick(results, |r| {
+            r.case.field == free && r.case.depth >= 1.0 && !is_fixed(r) && r.case.photons < most
+        }),
         0.25,
     );
     for field in &FIELDS {
         amplitude_claim(
             &format!("{}-face", field.name),
-            &format!("{}: at the lit face, where half of each ball is empty, measured over predicted error is 1", field.title),
+            &format!(
+                "{}: at the lit face, where half of each ball is empty, measured over predicted error is 1",
+                field.title
+            ),
             pick(results, |r| r.case.field == field && r.case.depth == 0.0),
             0.01,
         );
@@ -255,7 +268,10 @@ fn add_claims(
     for field in FIELDS.iter().filter(|f| f.has_clusters()) {
         amplitude_claim(
             &format!("{}-blur", field.name),
-            &format!("{}: whole balls of fixed radius, all kernels: measured over predicted error is 1", field.title),
+            &format!(
+                "{}: whole balls of fixed radius, all kernels: measured over predicted error is 1",
+                field.title
+            ),
             pick(results, |r| r.case.field == field && is_fixed(r) && r.is_whole()),
             0.2,
         );
@@ -264,7 +280,10 @@ fn add_claims(
         let chosen = pick(results, |r| r.case.field == field && r.case.depth > 0.0);
         claims.push(Claim::within(
             &format!("{}-left-over", field.name),
-            &format!("{}: below the face, nothing is left of the error once the predicted parts are taken away", field.title),
+            &format!(
+                "{}: below the face, nothing is left of the error once the predicted parts are taken away",
+                field.title
+            ),
             Unit::PERCENT,
             left_over(&chosen),
             -0.2,
@@ -299,7 +318,8 @@ fn number_claim(settings: &Settings, results: &[Result]) -> Option<Claim> {
     let (few, many) = (find(counts.first())?, find(counts.last())?);
     let difference: Moments =
         few.errors.iter().zip(&many.errors).map(|(a, b)| a - b).collect::<Vec<f64>>().iter().collect();
-    let text = "uncollided photons, radius 0.8, depth 1: the error is the same for the fewest and the most photons";
+    let text =
+        "uncollided photons, radius 0.8, depth 1: the error is the same for the fewest and the most photons";
     Some(Claim::within("uncollided-number", text, Unit::PERCENT, Estimate::mean(&difference), -2.0, 2.0))
 }
 
@@ -318,16 +338,16 @@ fn fano_claim(cells: &Cells, results: &[Result], field: &'static Field) -> anyho
     }
     let Some(maps) = per_case.first().map(|(_, excess)| excess.len()) else { return Ok(None) };
     let per_map: Vec<Vec<f64>> = (0..maps).map(|m| per_case.iter().map(|(_, e)| e[m]).collect()).collect();
-    let weights: Vec<f64> = per_case
-        .iter()
-        .map(|(_, excess)| 1.0 / excess.iter().collect::<Moments>().variance())
-        .collect();
+    let weights: Vec<f64> =
+        per_case.iter().map(|(_, excess)| 1.0 / excess.iter().collect::<Moments>().variance()).collect();
     let id = format!("{}-fano", field.name);
     if !field.has_clusters() {
         let ones = vec![1.0; weights.len()];
         let text = "uncollided photons are independent: variance over mean of their counts, less 1, is 0";
         let fitted = amplitude_per_map(&ones, &per_map, &weights);
-        return Ok(fitted.map(|a| Claim::within(&id, text, Unit::ONE, Estimate::mean(&a.moments), -0.05, 0.05)));
+        return Ok(
+            fitted.map(|a| Claim::within(&id, text, Unit::ONE, Estimate::mean(&a.moments), -0.05, 0.05))
+        );
     }
     let predicted: Vec<f64> = per_case.iter().map(|(p, _)| *p).collect();
     let text = format!(
@@ -382,7 +402,19 @@ fn mistake_claims(results: &[Result], mistakes: &[Mistake]) -> Vec<Claim> {
 }
 
 fn error_table(results: &[Result]) -> Table {
-    let columns = ["field", "photons", "depth", "gather", "measured error", "predicted", "edge", "blur", "clusters", "z", ""];
+    let columns = [
+        "field",
+        "photons",
+        "depth",
+        "gather",
+        "measured error",
+        "predicted",
+        "edge",
+        "blur",
+        "clusters",
+        "z",
+        "",
+    ];
     let percent = |x: f64| format!("{:+.2}", 100.0 * x).replace('-', "−");
     let chosen = pick(results, |r| {
         let is_shown = matches!(r.case.size, Size::Radius(_) | Size::Nearest(50 | 500));
@@ -422,7 +454,10 @@ fn path_table(cells: &Cells, results: &[Result]) -> anyhow::Result<Table> {
             let (exact, bound) = exact_at(results, field, depth);
             let map = results.iter().find(|r| {
                 let c = &r.case;
-                c.field == field && c.depth == depth && c.size == Size::Nearest(50) && c.photons == largest(results, field)
+                c.field == field
+                    && c.depth == depth
+                    && c.size == Size::Nearest(50)
+                    && c.photons == largest(results, field)
             });
             let map = map.map_or_else(String::new, |r| {
                 with_error(exact * (1.0 + r.error.mean() / 100.0), exact * r.error.std_error() / 100.0)
@@ -455,13 +490,18 @@ fn summarise(section: &mut Section, settings: &Settings, results: &[Result]) {
     let example = |size: Size| {
         results.iter().find(|r| {
             let c = &r.case;
-            c.field == &FIELDS[2] && c.depth == 1.0 && c.size == size && c.kernel == Kernel::Uniform
+            c.field == &FIELDS[2]
+                && c.depth == 1.0
+                && c.size == size
+                && c.kernel == Kernel::Uniform
                 && c.photons == FIELDS[2].photons(settings).last().copied().unwrap_or(0)
         })
     };
     if let (Some(fixed), Some(face)) = (
         example(Size::Radius(0.4)),
-        results.iter().find(|r| r.case.field == &FIELDS[2] && r.case.depth == 0.0 && r.case.size == Size::Radius(0.4)),
+        results
+            .iter()
+            .find(|r| r.case.field == &FIELDS[2] && r.case.depth == 0.0 && r.case.size == Size::Radius(0.4)),
     ) {
         section.summary.push(format!(
             "In fog of albedo 0.9, photons gathered within 0.4 mean free paths read the fluence {} % wrong in the middle \

@@ -10,7 +10,8 @@ use turbid::math::Asymmetry;
 use turbid::medium::Homogeneous;
 use turbid::phase::Phase;
 use turbid::scene::{Orders, Parts, Region, Scene};
-use turbid_analytic::{AnisotropicSlab, Incidence, IsotropicSlab};
+use turbid_analytic::slab_anisotropic::AnisotropicSlab;
+use turbid_analytic::{Incidence, IsotropicSlab};
 
 /// Side of the cell that stands for the slab [mfp].
 pub const CELL: f64 = 4.0;
@@ -47,7 +48,7 @@ pub const FIELDS: [Field; 4] = [
         g: 0.0,
         orders: Orders { min: 0, max: Some(0) },
         depths: &[0.0, 0.25, 1.0, 2.0],
-        quick: &[(10_000, 256), (100_000, 256), (1_000_000, 64)],
+        quick: &[(10_000, 512), (100_000, 512), (1_000_000, 192)],
         full: &[(10_000, 1024), (100_000, 1024), (1_000_000, 512), (10_000_000, 128)],
     },
     Field {
@@ -58,7 +59,7 @@ pub const FIELDS: [Field; 4] = [
         g: 0.0,
         orders: Orders::ALL,
         depths: &[0.0, 0.25, 1.0, 1.75],
-        quick: &[(200_000, 64)],
+        quick: &[(200_000, 192)],
         full: &[(200_000, 512), (2_000_000, 128)],
     },
     Field {
@@ -69,7 +70,7 @@ pub const FIELDS: [Field; 4] = [
         g: 0.0,
         orders: Orders::ALL,
         depths: &[0.0, 0.25, 1.0, 1.75],
-        quick: &[(20_000, 256), (200_000, 64)],
+        quick: &[(20_000, 512), (200_000, 192)],
         full: &[(20_000, 1024), (200_000, 512), (2_000_000, 128)],
     },
     Field {
@@ -80,7 +81,7 @@ pub const FIELDS: [Field; 4] = [
         g: 0.75,
         orders: Orders::ALL,
         depths: &[0.0, 0.25, 1.0, 1.75],
-        quick: &[(200_000, 64)],
+        quick: &[(200_000, 192)],
         full: &[(200_000, 512), (2_000_000, 128)],
     },
 ];
@@ -103,6 +104,14 @@ impl Field {
     /// Emitted photons a map.
     pub fn photons(&self, settings: &Settings) -> Vec<u64> {
         self.sizes(settings).into_iter().map(|(photons, _)| photons).collect()
+    }
+
+    /// The number that random streams take for a repetition: different for every field and number of photons, so that
+    /// no two groups of cells share their histories.
+    pub fn replicate(&self, settings: &Settings, photons: u64, replicate: u64) -> u64 {
+        let field = FIELDS.iter().position(|f| f.name == self.name).unwrap_or(FIELDS.len()) as u64;
+        let size = self.photons(settings).iter().position(|&n| n == photons).unwrap_or(0) as u64;
+        field << 48 | size << 40 | replicate
     }
 
     /// Whether photons of one history can be near each other in the map.
@@ -128,7 +137,9 @@ impl Field {
         }
         if self.g == 0.0 {
             let slab = IsotropicSlab::new(self.tau, self.albedo, beam)?;
-            return Ok(Box::new(move |t| slab.fluence_interpolated(t).map(|v| (v.value, v.error)).map_err(Into::into)));
+            return Ok(Box::new(move |t| {
+                slab.fluence_interpolated(t).map(|v| (v.value, v.error)).map_err(Into::into)
+            }));
         }
         let slab = AnisotropicSlab::new(self.tau, self.albedo, self.g, beam)?;
         Ok(Box::new(move |t| slab.fluence(t).map(|v| (v.value, v.error)).map_err(Into::into)))

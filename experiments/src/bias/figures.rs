@@ -17,7 +17,12 @@ fn bar(moments: &Moments) -> (f64, f64) {
 }
 
 fn files(name: &str, caption: &str, figure: &Figure) -> anyhow::Result<FigureFiles> {
-    Ok(FigureFiles { name: name.to_string(), caption: caption.to_string(), svg: figure.svg()?, png: figure.png()? })
+    Ok(FigureFiles {
+        name: name.to_string(),
+        caption: caption.to_string(),
+        svg: figure.svg()?,
+        png: figure.png()?,
+    })
 }
 
 /// All figures, the budget first.
@@ -40,7 +45,8 @@ fn budget(results: &[Result], mistakes: &[Mistake]) -> anyhow::Result<FigureFile
     let axis = |label: &str| Axis::new(label, "%", Scale::SymLog { threshold: 1.0 });
     let mut panel = Panel::new(axis("predicted error"), axis("measured error"))
         .with(Rule::new(Along::Diagonal).with_label("measured = predicted"));
-    let blind: Vec<&Result> = results.iter().filter(|r| !r.case.is_biased() && !r.sees_prediction()).collect();
+    let blind: Vec<&Result> =
+        results.iter().filter(|r| !r.case.is_biased() && !r.sees_prediction()).collect();
     let x = blind.iter().map(|r| r.predicted()).collect();
     let y = blind.iter().map(|r| r.error.mean()).collect();
     let bars = blind.iter().map(|r| bar(&r.error)).collect();
@@ -49,8 +55,7 @@ fn budget(results: &[Result], mistakes: &[Mistake]) -> anyhow::Result<FigureFile
     panel = panel.with(Points { color: Color::Grey, ..noisy });
     for (class, part) in PART_NAMES.iter().enumerate() {
         // The rule's own part is a fault, and drawn as one.
-        let chosen: Vec<&Result> =
-            results
+        let chosen: Vec<&Result> = results
             .iter()
             .filter(|r| !r.case.is_biased() && r.sees_prediction() && r.parts.dominant() == class)
             .collect();
@@ -133,7 +138,8 @@ fn orders(results: &[Result]) -> anyhow::Result<FigureFiles> {
         let y = chosen.iter().map(|r| r.error.mean()).collect();
         Points::new(label, class, x, y).with_y_interval(bars)
     };
-    let mut left = Panel::new(Axis::log("radius", "mfp"), Axis::new("error", "%", Scale::LogClipped)).with_title("fixed radius");
+    let mut left = Panel::new(Axis::log("radius", "mfp"), Axis::new("error", "%", Scale::LogClipped))
+        .with_title("fixed radius");
     let radii: Vec<f64> = (0..=40).map(|i| 0.08 * libm::exp(0.06 * f64::from(i))).collect();
     let sizes: Vec<Size> = radii.iter().map(|&r| Size::Radius(r)).collect();
     for (class, depth) in [(0, 1.0), (1, 2.0)] {
@@ -143,8 +149,10 @@ fn orders(results: &[Result]) -> anyhow::Result<FigureFiles> {
         left = left.with(Line::new(&label, class, radii[..whole].to_vec(), line));
         left = left.with(points(&of(depth, most, true).collect::<Vec<_>>(), &label, class));
     }
-    let mut right = Panel::new(Axis::log("k", ""), Axis::linear("error", "%")).with_title("k nearest, depth 1");
-    let mut counts: Vec<u64> = results.iter().filter(|r| r.case.field == free).map(|r| r.case.photons).collect();
+    let mut right =
+        Panel::new(Axis::log("k", ""), Axis::linear("error", "%")).with_title("k nearest, depth 1");
+    let mut counts: Vec<u64> =
+        results.iter().filter(|r| r.case.field == free).map(|r| r.case.photons).collect();
     counts.dedup();
     let ks: Vec<usize> = vec![5, 7, 10, 15, 20, 30, 50, 70, 100, 150, 200, 300, 500, 700];
     for (class, &photons) in counts.iter().enumerate() {
@@ -227,11 +235,16 @@ fn path_points(cells: &Cells, results: &[Result], field: &Field) -> anyhow::Resu
 
 /// Fano factor of the photon counts.
 fn counts(cells: &Cells, results: &[Result]) -> anyhow::Result<FigureFiles> {
-    let mut panel = Panel::new(Axis::linear("radius", "mfp"), Axis::linear("variance over mean of photon counts, less 1", ""));
+    let mut panel = Panel::new(
+        Axis::linear("radius", "mfp"),
+        Axis::linear("variance over mean of photon counts, less 1", ""),
+    );
     for (class, field) in FIELDS.iter().enumerate() {
         let most = largest(results, field);
         let (mut x, mut y, mut bars) = (Vec::new(), Vec::new(), Vec::new());
-        for result in results.iter().filter(|r| r.case.field == field && r.case.photons == most && r.case.depth == 1.0) {
+        for result in
+            results.iter().filter(|r| r.case.field == field && r.case.photons == most && r.case.depth == 1.0)
+        {
             let Size::Radius(r) = result.case.size else { continue };
             if let (true, Some(fano)) = (is_fano_case(&result.case), fano(cells, &result.case)?) {
                 x.push(r * (1.0 + 0.01 * class as f64));
@@ -241,7 +254,13 @@ fn counts(cells: &Cells, results: &[Result]) -> anyhow::Result<FigureFiles> {
             }
         }
         let theory = |r: f64| {
-            predicted_fano(&Case { field, photons: most, depth: 1.0, size: Size::Radius(r), kernel: Kernel::Uniform })
+            predicted_fano(&Case {
+                field,
+                photons: most,
+                depth: 1.0,
+                size: Size::Radius(r),
+                kernel: Kernel::Uniform,
+            })
         };
         panel = panel.with(Line::new(field.title, class, vec![0.0, 0.45], vec![theory(0.0), theory(0.45)]));
         panel = panel.with(Points::new(field.title, class, x, y).with_y_interval(bars));

@@ -15,7 +15,7 @@ use turbid::stats::Moments;
 use turbid::transport::NoProgress;
 
 /// Batches of paths.
-const BATCHES: u64 = 64;
+const BATCHES: u64 = 128;
 /// Paths of one batch at one depth.
 const PATHS: u64 = 16_384;
 /// Name of the groups of path batches.
@@ -67,14 +67,18 @@ fn measure_map(
     photons: u64,
     replicate: u64,
 ) -> anyhow::Result<CellOutput> {
-    let histories =
-        Histories { count: photons, seed: settings.seed, replicate, max_order: field.orders.max };
+    let replicate = field.replicate(settings, photons, replicate);
+    let histories = Histories { count: photons, seed: settings.seed, replicate, max_order: field.orders.max };
     let pass = shoot(scene, histories, &[], is_in(field.orders), &NoProgress)?;
     let mut output = CellOutput::new();
     output.count("photons emitted", pass.emitted);
     output.count("collisions", pass.collisions);
     output.count("photons stored", pass.photons.len() as u64);
-    output.push(map_case(field, photons), "stored per emitted", pass.photons.len() as f64 / pass.emitted as f64);
+    output.push(
+        map_case(field, photons),
+        "stored per emitted",
+        pass.photons.len() as f64 / pass.emitted as f64,
+    );
     let map = PhotonMap::new(pass.photons, pass.emitted)?;
     for case in Case::all(field, photons) {
         let gather = case.gather()?;
@@ -108,6 +112,7 @@ pub fn is_fano_case(case: &Case) -> bool {
 }
 
 fn measure_paths(settings: &Settings, field: &Field, scene: &Scene, replicate: u64) -> CellOutput {
+    let replicate = field.replicate(settings, 0, replicate);
     let mut output = CellOutput::new();
     for (index, &depth) in field.depths.iter().enumerate() {
         let quantity = Quantity::Fluence(DVec3::new(0.5 * CELL, 0.5 * CELL, depth));

@@ -105,8 +105,15 @@ impl Theory {
         let kernel = referee_kernel(case.kernel);
         let (here, here_error) = (self.exact)(t)?;
         let field = |depth: f64| (self.exact)(depth).map_or(f64::NAN, |(value, _)| value);
-        let mut parts =
-            Parts { exact: here, exact_error: here_error, edge: 0.0, blur: 0.0, rule: 0.0, clusters: 0.0, error: 0.0 };
+        let mut parts = Parts {
+            exact: here,
+            exact_error: here_error,
+            edge: 0.0,
+            blur: 0.0,
+            rule: 0.0,
+            clusters: 0.0,
+            error: 0.0,
+        };
         match case.size {
             Size::Radius(r) => {
                 let split = edge_loss(kernel, r, t, tau, field)?;
@@ -122,7 +129,8 @@ impl Theory {
                 let (counted, summed) = (self.profile(t, Kernel::Uniform)?, self.profile(t, case.kernel)?);
                 let number = |r: f64| ball(r) * counted.at(r);
                 let right = nearest_expectation(neighbors, cap, number, |r| summed.at(r))?;
-                let inside = |kernel, r| slab_moment(kernel, 0, r, t, tau).map_or(f64::NAN, |v| here * v.value);
+                let inside =
+                    |kernel, r| slab_moment(kernel, 0, r, t, tau).map_or(f64::NAN, |v| here * v.value);
                 let number_uniform = |r: f64| ball(r) * inside(referee::Kernel::Uniform, r);
                 let uniform = nearest_expectation(neighbors, cap, number_uniform, |r| inside(kernel, r))?;
                 parts.edge = uniform.value / here - 1.0;
@@ -155,7 +163,8 @@ pub fn budget(settings: &Settings) -> anyhow::Result<Vec<(Case, Parts)>> {
     let mut all = Vec::new();
     for field in &FIELDS {
         let theory = Theory::new(field)?;
-        let cases: Vec<Case> = field.photons(settings).into_iter().flat_map(|n| Case::all(field, n)).collect();
+        let cases: Vec<Case> =
+            field.photons(settings).into_iter().flat_map(|n| Case::all(field, n)).collect();
         let predicted: Vec<anyhow::Result<(Case, Parts)>> =
             cases.into_par_iter().map(|case| theory.parts(&case).map(|p| (case, p))).collect();
         for item in predicted {
@@ -196,7 +205,13 @@ pub fn predict(settings: &Settings) -> anyhow::Result<Vec<Prediction>> {
         };
         let fluence = parts.exact * (1.0 + parts.total());
         add("exact fluence", Unit::FLUENCE, parts.exact, parts.exact_error, "exact solution of the slab");
-        add("fluence", Unit::FLUENCE, fluence, parts.exact * parts.error, "exact field, kernel mean, k-nearest law");
+        add(
+            "fluence",
+            Unit::FLUENCE,
+            fluence,
+            parts.exact * parts.error,
+            "exact field, kernel mean, k-nearest law",
+        );
         add("error", Unit::PERCENT, 100.0 * parts.total(), 100.0 * parts.error, "sum of the parts");
         let sources = [
             "kernel mean of a uniform field in the medium, less 1",

@@ -81,9 +81,11 @@ mod tests {
                 let profile = Profile::new(kernel, depth, 2.0, &field).unwrap();
                 for i in 1..200 {
                     let r = 0.01 * f64::from(i);
-                    let direct =
-                        slab_kernel_mean(kernel, r, depth, 2.0, |t| libm::exp(-t)).unwrap().value;
-                    assert!((profile.at(r) / direct - 1.0).abs() < 1e-8, "{kernel:?} depth {depth} radius {r}");
+                    let direct = slab_kernel_mean(kernel, r, depth, 2.0, |t| libm::exp(-t)).unwrap().value;
+                    assert!(
+                        (profile.at(r) / direct - 1.0).abs() < 1e-8,
+                        "{kernel:?} depth {depth} radius {r}"
+                    );
                 }
             }
         }
