@@ -1,10 +1,9 @@
 //! The one random walk that paths and photons share.
 
-use super::{Flight, Roulette, free_flight};
+use super::{Flags, Flight, Roulette, free_flight};
 use crate::Spectrum;
 use crate::math::Ray;
 use crate::phase::PhaseFunction;
-use crate::photons::Flags;
 use crate::rng::Stream;
 use crate::scene::{Scene, SceneHit, Target};
 use glam::DVec3;
