@@ -52,7 +52,7 @@ pub enum Step<'a> {
     Collision(Arrival<'a>, usize),
     /// An arrival at a body.
     Surface(Arrival<'a>, &'a SceneHit),
-    /// The history ended at an event: this weight is absorbed there; the index of the region, if in a medium.
+    /// A photon ended at an event: this weight is absorbed there; the index of the region, if in a medium.
     Absorbed(Spectrum, Option<usize>),
     /// The weight leaves the scene.
     Escaped(Spectrum),
@@ -102,7 +102,8 @@ pub fn walk(
                 );
                 let medium = &scene.regions()[region].medium;
                 let Some(kept) = roulette.survive(weight, medium.albedo(), stream) else {
-                    visitor.visit(&walker, Step::Absorbed(weight, Some(region)), stream);
+                    let lost = Roulette::lost(weight, medium.albedo());
+                    visitor.visit(&walker, Step::Absorbed(lost, Some(region)), stream);
                     return;
                 };
                 let before = walker.ray.dir;
@@ -150,7 +151,7 @@ fn reflect(
             let surface = &scene.objects()[index].surface;
             let dir = walker.ray.dir;
             let normal = if dir.dot(found.hit.normal) < 0.0 { found.hit.normal } else { -found.hit.normal };
-            let survivor = roulette.survive(walker.weight, surface.reflectance(), stream);
+            let survivor = roulette.survive(walker.weight, reflectance(scene, found), stream);
             let scattered = surface.scatter(dir, normal, stream.pair());
             survivor.zip(scattered).map(|(weight, (dir, pdf))| Walker {
                 ray: Ray::new(position, dir),
@@ -163,7 +164,16 @@ fn reflect(
         }
     };
     if next.is_none() {
-        visitor.visit(walker, Step::Absorbed(walker.weight, None), stream);
+        let lost = Roulette::lost(walker.weight, reflectance(scene, found));
+        visitor.visit(walker, Step::Absorbed(lost, None), stream);
     }
     next
+}
+
+/// Fraction of the arriving power that leaves a body again.
+fn reflectance(scene: &Scene, found: &SceneHit) -> Spectrum {
+    match found.target {
+        Target::Light(_) => Spectrum::ZERO,
+        Target::Object(index) => scene.objects()[index].surface.reflectance(),
+    }
 }
