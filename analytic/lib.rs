@@ -1,1 +1,37 @@
-//! The referee.
+//! The referee: exact values of light transport in fog, water and smoke, each with an absolute error bound.
+//!
+//! One file a problem. Every public answer is a [`Value`]: the number, a bound on its error that was earned
+//! (a residual, a second rule, a count of roundings), and how it is known. Questions outside the range in which
+//! the answer is known are refused by an [`Error`] that names the parameter.
+//!
+//! Conventions: lengths in mean free paths; a slab 0 <= t <= tau with t growing downwards from the lit face; unit
+//! irradiance on that face; the signed cosine mu > 0 points up, towards the lit face.
+//!
+//! * Special functions and rules: [`exponential_integral`], [`quadrature`]
+//! * Slab: [`beer_lambert`], [`slab_single`], [`slab_isotropic`]
+//! * Kernel density estimation: [`kernel`], [`ball_mean`], [`blur`], [`volumes`], [`slab_kernel`], [`nearest`],
+//!   [`progressive`]
+
+pub mod ball_mean;
+pub mod beer_lambert;
+pub mod blur;
+pub mod error;
+pub mod exponential_integral;
+pub mod incidence;
+pub mod kernel;
+pub mod nearest;
+mod peierls;
+mod poisson;
+pub mod progressive;
+pub mod quadrature;
+pub mod slab_isotropic;
+pub mod slab_kernel;
+pub mod slab_single;
+pub mod value;
+pub mod volumes;
+
+pub use error::{Error, Result};
+pub use incidence::Incidence;
+pub use kernel::{Dimension, Kernel};
+pub use slab_isotropic::IsotropicSlab;
+pub use value::Value;

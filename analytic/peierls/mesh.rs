@@ -1,0 +1,194 @@
+//! Panels graded towards the face, their nodes, and polynomials on them.
+
+use super::Halves;
+use crate::quadrature::GaussLegendre;
+use libm::{exp, log};
+
+/// Nodes a panel.
+pub(crate) const NODES: usize = 20;
+
+/// Panels grow by at most this factor from the face inwards: a function that is singular at the face is interpolated
+/// to 4.3^-20 = 2e-13 of its high harmonics, t ln t to 1e-16 of its size on the panel.
+const GROWTH: f64 = 2.6;
+
+/// Longest panel near the face: e^(-t) is interpolated on it to 1e-24, and e^(-t/mu0) to 1e-12 for mu0 = 0.1.
+const LONGEST: f64 = 2.0;
+
+/// Deeper, panels may be this part of their depth d: what varies there is e^(-k d) at most, and
+/// e^(-k d) (0.4 k d)^20/(20! 2^39) is below 1e-20 for every k ...
+const DEEP: f64 = 0.4;
+
+/// ... up to this length, on which e^(-t) keeps 12 digits of its own size.
+const DEEPEST: f64 = 8.0;
+
+/// The upper half of the slab, cut in panels.
+pub(crate) struct Mesh {
+    pub tau: f64,
+    /// Panel edges from 0 to tau/2.
+    pub edges: Vec<f64>,
+    /// Nodes, panel by panel, and their quadrature weights.
+    pub nodes: Vec<f64>,
+    pub lengths: Vec<f64>,
+    pub rule: GaussLegendre,
+    pub basis: Basis,
+}
+
+impl Mesh {
+    pub(crate) fn new(tau: f64, first: f64) -> Self {
+        let half = 0.5 * tau;
+        // Geometric up to where a panel would be longer than LONGEST, then as long as the depth allows.
+        let knee = half.min(LONGEST * GROWTH / (GROWTH - 1.0));
+        let count = (log(knee / (first * half.min(1.0))) / log(GROWTH)).ceil().max(1.0);
+        let ratio = exp(log(knee / (first * half.min(1.0))) / count);
+        let mut edges = vec![knee];
+        for _ in 0..count as usize {
+            edges.push(edges[edges.len() - 1] / ratio);
+        }
+        edges.push(0.0);
+        edges.reverse();
+        let mut deep = vec![0.0];
+        while knee + deep[deep.len() - 1] < half {
+            let last = deep[deep.len() - 1];
+            deep.push(last + LONGEST.max(DEEP * (knee + last)).min(DEEPEST));
+        }
+        let reach = deep[deep.len() - 1];
+        for (i, &offset) in deep.iter().enumerate().skip(1) {
+            edges.push(if i + 1 == deep.len() { half } else { knee + offset * ((half - knee) / reach) });
+        }
+        let rule = GaussLegendre::rule(NODES);
+        let basis = Basis::new(&rule);
+        let (mut nodes, mut lengths) = (Vec::new(), Vec::new());
+        for pair in edges.windows(2) {
+            let length = pair[1] - pair[0];
+            for (x, w) in rule.nodes.iter().zip(&rule.weights) {
+                nodes.push(pair[0] + length * x);
+                lengths.push(length * w);
+            }
+        }
+        Mesh { tau, edges, nodes, lengths, rule, basis }
+    }
+
+    pub(crate) fn panels(&self) -> usize {
+        self.edges.len() - 1
+    }
+
+    /// Start and length of a panel.
+    pub(crate) fn panel(&self, p: usize) -> (f64, f64) {
+        (self.edges[p], self.edges[p + 1] - self.edges[p])
+    }
+
+    /// The panel that contains x, 0 <= x <= tau/2.
+    pub(crate) fn find(&self, x: f64) -> usize {
+        self.edges.partition_point(|&edge| edge <= x).clamp(1, self.panels()) - 1
+    }
+
+    /// Probe i: edges at even i, middles at odd ones.
+    pub(crate) fn probe(&self, i: usize) -> f64 {
+        if i.is_multiple_of(2) {
+            self.edges[i / 2]
+        } else {
+            0.5 * (self.edges[i / 2] + self.edges[i / 2 + 1])
+        }
+    }
+
+    /// Values at all nodes of f(t, tau - t), both arguments free of cancellation.
+    pub(crate) fn halves(&self, f: impl Fn(f64, f64) -> f64) -> Halves {
+        Halves {
+            upper: self.nodes.iter().map(|&x| f(x, self.tau - x)).collect(),
+            lower: self.nodes.iter().map(|&x| f(self.tau - x, x)).collect(),
+        }
+    }
+
+    /// int f(t) g(t, tau-t) dt over the slab.
+    pub(crate) fn integrate(&self, f: &Halves, g: impl Fn(f64, f64) -> f64) -> f64 {
+        let mut sum = 0.0;
+        for (i, (&x, &w)) in self.nodes.iter().zip(&self.lengths).enumerate() {
+            let y = self.tau - x;
+            sum += w * (f.upper[i] * g(x, y) + f.lower[i] * g(y, x));
+        }
+        sum
+    }
+
+    /// The polynomial of panel p at xi in \[0, 1\], from values at all nodes of that half.
+    pub(crate) fn interpolate(&self, values: &[f64], p: usize, xi: f64) -> f64 {
+        let mut at = [0.0; NODES];
+        self.basis.at(xi, &mut at);
+        at.iter().zip(&values[p * NODES..]).map(|(b, v)| b * v).sum()
+    }
+}
+
+/// Lagrange polynomials on the nodes of a panel, in barycentric form.
+pub(crate) struct Basis {
+    nodes: [f64; NODES],
+    weights: [f64; NODES],
+}
+
+impl Basis {
+    fn new(rule: &GaussLegendre) -> Self {
+        let (mut nodes, mut weights) = ([0.0; NODES], [0.0; NODES]);
+        for j in 0..NODES {
+            let x = rule.nodes[j];
+            let sign = if j.is_multiple_of(2) { 1.0 } else { -1.0 };
+            // Barycentric weights of Legendre points (Wang and Xiang 2012): (-1)^j sqrt((1-x^2) w) up to a factor.
+            nodes[j] = x;
+            weights[j] = sign * (x * (1.0 - x) * rule.weights[j]).sqrt();
+        }
+        Basis { nodes, weights }
+    }
+
+    /// Values of all basis polynomials at xi.
+    pub(crate) fn at(&self, xi: f64, out: &mut [f64; NODES]) {
+        let mut sum = 0.0;
+        for j in 0..NODES {
+            let d = xi - self.nodes[j];
+            if d == 0.0 {
+                *out = [0.0; NODES];
+                out[j] = 1.0;
+                return;
+            }
+            out[j] = self.weights[j] / d;
+            sum += out[j];
+        }
+        let scale = 1.0 / sum;
+        for value in out.iter_mut() {
+            *value *= scale;
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn panels_cover_the_half_and_grow_no_faster_than_stated() {
+        for tau in [1e-12, 0.5, 2.0, 9.0, 400.0] {
+            for first in [1e-8, 1e-15] {
+                let mesh = Mesh::new(tau, first);
+                assert_eq!(mesh.edges[0], 0.0);
+                assert_eq!(mesh.edges[mesh.panels()], 0.5 * tau);
+                for p in 1..mesh.panels() {
+                    let (start, length) = mesh.panel(p);
+                    assert!(length > 0.0 && length <= (GROWTH - 1.0 + 1e-9) * start);
+                    assert!(length <= (LONGEST + 1e-9).max(DEEP * start));
+                    assert_eq!(mesh.find(start), p);
+                }
+                let rounding = mesh.lengths.len() as f64 * f64::EPSILON;
+                assert!((mesh.lengths.iter().sum::<f64>() / (0.5 * tau) - 1.0).abs() < rounding);
+            }
+        }
+    }
+
+    #[test]
+    fn a_polynomial_of_high_degree_is_met() {
+        let mesh = Mesh::new(2.0, 1e-8);
+        let f = |x: f64| (0..15).fold(1.0, |sum, _| 1.0 - 0.9 * x * sum);
+        let values: Vec<f64> = mesh.nodes.iter().map(|&x| f(x)).collect();
+        for x in [0.0, 0.1, 0.234, 0.9, 1.0] {
+            let p = mesh.find(x);
+            let (start, length) = mesh.panel(p);
+            let got = mesh.interpolate(&values, p, (x - start) / length);
+            assert!((got - f(x)).abs() < 1e-14, "{x}");
+        }
+    }
+}
