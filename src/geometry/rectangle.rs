@@ -45,10 +45,19 @@ impl Rectangle {
         if !(t > 0.0) {
             return None;
         }
-        let p = ray.at(t) - self.corner;
+        self.covers(ray.at(t)).then_some(Hit { t, normal: self.normal })
+    }
+
+    /// Whether a point lies above or below the rectangle, seen along its normal; the edges count.
+    pub fn covers(&self, p: DVec3) -> bool {
+        let p = p - self.corner;
         let (a, b) = (p.dot(self.u) / self.u.length_squared(), p.dot(self.v) / self.v.length_squared());
-        let inside = (0.0..=1.0).contains(&a) && (0.0..=1.0).contains(&b);
-        inside.then_some(Hit { t, normal: self.normal })
+        (0.0..=1.0).contains(&a) && (0.0..=1.0).contains(&b)
+    }
+
+    /// Signed distance of a point from the plane, positive in front [L].
+    pub fn height(&self, p: DVec3) -> f64 {
+        (p - self.corner).dot(self.normal)
     }
 
     /// Area [L^2] of one side.

@@ -3,7 +3,7 @@
 use super::{LightSample, Stage, emissive};
 use crate::Spectrum;
 use crate::error::{Error, Result};
-use crate::geometry::{Face, Rectangle, Shape, Sphere};
+use crate::geometry::{Face, Rectangle, Sphere};
 use crate::math::{Frame, Ray, warp};
 use crate::rng::Stream;
 use glam::DVec3;
@@ -109,7 +109,8 @@ impl Beam {
                 let off = v - self.dir * along;
                 (along >= 0.0 && off.length_squared() <= radius * radius).then_some(along)
             }
-            Section::Rectangle(r) => Shape::Rectangle(r).hit(&Ray::new(p, -self.dir), false).map(|hit| hit.t),
+            // By its plane, not by a hit: points on the section itself are lit too, as those of a disc are.
+            Section::Rectangle(r) => Some(r.height(p)).filter(|along| *along >= 0.0 && r.covers(p)),
         }
     }
 

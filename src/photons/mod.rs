@@ -7,7 +7,8 @@ mod shoot;
 pub mod synthetic;
 pub mod tree;
 
+pub use crate::transport::Flags;
 pub use map::PhotonMap;
-pub use record::{Flags, Photon};
+pub use record::Photon;
 pub use shoot::{Histories, Ledger, Pass, is_in, is_indirect, shoot};
 pub use tree::PhotonTree;

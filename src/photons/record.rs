@@ -1,36 +1,7 @@
 //! What is stored of a photon: exact data, no estimate.
 
+use crate::transport::Flags;
 use glam::{DVec3, Vec3};
-
-/// What a path has met before the event it is stored at.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub struct Flags(u8);
-
-impl Flags {
-    /// Met nothing: direct light.
-    pub const NONE: Flags = Flags(0);
-    /// Met a specular surface (S).
-    pub const SPECULAR: Flags = Flags(1);
-    /// Met a non-specular surface (D).
-    pub const DIFFUSE: Flags = Flags(2);
-    /// Was scattered in a medium (M).
-    pub const MEDIUM: Flags = Flags(4);
-
-    /// Both sets of flags.
-    pub fn with(self, other: Flags) -> Flags {
-        Flags(self.0 | other.0)
-    }
-
-    /// Whether every flag of `other` is set.
-    pub fn has(self, other: Flags) -> bool {
-        self.0 & other.0 == other.0
-    }
-
-    /// Whether the path came straight from the light.
-    pub fn is_direct(self) -> bool {
-        self.0 == 0
-    }
-}
 
 /// A photon as it arrives at a collision or a surface, before the albedo decides what becomes of it.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -1,11 +1,13 @@
 //! Free flight, roulette, the one random walk that paths and photons share, and blocks of histories.
 
 mod blocks;
+mod flags;
 mod flight;
 mod roulette;
 mod walk;
 
 pub use blocks::{BLOCK, NoProgress, Progress, run_blocks};
+pub use flags::Flags;
 pub use flight::{Flight, free_flight};
 pub use roulette::Roulette;
 pub use walk::{Arrival, Step, Visitor, Walker, walk};

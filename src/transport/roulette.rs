@@ -36,4 +36,13 @@ impl Roulette {
             }
         }
     }
+
+    /// What is absorbed where a photon of this weight ends at an event that keeps `albedo` of each channel.
+    ///
+    /// Survivors leave with P_c a_c / q; for each channel to hold in expectation those that end, with probability
+    /// 1 - q, leave P_c (1 - a_c) / (1 - q) behind. Its sum is that of the weight; for a grey albedo it is the weight.
+    pub fn lost(weight: Spectrum, albedo: Spectrum) -> Spectrum {
+        let lost = weight * (Spectrum::ONE - albedo);
+        if albedo.is_grey() || lost.is_black() { weight } else { lost * (weight.sum() / lost.sum()) }
+    }
 }

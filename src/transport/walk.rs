@@ -1,10 +1,9 @@
 //! The one random walk that paths and photons share.
 
-use super::{Flight, Roulette, free_flight};
+use super::{Flags, Flight, Roulette, free_flight};
 use crate::Spectrum;
 use crate::math::Ray;
 use crate::phase::PhaseFunction;
-use crate::photons::Flags;
 use crate::rng::Stream;
 use crate::scene::{Scene, SceneHit, Target};
 use glam::DVec3;
@@ -53,7 +52,7 @@ pub enum Step<'a> {
     Collision(Arrival<'a>, usize),
     /// An arrival at a body.
     Surface(Arrival<'a>, &'a SceneHit),
-    /// The history ended at an event: this weight is absorbed there; the index of the region, if in a medium.
+    /// A photon ended at an event: this weight is absorbed there; the index of the region, if in a medium.
     Absorbed(Spectrum, Option<usize>),
     /// The weight leaves the scene.
     Escaped(Spectrum),
@@ -103,7 +102,8 @@ pub fn walk(
                 );
                 let medium = &scene.regions()[region].medium;
                 let Some(kept) = roulette.survive(weight, medium.albedo(), stream) else {
-                    visitor.visit(&walker, Step::Absorbed(weight, Some(region)), stream);
+                    let lost = Roulette::lost(weight, medium.albedo());
+                    visitor.visit(&walker, Step::Absorbed(lost, Some(region)), stream);
                     return;
                 };
                 let before = walker.ray.dir;
@@ -151,7 +151,7 @@ fn reflect(
             let surface = &scene.objects()[index].surface;
             let dir = walker.ray.dir;
             let normal = if dir.dot(found.hit.normal) < 0.0 { found.hit.normal } else { -found.hit.normal };
-            let survivor = roulette.survive(walker.weight, surface.reflectance(), stream);
+            let survivor = roulette.survive(walker.weight, reflectance(scene, found), stream);
             let scattered = surface.scatter(dir, normal, stream.pair());
             survivor.zip(scattered).map(|(weight, (dir, pdf))| Walker {
                 ray: Ray::new(position, dir),
@@ -164,7 +164,16 @@ fn reflect(
         }
     };
     if next.is_none() {
-        visitor.visit(walker, Step::Absorbed(walker.weight, None), stream);
+        let lost = Roulette::lost(walker.weight, reflectance(scene, found));
+        visitor.visit(walker, Step::Absorbed(lost, None), stream);
     }
     next
+}
+
+/// Fraction of the arriving power that leaves a body again.
+fn reflectance(scene: &Scene, found: &SceneHit) -> Spectrum {
+    match found.target {
+        Target::Light(_) => Spectrum::ZERO,
+        Target::Object(index) => scene.objects()[index].surface.reflectance(),
+    }
 }

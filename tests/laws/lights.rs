@@ -1,0 +1,177 @@
+//! Lights: density against sample, one emitter in two forms (photons sent out, directions aimed at it, rays that
+//! meet it), and the power that they state.
+
+use crate::support::run::{numbers, paths, tallies};
+use crate::support::scenes::{
+    area_light, bounded, cuboid, isotropic, outflow, point_light, rectangle, sphere, volume_source,
+};
+use crate::support::{properties, unit_vector, verdict};
+use glam::DVec3;
+use proptest::prelude::*;
+use turbid::Spectrum;
+use turbid::geometry::{Shape, Sphere};
+use turbid::light::{Beam, EmittingSphere, Faces, Light, Section};
+use turbid::math::{FOUR_PI, Ray, atan2, warp};
+use turbid::scene::Orders;
+
+const N: u64 = 1 << 17;
+
+/// Paths through a large sphere seldom meet a small light: more of them.
+const MANY: u64 = 1 << 20;
+
+/// Coloured lights about the origin, all within a distance of 1.5.
+fn lights() -> Vec<(&'static str, Light)> {
+    let color = Spectrum::rgb(1.0, 2.0, 0.5);
+    let ball = sphere(DVec3::new(0.2, -0.1, 0.3), 0.8);
+    let block = cuboid(DVec3::splat(-0.5), DVec3::new(0.5, 0.25, 0.75));
+    let r = rectangle(DVec3::new(-0.5, -0.4, 0.1), DVec3::X, DVec3::Y * 0.8);
+    let tilted = DVec3::new(0.6, 0.0, 0.8);
+    let disc = Section::Disc { center: DVec3::new(0.1, 0.0, -0.3), radius: 0.6 };
+    let ball_light =
+        EmittingSphere::new(Sphere::new(DVec3::new(0.0, 0.2, -0.1), 0.4).unwrap(), color).unwrap();
+    vec![
+        ("point", point_light(DVec3::new(0.3, -0.2, 0.1), color)),
+        ("area", area_light(r, color)),
+        ("emitting sphere", Light::EmittingSphere(ball_light)),
+        ("disc beam", Light::Beam(Beam::new(tilted, color, disc).unwrap())),
+        ("rectangular beam", Light::Beam(Beam::new(DVec3::Z, color, Section::Rectangle(r)).unwrap())),
+        ("isotropic, sphere", isotropic(ball, Faces::Both)),
+        ("isotropic, cuboid", isotropic(block, Faces::Both)),
+        ("volume source, sphere", volume_source(ball)),
+        ("volume source, cuboid", volume_source(block)),
+    ]
+}
+
+/// All that a light sends out leaves a sphere around it: photons exactly, paths on average. A light's radiance, its
+/// power, its emission and its density are then one.
+#[test]
+fn everything_that_is_sent_leaves_a_surrounding_sphere() {
+    let around = outflow(sphere(DVec3::ZERO, 3.0));
+    for (name, light) in lights() {
+        let scene = bounded(Vec::new(), Vec::new(), vec![light]);
+        let by_photons = tallies(&scene, &[(around, Orders::ALL)], 4096, 1);
+        let by_paths = paths(&scene, around, Orders::ALL, MANY, 1);
+        for c in 0..3 {
+            assert!((by_photons[0][c].mean() - 1.0).abs() < 1e-12, "{name}: {}", by_photons[0][c].mean());
+            verdict::agrees(name, &by_paths[c], (1.0, 0.0), 0.15, 1);
+        }
+    }
+}
+
+/// The share that crosses a box beside or around the light: photons against paths.
+#[test]
+fn photons_and_paths_agree_on_a_box_beside_the_light() {
+    let boxes = [
+        cuboid(DVec3::new(-0.7, -0.6, 0.4), DVec3::new(0.9, 0.5, 1.6)),
+        cuboid(DVec3::new(0.55, -1.0, -1.0), DVec3::new(1.2, 1.0, 1.0)),
+    ];
+    for (name, light) in lights() {
+        let scene = bounded(Vec::new(), Vec::new(), vec![light]);
+        for (i, shape) in boxes.into_iter().enumerate() {
+            let by_photons = tallies(&scene, &[(outflow(shape), Orders::ALL)], N, 2);
+            let by_paths = paths(&scene, outflow(shape), Orders::ALL, MANY, 3);
+            for c in 0..3 {
+                verdict::agree(
+                    &format!("{name}, box {i}, channel {c}"),
+                    &by_photons[0][c],
+                    &by_paths[c],
+                    0.06,
+                    2,
+                );
+            }
+        }
+    }
+}
+
+/// The solid angle of a rectangle seen from above a corner at height h: atan(a b / (h sqrt(a^2 + b^2 + h^2))).
+fn corner_solid_angle(a: f64, b: f64, h: f64) -> f64 {
+    atan2(a * b, h * (a * a + b * b + h * h).sqrt())
+}
+
+/// 1/density has the solid angle of the light as its mean, and is met by uniform rays with density 1/that.
+#[test]
+fn the_area_light_fills_its_solid_angle() {
+    let light = area_light(rectangle(DVec3::ZERO, DVec3::X * 2.0, DVec3::Y), Spectrum::ONE);
+    let p = DVec3::new(0.5, 0.25, 0.6);
+    let expected =
+        [(0.5, 0.25), (1.5, 0.25), (0.5, 0.75), (1.5, 0.75)].map(|(a, b)| corner_solid_angle(a, b, 0.6));
+    let expected: f64 = expected.iter().sum();
+    let aimed =
+        numbers(N, 4, |s| light.sample(p, s.pair()).map_or(0.0, |l| 1.0 / l.pdf_solid_angle.unwrap()));
+    verdict::agrees("solid angle", &aimed, (expected, 0.0), 0.02 * expected, 4);
+    let met = numbers(N, 5, |s| {
+        let ray = Ray::new(p, warp::square_to_sphere(s.pair()));
+        FOUR_PI * light.hit(&ray).map_or(0.0, |hit| light.emitted(&ray, &hit).1)
+    });
+    verdict::agrees("density over rays", &met, (1.0, 0.0), 0.08, 5);
+    // The wrong twin forgets the cosine.
+    let wrong = numbers(N, 6, |s| {
+        light.sample(p, s.pair()).map_or(0.0, |l| 1.0 / (l.pdf_solid_angle.unwrap() * l.dir.z.abs()))
+    });
+    verdict::rejects("without the cosine", &wrong, expected, 6);
+}
+
+proptest! {
+    #![proptest_config(properties(5000))]
+
+    /// A ray along a sampled direction meets the light where the sample says, with the same radiance and density.
+    #[test]
+    fn a_sampled_direction_meets_the_light(x in -6.0..6.0f64, y in -6.0..6.0f64, z in -6.0..6.0f64, u in 0.0..0.999f64, v in 0.0..1.0f64) {
+        let p = DVec3::new(x, y, z);
+        for (name, light) in lights() {
+            let Some(sample) = light.sample(p, [u, v]) else { continue };
+            prop_assert!((sample.dir.length() - 1.0).abs() < 4.0 * f64::EPSILON);
+            let Some(pdf) = sample.pdf_solid_angle else { continue };
+            let ray = Ray::new(p, sample.dir);
+            let is_area = matches!(light, Light::Area(_));
+            let grazing = is_area && (u < 1e-9 || v < 1e-9) || is_area && sample.dir.z.abs() < 1e-6;
+            let Some(hit) = light.hit(&ray) else {
+                prop_assert!(grazing, "{name} missed from {p}");
+                continue;
+            };
+            let (radiance, met) = light.emitted(&ray, &hit);
+            // Area: distances and a cosine, each to rounding over the cosine. Sphere: the half-angle only.
+            let tolerance = if is_area { 1e-13 / sample.dir.z.abs() } else { 1e-13 };
+            prop_assert!((hit.t - sample.distance).abs() <= tolerance * (1.0 + hit.t), "{name}");
+            prop_assert!((met / pdf - 1.0).abs() < tolerance, "{name}: {met} {pdf}");
+            let value = sample.value * pdf;
+            prop_assert!((value.0 - radiance.0).length() < 1e-12 * radiance.max(), "{name}");
+        }
+    }
+
+    /// Seen from behind or inside nothing is sampled and nothing is met.
+    #[test]
+    fn lights_are_dark_from_behind(z in -1.0..=1.0f64, azimuth in 0.0..6.3f64, u in 0.0..1.0f64, v in 0.0..1.0f64) {
+        let dir = unit_vector(z, azimuth);
+        let area = area_light(rectangle(DVec3::ZERO, DVec3::X, DVec3::Y), Spectrum::ONE);
+        let below = DVec3::new(0.5, 0.5, -0.5);
+        prop_assert!(area.sample(below, [u, v]).is_none());
+        let ray = Ray::new(below, dir);
+        if let Some(hit) = area.hit(&ray) {
+            prop_assert_eq!(area.emitted(&ray, &hit), (Spectrum::ZERO, 0.0));
+        }
+        let ball = Light::EmittingSphere(EmittingSphere::new(Sphere::new(DVec3::ZERO, 1.0).unwrap(), Spectrum::ONE).unwrap());
+        let inside = Ray::new(dir * 0.5, unit_vector(2.0 * u - 1.0, 6.0 * v));
+        prop_assert!(ball.sample(inside.origin, [u, v]).is_none());
+        let hit = ball.hit(&inside).unwrap();
+        prop_assert_eq!(ball.emitted(&inside, &hit).0, Spectrum::ZERO);
+    }
+}
+
+/// A beam lights what is in its shaft, its own section included, and nothing beside or before it.
+#[test]
+fn a_beam_lights_its_shaft() {
+    let r = rectangle(DVec3::new(-1.0, -1.0, 0.0), DVec3::X * 2.0, DVec3::Y * 2.0);
+    for section in [Section::Rectangle(r), Section::Disc { center: DVec3::ZERO, radius: 1.0 }] {
+        let beam = Light::Beam(Beam::new(DVec3::Z, Spectrum::ONE, section).unwrap());
+        let at = |x: f64, z: f64| beam.sample(DVec3::new(x, 0.0, z), [0.5; 2]).map(|s| s.distance);
+        assert_eq!(at(0.5, 2.0), Some(2.0));
+        assert_eq!(at(0.5, 0.0), Some(0.0), "{section:?}: on the section itself");
+        assert_eq!(at(1.5, 2.0), None);
+        assert_eq!(at(0.5, -0.1), None);
+        assert_eq!(beam.sample(DVec3::new(0.0, 0.0, 1.0), [0.5; 2]).unwrap().dir, DVec3::NEG_Z);
+    }
+    let wrong = Beam::new(DVec3::NEG_Z, Spectrum::ONE, Section::Rectangle(r));
+    assert!(wrong.is_err() && Beam::new(DVec3::ZERO, Spectrum::ONE, Section::Unbounded).is_err());
+    assert!(matches!(Shape::Rectangle(r), Shape::Rectangle(_)));
+}

@@ -1,0 +1,12 @@
+//! The laws: what every phase function, warp, light, shape, flight and roulette obeys, over its whole domain.
+#![allow(clippy::unwrap_used, reason = "tests")]
+
+#[path = "../support/mod.rs"]
+mod support;
+
+mod flight;
+mod lights;
+mod phase;
+mod roulette;
+mod shapes;
+mod warps;

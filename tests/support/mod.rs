@@ -1,0 +1,28 @@
+//! What the tests share: verdicts on means, scenes, double-double numbers, a quadrature rule.
+#![allow(dead_code, reason = "each test binary uses a part")]
+
+pub mod double;
+pub mod quadrature;
+pub mod run;
+pub mod scenes;
+pub mod verdict;
+
+use proptest::prelude::ProptestConfig;
+use proptest::test_runner::RngSeed;
+
+/// Properties with fixed seed and cases, and no file of past failures: the same inputs on every machine.
+pub fn properties(cases: u32) -> ProptestConfig {
+    ProptestConfig {
+        cases,
+        rng_seed: RngSeed::Fixed(0x7075_7262),
+        failure_persistence: None,
+        ..ProptestConfig::default()
+    }
+}
+
+/// A unit vector from its height and azimuth.
+pub fn unit_vector(z: f64, azimuth: f64) -> glam::DVec3 {
+    let (s, c) = turbid::math::sin_cos(azimuth);
+    let r = ((1.0 - z) * (1.0 + z)).max(0.0).sqrt();
+    glam::DVec3::new(r * c, r * s, z).normalize()
+}

@@ -1,0 +1,60 @@
+//! Runs: moments by histories of paths and photons.
+
+use turbid::Spectrum;
+use turbid::photons::{Histories, Pass, Photon, shoot};
+use turbid::rng::{Purpose, Stream};
+use turbid::scene::{Orders, Quantity, Scene, Sensor};
+use turbid::stats::Moments;
+use turbid::transport::{NoProgress, run_blocks};
+
+/// Moments by channel of any function of a stream, over `n` histories.
+pub fn histories(n: u64, seed: u64, f: impl Fn(&mut Stream) -> Spectrum + Sync) -> [Moments; 3] {
+    let block = |range: std::ops::Range<u64>| {
+        let mut moments = [Moments::new(); 3];
+        for history in range {
+            let value = f(&mut Stream::new(seed, Purpose::Synthetic, 0, history));
+            for (channel, m) in moments.iter_mut().enumerate() {
+                m.push(value[channel]);
+            }
+        }
+        moments
+    };
+    run_blocks(n, &NoProgress, block, merge).unwrap().unwrap()
+}
+
+fn merge(mut a: [Moments; 3], b: [Moments; 3]) -> [Moments; 3] {
+    a.iter_mut().zip(&b).for_each(|(a, b)| a.merge(b));
+    a
+}
+
+/// Moments of a number a history.
+pub fn numbers(n: u64, seed: u64, f: impl Fn(&mut Stream) -> f64 + Sync) -> Moments {
+    histories(n, seed, |stream| Spectrum::grey(f(stream)))[0]
+}
+
+/// Paths: moments by channel of one quantity, restricted to orders.
+pub fn paths(scene: &Scene, quantity: Quantity, orders: Orders, n: u64, seed: u64) -> [Moments; 3] {
+    histories(n, seed, |stream| turbid::sensor::sample(scene, &quantity, orders, stream))
+}
+
+pub fn sensor(quantity: Quantity, orders: Orders) -> Sensor {
+    Sensor { name: "test".into(), label: "test".into(), quantity, orders }
+}
+
+/// Photons: one pass that keeps what `keep` accepts and tallies the quantities.
+pub fn pass(
+    scene: &Scene,
+    sensors: &[(Quantity, Orders)],
+    n: u64,
+    seed: u64,
+    keep: impl Fn(&Photon) -> bool + Sync,
+) -> Pass {
+    let sensors: Vec<Sensor> = sensors.iter().map(|(q, o)| sensor(*q, *o)).collect();
+    let histories = Histories { count: n, seed, replicate: 0, max_order: None };
+    shoot(scene, histories, &sensors, keep, &NoProgress).unwrap()
+}
+
+/// Photons: tallies of outflows and absorptances.
+pub fn tallies(scene: &Scene, sensors: &[(Quantity, Orders)], n: u64, seed: u64) -> Vec<[Moments; 3]> {
+    pass(scene, sensors, n, seed, |_| false).tallies
+}

@@ -1,0 +1,126 @@
+//! Scenes from plain numbers.
+
+use glam::DVec3;
+use std::f64::consts::PI;
+use turbid::Spectrum;
+use turbid::geometry::{Cuboid, Face, Rectangle, Shape, Slab, Sphere};
+use turbid::light::{Area, Beam, EmittingSphere, Faces, Isotropic, Light, Point, Section, VolumeSource};
+use turbid::math::{Asymmetry, FOUR_PI};
+use turbid::medium::Homogeneous;
+use turbid::phase::Phase;
+use turbid::scene::{Object, Parts, Quantity, Region, Scene};
+use turbid::surface::Surface;
+
+/// Side of the cells of unbounded slabs [L].
+pub const CELL: f64 = 4.0;
+
+/// How a slab is lit.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Incidence {
+    /// A beam of this cosine, with irradiance 1 on the top face.
+    Beam(f64),
+    /// Lambertian, irradiance 1 on the top face.
+    Diffuse,
+    /// Lambertian, irradiance 1 on both faces.
+    Both,
+}
+
+pub fn homogeneous(sigma_t: Spectrum, albedo: Spectrum, g: f64) -> Homogeneous {
+    Homogeneous::new(sigma_t, albedo, Phase::with_asymmetry(Asymmetry::try_from(g).unwrap())).unwrap()
+}
+
+pub fn region(shape: Shape, sigma_t: f64, albedo: f64, g: f64) -> Region {
+    Region { shape, medium: homogeneous(Spectrum::grey(sigma_t), Spectrum::grey(albedo), g) }
+}
+
+pub fn sphere(center: DVec3, radius: f64) -> Shape {
+    Shape::Sphere(Sphere::new(center, radius).unwrap())
+}
+
+pub fn cuboid(min: DVec3, max: DVec3) -> Shape {
+    Shape::Cuboid(Cuboid::new(min, max).unwrap())
+}
+
+pub fn layer(tau: f64) -> Shape {
+    Shape::Slab(Slab::new(0.0, tau).unwrap())
+}
+
+pub fn rectangle(corner: DVec3, u: DVec3, v: DVec3) -> Rectangle {
+    Rectangle::new(corner, u, v).unwrap()
+}
+
+pub fn incidence(shape: Shape, how: Incidence) -> Light {
+    match how {
+        Incidence::Beam(mu0) => {
+            let dir = DVec3::new(((1.0 - mu0) * (1.0 + mu0)).sqrt(), 0.0, mu0);
+            Light::Beam(Beam::new(dir, Spectrum::grey(1.0 / mu0), Section::Unbounded).unwrap())
+        }
+        Incidence::Diffuse => isotropic(shape, Faces::Top),
+        Incidence::Both => isotropic(shape, Faces::Both),
+    }
+}
+
+/// Radiance 1/pi from all sides: irradiance 1.
+pub fn isotropic(shape: Shape, faces: Faces) -> Light {
+    Light::Isotropic(Isotropic::new(shape, faces, Spectrum::grey(1.0 / PI)).unwrap())
+}
+
+/// Power 1, uniform in the shape.
+pub fn volume_source(shape: Shape) -> Light {
+    Light::VolumeSource(VolumeSource::new(shape, Spectrum::grey(1.0 / shape.volume())).unwrap())
+}
+
+pub fn point_light(position: DVec3, power: Spectrum) -> Light {
+    Light::Point(Point::new(position, power).unwrap())
+}
+
+/// A small sphere of power 1.
+pub fn emitting_sphere(center: DVec3, radius: f64) -> Light {
+    let radiance = Spectrum::grey(1.0 / (PI * FOUR_PI * radius * radius));
+    Light::EmittingSphere(EmittingSphere::new(Sphere::new(center, radius).unwrap(), radiance).unwrap())
+}
+
+pub fn area_light(rectangle: Rectangle, radiance: Spectrum) -> Light {
+    Light::Area(Area::new(rectangle, radiance).unwrap())
+}
+
+/// A slab of optical thickness tau, extinction 1, lit with irradiance 1 (on each lit face).
+pub fn slab(tau: f64, albedo: f64, g: f64, how: Incidence) -> Scene {
+    let shape = layer(tau);
+    Scene::new(Parts {
+        regions: vec![region(shape, 1.0, albedo, g)],
+        lights: vec![incidence(shape, how)],
+        cell: Some(CELL),
+        ..Parts::default()
+    })
+    .unwrap()
+}
+
+/// A ball of extinction 1 about the origin with a light.
+pub fn ball(radius: f64, albedo: f64, g: f64, light: Light) -> Scene {
+    let regions = vec![region(sphere(DVec3::ZERO, radius), 1.0, albedo, g)];
+    Scene::new(Parts { regions, lights: vec![light], ..Parts::default() }).unwrap()
+}
+
+/// Lights, surfaces and media, bounded.
+pub fn bounded(regions: Vec<Region>, objects: Vec<(Shape, Surface)>, lights: Vec<Light>) -> Scene {
+    let objects = objects.into_iter().map(|(shape, surface)| Object { shape, surface }).collect();
+    Scene::new(Parts { regions, objects, lights, ..Parts::default() }).unwrap()
+}
+
+/// Fluence at a depth in the middle of the cell.
+pub fn at_depth(z: f64) -> Quantity {
+    Quantity::Fluence(DVec3::new(0.5 * CELL, 0.5 * CELL, z))
+}
+
+pub fn reflectance(tau: f64) -> Quantity {
+    Quantity::Outflow { shape: layer(tau), face: Face::Top }
+}
+
+pub fn transmittance(tau: f64) -> Quantity {
+    Quantity::Outflow { shape: layer(tau), face: Face::Bottom }
+}
+
+pub fn outflow(shape: Shape) -> Quantity {
+    Quantity::Outflow { shape, face: Face::Top }
+}
