@@ -74,8 +74,7 @@ pub fn conclude(settings: &Settings, predictions: &[Prediction], cells: &Cells) 
         }
     }
     let mistakes = mistakes(cells, &results)?;
-    let mut section = Section::default();
-    section.rows = rows(cells, &results, &mistakes)?;
+    let mut section = Section { rows: rows(cells, &results, &mistakes)?, ..Section::default() };
     add_claims(&mut section, settings, cells, &results, &mistakes)?;
     section.figures = figures::all(settings, cells, &results, &mistakes)?;
     section.tables.push(error_table(&results));
@@ -206,7 +205,7 @@ fn left_over(results: &[&Result]) -> Estimate {
 }
 
 /// The results that a test picks.
-fn pick<'a>(results: &'a [Result], test: impl Fn(&Result) -> bool) -> Vec<&'a Result> {
+fn pick(results: &[Result], test: impl Fn(&Result) -> bool) -> Vec<&Result> {
     results.iter().filter(|r| !r.case.is_biased() && test(r)).collect()
 }
 

@@ -78,7 +78,7 @@ fn budget(results: &[Result], mistakes: &[Mistake]) -> anyhow::Result<FigureFile
         let x = chosen.iter().map(|m| m.predicted).collect();
         let y = chosen.iter().map(|m| m.error.mean()).collect();
         let bars = chosen.iter().map(|m| bar(&m.error)).collect();
-        panel = panel.with(Points::new(&format!("wrong: {name}"), class, x, y).with_y_interval(bars));
+        panel = panel.with(Points::new(format!("wrong: {name}"), class, x, y).with_y_interval(bars));
     }
     let z: Vec<f64> = results.iter().filter(|r| !r.case.is_biased()).map(Result::z).collect();
     let edges: Vec<f64> = (-10..=10).map(|i| 0.5 * f64::from(i)).collect();
