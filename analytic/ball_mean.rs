@@ -107,6 +107,8 @@ mod tests {
     }
 
     proptest! {
+        #![proptest_config(crate::fixed_cases(256))]
+
         #[test]
         fn uniform_kernel_has_its_closed_form(x in 0.01..300.0_f64, which in 0_usize..3) {
             let d = Dimension::ALL[which];

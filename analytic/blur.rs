@@ -148,6 +148,8 @@ mod tests {
     }
 
     proptest! {
+        #![proptest_config(crate::fixed_cases(256))]
+
         #[test]
         fn transfer_is_the_cosine_transform_of_the_line(q in 0.0..40.0_f64, which in 0_usize..3) {
             let d = Dimension::ALL[which];

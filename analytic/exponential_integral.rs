@@ -270,6 +270,8 @@ mod tests {
     }
 
     proptest! {
+        #![proptest_config(crate::fixed_cases(256))]
+
         #[test]
         fn agrees_with_statrs_where_it_answers(n in 1_u64..30, lx in -30.0..6.0_f64) {
             let x = exp(lx);

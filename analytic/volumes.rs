@@ -73,6 +73,8 @@ mod tests {
     }
 
     proptest! {
+        #![proptest_config(crate::fixed_cases(256))]
+
         #[test]
         fn volumes_are_integrals_of_discs(a in 0.1..2.0_f64, r in 0.1..2.0_f64, place in 0.0..1.0_f64, t in 0.01..3.0_f64) {
             let rule = GaussLegendre::rule(8);
