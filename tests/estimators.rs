@@ -199,6 +199,18 @@ fn coincident_photons_are_seen() -> Result<()> {
 }
 
 #[test]
+fn a_point_that_is_not_finite_has_no_estimate() -> Result<()> {
+    let map = map(photons(500, 12));
+    for x in [f64::NAN, f64::INFINITY] {
+        for gather in [Gather::radius(0.3)?, Gather::nearest(20, 1.0)?] {
+            let estimate = collision_density(&map, DVec3::new(0.5, x, 0.5), Kernel::Uniform, gather);
+            assert!(estimate.value[0].is_nan() && estimate.found == 0, "{estimate:?}");
+        }
+    }
+    Ok(())
+}
+
+#[test]
 fn a_million_terms_do_not_stall() -> Result<()> {
     let all = photons(1_000_000, 7);
     let mut exact = [0.0; 3];

@@ -147,8 +147,10 @@ fn weighted_sum(
 ) -> BallSum {
     let mut sum = Weighted { kernel, weight, sum: LaneSum::default() };
     let ball = gathered(tree, point, gather, &mut sum);
+    // No photon is near a point that is not finite; that is no darkness.
+    let nowhere = if point.is_finite() { 0.0 } else { f64::NAN };
     let r = ball.radius;
-    BallSum { sum: sum.sum.total() * kernel.peak() / (r * r * r), ball }
+    BallSum { sum: (sum.sum.total() + Spectrum::grey(nowhere)) * kernel.peak() / (r * r * r), ball }
 }
 
 /// Visits the photons of a gather.

@@ -68,7 +68,7 @@ impl PhotonTree {
     /// the search goes out to the next distance at which there is a photon, all those at the centre count,
     /// and [`Shell::coincident`] tells how many they were.
     ///
-    /// `k` is at least 1; photons beyond `max_radius` \[L\] are not looked at.
+    /// Nothing is near a point that is not finite. `k` is at least 1; photons beyond `max_radius` \[L\] are not looked at.
     #[inline(always)]
     pub fn nearest(
         &self,
@@ -78,7 +78,7 @@ impl PhotonTree {
         counted: Counted,
         visitor: &mut impl Visit,
     ) -> Nearest {
-        if self.stored < k {
+        if self.stored < k || !centre.is_finite() {
             return Nearest::Underfull;
         }
         let point = self.units.relative(centre);
