@@ -1,4 +1,5 @@
-//! Estimators at a point: kernels, exact small cases, symmetries. Their statistics are in `estimators_statistics`.
+//! Estimators at a point: kernels, exact small cases, symmetries. Their statistics are in
+//! `estimators_statistics`.
 #![allow(clippy::unwrap_used, reason = "tests")]
 
 mod common;
@@ -198,6 +199,18 @@ fn coincident_photons_are_seen() -> Result<()> {
 }
 
 #[test]
+fn a_point_that_is_not_finite_has_no_estimate() -> Result<()> {
+    let map = map(photons(500, 12));
+    for x in [f64::NAN, f64::INFINITY] {
+        for gather in [Gather::radius(0.3)?, Gather::nearest(20, 1.0)?] {
+            let estimate = collision_density(&map, DVec3::new(0.5, x, 0.5), Kernel::Uniform, gather);
+            assert!(estimate.value[0].is_nan() && estimate.found == 0, "{estimate:?}");
+        }
+    }
+    Ok(())
+}
+
+#[test]
 fn a_million_terms_do_not_stall() -> Result<()> {
     let all = photons(1_000_000, 7);
     let mut exact = [0.0; 3];
@@ -209,7 +222,8 @@ fn a_million_terms_do_not_stall() -> Result<()> {
     let map = map(all);
     let found = ball_sum(&map, DVec3::splat(0.5), Kernel::Uniform, Gather::radius(10.0)?);
     let expected = Spectrum::rgb(exact[0], exact[1], exact[2]) * Kernel::Uniform.peak() / 1e3;
-    // Rounding of each flushed lane, 32 x 2^-24 at worst, is random in sign: 1e-8 is left after 30,000 flushes.
+    // Rounding of each flushed lane, 32 x 2^-24 at worst, is random in sign: 1e-8 is left after 30,000
+    // flushes.
     assert!(is_close(found.sum, expected, 1e-7), "{found:?} {expected:?}");
     assert_eq!(found.ball.found, 1_000_000);
     assert_eq!(count_within(&map, DVec3::splat(0.5), 10.0), 1_000_000);
@@ -236,10 +250,30 @@ fn the_number_of_threads_changes_no_bit() -> Result<()> {
     Ok(())
 }
 
+/// The bits of one small map's estimates, the same on every machine, target and number of threads.
+#[test]
+fn golden_bits() -> Result<()> {
+    let map = map(photons(2000, 11));
+    let mut digest = 0u64;
+    for kernel in Kernel::ALL {
+        for gather in [Gather::radius(0.2)?, Gather::nearest(50, 1.0)?, Gather::nearest_biased(50, 1.0)?] {
+            for at in [0.1, 0.3, 0.5, 0.9] {
+                let (at, phase) = (DVec3::new(at, 0.4, 0.6), hg(0.8));
+                let estimate = in_scattered(&map, at, DVec3::Y, &phase, Spectrum::grey(2.0), kernel, gather);
+                for word in [estimate.value[0], estimate.value[2], estimate.radius] {
+                    digest = (digest ^ word.to_bits()).wrapping_mul(0x0000_0100_0000_01b3).rotate_left(23);
+                }
+            }
+        }
+    }
+    assert_eq!(format!("{digest:016x}"), "249af00df0bc0bac");
+    Ok(())
+}
+
 #[test]
 fn expected_blur_is_the_second_moment_and_misses_the_fourth() -> Result<()> {
-    // For exp(-b x) the kernel mean over the local value is 1 + m2 (b r)^2/6 + m4 (b r)^4/120 + ..., and what is
-    // left after the fourth order is below (b r)^6/5040 x 1.1 for b r <= 1.
+    // For exp(-b x) the kernel mean over the local value is 1 + m2 (b r)^2/6 + m4 (b r)^4/120 + ..., and what
+    // is left after the fourth order is below (b r)^6/5040 x 1.1 for b r <= 1.
     for kernel in Kernel::ALL {
         for br in [0.1, 0.3, 1.0] {
             let sinh = |x: f64| if x == 0.0 { 1.0 } else { (exp(x) - exp(-x)) / (2.0 * x) };
@@ -289,7 +323,8 @@ proptest! {
         let corners = [0.0, 1.0].map(|c| Photon { position: DVec3::splat(c), power: Vec3::ZERO, ..all[0] });
         let with_corners = |part: &[Photon]| map([part, &corners].concat());
         let ask = |part: &[Photon]| {
-            collision_density(&with_corners(part), DVec3::splat(0.5), Kernel::ALL[which], gathers(1.0)[0]).value
+            let (at, kernel) = (DVec3::splat(0.5), Kernel::ALL[which]);
+            collision_density(&with_corners(part), at, kernel, gathers(1.0)[0]).value
         };
         // Sums of at most 400 non-negative terms: each rounds within 32 x 2^-24.
         prop_assert!(is_close(ask(a) + ask(b), ask(&all), 4e-6));
@@ -309,7 +344,12 @@ proptest! {
 
     /// Lengths times a power of two s: the same photons, and the fluence times s^-2, bit for bit.
     #[test]
-    fn lengths_scale_the_fluence(count in 1u64..400, seed in any::<u64>(), exponent in -30i32..30, which in 0..5usize) {
+    fn lengths_scale_the_fluence(
+        count in 1u64..400,
+        seed in any::<u64>(),
+        exponent in -30i32..30,
+        which in 0..5usize,
+    ) {
         let s = libm::ldexp(1.0, exponent);
         let plain = photons(count, seed);
         let larger = map(plain.iter().map(|p| Photon { position: p.position * s, ..*p }).collect());
@@ -325,7 +365,12 @@ proptest! {
 
     /// Rotated and moved, the estimate stays, to the rounding of positions.
     #[test]
-    fn invariant_under_motions(count in 30u64..400, seed in any::<u64>(), angles in [0.0..6.0, 0.0..6.0, 0.0..6.0], shift in -100.0..100.0f64) {
+    fn invariant_under_motions(
+        count in 30u64..400,
+        seed in any::<u64>(),
+        angles in [0.0..6.0, 0.0..6.0, 0.0..6.0],
+        shift in -100.0..100.0f64,
+    ) {
         let [a, b, c] = angles;
         let turn = DMat3::from_rotation_z(a) * DMat3::from_rotation_x(b) * DMat3::from_rotation_z(c);
         let moved = |p: DVec3| turn * p + shift;
@@ -343,15 +388,18 @@ proptest! {
         let plain = map(plain);
         let (at, wo) = (DVec3::splat(0.5), DVec3::X);
         // A kernel that falls to zero smoothly: a photon that rounding moves across the edge brings nothing.
-        // Distances move by a few 1e-7, weights by as much over u = 1; sums of photons near the edge by more of
-        // themselves, so the tolerance is of the largest weight.
+        // Distances move by a few 1e-7, weights by as much over u = 1; sums of photons near the edge by more
+        // of themselves, so the tolerance is of the largest weight.
         for gather in &gathers(1.0)[..2] {
-            let a = in_scattered(&plain, at, wo, &hg(0.6), Spectrum::ONE, Kernel::Biweight, *gather);
-            let b = in_scattered(&turned, moved(at), turn * wo, &hg(0.6), Spectrum::ONE, Kernel::Biweight, *gather);
+            let ask = |map, at, wo| {
+                in_scattered(map, at, wo, &hg(0.6), Spectrum::ONE, Kernel::Biweight, *gather)
+            };
+            let (a, b) = (ask(&plain, at, wo), ask(&turned, moved(at), turn * wo));
             let peak = 20.0 * Kernel::Biweight.peak() / (a.radius.powi(3) * 1000.0);
             let error = (a.value - b.value).0.abs().max_element();
             prop_assert!(error <= 1e-5 * peak, "{:?} {:?}", a, b);
-            prop_assert!((a.radius - b.radius).abs() <= 4.0 * plain.tree().resolution() + 4.0 * turned.tree().resolution());
+            let resolution = plain.tree().resolution() + turned.tree().resolution();
+            prop_assert!((a.radius - b.radius).abs() <= 4.0 * resolution + 1e-6 * a.radius);
         }
     }
 }

@@ -50,8 +50,8 @@ fn nearest(tree: &PhotonTree, centre: DVec3, k: usize, cap: f64) -> (Option<Shel
     }
 }
 
-/// How far a distance in the tree may be from that of the positions it holds: the query point is rounded by one
-/// resolution a coordinate, and the arithmetic adds 4 x 2^-24 of the distance.
+/// How far a distance in the tree may be from that of the positions it holds: the query point is rounded by
+/// one resolution a coordinate, and the arithmetic adds 4 x 2^-24 of the distance.
 fn error_of(tree: &PhotonTree, distance: f64) -> f64 {
     2.0 * tree.resolution() + distance * 4.0 / f64::from(1 << 24)
 }
@@ -106,7 +106,8 @@ fn finds_what_brute_force_finds() -> Result<()> {
 
 #[test]
 fn a_march_through_strong_contrast_finds_what_brute_force_finds() -> Result<()> {
-    // A dense sheet in a thin mist: guesses from the last search are wrong by orders of magnitude at its faces.
+    // A dense sheet in a thin mist: guesses from the last search are wrong by orders of magnitude at its
+    // faces.
     let mist = scattered(2_000, 1);
     let sheet = scattered(30_000, 2).into_iter().map(|p| DVec3::new(p.x, p.y, 0.5 + 1e-3 * p.z));
     let tree = PhotonTree::new(photons(mist.into_iter().chain(sheet)))?;

@@ -1,10 +1,10 @@
-//! The photon tree against kiddo 6, in one run on one thread: 10^6 photons, uniform and in a light shaft, queries in
-//! the order of a ray march, power x phase function summed on both sides.
+//! The photon tree against kiddo 6, in one run on one thread: 10^6 photons, uniform and in a light shaft,
+//! queries in the order of a ray march, power x phase function summed on both sides.
 //!
 //! `cargo bench --bench tree -- build` runs the rows whose name contains the word.
 //!
-//! kiddo is used at its best for this: an immutable tree of f32, its payload in the order of its leaves as one
-//! record a photon, unsorted results, a visitor for the fixed radius and reused scratch memory.
+//! kiddo is used at its best for this: an immutable tree of f32, its payload in the order of its leaves as
+//! one record a photon, unsorted results, a visitor for the fixed radius and reused scratch memory.
 
 mod paired;
 
@@ -191,7 +191,8 @@ fn uniform() -> Vec<Photon> {
         .collect()
 }
 
-/// Nine photons of ten in a slanted cylinder of a tenth of the box, thinning out along it; one of ten anywhere.
+/// Nine photons of ten in a slanted cylinder of a tenth of the box, thinning out along it; one of ten
+/// anywhere.
 fn shaft() -> Vec<Photon> {
     let mut stream = Stream::new(2, Purpose::Synthetic, 0, 0);
     let axis = DVec3::new(0.3, 0.1, 1.0).normalize();

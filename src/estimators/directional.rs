@@ -4,8 +4,8 @@ use crate::math::FOUR_PI;
 use crate::photons::tree::bits;
 use wide::f32x8;
 
-/// The value of a phase function [1/sr] for the pair (1-mu, 1+mu), mu the cosine between the directions of travel
-/// before and after; it integrates to one over the sphere.
+/// The value of a phase function [1/sr] for the pair (1-mu, 1+mu), mu the cosine between the directions of
+/// travel before and after; it integrates to one over the sphere.
 ///
 /// Any `Fn(f64, f64) -> f64` is one, evaluated photon by photon. One that can do eight at a time overrides
 /// [`Directional::values`].
@@ -75,8 +75,8 @@ impl Directional for IsotropicLanes {
 
 /// The phase function of Henyey and Greenstein, eight photons at a time.
 ///
-/// p = (1-g^2)/(4 pi d^(3/2)), d = (1-g)^2 + 2 g (1-mu) for g >= 0 and (1+g)^2 - 2 g (1+mu) for g < 0: sums of
-/// non-negatives. The lanes are within a few roundings of f32 of [`Directional::value`].
+/// p = (1-g^2)/(4 pi d^(3/2)), d = (1-g)^2 + 2 g (1-mu) for g >= 0 and (1+g)^2 - 2 g (1+mu) for g < 0: sums
+/// of non-negatives. The lanes are within a few roundings of f32 of [`Directional::value`].
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct HenyeyGreensteinLanes {
     forward: bool,

@@ -12,26 +12,28 @@ use wide::f32x8;
 pub struct Estimate {
     /// The estimate by channel.
     pub value: Spectrum,
-    /// Radius of the ball [L].
+    /// Radius of the ball \[L\].
     pub radius: f64,
     /// Photons in the ball, those on its surface included.
     pub found: usize,
     /// Whether fewer than k photons were within the cap, so that the ball is the cap.
     pub underfull: bool,
-    /// Photons at the point itself if they were k or more, so that the ball reaches to the next one out; else 0.
+    /// Photons at the point itself if they were k or more, so that the ball reaches to the next one out; else
+    /// 0.
     pub coincident: usize,
 }
 
 /// The ball that a gather chose.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Ball {
-    /// Radius [L].
+    /// Radius \[L\].
     pub radius: f64,
     /// Photons in the ball, those on its surface included.
     pub found: usize,
     /// Whether fewer than k photons were within the cap, so that the ball is the cap.
     pub underfull: bool,
-    /// Photons at the point itself if they were k or more, so that the ball reaches to the next one out; else 0.
+    /// Photons at the point itself if they were k or more, so that the ball reaches to the next one out; else
+    /// 0.
     pub coincident: usize,
 }
 
@@ -47,12 +49,12 @@ pub struct BallSum {
 /// Fluence at a point [W/L^2]: sum p K_r / (N sigma_t).
 ///
 /// # Arguments
-/// `sigma_t` \[1/L\] at the point, above zero in every channel: a channel in which it is zero gives a non-finite
-/// value, never a silent zero.
+/// `sigma_t` [1/L] at the point, above zero in every channel: a channel in which it is zero gives a
+/// non-finite value, never a silent zero.
 ///
 /// # Limits
-/// Where sigma_t varies this is the blurred collision density over the local sigma_t; see [`for_each_photon`] for
-/// sums that weight each photon by its own.
+/// Where sigma_t varies this is the blurred collision density over the local sigma_t; see [`for_each_photon`]
+/// for sums that weight each photon by its own.
 ///
 /// # Source
 /// Jensen and Christensen 1998; the k-1 of the k-nearest rule is Loftsgaarden and Quesenberry 1965.
@@ -70,11 +72,11 @@ pub fn collision_density(map: &PhotonMap, point: DVec3, kernel: Kernel, gather: 
 /// In-scattered radiance at a point [W/(L^2 sr)]: sum p phase(dir -> wo) K_r / (N sigma_t).
 ///
 /// # Arguments
-/// `wo` unit direction of travel after the scattering; `phase` \[1/sr\]; `sigma_t` as in [`fluence`].
+/// `wo` unit direction of travel after the scattering; `phase` [1/sr]; `sigma_t` as in [`fluence`].
 ///
 /// # Limits
-/// Directions are held in single precision, which blurs a phase function over about 1e-7 rad: peaks of |g| above
-/// 0.9999 feel it. The source term of the transfer equation is sigma_s times the value.
+/// Directions are held in single precision, which blurs a phase function over about 1e-7 rad: peaks of |g|
+/// above 0.9999 feel it. The source term of the transfer equation is sigma_s times the value.
 pub fn in_scattered(
     map: &PhotonMap,
     point: DVec3,
@@ -98,15 +100,15 @@ pub fn ball_sum(map: &PhotonMap, point: DVec3, kernel: Kernel, gather: Gather) -
     weighted_sum(map.tree(), point, kernel, gather, |_| f32x8::ONE)
 }
 
-/// Number of photons at most `radius` [L] from a point.
+/// Number of photons at most `radius` \[L\] from a point.
 pub fn count_within(map: &PhotonMap, point: DVec3, radius: f64) -> usize {
     let mut count = 0;
     map.tree().within(point, radius, &mut |neighbors: Neighbors<'_>| count += number(&neighbors));
     count
 }
 
-/// Visits each photon of the gather with its weight K(u) in units of 1/radius^3, for sums that none of the other
-/// functions makes: sum weight x ... / radius^3 is an estimate of the same kind. Slower than they are.
+/// Visits each photon of the gather with its weight K(u) in units of 1/radius^3, for sums that none of the
+/// other functions makes: sum weight x ... / radius^3 is an estimate of the same kind. Slower than they are.
 pub fn for_each_photon(
     map: &PhotonMap,
     point: DVec3,
@@ -145,8 +147,10 @@ fn weighted_sum(
 ) -> BallSum {
     let mut sum = Weighted { kernel, weight, sum: LaneSum::default() };
     let ball = gathered(tree, point, gather, &mut sum);
+    // No photon is near a point that is not finite; that is no darkness.
+    let nowhere = if point.is_finite() { 0.0 } else { f64::NAN };
     let r = ball.radius;
-    BallSum { sum: sum.sum.total() * kernel.peak() / (r * r * r), ball }
+    BallSum { sum: (sum.sum.total() + Spectrum::grey(nowhere)) * kernel.peak() / (r * r * r), ball }
 }
 
 /// Visits the photons of a gather.
@@ -215,8 +219,8 @@ impl Default for LaneSum {
 }
 
 impl LaneSum {
-    /// Rows a lane adds up before it is emptied: its relative error stays below 32 x 2^-24 = 2e-6 at worst and a
-    /// tenth of that as a rule, far below the noise of 8 photons a row.
+    /// Rows a lane adds up before it is emptied: its relative error stays below 32 x 2^-24 = 2e-6 at worst
+    /// and a tenth of that as a rule, far below the noise of 8 photons a row.
     const ROWS: u32 = 32;
 
     #[inline(always)]

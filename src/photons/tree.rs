@@ -30,10 +30,10 @@ type Row = [f32x8; 3];
 
 /// Photons, ordered so that neighbours in space are neighbours in memory; the only copy of them.
 ///
-/// Positions are held in single precision relative to the centre of the map's box, in a power-of-two unit u with
-/// u/2 < half the longest edge <= u: a stored coordinate is off by at most 2^-25 u, see
-/// [`PhotonTree::resolution`], and a query point by as much. Distances are computed in single precision, with a
-/// relative error below 4 x 2^-24 beyond that. Directions and powers are held as they came.
+/// Positions are held in single precision relative to the centre of the map's box, in a power-of-two unit u
+/// with u/2 < half the longest edge <= u: a stored coordinate is off by at most 2^-25 u, see
+/// [`PhotonTree::resolution`], and a query point by as much. Distances are computed in single precision, with
+/// a relative error below 4 x 2^-24 beyond that. Directions and powers are held as they came.
 ///
 /// A search takes the same sum over the same photons in the same order whatever the processor, the number of
 /// threads and the order the photons came in.
@@ -53,8 +53,8 @@ impl PhotonTree {
     /// The tree over `photons`, built by the calling thread.
     ///
     /// # Errors
-    /// [`Error::NonFinite`] if a position, direction or power is not finite; [`Error::OutOfRange`] beyond 2^32
-    /// photons.
+    /// [`Error::NonFinite`] if a position, direction or power is not finite; [`Error::OutOfRange`] beyond
+    /// 2^32 photons.
     pub fn new(photons: Vec<Photon>) -> Result<Self> {
         Self::build(photons, false)
     }
@@ -137,12 +137,12 @@ impl PhotonTree {
         self.stored == 0
     }
 
-    /// Largest error of a stored coordinate [L], beyond that of an f64 of its size.
+    /// Largest error of a stored coordinate \[L\], beyond that of an f64 of its size.
     pub fn resolution(&self) -> f64 {
         self.units.stretch(1.0 / f64::from(1u32 << 25))
     }
 
-    /// Memory that the photons and the boxes above them occupy [bytes].
+    /// Memory that the photons and the boxes above them occupy \[bytes\].
     pub fn bytes(&self) -> usize {
         let boxes: usize = self.levels.iter().map(Vec::len).sum();
         self.dirs.len() * size_of::<[Row; 3]>()

@@ -31,8 +31,8 @@ impl Probe {
 
     /// Squared distances to eight boxes.
     ///
-    /// Rounding is monotone and the operations are those of [`Probe::squared_distances`] in the same order, so
-    /// this is never above the squared distance of a photon inside the box, not even by rounding.
+    /// Rounding is monotone and the operations are those of [`Probe::squared_distances`] in the same order,
+    /// so this is never above the squared distance of a photon inside the box, not even by rounding.
     #[inline(always)]
     fn squared_distances_to_row(&self, [lower, upper]: &[Row; 2]) -> f32x8 {
         let along = |axis: usize| {

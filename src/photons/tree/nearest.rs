@@ -14,20 +14,22 @@ use wide::f32x8;
 pub enum Nearest {
     /// The k-th photon is within the cap.
     Found(Shell),
-    /// Fewer than k photons are within the cap, or all that are coincide with the query point; none was visited.
+    /// Fewer than k photons are within the cap, or all that are coincide with the query point; none was
+    /// visited.
     Underfull,
 }
 
 /// The sphere through the k-th photon.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Shell {
-    /// Distance of the k-th photon [L], above zero.
+    /// Distance of the k-th photon \[L\], above zero.
     pub radius: f64,
     /// Photons strictly nearer.
     pub closer: usize,
     /// Photons at that distance, the k-th among them.
     pub tied: usize,
-    /// Photons at distance zero if there were k or more of them, so that the shell is the next one out; else 0.
+    /// Photons at distance zero if there were k or more of them, so that the shell is the next one out; else
+    /// 0.
     pub coincident: usize,
 }
 
@@ -55,16 +57,18 @@ struct Sphere {
 }
 
 impl PhotonTree {
-    /// Visits the photons nearer to `centre` than the `k`-th, in the tree's order, and says how far the k-th is.
+    /// Visits the photons nearer to `centre` than the `k`-th, in the tree's order, and says how far the k-th
+    /// is.
     ///
-    /// The k-1 nearer photons count in full. Photons that tie with the k-th, as stored, share what is missing from
-    /// k-1 (from k for [`Counted::UpToKth`]) in equal parts, so that exactly k-1 (k) count, whatever their order.
+    /// The k-1 nearer photons count in full. Photons that tie with the k-th, as stored, share what is missing
+    /// from k-1 (from k for [`Counted::UpToKth`]) in equal parts, so that exactly k-1 (k) count, whatever
+    /// their order.
     ///
-    /// If k or more photons coincide with `centre`, no ball of positive volume has the k-th on its surface: the
-    /// search goes out to the next distance at which there is a photon, all those at the centre count, and
-    /// [`Shell::coincident`] tells how many they were.
+    /// If k or more photons coincide with `centre`, no ball of positive volume has the k-th on its surface:
+    /// the search goes out to the next distance at which there is a photon, all those at the centre count,
+    /// and [`Shell::coincident`] tells how many they were.
     ///
-    /// `k` is at least 1; photons beyond `max_radius` [L] are not looked at.
+    /// Nothing is near a point that is not finite. `k` is at least 1; photons beyond `max_radius` \[L\] are not looked at.
     #[inline(always)]
     pub fn nearest(
         &self,
@@ -74,7 +78,7 @@ impl PhotonTree {
         counted: Counted,
         visitor: &mut impl Visit,
     ) -> Nearest {
-        if self.stored < k {
+        if self.stored < k || !centre.is_finite() {
             return Nearest::Underfull;
         }
         let point = self.units.relative(centre);
@@ -143,8 +147,8 @@ impl PhotonTree {
         Nearest::Found(Shell { radius, closer: 0, tied: self.stored, coincident: 0 })
     }
 
-    /// The squared distance within which k photons are certain to be: the k-th of the nearest node that has as
-    /// many, a node of the finest level at least.
+    /// The squared distance within which k photons are certain to be: the k-th of the nearest node that has
+    /// as many, a node of the finest level at least.
     fn bound(&self, probe: &Probe, k: usize, near: &mut Vec<u32>) -> f32 {
         let (mut first, mut blocks) = (0, self.positions.len());
         let mut node = 0;
@@ -210,8 +214,8 @@ impl Scratch {
         (moved < last.squared).then_some(last.squared * 1.3)
     }
 
-    /// Collects at least k photons if `bound` holds as many, and not many more: beside a dense region a ball that
-    /// is certain to hold k may hold thousands of times as many. `below` is known to hold fewer than k.
+    /// Collects at least k photons if `bound` holds as many, and not many more: beside a dense region a ball
+    /// that is certain to hold k may hold thousands of times as many. `below` is known to hold fewer than k.
     fn collect_enough(&mut self, tree: &PhotonTree, probe: &Probe, k: usize, below: f32, bound: f32) {
         let many = k / 4 + 64;
         let mut trial = bound;

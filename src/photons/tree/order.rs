@@ -20,8 +20,8 @@ impl Entry {
     pub(super) const NONE: Entry = Entry { position: [0.0; 3], index: 0 };
 }
 
-/// Puts entries in kd order: every range of more than one block is split across the widest axis of its box, at
-/// the largest power-of-two number of blocks below its own, nearer photons first.
+/// Puts entries in kd order: every range of more than one block is split across the widest axis of its box,
+/// at the largest power-of-two number of blocks below its own, nearer photons first.
 ///
 /// Photons at the same coordinate are ordered by their records, so that the order is a function of the set of
 /// photons and not of how they came.
@@ -39,7 +39,8 @@ struct Order<'a> {
 }
 
 impl Order<'_> {
-    /// Orders `entries`, with `spare` and `band`, half as long, to work in; the result is left in `entries` if `in_place`, else in `spare`.
+    /// Orders `entries`, with `spare` and `band`, half as long, to work in; the result is left in `entries`
+    /// if `in_place`, else in `spare`.
     fn sort(self, entries: &mut [Entry], spare: &mut [Entry], band: &mut [Entry], in_place: bool) {
         let blocks = entries.len().div_ceil(BLOCK);
         let axis = widest_axis(entries);
@@ -95,8 +96,9 @@ impl Order<'_> {
 
     /// Brings the `middle` nearest entries along an axis before the others; whether the result is in `spare`.
     ///
-    /// One pass moves what lies clearly below or above the middle, by two pivots from a sample (Floyd and Rivest
-    /// 1975), and only the band between them is searched. Which entries come first does not depend on the sample.
+    /// One pass moves what lies clearly below or above the middle, by two pivots from a sample (Floyd and
+    /// Rivest 1975), and only the band between them is searched. Which entries come first does not depend on
+    /// the sample.
     fn split<const AXIS: usize>(
         self,
         entries: &mut [Entry],
@@ -110,8 +112,8 @@ impl Order<'_> {
         };
         let (mut below, mut above, mut between) = (0, entries.len(), 0);
         for entry in entries.iter() {
-            // Written to all three places, kept in one: no branch to mispredict. What is still to come always has
-            // room between `below` and `above`.
+            // Written to all three places, kept in one: no branch to mispredict. What is still to come always
+            // has room between `below` and `above`.
             let c = entry.position[AXIS];
             let (is_below, is_above) = (c < low, c > high);
             spare[below] = *entry;
@@ -157,8 +159,8 @@ impl Order<'_> {
     }
 }
 
-/// Two values that the entry of rank `middle` lies between, three standard deviations of the sample's rank apart
-/// from it; none for a short range.
+/// Two values that the entry of rank `middle` lies between, three standard deviations of the sample's rank
+/// apart from it; none for a short range.
 fn pivots<const AXIS: usize>(entries: &[Entry], middle: usize) -> Option<[f32; 2]> {
     const SAMPLE: usize = 256;
     if entries.len() < 4 * SAMPLE {

@@ -10,7 +10,8 @@ pub(super) const LIMIT: f64 = (1u64 << 60) as f64;
 
 /// Where the map's box is and how large: positions relative to its centre lie in [-1, 1].
 ///
-/// The unit is a power of two, so a map scaled by a power of two has the same relative positions, bit for bit.
+/// The unit is a power of two, so a map scaled by a power of two has the same relative positions, bit for
+/// bit.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Units {
     origin: DVec3,

@@ -1,4 +1,5 @@
-//! Every photon within a fixed radius: boxes that touch the ball, then one masked pass a block; no list is kept.
+//! Every photon within a fixed radius: boxes that touch the ball, then one masked pass a block; no list is
+//! kept.
 
 use super::boxes::Probe;
 use super::scratch::{Scratch, with_scratch};
@@ -31,13 +32,14 @@ impl<'a> Neighbors<'a> {
         self.inside
     }
 
-    /// The part of each photon that counts: 1, but for photons that tie with the k-th ([`PhotonTree::nearest`]).
+    /// The part of each photon that counts: 1, but for photons that tie with the k-th
+    /// ([`PhotonTree::nearest`]).
     #[inline(always)]
     pub fn share(&self) -> f32 {
         self.share
     }
 
-    /// Powers [W], an array a channel.
+    /// Powers \[W\], an array a channel.
     #[inline(always)]
     pub fn power(&self) -> &'a Row {
         &self.tree.powers[self.row]
@@ -102,11 +104,11 @@ const fn set_bits() -> [([u32; 4], usize); 16] {
 }
 
 impl PhotonTree {
-    /// Visits every photon at most `radius` [L] from `centre`, by blocks, in the tree's order; a photon exactly
-    /// at `radius` is inside. `radius` is above zero.
+    /// Visits every photon at most `radius` \[L\] from `centre`, by blocks, in the tree's order; a photon
+    /// exactly at `radius` is inside. `radius` is above zero.
     ///
-    /// Distances below 2^-60 of the map's box count as zero, and a radius above 2^60 of it sees the map as one
-    /// point.
+    /// Distances below 2^-60 of the map's box count as zero, and a radius above 2^60 of it sees the map as
+    /// one point.
     #[inline(always)]
     pub fn within(&self, centre: DVec3, radius: f64, visitor: &mut impl Visit) {
         let point = self.units.relative(centre);
@@ -164,8 +166,8 @@ impl PhotonTree {
         touched.extend((!self.levels.is_empty()).then_some(0));
         for level in self.levels.iter().rev() {
             std::mem::swap(touched, parents);
-            // Four places beyond what can count, since children are written four by four, whether they count or
-            // not: no branch to mispredict.
+            // Four places beyond what can count, since children are written four by four, whether they count
+            // or not: no branch to mispredict.
             touched.clear();
             touched.resize(parents.len() * 16 + 4, 0);
             let mut end = 0;
@@ -185,8 +187,8 @@ impl PhotonTree {
 }
 
 impl Scratch {
-    /// Lists the rows of the touched blocks that have photons in the ball of squared radius `r2`, and their squared
-    /// distances.
+    /// Lists the rows of the touched blocks that have photons in the ball of squared radius `r2`, and their
+    /// squared distances.
     ///
     /// Every row is written and only those that count are kept: no branch to mispredict.
     #[inline(always)]
