@@ -9,10 +9,11 @@ use proptest::prelude::*;
 use rayon::prelude::*;
 use std::f64::consts::PI;
 use turbid::estimators::{
-    CosinePairs, Directional, Estimate, Gather, HenyeyGreensteinLanes, IsotropicLanes, Kernel, ball_sum,
-    collision_density, count_within, fluence, for_each_photon, in_scattered,
+    CosinePairs, Directional, Estimate, Gather, Kernel, ball_sum, collision_density, count_within, fluence,
+    for_each_photon, in_scattered,
 };
 use turbid::math::{Asymmetry, FOUR_PI, exp, warp};
+use turbid::phase::{HenyeyGreenstein, Isotropic};
 use turbid::photons::{Flags, Photon, PhotonMap};
 use turbid::rng::{Purpose, Stream};
 use turbid::{Result, Spectrum};
@@ -37,8 +38,8 @@ fn map(photons: Vec<Photon>) -> PhotonMap {
     PhotonMap::new(photons, 1000).unwrap()
 }
 
-fn hg(g: f64) -> HenyeyGreensteinLanes {
-    HenyeyGreensteinLanes::new(Asymmetry::new("g", g).unwrap())
+fn hg(g: f64) -> HenyeyGreenstein {
+    HenyeyGreenstein::new(Asymmetry::new("g", g).unwrap())
 }
 
 /// Simpson's rule over [0, 1]; for the polynomials and the Gaussian below its error is under 1e-13.
@@ -98,7 +99,7 @@ fn phase_functions_of_eight_are_those_of_one() {
                 // Eight operations of relative error 2^-24 each, the root and the division among them.
                 assert!((fast - slow).abs() <= 8.0 / 16_777_216.0 * slow, "g = {g}: {fast} for {slow}");
             }
-            assert_eq!(IsotropicLanes.values(pairs).to_array(), [(1.0 / FOUR_PI) as f32; 8]);
+            assert_eq!(Isotropic.values(pairs).to_array(), [(1.0 / FOUR_PI) as f32; 8]);
         }
         // The integral over the sphere is one: 1-mu = 2v, v uniform, made smooth by v = t^8 from the peak.
         let around_peak = |t: f64| {
@@ -170,7 +171,7 @@ fn in_scattered_light_follows_the_phase_function() -> Result<()> {
         // Isotropic: the fluence over 4 pi.
         let all = fluence(&map, point, Spectrum::grey(3.0), Kernel::Biweight, gather).value / FOUR_PI;
         let isotropic =
-            in_scattered(&map, point, wo, &IsotropicLanes, Spectrum::grey(3.0), Kernel::Biweight, gather);
+            in_scattered(&map, point, wo, &Isotropic, Spectrum::grey(3.0), Kernel::Biweight, gather);
         assert!(is_close(isotropic.value, all, 1e-6));
     }
     Ok(())

@@ -14,8 +14,9 @@ use glam::DVec3;
 use statrs::distribution::{ContinuousCDF, StudentsT};
 use std::f64::consts::PI;
 use turbid::Spectrum;
-use turbid::estimators::{Gather, HenyeyGreensteinLanes, Kernel, collision_density, in_scattered};
+use turbid::estimators::{Gather, Kernel, collision_density, in_scattered};
 use turbid::math::{Asymmetry, FOUR_PI, exp, ln, sin_cos};
+use turbid::phase::HenyeyGreenstein;
 use turbid::photons::PhotonMap;
 use turbid::photons::synthetic::{Number, Profile, Synthetic};
 
@@ -317,7 +318,7 @@ fn an_edge_is_blurred_as_stated() {
 fn isotropic_light_scatters_alike() {
     let gather = Gather::radius(RADIUS).unwrap();
     for g in [-0.5, 0.0, 0.8] {
-        let phase = HenyeyGreensteinLanes::new(Asymmetry::new("g", g).unwrap());
+        let phase = HenyeyGreenstein::new(Asymmetry::new("g", g).unwrap());
         let (sigma_t, wo) = (Spectrum::grey(2.5), DVec3::new(0.0, 0.6, -0.8));
         let values = by_map(synthetic(Profile::Constant), Number::Exact(PHOTONS), |map, at| {
             let kernel = Kernel::Epanechnikov;

@@ -15,8 +15,9 @@ use std::hint::black_box;
 use std::io::Write;
 use std::num::NonZero;
 use turbid::Spectrum;
-use turbid::estimators::{Gather, HenyeyGreensteinLanes, Kernel, count_within, in_scattered};
+use turbid::estimators::{Gather, Kernel, count_within, in_scattered};
 use turbid::math::{Asymmetry, FOUR_PI, warp};
+use turbid::phase::HenyeyGreenstein;
 use turbid::photons::{Flags, Photon, PhotonMap, PhotonTree};
 use turbid::rng::{Purpose, Stream};
 
@@ -36,7 +37,7 @@ fn main() -> anyhow::Result<()> {
         let peer = Peer::new(&photons);
         let ours = PhotonMap::new(photons.clone(), PHOTONS)?;
         let radius = radius_holding(&ours, &queries);
-        let (r2, phase) = ((radius * radius) as f32, HenyeyGreensteinLanes::new(Asymmetry::new("g", G)?));
+        let (r2, phase) = ((radius * radius) as f32, HenyeyGreenstein::new(Asymmetry::new("g", G)?));
         let (fixed, nearest) = (Gather::radius(radius)?, Gather::nearest(K, 10.0)?);
         let mut scratch = peer.tree.create_scratch::<SquaredEuclidean<f32>>();
 
@@ -158,7 +159,7 @@ impl Scatter {
     }
 }
 
-fn scattered(map: &PhotonMap, q: &DVec3, phase: &HenyeyGreensteinLanes, gather: Gather) -> Spectrum {
+fn scattered(map: &PhotonMap, q: &DVec3, phase: &HenyeyGreenstein, gather: Gather) -> Spectrum {
     in_scattered(map, *q, DVec3::Z, phase, Spectrum::ONE, Kernel::Uniform, gather).value
 }
 

@@ -1,6 +1,7 @@
 //! Phase functions as an estimate uses them: eight photons at a time.
 
 use crate::math::FOUR_PI;
+use crate::phase::{HenyeyGreenstein, Isotropic, Phase, PhaseFunction};
 use crate::photons::tree::bits;
 use wide::f32x8;
 
@@ -58,13 +59,9 @@ impl<F: Fn(f64, f64) -> f64> Directional for F {
     }
 }
 
-/// The isotropic phase function, eight photons at a time.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct IsotropicLanes;
-
-impl Directional for IsotropicLanes {
-    fn value(&self, _: f64, _: f64) -> f64 {
-        1.0 / FOUR_PI
+impl Directional for Isotropic {
+    fn value(&self, one_minus_mu: f64, one_plus_mu: f64) -> f64 {
+        self.eval(one_minus_mu, one_plus_mu)
     }
 
     #[inline(always)]
@@ -73,44 +70,35 @@ impl Directional for IsotropicLanes {
     }
 }
 
-/// The phase function of Henyey and Greenstein, eight photons at a time.
-///
-/// p = (1-g^2)/(4 pi d^(3/2)), d = (1-g)^2 + 2 g (1-mu) for g >= 0 and (1+g)^2 - 2 g (1+mu) for g < 0: sums
-/// of non-negatives. The lanes are within a few roundings of f32 of [`Directional::value`].
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct HenyeyGreensteinLanes {
-    forward: bool,
-    front: f64,
-    square: f64,
-    slope: f64,
-}
+impl Directional for HenyeyGreenstein {
+    fn value(&self, one_minus_mu: f64, one_plus_mu: f64) -> f64 {
+        self.eval(one_minus_mu, one_plus_mu)
+    }
 
-impl HenyeyGreensteinLanes {
-    /// The phase function of mean cosine `g`, in (-1, 1).
-    pub fn new(g: crate::math::Asymmetry) -> Self {
-        let g = g.get();
+    /// p = (1-g^2)/(4 pi d^(3/2)), d = (1-|g|)^2 + 2 |g| (1-mu), mu towards the peak: sums of non-negatives, within a
+    /// few roundings of f32 of [`Directional::value`].
+    #[inline(always)]
+    fn values(&self, pairs: CosinePairs<'_>) -> f32x8 {
+        let g = self.moment(1);
         let size = g.abs();
         let front = (1.0 - size) * (1.0 + size) / FOUR_PI;
-        HenyeyGreensteinLanes {
-            forward: g >= 0.0,
-            front,
-            square: (1.0 - size) * (1.0 - size),
-            slope: 2.0 * size,
-        }
+        let away = if g >= 0.0 { pairs.one_minus_mu() } else { pairs.one_plus_mu() };
+        let square = (1.0 - size) * (1.0 - size);
+        let d = f32x8::splat(square as f32) + f32x8::splat((2.0 * size) as f32) * away;
+        f32x8::splat(front as f32) / (d * d.sqrt())
     }
 }
 
-impl Directional for HenyeyGreensteinLanes {
+impl Directional for Phase {
     fn value(&self, one_minus_mu: f64, one_plus_mu: f64) -> f64 {
-        let away = if self.forward { one_minus_mu } else { one_plus_mu };
-        let d = self.square + self.slope * away;
-        self.front / (d * d.sqrt())
+        self.eval(one_minus_mu, one_plus_mu)
     }
 
     #[inline(always)]
     fn values(&self, pairs: CosinePairs<'_>) -> f32x8 {
-        let away = if self.forward { pairs.one_minus_mu() } else { pairs.one_plus_mu() };
-        let d = f32x8::splat(self.square as f32) + f32x8::splat(self.slope as f32) * away;
-        f32x8::splat(self.front as f32) / (d * d.sqrt())
+        match self {
+            Phase::Isotropic(phase) => phase.values(pairs),
+            Phase::HenyeyGreenstein(phase) => phase.values(pairs),
+        }
     }
 }

@@ -15,7 +15,7 @@ mod gather;
 mod kernel;
 mod point;
 
-pub use directional::{CosinePairs, Directional, HenyeyGreensteinLanes, IsotropicLanes};
+pub use directional::{CosinePairs, Directional};
 pub use gather::{Gather, NeighborCount};
 pub use kernel::Kernel;
 pub use point::{
