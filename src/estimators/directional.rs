@@ -79,7 +79,7 @@ impl Directional for HenyeyGreenstein {
     /// few roundings of f32 of [`Directional::value`].
     #[inline(always)]
     fn values(&self, pairs: CosinePairs<'_>) -> f32x8 {
-        let g = self.moment(1);
+        let g = self.g();
         let size = g.abs();
         let front = (1.0 - size) * (1.0 + size) / FOUR_PI;
         let away = if g >= 0.0 { pairs.one_minus_mu() } else { pairs.one_plus_mu() };

@@ -37,7 +37,7 @@ const NEIGHBORS: [usize; 4] = [10, 50, 100, 500];
 /// Sizes at which the biased rule is shown.
 const BIASED: [usize; 2] = [10, 50];
 /// Where all kernels are compared: one radius, one k.
-const KERNELS_AT: (f64, usize) = (0.4, 100);
+const KERNELS_AT: (f64, usize) = (0.8, 100);
 /// Most probes along one side of the lattice.
 const MAX_SIDE: usize = 16;
 /// Fewest photons that the widest nearest gather may leave in a map: below, the ball is no longer local.

@@ -231,7 +231,7 @@ fn add_claims(
     let is_free = |r: &Result| r.case.field == free && r.is_whole();
     amplitude_claim(
         "uncollided-radius",
-        "uncollided photons, fixed radius 0.1 to 0.8, whole balls: measured over predicted error is 1",
+        "uncollided photons, radius 0.1 to 0.8, whole balls: measured over predicted error",
         pick(results, |r| {
             is_free(r) && is_fixed(r) && r.case.kernel == Kernel::Uniform && r.case.photons == most
         }),
@@ -239,7 +239,7 @@ fn add_claims(
     );
     amplitude_claim(
         "uncollided-kernels",
-        "the same for the other four kernels at radius 0.4",
+        "the same, the other four kernels at radius 0.8",
         pick(results, |r| {
             is_free(r) && is_fixed(r) && r.case.kernel != Kernel::Uniform && r.case.photons == most
         }),
@@ -247,7 +247,7 @@ fn add_claims(
     );
     amplitude_claim(
         "uncollided-nearest",
-        "uncollided photons, k nearest below the face, every k, all but the largest maps: measured over predicted error is 1",
+        "uncollided photons, k nearest, every k, all but the largest maps: measured over predicted error",
         pick(results, |r| {
             r.case.field == free && r.case.depth >= 1.0 && !is_fixed(r) && r.case.photons < most
         }),
@@ -256,10 +256,7 @@ fn add_claims(
     for field in &FIELDS {
         amplitude_claim(
             &format!("{}-face", field.name),
-            &format!(
-                "{}: at the lit face, where half of each ball is empty, measured over predicted error is 1",
-                field.title
-            ),
+            &format!("{}, at the lit face, every gather: measured over predicted error", field.title),
             pick(results, |r| r.case.field == field && r.case.depth == 0.0),
             0.01,
         );
@@ -268,7 +265,7 @@ fn add_claims(
         amplitude_claim(
             &format!("{}-blur", field.name),
             &format!(
-                "{}: whole balls of fixed radius, all kernels: measured over predicted error is 1",
+                "{}, whole balls of fixed radius, all kernels: measured over predicted error",
                 field.title
             ),
             pick(results, |r| r.case.field == field && is_fixed(r) && r.is_whole()),
@@ -279,10 +276,7 @@ fn add_claims(
         let chosen = pick(results, |r| r.case.field == field && r.case.depth > 0.0);
         claims.push(Claim::within(
             &format!("{}-left-over", field.name),
-            &format!(
-                "{}: below the face, nothing is left of the error once the predicted parts are taken away",
-                field.title
-            ),
+            &format!("{}, below the face: error left over by the prediction", field.title),
             Unit::PERCENT,
             left_over(&chosen),
             -0.2,
@@ -318,7 +312,7 @@ fn number_claim(settings: &Settings, results: &[Result]) -> Option<Claim> {
     let difference: Moments =
         few.errors.iter().zip(&many.errors).map(|(a, b)| a - b).collect::<Vec<f64>>().iter().collect();
     let text =
-        "uncollided photons, radius 0.8, depth 1: the error is the same for the fewest and the most photons";
+        "uncollided photons, radius 0.8, depth 1: error with the fewest photons less error with the most";
     Some(Claim::within("uncollided-number", text, Unit::PERCENT, Estimate::mean(&difference), -2.0, 2.0))
 }
 
@@ -342,7 +336,7 @@ fn fano_claim(cells: &Cells, results: &[Result], field: &'static Field) -> anyho
     let id = format!("{}-fano", field.name);
     if !field.has_clusters() {
         let ones = vec![1.0; weights.len()];
-        let text = "uncollided photons are independent: variance over mean of their counts, less 1, is 0";
+        let text = "uncollided photons: variance over mean of their counts, less 1";
         let fitted = amplitude_per_map(&ones, &per_map, &weights);
         return Ok(
             fitted.map(|a| Claim::within(&id, text, Unit::ONE, Estimate::mean(&a.moments), -0.05, 0.05))
@@ -350,7 +344,7 @@ fn fano_claim(cells: &Cells, results: &[Result], field: &'static Field) -> anyho
     }
     let predicted: Vec<f64> = per_case.iter().map(|(p, _)| *p).collect();
     let text = format!(
-        "{}: variance over mean of the photon counts exceeds 1 as clustering predicts (measured over predicted excess)",
+        "{}: excess of the variance of photon counts over their mean, measured over predicted",
         field.title
     );
     let fitted = amplitude_per_map(&predicted, &per_map, &weights);
@@ -369,7 +363,7 @@ fn path_claim(cells: &Cells, results: &[Result], field: &'static Field) -> anyho
         cells.per_map(&cases, "fluence")?.iter().map(mean_error).collect::<Vec<f64>>().iter().collect();
     Ok(Claim::within(
         &format!("{}-paths", field.name),
-        &format!("{}: the path tracer's fluence, mean over depths, is the exact one", field.title),
+        &format!("{}: error of the path tracer, mean over depths", field.title),
         Unit::PERCENT,
         Estimate::mean(&moments),
         -0.75,
@@ -387,13 +381,13 @@ fn mistake_claims(results: &[Result], mistakes: &[Mistake]) -> Vec<Claim> {
     });
     if let Some(result) = biased {
         let right = 100.0 * (result.parts.total() - result.parts.rule);
-        let text = "the biased rule (all k photons summed) is seen to be wrong, at k = 10";
+        let text = "wrong on purpose, all k photons summed, k = 10: error";
         let statistic = Estimate::mean(&result.error);
         claims.push(Claim::detected("biased-k", text, Unit::PERCENT, statistic, right, 5.0));
     }
     for mistake in mistakes.iter().filter(|m| m.case.size == Size::Radius(0.4)) {
         let id = format!("{}-{}", mistake.case.field.name, mistake.name.replace(' ', "-"));
-        let text = format!("{}: an estimate {} is seen to be wrong", mistake.case.field.title, mistake.name);
+        let text = format!("wrong on purpose, {}, {}: error", mistake.case.field.title, mistake.name);
         let statistic = Estimate::mean(&mistake.error);
         claims.push(Claim::detected(&id, &text, Unit::PERCENT, statistic, mistake.predicted, 5.0));
     }
@@ -414,7 +408,7 @@ fn error_table(results: &[Result]) -> Table {
         "z",
         "",
     ];
-    let percent = |x: f64| format!("{:+.2}", 100.0 * x).replace('-', "−");
+    let percent = |x: f64| if x.abs() < 5e-5 { "0".to_string() } else { signed(100.0 * x, 2) };
     let chosen = pick(results, |r| {
         let is_shown = matches!(r.case.size, Size::Radius(_) | Size::Nearest(50 | 500));
         is_shown && r.case.kernel == Kernel::Uniform && r.case.photons == largest(results, r.case.field)
@@ -430,7 +424,7 @@ fn error_table(results: &[Result]) -> Table {
             percent(r.parts.edge),
             percent(r.parts.blur),
             percent(r.parts.clusters),
-            format!("{:.1}", r.z()).replace('-', "−"),
+            signed(r.z(), 1),
             if r.sees_prediction() { "" } else { "cannot see its prediction" }.to_string(),
         ]
     };
@@ -481,6 +475,11 @@ fn path_table(cells: &Cells, results: &[Result]) -> anyhow::Result<Table> {
     })
 }
 
+/// A number with so many decimals and a proper minus.
+fn signed(x: f64, decimals: usize) -> String {
+    format!("{x:.decimals$}").replace('-', "−")
+}
+
 fn summarise(section: &mut Section, settings: &Settings, results: &[Result]) {
     let chosen = pick(results, |_| true);
     let squares: f64 = chosen.iter().map(|r| r.z() * r.z()).sum();
@@ -504,11 +503,11 @@ fn summarise(section: &mut Section, settings: &Settings, results: &[Result]) {
     ) {
         section.summary.push(format!(
             "In fog of albedo 0.9, photons gathered within 0.4 mean free paths read the fluence {} % wrong in the middle \
-             of the slab and {} % wrong at its lit face; theory said {:.2} % and {:.2} % before the run.",
+             of the slab and {} % wrong at its lit face; theory said {} % and {} % before the run.",
             with_error(fixed.error.mean(), fixed.error.std_error()),
             with_error(face.error.mean(), face.error.std_error()),
-            fixed.predicted(),
-            face.predicted()
+            signed(fixed.predicted(), 2),
+            signed(face.predicted(), 2)
         ));
     }
     section.summary.push(format!(

@@ -25,7 +25,7 @@ caption, figcaption { text-align: left; font-size: 14px; line-height: 1.45; colo
 caption b, figcaption b { margin-right: 4px; }
 th { text-align: left; font-weight: 600; border-bottom: 1.5px solid var(--ink); border-top: 1.5px solid var(--ink); padding: 6px 14px 6px 0; vertical-align: bottom; }
 td { border-bottom: 1px solid var(--line); padding: 5px 12px 5px 0; vertical-align: top; }
-td.claim { min-width: 24em; }
+td.claim { min-width: 15em; }
 th.n, td.n { text-align: right; white-space: nowrap; }
 th:last-child, td:last-child { padding-right: 0; }
 tr.group td { font-weight: 600; border-bottom: none; padding-top: 14px; }
