@@ -18,8 +18,10 @@ pub struct GaussLegendre {
 impl GaussLegendre {
     /// The rule with `order` nodes, exact for polynomials of degree 2 `order` - 1.
     ///
-    /// # Errors  `Error::OutOfRange` unless 1 <= order <= 10000
-    /// # Source  Newton's method on the Legendre recurrence (Davis and Rabinowitz 1984, section 2.7)
+    /// # Errors
+    /// `Error::OutOfRange` unless 1 <= order <= 10000
+    /// # Source
+    /// Newton's method on the Legendre recurrence (Davis and Rabinowitz 1984, section 2.7)
     pub fn new(order: usize) -> Result<Self> {
         within("order", order as f64, 1.0, 1e4, "1 to 10000")?;
         Ok(Self::rule(order))
@@ -99,13 +101,15 @@ pub(crate) fn integrate_from_singular(length: f64, f: impl Fn(f64) -> f64, metho
 /// int_a^b f by bisection until 24 and 16 nodes agree, with panels of every break point; the bound is the sum of
 /// the last disagreements plus rounding.
 pub(crate) struct Adaptive {
+    tolerance: f64,
     fine: GaussLegendre,
     coarse: GaussLegendre,
 }
 
 impl Adaptive {
-    pub(crate) fn new() -> Self {
-        Adaptive { fine: GaussLegendre::rule(24), coarse: GaussLegendre::rule(16) }
+    /// Panels are halved until their rules agree to `tolerance` of the whole integral of |f|.
+    pub(crate) fn new(tolerance: f64) -> Self {
+        Adaptive { tolerance, fine: GaussLegendre::rule(24), coarse: GaussLegendre::rule(16) }
     }
 
     /// Integrates between consecutive `breaks` (rising). `name` is how an error calls the integrand.
@@ -136,7 +140,7 @@ impl Adaptive {
             let middle = 0.5 * (a + b);
             // Whatever disagreement is left at the last halving, or when the budget of a noisy integrand is spent,
             // is part of the bound.
-            let settled = difference <= 4.0 * f64::EPSILON * magnitude;
+            let settled = difference <= self.tolerance * magnitude;
             if settled || depth >= 40 || budget == 0 || middle <= a || middle >= b {
                 value += best;
                 error += difference + 8.0 * f64::EPSILON * absolute;
@@ -207,7 +211,8 @@ mod tests {
         // int_0^2 -ln(z/2) dz = 2.
         let got = integrate_from_singular(2.0, |z| -libm::log(0.5 * z), "test");
         assert!(got.covers(2.0) && got.error < 1e-13, "{got:?}");
-        let got = Adaptive::new().integrate(&[0.0, 0.3, 2.0], "f", "test", |z| Ok(libm::log(z))).unwrap();
+        let got =
+            Adaptive::new(1e-15).integrate(&[0.0, 0.3, 2.0], "f", "test", |z| Ok(libm::log(z))).unwrap();
         let truth = 2.0 * libm::log(2.0) - 2.0;
         assert!(got.covers(truth) && got.error < 1e-10, "{got:?}");
     }
