@@ -43,6 +43,12 @@ pub(super) fn orthogonalize(columns: &mut [Vec<f64>]) -> Result<Vec<Vec<f64>>> {
             }
         }
         if settled {
+            // A rotation is orthogonal to rounding only, and its two columns swell or shrink together.
+            for (column, unit) in columns.iter_mut().zip(&mut v) {
+                let length = products(unit, unit).0.sqrt();
+                column.iter_mut().for_each(|x| *x /= length);
+                unit.iter_mut().for_each(|x| *x /= length);
+            }
             return Ok(v);
         }
     }

@@ -92,6 +92,11 @@ impl Modes {
         })
     }
 
+    /// The slowest decay, per mean free path.
+    pub fn slowest(&self) -> f64 {
+        self.k.iter().fold(f64::INFINITY, |a, &b| a.min(b))
+    }
+
     /// What a beam of unit irradiance at cosine `mu0` scatters, at t = 0: the sources s_p of q and s_q of p in
     /// mu dq/dt = A p - s_p e^(-t/mu0), mu dp/dt = B q - s_q e^(-t/mu0), projected on the modes.
     pub fn beam(&self, mu0: f64) -> (DVector<f64>, DVector<f64>) {

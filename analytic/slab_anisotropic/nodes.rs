@@ -32,6 +32,9 @@ impl Nodes {
             inner.nodes.iter().zip(&inner.weights).map(|(x, w)| power * b * x.powi(POWER - 1) * w).collect();
         mu.extend(outer.nodes.iter().map(|x| b + (1.0 - b) * x));
         weight.extend(outer.weights.iter().map(|w| (1.0 - b) * w));
+        // The weights are good to a few roundings each, and their sum must be 1: photons are counted with them.
+        let sum: f64 = weight.iter().sum();
+        weight.iter_mut().for_each(|w| *w /= sum);
         Nodes { mu, weight, degree: 2 * upper - 2 }
     }
 

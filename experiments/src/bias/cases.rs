@@ -47,6 +47,7 @@ impl Case {
     /// Everything that maps of one field and size are asked.
     pub fn all(field: &'static Field, photons: u64) -> Vec<Case> {
         let mut cases = Vec::new();
+        let is_local = |k: usize| k as u64 * MIN_SHARE <= photons;
         for &depth in field.depths {
             let mut add = |size, kernel| cases.push(Case { field, photons, depth, size, kernel });
             for kernel in Kernel::ALL {
@@ -57,13 +58,12 @@ impl Case {
                     }
                 }
                 for k in NEIGHBORS {
-                    let is_local = k as u64 * MIN_SHARE <= photons;
-                    if is_local && (is_first || k == KERNELS_AT.1) {
+                    if is_local(k) && (is_first || k == KERNELS_AT.1) {
                         add(Size::Nearest(k), kernel);
                     }
                 }
             }
-            for k in BIASED {
+            for k in BIASED.into_iter().filter(|&k| is_local(k)) {
                 add(Size::NearestBiased(k), Kernel::Uniform);
             }
         }

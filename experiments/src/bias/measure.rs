@@ -41,7 +41,7 @@ pub fn cells(settings: &Settings) -> Vec<CellId> {
             cells.extend(CellId::replicates(&Case::group(field, photons), maps, cost));
         }
         if field.has_clusters() {
-            let cost = (PATHS * field.depths.len() as u64) as f64;
+            let cost = PATHS as f64 * settings.photon_scale * field.depths.len() as f64;
             cells.extend(CellId::replicates(&format!("{}-{BY_PATHS}", field.name), BATCHES, cost));
         }
     }
@@ -114,17 +114,18 @@ pub fn is_fano_case(case: &Case) -> bool {
 fn measure_paths(settings: &Settings, field: &Field, scene: &Scene, replicate: u64) -> CellOutput {
     let replicate = field.replicate(settings, 0, replicate);
     let mut output = CellOutput::new();
+    let paths = ((PATHS as f64 * settings.photon_scale) as u64).max(2);
     for (index, &depth) in field.depths.iter().enumerate() {
         let quantity = Quantity::Fluence(DVec3::new(0.5 * CELL, 0.5 * CELL, depth));
         let mut values = Moments::new();
-        for path in 0..PATHS {
+        for path in 0..paths {
             let history = (index as u64) << 40 | path;
             let mut stream = Stream::new(settings.seed, Purpose::Paths, replicate, history);
             let value = sample(scene, &quantity, field.orders, &mut stream);
             output.non_finite += u64::from(!value.is_finite());
             values.push(value[0]);
         }
-        output.count("paths", PATHS);
+        output.count("paths", paths);
         output.push(path_case(field, depth), "fluence", values.mean());
     }
     output
