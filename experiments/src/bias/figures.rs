@@ -159,6 +159,9 @@ fn orders(results: &[Result]) -> anyhow::Result<FigureFiles> {
         let label = format!("{photons} photons");
         // Lines stop where the measured cases do.
         let measured: Vec<&Result> = of(1.0, photons, false).collect();
+        if measured.is_empty() {
+            continue;
+        }
         let most = measured.iter().map(|r| size(&r.case)).fold(0.0, f64::max);
         let ks: Vec<usize> = ks.iter().copied().filter(|&k| k as f64 <= 1.5 * most).collect();
         let sizes: Vec<Size> = ks.iter().map(|&k| Size::Nearest(k)).collect();

@@ -13,7 +13,7 @@ mod fields;
 mod figures;
 mod measure;
 mod predict;
-mod profile;
+mod table;
 
 use crate::harness::Experiment;
 

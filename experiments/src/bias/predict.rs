@@ -2,12 +2,13 @@
 
 use super::cases::{Case, Size};
 use super::fields::{CELL, Exact, FIELDS, Field};
-use super::profile::Profile;
+use super::table::Table;
 use crate::harness::{Prediction, Settings, Unit};
 use anyhow::Context;
 use rayon::prelude::*;
 use std::collections::HashMap;
 use std::f64::consts::PI;
+use std::sync::OnceLock;
 use turbid::estimators::Kernel;
 use turbid_analytic::kernel as referee;
 use turbid_analytic::nearest::{nearest_expectation, nearest_expectation_biased};
@@ -74,29 +75,30 @@ pub fn clustering(albedo: f64, r: f64) -> f64 {
 pub struct Theory {
     field: &'static Field,
     exact: Exact,
-    /// Kernel means by depth and kernel, the uniform one among them.
-    profiles: Vec<(f64, Kernel, Profile)>,
+    /// Kernel means by depth and kernel, tabulated when first asked for.
+    profiles: Vec<(f64, Kernel, OnceLock<Table>)>,
 }
 
-/// What interpolation of the kernel means adds to the error of a nearest expectation, tested in `profile`.
+/// What interpolation of the kernel means adds to the error of a nearest expectation, tested in `table`.
 const INTERPOLATION: f64 = 1e-8;
 
 impl Theory {
-    /// Tabulates a field's kernel means at its depths.
+    /// The theory of a field.
     pub fn new(field: &'static Field) -> anyhow::Result<Self> {
-        let exact = field.exact()?;
-        let places: Vec<(f64, Kernel)> =
-            field.depths.iter().flat_map(|&depth| Kernel::ALL.map(|kernel| (depth, kernel))).collect();
-        let profiles = places.into_par_iter().map(|(depth, kernel)| {
-            Profile::new(referee_kernel(kernel), depth, field.tau, &exact).map(|p| (depth, kernel, p))
-        });
-        let profiles = profiles.collect::<anyhow::Result<_>>()?;
-        Ok(Theory { field, exact, profiles })
+        let places = field.depths.iter().flat_map(|&depth| Kernel::ALL.map(|kernel| (depth, kernel)));
+        let profiles = places.map(|(depth, kernel)| (depth, kernel, OnceLock::new())).collect();
+        Ok(Theory { field, exact: field.exact()?, profiles })
     }
 
-    fn profile(&self, depth: f64, kernel: Kernel) -> anyhow::Result<&Profile> {
+    fn profile(&self, depth: f64, kernel: Kernel) -> anyhow::Result<&Table> {
         let found = self.profiles.iter().find(|(d, k, _)| *d == depth && *k == kernel);
-        found.map(|(_, _, p)| p).with_context(|| format!("depth {depth} is none of {}", self.field.name))
+        let (_, _, slot) = found.with_context(|| format!("depth {depth} is none of {}", self.field.name))?;
+        if let Some(profile) = slot.get() {
+            return Ok(profile);
+        }
+        // Two threads may tabulate the same means at once; they find the same numbers.
+        let profile = Table::of_kernel_means(referee_kernel(kernel), depth, self.field.tau, &self.exact)?;
+        Ok(slot.get_or_init(|| profile))
     }
 
     /// The parts of one case. Fixed radii may be asked at any depth, nearest gathers at the field's own.
