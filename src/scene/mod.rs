@@ -127,9 +127,14 @@ impl Scene {
         self.lights().iter().fold(Spectrum::ZERO, |sum, light| sum + light.power(self.stage()))
     }
 
+    /// Index of the region that counts at a point; none in vacuum.
+    pub fn region_at(&self, p: DVec3) -> Option<usize> {
+        self.regions().iter().rposition(|r| r.shape.contains(p))
+    }
+
     /// The medium at a point; none in vacuum.
     pub fn medium_at(&self, p: DVec3) -> Option<&Medium> {
-        self.regions().iter().rev().find(|r| r.shape.contains(p)).map(|r| &r.medium)
+        self.region_at(p).map(|index| &self.regions()[index].medium)
     }
 
     /// The nearest body ahead; `from` is the body that the ray starts on.
