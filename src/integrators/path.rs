@@ -114,13 +114,18 @@ impl<F: FnMut(u32, Spectrum)> PathVisitor<'_, F> {
     }
 }
 
-/// Density of the free flight at a distance where transmittance times extinction is `density` [1/L]: the mixture
-/// over channels, and conditioned on a collision where the flight is forced.
+/// Density of the free flight at a distance where transmittance times extinction is `density` [1/L]: its mean over
+/// channels, and conditioned on a collision where the flight is forced.
+///
+/// It weighs two ways of sampling against each other, so it must be the same number wherever it is asked for: it does
+/// not know the walker's weight, which a flight through a coloured medium changes.
 fn flight_pdf(scene: &Scene, walker: &Walker, density: Spectrum, ray: &Ray, end: f64) -> f64 {
-    let mixture =
-        if density.is_grey() { density[0] } else { (walker.weight * density).sum() / walker.weight.sum() };
     let forced = scene.plan().forces_first_collision && walker.order == 0 && end.is_infinite();
-    if forced { mixture / -crate::math::exp_m1(-scene.optical_depth(ray, end)[0]) } else { mixture }
+    if forced {
+        density.mean() / -crate::math::exp_m1(-scene.optical_depth(ray, end).mean())
+    } else {
+        density.mean()
+    }
 }
 
 /// The stretch of a ray from the first medium to the last.
