@@ -219,6 +219,8 @@ fn uncollided(scene: &Scene, light: &Light, ray: &Ray, end: f64) -> Spectrum {
     match light {
         Light::Isotropic(light) if light.is_lit_against(ray.dir) => match light.shape().interval(ray) {
             Some(inside) if inside.end < end => light.radiance() * scene.transmittance(ray, inside.end),
+            // A point on the boundary is inside: light comes in against a ray that leaves at once.
+            None if light.shape().contains(ray.origin) => light.radiance(),
             _ => Spectrum::ZERO,
         },
         Light::VolumeSource(light) => {
