@@ -152,19 +152,23 @@ impl EqualAngles {
         EqualAngles { nearest, distance, angle: (angle(span.start), angle(span.end)), span }
     }
 
-    /// None where the ray runs through the point itself: then the angle is no longer a coordinate.
+    /// The angle that the span fills, or none where the angle is no coordinate: on a ray through the point itself, and
+    /// so far away that the span shrinks to nothing.
+    fn range(&self) -> Option<f64> {
+        let range = self.angle.1 - self.angle.0;
+        (self.distance > 0.0 && range > 0.0).then_some(range)
+    }
+
     fn sample(&self, u: f64) -> Option<f64> {
-        let t = self.nearest + self.distance * libm::tan(self.angle.0 + u * (self.angle.1 - self.angle.0));
-        (self.distance > 0.0 && t.is_finite()).then(|| t.clamp(self.span.start, self.span.end))
+        let range = self.range()?;
+        let t = self.nearest + self.distance * libm::tan(self.angle.0 + u * range);
+        t.is_finite().then(|| t.clamp(self.span.start, self.span.end))
     }
 
     /// [1/L]
     fn pdf(&self, t: f64) -> f64 {
+        let Some(range) = self.range() else { return 0.0 };
         let along = t - self.nearest;
-        let range = self.angle.1 - self.angle.0;
-        if self.distance == 0.0 || range <= 0.0 {
-            return 0.0;
-        }
         self.distance / (range * (self.distance * self.distance + along * along))
     }
 }
