@@ -181,7 +181,7 @@ impl<F: FnMut(u32, Spectrum)> Visitor for PathVisitor<'_, F> {
                 self.equiangular(walker, hit, stream);
             }
             Step::Collision(Arrival { position, .. }, region) => {
-                let medium = self.scene.regions()[region].medium;
+                let medium = &self.scene.regions()[region].medium;
                 let before = walker.ray.dir;
                 let scattered = |towards: DVec3| {
                     let (one_minus_mu, one_plus_mu) = cosine_pair(before, towards);
