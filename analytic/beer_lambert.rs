@@ -11,9 +11,12 @@ const METHOD: &str = "closed form";
 /// Fluence of the uncollided light at depth t, per unit irradiance on the face.
 ///
 /// phi_0 = e^(-t/mu0)/mu0 (beam), 2 E_2(t) (diffuse).
-/// # Arguments  `t` depth in mean free paths, 0 or more
-/// # Returns    \[1\], good to rounding (of t/mu0 too: a relative error of t/mu0 roundings)
-/// # Errors     `Error::OutOfRange` naming `mu0` or `t`
+/// # Arguments
+/// `t` depth in mean free paths, 0 or more
+/// # Returns
+/// \[1\], good to rounding (of t/mu0 too: a relative error of t/mu0 roundings)
+/// # Errors
+/// `Error::OutOfRange` naming `mu0` or `t`
 pub fn uncollided_fluence(incidence: Incidence, t: f64) -> Result<Value> {
     incidence.check()?;
     within("t", t, 0.0, f64::MAX, "0 or more")?;
@@ -28,9 +31,12 @@ pub fn uncollided_fluence(incidence: Incidence, t: f64) -> Result<Value> {
 /// Fraction of the incident power that crosses an optical thickness t without a collision.
 ///
 /// e^(-t/mu0) (beam), 2 E_3(t) (diffuse).
-/// # Arguments  `t` optical thickness \[1\], 0 or more
-/// # Returns    \[1\]
-/// # Errors     `Error::OutOfRange` naming `mu0` or `t`
+/// # Arguments
+/// `t` optical thickness \[1\], 0 or more
+/// # Returns
+/// \[1\]
+/// # Errors
+/// `Error::OutOfRange` naming `mu0` or `t`
 pub fn direct_transmittance(incidence: Incidence, t: f64) -> Result<Value> {
     incidence.check()?;
     within("t", t, 0.0, f64::MAX, "0 or more")?;

@@ -24,6 +24,7 @@ mod peierls;
 mod poisson;
 pub mod progressive;
 pub mod quadrature;
+pub mod slab_anisotropic;
 pub mod slab_isotropic;
 pub mod slab_kernel;
 pub mod slab_single;
@@ -35,3 +36,14 @@ pub use incidence::Incidence;
 pub use kernel::{Dimension, Kernel};
 pub use slab_isotropic::IsotropicSlab;
 pub use value::Value;
+
+/// The same cases on every run, and no files left behind.
+#[cfg(test)]
+pub(crate) fn fixed_cases(cases: u32) -> proptest::prelude::ProptestConfig {
+    proptest::prelude::ProptestConfig {
+        cases,
+        rng_seed: proptest::test_runner::RngSeed::Fixed(20_260_101),
+        failure_persistence: None,
+        ..Default::default()
+    }
+}

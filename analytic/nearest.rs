@@ -38,11 +38,15 @@ pub struct Gather {
 
 /// Expectation of the k-nearest estimate (k - 1 points over the ball of the k-th).
 ///
-/// # Arguments  `k` 2 to 1e6; `cap` largest radius; `lambda(r)` expected number of points within r, rising from 0, cut
-///              by the medium; `kernel_mean(r)` expectation of the fixed-radius estimate at r, cut alike
-/// # Returns    \[unit of `kernel_mean`\]; the bound covers the integration, not errors of the two functions
-/// # Errors     `Error::OutOfRange` naming `k` or `cap`; `Error::NotFinite` naming the function
-/// # Limits     a uniform field without faces gives itself, for every k and cap
+/// # Arguments
+/// `k` 2 to 1e6; `cap` largest radius; `lambda(r)` expected number of points within r, rising from 0, cut
+/// by the medium; `kernel_mean(r)` expectation of the fixed-radius estimate at r, cut alike
+/// # Returns
+/// \[unit of `kernel_mean`\]; the bound covers the integration, not errors of the two functions
+/// # Errors
+/// `Error::OutOfRange` naming `k` or `cap`; `Error::NotFinite` naming the function
+/// # Limits
+/// a uniform field without faces gives itself, for every k and cap
 pub fn nearest_expectation(
     k: u32,
     cap: f64,
@@ -56,9 +60,12 @@ pub fn nearest_expectation(
 /// Expectation of the wrong twin that counts k points, not k - 1, over the ball of the k-th (uniform kernel).
 ///
 /// Gathers with fewer than k points within the cap are right in it, as they are in the rule.
-/// # Arguments  as [`nearest_expectation`]
-/// # Errors     as [`nearest_expectation`]
-/// # Limits     a uniform field and a large cap: k/(k-1) of it
+/// # Arguments
+/// as [`nearest_expectation`]
+/// # Errors
+/// as [`nearest_expectation`]
+/// # Limits
+/// a uniform field and a large cap: k/(k-1) of it
 pub fn nearest_expectation_biased(
     k: u32,
     cap: f64,
@@ -74,11 +81,15 @@ pub fn nearest_expectation_biased(
 
 /// Mean, variance and underfull probability of the k-nearest estimate.
 ///
-/// # Arguments  as [`nearest_expectation`], and `kernel_square(r)`, the variance of the fixed-radius estimate at r for
-///              Poisson points: the sum over points of weight^2 K_r^2, expected
-/// # Returns    the variance needs k >= 3
-/// # Errors     as [`nearest_expectation`]; `Error::Infinite` for k = 2
-/// # Limits     uniform kernel and field f, large cap: f^2/(k-2)
+/// # Arguments
+/// as [`nearest_expectation`], and `kernel_square(r)`, the variance of the fixed-radius estimate at r for
+/// Poisson points: the sum over points of weight^2 K_r^2, expected
+/// # Returns
+/// the variance needs k >= 3
+/// # Errors
+/// as [`nearest_expectation`]; `Error::Infinite` for k = 2
+/// # Limits
+/// uniform kernel and field f, large cap: f^2/(k-2)
 pub fn nearest_moments(
     k: u32,
     cap: f64,
@@ -114,9 +125,12 @@ pub fn nearest_moments(
 
 /// Variance of the fixed-radius estimate of independent points.
 ///
-/// # Arguments  `kernel_mean`, `kernel_square` at the radius; `points` their fixed number, `None` for a Poisson number
-/// # Returns    kernel_square, less kernel_mean^2/points for a fixed number
-/// # Errors     `Error::OutOfRange` naming the argument
+/// # Arguments
+/// `kernel_mean`, `kernel_square` at the radius; `points` their fixed number, `None` for a Poisson number
+/// # Returns
+/// kernel_square, less kernel_mean^2/points for a fixed number
+/// # Errors
+/// `Error::OutOfRange` naming the argument
 pub fn fixed_radius_variance(kernel_mean: f64, kernel_square: f64, points: Option<u64>) -> Result<Value> {
     within("kernel_mean", kernel_mean, 0.0, 1e150, "0 to 1e150")?;
     within("kernel_square", kernel_square, 0.0, 1e300, "0 to 1e300")?;
@@ -132,11 +146,15 @@ pub fn fixed_radius_variance(kernel_mean: f64, kernel_square: f64, points: Optio
 
 /// Expectation of the k-nearest estimate in the unbounded field e^(b.x), over the field at the probe.
 ///
-/// # Arguments  `density` expected points per unit volume at the probe; `gradient` |b| \[1/length\]; `cap` \[length\],
-///              with |gradient| times cap up to 500 (Gaussian: 35)
-/// # Returns    \[1\]
-/// # Errors     `Error::OutOfRange` naming the parameter
-/// # Limits     gradient -> 0: 1; small: 1 + m2 b^2 E\[r^2\]/(2d), r^2 over gamma-distributed k - 1
+/// # Arguments
+/// `density` expected points per unit volume at the probe; `gradient` |b| \[1/length\]; `cap` \[length\],
+/// with |gradient| times cap up to 500 (Gaussian: 35)
+/// # Returns
+/// \[1\]
+/// # Errors
+/// `Error::OutOfRange` naming the parameter
+/// # Limits
+/// gradient -> 0: 1; small: 1 + m2 b^2 E\[r^2\]/(2d), r^2 over gamma-distributed k - 1
 pub fn nearest_expectation_exponential(
     kernel: Kernel,
     d: Dimension,

@@ -17,9 +17,12 @@ pub struct Progressive {
 
 /// Radius, variance and bias of the schedule after n passes.
 ///
-/// # Arguments  `alpha` part of the new photons kept, 0 to 1; `n` passes, 1 to 1e6
-/// # Errors     `Error::OutOfRange` naming `alpha` or `n`
-/// # Limits     r_n ~ n^((alpha-1)/d)/Gamma(1+alpha)^(1/d); variance ~ n^(-alpha); bias ~ n^(-2(1-alpha)/d)
+/// # Arguments
+/// `alpha` part of the new photons kept, 0 to 1; `n` passes, 1 to 1e6
+/// # Errors
+/// `Error::OutOfRange` naming `alpha` or `n`
+/// # Limits
+/// r_n ~ n^((alpha-1)/d)/Gamma(1+alpha)^(1/d); variance ~ n^(-alpha); bias ~ n^(-2(1-alpha)/d)
 pub fn progressive(d: Dimension, alpha: f64, n: u32) -> Result<Progressive> {
     const METHOD: &str = "product and sums";
     if !(alpha > 0.0 && alpha <= 1.0) {

@@ -18,8 +18,10 @@ pub struct GaussLegendre {
 impl GaussLegendre {
     /// The rule with `order` nodes, exact for polynomials of degree 2 `order` - 1.
     ///
-    /// # Errors  `Error::OutOfRange` unless 1 <= order <= 10000
-    /// # Source  Newton's method on the Legendre recurrence (Davis and Rabinowitz 1984, section 2.7)
+    /// # Errors
+    /// `Error::OutOfRange` unless 1 <= order <= 10000
+    /// # Source
+    /// Newton's method on the Legendre recurrence (Davis and Rabinowitz 1984, section 2.7)
     pub fn new(order: usize) -> Result<Self> {
         within("order", order as f64, 1.0, 1e4, "1 to 10000")?;
         Ok(Self::rule(order))

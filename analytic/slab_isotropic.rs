@@ -50,10 +50,13 @@ pub struct IsotropicSlab {
 impl IsotropicSlab {
     /// Solves the slab.
     ///
-    /// # Arguments  `tau` optical thickness \[1\], 1e-12 to 400; `albedo` 0 to 1; `incidence` of unit irradiance
-    /// # Returns    a solution whose answers have an error near 1e-13 of the fluence, and near
-    ///              1e-15 tau^2 in thick slabs without absorption; the bounds say how much
-    /// # Errors     `Error::OutOfRange` naming `tau`, `albedo` or `mu0`
+    /// # Arguments
+    /// `tau` optical thickness \[1\], 1e-12 to 400; `albedo` 0 to 1; `incidence` of unit irradiance
+    /// # Returns
+    /// a solution whose answers have an error near 1e-13 of the fluence, and near
+    /// 1e-15 tau^2 in thick slabs without absorption; the bounds say how much
+    /// # Errors
+    /// `Error::OutOfRange` naming `tau`, `albedo` or `mu0`
     pub fn new(tau: f64, albedo: f64, incidence: Incidence) -> Result<Self> {
         check_tau(tau)?;
         check_albedo(albedo)?;
@@ -63,7 +66,8 @@ impl IsotropicSlab {
 
     /// The slab of the same thickness with another albedo or incidence: saves building the operator.
     ///
-    /// # Errors  `Error::OutOfRange` naming `albedo` or `mu0`
+    /// # Errors
+    /// `Error::OutOfRange` naming `albedo` or `mu0`
     pub fn with(&self, albedo: f64, incidence: Incidence) -> Result<Self> {
         check_albedo(albedo)?;
         incidence.check()?;
@@ -182,9 +186,12 @@ impl IsotropicSlab {
 
     /// Fluence at depth t, direct light included, per unit irradiance on the lit face \[1\].
     ///
-    /// # Arguments  `t` depth in mean free paths, 0 to tau
-    /// # Errors     `Error::OutOfRange` naming `t`
-    /// # Limits     mu0 phi(0) and mu0 phi(tau) are Chandrasekhar's X(mu0) and Y(mu0)
+    /// # Arguments
+    /// `t` depth in mean free paths, 0 to tau
+    /// # Errors
+    /// `Error::OutOfRange` naming `t`
+    /// # Limits
+    /// mu0 phi(0) and mu0 phi(tau) are Chandrasekhar's X(mu0) and Y(mu0)
     pub fn fluence(&self, t: f64) -> Result<Value> {
         check_depth(t, self.tau)?;
         let rest = self.tau - t;
@@ -195,9 +202,12 @@ impl IsotropicSlab {
 
     /// Fluence at depth t from the polynomial alone: some hundred nanoseconds instead of some ten microseconds.
     ///
-    /// # Arguments  `t` depth in mean free paths, 0 to tau
-    /// # Returns    \[1\], with a bound of its own, larger than that of [`Self::fluence`] near the faces
-    /// # Errors     `Error::OutOfRange` naming `t`
+    /// # Arguments
+    /// `t` depth in mean free paths, 0 to tau
+    /// # Returns
+    /// \[1\], with a bound of its own, larger than that of [`Self::fluence`] near the faces
+    /// # Errors
+    /// `Error::OutOfRange` naming `t`
     pub fn fluence_interpolated(&self, t: f64) -> Result<Value> {
         check_depth(t, self.tau)?;
         let mesh = &self.operator.mesh;
@@ -218,9 +228,12 @@ impl IsotropicSlab {
     /// Radiance of scattered light at depth t in the direction of signed cosine mu \[1/sr\].
     ///
     /// Up: (albedo/4 pi) int_t^tau phi(t') e^(-(t'-t)/mu) dt'/mu; down likewise from the lit face.
-    /// # Arguments  `t` depth in mean free paths, 0 to tau; `mu` -1 to 1, positive towards the lit face
-    /// # Errors     `Error::OutOfRange` naming `t` or `mu`
-    /// # Limits     mu -> 0: the source function (albedo/4 pi) phi(t), which is the value given at mu = 0
+    /// # Arguments
+    /// `t` depth in mean free paths, 0 to tau; `mu` -1 to 1, positive towards the lit face
+    /// # Errors
+    /// `Error::OutOfRange` naming `t` or `mu`
+    /// # Limits
+    /// mu -> 0: the source function (albedo/4 pi) phi(t), which is the value given at mu = 0
     pub fn radiance(&self, t: f64, mu: f64) -> Result<Value> {
         check_depth(t, self.tau)?;
         check_mu(mu)?;
@@ -232,7 +245,7 @@ impl IsotropicSlab {
         if let Incidence::Beam { mu0 } = self.incidence {
             let single = beam_path(self.tau, mu0, t, mu);
             value += single;
-            error += 2.0 * (t / mu0).min(750.0) * f64::EPSILON * single;
+            error += 2.0 * (t / mu0).min(750.0) * f64::EPSILON * single + f64::MIN_POSITIVE / mu0;
         }
         error += 2.0 * ULPS * f64::EPSILON * value + f64::MIN_POSITIVE;
         Ok(Value::new(value, error, METHOD).scaled(per_steradian))
@@ -257,7 +270,8 @@ impl IsotropicSlab {
         if let Incidence::Beam { mu0 } = self.incidence {
             let direct = direct_fluence(self.incidence, t);
             total += direct;
-            rounding += (ULPS + (t / mu0).min(750.0)) * direct;
+            // And the smallest steps of a subnormal exponential, magnified by 1/mu0.
+            rounding += (ULPS + (t / mu0).min(750.0)) * direct + f64::MIN_POSITIVE / mu0;
         }
         Value::new(total, bound + rounding * f64::EPSILON + f64::MIN_POSITIVE, METHOD)
     }

@@ -16,9 +16,12 @@ fn check(kernel: Kernel, radius: f64, depth: f64, thickness: f64) -> Result<()> 
 
 /// Moment M_j = int K z^j of the three-dimensional kernel cut at a flat face, z the inward coordinate over the radius.
 ///
-/// # Arguments  `j` 0 to 4; `depth` of the centre behind the face, over the radius, any finite number
-/// # Returns    \[1\]; the uniform kernel: M_0 = 1/2 + 3x/4 - x^3/4, M_1 = (3/16)(1-x^2)^2
-/// # Errors     `Error::OutOfRange` naming `j`, `depth` or `kappa`
+/// # Arguments
+/// `j` 0 to 4; `depth` of the centre behind the face, over the radius, any finite number
+/// # Returns
+/// \[1\]; the uniform kernel: M_0 = 1/2 + 3x/4 - x^3/4, M_1 = (3/16)(1-x^2)^2
+/// # Errors
+/// `Error::OutOfRange` naming `j`, `depth` or `kappa`
 pub fn face_moment(kernel: Kernel, j: u32, depth: f64) -> Result<Value> {
     kernel.check()?;
     within("j", f64::from(j), 0.0, 4.0, "0 to 4")?;
@@ -28,8 +31,10 @@ pub fn face_moment(kernel: Kernel, j: u32, depth: f64) -> Result<Value> {
 
 /// Moment M_j of the three-dimensional kernel cut at both faces of a slab, z downwards over the radius.
 ///
-/// # Arguments  `j` 0 to 4; `radius`, `depth` and `thickness` in one unit of length
-/// # Errors     `Error::OutOfRange` naming the parameter
+/// # Arguments
+/// `j` 0 to 4; `radius`, `depth` and `thickness` in one unit of length
+/// # Errors
+/// `Error::OutOfRange` naming the parameter
 pub fn slab_moment(kernel: Kernel, j: u32, radius: f64, depth: f64, thickness: f64) -> Result<Value> {
     check(kernel, radius, depth, thickness)?;
     within("j", f64::from(j), 0.0, 4.0, "0 to 4")?;
@@ -69,11 +74,16 @@ fn lost_mass(kernel: Kernel, radius: f64, depth: f64, thickness: f64) -> Value {
 
 /// int_O K_r(y - x) f dy over the slab O, the field depending on depth only; nothing makes up for the lost mass.
 ///
-/// # Arguments  `radius`, `depth` (0 to thickness), `thickness` in one unit of length; `field` of the depth in that
-///              unit, smooth inside the slab; at the faces it may behave like c + t ln t
-/// # Returns    \[unit of the field\]; the bound covers the integration, not errors of the field's own
-/// # Errors     `Error::OutOfRange` naming the parameter, `Error::NotFinite` if the field is not
-/// # Limits     a field of 1 gives M_0; far from the faces the field e^(bt) gives e^(bt) times its exponential mean
+/// # Arguments
+/// `radius`, `depth` (0 to thickness), `thickness` in one unit of length; `field` of the depth in that
+/// unit, smooth inside the slab; at the faces it may behave like c + t ln t
+/// # Returns
+/// \[unit of the field\]; the bound covers the integration, not errors of the field's own;
+/// the Gaussian is cut at 9.2 standard deviations, where 4e-20 of it is left
+/// # Errors
+/// `Error::OutOfRange` naming the parameter, `Error::NotFinite` if the field is not
+/// # Limits
+/// a field of 1 gives M_0; far from the faces the field e^(bt) gives e^(bt) times its exponential mean
 pub fn slab_kernel_mean(
     kernel: Kernel,
     radius: f64,
@@ -126,8 +136,10 @@ pub struct EdgeLoss {
 
 /// Splits the error of the plain estimate in a slab into its edge part and its blur part.
 ///
-/// # Arguments  as [`slab_kernel_mean`]
-/// # Errors     as [`slab_kernel_mean`]
+/// # Arguments
+/// as [`slab_kernel_mean`]
+/// # Errors
+/// as [`slab_kernel_mean`]
 pub fn edge_loss(
     kernel: Kernel,
     radius: f64,

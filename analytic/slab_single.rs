@@ -9,7 +9,7 @@ use crate::exponential_integral::{e_n, e1, eim_scaled, ein};
 use crate::incidence::{Incidence, check_albedo, check_depth, check_mu, check_mu0, check_tau};
 use crate::quadrature::integrate_from_singular;
 use crate::value::Value;
-use libm::{exp, expm1, log1p, sin};
+use libm::{cos, exp, expm1, log1p, sin};
 use std::f64::consts::PI;
 
 /// Exponents are quotients of a depth and a cosine: their rounding enters the exponential multiplied by themselves,
@@ -21,14 +21,18 @@ const EXPONENT_ULPS: f64 = 750.0;
 /// With p the phase function \[1/sr\], m = |mu|:
 /// up, I = albedo p / (mu + mu0) \[e^(-t/mu0) - e^(-tau/mu0 - (tau-t)/mu)\];
 /// down, I = albedo p / (mu0 - m) \[e^(-t/mu0) - e^(-t/m)\].
-/// # Arguments  `tau` thickness, `t` depth \[mean free paths\]; `albedo` 0 to 1; `g` in (-1, 1); `mu0` cosine of
-///              incidence; `mu` signed cosine, positive towards the lit face; `dphi` azimuth of the direction of
-///              travel minus that of the beam \[rad\]
-/// # Returns    \[1/sr\] per unit irradiance on the face
-/// # Errors     `Error::OutOfRange` naming the parameter
-/// # Limits     mu -> 0: albedo p e^(-t/mu0)/mu0, the source function over the extinction
-/// # Source     Chandrasekhar 1960, chapter III
-#[expect(clippy::too_many_arguments, reason = "one number for each symbol of the formula")]
+/// # Arguments
+/// `tau` thickness, `t` depth \[mean free paths\]; `albedo` 0 to 1; `g` in (-1, 1); `mu0` cosine of
+/// incidence; `mu` signed cosine, positive towards the lit face; `dphi` azimuth of the direction of
+/// travel minus that of the beam \[rad\]
+/// # Returns
+/// \[1/sr\] per unit irradiance on the face
+/// # Errors
+/// `Error::OutOfRange` naming the parameter
+/// # Limits
+/// mu -> 0: albedo p e^(-t/mu0)/mu0, the source function over the extinction
+/// # Source
+/// Chandrasekhar 1960, chapter III
 pub fn single_radiance(tau: f64, albedo: f64, g: f64, mu0: f64, t: f64, mu: f64, dphi: f64) -> Result<Value> {
     check_tau(tau)?;
     check_albedo(albedo)?;
@@ -37,9 +41,13 @@ pub fn single_radiance(tau: f64, albedo: f64, g: f64, mu0: f64, t: f64, mu: f64,
     check_mu(mu)?;
     within("g", g, -1.0 + f64::EPSILON, 1.0 - f64::EPSILON, "above -1, below 1")?;
     within("dphi", dphi, -1e3, 1e3, "-1000 to 1000 rad")?;
-    let value = albedo * henyey_greenstein(g, mu0, mu, dphi) * beam_path(tau, mu0, t, mu);
+    let phase = albedo * henyey_greenstein(g, mu0, mu, dphi);
+    let value = phase * beam_path(tau, mu0, t, mu);
     // The deviation of the cosine is a sum of squares, its rounding magnified at most by the power 3/2.
-    Ok(Value::rounded(value, 64.0 + exponent_ulps(t, mu0), "closed form"))
+    let mut answer = Value::rounded(value, 64.0 + exponent_ulps(t, mu0), "closed form");
+    // Subnormal steps of the exponential, magnified by at most the inverse of the cosine's own rounding.
+    answer.error += phase * f64::MIN_POSITIVE / mu0;
+    Ok(answer)
 }
 
 fn exponent_ulps(t: f64, mu0: f64) -> f64 {
@@ -49,16 +57,14 @@ fn exponent_ulps(t: f64, mu0: f64) -> f64 {
 /// Henyey-Greenstein phase function between the beam and (mu, dphi) \[1/sr\].
 fn henyey_greenstein(g: f64, mu0: f64, mu: f64, dphi: f64) -> f64 {
     let sine = |c: f64| ((1.0 - c) * (1.0 + c)).sqrt();
-    let (s0, s, half) = (sine(mu0), sine(mu), sin(0.5 * dphi));
-    // 1 - cos and 1 + cos of the deflection, as half squared chords between the directions (s0, 0, -mu0) and
-    // (s cos dphi, s sin dphi, mu).
+    let (s0, s) = (sine(mu0), sine(mu));
+    // 1 - cos (g > 0) or 1 + cos of the deflection, whichever is small at the peak: half the squared chord between
+    // the directions (s0, 0, -mu0) and +-(s cos dphi, s sin dphi, mu), as a sum of squares.
     let lateral = if s0 + s > 0.0 { (mu - mu0) * (mu + mu0) / (s0 + s) } else { 0.0 };
-    let turn = 4.0 * s0 * s * half * half;
-    let normal = mu0 + mu;
-    let one_minus = 0.5 * (lateral * lateral + turn + normal * normal);
-    let chord = if g >= 0.0 { one_minus } else { 2.0 - one_minus };
+    let (turn, normal) = if g >= 0.0 { (sin(0.5 * dphi), mu + mu0) } else { (cos(0.5 * dphi), mu - mu0) };
+    let chord = 0.5 * (lateral * lateral + 4.0 * s0 * s * turn * turn + normal * normal);
     let a = 1.0 - g.abs();
-    let d = a * a + 2.0 * g.abs() * chord.max(0.0);
+    let d = a * a + 2.0 * g.abs() * chord;
     a * (1.0 + g.abs()) / (4.0 * PI * d * d.sqrt())
 }
 
@@ -82,10 +88,14 @@ pub(crate) fn beam_path(tau: f64, mu0: f64, t: f64, mu: f64) -> f64 {
 /// Fluence of light scattered once, a beam incident, isotropic scattering.
 ///
 /// phi_1 = (albedo/2) int_0^tau E_1(|t-t'|) e^(-t'/mu0)/mu0 dt', in exponential integrals.
-/// # Arguments  `tau` thickness, `t` depth \[mean free paths\]; `albedo` 0 to 1; `mu0` cosine of incidence
-/// # Returns    \[1\] per unit irradiance on the face
-/// # Errors     `Error::OutOfRange` naming the parameter
-/// # Limits     t -> 0, half-space: (albedo/2) ln(1 + 1/mu0)
+/// # Arguments
+/// `tau` thickness, `t` depth \[mean free paths\]; `albedo` 0 to 1; `mu0` cosine of incidence
+/// # Returns
+/// \[1\] per unit irradiance on the face
+/// # Errors
+/// `Error::OutOfRange` naming the parameter
+/// # Limits
+/// t -> 0, half-space: (albedo/2) ln(1 + 1/mu0)
 pub fn single_fluence(tau: f64, albedo: f64, mu0: f64, t: f64) -> Result<Value> {
     check_tau(tau)?;
     check_albedo(albedo)?;
@@ -123,9 +133,12 @@ pub(crate) fn beam_through_e1(mu0: f64, above: f64, below: f64) -> f64 {
 /// Fraction of the incident power that leaves the lit face after one isotropic scattering.
 ///
 /// R_1 = (albedo/2) int_0^tau phi_0(t) E_2(t) dt; a half-space: (albedo/2) \[1 - mu0 ln(1 + 1/mu0)\].
-/// # Arguments  `tau` thickness \[mean free paths\]; `albedo` 0 to 1; `incidence` of unit irradiance
-/// # Returns    \[1\]; two Gauss rules on panels that halve towards the face, both of positive terms
-/// # Errors     `Error::OutOfRange` naming the parameter
+/// # Arguments
+/// `tau` thickness \[mean free paths\]; `albedo` 0 to 1; `incidence` of unit irradiance
+/// # Returns
+/// \[1\]; two Gauss rules on panels that halve towards the face, both of positive terms
+/// # Errors
+/// `Error::OutOfRange` naming the parameter
 pub fn single_reflectance(tau: f64, albedo: f64, incidence: Incidence) -> Result<Value> {
     check_tau(tau)?;
     check_albedo(albedo)?;
@@ -142,9 +155,12 @@ pub fn single_reflectance(tau: f64, albedo: f64, incidence: Incidence) -> Result
 /// Fraction of the incident power that leaves the far face after one isotropic scattering.
 ///
 /// T_1 = (albedo/2) int_0^tau phi_0(t) E_2(tau-t) dt.
-/// # Arguments  `tau` thickness \[mean free paths\]; `albedo` 0 to 1; `incidence` of unit irradiance
-/// # Returns    \[1\]; two Gauss rules on panels that halve towards both faces, both of positive terms
-/// # Errors     `Error::OutOfRange` naming the parameter
+/// # Arguments
+/// `tau` thickness \[mean free paths\]; `albedo` 0 to 1; `incidence` of unit irradiance
+/// # Returns
+/// \[1\]; two Gauss rules on panels that halve towards both faces, both of positive terms
+/// # Errors
+/// `Error::OutOfRange` naming the parameter
 pub fn single_transmittance(tau: f64, albedo: f64, incidence: Incidence) -> Result<Value> {
     check_tau(tau)?;
     check_albedo(albedo)?;
@@ -242,6 +258,8 @@ mod tests {
         let peak = (1.0 + g) / (4.0 * PI * (1.0 - g) * (1.0 - g));
         assert!((henyey_greenstein(g, 0.6, -0.6, 0.0) / peak - 1.0).abs() < 1e-14);
         assert!((henyey_greenstein(-g, 1.0, 1.0, 0.3) / peak - 1.0).abs() < 1e-14);
+        // Backwards, dphi = pi: the half angle's cosine is 6e-17, its square nothing beside (1-g)^2.
+        assert!((henyey_greenstein(-g, 0.6, 0.6, PI) / peak - 1.0).abs() < 1e-12);
     }
 
     #[test]

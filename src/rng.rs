@@ -33,6 +33,10 @@ fn mix(word: u64) -> u64 {
     z ^ (z >> 31)
 }
 
+fn open(bits: u64) -> f64 {
+    ((bits >> 12) as f64 + 0.5) * (1.0 / 4_503_599_627_370_496.0)
+}
+
 impl Stream {
     /// The stream of one history.
     ///
@@ -58,9 +62,9 @@ impl Stream {
         (self.bits() >> 11) as f64 * (1.0 / 9_007_199_254_740_992.0)
     }
 
-    /// Uniform in (0, 1): odd multiples of 2^-54.
+    /// Uniform in (0, 1): odd multiples of 2^-53, so that the largest is below 1 by as much as the smallest is above 0.
     pub fn open_unit(&mut self) -> f64 {
-        ((self.bits() >> 11) as f64 + 0.5) * (1.0 / 9_007_199_254_740_992.0)
+        open(self.bits())
     }
 
     /// Two numbers uniform in [0, 1).
@@ -93,7 +97,7 @@ mod tests {
 
     #[test]
     fn open_unit_excludes_both_ends() {
-        let largest = ((u64::MAX >> 11) as f64 + 0.5) * (1.0 / 9_007_199_254_740_992.0);
-        assert!(largest < 1.0);
+        assert_eq!(open(0), 0.5f64.powi(53));
+        assert_eq!(open(u64::MAX), 1.0 - 0.5f64.powi(53));
     }
 }

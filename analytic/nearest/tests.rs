@@ -36,6 +36,25 @@ fn the_uniform_kernel_has_variance_one_over_k_minus_2() {
     assert!(fixed_radius_variance(1.0, 0.5, Some(4)).unwrap().covers(0.25));
 }
 
+/// An edge seen by k-nearest gathers, half-space of density 1: value on the face 1/2 for every k; what the gathers lose
+/// on the bright side, in units of r0 = (3k/4 pi)^(1/3), is .1949, .1977, .1986 for k = 20, 50, 100.
+#[test]
+fn an_edge_loses_the_known_length() {
+    let rule = crate::quadrature::GaussLegendre::rule(16);
+    for (k, lost) in [(20_u32, 0.1949), (50, 0.1977), (100, 0.1986)] {
+        let r0 = cbrt(f64::from(k) / BALL);
+        let at = |h: f64| {
+            let inside = |r: f64| crate::volumes::ball_slab_volume(r, h, 1e6).unwrap().value;
+            let mean = |r: f64| inside(r) / (BALL * r * r * r);
+            nearest_expectation(k, 6.0 * r0, inside, mean).unwrap().value
+        };
+        assert!((at(0.0) - 0.5).abs() < 1e-10);
+        let deficit = |x: f64| 1.0 - at(x * r0);
+        let sum = rule.integrate(0.0, 0.8, deficit) + rule.integrate(0.8, 2.0, deficit);
+        assert!((sum - lost).abs() < 1e-4, "{k} {sum}");
+    }
+}
+
 /// Small gradients: 1 + m2 b^2 E[r^2]/(2d) with r^2 at gamma-distributed k - 1, that is E of r_(k-1)^2.
 #[test]
 fn curvature_bias_goes_with_the_square_distance_of_the_last_but_one() {

@@ -13,7 +13,8 @@ fn check_k(k: u32) -> Result<f64> {
 
 /// What counting k points over the ball of the k-th reads in a uniform field: k/(k-1).
 ///
-/// # Errors  `Error::OutOfRange` naming `k` (2 to 1e6)
+/// # Errors
+/// `Error::OutOfRange` naming `k` (2 to 1e6)
 pub fn biased_factor(k: u32) -> Result<Value> {
     let k = check_k(k)?;
     Ok(Value::rounded(k / (k - 1.0), 2.0, METHOD))
@@ -21,8 +22,10 @@ pub fn biased_factor(k: u32) -> Result<Value> {
 
 /// Relative variance of (k-1)/(N V(r_k)) in a uniform field, uniform kernel: (N-1)(k-1)/(N(k-2)) - 1.
 ///
-/// # Arguments  `k` 3 to 1e6; `points` their number N, at least k, or `None` for the limit 1/(k-2)
-/// # Errors     `Error::OutOfRange` naming `k` or `points`; `Error::Infinite` for k = 2
+/// # Arguments
+/// `k` 3 to 1e6; `points` their number N, at least k, or `None` for the limit 1/(k-2)
+/// # Errors
+/// `Error::OutOfRange` naming `k` or `points`; `Error::Infinite` for k = 2
 pub fn nearest_variance_uniform(k: u32, points: Option<u64>) -> Result<Value> {
     let kf = check_k(k)?;
     if k < 3 {
@@ -45,9 +48,12 @@ pub fn nearest_variance_uniform(k: u32, points: Option<u64>) -> Result<Value> {
 ///
 /// (n V_d)^(-2/d) Gamma(j + 2/d)/Gamma(j), n points per volume; for a fixed number N of points also
 /// N^(2/d) Gamma(N+1)/Gamma(N+1+2/d).
-/// # Arguments  `j` 1 to 1e6; `density` n \[1/length^d\]; `points` N, at least j, or `None` for a Poisson number
-/// # Returns    \[length^2\]
-/// # Errors     `Error::OutOfRange` naming the parameter
+/// # Arguments
+/// `j` 1 to 1e6; `density` n \[1/length^d\]; `points` N, at least j, or `None` for a Poisson number
+/// # Returns
+/// \[length^2\]
+/// # Errors
+/// `Error::OutOfRange` naming the parameter
 pub fn nearest_square_distance(d: Dimension, j: u32, density: f64, points: Option<u64>) -> Result<Value> {
     let jf = within("j", f64::from(j), 1.0, 1e6, "1 to 1e6")?;
     within("density", density, 1e-100, 1e100, "1e-100 to 1e100")?;

@@ -20,8 +20,10 @@ impl IsotropicSlab {
     /// Fluence of light scattered exactly n times \[1\].
     ///
     /// phi_n = (albedo/2) int E_1(|t-t'|) phi_(n-1)(t') dt', phi_0 the direct light.
-    /// # Arguments  `n` order, 0 to 1000; `t` depth in mean free paths, 0 to tau
-    /// # Errors     `Error::OutOfRange` naming `n` or `t`
+    /// # Arguments
+    /// `n` order, 0 to 1000; `t` depth in mean free paths, 0 to tau
+    /// # Errors
+    /// `Error::OutOfRange` naming `n` or `t`
     pub fn fluence_of_order(&self, n: u32, t: f64) -> Result<Value> {
         check_order(n)?;
         check_depth(t, self.tau)?;
@@ -39,7 +41,8 @@ impl IsotropicSlab {
 
     /// Fraction of the incident power that leaves the lit face after exactly n scatterings \[1\].
     ///
-    /// # Errors  `Error::OutOfRange` naming `n`
+    /// # Errors
+    /// `Error::OutOfRange` naming `n`
     pub fn reflectance_of_order(&self, n: u32) -> Result<Value> {
         check_order(n)?;
         if n == 0 {
@@ -53,7 +56,8 @@ impl IsotropicSlab {
 
     /// Fraction of the incident power that leaves the far face after exactly n scatterings \[1\].
     ///
-    /// # Errors  `Error::OutOfRange` naming `n`
+    /// # Errors
+    /// `Error::OutOfRange` naming `n`
     pub fn transmittance_of_order(&self, n: u32) -> Result<Value> {
         check_order(n)?;
         if n == 0 {

@@ -1,1 +1,13 @@
-//! The laboratory.
+//! The laboratory: plays the simulator against exact values and writes the report.
+//!
+//! Each experiment is a module with a constant `EXPERIMENT`, listed in [`ALL`]; [`harness`] runs them, and
+//! [`report`] writes what they found.
+
+pub mod bias;
+pub mod harness;
+pub mod report;
+
+use harness::Experiment;
+
+/// All experiments, in the order of the report.
+pub const ALL: &[Experiment] = &[bias::EXPERIMENT];

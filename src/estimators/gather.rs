@@ -24,32 +24,32 @@ impl NeighborCount {
 
 /// Which photons an estimate uses.
 ///
-/// With fewer than k photons within `max_radius` a nearest gather is **under-full**: the estimate is then that of
-/// the fixed radius `max_radius`, all its photons counted. In a uniform field of independent photons the mixture
-/// of the two rules is still unbiased.
+/// With fewer than k photons within `max_radius` a nearest gather is **under-full**: the estimate is then
+/// that of the fixed radius `max_radius`, all its photons counted. In a uniform field of independent photons
+/// the mixture of the two rules is still unbiased.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Gather {
-    /// All photons at most this far away [L].
+    /// All photons at most this far away \[L\].
     Radius(Positive),
     /// The k-th photon sets the radius and contributes nothing; the k-1 nearer ones are summed.
     Nearest {
         /// Which photon sets the radius.
         k: NeighborCount,
-        /// Photons farther away are not used [L].
+        /// Photons farther away are not used \[L\].
         max_radius: Positive,
     },
-    /// The rule as it is often written: the k-th photon sets the radius and is summed too. A kernel that does not
-    /// vanish at its edge then reads high, the uniform one by 1/(k-1).
+    /// The rule as it is often written: the k-th photon sets the radius and is summed too. A kernel that does
+    /// not vanish at its edge then reads high, the uniform one by 1/(k-1).
     NearestBiased {
         /// Which photon sets the radius.
         k: NeighborCount,
-        /// Photons farther away are not used [L].
+        /// Photons farther away are not used \[L\].
         max_radius: Positive,
     },
 }
 
 impl Gather {
-    /// All photons within `radius` [L].
+    /// All photons within `radius` \[L\].
     ///
     /// # Errors
     /// [`Error::OutOfRange`] unless `radius` is finite and above zero.
@@ -57,7 +57,7 @@ impl Gather {
         Ok(Gather::Radius(Positive::new("the gather radius", radius)?))
     }
 
-    /// The k nearest photons within `max_radius` [L].
+    /// The k nearest photons within `max_radius` \[L\].
     ///
     /// # Errors
     /// [`Error::OutOfRange`] if k is below 2, or `max_radius` not finite and above zero.
@@ -85,8 +85,9 @@ impl Gather {
 
     /// The squared radius that the curvature bias is proportional to [L^2], for independent photons.
     ///
-    /// For the k-nearest rule that is E[r_{k-1}^2] = (3/(4 pi n))^(2/3) Gamma(k-1/3)/Gamma(k-1), n the photons per
-    /// volume, and not E[r_k^2]: the estimate carries 1/r_k^3, which favours small radii. The cap is left out.
+    /// For the k-nearest rule that is E(r_{k-1}^2) = (3/(4 pi n))^(2/3) Gamma(k-1/3)/Gamma(k-1), n the
+    /// photons per volume, and not E(r_k^2): the estimate carries 1/r_k^3, which favours small radii. The cap
+    /// is left out.
     pub fn effective_squared_radius(self, photons_per_volume: f64) -> f64 {
         match self {
             Gather::Radius(radius) => radius.get() * radius.get(),
@@ -101,8 +102,8 @@ impl Gather {
 
     /// Bias expected of an estimate of a field from independent photons, to second order in the radius.
     ///
-    /// Blur, (m2/6) r^2 laplacian with the effective radius, the same law for every gather; and, of the biased
-    /// rule only, the k-th photon's own weight, field x K(1) V/(k-1) with V the unit ball's volume.
+    /// Blur, (m2/6) r^2 laplacian with the effective radius, the same law for every gather; and, of the
+    /// biased rule only, the k-th photon's own weight, field x K(1) V/(k-1) with V the unit ball's volume.
     ///
     /// # Arguments `field` and its `laplacian` (per L^2) at the point; `photons_per_volume` [1/L^3], stored
     /// # Returns   in the unit of the field
@@ -114,13 +115,14 @@ impl Gather {
         }
     }
 
-    /// Variance expected of an estimate from independent photons in a uniform field, over the square of the field.
+    /// Variance expected of an estimate from independent photons in a uniform field, over the square of the
+    /// field.
     ///
-    /// With R the roughness times the unit ball's volume, q = E\[p^2\]/E\[p\]^2 of the photons' powers:
-    /// q R/n for a ball that holds n photons on average, q R/(k-2) for the k-nearest rule (infinite for k = 2). The
-    /// latter is E\[S^2\] E\[1/V_k^2\] - 1: the sum S over k-1 uniform places has E\[S^2\] = (k-1) q R + (k-1)(k-2),
-    /// and the volume V_k, a gamma variable of order k, has E\[1/V_k^2\] = 1/((k-1)(k-2)). The number of photons is
-    /// taken to be Poisson.
+    /// With R the roughness times the unit ball's volume, q = E(p^2)/E(p)^2 of the photons' powers: q R/n for
+    /// a ball that holds n photons on average, q R/(k-2) for the k-nearest rule (infinite for k = 2). The
+    /// latter is E(S^2) E(1/V_k^2) - 1: the sum S over k-1 uniform places has E(S^2) = (k-1) q R +
+    /// (k-1)(k-2), and the volume V_k, a gamma variable of order k, has E(1/V_k^2) = 1/((k-1)(k-2)). The
+    /// number of photons is taken to be Poisson.
     ///
     /// # Arguments `power_ratio` q, at least 1; `photons_per_volume` [1/L^3], stored
     pub fn expected_relative_variance(

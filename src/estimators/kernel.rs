@@ -2,15 +2,17 @@
 
 use serde::{Deserialize, Serialize};
 use std::f64::consts::PI;
-use wide::f32x16;
+use wide::f32x8;
 
 /// Volume of the ball of radius 1.
 pub const UNIT_BALL: f64 = 4.0 / 3.0 * PI;
 
-/// A radial weight K(u) on the unit ball of three dimensions, u the distance over the radius; zero beyond u = 1.
+/// A radial weight K(u) on the unit ball of three dimensions, u the distance over the radius; zero beyond u =
+/// 1.
 ///
-/// K integrates to one over the ball, so the kernel of radius r is K(u)/r^3. The moments are m_j = int u^j K dV
-/// and the roughness is int K^2 dV. Kernels are compared at equal standard deviation a coordinate, r sqrt(m2/3).
+/// K integrates to one over the ball, so the kernel of radius r is K(u)/r^3. The moments are m_j = int u^j K
+/// dV and the roughness is int K^2 dV. Kernels are compared at equal standard deviation a coordinate, r
+/// sqrt(m2/3).
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Kernel {
@@ -44,8 +46,8 @@ impl Kernel {
 
     /// K at the centre, where every profile is 1: what makes the integral over the ball one.
     ///
-    /// The Gaussian's is 1/(4 pi I2), I2 = int_0^1 u^2 exp(-9 u^2/2) du = sqrt(pi) erf(a)/(4 a^3) - exp(-a^2)/(2 a^2)
-    /// with a^2 = 9/2; its moments follow by parts from the same integral.
+    /// The Gaussian's is 1/(4 pi I2), I2 = int_0^1 u^2 exp(-9 u^2/2) du = sqrt(pi) erf(a)/(4 a^3) -
+    /// exp(-a^2)/(2 a^2) with a^2 = 9/2; its moments follow by parts from the same integral.
     pub fn peak(self) -> f64 {
         match self {
             Kernel::Uniform => 3.0 / (4.0 * PI),
@@ -67,14 +69,14 @@ impl Kernel {
         }
     }
 
-    /// [`Kernel::profile`] for sixteen photons, within 1e-6 of it (tested), that is a few roundings of f32.
+    /// [`Kernel::profile`] for eight photons, within 1e-6 of it (tested), that is a few roundings of f32.
     #[inline(always)]
-    pub fn profiles(self, u2: f32x16) -> f32x16 {
+    pub fn profiles(self, u2: f32x8) -> f32x8 {
         match self {
-            Kernel::Uniform => f32x16::ONE,
-            Kernel::Epanechnikov => f32x16::ONE - u2,
-            Kernel::Cone => f32x16::ONE - u2.sqrt(),
-            Kernel::Biweight => (f32x16::ONE - u2) * (f32x16::ONE - u2),
+            Kernel::Uniform => f32x8::ONE,
+            Kernel::Epanechnikov => f32x8::ONE - u2,
+            Kernel::Cone => f32x8::ONE - u2.sqrt(),
+            Kernel::Biweight => (f32x8::ONE - u2) * (f32x8::ONE - u2),
             Kernel::Gaussian => gaussian_profiles(u2),
         }
     }
@@ -116,15 +118,16 @@ impl Kernel {
 
 /// exp(-9 u^2/2) as the eighth power of exp(-y), y = (9/16) u^2 in [0, 9/16].
 ///
-/// Taylor's series about the middle c = 9/32 to the seventh power: the remainder is below c^8/8! = 9.7e-10, eight
-/// times that after the powers, so rounding dominates. Made of products and sums only: the same bits everywhere.
+/// Taylor's series about the middle c = 9/32 to the seventh power: the remainder is below c^8/8! = 9.7e-10,
+/// eight times that after the powers, so rounding dominates. Made of products and sums only: the same bits
+/// everywhere.
 #[inline(always)]
-fn gaussian_profiles(u2: f32x16) -> f32x16 {
+fn gaussian_profiles(u2: f32x8) -> f32x8 {
     const AT_MIDDLE: f32 = 0.754_839_6; // exp(-9/32)
-    let x = f32x16::splat(9.0 / 32.0) - u2 * f32x16::splat(9.0 / 16.0);
-    let mut sum = f32x16::splat(AT_MIDDLE / 5040.0);
+    let x = f32x8::splat(9.0 / 32.0) - u2 * f32x8::splat(9.0 / 16.0);
+    let mut sum = f32x8::splat(AT_MIDDLE / 5040.0);
     for coefficient in [720.0, 120.0, 24.0, 6.0, 2.0, 1.0, 1.0] {
-        sum = sum * x + f32x16::splat(AT_MIDDLE / coefficient);
+        sum = sum * x + f32x8::splat(AT_MIDDLE / coefficient);
     }
     let squared = sum * sum;
     let fourth = squared * squared;

@@ -1,21 +1,21 @@
 //! Estimators: what a photon map says of the light at a point.
 //!
-//! With N photons **emitted**, a kernel K_r of unit integral over the ball of radius r and stored photons of power
-//! p (each as though its history were the only one), photons being stored at every collision with the power they
-//! arrive with:
+//! With N photons **emitted**, a kernel K_r of unit integral over the ball of radius r and stored photons of
+//! power p (each as though its history were the only one), photons being stored at every collision with the
+//! power they arrive with:
 //! - collision density, sigma_t x fluence = sum p K_r / N [W/L^3];
 //! - fluence = sum p K_r / (N sigma_t) [W/L^2];
 //! - in-scattered radiance = sum p phase(dir -> wo) K_r / (N sigma_t) [W/(L^2 sr)].
 //!
-//! A [`Kernel`] weights the photons of the ball, a [`Gather`] chooses the ball; both state the bias and variance
-//! they expect.
+//! A [`Kernel`] weights the photons of the ball, a [`Gather`] chooses the ball; both state the bias and
+//! variance they expect.
 
 mod directional;
 mod gather;
 mod kernel;
 mod point;
 
-pub use directional::{Directional, HenyeyGreensteinLanes, IsotropicLanes};
+pub use directional::{CosinePairs, Directional};
 pub use gather::{Gather, NeighborCount};
 pub use kernel::Kernel;
 pub use point::{

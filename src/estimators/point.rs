@@ -1,37 +1,39 @@
 //! Estimates at a point.
 
-use super::{Directional, Gather, Kernel};
-use crate::photons::tree::{Counted, Nearest, Neighbors};
+use super::{CosinePairs, Directional, Gather, Kernel};
+use crate::photons::tree::{Counted, Nearest, Neighbors, Visit};
 use crate::photons::{Photon, PhotonMap, PhotonTree};
 use crate::spectrum::Spectrum;
 use glam::DVec3;
-use wide::f32x16;
+use wide::f32x8;
 
 /// An estimate, and what it rests on.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Estimate {
     /// The estimate by channel.
     pub value: Spectrum,
-    /// Radius of the ball [L].
+    /// Radius of the ball \[L\].
     pub radius: f64,
     /// Photons in the ball, those on its surface included.
     pub found: usize,
     /// Whether fewer than k photons were within the cap, so that the ball is the cap.
     pub underfull: bool,
-    /// Photons at the point itself if they were k or more, so that the ball reaches to the next one out; else 0.
+    /// Photons at the point itself if they were k or more, so that the ball reaches to the next one out; else
+    /// 0.
     pub coincident: usize,
 }
 
 /// The ball that a gather chose.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Ball {
-    /// Radius [L].
+    /// Radius \[L\].
     pub radius: f64,
     /// Photons in the ball, those on its surface included.
     pub found: usize,
     /// Whether fewer than k photons were within the cap, so that the ball is the cap.
     pub underfull: bool,
-    /// Photons at the point itself if they were k or more, so that the ball reaches to the next one out; else 0.
+    /// Photons at the point itself if they were k or more, so that the ball reaches to the next one out; else
+    /// 0.
     pub coincident: usize,
 }
 
@@ -47,12 +49,12 @@ pub struct BallSum {
 /// Fluence at a point [W/L^2]: sum p K_r / (N sigma_t).
 ///
 /// # Arguments
-/// `sigma_t` \[1/L\] at the point, above zero in every channel: a channel in which it is zero gives a non-finite
-/// value, never a silent zero.
+/// `sigma_t` [1/L] at the point, above zero in every channel: a channel in which it is zero gives a
+/// non-finite value, never a silent zero.
 ///
 /// # Limits
-/// Where sigma_t varies this is the blurred collision density over the local sigma_t; see [`for_each_photon`] for
-/// sums that weight each photon by its own.
+/// Where sigma_t varies this is the blurred collision density over the local sigma_t; see [`for_each_photon`]
+/// for sums that weight each photon by its own.
 ///
 /// # Source
 /// Jensen and Christensen 1998; the k-1 of the k-nearest rule is Loftsgaarden and Quesenberry 1965.
@@ -70,11 +72,11 @@ pub fn collision_density(map: &PhotonMap, point: DVec3, kernel: Kernel, gather: 
 /// In-scattered radiance at a point [W/(L^2 sr)]: sum p phase(dir -> wo) K_r / (N sigma_t).
 ///
 /// # Arguments
-/// `wo` unit direction of travel after the scattering; `phase` \[1/sr\]; `sigma_t` as in [`fluence`].
+/// `wo` unit direction of travel after the scattering; `phase` [1/sr]; `sigma_t` as in [`fluence`].
 ///
 /// # Limits
-/// Directions are held in single precision, which blurs a phase function over about 1e-7 rad: peaks of |g| above
-/// 0.9999 feel it. The source term of the transfer equation is sigma_s times the value.
+/// Directions are held in single precision, which blurs a phase function over about 1e-7 rad: peaks of |g|
+/// above 0.9999 feel it. The source term of the transfer equation is sigma_s times the value.
 pub fn in_scattered(
     map: &PhotonMap,
     point: DVec3,
@@ -84,15 +86,9 @@ pub fn in_scattered(
     kernel: Kernel,
     gather: Gather,
 ) -> Estimate {
-    let wo = wo.as_vec3().to_array().map(f32x16::splat);
-    let half = f32x16::splat(0.5);
+    let wo = wo.as_vec3().to_array();
     let sum = weighted_sum(map.tree(), point, kernel, gather, |neighbors| {
-        let dir = neighbors.dir();
-        let pair = |sign: fn(f32x16, f32x16) -> f32x16| {
-            let [x, y, z] = [0, 1, 2].map(|axis| sign(dir[axis], wo[axis]));
-            half * (x * x + y * y + z * z)
-        };
-        phase.values(pair(|a, b| a - b), pair(|a, b| a + b), neighbors.inside().to_bitmask())
+        phase.values(CosinePairs { dir: neighbors.dir(), wo, inside: neighbors.inside() })
     });
     let mut estimate = per_emitted(map, sum);
     estimate.value = estimate.value / sigma_t;
@@ -101,18 +97,18 @@ pub fn in_scattered(
 
 /// Sum of power x K_r over the gathered photons [W/L^3], divided by nothing.
 pub fn ball_sum(map: &PhotonMap, point: DVec3, kernel: Kernel, gather: Gather) -> BallSum {
-    weighted_sum(map.tree(), point, kernel, gather, |_| f32x16::ONE)
+    weighted_sum(map.tree(), point, kernel, gather, |_| f32x8::ONE)
 }
 
-/// Number of photons at most `radius` [L] from a point.
+/// Number of photons at most `radius` \[L\] from a point.
 pub fn count_within(map: &PhotonMap, point: DVec3, radius: f64) -> usize {
     let mut count = 0;
-    map.tree().within(point, radius, |neighbors| count += number(&neighbors));
+    map.tree().within(point, radius, &mut |neighbors: Neighbors<'_>| count += number(&neighbors));
     count
 }
 
-/// Visits each photon of the gather with its weight K(u) in units of 1/radius^3, for sums that none of the other
-/// functions makes: sum weight x ... / radius^3 is an estimate of the same kind. Slower than they are.
+/// Visits each photon of the gather with its weight K(u) in units of 1/radius^3, for sums that none of the
+/// other functions makes: sum weight x ... / radius^3 is an estimate of the same kind. Slower than they are.
 pub fn for_each_photon(
     map: &PhotonMap,
     point: DVec3,
@@ -121,7 +117,7 @@ pub fn for_each_photon(
     mut visit: impl FnMut(Photon, f64),
 ) -> Ball {
     let tree = map.tree();
-    gathered(tree, point, gather, |neighbors| {
+    gathered(tree, point, gather, &mut |neighbors: Neighbors<'_>| {
         let u2 = neighbors.u2().to_array();
         let scale = kernel.peak() * f64::from(neighbors.share());
         for (lane, place) in neighbors.places() {
@@ -135,6 +131,7 @@ fn per_emitted(map: &PhotonMap, BallSum { sum, ball }: BallSum) -> Estimate {
     Estimate { value: sum / map.emitted() as f64, radius, found, underfull, coincident }
 }
 
+#[inline(always)]
 fn number(neighbors: &Neighbors<'_>) -> usize {
     neighbors.inside().to_bitmask().count_ones() as usize
 }
@@ -146,77 +143,103 @@ fn weighted_sum(
     point: DVec3,
     kernel: Kernel,
     gather: Gather,
-    weight: impl Fn(&Neighbors<'_>) -> f32x16,
+    weight: impl Fn(&Neighbors<'_>) -> f32x8,
 ) -> BallSum {
-    let mut sum = LaneSum::default();
-    let ball = gathered(tree, point, gather, |neighbors| {
-        let mut profile = kernel.profiles(neighbors.u2());
-        if neighbors.share() < 1.0 {
-            profile *= f32x16::splat(neighbors.share());
-        }
-        sum.add(neighbors.inside() & (profile * weight(&neighbors)), neighbors.power());
-    });
+    let mut sum = Weighted { kernel, weight, sum: LaneSum::default() };
+    let ball = gathered(tree, point, gather, &mut sum);
+    // No photon is near a point that is not finite; that is no darkness.
+    let nowhere = if point.is_finite() { 0.0 } else { f64::NAN };
     let r = ball.radius;
-    BallSum { sum: sum.total() * kernel.peak() / (r * r * r), ball }
+    BallSum { sum: (sum.sum.total() + Spectrum::grey(nowhere)) * kernel.peak() / (r * r * r), ball }
 }
 
 /// Visits the photons of a gather.
 #[inline(always)]
-fn gathered(tree: &PhotonTree, point: DVec3, gather: Gather, mut visit: impl FnMut(Neighbors<'_>)) -> Ball {
+fn gathered(tree: &PhotonTree, point: DVec3, gather: Gather, visitor: &mut impl Visit) -> Ball {
     let (k, cap, counted) = match gather {
         Gather::Radius(radius) => (None, radius.get(), Counted::BelowKth),
         Gather::Nearest { k, max_radius } => (Some(k.get()), max_radius.get(), Counted::BelowKth),
         Gather::NearestBiased { k, max_radius } => (Some(k.get()), max_radius.get(), Counted::UpToKth),
     };
     if let Some(k) = k
-        && let Nearest::Found(shell) = tree.nearest(point, k, cap, counted, &mut visit)
+        && let Nearest::Found(shell) = tree.nearest(point, k, cap, counted, visitor)
     {
         let found = shell.closer + shell.tied;
         return Ball { radius: shell.radius, found, underfull: false, coincident: shell.coincident };
     }
-    let mut found = 0;
-    tree.within(point, cap, |neighbors| {
-        found += number(&neighbors);
-        visit(neighbors);
-    });
-    Ball { radius: cap, found, underfull: k.is_some(), coincident: 0 }
+    let mut counting = Counting { found: 0, visitor };
+    tree.within(point, cap, &mut counting);
+    Ball { radius: cap, found: counting.found, underfull: k.is_some(), coincident: 0 }
 }
 
-/// A sum that does not stall: a few blocks in single precision lanes, everything else in f64.
+/// A visitor that also counts.
+struct Counting<'v, V> {
+    found: usize,
+    visitor: &'v mut V,
+}
+
+impl<V: Visit> Visit for Counting<'_, V> {
+    #[inline(always)]
+    fn visit(&mut self, neighbors: Neighbors<'_>) {
+        self.found += number(&neighbors);
+        self.visitor.visit(neighbors);
+    }
+}
+
+/// The sum while photons are found.
+struct Weighted<W> {
+    kernel: Kernel,
+    weight: W,
+    sum: LaneSum,
+}
+
+impl<W: Fn(&Neighbors<'_>) -> f32x8> Visit for Weighted<W> {
+    #[inline(always)]
+    fn visit(&mut self, neighbors: Neighbors<'_>) {
+        let share = f32x8::splat(neighbors.share());
+        let profile = match self.kernel {
+            Kernel::Uniform => share,
+            kernel => kernel.profiles(neighbors.u2()) * share,
+        };
+        self.sum.add(neighbors.inside() & (profile * (self.weight)(&neighbors)), neighbors.power());
+    }
+}
+
+/// A sum that does not stall: a few rows in single precision lanes, everything else in f64.
 struct LaneSum {
-    lanes: [f32x16; 3],
-    blocks: u32,
+    lanes: [f32x8; 3],
+    rows: u32,
     total: Spectrum,
 }
 
 impl Default for LaneSum {
     fn default() -> Self {
-        LaneSum { lanes: [f32x16::ZERO; 3], blocks: 0, total: Spectrum::ZERO }
+        LaneSum { lanes: [f32x8::ZERO; 3], rows: 0, total: Spectrum::ZERO }
     }
 }
 
 impl LaneSum {
-    /// Blocks a lane adds up before it is emptied: its relative error stays below 32 x 2^-24 = 2e-6 at worst and a
-    /// tenth of that as a rule, far below the noise of 16 photons a block.
-    const BLOCKS: u32 = 32;
+    /// Rows a lane adds up before it is emptied: its relative error stays below 32 x 2^-24 = 2e-6 at worst
+    /// and a tenth of that as a rule, far below the noise of 8 photons a row.
+    const ROWS: u32 = 32;
 
     #[inline(always)]
-    fn add(&mut self, weight: f32x16, power: &[f32x16; 3]) {
+    fn add(&mut self, weight: f32x8, power: &[f32x8; 3]) {
         for (lanes, power) in self.lanes.iter_mut().zip(power) {
             *lanes += weight * *power;
         }
-        self.blocks += 1;
-        if self.blocks == Self::BLOCKS {
+        self.rows += 1;
+        if self.rows == Self::ROWS {
             self.empty();
         }
     }
 
     fn empty(&mut self) {
-        let channel = |lanes: &f32x16| lanes.as_array().iter().fold(0.0, |sum, &lane| sum + f64::from(lane));
+        let channel = |lanes: &f32x8| lanes.as_array().iter().fold(0.0, |sum, &lane| sum + f64::from(lane));
         self.total +=
             Spectrum::rgb(channel(&self.lanes[0]), channel(&self.lanes[1]), channel(&self.lanes[2]));
-        self.lanes = [f32x16::ZERO; 3];
-        self.blocks = 0;
+        self.lanes = [f32x8::ZERO; 3];
+        self.rows = 0;
     }
 
     fn total(mut self) -> Spectrum {

@@ -42,7 +42,7 @@ impl Rectangle {
             return None;
         }
         let t = (self.corner - ray.origin).dot(self.normal) / denominator;
-        if !(t > 0.0) {
+        if t.is_nan() || t <= 0.0 {
             return None;
         }
         self.covers(ray.at(t)).then_some(Hit { t, normal: self.normal })

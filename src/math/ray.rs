@@ -2,10 +2,10 @@
 
 use glam::DVec3;
 
-/// A half-line: origin [L] and unit direction of travel.
+/// A half-line: origin \[L\] and unit direction of travel.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Ray {
-    /// Where it starts [L].
+    /// Where it starts \[L\].
     pub origin: DVec3,
     /// Unit direction of travel.
     pub dir: DVec3,
@@ -17,23 +17,23 @@ impl Ray {
         Ray { origin, dir }
     }
 
-    /// The point at distance `t` [L].
+    /// The point at distance `t` \[L\].
     pub fn at(&self, t: f64) -> DVec3 {
         self.origin + self.dir * t
     }
 }
 
-/// A stretch of a ray, from `start` to `end` [L]; `end` may be infinite.
+/// A stretch of a ray, from `start` to `end` \[L\]; `end` may be infinite.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Interval {
-    /// Nearer end [L].
+    /// Nearer end \[L\].
     pub start: f64,
-    /// Farther end [L].
+    /// Farther end \[L\].
     pub end: f64,
 }
 
 impl Interval {
-    /// Length [L]; zero if the ends are swapped.
+    /// Length \[L\]; zero if the ends are swapped.
     pub fn length(&self) -> f64 {
         (self.end - self.start).max(0.0)
     }

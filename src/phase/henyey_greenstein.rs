@@ -15,6 +15,11 @@ impl HenyeyGreenstein {
     pub fn new(g: Asymmetry) -> Self {
         HenyeyGreenstein { g: g.get() }
     }
+
+    /// The mean cosine.
+    pub fn g(&self) -> f64 {
+        self.g
+    }
 }
 
 impl PhaseFunction for HenyeyGreenstein {

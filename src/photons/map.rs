@@ -3,8 +3,8 @@
 use super::{Photon, PhotonTree};
 use crate::error::{Error, Result};
 
-/// Stored photons and the number **emitted** by the pass that stored them: estimates divide by that number, never
-/// by the number stored. It holds no estimator.
+/// Stored photons and the number **emitted** by the pass that stored them: estimates divide by that number,
+/// never by the number stored. It holds no estimator.
 #[derive(Debug)]
 pub struct PhotonMap {
     tree: PhotonTree,

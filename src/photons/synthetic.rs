@@ -12,14 +12,14 @@ use std::f64::consts::PI;
 pub enum Profile {
     /// The same everywhere.
     Constant,
-    /// Proportional to 1 + slope (2 s - 1), slope in \[-1, 1\].
+    /// Proportional to 1 + slope (2 s - 1), slope in [-1, 1].
     Linear {
         /// Relative difference between the faces and the middle.
         slope: f64,
     },
     /// Proportional to exp(-rate x).
     Exponential {
-        /// Decay \[1/L\], of either sign.
+        /// Decay [1/L], of either sign.
         rate: f64,
     },
     /// Zero for x below `edge`, the same everywhere else.
@@ -29,7 +29,7 @@ pub enum Profile {
     },
     /// Proportional to 1 + amplitude cos(2 pi periods s).
     Sinusoid {
-        /// Relative amplitude, in \[-1, 1\].
+        /// Relative amplitude, in [-1, 1].
         amplitude: f64,
         /// Waves across the box.
         periods: u32,
@@ -86,10 +86,11 @@ impl Synthetic {
         Ok(Synthetic { profile, lower, upper, kept: 1.0 })
     }
 
-    /// The same photons, of which each is stored with probability `kept` only: stored and emitted then differ.
+    /// The same photons, of which each is stored with probability `kept` only: stored and emitted then
+    /// differ.
     ///
     /// # Errors
-    /// [`Error::OutOfRange`] unless `kept` is in (0, 1\].
+    /// [`Error::OutOfRange`] unless `kept` is in (0, 1].
     pub fn thinned(self, kept: f64) -> Result<Self> {
         if !(kept > 0.0 && kept <= 1.0) {
             return Err(Error::out_of_range("the kept fraction", kept, "above 0, to 1"));
@@ -97,7 +98,7 @@ impl Synthetic {
         Ok(Synthetic { kept, ..self })
     }
 
-    /// The density at a point \[W/L^3\]: what an estimate of the collision density estimates, blur apart. It
+    /// The density at a point [W/L^3]: what an estimate of the collision density estimates, blur apart. It
     /// integrates to the kept fraction over the box.
     pub fn density(&self, point: DVec3) -> f64 {
         let size = self.upper - self.lower;
@@ -172,8 +173,8 @@ impl Synthetic {
     }
 }
 
-/// Solves s + amplitude sin(2 pi periods s)/(2 pi periods) = u: Newton's steps, halving the bracket where they
-/// leave it, until the bracket or the step is below the spacing of numbers.
+/// Solves s + amplitude sin(2 pi periods s)/(2 pi periods) = u: Newton's steps, halving the bracket where
+/// they leave it, until the bracket or the step is below the spacing of numbers.
 fn invert_sinusoid(amplitude: f64, periods: f64, u: f64) -> f64 {
     if periods == 0.0 {
         return u;

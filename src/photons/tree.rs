@@ -3,33 +3,37 @@
 mod boxes;
 mod nearest;
 mod order;
+mod scratch;
 mod units;
 mod within;
 
 use super::{Flags, Photon};
 use crate::error::{Error, Result};
 use boxes::Boxes;
-use glam::{DVec3, Vec3};
+use glam::Vec3;
 use order::Entry;
 use units::Units;
-use wide::f32x16;
+use wide::f32x8;
 
 pub use nearest::{Counted, Nearest, Shell};
-pub use within::Neighbors;
 pub(crate) use within::bits;
+pub use within::{Neighbors, Visit};
 
-/// Photons in a block.
-pub const BLOCK: usize = 16;
+/// Photons in a block: two rows of eight, what the registers of every processor hold without spilling.
+const BLOCK: usize = 16;
 
-/// Sixteen vectors, an array a coordinate.
-type Positions = [f32x16; 3];
+/// Photons in a row, and lanes of its arrays.
+pub const ROW: usize = 8;
+
+/// Eight vectors, an array a coordinate.
+type Row = [f32x8; 3];
 
 /// Photons, ordered so that neighbours in space are neighbours in memory; the only copy of them.
 ///
-/// Positions are held in single precision relative to the centre of the map's box, in a power-of-two unit u with
-/// u/2 < half the longest edge <= u: a stored coordinate is off by at most 2^-25 u, see
-/// [`PhotonTree::resolution`], and a query point by as much. Distances are computed in single precision, with a
-/// relative error below 4 x 2^-24 beyond that. Directions and powers are held as they came.
+/// Positions are held in single precision relative to the centre of the map's box, in a power-of-two unit u
+/// with u/2 < half the longest edge <= u: a stored coordinate is off by at most 2^-25 u, see
+/// [`PhotonTree::resolution`], and a query point by as much. Distances are computed in single precision, with
+/// a relative error below 4 x 2^-24 beyond that. Directions and powers are held as they came.
 ///
 /// A search takes the same sum over the same photons in the same order whatever the processor, the number of
 /// threads and the order the photons came in.
@@ -38,9 +42,9 @@ pub struct PhotonTree {
     units: Units,
     stored: usize,
     identity: u64,
-    positions: Vec<Positions>,
-    dirs: Vec<[f32x16; 3]>,
-    powers: Vec<[f32x16; 3]>,
+    positions: Vec<[Row; 2]>,
+    dirs: Vec<Row>,
+    powers: Vec<Row>,
     histories: Vec<(u16, Flags)>,
     levels: Vec<Vec<Boxes>>,
 }
@@ -49,8 +53,8 @@ impl PhotonTree {
     /// The tree over `photons`, built by the calling thread.
     ///
     /// # Errors
-    /// [`Error::NonFinite`] if a position, direction or power is not finite; [`Error::OutOfRange`] beyond 2^32
-    /// photons.
+    /// [`Error::NonFinite`] if a position, direction or power is not finite; [`Error::OutOfRange`] beyond
+    /// 2^32 photons.
     pub fn new(photons: Vec<Photon>) -> Result<Self> {
         Self::build(photons, false)
     }
@@ -68,8 +72,7 @@ impl PhotonTree {
         if u32::try_from(stored).is_err() {
             return Err(Error::out_of_range("the number of photons in one map", stored as f64, "below 2^32"));
         }
-        refuse_non_finite(&photons)?;
-        let units = Units::new(corner(&photons, DVec3::min), corner(&photons, DVec3::max));
+        let units = Units::of(&photons)?;
         let mut entries: Vec<Entry> = photons
             .iter()
             .enumerate()
@@ -78,16 +81,19 @@ impl PhotonTree {
                 index: index as u32,
             })
             .collect();
-        order::kd_order(&mut entries, &photons, parallel);
+        if stored > 0 {
+            order::kd_order(&mut entries, &photons, parallel);
+        }
 
         let blocks = stored.div_ceil(BLOCK);
+        let rows = 2 * blocks;
         let mut tree = PhotonTree {
             units,
             stored,
             identity: nearest::new_identity(),
             positions: Vec::with_capacity(blocks),
-            dirs: Vec::with_capacity(blocks),
-            powers: Vec::with_capacity(blocks),
+            dirs: Vec::with_capacity(rows),
+            powers: Vec::with_capacity(rows),
             histories: Vec::with_capacity(stored),
             levels: Vec::new(),
         };
@@ -105,17 +111,20 @@ impl PhotonTree {
         let mut power = [[0.0; BLOCK]; 3];
         for (lane, entry) in entries.iter().enumerate() {
             let photon = &photons[entry.index as usize];
-            let (d, p) = (photon.dir.to_array(), photon.power.to_array());
             for axis in 0..3 {
                 position[axis][lane] = entry.position[axis];
-                dir[axis][lane] = d[axis];
-                power[axis][lane] = p[axis];
+                dir[axis][lane] = photon.dir[axis];
+                power[axis][lane] = photon.power[axis];
             }
             self.histories.push((photon.order, photon.flags));
         }
-        self.positions.push(position.map(f32x16::new));
-        self.dirs.push(dir.map(f32x16::new));
-        self.powers.push(power.map(f32x16::new));
+        let row = |lanes: &[[f32; BLOCK]; 3], first: usize| {
+            let part = |axis: usize| f32x8::from(&lanes[axis][first..first + ROW]);
+            [part(0), part(1), part(2)]
+        };
+        self.positions.push([row(&position, 0), row(&position, ROW)]);
+        self.dirs.extend([row(&dir, 0), row(&dir, ROW)]);
+        self.powers.extend([row(&power, 0), row(&power, ROW)]);
     }
 
     /// Number of photons.
@@ -128,28 +137,28 @@ impl PhotonTree {
         self.stored == 0
     }
 
-    /// Largest error of a stored coordinate [L], beyond that of an f64 of its size.
+    /// Largest error of a stored coordinate \[L\], beyond that of an f64 of its size.
     pub fn resolution(&self) -> f64 {
         self.units.stretch(1.0 / f64::from(1u32 << 25))
     }
 
-    /// Memory that the photons and the boxes above them occupy [bytes].
+    /// Memory that the photons and the boxes above them occupy \[bytes\].
     pub fn bytes(&self) -> usize {
         let boxes: usize = self.levels.iter().map(Vec::len).sum();
-        self.positions.len() * size_of::<[Positions; 3]>()
+        self.dirs.len() * size_of::<[Row; 3]>()
             + self.histories.len() * size_of::<(u16, Flags)>()
             + boxes * size_of::<Boxes>()
     }
 
     /// The photon of a place in the tree's order, below [`PhotonTree::len`]; its position as it is stored.
     pub fn photon(&self, place: usize) -> Photon {
-        let (block, lane) = (place / BLOCK, place % BLOCK);
-        let vector = |lanes: &[f32x16; 3]| [0, 1, 2].map(|axis| lanes[axis].as_array()[lane]);
+        let (row, lane) = (place / ROW, place % ROW);
+        let vector = |row: &Row| [0, 1, 2].map(|axis| row[axis].as_array()[lane]);
         let (order, flags) = self.histories[place];
         Photon {
-            position: self.units.absolute(vector(&self.positions[block])),
-            dir: Vec3::from_array(vector(&self.dirs[block])),
-            power: Vec3::from_array(vector(&self.powers[block])),
+            position: self.units.absolute(vector(&self.positions[row / 2][row % 2])),
+            dir: Vec3::from_array(vector(&self.dirs[row])),
+            power: Vec3::from_array(vector(&self.powers[row])),
             order,
             flags,
         }
@@ -158,17 +167,5 @@ impl PhotonTree {
     /// Every photon, in the tree's order.
     pub fn photons(&self) -> impl Iterator<Item = Photon> + '_ {
         (0..self.stored).map(|place| self.photon(place))
-    }
-}
-
-fn corner(photons: &[Photon], better: fn(DVec3, DVec3) -> DVec3) -> DVec3 {
-    photons.iter().map(|photon| photon.position).reduce(better).unwrap_or(DVec3::ZERO)
-}
-
-fn refuse_non_finite(photons: &[Photon]) -> Result<()> {
-    let is_finite = |p: &Photon| p.position.is_finite() && p.dir.is_finite() && p.power.is_finite();
-    match photons.iter().filter(|photon| !is_finite(photon)).count() as u64 {
-        0 => Ok(()),
-        count => Err(Error::NonFinite { count, place: "stored photons" }),
     }
 }

@@ -5,7 +5,6 @@ use crate::Spectrum;
 use crate::error::{Error, Result};
 use crate::estimators::{Gather, Kernel, fluence, in_scattered};
 use crate::math::{Ray, exp_m1, ln_1p};
-use crate::phase::PhaseFunction;
 use crate::photons::{Histories, Ledger, PhotonMap, fold, shoot};
 use crate::rng::{Purpose, Stream};
 use crate::scene::{Orders, Quantity, Scene, Sensor, decay};
@@ -248,8 +247,8 @@ fn in_scattered_at(
     settings: &PhotonSettings,
     result: &mut PhotonReadings,
 ) -> Spectrum {
-    let phase = |one_minus_mu: f64, one_plus_mu: f64| medium.phase().eval(one_minus_mu, one_plus_mu);
-    let estimate = in_scattered(map, p, wo, &phase, medium.sigma_t(), settings.kernel, settings.gather);
+    let estimate =
+        in_scattered(map, p, wo, medium.phase(), medium.sigma_t(), settings.kernel, settings.gather);
     result.gathers += 1;
     result.underfull += u64::from(estimate.underfull);
     estimate.value

@@ -14,7 +14,8 @@ pub struct Ratio {
     pub seconds: [f64; 2],
 }
 
-/// Times `a` and `b` by this thread's processor clock, in turn, over `rounds` rounds after one that is not counted.
+/// Times `a` and `b` by this thread's processor clock, in turn, over `rounds` rounds after one that is not
+/// counted.
 pub fn compare(rounds: usize, mut a: impl FnMut(), mut b: impl FnMut()) -> Ratio {
     let time = |work: &mut dyn FnMut()| {
         let start = ThreadTime::now();

@@ -1,53 +1,61 @@
 //! Levels of boxes, sixteen wide, above the blocks.
 
-use super::{BLOCK, Positions};
-use wide::f32x16;
+use super::{BLOCK, ROW, Row};
+use wide::f32x8;
 
-/// Sixteen boxes as arrays. Places without a box hold one that is infinitely far away.
+/// Sixteen boxes as arrays, in two rows of eight. Places without a box hold one that is infinitely far away.
 #[derive(Debug, Clone)]
 pub(super) struct Boxes {
-    lower: [f32x16; 3],
-    upper: [f32x16; 3],
+    rows: [[Row; 2]; 2],
 }
 
-/// A query point, once a lane.
+/// A query point in the tree's units.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Probe {
-    at: [f32x16; 3],
+    at: [f32; 3],
 }
 
 impl Probe {
     pub(super) fn new(point: [f32; 3]) -> Self {
-        Probe { at: point.map(f32x16::splat) }
+        Probe { at: point }
     }
 
-    /// Squared distances to the sixteen positions of a block.
+    /// Squared distances to eight positions.
     #[inline(always)]
-    pub(super) fn squared_distances(&self, positions: &Positions) -> f32x16 {
-        let x = positions[0] - self.at[0];
-        let y = positions[1] - self.at[1];
-        let z = positions[2] - self.at[2];
+    pub(super) fn squared_distances(&self, positions: &Row) -> f32x8 {
+        let x = positions[0] - f32x8::splat(self.at[0]);
+        let y = positions[1] - f32x8::splat(self.at[1]);
+        let z = positions[2] - f32x8::splat(self.at[2]);
         x * x + y * y + z * z
     }
 
-    /// Squared distances to sixteen boxes.
+    /// Squared distances to eight boxes.
     ///
-    /// Rounding is monotone and the operations are those of [`Probe::squared_distances`] in the same order, so
-    /// this is never above the squared distance of a photon inside the box, not even by rounding.
+    /// Rounding is monotone and the operations are those of [`Probe::squared_distances`] in the same order,
+    /// so this is never above the squared distance of a photon inside the box, not even by rounding.
     #[inline(always)]
-    pub(super) fn squared_distances_to_boxes(&self, boxes: &Boxes) -> f32x16 {
+    fn squared_distances_to_row(&self, [lower, upper]: &[Row; 2]) -> f32x8 {
         let along = |axis: usize| {
-            let outside = (boxes.lower[axis] - self.at[axis]).fast_max(self.at[axis] - boxes.upper[axis]);
-            outside.fast_max(f32x16::ZERO)
+            let at = f32x8::splat(self.at[axis]);
+            (lower[axis] - at).fast_max(at - upper[axis]).fast_max(f32x8::ZERO)
         };
         let (x, y, z) = (along(0), along(1), along(2));
         x * x + y * y + z * z
     }
 
+    /// Squared distances to sixteen boxes.
+    pub(super) fn squared_distances_to_boxes(&self, boxes: &Boxes) -> [f32; 16] {
+        let mut squared = [0.0; 16];
+        squared[..8].copy_from_slice(&self.squared_distances_to_row(&boxes.rows[0]).to_array());
+        squared[8..].copy_from_slice(&self.squared_distances_to_row(&boxes.rows[1]).to_array());
+        squared
+    }
+
     /// The boxes that touch the ball of squared radius `r2`, a bit each.
     #[inline(always)]
-    pub(super) fn touched(&self, boxes: &Boxes, r2: f32x16) -> u32 {
-        self.squared_distances_to_boxes(boxes).simd_le(r2).to_bitmask()
+    pub(super) fn touched(&self, boxes: &Boxes, r2: f32) -> u32 {
+        let row = |row: &[Row; 2]| self.squared_distances_to_row(row).simd_le(f32x8::splat(r2)).to_bitmask();
+        row(&boxes.rows[0]) | row(&boxes.rows[1]) << 8
     }
 }
 
@@ -59,29 +67,39 @@ struct Extent {
 }
 
 impl Extent {
+    /// No box, infinitely far away.
     const NONE: Extent = Extent { lower: [f32::INFINITY; 3], upper: [f32::INFINITY; 3] };
 
-    fn of_block(positions: &Positions, stored: usize) -> Extent {
-        let bound = |axis: usize, better: fn(f32, f32) -> f32| {
-            positions[axis].as_array()[..stored].iter().copied().reduce(better).unwrap_or(f32::INFINITY)
-        };
-        Extent { lower: [0, 1, 2].map(|a| bound(a, f32::min)), upper: [0, 1, 2].map(|a| bound(a, f32::max)) }
+    /// The box of the first `stored` positions of a block.
+    fn of_block(rows: &[Row; 2], stored: usize) -> Extent {
+        let at = |lane: usize| [0, 1, 2].map(|axis| rows[lane / ROW][axis].as_array()[lane % ROW]);
+        let mut extent = Extent { lower: at(0), upper: at(0) };
+        for lane in 1..stored {
+            extent = extent.union(Extent { lower: at(lane), upper: at(lane) });
+        }
+        extent
     }
 
     fn union(self, other: Extent) -> Extent {
-        Extent {
-            lower: [0, 1, 2].map(|a| self.lower[a].min(other.lower[a])),
-            upper: [0, 1, 2].map(|a| self.upper[a].max(other.upper[a])),
+        let mut union = self;
+        for axis in 0..3 {
+            if other.lower[axis] < union.lower[axis] {
+                union.lower[axis] = other.lower[axis];
+            }
+            if other.upper[axis] > union.upper[axis] {
+                union.upper[axis] = other.upper[axis];
+            }
         }
+        union
     }
 }
 
 /// The levels over the blocks, finest first: level 0 holds the boxes of blocks, the last level is one node.
-pub(super) fn levels(positions: &[Positions], stored: usize) -> Vec<Vec<Boxes>> {
-    let mut extents: Vec<Extent> = positions
+pub(super) fn levels(blocks: &[[Row; 2]], stored: usize) -> Vec<Vec<Boxes>> {
+    let mut extents: Vec<Extent> = blocks
         .iter()
         .enumerate()
-        .map(|(block, positions)| Extent::of_block(positions, (stored - block * BLOCK).min(BLOCK)))
+        .map(|(block, rows)| Extent::of_block(rows, (stored - block * BLOCK).min(BLOCK)))
         .collect();
     let mut levels = Vec::new();
     while !extents.is_empty() {
@@ -98,8 +116,8 @@ pub(super) fn levels(positions: &[Positions], stored: usize) -> Vec<Vec<Boxes>> 
 fn pack(extents: &[Extent]) -> Boxes {
     let mut sixteen = [Extent::NONE; 16];
     sixteen[..extents.len()].copy_from_slice(extents);
-    Boxes {
-        lower: [0, 1, 2].map(|axis| f32x16::new(sixteen.map(|e| e.lower[axis]))),
-        upper: [0, 1, 2].map(|axis| f32x16::new(sixteen.map(|e| e.upper[axis]))),
-    }
+    let row = |first: usize, bound: fn(&Extent) -> [f32; 3]| {
+        [0, 1, 2].map(|axis| f32x8::new(std::array::from_fn(|lane| bound(&sixteen[first + lane])[axis])))
+    };
+    Boxes { rows: [0, 8].map(|first| [row(first, |e| e.lower), row(first, |e| e.upper)]) }
 }

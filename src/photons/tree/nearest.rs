@@ -1,33 +1,35 @@
 //! The k nearest photons, without a heap: a bound, every squared distance below it, the k-th of them.
 
 use super::boxes::Probe;
+use super::scratch::{Last, Scratch, with_scratch};
 use super::units::LIMIT;
-use super::within::Neighbors;
-use super::{BLOCK, PhotonTree};
+use super::within::{Neighbors, Visit};
+use super::{BLOCK, PhotonTree, ROW};
 use glam::DVec3;
-use std::cell::Cell;
 use std::sync::atomic::{AtomicU64, Ordering};
-use wide::f32x16;
+use wide::f32x8;
 
 /// What a search for the k nearest photons found.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Nearest {
     /// The k-th photon is within the cap.
     Found(Shell),
-    /// Fewer than k photons are within the cap, or all that are coincide with the query point; none was visited.
+    /// Fewer than k photons are within the cap, or all that are coincide with the query point; none was
+    /// visited.
     Underfull,
 }
 
 /// The sphere through the k-th photon.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Shell {
-    /// Distance of the k-th photon [L], above zero.
+    /// Distance of the k-th photon \[L\], above zero.
     pub radius: f64,
     /// Photons strictly nearer.
     pub closer: usize,
     /// Photons at that distance, the k-th among them.
     pub tied: usize,
-    /// Photons at distance zero if there were k or more of them, so that the shell is the next one out; else 0.
+    /// Photons at distance zero if there were k or more of them, so that the shell is the next one out; else
+    /// 0.
     pub coincident: usize,
 }
 
@@ -38,28 +40,6 @@ pub enum Counted {
     BelowKth,
     /// The k-th too.
     UpToKth,
-}
-
-/// Working memory of one thread, and what its last search found, as a guess for the next.
-#[derive(Default)]
-struct Scratch {
-    blocks: Vec<u32>,
-    squared: Vec<f32x16>,
-    near: Vec<u32>,
-    last: Option<Last>,
-}
-
-/// A finished search: whose, for how many, where, and how far the k-th was.
-#[derive(Clone, Copy)]
-struct Last {
-    identity: u64,
-    k: usize,
-    point: [f32; 3],
-    squared: f32,
-}
-
-thread_local! {
-    static SCRATCH: Cell<Option<Box<Scratch>>> = const { Cell::new(None) };
 }
 
 /// A number that no other tree of this process has; results do not depend on it.
@@ -77,41 +57,49 @@ struct Sphere {
 }
 
 impl PhotonTree {
-    /// Visits the photons nearer to `centre` than the `k`-th, in the tree's order, and says how far the k-th is.
+    /// Visits the photons nearer to `centre` than the `k`-th, in the tree's order, and says how far the k-th
+    /// is.
     ///
-    /// The k-1 nearer photons count in full. Photons that tie with the k-th, as stored, share what is missing from
-    /// k-1 (from k for [`Counted::UpToKth`]) in equal parts, so that exactly k-1 (k) count, whatever their order.
+    /// The k-1 nearer photons count in full. Photons that tie with the k-th, as stored, share what is missing
+    /// from k-1 (from k for [`Counted::UpToKth`]) in equal parts, so that exactly k-1 (k) count, whatever
+    /// their order.
     ///
-    /// If k or more photons coincide with `centre`, no ball of positive volume has the k-th on its surface: the
-    /// search goes out to the next distance at which there is a photon, all those at the centre count, and
-    /// [`Shell::coincident`] tells how many they were.
+    /// If k or more photons coincide with `centre`, no ball of positive volume has the k-th on its surface:
+    /// the search goes out to the next distance at which there is a photon, all those at the centre count,
+    /// and [`Shell::coincident`] tells how many they were.
     ///
-    /// `k` is at least 1; photons beyond `max_radius` [L] are not looked at.
+    /// Nothing is near a point that is not finite. `k` is at least 1; photons beyond `max_radius` \[L\] are not looked at.
+    #[inline(always)]
     pub fn nearest(
         &self,
         centre: DVec3,
         k: usize,
         max_radius: f64,
         counted: Counted,
-        mut visit: impl FnMut(Neighbors<'_>),
+        visitor: &mut impl Visit,
     ) -> Nearest {
-        if self.stored < k {
+        if self.stored < k || !centre.is_finite() {
             return Nearest::Underfull;
         }
         let point = self.units.relative(centre);
         let cap = self.units.shrink(max_radius);
         if point.abs().max_element() > LIMIT {
-            return self.nearest_point(centre, k, max_radius, counted, visit);
+            return self.nearest_point(centre, k, max_radius, counted, visitor);
         }
-        let mut scratch = SCRATCH.take().unwrap_or_default();
         let cap2 = (cap.min(4.0 * LIMIT) * cap.min(4.0 * LIMIT)) as f32;
-        let found = scratch.find(self, point.as_vec3().to_array(), k, cap2);
-        let result = match &found {
+        with_scratch(|scratch| match scratch.find(self, point.as_vec3().to_array(), k, cap2) {
             None => Nearest::Underfull,
             Some(sphere) => {
-                let share = share(sphere, k, counted);
-                for (&block, &squared) in scratch.blocks.iter().zip(&scratch.squared) {
-                    self.visit_shell(block as usize, squared, sphere.squared, share, &mut visit);
+                let share = share(&sphere, k, counted);
+                let (radius, inverse_r2) = (f32x8::splat(sphere.squared), 1.0 / sphere.squared);
+                for (&row, &squared) in scratch.rows[..scratch.end].iter().zip(&scratch.squared) {
+                    let (row, inside) = (row as usize, squared.simd_lt(radius));
+                    if inside.any() {
+                        visitor.visit(Neighbors { tree: self, row, squared, inverse_r2, inside, share: 1.0 });
+                    }
+                }
+                if share > 0.0 {
+                    self.visit_tied(scratch, sphere.squared, share, visitor);
                 }
                 Nearest::Found(Shell {
                     radius: self.units.stretch(f64::from(sphere.squared).sqrt()),
@@ -120,19 +108,29 @@ impl PhotonTree {
                     coincident: sphere.coincident,
                 })
             }
-        };
-        SCRATCH.set(Some(scratch));
-        result
+        })
+    }
+
+    /// Photons exactly as far as the k-th, where some of them count.
+    #[cold]
+    fn visit_tied(&self, scratch: &Scratch, r2: f32, share: f32, visitor: &mut dyn Visit) {
+        for (&row, &squared) in scratch.rows[..scratch.end].iter().zip(&scratch.squared) {
+            let (row, inside) = (row as usize, squared.simd_eq(f32x8::splat(r2)));
+            if inside.any() {
+                visitor.visit(Neighbors { tree: self, row, squared, inverse_r2: 1.0 / r2, inside, share });
+            }
+        }
     }
 
     /// From more than 2^60 times its size away the map is one point: every photon ties.
+    #[cold]
     fn nearest_point(
         &self,
         centre: DVec3,
         k: usize,
         max_radius: f64,
         counted: Counted,
-        mut visit: impl FnMut(Neighbors<'_>),
+        visitor: &mut dyn Visit,
     ) -> Nearest {
         let away = centre - self.units.absolute([0.0; 3]);
         let longest = away.abs().max_element();
@@ -142,41 +140,20 @@ impl PhotonTree {
         }
         let sphere = Sphere { squared: 1.0, closer: 0, tied: self.stored, coincident: 0 };
         let share = share(&sphere, k, counted);
-        for (block, squared) in self.all_at(1.0) {
-            self.visit_shell(block, squared, 1.0, share, &mut visit);
+        for (row, squared) in self.all_at(1.0) {
+            let inside = squared.simd_le(f32x8::ONE);
+            visitor.visit(Neighbors { tree: self, row, squared, inverse_r2: 1.0, inside, share });
         }
         Nearest::Found(Shell { radius, closer: 0, tied: self.stored, coincident: 0 })
     }
 
-    #[inline(always)]
-    fn visit_shell(
-        &self,
-        block: usize,
-        squared: f32x16,
-        r2: f32,
-        share: f32,
-        visit: &mut impl FnMut(Neighbors<'_>),
-    ) {
-        let (radius, inverse_r2) = (f32x16::splat(r2), f32x16::splat(1.0 / r2));
-        let closer = squared.simd_lt(radius);
-        if closer.any() {
-            visit(Neighbors::new(self, block, squared, inverse_r2, closer, 1.0));
-        }
-        if share > 0.0 {
-            let tied = squared.simd_eq(radius);
-            if tied.any() {
-                visit(Neighbors::new(self, block, squared, inverse_r2, tied, share));
-            }
-        }
-    }
-
-    /// The squared distance within which k photons are certain to be: the k-th of the nearest node that has as
-    /// many, a node of the finest level at least.
+    /// The squared distance within which k photons are certain to be: the k-th of the nearest node that has
+    /// as many, a node of the finest level at least.
     fn bound(&self, probe: &Probe, k: usize, near: &mut Vec<u32>) -> f32 {
         let (mut first, mut blocks) = (0, self.positions.len());
         let mut node = 0;
         for level in (1..self.levels.len()).rev() {
-            let to_boxes = probe.squared_distances_to_boxes(&self.levels[level][node]).to_array();
+            let to_boxes = probe.squared_distances_to_boxes(&self.levels[level][node]);
             let nearest =
                 (0..16).fold(0, |best, lane| if to_boxes[lane] < to_boxes[best] { lane } else { best });
             let child = node * 16 + nearest;
@@ -189,7 +166,7 @@ impl PhotonTree {
             (node, first, blocks) = (child, child * width, child_blocks);
         }
         near.clear();
-        for positions in &self.positions[first..first + blocks] {
+        for positions in self.positions[first..first + blocks].iter().flatten() {
             near.extend(probe.squared_distances(positions).as_array().iter().map(|d| d.to_bits()));
         }
         f32::from_bits(*near.select_nth_unstable(k - 1).1)
@@ -204,18 +181,16 @@ fn share(sphere: &Sphere, k: usize, counted: Counted) -> f32 {
 }
 
 impl Scratch {
-    /// The sphere through the k-th photon; `blocks` and `squared` then hold every block that touches it.
+    /// The sphere through the k-th photon; `rows` and `squared` then hold every row that it meets.
     fn find(&mut self, tree: &PhotonTree, point: [f32; 3], k: usize, cap2: f32) -> Option<Sphere> {
         let probe = Probe::new(point);
-        let guess = self.guess(tree, point, k).filter(|&guess| guess < cap2);
-        let mut enough = false;
-        if let Some(guess) = guess {
+        let guess = self.guess(tree, point, k).unwrap_or(0.0);
+        if guess > 0.0 && guess < cap2 {
             self.collect(tree, &probe, guess);
-            enough = self.near.len() >= k;
         }
-        if !enough {
+        if guess == 0.0 || guess >= cap2 || self.near.len() < k {
             let bound = tree.bound(&probe, k, &mut self.near).min(cap2);
-            self.collect(tree, &probe, bound);
+            self.collect_enough(tree, &probe, k, guess, bound);
             if self.near.len() < k {
                 return None;
             }
@@ -239,27 +214,38 @@ impl Scratch {
         (moved < last.squared).then_some(last.squared * 1.3)
     }
 
+    /// Collects at least k photons if `bound` holds as many, and not many more: beside a dense region a ball
+    /// that is certain to hold k may hold thousands of times as many. `below` is known to hold fewer than k.
+    fn collect_enough(&mut self, tree: &PhotonTree, probe: &Probe, k: usize, below: f32, bound: f32) {
+        let many = k / 4 + 64;
+        let mut trial = bound;
+        tree.touch(probe, trial, self);
+        while self.touched.len() > many && 0.5 * trial > below {
+            trial *= 0.5;
+            tree.touch(probe, trial, self);
+        }
+        self.collect(tree, probe, trial);
+        while self.near.len() < k && trial < bound {
+            trial = (trial * 1.25).min(bound);
+            self.collect(tree, probe, trial);
+        }
+    }
+
     /// Every squared distance of at most `bound`, and the blocks they are in.
     fn collect(&mut self, tree: &PhotonTree, probe: &Probe, bound: f32) {
-        self.blocks.clear();
-        self.squared.clear();
+        tree.touch(probe, bound, self);
+        self.measure(tree, probe, bound);
+        // Every distance is written and only those below the bound are kept: no branch to mispredict.
         self.near.clear();
-        let lanes = f32x16::splat(bound);
-        tree.touched_blocks(probe, lanes, &mut |block| {
-            let squared = probe.squared_distances(&tree.positions[block]);
-            let inside = squared.simd_le(lanes);
-            if inside.any() {
-                self.blocks.push(block as u32);
-                self.squared.push(squared);
-                let mut kept = [0u32; BLOCK];
-                let mut count = 0;
-                for &d in squared.as_array() {
-                    kept[count & (BLOCK - 1)] = d.to_bits();
-                    count += usize::from(d <= bound);
-                }
-                self.near.extend_from_slice(&kept[..count]);
+        self.near.resize(self.end * ROW + 1, 0);
+        let mut end = 0;
+        for squared in &self.squared[..self.end] {
+            for &d in squared.as_array() {
+                self.near[end] = d.to_bits();
+                end += usize::from(d <= bound);
             }
-        });
+        }
+        self.near.truncate(end);
     }
 
     /// The sphere through the nearest photon that is not at the centre, where k or more are.

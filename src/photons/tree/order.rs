@@ -3,6 +3,7 @@
 use super::BLOCK;
 use crate::photons::Photon;
 use std::cmp::Ordering;
+use wide::f32x4;
 
 /// Ranges shorter than this are ordered by one thread; the order itself does not depend on it.
 const SERIAL: usize = 1 << 14;
@@ -14,60 +15,182 @@ pub(super) struct Entry {
     pub(super) index: u32,
 }
 
-/// Puts entries in kd order: every range of more than one block is split across the widest axis of its box, at
-/// the largest power-of-two number of blocks below its own, nearer photons first.
+impl Entry {
+    /// An entry of no photon, to fill memory with.
+    pub(super) const NONE: Entry = Entry { position: [0.0; 3], index: 0 };
+}
+
+/// Puts entries in kd order: every range of more than one block is split across the widest axis of its box,
+/// at the largest power-of-two number of blocks below its own, nearer photons first.
 ///
-/// Photons at the same coordinate are ordered by their other coordinates and then by their records, so that the
-/// order is a function of the set of photons and not of how they came.
+/// Photons at the same coordinate are ordered by their records, so that the order is a function of the set of
+/// photons and not of how they came.
 pub(super) fn kd_order(entries: &mut [Entry], photons: &[Photon], parallel: bool) {
-    let blocks = entries.len().div_ceil(BLOCK);
-    if blocks <= 1 {
-        entries.sort_unstable_by(|a, b| compare::<0>(a, b, photons));
-        return;
+    let mut spare = vec![Entry::NONE; entries.len()];
+    let mut band = vec![Entry::NONE; entries.len() / 2];
+    Order { photons, parallel }.sort(entries, &mut spare, &mut band, true);
+}
+
+/// What the whole recursion shares.
+#[derive(Clone, Copy)]
+struct Order<'a> {
+    photons: &'a [Photon],
+    parallel: bool,
+}
+
+impl Order<'_> {
+    /// Orders `entries`, with `spare` and `band`, half as long, to work in; the result is left in `entries`
+    /// if `in_place`, else in `spare`.
+    fn sort(self, entries: &mut [Entry], spare: &mut [Entry], band: &mut [Entry], in_place: bool) {
+        let blocks = entries.len().div_ceil(BLOCK);
+        let axis = widest_axis(entries);
+        if blocks <= 1 {
+            return self.sort_block(axis, entries, spare, in_place);
+        }
+        let middle = blocks.next_power_of_two() / 2 * BLOCK;
+        let moved = match axis {
+            0 => self.split::<0>(entries, spare, band, middle),
+            1 => self.split::<1>(entries, spare, band, middle),
+            _ => self.split::<2>(entries, spare, band, middle),
+        };
+        let ((from, to), in_place) =
+            if moved { ((spare, entries), !in_place) } else { ((entries, spare), in_place) };
+        let (nearer, farther) = from.split_at_mut(middle);
+        let (nearer_spare, farther_spare) = to.split_at_mut(middle);
+        let (nearer_band, farther_band) = band.split_at_mut(middle / 2);
+        if self.parallel && nearer.len() > SERIAL {
+            rayon::join(
+                || self.sort(nearer, nearer_spare, nearer_band, in_place),
+                || self.sort(farther, farther_spare, farther_band, in_place),
+            );
+        } else {
+            let this = Order { parallel: false, ..self };
+            this.sort(nearer, nearer_spare, nearer_band, in_place);
+            this.sort(farther, farther_spare, farther_band, in_place);
+        }
     }
-    let middle = blocks.next_power_of_two() / 2 * BLOCK;
-    match widest_axis(entries) {
-        0 => entries.select_nth_unstable_by(middle, |a, b| compare::<0>(a, b, photons)),
-        1 => entries.select_nth_unstable_by(middle, |a, b| compare::<1>(a, b, photons)),
-        _ => entries.select_nth_unstable_by(middle, |a, b| compare::<2>(a, b, photons)),
-    };
-    let (nearer, farther) = entries.split_at_mut(middle);
-    if parallel && nearer.len() > SERIAL {
-        rayon::join(|| kd_order(nearer, photons, true), || kd_order(farther, photons, true));
-    } else {
-        kd_order(nearer, photons, false);
-        kd_order(farther, photons, false);
+
+    /// Sorts a block across its widest axis: its two rows are halves of it.
+    fn sort_block(self, axis: usize, entries: &mut [Entry], spare: &mut [Entry], in_place: bool) {
+        // By rank, which is the number of smaller coordinates: no branch to mispredict.
+        let mut coordinates = [f32::INFINITY; BLOCK];
+        for (c, entry) in coordinates.iter_mut().zip(entries.iter()) {
+            *c = entry.position[axis];
+        }
+        let ranks = coordinates.map(|c| coordinates.iter().map(|&other| u32::from(other < c)).sum::<u32>());
+        let seen = ranks[..entries.len()].iter().fold(0u32, |seen, rank| seen | 1 << rank);
+        if seen.count_ones() as usize == entries.len() {
+            for (entry, rank) in entries.iter().zip(ranks) {
+                spare[rank as usize] = *entry;
+            }
+            if in_place {
+                entries.copy_from_slice(spare);
+            }
+        } else {
+            entries.sort_unstable_by(|a, b| self.compare(axis, a, b));
+            if !in_place {
+                spare.copy_from_slice(entries);
+            }
+        }
     }
+
+    /// Brings the `middle` nearest entries along an axis before the others; whether the result is in `spare`.
+    ///
+    /// One pass moves what lies clearly below or above the middle, by two pivots from a sample (Floyd and
+    /// Rivest 1975), and only the band between them is searched. Which entries come first does not depend on
+    /// the sample.
+    fn split<const AXIS: usize>(
+        self,
+        entries: &mut [Entry],
+        spare: &mut [Entry],
+        band: &mut [Entry],
+        middle: usize,
+    ) -> bool {
+        let Some([low, high]) = pivots::<AXIS>(entries, middle) else {
+            self.select::<AXIS>(entries, middle);
+            return false;
+        };
+        let (mut below, mut above, mut between) = (0, entries.len(), 0);
+        for entry in entries.iter() {
+            // Written to all three places, kept in one: no branch to mispredict. What is still to come always
+            // has room between `below` and `above`.
+            let c = entry.position[AXIS];
+            let (is_below, is_above) = (c < low, c > high);
+            spare[below] = *entry;
+            spare[above - 1] = *entry;
+            band[between] = *entry;
+            below += usize::from(is_below);
+            above -= usize::from(is_above);
+            between += usize::from(!is_below & !is_above);
+            if between == band.len() {
+                break;
+            }
+        }
+        if between == band.len() || below > middle || middle >= above {
+            self.select::<AXIS>(entries, middle);
+            return false;
+        }
+        spare[below..above].copy_from_slice(&band[..between]);
+        self.select::<AXIS>(&mut spare[below..above], middle - below);
+        true
+    }
+
+    /// Brings the `middle` nearest entries along an axis before the others.
+    fn select<const AXIS: usize>(self, entries: &mut [Entry], middle: usize) {
+        let along = |entry: &Entry| entry.position[AXIS];
+        let by_coordinate = |a: &Entry, b: &Entry| along(a).partial_cmp(&along(b)).unwrap_or(Ordering::Equal);
+        let (nearer, &mut pivot, _) = entries.select_nth_unstable_by(middle, by_coordinate);
+        // Only where coordinates tie across the middle do the records decide.
+        if nearer.iter().fold(false, |tie, entry| tie | (along(entry) == along(&pivot))) {
+            entries.select_nth_unstable_by(middle, |a, b| self.compare(AXIS, a, b));
+        }
+    }
+
+    #[inline]
+    fn compare(self, axis: usize, a: &Entry, b: &Entry) -> Ordering {
+        let (p, q) = (a.position[axis], b.position[axis]);
+        if p < q {
+            Ordering::Less
+        } else if p > q {
+            Ordering::Greater
+        } else {
+            compare_records(a, b, self.photons)
+        }
+    }
+}
+
+/// Two values that the entry of rank `middle` lies between, three standard deviations of the sample's rank
+/// apart from it; none for a short range.
+fn pivots<const AXIS: usize>(entries: &[Entry], middle: usize) -> Option<[f32; 2]> {
+    const SAMPLE: usize = 256;
+    if entries.len() < 4 * SAMPLE {
+        return None;
+    }
+    let stride = entries.len() / SAMPLE;
+    let mut sample: [f32; SAMPLE] = std::array::from_fn(|i| entries[i * stride].position[AXIS]);
+    sample.sort_unstable_by(f32::total_cmp);
+    let rank = SAMPLE * middle / entries.len();
+    let margin = 3 * 8;
+    Some([sample[rank.saturating_sub(margin)], sample[(rank + margin).min(SAMPLE - 1)]])
 }
 
 fn widest_axis(entries: &[Entry]) -> usize {
-    let (mut lower, mut upper) = ([f32::INFINITY; 3], [f32::NEG_INFINITY; 3]);
+    let as_lanes =
+        |e: &Entry| f32x4::new([e.position[0], e.position[1], e.position[2], f32::from_bits(e.index)]);
+    let first = as_lanes(&entries[0]);
+    let (mut lower, mut upper) = (first, first);
     for entry in entries {
-        for axis in 0..3 {
-            let c = entry.position[axis];
-            lower[axis] = if c < lower[axis] { c } else { lower[axis] };
-            upper[axis] = if c > upper[axis] { c } else { upper[axis] };
-        }
+        let lanes = as_lanes(entry);
+        lower = lower.fast_min(lanes);
+        upper = upper.fast_max(lanes);
     }
-    let width = [upper[0] - lower[0], upper[1] - lower[1], upper[2] - lower[2]];
-    if width[0] >= width[1] && width[0] >= width[2] {
+    let [x, y, z, _] = (upper - lower).to_array();
+    if x >= y && x >= z {
         0
-    } else if width[1] >= width[2] {
+    } else if y >= z {
         1
     } else {
         2
-    }
-}
-
-#[inline]
-fn compare<const AXIS: usize>(a: &Entry, b: &Entry, photons: &[Photon]) -> Ordering {
-    let (p, q) = (a.position[AXIS], b.position[AXIS]);
-    if p < q {
-        Ordering::Less
-    } else if p > q {
-        Ordering::Greater
-    } else {
-        compare_records(a, b, photons)
     }
 }
 

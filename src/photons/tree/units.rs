@@ -1,5 +1,7 @@
 //! The tree's own unit of length: a power of two, about half the map's box.
 
+use crate::error::{Error, Result};
+use crate::photons::Photon;
 use glam::DVec3;
 
 /// Distances beyond this many units see the whole map as one point, and distances below its inverse are not
@@ -8,7 +10,8 @@ pub(super) const LIMIT: f64 = (1u64 << 60) as f64;
 
 /// Where the map's box is and how large: positions relative to its centre lie in [-1, 1].
 ///
-/// The unit is a power of two, so a map scaled by a power of two has the same relative positions, bit for bit.
+/// The unit is a power of two, so a map scaled by a power of two has the same relative positions, bit for
+/// bit.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Units {
     origin: DVec3,
@@ -17,8 +20,23 @@ pub(super) struct Units {
 }
 
 impl Units {
+    /// The units of the box of `photons`, which must be finite in every part.
+    pub(super) fn of(photons: &[Photon]) -> Result<Self> {
+        let start = photons.first().map_or(DVec3::ZERO, |photon| photon.position);
+        let (mut lower, mut upper, mut non_finite) = (start, start, 0);
+        for Photon { position, dir, power, .. } in photons {
+            lower = lower.min(*position);
+            upper = upper.max(*position);
+            non_finite += u64::from(!(position.is_finite() && dir.is_finite() && power.is_finite()));
+        }
+        match non_finite {
+            0 => Ok(Units::new(lower, upper)),
+            count => Err(Error::NonFinite { count, place: "stored photons" }),
+        }
+    }
+
     /// The units of the box from `lower` to `upper`.
-    pub(super) fn new(lower: DVec3, upper: DVec3) -> Self {
+    fn new(lower: DVec3, upper: DVec3) -> Self {
         // Halved before they are added or subtracted: the largest finite box does not overflow.
         let origin = lower * 0.5 + upper * 0.5;
         let half = (upper * 0.5 - lower * 0.5).max_element();

@@ -1,0 +1,149 @@
+//! The cases: at which depth, with which gather and kernel, each map is asked.
+
+use super::fields::{CELL, Field};
+use glam::DVec3;
+use turbid::estimators::{Gather, Kernel};
+
+/// How large a gather is.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Size {
+    /// All photons within this radius [mfp].
+    Radius(f64),
+    /// The k nearest photons; the k-th sets the radius and is not summed.
+    Nearest(usize),
+    /// The k nearest photons, all summed: wrong on purpose.
+    NearestBiased(usize),
+}
+
+/// One question to a map.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Case {
+    /// The field.
+    pub field: &'static Field,
+    /// Photons emitted into the map.
+    pub photons: u64,
+    /// Depth of the probes [mfp].
+    pub depth: f64,
+    /// Gather size.
+    pub size: Size,
+    /// Kernel.
+    pub kernel: Kernel,
+}
+
+/// Radii of fixed gathers [mfp].
+const RADII: [f64; 4] = [0.1, 0.2, 0.4, 0.8];
+/// Sizes of nearest gathers.
+const NEIGHBORS: [usize; 4] = [10, 50, 100, 500];
+/// Sizes at which the biased rule is shown.
+const BIASED: [usize; 2] = [10, 50];
+/// Where all kernels are compared: one radius, one k.
+const KERNELS_AT: (f64, usize) = (0.8, 100);
+/// Most probes along one side of the lattice.
+const MAX_SIDE: usize = 16;
+/// Fewest photons that the widest nearest gather may leave in a map: below, the ball is no longer local.
+const MIN_SHARE: u64 = 40;
+
+impl Case {
+    /// Everything that maps of one field and size are asked.
+    pub fn all(field: &'static Field, photons: u64) -> Vec<Case> {
+        let mut cases = Vec::new();
+        let is_local = |k: usize| k as u64 * MIN_SHARE <= photons;
+        for &depth in field.depths {
+            let mut add = |size, kernel| cases.push(Case { field, photons, depth, size, kernel });
+            for kernel in Kernel::ALL {
+                let is_first = kernel == Kernel::Uniform;
+                for radius in RADII {
+                    if is_first || radius == KERNELS_AT.0 {
+                        add(Size::Radius(radius), kernel);
+                    }
+                }
+                for k in NEIGHBORS {
+                    if is_local(k) && (is_first || k == KERNELS_AT.1) {
+                        add(Size::Nearest(k), kernel);
+                    }
+                }
+            }
+            for k in BIASED.into_iter().filter(|&k| is_local(k)) {
+                add(Size::NearestBiased(k), Kernel::Uniform);
+            }
+        }
+        cases
+    }
+
+    /// The group of cells that answer it.
+    pub fn group(field: &Field, photons: u64) -> String {
+        format!("{}-n{photons}", field.name)
+    }
+
+    /// The name in tables.
+    pub fn name(&self) -> String {
+        format!(
+            "{} n={} t={} {} {}",
+            self.field.name,
+            self.photons,
+            self.depth,
+            self.gather_name(),
+            self.kernel_name()
+        )
+    }
+
+    /// The gather in words.
+    pub fn gather_name(&self) -> String {
+        match self.size {
+            Size::Radius(r) => format!("r={r}"),
+            Size::Nearest(k) => format!("k={k}"),
+            Size::NearestBiased(k) => format!("k={k}(biased)"),
+        }
+    }
+
+    /// The kernel in a word.
+    pub fn kernel_name(&self) -> &'static str {
+        match self.kernel {
+            Kernel::Uniform => "uniform",
+            Kernel::Epanechnikov => "epanechnikov",
+            Kernel::Cone => "cone",
+            Kernel::Biweight => "biweight",
+            Kernel::Gaussian => "gaussian",
+        }
+    }
+
+    /// Whether it is wrong on purpose.
+    pub fn is_biased(&self) -> bool {
+        matches!(self.size, Size::NearestBiased(_))
+    }
+
+    /// Probes along one side of the lattice. Their balls neither overlap nor leave the cell; those of nearest gathers
+    /// have room for four times the photons that a rough guess of the fluence lets one expect.
+    fn side(&self) -> usize {
+        let reach = match self.size {
+            Size::Radius(r) => r,
+            Size::Nearest(k) | Size::NearestBiased(k) => {
+                let guess = if self.field.has_clusters() { 0.5 } else { libm::exp(-self.depth) };
+                let density = guess * self.photons as f64 / (CELL * CELL);
+                libm::cbrt(4.0 * 3.0 * k as f64 / (4.0 * std::f64::consts::PI * density))
+            }
+        };
+        ((CELL / (2.0 * reach)) as usize).clamp(1, MAX_SIDE)
+    }
+
+    /// Half the distance between probes [mfp]: the cap of nearest gathers.
+    pub fn cap(&self) -> f64 {
+        0.5 * CELL / self.side() as f64
+    }
+
+    /// The gather as the estimator takes it.
+    pub fn gather(&self) -> turbid::Result<Gather> {
+        match self.size {
+            Size::Radius(r) => Gather::radius(r),
+            Size::Nearest(k) => Gather::nearest(k, self.cap()),
+            Size::NearestBiased(k) => Gather::nearest_biased(k, self.cap()),
+        }
+    }
+
+    /// The lattice of probes.
+    pub fn probes(&self) -> impl Iterator<Item = DVec3> {
+        let (side, step, depth) = (self.side(), 2.0 * self.cap(), self.depth);
+        let place = move |i: usize| (i as f64 + 0.5) * step;
+        (0..side * side).map(move |i| DVec3::new(place(i % side), place(i / side), depth))
+    }
+}

@@ -1,0 +1,132 @@
+//! Measuring one map, or one batch of paths.
+
+use super::cases::{Case, Size};
+use super::fields::{CELL, FIELDS, Field};
+use crate::harness::{CellId, CellOutput, Settings};
+use anyhow::Context;
+use glam::DVec3;
+use turbid::Spectrum;
+use turbid::estimators::{count_within, fluence};
+use turbid::photons::{Histories, PhotonMap, is_in, shoot};
+use turbid::rng::{Purpose, Stream};
+use turbid::scene::{Quantity, Scene};
+use turbid::sensor::sample;
+use turbid::stats::Moments;
+use turbid::transport::NoProgress;
+
+/// Batches of paths.
+const BATCHES: u64 = 128;
+/// Paths of one batch at one depth.
+const PATHS: u64 = 16_384;
+/// Name of the groups of path batches.
+const BY_PATHS: &str = "paths";
+
+/// The name of a path tracer's case.
+pub fn path_case(field: &Field, depth: f64) -> String {
+    format!("{} t={depth} {BY_PATHS}", field.name)
+}
+
+/// The name of the case of whole maps.
+pub fn map_case(field: &Field, photons: u64) -> String {
+    format!("{} n={photons}", field.name)
+}
+
+/// All cells: maps by field and number of photons, and batches of paths for the fields that need them.
+pub fn cells(settings: &Settings) -> Vec<CellId> {
+    let mut cells = Vec::new();
+    for field in &FIELDS {
+        for (photons, maps) in field.sizes(settings) {
+            // A history of all orders has a few collisions, and each photon is stored, sorted and gathered.
+            let cost = photons as f64 * if field.has_clusters() { 4.0 } else { 1.0 };
+            cells.extend(CellId::replicates(&Case::group(field, photons), maps, cost));
+        }
+        if field.has_clusters() {
+            let cost = PATHS as f64 * settings.photon_scale * field.depths.len() as f64;
+            cells.extend(CellId::replicates(&format!("{}-{BY_PATHS}", field.name), BATCHES, cost));
+        }
+    }
+    cells
+}
+
+/// Measures one cell.
+pub fn measure(settings: &Settings, cell: &CellId) -> anyhow::Result<CellOutput> {
+    let (name, what) = cell.group.rsplit_once('-').with_context(|| format!("group {}", cell.group))?;
+    let field = Field::named(name)?;
+    let scene = field.scene()?;
+    if what == BY_PATHS {
+        return Ok(measure_paths(settings, field, &scene, cell.replicate));
+    }
+    let photons = what.trim_start_matches('n').parse().with_context(|| format!("group {}", cell.group))?;
+    measure_map(settings, field, &scene, photons, cell.replicate)
+}
+
+fn measure_map(
+    settings: &Settings,
+    field: &'static Field,
+    scene: &Scene,
+    photons: u64,
+    replicate: u64,
+) -> anyhow::Result<CellOutput> {
+    let replicate = field.replicate(settings, photons, replicate);
+    let histories = Histories { count: photons, seed: settings.seed, replicate, max_order: field.orders.max };
+    let pass = shoot(scene, histories, &[], is_in(field.orders), &NoProgress)?;
+    let mut output = CellOutput::new();
+    output.count("photons emitted", pass.emitted);
+    output.count("collisions", pass.collisions);
+    output.count("photons stored", pass.photons.len() as u64);
+    output.push(
+        map_case(field, photons),
+        "stored per emitted",
+        pass.photons.len() as f64 / pass.emitted as f64,
+    );
+    let map = PhotonMap::new(pass.photons, pass.emitted)?;
+    for case in Case::all(field, photons) {
+        let gather = case.gather()?;
+        let (mut values, mut counts, mut gathered) = (Moments::new(), Moments::new(), 0u64);
+        for probe in case.probes() {
+            let estimate = fluence(&map, probe, Spectrum::ONE, case.kernel, gather);
+            values.push(estimate.value[0]);
+            gathered += estimate.found as u64;
+            output.count("estimates", 1);
+            output.count("under-full estimates", u64::from(estimate.underfull));
+            if let Size::Radius(r) = case.size {
+                counts.push(count_within(&map, probe, r) as f64);
+            }
+        }
+        output.count("photons gathered", gathered);
+        output.push(case.name(), "fluence", values.mean());
+        if is_fano_case(&case) && counts.n() > 1 {
+            output.push(case.name(), "count", counts.mean());
+            output.push(case.name(), "count variance", counts.variance());
+        }
+    }
+    Ok(output)
+}
+
+/// Whether photon counts of a case are compared with Poisson's law: whole balls, uniform kernel, enough probes.
+pub fn is_fano_case(case: &Case) -> bool {
+    let Size::Radius(r) = case.size else { return false };
+    let is_whole = case.depth >= r && case.depth + r <= case.field.tau;
+    // Four mean free paths hold 25 balls of radius 0.4; fewer give a poor variance.
+    is_whole && case.kernel_name() == "uniform" && CELL / (2.0 * r) >= 5.0
+}
+
+fn measure_paths(settings: &Settings, field: &Field, scene: &Scene, replicate: u64) -> CellOutput {
+    let replicate = field.replicate(settings, 0, replicate);
+    let mut output = CellOutput::new();
+    let paths = ((PATHS as f64 * settings.photon_scale) as u64).max(2);
+    for (index, &depth) in field.depths.iter().enumerate() {
+        let quantity = Quantity::Fluence(DVec3::new(0.5 * CELL, 0.5 * CELL, depth));
+        let mut values = Moments::new();
+        for path in 0..paths {
+            let history = (index as u64) << 40 | path;
+            let mut stream = Stream::new(settings.seed, Purpose::Paths, replicate, history);
+            let value = sample(scene, &quantity, field.orders, &mut stream);
+            output.non_finite += u64::from(!value.is_finite());
+            values.push(value[0]);
+        }
+        output.count("paths", paths);
+        output.push(path_case(field, depth), "fluence", values.mean());
+    }
+    output
+}

@@ -1,0 +1,163 @@
+//! What one cell measured, and the file that keeps it.
+//!
+//! The file is a line of JSON (who made it, counters, seconds), a table `case,quantity,value`, and a last line with
+//! the digest of everything above: a file that was cut short, or changed, is not taken for a cell.
+
+use super::digest::Digest;
+use anyhow::{Context, bail, ensure};
+use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
+use std::path::Path;
+use turbid::output::write_atomically;
+
+/// One measured value: one quantity of one map.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct CellRow {
+    /// Which case: gather size, probe, estimator, in words that the predictions share.
+    pub case: String,
+    /// Which quantity.
+    pub quantity: String,
+    /// The value of this map.
+    pub value: f64,
+}
+
+/// What one cell measured.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct CellOutput {
+    /// One value a case and quantity.
+    pub rows: Vec<CellRow>,
+    /// Work done, by name: photons emitted, records visited.
+    pub counters: BTreeMap<String, u64>,
+    /// Non-finite contributions met on the way; any fails the study.
+    pub non_finite: u64,
+}
+
+impl CellOutput {
+    /// Nothing measured yet.
+    pub fn new() -> Self {
+        CellOutput::default()
+    }
+
+    /// Adds a value. One that is not finite counts as a non-finite contribution.
+    pub fn push(&mut self, case: impl Into<String>, quantity: impl Into<String>, value: f64) {
+        self.non_finite += u64::from(!value.is_finite());
+        self.rows.push(CellRow { case: case.into(), quantity: quantity.into(), value });
+    }
+
+    /// Adds to a counter.
+    pub fn count(&mut self, name: &str, more: u64) {
+        *self.counters.entry(name.to_string()).or_insert(0) += more;
+    }
+}
+
+/// First line of a cell's file.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct Header {
+    pub format: u32,
+    pub experiment: String,
+    pub id: String,
+    pub settings: String,
+    pub program: String,
+    pub cpu_seconds: f64,
+    pub non_finite: u64,
+    pub counters: BTreeMap<String, u64>,
+}
+
+/// Raised when files of an older form can no longer be read.
+pub(super) const FORMAT: u32 = 1;
+
+const END: &str = "#end ";
+
+/// Writes the file of one cell.
+pub(super) fn write(path: &Path, header: &Header, rows: &[CellRow]) -> anyhow::Result<()> {
+    let mut bytes = b"#".to_vec();
+    serde_json::to_writer(&mut bytes, header)?;
+    bytes.push(b'\n');
+    turbid::output::write_csv(&mut bytes, rows)?;
+    let end = format!("{END}{}\n", Digest::of(&bytes));
+    bytes.extend_from_slice(end.as_bytes());
+    write_atomically(path, |out| out.write_all(&bytes))?;
+    Ok(())
+}
+
+/// Reads the file of one cell; an error says why it is not one.
+pub(super) fn read(path: &Path) -> anyhow::Result<(Header, Vec<CellRow>)> {
+    let text = std::fs::read_to_string(path).with_context(|| format!("cannot read {}", path.display()))?;
+    parse(&text).with_context(|| format!("{} is no complete cell", path.display()))
+}
+
+fn parse(text: &str) -> anyhow::Result<(Header, Vec<CellRow>)> {
+    let Some(end) = text.rfind(END) else { bail!("the end mark is missing") };
+    let (body, mark) = text.split_at(end);
+    ensure!(mark == format!("{END}{}\n", Digest::of(body.as_bytes())), "the digest does not fit");
+    let (first, table) = body.split_once('\n').context("the first line is missing")?;
+    let header: Header = serde_json::from_str(first.trim_start_matches('#'))?;
+    ensure!(header.format == FORMAT, "its format is {}, not {FORMAT}", header.format);
+    let rows = csv::Reader::from_reader(table.as_bytes()).deserialize().collect::<Result<_, _>>()?;
+    Ok((header, rows))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn header() -> Header {
+        Header {
+            format: FORMAT,
+            experiment: "bias".into(),
+            id: "slab-000001".into(),
+            settings: "quick".into(),
+            program: "00".into(),
+            cpu_seconds: 0.1,
+            non_finite: 0,
+            counters: BTreeMap::from([("photons".to_string(), 10)]),
+        }
+    }
+
+    fn rows() -> Vec<CellRow> {
+        let values = [0.1, 1.0 / 3.0, 5e-324, f64::MAX, -0.0, 1e-12];
+        let row = |(i, &value): (usize, &f64)| CellRow {
+            case: format!("r = {i}, \"box\"\n#end "),
+            quantity: "b,i".into(),
+            value,
+        };
+        values.iter().enumerate().map(row).collect()
+    }
+
+    #[test]
+    fn a_cell_comes_back_bit_by_bit() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a.csv");
+        write(&path, &header(), &rows()).unwrap();
+        let (head, back) = read(&path).unwrap();
+        assert_eq!((head, &back), (header(), &rows()));
+        assert!(back.iter().zip(rows()).all(|(a, b)| a.value.to_bits() == b.value.to_bits()));
+    }
+
+    #[test]
+    fn every_cut_and_every_changed_byte_is_seen() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a.csv");
+        write(&path, &header(), &rows()).unwrap();
+        let text = std::fs::read_to_string(&path).unwrap();
+        for length in 0..text.len() {
+            assert!(parse(&text[..length]).is_err(), "cut at {length}");
+        }
+        for i in 0..text.len() {
+            let mut bytes = text.clone().into_bytes();
+            bytes[i] ^= 1;
+            assert!(parse(std::str::from_utf8(&bytes).unwrap()).is_err(), "byte {i}");
+        }
+    }
+
+    #[test]
+    fn what_is_not_finite_is_counted() {
+        let mut output = CellOutput::new();
+        output.push("a", "q", 1.0);
+        output.push("a", "r", f64::NAN);
+        output.count("photons", 3);
+        output.count("photons", 4);
+        assert_eq!((output.non_finite, output.counters["photons"], output.rows.len()), (1, 7, 2));
+    }
+}

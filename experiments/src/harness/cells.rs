@@ -1,0 +1,138 @@
+//! All cells of one experiment, merged in sorted order.
+
+use super::cell::{self, Header};
+use super::{CellId, Estimate};
+use anyhow::{Context, bail, ensure};
+use std::collections::BTreeMap;
+use std::path::Path;
+use turbid::stats::Moments;
+
+/// The measured values of one experiment, map by map.
+///
+/// Maps are in the order of their names, the same for every quantity: values of two quantities measured on the same
+/// maps are paired.
+#[derive(Debug, Clone, Default)]
+pub struct Cells {
+    ids: Vec<CellId>,
+    values: BTreeMap<(String, String), Vec<(usize, f64)>>,
+    counters: BTreeMap<String, u64>,
+    /// Name and CPU seconds of each cell.
+    pub(super) seconds: Vec<(String, f64)>,
+    /// Programs that made the cells.
+    pub(super) programs: Vec<String>,
+}
+
+impl Cells {
+    /// Reads the files of all cells; refuses a set that is not complete.
+    pub(super) fn read(folder: &Path, expected: &[CellId]) -> anyhow::Result<Self> {
+        let mut ids = expected.to_vec();
+        ids.sort_by_key(CellId::id);
+        let mut cells = Cells::default();
+        for (index, id) in ids.iter().enumerate() {
+            let (header, rows) =
+                cell::read(&folder.join(format!("{}.csv", id.id()))).context("the set is incomplete")?;
+            cells.add(index, header, rows)?;
+        }
+        cells.ids = ids;
+        Ok(cells)
+    }
+
+    fn add(&mut self, index: usize, header: Header, rows: Vec<cell::CellRow>) -> anyhow::Result<()> {
+        if header.non_finite > 0 {
+            bail!(
+                "{} non-finite contributions in cell {} of {}; allowed: 0",
+                header.non_finite,
+                header.id,
+                header.experiment
+            );
+        }
+        for row in rows {
+            let values = self.values.entry((row.case, row.quantity)).or_default();
+            let twice = values.last().is_some_and(|last| last.0 == index);
+            ensure!(!twice, "cell {} of {} gives one quantity twice", header.id, header.experiment);
+            values.push((index, row.value));
+        }
+        for (name, count) in header.counters {
+            *self.counters.entry(name).or_insert(0) += count;
+        }
+        self.seconds.push((header.id, header.cpu_seconds));
+        self.programs.push(header.program);
+        Ok(())
+    }
+
+    /// The values of one quantity, one a map, in the order of the maps.
+    ///
+    /// # Errors
+    /// If no map has it.
+    pub fn values(&self, case: &str, quantity: &str) -> anyhow::Result<Vec<f64>> {
+        Ok(self.find(case, quantity)?.iter().map(|&(_, value)| value).collect())
+    }
+
+    /// The same with the cell of each value.
+    ///
+    /// # Errors
+    /// If no map has it.
+    pub fn by_cell(&self, case: &str, quantity: &str) -> anyhow::Result<Vec<(&CellId, f64)>> {
+        Ok(self.find(case, quantity)?.iter().map(|&(index, value)| (&self.ids[index], value)).collect())
+    }
+
+    /// Moments over the maps.
+    ///
+    /// # Errors
+    /// If no map has the quantity.
+    pub fn moments(&self, case: &str, quantity: &str) -> anyhow::Result<Moments> {
+        Ok(self.values(case, quantity)?.iter().collect())
+    }
+
+    /// Mean over the maps with its error.
+    ///
+    /// # Errors
+    /// If no map has the quantity.
+    pub fn estimate(&self, case: &str, quantity: &str) -> anyhow::Result<Estimate> {
+        Ok(Estimate::mean(&self.moments(case, quantity)?))
+    }
+
+    /// Paired values, one list a map with one value a case: what a fit per map needs.
+    ///
+    /// # Errors
+    /// If a case is missing, or was measured on other maps than the first.
+    pub fn per_map(&self, cases: &[String], quantity: &str) -> anyhow::Result<Vec<Vec<f64>>> {
+        let Some(first) = cases.first() else { return Ok(Vec::new()) };
+        let maps: Vec<usize> = self.find(first, quantity)?.iter().map(|&(index, _)| index).collect();
+        let mut lists = vec![Vec::with_capacity(cases.len()); maps.len()];
+        for case in cases {
+            let values = self.find(case, quantity)?;
+            let same = values.len() == maps.len() && values.iter().zip(&maps).all(|(v, &m)| v.0 == m);
+            ensure!(same, "{quantity} of {case} and of {first} were measured on different maps");
+            for (list, &(_, value)) in lists.iter_mut().zip(values) {
+                list.push(value);
+            }
+        }
+        Ok(lists)
+    }
+
+    fn find(&self, case: &str, quantity: &str) -> anyhow::Result<&Vec<(usize, f64)>> {
+        let key = (case.to_string(), quantity.to_string());
+        self.values.get(&key).with_context(|| format!("no cell measured {quantity} of {case}"))
+    }
+
+    /// All pairs of case and quantity, sorted.
+    pub fn keys(&self) -> impl Iterator<Item = (&str, &str)> {
+        self.values.keys().map(|(case, quantity)| (case.as_str(), quantity.as_str()))
+    }
+
+    /// A counter summed over all cells; 0 if none has it.
+    pub fn counter(&self, name: &str) -> u64 {
+        self.counters.get(name).copied().unwrap_or(0)
+    }
+
+    /// All counters, summed over the cells.
+    pub fn counters(&self) -> &BTreeMap<String, u64> {
+        &self.counters
+    }
+
+    /// The cells, sorted by name.
+    pub fn ids(&self) -> &[CellId] {
+        &self.ids
+    }
+}

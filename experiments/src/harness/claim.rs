@@ -1,0 +1,325 @@
+//! Claims and verdicts.
+
+use super::format::{number, with_error};
+use super::{Estimate, Unit};
+use turbid::stats::{Interval, POWER_QUANTILE, holm, student_critical};
+
+/// Probability that a study rejects, upholds or detects anything wrongly, over all of its claims.
+pub const FAMILY_WISE: f64 = 1e-3;
+
+/// Fewest maps for a verdict: with fewer, the tails of t are too wide to see anything and too sensitive to the shape
+/// of the maps' distribution.
+pub const MIN_MAPS: u64 = 64;
+
+/// What a claim says of its statistic.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Kind {
+    /// The truth lies within the margin; an end may be infinite.
+    Within(Interval),
+    /// The truth differs from `from` by at least `by`: a planted fault is seen.
+    Differs {
+        /// The value of the right method.
+        from: f64,
+        /// The smallest difference that counts.
+        by: f64,
+    },
+}
+
+/// One statement that a study can uphold or reject.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Claim {
+    /// Short file-safe name, unique within the experiment.
+    pub id: String,
+    /// The statement, a sentence without its numbers' outcome.
+    pub text: String,
+    /// Unit of the statistic.
+    pub unit: Unit,
+    /// What it is judged by.
+    pub statistic: Estimate,
+    /// What it says.
+    pub kind: Kind,
+}
+
+impl Claim {
+    /// The truth lies from `low` to `high`.
+    pub fn within(id: &str, text: &str, unit: Unit, statistic: Estimate, low: f64, high: f64) -> Self {
+        let kind = Kind::Within(Interval::new(low, high));
+        Claim { id: id.to_string(), text: text.to_string(), unit, statistic, kind }
+    }
+
+    /// The truth is at most `bound`.
+    pub fn at_most(id: &str, text: &str, unit: Unit, statistic: Estimate, bound: f64) -> Self {
+        Claim::within(id, text, unit, statistic, f64::NEG_INFINITY, bound)
+    }
+
+    /// The truth is at least `bound`.
+    pub fn at_least(id: &str, text: &str, unit: Unit, statistic: Estimate, bound: f64) -> Self {
+        Claim::within(id, text, unit, statistic, bound, f64::INFINITY)
+    }
+
+    /// A planted fault is seen: the truth differs from `from`. `by` is the smallest effect that would count; an
+    /// interval that excludes it on both sides rejects the claim.
+    pub fn detected(id: &str, text: &str, unit: Unit, statistic: Estimate, from: f64, by: f64) -> Self {
+        let kind = Kind::Differs { from, by: by.abs() };
+        Claim { id: id.to_string(), text: text.to_string(), unit, statistic, kind }
+    }
+
+    /// What the claim demands, in words, with its unit.
+    pub fn margin(&self) -> String {
+        let with_unit = |x: f64| self.unit.after(&number(x));
+        match self.kind {
+            Kind::Within(m) if m.low == f64::NEG_INFINITY => format!("at most {}", with_unit(m.high)),
+            Kind::Within(m) if m.high == f64::INFINITY => format!("at least {}", with_unit(m.low)),
+            Kind::Within(m) => format!("{} to {}", number(m.low), with_unit(m.high)),
+            Kind::Differs { from, by: 0.0 } => format!("not {}", with_unit(from)),
+            Kind::Differs { from, by } => format!("{} or more from {}", with_unit(by), number(from)),
+        }
+    }
+
+    /// The p-value that decides: for a margin, of the truth lying on its nearest end although the estimate is beyond
+    /// (1 inside); for a fault, of there being none.
+    fn p(&self) -> f64 {
+        let value = self.statistic.value();
+        match self.kind {
+            Kind::Within(m) if m.contains(value) => 1.0,
+            Kind::Within(m) => self.statistic.p(if value < m.low { m.low } else { m.high }),
+            Kind::Differs { from, .. } => self.statistic.p(from),
+        }
+    }
+
+    /// How far the estimate is from where the verdict turns.
+    fn distance(&self) -> f64 {
+        let value = self.statistic.value();
+        match self.kind {
+            Kind::Within(m) => (value - m.low).abs().min((value - m.high).abs()),
+            Kind::Differs { from, by } => (value - from).abs().max(by),
+        }
+    }
+}
+
+/// What the measurement says of a claim.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Verdict {
+    /// The whole interval lies within the margin; the fault is seen.
+    Upheld,
+    /// Significantly outside the margin; a fault as large as stated is excluded.
+    Rejected,
+    /// Neither.
+    Undecided,
+}
+
+impl Verdict {
+    /// The word for tables.
+    pub fn word(self) -> &'static str {
+        match self {
+            Verdict::Upheld => "upheld",
+            Verdict::Rejected => "rejected",
+            Verdict::Undecided => "undecided",
+        }
+    }
+}
+
+/// A claim with its verdict.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Judged {
+    /// The claim.
+    pub claim: Claim,
+    /// The interval that the verdict used: simultaneous over all claims of the study.
+    pub interval: Interval,
+    /// p-value before the adjustment.
+    pub p: f64,
+    /// p-value after Holm over all claims of the study.
+    pub adjusted: f64,
+    /// The verdict.
+    pub verdict: Verdict,
+    /// Why it is undecided and what would decide it; empty otherwise.
+    pub advice: String,
+}
+
+impl Judged {
+    /// Statistic, error and unit in one phrase.
+    pub fn measured(&self) -> String {
+        let statistic = &self.claim.statistic;
+        self.claim.unit.after(&with_error(statistic.value(), statistic.std_error()))
+    }
+}
+
+/// Judges all claims of a study together.
+///
+/// Rejections (and detections) are significant after Holm at [`FAMILY_WISE`]; intervals have the level 1 -
+/// `FAMILY_WISE` / number of claims, so that all hold at once with that probability. A statistic of fewer than
+/// [`MIN_MAPS`] maps, or with a heavy tail, decides nothing.
+pub fn judge(claims: Vec<Claim>) -> Vec<Judged> {
+    let share = FAMILY_WISE / claims.len().max(1) as f64;
+    // A claim that cannot be decided must not borrow significance from the others.
+    let p_values: Vec<f64> =
+        claims.iter().map(|c| if obstacle(&c.statistic).is_some() { 1.0 } else { c.p() }).collect();
+    let adjusted = holm(&p_values);
+    let judge_one = |((claim, p), adjusted): ((Claim, f64), f64)| {
+        let interval = claim.statistic.interval(1.0 - share);
+        let (verdict, advice) = match obstacle(&claim.statistic) {
+            Some(advice) => (Verdict::Undecided, advice),
+            None => match decide(&claim, &interval, adjusted <= FAMILY_WISE) {
+                Verdict::Undecided => (Verdict::Undecided, advice(&claim, share)),
+                verdict => (verdict, String::new()),
+            },
+        };
+        Judged { claim, interval, p, adjusted, verdict, advice }
+    };
+    claims.into_iter().zip(p_values).zip(adjusted).map(judge_one).collect()
+}
+
+/// Why a statistic decides nothing, if so.
+fn obstacle(statistic: &Estimate) -> Option<String> {
+    match statistic.maps() {
+        Some(maps) if maps < MIN_MAPS => Some(format!("{maps} maps; a verdict needs {MIN_MAPS}")),
+        _ if statistic.is_heavy_tailed() => Some("heavy-tailed: a few maps carry the variance".to_string()),
+        _ => None,
+    }
+}
+
+fn decide(claim: &Claim, interval: &Interval, is_significant: bool) -> Verdict {
+    match claim.kind {
+        Kind::Within(_) if is_significant => Verdict::Rejected,
+        Kind::Within(margin) if interval.is_within(&margin) => Verdict::Upheld,
+        // A difference that is seen but excluded from being as large as stated rejects the claim.
+        Kind::Differs { from, by } if by > 0.0 && from - by < interval.low && interval.high < from + by => {
+            Verdict::Rejected
+        }
+        Kind::Differs { .. } if is_significant => Verdict::Upheld,
+        _ => Verdict::Undecided,
+    }
+}
+
+/// How many maps would decide, if the estimate stays where it is: the error falls as one over the root of the maps,
+/// and a verdict with 99 per cent power needs (t + 2.4) errors.
+fn advice(claim: &Claim, share: f64) -> String {
+    let Some(maps) = claim.statistic.maps() else { return "the bound on its error is too wide".to_string() };
+    let needed_errors = student_critical(share, maps - 1) + POWER_QUANTILE;
+    let ratio = needed_errors * claim.statistic.std_error() / claim.distance();
+    let factor = ratio * ratio;
+    if !factor.is_finite() || factor > 1e4 {
+        return "the estimate lies on the margin's edge: more than 10,000 times the maps".to_string();
+    }
+    // A verdict at more than the present maps was missed by luck only: twice the maps, at least.
+    let factor = factor.max(2.0);
+    format!(
+        "about {} maps of this size would decide ({} times the photons)",
+        (factor * maps as f64).ceil(),
+        number((factor * 10.0).ceil() / 10.0)
+    )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use turbid::math::{ln, sin_cos};
+    use turbid::rng::{Purpose, Stream};
+    use turbid::stats::Moments;
+
+    fn estimate(set: u64, maps: u64, mean: f64, deviation: f64) -> Estimate {
+        let mut stream = Stream::new(23, Purpose::Synthetic, set, 0);
+        let normal =
+            |s: &mut Stream| (-2.0 * ln(s.open_unit())).sqrt() * sin_cos(std::f64::consts::TAU * s.unit()).1;
+        Estimate::mean(&(0..maps).map(|_| mean + deviation * normal(&mut stream)).collect::<Moments>())
+    }
+
+    fn within(statistic: Estimate) -> Claim {
+        Claim::within("a", "a", Unit::ONE, statistic, 0.95, 1.05)
+    }
+
+    fn verdict(claim: Claim) -> Verdict {
+        judge(vec![claim])[0].verdict
+    }
+
+    #[test]
+    fn the_three_verdicts_of_a_margin() {
+        assert_eq!(verdict(within(estimate(0, 64, 1.0, 0.05))), Verdict::Upheld);
+        assert_eq!(verdict(within(estimate(0, 64, 1.2, 0.05))), Verdict::Rejected);
+        assert_eq!(verdict(within(estimate(0, 64, 1.0, 1.0))), Verdict::Undecided);
+        // Outside the margin, but not significantly.
+        assert_eq!(verdict(within(estimate(0, 64, 1.06, 0.05))), Verdict::Undecided);
+    }
+
+    #[test]
+    fn the_three_verdicts_of_a_fault() {
+        let fault = |statistic| Claim::detected("a", "a", Unit::ONE, statistic, 1.0, 0.05);
+        assert_eq!(verdict(fault(estimate(0, 64, 1.1, 0.05))), Verdict::Upheld);
+        assert_eq!(verdict(fault(estimate(0, 64, 1.0, 0.05))), Verdict::Rejected);
+        assert_eq!(verdict(fault(estimate(0, 64, 1.0, 1.0))), Verdict::Undecided);
+        // Seen, but too small to be the fault that was planted.
+        assert_eq!(verdict(fault(estimate(0, 64, 1.01, 0.001))), Verdict::Rejected);
+    }
+
+    #[test]
+    fn few_maps_and_heavy_tails_decide_nothing() {
+        let few = judge(vec![within(estimate(0, 63, 2.0, 0.01))]);
+        assert_eq!(few[0].verdict, Verdict::Undecided);
+        assert!(few[0].advice.contains("63 maps"));
+        let heavy: Moments = (0..1000).map(|i| if i == 0 { 1000.0 } else { 0.999 }).collect();
+        assert!(judge(vec![within(Estimate::mean(&heavy))])[0].advice.contains("heavy-tailed"));
+    }
+
+    #[test]
+    fn computed_values_are_judged_by_their_bound() {
+        assert_eq!(verdict(within(Estimate::exact(1.0, 1e-9))), Verdict::Upheld);
+        assert_eq!(verdict(within(Estimate::exact(1.051, 1e-9))), Verdict::Rejected);
+        assert_eq!(verdict(within(Estimate::exact(1.05, 1e-9))), Verdict::Undecided);
+        assert_eq!(verdict(within(Estimate::exact(f64::NAN, 1e-9))), Verdict::Rejected);
+    }
+
+    #[test]
+    fn one_sided_margins() {
+        let at_most = |s| verdict(Claim::at_most("a", "a", Unit::ONE, s, 0.01));
+        assert_eq!(at_most(estimate(0, 64, -5.0, 0.01)), Verdict::Upheld);
+        assert_eq!(at_most(estimate(0, 64, 5.0, 0.01)), Verdict::Rejected);
+        assert_eq!(
+            verdict(Claim::at_least("a", "a", Unit::ONE, estimate(0, 64, 5.0, 0.01), 0.0)),
+            Verdict::Upheld
+        );
+    }
+
+    /// The advice is kept: with as many maps as it asks for, the claim is decided in most of 100 studies.
+    #[test]
+    fn the_advised_number_of_maps_decides() {
+        let judged = judge(vec![within(estimate(1, 64, 1.0, 0.2))]);
+        assert_eq!(judged[0].verdict, Verdict::Undecided);
+        let distance = judged[0].claim.distance();
+        let maps: u64 = judged[0].advice.split(' ').nth(1).unwrap().parse().unwrap();
+        // The advice holds for a truth where the estimate was; this one has its margin at that distance.
+        let decided = (0..100)
+            .filter(|&s| {
+                let claim = Claim::within(
+                    "a",
+                    "a",
+                    Unit::ONE,
+                    estimate(s, maps, 1.0, 0.2),
+                    1.0 - distance,
+                    1.0 + distance,
+                );
+                verdict(claim) != Verdict::Undecided
+            })
+            .count();
+        assert!(decided >= 90, "{decided} of 100 with {maps} maps");
+    }
+
+    /// Truth on the margin's edge, where rejecting and upholding are both wrong as often as they ever are. 20,000
+    /// studies of one claim at the family's 1e-3: each kind of mistake happens at most about that often.
+    #[test]
+    fn false_verdicts_on_the_edge_are_rare() {
+        let (mut upheld, mut rejected) = (0, 0);
+        for set in 0..20_000 {
+            // Wide enough that the far edge does not matter, narrow enough that the near one does.
+            match verdict(within(estimate(set, 64, 1.05, 0.05))) {
+                Verdict::Upheld => upheld += 1,
+                Verdict::Rejected => rejected += 1,
+                Verdict::Undecided => {}
+            }
+        }
+        // One side of a two-sided 1e-3: 10 expected each; 40 has probability 1e-12.
+        assert!(
+            (1..40).contains(&upheld) && (1..40).contains(&rejected),
+            "{upheld} upheld, {rejected} rejected"
+        );
+    }
+}

@@ -1,0 +1,125 @@
+//! Numbers for readers: as many digits as their error has, signs and powers as in print.
+
+/// A number to four significant digits, without trailing zeros: 0.05, 1.234, 2.5 x 10^-7.
+pub fn number(x: f64) -> String {
+    if !x.is_finite() {
+        return if x.is_nan() {
+            "not a number".to_string()
+        } else if x > 0.0 {
+            "∞".to_string()
+        } else {
+            "−∞".to_string()
+        };
+    }
+    if x == 0.0 {
+        return "0".to_string();
+    }
+    let power = exponent(x, 3);
+    if (-3..7).contains(&power) {
+        return trimmed(&print(x, (3 - power).max(0)));
+    }
+    let mantissa = trimmed(&print(x / ten_to(power), 3));
+    format!("{mantissa}{}", times_ten_to(power))
+}
+
+/// A value with its error, both to the error's second digit: 1.0031 ± 0.0042, (2.50 ± 0.11) x 10^-7.
+pub fn with_error(value: f64, error: f64) -> String {
+    if !value.is_finite() || !error.is_finite() || error <= 0.0 {
+        return match error {
+            0.0 => number(value),
+            e if e.is_finite() => format!("{} ± {}", number(value), number(error)),
+            _ => format!("{} ± unknown", number(value)),
+        };
+    }
+    let largest = exponent(value.abs().max(error), 3);
+    let power = if (-3..7).contains(&largest) { 0 } else { largest };
+    let (value, error) = (value / ten_to(power), error / ten_to(power));
+    // Digits that f64 or a reader cannot use are not printed.
+    let digits = (1 - exponent(error, 1)).clamp(0, 15);
+    let text = format!("{} ± {}", print(value, digits), print(error, digits));
+    if power == 0 { text } else { format!("({text}){}", times_ten_to(power)) }
+}
+
+/// The power of ten of the first digit, after rounding to so many digits behind it.
+fn exponent(x: f64, digits: usize) -> i32 {
+    let text = format!("{x:.digits$e}");
+    text.split('e').nth(1).and_then(|power| power.parse().ok()).unwrap_or(0)
+}
+
+fn ten_to(power: i32) -> f64 {
+    // Parsed, not multiplied up: the nearest f64 to the power.
+    format!("1e{power}").parse().unwrap_or(1.0)
+}
+
+fn print(x: f64, digits: i32) -> String {
+    let text = format!("{x:.*}", digits.max(0) as usize);
+    let is_zero = text.chars().all(|c| "-0.".contains(c));
+    if is_zero { text.replace('-', "") } else { text.replace('-', "−") }
+}
+
+fn trimmed(text: &str) -> String {
+    if text.contains('.') {
+        text.trim_end_matches('0').trim_end_matches('.').to_string()
+    } else {
+        text.to_string()
+    }
+}
+
+fn times_ten_to(power: i32) -> String {
+    if power == 0 {
+        return String::new();
+    }
+    let digits = power.to_string();
+    let raised = digits.chars().map(|c| match c {
+        '-' => '⁻',
+        '1' => '¹',
+        '2' => '²',
+        '3' => '³',
+        other => char::from_u32('⁰' as u32 + other.to_digit(10).unwrap_or(0)).unwrap_or(other),
+    });
+    format!(" × 10{}", raised.collect::<String>())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers() {
+        let cases = [
+            (0.05, "0.05"),
+            (1.0, "1"),
+            (-0.25, "−0.25"),
+            (1.23456, "1.235"),
+            (0.0, "0"),
+            (2.5e-7, "2.5 × 10⁻⁷"),
+            (1e6, "1000000"),
+            (3e10, "3 × 10¹⁰"),
+            (0.001, "0.001"),
+            (9.9999e-4, "0.001"),
+            (f64::INFINITY, "∞"),
+        ];
+        for (x, text) in cases {
+            assert_eq!(number(x), text);
+        }
+    }
+
+    #[test]
+    fn errors_rule_the_digits() {
+        let cases = [
+            (1.003_12, 0.004_21, "1.0031 ± 0.0042"),
+            (2.5e-7, 1.1e-8, "(2.50 ± 0.11) × 10⁻⁷"),
+            (-12.34, 5.6, "−12.3 ± 5.6"),
+            (1e-9, 0.5, "0.00 ± 0.50"),
+            (-1e-9, 0.5, "0.00 ± 0.50"),
+            (123_456.0, 789.0, "123456 ± 789"),
+            (1.0, 0.0, "1"),
+            (1.0, f64::INFINITY, "1 ± unknown"),
+            (3.0e12, 2.0e10, "(3.000 ± 0.020) × 10¹²"),
+            (0.5, 0.099_99, "0.50 ± 0.10"),
+        ];
+        for (value, error, text) in cases {
+            assert_eq!(with_error(value, error), text);
+        }
+    }
+}

@@ -1,0 +1,74 @@
+//! What the cells of a folder belong to.
+
+use super::Settings;
+use super::cell::{self, FORMAT};
+use super::progress::say;
+use anyhow::Context;
+use serde::{Deserialize, Serialize};
+use std::path::Path;
+use turbid::output::{write_atomically, write_json};
+
+/// Format, settings and program of a folder of cells.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub(super) struct Manifest {
+    pub format: u32,
+    pub seed: u64,
+    pub settings: String,
+    pub program: String,
+}
+
+const FILE: &str = "manifest.json";
+
+impl Manifest {
+    pub(super) fn new(settings: &Settings, program: &str) -> Self {
+        Manifest {
+            format: FORMAT,
+            seed: settings.seed,
+            settings: settings.words(),
+            program: program.to_string(),
+        }
+    }
+
+    /// Prepares the folder: forgets its cells if asked to, says which cells are not reused, writes the manifest.
+    pub(super) fn prepare(&self, folder: &Path, settings: &Settings) -> anyhow::Result<()> {
+        let path = folder.join(FILE);
+        let earlier = std::fs::read(&path).ok().map(|bytes| serde_json::from_slice::<Manifest>(&bytes).ok());
+        if settings.fresh && earlier.is_some() {
+            // Only a folder with a manifest is ours to empty.
+            std::fs::remove_dir_all(folder).with_context(|| format!("cannot empty {}", folder.display()))?;
+        } else if let Some(reason) = earlier.flatten().and_then(|earlier| self.refusal(&earlier, settings)) {
+            say(&reason);
+        }
+        std::fs::create_dir_all(folder).with_context(|| format!("cannot create {}", folder.display()))?;
+        write_atomically(&path, |out| write_json(out, self))?;
+        Ok(())
+    }
+
+    /// Why cells of an earlier manifest are not reused, in one line.
+    fn refusal(&self, earlier: &Manifest, settings: &Settings) -> Option<String> {
+        if earlier.format != self.format {
+            return Some("Cells of an older format are not reused.".to_string());
+        }
+        if earlier.settings != self.settings {
+            return Some(format!("Cells of other settings ({}) are not reused.", earlier.settings));
+        }
+        match (earlier.program == self.program, settings.reuse_cells) {
+            (true, _) => None,
+            (false, true) => {
+                Some("Cells of another build are reused, as asked; the report says so.".to_string())
+            }
+            (false, false) => {
+                Some("Cells of another build are not reused (--reuse-cells would).".to_string())
+            }
+        }
+    }
+
+    /// Whether a file holds a cell that this study can take.
+    pub(super) fn accepts(&self, path: &Path, experiment: &str, id: &str, settings: &Settings) -> bool {
+        let Ok((header, _)) = cell::read(path) else { return false };
+        header.experiment == experiment
+            && header.id == id
+            && header.settings == self.settings
+            && (header.program == self.program || settings.reuse_cells)
+    }
+}

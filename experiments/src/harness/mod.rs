@@ -1,0 +1,39 @@
+//! The machinery of a study: settings, cells, predictions before measurements, claims and verdicts, results.
+//!
+//! An experiment is a constant of type [`Experiment`] in a module of its own. Its cells are pure functions of the
+//! settings, each one map; they run in parallel, are kept in files, and are merged in sorted order, so that results
+//! are the same bits on any number of threads and after any interruption.
+
+mod cell;
+mod cells;
+mod claim;
+mod digest;
+mod estimate;
+mod experiment;
+mod format;
+mod manifest;
+mod measure;
+mod outputs;
+mod progress;
+mod provenance;
+mod results;
+mod section;
+mod settings;
+mod study;
+
+pub use cell::{CellOutput, CellRow};
+pub use cells::Cells;
+pub use claim::{Claim, FAMILY_WISE, Judged, Kind, MIN_MAPS, Verdict, judge};
+pub use digest::{Digest, program_digest};
+pub use estimate::Estimate;
+pub use experiment::{CellId, Experiment, Prediction};
+pub use format::{number, with_error};
+pub(crate) use progress::duration;
+pub use progress::say;
+pub use provenance::Provenance;
+pub use results::{Row, Unit};
+pub(crate) use section::row_label;
+pub use section::{FigureFiles, Section, Table};
+pub use settings::{Preset, Settings};
+pub(crate) use study::cost_line;
+pub use study::{Outcome, SectionReport, Study, main, run};

@@ -1,0 +1,142 @@
+//! The files that a study leaves beside its report.
+
+use super::results::Record;
+use super::{Experiment, Judged, Prediction, Provenance, SectionReport, Unit};
+use anyhow::Context;
+use serde::Serialize;
+use std::path::Path;
+use turbid::output::{write_atomically, write_csv, write_json};
+
+/// A row of timing.csv.
+#[derive(Serialize)]
+pub(super) struct Seconds {
+    pub experiment: &'static str,
+    pub cell: String,
+    pub cpu_seconds: f64,
+}
+
+/// A row of predictions.csv.
+#[derive(Serialize)]
+struct PredictionRecord<'a> {
+    experiment: &'a str,
+    case: &'a str,
+    quantity: &'a str,
+    unit: Unit,
+    predicted: f64,
+    error: f64,
+    source: &'a str,
+}
+
+/// The table of predictions.
+pub(super) fn prediction_table(
+    experiments: &[Experiment],
+    predictions: &[Vec<Prediction>],
+) -> anyhow::Result<Vec<u8>> {
+    let mut records = Vec::new();
+    for (experiment, list) in experiments.iter().zip(predictions) {
+        for Prediction { case, quantity, unit, value, error, source } in list {
+            let experiment = experiment.name;
+            records.push(PredictionRecord {
+                experiment,
+                case,
+                quantity,
+                unit: *unit,
+                predicted: *value,
+                error: *error,
+                source,
+            });
+        }
+    }
+    let mut bytes = Vec::new();
+    write_csv(&mut bytes, &records)?;
+    Ok(bytes)
+}
+
+/// Writes a file unless it already holds these bytes, so that its date says when they were made. Tells whether it
+/// was written.
+pub(super) fn write_if_changed(path: &Path, bytes: &[u8]) -> anyhow::Result<bool> {
+    if std::fs::read(path).is_ok_and(|old| old == bytes) {
+        return Ok(false);
+    }
+    write_atomically(path, |out| out.write_all(bytes))?;
+    Ok(true)
+}
+
+/// A run that measured nothing keeps the record of the run that did; late predictions stay on record until every
+/// cell is measured anew.
+pub(super) fn keep_or_write(path: &Path, mut new: Provenance) -> anyhow::Result<Provenance> {
+    let old = std::fs::read(path).ok().and_then(|bytes| serde_json::from_slice::<Provenance>(&bytes).ok());
+    if let Some(old) = old {
+        let is_same = old.command == new.command && old.program == new.program && old.cells == new.cells;
+        if is_same && new.measured == 0 && !new.late_predictions {
+            return Ok(old);
+        }
+        new.late_predictions |= old.late_predictions && new.measured < new.cells;
+    }
+    write_atomically(path, |out| write_json(out, &new))?;
+    Ok(new)
+}
+
+/// results.csv, claims.csv and the figures: functions of settings and seed alone.
+pub(super) fn write_results(out: &Path, sections: &[SectionReport]) -> anyhow::Result<()> {
+    let rows: Vec<Record> = sections
+        .iter()
+        .flat_map(|s| s.section.rows.iter().map(|row| Record::new(s.experiment.name, row)))
+        .collect();
+    write_atomically(out.join("results.csv"), |file| write_csv(file, &rows))?;
+    let claims: Vec<ClaimRecord> = sections
+        .iter()
+        .flat_map(|s| s.judged.iter().map(|judged| ClaimRecord::new(s.experiment.name, judged)))
+        .collect();
+    write_atomically(out.join("claims.csv"), |file| write_csv(file, &claims))?;
+    let folder = out.join("figures");
+    std::fs::create_dir_all(&folder).with_context(|| format!("cannot create {}", folder.display()))?;
+    for part in sections {
+        for figure in &part.section.figures {
+            let name = format!("{}-{}", part.experiment.name, figure.name);
+            write_atomically(folder.join(format!("{name}.svg")), |file| {
+                file.write_all(figure.svg.as_bytes())
+            })?;
+            write_atomically(folder.join(format!("{name}.png")), |file| file.write_all(&figure.png))?;
+        }
+    }
+    Ok(())
+}
+
+/// A row of claims.csv.
+#[derive(Serialize)]
+struct ClaimRecord<'a> {
+    experiment: &'a str,
+    claim: &'a str,
+    unit: Unit,
+    maps: Option<u64>,
+    statistic: f64,
+    std_error: f64,
+    interval_low: f64,
+    interval_high: f64,
+    margin: String,
+    p: f64,
+    p_holm: f64,
+    verdict: &'static str,
+    text: &'a str,
+}
+
+impl<'a> ClaimRecord<'a> {
+    fn new(experiment: &'a str, judged: &'a Judged) -> Self {
+        ClaimRecord {
+            experiment,
+            claim: &judged.claim.id,
+            unit: judged.claim.unit,
+            maps: judged.claim.statistic.maps(),
+            statistic: judged.claim.statistic.value(),
+            std_error: judged.claim.statistic.std_error(),
+            interval_low: judged.interval.low,
+            interval_high: judged.interval.high,
+            margin: judged.claim.margin(),
+            p: judged.p,
+            p_holm: judged.adjusted,
+            verdict: judged.verdict.word(),
+            text: &judged.claim.text,
+        }
+    }
+}

@@ -1,0 +1,93 @@
+//! What an experiment says in the report.
+
+use super::format::{number, with_error};
+use super::{Claim, Row};
+
+/// A figure in both of its forms.
+#[derive(Debug, Clone, PartialEq)]
+pub struct FigureFiles {
+    /// File-safe name, unique within the experiment.
+    pub name: String,
+    /// What to see in it, in whole sentences.
+    pub caption: String,
+    /// The figure as SVG.
+    pub svg: String,
+    /// The figure as PNG.
+    pub png: Vec<u8>,
+}
+
+/// A table of words and numbers for readers; the numbers behind it are in results.csv.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Table {
+    /// What to see in it, in whole sentences.
+    pub caption: String,
+    /// Headings, with units.
+    pub columns: Vec<String>,
+    /// The cells.
+    pub rows: Vec<Vec<String>>,
+}
+
+impl Table {
+    /// A table of result rows: measured with standard error, predicted, exact, and their distance. Columns that no
+    /// row fills are left out.
+    pub fn of_rows(caption: &str, rows: &[Row]) -> Self {
+        let optional = |value: Option<String>| value.unwrap_or_default();
+        let cells = |row: &Row| {
+            let (value, error) = row.value();
+            let (case, quantity) = row.key();
+            vec![
+                case.to_string(),
+                row_label(quantity, row.unit().name()),
+                with_error(value, error),
+                optional(row.prediction().map(number)),
+                optional(row.exact_value().map(|(value, error)| with_error(value, error))),
+                optional(
+                    row.z_and_p().map(|(z, _)| format!("{z:.1}").replace("-0.0", "0.0").replace('-', "−")),
+                ),
+                row.verdict().to_string(),
+            ]
+        };
+        let columns = ["case", "quantity", "measured", "predicted", "exact", "z", "against exact"]
+            .map(String::from)
+            .to_vec();
+        Table { caption: caption.to_string(), columns, rows: rows.iter().map(cells).collect() }
+            .without_empty_columns()
+    }
+
+    fn without_empty_columns(self) -> Self {
+        let is_filled =
+            |i: &usize| self.rows.iter().any(|row| row.get(*i).is_some_and(|cell| !cell.is_empty()));
+        let kept: Vec<usize> = (0..self.columns.len()).filter(is_filled).collect();
+        let keep = |row: &Vec<String>| kept.iter().filter_map(|&i| row.get(i).cloned()).collect();
+        Table {
+            caption: self.caption.clone(),
+            columns: keep(&self.columns),
+            rows: self.rows.iter().map(keep).collect(),
+        }
+    }
+}
+
+/// A quantity with its unit in brackets.
+pub(crate) fn row_label(quantity: &str, unit: &str) -> String {
+    match unit {
+        "1" => quantity.to_string(),
+        unit => format!("{quantity} [{}]", unit.replace("^2", "²").replace("^3", "³")),
+    }
+}
+
+/// What one experiment found. Title and question come from the experiment itself.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Section {
+    /// Paragraphs; the first is the headline, one sentence that stands alone.
+    pub summary: Vec<String>,
+    /// Claims, judged together with those of the whole study.
+    pub claims: Vec<Claim>,
+    /// Figures, in order.
+    pub figures: Vec<FigureFiles>,
+    /// Tables, in order.
+    pub tables: Vec<Table>,
+    /// What a careful reader should know: limits, surprises, what was left out.
+    pub notes: Vec<String>,
+    /// All results, for results.csv.
+    pub rows: Vec<Row>,
+}

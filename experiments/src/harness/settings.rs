@@ -1,0 +1,221 @@
+//! What the user chooses: the flags shared by all experiments.
+
+use clap::{CommandFactory, FromArgMatches, Parser};
+use std::ffi::OsString;
+use std::path::PathBuf;
+
+/// How much is measured.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Preset {
+    /// Minutes: margins are wide.
+    Quick,
+    /// Hours: the margins that the claims are about.
+    Full,
+}
+
+/// The settings of a study. Results depend on preset, seed, photon scale and choice of experiments, and on nothing
+/// else here.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Settings {
+    /// How much is measured.
+    pub preset: Preset,
+    /// Seed of all random streams.
+    pub seed: u64,
+    /// Factor on every number of photons; 1 unless asked for.
+    pub photon_scale: f64,
+    /// Threads of the pool, at least 1.
+    pub threads: usize,
+    /// Folder of report, results and cells.
+    pub out: PathBuf,
+    /// Forget the cells of earlier runs.
+    pub fresh: bool,
+    /// Take cells of another build of the program.
+    pub reuse_cells: bool,
+    /// Let the exit code tell the verdicts.
+    pub strict: bool,
+    /// Names of the experiments to run; all if empty.
+    pub only: Vec<String>,
+}
+
+const FONT: &str = concat!(
+    env!("CARGO_PKG_VERSION"),
+    "\nFigures embed DejaVu Sans (Bitstream Vera licence: free to use, embed and share)."
+);
+
+/// Plays the simulator against exact values and writes a report.
+#[derive(Parser)]
+#[command(version, long_version = FONT)]
+struct Flags {
+    /// Minutes of work (default)
+    #[arg(long, conflicts_with = "full")]
+    quick: bool,
+    /// Hours of work, narrow margins
+    #[arg(long)]
+    full: bool,
+    /// Seed of all random numbers
+    #[arg(long, default_value_t = 1)]
+    seed: u64,
+    /// Factor on every number of photons
+    #[arg(long, value_name = "SCALE", default_value_t = 1.0, value_parser = scale)]
+    photons: f64,
+    /// Folder of the report [default: results/local/NAME, with -full after --full]
+    #[arg(long)]
+    out: Option<PathBuf>,
+    /// Number of threads [default: all cores]
+    #[arg(long, value_parser = clap::value_parser!(u16).range(1..=1024))]
+    threads: Option<u16>,
+    /// Forget the cells of earlier runs
+    #[arg(long)]
+    fresh: bool,
+    /// Take cells that another build of the program made (recorded in the report)
+    #[arg(long, conflicts_with = "fresh")]
+    reuse_cells: bool,
+    /// Exit with 1 after a rejected claim, 3 after an undecided one
+    #[arg(long)]
+    strict: bool,
+    /// Run only these experiments
+    #[arg(long, value_name = "NAME", value_delimiter = ',')]
+    only: Vec<String>,
+}
+
+/// A factor on photon counts, 1e-6 to 1e6.
+fn scale(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(x) if (1e-6..=1e6).contains(&x) => Ok(x),
+        _ => Err("allowed: a factor from 1e-6 to 1e6".to_string()),
+    }
+}
+
+impl Settings {
+    /// Quick settings with seed 1 on all cores, written to `out`.
+    pub fn new(out: impl Into<PathBuf>) -> Self {
+        Settings {
+            preset: Preset::Quick,
+            seed: 1,
+            photon_scale: 1.0,
+            threads: cores(),
+            out: out.into(),
+            fresh: false,
+            reuse_cells: false,
+            strict: false,
+            only: Vec::new(),
+        }
+    }
+
+    /// The settings that command-line arguments (the program's name first) ask for.
+    ///
+    /// # Errors
+    /// clap's error, whose kind tells help and version from mistakes.
+    pub fn parse(study: &'static str, args: impl IntoIterator<Item = OsString>) -> Result<Self, clap::Error> {
+        let matches = Flags::command().name(study).try_get_matches_from(args)?;
+        let flags = Flags::from_arg_matches(&matches)?;
+        let preset = if flags.full { Preset::Full } else { Preset::Quick };
+        // A quick look must not write over a night's work.
+        let folder = if flags.full { format!("{study}-full") } else { study.to_string() };
+        Ok(Settings {
+            preset,
+            seed: flags.seed,
+            photon_scale: flags.photons,
+            threads: flags.threads.map_or_else(cores, usize::from),
+            out: flags.out.unwrap_or_else(|| PathBuf::from("results/local").join(folder)),
+            fresh: flags.fresh,
+            reuse_cells: flags.reuse_cells,
+            strict: flags.strict,
+            only: flags.only,
+        })
+    }
+
+    /// One of two values, by preset.
+    pub fn pick<T>(&self, quick: T, full: T) -> T {
+        match self.preset {
+            Preset::Quick => quick,
+            Preset::Full => full,
+        }
+    }
+
+    /// A number of photons by preset, times the scale, at least 1.
+    pub fn photons(&self, quick: u64, full: u64) -> u64 {
+        ((self.pick(quick, full) as f64 * self.photon_scale).round() as u64).max(1)
+    }
+
+    /// What a cell depends on, in words: two cells of equal words and equal program are equal.
+    pub fn words(&self) -> String {
+        let preset = self.pick("quick", "full");
+        let scale = if self.photon_scale == 1.0 {
+            String::new()
+        } else {
+            format!(", photons × {}", self.photon_scale)
+        };
+        format!("{preset}, seed {}{scale}", self.seed)
+    }
+
+    /// The command that repeats the study's results; the folder is left out where it is absolute.
+    pub fn command(&self, study: &str) -> String {
+        let mut text = format!(
+            "cargo run --release -p turbid-experiments --bin {study} -- --{}",
+            self.pick("quick", "full")
+        );
+        text.push_str(&format!(" --seed {}", self.seed));
+        if self.photon_scale != 1.0 {
+            text.push_str(&format!(" --photons {}", self.photon_scale));
+        }
+        if !self.only.is_empty() {
+            text.push_str(&format!(" --only {}", self.only.join(",")));
+        }
+        text
+    }
+}
+
+fn cores() -> usize {
+    std::thread::available_parallelism().map_or(1, usize::from)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn parse(args: &[&str]) -> Result<Settings, clap::Error> {
+        Settings::parse("bias", std::iter::once("bias").chain(args.iter().copied()).map(OsString::from))
+    }
+
+    #[test]
+    fn defaults_are_a_quick_study() {
+        let settings = parse(&[]).unwrap();
+        assert_eq!(settings, Settings::new("results/local/bias"));
+        assert_eq!(parse(&["--full"]).unwrap().out, PathBuf::from("results/local/bias-full"));
+    }
+
+    #[test]
+    fn photons_follow_preset_and_scale() {
+        assert_eq!(parse(&["--photons", "0.5"]).unwrap().photons(1000, 8000), 500);
+        assert_eq!(parse(&["--full"]).unwrap().photons(1000, 8000), 8000);
+        assert_eq!(parse(&["--photons", "1e-6"]).unwrap().photons(10, 10), 1);
+    }
+
+    #[test]
+    fn bad_values_are_refused() {
+        for bad in [
+            &["--photons", "0"][..],
+            &["--photons", "nan"],
+            &["--photons", "-1"],
+            &["--seed", "-1"],
+            &["--seed", "x"],
+            &["--threads", "0"],
+            &["--quick", "--full"],
+            &["--fresh", "--reuse-cells"],
+            &["--colour"],
+        ] {
+            assert!(parse(bad).is_err(), "{bad:?}");
+        }
+    }
+
+    #[test]
+    fn the_command_repeats_the_results() {
+        let settings =
+            parse(&["--full", "--seed", "7", "--photons", "2", "--only", "a,b", "--threads", "3"]).unwrap();
+        let command = settings.command("bias");
+        let flags: Vec<&str> = command.split(" -- ").nth(1).unwrap().split(' ').collect();
+        let again = parse(&flags).unwrap();
+        assert_eq!((again.words(), again.only), (settings.words(), settings.only));
+    }
+}

@@ -1,0 +1,260 @@
+//! A whole study: predictions, then measurements, then conclusions, then the report.
+
+use super::manifest::Manifest;
+use super::measure::{Task, cell_path, measure};
+use super::outputs::{Seconds, keep_or_write, prediction_table, write_if_changed, write_results};
+use super::progress::{duration, say};
+use super::{
+    CellId, Cells, Claim, Experiment, Judged, Prediction, Provenance, Section, Settings, Verdict, judge,
+    program_digest,
+};
+use crate::report;
+use anyhow::{Context, bail, ensure};
+use std::collections::BTreeSet;
+use std::path::PathBuf;
+use std::process::ExitCode;
+use std::time::Instant;
+use turbid::output::{print, write_atomically, write_csv};
+
+/// What is studied, by which program.
+#[derive(Debug, Clone)]
+pub struct Study<'a> {
+    /// Name of the study and of its binary.
+    pub name: &'a str,
+    /// Its experiments, in the order of the report.
+    pub experiments: &'a [Experiment],
+    /// Digest of the program: cells of another are not reused.
+    pub program: String,
+}
+
+/// One experiment with all that it found.
+#[derive(Debug, Clone)]
+pub struct SectionReport {
+    /// The experiment.
+    pub experiment: Experiment,
+    /// What was predicted.
+    pub predictions: Vec<Prediction>,
+    /// What it says; its claims have moved to `judged`.
+    pub section: Section,
+    /// Its claims, judged with all others.
+    pub judged: Vec<Judged>,
+    /// Counters summed over its cells.
+    pub counters: Vec<(String, u64)>,
+    /// Number of cells and their CPU seconds.
+    pub cells: (usize, f64),
+}
+
+/// What a finished study leaves.
+#[derive(Debug)]
+pub struct Outcome {
+    /// The report's file.
+    pub report: PathBuf,
+    /// All sections.
+    pub sections: Vec<SectionReport>,
+    /// How many cells were measured in this run.
+    pub measured: usize,
+}
+
+impl Outcome {
+    /// Number of claims with a verdict.
+    pub fn count(&self, verdict: Verdict) -> usize {
+        self.sections.iter().flat_map(|s| &s.judged).filter(|j| j.verdict == verdict).count()
+    }
+
+    /// Exit code of `--strict`: 1 after a rejected claim, else 3 after an undecided one, else 0.
+    pub fn strict_code(&self) -> u8 {
+        match (self.count(Verdict::Rejected), self.count(Verdict::Undecided)) {
+            (0, 0) => 0,
+            (0, _) => 3,
+            _ => 1,
+        }
+    }
+}
+
+/// The main function of every binary: arguments, study, summary, exit code.
+pub fn main(name: &'static str, experiments: &[Experiment]) -> ExitCode {
+    let settings = match Settings::parse(name, std::env::args_os()) {
+        Ok(settings) => settings,
+        Err(error) if !error.use_stderr() => {
+            let written = print(|out| write!(out, "{error}"));
+            return ExitCode::from(if written.is_ok() { 0 } else { 2 });
+        }
+        Err(error) => {
+            say(error.to_string().lines().next().unwrap_or("error: bad arguments"));
+            return ExitCode::from(2);
+        }
+    };
+    let finished = program_digest()
+        .and_then(|program| run(&Study { name, experiments, program: program.to_string() }, &settings))
+        .and_then(|outcome| {
+            print(|out| out.write_all(report::summary(&outcome).as_bytes()))?;
+            Ok(if settings.strict { outcome.strict_code() } else { 0 })
+        });
+    match finished {
+        Ok(code) => ExitCode::from(code),
+        Err(error) => {
+            say(&format!("error: {error:#}"));
+            ExitCode::from(2)
+        }
+    }
+}
+
+/// Runs a study, or what is left of it, and writes its report.
+///
+/// # Errors
+/// Whatever stops it; finished cells stay, and the next run goes on from there.
+pub fn run(study: &Study, settings: &Settings) -> anyhow::Result<Outcome> {
+    let experiments = selected(study.experiments, &settings.only)?;
+    let cells_folder = settings.out.join("cells");
+    let manifest = Manifest::new(settings, &study.program);
+    manifest.prepare(&cells_folder, settings)?;
+
+    let mut sets: Vec<Vec<CellId>> = Vec::new();
+    let mut tasks = Vec::new();
+    for experiment in &experiments {
+        let folder = cells_folder.join(experiment.name);
+        std::fs::create_dir_all(&folder).with_context(|| format!("cannot create {}", folder.display()))?;
+        let cells = (experiment.cells)(settings);
+        check_names(experiment, &cells)?;
+        for cell in &cells {
+            let path = cell_path(&cells_folder, experiment, cell);
+            if !manifest.accepts(&path, experiment.name, &cell.id(), settings) {
+                tasks.push(Task { experiment, cell: cell.clone(), path });
+            }
+        }
+        sets.push(cells);
+    }
+    let total: usize = sets.iter().map(Vec::len).sum();
+    let measured = tasks.len();
+
+    let mut predictions = Vec::new();
+    let mut late_predictions = false;
+    for (experiment, cells) in experiments.iter().zip(&sets) {
+        let own = predict(experiment, settings)?;
+        let table = prediction_table(&[*experiment], std::slice::from_ref(&own))?;
+        let changed = write_if_changed(&cells_folder.join(experiment.name).join("predictions.csv"), &table)?;
+        let missing = tasks.iter().filter(|task| task.experiment.name == experiment.name).count();
+        late_predictions |= changed && missing < cells.len();
+        predictions.push(own);
+    }
+    write_if_changed(&settings.out.join("predictions.csv"), &prediction_table(&experiments, &predictions)?)?;
+    say(&opening(study.name, settings, total, measured, predictions.iter().map(Vec::len).sum()));
+
+    let start = Instant::now();
+    measure(tasks, &manifest, settings)?;
+    let wall_seconds = start.elapsed().as_secs_f64();
+
+    let mut sections = Vec::new();
+    let mut seconds = Vec::new();
+    let mut foreign = 0;
+    for ((experiment, cells), predictions) in experiments.iter().zip(&sets).zip(predictions) {
+        let cells =
+            Cells::read(&cells_folder.join(experiment.name), cells).with_context(|| experiment.name)?;
+        let mut section =
+            (experiment.conclude)(settings, &predictions, &cells).with_context(|| experiment.name)?;
+        section.rows = section.rows.into_iter().map(|row| row.predicted_from(&predictions)).collect();
+        foreign += cells.programs.iter().filter(|p| **p != study.program).count();
+        let own_seconds = cells.seconds.iter().map(|s| s.1).sum();
+        seconds.extend(cells.seconds.iter().map(|(cell, s)| Seconds {
+            experiment: experiment.name,
+            cell: cell.clone(),
+            cpu_seconds: *s,
+        }));
+        let counters = cells.counters().iter().map(|(name, count)| (name.clone(), *count)).collect();
+        let cells = (cells.ids().len(), own_seconds);
+        sections.push(SectionReport {
+            experiment: *experiment,
+            predictions,
+            section,
+            judged: Vec::new(),
+            counters,
+            cells,
+        });
+    }
+    judge_all(&mut sections)?;
+
+    let mut provenance = Provenance::now(study.name, settings, &study.program);
+    provenance.cells = total;
+    provenance.measured = measured;
+    provenance.foreign = foreign;
+    provenance.cpu_seconds = seconds.iter().map(|s| s.cpu_seconds).sum();
+    provenance.wall_seconds = wall_seconds;
+    provenance.late_predictions = late_predictions;
+    let provenance = keep_or_write(&settings.out.join("provenance.json"), provenance)?;
+
+    write_results(&settings.out, &sections)?;
+    write_atomically(settings.out.join("timing.csv"), |out| write_csv(out, &seconds))?;
+    let page = report::page(study.name, settings, &sections, &provenance);
+    let path = settings.out.join("report.html");
+    write_atomically(&path, |out| out.write_all(page.as_bytes()))?;
+    Ok(Outcome { report: path, sections, measured })
+}
+
+fn selected(all: &[Experiment], only: &[String]) -> anyhow::Result<Vec<Experiment>> {
+    for name in only {
+        if !all.iter().any(|e| e.name == name) {
+            let names: Vec<&str> = all.iter().map(|e| e.name).collect();
+            bail!("there is no experiment {name}; there are: {}", names.join(", "));
+        }
+    }
+    Ok(all.iter().filter(|e| only.is_empty() || only.iter().any(|name| name == e.name)).copied().collect())
+}
+
+fn check_names(experiment: &Experiment, cells: &[CellId]) -> anyhow::Result<()> {
+    let mut seen = BTreeSet::new();
+    for cell in cells {
+        ensure!(cell.is_file_safe(), "{}: the group {:?} is no name for a file", experiment.name, cell.group);
+        ensure!(seen.insert(cell.id()), "{}: two cells are called {}", experiment.name, cell.id());
+    }
+    Ok(())
+}
+
+fn predict(experiment: &Experiment, settings: &Settings) -> anyhow::Result<Vec<Prediction>> {
+    let predictions =
+        (experiment.predict)(settings).with_context(|| format!("predictions of {}", experiment.name))?;
+    for p in &predictions {
+        let is_number = p.value.is_finite() && p.error.is_finite();
+        ensure!(
+            is_number,
+            "{}: the prediction of {} of {} is not finite",
+            experiment.name,
+            p.quantity,
+            p.case
+        );
+    }
+    Ok(predictions)
+}
+
+fn opening(study: &str, settings: &Settings, total: usize, missing: usize, predictions: usize) -> String {
+    let start = format!("{study} ({}): {predictions} predictions written", settings.words());
+    match missing {
+        0 => format!("{start}, all {total} cells are there."),
+        _ if missing == total => format!("{start}, measuring {total} cells on {} threads.", settings.threads),
+        _ => format!("{start}, measuring {missing} of {total} cells on {} threads.", settings.threads),
+    }
+}
+
+/// Judges the claims of all sections together and gives each section its own back.
+fn judge_all(sections: &mut [SectionReport]) -> anyhow::Result<()> {
+    let mut all: Vec<Claim> = Vec::new();
+    let mut counts = Vec::new();
+    for part in sections.iter_mut() {
+        let claims = std::mem::take(&mut part.section.claims);
+        let ids: BTreeSet<&str> = claims.iter().map(|c| c.id.as_str()).collect();
+        ensure!(ids.len() == claims.len(), "{}: two claims have the same name", part.experiment.name);
+        counts.push(claims.len());
+        all.extend(claims);
+    }
+    let mut judged = judge(all).into_iter();
+    for (part, count) in sections.iter_mut().zip(counts) {
+        part.judged = judged.by_ref().take(count).collect();
+    }
+    Ok(())
+}
+
+/// Seconds for the summary's last line.
+pub(crate) fn cost_line(sections: &[SectionReport]) -> String {
+    let cells: usize = sections.iter().map(|s| s.cells.0).sum();
+    let seconds: f64 = sections.iter().map(|s| s.cells.1).sum();
+    format!("{cells} cells, {} of CPU time", duration(seconds))
+}

@@ -1,0 +1,48 @@
+//! The look of the report: a page of print, on screen and on paper, without anything from elsewhere.
+
+/// Embedded in the page.
+pub(super) const CSS: &str = "
+:root { --ink: #1c1f23; --soft: #5b6470; --line: #d5dae0; --wash: #f5f6f8; --good: #1d6b3a; --bad: #a3231f; --open: #8a5a00; }
+* { box-sizing: border-box; }
+html { background: #fff; color: var(--ink); }
+body { max-width: 1080px; margin: 0 auto; padding: 48px 28px 80px; font: 17px/1.55 Charter, 'Bitstream Charter', Georgia, 'Times New Roman', serif; }
+h1 { font-size: 34px; line-height: 1.2; margin: 4px 0 10px; font-weight: 600; }
+h2 { font-size: 25px; line-height: 1.25; margin: 64px 0 8px; padding-top: 18px; border-top: 2px solid var(--ink); font-weight: 600; }
+h3 { font-size: 18px; margin: 32px 0 8px; font-weight: 600; }
+p { margin: 0 0 14px; max-width: 44em; }
+.kicker, .byline, figcaption, caption, table, .plain, pre, .badge, summary, nav { font-family: system-ui, 'Segoe UI', 'Helvetica Neue', Arial, 'DejaVu Sans', sans-serif; }
+.kicker { letter-spacing: .08em; text-transform: uppercase; font-size: 13px; color: var(--soft); }
+.byline { font-size: 14px; color: var(--soft); margin-bottom: 28px; }
+.question { font-style: italic; font-size: 18px; }
+.counts { display: flex; gap: 12px; margin: 20px 0 24px; max-width: none; flex-wrap: wrap; }
+.counts span { font-family: system-ui, Arial, 'DejaVu Sans', sans-serif; border: 1px solid var(--line); border-radius: 4px; padding: 8px 16px; font-size: 15px; }
+.counts b { font-size: 22px; margin-right: 6px; font-weight: 600; }
+ul { padding-left: 1.2em; margin: 0 0 14px; } li { margin-bottom: 6px; }
+a { color: #1a4f8b; text-decoration: none; } a:hover { text-decoration: underline; }
+.scroll { overflow-x: auto; margin: 18px 0 28px; }
+table { border-collapse: collapse; width: 100%; font-size: 14px; line-height: 1.4; font-variant-numeric: tabular-nums; }
+caption, figcaption { text-align: left; font-size: 14px; line-height: 1.45; color: var(--ink); padding-bottom: 8px; caption-side: top; }
+caption b, figcaption b { margin-right: 4px; }
+th { text-align: left; font-weight: 600; border-bottom: 1.5px solid var(--ink); border-top: 1.5px solid var(--ink); padding: 6px 14px 6px 0; vertical-align: bottom; }
+td { border-bottom: 1px solid var(--line); padding: 5px 12px 5px 0; vertical-align: top; }
+td.claim { min-width: 15em; }
+th.n, td.n { text-align: right; white-space: nowrap; }
+th:last-child, td:last-child { padding-right: 0; }
+tr.group td { font-weight: 600; border-bottom: none; padding-top: 14px; }
+.advice { color: var(--soft); font-size: 13px; }
+.badge { font-size: 12.5px; font-weight: 600; border-radius: 3px; padding: 1px 8px; white-space: nowrap; border: 1px solid currentColor; }
+.upheld { color: var(--good); } .rejected { color: #fff; background: var(--bad); border-color: var(--bad); } .undecided { color: var(--open); border-style: dashed; }
+figure { margin: 28px 0 34px; }
+figure svg { display: block; width: 100%; height: auto; margin-bottom: 10px; }
+.note { border-left: 3px solid var(--line); padding: 2px 0 2px 14px; font-size: 15.5px; color: #333a42; }
+.warning { border-left: 3px solid var(--bad); padding: 6px 0 6px 14px; }
+pre { background: var(--wash); border: 1px solid var(--line); border-radius: 4px; padding: 12px 14px; font-family: ui-monospace, Menlo, Consolas, 'DejaVu Sans Mono', monospace; font-size: 13.5px; white-space: pre-wrap; }
+code { font-family: ui-monospace, Menlo, Consolas, 'DejaVu Sans Mono', monospace; font-size: .86em; }
+@media print {
+  body { max-width: none; padding: 0; font-size: 10.5pt; }
+  h2 { break-before: page; } h2.flow { break-before: auto; }
+  figure, table, .note { break-inside: avoid; } h3 { break-after: avoid; }
+  .badge, .rejected { print-color-adjust: exact; -webkit-print-color-adjust: exact; }
+  a { color: inherit; }
+}
+";

@@ -1,0 +1,36 @@
+//! The few lines that end a study on the terminal.
+
+use crate::harness::{Outcome, Verdict};
+
+/// Verdict counts, the headline of each experiment, and where the report is.
+pub fn summary(outcome: &Outcome) -> String {
+    let mut text = format!("\n{}\n\n", counts(outcome));
+    for part in &outcome.sections {
+        if let Some(headline) = part.section.summary.first() {
+            text.push_str(&format!("{}: {headline}\n", part.experiment.title));
+        }
+        for judged in part.judged.iter().filter(|j| j.verdict != Verdict::Upheld) {
+            let claim = &judged.claim;
+            let why = if judged.advice.is_empty() { String::new() } else { format!("; {}", judged.advice) };
+            let verdict = judged.verdict.word();
+            text.push_str(&format!(
+                "  {verdict}: {} Measured {}; claimed {}{why}.\n",
+                claim.text,
+                judged.measured(),
+                claim.margin()
+            ));
+        }
+    }
+    text.push_str(&format!("\nReport: {}\n", outcome.report.display()));
+    text
+}
+
+/// "12 claims: 9 upheld, 1 rejected, 2 undecided."
+fn counts(outcome: &Outcome) -> String {
+    let [upheld, rejected, undecided] =
+        [Verdict::Upheld, Verdict::Rejected, Verdict::Undecided].map(|verdict| outcome.count(verdict));
+    let total = upheld + rejected + undecided;
+    let noun = if total == 1 { "claim" } else { "claims" };
+    let cost = crate::harness::cost_line(&outcome.sections);
+    format!("{total} {noun}: {upheld} upheld, {rejected} rejected, {undecided} undecided ({cost}).")
+}

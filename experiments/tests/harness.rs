@@ -1,0 +1,303 @@
+//! Laws of the harness, on an experiment whose answer is known.
+#![allow(clippy::unwrap_used, reason = "tests")]
+
+mod fake;
+
+use std::collections::BTreeMap;
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+use turbid_experiments::harness::{Experiment, Outcome, Settings, Study, Verdict, run};
+
+fn settings(out: &Path) -> Settings {
+    Settings { threads: 2, ..Settings::new(out) }
+}
+
+fn read(folder: &Path, name: &str) -> Vec<u8> {
+    fs::read(folder.join(name)).unwrap()
+}
+
+/// All results that must be functions of settings and seed: name and content.
+fn results(out: &Path) -> BTreeMap<String, Vec<u8>> {
+    let mut files: BTreeMap<String, Vec<u8>> = ["results.csv", "claims.csv", "predictions.csv"]
+        .iter()
+        .map(|name| (name.to_string(), read(out, name)))
+        .collect();
+    for entry in fs::read_dir(out.join("figures")).unwrap() {
+        let path = entry.unwrap().path();
+        files.insert(path.file_name().unwrap().to_str().unwrap().to_string(), fs::read(path).unwrap());
+    }
+    files
+}
+
+fn cell_files(out: &Path) -> Vec<PathBuf> {
+    let mut paths: Vec<PathBuf> =
+        fs::read_dir(out.join("cells/fake")).unwrap().map(|e| e.unwrap().path()).collect();
+    paths.retain(|p| p.file_name().unwrap() != "predictions.csv");
+    paths.sort();
+    paths
+}
+
+fn verdicts(outcome: &Outcome) -> Vec<(String, Verdict)> {
+    outcome.sections.iter().flat_map(|s| &s.judged).map(|j| (j.claim.id.clone(), j.verdict)).collect()
+}
+
+/// The bits of an undisturbed run on one thread.
+fn undisturbed() -> BTreeMap<String, Vec<u8>> {
+    let folder = tempfile::tempdir().unwrap();
+    run(&fake::study(), &Settings { threads: 1, ..settings(folder.path()) }).unwrap();
+    results(folder.path())
+}
+
+#[test]
+fn right_is_upheld_wrong_is_rejected_and_the_twin_is_seen() {
+    let folder = tempfile::tempdir().unwrap();
+    let outcome = run(&fake::study(), &settings(folder.path())).unwrap();
+    let expected = [
+        ("amplitude", Verdict::Upheld),
+        ("residual", Verdict::Undecided),
+        ("wrong", Verdict::Rejected),
+        ("twin", Verdict::Upheld),
+    ];
+    assert_eq!(verdicts(&outcome), expected.map(|(id, verdict)| (id.to_string(), verdict)));
+    assert_eq!((outcome.measured, outcome.strict_code()), (64, 1));
+    let undecided = &outcome.sections[0].judged[1];
+    assert!(undecided.advice.contains("maps of this size would decide"), "{}", undecided.advice);
+    for name in [
+        "report.html",
+        "results.csv",
+        "claims.csv",
+        "predictions.csv",
+        "timing.csv",
+        "provenance.json",
+        "figures/fake-bias.svg",
+    ] {
+        assert!(folder.path().join(name).exists(), "{name}");
+    }
+    let table = String::from_utf8(read(folder.path(), "results.csv")).unwrap();
+    let header = "experiment,case,quantity,unit,n,mean,std_error,vov,predicted,reference,reference_error,z,p,verdict,cost,cost_unit";
+    assert_eq!(table.lines().next().unwrap(), header);
+    assert_eq!(table.lines().count(), 6);
+    assert!(table.contains(",640000,photons"));
+}
+
+#[test]
+fn results_are_the_same_bits_on_any_number_of_threads() {
+    let expected = undisturbed();
+    for threads in [2, 4] {
+        let folder = tempfile::tempdir().unwrap();
+        run(&fake::study(), &Settings { threads, ..settings(folder.path()) }).unwrap();
+        assert_eq!(results(folder.path()), expected, "{threads} threads");
+    }
+}
+
+#[test]
+fn another_seed_gives_other_results() {
+    let folder = tempfile::tempdir().unwrap();
+    run(&fake::study(), &Settings { seed: 2, ..settings(folder.path()) }).unwrap();
+    assert_ne!(results(folder.path())["results.csv"], undisturbed()["results.csv"]);
+}
+
+#[test]
+fn a_failed_cell_keeps_the_others_and_the_next_run_goes_on() {
+    let folder = tempfile::tempdir().unwrap();
+    fs::write(folder.path().join("fail"), b"").unwrap();
+    let error = run(&fake::study(), &settings(folder.path())).unwrap_err();
+    assert_eq!(format!("{error:#}"), "cell slab-000040 of fake: asked to fail");
+    assert!(!folder.path().join("report.html").exists());
+    let kept = cell_files(folder.path()).len();
+    assert!((40..64).contains(&kept), "{kept}");
+    fs::remove_file(folder.path().join("fail")).unwrap();
+    let outcome = run(&fake::study(), &settings(folder.path())).unwrap();
+    assert_eq!(outcome.measured, 64 - kept);
+    assert_eq!(results(folder.path()), undisturbed());
+}
+
+const ABORT_IN: &str = "TURBID_TEST_ABORT_IN";
+
+/// Not a test by itself: the process that the next one starts, to die in the middle of a study.
+#[test]
+fn child_that_aborts() {
+    if let Some(folder) = std::env::var_os(ABORT_IN) {
+        let _never = run(&fake::study(), &settings(Path::new(&folder)));
+    }
+}
+
+#[test]
+fn a_killed_process_is_resumed_to_the_same_bits() {
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path();
+    fs::write(out.join("abort"), b"").unwrap();
+    let child = Command::new(std::env::current_exe().unwrap())
+        .args(["--exact", "child_that_aborts", "--test-threads=1"])
+        .env(ABORT_IN, out)
+        .output()
+        .unwrap();
+    assert!(!child.status.success());
+    fs::remove_file(out.join("abort")).unwrap();
+    let kept = cell_files(out);
+    assert!((30..64).contains(&kept.len()), "{}", kept.len());
+    // Whatever else a crash can do to files: one cut short, one empty, one lost.
+    let bytes = fs::read(&kept[0]).unwrap();
+    fs::write(&kept[0], &bytes[..bytes.len() / 2]).unwrap();
+    fs::write(&kept[1], b"").unwrap();
+    fs::remove_file(&kept[2]).unwrap();
+    let outcome = run(&fake::study(), &settings(out)).unwrap();
+    assert_eq!(outcome.measured, 64 - (kept.len() - 3));
+    assert_eq!(results(out), undisturbed());
+    // The record says that predictions came first.
+    assert!(!String::from_utf8(read(out, "provenance.json")).unwrap().contains("\"late_predictions\": true"));
+}
+
+#[test]
+fn a_finished_study_only_redraws() {
+    let folder = tempfile::tempdir().unwrap();
+    run(&fake::study(), &settings(folder.path())).unwrap();
+    let stamps = |out: &Path| -> Vec<_> {
+        let written = |p: &Path| fs::metadata(p).unwrap().modified().unwrap();
+        cell_files(out).iter().map(|p| written(p)).chain([written(&out.join("predictions.csv"))]).collect()
+    };
+    let names = ["report.html", "results.csv", "timing.csv", "provenance.json"];
+    let before = (stamps(folder.path()), names.map(|n| read(folder.path(), n)));
+    fs::remove_file(folder.path().join("report.html")).unwrap();
+    let outcome = run(&fake::study(), &settings(folder.path())).unwrap();
+    assert_eq!(outcome.measured, 0);
+    assert_eq!((stamps(folder.path()), names.map(|n| read(folder.path(), n))), before);
+}
+
+#[test]
+fn cells_of_another_build_or_other_settings_are_not_reused() {
+    let folder = tempfile::tempdir().unwrap();
+    let measured = |program: &str, settings: &Settings| {
+        let study = Study { program: program.to_string(), ..fake::study() };
+        let outcome = run(&study, settings).unwrap();
+        let record: serde_json::Value =
+            serde_json::from_slice(&read(folder.path(), "provenance.json")).unwrap();
+        (outcome.measured, record["foreign"].as_u64().unwrap())
+    };
+    let plain = settings(folder.path());
+    assert_eq!(measured("program-1", &plain), (64, 0));
+    assert_eq!(measured("program-1", &plain), (0, 0));
+    assert_eq!(measured("program-2", &plain), (64, 0));
+    // The build may be overridden, and that is recorded; settings may not.
+    let reuse = Settings { reuse_cells: true, ..plain.clone() };
+    assert_eq!(measured("program-3", &reuse), (0, 64));
+    assert_eq!(measured("program-3", &Settings { seed: 5, ..reuse }), (64, 0));
+    assert_eq!(measured("program-3", &Settings { seed: 5, fresh: true, ..plain }), (64, 0));
+}
+
+#[test]
+fn a_folder_without_a_manifest_is_not_emptied() {
+    let folder = tempfile::tempdir().unwrap();
+    let precious = folder.path().join("cells/precious.txt");
+    fs::create_dir_all(precious.parent().unwrap()).unwrap();
+    fs::write(&precious, b"mine").unwrap();
+    run(&fake::study(), &Settings { fresh: true, ..settings(folder.path()) }).unwrap();
+    assert!(precious.exists());
+}
+
+#[test]
+fn non_finite_values_fail_the_study() {
+    let folder = tempfile::tempdir().unwrap();
+    fs::write(folder.path().join("broken"), b"").unwrap();
+    let error = format!("{:#}", run(&fake::study(), &settings(folder.path())).unwrap_err());
+    assert!(error.contains("1 non-finite contributions in cell slab-000000 of fake; allowed: 0"), "{error}");
+    assert!(!folder.path().join("report.html").exists());
+}
+
+#[test]
+fn a_panic_in_a_cell_is_an_error_with_its_name() {
+    let panicking = Experiment { measure: |_, cell| panic!("replicate {}", cell.replicate), ..fake::FAKE };
+    let folder = tempfile::tempdir().unwrap();
+    let study = Study { experiments: &[panicking], ..fake::study() };
+    let error = format!("{:#}", run(&study, &settings(folder.path())).unwrap_err());
+    assert!(error.starts_with("cell slab-0000") && error.ends_with("of fake: it panicked"), "{error}");
+}
+
+#[test]
+fn cell_names_are_checked() {
+    use turbid_experiments::harness::CellId;
+    let folder = tempfile::tempdir().unwrap();
+    let twice =
+        Experiment { cells: |_| vec![CellId::new("a", 0, 1.0), CellId::new("a", 0, 1.0)], ..fake::FAKE };
+    let unsafe_name = Experiment { cells: |_| vec![CellId::new("../a", 0, 1.0)], ..fake::FAKE };
+    for (experiment, text) in [(twice, "two cells are called a-000000"), (unsafe_name, "no name for a file")]
+    {
+        let study = Study { experiments: &[experiment], ..fake::study() };
+        let error = format!("{:#}", run(&study, &settings(folder.path())).unwrap_err());
+        assert!(error.contains(text), "{error}");
+    }
+}
+
+#[test]
+fn only_chooses_experiments_and_knows_their_names() {
+    let other = Experiment { name: "other", ..fake::FAKE };
+    let folder = tempfile::tempdir().unwrap();
+    let study = Study { experiments: &[fake::FAKE, other], ..fake::study() };
+    let only = |name: &str| Settings { only: vec![name.to_string()], ..settings(folder.path()) };
+    let error = run(&study, &only("bais")).unwrap_err().to_string();
+    assert_eq!(error, "there is no experiment bais; there are: fake, other");
+    assert_eq!(run(&study, &only("other")).unwrap().measured, 64);
+    // The whole study takes what is there, and the predictions of neither came late.
+    assert_eq!(run(&study, &settings(folder.path())).unwrap().measured, 64);
+    assert!(
+        String::from_utf8(read(folder.path(), "provenance.json"))
+            .unwrap()
+            .contains("\"late_predictions\": false")
+    );
+}
+
+#[test]
+fn predictions_that_come_late_are_on_record() {
+    let folder = tempfile::tempdir().unwrap();
+    run(&fake::study(), &settings(folder.path())).unwrap();
+    let wiser = Experiment {
+        predict: |settings| {
+            let mut predictions = (fake::FAKE.predict)(settings)?;
+            predictions[0].value *= 1.5;
+            Ok(predictions)
+        },
+        ..fake::FAKE
+    };
+    for _ in 0..2 {
+        run(&Study { experiments: &[wiser], ..fake::study() }, &settings(folder.path())).unwrap();
+        let page = String::from_utf8(read(folder.path(), "report.html")).unwrap();
+        assert!(page.contains("Predictions changed after some cells had been measured."));
+    }
+}
+
+/// The page needs nothing from elsewhere, and says what it must.
+#[test]
+fn the_report_stands_alone() {
+    let folder = tempfile::tempdir().unwrap();
+    run(&fake::study(), &settings(folder.path())).unwrap();
+    let page = String::from_utf8(read(folder.path(), "report.html")).unwrap();
+    for absent in ["<script", "src=", "url(", "<?xml", "<link", folder.path().to_str().unwrap()] {
+        assert!(!page.contains(absent), "{absent}");
+    }
+    for present in
+        ["<svg", "Figure 1.", "upheld", "rejected", "undecided", "cargo run --release", "The planted fault"]
+    {
+        assert!(page.contains(present), "{present}");
+    }
+}
+
+/// Twelve studies, each with a margin nine errors wide, one a single error wide, and a fault of 100 errors: nothing is
+/// decided wrongly.
+#[test]
+fn verdicts_of_many_studies() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut counts = BTreeMap::new();
+    for seed in 0..12 {
+        let out = folder.path().join(seed.to_string());
+        let outcome = run(&fake::study(), &Settings { seed, ..settings(&out) }).unwrap();
+        for (id, verdict) in verdicts(&outcome) {
+            *counts.entry((id, verdict.word())).or_insert(0) += 1;
+        }
+    }
+    let count = |id: &str, word: &'static str| counts.get(&(id.to_string(), word)).copied().unwrap_or(0);
+    assert_eq!(count("wrong", "rejected"), 12);
+    assert_eq!(count("twin", "upheld"), 12);
+    assert_eq!(count("amplitude", "rejected") + count("residual", "rejected"), 0);
+    assert_eq!(count("amplitude", "upheld"), 12);
+}

@@ -1,0 +1,45 @@
+//! Working memory of one thread's searches, kept from one to the next.
+
+use std::cell::Cell;
+use wide::f32x8;
+
+/// Lists that a search fills; their contents mean nothing between searches, but for `last`.
+#[derive(Default)]
+pub(super) struct Scratch {
+    /// Nodes or blocks whose boxes touch the ball.
+    pub(super) touched: Vec<u32>,
+    /// The level above, while `touched` is being filled.
+    pub(super) parents: Vec<u32>,
+    /// Rows that have photons in the ball, the first `end` of them.
+    pub(super) rows: Vec<u32>,
+    /// Squared distances of the photons of those rows.
+    pub(super) squared: Vec<f32x8>,
+    /// How many rows there are.
+    pub(super) end: usize,
+    /// Squared distances below the bound, as bits, which are ordered as the numbers are.
+    pub(super) near: Vec<u32>,
+    /// The last search for k nearest photons.
+    pub(super) last: Option<Last>,
+}
+
+/// A finished search: whose, for how many, where, and how far the k-th was.
+#[derive(Clone, Copy)]
+pub(super) struct Last {
+    pub(super) identity: u64,
+    pub(super) k: usize,
+    pub(super) point: [f32; 3],
+    pub(super) squared: f32,
+}
+
+thread_local! {
+    static SCRATCH: Cell<Option<Box<Scratch>>> = const { Cell::new(None) };
+}
+
+/// Lends the thread's memory to `work`; a search inside `work` gets memory of its own.
+#[inline(always)]
+pub(super) fn with_scratch<T>(work: impl FnOnce(&mut Scratch) -> T) -> T {
+    let mut scratch = SCRATCH.take().unwrap_or_default();
+    let result = work(&mut scratch);
+    SCRATCH.set(Some(scratch));
+    result
+}
