@@ -24,7 +24,7 @@ pub struct Histories {
     pub max_order: Option<u32>,
 }
 
-/// Where the emitted power went [W], summed over channels and histories; each history counts as though it were the
+/// Where the emitted power went \[W\], summed over channels and histories; each history counts as though it were the
 /// only one, so that divided by the histories these are the powers of the scene.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Ledger {
@@ -131,7 +131,7 @@ struct Tallier<'a, K: Fn(&Photon) -> bool> {
     sensors: &'a [Sensor],
     keep: &'a K,
     power: Spectrum,
-    /// What the present history brought each sensor [W].
+    /// What the present history brought each sensor \[W\].
     scores: Vec<Spectrum>,
     pass: Pass,
 }

@@ -49,7 +49,7 @@ pub struct Parts {
     pub objects: Vec<Object>,
     /// Lights.
     pub lights: Vec<Light>,
-    /// Side of the square cell that stands for an unbounded slab [L].
+    /// Side of the square cell that stands for an unbounded slab \[L\].
     pub cell: Option<f64>,
     /// What is measured.
     pub sensors: Vec<Sensor>,
@@ -122,7 +122,7 @@ impl Scene {
         self.stage.as_ref()
     }
 
-    /// Power of all lights [W].
+    /// Power of all lights \[W\].
     pub fn power(&self) -> Spectrum {
         self.lights().iter().fold(Spectrum::ZERO, |sum, light| sum + light.power(self.stage()))
     }
@@ -166,7 +166,7 @@ impl Scene {
         Segments::new(self.regions(), ray, end)
     }
 
-    /// Optical depth up to distance `end` [1].
+    /// Optical depth up to distance `end` \[1\].
     pub fn optical_depth(&self, ray: &Ray, end: f64) -> Spectrum {
         let mut depth = Spectrum::ZERO;
         for segment in self.segments(ray, end).iter() {
@@ -183,7 +183,7 @@ impl Scene {
             .map(|s| if s == 0.0 { 0.0 } else { s * part.length() })
     }
 
-    /// Fraction of the light that passes up to distance `end` without a collision [1].
+    /// Fraction of the light that passes up to distance `end` without a collision \[1\].
     pub fn transmittance(&self, ray: &Ray, end: f64) -> Spectrum {
         decay(self.optical_depth(ray, end))
     }

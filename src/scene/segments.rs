@@ -11,7 +11,7 @@ const MAX_SEGMENTS: usize = 2 * MAX_REGIONS - 1;
 /// A stretch of one medium.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Segment {
-    /// Where it is on the ray [L].
+    /// Where it is on the ray \[L\].
     pub interval: Interval,
     /// Index of the region.
     pub region: usize,

@@ -34,7 +34,7 @@ pub struct PhotonSettings {
 pub struct PhotonReadings {
     /// One a sensor and channel: tallies have n = histories, maps n = maps.
     pub readings: Vec<Reading>,
-    /// Powers [W] by history.
+    /// Powers \[W\] by history.
     pub ledger: Ledger,
     /// Estimates that found fewer than k photons within the cap.
     pub underfull: u64,
@@ -131,7 +131,7 @@ fn map_orders(sensor: &Sensor) -> Option<Orders> {
     }
 }
 
-/// How far beyond the cell's edges the sensors' balls of radius `cap` may reach [L]; rays may pass any point.
+/// How far beyond the cell's edges the sensors' balls of radius `cap` may reach \[L\]; rays may pass any point.
 ///
 /// # Errors
 /// `Error::Scene` beyond the side of the cell: copies are made once, and a ball that reaches past them would miss

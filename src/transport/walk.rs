@@ -13,7 +13,7 @@ use glam::DVec3;
 pub struct Walker {
     /// The ray ahead.
     pub ray: Ray,
-    /// Power of a photon [W], or throughput of a path.
+    /// Power of a photon \[W\], or throughput of a path.
     pub weight: Spectrum,
     /// Number of scatterings so far by media and non-specular surfaces.
     pub order: u32,
@@ -37,7 +37,7 @@ impl Walker {
 pub struct Arrival<'a> {
     /// The walker, its weight as it arrives.
     pub walker: &'a Walker,
-    /// Where [L].
+    /// Where \[L\].
     pub position: DVec3,
 }
 
