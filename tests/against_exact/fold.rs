@@ -4,7 +4,7 @@ use crate::support::run::pass;
 use crate::support::scenes::{CELL, Incidence, slab};
 use crate::support::verdict;
 use glam::DVec3;
-use turbid::photons::fold;
+use turbid::photons::{Photon, fold};
 use turbid::rng::{Purpose, Stream};
 use turbid::scene::Scene;
 use turbid::stats::chi_squared_test;
@@ -95,4 +95,38 @@ fn four_mirrors_are_a_wrong_twin() {
         p_of_even(&counts(symmetric.iter().map(|p| fold::into_cell(*p, CELL)))),
         2,
     );
+}
+
+/// With copies around the cell every ball about a point of the cell meets what it would meet in the endless lattice,
+/// each photon once; without copies it does not.
+#[test]
+fn copies_around_the_cell_are_those_of_the_lattice() {
+    let mut stream = Stream::new(3, Purpose::Synthetic, 0, 0);
+    let photon = |position: DVec3| Photon {
+        position,
+        dir: glam::Vec3::Z,
+        power: glam::Vec3::ONE,
+        order: 0,
+        flags: turbid::photons::Flags::NONE,
+    };
+    let photons: Vec<Photon> =
+        (0..500).map(|_| photon(DVec3::from_array(stream.triple()) * DVec3::new(CELL, CELL, 1.0))).collect();
+    for margin in [0.3, 0.5 * CELL, 0.8 * CELL, CELL] {
+        let mut around = photons.clone();
+        fold::surround(&mut around, CELL, margin);
+        let mut missed_without_copies = 0;
+        for _ in 0..200 {
+            let probe = DVec3::from_array(stream.triple()) * DVec3::new(CELL, CELL, 1.0);
+            let is_near = |p: DVec3| p.distance(probe) <= margin;
+            let found = around.iter().filter(|p| is_near(p.position)).count();
+            let shifts = (-2..=2)
+                .flat_map(|i| (-2..=2).map(move |j| DVec3::new(f64::from(i), f64::from(j), 0.0) * CELL));
+            let expected: usize =
+                shifts.map(|shift| photons.iter().filter(|p| is_near(p.position + shift)).count()).sum();
+            assert_eq!(found, expected, "margin {margin}, probe {probe}");
+            missed_without_copies +=
+                usize::from(photons.iter().filter(|p| is_near(p.position)).count() != expected);
+        }
+        assert!(missed_without_copies > 0);
+    }
 }

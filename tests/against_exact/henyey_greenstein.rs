@@ -74,7 +74,8 @@ fn radiances_by_direction() {
 }
 
 /// The release criterion: R = 0.0973946 and T = 0.6609577 at tau = 2, albedo 0.9, g = 0.75, normal incidence, for
-/// seeds 1, 2 and 3, paths and photons, at a relative standard error of 1e-3.
+/// seeds 1, 2 and 3, paths and photons, at a relative standard error of 1e-3. That error takes 64 million histories:
+/// about 40 s on two cores, most of this file's time.
 #[test]
 fn release_criterion() {
     /// sqrt((1-R)/R/n) = 1e-3 for R, and better for T.
@@ -106,6 +107,6 @@ fn release_criterion() {
 fn wrong_twin(right: &Scene) {
     let wrong = slab(2.0, 0.9, 0.75 * 1.005, Incidence::Beam(1.0));
     assert_ne!(right.regions(), wrong.regions());
-    let moments = pass(&wrong, &[(reflectance(2.0), Orders::ALL)], 9_300_000, 4, |_| false).tallies[0][0];
+    let moments = pass(&wrong, &[(reflectance(2.0), Orders::ALL)], 3_000_000, 4, |_| false).tallies[0][0];
     verdict::rejects("R with g half a per cent off", &moments, 0.097_394_638_671_158_95, 4);
 }

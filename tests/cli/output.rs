@@ -43,6 +43,25 @@ fn tables_csv_and_json_say_the_same() {
     }
 }
 
+/// Every command of README.md that asks the simulator, with fewer histories.
+#[test]
+fn the_examples_of_the_readme_work() {
+    let readme = std::fs::read_to_string(concat!(env!("CARGO_MANIFEST_DIR"), "/README.md")).unwrap();
+    let prefix = "cargo run --release -p turbid -- ";
+    let mut seen = 0;
+    for line in readme.lines().filter_map(|line| line.strip_prefix(prefix)) {
+        let mut words: Vec<&str> = line.split('#').next().unwrap().split_whitespace().collect();
+        for i in 1..words.len() {
+            if ["--photons", "--samples"].contains(&words[i - 1]) {
+                words[i] = "1000";
+            }
+        }
+        assert!(!succeeds(&words).is_empty(), "{line}");
+        seen += 1;
+    }
+    assert!(seen >= 3, "{seen}");
+}
+
 #[test]
 fn one_map_has_no_standard_error() {
     let csv = succeeds(&["measure", "slab", "--with", "photons", "--photons", "1e4", "--format", "csv"]);
