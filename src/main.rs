@@ -16,6 +16,9 @@ struct Arguments {
 }
 
 fn main() -> ExitCode {
-    let outcome = Arguments::parse().command.run();
+    let outcome = match Arguments::try_parse() {
+        Ok(arguments) => arguments.command.run(),
+        Err(error) => command::explain(&error),
+    };
     command::exit_code("turbid", outcome)
 }

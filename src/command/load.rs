@@ -41,7 +41,10 @@ impl Source {
         for set in &self.sets {
             let (key, value) = split(set)?;
             if !table.contains_key(key) {
-                bail!("--set {set}: {}", unknown(key, &table.keys().map(String::as_str).collect::<Vec<_>>()));
+                bail!(
+                    "--set {set}: {}",
+                    unknown("key", key, &table.keys().map(String::as_str).collect::<Vec<_>>())
+                );
             }
             table.insert(key.to_string(), value);
             text = toml::to_string(&table)?;
@@ -89,7 +92,7 @@ fn slot<'a>(place: &'a mut toml::Value, key: &str) -> anyhow::Result<&'a mut tom
     let inner = match place {
         toml::Value::Table(table) => {
             if rest.is_some() && !table.contains_key(part) {
-                bail!("{}", unknown(part, &table.keys().map(String::as_str).collect::<Vec<_>>()));
+                bail!("{}", unknown("key", part, &table.keys().map(String::as_str).collect::<Vec<_>>()));
             }
             // A new key gets its value at once, from the caller.
             table.entry(part).or_insert(toml::Value::Boolean(false))
@@ -107,14 +110,14 @@ fn slot<'a>(place: &'a mut toml::Value, key: &str) -> anyhow::Result<&'a mut tom
     }
 }
 
-/// An unknown key, and the nearest known one.
-fn unknown(key: &str, known: &[&str]) -> String {
+/// An unknown key or value, and the nearest known one.
+fn unknown(what: &str, key: &str, known: &[&str]) -> String {
     let nearest =
         known.iter().max_by(|a, b| strsim::jaro_winkler(a, key).total_cmp(&strsim::jaro_winkler(b, key)));
     let list = known.join(", ");
     match nearest {
-        Some(name) => format!("unknown key `{key}`; nearest: `{name}`; allowed: {list}"),
-        None => format!("unknown key `{key}`"),
+        Some(name) => format!("unknown {what} `{key}`; nearest: `{name}`; allowed: {list}"),
+        None => format!("unknown {what} `{key}`"),
     }
 }
 
@@ -135,13 +138,12 @@ fn located(file: &str, text: &str, error: &toml::de::Error) -> String {
 /// The error's message in one line, with the key in the place of "the value", and the nearest known key.
 fn say(text: &str, error: &toml::de::Error) -> String {
     let message = error.message().replace('\n', " ");
-    if let Some(rest) =
-        message.strip_prefix("unknown field `").or_else(|| message.strip_prefix("unknown variant `"))
-    {
-        let mut words = rest.split('`').step_by(2);
-        let key = words.next().unwrap_or_default();
-        let known: Vec<&str> = rest.split('`').skip(2).step_by(2).collect();
-        return unknown(key, &known);
+    for (prefix, what) in [("unknown field `", "key"), ("unknown variant `", "value")] {
+        if let Some(rest) = message.strip_prefix(prefix) {
+            let word = rest.split('`').next().unwrap_or_default();
+            let known: Vec<&str> = rest.split('`').skip(2).step_by(2).collect();
+            return unknown(what, word, &known);
+        }
     }
     match error.span().and_then(|span| key_before(text, span)) {
         Some(key) => match message.strip_prefix("the value") {

@@ -17,6 +17,7 @@ use turbid::sensor::{PathSettings, PhotonSettings, Reading, by_paths, by_photons
 /// from photon maps have n = maps, and no standard error from a single map, since all estimates of one map share
 /// its photons.
 #[derive(clap::Args)]
+#[command(allow_negative_numbers = true)]
 pub struct Measure {
     #[command(flatten)]
     source: Source,
@@ -112,7 +113,7 @@ impl Measure {
             FormatName::Csv => Format::Csv,
             FormatName::Json => Format::Json,
         };
-        Ok(print(|out| write_rows(out, &readings, format))?)
+        print(|out| write_rows(out, &readings, format)).context("standard output")
     }
 
     fn measure_by_paths(&self, scene: &Scene) -> anyhow::Result<Vec<Reading>> {

@@ -5,7 +5,11 @@ mod load;
 mod measure;
 mod progress;
 mod scenes;
+mod usage;
 
+pub use usage::explain;
+
+use anyhow::Context;
 use clap::Subcommand;
 use std::io::{ErrorKind, Write};
 use std::process::ExitCode;
@@ -48,10 +52,7 @@ pub fn exit_code(program: &str, outcome: anyhow::Result<()>) -> ExitCode {
 
 /// Writes text to stdout.
 fn print(text: &str) -> anyhow::Result<()> {
-    let mut out = std::io::stdout().lock();
-    out.write_all(text.as_bytes())?;
-    out.flush()?;
-    Ok(())
+    turbid::output::print(|out| out.write_all(text.as_bytes())).context("standard output")
 }
 
 /// A count on the command line: 1000000, 1_000_000 or 1e6; at least 1.

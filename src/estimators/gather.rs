@@ -66,7 +66,7 @@ impl Gather {
         Ok(Gather::Nearest { k: NeighborCount::new(k)?, max_radius })
     }
 
-    /// The farthest that a photon may be taken from [L].
+    /// The farthest that a photon may be taken from \[L\].
     pub fn cap(self) -> f64 {
         match self {
             Gather::Radius(radius) => radius.get(),

@@ -18,7 +18,7 @@ fn axis(index: usize) -> DVec3 {
 }
 
 impl Cuboid {
-    /// A box from its lower and upper corners [L].
+    /// A box from its lower and upper corners \[L\].
     pub fn new(min: DVec3, max: DVec3) -> Result<Self> {
         if !(min.is_finite() && max.is_finite() && min.cmplt(max).all()) {
             return Err(Error::Scene(
@@ -28,12 +28,12 @@ impl Cuboid {
         Ok(Cuboid { min, max })
     }
 
-    /// Lower corner [L].
+    /// Lower corner \[L\].
     pub fn min(&self) -> DVec3 {
         self.min
     }
 
-    /// Upper corner [L].
+    /// Upper corner \[L\].
     pub fn max(&self) -> DVec3 {
         self.max
     }

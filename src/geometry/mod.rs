@@ -19,7 +19,7 @@ use glam::DVec3;
 /// Where a ray meets a shape.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Hit {
-    /// Distance along the ray [L].
+    /// Distance along the ray \[L\].
     pub t: f64,
     /// Unit normal: outwards for closed shapes, the front for a rectangle.
     pub normal: DVec3,
@@ -123,7 +123,7 @@ impl Shape {
         }
     }
 
-    /// Shortest extent [L]: what the mean free path is compared with.
+    /// Shortest extent \[L\]: what the mean free path is compared with.
     pub fn shortest_extent(&self) -> f64 {
         match self {
             Shape::Sphere(s) => 2.0 * s.radius(),

@@ -15,7 +15,7 @@ pub struct Rectangle {
 }
 
 impl Rectangle {
-    /// A rectangle from a corner and two perpendicular edges [L].
+    /// A rectangle from a corner and two perpendicular edges \[L\].
     pub fn new(corner: DVec3, u: DVec3, v: DVec3) -> Result<Self> {
         let (lu, lv) = (u.length(), v.length());
         if !(lu > 0.0 && lv > 0.0 && (lu * lv).is_finite() && corner.is_finite()) {
@@ -55,7 +55,7 @@ impl Rectangle {
         (0.0..=1.0).contains(&a) && (0.0..=1.0).contains(&b)
     }
 
-    /// Signed distance of a point from the plane, positive in front [L].
+    /// Signed distance of a point from the plane, positive in front \[L\].
     pub fn height(&self, p: DVec3) -> f64 {
         (p - self.corner).dot(self.normal)
     }

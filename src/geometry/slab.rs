@@ -33,7 +33,7 @@ impl Face {
 }
 
 impl Slab {
-    /// A layer from its upper plane's z and its thickness [L].
+    /// A layer from its upper plane's z and its thickness \[L\].
     pub fn new(top: f64, thickness: f64) -> Result<Self> {
         if !(thickness > 0.0 && thickness.is_finite()) {
             return Err(Error::out_of_range("thickness", thickness, "finite and above 0"));
@@ -44,17 +44,17 @@ impl Slab {
         Ok(Slab { top, thickness })
     }
 
-    /// z of the upper plane [L].
+    /// z of the upper plane \[L\].
     pub fn top(&self) -> f64 {
         self.top
     }
 
-    /// Thickness [L].
+    /// Thickness \[L\].
     pub fn thickness(&self) -> f64 {
         self.thickness
     }
 
-    /// z of a face [L].
+    /// z of a face \[L\].
     pub fn face(&self, face: Face) -> f64 {
         match face {
             Face::Top => self.top,

@@ -13,7 +13,7 @@ pub struct Sphere {
 }
 
 impl Sphere {
-    /// A sphere of centre and radius [L].
+    /// A sphere of centre and radius \[L\].
     pub fn new(center: DVec3, radius: f64) -> Result<Self> {
         if !(radius > 0.0 && radius.is_finite()) {
             return Err(Error::out_of_range("radius", radius, "finite and above 0"));
@@ -24,12 +24,12 @@ impl Sphere {
         Ok(Sphere { center, radius })
     }
 
-    /// Centre [L].
+    /// Centre \[L\].
     pub fn center(&self) -> DVec3 {
         self.center
     }
 
-    /// Radius [L].
+    /// Radius \[L\].
     pub fn radius(&self) -> f64 {
         self.radius
     }

@@ -114,13 +114,18 @@ impl<F: FnMut(u32, Spectrum)> PathVisitor<'_, F> {
     }
 }
 
-/// Density of the free flight at a distance where transmittance times extinction is `density` [1/L]: the mixture
-/// over channels, and conditioned on a collision where the flight is forced.
+/// Density of the free flight at a distance where transmittance times extinction is `density` [1/L]: its mean over
+/// channels, and conditioned on a collision where the flight is forced.
+///
+/// It weighs two ways of sampling against each other, so it must be the same number wherever it is asked for: it does
+/// not know the walker's weight, which a flight through a coloured medium changes.
 fn flight_pdf(scene: &Scene, walker: &Walker, density: Spectrum, ray: &Ray, end: f64) -> f64 {
-    let mixture =
-        if density.is_grey() { density[0] } else { (walker.weight * density).sum() / walker.weight.sum() };
     let forced = scene.plan().forces_first_collision && walker.order == 0 && end.is_infinite();
-    if forced { mixture / -crate::math::exp_m1(-scene.optical_depth(ray, end)[0]) } else { mixture }
+    if forced {
+        density.mean() / -crate::math::exp_m1(-scene.optical_depth(ray, end).mean())
+    } else {
+        density.mean()
+    }
 }
 
 /// The stretch of a ray from the first medium to the last.
@@ -147,19 +152,23 @@ impl EqualAngles {
         EqualAngles { nearest, distance, angle: (angle(span.start), angle(span.end)), span }
     }
 
-    /// None where the ray runs through the point itself: then the angle is no longer a coordinate.
+    /// The angle that the span fills, or none where the angle is no coordinate: on a ray through the point itself, and
+    /// so far away that the span shrinks to nothing.
+    fn range(&self) -> Option<f64> {
+        let range = self.angle.1 - self.angle.0;
+        (self.distance > 0.0 && range > 0.0).then_some(range)
+    }
+
     fn sample(&self, u: f64) -> Option<f64> {
-        let t = self.nearest + self.distance * libm::tan(self.angle.0 + u * (self.angle.1 - self.angle.0));
-        (self.distance > 0.0 && t.is_finite()).then(|| t.clamp(self.span.start, self.span.end))
+        let range = self.range()?;
+        let t = self.nearest + self.distance * libm::tan(self.angle.0 + u * range);
+        t.is_finite().then(|| t.clamp(self.span.start, self.span.end))
     }
 
     /// [1/L]
     fn pdf(&self, t: f64) -> f64 {
+        let Some(range) = self.range() else { return 0.0 };
         let along = t - self.nearest;
-        let range = self.angle.1 - self.angle.0;
-        if self.distance == 0.0 || range <= 0.0 {
-            return 0.0;
-        }
         self.distance / (range * (self.distance * self.distance + along * along))
     }
 }
@@ -172,7 +181,7 @@ impl<F: FnMut(u32, Spectrum)> Visitor for PathVisitor<'_, F> {
                 self.equiangular(walker, hit, stream);
             }
             Step::Collision(Arrival { position, .. }, region) => {
-                let medium = self.scene.regions()[region].medium;
+                let medium = &self.scene.regions()[region].medium;
                 let before = walker.ray.dir;
                 let scattered = |towards: DVec3| {
                     let (one_minus_mu, one_plus_mu) = cosine_pair(before, towards);
@@ -214,6 +223,8 @@ fn uncollided(scene: &Scene, light: &Light, ray: &Ray, end: f64) -> Spectrum {
     match light {
         Light::Isotropic(light) if light.is_lit_against(ray.dir) => match light.shape().interval(ray) {
             Some(inside) if inside.end < end => light.radiance() * scene.transmittance(ray, inside.end),
+            // A point on the boundary is inside: light comes in against a ray that leaves at once.
+            None if light.shape().contains(ray.origin) => light.radiance(),
             _ => Spectrum::ZERO,
         },
         Light::VolumeSource(light) => {

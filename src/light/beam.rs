@@ -16,9 +16,9 @@ pub enum Section {
     Unbounded,
     /// A disc about a point.
     Disc {
-        /// Where the axis starts [L].
+        /// Where the axis starts \[L\].
         center: DVec3,
-        /// Radius [L].
+        /// Radius \[L\].
         radius: f64,
     },
     /// A rectangle whose front faces along the beam.

@@ -38,17 +38,17 @@ pub enum Light {
     VolumeSource(VolumeSource),
 }
 
-/// What unbounded lights need to start photons: the one slab of the scene and the side of its cell [L].
+/// What unbounded lights need to start photons: the one slab of the scene and the side of its cell \[L\].
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Stage {
     /// The layer.
     pub slab: Slab,
-    /// Side of the square cell [0, side) x [0, side) that stands for the whole layer [L].
+    /// Side of the square cell [0, side) x [0, side) that stands for the whole layer \[L\].
     pub side: f64,
 }
 
 impl Stage {
-    /// Side of the cell [L]; 0 where there is none.
+    /// Side of the cell \[L\]; 0 where there is none.
     pub fn side(stage: Option<&Stage>) -> f64 {
         stage.map_or(0.0, |s| s.side)
     }
@@ -59,7 +59,7 @@ impl Stage {
 pub struct Emission {
     /// Where it starts and where to.
     pub ray: Ray,
-    /// Power [W], as though it were the only one.
+    /// Power \[W\], as though it were the only one.
     pub power: Spectrum,
 }
 
@@ -68,7 +68,7 @@ pub struct Emission {
 pub struct LightSample {
     /// Unit direction from the point towards the light.
     pub dir: DVec3,
-    /// How far the light is [L]; infinite for an unbounded beam.
+    /// How far the light is \[L\]; infinite for an unbounded beam.
     pub distance: f64,
     /// Radiance over density, or irradiance for a delta light [W/L^2].
     pub value: Spectrum,
@@ -118,7 +118,7 @@ impl Light {
         }
     }
 
-    /// Emitted power [W]; of an unbounded light the part that enters the cell.
+    /// Emitted power \[W\]; of an unbounded light the part that enters the cell.
     pub fn power(&self, stage: Option<&Stage>) -> Spectrum {
         match self {
             Light::Beam(l) => l.power(stage),

@@ -15,7 +15,7 @@ pub struct Point {
 }
 
 impl Point {
-    /// A light at `position` [L] of the given total power [W].
+    /// A light at `position` \[L\] of the given total power \[W\].
     pub fn new(position: DVec3, power: Spectrum) -> Result<Self> {
         if !position.is_finite() {
             return Err(Error::Scene("a point light needs a finite position".into()));
@@ -23,7 +23,7 @@ impl Point {
         Ok(Point { position, power: emissive("power", power)? })
     }
 
-    /// Where it is [L].
+    /// Where it is \[L\].
     pub fn position(&self) -> DVec3 {
         self.position
     }

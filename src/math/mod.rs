@@ -10,7 +10,7 @@ pub use libm::{atan2, cos, exp, expm1 as exp_m1, log as ln, log1p as ln_1p, sin,
 pub use number::{Albedo, Asymmetry, NonNegative, Positive};
 pub use ray::{Interval, Ray};
 
-/// Full solid angle [sr].
+/// Full solid angle \[sr\].
 pub const FOUR_PI: f64 = 4.0 * std::f64::consts::PI;
 
 /// The pair (1-mu, 1+mu) of two unit directions, mu the cosine between them, with every digit at both peaks.

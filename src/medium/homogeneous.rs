@@ -13,7 +13,7 @@ pub struct Homogeneous {
 }
 
 impl Homogeneous {
-    /// A medium of extinction `sigma_t` [1/L] and single-scattering albedo [1], by channel.
+    /// A medium of extinction `sigma_t` [1/L] and single-scattering albedo \[1\], by channel.
     ///
     /// # Errors
     /// `Error::OutOfRange` if an extinction is negative or not finite, or an albedo outside 0 to 1.
@@ -35,7 +35,7 @@ impl Homogeneous {
         self.sigma_t
     }
 
-    /// Single-scattering albedo [1].
+    /// Single-scattering albedo \[1\].
     pub fn albedo(&self) -> Spectrum {
         self.albedo
     }

@@ -6,11 +6,11 @@ use glam::{DVec3, Vec3};
 /// A photon as it arrives at a collision or a surface, before the albedo decides what becomes of it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Photon {
-    /// Where it arrived [L].
+    /// Where it arrived \[L\].
     pub position: DVec3,
     /// Unit direction of travel.
     pub dir: Vec3,
-    /// Power it arrives with [W], as though its history were the only one emitted: estimates divide by the
+    /// Power it arrives with \[W\], as though its history were the only one emitted: estimates divide by the
     /// number emitted.
     pub power: Vec3,
     /// Number of scatterings so far, by media and non-specular surfaces.

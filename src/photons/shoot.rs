@@ -24,7 +24,7 @@ pub struct Histories {
     pub max_order: Option<u32>,
 }
 
-/// Where the emitted power went [W], summed over channels and histories; each history counts as though it were the
+/// Where the emitted power went \[W\], summed over channels and histories; each history counts as though it were the
 /// only one, so that divided by the histories these are the powers of the scene.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Ledger {
@@ -99,7 +99,10 @@ pub fn shoot(
     let pass = run_blocks(histories.count, progress, block, Pass::merged)?;
     let pass =
         pass.unwrap_or_else(|| Pass { tallies: vec![Default::default(); sensors.len()], ..Pass::default() });
-    let pass = Pass { photons: pass.blocks.concat(), blocks: Vec::new(), ..pass };
+    let mut pass = Pass { photons: pass.blocks.concat(), blocks: Vec::new(), ..pass };
+    if scene.plan().is_grey {
+        pass.tallies.iter_mut().for_each(|tally| *tally = [tally[0]; 3]);
+    }
     if pass.non_finite > 0 {
         return Err(Error::NonFinite { count: pass.non_finite, place: "photon histories" });
     }
@@ -128,7 +131,7 @@ struct Tallier<'a, K: Fn(&Photon) -> bool> {
     sensors: &'a [Sensor],
     keep: &'a K,
     power: Spectrum,
-    /// What the present history brought each sensor [W].
+    /// What the present history brought each sensor \[W\].
     scores: Vec<Spectrum>,
     pass: Pass,
 }
@@ -146,12 +149,16 @@ impl<K: Fn(&Photon) -> bool> Tallier<'_, K> {
             let now = self.pass.ledger.absorbed + self.pass.ledger.escaped;
             self.pass.ledger.abandoned += start.weight.sum() - (now - settled);
         }
-        for (tally, score) in self.pass.tallies.iter_mut().zip(&self.scores) {
-            for (channel, moments) in tally.iter_mut().enumerate() {
+        let channels = if self.scene.plan().is_grey { 1 } else { 3 };
+        for (sensor, score) in self.scores.iter().enumerate() {
+            if !is_tallied(&self.sensors[sensor]) {
+                continue;
+            }
+            for channel in 0..channels {
                 let power = self.power[channel];
                 let fraction = if power == 0.0 { 0.0 } else { score[channel] / power };
                 self.pass.non_finite += u64::from(!fraction.is_finite());
-                moments.push(fraction);
+                self.pass.tallies[sensor][channel].push(fraction);
             }
         }
     }
@@ -182,6 +189,11 @@ impl<K: Fn(&Photon) -> bool> Tallier<'_, K> {
     }
 }
 
+/// Whether photons answer a sensor as they pass, without a map.
+fn is_tallied(sensor: &Sensor) -> bool {
+    matches!(sensor.quantity, Quantity::Outflow { .. } | Quantity::Absorbed(_))
+}
+
 /// Whether going from the ray's origin to distance `t` leaves the shape, through `face` if it is a slab.
 fn leaves(shape: &Shape, face: Face, ray: &Ray, t: f64) -> bool {
     let is_through = !matches!(shape, Shape::Slab(_)) || ray.dir.dot(face.normal()) > 0.0;
@@ -189,12 +201,14 @@ fn leaves(shape: &Shape, face: Face, ray: &Ray, t: f64) -> bool {
 }
 
 impl<K: Fn(&Photon) -> bool> Visitor for Tallier<'_, K> {
+    const WANTS_DENSITIES: bool = false;
+
     fn visit(&mut self, walker: &Walker, step: Step, _stream: &mut Stream) {
         match step {
             Step::Passed(t, weight) => {
                 for sensor in 0..self.sensors.len() {
-                    if let Quantity::Outflow { shape, face } = self.sensors[sensor].quantity
-                        && leaves(&shape, face, &walker.ray, t)
+                    if let Quantity::Outflow { shape, face } = &self.sensors[sensor].quantity
+                        && leaves(shape, *face, &walker.ray, t)
                     {
                         self.score(sensor, walker.order, weight);
                     }

@@ -57,7 +57,7 @@ impl<T: Serialize + PartialEq> Serialize for Channels<T> {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct SceneFile {
-    /// Side of the cell that stands for an unbounded slab [L].
+    /// Side of the cell that stands for an unbounded slab \[L\].
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub cell: Option<Positive>,
     /// Media.

@@ -49,7 +49,7 @@ pub struct Parts {
     pub objects: Vec<Object>,
     /// Lights.
     pub lights: Vec<Light>,
-    /// Side of the square cell that stands for an unbounded slab [L].
+    /// Side of the square cell that stands for an unbounded slab \[L\].
     pub cell: Option<f64>,
     /// What is measured.
     pub sensors: Vec<Sensor>,
@@ -122,14 +122,19 @@ impl Scene {
         self.stage.as_ref()
     }
 
-    /// Power of all lights [W].
+    /// Power of all lights \[W\].
     pub fn power(&self) -> Spectrum {
         self.lights().iter().fold(Spectrum::ZERO, |sum, light| sum + light.power(self.stage()))
     }
 
+    /// Index of the region that counts at a point; none in vacuum.
+    pub fn region_at(&self, p: DVec3) -> Option<usize> {
+        self.regions().iter().rposition(|r| r.shape.contains(p))
+    }
+
     /// The medium at a point; none in vacuum.
     pub fn medium_at(&self, p: DVec3) -> Option<&Medium> {
-        self.regions().iter().rev().find(|r| r.shape.contains(p)).map(|r| &r.medium)
+        self.region_at(p).map(|index| &self.regions()[index].medium)
     }
 
     /// The nearest body ahead; `from` is the body that the ray starts on.
@@ -161,7 +166,7 @@ impl Scene {
         Segments::new(self.regions(), ray, end)
     }
 
-    /// Optical depth up to distance `end` [1].
+    /// Optical depth up to distance `end` \[1\].
     pub fn optical_depth(&self, ray: &Ray, end: f64) -> Spectrum {
         let mut depth = Spectrum::ZERO;
         for segment in self.segments(ray, end).iter() {
@@ -178,7 +183,7 @@ impl Scene {
             .map(|s| if s == 0.0 { 0.0 } else { s * part.length() })
     }
 
-    /// Fraction of the light that passes up to distance `end` without a collision [1].
+    /// Fraction of the light that passes up to distance `end` without a collision \[1\].
     pub fn transmittance(&self, ray: &Ray, end: f64) -> Spectrum {
         decay(self.optical_depth(ray, end))
     }

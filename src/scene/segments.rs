@@ -11,7 +11,7 @@ const MAX_SEGMENTS: usize = 2 * MAX_REGIONS - 1;
 /// A stretch of one medium.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Segment {
-    /// Where it is on the ray [L].
+    /// Where it is on the ray \[L\].
     pub interval: Interval,
     /// Index of the region.
     pub region: usize,
@@ -19,9 +19,15 @@ pub struct Segment {
 
 /// Disjoint stretches in the order in which the ray passes them.
 #[derive(Debug, Clone, Copy)]
-pub struct Segments {
-    items: [Segment; MAX_SEGMENTS],
-    len: usize,
+pub struct Segments(Items);
+
+/// One stretch, by far the most frequent case, costs no array.
+#[derive(Debug, Clone, Copy)]
+#[allow(clippy::large_enum_variant, reason = "lives on the stack for one flight; a box would cost more")]
+enum Items {
+    None,
+    One(Segment),
+    Many { items: [Segment; MAX_SEGMENTS], len: usize },
 }
 
 const NOTHING: Segment = Segment { interval: Interval { start: 0.0, end: 0.0 }, region: 0 };
@@ -30,12 +36,11 @@ impl Segments {
     /// The stretches of `regions` on `ray` up to distance `end`; where shapes overlap, the later one counts.
     pub(super) fn new(regions: &[Region], ray: &Ray, end: f64) -> Self {
         let whole = Interval { start: 0.0, end };
-        let mut segments = Segments { items: [NOTHING; MAX_SEGMENTS], len: 0 };
         if let [region] = regions {
-            if let Some(interval) = region.shape.interval(ray).and_then(|i| i.intersection(whole)) {
-                segments.push(Segment { interval, region: 0 });
-            }
-            return segments;
+            let interval = region.shape.interval(ray).and_then(|i| i.intersection(whole));
+            return Segments(
+                interval.map_or(Items::None, |interval| Items::One(Segment { interval, region: 0 })),
+            );
         }
         let mut found = [NOTHING; MAX_REGIONS];
         let mut ends = [0.0f64; 2 * MAX_REGIONS];
@@ -47,6 +52,7 @@ impl Segments {
                 count += 1;
             }
         }
+        let (mut items, mut len) = ([NOTHING; MAX_SEGMENTS], 0);
         let ends = &mut ends[..2 * count];
         ends.sort_unstable_by(f64::total_cmp);
         for pair in ends.windows(2) {
@@ -54,20 +60,20 @@ impl Segments {
             if part.length() > 0.0 {
                 let covers = |s: &&Segment| s.interval.start <= part.start && part.end <= s.interval.end;
                 if let Some(last) = found[..count].iter().rev().find(covers) {
-                    segments.push(Segment { interval: part, region: last.region });
+                    items[len] = Segment { interval: part, region: last.region };
+                    len += 1;
                 }
             }
         }
-        segments
-    }
-
-    fn push(&mut self, segment: Segment) {
-        self.items[self.len] = segment;
-        self.len += 1;
+        Segments(Items::Many { items, len })
     }
 
     /// The stretches, nearest first.
     pub fn iter(&self) -> std::slice::Iter<'_, Segment> {
-        self.items[..self.len].iter()
+        match &self.0 {
+            Items::None => [].iter(),
+            Items::One(segment) => std::slice::from_ref(segment).iter(),
+            Items::Many { items, len } => items[..*len].iter(),
+        }
     }
 }

@@ -46,14 +46,14 @@ pub enum Quantity {
     Fluence(DVec3),
     /// Radiance that arrives at the origin of the ray from ahead of it [W/(L^2 sr)].
     Radiance(Ray),
-    /// Power that leaves through a shape's boundary (through `face` of a slab), per unit of emitted power [1].
+    /// Power that leaves through a shape's boundary (through `face` of a slab), per unit of emitted power \[1\].
     Outflow {
         /// The shape.
         shape: Shape,
         /// The face of a slab; other shapes are taken whole.
         face: Face,
     },
-    /// Power absorbed in a region of this index, per unit of emitted power [1].
+    /// Power absorbed in a region of this index, per unit of emitted power \[1\].
     Absorbed(usize),
 }
 

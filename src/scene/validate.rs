@@ -118,7 +118,7 @@ fn check_fold(parts: &Parts, stage: Option<&Stage>) -> Result<()> {
     Ok(())
 }
 
-/// Largest distance of a shape's points from the origin, along any axis that is bounded [L].
+/// Largest distance of a shape's points from the origin, along any axis that is bounded \[L\].
 fn extent(shape: &Shape) -> f64 {
     match shape {
         Shape::Sphere(s) => s.center().abs().max_element() + s.radius(),

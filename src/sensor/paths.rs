@@ -100,7 +100,10 @@ pub fn sample(scene: &Scene, quantity: &Quantity, orders: Orders, stream: &mut S
         }
         Quantity::Absorbed(region) => {
             let (position, volume) = scene.regions()[region].shape.sample_inside(side, stream.triple());
-            fluence(scene, position, orders, stream, |_, value| sum += value);
+            // Where a later region covers this one nothing of it is left to absorb.
+            if scene.region_at(position) == Some(region) {
+                fluence(scene, position, orders, stream, |_, value| sum += value);
+            }
             sum = sum * scene.regions()[region].medium.sigma_a() * volume;
             sum = per_power(sum, scene.power());
         }

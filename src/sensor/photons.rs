@@ -34,7 +34,7 @@ pub struct PhotonSettings {
 pub struct PhotonReadings {
     /// One a sensor and channel: tallies have n = histories, maps n = maps.
     pub readings: Vec<Reading>,
-    /// Powers [W] by history.
+    /// Powers \[W\] by history.
     pub ledger: Ledger,
     /// Estimates that found fewer than k photons within the cap.
     pub underfull: u64,
@@ -64,6 +64,8 @@ pub fn by_photons(
     for sensor in &sensors {
         check(scene, sensor)?;
     }
+    let margin =
+        scene.stage().map_or(Ok(0.0), |stage| margin(&sensors, stage.side, settings.gather.cap()))?;
     let mut moments = vec![[Moments::new(); 3]; sensors.len()];
     let mut result =
         PhotonReadings { readings: Vec::new(), ledger: Ledger::default(), underfull: 0, gathers: 0 };
@@ -85,11 +87,10 @@ pub fn by_photons(
                 m.merge(t);
             }
         }
-        if let Some(stage) = scene.stage() {
-            let margin = margin(&sensors, stage.side, settings.gather.cap());
-            if margin > 0.0 {
-                fold::surround(&mut pass.photons, stage.side, margin.min(stage.side));
-            }
+        if let Some(stage) = scene.stage()
+            && margin > 0.0
+        {
+            fold::surround(&mut pass.photons, stage.side, margin);
         }
         for range in &ranges {
             let in_range = if ranges.len() == 1 {
@@ -130,8 +131,12 @@ fn map_orders(sensor: &Sensor) -> Option<Orders> {
     }
 }
 
-/// How far beyond the cell's edges the sensors' balls of radius `cap` may reach [L]; rays may pass any point.
-fn margin(sensors: &[Sensor], side: f64, cap: f64) -> f64 {
+/// How far beyond the cell's edges the sensors' balls of radius `cap` may reach \[L\]; rays may pass any point.
+///
+/// # Errors
+/// `Error::Scene` beyond the side of the cell: copies are made once, and a ball that reaches past them would miss
+/// photons.
+fn margin(sensors: &[Sensor], side: f64, cap: f64) -> Result<f64> {
     let beyond = sensors.iter().map(|sensor| match sensor.quantity {
         Quantity::Fluence(p) => {
             let p = fold::into_cell(p, side);
@@ -140,7 +145,13 @@ fn margin(sensors: &[Sensor], side: f64, cap: f64) -> f64 {
         Quantity::Radiance(_) => cap,
         Quantity::Outflow { .. } | Quantity::Absorbed(_) => 0.0,
     });
-    beyond.fold(0.0, f64::max)
+    let margin = beyond.fold(0.0, f64::max);
+    if margin > side {
+        return Err(Error::Scene(format!(
+            "a gather radius of {cap} L reaches {margin} L beyond the folded cell; allowed: at most its side, {side} L"
+        )));
+    }
+    Ok(margin)
 }
 
 /// Whether a volume map can answer a sensor.

@@ -21,7 +21,7 @@ pub(super) fn checked(reflectance: Spectrum) -> Result<Spectrum> {
 }
 
 impl Lambertian {
-    /// A surface of the given reflectance [1], each channel in [0, 1].
+    /// A surface of the given reflectance \[1\], each channel in [0, 1].
     pub fn new(reflectance: Spectrum) -> Result<Self> {
         Ok(Lambertian { reflectance: checked(reflectance)? })
     }

@@ -10,7 +10,7 @@ use crate::scene::{Scene, decay};
 pub enum Flight {
     /// With a collision.
     Collision {
-        /// Distance flown [L].
+        /// Distance flown \[L\].
         t: f64,
         /// Index of the region.
         region: usize,
@@ -21,7 +21,7 @@ pub enum Flight {
     Passed(Spectrum),
 }
 
-/// Samples the distance to the next collision on a ray, up to distance `end` [L].
+/// Samples the distance to the next collision on a ray, up to distance `end` \[L\].
 ///
 /// Grey media: the optical depth is -ln(1-u), exactly, and the weight is unchanged. Where extinction differs by
 /// channel, one channel is chosen in proportion to its weight and the result is weighted by the balance heuristic,

@@ -13,7 +13,7 @@ use glam::DVec3;
 pub struct Walker {
     /// The ray ahead.
     pub ray: Ray,
-    /// Power of a photon [W], or throughput of a path.
+    /// Power of a photon \[W\], or throughput of a path.
     pub weight: Spectrum,
     /// Number of scatterings so far by media and non-specular surfaces.
     pub order: u32,
@@ -37,7 +37,7 @@ impl Walker {
 pub struct Arrival<'a> {
     /// The walker, its weight as it arrives.
     pub walker: &'a Walker,
-    /// Where [L].
+    /// Where \[L\].
     pub position: DVec3,
 }
 
@@ -60,6 +60,9 @@ pub enum Step<'a> {
 
 /// Who watches a walk.
 pub trait Visitor {
+    /// Whether it reads [`Walker::pdf_solid_angle`]; if not, no density is computed.
+    const WANTS_DENSITIES: bool = true;
+
     /// One step of the walk.
     fn visit(&mut self, walker: &Walker, step: Step, stream: &mut Stream);
 }
@@ -67,13 +70,13 @@ pub trait Visitor {
 /// Follows one history to its end.
 ///
 /// It ends by absorption, by escape, or with a ray of order `limit`, which is looked along but not flown.
-pub fn walk(
+pub fn walk<V: Visitor>(
     scene: &Scene,
     start: Walker,
     roulette: Roulette,
     limit: Option<u32>,
     stream: &mut Stream,
-    visitor: &mut impl Visitor,
+    visitor: &mut V,
 ) {
     let mut walker = start;
     loop {
@@ -108,14 +111,17 @@ pub fn walk(
                 };
                 let before = walker.ray.dir;
                 let dir = medium.phase().scatter(before, stream.pair());
-                let (one_minus_mu, one_plus_mu) = crate::math::cosine_pair(before, dir);
+                let pdf = || {
+                    let (one_minus_mu, one_plus_mu) = crate::math::cosine_pair(before, dir);
+                    medium.phase().eval(one_minus_mu, one_plus_mu)
+                };
                 walker = Walker {
                     ray: Ray::new(position, dir),
                     weight: kept,
                     order: walker.order + 1,
                     flags: walker.flags.with(Flags::MEDIUM),
                     from: None,
-                    pdf_solid_angle: Some(medium.phase().eval(one_minus_mu, one_plus_mu)),
+                    pdf_solid_angle: V::WANTS_DENSITIES.then(pdf),
                 };
             }
             Flight::Passed(weight) => {

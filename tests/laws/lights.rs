@@ -1,15 +1,16 @@
 //! Lights: density against sample, one emitter in two forms (photons sent out, directions aimed at it, rays that
 //! meet it), and the power that they state.
 
+use crate::common::config as properties;
 use crate::support::run::{numbers, paths, tallies};
 use crate::support::scenes::{
     area_light, bounded, cuboid, isotropic, outflow, point_light, rectangle, sphere, volume_source,
 };
-use crate::support::{properties, unit_vector, verdict};
+use crate::support::{unit_vector, verdict};
 use glam::DVec3;
 use proptest::prelude::*;
 use turbid::Spectrum;
-use turbid::geometry::{Shape, Sphere};
+use turbid::geometry::Sphere;
 use turbid::light::{Beam, EmittingSphere, Faces, Light, Section};
 use turbid::math::{FOUR_PI, Ray, atan2, warp};
 use turbid::scene::Orders;
@@ -124,7 +125,7 @@ proptest! {
             let Some(pdf) = sample.pdf_solid_angle else { continue };
             let ray = Ray::new(p, sample.dir);
             let is_area = matches!(light, Light::Area(_));
-            let grazing = is_area && (u < 1e-9 || v < 1e-9) || is_area && sample.dir.z.abs() < 1e-6;
+            let grazing = is_area && (u < 1e-9 || v < 1e-9 || sample.dir.z.abs() < 1e-6);
             let Some(hit) = light.hit(&ray) else {
                 prop_assert!(grazing, "{name} missed from {p}");
                 continue;
@@ -173,5 +174,4 @@ fn a_beam_lights_its_shaft() {
     }
     let wrong = Beam::new(DVec3::NEG_Z, Spectrum::ONE, Section::Rectangle(r));
     assert!(wrong.is_err() && Beam::new(DVec3::ZERO, Spectrum::ONE, Section::Unbounded).is_err());
-    assert!(matches!(Shape::Rectangle(r), Shape::Rectangle(_)));
 }

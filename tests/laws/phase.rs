@@ -1,9 +1,10 @@
 //! Phase functions: sampler against density, normalisation, signed moments, both ends, every digit.
 
+use crate::common::config as properties;
 use crate::support::double::Double;
 use crate::support::quadrature::{integrate, legendre};
 use crate::support::run::numbers;
-use crate::support::{properties, unit_vector, verdict};
+use crate::support::{unit_vector, verdict};
 use proptest::prelude::*;
 use std::f64::consts::PI;
 use turbid::math::{Asymmetry, FOUR_PI, cosine_pair, exp, ln};

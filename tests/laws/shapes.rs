@@ -1,8 +1,9 @@
 //! Shapes: hits, intervals and insides agree; area and volume by sampling.
 
+use crate::common::config as properties;
 use crate::support::run::numbers;
 use crate::support::scenes::{cuboid, layer, rectangle, sphere};
-use crate::support::{properties, unit_vector, verdict};
+use crate::support::{unit_vector, verdict};
 use glam::DVec3;
 use proptest::prelude::*;
 use turbid::geometry::{Face, Shape};

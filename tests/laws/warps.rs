@@ -1,6 +1,7 @@
 //! Warps and frames: density = 1 / Jacobian, the right support, orthonormal at the poles.
 
-use crate::support::{properties, unit_vector};
+use crate::common::config as properties;
+use crate::support::unit_vector;
 use glam::DVec3;
 use proptest::prelude::*;
 use std::f64::consts::PI;

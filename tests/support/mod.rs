@@ -7,19 +7,6 @@ pub mod run;
 pub mod scenes;
 pub mod verdict;
 
-use proptest::prelude::ProptestConfig;
-use proptest::test_runner::RngSeed;
-
-/// Properties with fixed seed and cases, and no file of past failures: the same inputs on every machine.
-pub fn properties(cases: u32) -> ProptestConfig {
-    ProptestConfig {
-        cases,
-        rng_seed: RngSeed::Fixed(0x7075_7262),
-        failure_persistence: None,
-        ..ProptestConfig::default()
-    }
-}
-
 /// A unit vector from its height and azimuth.
 pub fn unit_vector(z: f64, azimuth: f64) -> glam::DVec3 {
     let (s, c) = turbid::math::sin_cos(azimuth);

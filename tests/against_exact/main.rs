@@ -1,0 +1,14 @@
+//! The player against the referee: path tracer and photons against exact values, order by order and in all.
+#![allow(clippy::unwrap_used, reason = "tests")]
+
+#[path = "../support/mod.rs"]
+mod support;
+
+mod equiangular;
+mod fold;
+mod furnace;
+mod henyey_greenstein;
+mod reference;
+mod slab;
+mod sphere;
+mod surfaces;

@@ -1,0 +1,129 @@
+//! Surfaces and the ways to find a light: view factors, spherical cavities, mirrors.
+
+use crate::support::run::{numbers, paths, tallies};
+use crate::support::scenes::{area_light, bounded, emitting_sphere, outflow, point_light, rectangle, sphere};
+use crate::support::verdict;
+use glam::DVec3;
+use std::f64::consts::PI;
+use turbid::Spectrum;
+use turbid::geometry::Shape;
+use turbid::math::{FOUR_PI, Ray, atan2, warp};
+use turbid::scene::{Orders, Quantity};
+use turbid::surface::{Lambertian, Mirror, Surface};
+
+const N: u64 = 1 << 18;
+
+fn lambertian(reflectance: Spectrum) -> Surface {
+    Surface::Lambertian(Lambertian::new(reflectance).unwrap())
+}
+
+/// View factor from a horizontal element to a parallel rectangle at height h, a corner of it straight above
+/// (Howell, Menguc and Siegel, configuration factor B-4).
+fn corner_view_factor(a: f64, b: f64, h: f64) -> f64 {
+    let (x, y) = (a / h, b / h);
+    let (rx, ry) = ((1.0 + x * x).sqrt(), (1.0 + y * y).sqrt());
+    (x / rx * atan2(y, rx) + y / ry * atan2(x, ry)) / (2.0 * PI)
+}
+
+/// Irradiance under a rectangular light, over every way to sample it: aimed at, met by chance, and both together in
+/// the path tracer, each against the view factor.
+#[test]
+fn irradiance_under_an_area_light() {
+    let light =
+        area_light(rectangle(DVec3::new(-0.5, 1.5, 1.0), DVec3::X * 2.0, -DVec3::Y * 2.0), Spectrum::ONE);
+    let expected: f64 = [(0.5, 0.5), (1.5, 0.5), (0.5, 1.5), (1.5, 1.5)]
+        .iter()
+        .map(|(a, b)| corner_view_factor(*a, *b, 1.0))
+        .sum::<f64>()
+        * PI;
+    let aimed = numbers(N, 1, |s| light.sample(DVec3::ZERO, s.pair()).map_or(0.0, |l| l.value[0] * l.dir.z));
+    verdict::agrees("aimed", &aimed, (expected, 1e-14), 0.02 * expected, 1);
+    let met = numbers(N, 2, |s| {
+        let ray = Ray::new(DVec3::ZERO, warp::square_to_cosine_hemisphere(s.pair()));
+        PI * light.hit(&ray).map_or(0.0, |hit| light.emitted(&ray, &hit).0[0])
+    });
+    verdict::agrees("met", &met, (expected, 1e-14), 0.03 * expected, 2);
+    // The path tracer sees the floor from the side: radiance rho E / pi.
+    let floor = Shape::Rectangle(rectangle(DVec3::new(-5.0, -5.0, 0.0), DVec3::X * 10.0, DVec3::Y * 10.0));
+    let rho = Spectrum::rgb(0.5, 1.0, 0.2);
+    let scene = bounded(Vec::new(), vec![(floor, lambertian(rho))], vec![light]);
+    let eye = DVec3::new(-2.0, 0.0, 0.5);
+    let seen = paths(&scene, Quantity::Radiance(Ray::new(eye, (-eye).normalize())), Orders::ALL, N, 3);
+    for c in 0..3 {
+        let value = rho[c] * expected / PI;
+        verdict::agrees(&format!("path tracer, channel {c}"), &seen[c], (value, 1e-14), 0.02 * value, 3);
+        // Counting both ways in full, without sharing, is a wrong twin.
+        verdict::rejects(&format!("both in full, channel {c}"), &seen[c], 2.0 * value, 3);
+    }
+}
+
+/// Lambertian sphere of radius a about a point light anywhere inside, of power 1: the irradiance is the direct one plus
+/// rho/(1-rho) times its mean 1/(4 pi a^2), and the fluence at the centre is the direct one plus 4 rho E-mean.
+#[test]
+fn a_matt_cavity_has_its_known_radiosity() {
+    let (radius, rho) = (2.0, Spectrum::rgb(0.7, 0.2, 0.0));
+    let wall = sphere(DVec3::ZERO, radius);
+    for offset in [0.4, 1.2] {
+        let light = point_light(DVec3::new(offset, 0.0, 0.0), Spectrum::ONE);
+        let scene = bounded(Vec::new(), vec![(wall, lambertian(rho))], vec![light]);
+        let mean_direct = 1.0 / (FOUR_PI * radius * radius);
+        let fluence = paths(&scene, Quantity::Fluence(DVec3::ZERO), Orders::ALL, N, 4);
+        let inner = outflow(sphere(DVec3::ZERO, 0.2));
+        let crossing = tallies(&scene, &[(inner, Orders::SCATTERED)], N, 4);
+        let by_paths = paths(&scene, inner, Orders::SCATTERED, N, 5);
+        for c in 0..3 {
+            let direct = 1.0 / (FOUR_PI * offset * offset);
+            let expected = direct + 4.0 * rho[c] * mean_direct / (1.0 - rho[c]);
+            verdict::agrees(
+                &format!("fluence, light at {offset}, channel {c}"),
+                &fluence[c],
+                (expected, 1e-13),
+                0.02 * expected,
+                4,
+            );
+            let what = format!("through an inner sphere, light at {offset}, channel {c}");
+            verdict::agree(&what, &crossing[0][c], &by_paths[c], 0.01, 5);
+            if rho[c] == 0.0 {
+                assert_eq!(crossing[0][c].mean(), 0.0);
+            }
+        }
+    }
+    // Light at the centre: uniform radiance, so that every inner sphere passes pi L times its area.
+    let scene =
+        bounded(Vec::new(), vec![(wall, lambertian(rho))], vec![point_light(DVec3::ZERO, Spectrum::ONE)]);
+    let crossing = tallies(&scene, &[(outflow(sphere(DVec3::ZERO, 0.5)), Orders::ALL)], N, 6);
+    for c in 0..3 {
+        let wall_irradiance = 1.0 / (FOUR_PI * radius * radius * (1.0 - rho[c]));
+        let expected = 1.0 + rho[c] * wall_irradiance * FOUR_PI * 0.25;
+        verdict::agrees(&format!("crossing, channel {c}"), &crossing[0][c], (expected, 1e-13), 0.02, 6);
+    }
+}
+
+/// A mirror doubles a light: fluence above it is radiance times both solid angles, the image's times the reflectance.
+#[test]
+fn a_mirror_shows_the_image() {
+    let mirror =
+        Shape::Rectangle(rectangle(DVec3::new(-50.0, -50.0, 0.0), DVec3::X * 100.0, DVec3::Y * 100.0));
+    let rho = Spectrum::rgb(1.0, 0.5, 0.0);
+    let light = emitting_sphere(DVec3::new(1.0, 0.0, 1.0), 0.5);
+    let surface = Surface::Mirror(Mirror::new(rho).unwrap());
+    let scene = bounded(Vec::new(), vec![(mirror, surface)], vec![light]);
+    let p = DVec3::new(-1.0, 0.5, 0.7);
+    let solid_angle = |center: DVec3| {
+        let sin2 = 0.25 / p.distance_squared(center);
+        2.0 * PI * sin2 / (1.0 + (1.0 - sin2).sqrt())
+    };
+    let radiance = 1.0 / (PI * FOUR_PI * 0.25);
+    let moments = paths(&scene, Quantity::Fluence(p), Orders::ALL, 1 << 20, 7);
+    for c in 0..3 {
+        let expected = radiance
+            * (solid_angle(DVec3::new(1.0, 0.0, 1.0)) + rho[c] * solid_angle(DVec3::new(1.0, 0.0, -1.0)));
+        verdict::agrees(&format!("fluence, channel {c}"), &moments[c], (expected, 1e-13), 0.1 * expected, 7);
+    }
+    let test_sphere = outflow(sphere(p, 0.3));
+    let by_photons = tallies(&scene, &[(test_sphere, Orders::ALL)], 1 << 20, 8);
+    let by_paths = paths(&scene, test_sphere, Orders::ALL, 1 << 20, 8);
+    for c in 0..3 {
+        verdict::agree(&format!("through a sphere, channel {c}"), &by_photons[0][c], &by_paths[c], 0.003, 8);
+    }
+}

@@ -1,0 +1,199 @@
+//! Everything a user can get wrong, and what the one line says about it: what, where, and what is allowed.
+
+use crate::{Folder, refuses, refuses_naming, succeeds, text};
+
+/// A scene file, whole and right: the built-in slab as it resolves.
+fn slab() -> String {
+    succeeds(&["scenes", "slab", "--resolved"])
+}
+
+#[test]
+fn scenes_that_are_not_there() {
+    refuses_naming(&["measure", "slap", "--with", "path"], &["`slap`", "slab, sphere, shaft"]);
+    refuses_naming(&["check", "missing.toml"], &["missing.toml", "No such file"]);
+    refuses_naming(&["scenes", "slap"], &["`slap`", "allowed: slab"]);
+    refuses_naming(&["check", "."], &["."]);
+}
+
+#[test]
+fn scene_files_that_cannot_be_read() {
+    let folder = Folder::new();
+    let file = |name: &str, content: &str| folder.file(name, content);
+    let broken = file("syntax.toml", "cell = 4.0\nregions = [\n");
+    refuses_naming(&["check", text(&broken)], &["syntax.toml:2:", "array"]);
+    let empty = file("empty.toml", "");
+    refuses_naming(&["check", text(&empty)], &["empty.toml:1:1", "lights"]);
+    let bytes = folder.0.path().join("bytes.toml");
+    std::fs::write(&bytes, [0xff, 0xfe, 0x00]).unwrap();
+    refuses_naming(&["check", text(&bytes)], &["bytes.toml"]);
+}
+
+/// A number or name of the slab's file replaced by another: the refusal names line, column and key.
+#[test]
+fn wrong_values_in_a_file() {
+    let folder = Folder::new();
+    let right = slab();
+    let cases = [
+        ("albedo = 0.9", "albedo = 1.5", "albedo is 1.5; allowed: 0 to 1"),
+        ("albedo = 0.9", "albedo = nan", "albedo is NaN; allowed: 0 to 1"),
+        ("albedo = 0.9", "albedo = inf", "albedo is inf; allowed: 0 to 1"),
+        ("albedo = 0.9", "albedo = [0.5, 2, 0.5]", "albedo is 2; allowed: 0 to 1"),
+        ("sigma_t = 1.0", "sigma_t = -1.0", "sigma_t is -1; allowed: finite and at least 0"),
+        ("sigma_t = 1.0", "sigma_t = nan", "sigma_t is NaN"),
+        ("g = 0.0", "g = 1.0", "g is 1; allowed: above -1 and below 1"),
+        ("thickness = 2.0", "thickness = -2.0", "thickness is -2; allowed: finite and above 0"),
+        ("cell = 4.0", "cell = 0.0", "cell is 0; allowed: finite and above 0"),
+        ("irradiance = 1.0", "irradiance = -1", "irradiance is -1; allowed: finite and at least 0"),
+        ("albedo = 0.9", "albdo = 0.9", "unknown key `albdo`; nearest: `albedo`"),
+        ("face = \"top\"", "face = \"topp\"", "unknown value `topp`; nearest: `top`; allowed: top, bottom"),
+        ("albedo = 0.9", "albedo = \"white\"", "albedo"),
+    ];
+    for (i, (from, to, words)) in cases.into_iter().enumerate() {
+        assert!(right.contains(from), "{from}");
+        let wrong = right.replacen(from, to, 1);
+        let line = 1 + wrong[..wrong.find(to).unwrap()].matches('\n').count();
+        let name = format!("case{i}.toml");
+        let path = folder.file(&name, &wrong);
+        refuses_naming(&["check", text(&path)], &[&format!("{name}:{line}:"), words]);
+    }
+}
+
+/// Files whose parts are each right, but not together.
+#[test]
+fn parts_that_do_not_fit_together() {
+    let folder = Folder::new();
+    let right = slab();
+    let cases = [
+        ("nocell.toml", right.replacen("cell = 4.0\n", "", 1), "`cell`"),
+        (
+            "dark.toml",
+            right.replacen("irradiance = 1.0", "irradiance = 0.0", 1),
+            "irradiance is 0; allowed: above 0",
+        ),
+        (
+            "along.toml",
+            right.replacen("dir = [0.0, 0.0, 1.0]", "dir = [1.0, 0.0, 0.0]", 1),
+            "along the faces",
+        ),
+        ("nowhere.toml", right.replacen("dir = [0.0, 0.0, 1.0]", "dir = [0.0, 0.0, 0.0]", 1), "direction"),
+        ("far.toml", right.replacen("at = [2.0, 2.0, 0.2]", "at = [nan, 2.0, 0.2]", 1), "not finite"),
+        ("region.toml", right.replacen("region = 0", "region = 3", 1), "region 3; allowed: 0 to 0"),
+    ];
+    for (name, content, words) in cases {
+        assert_ne!(content, right, "{name}");
+        let path = folder.file(name, &content);
+        refuses_naming(&["check", text(&path)], &[name, words]);
+    }
+    let none = folder.file("none.toml", &right[..right.find("[[sensors]]").unwrap()]);
+    refuses_naming(&["measure", text(&none), "--with", "path"], &["no sensors"]);
+}
+
+#[test]
+fn wrong_sets() {
+    let cases = [
+        ("albedo=1.5", "albedo is 1.5; allowed: 0 to 1"),
+        ("albedo=nan", "albedo is NaN; allowed: 0 to 1"),
+        ("albedo=inf", "albedo is inf; allowed: 0 to 1"),
+        ("tau=-1", "tau is -1; allowed: finite and above 0"),
+        ("tau=0", "tau is 0; allowed: finite and above 0"),
+        ("tau=nan", "tau is NaN"),
+        ("tau=inf", "tau is inf"),
+        ("g=1", "g is 1; allowed: above -1 and below 1"),
+        ("g=-1", "g is -1"),
+        ("mu0=0", "mu0 is 0; allowed: above 0 and at most 1, or \"diffuse\""),
+        ("mu0=1.1", "mu0 is 1.1"),
+        ("mu0=nan", "mu0 is NaN"),
+        ("mu0=sideways", "mu0 is \"sideways\""),
+        ("scale=0", "scale is 0"),
+        ("probes=[-1]", "probes is -1; allowed: finite and at least 0"),
+        ("probes=0.5", "probes"),
+        ("albdo=0.5", "unknown key `albdo`; nearest: `albedo`"),
+        ("albedo", "allowed: KEY=VALUE"),
+        ("=1", "unknown key"),
+        ("tau=1e-300=2", "tau"),
+    ];
+    for (set, words) in cases {
+        refuses_naming(&["check", "slab", "--set", set], &[&format!("--set {set}"), words]);
+    }
+    refuses_naming(
+        &["check", "sphere", "--set", "source=sun"],
+        &["`sun`", "allowed: volume, point, incidence"],
+    );
+    refuses_naming(&["check", "shaft", "--set", "depth=9"], &["depth is 9; allowed: at most tau"]);
+    let folder = Folder::new();
+    let file = folder.file("slab.toml", &slab());
+    let cases = [
+        ("regions.7.albedo=0.5", "`7` is no entry of a list of 1"),
+        ("regionss.0.albedo=0.5", "nearest: `regions`"),
+        ("regions.0.albdo=0.5", "nearest: `albedo`"),
+        ("regions.0.albedo=2", "albedo is 2; allowed: 0 to 1"),
+        ("cell.side=2", "has no parts"),
+    ];
+    for (set, words) in cases {
+        refuses_naming(&["check", text(&file), "--set", set], &[&format!("--set {set}"), words]);
+    }
+}
+
+#[test]
+fn wrong_options() {
+    let cases: [(&[&str], &[&str]); 25] = [
+        (&["--k", "1"], &["--k", "k is 1; allowed: at least 2"]),
+        (&["--k", "0"], &["--k", "allowed: at least 2"]),
+        (&["--k", "many"], &["--k", "many"]),
+        (&["--radius", "0"], &["--radius", "is 0; allowed: finite and above 0"]),
+        (&["--radius", "-1"], &["--radius", "is -1; allowed: finite and above 0"]),
+        (&["--radius", "nan"], &["--radius", "is NaN"]),
+        (&["--radius", "inf"], &["--radius", "is inf"]),
+        (&["--radius", "100"], &["100 L", "folded cell", "allowed: at most its side, 4 L"]),
+        (&["--max-radius", "0"], &["--max-radius", "is 0; allowed: finite and above 0"]),
+        (&["--k", "5", "--radius", "1"], &["--k", "--radius", "cannot be used with"]),
+        (&["--radius", "1", "--max-radius", "1"], &["--radius", "--max-radius", "cannot be used with"]),
+        (&["--photons", "0"], &["--photons", "allowed: whole numbers from 1"]),
+        (&["--photons", "1.5"], &["--photons", "allowed: whole numbers from 1"]),
+        (&["--photons", "1e99"], &["--photons", "allowed: whole numbers from 1"]),
+        (&["--samples", "-5"], &["--samples", "allowed: whole numbers from 1"]),
+        (&["--maps", "0"], &["--maps", "allowed: whole numbers from 1"]),
+        (&["--format", "xml"], &["--format", "allowed: table, csv, json"]),
+        (&["--kernel", "box"], &["--kernel", "allowed: uniform"]),
+        (&["--orders", "3..1"], &["--orders", "allowed: an order such as 1"]),
+        (&["--orders", "-1"], &["--orders", "allowed: an order such as 1"]),
+        (&["--threads", "0"], &["--threads", "0 is not in 1..=65535"]),
+        (&["--seed", "-1"], &["--seed"]),
+        (&["--radios", "1"], &["--radios", "--radius"]),
+        (&["extra"], &["extra"]),
+        (&["--with", "beams"], &["--with"]),
+    ];
+    for (options, words) in cases {
+        let arguments: Vec<&str> =
+            ["measure", "slab", "--with", "photons"].iter().chain(options).copied().collect();
+        refuses_naming(&arguments, words);
+    }
+    refuses_naming(&["measure", "slab", "--with", "beams"], &["--with", "allowed: path, photons"]);
+    refuses_naming(&["measure", "slab"], &["--with"]);
+    refuses_naming(&["measure"], &["SCENE"]);
+    refuses_naming(&["render", "slab"], &["render"]);
+    refuses_naming(&[], &["allowed: measure, check, scenes"]);
+    assert!(refuses(&["scenes", "--resolved"]).contains("NAME"));
+}
+
+/// A mirror turns a beam: no path from the sensor can find it, and photons without a medium leave no map.
+#[test]
+fn what_no_sampler_reaches() {
+    let folder = Folder::new();
+    let scene = "\
+[[objects]]
+shape = { rectangle = { corner = [-1, -1, 0], u = [2, 0, 0], v = [0, 2, 0] } }
+surface = { mirror = { reflectance = 0.9 } }
+[[lights]]
+beam = { dir = [0, 0, -1], irradiance = 1, section = { disc = { center = [0, 0, 1], radius = 0.2 } } }
+[[sensors]]
+name = \"p\"
+measure = { fluence = { at = [0, 0, 0.5] } }
+";
+    let file = folder.file("mirror.toml", scene);
+    refuses_naming(&["measure", text(&file), "--with", "path"], &["path tracer", "mirrors", "use photons"]);
+    refuses_naming(&["measure", text(&file), "--with", "photons"], &["sensor p", "outside", "use paths"]);
+    assert!(succeeds(&["check", text(&file)]).contains("out of reach of the path tracer"));
+    let outside = ["measure", "sphere", "--with", "photons", "--set", "probes=[2.0]"];
+    refuses_naming(&outside, &["sensor radius 2", "(2, 0, 0) is outside", "use paths"]);
+}

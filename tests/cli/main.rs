@@ -1,0 +1,61 @@
+//! The command `turbid`: what it prints, and how it refuses: exit code 2, one line on stderr, nothing on stdout.
+#![allow(clippy::unwrap_used, reason = "tests")]
+
+mod bad_input;
+mod output;
+
+use assert_cmd::Command;
+use std::path::{Path, PathBuf};
+
+/// The command, ready to run.
+fn turbid(arguments: &[&str]) -> Command {
+    let mut command = Command::cargo_bin("turbid").unwrap();
+    command.args(arguments);
+    command
+}
+
+/// Standard output of a run that must succeed in silence on stderr.
+fn succeeds(arguments: &[&str]) -> String {
+    let output = turbid(arguments).output().unwrap();
+    let stderr = String::from_utf8(output.stderr).unwrap();
+    assert!(output.status.success(), "{arguments:?}: {stderr}");
+    String::from_utf8(output.stdout).unwrap()
+}
+
+/// A run that must be refused: the one line that it says.
+fn refuses(arguments: &[&str]) -> String {
+    let output = turbid(arguments).output().unwrap();
+    let stderr = String::from_utf8(output.stderr).unwrap();
+    assert_eq!(output.status.code(), Some(2), "{arguments:?}: {stderr}");
+    assert!(output.stdout.is_empty(), "{arguments:?} wrote to stdout");
+    assert_eq!(stderr.lines().count(), 1, "{arguments:?}: {stderr}");
+    assert!(stderr.starts_with("turbid: error: ") && stderr.ends_with('\n'), "{stderr}");
+    stderr.trim_end().to_string()
+}
+
+/// A refusal that names all these things.
+fn refuses_naming(arguments: &[&str], words: &[&str]) {
+    let line = refuses(arguments);
+    for word in words {
+        assert!(line.contains(word), "{arguments:?}: `{word}` is missing in: {line}");
+    }
+}
+
+/// A folder of scene files for one test.
+struct Folder(tempfile::TempDir);
+
+impl Folder {
+    fn new() -> Self {
+        Folder(tempfile::tempdir().unwrap())
+    }
+
+    fn file(&self, name: &str, text: &str) -> PathBuf {
+        let path = self.0.path().join(name);
+        std::fs::write(&path, text).unwrap();
+        path
+    }
+}
+
+fn text(path: &Path) -> &str {
+    path.to_str().unwrap()
+}

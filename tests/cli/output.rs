@@ -1,0 +1,188 @@
+//! What is printed: columns, formats, the same bytes on any number of threads, closed pipes and full disks.
+
+use crate::{Folder, succeeds, text, turbid};
+use std::io::Read;
+use std::process::{Command, Stdio};
+
+const COLUMNS: [&str; 6] = ["sensor", "quantity", "unit", "mean", "std_error", "n"];
+const PATH: [&str; 6] = ["measure", "slab", "--with", "path", "--samples", "5000"];
+const PHOTONS: [&str; 8] = ["measure", "slab", "--with", "photons", "--photons", "2e4", "--maps", "2"];
+
+fn with<'a>(arguments: &[&'a str], more: &[&'a str]) -> Vec<&'a str> {
+    arguments.iter().chain(more).copied().collect()
+}
+
+#[test]
+fn tables_csv_and_json_say_the_same() {
+    for (arguments, n) in [(&PATH[..], 5000), (&PHOTONS[..], 40_000)] {
+        let table = succeeds(arguments);
+        assert_eq!(table.lines().next().unwrap().split_whitespace().collect::<Vec<_>>(), COLUMNS);
+        let csv = succeeds(&with(arguments, &["--format", "csv"]));
+        let json = succeeds(&with(arguments, &["--format", "json"]));
+        let mut reader = csv::Reader::from_reader(csv.as_bytes());
+        assert_eq!(reader.headers().unwrap(), COLUMNS.as_slice());
+        let records: Vec<csv::StringRecord> = reader.records().map(Result::unwrap).collect();
+        let rows: serde_json::Value = serde_json::from_str(&json).unwrap();
+        let rows = rows.as_array().unwrap();
+        assert_eq!((records.len(), rows.len(), table.lines().count()), (9, 9, 10));
+        for (record, row) in records.iter().zip(rows) {
+            for (i, column) in COLUMNS.iter().take(3).enumerate() {
+                assert_eq!(&record[i], row[column].as_str().unwrap());
+            }
+            let mean: f64 = record[3].parse().unwrap();
+            assert_eq!(mean.to_bits(), row["mean"].as_f64().unwrap().to_bits());
+            let std_error: f64 = record[4].parse().unwrap();
+            assert!(std_error >= 0.0 && std_error == row["std_error"].as_f64().unwrap());
+            let expected = if &record[1] == "fluence" && arguments == PHOTONS { 2 } else { n };
+            assert_eq!(record[5].parse::<u64>().unwrap(), expected);
+        }
+        let quantity =
+            |name: &str| -> f64 { records.iter().find(|r| &r[1] == name).unwrap()[3].parse().unwrap() };
+        let sum = quantity("reflectance") + quantity("transmittance") + quantity("absorptance");
+        assert!((sum - 1.0).abs() < 0.1, "{sum}");
+    }
+}
+
+/// Every command of README.md that asks the simulator, with fewer histories.
+#[test]
+fn the_examples_of_the_readme_work() {
+    let readme = std::fs::read_to_string(concat!(env!("CARGO_MANIFEST_DIR"), "/README.md")).unwrap();
+    let prefix = "cargo run --release -p turbid -- ";
+    let mut seen = 0;
+    for line in readme.lines().filter_map(|line| line.strip_prefix(prefix)) {
+        let mut words: Vec<&str> = line.split('#').next().unwrap().split_whitespace().collect();
+        for i in 1..words.len() {
+            if ["--photons", "--samples"].contains(&words[i - 1]) {
+                words[i] = "1000";
+            }
+        }
+        assert!(!succeeds(&words).is_empty(), "{line}");
+        seen += 1;
+    }
+    assert!(seen >= 3, "{seen}");
+}
+
+#[test]
+fn one_map_has_no_standard_error() {
+    let csv = succeeds(&["measure", "slab", "--with", "photons", "--photons", "1e4", "--format", "csv"]);
+    let fluence = csv.lines().find(|l| l.contains("fluence")).unwrap();
+    assert!(fluence.ends_with(",,1"), "{fluence}");
+}
+
+#[test]
+fn the_same_bytes_on_any_number_of_threads() {
+    for arguments in [&PATH[..], &PHOTONS[..]] {
+        let all = |threads: &str, seed: &str| {
+            succeeds(&with(arguments, &["--threads", threads, "--seed", seed, "--format", "csv"]))
+        };
+        let one = all("1", "5");
+        assert_eq!(all("2", "5"), one);
+        assert_eq!(all("3", "5"), one);
+        assert_ne!(all("2", "6"), one);
+    }
+}
+
+#[test]
+fn orders_split_the_whole() {
+    let reflectance = |orders: &str| -> f64 {
+        let csv = succeeds(&[
+            "measure",
+            "slab",
+            "--with",
+            "photons",
+            "--photons",
+            "1e4",
+            "--orders",
+            orders,
+            "--format",
+            "csv",
+        ]);
+        csv.lines().find(|l| l.contains("reflectance")).unwrap().split(',').nth(3).unwrap().parse().unwrap()
+    };
+    let parts = reflectance("0") + reflectance("1") + reflectance("2..3") + reflectance("4..");
+    assert!((parts - reflectance("0..")).abs() < 1e-12, "{parts}");
+}
+
+#[test]
+fn scenes_are_listed_printed_and_resolved() {
+    let list = succeeds(&["scenes"]);
+    for name in ["slab", "sphere", "shaft"] {
+        assert!(list.contains(name));
+        let parameters = succeeds(&["scenes", name]);
+        let table: toml::Table = toml::from_str(&parameters).unwrap();
+        assert!(table.contains_key("albedo"));
+        // What `--resolved` prints is a scene file that measures the same.
+        let folder = Folder::new();
+        let file = folder.file("scene.toml", &succeeds(&["scenes", name, "--resolved"]));
+        let measure = |scene: &str| {
+            succeeds(&["measure", scene, "--with", "path", "--samples", "100", "--format", "csv"])
+        };
+        assert_eq!(measure(text(&file)), measure(name));
+    }
+}
+
+#[test]
+fn check_says_what_a_scene_requires() {
+    let plan = succeeds(&["check", "slab"]);
+    assert!(plan.contains("homogeneous media") && plan.contains("every path class"), "{plan}");
+    assert!(succeeds(&["check", "slab", "--set", "tau=1e-8"]).contains("first collision forced"));
+    assert!(succeeds(&["check", "sphere", "--set", "source=point"]).contains("equiangular"));
+}
+
+#[test]
+fn help_and_version() {
+    assert!(succeeds(&["--version"]).starts_with("turbid "));
+    for arguments in [&["--help"][..], &["measure", "--help"], &["help", "check"]] {
+        assert!(succeeds(arguments).contains("Usage:"));
+    }
+}
+
+/// A reader that leaves early is no error.
+#[cfg(unix)]
+#[test]
+fn a_closed_pipe_ends_quietly() {
+    for arguments in [&["scenes"][..], &["--help"], &PATH[..], &["check", "slab"]] {
+        let (reader, writer) = std::io::pipe().unwrap();
+        drop(reader);
+        let child = Command::new(env!("CARGO_BIN_EXE_turbid"))
+            .args(arguments)
+            .stdout(writer)
+            .stderr(Stdio::piped())
+            .spawn();
+        let output = child.unwrap().wait_with_output().unwrap();
+        assert!(output.status.success(), "{arguments:?}: {:?}", output.status);
+        assert!(output.stderr.is_empty(), "{arguments:?}: {}", String::from_utf8_lossy(&output.stderr));
+    }
+}
+
+/// A full disk is one.
+#[cfg(target_os = "linux")]
+#[test]
+fn a_full_disk_is_an_error() {
+    for arguments in
+        [&["scenes"][..], &["scenes", "slab", "--resolved"], &["--help"], &PATH[..], &["check", "slab"]]
+    {
+        let full = std::fs::OpenOptions::new().write(true).open("/dev/full").unwrap();
+        let mut child = Command::new(env!("CARGO_BIN_EXE_turbid"))
+            .args(arguments)
+            .stdout(full)
+            .stderr(Stdio::piped())
+            .spawn()
+            .unwrap();
+        let mut stderr = String::new();
+        child.stderr.take().unwrap().read_to_string(&mut stderr).unwrap();
+        assert_eq!(child.wait().unwrap().code(), Some(2), "{arguments:?}");
+        assert_eq!(stderr.lines().count(), 1, "{stderr}");
+        assert!(stderr.starts_with("turbid: error: standard output: No space left"), "{stderr}");
+    }
+}
+
+/// Under-full gathers are noted on stderr, and the numbers still come.
+#[test]
+fn underfull_gathers_are_noted() {
+    let arguments = ["measure", "slab", "--with", "photons", "--photons", "100", "--max-radius", "0.01"];
+    let output = turbid(&arguments).output().unwrap();
+    let note = String::from_utf8(output.stderr).unwrap();
+    assert!(output.status.success() && note.starts_with("turbid: note: 5 of 5 estimates"), "{note}");
+    assert_eq!(note.lines().count(), 1);
+}
