@@ -108,6 +108,7 @@ impl Measure {
             With::Path => self.measure_by_paths(&scene),
             With::Photons => self.measure_by_photons(&scene),
         })?;
+        note_heavy_tails(&readings)?;
         let format = match self.format {
             FormatName::Table => Format::Text,
             FormatName::Csv => Format::Csv,
@@ -151,17 +152,44 @@ impl Measure {
         let result = by_photons(scene, &settings, &bar);
         bar.finish();
         let result = result?;
+        let ledger = &result.ledger;
+        let [absorbed, escaped, abandoned] =
+            [ledger.absorbed, ledger.escaped, ledger.abandoned].map(|power| power / ledger.emitted);
+        note(&format!(
+            "energy ledger: of the emitted power {absorbed:.6} was absorbed, {escaped:.6} escaped, {abandoned:.6} was \
+             followed no further; together {:.12}",
+            absorbed + escaped + abandoned
+        ))?;
         if result.underfull > 0 {
-            writeln!(
-                std::io::stderr().lock(),
-                "turbid: note: {} of {} estimates found fewer than k photons within the cap of {} L, and used those",
+            note(&format!(
+                "{} of {} estimates found fewer than k photons within the cap of {} L, and used those",
                 result.underfull,
                 result.gathers,
                 gather.cap()
-            )?;
+            ))?;
         }
         Ok(result.readings)
     }
+}
+
+/// A line beside the table.
+fn note(text: &str) -> std::io::Result<()> {
+    writeln!(std::io::stderr().lock(), "turbid: note: {text}")
+}
+
+fn note_heavy_tails(readings: &[Reading]) -> std::io::Result<()> {
+    let heavy: Vec<String> = readings
+        .iter()
+        .filter(|r| r.is_heavy_tailed)
+        .map(|r| format!("{} {}", r.sensor, r.quantity))
+        .collect();
+    if heavy.is_empty() {
+        return Ok(());
+    }
+    note(&format!(
+        "heavy-tailed, so that the standard error makes no interval yet (variance of variance above 0.1): {}",
+        heavy.join(", ")
+    ))
 }
 
 /// Half the cell, or a mean free path of the densest medium.

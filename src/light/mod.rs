@@ -91,6 +91,11 @@ impl Light {
         matches!(self, Light::Beam(_) | Light::Point(_))
     }
 
+    /// Whether it is a body that rays can meet, black but for its light.
+    pub fn has_body(&self) -> bool {
+        matches!(self, Light::Area(_) | Light::EmittingSphere(_))
+    }
+
     /// Whether next-event estimation can aim at it.
     pub fn has_direction(&self) -> bool {
         !matches!(self, Light::Isotropic(_) | Light::VolumeSource(_))

@@ -98,6 +98,7 @@ mod tests {
             mean,
             std_error: (std_error > 0.0).then_some(std_error),
             n: 64,
+            is_heavy_tailed: false,
         }
     }
 

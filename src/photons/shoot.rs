@@ -4,7 +4,6 @@ use super::{Flags, Photon, fold};
 use crate::Spectrum;
 use crate::error::{Error, Result};
 use crate::geometry::{Face, Shape};
-use crate::light::Light;
 use crate::math::Ray;
 use crate::rng::{Purpose, Stream};
 use crate::scene::{Orders, Quantity, Scene, Sensor, Target};
@@ -178,8 +177,10 @@ impl<K: Fn(&Photon) -> bool> Tallier<'_, K> {
         let emission = lights[index].emit(stage, stream);
         let weight =
             if lights.len() > 1 { emission.power * (total / emission.power.sum()) } else { emission.power };
-        let has_body = matches!(lights[index], Light::Area(_) | Light::EmittingSphere(_));
-        Walker { from: has_body.then_some(Target::Light(index)), ..Walker::new(emission.ray, weight) }
+        Walker {
+            from: lights[index].has_body().then_some(Target::Light(index)),
+            ..Walker::new(emission.ray, weight)
+        }
     }
 
     fn score(&mut self, sensor: usize, order: u32, weight: Spectrum) {

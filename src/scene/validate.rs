@@ -39,6 +39,7 @@ pub(super) fn check(parts: &Parts) -> Result<Option<Stage>> {
         }
     }
     check_fold(parts, stage.as_ref())?;
+    check_end(parts)?;
     for region in &parts.regions {
         let far = extent(&region.shape) * region.medium.sigma_t().max();
         if far > MAX_EXTENT_OVER_MFP {
@@ -91,6 +92,21 @@ fn stage(parts: &Parts) -> Result<Option<Stage>> {
         [slab] => Ok(Some(Stage { slab, side })),
         _ => refuse(format!("`cell` stands for one slab of medium; this scene has {}", slabs.len())),
     }
+}
+
+/// Light inside a closed shape that reflects everything, where nothing absorbs, would never come to an end.
+fn check_end(parts: &Parts) -> Result<()> {
+    let keeps_all = |kept: crate::Spectrum| kept.min() >= 1.0;
+    let is_closed = |shape: &Shape| matches!(shape, Shape::Sphere(_) | Shape::Cuboid(_));
+    let nothing_absorbs = parts.objects.iter().all(|o| keeps_all(o.surface.reflectance()))
+        && parts.regions.iter().all(|r| keeps_all(r.medium.albedo()) || r.medium.sigma_t().is_black())
+        && !parts.lights.iter().any(Light::has_body);
+    if nothing_absorbs && parts.objects.iter().any(|o| is_closed(&o.shape)) {
+        return refuse(
+            "light could be caught for ever: a closed shape reflects everything and nothing absorbs",
+        );
+    }
+    Ok(())
 }
 
 /// Folding positions into a cell is exact only where every part looks the same after a step along x or y.

@@ -7,7 +7,7 @@ pub use paths::{PathSettings, by_paths, sample};
 pub use photons::{PhotonReadings, PhotonSettings, by_photons};
 
 use crate::scene::Sensor;
-use crate::stats::Moments;
+use crate::stats::{Moments, poisson_interval};
 
 /// A measured number.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
@@ -20,14 +20,42 @@ pub struct Reading {
     pub unit: &'static str,
     /// Estimate.
     pub mean: f64,
-    /// Standard error of the mean; none where one map says nothing about it.
+    /// Standard error of the mean; none where nothing is known of it: a single map, or paths of which none
+    /// brought anything. A tally of no event has that of its 95 per cent bound, 3 events.
     pub std_error: Option<f64>,
     /// Independent histories or maps behind it.
     pub n: u64,
+    /// Whether the variance is itself too uncertain for the standard error to make an interval.
+    #[serde(skip)]
+    pub is_heavy_tailed: bool,
+}
+
+/// Who brought the numbers of a sensor.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Source {
+    /// Paths.
+    Paths,
+    /// Photon histories, each of which brings its power or none of it.
+    Tally,
+    /// Photon maps.
+    Maps,
+}
+
+/// Fewest numbers whose variance of variance says something of their tail: that of normal ones is about 2/n.
+const TELLS_TAIL: u64 = 100;
+
+fn std_error(m: &Moments, source: Source) -> Option<f64> {
+    let brought_nothing = m.mean() == 0.0 && m.std_error() == 0.0;
+    match source {
+        _ if m.n() < 2 => None,
+        Source::Tally if brought_nothing => Some(poisson_interval(0, 0.95).high / m.n() as f64),
+        Source::Paths if brought_nothing => None,
+        _ => Some(m.std_error()),
+    }
 }
 
 /// The readings of one sensor: one where the scene is grey, otherwise one a channel.
-fn readings(sensor: &Sensor, is_grey: bool, moments: &[Moments; 3]) -> Vec<Reading> {
+fn readings(sensor: &Sensor, is_grey: bool, moments: &[Moments; 3], source: Source) -> Vec<Reading> {
     let suffixes: &[&str] = if is_grey { &[""] } else { &[".r", ".g", ".b"] };
     suffixes
         .iter()
@@ -37,8 +65,9 @@ fn readings(sensor: &Sensor, is_grey: bool, moments: &[Moments; 3]) -> Vec<Readi
             quantity: format!("{}{suffix}", sensor.label),
             unit: sensor.unit(),
             mean: m.mean(),
-            std_error: (m.n() >= 2).then(|| m.std_error()),
+            std_error: std_error(m, source),
             n: m.n(),
+            is_heavy_tailed: m.n() >= TELLS_TAIL && m.is_heavy_tailed(),
         })
         .collect()
 }

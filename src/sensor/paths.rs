@@ -1,6 +1,6 @@
 //! Sensors read by the path tracer.
 
-use super::{Reading, readings};
+use super::{Reading, Source, readings};
 use crate::Spectrum;
 use crate::error::{Error, Result};
 use crate::integrators::{direct_flux, fluence, radiance};
@@ -40,7 +40,7 @@ pub fn by_paths(scene: &Scene, settings: &PathSettings, progress: &dyn Progress)
     let mut all = Vec::new();
     for (index, sensor) in scene.sensors().iter().enumerate() {
         let moments = read(scene, sensor, index as u64, settings, progress)?;
-        all.extend(readings(sensor, scene.plan().is_grey, &moments));
+        all.extend(readings(sensor, scene.plan().is_grey, &moments, Source::Paths));
     }
     Ok(all)
 }

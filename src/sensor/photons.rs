@@ -1,6 +1,6 @@
 //! Sensors read by photons: powers tallied where photons leave or end, fluence and radiance from photon maps.
 
-use super::{Reading, readings};
+use super::{Reading, Source, readings};
 use crate::Spectrum;
 use crate::error::{Error, Result};
 use crate::estimators::{Gather, Kernel, fluence, in_scattered};
@@ -114,7 +114,8 @@ pub fn by_photons(
         if non_finite > 0 {
             return Err(Error::NonFinite { count: non_finite, place: "estimates from photon maps" });
         }
-        result.readings.extend(readings(sensor, scene.plan().is_grey, &moments));
+        let source = if map_orders(sensor).is_some() { Source::Maps } else { Source::Tally };
+        result.readings.extend(readings(sensor, scene.plan().is_grey, &moments, source));
     }
     Ok(result)
 }
