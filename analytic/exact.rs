@@ -33,7 +33,7 @@ struct Cli {
 
 #[derive(Subcommand)]
 enum Command {
-    /// A homogeneous slab with isotropic scattering: fluxes, fluence, radiance of scattered light.
+    /// A homogeneous slab: fluxes, fluence and, with isotropic scattering, radiance of scattered light.
     Slab(slab::Args),
     /// A smoothing kernel: moments, variance, exponential fields, faces and edges.
     Kernel(kernel::Args),

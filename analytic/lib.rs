@@ -8,7 +8,7 @@
 //! irradiance on that face; the signed cosine mu > 0 points up, towards the lit face.
 //!
 //! * Special functions and rules: [`exponential_integral`], [`quadrature`]
-//! * Slab: [`beer_lambert`], [`slab_single`], [`slab_isotropic`]
+//! * Slab: [`beer_lambert`], [`slab_single`], [`slab_isotropic`], [`slab_anisotropic`]
 //! * Kernel density estimation: [`kernel`], [`ball_mean`], [`blur`], [`volumes`], [`slab_kernel`], [`nearest`],
 //!   [`progressive`]
 
@@ -34,6 +34,7 @@ pub mod volumes;
 pub use error::{Error, Result};
 pub use incidence::Incidence;
 pub use kernel::{Dimension, Kernel};
+pub use slab_anisotropic::AnisotropicSlab;
 pub use slab_isotropic::IsotropicSlab;
 pub use value::Value;
 

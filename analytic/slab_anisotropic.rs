@@ -20,6 +20,8 @@ mod jacobi;
 mod modes;
 mod nodes;
 mod solution;
+#[cfg(test)]
+mod tests;
 
 use crate::beer_lambert::direct_transmittance;
 use crate::error::{Result, within};
@@ -61,12 +63,16 @@ pub struct AnisotropicSlab {
 impl AnisotropicSlab {
     /// Solves the slab.
     ///
-    /// # Arguments  `tau` optical thickness \[1\], 1e-3 to 100; `albedo` 0 to 1; `g` mean cosine of scattering,
-    ///              -0.95 to 0.95; `incidence` of unit irradiance, a beam with a cosine of 1e-5 to 1
-    /// # Returns    a solution whose fluxes have a relative error below 1e-9 and whose fluence has one below 1e-7,
-    ///              mostly far below; the bounds say how much
-    /// # Errors     `Error::OutOfRange` naming `tau`, `albedo`, `g` or `mu0`
-    /// # Limits     g = 0: [`crate::IsotropicSlab`]; albedo = 1: R + T = 1; albedo = 0: the direct light alone
+    /// # Arguments
+    /// `tau` optical thickness \[1\], 1e-3 to 100; `albedo` 0 to 1; `g` mean cosine of scattering, -0.95 to 0.95;
+    /// `incidence` of unit irradiance, a beam with a cosine of 1e-5 to 1
+    /// # Returns
+    /// a solution whose fluxes have an error below 1e-9 of themselves or 1e-13 of the incident power, and whose fluence
+    /// one below 1e-7 of itself, mostly far below; the bounds say how much
+    /// # Errors
+    /// `Error::OutOfRange` naming `tau`, `albedo`, `g` or `mu0`
+    /// # Limits
+    /// g = 0: [`crate::IsotropicSlab`]; albedo = 1: R + T = 1; albedo = 0: the direct light alone
     pub fn new(tau: f64, albedo: f64, g: f64, incidence: Incidence) -> Result<Self> {
         within("tau", tau, 1e-3, 100.0, "1e-3 to 100 with anisotropic scattering")?;
         check_albedo(albedo)?;
@@ -87,7 +93,7 @@ impl AnisotropicSlab {
             [solutions[0].absorptance()?, solutions[1].absorptance()?],
         ];
         let transmittance_direct = direct_transmittance(incidence, tau)?;
-        let [reflectance, transmittance_diffuse, absorptance] = bounded(fluxes, solutions[0].slowest() * tau);
+        let [reflectance, transmittance_diffuse, absorptance] = bounded(fluxes);
         let ladder = depths(tau).into_iter().map(|t| (t, difference(&solutions, t))).collect();
         Ok(AnisotropicSlab {
             tau,
@@ -152,8 +158,10 @@ impl AnisotropicSlab {
 
     /// Fluence at depth t, direct light included, per unit irradiance on the lit face \[1\].
     ///
-    /// # Arguments  `t` depth in mean free paths, 0 to tau
-    /// # Errors     `Error::OutOfRange` naming `t`
+    /// # Arguments
+    /// `t` depth in mean free paths, 0 to tau
+    /// # Errors
+    /// `Error::OutOfRange` naming `t`
     pub fn fluence(&self, t: f64) -> Result<Value> {
         check_depth(t, self.tau)?;
         let [fine, coarse] = [self.solutions[0].fluence(t), self.solutions[1].fluence(t)];
@@ -162,22 +170,19 @@ impl AnisotropicSlab {
         let near = &self.ladder[at.saturating_sub(2)..(at + 2).min(self.ladder.len())];
         let shared = near.iter().fold(0.0, |a: f64, &(_, d)| a.max(d)) * fine.value.abs();
         let difference = (fine.value - coarse.value).abs();
-        let mut error = difference + shared + rounding(fine, self.solutions[0].slowest() * t);
-        if let Incidence::Beam { mu0 } = self.incidence {
-            error += f64::EPSILON * (t / mu0).min(750.0) * fine.value.abs();
-        }
+        let error = difference + shared + rounding(fine);
         Ok(Value::new(fine.value, error + f64::MIN_POSITIVE, METHOD))
     }
 }
 
-/// Rounding of a sum over modes; `lengths` is its distance in decay lengths, each of which carries the rounding of k.
-fn rounding(sum: Sum, lengths: f64) -> f64 {
-    f64::EPSILON * (ULPS * sum.magnitude + ULPS * lengths * sum.value.abs())
+/// Rounding of a sum over modes.
+fn rounding(sum: Sum) -> f64 {
+    ULPS * f64::EPSILON * sum.magnitude
 }
 
 /// R, diffuse T and A with their bounds: each the difference of the two solutions, plus the largest difference of the
 /// three, absolute or relative to each, whichever is less (in a thick slab T is a small number known well).
-fn bounded(fluxes: [[Sum; 2]; 3], lengths: f64) -> [Value; 3] {
+fn bounded(fluxes: [[Sum; 2]; 3]) -> [Value; 3] {
     let differences = fluxes.map(|[fine, coarse]| (fine.value - coarse.value).abs());
     let largest = differences.iter().fold(0.0, |a: f64, &b| a.max(b));
     let relative = fluxes
@@ -188,7 +193,7 @@ fn bounded(fluxes: [[Sum; 2]; 3], lengths: f64) -> [Value; 3] {
     std::array::from_fn(|i| {
         let fine = fluxes[i][0];
         let shared = largest.min(relative * fine.value.abs());
-        Value::new(fine.value, differences[i] + shared + rounding(fine, lengths) + f64::MIN_POSITIVE, METHOD)
+        Value::new(fine.value, differences[i] + shared + rounding(fine) + f64::MIN_POSITIVE, METHOD)
     })
 }
 

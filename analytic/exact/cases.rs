@@ -4,11 +4,12 @@ use crate::kernel::{dimension, kernel};
 use crate::slab::incidence;
 use anyhow::{Context, Result, anyhow, bail};
 use std::collections::HashMap;
+use std::collections::hash_map::Entry;
 use std::io::Write;
 use std::path::Path;
 use turbid_analytic::ball_mean::exponential_mean;
 use turbid_analytic::slab_single::single_radiance;
-use turbid_analytic::{Dimension, Incidence, IsotropicSlab, Kernel, Value};
+use turbid_analytic::{AnisotropicSlab, Dimension, Incidence, IsotropicSlab, Kernel, Value};
 use turbid_analytic::{blur, progressive, volumes};
 
 const COLUMNS: [&str; 14] =
@@ -122,19 +123,13 @@ fn read(path: &Path) -> Result<Vec<Row>> {
 struct Slabs {
     tau: f64,
     solved: HashMap<(u64, u64), IsotropicSlab>,
+    anisotropic: HashMap<(u64, u64, u64), AnisotropicSlab>,
 }
 
 impl Slabs {
     fn get(&mut self, tau: f64, albedo: f64, incidence: Incidence) -> Result<&IsotropicSlab> {
-        if tau.to_bits() != self.tau.to_bits() {
-            self.solved.clear();
-            self.tau = tau;
-        }
-        let light = match incidence {
-            Incidence::Beam { mu0 } => mu0.to_bits(),
-            Incidence::Diffuse => u64::MAX,
-        };
-        let key = (albedo.to_bits(), light);
+        self.turn_to(tau);
+        let key = (albedo.to_bits(), light_bits(incidence));
         if !self.solved.contains_key(&key) {
             let slab = match self.solved.values().next() {
                 Some(other) => other.with(albedo, incidence)?,
@@ -143,6 +138,36 @@ impl Slabs {
             self.solved.insert(key, slab);
         }
         self.solved.get(&key).context("the slab was just solved")
+    }
+
+    fn get_anisotropic(
+        &mut self,
+        tau: f64,
+        albedo: f64,
+        g: f64,
+        incidence: Incidence,
+    ) -> Result<&AnisotropicSlab> {
+        self.turn_to(tau);
+        let key = (albedo.to_bits(), g.to_bits(), light_bits(incidence));
+        Ok(match self.anisotropic.entry(key) {
+            Entry::Occupied(entry) => entry.into_mut(),
+            Entry::Vacant(entry) => entry.insert(AnisotropicSlab::new(tau, albedo, g, incidence)?),
+        })
+    }
+
+    fn turn_to(&mut self, tau: f64) {
+        if tau.to_bits() != self.tau.to_bits() {
+            self.solved.clear();
+            self.anisotropic.clear();
+            self.tau = tau;
+        }
+    }
+}
+
+fn light_bits(incidence: Incidence) -> u64 {
+    match incidence {
+        Incidence::Beam { mu0 } => mu0.to_bits(),
+        Incidence::Diffuse => u64::MAX,
     }
 }
 
@@ -163,7 +188,23 @@ fn slab(row: &Row, slabs: &mut Slabs) -> Result<Answer> {
         return Ok(Ok(single_radiance(tau, albedo, g, mu0, t, mu, row.number_or("dphi", 0.0)?)?));
     }
     if g != 0.0 {
-        return Ok(Err("anisotropic scattering is answered in the first order of radiance only".into()));
+        if order.is_some()
+            || !matches!(quantity, "R" | "T_total" | "T_diffuse" | "T_direct" | "A" | "fluence")
+        {
+            return Ok(Err(format!(
+                "quantity {quantity} is not answered for anisotropic scattering, or not by order"
+            )));
+        }
+        let light = incidence(row.text("mu0")).map_err(|e| anyhow!("{e}"))?;
+        let slab = slabs.get_anisotropic(tau, albedo, g, light)?;
+        return Ok(Ok(match quantity {
+            "R" => slab.reflectance(),
+            "T_total" => slab.transmittance(),
+            "T_diffuse" => slab.transmittance_diffuse(),
+            "T_direct" => slab.transmittance_direct(),
+            "A" => slab.absorptance(),
+            _ => slab.fluence(row.number("t")?)?,
+        }));
     }
     // X and Y are functions of the cosine mu, and mu times the fluence on the two faces under a beam of that cosine.
     let chandrasekhar = matches!(quantity, "X" | "Y");

@@ -10,9 +10,12 @@ const SWEEPS: usize = 60;
 /// The lengths of the columns of G V are the singular values of G, and V holds the right singular vectors. For
 /// G = X D, X well conditioned and D diagonal, every singular value keeps its relative accuracy whatever D spans;
 /// methods that first make the matrix tridiagonal lose all that lie below rounding of the largest.
-/// # Arguments  `columns` of G; columns in falling order of length converge soonest
-/// # Returns    the columns of V
-/// # Source     Hestenes 1958; Demmel and Veselic 1992
+/// # Arguments
+/// `columns` of G; columns in falling order of length converge soonest
+/// # Returns
+/// the columns of V
+/// # Source
+/// Hestenes 1958; Demmel and Veselic 1992
 pub(super) fn orthogonalize(columns: &mut [Vec<f64>]) -> Result<Vec<Vec<f64>>> {
     let n = columns.len();
     let tolerance = f64::EPSILON * (n as f64).sqrt();

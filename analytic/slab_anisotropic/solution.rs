@@ -38,7 +38,8 @@ struct Beam {
     kappa: DVector<f64>,
 }
 
-/// A sum over modes, with the sum of the magnitudes of its terms: rounding is a few units of the last place of that.
+/// A sum over modes, with the sum of the magnitudes of its terms, each times 1 + its exponent, which carries the
+/// rounding of k: rounding is a few units of the last place of that.
 #[derive(Clone, Copy)]
 pub(super) struct Sum {
     pub value: f64,
@@ -46,12 +47,20 @@ pub(super) struct Sum {
 }
 
 impl Sum {
-    fn add(self, value: f64, magnitude: f64) -> Self {
+    fn plus(self, value: f64, magnitude: f64) -> Self {
         Sum { value: self.value + value, magnitude: self.magnitude + magnitude }
     }
 
     fn scaled(self, factor: f64) -> Self {
-        Sum { value: self.value * factor, magnitude: self.magnitude * factor }
+        Sum { value: self.value * factor, magnitude: self.magnitude * factor.abs() }
+    }
+}
+
+impl std::ops::Add for Sum {
+    type Output = Sum;
+
+    fn add(self, other: Sum) -> Sum {
+        self.plus(other.value, other.magnitude)
     }
 }
 
@@ -61,7 +70,7 @@ fn decayed(rate: f64, x: f64) -> f64 {
 }
 
 impl Beam {
-    /// xi and eta of the particular solution of mode j at depth t, and the magnitude of xi's terms.
+    /// xi and eta of the particular solution of mode j at depth t, and the magnitude of the terms of xi.
     ///
     /// For k < 1/2 a multiple of e^(-beta t), beta >= 1. Beyond, psi = k xi +- eta starts from 0 on the face
     /// where it enters, so that both are integrals of positive functions and k = beta needs no care.
@@ -70,11 +79,12 @@ impl Beam {
         if k < 0.5 {
             let x = (beta * kappa - pi) / (beta * beta - k * k);
             let e = exp(-beta * t);
-            return [x * e, (kappa - beta * x) * e, x.abs() * e];
+            return [x * e, (kappa - beta * x) * e, x.abs() * e * (1.0 + beta * t)];
         }
         let up = (k * kappa + pi) * exp(-beta * t) * decayed(k + beta, rest);
         let down = -(k * kappa - pi) * exp(-k.min(beta) * t) * decayed((k - beta).abs(), t);
-        [(up + down) / (2.0 * k), 0.5 * (up - down), (up.abs() + down.abs()) / (2.0 * k)]
+        let size = up.abs() * (1.0 + beta * t) + down.abs() * (1.0 + k.min(beta) * t);
+        [(up + down) / (2.0 * k), 0.5 * (up - down), size / (2.0 * k)]
     }
 }
 
@@ -109,21 +119,16 @@ impl Solution {
         Ok(Solution { tau, albedo, incidence, modes, basis, first, second, beam })
     }
 
-    /// The slowest decay of all modes, per mean free path.
-    pub fn slowest(&self) -> f64 {
-        self.modes.slowest()
-    }
-
     /// Fluence at depth t, direct light included \[1\].
     pub fn fluence(&self, t: f64) -> Sum {
         let direct = direct_fluence(self.incidence, t);
-        let sum = self.scattered_fluence(t).add(direct, direct);
+        let sum = self.scattered_fluence(t);
         match self.incidence {
-            Incidence::Beam { .. } => sum,
+            Incidence::Beam { mu0 } => sum.plus(direct, direct * (1.0 + t / mu0)),
             // Uncollided light is known exactly: the nodes' version of it is taken out.
             Incidence::Diffuse => {
                 let ours = 2.0 * self.modes.nodes.sum(|mu| exp(-t / mu));
-                sum.add(-ours, ours)
+                sum.plus(direct, direct).plus(-ours, ours)
             }
         }
     }
@@ -131,7 +136,7 @@ impl Solution {
     /// Fraction reflected \[1\].
     pub fn reflectance(&self) -> Sum {
         let entering = if self.beam.is_some() { 0.0 } else { 2.0 * self.modes.nodes.sum(|mu| mu) };
-        self.net_flux_up(0.0).add(entering, entering)
+        self.net_flux_up(0.0).plus(entering, entering)
     }
 
     /// Fraction transmitted after at least one scattering \[1\].
@@ -164,15 +169,15 @@ impl Solution {
                 };
             }
             let weight = 2.0 * PI * self.modes.fluence[j];
-            sum = terms.iter().fold(sum, |sum, term| sum.add(weight * term, (weight * term).abs()));
+            sum = terms.iter().fold(sum, |sum, term| sum.plus(weight * term, (weight * term).abs()));
         }
         if let Incidence::Beam { mu0 } = self.incidence {
             let direct = -expm1(-tau / mu0);
-            sum = sum.add(direct, direct);
+            sum = sum.plus(direct, direct);
         } else {
             let ours = 1.0 - 2.0 * self.modes.nodes.sum(|mu| mu * exp(-tau / mu));
             let exact = 1.0 - direct_transmittance(self.incidence, tau)?.value;
-            sum = sum.add(exact - ours, 2.0);
+            sum = sum.plus(exact - ours, 2.0);
         }
         Ok(sum.scaled(1.0 - self.albedo))
     }
@@ -181,11 +186,9 @@ impl Solution {
         let rest = self.tau - t;
         let mut sum = Sum { value: 0.0, magnitude: 0.0 };
         for (j, &k) in self.modes.k.iter().enumerate() {
-            let ([f, g], _) = self.shapes(k, t, rest);
-            let (f, g) = (self.first[j] * f, self.second[j] * g);
-            let [xi, _, size] = self.beam.as_ref().map_or([0.0; 3], |beam| beam.particular(j, k, t, rest));
-            let weight = self.modes.fluence[j];
-            sum = sum.add(weight * (f + g + xi), weight.abs() * (f.abs() + g.abs() + size));
+            let (shapes, _) = self.shapes(k, t, rest);
+            let part = self.beam.as_ref().map_or([0.0; 3], |beam| beam.particular(j, k, t, rest));
+            sum = sum + self.term(j, t, shapes).plus(part[0], part[2]).scaled(self.modes.fluence[j]);
         }
         sum.scaled(2.0 * PI)
     }
@@ -195,15 +198,24 @@ impl Solution {
         let rest = self.tau - t;
         let mut sum = Sum { value: 0.0, magnitude: 0.0 };
         for (j, &k) in self.modes.k.iter().enumerate() {
-            let (_, [f, g]) = self.shapes(k, t, rest);
-            let (f, g) = (self.first[j] * f, self.second[j] * g);
-            let [xi, eta, size] = self.beam.as_ref().map_or([0.0; 3], |beam| beam.particular(j, k, t, rest));
-            // psi = k xi +- eta: both have terms of one size.
-            let size = if k < 0.5 { eta.abs() } else { k * size.max(xi.abs()) };
-            let weight = self.modes.flux[j];
-            sum = sum.add(weight * (f + g + eta), weight.abs() * (f.abs() + g.abs() + size));
+            let (_, slopes) = self.shapes(k, t, rest);
+            let part = self.beam.as_ref().map_or([0.0; 3], |beam| beam.particular(j, k, t, rest));
+            // eta is k times xi where both are sums of one pair of terms.
+            let size = if k < 0.5 { part[1].abs() } else { k * part[2] };
+            sum = sum + self.term(j, t, slopes).plus(part[1], size).scaled(self.modes.flux[j]);
         }
         sum.scaled(2.0 * PI)
+    }
+
+    /// The two solutions of mode j times their amplitudes.
+    fn term(&self, j: usize, t: f64, shapes: [f64; 2]) -> Sum {
+        let (k, rest) = (self.modes.k[j], self.tau - t);
+        let (f, g) = (self.first[j] * shapes[0], self.second[j] * shapes[1]);
+        let lengths = match self.basis {
+            Basis::Halves => [k * t.min(rest); 2],
+            Basis::Faces => [k * t, k * rest],
+        };
+        Sum { value: f + g, magnitude: f.abs() * (1.0 + lengths[0]) + g.abs() * (1.0 + lengths[1]) }
     }
 
     /// The two solutions of a mode at depth t, `rest` = tau - t, and their slopes.

@@ -1,0 +1,109 @@
+//! What only the inside can see: the bounds against a third set of nodes, decay lengths, resonances.
+
+use super::modes::Modes;
+use super::nodes::Nodes;
+use super::solution::Solution;
+use super::*;
+use proptest::prelude::*;
+
+/// The slab on nodes finer than any in use.
+fn finer(tau: f64, albedo: f64, g: f64, incidence: Incidence) -> Solution {
+    let moments = if g == 0.0 { 0.0 } else { log(1e-14) / log(g.abs()) };
+    let nodes = Nodes::new((0.5 * moments) as usize + 40, 96);
+    Solution::new(tau, albedo, incidence, Modes::new(albedo, g, nodes).unwrap()).unwrap()
+}
+
+/// All answers of the slab lie within their bounds of those of the finer one; returns the largest bound.
+fn covered(slab: &AnisotropicSlab, finer: &Solution) -> std::result::Result<f64, String> {
+    let mut largest = 0.0_f64;
+    let mut check = |name: String, got: Value, truth: f64| {
+        largest = largest.max(got.error / got.value.abs().max(1e-4));
+        let off = (got.value - truth).abs();
+        if off <= got.error { Ok(()) } else { Err(format!("{name}: {got:?}, finer {truth:e}, off {off:e}")) }
+    };
+    check("R".into(), slab.reflectance(), finer.reflectance().value)?;
+    check("T".into(), slab.transmittance_diffuse(), finer.transmittance_diffuse().value)?;
+    check("A".into(), slab.absorptance(), finer.absorptance().map_err(|e| e.to_string())?.value)?;
+    for i in 0..40 {
+        let share = 0.5 * exp(-0.6 * f64::from(i));
+        for t in [slab.tau * share, slab.tau - slab.tau * share] {
+            let got = slab.fluence(t).map_err(|e| e.to_string())?;
+            check(format!("phi({t:e})"), got, finer.fluence(t).value)?;
+        }
+    }
+    Ok(largest)
+}
+
+proptest! {
+    #![proptest_config(crate::fixed_cases(60))]
+
+    /// The bound is earned: it covers what far more nodes make of the same slab, everywhere.
+    #[test]
+    fn bounds_cover_a_third_set_of_nodes(
+        tau in (-3.0..2.0_f64).prop_map(|x| libm::pow(10.0, x)),
+        albedo in prop_oneof![0.0..=1.0_f64, Just(1.0), (-12.0..0.0_f64).prop_map(|x| 1.0 - libm::pow(10.0, x))],
+        g in prop_oneof![-0.9..=0.9_f64, Just(0.75), Just(0.9), Just(-0.9)],
+        light in prop_oneof![
+            Just(Incidence::Diffuse),
+            Just(Incidence::Beam { mu0: 1.0 }),
+            (0.05..1.0_f64).prop_map(|mu0| Incidence::Beam { mu0 }),
+            (-5.0..0.0_f64).prop_map(|x| Incidence::Beam { mu0: libm::pow(10.0, x) }),
+        ],
+    ) {
+        let slab = AnisotropicSlab::new(tau, albedo, g, light).unwrap();
+        let bound = covered(&slab, &finer(tau, albedo, g, light)).map_err(TestCaseError::fail)?;
+        prop_assert!(bound < 1e-7, "{bound:e}");
+    }
+}
+
+#[test]
+fn the_ends_of_the_range_are_covered_too() {
+    for (tau, g) in [(1e-3, 0.95), (2.0, -0.95), (100.0, 0.95)] {
+        let light = Incidence::Beam { mu0: 0.6 };
+        let slab = AnisotropicSlab::new(tau, 0.99, g, light).unwrap();
+        let bound = covered(&slab, &finer(tau, 0.99, g, light)).unwrap();
+        assert!(bound < 1e-7, "{tau} {g} {bound:e}");
+    }
+}
+
+/// The slowest decay is the root of h_0 = k^2/(h_1 - 4 k^2/(h_2 - 9 k^2/...)), h_l = (2l+1)(1 - w g^l) (van de Hulst
+/// 1980, section 5.2), an equation without directions.
+#[test]
+fn the_slowest_decay_obeys_the_continued_fraction() {
+    for (albedo, g) in
+        [(0.9, 0.0), (0.5, 0.3), (0.9, 0.75), (0.99, 0.85), (0.999, 0.9), (0.99, 0.95), (0.9, -0.7)]
+    {
+        let moments = if g == 0.0 { 0.0 } else { log(1e-13) / log(f64::abs(g)) };
+        let modes = Modes::new(albedo, g, Nodes::new((0.5 * moments) as usize + 32, 40)).unwrap();
+        let k = modes.slowest();
+        let defect = |k: f64| {
+            let h = |l: i32| (2.0 * f64::from(l) + 1.0) * (1.0 - albedo * g.powi(l));
+            let tail = (1..2000).rev().fold(0.0, |tail, l| f64::from(l).powi(2) * k * k / (h(l) - tail));
+            h(0) - tail
+        };
+        // Newton's step from our k is its error.
+        let h = 1e-6 * k;
+        let step = defect(k) * 2.0 * h / (defect(k + h) - defect(k - h));
+        assert!((step / k).abs() < 1e-13, "{albedo} {g}: k {k} off by {step:e}");
+    }
+}
+
+/// 1/mu0 equal to a decay, or mu0 equal to a node, is a direction like any other.
+#[test]
+fn resonances_lose_nothing() {
+    let (tau, albedo, g) = (2.0, 0.9, 0.75);
+    let moments = log(CUT[0]) / log(g);
+    let nodes = Nodes::new(UPPER[0].max(1 + (0.5 * moments).ceil() as usize), LOWER[0]);
+    let directions: Vec<f64> = nodes.mu.iter().copied().filter(|mu| *mu > 0.01).step_by(7).collect();
+    let modes = Modes::new(albedo, g, nodes).unwrap();
+    let decays = modes.k.iter().filter(|k| **k > 1.0 && **k < 100.0).step_by(5).map(|k| 1.0 / k);
+    let mut count = 0;
+    for mu0 in decays.chain(directions) {
+        let light = Incidence::Beam { mu0 };
+        let slab = AnisotropicSlab::new(tau, albedo, g, light).unwrap();
+        let bound = covered(&slab, &finer(tau, albedo, g, light)).unwrap();
+        assert!(bound < 1e-9, "{mu0} {bound:e}");
+        count += 1;
+    }
+    assert!(count >= 10, "{count}");
+}
