@@ -212,7 +212,7 @@ impl<F: FnMut(u32, Spectrum)> Visitor for PathVisitor<'_, F> {
                 };
                 self.connect(walker, position, Some(found.target), stream, scattered, |_| 1.0);
             }
-            Step::Passed(..) | Step::Absorbed(..) | Step::Escaped(_) => {}
+            Step::Passed(..) | Step::Absorbed(..) | Step::Escaped(_) | Step::Abandoned(_) => {}
         }
     }
 }

@@ -141,13 +141,8 @@ impl<K: Fn(&Photon) -> bool> Tallier<'_, K> {
         let start = self.emit(stream);
         self.pass.emitted += 1;
         self.pass.ledger.emitted += start.weight.sum();
-        let settled = self.pass.ledger.absorbed + self.pass.ledger.escaped;
         // Photons of order n arrive by a flight of order n: flights stop one later.
         walk(self.scene, start, Roulette::Analog, max_order.map(|n| n + 1), stream, self);
-        if max_order.is_some() {
-            let now = self.pass.ledger.absorbed + self.pass.ledger.escaped;
-            self.pass.ledger.abandoned += start.weight.sum() - (now - settled);
-        }
         let channels = if self.scene.plan().is_grey { 1 } else { 3 };
         for (sensor, score) in self.scores.iter().enumerate() {
             if !is_tallied(&self.sensors[sensor]) {
@@ -244,6 +239,7 @@ impl<K: Fn(&Photon) -> bool> Visitor for Tallier<'_, K> {
                 }
             }
             Step::Escaped(weight) => self.pass.ledger.escaped += weight.sum(),
+            Step::Abandoned(weight) => self.pass.ledger.abandoned += weight.sum(),
             Step::Ahead(_) | Step::Surface(..) => {}
         }
     }

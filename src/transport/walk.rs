@@ -56,6 +56,8 @@ pub enum Step<'a> {
     Absorbed(Spectrum, Option<usize>),
     /// The weight leaves the scene.
     Escaped(Spectrum),
+    /// The weight is followed no further, since nobody asked for higher orders.
+    Abandoned(Spectrum),
 }
 
 /// Who watches a walk.
@@ -83,6 +85,7 @@ pub fn walk<V: Visitor>(
         let hit = scene.hit(&walker.ray, walker.from);
         visitor.visit(&walker, Step::Ahead(hit.as_ref()), stream);
         if limit.is_some_and(|limit| walker.order >= limit) {
+            visitor.visit(&walker, Step::Abandoned(walker.weight), stream);
             return;
         }
         let end = hit.map_or(f64::INFINITY, |h| h.hit.t);
