@@ -67,7 +67,7 @@ impl AnisotropicSlab {
     /// `tau` optical thickness \[1\], 1e-3 to 100; `albedo` 0 to 1; `g` mean cosine of scattering, -0.95 to 0.95;
     /// `incidence` of unit irradiance, a beam with a cosine of 1e-5 to 1
     /// # Returns
-    /// a solution whose fluxes have an error below 1e-9 of themselves or 1e-13 of the incident power, and whose fluence
+    /// a solution whose fluxes have an error below 1e-9 of themselves or 1e-12 of the incident power, and whose fluence
     /// one below 1e-7 of itself, mostly far below; the bounds say how much
     /// # Errors
     /// `Error::OutOfRange` naming `tau`, `albedo`, `g` or `mu0`

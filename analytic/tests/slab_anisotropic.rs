@@ -290,7 +290,7 @@ proptest! {
     fn photons_are_conserved(
         tau in (-3.0..2.0_f64).prop_map(|x| pow(10.0, x)),
         albedo in prop_oneof![0.0..=1.0_f64, Just(0.0), Just(1.0), (-300.0..0.0_f64).prop_map(|x| pow(10.0, x))],
-        g in prop_oneof![-0.9..=0.9_f64, Just(0.0), (-300.0..-1.0_f64).prop_map(|x| -pow(10.0, x))],
+        g in prop_oneof![-0.95..=0.95_f64, Just(0.95), Just(0.0), (-300.0..-1.0_f64).prop_map(|x| -pow(10.0, x))],
         light in prop_oneof![
             Just(Incidence::Diffuse),
             Just(beam(1.0)),
@@ -305,7 +305,7 @@ proptest! {
         prop_assert!(off < 1e-12, "{off:e}");
         for v in [r, t, a, slab.transmittance_diffuse()] {
             prop_assert!(v.value >= -v.error && v.value <= 1.0 + v.error, "{v:?}");
-            prop_assert!(v.error <= 1e-9 * v.value.abs() || v.error < 1e-13, "{v:?}");
+            prop_assert!(v.error <= 1e-9 * v.value.abs() || v.error < 1e-12, "{v:?}");
         }
         let phi = slab.fluence(share * tau).unwrap();
         prop_assert!(phi.value >= 0.0 && phi.error <= 1e-7 * phi.value + 1e-300, "{phi:?}");
