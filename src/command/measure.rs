@@ -104,29 +104,33 @@ impl Measure {
         }
         let threads = self.threads.map_or(0, usize::from);
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().context("--threads")?;
-        let readings = pool.install(|| match self.with {
+        let (readings, mut notes) = pool.install(|| match self.with {
             With::Path => self.measure_by_paths(&scene),
             With::Photons => self.measure_by_photons(&scene),
         })?;
-        note_heavy_tails(&readings)?;
+        notes.extend(heavy_tails(&readings));
         let format = match self.format {
             FormatName::Table => Format::Text,
             FormatName::Csv => Format::Csv,
             FormatName::Json => Format::Json,
         };
-        print(|out| write_rows(out, &readings, format)).context("standard output")
+        print(|out| write_rows(out, &readings, format)).context("standard output")?;
+        for note in notes {
+            writeln!(std::io::stderr().lock(), "turbid: note: {note}")?;
+        }
+        Ok(())
     }
 
-    fn measure_by_paths(&self, scene: &Scene) -> anyhow::Result<Vec<Reading>> {
+    fn measure_by_paths(&self, scene: &Scene) -> anyhow::Result<(Vec<Reading>, Vec<String>)> {
         let settings =
             PathSettings { samples: self.samples, seed: self.seed, replicate: 0, orders: self.orders };
         let bar = Bar::new(self.samples.saturating_mul(scene.sensors().len() as u64));
         let readings = by_paths(scene, &settings, &bar);
         bar.finish();
-        Ok(readings?)
+        Ok((readings?, Vec::new()))
     }
 
-    fn measure_by_photons(&self, scene: &Scene) -> anyhow::Result<Vec<Reading>> {
+    fn measure_by_photons(&self, scene: &Scene) -> anyhow::Result<(Vec<Reading>, Vec<String>)> {
         let gather = match self.radius {
             Some(radius) => Gather::radius(radius).context("--radius")?,
             None => {
@@ -155,41 +159,36 @@ impl Measure {
         let ledger = &result.ledger;
         let [absorbed, escaped, abandoned] =
             [ledger.absorbed, ledger.escaped, ledger.abandoned].map(|power| power / ledger.emitted);
-        note(&format!(
+        let mut notes = vec![format!(
             "energy ledger: of the emitted power {absorbed:.6} was absorbed, {escaped:.6} escaped, {abandoned:.6} was \
              followed no further; together {:.12}",
             absorbed + escaped + abandoned
-        ))?;
+        )];
         if result.underfull > 0 {
-            note(&format!(
+            notes.push(format!(
                 "{} of {} estimates found fewer than k photons within the cap of {} L, and used those",
                 result.underfull,
                 result.gathers,
                 gather.cap()
-            ))?;
+            ));
         }
-        Ok(result.readings)
+        Ok((result.readings, notes))
     }
 }
 
-/// A line beside the table.
-fn note(text: &str) -> std::io::Result<()> {
-    writeln!(std::io::stderr().lock(), "turbid: note: {text}")
-}
-
-fn note_heavy_tails(readings: &[Reading]) -> std::io::Result<()> {
+/// Names the readings whose standard error makes no interval.
+fn heavy_tails(readings: &[Reading]) -> Option<String> {
     let heavy: Vec<String> = readings
         .iter()
         .filter(|r| r.is_heavy_tailed)
         .map(|r| format!("{} {}", r.sensor, r.quantity))
         .collect();
-    if heavy.is_empty() {
-        return Ok(());
-    }
-    note(&format!(
-        "heavy-tailed, so that the standard error makes no interval yet (variance of variance above 0.1): {}",
-        heavy.join(", ")
-    ))
+    (!heavy.is_empty()).then(|| {
+        format!(
+            "heavy-tailed, so that the standard error makes no interval yet (variance of variance above 0.1): {}",
+            heavy.join(", ")
+        )
+    })
 }
 
 /// Half the cell, or a mean free path of the densest medium.

@@ -183,6 +183,16 @@ fn underfull_gathers_are_noted() {
     let arguments = ["measure", "slab", "--with", "photons", "--photons", "100", "--max-radius", "0.01"];
     let output = turbid(&arguments).output().unwrap();
     let note = String::from_utf8(output.stderr).unwrap();
-    assert!(output.status.success() && note.starts_with("turbid: note: 5 of 5 estimates"), "{note}");
-    assert_eq!(note.lines().count(), 1);
+    assert!(output.status.success() && note.contains("turbid: note: 5 of 5 estimates"), "{note}");
+    assert!(note.lines().all(|line| line.starts_with("turbid: note: ")), "{note}");
+}
+
+/// The energy ledger of the photons stands beside the table, and it closes.
+#[test]
+fn the_ledger_is_told() {
+    let arguments = ["measure", "slab", "--with", "photons", "--photons", "5000", "--orders", "0..2"];
+    let output = turbid(&arguments).output().unwrap();
+    let note = String::from_utf8(output.stderr).unwrap();
+    assert!(output.status.success() && note.contains("energy ledger"), "{note}");
+    assert!(note.trim_end().ends_with("together 1.000000000000"), "{note}");
 }
