@@ -4,7 +4,7 @@
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum Error {
     /// A number outside its range: names the quantity, the value and what is allowed.
-    #[error("{name} is {value}; allowed: {allowed}")]
+    #[error("{name} is {}; allowed: {allowed}", plain(*value))]
     OutOfRange {
         /// The quantity, as the user calls it.
         name: String,
@@ -30,6 +30,12 @@ pub enum Error {
         /// Where they were met.
         place: &'static str,
     },
+}
+
+/// A number without rows of zeros.
+fn plain(value: f64) -> String {
+    let is_near_one = value == 0.0 || (1e-4..1e9).contains(&value.abs()) || !value.is_finite();
+    if is_near_one { format!("{value}") } else { format!("{value:e}") }
 }
 
 impl Error {

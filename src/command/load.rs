@@ -78,12 +78,22 @@ impl Source {
     }
 }
 
-/// Key and value of `key=value`; a value that is no TOML is a word.
+/// Key and value of `key=value`; a value that is no TOML is a word, unless it begins like a number.
 fn split(set: &str) -> anyhow::Result<(&str, toml::Value)> {
     let Some((key, value)) = set.split_once('=') else { bail!("--set {set}: allowed: KEY=VALUE") };
+    let (key, value) = (key.trim(), value.trim());
     let parsed =
         toml::from_str::<toml::Table>(&format!("value = {value}")).ok().and_then(|mut t| t.remove("value"));
-    Ok((key.trim(), parsed.unwrap_or_else(|| toml::Value::String(value.trim().to_string()))))
+    let is_number_like = value.starts_with(|c: char| c.is_ascii_digit() || "+-.".contains(c));
+    match parsed {
+        Some(parsed) => Ok((key, parsed)),
+        None if is_number_like => match value.parse::<f64>() {
+            // TOML wants digits on both sides of the point, and no more range than f64 has.
+            Ok(number) if number.is_finite() => Ok((key, toml::Value::Float(number))),
+            _ => bail!("--set {set}: {key} is {value}; allowed: a number that fits 64 bits"),
+        },
+        None => Ok((key, toml::Value::String(value.to_string()))),
+    }
 }
 
 /// The place of a dotted key, where numbers count list entries from 0. Only the last part may be new.

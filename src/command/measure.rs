@@ -52,7 +52,7 @@ pub struct Measure {
     #[arg(long, default_value_t = 1)]
     seed: u64,
     /// Threads [default: all cores].
-    #[arg(long, value_parser = clap::value_parser!(u16).range(1..))]
+    #[arg(long, value_parser = clap::value_parser!(u16).range(1..=1024))]
     threads: Option<u16>,
     /// Form of the output.
     #[arg(long, value_enum, default_value = "table")]
@@ -85,8 +85,13 @@ enum FormatName {
 
 /// Orders on the command line.
 fn parse_orders(text: &str) -> Result<Orders, String> {
-    const ALLOWED: &str = "allowed: an order such as 1, or a range such as 0..3 or 1.. (both ends included)";
-    let number = |part: &str| part.trim().parse::<u32>().map_err(|_| ALLOWED.to_string());
+    const ALLOWED: &str =
+        "allowed: an order such as 1, or a range such as 0..3 or 1.. (both ends included), up to 65534";
+    // Photons keep their order in 16 bits, the last value standing for itself and all above.
+    let number = |part: &str| {
+        let order = part.trim().parse::<u16>().ok().filter(|&order| order < u16::MAX);
+        order.map(u32::from).ok_or_else(|| ALLOWED.to_string())
+    };
     let orders = match text.split_once("..") {
         None => Orders::only(number(text)?),
         Some((min, "")) => Orders { min: number(min)?, max: None },
@@ -164,6 +169,12 @@ impl Measure {
              followed no further; together {:.12}",
             absorbed + escaped + abandoned
         )];
+        if result.beyond > 0 {
+            notes.push(format!(
+                "{} of {} balls reach beyond their medium, where no photons are: those estimates read low",
+                result.beyond, result.gathers
+            ));
+        }
         if result.underfull > 0 {
             notes.push(format!(
                 "{} of {} estimates found fewer than k photons within the cap of {} L, and used those",
@@ -185,7 +196,7 @@ fn heavy_tails(readings: &[Reading]) -> Option<String> {
         .collect();
     (!heavy.is_empty()).then(|| {
         format!(
-            "heavy-tailed, so that the standard error makes no interval yet (variance of variance above 0.1): {}",
+            "heavy-tailed, so that no standard error can be given yet (variance of variance above 0.1): {}",
             heavy.join(", ")
         )
     })

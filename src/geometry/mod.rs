@@ -75,6 +75,16 @@ impl Shape {
         }
     }
 
+    /// Distance from a point inside to the nearest point of the surface \[L\]; negative outside, 0 for a rectangle.
+    pub fn room(&self, p: DVec3) -> f64 {
+        match self {
+            Shape::Sphere(s) => s.radius() - p.distance(s.center()),
+            Shape::Rectangle(_) => 0.0,
+            Shape::Slab(s) => (p.z - s.top()).min(s.face(Face::Bottom) - p.z),
+            Shape::Cuboid(c) => (p - c.min()).min_element().min((c.max() - p).min_element()),
+        }
+    }
+
     /// Surface area [L^2]; infinite for a slab.
     pub fn area(&self) -> f64 {
         each!(self, s => s.area())

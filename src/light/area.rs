@@ -22,6 +22,10 @@ impl Area {
         Ok(Area { rectangle, radiance: emissive("radiance", radiance)? })
     }
 
+    pub(super) fn shape(&self) -> Shape {
+        Shape::Rectangle(self.rectangle)
+    }
+
     pub(super) fn power(&self) -> Spectrum {
         self.radiance * (PI * self.rectangle.area())
     }
@@ -45,7 +49,7 @@ impl Area {
     }
 
     pub(super) fn hit(&self, ray: &Ray) -> Option<Hit> {
-        Shape::Rectangle(self.rectangle).hit(ray, false)
+        self.shape().hit(ray, false)
     }
 
     pub(super) fn emitted(&self, ray: &Ray, hit: &Hit) -> (Spectrum, f64) {

@@ -22,6 +22,10 @@ impl EmittingSphere {
         Ok(EmittingSphere { sphere, radiance: emissive("radiance", radiance)? })
     }
 
+    pub(super) fn shape(&self) -> Shape {
+        Shape::Sphere(self.sphere)
+    }
+
     pub(super) fn power(&self) -> Spectrum {
         self.radiance * (PI * self.sphere.area())
     }
@@ -56,7 +60,7 @@ impl EmittingSphere {
     }
 
     pub(super) fn hit(&self, ray: &Ray) -> Option<Hit> {
-        Shape::Sphere(self.sphere).hit(ray, false)
+        self.shape().hit(ray, false)
     }
 
     pub(super) fn emitted(&self, ray: &Ray, hit: &Hit) -> (Spectrum, f64) {

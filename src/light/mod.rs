@@ -91,9 +91,13 @@ impl Light {
         matches!(self, Light::Beam(_) | Light::Point(_))
     }
 
-    /// Whether it is a body that rays can meet, black but for its light.
-    pub fn has_body(&self) -> bool {
-        matches!(self, Light::Area(_) | Light::EmittingSphere(_))
+    /// The body that rays can meet, black but for its light; none for lights without.
+    pub fn body(&self) -> Option<Shape> {
+        match self {
+            Light::Area(l) => Some(l.shape()),
+            Light::EmittingSphere(l) => Some(l.shape()),
+            Light::Beam(_) | Light::Point(_) | Light::Isotropic(_) | Light::VolumeSource(_) => None,
+        }
     }
 
     /// Whether next-event estimation can aim at it.

@@ -142,7 +142,7 @@ impl<K: Fn(&Photon) -> bool> Tallier<'_, K> {
         self.pass.emitted += 1;
         self.pass.ledger.emitted += start.weight.sum();
         // Photons of order n arrive by a flight of order n: flights stop one later.
-        walk(self.scene, start, Roulette::Analog, max_order.map(|n| n + 1), stream, self);
+        walk(self.scene, start, Roulette::Analog, max_order.map(|n| n.saturating_add(1)), stream, self);
         let channels = if self.scene.plan().is_grey { 1 } else { 3 };
         for (sensor, score) in self.scores.iter().enumerate() {
             if !is_tallied(&self.sensors[sensor]) {
@@ -173,7 +173,7 @@ impl<K: Fn(&Photon) -> bool> Tallier<'_, K> {
         let weight =
             if lights.len() > 1 { emission.power * (total / emission.power.sum()) } else { emission.power };
         Walker {
-            from: lights[index].has_body().then_some(Target::Light(index)),
+            from: lights[index].body().map(|_| Target::Light(index)),
             ..Walker::new(emission.ray, weight)
         }
     }

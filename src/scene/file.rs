@@ -259,6 +259,14 @@ impl SensorFile {
             QuantityFile::Absorbed { region } => ("absorptance", Quantity::Absorbed(region)),
         };
         let label = self.label.clone().unwrap_or_else(|| kind.to_string());
+        if let (Some(min), Some(max)) = (self.min_order, self.max_order)
+            && max < min
+        {
+            return Err(Error::Scene(format!(
+                "sensor {}: max_order is {max}; allowed: min_order, {min}, or more",
+                self.name
+            )));
+        }
         let orders = Orders { min: self.min_order.unwrap_or(0), max: self.max_order };
         Ok(Sensor { name: self.name.clone(), label, quantity, orders })
     }

@@ -1,6 +1,7 @@
 //! Checks on the parts of a scene together. Each part has checked its own numbers when it was made.
 
 use super::{MAX_REGIONS, Parts, Quantity};
+use crate::Spectrum;
 use crate::error::{Error, Result};
 use crate::geometry::{Shape, Slab};
 use crate::light::{Light, Section, Stage};
@@ -40,6 +41,7 @@ pub(super) fn check(parts: &Parts) -> Result<Option<Stage>> {
     }
     check_fold(parts, stage.as_ref())?;
     check_end(parts)?;
+    check_power(parts, stage.as_ref())?;
     for region in &parts.regions {
         let far = extent(&region.shape) * region.medium.sigma_t().max();
         if far > MAX_EXTENT_OVER_MFP {
@@ -52,7 +54,15 @@ pub(super) fn check(parts: &Parts) -> Result<Option<Stage>> {
     }
     for sensor in &parts.sensors {
         let is_finite = match sensor.quantity {
-            Quantity::Fluence(p) => p.is_finite(),
+            Quantity::Fluence(p) => {
+                if parts.lights.iter().any(|l| matches!(l, Light::Point(point) if point.position() == p)) {
+                    return refuse(format!(
+                        "sensor {} is at a point light, where the fluence is infinite",
+                        sensor.name
+                    ));
+                }
+                p.is_finite()
+            }
             Quantity::Radiance(ray) => ray.origin.is_finite() && ray.dir.is_finite(),
             Quantity::Outflow { shape, .. } => {
                 if matches!(shape, Shape::Slab(_)) && stage.is_none() {
@@ -94,19 +104,42 @@ fn stage(parts: &Parts) -> Result<Option<Stage>> {
     }
 }
 
-/// Light inside a closed shape that reflects everything, where nothing absorbs, would never come to an end.
+/// Light inside a closed shape that reflects everything, where nothing absorbs, would never come to an end. Closed
+/// rooms made of several shapes are not recognised.
 fn check_end(parts: &Parts) -> Result<()> {
-    let keeps_all = |kept: crate::Spectrum| kept.min() >= 1.0;
-    let is_closed = |shape: &Shape| matches!(shape, Shape::Sphere(_) | Shape::Cuboid(_));
-    let nothing_absorbs = parts.objects.iter().all(|o| keeps_all(o.surface.reflectance()))
-        && parts.regions.iter().all(|r| keeps_all(r.medium.albedo()) || r.medium.sigma_t().is_black())
-        && !parts.lights.iter().any(Light::has_body);
-    if nothing_absorbs && parts.objects.iter().any(|o| is_closed(&o.shape)) {
-        return refuse(
-            "light could be caught for ever: a closed shape reflects everything and nothing absorbs",
-        );
+    let keeps_all = |kept: Spectrum| kept.min() >= 1.0;
+    for object in parts.objects.iter().filter(|o| keeps_all(o.surface.reflectance())) {
+        if matches!(object.shape, Shape::Rectangle(_)) {
+            continue;
+        }
+        // Shapes are convex: those that share a part of their inside hold the other's middle, or nearly so.
+        let middle = |shape: &Shape| shape.sample_inside(0.0, [0.5; 3]).0;
+        let is_inside =
+            |shape: &Shape| object.shape.contains(middle(shape)) || shape.contains(middle(&object.shape));
+        let absorbs =
+            parts.regions.iter().any(|r| {
+                !keeps_all(r.medium.albedo()) && !r.medium.sigma_t().is_black() && is_inside(&r.shape)
+            }) || parts.objects.iter().any(|o| !keeps_all(o.surface.reflectance()) && is_inside(&o.shape))
+                || parts.lights.iter().any(|l| l.body().is_some_and(|shape| is_inside(&shape)));
+        if !absorbs {
+            return refuse(
+                "light could be caught for ever: a closed shape reflects everything and nothing in it absorbs",
+            );
+        }
     }
     Ok(())
+}
+
+/// Photons keep their power in single precision, which ends near 1e38 on both sides of 1.
+fn check_power(parts: &Parts, stage: Option<&Stage>) -> Result<()> {
+    let power = parts.lights.iter().fold(Spectrum::ZERO, |sum, light| sum + light.power(stage));
+    let is_out = |p: &f64| !(1e-30..=1e30).contains(p) && (*p != 0.0 || power.is_black());
+    match (0..3).map(|c| power[c]).find(is_out) {
+        Some(bad) => {
+            Err(Error::out_of_range("power of all lights in a channel", bad, "1e-30 to 1e30 W, or 0 in some"))
+        }
+        None => Ok(()),
+    }
 }
 
 /// Folding positions into a cell is exact only where every part looks the same after a step along x or y.

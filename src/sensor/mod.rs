@@ -20,12 +20,13 @@ pub struct Reading {
     pub unit: &'static str,
     /// Estimate.
     pub mean: f64,
-    /// Standard error of the mean; none where nothing is known of it: a single map, or paths of which none
-    /// brought anything. A tally of no event has that of its 95 per cent bound, 3 events.
+    /// Standard error of the mean; none where nothing is known of it: a single map, paths of which none brought
+    /// anything, a variance that is itself too uncertain. A tally of no event has that of its 95 per cent bound, 3
+    /// events.
     pub std_error: Option<f64>,
     /// Independent histories or maps behind it.
     pub n: u64,
-    /// Whether the variance is itself too uncertain for the standard error to make an interval.
+    /// Whether the variance is too uncertain for a standard error: its own relative variance is above 0.1.
     #[serde(skip)]
     pub is_heavy_tailed: bool,
 }
@@ -44,12 +45,17 @@ enum Source {
 /// Fewest numbers whose variance of variance says something of their tail: that of normal ones is about 2/n.
 const TELLS_TAIL: u64 = 100;
 
+fn is_heavy_tailed(m: &Moments) -> bool {
+    m.n() >= TELLS_TAIL && m.is_heavy_tailed()
+}
+
 fn std_error(m: &Moments, source: Source) -> Option<f64> {
     let brought_nothing = m.mean() == 0.0 && m.std_error() == 0.0;
     match source {
         _ if m.n() < 2 => None,
         Source::Tally if brought_nothing => Some(poisson_interval(0, 0.95).high / m.n() as f64),
         Source::Paths if brought_nothing => None,
+        Source::Paths | Source::Maps if is_heavy_tailed(m) => None,
         _ => Some(m.std_error()),
     }
 }
@@ -67,7 +73,7 @@ fn readings(sensor: &Sensor, is_grey: bool, moments: &[Moments; 3], source: Sour
             mean: m.mean(),
             std_error: std_error(m, source),
             n: m.n(),
-            is_heavy_tailed: m.n() >= TELLS_TAIL && m.is_heavy_tailed(),
+            is_heavy_tailed: is_heavy_tailed(m),
         })
         .collect()
 }

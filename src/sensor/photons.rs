@@ -3,7 +3,7 @@
 use super::{Reading, Source, readings};
 use crate::Spectrum;
 use crate::error::{Error, Result};
-use crate::estimators::{Gather, Kernel, fluence, in_scattered};
+use crate::estimators::{Estimate, Gather, Kernel, fluence, in_scattered};
 use crate::math::{Ray, exp_m1, ln_1p};
 use crate::photons::{Histories, Ledger, PhotonMap, fold, shoot};
 use crate::rng::{Purpose, Stream};
@@ -38,8 +38,20 @@ pub struct PhotonReadings {
     pub ledger: Ledger,
     /// Estimates that found fewer than k photons within the cap.
     pub underfull: u64,
+    /// Estimates whose ball reaches beyond the medium that the point is in.
+    pub beyond: u64,
     /// Estimates made.
     pub gathers: u64,
+}
+
+impl PhotonReadings {
+    /// Counts an estimate at a point.
+    fn book(&mut self, scene: &Scene, p: DVec3, estimate: &Estimate) {
+        self.gathers += 1;
+        self.underfull += u64::from(estimate.underfull);
+        let room = scene.region_at(p).map_or(0.0, |index| scene.regions()[index].shape.room(p));
+        self.beyond += u64::from(estimate.radius > room);
+    }
 }
 
 /// Points on a ray at which in-scattered radiance is estimated, one in each of as many equal parts of what the ray
@@ -67,8 +79,13 @@ pub fn by_photons(
     let margin =
         scene.stage().map_or(Ok(0.0), |stage| margin(&sensors, stage.side, settings.gather.cap()))?;
     let mut moments = vec![[Moments::new(); 3]; sensors.len()];
-    let mut result =
-        PhotonReadings { readings: Vec::new(), ledger: Ledger::default(), underfull: 0, gathers: 0 };
+    let mut result = PhotonReadings {
+        readings: Vec::new(),
+        ledger: Ledger::default(),
+        underfull: 0,
+        beyond: 0,
+        gathers: 0,
+    };
     let mut ranges: Vec<Orders> = Vec::new();
     for range in sensors.iter().filter_map(map_orders) {
         if !ranges.contains(&range) {
@@ -98,7 +115,7 @@ pub fn by_photons(
             } else {
                 pass.photons.iter().filter(|p| range.contains(u32::from(p.order))).copied().collect()
             };
-            let map = PhotonMap::new(in_range, pass.emitted)?;
+            let map = PhotonMap::new_parallel(in_range, pass.emitted)?;
             let here = sensors.iter().zip(&mut moments).filter(|(s, _)| map_orders(s) == Some(*range));
             for (index, (sensor, moments)) in here.enumerate() {
                 let mut stream = Stream::new(settings.seed, Purpose::Resampling, replicate, index as u64);
@@ -186,8 +203,7 @@ fn read(
             let p = scene.stage().map_or(p, |s| fold::into_cell(p, s.side));
             let sigma_t = scene.medium_at(p).map_or(Spectrum::ONE, |m| m.sigma_t());
             let estimate = fluence(map, p, sigma_t, settings.kernel, settings.gather);
-            result.gathers += 1;
-            result.underfull += u64::from(estimate.underfull);
+            result.book(scene, p, &estimate);
             estimate.value
         }
         Quantity::Radiance(ray) => radiance(scene, map, &ray, sensor.orders, settings, stream, result),
@@ -226,31 +242,18 @@ fn radiance(
             let t = segment.interval.start + inside.min(segment.interval.length());
             let p = ray.at(t);
             let p = scene.stage().map_or(p, |s| fold::into_cell(p, s.side));
-            let estimate = in_scattered_at(map, p, -ray.dir, medium, settings, result);
+            let (phase, sigma_t) = (medium.phase(), medium.sigma_t());
+            let estimate = in_scattered(map, p, -ray.dir, phase, sigma_t, settings.kernel, settings.gather);
+            result.book(scene, p, &estimate);
             // Density of t is rate exp(-rate t') / collects.
             let weight = decay(medium.sigma_t() * inside) / crate::math::exp(-rate * inside);
             sum += before
                 * weight
                 * medium.sigma_t()
                 * medium.albedo()
-                * estimate
+                * estimate.value
                 * (collects / (rate * STRATA as f64));
         }
     }
     sum
-}
-
-fn in_scattered_at(
-    map: &PhotonMap,
-    p: DVec3,
-    wo: DVec3,
-    medium: &crate::medium::Medium,
-    settings: &PhotonSettings,
-    result: &mut PhotonReadings,
-) -> Spectrum {
-    let estimate =
-        in_scattered(map, p, wo, medium.phase(), medium.sigma_t(), settings.kernel, settings.gather);
-    result.gathers += 1;
-    result.underfull += u64::from(estimate.underfull);
-    estimate.value
 }

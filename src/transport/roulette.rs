@@ -13,6 +13,14 @@ pub enum Roulette {
 }
 
 impl Roulette {
+    /// The same game for weights of another size: a forced collision makes every weight behind it small.
+    pub fn scaled(self, factor: f64) -> Self {
+        match self {
+            Roulette::Analog => Roulette::Analog,
+            Roulette::Below(threshold) => Roulette::Below(threshold * factor),
+        }
+    }
+
     /// The weight after an event that keeps `albedo` of each channel, or none if the history ends there.
     ///
     /// Analog: survival with q = sum(a_c P_c) / sum(P_c), then P_c a_c / q: the summed power is unchanged, exactly

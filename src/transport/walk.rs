@@ -71,7 +71,8 @@ pub trait Visitor {
 
 /// Follows one history to its end.
 ///
-/// It ends by absorption, by escape, or with a ray of order `limit`, which is looked along but not flown.
+/// It ends by absorption, by escape, or with a ray of order `limit`, which is looked along, and through mirrors, since
+/// they raise no order, but not flown.
 pub fn walk<V: Visitor>(
     scene: &Scene,
     start: Walker,
@@ -80,13 +81,23 @@ pub fn walk<V: Visitor>(
     stream: &mut Stream,
     visitor: &mut V,
 ) {
-    let mut walker = start;
+    let (mut walker, mut roulette) = (start, roulette);
     loop {
         let hit = scene.hit(&walker.ray, walker.from);
         visitor.visit(&walker, Step::Ahead(hit.as_ref()), stream);
         if limit.is_some_and(|limit| walker.order >= limit) {
-            visitor.visit(&walker, Step::Abandoned(walker.weight), stream);
-            return;
+            let Some(mirror) = hit.filter(|found| is_specular(scene, found)) else {
+                visitor.visit(&walker, Step::Abandoned(walker.weight), stream);
+                return;
+            };
+            let seen = walker.weight * scene.transmittance(&walker.ray, mirror.hit.t);
+            visitor.visit(&walker, Step::Abandoned(walker.weight - seen), stream);
+            walker.weight = seen;
+            match reflect(scene, &walker, &mirror, roulette, stream, visitor) {
+                Some(next) => walker = next,
+                None => return,
+            }
+            continue;
         }
         let end = hit.map_or(f64::INFINITY, |h| h.hit.t);
         let forced = scene.plan().forces_first_collision && walker.order == 0 && hit.is_none();
@@ -97,6 +108,7 @@ pub fn walk<V: Visitor>(
                     let passed = arrived - weight;
                     visitor.visit(&walker, Step::Passed(end, passed), stream);
                     visitor.visit(&walker, Step::Escaped(passed), stream);
+                    roulette = roulette.scaled(weight.max() / arrived.max());
                 }
                 visitor.visit(&walker, Step::Passed(t, weight), stream);
                 walker.weight = weight;
@@ -141,6 +153,11 @@ pub fn walk<V: Visitor>(
             }
         }
     }
+}
+
+/// Whether a body is a mirror.
+fn is_specular(scene: &Scene, found: &SceneHit) -> bool {
+    matches!(found.target, Target::Object(index) if scene.objects()[index].surface.is_specular())
 }
 
 /// The walker after a body, or none if it ends there.
