@@ -33,13 +33,13 @@ pub struct Case {
 /// Radii of fixed gathers [mfp].
 const RADII: [f64; 4] = [0.1, 0.2, 0.4, 0.8];
 /// Sizes of nearest gathers.
-const NEIGHBORS: [usize; 4] = [10, 50, 100, 500];
+const NEIGHBORS: [usize; 5] = [4, 10, 50, 100, 500];
 /// Sizes at which the biased rule is shown.
 const BIASED: [usize; 2] = [10, 50];
 /// Where all kernels are compared: one radius, one k.
 const KERNELS_AT: (f64, usize) = (0.8, 100);
 /// Most probes along one side of the lattice.
-const MAX_SIDE: usize = 16;
+const MAX_SIDE: usize = 24;
 /// Fewest photons that the widest nearest gather may leave in a map: below, the ball is no longer local.
 const MIN_SHARE: u64 = 40;
 

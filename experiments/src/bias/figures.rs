@@ -68,7 +68,7 @@ fn budget(results: &[Result], mistakes: &[Mistake]) -> anyhow::Result<FigureFile
         let bars = chosen.iter().map(|r| bar(&r.error)).collect();
         panel = panel.with(Points::new(&label, class, x, y).with_y_interval(bars));
     }
-    let biased: Vec<&Result> = results.iter().filter(|r| r.case.is_biased()).collect();
+    let biased: Vec<&Result> = results.iter().filter(|r| r.case.is_biased() && r.is_whole()).collect();
     let x: Vec<f64> = biased.iter().map(|r| 100.0 * (r.parts.total() - r.parts.rule)).collect();
     let y: Vec<f64> = biased.iter().map(|r| r.error.mean()).collect();
     let bars = biased.iter().map(|r| bar(&r.error)).collect();
@@ -98,8 +98,8 @@ fn budget(results: &[Result], mistakes: &[Mistake]) -> anyhow::Result<FigureFile
     };
     let caption = "Signed error of the fluence, measured against predicted, in per cent of the exact value, for every \
                    case of the study with 95 % intervals over maps; linear within ±1 %. Right estimators lie on the \
-                   line: what theory said before the run is what was measured. The three wrong estimators, whose \
-                   abscissa is the error predicted for the right one, stand off it. Below: what is left after the \
+                   line: what theory said before the run is what was measured. The three wrong estimators, shown in whole balls at the \
+                   error predicted for the right one, stand off it. Below: what is left after the \
                    prediction, in standard errors, beside the unit normal density that it would follow if cases were \
                    independent and nothing were overlooked.";
     files("budget", caption, &figure)

@@ -8,12 +8,14 @@
 //! albedos and asymmetries, are tested against the exact slab.
 
 mod cases;
+mod claims;
 mod conclude;
 mod fields;
 mod figures;
 mod measure;
 mod predict;
 mod table;
+mod tables;
 
 use crate::harness::Experiment;
 

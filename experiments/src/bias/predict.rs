@@ -144,7 +144,11 @@ impl Theory {
                     parts.error += biased.error / here;
                 }
                 if case.field.has_clusters() {
-                    parts.clusters = nearest_clustering(case.field.albedo, density * here, k);
+                    // Where the medium ends inside the ball, neighbours are missing like the ball's own part, and the
+                    // estimate that they raise is itself lower.
+                    let inside = 1.0 + parts.edge;
+                    let raised = nearest_clustering(case.field.albedo, density * here * inside, k);
+                    parts.clusters = raised * inside * (1.0 + parts.edge + parts.blur);
                 }
             }
         }
@@ -152,8 +156,8 @@ impl Theory {
     }
 }
 
-/// What clusters add to a nearest estimate, relative: to first order in the radius r_1 of the ball in which one
-/// photon is expected, and without the edges of the medium.
+/// What clusters add to a nearest estimate, relative to it: to first order in the radius r_1 of the ball in which one
+/// photon is expected, inside the medium.
 fn nearest_clustering(albedo: f64, photons_per_volume: f64, k: usize) -> f64 {
     let r1 = libm::cbrt(3.0 / (4.0 * PI * photons_per_volume));
     let k = k as f64;

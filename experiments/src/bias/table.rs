@@ -99,16 +99,19 @@ impl Table {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use turbid_analytic::{Incidence, IsotropicSlab};
 
     #[test]
     fn kernel_means() {
-        let field: Exact = Box::new(|t| Ok((libm::exp(-t), 0.0)));
+        let slab = IsotropicSlab::new(2.0, 0.9, Incidence::Beam { mu0: 1.0 }).unwrap();
+        let field: Exact = Box::new(move |t| Ok((slab.fluence_interpolated(t)?.value, 0.0)));
         for kernel in [Kernel::Uniform, Kernel::Biweight] {
             for depth in [0.0, 0.25, 1.0] {
                 let profile = Table::of_kernel_means(kernel, depth, 2.0, &field).unwrap();
                 for i in 1..200 {
                     let r = 0.01 * f64::from(i);
-                    let direct = slab_kernel_mean(kernel, r, depth, 2.0, |t| libm::exp(-t)).unwrap().value;
+                    let direct =
+                        slab_kernel_mean(kernel, r, depth, 2.0, |t| field(t).unwrap().0).unwrap().value;
                     assert!(
                         (profile.at(r) / direct - 1.0).abs() < 1e-8,
                         "{kernel:?} depth {depth} radius {r}"

@@ -57,8 +57,8 @@ impl Claim {
         Claim::within(id, text, unit, statistic, bound, f64::INFINITY)
     }
 
-    /// A planted fault is seen: the truth differs from `from`. `by` is the smallest effect that would count; an
-    /// interval that excludes it on both sides rejects the claim.
+    /// A planted fault is seen: the truth differs from `from` by `by` or more, as the whole interval says; an interval
+    /// that excludes such a difference on both sides rejects the claim.
     pub fn detected(id: &str, text: &str, unit: Unit, statistic: Estimate, from: f64, by: f64) -> Self {
         let kind = Kind::Differs { from, by: by.abs() };
         Claim { id: id.to_string(), text: text.to_string(), unit, statistic, kind }
@@ -186,7 +186,11 @@ fn decide(claim: &Claim, interval: &Interval, is_significant: bool) -> Verdict {
         Kind::Differs { from, by } if by > 0.0 && from - by < interval.low && interval.high < from + by => {
             Verdict::Rejected
         }
-        Kind::Differs { .. } if is_significant => Verdict::Upheld,
+        Kind::Differs { from, by }
+            if is_significant && (interval.low >= from + by || interval.high <= from - by) =>
+        {
+            Verdict::Upheld
+        }
         _ => Verdict::Undecided,
     }
 }

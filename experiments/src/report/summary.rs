@@ -7,14 +7,14 @@ pub fn summary(outcome: &Outcome) -> String {
     let mut text = format!("\n{}\n\n", counts(outcome));
     for part in &outcome.sections {
         if let Some(headline) = part.section.summary.first() {
-            text.push_str(&format!("{}: {headline}\n", part.experiment.title));
+            text.push_str(&format!("{}\n  {headline}\n", part.experiment.title));
         }
         for judged in part.judged.iter().filter(|j| j.verdict != Verdict::Upheld) {
             let claim = &judged.claim;
             let why = if judged.advice.is_empty() { String::new() } else { format!("; {}", judged.advice) };
             let verdict = judged.verdict.word();
             text.push_str(&format!(
-                "  {verdict}: {} Measured {}; claimed {}{why}.\n",
+                "  {verdict}: {}: measured {}; claimed {}{why}.\n",
                 claim.text,
                 judged.measured(),
                 claim.margin()
