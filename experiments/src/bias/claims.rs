@@ -1,5 +1,5 @@
-//! The claims. Each is judged on one number a map; margins were set from the precision that the quick preset has, at
-//! least seven standard errors wide, before the run that is reported.
+//! The claims. Each is judged on one number a map. A margin is what the quick preset can decide: five to ten of the
+//! standard errors that trial runs of it, with other random numbers, had shown.
 
 use super::cases::{Case, Size};
 use super::conclude::{Mistake, Result, exact_at, largest, pick, predicted_fano};
@@ -221,9 +221,11 @@ fn path_claim(cells: &Cells, results: &[Result], field: &'static Field, depth: f
     let (exact, _) = exact_at(results, field, depth);
     let values = cells.values(&path_case(field, depth), "fluence")?;
     let errors = moments(values.iter().map(|value| 100.0 * (value / exact - 1.0)));
+    // Behind a forward peak few paths turn towards the beam, and each connection counts for more.
+    let margin = if field.g > 0.0 { 1.0 } else { 0.5 };
     let text = format!("{}, depth {depth}: error of the path tracer", field.title);
     let id = format!("{}-paths-{depth}", field.name);
-    Ok(Claim::within(&id, &text, Unit::PERCENT, Estimate::mean(&errors), -1.0, 1.0))
+    Ok(Claim::within(&id, &text, Unit::PERCENT, Estimate::mean(&errors), -margin, margin))
 }
 
 /// The wrong estimators are seen to be wrong.
