@@ -173,7 +173,7 @@ pub fn fano(cells: &Cells, case: &Case) -> anyhow::Result<Option<Moments>> {
 /// What clusters add to a Fano factor of 1.
 pub fn predicted_fano(case: &Case) -> f64 {
     match case.size {
-        Size::Radius(r) if case.field.has_clusters() => clustering(case.field.albedo, r),
+        Size::Radius(r) if case.field.has_clusters() => clustering(case.field, r),
         _ => 0.0,
     }
 }
@@ -234,10 +234,9 @@ fn summarise(section: &mut Section, settings: &Settings, results: &[Result]) {
             .to_string(),
     );
     section.notes.push(
-        "The clustering of photons of one history is predicted to first order in the radius; where a ball leaves the \
-         medium, neighbours are taken to be missing like the ball's own part, an estimate that no claim relies on. The \
-         first order is not all: in isotropic fog of albedo 0.9 counts vary more than it says, by a tenth of the \
-         excess at radii of 0.2 to 0.4, since light that has left a ball comes back."
+        "The clustering of photons of one history is predicted to second order in the radius in isotropic fog, and to \
+         first order behind the forward peak; where a ball leaves the medium, neighbours are taken to be missing like \
+         the ball's own part, an estimate that no claim relies on."
             .to_string(),
     );
 }

@@ -265,12 +265,14 @@ fn counts(cells: &Cells, results: &[Result]) -> anyhow::Result<FigureFiles> {
                 kernel: Kernel::Uniform,
             })
         };
-        panel = panel.with(Line::new(field.title, class, vec![0.0, 0.45], vec![theory(0.0), theory(0.45)]));
+        let grid: Vec<f64> = (0..=45).map(|i| 0.01 * f64::from(i)).collect();
+        let line = grid.iter().map(|&r| theory(r)).collect();
+        panel = panel.with(Line::new(field.title, class, grid, line));
         panel = panel.with(Points::new(field.title, class, x, y).with_y_interval(bars));
     }
     let figure = Figure { width: Width::Double, ..Figure::new(vec![panel.with_legend(Legend::Right)]) };
     let caption = "Photons of one history lie near each other: their counts in a ball vary more than Poisson's law \
-                   lets independent ones, by 3/2 albedo times the radius to first order (lines), at any asymmetry. \
-                   Uncollided photons are independent.";
+                   lets independent ones, by 3/2 albedo times the radius to first order, at any asymmetry \
+                   (lines: to second order in isotropic fog). Uncollided photons are independent.";
     files("counts", caption, &figure)
 }
