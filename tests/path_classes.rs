@@ -6,15 +6,15 @@ mod support;
 use glam::DVec3;
 use std::f64::consts::PI;
 use support::quadrature::integrate;
-use support::run::pass;
-use support::scenes::{bounded, cuboid, emitting_sphere, rectangle, region};
+use support::run::{pass, paths};
+use support::scenes::{area_light, bounded, cuboid, emitting_sphere, rectangle, region};
 use support::verdict;
 use turbid::Spectrum;
 use turbid::estimators::{Gather, Kernel, fluence};
 use turbid::geometry::Shape;
-use turbid::math::{FOUR_PI, exp};
+use turbid::math::{FOUR_PI, Ray, atan2, exp};
 use turbid::photons::{Flags, Histories, Photon, PhotonMap, is_in, is_indirect, shoot};
-use turbid::scene::{Orders, Scene};
+use turbid::scene::{Orders, Quantity, Scene};
 use turbid::stats::Moments;
 use turbid::surface::{Lambertian, Mirror, Surface};
 use turbid::transport::NoProgress;
@@ -180,4 +180,52 @@ fn photons_off_the_mirror_are_the_light_of_the_image() {
     // its near side saves, exp(a c) with c the cosine on the sphere: 1 + 2a/3 to the first order of a.
     let far = fluence_of_the_light(50.0) * FOUR_PI * 2500.0 / exp(-50.0);
     assert!((far - 1.0 - 2.0 * LIGHT_RADIUS / 3.0).abs() < LIGHT_RADIUS * LIGHT_RADIUS, "{far}");
+}
+
+/// A mirror raises no order, so that what is seen in it is there however few orders are asked for: in vacuum, all of it.
+#[test]
+fn light_in_a_mirror_does_not_depend_on_the_largest_order() {
+    let rho = Spectrum::rgb(1.0, 0.5, 0.2);
+    let plane = rectangle(DVec3::new(-50.0, -50.0, 0.0), DVec3::X * 100.0, DVec3::Y * 100.0);
+    let mirror = (Shape::Rectangle(plane), Surface::Mirror(Mirror::new(rho).unwrap()));
+    // A square of side 2 at height 1 that shines down, the probe half way under its centre.
+    let square = rectangle(DVec3::new(-1.0, 1.0, 1.0), DVec3::X * 2.0, DVec3::Y * -2.0);
+    let lights = vec![area_light(square, Spectrum::ONE)];
+    let probe = DVec3::new(0.0, 0.0, 0.5);
+    let solid_angle = |height: f64| 4.0 * atan2(1.0, height * (2.0 + height * height).sqrt());
+    let vacuum = bounded(Vec::new(), vec![mirror], lights.clone());
+    let seen = |scene: &Scene, quantity, max| {
+        paths(scene, quantity, Orders { min: 0, max }, 1 << 18, 3).map(|m| (m.mean(), m))
+    };
+    let all = seen(&vacuum, Quantity::Fluence(probe), None);
+    for max in [0, 1, 5] {
+        let up_to = seen(&vacuum, Quantity::Fluence(probe), Some(max));
+        for c in 0..3 {
+            // The same histories: the same numbers, but for rounding.
+            assert!(
+                (up_to[c].0 / all[c].0 - 1.0).abs() < 1e-12,
+                "to order {max}: {} {}",
+                up_to[c].0,
+                all[c].0
+            );
+            let expected = solid_angle(0.5) + rho[c] * solid_angle(1.5);
+            let what = format!("fluence to order {max}, channel {c}");
+            verdict::agrees(&what, &up_to[c].1, (expected, 1e-13), 0.03 * expected, 3);
+            verdict::rejects(&format!("{what}, no mirror"), &up_to[c].1, solid_angle(0.5), 3);
+        }
+    }
+    // Straight down: half a length to the mirror and one back to the light, in fog as in vacuum.
+    let down = Quantity::Radiance(Ray::new(probe, -DVec3::Z));
+    let fog = region(cuboid(DVec3::splat(-2.0), DVec3::splat(2.0)), 1.0, 0.8, 0.0);
+    let foggy = bounded(vec![fog], vec![mirror], lights);
+    for (scene, expected) in [(&vacuum, 1.0), (&foggy, exp(-1.5))] {
+        let radiance = seen(scene, down, Some(0));
+        for c in 0..3 {
+            assert!(
+                (radiance[c].0 / (rho[c] * expected) - 1.0).abs() < 1e-12,
+                "channel {c}: {}",
+                radiance[c].0
+            );
+        }
+    }
 }
