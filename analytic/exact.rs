@@ -9,6 +9,7 @@ mod slab;
 #[path = "exact/table.rs"]
 mod table;
 
+use clap::error::ErrorKind;
 use clap::{Parser, Subcommand};
 use std::io::{self, Write};
 use std::path::PathBuf;
@@ -42,8 +43,7 @@ enum Command {
 fn run() -> anyhow::Result<()> {
     let cli = match Cli::try_parse() {
         Ok(cli) => cli,
-        // clap's own text and its exit code, 0 for --help and 2 for a mistake.
-        Err(error) => error.exit(),
+        Err(error) => return explain(&error),
     };
     let mut output = Vec::new();
     if let Some(path) = &cli.cases {
@@ -55,10 +55,45 @@ fn run() -> anyhow::Result<()> {
         Some(Command::Kernel(args)) => kernel::answer(args)?.print(&mut output)?,
         None => {}
     }
+    print(&output)
+}
+
+fn print(output: &[u8]) -> anyhow::Result<()> {
     let mut out = io::stdout().lock();
-    out.write_all(&output)?;
+    out.write_all(output)?;
     out.flush()?;
     Ok(())
+}
+
+/// Help and version go to stdout; a command line that cannot be understood becomes an error of one line.
+fn explain(error: &clap::Error) -> anyhow::Result<()> {
+    let text = error.render().to_string();
+    match error.kind() {
+        ErrorKind::DisplayHelp | ErrorKind::DisplayVersion => print(text.as_bytes()),
+        ErrorKind::DisplayHelpOnMissingArgumentOrSubcommand => {
+            anyhow::bail!("nothing asked; allowed: --cases FILE.csv, slab, kernel; more with --help")
+        }
+        _ => anyhow::bail!("{}", one_line(&text)),
+    }
+}
+
+/// The parts of a message of several lines, without usage and hints where to look.
+fn one_line(text: &str) -> String {
+    let mut line = String::new();
+    for part in text.lines().map(str::trim).filter(|part| !part.is_empty()) {
+        if part.starts_with("Usage:") || part.starts_with("For more information") {
+            break;
+        }
+        let part = part.strip_prefix("error: ").unwrap_or(part);
+        let part = part
+            .strip_prefix("[possible values: ")
+            .map_or(part.to_string(), |values| format!("allowed: {}", values.trim_end_matches(']')));
+        if !line.is_empty() {
+            line.push_str(if line.ends_with(':') { " " } else { "; " });
+        }
+        line.push_str(&part);
+    }
+    line
 }
 
 fn main() -> ExitCode {

@@ -76,6 +76,18 @@ fn an_optical_thickness_of_1e_8() {
     }
 }
 
+/// Diffuse light meets 2 tau on its way, half of what is scattered turns back: R = albedo tau, the next term being
+/// tau^2 ln tau. Roulette must not take back what the forced collision gave: paths of weight tau are not weak ones.
+#[test]
+fn a_thin_slab_under_diffuse_light_by_paths() {
+    let (tau, albedo) = (1e-8, 0.9);
+    let scene = slab(tau, albedo, 0.0, Incidence::Diffuse);
+    let moments = paths(&scene, reflectance(tau), Orders::ALL, 1 << 24, 12)[0];
+    let expected = albedo * tau;
+    assert!(moments.std_error() < 1.3e-3 * expected, "{}", moments.std_error() / expected);
+    verdict::agrees("R by paths", &moments, (expected, 1e-6 * expected), 1e-2 * expected, 12);
+}
+
 /// At 1e-12 the flux is still there, and nothing is lost: 1 - T = 1.9/1.8 ... of 1e-12 is below T's own rounding, R is not.
 #[test]
 fn an_optical_thickness_of_1e_12() {

@@ -207,7 +207,8 @@ fn scale_changes_no_bit() {
 }
 
 /// A longer run starts with the shorter one, photon by photon; estimates divide by what was emitted, so that four times
-/// the photons leave the mean where it was (fault 2 and fault 13).
+/// the photons leave the mean where it was. Powers that nobody divides by the number emitted, or somebody divides
+/// twice, would fail here.
 #[test]
 fn the_number_of_histories_changes_no_mean() {
     let scene = builtin("slab", &[]);

@@ -119,6 +119,13 @@ fn rooms_named(code: &str) -> Vec<String> {
     rooms
 }
 
+/// Whether code reaches beyond its room by `super`, where [`rooms_named`] would not see it. One step up from a room's own
+/// file is the crate, but for tests inside that file.
+fn climbs(code: &str, is_room_itself: bool) -> bool {
+    let is_step = |line: &str| line.contains("super::") && line != "    use super::*;";
+    code.contains("super::super") || is_room_itself && code.lines().any(is_step)
+}
+
 #[test]
 fn imports_point_downwards_only() {
     let folder = root().join("src");
@@ -134,6 +141,8 @@ fn imports_point_downwards_only() {
                 .unwrap_or_else(|| panic!("{}: crate::{other} has no place in ORDER", relative.display()));
             assert!(there <= here, "{} looks up to {other}", relative.display());
         }
+        let is_room_itself = relative.iter().count() == 1 || relative.ends_with("mod.rs");
+        assert!(!climbs(&code, is_room_itself), "{} climbs with super", relative.display());
         let is_command = room == "command";
         for outer in ["clap", "anyhow", "indicatif"] {
             assert!(
@@ -151,6 +160,8 @@ fn upward_imports_would_be_seen() {
     assert_eq!(rooms_named("use crate::{rng::Stream, scene};"), ["rng", "scene"]);
     assert_eq!(rooms_named("let x = crate::photons::Flags::NONE;"), ["photons"]);
     assert_eq!(rooms_named("use crate::Spectrum;"), ["spectrum"]);
+    assert!(climbs("use super::super::scene;", false) && climbs("use super::scene;", true));
+    assert!(!climbs("use super::record;", false) && !climbs("mod tests {\n    use super::*;\n}", true));
     assert!(height("photons") > height("transport") && height("nowhere").is_none());
     assert!(names("use turbid::rng;", "turbid") && names("turbid::math::exp(x)", "turbid"));
     assert!(!names("use turbid_figure::Plot; // turbid", "turbid") && !names("\"turbid: error\"", "turbid"));

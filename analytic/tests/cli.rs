@@ -188,9 +188,15 @@ fn mistakes_on_the_command_line_are_one_line_and_code_2() {
         exact().args(["slab", "--tau", "1", "--albedo", "0.5", "--depth", "3"]).assert(),
         &["t is 3; allowed: 0 to tau"],
     );
-    exact().args(["slab", "--tau", "1"]).assert().code(2);
-    exact().args(["kernel", "--kernel", "square"]).assert().code(2);
-    exact().assert().code(2);
+    // What cannot be parsed at all: the argument, what it got and what is allowed.
+    refused(exact().args(["slab", "--tau", "1"]).assert(), &["required", "--albedo"]);
+    refused(exact().args(["slab", "--tau", "x", "--albedo", "0.5"]).assert(), &["'x'", "--tau"]);
+    refused(exact().args(["slab", "--tua", "1"]).assert(), &["'--tua'"]);
+    refused(exact().args(["kernel", "--kernel", "square"]).assert(), &["square"]);
+    refused(exact().arg("kernel").assert(), &["--kernel"]);
+    refused(exact().arg("sphere").assert(), &["'sphere'"]);
+    refused(exact().arg("--cases").assert(), &["--cases"]);
+    refused(exact().assert(), &["nothing asked; allowed: --cases FILE.csv, slab, kernel"]);
 }
 
 #[test]
@@ -200,6 +206,9 @@ fn help_says_physics_and_units() {
     for word in ["mean free paths", "irradiance", "steradian", "--cases"] {
         assert!(text.contains(word), "{text}");
     }
+    let version = exact().arg("--version").assert().success().get_output().clone();
+    assert_eq!(version.stdout, format!("exact {}\n", env!("CARGO_PKG_VERSION")).into_bytes());
+    assert!(version.stderr.is_empty());
 }
 
 #[test]

@@ -1,7 +1,7 @@
 //! The isotropically scattering slab, order by order: reflectance, transmittance, absorptance, fluence.
 //!
-//! Order by order is what catches path lengths counted differently (fault 22), direct light counted twice (fault 5)
-//! and albedos applied twice or not at all (fault 3): in the sum they may hide behind each other.
+//! Order by order is what catches path lengths counted differently by paths and photons, direct light counted twice and
+//! albedos applied twice or not at all: in the sum they may hide behind each other.
 
 use crate::support::run::{pass, paths};
 use crate::support::scenes::{CELL, Incidence, at_depth, reflectance, slab, transmittance};

@@ -200,8 +200,8 @@ fn samples_of_a_stream_follow_the_density() {
     }
 }
 
-/// First and second moments of drawn directions, sign included: fault 7 (negative g sampled as isotropic) and fault 8
-/// (large g clamped) would both fail here.
+/// First and second moments of drawn directions, sign included: a negative g sampled as isotropic and a large g clamped
+/// would both fail here.
 #[test]
 fn drawn_moments_are_those_stated() {
     const N: u64 = 1 << 18;
