@@ -197,7 +197,7 @@ fn leaves(shape: &Shape, face: Face, ray: &Ray, t: f64) -> bool {
 }
 
 impl<K: Fn(&Photon) -> bool> Visitor for Tallier<'_, K> {
-    const WANTS_DENSITIES: bool = false;
+    const LOOKS_AHEAD: bool = false;
 
     fn visit(&mut self, walker: &Walker, step: Step, _stream: &mut Stream) {
         match step {

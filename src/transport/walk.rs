@@ -62,8 +62,9 @@ pub enum Step<'a> {
 
 /// Who watches a walk.
 pub trait Visitor {
-    /// Whether it reads [`Walker::pdf_solid_angle`]; if not, no density is computed.
-    const WANTS_DENSITIES: bool = true;
+    /// Whether it collects what rays meet by themselves, as paths do and photons do not: then directions keep their
+    /// densities ([`Walker::pdf_solid_angle`]), and a ray of the limiting order is followed through mirrors.
+    const LOOKS_AHEAD: bool = true;
 
     /// One step of the walk.
     fn visit(&mut self, walker: &Walker, step: Step, stream: &mut Stream);
@@ -71,7 +72,7 @@ pub trait Visitor {
 
 /// Follows one history to its end.
 ///
-/// It ends by absorption, by escape, or with a ray of order `limit`, which is looked along, and through mirrors, since
+/// It ends by absorption, by escape, or with a ray of order `limit`, which is looked along, through mirrors too since
 /// they raise no order, but not flown.
 pub fn walk<V: Visitor>(
     scene: &Scene,
@@ -86,7 +87,7 @@ pub fn walk<V: Visitor>(
         let hit = scene.hit(&walker.ray, walker.from);
         visitor.visit(&walker, Step::Ahead(hit.as_ref()), stream);
         if limit.is_some_and(|limit| walker.order >= limit) {
-            let Some(mirror) = hit.filter(|found| is_specular(scene, found)) else {
+            let Some(mirror) = hit.filter(|found| V::LOOKS_AHEAD && is_specular(scene, found)) else {
                 visitor.visit(&walker, Step::Abandoned(walker.weight), stream);
                 return;
             };
@@ -136,7 +137,7 @@ pub fn walk<V: Visitor>(
                     order: walker.order + 1,
                     flags: walker.flags.with(Flags::MEDIUM),
                     from: None,
-                    pdf_solid_angle: V::WANTS_DENSITIES.then(pdf),
+                    pdf_solid_angle: V::LOOKS_AHEAD.then(pdf),
                 };
             }
             Flight::Passed(weight) => {

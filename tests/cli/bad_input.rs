@@ -157,7 +157,7 @@ fn wrong_options() {
         (&["--kernel", "box"], &["--kernel", "allowed: uniform"]),
         (&["--orders", "3..1"], &["--orders", "allowed: an order such as 1"]),
         (&["--orders", "-1"], &["--orders", "allowed: an order such as 1"]),
-        (&["--threads", "0"], &["--threads", "0 is not in 1..=65535"]),
+        (&["--threads", "0"], &["--threads", "0 is not in 1..=1024"]),
         (&["--seed", "-1"], &["--seed"]),
         (&["--radios", "1"], &["--radios", "--radius"]),
         (&["extra"], &["extra"]),
