@@ -46,10 +46,10 @@ const FONT: &str = concat!(
 #[derive(Parser)]
 #[command(version, long_version = FONT)]
 struct Flags {
-    /// Minutes of work (default)
+    /// A few minutes of work (default)
     #[arg(long, conflicts_with = "full")]
     quick: bool,
-    /// Hours of work, narrow margins
+    /// The reference run: more maps and more photons
     #[arg(long)]
     full: bool,
     /// Seed of all random numbers
