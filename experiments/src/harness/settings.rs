@@ -9,7 +9,7 @@ use std::path::PathBuf;
 pub enum Preset {
     /// Minutes: margins are wide.
     Quick,
-    /// Hours: the margins that the claims are about.
+    /// The reference run: more maps and more photons.
     Full,
 }
 
