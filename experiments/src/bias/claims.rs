@@ -1,5 +1,6 @@
-//! The claims. Each is judged on one number a map. A margin is what the quick preset can decide: five to ten of the
-//! standard errors that trial runs of it, with other random numbers, had shown.
+//! The claims. Each is judged on one number a map. A margin is what the quick preset can decide: at least five of
+//! the standard errors that trial runs of it had shown for the noisiest claim of its kind, so that quieter ones of the
+//! same kind have more room than they need.
 
 use super::cases::{Case, Size};
 use super::conclude::{Mistake, Result, exact_at, largest, pick, predicted_fano};

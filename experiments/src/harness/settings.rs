@@ -7,7 +7,7 @@ use std::path::PathBuf;
 /// How much is measured.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Preset {
-    /// Minutes: margins are wide.
+    /// A few minutes.
     Quick,
     /// The reference run: more maps and more photons.
     Full,
