@@ -1,11 +1,12 @@
 //! The laboratory: plays the simulator against exact values and writes the report.
 //!
-//! Each experiment is a module with a constant `EXPERIMENT`, listed in [`ALL`]; [`harness`] runs them, and
-//! [`report`] writes what they found.
+//! Each experiment is a module with a constant `EXPERIMENT`, listed in [`ALL`]; [`harness`] runs them, [`theory`] has
+//! what their predictions share, and [`report`] writes what they found.
 
 pub mod bias;
 pub mod harness;
 pub mod report;
+pub mod theory;
 
 use harness::Experiment;
 

@@ -3,9 +3,10 @@
 use super::cases::{Case, Size};
 use super::fields::{FIELDS, Field};
 use super::measure::{is_fano_case, map_case, path_case};
-use super::predict::{Parts, clustering, recall};
+use super::predict::{Parts, recall};
 use super::{claims, figures, tables};
-use crate::harness::{Cells, Prediction, Row, Section, Settings, Unit, with_error};
+use crate::harness::{Cells, Entry, Prediction, Row, Section, Settings, Term, Unit, with_error};
+use crate::theory::clustering;
 use std::collections::HashMap;
 use turbid::estimators::Kernel;
 use turbid::stats::Moments;
@@ -75,12 +76,27 @@ pub fn conclude(settings: &Settings, predictions: &[Prediction], cells: &Cells) 
     }
     let mistakes = mistakes(cells, &results)?;
     let mut section = Section { rows: rows(cells, &results, &mistakes)?, ..Section::default() };
+    section.budget = results.iter().map(entry).collect();
     section.claims = claims::all(settings, cells, &results, &mistakes)?;
     section.figures = figures::all(settings, cells, &results, &mistakes)?;
     section.tables.push(tables::errors(&results));
     section.tables.push(tables::paths(cells, &results)?);
     summarise(&mut section, settings, &results);
     Ok(section)
+}
+
+/// The case in the error budget of the study. The wrong rule is there too: what it adds is predicted like the rest.
+fn entry(result: &Result) -> Entry {
+    let parts = &result.parts;
+    let terms = [
+        (Term::Edge, parts.edge),
+        (Term::Blur, parts.blur),
+        (Term::Nearest, parts.rule),
+        (Term::Clusters, parts.clusters),
+    ];
+    let group = Case::group(result.case.field, result.case.photons);
+    let maps = result.errors.iter().map(|e| e / 100.0).collect();
+    Entry::new(group, result.case.name(), &terms, parts.error, maps)
 }
 
 /// The mistakes that need no switch inside the simulator: each map's own numbers, wrongly divided.
@@ -173,7 +189,7 @@ pub fn fano(cells: &Cells, case: &Case) -> anyhow::Result<Option<Moments>> {
 /// What clusters add to a Fano factor of 1.
 pub fn predicted_fano(case: &Case) -> f64 {
     match case.size {
-        Size::Radius(r) if case.field.has_clusters() => clustering(case.field, r),
+        Size::Radius(r) if case.field.has_clusters() => clustering(case.field.albedo, case.field.g, r),
         _ => 0.0,
     }
 }

@@ -1,7 +1,7 @@
 //! The fields: which slab, which photons, where it is probed, and the exact answer.
 
-use super::table::Table;
 use crate::harness::Settings;
+use crate::theory::{Exact, slab_fluence};
 use anyhow::Context;
 use glam::DVec3;
 use turbid::Spectrum;
@@ -11,8 +11,7 @@ use turbid::math::Asymmetry;
 use turbid::medium::Homogeneous;
 use turbid::phase::Phase;
 use turbid::scene::{Orders, Parts, Region, Scene};
-use turbid_analytic::slab_anisotropic::AnisotropicSlab;
-use turbid_analytic::{Incidence, IsotropicSlab};
+use turbid_analytic::Incidence;
 
 /// Side of the cell that stands for the slab [mfp].
 pub const CELL: f64 = 4.0;
@@ -87,12 +86,6 @@ pub const FIELDS: [Field; 4] = [
     },
 ];
 
-/// What tabulation adds to the error of a fluence, tested in `table`.
-const TABULATED: f64 = 1e-9;
-
-/// An exact fluence at a depth, per unit irradiance, with its bound.
-pub type Exact = Box<dyn Fn(f64) -> anyhow::Result<(f64, f64)> + Sync + Send>;
-
 impl Field {
     /// The field of a name.
     pub fn named(name: &str) -> anyhow::Result<&'static Field> {
@@ -135,25 +128,9 @@ impl Field {
 
     /// The exact fluence.
     pub fn exact(&self) -> anyhow::Result<Exact> {
-        let beam = Incidence::Beam { mu0: 1.0 };
         if !self.has_clusters() {
             return Ok(Box::new(|t| Ok((libm::exp(-t), 0.0))));
         }
-        if self.g == 0.0 {
-            let slab = IsotropicSlab::new(self.tau, self.albedo, beam)?;
-            return Ok(Box::new(move |t| {
-                slab.fluence_interpolated(t).map(|v| (v.value, v.error)).map_err(Into::into)
-            }));
-        }
-        let slab = AnisotropicSlab::new(self.tau, self.albedo, self.g, beam)?;
-        // Modes are summed once a table point, not once a question.
-        let largest = std::cell::Cell::new(0.0f64);
-        let table = Table::of_fluence(self.tau, |t| {
-            let fluence = slab.fluence(t)?;
-            largest.set(largest.get().max(fluence.error));
-            Ok(fluence.value)
-        })?;
-        let error = largest.get() + TABULATED;
-        Ok(Box::new(move |t| Ok((table.at(t), error))))
+        slab_fluence(self.tau, self.albedo, self.g, Incidence::Beam { mu0: 1.0 })
     }
 }

@@ -5,25 +5,10 @@ use super::conclude::{Mistake, Result, exact_at, fano, largest, predicted_fano};
 use super::fields::{FIELDS, Field};
 use super::measure::{is_fano_case, path_case};
 use super::predict::{PART_NAMES, Theory};
-use crate::harness::{Cells, FigureFiles, Settings};
+use crate::harness::{Cells, FigureFiles, Settings, bar};
 use turbid::estimators::Kernel;
-use turbid::stats::{Moments, mean_interval};
+use turbid::stats::Moments;
 use turbid_figure::{Along, Axis, Color, Figure, Histogram, Legend, Line, Panel, Points, Rule, Scale, Width};
-
-/// 95 per cent interval over maps.
-fn bar(moments: &Moments) -> (f64, f64) {
-    let interval = mean_interval(moments, 0.95);
-    (interval.low, interval.high)
-}
-
-fn files(name: &str, caption: &str, figure: &Figure) -> anyhow::Result<FigureFiles> {
-    Ok(FigureFiles {
-        name: name.to_string(),
-        caption: caption.to_string(),
-        svg: figure.svg()?,
-        png: figure.png()?,
-    })
-}
 
 /// All figures, the budget first.
 pub fn all(
@@ -102,7 +87,7 @@ fn budget(results: &[Result], mistakes: &[Mistake]) -> anyhow::Result<FigureFile
                    error predicted for the right one, stand off it. Below: what is left after the \
                    prediction, in standard errors, beside the unit normal density that it would follow if cases were \
                    independent and nothing were overlooked.";
-    files("budget", caption, &figure)
+    FigureFiles::draw("budget", caption, &figure)
 }
 
 /// The orders in radius, photons and k, on uncollided photons.
@@ -174,7 +159,7 @@ fn orders(results: &[Result]) -> anyhow::Result<FigureFiles> {
                    maps) and predicted before the run (lines). At a fixed radius the error grows as the square of the \
                    radius, at first, whatever the number of photons; with the k nearest it falls as (k / photons) to \
                    the power 2/3.";
-    files("orders", caption, &figure)
+    FigureFiles::draw("orders", caption, &figure)
 }
 
 /// Error against depth in each field of all orders.
@@ -216,7 +201,7 @@ fn depths(settings: &Settings, cells: &Cells, results: &[Result]) -> anyhow::Res
                    radius, measured (points, 95 % intervals) and predicted (lines), and the path tracer. Within a \
                    radius of a face part of the ball is outside the fog, and the estimate loses up to half; inside, \
                    the blur is a per cent or less. Linear within ±1 %.";
-    files("depths", caption, &figure)
+    FigureFiles::draw("depths", caption, &figure)
 }
 
 type PointsWithBars = (Vec<f64>, Vec<f64>, Vec<(f64, f64)>);
@@ -274,5 +259,5 @@ fn counts(cells: &Cells, results: &[Result]) -> anyhow::Result<FigureFiles> {
     let caption = "Photons of one history lie near each other: their counts in a ball vary more than Poisson's law \
                    lets independent ones, by 3/2 albedo times the radius to first order, at any asymmetry \
                    (lines: to second order in isotropic fog). Uncollided photons are independent.";
-    files("counts", caption, &figure)
+    FigureFiles::draw("counts", caption, &figure)
 }

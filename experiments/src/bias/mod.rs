@@ -14,7 +14,6 @@ mod fields;
 mod figures;
 mod measure;
 mod predict;
-mod table;
 mod tables;
 
 use crate::harness::Experiment;

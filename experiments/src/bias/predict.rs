@@ -1,9 +1,9 @@
 //! What theory predicts of every case, in parts, before anything is measured.
 
 use super::cases::{Case, Size};
-use super::fields::{CELL, Exact, FIELDS, Field};
-use super::table::Table;
+use super::fields::{CELL, FIELDS, Field};
 use crate::harness::{Prediction, Settings, Unit};
+use crate::theory::{Exact, Table, nearest_clustering, referee_kernel};
 use anyhow::Context;
 use rayon::prelude::*;
 use std::collections::HashMap;
@@ -54,34 +54,6 @@ impl Parts {
     }
 }
 
-/// The kernel as the referee knows it.
-fn referee_kernel(kernel: Kernel) -> referee::Kernel {
-    match kernel {
-        Kernel::Uniform => referee::Kernel::Uniform,
-        Kernel::Epanechnikov => referee::Kernel::Epanechnikov,
-        Kernel::Cone => referee::Kernel::Cone { kappa: 1.0 },
-        Kernel::Biweight => referee::Kernel::Biweight,
-        Kernel::Gaussian => referee::Kernel::TruncatedGaussian,
-    }
-}
-
-/// Other photons of the same history around each photon of a ball of radius `r` \[mfp\], on average.
-///
-/// With L the distance from a uniform point of the ball to its surface along any direction, the next collision is
-/// inside with probability w <1 - e^-L> = w (3/4 r - 2/5 r^2 + ...), and so was the last one: 3/2 w r to first order,
-/// whatever the asymmetry. Isotropic scattering adds the next but one, w^2 <L~^2> with L~ the mean of L over
-/// directions. Behind other phase functions that term is left out with the rest of the second order: it lies between
-/// the isotropic one and 2/5 w^2 r^2, which straight paths have.
-pub fn clustering(field: &Field, r: f64) -> f64 {
-    let w = field.albedo;
-    let first = 1.5 * w * r;
-    if field.g == 0.0 { first + 2.0 * (w * w * MEAN_SQUARE - 0.4 * w) * r * r } else { first }
-}
-
-/// The mean of L~^2 over a ball of radius 1, L~(u) = (1 + (1-u^2)/(2u) ln((1+u)/(1-u)))/2, by quadrature (a test does it
-/// again).
-const MEAN_SQUARE: f64 = 0.578_986_8;
-
 /// A field with all that predictions ask of it.
 pub struct Theory {
     field: &'static Field,
@@ -108,7 +80,8 @@ impl Theory {
             return Ok(profile);
         }
         // Two threads may tabulate the same means at once; they find the same numbers.
-        let profile = Table::of_kernel_means(referee_kernel(kernel), depth, self.field.tau, &self.exact)?;
+        let profile =
+            Table::of_kernel_means(referee_kernel(kernel), depth, self.field.tau, 0.5 * CELL, &self.exact)?;
         Ok(slot.get_or_init(|| profile))
     }
 
@@ -158,21 +131,14 @@ impl Theory {
                     // Where the medium ends inside the ball, neighbours are missing like the ball's own part, and the
                     // estimate that they raise is itself lower.
                     let inside = 1.0 + parts.edge;
-                    let raised = nearest_clustering(case.field, density * here * inside, k);
+                    let raised =
+                        nearest_clustering(case.field.albedo, case.field.g, density * here * inside, k);
                     parts.clusters = raised * inside * (1.0 + parts.edge + parts.blur);
                 }
             }
         }
         Ok(parts)
     }
-}
-
-/// What clusters add to a nearest estimate, relative to it, inside the medium: clustering grows with the radius, which
-/// is averaged over the k-th distance; r_1 is the radius of the ball in which one photon is expected.
-fn nearest_clustering(field: &Field, photons_per_volume: f64, k: usize) -> f64 {
-    let r1 = libm::cbrt(3.0 / (4.0 * PI * photons_per_volume));
-    let k = k as f64;
-    clustering(field, r1) * libm::exp(libm::lgamma(k - 5.0 / 3.0) - libm::lgamma(k - 1.0)) / 3.0
 }
 
 /// All cases of a study with their parts, computed in parallel.
@@ -272,20 +238,6 @@ mod tests {
             // Cancellation of the closed form at small x: a few 1e-16 over x^2.
             assert!((total(field, 1.0, x) - 100.0 * (mean - 1.0)).abs() < 1e-9, "radius {x}");
         }
-    }
-
-    #[test]
-    fn the_mean_square_distance_to_the_surface_of_a_ball() {
-        let steps = 200_000;
-        let sum: f64 = (0..steps)
-            .map(|i| (f64::from(i) + 0.5) / f64::from(steps))
-            .map(|u| {
-                let mean = 0.5 * (1.0 + (1.0 - u * u) / (2.0 * u) * libm::log((1.0 + u) / (1.0 - u)));
-                3.0 * u * u * mean * mean
-            })
-            .sum();
-        // The midpoint rule leaves h^2 ln h at the surface: 1e-9 here; the constant has seven digits.
-        assert!((sum / f64::from(steps) - MEAN_SQUARE).abs() < 1e-7);
     }
 
     /// In a field of small slope the biased rule reads k/(k-1) high, and the right one does not.

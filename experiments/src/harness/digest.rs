@@ -28,6 +28,11 @@ impl Digest {
     pub fn of(bytes: &[u8]) -> Self {
         Digest::EMPTY.with(bytes)
     }
+
+    /// Its low 64 bits.
+    pub fn word(self) -> u64 {
+        self.0 as u64
+    }
 }
 
 impl fmt::Display for Digest {

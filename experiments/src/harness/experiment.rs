@@ -1,6 +1,6 @@
 //! What an experiment is made of.
 
-use super::{CellOutput, Cells, Section, Settings, Unit};
+use super::{CellOutput, Cells, Digest, Section, Settings, Unit};
 
 /// One experiment: a claim or a few, what they predict, how it is measured and what follows.
 ///
@@ -48,6 +48,13 @@ impl CellId {
     /// The unique file-safe name; names sort as replicates do.
     pub fn id(&self) -> String {
         format!("{}-{:06}", self.group, self.replicate)
+    }
+
+    /// The number that random streams take as their replicate: different for every experiment and group, so that
+    /// cells of different groups share no histories.
+    pub fn stream(&self, experiment: &str) -> u64 {
+        let name = Digest::of(format!("{experiment}/{}", self.group).as_bytes());
+        name.word() << 24 | self.replicate
     }
 
     /// Whether the group can be part of a file's name.

@@ -4,6 +4,7 @@
 //! settings, each one map; they run in parallel, are kept in files, and are merged in sorted order, so that results
 //! are the same bits on any number of threads and after any interruption.
 
+mod budget;
 mod cell;
 mod cells;
 mod claim;
@@ -21,6 +22,7 @@ mod section;
 mod settings;
 mod study;
 
+pub use budget::{Entry, Term};
 pub use cell::{CellOutput, CellRow};
 pub use cells::Cells;
 pub use claim::{Claim, FAMILY_WISE, Judged, Kind, MIN_MAPS, Verdict, judge};
@@ -33,7 +35,7 @@ pub use progress::say;
 pub use provenance::Provenance;
 pub use results::{Row, Unit};
 pub(crate) use section::row_label;
-pub use section::{FigureFiles, Section, Table};
+pub use section::{FigureFiles, Section, Table, bar};
 pub use settings::{Preset, Settings};
 pub(crate) use study::cost_line;
 pub use study::{Outcome, SectionReport, Study, main, run};

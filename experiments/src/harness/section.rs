@@ -1,7 +1,9 @@
 //! What an experiment says in the report.
 
 use super::format::{number, with_error};
-use super::{Claim, Row};
+use super::{Claim, Entry, Row};
+use turbid::stats::{Moments, mean_interval};
+use turbid_figure::Figure;
 
 /// A figure in both of its forms.
 #[derive(Debug, Clone, PartialEq)]
@@ -14,6 +16,27 @@ pub struct FigureFiles {
     pub svg: String,
     /// The figure as PNG.
     pub png: Vec<u8>,
+}
+
+impl FigureFiles {
+    /// Draws a figure.
+    ///
+    /// # Errors
+    /// If it cannot be drawn as it is.
+    pub fn draw(name: &str, caption: &str, figure: &Figure) -> anyhow::Result<Self> {
+        Ok(FigureFiles {
+            name: name.to_string(),
+            caption: caption.to_string(),
+            svg: figure.svg()?,
+            png: figure.png()?,
+        })
+    }
+}
+
+/// The 95 per cent interval of a mean over maps, as figures show it.
+pub fn bar(moments: &Moments) -> (f64, f64) {
+    let interval = mean_interval(moments, 0.95);
+    (interval.low, interval.high)
 }
 
 /// A table of words and numbers for readers; the numbers behind it are in results.csv.
@@ -90,4 +113,6 @@ pub struct Section {
     pub notes: Vec<String>,
     /// All results, for results.csv.
     pub rows: Vec<Row>,
+    /// The cases whose mean error is predicted term by term, for the budget of the whole study.
+    pub budget: Vec<Entry>,
 }

@@ -117,6 +117,7 @@ fn conclude(_: &Settings, predictions: &[Prediction], cells: &Cells) -> anyhow::
         tables: vec![Table::of_rows("Bias at four gather sizes: the measured values scatter about the prediction by their errors.", &rows)],
         notes: vec!["All four sizes are read from the same maps: their errors move together.".to_string()],
         rows,
+        ..Section::default()
     })
 }
 

@@ -1,14 +1,14 @@
 //! Tables of smooth functions of one number, fast enough to be asked a million times.
 
-use super::fields::{CELL, Exact};
+use super::Exact;
 use std::sync::LazyLock;
 use turbid_analytic::kernel::Kernel;
 use turbid_analytic::slab_kernel::slab_kernel_mean;
 
 /// Chebyshev points a piece: sixteen leave 1e-9 of a function whose nearest singularity is half a piece away.
 const POINTS: usize = 16;
-/// Halvings of the radius, from half the cell down to a thousandth of a mean free path. Below it the mean is taken
-/// as constant: no gather is that small.
+/// Halvings of the radius, from the largest down to one part in two thousand. Below it the mean is taken as constant:
+/// no gather is that small.
 const HALVINGS: usize = 11;
 /// Thirds towards each face of a slab, where fluence behaves like c + t ln t: down to 1e-12 of the thickness.
 const THIRDS: usize = 25;
@@ -49,15 +49,14 @@ impl Table {
         Ok(Table { pieces })
     }
 
-    /// int_O K_r f against r at one depth of a slab, from nothing to half the cell. Pieces end where the ball touches
-    /// a face.
+    /// int_O K_r f against r at one depth of a slab, up to r = `most`. Pieces end where the ball touches a face.
     pub fn of_kernel_means(
         kernel: Kernel,
         depth: f64,
         thickness: f64,
+        most: f64,
         field: &Exact,
     ) -> anyhow::Result<Self> {
-        let most = 0.5 * CELL;
         let mut ends: Vec<f64> = (0..=HALVINGS).map(|i| most * 0.5f64.powi(i as i32)).collect();
         let smallest = ends[HALVINGS];
         ends.extend([depth, thickness - depth].iter().filter(|&&r| smallest < r && r < most));
@@ -107,7 +106,7 @@ mod tests {
         let field: Exact = Box::new(move |t| Ok((slab.fluence_interpolated(t)?.value, 0.0)));
         for kernel in [Kernel::Uniform, Kernel::Biweight] {
             for depth in [0.0, 0.25, 1.0] {
-                let profile = Table::of_kernel_means(kernel, depth, 2.0, &field).unwrap();
+                let profile = Table::of_kernel_means(kernel, depth, 2.0, 2.0, &field).unwrap();
                 for i in 1..200 {
                     let r = 0.01 * f64::from(i);
                     let direct =
