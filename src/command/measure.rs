@@ -1,13 +1,12 @@
 //! `turbid measure`: the sensors of a scene, by paths or by photons.
 
 use super::load::Source;
-use super::parse_count;
 use super::progress::Bar;
+use super::{FormatName, note, on_threads, parse_count};
 use anyhow::{Context, bail};
 use clap::ValueEnum;
-use std::io::Write;
 use turbid::estimators::{Gather, Kernel};
-use turbid::output::{Format, print, write_rows};
+use turbid::output::{print, write_rows};
 use turbid::scene::{Orders, Scene};
 use turbid::sensor::{PathSettings, PhotonSettings, Reading, by_paths, by_photons};
 
@@ -76,13 +75,6 @@ enum KernelName {
     Gaussian,
 }
 
-#[derive(Clone, Copy, ValueEnum)]
-enum FormatName {
-    Table,
-    Csv,
-    Json,
-}
-
 /// Orders on the command line.
 fn parse_orders(text: &str) -> Result<Orders, String> {
     const ALLOWED: &str =
@@ -107,21 +99,15 @@ impl Measure {
         if scene.sensors().is_empty() {
             bail!("the scene has no sensors: nothing to measure");
         }
-        let threads = self.threads.map_or(0, usize::from);
-        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().context("--threads")?;
-        let (readings, mut notes) = pool.install(|| match self.with {
+        let (readings, mut notes) = on_threads(self.threads, || match self.with {
             With::Path => self.measure_by_paths(&scene),
             With::Photons => self.measure_by_photons(&scene),
         })?;
         notes.extend(heavy_tails(&readings));
-        let format = match self.format {
-            FormatName::Table => Format::Text,
-            FormatName::Csv => Format::Csv,
-            FormatName::Json => Format::Json,
-        };
+        let format = self.format.format();
         print(|out| write_rows(out, &readings, format)).context("standard output")?;
-        for note in notes {
-            writeln!(std::io::stderr().lock(), "turbid: note: {note}")?;
+        for text in notes {
+            note(&text)?;
         }
         Ok(())
     }

@@ -1,5 +1,6 @@
 //! The commands, one file each, and what they share: loading scenes, counts, progress, exit codes.
 
+mod advise;
 mod check;
 mod load;
 mod measure;
@@ -10,15 +11,18 @@ mod usage;
 pub use usage::explain;
 
 use anyhow::Context;
-use clap::Subcommand;
+use clap::{Subcommand, ValueEnum};
 use std::io::{ErrorKind, Write};
 use std::process::ExitCode;
+use turbid::output::Format;
 
 /// What can be asked.
 #[derive(Subcommand)]
 pub enum Command {
     /// Measure the sensors of a scene by paths or by photons.
     Measure(measure::Measure),
+    /// Say which radius and how many photons reach a wanted error, and what the path tracer would need.
+    Advise(advise::Advise),
     /// Say what a scene requires, and which path classes no sampler reaches.
     Check(check::Check),
     /// List the built-in scenes, or print one.
@@ -30,6 +34,7 @@ impl Command {
     pub fn run(self) -> anyhow::Result<()> {
         match self {
             Command::Measure(command) => command.run(),
+            Command::Advise(command) => command.run(),
             Command::Check(command) => command.run(),
             Command::Scenes(command) => command.run(),
         }
@@ -53,6 +58,39 @@ pub fn exit_code(program: &str, outcome: anyhow::Result<()>) -> ExitCode {
 /// Writes text to stdout.
 fn print(text: &str) -> anyhow::Result<()> {
     turbid::output::print(|out| out.write_all(text.as_bytes())).context("standard output")
+}
+
+/// Forms of a table, as the command line calls them.
+#[derive(Clone, Copy, ValueEnum)]
+enum FormatName {
+    Table,
+    Csv,
+    Json,
+}
+
+impl FormatName {
+    fn format(self) -> Format {
+        match self {
+            FormatName::Table => Format::Text,
+            FormatName::Csv => Format::Csv,
+            FormatName::Json => Format::Json,
+        }
+    }
+}
+
+/// Runs something on its own pool of threads: all cores unless a number is given.
+fn on_threads<T: Send>(
+    threads: Option<u16>,
+    work: impl FnOnce() -> anyhow::Result<T> + Send,
+) -> anyhow::Result<T> {
+    let threads = threads.map_or(0, usize::from);
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().context("--threads")?;
+    pool.install(work)
+}
+
+/// Tells something beside the table.
+fn note(text: &str) -> std::io::Result<()> {
+    writeln!(std::io::stderr().lock(), "turbid: note: {text}")
 }
 
 /// A count on the command line: 1000000, 1_000_000 or 1e6; at least 1.

@@ -6,4 +6,4 @@ mod table;
 
 pub use atomic::{WriteError, write_atomically};
 pub use stdout::{ignore_closed_pipe, print};
-pub use table::{Format, write_csv, write_json, write_rows};
+pub use table::{Format, write_aligned, write_csv, write_json, write_rows};

@@ -44,12 +44,24 @@ fn write_text(out: &mut dyn Write, rows: &[Reading]) -> io::Result<()> {
             r.n.to_string(),
         ]);
     }
+    write_aligned(out, &lines, 3)
+}
+
+/// Writes lines of cells in aligned columns, the first `words` of them flush left and the others flush right.
+///
+/// # Errors
+/// Those of the writer.
+pub fn write_aligned<const N: usize>(
+    out: &mut dyn Write,
+    lines: &[[String; N]],
+    words: usize,
+) -> io::Result<()> {
     let width = |column: usize| lines.iter().map(|l| l[column].chars().count()).max().unwrap_or(0);
-    let widths: Vec<usize> = (0..COLUMNS.len()).map(width).collect();
-    for line in &lines {
+    let widths: Vec<usize> = (0..N).map(width).collect();
+    for line in lines {
         let mut text = String::new();
         for (column, (cell, &width)) in line.iter().zip(&widths).enumerate() {
-            let cell = if column < 3 { format!("{cell:<width$}  ") } else { format!("{cell:>width$}  ") };
+            let cell = if column < words { format!("{cell:<width$}  ") } else { format!("{cell:>width$}  ") };
             text.push_str(&cell);
         }
         writeln!(out, "{}", text.trim_end())?;

@@ -1,8 +1,10 @@
 //! Sensors: what paths and photons read of a scene, one mean with its standard error a number.
 
+mod advise;
 mod paths;
 mod photons;
 
+pub use advise::{Advice, MIN_MAPS, PathAdvice, Pilot, PilotSettings, path_advice};
 pub use paths::{PathSettings, by_paths, sample};
 pub use photons::{PhotonReadings, PhotonSettings, by_photons};
 

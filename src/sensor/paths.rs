@@ -31,12 +31,7 @@ pub struct PathSettings {
 /// `Error::Unreachable` if the scene has path classes that paths cannot sample; `Error::NonFinite`;
 /// `Error::Cancelled`.
 pub fn by_paths(scene: &Scene, settings: &PathSettings, progress: &dyn Progress) -> Result<Vec<Reading>> {
-    if !scene.plan().unreachable.is_empty() {
-        return Err(Error::Unreachable(format!(
-            "the path tracer cannot sample every path of this scene ({}): use photons, or a light with an extent",
-            scene.plan().unreachable.join("; ")
-        )));
-    }
+    check(scene)?;
     let mut all = Vec::new();
     for (index, sensor) in scene.sensors().iter().enumerate() {
         let moments = read(scene, sensor, index as u64, settings, progress)?;
@@ -45,8 +40,19 @@ pub fn by_paths(scene: &Scene, settings: &PathSettings, progress: &dyn Progress)
     Ok(all)
 }
 
+/// Whether paths can sample all that the scene's light does.
+pub(super) fn check(scene: &Scene) -> Result<()> {
+    if !scene.plan().unreachable.is_empty() {
+        return Err(Error::Unreachable(format!(
+            "the path tracer cannot sample every path of this scene ({}): use photons, or a light with an extent",
+            scene.plan().unreachable.join("; ")
+        )));
+    }
+    Ok(())
+}
+
 /// Moments by channel of one sensor; `index` keeps the streams of sensors apart.
-fn read(
+pub(super) fn read(
     scene: &Scene,
     sensor: &Sensor,
     index: u64,

@@ -5,7 +5,7 @@ use crate::Spectrum;
 use crate::error::{Error, Result};
 use crate::estimators::{Estimate, Gather, Kernel, fluence, in_scattered};
 use crate::math::{Ray, exp_m1, ln_1p};
-use crate::photons::{Histories, Ledger, PhotonMap, fold, shoot};
+use crate::photons::{Histories, Ledger, Pass, PhotonMap, fold, shoot};
 use crate::rng::{Purpose, Stream};
 use crate::scene::{Orders, Quantity, Scene, Sensor, decay};
 use crate::stats::Moments;
@@ -86,17 +86,10 @@ pub fn by_photons(
         beyond: 0,
         gathers: 0,
     };
-    let mut ranges: Vec<Orders> = Vec::new();
-    for range in sensors.iter().filter_map(map_orders) {
-        if !ranges.contains(&range) {
-            ranges.push(range);
-        }
-    }
-    let max_order = sensors.iter().map(|s| s.orders.max).try_fold(0, |most, max| max.map(|m| most.max(m)));
+    let max_order = max_order(&sensors);
     for replicate in 0..settings.maps {
         let histories = Histories { count: settings.photons, seed: settings.seed, replicate, max_order };
-        let is_needed = |order| ranges.iter().any(|r| r.contains(u32::from(order)));
-        let mut pass = shoot(scene, histories, &sensors, |photon| is_needed(photon.order), progress)?;
+        let (pass, maps) = maps(scene, &sensors, histories, margin, progress)?;
         result.ledger.add(&pass.ledger);
         let tallied = sensors.iter().zip(moments.iter_mut()).zip(&pass.tallies);
         for ((_, mine), tally) in tallied.filter(|((s, _), _)| map_orders(s).is_none()) {
@@ -104,22 +97,11 @@ pub fn by_photons(
                 m.merge(t);
             }
         }
-        if let Some(stage) = scene.stage()
-            && margin > 0.0
-        {
-            fold::surround(&mut pass.photons, stage.side, margin);
-        }
-        for range in &ranges {
-            let in_range = if ranges.len() == 1 {
-                std::mem::take(&mut pass.photons)
-            } else {
-                pass.photons.iter().filter(|p| range.contains(u32::from(p.order))).copied().collect()
-            };
-            let map = PhotonMap::new_parallel(in_range, pass.emitted)?;
+        for (range, map) in &maps {
             let here = sensors.iter().zip(&mut moments).filter(|(s, _)| map_orders(s) == Some(*range));
             for (index, (sensor, moments)) in here.enumerate() {
                 let mut stream = Stream::new(settings.seed, Purpose::Resampling, replicate, index as u64);
-                let value = read(scene, &map, sensor, settings, &mut stream, &mut result);
+                let value = read(scene, map, sensor, settings, &mut stream, &mut result);
                 for (channel, m) in moments.iter_mut().enumerate() {
                     m.push(value[channel]);
                 }
@@ -137,9 +119,49 @@ pub fn by_photons(
     Ok(result)
 }
 
+/// The largest order of a collision that any sensor asks for, if there is one.
+pub(super) fn max_order(sensors: &[Sensor]) -> Option<u32> {
+    sensors.iter().map(|s| s.orders.max).try_fold(0, |most, max| max.map(|m| most.max(m)))
+}
+
+/// One pass of histories and its maps, one for each range of orders that a sensor needs, continued `margin` beyond the
+/// folded cell. The pass's own photons have moved into the maps.
+pub(super) fn maps(
+    scene: &Scene,
+    sensors: &[Sensor],
+    histories: Histories,
+    margin: f64,
+    progress: &dyn Progress,
+) -> Result<(Pass, Vec<(Orders, PhotonMap)>)> {
+    let mut ranges: Vec<Orders> = Vec::new();
+    for range in sensors.iter().filter_map(map_orders) {
+        if !ranges.contains(&range) {
+            ranges.push(range);
+        }
+    }
+    let is_needed = |order| ranges.iter().any(|r| r.contains(u32::from(order)));
+    let mut pass = shoot(scene, histories, sensors, |photon| is_needed(photon.order), progress)?;
+    let mut photons = std::mem::take(&mut pass.photons);
+    if let Some(stage) = scene.stage()
+        && margin > 0.0
+    {
+        fold::surround(&mut photons, stage.side, margin);
+    }
+    let mut maps = Vec::with_capacity(ranges.len());
+    for &range in &ranges {
+        let in_range = if ranges.len() == 1 {
+            std::mem::take(&mut photons)
+        } else {
+            photons.iter().filter(|p| range.contains(u32::from(p.order))).copied().collect()
+        };
+        maps.push((range, PhotonMap::new_parallel(in_range, pass.emitted)?));
+    }
+    Ok((pass, maps))
+}
+
 /// The orders of the photons that answer a sensor; none where tallies do. Photons of order n are the fluence of
 /// order n, and scatter into the radiance of order n + 1.
-fn map_orders(sensor: &Sensor) -> Option<Orders> {
+pub(super) fn map_orders(sensor: &Sensor) -> Option<Orders> {
     let Orders { min, max } = sensor.orders;
     match sensor.quantity {
         Quantity::Fluence(_) => Some(sensor.orders),
@@ -154,7 +176,7 @@ fn map_orders(sensor: &Sensor) -> Option<Orders> {
 /// # Errors
 /// `Error::Scene` beyond the side of the cell: copies are made once, and a ball that reaches past them would miss
 /// photons.
-fn margin(sensors: &[Sensor], side: f64, cap: f64) -> Result<f64> {
+pub(super) fn margin(sensors: &[Sensor], side: f64, cap: f64) -> Result<f64> {
     let beyond = sensors.iter().map(|sensor| match sensor.quantity {
         Quantity::Fluence(p) => {
             let p = fold::into_cell(p, side);
@@ -173,7 +195,7 @@ fn margin(sensors: &[Sensor], side: f64, cap: f64) -> Result<f64> {
 }
 
 /// Whether a volume map can answer a sensor.
-fn check(scene: &Scene, sensor: &Sensor) -> Result<()> {
+pub(super) fn check(scene: &Scene, sensor: &Sensor) -> Result<()> {
     match sensor.quantity {
         Quantity::Fluence(p) if scene.medium_at(p).is_none_or(|m| m.sigma_t().min() == 0.0) => {
             Err(Error::Scene(format!(

@@ -197,3 +197,22 @@ measure = { fluence = { at = [0, 0, 0.5] } }
     let outside = ["measure", "sphere", "--with", "photons", "--set", "probes=[2.0]"];
     refuses_naming(&outside, &["sensor radius 2", "(2, 0, 0) is outside", "use paths"]);
 }
+
+#[test]
+fn wrong_advice() {
+    let cases: [(&[&str], &[&str]); 9] = [
+        (&[], &["--target"]),
+        (&["--target", "0"], &["--target", "allowed: a relative error above 0, up to 100%"]),
+        (&["--target", "-1%"], &["--target", "allowed"]),
+        (&["--target", "101%"], &["--target", "allowed"]),
+        (&["--target", "nan"], &["--target", "allowed"]),
+        (&["--target", "1", "--pilot", "0"], &["--pilot", "allowed: whole numbers from 1"]),
+        (&["--target", "1", "--set", "probes=[]"], &["no fluence probe inside a medium"]),
+        (&["--target", "1", "--set", "probes=[0]"], &["no fluence probe inside a medium"]),
+        (&["--target", "1", "--pilot", "256"], &["photons about depth", "larger pilot"]),
+    ];
+    for (options, words) in cases {
+        let arguments: Vec<&str> = ["advise", "slab"].iter().chain(options).copied().collect();
+        refuses_naming(&arguments, words);
+    }
+}

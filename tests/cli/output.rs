@@ -196,3 +196,40 @@ fn the_ledger_is_told() {
     assert!(output.status.success() && note.contains("energy ledger"), "{note}");
     assert!(note.lines().any(|line| line.ends_with("together 1.000000000000")), "{note}");
 }
+
+#[test]
+fn advice_in_every_format() {
+    let arguments = [
+        "advise",
+        "slab",
+        "--set",
+        "tau=6",
+        "--set",
+        "probes=[0.25, 0.5]",
+        "--target",
+        "20%",
+        "--pilot",
+        "1e5",
+    ];
+    let table = succeeds(&arguments);
+    assert_eq!(
+        table.lines().next().unwrap().split_whitespace().collect::<Vec<_>>(),
+        ["quantity", "unit", "value", "low", "high"]
+    );
+    let csv = succeeds(&with(&arguments, &["--format", "csv", "--threads", "1"]));
+    let rows: serde_json::Value =
+        serde_json::from_str(&succeeds(&with(&arguments, &["--format", "json", "--threads", "3"]))).unwrap();
+    let rows = rows.as_array().unwrap();
+    assert_eq!((rows.len(), csv.lines().count(), table.lines().count()), (9, 10, 10));
+    // Everything but the machine's seconds repeats on any number of threads.
+    for (line, row) in csv.lines().skip(1).zip(rows) {
+        assert!(line.contains(row["quantity"].as_str().unwrap().split(':').next().unwrap()));
+        if row["unit"] != "s" {
+            let value = line.split(',').rev().nth(2).unwrap().parse::<f64>().unwrap();
+            assert_eq!(value, row["value"].as_f64().unwrap(), "{line}");
+        }
+    }
+    let error = rows.iter().find(|row| row["quantity"] == "predicted error").unwrap();
+    let (low, high) = (error["low"].as_f64().unwrap(), error["high"].as_f64().unwrap());
+    assert!(low < error["value"].as_f64().unwrap() && error["value"].as_f64().unwrap() < high);
+}

@@ -1,0 +1,171 @@
+//! `turbid advise`: how many photons, which radius.
+
+use super::load::Source;
+use super::progress::Bar;
+use super::{FormatName, note, on_threads, parse_count};
+use anyhow::Context;
+use serde::Serialize;
+use std::time::Instant;
+use turbid::output::{Format, print, write_aligned, write_csv, write_json};
+use turbid::scene::Scene;
+use turbid::sensor::{Advice, PathAdvice, Pilot, PilotSettings, path_advice};
+
+/// Say which radius and how many photons reach a wanted error, and what the path tracer would need.
+///
+/// Small pilot maps measure two laws about each fluence probe: the bias, which grows as the square of the radius where
+/// the field bends, by comparing balls of several radii; and the noise, which falls with the photons in the ball, by
+/// its spread over maps. Printed are the radius and the number of photons that bring the root mean square relative
+/// error over all probes to the target with the fewest photons, for the plain estimate with the uniform kernel; k is
+/// what such a ball holds. Low and high are the ends of a 95 per cent interval. Seconds are this machine's.
+#[derive(clap::Args)]
+#[command(allow_negative_numbers = true)]
+pub struct Advise {
+    #[command(flatten)]
+    source: Source,
+    /// Wanted root mean square relative error over the fluence probes, such as 1% or 0.01.
+    #[arg(long, value_parser = parse_target)]
+    target: f64,
+    /// Photons emitted into all pilot maps together.
+    #[arg(long, value_parser = parse_count, default_value = "2000000")]
+    pilot: u64,
+    /// Paths a probe that tell what the path tracer needs.
+    #[arg(long, value_parser = parse_count, default_value = "20000")]
+    samples: u64,
+    /// Seed: the same seed gives the same advice, on any number of threads.
+    #[arg(long, default_value_t = 1)]
+    seed: u64,
+    /// Threads [default: all cores].
+    #[arg(long, value_parser = clap::value_parser!(u16).range(1..=1024))]
+    threads: Option<u16>,
+    /// Form of the output.
+    #[arg(long, value_enum, default_value = "table")]
+    format: FormatName,
+}
+
+/// Pilot maps: enough for the variance of each half to be known to an eighth at a single probe.
+const MAPS: u64 = 256;
+
+/// A relative error on the command line.
+fn parse_target(text: &str) -> Result<f64, String> {
+    let (number, unit) = text.strip_suffix('%').map_or((text, 1.0), |number| (number, 0.01));
+    match number.trim().parse::<f64>().map(|x| x * unit) {
+        Ok(x) if x > 0.0 && x <= 1.0 => Ok(x),
+        _ => Err("allowed: a relative error above 0, up to 100%, such as 1% or 0.01".to_string()),
+    }
+}
+
+/// A line of the answer.
+#[derive(Serialize)]
+struct AdviceRow {
+    quantity: &'static str,
+    unit: &'static str,
+    value: f64,
+    low: Option<f64>,
+    high: Option<f64>,
+}
+
+impl Advise {
+    /// Advises and prints.
+    pub fn run(self) -> anyhow::Result<()> {
+        let scene = self.source.load()?;
+        let (rows, notes) = on_threads(self.threads, || self.advise(&scene))?;
+        print(|out| match self.format.format() {
+            Format::Text => write_aligned(out, &lines(&rows), 1),
+            Format::Csv => write_csv(out, &rows),
+            Format::Json => write_json(out, &rows),
+        })
+        .context("standard output")?;
+        for text in notes {
+            note(&text)?;
+        }
+        Ok(())
+    }
+
+    fn advise(&self, scene: &Scene) -> anyhow::Result<(Vec<AdviceRow>, Vec<String>)> {
+        let settings = PilotSettings { photons: self.pilot.div_ceil(MAPS), maps: MAPS, seed: self.seed };
+        let bar = Bar::new(settings.photons * MAPS);
+        let start = Instant::now();
+        let pilot = Pilot::run(scene, &settings, &bar);
+        let photon_seconds = start.elapsed().as_secs_f64() / (settings.photons * MAPS) as f64;
+        bar.finish();
+        let pilot = pilot?;
+        let advice = pilot.advise(self.target)?;
+        let mut rows = photon_rows(&advice, photon_seconds);
+        let mut notes = photon_notes(&pilot, &advice);
+
+        let probes = scene.sensors().len() as u64;
+        let bar = Bar::new(self.samples.saturating_mul(probes));
+        let start = Instant::now();
+        let paths = path_advice(scene, self.samples, self.seed, self.target, &bar);
+        let path_seconds = start.elapsed().as_secs_f64() / self.samples as f64;
+        bar.finish();
+        match paths {
+            Ok(PathAdvice { samples, is_heavy_tailed }) => {
+                let row = |quantity, unit, value| AdviceRow { quantity, unit, value, low: None, high: None };
+                rows.push(row("path tracer: paths a probe", "1", samples.ceil()));
+                rows.push(row("path tracer: time", "s", samples * path_seconds));
+                if is_heavy_tailed {
+                    notes.push(
+                        "the path tracer's variance is heavy-tailed here: its number of paths is a lower bound"
+                            .to_string(),
+                    );
+                }
+            }
+            Err(turbid::Error::Unreachable(why)) => notes.push(why),
+            Err(other) => return Err(other.into()),
+        }
+        Ok((rows, notes))
+    }
+}
+
+fn photon_rows(advice: &Advice, seconds: f64) -> Vec<AdviceRow> {
+    let plain = |quantity, unit, value| AdviceRow { quantity, unit, value, low: None, high: None };
+    let [least, median, most] = advice.gathered;
+    vec![
+        plain("radius", "L", advice.radius),
+        plain("photons to emit", "1", advice.photons as f64),
+        AdviceRow {
+            low: Some(least),
+            high: Some(most),
+            ..plain("photons a ball holds (k): median, least, most", "1", median)
+        },
+        AdviceRow {
+            low: Some(100.0 * advice.interval.low),
+            high: Some(100.0 * advice.interval.high),
+            ..plain("predicted error", "%", 100.0 * advice.error)
+        },
+        plain("its bias", "%", 100.0 * advice.bias),
+        plain("its noise", "%", 100.0 * advice.noise),
+        plain("photon map: time", "s", seconds * advice.photons as f64),
+    ]
+}
+
+fn photon_notes(pilot: &Pilot, advice: &Advice) -> Vec<String> {
+    let mut notes = Vec::new();
+    if !pilot.on_boundary.is_empty() {
+        notes.push(format!(
+            "left out: {}, on the boundary of the medium, where the plain estimate loses half the light at any radius",
+            pilot.on_boundary.join(", ")
+        ));
+    }
+    if let Some(probe) = &advice.limited_by {
+        notes.push(format!(
+            "the radius goes to the boundary next to {probe}: without that probe, or with a treatment of the boundary, \
+             fewer photons would do"
+        ));
+    }
+    notes
+}
+
+fn lines(rows: &[AdviceRow]) -> Vec<[String; 5]> {
+    let number = |x: f64| {
+        if x >= 1000.0 || x == 0.0 { format!("{x:.0}") } else { format!("{x:.3}") }
+    };
+    let mut lines = vec![["quantity", "unit", "value", "low", "high"].map(str::to_string)];
+    for row in rows {
+        let end = |x: Option<f64>| x.map_or_else(String::new, number);
+        let (quantity, unit) = (row.quantity.to_string(), row.unit.to_string());
+        lines.push([quantity, unit, number(row.value), end(row.low), end(row.high)]);
+    }
+    lines
+}

@@ -1,0 +1,423 @@
+//! Advice: which radius and how many photons give the fluence probes of a scene a wanted error, from small pilot maps.
+//!
+//! A photon estimate in a ball of radius r is wrong twice over. Its **bias** is the field's bend inside the ball: the
+//! mean of the field over a sphere of radius s is phi + a s^2 to second order, so that the ball reads (3/5) a r^2 too
+//! much, whatever the number of photons. Its **noise** has the variance v(r)/N, N photons emitted, where v(r) r^3
+//! is alpha plus beta r: the counts of independent photons, and the clustering of photons of one history. Both laws are fitted to
+//! pilot maps, from a ladder of balls about each probe that share their photons. The best radius is the one that
+//! reaches the target with the fewest photons; for a small r that is where the variance is 4/3 of the squared bias.
+//! Neither k nor the radius is ever a constant of taste: k is what the ball then holds.
+//!
+//! A pilot sees the bend of the field through its own noise. What it cannot see is taken to be as in the uncollided
+//! beam e^-t, whose bend is a = 1/6 of the fluence per squared mean free path: the bend of each probe has the normal
+//! prior distribution of that standard deviation, and the prediction carries what remains uncertain.
+
+use super::paths::{self, PathSettings};
+use super::photons::{check, map_orders, maps, margin, max_order};
+use crate::error::{Error, Result};
+use crate::estimators::{Gather, Kernel, fluence};
+use crate::light::Light;
+use crate::photons::{Histories, fold};
+use crate::rng::{Purpose, Stream};
+use crate::scene::{Orders, Quantity, Scene, Sensor};
+use crate::stats::{Interval, Moments, jackknife};
+use crate::transport::Progress;
+
+/// Balls about each probe.
+const BALLS: usize = 8;
+/// Radius of each over that of the next smaller one: eight of them span a factor of 11.
+const RATIO: f64 = std::f64::consts::SQRT_2;
+/// Fewest pilot maps: a variance is then known to a quarter at a single probe.
+pub const MIN_MAPS: u64 = 32;
+/// Draws behind the interval of the predicted error: each end is known to a twentieth of its width.
+const DRAWS: u64 = 4000;
+/// Radii tried, from the largest that is allowed down to a hundredth of it.
+const TRIALS: i32 = 200;
+
+/// How the pilot runs.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct PilotSettings {
+    /// Photons emitted a map.
+    pub photons: u64,
+    /// Independent maps, at least [`MIN_MAPS`].
+    pub maps: u64,
+    /// Seed of the whole computation.
+    pub seed: u64,
+}
+
+/// What the pilot maps said of the probes.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Pilot {
+    seed: u64,
+    /// Photons emitted a map.
+    photons: u64,
+    probes: Vec<Probe>,
+    /// Probes that no ball can be put about: on the boundary of their medium.
+    pub on_boundary: Vec<String>,
+}
+
+#[derive(Debug, Clone, PartialEq)]
+struct Probe {
+    name: String,
+    /// Radius of the largest ball: inside the medium, at most a mean free path, at most half the cell \[L\].
+    reach: f64,
+    /// The same in mean free paths.
+    reach_mfp: f64,
+    /// Estimate of each ball, largest first, a list a map.
+    values: Vec<[f64; BALLS]>,
+    /// Photons in the largest ball, mean over maps.
+    found: f64,
+}
+
+/// What is advised, for the plain estimate with the uniform kernel.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Advice {
+    /// Gather radius \[L\].
+    pub radius: f64,
+    /// Photons to emit.
+    pub photons: u64,
+    /// Photons that a ball of this radius then holds on average: least, median and largest over the probes.
+    pub gathered: [f64; 3],
+    /// Predicted root mean square relative error over the probes \[1\].
+    pub error: f64,
+    /// Its 95 per cent interval.
+    pub interval: Interval,
+    /// The part of it that is bias: root mean square over the probes \[1\].
+    pub bias: f64,
+    /// The part of it that is noise \[1\].
+    pub noise: f64,
+    /// The probe next to a boundary, if that and not the bend of the field limits the radius.
+    pub limited_by: Option<String>,
+}
+
+/// What the path tracer needs for the same error.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct PathAdvice {
+    /// Paths a probe, every probe having as many.
+    pub samples: f64,
+    /// Whether the variance is too uncertain for that number to be trusted.
+    pub is_heavy_tailed: bool,
+}
+
+/// The fluence sensors of a scene.
+fn probes(scene: &Scene) -> Vec<Sensor> {
+    scene.sensors().iter().filter(|s| matches!(s.quantity, Quantity::Fluence(_))).cloned().collect()
+}
+
+impl Pilot {
+    /// Shoots the pilot maps and reads the balls about each fluence probe.
+    ///
+    /// # Errors
+    /// `Error::Scene` if the scene has no fluence probe inside a medium and off its boundary; `Error::OutOfRange` for
+    /// fewer than [`MIN_MAPS`] maps or pilot photons that leave a probe dark; those of shooting.
+    pub fn run(scene: &Scene, settings: &PilotSettings, progress: &dyn Progress) -> Result<Self> {
+        if settings.maps < MIN_MAPS {
+            return Err(Error::out_of_range("the number of pilot maps", settings.maps as f64, "at least 32"));
+        }
+        let sensors = probes(scene);
+        let (seed, photons) = (settings.seed, settings.photons);
+        let mut pilot = Pilot { seed, photons, probes: Vec::new(), on_boundary: Vec::new() };
+        let mut chosen: Vec<Sensor> = Vec::new();
+        for sensor in sensors {
+            check(scene, &sensor)?;
+            let reach = reach(scene, &sensor);
+            if reach > 0.0 {
+                let (name, reach_mfp) = (sensor.name.clone(), reach / mean_free_path(scene, &sensor));
+                pilot.probes.push(Probe { name, reach, reach_mfp, values: Vec::new(), found: 0.0 });
+                chosen.push(sensor);
+            } else {
+                pilot.on_boundary.push(sensor.name);
+            }
+        }
+        if chosen.is_empty() {
+            return Err(Error::Scene(
+                "the scene has no fluence probe inside a medium: there is nothing to advise on".to_string(),
+            ));
+        }
+        let widest = pilot.probes.iter().map(|p| p.reach).fold(0.0, f64::max);
+        let margin = scene.stage().map_or(Ok(0.0), |stage| margin(&chosen, stage.side, widest))?;
+        for replicate in 0..settings.maps {
+            let max_order = max_order(&chosen);
+            let histories = Histories { count: settings.photons, seed: settings.seed, replicate, max_order };
+            let (_, maps) = maps(scene, &chosen, histories, margin, progress)?;
+            for (sensor, probe) in chosen.iter().zip(&mut pilot.probes) {
+                let Some((_, map)) = maps.iter().find(|(range, _)| map_orders(sensor) == Some(*range)) else {
+                    continue;
+                };
+                let Quantity::Fluence(p) = sensor.quantity else { continue };
+                let sigma_t = scene.medium_at(p).map_or(crate::Spectrum::ONE, |m| m.sigma_t());
+                let p = scene.stage().map_or(p, |s| fold::into_cell(p, s.side));
+                let mut values = [0.0; BALLS];
+                for (ball, value) in values.iter_mut().enumerate() {
+                    let gather = Gather::radius(radius(probe.reach, ball))?;
+                    let estimate = fluence(map, p, sigma_t, Kernel::Uniform, gather);
+                    *value = estimate.value.mean();
+                    if ball == 0 {
+                        probe.found += estimate.found as f64 / settings.maps as f64;
+                    }
+                }
+                probe.values.push(values);
+            }
+        }
+        let dark = pilot.probes.iter().find(|p| p.found * (settings.maps as f64) < FEWEST_FOUND);
+        match dark {
+            Some(probe) => Err(Error::Scene(format!(
+                "the pilot maps found {} photons about {}; allowed: at least {FEWEST_FOUND}: ask for a larger pilot",
+                probe.found * settings.maps as f64,
+                probe.name
+            ))),
+            None => Ok(pilot),
+        }
+    }
+
+    /// The radius and the number of photons that bring the root mean square relative error over the probes to `target`.
+    ///
+    /// # Errors
+    /// `Error::OutOfRange` unless `target` is above 0 and at most 1.
+    pub fn advise(&self, target: f64) -> Result<Advice> {
+        if !(target > 0.0 && target <= 1.0) {
+            return Err(Error::out_of_range("the target", target, "a relative error above 0, to 1"));
+        }
+        let bends: Vec<Bend> = self.probes.iter().map(Probe::bend).collect();
+        let mean = |value: &dyn Fn(&Probe, &Bend) -> f64| {
+            let sum: f64 = self.probes.iter().zip(&bends).map(|(p, b)| value(p, b)).sum();
+            sum / self.probes.len() as f64
+        };
+        let bias2 = |r: f64| mean(&|p, b| p.bias_of(b.mean, r).powi(2) + p.bias_of(b.deviation, r).powi(2));
+        let all: Vec<usize> = (0..self.probes[0].values.len()).collect();
+        let variance =
+            |r: f64, maps: &[usize]| mean(&|p, b| p.variance(r, b.here, maps)) * self.photons as f64;
+        let tightest = self.probes.iter().fold(&self.probes[0], |a, b| if b.reach < a.reach { b } else { a });
+        let step = libm::log2(100.0) / f64::from(TRIALS);
+        let mut best = (0.0, f64::INFINITY);
+        for trial in 0..=TRIALS {
+            let r = tightest.reach * libm::exp2(-f64::from(trial) * step);
+            let left = target * target - bias2(r);
+            let needed = if left > 0.0 { variance(r, &all) / left } else { f64::INFINITY };
+            if needed < best.1 {
+                best = (r, needed);
+            }
+        }
+        let (radius, needed) = best;
+        if !(needed > 0.0 && needed < MOST) {
+            return Err(Error::Scene(format!(
+                "no radius from {} to {} L reaches this error with fewer than {MOST:e} photons",
+                0.01 * tightest.reach,
+                tightest.reach
+            )));
+        }
+        let photons = round_up(needed);
+        let noise = jackknife(&all, |maps| variance(radius, maps) / photons);
+        let of_draw = |draw: u64| {
+            let mut stream = Stream::new(self.seed, Purpose::Resampling, draw, 0);
+            let mut bias2 = 0.0;
+            for (p, b) in self.probes.iter().zip(&bends) {
+                let [first, _] = normals(&mut stream);
+                bias2 += p.bias_of(b.mean + b.deviation * first, radius).powi(2) / self.probes.len() as f64;
+            }
+            let [first, _] = normals(&mut stream);
+            (bias2 + (noise.value + noise.std_error * first).max(0.0)).sqrt()
+        };
+        let mut errors: Vec<f64> = (0..DRAWS).map(of_draw).collect();
+        errors.sort_by(f64::total_cmp);
+        let quantile = |part: f64| errors[(part * DRAWS as f64) as usize];
+        let mut gathered: Vec<f64> =
+            self.probes.iter().map(|p| p.found(radius) * photons / self.photons as f64).collect();
+        gathered.sort_by(f64::total_cmp);
+        Ok(Advice {
+            radius,
+            photons: photons as u64,
+            gathered: [gathered[0], gathered[gathered.len() / 2], gathered[gathered.len() - 1]],
+            error: (bias2(radius) + noise.value).max(0.0).sqrt(),
+            interval: Interval::new(quantile(0.025), quantile(0.975)),
+            bias: bias2(radius).sqrt(),
+            noise: noise.value.max(0.0).sqrt(),
+            limited_by: (radius > 0.99 * tightest.reach).then(|| tightest.name.clone()),
+        })
+    }
+}
+
+/// What the next order, s^4, adds to the fitted bend at a reach of one mean free path, relative to it, if the field
+/// bends like e^-t: slope of s^4/120 against s^2 over a ball, (1/120) cov(s^2, s^4)/var(s^2) = (1/120)(10/9), over 1/6.
+const NEXT_ORDER: f64 = 1.0 / 18.0;
+
+/// Two independent normal numbers (Box and Muller 1958).
+fn normals(stream: &mut Stream) -> [f64; 2] {
+    let size = (-2.0 * crate::math::ln(stream.open_unit())).sqrt();
+    let (sin, cos) = crate::math::sin_cos(std::f64::consts::TAU * stream.unit());
+    [size * cos, size * sin]
+}
+
+/// Most photons that are advised: a map of more does not fit the photon tree's numbers many times over.
+const MOST: f64 = 1e15;
+
+/// Fewest photons about a probe in all pilot maps: below, not even the fluence is known to a tenth.
+const FEWEST_FOUND: f64 = 100.0;
+
+/// What is known of the bend of the field at a probe: a times the squared largest radius, over the fluence \[1\].
+struct Bend {
+    /// The fluence at the probe.
+    here: f64,
+    mean: f64,
+    deviation: f64,
+}
+
+impl Probe {
+    /// Relative bias of a ball of radius `r` in a field of this bend.
+    fn bias_of(&self, bend: f64, r: f64) -> f64 {
+        let u = r / self.reach;
+        0.6 * bend * u * u
+    }
+
+    /// Photons of one pilot map in a ball of radius `r`.
+    fn found(&self, r: f64) -> f64 {
+        let u = r / self.reach;
+        self.found * u * u * u
+    }
+
+    fn bend(&self) -> Bend {
+        let weights = FIT.get_or_init(bend_weights);
+        let bend = |balls: &[f64; BALLS]| balls.iter().zip(weights).map(|(x, w)| w * x).sum::<f64>();
+        let seen: Moments = self.values.iter().map(bend).collect::<Vec<f64>>().iter().collect();
+        let ball = self.values.iter().map(|balls| balls[0]).sum::<f64>() / self.values.len() as f64;
+        let prior = ball * self.reach_mfp * self.reach_mfp / 6.0;
+        let noise = seen.std_error();
+        let share = prior * prior / (prior * prior + noise * noise);
+        // The largest ball reads 3/5 of the bend too much.
+        let here = ball - 0.6 * share * seen.mean();
+        let mean = share * seen.mean() / here;
+        let next = NEXT_ORDER * self.reach_mfp * self.reach_mfp * mean;
+        Bend { here, mean, deviation: libm::hypot(share.sqrt() * noise / here, next) }
+    }
+
+    /// Relative variance of a ball of radius `r` in one map, from some of the maps: v r^3 = alpha + beta r by least
+    /// squares over the balls. `here` is the fluence.
+    fn variance(&self, r: f64, here: f64, maps: &[usize]) -> f64 {
+        let mut balls = [Moments::new(); BALLS];
+        for &map in maps {
+            for (ball, x) in balls.iter_mut().zip(&self.values[map]) {
+                ball.push(*x);
+            }
+        }
+        let x: [f64; BALLS] = std::array::from_fn(|i| radius(1.0, i));
+        let y: [f64; BALLS] = std::array::from_fn(|i| balls[i].variance() * x[i] * x[i] * x[i]);
+        let mean = |values: &[f64; BALLS]| values.iter().sum::<f64>() / BALLS as f64;
+        let (mean_x, mean_y) = (mean(&x), mean(&y));
+        let (mut above, mut below) = (0.0, 0.0);
+        for (x, y) in x.iter().zip(&y) {
+            above += (x - mean_x) * (y - mean_y);
+            below += (x - mean_x) * (x - mean_x);
+        }
+        let u = r / self.reach;
+        (mean_y + above / below * (u - mean_x)) / (u * u * u * here * here)
+    }
+}
+
+static FIT: std::sync::OnceLock<[f64; BALLS]> = std::sync::OnceLock::new();
+
+/// The weights that turn the balls of a probe into the bend of the field over the largest one: the slope against s^2 of
+/// the shells between balls, which share no photons, by least squares weighted by their volumes.
+fn bend_weights() -> [f64; BALLS] {
+    // Shell i lies between ball i and ball i + 1; the last one is the smallest ball itself. In a shell the mean of s^2
+    // is 3/5 (R^5 - r^5) / (R^3 - r^3), and its mean field is (R^3 x_i - r^3 x_(i+1)) / (R^3 - r^3).
+    let power = |x: f64, n: u32| (0..n).fold(1.0, |product, _| product * x);
+    let inner = |i: usize| if i + 1 < BALLS { radius(1.0, i + 1) } else { 0.0 };
+    let volume = |i: usize| power(radius(1.0, i), 3) - power(inner(i), 3);
+    let square = |i: usize| 0.6 * (power(radius(1.0, i), 5) - power(inner(i), 5)) / volume(i);
+    // Volumes add up to 1.
+    let mean: f64 = (0..BALLS).map(|i| volume(i) * square(i)).sum();
+    let spread: f64 = (0..BALLS).map(|i| volume(i) * (square(i) - mean) * (square(i) - mean)).sum();
+    let mut weights = [0.0; BALLS];
+    for i in 0..BALLS {
+        let of_shell = (square(i) - mean) / spread;
+        weights[i] += of_shell * power(radius(1.0, i), 3);
+        if i + 1 < BALLS {
+            weights[i + 1] -= of_shell * power(inner(i), 3);
+        }
+    }
+    weights
+}
+
+/// Radius of a ball: each is smaller than the one before.
+fn radius(reach: f64, ball: usize) -> f64 {
+    (0..ball).fold(reach, |r, _| r / RATIO)
+}
+
+/// How far a ball about the probe may reach \[L\]: inside the medium, at most a mean free path, half the cell, and half
+/// way to a point light, next to which no bend of second order tells the field; 0 on the boundary of its medium.
+fn reach(scene: &Scene, sensor: &Sensor) -> f64 {
+    let Quantity::Fluence(p) = sensor.quantity else { return 0.0 };
+    let Some(region) = scene.region_at(p).map(|index| &scene.regions()[index]) else { return 0.0 };
+    let half_cell = scene.stage().map_or(f64::INFINITY, |stage| 0.5 * stage.side);
+    let walls = scene.objects().iter().map(|o| o.shape.room(p).abs()).filter(|r| *r > 0.0);
+    let others = scene.regions().iter().map(|r| r.shape.room(p).abs());
+    let points = scene.lights().iter().filter_map(|light| match light {
+        Light::Point(point) => Some(0.5 * p.distance(point.position())),
+        _ => None,
+    });
+    let nearest = walls.chain(others).chain(points).fold(half_cell, f64::min);
+    nearest.min(mean_free_path(scene, sensor)).min(region.shape.room(p))
+}
+
+/// The mean free path where a probe is \[L\]; infinite outside all media.
+fn mean_free_path(scene: &Scene, sensor: &Sensor) -> f64 {
+    let Quantity::Fluence(p) = sensor.quantity else { return f64::INFINITY };
+    scene.medium_at(p).map_or(f64::INFINITY, |medium| 1.0 / medium.sigma_t().max())
+}
+
+/// The next number with two digits.
+fn round_up(x: f64) -> f64 {
+    let unit = libm::pow(10.0, (libm::log10(x) - 1.0).floor().max(0.0));
+    (x / unit).ceil() * unit
+}
+
+/// What the path tracer needs for a root mean square relative error of `target` over the fluence probes.
+///
+/// # Errors
+/// Those of [`super::by_paths`]; `Error::Scene` if a pilot of paths finds no light at a probe.
+pub fn path_advice(
+    scene: &Scene,
+    samples: u64,
+    seed: u64,
+    target: f64,
+    progress: &dyn Progress,
+) -> Result<PathAdvice> {
+    paths::check(scene)?;
+    let settings = PathSettings { samples, seed, replicate: 0, orders: Orders::ALL };
+    let sensors = probes(scene);
+    let (mut variance, mut is_heavy_tailed) = (0.0, false);
+    for (index, sensor) in sensors.iter().enumerate() {
+        let channels = paths::read(scene, sensor, index as u64, &settings, progress)?;
+        let mean = channels.iter().map(Moments::mean).sum::<f64>() / 3.0;
+        if mean == 0.0 {
+            return Err(Error::Scene(format!("{samples} paths from {} found no light", sensor.name)));
+        }
+        // The mean of the channels varies at most as much as the channels do on average.
+        let own = channels.iter().map(Moments::variance).sum::<f64>() / 3.0;
+        variance += own / (mean * mean) / sensors.len() as f64;
+        is_heavy_tailed |= channels.iter().any(super::is_heavy_tailed);
+    }
+    Ok(PathAdvice { samples: (variance / (target * target)).max(1.0), is_heavy_tailed })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Means over balls of 1 + a s^2 give back a.
+    #[test]
+    fn the_bend_is_exact_for_its_own_law() {
+        let balls: [f64; BALLS] = std::array::from_fn(|i| 1.0 + 0.6 * 0.37 * radius(1.0, i) * radius(1.0, i));
+        let found: f64 = bend_weights().iter().zip(&balls).map(|(w, x)| w * x).sum();
+        assert!((found - 0.37).abs() < 1e-12, "{found}");
+    }
+
+    #[test]
+    fn numbers_are_rounded_up_to_two_digits() {
+        for (x, rounded) in
+            [(1.0, 1.0), (9.2, 10.0), (101.0, 110.0), (123_456.0, 130_000.0), (130_000.0, 130_000.0)]
+        {
+            assert_eq!(round_up(x), rounded);
+        }
+    }
+}
