@@ -23,7 +23,7 @@ pub struct Advise {
     #[command(flatten)]
     source: Source,
     /// Wanted root mean square relative error over the fluence probes, such as 1% or 0.01.
-    #[arg(long, value_parser = parse_target)]
+    #[arg(long, value_parser = parse_target, allow_hyphen_values = true)]
     target: f64,
     /// Photons emitted into all pilot maps together.
     #[arg(long, value_parser = parse_count, default_value = "2000000")]
