@@ -75,6 +75,28 @@ fn agreement() -> Figure {
     Figure { heights: vec![1.0, 0.5], ..Figure::new(vec![scatter, histogram]) }
 }
 
+/// A cloud of 2,000 cases on a signed logarithmic scale.
+fn cloud() -> Figure {
+    let mut noise = Noise(7);
+    let axis = |label: &str| Axis::new(label, "%", Scale::SymLog { threshold: 0.1 });
+    let mut panel = Panel::new(axis("Predicted error"), axis("Measured error"));
+    panel = panel.with(Rule::new(Along::Diagonal).with_label("measured = predicted"));
+    for (class, label) in ["k rule", "clusters", "blur", "edge", "step", "storage"].iter().enumerate() {
+        let (mut x, mut y, mut bars) = (vec![], vec![], vec![]);
+        for _ in 0..[300, 200, 700, 500, 200, 100][class] {
+            let size = libm::exp10([0.0, -0.7, 0.3, 1.4, 0.0, -1.0][class] + 0.5 * noise.normal());
+            let predicted = if [true, true, false, false, true, false][class] { size } else { -size };
+            let error = 0.02 + 0.04 * size * noise.uniform();
+            let measured = predicted + error * noise.normal();
+            x.push(predicted);
+            y.push(measured);
+            bars.push((measured - 1.96 * error, measured + 1.96 * error));
+        }
+        panel = panel.with(Points::new(*label, class, x, y).with_y_interval(bars));
+    }
+    Figure { width: Width::Double, heights: vec![0.6], ..Figure::new(vec![panel.with_legend(Legend::Right)]) }
+}
+
 fn convergence() -> Figure {
     let mut noise = Noise(2);
     let photons = powers(3.0, 7.0, 9);
@@ -292,6 +314,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     std::fs::create_dir_all(&folder)?;
     for (name, figure) in [
         ("agreement", agreement()),
+        ("cloud", cloud()),
         ("convergence", convergence()),
         ("depth", depth()),
         ("four", four()),

@@ -22,6 +22,7 @@ mod areas;
 mod axis;
 mod check;
 mod clip;
+mod crowd;
 mod error;
 mod extent;
 mod figure;
@@ -38,6 +39,7 @@ mod png;
 mod scale;
 mod shape;
 mod svg;
+mod table;
 mod text;
 mod ticks;
 

@@ -1,7 +1,10 @@
 //! Colours, marker shapes and dash patterns that stay apart for every reader, and in grey.
 
+use serde::{Deserialize, Serialize};
+
 /// The colour of a layer.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
 pub enum Color {
     /// One of the seven classes, counted from 0 and round again.
     Class(usize),
@@ -35,7 +38,8 @@ impl Color {
 }
 
 /// The shape of a point.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
 pub enum Marker {
     /// A disc.
     Circle,
@@ -70,7 +74,8 @@ impl Marker {
 }
 
 /// The pattern of a line.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
 pub enum Dash {
     /// Unbroken.
     Solid,
@@ -101,7 +106,8 @@ impl Dash {
 }
 
 /// The colours of a heat map.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
 pub enum Shading {
     /// Blue below zero, white at zero, red above, with limits symmetric about zero: for signed errors.
     Diverging,

@@ -1,9 +1,13 @@
 //! The page as a PNG file.
 
 use crate::error::Error;
-use crate::mark::{Mark, Page, Paint, Point};
+use crate::mark::{Mark, Page, Paint, Point, Symbol};
+use crate::shape;
 use crate::text::Fonts;
-use image::{ColorType, ImageEncoder, codecs::png::PngEncoder};
+use image::{
+    ColorType, ImageEncoder,
+    codecs::png::{CompressionType, FilterType, PngEncoder},
+};
 use plotters::prelude::*;
 use std::fmt::Display;
 
@@ -52,7 +56,7 @@ pub(crate) fn encode(page: &Page) -> Result<Vec<u8>, Error> {
         });
     }
     let mut file = Vec::new();
-    PngEncoder::new(&mut file)
+    PngEncoder::new_with_quality(&mut file, CompressionType::Best, FilterType::NoFilter)
         .write_image(&pixels, width as u32, height as u32, ColorType::Rgb8)
         .map_err(failed)?;
     Ok(file)
@@ -69,17 +73,33 @@ fn shapes(page: &Page, width: usize, height: usize) -> Result<Vec<u8>, Error> {
             Mark::Area { points, paint } => {
                 canvas.fill_polygon(points.iter().map(|&p| place(p)), &style(*paint)).map_err(failed)?
             }
-            Mark::Disc { center, radius, paint } => {
-                canvas
-                    .draw_circle(place(*center), libm::round(fine(*radius)) as u32, &style(*paint), true)
-                    .map_err(failed)?;
-            }
+            Mark::Symbol(s) => symbol(&mut canvas, s)?,
             Mark::Text(_) => {}
         }
     }
     canvas.present().map_err(failed)?;
     drop(canvas);
     Ok(buffer)
+}
+
+/// A marker on its rim.
+fn symbol(canvas: &mut BitMapBackend<'_>, s: &Symbol) -> Result<(), Error> {
+    let mut corners: Vec<Point> =
+        shape::corners(s.shape, s.radius).iter().map(|c| (s.center.0 + c.0, s.center.1 + c.1)).collect();
+    if corners.is_empty() {
+        let rim = (s.rim > 0.0).then_some((s.radius + s.rim, Paint::PAPER));
+        for (radius, paint) in rim.into_iter().chain([(s.radius, s.paint)]) {
+            let radius = libm::round(fine(radius)) as u32;
+            canvas.draw_circle(place(s.center), radius, &style(paint), true).map_err(failed)?;
+        }
+        return Ok(());
+    }
+    let outline = corners.iter().map(|&p| place(p)).collect::<Vec<_>>();
+    if s.rim > 0.0 {
+        corners.extend([corners[0], corners[1]]);
+        stroke(canvas, &corners, 2.0 * s.rim, Paint::PAPER)?;
+    }
+    canvas.fill_polygon(outline, &style(s.paint)).map_err(failed)
 }
 
 /// A line as one quadrangle a piece with discs at the bends: plotters' own wide lines leave holes at sharp ones.
