@@ -1,4 +1,4 @@
-//! Draws one specimen of every kind of figure into the folder named on the command line.
+//! Draws one specimen of every kind of figure, in both widths and as a table, into the folder named on the command line.
 
 use std::error::Error;
 use std::path::PathBuf;
@@ -321,8 +321,13 @@ fn main() -> Result<(), Box<dyn Error>> {
         ("maps", maps()),
         ("odds", odds()),
     ] {
-        std::fs::write(folder.join(format!("{name}.png")), figure.png()?)?;
-        std::fs::write(folder.join(format!("{name}.svg")), figure.svg()?)?;
+        let other = figure.in_width(figure.width.other());
+        for (name, figure) in [(name.to_owned(), &figure), (format!("{name}-{}", other.width.name()), &other)]
+        {
+            std::fs::write(folder.join(format!("{name}.png")), figure.png()?)?;
+            std::fs::write(folder.join(format!("{name}.svg")), figure.svg()?)?;
+        }
+        std::fs::write(folder.join(format!("{name}.csv")), figure.csv("A specimen.")?)?;
     }
     Ok(())
 }

@@ -36,6 +36,7 @@ mod page;
 mod palette;
 mod plot;
 mod png;
+mod relayout;
 mod scale;
 mod shape;
 mod svg;

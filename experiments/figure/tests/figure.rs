@@ -268,3 +268,41 @@ fn extremes_are_drawn() {
         .with(points(vec![-1e9, 0.0, 1e12]));
     Figure::new(vec![sym]).svg().unwrap();
 }
+
+/// Sizes of all texts in points of print, from the document's own millimetres.
+fn font_sizes(svg: &str) -> Vec<f64> {
+    let (_, size) = svg.split_once("<svg width=\"").unwrap();
+    let millimetres: f64 = size.split_once("mm").unwrap().0.parse().unwrap();
+    let (_, size) = svg.split_once("viewBox=\"0 0 ").unwrap();
+    let units: f64 = size.split_once(' ').unwrap().0.parse().unwrap();
+    let texts = svg.lines().filter(|l| l.starts_with("<text"));
+    texts.map(|l| attribute(l, "font-size") / units * millimetres / 25.4 * 72.0).collect()
+}
+
+#[test]
+fn text_is_legible_in_print_in_both_widths() {
+    let layers = |panel: Panel| panel.with(points(vec![1.0, 4.0, 2.0])).with(Rule::new(Along::Diagonal));
+    let panel = layers(axes().with_title("(a)")).with_legend(Legend::Right);
+    for (width, columns) in [(Width::Single, 1), (Width::Double, 3), (Width::Millimetres(120.0), 2)] {
+        let mut figure = Figure { width, columns, ..Figure::new(vec![panel.clone(); 3]) };
+        figure.panels[1] = axes().with(map(vec![0.3, -0.7, 2.0]));
+        figure.title = "A figure".to_owned();
+        for figure in [figure.in_width(width.other()), figure] {
+            let sizes = font_sizes(&figure.svg().unwrap());
+            let least = sizes.iter().copied().fold(f64::INFINITY, f64::min);
+            // 6.5 pt, known to the half hundredth of a millimetre that the width is written to: 6e-5 of 85 mm.
+            assert!(sizes.len() > 20 && least > 6.5 * (1.0 - 1e-4), "{least} pt");
+        }
+    }
+}
+
+#[test]
+fn every_label_is_still_there_in_the_other_width() {
+    let panels = vec![axes().with_title("(a)").with(points(vec![1.0, 2.0])).with_legend(Legend::Right); 3];
+    let figure = Figure { width: Width::Double, columns: 3, ..Figure::new(panels) };
+    let single = figure.in_width(Width::Single).svg().unwrap();
+    assert!(single.starts_with("<svg width=\"85.00mm\""));
+    for text in ["measured", "(a)", "depth [m]", "fluence [W/m²]"] {
+        assert_eq!(single.matches(&format!(">{text}</text>")).count(), 3, "{text}");
+    }
+}
