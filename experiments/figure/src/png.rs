@@ -128,16 +128,19 @@ fn stroke(canvas: &mut BitMapBackend<'_>, points: &[Point], width: f64, paint: P
 fn averaged(fine: &[u8], width: usize, height: usize) -> Vec<u8> {
     let mut out = Vec::with_capacity(3 * width * height);
     let (row, count) = (3 * FINE * width, (FINE * FINE) as u32);
-    for y in 0..height {
-        for x in 0..width {
-            for channel in 0..3 {
-                let at = FINE * (y * row + 3 * x) + channel;
-                let sum: u32 = (0..FINE)
-                    .flat_map(|j| (0..FINE).map(move |i| u32::from(fine[at + j * row + 3 * i])))
-                    .sum();
-                out.push(((sum + count / 2) / count) as u8);
+    let mut sums = vec![0_u32; 3 * width];
+    for rows in fine.chunks_exact(FINE * row).take(height) {
+        sums.fill(0);
+        for row in rows.chunks_exact(row) {
+            for (sum, square) in sums.chunks_exact_mut(3).zip(row.chunks_exact(3 * FINE)) {
+                for pixel in square.chunks_exact(3) {
+                    sum[0] += u32::from(pixel[0]);
+                    sum[1] += u32::from(pixel[1]);
+                    sum[2] += u32::from(pixel[2]);
+                }
             }
         }
+        out.extend(sums.iter().map(|sum| ((sum + count / 2) / count) as u8));
     }
     out
 }

@@ -47,7 +47,7 @@ nav.contents .places { color: var(--soft); font-size: 13.5px; } nav.contents .pl
 h2 .up { font-size: 17px; color: var(--soft); margin-left: 6px; }
 summary { cursor: pointer; color: #1a4f8b; font-size: 14px; padding: 4px 0; }
 .fold { margin-bottom: 28px; } .fold .scroll { margin-bottom: 4px; }
-.fold:not(:has(details[open])) tr.more { display: none; }
+.fold:not(:has(details[open])) tr.more:not(:has(td:target)) { display: none; }
 .fold details[open] .closed, .fold details:not([open]) .opened { display: none; }
 tr:has(td:target), figure:target { background: #fff6d8; }
 .note { border-left: 3px solid var(--line); padding: 2px 0 2px 14px; font-size: 15.5px; color: #333a42; }
@@ -58,7 +58,7 @@ code { font-family: ui-monospace, Menlo, Consolas, 'DejaVu Sans Mono', monospace
   body { max-width: none; padding: 0; font-size: 10.5pt; }
   h2 { break-before: page; } h2.flow { break-before: auto; }
   figure, tr, .note { break-inside: avoid; } h3, caption { break-after: avoid; } thead { display: table-header-group; }
-  .fold:not(:has(details[open])) tr.more { display: table-row; }
+  .fold:not(:has(details[open])) tr.more:not(:has(td:target)) { display: table-row; }
   .fold details, .all, h2 .up { display: none; }
   nav.contents { break-inside: avoid; } .scroll { overflow: visible; } table { font-size: 8.5pt; } figure.narrow { max-width: 110mm; }
   .badge, .rejected { print-color-adjust: exact; -webkit-print-color-adjust: exact; }
