@@ -11,8 +11,9 @@ use turbid_experiments::harness::{Experiment, Section, Settings, Study, run};
 fn many(name: &'static str, title: &'static str) -> Experiment {
     let conclude = |settings: &_, predictions: &_, cells: &_| -> anyhow::Result<Section> {
         let mut section = (fake::FAKE.conclude)(settings, predictions, cells)?;
+        let first = section.claims.clone();
         for i in 0..5 {
-            for mut claim in section.claims[..4].to_vec() {
+            for mut claim in first.clone() {
                 claim.id = format!("{}, again {i}", claim.id);
                 section.claims.push(claim);
             }

@@ -43,6 +43,8 @@ mod svg;
 mod table;
 mod text;
 mod ticks;
+#[cfg(test)]
+mod vision;
 
 pub use axis::{Axis, Scale};
 pub use error::Error;

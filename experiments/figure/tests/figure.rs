@@ -242,7 +242,7 @@ fn pictures_have_300_pixels_to_the_inch_and_ink() {
         let image = image::load_from_memory(&figure.png().unwrap()).unwrap().to_rgb8();
         assert_eq!(image.width(), pixels);
         assert_eq!(image.get_pixel(0, 0).0, [255, 255, 255]);
-        assert!(image.pixels().any(|p| p.0 == [0, 114, 178]), "the blue of class 0");
+        assert!(image.pixels().any(|p| p.0 == [43, 79, 196]), "the blue of class 0");
         assert!(image.pixels().any(|p| p.0 == [0, 0, 0]), "black text");
     }
 }

@@ -60,7 +60,8 @@ code { font-family: ui-monospace, Menlo, Consolas, 'DejaVu Sans Mono', monospace
   figure, tr, .note { break-inside: avoid; } h3, caption { break-after: avoid; } thead { display: table-header-group; }
   .fold:not(:has(details[open])) tr.more:not(:has(td:target)) { display: table-row; }
   .fold details, .all, h2 .up { display: none; }
-  nav.contents { break-inside: avoid; } .scroll { overflow: visible; } table { font-size: 8.5pt; } figure.narrow { max-width: 110mm; }
+  nav.contents { break-inside: avoid; } .scroll { overflow: visible; } table { font-size: 8pt; line-height: 1.3; }
+  th, td { padding: 3px 8px 3px 0; } td.claim { min-width: 0; width: 44%; } .advice, .badge { font-size: 7pt; } .badge { padding: 0 4px; } figure.narrow { max-width: 110mm; }
   .badge, .rejected { print-color-adjust: exact; -webkit-print-color-adjust: exact; }
   a { color: inherit; }
 }
