@@ -1,4 +1,4 @@
-//! Draws one specimen of every kind of figure into the folder named on the command line.
+//! Draws one specimen of every kind of figure, in both widths and as a table, into the folder named on the command line.
 
 use std::error::Error;
 use std::path::PathBuf;
@@ -73,6 +73,28 @@ fn agreement() -> Figure {
     .with(Histogram::density("cells", 6, &scores, edges))
     .with(Line::theory("unit normal", z, density));
     Figure { heights: vec![1.0, 0.5], ..Figure::new(vec![scatter, histogram]) }
+}
+
+/// A cloud of 2,000 cases on a signed logarithmic scale.
+fn cloud() -> Figure {
+    let mut noise = Noise(7);
+    let axis = |label: &str| Axis::new(label, "%", Scale::SymLog { threshold: 0.1 });
+    let mut panel = Panel::new(axis("Predicted error"), axis("Measured error"));
+    panel = panel.with(Rule::new(Along::Diagonal).with_label("measured = predicted"));
+    for (class, label) in ["k rule", "clusters", "blur", "edge", "step", "storage"].iter().enumerate() {
+        let (mut x, mut y, mut bars) = (vec![], vec![], vec![]);
+        for _ in 0..[300, 200, 700, 500, 200, 100][class] {
+            let size = libm::exp10([0.0, -0.7, 0.3, 1.4, 0.0, -1.0][class] + 0.5 * noise.normal());
+            let predicted = if [true, true, false, false, true, false][class] { size } else { -size };
+            let error = 0.02 + 0.04 * size * noise.uniform();
+            let measured = predicted + error * noise.normal();
+            x.push(predicted);
+            y.push(measured);
+            bars.push((measured - 1.96 * error, measured + 1.96 * error));
+        }
+        panel = panel.with(Points::new(*label, class, x, y).with_y_interval(bars));
+    }
+    Figure { width: Width::Double, heights: vec![0.6], ..Figure::new(vec![panel.with_legend(Legend::Right)]) }
 }
 
 fn convergence() -> Figure {
@@ -292,14 +314,20 @@ fn main() -> Result<(), Box<dyn Error>> {
     std::fs::create_dir_all(&folder)?;
     for (name, figure) in [
         ("agreement", agreement()),
+        ("cloud", cloud()),
         ("convergence", convergence()),
         ("depth", depth()),
         ("four", four()),
         ("maps", maps()),
         ("odds", odds()),
     ] {
-        std::fs::write(folder.join(format!("{name}.png")), figure.png()?)?;
-        std::fs::write(folder.join(format!("{name}.svg")), figure.svg()?)?;
+        let other = figure.in_width(figure.width.other());
+        for (name, figure) in [(name.to_owned(), &figure), (format!("{name}-{}", other.width.name()), &other)]
+        {
+            std::fs::write(folder.join(format!("{name}.png")), figure.png()?)?;
+            std::fs::write(folder.join(format!("{name}.svg")), figure.svg()?)?;
+        }
+        std::fs::write(folder.join(format!("{name}.csv")), figure.csv("A specimen.")?)?;
     }
     Ok(())
 }

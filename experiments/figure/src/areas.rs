@@ -45,6 +45,43 @@ pub(crate) fn histogram(
     }
 }
 
+/// Distance and width of the lines that tell a sign [pt].
+pub(crate) const HATCH: (f64, f64) = (3.0, 0.25);
+
+/// Lines across the cells that need them, on levels counted from the bottom of the plot.
+fn hatch(plot: &Plot, l: &Heatmap, marks: &mut Vec<Mark>) {
+    let span = colors(l);
+    let columns = l.x_edges.len() - 1;
+    for (row, y) in l.values.chunks(columns).zip(l.y_edges.windows(2)) {
+        let (low, high) = (plot.at(l.x_edges[0], y[0]).1, plot.at(l.x_edges[0], y[1]).1);
+        let bottom = plot.rect.bottom();
+        let level = |place: f64| ((bottom - place) / HATCH.0 - 0.5).ceil().max(0.0) as usize;
+        let most = (plot.rect.height / HATCH.0) as usize;
+        let ink = |v: f64| l.shading.hatch(span.unit(v));
+        for n in level(low).min(most)..level(high).min(most) {
+            let place = bottom - (n as f64 + 0.5) * HATCH.0;
+            let mut start = 0;
+            for end in 1..=columns {
+                if end < columns && ink(row[end]) == ink(row[start]) {
+                    continue;
+                }
+                if let Some(rgb) = ink(row[start]) {
+                    let at = |edge: f64| (plot.at(edge, y[0]).0, place);
+                    let ends = (at(l.x_edges[start]), at(l.x_edges[end]));
+                    if let Some((a, b)) = clip::segment(&plot.rect, ends.0, ends.1) {
+                        marks.push(Mark::Stroke {
+                            points: vec![a, b],
+                            width: HATCH.1,
+                            paint: Paint::solid(rgb),
+                        });
+                    }
+                }
+                start = end;
+            }
+        }
+    }
+}
+
 /// Cells row by row; neighbours of one colour are drawn as one.
 pub(crate) fn heatmap(plot: &Plot, l: &Heatmap, marks: &mut Vec<Mark>) {
     /// Each cell reaches this far under the next ones, or seams would show between them [pt].
@@ -68,4 +105,5 @@ pub(crate) fn heatmap(plot: &Plot, l: &Heatmap, marks: &mut Vec<Mark>) {
             start = end;
         }
     }
+    hatch(plot, l, marks);
 }

@@ -1,7 +1,10 @@
 //! An axis: what it measures, in which unit, on which scale.
 
+use serde::{Deserialize, Serialize};
+
 /// How numbers become lengths.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case", deny_unknown_fields)]
 pub enum Scale {
     /// Equal differences are equal lengths.
     Linear,
@@ -17,17 +20,21 @@ pub enum Scale {
 }
 
 /// One axis of a panel, or the axis of a colour bar.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct Axis {
     /// What is measured, such as `Photons emitted`.
     pub label: String,
     /// The unit, shown in square brackets; empty for a pure number.
+    #[serde(default, skip_serializing_if = "String::is_empty")]
     pub unit: String,
     /// How numbers become lengths.
     pub scale: Scale,
     /// The limits, exactly as given; from the data, with a margin, where absent. Data outside are marked at the border.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub range: Option<(f64, f64)>,
     /// Ticks at these values with these names, in place of numbers.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub names: Vec<(f64, String)>,
 }
 

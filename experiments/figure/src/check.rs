@@ -32,22 +32,29 @@ pub(crate) fn figure(figure: &Figure, fonts: &Fonts) -> Result<(), Error> {
 }
 
 fn panel(number: usize, panel: &Panel, fonts: &Fonts) -> Result<(), Error> {
+    frame(number, panel, fonts)?;
+    if panel.layers.is_empty() {
+        return Err(Error::Empty { place: format!("panel {number}") });
+    }
+    panel.layers.iter().try_for_each(|l| layer(number, panel, l, fonts))
+}
+
+/// Checks the heading and the axes of a panel.
+pub(crate) fn frame(number: usize, panel: &Panel, fonts: &Fonts) -> Result<(), Error> {
     let place = format!("panel {number}");
     fonts.check(&panel.title)?;
     axis(&place, "x", &panel.x, fonts)?;
-    axis(&place, "y", &panel.y, fonts)?;
-    if panel.layers.is_empty() {
-        return Err(Error::Empty { place });
-    }
-    for l in &panel.layers {
-        fonts.check(l.label())?;
-        let place = match l.label() {
-            "" => format!("{place}, {}", l.kind()),
-            label => format!("{place}, {} \"{label}\"", l.kind()),
-        };
-        layer(&place, panel, l, fonts)?;
-    }
-    Ok(())
+    axis(&place, "y", &panel.y, fonts)
+}
+
+/// Checks one layer of a panel.
+pub(crate) fn layer(number: usize, panel: &Panel, layer: &Layer, fonts: &Fonts) -> Result<(), Error> {
+    fonts.check(layer.label())?;
+    let place = match layer.label() {
+        "" => format!("panel {number}, {}", layer.kind()),
+        label => format!("panel {number}, {} \"{label}\"", layer.kind()),
+    };
+    data(&place, panel, layer, fonts)
 }
 
 fn axis(place: &str, name: &'static str, axis: &Axis, fonts: &Fonts) -> Result<(), Error> {
@@ -76,7 +83,7 @@ fn axis(place: &str, name: &'static str, axis: &Axis, fonts: &Fonts) -> Result<(
     Ok(())
 }
 
-fn layer(place: &str, panel: &Panel, layer: &Layer, fonts: &Fonts) -> Result<(), Error> {
+fn data(place: &str, panel: &Panel, layer: &Layer, fonts: &Fonts) -> Result<(), Error> {
     let (x, y) = (&panel.x, &panel.y);
     match layer {
         Layer::Points(l) => {

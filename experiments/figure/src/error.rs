@@ -116,7 +116,32 @@ pub enum Error {
         /// What is left for each plot, in points.
         left: f64,
     },
+    /// A CSV file that says no figure.
+    #[error("{line}{}: {problem}", .column.map_or_else(String::new, |c| format!(":{c}")))]
+    Csv {
+        /// The line, from 1.
+        line: usize,
+        /// In a line of the header: the character, from 1, at the end of what is wrong.
+        column: Option<usize>,
+        /// What is wrong, and what is allowed.
+        problem: String,
+    },
     /// The font or a drawing backend failed.
     #[error("drawing failed: {0}")]
     Backend(String),
+}
+
+impl Error {
+    /// The row of a layer's table that is at fault, from 0, if it is one.
+    pub(crate) fn row(&self) -> Option<usize> {
+        match self {
+            // Named ticks belong to an axis, and a note's two coordinates are one row.
+            Self::NotFinite { column: "names", .. } | Self::NotPositive { column: "names", .. } => None,
+            Self::NotFinite { column: "at", .. } | Self::NotPositive { column: "at", .. } => Some(0),
+            Self::NotFinite { index, .. }
+            | Self::NotPositive { index, .. }
+            | Self::Interval { index, .. } => Some(*index),
+            _ => None,
+        }
+    }
 }

@@ -3,10 +3,13 @@
 use crate::axis::Axis;
 use crate::error::Error;
 use crate::layer::Layer;
-use crate::{page, png, svg};
+use crate::text::Fonts;
+use crate::{check, page, png, svg, table};
+use serde::{Deserialize, Serialize};
 
 /// Width in print.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
 pub enum Width {
     /// One column of a journal, 85 mm.
     Single,
@@ -29,7 +32,8 @@ impl Width {
 }
 
 /// A corner or a side of the plot, inside.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
 #[allow(missing_docs, reason = "the names say it")]
 pub enum Corner {
     TopRight,
@@ -43,7 +47,8 @@ pub enum Corner {
 }
 
 /// Where the legend of a panel stands.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
 pub enum Legend {
     /// Inside where no data are, else below the panel.
     Auto,
@@ -132,6 +137,29 @@ impl Figure {
             heights: Vec::new(),
             shared_legend: false,
         }
+    }
+
+    /// The figure as a CSV file to keep and to edit, under a description in words such as its caption.
+    ///
+    /// Lines `# key: JSON` have the layout, the axes and the looks; tidy rows have the data: `panel`, `layer`, `kind`,
+    /// `label`, then `x`, `y`, `x_low`, `x_high`, `y_low`, `y_high` and `value` as far as the figure fills them.
+    /// [`Figure::from_csv`] gives the same figure back, every bit of it.
+    ///
+    /// # Errors
+    /// Any [`Error`] that drawing would meet, save that there may be no room.
+    pub fn csv(&self, description: &str) -> Result<String, Error> {
+        check::figure(self, &Fonts::load()?)?;
+        table::write(self, description)
+    }
+
+    /// The figure of such a file, and its description.
+    ///
+    /// Lines of the table that begin with `#` are left out; columns may stand in any order.
+    ///
+    /// # Errors
+    /// [`Error::Csv`] with the line that is wrong and what is allowed there.
+    pub fn from_csv(text: &str) -> Result<(Self, String), Error> {
+        table::read(text)
     }
 
     /// The figure as an SVG document, sized in millimetres.

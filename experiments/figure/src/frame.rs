@@ -1,5 +1,6 @@
 //! What surrounds a plot: box, grid, ticks, labels, heading, colour bar; and how much room that takes.
 
+use crate::areas::HATCH;
 use crate::axis::Axis;
 use crate::extent::{Spans, colors};
 use crate::figure::Panel;
@@ -251,6 +252,14 @@ fn color_bar(frame: &AxisFrame, map: &Heatmap, plot: &Rect, marks: &mut Vec<Mark
         let top = (at(v) - 1.0).max(bar.top);
         let points = vec![(bar.left, at(u)), (bar.left, top), (bar.right(), top), (bar.right(), at(u))];
         marks.push(Mark::Area { points, paint: Paint::solid(map.shading.rgb(0.5 * (u + v))) });
+    }
+    let (distance, width) = HATCH;
+    for n in 0..(bar.height / distance) as usize {
+        let y = bar.bottom() - (n as f64 + 0.5) * distance;
+        if let Some(rgb) = map.shading.hatch((bar.bottom() - y) / bar.height) {
+            let points = vec![(bar.left, y), (bar.right(), y)];
+            marks.push(Mark::Stroke { points, width, paint: Paint::solid(rgb) });
+        }
     }
     outline(&bar, marks);
     let middle = bar.left + 0.5 * bar.width;

@@ -2,6 +2,7 @@
 
 use crate::axis::Axis;
 use crate::palette::{Color, Dash, Marker, Shading};
+use serde::{Deserialize, Serialize};
 
 /// Points, with intervals along either axis.
 #[derive(Debug, Clone, PartialEq)]
@@ -213,7 +214,8 @@ pub struct Heatmap {
 }
 
 /// Which way text extends from where it is put.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
 pub enum Align {
     /// To the right.
     Start,
@@ -294,7 +296,7 @@ impl Layer {
             Self::Band(_) => "band",
             Self::Histogram(_) => "histogram",
             Self::Rule(_) => "rule",
-            Self::Heatmap(_) => "heat map",
+            Self::Heatmap(_) => "heatmap",
             Self::Note(_) => "note",
         }
     }

@@ -1,10 +1,10 @@
 //! Legends: what stands in them, how large they are, where nothing is in their way.
 
+use crate::crowd::Look;
 use crate::figure::Corner;
 use crate::layer::{Align, Layer};
 use crate::mark::{Mark, Paint, Point, Rect};
 use crate::plot::{LINE, RULE, light, stroke};
-use crate::shape;
 use crate::text::{DIGIT, Fonts, LEADING, SMALL, plain};
 
 const SWATCH: f64 = 17.0;
@@ -166,7 +166,7 @@ fn swatch(layer: &Layer, rect: Rect, marks: &mut Vec<Mark>) {
                 let points = vec![(center.0 - 4.5, middle), (center.0 + 4.5, middle)];
                 marks.push(Mark::Stroke { points, width: 0.6, paint });
             }
-            shape::marker(l.marker, center, 2.0, l.color, marks);
+            marks.push(Look::FEW.symbol(l, center));
         }
         Layer::Line(l) => stroke(&rect, &across, LINE, l.color, l.dash, marks),
         Layer::Rule(l) => stroke(&rect, &across, RULE, l.color, l.dash, marks),

@@ -22,6 +22,7 @@ mod areas;
 mod axis;
 mod check;
 mod clip;
+mod crowd;
 mod error;
 mod extent;
 mod figure;
@@ -35,11 +36,15 @@ mod page;
 mod palette;
 mod plot;
 mod png;
+mod relayout;
 mod scale;
 mod shape;
 mod svg;
+mod table;
 mod text;
 mod ticks;
+#[cfg(test)]
+mod vision;
 
 pub use axis::{Axis, Scale};
 pub use error::Error;

@@ -1,8 +1,9 @@
-//! What is finally drawn, in points of 1/72 inch, y down: strokes, areas, discs, text.
+//! What is finally drawn, in points of 1/72 inch, y down: strokes, areas, markers, text.
 //!
 //! Both formats are made from the same list, so that they show the same thing.
 
 use crate::layer::Align;
+use crate::palette::Marker;
 
 /// A place on the page [pt].
 pub(crate) type Point = (f64, f64);
@@ -17,6 +18,12 @@ pub(crate) struct Paint {
 impl Paint {
     pub(crate) const INK: Self = Self::solid((0, 0, 0));
     pub(crate) const PAPER: Self = Self::solid((255, 255, 255));
+
+    /// The same colour on paper, as light as at this opacity, but hiding what is under it.
+    pub(crate) fn tint((r, g, b): (u8, u8, u8), alpha: f64) -> Self {
+        let mix = |c: u8| (255.0 + alpha * (f64::from(c) - 255.0)).round() as u8;
+        Self::solid((mix(r), mix(g), mix(b)))
+    }
 
     pub(crate) const fn solid(rgb: (u8, u8, u8)) -> Self {
         Self { rgb, alpha: 1.0 }
@@ -36,12 +43,24 @@ pub(crate) struct Text {
     pub(crate) paint: Paint,
 }
 
+/// A marker with a rim of paper around it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Symbol {
+    pub(crate) shape: Marker,
+    pub(crate) center: Point,
+    /// That of a disc about as heavy.
+    pub(crate) radius: f64,
+    pub(crate) paint: Paint,
+    /// Width of the rim.
+    pub(crate) rim: f64,
+}
+
 /// One thing on the page.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) enum Mark {
     Stroke { points: Vec<Point>, width: f64, paint: Paint },
     Area { points: Vec<Point>, paint: Paint },
-    Disc { center: Point, radius: f64, paint: Paint },
+    Symbol(Symbol),
     Text(Text),
 }
 

@@ -22,7 +22,7 @@ const LEGEND_GAP: f64 = 5.0;
 /// Narrower plots are not worth printing [pt].
 const LEAST: f64 = 45.0;
 /// Height over width where the figure does not say.
-const HEIGHT: f64 = 0.75;
+pub(crate) const HEIGHT: f64 = 0.75;
 
 /// Places of all plots, and the size of the page.
 struct Layout {

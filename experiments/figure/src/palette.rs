@@ -1,7 +1,10 @@
 //! Colours, marker shapes and dash patterns that stay apart for every reader, and in grey.
 
+use serde::{Deserialize, Serialize};
+
 /// The colour of a layer.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
 pub enum Color {
     /// One of the seven classes, counted from 0 and round again.
     Class(usize),
@@ -11,17 +14,20 @@ pub enum Color {
     Grey,
 }
 
-/// The classes: blue, vermilion, bluish green, reddish purple, orange, sky blue (Okabe and Ito 2008), and dark grey.
+/// The classes: blue, vermilion, bluish green, reddish purple, orange, sky blue and dark grey.
 ///
-/// Their yellow is left out, since thin lines of it vanish on white.
+/// The hues are those of Okabe and Ito (2008) without their yellow, since thin lines of it vanish on white. In grey
+/// theirs run together (vermilion, green and purple within 7 of 100 steps of lightness, orange and sky blue within 1);
+/// here lightness rises in equal steps from class to class, and colours were searched for that are then as far apart
+/// as can be for dichromats. The tests in `vision.rs` say how far.
 const CLASSES: [(u8, u8, u8); 7] = [
-    (0, 114, 178),
-    (213, 94, 0),
-    (0, 158, 115),
-    (204, 121, 167),
-    (230, 159, 0),
-    (86, 180, 233),
-    (70, 70, 70),
+    (43, 79, 196),
+    (224, 81, 15),
+    (31, 123, 84),
+    (212, 118, 159),
+    (242, 173, 55),
+    (66, 178, 228),
+    (69, 69, 69),
 ];
 
 impl Color {
@@ -35,7 +41,8 @@ impl Color {
 }
 
 /// The shape of a point.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
 pub enum Marker {
     /// A disc.
     Circle,
@@ -70,7 +77,8 @@ impl Marker {
 }
 
 /// The pattern of a line.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
 pub enum Dash {
     /// Unbroken.
     Solid,
@@ -101,9 +109,11 @@ impl Dash {
 }
 
 /// The colours of a heat map.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
 pub enum Shading {
-    /// Blue below zero, white at zero, red above, with limits symmetric about zero: for signed errors.
+    /// Blue below zero, white at zero, red above, with limits symmetric about zero: for signed errors. Fine lines across
+    /// what is below zero tell the sign in grey, too.
     Diverging,
     /// Dark to light: for what has no sign. Lightness is monotonic, so that it survives grey.
     Sequential,
@@ -149,6 +159,17 @@ impl Shading {
         let (a, b, f) = (table[i], table[i + 1], at - i as f64);
         let mix = |a: u8, b: u8| (f64::from(a) + f * (f64::from(b) - f64::from(a))).round() as u8;
         (mix(a.0, b.0), mix(a.1, b.1), mix(a.2, b.2))
+    }
+
+    /// The colour of the lines across a cell at u: red and blue of one strength are the same grey.
+    pub(crate) fn hatch(self, u: f64) -> Option<(u8, u8, u8)> {
+        match self {
+            Self::Sequential => None,
+            // Nearly white on either side of zero: there is no sign to tell.
+            Self::Diverging if u >= 0.45 => None,
+            Self::Diverging if u >= 0.25 => Some(DIVERGING[0]),
+            Self::Diverging => Some((255, 255, 255)),
+        }
     }
 }
 

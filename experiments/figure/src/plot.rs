@@ -2,6 +2,7 @@
 
 use crate::areas::{heatmap, histogram};
 use crate::clip;
+use crate::crowd::Look;
 use crate::extent::Spans;
 use crate::layer::{Align, Along, At, Band, Layer, Note, Points};
 use crate::mark::{Mark, Paint, Point, Rect};
@@ -15,8 +16,6 @@ pub(crate) const LINE: f64 = 1.1;
 pub(crate) const RULE: f64 = 0.7;
 /// Opacity of bands and bars.
 pub(crate) const LIGHT: f64 = 0.28;
-/// Beyond this many points in a panel, markers and bars are drawn smaller.
-const CROWD: usize = 60;
 /// At most this many arrows stand in a row before they hide each other.
 const STACK: usize = 8;
 
@@ -89,8 +88,7 @@ impl Plot {
 
 /// Draws all layers: what covers areas first, then rules, lines, bars of intervals, points, notes.
 pub(crate) fn draw(plot: &Plot, layers: &[Layer], fonts: &Fonts, marks: &mut Vec<Mark>) {
-    let crowded =
-        layers.iter().map(|l| if let Layer::Points(p) = l { p.x.len() } else { 0 }).sum::<usize>() > CROWD;
+    let look = Look::of(layers);
     let mut late = Vec::new();
     let mut last = Vec::new();
     let mut lines = Vec::new();
@@ -118,13 +116,15 @@ pub(crate) fn draw(plot: &Plot, layers: &[Layer], fonts: &Fonts, marks: &mut Vec
     marks.append(&mut lines);
     for layer in layers {
         if let Layer::Points(l) = layer {
-            bars(plot, l, crowded, marks);
+            bars(plot, l, &look, marks);
         }
     }
     let mut tips = Vec::new();
-    for layer in layers {
-        if let Layer::Points(l) = layer {
-            points(plot, l, crowded, &mut tips, marks);
+    for turn in 0..look.turns {
+        for layer in layers {
+            if let Layer::Points(l) = layer {
+                points(plot, l, turn, &look, &mut tips, marks);
+            }
         }
     }
     marks.append(&mut last);
@@ -155,14 +155,13 @@ pub(crate) fn stroke(
 }
 
 /// Bars of intervals with caps; an end beyond the border has no cap.
-fn bars(plot: &Plot, l: &Points, crowded: bool, marks: &mut Vec<Mark>) {
-    let (width, cap) = if crowded { (0.45, 0.9) } else { (0.75, 1.8) };
+fn bars(plot: &Plot, l: &Points, look: &Look, marks: &mut Vec<Mark>) {
+    let (width, cap, paint) = (look.bar, look.cap, look.bar_paint(l));
     let mut bar = |a: Point, b: Point, across: Point| {
         if let Some((p, q)) = clip::segment(&plot.rect, a, b) {
-            let paint = Paint::solid(l.color.rgb());
             marks.push(Mark::Stroke { points: vec![p, q], width, paint });
             for end in [a, b] {
-                if plot.rect.grown(1e-6).contains(end) {
+                if cap > 0.0 && plot.rect.grown(1e-6).contains(end) {
                     let points =
                         vec![(end.0 - across.0, end.1 - across.1), (end.0 + across.0, end.1 + across.1)];
                     marks.push(Mark::Stroke { points, width, paint });
@@ -180,15 +179,14 @@ fn bars(plot: &Plot, l: &Points, crowded: bool, marks: &mut Vec<Mark>) {
     }
 }
 
-/// Markers; arrows at the border for points beyond it, moved inwards where they would hide each other.
-fn points(plot: &Plot, l: &Points, crowded: bool, tips: &mut Vec<Point>, marks: &mut Vec<Mark>) {
-    let radius = if crowded { 1.4 } else { 2.1 };
+/// Markers of one turn; arrows at the border for points beyond it, moved inwards where they would hide each other.
+fn points(plot: &Plot, l: &Points, turn: usize, look: &Look, tips: &mut Vec<Point>, marks: &mut Vec<Mark>) {
     let side = |unit: f64| if unit < -1e-9 { -1.0 } else { f64::from(unit > 1.0 + 1e-9) };
-    for (&x, &y) in l.x.iter().zip(&l.y) {
+    for (&x, &y) in l.x.iter().zip(&l.y).skip(turn).step_by(look.turns) {
         let (u, v) = (plot.spans.x.unit(x), plot.spans.y.unit(y));
         let (right, down) = (side(u), -side(v));
         if right == 0.0 && down == 0.0 {
-            shape::marker(l.marker, plot.at(x, y), radius, l.color, marks);
+            marks.push(look.symbol(l, plot.at(x, y)));
             continue;
         }
         let mut tip = (plot.x_at(u.clamp(0.0, 1.0)), plot.y_at(v.clamp(0.0, 1.0)));

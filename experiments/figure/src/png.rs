@@ -1,9 +1,13 @@
 //! The page as a PNG file.
 
 use crate::error::Error;
-use crate::mark::{Mark, Page, Paint, Point};
+use crate::mark::{Mark, Page, Paint, Point, Symbol};
+use crate::shape;
 use crate::text::Fonts;
-use image::{ColorType, ImageEncoder, codecs::png::PngEncoder};
+use image::{
+    ColorType, ImageEncoder,
+    codecs::png::{CompressionType, FilterType, PngEncoder},
+};
 use plotters::prelude::*;
 use std::fmt::Display;
 
@@ -52,7 +56,7 @@ pub(crate) fn encode(page: &Page) -> Result<Vec<u8>, Error> {
         });
     }
     let mut file = Vec::new();
-    PngEncoder::new(&mut file)
+    PngEncoder::new_with_quality(&mut file, CompressionType::Best, FilterType::NoFilter)
         .write_image(&pixels, width as u32, height as u32, ColorType::Rgb8)
         .map_err(failed)?;
     Ok(file)
@@ -69,17 +73,33 @@ fn shapes(page: &Page, width: usize, height: usize) -> Result<Vec<u8>, Error> {
             Mark::Area { points, paint } => {
                 canvas.fill_polygon(points.iter().map(|&p| place(p)), &style(*paint)).map_err(failed)?
             }
-            Mark::Disc { center, radius, paint } => {
-                canvas
-                    .draw_circle(place(*center), libm::round(fine(*radius)) as u32, &style(*paint), true)
-                    .map_err(failed)?;
-            }
+            Mark::Symbol(s) => symbol(&mut canvas, s)?,
             Mark::Text(_) => {}
         }
     }
     canvas.present().map_err(failed)?;
     drop(canvas);
     Ok(buffer)
+}
+
+/// A marker on its rim.
+fn symbol(canvas: &mut BitMapBackend<'_>, s: &Symbol) -> Result<(), Error> {
+    let mut corners: Vec<Point> =
+        shape::corners(s.shape, s.radius).iter().map(|c| (s.center.0 + c.0, s.center.1 + c.1)).collect();
+    if corners.is_empty() {
+        let rim = (s.rim > 0.0).then_some((s.radius + s.rim, Paint::PAPER));
+        for (radius, paint) in rim.into_iter().chain([(s.radius, s.paint)]) {
+            let radius = libm::round(fine(radius)) as u32;
+            canvas.draw_circle(place(s.center), radius, &style(paint), true).map_err(failed)?;
+        }
+        return Ok(());
+    }
+    let outline = corners.iter().map(|&p| place(p)).collect::<Vec<_>>();
+    if s.rim > 0.0 {
+        corners.extend([corners[0], corners[1]]);
+        stroke(canvas, &corners, 2.0 * s.rim, Paint::PAPER)?;
+    }
+    canvas.fill_polygon(outline, &style(s.paint)).map_err(failed)
 }
 
 /// A line as one quadrangle a piece with discs at the bends: plotters' own wide lines leave holes at sharp ones.
@@ -108,16 +128,19 @@ fn stroke(canvas: &mut BitMapBackend<'_>, points: &[Point], width: f64, paint: P
 fn averaged(fine: &[u8], width: usize, height: usize) -> Vec<u8> {
     let mut out = Vec::with_capacity(3 * width * height);
     let (row, count) = (3 * FINE * width, (FINE * FINE) as u32);
-    for y in 0..height {
-        for x in 0..width {
-            for channel in 0..3 {
-                let at = FINE * (y * row + 3 * x) + channel;
-                let sum: u32 = (0..FINE)
-                    .flat_map(|j| (0..FINE).map(move |i| u32::from(fine[at + j * row + 3 * i])))
-                    .sum();
-                out.push(((sum + count / 2) / count) as u8);
+    let mut sums = vec![0_u32; 3 * width];
+    for rows in fine.chunks_exact(FINE * row).take(height) {
+        sums.fill(0);
+        for row in rows.chunks_exact(row) {
+            for (sum, square) in sums.chunks_exact_mut(3).zip(row.chunks_exact(3 * FINE)) {
+                for pixel in square.chunks_exact(3) {
+                    sum[0] += u32::from(pixel[0]);
+                    sum[1] += u32::from(pixel[1]);
+                    sum[2] += u32::from(pixel[2]);
+                }
             }
         }
+        out.extend(sums.iter().map(|sum| ((sum + count / 2) / count) as u8));
     }
     out
 }

@@ -24,10 +24,30 @@ fn attribute(line: &str, name: &str) -> f64 {
     rest.split_once('"').unwrap().0.parse().unwrap()
 }
 
-/// Centres of the coloured discs, rims left out.
+/// Centres of the discs.
 fn discs(svg: &str) -> Vec<(f64, f64)> {
-    let coloured = |l: &&str| l.starts_with("<circle") && !l.contains("fill=\"#FFFFFF\"");
-    svg.lines().filter(coloured).map(|l| (attribute(l, "cx"), attribute(l, "cy"))).collect()
+    let discs = svg.lines().filter(|l| l.starts_with("<circle"));
+    discs.map(|l| (attribute(l, "cx"), attribute(l, "cy"))).collect()
+}
+
+/// Opaque areas beside the paper: arrow heads, each on a white one, where there are no bars and no maps.
+fn triangles(svg: &str) -> usize {
+    svg.lines().filter(|l| l.starts_with("<path fill=\"#") && !l.contains("opacity")).count()
+}
+
+/// The places in path data of one area whose steps are horizontal and vertical.
+fn rectangle(line: &str) -> Vec<(f64, f64)> {
+    let data = line.split_once(" d=\"M").unwrap().1.trim_end_matches("z\"/>");
+    let steps = data.replace('h', " h").replace('v', " v");
+    let mut words = steps.split(' ');
+    let start = words.next().unwrap().split_once(',').unwrap();
+    let mut out = vec![(start.0.parse().unwrap(), start.1.parse().unwrap())];
+    for word in words {
+        let (x, y): (f64, f64) = *out.last().unwrap();
+        let by: f64 = word[1..].parse().unwrap();
+        out.push(if word.starts_with('h') { (x + by, y) } else { (x, y + by) });
+    }
+    out
 }
 
 #[test]
@@ -44,7 +64,7 @@ fn the_document_says_every_label_unit_and_title() {
     for text in
         ["A figure", "(a) a &lt; b &amp; c", "depth [m]", "fluence [W/m²]", "measured", "exact", "plateau"]
     {
-        assert!(svg.contains(&format!("\n{text}\n")), "{text}");
+        assert!(svg.contains(&format!(">{text}</text>")), "{text}");
     }
     assert!(svg.contains("font-family=\"DejaVu Sans, Verdana, sans-serif\""));
     assert!(svg.starts_with("<svg width=\"85.00mm\""));
@@ -109,8 +129,7 @@ fn logarithms_need_positive_numbers_or_leave_to_clip() {
     let svg = Figure::new(vec![panel(Scale::LogClipped)]).svg().unwrap();
     // Two discs and one in the legend; the zero is an arrow: a white and a coloured triangle.
     assert_eq!(discs(&svg).len(), 3);
-    let triangles = |l: &&str| l.starts_with("<polygon") && l.matches(',').count() == 3;
-    assert_eq!(svg.lines().filter(triangles).count(), 2);
+    assert_eq!(triangles(&svg), 2);
 }
 
 #[test]
@@ -119,7 +138,7 @@ fn points_beyond_a_range_become_arrows() {
     panel.y = panel.y.with_range(0.0, 5.0);
     let svg = Figure::new(vec![panel]).svg().unwrap();
     assert_eq!(discs(&svg).len(), 2);
-    assert_eq!(svg.lines().filter(|l| l.starts_with("<polygon") && l.matches(',').count() == 3).count(), 2);
+    assert_eq!(triangles(&svg), 2);
 }
 
 #[test]
@@ -157,15 +176,11 @@ fn the_legend_stands_where_no_data_are_or_outside() {
     let x: Vec<f64> = (0..n).map(f64::from).collect();
     let shapes: [Box<dyn Fn(f64) -> f64>; 3] =
         [Box::new(|x| x), Box::new(|x| -x), Box::new(|x| (x - 20.0) * (x - 20.0))];
-    let boxes = |svg: &str| {
-        let mut all: Vec<Vec<(f64, f64)>> = Vec::new();
-        for line in svg.lines().filter(|l| l.starts_with("<polygon opacity=\"0.9\"")) {
-            let (_, rest) = line.split_once("points=\"").unwrap();
-            let pairs =
-                rest.split_once('"').unwrap().0.split_whitespace().map(|p| p.split_once(',').unwrap());
-            all.push(pairs.map(|(a, b)| (a.parse().unwrap(), b.parse().unwrap())).collect());
-        }
-        all
+    let boxes = |svg: &str| -> Vec<Vec<(f64, f64)>> {
+        svg.lines()
+            .filter(|l| l.starts_with("<path") && l.contains("fill-opacity=\"0.9\""))
+            .map(rectangle)
+            .collect()
     };
     for shape in shapes {
         let y: Vec<f64> = x.iter().map(|&x| shape(x)).collect();
@@ -189,7 +204,7 @@ fn the_legend_stands_where_no_data_are_or_outside() {
     }
     let svg = Figure::new(vec![axes().with(Points::new("a label", 0, gx, gy))]).svg().unwrap();
     assert!(boxes(&svg).is_empty());
-    assert!(svg.contains("\na label\n"));
+    assert!(svg.contains(">a label</text>"));
 }
 
 #[test]
@@ -197,9 +212,9 @@ fn a_shared_legend_says_each_label_once() {
     let panel =
         || axes().with(points(vec![1.0, 2.0])).with(Line::new("theory", 1, vec![0.0, 1.0], vec![1.0, 2.0]));
     let mut figure = Figure { columns: 2, width: Width::Double, ..Figure::new(vec![panel(); 4]) };
-    assert_eq!(figure.svg().unwrap().matches("\ntheory\n").count(), 4);
+    assert_eq!(figure.svg().unwrap().matches(">theory</text>").count(), 4);
     figure.shared_legend = true;
-    assert_eq!(figure.svg().unwrap().matches("\ntheory\n").count(), 1);
+    assert_eq!(figure.svg().unwrap().matches(">theory</text>").count(), 1);
 }
 
 #[test]
@@ -208,7 +223,7 @@ fn a_histogram_says_what_lies_beyond_it() {
         Figure::new(vec![axes().with(Histogram::density("z", 0, &[-9.0, 0.5, 7.0, 8.0], vec![0.0, 1.0]))])
             .svg()
             .unwrap();
-    assert!(svg.contains("\n← 1 below\n") && svg.contains("\n2 above →\n"));
+    assert!(svg.contains(">← 1 below</text>") && svg.contains(">2 above →</text>"));
 }
 
 #[test]
@@ -227,7 +242,7 @@ fn pictures_have_300_pixels_to_the_inch_and_ink() {
         let image = image::load_from_memory(&figure.png().unwrap()).unwrap().to_rgb8();
         assert_eq!(image.width(), pixels);
         assert_eq!(image.get_pixel(0, 0).0, [255, 255, 255]);
-        assert!(image.pixels().any(|p| p.0 == [0, 114, 178]), "the blue of class 0");
+        assert!(image.pixels().any(|p| p.0 == [43, 79, 196]), "the blue of class 0");
         assert!(image.pixels().any(|p| p.0 == [0, 0, 0]), "black text");
     }
 }
@@ -252,4 +267,42 @@ fn extremes_are_drawn() {
     let sym = Panel::new(Axis::linear("x", ""), Axis::new("y", "", Scale::SymLog { threshold: 1e-9 }))
         .with(points(vec![-1e9, 0.0, 1e12]));
     Figure::new(vec![sym]).svg().unwrap();
+}
+
+/// Sizes of all texts in points of print, from the document's own millimetres.
+fn font_sizes(svg: &str) -> Vec<f64> {
+    let (_, size) = svg.split_once("<svg width=\"").unwrap();
+    let millimetres: f64 = size.split_once("mm").unwrap().0.parse().unwrap();
+    let (_, size) = svg.split_once("viewBox=\"0 0 ").unwrap();
+    let units: f64 = size.split_once(' ').unwrap().0.parse().unwrap();
+    let texts = svg.lines().filter(|l| l.starts_with("<text"));
+    texts.map(|l| attribute(l, "font-size") / units * millimetres / 25.4 * 72.0).collect()
+}
+
+#[test]
+fn text_is_legible_in_print_in_both_widths() {
+    let layers = |panel: Panel| panel.with(points(vec![1.0, 4.0, 2.0])).with(Rule::new(Along::Diagonal));
+    let panel = layers(axes().with_title("(a)")).with_legend(Legend::Right);
+    for (width, columns) in [(Width::Single, 1), (Width::Double, 3), (Width::Millimetres(120.0), 2)] {
+        let mut figure = Figure { width, columns, ..Figure::new(vec![panel.clone(); 3]) };
+        figure.panels[1] = axes().with(map(vec![0.3, -0.7, 2.0]));
+        figure.title = "A figure".to_owned();
+        for figure in [figure.in_width(width.other()), figure] {
+            let sizes = font_sizes(&figure.svg().unwrap());
+            let least = sizes.iter().copied().fold(f64::INFINITY, f64::min);
+            // 6.5 pt, known to the half hundredth of a millimetre that the width is written to: 6e-5 of 85 mm.
+            assert!(sizes.len() > 20 && least > 6.5 * (1.0 - 1e-4), "{least} pt");
+        }
+    }
+}
+
+#[test]
+fn every_label_is_still_there_in_the_other_width() {
+    let panels = vec![axes().with_title("(a)").with(points(vec![1.0, 2.0])).with_legend(Legend::Right); 3];
+    let figure = Figure { width: Width::Double, columns: 3, ..Figure::new(panels) };
+    let single = figure.in_width(Width::Single).svg().unwrap();
+    assert!(single.starts_with("<svg width=\"85.00mm\""));
+    for text in ["measured", "(a)", "depth [m]", "fluence [W/m²]"] {
+        assert_eq!(single.matches(&format!(">{text}</text>")).count(), 3, "{text}");
+    }
 }

@@ -93,11 +93,11 @@ pub(super) fn write_results(out: &Path, sections: &[SectionReport]) -> anyhow::R
     std::fs::create_dir_all(&folder).with_context(|| format!("cannot create {}", folder.display()))?;
     for part in sections {
         for figure in &part.section.figures {
-            let name = format!("{}-{}", part.experiment.name, figure.name);
-            write_atomically(folder.join(format!("{name}.svg")), |file| {
-                file.write_all(figure.svg.as_bytes())
-            })?;
-            write_atomically(folder.join(format!("{name}.png")), |file| file.write_all(&figure.png))?;
+            let stem = format!("{}-{}", part.experiment.name, figure.name);
+            for (name, bytes) in figure.drawings(&stem) {
+                write_if_changed(&folder.join(name), bytes)?;
+            }
+            write_if_changed(&folder.join(format!("{stem}.csv")), figure.csv.as_bytes())?;
         }
     }
     Ok(())

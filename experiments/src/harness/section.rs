@@ -5,7 +5,7 @@ use super::{Claim, Entry, Row};
 use turbid::stats::{Moments, mean_interval};
 use turbid_figure::Figure;
 
-/// A figure in both of its forms.
+/// A figure in all of its forms: drawn in its own width and in the other width of a journal, and as a table.
 #[derive(Debug, Clone, PartialEq)]
 pub struct FigureFiles {
     /// File-safe name, unique within the experiment.
@@ -16,20 +16,52 @@ pub struct FigureFiles {
     pub svg: String,
     /// The figure as PNG.
     pub png: Vec<u8>,
+    /// The figure as a table, from which it can be redrawn.
+    pub csv: String,
+    /// The figure in the other width.
+    pub other: OtherWidth,
+}
+
+/// A figure laid out for one column of print where it is drawn for two, or for two where it is drawn for one.
+#[derive(Debug, Clone, PartialEq)]
+pub struct OtherWidth {
+    /// `single` or `double`, the end of the files' names.
+    pub name: &'static str,
+    /// The figure as SVG.
+    pub svg: String,
+    /// The figure as PNG.
+    pub png: Vec<u8>,
 }
 
 impl FigureFiles {
     /// Draws a figure.
     ///
     /// # Errors
-    /// If it cannot be drawn as it is.
+    /// If it cannot be drawn as it is, in either width.
     pub fn draw(name: &str, caption: &str, figure: &Figure) -> anyhow::Result<Self> {
+        let csv = figure.csv(caption)?;
+        let other = figure.in_width(figure.width.other());
+        let (png, other_png) = rayon::join(|| figure.png(), || other.png());
         Ok(FigureFiles {
             name: name.to_string(),
             caption: caption.to_string(),
             svg: figure.svg()?,
-            png: figure.png()?,
+            png: png?,
+            csv,
+            other: OtherWidth { name: other.width.name(), svg: other.svg()?, png: other_png? },
         })
+    }
+
+    /// The drawings with their files' names, for an experiment's figures or for any name: those of the figure's own
+    /// width first.
+    pub(super) fn drawings(&self, stem: &str) -> [(String, &[u8]); 4] {
+        let other = self.other.name;
+        [
+            (format!("{stem}.svg"), self.svg.as_bytes()),
+            (format!("{stem}.png"), &self.png),
+            (format!("{stem}-{other}.svg"), self.other.svg.as_bytes()),
+            (format!("{stem}-{other}.png"), &self.other.png),
+        ]
     }
 }
 

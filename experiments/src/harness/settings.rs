@@ -3,6 +3,7 @@
 use clap::{CommandFactory, FromArgMatches, Parser};
 use std::ffi::OsString;
 use std::path::PathBuf;
+use turbid_figure::Width;
 
 /// How much is measured.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -35,6 +36,17 @@ pub struct Settings {
     pub strict: bool,
     /// Names of the experiments to run; all if empty.
     pub only: Vec<String>,
+    /// Redraw figures from their tables instead of running anything.
+    pub replot: Option<Replot>,
+}
+
+/// What is redrawn.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Replot {
+    /// In this width alone; in both if `None`.
+    pub width: Option<Width>,
+    /// Tables of single figures; those of the study's folder if empty.
+    pub files: Vec<PathBuf>,
 }
 
 const FONT: &str = concat!(
@@ -76,6 +88,22 @@ struct Flags {
     /// Run only these experiments
     #[arg(long, value_name = "NAME", value_delimiter = ',')]
     only: Vec<String>,
+    /// Redraw the figures of a finished study, and those in its report, from figures/*.csv; nothing is measured
+    #[arg(long, conflicts_with_all = ["seed", "photons", "threads", "fresh", "reuse_cells", "strict"])]
+    replot: bool,
+    /// Redraw in this width of print alone: single (85 mm) or double (175 mm)
+    #[arg(long, requires = "replot", value_parser = width)]
+    width: Option<Width>,
+    /// Redraw these figures alone, each beside its table
+    #[arg(value_name = "FILE.csv", requires = "replot", conflicts_with_all = ["out", "only", "full", "quick"])]
+    files: Vec<PathBuf>,
+}
+
+fn width(text: &str) -> Result<Width, String> {
+    [Width::Single, Width::Double]
+        .into_iter()
+        .find(|width| width.name() == text)
+        .ok_or_else(|| "allowed: single, double".to_string())
 }
 
 /// A factor on photon counts, 1e-6 to 1e6.
@@ -99,6 +127,7 @@ impl Settings {
             reuse_cells: false,
             strict: false,
             only: Vec::new(),
+            replot: None,
         }
     }
 
@@ -122,6 +151,7 @@ impl Settings {
             reuse_cells: flags.reuse_cells,
             strict: flags.strict,
             only: flags.only,
+            replot: flags.replot.then_some(Replot { width: flags.width, files: flags.files }),
         })
     }
 
@@ -204,6 +234,11 @@ mod tests {
             &["--quick", "--full"],
             &["--fresh", "--reuse-cells"],
             &["--colour"],
+            &["--width", "single"],
+            &["--replot", "--width", "wide"],
+            &["--replot", "--seed", "2"],
+            &["a.csv"],
+            &["--replot", "--out", "x", "a.csv"],
         ] {
             assert!(parse(bad).is_err(), "{bad:?}");
         }

@@ -6,7 +6,7 @@ use super::outputs::{Seconds, keep_or_write, prediction_table, write_if_changed,
 use super::progress::{duration, say};
 use super::{
     CellId, Cells, Claim, Experiment, Judged, Prediction, Provenance, Section, Settings, Verdict, judge,
-    program_digest,
+    program_digest, replot,
 };
 use crate::report;
 use anyhow::{Context, bail, ensure};
@@ -84,12 +84,21 @@ pub fn main(name: &'static str, experiments: &[Experiment]) -> ExitCode {
             return ExitCode::from(2);
         }
     };
+    if let Some(what) = &settings.replot {
+        let done = replot(&settings, what).and_then(|said| Ok(print(|out| writeln!(out, "{said}"))?));
+        return ended(done.map(|()| 0));
+    }
     let finished = program_digest()
         .and_then(|program| run(&Study { name, experiments, program: program.to_string() }, &settings))
         .and_then(|outcome| {
             print(|out| out.write_all(report::summary(&outcome).as_bytes()))?;
             Ok(if settings.strict { outcome.strict_code() } else { 0 })
         });
+    ended(finished)
+}
+
+/// The exit code, after one line about what stopped the program.
+fn ended(finished: anyhow::Result<u8>) -> ExitCode {
     match finished {
         Ok(code) => ExitCode::from(code),
         Err(error) => {

@@ -1,21 +1,18 @@
 //! The page.
 
+use super::claims;
+use super::contents::contents;
+use super::figures;
 use super::style::CSS;
+use super::tables::{self, Numbers};
 use crate::harness::{
-    FAMILY_WISE, FigureFiles, Judged, MIN_MAPS, Prediction, Provenance, Row, SectionReport, Settings, Table,
-    Verdict, number, row_label, with_error,
+    FAMILY_WISE, FigureFiles, MIN_MAPS, Prediction, Provenance, Row, SectionReport, Settings, Table, Verdict,
+    number, row_label, with_error,
 };
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 
 /// Predictions shown in a section; the rest is in predictions.csv.
 const SHOWN: usize = 30;
-
-/// Running numbers of figures and tables.
-#[derive(Default)]
-struct Numbers {
-    figure: u32,
-    table: u32,
-}
 
 /// The whole page, self-contained.
 pub fn page(study: &str, settings: &Settings, sections: &[SectionReport], provenance: &Provenance) -> String {
@@ -50,8 +47,7 @@ pub fn page(study: &str, settings: &Settings, sections: &[SectionReport], proven
 }
 
 fn overview(sections: &[SectionReport], numbers: &mut Numbers) -> Markup {
-    let count = |verdict| sections.iter().flat_map(|s| &s.judged).filter(|j| j.verdict == verdict).count();
-    let claims: usize = sections.iter().map(|s| s.judged.len()).sum();
+    let count = |verdict| claims::count(sections.iter().flat_map(|s| &s.judged), verdict);
     html! {
         @if sections.len() > 1 {
             p {
@@ -66,61 +62,25 @@ fn overview(sections: &[SectionReport], numbers: &mut Numbers) -> Markup {
                 span { b { (count(verdict)) } (verdict.word()) }
             }
         }
-        @if sections.iter().any(|s| !s.section.summary.is_empty()) && sections.len() > 1 {
-            ul {
-                @for part in sections {
-                    @if let Some(headline) = part.section.summary.first() {
-                        li { a href=(format!("#{}", part.experiment.name)) { (part.experiment.title) } ": " (headline) }
-                    }
-                }
-            }
-        }
-        @if claims > 0 && sections.len() > 1 {
-            (table_frame(numbers, "All claims with their verdicts. Measured values carry one standard error over independent maps.", html! {
-                thead { tr { th { "claim" } th.n { "measured" } th.n { "claimed" } th.n { "maps" } th { "verdict" } } }
-                tbody {
-                    @for part in sections {
-                        @if !part.judged.is_empty() {
-                            tr.group { td colspan="5" { a href=(format!("#{}", part.experiment.name)) { (part.experiment.title) } } }
-                        }
-                        @for judged in &part.judged {
-                            tr {
-                                td.claim { (judged.claim.text) (advice(judged)) }
-                                td.n { (judged.measured()) }
-                                td.n { (judged.claim.margin()) }
-                                td.n { (maps(judged)) }
-                                td { (badge(judged.verdict)) }
-                            }
-                        }
-                    }
-                }
-            }))
+        @if sections.len() > 1 {
+            (contents(sections))
+            (claims::overview(sections, numbers))
         }
     }
-}
-
-fn advice(judged: &Judged) -> Markup {
-    html! { @if !judged.advice.is_empty() { div.advice { (judged.advice) } } }
-}
-
-fn maps(judged: &Judged) -> String {
-    judged.claim.statistic.maps().map_or_else(|| "computed".to_string(), |maps| maps.to_string())
-}
-
-fn badge(verdict: Verdict) -> Markup {
-    html! { span class=(format!("badge {}", verdict.word())) { (verdict.word()) } }
 }
 
 fn section(part: &SectionReport, has_heading: bool, numbers: &mut Numbers) -> Markup {
     html! {
         section id=(part.experiment.name) {
-            @if has_heading { h2 { (part.experiment.title) } }
+            @if has_heading {
+                h2 { (part.experiment.title) " " a.up href="#contents" title="to the contents" { "↑" } }
+            }
             p.question { (part.experiment.question) }
             @for paragraph in &part.section.summary { p { (paragraph) } }
-            @for figure in part.section.figures.iter().take(1) { (draw(figure, numbers)) }
-            @if !part.judged.is_empty() { (claims(&part.judged, numbers)) }
-            @for figure in part.section.figures.iter().skip(1) { (draw(figure, numbers)) }
-            @for table in &part.section.tables { (print_table(table, numbers)) }
+            @for figure in part.section.figures.iter().take(1) { (draw(part, figure, numbers)) }
+            @if !part.judged.is_empty() { (claims::own(part, numbers)) }
+            @for figure in part.section.figures.iter().skip(1) { (draw(part, figure, numbers)) }
+            @for table in &part.section.tables { (tables::plain(table, numbers)) }
             @if !part.predictions.is_empty() { (predictions(part, numbers)) }
             @if !part.section.notes.is_empty() {
                 h3 { "Notes" }
@@ -130,99 +90,9 @@ fn section(part: &SectionReport, has_heading: bool, numbers: &mut Numbers) -> Ma
     }
 }
 
-fn claims(judged: &[Judged], numbers: &mut Numbers) -> Markup {
-    let caption = "What is claimed here. The interval is the one that decides: it holds for all claims of the study at once.";
-    table_frame(
-        numbers,
-        caption,
-        html! {
-            thead { tr { th { "claim" } th.n { "measured" } th.n { "interval" } th.n { "claimed" } th.n { "p (Holm)" } th { "verdict" } } }
-            tbody {
-                @for judged in judged {
-                    tr {
-                        td.claim { (judged.claim.text) (advice(judged)) }
-                        td.n { (judged.measured()) }
-                        td.n { (interval(judged)) }
-                        td.n { (judged.claim.margin()) }
-                        td.n { (p_value(judged.adjusted)) }
-                        td { (badge(judged.verdict)) }
-                    }
-                }
-            }
-        },
-    )
-}
-
-fn interval(judged: &Judged) -> String {
-    let (low, high) = (judged.interval.low, judged.interval.high);
-    // Both ends to the digit that the interval's width justifies.
-    let end = |x: f64| {
-        with_error(x, 0.1 * (high - low))
-            .split(" ± ")
-            .next()
-            .unwrap_or_default()
-            .trim_start_matches('(')
-            .to_string()
-    };
-    let is_plain =
-        with_error(low.abs().max(high.abs()), 0.1 * (high - low)).starts_with(|c: char| c.is_ascii_digit());
-    if low.is_finite() && high.is_finite() && high > low && is_plain {
-        format!("{} to {}", end(low), end(high))
-    } else {
-        format!("{} to {}", number(low), number(high))
-    }
-}
-
-fn p_value(p: f64) -> String {
-    match p {
-        p if p >= 0.9995 => "1".to_string(),
-        p if p >= 0.001 => format!("{p:.3}"),
-        p if p < 1e-12 => "below 10⁻¹²".to_string(),
-        p => number(format!("{p:.0e}").parse().unwrap_or(p)),
-    }
-}
-
-fn draw(figure: &FigureFiles, numbers: &mut Numbers) -> Markup {
+fn draw(part: &SectionReport, figure: &FigureFiles, numbers: &mut Numbers) -> Markup {
     numbers.figure += 1;
-    // The declaration before the root element has no place inside a page.
-    let svg = figure.svg.find("<svg").map_or("", |start| &figure.svg[start..]);
-    html! {
-        figure {
-            (PreEscaped(svg))
-            figcaption { b { "Figure " (numbers.figure) "." } " " (figure.caption) }
-        }
-    }
-}
-
-/// Columns whose filled cells all look like numbers are set flush right.
-fn is_numeric(table: &Table, column: usize) -> bool {
-    let mut cells =
-        table.rows.iter().filter_map(|row| row.get(column)).filter(|cell| !cell.is_empty()).peekable();
-    cells.peek().is_some()
-        && cells.all(|cell| cell.starts_with(|c: char| c.is_ascii_digit() || "−-(∞<>".contains(c)))
-}
-
-fn print_table(table: &Table, numbers: &mut Numbers) -> Markup {
-    let class = |column: usize| if is_numeric(table, column) { "n" } else { "" };
-    table_frame(
-        numbers,
-        &table.caption,
-        html! {
-            thead { tr { @for (i, column) in table.columns.iter().enumerate() { th class=(class(i)) { (column) } } } }
-            tbody {
-                @for row in &table.rows {
-                    tr { @for (i, cell) in row.iter().enumerate() { td class=(class(i)) { (cell) } } }
-                }
-            }
-        },
-    )
-}
-
-fn table_frame(numbers: &mut Numbers, caption: &str, content: Markup) -> Markup {
-    numbers.table += 1;
-    html! {
-        div.scroll { table { caption { b { "Table " (numbers.table) "." } " " (caption) } (content) } }
-    }
+    figures::figure(part.experiment.name, figure, numbers.figure)
 }
 
 fn predictions(part: &SectionReport, numbers: &mut Numbers) -> Markup {
@@ -256,13 +126,13 @@ fn predictions(part: &SectionReport, numbers: &mut Numbers) -> Markup {
         columns: ["case", "quantity", "predicted", "measured", "source"].map(String::from).to_vec(),
         rows: rows.collect(),
     };
-    print_table(&table, numbers)
+    tables::plain(&table, numbers)
 }
 
 fn methods(sections: &[SectionReport], numbers: &mut Numbers) -> Markup {
     let claims: usize = sections.iter().map(|s| s.judged.len()).sum();
     html! {
-        h2 { "How verdicts are reached" }
+        h2 id="methods" { "How verdicts are reached" }
         p {
             "Photons of one map are shared by all its estimates, so errors come from independent maps: each map gives one value, and "
             "means are judged by Student’s t with one degree of freedom less than there are maps. A verdict needs at least " (MIN_MAPS) " maps."
@@ -275,7 +145,7 @@ fn methods(sections: &[SectionReport], numbers: &mut Numbers) -> Markup {
             ", and so is that of anything upheld wrongly. Intervals of 95 per cent are drawn in figures and decide nothing."
         }
         @if !sections.is_empty() {
-            (table_frame(numbers, "Work done. Counts are results and repeat exactly; seconds belong to this machine.", html! {
+            (tables::frame(numbers, "Work done. Counts are results and repeat exactly; seconds belong to this machine.", html! {
                 thead { tr { th { "experiment" } th.n { "cells" } th { "counts" } th.n { "CPU time" } } }
                 tbody {
                     @for part in sections {
@@ -332,14 +202,14 @@ fn circumstances(study: &str, settings: &Settings, provenance: &Provenance, numb
         ("finished", p.date.clone()),
     ];
     html! {
-        h2.flow { "Where this comes from" }
+        h2.flow id="origin" { "Where this comes from" }
         @if p.foreign > 0 {
             p.warning { (p.foreign) " of " (p.cells) " cells were made by another build of the program and reused on request." }
         }
         @if p.late_predictions {
             p.warning { "Predictions changed after some cells had been measured." }
         }
-        (table_frame(numbers, "Circumstances of the measurement.", html! {
+        (tables::frame(numbers, "Circumstances of the measurement.", html! {
             tbody { @for (name, value) in facts { tr { td { (name) } td { (value) } } } }
         }))
         h3 { "To repeat it" }
@@ -347,7 +217,8 @@ fn circumstances(study: &str, settings: &Settings, provenance: &Provenance, numb
         p {
             "The same settings and seed give the same bits in " code { "results.csv" } " on any number of threads. Beside this page: "
             code { "results.csv" } " (every quantity), " code { "claims.csv" } " (the verdicts), " code { "predictions.csv" } ", "
-            code { "timing.csv" } ", " code { "provenance.json" } ", " code { "figures/" } " (SVG and PNG) and " code { "cells/" } " (every map)."
+            code { "timing.csv" } ", " code { "provenance.json" } ", " code { "figures/" } " (SVG and PNG for one and for two columns of print, and a table of each figure) and " code { "cells/" } " (every map). "
+            "A figure whose table in " code { "figures/" } " was edited is drawn again, here too, by the same command with " code { "--replot" } ": nothing is measured."
         }
     }
 }

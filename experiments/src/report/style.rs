@@ -33,7 +33,23 @@ tr.group td { font-weight: 600; border-bottom: none; padding-top: 14px; }
 .badge { font-size: 12.5px; font-weight: 600; border-radius: 3px; padding: 1px 8px; white-space: nowrap; border: 1px solid currentColor; }
 .upheld { color: var(--good); } .rejected { color: #fff; background: var(--bad); border-color: var(--bad); } .undecided { color: var(--open); border-style: dashed; }
 figure { margin: 28px 0 34px; }
+figure.narrow { max-width: 620px; }
 figure svg { display: block; width: 100%; height: auto; margin-bottom: 10px; }
+nav.contents { border-top: 1.5px solid var(--ink); border-bottom: 1.5px solid var(--ink); margin: 8px 0 26px; padding: 4px 0 8px; }
+nav.contents ol { margin: 0; padding-left: 1.8em; font-size: 15px; line-height: 1.45; }
+nav.contents li { margin: 12px 0 0; }
+nav.contents .line { display: flex; gap: 16px; justify-content: space-between; align-items: baseline; flex-wrap: wrap; }
+nav.contents .title { font-weight: 600; }
+nav.contents .verdicts { white-space: nowrap; font-variant-numeric: tabular-nums; }
+nav.contents .verdicts b { font-weight: 600; margin-left: 12px; }
+nav.contents p { margin: 2px 0 0; max-width: 60em; }
+nav.contents .places { color: var(--soft); font-size: 13.5px; } nav.contents .places a { margin-left: 4px; }
+h2 .up { font-size: 17px; color: var(--soft); margin-left: 6px; }
+summary { cursor: pointer; color: #1a4f8b; font-size: 14px; padding: 4px 0; }
+.fold { margin-bottom: 28px; } .fold .scroll { margin-bottom: 4px; }
+.fold:not(:has(details[open])) tr.more:not(:has(td:target)) { display: none; }
+.fold details[open] .closed, .fold details:not([open]) .opened { display: none; }
+tr:has(td:target), figure:target { background: #fff6d8; }
 .note { border-left: 3px solid var(--line); padding: 2px 0 2px 14px; font-size: 15.5px; color: #333a42; }
 .warning { border-left: 3px solid var(--bad); padding: 6px 0 6px 14px; }
 pre { background: var(--wash); border: 1px solid var(--line); border-radius: 4px; padding: 12px 14px; font-family: ui-monospace, Menlo, Consolas, 'DejaVu Sans Mono', monospace; font-size: 13.5px; white-space: pre-wrap; }
@@ -41,7 +57,11 @@ code { font-family: ui-monospace, Menlo, Consolas, 'DejaVu Sans Mono', monospace
 @media print {
   body { max-width: none; padding: 0; font-size: 10.5pt; }
   h2 { break-before: page; } h2.flow { break-before: auto; }
-  figure, table, .note { break-inside: avoid; } h3 { break-after: avoid; }
+  figure, tr, .note { break-inside: avoid; } h3, caption { break-after: avoid; } thead { display: table-header-group; }
+  .fold:not(:has(details[open])) tr.more:not(:has(td:target)) { display: table-row; }
+  .fold details, .all, h2 .up { display: none; }
+  nav.contents { break-inside: avoid; } .scroll { overflow: visible; } table { font-size: 8pt; line-height: 1.3; }
+  th, td { padding: 3px 8px 3px 0; } td.claim { min-width: 0; width: 44%; } .advice, .badge { font-size: 7pt; } .badge { padding: 0 4px; } figure.narrow { max-width: 110mm; }
   .badge, .rejected { print-color-adjust: exact; -webkit-print-color-adjust: exact; }
   a { color: inherit; }
 }
