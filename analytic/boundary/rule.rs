@@ -109,14 +109,14 @@ pub(super) fn tau_of(x: f64) -> f64 {
     (0.5 - sin(asin((1.0 - 2.0 * x).clamp(-1.0, 1.0)) / 3.0)).clamp(0.0, 1.0)
 }
 
-/// Rising numbers between `low` and `high`, both included, those of `between` among them.
+/// Rising numbers from `low` to `high`, with those of `between` that lie between.
 pub(super) fn pieces(low: f64, high: f64, mut between: Vec<f64>) -> Vec<f64> {
-    // Pieces shorter than roundings of their ends hold nothing.
-    let least = 1e-13 * high.abs().max(low.abs());
-    between.retain(|x| *x > low + least && *x < high - least);
+    // Pieces as short as roundings of their ends hold nothing.
+    let apart = |a: f64, b: f64| b - a > 1e-13 * a.abs().max(b.abs());
+    between.retain(|x| apart(low, *x) && apart(*x, high));
     between.push(low);
     between.sort_by(f64::total_cmp);
-    between.dedup_by(|b, a| *b - *a <= least);
+    between.dedup_by(|b, a| !apart(*a, *b));
     between.push(high);
     between
 }

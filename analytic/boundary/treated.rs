@@ -77,25 +77,19 @@ impl<'a> Gather<'a> {
                 Ok((sums[F0] + images, 1.0))
             }
             Treatment::LocalLinear => {
-                let (determinant, spread) = determinant(&sums)?;
+                let (determinant, spread) = determinant(&sums);
                 Ok(((sums[U2] * sums[F0] - sums[U1] * sums[F1]) / determinant, spread))
             }
         }
     }
 }
 
-/// M_0 M_2 - M_1^2, and how many times it is smaller than its terms.
-pub(super) fn determinant(sums: &Sums) -> Result<(f64, f64)> {
+/// M_0 M_2 - M_1^2, and how many times it is smaller than its terms. The probe is a place of the body, so that z has 0 at
+/// an end of its range or inside: its variance is a fair part of its mean square, however thin the body.
+pub(super) fn determinant(sums: &Sums) -> (f64, f64) {
     let product = sums[U0] * sums[U2];
     let value = product - sums[U1] * sums[U1];
-    // Roundings of the moments are below 1e-14 of them: nothing is left of a smaller difference.
-    if value > 1e-12 * product {
-        Ok((value, product / value))
-    } else {
-        Err(Error::Infinite(
-            "a straight line cannot be fitted: the medium inside the ball is too thin; allowed: smaller radii",
-        ))
-    }
+    (value, product / value)
 }
 
 /// A kernel that ends at its radius.
@@ -174,8 +168,7 @@ pub fn body_moment(kernel: Kernel, body: Body, at: [f64; 3], radius: f64, j: u32
 /// \[unit of the field\]
 /// # Errors
 /// `Error::OutOfRange` naming the parameter; `Error::NotFinite` if the field is not, with the distance from the probe
-/// (or image) at which; `Error::Infinite` for the kernel without end, and for a local linear fit in a medium much
-/// thinner than the ball
+/// (or image) at which; `Error::Infinite` for the kernel without end
 /// # Limits
 /// radius up to the probe's depth: the plain estimate, whatever the treatment; a uniform field: `None` M_0 of it,
 /// `Clipped` and `LocalLinear` itself, `Reflection` itself behind flat faces up to the shortest edge; f + s z on a flat
