@@ -21,7 +21,8 @@ pub enum Treatment {
     /// S_0/M_0: the ball's mass inside the medium only.
     Clipped,
     /// Every photon counts with its mirror images too: in each flat face, and in faces of different axes one after the
-    /// other (slab two, cuboid up to seven near a corner); in a sphere in the tangent plane at the nearest point.
+    /// other (slab two, cuboid seven near a corner, more where opposite faces are within reach); in a sphere in the
+    /// tangent plane at the nearest point. No images of images in the same axis: complete up to the shortest edge.
     Reflection,
     /// (M_2 S_0 - M_1 S_1)/(M_0 M_2 - M_1^2): the value at the probe of the straight line fitted along n.
     LocalLinear,
@@ -165,7 +166,7 @@ pub fn body_moment(kernel: Kernel, body: Body, at: [f64; 3], radius: f64, j: u32
 /// `at` as in [`body_moment`]; `radius` \[length\], 1e-12 to 1e12; `field` of the place inside the body, smooth there;
 /// at the faces it may behave like c + t ln t; it is not asked outside
 /// # Returns
-/// \[unit of the field\]
+/// \[unit of the field\]; the bound covers the integration, not errors of the field's own
 /// # Errors
 /// `Error::OutOfRange` naming the parameter; `Error::NotFinite` if the field is not, with the distance from the probe
 /// (or image) at which; `Error::Infinite` for the kernel without end
