@@ -29,7 +29,7 @@ fn storage_figure(results: &Results) -> anyhow::Result<FigureFiles> {
         );
     let mut right = Panel::new(
         x_axis(),
-        Axis::new("mean difference", "%", Scale::SymLog { threshold: 1e-3 }).with_range(-30.0, 1.0),
+        Axis::new("mean difference", "%", Scale::SymLog { threshold: 1e-3 }).with_range(-30.0, 10.0),
     )
     .with_title("(b) on average");
     for (class, rule) in Rule::ALL.into_iter().enumerate() {
@@ -41,7 +41,10 @@ fn storage_figure(results: &Results) -> anyhow::Result<FigureFiles> {
         let x: Vec<f64> = chosen.iter().map(|r| r.extent_in_radii()).collect();
         let line = chosen.iter().map(|r| r.predicted_rms).collect();
         left = left.with(Line::new(&label, class, x.clone(), line));
-        let seen: Vec<_> = chosen.iter().filter(|r| rule == Rule::Nearest || r.moved >= ENOUGH).collect();
+        let seen: Vec<_> = chosen
+            .iter()
+            .filter(|r| r.rms.value() > 0.0 && (rule == Rule::Nearest || r.moved >= ENOUGH))
+            .collect();
         let bars = seen.iter().map(|r| {
             let interval = r.rms.interval(0.95);
             (interval.low.max(1e-9), interval.high)
@@ -66,7 +69,7 @@ fn storage_figure(results: &Results) -> anyhow::Result<FigureFiles> {
     let figure =
         Figure { width: Width::Double, columns: 2, shared_legend: true, ..Figure::new(vec![left, right]) };
     let caption = "One set of photons gathered twice, from single precision and from double precision, while one \
-                   distant photon stretches the map: points measured with 95 % intervals over maps, lines predicted \
+                   distant photon stretches the map: points measured with 95 % intervals over maps, lines join what was predicted \
                    before the run. (a) The root mean square difference of one estimate, in units of that estimate's \
                    own standard error; fixed radii are drawn where at least 16 photons changed sides. It stays below a \
                    hundredth up to some thousand radii. (b) The mean difference in per cent of the exact fluence, \
@@ -80,7 +83,7 @@ fn strip(results: &Results) -> anyhow::Result<FigureFiles> {
     let mut names = Vec::new();
     let mut upper = Panel::new(
         Axis::linear("", ""),
-        Axis::linear("(measured − exact) / standard error", "").with_range(-5.0, 5.0),
+        Axis::linear("(measured − exact) / standard error", "").with_range(-6.0, 6.0),
     )
     .with_title("(a) sampled rows")
     .with(Ruler::new(Along::Horizontal(0.0)));
@@ -134,10 +137,10 @@ fn strip(results: &Results) -> anyhow::Result<FigureFiles> {
 /// Error of stretched maps against the distance of planes over the radius.
 fn stretched(results: &Results) -> anyhow::Result<FigureFiles> {
     let mut panel = Panel::new(
-        Axis::linear("distance of stored positions over gather radius", ""),
+        Axis::log("distance of stored positions over gather radius", "").with_range(0.1, 4.0),
         Axis::new("error", "%", Scale::SymLog { threshold: 1.0 }).with_range(-60.0, 400.0),
     );
-    let grid: Vec<f64> = (1..=350).map(|i| 0.01 * f64::from(i)).collect();
+    let grid: Vec<f64> = (0..=900).map(|i| 0.1 * libm::pow(40.0, f64::from(i) / 900.0)).collect();
     for (class, kernel) in Kernel::ALL.into_iter().enumerate() {
         let line: anyhow::Result<Vec<f64>> =
             grid.iter().map(|&s| Ok(100.0 * (kernel_on_lattice(kernel, s)?.0 - 1.0))).collect();
@@ -147,7 +150,7 @@ fn stretched(results: &Results) -> anyhow::Result<FigureFiles> {
             Size::Nearest(_) => 0.0,
         };
         let chosen: Vec<_> =
-            results.stretched.iter().filter(|r| r.case.kernel == kernel && spacing(r) > 0.01).collect();
+            results.stretched.iter().filter(|r| r.case.kernel == kernel && spacing(r) > 0.1).collect();
         let percent = |r: &StretchedResult| r.errors.iter().map(|e| 100.0 * e).collect::<Moments>();
         let x = chosen.iter().map(|r| spacing(r)).collect();
         let y = chosen.iter().map(|r| percent(r).mean()).collect();

@@ -33,7 +33,7 @@ pub fn number_of_neighbors(settings: &Settings, rows: &mut Vec<Checked>) -> anyh
     let cap = 2.0;
     for k in [2, 3, 10, 100, stored / 10, stored - 1, stored] {
         let estimate = collision_density(&map, point, Kernel::Uniform, Gather::nearest(k, cap)?);
-        let (exact, radius) = plain.nearest(point, k);
+        let (exact, radius) = plain.nearest(point, k, cap);
         let distance = 2.0 * 3f64.sqrt() * map.tree().resolution() / radius + 4.0 / f64::from(1u32 << 24);
         let name = format!("k={k} of {stored}");
         rows.push(Checked::new(

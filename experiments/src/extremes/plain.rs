@@ -34,9 +34,12 @@ impl Plain {
     }
 
     /// Collision density by the k nearest, uniform kernel: the k-1 nearer ones over the ball of the k-th, and the
-    /// radius of that ball.
-    pub fn nearest(&self, point: DVec3, k: usize) -> (f64, f64) {
-        let mut all: Vec<(f64, f64)> = self.squared(point).collect();
+    /// radius of that ball. With fewer than k within the cap, all in the ball of the cap.
+    pub fn nearest(&self, point: DVec3, k: usize, cap: f64) -> (f64, f64) {
+        let mut all: Vec<(f64, f64)> = self.squared(point).filter(|(d2, _)| *d2 <= cap * cap).collect();
+        if all.len() < k {
+            return (self.within(point, cap).0, cap);
+        }
         let (nearer, kth, _) = all.select_nth_unstable_by(k - 1, |a, b| a.0.total_cmp(&b.0));
         let (power, radius) = (nearer.iter().map(|(_, power)| power).sum(), kth.0.sqrt());
         (self.density(power, radius), radius)

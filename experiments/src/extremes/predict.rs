@@ -74,8 +74,8 @@ pub fn storage(settings: &Settings, rule: Rule, spacing: f64) -> anyhow::Result<
 pub fn predict(settings: &Settings) -> anyhow::Result<Vec<Prediction>> {
     let one = |row: sampled::Sampled| {
         let (value, error) = (row.exact)()?;
-        let (quantity, source) = ("value".to_string(), row.source.to_string());
-        Ok(Prediction { case: row.name, quantity, unit: Unit::ONE, value, error, source })
+        let (quantity, source, unit) = ("value".to_string(), row.source.to_string(), row.unit());
+        Ok(Prediction { case: row.name, quantity, unit, value, error, source })
     };
     let mut predictions = sampled::all().into_par_iter().map(one).collect::<anyhow::Result<Vec<_>>>()?;
     let mut add = |case: String, quantity: &str, unit, value, error, source: &str| {
@@ -111,7 +111,7 @@ pub fn predict(settings: &Settings) -> anyhow::Result<Vec<Prediction>> {
         }
     }
     for case in stretched::POWERS.into_iter().flat_map(Case::all) {
-        let (value, error) = case.predicted()?;
+        let (value, error) = case.predicted(settings)?;
         add(case.name(), "error", Unit::PERCENT, 100.0 * value, 100.0 * error, "kernel on a lattice");
     }
     Ok(predictions)

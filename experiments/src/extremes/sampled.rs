@@ -3,11 +3,13 @@
 use super::cases::{BATCHES, Class};
 use super::half_space::{half_space_reflectance, thick_white_transmittance};
 use super::scenes::{Flux, Fog, at_depth, beam_along, furnace_ball, furnace_slab, sensor, slab};
-use crate::harness::{CellId, Settings};
+use crate::harness::{CellId, Settings, Unit};
 use glam::DVec3;
+use std::sync::{Arc, OnceLock};
 use turbid::Spectrum;
 use turbid::error::Error;
 use turbid::estimators::{Gather, Kernel, fluence};
+use turbid::math::{FOUR_PI, Ray};
 use turbid::photons::{Histories, Pass, Photon, PhotonMap, shoot};
 use turbid::rng::{Purpose, Stream};
 use turbid::scene::{Orders, Quantity, Scene};
@@ -64,6 +66,12 @@ impl Sampled {
     /// Histories a batch.
     pub fn histories(&self, settings: &Settings) -> u64 {
         settings.photons(self.histories.0, self.histories.1)
+    }
+
+    /// The unit of its value.
+    pub fn unit(&self) -> Unit {
+        let is_fluence = ["fluence", "radiance"].iter().any(|word| self.name.contains(word));
+        if is_fluence { Unit::FLUENCE } else { Unit::ONE }
     }
 
     /// Measures one batch; every row has streams of its own.
@@ -124,12 +132,22 @@ impl Rows {
         self.0.push(Sampled { class, name: name.into(), histories, exact, source, run });
     }
 
-    /// A flux of a slab by photons.
-    fn flux(&mut self, class: Class, histories: (u64, u64), fog: Fog, incidence: Incidence, flux: Flux) {
+    /// Fluxes of a slab by photons; the exact slab is solved once for all of them.
+    fn fluxes(&mut self, class: Class, fog: Fog, incidence: Incidence, fluxes: &[Flux]) {
         let source = if fog.g.abs() < ISOTROPIC { "isotropic slab" } else { "anisotropic slab" };
-        let name = format!("{} {flux:?}", words(fog, incidence)).to_lowercase();
-        let exact = move || exact_flux(fog, incidence, flux);
-        self.add(class, name, histories, source, exact, move |batch| by_photons(fog, incidence, flux, batch));
+        let solved: Arc<OnceLock<[Known; 3]>> = Arc::default();
+        for &flux in fluxes {
+            let name = format!("{} {flux:?}", words(fog, incidence)).to_lowercase();
+            let solved = solved.clone();
+            let exact = move || match solved.get() {
+                Some(all) => Ok(all[flux as usize]),
+                None => {
+                    let all = exact_fluxes(fog, incidence)?;
+                    Ok(solved.get_or_init(|| all)[flux as usize])
+                }
+            };
+            self.add(class, name, LIGHT, source, exact, move |batch| by_photons(fog, incidence, flux, batch));
+        }
     }
 }
 
@@ -161,23 +179,16 @@ fn known(value: Value) -> Known {
     (value.value, value.error)
 }
 
-fn exact_flux(fog: Fog, incidence: Incidence, flux: Flux) -> anyhow::Result<Known> {
+/// Reflected, transmitted, absorbed, in the order of [`Flux`].
+fn exact_fluxes(fog: Fog, incidence: Incidence) -> anyhow::Result<[Known; 3]> {
     let Fog { tau, albedo, g } = fog;
-    Ok(known(if g.abs() < ISOTROPIC {
+    Ok(if g.abs() < ISOTROPIC {
         let slab = IsotropicSlab::new(tau, albedo, incidence)?;
-        match flux {
-            Flux::Reflected => slab.reflectance(),
-            Flux::Transmitted => slab.transmittance(),
-            Flux::Absorbed => slab.absorptance(),
-        }
+        [slab.reflectance(), slab.transmittance(), slab.absorptance()].map(known)
     } else {
         let slab = AnisotropicSlab::new(tau, albedo, g, incidence)?;
-        match flux {
-            Flux::Reflected => slab.reflectance(),
-            Flux::Transmitted => slab.transmittance(),
-            Flux::Absorbed => slab.absorptance(),
-        }
-    }))
+        [slab.reflectance(), slab.transmittance(), slab.absorptance()].map(known)
+    })
 }
 
 /// Runs photons; a pass that met something not finite says how often.
@@ -208,11 +219,14 @@ fn by_photons(fog: Fog, incidence: Incidence, flux: Flux, batch: &Batch) -> anyh
 }
 
 fn by_paths(scene: &Scene, point: DVec3, orders: Orders, batch: &Batch) -> Brought {
-    let quantity = Quantity::Fluence(point);
+    paths(scene, &Quantity::Fluence(point), orders, batch)
+}
+
+fn paths(scene: &Scene, quantity: &Quantity, orders: Orders, batch: &Batch) -> Brought {
     let (mut sum, mut non_finite) = (0.0, 0);
     for history in 0..batch.histories {
         let mut stream = Stream::new(batch.seed, Purpose::Paths, batch.replicate, history);
-        let value = turbid::sensor::sample(scene, &quantity, orders, &mut stream);
+        let value = turbid::sensor::sample(scene, quantity, orders, &mut stream);
         non_finite += u64::from(!value.is_finite());
         sum += value[0];
     }
@@ -237,14 +251,13 @@ fn thickness(rows: &mut Rows) {
     let class = Class::Thickness;
     let fog = |tau: f64, albedo: f64| Fog { tau, albedo, g: 0.0 };
     for tau in [1e-12, 1e-9, 1e-6, 1e-3] {
-        rows.flux(class, LIGHT, fog(tau, 0.9), NORMAL, Flux::Reflected);
+        rows.fluxes(class, fog(tau, 0.9), NORMAL, &[Flux::Reflected]);
     }
     // Through the thin slab goes all but what it takes: 1 - T would be lost to rounding, what it absorbs is not.
-    rows.flux(class, LIGHT, fog(1e-12, 0.5), Incidence::Beam { mu0: 0.5 }, Flux::Absorbed);
-    rows.flux(class, LIGHT, fog(1.0, 0.9), NORMAL, Flux::Reflected);
-    rows.flux(class, LIGHT, fog(1.0, 0.9), NORMAL, Flux::Transmitted);
+    rows.fluxes(class, fog(1e-12, 0.5), Incidence::Beam { mu0: 0.5 }, &[Flux::Absorbed]);
+    rows.fluxes(class, fog(1.0, 0.9), NORMAL, &[Flux::Reflected, Flux::Transmitted]);
     let white = "thick slab without absorption";
-    for (tau, histories) in [(100.0, (1024, 8192)), (1000.0, (128, 2048))] {
+    for (tau, histories) in [(100.0, (1024, 8192)), (300.0, (512, 8192))] {
         let name = format!("tau={tau} w=1 g=0 transmitted");
         let exact = move || thick_white_transmittance(1.0, tau);
         rows.add(class, name, histories, white, exact, move |batch| {
@@ -283,12 +296,12 @@ fn thickness(rows: &mut Rows) {
 fn albedo(rows: &mut Rows) {
     let class = Class::Albedo;
     let fog = |albedo: f64| Fog { tau: 2.0, albedo, g: 0.0 };
-    rows.flux(class, LIGHT, fog(0.0), NORMAL, Flux::Transmitted);
-    for w in [0.5, 1.0 - 1e-12, 1.0] {
-        rows.flux(class, LIGHT, fog(w), NORMAL, Flux::Reflected);
+    rows.fluxes(class, fog(0.0), NORMAL, &[Flux::Transmitted]);
+    for w in [0.5, 1.0 - 1e-12] {
+        rows.fluxes(class, fog(w), NORMAL, &[Flux::Reflected]);
     }
-    rows.flux(class, LIGHT, fog(1.0), NORMAL, Flux::Transmitted);
-    rows.flux(class, LIGHT, fog(0.999), NORMAL, Flux::Absorbed);
+    rows.fluxes(class, fog(1.0), NORMAL, &[Flux::Reflected, Flux::Transmitted]);
+    rows.fluxes(class, fog(0.999), NORMAL, &[Flux::Absorbed]);
     // Photons of albedo 1e-12 are never scattered; paths carry the albedo.
     let exact = || Ok(known(single_fluence(2.0, 1e-12, 1.0, 1.0)?));
     let name = "tau=2 w=1e-12 g=0 scattered fluence at depth 1, paths";
@@ -315,11 +328,10 @@ fn asymmetry(rows: &mut Rows) {
     let class = Class::Asymmetry;
     let fog = |g: f64| Fog { tau: 2.0, albedo: 0.9, g };
     for g in [1e-12, -1e-12] {
-        rows.flux(class, LIGHT, fog(g), NORMAL, Flux::Reflected);
+        rows.fluxes(class, fog(g), NORMAL, &[Flux::Reflected]);
     }
     for g in [0.95, -0.95] {
-        rows.flux(class, LIGHT, fog(g), NORMAL, Flux::Reflected);
-        rows.flux(class, LIGHT, fog(g), NORMAL, Flux::Transmitted);
+        rows.fluxes(class, fog(g), NORMAL, &[Flux::Reflected, Flux::Transmitted]);
     }
     // Every collision turns the beam round: with s = tau/mu0, R = s/(1+s), but for about (1-|g|) s.
     let backward = Fog { tau: 2.0, albedo: 1.0, g: -1.0 + 1e-9 };
@@ -343,10 +355,12 @@ fn asymmetry(rows: &mut Rows) {
             by_map(&furnace_ball(DVec3::ZERO, g)?, DVec3::ZERO, 0.4, batch)
         });
     }
+    // In a slab a path along the faces, which the peak keeps there, would meet millions of collisions.
     for g in [0.0, 0.9999, -1.0 + 1e-9, 1.0 - 1e-9] {
-        let name = format!("furnace slab tau=2 g={} fluence at depth 1, paths", near_one(g));
+        let name = format!("ball w=1 g={} fluence, paths", near_one(g));
+        let inside = DVec3::new(0.3, -0.2, 0.5);
         rows.add(class, name, LIGHT, "furnace", furnace, move |batch| {
-            Ok(by_paths(&furnace_slab(2.0, g)?, at_depth(1.0, 1.0), Orders::ALL, batch))
+            Ok(by_paths(&furnace_ball(DVec3::ZERO, g)?, inside, Orders::ALL, batch))
         });
     }
 }
@@ -359,16 +373,17 @@ fn position(rows: &mut Rows) {
     let class = Class::Position;
     for distance in [0.0, 1e3, 1e6, 9.9e8] {
         let center = DVec3::new(1.0, -0.6, 0.3) * distance;
-        let name = format!("ball at {distance:e} collisions a photon");
+        let at = if distance == 0.0 { "0".to_string() } else { format!("{distance:e}") };
+        let name = format!("ball at {at} collisions a photon");
         let length = || Ok((4.0 / 3.0, 4.0 * f64::EPSILON));
         rows.add(class, name, LIGHT, "mean chord, 4 V/S", length, move |batch| {
             collisions(&furnace_ball(center, 0.0)?, batch)
         });
-        let name = format!("ball at {distance:e} fluence, map");
+        let name = format!("ball at {at} fluence, map");
         rows.add(class, name, LIGHT, "furnace", furnace, move |batch| {
             by_map(&furnace_ball(center, 0.0)?, center, 0.4, batch)
         });
-        let name = format!("ball at {distance:e} fluence, paths");
+        let name = format!("ball at {at} fluence, paths");
         rows.add(class, name, LIGHT, "furnace", furnace, move |batch| {
             Ok(by_paths(&furnace_ball(center, 0.0)?, center, Orders::ALL, batch))
         });
@@ -402,8 +417,7 @@ fn faces(rows: &mut Rows) {
     let class = Class::Faces;
     for mu0 in [1e-3, 1e-6] {
         let fog = Fog { tau: 2.0, albedo: 0.9, g: 0.0 };
-        rows.flux(class, LIGHT, fog, Incidence::Beam { mu0 }, Flux::Reflected);
-        rows.flux(class, LIGHT, fog, Incidence::Beam { mu0 }, Flux::Transmitted);
+        rows.fluxes(class, fog, Incidence::Beam { mu0 }, &[Flux::Reflected, Flux::Transmitted]);
     }
     for (name, depth) in [("lit", 0.0), ("far", 2.0)] {
         let exact = move || Ok(known(IsotropicSlab::new(2.0, 0.9, NORMAL)?.fluence(depth)?));
@@ -411,6 +425,14 @@ fn faces(rows: &mut Rows) {
         rows.add(class, name, LIGHT, "isotropic slab", exact, move |batch| {
             let scene = slab(Fog { tau: 2.0, albedo: 0.9, g: 0.0 }, NORMAL, 1.0)?;
             Ok(by_paths(&scene, at_depth(depth, 1.0), Orders::ALL, batch))
+        });
+    }
+    for (name, depth) in [("lit", 0.0), ("far", 2.0)] {
+        let name = format!("furnace slab tau=2 g=0.5 radiance along the {name} face, times 4 pi, paths");
+        rows.add(class, name, LIGHT, "furnace", furnace, move |batch| {
+            let ray = Ray::new(at_depth(depth, 1.0), DVec3::X);
+            let brought = paths(&furnace_slab(2.0, 0.5)?, &Quantity::Radiance(ray), Orders::ALL, batch);
+            Ok(Brought { value: FOUR_PI * brought.value, ..brought })
         });
     }
     let first = Orders::only(0);

@@ -24,7 +24,7 @@ pub const CAP: f64 = 0.35;
 /// The fluence inside.
 pub const FLUENCE: f64 = 4.0;
 /// Powers of two of the extents.
-pub const POWERS: [i32; 14] = [1, 3, 5, 7, 9, 11, 13, 15, 16, 17, 18, 19, 20, 21];
+pub const POWERS: [i32; 13] = [1, 3, 5, 7, 9, 11, 13, 15, 17, 18, 19, 20, 21];
 /// Probes of a map, and the ball they fill [mfp]: with the radius and a step of the lattice they stay in the fog.
 const PROBES: usize = 160;
 const PROBED: f64 = 0.6;
@@ -125,7 +125,7 @@ pub fn measure(settings: &Settings, cell: &CellId) -> anyhow::Result<CellOutput>
             .iter()
             .map(|&p| match rule {
                 Rule::Fixed => plain.within(p, RADIUS),
-                Rule::Nearest => (plain.nearest(p, K).0, K),
+                Rule::Nearest => (plain.nearest(p, K, CAP).0, K),
             })
             .collect();
         let errors = || answers.iter().map(|(value, _)| value / FLUENCE - 1.0);

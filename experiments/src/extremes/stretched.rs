@@ -26,11 +26,9 @@ const NEIGHBORS: [usize; 2] = [10, 50];
 const CAP: f64 = 1.2;
 /// Probes along one side of their lattice.
 const PROBES: u32 = 6;
-/// Expected photons of a map; the same in every preset, since gathers and planes are fixed lengths.
-const PHOTONS: u64 = 26_000;
-/// What the photons' first storage, in a map of the cube alone, and sums in single precision may change: a lattice 2^-21
-/// apart under one that is at most as fine as that times two would matter, but the finest one has no weight to shift;
-/// sums are good to 2 parts in a million.
+/// What single precision does besides, at most: sums are good to 2 parts in a million, distances to a quarter of one.
+/// The photons' first storage, in a map of the cube alone, has planes 2^-21 apart: nothing beside the coarser ones, and
+/// the same fine ones where they are finest.
 const ROUNDING: f64 = 3e-6;
 
 /// How photons are gathered.
@@ -94,7 +92,7 @@ impl Case {
     }
 
     /// Error of the estimate over the density, and a bound on its own error.
-    pub fn predicted(&self) -> anyhow::Result<(f64, f64)> {
+    pub fn predicted(&self, settings: &Settings) -> anyhow::Result<(f64, f64)> {
         let h = self.spacing();
         match self.size {
             Size::Radius(r) => {
@@ -102,7 +100,7 @@ impl Case {
                 Ok((value - 1.0, error + ROUNDING))
             }
             Size::Nearest(k) => {
-                let density = PHOTONS as f64 / (SIDE * SIDE * SIDE);
+                let density = photons(settings) as f64 / (SIDE * SIDE * SIDE);
                 nearest_on_lattice(self.kernel, k, CAP, density, h)
             }
         }
@@ -117,14 +115,15 @@ pub fn nearest_on_lattice(
     density: f64,
     h: f64,
 ) -> anyhow::Result<(f64, f64)> {
-    let mean = |kernel, r: f64| match h / r {
-        // The rule of midpoints is good to the square of the step: 1e-7 here.
-        fine if fine < 2e-4 => 1.0,
-        spacing => kernel_on_lattice(kernel, spacing).map_or(f64::NAN, |(value, _)| value),
-    };
+    let mean = |kernel, r: f64| kernel_on_lattice(kernel, h / r).map_or(f64::NAN, |(value, _)| value);
     let number = |r: f64| density * 4.0 / 3.0 * PI * r * r * r * mean(Kernel::Uniform, r);
     let value = nearest_expectation(u32::try_from(k)?, cap, number, |r| mean(kernel, r))?;
     Ok((value.value - 1.0, value.error + ROUNDING))
+}
+
+/// Expected photons of a map: the same in both presets, since gathers and planes are fixed lengths.
+fn photons(settings: &Settings) -> u64 {
+    settings.photons(26_000, 26_000)
 }
 
 /// The group of cells of a spacing.
@@ -137,7 +136,9 @@ pub fn cells(settings: &Settings) -> Vec<CellId> {
     let maps = settings.pick(64, 256);
     POWERS
         .into_iter()
-        .flat_map(|power| CellId::replicates(&group(power), maps, PHOTONS as f64 * 10.0).collect::<Vec<_>>())
+        .flat_map(|power| {
+            CellId::replicates(&group(power), maps, photons(settings) as f64 * 10.0).collect::<Vec<_>>()
+        })
         .collect()
 }
 
@@ -145,7 +146,7 @@ pub fn cells(settings: &Settings) -> Vec<CellId> {
 pub fn measure(settings: &Settings, cell: &CellId) -> anyhow::Result<CellOutput> {
     let power = POWERS.into_iter().find(|&p| group(p) == cell.group).context("no such spacing")?;
     let synthetic = Synthetic::new(Profile::Constant, DVec3::ZERO, DVec3::splat(SIDE))?;
-    let map = synthetic.map(Number::Expected(PHOTONS), settings.seed, cell.stream("extremes"))?;
+    let map = synthetic.map(Number::Expected(photons(settings)), settings.seed, cell.stream("extremes"))?;
     let mut photons: Vec<Photon> = map.tree().photons().collect();
     let far = DVec3::new(-libm::ldexp(1.5, power + 24), 0.5 * SIDE, 0.5 * SIDE);
     if let Some(&first) = photons.first() {
