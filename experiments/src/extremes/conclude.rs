@@ -329,10 +329,10 @@ fn summarise(section: &mut Section, settings: &Settings, results: &Results) {
     let (near, far) = (at(7), at(21));
     if let (Some(near), Some(far)) = (near, far) {
         section.summary.push(format!(
-            "At the extremes of thickness, albedo, peak, length and number {} numbers were not finite and {right} of {} \
-             computed checks are within their roundings; single precision in the tree moves an estimate by {} of its \
-             standard errors where the map is {} gather radii long, and only at {} radii does it read {:.1} % wrong.",
-            number(results.lost()),
+            "At the extremes of thickness, albedo, peak, length and number, {} not finite and {right} of {} computed \
+             checks are within their roundings; single precision in the tree moves an estimate by {} of its standard \
+             errors where the map is {} gather radii long, and only at {} radii does it read {:.1} % wrong.",
+            if results.lost() == 0.0 { "no number was".to_string() } else { format!("{} numbers were", number(results.lost())) },
             results.checked.len(),
             number(near.rms.value()),
             number(near.extent_in_radii()),
@@ -374,6 +374,23 @@ fn summarise(section: &mut Section, settings: &Settings, results: &Results) {
     section.notes.push(
         "A scattering angle of negative g comes from a number of 53 bits near 1: at g = −(1 − 1e−9) its steps are a \
          ten-millionth of the peak's width, which the bound of that row allows and no simulation could see."
+            .to_string(),
+    );
+    section.notes.push(
+        "At seed 1 the fluence by paths in the middle of the ball at the origin lies 3.0 standard errors high, the \
+         farthest of all sampled rows; of some seventy, one in five studies has such a row. It was asked again of 12.6 \
+         million histories with other seeds: 4.0003 ± 0.0008, so that it is chance. The first draw is kept."
+            .to_string(),
+    );
+    section.notes.push(
+        "Margins were set from trial runs: three were widened afterwards, so that the quick preset can decide them \
+         (rows about albedo and number, fixed radii on planes 1/2 apart). A white slab of thickness 1000 was tried \
+         too; of so few histories too few came through for an error bar, and a thickness of 300 took its place."
+            .to_string(),
+    );
+    section.notes.push(
+        "What a lattice makes of the clusters of one history at k nearest is not predicted: such gathers stand in the \
+         study's budget only where storage is far below the noise."
             .to_string(),
     );
 }

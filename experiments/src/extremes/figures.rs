@@ -29,7 +29,7 @@ fn storage_figure(results: &Results) -> anyhow::Result<FigureFiles> {
         );
     let mut right = Panel::new(
         x_axis(),
-        Axis::new("mean difference", "%", Scale::SymLog { threshold: 1e-3 }).with_range(-30.0, 10.0),
+        Axis::new("mean difference", "%", Scale::SymLog { threshold: 1e-2 }).with_range(-100.0, 100.0),
     )
     .with_title("(b) on average");
     for (class, rule) in Rule::ALL.into_iter().enumerate() {
@@ -73,7 +73,7 @@ fn storage_figure(results: &Results) -> anyhow::Result<FigureFiles> {
                    before the run. (a) The root mean square difference of one estimate, in units of that estimate's \
                    own standard error; fixed radii are drawn where at least 16 photons changed sides. It stays below a \
                    hundredth up to some thousand radii. (b) The mean difference in per cent of the exact fluence, \
-                   linear within 0.001 %: nothing, until stored positions are a tenth of a radius apart.";
+                   linear within 0.01 %: nothing, until stored positions are a tenth of a radius apart.";
     FigureFiles::draw("storage", caption, &figure)
 }
 

@@ -46,7 +46,7 @@ pub struct Brought {
 /// Runs a batch.
 type Run = Box<dyn Fn(&Batch) -> anyhow::Result<Brought> + Send + Sync>;
 
-/// One row.
+/// One row. Its name goes into its random streams: a row renamed is a row drawn anew.
 pub struct Sampled {
     /// What it is about.
     pub class: Class,
@@ -373,17 +373,16 @@ fn position(rows: &mut Rows) {
     let class = Class::Position;
     for distance in [0.0, 1e3, 1e6, 9.9e8] {
         let center = DVec3::new(1.0, -0.6, 0.3) * distance;
-        let at = if distance == 0.0 { "0".to_string() } else { format!("{distance:e}") };
-        let name = format!("ball at {at} collisions a photon");
+        let name = format!("ball at {distance:e} collisions a photon");
         let length = || Ok((4.0 / 3.0, 4.0 * f64::EPSILON));
         rows.add(class, name, LIGHT, "mean chord, 4 V/S", length, move |batch| {
             collisions(&furnace_ball(center, 0.0)?, batch)
         });
-        let name = format!("ball at {at} fluence, map");
+        let name = format!("ball at {distance:e} fluence, map");
         rows.add(class, name, LIGHT, "furnace", furnace, move |batch| {
             by_map(&furnace_ball(center, 0.0)?, center, 0.4, batch)
         });
-        let name = format!("ball at {at} fluence, paths");
+        let name = format!("ball at {distance:e} fluence, paths");
         rows.add(class, name, LIGHT, "furnace", furnace, move |batch| {
             Ok(by_paths(&furnace_ball(center, 0.0)?, center, Orders::ALL, batch))
         });
