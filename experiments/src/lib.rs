@@ -4,6 +4,7 @@
 //! what their predictions share, and [`report`] writes what they found.
 
 pub mod bias;
+pub mod boundary;
 pub mod extremes;
 pub mod harness;
 pub mod report;
@@ -12,4 +13,4 @@ pub mod theory;
 use harness::Experiment;
 
 /// All experiments, in the order of the report.
-pub const ALL: &[Experiment] = &[bias::EXPERIMENT, extremes::EXPERIMENT];
+pub const ALL: &[Experiment] = &[bias::EXPERIMENT, boundary::EXPERIMENT, extremes::EXPERIMENT];

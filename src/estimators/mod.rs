@@ -8,8 +8,9 @@
 //! - in-scattered radiance = sum p phase(dir -> wo) K_r / (N sigma_t) [W/(L^2 sr)].
 //!
 //! A [`Kernel`] weights the photons of the ball, a [`Gather`] chooses the ball; both state the bias and
-//! variance they expect.
+//! variance they expect. Near the surface of a medium, or a wall, [`boundary`] says what can be done.
 
+pub mod boundary;
 mod directional;
 mod gather;
 mod kernel;

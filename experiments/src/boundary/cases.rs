@@ -1,0 +1,238 @@
+//! The cases asked of transported maps: where, with which gather, kernel and treatment.
+
+use super::fields::{Asked, CELL, Field};
+use crate::harness::Settings;
+use glam::DVec3;
+use std::f64::consts::PI;
+use turbid::estimators::boundary::Treatment;
+use turbid::estimators::{Gather, Kernel};
+use turbid_analytic::boundary::Body;
+
+/// How large a gather is.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Size {
+    /// All photons within this radius [mfp].
+    Radius(f64),
+    /// The k nearest photons.
+    Nearest(usize),
+}
+
+/// Where probes stand.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Spot {
+    /// At this depth, far from edges and corners [mfp].
+    Face(f64),
+    /// At this depth below both faces of an edge [mfp].
+    Edge(f64),
+    /// At this depth below the three faces of a corner [mfp].
+    Corner(f64),
+}
+
+/// One question to a map.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Case {
+    /// The field.
+    pub field: &'static Field,
+    /// Photons emitted into the map.
+    pub photons: u64,
+    /// Where.
+    pub spot: Spot,
+    /// Gather size.
+    pub size: Size,
+    /// Kernel.
+    pub kernel: Kernel,
+    /// What is done about the edge.
+    pub treatment: Treatment,
+}
+
+/// The radius and the number of neighbours that every field and kernel is asked.
+pub const MAIN: (f64, usize) = (0.4, 50);
+/// Largest radius of nearest gathers [mfp].
+pub const CAP: f64 = 0.9;
+/// Depths at fixed radius [mfp].
+pub const DEPTHS: [f64; 14] = [0.0, 0.05, 0.1, 0.15, 0.2, 0.25, 0.3, 0.35, 0.4, 0.5, 0.6, 0.7, 0.8, 1.0];
+/// Depths of nearest gathers [mfp].
+pub const NEAREST_DEPTHS: [f64; 6] = [0.0, 0.1, 0.2, 0.3, 0.4, 0.6];
+/// Depths below edges and corners, and of the other kernels [mfp].
+const FEW: [f64; 3] = [0.0, 0.1, 0.25];
+/// Numbers of neighbours.
+const NEIGHBORS: [usize; 3] = [20, 50, 200];
+/// Probes along a side of a slab's lattice; they keep [`CAP`] and more from the cell's edges.
+const SIDE: usize = 6;
+/// Probes on a sphere.
+const ON_SPHERE: usize = 32;
+
+impl Spot {
+    /// Depth below the nearest face [mfp].
+    pub fn depth(self) -> f64 {
+        match self {
+            Spot::Face(h) | Spot::Edge(h) | Spot::Corner(h) => h,
+        }
+    }
+
+    fn name(self) -> String {
+        match self {
+            Spot::Face(h) => format!("h={h}"),
+            Spot::Edge(h) => format!("edge h={h}"),
+            Spot::Corner(h) => format!("corner h={h}"),
+        }
+    }
+}
+
+impl Size {
+    /// Its name.
+    pub fn name(self) -> String {
+        match self {
+            Size::Radius(r) => format!("r={r}"),
+            Size::Nearest(k) => format!("k={k}"),
+        }
+    }
+}
+
+impl Case {
+    /// Everything that maps of one field and number of photons are asked.
+    pub fn all(settings: &Settings, field: &'static Field, photons: u64) -> Vec<Case> {
+        let mut cases = Vec::new();
+        let sizes = field.sizes(settings);
+        let is_main = photons == field.main_size(settings);
+        let mut add = |spot, size, kernel, treatment| {
+            // In whole balls all treatments are one.
+            let is_whole = matches!(size, Size::Radius(r) if Spot::depth(spot) >= r);
+            if !is_whole || treatment == Treatment::None {
+                cases.push(Case { field, photons, spot, size, kernel, treatment });
+            }
+        };
+        let mut radii = vec![MAIN.0];
+        let mut neighbors = vec![MAIN.1];
+        if field.asked == Asked::All {
+            // Wide balls for few photons, narrow ones for many.
+            radii = if sizes.first().is_some_and(|s| s.0 == photons) {
+                vec![0.2, 0.4, 0.8]
+            } else {
+                vec![0.1, 0.2, 0.4]
+            };
+            neighbors = NEIGHBORS.to_vec();
+        } else if !field.is_furnace() {
+            radii = vec![0.1, 0.2, 0.4];
+        }
+        for treatment in Treatment::ALL {
+            for &r in &radii {
+                for h in DEPTHS.into_iter().filter(|&h| h <= 1.5 * r || h == 1.0) {
+                    add(Spot::Face(h), Size::Radius(r), Kernel::Uniform, treatment);
+                }
+            }
+            for &k in &neighbors {
+                for h in NEAREST_DEPTHS {
+                    add(Spot::Face(h), Size::Nearest(k), Kernel::Uniform, treatment);
+                }
+            }
+            for kernel in Kernel::ALL.into_iter().filter(|&k| is_main && k != Kernel::Uniform) {
+                for h in FEW {
+                    add(Spot::Face(h), Size::Radius(MAIN.0), kernel, treatment);
+                    add(Spot::Face(h), Size::Nearest(MAIN.1), kernel, treatment);
+                }
+            }
+            if let Body::Cuboid { .. } = field.body {
+                for kernel in Kernel::ALL {
+                    for h in FEW {
+                        for spot in [Spot::Edge(h), Spot::Corner(h)] {
+                            add(spot, Size::Radius(MAIN.0), kernel, treatment);
+                            if kernel == Kernel::Uniform {
+                                add(spot, Size::Nearest(MAIN.1), kernel, treatment);
+                            }
+                        }
+                    }
+                }
+            }
+        }
+        cases
+    }
+
+    /// The group of cells that answer it.
+    pub fn group(field: &Field, photons: u64) -> String {
+        format!("{}-n{photons}", field.name)
+    }
+
+    /// The name in tables.
+    pub fn name(&self) -> String {
+        format!(
+            "{} n={} {} {} {} {}",
+            self.field.name,
+            self.photons,
+            self.spot.name(),
+            self.size.name(),
+            self.kernel.name(),
+            self.treatment.name()
+        )
+    }
+
+    /// The gather as the estimator takes it.
+    pub fn gather(&self) -> turbid::Result<Gather> {
+        match self.size {
+            Size::Radius(r) => Gather::radius(r),
+            Size::Nearest(k) => Gather::nearest(k, CAP),
+        }
+    }
+
+    /// One place that stands for all probes.
+    pub fn place(&self) -> [f64; 3] {
+        match (self.field.body, self.spot) {
+            (Body::Sphere { radius }, spot) => [0.0, 0.0, radius - spot.depth()],
+            (Body::Cuboid { edges: [a, b, _] }, Spot::Face(h)) => [0.5 * a, 0.5 * b, h],
+            (Body::Cuboid { edges: [_, b, _] }, Spot::Edge(h)) => [h, 0.5 * b, h],
+            (Body::Cuboid { .. }, Spot::Corner(h)) => [h, h, h],
+            (_, spot) => [0.0, 0.0, spot.depth()],
+        }
+    }
+
+    /// The probes: alike by symmetry, but for the field of the lit slab, which has its lit face alone.
+    pub fn probes(&self) -> Vec<DVec3> {
+        let h = self.spot.depth();
+        match self.field.body {
+            Body::Sphere { radius } => spiral(ON_SPHERE).map(|dir| dir * (radius - h)).collect(),
+            Body::Cuboid { edges } => in_cuboid(DVec3::from_array(edges), self.spot),
+            Body::Slab { thickness } => {
+                let both = self.field.is_furnace();
+                let step = (CELL - 2.0) / (SIDE - 1) as f64;
+                let at = |i: usize| 1.0 + step * i as f64;
+                let from_face = |i: usize| if both && i % 2 == 1 { thickness - h } else { h };
+                (0..SIDE * SIDE)
+                    .map(|i| DVec3::new(at(i % SIDE), at(i / SIDE), from_face(i + i / SIDE)))
+                    .collect()
+            }
+            Body::HalfSpace => vec![DVec3::new(0.0, 0.0, h)],
+        }
+    }
+}
+
+/// Directions spread evenly over the sphere (Swinbank and Purser 2006).
+fn spiral(n: usize) -> impl Iterator<Item = DVec3> {
+    let golden = PI * (3.0 - 5.0_f64.sqrt());
+    (0..n).map(move |i| {
+        let z = 1.0 - (2.0 * i as f64 + 1.0) / n as f64;
+        let (sin, cos) = turbid::math::sin_cos(golden * i as f64);
+        let across = (1.0 - z * z).sqrt();
+        DVec3::new(across * cos, across * sin, z)
+    })
+}
+
+/// Places at a depth under the faces, edges or corners: of each face and edge at the middle.
+fn in_cuboid(edges: DVec3, spot: Spot) -> Vec<DVec3> {
+    let h = spot.depth();
+    let mut found = Vec::new();
+    // Each coordinate is low, in the middle or high.
+    for index in 0..27 {
+        let digits = [index % 3, index / 3 % 3, index / 9];
+        let faces = digits.iter().filter(|&&d| d != 1).count();
+        let wanted = match spot {
+            Spot::Face(_) => 1,
+            Spot::Edge(_) => 2,
+            Spot::Corner(_) => 3,
+        };
+        if faces == wanted {
+            let place = |i: usize| [h, 0.5 * edges[i], edges[i] - h][digits[i]];
+            found.push(DVec3::new(place(0), place(1), place(2)));
+        }
+    }
+    found
+}

@@ -1,0 +1,250 @@
+//! The claims. Each is judged on one number a map; margins leave at least five standard errors of the quick preset.
+
+use super::cases::{Case, MAIN, Size, Spot};
+use super::conclude::{Found, Result, kept};
+use super::fields::{FIELDS, Field};
+use super::sheet::{Sheet, Side};
+use crate::harness::{Claim, Estimate, Settings, Unit};
+use anyhow::Context;
+use turbid::estimators::Kernel;
+use turbid::estimators::boundary::{Rejection, Treatment};
+use turbid::stats::{Moments, amplitude_per_map};
+
+/// All claims of the experiment.
+pub fn all(settings: &Settings, found: &Found) -> anyhow::Result<Vec<Claim>> {
+    let mut claims = furnaces(settings, found)?;
+    claims.extend(lit(found)?);
+    claims.extend(nearest(settings, found)?);
+    claims.extend(variances(found)?);
+    claims.extend(sheets(found)?);
+    Ok(claims)
+}
+
+/// Measured over predicted error of some cases of the same maps: one amplitude a map, weighted by what all maps say of
+/// the noise.
+fn amplitude(cases: &[(f64, &[f64])]) -> anyhow::Result<Estimate> {
+    let maps = cases.iter().map(|c| c.1.len()).min().context("no cases")?;
+    let predicted: Vec<f64> = cases.iter().map(|c| c.0).collect();
+    let weights: Vec<f64> = cases.iter().map(|c| 1.0 / c.1.iter().collect::<Moments>().variance()).collect();
+    let per_map: Vec<Vec<f64>> = (0..maps).map(|m| cases.iter().map(|c| c.1[m]).collect()).collect();
+    let fitted = amplitude_per_map(&predicted, &per_map, &weights).context("nothing was predicted")?;
+    Ok(Estimate::mean(&fitted.moments))
+}
+
+fn amplitude_of(results: &[&Result]) -> anyhow::Result<Estimate> {
+    let pairs: Vec<(f64, &[f64])> = results.iter().map(|r| (r.predicted(), &r.errors[..])).collect();
+    amplitude(&pairs)
+}
+
+/// The mean error of some cases of the same maps, weighted alike.
+fn mean_error(lists: &[&[f64]]) -> anyhow::Result<Estimate> {
+    let ones: Vec<(f64, &[f64])> = lists.iter().map(|errors| (1.0, *errors)).collect();
+    amplitude(&ones)
+}
+
+fn mean_of(results: &[&Result]) -> anyhow::Result<Estimate> {
+    let lists: Vec<&[f64]> = results.iter().map(|r| &r.errors[..]).collect();
+    mean_error(&lists)
+}
+
+/// The cases of a field's main maps with fixed radius and a cut ball.
+fn cut<'a>(
+    settings: &Settings,
+    found: &'a Found,
+    field: &'static Field,
+    treatment: Treatment,
+) -> Vec<&'a Result> {
+    let photons = field.main_size(settings);
+    found.pick(|c: &Case| {
+        let is_cut = matches!(c.size, Size::Radius(r) if c.spot.depth() < r);
+        (c.field, c.photons, c.treatment) == (field, photons, treatment) && is_cut
+    })
+}
+
+fn furnaces(settings: &Settings, found: &Found) -> anyhow::Result<Vec<Claim>> {
+    let mut claims = Vec::new();
+    for field in FIELDS.iter().filter(|f| f.is_furnace()) {
+        for treatment in Treatment::ALL {
+            let chosen = cut(settings, found, field, treatment);
+            let id = format!("{}-{}", field.name, treatment.name().replace(' ', "-"));
+            let where_ = format!("{}, fixed radii, all kernels, balls cut by the surface", field.title);
+            let is_exact = chosen.iter().all(|r| r.predicted().abs() < 1e-6);
+            claims.push(if is_exact {
+                let text = format!("{where_}: mean error, {}", treatment.name());
+                Claim::within(&id, &text, Unit::PERCENT, mean_of(&chosen)?, -1.0, 1.0)
+            } else {
+                let text = format!("{where_}: measured over predicted error, {}", treatment.name());
+                let margin = if treatment == Treatment::None { 0.02 } else { 0.25 };
+                Claim::within(&id, &text, Unit::ONE, amplitude_of(&chosen)?, 1.0 - margin, 1.0 + margin)
+            });
+        }
+    }
+    Ok(claims)
+}
+
+/// The lit slab: the field bends in the ball.
+fn lit(found: &Found) -> anyhow::Result<Vec<Claim>> {
+    let field = Field::named("lit")?;
+    let mut claims = Vec::new();
+    for treatment in Treatment::ALL {
+        let chosen = found.pick(|c| {
+            let is_cut = matches!(c.size, Size::Radius(r) if c.spot.depth() < r);
+            c.field == field && c.treatment == treatment && is_cut
+        });
+        let id = format!("lit-{}", treatment.name().replace(' ', "-"));
+        if treatment == Treatment::None {
+            let text =
+                "lit slab, fixed radii, balls cut by the lit face: measured over predicted error, none";
+            claims.push(Claim::within(&id, text, Unit::ONE, amplitude_of(&chosen)?, 0.98, 1.02));
+        } else {
+            // Errors of both signs and a few per cent: what is left of them is tested, not their ratio.
+            let left: Vec<Vec<f64>> =
+                chosen.iter().map(|r| r.errors.iter().map(|e| e - r.predicted()).collect()).collect();
+            let lists: Vec<&[f64]> = left.iter().map(|l| &l[..]).collect();
+            let text = format!(
+                "lit slab, fixed radii, balls cut by the lit face: error left over by the prediction, {}",
+                treatment.name()
+            );
+            claims.push(Claim::within(&id, &text, Unit::PERCENT, mean_error(&lists)?, -1.0, 1.0));
+        }
+    }
+    Ok(claims)
+}
+
+/// The k nearest in the furnace slab, where clusters are small, and at every number of photons.
+fn nearest(settings: &Settings, found: &Found) -> anyhow::Result<Vec<Claim>> {
+    let field = &FIELDS[0];
+    let mut claims = Vec::new();
+    for (photons, _) in field.sizes(settings) {
+        let chosen = |treatment| {
+            found.pick(move |c| {
+                (c.field, c.photons, c.treatment, c.size) == (field, photons, treatment, Size::Nearest(200))
+                    && c.spot.depth() <= 0.2
+            })
+        };
+        let none = amplitude_of(&chosen(Treatment::None))?;
+        let text = format!(
+            "furnace slab, 200 nearest of {photons} emitted, by the face: measured over predicted, none"
+        );
+        claims.push(Claim::within(&format!("nearest-none-n{photons}"), &text, Unit::ONE, none, 0.96, 1.04));
+        let clipped = mean_of(&chosen(Treatment::Clipped))?;
+        let text =
+            format!("furnace slab, 200 nearest of {photons} emitted, by the face: mean error, clipped");
+        let id = format!("nearest-clipped-n{photons}");
+        claims.push(Claim::within(&id, &text, Unit::PERCENT, clipped, -1.5, 1.5));
+    }
+    Ok(claims)
+}
+
+/// What treatments cost.
+fn variances(found: &Found) -> anyhow::Result<Vec<Claim>> {
+    let mut claims = Vec::new();
+    for treatment in Treatment::ALL {
+        let chosen: Vec<(f64, &[f64])> = found
+            .spreads
+            .iter()
+            .filter(|s| s.spread.treatment == treatment && s.spread.depth < 1.0)
+            .map(|s| (s.exact.0, &s.factors[..]))
+            .collect();
+        let id = format!("variance-{}", treatment.name().replace(' ', "-"));
+        let text = format!(
+            "independent photons below a face: variance of the estimate, measured over predicted, {}",
+            treatment.name()
+        );
+        claims.push(Claim::within(&id, &text, Unit::ONE, amplitude(&chosen)?, 0.9, 1.1));
+    }
+    let (right, late) = &found.late;
+    let mean = right.iter().sum::<f64>() / right.len() as f64;
+    let ratio: Moments = late.iter().map(|v| v / mean).collect();
+    let text = "beside a sheet, k nearest, clipped: variance if rejected photons set the radius, over that of the rule";
+    claims.push(Claim::detected("late-rejection", text, Unit::ONE, Estimate::mean(&ratio), 1.0, 0.25));
+    Ok(claims)
+}
+
+/// False photons.
+fn sheets(found: &Found) -> anyhow::Result<Vec<Claim>> {
+    let mut claims = Vec::new();
+    let percent = |values: &[f64]| {
+        Estimate::mean(&values.iter().map(|v| 100.0 * v).collect::<Vec<f64>>().iter().collect())
+    };
+    for (rejection, good, bad) in [
+        (Rejection::Facing, 50.0, 50.0),
+        (Rejection::FacingBehind, 100.0, 50.0),
+        (Rejection::BehindPlane, 100.0, 0.0),
+        (Rejection::Visible, 100.0, 0.0),
+    ] {
+        let name = rejection.name().replace(' ', "-");
+        let [kept_good, kept_bad] = kept(found, rejection, 0.25, Size::Radius(0.1))?;
+        let mut add = |what: &str, values: &[f64], share: f64| {
+            let text = format!(
+                "beside a sheet: part of the {what} photons in the ball that '{}' keeps",
+                rejection.name()
+            );
+            let id = format!("{name}-{what}");
+            claims.push(Claim::within(&id, &text, Unit::PERCENT, percent(values), share - 4.0, share + 4.0));
+        };
+        add("good", &kept_good, good);
+        // Exactly none has no spread, and needs no claim beside the one on the whole estimate.
+        if bad > 0.0 {
+            add("false", &kept_bad, bad);
+        }
+    }
+    let of = |side, rejection, size, is_clipped| {
+        let pick = move |s: &Sheet| {
+            (s.side, s.rejection, s.size, s.is_clipped) == (side, rejection, size, is_clipped)
+                && s.kernel == Kernel::Uniform
+                && s.distance <= 0.5
+        };
+        found.sheets.iter().filter(|s| pick(&s.sheet)).map(|s| &s.errors[..]).collect::<Vec<&[f64]>>()
+    };
+    for (side, word) in [(Side::Bright, "bright"), (Side::Dark, "dark")] {
+        for (size, how) in [(Size::Radius(0.1), "radius"), (Size::Nearest(30), "nearest")] {
+            for rejection in [Rejection::BehindPlane, Rejection::Visible] {
+                let id = format!("{}-clipped-{word}-{how}", rejection.name().replace(' ', "-"));
+                let text = format!(
+                    "beside a sheet, {word} side, {}: mean error of '{}' with clipping",
+                    size.name(),
+                    rejection.name()
+                );
+                let statistic = mean_error(&of(side, rejection, size, true))?;
+                claims.push(Claim::within(&id, &text, Unit::PERCENT, statistic, -3.0, 3.0));
+            }
+        }
+    }
+    let faults = [
+        ("facing-bright", Side::Bright, Rejection::Facing, false, "'facing' alone on the bright side"),
+        (
+            "facing-clipped-bright",
+            Side::Bright,
+            Rejection::Facing,
+            true,
+            "'facing' with clipping on the bright side",
+        ),
+        (
+            "facing-behind-dark",
+            Side::Dark,
+            Rejection::FacingBehind,
+            true,
+            "'facing behind' with clipping on the dark side",
+        ),
+        (
+            "behind-plane-bright",
+            Side::Bright,
+            Rejection::BehindPlane,
+            false,
+            "'behind plane' without clipping",
+        ),
+        ("off-clipped-dark", Side::Dark, Rejection::Off, true, "clipping without rejection on the dark side"),
+    ];
+    for (id, side, rejection, is_clipped, words) in faults {
+        let statistic = mean_error(&of(side, rejection, Size::Radius(0.1), is_clipped))?;
+        let text = format!("beside a sheet, r=0.1: {words} is seen to be wrong (mean error)");
+        claims.push(Claim::detected(id, &text, Unit::PERCENT, statistic, 0.0, 20.0));
+    }
+    Ok(claims)
+}
+
+/// The place and size that tables and figures show.
+pub fn is_main(c: &Case) -> bool {
+    c.size == Size::Radius(MAIN.0) && c.kernel == Kernel::Uniform && matches!(c.spot, Spot::Face(_))
+}

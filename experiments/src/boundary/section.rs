@@ -1,0 +1,68 @@
+//! The picture: the furnace sphere in section, every place of it.
+
+use super::cases::MAIN;
+use super::fields::Field;
+use crate::harness::{CellId, CellOutput, Settings};
+use glam::DVec3;
+use turbid::Spectrum;
+use turbid::estimators::boundary::{Boundary, Treatment, treated_fluence};
+use turbid::estimators::{Gather, Kernel};
+
+/// The group of its maps.
+pub const GROUP: &str = "section";
+/// Cells of the picture along the radius of the sphere.
+pub const ALONG: usize = 16;
+/// Width of a cell [mfp].
+pub const WIDTH: f64 = 0.125;
+/// Radius of the sphere [mfp].
+pub const RADIUS: f64 = WIDTH * ALONG as f64;
+/// Emitted photons a map.
+const PHOTONS: u64 = 20_000;
+
+/// The cells.
+pub fn cells(settings: &Settings) -> impl Iterator<Item = CellId> {
+    let photons = settings.photons(PHOTONS, PHOTONS);
+    CellId::replicates(GROUP, settings.pick(64, 512), 6.0 * photons as f64)
+}
+
+/// The places of one quadrant whose cells are in the sphere, or reach into it: column, row and distance from the centre.
+pub fn places() -> impl Iterator<Item = (usize, usize, f64)> {
+    (0..ALONG * ALONG).filter_map(|index| {
+        let (column, row) = (index % ALONG, index / ALONG);
+        let middle = |i: usize| WIDTH * (i as f64 + 0.5);
+        let distance = libm::hypot(middle(column), middle(row));
+        // A cell whose middle is barely outside shows the surface.
+        (distance < RADIUS + 0.5 * WIDTH).then(|| (column, row, distance.min(RADIUS)))
+    })
+}
+
+/// The case of a place.
+pub fn case(treatment: Treatment, column: usize, row: usize) -> String {
+    format!("section {} {column} {row}", treatment.name())
+}
+
+/// Measures one map: at each place the four mirrored ones are averaged.
+pub fn measure(settings: &Settings, cell: &CellId) -> anyhow::Result<CellOutput> {
+    let field = Field::named("sphere")?;
+    let photons = settings.photons(PHOTONS, PHOTONS);
+    let map = field.map(settings, cell, photons)?;
+    let mut output = CellOutput::new();
+    output.count("photons emitted", photons);
+    output.count("photons stored", map.stored() as u64);
+    let gather = Gather::radius(MAIN.0)?;
+    for treatment in Treatment::ALL {
+        let boundary = Boundary::new(field.shape()?, treatment)?;
+        for (column, row, distance) in places() {
+            let along = DVec3::new(column as f64 + 0.5, 0.0, row as f64 + 0.5).normalize() * distance;
+            let mut sum = 0.0;
+            for (x, z) in [(1.0, 1.0), (-1.0, 1.0), (1.0, -1.0), (-1.0, -1.0)] {
+                let probe = along * DVec3::new(x, 1.0, z);
+                let treated = treated_fluence(&map, probe, Spectrum::ONE, Kernel::Uniform, gather, &boundary);
+                sum += treated.estimate.value[0];
+            }
+            output.count("estimates", 4);
+            output.push(case(treatment, column, row), "fluence", 0.25 * sum);
+        }
+    }
+    Ok(output)
+}

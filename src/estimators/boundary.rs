@@ -1,0 +1,242 @@
+//! Estimates near a boundary: what they do where the medium ends inside the ball, and about photons behind a wall.
+//!
+//! With K_r the kernel of the ball about x, O the medium, z = (y - x) . n / r the depth along the inward normal n of the
+//! nearest boundary point, S_j = sum p K_r z^j over the gathered photons and M_j = int_O K_r z^j:
+//!
+//! | treatment | estimate | in a uniform field f |
+//! |---|---|---|
+//! | none | S_0 | f M_0 |
+//! | clipped | S_0 / M_0 | f |
+//! | reflection | sum p (K_r + K_r of the photon's images) | f between flat faces |
+//! | local linear | (M_2 S_0 - M_1 S_1)/(M_0 M_2 - M_1^2) | f |
+//!
+//! All four are the plain estimate where the ball is whole. The radius of a k-nearest gather is set by real, accepted photons
+//! alone: an image, or a rejected photon, sets none.
+
+mod accepted;
+mod images;
+mod moments;
+mod rejection;
+mod solid;
+
+pub use moments::body_moments;
+pub use rejection::Rejection;
+
+use super::{BallSum, Estimate, Gather, Kernel, ball_sum, for_each_photon};
+use crate::Spectrum;
+use crate::error::{Error, Result};
+use crate::geometry::Shape;
+use crate::photons::PhotonMap;
+use accepted::{Accepted, accepted};
+use glam::DVec3;
+use images::images;
+use moments::inward_normal;
+use rejection::Sieve;
+
+/// What an estimate does about the part of its ball that lies outside the medium.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Treatment {
+    /// Nothing: it loses up to half at a face.
+    None,
+    /// Divides by the part of the kernel that is inside (Diggle 1985).
+    Clipped,
+    /// Mirrors the photons in each face, edge and corner; in a sphere in the tangent plane (Silverman 1986, 2.10).
+    Reflection,
+    /// Fits a constant and a slope along the normal (Jones 1993). Exact for linear fields at a flat face, at the cost of
+    /// variance; may be negative, and is never clamped.
+    LocalLinear,
+}
+
+impl Treatment {
+    /// Every one.
+    pub const ALL: [Treatment; 4] =
+        [Treatment::None, Treatment::Clipped, Treatment::Reflection, Treatment::LocalLinear];
+
+    /// Its name in files and tables.
+    pub fn name(self) -> &'static str {
+        match self {
+            Treatment::None => "none",
+            Treatment::Clipped => "clipped",
+            Treatment::Reflection => "reflection",
+            Treatment::LocalLinear => "local linear",
+        }
+    }
+}
+
+/// The boundaries that an estimate is told of.
+#[derive(Debug, Clone, Copy)]
+pub struct Boundary<'a> {
+    medium: Shape,
+    treatment: Treatment,
+    rejection: Rejection,
+    walls: &'a [Shape],
+}
+
+impl Boundary<'static> {
+    /// A treatment of the surface of the medium, or of the part of it that is on the points' side of a wall.
+    ///
+    /// # Errors
+    /// [`Error::Scene`] if `medium` is a rectangle, which has no inside.
+    pub fn new(medium: Shape, treatment: Treatment) -> Result<Self> {
+        if matches!(medium, Shape::Rectangle(_)) {
+            return Err(Error::Scene("a rectangle bounds no medium: name a sphere, slab or cuboid".into()));
+        }
+        Ok(Boundary { medium, treatment, rejection: Rejection::Off, walls: &[] })
+    }
+}
+
+impl Boundary<'_> {
+    /// The same, with photons rejected that walls part from the point.
+    pub fn with_walls(self, rejection: Rejection, walls: &[Shape]) -> Boundary<'_> {
+        Boundary { medium: self.medium, treatment: self.treatment, rejection, walls }
+    }
+}
+
+/// An estimate near a boundary.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Treated {
+    /// The estimate; `found` counts accepted photons, no images.
+    pub estimate: Estimate,
+    /// Rejected photons in the ball.
+    pub rejected: usize,
+}
+
+/// Fluence at a point [W/L^2] as [`treated_density`] estimates it: density over sigma_t.
+///
+/// # Arguments
+/// `sigma_t` [1/L] at the point, above zero in every channel, as in [`fluence`](super::fluence)
+pub fn treated_fluence(
+    map: &PhotonMap,
+    point: DVec3,
+    sigma_t: Spectrum,
+    kernel: Kernel,
+    gather: Gather,
+    boundary: &Boundary<'_>,
+) -> Treated {
+    let mut treated = treated_density(map, point, kernel, gather, boundary);
+    treated.estimate.value = treated.estimate.value / sigma_t;
+    treated
+}
+
+/// Density of collisions at a point, by power [W/L^3], with a treatment of boundaries.
+///
+/// # Arguments
+/// `point` inside the medium or on its boundary. Reflection in a slab, or a cuboid, is exact for radii up to the
+/// distance of opposite faces
+/// # Limits
+/// with a whole ball and nothing rejected it is [`collision_density`](super::collision_density), bit by bit
+/// # Source
+/// Jones 1993, "Simple boundary correction for kernel density estimation"
+pub fn treated_density(
+    map: &PhotonMap,
+    point: DVec3,
+    kernel: Kernel,
+    gather: Gather,
+    boundary: &Boundary<'_>,
+) -> Treated {
+    let sieve = Sieve::new(boundary.rejection, boundary.walls, point, gather.cap());
+    let (BallSum { sum, ball }, rejected) = match sieve {
+        None => (treated_sum(map, point, kernel, gather, boundary), 0),
+        Some(sieve) => sifted_sum(map, point, kernel, gather, boundary, &sieve),
+    };
+    let estimate = Estimate {
+        value: sum / map.emitted() as f64,
+        radius: ball.radius,
+        found: ball.found,
+        underfull: ball.underfull,
+        coincident: ball.coincident,
+    };
+    Treated { estimate, rejected }
+}
+
+/// Nothing is rejected: the sums are those of other estimates.
+fn treated_sum(
+    map: &PhotonMap,
+    point: DVec3,
+    kernel: Kernel,
+    gather: Gather,
+    boundary: &Boundary<'_>,
+) -> BallSum {
+    let medium = &boundary.medium;
+    let mut plain = ball_sum(map, point, kernel, gather);
+    let r = plain.ball.radius;
+    if medium.room(point) >= r {
+        return plain;
+    }
+    match boundary.treatment {
+        Treatment::None => {}
+        Treatment::Clipped => plain.sum = plain.sum / body_moments(kernel, medium, point, r)[0],
+        Treatment::Reflection => {
+            let images = images(medium, point, r);
+            // The uniform kernel's weight is the part of each photon that counts: images of the k-th count no more than
+            // the k-th does, not even on a face, where they are as far away.
+            let whole = Kernel::Uniform.peak();
+            for_each_photon(map, point, Kernel::Uniform, gather, |photon, share| {
+                let weight: f64 =
+                    images.iter().map(|image| image_weight(kernel, (photon.position - image) / r)).sum();
+                plain.sum += Spectrum(photon.power.as_dvec3()) * (share / whole * weight / (r * r * r));
+            });
+        }
+        Treatment::LocalLinear => {
+            let normal = inward_normal(medium, point);
+            let mut first = Spectrum::ZERO;
+            for_each_photon(map, point, kernel, gather, |photon, weight| {
+                let z = (photon.position - point).dot(normal) / r;
+                first += Spectrum(photon.power.as_dvec3()) * (weight * z / (r * r * r));
+            });
+            plain.sum = linear(body_moments(kernel, medium, point, r), plain.sum, first);
+        }
+    }
+    plain
+}
+
+/// The same over accepted photons, and how many were rejected.
+fn sifted_sum(
+    map: &PhotonMap,
+    point: DVec3,
+    kernel: Kernel,
+    gather: Gather,
+    boundary: &Boundary<'_>,
+    sieve: &Sieve<'_>,
+) -> (BallSum, usize) {
+    let Accepted { photons, ball, rejected } = accepted(map.tree(), point, gather, sieve);
+    let (medium, r) = (&boundary.medium, ball.radius);
+    let sum = |weight: &dyn Fn(DVec3) -> f64| {
+        photons.iter().fold(Spectrum::ZERO, |sum, (photon, share)| {
+            sum + Spectrum(photon.power.as_dvec3()) * (share * weight(photon.position) / (r * r * r))
+        })
+    };
+    // All gathered photons are in the ball, whatever rounding says of the last.
+    let weight = |place: DVec3| {
+        let u2 = (place - point).length_squared() / (r * r);
+        kernel.peak() * kernel.profile(u2.min(1.0))
+    };
+    let nowhere = if point.is_finite() { 0.0 } else { f64::NAN };
+    let plain = sum(&weight) + Spectrum::grey(nowhere);
+    let is_whole = medium.room(point) >= r;
+    let sum = match boundary.treatment {
+        _ if is_whole => plain,
+        Treatment::None => plain,
+        Treatment::Clipped => plain / body_moments(kernel, medium, point, r)[0],
+        Treatment::Reflection => images(medium, point, r)
+            .into_iter()
+            .fold(plain, |all, image| all + sum(&|place| image_weight(kernel, (place - image) / r))),
+        Treatment::LocalLinear => {
+            let normal = inward_normal(medium, point);
+            let first = sum(&|place| weight(place) * (place - point).dot(normal) / r);
+            linear(body_moments(kernel, medium, point, r), plain, first)
+        }
+    };
+    (BallSum { sum, ball }, rejected)
+}
+
+/// The kernel of radius 1 at a vector, 0 beyond its ball.
+fn image_weight(kernel: Kernel, away: DVec3) -> f64 {
+    let u2 = away.length_squared();
+    if u2 <= 1.0 { kernel.peak() * kernel.profile(u2) } else { 0.0 }
+}
+
+/// The constant of the straight line fitted to a field with moments S_0 and S_1.
+fn linear([m0, m1, m2]: [f64; 3], s0: Spectrum, s1: Spectrum) -> Spectrum {
+    (s0 * m2 - s1 * m1) / (m0 * m2 - m1 * m1)
+}
