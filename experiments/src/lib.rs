@@ -4,6 +4,7 @@
 //! what their predictions share, and [`report`] writes what they found.
 
 pub mod bias;
+pub mod budget;
 pub mod harness;
 pub mod report;
 pub mod theory;

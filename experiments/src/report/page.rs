@@ -2,8 +2,8 @@
 
 use super::style::CSS;
 use crate::harness::{
-    FAMILY_WISE, FigureFiles, Judged, MIN_MAPS, Prediction, Provenance, Row, SectionReport, Settings, Table,
-    Verdict, number, row_label, with_error,
+    FAMILY_WISE, FigureFiles, Judged, Kind, MIN_MAPS, Prediction, Provenance, Row, SectionReport, Settings,
+    Table, Verdict, number, row_label, with_error,
 };
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 
@@ -155,6 +155,10 @@ fn claims(judged: &[Judged], numbers: &mut Numbers) -> Markup {
 
 fn interval(judged: &Judged) -> String {
     let (low, high) = (judged.interval.low, judged.interval.high);
+    // A p-value has no interval.
+    if matches!(judged.claim.kind, Kind::Fits | Kind::Refused) {
+        return String::new();
+    }
     // Both ends to the digit that the interval's width justifies.
     let end = |x: f64| {
         with_error(x, 0.1 * (high - low))
