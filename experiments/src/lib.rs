@@ -6,10 +6,11 @@
 pub mod bias;
 pub mod budget;
 pub mod harness;
+pub mod march;
 pub mod report;
 pub mod theory;
 
 use harness::Experiment;
 
 /// All experiments, in the order of the report.
-pub const ALL: &[Experiment] = &[bias::EXPERIMENT];
+pub const ALL: &[Experiment] = &[bias::EXPERIMENT, march::EXPERIMENT];
