@@ -7,10 +7,11 @@ pub mod bias;
 pub mod budget;
 pub mod harness;
 pub mod march;
+pub mod rates;
 pub mod report;
 pub mod theory;
 
 use harness::Experiment;
 
 /// All experiments, in the order of the report.
-pub const ALL: &[Experiment] = &[bias::EXPERIMENT, march::EXPERIMENT];
+pub const ALL: &[Experiment] = &[bias::EXPERIMENT, march::EXPERIMENT, rates::EXPERIMENT];
