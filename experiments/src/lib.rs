@@ -5,12 +5,16 @@
 
 pub mod bias;
 pub mod boundary;
+pub mod budget;
 pub mod extremes;
 pub mod harness;
+pub mod march;
+pub mod rates;
 pub mod report;
 pub mod theory;
 
 use harness::Experiment;
 
 /// All experiments, in the order of the report.
-pub const ALL: &[Experiment] = &[bias::EXPERIMENT, boundary::EXPERIMENT, extremes::EXPERIMENT];
+pub const ALL: &[Experiment] =
+    &[bias::EXPERIMENT, boundary::EXPERIMENT, march::EXPERIMENT, rates::EXPERIMENT, extremes::EXPERIMENT];

@@ -7,7 +7,10 @@ use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
-use turbid_experiments::harness::{Experiment, Outcome, Settings, Study, Verdict, run};
+use turbid_experiments::harness::{
+    Claim, Closing, Estimate, Experiment, Outcome, Section, SectionReport, Settings, Study, Unit, Verdict,
+    run,
+};
 
 fn settings(out: &Path) -> Settings {
     Settings { threads: 2, ..Settings::new(out) }
@@ -245,6 +248,36 @@ fn only_chooses_experiments_and_knows_their_names() {
             .unwrap()
             .contains("\"late_predictions\": false")
     );
+}
+
+/// Says how many rows the sections before it have, and claims it if there are any settings to run all of them.
+fn count_rows(settings: &Settings, sections: &[SectionReport]) -> anyhow::Result<Section> {
+    let rows: usize = sections.iter().map(|s| s.section.rows.len()).sum();
+    let statistic = Estimate::exact(rows as f64, 0.0);
+    let claim = Claim::within("rows", "rows of all sections", Unit::ONE, statistic, 5.0, 5.0);
+    let claims = if settings.only.is_empty() { vec![claim] } else { Vec::new() };
+    Ok(Section { summary: vec![format!("There are {rows} rows.")], claims, ..Section::default() })
+}
+
+#[test]
+fn a_closing_section_sees_all_others_and_is_judged_with_them() {
+    let closing = Closing { name: "closing", title: "In all", question: "How many?", conclude: count_rows };
+    let study = Study { closing: Some(closing), ..fake::study() };
+    let folder = tempfile::tempdir().unwrap();
+    let outcome = run(&study, &settings(folder.path())).unwrap();
+    // First in the report, and one more claim for the family.
+    let names =
+        |outcome: &Outcome| -> Vec<&str> { outcome.sections.iter().map(|s| s.experiment.name).collect() };
+    assert_eq!(names(&outcome), ["closing", "fake"]);
+    assert_eq!(outcome.sections[0].judged[0].verdict, Verdict::Upheld);
+    assert_eq!(verdicts(&outcome).len(), 5);
+    let claims = String::from_utf8(read(folder.path(), "claims.csv")).unwrap();
+    assert!(claims.lines().nth(1).unwrap().starts_with("closing,rows"));
+    // Without a claim it is a line at the end.
+    let only = Settings { only: vec!["fake".to_string()], ..settings(folder.path()) };
+    let outcome = run(&study, &only).unwrap();
+    assert_eq!(names(&outcome), ["fake", "closing"]);
+    assert!(String::from_utf8(read(folder.path(), "report.html")).unwrap().contains("There are 5 rows."));
 }
 
 #[test]

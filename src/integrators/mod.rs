@@ -1,5 +1,7 @@
-//! Integrators: the path tracer.
+//! Integrators: the path tracer, and the march through a photon map.
 
+mod march;
 mod path;
 
+pub use march::{StepRule, march, march_map};
 pub use path::{direct_flux, fluence, radiance};

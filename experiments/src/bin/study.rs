@@ -3,5 +3,6 @@
 use std::process::ExitCode;
 
 fn main() -> ExitCode {
-    turbid_experiments::harness::main("study", turbid_experiments::ALL)
+    use turbid_experiments::{ALL, budget, harness};
+    harness::main_with("study", ALL, Some(budget::CLOSING))
 }

@@ -23,7 +23,15 @@ pub enum Kind {
         /// The smallest difference that counts.
         by: f64,
     },
+    /// The statistic is the p-value of a test of fit, and the test does not refuse at [`FIT_LEVEL`]. To uphold it is
+    /// to say no more than that: what the test can see, claims of the next kind say.
+    Fits,
+    /// The statistic is the p-value of a test of fit that something wrong is put to, and the test refuses.
+    Refused,
 }
+
+/// The p-value at which a test of fit refuses.
+pub const FIT_LEVEL: f64 = FAMILY_WISE;
 
 /// One statement that a study can uphold or reject.
 #[derive(Debug, Clone, PartialEq)]
@@ -64,6 +72,17 @@ impl Claim {
         Claim { id: id.to_string(), text: text.to_string(), unit, statistic, kind }
     }
 
+    /// A test of fit, of which `p` is the p-value, does not refuse.
+    pub fn fits(id: &str, text: &str, p: f64) -> Self {
+        let statistic = Estimate::exact(p, 0.0);
+        Claim { id: id.to_string(), text: text.to_string(), unit: Unit::ONE, statistic, kind: Kind::Fits }
+    }
+
+    /// The same test refuses what is wrong on purpose, significantly after Holm.
+    pub fn refused(id: &str, text: &str, p: f64) -> Self {
+        Claim { kind: Kind::Refused, ..Claim::fits(id, text, p) }
+    }
+
     /// What the claim demands, in words, with its unit.
     pub fn margin(&self) -> String {
         let with_unit = |x: f64| self.unit.after(&number(x));
@@ -73,6 +92,8 @@ impl Claim {
             Kind::Within(m) => format!("{} to {}", number(m.low), with_unit(m.high)),
             Kind::Differs { from, by: 0.0 } => format!("not {}", with_unit(from)),
             Kind::Differs { from, by } => format!("{} or more from {}", with_unit(by), number(from)),
+            Kind::Fits => format!("p above {}", number(FIT_LEVEL)),
+            Kind::Refused => format!("p below {} (Holm)", number(FAMILY_WISE)),
         }
     }
 
@@ -84,6 +105,9 @@ impl Claim {
             Kind::Within(m) if m.contains(value) => 1.0,
             Kind::Within(m) => self.statistic.p(if value < m.low { m.low } else { m.high }),
             Kind::Differs { from, .. } => self.statistic.p(from),
+            Kind::Fits if value.is_nan() => 0.0,
+            Kind::Refused if value.is_nan() => 1.0,
+            Kind::Fits | Kind::Refused => value,
         }
     }
 
@@ -93,6 +117,7 @@ impl Claim {
         match self.kind {
             Kind::Within(m) => (value - m.low).abs().min((value - m.high).abs()),
             Kind::Differs { from, by } => (value - from).abs().max(by),
+            Kind::Fits | Kind::Refused => 0.0,
         }
     }
 }
@@ -191,6 +216,9 @@ fn decide(claim: &Claim, interval: &Interval, is_significant: bool) -> Verdict {
         {
             Verdict::Upheld
         }
+        Kind::Fits if is_significant => Verdict::Rejected,
+        Kind::Fits if claim.statistic.value() > FIT_LEVEL => Verdict::Upheld,
+        Kind::Refused if is_significant => Verdict::Upheld,
         _ => Verdict::Undecided,
     }
 }
@@ -198,6 +226,9 @@ fn decide(claim: &Claim, interval: &Interval, is_significant: bool) -> Verdict {
 /// How many maps would decide, if the estimate stays where it is: the error falls as one over the root of the maps,
 /// and a verdict with 99 per cent power needs (t + 2.4) errors.
 fn advice(claim: &Claim, share: f64) -> String {
+    if matches!(claim.kind, Kind::Fits | Kind::Refused) {
+        return "the test of fit neither refuses clearly nor accepts: more maps would decide".to_string();
+    }
     let Some(maps) = claim.statistic.maps() else { return "the bound on its error is too wide".to_string() };
     let needed_errors = student_critical(share, maps - 1) + POWER_QUANTILE;
     let ratio = needed_errors * claim.statistic.std_error() / claim.distance();
@@ -270,6 +301,23 @@ mod tests {
         assert_eq!(verdict(within(Estimate::exact(1.051, 1e-9))), Verdict::Rejected);
         assert_eq!(verdict(within(Estimate::exact(1.05, 1e-9))), Verdict::Undecided);
         assert_eq!(verdict(within(Estimate::exact(f64::NAN, 1e-9))), Verdict::Rejected);
+    }
+
+    #[test]
+    fn tests_of_fit() {
+        for (p, fits, refused) in [
+            (0.3, Verdict::Upheld, Verdict::Undecided),
+            (5e-4, Verdict::Rejected, Verdict::Upheld),
+            (f64::NAN, Verdict::Rejected, Verdict::Undecided),
+        ] {
+            assert_eq!(verdict(Claim::fits("a", "a", p)), fits, "{p}");
+            assert_eq!(verdict(Claim::refused("a", "a", p)), refused, "{p}");
+        }
+        // Among ten claims 5e-4 is neither a fit nor, after Holm, a misfit.
+        let many = |claim: Claim| judge(std::iter::repeat_n(claim, 10).collect())[0].verdict;
+        assert_eq!(many(Claim::fits("a", "a", 5e-4)), Verdict::Undecided);
+        assert_eq!(many(Claim::refused("a", "a", 5e-4)), Verdict::Undecided);
+        assert_eq!(many(Claim::refused("a", "a", 5e-5)), Verdict::Upheld);
     }
 
     #[test]

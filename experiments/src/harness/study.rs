@@ -23,8 +23,47 @@ pub struct Study<'a> {
     pub name: &'a str,
     /// Its experiments, in the order of the report.
     pub experiments: &'a [Experiment],
+    /// What is said of all of them together.
+    pub closing: Option<Closing>,
     /// Digest of the program: cells of another are not reused.
     pub program: String,
+}
+
+/// A section made of all others after the last of them has concluded: it measures nothing of its own.
+#[derive(Debug, Clone, Copy)]
+pub struct Closing {
+    /// File-safe name, that of the module.
+    pub name: &'static str,
+    /// Heading of its section.
+    pub title: &'static str,
+    /// What is asked, one or two sentences.
+    pub question: &'static str,
+    /// What the sections together say, a function of its arguments alone. Its claims are judged with all others;
+    /// a section without claims stands last in the report, one with claims first.
+    pub conclude: fn(&Settings, &[SectionReport]) -> anyhow::Result<Section>,
+}
+
+impl Closing {
+    /// The section with the heading of an experiment that has no cells.
+    fn report(&self, settings: &Settings, sections: &[SectionReport]) -> anyhow::Result<SectionReport> {
+        let heading = Experiment {
+            name: self.name,
+            title: self.title,
+            question: self.question,
+            cells: |_| Vec::new(),
+            predict: |_| Ok(Vec::new()),
+            measure: |_, _| bail!("a closing section measures nothing"),
+            conclude: |_, _, _| Ok(Section::default()),
+        };
+        Ok(SectionReport {
+            experiment: heading,
+            predictions: Vec::new(),
+            section: (self.conclude)(settings, sections).with_context(|| self.name)?,
+            judged: Vec::new(),
+            counters: Vec::new(),
+            cells: (0, 0.0),
+        })
+    }
 }
 
 /// One experiment with all that it found.
@@ -71,8 +110,13 @@ impl Outcome {
     }
 }
 
-/// The main function of every binary: arguments, study, summary, exit code.
+/// The main function of an experiment's binary: arguments, study, summary, exit code.
 pub fn main(name: &'static str, experiments: &[Experiment]) -> ExitCode {
+    main_with(name, experiments, None)
+}
+
+/// The same with a closing section.
+pub fn main_with(name: &'static str, experiments: &[Experiment], closing: Option<Closing>) -> ExitCode {
     let settings = match Settings::parse(name, std::env::args_os()) {
         Ok(settings) => settings,
         Err(error) if !error.use_stderr() => {
@@ -89,7 +133,9 @@ pub fn main(name: &'static str, experiments: &[Experiment]) -> ExitCode {
         return ended(done.map(|()| 0));
     }
     let finished = program_digest()
-        .and_then(|program| run(&Study { name, experiments, program: program.to_string() }, &settings))
+        .and_then(|program| {
+            run(&Study { name, experiments, closing, program: program.to_string() }, &settings)
+        })
         .and_then(|outcome| {
             print(|out| out.write_all(report::summary(&outcome).as_bytes()))?;
             Ok(if settings.strict { outcome.strict_code() } else { 0 })
@@ -179,6 +225,11 @@ pub fn run(study: &Study, settings: &Settings) -> anyhow::Result<Outcome> {
             counters,
             cells,
         });
+    }
+    if let Some(closing) = &study.closing {
+        let own = closing.report(settings, &sections)?;
+        let place = if own.section.claims.is_empty() { sections.len() } else { 0 };
+        sections.insert(place, own);
     }
     judge_all(&mut sections)?;
 

@@ -1,7 +1,7 @@
 //! Claims and verdicts in the page.
 
 use super::tables::{self, Numbers, Row};
-use crate::harness::{Judged, SectionReport, Verdict, number, with_error};
+use crate::harness::{Judged, Kind, SectionReport, Verdict, number, with_error};
 use maud::{Markup, html};
 
 /// Number of claims with a verdict.
@@ -97,6 +97,10 @@ fn advice(judged: &Judged) -> Markup {
 
 fn interval(judged: &Judged) -> String {
     let (low, high) = (judged.interval.low, judged.interval.high);
+    // A p-value has no interval.
+    if matches!(judged.claim.kind, Kind::Fits | Kind::Refused) {
+        return String::new();
+    }
     // Both ends to the digit that the interval's width justifies.
     let end = |x: f64| {
         with_error(x, 0.1 * (high - low))

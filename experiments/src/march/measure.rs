@@ -1,0 +1,79 @@
+//! Measuring one map.
+
+use super::cases::{ALBEDO, CELL, Case, REACH, TAU, maps, photons};
+use crate::harness::{CellId, CellOutput, Settings};
+use glam::DVec3;
+use turbid::Spectrum;
+use turbid::estimators::{Kernel, in_scattered};
+use turbid::geometry::{Shape, Slab};
+use turbid::integrators::{march, march_map};
+use turbid::light::{Beam, Light, Section};
+use turbid::math::{Interval, Positive};
+use turbid::medium::Homogeneous;
+use turbid::phase::{Isotropic, Phase};
+use turbid::photons::{Histories, PhotonMap, fold, is_in, shoot};
+use turbid::scene::{Orders, Parts, Region, Scene};
+use turbid::stats::Moments;
+use turbid::transport::NoProgress;
+
+/// The group of all cells.
+pub const GROUP: &str = "slab";
+
+/// All cells.
+pub fn cells(settings: &Settings) -> Vec<CellId> {
+    // A history has some three collisions; the rays of a map cost as much as its photons.
+    CellId::replicates(GROUP, maps(settings), 8.0 * photons(settings) as f64).collect()
+}
+
+fn medium() -> turbid::Result<Homogeneous> {
+    Homogeneous::new(Spectrum::ONE, Spectrum::grey(ALBEDO), Phase::Isotropic(Isotropic))
+}
+
+/// The slab under a normal beam of irradiance 1; lengths are mean free paths.
+fn scene() -> anyhow::Result<Scene> {
+    let region = Region { shape: Shape::Slab(Slab::new(0.0, TAU)?), medium: medium()? };
+    let lights = vec![Light::Beam(Beam::new(DVec3::Z, Spectrum::ONE, Section::Unbounded)?)];
+    Ok(Scene::new(Parts { regions: vec![region], lights, cell: Some(CELL), ..Parts::default() })?)
+}
+
+/// Measures one cell.
+pub fn measure(settings: &Settings, cell: &CellId) -> anyhow::Result<CellOutput> {
+    let (scene, medium) = (scene()?, medium()?);
+    let histories = Histories {
+        count: photons(settings),
+        seed: settings.seed,
+        replicate: cell.stream("march"),
+        max_order: None,
+    };
+    let pass = shoot(&scene, histories, &[], is_in(Orders::ALL), &NoProgress)?;
+    let mut output = CellOutput::new();
+    output.count("photons emitted", pass.emitted);
+    let mut photons = pass.photons;
+    fold::surround(&mut photons, CELL, REACH);
+    let map = PhotonMap::new(photons, pass.emitted)?;
+    for case in Case::all() {
+        let gather = case.gather()?;
+        let step = Positive::new("the step", case.step)?;
+        let span = Interval { start: 0.0, end: case.length() };
+        let mut values = Moments::new();
+        for ray in case.rays() {
+            let radiance = if case.mu == 1.0 {
+                march_map(&map, &medium, &ray, span, (step, case.rule), (Kernel::Uniform, gather))
+            } else {
+                // A slanted ray leaves the cell, and goes on where it would enter it.
+                let source = |t: f64| {
+                    let place = fold::into_cell(ray.at(t), CELL);
+                    let wo = -ray.dir;
+                    let scattered =
+                        in_scattered(&map, place, wo, medium.phase(), Spectrum::ONE, Kernel::Uniform, gather);
+                    medium.albedo() * scattered.value
+                };
+                march(medium.sigma_t(), span, step, case.rule, source)
+            };
+            values.push(radiance[0]);
+            output.count("steps", (case.length() / case.step).round() as u64);
+        }
+        output.push(case.name(), "radiance", values.mean());
+    }
+    Ok(output)
+}

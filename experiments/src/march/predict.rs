@@ -1,0 +1,229 @@
+//! What theory says of every case, before anything is measured.
+
+use super::cases::{ALBEDO, CELL, Case, REACH, Size, TAU, photons};
+use crate::harness::{Prediction, Settings, Term, Unit};
+use crate::theory::{Exact, Table, nearest_clustering, slab_fluence};
+use anyhow::Context;
+use rayon::prelude::*;
+use std::collections::HashMap;
+use std::f64::consts::PI;
+use turbid::integrators::StepRule;
+use turbid_analytic::kernel::Kernel;
+use turbid_analytic::nearest::nearest_expectation;
+use turbid_analytic::slab_kernel::{edge_loss, slab_moment};
+use turbid_analytic::{Incidence, IsotropicSlab};
+
+/// The predicted error of a radiance in parts, each as a fraction of the exact one.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Parts {
+    /// The sum over steps with the exact source, in place of the integral.
+    pub step: f64,
+    /// The medium ends inside the balls of the steps near its faces.
+    pub edge: f64,
+    /// The fluence bends inside the balls.
+    pub blur: f64,
+    /// Photons of one history draw the k-th photon nearer.
+    pub clusters: f64,
+    /// Bound on the numerical error of the sum.
+    pub error: f64,
+}
+
+/// The terms in the order of [`Parts::list`].
+pub const TERMS: [Term; 4] = [Term::Step, Term::Edge, Term::Blur, Term::Clusters];
+
+/// What interpolation of the kernel means adds to the error of a nearest expectation, tested in `theory::table`.
+const INTERPOLATION: f64 = 1e-8;
+
+impl Parts {
+    /// The parts in the order of [`TERMS`].
+    pub fn list(&self) -> [f64; 4] {
+        [self.step, self.edge, self.blur, self.clusters]
+    }
+
+    /// Predicted relative error.
+    pub fn total(&self) -> f64 {
+        self.list().iter().sum()
+    }
+}
+
+/// What the estimate of the fluence at one depth is expected to be, over the exact fluence there less 1, in parts.
+#[derive(Debug, Clone, Copy)]
+struct AtDepth {
+    exact: f64,
+    edge: f64,
+    blur: f64,
+    clusters: f64,
+    /// Bound on the error of exact fluence times the sum.
+    error: f64,
+}
+
+/// The slab.
+pub struct Theory {
+    slab: IsotropicSlab,
+    fluence: Exact,
+    /// Photons per volume where the fluence is 1.
+    density: f64,
+}
+
+impl Theory {
+    /// The theory of maps of so many photons.
+    pub fn new(photons: u64) -> anyhow::Result<Self> {
+        let incidence = Incidence::Beam { mu0: 1.0 };
+        Ok(Theory {
+            slab: IsotropicSlab::new(TAU, ALBEDO, incidence)?,
+            fluence: slab_fluence(TAU, ALBEDO, 0.0, incidence)?,
+            density: photons as f64 / (CELL * CELL),
+        })
+    }
+
+    /// The exact radiance and its bound.
+    pub fn exact(&self, mu: f64) -> anyhow::Result<(f64, f64)> {
+        let radiance = self.slab.radiance(0.0, mu)?;
+        Ok((radiance.value, radiance.error))
+    }
+
+    fn at_depth(&self, t: f64, size: Size) -> anyhow::Result<AtDepth> {
+        let (exact, exact_error) = (self.fluence)(t)?;
+        let field = |depth: f64| (self.fluence)(depth).map_or(f64::NAN, |(value, _)| value);
+        match size {
+            Size::Radius(r) => {
+                let split = edge_loss(Kernel::Uniform, r, t, TAU, field)?;
+                let error = split.edge.error + split.blur.error + exact_error;
+                let (edge, blur) = (split.edge.value / exact, split.blur.value / exact);
+                Ok(AtDepth { exact, edge, blur, clusters: 0.0, error })
+            }
+            Size::Nearest(k) => {
+                let neighbors = u32::try_from(k)?;
+                let ball = |r: f64| self.density * 4.0 / 3.0 * PI * r * r * r;
+                let table = Table::of_kernel_means(Kernel::Uniform, t, TAU, REACH, &self.fluence)?;
+                let mean = nearest_expectation(neighbors, REACH, |r| ball(r) * table.at(r), |r| table.at(r))?;
+                let inside =
+                    |r| slab_moment(Kernel::Uniform, 0, r, t, TAU).map_or(f64::NAN, |v| exact * v.value);
+                let uniform = nearest_expectation(neighbors, REACH, |r| ball(r) * inside(r), inside)?;
+                let (edge, blur) = (uniform.value / exact - 1.0, (mean.value - uniform.value) / exact);
+                // Where the medium ends inside the ball, neighbours are missing like the ball's own part.
+                let part = 1.0 + edge;
+                let clusters =
+                    nearest_clustering(ALBEDO, 0.0, self.density * exact * part, k) * part * (part + blur);
+                let error = mean.error + exact_error + INTERPOLATION * exact;
+                Ok(AtDepth { exact, edge, blur, clusters, error })
+            }
+        }
+    }
+
+    /// The parts of one case. The weights of the rules are written here a second time: the simulator's own are what is
+    /// tested.
+    pub fn parts(&self, case: &Case) -> anyhow::Result<Parts> {
+        let (radiance, bound) = self.exact(case.mu)?;
+        let (dx, count) = (case.step, (case.length() / case.step).round() as u32);
+        let held = if case.rule == StepRule::Integrated { -libm::expm1(-dx) / dx } else { 1.0 };
+        let at = if case.rule == StepRule::NearEnd { 0.0 } else { 0.5 };
+        let attenuated_at = if case.rule == StepRule::Middle { 0.5 } else { 0.0 };
+        let mut parts = Parts::default();
+        for i in 0..count {
+            let i = f64::from(i);
+            let here = self.at_depth((i + at) * dx * case.mu, case.size)?;
+            let weight = held * dx * libm::exp(-(i + attenuated_at) * dx) * ALBEDO / (4.0 * PI) / radiance;
+            parts.step += weight * here.exact;
+            parts.edge += weight * here.exact * here.edge;
+            parts.blur += weight * here.exact * here.blur;
+            parts.clusters += weight * here.exact * here.clusters;
+            parts.error += weight * here.error;
+        }
+        parts.step -= 1.0;
+        parts.error += 2.0 * bound / radiance;
+        Ok(parts)
+    }
+}
+
+const NAMES: [&str; 4] = ["error from step", "error from edge", "error from blur", "error from clusters"];
+
+/// The predictions, as they are written down before the measurement.
+pub fn predict(settings: &Settings) -> anyhow::Result<Vec<Prediction>> {
+    let theory = Theory::new(photons(settings))?;
+    let one = |case: Case| Ok((case, theory.exact(case.mu)?, theory.parts(&case)?));
+    let all: Vec<anyhow::Result<_>> = Case::all().into_par_iter().map(one).collect();
+    let mut predictions = Vec::new();
+    for item in all {
+        let (case, (exact, bound), parts): (Case, (f64, f64), Parts) = item?;
+        let mut add = |quantity: &str, unit, value: f64, error: f64, source: &str| {
+            let (case, quantity, source) = (case.name(), quantity.to_string(), source.to_string());
+            predictions.push(Prediction { case, quantity, unit, value, error, source });
+        };
+        let radiance = exact * (1.0 + parts.total());
+        let error = 100.0 * parts.error;
+        add("exact radiance", Unit::RADIANCE, exact, bound, "exact solution of the slab");
+        add(
+            "radiance",
+            Unit::RADIANCE,
+            radiance,
+            exact * parts.error,
+            "sum over steps of exact kernel means",
+        );
+        add("error", Unit::PERCENT, 100.0 * parts.total(), error, "sum of the parts");
+        for (name, value) in NAMES.iter().zip(parts.list()) {
+            add(name, Unit::PERCENT, 100.0 * value, error, "weights of the rule times the part of each step");
+        }
+    }
+    Ok(predictions)
+}
+
+/// Exact radiance and parts of a case, as they were written down.
+pub fn recall(
+    predictions: &HashMap<(&str, &str), (f64, f64)>,
+    case: &Case,
+) -> anyhow::Result<(f64, f64, Parts)> {
+    let name = case.name();
+    let find = |quantity: &str| {
+        let found = predictions.get(&(name.as_str(), quantity)).copied();
+        found.with_context(|| format!("no prediction of {quantity} of {name}"))
+    };
+    let part = |i: usize| find(NAMES[i]).map(|(value, _)| value / 100.0);
+    let (exact, bound) = find("exact radiance")?;
+    let error = find("error")?.1 / 100.0;
+    Ok((exact, bound, Parts { step: part(0)?, edge: part(1)?, blur: part(2)?, clusters: part(3)?, error }))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn case(mu: f64, step: f64, rule: StepRule) -> Case {
+        Case { mu, step, rule, size: Size::Radius(0.2) }
+    }
+
+    /// The step's own error falls with the step: linearly with the formula of 1998, where the source at the face is
+    /// summed half a step too much, and faster, up to the logarithm at the face, with the others.
+    #[test]
+    fn step_errors_fall_with_the_step() {
+        let theory = Theory::new(50_000).unwrap();
+        let step = |dx, rule| theory.parts(&case(1.0, dx, rule)).unwrap().step;
+        let ratio = |rule| step(0.1, rule) / step(0.05, rule);
+        // Euler and Maclaurin: (dx/2) (q(0) - q(L) e^-L) over the radiance, dx^2 ln dx behind it.
+        let (q0, q2) = ((theory.fluence)(0.0).unwrap().0, (theory.fluence)(2.0).unwrap().0);
+        let leading =
+            0.5 * 0.05 * (q0 - q2 * libm::exp(-2.0)) * ALBEDO / (4.0 * PI) / theory.exact(1.0).unwrap().0;
+        assert!((step(0.05, StepRule::NearEnd) / leading - 1.0).abs() < 0.1);
+        assert!((ratio(StepRule::NearEnd) - 2.0).abs() < 0.1, "{}", ratio(StepRule::NearEnd));
+        for rule in [StepRule::Middle, StepRule::Integrated] {
+            assert!((3.0..5.0).contains(&ratio(rule)), "{rule:?}: {}", ratio(rule));
+        }
+    }
+
+    /// A source of depth only: slant rays see it stretched, so that mu = 0.5 with steps of 0.1 stands at the depths of
+    /// mu = 1 with steps of 0.05.
+    #[test]
+    fn parts_are_sums_over_depths() {
+        let theory = Theory::new(50_000).unwrap();
+        let parts = theory.parts(&case(0.5, 1.0, StepRule::Middle)).unwrap();
+        let (radiance, _) = theory.exact(0.5).unwrap();
+        let sum: f64 = [0.25, 0.75, 1.25, 1.75]
+            .iter()
+            .zip([0.5, 1.5, 2.5, 3.5])
+            .map(|(&t, x)| libm::exp(-x) * (theory.fluence)(t).unwrap().0)
+            .sum();
+        assert!((parts.step + 1.0 - sum * ALBEDO / (4.0 * PI) / radiance).abs() < 1e-12);
+        // No ball of these steps reaches a face.
+        assert!(parts.edge.abs() < 1e-12 && parts.clusters == 0.0);
+    }
+}

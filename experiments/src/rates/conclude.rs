@@ -1,0 +1,298 @@
+//! What all cells together say.
+
+use super::cases::{BLURRED, DEPTHS, FACE, INSIDE, NOISY, Size, name, radii};
+use super::figures;
+use super::fit::{exponent, exponent_of_means};
+use super::predict::Case;
+use crate::harness::{
+    Cells, Claim, Entry, Estimate, Prediction, Row, Section, Settings, Table, Term, Unit, with_error,
+};
+use turbid::stats::Moments;
+
+/// One size, depth and radius with what was measured.
+pub struct Point {
+    /// Photons of a map.
+    pub photons: u64,
+    /// Depth [mfp].
+    pub depth: f64,
+    /// Radius [mfp].
+    pub radius: f64,
+    /// What was predicted.
+    pub theory: Case,
+    /// Relative error of each cell.
+    pub errors: Vec<f64>,
+    /// Mean squared error of each cell.
+    pub squares: Vec<f64>,
+}
+
+impl Point {
+    /// Mean squared error over all cells.
+    pub fn squared(&self) -> Moments {
+        self.squares.iter().collect()
+    }
+}
+
+/// Squared error against the number of photons along one rule for the radius.
+pub struct Curve {
+    /// Name in cases and claims.
+    pub name: &'static str,
+    /// What it is, for readers.
+    pub title: String,
+    /// Place of the radius of each size in the ladder.
+    pub chosen: Vec<usize>,
+    /// Mean squared error of each size, over the cells that report it.
+    pub measured: Vec<Moments>,
+    /// What was predicted for these radii; for the best, at the radius that is best in theory.
+    pub predicted: Vec<f64>,
+    /// What no number of photons takes away; subtracted before the fit.
+    pub floors: Vec<f64>,
+    /// The exponent.
+    pub exponent: Estimate,
+    /// The one that the same fit finds in the predictions.
+    pub theory: f64,
+    /// What it tends to.
+    pub limit: (f64, &'static str),
+}
+
+/// Concludes.
+pub fn conclude(settings: &Settings, _: &[Prediction], cells: &Cells) -> anyhow::Result<Section> {
+    let sizes: Vec<u64> = Size::all(settings).iter().map(|s| s.photons).collect();
+    let mut points = Vec::new();
+    for &photons in &sizes {
+        for depth in DEPTHS {
+            for radius in radii() {
+                let case = name(photons, depth, radius);
+                points.push(Point {
+                    photons,
+                    depth,
+                    radius,
+                    theory: Case::new(photons, depth, radius)?,
+                    errors: cells.values(&case, "error")?,
+                    squares: cells.values(&case, "squared error")?,
+                });
+            }
+        }
+    }
+    let curves = [best(&points, &sizes, INSIDE), fixed(&points, &sizes), best(&points, &sizes, FACE)];
+    let (rows, claims) = (rows(&points, &curves)?, claims(&points, &curves, &sizes));
+    Ok(Section {
+        summary: summary(&curves),
+        claims,
+        figures: vec![figures::rates(&points, &curves, &sizes)?],
+        tables: vec![table(&curves, &sizes)],
+        notes: notes(),
+        rows,
+        budget: points.iter().map(entry).collect(),
+    })
+}
+
+/// The points of one size and depth, in the order of radii.
+pub fn ladder(points: &[Point], photons: u64, depth: f64) -> Vec<&Point> {
+    points.iter().filter(|p| p.photons == photons && p.depth == depth).collect()
+}
+
+fn entry(point: &Point) -> Entry {
+    let Case { edge, blur, error, .. } = point.theory;
+    Entry::new(
+        format!("rates-n{}", point.photons),
+        name(point.photons, point.depth, point.radius),
+        &[(Term::Edge, edge), (Term::Blur, blur)],
+        error,
+        point.errors.clone(),
+    )
+}
+
+/// The best radius of each size: chosen on the even cells, its error reported by the odd ones, so that luck in choosing
+/// is not taken for accuracy.
+fn best(points: &[Point], sizes: &[u64], depth: f64) -> Curve {
+    let half = |point: &Point, from: usize| -> Vec<f64> {
+        point.squares.iter().skip(from).step_by(2).copied().collect()
+    };
+    let mean = |values: &[f64]| values.iter().sum::<f64>() / values.len().max(1) as f64;
+    let smallest = |values: Vec<f64>| {
+        (0..values.len()).fold(0, |best, i| if values[i] < values[best] { i } else { best })
+    };
+    let (mut chosen, mut reported, mut predicted) = (Vec::new(), Vec::new(), Vec::new());
+    for &photons in sizes {
+        let ladder = ladder(points, photons, depth);
+        let place = smallest(ladder.iter().map(|p| mean(&half(p, 0))).collect());
+        chosen.push(place);
+        reported.push(half(ladder[place], 1));
+        predicted.push(ladder.iter().map(|p| p.theory.squared()).fold(f64::INFINITY, f64::min));
+    }
+    let (name, title, limit) = if depth == INSIDE {
+        ("best", "best radius, depth 1".to_string(), (-4.0 / 7.0, "−4/7"))
+    } else {
+        ("face", "best radius, at the lit face".to_string(), (0.0, "0"))
+    };
+    let floors = vec![0.0; sizes.len()];
+    curve((name, title, limit), sizes, chosen, reported, predicted, floors)
+}
+
+/// One radius for all sizes, at which noise rules; its blur is subtracted.
+fn fixed(points: &[Point], sizes: &[u64]) -> Curve {
+    let chosen: Vec<&Point> = sizes.iter().map(|&n| ladder(points, n, INSIDE)[NOISY]).collect();
+    let title = format!("radius {:.2}, depth 1, less its floor", radii()[NOISY]);
+    curve(
+        ("fixed", title, (-1.0, "−1")),
+        sizes,
+        vec![NOISY; sizes.len()],
+        chosen.iter().map(|p| p.squares.clone()).collect(),
+        chosen.iter().map(|p| p.theory.squared()).collect(),
+        chosen.iter().map(|p| p.theory.bias() * p.theory.bias()).collect(),
+    )
+}
+
+fn curve(
+    (name, title, limit): (&'static str, String, (f64, &'static str)),
+    sizes: &[u64],
+    chosen: Vec<usize>,
+    reported: Vec<Vec<f64>>,
+    predicted: Vec<f64>,
+    floors: Vec<f64>,
+) -> Curve {
+    let x: Vec<f64> = sizes.iter().map(|&n| n as f64).collect();
+    let cells = reported.iter().map(Vec::len).min().unwrap_or(0);
+    let joined: Vec<Vec<f64>> = (0..cells).map(|c| reported.iter().map(|r| r[c]).collect()).collect();
+    let above: Vec<f64> = predicted.iter().zip(&floors).map(|(p, f)| p - f).collect();
+    Curve {
+        name,
+        title,
+        limit,
+        chosen,
+        measured: reported.iter().map(|r| r.iter().collect()).collect(),
+        exponent: exponent_of_means(&x, &joined, &floors),
+        theory: exponent(&x, &above),
+        predicted,
+        floors,
+    }
+}
+
+fn claims(points: &[Point], curves: &[Curve], sizes: &[u64]) -> Vec<Claim> {
+    let mut claims = Vec::new();
+    for (curve, margin) in curves.iter().zip([0.05, 0.05, 0.02]) {
+        let text = format!("{}: exponent of the mean squared error in the number of photons", curve.title);
+        let (low, high) = (curve.theory - margin, curve.theory + margin);
+        claims.push(Claim::within(
+            &format!("exponent-{}", curve.name),
+            &text,
+            Unit::ONE,
+            curve.exponent,
+            low,
+            high,
+        ));
+    }
+    if let Some(&most) = sizes.last() {
+        let point = ladder(points, most, INSIDE)[BLURRED];
+        let floor = point.theory.bias() * point.theory.bias();
+        let ratios: Moments = point.squares.iter().map(|s| (s - point.theory.variance) / floor).collect();
+        let text = format!(
+            "radius {:.2}, depth 1, most photons: mean squared error, less the predicted variance, over the floor that \
+             its blur sets",
+            point.radius
+        );
+        claims.push(Claim::within("floor", &text, Unit::ONE, Estimate::mean(&ratios), 0.95, 1.05));
+    }
+    // The mistake to which noise invites: a rate read off at a face would be taken for that of the inside.
+    let face = &curves[2];
+    let text = "wrong on purpose, the rate at an untreated face taken for that of the inside: exponent";
+    claims.push(Claim::detected("face-is-not-inside", text, Unit::ONE, face.exponent, curves[0].theory, 0.3));
+    claims
+}
+
+fn rows(points: &[Point], curves: &[Curve]) -> anyhow::Result<Vec<Row>> {
+    let mut rows = Vec::new();
+    for point in points {
+        let case = name(point.photons, point.depth, point.radius);
+        let error: Moments = point.errors.iter().collect();
+        rows.push(
+            Row::measured(&case, "error", Unit::ONE, &error)?
+                .reference(point.theory.bias(), point.theory.error),
+        );
+        rows.push(
+            Row::measured(&case, "squared error", Unit::ONE, &point.squared())?
+                .reference(point.theory.squared(), 1e-12),
+        );
+    }
+    for curve in curves {
+        rows.push(
+            Row::estimated(curve.name, "exponent", Unit::ONE, &curve.exponent)?.predicted(curve.theory),
+        );
+    }
+    Ok(rows)
+}
+
+fn signed(x: f64, decimals: usize) -> String {
+    format!("{x:.decimals$}").replace('-', "−")
+}
+
+fn table(curves: &[Curve], sizes: &[u64]) -> Table {
+    let radii = radii();
+    let mut rows = Vec::new();
+    for curve in curves {
+        for (i, &photons) in sizes.iter().enumerate() {
+            // Between this size and the next, what theory says.
+            let local = sizes.get(i + 1).map(|&next| {
+                let above = |i: usize| curve.predicted[i] - curve.floors[i];
+                exponent(&[photons as f64, next as f64], &[above(i), above(i + 1)])
+            });
+            rows.push(vec![
+                curve.title.clone(),
+                photons.to_string(),
+                format!("{:.3}", radii[curve.chosen[i]]),
+                with_error(curve.measured[i].mean(), curve.measured[i].std_error()),
+                crate::harness::number(curve.predicted[i]),
+                local.map(|x| signed(x, 3)).unwrap_or_default(),
+            ]);
+        }
+    }
+    let columns =
+        ["rule", "photons", "radius", "mean squared error", "predicted", "exponent to the next, predicted"];
+    Table {
+        caption: "Mean squared error, relative to the square of the exact fluence, with its standard error over cells, \
+                  beside the prediction, at the radius used (in mean free paths), and the predicted exponent between \
+                  neighbouring sizes; where a floor is spoken of, it is subtracted in the exponent only."
+            .to_string(),
+        columns: columns.map(String::from).to_vec(),
+        rows,
+    }
+}
+
+fn summary(curves: &[Curve]) -> Vec<String> {
+    let words = |c: &Curve| {
+        format!(
+            "{} (theory at these numbers {}, in the limit {})",
+            with_error(c.exponent.value(), c.exponent.std_error()),
+            signed(c.theory, 3),
+            c.limit.1
+        )
+    };
+    vec![
+        format!(
+            "At the best radius the mean squared error falls with the number of photons by the exponent {}.",
+            words(&curves[0])
+        ),
+        format!(
+            "At a fixed radius it falls by {} down to the floor of its blur, and no further. At a lit face that nothing \
+             is done about, by {}: half of the light stays missing, and more photons buy next to nothing.",
+            words(&curves[1]),
+            words(&curves[2])
+        ),
+    ]
+}
+
+fn notes() -> Vec<String> {
+    vec![
+        "Uncollided photons in e^-t, uniform kernel, fixed radii. Small maps are measured in batches, so that a cell of any \
+         size costs alike; a cell gives the mean over its maps and probes."
+            .to_string(),
+        "The best radius is chosen on one half of the cells and its error reported by the other half. The prediction beside \
+         it is the smallest of the ladder; a neighbouring radius chosen by noise costs at most a few per cent, alike at \
+         every size."
+            .to_string(),
+        "Exponents are those of a straight line through the logarithms of all sizes, refitted without each cell in turn. \
+         At the face a smaller radius trades the light lost beyond it against noise, so that the exponent is not \
+         quite 0 at any finite number."
+            .to_string(),
+    ]
+}
