@@ -89,8 +89,9 @@ fn steps_divide_the_stretch() {
 }
 
 /// A uniform map of isotropic photons: any phase function scatters density/(4 pi) x albedo into every direction, and
-/// each rule makes of that what it makes of a constant source. 64 maps; sees one per cent, and so the factor 1.27 of
-/// the rule of 1998 at steps of half a mean free path.
+/// each rule makes of that what it makes of a constant source. 128 maps; sees one per cent, and so the factor 1.27 of
+/// the rule of 1998 at steps of half a mean free path. Behind a forward peak photons weigh unequally, (1+g^2)/(1-g^2)^2 is
+/// 8 times the variance: it sees three per cent.
 #[test]
 fn a_uniform_map() {
     let photons = Synthetic::new(Profile::Constant, DVec3::ZERO, DVec3::new(4.0, 2.0, 2.0)).unwrap();
@@ -104,11 +105,11 @@ fn a_uniform_map() {
         (StepRule::Middle, 0.25 / sinh(0.25)),
         (StepRule::Integrated, 1.0),
     ];
-    for g in [0.0, 0.75] {
+    for (g, promise) in [(0.0, 0.01), (0.75, 0.03)] {
         let phase = Phase::with_asymmetry(Asymmetry::new("g", g).unwrap());
         let medium = Homogeneous::new(Spectrum::ONE, Spectrum::grey(0.8), phase).unwrap();
         let mut measured = [Moments::new(), Moments::new(), Moments::new()];
-        for replicate in 0..64 {
+        for replicate in 0..128 {
             let map = photons.map(Number::Exact(40_000), 11, replicate).unwrap();
             for ((rule, _), moments) in rules.iter().zip(&mut measured) {
                 let one = |i: i32| {
@@ -121,7 +122,7 @@ fn a_uniform_map() {
         for ((rule, factor), moments) in rules.iter().zip(&measured) {
             let test = t_test(moments, *factor, 1e-6);
             assert!(test.p > ALPHA, "{rule:?} g {g}: {} of {factor}, z {}", moments.mean(), test.z);
-            assert!(smallest_detectable_bias(moments.std_error(), 63) < 0.01, "{}", moments.std_error());
+            assert!(smallest_detectable_bias(moments.std_error(), 127) < promise, "{}", moments.std_error());
         }
     }
 }
