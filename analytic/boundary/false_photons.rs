@@ -17,9 +17,9 @@ use std::f64::consts::PI;
 pub enum Rejection {
     /// All.
     Off,
-    /// w_p.n < 0: those that travel towards the surface, half of the good ones among the rejected.
+    /// w_p.n < 0: those that travel from the probe's side to the other. Half of the good ones are rejected.
     Facing,
-    /// (x_p - s0).n >= 0 or w_p.n < 0: of those behind the plane, only the ones that travel away from the probe's side.
+    /// (x_p - s0).n >= 0 or w_p.n < 0: the same of photons behind the plane only.
     FacingBehind,
     /// (x_p - s0).n >= 0.
     BehindPlane,

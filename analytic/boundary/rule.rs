@@ -109,14 +109,14 @@ pub(super) fn tau_of(x: f64) -> f64 {
     (0.5 - sin(asin((1.0 - 2.0 * x).clamp(-1.0, 1.0)) / 3.0)).clamp(0.0, 1.0)
 }
 
-/// Rising numbers between `low` and `high`, both included, those of `between` among them.
+/// Rising numbers from `low` to `high`, with those of `between` that lie between.
 pub(super) fn pieces(low: f64, high: f64, mut between: Vec<f64>) -> Vec<f64> {
-    // Pieces shorter than roundings of their ends hold nothing.
-    let least = 1e-13 * high.abs().max(low.abs());
-    between.retain(|x| *x > low + least && *x < high - least);
+    // Pieces as short as roundings of their ends hold nothing.
+    let apart = |a: f64, b: f64| b - a > 1e-13 * a.abs().max(b.abs());
+    between.retain(|x| apart(low, *x) && apart(*x, high));
     between.push(low);
     between.sort_by(f64::total_cmp);
-    between.dedup_by(|b, a| *b - *a <= least);
+    between.dedup_by(|b, a| !apart(*a, *b));
     between.push(high);
     between
 }
@@ -146,14 +146,16 @@ mod tests {
 
     #[test]
     fn square_roots_and_logarithms_at_the_ends() {
+        let mut first = None;
         for rule in RULES.iter() {
-            // int_0^2 (x^(3/2) (2-x)^(1/2)) dx = pi; the order's own rounding is the tolerance.
+            // int_0^2 x^(3/2) (2-x)^(1/2) dx = pi/2; the next singularity, tau = 3/2, leaves 3.7^(-2 order).
             let got = rule.integrate(0.0, 2.0, |x| x * (x * (2.0 - x)).sqrt());
             assert!((got - 0.5 * std::f64::consts::PI).abs() < 1e-13, "{} {got}", rule.order());
-            let log = rule.integrate(0.0, 1.0, |x| x * libm::log(x));
-            // tau^3 ln tau is integrated to about order^(-8).
-            let n = rule.order() as f64;
-            assert!((log + 0.25).abs() < libm::pow(n, -8.0), "{} {log}", rule.order());
+            // tau^3 ln tau leaves an error that falls like (order + 1/2)^(-8), down to roundings.
+            let n = rule.order() as f64 + 0.5;
+            let error = (rule.integrate(0.0, 1.0, |x| x * libm::log(x)) + 0.25).abs();
+            let expected = *first.get_or_insert(error * libm::pow(n, 8.0)) * libm::pow(n, -8.0);
+            assert!((error - expected).abs() < 0.1 * expected + 1e-15, "{} {error:e} {expected:e}", n);
             for x in [0.0, 1e-9, 0.2, 0.5, 0.9, 1.0] {
                 assert!((place(tau_of(x)) - x).abs() < 4.0 * f64::EPSILON);
             }
@@ -163,12 +165,14 @@ mod tests {
     #[test]
     fn parts_of_a_piece_come_from_its_own_nodes() {
         let f = |x: f64| x.sqrt() * (3.0 - x).sqrt() * libm::exp(x);
-        for rule in &RULES[1..] {
+        for rule in RULES.iter() {
             let values: Vec<[f64; 1]> = rule.on(1.0, 3.0).map(|(x, _)| [f(x - 1.0)]).collect();
             let got: f64 =
                 rule.on_part(1.0, 3.0, 2.2).map(|(tau, _, w)| w * rule.interpolate(&values, tau)[0]).sum();
             let want = RULES[3].integrate(0.0, 1.2, f);
-            assert!((got - want).abs() < 1e-12, "{} {got} {want}", rule.order());
+            // In tau the nearest singularity, 3 - x = 0, lies on the ellipse of sum 2.64 of the half axes.
+            let allowed = libm::pow(2.64, -(rule.order() as f64)).max(1e-13);
+            assert!((got - want).abs() < allowed, "{} {got} {want}", rule.order());
         }
     }
 }

@@ -21,7 +21,8 @@ pub enum Treatment {
     /// S_0/M_0: the ball's mass inside the medium only.
     Clipped,
     /// Every photon counts with its mirror images too: in each flat face, and in faces of different axes one after the
-    /// other (slab two, cuboid up to seven near a corner); in a sphere in the tangent plane at the nearest point.
+    /// other (slab two, cuboid seven near a corner, more where opposite faces are within reach); in a sphere in the
+    /// tangent plane at the nearest point. No images of images in the same axis: complete up to the shortest edge.
     Reflection,
     /// (M_2 S_0 - M_1 S_1)/(M_0 M_2 - M_1^2): the value at the probe of the straight line fitted along n.
     LocalLinear,
@@ -77,25 +78,19 @@ impl<'a> Gather<'a> {
                 Ok((sums[F0] + images, 1.0))
             }
             Treatment::LocalLinear => {
-                let (determinant, spread) = determinant(&sums)?;
+                let (determinant, spread) = determinant(&sums);
                 Ok(((sums[U2] * sums[F0] - sums[U1] * sums[F1]) / determinant, spread))
             }
         }
     }
 }
 
-/// M_0 M_2 - M_1^2, and how many times it is smaller than its terms.
-pub(super) fn determinant(sums: &Sums) -> Result<(f64, f64)> {
+/// M_0 M_2 - M_1^2, and how many times it is smaller than its terms. The probe is a place of the body, so that z has 0 at
+/// an end of its range or inside: its variance is a fair part of its mean square, however thin the body.
+pub(super) fn determinant(sums: &Sums) -> (f64, f64) {
     let product = sums[U0] * sums[U2];
     let value = product - sums[U1] * sums[U1];
-    // Roundings of the moments are below 1e-14 of them: nothing is left of a smaller difference.
-    if value > 1e-12 * product {
-        Ok((value, product / value))
-    } else {
-        Err(Error::Infinite(
-            "a straight line cannot be fitted: the medium inside the ball is too thin; allowed: smaller radii",
-        ))
-    }
+    (value, product / value)
 }
 
 /// A kernel that ends at its radius.
@@ -171,11 +166,10 @@ pub fn body_moment(kernel: Kernel, body: Body, at: [f64; 3], radius: f64, j: u32
 /// `at` as in [`body_moment`]; `radius` \[length\], 1e-12 to 1e12; `field` of the place inside the body, smooth there;
 /// at the faces it may behave like c + t ln t; it is not asked outside
 /// # Returns
-/// \[unit of the field\]
+/// \[unit of the field\]; the bound covers the integration, not errors of the field's own
 /// # Errors
 /// `Error::OutOfRange` naming the parameter; `Error::NotFinite` if the field is not, with the distance from the probe
-/// (or image) at which; `Error::Infinite` for the kernel without end, and for a local linear fit in a medium much
-/// thinner than the ball
+/// (or image) at which; `Error::Infinite` for the kernel without end
 /// # Limits
 /// radius up to the probe's depth: the plain estimate, whatever the treatment; a uniform field: `None` M_0 of it,
 /// `Clipped` and `LocalLinear` itself, `Reflection` itself behind flat faces up to the shortest edge; f + s z on a flat

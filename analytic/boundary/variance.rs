@@ -24,7 +24,7 @@ use std::f64::consts::PI;
 /// \[1\]; on a flat face, uniform kernel: 1/2, 2, 2, 6.74 in the order of [`Treatment::ALL`]
 /// # Errors
 /// `Error::OutOfRange` naming the parameter, `radius` for reflection beyond the shortest edge; `Error::Infinite` for the
-/// kernel without end and for a local linear fit in a medium much thinner than the ball
+/// kernel without end
 /// # Limits
 /// radius up to the probe's depth: 1
 pub fn treated_variance(
@@ -69,7 +69,7 @@ pub fn treated_variance(
         let moments = profile.ball(radius, |u| density(u) / cubed);
         match treatment {
             Treatment::LocalLinear => {
-                let (determinant, spread) = determinant(&moments)?;
+                let (determinant, spread) = determinant(&moments);
                 let (a, b) = (moments[U2] / determinant, moments[U1] / determinant);
                 Ok((a * a * squares[U0] - 2.0 * a * b * squares[U1] + b * b * squares[U2], spread))
             }
