@@ -1,6 +1,6 @@
 //! The cases asked of transported maps: where, with which gather, kernel and treatment.
 
-use super::fields::{Asked, CELL, Field};
+use super::fields::{Asked, CELL, FURNACE, Field};
 use crate::harness::Settings;
 use glam::DVec3;
 use std::f64::consts::PI;
@@ -49,10 +49,10 @@ pub struct Case {
 pub const MAIN: (f64, usize) = (0.4, 50);
 /// Largest radius of nearest gathers [mfp].
 pub const CAP: f64 = 0.9;
-/// Depths at fixed radius [mfp].
-pub const DEPTHS: [f64; 14] = [0.0, 0.05, 0.1, 0.15, 0.2, 0.25, 0.3, 0.35, 0.4, 0.5, 0.6, 0.7, 0.8, 1.0];
-/// Depths of nearest gathers [mfp].
-pub const NEAREST_DEPTHS: [f64; 6] = [0.0, 0.1, 0.2, 0.3, 0.4, 0.6];
+/// Depths at fixed radius, over the radius; beyond 1 the ball is whole.
+const DEPTHS: [f64; 10] = [0.0, 0.125, 0.25, 0.375, 0.5, 0.625, 0.75, 0.875, 1.0, 1.25];
+/// Depths of nearest gathers, over the radius of k photons far from any face.
+const NEAREST_DEPTHS: [f64; 7] = [0.0, 0.25, 0.5, 0.75, 1.0, 1.25, 1.75];
 /// Depths below edges and corners, and of the other kernels [mfp].
 const FEW: [f64; 3] = [0.0, 0.1, 0.25];
 /// Numbers of neighbours.
@@ -117,13 +117,14 @@ impl Case {
         }
         for treatment in Treatment::ALL {
             for &r in &radii {
-                for h in DEPTHS.into_iter().filter(|&h| h <= 1.5 * r || h == 1.0) {
-                    add(Spot::Face(h), Size::Radius(r), Kernel::Uniform, treatment);
+                for x in DEPTHS {
+                    add(Spot::Face(rounded(x * r)), Size::Radius(r), Kernel::Uniform, treatment);
                 }
             }
             for &k in &neighbors {
-                for h in NEAREST_DEPTHS {
-                    add(Spot::Face(h), Size::Nearest(k), Kernel::Uniform, treatment);
+                let scale = whole_radius(field, photons, k);
+                for x in NEAREST_DEPTHS {
+                    add(Spot::Face(rounded(x * scale)), Size::Nearest(k), Kernel::Uniform, treatment);
                 }
             }
             for kernel in Kernel::ALL.into_iter().filter(|&k| is_main && k != Kernel::Uniform) {
@@ -203,6 +204,17 @@ impl Case {
             Body::HalfSpace => vec![DVec3::new(0.0, 0.0, h)],
         }
     }
+}
+
+/// A length in steps that names can show [mfp].
+fn rounded(length: f64) -> f64 {
+    (1e4 * length).round() / 1e4
+}
+
+/// The radius in which k photons are expected far from any face, where the fluence is that of the furnace [mfp].
+pub fn whole_radius(field: &Field, photons: u64, k: usize) -> f64 {
+    let density = FURNACE * field.density(photons);
+    libm::cbrt(3.0 * k as f64 / (4.0 * PI * density))
 }
 
 /// Directions spread evenly over the sphere (Swinbank and Purser 2006).

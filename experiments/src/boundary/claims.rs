@@ -1,6 +1,6 @@
 //! The claims. Each is judged on one number a map; margins leave at least five standard errors of the quick preset.
 
-use super::cases::{Case, MAIN, Size, Spot};
+use super::cases::{Case, MAIN, Size, Spot, whole_radius};
 use super::conclude::{Found, Result, kept};
 use super::fields::{FIELDS, Field};
 use super::sheet::{Sheet, Side};
@@ -119,7 +119,7 @@ fn nearest(settings: &Settings, found: &Found) -> anyhow::Result<Vec<Claim>> {
         let chosen = |treatment| {
             found.pick(move |c| {
                 (c.field, c.photons, c.treatment, c.size) == (field, photons, treatment, Size::Nearest(200))
-                    && c.spot.depth() <= 0.2
+                    && c.spot.depth() < 0.6 * whole_radius(field, photons, 200)
             })
         };
         let none = amplitude_of(&chosen(Treatment::None))?;
@@ -139,7 +139,8 @@ fn nearest(settings: &Settings, found: &Found) -> anyhow::Result<Vec<Claim>> {
 /// What treatments cost.
 fn variances(found: &Found) -> anyhow::Result<Vec<Claim>> {
     let mut claims = Vec::new();
-    for treatment in Treatment::ALL {
+    // Clipped is none times a number, whose variance needs no claim of its own.
+    for treatment in [Treatment::Clipped, Treatment::Reflection, Treatment::LocalLinear] {
         let chosen: Vec<(f64, &[f64])> = found
             .spreads
             .iter()
@@ -167,11 +168,11 @@ fn sheets(found: &Found) -> anyhow::Result<Vec<Claim>> {
     let percent = |values: &[f64]| {
         Estimate::mean(&values.iter().map(|v| 100.0 * v).collect::<Vec<f64>>().iter().collect())
     };
+    // Beside a flat sheet 'visible' keeps the very photons that 'behind plane' keeps: it has one claim, that it does.
     for (rejection, good, bad) in [
         (Rejection::Facing, 50.0, 50.0),
         (Rejection::FacingBehind, 100.0, 50.0),
         (Rejection::BehindPlane, 100.0, 0.0),
-        (Rejection::Visible, 100.0, 0.0),
     ] {
         let name = rejection.name().replace(' ', "-");
         let [kept_good, kept_bad] = kept(found, rejection, 0.25, Size::Radius(0.1))?;
@@ -199,18 +200,16 @@ fn sheets(found: &Found) -> anyhow::Result<Vec<Claim>> {
     };
     for (side, word) in [(Side::Bright, "bright"), (Side::Dark, "dark")] {
         for (size, how) in [(Size::Radius(0.1), "radius"), (Size::Nearest(30), "nearest")] {
-            for rejection in [Rejection::BehindPlane, Rejection::Visible] {
-                let id = format!("{}-clipped-{word}-{how}", rejection.name().replace(' ', "-"));
-                let text = format!(
-                    "beside a sheet, {word} side, {}: mean error of '{}' with clipping",
-                    size.name(),
-                    rejection.name()
-                );
-                let statistic = mean_error(&of(side, rejection, size, true))?;
-                claims.push(Claim::within(&id, &text, Unit::PERCENT, statistic, -3.0, 3.0));
-            }
+            let id = format!("behind-plane-clipped-{word}-{how}");
+            let text = format!(
+                "beside a sheet, {word} side, {}: mean error of 'behind plane' with clipping",
+                size.name()
+            );
+            let statistic = mean_error(&of(side, Rejection::BehindPlane, size, true))?;
+            claims.push(Claim::within(&id, &text, Unit::PERCENT, statistic, -3.0, 3.0));
         }
     }
+    claims.push(visible(found)?);
     let faults = [
         ("facing-bright", Side::Bright, Rejection::Facing, false, "'facing' alone on the bright side"),
         (
@@ -242,6 +241,19 @@ fn sheets(found: &Found) -> anyhow::Result<Vec<Claim>> {
         claims.push(Claim::detected(id, &text, Unit::PERCENT, statistic, 0.0, 20.0));
     }
     Ok(claims)
+}
+
+/// Beside a flat sheet, seeing is being in front of it.
+fn visible(found: &Found) -> anyhow::Result<Claim> {
+    let mut largest: f64 = 0.0;
+    for s in found.sheets.iter().filter(|s| s.sheet.rejection == Rejection::Visible) {
+        let plane = found.sheet(&Sheet { rejection: Rejection::BehindPlane, ..s.sheet })?;
+        let differences = s.errors.iter().zip(&plane.errors).map(|(a, b)| (a - b).abs());
+        largest = differences.fold(largest, f64::max);
+    }
+    let text =
+        "beside a flat sheet, every case and map: largest difference between 'visible' and 'behind plane'";
+    Ok(Claim::at_most("visible-is-behind-plane", text, Unit::PERCENT, Estimate::exact(largest, 1e-9), 1e-6))
 }
 
 /// The place and size that tables and figures show.

@@ -62,8 +62,8 @@ pub const FIELDS: [Field; 5] = [
         albedo: 1.0,
         g: 0.0,
         asked: Asked::All,
-        quick: &[(5_000, 256), (20_000, 192), (80_000, 96)],
-        full: &[(5_000, 2048), (20_000, 1536), (80_000, 768), (320_000, 256)],
+        quick: &[(5_000, 192), (20_000, 160), (80_000, 80)],
+        full: &[(5_000, 1536), (20_000, 1024), (80_000, 512), (320_000, 128)],
     },
     Field {
         name: "slab-g0.75",
@@ -97,13 +97,13 @@ pub const FIELDS: [Field; 5] = [
     },
     Field {
         name: "lit",
-        title: "slab lit by a beam from one side, albedo 0.9",
+        title: "slab lit by a beam",
         body: SLAB,
         albedo: 0.9,
         g: 0.0,
         asked: Asked::Some,
-        quick: &[(40_000, 192)],
-        full: &[(40_000, 1536)],
+        quick: &[(20_000, 192)],
+        full: &[(20_000, 1536)],
     },
 ];
 

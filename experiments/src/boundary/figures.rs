@@ -45,7 +45,7 @@ fn picture(cells: &Cells) -> anyhow::Result<FigureFiles> {
                 }
             }
         }
-        let quantity = Axis::new("error", "%", Scale::SymLog { threshold: 1.0 }).with_range(-60.0, 60.0);
+        let quantity = Axis::new("error", "%", Scale::SymLog { threshold: 5.0 }).with_range(-60.0, 60.0);
         let map = Heatmap {
             x_edges: edges.clone(),
             y_edges: edges.clone(),
@@ -66,7 +66,7 @@ fn picture(cells: &Cells) -> anyhow::Result<FigureFiles> {
     let figure = Figure { width: Width::Double, columns: 2, heights: vec![1.0, 1.0], ..Figure::new(panels) };
     let caption = "A ball of fog of radius 2 mean free paths in a furnace, cut through its middle: light comes in evenly \
                    from all sides, nothing is absorbed, and the true fluence is the same everywhere. In colour, the measured \
-                   error of a photon map that gathers within 0.4 mean free paths, linear within ±1 %. Without treatment the \
+                   error of a photon map that gathers within 0.4 mean free paths, linear within ±5 %. Without treatment the \
                    rim is dark by up to half and more; clipping and local linear fits remove the rim; reflection, made for \
                    flat faces, reads a little wrong at a round one.";
     FigureFiles::draw("section", caption, &figure)
@@ -157,7 +157,7 @@ fn rim(settings: &Settings, found: &Found) -> anyhow::Result<FigureFiles> {
     let figure = Figure { width: Width::Double, columns: 2, ..Figure::new(vec![left, right]) };
     let caption = "What the untreated estimate loses at one face of the furnace slab: the integral of its relative error over \
                    depth, with 95 % intervals. At a fixed radius it is 3/16 of the radius whatever the number of photons (points \
-                   of different numbers set a little apart); trapezia between the probes' depths add up to 2 % to it. With the k nearest \
+                   of different numbers set a little apart); trapezia between the probes' depths add half a per cent to it. With the k nearest \
                    it falls with the cube root of the photons (lines: predicted at the same depths).";
     FigureFiles::draw("rim", caption, &figure)
 }
@@ -183,7 +183,9 @@ fn sheet(settings: &Settings, found: &Found) -> anyhow::Result<FigureFiles> {
                     is_clipped,
                 };
                 // At the radius itself the sheet no longer counts.
-                let grid: Vec<f64> = (0..=44).map(|i| 0.025 * f64::from(i) + 1e-9).collect();
+                let mut grid: Vec<f64> = (0..=44).map(|i| 0.025 * f64::from(i)).collect();
+                grid[40] = 1.0 - 1e-9;
+                grid.insert(41, 1.0 + 1e-9);
                 let exact: anyhow::Result<Vec<f64>> = grid
                     .iter()
                     .map(|&x| at(x).exact(settings).map(|(v, _)| 100.0 * (v / at(x).fields().0 - 1.0)))
@@ -191,8 +193,7 @@ fn sheet(settings: &Settings, found: &Found) -> anyhow::Result<FigureFiles> {
                 panel = panel.with(Line::new(rejection.name(), class, grid, exact?));
                 let chosen = super::sheet::DISTANCES.map(|x| found.sheet(&at(x)).map(|s| (x, &s.error)));
                 let chosen = chosen.into_iter().collect::<anyhow::Result<Vec<_>>>()?;
-                let shift = 0.012 * (class as f64 - 2.0);
-                let (x, y, bars) = series(chosen.into_iter().map(|(x, m)| (x + shift, m)));
+                let (x, y, bars) = series(chosen.into_iter());
                 panel = panel.with(Points::new(rejection.name(), class, x, y).with_y_interval(bars));
             }
             panels.push(panel);
@@ -200,8 +201,8 @@ fn sheet(settings: &Settings, found: &Found) -> anyhow::Result<FigureFiles> {
     }
     let figure = Figure { width: Width::Double, columns: 2, shared_legend: true, ..Figure::new(panels) };
     let caption = "A thin opaque sheet between a bright uniform field and one a quarter as bright, fixed radius, uniform kernel: \
-                   error on either side against distance, measured (points, 95 % intervals, set a little apart) and predicted \
-                   (lines). Without clipping every rejection leaves the ball's lost part dark. With it, rejecting by place \
+                   error on either side against distance, measured (points; their 95 % intervals are smaller) and predicted \
+                   (lines; 'behind plane' and 'visible' are one). Without clipping every rejection leaves the ball's lost part dark. With it, rejecting by place \
                    ('behind plane', 'visible') is right everywhere; rejecting by direction is not, and 'facing' throws away half of \
                    the good photons as long as the sheet is in the ball.";
     FigureFiles::draw("sheet", caption, &figure)
@@ -224,13 +225,13 @@ fn spread(found: &Found) -> anyhow::Result<FigureFiles> {
             .spreads
             .iter()
             .filter(|s| s.spread.kernel == Kernel::Uniform && s.spread.treatment == treatment);
-        let moments: Vec<(f64, Moments)> = chosen
-            .map(|s| (s.spread.depth + 0.006 * (class as f64 - 1.5), s.factors.iter().collect()))
-            .collect();
+        let moments: Vec<(f64, Moments)> =
+            chosen.map(|s| (s.spread.depth, s.factors.iter().collect())).collect();
         let (x, y, bars) = series(moments.iter().map(|(x, m)| (*x, m)));
         panel = panel.with(Points::new(treatment.name(), class, x, y).with_y_interval(bars));
     }
-    let figure = Figure { width: Width::Double, ..Figure::new(vec![panel.with_legend(Legend::Right)]) };
+    let panel = panel.with_legend(Legend::Right);
+    let figure = Figure { width: Width::Double, heights: vec![0.5], ..Figure::new(vec![panel]) };
     let caption = "What a treatment costs: variance of the estimate of independent photons below a flat face over that in a whole \
                    ball, measured (points, 95 % intervals) and predicted (lines), uniform kernel. On the face clipping and \
                    reflection double it, having half of the photons; a local linear fit makes it nearly seven times as large.";

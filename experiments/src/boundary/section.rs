@@ -3,10 +3,11 @@
 use super::cases::MAIN;
 use super::fields::Field;
 use crate::harness::{CellId, CellOutput, Settings};
-use glam::DVec3;
+use glam::{DVec3, Vec3Swizzles};
 use turbid::Spectrum;
 use turbid::estimators::boundary::{Boundary, Treatment, treated_fluence};
 use turbid::estimators::{Gather, Kernel};
+use turbid::stats::Moments;
 
 /// The group of its maps.
 pub const GROUP: &str = "section";
@@ -41,7 +42,7 @@ pub fn case(treatment: Treatment, column: usize, row: usize) -> String {
     format!("section {} {column} {row}", treatment.name())
 }
 
-/// Measures one map: at each place the four mirrored ones are averaged.
+/// Measures one map: at each place the four mirrored ones are averaged, in two planes.
 pub fn measure(settings: &Settings, cell: &CellId) -> anyhow::Result<CellOutput> {
     let field = Field::named("sphere")?;
     let photons = settings.photons(PHOTONS, PHOTONS);
@@ -54,14 +55,17 @@ pub fn measure(settings: &Settings, cell: &CellId) -> anyhow::Result<CellOutput>
         let boundary = Boundary::new(field.shape()?, treatment)?;
         for (column, row, distance) in places() {
             let along = DVec3::new(column as f64 + 0.5, 0.0, row as f64 + 0.5).normalize() * distance;
-            let mut sum = 0.0;
+            let mut values = Moments::new();
             for (x, z) in [(1.0, 1.0), (-1.0, 1.0), (1.0, -1.0), (-1.0, -1.0)] {
                 let probe = along * DVec3::new(x, 1.0, z);
-                let treated = treated_fluence(&map, probe, Spectrum::ONE, Kernel::Uniform, gather, &boundary);
-                sum += treated.estimate.value[0];
+                for probe in [probe, probe.zxy()] {
+                    let treated =
+                        treated_fluence(&map, probe, Spectrum::ONE, Kernel::Uniform, gather, &boundary);
+                    values.push(treated.estimate.value[0]);
+                }
             }
-            output.count("estimates", 4);
-            output.push(case(treatment, column, row), "fluence", 0.25 * sum);
+            output.count("estimates", values.n());
+            output.push(case(treatment, column, row), "fluence", values.mean());
         }
     }
     Ok(output)
