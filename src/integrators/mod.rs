@@ -2,4 +2,4 @@
 
 mod path;
 
-pub use path::{direct_flux, fluence, radiance};
+pub use path::{Rays, direct_flux, fluence, radiance};

@@ -3,7 +3,7 @@
 mod paths;
 mod photons;
 
-pub use paths::{PathSettings, by_paths, sample};
+pub use paths::{PathSettings, by_paths, sample, sample_counted};
 pub use photons::{PhotonReadings, PhotonSettings, by_photons};
 
 use crate::scene::Sensor;
