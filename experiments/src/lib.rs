@@ -7,8 +7,9 @@ pub mod bias;
 pub mod harness;
 pub mod report;
 pub mod theory;
+pub mod tradeoff;
 
 use harness::Experiment;
 
 /// All experiments, in the order of the report.
-pub const ALL: &[Experiment] = &[bias::EXPERIMENT];
+pub const ALL: &[Experiment] = &[bias::EXPERIMENT, tradeoff::EXPERIMENT];

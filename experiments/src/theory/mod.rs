@@ -2,10 +2,12 @@
 
 mod clusters;
 mod slab;
+mod slab_gather;
 mod table;
 
 pub use clusters::{clustering, nearest_clustering};
 pub use slab::slab_fluence;
+pub use slab_gather::{NearestGather, PART_NAMES, Parts, SlabGathers};
 pub use table::Table;
 
 use turbid::estimators::Kernel;
