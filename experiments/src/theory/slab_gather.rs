@@ -123,6 +123,18 @@ impl SlabGathers {
         })
     }
 
+    /// What clusters add to a nearest estimate of these parts, at a place of so many photons per volume.
+    pub fn clusters(&self, k: usize, photons_per_volume: f64, edge: f64, blur: f64) -> f64 {
+        if self.albedo == 0.0 {
+            return 0.0;
+        }
+        // Where the medium ends inside the ball, neighbours are missing like the ball's own part, and the estimate
+        // that they raise is itself lower.
+        let inside = 1.0 + edge;
+        let raised = nearest_clustering(self.albedo, self.g, photons_per_volume * inside, k);
+        raised * inside * (1.0 + edge + blur)
+    }
+
     /// The parts of a gather of the k nearest photons, at one of the depths.
     pub fn nearest(&self, gather: &NearestGather, t: f64) -> anyhow::Result<Parts> {
         let &NearestGather { kernel, k, cap, density, is_biased } = gather;
@@ -150,13 +162,7 @@ impl SlabGathers {
             parts.rule = (biased.value - right.value) / here;
             parts.error += biased.error / here;
         }
-        if self.albedo > 0.0 {
-            // Where the medium ends inside the ball, neighbours are missing like the ball's own part, and the
-            // estimate that they raise is itself lower.
-            let inside = 1.0 + parts.edge;
-            let raised = nearest_clustering(self.albedo, self.g, density * here * inside, k);
-            parts.clusters = raised * inside * (1.0 + parts.edge + parts.blur);
-        }
+        parts.clusters = self.clusters(k, density * here, parts.edge, parts.blur);
         Ok(parts)
     }
 }

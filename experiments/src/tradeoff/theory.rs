@@ -3,7 +3,7 @@
 
 use super::cases::{CELL, Setting, Size, Slab, Treatment};
 use super::measure::inside;
-use crate::theory::{NearestGather, SlabGathers, clustering};
+use crate::theory::{SlabGathers, clustering};
 use std::f64::consts::PI;
 use turbid::estimators::Kernel;
 use turbid_analytic::nearest::{nearest_expectation, nearest_moments};
@@ -119,50 +119,50 @@ impl Theory {
         })
     }
 
+    /// The k nearest photons.
+    ///
+    /// Photons of one history come in clusters of 1 + eta: k of them set the radius like k/(1 + eta) independent
+    /// ones, so that 1/(k - 2), the relative variance in a uniform field, becomes 1/(k/(1 + eta) - 2); and the
+    /// histories are not Poisson but N, which takes k/N off.
     fn nearest(&self, setting: &Setting, k: usize, treatment: Treatment, t: f64) -> anyhow::Result<Expected> {
-        let (here, _) = self.exact(t)?;
+        let (here, here_error) = self.exact(t)?;
         let (density, cap) = (setting.density(), setting.cap());
-        let gather = NearestGather { kernel: Kernel::Uniform, k, cap, density, is_biased: false };
-        let plain = self.gathers.nearest(&gather, t)?;
         let profile = self.gathers.profile(t, Kernel::Uniform)?;
         let ball = |r: f64| density * 4.0 / 3.0 * PI * r * r * r;
         let number = |r: f64| ball(r) * profile.at(r);
-        let part = |r: f64| match treatment {
-            Treatment::Plain => 1.0,
-            Treatment::Clipped => inside(self.slab, t, r).unwrap_or(f64::NAN),
-        };
+        let whole = |r: f64| inside(self.slab, t, r).unwrap_or(f64::NAN);
+        let part = |r: f64| if treatment == Treatment::Plain { 1.0 } else { whole(r) };
         let mean = |r: f64| profile.at(r) / part(r);
         let square = |r: f64| profile.at(r) / (ball(r) * part(r) * part(r));
         let neighbors = u32::try_from(k)?;
         let moments = nearest_moments(neighbors, cap, number, mean, square)?;
+        let right = moments.mean.value / here;
+        // What a uniform field would read, clipped or not, and what clusters do to the plain estimate.
+        let uniform =
+            nearest_expectation(neighbors, cap, |r| ball(r) * here * whole(r), |r| here * whole(r))?;
+        let lost = uniform.value / here - 1.0;
+        let edge = if treatment == Treatment::Plain { lost } else { 0.0 };
+        let clusters =
+            self.gathers.clusters(k, density * here, lost, right - 1.0 - edge) / (1.0 + lost - edge);
         // The k-th photon lies where a ball holds k.
         let (mut low, mut high) = (0.0, cap);
         for _ in 0..60 {
             let middle = 0.5 * (low + high);
             if number(middle) < k as f64 { low = middle } else { high = middle }
         }
-        let eta = self.clustering(low, t);
+        let k = k as f64;
         let spread = |eta: f64| {
-            let relative = moments.variance.value / (here * here);
-            (relative * (1.0 + eta - k as f64 / setting.photons as f64)).sqrt()
+            let thicker = (k - 2.0) / (k / (1.0 + eta) - 2.0);
+            let relative = moments.variance.value / (here * here) * (thicker - k / setting.photons as f64);
+            relative.sqrt()
         };
-        let right = match treatment {
-            Treatment::Plain => plain.edge + plain.blur + 1.0,
-            Treatment::Clipped => nearest_expectation(neighbors, cap, number, mean)?.value / here,
-        };
-        // Clipping divides what the ball holds, the photons that clusters bring included.
-        let clusters = match treatment {
-            Treatment::Plain => plain.clusters,
-            Treatment::Clipped => plain.clusters * right / (1.0 + plain.edge + plain.blur),
-        };
-        let edge = if treatment == Treatment::Plain { plain.edge } else { 0.0 };
         Ok(Expected {
             edge,
             blur: right - 1.0 - edge,
             clusters,
-            noise: spread(eta),
+            noise: spread(self.clustering(low, t)),
             noise_independent: spread(0.0),
-            error: plain.error,
+            error: (moments.mean.error + uniform.error + here_error) / here + 1e-8,
         })
     }
 
