@@ -1,7 +1,8 @@
 //! Choosing settings on half of the maps, reporting them on the other half, and what the choice costs.
 
+use super::cases::PROBES;
 use super::data::{Measured, Paths, mean};
-use super::split::{MapError, Split, halves, rms};
+use super::split::{Split, halves, rms};
 use crate::harness::Estimate;
 use turbid::stats::jackknife;
 
@@ -25,18 +26,34 @@ pub fn cheapest<'a>(cases: &[&'a Measured], target: f64, queries: f64) -> Option
     found.map(|case| choice(case))
 }
 
-/// The case of the smallest error, judged by some maps: those of even number, or those of odd.
-fn best_by<'a>(cases: &[&'a Measured], by_odd: bool) -> Option<&'a Measured> {
+/// How a setting is chosen.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Aim {
+    /// The smallest error.
+    Error,
+    /// The smallest squared error times cost of 4096 queries: the figure of merit, which does not change when error
+    /// is bought by samples as the path tracer buys it.
+    Merit,
+}
+
+/// The best case, judged by some maps: those of even number, or those of odd.
+fn best_by<'a>(cases: &[&'a Measured], aim: Aim, by_odd: bool) -> Option<&'a Measured> {
     let judged = |m: &Measured| {
         let (even, odd) = halves(&m.maps);
-        Split::of(if by_odd { &odd } else { &even }).total
+        let square = Split::of(if by_odd { &odd } else { &even }).total;
+        if aim == Aim::Error { square } else { square * m.cost(PROBES as f64) }
     };
     cases.iter().min_by(|a, b| judged(a).total_cmp(&judged(b))).copied()
 }
 
 /// The case of the smallest error, judged by the choosing half.
 pub fn best<'a>(cases: &[&'a Measured]) -> Option<Choice<'a>> {
-    best_by(cases, false).map(choice)
+    best_by(cases, Aim::Error, false).map(choice)
+}
+
+/// The case of the best figure of merit, judged by the choosing half.
+pub fn most_efficient<'a>(cases: &[&'a Measured]) -> Option<Choice<'a>> {
+    best_by(cases, Aim::Merit, false).map(choice)
 }
 
 /// One map with the setting that the other half of the maps chose for it.
@@ -44,57 +61,98 @@ pub fn best<'a>(cases: &[&'a Measured]) -> Option<Choice<'a>> {
 struct Crossed {
     /// Mean squared error of the chosen setting.
     square: f64,
-    /// The same of the setting that is compared with it.
-    compared: f64,
     prepare: f64,
     found: f64,
 }
 
-/// Every map with the best setting by the half that it is not in, beside a case of the same maps.
-fn crossed(cases: &[&Measured], compared: &[MapError]) -> Vec<Crossed> {
-    let (Some(by_even), Some(by_odd)) = (best_by(cases, false), best_by(cases, true)) else {
+/// Every map with the best setting by the half that it is not in. Maps of one number share photons if they are of one
+/// size; joining those of different sizes by number is a free choice.
+fn crossed(cases: &[&Measured], aim: Aim) -> Vec<Crossed> {
+    let (Some(by_even), Some(by_odd)) = (best_by(cases, aim, false), best_by(cases, aim, true)) else {
         return Vec::new();
     };
-    let one = |(index, compared): (usize, &MapError)| {
+    let one = |index: usize| {
         let chosen = if index % 2 == 0 { by_odd } else { by_even };
         Crossed {
             square: chosen.maps[index].square,
-            compared: compared.square,
             prepare: chosen.prepare[index],
             found: chosen.found[index],
         }
     };
-    compared.iter().enumerate().map(one).collect()
+    (0..by_even.maps.len().min(by_odd.maps.len())).map(one).collect()
 }
 
 /// Root mean square error over that of the best setting for the same maps, every map with the setting that the other
 /// half of the maps chose.
 pub fn regret(case: &Measured, cases: &[&Measured]) -> Estimate {
-    let ratio = |maps: &[Crossed]| {
-        let sum = |f: &dyn Fn(&Crossed) -> f64| maps.iter().map(f).sum::<f64>();
-        (sum(&|m| m.compared) / sum(&|m| m.square)).sqrt()
-    };
-    Estimate::jackknife(&jackknife(&crossed(cases, &case.maps), ratio))
+    gain(case.maps.iter().map(|m| m.square), crossed(cases, Aim::Error).iter().map(|m| m.square))
 }
 
-/// Number of queries from which the best setting is cheaper than a path tracer of the same error, in operations. A
-/// map is prepared once and asked often; the path tracer pays for each query alike.
-pub fn break_even(cases: &[&Measured], paths: &Paths) -> Option<Estimate> {
-    let maps = crossed(cases, &cases.first()?.maps);
-    let joined: Vec<(Crossed, f64, f64)> = maps
+/// Root mean square error of the best of some settings over that of the best of others.
+pub fn best_over_best(cases: &[&Measured], others: &[&Measured]) -> Estimate {
+    let (cases, others) = (crossed(cases, Aim::Error), crossed(others, Aim::Error));
+    gain(cases.iter().map(|m| m.square), others.iter().map(|m| m.square))
+}
+
+/// The root of a ratio of mean squares.
+fn gain(above: impl Iterator<Item = f64>, below: impl Iterator<Item = f64>) -> Estimate {
+    let pairs: Vec<(f64, f64)> = above.zip(below).collect();
+    let ratio = |pairs: &[(f64, f64)]| {
+        let (above, below) = pairs.iter().fold((0.0, 0.0), |sum, p| (sum.0 + p.0, sum.1 + p.1));
+        (above / below).sqrt()
+    };
+    Estimate::jackknife(&jackknife(&pairs, ratio))
+}
+
+/// Operations that a query saves, and the number of queries that pay for a map, both with their errors.
+pub struct BreakEven {
+    /// Rays of the path tracer at the map's error, over the photons that the map gathers for a query.
+    pub ratio: Estimate,
+    /// Queries from which the map is the cheaper of the two; none where a query costs more from the map than by
+    /// paths, so that nothing ever pays for it.
+    pub queries: Option<Estimate>,
+}
+
+/// The setting of the best figure of merit against a path tracer of the same error, in operations. A map is prepared
+/// once and asked often; the path tracer pays for each query alike.
+pub fn break_even(cases: &[&Measured], paths: &Paths) -> BreakEven {
+    let joined: Vec<(Crossed, f64, f64)> = crossed(cases, Aim::Merit)
         .into_iter()
         .zip(paths.variance.iter().zip(&paths.rays))
         .map(|(map, (&variance, &rays))| (map, variance, rays))
         .collect();
-    // Joining maps and batches by number is a free choice: they share nothing.
-    let queries = |maps: &[(Crossed, f64, f64)]| {
+    let sums = |maps: &[(Crossed, f64, f64)]| {
         let average =
             |f: &dyn Fn(&(Crossed, f64, f64)) -> f64| mean(&maps.iter().map(f).collect::<Vec<f64>>());
         let samples = (average(&|m| m.1) / average(&|m| m.0.square)).max(1.0);
-        let saved = average(&|m| m.2) * samples - average(&|m| m.0.found);
-        average(&|m| m.0.prepare) / saved
+        (average(&|m| m.2) * samples, average(&|m| m.0.found), average(&|m| m.0.prepare))
     };
-    let found = Estimate::jackknife(&jackknife(&joined, queries));
-    // Where a query costs more from the map than by paths, there is no break-even.
-    (found.value() > 0.0).then_some(found)
+    let ratio = |maps: &[(Crossed, f64, f64)]| {
+        let (rays, found, _) = sums(maps);
+        rays / found
+    };
+    let queries = |maps: &[(Crossed, f64, f64)]| {
+        let (rays, found, prepare) = sums(maps);
+        prepare / (rays - found)
+    };
+    let ratio = Estimate::jackknife(&jackknife(&joined, ratio));
+    // The number of queries has a pole where nothing is saved: it has an error only well away from there.
+    let is_clear = ratio.value() - 1.0 > 5.0 * ratio.std_error();
+    BreakEven { ratio, queries: is_clear.then(|| Estimate::jackknife(&jackknife(&joined, queries))) }
+}
+
+/// The cases that no other beats in both cost and error, judged by the choosing half, the cheapest first.
+pub fn frontier<'a>(cases: &[&'a Measured], queries: f64) -> Vec<Choice<'a>> {
+    let mut sorted: Vec<(f64, f64, &Measured)> =
+        cases.iter().map(|&m| (m.cost(queries), Split::of(&halves(&m.maps).0).total, m)).collect();
+    sorted.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let mut least = f64::INFINITY;
+    let mut front = Vec::new();
+    for (_, square, case) in sorted {
+        if square < least {
+            least = square;
+            front.push(choice(case));
+        }
+    }
+    front
 }

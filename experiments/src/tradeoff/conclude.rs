@@ -1,7 +1,7 @@
 //! What all maps together say: rows, claims, tables, the error budget of the study.
 
 use super::cases::{CELL, LAYERS, PROBES, SIDE, SLABS, Setting, Size, Treatment};
-use super::choose::{break_even, regret};
+use super::choose::{BreakEven, best_over_best, break_even, regret};
 use super::data::{Data, Measured, mean};
 use super::measure::MAPS;
 use super::predict::{BIAS, Known, NOISE, RMS};
@@ -16,10 +16,10 @@ pub fn conclude(settings: &Settings, predictions: &[Prediction], cells: &Cells) 
     let data = Data::read(settings, &known, cells)?;
     let mut section = Section { rows: rows(&data, &known)?, ..Section::default() };
     section.budget = data.measured.iter().flat_map(entries).collect();
-    section.claims = claims::all(&data)?;
+    section.claims = claims::all(&data);
     section.figures = figures::all(settings, &data)?;
     section.tables = tables::all(&data, &known)?;
-    section.summary = words::summary(&data, &known)?;
+    section.summary = words::summary(&data);
     section.notes = words::notes(&section.budget, &data);
     Ok(section)
 }
@@ -69,11 +69,13 @@ fn rows(data: &Data, known: &Known) -> anyhow::Result<Vec<Row>> {
     for slab in &SLABS {
         let Some(paths) = data.paths(slab) else { continue };
         for treatment in Treatment::ALL {
-            let cases = data.of(slab, treatment, Some(data.largest(slab)));
-            let case = format!("{} {}", Setting::group(slab, data.largest(slab)), treatment.name());
-            if let Some(queries) = break_even(&cases, paths) {
+            let case = format!("{} {}", slab.name, treatment.name());
+            let BreakEven { ratio, queries } = break_even(&data.of(slab, treatment, None), paths);
+            rows.push(Row::estimated(&case, "rays of a path query per photon gathered", Unit::ONE, &ratio)?);
+            if let Some(queries) = queries {
                 rows.push(Row::estimated(&case, "break-even queries", Unit::ONE, &queries)?);
             }
+            let cases = data.of(slab, treatment, Some(data.largest(slab)));
             for measured in &cases {
                 let value = regret(measured, &cases);
                 if let (Size::Nearest(50 | 100), true) = (measured.setting.size, has_spread(&value)) {
@@ -81,6 +83,12 @@ fn rows(data: &Data, known: &Known) -> anyhow::Result<Vec<Row>> {
                 }
             }
         }
+    }
+    for slab in &SLABS {
+        let of = |treatment| data.of(slab, treatment, Some(data.largest(slab)));
+        let ratio = best_over_best(&of(Treatment::Clipped), &of(Treatment::Plain));
+        let case = Setting::group(slab, data.largest(slab));
+        rows.push(Row::estimated(&case, "best clipped over best plain error", Unit::ONE, &ratio)?);
     }
     Ok(rows)
 }
@@ -156,6 +164,3 @@ pub fn left_over(entries: &[Entry]) -> (usize, f64, f64) {
     let squares: Vec<f64> = scores.iter().map(|z| z * z).collect();
     (scores.len(), mean(&squares).sqrt(), scores.iter().map(|z| z.abs()).fold(0.0, f64::max))
 }
-
-/// Probes of a layer and layers, for captions.
-pub const GRID: (usize, usize) = (SIDE, LAYERS);
