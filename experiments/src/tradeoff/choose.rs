@@ -1,7 +1,7 @@
 //! Choosing settings on half of the maps, reporting them on the other half, and what the choice costs.
 
 use super::cases::PROBES;
-use super::data::{Measured, Paths, mean};
+use super::data::{Measured, Paths};
 use super::split::{Split, halves, rms};
 use crate::harness::Estimate;
 use turbid::stats::jackknife;
@@ -26,72 +26,46 @@ pub fn cheapest<'a>(cases: &[&'a Measured], target: f64, queries: f64) -> Option
     found.map(|case| choice(case))
 }
 
-/// How a setting is chosen.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Aim {
-    /// The smallest error.
-    Error,
-    /// The smallest squared error times cost of 4096 queries: the figure of merit, which does not change when error
-    /// is bought by samples as the path tracer buys it.
-    Merit,
-}
-
-/// The best case, judged by some maps: those of even number, or those of odd.
-fn best_by<'a>(cases: &[&'a Measured], aim: Aim, by_odd: bool) -> Option<&'a Measured> {
+/// The case of the smallest error, judged by some maps: those of even number, or those of odd.
+fn best_by<'a>(cases: &[&'a Measured], by_odd: bool) -> Option<&'a Measured> {
     let judged = |m: &Measured| {
         let (even, odd) = halves(&m.maps);
-        let square = Split::of(if by_odd { &odd } else { &even }).total;
-        if aim == Aim::Error { square } else { square * m.cost(PROBES as f64) }
+        Split::of(if by_odd { &odd } else { &even }).total
     };
     cases.iter().min_by(|a, b| judged(a).total_cmp(&judged(b))).copied()
 }
 
 /// The case of the smallest error, judged by the choosing half.
 pub fn best<'a>(cases: &[&'a Measured]) -> Option<Choice<'a>> {
-    best_by(cases, Aim::Error, false).map(choice)
+    best_by(cases, false).map(choice)
 }
 
-/// The case of the best figure of merit, judged by the choosing half.
+/// The case of the best figure of merit, the smallest squared error times cost of 4096 queries: it does not change
+/// when error is bought by samples, as the path tracer buys it. Theory chooses, so that all maps may report.
 pub fn most_efficient<'a>(cases: &[&'a Measured]) -> Option<Choice<'a>> {
-    best_by(cases, Aim::Merit, false).map(choice)
+    let merit = |m: &Measured| m.predicted().total() * m.predicted().total() * m.cost(PROBES as f64);
+    let found = cases.iter().min_by(|a, b| merit(a).total_cmp(&merit(b)));
+    found.map(|case| Choice { case, rms: rms(&case.maps) })
 }
 
-/// One map with the setting that the other half of the maps chose for it.
-#[derive(Debug, Clone, PartialEq)]
-struct Crossed {
-    /// Mean squared error of the chosen setting.
-    square: f64,
-    prepare: f64,
-    found: f64,
-}
-
-/// Every map with the best setting by the half that it is not in. Maps of one number share photons if they are of one
-/// size; joining those of different sizes by number is a free choice.
-fn crossed(cases: &[&Measured], aim: Aim) -> Vec<Crossed> {
-    let (Some(by_even), Some(by_odd)) = (best_by(cases, aim, false), best_by(cases, aim, true)) else {
+/// The squared error of every map with the best setting by the half that it is not in.
+fn crossed(cases: &[&Measured]) -> Vec<f64> {
+    let (Some(by_even), Some(by_odd)) = (best_by(cases, false), best_by(cases, true)) else {
         return Vec::new();
     };
-    let one = |index: usize| {
-        let chosen = if index % 2 == 0 { by_odd } else { by_even };
-        Crossed {
-            square: chosen.maps[index].square,
-            prepare: chosen.prepare[index],
-            found: chosen.found[index],
-        }
-    };
+    let one = |index: usize| (if index % 2 == 0 { by_odd } else { by_even }).maps[index].square;
     (0..by_even.maps.len().min(by_odd.maps.len())).map(one).collect()
 }
 
 /// Root mean square error over that of the best setting for the same maps, every map with the setting that the other
 /// half of the maps chose.
 pub fn regret(case: &Measured, cases: &[&Measured]) -> Estimate {
-    gain(case.maps.iter().map(|m| m.square), crossed(cases, Aim::Error).iter().map(|m| m.square))
+    gain(case.maps.iter().map(|m| m.square), crossed(cases).into_iter())
 }
 
 /// Root mean square error of the best of some settings over that of the best of others.
 pub fn best_over_best(cases: &[&Measured], others: &[&Measured]) -> Estimate {
-    let (cases, others) = (crossed(cases, Aim::Error), crossed(others, Aim::Error));
-    gain(cases.iter().map(|m| m.square), others.iter().map(|m| m.square))
+    gain(crossed(cases).into_iter(), crossed(others).into_iter())
 }
 
 /// The root of a ratio of mean squares.
@@ -113,26 +87,31 @@ pub struct BreakEven {
     pub queries: Option<Estimate>,
 }
 
-/// The setting of the best figure of merit against a path tracer of the same error, in operations. A map is prepared
-/// once and asked often; the path tracer pays for each query alike.
-pub fn break_even(cases: &[&Measured], paths: &Paths) -> BreakEven {
-    let joined: Vec<(Crossed, f64, f64)> = crossed(cases, Aim::Merit)
-        .into_iter()
+/// A setting against a path tracer of the same error, in operations. A map is prepared once and asked often; the path
+/// tracer pays for each query alike.
+pub fn break_even(case: &Measured, paths: &Paths) -> BreakEven {
+    // Joining maps and batches of paths by number is a free choice: they share nothing.
+    let maps = case.maps.iter().zip(&case.prepare).zip(&case.found);
+    let joined: Vec<[f64; 5]> = maps
         .zip(paths.variance.iter().zip(&paths.rays))
-        .map(|(map, (&variance, &rays))| (map, variance, rays))
+        .map(|(((map, &prepare), &found), (&variance, &rays))| [map.square, prepare, found, variance, rays])
         .collect();
-    let sums = |maps: &[(Crossed, f64, f64)]| {
-        let average =
-            |f: &dyn Fn(&(Crossed, f64, f64)) -> f64| mean(&maps.iter().map(f).collect::<Vec<f64>>());
-        let samples = (average(&|m| m.1) / average(&|m| m.0.square)).max(1.0);
-        (average(&|m| m.2) * samples, average(&|m| m.0.found), average(&|m| m.0.prepare))
+    let means = |maps: &[[f64; 5]]| {
+        let mut sums = [0.0; 5];
+        for map in maps {
+            for (sum, value) in sums.iter_mut().zip(map) {
+                *sum += value / maps.len() as f64;
+            }
+        }
+        let [square, prepare, found, variance, rays] = sums;
+        (rays * (variance / square).max(1.0), found, prepare)
     };
-    let ratio = |maps: &[(Crossed, f64, f64)]| {
-        let (rays, found, _) = sums(maps);
+    let ratio = |maps: &[[f64; 5]]| {
+        let (rays, found, _) = means(maps);
         rays / found
     };
-    let queries = |maps: &[(Crossed, f64, f64)]| {
-        let (rays, found, prepare) = sums(maps);
+    let queries = |maps: &[[f64; 5]]| {
+        let (rays, found, prepare) = means(maps);
         prepare / (rays - found)
     };
     let ratio = Estimate::jackknife(&jackknife(&joined, ratio));

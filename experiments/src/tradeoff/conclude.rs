@@ -1,7 +1,7 @@
 //! What all maps together say: rows, claims, tables, the error budget of the study.
 
-use super::cases::{CELL, LAYERS, PROBES, SIDE, SLABS, Setting, Size, Treatment};
-use super::choose::{BreakEven, best_over_best, break_even, regret};
+use super::cases::{CELL, PROBES, SIDE, SLABS, Setting, Size, Treatment};
+use super::choose::{BreakEven, best_over_best, break_even, most_efficient, regret};
 use super::data::{Data, Measured, mean};
 use super::measure::MAPS;
 use super::predict::{BIAS, Known, NOISE, RMS};
@@ -70,7 +70,8 @@ fn rows(data: &Data, known: &Known) -> anyhow::Result<Vec<Row>> {
         let Some(paths) = data.paths(slab) else { continue };
         for treatment in Treatment::ALL {
             let case = format!("{} {}", slab.name, treatment.name());
-            let BreakEven { ratio, queries } = break_even(&data.of(slab, treatment, None), paths);
+            let Some(chosen) = most_efficient(&data.of(slab, treatment, None)) else { continue };
+            let BreakEven { ratio, queries } = break_even(chosen.case, paths);
             rows.push(Row::estimated(&case, "rays of a path query per photon gathered", Unit::ONE, &ratio)?);
             if let Some(queries) = queries {
                 rows.push(Row::estimated(&case, "break-even queries", Unit::ONE, &queries)?);

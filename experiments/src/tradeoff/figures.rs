@@ -148,7 +148,7 @@ fn queries(data: &Data) -> anyhow::Result<FigureFiles> {
         .with_title(format!("{}, to {:.1} %", slab.title, 100.0 * chosen.rms.value()))
         .with(Line::theory("path tracer", x.clone(), by_paths))
         .with(Line::new("photon map, clipped", 1, x, map));
-        let text = match break_even(&cases, paths).queries {
+        let text = match break_even(chosen.case, paths).queries {
             Some(queries) => {
                 let interval = queries.interval(0.95);
                 let rule = Rule::new(Along::Vertical(queries.value())).with_dash(Dash::Dashed);

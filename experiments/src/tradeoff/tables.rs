@@ -57,7 +57,7 @@ fn prices(data: &Data, known: &Known) -> anyhow::Result<Table> {
                     treatment.name().to_string(),
                     format!("{} %", number(100.0 * target)),
                     setting,
-                    error.replace("none: at least ", "lowest "),
+                    error,
                     cost,
                     format!("{:.3}", theory.radius),
                     rough(theory.density / slab.tau),
@@ -82,7 +82,7 @@ fn prices(data: &Data, known: &Known) -> anyhow::Result<Table> {
     let caption = "The price list: what a root mean square error of 10, 3 and 1 per cent costs for 4096 queries, in \
                    operations (rays, records put into the tree, photons gathered). The cheapest of the measured \
                    settings was chosen on half of the maps, and its error is that of the other half. Where none \
-                   reaches the target the lowest error of all stands there. Theory searched all radii for the \
+                   reaches the target the lowest error of all stands there, measured and predicted. Theory searched all radii for the \
                    cheapest, with as many photons as it takes (emitted photons per cubic mean free path of the slab); \
                    the path tracer takes as many samples as its variance asks for.";
     Ok(table(caption, &columns, rows))
@@ -97,7 +97,7 @@ fn queries(data: &Data) -> Table {
             let cases = data.of(slab, treatment, None);
             let Some(chosen) = most_efficient(&cases) else { continue };
             let error = chosen.rms.value();
-            let even = break_even(&cases, paths).queries;
+            let even = break_even(chosen.case, paths).queries;
             let (query, prepare) = data.seconds(chosen.case);
             let saved = paths.cost_seconds(error) - query;
             let in_seconds = if saved > 0.0 { rough(prepare / saved) } else { "never".to_string() };
@@ -251,7 +251,7 @@ fn seconds(data: &Data) -> Table {
     table(caption, &columns, data.sizes.iter().map(row).collect())
 }
 
-/// Whether the faces matter to a slab's largest maps: named in the summary.
+/// The smallest error of all settings of a slab.
 pub fn best_error(data: &Data, slab: &Slab, treatment: Treatment) -> Option<Estimate> {
     best(&data.of(slab, treatment, None)).map(|choice| choice.rms)
 }

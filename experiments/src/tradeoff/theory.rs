@@ -3,7 +3,7 @@
 
 use super::cases::{CELL, Setting, Size, Slab, Treatment};
 use super::measure::inside;
-use crate::theory::{SlabGathers, clustering};
+use crate::theory::{SlabGathers, Table, clustering, isotropic_clustering};
 use std::f64::consts::PI;
 use turbid::estimators::Kernel;
 use turbid_analytic::nearest::{nearest_expectation, nearest_moments};
@@ -61,6 +61,9 @@ impl Rms {
 pub struct Theory {
     slab: &'static Slab,
     gathers: SlabGathers,
+    /// Photons of a history around each of its own in a ball, by radius; none behind a forward peak, where only the
+    /// first order is known.
+    returns: Option<Table>,
 }
 
 /// Largest radius that is asked of the theory, beside the settings' own \[mfp\].
@@ -73,7 +76,9 @@ impl Theory {
     pub fn new<'a>(slab: &'static Slab, settings: impl Iterator<Item = &'a Setting>) -> anyhow::Result<Self> {
         let reach = settings.filter(|s| s.slab == slab).map(Setting::cap).fold(REACH, f64::max);
         let (tau, albedo, g) = (slab.tau, slab.albedo, slab.g);
-        Ok(Theory { slab, gathers: SlabGathers::new(tau, albedo, g, slab.exact()?, &slab.depths(), reach) })
+        let gathers = SlabGathers::new(tau, albedo, g, slab.exact()?, &slab.depths(), reach);
+        let returns = if g == 0.0 { Some(isotropic_clustering(albedo, reach)?) } else { None };
+        Ok(Theory { slab, gathers, returns })
     }
 
     /// Exact fluence and its bound.
@@ -170,7 +175,8 @@ impl Theory {
     /// body is four times its volume over its surface (Cauchy): where the slab cuts the ball, neighbours become
     /// fewer in that proportion, an approximation.
     fn clustering(&self, r: f64, t: f64) -> f64 {
-        clustering(self.slab.albedo, self.slab.g, r) * chord(self.slab, r, t)
+        let first = || clustering(self.slab.albedo, self.slab.g, r);
+        self.returns.as_ref().map_or_else(first, |table| table.at(r)) * chord(self.slab, r, t)
     }
 }
 
