@@ -40,12 +40,20 @@ pub fn best<'a>(cases: &[&'a Measured]) -> Option<Choice<'a>> {
     best_by(cases, false).map(choice)
 }
 
-/// The case of the best figure of merit, the smallest squared error times cost of 4096 queries: it does not change
-/// when error is bought by samples, as the path tracer buys it. Theory chooses, so that all maps may report.
+/// Errors above this are no answer, whatever they cost: a map of a few photons is cheap.
+const USEFUL: f64 = 1.0 / 3.0;
+
+/// The case of the best figure of merit, the smallest squared error times cost of 4096 queries, among those of a
+/// useful error (if there is none, among all). The figure does not change when error is bought by samples, as the path
+/// tracer buys it. Theory chooses, so that all maps may report.
 pub fn most_efficient<'a>(cases: &[&'a Measured]) -> Option<Choice<'a>> {
-    let merit = |m: &Measured| m.predicted().total() * m.predicted().total() * m.cost(PROBES as f64);
-    let found = cases.iter().min_by(|a, b| merit(a).total_cmp(&merit(b)));
-    found.map(|case| Choice { case, rms: rms(&case.maps) })
+    let error = |m: &Measured| m.predicted().total();
+    let key = |m: &Measured| (error(m) > USEFUL, error(m) * error(m) * m.cost(PROBES as f64));
+    let order = |a: &&&Measured, b: &&&Measured| {
+        let ((a_useless, a), (b_useless, b)) = (key(a), key(b));
+        a_useless.cmp(&b_useless).then(a.total_cmp(&b))
+    };
+    cases.iter().min_by(order).map(|case| Choice { case, rms: rms(&case.maps) })
 }
 
 /// The squared error of every map with the best setting by the half that it is not in.
@@ -53,7 +61,7 @@ fn crossed(cases: &[&Measured]) -> Vec<f64> {
     let (Some(by_even), Some(by_odd)) = (best_by(cases, false), best_by(cases, true)) else {
         return Vec::new();
     };
-    let one = |index: usize| (if index % 2 == 0 { by_odd } else { by_even }).maps[index].square;
+    let one = |index: usize| (if index.is_multiple_of(2) { by_odd } else { by_even }).maps[index].square;
     (0..by_even.maps.len().min(by_odd.maps.len())).map(one).collect()
 }
 

@@ -75,16 +75,17 @@ fn sizes(settings: &Settings, data: &Data) -> anyhow::Result<FigureFiles> {
                 Size::Radius(r) => r,
                 Size::Nearest(k) => k as f64,
             };
-            let lines: Vec<(f64, Rms)> = if is_fixed {
-                radius_lines(&theory, slab, photons, treatment)?
+            let least = chosen.iter().map(|m| size(m)).fold(f64::INFINITY, f64::min);
+            let most = chosen.iter().map(|m| size(m)).fold(0.0, f64::max);
+            let range = (least / 1.3, most * 1.3);
+            let (lines, x, what) = if is_fixed {
+                let lines = radius_lines(&theory, slab, photons, treatment, range)?;
+                (lines, Axis::log("radius", "mfp"), "fixed radius")
             } else {
-                chosen.iter().map(|m| (size(m), m.predicted())).collect()
+                let lines: Vec<(f64, Rms)> = chosen.iter().map(|m| (size(m), m.predicted())).collect();
+                (lines, Axis::log("k", ""), "k nearest")
             };
-            let (x, what) = if is_fixed {
-                (Axis::log("radius", "mfp").with_range(0.07, 0.6), "fixed radius")
-            } else {
-                (Axis::log("k", "").with_range(7.0, 800.0), "k nearest")
-            };
+            let x = x.with_range(range.0, range.1);
             let y = Axis::new("RMS", "%", Scale::LogClipped).with_range(0.2, 60.0);
             let mut panel = Panel::new(x, y).with_title(format!("{what}, {}", treatment.name()));
             type Part = (&'static str, fn(&Rms) -> f64, fn(&[super::split::MapError]) -> Estimate);
@@ -121,13 +122,14 @@ fn radius_lines(
     slab: &Slab,
     photons: u64,
     treatment: Treatment,
+    (from, to): (f64, f64),
 ) -> anyhow::Result<Vec<(f64, Rms)>> {
     let one = |i: i32| {
-        let radius = 0.08 * libm::exp(0.05 * f64::from(i));
+        let radius = from * libm::pow(to / from, f64::from(i) / 40.0);
         let layers = slab.depths().into_iter().map(|t| theory.within(radius, photons as f64, treatment, t));
         Ok((radius, Rms::of(&layers.collect::<anyhow::Result<Vec<Expected>>>()?)))
     };
-    (0..=37).map(one).collect()
+    (0..=40).map(one).collect()
 }
 
 /// Cost against the number of queries.

@@ -129,7 +129,8 @@ fn queries(data: &Data) -> Table {
         "Q = 1000000",
     ];
     let caption = "Operations for Q queries from the map, and by paths to the same error. The setting has the best \
-                   figure of merit, the least squared error times cost of 4096 queries. From the break-even on the map is the \
+                   figure of merit, the least squared error times cost of 4096 queries, of those with an \
+                   error of at most a third. From the break-even on the map is the \
                    cheaper; it never is where a path query of that error takes fewer rays than the map gathers \
                    photons. Seconds weigh the operations as this machine does, and belong to it.";
     table(caption, &columns, rows)
