@@ -12,9 +12,16 @@ pub mod march;
 pub mod rates;
 pub mod report;
 pub mod theory;
+pub mod tradeoff;
 
 use harness::Experiment;
 
 /// All experiments, in the order of the report.
-pub const ALL: &[Experiment] =
-    &[bias::EXPERIMENT, boundary::EXPERIMENT, march::EXPERIMENT, rates::EXPERIMENT, extremes::EXPERIMENT];
+pub const ALL: &[Experiment] = &[
+    bias::EXPERIMENT,
+    boundary::EXPERIMENT,
+    march::EXPERIMENT,
+    rates::EXPERIMENT,
+    tradeoff::EXPERIMENT,
+    extremes::EXPERIMENT,
+];

@@ -4,4 +4,4 @@ mod march;
 mod path;
 
 pub use march::{StepRule, march, march_map};
-pub use path::{direct_flux, fluence, radiance};
+pub use path::{Rays, direct_flux, fluence, radiance};

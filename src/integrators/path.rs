@@ -20,11 +20,28 @@ use glam::DVec3;
 /// carry under a tenth of what they started with.
 const ROULETTE: Roulette = Roulette::Below(0.1);
 
+/// The work of paths: rays asked what they meet.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct Rays {
+    /// Segments of paths, each followed to what is ahead.
+    pub segments: u64,
+    /// Shadow rays: connections to lights, tested for what stands between.
+    pub shadow: u64,
+}
+
+impl Rays {
+    /// All of them.
+    pub fn total(&self) -> u64 {
+        self.segments + self.shadow
+    }
+}
+
 /// What reaches a path's origin, split by the caller: called with the order and the contribution.
 struct PathVisitor<'a, F: FnMut(u32, Spectrum)> {
     scene: &'a Scene,
     orders: Orders,
     collect: F,
+    rays: Rays,
 }
 
 impl<F: FnMut(u32, Spectrum)> PathVisitor<'_, F> {
@@ -69,7 +86,9 @@ impl<F: FnMut(u32, Spectrum)> PathVisitor<'_, F> {
         }
         for index in 0..self.scene.lights().len() {
             let light = &self.scene.lights()[index];
-            let Some((sample, received)) = next_event(self.scene, index, position, from, stream) else {
+            let Some((sample, received)) =
+                next_event(self.scene, index, position, from, stream, &mut self.rays)
+            else {
                 continue;
             };
             let (fraction, pdf) = scattered(sample.dir);
@@ -103,7 +122,10 @@ impl<F: FnMut(u32, Spectrum)> PathVisitor<'_, F> {
             }
             let medium = &scene.regions()[segment.region].medium;
             let position = ray.at(t);
-            let Some((sample, received)) = next_event(scene, index, position, None, stream) else { continue };
+            let Some((sample, received)) = next_event(scene, index, position, None, stream, &mut self.rays)
+            else {
+                continue;
+            };
             let (one_minus_mu, one_plus_mu) = cosine_pair(ray.dir, sample.dir);
             let fraction = medium.albedo() * medium.phase().eval(one_minus_mu, one_plus_mu);
             let density = scene.transmittance(ray, t) * medium.sigma_t();
@@ -177,6 +199,7 @@ impl<F: FnMut(u32, Spectrum)> Visitor for PathVisitor<'_, F> {
     fn visit(&mut self, walker: &Walker, step: Step, stream: &mut Stream) {
         match step {
             Step::Ahead(hit) => {
+                self.rays.segments += 1;
                 self.ahead(walker, hit);
                 self.equiangular(walker, hit, stream);
             }
@@ -244,6 +267,7 @@ fn next_event(
     position: DVec3,
     from: Option<Target>,
     stream: &mut Stream,
+    rays: &mut Rays,
 ) -> Option<(LightSample, Spectrum)> {
     let light = &scene.lights()[index];
     if !light.has_direction() {
@@ -251,6 +275,7 @@ fn next_event(
     }
     let sample = light.sample(position, stream.pair())?;
     let ray = Ray::new(position, sample.dir);
+    rays.shadow += 1;
     if !scene.is_clear(&ray, from, sample.distance, Target::Light(index)) {
         return None;
     }
@@ -259,11 +284,17 @@ fn next_event(
 
 /// Power that uncollided light of beams and point lights carries through a surface element along its normal
 /// [W/L^2]: rays cannot meet it, so that it is added to what they find.
-pub fn direct_flux(scene: &Scene, position: DVec3, normal: DVec3, stream: &mut Stream) -> Spectrum {
+pub fn direct_flux(
+    scene: &Scene,
+    position: DVec3,
+    normal: DVec3,
+    stream: &mut Stream,
+    rays: &mut Rays,
+) -> Spectrum {
     let mut sum = Spectrum::ZERO;
     for (index, light) in scene.lights().iter().enumerate() {
         if light.is_delta()
-            && let Some((sample, received)) = next_event(scene, index, position, None, stream)
+            && let Some((sample, received)) = next_event(scene, index, position, None, stream, rays)
         {
             sum += received * (-sample.dir.dot(normal)).max(0.0);
         }
@@ -272,7 +303,7 @@ pub fn direct_flux(scene: &Scene, position: DVec3, normal: DVec3, stream: &mut S
 }
 
 /// One sample of the radiance that arrives at the origin of `ray` from ahead [W/(L^2 sr)], by order: `collect` is
-/// called with the order and the contribution.
+/// called with the order and the contribution. Returns the work.
 pub fn radiance(
     scene: &Scene,
     ray: Ray,
@@ -280,37 +311,40 @@ pub fn radiance(
     orders: Orders,
     stream: &mut Stream,
     collect: impl FnMut(u32, Spectrum),
-) {
-    let mut visitor = PathVisitor { scene, orders, collect };
+) -> Rays {
+    let mut visitor = PathVisitor { scene, orders, collect, rays: Rays::default() };
     let start = Walker { from, ..Walker::new(ray, Spectrum::ONE) };
     walk(scene, start, ROULETTE, orders.max, stream, &mut visitor);
+    visitor.rays
 }
 
 /// One sample of the fluence at a point [W/L^2], by order.
 ///
 /// Uncollided light from lights that can be aimed at comes by next-event estimation, in multiple importance with
-/// the uniform direction that everything else comes by.
+/// the uniform direction that everything else comes by. Returns the work.
 pub fn fluence(
     scene: &Scene,
     position: DVec3,
     orders: Orders,
     stream: &mut Stream,
     mut collect: impl FnMut(u32, Spectrum),
-) {
+) -> Rays {
+    let mut rays = Rays::default();
     if orders.contains(0) {
         for index in 0..scene.lights().len() {
-            if let Some((sample, received)) = next_event(scene, index, position, None, stream) {
+            if let Some((sample, received)) = next_event(scene, index, position, None, stream, &mut rays) {
                 let share = sample.pdf_solid_angle.map_or(1.0, |pdf| pdf / (pdf + warp::pdf_sphere()));
                 collect(0, received * share);
             }
         }
     }
     let dir = warp::square_to_sphere(stream.pair()).normalize();
-    let mut visitor = PathVisitor { scene, orders, collect };
+    let mut visitor = PathVisitor { scene, orders, collect, rays };
     let start = Walker {
         pdf_solid_angle: Some(warp::pdf_sphere()),
         ..Walker::new(Ray::new(position, dir), Spectrum::grey(FOUR_PI))
     };
     // The walk's weight starts at 4 pi; roulette compares with what it started with.
     walk(scene, start, Roulette::Below(0.1 * FOUR_PI), orders.max, stream, &mut visitor);
+    visitor.rays
 }

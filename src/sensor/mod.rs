@@ -5,7 +5,7 @@ mod paths;
 mod photons;
 
 pub use advise::{Advice, MIN_MAPS, PathAdvice, Pilot, PilotSettings, path_advice};
-pub use paths::{PathSettings, by_paths, sample};
+pub use paths::{PathSettings, by_paths, sample, sample_counted};
 pub use photons::{PhotonReadings, PhotonSettings, by_photons};
 
 use crate::scene::Sensor;

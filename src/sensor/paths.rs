@@ -3,7 +3,7 @@
 use super::{Reading, Source, readings};
 use crate::Spectrum;
 use crate::error::{Error, Result};
-use crate::integrators::{direct_flux, fluence, radiance};
+use crate::integrators::{Rays, direct_flux, fluence, radiance};
 use crate::light::Stage;
 use crate::math::{Frame, Ray, warp};
 use crate::rng::{Purpose, Stream};
@@ -89,18 +89,30 @@ pub(super) fn read(
 
 /// One sample of a quantity.
 pub fn sample(scene: &Scene, quantity: &Quantity, orders: Orders, stream: &mut Stream) -> Spectrum {
+    sample_counted(scene, quantity, orders, stream).0
+}
+
+/// One sample of a quantity, and the rays it took.
+pub fn sample_counted(
+    scene: &Scene,
+    quantity: &Quantity,
+    orders: Orders,
+    stream: &mut Stream,
+) -> (Spectrum, Rays) {
     let side = Stage::side(scene.stage());
     let mut sum = Spectrum::ZERO;
+    let mut rays = Rays::default();
     match *quantity {
-        Quantity::Fluence(p) => fluence(scene, p, orders, stream, |_, value| sum += value),
-        Quantity::Radiance(ray) => radiance(scene, ray, None, orders, stream, |_, value| sum += value),
+        Quantity::Fluence(p) => rays = fluence(scene, p, orders, stream, |_, value| sum += value),
+        Quantity::Radiance(ray) => rays = radiance(scene, ray, None, orders, stream, |_, value| sum += value),
         Quantity::Outflow { shape, face } => {
             let (position, normal, area) = shape.sample_boundary(face, side, stream.triple());
             let dir = Frame::new(-normal).to_world(warp::square_to_cosine_hemisphere(stream.pair()));
-            radiance(scene, Ray::new(position, dir), None, orders, stream, |_, value| sum += value);
+            let ray = Ray::new(position, dir);
+            rays = radiance(scene, ray, None, orders, stream, |_, value| sum += value);
             sum *= PI;
             if orders.contains(0) {
-                sum += direct_flux(scene, position, normal, stream);
+                sum += direct_flux(scene, position, normal, stream, &mut rays);
             }
             sum = per_power(sum * area, scene.power());
         }
@@ -108,17 +120,60 @@ pub fn sample(scene: &Scene, quantity: &Quantity, orders: Orders, stream: &mut S
             let (position, volume) = scene.regions()[region].shape.sample_inside(side, stream.triple());
             // Where a later region covers this one nothing of it is left to absorb.
             if scene.region_at(position) == Some(region) {
-                fluence(scene, position, orders, stream, |_, value| sum += value);
+                rays = fluence(scene, position, orders, stream, |_, value| sum += value);
             }
             sum = sum * scene.regions()[region].medium.sigma_a() * volume;
             sum = per_power(sum, scene.power());
         }
     }
-    sum
+    (sum, rays)
 }
 
 /// By channel, 0 where nothing is emitted.
 fn per_power(value: Spectrum, power: Spectrum) -> Spectrum {
     let ratio = |c: usize| if power[c] == 0.0 { 0.0 } else { value[c] / power[c] };
     Spectrum::rgb(ratio(0), ratio(1), ratio(2))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geometry::{Shape, Slab};
+    use crate::light::{Beam, Light, Section};
+    use crate::medium::Homogeneous;
+    use crate::phase::Phase;
+    use crate::scene::{Parts, Region};
+    use glam::DVec3;
+
+    /// In a slab under a beam a path of order n has n + 1 segments and meets n collisions, each with a shadow ray;
+    /// uncollided light has one more. With orders up to 1 every path has a first segment, and a second one, looked
+    /// along but not flown, if it collides: shadow rays and segments are equal in number.
+    #[test]
+    fn rays_are_counted() {
+        let phase = Phase::with_asymmetry(crate::math::Asymmetry::new("g", 0.0).unwrap());
+        let medium = Homogeneous::new(Spectrum::ONE, Spectrum::ONE, phase).unwrap();
+        let region = Region { shape: Shape::Slab(Slab::new(0.0, 1.0).unwrap()), medium };
+        let beam = Beam::new(DVec3::Z, Spectrum::ONE, Section::Unbounded).unwrap();
+        let parts = Parts {
+            regions: vec![region],
+            lights: vec![Light::Beam(beam)],
+            cell: Some(4.0),
+            ..Parts::default()
+        };
+        let scene = Scene::new(parts).unwrap();
+        let fluence = Quantity::Fluence(DVec3::new(2.0, 2.0, 0.5));
+        let (mut one, mut two) = (0, 0);
+        for history in 0..1000 {
+            let mut stream = Stream::new(1, Purpose::Paths, 0, history);
+            let (_, rays) = sample_counted(&scene, &fluence, Orders { min: 0, max: Some(1) }, &mut stream);
+            assert_eq!(rays.segments, rays.shadow);
+            assert_eq!(rays.total(), 2 * rays.segments);
+            one += u64::from(rays.segments == 1);
+            two += u64::from(rays.segments == 2);
+            let mut stream = Stream::new(1, Purpose::Paths, 0, history);
+            let (_, direct) = sample_counted(&scene, &fluence, Orders::only(0), &mut stream);
+            assert_eq!((direct.segments, direct.shadow), (1, 1));
+        }
+        assert!(one + two == 1000 && one > 100 && two > 100, "{one} {two}");
+    }
 }

@@ -3,141 +3,34 @@
 use super::cases::{Case, Size};
 use super::fields::{CELL, FIELDS, Field};
 use crate::harness::{Prediction, Settings, Unit};
-use crate::theory::{Exact, Table, nearest_clustering, referee_kernel};
+use crate::theory::{NearestGather, SlabGathers};
+pub use crate::theory::{PART_NAMES, Parts};
 use anyhow::Context;
 use rayon::prelude::*;
 use std::collections::HashMap;
-use std::f64::consts::PI;
-use std::sync::OnceLock;
-use turbid::estimators::Kernel;
-use turbid_analytic::kernel as referee;
-use turbid_analytic::nearest::{nearest_expectation, nearest_expectation_biased};
-use turbid_analytic::slab_kernel::{edge_loss, slab_moment};
-
-/// The predicted error of a case in parts, each as a fraction of the exact fluence.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Parts {
-    /// Exact fluence per unit irradiance.
-    pub exact: f64,
-    /// Bound on its error.
-    pub exact_error: f64,
-    /// The medium ends inside the ball: what is missing of a uniform field.
-    pub edge: f64,
-    /// The field bends inside the ball: all else that independent photons do to the right rule.
-    pub blur: f64,
-    /// The wrong rule counts the k-th photon.
-    pub rule: f64,
-    /// Photons of one history cluster, which draws the k-th photon nearer.
-    pub clusters: f64,
-    /// Bound on the numerical error of the sum.
-    pub error: f64,
-}
-
-/// The parts by name, in the order of figures.
-pub const PART_NAMES: [&str; 4] = ["edge", "blur", "rule", "clusters"];
-
-impl Parts {
-    /// The parts in the order of [`PART_NAMES`].
-    pub fn list(&self) -> [f64; 4] {
-        [self.edge, self.blur, self.rule, self.clusters]
-    }
-
-    /// Predicted relative error.
-    pub fn total(&self) -> f64 {
-        self.list().iter().sum()
-    }
-
-    /// Index of the largest part.
-    pub fn dominant(&self) -> usize {
-        let sizes = self.list().map(f64::abs);
-        (0..sizes.len()).fold(0, |best, i| if sizes[i] > sizes[best] { i } else { best })
-    }
-}
 
 /// A field with all that predictions ask of it.
-pub struct Theory {
-    field: &'static Field,
-    exact: Exact,
-    /// Kernel means by depth and kernel, tabulated when first asked for.
-    profiles: Vec<(f64, Kernel, OnceLock<Table>)>,
-}
-
-/// What interpolation of the kernel means adds to the error of a nearest expectation, tested in `table`.
-const INTERPOLATION: f64 = 1e-8;
+pub struct Theory(SlabGathers);
 
 impl Theory {
     /// The theory of a field.
     pub fn new(field: &'static Field) -> anyhow::Result<Self> {
-        let places = field.depths.iter().flat_map(|&depth| Kernel::ALL.map(|kernel| (depth, kernel)));
-        let profiles = places.map(|(depth, kernel)| (depth, kernel, OnceLock::new())).collect();
-        Ok(Theory { field, exact: field.exact()?, profiles })
-    }
-
-    fn profile(&self, depth: f64, kernel: Kernel) -> anyhow::Result<&Table> {
-        let found = self.profiles.iter().find(|(d, k, _)| *d == depth && *k == kernel);
-        let (_, _, slot) = found.with_context(|| format!("depth {depth} is none of {}", self.field.name))?;
-        if let Some(profile) = slot.get() {
-            return Ok(profile);
-        }
-        // Two threads may tabulate the same means at once; they find the same numbers.
-        let profile =
-            Table::of_kernel_means(referee_kernel(kernel), depth, self.field.tau, 0.5 * CELL, &self.exact)?;
-        Ok(slot.get_or_init(|| profile))
+        let (tau, albedo, g) = (field.tau, field.albedo, field.g);
+        Ok(Theory(SlabGathers::new(tau, albedo, g, field.exact()?, field.depths, 0.5 * CELL)))
     }
 
     /// The parts of one case. Fixed radii may be asked at any depth, nearest gathers at the field's own.
     pub fn parts(&self, case: &Case) -> anyhow::Result<Parts> {
-        let (tau, t) = (case.field.tau, case.depth);
-        let kernel = referee_kernel(case.kernel);
-        let (here, here_error) = (self.exact)(t)?;
-        let field = |depth: f64| (self.exact)(depth).map_or(f64::NAN, |(value, _)| value);
-        let mut parts = Parts {
-            exact: here,
-            exact_error: here_error,
-            edge: 0.0,
-            blur: 0.0,
-            rule: 0.0,
-            clusters: 0.0,
-            error: 0.0,
+        let nearest = |k, is_biased| {
+            let density = case.photons as f64 / (CELL * CELL);
+            let gather = NearestGather { kernel: case.kernel, k, cap: case.cap(), density, is_biased };
+            self.0.nearest(&gather, case.depth)
         };
         match case.size {
-            Size::Radius(r) => {
-                let split = edge_loss(kernel, r, t, tau, field)?;
-                parts.edge = split.edge.value / here;
-                parts.blur = split.blur.value / here;
-                parts.error = (split.edge.error + split.blur.error + here_error) / here;
-            }
-            Size::Nearest(k) | Size::NearestBiased(k) => {
-                let (neighbors, cap) = (u32::try_from(k)?, case.cap());
-                // Photons per volume where the fluence is 1.
-                let density = case.photons as f64 / (CELL * CELL);
-                let ball = |r: f64| density * 4.0 / 3.0 * PI * r * r * r;
-                let (counted, summed) = (self.profile(t, Kernel::Uniform)?, self.profile(t, case.kernel)?);
-                let number = |r: f64| ball(r) * counted.at(r);
-                let right = nearest_expectation(neighbors, cap, number, |r| summed.at(r))?;
-                let inside =
-                    |kernel, r| slab_moment(kernel, 0, r, t, tau).map_or(f64::NAN, |v| here * v.value);
-                let number_uniform = |r: f64| ball(r) * inside(referee::Kernel::Uniform, r);
-                let uniform = nearest_expectation(neighbors, cap, number_uniform, |r| inside(kernel, r))?;
-                parts.edge = uniform.value / here - 1.0;
-                parts.blur = (right.value - uniform.value) / here;
-                parts.error = (right.error + uniform.error + here_error) / here + INTERPOLATION;
-                if case.is_biased() {
-                    let biased = nearest_expectation_biased(neighbors, cap, number, |r| summed.at(r))?;
-                    parts.rule = (biased.value - right.value) / here;
-                    parts.error += biased.error / here;
-                }
-                if case.field.has_clusters() {
-                    // Where the medium ends inside the ball, neighbours are missing like the ball's own part, and the
-                    // estimate that they raise is itself lower.
-                    let inside = 1.0 + parts.edge;
-                    let raised =
-                        nearest_clustering(case.field.albedo, case.field.g, density * here * inside, k);
-                    parts.clusters = raised * inside * (1.0 + parts.edge + parts.blur);
-                }
-            }
+            Size::Radius(r) => self.0.within(case.kernel, r, case.depth),
+            Size::Nearest(k) => nearest(k, false),
+            Size::NearestBiased(k) => nearest(k, true),
         }
-        Ok(parts)
     }
 }
 
@@ -212,6 +105,7 @@ pub fn predict(settings: &Settings) -> anyhow::Result<Vec<Prediction>> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use turbid::estimators::Kernel;
 
     fn total(field: &'static Field, depth: f64, radius: f64) -> f64 {
         let case = Case { field, photons: 1, depth, size: Size::Radius(radius), kernel: Kernel::Uniform };

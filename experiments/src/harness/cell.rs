@@ -1,10 +1,11 @@
 //! What one cell measured, and the file that keeps it.
 //!
-//! The file is a line of JSON (who made it, counters, seconds), a table `case,quantity,value`, and a last line with
+//! The file is a line of JSON (who made it, counters, seconds by phase), a table `case,quantity,value`, and a last line with
 //! the digest of everything above: a file that was cut short, or changed, is not taken for a cell.
 
 use super::digest::Digest;
 use anyhow::{Context, bail, ensure};
+use cpu_time::ThreadTime;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -28,6 +29,8 @@ pub struct CellOutput {
     pub rows: Vec<CellRow>,
     /// Work done, by name: photons emitted, records visited.
     pub counters: BTreeMap<String, u64>,
+    /// CPU seconds by phase of the work: measurements of the machine, kept apart from all results.
+    pub seconds: BTreeMap<String, f64>,
     /// Non-finite contributions met on the way; any fails the study.
     pub non_finite: u64,
 }
@@ -42,6 +45,14 @@ impl CellOutput {
     pub fn push(&mut self, case: impl Into<String>, quantity: impl Into<String>, value: f64) {
         self.non_finite += u64::from(!value.is_finite());
         self.rows.push(CellRow { case: case.into(), quantity: quantity.into(), value });
+    }
+
+    /// Does a part of the work and adds the CPU seconds it took to a phase.
+    pub fn time<T>(&mut self, phase: &str, work: impl FnOnce(&mut Self) -> T) -> T {
+        let start = ThreadTime::now();
+        let result = work(self);
+        *self.seconds.entry(phase.to_string()).or_insert(0.0) += start.elapsed().as_secs_f64();
+        result
     }
 
     /// Adds to a counter.
@@ -60,12 +71,13 @@ pub(super) struct Header {
     pub settings: String,
     pub program: String,
     pub cpu_seconds: f64,
+    pub phases: BTreeMap<String, f64>,
     pub non_finite: u64,
     pub counters: BTreeMap<String, u64>,
 }
 
 /// Raised when files of an older form can no longer be read.
-pub(super) const FORMAT: u32 = 1;
+pub(super) const FORMAT: u32 = 2;
 
 const END: &str = "#end ";
 
@@ -110,6 +122,7 @@ mod tests {
             settings: "quick".into(),
             program: "00".into(),
             cpu_seconds: 0.1,
+            phases: BTreeMap::from([("shooting".to_string(), 0.05)]),
             non_finite: 0,
             counters: BTreeMap::from([("photons".to_string(), 10)]),
         }
@@ -149,6 +162,14 @@ mod tests {
             bytes[i] ^= 1;
             assert!(parse(std::str::from_utf8(&bytes).unwrap()).is_err(), "byte {i}");
         }
+    }
+
+    #[test]
+    fn phases_are_timed() {
+        let mut output = CellOutput::new();
+        let sum = output.time("adding", |_| (0..1_000_000).fold(0.0, |sum, i| sum + f64::from(i).sqrt()));
+        output.time("adding", |output| output.push("a", "q", sum));
+        assert!(output.seconds.len() == 1 && output.seconds["adding"] > 0.0 && output.rows.len() == 1);
     }
 
     #[test]

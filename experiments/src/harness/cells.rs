@@ -16,10 +16,18 @@ pub struct Cells {
     ids: Vec<CellId>,
     values: BTreeMap<(String, String), Vec<(usize, f64)>>,
     counters: BTreeMap<String, u64>,
-    /// Name and CPU seconds of each cell.
-    pub(super) seconds: Vec<(String, f64)>,
+    /// What each cell took, in the order of the cells.
+    pub(super) seconds: Vec<CellSeconds>,
     /// Programs that made the cells.
     pub(super) programs: Vec<String>,
+}
+
+/// CPU seconds of one cell.
+#[derive(Debug, Clone)]
+pub(super) struct CellSeconds {
+    pub cell: String,
+    pub total: f64,
+    pub phases: BTreeMap<String, f64>,
 }
 
 impl Cells {
@@ -55,7 +63,8 @@ impl Cells {
         for (name, count) in header.counters {
             *self.counters.entry(name).or_insert(0) += count;
         }
-        self.seconds.push((header.id, header.cpu_seconds));
+        let (cell, total, phases) = (header.id, header.cpu_seconds, header.phases);
+        self.seconds.push(CellSeconds { cell, total, phases });
         self.programs.push(header.program);
         Ok(())
     }
@@ -124,6 +133,13 @@ impl Cells {
     /// A counter summed over all cells; 0 if none has it.
     pub fn counter(&self, name: &str) -> u64 {
         self.counters.get(name).copied().unwrap_or(0)
+    }
+
+    /// CPU seconds of one phase, one a cell of a group that timed it: what this machine needed, for text and figures
+    /// that say so, never for results and claims.
+    pub fn seconds(&self, group: &str, phase: &str) -> Vec<f64> {
+        let own = self.ids.iter().zip(&self.seconds).filter(|(id, _)| id.group == group);
+        own.filter_map(|(_, seconds)| seconds.phases.get(phase).copied()).collect()
     }
 
     /// All counters, summed over the cells.

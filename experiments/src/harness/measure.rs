@@ -64,7 +64,7 @@ fn measure_one(task: &Task, manifest: &Manifest, settings: &Settings) -> anyhow:
     let output = catch_unwind(AssertUnwindSafe(|| (task.experiment.measure)(settings, &task.cell)))
         .unwrap_or_else(|_| Err(anyhow!("it panicked")))
         .with_context(name)?;
-    let CellOutput { rows, counters, non_finite } = output;
+    let CellOutput { rows, counters, seconds, non_finite } = output;
     // A value that is not finite is counted, however the rows were made.
     let non_finite = non_finite.max(rows.iter().filter(|row| !row.value.is_finite()).count() as u64);
     let header = Header {
@@ -74,6 +74,7 @@ fn measure_one(task: &Task, manifest: &Manifest, settings: &Settings) -> anyhow:
         settings: manifest.settings.clone(),
         program: manifest.program.clone(),
         cpu_seconds: start.elapsed().as_secs_f64(),
+        phases: seconds,
         non_finite,
         counters,
     };

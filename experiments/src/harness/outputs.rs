@@ -1,5 +1,6 @@
 //! The files that a study leaves beside its report.
 
+use super::cells::CellSeconds;
 use super::results::Record;
 use super::{Experiment, Judged, Prediction, Provenance, SectionReport, Unit};
 use anyhow::Context;
@@ -7,12 +8,25 @@ use serde::Serialize;
 use std::path::Path;
 use turbid::output::{write_atomically, write_csv, write_json};
 
+/// The phase of timing.csv that is the whole cell.
+const WHOLE: &str = "all";
+
 /// A row of timing.csv.
 #[derive(Serialize)]
-pub(super) struct Seconds {
-    pub experiment: &'static str,
-    pub cell: String,
-    pub cpu_seconds: f64,
+pub(super) struct Seconds<'a> {
+    experiment: &'static str,
+    cell: &'a str,
+    phase: &'a str,
+    cpu_seconds: f64,
+}
+
+impl<'a> Seconds<'a> {
+    /// The rows of one cell: the whole of it, then the phases that it timed.
+    pub(super) fn of_cell(experiment: &'static str, cell: &'a CellSeconds) -> Vec<Self> {
+        let row = |phase: &'a str, cpu_seconds| Seconds { experiment, cell: &cell.cell, phase, cpu_seconds };
+        let phases = cell.phases.iter().map(|(phase, &seconds)| row(phase, seconds));
+        std::iter::once(row(WHOLE, cell.total)).chain(phases).collect()
+    }
 }
 
 /// A row of predictions.csv.

@@ -209,13 +209,9 @@ pub fn run(study: &Study, settings: &Settings) -> anyhow::Result<Outcome> {
             (experiment.conclude)(settings, &predictions, &cells).with_context(|| experiment.name)?;
         section.rows = section.rows.into_iter().map(|row| row.predicted_from(&predictions)).collect();
         foreign += cells.programs.iter().filter(|p| **p != study.program).count();
-        let own_seconds = cells.seconds.iter().map(|s| s.1).sum();
-        seconds.extend(cells.seconds.iter().map(|(cell, s)| Seconds {
-            experiment: experiment.name,
-            cell: cell.clone(),
-            cpu_seconds: *s,
-        }));
+        let own_seconds: f64 = cells.seconds.iter().map(|s| s.total).sum();
         let counters = cells.counters().iter().map(|(name, count)| (name.clone(), *count)).collect();
+        seconds.extend(cells.seconds.iter().map(|cell| (experiment.name, cell.clone())));
         let cells = (cells.ids().len(), own_seconds);
         sections.push(SectionReport {
             experiment: *experiment,
@@ -237,13 +233,15 @@ pub fn run(study: &Study, settings: &Settings) -> anyhow::Result<Outcome> {
     provenance.cells = total;
     provenance.measured = measured;
     provenance.foreign = foreign;
-    provenance.cpu_seconds = seconds.iter().map(|s| s.cpu_seconds).sum();
+    provenance.cpu_seconds = seconds.iter().map(|(_, cell)| cell.total).sum();
     provenance.wall_seconds = wall_seconds;
     provenance.late_predictions = late_predictions;
     let provenance = keep_or_write(&settings.out.join("provenance.json"), provenance)?;
 
     write_results(&settings.out, &sections)?;
-    write_atomically(settings.out.join("timing.csv"), |out| write_csv(out, &seconds))?;
+    let timing: Vec<Seconds> =
+        seconds.iter().flat_map(|(experiment, cell)| Seconds::of_cell(experiment, cell)).collect();
+    write_atomically(settings.out.join("timing.csv"), |out| write_csv(out, &timing))?;
     let page = report::page(study.name, settings, &sections, &provenance);
     let path = settings.out.join("report.html");
     write_atomically(&path, |out| out.write_all(page.as_bytes()))?;

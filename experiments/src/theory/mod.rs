@@ -1,11 +1,15 @@
 //! What theory says, shared by the experiments: exact fields, kernels as the referee knows them, clusters of photons.
 
 mod clusters;
+mod returns;
 mod slab;
+mod slab_gather;
 mod table;
 
 pub use clusters::{clustering, nearest_clustering};
+pub use returns::isotropic_clustering;
 pub use slab::slab_fluence;
+pub use slab_gather::{NearestGather, PART_NAMES, Parts, SlabGathers};
 pub use table::Table;
 
 use turbid::estimators::Kernel;

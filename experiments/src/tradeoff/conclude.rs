@@ -1,0 +1,167 @@
+//! What all maps together say: rows, claims, tables, the error budget of the study.
+
+use super::cases::{CELL, PROBES, SIDE, SLABS, Setting, Size, Treatment};
+use super::choose::{BreakEven, best_over_best, break_even, most_efficient, regret};
+use super::data::{Data, Measured, mean};
+use super::measure::MAPS;
+use super::predict::{BIAS, Known, NOISE, RMS};
+use super::split::{rms, rms_bias, rms_noise};
+use super::{claims, figures, tables, words};
+use crate::harness::{Cells, Entry, Estimate, Prediction, Row, Section, Settings, Term, Unit};
+use turbid::stats::Moments;
+
+/// Concludes.
+pub fn conclude(settings: &Settings, predictions: &[Prediction], cells: &Cells) -> anyhow::Result<Section> {
+    let known = Known::new(predictions);
+    let data = Data::read(settings, &known, cells)?;
+    let mut section = Section { rows: rows(&data, &known)?, ..Section::default() };
+    section.budget = data.measured.iter().flat_map(entries).collect();
+    section.claims = claims::all(&data);
+    section.figures = figures::all(settings, &data)?;
+    section.tables = tables::all(&data, &known)?;
+    section.summary = words::summary(&data);
+    section.notes = words::notes(&section.budget, &data);
+    Ok(section)
+}
+
+fn rows(data: &Data, known: &Known) -> anyhow::Result<Vec<Row>> {
+    let mut rows = Vec::new();
+    for measured in &data.measured {
+        let case = measured.case();
+        let operations = measured.cost(PROBES as f64).round() as u64 * MAPS;
+        let values = [
+            (RMS, rms(&measured.maps)),
+            (BIAS, rms_bias(&measured.maps)),
+            (NOISE, rms_noise(&measured.maps)),
+        ];
+        for (quantity, value) in values {
+            let predicted = known.get(&case, quantity)?.0;
+            rows.push(
+                Row::estimated(&case, quantity, Unit::PERCENT, &value.times(100.0))?
+                    .predicted(predicted)
+                    .cost(operations, "operations"),
+            );
+        }
+    }
+    for size in &data.sizes {
+        let group = Setting::group(size.slab, size.photons);
+        let per_photon =
+            |values: &[f64]| values.iter().map(|v| v / size.photons as f64).collect::<Vec<f64>>();
+        let collisions: Moments = per_photon(&size.collisions).iter().collect();
+        let (exact, bound) = known.get(size.slab.name, "collisions per photon")?;
+        rows.push(
+            Row::measured(&group, "collisions per photon", Unit::ONE, &collisions)?.reference(exact, bound),
+        );
+        let rays: Moments = per_photon(&size.rays).iter().collect();
+        rows.push(Row::measured(&group, "rays per photon", Unit::ONE, &rays)?);
+        let bytes: Moments = size.bytes.iter().collect();
+        rows.push(Row::measured(&group, "memory of the map", Unit::new("byte"), &bytes)?);
+    }
+    for paths in &data.paths {
+        let case = format!("{} paths", paths.slab.name);
+        let error: Moments = paths.error.iter().map(|e| 100.0 * e).collect::<Vec<f64>>().iter().collect();
+        rows.push(Row::measured(&case, "error", Unit::PERCENT, &error)?.reference(0.0, 0.0));
+        let variance: Moments = paths.variance.iter().collect();
+        rows.push(Row::measured(&case, "relative variance of a sample", Unit::ONE, &variance)?);
+        let rays: Moments = paths.rays.iter().collect();
+        rows.push(Row::measured(&case, "rays of a sample", Unit::ONE, &rays)?);
+    }
+    for slab in &SLABS {
+        let Some(paths) = data.paths(slab) else { continue };
+        for treatment in Treatment::ALL {
+            let case = format!("{} {}", slab.name, treatment.name());
+            let Some(chosen) = most_efficient(&data.of(slab, treatment, None)) else { continue };
+            let BreakEven { ratio, queries } = break_even(chosen.case, paths);
+            rows.push(Row::estimated(&case, "rays of a path query per photon gathered", Unit::ONE, &ratio)?);
+            if let Some(queries) = queries {
+                rows.push(Row::estimated(&case, "break-even queries", Unit::ONE, &queries)?);
+            }
+            let cases = data.of(slab, treatment, Some(data.largest(slab)));
+            for measured in &cases {
+                let value = regret(measured, &cases);
+                if let (Size::Nearest(50 | 100), true) = (measured.setting.size, has_spread(&value)) {
+                    rows.push(Row::estimated(&measured.case(), "regret", Unit::ONE, &value)?);
+                }
+            }
+        }
+    }
+    for slab in &SLABS {
+        let of = |treatment| data.of(slab, treatment, Some(data.largest(slab)));
+        let ratio = best_over_best(&of(Treatment::Clipped), &of(Treatment::Plain));
+        let case = Setting::group(slab, data.largest(slab));
+        rows.push(Row::estimated(&case, "best clipped over best plain error", Unit::ONE, &ratio)?);
+    }
+    Ok(rows)
+}
+
+/// Whether a statistic differs between maps at all: the best setting's regret does not.
+pub fn has_spread(estimate: &Estimate) -> bool {
+    estimate.std_error() > 0.0
+}
+
+/// Counts that a layer's probes must expect in all: fewer make its mean over a map far from normal.
+const FEWEST_COUNTS: f64 = 50.0;
+/// What is not known of the clusters' part, as a fraction of it: in whole balls what the first orders leave out, and
+/// at a face, where neighbours are taken to be missing like the ball's own part, half.
+const UNKNOWN: (f64, f64) = (0.2, 0.5);
+/// How much of an entry's standard error may be unknown.
+const HIDDEN: f64 = 0.2;
+
+/// The layers of a setting in the error budget of the study, each averaged over its lateral probes.
+///
+/// The rule, which looks at predictions alone: fixed radii enter with every layer; k nearest ones where what is not
+/// known of the clusters' part is below a fifth of the standard error that is expected of the entry; clipped ones
+/// only where the medium ends inside the ball, since elsewhere they are the plain ones.
+fn entries(measured: &Measured) -> Vec<Entry> {
+    let (setting, treatment) = (&measured.setting, measured.treatment);
+    let slab = setting.slab;
+    let group = format!("tradeoff-{}", Setting::group(slab, setting.photons));
+    let mut entries = Vec::new();
+    for (layer, expected) in measured.expected.iter().enumerate() {
+        let depth = slab.depth(layer);
+        // What the layer's balls hold, and their radius, from the noise of independent photons.
+        let held = 1.0 / (expected.noise_independent * expected.noise_independent);
+        let radius = match setting.size {
+            Size::Radius(r) => r,
+            Size::Nearest(k) => {
+                let volume = k as f64 / setting.density();
+                libm::cbrt(3.0 * volume / (4.0 * std::f64::consts::PI))
+            }
+        };
+        let is_cut = radius > depth.min(slab.tau - depth);
+        if treatment == Treatment::Clipped && !is_cut || held * ((SIDE * SIDE) as f64) < FEWEST_COUNTS {
+            continue;
+        }
+        if let Size::Nearest(_) = setting.size {
+            let unknown = expected.clusters.abs() * if is_cut { UNKNOWN.1 } else { UNKNOWN.0 };
+            if unknown > HIDDEN * expected_error(expected.noise, radius) {
+                continue;
+            }
+        }
+        let terms =
+            [(Term::Edge, expected.edge), (Term::Blur, expected.blur), (Term::Clusters, expected.clusters)];
+        let case = format!("{} t={depth}", measured.case());
+        let maps = measured.maps.iter().map(|m| m.error[layer]).collect();
+        entries.push(Entry::new(&group, case, &terms, expected.error, maps));
+    }
+    entries
+}
+
+/// The standard error expected of a layer's mean: its balls overlap. Of two balls of radius r at a distance d, the
+/// part in common integrates over all lateral distances to 4/5 pi r^2.
+fn expected_error(noise: f64, radius: f64) -> f64 {
+    let probes = (SIDE * SIDE) as f64;
+    let shared = 0.8 * std::f64::consts::PI * radius * radius / (CELL * CELL);
+    noise * ((1.0 / probes + shared).min(1.0) / MAPS as f64).sqrt()
+}
+
+/// Numbers of the budget, for the notes: entries, root mean square of what is left in standard errors, the largest.
+pub fn left_over(entries: &[Entry]) -> (usize, f64, f64) {
+    let z = |entry: &Entry| {
+        let moments: Moments = entry.maps.iter().collect();
+        (moments.mean() - entry.predicted()) / libm::hypot(moments.std_error(), entry.error)
+    };
+    let scores: Vec<f64> = entries.iter().map(z).collect();
+    let squares: Vec<f64> = scores.iter().map(|z| z * z).collect();
+    (scores.len(), mean(&squares).sqrt(), scores.iter().map(|z| z.abs()).fold(0.0, f64::max))
+}

@@ -1,0 +1,230 @@
+//! Everything that was measured, case by case.
+
+use super::cases::{LAYERS, PROBES, SLABS, Setting, Slab, Treatment, paths_case, paths_group};
+use super::measure::layer_quantity;
+use super::predict::Known;
+use super::split::MapError;
+use super::theory::{Expected, Rms};
+use crate::harness::{Cells, Settings};
+
+/// One setting and treatment: what was predicted and what each map said.
+pub struct Measured {
+    /// The setting.
+    pub setting: Setting,
+    /// What is done at the faces.
+    pub treatment: Treatment,
+    /// What was predicted, by layer.
+    pub expected: Vec<Expected>,
+    /// What each map said.
+    pub maps: Vec<MapError>,
+    /// Operations of each map before its first query: rays, and records put into the tree.
+    pub prepare: Vec<f64>,
+    /// Records that each map gathers for a query.
+    pub found: Vec<f64>,
+}
+
+impl Measured {
+    /// The name in tables.
+    pub fn case(&self) -> String {
+        self.setting.case(self.treatment)
+    }
+
+    /// What was predicted, over all layers.
+    pub fn predicted(&self) -> Rms {
+        Rms::of(&self.expected)
+    }
+
+    /// Operations for so many queries, by the mean over maps.
+    pub fn cost(&self, queries: f64) -> f64 {
+        mean(&self.prepare) + queries * mean(&self.found)
+    }
+}
+
+/// The path tracer in one slab.
+pub struct Paths {
+    /// The slab.
+    pub slab: &'static Slab,
+    /// Relative error of each batch, averaged over layers.
+    pub error: Vec<f64>,
+    /// Relative variance of one sample by batch, averaged over layers.
+    pub variance: Vec<f64>,
+    /// Rays of one sample by batch, averaged over layers.
+    pub rays: Vec<f64>,
+    /// CPU seconds of one sample on this machine.
+    pub seconds: f64,
+}
+
+impl Paths {
+    /// Operations a query to reach a root mean square error: as many samples as its variance asks for, at least one.
+    pub fn cost(&self, rms: f64) -> f64 {
+        mean(&self.rays) * (mean(&self.variance) / (rms * rms)).max(1.0)
+    }
+
+    /// CPU seconds of the same on this machine.
+    pub fn cost_seconds(&self, rms: f64) -> f64 {
+        self.seconds * (mean(&self.variance) / (rms * rms)).max(1.0)
+    }
+}
+
+/// A size of map in one slab.
+pub struct Size {
+    /// The slab.
+    pub slab: &'static Slab,
+    /// Photons emitted.
+    pub photons: u64,
+    /// Rays of each map.
+    pub rays: Vec<f64>,
+    /// Collisions of each map.
+    pub collisions: Vec<f64>,
+    /// Photons stored by each map.
+    pub stored: Vec<f64>,
+    /// Memory of each map [bytes].
+    pub bytes: Vec<f64>,
+    /// CPU seconds of shooting one map, and of building its tree, on this machine.
+    pub seconds: [f64; 2],
+}
+
+/// All of it.
+pub struct Data {
+    /// By setting and treatment.
+    pub measured: Vec<Measured>,
+    /// By slab.
+    pub paths: Vec<Paths>,
+    /// By slab and number of photons.
+    pub sizes: Vec<Size>,
+    /// CPU seconds of one query, in the order of `measured`.
+    pub query_seconds: Vec<f64>,
+}
+
+/// The mean of a list.
+pub fn mean(values: &[f64]) -> f64 {
+    values.iter().sum::<f64>() / values.len() as f64
+}
+
+impl Data {
+    /// Reads the cells.
+    pub fn read(settings: &Settings, known: &Known, cells: &Cells) -> anyhow::Result<Self> {
+        let mut data =
+            Data { measured: Vec::new(), paths: Vec::new(), sizes: Vec::new(), query_seconds: Vec::new() };
+        for slab in &SLABS {
+            let exact: Vec<f64> = slab
+                .depths()
+                .iter()
+                .map(|t| known.get(slab.name, &format!("fluence t={t}")).map(|v| v.0))
+                .collect::<anyhow::Result<_>>()?;
+            for photons in slab.photons(settings) {
+                let size = size(slab, photons, cells)?;
+                let records = |(rays, stored): (&f64, &f64)| rays + stored;
+                let prepare: Vec<f64> = size.rays.iter().zip(&size.stored).map(records).collect();
+                for setting in Setting::all(settings, slab, photons) {
+                    let phase = format!("gathering {}", setting.size.name());
+                    let seconds =
+                        mean(&cells.seconds(&Setting::group(slab, photons), &phase)) / PROBES as f64;
+                    for treatment in Treatment::ALL {
+                        data.measured.push(Measured {
+                            setting,
+                            treatment,
+                            expected: known.layers(&setting, treatment)?,
+                            maps: map_errors(&setting, treatment, &exact, cells)?,
+                            prepare: prepare.clone(),
+                            found: cells.values(&setting.name(), "found")?,
+                        });
+                        data.query_seconds.push(seconds);
+                    }
+                }
+                data.sizes.push(size);
+            }
+            data.paths.push(paths(slab, &exact, cells)?);
+        }
+        Ok(data)
+    }
+
+    /// The cases of one slab, treatment and, if given, number of photons.
+    pub fn of(&self, slab: &Slab, treatment: Treatment, photons: Option<u64>) -> Vec<&Measured> {
+        let fits = |m: &&Measured| {
+            m.setting.slab == slab
+                && m.treatment == treatment
+                && photons.is_none_or(|n| m.setting.photons == n)
+        };
+        self.measured.iter().filter(fits).collect()
+    }
+
+    /// The path tracer in one slab.
+    pub fn paths(&self, slab: &Slab) -> Option<&Paths> {
+        self.paths.iter().find(|p| p.slab == slab)
+    }
+
+    /// The largest maps of a slab.
+    pub fn largest(&self, slab: &Slab) -> u64 {
+        self.sizes.iter().filter(|s| s.slab == slab).map(|s| s.photons).max().unwrap_or(0)
+    }
+
+    /// CPU seconds of a query of a case, and those before the first one, on this machine.
+    pub fn seconds(&self, of: &Measured) -> (f64, f64) {
+        let index = self.measured.iter().position(|m| std::ptr::eq(m, of)).unwrap_or(0);
+        let fits = |s: &&Size| s.slab == of.setting.slab && s.photons == of.setting.photons;
+        let prepare = self.sizes.iter().find(fits).map_or(f64::NAN, |s| s.seconds[0] + s.seconds[1]);
+        (self.query_seconds[index], prepare)
+    }
+}
+
+fn size(slab: &'static Slab, photons: u64, cells: &Cells) -> anyhow::Result<Size> {
+    let group = Setting::group(slab, photons);
+    let shares = cells.values(&group, "share of the tree")?;
+    // The tree holds copies of photons across the cell's edges: building is charged for the cell's own share.
+    let building = cells.seconds(&group, "building");
+    let own: Vec<f64> = building.iter().zip(&shares).map(|(seconds, share)| seconds * share).collect();
+    Ok(Size {
+        slab,
+        photons,
+        rays: cells.values(&group, "rays")?,
+        collisions: cells.values(&group, "collisions")?,
+        stored: cells.values(&group, "stored")?,
+        bytes: cells.values(&group, "bytes")?,
+        seconds: [mean(&cells.seconds(&group, "shooting")), mean(&own)],
+    })
+}
+
+fn map_errors(
+    setting: &Setting,
+    treatment: Treatment,
+    exact: &[f64],
+    cells: &Cells,
+) -> anyhow::Result<Vec<MapError>> {
+    let (case, slab) = (setting.case(treatment), setting.slab);
+    let mut maps: Vec<MapError> = Vec::new();
+    for (layer, exact) in exact.iter().enumerate() {
+        let means = cells.values(&case, &layer_quantity("fluence", slab, layer))?;
+        let squares = cells.values(&case, &layer_quantity("square", slab, layer))?;
+        maps.resize(means.len(), MapError { error: [0.0; LAYERS], square: 0.0 });
+        for ((map, mean), square) in maps.iter_mut().zip(means).zip(squares) {
+            let ratio = mean / exact;
+            map.error[layer] = ratio - 1.0;
+            map.square += (square / (exact * exact) - 2.0 * ratio + 1.0) / LAYERS as f64;
+        }
+    }
+    Ok(maps)
+}
+
+fn paths(slab: &'static Slab, exact: &[f64], cells: &Cells) -> anyhow::Result<Paths> {
+    let (mut error, mut variance, mut rays) = (Vec::new(), Vec::new(), Vec::new());
+    for (layer, exact) in exact.iter().enumerate() {
+        let case = paths_case(slab, layer);
+        let means = cells.values(&case, "fluence")?;
+        let squares = cells.values(&case, "square")?;
+        let counts = cells.values(&case, "rays")?;
+        for list in [&mut error, &mut variance, &mut rays] {
+            list.resize(means.len(), 0.0);
+        }
+        for batch in 0..means.len() {
+            error[batch] += (means[batch] / exact - 1.0) / LAYERS as f64;
+            // About the exact mean, so that the variance of a batch is unbiased.
+            let ratio = means[batch] / exact;
+            variance[batch] += (squares[batch] / (exact * exact) - 2.0 * ratio + 1.0) / LAYERS as f64;
+            rays[batch] += counts[batch] / LAYERS as f64;
+        }
+    }
+    let total: f64 = cells.seconds(&paths_group(slab), "path tracing").iter().sum();
+    let samples = cells.values(&paths_case(slab, 0), "samples")?.iter().sum::<f64>() * LAYERS as f64;
+    Ok(Paths { slab, error, variance, rays, seconds: total / samples })
+}

@@ -1,0 +1,258 @@
+//! The tables.
+
+use super::cases::{CELL, SLABS, Setting, Size, Slab, Treatment};
+use super::choose::{best, break_even, cheapest, most_efficient, regret};
+use super::data::{Data, mean};
+use super::predict::{Known, TARGETS};
+use crate::harness::{Estimate, Table, number, with_error};
+
+/// Numbers of queries at which costs are shown.
+pub const QUERIES: [f64; 4] = [1.0, 64.0, 4096.0, 1e6];
+
+/// All tables.
+pub fn all(data: &Data, known: &Known) -> anyhow::Result<Vec<Table>> {
+    Ok(vec![prices(data, known)?, queries(data), regrets(data), counts(data), seconds(data)])
+}
+
+fn table(caption: &str, columns: &[&str], rows: Vec<Vec<String>>) -> Table {
+    let columns = columns.iter().map(|c| c.to_string()).collect();
+    Table { caption: caption.to_string(), columns, rows }
+}
+
+/// A number to two digits, for costs.
+fn rough(x: f64) -> String {
+    let text = format!("{x:.1e}");
+    number(text.parse().unwrap_or(x))
+}
+
+fn percent(estimate: &Estimate) -> String {
+    with_error(100.0 * estimate.value(), 100.0 * estimate.std_error())
+}
+
+/// A setting without its slab.
+pub fn short(setting: &Setting) -> String {
+    format!("{} photons, {}", setting.photons, setting.size.name())
+}
+
+/// The price list.
+fn prices(data: &Data, known: &Known) -> anyhow::Result<Table> {
+    let mut rows = Vec::new();
+    for slab in &SLABS {
+        for treatment in Treatment::ALL {
+            let cases = data.of(slab, treatment, None);
+            for target in TARGETS {
+                let theory = known.optimum(slab, treatment, target)?;
+                let found = cheapest(&cases, target, 4096.0);
+                let (setting, error, cost) = match &found {
+                    Some(c) => (short(&c.case.setting), percent(&c.rms), rough(c.case.cost(4096.0))),
+                    None => {
+                        let floor = best(&cases)
+                            .map_or(String::new(), |b| format!("none: at least {}", percent(&b.rms)));
+                        ("none".to_string(), floor, String::new())
+                    }
+                };
+                let by_paths = data.paths(slab).map_or(f64::NAN, |p| 4096.0 * p.cost(target));
+                rows.push(vec![
+                    slab.title.to_string(),
+                    treatment.name().to_string(),
+                    format!("{} %", number(100.0 * target)),
+                    setting,
+                    error,
+                    cost,
+                    format!("{:.3}", theory.radius),
+                    rough(theory.density / slab.tau),
+                    rough(theory.cost),
+                    rough(by_paths),
+                ]);
+            }
+        }
+    }
+    let columns = [
+        "slab",
+        "at faces",
+        "target",
+        "cheapest setting",
+        "its RMS error [%]",
+        "operations",
+        "theory: radius [mfp]",
+        "photons per mfp³",
+        "operations",
+        "by paths",
+    ];
+    let caption = "The price list: what a root mean square error of 10, 3 and 1 per cent costs for 4096 queries, in \
+                   operations (rays, records put into the tree, photons gathered). The cheapest of the measured \
+                   settings was chosen on half of the maps, and its error is that of the other half. Where none \
+                   reaches the target the lowest error of all stands there, measured and predicted. Theory searched all radii for the \
+                   cheapest, with as many photons as it takes (emitted photons per cubic mean free path of the slab); \
+                   the path tracer takes as many samples as its variance asks for.";
+    Ok(table(caption, &columns, rows))
+}
+
+/// Cost against the number of queries.
+fn queries(data: &Data) -> Table {
+    let mut rows = Vec::new();
+    for slab in &SLABS {
+        let Some(paths) = data.paths(slab) else { continue };
+        for treatment in Treatment::ALL {
+            let cases = data.of(slab, treatment, None);
+            let Some(chosen) = most_efficient(&cases) else { continue };
+            let error = chosen.rms.value();
+            let even = break_even(chosen.case, paths).queries;
+            let (query, prepare) = data.seconds(chosen.case);
+            let saved = paths.cost_seconds(error) - query;
+            let in_seconds = if saved > 0.0 { rough(prepare / saved) } else { "never".to_string() };
+            let mut row = vec![
+                slab.title.to_string(),
+                treatment.name().to_string(),
+                short(&chosen.case.setting),
+                percent(&chosen.rms),
+                even.map_or("never".to_string(), |q| with_error(q.value(), q.std_error())),
+                in_seconds,
+            ];
+            row.extend(QUERIES.map(|q| {
+                let (map, by_paths) = (chosen.case.cost(q), q * paths.cost(error));
+                format!("{} / {}", rough(map), rough(by_paths))
+            }));
+            rows.push(row);
+        }
+    }
+    let columns = [
+        "slab",
+        "at faces",
+        "most efficient setting",
+        "its RMS error [%]",
+        "break-even [queries]",
+        "in seconds, on this machine",
+        "Q = 1",
+        "Q = 64",
+        "Q = 4096",
+        "Q = 1000000",
+    ];
+    let caption = "Operations for Q queries from the map, and by paths to the same error. The setting has the best \
+                   figure of merit, the least squared error times cost of 4096 queries, of those with an \
+                   error of at most a third. From the break-even on the map is the \
+                   cheaper; it never is where a path query of that error takes fewer rays than the map gathers \
+                   photons. Seconds weigh the operations as this machine does, and belong to it.";
+    table(caption, &columns, rows)
+}
+
+/// What a fixed choice of k costs.
+fn regrets(data: &Data) -> Table {
+    let mut rows = Vec::new();
+    for slab in &SLABS {
+        for treatment in Treatment::ALL {
+            let cases = data.of(slab, treatment, Some(data.largest(slab)));
+            let Some(best) = best(&cases) else { continue };
+            let regret_of = |k: usize| {
+                let found = cases.iter().find(|c| c.setting.size == Size::Nearest(k));
+                found.map_or(String::new(), |case| {
+                    let value = regret(case, &cases);
+                    with_error(value.value(), value.std_error())
+                })
+            };
+            rows.push(vec![
+                slab.title.to_string(),
+                treatment.name().to_string(),
+                best.case.setting.photons.to_string(),
+                best.case.setting.size.name(),
+                percent(&best.rms),
+                regret_of(50),
+                regret_of(100),
+            ]);
+        }
+    }
+    let columns = [
+        "slab",
+        "at faces",
+        "photons",
+        "best gather",
+        "its RMS error [%]",
+        "k = 50 over best",
+        "k = 100 over best",
+    ];
+    let caption = "Regret: the root mean square error with 50 and 100 neighbours over that of the best gather for the \
+                   same photons, each half of the maps with the gather that the other half chose.";
+    table(caption, &columns, rows)
+}
+
+/// Costs apart, in counts.
+fn counts(data: &Data) -> Table {
+    let row = |size: &super::data::Size| {
+        let gather = |wanted: super::cases::Size| {
+            let cases = data.of(size.slab, Treatment::Plain, Some(size.photons));
+            let found = cases.iter().find(|c| c.setting.size == wanted);
+            found.map_or(String::new(), |c| number(mean(&c.found)))
+        };
+        let paths = data.paths(size.slab);
+        let volume = CELL * CELL * size.slab.tau;
+        vec![
+            size.slab.title.to_string(),
+            size.photons.to_string(),
+            number(size.photons as f64 / volume),
+            number(mean(&size.stored) / volume),
+            rough(mean(&size.rays)),
+            rough(mean(&size.collisions)),
+            number((mean(&size.bytes) / 1e6 * 1e3).round() / 1e3),
+            gather(Size::Radius(0.2)),
+            gather(Size::Nearest(50)),
+            paths.map_or(String::new(), |p| number(mean(&p.rays))),
+            paths.map_or(String::new(), |p| number(mean(&p.variance))),
+        ]
+    };
+    let columns = [
+        "slab",
+        "photons",
+        "emitted per mfp³",
+        "stored per mfp³",
+        "rays",
+        "records",
+        "memory [MB]",
+        "gathered, r=0.2",
+        "gathered, k=50",
+        "rays of a path sample",
+        "its relative variance",
+    ];
+    let caption = "Costs apart, by counts that do not depend on the machine: rays that photons follow and records put \
+                   into the tree for one map, its memory, photons gathered for a query, and for one sample of the path \
+                   tracer its rays and the relative variance that says how many samples an error takes.";
+    table(caption, &columns, data.sizes.iter().map(row).collect())
+}
+
+/// The same in seconds.
+fn seconds(data: &Data) -> Table {
+    let row = |size: &super::data::Size| {
+        let query = |wanted: super::cases::Size| {
+            let cases = data.of(size.slab, Treatment::Plain, Some(size.photons));
+            let found = cases.iter().find(|c| c.setting.size == wanted);
+            found.map_or(String::new(), |c| format!("{:.2}", 1e6 * data.seconds(c).0))
+        };
+        let [shooting, building] = size.seconds;
+        vec![
+            size.slab.title.to_string(),
+            size.photons.to_string(),
+            format!("{:.2}", 1e3 * shooting),
+            format!("{:.2}", 1e3 * building),
+            query(Size::Radius(0.2)),
+            query(Size::Nearest(50)),
+            data.paths(size.slab).map_or(String::new(), |p| format!("{:.2}", 1e6 * p.seconds)),
+        ]
+    };
+    let columns = [
+        "slab",
+        "photons",
+        "shooting [ms]",
+        "building [ms]",
+        "query, r=0.2 [µs]",
+        "query, k=50 [µs]",
+        "path sample [µs]",
+    ];
+    let caption = "The same in CPU time on this machine, one thread: seconds are no results, and another machine has \
+                   others. Building is charged for the photons of the cell alone, without the copies across its edges \
+                   that the study needs.";
+    table(caption, &columns, data.sizes.iter().map(row).collect())
+}
+
+/// The smallest error of all settings of a slab.
+pub fn best_error(data: &Data, slab: &Slab, treatment: Treatment) -> Option<Estimate> {
+    best(&data.of(slab, treatment, None)).map(|choice| choice.rms)
+}
