@@ -13,7 +13,7 @@ mod mean;
 mod moments;
 mod multiple;
 
-pub use bootstrap::{Jackknife, bootstrap_interval, jackknife};
+pub use bootstrap::{Jackknife, bootstrap_interval, jackknife, jackknife_log, positive_interval};
 pub use distribution::{normal_critical, normal_p, poisson_upper_tail, student_critical, student_p};
 pub use fit::{Amplitude, Line, amplitude_per_map, fit_line};
 pub use goodness::{ChiSquared, KolmogorovSmirnov, chi_squared_test, kolmogorov_smirnov_test};
