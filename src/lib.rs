@@ -8,6 +8,7 @@
 
 pub mod error;
 pub mod estimators;
+pub mod faults;
 pub mod geometry;
 pub mod integrators;
 pub mod light;

@@ -3,6 +3,7 @@
 //! Histories own streams, not threads: a stream is a function of seed, purpose, replicate and history, and of
 //! nothing else, so that results do not depend on the number of threads, the block size, or what is measured.
 
+use crate::faults::{Fault, planted};
 use rand::Rng;
 use rand_pcg::Pcg64;
 
@@ -33,6 +34,14 @@ fn mix(word: u64) -> u64 {
     z ^ (z >> 31)
 }
 
+/// Uniform in [0, 1): the upper 53 bits of a word.
+pub fn half_open(bits: u64) -> f64 {
+    if planted(Fault::UnitReachesOne) {
+        return bits as f64 / u64::MAX as f64;
+    }
+    (bits >> 11) as f64 * (1.0 / 9_007_199_254_740_992.0)
+}
+
 fn open(bits: u64) -> f64 {
     ((bits >> 12) as f64 + 0.5) * (1.0 / 4_503_599_627_370_496.0)
 }
@@ -59,7 +68,7 @@ impl Stream {
 
     /// Uniform in [0, 1): multiples of 2^-53.
     pub fn unit(&mut self) -> f64 {
-        (self.bits() >> 11) as f64 * (1.0 / 9_007_199_254_740_992.0)
+        half_open(self.bits())
     }
 
     /// Uniform in (0, 1): odd multiples of 2^-53, so that the largest is below 1 by as much as the smallest is above 0.

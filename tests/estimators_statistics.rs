@@ -7,7 +7,9 @@
 //! over the radius.
 #![allow(clippy::unwrap_used, reason = "tests")]
 
+mod checks;
 mod common;
+mod support;
 
 use common::ALPHA;
 use glam::DVec3;
@@ -228,16 +230,13 @@ fn all_k_photons_read_high_as_stated() {
 }
 
 #[test]
+fn the_nearest_rule_reads_a_uniform_field() {
+    checks::points::a_uniform_field_is_read_as_it_is(checks::points::nearest());
+}
+
+#[test]
 fn estimates_divide_by_emitted() {
-    let thinned = synthetic(Profile::Constant).thinned(0.9).unwrap();
-    let gather = Gather::radius(RADIUS).unwrap();
-    let ask = |map: &PhotonMap, at| density_at(map, at, Kernel::Uniform, gather);
-    let right = by_map(thinned, Number::Exact(PHOTONS), ask);
-    Verdict::new(&right, 0.9).accept("divided by emitted", 0.02);
-    let wrong = by_map(thinned, Number::Exact(PHOTONS), |map, at| {
-        ask(map, at) * map.emitted() as f64 / map.stored() as f64
-    });
-    Verdict::new(&wrong, 0.9).reject("divided by stored");
+    checks::points::a_thinned_field_is_read_as_what_is_left(|_| 1.0);
 }
 
 /// A cap that holds k photons on average: about half of the gathers are under-full, and the mixture of the

@@ -1,6 +1,7 @@
 //! Extremes: thin and thick, white and black, grazing, peaked, empty; every number stays finite and right.
 #![allow(clippy::unwrap_used, reason = "tests")]
 
+mod checks;
 mod support;
 
 use glam::DVec3;
@@ -123,6 +124,21 @@ fn an_optical_thickness_of_1e4() {
     assert!((tallies[0][0].mean() + tallies[1][0].mean() - 1.0).abs() < 1e-15);
     // Conservative and thick: T = (4/3)/(tau + 2 x 0.7104) = 1.3e-4, so that of 64 hardly one passes.
     assert!(tallies[1][0].mean() <= 3.0 / 64.0);
+}
+
+#[test]
+fn transmittance_keeps_its_digits() {
+    checks::numbers::transmittance_keeps_its_digits();
+}
+
+#[test]
+fn a_box_is_seen_along_its_axes() {
+    checks::numbers::a_box_is_seen_along_its_axes();
+}
+
+#[test]
+fn the_largest_word_is_below_one() {
+    checks::numbers::the_largest_word_is_below_one();
 }
 
 #[test]

@@ -1,6 +1,7 @@
 //! Invariants: energy, threads, seeds, scale, and the number of histories.
 #![allow(clippy::unwrap_used, reason = "tests")]
 
+mod checks;
 mod support;
 
 use glam::DVec3;
@@ -180,6 +181,11 @@ fn the_same_seed_gives_the_same_bits_on_any_number_of_threads() {
         |threads: usize| in_pool(threads, || photon_bits(&pass(&scene, &[], 20_000, 7, |_| true).photons));
     let one = photons(1);
     assert!(one.len() > 10_000 && photons(2) == one && photons(4) == one);
+}
+
+#[test]
+fn moments_do_not_depend_on_the_threads() {
+    checks::threads::moments_do_not_depend_on_the_threads();
 }
 
 /// The slab in units of 2^-20 and 2^20 mean free paths: the same bits, positions scaled.

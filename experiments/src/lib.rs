@@ -6,6 +6,7 @@
 pub mod bias;
 pub mod boundary;
 pub mod budget;
+pub mod coverage;
 pub mod extremes;
 pub mod harness;
 pub mod march;
@@ -24,4 +25,5 @@ pub const ALL: &[Experiment] = &[
     rates::EXPERIMENT,
     tradeoff::EXPERIMENT,
     extremes::EXPERIMENT,
+    coverage::EXPERIMENT,
 ];

@@ -2,6 +2,7 @@
 
 use super::Hit;
 use crate::error::{Error, Result};
+use crate::faults::{Fault, planted};
 use crate::math::{Interval, Ray};
 use glam::DVec3;
 
@@ -92,6 +93,9 @@ impl Cuboid {
     }
 
     pub(super) fn interval(&self, ray: &Ray) -> Option<Interval> {
+        if planted(Fault::AxisRaysMiss) && ray.dir.to_array().contains(&0.0) {
+            return None;
+        }
         let (entry, exit) = self.crossings(ray)?;
         (exit.0 > 0.0).then_some(Interval { start: entry.0.max(0.0), end: exit.0 })
     }

@@ -7,6 +7,7 @@
 //! infinite variance.
 
 use crate::Spectrum;
+use crate::faults::{Fault, planted};
 use crate::light::{Light, LightSample, Point};
 use crate::math::{FOUR_PI, Interval, Ray, atan2, cosine_pair, warp};
 use crate::phase::PhaseFunction;
@@ -97,7 +98,8 @@ impl<F: FnMut(u32, Spectrum)> PathVisitor<'_, F> {
                 (_, Some(pdf_light)) => pdf_light / (pdf_light + pdf),
                 (_, None) => 1.0,
             };
-            self.add(walker.order + 1, walker.weight * fraction * received * share);
+            let order = if planted(Fault::OrderOffByOne) { walker.order } else { walker.order + 1 };
+            self.add(order, walker.weight * fraction * received * share);
         }
     }
 
@@ -231,7 +233,8 @@ impl<F: FnMut(u32, Spectrum)> Visitor for PathVisitor<'_, F> {
                 let normal = if walker.ray.dir.dot(outward) < 0.0 { outward } else { -outward };
                 let scattered = |towards: DVec3| {
                     let cosine = towards.dot(normal).max(0.0);
-                    (surface.eval() * cosine, warp::pdf_cosine_hemisphere(cosine))
+                    let again = if planted(Fault::CosineTwice) { cosine } else { 1.0 };
+                    (surface.eval() * cosine * again, warp::pdf_cosine_hemisphere(cosine))
                 };
                 self.connect(walker, position, Some(found.target), stream, scattered, |_| 1.0);
             }

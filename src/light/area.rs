@@ -3,6 +3,7 @@
 use super::{LightSample, emissive};
 use crate::Spectrum;
 use crate::error::Result;
+use crate::faults::{Fault, planted};
 use crate::geometry::{Hit, Rectangle, Shape};
 use crate::math::{Frame, Ray, warp};
 use crate::rng::Stream;
@@ -32,7 +33,12 @@ impl Area {
 
     pub(super) fn emit(&self, stream: &mut Stream) -> Ray {
         let origin = self.rectangle.sample(stream.pair());
-        let local = warp::square_to_cosine_hemisphere(stream.pair());
+        let local = if planted(Fault::EmissionUniform) {
+            let dir = warp::square_to_sphere(stream.pair());
+            dir.with_z(dir.z.abs())
+        } else {
+            warp::square_to_cosine_hemisphere(stream.pair())
+        };
         Ray::new(origin, Frame::new(self.rectangle.normal()).to_world(local))
     }
 
@@ -44,7 +50,8 @@ impl Area {
         if cosine <= 0.0 {
             return None;
         }
-        let pdf = distance * distance / (cosine * self.rectangle.area());
+        let area = if planted(Fault::AreaForgotten) { 1.0 } else { self.rectangle.area() };
+        let pdf = distance * distance / (cosine * area);
         Some(LightSample { dir, distance, value: self.radiance / pdf, pdf_solid_angle: Some(pdf) })
     }
 

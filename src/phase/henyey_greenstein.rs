@@ -1,6 +1,7 @@
 //! The phase function of Henyey and Greenstein (1941), for every asymmetry below 1 in size.
 
 use super::PhaseFunction;
+use crate::faults::{Fault, planted};
 use crate::math::{Asymmetry, FOUR_PI};
 
 /// `p = (1-g^2) / (4 pi (1 + g^2 - 2 g mu)^(3/2))`, written as sums of terms of one sign: no cancellation, no
@@ -20,12 +21,23 @@ impl HenyeyGreenstein {
     pub fn g(&self) -> f64 {
         self.g
     }
+
+    /// The mean cosine as density and sampler use it: the same, unless a fault is planted.
+    fn used(&self) -> f64 {
+        if planted(Fault::AsymmetryClamped) {
+            return self.g.clamp(-0.99, 0.99);
+        }
+        if planted(Fault::SmallAsymmetryIgnored) && self.g.abs() < 1e-3 {
+            return 0.0;
+        }
+        self.g
+    }
 }
 
 impl PhaseFunction for HenyeyGreenstein {
     /// The denominator 1 + g^2 - 2 g mu is (1-g)^2 + 2 g (1-mu) for g >= 0, and its mirror image otherwise.
     fn eval(&self, one_minus_mu: f64, one_plus_mu: f64) -> f64 {
-        let g = self.g;
+        let g = if planted(Fault::EvaluationMirrored) { -self.used() } else { self.used() };
         let d = if g >= 0.0 {
             (1.0 - g) * (1.0 - g) + 2.0 * g * one_minus_mu
         } else {
@@ -37,8 +49,11 @@ impl PhaseFunction for HenyeyGreenstein {
 
     /// Exact inversion; relative error of both members of the pair below 1e-15 for |g| up to 1 - 1e-9.
     fn sample(&self, u: f64) -> (f64, f64) {
-        let g = self.g;
+        let g = self.used();
         let e = 1.0 - u;
+        if planted(Fault::BackwardIsotropic) && g < 0.0 {
+            return (2.0 * e, 2.0 * u);
+        }
         if g >= 0.0 {
             let d = (1.0 - g) + 2.0 * g * u;
             (

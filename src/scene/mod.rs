@@ -15,6 +15,7 @@ pub use sensor::{Orders, Quantity, Sensor};
 
 use crate::Spectrum;
 use crate::error::Result;
+use crate::faults::{Fault, planted};
 use crate::geometry::Shape;
 use crate::light::{Light, Stage};
 use crate::math::{Interval, Ray, exp};
@@ -230,5 +231,8 @@ impl Scene {
 
 /// `exp(-depth)` by channel, with one exponential where the channels are equal.
 pub fn decay(depth: Spectrum) -> Spectrum {
+    if planted(Fault::TransmittanceUnderflows) {
+        return depth.map(|d| f64::from(exp(-d) as f32));
+    }
     if depth.is_grey() { Spectrum::grey(exp(-depth[0])) } else { depth.map(|d| exp(-d)) }
 }

@@ -1,6 +1,6 @@
 //! Intervals of any statistic of independent maps, by resampling them.
 
-use super::Interval;
+use super::{Interval, student_critical};
 use crate::rng::{Purpose, Stream};
 
 /// Percentile interval at `level` of a statistic of independent maps, from `resamples` samples with replacement.
@@ -85,6 +85,35 @@ pub fn jackknife<T: Clone>(maps: &[T], statistic: impl Fn(&[T]) -> f64) -> Jackk
     }
 }
 
+/// The logarithm of a positive statistic and its error, such as a variance, a root mean square, a price or a ratio.
+///
+/// Statistics of squares are skewed, and their error grows with their value: an interval about the statistic itself
+/// misses the truth on one side, and of 16 maps with 5 places each covers 93.8 per cent for 95. The logarithm of such a
+/// statistic has nearly the same error whatever its value, and is nearly normal; carried back by the exponential, the
+/// ends of its interval are those of the statistic ([`positive_interval`]).
+///
+/// # Limits
+/// As [`jackknife`]. A statistic that is not positive gives a non-number.
+///
+/// # Source
+/// Efron and Tibshirani 1993, ch. 12, on intervals that respect transformations.
+pub fn jackknife_log<T: Clone>(maps: &[T], statistic: impl Fn(&[T]) -> f64) -> Jackknife {
+    jackknife(maps, |rest| crate::math::ln(statistic(rest)))
+}
+
+/// Two-sided interval of a positive statistic at `level`: that of its logarithm by Student's t, carried back.
+///
+/// # Limits
+/// As [`jackknife_log`]; unbounded, from 0, below two maps.
+pub fn positive_interval<T: Clone>(maps: &[T], statistic: impl Fn(&[T]) -> f64, level: f64) -> Interval {
+    let Jackknife { value, std_error, n } = jackknife_log(maps, statistic);
+    if n < 2 {
+        return Interval::new(0.0, f64::INFINITY);
+    }
+    let half = student_critical(1.0 - level, n - 1) * std_error;
+    Interval::new(crate::math::exp(value - half), crate::math::exp(value + half))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -141,9 +170,48 @@ mod tests {
         assert!(interval.contains(0.94), "{inside} of 1000");
     }
 
+    /// The logarithm of the statistic, carried back: a product of powers, whose jackknife is that of a mean.
+    #[test]
+    fn the_logarithm_of_a_geometric_mean_is_a_mean() {
+        let values: Vec<f64> = values(3, 20).iter().map(|x| x.abs() + 0.1).collect();
+        let logs: Moments = values.iter().map(|x| crate::math::ln(*x)).collect();
+        let geometric =
+            |v: &[f64]| crate::math::exp(v.iter().map(|x| crate::math::ln(*x)).sum::<f64>() / v.len() as f64);
+        let estimate = jackknife_log(&values, geometric);
+        assert!((estimate.value - logs.mean()).abs() < 1e-13);
+        assert!((estimate.std_error / logs.std_error() - 1.0).abs() < 1e-12);
+        let (interval, exact) = (positive_interval(&values, geometric, 0.95), mean_interval(&logs, 0.95));
+        assert!((interval.low / crate::math::exp(exact.low) - 1.0).abs() < 1e-12);
+        assert!((interval.high / crate::math::exp(exact.high) - 1.0).abs() < 1e-12);
+    }
+
+    /// A variance of 16 maps of 5 independent places: the interval by the logarithm covers, the one about the variance
+    /// itself (the wrong twin) does not.
+    #[test]
+    fn intervals_of_variances_cover_by_their_logarithm() {
+        let variance = |v: &[[f64; 5]]| {
+            let at = |place: usize| v.iter().map(|m| m[place]).collect::<Moments>().variance();
+            (0..5).map(at).sum::<f64>() / 5.0
+        };
+        let (mut by_log, mut plain) = (0, 0);
+        for set in 0..4000 {
+            let mut stream = Stream::new(21, Purpose::Synthetic, set, 0);
+            let maps: Vec<[f64; 5]> = (0..16).map(|_| std::array::from_fn(|_| normal(&mut stream))).collect();
+            by_log += u64::from(positive_interval(&maps, variance, 0.95).contains(1.0));
+            let estimate = jackknife(&maps, variance);
+            plain +=
+                u64::from((estimate.value - 1.0).abs() <= student_critical(0.05, 15) * estimate.std_error);
+        }
+        let (by_log, plain) =
+            (wilson_interval(by_log, 4000, 1.0 - ALPHA), wilson_interval(plain, 4000, 0.999));
+        assert!(by_log.contains(0.95), "{by_log:?}");
+        assert!(plain.high < 0.95, "{plain:?}");
+    }
+
     #[test]
     fn nothing_known_is_unbounded() {
         assert_eq!(bootstrap_interval(&[], mean, 0.95, 100, 1).high, f64::INFINITY);
         assert_eq!(jackknife(&[1.0], mean).std_error, f64::INFINITY);
+        assert_eq!(positive_interval(&[1.0], mean, 0.95), Interval::new(0.0, f64::INFINITY));
     }
 }

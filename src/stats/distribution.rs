@@ -2,11 +2,12 @@
 
 use crate::math::exp;
 use statrs::distribution::{ContinuousCDF, StudentsT};
-use statrs::function::{erf::erfc, gamma::gamma_lr};
+use statrs::function::gamma::gamma_lr;
 
-/// Two-sided p-value of a standard normal `z`.
+/// Two-sided p-value of a standard normal `z`, by libm's complementary error function: that of statrs 0.19 is 4.5e-11
+/// off at 2.
 pub fn normal_p(z: f64) -> f64 {
-    erfc(z.abs() * std::f64::consts::FRAC_1_SQRT_2)
+    libm::erfc(z.abs() * std::f64::consts::FRAC_1_SQRT_2)
 }
 
 /// Two-sided p-value of Student's t with `freedom` degrees of freedom (at least 1).
@@ -122,6 +123,20 @@ mod tests {
         assert!((normal_critical(1e-6) - 4.891_638_475_699_41).abs() < 1e-8);
         assert!((student_critical(1e-6, 7) - 15.76).abs() < 0.05);
         assert!((student_critical(1e-6, 63) - 5.42).abs() < 0.01);
+    }
+
+    /// Two-sided tails of the normal distribution; the argument's own rounding moves the last by 2e-15.
+    #[test]
+    fn normal_p_stands_in_the_table() {
+        let table = [
+            (1.0, 0.317_310_507_862_914_1),
+            (2.0, 0.045_500_263_896_358_42),
+            (5.0, 5.733_031_437_583_877e-7),
+        ];
+        for (z, p) in table {
+            assert!(relative(normal_p(z), p) < 1e-14, "{z}: {:e}", normal_p(z));
+            assert_eq!(normal_p(-z), normal_p(z));
+        }
     }
 
     #[test]

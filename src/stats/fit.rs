@@ -99,6 +99,20 @@ mod tests {
         );
     }
 
+    /// Predictions 1 and 2 with weights 3 and 1: a = (3 y1 + 2 y2) / (3 + 4).
+    #[test]
+    fn an_amplitude_by_hand() {
+        let fit =
+            amplitude_per_map(&[1.0, 2.0], &[vec![1.0, 2.0], vec![2.0, 4.0], vec![1.0, 0.5]], &[3.0, 1.0]);
+        let fit = fit.unwrap();
+        let expected = [1.0, 2.0, 4.0 / 7.0];
+        assert!(fit.per_map.iter().zip(expected).all(|(a, b)| (a - b).abs() < 1e-15), "{fit:?}");
+        assert!((fit.moments.mean() - 25.0 / 21.0).abs() < 1e-15 && fit.moments.n() == 3);
+        // A prediction of the opposite sign has an amplitude of the opposite sign.
+        let mirrored = amplitude_per_map(&[-1.0, -2.0], &[vec![1.0, 2.0]], &[3.0, 1.0]).unwrap();
+        assert!((mirrored.per_map[0] + 1.0).abs() < 1e-15);
+    }
+
     #[test]
     fn points_that_fix_nothing() {
         assert!(fit_line(&[(1.0, 2.0, 1.0), (1.0, 3.0, 1.0)]).is_none());

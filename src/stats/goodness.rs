@@ -1,6 +1,7 @@
 //! Tests of a whole distribution: Kolmogorov-Smirnov and chi-squared.
 
-use super::distribution::kolmogorov_later_terms;
+use super::distribution::{kolmogorov_later_terms, root_of_falling};
+use super::{ALPHA, POWER_QUANTILE};
 use crate::math::{exp, ln, ln_1p};
 use statrs::function::gamma::{gamma_ur, ln_gamma};
 
@@ -116,6 +117,32 @@ pub fn chi_squared_test(observed: &[f64], expected: &[f64], fitted: u64) -> ChiS
     ChiSquared { statistic, freedom, p }
 }
 
+/// The smallest distance between two distribution functions that a Kolmogorov-Smirnov test of `n` values at [`ALPHA`]
+/// hardly ever misses.
+///
+/// Where the functions are farthest apart the empirical one is binomial, with a standard error of at most
+/// 1/(2 sqrt n): the critical distance, sqrt(ln(2/ALPHA)/(2n)), and [`POWER_QUANTILE`] of those.
+pub fn smallest_detectable_distance(n: usize) -> f64 {
+    let critical = (0.5 * ln(2.0 / ALPHA)).sqrt();
+    (critical + 0.5 * POWER_QUANTILE) / (n as f64).sqrt()
+}
+
+/// The smallest deviation of probabilities, the root mean square of (p - q)/q over cells weighted with q, that a
+/// chi-squared test of `total` counts with `freedom` degrees of freedom at [`ALPHA`] hardly ever misses.
+///
+/// The statistic is then noncentral, with mean k + L and variance 2(k + 2L), L = `total` times the squared deviation:
+/// solved for the L whose mean is [`POWER_QUANTILE`] standard deviations above the critical value. Its lower tail is
+/// lighter than the normal one, so that this is cautious.
+pub fn smallest_detectable_deviation(total: f64, freedom: u64) -> f64 {
+    let k = freedom as f64;
+    let critical = root_of_falling(ALPHA, |x| if x <= 0.0 { 1.0 } else { gamma_ur(0.5 * k, 0.5 * x) });
+    // L + k - critical = q sqrt(2k + 4L), squared; the larger root.
+    let (above, q2) = (critical - k, POWER_QUANTILE * POWER_QUANTILE);
+    let half = above + 2.0 * q2;
+    let noncentrality = half + (half * half - above * above + 2.0 * q2 * k).sqrt();
+    (noncentrality / total).sqrt()
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -187,6 +214,36 @@ mod tests {
         assert!((test.statistic - (16.0 / 44.0 + 16.0 / 50.0)).abs() < 1e-14);
         assert_eq!(chi_squared_test(&[1.0, 9.0], &[0.0, 10.0], 0).p, 0.0);
         assert_eq!(chi_squared_test(&[1.0, 1.0], &[1.0, 1.0], 0).p, 1.0);
+    }
+
+    /// Data as far off as stated are seen at least 98 times in 100. Twin: a third of it is hardly ever seen.
+    #[test]
+    fn the_smallest_deviations_are_seen() {
+        let (n, sets) = (2000u64, 400u64);
+        // u + shift at both ends of the unit interval: distribution functions that differ by the shift.
+        let by_distance = |shift: f64| {
+            let moved = |set| uniform(set, n).iter().map(|u| u.max(shift)).collect::<Vec<_>>();
+            (0..sets).filter(|&set| kolmogorov_smirnov_test(&moved(set), |x| x).p < ALPHA).count()
+        };
+        let distance = smallest_detectable_distance(n as usize);
+        assert!(by_distance(distance) >= 392, "{}", by_distance(distance));
+        assert!(by_distance(distance / 3.0) < 40);
+        // Ten cells, five of them heavier by the deviation.
+        let by_counts = |deviation: f64| {
+            let seen = |set: &u64| {
+                let mut counts = [0.0; 10];
+                for u in uniform(*set, n) {
+                    let split = 0.5 * (1.0 + deviation);
+                    let v = if u < split { 0.5 * u / split } else { 1.0 - 0.5 * (1.0 - u) / (1.0 - split) };
+                    counts[((v * 10.0) as usize).min(9)] += 1.0;
+                }
+                chi_squared_test(&counts, &[n as f64 / 10.0; 10], 0).p < ALPHA
+            };
+            (0..sets).filter(seen).count()
+        };
+        let deviation = smallest_detectable_deviation(n as f64, 9);
+        assert!(by_counts(deviation) >= 392, "{} at {deviation}", by_counts(deviation));
+        assert!(by_counts(deviation / 3.0) < 40);
     }
 
     #[test]

@@ -81,7 +81,10 @@ pub fn wilson_interval(successes: u64, trials: u64, level: f64) -> Interval {
     let z2 = z * z;
     let centre = (fraction + z2 / (2.0 * n)) / (1.0 + z2 / n);
     let half = z / (1.0 + z2 / n) * (fraction * (1.0 - fraction) / n + z2 / (4.0 * n * n)).sqrt();
-    Interval::new((centre - half).max(0.0), (centre + half).min(1.0))
+    // At the ends of the range the two terms are equal but for rounding.
+    let low = if successes == 0 { 0.0 } else { (centre - half).max(0.0) };
+    let high = if successes == trials { 1.0 } else { (centre + half).min(1.0) };
+    Interval::new(low, high)
 }
 
 #[cfg(test)]

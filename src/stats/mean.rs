@@ -79,6 +79,25 @@ pub(super) mod tests {
         assert!((test.p - (1.0 - s * (3.0 - s * s) / 2.0)).abs() < 1e-12);
     }
 
+    /// Two known standard errors away: p = 0.0455; what is seen is 4.8916 + 2.4 of them.
+    #[test]
+    fn a_known_error_by_hand() {
+        let test = z_test(1.2, 0.1, 1.0);
+        assert!((test.difference - 0.2).abs() < 1e-15 && (test.z - 2.0).abs() < 1e-14);
+        assert!((test.p - 0.045_500_263_896_358_4).abs() < 1e-12, "{:.17}", test.p);
+        assert!((test.smallest_bias - 0.729_163_847_569_944).abs() < 1e-9);
+        assert_eq!((z_test(1.0, 0.0, 1.0).p, z_test(1.0, 0.0, 2.0).p), (1.0, 0.0));
+        assert_eq!(z_test(f64::NAN, 1.0, 0.0).p, 0.0);
+    }
+
+    /// With 63 degrees of freedom the threshold is 5.42: 7.82 standard errors in all.
+    #[test]
+    fn the_smallest_bias_by_hand() {
+        assert!((smallest_detectable_bias(0.01, 63) - 0.0782).abs() < 1e-4);
+        assert!((smallest_detectable_bias(0.01, 7) - 0.1816).abs() < 5e-4);
+        assert_eq!(smallest_detectable_bias(f64::INFINITY, 63), f64::INFINITY);
+    }
+
     #[test]
     fn a_reference_with_an_error_widens_the_test() {
         let values: Moments = [1.0, 2.0, 3.0, 4.0, 5.0].iter().collect();

@@ -1,6 +1,7 @@
 //! The first four moments of a sample, in one pass, with merge.
 
 use super::HEAVY_TAIL;
+use crate::faults::{Fault, planted};
 
 /// Count, mean and central sums up to the fourth power.
 ///
@@ -29,17 +30,24 @@ impl Moments {
 
     /// Adds one value.
     pub fn push(&mut self, x: f64) {
+        if planted(Fault::NonFiniteDropped) && !x.is_finite() {
+            return;
+        }
         let before = self.n as f64;
         self.n += 1;
         let n = self.n as f64;
         let delta = x - self.mean;
         let step = delta / n;
         let step2 = step * step;
-        let term = delta * step * before;
+        let spread = if planted(Fault::AbsoluteDeviation) { delta.signum() / n } else { step };
+        let term = delta * spread * before;
         self.m4 += term * step2 * (n * n - 3.0 * n + 3.0) + 6.0 * step2 * self.m2 - 4.0 * step * self.m3;
         self.m3 += term * step * (n - 2.0) - 3.0 * step * self.m2;
         self.m2 += term;
         self.mean += step;
+        if planted(Fault::SinglePrecisionMean) {
+            self.mean = f64::from(self.mean as f32);
+        }
     }
 
     /// Adds all values of another sample.
@@ -88,6 +96,9 @@ impl Moments {
 
     /// Standard error **of the mean**; infinite (unknown) below two values.
     pub fn std_error(&self) -> f64 {
+        if planted(Fault::RootForgotten) {
+            return self.std_dev();
+        }
         if self.n < 2 { f64::INFINITY } else { (self.m2 / ((self.n - 1) as f64 * self.n as f64)).sqrt() }
     }
 

@@ -1,6 +1,7 @@
 //! Histories in fixed blocks, merged in block order: the same bits on any number of threads.
 
 use crate::error::{Error, Result};
+use crate::faults::{Fault, planted};
 use rayon::prelude::*;
 use std::ops::Range;
 
@@ -35,18 +36,23 @@ pub fn run_blocks<T: Send>(
     block: impl Fn(Range<u64>) -> T + Sync,
     merge: impl Fn(T, T) -> T,
 ) -> Result<Option<T>> {
+    let size = if planted(Fault::BlocksByThreads) {
+        histories.div_ceil(rayon::current_num_threads() as u64).max(1)
+    } else {
+        BLOCK
+    };
     let one = |index: u64| {
         if progress.is_cancelled() {
             return Err(Error::Cancelled);
         }
-        let range = index * BLOCK..((index + 1) * BLOCK).min(histories);
+        let range = index * size..((index + 1) * size).min(histories);
         let count = range.end - range.start;
         let result = block(range);
         progress.advance(count);
         Ok(result)
     };
     let mut results: Vec<T> =
-        (0..histories.div_ceil(BLOCK)).into_par_iter().map(one).collect::<Result<_>>()?;
+        (0..histories.div_ceil(size)).into_par_iter().map(one).collect::<Result<_>>()?;
     while results.len() > 1 {
         let mut pairs = results.into_iter();
         let mut merged = Vec::with_capacity(pairs.len().div_ceil(2));

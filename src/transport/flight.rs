@@ -1,6 +1,7 @@
 //! Free flight: how far light goes before it collides.
 
 use crate::Spectrum;
+use crate::faults::{Fault, planted};
 use crate::math::{Ray, exp_m1, ln_1p};
 use crate::rng::Stream;
 use crate::scene::{Scene, decay};
@@ -64,7 +65,9 @@ pub fn free_flight(
             let t = segment.interval.start + target / sigma_t[channel];
             return collision(scene, ray, t, segment.region, weight, is_grey);
         }
-        target -= depth;
+        if !planted(Fault::DepthForgotten) {
+            target -= depth;
+        }
         last = Some(segment);
     }
     match last {

@@ -1,6 +1,7 @@
 //! Russian roulette: who survives an event, and with what weight.
 
 use crate::Spectrum;
+use crate::faults::{Fault, planted};
 use crate::rng::Stream;
 
 /// How survival is decided.
@@ -26,8 +27,11 @@ impl Roulette {
     /// Analog: survival with q = sum(a_c P_c) / sum(P_c), then P_c a_c / q: the summed power is unchanged, exactly
     /// so for a grey albedo; each channel holds in expectation.
     pub fn survive(self, weight: Spectrum, albedo: Spectrum, stream: &mut Stream) -> Option<Spectrum> {
+        let albedo = if planted(Fault::AlbedoTwice) { albedo * albedo } else { albedo };
+        let albedo = if planted(Fault::AlbedoNever) { Spectrum::ONE } else { albedo };
         let kept = weight * albedo;
         match self {
+            Roulette::Analog if planted(Fault::NoRoulette) => Some(kept),
             Roulette::Analog if albedo.is_grey() => (stream.unit() < albedo[0]).then_some(weight),
             Roulette::Analog => {
                 let q = kept.sum() / weight.sum();

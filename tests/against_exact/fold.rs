@@ -1,39 +1,21 @@
 //! The folded cell: photons of an oblique beam lie evenly over it. Mirrors in its place would not do.
 
+use crate::checks::cell::{
+    HISTORIES, UNEVEN, an_oblique_beam_fills_the_cell_evenly, counts, evenness, folded, mirrored, unfolded,
+};
 use crate::support::run::pass;
 use crate::support::scenes::{CELL, Incidence, slab};
 use crate::support::verdict;
 use glam::DVec3;
 use turbid::photons::{Photon, fold};
 use turbid::rng::{Purpose, Stream};
-use turbid::scene::Scene;
-use turbid::stats::chi_squared_test;
-use turbid::transport::{Roulette, Step, Visitor, Walker, walk};
-
-const SQUARES: usize = 8;
-const N: u64 = 1 << 18;
-
-/// Counts by square of the cell.
-fn counts(points: impl Iterator<Item = DVec3>) -> Vec<f64> {
-    let mut counts = vec![0.0; SQUARES * SQUARES];
-    for p in points {
-        let index = |x: f64| ((x / CELL * SQUARES as f64) as usize).min(SQUARES - 1);
-        counts[SQUARES * index(p.x) + index(p.y)] += 1.0;
-    }
-    counts
-}
-
-fn p_of_even(counts: &[f64]) -> f64 {
-    let even = counts.iter().sum::<f64>() / counts.len() as f64;
-    chi_squared_test(counts, &vec![even; counts.len()], 0).p
-}
 
 /// One order at a time: a history has at most one photon of each, so that the counts are independent.
 #[test]
 fn photons_of_an_oblique_beam_lie_evenly_over_the_cell() {
     for how in [Incidence::Beam(0.3), Incidence::Beam(1.0), Incidence::Diffuse] {
         let scene = slab(2.0, 0.9, 0.75, how);
-        let photons = pass(&scene, &[], N, 1, |p| p.order < 4).photons;
+        let photons = pass(&scene, &[], HISTORIES, 1, |p| p.order < 4).photons;
         assert!(
             photons
                 .iter()
@@ -42,59 +24,21 @@ fn photons_of_an_oblique_beam_lie_evenly_over_the_cell() {
         for order in 0..4 {
             let found = counts(photons.iter().filter(|p| p.order == order).map(|p| p.position));
             assert!(found.iter().sum::<f64>() > 1e5 || order > 1);
-            verdict::fits(&format!("{how:?}, order {order}"), p_of_even(&found), 1);
+            verdict::fits(&format!("{how:?}, order {order}"), evenness(&found), UNEVEN, 1);
         }
     }
 }
 
-/// Where first collisions of an oblique beam are, without the fold.
-struct First(Vec<DVec3>);
-
-impl Visitor for First {
-    fn visit(&mut self, walker: &Walker, step: Step, _stream: &mut Stream) {
-        if let Step::Collision(arrival, _) = step
-            && walker.order == 1
-        {
-            self.0.push(arrival.position);
-        }
-    }
-}
-
-fn unfolded(scene: &Scene) -> Vec<DVec3> {
-    let mut visitor = First(Vec::new());
-    for history in 0..N {
-        let mut stream = Stream::new(2, Purpose::Photons, 0, history);
-        let emission = scene.lights()[0].emit(scene.stage(), &mut stream);
-        walk(
-            scene,
-            Walker::new(emission.ray, emission.power),
-            Roulette::Analog,
-            None,
-            &mut stream,
-            &mut visitor,
-        );
-    }
-    visitor.0
-}
-
-/// The same positions under four mirrors: reflected back and forth instead of taken modulo the side.
+/// Folded, the photons of an oblique beam are even; under four mirrors they are not.
 #[test]
 fn four_mirrors_are_a_wrong_twin() {
+    an_oblique_beam_fills_the_cell_evenly(folded);
     let points = unfolded(&slab(2.0, 0.9, 0.75, Incidence::Beam(0.3)));
-    verdict::fits("folded", p_of_even(&counts(points.iter().map(|p| fold::into_cell(*p, CELL)))), 2);
-    let mirrored = points.iter().map(|p| {
-        let twice = fold::into_cell(*p, 2.0 * CELL);
-        let back = |x: f64| if x > CELL { 2.0 * CELL - x } else { x };
-        DVec3::new(back(twice.x), back(twice.y), p.z)
-    });
-    verdict::misfits("mirrored", p_of_even(&counts(mirrored)), 2);
+    verdict::misfits("mirrored", evenness(&counts(points.into_iter().map(mirrored))), 2);
     // Directions that are as often left as right hide the mistake: that is why it is plausible.
     let symmetric = unfolded(&slab(2.0, 0.9, 0.75, Incidence::Diffuse));
-    verdict::fits(
-        "diffuse, folded",
-        p_of_even(&counts(symmetric.iter().map(|p| fold::into_cell(*p, CELL)))),
-        2,
-    );
+    let even = evenness(&counts(symmetric.into_iter().map(folded)));
+    verdict::fits("diffuse, folded", even, UNEVEN, 2);
 }
 
 /// With copies around the cell every ball about a point of the cell meets what it would meet in the endless lattice,

@@ -1,6 +1,8 @@
 //! The player against the referee: path tracer and photons against exact values, order by order and in all.
 #![allow(clippy::unwrap_used, reason = "tests")]
 
+#[path = "../checks/mod.rs"]
+mod checks;
 #[path = "../support/mod.rs"]
 mod support;
 

@@ -1,13 +1,13 @@
 //! Surfaces and the ways to find a light: view factors, spherical cavities, mirrors.
 
-use crate::support::run::{numbers, paths, tallies};
-use crate::support::scenes::{area_light, bounded, emitting_sphere, outflow, point_light, rectangle, sphere};
+use crate::support::run::{paths, tallies};
+use crate::support::scenes::{bounded, emitting_sphere, outflow, point_light, rectangle, sphere};
 use crate::support::verdict;
 use glam::DVec3;
 use std::f64::consts::PI;
 use turbid::Spectrum;
 use turbid::geometry::Shape;
-use turbid::math::{FOUR_PI, Ray, atan2, warp};
+use turbid::math::FOUR_PI;
 use turbid::scene::{Orders, Quantity};
 use turbid::surface::{Lambertian, Mirror, Surface};
 
@@ -17,44 +17,9 @@ fn lambertian(reflectance: Spectrum) -> Surface {
     Surface::Lambertian(Lambertian::new(reflectance).unwrap())
 }
 
-/// View factor from a horizontal element to a parallel rectangle at height h, a corner of it straight above
-/// (Howell, Menguc and Siegel, configuration factor B-4).
-fn corner_view_factor(a: f64, b: f64, h: f64) -> f64 {
-    let (x, y) = (a / h, b / h);
-    let (rx, ry) = ((1.0 + x * x).sqrt(), (1.0 + y * y).sqrt());
-    (x / rx * atan2(y, rx) + y / ry * atan2(x, ry)) / (2.0 * PI)
-}
-
-/// Irradiance under a rectangular light, over every way to sample it: aimed at, met by chance, and both together in
-/// the path tracer, each against the view factor.
 #[test]
 fn irradiance_under_an_area_light() {
-    let light =
-        area_light(rectangle(DVec3::new(-0.5, 1.5, 1.0), DVec3::X * 2.0, -DVec3::Y * 2.0), Spectrum::ONE);
-    let expected: f64 = [(0.5, 0.5), (1.5, 0.5), (0.5, 1.5), (1.5, 1.5)]
-        .iter()
-        .map(|(a, b)| corner_view_factor(*a, *b, 1.0))
-        .sum::<f64>()
-        * PI;
-    let aimed = numbers(N, 1, |s| light.sample(DVec3::ZERO, s.pair()).map_or(0.0, |l| l.value[0] * l.dir.z));
-    verdict::agrees("aimed", &aimed, (expected, 1e-14), 0.02 * expected, 1);
-    let met = numbers(N, 2, |s| {
-        let ray = Ray::new(DVec3::ZERO, warp::square_to_cosine_hemisphere(s.pair()));
-        PI * light.hit(&ray).map_or(0.0, |hit| light.emitted(&ray, &hit).0[0])
-    });
-    verdict::agrees("met", &met, (expected, 1e-14), 0.03 * expected, 2);
-    // The path tracer sees the floor from the side: radiance rho E / pi.
-    let floor = Shape::Rectangle(rectangle(DVec3::new(-5.0, -5.0, 0.0), DVec3::X * 10.0, DVec3::Y * 10.0));
-    let rho = Spectrum::rgb(0.5, 1.0, 0.2);
-    let scene = bounded(Vec::new(), vec![(floor, lambertian(rho))], vec![light]);
-    let eye = DVec3::new(-2.0, 0.0, 0.5);
-    let seen = paths(&scene, Quantity::Radiance(Ray::new(eye, (-eye).normalize())), Orders::ALL, N, 3);
-    for c in 0..3 {
-        let value = rho[c] * expected / PI;
-        verdict::agrees(&format!("path tracer, channel {c}"), &seen[c], (value, 1e-14), 0.02 * value, 3);
-        // Counting both ways in full, without sharing, is a wrong twin.
-        verdict::rejects(&format!("both in full, channel {c}"), &seen[c], 2.0 * value, 3);
-    }
+    crate::checks::light::irradiance_under_an_area_light();
 }
 
 /// Lambertian sphere of radius a about a point light anywhere inside, of power 1: the irradiance is the direct one plus

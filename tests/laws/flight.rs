@@ -8,7 +8,6 @@ use turbid::Spectrum;
 use turbid::math::{Ray, exp, exp_m1};
 use turbid::rng::{Purpose, Stream};
 use turbid::scene::{Region, Scene};
-use turbid::stats::{kolmogorov_smirnov_test, wilson_interval};
 use turbid::transport::{Flight, free_flight};
 
 const N: u64 = 1 << 18;
@@ -87,12 +86,11 @@ fn the_depth_flown_is_exponential_and_passes_with_the_transmittance() {
         }
     }
     let cdf = |tau: f64| exp_m1(-tau) / exp_m1(-depth);
-    verdict::fits("depth of collisions", kolmogorov_smirnov_test(&flown, cdf).p, 2);
+    verdict::fits("depth of collisions", verdict::cumulated(&flown, cdf), 0.01, 2);
     // The wrong twin: extinction half a per cent off.
     let wrong: Vec<f64> = flown.iter().map(|tau| tau * 1.02).collect();
-    verdict::misfits("extinction 2 % off", kolmogorov_smirnov_test(&wrong, cdf).p, 2);
-    let interval = wilson_interval(passed, N, 1.0 - 1e-6);
-    assert!(interval.contains(exp(-depth)), "{interval:?}, {}", exp(-depth));
+    verdict::misfits("extinction 2 % off", verdict::cumulated(&wrong, cdf), 2);
+    verdict::rate("passed", passed, N, exp(-depth), 1e-3, 2);
 }
 
 /// A forced flight collides for certain, with the probability as its weight, exponentially within what is there.
@@ -114,7 +112,7 @@ fn a_forced_flight_always_collides() {
             })
             .collect();
         let cdf = |t: f64| exp_m1(-sigma_t * (t - 1.0)) / exp_m1(-2.0 * sigma_t);
-        verdict::fits(&format!("sigma_t = {sigma_t}"), kolmogorov_smirnov_test(&flown, cdf).p, 3);
+        verdict::fits(&format!("sigma_t = {sigma_t}"), verdict::cumulated(&flown, cdf), 0.02, 3);
     }
 }
 

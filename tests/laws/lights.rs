@@ -1,6 +1,7 @@
 //! Lights: density against sample, one emitter in two forms (photons sent out, directions aimed at it, rays that
 //! meet it), and the power that they state.
 
+use crate::checks::light::{corner_solid_angle, photons_and_paths_cross_a_box_alike};
 use crate::common::config as properties;
 use crate::support::run::{numbers, paths, tallies};
 use crate::support::scenes::{
@@ -12,7 +13,7 @@ use proptest::prelude::*;
 use turbid::Spectrum;
 use turbid::geometry::Sphere;
 use turbid::light::{Beam, EmittingSphere, Faces, Light, Section};
-use turbid::math::{FOUR_PI, Ray, atan2, warp};
+use turbid::math::{FOUR_PI, Ray, warp};
 use turbid::scene::Orders;
 
 const N: u64 = 1 << 17;
@@ -67,26 +68,15 @@ fn photons_and_paths_agree_on_a_box_beside_the_light() {
         cuboid(DVec3::new(0.55, -1.0, -1.0), DVec3::new(1.2, 1.0, 1.0)),
     ];
     for (name, light) in lights() {
-        let scene = bounded(Vec::new(), Vec::new(), vec![light]);
         for (i, shape) in boxes.into_iter().enumerate() {
-            let by_photons = tallies(&scene, &[(outflow(shape), Orders::ALL)], N, 2);
-            let by_paths = paths(&scene, outflow(shape), Orders::ALL, MANY, 3);
-            for c in 0..3 {
-                verdict::agree(
-                    &format!("{name}, box {i}, channel {c}"),
-                    &by_photons[0][c],
-                    &by_paths[c],
-                    0.06,
-                    2,
-                );
-            }
+            photons_and_paths_cross_a_box_alike(&format!("{name}, box {i}"), light, shape, MANY);
         }
     }
 }
 
-/// The solid angle of a rectangle seen from above a corner at height h: atan(a b / (h sqrt(a^2 + b^2 + h^2))).
-fn corner_solid_angle(a: f64, b: f64, h: f64) -> f64 {
-    atan2(a * b, h * (a * a + b * b + h * h).sqrt())
+#[test]
+fn a_light_is_the_sum_of_its_quarters() {
+    crate::checks::light::a_light_is_the_sum_of_its_quarters();
 }
 
 /// 1/density has the solid angle of the light as its mean, and is met by uniform rays with density 1/that.

@@ -1,6 +1,8 @@
 //! The laws: what every phase function, warp, light, shape, flight and roulette obeys, over its whole domain.
 #![allow(clippy::unwrap_used, reason = "tests")]
 
+#[path = "../checks/mod.rs"]
+mod checks;
 #[path = "../common/mod.rs"]
 mod common;
 #[path = "../support/mod.rs"]

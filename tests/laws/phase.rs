@@ -1,79 +1,25 @@
 //! Phase functions: sampler against density, normalisation, signed moments, both ends, every digit.
 
+use crate::checks::phase;
 use crate::common::config as properties;
 use crate::support::double::Double;
-use crate::support::quadrature::{integrate, legendre};
-use crate::support::run::numbers;
 use crate::support::{unit_vector, verdict};
 use proptest::prelude::*;
-use std::f64::consts::PI;
-use turbid::math::{Asymmetry, FOUR_PI, cosine_pair, exp, ln};
+use turbid::math::{Asymmetry, FOUR_PI, cosine_pair, exp};
 use turbid::phase::{HenyeyGreenstein, Phase, PhaseFunction};
 use turbid::rng::{Purpose, Stream};
-use turbid::stats::kolmogorov_smirnov_test;
 
 /// 0, the smallest number, the smallest and the largest that a stream can give.
 const ENDS: [f64; 4] = [0.0, f64::MIN_POSITIVE, 1.0 / 9_007_199_254_740_992.0, 1.0 - f64::EPSILON / 2.0];
 
-/// The integral over mu of 2 pi p f, where x = ln((1-mu)/(1+mu)) runs from `a` to `b`.
-///
-/// In x both peaks are wide: the nearest singularities of the integrand lie at a height of pi, so that 20 Gauss
-/// nodes on each part of width 1 at most are exact to rounding.
-fn over(phase: &Phase, (a, b): (f64, f64), f: impl Fn(f64, f64) -> f64) -> f64 {
-    let parts = (b - a).ceil().max(1.0) as u32;
-    integrate(a, b, parts, |x| {
-        let s = exp(x);
-        let (one_minus_mu, one_plus_mu) = (2.0 * s / (1.0 + s), 2.0 / (1.0 + s));
-        let slope = 2.0 * s / ((1.0 + s) * (1.0 + s));
-        2.0 * PI * phase.eval(one_minus_mu, one_plus_mu) * f(one_minus_mu, one_plus_mu) * slope
-    })
-}
-
-/// Beyond 90 the integrand is below e^-90 times the peak, at most 2/(1-g)^2 = 2e18.
-const ALL: (f64, f64) = (-90.0, 90.0);
-
-/// A sum of n = 3600 terms of one sign rounds n times, each term some 20 times: (n + 20) eps/2 at most.
-const ROUNDING: f64 = 3620.0 * f64::EPSILON / 2.0;
-
 #[test]
 fn density_is_normalised_and_has_the_moments_it_states() {
-    for phase in Phase::specimens() {
-        let total = over(&phase, ALL, |_, _| 1.0);
-        assert!((total - 1.0).abs() < ROUNDING, "{phase:?}: {total}");
-        for l in 1..=6 {
-            let moment = over(&phase, ALL, |m, p| legendre(l, 0.5 * (p - m)));
-            assert!((moment - phase.moment(l)).abs() < 2.0 * ROUNDING, "{phase:?}, l = {l}: {moment}");
-        }
-        // 1 - g and 1 + g keep every digit at the peaks, and so g its sign.
-        let (backward, forward) = (over(&phase, ALL, |m, _| m), over(&phase, ALL, |_, p| p));
-        let g = phase.moment(1);
-        assert!((backward / (1.0 - g) - 1.0).abs() < ROUNDING, "{phase:?}: {backward}");
-        assert!((forward / (1.0 + g) - 1.0).abs() < ROUNDING, "{phase:?}: {forward}");
-    }
+    phase::density_has_the_moments_it_states();
 }
 
-/// The density over what lies between two samples is the difference of their numbers: density = 1 / Jacobian, in
-/// integral form, from cell to cell towards both ends.
 #[test]
 fn density_between_samples_is_the_step_in_u() {
-    let log_ratio = |(m, p): (f64, f64)| ln(m) - ln(p);
-    for phase in Phase::specimens() {
-        let steps: Vec<f64> = (0..30).map(|k| exp(-f64::from(k)) * 0.5).collect();
-        for pair in steps.windows(2) {
-            for (low, high) in [(pair[1], pair[0]), (1.0 - pair[0], 1.0 - pair[1])] {
-                // Far below the peak's width the pair near 2 moves by less than its ulp, but the other moves freely.
-                let ends = (log_ratio(phase.sample(high)), log_ratio(phase.sample(low)));
-                let part = over(&phase, ends, |_, _| 1.0);
-                // An end carries some 16 roundings of the sampler and, as a logarithm up to 80, its own: an error
-                // of 100 eps in x moves the part by at most that times p dmu/dx < u (1-u), which is of the order of the
-                // step; ln and exp of up to 80 amplify by 80.
-                assert!(
-                    ((part - (high - low)) / (high - low)).abs() < 400.0 * f64::EPSILON,
-                    "{phase:?} {low}..{high}: {part}"
-                );
-            }
-        }
-    }
+    phase::density_between_samples_is_the_step_in_u();
 }
 
 #[test]
@@ -194,28 +140,13 @@ fn samples_of_a_stream_follow_the_density() {
         }
     };
     for (seed, g) in [(1, -0.75), (2, 0.3), (3, 0.75), (4, 0.95)] {
-        verdict::fits(&format!("g = {g}"), kolmogorov_smirnov_test(&draw(g, seed), cdf(g)).p, seed);
-        let twin = kolmogorov_smirnov_test(&draw(g + 0.005, seed), cdf(g));
-        verdict::misfits(&format!("g = {g}, drawn with 0.005 more"), twin.p, seed);
+        verdict::fits(&format!("g = {g}"), verdict::cumulated(&draw(g, seed), cdf(g)), 5e-3, seed);
+        let twin = verdict::cumulated(&draw(g + 0.005, seed), cdf(g));
+        verdict::misfits(&format!("g = {g}, drawn with 0.005 more"), twin, seed);
     }
 }
 
-/// First and second moments of drawn directions, sign included: a negative g sampled as isotropic and a large g clamped
-/// would both fail here.
 #[test]
 fn drawn_moments_are_those_stated() {
-    const N: u64 = 1 << 18;
-    for phase in Phase::specimens() {
-        for l in [1, 2] {
-            let drawn = numbers(N, 3, |stream| {
-                let (m, p) = phase.sample(stream.unit());
-                legendre(l, 0.5 * (p - m))
-            });
-            // A standard deviation of at most 1 over 2^18 values: 7.3 of 1/512 at worst. Peaks are resolved by their
-            // own spread, which is heavy-tailed beyond |g| = 0.99: those have the exact tests above.
-            if phase.moment(1).abs() < 0.99 {
-                verdict::agrees(&format!("{phase:?}, P_{l}"), &drawn, (phase.moment(l), 0.0), 0.015, 3);
-            }
-        }
-    }
+    phase::drawn_moments_are_those_stated();
 }

@@ -1,9 +1,79 @@
-//! Verdicts on means: a failure says everything needed to judge it and to repeat it.
+//! Verdicts: a failure says everything needed to judge it and to repeat it. Every one states the smallest deviation that
+//! it can see, and fails where that is larger than its test promises.
 
-use turbid::stats::{ALPHA, MeanTest, Moments, smallest_detectable_bias, student_p, t_test};
+use std::cell::RefCell;
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use turbid::stats::{
+    ALPHA, MeanTest, Moments, chi_squared_test, kolmogorov_smirnov_test, normal_critical,
+    smallest_detectable_bias, smallest_detectable_deviation, smallest_detectable_distance, student_p, t_test,
+    z_test,
+};
 
 /// The fewest independent values behind a verdict.
 const FEWEST: u64 = 64;
+
+/// What one verdict found while a trial runs.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Finding {
+    /// What was tested.
+    pub what: String,
+    /// Distance in standard errors; the normal deviate of its p-value where a whole distribution was tested.
+    pub z: f64,
+    /// p-value.
+    pub p: f64,
+}
+
+/// What a check found when nobody asserted its statistical verdicts.
+#[derive(Debug, Clone, Default)]
+pub struct Trial {
+    /// Its verdicts.
+    pub findings: Vec<Finding>,
+    /// How a check that knows no chance failed.
+    pub broken: Option<String>,
+}
+
+impl Trial {
+    /// The verdict with the smallest p-value, the farthest of equals.
+    pub fn worst(&self) -> Option<&Finding> {
+        let key = |f: &&Finding| (-f.p, f.z.abs());
+        self.findings.iter().max_by(|a, b| {
+            let (a, b) = (key(a), key(b));
+            a.0.total_cmp(&b.0).then(a.1.total_cmp(&b.1))
+        })
+    }
+
+    /// Whether the suite would have failed.
+    pub fn is_rejected(&self) -> bool {
+        self.broken.is_some() || self.worst().is_some_and(|f| f.p < ALPHA)
+    }
+}
+
+thread_local! {
+    static TRIAL: RefCell<Option<Trial>> = const { RefCell::new(None) };
+}
+
+/// Runs a check of the suite and keeps its verdicts instead of asserting them. Wrong twins are left out.
+pub fn trial(check: impl FnOnce()) -> Trial {
+    TRIAL.set(Some(Trial::default()));
+    let ended = catch_unwind(AssertUnwindSafe(check));
+    let mut trial = TRIAL.take().unwrap_or_default();
+    if let Err(cause) = ended {
+        let text = cause.downcast_ref::<String>().cloned();
+        let text = text.or_else(|| cause.downcast_ref::<&str>().map(ToString::to_string));
+        trial.broken = Some(text.unwrap_or_default());
+    }
+    trial
+}
+
+/// Whether a trial runs; then it keeps the finding.
+fn on_trial(finding: Option<(&str, f64, f64)>) -> bool {
+    TRIAL.with_borrow_mut(|trial| {
+        if let (Some(trial), Some((what, z, p))) = (trial.as_mut(), finding) {
+            trial.findings.push(Finding { what: what.to_string(), z, p });
+        }
+        trial.is_some()
+    })
+}
 
 fn repeat() -> String {
     let name = std::thread::current().name().unwrap_or("").to_string();
@@ -36,6 +106,9 @@ pub fn agrees(
     let test = t_test(moments, reference, reference_error);
     let line = describe(what, moments.mean(), reference, &test, moments.n(), seed);
     println_line(&line);
+    if on_trial(Some((what, test.z, test.p))) {
+        return;
+    }
     assert!(moments.n() >= FEWEST, "too few values; {line}");
     assert!(!moments.is_heavy_tailed(), "variance of variance {:.2}; {line}", moments.vov());
     assert!(test.p >= ALPHA, "disagrees; {line}");
@@ -47,6 +120,9 @@ pub fn rejects(what: &str, moments: &Moments, reference: f64, seed: u64) {
     let test = t_test(moments, reference, 0.0);
     let line = describe(what, moments.mean(), reference, &test, moments.n(), seed);
     println_line(&line);
+    if on_trial(None) {
+        return;
+    }
     assert!(test.p < ALPHA, "a wrong twin passes; {line}");
 }
 
@@ -55,6 +131,9 @@ pub fn agree(what: &str, a: &Moments, b: &Moments, promise: f64, seed: u64) {
     let test = two(a, b);
     let line = describe(what, a.mean(), b.mean(), &test, a.n().min(b.n()), seed);
     println_line(&line);
+    if on_trial(Some((what, test.z, test.p))) {
+        return;
+    }
     assert!(a.n().min(b.n()) >= FEWEST, "too few values; {line}");
     assert!(
         !a.is_heavy_tailed() && !b.is_heavy_tailed(),
@@ -71,6 +150,9 @@ pub fn differ(what: &str, a: &Moments, b: &Moments, seed: u64) {
     let test = two(a, b);
     let line = describe(what, a.mean(), b.mean(), &test, a.n().min(b.n()), seed);
     println_line(&line);
+    if on_trial(None) {
+        return;
+    }
     assert!(test.p < ALPHA, "a wrong twin passes; {line}");
 }
 
@@ -89,16 +171,69 @@ fn two(a: &Moments, b: &Moments) -> MeanTest {
     }
 }
 
-/// A p-value of a goodness-of-fit test.
-pub fn fits(what: &str, p: f64, seed: u64) {
-    println_line(&format!("{what}: p {p:.1e}, seed {seed}"));
-    assert!(p >= ALPHA, "{what}: p {p:.1e}, seed {seed}; repeat: {}", repeat());
+/// A rate of independent events: `count` of `n`, where `expected` is right. Its error is known, not estimated.
+pub fn rate(what: &str, count: u64, n: u64, expected: f64, promise: f64, seed: u64) {
+    let error = (expected * (1.0 - expected) / n as f64).sqrt();
+    let test = z_test(count as f64 / n as f64, error, expected);
+    let line = describe(what, count as f64 / n as f64, expected, &test, n, seed);
+    println_line(&line);
+    if on_trial(Some((what, test.z, test.p))) {
+        return;
+    }
+    assert!(test.p >= ALPHA, "disagrees; {line}");
+    assert!(test.smallest_bias <= promise, "too weak for the promised {promise:.2e}; {line}");
+}
+
+/// A test of a whole distribution.
+#[derive(Debug, Clone, Copy)]
+pub struct Fit {
+    /// p-value.
+    pub p: f64,
+    /// The smallest deviation that it hardly ever misses: of the distribution function, or of the cells' probabilities
+    /// (root mean square, relative).
+    pub smallest: f64,
+}
+
+/// Independent values against their distribution function, by Kolmogorov and Smirnov.
+pub fn cumulated(values: &[f64], cdf: impl Fn(f64) -> f64) -> Fit {
+    let p = kolmogorov_smirnov_test(values, cdf).p;
+    Fit { p, smallest: smallest_detectable_distance(values.len()) }
+}
+
+/// Independent counts against what is expected of them, by chi-squared.
+pub fn counted(observed: &[f64], expected: &[f64]) -> Fit {
+    let test = chi_squared_test(observed, expected, 0);
+    let smallest = smallest_detectable_deviation(expected.iter().sum(), test.freedom.max(1));
+    Fit { p: test.p, smallest }
+}
+
+/// The normal deviate beyond which a p-value is below 1e-300, or 0.
+pub const BEYOND_P: f64 = 37.0;
+
+fn describe_fit(what: &str, fit: &Fit, seed: u64) -> String {
+    let Fit { p, smallest } = fit;
+    format!("{what}: p {p:.1e}, seed {seed}, smallest deviation seen {smallest:.2e}; repeat: {}", repeat())
+}
+
+/// A whole distribution must be right, and a deviation of `promise` must be seen.
+pub fn fits(what: &str, fit: Fit, promise: f64, seed: u64) {
+    let line = describe_fit(what, &fit, seed);
+    println_line(&line);
+    let z = if fit.p > 0.0 { normal_critical(fit.p.clamp(1e-300, 1.0 - 1e-12)) } else { BEYOND_P };
+    if on_trial(Some((what, z, fit.p))) {
+        return;
+    }
+    assert!(fit.p >= ALPHA, "disagrees; {line}");
+    assert!(fit.smallest <= promise, "too weak for the promised {promise:.2e}; {line}");
 }
 
 /// The goodness-of-fit test of a wrong twin.
-pub fn misfits(what: &str, p: f64, seed: u64) {
-    println_line(&format!("{what}: p {p:.1e}, seed {seed}"));
-    assert!(p < ALPHA, "a wrong twin passes: {what}: p {p:.1e}, seed {seed}; repeat: {}", repeat());
+pub fn misfits(what: &str, fit: Fit, seed: u64) {
+    let line = describe_fit(what, &fit, seed);
+    println_line(&line);
+    if !on_trial(None) {
+        assert!(fit.p < ALPHA, "a wrong twin passes; {line}");
+    }
 }
 
 /// Seen with `--nocapture`, and beside a failure.

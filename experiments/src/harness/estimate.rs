@@ -97,3 +97,66 @@ impl Estimate {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use turbid::stats::jackknife;
+
+    fn five() -> Estimate {
+        Estimate::mean(&[1.0, 2.0, 3.0, 4.0, 5.0].iter().collect())
+    }
+
+    /// Mean 3, error sqrt(1/2), t(0.975; 4) = 2.776; against 2, t = sqrt 2: p = 0.2302.
+    #[test]
+    fn a_mean_by_hand() {
+        let estimate = five();
+        assert!((estimate.value(), estimate.maps()) == (3.0, Some(5)) && !estimate.is_heavy_tailed());
+        assert!((estimate.std_error() - 0.5f64.sqrt()).abs() < 1e-15);
+        let interval = estimate.interval(0.95);
+        assert!((interval.high - 3.0 - 2.776_445_105_197_793_4 * 0.5f64.sqrt()).abs() < 1e-9);
+        // Closed form at 4 degrees: 1 - s (3 - s^2)/2, s = t/sqrt(t^2 + 4).
+        let s = 1.0 / 3f64.sqrt();
+        assert!((estimate.p(2.0) - (1.0 - s * (3.0 - s * s) / 2.0)).abs() < 1e-12);
+        assert_eq!(estimate.p(3.0), 1.0);
+        // The ends of the interval are where p is what is left of the level.
+        assert!((estimate.p(interval.low) - 0.05).abs() < 1e-9);
+    }
+
+    #[test]
+    fn shifts_factors_and_further_errors() {
+        let estimate = five().minus(1.0).times(-2.0);
+        assert_eq!(estimate.value(), -4.0);
+        assert!((estimate.std_error() - 2f64.sqrt()).abs() < 1e-15 && estimate.maps() == Some(5));
+        assert!((five().with_reference_error(0.5f64.sqrt()).std_error() - 1.0).abs() < 1e-15);
+        assert!((five().times(3.0).p(6.0) - five().p(2.0)).abs() < 1e-12);
+    }
+
+    #[test]
+    fn a_computed_value_has_its_bound() {
+        let exact = Estimate::exact(1.0, -0.1);
+        assert_eq!((exact.std_error(), exact.maps()), (0.1, None));
+        assert_eq!((exact.p(1.05), exact.p(1.2), exact.p(f64::NAN)), (1.0, 0.0, 0.0));
+        assert_eq!(exact.interval(0.95), Interval::about(1.0, 0.1));
+    }
+
+    #[test]
+    fn one_map_knows_nothing_of_its_error() {
+        let one = Estimate::mean(&[2.0].iter().collect());
+        assert_eq!((one.interval(0.95).low, one.p(100.0)), (f64::NEG_INFINITY, 1.0));
+    }
+
+    #[test]
+    fn the_jackknife_of_a_mean_is_the_mean() {
+        let mean = |v: &[f64]| v.iter().sum::<f64>() / v.len() as f64;
+        let estimate = Estimate::jackknife(&jackknife(&[1.0, 2.0, 3.0, 4.0, 5.0], mean));
+        assert!((estimate.value() - 3.0).abs() < 1e-14 && estimate.maps() == Some(5));
+        assert!((estimate.std_error() - five().std_error()).abs() < 1e-14);
+    }
+
+    #[test]
+    fn heavy_tails_are_told() {
+        let values: Vec<f64> = (0..1000).map(|i| if i == 0 { 1.0 } else { 0.0 }).collect();
+        assert!(Estimate::mean(&values.iter().collect()).is_heavy_tailed());
+    }
+}

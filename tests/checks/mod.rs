@@ -1,0 +1,12 @@
+//! Checks that several suites run: each asserts by itself in the suite that it belongs to, and on trial, with a fault
+//! planted, in the suite of faults.
+#![allow(dead_code, reason = "each test binary uses a part")]
+
+pub mod cell;
+pub mod light;
+pub mod numbers;
+pub mod phase;
+pub mod point_light;
+pub mod points;
+pub mod slab;
+pub mod threads;

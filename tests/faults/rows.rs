@@ -1,0 +1,209 @@
+//! One row a fault: where it was seen, what it is here, and which check catches it.
+
+use crate::checks::{cell, light, numbers, phase, point_light, points, slab, threads};
+use crate::support::scenes::{area_light, cuboid, rectangle};
+use glam::DVec3;
+use turbid::Spectrum;
+use turbid::faults::Fault;
+use turbid::photons::is_indirect;
+use turbid::scene::Orders;
+use turbid::stats::{normal_p, student_p};
+
+/// A fault, inside or outside the library.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Planted {
+    /// By a switch.
+    Inside(Fault),
+    /// Done to the library's raw numbers, as a user could.
+    Outside,
+}
+
+impl Planted {
+    /// The switch, if it has one.
+    pub fn switch(self) -> Option<Fault> {
+        match self {
+            Planted::Inside(fault) => Some(fault),
+            Planted::Outside => None,
+        }
+    }
+}
+
+/// A row of the table.
+pub struct Row {
+    /// What is planted.
+    pub fault: Planted,
+    /// What it is, as the document names it.
+    pub title: &'static str,
+    /// The check, as the document names it: its function.
+    pub check_name: &'static str,
+    /// Runs the check; told whether to do an outside fault.
+    pub check: fn(bool),
+}
+
+const fn outside(title: &'static str, check_name: &'static str, check: fn(bool)) -> Row {
+    Row { fault: Planted::Outside, title, check_name, check }
+}
+
+/// The row of a switch. A new fault does not compile until it has one.
+const fn inside(fault: Fault) -> Row {
+    let (title, check_name, check): (&str, &str, fn(bool)) = match fault {
+        Fault::AlbedoTwice => {
+            ("albedo applied twice", "single_scattering_is_the_closed_form", |_| single_scattering())
+        }
+        Fault::AlbedoNever => {
+            ("albedo not applied", "single_scattering_is_the_closed_form", |_| single_scattering())
+        }
+        Fault::CosineTwice => {
+            ("cosine counted twice on a matt surface", "irradiance_under_an_area_light", |_| {
+                light::irradiance_under_an_area_light()
+            })
+        }
+        Fault::EmissionUniform => {
+            ("area light emits uniformly, not as the cosine", "photons_and_paths_cross_a_box_alike", |_| {
+                lamp()
+            })
+        }
+        Fault::BackwardIsotropic => {
+            ("negative g sampled as isotropic", "drawn_moments_are_those_stated", |_| {
+                phase::drawn_moments_are_those_stated()
+            })
+        }
+        Fault::AsymmetryClamped => ("g cut at 0.99", "density_has_the_moments_it_states", |_| {
+            phase::density_has_the_moments_it_states()
+        }),
+        Fault::SmallAsymmetryIgnored => {
+            ("g below 1e-3 taken for 0", "density_has_the_moments_it_states", |_| {
+                phase::density_has_the_moments_it_states()
+            })
+        }
+        Fault::EvaluationMirrored => {
+            ("sampling right, evaluation mirrored", "density_between_samples_is_the_step_in_u", |_| {
+                phase::density_between_samples_is_the_step_in_u()
+            })
+        }
+        Fault::UnitReachesOne => ("the largest random word gives 1", "the_largest_word_is_below_one", |_| {
+            numbers::the_largest_word_is_below_one()
+        }),
+        Fault::TransmittanceUnderflows => {
+            ("transmittance in single precision", "transmittance_keeps_its_digits", |_| {
+                numbers::transmittance_keeps_its_digits()
+            })
+        }
+        Fault::NonFiniteDropped => ("non-finite samples dropped", "nothing_non_finite_is_dropped", |_| {
+            numbers::nothing_non_finite_is_dropped()
+        }),
+        Fault::SinglePrecisionMean => {
+            ("running mean in single precision", "a_long_mean_does_not_drift", |_| {
+                numbers::a_long_mean_does_not_drift()
+            })
+        }
+        Fault::DepthForgotten => {
+            ("flight forgets its depth between regions", "a_region_in_two_pieces_is_one", |_| {
+                slab::a_region_in_two_pieces_is_one()
+            })
+        }
+        Fault::AxisRaysMiss => ("rays along an axis miss a box", "a_box_is_seen_along_its_axes", |_| {
+            numbers::a_box_is_seen_along_its_axes()
+        }),
+        Fault::NoRoulette => {
+            ("no roulette in photon tracing", "collisions_are_the_integral_of_the_fluence", |_| {
+                slab::collisions_are_the_integral_of_the_fluence(slab::by_histories)
+            })
+        }
+        Fault::AreaForgotten => {
+            ("direct light forgets the light's area", "a_light_is_the_sum_of_its_quarters", |_| {
+                light::a_light_is_the_sum_of_its_quarters()
+            })
+        }
+        Fault::BlocksByThreads => {
+            ("as many blocks as threads", "moments_do_not_depend_on_the_threads", |_| {
+                threads::moments_do_not_depend_on_the_threads()
+            })
+        }
+        Fault::OrderOffByOne => {
+            ("paths count an order too few", "single_scattering_is_the_closed_form", |_| single_scattering())
+        }
+        Fault::AbsoluteDeviation => {
+            ("mean absolute deviation for the variance", "moments_by_hand", |_| numbers::moments_by_hand())
+        }
+        Fault::RootForgotten => {
+            ("standard error without the root of n", "moments_by_hand", |_| numbers::moments_by_hand())
+        }
+    };
+    Row { fault: Planted::Inside(fault), title, check_name, check }
+}
+
+/// All rows, in the order of the document.
+pub const ROWS: &[Row] = &[
+    outside("all k photons over the ball of the k-th", "a_uniform_field_is_read_as_it_is", |wrong| {
+        points::a_uniform_field_is_read_as_it_is(if wrong {
+            points::nearest_biased()
+        } else {
+            points::nearest()
+        })
+    }),
+    outside("divided by stored photons", "a_thinned_field_is_read_as_what_is_left", |wrong| {
+        points::a_thinned_field_is_read_as_what_is_left(match wrong {
+            true => |map| map.emitted() as f64 / map.stored() as f64,
+            false => |_| 1.0,
+        })
+    }),
+    outside(
+        "traced until 16 photons are stored, the last path cut",
+        "collisions_are_the_integral_of_the_fluence",
+        |wrong| {
+            let count = if wrong { slab::until_so_many_are_stored } else { slab::by_histories };
+            slab::collisions_are_the_integral_of_the_fluence(count)
+        },
+    ),
+    inside(Fault::AlbedoTwice),
+    inside(Fault::AlbedoNever),
+    outside("divided by sigma_s", "stored_power_over_extinction_is_the_fluence", |wrong| {
+        slab::stored_power_over_extinction_is_the_fluence(if wrong { 0.5 } else { 1.0 })
+    }),
+    inside(Fault::CosineTwice),
+    inside(Fault::EmissionUniform),
+    outside("direct light in the map and beside it", "the_map_and_direct_light_add_up", |wrong| {
+        slab::the_map_and_direct_light_add_up(if wrong { |_| true } else { is_indirect })
+    }),
+    inside(Fault::BackwardIsotropic),
+    inside(Fault::AsymmetryClamped),
+    inside(Fault::SmallAsymmetryIgnored),
+    inside(Fault::EvaluationMirrored),
+    inside(Fault::UnitReachesOne),
+    inside(Fault::TransmittanceUnderflows),
+    inside(Fault::NonFiniteDropped),
+    inside(Fault::SinglePrecisionMean),
+    inside(Fault::DepthForgotten),
+    inside(Fault::AxisRaysMiss),
+    inside(Fault::NoRoulette),
+    inside(Fault::AreaForgotten),
+    inside(Fault::BlocksByThreads),
+    inside(Fault::OrderOffByOne),
+    inside(Fault::AbsoluteDeviation),
+    inside(Fault::RootForgotten),
+    outside("normal quantiles for 8 numbers", "false_alarms_are_as_rare_as_promised", |wrong| {
+        numbers::false_alarms_are_as_rare_as_promised(if wrong { normal_p } else { |z| student_p(z, 7) })
+    }),
+    outside("photons of one history taken for independent", "counts_vary_as_poisson", |wrong| {
+        slab::counts_vary_as_poisson(if wrong { Orders::ALL } else { Orders::only(0) })
+    }),
+    outside("an oblique beam between mirrors", "an_oblique_beam_fills_the_cell_evenly", |wrong| {
+        cell::an_oblique_beam_fills_the_cell_evenly(if wrong { cell::mirrored } else { cell::folded })
+    }),
+    outside("next events to a point light from free flights alone", "intervals_cover", |wrong| {
+        point_light::intervals_cover(if wrong { point_light::by_free_flight } else { point_light::by_both })
+    }),
+];
+
+fn single_scattering() {
+    slab::single_scattering_is_the_closed_form();
+}
+
+/// A lamp of area 0.8 and a box before it.
+fn lamp() {
+    let corner = DVec3::new(-0.5, -0.4, 0.1);
+    let lamp = area_light(rectangle(corner, DVec3::X, DVec3::Y * 0.8), Spectrum::rgb(1.0, 2.0, 0.5));
+    let shape = cuboid(DVec3::new(-0.7, -0.6, 0.4), DVec3::new(0.9, 0.5, 1.6));
+    light::photons_and_paths_cross_a_box_alike("lamp", lamp, shape, 1 << 18);
+}
