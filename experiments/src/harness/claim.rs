@@ -165,6 +165,10 @@ impl Judged {
     /// Statistic, error and unit in one phrase.
     pub fn measured(&self) -> String {
         let statistic = &self.claim.statistic;
+        // The tails of a p-value are as good as the normal distribution is there: not at all.
+        if matches!(self.claim.kind, Kind::Fits | Kind::Refused) && statistic.value() < 1e-12 {
+            return "below 10⁻¹²".to_string();
+        }
         self.claim.unit.after(&with_error(statistic.value(), statistic.std_error()))
     }
 }
