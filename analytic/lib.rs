@@ -9,12 +9,13 @@
 //!
 //! * Special functions and rules: [`exponential_integral`], [`quadrature`]
 //! * Slab: [`beer_lambert`], [`slab_single`], [`slab_isotropic`], [`slab_anisotropic`]
-//! * Kernel density estimation: [`kernel`], [`ball_mean`], [`blur`], [`volumes`], [`slab_kernel`], [`nearest`],
-//!   [`progressive`]
+//! * Kernel density estimation: [`kernel`], [`ball_mean`], [`blur`], [`edge`], [`volumes`], [`slab_kernel`],
+//!   [`nearest`], [`progressive`]
 
 pub mod ball_mean;
 pub mod beer_lambert;
 pub mod blur;
+pub mod edge;
 pub mod error;
 pub mod exponential_integral;
 pub mod incidence;
