@@ -4,6 +4,7 @@
 //! what their predictions share, and [`report`] writes what they found.
 
 pub mod bias;
+pub mod blur;
 pub mod harness;
 pub mod report;
 pub mod theory;
@@ -11,4 +12,4 @@ pub mod theory;
 use harness::Experiment;
 
 /// All experiments, in the order of the report.
-pub const ALL: &[Experiment] = &[bias::EXPERIMENT];
+pub const ALL: &[Experiment] = &[bias::EXPERIMENT, blur::EXPERIMENT];
