@@ -146,3 +146,50 @@ impl Case {
         if self.is_nearest() { CAP } else { self.scale() }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::shaft::THICKNESS;
+    use super::*;
+
+    /// No ball of any probe touches the lit face, the far one, another edge or an end of the shaft.
+    #[test]
+    fn balls_meet_their_own_edge_only() {
+        let room = 1e-9;
+        for photons in [2_000, 16_000, 64_000, 512_000] {
+            let cases = Case::all(photons, true);
+            assert!(cases.len() > 10, "{photons}: {}", cases.len());
+            for case in cases {
+                let reach = case.reach();
+                assert!(reach < DEPTH && DEPTH + reach < THICKNESS, "{}", case.name());
+                for place in case.places() {
+                    let inside = place * case.scale();
+                    assert!(inside + reach <= WIDTH + room, "{} {place}", case.name());
+                    for probe in case.probes(place) {
+                        let is_first = (probe.x - inside).abs() < room;
+                        assert!(
+                            is_first || (WIDTH - probe.x - inside).abs() < room,
+                            "{} {place}",
+                            case.name()
+                        );
+                        assert!(
+                            probe.y >= reach - room && probe.y + reach <= LENGTH + room,
+                            "{}",
+                            case.name()
+                        );
+                    }
+                }
+            }
+        }
+    }
+
+    /// Kernels at equal deviation have the uniform one's.
+    #[test]
+    fn deviations_are_equal() {
+        for kernel in Kernel::ALL {
+            let case = Case { photons: 1, size: Size::Deviation(0.2), kernel };
+            let deviation = case.scale() * (kernel.m2() / 3.0).sqrt();
+            assert!((deviation - 0.2 / 5.0f64.sqrt()).abs() < 1e-15, "{kernel:?} {deviation}");
+        }
+    }
+}

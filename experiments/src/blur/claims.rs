@@ -3,7 +3,7 @@
 
 use super::cases::{KERNELS_AT, KERNELS_K, NEIGHBORS, Size};
 use super::conclude::{Result, Transfer, find, find_at, largest};
-use crate::harness::{Claim, Estimate, Unit};
+use crate::harness::{Claim, Estimate, Unit, number};
 use turbid::estimators::Kernel;
 use turbid::stats::{Moments, amplitude_per_map};
 use turbid_analytic::edge::Edge;
@@ -94,7 +94,8 @@ fn number_claims(results: &[Result]) -> Vec<Claim> {
         // The maps of the two numbers share nothing.
         let ratio = ratio.with_reference_error(ratio.value() * many.rise.std_error() / many.rise.value());
         let text = format!(
-            "10-90 width, {name}, with {fewest} over {most} photons, measured over predicted ({predicted:.3})"
+            "10-90 width, {name}, with {fewest} over {most} photons, measured over predicted ({})",
+            number(predicted)
         );
         let id = format!("number-{}", name.replace(' ', "-"));
         claims.push(Claim::within(&id, &text, Unit::ONE, ratio, 1.0 - margin, 1.0 + margin));
@@ -115,8 +116,12 @@ fn half_claim(results: &[Result]) -> Option<Claim> {
         chosen.iter().map(|(r, i)| r.profile[*i][m] / r.theory.plateau).sum::<f64>() / chosen.len() as f64
     };
     let moments: Moments = (0..maps).map(mean).collect::<Vec<f64>>().iter().collect();
-    let text = "k nearest, all k: estimate on the edge over the plateau";
-    Some(Claim::within("half-on-the-edge", text, Unit::ONE, Estimate::mean(&moments), 0.49, 0.51))
+    // A little more than half: the ball on the edge is larger, and the decay along the shaft lifts what it sees.
+    let predicted = chosen.iter().map(|(r, i)| r.theory.profile[*i].0 / r.theory.plateau).sum::<f64>()
+        / chosen.len() as f64;
+    let text =
+        format!("k nearest, all k: estimate on the edge over the plateau (predicted {})", number(predicted));
+    Some(Claim::within("half-on-the-edge", &text, Unit::ONE, Estimate::mean(&moments), 0.49, 0.51))
 }
 
 /// Mean of what the predictions leave of all places of all profiles.
@@ -160,14 +165,17 @@ fn mistaken_law_claim(results: &[Result]) -> anyhow::Result<Option<Claim>> {
 }
 
 /// A wrong statistic: the mean width of single maps' profiles.
+///
+/// The gather and the margin were chosen after a trial run (seed 1), in which radius 0.2 was 5 per cent off but too noisy
+/// for a margin of 3; seeds 3 to 6, looked at after the choice, uphold it too.
 fn mistaken_width_claim(results: &[Result]) -> Option<Claim> {
     let fewest = results.iter().map(|r| r.case.photons).min()?;
-    let result = find_at(results, fewest, Size::Radius(0.2), Kernel::Uniform)?;
+    let result = find_at(results, fewest, Size::Nearest(20), Kernel::Uniform)?;
     let text = format!(
-        "wrong on purpose, the width of each map's own profile, {fewest} photons, radius 0.2: mean over predicted"
+        "wrong on purpose, the width of each map's own profile, {fewest} photons, 20 nearest: mean over predicted"
     );
     let ratio = Estimate::mean(&result.single).times(1.0 / result.theory.rise_probed);
-    Some(Claim::detected("width-of-single-maps", &text, Unit::ONE, ratio, 1.0, 0.03))
+    Some(Claim::detected("width-of-single-maps", &text, Unit::ONE, ratio, 1.0, 0.01))
 }
 
 /// Contrasts of a sinusoid.
@@ -192,8 +200,8 @@ fn wave_claims(transfers: &[Transfer]) -> Vec<Claim> {
     let reversed = transfers.iter().find(|t| t.kernel == Kernel::Uniform && t.radius == 0.9);
     claims.extend(reversed.map(|t| {
         let text = format!(
-            "uniform kernel, radius 0.9 wavelengths: light and dark change places, contrast (predicted {:.4})",
-            t.predicted
+            "uniform kernel, radius 0.9 wavelengths: light and dark change places, contrast (predicted {})",
+            number(t.predicted)
         );
         let contrast: Moments = t.maps.iter().collect();
         Claim::at_most("contrast-reversed", &text, Unit::ONE, Estimate::mean(&contrast), -0.07)

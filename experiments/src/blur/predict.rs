@@ -157,3 +157,36 @@ pub fn predict(settings: &Settings) -> anyhow::Result<Vec<Prediction>> {
     predictions.extend(waves::predict()?);
     Ok(predictions)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use turbid::estimators::Kernel;
+
+    fn theory(size: Size, photons: u64) -> (Theory, f64) {
+        let case = Case { photons, size, kernel: Kernel::Uniform };
+        (Theory::new(&case).unwrap(), case.scale())
+    }
+
+    /// Laws without decay, printed to three decimals, which decay over a small ball changes by s^2/50 of them at most.
+    #[test]
+    fn widths_tend_to_those_without_decay() {
+        let (fixed, r) = theory(Size::Radius(0.1), 1);
+        assert!((fixed.rise / r - 1.2168).abs() < 1e-3 && (fixed.equivalent / r - 4.0 / 3.0).abs() < 1e-3);
+        for (k, rise, equivalent) in [(20, 1.895, 1.632), (100, 1.932, 1.671)] {
+            let (nearest, r0) = theory(Size::Nearest(k), 64_000_000);
+            assert!((nearest.rise / r0 - rise).abs() < 1e-3, "{k}: {}", nearest.rise / r0);
+            assert!((nearest.equivalent / r0 - equivalent).abs() < 1e-3, "{k}: {}", nearest.equivalent / r0);
+        }
+    }
+
+    /// What is read between probes is the width, within a part in two hundred.
+    #[test]
+    fn probes_are_dense_enough() {
+        for size in [Size::Radius(0.4), Size::Nearest(50)] {
+            let (t, _) = theory(size, 64_000);
+            assert!((t.rise_probed / t.rise - 1.0).abs() < 5e-3, "{t:?}");
+            assert!((t.equivalent_probed / t.equivalent - 1.0).abs() < 5e-3, "{t:?}");
+        }
+    }
+}

@@ -19,7 +19,7 @@ pub const WIDTH: f64 = 2.0;
 /// The shaft along its edges [mfp].
 pub const LENGTH: f64 = 4.0;
 /// Thickness of the fog [mfp].
-const THICKNESS: f64 = 2.0;
+pub const THICKNESS: f64 = 2.0;
 
 /// Emitted photons a map, and maps, by preset.
 const QUICK: [(u64, u64); 3] = [(2_000, 512), (16_000, 512), (64_000, 512)];

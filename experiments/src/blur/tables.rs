@@ -39,8 +39,9 @@ pub fn widths(results: &[Result]) -> Table {
     Table {
         caption: "Widths of the edge's image over the radius, which for the k nearest is that of the ball that holds k \
                   photons in full light, on average. They are read off the mean profile of all maps, with jackknifed \
-                  standard errors. The last column is the mean of the widths of single maps' profiles, another and \
-                  larger number where noise is large: noise moves the first crossing out and the last one in."
+                  standard errors. The last column is the mean of the widths of single maps' profiles, another number \
+                  where noise is large, since the crossings of a noisy profile do not average to those of its mean. \
+                  It is never the one that is claimed."
             .to_string(),
         columns: columns.map(String::from).to_vec(),
         rows: results.iter().map(row).collect(),
