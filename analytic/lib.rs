@@ -9,13 +9,14 @@
 //!
 //! * Special functions and rules: [`exponential_integral`], [`quadrature`]
 //! * Slab: [`beer_lambert`], [`slab_single`], [`slab_isotropic`], [`slab_anisotropic`]
-//! * Kernel density estimation: [`kernel`], [`ball_mean`], [`blur`], [`volumes`], [`slab_kernel`], [`nearest`],
-//!   [`progressive`]; where the medium ends: [`boundary`]
+//! * Kernel density estimation: [`kernel`], [`ball_mean`], [`blur`], [`edge`], [`volumes`], [`slab_kernel`],
+//!   [`nearest`], [`progressive`]; where the medium ends: [`boundary`]
 
 pub mod ball_mean;
 pub mod beer_lambert;
 pub mod blur;
 pub mod boundary;
+pub mod edge;
 pub mod error;
 pub mod exponential_integral;
 pub mod incidence;

@@ -4,6 +4,7 @@
 //! what their predictions share, and [`report`] writes what they found.
 
 pub mod bias;
+pub mod blur;
 pub mod boundary;
 pub mod budget;
 pub mod coverage;
@@ -20,6 +21,7 @@ use harness::Experiment;
 /// All experiments, in the order of the report.
 pub const ALL: &[Experiment] = &[
     bias::EXPERIMENT,
+    blur::EXPERIMENT,
     boundary::EXPERIMENT,
     march::EXPERIMENT,
     rates::EXPERIMENT,

@@ -1,0 +1,210 @@
+//! The claims. Widths are of the mean profile, jackknifed over maps; a margin has room for at least five of the standard
+//! errors that trial runs of the quick preset had shown.
+
+use super::cases::{KERNELS_AT, KERNELS_K, NEIGHBORS, Size};
+use super::conclude::{Result, Transfer, find, find_at, largest};
+use crate::harness::{Claim, Estimate, Unit, number};
+use turbid::estimators::Kernel;
+use turbid::stats::{Moments, amplitude_per_map};
+use turbid_analytic::edge::Edge;
+use turbid_analytic::kernel as referee;
+
+/// All claims of the experiment.
+pub fn all(results: &[Result], transfers: &[Transfer]) -> anyhow::Result<Vec<Claim>> {
+    let mut claims = radius_claims(results);
+    claims.extend(kernel_claims(results));
+    claims.extend(nearest_claims(results));
+    claims.extend(number_claims(results));
+    claims.extend(half_claim(results));
+    claims.extend(left_over_claims(results));
+    claims.extend(mistaken_law_claim(results)?);
+    claims.extend(mistaken_width_claim(results));
+    claims.extend(wave_claims(transfers));
+    Ok(claims)
+}
+
+/// Measured over predicted 10-90 width.
+fn rise_claim(id: &str, text: &str, result: Option<&Result>, margin: f64) -> Option<Claim> {
+    let result = result?;
+    let ratio = result.rise.times(1.0 / result.theory.rise_probed);
+    let text = format!("10-90 width, {text}: measured over predicted");
+    Some(Claim::within(id, &text, Unit::ONE, ratio, 1.0 - margin, 1.0 + margin))
+}
+
+/// Measured over predicted equivalent width.
+fn equivalent_claim(id: &str, text: &str, result: Option<&Result>, margin: f64) -> Option<Claim> {
+    let result = result?;
+    let ratio = result.equivalent?.times(1.0 / result.theory.equivalent_probed);
+    let text = format!("equivalent width, {text}: measured over predicted");
+    Some(Claim::within(id, &text, Unit::ONE, ratio, 1.0 - margin, 1.0 + margin))
+}
+
+fn radius_claims(results: &[Result]) -> Vec<Claim> {
+    let mut claims = Vec::new();
+    for (radius, rise, equivalent) in [(0.1, 0.05, 0.1), (0.2, 0.03, 0.05), (0.4, 0.02, 0.03)] {
+        let result = find(results, Size::Radius(radius), Kernel::Uniform);
+        let text = format!("uniform kernel, fixed radius {radius}");
+        claims.extend(rise_claim(&format!("rise-radius-{radius}"), &text, result, rise));
+        claims.extend(equivalent_claim(&format!("equivalent-radius-{radius}"), &text, result, equivalent));
+    }
+    claims
+}
+
+/// The other kernels, at equal radius and at equal standard deviation.
+fn kernel_claims(results: &[Result]) -> Vec<Claim> {
+    let mut claims = Vec::new();
+    for kernel in Kernel::ALL.into_iter().filter(|&k| k != Kernel::Uniform) {
+        let name = kernel.name();
+        let result = find(results, Size::Radius(KERNELS_AT), kernel);
+        let text = format!("{name} kernel, fixed radius {KERNELS_AT}");
+        claims.extend(rise_claim(&format!("rise-{name}-radius"), &text, result, 0.04));
+        let result = find(results, Size::Deviation(KERNELS_AT), kernel);
+        let text = format!("{name} kernel of the uniform one's standard deviation at radius {KERNELS_AT}");
+        claims.extend(rise_claim(&format!("rise-{name}-deviation"), &text, result, 0.04));
+        let result = find(results, Size::Nearest(KERNELS_K), kernel);
+        let text = format!("{name} kernel, {KERNELS_K} nearest");
+        claims.extend(rise_claim(&format!("rise-{name}-nearest"), &text, result, 0.04));
+    }
+    claims
+}
+
+fn nearest_claims(results: &[Result]) -> Vec<Claim> {
+    let mut claims = Vec::new();
+    for k in NEIGHBORS {
+        let result = find(results, Size::Nearest(k), Kernel::Uniform);
+        let text = format!("uniform kernel, {k} nearest");
+        claims.extend(rise_claim(&format!("rise-k-{k}"), &text, result, 0.03));
+        claims.extend(equivalent_claim(&format!("equivalent-k-{k}"), &text, result, 0.06));
+    }
+    claims
+}
+
+/// At fixed k the edge narrows as the root of third degree of the photons; at a fixed radius it stays.
+fn number_claims(results: &[Result]) -> Vec<Claim> {
+    let most = largest(results);
+    let fewest = results.iter().map(|r| r.case.photons).min().unwrap_or(0);
+    let mut claims = Vec::new();
+    for (size, name, margin) in
+        [(Size::Nearest(20), "20 nearest", 0.05), (Size::Radius(0.4), "fixed radius 0.4", 0.05)]
+    {
+        let find = |photons| find_at(results, photons, size, Kernel::Uniform);
+        let (Some(few), Some(many)) = (find(fewest), find(most)) else { continue };
+        let predicted = few.theory.rise_probed / many.theory.rise_probed;
+        let ratio = few.rise.times(1.0 / (many.rise.value() * predicted));
+        // The maps of the two numbers share nothing.
+        let ratio = ratio.with_reference_error(ratio.value() * many.rise.std_error() / many.rise.value());
+        let text = format!(
+            "10-90 width, {name}, with {fewest} over {most} photons, measured over predicted ({})",
+            number(predicted)
+        );
+        let id = format!("number-{}", name.replace(' ', "-"));
+        claims.push(Claim::within(&id, &text, Unit::ONE, ratio, 1.0 - margin, 1.0 + margin));
+    }
+    claims
+}
+
+/// On the edge the estimate is half the plateau, whatever sets the radius.
+fn half_claim(results: &[Result]) -> Option<Claim> {
+    let most = largest(results);
+    let chosen: Vec<(&Result, usize)> = results
+        .iter()
+        .filter(|r| r.case.photons == most && r.case.is_nearest() && r.case.kernel == Kernel::Uniform)
+        .filter_map(|r| Some((r, r.case.places().iter().position(|p| p.abs() < 1e-9)?)))
+        .collect();
+    let maps = chosen.first()?.0.single.n() as usize;
+    let mean = |m: usize| {
+        chosen.iter().map(|(r, i)| r.profile[*i][m] / r.theory.plateau).sum::<f64>() / chosen.len() as f64
+    };
+    let moments: Moments = (0..maps).map(mean).collect::<Vec<f64>>().iter().collect();
+    // A little more than half: the ball on the edge is larger, and the decay along the shaft lifts what it sees.
+    let predicted = chosen.iter().map(|(r, i)| r.theory.profile[*i].0 / r.theory.plateau).sum::<f64>()
+        / chosen.len() as f64;
+    let text =
+        format!("k nearest, all k: estimate on the edge over the plateau (predicted {})", number(predicted));
+    Some(Claim::within("half-on-the-edge", &text, Unit::ONE, Estimate::mean(&moments), 0.49, 0.51))
+}
+
+/// Mean of what the predictions leave of all places of all profiles.
+fn left_over_claims(results: &[Result]) -> Vec<Claim> {
+    let most = largest(results);
+    let mut claims = Vec::new();
+    for (is_nearest, name) in [(false, "fixed radius"), (true, "k nearest")] {
+        let chosen: Vec<&Result> =
+            results.iter().filter(|r| r.case.photons == most && r.case.is_nearest() == is_nearest).collect();
+        let Some(first) = chosen.first() else { continue };
+        let places: usize = chosen.iter().map(|r| r.profile.len()).sum();
+        let left = |m: usize| {
+            let one = |r: &&Result| {
+                r.profile.iter().zip(&r.theory.profile).map(|(maps, t)| maps[m] - t.0).sum::<f64>()
+            };
+            100.0 * chosen.iter().map(one).sum::<f64>() / places as f64
+        };
+        let moments: Moments =
+            (0..first.single.n() as usize).map(left).collect::<Vec<f64>>().iter().collect();
+        claims.push(Claim::within(
+            &format!("left-over-{}", name.replace(' ', "-")),
+            &format!("{name}, all places of all profiles: what the prediction leaves, of the fluence inside"),
+            Unit::PERCENT,
+            Estimate::mean(&moments),
+            -0.5,
+            0.5,
+        ));
+    }
+    claims
+}
+
+/// A wrong law: the fixed radius's width at the radius of k photons in full light.
+fn mistaken_law_claim(results: &[Result]) -> anyhow::Result<Option<Claim>> {
+    let Some(result) = find(results, Size::Nearest(50), Kernel::Uniform) else { return Ok(None) };
+    let radius = result.case.scale();
+    let wrong = radius * Edge::new(referee::Kernel::Uniform, radius)?.rise_width()?.value;
+    let text =
+        "wrong on purpose, the fixed radius's law for the 50 nearest: measured over so predicted 10-90 width";
+    let ratio = result.rise.times(1.0 / wrong);
+    Ok(Some(Claim::detected("nearest-by-the-law-of-the-radius", text, Unit::ONE, ratio, 1.0, 0.4)))
+}
+
+/// A wrong statistic: the mean width of single maps' profiles.
+///
+/// The gather and the margin were chosen after a trial run (seed 1), in which radius 0.2 was 5 per cent off but too noisy
+/// for a margin of 3; seeds 3 to 6, looked at after the choice, uphold it too.
+fn mistaken_width_claim(results: &[Result]) -> Option<Claim> {
+    let fewest = results.iter().map(|r| r.case.photons).min()?;
+    let result = find_at(results, fewest, Size::Nearest(20), Kernel::Uniform)?;
+    let text = format!(
+        "wrong on purpose, the width of each map's own profile, {fewest} photons, 20 nearest: mean over predicted"
+    );
+    let ratio = Estimate::mean(&result.single).times(1.0 / result.theory.rise_probed);
+    Some(Claim::detected("width-of-single-maps", &text, Unit::ONE, ratio, 1.0, 0.01))
+}
+
+/// Contrasts of a sinusoid.
+fn wave_claims(transfers: &[Transfer]) -> Vec<Claim> {
+    let mut claims = Vec::new();
+    for kernel in Kernel::ALL {
+        let chosen: Vec<&Transfer> = transfers.iter().filter(|t| t.kernel == kernel).collect();
+        let Some(maps) = chosen.first().map(|t| t.maps.len()) else { continue };
+        let predicted: Vec<f64> = chosen.iter().map(|t| t.predicted).collect();
+        let weights: Vec<f64> =
+            chosen.iter().map(|t| 1.0 / t.maps.iter().collect::<Moments>().variance()).collect();
+        let per_map: Vec<Vec<f64>> = (0..maps).map(|m| chosen.iter().map(|t| t.maps[m]).collect()).collect();
+        let text = format!(
+            "contrast left of a sinusoid, {} kernel, all radii: measured over predicted",
+            kernel.name()
+        );
+        claims.extend(amplitude_per_map(&predicted, &per_map, &weights).map(|a| {
+            let id = format!("contrast-{}", kernel.name());
+            Claim::within(&id, &text, Unit::ONE, Estimate::mean(&a.moments), 0.98, 1.02)
+        }));
+    }
+    let reversed = transfers.iter().find(|t| t.kernel == Kernel::Uniform && t.radius == 0.9);
+    claims.extend(reversed.map(|t| {
+        let text = format!(
+            "uniform kernel, radius 0.9 wavelengths: light and dark change places, contrast (predicted {})",
+            number(t.predicted)
+        );
+        let contrast: Moments = t.maps.iter().collect();
+        Claim::at_most("contrast-reversed", &text, Unit::ONE, Estimate::mean(&contrast), -0.07)
+    }));
+    claims
+}
