@@ -211,10 +211,11 @@ fn rounded(length: f64) -> f64 {
     (1e4 * length).round() / 1e4
 }
 
-/// The radius in which k photons are expected far from any face, where the fluence is that of the furnace [mfp].
+/// The radius in which k photons are expected far from any face, where the fluence is that of the furnace [mfp]; at most
+/// what keeps the deepest probe in the upper half of the bodies.
 pub fn whole_radius(field: &Field, photons: u64, k: usize) -> f64 {
     let density = FURNACE * field.density(photons);
-    libm::cbrt(3.0 * k as f64 / (4.0 * PI * density))
+    libm::cbrt(3.0 * k as f64 / (4.0 * PI * density)).min(0.5)
 }
 
 /// Directions spread evenly over the sphere (Swinbank and Purser 2006).

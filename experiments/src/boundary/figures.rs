@@ -173,7 +173,9 @@ fn sheet(settings: &Settings, found: &Found) -> anyhow::Result<FigureFiles> {
             )
             .with_title(format!("{word}, {clipping}"))
             .with(Rule::new(Along::Horizontal(0.0)));
-            for (class, rejection) in Rejection::ALL.into_iter().enumerate() {
+            for (class, rejection) in
+                Rejection::ALL.into_iter().filter(|&r| r != Rejection::Visible).enumerate()
+            {
                 let at = |distance| Sheet {
                     side,
                     distance,
@@ -190,11 +192,15 @@ fn sheet(settings: &Settings, found: &Found) -> anyhow::Result<FigureFiles> {
                     .iter()
                     .map(|&x| at(x).exact(settings).map(|(v, _)| 100.0 * (v / at(x).fields().0 - 1.0)))
                     .collect();
-                panel = panel.with(Line::new(rejection.name(), class, grid, exact?));
+                let label = match rejection {
+                    Rejection::BehindPlane => "behind plane, visible",
+                    other => other.name(),
+                };
+                panel = panel.with(Line::new(label, class, grid, exact?));
                 let chosen = super::sheet::DISTANCES.map(|x| found.sheet(&at(x)).map(|s| (x, &s.error)));
                 let chosen = chosen.into_iter().collect::<anyhow::Result<Vec<_>>>()?;
                 let (x, y, bars) = series(chosen.into_iter());
-                panel = panel.with(Points::new(rejection.name(), class, x, y).with_y_interval(bars));
+                panel = panel.with(Points::new(label, class, x, y).with_y_interval(bars));
             }
             panels.push(panel);
         }
@@ -202,7 +208,7 @@ fn sheet(settings: &Settings, found: &Found) -> anyhow::Result<FigureFiles> {
     let figure = Figure { width: Width::Double, columns: 2, shared_legend: true, ..Figure::new(panels) };
     let caption = "A thin opaque sheet between a bright uniform field and one a quarter as bright, fixed radius, uniform kernel: \
                    error on either side against distance, measured (points; their 95 % intervals are smaller) and predicted \
-                   (lines; 'behind plane' and 'visible' are one). Without clipping every rejection leaves the ball's lost part dark. With it, rejecting by place \
+                   (lines; beside a flat sheet 'behind plane' and 'visible' are one). Without clipping every rejection leaves the ball's lost part dark. With it, rejecting by place \
                    ('behind plane', 'visible') is right everywhere; rejecting by direction is not, and 'facing' throws away half of \
                    the good photons as long as the sheet is in the ball.";
     FigureFiles::draw("sheet", caption, &figure)
