@@ -11,7 +11,8 @@ fn run(out: &Path, threads: &str) -> String {
     String::from_utf8(assert.get_output().stdout.clone()).unwrap()
 }
 
-/// Two studies of a fiftieth of the photons: every map of the real one is shot, gathered, judged and drawn.
+/// Two studies of a fiftieth of the photons, some ten seconds each: every map of the real one is shot, gathered, judged
+/// and drawn, and the predictions are those of the real one.
 #[test]
 fn the_same_results_on_one_thread_and_two() {
     let folder = tempfile::tempdir().unwrap();

@@ -159,7 +159,7 @@ fn queries(data: &Data) -> anyhow::Result<FigureFiles> {
             }
             None => "never".to_string(),
         };
-        panel = panel.with(Note { text, at: At::Fraction(0.05, 0.9), align: Align::Start });
+        panel = panel.with(Note { text, at: At::Fraction(0.95, 0.08), align: Align::End });
         panels.push(panel);
     }
     let figure = Figure { width: Width::Double, columns: 2, shared_legend: true, ..Figure::new(panels) };

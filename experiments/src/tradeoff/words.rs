@@ -95,9 +95,8 @@ pub fn notes(budget: &[Entry], data: &Data) -> Vec<String> {
             .to_string(),
         "Noise is predicted from Poisson's law times 1 + eta, eta the other photons of a history in a photon's ball; k \
          photons set the radius like k/(1 + eta) independent ones, which is seen at k = 10 and 20. In isotropic fog eta \
-         counts all orders of an unbounded medium (to second order in the radius, noise in thick fog would read 5 per cent \
-         low at a radius of 0.4), behind a forward peak the first; where a face cuts the ball it is scaled with the \
-         mean chord."
+         counts all orders of an unbounded medium, with the photons that leave the ball and come back; behind a forward \
+         peak it is known to first order; where a face cuts the ball it is scaled with the mean chord."
             .to_string(),
         "The map holds all light, the uncollided beam included, as its probes ask for all. A renderer that adds the \
          uncollided part in closed form, as the path tracer here does and Jensen and Christensen (1998) advise, would have less noise and \
