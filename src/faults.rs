@@ -87,7 +87,7 @@ pub use switch::{planted, with};
 
 #[cfg(feature = "faults")]
 mod switch {
-    use super::Fault;
+    use crate::faults::Fault;
     use std::sync::atomic::{AtomicU8, Ordering};
     use std::sync::{Mutex, PoisonError};
 
