@@ -1,13 +1,13 @@
 //! Synthetic maps: the points follow the density they state.
 #![allow(clippy::unwrap_used, reason = "tests")]
 
-mod common;
+mod support;
 
-use common::ALPHA;
 use glam::DVec3;
-use statrs::distribution::{ChiSquared, ContinuousCDF};
+use support::verdict;
 use turbid::photons::Photon;
 use turbid::photons::synthetic::{Number, Profile, Synthetic};
+use turbid::stats::Moments;
 
 const PROFILES: [Profile; 9] = [
     Profile::Constant,
@@ -94,21 +94,18 @@ fn points_follow_the_density() {
             for photon in &photons {
                 counts[((coordinate(photon) * PARTS as f64) as usize).min(PARTS - 1)] += 1.0;
             }
-            let chi2 = |expected: &[f64]| {
-                let used = expected.iter().zip(counts).filter(|(e, _)| **e > 0.0);
-                let terms: Vec<f64> =
-                    used.map(|(e, c)| (c - N as f64 * e) * (c - N as f64 * e) / (N as f64 * e)).collect();
-                ChiSquared::new(terms.len() as f64 - 1.0).unwrap().sf(terms.iter().sum())
+            let fit = |expected: &[f64]| {
+                verdict::counted(&counts, &expected.iter().map(|e| e * N as f64).collect::<Vec<_>>())
             };
-            let p = chi2(expected);
-            assert!(p > ALPHA, "{profile:?} along {what}: p {p:e}, seed 17");
+            let name = format!("{profile:?} along {what}");
+            verdict::fits(&name, fit(expected), 0.02, 17);
             // The wrong twin: a density 10 per cent steeper across the box.
             let steeper: Vec<f64> = (0..PARTS)
                 .map(|i| expected[i] * (1.0 + 0.1 * (2.0 * (i as f64 + 0.5) / PARTS as f64 - 1.0)))
                 .collect();
             let total: f64 = steeper.iter().sum();
-            let wrong = chi2(&steeper.iter().map(|e| e / total).collect::<Vec<_>>());
-            assert!(wrong < ALPHA, "{profile:?} along {what}: the twin passes, p {wrong:e}");
+            let twin = fit(&steeper.iter().map(|e| e / total).collect::<Vec<_>>());
+            verdict::misfits(&format!("{name}, steeper"), twin, 17);
         }
     }
 }
@@ -116,21 +113,20 @@ fn points_follow_the_density() {
 /// The number of photons: Poisson, with the mean asked for and a variance equal to it.
 #[test]
 fn expected_numbers_are_poisson() {
-    let (mean, maps) = (400.0, 1000u32);
-    let counts: Vec<f64> = (0..u64::from(maps))
+    let counts: Vec<f64> = (0..1000)
         .map(|replicate| {
             let map = synthetic(Profile::Constant).map(Number::Expected(400), 23, replicate).unwrap();
             assert_eq!(map.emitted(), 400);
             map.stored() as f64
         })
         .collect();
-    let n = f64::from(maps);
-    let average = counts.iter().sum::<f64>() / n;
-    // Known variance: normal, 4.9 standard errors at 1e-6.
-    assert!((average - mean).abs() < 4.9 * (mean / n).sqrt(), "mean {average}");
-    let dispersion = counts.iter().map(|c| (c - average) * (c - average)).sum::<f64>() / mean;
-    let tail = ChiSquared::new(n - 1.0).unwrap().cdf(dispersion);
-    assert!((0.5 * ALPHA..1.0 - 0.5 * ALPHA).contains(&tail), "dispersion {dispersion}, tail {tail:e}");
+    let moments = |f: &dyn Fn(f64) -> f64| counts.iter().map(|c| f(*c)).collect::<Moments>();
+    verdict::agrees("mean", &moments(&|c| c), (400.0, 0.0), 5.0, 23);
+    // A fixed number would have none of the variance; numbers twice as wide, twice as much.
+    let spread = moments(&|c| (c - 400.0) * (c - 400.0) / 400.0);
+    verdict::agrees("variance over mean", &spread, (1.0, 0.0), 0.4, 23);
+    verdict::rejects("variance over mean, a fixed number", &spread, 0.0, 23);
+    verdict::rejects("variance over mean, half as wide again", &spread, 1.5, 23);
 }
 
 #[test]

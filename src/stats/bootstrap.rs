@@ -88,7 +88,7 @@ pub fn jackknife<T: Clone>(maps: &[T], statistic: impl Fn(&[T]) -> f64) -> Jackk
 /// The logarithm of a positive statistic and its error, such as a variance, a root mean square, a price or a ratio.
 ///
 /// Statistics of squares are skewed, and their error grows with their value: an interval about the statistic itself
-/// misses the truth on one side, and of 16 maps with 5 places each covers 93.8 per cent for 95. The logarithm of such a
+/// misses the truth on one side, and of 16 maps with 5 places each covers 93.9 per cent for 95. The logarithm of such a
 /// statistic has nearly the same error whatever its value, and is nearly normal; carried back by the exponential, the
 /// ends of its interval are those of the statistic ([`positive_interval`]).
 ///

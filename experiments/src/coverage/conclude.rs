@@ -252,8 +252,14 @@ fn summarise(section: &mut Section, settings: &Settings, cells: &Cells) -> anyho
         super::field::PLACES
     ));
     section.notes.push(
-        "Fewer than 8 maps are never used. Verdicts ask for 64, where the normal quantile would do little harm at 95 % \
-         and much at one in a million."
+        "Claims are about 64 maps, the fewest that verdicts allow. With fewer the skewness of a map's number is felt: a \
+         first form of this experiment judged 32 maps, and its variances, made on the numbers themselves, were covered \
+         94.3 % of the time with twice the alarms at 1 %. That is why they are made on the logarithm now."
+            .to_string(),
+    );
+    section.notes.push(
+        "Fewer than 8 maps are not shown. At 64 the normal quantile would do little harm at 95 % and much at one in a \
+         million."
             .to_string(),
     );
     Ok(())

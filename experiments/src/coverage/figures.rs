@@ -40,7 +40,7 @@ fn coverage(cells: &Cells) -> anyhow::Result<FigureFiles> {
     let caption = "How often the laboratory's 95 % intervals contain the exact value, against the number of maps behind \
                    them (8, 16, 32 and 64, drawn side by side), with 95 % intervals over batches of repeats. Student's t makes up for few maps where numbers \
                    are nearly normal; the normal quantile, shown for a fixed radius, does not. Prices and other \
-                   numbers made of squares are skewed: refitted on their logarithm they cover, as they are they do not.";
+                   numbers made of squares are skewed: of few maps they cover when they are refitted on their logarithm, and too seldom as they are.";
     FigureFiles::draw("coverage", caption, &figure)
 }
 
