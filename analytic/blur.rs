@@ -3,7 +3,7 @@
 
 use crate::error::{Result, within};
 use crate::kernel::{Dimension, Kernel};
-use crate::quadrature::GaussLegendre;
+use crate::quadrature::{GAUSS_16, GAUSS_24};
 use crate::value::Value;
 use libm::{acos, cos, exp, j1, sin};
 use std::f64::consts::PI;
@@ -102,7 +102,7 @@ pub fn kernel_transfer(kernel: Kernel, q: f64) -> Result<Value> {
     }
     // Panels of at most four radians; the marginals are smooth for z > 0.
     let panels = libm::ceil(0.25 * q).max(1.0);
-    let (fine, coarse) = (GaussLegendre::rule(24), GaussLegendre::rule(16));
+    let (fine, coarse) = (&GAUSS_24, &GAUSS_16);
     let f = |z: f64| 2.0 * kernel.plane_density(z) * cos(q * z);
     let (mut value, mut difference, mut i) = (0.0, 0.0, 0.0);
     while i < panels {
@@ -154,6 +154,7 @@ pub fn missing_length(d: Dimension) -> Value {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::quadrature::GaussLegendre;
     use proptest::prelude::*;
 
     #[test]

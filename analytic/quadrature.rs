@@ -5,6 +5,7 @@ use crate::error::{Error, Result, within};
 use crate::value::Value;
 use libm::cos;
 use std::f64::consts::PI;
+use std::sync::LazyLock;
 
 /// A Gauss-Legendre rule on \[0, 1\].
 #[derive(Debug, Clone, PartialEq)]
@@ -85,9 +86,13 @@ fn halving(length: f64) -> impl Iterator<Item = (f64, f64)> {
     })
 }
 
+/// The rules of 16 and 24 nodes, whose nodes are found once.
+pub(crate) static GAUSS_16: LazyLock<GaussLegendre> = LazyLock::new(|| GaussLegendre::rule(16));
+pub(crate) static GAUSS_24: LazyLock<GaussLegendre> = LazyLock::new(|| GaussLegendre::rule(24));
+
 /// int_0^length f(z) dz for a non-negative f with a logarithmic singularity at z = 0, smooth beyond.
 pub(crate) fn integrate_from_singular(length: f64, f: impl Fn(f64) -> f64, method: &'static str) -> Value {
-    let (fine, coarse) = (GaussLegendre::rule(24), GaussLegendre::rule(16));
+    let (fine, coarse) = (&GAUSS_24, &GAUSS_16);
     let (mut value, mut difference) = (0.0, 0.0);
     for (low, high) in halving(length) {
         let best = fine.integrate(low, high, &f);
@@ -102,14 +107,12 @@ pub(crate) fn integrate_from_singular(length: f64, f: impl Fn(f64) -> f64, metho
 /// the last disagreements plus rounding.
 pub(crate) struct Adaptive {
     tolerance: f64,
-    fine: GaussLegendre,
-    coarse: GaussLegendre,
 }
 
 impl Adaptive {
     /// Panels are halved until their rules agree to `tolerance` of the whole integral of |f|.
     pub(crate) fn new(tolerance: f64) -> Self {
-        Adaptive { tolerance, fine: GaussLegendre::rule(24), coarse: GaussLegendre::rule(16) }
+        Adaptive { tolerance }
     }
 
     /// Integrates between consecutive `breaks` (rising). `name` is how an error calls the integrand.
@@ -123,8 +126,8 @@ impl Adaptive {
         let mut panels = Vec::new();
         let mut magnitude = 0.0;
         let mut evaluate = |a: f64, b: f64| -> Result<(f64, f64, f64)> {
-            let (best, absolute) = self.sum(&self.fine, a, b, name, &mut f)?;
-            let (rough, _) = self.sum(&self.coarse, a, b, name, &mut f)?;
+            let (best, absolute) = self.sum(&GAUSS_24, a, b, name, &mut f)?;
+            let (rough, _) = self.sum(&GAUSS_16, a, b, name, &mut f)?;
             Ok((best, (best - rough).abs(), absolute))
         };
         for pair in breaks.windows(2) {

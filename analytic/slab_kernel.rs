@@ -3,7 +3,7 @@
 use crate::error::{Error, Result, within};
 use crate::incidence::check_depth;
 use crate::kernel::{Kernel, normal_cdf};
-use crate::quadrature::{Adaptive, GaussLegendre};
+use crate::quadrature::{Adaptive, GAUSS_24};
 use crate::value::Value;
 
 /// Where a probe and its kernel stand.
@@ -45,7 +45,7 @@ pub fn slab_moment(kernel: Kernel, j: u32, radius: f64, depth: f64, thickness: f
 fn moment_between(kernel: Kernel, j: u32, low: f64, high: f64) -> Value {
     let reach = kernel.reach();
     let (low, high) = (low.clamp(-reach, reach), high.clamp(-reach, reach));
-    let rule = GaussLegendre::rule(24);
+    let rule = &GAUSS_24;
     let power = |z: f64| (0..j).fold(1.0, |p, _| p * z);
     let (mut value, mut absolute) = (0.0, 0.0);
     let mut from = -10.0;

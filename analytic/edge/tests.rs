@@ -1,6 +1,7 @@
 use super::*;
 use crate::ball_mean::exponential_mean;
 use crate::blur;
+use crate::quadrature::GaussLegendre;
 use crate::slab_kernel::face_moment;
 use libm::{cos, exp, sin};
 use proptest::prelude::*;
