@@ -258,6 +258,6 @@ fn counts(cells: &Cells, results: &[Result]) -> anyhow::Result<FigureFiles> {
     let figure = Figure { width: Width::Double, ..Figure::new(vec![panel.with_legend(Legend::Right)]) };
     let caption = "Photons of one history lie near each other: their counts in a ball vary more than Poisson's law \
                    lets independent ones, by 3/2 albedo times the radius to first order, at any asymmetry \
-                   (lines: to second order in isotropic fog). Uncollided photons are independent.";
+                   (lines: to all orders in isotropic fog). Uncollided photons are independent.";
     FigureFiles::draw("counts", caption, &figure)
 }

@@ -93,7 +93,7 @@ pub fn predict(settings: &Settings) -> anyhow::Result<Vec<Prediction>> {
             "kernel mean of a uniform field in the medium, less 1",
             "kernel mean of the exact field, less the edge",
             "expectation with the k-th photon summed, less without",
-            "photons of one history, first order in the radius",
+            "photons of one history, far from faces",
         ];
         for ((name, value), source) in PART_NAMES.iter().zip(parts.list()).zip(sources) {
             add(&format!("error from {name}"), Unit::PERCENT, 100.0 * value, 100.0 * parts.error, source);

@@ -24,7 +24,7 @@ pub struct Parts {
     pub edge: f64,
     /// The field bends inside the ball: all else that independent photons do.
     pub blur: f64,
-    /// Photons of one history cluster, which draws the k-th photon nearer: first order, and rough beside a face.
+    /// Photons of one history cluster, which draws the k-th photon nearer: rough beside a face.
     pub clusters: f64,
     /// Bound on the numerical error of the sum.
     pub error: f64,
@@ -136,7 +136,7 @@ pub fn predict(settings: &Settings) -> anyhow::Result<Vec<Prediction>> {
         let sources = [
             "mean of the treated kernel over a uniform field, less 1",
             "mean over the exact field, less the edge",
-            "photons of one history, first order in the radius",
+            "photons of one history, far from faces",
         ];
         for ((name, value), source) in PARTS.iter().zip([parts.edge, parts.blur, parts.clusters]).zip(sources)
         {

@@ -3,7 +3,7 @@
 
 use super::cases::{CELL, Setting, Size, Slab, Treatment};
 use super::measure::inside;
-use crate::theory::{SlabGathers, Table, clustering, isotropic_clustering};
+use crate::theory::{SlabGathers, clustering};
 use std::f64::consts::PI;
 use turbid::estimators::Kernel;
 use turbid_analytic::nearest::{nearest_expectation, nearest_moments};
@@ -61,9 +61,6 @@ impl Rms {
 pub struct Theory {
     slab: &'static Slab,
     gathers: SlabGathers,
-    /// Photons of a history around each of its own in a ball, by radius; none behind a forward peak, where only the
-    /// first order is known.
-    returns: Option<Table>,
 }
 
 /// Largest radius that is asked of the theory, beside the settings' own \[mfp\].
@@ -77,8 +74,7 @@ impl Theory {
         let reach = settings.filter(|s| s.slab == slab).map(Setting::cap).fold(REACH, f64::max);
         let (tau, albedo, g) = (slab.tau, slab.albedo, slab.g);
         let gathers = SlabGathers::new(tau, albedo, g, slab.exact()?, &slab.depths(), reach);
-        let returns = if g == 0.0 { Some(isotropic_clustering(albedo, reach)?) } else { None };
-        Ok(Theory { slab, gathers, returns })
+        Ok(Theory { slab, gathers })
     }
 
     /// Exact fluence and its bound.
@@ -175,8 +171,7 @@ impl Theory {
     /// body is four times its volume over its surface (Cauchy): where the slab cuts the ball, neighbours become
     /// fewer in that proportion, an approximation.
     fn clustering(&self, r: f64, t: f64) -> f64 {
-        let first = || clustering(self.slab.albedo, self.slab.g, r);
-        self.returns.as_ref().map_or_else(first, |table| table.at(r)) * chord(self.slab, r, t)
+        clustering(self.slab.albedo, self.slab.g, r) * chord(self.slab, r, t)
     }
 }
 
