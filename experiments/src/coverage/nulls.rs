@@ -41,7 +41,7 @@ impl Population {
     /// Tests of one cell: skewed numbers alarm more often, and fewer of them tell.
     pub fn tests(self) -> u64 {
         match self {
-            Population::Normal => 20_000,
+            Population::Normal => 40_000,
             Population::Skewed => 5000,
         }
     }
