@@ -86,7 +86,7 @@ pub fn case_double(rule: Rule) -> String {
 /// The maps.
 pub fn cells(settings: &Settings) -> Vec<CellId> {
     let cost = photons(settings) as f64 * 40.0;
-    CellId::replicates(GROUP, settings.pick(96, 512), cost).collect()
+    CellId::replicates(GROUP, settings.pick(176, 512), cost).collect()
 }
 
 /// Points that fill a ball evenly, by the fractional parts of multiples of three irrational numbers (Roberts 2018).
