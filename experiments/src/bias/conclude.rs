@@ -250,8 +250,7 @@ fn summarise(section: &mut Section, settings: &Settings, results: &[Result]) {
             .to_string(),
     );
     section.notes.push(
-        "The clustering of photons of one history is predicted to all orders in isotropic fog without \
-         end, and to first order in the radius behind the forward peak; where a ball leaves the medium, neighbours are taken to be missing like \
+        "The clustering of photons of one history is predicted to all orders in fog without end; where a ball leaves the medium, neighbours are taken to be missing like \
          the ball's own part, an estimate that no claim relies on."
             .to_string(),
     );

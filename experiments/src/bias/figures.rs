@@ -139,7 +139,7 @@ fn orders(results: &[Result]) -> anyhow::Result<FigureFiles> {
     let mut counts: Vec<u64> =
         results.iter().filter(|r| r.case.field == free).map(|r| r.case.photons).collect();
     counts.dedup();
-    let ks: Vec<usize> = vec![5, 7, 10, 15, 20, 30, 50, 70, 100, 150, 200, 300, 500, 700];
+    let ks: Vec<usize> = vec![4, 5, 7, 10, 15, 20, 30, 50, 70, 100, 150, 200, 300, 500, 700];
     for (class, &photons) in counts.iter().enumerate() {
         let label = format!("{photons} photons");
         // Lines stop where the measured cases do.
@@ -157,7 +157,7 @@ fn orders(results: &[Result]) -> anyhow::Result<FigureFiles> {
     let figure = Figure { width: Width::Double, columns: 2, ..Figure::new(vec![left, right]) };
     let caption = "Uncollided photons, whole balls: error against gather size, measured (points, 95 % intervals over \
                    maps) and predicted before the run (lines). At a fixed radius the error grows as the square of the \
-                   radius, at first, whatever the number of photons; with the k nearest it falls as (k / photons) to \
+                   radius, at first, whatever the number of photons; with the k nearest it grows as (k / photons) to \
                    the power 2/3.";
     FigureFiles::draw("orders", caption, &figure)
 }
@@ -258,6 +258,6 @@ fn counts(cells: &Cells, results: &[Result]) -> anyhow::Result<FigureFiles> {
     let figure = Figure { width: Width::Double, ..Figure::new(vec![panel.with_legend(Legend::Right)]) };
     let caption = "Photons of one history lie near each other: their counts in a ball vary more than Poisson's law \
                    lets independent ones, by 3/2 albedo times the radius to first order, at any asymmetry \
-                   (lines: to all orders in isotropic fog). Uncollided photons are independent.";
+                   (lines: to all orders in fog without end). Uncollided photons are independent.";
     FigureFiles::draw("counts", caption, &figure)
 }

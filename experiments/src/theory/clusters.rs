@@ -1,6 +1,7 @@
 //! Photons of one history lie near each other: how many, and what that does to an estimate.
 
-use super::{Table, isotropic_clustering};
+use super::Table;
+use super::returns::{LARGEST, SMALLEST, returns};
 use std::collections::BTreeMap;
 use std::f64::consts::PI;
 use std::sync::{Arc, LazyLock, Mutex};
@@ -10,34 +11,30 @@ use turbid_analytic::quadrature::GaussLegendre;
 ///
 /// With L the distance from a uniform point of the ball to its surface along any direction, the next collision is
 /// inside with probability w <1 - e^-L> = w (3/4 r - ...), and so was the last one: 3/2 w r to first order, whatever
-/// the asymmetry. In isotropic fog all orders are known ([`isotropic_clustering`]); behind other phase functions the
-/// first stands alone.
+/// the asymmetry. The table has all orders ([`returns`]); below it the second is taken to be as at its beginning.
 pub fn clustering(albedo: f64, g: f64, r: f64) -> f64 {
-    if g != 0.0 || albedo == 0.0 {
-        return 1.5 * albedo * r;
+    if albedo == 0.0 {
+        return 0.0;
     }
-    // Below, the first two orders leave less than r^3 ln(1/r) = 5e-6 out; beyond, nothing gathers.
-    if r < 0.01 {
-        return 1.5 * albedo * r + albedo * (0.2 * PI * PI * albedo - 0.8) * r * r;
+    let Some(table) = table(albedo, g) else { return f64::NAN };
+    if r < SMALLEST {
+        let second = (table.at(SMALLEST) / SMALLEST - 1.5 * albedo) / SMALLEST;
+        return (1.5 * albedo + second * r) * r;
     }
-    isotropic(albedo).map_or(f64::NAN, |table| table.at(r))
+    table.at(r.min(LARGEST))
 }
 
-/// Radius up to which clusters are tabulated \[mfp\].
-const REACH: f64 = 8.0;
+/// The tables by albedo and asymmetry: made when first asked for.
+static TABLES: LazyLock<Mutex<BTreeMap<[u64; 2], Arc<Table>>>> = LazyLock::new(Mutex::default);
 
-/// The tables by albedo: made when first asked for.
-static TABLES: LazyLock<Mutex<BTreeMap<u64, Arc<Table>>>> = LazyLock::new(Mutex::default);
-
-fn isotropic(albedo: f64) -> Option<Arc<Table>> {
-    // Without absorption the sum over orders has no end to integrate to; a millionth of it changes 2e-3 r.
-    let albedo = albedo.min(1.0 - 1e-6);
+fn table(albedo: f64, g: f64) -> Option<Arc<Table>> {
+    let key = [albedo.to_bits(), g.to_bits()];
     let mut tables = TABLES.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
-    if let Some(table) = tables.get(&albedo.to_bits()) {
+    if let Some(table) = tables.get(&key) {
         return Some(table.clone());
     }
-    let table = Arc::new(isotropic_clustering(albedo, REACH).ok()?);
-    tables.insert(albedo.to_bits(), table.clone());
+    let table = Arc::new(returns(albedo, g).ok()?);
+    tables.insert(key, table.clone());
     Some(table)
 }
 
@@ -96,37 +93,47 @@ mod tests {
         }
     }
 
-    /// Small balls join the tabulated ones.
+    /// Small balls join the tabulated ones, at any albedo.
     #[test]
     fn the_table_begins_where_the_first_orders_end() {
         for albedo in [0.3, 0.9, 1.0] {
-            let (below, above) = (clustering(albedo, 0.0, 0.01 - 1e-9), clustering(albedo, 0.0, 0.01));
-            assert!((above - below).abs() < 1e-5, "albedo {albedo}: {below}, then {above}");
+            let (below, above) =
+                (clustering(albedo, 0.75, SMALLEST - 1e-9), clustering(albedo, 0.75, SMALLEST));
+            assert!((above - below).abs() < 1e-7, "albedo {albedo}: {below}, then {above}");
         }
     }
 
-    /// The all-orders sum against one made history by history: isotropic flights from the points of a ball.
-    #[test]
-    fn followers_counted_one_by_one() {
+    /// Followers counted one by one: flights from the points of a ball. `g` is planted by scattering with it.
+    fn counted(albedo: f64, g: f64, radius: f64) -> turbid::stats::Moments {
         use turbid::rng::{Purpose, Stream};
-        let (albedo, radius) = (0.9, 0.4);
+        let phase = turbid::phase::Phase::with_asymmetry(turbid::math::Asymmetry::new("g", g).unwrap());
         let mut found = turbid::stats::Moments::new();
         for history in 0..200_000 {
             let mut stream = Stream::new(7, Purpose::Synthetic, 0, history);
             let mut p =
                 turbid::math::warp::square_to_sphere(stream.pair()) * libm::cbrt(stream.unit()) * radius;
+            let mut dir = turbid::math::warp::square_to_sphere(stream.pair());
             let mut followers = 0.0;
             while stream.unit() < albedo {
-                let dir = turbid::math::warp::square_to_sphere(stream.pair());
+                dir = phase.scatter(dir, stream.pair());
                 p += dir * -libm::log1p(-stream.unit());
                 followers += f64::from(u8::from(p.length() <= radius));
             }
             found.push(2.0 * followers);
         }
-        let exact = clustering(albedo, 0.0, radius);
-        let test = turbid::stats::t_test(&found, exact, 1e-5);
-        assert!(test.p > turbid::stats::ALPHA, "{test:?}");
-        // The sum without those that leave and come back, 0.575 here, would be seen.
-        assert!(turbid::stats::t_test(&found, 0.575, 0.0).p < turbid::stats::ALPHA);
+        found
+    }
+
+    #[test]
+    fn followers_counted_one_by_one() {
+        for (g, radius) in [(0.0, 0.4), (0.75, 0.8), (-0.5, 0.2)] {
+            let found = counted(0.9, g, radius);
+            let test = turbid::stats::t_test(&found, clustering(0.9, g, radius), 1e-4);
+            assert!(test.p > turbid::stats::ALPHA, "g {g}: {test:?}");
+        }
+        // The isotropic sum without those that leave and come back, 0.575, would be seen; so would the first order
+        // alone behind the forward peak.
+        assert!(turbid::stats::t_test(&counted(0.9, 0.0, 0.4), 0.575, 0.0).p < turbid::stats::ALPHA);
+        assert!(turbid::stats::t_test(&counted(0.9, 0.75, 0.8), 1.08, 0.0).p < turbid::stats::ALPHA);
     }
 }

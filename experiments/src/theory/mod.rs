@@ -7,7 +7,6 @@ mod slab_gather;
 mod table;
 
 pub use clusters::{clustering, nearest_clustering};
-use returns::isotropic_clustering;
 pub use slab::slab_fluence;
 pub use slab_gather::{NearestGather, PART_NAMES, Parts, SlabGathers};
 pub use table::Table;

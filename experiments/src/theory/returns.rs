@@ -1,123 +1,116 @@
-//! The photons that a history leaves around each of its own, to all orders, in unbounded isotropic fog.
+//! The photons that a history leaves around each of its own, to all orders, in unbounded fog.
 
 use super::Table;
+use std::f64::consts::PI;
 use turbid_analytic::quadrature::GaussLegendre;
 
-/// Nodes of each panel.
-const NODES: usize = 12;
-/// Panels of the integral over s, in thirds towards 0, where the integrand rises like a logarithm.
-const THIRDS: i32 = 6;
-/// Halvings of the radius that are tabulated, as for kernel means.
-const HALVINGS: i32 = 11;
+/// Nodes of a panel, and panels of the integral over x = s r: half a wave of the squared Bessel function each.
+const NODES: usize = 8;
+const PANELS: u32 = 60;
+/// Ends of the pieces of the table \[mfp\].
+const ENDS: [f64; 4] = [SMALLEST, 0.3, 1.5, LARGEST];
+/// Radii between which it is tabulated \[mfp\].
+pub const SMALLEST: f64 = 0.05;
+pub const LARGEST: f64 = 8.0;
 
-/// 4 pi s^2 times the fluence at the distance s \[mfp\] of an isotropic point source of power 1.
-struct PointSource {
-    /// Decay of the mode that travels farthest \[1/mfp\].
-    decay: f64,
-    /// Its amplitude.
-    amplitude: f64,
-    /// Lengths u of the other modes, and their weights.
-    modes: Vec<(f64, f64)>,
+/// int phi exp(i s.x) d^3x, phi the fluence of an isotropic point source of power 1: the continued fraction 1 / (h0 +
+/// s^2/(h1 + 4 s^2/(h2 + 9 s^2/(h3 + ...)))) with h_l = (2l+1) (1 - w g^l).
+///
+/// Its remainders shrink by (root - 1)/(root + 1) a term, root = sqrt(1 + s^2): 12 s terms and some leave 1e-10.
+fn transform(albedo: f64, g: f64, s: f64) -> f64 {
+    let terms = 60 + (12.0 * s) as u32;
+    let h = |l: u32, power: f64| f64::from(2 * l + 1) * (1.0 - albedo * power);
+    // g^l from the top: below the smallest f64 it is 0, which is right.
+    let powers: Vec<f64> =
+        (0..=terms.min(4000)).scan(1.0, |power, _| Some(std::mem::replace(power, *power * g))).collect();
+    let power = |l: u32| powers.get(l as usize).copied().unwrap_or(0.0);
+    (0..terms)
+        .rev()
+        .fold(h(terms, power(terms)), |below, l| {
+            let n = f64::from(l + 1);
+            h(l, power(l)) + n * n * s * s / below
+        })
+        .recip()
 }
 
-impl PointSource {
-    /// With x = 1/u: phi = (1/4 pi s) {2 k^2 (1-k^2) e^(-ks) / (w (k^2+w-1)) + int_0^1 e^(-s/u) / D du/u^2},
-    /// D = (1 - w u atanh u)^2 + (pi w u/2)^2, with w atanh(k) = k (Case and Zweifel 1967, chapter 5).
-    fn new(albedo: f64) -> anyhow::Result<Self> {
-        let w = albedo;
-        let (mut low, mut high) = (1e-9, 1.0 - 1e-15);
-        for _ in 0..100 {
-            let middle = 0.5 * (low + high);
-            if w * libm::atanh(middle) > middle { high = middle } else { low = middle }
-        }
-        let k = low;
-        let amplitude = 2.0 * k * k * (1.0 - k * k) / (w * (k * k + w - 1.0));
-        // Half decades towards 0, where short distances live, and decades towards 1, where D has a logarithm.
-        let mut edges = vec![0.0];
-        edges.extend((0..=13).map(|i| libm::exp10(-7.0 + 0.5 * f64::from(i))));
-        edges.extend((1..=14).map(|i| 1.0 - libm::exp10(-f64::from(i))));
-        edges.push(1.0);
-        let rule = GaussLegendre::new(NODES)?;
-        let mut modes = Vec::new();
-        for pair in edges.windows(2) {
-            for (node, weight) in rule.nodes.iter().zip(&rule.weights) {
-                let u = pair[0] + (pair[1] - pair[0]) * node;
-                let real = 1.0 - w * u * libm::atanh(u);
-                let imaginary = 0.5 * std::f64::consts::PI * w * u;
-                let density = 1.0 / (u * u * (real * real + imaginary * imaginary));
-                if u < 1.0 {
-                    modes.push((u, weight * (pair[1] - pair[0]) * density));
-                }
-            }
-        }
-        Ok(PointSource { decay: k, amplitude, modes })
-    }
-
-    fn at(&self, s: f64) -> f64 {
-        let modes: f64 = self.modes.iter().map(|(u, weight)| weight * libm::exp(-s / u)).sum();
-        s * (self.amplitude * libm::exp(-self.decay * s) + modes)
-    }
-
-    /// int_0^end of [`PointSource::at`] times a weight.
-    fn integral(&self, end: f64, rule: &GaussLegendre, weight: impl Fn(f64) -> f64) -> f64 {
-        let edge = |i: i32| if i == THIRDS { 0.0 } else { end * libm::pow(3.0, -f64::from(i)) };
-        (0..THIRDS).map(|i| rule.integrate(edge(i + 1), edge(i), |s| self.at(s) * weight(s))).sum()
-    }
-}
-
-/// Other photons of the same history around each photon of a ball, on average, against the ball's radius up to
-/// `reach` \[mfp\], in unbounded isotropic fog.
+/// Other photons of the same history around each photon of a ball, on average, against the ball's radius from
+/// [`SMALLEST`] to [`LARGEST`], in unbounded fog with the Henyey-Greenstein phase function.
 ///
-/// A photon scatters with probability w and then lights its surroundings like a point source: its followers in the
-/// ball are w int 4 pi s^2 phi(s) c(s) ds, with c(s) = 1 - 3s/(4r) + s^3/(16 r^3) the chance that a place at distance
-/// s of one in the ball is in the ball too; its forerunners are as many. Near a face some leak out.
-///
-/// # Arguments
-/// `albedo` \[1\], above 0 and below 1
-pub fn isotropic_clustering(albedo: f64, reach: f64) -> anyhow::Result<Table> {
-    let (source, rule) = (PointSource::new(albedo)?, GaussLegendre::new(NODES)?);
-    let ends = (0..=HALVINGS).map(|i| reach * libm::exp2(-f64::from(i))).collect();
-    Table::new(ends, |r| {
-        let both = |s: f64| 1.0 - 0.75 * s / r + s * s * s / (16.0 * r * r * r);
-        Ok(2.0 * albedo * source.integral(2.0 * r, &rule, both))
-    })
+/// A photon of the ball scatters with probability w. Places in a ball have no preferred direction, so its followers are
+/// on average those of an isotropic point source: w int phi(s) c(s) dV, with c(s) the chance that a place at distance s
+/// of one in the ball is in the ball too; its forerunners are as many. In Fourier space, with V c the square of the
+/// ball's transform V B, B = 3 j_1(x)/x at x = s r: eta = 2 w V/(2 pi^2) int s^2 transform(s) B^2 ds. Near a face some
+/// leak out.
+pub fn returns(albedo: f64, g: f64) -> anyhow::Result<Table> {
+    let rule = GaussLegendre::new(NODES)?;
+    let eta = |r: f64| {
+        let weight = |x: f64| {
+            let bessel = if x < 1e-2 {
+                1.0 - x * x / 10.0
+            } else {
+                3.0 * (libm::sin(x) - x * libm::cos(x)) / (x * x * x)
+            };
+            x * x * bessel * bessel * transform(albedo, g, x / r)
+        };
+        let step = 0.5 * PI;
+        let sum: f64 =
+            (0..PANELS).map(|i| rule.integrate(f64::from(i) * step, f64::from(i + 1) * step, weight)).sum();
+        // Beyond, cos^2 is 1/2 on average and the transform pi/(2 s): int x^2 (9/2) x^-4 (pi r/(2x)) dx.
+        let end = f64::from(PANELS) * step;
+        let tail = 9.0 * PI * r / (8.0 * end * end);
+        // V/(2 pi^2 r^3) = 2/(3 pi).
+        2.0 * albedo * 2.0 / (3.0 * PI) * (sum + tail)
+    };
+    Table::new(ENDS.to_vec(), |r| Ok(eta(r)))
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    /// Power balance: int phi dV = 1/(1-w).
+    /// Without scattering the transform is atan(s)/s; at s = 0 the power balance is 1/(1-w).
     #[test]
-    fn a_point_source_loses_its_power_by_absorption() {
-        let rule = GaussLegendre::new(NODES).unwrap();
-        for albedo in [0.5, 0.9, 0.99] {
-            let source = PointSource::new(albedo).unwrap();
-            let step = 0.2 / source.decay;
-            let inner = source.integral(step, &rule, |_| 1.0);
-            let outer: f64 = (1..250)
-                .map(|i| rule.integrate(f64::from(i) * step, f64::from(i + 1) * step, |s| source.at(s)))
-                .sum();
-            let balance = (inner + outer) * (1.0 - albedo);
-            // Panels in thirds and decades leave a few 1e-6.
-            assert!((balance - 1.0).abs() < 1e-5, "albedo {albedo}: {balance}");
+    fn the_transform_in_closed_form() {
+        for s in [0.1, 1.0, 10.0, 1000.0] {
+            let exact = libm::atan(s) / s;
+            assert!((transform(0.0, 0.75, s) / exact - 1.0).abs() < 1e-9, "s {s}");
+            // Isotropic: q/(1 - w q) with q = atan(s)/s.
+            let isotropic = exact / (1.0 - 0.9 * exact);
+            assert!((transform(0.9, 0.0, s) / isotropic - 1.0).abs() < 1e-9, "s {s}");
+        }
+        for g in [-0.5, 0.0, 0.75] {
+            assert!((transform(0.9, g, 1e-6) - 10.0).abs() < 1e-8);
         }
     }
 
     /// The first two orders of the radius in closed form. The next collision is inside with 3/4 r - 2/5 r^2 on average;
-    /// the next but one has, near its forerunner, the density pi/(16 s), wherever the one between them was, in the ball
-    /// or outside: int 4 pi s^2 pi/(16 s) c(s) ds = pi^2/10 r^2. What is left is of the order r^3 ln r.
+    /// in isotropic fog the next but one has, near its forerunner, the density pi/(16 s), wherever the one between them
+    /// was, in the ball or outside: int 4 pi s^2 pi/(16 s) c(s) ds = pi^2/10 r^2. What is left is of the order r^3 ln r.
     #[test]
     fn small_balls_hold_the_first_orders() {
-        let returning = std::f64::consts::PI * std::f64::consts::PI / 10.0;
         for w in [0.5, 0.9, 0.99] {
-            let table = isotropic_clustering(w, 1.0).unwrap();
-            for r in [0.003, 0.01, 0.03] {
-                let first = 2.0 * w * (0.75 * r - 0.4 * r * r) + 2.0 * w * w * returning * r * r;
+            let table = returns(w, 0.0).unwrap();
+            for r in [0.05, 0.06] {
+                let first = 2.0 * w * (0.75 * r - 0.4 * r * r) + 0.2 * PI * PI * w * w * r * r;
                 let difference = table.at(r) - first;
                 let next = r * r * r * libm::log(1.0 / r);
                 assert!(difference.abs() < next, "albedo {w}, r {r}: {difference}");
             }
+        }
+    }
+
+    /// No sum over orders: without scattering to come, nobody follows; one order alone is <1 - e^-L>.
+    #[test]
+    fn thin_fog_has_the_next_collision_alone() {
+        let w = 1e-6;
+        let table = returns(w, 0.5).unwrap();
+        for r in [0.1, 1.0, 4.0f64] {
+            // <1 - e^-L> over a ball: 1 - 3/(8 r^3) (2 r^2 - 1 + (1 + 2r) e^-2r), its escape probability.
+            let escape =
+                3.0 / (8.0 * r * r * r) * (2.0 * r * r - 1.0 + (1.0 + 2.0 * r) * libm::exp(-2.0 * r));
+            let exact = 2.0 * w * (1.0 - escape);
+            // The tail's oscillation, (x end)^-3, and cancellation in the closed form at r = 0.1.
+            assert!((table.at(r) / exact - 1.0).abs() < 1e-4, "r {r}: {} {exact}", table.at(r));
         }
     }
 }
