@@ -96,7 +96,7 @@ fn note(text: &str) -> std::io::Result<()> {
 /// A count on the command line: 1000000, 1_000_000 or 1e6; at least 1.
 fn parse_count(text: &str) -> Result<u64, String> {
     let plain = text.replace('_', "");
-    let count = plain.parse::<u64>().ok().or_else(|| {
+    let count = plain.parse::<u64>().ok().filter(|&n| n <= 9_000_000_000_000_000).or_else(|| {
         let x = plain.parse::<f64>().ok()?;
         // Above 2^53 not every whole number is an f64; no run is that long.
         (x.fract() == 0.0 && (0.0..=9e15).contains(&x)).then_some(x as u64)

@@ -11,7 +11,12 @@ pub fn explain(error: &clap::Error) -> anyhow::Result<()> {
     match error.kind() {
         ErrorKind::DisplayHelp | ErrorKind::DisplayVersion => print(&error.render().to_string()),
         ErrorKind::DisplayHelpOnMissingArgumentOrSubcommand => {
-            anyhow::bail!("no command given; allowed: measure, check, scenes; more with --help")
+            let names: Vec<String> =
+                <super::Command as clap::Subcommand>::augment_subcommands(clap::Command::new("turbid"))
+                    .get_subcommands()
+                    .map(|command| command.get_name().to_string())
+                    .collect();
+            anyhow::bail!("no command given; allowed: {}; more with --help", names.join(", "))
         }
         _ => anyhow::bail!("{}", one_line(&error.render().to_string())),
     }

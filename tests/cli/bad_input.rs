@@ -172,7 +172,7 @@ fn wrong_options() {
     refuses_naming(&["measure", "slab"], &["--with"]);
     refuses_naming(&["measure"], &["SCENE"]);
     refuses_naming(&["render", "slab"], &["render"]);
-    refuses_naming(&[], &["allowed: measure, check, scenes"]);
+    refuses_naming(&[], &["allowed: measure, advise, check, scenes"]);
     assert!(refuses(&["scenes", "--resolved"]).contains("NAME"));
 }
 

@@ -5,6 +5,10 @@ use crate::page::HEIGHT;
 
 /// Panels narrower than this stand below each other [mm]: labels keep their size in print, plots do not.
 const PANEL: f64 = 80.0;
+/// Height of a page [mm], what labels and titles take of it beside each row of plots, and the flattest plot, as a ratio.
+const PAGE: f64 = 230.0;
+const AROUND: f64 = 14.0;
+const STRIP: f64 = 0.4;
 
 impl Width {
     /// Between the two widths of a journal: one column up to here [mm].
@@ -46,7 +50,11 @@ impl Figure {
         };
         let rows = self.panels.len().div_ceil(columns);
         let members = |row: usize| row * columns..((row + 1) * columns).min(self.panels.len());
-        let heights = (0..rows).map(|row| members(row).map(height).fold(0.0, f64::max)).collect();
+        let tall: Vec<f64> = (0..rows).map(|row| members(row).map(height).fold(0.0, f64::max)).collect();
+        // What stands on one page of print stays on one page, unless plots would become strips.
+        let room = PAGE - rows as f64 * AROUND;
+        let flatter = (room / (tall.iter().sum::<f64>() * to / columns as f64)).min(1.0);
+        let heights = tall.into_iter().map(|h| (h * flatter).max(h.min(STRIP))).collect();
         let mut panels = self.panels.clone();
         for panel in &mut panels {
             panel.legend = match panel.legend {
@@ -84,6 +92,15 @@ mod tests {
         assert!(double.heights[0] > double.heights[1]);
         let unchanged = figure(Width::Double, 3, 2, &[]);
         assert_eq!(unchanged.in_width(Width::Double), unchanged);
+    }
+
+    #[test]
+    fn many_panels_stay_on_a_page() {
+        let six = figure(Width::Double, 6, 2, &[0.8, 0.8, 0.8]).in_width(Width::Single);
+        // Six rows of 14 mm beside the plots leave 146 mm: 24 mm a plot, but no flatter than 0.4 of 85 mm.
+        assert_eq!(six.heights, [0.4; 6]);
+        let four = figure(Width::Double, 4, 2, &[1.0, 1.0]).in_width(Width::Single);
+        assert!((four.heights[0] - 174.0 / 4.0 / 85.0).abs() < 1e-12);
     }
 
     #[test]

@@ -26,14 +26,13 @@ pub fn cells(settings: &Settings) -> impl Iterator<Item = CellId> {
     CellId::replicates(GROUP, settings.pick(64, 512), 6.0 * photons as f64)
 }
 
-/// The places of one quadrant whose cells are in the sphere, or reach into it: column, row and distance from the centre.
+/// The places of one quadrant that are in the sphere: column, row and distance from the centre.
 pub fn places() -> impl Iterator<Item = (usize, usize, f64)> {
     (0..ALONG * ALONG).filter_map(|index| {
         let (column, row) = (index % ALONG, index / ALONG);
         let middle = |i: usize| WIDTH * (i as f64 + 0.5);
         let distance = libm::hypot(middle(column), middle(row));
-        // A cell whose middle is barely outside shows the surface.
-        (distance < RADIUS + 0.5 * WIDTH).then(|| (column, row, distance.min(RADIUS)))
+        (distance <= RADIUS).then_some((column, row, distance))
     })
 }
 

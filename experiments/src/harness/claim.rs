@@ -169,7 +169,11 @@ impl Judged {
         if matches!(self.claim.kind, Kind::Fits | Kind::Refused) && statistic.value() < 1e-12 {
             return "below 10⁻¹²".to_string();
         }
-        self.claim.unit.after(&with_error(statistic.value(), statistic.std_error()))
+        let text = match statistic.maps() {
+            None => number(statistic.value()),
+            Some(_) => with_error(statistic.value(), statistic.std_error()),
+        };
+        self.claim.unit.after(&text)
     }
 }
 

@@ -124,7 +124,7 @@ pub fn main_with(name: &'static str, experiments: &[Experiment], closing: Option
             return ExitCode::from(if written.is_ok() { 0 } else { 2 });
         }
         Err(error) => {
-            say(error.to_string().lines().next().unwrap_or("error: bad arguments"));
+            say(&one_line(&error.to_string()));
             return ExitCode::from(2);
         }
     };
@@ -152,6 +152,20 @@ fn ended(finished: anyhow::Result<u8>) -> ExitCode {
             ExitCode::from(2)
         }
     }
+}
+
+/// A message of the parser in one line, without usage and hints where to look.
+fn one_line(text: &str) -> String {
+    let parts = text.lines().map(str::trim).filter(|part| !part.is_empty());
+    let parts: Vec<&str> = parts
+        .take_while(|part| !part.starts_with("Usage:") && !part.starts_with("For more information"))
+        .collect();
+    let line = parts.join("; ").replace(":; ", ": ");
+    // A bare word is taken for a file to redraw: it is more likely an experiment.
+    if line.contains("--replot") && !line.contains("cannot be used") {
+        return format!("{line} (one experiment alone: --only NAME; FILE.csv goes with --replot)");
+    }
+    line
 }
 
 /// Runs a study, or what is left of it, and writes its report.

@@ -73,9 +73,9 @@ fn list(
 
 /// The claims of one section.
 pub(super) fn own(part: &SectionReport, numbers: &mut Numbers) -> Markup {
-    let caption = "What is claimed here. The interval is the one that decides: it holds for all claims of the study at once.";
+    let caption = "What is claimed here. The interval is the one that decides: it holds for all claims of the study at once. p is the probability of a measurement so far outside the claim if it were true, after Holm's correction (of a planted fault or a missing term: if it were not there).";
     let head = html! {
-        tr { th { "claim" } th.n { "measured" } th.n { "interval" } th.n { "claimed" } th.n { "p (Holm)" } th { "verdict" } }
+        tr { th { "claim" } th.n { "measured" } th.n { "interval" } th.n { "claimed" } th.n { "p against it" } th { "verdict" } }
     };
     let row = |judged: &Judged| Row {
         cells: html! {
@@ -97,8 +97,8 @@ fn advice(judged: &Judged) -> Markup {
 
 fn interval(judged: &Judged) -> String {
     let (low, high) = (judged.interval.low, judged.interval.high);
-    // A p-value has no interval.
-    if matches!(judged.claim.kind, Kind::Fits | Kind::Refused) {
+    // A p-value has no interval, and neither has a computed number.
+    if matches!(judged.claim.kind, Kind::Fits | Kind::Refused) || judged.claim.statistic.maps().is_none() {
         return String::new();
     }
     // Both ends to the digit that the interval's width justifies.

@@ -6,8 +6,8 @@ use super::figures;
 use super::style::CSS;
 use super::tables::{self, Numbers};
 use crate::harness::{
-    FAMILY_WISE, FigureFiles, MIN_MAPS, Prediction, Provenance, Row, SectionReport, Settings, Table, Verdict,
-    number, row_label, with_error,
+    FAMILY_WISE, FIT_LEVEL, FigureFiles, MIN_MAPS, Prediction, Provenance, Row, SectionReport, Settings,
+    Table, Verdict, number, row_label, with_error,
 };
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 
@@ -141,8 +141,10 @@ fn methods(sections: &[SectionReport], numbers: &mut Numbers) -> Markup {
             "A claim is " b { "upheld" } " if the whole interval lies within the margin that it states; " b { "rejected" }
             " if the measurement lies outside significantly, after Holm’s correction over all " (claims) " claims of the study; "
             b { "undecided" } " if neither holds. A planted fault is upheld if it is seen with the same significance. "
+            "A test of fit has no margin: it is upheld while its p is above " (number(FIT_LEVEL)) ", which shows that nothing large is overlooked, not that nothing is. "
             "The probability of any wrong rejection or detection in the whole study is at most " (number(FAMILY_WISE))
-            ", and so is that of anything upheld wrongly. Intervals of 95 per cent are drawn in figures and decide nothing."
+            ", and so is that of anything with a margin upheld wrongly, as far as means over maps are normal; the coverage of the "
+            "intervals is an experiment of its own. ± is one standard error. Intervals of 95 per cent are drawn in figures and decide nothing."
         }
         @if !sections.is_empty() {
             (tables::frame(numbers, "Work done. Counts are results and repeat exactly; seconds belong to this machine.", html! {

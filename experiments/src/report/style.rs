@@ -22,6 +22,7 @@ a { color: #1a4f8b; text-decoration: none; } a:hover { text-decoration: underlin
 .scroll { overflow-x: auto; margin: 18px 0 28px; }
 table { border-collapse: collapse; width: 100%; font-size: 14px; line-height: 1.4; font-variant-numeric: tabular-nums; }
 caption, figcaption { text-align: left; font-size: 14px; line-height: 1.45; color: var(--ink); padding-bottom: 8px; caption-side: top; }
+.scroll caption { position: sticky; left: 0; max-width: 1024px; }
 caption b, figcaption b { margin-right: 4px; }
 th { text-align: left; font-weight: 600; border-bottom: 1.5px solid var(--ink); border-top: 1.5px solid var(--ink); padding: 6px 14px 6px 0; vertical-align: bottom; }
 td { border-bottom: 1px solid var(--line); padding: 5px 12px 5px 0; vertical-align: top; }
