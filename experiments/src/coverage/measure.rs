@@ -19,7 +19,7 @@ const REPEATS: usize = 20;
 /// Maps that intervals are made of: the first so many of a repeat.
 pub const SIZES: [usize; 4] = [8, 16, 32, MAPS];
 /// Cells by preset: 2,000 repeats and 16,000.
-const CELLS: (u64, u64) = (100, 800);
+const CELLS: (u64, u64) = (100, 400);
 /// Group of the repeats.
 pub const GROUP: &str = "coverage";
 
