@@ -95,7 +95,7 @@ pub fn conclude(settings: &Settings, sections: &[SectionReport]) -> anyhow::Resu
         claims: claims(&whole, &by_group, &parts),
         figures: vec![figures::sum(&kept, groups.len(), &z)?],
         tables: vec![table(groups.len(), &whole, &parts, &null)],
-        notes: notes(&kept, dropped),
+        notes: notes(&kept, dropped, sections),
         ..Section::default()
     })
 }
@@ -268,11 +268,16 @@ fn p_text(p: f64) -> String {
     if p < 1e-12 { "below 10⁻¹²".to_string() } else { number(format!("{p:.1e}").parse().unwrap_or(p)) }
 }
 
-fn notes(entries: &[&Entry], dropped: usize) -> Vec<String> {
+fn notes(entries: &[&Entry], dropped: usize, sections: &[SectionReport]) -> Vec<String> {
     let loose = entries.iter().filter(|e| {
         let m: Moments = e.maps.iter().collect();
         e.error > 0.1 * m.std_error()
     });
+    let by_rule: Vec<String> = sections
+        .iter()
+        .filter(|s| s.section.left_out > 0)
+        .map(|s| format!("{} of {}", s.section.left_out, s.experiment.name))
+        .collect();
     vec![
         format!(
             "The bound on the numerical error of a prediction is added to the standard error in quadrature. It is above a \
@@ -281,7 +286,13 @@ fn notes(entries: &[&Entry], dropped: usize) -> Vec<String> {
             entries.len()
         ),
         format!(
-            "{dropped} further cases are left out, since a few of their maps carry the variance or there are fewer than \
+            "Rules of the experiments' own, which look at predictions alone, keep cases out: {}. They are those of which \
+             too little is predicted for a test, of too few photons for a mean to be nearly normal, or that repeat \
+             others' numbers; each experiment says which.",
+            if by_rule.is_empty() { "none".to_string() } else { by_rule.join(", ") }
+        ),
+        format!(
+            "{dropped} further cases are left out here, since a few of their maps carry the variance or there are fewer than \
              16 maps: their means have no trustworthy error."
         ),
         "The largest |z| is compared with what it is when every map is taken from the mean of its case and whole maps \
