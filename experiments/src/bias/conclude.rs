@@ -3,10 +3,11 @@
 use super::cases::{Case, Size};
 use super::fields::{FIELDS, Field};
 use super::measure::{is_fano_case, map_case, path_case};
-use super::predict::{Parts, recall};
+use super::predict::{COLLISIONS, Parts, recall};
 use super::{claims, figures, tables};
 use crate::harness::{Cells, Entry, Prediction, Row, Section, Settings, Term, Unit, with_error};
 use crate::theory::clustering;
+use anyhow::Context;
 use std::collections::HashMap;
 use turbid::estimators::Kernel;
 use turbid::stats::Moments;
@@ -54,6 +55,8 @@ pub struct Mistake {
     pub case: Case,
     /// Error predicted for the right estimate [%].
     pub predicted: f64,
+    /// Error predicted for the wrong one [%].
+    pub wrong: f64,
     /// Signed error [%] over maps.
     pub error: Moments,
 }
@@ -74,7 +77,7 @@ pub fn conclude(settings: &Settings, predictions: &[Prediction], cells: &Cells) 
             }
         }
     }
-    let mistakes = mistakes(cells, &results)?;
+    let mistakes = mistakes(&known, cells, &results)?;
     let mut section = Section { rows: rows(cells, &results, &mistakes)?, ..Section::default() };
     section.budget = results.iter().map(entry).collect();
     section.claims = claims::all(settings, cells, &results, &mistakes)?;
@@ -100,7 +103,11 @@ fn entry(result: &Result) -> Entry {
 }
 
 /// The mistakes that need no switch inside the simulator: each map's own numbers, wrongly divided.
-fn mistakes(cells: &Cells, results: &[Result]) -> anyhow::Result<Vec<Mistake>> {
+fn mistakes(
+    known: &HashMap<(&str, &str), (f64, f64)>,
+    cells: &Cells,
+    results: &[Result],
+) -> anyhow::Result<Vec<Mistake>> {
     let mut mistakes = Vec::new();
     for result in results {
         let Case { field, photons, depth, size, kernel } = result.case;
@@ -117,10 +124,12 @@ fn mistakes(cells: &Cells, results: &[Result]) -> anyhow::Result<Vec<Mistake>> {
         };
         let case = result.case;
         let predicted = result.predicted();
-        let error = wrongly(&|_| 1.0 / field.albedo);
-        mistakes.push(Mistake { name: "divided by sigma_s", case, predicted, error });
-        let error = wrongly(&|map| 1.0 / stored[map]);
-        mistakes.push(Mistake { name: "divided by stored photons", case, predicted, error });
+        let over = |divisor: f64| 100.0 * ((1.0 + predicted / 100.0) / divisor - 1.0);
+        let (error, wrong) = (wrongly(&|_| 1.0 / field.albedo), over(field.albedo));
+        mistakes.push(Mistake { name: "divided by sigma_s", case, predicted, wrong, error });
+        let (collisions, _) = known.get(&(field.name, COLLISIONS)).context("collisions are not predicted")?;
+        let (error, wrong) = (wrongly(&|map| 1.0 / stored[map]), over(*collisions));
+        mistakes.push(Mistake { name: "divided by stored photons", case, predicted, wrong, error });
     }
     Ok(mistakes)
 }
@@ -156,7 +165,7 @@ fn rows(cells: &Cells, results: &[Result], mistakes: &[Mistake]) -> anyhow::Resu
     }
     for mistake in mistakes {
         let name = format!("{} {}", mistake.case.name(), mistake.name);
-        rows.push(Row::measured(&name, "error", Unit::PERCENT, &mistake.error)?.predicted(mistake.predicted));
+        rows.push(Row::measured(&name, "error", Unit::PERCENT, &mistake.error)?.predicted(mistake.wrong));
     }
     for field in FIELDS.iter().filter(|f| f.has_clusters()) {
         for &depth in field.depths {

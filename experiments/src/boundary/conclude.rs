@@ -106,6 +106,7 @@ pub fn conclude(settings: &Settings, predictions: &[Prediction], cells: &Cells) 
     let found = found(settings, predictions, cells)?;
     let mut section = Section { rows: rows(settings, cells, &found)?, ..Section::default() };
     section.budget = entries(&found);
+    section.left_out = found.results.iter().filter(|r| !r.is_predicted_well()).count();
     section.claims = claims::all(settings, &found)?;
     section.figures = figures::all(settings, cells, &found)?;
     section.tables = tables::all(settings, &found)?;

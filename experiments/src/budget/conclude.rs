@@ -2,32 +2,55 @@
 
 use super::figures;
 use super::largest::{Largest, Null};
-use super::sets::{Drawn, Group, fit, groups};
-use crate::harness::{Claim, Entry, FIT_LEVEL, Section, SectionReport, Settings, Table, Term, number};
-use turbid::stats::{KolmogorovSmirnov, Moments};
+use super::sets::{Drawn, Group, MOST, carries, fit, groups};
+use crate::harness::{
+    Claim, Digest, Entry, FIT_LEVEL, Section, SectionReport, Settings, Table, Term, number,
+};
+use rayon::prelude::*;
+use turbid::rng::{Purpose, Stream};
+use turbid::stats::{KolmogorovSmirnov, Moments, kolmogorov_smirnov_test, normal_p};
 
-/// Fewest map sets for the test of their distribution to mean anything.
-const FEWEST_SETS: usize = 64;
+/// Fewest cases for a verdict.
+const FEWEST_CASES: usize = 1000;
+/// Fewest independent map sets for a verdict.
+const FEWEST_SETS: usize = 200;
 /// Resamples of all maps: the bound that one in a thousand exceeds stands between five of them.
 const RESAMPLES: usize = 5000;
+
+/// Made-up studies by which the smallest shift is found that the test of map sets sees.
+const SHIFTED: u64 = 400;
+/// How sure a shift must be seen to count as seen.
+const POWER: f64 = 0.99;
 
 /// The two tests, with one term taken away or none.
 struct Tests {
     without: Option<Term>,
     /// Cases that the term is part of; all of them without one.
     cases: usize,
+    /// Map sets with such a case, one drawn for each.
+    sets: usize,
     fit: KolmogorovSmirnov,
     largest: Largest,
 }
 
 impl Tests {
     fn new(groups: &[Group], drawn: &[Drawn], null: &Null, without: Option<Term>) -> Self {
-        let has = |entry: &&&Entry| without.is_none_or(|term| entry.terms[term as usize] != 0.0);
         Tests {
             without,
-            cases: groups.iter().flat_map(|g| &g.entries).filter(has).count(),
+            cases: groups.iter().flat_map(|g| &g.entries).filter(|e| carries(e, without)).count(),
+            sets: drawn.len(),
             fit: fit(drawn, without),
             largest: null.largest(groups, without),
+        }
+    }
+
+    /// Which of the tests refuse, in words.
+    fn seen_by(&self) -> &'static str {
+        match (self.fit.p <= FIT_LEVEL, self.largest.p <= FIT_LEVEL) {
+            (true, true) => "both",
+            (true, false) => "map sets",
+            (false, true) => "largest",
+            (false, false) => "neither",
         }
     }
 
@@ -45,28 +68,34 @@ pub fn conclude(settings: &Settings, sections: &[SectionReport]) -> anyhow::Resu
     }
     let entries: Vec<&Entry> = sections.iter().flat_map(|s| &s.section.budget).collect();
     let (groups, dropped) = groups(entries.iter().copied())?;
-    let drawn = Drawn::all(&groups, settings.seed);
-    if drawn.len() < FEWEST_SETS {
+    let drawn = Drawn::all(&groups, settings.seed, None);
+    let cases: usize = groups.iter().map(|g| g.entries.len()).sum();
+    if cases < FEWEST_CASES || drawn.len() < FEWEST_SETS {
         return Ok(left_out(&format!(
-            "{} independent sets of maps; the test of their distribution needs {FEWEST_SETS}",
+            "{cases} cases in {} independent sets of maps are too few for a verdict, which needs {FEWEST_CASES} and \
+             {FEWEST_SETS}",
             drawn.len()
         )));
     }
     let null = Null::new(&groups, settings.seed, RESAMPLES);
     let whole = Tests::new(&groups, &drawn, &null, None);
-    let parts: Vec<Tests> = Term::ALL
-        .iter()
-        .map(|&term| Tests::new(&groups, &drawn, &null, Some(term)))
-        .filter(|tests| tests.cases > 0)
-        .collect();
+    let by_group = fit(&Drawn::whole(&groups, settings.seed), None);
+    let mut parts = Vec::new();
+    for term in Term::ALL.map(Some) {
+        let own = Drawn::all(&groups, settings.seed, term);
+        if !own.is_empty() {
+            parts.push(Tests::new(&groups, &own, &null, term));
+        }
+    }
+    let shift = smallest_shift(drawn.len(), settings.seed);
     let kept: Vec<&Entry> = groups.iter().flat_map(|g| g.entries.iter().copied()).collect();
     let z: Vec<f64> = drawn.iter().map(|d| deviation(d.uniform(None))).collect();
     Ok(Section {
-        summary: summary(&kept, groups.len(), drawn.len(), &whole, &parts, &null),
-        claims: claims(&whole, &parts),
-        figures: vec![figures::sum(&kept, &z)?],
-        tables: vec![table(&whole, &parts, &null)],
-        notes: notes(&kept, dropped),
+        summary: summary(&kept, groups.len(), &whole, &by_group, &parts, &null, shift),
+        claims: claims(&whole, &by_group, &parts),
+        figures: vec![figures::sum(&kept, groups.len(), &z)?],
+        tables: vec![table(groups.len(), &whole, &parts, &null)],
+        notes: notes(&kept, dropped, sections),
         ..Section::default()
     })
 }
@@ -78,12 +107,47 @@ fn deviation(share: f64) -> f64 {
     if share < 0.5 { -size } else { size }
 }
 
-fn claims(whole: &Tests, parts: &[Tests]) -> Vec<Claim> {
+/// The shift of all distances, in standard errors of one set, with which the test of map sets refuses in 99 of 100
+/// studies: normal numbers of as many sets, shifted.
+fn smallest_shift(sets: usize, seed: u64) -> f64 {
+    let one = |study: u64| {
+        let mut stream = Stream::new(seed, Purpose::Resampling, Digest::of(b"budget/shift").word(), study);
+        let z: Vec<f64> = (0..sets).map(|_| deviation(stream.open_unit())).collect();
+        let p = |shift: f64| kolmogorov_smirnov_test(&z, |z| below(z + shift)).p;
+        // The least shift that this study refuses, to 1e-3: beyond 4 it always does with as many sets as are asked for.
+        let (mut low, mut high) = (0.0, 4.0);
+        while high - low > 1e-3 {
+            let middle = 0.5 * (low + high);
+            if p(middle) > FIT_LEVEL {
+                low = middle;
+            } else {
+                high = middle;
+            }
+        }
+        high
+    };
+    let mut shifts: Vec<f64> = (0..SHIFTED).into_par_iter().map(one).collect();
+    shifts.sort_by(f64::total_cmp);
+    shifts[((POWER * SHIFTED as f64) as usize).min(shifts.len() - 1)]
+}
+
+/// The share of a normal number below a value.
+fn below(z: f64) -> f64 {
+    let tail = 0.5 * normal_p(z);
+    if z < 0.0 { tail } else { 1.0 - tail }
+}
+
+fn claims(whole: &Tests, by_group: &KolmogorovSmirnov, parts: &[Tests]) -> Vec<Claim> {
     let mut claims = vec![
         Claim::fits(
             "sets",
             "one case a map set: what the sum of the terms leaves over follows Student's t, p of Kolmogorov and Smirnov",
             whole.fit.p,
+        ),
+        Claim::fits(
+            "groups",
+            "one case a group with all of its maps: what is left over follows Student's t, p of Kolmogorov and Smirnov",
+            by_group.p,
         ),
         Claim::fits(
             "largest",
@@ -104,13 +168,19 @@ fn claims(whole: &Tests, parts: &[Tests]) -> Vec<Claim> {
 fn summary(
     entries: &[&Entry],
     groups: usize,
-    sets: usize,
     whole: &Tests,
+    by_group: &KolmogorovSmirnov,
     parts: &[Tests],
     null: &Null,
+    shift: f64,
 ) -> Vec<String> {
-    let is_good = whole.fit.p > FIT_LEVEL && whole.largest.p > FIT_LEVEL;
-    let seen = parts.iter().filter(|p| p.p() <= FIT_LEVEL).count();
+    let is_good = [whole.fit.p, by_group.p, whole.largest.p].into_iter().all(|p| p > FIT_LEVEL);
+    let sets = whole.sets;
+    let seen = |by: &str| {
+        let names: Vec<&str> =
+            parts.iter().filter(|p| p.seen_by() == by).filter_map(|p| p.without).map(Term::name).collect();
+        if names.is_empty() { "none".to_string() } else { names.join(", ") }
+    };
     vec![
         format!(
             "{}: over {} cases, the largest distance between measured and predicted error is {} standard errors, \
@@ -125,11 +195,26 @@ fn summary(
             null.bound(FIT_LEVEL)
         ),
         format!(
-            "The maps of {groups} groups make {sets} independent sets of up to 32 maps. One case was drawn for each, \
-             and what its prediction leaves over compared with Student's t: p = {} (Kolmogorov and Smirnov). Of the {} \
-             terms that the predictions have, {seen} make one of the two tests fail when they are taken away.",
+            "The maps of {groups} groups, which share nothing, are cut into {sets} independent sets of at most {MOST}. \
+             One case was drawn for each set, and what its prediction leaves over compared with Student's t: p = {} \
+             (Kolmogorov and Smirnov). One case a group, with all of its maps: p = {}.",
             number(whole.fit.p),
-            parts.len()
+            number(by_group.p)
+        ),
+        format!(
+            "Each term was taken away in turn, and asked of the cases that carry it. Seen by both tests: {}; by the \
+             map sets alone: {}; by the largest distance alone: {}; by neither: {}.",
+            seen("both"),
+            seen("map sets"),
+            seen("largest"),
+            seen("neither")
+        ),
+        format!(
+            "The smallest fault that is seen with a probability of {} %: by the map sets, a bias of {shift:.2} standard \
+             errors of one set in all cases alike; by the largest distance, a bias of {:.1} standard errors, over all of \
+             its maps, in a single case.",
+            100.0 * POWER,
+            null.bound(FIT_LEVEL) + deviation(POWER)
         ),
     ]
 }
@@ -139,29 +224,42 @@ fn sizes(largest: &Largest) -> String {
     if z.is_finite() { format!("{z:.1}") } else { "more than 37".to_string() }
 }
 
-fn table(whole: &Tests, parts: &[Tests], null: &Null) -> Table {
+fn table(groups: usize, whole: &Tests, parts: &[Tests], null: &Null) -> Table {
     let row = |tests: &Tests| {
         vec![
             tests.without.map_or("none", Term::name).to_string(),
             tests.cases.to_string(),
+            tests.sets.to_string(),
             p_text(tests.fit.p),
             sizes(&tests.largest),
             p_text(tests.largest.p),
+            tests.without.map_or("", |_| tests.seen_by()).to_string(),
             tests.largest.case.clone(),
         ]
     };
     Table {
         caption: format!(
-            "The two tests with all terms, and with one term after the other taken away. Distances are given as \
-             normal deviations of the same probability; the largest exceeds {:.2} by chance once in a thousand studies \
+            "The two tests with all terms, and with one term after the other taken away. The maps of {groups} \
+             groups are cut into {} independent sets of at most {MOST}, and one case is drawn for each set: with a term \
+             taken away, among the cases that carry it. Distances are given as normal deviations of the same probability; the largest exceeds {:.2} by chance once in a thousand studies \
              (and {:.2} once in twenty), by resampling whole maps {RESAMPLES} times. The case named is the one \
              farthest from its prediction.",
+            whole.sets,
             null.bound(FIT_LEVEL),
             null.bound(0.05)
         ),
-        columns: ["taken away", "cases with it", "p, one case a set", "largest |z|", "its p", "where"]
-            .map(String::from)
-            .to_vec(),
+        columns: [
+            "taken away",
+            "cases with it",
+            "sets with it",
+            "p, one case a set",
+            "largest |z|",
+            "its p",
+            "seen by",
+            "where",
+        ]
+        .map(String::from)
+        .to_vec(),
         rows: std::iter::once(whole).chain(parts).map(row).collect(),
     }
 }
@@ -170,11 +268,16 @@ fn p_text(p: f64) -> String {
     if p < 1e-12 { "below 10⁻¹²".to_string() } else { number(format!("{p:.1e}").parse().unwrap_or(p)) }
 }
 
-fn notes(entries: &[&Entry], dropped: usize) -> Vec<String> {
+fn notes(entries: &[&Entry], dropped: usize, sections: &[SectionReport]) -> Vec<String> {
     let loose = entries.iter().filter(|e| {
         let m: Moments = e.maps.iter().collect();
         e.error > 0.1 * m.std_error()
     });
+    let by_rule: Vec<String> = sections
+        .iter()
+        .filter(|s| s.section.left_out > 0)
+        .map(|s| format!("{} of {}", s.section.left_out, s.experiment.name))
+        .collect();
     vec![
         format!(
             "The bound on the numerical error of a prediction is added to the standard error in quadrature. It is above a \
@@ -183,12 +286,18 @@ fn notes(entries: &[&Entry], dropped: usize) -> Vec<String> {
             entries.len()
         ),
         format!(
-            "{dropped} further cases are left out, since a few of their maps carry the variance or there are fewer than \
+            "Rules of the experiments' own, which look at predictions alone, keep cases out: {}. They are those of which \
+             too little is predicted for a test, of too few photons for a mean to be nearly normal, or that repeat \
+             others' numbers; each experiment says which.",
+            if by_rule.is_empty() { "none".to_string() } else { by_rule.join(", ") }
+        ),
+        format!(
+            "{dropped} further cases are left out here, since a few of their maps carry the variance or there are fewer than \
              16 maps: their means have no trustworthy error."
         ),
         "The largest |z| is compared with what it is when every map is taken from the mean of its case and whole maps \
          are drawn with replacement, all cases of a group together, each with its standard error from the maps drawn. \
-         Both tests refuse right predictions once in a thousand studies each."
+         Each test refuses right predictions once in a thousand studies."
             .to_string(),
     ]
 }
@@ -218,8 +327,15 @@ mod tests {
         }
     }
 
+    /// 1,004 cases in 300 sets.
+    fn shape() -> Vec<(usize, usize)> {
+        let mut shape = vec![(64, 10); 100];
+        shape.push((3200, 4));
+        shape
+    }
+
     fn verdicts(bias: f64) -> Vec<(String, Verdict)> {
-        let entries = made_up(4, &[(2048, 10), (640, 5)], bias);
+        let entries = made_up(4, &shape(), bias);
         let section = conclude(&Settings::new("unused"), &[report(entries)]).unwrap();
         assert!(matches!(section.claims[0].kind, Kind::Fits) && section.figures.len() == 1);
         judge(section.claims).into_iter().map(|j| (j.claim.id, j.verdict)).collect()
@@ -228,10 +344,18 @@ mod tests {
     /// Nothing left over is upheld, with each term that is there needed; 1 % left over is rejected.
     #[test]
     fn the_verdicts_of_made_up_studies() {
-        let upheld = ["sets", "largest", "without-blur", "without-edge"];
+        let upheld = ["sets", "groups", "largest", "without-blur", "without-edge"];
         assert_eq!(verdicts(0.0), upheld.map(|id| (id.to_string(), Verdict::Upheld)));
         assert_eq!(verdicts(0.01)[0].1, Verdict::Rejected);
-        assert_eq!(verdicts(0.01)[1].1, Verdict::Rejected);
+        assert_eq!(verdicts(0.01)[2].1, Verdict::Rejected);
+    }
+
+    /// Kolmogorov's distance at 1e-3 is 1.95 / sqrt(n); a shift moves the middle by 0.4 of itself, and 2.3 deviations of
+    /// the share there, 0.5 / sqrt(n) each, come on top: 3.1 / sqrt(n) / 0.4, a little less since the largest counts.
+    #[test]
+    fn the_smallest_shift_that_is_seen() {
+        let shift = smallest_shift(240, 1);
+        assert!((0.35..0.52).contains(&shift), "{shift}");
     }
 
     #[test]
@@ -244,8 +368,10 @@ mod tests {
         let settings = Settings::new("unused");
         let some = Settings { only: vec!["a".to_string()], ..settings.clone() };
         assert!(line(&some, made_up(1, &[(2048, 2)], 0.0)).contains("only some"));
-        assert!(line(&settings, made_up(1, &[(64, 2)], 0.0)).contains("2 independent sets"));
-        assert!(line(&settings, Vec::new()).contains("0 independent sets"));
+        assert!(
+            line(&settings, made_up(1, &[(64, 2)], 0.0)).contains("2 independent sets of maps are too few")
+        );
+        assert!(line(&settings, Vec::new()).contains("0 cases in 0 independent sets"));
     }
 
     #[test]

@@ -1,11 +1,12 @@
 //! Measured against predicted error, and what is left.
 
+use super::sets::MOST;
 use crate::harness::{Entry, FigureFiles, Term, bar};
 use turbid::stats::Moments;
 use turbid_figure::{Along, Axis, Color, Figure, Histogram, Legend, Line, Panel, Points, Rule, Scale, Width};
 
 /// Every entry on the line y = x, in the colour of its largest term; below, the drawn distances.
-pub fn sum(entries: &[&Entry], z: &[f64]) -> anyhow::Result<FigureFiles> {
+pub fn sum(entries: &[&Entry], groups: usize, z: &[f64]) -> anyhow::Result<FigureFiles> {
     let axis = |label: &str| Axis::new(label, "%", Scale::SymLog { threshold: 1.0 });
     let mut above = Panel::new(axis("predicted error"), axis("measured error"))
         .with(Rule::new(Along::Diagonal).with_label("measured = predicted"));
@@ -40,7 +41,7 @@ pub fn sum(entries: &[&Entry], z: &[f64]) -> anyhow::Result<FigureFiles> {
          edge, of the value inside), with 95 % intervals over maps, coloured by the largest of the predicted terms; \
          linear within ±1 %. All lie on the line: the sum of the terms is what was measured, wrong estimators \
          included, whose fault is one of the terms. Below: what the prediction leaves over in one case of each of {} \
-         independent sets of maps, by Student's t in normal deviations, beside the density that it follows if nothing \
+         independent sets of at most {MOST} maps, into which the maps of {groups} groups are cut, by Student's t in normal deviations, beside the density that it follows if nothing \
          was overlooked.",
         entries.len(),
         z.len()

@@ -6,8 +6,8 @@ use std::ops::Range;
 use turbid::rng::{Purpose, Stream};
 use turbid::stats::{KolmogorovSmirnov, Moments, kolmogorov_smirnov_test, student_p};
 
-/// Most maps of a set: few enough that a quick study has 200 sets, many enough that means are nearly normal.
-const MOST: usize = 32;
+/// Most maps of a set: few enough that a quick study has 200 sets and more, many enough that means are nearly normal.
+pub const MOST: usize = 32;
 /// Fewest maps of a group that is asked at all.
 const FEWEST: usize = 16;
 
@@ -59,6 +59,11 @@ pub fn predicted(entry: &Entry, without: Option<Term>) -> f64 {
     Term::ALL.iter().zip(entry.terms).filter(|(term, _)| Some(**term) != without).map(|(_, x)| x).sum()
 }
 
+/// Whether a term is part of an entry's prediction; every entry carries none.
+pub fn carries(entry: &Entry, term: Option<Term>) -> bool {
+    term.is_none_or(|term| entry.terms[term as usize] != 0.0)
+}
+
 /// What is left of a mean over maps, in its standard errors. The bound on the prediction's numerical error is taken as
 /// an independent error of that size: where it is small, as it should be, that changes nothing; where it is not, the
 /// distance is too small, never too large.
@@ -75,18 +80,35 @@ pub struct Drawn<'a> {
 }
 
 impl<'a> Drawn<'a> {
-    /// Draws one entry for every map set. The draw depends on seed and group alone.
-    pub fn all(groups: &[Group<'a>], seed: u64) -> Vec<Drawn<'a>> {
+    /// Draws one entry for every map set, among those that carry a term if one is named; groups without such an entry
+    /// give none. The draw depends on seed, group and term alone.
+    pub fn all(groups: &[Group<'a>], seed: u64, carrying: Option<Term>) -> Vec<Drawn<'a>> {
         let mut drawn = Vec::new();
         for group in groups {
-            let name = Digest::of(format!("budget/{}", group.name).as_bytes()).word();
-            for (set, maps) in map_sets(group.maps).into_iter().enumerate() {
-                let mut stream = Stream::new(seed, Purpose::Resampling, name, set as u64);
-                let entry = group.entries[stream.index(group.entries.len())];
-                drawn.push(Drawn { entry, moments: entry.maps[maps].iter().collect() });
+            let entries: Vec<&'a Entry> =
+                group.entries.iter().copied().filter(|e| carries(e, carrying)).collect();
+            if !entries.is_empty() {
+                let kind = carrying.map_or(String::new(), |term| format!("/{}", term.name()));
+                let name = Digest::of(format!("budget{kind}/{}", group.name).as_bytes()).word();
+                for (set, maps) in map_sets(group.maps).into_iter().enumerate() {
+                    let mut stream = Stream::new(seed, Purpose::Resampling, name, set as u64);
+                    let entry = entries[stream.index(entries.len())];
+                    drawn.push(Drawn { entry, moments: entry.maps[maps].iter().collect() });
+                }
             }
         }
         drawn
+    }
+
+    /// Draws one entry for every group, with all of its maps.
+    pub fn whole(groups: &[Group<'a>], seed: u64) -> Vec<Drawn<'a>> {
+        let one = |group: &Group<'a>| {
+            let name = Digest::of(format!("budget/whole/{}", group.name).as_bytes()).word();
+            let mut stream = Stream::new(seed, Purpose::Resampling, name, 0);
+            let entry = group.entries[stream.index(group.entries.len())];
+            Drawn { entry, moments: entry.maps.iter().collect() }
+        };
+        groups.iter().map(one).collect()
     }
 
     /// The value of Student's distribution function at what is left over: uniform if nothing is.
@@ -164,7 +186,7 @@ pub mod tests {
     fn right_predictions_pass_at_the_nominal_rate() {
         let alarms = (0..400).filter(|&seed| {
             let entries = made_up(seed, &[(192, 5), (512, 8), (64, 3)], 0.0);
-            fit(&Drawn::all(&groups(entries.iter()).unwrap().0, seed), None).p < 0.05
+            fit(&Drawn::all(&groups(entries.iter()).unwrap().0, seed, None), None).p < 0.05
         });
         let interval = turbid::stats::wilson_interval(alarms.count() as u64, 400, 1.0 - turbid::stats::ALPHA);
         assert!(interval.contains(0.05), "{interval:?}");
@@ -175,7 +197,7 @@ pub mod tests {
     fn one_per_cent_too_much_is_seen() {
         for seed in 0..20 {
             let entries = made_up(seed, &[(2560, 8), (5120, 3)], 0.01);
-            let drawn = Drawn::all(&groups(entries.iter()).unwrap().0, seed);
+            let drawn = Drawn::all(&groups(entries.iter()).unwrap().0, seed, None);
             assert!(drawn.len() == 240 && fit(&drawn, None).p < 1e-6);
         }
     }
@@ -184,10 +206,23 @@ pub mod tests {
     fn a_missing_term_is_seen_and_the_draw_repeats() {
         let entries = made_up(3, &[(640, 4)], 0.0);
         let groups = groups(entries.iter()).unwrap().0;
-        let drawn = Drawn::all(&groups, 1);
+        let drawn = Drawn::all(&groups, 1, None);
         assert!(fit(&drawn, None).p > 1e-3);
         assert!(fit(&drawn, Some(Term::Blur)).p < 1e-6 && fit(&drawn, Some(Term::Edge)).p < 1e-3);
-        assert_eq!(fit(&drawn, Some(Term::Step)), fit(&Drawn::all(&groups, 1), None));
-        assert_ne!(fit(&drawn, None), fit(&Drawn::all(&groups, 2), None));
+        assert_eq!(fit(&drawn, Some(Term::Step)), fit(&Drawn::all(&groups, 1, None), None));
+        assert_ne!(fit(&drawn, None), fit(&Drawn::all(&groups, 2, None), None));
+    }
+
+    /// A term's own draw has nothing but entries with it, and so sees it at once.
+    #[test]
+    fn a_term_is_asked_of_its_own_entries() {
+        let entries = made_up(3, &[(640, 4), (320, 1)], 0.0);
+        let groups = groups(entries.iter()).unwrap().0;
+        let edge = Drawn::all(&groups, 1, Some(Term::Edge));
+        assert!(edge.len() == 30 && edge.iter().all(|d| d.entry.terms[Term::Edge as usize] != 0.0));
+        assert!(fit(&edge, None).p > 1e-3 && fit(&edge, Some(Term::Edge)).p < 1e-12);
+        assert!(Drawn::all(&groups, 1, Some(Term::Step)).is_empty());
+        let whole = Drawn::whole(&groups, 1);
+        assert!(whole.len() == 2 && whole[0].moments.n() == 640);
     }
 }

@@ -147,4 +147,6 @@ pub struct Section {
     pub rows: Vec<Row>,
     /// The cases whose mean error is predicted term by term, for the budget of the whole study.
     pub budget: Vec<Entry>,
+    /// How many predicted cases a rule of the experiment's own keeps out of `budget`.
+    pub left_out: usize,
 }

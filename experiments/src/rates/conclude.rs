@@ -83,6 +83,7 @@ pub fn conclude(settings: &Settings, _: &[Prediction], cells: &Cells) -> anyhow:
         notes: notes(),
         rows,
         budget: points.iter().map(entry).collect(),
+        left_out: 0,
     })
 }
 

@@ -16,6 +16,7 @@ pub fn conclude(settings: &Settings, predictions: &[Prediction], cells: &Cells) 
     let data = Data::read(settings, &known, cells)?;
     let mut section = Section { rows: rows(&data, &known)?, ..Section::default() };
     section.budget = data.measured.iter().flat_map(entries).collect();
+    section.left_out = data.measured.iter().map(|m| m.expected.len()).sum::<usize>() - section.budget.len();
     section.claims = claims::all(&data);
     section.figures = figures::all(settings, &data)?;
     section.tables = tables::all(&data, &known)?;
