@@ -1,6 +1,6 @@
 //! What all maps together say: rows, claims, tables, the error budget of the study.
 
-use super::cases::{CELL, PROBES, SIDE, SLABS, Setting, Size, Treatment};
+use super::cases::{CELL, PROBES, SLABS, Setting, Size, Treatment};
 use super::choose::{BreakEven, best_over_best, break_even, most_efficient, regret};
 use super::data::{Data, Measured, mean};
 use super::measure::MAPS;
@@ -129,12 +129,12 @@ fn entries(measured: &Measured) -> Vec<Entry> {
             }
         };
         let is_cut = radius > depth.min(slab.tau - depth);
-        if treatment == Treatment::Clipped && !is_cut || held * ((SIDE * SIDE) as f64) < FEWEST_COUNTS {
+        if treatment == Treatment::Clipped && !is_cut || held * (setting.lateral() as f64) < FEWEST_COUNTS {
             continue;
         }
         if let Size::Nearest(_) = setting.size {
             let unknown = expected.clusters.abs() * if is_cut { UNKNOWN.1 } else { UNKNOWN.0 };
-            if unknown > HIDDEN * expected_error(expected.noise, radius) {
+            if unknown > HIDDEN * expected_error(setting, expected.noise, radius) {
                 continue;
             }
         }
@@ -149,8 +149,8 @@ fn entries(measured: &Measured) -> Vec<Entry> {
 
 /// The standard error expected of a layer's mean: its balls overlap. Of two balls of radius r at a distance d, the
 /// part in common integrates over all lateral distances to 4/5 pi r^2.
-fn expected_error(noise: f64, radius: f64) -> f64 {
-    let probes = (SIDE * SIDE) as f64;
+fn expected_error(setting: &Setting, noise: f64, radius: f64) -> f64 {
+    let probes = setting.lateral() as f64;
     let shared = 0.8 * std::f64::consts::PI * radius * radius / (CELL * CELL);
     noise * ((1.0 / probes + shared).min(1.0) / MAPS as f64).sqrt()
 }

@@ -1,6 +1,6 @@
 //! Everything that was measured, case by case.
 
-use super::cases::{LAYERS, PROBES, SLABS, Setting, Slab, Treatment, paths_case, paths_group};
+use super::cases::{LAYERS, SLABS, Setting, Slab, Treatment, paths_case, paths_group};
 use super::measure::layer_quantity;
 use super::predict::Known;
 use super::split::MapError;
@@ -116,10 +116,10 @@ impl Data {
                 let size = size(slab, photons, cells)?;
                 let records = |(rays, stored): (&f64, &f64)| rays + stored;
                 let prepare: Vec<f64> = size.rays.iter().zip(&size.stored).map(records).collect();
-                for setting in Setting::all(settings, slab, photons) {
+                for setting in Setting::all(slab, photons) {
                     let phase = format!("gathering {}", setting.size.name());
-                    let seconds =
-                        mean(&cells.seconds(&Setting::group(slab, photons), &phase)) / PROBES as f64;
+                    let asked = (setting.lateral() * LAYERS) as f64;
+                    let seconds = mean(&cells.seconds(&Setting::group(slab, photons), &phase)) / asked;
                     for treatment in Treatment::ALL {
                         data.measured.push(Measured {
                             setting,
