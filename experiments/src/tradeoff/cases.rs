@@ -39,6 +39,10 @@ pub struct Slab {
     pub g: f64,
     /// A guess of the least fluence at a probe: what caps of nearest gathers are made from.
     least: f64,
+    /// Whether a map of enough queries is to cost fewer operations than paths. An error e takes 1/e² gathered
+    /// photons or more, and V/e² samples of R rays: where the relative variance V of a sample times its rays R is no
+    /// more than 1, as where most light is uncollided and known in closed form, the map never does.
+    pub pays: bool,
     /// Emitted photons of each size of map, by preset.
     quick: &'static [u64],
     full: &'static [u64],
@@ -54,6 +58,7 @@ pub const SLABS: [Slab; 6] = [
         albedo: 0.9,
         g: 0.0,
         least: 0.7,
+        pays: false,
         quick: &[8_192, 65_536],
         full: &[8_192, 65_536, 524_288],
     },
@@ -64,6 +69,7 @@ pub const SLABS: [Slab; 6] = [
         albedo: 0.9,
         g: 0.75,
         least: 0.9,
+        pays: true,
         quick: &[8_192, 65_536],
         full: &[8_192, 65_536, 524_288],
     },
@@ -74,6 +80,7 @@ pub const SLABS: [Slab; 6] = [
         albedo: 0.9,
         g: 0.0,
         least: 0.45,
+        pays: true,
         quick: &[4_096, 32_768],
         full: &[4_096, 32_768, 262_144],
     },
@@ -84,6 +91,7 @@ pub const SLABS: [Slab; 6] = [
         albedo: 0.9,
         g: 0.75,
         least: 0.8,
+        pays: true,
         quick: &[4_096, 32_768],
         full: &[4_096, 32_768, 262_144],
     },
@@ -94,6 +102,7 @@ pub const SLABS: [Slab; 6] = [
         albedo: 0.99,
         g: 0.0,
         least: 0.2,
+        pays: true,
         quick: &[4_096, 16_384],
         full: &[4_096, 16_384, 131_072],
     },
@@ -104,6 +113,7 @@ pub const SLABS: [Slab; 6] = [
         albedo: 0.99,
         g: 0.75,
         least: 0.6,
+        pays: true,
         quick: &[4_096, 16_384],
         full: &[4_096, 16_384, 131_072],
     },
@@ -199,7 +209,7 @@ pub struct Setting {
 }
 
 /// Radii of fixed gathers \[mfp\].
-const RADII: [f64; 6] = [0.05, 0.1, 0.2, 0.4, 0.8, 1.2];
+const RADII: [f64; 5] = [0.05, 0.1, 0.2, 0.4, 0.8];
 /// Sizes of nearest gathers.
 const NEIGHBORS: [usize; 8] = [10, 20, 50, 100, 200, 500, 1000, 2000];
 /// Photons that a fixed ball may hold where the fluence is 1: fewer are noise, more are far beyond the best.

@@ -1,7 +1,7 @@
 //! What all maps together say: rows, claims, tables, the error budget of the study.
 
 use super::cases::{CELL, PROBES, SLABS, Setting, Size, Treatment};
-use super::choose::{BreakEven, best_over_best, break_even, most_efficient, regret};
+use super::choose::{BreakEven, Currency, best_over_best, break_even, most_efficient, regret};
 use super::data::{Data, Measured, mean};
 use super::measure::MAPS;
 use super::predict::{BIAS, Known, NOISE, RMS};
@@ -71,7 +71,7 @@ fn rows(data: &Data, known: &Known) -> anyhow::Result<Vec<Row>> {
         for treatment in Treatment::ALL {
             let case = format!("{} {}", slab.name, treatment.name());
             let Some(chosen) = most_efficient(&data.of(slab, treatment, None)) else { continue };
-            let BreakEven { ratio, queries } = break_even(chosen.case, paths);
+            let BreakEven { ratio, queries, .. } = break_even(chosen.case, paths, Currency::Operations);
             rows.push(Row::estimated(&case, "rays of a path query per photon gathered", Unit::ONE, &ratio)?);
             if let Some(queries) = queries {
                 rows.push(Row::estimated(&case, "break-even queries", Unit::ONE, &queries)?);
@@ -101,7 +101,7 @@ pub fn has_spread(estimate: &Estimate) -> bool {
 
 /// Counts that a layer's probes must expect in all: fewer make its mean over a map far from normal.
 const FEWEST_COUNTS: f64 = 50.0;
-/// What is not known of the clusters' part, as a fraction of it: in whole balls what the first orders leave out, and
+/// What is not known of the clusters' part, as a fraction of it: in whole balls what one number for all counts leaves out, and
 /// at a face, where neighbours are taken to be missing like the ball's own part, half.
 const UNKNOWN: (f64, f64) = (0.2, 0.5);
 /// How much of an entry's standard error may be unknown.

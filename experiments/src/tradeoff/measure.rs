@@ -103,13 +103,17 @@ fn gather(output: &mut CellOutput, map: &PhotonMap, setting: &Setting) -> anyhow
     let (slab, how) = (setting.slab, setting.gather()?);
     let (mut found, mut underfull) = (0u64, 0u64);
     let phase = format!("gathering {}", setting.size.name());
+    let estimates: Vec<Vec<_>> = output.time(&phase, |_| {
+        let ask = |probe| fluence(map, probe, Spectrum::ONE, Kernel::Uniform, how);
+        slab.depths().into_iter().map(|depth| probes(setting.side(), depth).map(ask).collect()).collect()
+    });
+    let phase = format!("clipping {}", setting.size.name());
     let layers = output.time(&phase, |_| -> anyhow::Result<Vec<Layer>> {
         let mut layers = Vec::with_capacity(LAYERS);
-        for depth in slab.depths() {
+        for (depth, estimates) in slab.depths().into_iter().zip(&estimates) {
             let room = depth.min(slab.tau - depth);
             let mut layer = Layer::default();
-            for probe in probes(setting.side(), depth) {
-                let estimate = fluence(map, probe, Spectrum::ONE, Kernel::Uniform, how);
+            for estimate in estimates {
                 found += estimate.found as u64;
                 underfull += u64::from(estimate.underfull);
                 let value = estimate.value[0];
