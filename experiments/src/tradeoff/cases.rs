@@ -21,7 +21,7 @@ pub const CELL: f64 = 4.0;
 pub const SIDE: usize = 16;
 /// Layers of probes.
 pub const LAYERS: usize = 16;
-/// Probes in all: the queries of one map.
+/// Probes in all: the queries of one map, save that wide gathers are asked of fewer ([`Setting::side`]).
 pub const PROBES: usize = SIDE * SIDE * LAYERS;
 
 /// One slab under a normal beam of irradiance 1; lengths are mean free paths.
@@ -39,6 +39,10 @@ pub struct Slab {
     pub g: f64,
     /// A guess of the least fluence at a probe: what caps of nearest gathers are made from.
     least: f64,
+    /// Whether a map of enough queries is to cost fewer operations than paths. An error e takes 1/e² gathered
+    /// photons or more, and V/e² samples of R rays: where the relative variance V of a sample times its rays R is no
+    /// more than 1, as where most light is uncollided and known in closed form, the map never does.
+    pub pays: bool,
     /// Emitted photons of each size of map, by preset.
     quick: &'static [u64],
     full: &'static [u64],
@@ -54,6 +58,7 @@ pub const SLABS: [Slab; 6] = [
         albedo: 0.9,
         g: 0.0,
         least: 0.7,
+        pays: false,
         quick: &[8_192, 65_536],
         full: &[8_192, 65_536, 524_288],
     },
@@ -64,6 +69,7 @@ pub const SLABS: [Slab; 6] = [
         albedo: 0.9,
         g: 0.75,
         least: 0.9,
+        pays: true,
         quick: &[8_192, 65_536],
         full: &[8_192, 65_536, 524_288],
     },
@@ -74,6 +80,7 @@ pub const SLABS: [Slab; 6] = [
         albedo: 0.9,
         g: 0.0,
         least: 0.45,
+        pays: true,
         quick: &[4_096, 32_768],
         full: &[4_096, 32_768, 262_144],
     },
@@ -84,6 +91,7 @@ pub const SLABS: [Slab; 6] = [
         albedo: 0.9,
         g: 0.75,
         least: 0.8,
+        pays: true,
         quick: &[4_096, 32_768],
         full: &[4_096, 32_768, 262_144],
     },
@@ -94,6 +102,7 @@ pub const SLABS: [Slab; 6] = [
         albedo: 0.99,
         g: 0.0,
         least: 0.2,
+        pays: true,
         quick: &[4_096, 16_384],
         full: &[4_096, 16_384, 131_072],
     },
@@ -104,6 +113,7 @@ pub const SLABS: [Slab; 6] = [
         albedo: 0.99,
         g: 0.75,
         least: 0.6,
+        pays: true,
         quick: &[4_096, 16_384],
         full: &[4_096, 16_384, 131_072],
     },
@@ -201,31 +211,31 @@ pub struct Setting {
 /// Radii of fixed gathers \[mfp\].
 const RADII: [f64; 5] = [0.05, 0.1, 0.2, 0.4, 0.8];
 /// Sizes of nearest gathers.
-const NEIGHBORS: [usize; 7] = [10, 20, 50, 100, 200, 500, 2000];
-/// Photons that a fixed ball may hold where the fluence is 1: fewer are noise, more take too long, by preset.
-const FILLING: (f64, f64, f64) = (2.0, 1200.0, 5000.0);
+const NEIGHBORS: [usize; 8] = [10, 20, 50, 100, 200, 500, 1000, 2000];
+/// Photons that a fixed ball may hold where the fluence is 1: fewer are noise, more are far beyond the best.
+const FILLING: (f64, f64) = (2.0, 9000.0);
+/// Gathers of more photons are asked of every fourth probe along each side: their balls overlap all the same.
+const WIDE: f64 = 400.0;
 /// Fewest emitted photons for each one gathered: below, the ball is no longer local.
-const MIN_SHARE: u64 = 40;
+const MIN_SHARE: u64 = 32;
 /// Room of a nearest gather: the cap would hold so many times k photons at the least fluence, and half of it, as at a
 /// face, three times: an under-full gather is one in 10^5 at k = 10.
 const ROOM: f64 = 6.0;
 
 impl Setting {
     /// Everything that maps of one slab and number of photons are asked.
-    pub fn all(settings: &Settings, slab: &'static Slab, photons: u64) -> Vec<Setting> {
-        let density = Setting { slab, photons, size: Size::Nearest(2) }.density();
-        let held = |r: f64| density * 4.0 / 3.0 * PI * r * r * r;
-        let most = settings.pick(FILLING.1, FILLING.2);
-        let radii = RADII.into_iter().filter(|&r| (FILLING.0..=most).contains(&held(r))).map(Size::Radius);
+    pub fn all(slab: &'static Slab, photons: u64) -> Vec<Setting> {
+        let held = |r: &f64| Setting { slab, photons, size: Size::Radius(*r) }.held();
+        let radii =
+            RADII.into_iter().filter(|r| (FILLING.0..=FILLING.1).contains(&held(r))).map(Size::Radius);
         let nearest = NEIGHBORS.into_iter().filter(|&k| k as u64 * MIN_SHARE <= photons).map(Size::Nearest);
         radii.chain(nearest).map(|size| Setting { slab, photons, size }).collect()
     }
 
     /// Every setting of a study.
     pub fn every(settings: &Settings) -> Vec<Setting> {
-        let of_slab = |slab: &'static Slab| {
-            slab.photons(settings).into_iter().flat_map(move |n| Setting::all(settings, slab, n))
-        };
+        let of_slab =
+            |slab: &'static Slab| slab.photons(settings).into_iter().flat_map(move |n| Setting::all(slab, n));
         SLABS.iter().flat_map(of_slab).collect()
     }
 
@@ -233,6 +243,24 @@ impl Setting {
     /// fluence is 1.
     pub fn density(&self) -> f64 {
         self.photons as f64 / (CELL * CELL)
+    }
+
+    /// Photons in a whole ball where the fluence is 1.
+    fn held(&self) -> f64 {
+        match self.size {
+            Size::Radius(r) => self.density() * 4.0 / 3.0 * PI * r * r * r,
+            Size::Nearest(k) => k as f64,
+        }
+    }
+
+    /// Probes along one side of the cell that are asked.
+    pub fn side(&self) -> usize {
+        if self.held() > WIDE { SIDE / 4 } else { SIDE }
+    }
+
+    /// Probes that are asked in one layer.
+    pub fn lateral(&self) -> usize {
+        self.side() * self.side()
     }
 
     /// The group of cells that answer it, and the case of whole maps.
@@ -270,10 +298,10 @@ impl Setting {
     }
 }
 
-/// The probes of one layer.
-pub fn probes(depth: f64) -> impl Iterator<Item = DVec3> {
-    let place = |i: usize| (i as f64 + 0.5) * CELL / SIDE as f64;
-    (0..SIDE * SIDE).map(move |i| DVec3::new(place(i % SIDE), place(i / SIDE), depth))
+/// The probes of one layer, so many along each side.
+pub fn probes(side: usize, depth: f64) -> impl Iterator<Item = DVec3> {
+    let place = move |i: usize| (i as f64 + 0.5) * CELL / side as f64;
+    (0..side * side).map(move |i| DVec3::new(place(i % side), place(i / side), depth))
 }
 
 /// The group of a slab's path batches.

@@ -1,10 +1,9 @@
 //! Choosing settings on half of the maps, reporting them on the other half, and what the choice costs.
 
-use super::cases::PROBES;
+use super::cases::{PROBES, Size};
 use super::data::{Measured, Paths};
-use super::split::{Split, halves, rms};
+use super::split::{Split, halves, positive, rms};
 use crate::harness::Estimate;
-use turbid::stats::jackknife;
 
 /// A setting chosen on one half of its maps.
 #[derive(Clone, Copy)]
@@ -83,26 +82,43 @@ fn gain(above: impl Iterator<Item = f64>, below: impl Iterator<Item = f64>) -> E
         let (above, below) = pairs.iter().fold((0.0, 0.0), |sum, p| (sum.0 + p.0, sum.1 + p.1));
         (above / below).sqrt()
     };
-    Estimate::jackknife(&jackknife(&pairs, ratio))
+    positive(&pairs, ratio)
 }
 
-/// Operations that a query saves, and the number of queries that pay for a map, both with their errors.
+/// What costs are counted in.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Currency {
+    /// Rays, records and gathered photons, each as one.
+    Operations,
+    /// CPU seconds of this machine.
+    Seconds,
+}
+
+/// What a map costs against a path tracer of the same error.
 pub struct BreakEven {
-    /// Rays of the path tracer at the map's error, over the photons that the map gathers for a query.
+    /// A query by the path tracer, over one from the map.
     pub ratio: Estimate,
+    /// So many queries from the map, the map included, over as many by the path tracer: 4096 of them.
+    pub share: Estimate,
     /// Queries from which the map is the cheaper of the two; none where a query costs more from the map than by
     /// paths, so that nothing ever pays for it.
     pub queries: Option<Estimate>,
 }
 
-/// A setting against a path tracer of the same error, in operations. A map is prepared once and asked often; the path
-/// tracer pays for each query alike.
-pub fn break_even(case: &Measured, paths: &Paths) -> BreakEven {
+/// A setting against a path tracer of the same error. A map is prepared once and asked often; the path tracer pays for
+/// each query alike.
+pub fn break_even(case: &Measured, paths: &Paths, currency: Currency) -> BreakEven {
+    let (prepare, found, sample) = match currency {
+        Currency::Operations => (&case.prepare, &case.found, &paths.rays),
+        Currency::Seconds => (&case.prepare_seconds, &case.query_seconds, &paths.seconds),
+    };
     // Joining maps and batches of paths by number is a free choice: they share nothing.
-    let maps = case.maps.iter().zip(&case.prepare).zip(&case.found);
+    let maps = case.maps.iter().zip(prepare).zip(found);
     let joined: Vec<[f64; 5]> = maps
-        .zip(paths.variance.iter().zip(&paths.rays))
-        .map(|(((map, &prepare), &found), (&variance, &rays))| [map.square, prepare, found, variance, rays])
+        .zip(paths.variance.iter().zip(sample))
+        .map(|(((map, &prepare), &found), (&variance, &sample))| {
+            [map.square, prepare, found, variance, sample]
+        })
         .collect();
     let means = |maps: &[[f64; 5]]| {
         let mut sums = [0.0; 5];
@@ -111,21 +127,40 @@ pub fn break_even(case: &Measured, paths: &Paths) -> BreakEven {
                 *sum += value / maps.len() as f64;
             }
         }
-        let [square, prepare, found, variance, rays] = sums;
-        (rays * (variance / square).max(1.0), found, prepare)
+        let [square, prepare, found, variance, sample] = sums;
+        (sample * (variance / square).max(1.0), found, prepare)
     };
     let ratio = |maps: &[[f64; 5]]| {
-        let (rays, found, _) = means(maps);
-        rays / found
+        let (by_paths, found, _) = means(maps);
+        by_paths / found
+    };
+    let share = |maps: &[[f64; 5]]| {
+        let (by_paths, found, prepare) = means(maps);
+        (prepare / PROBES as f64 + found) / by_paths
     };
     let queries = |maps: &[[f64; 5]]| {
-        let (rays, found, prepare) = means(maps);
-        prepare / (rays - found)
+        let (by_paths, found, prepare) = means(maps);
+        prepare / (by_paths - found)
     };
-    let ratio = Estimate::jackknife(&jackknife(&joined, ratio));
+    let ratio = positive(&joined, ratio);
     // The number of queries has a pole where nothing is saved: it has an error only well away from there.
     let is_clear = ratio.value() - 1.0 > 5.0 * ratio.std_error();
-    BreakEven { ratio, queries: is_clear.then(|| Estimate::jackknife(&jackknife(&joined, queries))) }
+    BreakEven {
+        ratio,
+        share: positive(&joined, share),
+        queries: is_clear.then(|| positive(&joined, queries)),
+    }
+}
+
+/// Whether a case has the largest radius, or the largest k, of those tried with its maps: if it is the best, a still
+/// larger one may be better.
+pub fn is_last(case: &Measured, cases: &[&Measured]) -> bool {
+    let larger = |other: &&Measured| match (case.setting.size, other.setting.size) {
+        (Size::Radius(own), Size::Radius(other)) => other > own,
+        (Size::Nearest(own), Size::Nearest(other)) => other > own,
+        _ => false,
+    };
+    !cases.iter().filter(|m| m.setting.photons == case.setting.photons).any(larger)
 }
 
 /// The cases that no other beats in both cost and error, judged by the choosing half, the cheapest first.

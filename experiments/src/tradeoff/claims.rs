@@ -1,9 +1,8 @@
 //! The claims, by counts alone. The margin of measured over predicted error, 3 per cent, is what the theory of noise
-//! leaves out: clusters near faces, and behind a forward peak all but their first order. Margins of regret and of break-even are round numbers that
-//! somebody who chooses settings would act on.
+//! leaves out: clusters near faces. Margins of regret are round numbers that somebody who chooses settings would act on.
 
 use super::cases::{SLABS, Size, Slab, Treatment};
-use super::choose::{BreakEven, best_over_best, break_even, most_efficient, regret};
+use super::choose::{BreakEven, Currency, best_over_best, break_even, most_efficient, regret};
 use super::data::{Data, Measured};
 use super::split::{rms, rms_noise};
 use crate::harness::{Claim, Estimate, Unit};
@@ -80,7 +79,7 @@ fn regret_claims(data: &Data, slab: &Slab) -> Vec<Claim> {
     for (k, margin) in [(50, 1.5), (100, 1.2)] {
         let Some(case) = find(data, slab, Treatment::Clipped, Size::Nearest(k)) else { continue };
         let text = format!(
-            "{}, the largest maps, clipped: RMS error with k = {k} over that of the best setting, chosen on other maps",
+            "{}, the largest maps, clipped: RMS error with k = {k} over that of the best setting tried, chosen on other maps",
             slab.title
         );
         let id = format!("{}-regret-{k}", slab.name);
@@ -100,24 +99,26 @@ fn clipping_claim(data: &Data, slab: &Slab) -> Claim {
     Claim::at_most(&format!("{}-clipping", slab.name), &text, Unit::ONE, ratio, 0.75)
 }
 
-/// From how many queries on a map pays.
+/// Whether a map pays. Which of the two is claimed of a slab is fixed with the slab.
 fn break_even_claim(data: &Data, slab: &Slab) -> Option<Claim> {
     let chosen = most_efficient(&data.of(slab, Treatment::Clipped, None))?;
-    let BreakEven { ratio, queries } = break_even(chosen.case, data.paths(slab)?);
+    let BreakEven { ratio, share, .. } = break_even(chosen.case, data.paths(slab)?, Currency::Operations);
     let id = format!("{}-break-even", slab.name);
-    let Some(statistic) = queries else {
+    let title = slab.title;
+    let (statistic, text) = if slab.pays {
         let text = format!(
-            "{}, clipped: rays of a path query over photons gathered from the most efficient map of the same error, so \
-             that no number of queries pays for it",
-            slab.title
+            "{title}, clipped, in operations: 4096 queries from the most efficient map, the map included, over as \
+             many by paths of the same error"
         );
-        return Some(Claim::at_most(&id, &text, Unit::ONE, ratio, 1.0));
+        (share, text)
+    } else {
+        let text = format!(
+            "{title}, clipped, in operations, a photon gathered counted like a ray: rays of a path query over photons \
+             gathered from the most efficient map of the same error, so that no number of queries pays for it"
+        );
+        (ratio, text)
     };
-    let text = format!(
-        "{}, clipped: queries from which the most efficient setting takes fewer operations than paths of the same error",
-        slab.title
-    );
-    Some(Claim::at_most(&id, &text, Unit::ONE, statistic, 4096.0))
+    Some(Claim::at_most(&id, &text, Unit::ONE, statistic, 1.0))
 }
 
 /// The path tracer agrees with the exact slab.

@@ -1,7 +1,7 @@
 //! What all maps together say: rows, claims, tables, the error budget of the study.
 
-use super::cases::{CELL, PROBES, SIDE, SLABS, Setting, Size, Treatment};
-use super::choose::{BreakEven, best_over_best, break_even, most_efficient, regret};
+use super::cases::{CELL, PROBES, SLABS, Setting, Size, Treatment};
+use super::choose::{BreakEven, Currency, best_over_best, break_even, most_efficient, regret};
 use super::data::{Data, Measured, mean};
 use super::measure::MAPS;
 use super::predict::{BIAS, Known, NOISE, RMS};
@@ -72,7 +72,7 @@ fn rows(data: &Data, known: &Known) -> anyhow::Result<Vec<Row>> {
         for treatment in Treatment::ALL {
             let case = format!("{} {}", slab.name, treatment.name());
             let Some(chosen) = most_efficient(&data.of(slab, treatment, None)) else { continue };
-            let BreakEven { ratio, queries } = break_even(chosen.case, paths);
+            let BreakEven { ratio, queries, .. } = break_even(chosen.case, paths, Currency::Operations);
             rows.push(Row::estimated(&case, "rays of a path query per photon gathered", Unit::ONE, &ratio)?);
             if let Some(queries) = queries {
                 rows.push(Row::estimated(&case, "break-even queries", Unit::ONE, &queries)?);
@@ -102,7 +102,7 @@ pub fn has_spread(estimate: &Estimate) -> bool {
 
 /// Counts that a layer's probes must expect in all: fewer make its mean over a map far from normal.
 const FEWEST_COUNTS: f64 = 50.0;
-/// What is not known of the clusters' part, as a fraction of it: in whole balls what the first orders leave out, and
+/// What is not known of the clusters' part, as a fraction of it: in whole balls what one number for all counts leaves out, and
 /// at a face, where neighbours are taken to be missing like the ball's own part, half.
 const UNKNOWN: (f64, f64) = (0.2, 0.5);
 /// How much of an entry's standard error may be unknown.
@@ -130,12 +130,12 @@ fn entries(measured: &Measured) -> Vec<Entry> {
             }
         };
         let is_cut = radius > depth.min(slab.tau - depth);
-        if treatment == Treatment::Clipped && !is_cut || held * ((SIDE * SIDE) as f64) < FEWEST_COUNTS {
+        if treatment == Treatment::Clipped && !is_cut || held * (setting.lateral() as f64) < FEWEST_COUNTS {
             continue;
         }
         if let Size::Nearest(_) = setting.size {
             let unknown = expected.clusters.abs() * if is_cut { UNKNOWN.1 } else { UNKNOWN.0 };
-            if unknown > HIDDEN * expected_error(expected.noise, radius) {
+            if unknown > HIDDEN * expected_error(setting, expected.noise, radius) {
                 continue;
             }
         }
@@ -150,8 +150,8 @@ fn entries(measured: &Measured) -> Vec<Entry> {
 
 /// The standard error expected of a layer's mean: its balls overlap. Of two balls of radius r at a distance d, the
 /// part in common integrates over all lateral distances to 4/5 pi r^2.
-fn expected_error(noise: f64, radius: f64) -> f64 {
-    let probes = (SIDE * SIDE) as f64;
+fn expected_error(setting: &Setting, noise: f64, radius: f64) -> f64 {
+    let probes = setting.lateral() as f64;
     let shared = 0.8 * std::f64::consts::PI * radius * radius / (CELL * CELL);
     noise * ((1.0 / probes + shared).min(1.0) / MAPS as f64).sqrt()
 }

@@ -1,6 +1,6 @@
 //! Everything that was measured, case by case.
 
-use super::cases::{LAYERS, PROBES, SLABS, Setting, Slab, Treatment, paths_case, paths_group};
+use super::cases::{LAYERS, SLABS, Setting, Slab, Treatment, paths_case, paths_group};
 use super::measure::layer_quantity;
 use super::predict::Known;
 use super::split::MapError;
@@ -21,6 +21,10 @@ pub struct Measured {
     pub prepare: Vec<f64>,
     /// Records that each map gathers for a query.
     pub found: Vec<f64>,
+    /// CPU seconds of each map before its first query, on this machine.
+    pub prepare_seconds: Vec<f64>,
+    /// CPU seconds of a query of each map; those of a clipped one include the volume of the part inside.
+    pub query_seconds: Vec<f64>,
 }
 
 impl Measured {
@@ -50,19 +54,14 @@ pub struct Paths {
     pub variance: Vec<f64>,
     /// Rays of one sample by batch, averaged over layers.
     pub rays: Vec<f64>,
-    /// CPU seconds of one sample on this machine.
-    pub seconds: f64,
+    /// CPU seconds of one sample on this machine, by batch.
+    pub seconds: Vec<f64>,
 }
 
 impl Paths {
     /// Operations a query to reach a root mean square error: as many samples as its variance asks for, at least one.
     pub fn cost(&self, rms: f64) -> f64 {
         mean(&self.rays) * (mean(&self.variance) / (rms * rms)).max(1.0)
-    }
-
-    /// CPU seconds of the same on this machine.
-    pub fn cost_seconds(&self, rms: f64) -> f64 {
-        self.seconds * (mean(&self.variance) / (rms * rms)).max(1.0)
     }
 }
 
@@ -80,8 +79,8 @@ pub struct Size {
     pub stored: Vec<f64>,
     /// Memory of each map [bytes].
     pub bytes: Vec<f64>,
-    /// CPU seconds of shooting one map, and of building its tree, on this machine.
-    pub seconds: [f64; 2],
+    /// CPU seconds of shooting each map, and of building its tree, on this machine.
+    pub seconds: [Vec<f64>; 2],
 }
 
 /// All of it.
@@ -92,8 +91,6 @@ pub struct Data {
     pub paths: Vec<Paths>,
     /// By slab and number of photons.
     pub sizes: Vec<Size>,
-    /// CPU seconds of one query, in the order of `measured`.
-    pub query_seconds: Vec<f64>,
 }
 
 /// The mean of a list.
@@ -104,8 +101,7 @@ pub fn mean(values: &[f64]) -> f64 {
 impl Data {
     /// Reads the cells.
     pub fn read(settings: &Settings, known: &Known, cells: &Cells) -> anyhow::Result<Self> {
-        let mut data =
-            Data { measured: Vec::new(), paths: Vec::new(), sizes: Vec::new(), query_seconds: Vec::new() };
+        let mut data = Data { measured: Vec::new(), paths: Vec::new(), sizes: Vec::new() };
         for slab in &SLABS {
             let exact: Vec<f64> = slab
                 .depths()
@@ -115,11 +111,18 @@ impl Data {
             for photons in slab.photons(settings) {
                 let size = size(slab, photons, cells)?;
                 let records = |(rays, stored): (&f64, &f64)| rays + stored;
+                let [shooting, building] = &size.seconds;
+                let prepare_seconds: Vec<f64> = shooting.iter().zip(building).map(|(a, b)| a + b).collect();
                 let prepare: Vec<f64> = size.rays.iter().zip(&size.stored).map(records).collect();
-                for setting in Setting::all(settings, slab, photons) {
-                    let phase = format!("gathering {}", setting.size.name());
-                    let seconds =
-                        mean(&cells.seconds(&Setting::group(slab, photons), &phase)) / PROBES as f64;
+                for setting in Setting::all(slab, photons) {
+                    let asked = (setting.lateral() * LAYERS) as f64;
+                    let timed = |what: &str| {
+                        let phase = format!("{what} {}", setting.size.name());
+                        cells.seconds(&Setting::group(slab, photons), &phase)
+                    };
+                    let plain: Vec<f64> = timed("gathering").iter().map(|s| s / asked).collect();
+                    let clipped: Vec<f64> =
+                        plain.iter().zip(timed("clipping")).map(|(p, s)| p + s / asked).collect();
                     for treatment in Treatment::ALL {
                         data.measured.push(Measured {
                             setting,
@@ -128,8 +131,12 @@ impl Data {
                             maps: map_errors(&setting, treatment, &exact, cells)?,
                             prepare: prepare.clone(),
                             found: cells.values(&setting.name(), "found")?,
+                            prepare_seconds: prepare_seconds.clone(),
+                            query_seconds: match treatment {
+                                Treatment::Plain => plain.clone(),
+                                Treatment::Clipped => clipped.clone(),
+                            },
                         });
-                        data.query_seconds.push(seconds);
                     }
                 }
                 data.sizes.push(size);
@@ -158,14 +165,6 @@ impl Data {
     pub fn largest(&self, slab: &Slab) -> u64 {
         self.sizes.iter().filter(|s| s.slab == slab).map(|s| s.photons).max().unwrap_or(0)
     }
-
-    /// CPU seconds of a query of a case, and those before the first one, on this machine.
-    pub fn seconds(&self, of: &Measured) -> (f64, f64) {
-        let index = self.measured.iter().position(|m| std::ptr::eq(m, of)).unwrap_or(0);
-        let fits = |s: &&Size| s.slab == of.setting.slab && s.photons == of.setting.photons;
-        let prepare = self.sizes.iter().find(fits).map_or(f64::NAN, |s| s.seconds[0] + s.seconds[1]);
-        (self.query_seconds[index], prepare)
-    }
 }
 
 fn size(slab: &'static Slab, photons: u64, cells: &Cells) -> anyhow::Result<Size> {
@@ -181,7 +180,7 @@ fn size(slab: &'static Slab, photons: u64, cells: &Cells) -> anyhow::Result<Size
         collisions: cells.values(&group, "collisions")?,
         stored: cells.values(&group, "stored")?,
         bytes: cells.values(&group, "bytes")?,
-        seconds: [mean(&cells.seconds(&group, "shooting")), mean(&own)],
+        seconds: [cells.seconds(&group, "shooting"), own],
     })
 }
 
@@ -224,7 +223,9 @@ fn paths(slab: &'static Slab, exact: &[f64], cells: &Cells) -> anyhow::Result<Pa
             rays[batch] += counts[batch] / LAYERS as f64;
         }
     }
-    let total: f64 = cells.seconds(&paths_group(slab), "path tracing").iter().sum();
-    let samples = cells.values(&paths_case(slab, 0), "samples")?.iter().sum::<f64>() * LAYERS as f64;
-    Ok(Paths { slab, error, variance, rays, seconds: total / samples })
+    let total = cells.seconds(&paths_group(slab), "path tracing");
+    let samples = cells.values(&paths_case(slab, 0), "samples")?;
+    let seconds =
+        total.iter().zip(samples).map(|(total, samples)| total / (samples * LAYERS as f64)).collect();
+    Ok(Paths { slab, error, variance, rays, seconds })
 }

@@ -1,7 +1,7 @@
 //! The figures.
 
 use super::cases::{SLABS, Setting, Size, Slab, Treatment};
-use super::choose::{Choice, break_even, frontier, most_efficient};
+use super::choose::{Choice, Currency, break_even, frontier, most_efficient};
 use super::data::{Data, Measured, Paths, mean};
 use super::split::{rms, rms_bias, rms_noise};
 use super::theory::{Expected, Rms, Theory};
@@ -150,7 +150,7 @@ fn queries(data: &Data) -> anyhow::Result<FigureFiles> {
         .with_title(format!("{}, to {:.1} %", slab.title, 100.0 * chosen.rms.value()))
         .with(Line::theory("path tracer", x.clone(), by_paths))
         .with(Line::new("photon map, clipped", 1, x, map));
-        let text = match break_even(chosen.case, paths).queries {
+        let text = match break_even(chosen.case, paths, Currency::Operations).queries {
             Some(queries) => {
                 let interval = queries.interval(0.95);
                 let rule = Rule::new(Along::Vertical(queries.value())).with_dash(Dash::Dashed);
@@ -166,6 +166,7 @@ fn queries(data: &Data) -> anyhow::Result<FigureFiles> {
     let caption = "Operations against the number of queries, at the error of the most efficient clipped setting, by the \
                    photon map and by a path tracer of the same error. The map is paid for before the first query; from \
                    the break-even Q* (95 % interval) it is the cheaper of the two. In the thin isotropic slab one path \
-                   query takes fewer rays than the map gathers photons, and the map never pays.";
+                   query takes fewer rays than the map gathers photons, and the map never pays in operations; in seconds, where a \
+                   photon gathered is cheaper than a ray, it does.";
     FigureFiles::draw("queries", caption, &figure)
 }

@@ -1,8 +1,6 @@
 //! Measuring one map, or one batch of paths.
 
-use super::cases::{
-    CELL, LAYERS, PROBES, SIDE, SLABS, Setting, Slab, Treatment, paths_case, paths_group, probes,
-};
+use super::cases::{CELL, LAYERS, SLABS, Setting, Slab, Treatment, paths_case, paths_group, probes};
 use crate::harness::{CellId, CellOutput, Settings};
 use anyhow::Context;
 use glam::DVec3;
@@ -34,7 +32,8 @@ pub fn cells(settings: &Settings) -> Vec<CellId> {
     let mut cells = Vec::new();
     for slab in &SLABS {
         for photons in slab.photons(settings) {
-            let gathers = (Setting::all(settings, slab, photons).len() * PROBES) as f64;
+            let asked = Setting::all(slab, photons);
+            let gathers = asked.iter().map(|s| s.lateral() * LAYERS).sum::<usize>() as f64;
             let cost = photons as f64 * (4.0 + 2.0 * slab.tau) + 20.0 * gathers;
             cells.extend(CellId::replicates(&Setting::group(slab, photons), MAPS, cost));
         }
@@ -65,7 +64,7 @@ fn measure_map(
     replicate: u64,
 ) -> anyhow::Result<CellOutput> {
     let mut output = CellOutput::new();
-    let asked = Setting::all(settings, slab, photons);
+    let asked = Setting::all(slab, photons);
     let histories = Histories { count: photons, seed: settings.seed, replicate, max_order: None };
     let mut pass =
         output.time("shooting", |_| shoot(scene, histories, &[], is_in(Orders::ALL), &NoProgress))?;
@@ -104,13 +103,17 @@ fn gather(output: &mut CellOutput, map: &PhotonMap, setting: &Setting) -> anyhow
     let (slab, how) = (setting.slab, setting.gather()?);
     let (mut found, mut underfull) = (0u64, 0u64);
     let phase = format!("gathering {}", setting.size.name());
+    let estimates: Vec<Vec<_>> = output.time(&phase, |_| {
+        let ask = |probe| fluence(map, probe, Spectrum::ONE, Kernel::Uniform, how);
+        slab.depths().into_iter().map(|depth| probes(setting.side(), depth).map(ask).collect()).collect()
+    });
+    let phase = format!("clipping {}", setting.size.name());
     let layers = output.time(&phase, |_| -> anyhow::Result<Vec<Layer>> {
         let mut layers = Vec::with_capacity(LAYERS);
-        for depth in slab.depths() {
+        for (depth, estimates) in slab.depths().into_iter().zip(&estimates) {
             let room = depth.min(slab.tau - depth);
             let mut layer = Layer::default();
-            for probe in probes(depth) {
-                let estimate = fluence(map, probe, Spectrum::ONE, Kernel::Uniform, how);
+            for estimate in estimates {
                 found += estimate.found as u64;
                 underfull += u64::from(estimate.underfull);
                 let value = estimate.value[0];
@@ -125,11 +128,12 @@ fn gather(output: &mut CellOutput, map: &PhotonMap, setting: &Setting) -> anyhow
         }
         Ok(layers)
     })?;
-    output.count("estimates", PROBES as u64);
+    let asked = setting.lateral() * LAYERS;
+    output.count("estimates", asked as u64);
     output.count("under-full estimates", underfull);
     output.count("photons gathered", found);
-    output.push(setting.name(), "found", found as f64 / PROBES as f64);
-    let probes = (SIDE * SIDE) as f64;
+    output.push(setting.name(), "found", found as f64 / asked as f64);
+    let probes = setting.lateral() as f64;
     for (index, layer) in layers.iter().enumerate() {
         for (treatment, sums) in Treatment::ALL.iter().zip([layer.plain, layer.clipped]) {
             let case = setting.case(*treatment);

@@ -2,7 +2,8 @@
 
 use super::cases::LAYERS;
 use crate::harness::Estimate;
-use turbid::stats::jackknife;
+use turbid::math::exp;
+use turbid::stats::{Jackknife, jackknife, jackknife_log};
 
 /// What one map says of one setting: the relative error of each layer, averaged over its lateral probes, and its
 /// square. By translation invariance the probes of one layer share their expectation.
@@ -48,11 +49,19 @@ fn root(x: f64) -> f64 {
     if x > 0.0 { x.sqrt() } else { 0.0 }
 }
 
+/// A positive statistic, whose relative error is that of its logarithm: statistics of squares are skewed, their
+/// logarithms nearly normal.
+pub fn positive<T: Clone>(maps: &[T], statistic: impl Fn(&[T]) -> f64) -> Estimate {
+    let log = jackknife_log(maps, statistic);
+    let value = exp(log.value);
+    Estimate::jackknife(&Jackknife { value, std_error: value * log.std_error, n: log.n })
+}
+
 /// Root mean square error, with its error over maps.
 pub fn rms(maps: &[MapError]) -> Estimate {
     let squares: Vec<f64> = maps.iter().map(|m| m.square).collect();
     let mean = |squares: &[f64]| root(squares.iter().sum::<f64>() / squares.len() as f64);
-    Estimate::jackknife(&jackknife(&squares, mean))
+    positive(&squares, mean)
 }
 
 /// Root mean squared bias, with its error over maps. The jackknife stands on the mean square, which is smooth; the
@@ -67,7 +76,7 @@ pub fn rms_bias(maps: &[MapError]) -> Estimate {
 
 /// Root mean variance of one estimate, with its error over maps.
 pub fn rms_noise(maps: &[MapError]) -> Estimate {
-    Estimate::jackknife(&jackknife(maps, |m| root(Split::of(m).noise())))
+    positive(maps, |m| root(Split::of(m).noise()))
 }
 
 /// The maps on which settings are chosen, and those on which the chosen ones are reported: every other one.

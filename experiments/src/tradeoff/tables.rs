@@ -1,9 +1,10 @@
 //! The tables.
 
 use super::cases::{CELL, SLABS, Setting, Size, Slab, Treatment};
-use super::choose::{best, break_even, cheapest, most_efficient, regret};
-use super::data::{Data, mean};
+use super::choose::{Currency, best, break_even, cheapest, is_last, most_efficient, regret};
+use super::data::{Data, Measured, mean};
 use super::predict::{Known, TARGETS};
+use super::split::rms;
 use crate::harness::{Estimate, Table, number, with_error};
 
 /// Numbers of queries at which costs are shown.
@@ -11,7 +12,14 @@ pub const QUERIES: [f64; 4] = [1.0, 64.0, 4096.0, 1e6];
 
 /// All tables.
 pub fn all(data: &Data, known: &Known) -> anyhow::Result<Vec<Table>> {
-    Ok(vec![prices(data, known)?, queries(data), regrets(data), counts(data), seconds(data)])
+    Ok(vec![
+        prices(data, known)?,
+        queries(data),
+        regrets(data),
+        counts(data),
+        seconds(data),
+        deviations(data),
+    ])
 }
 
 fn table(caption: &str, columns: &[&str], rows: Vec<Vec<String>>) -> Table {
@@ -46,9 +54,12 @@ fn prices(data: &Data, known: &Known) -> anyhow::Result<Table> {
                 let (setting, error, cost) = match &found {
                     Some(c) => (short(&c.case.setting), percent(&c.rms), rough(c.case.cost(4096.0))),
                     None => {
-                        let floor = best(&cases)
-                            .map_or(String::new(), |b| format!("none: at least {}", percent(&b.rms)));
-                        ("none".to_string(), floor, String::new())
+                        let tried = best(&cases).map_or(String::new(), |b| {
+                            let theory = b.case.predicted();
+                            let (total, bias) = (100.0 * theory.total(), 100.0 * theory.bias);
+                            format!("best tried {} (predicted {total:.1}, bias {bias:.1})", percent(&b.rms))
+                        });
+                        ("none".to_string(), tried, String::new())
                     }
                 };
                 let by_paths = data.paths(slab).map_or(f64::NAN, |p| 4096.0 * p.cost(target));
@@ -82,7 +93,8 @@ fn prices(data: &Data, known: &Known) -> anyhow::Result<Table> {
     let caption = "The price list: what a root mean square error of 10, 3 and 1 per cent costs for 4096 queries, in \
                    operations (rays, records put into the tree, photons gathered). The cheapest of the measured \
                    settings was chosen on half of the maps, and its error is that of the other half. Where none \
-                   reaches the target the lowest error of all stands there, measured and predicted. Theory searched all radii for the \
+                   reaches the target the lowest error of all tried stands there, with the predicted one and its bias, which more \
+                   photons in balls of the same size leave: plain, it is what the faces take. Theory searched all radii for the \
                    cheapest, with as many photons as it takes (emitted photons per cubic mean free path of the slab); \
                    the path tracer takes as many samples as its variance asks for.";
     Ok(table(caption, &columns, rows))
@@ -97,17 +109,22 @@ fn queries(data: &Data) -> Table {
             let cases = data.of(slab, treatment, None);
             let Some(chosen) = most_efficient(&cases) else { continue };
             let error = chosen.rms.value();
-            let even = break_even(chosen.case, paths).queries;
-            let (query, prepare) = data.seconds(chosen.case);
-            let saved = paths.cost_seconds(error) - query;
-            let in_seconds = if saved > 0.0 { rough(prepare / saved) } else { "never".to_string() };
+            let even = |case, currency| {
+                let queries = break_even(case, paths, currency).queries;
+                queries.map_or("never".to_string(), |q| with_error(q.value(), q.std_error()))
+            };
+            let tenth = |currency| {
+                cheapest(&cases, TARGETS[0], 4096.0).map_or("none".to_string(), |c| even(c.case, currency))
+            };
             let mut row = vec![
                 slab.title.to_string(),
                 treatment.name().to_string(),
                 short(&chosen.case.setting),
                 percent(&chosen.rms),
-                even.map_or("never".to_string(), |q| with_error(q.value(), q.std_error())),
-                in_seconds,
+                even(chosen.case, Currency::Operations),
+                even(chosen.case, Currency::Seconds),
+                tenth(Currency::Operations),
+                tenth(Currency::Seconds),
             ];
             row.extend(QUERIES.map(|q| {
                 let (map, by_paths) = (chosen.case.cost(q), q * paths.cost(error));
@@ -123,6 +140,8 @@ fn queries(data: &Data) -> Table {
         "its RMS error [%]",
         "break-even [queries]",
         "in seconds, on this machine",
+        "break-even at 10 %",
+        "in seconds",
         "Q = 1",
         "Q = 64",
         "Q = 4096",
@@ -132,7 +151,8 @@ fn queries(data: &Data) -> Table {
                    figure of merit, the least squared error times cost of 4096 queries, of those with an \
                    error of at most a third. From the break-even on the map is the \
                    cheaper; it never is where a path query of that error takes fewer rays than the map gathers \
-                   photons. Seconds weigh the operations as this machine does, and belong to it.";
+                   photons. At 10 per cent it is that of the cheapest setting which reaches it, if one does. Seconds \
+                   weigh the operations as this machine does, and belong to it.";
     table(caption, &columns, rows)
 }
 
@@ -143,11 +163,13 @@ fn regrets(data: &Data) -> Table {
         for treatment in Treatment::ALL {
             let cases = data.of(slab, treatment, Some(data.largest(slab)));
             let Some(best) = best(&cases) else { continue };
+            let is_last = is_last(best.case, &cases);
             let regret_of = |k: usize| {
                 let found = cases.iter().find(|c| c.setting.size == Size::Nearest(k));
                 found.map_or(String::new(), |case| {
                     let value = regret(case, &cases);
-                    with_error(value.value(), value.std_error())
+                    let text = with_error(value.value(), value.std_error());
+                    if is_last { format!("at least {text}") } else { text }
                 })
             };
             rows.push(vec![
@@ -155,7 +177,7 @@ fn regrets(data: &Data) -> Table {
                 treatment.name().to_string(),
                 best.case.setting.photons.to_string(),
                 best.case.setting.size.name(),
-                percent(&best.rms),
+                if is_last { format!("at most {}", percent(&best.rms)) } else { percent(&best.rms) },
                 regret_of(50),
                 regret_of(100),
             ]);
@@ -171,7 +193,8 @@ fn regrets(data: &Data) -> Table {
         "k = 100 over best",
     ];
     let caption = "Regret: the root mean square error with 50 and 100 neighbours over that of the best gather for the \
-                   same photons, each half of the maps with the gather that the other half chose.";
+                   same photons, each half of the maps with the gather that the other half chose. At least and at most stand where \
+                   the best gather is the largest tried.";
     table(caption, &columns, rows)
 }
 
@@ -224,9 +247,9 @@ fn seconds(data: &Data) -> Table {
         let query = |wanted: super::cases::Size| {
             let cases = data.of(size.slab, Treatment::Plain, Some(size.photons));
             let found = cases.iter().find(|c| c.setting.size == wanted);
-            found.map_or(String::new(), |c| format!("{:.2}", 1e6 * data.seconds(c).0))
+            found.map_or(String::new(), |c| format!("{:.2}", 1e6 * mean(&c.query_seconds)))
         };
-        let [shooting, building] = size.seconds;
+        let [shooting, building] = [mean(&size.seconds[0]), mean(&size.seconds[1])];
         vec![
             size.slab.title.to_string(),
             size.photons.to_string(),
@@ -234,7 +257,7 @@ fn seconds(data: &Data) -> Table {
             format!("{:.2}", 1e3 * building),
             query(Size::Radius(0.2)),
             query(Size::Nearest(50)),
-            data.paths(size.slab).map_or(String::new(), |p| format!("{:.2}", 1e6 * p.seconds)),
+            data.paths(size.slab).map_or(String::new(), |p| format!("{:.2}", 1e6 * mean(&p.seconds))),
         ]
     };
     let columns = [
@@ -250,6 +273,35 @@ fn seconds(data: &Data) -> Table {
                    others. Building is charged for the photons of the cell alone, without the copies across its edges \
                    that the study needs.";
     table(caption, &columns, data.sizes.iter().map(row).collect())
+}
+
+/// Standard errors from which a measured error is listed as off its prediction.
+const OFF: f64 = 4.0;
+
+/// Every case whose measured error is off its prediction.
+pub fn off(data: &Data) -> Vec<(&Measured, Estimate, f64)> {
+    let all = data.measured.iter().map(|m| (m, rms(&m.maps), m.predicted().total()));
+    all.filter(|(_, found, theory)| (found.value() - theory).abs() > OFF * found.std_error()).collect()
+}
+
+/// The list of them.
+fn deviations(data: &Data) -> Table {
+    let row = |(m, found, theory): (&Measured, Estimate, f64)| {
+        vec![
+            m.case(),
+            percent(&found),
+            format!("{:.2}", 100.0 * theory),
+            format!("{:.3}", found.value() / theory),
+            format!("{:.1}", (found.value() - theory) / found.std_error()),
+        ]
+    };
+    let columns = ["case", "RMS error [%]", "predicted [%]", "measured over predicted", "standard errors"];
+    let caption = format!(
+        "Every setting whose measured root mean square error is more than {OFF} standard errors from the predicted \
+         one, of {} settings, plain and clipped.",
+        data.measured.len()
+    );
+    table(&caption, &columns, off(data).into_iter().map(row).collect())
 }
 
 /// The smallest error of all settings of a slab.
