@@ -1,6 +1,6 @@
 //! Intervals of any statistic of independent maps, by resampling them.
 
-use super::{Interval, student_critical};
+use super::{Interval, Moments, student_critical};
 use crate::rng::{Purpose, Stream};
 
 /// Percentile interval at `level` of a statistic of independent maps, from `resamples` samples with replacement.
@@ -51,6 +51,16 @@ pub struct Jackknife {
     pub std_error: f64,
     /// Number of maps; the statistic has n - 1 degrees of freedom.
     pub n: u64,
+    /// Of the pseudo-values, n all - (n-1) without: what each map says. Their mean and its error are `value` and
+    /// `std_error`, but for rounding; their fourth moment tells whether that error can be relied on.
+    pub moments: Moments,
+}
+
+impl Jackknife {
+    /// Whether the error is too uncertain for an interval, as of a plain mean ([`Moments::is_heavy_tailed`]).
+    pub fn is_heavy_tailed(&self) -> bool {
+        self.moments.is_heavy_tailed()
+    }
 }
 
 /// Estimate and error of a smooth statistic, such as a ratio of means, by refitting without each map in turn.
@@ -64,7 +74,8 @@ pub fn jackknife<T: Clone>(maps: &[T], statistic: impl Fn(&[T]) -> f64) -> Jackk
     let all = statistic(maps);
     let n = maps.len();
     if n < 2 {
-        return Jackknife { value: all, std_error: f64::INFINITY, n: n as u64 };
+        let moments = std::iter::repeat_n(all, n).collect();
+        return Jackknife { value: all, std_error: f64::INFINITY, n: n as u64, moments };
     }
     // `rest` is all maps but the i-th: stepping i puts the previous one back in its place.
     let mut rest: Vec<T> = maps[1..].to_vec();
@@ -82,6 +93,7 @@ pub fn jackknife<T: Clone>(maps: &[T], statistic: impl Fn(&[T]) -> f64) -> Jackk
         value: count * all - (count - 1.0) * mean,
         std_error: (squares * (count - 1.0) / count).sqrt(),
         n: n as u64,
+        moments: without.iter().map(|x| count * all - (count - 1.0) * x).collect(),
     }
 }
 
@@ -106,7 +118,7 @@ pub fn jackknife_log<T: Clone>(maps: &[T], statistic: impl Fn(&[T]) -> f64) -> J
 /// # Limits
 /// As [`jackknife_log`]; unbounded, from 0, below two maps.
 pub fn positive_interval<T: Clone>(maps: &[T], statistic: impl Fn(&[T]) -> f64, level: f64) -> Interval {
-    let Jackknife { value, std_error, n } = jackknife_log(maps, statistic);
+    let Jackknife { value, std_error, n, .. } = jackknife_log(maps, statistic);
     if n < 2 {
         return Interval::new(0.0, f64::INFINITY);
     }
@@ -145,6 +157,25 @@ mod tests {
         let moments: Moments = values.iter().collect();
         let exact = moments.mean() * moments.mean() - moments.variance() / 10.0;
         assert!((jackknife(&values, |v| mean(v) * mean(v)).value - exact).abs() < 1e-12);
+    }
+
+    /// The pseudo-values of a mean are the values themselves: one map that carries the variance of 64 is seen, and
+    /// seen in a root mean square; a normal sample is not taken for such.
+    #[test]
+    fn a_map_that_carries_the_variance_is_seen() {
+        let root = |v: &[f64]| (v.iter().map(|x| x * x).sum::<f64>() / v.len() as f64).sqrt();
+        let mut values = values(4, 64);
+        for statistic in [mean as fn(&[f64]) -> f64, root] {
+            let of_mean = jackknife(&values, statistic);
+            assert!(!of_mean.is_heavy_tailed(), "{}", of_mean.moments.vov());
+            assert!((of_mean.moments.mean() - of_mean.value).abs() < 1e-12);
+            assert!((of_mean.moments.std_error() / of_mean.std_error - 1.0).abs() < 1e-9);
+        }
+        let plain: Moments = values.iter().collect();
+        assert!((jackknife(&values, mean).moments.vov() / plain.vov() - 1.0).abs() < 1e-9);
+        values[0] = 40.0;
+        assert!(jackknife(&values, mean).is_heavy_tailed() && jackknife(&values, root).is_heavy_tailed());
+        assert!(jackknife_log(&values, root).is_heavy_tailed());
     }
 
     #[test]

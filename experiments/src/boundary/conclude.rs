@@ -36,11 +36,19 @@ impl Result {
         (self.error.mean() - self.predicted()) / libm::hypot(self.error.std_error(), 100.0 * self.parts.error)
     }
 
-    /// Whether what is not known of the clusters is far below the standard error: a tenth of their part inside, three
-    /// tenths where a face is in the ball.
+    /// The standard error to expect of the mean over maps [%], before any is measured: 1/(k-2) is the relative variance of
+    /// an estimate by k independent photons. Clusters and what probes share make the true one larger.
+    fn expected_error(&self, k: usize) -> f64 {
+        let estimates = self.case.probes().len() * self.errors.len();
+        100.0 / ((k as f64 - 2.0) * estimates as f64).sqrt()
+    }
+
+    /// Whether what is not known of the clusters is far below the standard error to expect: a tenth of their part inside,
+    /// three tenths where a face is in the ball. What was measured has no say in it.
     pub fn is_predicted_well(&self) -> bool {
+        let Size::Nearest(k) = self.case.size else { return true };
         let unsure = if self.case.spot.depth() > 0.4 { 0.1 } else { 0.3 };
-        100.0 * unsure * self.parts.clusters <= 0.1 * self.error.std_error()
+        100.0 * unsure * self.parts.clusters.abs() <= 0.1 * self.expected_error(k)
     }
 }
 
@@ -223,6 +231,13 @@ fn rows(settings: &Settings, cells: &Cells, found: &Found) -> anyhow::Result<Vec
             rows.push(Row::estimated(&rim.name(), quantity, Unit::MFP, &estimate)?.predicted(predicted));
         }
     }
+    for one in integrals(settings, found) {
+        if one.measured.std_error > 0.0 {
+            let estimate = crate::harness::Estimate::jackknife(&one.measured);
+            let row = Row::estimated(&one.name(), "size of the error over depth", Unit::MFP, &estimate)?;
+            rows.push(row.predicted(one.predicted));
+        }
+    }
     Ok(rows)
 }
 
@@ -240,7 +255,7 @@ pub struct Rim {
     pub width: Jackknife,
     /// The same of the predicted error at the same depths.
     pub predicted_width: f64,
-    /// Integral of the size of the mean error over depth [mfp]: the thickness of fluence that is lost.
+    /// Integral of the mean loss over depth [mfp]: the thickness of fluence that is lost.
     pub lost: Jackknife,
     /// The same of the predicted error at the same depths.
     pub predicted_lost: f64,
@@ -298,6 +313,81 @@ pub fn rims(settings: &Settings, found: &Found) -> Vec<Rim> {
         }
     }
     rims
+}
+
+/// How much error, of either sign, there is below a face.
+pub struct Integral {
+    /// The field.
+    pub field: &'static Field,
+    /// Gather size.
+    pub size: Size,
+    /// Treatment.
+    pub treatment: Treatment,
+    /// Integral of the size of the mean error over the depths asked, as a fraction [mfp].
+    pub measured: Jackknife,
+    /// The same of the predicted error.
+    pub predicted: f64,
+    /// What noise alone would leave of it on average: sqrt(2/pi) standard errors at each depth.
+    pub noise: f64,
+}
+
+impl Integral {
+    fn name(&self) -> String {
+        format!("{} {} {} below a face", self.field.name, self.size.name(), self.treatment.name())
+    }
+}
+
+/// The size of the error over depth in every field's main maps, for each gather and treatment.
+pub fn integrals(settings: &Settings, found: &Found) -> Vec<Integral> {
+    let mut integrals = Vec::new();
+    for field in &FIELDS {
+        let photons = field.main_size(settings);
+        let mut sizes: Vec<Size> = Vec::new();
+        for case in Case::all(settings, field, photons) {
+            if !sizes.contains(&case.size) {
+                sizes.push(case.size);
+            }
+        }
+        for size in sizes {
+            for treatment in Treatment::ALL {
+                let mut chosen = found.pick(|c| {
+                    // In whole balls all treatments are one, which is asked once.
+                    let is_whole = matches!(size, Size::Radius(r) if c.spot.depth() >= r);
+                    let asked = if is_whole { Treatment::None } else { treatment };
+                    (c.field, c.photons, c.size, c.treatment) == (field, photons, size, asked)
+                        && c.kernel == Kernel::Uniform
+                        && matches!(c.spot, Spot::Face(_))
+                });
+                chosen.sort_by(|a, b| a.case.spot.depth().total_cmp(&b.case.spot.depth()));
+                let depths: Vec<f64> = chosen.iter().map(|r| r.case.spot.depth()).collect();
+                let maps = chosen.iter().map(|r| r.errors.len()).min().unwrap_or(0);
+                let profiles: Vec<Vec<f64>> =
+                    (0..maps).map(|m| chosen.iter().map(|r| r.errors[m]).collect()).collect();
+                let of_mean = |maps: &[Vec<f64>]| {
+                    let mean = |i: usize| maps.iter().map(|p| p[i]).sum::<f64>() / maps.len() as f64;
+                    size_over_depth(&depths, &(0..depths.len()).map(mean).collect::<Vec<f64>>())
+                };
+                let predicted: Vec<f64> = chosen.iter().map(|r| r.predicted()).collect();
+                let share = (2.0 / std::f64::consts::PI).sqrt();
+                let noise: Vec<f64> = chosen.iter().map(|r| share * r.error.std_error()).collect();
+                integrals.push(Integral {
+                    field,
+                    size,
+                    treatment,
+                    measured: jackknife(&profiles, of_mean),
+                    predicted: size_over_depth(&depths, &predicted),
+                    noise: size_over_depth(&depths, &noise),
+                });
+            }
+        }
+    }
+    integrals
+}
+
+/// The integral of the size of errors [%], as a fraction, under straight lines between depths.
+fn size_over_depth(depths: &[f64], errors: &[f64]) -> f64 {
+    let strip = |i: usize| 0.005 * (errors[i].abs() + errors[i - 1].abs()) * (depths[i] - depths[i - 1]);
+    (1..depths.len()).map(strip).sum()
 }
 
 /// The depth at which an error that begins beyond [`VISIBLE`] comes down to it, on straight lines between depths.
@@ -362,7 +452,7 @@ fn summarise(section: &mut Section, settings: &Settings, found: &Found) -> anyho
     let facing = kept_by(Rejection::Facing)?;
     let behind = kept_by(Rejection::FacingBehind)?;
     section.summary.push(format!(
-        "Looking at the photons' incoming direction cures neither fault: it leaves ({}) % of the false photons behind a \
+        "Between isotropic fields, looking at the photons' incoming direction cures neither fault: it leaves ({}) % of the false photons behind a \
          thin wall and does nothing for the low density at an edge, which dividing by the volume inside takes from \
          ({}) % to ({}) %.",
         behind[1],
@@ -372,7 +462,8 @@ fn summarise(section: &mut Section, settings: &Settings, found: &Found) -> anyho
     section.summary.push(format!(
         "Taken literally, keeping only photons that fly towards the wall, the advice also throws away half of the good \
          ones: it keeps ({}) % of them and ({}) % of the false ones. Directions tell photons apart on a surface, where all \
-         arrive from the front; in a medium half of the photons behind the wall fly the same way as those in front. What a \
+         arrive from the front; in a medium that light fills alike from all sides, as on both sides of this wall, half of the photons behind it fly \
+         the same way as those in front; how many do where light has a direction was not measured. What a \
          photon's place tells is enough: behind the wall's plane, or out of sight. With clipping besides, both faults are \
          gone: these estimates are unbiased on either side of the wall, at any distance, kernel and gather.",
         facing[0], facing[1],
@@ -388,7 +479,7 @@ fn summarise(section: &mut Section, settings: &Settings, found: &Found) -> anyho
     section.notes.push(format!(
         "With the k nearest, photons of one history cluster and draw the k-th nearer, by a part in a few hundred. The first \
          order of that is in the prediction; beside a face it is rough. {} cases in which it might be off by more than a \
-         tenth of their standard error are left out of the study's budget.",
+         tenth of the standard error that their k, probes and maps let expect are left out of the study's budget.",
         found.results.len() - used
     ));
     section.notes.push(

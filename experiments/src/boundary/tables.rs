@@ -2,7 +2,7 @@
 
 use super::cases::{Size, Spot};
 use super::claims::is_main;
-use super::conclude::{Found, VISIBLE, kept, rims, signed};
+use super::conclude::{Found, VISIBLE, integrals, kept, rims, signed};
 use super::fields::FIELDS;
 use super::sheet::{Sheet, Side};
 use crate::harness::{Settings, Table, with_error};
@@ -12,7 +12,13 @@ use turbid::stats::Moments;
 
 /// All tables.
 pub fn all(settings: &Settings, found: &Found) -> anyhow::Result<Vec<Table>> {
-    Ok(vec![verdict(found)?, treatments(settings, found)?, rim(settings, found), sheet(found)?])
+    Ok(vec![
+        verdict(found)?,
+        treatments(settings, found)?,
+        rim(settings, found),
+        integral(settings, found),
+        sheet(found)?,
+    ])
 }
 
 fn text(moments: &Moments) -> String {
@@ -136,12 +142,37 @@ fn rim(settings: &Settings, found: &Found) -> Table {
     Table {
         caption: format!(
             "The dark rim of the furnace slab without treatment: how deep the error is {VISIBLE} % or more, and the \
-             integral of its size over depth, the thickness of fluence that is lost at each face. At a fixed radius both are \
+             integral of the loss over depth, the thickness of fluence that is lost at each face. At a fixed radius both are \
              proportional to the radius and ignore the number of photons; with the k nearest they fall with the cube root of \
              photons over k."
         ),
         columns: columns.to_vec(),
         rows,
+    }
+}
+
+/// The size of the error over depth.
+fn integral(settings: &Settings, found: &Found) -> Table {
+    let all = integrals(settings, found);
+    // One line a gather: its treatments follow one another.
+    let rows = all.chunks(Treatment::ALL.len()).map(|line| {
+        let mut row = vec![line[0].field.title.to_string(), line[0].size.name()];
+        row.extend(line.iter().map(|one| {
+            let measured = with_error(one.measured.value, one.measured.std_error);
+            format!("{measured} [{}; {}]", signed(one.predicted, 5), signed(one.noise, 5))
+        }));
+        row
+    });
+    let mut columns = vec!["field".to_string(), "gather".to_string()];
+    columns.extend(Treatment::ALL.map(|t| format!("{} [mfp]", t.name())));
+    Table {
+        caption: "The size of the error below a face, integrated over depth from the surface to 1.25 radii (1.75 for the k \
+                  nearest) in mean free paths, uniform kernel: measured and, in square brackets, predicted and what noise \
+                  alone would leave on average. A size has no sign to cancel noise by: beside no bias the measured \
+                  number is noise, and its standard error, by leaving out maps, rough."
+            .to_string(),
+        columns,
+        rows: rows.collect(),
     }
 }
 

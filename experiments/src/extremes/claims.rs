@@ -1,9 +1,8 @@
 //! The claims. Margins are what the quick preset can decide: at least five of the standard errors that trial runs of it
-//! had shown. Three were widened after the first trial for that reason, two of which it had left undecided: the rows
-//! about albedo (from 0.25 to 0.5 %) and number (0.5 to 1 %), and fixed radii on planes 1/2 apart (0.03 to 0.05).
+//! had shown. One was widened after the first trial for that reason: fixed radii on planes 1/2 apart (0.03 to 0.05).
 
 use super::cases::Class;
-use super::conclude::{Results, STANDARD_ERRORS, SampledResult, StorageResult};
+use super::conclude::{LargeResult, Results, STANDARD_ERRORS, SampledResult, StorageResult};
 use super::storage::Rule;
 use super::stretched::Size;
 use crate::harness::{Claim, Estimate, Unit};
@@ -12,16 +11,7 @@ use turbid::stats::{Moments, amplitude_per_map};
 /// All claims of the experiment.
 pub fn all(results: &Results) -> Vec<Claim> {
     let mut claims = counts(results);
-    for (class, margin) in [
-        (Class::Thickness, 0.5),
-        (Class::Albedo, 0.5),
-        (Class::Asymmetry, 0.5),
-        (Class::Position, 0.5),
-        (Class::Number, 1.0),
-        (Class::Faces, 0.5),
-    ] {
-        claims.extend(class_claim(results, class, margin));
-    }
+    claims.extend(Class::SAMPLED.map(|class| class_claim(results, class)));
     claims.extend(storage_claims(results));
     claims.extend(stretched_claims(results));
     claims
@@ -57,24 +47,21 @@ fn counts(results: &Results) -> Vec<Claim> {
     claims
 }
 
-/// Mean relative error of the sampled rows of a class, weighted by their precision: one number a batch.
-fn class_claim(results: &Results, class: Class, margin: f64) -> Option<Claim> {
-    let rows: Vec<&SampledResult> = results
-        .sampled
-        .iter()
-        .filter(|r| r.class == class && r.exact.0 != 0.0 && r.moments.std_error() > 0.0)
-        .collect();
-    let batches = rows.iter().map(|r| r.values.len()).min()?;
-    let weights: Vec<f64> = rows.iter().map(|r| r.relative_error().powi(-2)).collect();
-    let sum: f64 = weights.iter().sum();
-    let one = |batch: usize| {
-        let error = |(r, w): (&&SampledResult, &f64)| w * (r.values[batch] / r.exact.0 - 1.0);
-        100.0 * rows.iter().zip(&weights).map(error).sum::<f64>() / sum
-    };
-    let moments: Moments = (0..batches).map(one).collect();
-    let text = format!("{} rows about {}: weighted mean of their relative errors", rows.len(), about(class));
-    let id = format!("rows-{}", class.name());
-    Some(Claim::within(&id, &text, Unit::PERCENT, Estimate::mean(&moments), -margin, margin))
+/// The worst row of a class, as one test: the smallest p-value times their number (Bonferroni). Every row counts alike,
+/// however precise its neighbours are; what bias each can show is a column of its table.
+fn class_claim(results: &Results, class: Class) -> Claim {
+    let mut p_values: Vec<f64> =
+        results.sampled.iter().filter(|r| r.class == class).map(SampledResult::p).collect();
+    if class == Class::Number {
+        p_values.extend(results.large.iter().map(LargeResult::p));
+    }
+    let text = format!(
+        "{} rows about {}: the farthest from its exact value is no farther than chance takes it",
+        p_values.len(),
+        about(class)
+    );
+    let worst = p_values.iter().fold(1.0f64, |least, p| least.min(*p));
+    Claim::fits(&format!("rows-{}", class.name()), &text, (p_values.len() as f64 * worst).min(1.0))
 }
 
 fn about(class: Class) -> &'static str {

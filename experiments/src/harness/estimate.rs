@@ -27,8 +27,12 @@ impl Estimate {
 
     /// A smooth statistic refitted without each map.
     pub fn jackknife(jackknife: &Jackknife) -> Self {
-        let maps = Some(jackknife.n);
-        Estimate { value: jackknife.value, std_error: jackknife.std_error, maps, is_heavy_tailed: false }
+        Estimate {
+            value: jackknife.value,
+            std_error: jackknife.std_error,
+            maps: Some(jackknife.n),
+            is_heavy_tailed: jackknife.is_heavy_tailed(),
+        }
     }
 
     /// A value that is computed, not sampled, known to `bound`.
