@@ -12,7 +12,7 @@ use turbid::math::exp;
 use turbid::photons::{Histories, PhotonMap, fold, shoot};
 use turbid::scene::{Orders, Parts, Quantity, Scene};
 use turbid::sensor::{Advice, Pilot, PilotSettings};
-use turbid::stats::Moments;
+use turbid::stats::{ALPHA, Moments, wilson_interval};
 use turbid::transport::NoProgress;
 use turbid_analytic::{AnisotropicSlab, IsotropicSlab};
 
@@ -95,7 +95,6 @@ impl Case {
             / square(advice.error);
         let relative: Moments =
             errors.iter().map(|e| e / square(advice.error)).collect::<Vec<f64>>().iter().collect();
-        assert!((advice.error / target - 1.0).abs() < 0.06, "{what}: {advice:?}");
         verdict::agrees(what, &relative, (1.0, uncertain), 0.5, seed);
         (advice, relative)
     }
@@ -141,6 +140,72 @@ fn the_best_radius_of_uncollided_photons() {
             / advice.noise.powi(2);
     // A variance of two probes from 256 maps is known to sqrt(2/512) = 6 %; five of these.
     assert!((advice.photons as f64 / expected - 1.0).abs() < 0.3, "{expected} {advice:?}");
+}
+
+/// Radius, photons and interval of small pilots in an absorbing slab, where the error that they then have is known in
+/// closed form: how often the interval contains it. Being conservative is allowed: the rate may be above 0.95. At
+/// this level a hundred pilots tell a rate of 0.6 from 0.95.
+#[test]
+fn the_interval_covers_the_exact_error() {
+    let depths = [1.0, 1.5, 2.0];
+    let probes = depths.map(|t| (scenes::at_depth(t), exp(-t))).to_vec();
+    let case = Case::new(&scenes::slab(6.0, 0.0, 0.0, Incidence::Beam(1.0)), probes);
+    // The ball reads the mean of e^-z over it; its count is binomial. Bias and variance, means over the depths.
+    let exact = |advice: &Advice| {
+        let (r, n) = (advice.radius, advice.photons as f64);
+        let bias = 3.0 * (r * libm::cosh(r) - libm::sinh(r)) / (r * r * r) - 1.0;
+        let part = 4.0 / 3.0 * std::f64::consts::PI * r * r * r / (scenes::CELL * scenes::CELL);
+        let variance = |t: &f64| {
+            let chance = part * exp(-t) * (1.0 + bias);
+            n * chance * (1.0 - chance) / (n * part * exp(-t)).powi(2)
+        };
+        (bias * bias, depths.iter().map(variance).sum::<f64>() / depths.len() as f64)
+    };
+    let pilots: Vec<Pilot> = (0..100)
+        .map(|seed| {
+            let settings = PilotSettings { photons: 1000, maps: 64, seed: 1000 + seed };
+            Pilot::run(&case.scene, &settings, &NoProgress).unwrap()
+        })
+        .collect();
+    for target in [0.05, 0.01] {
+        let (mut covered, mut without_bias) = (0, 0);
+        for pilot in &pilots {
+            let advice = pilot.advise(target).unwrap();
+            let (bias2, variance) = exact(&advice);
+            covered += u64::from(advice.interval.contains((bias2 + variance).sqrt()));
+            without_bias += u64::from(advice.interval.contains(variance.sqrt()));
+        }
+        assert!(wilson_interval(covered, 100, 1.0 - ALPHA).high >= 0.95, "{target}: {covered} of 100");
+        // The wrong twin leaves the bias out.
+        assert!(
+            wilson_interval(without_bias, 100, 1.0 - ALPHA).high < 0.95,
+            "{target}: {without_bias} of 100"
+        );
+    }
+}
+
+fn shaft(parameters: &str) -> Scene {
+    let builtin = turbid::scene::BUILTIN.iter().find(|b| b.name == "shaft").unwrap();
+    let mut table: toml::Table = toml::from_str(builtin.defaults).unwrap();
+    table.extend(toml::from_str::<toml::Table>(parameters).unwrap());
+    (builtin.resolve)(&toml::to_string(&table).unwrap()).unwrap().unwrap().scene().unwrap()
+}
+
+/// Balls end at the edge of a beam, across which the field jumps; a probe on the edge has none.
+#[test]
+fn the_edge_of_a_beam_limits_the_radius() {
+    let scene = shaft("albedo = 0.0\nwidth = 2.0\nprobes = [0.25, 1.0]");
+    let case = Case { scene, exact: vec![exp(-2.0); 2] };
+    let (advice, _) = case.check("squared error over the advised one, shaft", 1_000_000, 0.2, 512, 23);
+    assert!(advice.radius <= 0.25, "{advice:?}");
+    assert!(advice.limited_by.is_some(), "{advice:?}");
+    // A ball of 0.5 loses the part (1 - h)^2 (2 + h)/4 = 0.156 beyond the edge, h = 1/2, and gains r^2/10 = 0.025 by the
+    // bend: the twin's error at that probe whatever the photons.
+    let wider: Moments = case.realise(0.5, 20 * advice.photons, 64, 29).iter().collect();
+    assert!(wider.mean() > 0.5 * 0.13 * 0.13, "{wider:?}");
+    let settings = PilotSettings { photons: 5000, maps: 64, seed: 1 };
+    let pilot = Pilot::run(&shaft("probes = [0.0, 0.5]"), &settings, &NoProgress).unwrap();
+    assert_eq!(pilot.on_boundary, ["x 0"]);
 }
 
 /// Advice scales with the scene: the same problem in lengths four times as long.

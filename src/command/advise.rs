@@ -42,7 +42,7 @@ pub struct Advise {
     format: FormatName,
 }
 
-/// Pilot maps: enough for the variance of each half to be known to an eighth at a single probe.
+/// Pilot maps: enough for the variance of each ball to be known to a tenth at a single probe.
 const MAPS: u64 = 256;
 
 /// A relative error on the command line.
@@ -84,13 +84,11 @@ impl Advise {
     fn advise(&self, scene: &Scene) -> anyhow::Result<(Vec<AdviceRow>, Vec<String>)> {
         let settings = PilotSettings { photons: self.pilot.div_ceil(MAPS), maps: MAPS, seed: self.seed };
         let bar = Bar::new(settings.photons * MAPS);
-        let start = Instant::now();
         let pilot = Pilot::run(scene, &settings, &bar);
-        let photon_seconds = start.elapsed().as_secs_f64() / (settings.photons * MAPS) as f64;
         bar.finish();
         let pilot = pilot?;
         let advice = pilot.advise(self.target)?;
-        let mut rows = photon_rows(&advice, photon_seconds);
+        let mut rows = photon_rows(&pilot, &advice);
         let mut notes = photon_notes(&pilot, &advice);
 
         let probes = scene.sensors().len() as u64;
@@ -118,7 +116,7 @@ impl Advise {
     }
 }
 
-fn photon_rows(advice: &Advice, seconds: f64) -> Vec<AdviceRow> {
+fn photon_rows(pilot: &Pilot, advice: &Advice) -> Vec<AdviceRow> {
     let plain = |quantity, unit, value| AdviceRow { quantity, unit, value, low: None, high: None };
     let [least, median, most] = advice.gathered;
     vec![
@@ -136,7 +134,12 @@ fn photon_rows(advice: &Advice, seconds: f64) -> Vec<AdviceRow> {
         },
         plain("its bias", "%", 100.0 * advice.bias),
         plain("its noise", "%", 100.0 * advice.noise),
-        plain("photon map: time", "s", seconds * advice.photons as f64),
+        plain(
+            "photon map: shooting and building, at the pilot's rate",
+            "s",
+            pilot.preparation_seconds * advice.photons as f64,
+        ),
+        plain("photon map: an estimate, at the pilot's rate", "us", 1e6 * pilot.query_seconds),
     ]
 }
 
@@ -144,14 +147,15 @@ fn photon_notes(pilot: &Pilot, advice: &Advice) -> Vec<String> {
     let mut notes = Vec::new();
     if !pilot.on_boundary.is_empty() {
         notes.push(format!(
-            "left out: {}, on the boundary of the medium, where the plain estimate loses half the light at any radius",
+            "left out: {}, on the boundary of the medium or the edge of a beam, where the plain estimate reads the \
+             mean of both sides at any radius",
             pilot.on_boundary.join(", ")
         ));
     }
     if let Some(probe) = &advice.limited_by {
         notes.push(format!(
-            "the radius goes to the boundary next to {probe}: without that probe, or with a treatment of the boundary, \
-             fewer photons would do"
+            "the radius goes to the boundary or the beam's edge next to {probe}: without that probe, or with a treatment \
+             of the boundary, fewer photons would do"
         ));
     }
     notes

@@ -55,6 +55,17 @@ impl Rectangle {
         (0.0..=1.0).contains(&a) && (0.0..=1.0).contains(&b)
     }
 
+    /// How far a point lies inside the rectangle's edges, seen along its normal; outside, minus the distance \[L\].
+    pub fn inside(&self, p: DVec3) -> f64 {
+        let p = p - self.corner;
+        let within = |edge: DVec3| {
+            let (length, x) = (edge.length(), p.dot(edge) / edge.length());
+            x.min(length - x)
+        };
+        let (a, b) = (within(self.u), within(self.v));
+        if a >= 0.0 && b >= 0.0 { a.min(b) } else { -libm::hypot(a.min(0.0), b.min(0.0)) }
+    }
+
     /// Signed distance of a point from the plane, positive in front \[L\].
     pub fn height(&self, p: DVec3) -> f64 {
         (p - self.corner).dot(self.normal)

@@ -114,8 +114,52 @@ impl Beam {
         }
     }
 
+    /// How far a point is from the edge of the space that the beam lights, its section and sides, across which the
+    /// fluence jumps \[L\].
+    pub(crate) fn distance_to_edge(&self, p: DVec3) -> f64 {
+        // Along the beam, and how far inside its section; negative before it and beside it.
+        let (along, inside) = match self.section {
+            Section::Unbounded => return f64::INFINITY,
+            Section::Disc { center, radius } => {
+                let v = p - center;
+                let along = v.dot(self.dir);
+                (along, radius - (v - self.dir * along).length())
+            }
+            Section::Rectangle(r) => (r.height(p), r.inside(p)),
+        };
+        if along >= 0.0 && inside >= 0.0 {
+            along.min(inside)
+        } else {
+            libm::hypot(along.min(0.0), inside.min(0.0))
+        }
+    }
+
     pub(super) fn sample(&self, p: DVec3) -> Option<LightSample> {
         let distance = self.distance_back(p)?;
         Some(LightSample { dir: -self.dir, distance, value: self.irradiance, pdf_solid_angle: None })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Inside, beside, before and diagonally before a beam along z whose section is 2 wide.
+    #[test]
+    fn the_edge_is_where_light_ends() {
+        let corner = DVec3::new(-1.0, -1.0, 0.0);
+        let square = Rectangle::new(corner, DVec3::X * 2.0, DVec3::Y * 2.0).unwrap();
+        let disc = Section::Disc { center: DVec3::ZERO, radius: 1.0 };
+        for section in [Section::Rectangle(square), disc] {
+            let beam = Beam::new(DVec3::Z, Spectrum::ONE, section).unwrap();
+            for (x, z, distance) in
+                [(0.25, 2.0, 0.75), (0.0, 0.5, 0.5), (1.0, 2.0, 0.0), (3.0, 2.0, 2.0), (0.0, -2.0, 2.0)]
+            {
+                assert!((beam.distance_to_edge(DVec3::new(x, 0.0, z)) - distance).abs() < 1e-14, "{x} {z}");
+            }
+            assert!((beam.distance_to_edge(DVec3::new(4.0, 0.0, -4.0)) - 5.0).abs() < 1e-14);
+        }
+        let corner = Beam::new(DVec3::Z, Spectrum::ONE, Section::Rectangle(square)).unwrap();
+        assert!((corner.distance_to_edge(DVec3::new(4.0, 5.0, 1.0)) - 5.0).abs() < 1e-14);
     }
 }
