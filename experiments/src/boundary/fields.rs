@@ -63,7 +63,7 @@ pub const FIELDS: [Field; 5] = [
         g: 0.0,
         asked: Asked::All,
         quick: &[(5_000, 192), (20_000, 144), (80_000, 64)],
-        full: &[(5_000, 1536), (20_000, 1024), (80_000, 512), (320_000, 128)],
+        full: &[(5_000, 768), (20_000, 512), (80_000, 256), (320_000, 128)],
     },
     Field {
         name: "slab-g0.75",
@@ -73,7 +73,7 @@ pub const FIELDS: [Field; 5] = [
         g: 0.75,
         asked: Asked::Some,
         quick: &[(20_000, 128)],
-        full: &[(20_000, 1024)],
+        full: &[(20_000, 512)],
     },
     Field {
         name: "sphere",
@@ -83,7 +83,7 @@ pub const FIELDS: [Field; 5] = [
         g: 0.0,
         asked: Asked::Some,
         quick: &[(20_000, 192)],
-        full: &[(20_000, 1536)],
+        full: &[(20_000, 768)],
     },
     Field {
         name: "cuboid",
@@ -93,7 +93,7 @@ pub const FIELDS: [Field; 5] = [
         g: 0.0,
         asked: Asked::Some,
         quick: &[(20_000, 192)],
-        full: &[(20_000, 1536)],
+        full: &[(20_000, 768)],
     },
     Field {
         name: "lit",
@@ -103,7 +103,7 @@ pub const FIELDS: [Field; 5] = [
         g: 0.0,
         asked: Asked::Some,
         quick: &[(20_000, 192)],
-        full: &[(20_000, 1536)],
+        full: &[(20_000, 768)],
     },
 ];
 
