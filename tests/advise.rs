@@ -201,7 +201,7 @@ fn the_edge_of_a_beam_limits_the_radius() {
     assert!(advice.limited_by.is_some(), "{advice:?}");
     // A ball of 0.5 loses the part (1 - h)^2 (2 + h)/4 = 0.156 beyond the edge, h = 1/2, and gains r^2/10 = 0.025 by the
     // bend: the twin's error at that probe whatever the photons.
-    let wider: Moments = case.realise(0.5, 20 * advice.photons, 64, 29).iter().collect();
+    let wider: Moments = case.realise(0.5, 20 * advice.photons, 16, 29).iter().collect();
     assert!(wider.mean() > 0.5 * 0.13 * 0.13, "{wider:?}");
     let settings = PilotSettings { photons: 5000, maps: 64, seed: 1 };
     let pilot = Pilot::run(&shaft("probes = [0.0, 0.5]"), &settings, &NoProgress).unwrap();
