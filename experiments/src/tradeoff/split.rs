@@ -54,7 +54,7 @@ fn root(x: f64) -> f64 {
 pub fn positive<T: Clone>(maps: &[T], statistic: impl Fn(&[T]) -> f64) -> Estimate {
     let log = jackknife_log(maps, statistic);
     let value = exp(log.value);
-    Estimate::jackknife(&Jackknife { value, std_error: value * log.std_error, n: log.n })
+    Estimate::jackknife(&Jackknife { value, std_error: value * log.std_error, ..log })
 }
 
 /// Root mean square error, with its error over maps.
