@@ -232,6 +232,7 @@ fn summarise(section: &mut Section, settings: &Settings, results: &[Result]) {
         example(Size::Radius(0.4)),
         results
             .iter()
+            .filter(|r| r.case.photons == FIELDS[2].photons(settings).last().copied().unwrap_or(0))
             .find(|r| r.case.field == &FIELDS[2] && r.case.depth == 0.0 && r.case.size == Size::Radius(0.4)),
     ) {
         section.summary.push(format!(

@@ -37,10 +37,10 @@ pub fn sum(entries: &[&Entry], groups: usize, z: &[f64]) -> anyhow::Result<Figur
         ..Figure::new(vec![above.with_legend(Legend::Right), below.with_legend(Legend::Right)])
     };
     let caption = format!(
-        "Measured against predicted error of all {} cases of the study, in per cent of the exact value (outside an \
+        "Measured against predicted error of the {} cases of the budget, in per cent of the exact value (outside an \
          edge, of the value inside), with 95 % intervals over maps, coloured by the largest of the predicted terms; \
-         linear within ±1 %. All lie on the line: the sum of the terms is what was measured, wrong estimators \
-         included, whose fault is one of the terms. Below: what the prediction leaves over in one case of each of {} \
+         linear within ±1 %. They lie on the line within their errors, grey ones being too noisy to see their prediction: \
+         the sum of the terms is what was measured, wrong estimators included, whose fault is one of the terms. Below: what the prediction leaves over in one case of each of {} \
          independent sets of at most {MOST} maps, into which the maps of {groups} groups are cut, by Student's t in normal deviations, beside the density that it follows if nothing \
          was overlooked.",
         entries.len(),

