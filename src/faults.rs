@@ -1,7 +1,7 @@
 //! Faults that shipped in other renderers and simulators, as switches: each is planted in tests, which must notice.
 //!
 //! Without the feature `faults` nothing can be planted: [`planted`] is constant, and the compiler removes what it guards.
-//! Only the tests of this package turn the feature on.
+//! Only the tests of this package turn the feature on; the commands that `cargo run` builds are without it.
 
 /// A fault that can be planted.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -47,11 +47,15 @@ pub enum Fault {
     AbsoluteDeviation,
     /// The standard error of a mean forgets the root of n.
     RootForgotten,
+    /// The k nearest photons behind a wall set the radius, rejected ones among them.
+    RejectedSetRadius,
+    /// A march sums its steps and forgets how long they are.
+    StepForgotten,
 }
 
 impl Fault {
     /// Every fault, in the order of their definition.
-    pub const ALL: [Fault; 20] = [
+    pub const ALL: [Fault; 22] = [
         Fault::AlbedoTwice,
         Fault::AlbedoNever,
         Fault::CosineTwice,
@@ -72,6 +76,8 @@ impl Fault {
         Fault::OrderOffByOne,
         Fault::AbsoluteDeviation,
         Fault::RootForgotten,
+        Fault::RejectedSetRadius,
+        Fault::StepForgotten,
     ];
 }
 

@@ -2,6 +2,7 @@
 
 use crate::Spectrum;
 use crate::estimators::{Gather, Kernel, in_scattered};
+use crate::faults::{Fault, planted};
 use crate::math::{Interval, Positive, Ray, exp, exp_m1};
 use crate::medium::Homogeneous;
 use crate::photons::PhotonMap;
@@ -37,6 +38,7 @@ impl StepRule {
 
     /// What the source there is multiplied by \[L\], `t` from the near end of the ray.
     pub fn weight(self, sigma_t: f64, t: f64, dx: f64) -> f64 {
+        let dx = if planted(Fault::StepForgotten) { 1.0 } else { dx };
         let x = sigma_t * dx;
         match self {
             StepRule::NearEnd => dx * exp(-sigma_t * t),

@@ -10,3 +10,4 @@ pub mod point_light;
 pub mod points;
 pub mod slab;
 pub mod threads;
+pub mod walls;

@@ -1,6 +1,6 @@
 //! One row a fault: where it was seen, what it is here, and which check catches it.
 
-use crate::checks::{cell, light, numbers, phase, point_light, points, slab, threads};
+use crate::checks::{cell, light, numbers, phase, point_light, points, slab, threads, walls};
 use crate::support::scenes::{area_light, cuboid, rectangle};
 use glam::DVec3;
 use turbid::Spectrum;
@@ -129,6 +129,14 @@ const fn inside(fault: Fault) -> Row {
         Fault::RootForgotten => {
             ("standard error without the root of n", "moments_by_hand", |_| numbers::moments_by_hand())
         }
+        Fault::RejectedSetRadius => ("rejected photons set the radius", "the_k_nearest_are_accepted", |_| {
+            walls::the_k_nearest_are_accepted()
+        }),
+        Fault::StepForgotten => {
+            ("a march forgets its step", "a_constant_source_is_marched_to_its_integral", |_| {
+                walls::a_constant_source_is_marched_to_its_integral()
+            })
+        }
     };
     Row { fault: Planted::Inside(fault), title, check_name, check }
 }
@@ -182,6 +190,8 @@ pub const ROWS: &[Row] = &[
     inside(Fault::OrderOffByOne),
     inside(Fault::AbsoluteDeviation),
     inside(Fault::RootForgotten),
+    inside(Fault::RejectedSetRadius),
+    inside(Fault::StepForgotten),
     outside("normal quantiles for 8 numbers", "false_alarms_are_as_rare_as_promised", |wrong| {
         numbers::false_alarms_are_as_rare_as_promised(if wrong { normal_p } else { |z| student_p(z, 7) })
     }),

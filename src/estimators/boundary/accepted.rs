@@ -2,6 +2,7 @@
 
 use super::rejection::Sieve;
 use crate::estimators::{Ball, Gather};
+use crate::faults::{Fault, planted};
 use crate::photons::tree::{Counted, Nearest, Neighbors};
 use crate::photons::{Photon, PhotonTree};
 use glam::DVec3;
@@ -57,6 +58,12 @@ impl Near {
     /// The squared distance of the k-th accepted photon, or, if k of them are at the point itself, of the next one
     /// out; and how many are at the point then.
     fn shell(&self, k: usize) -> Option<(f64, usize)> {
+        if planted(Fault::RejectedSetRadius) {
+            let mut all: Vec<f64> =
+                self.accepted.iter().map(|a| a.0).chain(self.rejected.iter().copied()).collect();
+            all.sort_by(f64::total_cmp);
+            return all.get(k - 1).map(|kth| (*kth, 0));
+        }
         let kth = self.accepted.get(k - 1)?.0;
         if kth > 0.0 {
             return Some((kth, 0));

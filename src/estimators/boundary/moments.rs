@@ -1,7 +1,7 @@
 //! Moments of a kernel in the part of its ball that lies in a body.
 
-use super::super::Kernel;
 use super::solid::{Along, SPHERE, cap, pair, triple};
+use crate::estimators::Kernel;
 use crate::geometry::{Face, Shape, Sphere};
 use glam::DVec3;
 

@@ -4,7 +4,7 @@
 //! (2 pi less the turning along the arcs and at the corners); the first moment along x is the area of the part's
 //! projection on the yz plane; the second follows by parts from int x^2 acos(b/sqrt(1-x^2)) dx.
 
-use super::super::kernel::UNIT_BALL;
+use crate::estimators::kernel::UNIT_BALL;
 use libm::{acos, asin, atan2};
 use std::f64::consts::{FRAC_PI_2, PI};
 
