@@ -11,7 +11,7 @@ use turbid_analytic::quadrature::GaussLegendre;
 ///
 /// With L the distance from a uniform point of the ball to its surface along any direction, the next collision is
 /// inside with probability w <1 - e^-L> = w (3/4 r - ...), and so was the last one: 3/2 w r to first order, whatever
-/// the asymmetry. The table has all orders ([`returns`]); below it the second is taken to be as at its beginning.
+/// the asymmetry. The table of `returns` has all orders; below it the second is taken to be as at its beginning.
 pub fn clustering(albedo: f64, g: f64, r: f64) -> f64 {
     if albedo == 0.0 {
         return 0.0;
