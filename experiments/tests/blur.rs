@@ -1,29 +1,15 @@
 //! The experiment `blur`, whole, on few photons.
 #![allow(clippy::unwrap_used, reason = "tests")]
 
-use assert_cmd::Command;
-use std::path::Path;
+mod whole;
 
-fn run(out: &Path, threads: &str) -> String {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_blur"));
-    command.args(["--photons", "0.02", "--threads", threads, "--out"]).arg(out);
-    let assert = command.assert().success();
-    String::from_utf8(assert.get_output().stdout.clone()).unwrap()
-}
+const PROGRAM: &str = env!("CARGO_BIN_EXE_blur");
 
 /// Two studies of a fiftieth of the photons, some ten seconds each: every map of the real one is shot, every case
 /// predicted, gathered, judged and drawn.
 #[test]
 fn the_same_results_on_one_thread_and_two() {
     let folder = tempfile::tempdir().unwrap();
-    let (one, two) = (folder.path().join("one"), folder.path().join("two"));
-    let printed = run(&one, "1");
-    assert!(printed.contains("claims:") && printed.contains("report.html"), "{printed}");
-    run(&two, "2");
-    for file in ["results.csv", "predictions.csv", "claims.csv"] {
-        let read = |folder: &Path| std::fs::read(folder.join(file)).unwrap();
-        assert!(read(&one) == read(&two), "{file} depends on the threads");
-    }
-    let report = std::fs::read_to_string(one.join("report.html")).unwrap();
-    assert!(report.matches("<svg").count() >= 4 && !report.contains("NaN"));
+    let one = whole::same_on_threads(PROGRAM, "0.02", folder.path());
+    assert!(whole::figures(&one) >= 4);
 }

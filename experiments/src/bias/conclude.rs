@@ -5,7 +5,7 @@ use super::fields::{FIELDS, Field};
 use super::measure::{is_fano_case, map_case, path_case};
 use super::predict::{COLLISIONS, Parts, recall};
 use super::{claims, figures, tables};
-use crate::harness::{Cells, Entry, Prediction, Row, Section, Settings, Term, Unit, with_error};
+use crate::harness::{Cells, Entry, Prediction, Row, Section, Settings, Term, Unit, signed, with_error};
 use crate::theory::clustering;
 use anyhow::Context;
 use std::collections::HashMap;
@@ -206,11 +206,6 @@ pub fn predicted_fano(case: &Case) -> f64 {
 /// The results of right estimators that a test picks.
 pub fn pick(results: &[Result], test: impl Fn(&Result) -> bool) -> Vec<&Result> {
     results.iter().filter(|r| !r.case.is_biased() && test(r)).collect()
-}
-
-/// A number with so many decimals and a proper minus.
-pub fn signed(x: f64, decimals: usize) -> String {
-    format!("{x:.decimals$}").replace('-', "−")
 }
 
 fn summarise(section: &mut Section, settings: &Settings, results: &[Result]) {

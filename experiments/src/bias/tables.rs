@@ -1,10 +1,10 @@
 //! The tables.
 
 use super::cases::Size;
-use super::conclude::{Result, exact_at, largest, pick, signed};
+use super::conclude::{Result, exact_at, largest, pick};
 use super::fields::FIELDS;
 use super::measure::path_case;
-use crate::harness::{Cells, Table, with_error};
+use crate::harness::{Cells, Table, signed, with_error};
 use turbid::estimators::Kernel;
 
 /// Measured and predicted error with its parts.

@@ -28,7 +28,7 @@ const FULL: [(u64, u64); 4] = [(2_000, 2048), (16_000, 2048), (64_000, 1024), (5
 /// Emitted photons a map, and maps.
 pub fn sizes(settings: &Settings) -> Vec<(u64, u64)> {
     let sizes = settings.pick(QUICK.as_slice(), FULL.as_slice());
-    sizes.iter().map(|&(n, maps)| (((n as f64 * settings.photon_scale) as u64).max(1), maps)).collect()
+    settings.sizes(sizes)
 }
 
 /// Photons stored per volume inside the shaft at the depth of the probes [1/mfp^3].

@@ -6,7 +6,7 @@ use super::predict::{Parts, recall};
 use super::sheet::Sheet;
 use super::spread::Spread;
 use super::{claims, figures, sheet, tables};
-use crate::harness::{Cells, Entry, Prediction, Row, Section, Settings, Term, Unit, with_error};
+use crate::harness::{self, Cells, Entry, Prediction, Row, Section, Settings, Term, Unit, with_error};
 use anyhow::Context;
 use std::collections::HashMap;
 use turbid::estimators::Kernel;
@@ -430,9 +430,9 @@ pub fn kept(found: &Found, rejection: Rejection, distance: f64, size: Size) -> a
 
 /// A number with so many decimals and a proper minus.
 pub fn signed(x: f64, decimals: usize) -> String {
-    let text = format!("{x:.decimals$}");
-    let is_zero = text.chars().all(|c| "-0.".contains(c));
-    if is_zero { text.replace('-', "") } else { text.replace('-', "−") }
+    let text = harness::signed(x, decimals);
+    let is_zero = text.chars().all(|c| "−0.".contains(c));
+    if is_zero { text.replace('−', "") } else { text }
 }
 
 fn summarise(section: &mut Section, settings: &Settings, found: &Found) -> anyhow::Result<()> {

@@ -121,7 +121,7 @@ impl Field {
     /// Emitted photons a map, and maps.
     pub fn sizes(&self, settings: &Settings) -> Vec<(u64, u64)> {
         let sizes = settings.pick(self.quick, self.full);
-        sizes.iter().map(|&(n, maps)| (((n as f64 * settings.photon_scale) as u64).max(1), maps)).collect()
+        settings.sizes(sizes)
     }
 
     /// The number of photons of the maps that everything is asked of.

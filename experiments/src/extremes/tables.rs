@@ -2,14 +2,10 @@
 
 use super::conclude::Results;
 use super::storage::{self};
-use crate::harness::{Table, number, with_error};
+use crate::harness::{Table, number, signed, with_error};
 
 fn columns(names: &[&str]) -> Vec<String> {
     names.iter().map(|name| name.to_string()).collect()
-}
-
-fn signed(x: f64, decimals: usize) -> String {
-    format!("{x:.decimals$}").replace('-', "−")
 }
 
 /// Sampled rows: measured, exact, z.

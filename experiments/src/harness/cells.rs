@@ -77,14 +77,6 @@ impl Cells {
         Ok(self.find(case, quantity)?.iter().map(|&(_, value)| value).collect())
     }
 
-    /// The same with the cell of each value.
-    ///
-    /// # Errors
-    /// If no map has it.
-    pub fn by_cell(&self, case: &str, quantity: &str) -> anyhow::Result<Vec<(&CellId, f64)>> {
-        Ok(self.find(case, quantity)?.iter().map(|&(index, value)| (&self.ids[index], value)).collect())
-    }
-
     /// Moments over the maps.
     ///
     /// # Errors

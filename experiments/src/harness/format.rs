@@ -80,6 +80,11 @@ fn times_ten_to(power: i32) -> String {
     format!(" × 10{}", raised.collect::<String>())
 }
 
+/// A number with so many decimals and a proper minus.
+pub fn signed(x: f64, decimals: usize) -> String {
+    format!("{x:.decimals$}").replace('-', "−")
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

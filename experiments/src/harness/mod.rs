@@ -30,7 +30,7 @@ pub use claim::{Claim, FAMILY_WISE, FIT_LEVEL, Judged, Kind, MIN_MAPS, Verdict, 
 pub use digest::{Digest, program_digest};
 pub use estimate::Estimate;
 pub use experiment::{CellId, Experiment, Prediction};
-pub use format::{number, with_error};
+pub use format::{number, signed, with_error};
 pub(crate) use progress::duration;
 pub use progress::say;
 pub use provenance::Provenance;

@@ -168,6 +168,12 @@ impl Settings {
         ((self.pick(quick, full) as f64 * self.photon_scale).round() as u64).max(1)
     }
 
+    /// Photons a map and numbers of maps, the photons times the scale, at least 1.
+    pub fn sizes(&self, sizes: &[(u64, u64)]) -> Vec<(u64, u64)> {
+        let scaled = |n: u64| ((n as f64 * self.photon_scale) as u64).max(1);
+        sizes.iter().map(|&(photons, maps)| (scaled(photons), maps)).collect()
+    }
+
     /// What a cell depends on, in words: two cells of equal words and equal program are equal.
     pub fn words(&self) -> String {
         let preset = self.pick("quick", "full");

@@ -5,7 +5,7 @@ use super::figures;
 use super::measure::GROUP;
 use super::predict::{Parts, TERMS, recall};
 use crate::harness::{
-    Cells, Claim, Entry, Estimate, Prediction, Row, Section, Settings, Table, Unit, with_error,
+    Cells, Claim, Entry, Estimate, Prediction, Row, Section, Settings, Table, Unit, signed, with_error,
 };
 use std::collections::HashMap;
 use turbid::integrators::StepRule;
@@ -135,10 +135,6 @@ fn rows(cells: &Cells, results: &[Result]) -> anyhow::Result<Vec<Row>> {
         );
     }
     Ok(rows)
-}
-
-fn signed(x: f64, decimals: usize) -> String {
-    format!("{x:.decimals$}").replace('-', "−")
 }
 
 fn table(results: &[Result]) -> Table {

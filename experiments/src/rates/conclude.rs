@@ -5,7 +5,7 @@ use super::figures;
 use super::fit::{exponent, exponent_of_means};
 use super::predict::Case;
 use crate::harness::{
-    Cells, Claim, Entry, Estimate, Prediction, Row, Section, Settings, Table, Term, Unit, with_error,
+    Cells, Claim, Entry, Estimate, Prediction, Row, Section, Settings, Table, Term, Unit, signed, with_error,
 };
 use turbid::stats::Moments;
 
@@ -221,10 +221,6 @@ fn rows(points: &[Point], curves: &[Curve]) -> anyhow::Result<Vec<Row>> {
         );
     }
     Ok(rows)
-}
-
-fn signed(x: f64, decimals: usize) -> String {
-    format!("{x:.decimals$}").replace('-', "−")
 }
 
 fn table(curves: &[Curve], sizes: &[u64]) -> Table {
