@@ -1,79 +1,136 @@
 //! `exact`: the referee's answers on the command line, each with its bound and how it is known.
 
-#[path = "exact/cases.rs"]
+#[path = "exact/answer.rs"]
+mod answer;
+#[path = "exact/boundary.rs"]
+mod boundary;
+#[path = "exact/cases/mod.rs"]
 mod cases;
+#[path = "exact/format.rs"]
+mod format;
 #[path = "exact/kernel.rs"]
 mod kernel;
+#[path = "exact/nearest.rs"]
+mod nearest;
+#[path = "exact/output.rs"]
+mod output;
+#[path = "exact/plot.rs"]
+mod plot;
+#[path = "exact/progressive.rs"]
+mod progressive;
+#[path = "exact/read.rs"]
+mod read;
 #[path = "exact/slab.rs"]
 mod slab;
-#[path = "exact/table.rs"]
-mod table;
 
+use anyhow::{Context, Result, bail, ensure};
 use clap::error::ErrorKind;
-use clap::{Parser, Subcommand};
+use clap::{CommandFactory, Parser, Subcommand};
+use format::Format;
 use std::io::{self, Write};
 use std::path::PathBuf;
 use std::process::ExitCode;
 
-/// Exact values of light transport in fog, water and smoke.
+/// Exact values of light transport in fog, water and smoke, each with an absolute error bound.
 ///
 /// Lengths are mean free paths. A slab 0 <= t <= tau has its lit face at t = 0, which receives unit irradiance:
 /// fractions and fluences are dimensionless, radiances are per steradian. A cosine mu > 0 points up, towards the lit
-/// face. Every value has an absolute error bound.
+/// face. Every value comes with a bound on its error and with how it is known; a question outside the range in which
+/// the answer is known is refused. Each command's --help states its equation, units, ranges and sources.
 #[derive(Parser)]
 #[command(name = "exact", version, arg_required_else_help = true)]
 struct Cli {
     /// Answer a table of cases: CSV with the columns
-    /// id,geometry,tau,a,w,g,n,mu0,t,r,mu,dphi,extra,quantity; others are ignored. Prints id,value,error,note; a row
-    /// that is not answered here has an empty value and a note saying why.
+    /// id,geometry,tau,a,w,g,n,mu0,t,r,mu,dphi,extra,quantity; others are ignored. Gives id, value, error, method, note
+    /// and the parameters; a row that is not answered here has an empty value and a note saying why.
     #[arg(long, value_name = "FILE.csv")]
     cases: Option<PathBuf>,
+    /// Form of the output: a table for eyes, which shows digits as far as they are certain, or every bit as CSV or
+    /// JSON. Without it a table, and CSV for --cases.
+    #[arg(long, global = true, value_enum, help_heading = "Output")]
+    format: Option<Format>,
+    /// Write to this file, which appears whole or not at all, in place of standard output.
+    #[arg(long, global = true, help_heading = "Output", value_name = "FILE")]
+    out: Option<PathBuf>,
+    /// Draw the field to this file as well.
+    #[arg(long, global = true, help_heading = "Output", value_name = "FILE.svg|FILE.png")]
+    plot: Option<PathBuf>,
     #[command(subcommand)]
     command: Option<Command>,
 }
 
 #[derive(Subcommand)]
 enum Command {
-    /// A homogeneous slab: fluxes, fluence and, with isotropic scattering, radiance of scattered light.
     Slab(slab::Args),
-    /// A smoothing kernel: moments, variance, exponential fields, faces and edges.
     Kernel(kernel::Args),
+    Nearest(nearest::Args),
+    Progressive(progressive::Args),
+    Boundary(boundary::Args),
 }
 
-fn run() -> anyhow::Result<()> {
+impl Command {
+    fn answer(&self, draw: bool) -> Result<answer::Reply> {
+        match self {
+            Command::Slab(args) => slab::answer(args, draw),
+            Command::Kernel(args) => kernel::answer(args, draw),
+            Command::Nearest(args) => nearest::answer(args, draw),
+            Command::Progressive(args) => progressive::answer(args, draw),
+            Command::Boundary(args) => boundary::answer(args, draw),
+        }
+    }
+}
+
+fn run() -> Result<()> {
     let cli = match Cli::try_parse() {
         Ok(cli) => cli,
         Err(error) => return explain(&error),
     };
-    let mut output = Vec::new();
-    if let Some(path) = &cli.cases {
-        anyhow::ensure!(cli.command.is_none(), "--cases stands alone: give it or a command, not both");
-        cases::answer(path, &mut output)?;
+    let paths = [("--cases", cli.cases.as_deref()), ("--out", cli.out.as_deref()), ("--plot", cli.plot.as_deref())];
+    output::apart(&paths)?;
+    let mut bytes = Vec::new();
+    let mut staged = Vec::new();
+    match (&cli.cases, &cli.command) {
+        (Some(_), Some(_)) => bail!("--cases stands alone: give it or a command, not both"),
+        (Some(path), None) => {
+            ensure!(cli.plot.is_none(), "--plot draws the answer to one question; allowed: without --cases");
+            cases::answer(path, cli.format.unwrap_or(Format::Csv), &mut bytes)?;
+        }
+        (None, Some(command)) => {
+            if let Some(path) = &cli.plot {
+                plot::check(path)?;
+            }
+            let reply = command.answer(cli.plot.is_some())?;
+            format::write(&reply.answer, cli.format.unwrap_or(Format::Table), &mut bytes)?;
+            if let Some(path) = &cli.plot {
+                let figure = reply.figure.context("there is nothing to draw for this question")?;
+                staged.push(output::stage(path, plot::encode(&figure, path)?)?);
+            }
+        }
+        (None, None) => bail!("nothing asked; allowed: {}; more with --help", allowed()),
     }
-    match &cli.command {
-        Some(Command::Slab(args)) => slab::answer(args)?.print(&mut output)?,
-        Some(Command::Kernel(args)) => kernel::answer(args)?.print(&mut output)?,
-        None => {}
+    // Everything is written beside its place before anything appears.
+    match &cli.out {
+        Some(path) => staged.push(output::stage(path, bytes)?),
+        None => output::print(&bytes)?,
     }
-    print(&output)
+    staged.into_iter().try_for_each(output::Staged::publish)
 }
 
-fn print(output: &[u8]) -> anyhow::Result<()> {
-    let mut out = io::stdout().lock();
-    out.write_all(output)?;
-    out.flush()?;
-    Ok(())
+/// What can be asked.
+fn allowed() -> String {
+    let names = Cli::command().get_subcommands().map(|c| c.get_name().to_string()).collect::<Vec<_>>();
+    format!("--cases FILE.csv, {}", names.join(", "))
 }
 
 /// Help and version go to stdout; a command line that cannot be understood becomes an error of one line.
-fn explain(error: &clap::Error) -> anyhow::Result<()> {
+fn explain(error: &clap::Error) -> Result<()> {
     let text = error.render().to_string();
     match error.kind() {
-        ErrorKind::DisplayHelp | ErrorKind::DisplayVersion => print(text.as_bytes()),
+        ErrorKind::DisplayHelp | ErrorKind::DisplayVersion => output::print(text.as_bytes()),
         ErrorKind::DisplayHelpOnMissingArgumentOrSubcommand => {
-            anyhow::bail!("nothing asked; allowed: --cases FILE.csv, slab, kernel; more with --help")
+            bail!("nothing asked; allowed: {}; more with --help", allowed())
         }
-        _ => anyhow::bail!("{}", one_line(&text)),
+        _ => bail!("{}", one_line(&text)),
     }
 }
 
@@ -98,10 +155,6 @@ fn one_line(text: &str) -> String {
 
 fn main() -> ExitCode {
     let Err(error) = run() else { return ExitCode::SUCCESS };
-    let closed = |e: &io::Error| e.kind() == io::ErrorKind::BrokenPipe;
-    if error.downcast_ref::<io::Error>().is_some_and(closed) {
-        return ExitCode::SUCCESS;
-    }
     // If stderr is closed too, the exit code is all that is left to say.
     let _ = writeln!(io::stderr().lock(), "error: {error:#}");
     ExitCode::from(2)

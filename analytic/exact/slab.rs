@@ -1,93 +1,162 @@
-//! `exact slab`: one slab, all its fluxes, and the fluence and, with isotropic scattering, radiance where asked.
+//! `exact slab`: one slab, all its fluxes, and fluence, radiance and orders of scattering where asked.
 
-use crate::table::Table;
-use turbid_analytic::{AnisotropicSlab, Incidence, IsotropicSlab};
+use crate::answer::{Answer, Reply};
+use crate::phase::{Named, PhaseArgs};
+use crate::plot::{Curve, crowded, even, figure, panel};
+use crate::read::{incidence, incidence_field, incidence_title};
+use crate::solved::{Method, Solved};
+use anyhow::{Result, ensure};
+use clap::ValueEnum;
+use libm::cos;
+use turbid_analytic::{Incidence, IsotropicSlab};
+use turbid_figure::{Axis, Figure};
 
-/// What to ask of a slab.
+/// A homogeneous slab: fluxes, fluence, radiance of scattered light, orders of scattering.
+///
+/// The radiance I of scattered light obeys, with t the depth below the lit face, mu > 0 upwards and w the albedo,
+///
+///   mu dI/dt = I - w int p(W.W') I(t, W') dW' - w p(W.W0) e^(-t/mu0)/mu0
+///
+/// for a beam of cosine mu0 and unit irradiance on the face (`diffuse`: radiance 1/pi from all directions outside).
+/// Fluxes are fractions of the incident power, R + T + A = 1; T includes the direct light. The fluence includes the
+/// direct light, the radiance [1/sr] leaves it out; both are per unit irradiance.
+///
+/// Isotropic scattering: the Peierls equation phi = phi_0 + (w/2) int E_1(|t-t'|) phi(t') dt' with a residual bound.
+/// Any other phase function: discrete ordinates on two sets of nodes.
+/// Source: Peierls 1939; Case and Zweifel 1967; Chandrasekhar 1960; Stamnes, Tsay, Wiscombe and Jayaweera 1988.
 #[derive(clap::Args)]
+#[command(verbatim_doc_comment)]
 pub struct Args {
-    /// Optical thickness, 1e-12 to 400; 1e-3 to 100 with anisotropic scattering.
+    /// Optical thickness, in mean free paths.
     #[arg(long, allow_negative_numbers = true)]
     tau: f64,
     /// Single-scattering albedo, 0 to 1.
     #[arg(long, allow_negative_numbers = true)]
     albedo: f64,
-    /// Mean cosine of scattering (Henyey-Greenstein), -0.95 to 0.95; other than 0 it gives fluxes and fluence only.
-    #[arg(long, default_value_t = 0.0, allow_negative_numbers = true)]
-    g: f64,
+    #[command(flatten)]
+    phase: PhaseArgs,
     /// Cosine of incidence of a beam, above 0 to 1, or the word diffuse (Lambertian light).
     #[arg(long, default_value = "1", value_parser = incidence, allow_negative_numbers = true)]
     mu0: Incidence,
-    /// Depths in mean free paths at which to give the fluence (direct light included).
+    /// Depths in mean free paths, 0 to tau, at which to give the fluence (direct light included).
     #[arg(long, num_args = 1.., value_name = "T", allow_negative_numbers = true)]
     depth: Vec<f64>,
     /// Signed cosines (positive: towards the lit face) at which to give the radiance of scattered light, at every
     /// depth, or without depths where the light leaves.
     #[arg(long, num_args = 1.., value_name = "MU", allow_negative_numbers = true)]
     mu: Vec<f64>,
-    /// Orders of scattering to give one by one: 0 is direct light.
+    /// Azimuths of those directions, in radians: that of propagation minus that of the beam.
+    #[arg(long, num_args = 1.., value_name = "PHI", default_values_t = [0.0], allow_negative_numbers = true)]
+    azimuth: Vec<f64>,
+    /// Orders of scattering to give one by one, isotropic scattering only: 0 is direct light.
     #[arg(long, num_args = 1.., value_name = "N")]
     order: Vec<u32>,
+    /// How to solve it.
+    #[arg(long, value_enum, default_value = "auto")]
+    method: Method,
+    /// What --plot draws: fluence against depth, or radiance against the angle from straight up, in the plane of the
+    /// first azimuth, one curve for each depth (without depths: at both faces).
+    #[arg(long, value_enum, default_value = "fluence")]
+    draw: Draw,
 }
 
-/// Reads `diffuse` or a cosine; its range is checked by the solver.
-pub fn incidence(text: &str) -> Result<Incidence, String> {
-    if text == "diffuse" {
-        return Ok(Incidence::Diffuse);
-    }
-    match text.parse() {
-        Ok(mu0) => Ok(Incidence::Beam { mu0 }),
-        Err(_) => Err(format!("mu0 is '{text}'; allowed: a number above 0 to 1, or diffuse")),
-    }
+/// What a figure of a slab shows.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum Draw {
+    /// Fluence against depth.
+    Fluence,
+    /// Radiance against direction.
+    Radiance,
 }
 
 /// Solves the slab and answers.
-pub fn answer(args: &Args) -> anyhow::Result<Table> {
-    if args.g != 0.0 {
-        return answer_anisotropic(args);
-    }
-    let slab = IsotropicSlab::new(args.tau, args.albedo, args.mu0)?;
-    let mut table = Table::default();
-    table.add("reflectance", slab.reflectance());
-    table.add("transmittance", slab.transmittance());
-    table.add("transmittance direct", slab.transmittance_direct());
-    table.add("transmittance diffuse", slab.transmittance_diffuse());
-    table.add("absorptance", slab.absorptance());
+pub fn answer(args: &Args, draw: bool) -> Result<Reply> {
+    let named = args.phase.read()?;
+    let slab = Solved::new(args.tau, args.albedo, &named, args.mu0, args.method)?;
+    let mut answer = Answer::new("slab")
+        .with("tau", args.tau)
+        .with("albedo", args.albedo)
+        .with("phase", named.name.as_str())
+        .with("mu0", incidence_field(args.mu0));
+    answer.add("reflectance", slab.reflectance());
+    answer.add("transmittance", slab.transmittance());
+    answer.add("transmittance_direct", slab.transmittance_direct());
+    answer.add("transmittance_diffuse", slab.transmittance_diffuse());
+    answer.add("absorptance", slab.absorptance());
     for &t in &args.depth {
-        table.add(format!("fluence t={t}"), slab.fluence(t)?);
+        answer.add_at("fluence", vec![("t", t.into())], slab.fluence(t)?);
     }
+    for (t, mu, dphi) in directions(args, &named) {
+        let mut at = vec![("t", t.into()), ("mu", mu.into())];
+        if !named.is_isotropic() {
+            at.push(("azimuth", dphi.into()));
+        }
+        answer.add_at("radiance", at, slab.radiance(t, mu, dphi)?);
+    }
+    if !args.order.is_empty() {
+        orders(args, &named, &mut answer)?;
+    }
+    let figure = match (draw, args.draw) {
+        (false, _) => None,
+        (true, Draw::Fluence) => Some(fluence(args, &named, &slab)?),
+        (true, Draw::Radiance) => Some(radiance(args, &named, &slab)?),
+    };
+    Ok(Reply { answer, figure })
+}
+
+/// Where and whither radiances are asked; isotropic scattering has one azimuth like the other.
+fn directions(args: &Args, named: &Named) -> Vec<(f64, f64, f64)> {
+    let azimuths = if named.is_isotropic() { &args.azimuth[..1] } else { &args.azimuth };
+    let mut all = Vec::new();
     for &mu in &args.mu {
         let exit = [if mu >= 0.0 { 0.0 } else { args.tau }];
         let depths = if args.depth.is_empty() { exit.as_slice() } else { &args.depth };
         for &t in depths {
-            table.add(format!("radiance t={t} mu={mu}"), slab.radiance(t, mu)?);
+            all.extend(azimuths.iter().map(|&dphi| (t, mu, dphi)));
         }
     }
-    for &n in &args.order {
-        table.add(format!("reflectance order={n}"), slab.reflectance_of_order(n)?);
-        table.add(format!("transmittance order={n}"), slab.transmittance_of_order(n)?);
-        for &t in &args.depth {
-            table.add(format!("fluence t={t} order={n}"), slab.fluence_of_order(n, t)?);
-        }
-    }
-    Ok(table)
+    all
 }
 
-fn answer_anisotropic(args: &Args) -> anyhow::Result<Table> {
-    let slab = AnisotropicSlab::new(args.tau, args.albedo, args.g, args.mu0)?;
-    anyhow::ensure!(
-        args.mu.is_empty() && args.order.is_empty(),
-        "g is {}; allowed with --mu and --order: 0",
-        args.g
-    );
-    let mut table = Table::default();
-    table.add("reflectance", slab.reflectance());
-    table.add("transmittance", slab.transmittance());
-    table.add("transmittance direct", slab.transmittance_direct());
-    table.add("transmittance diffuse", slab.transmittance_diffuse());
-    table.add("absorptance", slab.absorptance());
-    for &t in &args.depth {
-        table.add(format!("fluence t={t}"), slab.fluence(t)?);
+fn orders(args: &Args, named: &Named, answer: &mut Answer) -> Result<()> {
+    ensure!(named.is_isotropic(), "phase function is {}; allowed with --order: isotropic", named.name);
+    let slab = IsotropicSlab::new(args.tau, args.albedo, args.mu0)?;
+    for &n in &args.order {
+        answer.add_at("reflectance_of_order", vec![("order", n.into())], slab.reflectance_of_order(n)?);
+        answer.add_at("transmittance_of_order", vec![("order", n.into())], slab.transmittance_of_order(n)?);
+        for &t in &args.depth {
+            let at = vec![("t", t.into()), ("order", n.into())];
+            answer.add_at("fluence_of_order", at, slab.fluence_of_order(n, t)?);
+        }
     }
-    Ok(table)
+    Ok(())
+}
+
+fn title(args: &Args, named: &Named) -> String {
+    let light = incidence_title(args.mu0);
+    format!("Slab τ = {}, albedo {}, {}, {light}", args.tau, args.albedo, named.name)
+}
+
+fn fluence(args: &Args, named: &Named, slab: &Solved) -> Result<Figure> {
+    let curve = Curve::sample("", &crowded(args.tau, 121), |t| Ok(slab.fluence(t)?.value))?;
+    let axis = Axis::linear("Depth t", "mean free paths");
+    Ok(figure(title(args, named), panel(axis, "Fluence over irradiance", "", vec![curve])))
+}
+
+fn radiance(args: &Args, named: &Named, slab: &Solved) -> Result<Figure> {
+    let dphi = args.azimuth[0];
+    let faces = [0.0, args.tau];
+    let depths = if args.depth.is_empty() { faces.as_slice() } else { &args.depth };
+    let mut curves = Vec::new();
+    for &t in depths {
+        // On a face scattered light only leaves.
+        let (from, to) = (if t == args.tau { 90.0 } else { 0.0 }, if t == 0.0 { 90.0 } else { 180.0 });
+        curves.push(Curve::sample(format!("t = {t}"), &even(from, to, 61), |angle| {
+            Ok(slab.radiance(t, cos(angle.to_radians()), dphi)?.value)
+        })?);
+    }
+    let axis = Axis::linear("Angle from straight up", "°").with_range(0.0, 180.0);
+    let plane = if named.is_isotropic() { String::new() } else { format!(", azimuth {dphi}") };
+    let panel = panel(axis, "Radiance of scattered light over irradiance", "1/sr", curves);
+    Ok(figure(format!("{}{plane}", title(args, named)), panel))
 }

@@ -1,0 +1,148 @@
+//! `exact boundary`: photon estimates near the faces of a body.
+
+use crate::answer::{Answer, Reply};
+use crate::plot::{Curve, crowded, even, figure, panel};
+use crate::read::{kernel, kernel_name};
+use anyhow::Result;
+use clap::ValueEnum;
+use turbid_analytic::boundary::{Body, Treatment, treated_mean_symmetric, treated_mean_uniform, treated_variance};
+use turbid_analytic::{Kernel, Value};
+use turbid_figure::Axis;
+
+/// Photon estimates near a face: four treatments of the ball that the face cuts.
+///
+/// With K_r of unit integral over the whole ball, z the depth along the inward normal, M_j = int K_r z^j over the
+/// medium and S_j = sum q_p K_r(x_p - x) z_p^j over the photons:
+///
+///   none          S_0                            clipped        S_0/M_0
+///   reflection    S_0 + mirror images            local linear   (M_2 S_0 - M_1 S_1)/(M_0 M_2 - M_1^2)
+///
+/// Given are the expectation in a uniform field (1 is right), and in one that falls as e^(-s depth), and the variance
+/// over that of the whole ball in a uniform field. Lengths are in one unit of your choice.
+/// Source: Jones 1993 (local linear), Silverman 1986 (reflection), Jensen and Christensen 1998 (none).
+#[derive(clap::Args)]
+#[command(verbatim_doc_comment)]
+pub struct Args {
+    /// The body that the medium fills.
+    #[arg(long, value_enum, default_value = "half-space")]
+    body: Shape,
+    /// Thickness of the slab, or radius of the sphere, 1e-12 to 1e12.
+    #[arg(long, default_value_t = 1.0, allow_negative_numbers = true)]
+    size: f64,
+    /// Radius of the kernel, 1e-12 to 1e12.
+    #[arg(long, default_value_t = 1.0, allow_negative_numbers = true)]
+    radius: f64,
+    /// Depths of probes below the nearest face, inside the body.
+    #[arg(long, num_args = 1.., value_name = "H", default_values_t = [0.0, 0.5, 1.0], allow_negative_numbers = true)]
+    depth: Vec<f64>,
+    /// Decay s of the field e^(-s depth), in 1/length; 0 for the uniform field alone.
+    #[arg(long, default_value_t = 0.0, allow_negative_numbers = true)]
+    decay: f64,
+    /// Kernel, by name as in `exact kernel`.
+    #[arg(long, default_value = "uniform", value_parser = kernel)]
+    kernel: Kernel,
+}
+
+/// Bodies of one length.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum Shape {
+    /// z >= 0.
+    HalfSpace,
+    /// 0 <= z <= size.
+    Slab,
+    /// A ball of radius size.
+    Sphere,
+}
+
+/// A question: the body and everything about the kernel.
+struct Asked<'a> {
+    args: &'a Args,
+    body: Body,
+}
+
+impl Asked<'_> {
+    /// A probe below the face.
+    fn probe(&self, depth: f64) -> [f64; 3] {
+        match self.body {
+            Body::Sphere { radius } => [0.0, 0.0, depth - radius],
+            _ => [0.0, 0.0, depth],
+        }
+    }
+
+    fn uniform(&self, treatment: Treatment, depth: f64) -> Result<Value> {
+        let args = self.args;
+        Ok(treated_mean_uniform(treatment, args.kernel, self.body, self.probe(depth), args.radius)?)
+    }
+
+    /// Expectation in the field e^(-s (place - probe)): over the field at the probe.
+    fn decaying(&self, treatment: Treatment, depth: f64) -> Result<Value> {
+        let args = self.args;
+        let fall = |place: f64| libm::exp(-args.decay * (place - depth));
+        let field = |z: f64| match self.body {
+            Body::Sphere { radius } => fall(radius - z),
+            _ => fall(z),
+        };
+        Ok(treated_mean_symmetric(treatment, args.kernel, self.body, self.probe(depth), args.radius, field)?)
+    }
+}
+
+fn name(treatment: Treatment) -> &'static str {
+    match treatment {
+        Treatment::None => "none",
+        Treatment::Clipped => "clipped",
+        Treatment::Reflection => "reflection",
+        Treatment::LocalLinear => "local linear",
+    }
+}
+
+/// Answers; the figure shows the expectation against the depth, one curve a treatment.
+pub fn answer(args: &Args, draw: bool) -> Result<Reply> {
+    let body = match args.body {
+        Shape::HalfSpace => Body::HalfSpace,
+        Shape::Slab => Body::Slab { thickness: args.size },
+        Shape::Sphere => Body::Sphere { radius: args.size },
+    };
+    let asked = Asked { args, body };
+    let shape = args.body.to_possible_value().map_or_else(String::new, |v| v.get_name().to_string());
+    let mut answer = Answer::new("boundary").with("body", shape.as_str());
+    if args.body != Shape::HalfSpace {
+        answer = answer.with("size", args.size);
+    }
+    answer = answer.with("radius", args.radius).with("kernel", kernel_name(args.kernel));
+    if args.decay != 0.0 {
+        answer = answer.with("decay", args.decay);
+    }
+    for &depth in &args.depth {
+        for treatment in Treatment::ALL {
+            let at = || vec![("treatment", name(treatment).into()), ("depth", depth.into())];
+            answer.add_at("mean_uniform", at(), asked.uniform(treatment, depth)?);
+            if args.decay != 0.0 {
+                answer.add_at("mean_decaying", at(), asked.decaying(treatment, depth)?);
+            }
+            let variance = treated_variance(treatment, args.kernel, body, asked.probe(depth), args.radius)?;
+            answer.add_at("variance_over_whole_ball", at(), variance);
+        }
+    }
+    let figure = if draw { Some(drawn(&asked, &shape)?) } else { None };
+    Ok(Reply { answer, figure })
+}
+
+fn drawn(asked: &Asked<'_>, shape: &str) -> Result<turbid_figure::Figure> {
+    let args = asked.args;
+    let depths = match args.body {
+        Shape::HalfSpace => even(0.0, 1.25 * args.radius, 81),
+        Shape::Slab => crowded(args.size, 81),
+        Shape::Sphere => even(0.0, args.size, 81),
+    };
+    let curve = |treatment| {
+        Curve::sample(name(treatment), &depths, |depth| {
+            let mean = if args.decay == 0.0 { Asked::uniform } else { Asked::decaying };
+            Ok(mean(asked, treatment, depth)?.value)
+        })
+    };
+    let curves = Treatment::ALL.into_iter().map(curve).collect::<Result<Vec<_>>>()?;
+    let field = if args.decay == 0.0 { "uniform field".into() } else { format!("field exp(−{} h)", args.decay) };
+    let title = format!("Estimates at a face: {shape}, {} kernel of radius {}, {field}", kernel_name(args.kernel), args.radius);
+    let axis = Axis::linear("Depth of the probe h", "length");
+    Ok(figure(title, panel(axis, "Expectation over the field at the probe", "", curves)))
+}

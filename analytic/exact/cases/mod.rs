@@ -1,0 +1,143 @@
+//! `exact --cases`: a table of questions, each medium solved once.
+
+mod kernel;
+mod row;
+mod slab;
+
+use crate::answer::shortest;
+use crate::format::{Format, aligned, digits};
+use anyhow::{Context, Result, anyhow, bail};
+use row::{COLUMNS, Row};
+use serde::ser::{Serialize, SerializeMap, Serializer};
+use std::path::Path;
+use turbid_analytic::Value;
+
+/// A value, or why there is none.
+pub type Answered = std::result::Result<Value, String>;
+
+/// Reads the questions, answers them, writes them in the order of the file.
+pub fn answer(path: &Path, format: Format, output: &mut Vec<u8>) -> Result<()> {
+    let name = path.display();
+    let rows = read(path)?;
+    // What a medium has solved serves all its rows: answer by medium, print in the order of the file.
+    let mut order: Vec<usize> = (0..rows.len()).collect();
+    let medium = |i: usize| ["geometry", "tau", "a", "n", "w", "g", "extra"].map(|column| rows[i].text(column));
+    order.sort_by(|&a, &b| medium(a).cmp(&medium(b)));
+    let mut answers: Vec<Option<Answered>> = rows.iter().map(|_| None).collect();
+    let mut slabs = slab::Slabs::default();
+    for i in order {
+        let row = &rows[i];
+        let one = match row.text("geometry") {
+            "slab" | "slabXY" => slab::answer(row, &mut slabs),
+            "kernel" => kernel::answer(row),
+            other => Ok(Err(format!("geometry {other} is not answered here; allowed: {GEOMETRIES}"))),
+        };
+        answers[i] = Some(one.with_context(|| format!("{name}:{}", row.line))?);
+    }
+    let mut answered = Vec::new();
+    for (row, answer) in rows.iter().zip(answers) {
+        match answer {
+            Some(answer) => answered.push(Line { row, answer }),
+            None => bail!("{name}:{}: no answer was made", row.line),
+        }
+    }
+    write(&answered, format, output)
+}
+
+const GEOMETRIES: &str = "slab, slabXY, kernel";
+
+fn read(path: &Path) -> Result<Vec<Row>> {
+    let name = path.display();
+    let file = std::fs::File::open(path).with_context(|| format!("{name}"))?;
+    let mut reader = csv::Reader::from_reader(file);
+    let headers = reader.headers().with_context(|| format!("{name}"))?.clone();
+    let mut places = [0; COLUMNS.len()];
+    for (place, column) in places.iter_mut().zip(COLUMNS) {
+        *place = headers
+            .iter()
+            .position(|h| h.trim() == column)
+            .ok_or_else(|| anyhow!("{name}:1: no column '{column}'; needed: {}", COLUMNS.join(",")))?;
+    }
+    let mut rows = Vec::new();
+    for record in reader.records() {
+        let record = record.with_context(|| format!("{name}"))?;
+        let line = record.position().map_or(0, csv::Position::line);
+        rows.push(Row { line, fields: places.map(|p| record.get(p).unwrap_or("").to_string()) });
+    }
+    Ok(rows)
+}
+
+/// A question beside its answer.
+struct Line<'a> {
+    row: &'a Row,
+    answer: Answered,
+}
+
+impl Line<'_> {
+    fn note(&self) -> &str {
+        self.answer.as_ref().err().map_or("", String::as_str)
+    }
+}
+
+impl Serialize for Line<'_> {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let mut map = serializer.serialize_map(None)?;
+        map.serialize_entry("id", self.row.text("id"))?;
+        for column in COLUMNS.iter().skip(1).filter(|column| !self.row.text(column).is_empty()) {
+            // Numbers as numbers; words such as `diffuse` as words.
+            match self.row.text(column).parse::<f64>() {
+                Ok(number) if number.is_finite() => map.serialize_entry(column, &number)?,
+                _ => map.serialize_entry(column, self.row.text(column))?,
+            }
+        }
+        match &self.answer {
+            Ok(value) => {
+                map.serialize_entry("value", &value.value)?;
+                map.serialize_entry("error", &value.error)?;
+                map.serialize_entry("method", value.method)?;
+            }
+            Err(note) => {
+                map.serialize_entry("value", &None::<f64>)?;
+                map.serialize_entry("note", note)?;
+            }
+        }
+        map.end()
+    }
+}
+
+fn write(lines: &[Line<'_>], format: Format, output: &mut Vec<u8>) -> Result<()> {
+    match format {
+        Format::Json => {
+            serde_json::to_writer_pretty(&mut *output, lines)?;
+            output.push(b'\n');
+        }
+        Format::Csv => {
+            let mut writer = csv::Writer::from_writer(output);
+            let head = ["id", "value", "error", "method", "note"].into_iter();
+            writer.write_record(head.chain(COLUMNS.into_iter().skip(1)))?;
+            for line in lines {
+                let cells = match &line.answer {
+                    Ok(v) => [format!("{:e}", v.value), shortest(v.error), v.method.to_string()],
+                    Err(_) => Default::default(),
+                };
+                let [value, error, method] = &cells;
+                let known = [line.row.text("id"), value, error, method, line.note()].into_iter();
+                writer.write_record(known.chain(COLUMNS.iter().skip(1).map(|column| line.row.text(column))))?;
+            }
+            writer.flush()?;
+        }
+        Format::Table => {
+            let cells = |line: &Line<'_>| {
+                let mut cells = ["id", "quantity"].map(|column| line.row.text(column).to_string()).to_vec();
+                cells.extend(match &line.answer {
+                    Ok(v) => [digits(*v), format!("{:.0e}", v.error), v.method.to_string()],
+                    Err(note) => [String::new(), String::new(), note.clone()],
+                });
+                cells
+            };
+            let head = ["id", "quantity", "value", "error", "how known"];
+            aligned(&head, &lines.iter().map(cells).collect::<Vec<_>>(), output)?;
+        }
+    }
+    Ok(())
+}

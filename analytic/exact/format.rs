@@ -1,0 +1,124 @@
+//! An answer as a table for eyes, as CSV or as JSON.
+
+use crate::answer::{Answer, Row, shortest};
+use anyhow::Result;
+use clap::ValueEnum;
+use std::io::Write;
+use turbid_analytic::Value;
+
+/// The form of the output.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum Format {
+    /// Aligned columns, digits as far as they are certain.
+    Table,
+    /// Comma-separated, one row a value, every bit of it.
+    Csv,
+    /// One object, every bit of its numbers.
+    Json,
+}
+
+/// Writes an answer.
+pub fn write(answer: &Answer, format: Format, out: &mut Vec<u8>) -> Result<()> {
+    answer.check()?;
+    match format {
+        Format::Table => table(answer, out),
+        Format::Csv => csv(answer, out),
+        Format::Json => {
+            serde_json::to_writer_pretty(&mut *out, answer)?;
+            Ok(out.push(b'\n'))
+        }
+    }
+}
+
+fn table(answer: &Answer, out: &mut Vec<u8>) -> Result<()> {
+    let parameters: Vec<String> = answer.parameters.iter().map(|(name, f)| format!("{name} = {f}")).collect();
+    writeln!(out, "{}{}{}", answer.problem, if parameters.is_empty() { "" } else { ": " }, parameters.join(", "))?;
+    let coordinates = answer.coordinates();
+    let mut head = vec!["quantity"];
+    head.extend(&coordinates);
+    head.extend(["value", "error", "how known"]);
+    let line = |row: &Row| {
+        let mut cells = vec![row.quantity.to_string()];
+        cells.extend(coordinates.iter().map(|name| row.place(name)));
+        cells.extend([digits(row.value), format!("{:.0e}", row.value.error), row.value.method.to_string()]);
+        cells
+    };
+    aligned(&head, &answer.rows.iter().map(line).collect::<Vec<_>>(), out)
+}
+
+/// Writes cells in columns under a head.
+pub fn aligned(head: &[&str], lines: &[Vec<String>], out: &mut Vec<u8>) -> Result<()> {
+    let length = |cell: &str| cell.chars().count();
+    let width = |c: usize| lines.iter().map(|line| length(&line[c])).fold(length(head[c]), usize::max);
+    let widths: Vec<usize> = (0..head.len()).map(width).collect();
+    let mut write = |cells: &mut dyn Iterator<Item = &str>| {
+        let padded = cells.zip(&widths).map(|(cell, &width)| format!("{cell:width$}"));
+        writeln!(out, "{}", padded.collect::<Vec<_>>().join("  ").trim_end())
+    };
+    write(&mut head.iter().copied())?;
+    for line in lines {
+        write(&mut line.iter().map(String::as_str))?;
+    }
+    Ok(())
+}
+
+/// A value to the decade of its bound.
+pub fn digits(value: Value) -> String {
+    let (v, error) = (value.value, value.error);
+    if v == 0.0 {
+        return "0".into();
+    }
+    let decade = |x: f64| libm::floor(libm::log10(x)) as i32;
+    let error_decade = if error > 0.0 { decade(error) } else { -400 };
+    let size = decade(v.abs());
+    let after = (size - error_decade).clamp(0, 16);
+    if (-4..=6).contains(&size) && after >= size {
+        format!("{v:.*}", (after - size) as usize)
+    } else {
+        format!("{v:.*e}", after as usize)
+    }
+}
+
+fn csv(answer: &Answer, out: &mut Vec<u8>) -> Result<()> {
+    let coordinates = answer.coordinates();
+    let mut head = vec!["problem"];
+    // A parameter that a row states for itself stands in the row's column.
+    let own = || answer.parameters.iter().filter(|(name, _)| !coordinates.contains(name));
+    head.extend(own().map(|(name, _)| *name));
+    head.push("quantity");
+    head.extend(&coordinates);
+    head.extend(["value", "error", "method"]);
+    let mut writer = csv::Writer::from_writer(out);
+    writer.write_record(&head)?;
+    for row in &answer.rows {
+        let mut cells = vec![answer.problem.to_string()];
+        cells.extend(own().map(|(_, field)| field.to_string()));
+        cells.push(row.quantity.to_string());
+        for name in &coordinates {
+            cells.push(row.place(name));
+        }
+        cells.extend([shortest(row.value.value), shortest(row.value.error), row.value.method.to_string()]);
+        writer.write_record(&cells)?;
+    }
+    writer.flush()?;
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn only_certain_digits_are_shown() {
+        let show = |value, error| digits(Value { value, error, method: "" });
+        assert_eq!(show(0.267_410_335_069_362_74, 2e-14), "0.26741033506936");
+        assert_eq!(show(-0.267_410_335_069_362_74, 2e-5), "-0.26741");
+        assert_eq!(show(4.0, 0.0), "4.0000000000000000");
+        assert_eq!(show(1.5e-9, 1e-15), "1.500000e-9");
+        assert_eq!(show(123.456, 0.5), "123.5");
+        assert_eq!(show(123.456, 50.0), "1.2e2");
+        assert_eq!(show(0.0, 1.0), "0");
+        // All of it uncertain: the first digit, at least.
+        assert_eq!(show(3.0, 1e3), "3");
+    }
+}

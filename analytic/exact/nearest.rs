@@ -1,0 +1,86 @@
+//! `exact nearest`: the estimate from the k nearest points.
+
+use crate::answer::{Answer, Reply};
+use crate::plot::{Curve, even, figure, panel};
+use crate::read::{dimension, kernel, kernel_name};
+use anyhow::{Result, ensure};
+use turbid_analytic::nearest::{
+    biased_factor, nearest_expectation_exponential, nearest_square_distance, nearest_variance_uniform,
+};
+use turbid_analytic::{Dimension, Kernel};
+use turbid_figure::Axis;
+
+/// The k nearest of independent points: what the estimate expects, how it scatters, how far it gathers.
+///
+/// The rule: r_k is the distance of the k-th nearest point, the kernel of radius r_k is summed over the k - 1 nearer
+/// ones. For the uniform kernel that is (k-1)/(N V(r_k)), unbiased where the density is uniform; k over the same ball
+/// reads k/(k-1) high. In the field e^(b.x) the mean is
+///
+///   E = int_0^inf p_(k-2)(s) M(r(s)) ds,   p_n(s) = e^(-s) s^n/n!,   s = points expected within r,
+///
+/// M(r) the kernel's mean of the field at radius r. Lengths are in units of your choice, densities per unit volume.
+/// Source: Loftsgaarden and Quesenberry 1965; Mack and Rosenblatt 1979.
+#[derive(clap::Args)]
+#[command(verbatim_doc_comment)]
+pub struct Args {
+    /// Points gathered, 2 to 1e6 (3 and more for a variance).
+    #[arg(long)]
+    k: u32,
+    /// Dimension of space: 1, 2 or 3.
+    #[arg(long, default_value = "3", value_parser = dimension)]
+    dimension: Dimension,
+    /// Points expected per unit length, area or volume at the probe, 1e-100 to 1e100.
+    #[arg(long, default_value_t = 1.0, allow_negative_numbers = true)]
+    density: f64,
+    /// Number of points in all; without it a Poisson number.
+    #[arg(long)]
+    points: Option<u64>,
+    /// Kernel, by name as in `exact kernel`.
+    #[arg(long, default_value = "uniform", value_parser = kernel)]
+    kernel: Kernel,
+    /// Gradients |b| of exponential fields, in 1/length: gives the expectation over the field at the probe.
+    #[arg(long, num_args = 1.., value_name = "B", allow_negative_numbers = true)]
+    gradient: Vec<f64>,
+    /// Largest radius of a gather; without it, six times the radius within which k points are expected.
+    #[arg(long, allow_negative_numbers = true)]
+    cap: Option<f64>,
+}
+
+/// Answers; the figure shows the expectation in an exponential field against its gradient.
+pub fn answer(args: &Args, draw: bool) -> Result<Reply> {
+    let (k, d, density) = (args.k, args.dimension, args.density);
+    let mut answer = Answer::new("nearest")
+        .with("k", k)
+        .with("dimension", d.number())
+        .with("density", density)
+        .with("kernel", kernel_name(args.kernel));
+    if let Some(points) = args.points {
+        answer = answer.with("points", points);
+    }
+    answer.add("k_over_volume_factor", biased_factor(k)?);
+    if k > 2 {
+        answer.add("relative_variance_uniform", nearest_variance_uniform(k, args.points)?);
+    }
+    answer.add("mean_square_distance_k", nearest_square_distance(d, k, density, args.points)?);
+    answer.add("mean_square_distance_k_minus_1", nearest_square_distance(d, k - 1, density, args.points)?);
+    let typical = libm::pow(f64::from(k) / (density * d.ball_volume()), 1.0 / f64::from(d.number()));
+    let cap = args.cap.unwrap_or(6.0 * typical);
+    for &b in &args.gradient {
+        let mean = nearest_expectation_exponential(args.kernel, d, k, density, b, cap)?;
+        answer.add_at("expectation_exponential", vec![("gradient", b.into()), ("cap", cap.into())], mean);
+    }
+    let figure = if draw { Some(drawn(args, typical, cap)?) } else { None };
+    Ok(Reply { answer, figure })
+}
+
+fn drawn(args: &Args, typical: f64, cap: f64) -> Result<turbid_figure::Figure> {
+    ensure!(typical.is_finite() && typical > 0.0, "density is {}; allowed: 1e-100 to 1e100", args.density);
+    let largest = args.gradient.iter().fold(1.0 / typical, |a: f64, b| a.max(b.abs()));
+    let mean = |k: u32, b: f64| {
+        Ok(nearest_expectation_exponential(args.kernel, args.dimension, k, args.density, b, cap)?.value)
+    };
+    let curve = Curve::sample("", &even(0.0, largest, 61), |b| mean(args.k, b))?;
+    let title = format!("The {} nearest in the field exp(b·x), {} dimensions", args.k, args.dimension.number());
+    let x = Axis::linear("Gradient |b|", "1/length");
+    Ok(figure(title, panel(x, "Expectation over the field at the probe", "", vec![curve])))
+}

@@ -1,0 +1,99 @@
+//! Phase functions on the command line.
+
+use anyhow::{Context, Result, anyhow, bail};
+use std::path::{Path, PathBuf};
+use turbid_analytic::Phase;
+
+/// How scattering turns light; isotropic when nothing is given.
+#[derive(clap::Args, Clone, Default)]
+pub struct PhaseArgs {
+    /// Henyey-Greenstein scattering of this mean cosine.
+    #[arg(long, help_heading = "Phase function", allow_negative_numbers = true, conflicts_with_all = ["rayleigh", "moments"])]
+    g: Option<f64>,
+    /// With --g and --share: the mean cosine of a second Henyey-Greenstein term.
+    #[arg(long, help_heading = "Phase function", allow_negative_numbers = true, requires = "g", requires = "share")]
+    g2: Option<f64>,
+    /// Share of the first of two terms, 0 to 1.
+    #[arg(long, help_heading = "Phase function", allow_negative_numbers = true, requires = "g2")]
+    share: Option<f64>,
+    /// Rayleigh scattering without polarisation, 3 (1 + cos^2)/(16 pi).
+    #[arg(long, help_heading = "Phase function", conflicts_with = "moments")]
+    rayleigh: bool,
+    /// Legendre moments chi_0 = 1, chi_1, ... of p = 1/(4 pi) sum (2l+1) chi_l P_l, separated by commas, blanks or
+    /// lines; # begins a comment.
+    #[arg(long, help_heading = "Phase function", value_name = "FILE")]
+    moments: Option<PathBuf>,
+}
+
+/// A phase function under the name that tables and titles give it.
+#[derive(Clone)]
+pub struct Named {
+    /// The phase function.
+    pub phase: Phase,
+    /// Its name and parameters.
+    pub name: String,
+    /// Its g, if it is Henyey-Greenstein or isotropic.
+    pub single_g: Option<f64>,
+}
+
+impl Named {
+    /// Henyey-Greenstein, isotropic at 0.
+    pub fn henyey_greenstein(g: f64) -> Result<Self> {
+        let (phase, name) = if g == 0.0 {
+            (Phase::isotropic(), "isotropic".to_string())
+        } else {
+            (Phase::henyey_greenstein(g)?, format!("Henyey-Greenstein g={g}"))
+        };
+        Ok(Named { phase, name, single_g: Some(g) })
+    }
+
+    /// Whether light is scattered alike in all directions.
+    pub fn is_isotropic(&self) -> bool {
+        self.single_g == Some(0.0)
+    }
+
+    /// The g of Henyey-Greenstein, where nothing else will do.
+    pub fn only_g(&self, with: &str) -> Result<f64> {
+        self.single_g
+            .ok_or_else(|| anyhow!("phase function is {}; allowed with {with}: isotropic, --g", self.name))
+    }
+}
+
+impl PhaseArgs {
+    /// The phase function asked for.
+    pub fn read(&self) -> Result<Named> {
+        if self.rayleigh {
+            return Ok(Named { phase: Phase::rayleigh(), name: "Rayleigh".into(), single_g: None });
+        }
+        if let Some(path) = &self.moments {
+            return from_file(path);
+        }
+        match (self.g, self.g2, self.share) {
+            (Some(g1), Some(g2), Some(share)) => Ok(Named {
+                phase: Phase::two_term(g1, g2, share)?,
+                name: format!("two-term g={g1} g2={g2} share={share}"),
+                single_g: None,
+            }),
+            (g, _, _) => Named::henyey_greenstein(g.unwrap_or(0.0)),
+        }
+    }
+}
+
+fn from_file(path: &Path) -> Result<Named> {
+    let shown = path.display();
+    let text = std::fs::read_to_string(path).with_context(|| format!("{shown}"))?;
+    let mut moments = Vec::new();
+    for (i, line) in text.lines().enumerate() {
+        let line = line.split('#').next().unwrap_or_default();
+        for word in line.split([',', ' ', '\t', ';']).filter(|word| !word.is_empty()) {
+            match word.parse::<f64>() {
+                Ok(moment) if moment.abs() <= 1.0 => moments.push(moment),
+                _ => bail!("{shown}:{}: chi_{} is '{word}'; allowed: a number from -1 to 1", i + 1, moments.len()),
+            }
+        }
+    }
+    let count = moments.len();
+    let phase = Phase::legendre(moments).with_context(|| format!("{shown}"))?;
+    let file = path.file_name().unwrap_or_default().to_string_lossy();
+    Ok(Named { phase, name: format!("{count} Legendre moments of {file}"), single_g: None })
+}

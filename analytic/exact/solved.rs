@@ -1,0 +1,98 @@
+//! A slab by whichever method serves the question.
+
+use crate::phase::Named;
+use anyhow::{Result, bail};
+use clap::ValueEnum;
+use turbid_analytic::{AnisotropicMedium, AnisotropicSlab, Incidence, IsotropicSlab, Value};
+
+/// How a slab is solved.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum Method {
+    /// Peierls for isotropic scattering up to a thickness of 400, discrete ordinates for the rest.
+    Auto,
+    /// The Peierls equation (isotropic scattering).
+    Peierls,
+    /// Discrete ordinates.
+    Ordinates,
+}
+
+/// Thickness up to which the Peierls equation is solved.
+const PEIERLS_UP_TO: f64 = 400.0;
+
+/// A solved slab.
+pub enum Solved {
+    /// By the Peierls equation.
+    Peierls(IsotropicSlab),
+    /// By discrete ordinates.
+    Ordinates(AnisotropicSlab),
+}
+
+impl Solved {
+    /// Solves a slab.
+    pub fn new(tau: f64, albedo: f64, named: &Named, incidence: Incidence, method: Method) -> Result<Self> {
+        let isotropic = named.is_isotropic();
+        if method == Method::Peierls && !isotropic {
+            bail!("phase function is {}; allowed with --method peierls: isotropic", named.name);
+        }
+        if method == Method::Peierls || method == Method::Auto && isotropic && tau <= PEIERLS_UP_TO {
+            return Ok(Solved::Peierls(IsotropicSlab::new(tau, albedo, incidence)?));
+        }
+        Ok(Solved::Ordinates(AnisotropicMedium::new(albedo, &named.phase)?.slab(tau, incidence)?))
+    }
+
+    /// Fraction sent back.
+    pub fn reflectance(&self) -> Value {
+        match self {
+            Solved::Peierls(slab) => slab.reflectance(),
+            Solved::Ordinates(slab) => slab.reflectance(),
+        }
+    }
+
+    /// Fraction let through, direct light included.
+    pub fn transmittance(&self) -> Value {
+        match self {
+            Solved::Peierls(slab) => slab.transmittance(),
+            Solved::Ordinates(slab) => slab.transmittance(),
+        }
+    }
+
+    /// Fraction let through without a collision.
+    pub fn transmittance_direct(&self) -> Value {
+        match self {
+            Solved::Peierls(slab) => slab.transmittance_direct(),
+            Solved::Ordinates(slab) => slab.transmittance_direct(),
+        }
+    }
+
+    /// Fraction let through after scattering.
+    pub fn transmittance_diffuse(&self) -> Value {
+        match self {
+            Solved::Peierls(slab) => slab.transmittance_diffuse(),
+            Solved::Ordinates(slab) => slab.transmittance_diffuse(),
+        }
+    }
+
+    /// Fraction absorbed.
+    pub fn absorptance(&self) -> Value {
+        match self {
+            Solved::Peierls(slab) => slab.absorptance(),
+            Solved::Ordinates(slab) => slab.absorptance(),
+        }
+    }
+
+    /// Fluence at a depth, direct light included.
+    pub fn fluence(&self, t: f64) -> Result<Value> {
+        Ok(match self {
+            Solved::Peierls(slab) => slab.fluence(t)?,
+            Solved::Ordinates(slab) => slab.fluence(t)?,
+        })
+    }
+
+    /// Radiance of scattered light.
+    pub fn radiance(&self, t: f64, mu: f64, dphi: f64) -> Result<Value> {
+        Ok(match self {
+            Solved::Peierls(slab) => slab.radiance(t, mu)?,
+            Solved::Ordinates(slab) => slab.radiance(t, mu, dphi)?,
+        })
+    }
+}
