@@ -1,10 +1,10 @@
-//! Light scattered exactly once in a slab: radiance with any Henyey-Greenstein phase function, fluence and the
-//! two fluxes with isotropic scattering.
+//! Light scattered exactly once in a slab: radiance with any phase function, fluence and the two fluxes with isotropic
+//! scattering.
 //!
 //! Every form here is a sum of non-negative terms, so its relative error is a count of roundings.
 
 use crate::beer_lambert::direct_fluence;
-use crate::error::{Result, within};
+use crate::error::{Error, Result, within};
 use crate::exponential_integral::{e_n, e1, eim_scaled, ein};
 use crate::incidence::{Incidence, check_albedo, check_depth, check_mu, check_mu0, check_tau};
 use crate::quadrature::integrate_from_singular;
@@ -34,19 +34,50 @@ const EXPONENT_ULPS: f64 = 750.0;
 /// # Source
 /// Chandrasekhar 1960, chapter III
 pub fn single_radiance(tau: f64, albedo: f64, g: f64, mu0: f64, t: f64, mu: f64, dphi: f64) -> Result<Value> {
-    check_tau(tau)?;
+    within("g", g, -1.0 + f64::EPSILON, 1.0 - f64::EPSILON, "above -1, below 1")?;
+    // The deviation of the cosine is a sum of squares, its rounding magnified at most by the power 3/2.
+    let phase = |d: Deflection| Value::rounded(henyey_greenstein(g, d), 32.0, "closed form");
+    single_radiance_of(tau, albedo, phase, mu0, t, mu, dphi)
+}
+
+/// Radiance of light scattered once, a beam incident on a slab, any phase function.
+///
+/// # Arguments
+/// `phase` its value at a deflection, with its bound \[1/sr\]; the others as in [`single_radiance`], `tau` and `t` up to
+/// 1e300 mean free paths: the half-space
+/// # Returns
+/// \[1/sr\] per unit irradiance on the face; the bound of `phase` and the roundings
+/// # Errors
+/// `Error::OutOfRange` naming the parameter; `Error::NotFinite` naming `phase`
+/// # Limits
+/// mu -> 0: albedo p e^(-t/mu0)/mu0, the source function over the extinction
+/// # Source
+/// Chandrasekhar 1960, chapter III
+pub fn single_radiance_of(
+    tau: f64,
+    albedo: f64,
+    phase: impl FnOnce(Deflection) -> Value,
+    mu0: f64,
+    t: f64,
+    mu: f64,
+    dphi: f64,
+) -> Result<Value> {
+    within("tau", tau, 1e-300, 1e300, "1e-300 to 1e300")?;
     check_albedo(albedo)?;
     check_mu0(mu0)?;
     check_depth(t, tau)?;
     check_mu(mu)?;
-    within("g", g, -1.0 + f64::EPSILON, 1.0 - f64::EPSILON, "above -1, below 1")?;
     within("dphi", dphi, -1e3, 1e3, "-1000 to 1000 rad")?;
-    let phase = albedo * henyey_greenstein(g, mu0, mu, dphi);
-    let value = phase * beam_path(tau, mu0, t, mu);
-    // The deviation of the cosine is a sum of squares, its rounding magnified at most by the power 3/2.
-    let mut answer = Value::rounded(value, 64.0 + exponent_ulps(t, mu0), "closed form");
+    let deflection = Deflection::new(mu0, mu, dphi);
+    let p = phase(deflection);
+    if !(p.value.is_finite() && p.error.is_finite()) {
+        return Err(Error::NotFinite { name: "phase", value: p.value, at: deflection.cosine() });
+    }
+    let path = beam_path(tau, mu0, t, mu);
+    let phase = albedo * p.value.abs();
+    let mut answer = Value::rounded(albedo * p.value * path, 32.0 + exponent_ulps(t, mu0), p.method);
     // Subnormal steps of the exponential, magnified by at most the inverse of the cosine's own rounding.
-    answer.error += phase * f64::MIN_POSITIVE / mu0;
+    answer.error += albedo * p.error * path + phase * f64::MIN_POSITIVE / mu0;
     Ok(answer)
 }
 
@@ -54,15 +85,43 @@ fn exponent_ulps(t: f64, mu0: f64) -> f64 {
     (2.0 * t / mu0).min(2.0 * EXPONENT_ULPS)
 }
 
-/// Henyey-Greenstein phase function between the beam and (mu, dphi) \[1/sr\].
-fn henyey_greenstein(g: f64, mu0: f64, mu: f64, dphi: f64) -> f64 {
-    let sine = |c: f64| ((1.0 - c) * (1.0 + c)).sqrt();
-    let (s0, s) = (sine(mu0), sine(mu));
-    // 1 - cos (g > 0) or 1 + cos of the deflection, whichever is small at the peak: half the squared chord between
-    // the directions (s0, 0, -mu0) and +-(s cos dphi, s sin dphi, mu), as a sum of squares.
-    let lateral = if s0 + s > 0.0 { (mu - mu0) * (mu + mu0) / (s0 + s) } else { 0.0 };
-    let (turn, normal) = if g >= 0.0 { (sin(0.5 * dphi), mu + mu0) } else { (cos(0.5 * dphi), mu - mu0) };
-    let chord = 0.5 * (lateral * lateral + 4.0 * s0 * s * turn * turn + normal * normal);
+/// How far a scattering turns the light, accurate at both ends.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Deflection {
+    /// 1 - cosine of the angle \[1\], 0 to 2.
+    pub one_minus: f64,
+    /// 1 + cosine of the angle \[1\], 0 to 2.
+    pub one_plus: f64,
+}
+
+impl Deflection {
+    /// From a beam of cosine `mu0` (travelling with cosine -mu0) to signed cosine `mu` at azimuth `dphi`.
+    ///
+    /// Half the squared chord between the directions (s0, 0, -mu0) and +-(s cos dphi, s sin dphi, mu), s the sines, as a
+    /// sum of squares.
+    pub(crate) fn new(mu0: f64, mu: f64, dphi: f64) -> Self {
+        let sine = |c: f64| ((1.0 - c) * (1.0 + c)).sqrt();
+        let (s0, s) = (sine(mu0), sine(mu));
+        let lateral = if s0 + s > 0.0 { (mu - mu0) * (mu + mu0) / (s0 + s) } else { 0.0 };
+        let half_chord = |turn: f64, normal: f64| {
+            (0.5 * (lateral * lateral + 4.0 * s0 * s * turn * turn + normal * normal)).min(2.0)
+        };
+        Deflection {
+            one_minus: half_chord(sin(0.5 * dphi), mu + mu0),
+            one_plus: half_chord(cos(0.5 * dphi), mu - mu0),
+        }
+    }
+
+    /// Cosine of the angle \[1\], -1 to 1.
+    pub fn cosine(self) -> f64 {
+        if self.one_minus < self.one_plus { 1.0 - self.one_minus } else { self.one_plus - 1.0 }
+    }
+}
+
+/// Henyey-Greenstein phase function \[1/sr\].
+fn henyey_greenstein(g: f64, deflection: Deflection) -> f64 {
+    // Whichever of 1 - cos (g > 0) and 1 + cos is small at the peak.
+    let chord = if g >= 0.0 { deflection.one_minus } else { deflection.one_plus };
     let a = 1.0 - g.abs();
     let d = a * a + 2.0 * g.abs() * chord;
     a * (1.0 + g.abs()) / (4.0 * PI * d * d.sqrt())
@@ -78,7 +137,9 @@ pub(crate) fn beam_path(tau: f64, mu0: f64, t: f64, mu: f64) -> f64 {
     } else {
         let m = -mu;
         if m == mu0 {
-            return t / mu0 * exp(-t / mu0) / mu0;
+            let exponent = t / mu0;
+            // Beyond it the exponential is zero, and the quotient may be infinite.
+            return if exponent < 800.0 { exponent * exp(-exponent) / mu0 } else { 0.0 };
         }
         let exponent = if m == 0.0 { f64::INFINITY } else { t * ((mu0 - m).abs() / (mu0 * m)) };
         exp(-t / mu0.max(m)) * -expm1(-exponent) / (mu0 - m).abs()
@@ -239,7 +300,8 @@ mod tests {
                     let mu = 2.0 * x - 1.0;
                     for i in 0..turns {
                         let dphi = 2.0 * PI * f64::from(i) / f64::from(turns);
-                        let p = henyey_greenstein(g, mu0, mu, dphi) * w * 4.0 * PI / f64::from(turns);
+                        let p = henyey_greenstein(g, Deflection::new(mu0, mu, dphi)) * w * 4.0 * PI
+                            / f64::from(turns);
                         let sines = ((1.0 - mu0 * mu0) * (1.0 - mu * mu)).sqrt();
                         one += p;
                         mean += p * (-mu0 * mu + sines * libm::cos(dphi));
@@ -256,10 +318,30 @@ mod tests {
         // Straight on: (1-g^2)/(4 pi (1-g)^3) = (1+g)/(4 pi (1-g)^2).
         let g = 1.0 - 1e-9;
         let peak = (1.0 + g) / (4.0 * PI * (1.0 - g) * (1.0 - g));
-        assert!((henyey_greenstein(g, 0.6, -0.6, 0.0) / peak - 1.0).abs() < 1e-14);
-        assert!((henyey_greenstein(-g, 1.0, 1.0, 0.3) / peak - 1.0).abs() < 1e-14);
+        assert!((henyey_greenstein(g, Deflection::new(0.6, -0.6, 0.0)) / peak - 1.0).abs() < 1e-14);
+        assert!((henyey_greenstein(-g, Deflection::new(1.0, 1.0, 0.3)) / peak - 1.0).abs() < 1e-14);
         // Backwards, dphi = pi: the half angle's cosine is 6e-17, its square nothing beside (1-g)^2.
-        assert!((henyey_greenstein(-g, 0.6, 0.6, PI) / peak - 1.0).abs() < 1e-12);
+        assert!((henyey_greenstein(-g, Deflection::new(0.6, 0.6, PI)) / peak - 1.0).abs() < 1e-12);
+    }
+
+    #[test]
+    fn any_phase_function_and_any_thickness() {
+        // Rayleigh at its right angle, 3/(16 pi), against the isotropic 1/(4 pi).
+        let rayleigh = |d: Deflection| {
+            Value::rounded(3.0 / (16.0 * PI) * (1.0 + d.cosine() * d.cosine()), 8.0, "closed form")
+        };
+        let got = single_radiance_of(2.0, 0.9, rayleigh, 1.0, 0.5, 0.0, 0.0).unwrap();
+        let isotropic = single_radiance(2.0, 0.9, 0.0, 1.0, 0.5, 0.0, 0.0).unwrap();
+        assert!((got.value / isotropic.value - 0.75).abs() < 1e-15);
+        // The half-space, from above: p albedo/(mu + mu0).
+        let got = single_radiance_of(1e300, 1.0, rayleigh, 0.5, 0.0, 1.0, 0.0).unwrap();
+        assert!((got.value - 3.0 * 1.25 / (16.0 * PI) / 1.5).abs() <= got.error);
+        for (t, mu) in [(1e300, -1e-300), (1e299, -1e-300), (1e300, 5e-324), (1e-10, -5e-324)] {
+            let got = single_radiance_of(1e300, 1.0, rayleigh, 1e-300, t, mu, 0.0).unwrap();
+            assert!(got.value.is_finite() && got.error.is_finite(), "{got:?}");
+        }
+        let bad = single_radiance_of(1.0, 1.0, |_| Value::new(f64::NAN, 0.0, ""), 1.0, 0.0, 1.0, 0.0);
+        assert!(bad.unwrap_err().to_string().starts_with("phase returned NaN"));
     }
 
     #[test]
