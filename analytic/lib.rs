@@ -8,10 +8,11 @@
 //! irradiance on that face; the signed cosine mu > 0 points up, towards the lit face.
 //!
 //! * Special functions and rules: [`exponential_integral`], [`quadrature`]
-//! * Slab: [`beer_lambert`], [`slab_single`], [`slab_isotropic`], [`slab_anisotropic`]
+//! * Slab: [`beer_lambert`], [`slab_single`], [`slab_isotropic`], [`slab_anisotropic`], [`adding_doubling`]
 //! * Kernel density estimation: [`kernel`], [`ball_mean`], [`blur`], [`edge`], [`volumes`], [`slab_kernel`],
 //!   [`nearest`], [`progressive`]; where the medium ends: [`boundary`]
 
+pub mod adding_doubling;
 pub mod ball_mean;
 pub mod beer_lambert;
 pub mod blur;
@@ -33,6 +34,7 @@ pub mod slab_single;
 pub mod value;
 pub mod volumes;
 
+pub use adding_doubling::AddingDoubling;
 pub use error::{Error, Result};
 pub use incidence::Incidence;
 pub use kernel::{Dimension, Kernel};

@@ -1,0 +1,308 @@
+//! The homogeneous slab by adding and doubling: the second method of the referee.
+//!
+//! A layer is known by what it does to light from outside: a reflection R and a transmission e + T, operators on the
+//! radiance over one hemisphere, in each azimuthal mode. Two like layers on top of each other make
+//!
+//! R' = R + (e+T) R S (e+T),  e + T' = (e+T) S (e+T),  S = 1 + R R + R R R R + ... = (1 - R R)^-1
+//!
+//! with e = e^(-tau/mu) the direct light. A layer so thin that light is scattered in it once, or hardly ever twice,
+//! is known in closed form, and some thirty doublings make it a slab. Between two layers runs the light S (e+T) down
+//! and R S (e+T) up, so that the field at any depth follows on the way back, halving the slab that holds it.
+//!
+//! Nothing here is shared with the discrete ordinates of [`crate::AnisotropicSlab`]: no decay lengths, no boundary
+//! systems, other directions. All sums in the azimuthal mean are of positive terms, so that thin slabs and small
+//! transmittances keep their digits; what grows is the rounding of some ten operations a doubling, and where photons
+//! are conserved each such rounding absorbs or makes light along all of its way.
+//!
+//! Every answer is computed on two sets of nodes; its error is a small part of the difference, which is the bound,
+//! together with the relative differences of its neighbours (the other fluxes; other depths).
+//!
+//! Source: van de Hulst 1963; Hansen and Travis 1974, section 3; van de Hulst 1980, chapter 4; de Haan, Bosma and
+//! Hovenier 1987.
+
+mod nodes;
+mod stack;
+#[cfg(test)]
+mod tests;
+
+pub(crate) use nodes::{Nodes, Panels};
+pub(crate) use stack::Stack;
+
+use crate::beer_lambert::{direct_fluence, direct_transmittance};
+use crate::error::{Error, Result, within};
+use crate::incidence::{Incidence, check_albedo, check_depth};
+use crate::value::Value;
+use libm::{log, sqrt};
+use nalgebra::DVector;
+use std::f64::consts::PI;
+use std::sync::OnceLock;
+
+const METHOD: &str = "adding and doubling, two node counts";
+
+/// Roundings of one doubling: a chain of three products of matrices, all of whose terms are positive.
+const ULPS: f64 = 8.0;
+
+/// What the first Legendre moment left out, |g|^l, may be on the finer and on the coarser nodes.
+const CUT: [f64; 2] = [1e-13, 1e-10];
+
+/// Nodes towards the horizon, and the fewest above it.
+const LOWER: [usize; 2] = [56, 44];
+const UPPER: [usize; 2] = [28, 22];
+
+/// The most Legendre moments.
+const MOMENTS: usize = 600;
+
+/// A slab solved by adding and doubling.
+pub struct AddingDoubling {
+    tau: f64,
+    albedo: f64,
+    moments: Vec<f64>,
+    incidence: Incidence,
+    solutions: [Solution; 2],
+    reflectance: Value,
+    transmittance_direct: Value,
+    transmittance_diffuse: Value,
+    absorptance: Value,
+    rounding: f64,
+    /// Depths in rising order, and the relative difference of the two fluences there.
+    ladder: OnceLock<Vec<(f64, f64)>>,
+}
+
+/// The azimuthal mean on one set of nodes.
+struct Solution {
+    stack: Stack,
+    /// The light that enters.
+    entering: DVector<f64>,
+}
+
+impl AddingDoubling {
+    /// Solves the slab with Henyey-Greenstein scattering.
+    ///
+    /// # Arguments
+    /// `tau` optical thickness \[1\], 1e-12 to 100; `albedo` 0 to 1; `g` mean cosine of scattering, -0.95 to 0.95;
+    /// `incidence` of unit irradiance, a beam with a cosine of 1e-5 to 1
+    /// # Returns
+    /// a solution with errors below 1e-10 of themselves for most slabs; the bounds say how much. It takes a tenth of
+    /// a second, some seconds at |g| = 0.95
+    /// # Errors
+    /// `Error::OutOfRange` naming `tau`, `albedo`, `g` or `mu0`
+    /// # Limits
+    /// g = 0: [`crate::IsotropicSlab`]; albedo = 1: R + T = 1; albedo = 0: the direct light alone
+    pub fn new(tau: f64, albedo: f64, g: f64, incidence: Incidence) -> Result<Self> {
+        within("g", g, -0.95, 0.95, "-0.95 to 0.95")?;
+        let count = |cut: f64| if g == 0.0 { 1 } else { 1 + (log(cut) / log(g.abs())).ceil() as usize };
+        let moments = (0..count(CUT[0])).map(|l| g.powi(l as i32)).collect();
+        Self::solve(tau, albedo, moments, CUT.map(count), incidence)
+    }
+
+    /// Solves the slab with the phase function of the given Legendre moments, the mean values of P_l(cos), l = 0, 1 ...
+    ///
+    /// # Arguments
+    /// as for [`Self::new`]; `moments` from l = 0 (which is 1) on, at most 600, each -1 to 1, of a phase function that
+    /// is nowhere negative
+    /// # Errors
+    /// `Error::OutOfRange` naming `tau`, `albedo`, `moments` (their number or one of them) or `mu0`
+    pub fn with_moments(tau: f64, albedo: f64, moments: &[f64], incidence: Incidence) -> Result<Self> {
+        within("moments", moments.len() as f64, 1.0, MOMENTS as f64, "1 to 600 of them")?;
+        within("moments", moments[0], 1.0, 1.0, "1 for l = 0")?;
+        for &moment in moments {
+            within("moments", moment, -1.0, 1.0, "-1 to 1 each")?;
+        }
+        Self::solve(tau, albedo, moments.to_vec(), [moments.len(); 2], incidence)
+    }
+
+    fn solve(
+        tau: f64,
+        albedo: f64,
+        moments: Vec<f64>,
+        counts: [usize; 2],
+        incidence: Incidence,
+    ) -> Result<Self> {
+        within("tau", tau, 1e-12, 100.0, "1e-12 to 100 with adding and doubling")?;
+        check_albedo(albedo)?;
+        let beam = match incidence {
+            Incidence::Beam { mu0 } => {
+                vec![within("mu0", mu0, 1e-5, 1.0, "1e-5 to 1 with adding and doubling, or diffuse")?]
+            }
+            Incidence::Diffuse => Vec::new(),
+        };
+        let solve = |i: usize| {
+            let upper = UPPER[i].max(4 + i + counts[i] / 2);
+            let nodes = Nodes::open(upper, LOWER[i]).with(&beam);
+            let stack = Stack::new(tau, albedo, &moments[..counts[i]], 0, nodes)?;
+            let entering = entering(&stack.nodes, incidence);
+            Ok(Solution { stack, entering })
+        };
+        let solutions: [Solution; 2] = [solve(0)?, solve(1)?];
+        let pair = |f: fn(&Solution) -> f64| [f(&solutions[0]), f(&solutions[1])];
+        let fluxes =
+            [pair(Solution::reflectance), pair(Solution::transmittance_diffuse), pair(Solution::absorptance)];
+        let rounding = ULPS * f64::EPSILON * (solutions[0].stack.doublings() as f64 + 4.0) * (1.0 + tau);
+        let transmittance_direct = direct_transmittance(incidence, tau)?;
+        let [reflectance, transmittance_diffuse, absorptance] = bounded(fluxes, rounding);
+        Ok(AddingDoubling {
+            tau,
+            albedo,
+            moments,
+            incidence,
+            solutions,
+            reflectance,
+            transmittance_direct,
+            transmittance_diffuse,
+            absorptance,
+            rounding,
+            ladder: OnceLock::new(),
+        })
+    }
+
+    /// Optical thickness \[1\].
+    pub fn tau(&self) -> f64 {
+        self.tau
+    }
+
+    /// Single-scattering albedo \[1\].
+    pub fn albedo(&self) -> f64 {
+        self.albedo
+    }
+
+    /// Legendre moments of the phase function \[1\], from l = 0.
+    pub fn moments(&self) -> &[f64] {
+        &self.moments
+    }
+
+    /// How the light falls on the lit face.
+    pub fn incidence(&self) -> Incidence {
+        self.incidence
+    }
+
+    /// Fraction of the incident power that leaves through the lit face \[1\].
+    pub fn reflectance(&self) -> Value {
+        self.reflectance
+    }
+
+    /// Fraction of the incident power that leaves through the far face, direct light included \[1\].
+    pub fn transmittance(&self) -> Value {
+        let (a, b) = (self.transmittance_direct, self.transmittance_diffuse);
+        let value = a.value + b.value;
+        Value::new(value, a.error + b.error + f64::EPSILON * value, METHOD)
+    }
+
+    /// Fraction of the incident power that crosses the slab without a collision \[1\].
+    pub fn transmittance_direct(&self) -> Value {
+        self.transmittance_direct
+    }
+
+    /// Fraction of the incident power that leaves through the far face after at least one scattering \[1\].
+    pub fn transmittance_diffuse(&self) -> Value {
+        self.transmittance_diffuse
+    }
+
+    /// Fraction of the incident power that is absorbed \[1\].
+    pub fn absorptance(&self) -> Value {
+        self.absorptance
+    }
+
+    /// Fluence at depth t, direct light included, per unit irradiance on the lit face \[1\].
+    ///
+    /// # Arguments
+    /// `t` depth in mean free paths, 0 to tau
+    /// # Errors
+    /// `Error::OutOfRange` naming `t`
+    pub fn fluence(&self, t: f64) -> Result<Value> {
+        check_depth(t, self.tau)?;
+        let [fine, coarse] = self.pair(t);
+        let ladder = self.ladder.get_or_init(|| {
+            let depths = depths(self.tau);
+            depths.into_iter().map(|t| (t, self.difference(t))).collect()
+        });
+        // The difference swings about zero with ln t, with a period of some steps of the ladder.
+        let at = ladder.partition_point(|&(depth, _)| depth < t);
+        let near = &ladder[at.saturating_sub(3)..(at + 3).min(ladder.len())];
+        let shared = near.iter().fold(0.0, |a: f64, &(_, d)| a.max(d)) + self.rounding;
+        let error = (fine - coarse).abs() + shared * fine.abs();
+        Ok(Value::new(fine, error + f64::MIN_POSITIVE, METHOD))
+    }
+
+    fn pair(&self, t: f64) -> [f64; 2] {
+        [0, 1].map(|i| self.solutions[i].fluence(t, self.incidence))
+    }
+
+    fn difference(&self, t: f64) -> f64 {
+        let [fine, coarse] = self.pair(t);
+        if fine == 0.0 { 0.0 } else { ((fine - coarse) / fine).abs() }
+    }
+}
+
+/// Depths that rise from the lit face and fall towards the far one by a factor of two each.
+fn depths(tau: f64) -> Vec<f64> {
+    let mut near: Vec<f64> =
+        std::iter::successors(Some(0.25 * tau), |&t| (t > 1e-9 * tau.min(1.0)).then_some(0.5 * t)).collect();
+    near.push(0.0);
+    let far: Vec<f64> = near.iter().map(|t| tau - t).collect();
+    near.reverse();
+    near.push(0.5 * tau);
+    near.extend(far);
+    near
+}
+
+/// The vector of the light that enters: a beam in the first user's direction, or radiance 1/pi.
+fn entering(nodes: &Nodes, incidence: Incidence) -> DVector<f64> {
+    let root = |i: usize| sqrt(nodes.mu[i] * nodes.weight[i]);
+    DVector::from_fn(nodes.len(), |i, _| match incidence {
+        Incidence::Beam { .. } if i == nodes.count => 1.0 / (2.0 * PI * root(i)),
+        Incidence::Diffuse if i < nodes.count => root(i) / PI,
+        _ => 0.0,
+    })
+}
+
+impl Solution {
+    /// Power per area that a vector of light carries through a plane.
+    fn power(&self, u: &DVector<f64>) -> f64 {
+        let nodes = &self.stack.nodes;
+        let sum: f64 = (0..nodes.count).map(|i| sqrt(nodes.mu[i] * nodes.weight[i]) * u[i]).sum();
+        2.0 * PI * sum
+    }
+
+    fn reflectance(&self) -> f64 {
+        self.power(&(self.stack.reflected() * &self.entering))
+    }
+
+    fn transmittance_diffuse(&self) -> f64 {
+        self.power(&(self.stack.scattered() * &self.entering))
+    }
+
+    fn absorptance(&self) -> f64 {
+        2.0 * PI * self.stack.absorbed().dot(&self.entering)
+    }
+
+    /// Fluence, with the direct light as it is and not as the nodes have it.
+    fn fluence(&self, t: f64, incidence: Incidence) -> f64 {
+        let nodes = &self.stack.nodes;
+        let dark = DVector::zeros(nodes.len());
+        let (down, up) = self.stack.field(t, self.entering.clone(), dark);
+        let light = down + up;
+        let sum: f64 = (0..nodes.count).map(|i| sqrt(nodes.weight[i] / nodes.mu[i]) * light[i]).sum();
+        let direct = match incidence {
+            Incidence::Beam { .. } => 0.0,
+            Incidence::Diffuse => 2.0 * nodes.sum(|mu| libm::exp(-t / mu)),
+        };
+        2.0 * PI * sum - direct + direct_fluence(incidence, t)
+    }
+}
+
+/// R, diffuse T and A with their bounds: each the difference of the two solutions, plus the largest difference of the
+/// three, absolute or relative to each, whichever is less.
+pub(crate) fn bounded<const N: usize>(fluxes: [[f64; 2]; N], rounding: f64) -> [Value; N] {
+    let differences = fluxes.map(|[fine, coarse]| (fine - coarse).abs());
+    let largest = differences.iter().fold(0.0, |a: f64, &b| a.max(b));
+    let relative = fluxes
+        .iter()
+        .zip(&differences)
+        .filter(|(flux, _)| flux[0] != 0.0)
+        .fold(0.0, |a: f64, (flux, d)| a.max(d / flux[0].abs()));
+    std::array::from_fn(|i| {
+        let fine = fluxes[i][0];
+        let shared = largest.min(relative * fine.abs());
+        Value::new(fine, differences[i] + shared + rounding * fine.abs() + f64::MIN_POSITIVE, METHOD)
+    })
+}
