@@ -1,0 +1,125 @@
+//! `exact half-space`: the half-space with isotropic scattering.
+
+use crate::answer::{Answer, Reply};
+use crate::plot::{Curve, even, figure, panel};
+use crate::read::{incidence, incidence_field, incidence_title};
+use anyhow::Result;
+use clap::ValueEnum;
+use turbid_analytic::Incidence;
+use turbid_analytic::half_space::HalfSpace;
+use turbid_figure::{Axis, Figure};
+
+/// A half-space with isotropic scattering: H function, reflectance, radiance, fluence, Milne's problem.
+///
+/// The medium fills t > 0, with unit irradiance on its face. With w the albedo and H Chandrasekhar's function,
+///
+///   H(mu) = 1 + (w/2) mu H(mu) int_0^1 H(m)/(mu + m) dm
+///   R     = 1 - sqrt(1-w) H(mu0)                           (diffuse: averaged over 2 mu0 dmu0)
+///   I(mu) = (w/4 pi) H(mu) H(mu0)/(mu + mu0)               [1/sr], leaving at cosine mu
+///
+/// The fluence includes the direct light. In Milne's problem light comes from infinitely deep: far from the face the
+/// fluence goes as sinh(k (t + z0)), with decay k and extrapolation length z0 in mean free paths; radiance and fluence
+/// are per unit power that leaves.
+/// Source: Hopf 1934; Chandrasekhar 1960, chapter V; Stibbs and Weir 1959; Case and Zweifel 1967, chapter 6.
+#[derive(clap::Args)]
+#[command(verbatim_doc_comment)]
+pub struct Args {
+    /// Single-scattering albedo, 0 to 1.
+    #[arg(long, allow_negative_numbers = true)]
+    albedo: f64,
+    /// Cosine of incidence of a beam, above 0 to 1, or the word diffuse (Lambertian light).
+    #[arg(long, default_value = "1", value_parser = incidence, allow_negative_numbers = true)]
+    mu0: Incidence,
+    /// Cosines, 0 to 1, at which to give H and the radiance that leaves.
+    #[arg(long, num_args = 1.., value_name = "MU", allow_negative_numbers = true)]
+    mu: Vec<f64>,
+    /// Depths in mean free paths, 0 or more, at which to give fluence and net flux downwards.
+    #[arg(long, num_args = 1.., value_name = "T", allow_negative_numbers = true)]
+    depth: Vec<f64>,
+    /// Answer Milne's problem at these cosines and depths, instead of the lit face (albedo 0.01 to 1).
+    #[arg(long)]
+    milne: bool,
+    /// What --plot draws: fluence against depth, radiance that leaves against the angle to the normal, or H against mu.
+    #[arg(long, value_enum, default_value = "fluence")]
+    draw: Draw,
+}
+
+/// What a figure of a half-space shows.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum Draw {
+    /// Fluence against depth.
+    Fluence,
+    /// Radiance that leaves.
+    Radiance,
+    /// The H function.
+    H,
+}
+
+/// Answers.
+pub fn answer(args: &Args, draw: bool) -> Result<Reply> {
+    let space = HalfSpace::new(args.albedo)?;
+    let mut answer = Answer::new("half-space").with("albedo", args.albedo);
+    if args.milne {
+        answer = answer.with("source", "infinitely deep");
+        answer.add("extrapolation_length", space.extrapolation_length()?);
+        answer.add("decay", space.decay());
+    } else {
+        answer = answer.with("mu0", incidence_field(args.mu0));
+        answer.add("reflectance", space.reflectance(args.mu0)?);
+        answer.add("absorptance", space.absorptance(args.mu0)?);
+    }
+    for &mu in &args.mu {
+        let at = || vec![("mu", mu.into())];
+        answer.add_at("h", at(), space.h(mu)?);
+        let radiance = if args.milne { space.milne_radiance(mu)? } else { space.radiance(args.mu0, mu)? };
+        answer.add_at("radiance", at(), radiance);
+    }
+    for &t in &args.depth {
+        let at = || vec![("t", t.into())];
+        if args.milne {
+            answer.add_at("fluence", at(), space.milne_fluence(t)?);
+        } else {
+            answer.add_at("fluence", at(), space.fluence(args.mu0, t)?);
+            answer.add_at("flux", at(), space.flux(args.mu0, t)?);
+        }
+    }
+    let figure = if draw { Some(drawn(args, &space)?) } else { None };
+    Ok(Reply { answer, figure })
+}
+
+fn drawn(args: &Args, space: &HalfSpace) -> Result<Figure> {
+    let (light, per) = if args.milne {
+        ("light from deep inside".to_string(), "power that leaves")
+    } else {
+        (incidence_title(args.mu0), "irradiance")
+    };
+    let title = format!("Half-space, albedo {}, isotropic, {light}", args.albedo);
+    let (title, panel) = match args.draw {
+        Draw::H => {
+            let curve = Curve::sample("", &even(0.0, 1.0, 101), |mu| Ok(space.h(mu)?.value))?;
+            let title = format!("Chandrasekhar's H function, albedo {}", args.albedo);
+            (title, panel(Axis::linear("Cosine μ", ""), "H(μ)", "", vec![curve]))
+        }
+        Draw::Radiance => {
+            let curve = Curve::sample("", &even(0.0, 90.0, 91), |angle| {
+                let mu = libm::cos(angle.to_radians());
+                let radiance = if args.milne { space.milne_radiance(mu) } else { space.radiance(args.mu0, mu) };
+                Ok(radiance?.value)
+            })?;
+            let axis = Axis::linear("Angle to the normal", "°");
+            (title, panel(axis, &format!("Radiance that leaves over {per}"), "1/sr", vec![curve]))
+        }
+        Draw::Fluence => {
+            let last = args.depth.iter().fold(5.0, |a: f64, &t| a.max(t));
+            // A square root of depth: the field bends most at the face.
+            let depths: Vec<f64> = even(0.0, 1.0, 101).into_iter().map(|x| last * x * x).collect();
+            let curve = Curve::sample("", &depths, |t| {
+                let fluence = if args.milne { space.milne_fluence(t) } else { space.fluence(args.mu0, t) };
+                Ok(fluence?.value)
+            })?;
+            let axis = Axis::linear("Depth t", "mean free paths");
+            (title, panel(axis, &format!("Fluence over {per}"), "", vec![curve]))
+        }
+    };
+    Ok(figure(title, panel))
+}
