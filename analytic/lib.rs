@@ -9,6 +9,7 @@
 //!
 //! * Special functions and rules: [`exponential_integral`], [`quadrature`]
 //! * Slab: [`beer_lambert`], [`slab_single`], [`slab_isotropic`], [`slab_anisotropic`]
+//! * Half-space: [`half_space`]
 //! * Kernel density estimation: [`kernel`], [`ball_mean`], [`blur`], [`edge`], [`volumes`], [`slab_kernel`],
 //!   [`nearest`], [`progressive`]; where the medium ends: [`boundary`]
 
@@ -19,6 +20,7 @@ pub mod boundary;
 pub mod edge;
 pub mod error;
 pub mod exponential_integral;
+pub mod half_space;
 pub mod incidence;
 pub mod kernel;
 pub mod nearest;
@@ -34,6 +36,7 @@ pub mod value;
 pub mod volumes;
 
 pub use error::{Error, Result};
+pub use half_space::HalfSpace;
 pub use incidence::Incidence;
 pub use kernel::{Dimension, Kernel};
 pub use slab_anisotropic::AnisotropicSlab;
