@@ -9,6 +9,7 @@
 //!
 //! * Special functions and rules: [`exponential_integral`], [`quadrature`]
 //! * Slab: [`beer_lambert`], [`slab_single`], [`slab_isotropic`], [`slab_anisotropic`], [`adding_doubling`]
+//! * Half-space: [`half_space`]
 //! * Kernel density estimation: [`kernel`], [`ball_mean`], [`blur`], [`edge`], [`volumes`], [`slab_kernel`],
 //!   [`nearest`], [`progressive`]; where the medium ends: [`boundary`]
 
@@ -20,6 +21,7 @@ pub mod boundary;
 pub mod edge;
 pub mod error;
 pub mod exponential_integral;
+pub mod half_space;
 pub mod incidence;
 pub mod kernel;
 pub mod nearest;
@@ -36,6 +38,7 @@ pub mod volumes;
 
 pub use adding_doubling::AddingDoubling;
 pub use error::{Error, Result};
+pub use half_space::HalfSpace;
 pub use incidence::Incidence;
 pub use kernel::{Dimension, Kernel};
 pub use slab_anisotropic::AnisotropicSlab;
