@@ -8,12 +8,16 @@ mod boundary;
 mod cases;
 #[path = "exact/format.rs"]
 mod format;
+#[path = "exact/half_space.rs"]
+mod half_space;
 #[path = "exact/kernel.rs"]
 mod kernel;
 #[path = "exact/nearest.rs"]
 mod nearest;
 #[path = "exact/output.rs"]
 mod output;
+#[path = "exact/phase.rs"]
+mod phase;
 #[path = "exact/plot.rs"]
 mod plot;
 #[path = "exact/progressive.rs"]
@@ -22,6 +26,8 @@ mod progressive;
 mod read;
 #[path = "exact/slab.rs"]
 mod slab;
+#[path = "exact/solved.rs"]
+mod solved;
 
 use anyhow::{Context, Result, bail, ensure};
 use clap::error::ErrorKind;
@@ -62,6 +68,7 @@ struct Cli {
 #[derive(Subcommand)]
 enum Command {
     Slab(slab::Args),
+    HalfSpace(half_space::Args),
     Kernel(kernel::Args),
     Nearest(nearest::Args),
     Progressive(progressive::Args),
@@ -72,6 +79,7 @@ impl Command {
     fn answer(&self, draw: bool) -> Result<answer::Reply> {
         match self {
             Command::Slab(args) => slab::answer(args, draw),
+            Command::HalfSpace(args) => half_space::answer(args, draw),
             Command::Kernel(args) => kernel::answer(args, draw),
             Command::Nearest(args) => nearest::answer(args, draw),
             Command::Progressive(args) => progressive::answer(args, draw),

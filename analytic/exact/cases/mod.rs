@@ -1,5 +1,6 @@
 //! `exact --cases`: a table of questions, each medium solved once.
 
+mod half_space;
 mod kernel;
 mod row;
 mod slab;
@@ -25,10 +26,12 @@ pub fn answer(path: &Path, format: Format, output: &mut Vec<u8>) -> Result<()> {
     order.sort_by(|&a, &b| medium(a).cmp(&medium(b)));
     let mut answers: Vec<Option<Answered>> = rows.iter().map(|_| None).collect();
     let mut slabs = slab::Slabs::default();
+    let mut half_spaces = half_space::HalfSpaces::default();
     for i in order {
         let row = &rows[i];
         let one = match row.text("geometry") {
             "slab" | "slabXY" => slab::answer(row, &mut slabs),
+            "halfspace" => half_space::answer(row, &mut half_spaces),
             "kernel" => kernel::answer(row),
             other => Ok(Err(format!("geometry {other} is not answered here; allowed: {GEOMETRIES}"))),
         };
@@ -44,7 +47,7 @@ pub fn answer(path: &Path, format: Format, output: &mut Vec<u8>) -> Result<()> {
     write(&answered, format, output)
 }
 
-const GEOMETRIES: &str = "slab, slabXY, kernel";
+const GEOMETRIES: &str = "slab, slabXY, halfspace, kernel";
 
 fn read(path: &Path) -> Result<Vec<Row>> {
     let name = path.display();
