@@ -21,6 +21,7 @@
 //! Hovenier 1987.
 
 mod nodes;
+mod radiance;
 mod stack;
 #[cfg(test)]
 mod tests;
@@ -34,6 +35,7 @@ use crate::incidence::{Incidence, check_albedo, check_depth};
 use crate::value::Value;
 use libm::{log, sqrt};
 use nalgebra::DVector;
+use radiance::Shape;
 use std::f64::consts::PI;
 use std::sync::OnceLock;
 
@@ -44,6 +46,9 @@ const ULPS: f64 = 8.0;
 
 /// What the first Legendre moment left out, |g|^l, may be on the finer and on the coarser nodes.
 const CUT: [f64; 2] = [1e-13, 1e-10];
+
+/// The same for light scattered twice or more, where the moments enter as products.
+const CUT_TWICE: [f64; 2] = [1e-11, 1e-9];
 
 /// Nodes towards the horizon, and the fewest above it.
 const LOWER: [usize; 2] = [56, 44];
@@ -57,6 +62,9 @@ pub struct AddingDoubling {
     tau: f64,
     albedo: f64,
     moments: Vec<f64>,
+    phase: Shape,
+    /// How many moments the finer and the coarser nodes see when asked for radiance.
+    counts: [usize; 2],
     incidence: Incidence,
     solutions: [Solution; 2],
     reflectance: Value,
@@ -90,9 +98,14 @@ impl AddingDoubling {
     /// g = 0: [`crate::IsotropicSlab`]; albedo = 1: R + T = 1; albedo = 0: the direct light alone
     pub fn new(tau: f64, albedo: f64, g: f64, incidence: Incidence) -> Result<Self> {
         within("g", g, -0.95, 0.95, "-0.95 to 0.95")?;
-        let count = |cut: f64| if g == 0.0 { 1 } else { 1 + (log(cut) / log(g.abs())).ceil() as usize };
+        let count = |cut: f64| moments_above(g, cut);
         let moments = (0..count(CUT[0])).map(|l| g.powi(l as i32)).collect();
-        Self::solve(tau, albedo, moments, CUT.map(count), incidence)
+        let mut slab =
+            Self::solve(tau, albedo, moments, Shape::HenyeyGreenstein(g), CUT.map(count), incidence)?;
+        if slab.incidence != Incidence::Diffuse {
+            slab.counts = CUT_TWICE.map(count);
+        }
+        Ok(slab)
     }
 
     /// Solves the slab with the phase function of the given Legendre moments, the mean values of P_l(cos), l = 0, 1 ...
@@ -108,13 +121,14 @@ impl AddingDoubling {
         for &moment in moments {
             within("moments", moment, -1.0, 1.0, "-1 to 1 each")?;
         }
-        Self::solve(tau, albedo, moments.to_vec(), [moments.len(); 2], incidence)
+        Self::solve(tau, albedo, moments.to_vec(), Shape::Moments, [moments.len(); 2], incidence)
     }
 
     fn solve(
         tau: f64,
         albedo: f64,
         moments: Vec<f64>,
+        phase: Shape,
         counts: [usize; 2],
         incidence: Incidence,
     ) -> Result<Self> {
@@ -144,6 +158,8 @@ impl AddingDoubling {
             tau,
             albedo,
             moments,
+            phase,
+            counts,
             incidence,
             solutions,
             reflectance,
@@ -243,6 +259,12 @@ fn depths(tau: f64) -> Vec<f64> {
     near.push(0.5 * tau);
     near.extend(far);
     near
+}
+
+/// How many Legendre moments |g|^l are above `cut`, l = 0 among them, and one more.
+pub(crate) fn moments_above(g: f64, cut: f64) -> usize {
+    // Down to g = 1e-300 the quotient is a small number, and at g = 0 it is 0.
+    if g == 0.0 { 1 } else { 1 + (log(cut) / log(g.abs())).ceil() as usize }
 }
 
 /// The vector of the light that enters: a beam in the first user's direction, or radiance 1/pi.

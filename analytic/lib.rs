@@ -10,6 +10,8 @@
 //! * Special functions and rules: [`exponential_integral`], [`quadrature`]
 //! * Slab: [`beer_lambert`], [`slab_single`], [`slab_isotropic`], [`slab_anisotropic`], [`adding_doubling`]
 //! * Half-space: [`half_space`]
+//! * Slab: [`beer_lambert`], [`slab_single`], [`slab_isotropic`], [`slab_anisotropic`], [`adding_doubling`],
+//!   [`slab_fresnel`]
 //! * Kernel density estimation: [`kernel`], [`ball_mean`], [`blur`], [`edge`], [`volumes`], [`slab_kernel`],
 //!   [`nearest`], [`progressive`]; where the medium ends: [`boundary`]
 
@@ -30,6 +32,7 @@ mod poisson;
 pub mod progressive;
 pub mod quadrature;
 pub mod slab_anisotropic;
+pub mod slab_fresnel;
 pub mod slab_isotropic;
 pub mod slab_kernel;
 pub mod slab_single;
@@ -42,6 +45,7 @@ pub use half_space::HalfSpace;
 pub use incidence::Incidence;
 pub use kernel::{Dimension, Kernel};
 pub use slab_anisotropic::AnisotropicSlab;
+pub use slab_fresnel::FresnelSlab;
 pub use slab_isotropic::IsotropicSlab;
 pub use value::Value;
 

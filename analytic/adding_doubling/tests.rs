@@ -37,3 +37,25 @@ fn probe() {
         }
     }
 }
+
+#[test]
+fn radiance_probe() {
+    let rows = std::fs::read_to_string("/work/shared/reference/slab_hg_radiance.csv").unwrap();
+    for line in rows.lines().skip(1).step_by(3) {
+        let line = line.split('"').next().unwrap();
+        let f: Vec<&str> = line.split(',').collect();
+        let n = |i: usize| f[i].parse::<f64>().unwrap();
+        let start = std::time::Instant::now();
+        let s = AddingDoubling::new(n(2), n(4), n(5), Incidence::Beam { mu0: n(7) }).unwrap();
+        let v = s.radiance(n(8), n(10), n(11)).unwrap();
+        eprintln!(
+            "{} {:.2e} bound {:.1e} off {:.1e} digits {} {:?}",
+            f[0],
+            v.value,
+            v.error / v.value,
+            (v.value - n(14)) / v.value,
+            f[15],
+            start.elapsed()
+        );
+    }
+}

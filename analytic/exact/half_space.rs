@@ -1,7 +1,7 @@
 //! `exact half-space`: the half-space with isotropic scattering.
 
 use crate::answer::{Answer, Reply};
-use crate::plot::{Curve, even, figure, panel};
+use crate::plot::{Curve, degrees, even, figure, panel};
 use crate::read::{incidence, incidence_field, incidence_title};
 use anyhow::Result;
 use clap::ValueEnum;
@@ -106,7 +106,7 @@ fn drawn(args: &Args, space: &HalfSpace) -> Result<Figure> {
                 let radiance = if args.milne { space.milne_radiance(mu) } else { space.radiance(args.mu0, mu) };
                 Ok(radiance?.value)
             })?;
-            let axis = Axis::linear("Angle to the normal", "°");
+            let axis = degrees("Angle to the normal", 90);
             (title, panel(axis, &format!("Radiance that leaves over {per}"), "1/sr", vec![curve]))
         }
         Draw::Fluence => {

@@ -76,11 +76,12 @@ pub fn answer(args: &Args, draw: bool) -> Result<Reply> {
 fn drawn(args: &Args, typical: f64, cap: f64) -> Result<turbid_figure::Figure> {
     ensure!(typical.is_finite() && typical > 0.0, "density is {}; allowed: 1e-100 to 1e100", args.density);
     let largest = args.gradient.iter().fold(1.0 / typical, |a: f64, b| a.max(b.abs()));
-    let mean = |k: u32, b: f64| {
-        Ok(nearest_expectation_exponential(args.kernel, args.dimension, k, args.density, b, cap)?.value)
-    };
-    let curve = Curve::sample("", &even(0.0, largest, 61), |b| mean(args.k, b))?;
+    let curve = Curve::sample("", &even(0.0, largest, 61), |b| {
+        let mean = nearest_expectation_exponential(args.kernel, args.dimension, args.k, args.density, b, cap)?;
+        // Without a gradient the bias is 0, and the mean 1 but for its bound.
+        Ok(100.0 * (mean.value - 1.0).max(0.0))
+    })?;
     let title = format!("The {} nearest in the field exp(b·x), {} dimensions", args.k, args.dimension.number());
     let x = Axis::linear("Gradient |b|", "1/length");
-    Ok(figure(title, panel(x, "Expectation over the field at the probe", "", vec![curve])))
+    Ok(figure(title, panel(x, "Bias", "% of the field at the probe", vec![curve])))
 }

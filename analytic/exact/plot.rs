@@ -52,6 +52,12 @@ pub fn crowded(length: f64, count: usize) -> Vec<f64> {
     even(0.0, PI, count).into_iter().map(|x| (0.5 * length * (1.0 - cos(x))).min(length)).collect()
 }
 
+/// An axis of angles from 0 to `last` degrees, with a tick every 30.
+pub fn degrees(label: &str, last: u32) -> Axis {
+    let names = (0..=last / 30).map(|i| (f64::from(30 * i), format!("{}°", 30 * i))).collect();
+    Axis { names, ..Axis::linear(label, "").with_range(0.0, f64::from(last)) }
+}
+
 /// A panel of curves; the ordinate is logarithmic when it spans decades.
 pub fn panel(x: Axis, label: &str, unit: &str, curves: Vec<Curve>) -> Panel {
     let all = || curves.iter().flat_map(|c| c.y.iter().copied());

@@ -2,7 +2,7 @@
 
 use crate::answer::{Answer, Reply};
 use crate::phase::{Named, PhaseArgs};
-use crate::plot::{Curve, crowded, even, figure, panel};
+use crate::plot::{Curve, crowded, degrees, even, figure, panel};
 use crate::read::{incidence, incidence_field, incidence_title};
 use crate::solved::{Method, Solved};
 use anyhow::{Result, ensure};
@@ -152,10 +152,12 @@ fn radiance(args: &Args, named: &Named, slab: &Solved) -> Result<Figure> {
         // On a face scattered light only leaves.
         let (from, to) = (if t == args.tau { 90.0 } else { 0.0 }, if t == 0.0 { 90.0 } else { 180.0 });
         curves.push(Curve::sample(format!("t = {t}"), &even(from, to, 61), |angle| {
-            Ok(slab.radiance(t, cos(angle.to_radians()), dphi)?.value)
+            // Level is level, not a rounding above it.
+            let mu = if angle == 90.0 { 0.0 } else { cos(angle.to_radians()) };
+            Ok(slab.radiance(t, mu, dphi)?.value)
         })?);
     }
-    let axis = Axis::linear("Angle from straight up", "°").with_range(0.0, 180.0);
+    let axis = degrees("Angle from straight up", 180);
     let plane = if named.is_isotropic() { String::new() } else { format!(", azimuth {dphi}") };
     let panel = panel(axis, "Radiance of scattered light over irradiance", "1/sr", curves);
     Ok(figure(format!("{}{plane}", title(args, named)), panel))

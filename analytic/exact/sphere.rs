@@ -1,7 +1,7 @@
 //! `exact sphere`: the finite sphere of isotropic scattering.
 
 use crate::answer::{Answer, Reply};
-use crate::plot::{Curve, even, figure, panel, ratios};
+use crate::plot::{Curve, degrees, even, figure, panel, ratios};
 use anyhow::Result;
 use clap::ValueEnum;
 use libm::cos;
@@ -128,7 +128,7 @@ fn drawn(args: &Args, sphere: &Sphere) -> Result<Figure> {
             let curve = Curve::sample("", &angles, |angle| {
                 Ok(sphere.exit_radiance(cos(angle.to_radians()))?.value)
             })?;
-            let axis = Axis::linear("Angle to the normal", "°");
+            let axis = degrees("Angle to the normal", 90);
             panel(axis, &format!("Radiance that leaves over {per}"), &unit("1/sr"), vec![curve])
         }
     };
