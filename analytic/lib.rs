@@ -12,6 +12,8 @@
 //! * Half-space: [`half_space`]
 //! * Slab: [`beer_lambert`], [`slab_single`], [`slab_isotropic`], [`slab_anisotropic`], [`adding_doubling`],
 //!   [`slab_fresnel`]
+//! * Phase functions: [`phase`]
+//! * Slab: [`beer_lambert`], [`slab_single`], [`slab_isotropic`], [`slab_anisotropic`]
 //! * Kernel density estimation: [`kernel`], [`ball_mean`], [`blur`], [`edge`], [`volumes`], [`slab_kernel`],
 //!   [`nearest`], [`progressive`]; where the medium ends: [`boundary`]
 
@@ -28,6 +30,7 @@ pub mod incidence;
 pub mod kernel;
 pub mod nearest;
 mod peierls;
+pub mod phase;
 mod poisson;
 pub mod progressive;
 pub mod quadrature;
@@ -46,6 +49,8 @@ pub use incidence::Incidence;
 pub use kernel::{Dimension, Kernel};
 pub use slab_anisotropic::AnisotropicSlab;
 pub use slab_fresnel::FresnelSlab;
+pub use phase::Phase;
+pub use slab_anisotropic::{AnisotropicMedium, AnisotropicSlab};
 pub use slab_isotropic::IsotropicSlab;
 pub use value::Value;
 
