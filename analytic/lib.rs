@@ -9,6 +9,7 @@
 //!
 //! * Special functions and rules: [`exponential_integral`], [`quadrature`]
 //! * Slab: [`beer_lambert`], [`slab_single`], [`slab_isotropic`], [`slab_anisotropic`]
+//! * Sphere: [`sphere`] (uniform, central and incident light; the absorbing sphere)
 //! * Kernel density estimation: [`kernel`], [`ball_mean`], [`blur`], [`edge`], [`volumes`], [`slab_kernel`],
 //!   [`nearest`], [`progressive`]; where the medium ends: [`boundary`]
 
@@ -30,6 +31,7 @@ pub mod slab_anisotropic;
 pub mod slab_isotropic;
 pub mod slab_kernel;
 pub mod slab_single;
+pub mod sphere;
 pub mod value;
 pub mod volumes;
 
@@ -38,6 +40,7 @@ pub use incidence::Incidence;
 pub use kernel::{Dimension, Kernel};
 pub use slab_anisotropic::AnisotropicSlab;
 pub use slab_isotropic::IsotropicSlab;
+pub use sphere::{Sphere, SphereSource};
 pub use value::Value;
 
 /// The same cases on every run, and no files left behind.
