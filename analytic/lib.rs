@@ -14,6 +14,7 @@
 //!   [`slab_fresnel`]
 //! * Phase functions: [`phase`]
 //! * Slab: [`beer_lambert`], [`slab_single`], [`slab_isotropic`], [`slab_anisotropic`]
+//! * Sphere: [`sphere`] (uniform, central and incident light; the absorbing sphere)
 //! * Kernel density estimation: [`kernel`], [`ball_mean`], [`blur`], [`edge`], [`volumes`], [`slab_kernel`],
 //!   [`nearest`], [`progressive`]; where the medium ends: [`boundary`]
 
@@ -39,6 +40,7 @@ pub mod slab_fresnel;
 pub mod slab_isotropic;
 pub mod slab_kernel;
 pub mod slab_single;
+pub mod sphere;
 pub mod value;
 pub mod volumes;
 
@@ -52,6 +54,7 @@ pub use slab_fresnel::FresnelSlab;
 pub use phase::Phase;
 pub use slab_anisotropic::{AnisotropicMedium, AnisotropicSlab};
 pub use slab_isotropic::IsotropicSlab;
+pub use sphere::{Sphere, SphereSource};
 pub use value::Value;
 
 /// The same cases on every run, and no files left behind.
