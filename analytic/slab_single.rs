@@ -3,12 +3,15 @@
 //!
 //! Every form here is a sum of non-negative terms, so its relative error is a count of roundings.
 
+mod azimuth;
+
 use crate::beer_lambert::direct_fluence;
 use crate::error::{Error, Result, within};
 use crate::exponential_integral::{e_n, e1, eim_scaled, ein};
 use crate::incidence::{Incidence, check_albedo, check_depth, check_mu, check_mu0, check_tau};
 use crate::quadrature::integrate_from_singular;
 use crate::value::Value;
+pub use azimuth::henyey_greenstein_mean;
 use libm::{cos, exp, expm1, log1p, sin};
 use std::f64::consts::PI;
 
@@ -129,20 +132,25 @@ fn henyey_greenstein(g: f64, deflection: Deflection) -> f64 {
 
 /// int e^(-t'/mu0)/mu0 e^(-|t-t'|/m) dt'/m along the ray that arrives at depth t with signed cosine mu.
 pub(crate) fn beam_path(tau: f64, mu0: f64, t: f64, mu: f64) -> f64 {
-    if mu >= 0.0 && t < tau {
-        let exponent = if mu == 0.0 { f64::INFINITY } else { (tau - t) * (1.0 / mu0 + 1.0 / mu) };
-        exp(-t / mu0) * -expm1(-exponent) / (mu + mu0)
-    } else if mu > 0.0 || t == 0.0 {
+    path(t, tau - t, mu0, mu)
+}
+
+/// The same at depth `above`, the far face `below` it.
+pub(crate) fn path(above: f64, below: f64, mu0: f64, mu: f64) -> f64 {
+    if mu >= 0.0 && below > 0.0 {
+        let exponent = if mu == 0.0 { f64::INFINITY } else { below * (1.0 / mu0 + 1.0 / mu) };
+        exp(-above / mu0) * -expm1(-exponent) / (mu + mu0)
+    } else if mu > 0.0 || above == 0.0 {
         0.0
     } else {
         let m = -mu;
         if m == mu0 {
-            let exponent = t / mu0;
+            let exponent = above / mu0;
             // Beyond it the exponential is zero, and the quotient may be infinite.
             return if exponent < 800.0 { exponent * exp(-exponent) / mu0 } else { 0.0 };
         }
-        let exponent = if m == 0.0 { f64::INFINITY } else { t * ((mu0 - m).abs() / (mu0 * m)) };
-        exp(-t / mu0.max(m)) * -expm1(-exponent) / (mu0 - m).abs()
+        let exponent = if m == 0.0 { f64::INFINITY } else { above * ((mu0 - m).abs() / (mu0 * m)) };
+        exp(-above / mu0.max(m)) * -expm1(-exponent) / (mu0 - m).abs()
     }
 }
 
