@@ -9,7 +9,7 @@
 //!
 //! * Special functions and rules: [`exponential_integral`], [`quadrature`]
 //! * Slab: [`beer_lambert`], [`slab_single`], [`slab_isotropic`], [`slab_anisotropic`]
-//! * Half-space: [`half_space`]
+//! * Half-space: [`half_space`]; infinite medium: [`infinite`]
 //! * Kernel density estimation: [`kernel`], [`ball_mean`], [`blur`], [`edge`], [`volumes`], [`slab_kernel`],
 //!   [`nearest`], [`progressive`]; where the medium ends: [`boundary`]
 
@@ -22,6 +22,7 @@ pub mod error;
 pub mod exponential_integral;
 pub mod half_space;
 pub mod incidence;
+pub mod infinite;
 pub mod kernel;
 pub mod nearest;
 mod peierls;
@@ -38,6 +39,7 @@ pub mod volumes;
 pub use error::{Error, Result};
 pub use half_space::HalfSpace;
 pub use incidence::Incidence;
+pub use infinite::InfiniteMedium;
 pub use kernel::{Dimension, Kernel};
 pub use slab_anisotropic::AnisotropicSlab;
 pub use slab_isotropic::IsotropicSlab;
