@@ -15,6 +15,7 @@
 //! * Phase functions: [`phase`]
 //! * Slab: [`beer_lambert`], [`slab_single`], [`slab_isotropic`], [`slab_anisotropic`]
 //! * Sphere: [`sphere`] (uniform, central and incident light; the absorbing sphere)
+//! * Half-space: [`half_space`]; infinite medium: [`infinite`]
 //! * Kernel density estimation: [`kernel`], [`ball_mean`], [`blur`], [`edge`], [`volumes`], [`slab_kernel`],
 //!   [`nearest`], [`progressive`]; where the medium ends: [`boundary`]
 
@@ -28,6 +29,7 @@ pub mod error;
 pub mod exponential_integral;
 pub mod half_space;
 pub mod incidence;
+pub mod infinite;
 pub mod kernel;
 pub mod nearest;
 mod peierls;
@@ -48,6 +50,7 @@ pub use adding_doubling::AddingDoubling;
 pub use error::{Error, Result};
 pub use half_space::HalfSpace;
 pub use incidence::Incidence;
+pub use infinite::InfiniteMedium;
 pub use kernel::{Dimension, Kernel};
 pub use slab_anisotropic::AnisotropicSlab;
 pub use slab_fresnel::FresnelSlab;

@@ -14,15 +14,15 @@ use libm::{cosh, exp, expm1, tanh};
 use std::f64::consts::FRAC_PI_2;
 
 /// Step in y of the finer rule; the coarser takes every other point. The nearest poles are those at
-/// e^y = atanh(k) + i pi/2, of strength e^(-2 atanh k): the error is below e^(-2 pi arg/step - 2 atanh k), 1e-17 for
-/// the worst k, and 1e-12 at twice the step.
-pub(crate) const STEP: f64 = 0.05;
+/// e^y = atanh(k) + i pi/2, of strength e^(-2 atanh k): the error is below e^(-2 pi arg/step - 2 atanh k), 1e-24 for
+/// the worst k, and 1e-17 at twice the step; relative to what is left of the light far away, less.
+pub(crate) const STEP: f64 = 0.025;
 /// Range of y: nu from 4e-18 ...
-const FIRST: i32 = -800;
+const FIRST: i32 = -1600;
 /// ... to 1 - nu = 1e-18, for integrands that are finite at nu = 1,
-pub(crate) const TO_ONE: i32 = 61;
+pub(crate) const TO_ONE: i32 = 121;
 /// or to atanh nu = 2e17, for integrands like 1/((1-nu) ln(1-nu)^2).
-pub(crate) const TO_INFINITY: i32 = 800;
+pub(crate) const TO_INFINITY: i32 = 1600;
 
 /// A point of the rule.
 #[derive(Debug, Clone, Copy)]
