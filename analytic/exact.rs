@@ -10,6 +10,8 @@ mod cases;
 mod format;
 #[path = "exact/half_space.rs"]
 mod half_space;
+#[path = "exact/infinite.rs"]
+mod infinite;
 #[path = "exact/kernel.rs"]
 mod kernel;
 #[path = "exact/nearest.rs"]
@@ -28,6 +30,8 @@ mod read;
 mod slab;
 #[path = "exact/solved.rs"]
 mod solved;
+#[path = "exact/sphere.rs"]
+mod sphere;
 
 use anyhow::{Context, Result, bail, ensure};
 use clap::error::ErrorKind;
@@ -69,6 +73,8 @@ struct Cli {
 enum Command {
     Slab(slab::Args),
     HalfSpace(half_space::Args),
+    Sphere(sphere::Args),
+    Infinite(infinite::Args),
     Kernel(kernel::Args),
     Nearest(nearest::Args),
     Progressive(progressive::Args),
@@ -80,6 +86,8 @@ impl Command {
         match self {
             Command::Slab(args) => slab::answer(args, draw),
             Command::HalfSpace(args) => half_space::answer(args, draw),
+            Command::Sphere(args) => sphere::answer(args, draw),
+            Command::Infinite(args) => infinite::answer(args, draw),
             Command::Kernel(args) => kernel::answer(args, draw),
             Command::Nearest(args) => nearest::answer(args, draw),
             Command::Progressive(args) => progressive::answer(args, draw),

@@ -7,15 +7,11 @@
 //! Conventions: lengths in mean free paths; a slab 0 <= t <= tau with t growing downwards from the lit face; unit
 //! irradiance on that face; the signed cosine mu > 0 points up, towards the lit face.
 //!
-//! * Special functions and rules: [`exponential_integral`], [`quadrature`]
-//! * Slab: [`beer_lambert`], [`slab_single`], [`slab_isotropic`], [`slab_anisotropic`], [`adding_doubling`]
-//! * Half-space: [`half_space`]
-//! * Slab: [`beer_lambert`], [`slab_single`], [`slab_isotropic`], [`slab_anisotropic`], [`adding_doubling`],
-//!   [`slab_fresnel`]
-//! * Phase functions: [`phase`]
-//! * Slab: [`beer_lambert`], [`slab_single`], [`slab_isotropic`], [`slab_anisotropic`]
-//! * Sphere: [`sphere`] (uniform, central and incident light; the absorbing sphere)
+//! * Special functions and rules: [`exponential_integral`], [`quadrature`]; phase functions: [`phase`]
+//! * Slab: [`beer_lambert`], [`slab_single`], [`slab_isotropic`], [`slab_anisotropic`], [`adding_doubling`]; between
+//!   refracting faces [`slab_fresnel`]
 //! * Half-space: [`half_space`]; infinite medium: [`infinite`]
+//! * Sphere: [`sphere`] (uniform, central and incident light; the absorbing sphere)
 //! * Kernel density estimation: [`kernel`], [`ball_mean`], [`blur`], [`edge`], [`volumes`], [`slab_kernel`],
 //!   [`nearest`], [`progressive`]; where the medium ends: [`boundary`]
 
@@ -52,10 +48,9 @@ pub use half_space::HalfSpace;
 pub use incidence::Incidence;
 pub use infinite::InfiniteMedium;
 pub use kernel::{Dimension, Kernel};
-pub use slab_anisotropic::AnisotropicSlab;
-pub use slab_fresnel::FresnelSlab;
 pub use phase::Phase;
 pub use slab_anisotropic::{AnisotropicMedium, AnisotropicSlab};
+pub use slab_fresnel::FresnelSlab;
 pub use slab_isotropic::IsotropicSlab;
 pub use sphere::{Sphere, SphereSource};
 pub use value::Value;

@@ -17,7 +17,7 @@ pub enum Method {
 }
 
 /// Thickness up to which the Peierls equation is solved.
-const PEIERLS_UP_TO: f64 = 400.0;
+pub const PEIERLS_UP_TO: f64 = 400.0;
 
 /// A solved slab.
 pub enum Solved {
@@ -88,11 +88,16 @@ impl Solved {
         })
     }
 
+    /// Net flux downwards at a depth, direct light included.
+    pub fn flux(&self, t: f64) -> Result<Value> {
+        bail!("flux at {t} is to come")
+    }
+
     /// Radiance of scattered light.
     pub fn radiance(&self, t: f64, mu: f64, dphi: f64) -> Result<Value> {
         Ok(match self {
             Solved::Peierls(slab) => slab.radiance(t, mu)?,
-            Solved::Ordinates(slab) => slab.radiance(t, mu, dphi)?,
+            Solved::Ordinates(_) => bail!("azimuth {dphi}: radiance is to come"),
         })
     }
 }

@@ -1,9 +1,11 @@
 //! `exact --cases`: a table of questions, each medium solved once.
 
 mod half_space;
+mod infinite;
 mod kernel;
 mod row;
 mod slab;
+mod sphere;
 
 use crate::answer::shortest;
 use crate::format::{Format, aligned, digits};
@@ -27,11 +29,15 @@ pub fn answer(path: &Path, format: Format, output: &mut Vec<u8>) -> Result<()> {
     let mut answers: Vec<Option<Answered>> = rows.iter().map(|_| None).collect();
     let mut slabs = slab::Slabs::default();
     let mut half_spaces = half_space::HalfSpaces::default();
+    let mut spheres = sphere::Spheres::default();
+    let mut media = infinite::Media::default();
     for i in order {
         let row = &rows[i];
         let one = match row.text("geometry") {
             "slab" | "slabXY" => slab::answer(row, &mut slabs),
             "halfspace" => half_space::answer(row, &mut half_spaces),
+            "sphere" => sphere::answer(row, &mut spheres),
+            "infinite" => infinite::answer(row, &mut media),
             "kernel" => kernel::answer(row),
             other => Ok(Err(format!("geometry {other} is not answered here; allowed: {GEOMETRIES}"))),
         };
@@ -47,7 +53,7 @@ pub fn answer(path: &Path, format: Format, output: &mut Vec<u8>) -> Result<()> {
     write(&answered, format, output)
 }
 
-const GEOMETRIES: &str = "slab, slabXY, halfspace, kernel";
+const GEOMETRIES: &str = "slab, slabXY, halfspace, sphere, infinite, kernel";
 
 fn read(path: &Path) -> Result<Vec<Row>> {
     let name = path.display();

@@ -2,100 +2,88 @@
 
 use super::Answered;
 use super::row::Row;
+use crate::phase::Named;
+use crate::solved::{PEIERLS_UP_TO, Solved};
 use anyhow::{Context, Result};
 use std::collections::HashMap;
-use std::collections::hash_map::Entry;
 use turbid_analytic::slab_single::single_radiance;
-use turbid_analytic::{AnisotropicSlab, Incidence, IsotropicSlab, Value};
+use turbid_analytic::{AnisotropicMedium, Incidence, IsotropicSlab, Phase, Value};
 
-/// The slabs of the thickness at hand.
+/// Media with all that they have solved, and the slabs of the thickness at hand.
 #[derive(Default)]
 pub struct Slabs {
     tau: f64,
-    solved: HashMap<(u64, u64), IsotropicSlab>,
-    anisotropic: HashMap<(u64, u64, u64), AnisotropicSlab>,
+    /// By albedo and phase function.
+    media: HashMap<(u64, String), AnisotropicMedium>,
+    /// By albedo, phase function and light.
+    solved: HashMap<(u64, String, u64), Solved>,
 }
 
 impl Slabs {
-    fn get(&mut self, tau: f64, albedo: f64, incidence: Incidence) -> Result<&IsotropicSlab> {
-        self.turn_to(tau);
-        let key = (albedo.to_bits(), light_bits(incidence));
+    fn get(&mut self, tau: f64, albedo: f64, named: &Named, incidence: Incidence) -> Result<&Solved> {
+        if tau.to_bits() != self.tau.to_bits() {
+            self.solved.clear();
+            self.tau = tau;
+        }
+        let medium = (albedo.to_bits(), named.name.clone());
+        let light = match incidence {
+            Incidence::Beam { mu0 } => mu0.to_bits(),
+            Incidence::Diffuse => u64::MAX,
+        };
+        let key = (medium.0, medium.1.clone(), light);
         if !self.solved.contains_key(&key) {
-            let slab = match self.solved.values().next() {
-                Some(other) => other.with(albedo, incidence)?,
-                None => IsotropicSlab::new(tau, albedo, incidence)?,
+            let slab = if named.is_isotropic() && tau <= PEIERLS_UP_TO {
+                // Slabs of one thickness share an operator.
+                let other = self.solved.values().find_map(|s| if let Solved::Peierls(s) = s { Some(s) } else { None });
+                Solved::Peierls(match other {
+                    Some(other) => other.with(albedo, incidence)?,
+                    None => IsotropicSlab::new(tau, albedo, incidence)?,
+                })
+            } else {
+                if !self.media.contains_key(&medium) {
+                    self.media.insert(medium.clone(), AnisotropicMedium::new(albedo, &named.phase)?);
+                }
+                let solved = self.media.get(&medium).context("the medium was just solved")?;
+                Solved::Ordinates(solved.slab(tau, incidence)?)
             };
-            self.solved.insert(key, slab);
+            self.solved.insert(key.clone(), slab);
         }
         self.solved.get(&key).context("the slab was just solved")
     }
-
-    fn get_anisotropic(&mut self, tau: f64, albedo: f64, g: f64, incidence: Incidence) -> Result<&AnisotropicSlab> {
-        self.turn_to(tau);
-        let key = (albedo.to_bits(), g.to_bits(), light_bits(incidence));
-        Ok(match self.anisotropic.entry(key) {
-            Entry::Occupied(entry) => entry.into_mut(),
-            Entry::Vacant(entry) => entry.insert(AnisotropicSlab::new(tau, albedo, g, incidence)?),
-        })
-    }
-
-    fn turn_to(&mut self, tau: f64) {
-        if tau.to_bits() != self.tau.to_bits() {
-            self.solved.clear();
-            self.anisotropic.clear();
-            self.tau = tau;
-        }
-    }
 }
 
-fn light_bits(incidence: Incidence) -> u64 {
-    match incidence {
-        Incidence::Beam { mu0 } => mu0.to_bits(),
-        Incidence::Diffuse => u64::MAX,
-    }
+/// The phase function of a row: Henyey-Greenstein by its column, others by name in `extra`.
+pub fn named(row: &Row) -> Result<std::result::Result<Named, String>> {
+    Ok(match row.extra("phase") {
+        Some("rayleigh") => Ok(Named { phase: Phase::rayleigh(), name: "Rayleigh".into(), single_g: None }),
+        Some("two_term") => {
+            let (g1, g2, share) = (row.number("g")?, row.extra_number("g2")?, row.extra_number("share")?);
+            let name = format!("two-term g={g1} g2={g2} share={share}");
+            Ok(Named { phase: Phase::two_term(g1, g2, share)?, name, single_g: None })
+        }
+        Some(other) => Err(format!("phase function {other} is not known here; allowed: rayleigh, two_term, or none")),
+        None => Ok(Named::henyey_greenstein(row.number_or("g", 0.0)?)?),
+    })
 }
 
 /// Answers a row.
 pub fn answer(row: &Row, slabs: &mut Slabs) -> Result<Answered> {
     let quantity = row.text("quantity");
     let (tau, albedo) = (row.number("tau")?, row.number("w")?);
-    let (g, index) = (row.number_or("g", 0.0)?, row.number_or("n", 1.0)?);
-    let order = row.extra_whole("order", 0..=1000)?;
-    if index != 1.0 {
-        return Ok(Err("refracting faces are not answered here".into()));
+    let named = match named(row)? {
+        Ok(named) => named,
+        Err(note) => return Ok(Err(note)),
+    };
+    if row.number_or("n", 1.0)? != 1.0 {
+        return Ok(Err("refracting faces are asked by geometry slab_fresnel".into()));
     }
-    let radiance = matches!(quantity, "radiance_up" | "radiance_down_diffuse" | "radiance_total_diffuse");
-    if radiance && order == Some(1) && row.text("mu0") != "diffuse" {
-        let (mu0, t, mu) = (row.number("mu0")?, row.number("t")?, row.number("mu")?);
-        return Ok(Ok(single_radiance(tau, albedo, g, mu0, t, mu, row.number_or("dphi", 0.0)?)?));
-    }
-    if g != 0.0 {
-        if order.is_some() || !matches!(quantity, "R" | "T_total" | "T_diffuse" | "T_direct" | "A" | "fluence") {
-            return Ok(Err(format!(
-                "quantity {quantity} is not answered for anisotropic scattering, or not by order"
-            )));
-        }
-        let slab = slabs.get_anisotropic(tau, albedo, g, row.incidence("mu0")?)?;
-        return Ok(Ok(match quantity {
-            "R" => slab.reflectance(),
-            "T_total" => slab.transmittance(),
-            "T_diffuse" => slab.transmittance_diffuse(),
-            "T_direct" => slab.transmittance_direct(),
-            "A" => slab.absorptance(),
-            _ => slab.fluence(row.number("t")?)?,
-        }));
+    let radiance = matches!(quantity, "radiance_up" | "radiance_down_diffuse" | "radiance_total_diffuse" | "radiance");
+    if let Some(n) = row.extra_whole("order", 0..=1000)? {
+        return by_order(row, n, radiance, &named, slabs);
     }
     // X and Y are functions of the cosine mu, and mu times the fluence on the two faces under a beam of that cosine.
-    let chandrasekhar = matches!(quantity, "X" | "Y");
-    let slab = slabs.get(tau, albedo, row.incidence(if chandrasekhar { "mu" } else { "mu0" })?)?;
-    if let Some(n) = order {
-        return Ok(match quantity {
-            "R" => Ok(slab.reflectance_of_order(n)?),
-            "T_total" => Ok(slab.transmittance_of_order(n)?),
-            "fluence" => Ok(slab.fluence_of_order(n, row.number("t")?)?),
-            other => Err(format!("quantity {other} is not answered by order")),
-        });
-    }
+    let light = row.incidence(if matches!(quantity, "X" | "Y") { "mu" } else { "mu0" })?;
+    let slab = slabs.get(tau, albedo, &named, light)?;
     let times_mu = |v: Value, mu: f64| Value { value: v.value * mu, error: v.error * mu, ..v };
     Ok(match quantity {
         "R" => Ok(slab.reflectance()),
@@ -104,9 +92,28 @@ pub fn answer(row: &Row, slabs: &mut Slabs) -> Result<Answered> {
         "T_direct" => Ok(slab.transmittance_direct()),
         "A" => Ok(slab.absorptance()),
         "fluence" => Ok(slab.fluence(row.number("t")?)?),
-        _ if radiance => Ok(slab.radiance(row.number("t")?, row.number("mu")?)?),
+        "flux" => Ok(slab.flux(row.number("t")?)?),
+        _ if radiance => Ok(slab.radiance(row.number("t")?, row.number("mu")?, row.number_or("dphi", 0.0)?)?),
         "X" => Ok(times_mu(slab.fluence(0.0)?, row.number("mu")?)),
         "Y" => Ok(times_mu(slab.fluence(tau)?, row.number("mu")?)),
         other => Err(format!("quantity {other} of a slab is not answered here")),
+    })
+}
+
+fn by_order(row: &Row, n: u32, radiance: bool, named: &Named, slabs: &mut Slabs) -> Result<Answered> {
+    let (tau, albedo) = (row.number("tau")?, row.number("w")?);
+    if radiance && n == 1 && row.text("mu0") != "diffuse" {
+        let g = named.only_g("order=1")?;
+        let (mu0, t, mu) = (row.number("mu0")?, row.number("t")?, row.number("mu")?);
+        return Ok(Ok(single_radiance(tau, albedo, g, mu0, t, mu, row.number_or("dphi", 0.0)?)?));
+    }
+    let Solved::Peierls(slab) = slabs.get(tau, albedo, named, row.incidence("mu0")?)? else {
+        return Ok(Err(format!("phase function {} is not answered by order", named.name)));
+    };
+    Ok(match row.text("quantity") {
+        "R" => Ok(slab.reflectance_of_order(n)?),
+        "T_total" => Ok(slab.transmittance_of_order(n)?),
+        "fluence" => Ok(slab.fluence_of_order(n, row.number("t")?)?),
+        other => Err(format!("quantity {other} is not answered by order")),
     })
 }

@@ -43,20 +43,19 @@ pub fn answer(row: &Row, spheres: &mut Spheres) -> Result<Answered> {
         return Ok(Err("a sphere is answered here with isotropic scattering only".into()));
     }
     let (a, albedo) = (row.number("a")?, row.number("w")?);
-    let mut solved = |source| spheres.get(a, albedo, source);
     Ok(Ok(match row.text("quantity") {
-        "escape_uniform_source" => solved(Uniform)?.escape(),
-        "escape_central_point" => solved(Centre)?.escape(),
-        "escape_iso_incidence" => solved(Incident)?.escape(),
-        "absorbed_uniform_source" => solved(Uniform)?.absorptance(),
-        "absorbed_central_point" => solved(Centre)?.absorptance(),
-        "absorbed_iso_incidence" => solved(Incident)?.absorptance(),
-        "fluence_uniform_source_unit_power" => solved(Uniform)?.fluence(row.number("r")?)?,
-        "fluence_central_point" => solved(Centre)?.fluence(row.number("r")?)?,
-        "fluence_iso_incidence_unit_irradiance" => solved(Incident)?.fluence(row.number("r")?)?,
-        "exit_radiance_uniform_unit_power" => solved(Uniform)?.exit_radiance(row.number("mu")?)?,
-        "exit_radiance_central_point" => solved(Centre)?.exit_radiance(row.number("mu")?)?,
-        "exit_radiance_iso_incidence" => solved(Incident)?.exit_radiance(row.number("mu")?)?,
+        "escape_uniform_source" => spheres.get(a, albedo, Uniform)?.escape(),
+        "escape_central_point" => spheres.get(a, albedo, Centre)?.escape(),
+        "escape_iso_incidence" => spheres.get(a, albedo, Incident)?.escape(),
+        "absorbed_uniform_source" => spheres.get(a, albedo, Uniform)?.absorptance(),
+        "absorbed_central_point" => spheres.get(a, albedo, Centre)?.absorptance(),
+        "absorbed_iso_incidence" => spheres.get(a, albedo, Incident)?.absorptance(),
+        "fluence_uniform_source_unit_power" => spheres.get(a, albedo, Uniform)?.fluence(row.number("r")?)?,
+        "fluence_central_point" => spheres.get(a, albedo, Centre)?.fluence(row.number("r")?)?,
+        "fluence_iso_incidence_unit_irradiance" => spheres.get(a, albedo, Incident)?.fluence(row.number("r")?)?,
+        "exit_radiance_uniform_unit_power" => spheres.get(a, albedo, Uniform)?.exit_radiance(row.number("mu")?)?,
+        "exit_radiance_central_point" => spheres.get(a, albedo, Centre)?.exit_radiance(row.number("mu")?)?,
+        "exit_radiance_iso_incidence" => spheres.get(a, albedo, Incident)?.exit_radiance(row.number("mu")?)?,
         "escape_first_flight_uniform" => escape_uniform(a)?,
         "escape_first_flight_from" => escape_from(a, row.number("r")?)?,
         other => return Ok(Err(format!("quantity {other} of a sphere is not answered here"))),
