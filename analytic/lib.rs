@@ -8,7 +8,7 @@
 //! irradiance on that face; the signed cosine mu > 0 points up, towards the lit face.
 //!
 //! * Special functions and rules: [`exponential_integral`], [`quadrature`]
-//! * Slab: [`beer_lambert`], [`slab_single`], [`slab_isotropic`], [`slab_anisotropic`]
+//! * Slab: [`beer_lambert`], [`slab_single`], [`slab_isotropic`], [`slab_anisotropic`], [`xy`]
 //! * Half-space: [`half_space`]; infinite medium: [`infinite`]
 //! * Kernel density estimation: [`kernel`], [`ball_mean`], [`blur`], [`edge`], [`volumes`], [`slab_kernel`],
 //!   [`nearest`], [`progressive`]; where the medium ends: [`boundary`]
@@ -35,6 +35,7 @@ pub mod slab_kernel;
 pub mod slab_single;
 pub mod value;
 pub mod volumes;
+pub mod xy;
 
 pub use error::{Error, Result};
 pub use half_space::HalfSpace;
@@ -44,6 +45,7 @@ pub use kernel::{Dimension, Kernel};
 pub use slab_anisotropic::AnisotropicSlab;
 pub use slab_isotropic::IsotropicSlab;
 pub use value::Value;
+pub use xy::XAndY;
 
 /// The same cases on every run, and no files left behind.
 #[cfg(test)]
