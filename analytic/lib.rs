@@ -10,7 +10,7 @@
 //! * Special functions and rules: [`exponential_integral`], [`quadrature`]; phase functions: [`phase`]
 //! * Slab: [`beer_lambert`], [`slab_single`], [`slab_isotropic`], [`slab_anisotropic`], [`adding_doubling`]; between
 //!   refracting faces [`slab_fresnel`]
-//! * Half-space: [`half_space`]; infinite medium: [`infinite`]
+//! * Half-space: [`half_space`]; infinite medium: [`infinite`]; X and Y functions: [`xy`]
 //! * Sphere: [`sphere`] (uniform, central and incident light; the absorbing sphere)
 //! * Kernel density estimation: [`kernel`], [`ball_mean`], [`blur`], [`edge`], [`volumes`], [`slab_kernel`],
 //!   [`nearest`], [`progressive`]; where the medium ends: [`boundary`]
@@ -41,6 +41,7 @@ pub mod slab_single;
 pub mod sphere;
 pub mod value;
 pub mod volumes;
+pub mod xy;
 
 pub use adding_doubling::AddingDoubling;
 pub use error::{Error, Result};
@@ -54,6 +55,7 @@ pub use slab_fresnel::FresnelSlab;
 pub use slab_isotropic::IsotropicSlab;
 pub use sphere::{Sphere, SphereSource};
 pub use value::Value;
+pub use xy::XAndY;
 
 /// The same cases on every run, and no files left behind.
 #[cfg(test)]

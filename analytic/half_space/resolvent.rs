@@ -57,6 +57,8 @@ pub(crate) fn spectrum(albedo: f64, point: Point) -> f64 {
 #[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct Sum {
     fine: f64,
+    /// What the additions to `fine` have rounded away (Kahan).
+    lost: f64,
     alternating: f64,
     rounding: f64,
 }
@@ -64,7 +66,10 @@ pub(crate) struct Sum {
 impl Sum {
     /// Adds a term whose exponential had the argument `exponent`.
     pub fn add(&mut self, index: usize, term: f64, exponent: f64) {
-        self.fine += term;
+        let exact = term + self.lost;
+        let next = self.fine + exact;
+        self.lost = exact - (next - self.fine);
+        self.fine = next;
         self.alternating += if index.is_multiple_of(2) { term } else { -term };
         self.rounding += term * (16.0 + 4.0 * exponent.min(750.0));
     }
