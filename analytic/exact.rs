@@ -8,6 +8,8 @@ mod boundary;
 mod cases;
 #[path = "exact/format.rs"]
 mod format;
+#[path = "exact/fresnel.rs"]
+mod fresnel;
 #[path = "exact/half_space.rs"]
 mod half_space;
 #[path = "exact/infinite.rs"]
@@ -32,6 +34,8 @@ mod slab;
 mod solved;
 #[path = "exact/sphere.rs"]
 mod sphere;
+#[path = "exact/xy.rs"]
+mod xy;
 
 use anyhow::{Context, Result, bail, ensure};
 use clap::error::ErrorKind;
@@ -73,6 +77,7 @@ struct Cli {
 enum Command {
     Slab(slab::Args),
     HalfSpace(half_space::Args),
+    Xy(xy::Args),
     Sphere(sphere::Args),
     Infinite(infinite::Args),
     Kernel(kernel::Args),
@@ -86,6 +91,7 @@ impl Command {
         match self {
             Command::Slab(args) => slab::answer(args, draw),
             Command::HalfSpace(args) => half_space::answer(args, draw),
+            Command::Xy(args) => xy::answer(args, draw),
             Command::Sphere(args) => sphere::answer(args, draw),
             Command::Infinite(args) => infinite::answer(args, draw),
             Command::Kernel(args) => kernel::answer(args, draw),

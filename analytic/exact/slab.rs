@@ -1,6 +1,7 @@
 //! `exact slab`: one slab, all its fluxes, and fluence, radiance and orders of scattering where asked.
 
 use crate::answer::{Answer, Reply};
+use crate::fresnel::{self, Asked};
 use crate::phase::{Named, PhaseArgs};
 use crate::plot::{Curve, crowded, degrees, even, figure, panel};
 use crate::read::{incidence, incidence_field, incidence_title};
@@ -38,6 +39,9 @@ pub struct Args {
     /// Cosine of incidence of a beam, above 0 to 1, or the word diffuse (Lambertian light).
     #[arg(long, default_value = "1", value_parser = incidence, allow_negative_numbers = true)]
     mu0: Incidence,
+    /// Refractive index inside over outside: faces that reflect and refract (isotropic or --g; fluxes and fluence).
+    #[arg(long, default_value_t = 1.0, allow_negative_numbers = true)]
+    index: f64,
     /// Depths in mean free paths, 0 to tau, at which to give the fluence (direct light included).
     #[arg(long, num_args = 1.., value_name = "T", allow_negative_numbers = true)]
     depth: Vec<f64>,
@@ -72,6 +76,16 @@ enum Draw {
 /// Solves the slab and answers.
 pub fn answer(args: &Args, draw: bool) -> Result<Reply> {
     let named = args.phase.read()?;
+    if args.index != 1.0 {
+        ensure!(
+            args.mu.is_empty() && args.order.is_empty() && args.draw == Draw::Fluence,
+            "--index is {}; allowed with --mu, --order and --draw radiance: 1",
+            args.index
+        );
+        let (tau, albedo, index) = (args.tau, args.albedo, args.index);
+        let asked = Asked { tau, albedo, named: &named, index, incidence: args.mu0, depth: &args.depth };
+        return fresnel::answer(&asked, args.method, draw);
+    }
     let slab = Solved::new(args.tau, args.albedo, &named, args.mu0, args.method)?;
     let mut answer = Answer::new("slab")
         .with("tau", args.tau)

@@ -3,7 +3,7 @@
 use crate::phase::Named;
 use anyhow::{Result, bail};
 use clap::ValueEnum;
-use turbid_analytic::{AnisotropicMedium, AnisotropicSlab, Incidence, IsotropicSlab, Value};
+use turbid_analytic::{AddingDoubling, AnisotropicMedium, AnisotropicSlab, Incidence, IsotropicSlab, Value};
 
 /// How a slab is solved.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
@@ -14,6 +14,8 @@ pub enum Method {
     Peierls,
     /// Discrete ordinates.
     Ordinates,
+    /// Adding and doubling, the second method of all slabs (thickness up to 100).
+    Doubling,
 }
 
 /// Thickness up to which the Peierls equation is solved.
@@ -25,6 +27,8 @@ pub enum Solved {
     Peierls(IsotropicSlab),
     /// By discrete ordinates.
     Ordinates(AnisotropicSlab),
+    /// By adding and doubling.
+    Doubling(AddingDoubling),
 }
 
 impl Solved {
@@ -37,6 +41,9 @@ impl Solved {
         if method == Method::Peierls || method == Method::Auto && isotropic && tau <= PEIERLS_UP_TO {
             return Ok(Solved::Peierls(IsotropicSlab::new(tau, albedo, incidence)?));
         }
+        if method == Method::Doubling {
+            return Ok(Solved::Doubling(doubled(tau, albedo, named, incidence)?));
+        }
         Ok(Solved::Ordinates(AnisotropicMedium::new(albedo, &named.phase)?.slab(tau, incidence)?))
     }
 
@@ -45,6 +52,7 @@ impl Solved {
         match self {
             Solved::Peierls(slab) => slab.reflectance(),
             Solved::Ordinates(slab) => slab.reflectance(),
+            Solved::Doubling(slab) => slab.reflectance(),
         }
     }
 
@@ -53,6 +61,7 @@ impl Solved {
         match self {
             Solved::Peierls(slab) => slab.transmittance(),
             Solved::Ordinates(slab) => slab.transmittance(),
+            Solved::Doubling(slab) => slab.transmittance(),
         }
     }
 
@@ -61,6 +70,7 @@ impl Solved {
         match self {
             Solved::Peierls(slab) => slab.transmittance_direct(),
             Solved::Ordinates(slab) => slab.transmittance_direct(),
+            Solved::Doubling(slab) => slab.transmittance_direct(),
         }
     }
 
@@ -69,6 +79,7 @@ impl Solved {
         match self {
             Solved::Peierls(slab) => slab.transmittance_diffuse(),
             Solved::Ordinates(slab) => slab.transmittance_diffuse(),
+            Solved::Doubling(slab) => slab.transmittance_diffuse(),
         }
     }
 
@@ -77,6 +88,7 @@ impl Solved {
         match self {
             Solved::Peierls(slab) => slab.absorptance(),
             Solved::Ordinates(slab) => slab.absorptance(),
+            Solved::Doubling(slab) => slab.absorptance(),
         }
     }
 
@@ -85,6 +97,7 @@ impl Solved {
         Ok(match self {
             Solved::Peierls(slab) => slab.fluence(t)?,
             Solved::Ordinates(slab) => slab.fluence(t)?,
+            Solved::Doubling(slab) => slab.fluence(t)?,
         })
     }
 
@@ -97,7 +110,23 @@ impl Solved {
     pub fn radiance(&self, t: f64, mu: f64, dphi: f64) -> Result<Value> {
         Ok(match self {
             Solved::Peierls(slab) => slab.radiance(t, mu)?,
+            Solved::Doubling(slab) => slab.radiance(t, mu, dphi)?,
             Solved::Ordinates(_) => bail!("azimuth {dphi}: radiance is to come"),
         })
     }
+}
+
+/// The most Legendre moments that doubling takes, and what may be left out behind them.
+const MOMENTS: usize = 600;
+const CUT: f64 = 1e-12;
+
+fn doubled(tau: f64, albedo: f64, named: &Named, incidence: Incidence) -> Result<AddingDoubling> {
+    if let Some(g) = named.single_g {
+        return Ok(AddingDoubling::new(tau, albedo, g, incidence)?);
+    }
+    let mut moments: Vec<f64> = (0..MOMENTS).map(|l| named.phase.moment(l)).collect();
+    while moments.last().is_some_and(|chi| chi.abs() < CUT) {
+        moments.pop();
+    }
+    Ok(AddingDoubling::with_moments(tau, albedo, &moments, incidence)?)
 }

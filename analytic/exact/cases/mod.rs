@@ -1,5 +1,6 @@
 //! `exact --cases`: a table of questions, each medium solved once.
 
+mod fresnel;
 mod half_space;
 mod infinite;
 mod kernel;
@@ -28,6 +29,7 @@ pub fn answer(path: &Path, format: Format, output: &mut Vec<u8>) -> Result<()> {
     order.sort_by(|&a, &b| medium(a).cmp(&medium(b)));
     let mut answers: Vec<Option<Answered>> = rows.iter().map(|_| None).collect();
     let mut slabs = slab::Slabs::default();
+    let mut fresnel_slabs = fresnel::FresnelSlabs::default();
     let mut half_spaces = half_space::HalfSpaces::default();
     let mut spheres = sphere::Spheres::default();
     let mut media = infinite::Media::default();
@@ -35,6 +37,7 @@ pub fn answer(path: &Path, format: Format, output: &mut Vec<u8>) -> Result<()> {
         let row = &rows[i];
         let one = match row.text("geometry") {
             "slab" | "slabXY" => slab::answer(row, &mut slabs),
+            "slab_fresnel" => fresnel::answer(row, &mut fresnel_slabs),
             "halfspace" => half_space::answer(row, &mut half_spaces),
             "sphere" => sphere::answer(row, &mut spheres),
             "infinite" => infinite::answer(row, &mut media),
@@ -53,7 +56,7 @@ pub fn answer(path: &Path, format: Format, output: &mut Vec<u8>) -> Result<()> {
     write(&answered, format, output)
 }
 
-const GEOMETRIES: &str = "slab, slabXY, halfspace, sphere, infinite, kernel";
+const GEOMETRIES: &str = "slab, slabXY, slab_fresnel, halfspace, sphere, infinite, kernel";
 
 fn read(path: &Path) -> Result<Vec<Row>> {
     let name = path.display();
