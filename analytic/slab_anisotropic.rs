@@ -17,11 +17,13 @@
 //!
 //! Source: Chandrasekhar 1960, chapters II and III; Stamnes, Tsay, Wiscombe and Jayaweera 1988.
 
+mod convolution;
 mod jacobi;
 mod matching;
 mod medium;
 pub(crate) mod modes;
 pub(crate) mod nodes;
+mod ray;
 pub(crate) mod scattering;
 pub(crate) mod solution;
 #[cfg(test)]
@@ -88,10 +90,9 @@ impl AnisotropicSlab {
         let solutions = [solve(0)?, solve(1)?];
         let pair = |f: fn(&Solution) -> Sum| [f(&solutions[0]), f(&solutions[1])];
         let direct = direct_transmittance(incidence, tau.min(f64::MAX))?;
-        // Light scattered into a peak that was cut off goes straight on in the solution.
         let fluxes = [
             pair(Solution::reflectance),
-            pair(Solution::transmittance_total).map(|sum| sum.plus(-direct.value, direct.value)),
+            solutions.each_ref().map(|solution| solution.transmittance_scattered(tau)),
             pair(Solution::absorptance),
         ];
         let [reflectance, transmittance_diffuse, absorptance] = bounded(fluxes);
