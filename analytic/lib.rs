@@ -8,6 +8,7 @@
 //! irradiance on that face; the signed cosine mu > 0 points up, towards the lit face.
 //!
 //! * Special functions and rules: [`exponential_integral`], [`quadrature`]
+//! * Phase functions: [`phase`]
 //! * Slab: [`beer_lambert`], [`slab_single`], [`slab_isotropic`], [`slab_anisotropic`], [`xy`]
 //! * Half-space: [`half_space`]; infinite medium: [`infinite`]
 //! * Kernel density estimation: [`kernel`], [`ball_mean`], [`blur`], [`edge`], [`volumes`], [`slab_kernel`],
@@ -26,6 +27,7 @@ pub mod infinite;
 pub mod kernel;
 pub mod nearest;
 mod peierls;
+pub mod phase;
 mod poisson;
 pub mod progressive;
 pub mod quadrature;
@@ -42,7 +44,8 @@ pub use half_space::HalfSpace;
 pub use incidence::Incidence;
 pub use infinite::InfiniteMedium;
 pub use kernel::{Dimension, Kernel};
-pub use slab_anisotropic::AnisotropicSlab;
+pub use phase::Phase;
+pub use slab_anisotropic::{AnisotropicMedium, AnisotropicSlab};
 pub use slab_isotropic::IsotropicSlab;
 pub use value::Value;
 pub use xy::XAndY;
