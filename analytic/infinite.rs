@@ -16,7 +16,7 @@
 //! Source: Case, de Hoffmann and Placzek 1953; Grosjean 1956; Case and Zweifel 1967, chapter 5; van de Hulst 1980,
 //! chapter 5, for the continued fraction.
 
-mod modes;
+pub(crate) mod modes;
 mod moments;
 #[cfg(test)]
 mod tests;
@@ -24,6 +24,7 @@ mod tests;
 use crate::error::{Error, Result, within};
 use crate::half_space::resolvent::{Sum, TO_ONE, points};
 use crate::incidence::check_albedo;
+use crate::phase::Phase;
 use crate::value::Value;
 use libm::exp;
 use modes::{Mode, Recurrence};
@@ -47,6 +48,17 @@ pub struct InfiniteMedium {
 }
 
 impl InfiniteMedium {
+    /// A medium with any phase function.
+    ///
+    /// # Arguments
+    /// `albedo` \[1\], 0 to 1; `phase` with moments that have died away at l = 45000, as those of
+    /// Henyey-Greenstein with |g| up to 0.999
+    /// # Errors
+    /// `Error::OutOfRange` naming `albedo`, `phase function` or `moment` (-1 or 1: no scattering at all)
+    pub fn new(albedo: f64, phase: &Phase) -> Result<Self> {
+        Ok(Self::solve(albedo, &moments_of(albedo, phase)?))
+    }
+
     /// A medium with Henyey-Greenstein scattering.
     ///
     /// # Arguments
@@ -228,6 +240,20 @@ impl InfiniteMedium {
         error += 1e-15 * exp(-r) * fast(1.0) + f64::MIN_POSITIVE;
         Value::new(value, error, SPECTRAL)
     }
+}
+
+/// The moments of `phase` up to the last that changes anything.
+pub(crate) fn moments_of(albedo: f64, phase: &Phase) -> Result<Vec<f64>> {
+    check_albedo(albedo)?;
+    let last = phase.degree(CUT, 45_000);
+    if last == 45_000 {
+        within("phase function", phase.moment(last), -CUT, CUT, "moments that vanish at l = 45000")?;
+    }
+    let moments: Vec<f64> = (0..=last).map(|l| phase.moment(l)).collect();
+    for &moment in moments.iter().skip(1) {
+        within("moment", moment, f64::EPSILON - 1.0, 1.0 - f64::EPSILON, "between -1 and 1")?;
+    }
+    Ok(moments)
 }
 
 fn check_radius(r: f64) -> Result<f64> {

@@ -7,20 +7,20 @@
 //! nu < 1, where Q_l is complex. The recurrence is that of a symmetric matrix, so that the modes slower than k are as
 //! many as the changes of sign of g_l.
 
-use libm::{asinh, ceil, expm1, sinh, tanh};
+use libm::{asinh, atanh, ceil, expm1, sinh, tanh};
 use std::f64::consts::FRAC_PI_2;
 
 /// Modes with atanh(k) beyond this have 1 - k^2 < 1e-16, and a strength of that order.
 const LAST: f64 = 19.0;
 
 /// h_0 to h_L; beyond, h_l = 2l+1.
-pub(super) struct Recurrence {
+pub(crate) struct Recurrence {
     pub h: Vec<f64>,
 }
 
 /// A discrete mode: strength N in N e^(-kr)/(4 pi r).
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Mode {
+pub(crate) struct Mode {
     pub k: f64,
     pub strength: f64,
 }
@@ -96,18 +96,27 @@ impl Recurrence {
         if ratio > 0.0 && ratio < legendre_ratio(last, b, nu) { count + 1 } else { count }
     }
 
+    /// The moments f_0 = 1 to f_L of the mode that decays by k: its light is sum (2l+1) f_l P_l(u).
+    pub fn pattern(&self, k: f64) -> Vec<f64> {
+        let last = self.h.len() - 1;
+        if k == 0.0 {
+            return vec![1.0];
+        }
+        let b = atanh(k);
+        let ratios = self.ratios(b);
+        let mut f = vec![1.0];
+        for ratio in ratios.iter().take(last) {
+            f.push(f[f.len() - 1] * ratio);
+        }
+        f
+    }
+
     /// 2 k^2 f_0^2 / sum h_l f_l^2 for the mode's moments f_l, proportional to Q_l from L on.
     fn strength(&self, b: f64) -> f64 {
-        let (k, nu) = (tanh(b), 1.0 / tanh(b));
+        let k = tanh(b);
         let last = self.h.len() - 1;
-        let tail = legendre_ratio(last, b, nu);
-        // ratios[l] = f_(l+1)/f_l.
-        let mut ratios = vec![tail; last + 1];
-        for l in (0..last).rev() {
-            let n = l as f64;
-            let below = nu * self.h[l + 1] - (n + 2.0) * ratios[l + 1];
-            ratios[l] = (n + 1.0) / if below == 0.0 { 1e-300 } else { below };
-        }
+        let ratios = self.ratios(b);
+        let tail = ratios[last];
         let (mut f, mut sum) = (1.0, self.h[0]);
         for l in 1..=last {
             f *= ratios[l - 1];
@@ -119,6 +128,21 @@ impl Recurrence {
         let rest = (1.0 - tail) * (1.0 - tail) - 2.0 * over * tail;
         let scale = n * sinh(b) * f;
         2.0 * k * k / (sum + (scale * scale * rest).max(0.0))
+    }
+}
+
+impl Recurrence {
+    /// f_(l+1)/f_l of the mode with k = tanh(b), l = 0 to L.
+    fn ratios(&self, b: f64) -> Vec<f64> {
+        let nu = 1.0 / tanh(b);
+        let last = self.h.len() - 1;
+        let mut ratios = vec![legendre_ratio(last, b, nu); last + 1];
+        for l in (0..last).rev() {
+            let n = l as f64;
+            let below = nu * self.h[l + 1] - (n + 2.0) * ratios[l + 1];
+            ratios[l] = (n + 1.0) / if below == 0.0 { 1e-300 } else { below };
+        }
+        ratios
     }
 }
 
