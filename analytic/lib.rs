@@ -8,6 +8,7 @@
 //! irradiance on that face; the signed cosine mu > 0 points up, towards the lit face.
 //!
 //! * Special functions and rules: [`exponential_integral`], [`quadrature`]
+//! * Phase functions: [`phase`]
 //! * Slab: [`beer_lambert`], [`slab_single`], [`slab_isotropic`], [`slab_anisotropic`]
 //! * Kernel density estimation: [`kernel`], [`ball_mean`], [`blur`], [`edge`], [`volumes`], [`slab_kernel`],
 //!   [`nearest`], [`progressive`]; where the medium ends: [`boundary`]
@@ -23,6 +24,7 @@ pub mod incidence;
 pub mod kernel;
 pub mod nearest;
 mod peierls;
+pub mod phase;
 mod poisson;
 pub mod progressive;
 pub mod quadrature;
@@ -36,7 +38,8 @@ pub mod volumes;
 pub use error::{Error, Result};
 pub use incidence::Incidence;
 pub use kernel::{Dimension, Kernel};
-pub use slab_anisotropic::AnisotropicSlab;
+pub use phase::Phase;
+pub use slab_anisotropic::{AnisotropicMedium, AnisotropicSlab};
 pub use slab_isotropic::IsotropicSlab;
 pub use value::Value;
 
