@@ -9,11 +9,12 @@
 //!
 //! * Special functions and rules: [`exponential_integral`], [`quadrature`]
 //! * Phase functions: [`phase`]
-//! * Slab: [`beer_lambert`], [`slab_single`], [`slab_isotropic`], [`slab_anisotropic`]
+//! * Slab: [`beer_lambert`], [`slab_single`], [`slab_isotropic`], [`slab_anisotropic`]; by order of scattering [`orders`]
 //! * Kernel density estimation: [`kernel`], [`ball_mean`], [`blur`], [`edge`], [`volumes`], [`slab_kernel`],
-//!   [`nearest`], [`progressive`]; where the medium ends: [`boundary`]
+//!   [`nearest`], [`progressive`], [`beams`]; where the medium ends: [`boundary`]
 
 pub mod ball_mean;
+pub mod beams;
 pub mod beer_lambert;
 pub mod blur;
 pub mod boundary;
@@ -23,6 +24,7 @@ pub mod exponential_integral;
 pub mod incidence;
 pub mod kernel;
 pub mod nearest;
+pub mod orders;
 mod peierls;
 pub mod phase;
 mod poisson;
@@ -38,6 +40,7 @@ pub mod volumes;
 pub use error::{Error, Result};
 pub use incidence::Incidence;
 pub use kernel::{Dimension, Kernel};
+pub use orders::ScatteringOrders;
 pub use phase::Phase;
 pub use slab_anisotropic::{AnisotropicMedium, AnisotropicSlab};
 pub use slab_isotropic::IsotropicSlab;
