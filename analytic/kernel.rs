@@ -5,11 +5,13 @@
 //! (1/N)(f R/r^d - f^2 + ...), with m_j = int |u|^j K and R = int K^2 (Silverman 1986, chapter 4).
 
 mod dimension;
+mod optimum;
 
 use crate::error::{Result, within};
 use crate::value::Value;
 pub use dimension::Dimension;
 use libm::{erf, exp};
+pub use optimum::optimum;
 use std::f64::consts::{PI, SQRT_2};
 
 const METHOD: &str = "closed form";
@@ -154,6 +156,20 @@ impl Kernel {
         Ok(Value::rounded(value, 8.0 * ULPS, METHOD))
     }
 
+    /// Mean of |u|^2 over the square of the kernel: int |u|^2 K^2 / int K^2, so that the variance in a curved field has
+    /// f + r^2 lap f/(2d) of this in place of f.
+    ///
+    /// # Errors
+    /// `Error::OutOfRange` naming `kappa`
+    /// # Limits
+    /// uniform d/(d+2); Gaussian d/2
+    pub fn square_moment(self, d: Dimension) -> Result<Value> {
+        self.check()?;
+        let n = d.number() - 1;
+        let value = self.radial(n + 2, 2) / self.radial(n, 2);
+        Ok(Value::rounded(value, 16.0 * self.moment_ulps(n + 2), METHOD))
+    }
+
     /// Bias per r^2 and Laplacian: m2/(2d).
     ///
     /// # Errors
@@ -291,6 +307,10 @@ mod tests {
                 let want = radial(kernel, |u| area(u) * kernel.density(d, u) * kernel.density(d, u));
                 let got = kernel.roughness(d).unwrap();
                 assert!((got.value - want).abs() <= got.error + 1e-13 * want, "{kernel:?} {d:?}");
+                let second =
+                    radial(kernel, |u| u * u * area(u) * kernel.density(d, u) * kernel.density(d, u));
+                let got = kernel.square_moment(d).unwrap();
+                assert!((got.value - second / want).abs() <= got.error + 2e-13, "{kernel:?} {d:?}");
             }
         }
     }

@@ -17,6 +17,7 @@
 
 pub mod adding_doubling;
 pub mod ball_mean;
+pub mod beams;
 pub mod beer_lambert;
 pub mod blur;
 pub mod boundary;
@@ -28,6 +29,7 @@ pub mod incidence;
 pub mod infinite;
 pub mod kernel;
 pub mod nearest;
+pub mod orders;
 mod peierls;
 pub mod phase;
 mod poisson;
@@ -49,6 +51,7 @@ pub use half_space::HalfSpace;
 pub use incidence::Incidence;
 pub use infinite::InfiniteMedium;
 pub use kernel::{Dimension, Kernel};
+pub use orders::ScatteringOrders;
 pub use phase::Phase;
 pub use slab_anisotropic::{AnisotropicMedium, AnisotropicSlab};
 pub use slab_fresnel::FresnelSlab;

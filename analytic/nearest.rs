@@ -12,6 +12,7 @@
 //! and the second moment has kernel_square in place of kernel_mean plus the same with k - 3 and kernel_mean^2.
 //! Source: Loftsgaarden and Quesenberry 1965; Mack and Rosenblatt 1979.
 
+mod curved;
 mod uniform;
 
 use crate::ball_mean::exponential_mean;
@@ -20,7 +21,9 @@ use crate::kernel::{Dimension, Kernel};
 use crate::poisson::{at_most, probability};
 use crate::quadrature::Adaptive;
 use crate::value::Value;
+pub use curved::{NearestCurved, nearest_curved, optimum_neighbors};
 use libm::cbrt;
+pub(crate) use uniform::gamma_ratio;
 pub use uniform::{biased_factor, nearest_square_distance, nearest_variance_uniform};
 
 const METHOD: &str = "gamma mixture over the k-th distance, two Gauss rules";

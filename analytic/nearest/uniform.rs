@@ -66,8 +66,8 @@ pub fn nearest_square_distance(d: Dimension, j: u32, density: f64, points: Optio
     Ok(Value::rounded(value, 256.0, "Stirling's series"))
 }
 
-/// Gamma(z + a)/Gamma(z) for z >= 1, 0 < a <= 2.
-fn gamma_ratio(z: f64, a: f64) -> f64 {
+/// Gamma(z + a)/Gamma(z) for z > 0, 0 <= a <= 2.
+pub(crate) fn gamma_ratio(z: f64, a: f64) -> f64 {
     let (mut z, mut factor) = (z, 1.0);
     while z < 16.0 {
         factor *= z / (z + a);

@@ -1,0 +1,86 @@
+//! Light that a beam has scattered once: closed in depth, one integral over the cosine of its direction.
+
+use super::scattering::{legendre, mean_phase};
+use crate::error::{Result, within};
+use crate::phase::Phase;
+use crate::quadrature::Adaptive;
+use crate::slab_single::path;
+use crate::value::Value;
+
+const METHOD: &str = "closed in depth, two Gauss rules over the cosine";
+
+/// Moments below this are left out.
+const CUT: f64 = 1e-18;
+
+/// The first order of a beam's light.
+pub(super) struct Once {
+    tau: f64,
+    albedo: f64,
+    mu0: f64,
+    moments: Vec<f64>,
+    /// P_l(mu0).
+    table: Vec<f64>,
+}
+
+impl Once {
+    pub fn new(tau: f64, albedo: f64, phase: &Phase, mu0: f64) -> Result<Self> {
+        const MOST: usize = 8192;
+        within("phase moment 8192", phase.moment(MOST), -CUT, CUT, "-1e-18 to 1e-18")?;
+        let end = (0..MOST).rev().find(|&l| phase.moment(l).abs() > CUT).map_or(1, |l| l + 1);
+        let moments: Vec<f64> = (0..end).map(|l| phase.moment(l)).collect();
+        let table = legendre(moments.len(), mu0);
+        Ok(Once { tau, albedo, mu0, moments, table })
+    }
+
+    /// R_1 = (albedo/2) int_0^1 mu h(mu, -mu0) path dmu.
+    pub fn reflectance(&self) -> Result<Value> {
+        self.integral(|mu| mu * path(0.0, self.tau, self.mu0, mu), None, [0.0, self.tau])
+    }
+
+    /// T_1 = (albedo/2) int_0^1 mu h(-mu, -mu0) path dmu.
+    pub fn transmittance(&self) -> Result<Value> {
+        self.integral(|_| 0.0, Some(&|mu: f64| mu * path(self.tau, 0.0, self.mu0, -mu)), [self.tau, 0.0])
+    }
+
+    /// phi_1(t) = (albedo/2) int_(-1)^1 h(mu, -mu0) path dmu.
+    pub fn fluence(&self, t: f64) -> Result<Value> {
+        let rest = self.tau - t;
+        self.integral(
+            |mu| path(t, rest, self.mu0, mu),
+            Some(&|mu: f64| path(t, rest, self.mu0, -mu)),
+            [t, rest],
+        )
+    }
+
+    /// (albedo/2) int_0^1 \[h(mu, -mu0) up(mu) + h(-mu, -mu0) down(mu)\] dmu; the light changes on the scales of mu given.
+    fn integral(
+        &self,
+        up: impl Fn(f64) -> f64,
+        down: Option<&dyn Fn(f64) -> f64>,
+        scales: [f64; 2],
+    ) -> Result<Value> {
+        let mut breaks = vec![0.0, 1.0, self.mu0];
+        for scale in scales.into_iter().filter(|&s| s > 0.0) {
+            breaks.extend([1e-3, 0.03, 0.3, 3.0, 100.0].map(|f| (f * scale.min(1.0)).min(1.0)));
+        }
+        breaks.sort_by(f64::total_cmp);
+        breaks.dedup();
+        let sum_of = |pick: fn((f64, f64)) -> f64, tolerance: f64| {
+            Adaptive::new(tolerance).integrate(&breaks, "radiance", METHOD, |mu| {
+                let mut value = 0.0;
+                for (sign, path) in [(-1.0, up(mu)), (1.0, down.map_or(0.0, |f| f(mu)))] {
+                    if path != 0.0 {
+                        value += pick(mean_phase(&self.moments, sign * mu, &self.table)) * path;
+                    }
+                }
+                Ok(value)
+            })
+        };
+        let sum = sum_of(|(h, _)| h, 1e-14)?;
+        // The series cancels at all angles but the peak: its roundings are those of its largest terms.
+        let terms = sum_of(|(_, magnitude)| magnitude, 0.1)?;
+        let exponent = (2.0 * scales[0] / self.mu0).min(1500.0);
+        let rounding = f64::EPSILON * ((32.0 + exponent) * sum.value.abs() + 8.0 * terms.value);
+        Ok(Value::new(sum.value, sum.error + rounding, METHOD).scaled(0.5 * self.albedo))
+    }
+}
