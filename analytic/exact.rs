@@ -2,6 +2,8 @@
 
 #[path = "exact/answer.rs"]
 mod answer;
+#[path = "exact/beams.rs"]
+mod beams;
 #[path = "exact/boundary.rs"]
 mod boundary;
 #[path = "exact/cases/mod.rs"]
@@ -18,6 +20,8 @@ mod infinite;
 mod kernel;
 #[path = "exact/nearest.rs"]
 mod nearest;
+#[path = "exact/orders.rs"]
+mod orders;
 #[path = "exact/output.rs"]
 mod output;
 #[path = "exact/phase.rs"]
@@ -81,6 +85,7 @@ enum Command {
     Sphere(sphere::Args),
     Infinite(infinite::Args),
     Kernel(kernel::Args),
+    Beams(beams::Args),
     Nearest(nearest::Args),
     Progressive(progressive::Args),
     Boundary(boundary::Args),
@@ -95,6 +100,7 @@ impl Command {
             Command::Sphere(args) => sphere::answer(args, draw),
             Command::Infinite(args) => infinite::answer(args, draw),
             Command::Kernel(args) => kernel::answer(args, draw),
+            Command::Beams(args) => beams::answer(args, draw),
             Command::Nearest(args) => nearest::answer(args, draw),
             Command::Progressive(args) => progressive::answer(args, draw),
             Command::Boundary(args) => boundary::answer(args, draw),

@@ -9,11 +9,11 @@
 //!
 //! * Special functions and rules: [`exponential_integral`], [`quadrature`]; phase functions: [`phase`]
 //! * Slab: [`beer_lambert`], [`slab_single`], [`slab_isotropic`], [`slab_anisotropic`], [`adding_doubling`]; between
-//!   refracting faces [`slab_fresnel`]
+//!   refracting faces [`slab_fresnel`]; by order of scattering [`orders`]
 //! * Half-space: [`half_space`]; infinite medium: [`infinite`]; X and Y functions: [`xy`]
 //! * Sphere: [`sphere`] (uniform, central and incident light; the absorbing sphere)
 //! * Kernel density estimation: [`kernel`], [`ball_mean`], [`blur`], [`edge`], [`volumes`], [`slab_kernel`],
-//!   [`nearest`], [`progressive`]; where the medium ends: [`boundary`]
+//!   [`nearest`], [`progressive`], [`beams`]; where the medium ends: [`boundary`]
 
 pub mod adding_doubling;
 pub mod ball_mean;

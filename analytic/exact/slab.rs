@@ -5,11 +5,12 @@ use crate::fresnel::{self, Asked};
 use crate::phase::{Named, PhaseArgs};
 use crate::plot::{Curve, crowded, degrees, even, figure, panel};
 use crate::read::{incidence, incidence_field, incidence_title};
+use crate::orders::Orders;
 use crate::solved::{Method, Solved};
 use anyhow::{Result, ensure};
 use clap::ValueEnum;
 use libm::cos;
-use turbid_analytic::{Incidence, IsotropicSlab};
+use turbid_analytic::Incidence;
 use turbid_figure::{Axis, Figure};
 
 /// A homogeneous slab: fluxes, fluence, radiance of scattered light, orders of scattering.
@@ -52,7 +53,7 @@ pub struct Args {
     /// Azimuths of those directions, in radians: that of propagation minus that of the beam.
     #[arg(long, num_args = 1.., value_name = "PHI", default_values_t = [0.0], allow_negative_numbers = true)]
     azimuth: Vec<f64>,
-    /// Orders of scattering to give one by one, isotropic scattering only: 0 is direct light.
+    /// Orders of scattering to give one by one, 0 (direct light) to 100, to 1000 with isotropic scattering.
     #[arg(long, num_args = 1.., value_name = "N")]
     order: Vec<u32>,
     /// How to solve it.
@@ -133,14 +134,12 @@ fn directions(args: &Args, named: &Named) -> Vec<(f64, f64, f64)> {
 }
 
 fn orders(args: &Args, named: &Named, answer: &mut Answer) -> Result<()> {
-    ensure!(named.is_isotropic(), "phase function is {}; allowed with --order: isotropic", named.name);
-    let slab = IsotropicSlab::new(args.tau, args.albedo, args.mu0)?;
+    let slab = Orders::new(args.tau, args.albedo, named, args.mu0)?;
     for &n in &args.order {
-        answer.add_at("reflectance_of_order", vec![("order", n.into())], slab.reflectance_of_order(n)?);
-        answer.add_at("transmittance_of_order", vec![("order", n.into())], slab.transmittance_of_order(n)?);
+        answer.add_at("reflectance_of_order", vec![("order", n.into())], slab.reflectance(n)?);
+        answer.add_at("transmittance_of_order", vec![("order", n.into())], slab.transmittance(n)?);
         for &t in &args.depth {
-            let at = vec![("t", t.into()), ("order", n.into())];
-            answer.add_at("fluence_of_order", at, slab.fluence_of_order(n, t)?);
+            answer.add_at("fluence_of_order", vec![("t", t.into()), ("order", n.into())], slab.fluence(n, t)?);
         }
     }
     Ok(())

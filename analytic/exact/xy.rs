@@ -66,7 +66,7 @@ pub fn answer(args: &Args, draw: bool) -> Result<Reply> {
 }
 
 fn drawn(args: &Args, xy: &XAndY) -> Result<Figure> {
-    let cosines = even(0.0, 1.0, 61);
+    let cosines = even(0.0, 1.0, 41);
     let curves = vec![
         Curve::sample("X", &cosines, |mu| Ok(xy.at(mu)?[0].value))?,
         Curve::sample("Y", &cosines, |mu| Ok(xy.at(mu)?[1].value))?,

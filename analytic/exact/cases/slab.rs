@@ -2,10 +2,12 @@
 
 use super::Answered;
 use super::row::Row;
+use crate::orders::Orders;
 use crate::phase::Named;
 use crate::solved::{PEIERLS_UP_TO, Solved};
 use anyhow::{Context, Result};
 use std::collections::HashMap;
+use std::collections::hash_map::Entry;
 use turbid_analytic::slab_single::single_radiance;
 use turbid_analytic::{AnisotropicMedium, Incidence, IsotropicSlab, Phase, Value};
 
@@ -17,20 +19,14 @@ pub struct Slabs {
     media: HashMap<(u64, String), AnisotropicMedium>,
     /// By albedo, phase function and light.
     solved: HashMap<(u64, String, u64), Solved>,
+    orders: HashMap<(u64, String, u64), Orders>,
 }
 
 impl Slabs {
     fn get(&mut self, tau: f64, albedo: f64, named: &Named, incidence: Incidence) -> Result<&Solved> {
-        if tau.to_bits() != self.tau.to_bits() {
-            self.solved.clear();
-            self.tau = tau;
-        }
+        self.turn_to(tau);
         let medium = (albedo.to_bits(), named.name.clone());
-        let light = match incidence {
-            Incidence::Beam { mu0 } => mu0.to_bits(),
-            Incidence::Diffuse => u64::MAX,
-        };
-        let key = (medium.0, medium.1.clone(), light);
+        let key = key(albedo, named, incidence);
         if !self.solved.contains_key(&key) {
             let slab = if named.is_isotropic() && tau <= PEIERLS_UP_TO {
                 // Slabs of one thickness share an operator.
@@ -50,6 +46,30 @@ impl Slabs {
         }
         self.solved.get(&key).context("the slab was just solved")
     }
+
+    fn orders(&mut self, tau: f64, albedo: f64, named: &Named, incidence: Incidence) -> Result<&Orders> {
+        self.turn_to(tau);
+        Ok(match self.orders.entry(key(albedo, named, incidence)) {
+            Entry::Occupied(entry) => entry.into_mut(),
+            Entry::Vacant(entry) => entry.insert(Orders::new(tau, albedo, named, incidence)?),
+        })
+    }
+
+    fn turn_to(&mut self, tau: f64) {
+        if tau.to_bits() != self.tau.to_bits() {
+            self.solved.clear();
+            self.orders.clear();
+            self.tau = tau;
+        }
+    }
+}
+
+fn key(albedo: f64, named: &Named, incidence: Incidence) -> (u64, String, u64) {
+    let light = match incidence {
+        Incidence::Beam { mu0 } => mu0.to_bits(),
+        Incidence::Diffuse => u64::MAX,
+    };
+    (albedo.to_bits(), named.name.clone(), light)
 }
 
 /// The phase function of a row: Henyey-Greenstein by its column, others by name in `extra`.
@@ -107,13 +127,11 @@ fn by_order(row: &Row, n: u32, radiance: bool, named: &Named, slabs: &mut Slabs)
         let (mu0, t, mu) = (row.number("mu0")?, row.number("t")?, row.number("mu")?);
         return Ok(Ok(single_radiance(tau, albedo, g, mu0, t, mu, row.number_or("dphi", 0.0)?)?));
     }
-    let Solved::Peierls(slab) = slabs.get(tau, albedo, named, row.incidence("mu0")?)? else {
-        return Ok(Err(format!("phase function {} is not answered by order", named.name)));
-    };
+    let slab = slabs.orders(tau, albedo, named, row.incidence("mu0")?)?;
     Ok(match row.text("quantity") {
-        "R" => Ok(slab.reflectance_of_order(n)?),
-        "T_total" => Ok(slab.transmittance_of_order(n)?),
-        "fluence" => Ok(slab.fluence_of_order(n, row.number("t")?)?),
+        "R" => Ok(slab.reflectance(n)?),
+        "T_total" => Ok(slab.transmittance(n)?),
+        "fluence" => Ok(slab.fluence(n, row.number("t")?)?),
         other => Err(format!("quantity {other} is not answered by order")),
     })
 }

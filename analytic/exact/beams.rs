@@ -1,0 +1,104 @@
+//! `exact beams`: photons and rays as points or as beams.
+
+use crate::answer::{Answer, Reply};
+use crate::plot::{Curve, figure, panel, ratios};
+use crate::read::{kernel, kernel_name};
+use anyhow::Result;
+use turbid_analytic::beams::{Pairing, Ray, crossing_moment, crossing_tail};
+use turbid_analytic::{Kernel, Value};
+use turbid_figure::{Axis, Figure};
+
+/// Beam estimates: how photons as points or beams blur and spread, asked at a point or along a ray.
+///
+///   point asks points           blur in 3 dimensions, variance ~ 1/r^3
+///   ray asks points             blur across the ray,  variance ~ 1/r^2       (the beam radiance estimate)
+///   ray asks beams              blur along the common normal, variance ~ E[1/sin theta]/r
+///
+/// bias = coefficient r^2 times the Laplacian in the directions of blur; relative variance in a uniform field
+///
+///   R_d E[1/sin theta]/(density r^d S),   S = (int T ds)^2/int T^2 ds along the ray, T = e^(-extinction s)
+///
+/// Isotropic beams: E[1/sin theta] = pi/2, and X = 1/sin theta of those that cross has a tail P(X > x) ~ (4/(3 pi)) x^-3.
+/// Lengths in one unit of your choice; density of points per volume, of beams as their length per volume.
+/// Source: Jarosz, Zwicker and Jensen 2008; Jarosz, Nowrouzezahrai, Sadeghi and Jensen 2011.
+#[derive(clap::Args)]
+#[command(verbatim_doc_comment)]
+pub struct Args {
+    /// Kernel, by name as in `exact kernel`.
+    #[arg(long, default_value = "uniform", value_parser = kernel)]
+    kernel: Kernel,
+    /// Radius of the kernel, 1e-60 to 1e60.
+    #[arg(long, default_value_t = 1.0, allow_negative_numbers = true)]
+    radius: f64,
+    /// Points per volume, or length of beams per volume, 1e-60 to 1e60.
+    #[arg(long, default_value_t = 1.0, allow_negative_numbers = true)]
+    density: f64,
+    /// Length of the ray, 1e-60 to 1e60.
+    #[arg(long, default_value_t = 1.0, allow_negative_numbers = true)]
+    length: f64,
+    /// Extinction coefficient along the ray, in 1/length, 0 or more.
+    #[arg(long, default_value_t = 0.0, allow_negative_numbers = true)]
+    extinction: f64,
+    /// Sine of the angle between ray and beams, above 0 to 1: parallel beams in place of isotropic ones.
+    #[arg(long, allow_negative_numbers = true)]
+    sine: Option<f64>,
+    /// Gradients |b| of fields e^(b.x), times the radius: gives each estimate's mean over the truth.
+    #[arg(long, num_args = 1.., value_name = "X", allow_negative_numbers = true)]
+    gradient: Vec<f64>,
+    /// Values x of 1/sin theta, 1 and more: gives the tail P(X > x) and the second moment of isotropic beams up to x.
+    #[arg(long, num_args = 1.., value_name = "X", allow_negative_numbers = true)]
+    tail: Vec<f64>,
+}
+
+/// The three ways, by name.
+fn pairings(args: &Args) -> [(Pairing, &'static str); 3] {
+    let beams = match args.sine {
+        Some(sine) => (Pairing::RayBeams { sine }, "ray, beams"),
+        None => (Pairing::RayIsotropicBeams, "ray, isotropic beams"),
+    };
+    [(Pairing::PointPoints, "point, points"), (Pairing::RayPoints, "ray, points"), beams]
+}
+
+/// Answers; the figure shows the three variances against the radius.
+pub fn answer(args: &Args, draw: bool) -> Result<Reply> {
+    let ray = Ray { length: args.length, extinction: args.extinction };
+    let mut answer = Answer::new("beams")
+        .with("kernel", kernel_name(args.kernel))
+        .with("radius", args.radius)
+        .with("density", args.density)
+        .with("length", args.length)
+        .with("extinction", args.extinction);
+    if let Some(sine) = args.sine {
+        answer = answer.with("sine", sine);
+    }
+    for (pairing, name) in pairings(args) {
+        let at = || vec![("pairing", name.into())];
+        answer.add_at("bias_per_r2_laplacian", at(), pairing.bias_coefficient(args.kernel)?);
+        answer.add_at("inverse_sine", at(), pairing.inverse_sine()?);
+        let variance = pairing.relative_variance(args.kernel, args.radius, args.density, ray)?;
+        answer.add_at("relative_variance", at(), variance);
+        for &x in &args.gradient {
+            let at = vec![("pairing", name.into()), ("gradient", x.into())];
+            answer.add_at("exponential_mean", at, pairing.exponential_mean(args.kernel, x)?);
+        }
+    }
+    for &x in &args.tail {
+        answer.add_at("crossing_tail", vec![("x", x.into())], crossing_tail(x)?);
+        answer.add_at("crossing_second_moment", vec![("x", x.into())], crossing_moment(2, x)?);
+    }
+    let figure = if draw { Some(drawn(args, ray)?) } else { None };
+    Ok(Reply { answer, figure })
+}
+
+fn drawn(args: &Args, ray: Ray) -> Result<Figure> {
+    let radii = ratios(0.1 * args.radius, 10.0 * args.radius, 41);
+    let deviation = |v: Value| 100.0 * v.value.sqrt();
+    let curve = |(pairing, name): (Pairing, &str)| {
+        Curve::sample(name, &radii, |r| {
+            Ok(deviation(pairing.relative_variance(args.kernel, r, args.density, ray)?))
+        })
+    };
+    let curves = pairings(args).into_iter().map(curve).collect::<Result<Vec<_>>>()?;
+    let title = format!("Points and beams, density {}, ray of length {}", args.density, args.length);
+    Ok(figure(title, panel(Axis::log("Radius r", "length"), "Standard deviation", "%", curves)))
+}
