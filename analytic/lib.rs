@@ -8,6 +8,7 @@
 //! irradiance on that face; the signed cosine mu > 0 points up, towards the lit face.
 //!
 //! * Special functions and rules: [`exponential_integral`], [`quadrature`]
+//! * Phase functions: [`phase`]
 //! * Slab: [`beer_lambert`], [`slab_single`], [`slab_isotropic`], [`slab_anisotropic`], [`adding_doubling`],
 //!   [`slab_fresnel`]
 //! * Kernel density estimation: [`kernel`], [`ball_mean`], [`blur`], [`edge`], [`volumes`], [`slab_kernel`],
@@ -25,6 +26,7 @@ pub mod incidence;
 pub mod kernel;
 pub mod nearest;
 mod peierls;
+pub mod phase;
 mod poisson;
 pub mod progressive;
 pub mod quadrature;
@@ -40,7 +42,8 @@ pub use adding_doubling::AddingDoubling;
 pub use error::{Error, Result};
 pub use incidence::Incidence;
 pub use kernel::{Dimension, Kernel};
-pub use slab_anisotropic::AnisotropicSlab;
+pub use phase::Phase;
+pub use slab_anisotropic::{AnisotropicMedium, AnisotropicSlab};
 pub use slab_fresnel::FresnelSlab;
 pub use slab_isotropic::IsotropicSlab;
 pub use value::Value;

@@ -1,95 +1,130 @@
-//! The modes of the slab: every solution without a source is a sum of them.
+//! The modes of a medium: every solution without a source is a sum of them.
 //!
-//! With I+ and I- the azimuthal means of the radiance upwards and downwards at cosine mu, p = I+ + I- and
-//! q = I+ - I- obey
+//! With I+ and I- the part of the radiance upwards and downwards at cosine mu that goes with cos(m dphi), p = I+ + I-
+//! and q = I+ - I- obey
 //!
-//! mu dq/dt = A p,  mu dp/dt = B q,  A = 1 - w sum_even (2l+1) g^l P_l P_l^T,  B = 1 - w sum_odd (2l+1) g^l P_l P_l^T
+//! mu dq/dt = A p,  mu dp/dt = B q,  A = 1 - w sum_(l-m even) (2l+1) chi_l P_l P_l^T,  B the same over l-m odd,
 //!
-//! on vectors multiplied by the roots of the weights, which makes A and B symmetric. With B = L L^T, A = F F^T and
-//! M = diag(mu) a mode p_j f(t), q_j f'(t), f'' = k_j^2 f, comes from the singular value decomposition
-//! G = F^T M^-1 L = U K V^T: q_j = L^-T v_j, p_j = M^-1 L v_j. F is known without a decomposition where it is
-//! delicate: with e the root of the weights, A e = (1-w) e, so that F = (1 - (1 - sqrt(1-w)) e e^T) C, C C^T = A
-//! without its term l = 0, which stays well conditioned up to w = 1.
+//! P_l the normalised associated Legendre functions of order m, on vectors multiplied by the roots of the weights,
+//! which makes A and B symmetric. With B = L L^T, A = F F^T and M = diag(mu) a mode p_j f(t), q_j f'(t), f'' = k_j^2 f,
+//! comes from the singular value decomposition G = F^T M^-1 L = U K V^T: q_j = L^-T v_j, p_j = M^-1 L v_j. For m = 0,
+//! F is known without a decomposition where it is delicate: with e the root of the weights, A e = (1-w) e, so that
+//! F = (1 - (1 - sqrt(1-w)) e e^T) C, C C^T = A without its term l = 0, which stays well conditioned up to w = 1.
 //!
 //! Source: Stamnes, Tsay, Wiscombe and Jayaweera 1988 for the method; the symmetric form is that of Nakajima and
 //! Tanaka 1986.
 
-use super::jacobi::orthogonalize;
+use super::jacobi::singular;
 use super::nodes::{Nodes, legendre};
+use super::scattering::Scattering;
 use crate::error::{Error, Result};
 use nalgebra::{Cholesky, DMatrix, DVector};
 use std::f64::consts::PI;
+use std::sync::{Arc, OnceLock};
+
+/// Below this decay the balance of power gives k to more digits than the decomposition.
+const SLOW: f64 = 0.1;
 
 /// Modes of a medium on given nodes, in no order.
-pub(super) struct Modes {
-    pub nodes: Nodes,
+pub(crate) struct Modes {
+    pub nodes: Arc<Nodes>,
+    pub scattering: Arc<Scattering>,
+    /// The part of the radiance that goes with cos(m dphi).
+    pub order: usize,
     /// Roots of the weights.
     pub root: DVector<f64>,
-    /// Inverse decay lengths, 0 or more.
+    /// Inverse decay lengths, 0 or more, per mean free path of `scattering`.
     pub k: Vec<f64>,
     /// Columns p_j and q_j.
     pub even: DMatrix<f64>,
     pub odd: DMatrix<f64>,
-    /// sum of root weight and p_j: times 2 pi the fluence of a mode.
+    /// sum of root weight and p_j: times 2 pi the fluence of a mode (m = 0).
     pub fluence: Vec<f64>,
-    /// sum of root weight, mu and q_j: times 2 pi the net flux upwards of a mode.
+    /// sum of root weight, mu and q_j: times 2 pi the net flux upwards of a mode (m = 0).
     pub flux: Vec<f64>,
-    /// Columns of the moments l = 2, 4, ... and l = 1, 3, ...
-    moments: (DMatrix<f64>, DMatrix<f64>),
-    albedo: f64,
-    g: f64,
+    /// The moments with l - m even (l > 0) and odd.
+    families: [Family; 2],
+    /// Moments of p_j and of q_j in their families.
+    projections: OnceLock<[DMatrix<f64>; 2]>,
+}
+
+/// Moments of one parity.
+struct Family {
+    /// The first l, from which they go up in twos.
+    start: usize,
+    /// Columns root((2l+1) |chi_l|) P_l on the nodes, times the roots of the weights.
+    columns: DMatrix<f64>,
+    /// root((2l+1) |chi_l|), and the sign of chi_l.
+    strength: Vec<f64>,
+    sign: Vec<f64>,
+}
+
+impl Family {
+    /// sum of sign, column and column^T.
+    fn product(&self) -> DMatrix<f64> {
+        let mut signed = self.columns.clone();
+        for (mut column, sign) in signed.column_iter_mut().zip(&self.sign) {
+            column *= *sign;
+        }
+        signed * self.columns.transpose()
+    }
+
+    /// sign times strength times `p`, which starts at l = m, of every moment.
+    fn at(&self, order: usize, p: &[f64]) -> DVector<f64> {
+        DVector::from_fn(self.sign.len(), |i, _| {
+            self.sign[i] * self.strength[i] * p[self.start + 2 * i - order]
+        })
+    }
 }
 
 impl Modes {
-    pub fn new(albedo: f64, g: f64, nodes: Nodes) -> Result<Self> {
+    /// The modes of order m.
+    pub fn new(scattering: Arc<Scattering>, nodes: Arc<Nodes>, order: usize) -> Result<Self> {
         const INDEFINITE: Error = Error::Infinite("the scattering matrix of the slab is not positive in f64");
-        let n = nodes.len();
+        let (n, albedo) = (nodes.len(), scattering.albedo);
         let root = DVector::from_iterator(n, nodes.weight.iter().map(|w| w.sqrt()));
-        let mu = DVector::from_column_slice(&nodes.mu);
-        let moments = moments(&nodes, &root, g);
-        let a = DMatrix::identity(n, n) - (&moments.0 * moments.0.transpose()) * albedo;
-        let b = DMatrix::identity(n, n) - (&moments.1 * moments.1.transpose()) * (albedo * 1f64.copysign(g));
-        let c = Cholesky::new(a).ok_or(INDEFINITE)?.unpack();
-        let l = Cholesky::new(b).ok_or(INDEFINITE)?.unpack();
+        let families = families(&nodes, &scattering, &root, order);
+        let identity = DMatrix::<f64>::identity(n, n);
+        let c = Cholesky::new(&identity - families[0].product() * albedo).ok_or(INDEFINITE)?.unpack();
+        let l = Cholesky::new(&identity - families[1].product() * albedo).ok_or(INDEFINITE)?.unpack();
 
         let mut h = l.clone();
         for i in 0..n {
-            h.row_mut(i).unscale_mut(mu[i]);
+            h.row_mut(i).unscale_mut(nodes.mu[i]);
         }
-        let gap = albedo / (1.0 + (1.0 - albedo).sqrt());
-        let along = h.tr_mul(&root);
-        h.ger(-gap, &root, &along, 1.0);
+        if order == 0 {
+            let gap = albedo / (1.0 + scattering.lost.sqrt());
+            let along = h.tr_mul(&root);
+            h.ger(-gap, &root, &along, 1.0);
+        }
         let product = c.tr_mul(&h);
-        // Columns fall like 1/mu: the order in which the rotations converge soonest.
-        let mut columns: Vec<Vec<f64>> = product.column_iter().map(|x| x.iter().copied().collect()).collect();
-        let v = orthogonalize(&mut columns)?;
-        let v = DMatrix::from_iterator(n, n, v.into_iter().flatten());
-        let ku = DMatrix::from_iterator(n, n, columns.into_iter().flatten());
-        let k = ku.column_iter().map(|x| x.norm()).collect();
+        let decomposed = singular(product.column_iter().map(|x| x.iter().copied().collect()).collect())?;
+        let v = DMatrix::from_iterator(n, n, decomposed.v.into_iter().flatten());
+        let ku = DMatrix::from_iterator(n, n, decomposed.uk.into_iter().flatten());
+        let mut k = decomposed.k;
 
-        // p_j but for its part along e, from the side of U, where the horizon does not magnify roundings ...
         let mut p = c.tr_solve_lower_triangular(&ku).ok_or(INDEFINITE)?;
-        let along = p.tr_mul(&root);
-        p.ger(-1.0, &root, &along, 1.0);
-        // ... and that part from e^T M p_j = e^T L v_j.
-        let slant = root.component_mul(&mu);
-        let known = (&l * &v).tr_mul(&root) - p.tr_mul(&slant);
-        let fluence = known / root.dot(&slant);
-        p.ger(1.0, &root, &fluence, 1.0);
         let q = l.tr_solve_lower_triangular(&v).ok_or(INDEFINITE)?;
-        let flux = q.tr_mul(&slant);
-        Ok(Modes {
-            nodes,
-            root,
-            k,
-            even: p,
-            odd: q,
-            fluence: fluence.iter().copied().collect(),
-            flux: flux.iter().copied().collect(),
-            moments,
-            albedo,
-            g,
-        })
+        let (mut fluence, mut flux) = (vec![], vec![]);
+        if order == 0 {
+            // p_j but for its part along e, from the side of U, where the horizon does not magnify roundings ...
+            let along = p.tr_mul(&root);
+            p.ger(-1.0, &root, &along, 1.0);
+            // ... and that part from e^T M p_j = e^T L v_j.
+            let slant = DVector::from_fn(n, |i, _| root[i] * nodes.mu[i]);
+            let known = (&l * &v).tr_mul(&root) - p.tr_mul(&slant);
+            let share = known / root.dot(&slant);
+            p.ger(1.0, &root, &share, 1.0);
+            fluence = share.iter().copied().collect::<Vec<f64>>();
+            flux = q.tr_mul(&slant).iter().copied().collect::<Vec<f64>>();
+            let slowest = (0..n).fold(0, |best, j| if k[j] < k[best] { j } else { best });
+            if k[slowest] < SLOW {
+                // k^2 M q = A p along e.
+                k[slowest] = (scattering.lost * (fluence[slowest] / flux[slowest]).abs()).sqrt();
+            }
+        }
+        let projections = OnceLock::new();
+        Ok(Modes { nodes, scattering, order, root, k, even: p, odd: q, fluence, flux, families, projections })
     }
 
     /// The slowest decay, per mean free path.
@@ -100,45 +135,65 @@ impl Modes {
     /// What a beam of unit irradiance at cosine `mu0` scatters, at t = 0: the sources s_p of q and s_q of p in
     /// mu dq/dt = A p - s_p e^(-t/mu0), mu dp/dt = B q - s_q e^(-t/mu0), projected on the modes.
     pub fn beam(&self, mu0: f64) -> (DVector<f64>, DVector<f64>) {
-        let p = legendre(self.nodes.degree, mu0);
-        let scale = self.albedo / (2.0 * PI * mu0);
-        let strengths = |start: usize, count: usize| {
-            DVector::from_fn(count, |i, _| strength(self.g, start + 2 * i) * p[start + 2 * i])
-        };
-        let even = &self.root + &self.moments.0 * strengths(2, self.moments.0.ncols());
+        let p = legendre(self.order, self.scattering.degree().max(self.order), mu0);
+        let turns = if self.order == 0 { 1.0 } else { 2.0 };
+        let scale = turns * self.scattering.albedo / (2.0 * PI * mu0);
+        let [even, odd] = &self.families;
+        let mut up = &even.columns * even.at(self.order, &p);
+        if self.order == 0 {
+            up += &self.root;
+        }
         // Odd moments change sign: the beam goes down.
-        let odd = &self.moments.1 * strengths(1, self.moments.1.ncols()) * 1f64.copysign(-self.g);
-        (self.even.tr_mul(&even) * scale, self.odd.tr_mul(&odd) * scale)
+        let down = &odd.columns * odd.at(self.order, &p);
+        (self.even.tr_mul(&up) * scale, self.odd.tr_mul(&down) * -scale)
+    }
+
+    /// The source function at cosine +-`mu` of every mode, (w/2) sum (2l+1) chi_l P_l(mu) int P_l I dmu': even part,
+    /// times f, and odd part, times f'. Upwards it is their sum, downwards their difference.
+    pub fn source(&self, mu: f64) -> [DVector<f64>; 2] {
+        let [even, odd] = self.projections.get_or_init(|| {
+            let [even, odd] = &self.families;
+            [even.columns.tr_mul(&self.even), odd.columns.tr_mul(&self.odd)]
+        });
+        let p = legendre(self.order, self.scattering.degree().max(self.order), mu);
+        let half = 0.5 * self.scattering.albedo;
+        let mut up = even.tr_mul(&self.families[0].at(self.order, &p)) * half;
+        if self.order == 0 {
+            up.iter_mut().zip(&self.fluence).for_each(|(x, phi)| *x += half * phi);
+        }
+        [up, odd.tr_mul(&self.families[1].at(self.order, &p)) * half]
     }
 }
 
-/// Root of (2l+1) |g|^l.
-fn strength(g: f64, l: usize) -> f64 {
-    ((2.0 * l as f64 + 1.0) * g.abs().powi(l as i32)).sqrt()
-}
-
-/// Columns root(weight (2l+1) |g|^l) P_l for even l > 0 and for odd l.
+/// The moments of both parities.
 ///
-/// What the rule gets wrong by rounding in sum w P_l (even) and sum w mu P_l (odd) is taken out, so that photons
-/// and the first moment of scattering are conserved exactly.
-fn moments(nodes: &Nodes, root: &DVector<f64>, g: f64) -> (DMatrix<f64>, DMatrix<f64>) {
+/// For m = 0, what the rule gets wrong by rounding in sum w P_l (even) and sum w mu P_l (odd) is taken out, so that
+/// photons and the first moment of scattering are conserved exactly.
+fn families(nodes: &Nodes, scattering: &Scattering, root: &DVector<f64>, order: usize) -> [Family; 2] {
     let n = nodes.len();
-    let table: Vec<Vec<f64>> = nodes.mu.iter().map(|&mu| legendre(nodes.degree, mu)).collect();
-    let column = |l: usize| DVector::from_iterator(n, (0..n).map(|i| root[i] * table[i][l]));
-    let family = |first: usize| {
-        let conserved = column(first).normalize();
-        let start = if first == 0 { 2 } else { 1 };
-        let columns: Vec<DVector<f64>> = (start..=nodes.degree)
-            .step_by(2)
-            .map(|l| {
+    let degree = scattering.degree().max(order);
+    let table: Vec<Vec<f64>> = nodes.mu.iter().map(|&mu| legendre(order, degree, mu)).collect();
+    let column = |l: usize| DVector::from_iterator(n, (0..n).map(|i| root[i] * table[i][l - order]));
+    [0, 1].map(|parity| {
+        let start = if order == 0 && parity == 0 { 2 } else { order + parity };
+        let moments: Vec<(usize, f64)> =
+            (start..=scattering.degree()).step_by(2).map(|l| (l, scattering.moments[l])).collect();
+        let strength: Vec<f64> =
+            moments.iter().map(|&(l, chi)| ((2 * l + 1) as f64 * chi.abs()).sqrt()).collect();
+        let sign = moments.iter().map(|&(_, chi)| 1f64.copysign(chi)).collect();
+        let conserved = (order == 0 && scattering.degree() >= parity).then(|| column(parity).normalize());
+        let columns: Vec<DVector<f64>> = moments
+            .iter()
+            .zip(&strength)
+            .map(|(&(l, _), strength)| {
                 let mut p = column(l);
-                if l > first {
-                    p.axpy(-conserved.dot(&p), &conserved, 1.0);
+                if let Some(conserved) = conserved.as_ref().filter(|_| l > parity) {
+                    p.axpy(-conserved.dot(&p), conserved, 1.0);
                 }
-                p * strength(g, l)
+                p * *strength
             })
             .collect();
-        DMatrix::from_columns(&columns)
-    };
-    (family(0), family(1))
+        let columns = if columns.is_empty() { DMatrix::zeros(n, 0) } else { DMatrix::from_columns(&columns) };
+        Family { start, columns, strength, sign }
+    })
 }

@@ -9,7 +9,7 @@ use crate::quadrature::GaussLegendre;
 const POWER: i32 = 4;
 
 /// Directions on one hemisphere, in rising order of mu.
-pub(super) struct Nodes {
+pub(crate) struct Nodes {
     /// Cosines \[1\], in (0, 1).
     pub mu: Vec<f64>,
     /// Weights of sum 1.
@@ -32,10 +32,21 @@ impl Nodes {
             inner.nodes.iter().zip(&inner.weights).map(|(x, w)| power * b * x.powi(POWER - 1) * w).collect();
         mu.extend(outer.nodes.iter().map(|x| b + (1.0 - b) * x));
         weight.extend(outer.weights.iter().map(|w| (1.0 - b) * w));
+        Nodes::of(mu, weight, 2 * upper - 2)
+    }
+
+    /// One Gauss rule of `half` nodes on \[0, 1\]: as many streams as twice that, by the usual count.
+    pub fn double_gauss(half: usize) -> Self {
+        let rule = GaussLegendre::rule(half);
+        Nodes::of(rule.nodes, rule.weights, 2 * half - 1)
+    }
+
+    /// Any rule on \[0, 1\] in rising order, and the highest moment it can carry.
+    pub fn of(mu: Vec<f64>, mut weight: Vec<f64>, degree: usize) -> Self {
         // The weights are good to a few roundings each, and their sum must be 1: photons are counted with them.
         let sum: f64 = weight.iter().sum();
         weight.iter_mut().for_each(|w| *w /= sum);
-        Nodes { mu, weight, degree: 2 * upper - 2 }
+        Nodes { mu, weight, degree }
     }
 
     /// How many.
@@ -49,14 +60,22 @@ impl Nodes {
     }
 }
 
-/// P_0(x) to P_degree(x).
-pub(super) fn legendre(degree: usize, x: f64) -> Vec<f64> {
-    let mut p = vec![1.0, x];
-    for l in 2..=degree {
+/// root((l-m)!/(l+m)!) P_l^m(x) for l = m to `degree`, without the sign (-1)^m: the square integrates to 2/(2l+1),
+/// and m = 0 is P_l.
+pub(crate) fn legendre(m: usize, degree: usize, x: f64) -> Vec<f64> {
+    let sine = ((1.0 - x) * (1.0 + x)).sqrt();
+    let first = (1..=m).fold(1.0, |a, i| a * sine * ((2.0 * i as f64 - 1.0) / (2.0 * i as f64)).sqrt());
+    let mut p = Vec::with_capacity(degree + 2 - m.min(degree));
+    p.push(first);
+    let order = m as f64;
+    let root = |l: f64| ((l - order) * (l + order)).sqrt();
+    p.push((2.0 * order + 1.0) * x * first / root(order + 1.0));
+    for l in m + 2..=degree {
         let n = l as f64;
-        p.push(((2.0 * n - 1.0) * x * p[l - 1] - (n - 1.0) * p[l - 2]) / n);
+        let (one, two) = (p[l - m - 1], p[l - m - 2]);
+        p.push(((2.0 * n - 1.0) * x * one - root(n - 1.0) * two) / root(n));
     }
-    p.truncate(degree + 1);
+    p.truncate(degree + 1 - m);
     p
 }
 
@@ -68,7 +87,7 @@ mod tests {
     fn every_moment_up_to_the_degree_is_integrated() {
         let nodes = Nodes::new(64, 40);
         // int_0^1 P_l P_m over even l, m vanishes unless l = m, where it is 1/(2l+1).
-        let table: Vec<Vec<f64>> = nodes.mu.iter().map(|&mu| legendre(nodes.degree, mu)).collect();
+        let table: Vec<Vec<f64>> = nodes.mu.iter().map(|&mu| legendre(0, nodes.degree, mu)).collect();
         for l in (0..=nodes.degree).step_by(2) {
             for m in [0, 2] {
                 let sum: f64 = table.iter().zip(&nodes.weight).map(|(p, w)| w * p[l] * p[m]).sum();
@@ -79,6 +98,22 @@ mod tests {
                 }
             }
         }
+    }
+
+    #[test]
+    fn functions_of_every_azimuth_are_orthogonal() {
+        let rule = GaussLegendre::rule(40);
+        for m in [0, 1, 2, 7, 20] {
+            for (l, n) in [(m, m), (m + 1, m + 1), (m + 3, m + 1), (m + 8, m + 8)] {
+                let sum = rule.integrate(-1.0, 1.0, |x| {
+                    let p = legendre(m, m + 8, x);
+                    p[l - m] * p[n - m]
+                });
+                let exact = if l == n { 2.0 / (2.0 * l as f64 + 1.0) } else { 0.0 };
+                assert!((sum - exact).abs() < 1e-15, "{m} {l} {n} {sum} {exact}");
+            }
+        }
+        assert_eq!(legendre(5, 5, 0.3).len(), 1);
     }
 
     #[test]

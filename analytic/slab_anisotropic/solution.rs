@@ -1,57 +1,67 @@
 //! One slab on one set of nodes: amplitudes of the modes, and what they give.
 
+use super::matching::{half_width, match_deep, match_faces, match_halves};
 use super::modes::Modes;
-use crate::beer_lambert::{direct_fluence, direct_transmittance};
+use crate::beer_lambert::direct_fluence;
 use crate::error::{Error, Result};
+use crate::exponential_integral::e_n;
 use crate::incidence::Incidence;
-use libm::{exp, expm1, tanh};
-use nalgebra::{DMatrix, DVector};
+use libm::{exp, expm1};
+use nalgebra::DVector;
 use std::f64::consts::PI;
+use std::sync::Arc;
 
-/// A solved slab.
-pub(super) struct Solution {
-    tau: f64,
-    albedo: f64,
-    incidence: Incidence,
-    modes: Modes,
-    basis: Basis,
+/// A solved slab or, with an infinite thickness, half-space. Lengths are mean free paths of `modes.scattering`.
+pub(crate) struct Solution {
+    pub tau: f64,
+    pub incidence: Incidence,
+    pub modes: Arc<Modes>,
+    pub basis: Basis,
     /// Amplitudes of the two solutions of every mode.
-    first: DVector<f64>,
-    second: DVector<f64>,
-    beam: Option<Beam>,
+    pub first: DVector<f64>,
+    pub second: DVector<f64>,
+    pub beam: Option<Beam>,
 }
 
 /// The two solutions f of f'' = k^2 f by which every mode enters.
-enum Basis {
+#[derive(Clone, Copy, PartialEq)]
+pub(crate) enum Basis {
     /// cosh(k s)/cosh(k tau/2) and sinh(k s)/(k cosh(k tau/2)), s = t - tau/2: no overflow, 1 and s for k -> 0, and
     /// the conditions on the two faces part into two systems of half the size.
     Halves,
     /// e^(-k t) and e^(-k (tau-t)): keep the relative accuracy of what little arrives at the far face.
     Faces,
+    /// e^(-k t) alone: a half-space.
+    Deep,
 }
 
 /// The beam's sources in every mode: eta' = k^2 xi - pi e^(-beta t), xi' = eta - kappa e^(-beta t), for
 /// p = sum p_j xi_j, q = sum q_j eta_j.
-struct Beam {
-    beta: f64,
-    pi: DVector<f64>,
-    kappa: DVector<f64>,
+pub(crate) struct Beam {
+    pub beta: f64,
+    pub pi: DVector<f64>,
+    pub kappa: DVector<f64>,
 }
+
+/// Below this k a particular solution is a multiple of e^(-beta t), beta >= 1.
+pub(super) const SLOW: f64 = 0.5;
 
 /// A sum over modes, with the sum of the magnitudes of its terms, each times 1 + its exponent, which carries the
 /// rounding of k: rounding is a few units of the last place of that.
 #[derive(Clone, Copy)]
-pub(super) struct Sum {
+pub(crate) struct Sum {
     pub value: f64,
     pub magnitude: f64,
 }
 
 impl Sum {
-    fn plus(self, value: f64, magnitude: f64) -> Self {
+    pub const ZERO: Sum = Sum { value: 0.0, magnitude: 0.0 };
+
+    pub fn plus(self, value: f64, magnitude: f64) -> Self {
         Sum { value: self.value + value, magnitude: self.magnitude + magnitude }
     }
 
-    fn scaled(self, factor: f64) -> Self {
+    pub fn scaled(self, factor: f64) -> Self {
         Sum { value: self.value * factor, magnitude: self.magnitude * factor.abs() }
     }
 }
@@ -65,18 +75,21 @@ impl std::ops::Add for Sum {
 }
 
 /// int_0^x e^(-rate y) dy.
-fn decayed(rate: f64, x: f64) -> f64 {
-    if rate * x == 0.0 { x } else { -expm1(-rate * x) / rate }
+pub(super) fn decayed(rate: f64, x: f64) -> f64 {
+    if rate == 0.0 || rate * x == 0.0 { x } else { -expm1(-rate * x) / rate }
 }
 
 impl Beam {
     /// xi and eta of the particular solution of mode j at depth t, and the magnitude of the terms of xi.
     ///
-    /// For k < 1/2 a multiple of e^(-beta t), beta >= 1. Beyond, psi = k xi +- eta starts from 0 on the face
+    /// For slow modes a multiple of e^(-beta t), beta >= 1. Beyond, psi = k xi +- eta starts from 0 on the face
     /// where it enters, so that both are integrals of positive functions and k = beta needs no care.
     fn particular(&self, j: usize, k: f64, t: f64, rest: f64) -> [f64; 3] {
         let (beta, pi, kappa) = (self.beta, self.pi[j], self.kappa[j]);
-        if k < 0.5 {
+        if t == f64::INFINITY {
+            return [0.0; 3];
+        }
+        if k < SLOW {
             let x = (beta * kappa - pi) / (beta * beta - k * k);
             let e = exp(-beta * t);
             return [x * e, (kappa - beta * x) * e, x.abs() * e * (1.0 + beta * t)];
@@ -89,7 +102,9 @@ impl Beam {
 }
 
 impl Solution {
-    pub fn new(tau: f64, albedo: f64, incidence: Incidence, modes: Modes) -> Result<Self> {
+    /// # Arguments
+    /// `tau` 0 or more, or infinity; `incidence` diffuse only for modes of order 0
+    pub fn new(tau: f64, incidence: Incidence, modes: Arc<Modes>) -> Result<Self> {
         let n = modes.nodes.len();
         let beam = if let Incidence::Beam { mu0 } = incidence {
             let (pi, kappa) = modes.beam(mu0);
@@ -103,6 +118,9 @@ impl Solution {
         let mut bottom = DVector::zeros(n);
         if let Some(beam) = &beam {
             for (t, rest, sign, side) in [(0.0, tau, -1.0, &mut top), (tau, 0.0, 1.0, &mut bottom)] {
+                if t == f64::INFINITY {
+                    continue;
+                }
                 let parts: Vec<_> = (0..n).map(|j| beam.particular(j, modes.k[j], t, rest)).collect();
                 let xi = DVector::from_iterator(n, parts.iter().map(|p| p[0]));
                 let eta = DVector::from_iterator(n, parts.iter().map(|p| p[1]));
@@ -110,13 +128,18 @@ impl Solution {
             }
         }
         // Beyond one decay length the far face sees the lit one as a reflection that dies away.
-        let basis = if modes.slowest() * tau > 1.0 { Basis::Faces } else { Basis::Halves };
+        let basis = match modes.slowest() * tau {
+            _ if tau == f64::INFINITY => Basis::Deep,
+            lengths if lengths > 1.0 => Basis::Faces,
+            _ => Basis::Halves,
+        };
         let (first, second) = match basis {
             Basis::Halves => match_halves(&modes, tau, &top, &bottom),
             Basis::Faces => match_faces(&modes, tau, &top, &bottom),
+            Basis::Deep => match_deep(&modes, &top),
         }
         .ok_or(Error::Infinite("the faces of the slab cannot be matched in f64"))?;
-        Ok(Solution { tau, albedo, incidence, modes, basis, first, second, beam })
+        Ok(Solution { tau, incidence, modes, basis, first, second, beam })
     }
 
     /// Fluence at depth t, direct light included \[1\].
@@ -149,19 +172,36 @@ impl Solution {
         Sum { value: -up.value - uncollided, magnitude: up.magnitude + uncollided }
     }
 
+    /// Fraction transmitted, what is scattered into a peak that was cut off and direct light included \[1\].
+    pub fn transmittance_total(&self) -> Sum {
+        if self.tau == f64::INFINITY {
+            return Sum::ZERO;
+        }
+        let direct = match self.incidence {
+            Incidence::Beam { mu0 } => exp(-self.tau / mu0),
+            Incidence::Diffuse => 2.0 * e_n(3, self.tau),
+        };
+        self.transmittance_diffuse().plus(direct, direct)
+    }
+
     /// Fraction absorbed \[1\], from the integral of the fluence.
-    pub fn absorptance(&self) -> Result<Sum> {
+    pub fn absorptance(&self) -> Sum {
         let tau = self.tau;
-        let mut sum = Sum { value: 0.0, magnitude: 0.0 };
+        let lost = self.modes.scattering.lost;
+        if lost == 0.0 {
+            return Sum::ZERO;
+        }
+        let mut sum = Sum::ZERO;
         for (j, &k) in self.modes.k.iter().enumerate() {
             let integrals = match self.basis {
                 Basis::Halves => [2.0 * half_width(k, tau), 0.0],
                 Basis::Faces => [decayed(k, tau); 2],
+                Basis::Deep => [1.0 / k, 0.0],
             };
             let mut terms = [self.first[j] * integrals[0], self.second[j] * integrals[1], 0.0];
             if let Some(beam) = &self.beam {
                 let falling = decayed(beam.beta, tau);
-                terms[2] = if k < 0.5 {
+                terms[2] = if k < SLOW {
                     beam.particular(j, k, 0.0, tau)[0] * falling
                 } else {
                     let ends = beam.particular(j, k, tau, 0.0)[1] - beam.particular(j, k, 0.0, tau)[1];
@@ -175,16 +215,17 @@ impl Solution {
             let direct = -expm1(-tau / mu0);
             sum = sum.plus(direct, direct);
         } else {
-            let ours = 1.0 - 2.0 * self.modes.nodes.sum(|mu| mu * exp(-tau / mu));
-            let exact = 1.0 - direct_transmittance(self.incidence, tau)?.value;
-            sum = sum.plus(exact - ours, 2.0);
+            // What does not go straight through: 1 - 2 E_3(tau) = 1 - e^(-tau) + tau E_2(tau), and the nodes' version.
+            let ours = 2.0 * self.modes.nodes.sum(|mu| mu * -expm1(-tau / mu));
+            let exact = if tau < 700.0 { -expm1(-tau) + tau * e_n(2, tau) } else { 1.0 };
+            sum = sum.plus(exact - ours, exact + ours);
         }
-        Ok(sum.scaled(1.0 - self.albedo))
+        sum.scaled(lost)
     }
 
     fn scattered_fluence(&self, t: f64) -> Sum {
         let rest = self.tau - t;
-        let mut sum = Sum { value: 0.0, magnitude: 0.0 };
+        let mut sum = Sum::ZERO;
         for (j, &k) in self.modes.k.iter().enumerate() {
             let (shapes, _) = self.shapes(k, t, rest);
             let part = self.beam.as_ref().map_or([0.0; 3], |beam| beam.particular(j, k, t, rest));
@@ -196,12 +237,15 @@ impl Solution {
     /// Net flux upwards at depth t, of light in the nodes.
     fn net_flux_up(&self, t: f64) -> Sum {
         let rest = self.tau - t;
-        let mut sum = Sum { value: 0.0, magnitude: 0.0 };
+        let mut sum = Sum::ZERO;
         for (j, &k) in self.modes.k.iter().enumerate() {
+            if t == f64::INFINITY {
+                continue;
+            }
             let (_, slopes) = self.shapes(k, t, rest);
             let part = self.beam.as_ref().map_or([0.0; 3], |beam| beam.particular(j, k, t, rest));
             // eta is k times xi where both are sums of one pair of terms.
-            let size = if k < 0.5 { part[1].abs() } else { k * part[2] };
+            let size = if k < SLOW { part[1].abs() } else { k * part[2] };
             sum = sum + self.term(j, t, slopes).plus(part[1], size).scaled(self.modes.flux[j]);
         }
         sum.scaled(2.0 * PI)
@@ -214,12 +258,13 @@ impl Solution {
         let lengths = match self.basis {
             Basis::Halves => [k * t.min(rest); 2],
             Basis::Faces => [k * t, k * rest],
+            Basis::Deep => [k * t, 0.0],
         };
         Sum { value: f + g, magnitude: f.abs() * (1.0 + lengths[0]) + g.abs() * (1.0 + lengths[1]) }
     }
 
     /// The two solutions of a mode at depth t, `rest` = tau - t, and their slopes.
-    fn shapes(&self, k: f64, t: f64, rest: f64) -> ([f64; 2], [f64; 2]) {
+    pub fn shapes(&self, k: f64, t: f64, rest: f64) -> ([f64; 2], [f64; 2]) {
         match self.basis {
             Basis::Halves => {
                 let (near, gap) = (t.min(rest), (rest - t).abs());
@@ -232,56 +277,10 @@ impl Solution {
                 let (down, up) = (exp(-k * t), exp(-k * rest));
                 ([down, up], [-k * down, k * up])
             }
+            Basis::Deep => {
+                let down = exp(-k * t);
+                ([down, 0.0], [-k * down, 0.0])
+            }
         }
     }
-}
-
-/// tanh(k tau/2)/k.
-fn half_width(k: f64, tau: f64) -> f64 {
-    if k * tau == 0.0 { 0.5 * tau } else { tanh(0.5 * k * tau) / k }
-}
-
-/// The matrix of columns p_j a(k_j) + q_j b(k_j).
-fn columns(modes: &Modes, a: impl Fn(f64) -> f64, b: impl Fn(f64) -> f64) -> DMatrix<f64> {
-    let n = modes.nodes.len();
-    let mut matrix = DMatrix::zeros(n, n);
-    for (j, &k) in modes.k.iter().enumerate() {
-        matrix.set_column(j, &(modes.even.column(j) * a(k) + modes.odd.column(j) * b(k)));
-    }
-    matrix
-}
-
-/// The even half sees the sum of both faces, the odd half their difference.
-fn match_halves(
-    modes: &Modes,
-    tau: f64,
-    top: &DVector<f64>,
-    bottom: &DVector<f64>,
-) -> Option<(DVector<f64>, DVector<f64>)> {
-    let even = columns(modes, |_| 1.0, |k| k * tanh(0.5 * k * tau));
-    let odd = columns(modes, |k| half_width(k, tau), |_| 1.0);
-    let first = even.lu().solve(&((top + bottom) * 0.5))?;
-    let second = odd.lu().solve(&((bottom - top) * 0.5))?;
-    Some((first, second))
-}
-
-/// Light goes to and fro between the faces, each passage dimmed by e^(-k tau) at least: passages are added until
-/// twice as many have gone as rounding would need.
-fn match_faces(
-    modes: &Modes,
-    tau: f64,
-    top: &DVector<f64>,
-    bottom: &DVector<f64>,
-) -> Option<(DVector<f64>, DVector<f64>)> {
-    let leaving = columns(modes, |_| 1.0, |k| k).lu();
-    let arriving = columns(modes, |k| exp(-k * tau), |k| -k * exp(-k * tau));
-    let mut first = leaving.solve(top)?;
-    let mut second = leaving.solve(&(bottom - &arriving * &first))?;
-    let mut passages = 2.0 * -libm::log(f64::EPSILON) / (modes.slowest() * tau);
-    while passages > 0.0 {
-        first = leaving.solve(&(top - &arriving * &second))?;
-        second = leaving.solve(&(bottom - &arriving * &first))?;
-        passages -= 2.0;
-    }
-    Some((first, second))
 }

@@ -2,15 +2,24 @@
 
 use super::modes::Modes;
 use super::nodes::Nodes;
+use super::scattering::Scattering;
 use super::solution::Solution;
 use super::*;
+use libm::log;
 use proptest::prelude::*;
+use std::sync::Arc;
+
+fn modes(albedo: f64, g: f64, nodes: Nodes) -> Arc<Modes> {
+    let phase = Phase::henyey_greenstein(g).unwrap();
+    let scattering = Scattering::new(albedo, &phase, nodes.degree, false);
+    Arc::new(Modes::new(Arc::new(scattering), Arc::new(nodes), 0).unwrap())
+}
 
 /// The slab on nodes finer than any in use.
 fn finer(tau: f64, albedo: f64, g: f64, incidence: Incidence) -> Solution {
     let moments = if g == 0.0 { 0.0 } else { log(1e-14) / log(g.abs()) };
-    let nodes = Nodes::new((0.5 * moments) as usize + 40, 96);
-    Solution::new(tau, albedo, incidence, Modes::new(albedo, g, nodes).unwrap()).unwrap()
+    let modes = modes(albedo, g, Nodes::new((0.5 * moments) as usize + 40, 96));
+    Solution::new(tau, incidence, modes).unwrap()
 }
 
 /// All answers of the slab lie within their bounds of those of the finer one; returns the largest bound.
@@ -23,7 +32,7 @@ fn covered(slab: &AnisotropicSlab, finer: &Solution) -> std::result::Result<f64,
     };
     check("R".into(), slab.reflectance(), finer.reflectance().value)?;
     check("T".into(), slab.transmittance_diffuse(), finer.transmittance_diffuse().value)?;
-    check("A".into(), slab.absorptance(), finer.absorptance().map_err(|e| e.to_string())?.value)?;
+    check("A".into(), slab.absorptance(), finer.absorptance().value)?;
     for i in 0..40 {
         let share = 0.5 * exp(-0.6 * f64::from(i));
         for t in [slab.tau * share, slab.tau - slab.tau * share] {
@@ -74,7 +83,7 @@ fn the_slowest_decay_obeys_the_continued_fraction() {
         [(0.9, 0.0), (0.5, 0.3), (0.9, 0.75), (0.99, 0.85), (0.999, 0.9), (0.99, 0.95), (0.9, -0.7)]
     {
         let moments = if g == 0.0 { 0.0 } else { log(1e-13) / log(f64::abs(g)) };
-        let modes = Modes::new(albedo, g, Nodes::new((0.5 * moments) as usize + 32, 40)).unwrap();
+        let modes = modes(albedo, g, Nodes::new((0.5 * moments) as usize + 32, 40));
         let k = modes.slowest();
         let defect = |k: f64| {
             let h = |l: i32| (2.0 * f64::from(l) + 1.0) * (1.0 - albedo * g.powi(l));
@@ -92,10 +101,9 @@ fn the_slowest_decay_obeys_the_continued_fraction() {
 #[test]
 fn resonances_lose_nothing() {
     let (tau, albedo, g) = (2.0, 0.9, 0.75);
-    let moments = log(CUT[0]) / log(g);
-    let nodes = Nodes::new(UPPER[0].max(1 + (0.5 * moments).ceil() as usize), LOWER[0]);
-    let directions: Vec<f64> = nodes.mu.iter().copied().filter(|mu| *mu > 0.01).step_by(7).collect();
-    let modes = Modes::new(albedo, g, nodes).unwrap();
+    let medium = AnisotropicMedium::new(albedo, &Phase::henyey_greenstein(g).unwrap()).unwrap();
+    let modes = medium.modes(0, 0).unwrap();
+    let directions: Vec<f64> = modes.nodes.mu.iter().copied().filter(|mu| *mu > 0.01).step_by(7).collect();
     let decays = modes.k.iter().filter(|k| **k > 1.0 && **k < 100.0).step_by(5).map(|k| 1.0 / k);
     let mut count = 0;
     for mu0 in decays.chain(directions) {
