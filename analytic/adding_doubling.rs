@@ -30,12 +30,12 @@ pub(crate) use nodes::{Nodes, Panels};
 pub(crate) use stack::Stack;
 
 use crate::beer_lambert::{direct_fluence, direct_transmittance};
-use crate::error::{Error, Result, within};
+use crate::error::{Result, within};
 use crate::incidence::{Incidence, check_albedo, check_depth};
+use crate::phase::Phase;
 use crate::value::Value;
-use libm::{log, sqrt};
+use libm::sqrt;
 use nalgebra::DVector;
-use radiance::Shape;
 use std::f64::consts::PI;
 use std::sync::OnceLock;
 
@@ -44,27 +44,25 @@ const METHOD: &str = "adding and doubling, two node counts";
 /// Roundings of one doubling: a chain of three products of matrices, all of whose terms are positive.
 const ULPS: f64 = 8.0;
 
-/// What the first Legendre moment left out, |g|^l, may be on the finer and on the coarser nodes.
+/// What the Legendre moments left out may be on the finer and on the coarser nodes; and where that takes too many.
 const CUT: [f64; 2] = [1e-13, 1e-10];
+const CUT_PEAKED: [f64; 2] = [1e-10, 1e-8];
 
-/// The same for light scattered twice or more, where the moments enter as products.
+/// The last moment of all.
+const MOST: usize = 450;
+
+/// The cut for light scattered twice or more, where the moments enter as products.
 const CUT_TWICE: [f64; 2] = [1e-11, 1e-9];
 
 /// Nodes towards the horizon, and the fewest above it.
 const LOWER: [usize; 2] = [56, 44];
 const UPPER: [usize; 2] = [28, 22];
 
-/// The most Legendre moments.
-const MOMENTS: usize = 600;
-
 /// A slab solved by adding and doubling.
 pub struct AddingDoubling {
     tau: f64,
     albedo: f64,
-    moments: Vec<f64>,
-    phase: Shape,
-    /// How many moments the finer and the coarser nodes see when asked for radiance.
-    counts: [usize; 2],
+    phase: Phase,
     incidence: Incidence,
     solutions: [Solution; 2],
     reflectance: Value,
@@ -98,40 +96,16 @@ impl AddingDoubling {
     /// g = 0: [`crate::IsotropicSlab`]; albedo = 1: R + T = 1; albedo = 0: the direct light alone
     pub fn new(tau: f64, albedo: f64, g: f64, incidence: Incidence) -> Result<Self> {
         within("g", g, -0.95, 0.95, "-0.95 to 0.95")?;
-        let count = |cut: f64| moments_above(g, cut);
-        let moments = (0..count(CUT[0])).map(|l| g.powi(l as i32)).collect();
-        let mut slab =
-            Self::solve(tau, albedo, moments, Shape::HenyeyGreenstein(g), CUT.map(count), incidence)?;
-        if slab.incidence != Incidence::Diffuse {
-            slab.counts = CUT_TWICE.map(count);
-        }
-        Ok(slab)
+        Self::with_phase(tau, albedo, &Phase::henyey_greenstein(g)?, incidence)
     }
 
-    /// Solves the slab with the phase function of the given Legendre moments, the mean values of P_l(cos), l = 0, 1 ...
+    /// Solves the slab with any phase function.
     ///
     /// # Arguments
-    /// as for [`Self::new`]; `moments` from l = 0 (which is 1) on, at most 600, each -1 to 1, of a phase function that
-    /// is nowhere negative
+    /// as for [`Self::new`]; `phase` any whose Legendre moments beyond l = 450 are below 1e-10
     /// # Errors
-    /// `Error::OutOfRange` naming `tau`, `albedo`, `moments` (their number or one of them) or `mu0`
-    pub fn with_moments(tau: f64, albedo: f64, moments: &[f64], incidence: Incidence) -> Result<Self> {
-        within("moments", moments.len() as f64, 1.0, MOMENTS as f64, "1 to 600 of them")?;
-        within("moments", moments[0], 1.0, 1.0, "1 for l = 0")?;
-        for &moment in moments {
-            within("moments", moment, -1.0, 1.0, "-1 to 1 each")?;
-        }
-        Self::solve(tau, albedo, moments.to_vec(), Shape::Moments, [moments.len(); 2], incidence)
-    }
-
-    fn solve(
-        tau: f64,
-        albedo: f64,
-        moments: Vec<f64>,
-        phase: Shape,
-        counts: [usize; 2],
-        incidence: Incidence,
-    ) -> Result<Self> {
+    /// `Error::OutOfRange` naming `tau`, `albedo`, `phase function` (its first moment left out) or `mu0`
+    pub fn with_phase(tau: f64, albedo: f64, phase: &Phase, incidence: Incidence) -> Result<Self> {
         within("tau", tau, 1e-12, 100.0, "1e-12 to 100 with adding and doubling")?;
         check_albedo(albedo)?;
         let beam = match incidence {
@@ -140,10 +114,11 @@ impl AddingDoubling {
             }
             Incidence::Diffuse => Vec::new(),
         };
+        let degrees = degrees(phase)?;
+        let moments: Vec<f64> = (0..=degrees[0]).map(|l| phase.moment(l)).collect();
         let solve = |i: usize| {
-            let upper = UPPER[i].max(4 + i + counts[i] / 2);
-            let nodes = Nodes::open(upper, LOWER[i]).with(&beam);
-            let stack = Stack::new(tau, albedo, &moments[..counts[i]], 0, nodes)?;
+            let nodes = Nodes::open(upper(i, degrees[i]), LOWER[i]).with(&beam);
+            let stack = Stack::new(tau, albedo, &moments[..=degrees[i]], 0, nodes)?;
             let entering = entering(&stack.nodes, incidence);
             Ok(Solution { stack, entering })
         };
@@ -157,9 +132,7 @@ impl AddingDoubling {
         Ok(AddingDoubling {
             tau,
             albedo,
-            moments,
-            phase,
-            counts,
+            phase: phase.clone(),
             incidence,
             solutions,
             reflectance,
@@ -181,9 +154,9 @@ impl AddingDoubling {
         self.albedo
     }
 
-    /// Legendre moments of the phase function \[1\], from l = 0.
-    pub fn moments(&self) -> &[f64] {
-        &self.moments
+    /// How the medium scatters.
+    pub fn phase(&self) -> &Phase {
+        &self.phase
     }
 
     /// How the light falls on the lit face.
@@ -231,9 +204,9 @@ impl AddingDoubling {
             let depths = depths(self.tau);
             depths.into_iter().map(|t| (t, self.difference(t))).collect()
         });
-        // The difference swings about zero with ln t, with a period of some steps of the ladder.
+        // The difference swings about zero with ln t, with a period of about a step of the ladder.
         let at = ladder.partition_point(|&(depth, _)| depth < t);
-        let near = &ladder[at.saturating_sub(3)..(at + 3).min(ladder.len())];
+        let near = &ladder[at.saturating_sub(2)..(at + 2).min(ladder.len())];
         let shared = near.iter().fold(0.0, |a: f64, &(_, d)| a.max(d)) + self.rounding;
         let error = (fine - coarse).abs() + shared * fine.abs();
         Ok(Value::new(fine, error + f64::MIN_POSITIVE, METHOD))
@@ -249,10 +222,11 @@ impl AddingDoubling {
     }
 }
 
-/// Depths that rise from the lit face and fall towards the far one by a factor of two each.
-fn depths(tau: f64) -> Vec<f64> {
+/// Depths that rise from the lit face and fall towards the far one by a factor of eight each.
+pub(crate) fn depths(tau: f64) -> Vec<f64> {
+    let smallest = 1e-9 * tau.min(1.0);
     let mut near: Vec<f64> =
-        std::iter::successors(Some(0.25 * tau), |&t| (t > 1e-9 * tau.min(1.0)).then_some(0.5 * t)).collect();
+        std::iter::successors(Some(0.25 * tau), |&t| (t > smallest).then_some(0.125 * t)).collect();
     near.push(0.0);
     let far: Vec<f64> = near.iter().map(|t| tau - t).collect();
     near.reverse();
@@ -261,10 +235,17 @@ fn depths(tau: f64) -> Vec<f64> {
     near
 }
 
-/// How many Legendre moments |g|^l are above `cut`, l = 0 among them, and one more.
-pub(crate) fn moments_above(g: f64, cut: f64) -> usize {
-    // Down to g = 1e-300 the quotient is a small number, and at g = 0 it is 0.
-    if g == 0.0 { 1 } else { 1 + (log(cut) / log(g.abs())).ceil() as usize }
+/// The last Legendre moment that the finer and the coarser nodes see.
+pub(crate) fn degrees(phase: &Phase) -> Result<[usize; 2]> {
+    let cut = if phase.degree(CUT[0], MOST) < MOST { CUT } else { CUT_PEAKED };
+    let left = phase.moment(MOST + 1).abs();
+    within("phase function", left, 0.0, CUT_PEAKED[0], "its Legendre moments beyond l = 450 at most 1e-10")?;
+    Ok(cut.map(|cut| phase.degree(cut, MOST)))
+}
+
+/// Nodes above the horizon that follow moments up to `degree`.
+fn upper(set: usize, degree: usize) -> usize {
+    UPPER[set].max(5 + degree / 2)
 }
 
 /// The vector of the light that enters: a beam in the first user's direction, or radiance 1/pi.
@@ -314,7 +295,7 @@ impl Solution {
 
 /// R, diffuse T and A with their bounds: each the difference of the two solutions, plus the largest difference of the
 /// three, absolute or relative to each, whichever is less.
-pub(crate) fn bounded<const N: usize>(fluxes: [[f64; 2]; N], rounding: f64) -> [Value; N] {
+fn bounded<const N: usize>(fluxes: [[f64; 2]; N], rounding: f64) -> [Value; N] {
     let differences = fluxes.map(|[fine, coarse]| (fine - coarse).abs());
     let largest = differences.iter().fold(0.0, |a: f64, &b| a.max(b));
     let relative = fluxes

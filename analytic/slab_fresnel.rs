@@ -11,7 +11,9 @@
 //! (1-r) times what arrives at a face, per solid angle outside 1/n^2 times that.
 //!
 //! The directions are chosen so that the critical cosine is the edge of a rule in the root of mu - mu_c. Every answer
-//! is computed on two sets of nodes, whose difference is the bound.
+//! is computed on two sets of nodes, whose difference is the bound: by the modes of discrete ordinates, or by the
+//! reflection and transmission that adding and doubling make, closed by the faces. The second is the first for thin
+//! slabs, where modes give small differences of large numbers.
 //!
 //! Limits: n = 1 is [`crate::AnisotropicSlab`]; albedo 0 a plate of glass; albedo 1: R + T = 1; tau -> infinity:
 //! reflection of a half-space behind a face.
@@ -21,29 +23,87 @@
 mod direct;
 mod doubling;
 mod face;
+mod ordinates;
+#[cfg(test)]
+mod tests;
 
-use crate::adding_doubling::bounded;
+use crate::adding_doubling::degrees;
 use crate::error::{Result, within};
 use crate::incidence::{Incidence, check_albedo, check_depth};
+use crate::phase::Phase;
+use crate::slab_anisotropic::scattering::Scattering;
 use crate::value::Value;
 use direct::Direct;
 use doubling::Closed;
-pub(crate) use face::Face;
-use libm::log;
+use face::{Face, Rule};
+use ordinates::Matched;
+use std::sync::{Arc, OnceLock};
 
-/// What the first Legendre moment left out, |g|^l, may be on the finer and on the coarser nodes.
-const CUT: [f64; 2] = [1e-13, 1e-10];
+const ORDINATES: &str = "discrete ordinates between refracting faces, two node counts";
+const DOUBLING: &str = "adding and doubling between refracting faces, two node counts";
+
+/// Below this thickness doubling is the first method too.
+const THIN: f64 = 1e-3;
+
+/// Roundings of a term of the sums, in units of its magnitude.
+const ULPS: f64 = 16.0;
 
 /// Nodes towards the horizon, and the fewest of each panel above it.
-const LOWER: [usize; 2] = [56, 44];
-const UPPER: [usize; 2] = [36, 28];
+const LOWER: [usize; 2] = [56, 46];
+const UPPER: [usize; 2] = [36, 29];
 
-/// Light of one solution: scattered, through the lit face, through the far one, and all that is absorbed.
+/// A sum, and the sum of the magnitudes of its terms: rounding is a few units of the last place of that.
+#[derive(Debug, Clone, Copy, Default)]
+struct Light {
+    value: f64,
+    magnitude: f64,
+}
+
+impl Light {
+    fn of(value: f64) -> Self {
+        Light { value, magnitude: value.abs() }
+    }
+
+    fn plus(self, other: Self) -> Self {
+        Light { value: self.value + other.value, magnitude: self.magnitude + other.magnitude }
+    }
+
+    fn scaled(self, factor: f64) -> Self {
+        Light { value: self.value * factor, magnitude: self.magnitude * factor.abs() }
+    }
+
+    fn rounding(self) -> f64 {
+        ULPS * f64::EPSILON * self.magnitude
+    }
+}
+
+/// Scattered light that leaves through the lit face and through the far one, and all that is absorbed.
 #[derive(Debug, Clone, Copy)]
 struct Fluxes {
-    reflected: f64,
-    transmitted: f64,
-    absorbed: f64,
+    reflected: Light,
+    transmitted: Light,
+    absorbed: Light,
+}
+
+enum Solution {
+    Ordinates(Box<Matched>),
+    Doubling(Box<Closed>),
+}
+
+impl Solution {
+    fn fluxes(&self) -> Fluxes {
+        match self {
+            Solution::Ordinates(solution) => solution.fluxes(),
+            Solution::Doubling(solution) => solution.fluxes(),
+        }
+    }
+
+    fn fluence(&self, t: f64, direct: &Direct) -> Light {
+        match self {
+            Solution::Ordinates(solution) => solution.fluence(t, direct),
+            Solution::Doubling(solution) => solution.fluence(t, direct),
+        }
+    }
 }
 
 /// A solved slab between refracting faces.
@@ -51,49 +111,101 @@ pub struct FresnelSlab {
     direct: Direct,
     index: f64,
     albedo: f64,
-    g: f64,
-    solutions: [Closed; 2],
+    phase: Phase,
+    method: &'static str,
+    solutions: [Solution; 2],
     specular: Value,
     reflectance_direct: Value,
     reflectance_diffuse: Value,
     transmittance_direct: Value,
     transmittance_diffuse: Value,
     absorptance: Value,
-    rounding: f64,
+    /// Depths in rising order, and the relative difference of the two fluences of scattered light there.
+    ladder: OnceLock<Vec<(f64, f64)>>,
 }
 
 impl FresnelSlab {
-    /// Solves the slab by adding and doubling: the second method.
+    /// Solves the slab with Henyey-Greenstein scattering.
     ///
     /// # Arguments
-    /// as for [`Self::new`], `tau` 1e-12 to 100
+    /// `tau` optical thickness \[1\], 1e-12 to 1e5; `albedo` 0 to 1; `g` mean cosine of scattering, -0.95 to 0.95;
+    /// `index` refractive index inside over outside \[1\], 0.25 to 4; `incidence` from outside, of unit irradiance, a
+    /// beam with a cosine of 1e-5 to 1, refracted to one of 1e-5 to 1 or reflected whole
     /// # Errors
-    /// as for [`Self::new`]
-    pub fn by_doubling(tau: f64, albedo: f64, g: f64, index: f64, incidence: Incidence) -> Result<Self> {
-        within("tau", tau, 1e-12, 100.0, "1e-12 to 100 with adding and doubling")?;
-        check_albedo(albedo)?;
+    /// `Error::OutOfRange` naming `tau`, `albedo`, `g`, `index` or `mu0`
+    pub fn new(tau: f64, albedo: f64, g: f64, index: f64, incidence: Incidence) -> Result<Self> {
         within("g", g, -0.95, 0.95, "-0.95 to 0.95 between refracting faces")?;
+        Self::with_phase(tau, albedo, &Phase::henyey_greenstein(g)?, index, incidence)
+    }
+
+    /// Solves the slab with any phase function.
+    ///
+    /// # Arguments
+    /// as for [`Self::new`]; `phase` any whose Legendre moments beyond l = 450 are below 1e-10
+    /// # Errors
+    /// `Error::OutOfRange` naming `tau`, `albedo`, `phase function`, `index` or `mu0`
+    pub fn with_phase(
+        tau: f64,
+        albedo: f64,
+        phase: &Phase,
+        index: f64,
+        incidence: Incidence,
+    ) -> Result<Self> {
+        within("tau", tau, 1e-12, 1e5, "1e-12 to 1e5 between refracting faces")?;
+        Self::solve(tau, albedo, phase, index, incidence, tau < THIN)
+    }
+
+    /// Solves the slab by adding and doubling, whatever its thickness: the second method.
+    ///
+    /// # Arguments
+    /// as for [`Self::with_phase`], `tau` 1e-12 to 100
+    /// # Errors
+    /// as for [`Self::with_phase`]
+    pub fn by_doubling(
+        tau: f64,
+        albedo: f64,
+        phase: &Phase,
+        index: f64,
+        incidence: Incidence,
+    ) -> Result<Self> {
+        within("tau", tau, 1e-12, 100.0, "1e-12 to 100 with adding and doubling")?;
+        Self::solve(tau, albedo, phase, index, incidence, true)
+    }
+
+    fn solve(
+        tau: f64,
+        albedo: f64,
+        phase: &Phase,
+        index: f64,
+        incidence: Incidence,
+        doubling: bool,
+    ) -> Result<Self> {
+        check_albedo(albedo)?;
         check_index(index)?;
         let face = Face::new(index);
         if let Incidence::Beam { mu0 } = incidence {
             within("mu0", mu0, 1e-5, 1.0, "1e-5 to 1 on a refracting face, or diffuse")?;
-            if let Some(inside) = face.inside(mu0) {
-                within("mu0", mu0, if inside < 1e-5 { 1.0 } else { 0.0 }, 1.0, "refracted to 1e-5 to 1")?;
+            if face.inside(mu0).is_some_and(|inside| inside < 1e-5) {
+                within("mu0", mu0, 1.0, 1.0, "refracted to a cosine of 1e-5 or more, or reflected whole")?;
             }
         }
         let direct = Direct { face, tau, incidence };
-        let count = |cut: f64| if g == 0.0 { 1 } else { 1 + (log(cut) / log(g.abs())).ceil() as usize };
-        let moments: Vec<f64> = (0..count(CUT[0])).map(|l| g.powi(l as i32)).collect();
-        let solve = |i: usize| {
-            let used = count(CUT[i]);
-            let upper = UPPER[i].max(6 + i + used / 2);
-            Closed::new(&direct, albedo, &moments[..used], (upper, LOWER[i]))
+        let degrees = degrees(phase)?;
+        let solve = |i: usize| -> Result<Solution> {
+            let power = if doubling { 5 } else { 4 };
+            let rule = Rule { upper: UPPER[i], lower: LOWER[i], power, degree: degrees[i] };
+            if doubling {
+                let moments: Vec<f64> = (0..=degrees[i]).map(|l| phase.moment(l)).collect();
+                return Ok(Solution::Doubling(Box::new(Closed::new(&direct, albedo, &moments, rule)?)));
+            }
+            let scattering = Arc::new(Scattering::new(albedo, phase, degrees[i], false));
+            Ok(Solution::Ordinates(Box::new(Matched::new(&direct, scattering, face.nodes(rule))?)))
         };
         let solutions = [solve(0)?, solve(1)?];
-        let pair = solutions.each_ref().map(Closed::fluxes);
+        let method = if doubling { DOUBLING } else { ORDINATES };
+        let pair = solutions.each_ref().map(Solution::fluxes);
         let fluxes = [pair.map(|f| f.reflected), pair.map(|f| f.transmitted), pair.map(|f| f.absorbed)];
-        let rounding = 8.0 * f64::EPSILON * (solutions[0].doublings() as f64 + 4.0) * (1.0 + tau);
-        let [reflectance_diffuse, transmittance_diffuse, absorptance] = bounded(fluxes, rounding);
+        let [reflectance_diffuse, transmittance_diffuse, absorptance] = bounded(fluxes, method);
         Ok(FresnelSlab {
             specular: direct.specular()?,
             reflectance_direct: direct.returned()?,
@@ -101,13 +213,39 @@ impl FresnelSlab {
             direct,
             index,
             albedo,
-            g,
+            phase: phase.clone(),
+            method,
             solutions,
             reflectance_diffuse,
             transmittance_diffuse,
             absorptance,
-            rounding,
+            ladder: OnceLock::new(),
         })
+    }
+
+    /// Optical thickness \[1\].
+    pub fn tau(&self) -> f64 {
+        self.direct.tau
+    }
+
+    /// Single-scattering albedo \[1\].
+    pub fn albedo(&self) -> f64 {
+        self.albedo
+    }
+
+    /// How the medium scatters.
+    pub fn phase(&self) -> &Phase {
+        &self.phase
+    }
+
+    /// Refractive index inside over outside \[1\].
+    pub fn index(&self) -> f64 {
+        self.index
+    }
+
+    /// How the light falls on the lit face, outside.
+    pub fn incidence(&self) -> Incidence {
+        self.direct.incidence
     }
 
     /// What the lit face reflects before any light enters \[1\]; of Lambertian light, the hemispherical reflectance.
@@ -115,10 +253,10 @@ impl FresnelSlab {
         self.specular
     }
 
-    /// Fraction of the incident power that leaves on the lit side: specular, unscattered from the far face, and
-    /// scattered light \[1\].
+    /// Fraction of the incident power that leaves on the lit side \[1\]: specular, unscattered from the far face, and
+    /// scattered light.
     pub fn reflectance(&self) -> Value {
-        sum(&[self.specular, self.reflectance_direct, self.reflectance_diffuse])
+        self.sum(&[self.specular, self.reflectance_direct, self.reflectance_diffuse])
     }
 
     /// Fraction of the incident power that leaves through the lit face after at least one scattering \[1\].
@@ -128,7 +266,7 @@ impl FresnelSlab {
 
     /// Fraction of the incident power that leaves through the far face \[1\].
     pub fn transmittance(&self) -> Value {
-        sum(&[self.transmittance_direct, self.transmittance_diffuse])
+        self.sum(&[self.transmittance_direct, self.transmittance_diffuse])
     }
 
     /// Fraction of the incident power that leaves through the far face without scattering, echoes included \[1\].
@@ -154,67 +292,68 @@ impl FresnelSlab {
     /// `Error::OutOfRange` naming `t`
     pub fn fluence(&self, t: f64) -> Result<Value> {
         check_depth(t, self.direct.tau)?;
-        let unscattered = self.direct.fluence(t)?;
-        let [fine, coarse] = self.solutions.each_ref().map(|s| s.fluence(t, &self.direct));
-        let scattered = Value::new(fine, (fine - coarse).abs() + self.rounding * fine.abs(), METHOD);
-        Ok(sum(&[unscattered, scattered]))
+        let [fine, coarse] = self.pair(t);
+        let ladder = self.ladder.get_or_init(|| {
+            let depths = crate::adding_doubling::depths(self.direct.tau);
+            depths.into_iter().map(|t| (t, self.difference(t))).collect()
+        });
+        let at = ladder.partition_point(|&(depth, _)| depth < t);
+        let near = &ladder[at.saturating_sub(2)..(at + 2).min(ladder.len())];
+        let shared = near.iter().fold(0.0, |a: f64, &(_, d)| a.max(d)) * fine.value.abs();
+        let error = (fine.value - coarse.value).abs() + shared + fine.rounding();
+        let scattered = Value::new(fine.value, error + f64::MIN_POSITIVE, self.method);
+        Ok(self.sum(&[self.direct.fluence(t)?, scattered]))
+    }
+
+    fn pair(&self, t: f64) -> [Light; 2] {
+        self.solutions.each_ref().map(|solution| solution.fluence(t, &self.direct))
+    }
+
+    fn difference(&self, t: f64) -> f64 {
+        let [fine, coarse] = self.pair(t).map(|light| light.value);
+        if fine == 0.0 { 0.0 } else { ((fine - coarse) / fine).abs() }
+    }
+
+    fn sum(&self, parts: &[Value]) -> Value {
+        let value: f64 = parts.iter().map(|p| p.value).sum();
+        let error: f64 = parts.iter().map(|p| p.error).sum();
+        Value::new(value, error + 2.0 * f64::EPSILON * value.abs(), self.method)
     }
 }
 
-const METHOD: &str = "";
-
-fn sum(parts: &[Value]) -> Value {
-    let value: f64 = parts.iter().map(|p| p.value).sum();
-    let error: f64 = parts.iter().map(|p| p.error).sum();
-    Value::new(value, error + 2.0 * f64::EPSILON * value.abs(), METHOD)
+/// R, T and A of scattered light with their bounds: each the difference of the two solutions, plus the largest
+/// difference of the three, absolute or relative to each, whichever is less.
+fn bounded(fluxes: [[Light; 2]; 3], method: &'static str) -> [Value; 3] {
+    let differences = fluxes.map(|[fine, coarse]| (fine.value - coarse.value).abs());
+    let largest = differences.iter().fold(0.0, |a: f64, &b| a.max(b));
+    let relative = fluxes
+        .iter()
+        .zip(&differences)
+        .filter(|(flux, _)| flux[0].value != 0.0)
+        .fold(0.0, |a: f64, (flux, d)| a.max(d / flux[0].value.abs()));
+    std::array::from_fn(|i| {
+        let fine = fluxes[i][0];
+        let shared = largest.min(relative * fine.value.abs());
+        let error = differences[i] + shared + fine.rounding() + f64::MIN_POSITIVE;
+        Value::new(fine.value, error, method)
+    })
 }
 
 fn check_index(index: f64) -> Result<f64> {
     within("index", index, 0.25, 4.0, "0.25 to 4, inside over outside")
 }
 
-#[cfg(test)]
-mod tests {
-    use super::*;
-    #[test]
-    fn probe() {
-        for (tau, w, g, n, inc) in [
-            (1.0, 0.9, 0.0, 1.5, Incidence::Beam { mu0: 1.0 }),
-            (1.0, 0.9, 0.0, 1.5, Incidence::Diffuse),
-            (1.0, 1.0, 0.0, 1.33, Incidence::Beam { mu0: 1.0 }),
-            (1.0, 1.0, 0.0, 1.33, Incidence::Diffuse),
-            (1.0, 1.0, 0.5, 1.0001, Incidence::Diffuse),
-            (1.0, 1.0, 0.75, 2.4, Incidence::Diffuse),
-            (1.0, 1.0, 0.75, 0.7, Incidence::Diffuse),
-            (1.0, 1.0, 0.75, 0.7, Incidence::Beam { mu0: 0.9 }),
-            (100.0, 0.99999, 0.75, 2.4, Incidence::Beam { mu0: 0.9 }),
-            (1e-8, 0.99999, 0.75, 2.4, Incidence::Beam { mu0: 0.9 }),
-            (1.0, 0.9, 0.5, 1.0, Incidence::Diffuse),
-            (1.0, 0.9, 0.5, 1.0 + 1e-9, Incidence::Diffuse),
-        ] {
-            let start = std::time::Instant::now();
-            let s = FresnelSlab::by_doubling(tau, w, g, n, inc).unwrap();
-            eprintln!(
-                "{tau} {w} {g} n {n} {inc:?} {:?} nodes {}",
-                start.elapsed(),
-                s.direct.face.nodes(UPPER[0], LOWER[0], 5).len()
-            );
-            let show =
-                |name: &str, v: Value| eprintln!("   {name} {:.17} +- {:.1e}", v.value, v.error / v.value);
-            show("spec", s.specular());
-            show("Rback", s.reflectance_direct);
-            show("Rdif", s.reflectance_diffuse());
-            show("R", s.reflectance());
-            show("Tcol", s.transmittance_direct());
-            show("Tdif", s.transmittance_diffuse());
-            show("T", s.transmittance());
-            show("A", s.absorptance());
-            show("phi0", s.fluence(0.0).unwrap());
-            show("phi", s.fluence(0.3 * tau).unwrap());
-            eprintln!(
-                "   sum-1 {:.1e}",
-                s.reflectance().value + s.transmittance().value + s.absorptance().value - 1.0
-            );
-        }
-    }
+/// Reflectance of a smooth face for Lambertian light \[1\]: from outside, or from inside.
+///
+/// The mean of Fresnel's reflectance, int 2 mu r dmu; from the denser side light beyond the critical angle returns
+/// whole. Light that passes, seen from both sides, gives n^2 (1 - r_inside) = 1 - r_outside.
+/// # Arguments
+/// `index` refractive index inside over outside \[1\], 0.25 to 4
+/// # Errors
+/// `Error::OutOfRange` naming `index`
+/// # Source
+/// Walsh 1926; Duntley 1942
+pub fn hemispherical_reflectance(index: f64, from_outside: bool) -> Result<Value> {
+    check_index(index)?;
+    Face::new(index).diffuse(from_outside)
 }

@@ -5,12 +5,12 @@
 //! that what is left dies away soon with m, and the peak of the phase function is never summed.
 
 use super::nodes::{Nodes, legendre};
-use super::{AddingDoubling, LOWER, METHOD, Stack, UPPER, entering};
+use super::{AddingDoubling, CUT_TWICE, LOWER, METHOD, MOST, Stack, degrees, entering, upper};
 use crate::error::{Result, within};
 use crate::incidence::{Incidence, check_depth};
 use crate::slab_single::beam_path;
 use crate::value::Value;
-use libm::{cos, sqrt};
+use libm::{cos, sin, sqrt};
 use nalgebra::DVector;
 use std::f64::consts::PI;
 
@@ -33,18 +33,21 @@ impl AddingDoubling {
         within("mu", mu.abs(), 1e-5, 1.0, "1e-5 or more in magnitude with adding and doubling")?;
         within("dphi", dphi, -1e6, 1e6, "-1e6 to 1e6")?;
         let Incidence::Beam { mu0 } = self.incidence else {
-            let [fine, coarse] = [self.mode(0, 0, t, mu)?, self.mode(1, 0, t, mu)?];
+            let all = degrees(&self.phase)?;
+            let [fine, coarse] = [self.mode(0, all[0], 0, t, mu)?, self.mode(1, all[1], 0, t, mu)?];
             let error = 2.0 * (fine - coarse).abs() + self.rounding * fine.abs();
             return Ok(Value::new(fine, error + f64::MIN_POSITIVE, METHOD));
         };
         let path = self.albedo * beam_path(self.tau, mu0, t, mu);
-        let single = path * self.phase.value(-mu0 * mu + sine(mu0) * sine(mu) * cos(dphi), &self.moments);
+        let [minus, plus] = deflection(mu0, mu, dphi);
+        let single = path * self.phase.value_of(minus, plus);
+        let degrees = CUT_TWICE.map(|cut| self.phase.degree(cut, MOST));
         let (mut sum, mut difference, mut magnitude, mut tail) = (0.0, 0.0, single.abs(), 0.0);
         let mut small = 0;
-        for m in 0..self.counts[0] {
+        for m in 0..=degrees[0] {
             let weight = if m == 0 { 1.0 } else { 2.0 };
             let several = |i: usize| -> Result<f64> {
-                Ok(self.mode(i, m, t, mu)? - path * self.single_mode(i, m, mu0, mu))
+                Ok(self.mode(i, degrees[i], m, t, mu)? - path * self.single_mode(degrees[i], m, mu0, mu))
             };
             let [fine, coarse] = [several(0)?, several(1)?];
             sum += weight * fine * cos(m as f64 * dphi);
@@ -63,36 +66,35 @@ impl AddingDoubling {
     }
 
     /// I_m at depth t and cosine mu on nodes i, single scattering included.
-    fn mode(&self, i: usize, m: usize, t: f64, mu: f64) -> Result<f64> {
+    fn mode(&self, i: usize, degree: usize, m: usize, t: f64, mu: f64) -> Result<f64> {
         let mut users = match self.incidence {
             Incidence::Beam { mu0 } => vec![mu0],
             Incidence::Diffuse => Vec::new(),
         };
         users.push(mu.abs());
-        let count = self.counts[i];
-        if m >= count {
+        if m > degree {
             return Ok(0.0);
         }
-        let nodes = Nodes::open(UPPER[i].max(4 + i + count / 2), LOWER[i]).with(&users);
+        let nodes = Nodes::open(upper(i, degree), LOWER[i]).with(&users);
+        let moments: Vec<f64> = (0..=degree).map(|l| self.phase.moment(l)).collect();
         let last = nodes.len() - 1;
-        let stack = Stack::new(self.tau, self.albedo, &self.moments[..count], m, nodes)?;
+        let stack = Stack::new(self.tau, self.albedo, &moments, m, nodes)?;
         let dark = DVector::zeros(last + 1);
         let (down, up) = stack.field(t, entering(&stack.nodes, self.incidence), dark);
         let u = if mu > 0.0 { up[last] } else { down[last] };
         Ok(u / sqrt(stack.nodes.mu[last] * stack.nodes.weight[last]))
     }
 
-    /// Mode m of the phase function as nodes i have it, between the beam and mu.
-    fn single_mode(&self, i: usize, m: usize, mu0: f64, mu: f64) -> f64 {
-        let count = self.counts[i];
-        if m >= count {
+    /// Mode m of the phase function up to `degree`, between the beam and mu.
+    fn single_mode(&self, degree: usize, m: usize, mu0: f64, mu: f64) -> f64 {
+        if m > degree {
             return 0.0;
         }
-        let (a, b) = (legendre(m, count - 1, mu0), legendre(m, count - 1, mu.abs()));
-        let terms = (m..count).map(|l| {
+        let (a, b) = (legendre(m, degree, mu0), legendre(m, degree, mu.abs()));
+        let terms = (m..=degree).map(|l| {
             // The beam goes down: up it turns P_l^m by (-1)^(l+m).
             let sign = if mu > 0.0 && (l + m) % 2 == 1 { -1.0 } else { 1.0 };
-            sign * (2.0 * l as f64 + 1.0) * self.moments[l] * a[l - m] * b[l - m]
+            sign * (2.0 * l as f64 + 1.0) * self.phase.moment(l) * a[l - m] * b[l - m]
         });
         terms.sum::<f64>() / (4.0 * PI)
     }
@@ -102,29 +104,11 @@ fn sine(mu: f64) -> f64 {
     sqrt((1.0 - mu) * (1.0 + mu))
 }
 
-/// How the phase function is known.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) enum Shape {
-    /// In closed form, by its mean cosine.
-    HenyeyGreenstein(f64),
-    /// As the sum over its moments.
-    Moments,
-}
-
-impl Shape {
-    /// Phase function at the cosine of scattering \[1/sr\].
-    fn value(self, cosine: f64, moments: &[f64]) -> f64 {
-        match self {
-            Shape::HenyeyGreenstein(g) => {
-                let distance = (1.0 - g) * (1.0 - g) + 2.0 * g * (1.0 - cosine);
-                (1.0 - g) * (1.0 + g) / (4.0 * PI * distance * sqrt(distance))
-            }
-            Shape::Moments => {
-                let p = legendre(0, moments.len() - 1, cosine.clamp(-1.0, 1.0));
-                let terms =
-                    p.iter().zip(moments).enumerate().map(|(l, (p, c))| (2.0 * l as f64 + 1.0) * c * p);
-                terms.sum::<f64>() / (4.0 * PI)
-            }
-        }
-    }
+/// One minus and one plus the cosine of the deflection from the beam, each as half a squared distance.
+fn deflection(mu0: f64, mu: f64, dphi: f64) -> [f64; 2] {
+    let (s0, s) = (sine(mu0), sine(mu));
+    let lateral = if s0 + s > 0.0 { (mu - mu0) * (mu + mu0) / (s0 + s) } else { 0.0 };
+    let of =
+        |turn: f64, normal: f64| 0.5 * (lateral * lateral + 4.0 * s0 * s * turn * turn + normal * normal);
+    [of(sin(0.5 * dphi), mu + mu0), of(cos(0.5 * dphi), mu - mu0)]
 }

@@ -47,6 +47,53 @@ impl Scattering {
     }
 }
 
+/// A layer in which light is scattered twice at most: single scattering, and what makes double scattering of vectors.
+struct Thin<'a> {
+    scattering: &'a Scattering,
+    direct: DVector<f64>,
+    /// Light scattered once.
+    reflected: DMatrix<f64>,
+    scattered: DMatrix<f64>,
+    /// The area over which two collisions lie, by the direction between them.
+    between: DVector<f64>,
+    /// Share of the layer that light from outside reaches.
+    share: DVector<f64>,
+}
+
+impl<'a> Thin<'a> {
+    fn new(nodes: &Nodes, scattering: &'a Scattering, x: f64) -> Self {
+        let n = nodes.len();
+        let rate: Vec<f64> = nodes.mu.iter().map(|mu| 1.0 / mu).collect();
+        let direct = DVector::from_fn(n, |i, _| exp(-rate[i] * x));
+        let (same, other) = (&scattering.same, &scattering.other);
+        let reflected =
+            DMatrix::from_fn(n, n, |i, j| (same[(i, j)] - other[(i, j)]) * decayed(rate[i] + rate[j], x));
+        let scattered = DMatrix::from_fn(n, n, |i, j| {
+            let slower = if rate[i] < rate[j] { i } else { j };
+            (same[(i, j)] + other[(i, j)]) * direct[slower] * decayed((rate[i] - rate[j]).abs(), x)
+        });
+        // x^2, less where light does not get far.
+        let between = DVector::from_fn(n, |k, _| {
+            let y = rate[k] * x;
+            x * x * if y < 1e-4 { 1.0 - y / 3.0 } else { 2.0 * (y + expm1(-y)) / (y * y) }
+        });
+        let share = DVector::from_fn(n, |i, _| if x > 0.0 { decayed(rate[i], x) / x } else { 1.0 });
+        Thin { scattering, direct, reflected, scattered, between, share }
+    }
+
+    /// What becomes of light u from outside: what passes, direct light included, and what returns.
+    fn pass(&self, u: &DVector<f64>) -> [DVector<f64>; 2] {
+        let reached = u.component_mul(&self.share);
+        let twice =
+            |a: &DMatrix<f64>| (a * (a * &reached).component_mul(&self.between)).component_mul(&self.share);
+        let (same, other) = (twice(&self.scattering.same), twice(&self.scattering.other));
+        [
+            &self.scattered * u + self.direct.component_mul(u) + &same + &other,
+            &self.reflected * u + same - other,
+        ]
+    }
+}
+
 /// A layer's answer to light from outside.
 struct Layer {
     thickness: f64,
@@ -61,38 +108,28 @@ struct Layer {
 impl Layer {
     /// A layer so thin that light is scattered twice at most.
     fn thin(nodes: &Nodes, albedo: f64, scattering: &Scattering, x: f64) -> Self {
+        let Thin { direct, mut reflected, mut scattered, between, share, .. } =
+            Thin::new(nodes, scattering, x);
         let n = nodes.len();
-        let rate: Vec<f64> = nodes.mu.iter().map(|mu| 1.0 / mu).collect();
-        let direct = DVector::from_fn(n, |i, _| exp(-rate[i] * x));
-        let damped: Vec<f64> = rate.iter().map(|&r| decayed(r, x)).collect();
-        // Light between two collisions: x^2/2, less where it does not get far.
-        let between = |k: usize| {
-            let y = rate[k] * x;
-            x * x * if y < 1e-4 { 0.5 - y / 6.0 } else { (y + expm1(-y)) / (y * y) }
-        };
         let twice = |a: &DMatrix<f64>| {
             let mut left = a.clone();
-            for k in 0..n {
-                left.column_mut(k).scale_mut(2.0 * between(k));
+            for (mut column, between) in left.column_iter_mut().zip(&between) {
+                column *= *between;
             }
             left * a
         };
         let (same, other) = (&scattering.same, &scattering.other);
         let (same_twice, other_twice) = (twice(same), twice(other));
-        let share: Vec<f64> = damped.iter().map(|d| if x > 0.0 { d / x } else { 1.0 }).collect();
-        let reflected = DMatrix::from_fn(n, n, |i, j| {
-            (same[(i, j)] - other[(i, j)]) * decayed(rate[i] + rate[j], x)
-                + (same_twice[(i, j)] - other_twice[(i, j)]) * share[i] * share[j]
-        });
-        let scattered = DMatrix::from_fn(n, n, |i, j| {
-            let slower = if rate[i] < rate[j] { i } else { j };
-            (same[(i, j)] + other[(i, j)]) * direct[slower] * decayed((rate[i] - rate[j]).abs(), x)
-                + (same_twice[(i, j)] + other_twice[(i, j)]) * share[i] * share[j]
-        });
+        for j in 0..n {
+            for i in 0..n {
+                let (a, b, shares) = (same_twice[(i, j)], other_twice[(i, j)], share[i] * share[j]);
+                reflected[(i, j)] += (a - b) * shares;
+                scattered[(i, j)] += (a + b) * shares;
+            }
+        }
         let weight = DVector::from_fn(n, |i, _| sqrt(nodes.weight[i] / nodes.mu[i]));
-        let lost = DVector::from_fn(n, |k, _| 2.0 * weight[k] * between(k));
-        let once = DVector::from_fn(n, |i, _| weight[i] * damped[i]);
-        let absorbed = (once + same.tr_mul(&lost)) * (1.0 - albedo);
+        let once = weight.component_mul(&share) * x;
+        let absorbed = (once + same.tr_mul(&weight.component_mul(&between))) * (1.0 - albedo);
         Layer { thickness: x, direct, reflected, scattered, absorbed }
     }
 
@@ -154,7 +191,6 @@ fn decayed(rate: f64, x: f64) -> f64 {
 /// A slab of 2^n thin layers, with all the layers on the way.
 pub(crate) struct Stack {
     pub nodes: Nodes,
-    albedo: f64,
     scattering: Scattering,
     layers: Vec<Layer>,
     bounced: Vec<DMatrix<f64>>,
@@ -177,7 +213,7 @@ impl Stack {
             layers.push(layer);
             bounced.push(between);
         }
-        Ok(Stack { nodes, albedo, scattering, layers, bounced })
+        Ok(Stack { nodes, scattering, layers, bounced })
     }
 
     /// How often the first layer was doubled.
@@ -226,14 +262,14 @@ impl Stack {
             }
         }
         let rest = (self.layers[0].thickness - x).max(0.0);
-        let [above, below] = [x, rest].map(|x| Layer::thin(&self.nodes, self.albedo, &self.scattering, x));
-        let (falling, rising) = (above.transmit(&top), below.transmit(&bottom));
+        let [above, below] = [x, rest].map(|x| Thin::new(&self.nodes, &self.scattering, x));
+        let ([falling, _], [rising, _]) = (above.pass(&top), below.pass(&bottom));
         let mut down = falling.clone();
         let mut up = rising.clone();
         // To and fro between layers that return less than 1e-6: the third time is below rounding.
         for _ in 0..3 {
-            let next = &falling + &above.reflected * &up;
-            up = &rising + &below.reflected * &down;
+            let next = &falling + &above.pass(&up)[1];
+            up = &rising + &below.pass(&down)[1];
             down = next;
         }
         (down, up)

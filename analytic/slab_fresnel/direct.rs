@@ -6,7 +6,7 @@ use crate::error::Result;
 use crate::incidence::Incidence;
 use crate::quadrature::Adaptive;
 use crate::value::Value;
-use libm::sqrt;
+use libm::{expm1, sqrt};
 
 const METHOD: &str = "closed form";
 
@@ -32,6 +32,30 @@ impl Direct {
         let (r, t) = self.face.reflected(mu, mu0);
         let echo = r * faded(self.tau, mu);
         t / (1.0 - echo * echo)
+    }
+
+    /// What one passage and one reflection leave of light at cosine `mu`: r e.
+    pub fn echo(&self, mu: f64) -> f64 {
+        self.face.from_inside(mu).0 * faded(self.tau, mu)
+    }
+
+    /// Power that meets with a first collision: the integral of the fluence over depth.
+    pub fn collided(&self) -> Result<Value> {
+        let lost = |inside: f64, r: f64, through: f64| {
+            let echo = r * faded(self.tau, inside);
+            through * -expm1(-self.tau / inside) / (1.0 - echo)
+        };
+        match self.incidence {
+            Incidence::Beam { mu0 } => {
+                let Some(mu) = self.face.inside(mu0) else { return Ok(Value::new(0.0, 0.0, METHOD)) };
+                let (r, through) = self.face.reflected(mu, mu0);
+                Ok(Value::rounded(lost(mu, r, through), 32.0, METHOD))
+            }
+            Incidence::Diffuse => self.mean(&|inside, outside| {
+                let (r, through) = self.face.reflected(inside, outside);
+                lost(inside, r, through)
+            }),
+        }
     }
 
     /// Radiance times pi at cosine `mu` inside and depth `t`, both senses together, of Lambertian light.

@@ -84,7 +84,10 @@ impl Face {
 
     /// Directions inside, crowded where the light changes: towards the horizon, and beyond the critical cosine, where
     /// the reflectance falls with the root of the difference.
-    pub fn nodes(self, upper: usize, lower: usize, power: i32) -> Nodes {
+    pub fn nodes(self, rule: Rule) -> Nodes {
+        let Rule { upper, lower, power, degree } = rule;
+        let (least, turns) = (upper, degree as f64);
+        let upper = least.max(5 + degree / 2);
         let open = 3.0 / (upper as f64 + 2.0);
         let critical = self.critical();
         // The reflectance is analytic but for mu^2 = (n^2 - 1)/n^2, which for n < 1 lies across.
@@ -97,10 +100,13 @@ impl Face {
         panels.power(edge, power, lower);
         if critical > 0.0 {
             if edge < critical {
-                panels.plain(edge, critical, upper);
+                panels.plain(edge, critical, least.max(12 + (0.5 * critical * turns) as usize));
             }
             edge = if 4.0 * critical >= open.max(0.25) { 1.0 } else { 4.0 * critical };
-            panels.root(critical, edge, if edge == 1.0 { upper + upper / 2 } else { PANEL });
+            // In the root of mu - mu_c the turns of P_l are densest at mu = 1, root(1 - mu_c) as dense as on a whole
+            // hemisphere in mu itself.
+            let order = least.max(16 + (0.75 * sqrt(1.0 - critical) * turns) as usize);
+            panels.root(critical, edge, if edge == 1.0 { order } else { PANEL });
         }
         while edge < open {
             let next = if 3.0 * edge >= open { open } else { 3.0 * edge };
@@ -114,6 +120,18 @@ impl Face {
     }
 }
 
+/// How fine the directions are to be.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Rule {
+    /// The fewest nodes of a panel away from the horizon.
+    pub upper: usize,
+    /// Nodes towards the horizon, in the root of this power.
+    pub lower: usize,
+    pub power: i32,
+    /// The highest Legendre moment to be followed.
+    pub degree: usize,
+}
+
 /// Reflectance for Lambertian light on a medium of index n > 1 (Walsh 1926; Duntley 1942).
 fn lambertian(n: f64) -> Result<Value> {
     const CLOSED: &str = "closed form";
@@ -121,7 +139,7 @@ fn lambertian(n: f64) -> Result<Value> {
         return Ok(Value::new(0.0, 0.0, CLOSED));
     }
     let face = Face::new(n);
-    if n < 1.1 {
+    if n < 1.5 {
         // The closed form is a small difference of terms that grow as 1/(n-1).
         let integrand =
             |mu: f64| Ok(face.inside(mu).map_or(0.0, |inside| 2.0 * mu * face.reflected(inside, mu).0));
@@ -159,7 +177,7 @@ mod tests {
             let face = Face::new(n);
             let (outer, inner) = (face.diffuse(true).unwrap(), face.diffuse(false).unwrap());
             // From outside, in the cosine inside where that is the smoother; from inside, with all that returns whole.
-            let nodes = face.nodes(60, 60, 5);
+            let nodes = face.nodes(Rule { upper: 60, lower: 60, power: 5, degree: 0 });
             let got = nodes.sum(|mu| 2.0 * mu * face.from_inside(mu).0);
             assert!((got - inner.value).abs() < inner.error + 1e-13, "{n} inside {got} {inner:?}");
             let through = nodes.sum(|mu| 2.0 * n * n * mu * face.from_inside(mu).1);

@@ -58,12 +58,12 @@ impl Source {
         if k < SLOW {
             let x = (beta * kappa - pi) / (beta * beta - k * k);
             let e = exp(-beta * t);
-            return [x * e, (kappa - beta * x) * e, (x.abs() + kappa.abs()) * e * (1.0 + beta * t)];
+            return [x * e, (kappa - beta * x) * e, (x.abs() * beta + kappa.abs()) * e * (1.0 + beta * t)];
         }
         let up = (k * kappa + pi) * exp(-beta * t) * decayed(k + beta, rest);
         let down = -(k * kappa - pi) * exp(-k.min(beta) * t) * decayed((k - beta).abs(), t);
         let size = up.abs() * (1.0 + beta * t) + down.abs() * (1.0 + k.min(beta) * t);
-        [(up + down) / (2.0 * k), 0.5 * (up - down), size / (2.0 * k).min(1.0)]
+        [(up + down) / (2.0 * k), 0.5 * (up - down), size / (2.0 * k)]
     }
 
     /// The same for the beam and its echo, which sees the slab upside down.
@@ -92,7 +92,11 @@ impl Source {
 impl Matched {
     /// With r the reflectance at each node, (1-r) p - (1+r) q on the lit face and (1-r) p + (1+r) q on the far one
     /// are twice the light that enters there.
-    pub fn new(direct: &Direct, scattering: Arc<Scattering>, rule: crate::adding_doubling::Nodes) -> Result<Self> {
+    pub fn new(
+        direct: &Direct,
+        scattering: Arc<Scattering>,
+        rule: crate::adding_doubling::Nodes,
+    ) -> Result<Self> {
         let tau = direct.tau;
         let degree = scattering.degree();
         let modes = Modes::new(scattering, Arc::new(Nodes::of(rule.mu, rule.weight, degree)), 0)?;
@@ -140,7 +144,8 @@ impl Matched {
             let second = columns(&width, &|_| 1.0).lu().solve(&((&bottom - &top) * 0.5));
             (Basis::Halves, first.zip(second))
         };
-        let (first, second) = amplitudes.ok_or(Error::Infinite("the faces of the slab cannot be matched in f64"))?;
+        let (first, second) =
+            amplitudes.ok_or(Error::Infinite("the faces of the slab cannot be matched in f64"))?;
         let amplitudes = [first, second];
         let mut matched = Matched { tau, modes, basis, amplitudes, source, fluxes: [Light::default(); 3] };
         matched.fluxes = matched.solve_fluxes(direct, &faces)?;
@@ -166,7 +171,7 @@ impl Matched {
         if direct.incidence == Incidence::Diffuse {
             // The nodes carry the light that was never scattered as well: it is taken out.
             let spread = direct.face.spread();
-            let mut unscattered = |f: &dyn Fn(f64, f64, f64) -> f64| {
+            let unscattered = |f: &dyn Fn(f64, f64, f64) -> f64| {
                 let terms = nodes.mu.iter().zip(faces).zip(&nodes.weight).map(|((&mu, &(r, through)), w)| {
                     let e = exp(-self.tau / mu);
                     2.0 * w * spread * through * f(mu, r, e) / (1.0 - r * r * e * e)
@@ -231,7 +236,8 @@ impl Matched {
             Basis::Halves => [k * t.min(rest); 2],
             Basis::Faces => [k * t, k * rest],
         };
-        let size = (a * c).abs() * (1.0 + lengths[0]) + (b * s).abs().max((b * ds).abs() / k.max(1.0)) * (1.0 + lengths[1]);
+        let size = (a * c).abs() * (1.0 + lengths[0])
+            + (b * s).abs().max((b * ds).abs() / k.max(1.0)) * (1.0 + lengths[1]);
         [a * c + b * s + part[0], a * dc + b * ds + part[1], size + part[2]]
     }
 
