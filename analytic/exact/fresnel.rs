@@ -27,12 +27,10 @@ pub struct Asked<'a> {
 
 /// Solves a slab.
 pub fn solve(asked: &Asked<'_>, method: Method) -> Result<FresnelSlab> {
-    let g = asked.named.only_g("--index")?;
-    let Asked { tau, albedo, index, incidence, .. } = *asked;
+    let Asked { tau, albedo, index, incidence, named, .. } = *asked;
     match method {
-        Method::Auto | Method::Ordinates | Method::Doubling => {
-            Ok(FresnelSlab::by_doubling(tau, albedo, g, index, incidence)?)
-        }
+        Method::Auto | Method::Ordinates => Ok(FresnelSlab::with_phase(tau, albedo, &named.phase, index, incidence)?),
+        Method::Doubling => Ok(FresnelSlab::by_doubling(tau, albedo, &named.phase, index, incidence)?),
         Method::Peierls => bail!("--method is peierls; allowed with --index: auto, ordinates, doubling"),
     }
 }

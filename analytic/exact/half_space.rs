@@ -1,17 +1,19 @@
 //! `exact half-space`: the half-space with isotropic scattering.
 
 use crate::answer::{Answer, Reply};
+use crate::phase::{Named, PhaseArgs};
 use crate::plot::{Curve, degrees, even, figure, panel};
 use crate::read::{incidence, incidence_field, incidence_title};
-use anyhow::Result;
+use anyhow::{Result, ensure};
 use clap::ValueEnum;
-use turbid_analytic::Incidence;
+use turbid_analytic::{AnisotropicMedium, Incidence};
 use turbid_analytic::half_space::HalfSpace;
 use turbid_figure::{Axis, Figure};
 
-/// A half-space with isotropic scattering: H function, reflectance, radiance, fluence, Milne's problem.
+/// A half-space: H function, reflectance, radiance, fluence, Milne's problem.
 ///
-/// The medium fills t > 0, with unit irradiance on its face. With w the albedo and H Chandrasekhar's function,
+/// The medium fills t > 0, with unit irradiance on its face. With w the albedo, H Chandrasekhar's function and
+/// isotropic scattering,
 ///
 ///   H(mu) = 1 + (w/2) mu H(mu) int_0^1 H(m)/(mu + m) dm
 ///   R     = 1 - sqrt(1-w) H(mu0)                           (diffuse: averaged over 2 mu0 dmu0)
@@ -19,7 +21,7 @@ use turbid_figure::{Axis, Figure};
 ///
 /// The fluence includes the direct light. In Milne's problem light comes from infinitely deep: far from the face the
 /// fluence goes as sinh(k (t + z0)), with decay k and extrapolation length z0 in mean free paths; radiance and fluence
-/// are per unit power that leaves.
+/// are per unit power that leaves. With any other phase function: reflectance, fluence and flux by discrete ordinates.
 /// Source: Hopf 1934; Chandrasekhar 1960, chapter V; Stibbs and Weir 1959; Case and Zweifel 1967, chapter 6.
 #[derive(clap::Args)]
 #[command(verbatim_doc_comment)]
@@ -27,6 +29,8 @@ pub struct Args {
     /// Single-scattering albedo, 0 to 1.
     #[arg(long, allow_negative_numbers = true)]
     albedo: f64,
+    #[command(flatten)]
+    phase: PhaseArgs,
     /// Cosine of incidence of a beam, above 0 to 1, or the word diffuse (Lambertian light).
     #[arg(long, default_value = "1", value_parser = incidence, allow_negative_numbers = true)]
     mu0: Incidence,
@@ -57,8 +61,13 @@ enum Draw {
 
 /// Answers.
 pub fn answer(args: &Args, draw: bool) -> Result<Reply> {
+    let named = args.phase.read()?;
+    let mut answer =
+        Answer::new("half-space").with("albedo", args.albedo).with("phase", named.name.as_str());
+    if !named.is_isotropic() {
+        return anisotropic(args, &named, answer, draw);
+    }
     let space = HalfSpace::new(args.albedo)?;
-    let mut answer = Answer::new("half-space").with("albedo", args.albedo);
     if args.milne {
         answer = answer.with("source", "infinitely deep");
         answer.add("extrapolation_length", space.extrapolation_length()?);
@@ -87,6 +96,39 @@ pub fn answer(args: &Args, draw: bool) -> Result<Reply> {
     Ok(Reply { answer, figure })
 }
 
+/// Discrete ordinates, which answer for any phase function.
+fn anisotropic(args: &Args, named: &Named, answer: Answer, draw: bool) -> Result<Reply> {
+    ensure!(
+        !args.milne && args.mu.is_empty() && args.draw == Draw::Fluence,
+        "phase function is {}; allowed with --milne, --mu and --draw: isotropic",
+        named.name
+    );
+    let space = AnisotropicMedium::new(args.albedo, &named.phase)?.half_space(args.mu0)?;
+    let mut answer = answer.with("mu0", incidence_field(args.mu0));
+    answer.add("reflectance", space.reflectance());
+    answer.add("absorptance", space.absorptance());
+    for &t in &args.depth {
+        answer.add_at("fluence", vec![("t", t.into())], space.fluence(t)?);
+        answer.add_at("flux", vec![("t", t.into())], space.flux(t)?);
+    }
+    let figure = if draw {
+        let curve = Curve::sample("", &depths(args), |t| Ok(space.fluence(t)?.value))?;
+        let light = incidence_title(args.mu0);
+        let title = format!("Half-space, albedo {}, {}, {light}", args.albedo, named.name);
+        let axis = Axis::linear("Depth t", "mean free paths");
+        Some(figure(title, panel(axis, "Fluence over irradiance", "", vec![curve])))
+    } else {
+        None
+    };
+    Ok(Reply { answer, figure })
+}
+
+/// Depths to draw, closer at the face, where the field bends most.
+fn depths(args: &Args) -> Vec<f64> {
+    let last = args.depth.iter().fold(5.0, |a: f64, &t| a.max(t));
+    even(0.0, 1.0, 101).into_iter().map(|x| last * x * x).collect()
+}
+
 fn drawn(args: &Args, space: &HalfSpace) -> Result<Figure> {
     let (light, per) = if args.milne {
         ("light from deep inside".to_string(), "power that leaves")
@@ -110,10 +152,7 @@ fn drawn(args: &Args, space: &HalfSpace) -> Result<Figure> {
             (title, panel(axis, &format!("Radiance that leaves over {per}"), "1/sr", vec![curve]))
         }
         Draw::Fluence => {
-            let last = args.depth.iter().fold(5.0, |a: f64, &t| a.max(t));
-            // A square root of depth: the field bends most at the face.
-            let depths: Vec<f64> = even(0.0, 1.0, 101).into_iter().map(|x| last * x * x).collect();
-            let curve = Curve::sample("", &depths, |t| {
+            let curve = Curve::sample("", &depths(args), |t| {
                 let fluence = if args.milne { space.milne_fluence(t) } else { space.fluence(args.mu0, t) };
                 Ok(fluence?.value)
             })?;

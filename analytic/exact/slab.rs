@@ -40,7 +40,7 @@ pub struct Args {
     /// Cosine of incidence of a beam, above 0 to 1, or the word diffuse (Lambertian light).
     #[arg(long, default_value = "1", value_parser = incidence, allow_negative_numbers = true)]
     mu0: Incidence,
-    /// Refractive index inside over outside: faces that reflect and refract (isotropic or --g; fluxes and fluence).
+    /// Refractive index inside over outside: faces that reflect and refract (fluxes and fluence).
     #[arg(long, default_value_t = 1.0, allow_negative_numbers = true)]
     index: f64,
     /// Depths in mean free paths, 0 to tau, at which to give the fluence (direct light included).

@@ -42,7 +42,7 @@ impl Solved {
             return Ok(Solved::Peierls(IsotropicSlab::new(tau, albedo, incidence)?));
         }
         if method == Method::Doubling {
-            return Ok(Solved::Doubling(doubled(tau, albedo, named, incidence)?));
+            return Ok(Solved::Doubling(AddingDoubling::with_phase(tau, albedo, &named.phase, incidence)?));
         }
         Ok(Solved::Ordinates(AnisotropicMedium::new(albedo, &named.phase)?.slab(tau, incidence)?))
     }
@@ -103,7 +103,10 @@ impl Solved {
 
     /// Net flux downwards at a depth, direct light included.
     pub fn flux(&self, t: f64) -> Result<Value> {
-        bail!("flux at {t} is to come")
+        Ok(match self {
+            Solved::Ordinates(slab) => slab.flux(t)?,
+            Solved::Peierls(_) | Solved::Doubling(_) => bail!("net fluxes are answered by --method ordinates"),
+        })
     }
 
     /// Radiance of scattered light.
@@ -114,19 +117,4 @@ impl Solved {
             Solved::Ordinates(_) => bail!("azimuth {dphi}: radiance is to come"),
         })
     }
-}
-
-/// The most Legendre moments that doubling takes, and what may be left out behind them.
-const MOMENTS: usize = 600;
-const CUT: f64 = 1e-12;
-
-fn doubled(tau: f64, albedo: f64, named: &Named, incidence: Incidence) -> Result<AddingDoubling> {
-    if let Some(g) = named.single_g {
-        return Ok(AddingDoubling::new(tau, albedo, g, incidence)?);
-    }
-    let mut moments: Vec<f64> = (0..MOMENTS).map(|l| named.phase.moment(l)).collect();
-    while moments.last().is_some_and(|chi| chi.abs() < CUT) {
-        moments.pop();
-    }
-    Ok(AddingDoubling::with_moments(tau, albedo, &moments, incidence)?)
 }

@@ -2,8 +2,8 @@
 
 use super::Answered;
 use super::row::Row;
+use super::slab::named;
 use crate::fresnel::{Asked, solve};
-use crate::phase::Named;
 use crate::solved::Method;
 use anyhow::Result;
 use std::collections::HashMap;
@@ -12,7 +12,7 @@ use turbid_analytic::{FresnelSlab, Incidence};
 
 /// The slabs met so far, by all their parameters.
 #[derive(Default)]
-pub struct FresnelSlabs(HashMap<[u64; 5], FresnelSlab>);
+pub struct FresnelSlabs(HashMap<([u64; 4], String), FresnelSlab>);
 
 /// Answers a row.
 pub fn answer(row: &Row, slabs: &mut FresnelSlabs) -> Result<Answered> {
@@ -20,11 +20,14 @@ pub fn answer(row: &Row, slabs: &mut FresnelSlabs) -> Result<Answered> {
     // Of Lambertian light, whatever the beam of the other rows.
     let spherical = matches!(quantity, "Rs" | "Ts");
     let incidence = if spherical { Incidence::Diffuse } else { row.incidence("mu0")? };
-    let named = Named::henyey_greenstein(row.number_or("g", 0.0)?)?;
+    let named = match named(row)? {
+        Ok(named) => named,
+        Err(note) => return Ok(Err(note)),
+    };
     let (tau, albedo, index) = (row.number("tau")?, row.number("w")?, row.number_or("n", 1.0)?);
     let light = if let Incidence::Beam { mu0 } = incidence { mu0.to_bits() } else { u64::MAX };
-    let g = named.single_g.unwrap_or(0.0);
-    let slab = match slabs.0.entry([tau.to_bits(), albedo.to_bits(), g.to_bits(), index.to_bits(), light]) {
+    let key = ([tau.to_bits(), albedo.to_bits(), index.to_bits(), light], named.name.clone());
+    let slab = match slabs.0.entry(key) {
         Entry::Occupied(entry) => entry.into_mut(),
         Entry::Vacant(entry) => {
             let asked = Asked { tau, albedo, named: &named, index, incidence, depth: &[] };
