@@ -9,11 +9,13 @@
 //!
 //! * Special functions and rules: [`exponential_integral`], [`quadrature`]
 //! * Phase functions: [`phase`]
-//! * Slab: [`beer_lambert`], [`slab_single`], [`slab_isotropic`], [`slab_anisotropic`], [`xy`]
+//! * Slab: [`beer_lambert`], [`slab_single`], [`slab_isotropic`], [`slab_anisotropic`], [`xy`]; thick and thin ones:
+//!   [`asymptotics`]; approximations: [`two_stream`]
 //! * Half-space: [`half_space`]; infinite medium: [`infinite`]
 //! * Kernel density estimation: [`kernel`], [`ball_mean`], [`blur`], [`edge`], [`volumes`], [`slab_kernel`],
 //!   [`nearest`], [`progressive`]; where the medium ends: [`boundary`]
 
+pub mod asymptotics;
 pub mod ball_mean;
 pub mod beer_lambert;
 pub mod blur;
@@ -35,10 +37,12 @@ pub mod slab_anisotropic;
 pub mod slab_isotropic;
 pub mod slab_kernel;
 pub mod slab_single;
+pub mod two_stream;
 pub mod value;
 pub mod volumes;
 pub mod xy;
 
+pub use asymptotics::Asymptotics;
 pub use error::{Error, Result};
 pub use half_space::HalfSpace;
 pub use incidence::Incidence;
@@ -47,6 +51,7 @@ pub use kernel::{Dimension, Kernel};
 pub use phase::Phase;
 pub use slab_anisotropic::{AnisotropicMedium, AnisotropicSlab};
 pub use slab_isotropic::IsotropicSlab;
+pub use two_stream::TwoStream;
 pub use value::Value;
 pub use xy::XAndY;
 
