@@ -279,7 +279,12 @@ impl HalfSpace {
         within("albedo", self.albedo, 0.01, 1.0, "0.01 to 1 for Milne's problem")
     }
 
-    fn resolvent(&self) -> &Resolvent {
+    /// The slowest decay.
+    pub(crate) fn slowest(&self) -> &Decay {
+        &self.decay
+    }
+
+    pub(crate) fn resolvent(&self) -> &Resolvent {
         self.resolvent.get_or_init(|| Resolvent::new(self.albedo, &self.h, &self.decay))
     }
 

@@ -9,13 +9,15 @@
 //!
 //! * Special functions and rules: [`exponential_integral`], [`quadrature`]; phase functions: [`phase`]
 //! * Slab: [`beer_lambert`], [`slab_single`], [`slab_isotropic`], [`slab_anisotropic`], [`adding_doubling`]; between
-//!   refracting faces [`slab_fresnel`]; by order of scattering [`orders`]
+//!   refracting faces [`slab_fresnel`]; by order of scattering [`orders`];
+//!   thick [`asymptotics`]; approximations [`two_stream`]
 //! * Half-space: [`half_space`]; infinite medium: [`infinite`]; X and Y functions: [`xy`]
 //! * Sphere: [`sphere`] (uniform, central and incident light; the absorbing sphere)
 //! * Kernel density estimation: [`kernel`], [`ball_mean`], [`blur`], [`edge`], [`volumes`], [`slab_kernel`],
 //!   [`nearest`], [`progressive`], [`beams`]; where the medium ends: [`boundary`]
 
 pub mod adding_doubling;
+pub mod asymptotics;
 pub mod ball_mean;
 pub mod beams;
 pub mod beer_lambert;
@@ -41,11 +43,13 @@ pub mod slab_isotropic;
 pub mod slab_kernel;
 pub mod slab_single;
 pub mod sphere;
+pub mod two_stream;
 pub mod value;
 pub mod volumes;
 pub mod xy;
 
 pub use adding_doubling::AddingDoubling;
+pub use asymptotics::Asymptotics;
 pub use error::{Error, Result};
 pub use half_space::HalfSpace;
 pub use incidence::Incidence;
@@ -57,6 +61,7 @@ pub use slab_anisotropic::{AnisotropicMedium, AnisotropicSlab};
 pub use slab_fresnel::FresnelSlab;
 pub use slab_isotropic::IsotropicSlab;
 pub use sphere::{Sphere, SphereSource};
+pub use two_stream::TwoStream;
 pub use value::Value;
 pub use xy::XAndY;
 
