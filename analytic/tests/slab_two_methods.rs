@@ -1,0 +1,176 @@
+//! The slab by two methods that share nothing: discrete ordinates (or the Peierls equation) and adding and doubling.
+#![allow(clippy::unwrap_used, reason = "tests")]
+
+use std::collections::HashMap;
+use turbid_analytic::{AddingDoubling, AnisotropicMedium, Incidence, IsotropicSlab, Phase, Value};
+
+const NORMAL: Incidence = Incidence::Beam { mu0: 1.0 };
+
+/// Two answers agree to `relative` of themselves, and their bounds cover the difference.
+fn close(name: &str, a: Value, b: Value, relative: f64) {
+    let off = (a.value - b.value).abs();
+    assert!(off <= relative * b.value.abs() + f64::MIN_POSITIVE, "{name}: {a:?} {b:?} off {off:e}");
+    assert!(off <= a.error + b.error, "{name}: {a:?} {b:?} off {off:e}");
+}
+
+fn compare(medium: &AnisotropicMedium, tau: f64, light: Incidence, relative: f64) {
+    let (albedo, phase) = (medium.albedo(), medium.phase());
+    let a = medium.slab(tau, light).unwrap();
+    let b = AddingDoubling::with_phase(tau, albedo, phase, light).unwrap();
+    let name = |what: &str| format!("{what} at tau {tau}, w {albedo}, g {}, {light:?}", phase.g());
+    close(&name("R"), a.reflectance(), b.reflectance(), relative);
+    close(&name("T"), a.transmittance_diffuse(), b.transmittance_diffuse(), relative);
+    close(&name("A"), a.absorptance(), b.absorptance(), relative);
+    for share in [0.0, 1e-3, 0.4, 1.0] {
+        let t = tau * share;
+        close(&name("phi"), a.fluence(t).unwrap(), b.fluence(t).unwrap(), relative);
+    }
+}
+
+#[test]
+fn discrete_ordinates_agree_with_doubling() {
+    let lights = [NORMAL, Incidence::Beam { mu0: 0.1 }, Incidence::Diffuse];
+    for (albedo, g, offset) in [
+        (0.9, 0.0, 0),
+        (1.0, 0.5, 1),
+        (1e-6, 0.5, 2),
+        (0.999999, 0.75, 0),
+        (0.5, 0.75, 1),
+        (1.0, -0.5, 2),
+        (0.9, -0.8, 0),
+        (0.99, 0.85, 1),
+    ] {
+        let medium = AnisotropicMedium::new(albedo, &Phase::henyey_greenstein(g).unwrap()).unwrap();
+        for (i, tau) in [1e-8, 1e-3, 0.1, 1.0, 10.0, 100.0].into_iter().enumerate() {
+            compare(&medium, tau, lights[(i + offset) % 3], 1e-10);
+        }
+    }
+}
+
+#[test]
+fn other_phase_functions_agree_as_well() {
+    let two_term = Phase::two_term(0.8, -0.4, 0.7).unwrap();
+    let moments = Phase::legendre(vec![1.0, 0.5, 0.2, 0.05]).unwrap();
+    for (phase, tau, light) in [
+        (Phase::rayleigh(), 0.3, NORMAL),
+        (Phase::rayleigh(), 30.0, Incidence::Diffuse),
+        (two_term, 2.0, Incidence::Beam { mu0: 0.3 }),
+        (moments, 5.0, NORMAL),
+    ] {
+        compare(&AnisotropicMedium::new(0.95, &phase).unwrap(), tau, light, 1e-10);
+    }
+}
+
+/// Beyond |g| = 0.9 moments are many, and 1e-8 is what is promised.
+#[test]
+fn peaks_agree() {
+    for (albedo, g, tau, light) in [(0.99, 0.92, 10.0, NORMAL), (0.9, -0.92, 0.5, Incidence::Diffuse)] {
+        compare(
+            &AnisotropicMedium::new(albedo, &Phase::henyey_greenstein(g).unwrap()).unwrap(),
+            tau,
+            light,
+            1e-8,
+        );
+    }
+}
+
+#[test]
+fn isotropic_scattering_agrees_with_the_peierls_equation() {
+    for (tau, albedo, light) in [
+        (1e-8, 0.9, NORMAL),
+        (1e-3, 1.0, Incidence::Diffuse),
+        (0.1, 1e-6, Incidence::Beam { mu0: 0.01 }),
+        (1.0, 0.999999, Incidence::Beam { mu0: 0.1 }),
+        (10.0, 0.5, NORMAL),
+        (100.0, 1.0, NORMAL),
+        (100.0, 0.9, Incidence::Diffuse),
+    ] {
+        let a = IsotropicSlab::new(tau, albedo, light).unwrap();
+        let b = AddingDoubling::new(tau, albedo, 0.0, light).unwrap();
+        let name = |what: &str| format!("{what} at tau {tau}, w {albedo}, {light:?}");
+        close(&name("R"), a.reflectance(), b.reflectance(), 1e-10);
+        close(&name("T"), a.transmittance_diffuse(), b.transmittance_diffuse(), 1e-10);
+        close(&name("A"), a.absorptance(), b.absorptance(), 1e-10);
+        for share in [0.0, 1e-5, 0.3, 0.97, 1.0] {
+            let t = tau * share;
+            close(&name("phi"), a.fluence(t).unwrap(), b.fluence(t).unwrap(), 1e-10);
+        }
+    }
+}
+
+/// Energy, to rounding; and the slab that only absorbs.
+#[test]
+fn light_is_conserved() {
+    for (tau, albedo, g, light) in
+        [(100.0, 1.0, 0.5, Incidence::Diffuse), (1e-6, 1.0, 0.75, NORMAL), (3.0, 0.8, -0.4, NORMAL)]
+    {
+        let slab = AddingDoubling::new(tau, albedo, g, light).unwrap();
+        let sum = slab.reflectance().value + slab.transmittance().value + slab.absorptance().value;
+        assert!((sum - 1.0).abs() < 1e-12, "{tau} {albedo} {g}: {:e}", sum - 1.0);
+    }
+    let black = AddingDoubling::new(2.0, 0.0, 0.5, Incidence::Diffuse).unwrap();
+    assert_eq!(black.reflectance().value, 0.0);
+    let direct = 1.0 - black.transmittance().value;
+    assert!((black.absorptance().value - direct).abs() <= black.absorptance().error + 1e-15);
+}
+
+#[test]
+fn the_reference_table_of_fluxes_is_reproduced() {
+    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/reference/slab_hg_flux.csv");
+    let mut slabs: HashMap<[String; 4], AddingDoubling> = HashMap::new();
+    let mut rows = 0;
+    for record in csv::Reader::from_path(path).unwrap().deserialize() {
+        let row: HashMap<String, String> = record.unwrap();
+        let number = |name: &str| row[name].parse::<f64>().unwrap();
+        let light = match row["mu0"].as_str() {
+            "diffuse" => Incidence::Diffuse,
+            mu0 => Incidence::Beam { mu0: mu0.parse().unwrap() },
+        };
+        let key = ["tau", "w", "g", "mu0"].map(|name| row[name].clone());
+        let slab = slabs
+            .entry(key)
+            .or_insert_with(|| AddingDoubling::new(number("tau"), number("w"), number("g"), light).unwrap());
+        let got = match row["quantity"].as_str() {
+            "R" => slab.reflectance(),
+            "T_total" => slab.transmittance(),
+            "A" => slab.absorptance(),
+            "fluence" => slab.fluence(number("t")).unwrap(),
+            other => panic!("{other}"),
+        };
+        within_digits(&row, got);
+        rows += 1;
+    }
+    assert_eq!(rows, 208);
+}
+
+/// Full azimuth: the beams whose modes are few. The table's last digits at grazing angles and inside are its own.
+#[test]
+fn the_reference_table_of_radiances_is_reproduced() {
+    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/reference/slab_hg_radiance.csv");
+    let mut rows = 0;
+    for record in csv::Reader::from_path(path).unwrap().deserialize() {
+        let row: HashMap<String, String> = record.unwrap();
+        let number = |name: &str| row[name].parse::<f64>().unwrap();
+        if number("g").abs() > 0.6 && number("mu0") < 1.0 || rows % 3 == 2 && number("mu0") < 1.0 {
+            rows += 1;
+            continue;
+        }
+        let light = Incidence::Beam { mu0: number("mu0") };
+        let slab = AddingDoubling::new(number("tau"), number("w"), number("g"), light).unwrap();
+        let got = slab.radiance(number("t"), number("mu"), number("dphi")).unwrap();
+        assert!(got.error < 1e-8 * got.value, "{row:?} {got:?}");
+        within_digits(&row, got);
+        rows += 1;
+    }
+    assert_eq!(rows, 36);
+}
+
+/// The table has `digits` correct digits, so a deviation of 10^-(digits-1) of the value is allowed; the bound must
+/// cover the deviation but for the table's own last digit.
+fn within_digits(row: &HashMap<String, String>, got: Value) {
+    let (value, digits): (f64, f64) = (row["value"].parse().unwrap(), row["digits"].parse().unwrap());
+    let off = (got.value - value).abs();
+    let last = libm::pow(10.0, 1.0 - digits) * value.abs();
+    assert!(off <= last, "{row:?}: {got:?}, off {off:e}");
+    assert!(off <= got.error + last, "{row:?}: {got:?}, off {off:e}");
+}
