@@ -38,6 +38,10 @@ mod slab;
 mod solved;
 #[path = "exact/sphere.rs"]
 mod sphere;
+#[path = "exact/thick.rs"]
+mod thick;
+#[path = "exact/two_stream.rs"]
+mod two_stream;
 #[path = "exact/xy.rs"]
 mod xy;
 
@@ -63,7 +67,7 @@ struct Cli {
     /// and the parameters; a row that is not answered here has an empty value and a note saying why.
     #[arg(long, value_name = "FILE.csv")]
     cases: Option<PathBuf>,
-    /// Form of the output: a table for eyes, which shows digits as far as they are certain, or every bit as CSV or
+    /// Form of the output: a table for eyes, which shows digits as far as they are certain (four at least), or every bit as CSV or
     /// JSON. Without it a table, and CSV for --cases.
     #[arg(long, global = true, value_enum, help_heading = "Output")]
     format: Option<Format>,
@@ -81,6 +85,8 @@ struct Cli {
 enum Command {
     Slab(slab::Args),
     HalfSpace(half_space::Args),
+    Thick(thick::Args),
+    TwoStream(two_stream::Args),
     Xy(xy::Args),
     Sphere(sphere::Args),
     Infinite(infinite::Args),
@@ -96,6 +102,8 @@ impl Command {
         match self {
             Command::Slab(args) => slab::answer(args, draw),
             Command::HalfSpace(args) => half_space::answer(args, draw),
+            Command::Thick(args) => thick::answer(args, draw),
+            Command::TwoStream(args) => two_stream::answer(args, draw),
             Command::Xy(args) => xy::answer(args, draw),
             Command::Sphere(args) => sphere::answer(args, draw),
             Command::Infinite(args) => infinite::answer(args, draw),

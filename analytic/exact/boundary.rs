@@ -141,9 +141,9 @@ fn drawn(asked: &Asked<'_>, shape: &str) -> Result<turbid_figure::Figure> {
         })
     };
     let curves = Treatment::ALL.into_iter().map(curve).collect::<Result<Vec<_>>>()?;
-    let field = if args.decay == 0.0 { String::new() } else { format!(", field exp(−{} h)", args.decay) };
+    let field = if args.decay == 0.0 { String::new() } else { format!(", field exp(−{} h)", args.decay).replace("−1 h", "−h") };
     let name = kernel_name(args.kernel).replace('_', " ");
-    let title = format!("Estimates near the face of a {shape}, {name} kernel, r = {}{field}", args.radius);
+    let title = format!("At the face of a {shape}: {name} kernel, r = {}{field}", args.radius);
     let axis = Axis::linear("Depth of the probe h", "length");
     Ok(figure(title, panel(axis, "Expectation over the field at the probe", "", curves)))
 }

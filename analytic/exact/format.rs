@@ -62,7 +62,7 @@ pub fn aligned(head: &[&str], lines: &[Vec<String>], out: &mut Vec<u8>) -> Resul
     Ok(())
 }
 
-/// A value to the decade of its bound.
+/// A value to the decade of its bound, and to four digits at least: approximations are far off and told apart.
 pub fn digits(value: Value) -> String {
     let (v, error) = (value.value, value.error);
     if v == 0.0 {
@@ -71,7 +71,7 @@ pub fn digits(value: Value) -> String {
     let decade = |x: f64| libm::floor(libm::log10(x)) as i32;
     let error_decade = if error > 0.0 { decade(error) } else { -400 };
     let size = decade(v.abs());
-    let after = (size - error_decade).clamp(0, 16);
+    let after = (size - error_decade).clamp(3, 16);
     if (-4..=6).contains(&size) && after >= size {
         format!("{v:.*}", (after - size) as usize)
     } else {
@@ -115,10 +115,11 @@ mod tests {
         assert_eq!(show(-0.267_410_335_069_362_74, 2e-5), "-0.26741");
         assert_eq!(show(4.0, 0.0), "4.0000000000000000");
         assert_eq!(show(1.5e-9, 1e-15), "1.500000e-9");
-        assert_eq!(show(123.456, 0.5), "123.5");
-        assert_eq!(show(123.456, 50.0), "1.2e2");
+        assert_eq!(show(123.456, 0.05), "123.46");
+        // Four digits at least.
+        assert_eq!(show(123.456, 50.0), "123.5");
+        assert_eq!(show(1234567.0, 1e5), "1.235e6");
         assert_eq!(show(0.0, 1.0), "0");
-        // All of it uncertain: the first digit, at least.
-        assert_eq!(show(3.0, 1e3), "3");
+        assert_eq!(show(3.0, 1e3), "3.000");
     }
 }

@@ -131,7 +131,7 @@ fn depths(args: &Args) -> Vec<f64> {
 
 fn drawn(args: &Args, space: &HalfSpace) -> Result<Figure> {
     let (light, per) = if args.milne {
-        ("light from deep inside".to_string(), "power that leaves")
+        ("light from deep inside".to_string(), "flux that leaves")
     } else {
         (incidence_title(args.mu0), "irradiance")
     };
@@ -149,7 +149,7 @@ fn drawn(args: &Args, space: &HalfSpace) -> Result<Figure> {
                 Ok(radiance?.value)
             })?;
             let axis = degrees("Angle to the normal", 90);
-            (title, panel(axis, &format!("Radiance that leaves over {per}"), "1/sr", vec![curve]))
+            (title, panel(axis, &format!("Radiance over {per}"), "1/sr", vec![curve]))
         }
         Draw::Fluence => {
             let curve = Curve::sample("", &depths(args), |t| {

@@ -58,7 +58,11 @@ pub fn answer(args: &Args, draw: bool) -> Result<Reply> {
 
 /// The medium of a phase function.
 pub fn solve(albedo: f64, named: &Named) -> Result<InfiniteMedium> {
-    Ok(InfiniteMedium::henyey_greenstein(albedo, named.only_g("infinite")?)?)
+    Ok(match named.single_g {
+        // Whose moments are known to any order.
+        Some(g) => InfiniteMedium::henyey_greenstein(albedo, g)?,
+        None => InfiniteMedium::new(albedo, &named.phase)?,
+    })
 }
 
 fn drawn(args: &Args, named: &Named, medium: &InfiniteMedium) -> Result<Figure> {

@@ -90,5 +90,5 @@ fn profiles(kernel: Kernel, d: Dimension, name: &str) -> Result<turbid_figure::F
     let reach = if kernel == Kernel::Gaussian { 3.0 } else { 1.0 };
     let curve = Curve::sample("", &even(0.0, reach, 201), |u| Ok(kernel.profile(d, u)?.value))?;
     let panel = panel(Axis::linear("Distance over radius, u/r", ""), "Kernel K(u)", "", vec![curve]);
-    Ok(figure(format!("The {} kernel in {} dimensions", name.replace('_', " "), d.number()), panel))
+    Ok(figure(format!("Kernel: {}, {} dimensions", name.replace('_', " "), d.number()), panel))
 }

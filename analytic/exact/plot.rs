@@ -73,7 +73,8 @@ pub fn panel(x: Axis, label: &str, unit: &str, curves: Vec<Curve>) -> Panel {
     let single = curves.len() == 1;
     let panel = Panel::new(x, y);
     let panel = if single { panel.with_legend(Legend::Hidden) } else { panel };
-    let mut class = 0;
+    // Black is solid, so that the others begin with a dashed class.
+    let mut class = usize::from(curves.iter().any(|curve| curve.reference));
     curves.into_iter().fold(panel, |panel, Curve { label, reference, x, y }| {
         panel.with(if reference {
             Line::theory(label, x, y)

@@ -172,6 +172,6 @@ fn radiance(args: &Args, named: &Named, slab: &Solved) -> Result<Figure> {
     }
     let axis = degrees("Angle from straight up", 180);
     let plane = if named.is_isotropic() { String::new() } else { format!(", azimuth {dphi}") };
-    let panel = panel(axis, "Radiance of scattered light over irradiance", "1/sr", curves);
+    let panel = panel(axis, "Scattered radiance over irradiance", "1/sr", curves);
     Ok(figure(format!("{}{plane}", title(args, named)), panel))
 }

@@ -100,7 +100,7 @@ pub fn answer(args: &Args, draw: bool) -> Result<Reply> {
 
 fn drawn(args: &Args, sphere: &Sphere) -> Result<Figure> {
     let (a, (_, _, source)) = (args.radius, args.source.known());
-    let title = format!("Sphere of radius {a} mean free paths, albedo {}, {source}", args.albedo);
+    let title = format!("Sphere of radius {a}, albedo {}, {source}", args.albedo);
     let centre = args.source == Source::Centre;
     let per = if args.source == Source::Incident { "irradiance" } else { "power" };
     let unit = |of: &str| match (args.source, of) {

@@ -66,7 +66,8 @@ pub fn answer(args: &Args, draw: bool) -> Result<Reply> {
 }
 
 fn drawn(args: &Args, xy: &XAndY) -> Result<Figure> {
-    let cosines = even(0.0, 1.0, 41);
+    // Closer towards the horizon, where X rises like mu ln mu.
+    let cosines: Vec<f64> = even(0.0, 1.0, 41).into_iter().map(|x| x * x).collect();
     let curves = vec![
         Curve::sample("X", &cosines, |mu| Ok(xy.at(mu)?[0].value))?,
         Curve::sample("Y", &cosines, |mu| Ok(xy.at(mu)?[1].value))?,

@@ -4,7 +4,7 @@ use super::Answered;
 use super::row::Row;
 use crate::infinite::solve;
 use crate::phase::Named;
-use anyhow::{Context, Result};
+use anyhow::Result;
 use std::collections::HashMap;
 use std::collections::hash_map::Entry;
 use turbid_analytic::infinite::InfiniteMedium;
@@ -22,7 +22,10 @@ pub fn answer(row: &Row, media: &mut Media) -> Result<Answered> {
     };
     let r = || row.number("r");
     Ok(Ok(match row.text("quantity") {
-        "diffusion_exponent_k" => *medium.decays().first().context("w has no discrete decay below 1")?,
+        "diffusion_exponent_k" => match medium.decays().first() {
+            Some(decay) => *decay,
+            None => return Ok(Err("there is no decay slower than that of direct light".into())),
+        },
         "fluence_point" => medium.fluence(r()?)?,
         "flux_point" => medium.flux(r()?)?,
         "fluence_point_asymptotic_mode" => medium.asymptotic_fluence(r()?)?,

@@ -1,0 +1,79 @@
+//! `exact thick`: slabs of any thickness by asymptotics.
+
+use crate::answer::{Answer, Reply};
+use crate::phase::PhaseArgs;
+use crate::plot::{Curve, even, figure, panel};
+use crate::read::{incidence, incidence_field};
+use anyhow::Result;
+use turbid_analytic::Incidence;
+use turbid_analytic::asymptotics::Asymptotics;
+use turbid_figure::Axis;
+
+/// Thick slabs by asymptotics: decays, deep pattern, escape, and R and T of any thickness above some.
+///
+/// Deep inside, light decays as P(u) e^(-kt), u the cosine to the direction of decay. With K the escape function,
+///
+///   T = m n K(mu0) e^(-k tau)/(1 - l^2 e^(-2k tau)),   R = R_inf - l e^(-k tau) T
+///   m = 2 int_-1^1 u P^2 du,  n = 2 int_0^1 u K du,  l = 2 int_0^1 u K(u) P(-u) du
+///   albedo 1: T = (4/3) K/((1-g)(tau + 2z)),  R = 1 - T
+///
+/// z is Milne's extrapolation length; lengths in mean free paths, decays in their inverse. The bound says how much the
+/// faster decays, k2 and beyond, may still do: in thin slabs as much as the answer.
+/// Source: van de Hulst 1980, chapter 5; Sobolev 1975, chapter 3.
+#[derive(clap::Args)]
+#[command(verbatim_doc_comment)]
+pub struct Args {
+    /// Single-scattering albedo, 0.1 to 1.
+    #[arg(long, allow_negative_numbers = true)]
+    albedo: f64,
+    #[command(flatten)]
+    phase: PhaseArgs,
+    /// Cosine of incidence of a beam, 1e-5 to 1, or the word diffuse (Lambertian light).
+    #[arg(long, default_value = "1", value_parser = incidence, allow_negative_numbers = true)]
+    mu0: Incidence,
+    /// Optical thicknesses, 1 to 1e15: gives R, T and A.
+    #[arg(long, num_args = 1.., value_name = "TAU", allow_negative_numbers = true)]
+    tau: Vec<f64>,
+    /// Cosines u to the direction of decay, -1 to 1: gives the pattern P(u) of light deep inside.
+    #[arg(long, num_args = 1.., value_name = "U", allow_negative_numbers = true)]
+    u: Vec<f64>,
+}
+
+/// Answers; the figure shows the pattern of light deep inside.
+pub fn answer(args: &Args, draw: bool) -> Result<Reply> {
+    let named = args.phase.read()?;
+    let deep = if named.is_isotropic() {
+        Asymptotics::isotropic(args.albedo)?
+    } else {
+        Asymptotics::new(args.albedo, &named.phase)?
+    };
+    let mut answer = Answer::new("thick")
+        .with("albedo", args.albedo)
+        .with("phase", named.name.as_str())
+        .with("mu0", incidence_field(args.mu0));
+    answer.add("decay", deep.decay());
+    answer.add("second_decay", deep.second_decay());
+    answer.add("m", deep.m());
+    answer.add("n", deep.n());
+    answer.add("l", deep.l());
+    answer.add("extrapolation_length", deep.extrapolation_length());
+    answer.add("escape", deep.escape(args.mu0)?);
+    for &tau in &args.tau {
+        let slab = deep.slab(tau, args.mu0)?;
+        answer.add_at("reflectance", vec![("tau", tau.into())], slab.reflectance);
+        answer.add_at("transmittance", vec![("tau", tau.into())], slab.transmittance);
+        answer.add_at("absorptance", vec![("tau", tau.into())], slab.absorptance);
+    }
+    for &u in &args.u {
+        answer.add_at("pattern", vec![("u", u.into())], deep.pattern(u)?);
+    }
+    let figure = if draw {
+        let curve = Curve::sample("", &even(-1.0, 1.0, 101), |u| Ok(deep.pattern(u)?.value))?;
+        let title = format!("Light deep inside, albedo {}, {}", args.albedo, named.name);
+        let axis = Axis::linear("Cosine u to the direction of decay", "");
+        Some(figure(title, panel(axis, "Radiance over its mean, P(u)", "", vec![curve])))
+    } else {
+        None
+    };
+    Ok(Reply { answer, figure })
+}

@@ -1,0 +1,102 @@
+//! `exact two-stream`: the approximations beside the exact values.
+
+use crate::answer::{Answer, Reply};
+use crate::phase::Named;
+use crate::plot::{Curve, crowded, figure, panel};
+use crate::read::{incidence, incidence_field, incidence_title};
+use crate::solved::{self, Solved};
+use anyhow::Result;
+use turbid_analytic::two_stream::{Approximation, Method, TwoStream};
+use turbid_analytic::{Incidence, Value};
+use turbid_figure::{Axis, Figure};
+
+/// Two streams and diffusion beside the exact slab: how wrong they are.
+///
+/// The radiance is replaced by one flux up, F+, and one down, F-; with s = F+ + F-, d = F+ - F-, b = 1/mu0:
+///
+///   ds/dt = c_s d - w b D e^(-bt),   dd/dt = c_d s - w b e^(-bt)
+///
+///   Eddington    c_d = 2 (1-w)      c_s = (3/2)(1-wg)      D = -(3/2) g mu0     fluence 2 s
+///   quadrature   c_d = sqrt3 (1-w)  c_s = sqrt3 (1-wg)     D = -sqrt3 g mu0     fluence sqrt3 s
+///   delta-Eddington: Eddington, a share g^2 of all scattering counted as straight on
+///   diffusion: Eddington, with the field vanishing 0.7104/(1-wg) mean free paths outside
+///
+/// tau in mean free paths. Each quantity comes exactly, then in every approximation, whose `error` is what it is off by (with
+/// the bound of the exact value), so that here too it covers the truth.
+/// Source: Eddington 1916; Joseph, Wiscombe and Weinman 1976; Meador and Weaver 1980.
+#[derive(clap::Args)]
+#[command(verbatim_doc_comment)]
+pub struct Args {
+    /// Optical thickness, 1e-12 to 1e9 mean free paths.
+    #[arg(long, allow_negative_numbers = true)]
+    tau: f64,
+    /// Single-scattering albedo, 0 to 1.
+    #[arg(long, allow_negative_numbers = true)]
+    albedo: f64,
+    /// Mean cosine of Henyey-Greenstein scattering, -0.95 to 0.99.
+    #[arg(long, default_value_t = 0.0, allow_negative_numbers = true)]
+    g: f64,
+    /// Cosine of incidence of a beam, 1e-5 to 1, or the word diffuse (Lambertian light).
+    #[arg(long, default_value = "1", value_parser = incidence, allow_negative_numbers = true)]
+    mu0: Incidence,
+    /// Depths in mean free paths, 0 to tau, at which to give the fluence.
+    #[arg(long, num_args = 1.., value_name = "T", allow_negative_numbers = true)]
+    depth: Vec<f64>,
+}
+
+/// As short as a legend wants it.
+fn name(method: Method) -> &'static str {
+    match method {
+        Method::Eddington => "Eddington",
+        Method::Quadrature => "quadrature",
+        Method::DeltaEddington => "delta-Eddington",
+        Method::Diffusion => "diffusion",
+    }
+}
+
+/// Answers; the figure shows the exact fluence and the approximations against depth.
+pub fn answer(args: &Args, draw: bool) -> Result<Reply> {
+    let named = Named::henyey_greenstein(args.g)?;
+    let exact = Solved::new(args.tau, args.albedo, &named, args.mu0, solved::Method::Auto)?;
+    let approximations = Method::ALL.map(|method| TwoStream::slab(method, args.tau, args.albedo, args.g, args.mu0));
+    let approximations: Vec<TwoStream> = approximations.into_iter().collect::<turbid_analytic::Result<_>>()?;
+    let mut answer = Answer::new("two-stream")
+        .with("tau", args.tau)
+        .with("albedo", args.albedo)
+        .with("phase", named.name.as_str())
+        .with("mu0", incidence_field(args.mu0));
+    let mut compare = |quantity, t: Option<f64>, truth: Value, of: &dyn Fn(&TwoStream) -> Result<Approximation>| {
+        let at = |model: &str| {
+            let mut at = vec![("model", model.into())];
+            at.extend(t.map(|t| ("t", t.into())));
+            at
+        };
+        answer.add_at(quantity, at("exact"), truth);
+        for (method, two_stream) in Method::ALL.iter().zip(&approximations) {
+            let Approximation { value, .. } = of(two_stream)?;
+            let error = (value - truth.value).abs() + truth.error;
+            answer.add_at(quantity, at(name(*method)), Value { value, error, method: "approximation" });
+        }
+        anyhow::Ok(())
+    };
+    compare("reflectance", None, exact.reflectance(), &|s| Ok(s.reflectance()))?;
+    compare("transmittance", None, exact.transmittance(), &|s| Ok(s.transmittance()))?;
+    compare("absorptance", None, exact.absorptance(), &|s| Ok(s.absorptance()))?;
+    for &t in &args.depth {
+        compare("fluence", Some(t), exact.fluence(t)?, &|s| Ok(s.fluence(t)?))?;
+    }
+    let figure = if draw { Some(drawn(args, &named, &exact, &approximations)?) } else { None };
+    Ok(Reply { answer, figure })
+}
+
+fn drawn(args: &Args, named: &Named, exact: &Solved, approximations: &[TwoStream]) -> Result<Figure> {
+    let depths = crowded(args.tau, 81);
+    let mut curves = vec![Curve::sample("exact", &depths, |t| Ok(exact.fluence(t)?.value))?.as_reference()];
+    for (method, two_stream) in Method::ALL.iter().zip(approximations) {
+        curves.push(Curve::sample(name(*method), &depths, |t| Ok(two_stream.fluence(t)?.value))?);
+    }
+    let light = incidence_title(args.mu0);
+    let title = format!("Approximations, slab τ = {}, albedo {}, {}, {light}", args.tau, args.albedo, named.name);
+    let axis = Axis::linear("Depth t", "mean free paths");
+    Ok(figure(title, panel(axis, "Fluence over irradiance", "", curves)))
+}
