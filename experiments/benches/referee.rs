@@ -139,11 +139,10 @@ fn beside_the_peer(out: &mut impl Write, phase: &Phase, slab: &AnisotropicSlab) 
             return Ok(());
         }
     };
-    let truth: Vec<f64> = [slab.reflectance(), slab.transmittance()]
-        .into_iter()
-        .chain(fluences(slab)?)
-        .map(|v| v.value)
-        .collect();
+    let exact: Vec<Value> =
+        [slab.reflectance(), slab.transmittance()].into_iter().chain(fluences(slab)?).collect();
+    let truth: Vec<f64> = exact.iter().map(|v| v.value).collect();
+    let bound = exact.iter().fold(0.0, |a: f64, v| a.max(v.error / v.value));
     writeln!(out, "\nR, T and ten fluences from scratch, beside PythonicDISORT of 32 streams")?;
     writeln!(out, "{:30} {:>9}  {:>9} {:>9} {:>9}   speed", "", "ms", "R off by", "T", "fluence")?;
     let theirs = peer.solve(32, 1)?.1;
@@ -177,7 +176,10 @@ fn beside_the_peer(out: &mut impl Write, phase: &Phase, slab: &AnisotropicSlab) 
         line(out, name, ratio.seconds[1], &answer, &truth, Some(ratio))?;
         first = false;
     }
-    writeln!(out, "errors are relative to the referee's own answer, whose bounds are below 1e-10 of it")?;
+    writeln!(
+        out,
+        "off by: relative to the referee's own answer, whose bounds are at most {bound:.1e} of it"
+    )?;
     Ok(())
 }
 
