@@ -185,6 +185,23 @@ impl Solution {
         self.transmittance_diffuse().plus(straight, straight)
     }
 
+    /// Net flux downwards at depth t, direct light included \[1\].
+    pub fn flux(&self, t: f64) -> Sum {
+        let up = self.net_flux_up(t).scaled(-1.0);
+        match self.incidence {
+            Incidence::Beam { mu0 } => {
+                let direct = exp(-t / mu0);
+                up.plus(direct, direct * (1.0 + t / mu0))
+            }
+            // Uncollided light is known exactly: the nodes' version of it is taken out.
+            Incidence::Diffuse => {
+                let ours = 2.0 * self.modes.nodes.sum(|mu| mu * exp(-t / mu));
+                let exact = 2.0 * e_n(3, t);
+                up.plus(exact, exact).plus(-ours, ours)
+            }
+        }
+    }
+
     /// Fraction absorbed \[1\], from the integral of the fluence.
     pub fn absorptance(&self) -> Sum {
         let tau = self.tau;
