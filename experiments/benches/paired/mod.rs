@@ -22,9 +22,14 @@ pub fn compare(rounds: usize, mut a: impl FnMut(), mut b: impl FnMut()) -> Ratio
         work();
         start.elapsed().as_secs_f64()
     };
-    time(&mut a);
-    time(&mut b);
-    let times: Vec<[f64; 2]> = (0..rounds).map(|_| [time(&mut a), time(&mut b)]).collect();
+    compare_seconds(rounds, || time(&mut a), || time(&mut b))
+}
+
+/// The same for work that tells how many seconds it took, in another process for instance.
+pub fn compare_seconds(rounds: usize, mut a: impl FnMut() -> f64, mut b: impl FnMut() -> f64) -> Ratio {
+    a();
+    b();
+    let times: Vec<[f64; 2]> = (0..rounds).map(|_| [a(), b()]).collect();
 
     let mut stream = Stream::new(1, Purpose::Resampling, 0, 0);
     let mut ratios: Vec<f64> = (0..2000)
