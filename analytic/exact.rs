@@ -10,6 +10,10 @@ mod boundary;
 mod cases;
 #[path = "exact/format.rs"]
 mod format;
+#[path = "exact/cavity.rs"]
+mod cavity;
+#[path = "exact/critical.rs"]
+mod critical;
 #[path = "exact/fresnel.rs"]
 mod fresnel;
 #[path = "exact/half_space.rs"]
@@ -24,6 +28,8 @@ mod nearest;
 mod orders;
 #[path = "exact/output.rs"]
 mod output;
+#[path = "exact/path.rs"]
+mod path;
 #[path = "exact/phase.rs"]
 mod phase;
 #[path = "exact/plot.rs"]
@@ -89,6 +95,9 @@ enum Command {
     TwoStream(two_stream::Args),
     Xy(xy::Args),
     Sphere(sphere::Args),
+    Cavity(cavity::Args),
+    Critical(critical::Args),
+    Path(path::Args),
     Infinite(infinite::Args),
     Kernel(kernel::Args),
     Beams(beams::Args),
@@ -106,6 +115,9 @@ impl Command {
             Command::TwoStream(args) => two_stream::answer(args, draw),
             Command::Xy(args) => xy::answer(args, draw),
             Command::Sphere(args) => sphere::answer(args, draw),
+            Command::Cavity(args) => cavity::answer(args, draw),
+            Command::Critical(args) => critical::answer(args, draw),
+            Command::Path(args) => path::answer(args, draw),
             Command::Infinite(args) => infinite::answer(args, draw),
             Command::Kernel(args) => kernel::answer(args, draw),
             Command::Beams(args) => beams::answer(args, draw),

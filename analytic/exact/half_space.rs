@@ -4,7 +4,7 @@ use crate::answer::{Answer, Reply};
 use crate::phase::{Named, PhaseArgs};
 use crate::plot::{Curve, degrees, even, figure, panel};
 use crate::read::{incidence, incidence_field, incidence_title};
-use anyhow::{Result, ensure};
+use anyhow::{Result, bail, ensure};
 use clap::ValueEnum;
 use turbid_analytic::{AnisotropicMedium, Incidence};
 use turbid_analytic::half_space::HalfSpace;
@@ -21,7 +21,7 @@ use turbid_figure::{Axis, Figure};
 ///
 /// The fluence includes the direct light. In Milne's problem light comes from infinitely deep: far from the face the
 /// fluence goes as sinh(k (t + z0)), with decay k and extrapolation length z0 in mean free paths; radiance and fluence
-/// are per unit power that leaves. With any other phase function: reflectance, fluence and flux by discrete ordinates.
+/// are per unit power that leaves. With any other phase function by discrete ordinates.
 /// Source: Hopf 1934; Chandrasekhar 1960, chapter V; Stibbs and Weir 1959; Case and Zweifel 1967, chapter 6.
 #[derive(clap::Args)]
 #[command(verbatim_doc_comment)]
@@ -34,9 +34,12 @@ pub struct Args {
     /// Cosine of incidence of a beam, above 0 to 1, or the word diffuse (Lambertian light).
     #[arg(long, default_value = "1", value_parser = incidence, allow_negative_numbers = true)]
     mu0: Incidence,
-    /// Cosines, 0 to 1, at which to give H and the radiance that leaves.
+    /// Cosines, 0 to 1, at which to give the radiance that leaves, and H.
     #[arg(long, num_args = 1.., value_name = "MU", allow_negative_numbers = true)]
     mu: Vec<f64>,
+    /// Azimuths of those directions, in radians, where scattering is not isotropic: that of propagation minus the beam's.
+    #[arg(long, num_args = 1.., value_name = "PHI", default_values_t = [0.0], allow_negative_numbers = true)]
+    azimuth: Vec<f64>,
     /// Depths in mean free paths, 0 or more, at which to give fluence and net flux downwards.
     #[arg(long, num_args = 1.., value_name = "T", allow_negative_numbers = true)]
     depth: Vec<f64>,
@@ -99,24 +102,43 @@ pub fn answer(args: &Args, draw: bool) -> Result<Reply> {
 /// Discrete ordinates, which answer for any phase function.
 fn anisotropic(args: &Args, named: &Named, answer: Answer, draw: bool) -> Result<Reply> {
     ensure!(
-        !args.milne && args.mu.is_empty() && args.draw == Draw::Fluence,
-        "phase function is {}; allowed with --milne, --mu and --draw: isotropic",
+        !args.milne && args.draw != Draw::H,
+        "phase function is {}; allowed with --milne and --draw h: isotropic",
         named.name
     );
+    if let Some(mu) = args.mu.iter().find(|mu| !(0.0..=1.0).contains(*mu)) {
+        bail!("mu is {mu}; allowed: 0 to 1");
+    }
     let space = AnisotropicMedium::new(args.albedo, &named.phase)?.half_space(args.mu0)?;
     let mut answer = answer.with("mu0", incidence_field(args.mu0));
     answer.add("reflectance", space.reflectance());
     answer.add("absorptance", space.absorptance());
+    for &mu in &args.mu {
+        for &dphi in &args.azimuth {
+            let at = vec![("mu", mu.into()), ("azimuth", dphi.into())];
+            answer.add_at("radiance", at, space.radiance(0.0, mu, dphi)?);
+        }
+    }
     for &t in &args.depth {
         answer.add_at("fluence", vec![("t", t.into())], space.fluence(t)?);
         answer.add_at("flux", vec![("t", t.into())], space.flux(t)?);
     }
     let figure = if draw {
-        let curve = Curve::sample("", &depths(args), |t| Ok(space.fluence(t)?.value))?;
         let light = incidence_title(args.mu0);
         let title = format!("Half-space, albedo {}, {}, {light}", args.albedo, named.name);
-        let axis = Axis::linear("Depth t", "mean free paths");
-        Some(figure(title, panel(axis, "Fluence over irradiance", "", vec![curve])))
+        let panel = if args.draw == Draw::Radiance {
+            let curve = |&dphi: &f64| {
+                Curve::sample(format!("azimuth {dphi}"), &even(0.0, 90.0, 46), |angle| {
+                    Ok(space.radiance(0.0, libm::cos(angle.to_radians()), dphi)?.value)
+                })
+            };
+            let curves = args.azimuth.iter().map(curve).collect::<Result<Vec<_>>>()?;
+            panel(degrees("Angle to the normal", 90), "Radiance over irradiance", "1/sr", curves)
+        } else {
+            let curve = Curve::sample("", &depths(args), |t| Ok(space.fluence(t)?.value))?;
+            panel(Axis::linear("Depth t", "mean free paths"), "Fluence over irradiance", "", vec![curve])
+        };
+        Some(figure(title, panel))
     } else {
         None
     };

@@ -43,7 +43,8 @@ pub struct Args {
     /// Refractive index inside over outside: faces that reflect and refract (fluxes and fluence).
     #[arg(long, default_value_t = 1.0, allow_negative_numbers = true)]
     index: f64,
-    /// Depths in mean free paths, 0 to tau, at which to give the fluence (direct light included).
+    /// Depths in mean free paths, 0 to tau, at which to give the fluence and the net flux downwards (direct light
+    /// included).
     #[arg(long, num_args = 1.., value_name = "T", allow_negative_numbers = true)]
     depth: Vec<f64>,
     /// Signed cosines (positive: towards the lit face) at which to give the radiance of scattered light, at every
@@ -98,8 +99,18 @@ pub fn answer(args: &Args, draw: bool) -> Result<Reply> {
     answer.add("transmittance_direct", slab.transmittance_direct());
     answer.add("transmittance_diffuse", slab.transmittance_diffuse());
     answer.add("absorptance", slab.absorptance());
+    // The other methods have no net flux at a depth.
+    let ordinates = match &slab {
+        Solved::Peierls(_) if args.method == Method::Auto && !args.depth.is_empty() => {
+            Some(Solved::new(args.tau, args.albedo, &named, args.mu0, Method::Ordinates)?)
+        }
+        _ => None,
+    };
     for &t in &args.depth {
         answer.add_at("fluence", vec![("t", t.into())], slab.fluence(t)?);
+        if let flux @ Solved::Ordinates(_) = ordinates.as_ref().unwrap_or(&slab) {
+            answer.add_at("flux", vec![("t", t.into())], flux.flux(t)?);
+        }
     }
     for (t, mu, dphi) in directions(args, &named) {
         let mut at = vec![("t", t.into()), ("mu", mu.into())];

@@ -103,10 +103,10 @@ impl Solved {
 
     /// Net flux downwards at a depth, direct light included.
     pub fn flux(&self, t: f64) -> Result<Value> {
-        Ok(match self {
-            Solved::Ordinates(slab) => slab.flux(t)?,
-            Solved::Peierls(_) | Solved::Doubling(_) => bail!("net fluxes are answered by --method ordinates"),
-        })
+        match self {
+            Solved::Ordinates(slab) => Ok(slab.flux(t)?),
+            Solved::Peierls(_) | Solved::Doubling(_) => bail!("net flux is answered by --method ordinates"),
+        }
     }
 
     /// Radiance of scattered light.
@@ -114,7 +114,7 @@ impl Solved {
         Ok(match self {
             Solved::Peierls(slab) => slab.radiance(t, mu)?,
             Solved::Doubling(slab) => slab.radiance(t, mu, dphi)?,
-            Solved::Ordinates(_) => bail!("azimuth {dphi}: radiance is to come"),
+            Solved::Ordinates(slab) => slab.radiance(t, mu, dphi)?,
         })
     }
 }

@@ -1,5 +1,6 @@
 //! `exact --cases`: a table of questions, each medium solved once.
 
+mod critical;
 mod fresnel;
 mod half_space;
 mod infinite;
@@ -29,6 +30,7 @@ pub fn answer(path: &Path, format: Format, output: &mut Vec<u8>) -> Result<()> {
     order.sort_by(|&a, &b| medium(a).cmp(&medium(b)));
     let mut answers: Vec<Option<Answered>> = rows.iter().map(|_| None).collect();
     let mut slabs = slab::Slabs::default();
+    let mut bodies = critical::Bodies::default();
     let mut fresnel_slabs = fresnel::FresnelSlabs::default();
     let mut half_spaces = half_space::HalfSpaces::default();
     let mut spheres = sphere::Spheres::default();
@@ -40,6 +42,7 @@ pub fn answer(path: &Path, format: Format, output: &mut Vec<u8>) -> Result<()> {
             "slab_fresnel" => fresnel::answer(row, &mut fresnel_slabs),
             "halfspace" => half_space::answer(row, &mut half_spaces),
             "sphere" => sphere::answer(row, &mut spheres),
+            "critical_slab" | "critical_sphere" => critical::answer(row, &mut bodies),
             "infinite" => infinite::answer(row, &mut media),
             "kernel" => kernel::answer(row),
             other => Ok(Err(format!("geometry {other} is not answered here; allowed: {GEOMETRIES}"))),
@@ -56,7 +59,7 @@ pub fn answer(path: &Path, format: Format, output: &mut Vec<u8>) -> Result<()> {
     write(&answered, format, output)
 }
 
-const GEOMETRIES: &str = "slab, slabXY, slab_fresnel, halfspace, sphere, infinite, kernel";
+const GEOMETRIES: &str = "slab, slabXY, slab_fresnel, halfspace, sphere, infinite, critical_slab, critical_sphere, kernel";
 
 fn read(path: &Path) -> Result<Vec<Row>> {
     let name = path.display();

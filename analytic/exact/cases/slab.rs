@@ -24,25 +24,34 @@ pub struct Slabs {
 
 impl Slabs {
     fn get(&mut self, tau: f64, albedo: f64, named: &Named, incidence: Incidence) -> Result<&Solved> {
+        if !named.is_isotropic() || tau > PEIERLS_UP_TO {
+            return self.ordinates(tau, albedo, named, incidence);
+        }
         self.turn_to(tau);
-        let medium = (albedo.to_bits(), named.name.clone());
         let key = key(albedo, named, incidence);
         if !self.solved.contains_key(&key) {
-            let slab = if named.is_isotropic() && tau <= PEIERLS_UP_TO {
-                // Slabs of one thickness share an operator.
-                let other = self.solved.values().find_map(|s| if let Solved::Peierls(s) = s { Some(s) } else { None });
-                Solved::Peierls(match other {
-                    Some(other) => other.with(albedo, incidence)?,
-                    None => IsotropicSlab::new(tau, albedo, incidence)?,
-                })
-            } else {
-                if !self.media.contains_key(&medium) {
-                    self.media.insert(medium.clone(), AnisotropicMedium::new(albedo, &named.phase)?);
-                }
-                let solved = self.media.get(&medium).context("the medium was just solved")?;
-                Solved::Ordinates(solved.slab(tau, incidence)?)
+            // Slabs of one thickness share an operator.
+            let other = self.solved.values().find_map(|s| if let Solved::Peierls(s) = s { Some(s) } else { None });
+            let slab = match other {
+                Some(other) => other.with(albedo, incidence)?,
+                None => IsotropicSlab::new(tau, albedo, incidence)?,
             };
-            self.solved.insert(key.clone(), slab);
+            self.solved.insert(key.clone(), Solved::Peierls(slab));
+        }
+        self.solved.get(&key).context("the slab was just solved")
+    }
+
+    fn ordinates(&mut self, tau: f64, albedo: f64, named: &Named, incidence: Incidence) -> Result<&Solved> {
+        self.turn_to(tau);
+        let medium = (albedo.to_bits(), named.name.clone());
+        let mut key = key(albedo, named, incidence);
+        key.1.push_str(" by ordinates");
+        if !self.solved.contains_key(&key) {
+            if !self.media.contains_key(&medium) {
+                self.media.insert(medium.clone(), AnisotropicMedium::new(albedo, &named.phase)?);
+            }
+            let solved = self.media.get(&medium).context("the medium was just solved")?;
+            self.solved.insert(key.clone(), Solved::Ordinates(solved.slab(tau, incidence)?));
         }
         self.solved.get(&key).context("the slab was just solved")
     }
@@ -103,7 +112,12 @@ pub fn answer(row: &Row, slabs: &mut Slabs) -> Result<Answered> {
     }
     // X and Y are functions of the cosine mu, and mu times the fluence on the two faces under a beam of that cosine.
     let light = row.incidence(if matches!(quantity, "X" | "Y") { "mu" } else { "mu0" })?;
-    let slab = slabs.get(tau, albedo, &named, light)?;
+    // The Peierls equation has no net flux at a depth.
+    let slab = if quantity == "flux" {
+        slabs.ordinates(tau, albedo, &named, light)?
+    } else {
+        slabs.get(tau, albedo, &named, light)?
+    };
     let times_mu = |v: Value, mu: f64| Value { value: v.value * mu, error: v.error * mu, ..v };
     Ok(match quantity {
         "R" => Ok(slab.reflectance()),
