@@ -9,7 +9,8 @@
 //!
 //! * Special functions and rules: [`exponential_integral`], [`quadrature`]
 //! * Slab: [`beer_lambert`], [`slab_single`], [`slab_isotropic`], [`slab_anisotropic`]
-//! * Sphere: [`sphere`] (uniform, central and incident light; the absorbing sphere)
+//! * Sphere: [`sphere`] (uniform, central and incident light; the absorbing sphere), [`cavity`]
+//! * Any convex body: [`mean_path`]; bodies that sustain themselves: [`critical`]
 //! * Kernel density estimation: [`kernel`], [`ball_mean`], [`blur`], [`edge`], [`volumes`], [`slab_kernel`],
 //!   [`nearest`], [`progressive`]; where the medium ends: [`boundary`]
 
@@ -17,11 +18,14 @@ pub mod ball_mean;
 pub mod beer_lambert;
 pub mod blur;
 pub mod boundary;
+pub mod cavity;
+pub mod critical;
 pub mod edge;
 pub mod error;
 pub mod exponential_integral;
 pub mod incidence;
 pub mod kernel;
+pub mod mean_path;
 pub mod nearest;
 mod peierls;
 mod poisson;
@@ -35,6 +39,8 @@ pub mod sphere;
 pub mod value;
 pub mod volumes;
 
+pub use cavity::Cavity;
+pub use critical::{Critical, CriticalShape};
 pub use error::{Error, Result};
 pub use incidence::Incidence;
 pub use kernel::{Dimension, Kernel};
