@@ -12,7 +12,7 @@
 //!   refracting faces [`slab_fresnel`]; by order of scattering [`orders`];
 //!   thick [`asymptotics`]; approximations [`two_stream`]
 //! * Half-space: [`half_space`]; infinite medium: [`infinite`]; X and Y functions: [`xy`]
-//! * Sphere: [`sphere`] (uniform, central and incident light; the absorbing sphere)
+//! * Sphere: [`sphere`], [`cavity`]; critical bodies: [`critical`]; path lengths: [`mean_path`]
 //! * Kernel density estimation: [`kernel`], [`ball_mean`], [`blur`], [`edge`], [`volumes`], [`slab_kernel`],
 //!   [`nearest`], [`progressive`], [`beams`]; where the medium ends: [`boundary`]
 
@@ -23,6 +23,8 @@ pub mod beams;
 pub mod beer_lambert;
 pub mod blur;
 pub mod boundary;
+pub mod cavity;
+pub mod critical;
 pub mod edge;
 pub mod error;
 pub mod exponential_integral;
@@ -30,6 +32,7 @@ pub mod half_space;
 pub mod incidence;
 pub mod infinite;
 pub mod kernel;
+pub mod mean_path;
 pub mod nearest;
 pub mod orders;
 mod peierls;
@@ -50,6 +53,8 @@ pub mod xy;
 
 pub use adding_doubling::AddingDoubling;
 pub use asymptotics::Asymptotics;
+pub use cavity::Cavity;
+pub use critical::{Critical, CriticalShape};
 pub use error::{Error, Result};
 pub use half_space::HalfSpace;
 pub use incidence::Incidence;

@@ -94,13 +94,13 @@ pub(super) fn mean_escape(a: f64) -> (f64, f64) {
         let p = 0.75 / a * transmittance_and_loss(a).1;
         return (p, 1.0 - p);
     }
-    // 1 - T = sum c_n y^n, c_1 = 2/3, and P_0 = 3/(2y) (1 - T).
+    // 1 - T = sum c_n y^n, c_1 = 2/3, and P_0 = 3/(2y) (1 - T), divided term by term.
     let y = 2.0 * a;
-    let (mut term, mut loss, mut n) = (-y, 0.0, 1.0);
+    let (mut term, mut loss, mut n) = (-1.0, 0.0, 1.0);
     while n < 20.0 {
         n += 1.0;
         term *= -y / n;
-        loss += 3.0 * term / (y * (n + 2.0));
+        loss += 3.0 * term / (n + 2.0);
     }
     (1.0 - loss, loss)
 }

@@ -151,7 +151,7 @@ impl Shells {
         let per_steradian = self.albedo / (4.0 * PI);
         match (&self.centre, self.source) {
             (Some(centre), _) => {
-                let (whole, bound) = chord::gather_point(a, &centre.point, mu);
+                let (whole, bound) = chord::gather_point(a, mu, &|r| centre.point.collided(r));
                 let whole = Value::new(whole, bound, METHOD);
                 sum(whole, collided).scaled(per_steradian)
             }
