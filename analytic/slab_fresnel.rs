@@ -85,6 +85,14 @@ struct Fluxes {
     absorbed: Light,
 }
 
+impl Fluxes {
+    /// Whether rounding leaves less than eleven digits of any.
+    fn is_rounded(self) -> bool {
+        let parts = [self.reflected, self.transmitted, self.absorbed];
+        parts.iter().any(|part| part.rounding() > 1e-11 * part.value.abs())
+    }
+}
+
 enum Solution {
     Ordinates(Box<Matched>),
     Doubling(Box<Closed>),
@@ -152,7 +160,12 @@ impl FresnelSlab {
         incidence: Incidence,
     ) -> Result<Self> {
         within("tau", tau, 1e-12, 1e5, "1e-12 to 1e5 between refracting faces")?;
-        Self::solve(tau, albedo, phase, index, incidence, tau < THIN)
+        let slab = Self::solve(tau, albedo, phase, index, incidence, tau < THIN)?;
+        // Little light scattered out of much light on its way: a difference in discrete ordinates.
+        if slab.method == ORDINATES && tau <= 100.0 && slab.solutions[0].fluxes().is_rounded() {
+            return Self::solve(tau, albedo, phase, index, incidence, true);
+        }
+        Ok(slab)
     }
 
     /// Solves the slab by adding and doubling, whatever its thickness: the second method.
@@ -193,7 +206,7 @@ impl FresnelSlab {
         let degrees = degrees(phase)?;
         let solve = |i: usize| -> Result<Solution> {
             let power = if doubling { 5 } else { 4 };
-            let rule = Rule { upper: UPPER[i], lower: LOWER[i], power, degree: degrees[i] };
+            let rule = Rule { upper: UPPER[i], lower: LOWER[i], power, degree: degrees[i], tau };
             if doubling {
                 let moments: Vec<f64> = (0..=degrees[i]).map(|l| phase.moment(l)).collect();
                 return Ok(Solution::Doubling(Box::new(Closed::new(&direct, albedo, &moments, rule)?)));

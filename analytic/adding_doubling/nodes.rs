@@ -22,7 +22,7 @@ impl Nodes {
     pub fn open(upper: usize, lower: usize) -> Self {
         let b = 3.0 / (upper as f64 + 2.0);
         let mut panels = Panels::default();
-        panels.power(b, 5, lower);
+        panels.power(0.0, b, 5, lower);
         panels.plain(b, 1.0, upper);
         panels.finish()
     }
@@ -60,17 +60,10 @@ impl Panels {
         }
     }
 
-    /// Gauss in x on \[0, b\], mu = b x^power: for light that changes with ln mu.
-    pub fn power(&mut self, b: f64, power: i32, order: usize) {
+    /// Gauss in x on \[a, b\], mu = a + (b-a) x^power: for light that changes with ln(mu - a), or with its root.
+    pub fn power(&mut self, a: f64, b: f64, power: i32, order: usize) {
         for (x, w) in rule(order) {
-            self.push(b * x.powi(power), f64::from(power) * b * x.powi(power - 1) * w);
-        }
-    }
-
-    /// Gauss in x on \[a, b\], mu = a + (b-a) x^2: for functions of the root of mu - a.
-    pub fn root(&mut self, a: f64, b: f64, order: usize) {
-        for (x, w) in rule(order) {
-            self.push(a + (b - a) * x * x, 2.0 * (b - a) * x * w);
+            self.push(a + (b - a) * x.powi(power), f64::from(power) * (b - a) * x.powi(power - 1) * w);
         }
     }
 

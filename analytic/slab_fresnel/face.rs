@@ -85,7 +85,7 @@ impl Face {
     /// Directions inside, crowded where the light changes: towards the horizon, and beyond the critical cosine, where
     /// the reflectance falls with the root of the difference.
     pub fn nodes(self, rule: Rule) -> Nodes {
-        let Rule { upper, lower, power, degree } = rule;
+        let Rule { upper, lower, power, degree, tau } = rule;
         let (least, turns) = (upper, degree as f64);
         let upper = least.max(5 + degree / 2);
         let open = 3.0 / (upper as f64 + 2.0);
@@ -97,16 +97,27 @@ impl Face {
         if critical > 0.0 && critical <= open {
             edge = critical;
         }
-        panels.power(edge, power, lower);
+        panels.power(0.0, edge, power, lower);
         if critical > 0.0 {
             if edge < critical {
                 panels.plain(edge, critical, least.max(12 + (0.5 * critical * turns) as usize));
             }
-            edge = if 4.0 * critical >= open.max(0.25) { 1.0 } else { 4.0 * critical };
             // In the root of mu - mu_c the turns of P_l are densest at mu = 1, root(1 - mu_c) as dense as on a whole
             // hemisphere in mu itself.
             let order = least.max(16 + (0.75 * sqrt(1.0 - critical) * turns) as usize);
-            panels.root(critical, edge, if edge == 1.0 { order } else { PANEL });
+            let whole = 4.0 * critical >= open.max(0.25);
+            edge = if whole { 1.0 } else { 4.0 * critical };
+            if tau < 0.5 * critical {
+                // Light goes to and fro until a face has let it out, a share of the root of mu - mu_c each time, or
+                // it has collided, a share tau/mu: between the two it changes with the logarithm.
+                let near = if whole { critical + 0.1 * (1.0 - critical) } else { edge };
+                panels.power(critical, near, 6, lower);
+                if whole {
+                    panels.plain(near, edge, order);
+                }
+            } else {
+                panels.power(critical, edge, 2, if whole { order } else { PANEL });
+            }
         }
         while edge < open {
             let next = if 3.0 * edge >= open { open } else { 3.0 * edge };
@@ -130,6 +141,8 @@ pub(crate) struct Rule {
     pub power: i32,
     /// The highest Legendre moment to be followed.
     pub degree: usize,
+    /// Thickness of the slab.
+    pub tau: f64,
 }
 
 /// Reflectance for Lambertian light on a medium of index n > 1 (Walsh 1926; Duntley 1942).
@@ -177,7 +190,7 @@ mod tests {
             let face = Face::new(n);
             let (outer, inner) = (face.diffuse(true).unwrap(), face.diffuse(false).unwrap());
             // From outside, in the cosine inside where that is the smoother; from inside, with all that returns whole.
-            let nodes = face.nodes(Rule { upper: 60, lower: 60, power: 5, degree: 0 });
+            let nodes = face.nodes(Rule { upper: 60, lower: 60, power: 5, degree: 0, tau: 1e-3 });
             let got = nodes.sum(|mu| 2.0 * mu * face.from_inside(mu).0);
             assert!((got - inner.value).abs() < inner.error + 1e-13, "{n} inside {got} {inner:?}");
             let through = nodes.sum(|mu| 2.0 * n * n * mu * face.from_inside(mu).1);
