@@ -98,7 +98,7 @@ impl ScatteringOrders {
         }
         let moments: Vec<f64> = (0..2 * most).map(|l| phase.moment(l)).collect();
         let once = match incidence {
-            Incidence::Beam { mu0 } => Some(Once::new(tau, albedo, phase, mu0)?),
+            Incidence::Beam { mu0 } => Some(Once::new(tau, albedo, phase, mu0)),
             Incidence::Diffuse => None,
         };
         let weigh = |power: f64| -> f64 {

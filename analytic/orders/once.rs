@@ -1,35 +1,47 @@
 //! Light that a beam has scattered once: closed in depth, one integral over the cosine of its direction.
 
 use super::scattering::{legendre, mean_phase};
-use crate::error::{Result, within};
+use crate::error::Result;
 use crate::phase::Phase;
 use crate::quadrature::Adaptive;
 use crate::slab_single::path;
 use crate::value::Value;
+use std::f64::consts::PI;
 
 const METHOD: &str = "closed in depth, two Gauss rules over the cosine";
 
-/// Moments below this are left out.
-const CUT: f64 = 1e-18;
+/// Phase functions with more moments than a list may have are closed forms.
+const SERIES: usize = 2000;
 
 /// The first order of a beam's light.
 pub(super) struct Once {
     tau: f64,
     albedo: f64,
     mu0: f64,
+    phase: Phase,
+    /// Of a phase function that is their sum; none for a closed form.
     moments: Vec<f64>,
     /// P_l(mu0).
     table: Vec<f64>,
 }
 
 impl Once {
-    pub fn new(tau: f64, albedo: f64, phase: &Phase, mu0: f64) -> Result<Self> {
-        const MOST: usize = 8192;
-        within("phase moment 8192", phase.moment(MOST), -CUT, CUT, "-1e-18 to 1e-18")?;
-        let end = (0..MOST).rev().find(|&l| phase.moment(l).abs() > CUT).map_or(1, |l| l + 1);
+    pub fn new(tau: f64, albedo: f64, phase: &Phase, mu0: f64) -> Self {
+        let degree = phase.degree(0.0, SERIES + 1);
+        let end = if degree > SERIES { 0 } else { degree + 1 };
         let moments: Vec<f64> = (0..end).map(|l| phase.moment(l)).collect();
         let table = legendre(moments.len(), mu0);
-        Ok(Once { tau, albedo, mu0, moments, table })
+        Once { tau, albedo, mu0, phase: phase.clone(), moments, table }
+    }
+
+    /// h(mu, -mu0), and the size of the terms that it is a sum of.
+    fn mean(&self, mu: f64) -> (f64, f64) {
+        if self.moments.is_empty() {
+            let h = 4.0 * PI * self.phase.azimuthal_mean(mu, -self.mu0);
+            (h, 8.0 * h)
+        } else {
+            mean_phase(&self.moments, -mu, &self.table)
+        }
     }
 
     /// R_1 = (albedo/2) int_0^1 mu h(mu, -mu0) path dmu.
@@ -68,9 +80,9 @@ impl Once {
         let sum_of = |pick: fn((f64, f64)) -> f64, tolerance: f64| {
             Adaptive::new(tolerance).integrate(&breaks, "radiance", METHOD, |mu| {
                 let mut value = 0.0;
-                for (sign, path) in [(-1.0, up(mu)), (1.0, down.map_or(0.0, |f| f(mu)))] {
+                for (sign, path) in [(1.0, up(mu)), (-1.0, down.map_or(0.0, |f| f(mu)))] {
                     if path != 0.0 {
-                        value += pick(mean_phase(&self.moments, sign * mu, &self.table)) * path;
+                        value += pick(self.mean(sign * mu)) * path;
                     }
                 }
                 Ok(value)

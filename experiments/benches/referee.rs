@@ -49,6 +49,11 @@ fn main() -> Result<()> {
         Ok(medium.slab(TAU, BEAM)?.reflectance().value)
     })?;
     row("ten fluences in a known slab", &mut || Ok(fluences(&slab)?.iter().map(|v| v.value).sum()))?;
+    row("a radiance with azimuth, modes known", &mut || Ok(slab.radiance(0.5, 0.3, 1.0)?.value))?;
+    row("a radiance with azimuth, the first of a medium", &mut || {
+        let slab = AnisotropicMedium::new(ALBEDO, &phase)?.slab(TAU, BEAM)?;
+        Ok(slab.radiance(0.5, 0.3, 1.0)?.value)
+    })?;
     row("medium, slab, R, T, A and ten fluences", &mut || {
         let slab = AnisotropicMedium::new(ALBEDO, &phase)?.slab(TAU, BEAM)?;
         Ok(fluences(&slab)?[0].value + slab.transmittance().value)
