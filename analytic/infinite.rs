@@ -184,7 +184,7 @@ impl InfiniteMedium {
     /// # Arguments
     /// `s` wave number \[1/mfp\], 0 to 1e5
     /// # Errors
-    /// `Error::OutOfRange` naming `s`; `Error::Infinite` for s = 0 and albedo 1
+    /// `Error::OutOfRange` naming `s`; `Error::Infinite` for albedo 1 and s = 0 or near it
     /// # Limits
     /// s = 0: 1/(1-albedo); no scattering: atan(s)/s
     pub fn transform(&self, s: f64) -> Result<Value> {
@@ -206,6 +206,9 @@ impl InfiniteMedium {
             far = h(l) + square / far;
         }
         let value = 1.0 / far;
+        if !value.is_finite() {
+            return Err(Error::Infinite("without absorption the transform at so small an s exceeds f64"));
+        }
         let error = (value - 1.0 / near).abs() + (8.0 + 4.0 / rate) * f64::EPSILON * value;
         Ok(Value::new(value, error, "continued fraction, two convergents"))
     }

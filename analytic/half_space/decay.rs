@@ -21,6 +21,8 @@ pub(crate) struct Decay {
 impl Decay {
     /// For an albedo between 0 and 1.
     pub fn new(albedo: f64) -> Self {
+        // -0 is 0, of which the inverse is infinite with the right sign.
+        let albedo = albedo.abs();
         let absorbed = 1.0 - albedo;
         if absorbed == 0.0 {
             return Decay { b: 0.0, k: 0.0, gap: 1.0, excess: 0.0, ratio: 1.0 / 3f64.sqrt() };
