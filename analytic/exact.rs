@@ -8,12 +8,12 @@ mod beams;
 mod boundary;
 #[path = "exact/cases/mod.rs"]
 mod cases;
-#[path = "exact/format.rs"]
-mod format;
 #[path = "exact/cavity.rs"]
 mod cavity;
 #[path = "exact/critical.rs"]
 mod critical;
+#[path = "exact/format.rs"]
+mod format;
 #[path = "exact/fresnel.rs"]
 mod fresnel;
 #[path = "exact/half_space.rs"]
@@ -133,7 +133,8 @@ fn run() -> Result<()> {
         Ok(cli) => cli,
         Err(error) => return explain(&error),
     };
-    let paths = [("--cases", cli.cases.as_deref()), ("--out", cli.out.as_deref()), ("--plot", cli.plot.as_deref())];
+    let paths =
+        [("--cases", cli.cases.as_deref()), ("--out", cli.out.as_deref()), ("--plot", cli.plot.as_deref())];
     output::apart(&paths)?;
     let mut bytes = Vec::new();
     let mut staged = Vec::new();

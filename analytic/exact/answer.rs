@@ -112,7 +112,11 @@ impl Answer {
     pub fn check(&self) -> anyhow::Result<()> {
         for row in &self.rows {
             let Value { value, error, .. } = row.value;
-            anyhow::ensure!(value.is_finite() && error.is_finite(), "{} is {value} ± {error}: a fault of ours", row.quantity);
+            anyhow::ensure!(
+                value.is_finite() && error.is_finite(),
+                "{} is {value} ± {error}: a fault of ours",
+                row.quantity
+            );
         }
         Ok(())
     }

@@ -5,7 +5,9 @@ use crate::plot::{Curve, crowded, even, figure, panel};
 use crate::read::{kernel, kernel_name};
 use anyhow::Result;
 use clap::ValueEnum;
-use turbid_analytic::boundary::{Body, Treatment, treated_mean_symmetric, treated_mean_uniform, treated_variance};
+use turbid_analytic::boundary::{
+    Body, Treatment, treated_mean_symmetric, treated_mean_uniform, treated_variance,
+};
 use turbid_analytic::{Kernel, Value};
 use turbid_figure::Axis;
 
@@ -141,7 +143,11 @@ fn drawn(asked: &Asked<'_>, shape: &str) -> Result<turbid_figure::Figure> {
         })
     };
     let curves = Treatment::ALL.into_iter().map(curve).collect::<Result<Vec<_>>>()?;
-    let field = if args.decay == 0.0 { String::new() } else { format!(", field exp(−{} h)", args.decay).replace("−1 h", "−h") };
+    let field = if args.decay == 0.0 {
+        String::new()
+    } else {
+        format!(", field exp(−{} h)", args.decay).replace("−1 h", "−h")
+    };
     let name = kernel_name(args.kernel).replace('_', " ");
     let title = format!("At the face of a {shape}: {name} kernel, r = {}{field}", args.radius);
     let axis = Axis::linear("Depth of the probe h", "length");

@@ -66,8 +66,13 @@ pub fn answer(args: &Args, draw: bool) -> Result<Reply> {
 }
 
 fn drawn(args: &Args) -> Result<Figure> {
-    let curve = Curve::sample("", &even(0.0, 0.98, 50), |rho| Ok(solve(args, rho)?.irradiance_wall().value))?;
+    // What a black wall receives of its own light, 1 - A, decides about all others.
+    let reach = solve(args, 0.0)?.irradiance_wall().value;
+    let curve = Curve::sample("", &even(0.0, 0.98, 99), |rho| Ok(reach / (1.0 - rho * reach)))?;
     let medium = args.albedo.map_or("empty".to_string(), |w| format!("radius {}, albedo {w}", args.radius));
     let axis = Axis::linear("Albedo of the wall ρ", "");
-    Ok(figure(format!("Lambertian cavity, {medium}"), panel(axis, "Irradiance over exitance of the wall", "", vec![curve])))
+    Ok(figure(
+        format!("Lambertian cavity, {medium}"),
+        panel(axis, "Irradiance over exitance of the wall", "", vec![curve]),
+    ))
 }

@@ -32,7 +32,13 @@ pub fn write(answer: &Answer, format: Format, out: &mut Vec<u8>) -> Result<()> {
 
 fn table(answer: &Answer, out: &mut Vec<u8>) -> Result<()> {
     let parameters: Vec<String> = answer.parameters.iter().map(|(name, f)| format!("{name} = {f}")).collect();
-    writeln!(out, "{}{}{}", answer.problem, if parameters.is_empty() { "" } else { ": " }, parameters.join(", "))?;
+    writeln!(
+        out,
+        "{}{}{}",
+        answer.problem,
+        if parameters.is_empty() { "" } else { ": " },
+        parameters.join(", ")
+    )?;
     let coordinates = answer.coordinates();
     let mut head = vec!["quantity"];
     head.extend(&coordinates);

@@ -29,7 +29,9 @@ pub struct Asked<'a> {
 pub fn solve(asked: &Asked<'_>, method: Method) -> Result<FresnelSlab> {
     let Asked { tau, albedo, index, incidence, named, .. } = *asked;
     match method {
-        Method::Auto | Method::Ordinates => Ok(FresnelSlab::with_phase(tau, albedo, &named.phase, index, incidence)?),
+        Method::Auto | Method::Ordinates => {
+            Ok(FresnelSlab::with_phase(tau, albedo, &named.phase, index, incidence)?)
+        }
         Method::Doubling => Ok(FresnelSlab::by_doubling(tau, albedo, &named.phase, index, incidence)?),
         Method::Peierls => bail!("--method is peierls; allowed with --index: auto, ordinates, doubling"),
     }
@@ -57,7 +59,10 @@ pub fn answer(asked: &Asked<'_>, method: Method, draw: bool) -> Result<Reply> {
     let figure = if draw {
         let curve = Curve::sample("", &crowded(asked.tau, 121), |t| Ok(slab.fluence(t)?.value))?;
         let (named, light) = (&asked.named.name, incidence_title(asked.incidence));
-        let title = format!("Slab τ = {}, albedo {}, {named}, index {}, {light}", asked.tau, asked.albedo, asked.index);
+        let title = format!(
+            "Slab τ = {}, albedo {}, {named}, index {}, {light}",
+            asked.tau, asked.albedo, asked.index
+        );
         let axis = Axis::linear("Depth t", "mean free paths");
         Some(figure(title, panel(axis, "Fluence over irradiance", "", vec![curve])))
     } else {

@@ -6,8 +6,8 @@ use crate::plot::{Curve, degrees, even, figure, panel};
 use crate::read::{incidence, incidence_field, incidence_title};
 use anyhow::{Result, bail, ensure};
 use clap::ValueEnum;
-use turbid_analytic::{AnisotropicMedium, Incidence};
 use turbid_analytic::half_space::HalfSpace;
+use turbid_analytic::{AnisotropicMedium, Incidence};
 use turbid_figure::{Axis, Figure};
 
 /// A half-space: H function, reflectance, radiance, fluence, Milne's problem.
@@ -65,8 +65,7 @@ enum Draw {
 /// Answers.
 pub fn answer(args: &Args, draw: bool) -> Result<Reply> {
     let named = args.phase.read()?;
-    let mut answer =
-        Answer::new("half-space").with("albedo", args.albedo).with("phase", named.name.as_str());
+    let mut answer = Answer::new("half-space").with("albedo", args.albedo).with("phase", named.name.as_str());
     if !named.is_isotropic() {
         return anisotropic(args, &named, answer, draw);
     }
@@ -167,7 +166,8 @@ fn drawn(args: &Args, space: &HalfSpace) -> Result<Figure> {
         Draw::Radiance => {
             let curve = Curve::sample("", &even(0.0, 90.0, 91), |angle| {
                 let mu = libm::cos(angle.to_radians());
-                let radiance = if args.milne { space.milne_radiance(mu) } else { space.radiance(args.mu0, mu) };
+                let radiance =
+                    if args.milne { space.milne_radiance(mu) } else { space.radiance(args.mu0, mu) };
                 Ok(radiance?.value)
             })?;
             let axis = degrees("Angle to the normal", 90);

@@ -35,8 +35,7 @@ pub struct Args {
 pub fn answer(args: &Args, draw: bool) -> Result<Reply> {
     let named = args.phase.read()?;
     let medium = solve(args.albedo, &named)?;
-    let mut answer =
-        Answer::new("infinite").with("albedo", args.albedo).with("phase", named.name.as_str());
+    let mut answer = Answer::new("infinite").with("albedo", args.albedo).with("phase", named.name.as_str());
     for (j, k) in (0_u32..).zip(medium.decays()) {
         answer.add_at("decay", vec![("mode", j.into())], k);
     }
@@ -66,7 +65,8 @@ pub fn solve(albedo: f64, named: &Named) -> Result<InfiniteMedium> {
 }
 
 fn drawn(args: &Args, named: &Named, medium: &InfiniteMedium) -> Result<Figure> {
-    let (low, high) = args.r.iter().fold((0.1, 10.0), |(low, high): (f64, f64), &r| (low.min(r), high.max(r)));
+    let (low, high) =
+        args.r.iter().fold((0.1, 10.0), |(low, high): (f64, f64), &r| (low.min(r), high.max(r)));
     let places = ratios(low, high, 121);
     // Times r^2, so that spreading alone is flat.
     let times = |r: f64, fluence: f64| 4.0 * std::f64::consts::PI * r * r * fluence;

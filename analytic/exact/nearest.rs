@@ -77,12 +77,14 @@ fn drawn(args: &Args, typical: f64, cap: f64) -> Result<turbid_figure::Figure> {
     ensure!(typical.is_finite() && typical > 0.0, "density is {}; allowed: 1e-100 to 1e100", args.density);
     let largest = args.gradient.iter().fold(1.0 / typical, |a: f64, b| a.max(b.abs()));
     let curve = Curve::sample("", &even(0.0, largest, 17), |b| {
-        let mean = nearest_expectation_exponential(args.kernel, args.dimension, args.k, args.density, b, cap)?;
+        let mean =
+            nearest_expectation_exponential(args.kernel, args.dimension, args.k, args.density, b, cap)?;
         // Without a gradient there is no bias, and what is left of it lies within the bound.
         let bias = mean.value - 1.0;
         Ok(if bias <= mean.error { 0.0 } else { 100.0 * bias })
     })?;
-    let title = format!("The {} nearest in the field exp(b·x), {} dimensions", args.k, args.dimension.number());
+    let title =
+        format!("The {} nearest in the field exp(b·x), {} dimensions", args.k, args.dimension.number());
     let x = Axis::linear("Gradient |b|", "1/length");
     Ok(figure(title, panel(x, "Bias", "% of the field at the probe", vec![curve])))
 }

@@ -27,7 +27,9 @@ fn try_stage(path: &Path, bytes: Vec<u8>) -> io::Result<Staged> {
     // A link stays a link.
     let path = fs::canonicalize(path).unwrap_or_else(|_| path.to_path_buf());
     match fs::metadata(&path) {
-        Ok(found) if found.is_dir() => return Err(io::Error::new(io::ErrorKind::IsADirectory, "it is a folder")),
+        Ok(found) if found.is_dir() => {
+            return Err(io::Error::new(io::ErrorKind::IsADirectory, "it is a folder"));
+        }
         Ok(found) if !found.is_file() => return Ok(Staged { path, content: Content::Direct(bytes) }),
         _ => {}
     }

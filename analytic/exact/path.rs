@@ -5,8 +5,8 @@ use crate::plot::{Curve, even, figure, panel};
 use anyhow::{Context, Result};
 use clap::ValueEnum;
 use turbid_analytic::mean_path::{
-    chord_moment_slab, chord_moment_sphere, mean_path, mean_path_cuboid, mean_path_slab, mean_path_slab_absorbing,
-    mean_path_sphere, mean_path_sphere_absorbing,
+    chord_moment_slab, chord_moment_sphere, mean_path, mean_path_cuboid, mean_path_slab,
+    mean_path_slab_absorbing, mean_path_sphere, mean_path_sphere_absorbing,
 };
 use turbid_figure::{Axis, Figure};
 
@@ -95,7 +95,7 @@ fn drawn(args: &Args, shape: &str) -> Result<Option<Figure>> {
     if matches!(args.shape, Shape::Cuboid | Shape::Convex) {
         return Ok(None);
     }
-    let curve = Curve::sample("", &even(0.0, 1.0, 41), |w| {
+    let curve = Curve::sample("", &even(0.0, 1.0, 21), |w| {
         Ok(absorbing(args, w)?.context("a sphere or a slab")?.value)
     })?;
     let title = format!("Mean path to escape or absorption, {shape} of {} mean free paths", args.size[0]);

@@ -11,7 +11,13 @@ pub struct PhaseArgs {
     #[arg(long, help_heading = "Phase function", allow_negative_numbers = true, conflicts_with_all = ["rayleigh", "moments"])]
     g: Option<f64>,
     /// With --g and --share: the mean cosine of a second Henyey-Greenstein term.
-    #[arg(long, help_heading = "Phase function", allow_negative_numbers = true, requires = "g", requires = "share")]
+    #[arg(
+        long,
+        help_heading = "Phase function",
+        allow_negative_numbers = true,
+        requires = "g",
+        requires = "share"
+    )]
     g2: Option<f64>,
     /// Share of the first of two terms, 0 to 1.
     #[arg(long, help_heading = "Phase function", allow_negative_numbers = true, requires = "g2")]
@@ -88,7 +94,11 @@ fn from_file(path: &Path) -> Result<Named> {
         for word in line.split([',', ' ', '\t', ';']).filter(|word| !word.is_empty()) {
             match word.parse::<f64>() {
                 Ok(moment) if moment.abs() <= 1.0 => moments.push(moment),
-                _ => bail!("{shown}:{}: chi_{} is '{word}'; allowed: a number from -1 to 1", i + 1, moments.len()),
+                _ => bail!(
+                    "{shown}:{}: chi_{} is '{word}'; allowed: a number from -1 to 1",
+                    i + 1,
+                    moments.len()
+                ),
             }
         }
     }

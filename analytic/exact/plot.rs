@@ -87,7 +87,12 @@ pub fn panel(x: Axis, label: &str, unit: &str, curves: Vec<Curve>) -> Panel {
 
 /// One panel under a title.
 pub fn figure(title: impl Into<String>, panel: Panel) -> Figure {
-    Figure { title: title.into(), width: Width::Millimetres(WIDTH), heights: vec![0.6], ..Figure::new(vec![panel]) }
+    Figure {
+        title: title.into(),
+        width: Width::Millimetres(WIDTH),
+        heights: vec![0.6],
+        ..Figure::new(vec![panel])
+    }
 }
 
 /// Refuses endings other than .svg and .png before anything is computed.

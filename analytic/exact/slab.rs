@@ -2,10 +2,10 @@
 
 use crate::answer::{Answer, Reply};
 use crate::fresnel::{self, Asked};
+use crate::orders::Orders;
 use crate::phase::{Named, PhaseArgs};
 use crate::plot::{Curve, crowded, degrees, even, figure, panel};
 use crate::read::{incidence, incidence_field, incidence_title};
-use crate::orders::Orders;
 use crate::solved::{Method, Solved};
 use anyhow::{Result, ensure};
 use clap::ValueEnum;
@@ -150,7 +150,11 @@ fn orders(args: &Args, named: &Named, answer: &mut Answer) -> Result<()> {
         answer.add_at("reflectance_of_order", vec![("order", n.into())], slab.reflectance(n)?);
         answer.add_at("transmittance_of_order", vec![("order", n.into())], slab.transmittance(n)?);
         for &t in &args.depth {
-            answer.add_at("fluence_of_order", vec![("t", t.into()), ("order", n.into())], slab.fluence(n, t)?);
+            answer.add_at(
+                "fluence_of_order",
+                vec![("t", t.into()), ("order", n.into())],
+                slab.fluence(n, t)?,
+            );
         }
     }
     Ok(())

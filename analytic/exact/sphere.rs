@@ -125,9 +125,8 @@ fn drawn(args: &Args, sphere: &Sphere) -> Result<Figure> {
         Draw::Radiance => {
             // Towards the normal the scattered light of a central source grows without limit.
             let angles = even(if centre { 1.0 } else { 0.0 }, 90.0, 91);
-            let curve = Curve::sample("", &angles, |angle| {
-                Ok(sphere.exit_radiance(cos(angle.to_radians()))?.value)
-            })?;
+            let curve =
+                Curve::sample("", &angles, |angle| Ok(sphere.exit_radiance(cos(angle.to_radians()))?.value))?;
             let axis = degrees("Angle to the normal", 90);
             panel(axis, &format!("Radiance that leaves over {per}"), &unit("1/sr"), vec![curve])
         }

@@ -58,27 +58,30 @@ fn name(method: Method) -> &'static str {
 pub fn answer(args: &Args, draw: bool) -> Result<Reply> {
     let named = Named::henyey_greenstein(args.g)?;
     let exact = Solved::new(args.tau, args.albedo, &named, args.mu0, solved::Method::Auto)?;
-    let approximations = Method::ALL.map(|method| TwoStream::slab(method, args.tau, args.albedo, args.g, args.mu0));
-    let approximations: Vec<TwoStream> = approximations.into_iter().collect::<turbid_analytic::Result<_>>()?;
+    let approximations =
+        Method::ALL.map(|method| TwoStream::slab(method, args.tau, args.albedo, args.g, args.mu0));
+    let approximations: Vec<TwoStream> =
+        approximations.into_iter().collect::<turbid_analytic::Result<_>>()?;
     let mut answer = Answer::new("two-stream")
         .with("tau", args.tau)
         .with("albedo", args.albedo)
         .with("phase", named.name.as_str())
         .with("mu0", incidence_field(args.mu0));
-    let mut compare = |quantity, t: Option<f64>, truth: Value, of: &dyn Fn(&TwoStream) -> Result<Approximation>| {
-        let at = |model: &str| {
-            let mut at = vec![("model", model.into())];
-            at.extend(t.map(|t| ("t", t.into())));
-            at
+    let mut compare =
+        |quantity, t: Option<f64>, truth: Value, of: &dyn Fn(&TwoStream) -> Result<Approximation>| {
+            let at = |model: &str| {
+                let mut at = vec![("model", model.into())];
+                at.extend(t.map(|t| ("t", t.into())));
+                at
+            };
+            answer.add_at(quantity, at("exact"), truth);
+            for (method, two_stream) in Method::ALL.iter().zip(&approximations) {
+                let Approximation { value, .. } = of(two_stream)?;
+                let error = (value - truth.value).abs() + truth.error;
+                answer.add_at(quantity, at(name(*method)), Value { value, error, method: "approximation" });
+            }
+            anyhow::Ok(())
         };
-        answer.add_at(quantity, at("exact"), truth);
-        for (method, two_stream) in Method::ALL.iter().zip(&approximations) {
-            let Approximation { value, .. } = of(two_stream)?;
-            let error = (value - truth.value).abs() + truth.error;
-            answer.add_at(quantity, at(name(*method)), Value { value, error, method: "approximation" });
-        }
-        anyhow::Ok(())
-    };
     compare("reflectance", None, exact.reflectance(), &|s| Ok(s.reflectance()))?;
     compare("transmittance", None, exact.transmittance(), &|s| Ok(s.transmittance()))?;
     compare("absorptance", None, exact.absorptance(), &|s| Ok(s.absorptance()))?;
@@ -96,7 +99,8 @@ fn drawn(args: &Args, named: &Named, exact: &Solved, approximations: &[TwoStream
         curves.push(Curve::sample(name(*method), &depths, |t| Ok(two_stream.fluence(t)?.value))?);
     }
     let light = incidence_title(args.mu0);
-    let title = format!("Approximations, slab τ = {}, albedo {}, {}, {light}", args.tau, args.albedo, named.name);
+    let title =
+        format!("Approximations, slab τ = {}, albedo {}, {}, {light}", args.tau, args.albedo, named.name);
     let axis = Axis::linear("Depth t", "mean free paths");
     Ok(figure(title, panel(axis, "Fluence over irradiance", "", curves)))
 }

@@ -42,7 +42,10 @@ fn whole_table(name: &str, count: usize, promised: f64) {
         let (want, digits) = (number(&row["value"]), number(&row["digits"]));
         let (got, error) = (number(&answer["value"]), number(&answer["error"]));
         let off = (got - want).abs();
-        assert!(off <= libm::pow(10.0, 1.0 - digits) * want.abs(), "{answer:?}\ntable {want:e} off by {off:e}");
+        assert!(
+            off <= libm::pow(10.0, 1.0 - digits) * want.abs(),
+            "{answer:?}\ntable {want:e} off by {off:e}"
+        );
         // The table's own last digits; 14 printed digits of a kernel's value may be half a unit off.
         let last = 2.0 * libm::pow(10.0, -digits) * want.abs();
         assert!(off <= error + last, "{answer:?}\ntable {want:e} off by {off:e}");
@@ -137,7 +140,8 @@ fn published_values_to_their_printed_digits() {
         assert_eq!((row["id"].as_str(), answer["id"].as_str()), (id, id));
         assert_eq!(row["published"].split_once('.').unwrap().1.len(), places);
         let unit = libm::pow(10.0, -(places as f64));
-        let (printed, got, error) = (number(&row["published"]), number(&answer["value"]), number(&answer["error"]));
+        let (printed, got, error) =
+            (number(&row["published"]), number(&answer["value"]), number(&answer["error"]));
         let off = (printed - got).abs();
         assert!(off < 4.0 * unit, "{answer:?} printed {printed}");
         // Whatever the bound, the value rounds to what is printed or it does not; the constant has as many digits as f64.

@@ -53,7 +53,8 @@ fn numbers(text: &str) -> (String, Vec<f64>) {
     let mut rest = text;
     while let Some(at) = rest.find(|c: char| c.is_ascii_digit() || c == '-') {
         words += &rest[..at];
-        let mut length = rest[at..].find(|c: char| !c.is_ascii_digit() && !"-.".contains(c)).unwrap_or(rest.len() - at);
+        let mut length =
+            rest[at..].find(|c: char| !c.is_ascii_digit() && !"-.".contains(c)).unwrap_or(rest.len() - at);
         // One minus sign, and only in front.
         length = rest[at + 1..at + length].find('-').map_or(length, |next| next + 1);
         match rest[at..at + length].parse() {
@@ -84,7 +85,8 @@ fn same_word(kept: &str, made: &str) -> bool {
 }
 
 fn same_line(kept: &str, made: &str) -> bool {
-    let (kept, made): (Vec<_>, Vec<_>) = (kept.split_whitespace().collect(), made.split_whitespace().collect());
+    let (kept, made): (Vec<_>, Vec<_>) =
+        (kept.split_whitespace().collect(), made.split_whitespace().collect());
     kept.len() == made.len() && kept.iter().zip(&made).all(|(a, b)| same_word(a, b))
 }
 
@@ -98,7 +100,8 @@ fn examples_and_figures_are_what_the_command_makes() {
     let bless = std::env::var_os("TURBID_BLESS").is_some();
     let mut figures = Vec::new();
     for page in files(".md") {
-        let (kept, made) = (fs::read_to_string(folder().join(&page)).unwrap(), renewed(&page, scratch.path()));
+        let (kept, made) =
+            (fs::read_to_string(folder().join(&page)).unwrap(), renewed(&page, scratch.path()));
         if bless {
             if kept != made {
                 fs::write(folder().join(&page), &made).unwrap();
@@ -113,7 +116,9 @@ fn examples_and_figures_are_what_the_command_makes() {
         let commands = made.lines().filter(|line| line.starts_with("$ exact "));
         let drawn = commands.filter_map(|line| line.split_once("--plot ")?.1.split_whitespace().next());
         figures.extend(drawn.map(String::from));
-        for name in made.split("](").skip(1).filter_map(|rest| rest.split(')').next()).filter(|n| n.ends_with(".svg")) {
+        for name in
+            made.split("](").skip(1).filter_map(|rest| rest.split(')').next()).filter(|n| n.ends_with(".svg"))
+        {
             assert!(made.contains(&format!("--plot {name}")), "{page}: no example draws {name}");
         }
     }
@@ -138,7 +143,8 @@ fn every_problem_has_a_page() {
     let commands = help.split_once("Commands:\n").unwrap().1.split_once("\n\n").unwrap().0;
     let index = fs::read_to_string(folder().join("README.md")).unwrap();
     let pages = files(".md");
-    for command in commands.lines().filter_map(|line| line.split_whitespace().next()).filter(|c| *c != "help") {
+    for command in commands.lines().filter_map(|line| line.split_whitespace().next()).filter(|c| *c != "help")
+    {
         let shown = pages
             .iter()
             .any(|p| fs::read_to_string(folder().join(p)).unwrap().contains(&format!("$ exact {command} ")));

@@ -43,6 +43,10 @@ pub fn answer(row: &Row, slabs: &mut FresnelSlabs) -> Result<Answered> {
         "Ttot" | "T_total" | "Ts" => slab.transmittance(),
         "A" => slab.absorptance(),
         "fluence" => slab.fluence(row.number("t")?)?,
-        other => return Ok(Err(format!("quantity {other} of a slab between refracting faces is not answered here"))),
+        other => {
+            return Ok(Err(format!(
+                "quantity {other} of a slab between refracting faces is not answered here"
+            )));
+        }
     }))
 }

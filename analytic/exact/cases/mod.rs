@@ -26,7 +26,8 @@ pub fn answer(path: &Path, format: Format, output: &mut Vec<u8>) -> Result<()> {
     let rows = read(path)?;
     // What a medium has solved serves all its rows: answer by medium, print in the order of the file.
     let mut order: Vec<usize> = (0..rows.len()).collect();
-    let medium = |i: usize| ["geometry", "tau", "a", "n", "w", "g", "extra"].map(|column| rows[i].text(column));
+    let medium =
+        |i: usize| ["geometry", "tau", "a", "n", "w", "g", "extra"].map(|column| rows[i].text(column));
     order.sort_by(|&a, &b| medium(a).cmp(&medium(b)));
     let mut answers: Vec<Option<Answered>> = rows.iter().map(|_| None).collect();
     let mut slabs = slab::Slabs::default();
@@ -59,7 +60,8 @@ pub fn answer(path: &Path, format: Format, output: &mut Vec<u8>) -> Result<()> {
     write(&answered, format, output)
 }
 
-const GEOMETRIES: &str = "slab, slabXY, slab_fresnel, halfspace, sphere, infinite, critical_slab, critical_sphere, kernel";
+const GEOMETRIES: &str =
+    "slab, slabXY, slab_fresnel, halfspace, sphere, infinite, critical_slab, critical_sphere, kernel";
 
 fn read(path: &Path) -> Result<Vec<Row>> {
     let name = path.display();
@@ -137,7 +139,8 @@ fn write(lines: &[Line<'_>], format: Format, output: &mut Vec<u8>) -> Result<()>
                 };
                 let [value, error, method] = &cells;
                 let known = [line.row.text("id"), value, error, method, line.note()].into_iter();
-                writer.write_record(known.chain(COLUMNS.iter().skip(1).map(|column| line.row.text(column))))?;
+                writer
+                    .write_record(known.chain(COLUMNS.iter().skip(1).map(|column| line.row.text(column))))?;
             }
             writer.flush()?;
         }

@@ -49,10 +49,15 @@ impl Row {
     pub fn extra_whole(&self, name: &str, allowed: std::ops::RangeInclusive<u32>) -> Result<Option<u32>> {
         let Some(text) = self.extra(name) else { return Ok(None) };
         match text.parse::<f64>() {
-            Ok(n) if n.fract() == 0.0 && (f64::from(*allowed.start())..=f64::from(*allowed.end())).contains(&n) => {
+            Ok(n)
+                if n.fract() == 0.0
+                    && (f64::from(*allowed.start())..=f64::from(*allowed.end())).contains(&n) =>
+            {
                 Ok(Some(n as u32))
             }
-            _ => bail!("{name} in extra is '{text}'; allowed: {} to {}, whole", allowed.start(), allowed.end()),
+            _ => {
+                bail!("{name} in extra is '{text}'; allowed: {} to {}, whole", allowed.start(), allowed.end())
+            }
         }
     }
 

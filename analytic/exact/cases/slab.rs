@@ -31,7 +31,8 @@ impl Slabs {
         let key = key(albedo, named, incidence);
         if !self.solved.contains_key(&key) {
             // Slabs of one thickness share an operator.
-            let other = self.solved.values().find_map(|s| if let Solved::Peierls(s) = s { Some(s) } else { None });
+            let other =
+                self.solved.values().find_map(|s| if let Solved::Peierls(s) = s { Some(s) } else { None });
             let slab = match other {
                 Some(other) => other.with(albedo, incidence)?,
                 None => IsotropicSlab::new(tau, albedo, incidence)?,
@@ -90,7 +91,9 @@ pub fn named(row: &Row) -> Result<std::result::Result<Named, String>> {
             let name = format!("two-term g={g1} g2={g2} share={share}");
             Ok(Named { phase: Phase::two_term(g1, g2, share)?, name, single_g: None })
         }
-        Some(other) => Err(format!("phase function {other} is not known here; allowed: rayleigh, two_term, or none")),
+        Some(other) => {
+            Err(format!("phase function {other} is not known here; allowed: rayleigh, two_term, or none"))
+        }
         None => Ok(Named::henyey_greenstein(row.number_or("g", 0.0)?)?),
     })
 }
@@ -106,7 +109,8 @@ pub fn answer(row: &Row, slabs: &mut Slabs) -> Result<Answered> {
     if row.number_or("n", 1.0)? != 1.0 {
         return Ok(Err("refracting faces are asked by geometry slab_fresnel".into()));
     }
-    let radiance = matches!(quantity, "radiance_up" | "radiance_down_diffuse" | "radiance_total_diffuse" | "radiance");
+    let radiance =
+        matches!(quantity, "radiance_up" | "radiance_down_diffuse" | "radiance_total_diffuse" | "radiance");
     if let Some(n) = row.extra_whole("order", 0..=1000)? {
         return by_order(row, n, radiance, &named, slabs);
     }
@@ -127,7 +131,9 @@ pub fn answer(row: &Row, slabs: &mut Slabs) -> Result<Answered> {
         "A" => Ok(slab.absorptance()),
         "fluence" => Ok(slab.fluence(row.number("t")?)?),
         "flux" => Ok(slab.flux(row.number("t")?)?),
-        _ if radiance => Ok(slab.radiance(row.number("t")?, row.number("mu")?, row.number_or("dphi", 0.0)?)?),
+        _ if radiance => {
+            Ok(slab.radiance(row.number("t")?, row.number("mu")?, row.number_or("dphi", 0.0)?)?)
+        }
         "X" => Ok(times_mu(slab.fluence(0.0)?, row.number("mu")?)),
         "Y" => Ok(times_mu(slab.fluence(tau)?, row.number("mu")?)),
         other => Err(format!("quantity {other} of a slab is not answered here")),

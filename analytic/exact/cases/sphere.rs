@@ -52,10 +52,16 @@ pub fn answer(row: &Row, spheres: &mut Spheres) -> Result<Answered> {
         "absorbed_iso_incidence" => spheres.get(a, albedo, Incident)?.absorptance(),
         "fluence_uniform_source_unit_power" => spheres.get(a, albedo, Uniform)?.fluence(row.number("r")?)?,
         "fluence_central_point" => spheres.get(a, albedo, Centre)?.fluence(row.number("r")?)?,
-        "fluence_iso_incidence_unit_irradiance" => spheres.get(a, albedo, Incident)?.fluence(row.number("r")?)?,
-        "exit_radiance_uniform_unit_power" => spheres.get(a, albedo, Uniform)?.exit_radiance(row.number("mu")?)?,
+        "fluence_iso_incidence_unit_irradiance" => {
+            spheres.get(a, albedo, Incident)?.fluence(row.number("r")?)?
+        }
+        "exit_radiance_uniform_unit_power" => {
+            spheres.get(a, albedo, Uniform)?.exit_radiance(row.number("mu")?)?
+        }
         "exit_radiance_central_point" => spheres.get(a, albedo, Centre)?.exit_radiance(row.number("mu")?)?,
-        "exit_radiance_iso_incidence" => spheres.get(a, albedo, Incident)?.exit_radiance(row.number("mu")?)?,
+        "exit_radiance_iso_incidence" => {
+            spheres.get(a, albedo, Incident)?.exit_radiance(row.number("mu")?)?
+        }
         "escape_first_flight_uniform" => escape_uniform(a)?,
         "escape_first_flight_from" => escape_from(a, row.number("r")?)?,
         other => return Ok(Err(format!("quantity {other} of a sphere is not answered here"))),
