@@ -22,7 +22,7 @@ const MOST: [usize; 2] = [330, 250];
 /// Radiances scattered three times and more: a moment left out of order m of azimuth is met by the square of chi_m at
 /// least, and their product may be this.
 const RAY: [f64; 2] = [1e-10, 1e-9];
-const LOWER_RAY: [usize; 2] = [32, 26];
+const LOWER_RAY: [usize; 2] = [40, 34];
 const UPPER_RAY: [usize; 2] = [32, 26];
 const MOST_RAY: [usize; 2] = [116, 104];
 /// The most where the peak is cut off, and how much looser the rules are.
@@ -123,7 +123,10 @@ impl AnisotropicMedium {
     }
 
     fn of(albedo: f64, phase: &Phase, sets: [(Scattering, Nodes); 2]) -> Result<Self> {
-        let sets = sets.map(|parts| Set::new(parts, 0, 0..=0));
+        let sets = sets.map(|(scattering, nodes)| {
+            let last = scattering.degree();
+            Set::new((scattering, nodes), 0, 0..=last)
+        });
         let azimuth = OnceLock::new();
         let medium = AnisotropicMedium(Arc::new(Medium { albedo, phase: phase.clone(), sets, azimuth }));
         medium.modes(0, 0)?;
