@@ -10,6 +10,8 @@
 //! * Special functions and rules: [`exponential_integral`], [`quadrature`]
 //! * Phase functions: [`phase`]
 //! * Slab: [`beer_lambert`], [`slab_single`], [`slab_isotropic`], [`slab_anisotropic`]
+//! * Half-space: [`half_space`]; infinite medium: [`infinite`]
+//! * Sphere: [`sphere`] (uniform, central and incident light; the absorbing sphere)
 //! * Kernel density estimation: [`kernel`], [`ball_mean`], [`blur`], [`edge`], [`volumes`], [`slab_kernel`],
 //!   [`nearest`], [`progressive`]; where the medium ends: [`boundary`]
 
@@ -20,7 +22,9 @@ pub mod boundary;
 pub mod edge;
 pub mod error;
 pub mod exponential_integral;
+pub mod half_space;
 pub mod incidence;
+pub mod infinite;
 pub mod kernel;
 pub mod nearest;
 mod peierls;
@@ -32,15 +36,19 @@ pub mod slab_anisotropic;
 pub mod slab_isotropic;
 pub mod slab_kernel;
 pub mod slab_single;
+pub mod sphere;
 pub mod value;
 pub mod volumes;
 
 pub use error::{Error, Result};
+pub use half_space::HalfSpace;
 pub use incidence::Incidence;
+pub use infinite::InfiniteMedium;
 pub use kernel::{Dimension, Kernel};
 pub use phase::Phase;
 pub use slab_anisotropic::{AnisotropicMedium, AnisotropicSlab};
 pub use slab_isotropic::IsotropicSlab;
+pub use sphere::{Sphere, SphereSource};
 pub use value::Value;
 
 /// The same cases on every run, and no files left behind.

@@ -4,6 +4,7 @@
 //! The slab is its own mirror image, so everything is said for its upper half: a point by its distance x from the
 //! nearer face, a function by two lists of values, on the near half and on the far one.
 
+pub(crate) mod fast;
 mod mesh;
 mod weights;
 

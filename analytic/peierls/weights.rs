@@ -1,8 +1,8 @@
 //! Weights of the logarithmically singular kernel E_1 on one panel, seen from any point.
 
 use super::Row;
+use super::fast::e1;
 use super::mesh::{Mesh, NODES};
-use crate::exponential_integral::e1;
 use crate::quadrature::GaussLegendre;
 
 /// Substitution z = L s^5 on up to one mean free path about the point: s^4 ln s leaves an n-point Gauss rule an
