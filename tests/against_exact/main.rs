@@ -10,7 +10,6 @@ mod equiangular;
 mod fold;
 mod furnace;
 mod henyey_greenstein;
-mod reference;
 mod slab;
 mod sphere;
 mod surfaces;

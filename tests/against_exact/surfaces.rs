@@ -1,7 +1,7 @@
 //! Surfaces and the ways to find a light: view factors, spherical cavities, mirrors.
 
 use crate::support::run::{paths, tallies};
-use crate::support::scenes::{bounded, emitting_sphere, outflow, point_light, rectangle, sphere};
+use crate::support::scenes::{bounded, emitting_sphere, lambertian, outflow, point_light, rectangle, sphere};
 use crate::support::verdict;
 use glam::DVec3;
 use std::f64::consts::PI;
@@ -9,13 +9,9 @@ use turbid::Spectrum;
 use turbid::geometry::Shape;
 use turbid::math::FOUR_PI;
 use turbid::scene::{Orders, Quantity};
-use turbid::surface::{Lambertian, Mirror, Surface};
+use turbid::surface::{Mirror, Surface};
 
 const N: u64 = 1 << 18;
-
-fn lambertian(reflectance: Spectrum) -> Surface {
-    Surface::Lambertian(Lambertian::new(reflectance).unwrap())
-}
 
 #[test]
 fn irradiance_under_an_area_light() {
