@@ -10,6 +10,7 @@ mod equiangular;
 mod fold;
 mod furnace;
 mod henyey_greenstein;
+mod mean_path;
 mod slab;
 mod sphere;
 mod surfaces;
