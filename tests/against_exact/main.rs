@@ -6,6 +6,7 @@ mod checks;
 #[path = "../support/mod.rs"]
 mod support;
 
+mod emitting_sphere;
 mod equiangular;
 mod fold;
 mod furnace;
@@ -13,4 +14,5 @@ mod henyey_greenstein;
 mod mean_path;
 mod slab;
 mod sphere;
+mod sphere_fields;
 mod surfaces;
