@@ -6,11 +6,13 @@ mod checks;
 #[path = "../support/mod.rs"]
 mod support;
 
+mod cavity;
 mod emitting_sphere;
 mod equiangular;
 mod fold;
 mod furnace;
 mod henyey_greenstein;
+mod infinite;
 mod mean_path;
 mod slab;
 mod sphere;
