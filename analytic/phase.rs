@@ -168,6 +168,34 @@ impl Phase {
         }
     }
 
+    /// Mean over azimuth of the density \[1/sr\] between directions of cosines x and y.
+    ///
+    /// Henyey-Greenstein: (1-g^2) E(m) / (2 pi^2 (a-b) root(a+b)), a = 1 + g^2 - 2 g x y, b = 2 |g| times both sines,
+    /// m = 2b/(a+b), E the complete elliptic integral of the second kind.
+    pub(crate) fn azimuthal_mean(&self, x: f64, y: f64) -> f64 {
+        match &self.0 {
+            Kind::HenyeyGreenstein { g1, g2, share } => {
+                let sine = |c: f64| ((1.0 - c) * (1.0 + c)).sqrt();
+                let (s, r) = (sine(x), sine(y));
+                let term = |g: f64| {
+                    let (h, y) = (g.abs(), if g < 0.0 { -y } else { y });
+                    let lateral = if s + r > 0.0 { (x - y) * (x + y) / (s + r) } else { 0.0 };
+                    // (1-h)^2 + 2 h (1 - cos), at the nearest and the farthest azimuth.
+                    let near = (1.0 - h) * (1.0 - h) + h * (lateral * lateral + (x - y) * (x - y));
+                    let far = near + 4.0 * h * s * r;
+                    (1.0 - h) * (1.0 + h) * elliptic_e(near / far) / (2.0 * PI * PI * near * far.sqrt())
+                };
+                if *share == 1.0 { term(*g1) } else { share * term(*g1) + (1.0 - share) * term(*g2) }
+            }
+            Kind::Moments(moments) => {
+                let degree = moments.len() - 1;
+                let (p, q) = (polynomials(degree, x), polynomials(degree, y));
+                let sum: f64 = (0..=degree).map(|l| (2 * l + 1) as f64 * moments[l] * p[l] * q[l]).sum();
+                sum / (4.0 * PI)
+            }
+        }
+    }
+
     /// The least L such that no moment beyond it exceeds `cut`; at most `most`.
     pub(crate) fn degree(&self, cut: f64, most: usize) -> usize {
         match &self.0 {
@@ -192,6 +220,22 @@ fn series(moments: &[f64], c: f64) -> f64 {
         (next, after) = (here, next);
     }
     (moments[0] + c * next - 0.5 * after) / (4.0 * PI)
+}
+
+/// int_0^(pi/2) root(1 - m sin^2 a) da for the complement 1 - m in (0, 1], by arithmetic and geometric means.
+fn elliptic_e(complement: f64) -> f64 {
+    let (mut a, mut b) = (1.0, complement.sqrt());
+    let (mut sum, mut power) = (0.5 * (1.0 - complement), 0.5);
+    for _ in 0..12 {
+        let c = 0.5 * (a - b);
+        (a, b) = (0.5 * (a + b), (a * b).sqrt());
+        power *= 2.0;
+        sum += power * c * c;
+        if c <= 1e-9 * a {
+            break;
+        }
+    }
+    0.5 * PI / a * (1.0 - sum)
 }
 
 /// P_0(x) to P_degree(x).
@@ -233,6 +277,26 @@ mod tests {
             let degree = phase.degree(cut, 1000);
             assert!((degree + 1..degree + 50).all(|l| phase.moment(l).abs() <= cut * (1.0 + 1e-9)));
         }
+    }
+
+    #[test]
+    fn means_over_azimuth_are_sums_of_moments() {
+        for phase in specimens() {
+            let degree = phase.degree(1e-18, 1000);
+            for (x, y) in [(0.3, -0.8), (1.0, -1.0), (0.5, 0.5), (0.0, 0.9), (-0.2, 0.6), (1e-9, -1e-9)] {
+                let (p, q) = (polynomials(degree, x), polynomials(degree, y));
+                let sum: f64 = (0..=degree).map(|l| (2 * l + 1) as f64 * phase.moment(l) * p[l] * q[l]).sum();
+                let got = phase.azimuthal_mean(x, y);
+                assert!(
+                    (got - sum / (4.0 * PI)).abs() < 1e-13 * (1.0 + got),
+                    "{phase:?} {x} {y} {got} {sum}"
+                );
+            }
+        }
+        // Beside the peak and far from it, E is 1 to pi/2.
+        assert!((elliptic_e(1.0) - 0.5 * PI).abs() < 1e-15 && (elliptic_e(1e-12) - 1.0).abs() < 1e-10);
+        let half = 1.350_643_881_047_675_5;
+        assert!((elliptic_e(0.5) - half).abs() < 4e-16);
     }
 
     #[test]

@@ -17,11 +17,14 @@
 //!
 //! Source: Chandrasekhar 1960, chapters II and III; Stamnes, Tsay, Wiscombe and Jayaweera 1988.
 
+mod convolution;
+mod faces;
 mod jacobi;
 mod matching;
 mod medium;
 pub(crate) mod modes;
 pub(crate) mod nodes;
+mod ray;
 pub(crate) mod scattering;
 pub(crate) mod solution;
 #[cfg(test)]
@@ -42,6 +45,12 @@ const METHOD: &str = "discrete ordinates, two node counts";
 /// Roundings of the terms of a sum over modes: columns count as orthogonal at root n of them, about ten, and an
 /// eigenvector, an amplitude and an exponential have a few each.
 const ULPS: f64 = 64.0;
+
+/// Below this thickness the fluxes are integrals over it.
+const THIN: f64 = 1e-3;
+
+/// Below this albedo the little that is scattered of diffuse light is.
+const WEAK: f64 = 0.01;
 
 /// A solved slab or half-space: reflectance, transmittance, absorptance and fluence in all orders of scattering.
 pub struct AnisotropicSlab {
@@ -86,15 +95,25 @@ impl AnisotropicSlab {
             Solution::new(tau * modes.scattering.stretch, incidence, modes)
         };
         let solutions = [solve(0)?, solve(1)?];
-        let pair = |f: fn(&Solution) -> Sum| [f(&solutions[0]), f(&solutions[1])];
         let direct = direct_transmittance(incidence, tau.min(f64::MAX))?;
-        // Light scattered into a peak that was cut off goes straight on in the solution.
-        let fluxes = [
-            pair(Solution::reflectance),
-            pair(Solution::transmittance_total).map(|sum| sum.plus(-direct.value, direct.value)),
-            pair(Solution::absorptance),
-        ];
-        let [reflectance, transmittance_diffuse, absorptance] = bounded(fluxes);
+        let weak = incidence == Incidence::Diffuse && medium.albedo() < WEAK;
+        let fluxes = if tau < THIN || weak {
+            faces::fluxes(&medium, tau, incidence, &solutions)
+        } else {
+            let sums: [[Sum; 3]; 2] = std::array::from_fn(|set| {
+                let solution = &solutions[set];
+                let gain = faces::gain(&medium, solution, 1.0);
+                let (t, a) = (solution.transmittance_scattered(tau), solution.absorptance());
+                // What is reflected more is missing from the rest, in the proportion of its parts.
+                let part =
+                    |x: Sum| x.plus(-gain * (x.value / (t.value + a.value)), gain.abs() * x.value.abs());
+                let r = solution.reflectance().plus(gain, gain.abs());
+                if gain == 0.0 { [r, t, a] } else { [r, part(t), part(a)] }
+            });
+            std::array::from_fn(|i| [sums[0][i], sums[1][i]])
+        };
+        let horizon = solutions[0].modes.nodes.horizon(tau);
+        let [reflectance, transmittance_diffuse, absorptance] = bounded(fluxes, horizon);
         let ladder = OnceLock::new();
         Ok(AnisotropicSlab {
             medium,
@@ -161,6 +180,25 @@ impl AnisotropicSlab {
         self.absorptance
     }
 
+    /// Net flux downwards at depth t, direct light included, per unit irradiance on the lit face \[1\].
+    ///
+    /// It falls from 1 - R to T by (1-w) times the fluence.
+    /// # Arguments
+    /// `t` depth in mean free paths, 0 to tau
+    /// # Errors
+    /// `Error::OutOfRange` naming `t`
+    pub fn flux(&self, t: f64) -> Result<Value> {
+        check_depth(t, self.tau.min(f64::MAX))?;
+        let [fine, coarse] = net_fluxes(&self.solutions, t);
+        let faces = [self.reflectance, self.transmittance(), self.absorptance];
+        let largest = faces.iter().fold(0.0, |a: f64, v| a.max(v.error));
+        let relative =
+            faces.iter().filter(|v| v.value != 0.0).fold(0.0, |a: f64, v| a.max(v.error / v.value.abs()));
+        let shared = largest.min(relative * fine.value.abs());
+        let error = (fine.value - coarse.value).abs() + shared + rounding(fine) + f64::MIN_POSITIVE;
+        Ok(Value::new(fine.value, error, METHOD))
+    }
+
     /// Fluence at depth t, direct light included, per unit irradiance on the lit face \[1\].
     ///
     /// # Arguments
@@ -168,7 +206,7 @@ impl AnisotropicSlab {
     /// # Errors
     /// `Error::OutOfRange` naming `t`
     pub fn fluence(&self, t: f64) -> Result<Value> {
-        check_depth(t, self.tau)?;
+        check_depth(t, self.tau.min(f64::MAX))?;
         let [fine, coarse] = fluences(&self.solutions, t);
         // The difference swings about zero with ln t, with a period of about one step of the ladder.
         let ladder = self.ladder.get_or_init(|| {
@@ -183,14 +221,20 @@ impl AnisotropicSlab {
     }
 }
 
+/// Net flux of both solutions.
+fn net_fluxes(solutions: &[Solution; 2], t: f64) -> [Sum; 2] {
+    solutions.each_ref().map(|solution| solution.flux(t * solution.modes.scattering.stretch))
+}
+
 /// Rounding of a sum over modes.
 fn rounding(sum: Sum) -> f64 {
     ULPS * f64::EPSILON * sum.magnitude
 }
 
 /// R, diffuse T and A with their bounds: each the difference of the two solutions, plus the largest difference of the
-/// three, absolute or relative to each, whichever is less (in a thick slab T is a small number known well).
-fn bounded(fluxes: [[Sum; 2]; 3]) -> [Value; 3] {
+/// three, absolute or relative to each, whichever is less (in a thick slab T is a small number known well), plus what
+/// no rule sees of the `horizon`, relative to each.
+fn bounded(fluxes: [[Sum; 2]; 3], horizon: f64) -> [Value; 3] {
     let differences = fluxes.map(|[fine, coarse]| (fine.value - coarse.value).abs());
     let largest = differences.iter().fold(0.0, |a: f64, &b| a.max(b));
     let relative = fluxes
@@ -200,7 +244,7 @@ fn bounded(fluxes: [[Sum; 2]; 3]) -> [Value; 3] {
         .fold(0.0, |a: f64, (flux, d)| a.max(d / flux[0].value.abs()));
     std::array::from_fn(|i| {
         let fine = fluxes[i][0];
-        let shared = largest.min(relative * fine.value.abs());
+        let shared = largest.min(relative * fine.value.abs()) + horizon * fine.value.abs();
         Value::new(fine.value, differences[i] + shared + rounding(fine) + f64::MIN_POSITIVE, METHOD)
     })
 }

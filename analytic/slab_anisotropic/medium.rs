@@ -16,9 +16,9 @@ const CUT: [f64; 2] = [1e-11, 1e-8];
 /// Nodes towards the horizon, the fewest and the most above it.
 const LOWER: [usize; 2] = [60, 50];
 const UPPER: [usize; 2] = [32, 26];
-const MOST: [usize; 2] = [160, 132];
+const MOST: [usize; 2] = [330, 250];
 
-const TAIL: &str = "moments that beyond l = 262 are at most 0.1 and hardly change";
+const TAIL: &str = "moments that beyond l = 498 are at most 0.1 and hardly change";
 
 /// A medium whose modes are solved once, for any number of slabs. Cloning shares them.
 #[derive(Clone)]

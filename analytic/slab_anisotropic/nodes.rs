@@ -1,6 +1,8 @@
 //! The directions of discrete ordinates: a Gauss rule on [b, 1], and nodes that crowd towards the horizon.
 
 use crate::quadrature::GaussLegendre;
+use libm::exp;
+use std::f64::consts::PI;
 
 /// Nodes mu = b x^4 of a Gauss rule in x cover [0, b]. At depth t, light with mu below t has settled and light above
 /// it has not; in ln mu that step is analytic in a strip of half width pi/2, so a spacing h = d(ln mu) leaves
@@ -16,6 +18,8 @@ pub(crate) struct Nodes {
     pub weight: Vec<f64>,
     /// Highest Legendre moment of the phase function that the rule integrates to rounding.
     pub degree: usize,
+    /// b and the number of nodes below it, if they crowd there.
+    crowd: Option<(f64, f64)>,
 }
 
 impl Nodes {
@@ -32,7 +36,7 @@ impl Nodes {
             inner.nodes.iter().zip(&inner.weights).map(|(x, w)| power * b * x.powi(POWER - 1) * w).collect();
         mu.extend(outer.nodes.iter().map(|x| b + (1.0 - b) * x));
         weight.extend(outer.weights.iter().map(|w| (1.0 - b) * w));
-        Nodes::of(mu, weight, 2 * upper - 2)
+        Nodes { crowd: Some((b, lower as f64)), ..Nodes::of(mu, weight, 2 * upper - 2) }
     }
 
     /// One Gauss rule of `half` nodes on \[0, 1\]: as many streams as twice that, by the usual count.
@@ -46,7 +50,18 @@ impl Nodes {
         // The weights are good to a few roundings each, and their sum must be 1: photons are counted with them.
         let sum: f64 = weight.iter().sum();
         weight.iter_mut().for_each(|w| *w /= sum);
-        Nodes { mu, weight, degree }
+        Nodes { mu, weight, degree, crowd: None }
+    }
+
+    /// What the spacing of the nodes leaves open of the light of a slab of thickness `tau`, relative to what is
+    /// scattered: a fraction min(tau, b) of it goes lower than tau, and exp(-pi^2/h) of that is not resolved.
+    pub fn horizon(&self, tau: f64) -> f64 {
+        let Some((b, lower)) = self.crowd else { return 0.0 };
+        let least = tau.min(0.5 * b);
+        let x = (least / b).sqrt().sqrt();
+        // Gauss nodes in x lie pi root(x (1-x))/n apart.
+        let h = f64::from(POWER) * PI * (x * (1.0 - x)).sqrt() / (lower * x);
+        least * exp(-PI * PI / h)
     }
 
     /// How many.

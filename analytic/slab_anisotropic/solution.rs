@@ -84,7 +84,7 @@ impl Beam {
     ///
     /// For slow modes a multiple of e^(-beta t), beta >= 1. Beyond, psi = k xi +- eta starts from 0 on the face
     /// where it enters, so that both are integrals of positive functions and k = beta needs no care.
-    fn particular(&self, j: usize, k: f64, t: f64, rest: f64) -> [f64; 3] {
+    pub fn particular(&self, j: usize, k: f64, t: f64, rest: f64) -> [f64; 3] {
         let (beta, pi, kappa) = (self.beta, self.pi[j], self.kappa[j]);
         if t == f64::INFINITY {
             return [0.0; 3];
@@ -172,16 +172,34 @@ impl Solution {
         Sum { value: -up.value - uncollided, magnitude: up.magnitude + uncollided }
     }
 
-    /// Fraction transmitted, what is scattered into a peak that was cut off and direct light included \[1\].
-    pub fn transmittance_total(&self) -> Sum {
+    /// Fraction transmitted after at least one scattering, into a peak that was cut off too: what passes the slab
+    /// uncollided here and not in the true one, of thickness `whole` \[1\].
+    pub fn transmittance_scattered(&self, whole: f64) -> Sum {
         if self.tau == f64::INFINITY {
             return Sum::ZERO;
         }
-        let direct = match self.incidence {
-            Incidence::Beam { mu0 } => exp(-self.tau / mu0),
-            Incidence::Diffuse => 2.0 * e_n(3, self.tau),
+        let straight = match self.incidence {
+            Incidence::Beam { mu0 } => exp(-self.tau / mu0) * -expm1(-(whole - self.tau) / mu0),
+            Incidence::Diffuse => 2.0 * (e_n(3, self.tau) - e_n(3, whole)),
         };
-        self.transmittance_diffuse().plus(direct, direct)
+        self.transmittance_diffuse().plus(straight, straight)
+    }
+
+    /// Net flux downwards at depth t, direct light included \[1\].
+    pub fn flux(&self, t: f64) -> Sum {
+        let up = self.net_flux_up(t).scaled(-1.0);
+        match self.incidence {
+            Incidence::Beam { mu0 } => {
+                let direct = exp(-t / mu0);
+                up.plus(direct, direct * (1.0 + t / mu0))
+            }
+            // Uncollided light is known exactly: the nodes' version of it is taken out.
+            Incidence::Diffuse => {
+                let ours = 2.0 * self.modes.nodes.sum(|mu| mu * exp(-t / mu));
+                let exact = 2.0 * e_n(3, t);
+                up.plus(exact, exact).plus(-ours, ours)
+            }
+        }
     }
 
     /// Fraction absorbed \[1\], from the integral of the fluence.
@@ -249,6 +267,20 @@ impl Solution {
             sum = sum + self.term(j, t, slopes).plus(part[1], size).scaled(self.modes.flux[j]);
         }
         sum.scaled(2.0 * PI)
+    }
+
+    /// p and q at node i and depth t.
+    #[cfg(test)]
+    pub fn light(&self, i: usize, t: f64) -> [f64; 2] {
+        let rest = self.tau - t;
+        let (mut p, mut q) = (0.0, 0.0);
+        for (j, &k) in self.modes.k.iter().enumerate() {
+            let (shapes, slopes) = self.shapes(k, t, rest);
+            let part = self.beam.as_ref().map_or([0.0; 3], |beam| beam.particular(j, k, t, rest));
+            p += self.modes.even[(i, j)] * (self.term(j, t, shapes).value + part[0]);
+            q += self.modes.odd[(i, j)] * (self.term(j, t, slopes).value + part[1]);
+        }
+        [p, q].map(|x| x / self.modes.root[i])
     }
 
     /// The two solutions of mode j times their amplitudes.

@@ -115,3 +115,63 @@ fn resonances_lose_nothing() {
     }
     assert!(count >= 10, "{count}");
 }
+
+/// On a node the integral along the ray is the light in that node, of every order of azimuth.
+#[test]
+fn rays_on_nodes_are_the_nodes() {
+    for (tau, albedo, g, order) in [
+        (1.0, 1.0, 0.5, 0),
+        (1e-3, 0.9, 0.5, 0),
+        (40.0, 0.9, 0.75, 0),
+        (2.0, 0.9, 0.75, 3),
+        (0.1, 1.0, -0.6, 1),
+        (f64::INFINITY, 0.99, 0.6, 0),
+        (f64::INFINITY, 1.0, 0.6, 2),
+    ] {
+        let medium = AnisotropicMedium::new(albedo, &Phase::henyey_greenstein(g).unwrap()).unwrap();
+        let modes = medium.modes(1, order).unwrap();
+        let lights = [Incidence::Beam { mu0: 0.6 }, Incidence::Beam { mu0: 1.0 }, Incidence::Diffuse];
+        for light in &lights[..if order == 0 { 3 } else { 2 }] {
+            let s = Solution::new(tau, *light, modes.clone()).unwrap();
+            for t in [0.0, 0.3, 0.9].map(|share| share * tau.min(5.0)) {
+                for i in (0..modes.nodes.len()).step_by(6) {
+                    let mu = modes.nodes.mu[i];
+                    let source = modes.source(mu);
+                    let [up, down] = [mu, -mu].map(|mu| s.last_scattered(t, mu, &source));
+                    let [p, q] = s.light(i, t);
+                    // The beam's own light, and what enters, is not scattered last by the modes.
+                    let once = match *light {
+                        Incidence::Beam { mu0 } => [1.0, -1.0].map(|sign| {
+                            let terms = super::nodes::legendre(order, s.modes.scattering.degree(), mu)
+                                .into_iter()
+                                .zip(super::nodes::legendre(order, s.modes.scattering.degree(), mu0));
+                            let turns = if order == 0 { 1.0 } else { 2.0 };
+                            let phase: f64 = terms
+                                .enumerate()
+                                .map(|(n, (a, b))| {
+                                    let l = n + order;
+                                    // The direction of the beam is -mu0.
+                                    let parity = if sign > 0.0 && n % 2 == 1 { -1.0 } else { 1.0 };
+                                    (2 * l + 1) as f64 * s.modes.scattering.moments[l] * a * b * parity
+                                })
+                                .sum::<f64>()
+                                * turns
+                                / (4.0 * std::f64::consts::PI);
+                            albedo * phase * crate::slab_single::beam_path(tau, mu0, t, sign * mu)
+                        }),
+                        Incidence::Diffuse => [0.0, exp(-t / mu) / std::f64::consts::PI],
+                    };
+                    let scale = up.magnitude + down.magnitude + once[0].abs() + once[1].abs();
+                    for (got, want) in [(up.value + once[0], p + q), (down.value + once[1], p - q)] {
+                        let off = got - 0.5 * want;
+                        assert!(
+                            off.abs() < 1e-11 * scale.max(1e-3),
+                            "{tau} {g} {order} {light:?} t {t} mu {mu}: {got:e} {:e}",
+                            0.5 * want
+                        );
+                    }
+                }
+            }
+        }
+    }
+}
