@@ -196,6 +196,11 @@ impl Phase {
         }
     }
 
+    /// Whether `value` is a closed form, and not a sum over moments.
+    pub(crate) fn is_closed(&self) -> bool {
+        matches!(self.0, Kind::HenyeyGreenstein { .. })
+    }
+
     /// The least L such that no moment beyond it exceeds `cut`; at most `most`.
     pub(crate) fn degree(&self, cut: f64, most: usize) -> usize {
         match &self.0 {

@@ -7,6 +7,7 @@ use super::{AnisotropicSlab, METHOD};
 use crate::error::{Result, within};
 use crate::incidence::{Incidence, check_albedo};
 use crate::phase::Phase;
+use std::ops::RangeInclusive;
 use std::sync::{Arc, OnceLock};
 
 /// What the first Legendre moment left out may be in the finer and in the coarser solution. Its effect on a flux is
@@ -18,6 +19,22 @@ const LOWER: [usize; 2] = [60, 50];
 const UPPER: [usize; 2] = [32, 26];
 const MOST: [usize; 2] = [330, 250];
 
+/// Radiances scattered three times and more: a moment left out of order m of azimuth is met by the square of chi_m at
+/// least, and their product may be this.
+const RAY: [f64; 2] = [1e-10, 1e-9];
+const LOWER_RAY: [usize; 2] = [32, 26];
+const UPPER_RAY: [usize; 2] = [32, 26];
+const MOST_RAY: [usize; 2] = [104, 90];
+/// Numbers of nodes go in steps, so that many orders share theirs.
+const STEP: usize = 8;
+
+/// A phase function with moments above this beyond those nodes loses its peak first.
+const PEAKED: f64 = 1e-3;
+
+/// What the second power of a moment left out of light scattered twice may be; lists of more moments are too slow.
+const TWICE: [f64; 2] = [1e-13, 1e-10];
+const LONG: usize = 150;
+
 const TAIL: &str = "moments that beyond l = 498 are at most 0.1 and hardly change";
 
 /// A medium whose modes are solved once, for any number of slabs. Cloning shares them.
@@ -28,10 +45,28 @@ struct Medium {
     albedo: f64,
     phase: Phase,
     sets: [Set; 2],
+    azimuth: OnceLock<Azimuth>,
+}
+
+/// Two sets of nodes for every order of azimuth, for light scattered three times and more.
+pub(super) struct Azimuth {
+    orders: [Vec<Set>; 2],
+    /// Nodes for light scattered twice, of which every moment counts; none where the peak had to be cut off.
+    pub twice: Option<[Twice; 2]>,
+}
+
+/// A rule over all directions.
+pub(super) struct Twice {
+    pub nodes: Nodes,
+    pub turns: usize,
 }
 
 /// One set of nodes.
 struct Set {
+    /// Nodes above the crowded ones.
+    upper: usize,
+    /// The first order of azimuth.
+    first: usize,
     scattering: Arc<Scattering>,
     nodes: Arc<Nodes>,
     /// Modes by order of azimuth, solved when first asked for.
@@ -83,12 +118,9 @@ impl AnisotropicMedium {
     }
 
     fn of(albedo: f64, phase: &Phase, sets: [(Scattering, Nodes); 2]) -> Result<Self> {
-        let sets = sets.map(|(scattering, nodes)| Set {
-            modes: (0..=scattering.degree()).map(|_| OnceLock::new()).collect(),
-            scattering: Arc::new(scattering),
-            nodes: Arc::new(nodes),
-        });
-        let medium = AnisotropicMedium(Arc::new(Medium { albedo, phase: phase.clone(), sets }));
+        let sets = sets.map(|parts| Set::new(parts, 0, 0..=0));
+        let azimuth = OnceLock::new();
+        let medium = AnisotropicMedium(Arc::new(Medium { albedo, phase: phase.clone(), sets, azimuth }));
         medium.modes(0, 0)?;
         medium.modes(1, 0)?;
         Ok(medium)
@@ -132,9 +164,96 @@ impl AnisotropicMedium {
 
     /// The modes of an order of azimuth, at most the degree of `scattering(set)`, on set 0 (the finer) or 1.
     pub(crate) fn modes(&self, set: usize, order: usize) -> Result<Arc<Modes>> {
-        let set = &self.0.sets[set];
-        set.modes[order]
-            .get_or_init(|| Modes::new(set.scattering.clone(), set.nodes.clone(), order).map(Arc::new))
+        self.0.sets[set].modes(order)
+    }
+
+    /// What radiances by azimuth need.
+    pub(super) fn azimuth(&self) -> &Azimuth {
+        self.0.azimuth.get_or_init(|| {
+            let phase = &self.0.phase;
+            let degree = |cut: f64| phase.degree(cut, usize::MAX);
+            let short = degree(PEAKED) <= 2 * MOST_RAY[1] - 4;
+            let orders = [0, 1].map(|i| {
+                let last = degree(RAY[i]).min(2 * MOST_RAY[i] - 2);
+                let mut row: Vec<Set> = Vec::with_capacity(last + 1);
+                let mut largest = 0.0_f64;
+                let mut envelope: Vec<f64> = (0..=last)
+                    .rev()
+                    .map(|m| {
+                        largest = largest.max(phase.moment(m).abs());
+                        largest
+                    })
+                    .collect();
+                envelope.reverse();
+                for (m, chi) in envelope.into_iter().enumerate() {
+                    let needed = if short { degree(RAY[i] / (chi * chi)).max(m) } else { last };
+                    let upper = (2 + needed.div_ceil(2)).next_multiple_of(STEP);
+                    let upper = upper.clamp(UPPER_RAY[i], MOST_RAY[i]);
+                    let set = match row.last().filter(|set| set.upper == upper) {
+                        Some(set) => set.sharing(m),
+                        None => {
+                            let nodes = Nodes::new(upper, LOWER_RAY[i]);
+                            let last = nodes.degree.min(last);
+                            Set::new(
+                                (Scattering::new(self.0.albedo, phase, last, !short), nodes),
+                                upper,
+                                m..=m,
+                            )
+                        }
+                    };
+                    row.push(set);
+                }
+                row
+            });
+            let possible = short && (phase.is_closed() || degree(0.0) <= LONG);
+            let twice = possible.then(|| {
+                [0, 1].map(|i| {
+                    let degree = degree(TWICE[i]);
+                    let nodes = Nodes::new(UPPER_RAY[i].max(2 + degree / 2), LOWER_RAY[i]);
+                    Twice { nodes, turns: degree + 20 }
+                })
+            });
+            Azimuth { orders, twice }
+        })
+    }
+}
+
+impl Azimuth {
+    pub fn modes(&self, set: usize, order: usize) -> Result<Arc<Modes>> {
+        self.orders[set][order].modes(order)
+    }
+
+    /// The highest order of azimuth of a set.
+    pub fn degree(&self, set: usize) -> usize {
+        self.orders[set].len() - 1
+    }
+}
+
+impl Set {
+    fn new((scattering, nodes): (Scattering, Nodes), upper: usize, orders: RangeInclusive<usize>) -> Self {
+        Set {
+            upper,
+            first: *orders.start(),
+            modes: orders.map(|_| OnceLock::new()).collect(),
+            scattering: Arc::new(scattering),
+            nodes: Arc::new(nodes),
+        }
+    }
+
+    /// The same nodes for another order.
+    fn sharing(&self, order: usize) -> Self {
+        Set {
+            upper: self.upper,
+            first: order,
+            modes: vec![OnceLock::new()],
+            scattering: self.scattering.clone(),
+            nodes: self.nodes.clone(),
+        }
+    }
+
+    fn modes(&self, order: usize) -> Result<Arc<Modes>> {
+        self.modes[order - self.first]
+            .get_or_init(|| Modes::new(self.scattering.clone(), self.nodes.clone(), order).map(Arc::new))
             .clone()
     }
 }

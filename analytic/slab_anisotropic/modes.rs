@@ -163,6 +163,33 @@ impl Modes {
         }
         [up, odd.tr_mul(&self.families[1].at(self.order, &p)) * half]
     }
+
+    /// The part of the radiance that goes with cos(m dphi) of light scattered exactly twice, as the nodes have it: from a
+    /// beam at `mu0` into `mu` (signed), over paths `up` and `down` by way of every node.
+    pub fn twice(&self, mu0: f64, mu: f64, paths: &[[f64; 2]]) -> f64 {
+        let degree = self.scattering.degree().max(self.order);
+        let (lit, seen) = (legendre(self.order, degree, mu0), legendre(self.order, degree, mu.abs()));
+        let at = |p: &[f64]| {
+            let [even, odd] = [0, 1].map(|parity| {
+                let family: &Family = &self.families[parity];
+                &family.columns * family.at(self.order, p)
+            });
+            // Without the root of the weight.
+            let whole = if self.order == 0 { 1.0 } else { 0.0 };
+            (even.component_div(&self.root).add_scalar(whole), odd.component_div(&self.root))
+        };
+        let ((lit_even, lit_odd), (even, odd)) = (at(&lit), at(&seen));
+        let sign = if mu < 0.0 { -1.0 } else { 1.0 };
+        let sum: f64 = (0..paths.len())
+            .map(|i| {
+                let up = (even[i] + sign * odd[i]) * (lit_even[i] - lit_odd[i]) * paths[i][0];
+                let down = (even[i] - sign * odd[i]) * (lit_even[i] + lit_odd[i]) * paths[i][1];
+                self.nodes.weight[i] * (up + down)
+            })
+            .sum();
+        let turns = if self.order == 0 { 1.0 } else { 2.0 };
+        turns * self.scattering.albedo * self.scattering.albedo / (8.0 * PI) * sum
+    }
 }
 
 /// The moments of both parities.

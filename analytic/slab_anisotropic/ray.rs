@@ -12,11 +12,40 @@ use nalgebra::DVector;
 
 /// Where the ray is: depth, what lies below, the way to the face it comes from, 1/|mu|, and whether it goes up.
 #[derive(Clone, Copy)]
-struct Ray {
-    t: f64,
-    rest: f64,
-    c: f64,
-    up: bool,
+pub(super) struct Ray {
+    pub t: f64,
+    pub rest: f64,
+    pub c: f64,
+    pub up: bool,
+}
+
+/// What a beam e^(-beta t) feeds into e^(-k t) upwards, e^(-beta t) (1 - e^(-(k+beta) (tau-t)))/(k+beta), and
+/// downwards, int_0^t e^(-beta s) e^(-k (t-s)) ds, integrated along a ray but for the factor c.
+fn fed(k: f64, beta: f64, Ray { t, rest, c, up }: Ray) -> (f64, f64) {
+    let (a, fallen) = (k + beta, falling(beta, t));
+    if up {
+        (
+            fallen * three(0.0, a, c + beta, rest),
+            two(k, beta, t) * two(0.0, c + k, rest) + fallen * three(0.0, c + k, c + beta, rest),
+        )
+    } else {
+        (
+            decayed(a, rest) * two(beta, c, t) + falling(a, rest) * three(beta, c, c + a, t),
+            three(k, beta, c, t),
+        )
+    }
+}
+
+/// Paths of light from a beam at `mu0` by way of +-`between` into `mu` (signed) at depth t: the integrals of all three
+/// exponentials over the two collisions, for the way up and the way down in between.
+pub(super) fn two_collisions(tau: f64, mu0: f64, between: f64, t: f64, mu: f64) -> [f64; 2] {
+    let (beta, k, rest) = (1.0 / mu0, 1.0 / between, tau - t);
+    if mu == 0.0 {
+        return [beta * k * falling(beta, t) * decayed(k + beta, rest), beta * k * two(k, beta, t)];
+    }
+    let c = 1.0 / mu.abs();
+    let (rising, sinking) = fed(k, beta, Ray { t, rest, c, up: mu > 0.0 });
+    [beta * rising * k * c, beta * sinking * k * c]
 }
 
 /// Integrals along the ray of xi and eta of a mode, with the magnitude of the terms of the first and the second.
@@ -129,18 +158,7 @@ impl Beam {
             along.add(x * path, (kappa - beta * x) * path, beta * t);
             return;
         }
-        let a = k + beta;
-        let (rising, sinking) = if up {
-            (
-                fallen * three(0.0, a, c + beta, rest),
-                two(k, beta, t) * two(0.0, c + k, rest) + fallen * three(0.0, c + k, c + beta, rest),
-            )
-        } else {
-            (
-                decayed(a, rest) * two(beta, c, t) + falling(a, rest) * three(beta, c, c + a, t),
-                three(k, beta, c, t),
-            )
-        };
+        let (rising, sinking) = fed(k, beta, Ray { t, rest, c, up });
         let (rising, sinking) = ((k * kappa + pi) * c * rising, (pi - k * kappa) * c * sinking);
         let exponent = k.min(beta) * t;
         along.add(rising / (2.0 * k), 0.5 * rising, exponent);
