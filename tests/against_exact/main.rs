@@ -14,6 +14,7 @@ mod furnace;
 mod henyey_greenstein;
 mod infinite;
 mod mean_path;
+mod radiance;
 mod slab;
 mod sphere;
 mod sphere_fields;
