@@ -11,7 +11,8 @@
 //! * Phase functions: [`phase`]
 //! * Slab: [`beer_lambert`], [`slab_single`], [`slab_isotropic`], [`slab_anisotropic`]
 //! * Half-space: [`half_space`]; infinite medium: [`infinite`]
-//! * Sphere: [`sphere`] (uniform, central and incident light; the absorbing sphere)
+//! * Sphere: [`sphere`] (uniform, central and incident light; the absorbing sphere), [`cavity`]
+//! * Any convex body: [`mean_path`]; bodies that sustain themselves: [`critical`]
 //! * Kernel density estimation: [`kernel`], [`ball_mean`], [`blur`], [`edge`], [`volumes`], [`slab_kernel`],
 //!   [`nearest`], [`progressive`]; where the medium ends: [`boundary`]
 
@@ -19,6 +20,8 @@ pub mod ball_mean;
 pub mod beer_lambert;
 pub mod blur;
 pub mod boundary;
+pub mod cavity;
+pub mod critical;
 pub mod edge;
 pub mod error;
 pub mod exponential_integral;
@@ -26,6 +29,7 @@ pub mod half_space;
 pub mod incidence;
 pub mod infinite;
 pub mod kernel;
+pub mod mean_path;
 pub mod nearest;
 mod peierls;
 pub mod phase;
@@ -40,6 +44,8 @@ pub mod sphere;
 pub mod value;
 pub mod volumes;
 
+pub use cavity::Cavity;
+pub use critical::{Critical, CriticalShape};
 pub use error::{Error, Result};
 pub use half_space::HalfSpace;
 pub use incidence::Incidence;

@@ -132,6 +132,12 @@ impl Operator {
         (probe.row.apply(f), probe.row.apply_mirrored(f))
     }
 
+    /// The operator on even functions, by their values at the nodes.
+    #[cfg(test)]
+    pub(crate) fn even_matrix(&self) -> &DMatrix<f64> {
+        &self.even
+    }
+
     /// Factors of 1 - (albedo/2) K.
     pub(crate) fn factor(&self, albedo: f64) -> Factors {
         let n = self.mesh.nodes.len();

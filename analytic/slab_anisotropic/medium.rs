@@ -22,18 +22,21 @@ const MOST: [usize; 2] = [330, 250];
 /// Radiances scattered three times and more: a moment left out of order m of azimuth is met by the square of chi_m at
 /// least, and their product may be this.
 const RAY: [f64; 2] = [1e-10, 1e-9];
-const LOWER_RAY: [usize; 2] = [32, 26];
+const LOWER_RAY: [usize; 2] = [40, 34];
 const UPPER_RAY: [usize; 2] = [32, 26];
-const MOST_RAY: [usize; 2] = [104, 90];
+const MOST_RAY: [usize; 2] = [116, 104];
+/// The most where the peak is cut off, and how much looser the rules are.
+const MOST_CUT: [usize; 2] = [72, 62];
+const LOOSE: f64 = 1e4;
 /// Numbers of nodes go in steps, so that many orders share theirs.
 const STEP: usize = 8;
-
-/// A phase function with moments above this beyond those nodes loses its peak first.
-const PEAKED: f64 = 1e-3;
 
 /// What the second power of a moment left out of light scattered twice may be; lists of more moments are too slow.
 const TWICE: [f64; 2] = [1e-13, 1e-10];
 const LONG: usize = 150;
+
+/// What terms of the series in azimuth may be where it ends.
+const SMALL: f64 = 1e-11;
 
 const TAIL: &str = "moments that beyond l = 498 are at most 0.1 and hardly change";
 
@@ -51,8 +54,10 @@ struct Medium {
 /// Two sets of nodes for every order of azimuth, for light scattered three times and more.
 pub(super) struct Azimuth {
     orders: [Vec<Set>; 2],
-    /// Nodes for light scattered twice, of which every moment counts; none where the peak had to be cut off.
+    /// Rules for light scattered twice, of which every moment counts; none for long lists of moments.
     pub twice: Option<[Twice; 2]>,
+    /// A term of the series below this, relative to the sum, is as good as none.
+    pub small: f64,
 }
 
 /// A rule over all directions.
@@ -118,7 +123,10 @@ impl AnisotropicMedium {
     }
 
     fn of(albedo: f64, phase: &Phase, sets: [(Scattering, Nodes); 2]) -> Result<Self> {
-        let sets = sets.map(|parts| Set::new(parts, 0, 0..=0));
+        let sets = sets.map(|(scattering, nodes)| {
+            let last = scattering.degree();
+            Set::new((scattering, nodes), 0, 0..=last)
+        });
         let azimuth = OnceLock::new();
         let medium = AnisotropicMedium(Arc::new(Medium { albedo, phase: phase.clone(), sets, azimuth }));
         medium.modes(0, 0)?;
@@ -172,9 +180,14 @@ impl AnisotropicMedium {
         self.0.azimuth.get_or_init(|| {
             let phase = &self.0.phase;
             let degree = |cut: f64| phase.degree(cut, usize::MAX);
-            let short = degree(PEAKED) <= 2 * MOST_RAY[1] - 4;
+            let beyond = 2 * MOST_RAY[1];
+            let capped = degree(RAY[0]) > 2 * MOST_RAY[0] - 2;
+            // Cut off what is a peak straight on; a peak backwards has moments of both signs.
+            let cut = capped && (beyond..beyond + 8).all(|l| phase.moment(l) >= 0.0);
+            let loose = if capped { LOOSE } else { 1.0 };
+            let most = if cut { MOST_CUT } else { MOST_RAY };
             let orders = [0, 1].map(|i| {
-                let last = degree(RAY[i]).min(2 * MOST_RAY[i] - 2);
+                let last = degree(RAY[i]).min(2 * most[i] - 2);
                 let mut row: Vec<Set> = Vec::with_capacity(last + 1);
                 let mut largest = 0.0_f64;
                 let mut envelope: Vec<f64> = (0..=last)
@@ -186,34 +199,30 @@ impl AnisotropicMedium {
                     .collect();
                 envelope.reverse();
                 for (m, chi) in envelope.into_iter().enumerate() {
-                    let needed = if short { degree(RAY[i] / (chi * chi)).max(m) } else { last };
+                    let needed = degree(loose * RAY[i] / (chi * chi)).max(m);
                     let upper = (2 + needed.div_ceil(2)).next_multiple_of(STEP);
-                    let upper = upper.clamp(UPPER_RAY[i], MOST_RAY[i]);
+                    let upper = upper.clamp(UPPER_RAY[i], most[i]);
                     let set = match row.last().filter(|set| set.upper == upper) {
                         Some(set) => set.sharing(m),
                         None => {
                             let nodes = Nodes::new(upper, LOWER_RAY[i]);
-                            let last = nodes.degree.min(last);
-                            Set::new(
-                                (Scattering::new(self.0.albedo, phase, last, !short), nodes),
-                                upper,
-                                m..=m,
-                            )
+                            // All orders lose the same peak.
+                            let scattering = Scattering::new(self.0.albedo, phase, last, cut);
+                            Set::new((scattering.up_to(nodes.degree), nodes), upper, m..=m)
                         }
                     };
                     row.push(set);
                 }
                 row
             });
-            let possible = short && (phase.is_closed() || degree(0.0) <= LONG);
-            let twice = possible.then(|| {
+            let twice = (phase.is_closed() || degree(0.0) <= LONG).then(|| {
                 [0, 1].map(|i| {
-                    let degree = degree(TWICE[i]);
+                    let degree = degree(loose * TWICE[i]);
                     let nodes = Nodes::new(UPPER_RAY[i].max(2 + degree / 2), LOWER_RAY[i]);
                     Twice { nodes, turns: degree + 20 }
                 })
             });
-            Azimuth { orders, twice }
+            Azimuth { orders, twice, small: loose * SMALL }
         })
     }
 }

@@ -6,12 +6,14 @@
 //! is a series in azimuth, from modes of order m, to which a moment chi_m contributes by its third power. Along the
 //! ray the source of every mode is integrated analytically.
 //!
-//! Where the peak of the phase function had to be cut off (moments beyond l = 148 that count), light scattered twice
-//! belongs to the series too.
+//! Where the peak of the phase function had to be cut off, a fraction f straight on, all this holds in the medium
+//! that is left, with p - f delta for the whole phase function: what is scattered twice loses the light that goes
+//! straight on at either collision.
 
 use super::medium::{AnisotropicMedium, Azimuth, Twice};
 use super::ray::two_collisions;
 use super::rounding;
+use super::scattering::Scattering;
 use super::solution::{Solution, Sum};
 use crate::error::Result;
 use crate::incidence::Incidence;
@@ -21,9 +23,8 @@ use libm::{cos, sin};
 use std::f64::consts::PI;
 use std::sync::OnceLock;
 
-/// A series ends where LAST terms in a row are below SMALL of the sum; what is left out is at most TAIL times the
+/// A series ends where LAST terms in a row are small beside the sum; what is left out is at most TAIL times the
 /// largest of them: terms fall at least as the third power of 0.95 from one order to the next.
-const SMALL: f64 = 1e-11;
 const LAST: usize = 4;
 const TAIL: f64 = 8.0;
 
@@ -60,8 +61,8 @@ fn once(phase: &Phase, albedo: f64, tau: f64, q: Query) -> f64 {
     albedo * phase.value_of(minus, plus) * beam_path(tau, q.mu0, q.t, q.mu)
 }
 
-/// Light scattered twice \[1/sr\].
-fn twice(phase: &Phase, albedo: f64, tau: f64, q: Query, rule: &Twice) -> f64 {
+/// Light scattered twice \[1/sr\], of what is not straight on.
+fn twice(phase: &Phase, scattering: &Scattering, albedo: f64, tau: f64, q: Query, rule: &Twice) -> f64 {
     let turns: Vec<(f64, f64)> = (0..rule.turns)
         .map(|i| {
             let azimuth = 2.0 * PI * i as f64 / rule.turns as f64;
@@ -85,7 +86,19 @@ fn twice(phase: &Phase, albedo: f64, tau: f64, q: Query, rule: &Twice) -> f64 {
             sum += weight * path * pairs;
         }
     }
-    albedo * albedo * sum * 2.0 * PI / rule.turns as f64
+    sum *= 2.0 * PI / rule.turns as f64;
+    if scattering.peak > 0.0 {
+        let (minus, plus) = deflection(q.mu, -q.mu0, q.dphi);
+        let first = two_collisions(tau, q.mu0, q.mu0, q.t, q.mu)[1];
+        // At the horizon nothing goes straight on but the source itself.
+        let second = if q.mu == 0.0 {
+            beam_path(tau, q.mu0, q.t, 0.0)
+        } else {
+            two_collisions(tau, q.mu0, q.mu.abs(), q.t, q.mu)[usize::from(q.mu < 0.0)]
+        };
+        sum -= scattering.peak * phase.value_of(minus, plus) * (first + second);
+    }
+    albedo * albedo * sum
 }
 
 impl Orders {
@@ -107,62 +120,95 @@ impl Orders {
 
     /// Radiance under a beam, and its bound.
     pub fn beam(&self, medium: &AnisotropicMedium, tau: f64, q: Query) -> Result<(f64, f64)> {
-        let (phase, albedo, azimuth) = (medium.phase(), medium.albedo(), medium.azimuth());
-        let mut closed = [0.0; 2];
-        let mut paths: [(usize, Vec<[f64; 2]>); 2] = Default::default();
-        for (set, closed) in closed.iter_mut().enumerate() {
-            let modes = azimuth.modes(set, 0)?;
-            let stretch = modes.scattering.stretch;
-            let scaled = Query { t: q.t * stretch, ..q };
-            *closed = once(phase, albedo / stretch, tau * stretch, scaled);
-            if let Some(rules) = &azimuth.twice {
-                *closed += twice(phase, albedo, tau, q, &rules[set]);
-            }
-        }
+        let azimuth = medium.azimuth();
         let turning = sine(q.mu) * sine(q.mu0) > 0.0;
         let last = if turning { azimuth.degree(0) } else { 0 };
-        let mut sum = Sum { value: closed[0], magnitude: closed[0] };
-        // Differences of the terms, all of one sign, so that none hides another.
-        let mut difference = (closed[0] - closed[1]).abs();
+        // What a cut leaves open swings with the last moment: a quarter of a turn farther on it is not zero too.
+        let cut = azimuth.modes(0, 0)?.scattering.peak > 0.0;
+        let beside = Query { dphi: q.dphi + 0.5 * PI / (azimuth.degree(0) + 1) as f64, ..q };
+        let places = if cut && turning { vec![q, beside] } else { vec![q] };
+        let mut totals = Vec::with_capacity(places.len());
+        for place in &places {
+            totals.push([closed(medium, tau, 0, *place)?, closed(medium, tau, 1, *place)?]);
+        }
+        let mut sum = Sum { value: totals[0][0], magnitude: totals[0][0].abs() };
+        let mut paths = Default::default();
+        let mut difference = (totals[0][0] - totals[0][1]).abs();
         let (mut small, mut tail) = (0, 0.0_f64);
         for order in 0..=last {
-            let mut terms = [Sum::ZERO; 2];
-            for (set, term) in terms.iter_mut().enumerate() {
-                if order > azimuth.degree(set) {
-                    continue;
-                }
-                let solution = self.solution(azimuth, set, order, tau, q.mu0)?;
-                let source = solution.modes.source(q.mu.abs());
-                let t = q.t * solution.modes.scattering.stretch;
-                *term = if q.mu == 0.0 {
-                    solution.along_horizon(t, &source)
-                } else {
-                    solution.last_scattered(t, q.mu, &source)
-                };
-                if azimuth.twice.is_some() {
-                    let nodes = &solution.modes.nodes;
-                    // Orders with as many nodes have the same ones.
-                    if paths[set].0 != nodes.len() {
-                        let path = |&mu: &f64| two_collisions(tau, q.mu0, mu, q.t, q.mu);
-                        paths[set] = (nodes.len(), nodes.mu.iter().map(path).collect());
-                    }
-                    let twice = solution.modes.twice(q.mu0, q.mu, &paths[set].1);
-                    *term = term.plus(-twice, twice.abs());
-                }
+            let fine = self.term(azimuth, 0, order, tau, q, &mut paths)?;
+            let coarse = self.term(azimuth, 1, order, tau, q, &mut paths)?;
+            for (total, place) in totals.iter_mut().zip(&places) {
+                let turn = cos(order as f64 * place.dphi);
+                total[0] += fine.value * turn;
+                total[1] += coarse.value * turn;
             }
-            let [fine, coarse] = terms;
-            let value = fine.value * cos(order as f64 * q.dphi);
-            sum = sum.plus(value, fine.magnitude);
+            // Differences of the terms, all of one sign, so that none hides another.
             difference += (fine.value - coarse.value).abs();
-            if fine.value.abs().max(coarse.value.abs()) <= SMALL * sum.value.abs() {
-                (small, tail) = (small + 1, tail.max(fine.value.abs()));
+            sum = Sum { value: totals[0][0], magnitude: sum.magnitude + fine.magnitude };
+            let largest = fine.value.abs().max(coarse.value.abs());
+            (small, tail) = if largest <= azimuth.small * sum.value.abs() {
+                (small + 1, tail.max(largest))
             } else {
-                (small, tail) = (0, 0.0);
-            }
+                (0, 0.0)
+            };
             if small == LAST {
                 break;
             }
         }
+        if cut {
+            // The two sets cut off different peaks: their terms differ, and only sums can be compared.
+            difference = totals.iter().fold(0.0, |a: f64, [fine, coarse]| a.max((fine - coarse).abs()));
+        }
         Ok((sum.value, 2.0 * difference + TAIL * tail + rounding(sum)))
     }
+
+    /// The term of the series for one order of azimuth, on one set of nodes.
+    fn term(
+        &self,
+        azimuth: &Azimuth,
+        set: usize,
+        order: usize,
+        tau: f64,
+        q: Query,
+        paths: &mut [(usize, Vec<[f64; 2]>); 2],
+    ) -> Result<Sum> {
+        if order > azimuth.degree(set) {
+            return Ok(Sum::ZERO);
+        }
+        let solution = self.solution(azimuth, set, order, tau, q.mu0)?;
+        let source = solution.modes.source(q.mu.abs());
+        let stretch = solution.modes.scattering.stretch;
+        let t = q.t * stretch;
+        let scattered = if q.mu == 0.0 {
+            solution.along_horizon(t, &source)
+        } else {
+            solution.last_scattered(t, q.mu, &source)
+        };
+        if azimuth.twice.is_none() {
+            return Ok(scattered);
+        }
+        let nodes = &solution.modes.nodes;
+        // Orders with as many nodes have the same ones.
+        if paths[set].0 != nodes.len() {
+            let path = |&mu: &f64| two_collisions(tau * stretch, q.mu0, mu, t, q.mu);
+            paths[set] = (nodes.len(), nodes.mu.iter().map(path).collect());
+        }
+        let twice = solution.modes.twice(q.mu0, q.mu, &paths[set].1);
+        Ok(scattered.plus(-twice, twice.abs()))
+    }
+}
+
+/// Light scattered once and twice, as the medium of one set has it.
+fn closed(medium: &AnisotropicMedium, tau: f64, set: usize, q: Query) -> Result<f64> {
+    let azimuth = medium.azimuth();
+    let scattering = azimuth.modes(set, 0)?.scattering.clone();
+    let (tau, albedo) = (tau * scattering.stretch, medium.albedo() / scattering.stretch);
+    let q = Query { t: q.t * scattering.stretch, ..q };
+    let first = once(medium.phase(), albedo, tau, q);
+    let second = match &azimuth.twice {
+        Some(rules) => twice(medium.phase(), &scattering, albedo, tau, q, &rules[set]),
+        None => 0.0,
+    };
+    Ok(first + second)
 }

@@ -11,6 +11,8 @@ pub(crate) struct Scattering {
     pub lost: f64,
     /// Mean free paths of what is left in one of the medium \[1\].
     pub stretch: f64,
+    /// Fraction of scattering that counts as straight on \[1\].
+    pub peak: f64,
     /// chi_0 = 1 to the last.
     pub moments: Vec<f64>,
 }
@@ -33,7 +35,13 @@ impl Scattering {
         let whole = albedo;
         let albedo = if albedo == 1.0 { 1.0 } else { (1.0 - f) * albedo / stretch };
         let lost = (1.0 - whole) / stretch;
-        Scattering { albedo, lost, stretch, moments }
+        Scattering { albedo, lost, stretch, peak: f, moments }
+    }
+
+    /// The same with no moments beyond `degree`.
+    pub fn up_to(mut self, degree: usize) -> Self {
+        self.moments.truncate(degree + 1);
+        self
     }
 
     /// Highest moment.

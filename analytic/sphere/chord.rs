@@ -1,9 +1,8 @@
 //! Light along a chord of the sphere, gathered where it leaves.
 
 use super::operator::{Field, ShellOperator};
-use super::point::PointSource;
 use crate::quadrature::GaussLegendre;
-use libm::{asinh, cosh, exp, sinh};
+use libm::{asinh, cosh, exp, expm1, sinh};
 use std::sync::LazyLock;
 
 /// Longest piece of a chord: on it e^(-s) times a polynomial of degree 38 is integrated to rounding.
@@ -14,6 +13,10 @@ const REACH: f64 = 745.0;
 
 /// Gauss nodes a piece. A panel's polynomial in depth has twice its degree along the chord.
 static RULE: LazyLock<GaussLegendre> = LazyLock::new(|| GaussLegendre::rule(32));
+
+/// Below this cosine a chord stays within 1e-20 of the radius from the surface: the field is that of the surface, to
+/// 50 times that (x ln x).
+const GRAZING: f64 = 1e-10;
 
 /// A chord that stays within this many panels of the surface sees the logarithm that the polynomials miss there.
 const SHALLOW: usize = 4;
@@ -27,6 +30,9 @@ pub(super) fn gather(
     exact: &dyn Fn(f64, f64) -> (f64, f64),
 ) -> (f64, f64) {
     let a = operator.radius;
+    if mu < GRAZING {
+        return graze(a, mu, exact(a, 0.0));
+    }
     let half = a * mu;
     let closest = a * ((1.0 - mu) * (1.0 + mu)).sqrt();
     let deepest = half * half / (a + closest);
@@ -74,10 +80,16 @@ pub(super) fn gather(
     (value, error)
 }
 
-/// The same of the point source's infinite field, uncollided light included; mu < 1.
+/// The surface's field along a chord that does not leave it.
+fn graze(a: f64, mu: f64, (value, error): (f64, f64)) -> (f64, f64) {
+    let seen = -expm1(-2.0 * a * mu);
+    (value * seen, error * seen)
+}
+
+/// The same of a point source's field, given r phi(r) of its collided light, the direct light included; mu < 1.
 ///
 /// With l = b sinh v along the chord, b its distance from the centre, phi dl = (r phi) dv.
-pub(super) fn gather_point(radius: f64, point: &PointSource, mu: f64) -> (f64, f64) {
+pub(super) fn gather_point(radius: f64, mu: f64, collided: &dyn Fn(f64) -> (f64, f64)) -> (f64, f64) {
     let half = radius * mu;
     let closest = radius * ((1.0 - mu) * (1.0 + mu)).sqrt();
     let mut high = asinh(half / closest);
@@ -93,7 +105,7 @@ pub(super) fn gather_point(radius: f64, point: &PointSource, mu: f64) -> (f64, f
             let (along, r) = (closest * sinh(v), closest * cosh(v));
             let left = half - along;
             let weight = w * (high - low) * exp(-left) * (1.0 + exp(-2.0 * along));
-            let (collided, bound) = point.collided(r);
+            let (collided, bound) = collided(r.min(radius));
             let direct = exp(-r) / (4.0 * std::f64::consts::PI * r);
             value += weight * (direct + collided);
             // Distances lose a few roundings of the radius.
@@ -103,6 +115,37 @@ pub(super) fn gather_point(radius: f64, point: &PointSource, mu: f64) -> (f64, f
             break;
         }
         high = low;
+    }
+    (value, error)
+}
+
+/// The integral of a field given point by point, graded towards the surface and seen to the depth `seen` along the
+/// chord.
+pub(super) fn gather_skin(a: f64, mu: f64, seen: f64, field: &dyn Fn(f64) -> (f64, f64)) -> (f64, f64) {
+    const GROWTH: f64 = 3.0;
+    const STEP: f64 = 2.0;
+    if mu < GRAZING {
+        return graze(a, mu, field(a));
+    }
+    let half = a * mu;
+    let closest = a * ((1.0 - mu) * (1.0 + mu)).sqrt();
+    let end = half.min(seen);
+    let (mut value, mut error) = (0.0, 0.0);
+    // On the first panel f = c + y ln y is met to 1e-3 of its length.
+    let mut near = 0.0;
+    let mut far = end * 1e-8;
+    while near < end {
+        for (x, w) in RULE.nodes.iter().zip(&RULE.weights) {
+            let y = near + (far - near) * x;
+            let along = half - y;
+            let r = (closest * closest + along * along).sqrt().min(a);
+            let weight = w * (far - near) * exp(-y) * (1.0 + exp(-2.0 * along));
+            let (f, bound) = field(r);
+            value += weight * f;
+            error += weight * bound;
+        }
+        near = far;
+        far = (GROWTH * near).min(near + STEP).min(end);
     }
     (value, error)
 }

@@ -149,6 +149,12 @@ impl ShellOperator {
         }
     }
 
+    /// The operator by the values at the nodes.
+    #[cfg(test)]
+    pub(crate) fn matrix(&self) -> &DMatrix<f64> {
+        &self.matrix
+    }
+
     /// K f at the nodes.
     pub(crate) fn apply(&self, f: &DVector<f64>) -> DVector<f64> {
         &self.matrix * f

@@ -19,12 +19,14 @@ pub(super) const ULPS: f64 = 32.0;
 
 struct Term {
     rate: f64,
-    /// Coefficient of collided light.
+    /// Coefficients of all light and of collided light.
+    total: f64,
     collided: f64,
 }
 
 /// The field of the unit point source, 4 pi r phi, as a sum of exponentials.
 pub(super) struct PointSource {
+    /// The asymptotic mode first.
     terms: Vec<Term>,
 }
 
@@ -35,39 +37,105 @@ impl PointSource {
             return PointSource { terms };
         }
         let (k, discrete) = discrete(albedo);
-        terms.push(Term { rate: k, collided: discrete });
-        for i in ENDS.0..=ENDS.1 {
-            let v = f64::from(i) * STEP;
-            let e = exp(v);
-            let x = 1.0 + e;
-            let a = 0.5 * (if v > 0.0 { log1p(2.0 / e) } else { log(2.0 + e) - v }) / x;
-            let b = 0.5 * PI / x;
+        terms.push(Term { rate: k, total: discrete, collided: discrete });
+        for (x, weight, a, b) in nodes() {
             let (p, q) = (1.0 - albedo * a, albedo * b);
             let g = 1.0 / (p * p + q * q);
             let collided = (2.0 * albedo * a - albedo * albedo * (a * a + b * b)) * g;
-            terms.push(Term { rate: x, collided: STEP * e * collided });
+            terms.push(Term { rate: x, total: weight * g, collided: weight * collided });
         }
         PointSource { terms }
     }
 
+    /// Light scattered n times, n >= 1.
+    pub(super) fn of_order(albedo: f64, n: u32) -> Self {
+        let term = |(x, weight, a, b): (f64, f64, f64, f64)| {
+            // (a + ib)^(n+1) by steps; its imaginary part over b.
+            let (mut re, mut im) = (a, 1.0);
+            for _ in 0..n {
+                (re, im) = (albedo * (re * a - im * b * b), albedo * (re + im * a));
+            }
+            Term { rate: x, total: weight * im, collided: weight * im }
+        };
+        PointSource { terms: nodes().map(term).collect() }
+    }
+
     /// r phi(r) of collided light, and a bound on its error.
     pub(super) fn collided(&self, r: f64) -> (f64, f64) {
-        let (mut sum, mut absolute) = (0.0, 0.0);
-        for term in &self.terms {
-            let path = term.rate * r;
-            if path < 745.0 {
-                let value = term.collided * exp(-path);
-                sum += value;
-                absolute += value.abs() * (ULPS + path);
-            }
-        }
-        (sum / (4.0 * PI), absolute * f64::EPSILON / (4.0 * PI))
+        sum(&self.terms, r)
+    }
+
+    /// The same in a sphere that is large: the asymptotic mode D e^(-k r) with what the surface takes from it,
+    /// D sinh(k (a-r))/sinh(k a), which does not cancel there.
+    pub(super) fn collided_within(&self, a: f64, r: f64) -> (f64, f64) {
+        let Some((first, rest)) = self.slow() else { return self.collided(r) };
+        let (others, error) = sum(rest, r);
+        let k = first.rate;
+        let shape = if k == 0.0 {
+            (a - r) / a
+        } else {
+            exp(-k * r) * expm1(-2.0 * k * (a - r)) / expm1(-2.0 * k * a)
+        };
+        let mode = first.collided * shape / (4.0 * PI);
+        (mode + others, error + (ULPS + (k * r).min(745.0)) * f64::EPSILON * mode)
+    }
+
+    /// The asymptotic mode and the rest, where it falls so slowly that the surface takes nearly all of it; a fast one
+    /// is nearly resonant with the steepest directions and better left alone.
+    fn slow(&self) -> Option<(&Term, &[Term])> {
+        self.terms.split_first().filter(|(first, _)| first.rate < 0.5)
+    }
+
+    /// What must come in through the face of the odd slab, beside [`Self::collided_within`] and the direct light, for
+    /// nothing to come in at all.
+    pub(super) fn owed(&self, albedo: f64, a: f64, mu: f64) -> f64 {
+        let Some((first, rest)) = self.slow() else { return -self.incoming(albedo, a, mu) };
+        let k = first.rate;
+        // k/sinh(k a).
+        let slope = if k == 0.0 { 1.0 / a } else { -2.0 * k * exp(-k * a) / expm1(-2.0 * k * a) };
+        let mode = first.total * slope * mu / ((1.0 - k * mu) * (1.0 + k * mu));
+        albedo / (8.0 * PI) * (mode - reach(rest, a, mu))
+    }
+    /// w/2 int_0^inf r phi(r) e^(-y/mu) dy/mu over y = r - a: what the odd slab's outside sends back in through its face.
+    pub(super) fn incoming(&self, albedo: f64, a: f64, mu: f64) -> f64 {
+        albedo / (8.0 * PI) * reach(&self.terms, a, mu)
     }
 
     /// r phi(r) of all light: e^(-r)/(4 pi r) and what has collided.
     pub(super) fn total(&self, r: f64) -> f64 {
         exp(-r) / (4.0 * PI * r) + self.collided(r).0
     }
+}
+
+/// x, the trapezoidal weight dx, A = atanh(1/x)/x and B = pi/(2x).
+fn nodes() -> impl Iterator<Item = (f64, f64, f64, f64)> {
+    (ENDS.0..=ENDS.1).map(|i| {
+        let v = f64::from(i) * STEP;
+        let e = exp(v);
+        let x = 1.0 + e;
+        let a = 0.5 * (if v > 0.0 { log1p(2.0 / e) } else { log(2.0 + e) - v }) / x;
+        (x, STEP * e, a, 0.5 * PI / x)
+    })
+}
+
+/// The sum of collided light over 4 pi, and a bound on its error.
+fn sum(terms: &[Term], r: f64) -> (f64, f64) {
+    let (mut sum, mut absolute) = (0.0, 0.0);
+    for term in terms {
+        let path = term.rate * r;
+        if path < 745.0 {
+            let value = term.collided * exp(-path);
+            sum += value;
+            absolute += value.abs() * (ULPS + path);
+        }
+    }
+    (sum / (4.0 * PI), absolute * f64::EPSILON / (4.0 * PI))
+}
+
+/// sum of coefficients e^(-rate a)/(1 + rate mu).
+fn reach(terms: &[Term], a: f64, mu: f64) -> f64 {
+    let near = terms.iter().filter(|term| term.rate * a < 745.0);
+    near.map(|term| term.total * exp(-term.rate * a) / (1.0 + term.rate * mu)).sum()
 }
 
 /// Rate k and coefficient D of the asymptotic mode, k = tanh t with t coth t = 1/w.
