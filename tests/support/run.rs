@@ -3,9 +3,9 @@
 use turbid::Spectrum;
 use turbid::photons::{Histories, Pass, Photon, shoot};
 use turbid::rng::{Purpose, Stream};
-use turbid::scene::{Orders, Quantity, Scene, Sensor};
+use turbid::scene::{Orders, Quantity, Scene, Sensor, Target};
 use turbid::stats::Moments;
-use turbid::transport::{NoProgress, run_blocks};
+use turbid::transport::{NoProgress, Roulette, Step, Visitor, Walker, run_blocks, walk};
 
 /// Moments by channel of any function of a stream, over `n` histories.
 pub fn histories(n: u64, seed: u64, f: impl Fn(&mut Stream) -> Spectrum + Sync) -> [Moments; 3] {
@@ -57,4 +57,54 @@ pub fn pass(
 /// Photons: tallies of outflows and absorptances.
 pub fn tallies(scene: &Scene, sensors: &[(Quantity, Orders)], n: u64, seed: u64) -> Vec<[Moments; 3]> {
     pass(scene, sensors, n, seed, |_| false).tallies
+}
+
+/// Photon histories watched step by step: moments of numbers that a watcher made of each. One light; its power is 1
+/// to the watcher.
+pub fn watched<const N: usize, W: Watcher<N>>(
+    scene: &Scene,
+    n: u64,
+    seed: u64,
+    watcher: impl Fn() -> W + Sync,
+) -> [Moments; N] {
+    assert_eq!(scene.lights().len(), 1);
+    let block = |range: std::ops::Range<u64>| {
+        let mut moments = [Moments::new(); N];
+        for history in range {
+            let mut stream = Stream::new(seed, Purpose::Photons, 0, history);
+            let ray = scene.lights()[0].emit(scene.stage(), &mut stream).ray;
+            let from = scene.lights()[0].body().map(|_| Target::Light(0));
+            let start = Walker { from, ..Walker::new(ray, Spectrum::ONE) };
+            let mut watching = Watching::<W, N>(watcher());
+            walk(scene, start, Roulette::Analog, None, &mut stream, &mut watching);
+            for (m, number) in moments.iter_mut().zip(watching.0.numbers()) {
+                m.push(number);
+            }
+        }
+        moments
+    };
+    let merge = |mut a: [Moments; N], b: [Moments; N]| {
+        a.iter_mut().zip(&b).for_each(|(a, b)| a.merge(b));
+        a
+    };
+    run_blocks(n, &NoProgress, block, merge).unwrap().unwrap()
+}
+
+/// Makes numbers of one photon history.
+pub trait Watcher<const N: usize> {
+    /// One step of the walk.
+    fn see(&mut self, walker: &Walker, step: Step);
+    /// The numbers, when the history is over.
+    fn numbers(&self) -> [f64; N];
+}
+
+/// A watcher as a visitor of photons.
+struct Watching<W, const N: usize>(W);
+
+impl<const N: usize, W: Watcher<N>> Visitor for Watching<W, N> {
+    const LOOKS_AHEAD: bool = false;
+
+    fn visit(&mut self, walker: &Walker, step: Step, _stream: &mut Stream) {
+        self.0.see(walker, step);
+    }
 }

@@ -9,7 +9,7 @@ use turbid::math::{Asymmetry, FOUR_PI};
 use turbid::medium::Homogeneous;
 use turbid::phase::Phase;
 use turbid::scene::{Object, Parts, Quantity, Region, Scene};
-use turbid::surface::Surface;
+use turbid::surface::{Lambertian, Surface};
 
 /// Side of the cells of unbounded slabs [L].
 pub const CELL: f64 = 4.0;
@@ -78,6 +78,10 @@ pub fn point_light(position: DVec3, power: Spectrum) -> Light {
 pub fn emitting_sphere(center: DVec3, radius: f64) -> Light {
     let radiance = Spectrum::grey(1.0 / (PI * FOUR_PI * radius * radius));
     Light::EmittingSphere(EmittingSphere::new(Sphere::new(center, radius).unwrap(), radiance).unwrap())
+}
+
+pub fn lambertian(reflectance: Spectrum) -> Surface {
+    Surface::Lambertian(Lambertian::new(reflectance).unwrap())
 }
 
 pub fn area_light(rectangle: Rectangle, radiance: Spectrum) -> Light {

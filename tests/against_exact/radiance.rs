@@ -1,0 +1,175 @@
+//! Scattered radiance in Henyey-Greenstein slabs by direction and azimuth, inside and as it leaves: what fluxes average
+//! over. By paths, and from photon maps with the blur that is predicted of them.
+//!
+//! A map of gather radius r blurs in-scattered radiance over balls. In a slab only depths matter: with k the kernel's
+//! marginal, J becomes int k(z) J(t + r z) dz, J nothing outside the slab. Along a ray of cosine mu that light follows from
+//! its far face, at depth f, to depth t, transmittance depends on the difference of depths alone: the ray collects the
+//! same average over rays that begin and end r z deeper,
+//!
+//! int k(z) \[I(t + r z) - e^(-|t - f|/|mu|) I(f + r z)\] dz,
+//!
+//! I the exact radiance, continued behind the face where light leaves by e^(-distance/|mu|) and behind the far face by 0.
+//! So the loss at faces and the blur within are both predicted, exactly.
+
+use crate::checks::slab::exact;
+use crate::henyey_greenstein::{MEDIA, medium, referee};
+use crate::support::quadrature::integrate;
+use crate::support::run::{paths, sensor};
+use crate::support::scenes::{CELL, Incidence, incidence, layer, region, slab};
+use crate::support::verdict;
+use glam::DVec3;
+use std::f64::consts::PI;
+use turbid::estimators::{Gather, Kernel};
+use turbid::math::{Ray, exp};
+use turbid::scene::{Orders, Parts, Quantity, Scene};
+use turbid::sensor::{PhotonSettings, by_photons};
+use turbid::stats::Moments;
+use turbid::transport::NoProgress;
+use turbid_analytic::AnisotropicSlab;
+
+/// Gather radius of the maps.
+const RADIUS: f64 = 0.5;
+const MAPS: u64 = 64;
+const PHOTONS: u64 = 1 << 13;
+const PATHS: u64 = 1 << 16;
+
+/// A place and a direction of travel: depth over thickness, cosine (up is positive), azimuth against that of the beam.
+type View = (f64, f64, f64);
+
+/// Leaving through both faces, and inside: up, down and level.
+const VIEWS: [View; 8] = [
+    (0.0, 0.3, 0.0),
+    (0.0, 0.9, 0.5 * PI),
+    (0.0, 0.3, PI),
+    (1.0, -0.4, 0.0),
+    (1.0, -0.8, PI),
+    (0.4, 0.5, PI / 3.0),
+    (0.4, -0.6, 2.0 * PI / 3.0),
+    (0.6, 0.0, 0.25 * PI),
+];
+
+/// A view of the slab from one point in the cell: the ray looks against the light.
+fn looking(tau: f64, (part, mu, dphi): View) -> Quantity {
+    let s = ((1.0 - mu) * (1.0 + mu)).sqrt();
+    let (sin, cos) = turbid::math::sin_cos(dphi);
+    let travel = DVec3::new(s * cos, s * sin, -mu);
+    Quantity::Radiance(Ray::new(DVec3::new(0.5 * CELL, 0.5 * CELL, part * tau), -travel.normalize()))
+}
+
+fn exact_radiance(slab: &AnisotropicSlab, t: f64, mu: f64, dphi: f64) -> (f64, f64) {
+    exact(slab.radiance(t, mu, dphi).unwrap())
+}
+
+const INCIDENCES: [Incidence; 3] = [Incidence::Beam(1.0), Incidence::Beam(0.5), Incidence::Diffuse];
+
+#[test]
+fn radiance_of_paths() {
+    for ((tau, albedo, g), promise) in MEDIA.into_iter().zip([0.07, 0.15, 0.5]) {
+        let exact_medium = medium(albedo, g);
+        for how in INCIDENCES {
+            let exact_slab = referee(&exact_medium, tau, how);
+            let scene = slab(tau, albedo, g, how);
+            // Next events hit a sharp peak seldom: more paths, and fewer views.
+            let (histories, step) =
+                if g > 0.9 && how != Incidence::Diffuse { (4 * PATHS, 3) } else { (PATHS, 1) };
+            for view in VIEWS.into_iter().step_by(step) {
+                let (part, mu, dphi) = view;
+                let reference = exact_radiance(&exact_slab, part * tau, mu, dphi);
+                let moments = paths(&scene, looking(tau, view), Orders::SCATTERED, histories, 1)[0];
+                let what = format!("depth {part} tau, mu {mu}, dphi {dphi:.3}, g {g}, {how:?}");
+                verdict::agrees(&what, &moments, reference, promise * reference.0, 1);
+            }
+        }
+    }
+}
+
+/// What a map of this gather radius is expected to see.
+fn blurred(slab: &AnisotropicSlab, (part, mu, dphi): View) -> f64 {
+    let (tau, size) = (slab.tau(), mu.abs());
+    let t = part * tau;
+    let inside = |t: f64| exact_radiance(slab, t, mu, dphi).0;
+    let continued = |t: f64| {
+        let (near, beyond) = if mu > 0.0 { (0.0, -t) } else { (tau, t - tau) };
+        if (0.0..=tau).contains(&t) {
+            inside(t)
+        } else if beyond > 0.0 && size > 0.0 {
+            inside(near) * exp(-beyond / size)
+        } else {
+            0.0
+        }
+    };
+    let (far, depth) = if mu > 0.0 { (tau, tau - t) } else { (0.0, t) };
+    let behind = if size > 0.0 { exp(-depth / size) } else { 0.0 };
+    let marginal = |z: f64| 0.75 * (1.0 - z * z);
+    // Kinks where a depth crosses a face.
+    let mut edges = vec![-1.0, 1.0];
+    edges.extend([t, t - tau, far, far - tau].map(|d| -d / RADIUS).into_iter().filter(|z| z.abs() < 1.0));
+    edges.sort_by(f64::total_cmp);
+    edges.dedup();
+    let piece = |a: f64, b: f64| {
+        integrate(a, b, 1, |z| {
+            let r = RADIUS * z;
+            marginal(z) * (continued(t + r) - behind * continued(far + r))
+        })
+    };
+    edges.windows(2).map(|edge| piece(edge[0], edge[1])).sum()
+}
+
+/// The slab with views as sensors.
+fn viewed((tau, albedo, g): (f64, f64, f64), how: Incidence, views: &[View]) -> Scene {
+    let shape = layer(tau);
+    Scene::new(Parts {
+        regions: vec![region(shape, 1.0, albedo, g)],
+        lights: vec![incidence(shape, how)],
+        sensors: views.iter().map(|view| sensor(looking(tau, *view), Orders::SCATTERED)).collect(),
+        cell: Some(CELL),
+        ..Parts::default()
+    })
+    .unwrap()
+}
+
+/// One number a map and view.
+fn of_maps(scene: &Scene, photons: u64, seed: u64) -> Vec<Moments> {
+    let mut views = vec![Moments::new(); scene.sensors().len()];
+    for map in 0..MAPS {
+        let settings = PhotonSettings {
+            photons,
+            maps: 1,
+            seed: (seed << 32) + map,
+            orders: Orders::ALL,
+            gather: Gather::radius(RADIUS).unwrap(),
+            kernel: Kernel::Uniform,
+        };
+        let readings = by_photons(scene, &settings, &NoProgress).unwrap().readings;
+        assert_eq!(readings.len(), views.len());
+        for (view, reading) in views.iter_mut().zip(readings) {
+            view.push(reading.mean);
+        }
+    }
+    views
+}
+
+#[test]
+fn radiance_of_photon_maps() {
+    for ((tau, albedo, g), promise) in MEDIA.into_iter().zip([0.1, 0.15, 0.4]) {
+        let exact_medium = medium(albedo, g);
+        for how in [Incidence::Beam(0.5), Incidence::Diffuse] {
+            let exact_slab = referee(&exact_medium, tau, how);
+            // Where a sharp peak sends little, few photons near the peak bring it all: a matter for paths.
+            let (views, photons) =
+                if g > 0.9 { (vec![VIEWS[3], VIEWS[7]], 4 * PHOTONS) } else { (VIEWS.to_vec(), PHOTONS) };
+            let measured = of_maps(&viewed((tau, albedo, g), how, &views), photons, 2);
+            for (moments, view) in measured.iter().zip(views) {
+                let (part, mu, dphi) = view;
+                let expected = blurred(&exact_slab, view);
+                let what = format!("depth {part} tau, mu {mu}, dphi {dphi:.3}, g {g}, {how:?}");
+                // The quadrature is good to 1e-5 here (measured against twice the nodes).
+                verdict::agrees(&what, moments, (expected, 1e-5 * expected), promise * expected, 2);
+                if view == VIEWS[0] {
+                    let sharp = exact_radiance(&exact_slab, part * tau, mu, dphi).0;
+                    verdict::rejects(&format!("not blurred, {what}"), moments, sharp, 2);
+                }
+            }
+        }
+    }
+}
