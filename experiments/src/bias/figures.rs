@@ -172,7 +172,7 @@ fn depths(settings: &Settings, cells: &Cells, results: &[Result]) -> anyhow::Res
         let mut panel = Panel::new(Axis::linear("depth", "mfp"), axis).with_title(field.title);
         for (class, radius) in [(0, 0.1), (1, 0.2), (2, 0.4)] {
             let size = Size::Radius(radius);
-            let grid: Vec<f64> = (0..=80).map(|i| field.tau * f64::from(i) / 80.0).collect();
+            let grid: Vec<f64> = (0..=80).map(|i| field.fog.deepest() * f64::from(i) / 80.0).collect();
             let theory = grid.iter().map(|&depth| {
                 let case = Case { field, photons, depth, size, kernel: Kernel::Uniform };
                 known.parts(&case).map(|p| 100.0 * p.total())
@@ -197,7 +197,8 @@ fn depths(settings: &Settings, cells: &Cells, results: &[Result]) -> anyhow::Res
         panels.push(panel);
     }
     let figure = Figure { width: Width::Double, columns: 3, shared_legend: true, ..Figure::new(panels) };
-    let caption = "Error against depth in three fogs of optical thickness 2 lit from depth 0: photon maps of fixed \
+    let caption = "Error against depth in four slabs of optical thickness 2 lit from depth 0, and in two spheres of radius 2 against the \
+                   depth below the surface: photon maps of fixed \
                    radius, measured (points, 95 % intervals) and predicted (lines), and the path tracer. Within a \
                    radius of a face part of the ball is outside the fog, and the estimate loses up to half; inside, \
                    the blur is a per cent or less. Linear within ±1 %.";

@@ -1,6 +1,6 @@
 //! The summary and the notes.
 
-use super::cases::{SLABS, Slab, Treatment};
+use super::cases::{BODIES, Body, Treatment};
 use super::choose::{Currency, best_over_best, break_even, cheapest, most_efficient};
 use super::conclude::left_over;
 use super::data::Data;
@@ -11,16 +11,16 @@ fn percent(estimate: &Estimate) -> String {
     with_error(100.0 * estimate.value(), 100.0 * estimate.std_error())
 }
 
-fn even(data: &Data, slab: &Slab, currency: Currency) -> Option<Estimate> {
-    let chosen = most_efficient(&data.of(slab, Treatment::Clipped, None))?;
-    break_even(chosen.case, data.paths(slab)?, currency).queries
+fn even(data: &Data, body: &Body, currency: Currency) -> Option<Estimate> {
+    let chosen = most_efficient(&data.of(body, Treatment::Clipped, None))?;
+    break_even(chosen.case, data.paths(body)?, currency).queries
 }
 
 /// The break-even in both currencies, and the error at which.
-fn both(data: &Data, slab: &Slab) -> Option<String> {
-    let chosen = most_efficient(&data.of(slab, Treatment::Clipped, None))?;
+fn both(data: &Data, body: &Body) -> Option<String> {
+    let chosen = most_efficient(&data.of(body, Treatment::Clipped, None))?;
     let text = |currency| {
-        even(data, slab, currency).map_or("never".to_string(), |q| {
+        even(data, body, currency).map_or("never".to_string(), |q| {
             format!("from {} queries on", with_error(q.value(), q.std_error()))
         })
     };
@@ -35,7 +35,7 @@ fn both(data: &Data, slab: &Slab) -> Option<String> {
 /// The summary.
 pub fn summary(data: &Data) -> Vec<String> {
     let mut paragraphs = Vec::new();
-    let (thin, thick) = (&SLABS[0], &SLABS[4]);
+    let (thin, thick) = (&BODIES[0], &BODIES[4]);
     if let (Some(plain), Some(clipped), Some(in_thin), Some(in_thick)) = (
         best_error(data, thin, Treatment::Plain),
         best_error(data, thin, Treatment::Clipped),
@@ -54,24 +54,24 @@ pub fn summary(data: &Data) -> Vec<String> {
     let clipping: Vec<String> = [0, 2, 4]
         .iter()
         .map(|&i| {
-            let slab = &SLABS[i];
-            let of = |treatment| data.of(slab, treatment, Some(data.largest(slab)));
+            let body = &BODIES[i];
+            let of = |treatment| data.of(body, treatment, Some(data.largest(body)));
             let ratio = best_over_best(&of(Treatment::Clipped), &of(Treatment::Plain));
-            format!("{:.2} ({})", ratio.value(), slab.title)
+            format!("{:.2} ({})", ratio.value(), body.title)
         })
         .collect();
-    let reaches = |slab: &Slab, target: f64| {
-        Treatment::ALL.iter().any(|&t| cheapest(&data.of(slab, t, None), target, 4096.0).is_some())
+    let reaches = |body: &Body, target: f64| {
+        Treatment::ALL.iter().any(|&t| cheapest(&data.of(body, t, None), target, 4096.0).is_some())
     };
-    let reached = |target| SLABS.iter().filter(|slab| reaches(slab, target)).count();
+    let reached = |target| BODIES.iter().filter(|body| reaches(body, target)).count();
     paragraphs.push(format!(
         "What limits a gather changes from scene to scene. At the largest maps the best clipped gather has {} times \
          the error of the best plain one: clipping is the first thing to do where faces are near, and changes little \
-         in thick fog. Some setting reaches 10 per cent in {} of {} slabs, 3 per cent in {} and 1 per cent in {}; theory \
+         in thick fog. Some setting reaches 10 per cent in {} of {} bodies, 3 per cent in {} and 1 per cent in {}; theory \
          says what reaches it elsewhere. Of {} measured errors {} are more than 4 standard errors from theory's; a table lists them.",
         clipping.join(", "),
         reached(0.1),
-        SLABS.len(),
+        BODIES.len(),
         reached(0.03),
         reached(0.01),
         data.measured.len(),
@@ -124,10 +124,10 @@ pub fn notes(budget: &[Entry], data: &Data) -> Vec<String> {
          1/32 of the thickness inside: a different layout would have another floor."
             .to_string(),
     ];
-    let never: Vec<&str> = SLABS
+    let never: Vec<&str> = BODIES
         .iter()
-        .filter(|slab| even(data, slab, Currency::Operations).is_none())
-        .map(|slab| slab.title)
+        .filter(|body| even(data, body, Currency::Operations).is_none())
+        .map(|body| body.title)
         .collect();
     if !never.is_empty() {
         notes.push(format!(
