@@ -112,7 +112,7 @@ pub const FIELDS: [Field; 7] = [
         albedo: 0.9,
         g: 0.75,
         asked: Asked::Some,
-        quick: &[(20_000, 64)],
+        quick: &[(20_000, 80)],
         full: &[(20_000, 512)],
     },
     Field {
@@ -122,7 +122,7 @@ pub const FIELDS: [Field; 7] = [
         albedo: 0.5,
         g: 0.0,
         asked: Asked::Some,
-        quick: &[(20_000, 64)],
+        quick: &[(20_000, 80)],
         full: &[(20_000, 512)],
     },
 ];

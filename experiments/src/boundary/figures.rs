@@ -122,7 +122,8 @@ fn depths(settings: &Settings, found: &Found) -> anyhow::Result<FigureFiles> {
                    intervals over maps, set a little apart) and predicted before (lines). In the furnace all error is geometry: \
                    clipping and local linear remove it everywhere, reflection at flat faces only. Where light enters from one \
                    side, or is absorbed on its way into a sphere, the field bends towards the surface, and what the \
-                   treatments leave is blur: a few per cent of either sign, least with local linear. Linear within ±1 %.";
+                   treatments leave is blur: a few per cent, of either sign. On the sphere's surface, from which the light \
+                   falls off steeply, only the fitted plane takes most of the loss away. Linear within ±1 %.";
     FigureFiles::draw("depths", caption, &figure)
 }
 

@@ -144,7 +144,7 @@ pub const BODIES: [Body; 7] = [
         fog: Fog::Sphere { radius: 2.0 },
         albedo: 0.9,
         g: 0.0,
-        least: 1.0,
+        least: 0.9,
         pays: Pays::Late,
         regret: [1.25, 1.05],
         quick: &[4_096, 32_768],

@@ -35,16 +35,17 @@ fn both(data: &Data, body: &Body) -> Option<String> {
 /// The summary.
 pub fn summary(data: &Data) -> Vec<String> {
     let mut paragraphs = Vec::new();
-    let (thin, thick) = (&BODIES[0], &BODIES[4]);
-    if let (Some(plain), Some(clipped), Some(in_thin), Some(in_thick)) = (
+    let (thin, thick, sphere) = (&BODIES[0], &BODIES[4], &BODIES[6]);
+    if let (Some(plain), Some(clipped), Some(in_thin), Some(in_thick), Some(in_sphere)) = (
         best_error(data, thin, Treatment::Plain),
         best_error(data, thin, Treatment::Clipped),
         both(data, thin),
         both(data, thick),
+        both(data, sphere),
     ) {
         paragraphs.push(format!(
             "Against a path tracer of the same error a photon map pays for itself, in thick isotropic fog, {in_thick}; \
-             in thin, {in_thin}, where an operation is a ray or a photon gathered, each as one. Near a face the plain \
+             in thin, {in_thin}; in a glowing sphere, {in_sphere}, where an operation is a ray or a photon gathered, each as one. Near a face the plain \
              estimate is stuck: in the thin slab the best of the gathers tried errs by ({}) %, where dividing by the \
              part of the ball inside the fog leaves ({}) %.",
             percent(&plain),
@@ -121,7 +122,8 @@ pub fn notes(budget: &[Entry], data: &Data) -> Vec<String> {
          far side of eight mean free paths, and the relative error there would drown all else."
             .to_string(),
         "Relative errors of the layers nearest the faces weigh as much as all others. The probes' outermost layers lie \
-         1/32 of the thickness inside: a different layout would have another floor."
+         1/32 of the thickness inside: a different layout would have another floor. In the sphere the layers hold equal \
+         volumes too, so that half of the probes are nearer to the surface than a fifth of the radius."
             .to_string(),
     ];
     let never: Vec<&str> = BODIES
