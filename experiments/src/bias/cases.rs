@@ -1,6 +1,7 @@
 //! The cases: at which depth, with which gather and kernel, each map is asked.
 
 use super::fields::{CELL, Field};
+use crate::theory::{Fog, spiral};
 use glam::DVec3;
 use turbid::estimators::{Gather, Kernel};
 
@@ -112,23 +113,30 @@ impl Case {
         matches!(self.size, Size::NearestBiased(_))
     }
 
-    /// Probes along one side of the lattice. Their balls neither overlap nor leave the cell; those of nearest gathers
-    /// have room for four times the photons that a rough guess of the fluence lets one expect.
-    fn side(&self) -> usize {
-        let reach = match self.size {
+    /// The radius that the gather is given room for: a nearest one has it for four times the photons that a rough guess
+    /// of the fluence lets one expect.
+    fn reach(&self) -> f64 {
+        match self.size {
             Size::Radius(r) => r,
             Size::Nearest(k) | Size::NearestBiased(k) => {
                 let guess = if self.field.has_clusters() { 0.5 } else { libm::exp(-self.depth) };
-                let density = guess * self.photons as f64 / (CELL * CELL);
+                let density = guess * self.field.density(self.photons);
                 libm::cbrt(4.0 * 3.0 * k as f64 / (4.0 * std::f64::consts::PI * density))
             }
-        };
-        ((CELL / (2.0 * reach)) as usize).clamp(1, MAX_SIDE)
+        }
     }
 
-    /// Half the distance between probes [mfp]: the cap of nearest gathers.
+    /// Probes along one side of a slab's lattice. Their balls neither overlap nor leave the cell.
+    fn side(&self) -> usize {
+        ((CELL / (2.0 * self.reach())) as usize).clamp(1, MAX_SIDE)
+    }
+
+    /// The cap of nearest gathers [mfp]: in a slab half the distance between probes.
     pub fn cap(&self) -> f64 {
-        0.5 * CELL / self.side() as f64
+        match self.field.fog {
+            Fog::Slab { .. } => 0.5 * CELL / self.side() as f64,
+            Fog::Sphere { .. } => self.reach(),
+        }
     }
 
     /// The gather as the estimator takes it.
@@ -140,10 +148,21 @@ impl Case {
         }
     }
 
-    /// The lattice of probes.
-    pub fn probes(&self) -> impl Iterator<Item = DVec3> {
-        let (side, step, depth) = (self.side(), 2.0 * self.cap(), self.depth);
-        let place = move |i: usize| (i as f64 + 0.5) * step;
-        (0..side * side).map(move |i| DVec3::new(place(i % side), place(i / side), depth))
+    /// The probes: on a lattice in a slab, on a spiral in a sphere. Their balls do not overlap, save a few at a
+    /// spiral's ends.
+    pub fn probes(&self) -> Vec<DVec3> {
+        match self.field.fog {
+            Fog::Slab { .. } => {
+                let (side, step) = (self.side(), 2.0 * self.cap());
+                let place = |i: usize| (i as f64 + 0.5) * step;
+                (0..side * side).map(|i| DVec3::new(place(i % side), place(i / side), self.depth)).collect()
+            }
+            Fog::Sphere { radius } => {
+                let from_centre = radius - self.depth;
+                let along = 1.545 * from_centre / self.reach();
+                let number = ((along * along) as usize).clamp(1, MAX_SIDE * MAX_SIDE);
+                spiral(number).map(|dir| dir * from_centre).collect()
+            }
+        }
     }
 }

@@ -8,6 +8,7 @@ use super::conclude::{Mistake, Result, exact_at, largest, pick, predicted_fano};
 use super::fields::{FIELDS, Field};
 use super::measure::{is_fano_case, path_case};
 use crate::harness::{Cells, Claim, Estimate, Settings, Unit};
+use crate::theory::Fog;
 use turbid::estimators::Kernel;
 use turbid::stats::{Moments, amplitude_per_map};
 
@@ -137,15 +138,17 @@ fn number_claim(settings: &Settings, results: &[Result]) -> Option<Claim> {
 /// At the lit face half of each ball is empty.
 fn face_claim(results: &[Result], field: &'static Field) -> Option<Claim> {
     let chosen = pick(results, |r| r.case.field == field && r.case.depth == 0.0);
-    let text = format!("{}, at the lit face, every gather", field.title);
-    amplitude_claim(&format!("{}-face", field.name), &text, &chosen, 0.004)
+    let text = format!("{}, at the {}, every gather", field.title, field.surface());
+    amplitude_claim(&format!("{}-face", field.name), &text, &chosen, 0.004 * field.slack)
 }
 
 /// Fixed radii inside the medium.
 fn blur_claim(results: &[Result], field: &'static Field) -> Option<Claim> {
     let chosen = pick(results, |r| r.case.field == field && is_fixed(r) && r.is_whole());
     let text = format!("{}, whole balls of fixed radius, all kernels", field.title);
-    amplitude_claim(&format!("{}-blur", field.name), &text, &chosen, 0.2)
+    // Light that turns back at its first collision bends little: there the claim is that the blur is there.
+    let margin = if field.g < 0.0 { 0.7 } else { 0.2 };
+    amplitude_claim(&format!("{}-blur", field.name), &text, &chosen, margin)
 }
 
 /// Mean of what is left over in all cases below the face, weighted by what all maps say of the noise.
@@ -158,13 +161,14 @@ fn left_over_claim(results: &[Result], field: &'static Field) -> Claim {
         let one = |(r, w): (&&Result, &f64)| w * (r.errors[m] - r.predicted());
         chosen.iter().zip(&weights).map(one).sum::<f64>() / sum
     };
+    let below = if let Fog::Slab { .. } = field.fog { "face" } else { "surface" };
     Claim::within(
         &format!("{}-left-over", field.name),
-        &format!("{}, below the face: error left over by the prediction", field.title),
+        &format!("{}, below the {}: error left over by the prediction", field.title, below),
         Unit::PERCENT,
         Estimate::mean(&moments((0..maps).map(mean))),
-        -0.15,
-        0.15,
+        -0.15 * field.slack,
+        0.15 * field.slack,
     )
 }
 
@@ -197,7 +201,7 @@ fn fano_claim(cells: &Cells, results: &[Result], field: &'static Field) -> anyho
     );
     let fitted = amplitude_per_map(&predicted, &per_map, &weights);
     // Where little is scattered there are few clusters to see.
-    let margin = if field.albedo < 0.9 { 0.25 } else { 0.2 };
+    let margin = if field.albedo < 0.9 { 0.25 } else { 0.2 } * field.slack.min(2.0);
     Ok(fitted.map(|a| {
         Claim::within(&id, &text, Unit::ONE, Estimate::mean(&a.moments), 1.0 - margin, 1.0 + margin)
     }))
@@ -228,7 +232,7 @@ fn path_claim(cells: &Cells, results: &[Result], field: &'static Field, depth: f
     let values = cells.values(&path_case(field, depth), "fluence")?;
     let errors = moments(values.iter().map(|value| 100.0 * (value / exact - 1.0)));
     // Behind a forward peak few paths turn towards the beam, and each connection counts for more.
-    let margin = if field.g > 0.0 { 1.0 } else { 0.5 };
+    let margin = if field.g > 0.0 { 1.0 } else { 0.5 } * field.slack;
     let text = format!("{}, depth {depth}: error of the path tracer", field.title);
     let id = format!("{}-paths-{depth}", field.name);
     Ok(Claim::within(&id, &text, Unit::PERCENT, Estimate::mean(&errors), -margin, margin))
@@ -258,8 +262,8 @@ fn mistake_claims(results: &[Result], mistakes: &[Mistake]) -> Vec<Claim> {
             &text,
             Unit::PERCENT,
             statistic,
-            mistake.wrong - 1.0,
-            mistake.wrong + 1.0,
+            mistake.wrong - mistake.case.field.slack,
+            mistake.wrong + mistake.case.field.slack,
         ));
     }
     claims

@@ -239,6 +239,24 @@ fn summarise(section: &mut Section, settings: &Settings, results: &[Result]) {
             signed(face.predicted(), 2)
         ));
     }
+    let glow = &FIELDS[5];
+    let in_glow = |depth: f64, radius: f64| {
+        let fits = |r: &&Result| {
+            let c = &r.case;
+            (c.field, c.depth, c.size, c.kernel) == (glow, depth, Size::Radius(radius), Kernel::Uniform)
+        };
+        results.iter().find(fits)
+    };
+    if let (Some(deep), Some(surface)) = (in_glow(1.0, 0.8), in_glow(0.0, 0.8)) {
+        section.summary.push(format!(
+            "In a sphere of radius 2 that glows, light bends in all directions and the surface is curved: photons gathered \
+             within 0.8 mean free paths are {} % wrong halfway to its centre (predicted {} %) and {} % at its surface ({} %).",
+            with_error(deep.error.mean(), deep.error.std_error()),
+            signed(deep.predicted(), 2),
+            with_error(surface.error.mean(), surface.error.std_error()),
+            signed(surface.predicted(), 2)
+        ));
+    }
     section.summary.push(format!(
         "{} cases of the right estimators were measured. What is left of their errors after the prediction has a root \
          mean square of {:.2} standard errors (1 if all is understood) and is at most {:.1}. {} of them cannot see \

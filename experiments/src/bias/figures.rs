@@ -172,7 +172,7 @@ fn depths(settings: &Settings, cells: &Cells, results: &[Result]) -> anyhow::Res
         let mut panel = Panel::new(Axis::linear("depth", "mfp"), axis).with_title(field.title);
         for (class, radius) in [(0, 0.1), (1, 0.2), (2, 0.4)] {
             let size = Size::Radius(radius);
-            let grid: Vec<f64> = (0..=80).map(|i| field.tau * f64::from(i) / 80.0).collect();
+            let grid: Vec<f64> = (0..=80).map(|i| field.fog.deepest() * f64::from(i) / 80.0).collect();
             let theory = grid.iter().map(|&depth| {
                 let case = Case { field, photons, depth, size, kernel: Kernel::Uniform };
                 known.parts(&case).map(|p| 100.0 * p.total())
@@ -197,10 +197,11 @@ fn depths(settings: &Settings, cells: &Cells, results: &[Result]) -> anyhow::Res
         panels.push(panel);
     }
     let figure = Figure { width: Width::Double, columns: 3, shared_legend: true, ..Figure::new(panels) };
-    let caption = "Error against depth in three fogs of optical thickness 2 lit from depth 0: photon maps of fixed \
-                   radius, measured (points, 95 % intervals) and predicted (lines), and the path tracer. Within a \
-                   radius of a face part of the ball is outside the fog, and the estimate loses up to half; inside, \
-                   the blur is a per cent or less. Linear within ±1 %.";
+    let caption = "Error against depth in four slabs of optical thickness 2 lit from depth 0, and in two spheres of radius 2 against \
+                   the depth below the surface: photon maps of fixed radius, measured (points, 95 % intervals) and predicted \
+                   (lines), and the path tracer. Within a radius of a face part of the ball is outside the fog, and the \
+                   estimate loses up to half, or more where the light falls off as well; inside, the blur is a per cent or less in \
+                   the slabs and a few in the spheres, where the light bends in all directions. Linear within ±1 %.";
     FigureFiles::draw("depths", caption, &figure)
 }
 
@@ -258,6 +259,7 @@ fn counts(cells: &Cells, results: &[Result]) -> anyhow::Result<FigureFiles> {
     let figure = Figure { width: Width::Double, ..Figure::new(vec![panel.with_legend(Legend::Right)]) };
     let caption = "Photons of one history lie near each other: their counts in a ball vary more than Poisson's law \
                    lets independent ones, by 3/2 albedo times the radius to first order, at any asymmetry \
-                   (lines: to all orders in fog without end). Uncollided photons are independent.";
+                   (lines: to all orders in fog without end, the same in slabs and spheres of one albedo). Uncollided photons are \
+                   independent.";
     FigureFiles::draw("counts", caption, &figure)
 }

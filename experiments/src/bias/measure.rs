@@ -3,10 +3,11 @@
 use super::cases::{Case, Size};
 use super::fields::{CELL, FIELDS, Field};
 use crate::harness::{CellId, CellOutput, Settings};
+use crate::theory::Fog;
 use anyhow::Context;
 use glam::DVec3;
 use turbid::Spectrum;
-use turbid::estimators::{count_within, fluence};
+use turbid::estimators::fluence;
 use turbid::photons::{Histories, PhotonMap, is_in, shoot};
 use turbid::rng::{Purpose, Stream};
 use turbid::scene::{Quantity, Scene};
@@ -14,10 +15,6 @@ use turbid::sensor::sample;
 use turbid::stats::Moments;
 use turbid::transport::NoProgress;
 
-/// Batches of paths.
-const BATCHES: u64 = 128;
-/// Paths of one batch at one depth.
-const PATHS: u64 = 16_384;
 /// Name of the groups of path batches.
 const BY_PATHS: &str = "paths";
 
@@ -41,8 +38,9 @@ pub fn cells(settings: &Settings) -> Vec<CellId> {
             cells.extend(CellId::replicates(&Case::group(field, photons), maps, cost));
         }
         if field.has_clusters() {
-            let cost = PATHS as f64 * settings.photon_scale * field.depths.len() as f64;
-            cells.extend(CellId::replicates(&format!("{}-{BY_PATHS}", field.name), BATCHES, cost));
+            let (batches, paths) = field.paths;
+            let cost = paths as f64 * settings.photon_scale * field.depths.len() as f64;
+            cells.extend(CellId::replicates(&format!("{}-{BY_PATHS}", field.name), batches, cost));
         }
     }
     cells
@@ -89,9 +87,7 @@ fn measure_map(
             gathered += estimate.found as u64;
             output.count("estimates", 1);
             output.count("under-full estimates", u64::from(estimate.underfull));
-            if let Size::Radius(r) = case.size {
-                counts.push(count_within(&map, probe, r) as f64);
-            }
+            counts.push(estimate.found as f64);
         }
         output.count("photons gathered", gathered);
         output.push(case.name(), "fluence", values.mean());
@@ -103,20 +99,26 @@ fn measure_map(
     Ok(output)
 }
 
+/// Fewest probes whose counts have a variance: four mean free paths hold 25 balls of radius 0.4.
+const FEWEST: usize = 25;
+
 /// Whether photon counts of a case are compared with Poisson's law: whole balls, uniform kernel, enough probes.
 pub fn is_fano_case(case: &Case) -> bool {
     let Size::Radius(r) = case.size else { return false };
-    let is_whole = case.depth >= r && case.depth + r <= case.field.tau;
-    // Four mean free paths hold 25 balls of radius 0.4; fewer give a poor variance.
-    is_whole && case.kernel_name() == "uniform" && CELL / (2.0 * r) >= 5.0
+    let is_whole = case.field.fog.room(case.depth) >= r;
+    is_whole && case.kernel_name() == "uniform" && case.probes().len() >= FEWEST
 }
 
 fn measure_paths(settings: &Settings, field: &Field, scene: &Scene, replicate: u64) -> CellOutput {
     let replicate = field.replicate(settings, 0, replicate);
     let mut output = CellOutput::new();
-    let paths = ((PATHS as f64 * settings.photon_scale) as u64).max(2);
+    let paths = ((field.paths.1 as f64 * settings.photon_scale) as u64).max(2);
     for (index, &depth) in field.depths.iter().enumerate() {
-        let quantity = Quantity::Fluence(DVec3::new(0.5 * CELL, 0.5 * CELL, depth));
+        let place = match field.fog {
+            Fog::Slab { .. } => DVec3::new(0.5 * CELL, 0.5 * CELL, depth),
+            Fog::Sphere { radius } => DVec3::new(0.0, 0.0, radius - depth),
+        };
+        let quantity = Quantity::Fluence(place);
         let mut values = Moments::new();
         for path in 0..paths {
             let history = (index as u64) << 40 | path;

@@ -3,12 +3,11 @@
 use super::cases::{Case, Size};
 use super::fields::{CELL, FIELDS, Field};
 use crate::harness::{Prediction, Settings, Unit};
-use crate::theory::{NearestGather, SlabGathers};
+use crate::theory::{Fog, Gathers, NearestGather};
 pub use crate::theory::{PART_NAMES, Parts};
 use anyhow::Context;
 use rayon::prelude::*;
 use std::collections::HashMap;
-use turbid_analytic::quadrature::GaussLegendre;
 
 /// What is predicted of each field whose photons are all stored: collisions of a history, on average.
 pub const COLLISIONS: &str = "collisions per photon";
@@ -17,19 +16,19 @@ pub const COLLISIONS: &str = "collisions per photon";
 const PANELS: u32 = 16;
 
 /// A field with all that predictions ask of it.
-pub struct Theory(SlabGathers);
+pub struct Theory(Gathers);
 
 impl Theory {
     /// The theory of a field.
     pub fn new(field: &'static Field) -> anyhow::Result<Self> {
-        let (tau, albedo, g) = (field.tau, field.albedo, field.g);
-        Ok(Theory(SlabGathers::new(tau, albedo, g, field.exact()?, field.depths, 0.5 * CELL)))
+        let (fog, albedo, g) = (field.fog, field.albedo, field.g);
+        Ok(Theory(Gathers::new(fog, albedo, g, field.exact()?, field.depths, 0.5 * CELL)))
     }
 
     /// The parts of one case. Fixed radii may be asked at any depth, nearest gathers at the field's own.
     pub fn parts(&self, case: &Case) -> anyhow::Result<Parts> {
         let nearest = |k, is_biased| {
-            let density = case.photons as f64 / (CELL * CELL);
+            let density = case.field.density(case.photons);
             let gather = NearestGather { kernel: case.kernel, k, cap: case.cap(), density, is_biased };
             self.0.nearest(&gather, case.depth)
         };
@@ -41,13 +40,13 @@ impl Theory {
     }
 }
 
-/// Collisions of a history, on average: the integral of the fluence over depth.
+/// Collisions of a history, on average: the integral of the fluence over the fog, per unit of power.
 fn collisions(field: &'static Field) -> anyhow::Result<f64> {
-    let (rule, exact) = (GaussLegendre::new(8)?, field.exact()?);
-    let step = field.tau / f64::from(PANELS);
-    let fluence = |t: f64| exact(t).map_or(f64::NAN, |(value, _)| value);
-    let panel = |i: u32| rule.integrate(f64::from(i) * step, f64::from(i + 1) * step, fluence);
-    Ok((0..PANELS).map(panel).sum())
+    let total = field.fog.total(&field.exact()?, PANELS)?;
+    Ok(match field.fog {
+        Fog::Slab { .. } => total,
+        Fog::Sphere { .. } => total / field.power(),
+    })
 }
 
 /// All cases of a study with their parts, computed in parallel.
@@ -96,7 +95,7 @@ pub fn predict(settings: &Settings) -> anyhow::Result<Vec<Prediction>> {
             predictions.push(Prediction { case, quantity, unit, value, error, source });
         };
         let fluence = parts.exact * (1.0 + parts.total());
-        add("exact fluence", Unit::FLUENCE, parts.exact, parts.exact_error, "exact solution of the slab");
+        add("exact fluence", Unit::FLUENCE, parts.exact, parts.exact_error, case.field.source());
         add(
             "fluence",
             Unit::FLUENCE,

@@ -2,6 +2,7 @@
 
 use super::fields::{Asked, CELL, FURNACE, Field};
 use crate::harness::Settings;
+use crate::theory::spiral;
 use glam::DVec3;
 use std::f64::consts::PI;
 use turbid::estimators::boundary::Treatment;
@@ -186,14 +187,14 @@ impl Case {
         }
     }
 
-    /// The probes: alike by symmetry, but for the field of the lit slab, which has its lit face alone.
+    /// The probes: alike by symmetry; a slab that is lit through one face has them there alone.
     pub fn probes(&self) -> Vec<DVec3> {
         let h = self.spot.depth();
         match self.field.body {
             Body::Sphere { radius } => spiral(ON_SPHERE).map(|dir| dir * (radius - h)).collect(),
             Body::Cuboid { edges } => in_cuboid(DVec3::from_array(edges), self.spot),
             Body::Slab { thickness } => {
-                let both = self.field.is_furnace();
+                let both = self.field.is_lit_alike();
                 let step = (CELL - 2.0) / (SIDE - 1) as f64;
                 let at = |i: usize| 1.0 + step * i as f64;
                 let from_face = |i: usize| if both && i % 2 == 1 { thickness - h } else { h };
@@ -216,17 +217,6 @@ fn rounded(length: f64) -> f64 {
 pub fn whole_radius(field: &Field, photons: u64, k: usize) -> f64 {
     let density = FURNACE * field.density(photons);
     libm::cbrt(3.0 * k as f64 / (4.0 * PI * density)).min(0.5)
-}
-
-/// Directions spread evenly over the sphere (Swinbank and Purser 2006).
-fn spiral(n: usize) -> impl Iterator<Item = DVec3> {
-    let golden = PI * (3.0 - 5.0_f64.sqrt());
-    (0..n).map(move |i| {
-        let z = 1.0 - (2.0 * i as f64 + 1.0) / n as f64;
-        let (sin, cos) = turbid::math::sin_cos(golden * i as f64);
-        let across = (1.0 - z * z).sqrt();
-        DVec3::new(across * cos, across * sin, z)
-    })
 }
 
 /// Places at a depth under the faces, edges or corners: of each face and edge at the middle.

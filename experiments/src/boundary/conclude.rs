@@ -468,6 +468,24 @@ fn summarise(section: &mut Section, settings: &Settings, found: &Found) -> anyho
          gone: these estimates are unbiased on either side of the wall, at any distance, kernel and gather.",
         facing[0], facing[1],
     ));
+    let sphere = Field::named("lit-sphere")?;
+    let on_sphere = |treatment| -> anyhow::Result<String> {
+        let r = found.one(|c| {
+            (c.field, c.treatment, c.spot) == (sphere, treatment, Spot::Face(0.0))
+                && (c.size, c.kernel) == (Size::Radius(0.4), Kernel::Uniform)
+        })?;
+        Ok(format!("({}) %", text(&r.error)))
+    };
+    section.summary.push(format!(
+        "Dividing by the volume inside mends geometry alone. Where the light falls off below a curved surface, on a sphere of albedo {} lit from \
+         all sides and gathered within 0.4 mean free paths, the estimate errs by {} untreated, {} mirrored, {} clipped and {} with a plane \
+         fitted: the treatment that knows of a slope is worth its noise there.",
+        sphere.albedo,
+        on_sphere(Treatment::None)?,
+        on_sphere(Treatment::Reflection)?,
+        on_sphere(Treatment::Clipped)?,
+        on_sphere(Treatment::LocalLinear)?,
+    ));
     let squares: f64 = found.results.iter().filter(|r| r.is_predicted_well()).map(|r| r.z() * r.z()).sum();
     let used = found.results.iter().filter(|r| r.is_predicted_well()).count();
     section.summary.push(format!(

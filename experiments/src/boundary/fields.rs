@@ -1,7 +1,7 @@
 //! The transported fields: which body, how it is lit, how many photons, and the exact answer.
 
 use crate::harness::{CellId, Settings};
-use crate::theory::{Exact, slab_fluence};
+use crate::theory::{Exact, slab_fluence, sphere_fluence};
 use anyhow::Context;
 use glam::DVec3;
 use std::f64::consts::PI;
@@ -14,8 +14,8 @@ use turbid::phase::Phase;
 use turbid::photons::{Histories, PhotonMap, shoot};
 use turbid::scene::{Parts, Region, Scene};
 use turbid::transport::NoProgress;
-use turbid_analytic::Incidence;
 use turbid_analytic::boundary::Body;
+use turbid_analytic::{Incidence, SphereSource};
 
 /// Side of the cell that stands for a slab [mfp].
 pub const CELL: f64 = 4.0;
@@ -53,8 +53,8 @@ pub struct Field {
 
 const SLAB: Body = Body::Slab { thickness: 2.0 };
 
-/// Every field. All but the last are furnaces.
-pub const FIELDS: [Field; 5] = [
+/// Every field. The first four are furnaces; slabs of the others are lit by a normal beam, the sphere from all sides.
+pub const FIELDS: [Field; 7] = [
     Field {
         name: "slab",
         title: "furnace, slab",
@@ -105,6 +105,26 @@ pub const FIELDS: [Field; 5] = [
         quick: &[(20_000, 192)],
         full: &[(20_000, 768)],
     },
+    Field {
+        name: "lit-g0.75",
+        title: "slab lit by a beam, g = 0.75",
+        body: SLAB,
+        albedo: 0.9,
+        g: 0.75,
+        asked: Asked::Some,
+        quick: &[(20_000, 80)],
+        full: &[(20_000, 512)],
+    },
+    Field {
+        name: "lit-sphere",
+        title: "sphere lit from all sides",
+        body: Body::Sphere { radius: 2.0 },
+        albedo: 0.5,
+        g: 0.0,
+        asked: Asked::Some,
+        quick: &[(20_000, 80)],
+        full: &[(20_000, 512)],
+    },
 ];
 
 impl Field {
@@ -116,6 +136,20 @@ impl Field {
     /// Whether the fluence is [`FURNACE`] everywhere.
     pub fn is_furnace(&self) -> bool {
         self.albedo == 1.0
+    }
+
+    /// Whether light comes in everywhere alike, and not through one face.
+    pub fn is_lit_alike(&self) -> bool {
+        self.is_furnace() || !matches!(self.body, Body::Slab { .. })
+    }
+
+    /// Where the exact fluence comes from.
+    pub fn source(&self) -> &'static str {
+        match self.body {
+            _ if self.is_furnace() => "the furnace",
+            Body::Sphere { .. } => "exact solution of the sphere",
+            _ => "exact solution of the slab",
+        }
     }
 
     /// Emitted photons a map, and maps.
@@ -145,7 +179,7 @@ impl Field {
         let shape = self.shape()?;
         let phase = Phase::with_asymmetry(Asymmetry::new("g", self.g)?);
         let medium = Homogeneous::new(Spectrum::ONE, Spectrum::grey(self.albedo), phase)?;
-        let light = if self.is_furnace() {
+        let light = if self.is_lit_alike() {
             Light::Isotropic(Isotropic::new(shape, Faces::Both, Spectrum::grey(1.0 / PI))?)
         } else {
             Light::Beam(Beam::new(DVec3::Z, Spectrum::ONE, Section::Unbounded)?)
@@ -171,6 +205,9 @@ impl Field {
         match self.body {
             Body::Slab { thickness } if !self.is_furnace() => {
                 slab_fluence(thickness, self.albedo, self.g, Incidence::Beam { mu0: 1.0 })
+            }
+            Body::Sphere { radius } if !self.is_furnace() => {
+                sphere_fluence(radius, self.albedo, SphereSource::Incident)
             }
             _ => Ok(Box::new(|_| Ok((FURNACE, 0.0)))),
         }

@@ -99,7 +99,7 @@ fn series<'a>(chosen: impl Iterator<Item = (f64, &'a Moments)>) -> Series {
 fn depths(settings: &Settings, found: &Found) -> anyhow::Result<FigureFiles> {
     let mut panels = Vec::new();
     let radius = MAIN.0;
-    for name in ["slab", "sphere", "lit"] {
+    for name in ["slab", "sphere", "cuboid", "lit", "lit-g0.75", "lit-sphere"] {
         let field = Field::named(name)?;
         let exact = field.exact()?;
         let axis = Axis::new("error", "%", Scale::SymLog { threshold: 1.0 }).with_range(-70.0, 20.0);
@@ -121,7 +121,9 @@ fn depths(settings: &Settings, found: &Found) -> anyhow::Result<FigureFiles> {
     let caption = "Error of a gather within 0.4 mean free paths against its depth below the surface, measured (points, 95 % \
                    intervals over maps, set a little apart) and predicted before (lines). In the furnace all error is geometry: \
                    clipping and local linear remove it everywhere, reflection at flat faces only. Where light enters from one \
-                   side the field bends towards the face, and what the treatments leave is blur. Linear within ±1 %.";
+                   side, or is absorbed on its way into a sphere, the field bends towards the surface, and what the \
+                   treatments leave is blur: a few per cent, of either sign. On the sphere's surface, from which the light \
+                   falls off steeply, only the fitted plane takes most of the loss away. Linear within ±1 %.";
     FigureFiles::draw("depths", caption, &figure)
 }
 

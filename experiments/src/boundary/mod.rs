@@ -3,7 +3,8 @@
 //! (turbid_analytic::boundary), over the exact fluence.
 //!
 //! *The furnace*, albedo 1 and isotropic light from all sides, has the fluence 4 at irradiance 1 everywhere, so that
-//! all error is geometry. *The lit slab* adds a field that bends towards the face. *The sheet*, thin and opaque between two
+//! all error is geometry. *Lit* slabs, isotropic and with a forward peak, and a *lit sphere* add fields that bend towards
+//! the surface, flat or curved. *The sheet*, thin and opaque between two
 //! uniform fields of independent photons, makes false photons and nothing else. *Independent photons* in a uniform field
 //! show what a treatment costs in variance.
 

@@ -66,13 +66,17 @@ pub fn parts(case: &Case, exact: &Exact) -> anyhow::Result<Parts> {
     let (here, here_error) = exact(spot.depth())?;
     let (body, at) = (field.body, case.place());
     let density = field.density(case.photons);
-    let of_depth = |z: f64| exact(z).map_or(f64::NAN, |(value, _)| value);
+    let of_place = |x: f64| {
+        // The referee's coordinate is the depth in a slab, the distance from the centre in a sphere.
+        let depth = if let Body::Sphere { radius } = body { radius - x } else { x };
+        exact(depth).map_or(f64::NAN, |(value, _)| value)
+    };
     let (uniform, bent, clusters) = match case.size {
         Size::Radius(r) => {
             let uniform = treated_mean_uniform(treatment, kernel, body, at, r)?;
             let bent = match field.is_furnace() {
                 true => None,
-                false => Some(treated_mean_symmetric(treatment, kernel, body, at, r, of_depth)?),
+                false => Some(treated_mean_symmetric(treatment, kernel, body, at, r, of_place)?),
             };
             (uniform, bent, 0.0)
         }
@@ -83,7 +87,7 @@ pub fn parts(case: &Case, exact: &Exact) -> anyhow::Result<Parts> {
             let bent = match field.is_furnace() {
                 true => None,
                 false => Some(nearest_treated_mean_symmetric(
-                    treatment, kernel, neighbors, CAP, body, at, density, of_depth,
+                    treatment, kernel, neighbors, CAP, body, at, density, of_place,
                 )?),
             };
             // Where the medium ends inside the ball, neighbours are missing like the ball's own part.
@@ -128,8 +132,7 @@ pub fn predict(settings: &Settings) -> anyhow::Result<Vec<Prediction>> {
             let (case, quantity, source) = (case.name(), quantity.to_string(), source.to_string());
             predictions.push(Prediction { case, quantity, unit, value, error, source });
         };
-        let source = if case.field.is_furnace() { "the furnace" } else { "exact solution of the slab" };
-        add("exact fluence", Unit::FLUENCE, parts.exact, 0.0, source);
+        add("exact fluence", Unit::FLUENCE, parts.exact, 0.0, case.field.source());
         let fluence = parts.exact * (1.0 + parts.total());
         add("fluence", Unit::FLUENCE, fluence, parts.exact * parts.error, "exact mean of the treated kernel");
         add("error", Unit::PERCENT, 100.0 * parts.total(), 100.0 * parts.error, "sum of the parts");

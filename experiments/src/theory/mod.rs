@@ -1,14 +1,18 @@
 //! What theory says, shared by the experiments: exact fields, kernels as the referee knows them, clusters of photons.
 
 mod clusters;
+mod fog;
+mod gathers;
 mod returns;
 mod slab;
-mod slab_gather;
+mod sphere;
 mod table;
 
 pub use clusters::{clustering, nearest_clustering};
+pub use fog::{Fog, spiral};
+pub use gathers::{Gathers, NearestGather, PART_NAMES, Parts};
 pub use slab::slab_fluence;
-pub use slab_gather::{NearestGather, PART_NAMES, Parts, SlabGathers};
+pub use sphere::sphere_fluence;
 pub use table::Table;
 
 use turbid::estimators::Kernel;

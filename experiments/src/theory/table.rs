@@ -57,11 +57,22 @@ impl Table {
         most: f64,
         field: &Exact,
     ) -> anyhow::Result<Self> {
+        let value = |depth: f64| field(depth).map_or(f64::NAN, |(value, _)| value);
+        Table::of_means(most, &[depth, thickness - depth], |radius| {
+            Ok(slab_kernel_mean(kernel, radius, depth, thickness, value)?.value)
+        })
+    }
+
+    /// Means over balls against their radius up to `most`; `corners` are the radii where they may bend.
+    pub fn of_means(
+        most: f64,
+        corners: &[f64],
+        mean: impl Fn(f64) -> anyhow::Result<f64>,
+    ) -> anyhow::Result<Self> {
         let mut ends: Vec<f64> = (0..=HALVINGS).map(|i| most * 0.5f64.powi(i as i32)).collect();
         let smallest = ends[HALVINGS];
-        ends.extend([depth, thickness - depth].iter().filter(|&&r| smallest < r && r < most));
-        let value = |depth: f64| field(depth).map_or(f64::NAN, |(value, _)| value);
-        Table::new(ends, |radius| Ok(slab_kernel_mean(kernel, radius, depth, thickness, value)?.value))
+        ends.extend(corners.iter().filter(|&&r| smallest < r && r < most));
+        Table::new(ends, mean)
     }
 
     /// A fluence against depth in a slab, with small pieces towards the faces.

@@ -1,6 +1,6 @@
 //! What all maps together say: rows, claims, tables, the error budget of the study.
 
-use super::cases::{CELL, PROBES, SLABS, Setting, Size, Treatment};
+use super::cases::{BODIES, PROBES, Setting, Size, Treatment};
 use super::choose::{BreakEven, Currency, best_over_best, break_even, most_efficient, regret};
 use super::data::{Data, Measured, mean};
 use super::measure::MAPS;
@@ -45,11 +45,11 @@ fn rows(data: &Data, known: &Known) -> anyhow::Result<Vec<Row>> {
         }
     }
     for size in &data.sizes {
-        let group = Setting::group(size.slab, size.photons);
+        let group = Setting::group(size.body, size.photons);
         let per_photon =
             |values: &[f64]| values.iter().map(|v| v / size.photons as f64).collect::<Vec<f64>>();
         let collisions: Moments = per_photon(&size.collisions).iter().collect();
-        let (exact, bound) = known.get(size.slab.name, "collisions per photon")?;
+        let (exact, bound) = known.get(size.body.name, "collisions per photon")?;
         rows.push(
             Row::measured(&group, "collisions per photon", Unit::ONE, &collisions)?.reference(exact, bound),
         );
@@ -59,7 +59,7 @@ fn rows(data: &Data, known: &Known) -> anyhow::Result<Vec<Row>> {
         rows.push(Row::measured(&group, "memory of the map", Unit::new("byte"), &bytes)?);
     }
     for paths in &data.paths {
-        let case = format!("{} paths", paths.slab.name);
+        let case = format!("{} paths", paths.body.name);
         let error: Moments = paths.error.iter().map(|e| 100.0 * e).collect::<Vec<f64>>().iter().collect();
         rows.push(Row::measured(&case, "error", Unit::PERCENT, &error)?.reference(0.0, 0.0));
         let variance: Moments = paths.variance.iter().collect();
@@ -67,17 +67,17 @@ fn rows(data: &Data, known: &Known) -> anyhow::Result<Vec<Row>> {
         let rays: Moments = paths.rays.iter().collect();
         rows.push(Row::measured(&case, "rays of a sample", Unit::ONE, &rays)?);
     }
-    for slab in &SLABS {
-        let Some(paths) = data.paths(slab) else { continue };
+    for body in &BODIES {
+        let Some(paths) = data.paths(body) else { continue };
         for treatment in Treatment::ALL {
-            let case = format!("{} {}", slab.name, treatment.name());
-            let Some(chosen) = most_efficient(&data.of(slab, treatment, None)) else { continue };
+            let case = format!("{} {}", body.name, treatment.name());
+            let Some(chosen) = most_efficient(&data.of(body, treatment, None)) else { continue };
             let BreakEven { ratio, queries, .. } = break_even(chosen.case, paths, Currency::Operations);
             rows.push(Row::estimated(&case, "rays of a path query per photon gathered", Unit::ONE, &ratio)?);
             if let Some(queries) = queries {
                 rows.push(Row::estimated(&case, "break-even queries", Unit::ONE, &queries)?);
             }
-            let cases = data.of(slab, treatment, Some(data.largest(slab)));
+            let cases = data.of(body, treatment, Some(data.largest(body)));
             for measured in &cases {
                 let value = regret(measured, &cases);
                 if let (Size::Nearest(50 | 100), true) = (measured.setting.size, has_spread(&value)) {
@@ -86,10 +86,10 @@ fn rows(data: &Data, known: &Known) -> anyhow::Result<Vec<Row>> {
             }
         }
     }
-    for slab in &SLABS {
-        let of = |treatment| data.of(slab, treatment, Some(data.largest(slab)));
+    for body in &BODIES {
+        let of = |treatment| data.of(body, treatment, Some(data.largest(body)));
         let ratio = best_over_best(&of(Treatment::Clipped), &of(Treatment::Plain));
-        let case = Setting::group(slab, data.largest(slab));
+        let case = Setting::group(body, data.largest(body));
         rows.push(Row::estimated(&case, "best clipped over best plain error", Unit::ONE, &ratio)?);
     }
     Ok(rows)
@@ -115,11 +115,11 @@ const HIDDEN: f64 = 0.2;
 /// only where the medium ends inside the ball, since elsewhere they are the plain ones.
 fn entries(measured: &Measured) -> Vec<Entry> {
     let (setting, treatment) = (&measured.setting, measured.treatment);
-    let slab = setting.slab;
-    let group = format!("tradeoff-{}", Setting::group(slab, setting.photons));
+    let body = setting.body;
+    let group = format!("tradeoff-{}", Setting::group(body, setting.photons));
     let mut entries = Vec::new();
     for (layer, expected) in measured.expected.iter().enumerate() {
-        let depth = slab.depth(layer);
+        let depth = body.depth(layer);
         // What the layer's balls hold, and their radius, from the noise of independent photons.
         let held = 1.0 / (expected.noise_independent * expected.noise_independent);
         let radius = match setting.size {
@@ -129,13 +129,13 @@ fn entries(measured: &Measured) -> Vec<Entry> {
                 libm::cbrt(3.0 * volume / (4.0 * std::f64::consts::PI))
             }
         };
-        let is_cut = radius > depth.min(slab.tau - depth);
+        let is_cut = radius > body.fog.room(depth);
         if treatment == Treatment::Clipped && !is_cut || held * (setting.lateral() as f64) < FEWEST_COUNTS {
             continue;
         }
         if let Size::Nearest(_) = setting.size {
             let unknown = expected.clusters.abs() * if is_cut { UNKNOWN.1 } else { UNKNOWN.0 };
-            if unknown > HIDDEN * expected_error(setting, expected.noise, radius) {
+            if unknown > HIDDEN * expected_error(setting, depth, expected.noise, radius) {
                 continue;
             }
         }
@@ -150,9 +150,9 @@ fn entries(measured: &Measured) -> Vec<Entry> {
 
 /// The standard error expected of a layer's mean: its balls overlap. Of two balls of radius r at a distance d, the
 /// part in common integrates over all lateral distances to 4/5 pi r^2.
-fn expected_error(setting: &Setting, noise: f64, radius: f64) -> f64 {
+fn expected_error(setting: &Setting, depth: f64, noise: f64, radius: f64) -> f64 {
     let probes = setting.lateral() as f64;
-    let shared = 0.8 * std::f64::consts::PI * radius * radius / (CELL * CELL);
+    let shared = 0.8 * std::f64::consts::PI * radius * radius / setting.body.area(depth);
     noise * ((1.0 / probes + shared).min(1.0) / MAPS as f64).sqrt()
 }
 

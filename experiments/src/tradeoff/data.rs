@@ -1,6 +1,6 @@
 //! Everything that was measured, case by case.
 
-use super::cases::{LAYERS, SLABS, Setting, Slab, Treatment, paths_case, paths_group};
+use super::cases::{BODIES, Body, LAYERS, Setting, Treatment, paths_case, paths_group};
 use super::measure::layer_quantity;
 use super::predict::Known;
 use super::split::MapError;
@@ -44,10 +44,10 @@ impl Measured {
     }
 }
 
-/// The path tracer in one slab.
+/// The path tracer in one body.
 pub struct Paths {
-    /// The slab.
-    pub slab: &'static Slab,
+    /// The body.
+    pub body: &'static Body,
     /// Relative error of each batch, averaged over layers.
     pub error: Vec<f64>,
     /// Relative variance of one sample by batch, averaged over layers.
@@ -65,10 +65,10 @@ impl Paths {
     }
 }
 
-/// A size of map in one slab.
+/// A size of map in one body.
 pub struct Size {
-    /// The slab.
-    pub slab: &'static Slab,
+    /// The body.
+    pub body: &'static Body,
     /// Photons emitted.
     pub photons: u64,
     /// Rays of each map.
@@ -87,9 +87,9 @@ pub struct Size {
 pub struct Data {
     /// By setting and treatment.
     pub measured: Vec<Measured>,
-    /// By slab.
+    /// By body.
     pub paths: Vec<Paths>,
-    /// By slab and number of photons.
+    /// By body and number of photons.
     pub sizes: Vec<Size>,
 }
 
@@ -102,23 +102,23 @@ impl Data {
     /// Reads the cells.
     pub fn read(settings: &Settings, known: &Known, cells: &Cells) -> anyhow::Result<Self> {
         let mut data = Data { measured: Vec::new(), paths: Vec::new(), sizes: Vec::new() };
-        for slab in &SLABS {
-            let exact: Vec<f64> = slab
+        for body in &BODIES {
+            let exact: Vec<f64> = body
                 .depths()
                 .iter()
-                .map(|t| known.get(slab.name, &format!("fluence t={t}")).map(|v| v.0))
+                .map(|t| known.get(body.name, &format!("fluence t={t}")).map(|v| v.0))
                 .collect::<anyhow::Result<_>>()?;
-            for photons in slab.photons(settings) {
-                let size = size(slab, photons, cells)?;
+            for photons in body.photons(settings) {
+                let size = size(body, photons, cells)?;
                 let records = |(rays, stored): (&f64, &f64)| rays + stored;
                 let [shooting, building] = &size.seconds;
                 let prepare_seconds: Vec<f64> = shooting.iter().zip(building).map(|(a, b)| a + b).collect();
                 let prepare: Vec<f64> = size.rays.iter().zip(&size.stored).map(records).collect();
-                for setting in Setting::all(slab, photons) {
+                for setting in Setting::all(body, photons) {
                     let asked = (setting.lateral() * LAYERS) as f64;
                     let timed = |what: &str| {
                         let phase = format!("{what} {}", setting.size.name());
-                        cells.seconds(&Setting::group(slab, photons), &phase)
+                        cells.seconds(&Setting::group(body, photons), &phase)
                     };
                     let plain: Vec<f64> = timed("gathering").iter().map(|s| s / asked).collect();
                     let clipped: Vec<f64> =
@@ -141,40 +141,40 @@ impl Data {
                 }
                 data.sizes.push(size);
             }
-            data.paths.push(paths(slab, &exact, cells)?);
+            data.paths.push(paths(body, &exact, cells)?);
         }
         Ok(data)
     }
 
-    /// The cases of one slab, treatment and, if given, number of photons.
-    pub fn of(&self, slab: &Slab, treatment: Treatment, photons: Option<u64>) -> Vec<&Measured> {
+    /// The cases of one body, treatment and, if given, number of photons.
+    pub fn of(&self, body: &Body, treatment: Treatment, photons: Option<u64>) -> Vec<&Measured> {
         let fits = |m: &&Measured| {
-            m.setting.slab == slab
+            m.setting.body == body
                 && m.treatment == treatment
                 && photons.is_none_or(|n| m.setting.photons == n)
         };
         self.measured.iter().filter(fits).collect()
     }
 
-    /// The path tracer in one slab.
-    pub fn paths(&self, slab: &Slab) -> Option<&Paths> {
-        self.paths.iter().find(|p| p.slab == slab)
+    /// The path tracer in one body.
+    pub fn paths(&self, body: &Body) -> Option<&Paths> {
+        self.paths.iter().find(|p| p.body == body)
     }
 
-    /// The largest maps of a slab.
-    pub fn largest(&self, slab: &Slab) -> u64 {
-        self.sizes.iter().filter(|s| s.slab == slab).map(|s| s.photons).max().unwrap_or(0)
+    /// The largest maps of a body.
+    pub fn largest(&self, body: &Body) -> u64 {
+        self.sizes.iter().filter(|s| s.body == body).map(|s| s.photons).max().unwrap_or(0)
     }
 }
 
-fn size(slab: &'static Slab, photons: u64, cells: &Cells) -> anyhow::Result<Size> {
-    let group = Setting::group(slab, photons);
+fn size(body: &'static Body, photons: u64, cells: &Cells) -> anyhow::Result<Size> {
+    let group = Setting::group(body, photons);
     let shares = cells.values(&group, "share of the tree")?;
     // The tree holds copies of photons across the cell's edges: building is charged for the cell's own share.
     let building = cells.seconds(&group, "building");
     let own: Vec<f64> = building.iter().zip(&shares).map(|(seconds, share)| seconds * share).collect();
     Ok(Size {
-        slab,
+        body,
         photons,
         rays: cells.values(&group, "rays")?,
         collisions: cells.values(&group, "collisions")?,
@@ -190,11 +190,11 @@ fn map_errors(
     exact: &[f64],
     cells: &Cells,
 ) -> anyhow::Result<Vec<MapError>> {
-    let (case, slab) = (setting.case(treatment), setting.slab);
+    let (case, body) = (setting.case(treatment), setting.body);
     let mut maps: Vec<MapError> = Vec::new();
     for (layer, exact) in exact.iter().enumerate() {
-        let means = cells.values(&case, &layer_quantity("fluence", slab, layer))?;
-        let squares = cells.values(&case, &layer_quantity("square", slab, layer))?;
+        let means = cells.values(&case, &layer_quantity("fluence", body, layer))?;
+        let squares = cells.values(&case, &layer_quantity("square", body, layer))?;
         maps.resize(means.len(), MapError { error: [0.0; LAYERS], square: 0.0 });
         for ((map, mean), square) in maps.iter_mut().zip(means).zip(squares) {
             let ratio = mean / exact;
@@ -205,10 +205,10 @@ fn map_errors(
     Ok(maps)
 }
 
-fn paths(slab: &'static Slab, exact: &[f64], cells: &Cells) -> anyhow::Result<Paths> {
+fn paths(body: &'static Body, exact: &[f64], cells: &Cells) -> anyhow::Result<Paths> {
     let (mut error, mut variance, mut rays) = (Vec::new(), Vec::new(), Vec::new());
     for (layer, exact) in exact.iter().enumerate() {
-        let case = paths_case(slab, layer);
+        let case = paths_case(body, layer);
         let means = cells.values(&case, "fluence")?;
         let squares = cells.values(&case, "square")?;
         let counts = cells.values(&case, "rays")?;
@@ -223,9 +223,9 @@ fn paths(slab: &'static Slab, exact: &[f64], cells: &Cells) -> anyhow::Result<Pa
             rays[batch] += counts[batch] / LAYERS as f64;
         }
     }
-    let total = cells.seconds(&paths_group(slab), "path tracing");
-    let samples = cells.values(&paths_case(slab, 0), "samples")?;
+    let total = cells.seconds(&paths_group(body), "path tracing");
+    let samples = cells.values(&paths_case(body, 0), "samples")?;
     let seconds =
         total.iter().zip(samples).map(|(total, samples)| total / (samples * LAYERS as f64)).collect();
-    Ok(Paths { slab, error, variance, rays, seconds })
+    Ok(Paths { body, error, variance, rays, seconds })
 }

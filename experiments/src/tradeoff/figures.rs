@@ -1,6 +1,6 @@
 //! The figures.
 
-use super::cases::{SLABS, Setting, Size, Slab, Treatment};
+use super::cases::{BODIES, Body, Setting, Size, Treatment};
 use super::choose::{Choice, Currency, break_even, frontier, most_efficient};
 use super::data::{Data, Measured, Paths, mean};
 use super::split::{rms, rms_bias, rms_noise};
@@ -22,16 +22,16 @@ fn interval(estimate: &Estimate) -> (f64, f64) {
 /// Error against cost.
 fn costs(data: &Data) -> anyhow::Result<FigureFiles> {
     let mut panels = Vec::new();
-    for slab in &SLABS {
-        let Some(paths) = data.paths(slab) else { continue };
+    for body in &BODIES {
+        let Some(paths) = data.paths(body) else { continue };
         let x = Axis::log("operations for 4096 queries", "").with_range(4e3, 3e7);
         let mut panel =
-            Panel::new(x, Axis::log("RMS error", "%").with_range(1.0, 100.0)).with_title(slab.title);
+            Panel::new(x, Axis::log("RMS error", "%").with_range(1.0, 100.0)).with_title(body.title);
         let (x, y) = path_line(paths, 4096.0);
         panel = panel.with(Line::theory("path tracer", x, y));
         for (class, treatment) in Treatment::ALL.into_iter().enumerate() {
             let label = format!("photon map, {}", treatment.name());
-            let front = frontier(&data.of(slab, treatment, None), 4096.0);
+            let front = frontier(&data.of(body, treatment, None), 4096.0);
             let x: Vec<f64> = front.iter().map(|c| c.case.cost(4096.0)).collect();
             let y: Vec<f64> = front.iter().map(|c| 100.0 * c.rms.value()).collect();
             let bars = front.iter().map(|c: &Choice| interval(&c.rms)).collect();
@@ -45,7 +45,8 @@ fn costs(data: &Data) -> anyhow::Result<FigureFiles> {
                    settings that no other setting beats in both, chosen on half of the maps and shown for the other \
                    (95 % intervals are smaller than most points), and the path tracer, whose error falls as one over \
                    the root of its cost and starts where each query has one sample. Left of the black line the map is the cheaper. In the thin isotropic \
-                   slab it is not; in thick fog it is by far. Plain estimates stop early at the faces' loss.";
+                   slab it is not; in the glowing sphere, where paths gather light all along their rays, the two cost nearly the same; \
+                   in thick fog the map is the cheaper by far. Plain estimates stop early at the faces' loss.";
     FigureFiles::draw("costs", caption, &figure)
 }
 
@@ -58,13 +59,13 @@ fn path_line(paths: &Paths, queries: f64) -> (Vec<f64>, Vec<f64>) {
 
 /// Error, bias and noise against gather size.
 fn sizes(settings: &Settings, data: &Data) -> anyhow::Result<FigureFiles> {
-    let slab: &'static Slab = &SLABS[2];
-    let photons = data.largest(slab);
+    let body: &'static Body = &BODIES[2];
+    let photons = data.largest(body);
     let every = Setting::every(settings);
-    let theory = Theory::new(slab, every.iter())?;
+    let theory = Theory::new(body, every.iter())?;
     let mut panels = Vec::new();
     for treatment in Treatment::ALL {
-        let cases = data.of(slab, treatment, Some(photons));
+        let cases = data.of(body, treatment, Some(photons));
         for is_fixed in [true, false] {
             let chosen: Vec<&Measured> = cases
                 .iter()
@@ -79,7 +80,7 @@ fn sizes(settings: &Settings, data: &Data) -> anyhow::Result<FigureFiles> {
             let most = chosen.iter().map(|m| size(m)).fold(0.0, f64::max);
             let range = (least / 1.3, most * 1.3);
             let (lines, x, what) = if is_fixed {
-                let lines = radius_lines(&theory, slab, photons, treatment, range)?;
+                let lines = radius_lines(&theory, body, photons, treatment, range)?;
                 (lines, Axis::log("radius", "mfp"), "fixed radius")
             } else {
                 let lines: Vec<(f64, Rms)> = chosen.iter().map(|m| (size(m), m.predicted())).collect();
@@ -112,21 +113,21 @@ fn sizes(settings: &Settings, data: &Data) -> anyhow::Result<FigureFiles> {
          size of the gather; points measured with 95 % intervals over maps, lines predicted before the run. Noise \
          falls and bias grows with the size, and the error is least where they cross, or nearly. Plain estimates carry \
          the loss at the faces as a bias that no radius in reach makes small; clipping leaves the blur.",
-        slab.title
+        body.title
     );
     FigureFiles::draw("sizes", &caption, &figure)
 }
 
 fn radius_lines(
     theory: &Theory,
-    slab: &Slab,
+    body: &Body,
     photons: u64,
     treatment: Treatment,
     (from, to): (f64, f64),
 ) -> anyhow::Result<Vec<(f64, Rms)>> {
     let one = |i: i32| {
         let radius = from * libm::pow(to / from, f64::from(i) / 40.0);
-        let layers = slab.depths().into_iter().map(|t| theory.within(radius, photons as f64, treatment, t));
+        let layers = body.depths().into_iter().map(|t| theory.within(radius, photons as f64, treatment, t));
         Ok((radius, Rms::of(&layers.collect::<anyhow::Result<Vec<Expected>>>()?)))
     };
     (0..=40).map(one).collect()
@@ -135,8 +136,8 @@ fn radius_lines(
 /// Cost against the number of queries.
 fn queries(data: &Data) -> anyhow::Result<FigureFiles> {
     let mut panels = Vec::new();
-    for slab in &SLABS {
-        let (Some(paths), cases) = (data.paths(slab), data.of(slab, Treatment::Clipped, None)) else {
+    for body in &BODIES {
+        let (Some(paths), cases) = (data.paths(body), data.of(body, Treatment::Clipped, None)) else {
             continue;
         };
         let Some(chosen) = most_efficient(&cases) else { continue };
@@ -147,7 +148,7 @@ fn queries(data: &Data) -> anyhow::Result<FigureFiles> {
             Axis::log("queries", "").with_range(1.0, 1e6),
             Axis::log("operations", "").with_range(10.0, 1e11),
         )
-        .with_title(format!("{}, to {:.1} %", slab.title, 100.0 * chosen.rms.value()))
+        .with_title(format!("{}, to {:.1} %", body.title, 100.0 * chosen.rms.value()))
         .with(Line::theory("path tracer", x.clone(), by_paths))
         .with(Line::new("photon map, clipped", 1, x, map));
         let text = match break_even(chosen.case, paths, Currency::Operations).queries {
@@ -165,7 +166,7 @@ fn queries(data: &Data) -> anyhow::Result<FigureFiles> {
     let figure = Figure { width: Width::Double, columns: 2, shared_legend: true, ..Figure::new(panels) };
     let caption = "Operations against the number of queries, at the error of the most efficient clipped setting, by the \
                    photon map and by a path tracer of the same error. The map is paid for before the first query; from \
-                   the break-even Q* (95 % interval) it is the cheaper of the two. In the thin isotropic slab one path \
+                   the break-even Q* (95 % interval) it is the cheaper of the two. In the glowing sphere that takes thousands of queries. In the thin isotropic slab one path \
                    query takes fewer rays than the map gathers photons, and the map never pays in operations; in seconds, where a \
                    photon gathered is cheaper than a ray, it does.";
     FigureFiles::draw("queries", caption, &figure)

@@ -1,9 +1,10 @@
 //! What theory says of every setting, before anything is measured: its error, split, and the settings that would
 //! reach a target beyond those that are measured.
 
-use super::cases::{LAYERS, PROBES, SLABS, Setting, Slab, Treatment};
+use super::cases::{BODIES, Body, LAYERS, PROBES, Setting, Treatment};
 use super::theory::{Expected, Rms, Theory};
 use crate::harness::{Prediction, Settings, Unit};
+use crate::theory::Fog;
 use anyhow::Context;
 use rayon::prelude::*;
 use std::collections::HashMap;
@@ -29,15 +30,15 @@ pub const NOISE: &str = "RMS noise";
 pub struct Optimum {
     /// Radius \[mfp\].
     pub radius: f64,
-    /// Photons emitted per square mean free path.
+    /// Photons emitted per emitted power: in slabs per square mean free path.
     pub density: f64,
     /// Cost of 4096 queries of one cell \[operations\].
     pub cost: f64,
 }
 
 /// The name of the search for a target.
-pub fn optimum_case(slab: &Slab, treatment: Treatment, target: f64) -> String {
-    format!("{} {} to reach {}%", slab.name, treatment.name(), 100.0 * target)
+pub fn optimum_case(body: &Body, treatment: Treatment, target: f64) -> String {
+    format!("{} {} to reach {}%", body.name, treatment.name(), 100.0 * target)
 }
 
 /// Operations per emitted photon before the first query: its rays (every collision is one, and the escape of those
@@ -47,13 +48,13 @@ pub fn prepare(collisions: f64, albedo: f64) -> f64 {
 }
 
 /// The fixed radius and the number of photons that reach a target with the fewest operations for 4096 queries.
-fn optimum(theory: &Theory, slab: &Slab, treatment: Treatment, target: f64) -> anyhow::Result<Optimum> {
-    let per_photon = prepare(theory.collisions()?, slab.albedo);
+fn optimum(theory: &Theory, body: &Body, treatment: Treatment, target: f64) -> anyhow::Result<Optimum> {
+    let per_photon = prepare(theory.collisions()?, body.albedo);
     let mut best = Optimum { radius: f64::NAN, density: f64::NAN, cost: f64::INFINITY };
     for i in 0..TRIED {
         let step = i as f64 / (TRIED - 1) as f64;
         let radius = TRIED_FROM * libm::pow(TRIED_TO / TRIED_FROM, step);
-        let layers = slab.depths().into_iter().map(|t| theory.within(radius, REFERENCE, treatment, t));
+        let layers = body.depths().into_iter().map(|t| theory.within(radius, REFERENCE, treatment, t));
         let layers = layers.collect::<anyhow::Result<Vec<Expected>>>()?;
         let rms = Rms::of(&layers);
         let room = target * target - rms.bias * rms.bias;
@@ -61,23 +62,22 @@ fn optimum(theory: &Theory, slab: &Slab, treatment: Treatment, target: f64) -> a
             continue;
         }
         let photons = REFERENCE * rms.noise * rms.noise / room;
-        let cost = photons * per_photon + PROBES as f64 * found(theory, slab, radius, photons)?;
+        let cost = photons * per_photon + PROBES as f64 * found(theory, body, radius, photons)?;
         if cost < best.cost {
-            let area = super::cases::CELL * super::cases::CELL;
-            best = Optimum { radius, density: photons / area, cost };
+            best = Optimum { radius, density: photons / body.power(), cost };
         }
     }
     Ok(best)
 }
 
 /// Photons in a ball of fixed radius, on average over the layers.
-fn found(theory: &Theory, slab: &Slab, radius: f64, photons: f64) -> anyhow::Result<f64> {
+fn found(theory: &Theory, body: &Body, radius: f64, photons: f64) -> anyhow::Result<f64> {
     let mut sum = 0.0;
-    for t in slab.depths() {
+    for t in body.depths() {
         let (here, _) = theory.exact(t)?;
         let part = 1.0 + theory.within(radius, photons, Treatment::Plain, t)?.bias();
         let ball = 4.0 / 3.0 * std::f64::consts::PI * radius * radius * radius;
-        sum += photons / (super::cases::CELL * super::cases::CELL) * ball * here * part;
+        sum += photons / body.power() * ball * here * part;
     }
     Ok(sum / LAYERS as f64)
 }
@@ -86,9 +86,9 @@ fn found(theory: &Theory, slab: &Slab, radius: f64, photons: f64) -> anyhow::Res
 pub fn predict(settings: &Settings) -> anyhow::Result<Vec<Prediction>> {
     let every = Setting::every(settings);
     let theories: Vec<Theory> =
-        SLABS.iter().map(|slab| Theory::new(slab, every.iter())).collect::<anyhow::Result<_>>()?;
-    let theory = |slab: &Slab| {
-        let index = SLABS.iter().position(|s| s == slab).unwrap_or(0);
+        BODIES.iter().map(|body| Theory::new(body, every.iter())).collect::<anyhow::Result<_>>()?;
+    let theory = |body: &Body| {
+        let index = BODIES.iter().position(|s| s == body).unwrap_or(0);
         &theories[index]
     };
     let asked: Vec<(Setting, Treatment)> =
@@ -96,8 +96,8 @@ pub fn predict(settings: &Settings) -> anyhow::Result<Vec<Prediction>> {
     let known: Vec<(Setting, Treatment, Vec<Expected>)> = asked
         .into_par_iter()
         .map(|(setting, treatment)| {
-            let one = |t| theory(setting.slab).expected(&setting, treatment, t);
-            let layers: anyhow::Result<_> = setting.slab.depths().into_iter().map(one).collect();
+            let one = |t| theory(setting.body).expected(&setting, treatment, t);
+            let layers: anyhow::Result<_> = setting.body.depths().into_iter().map(one).collect();
             Ok((setting, treatment, layers?))
         })
         .collect::<anyhow::Result<_>>()?;
@@ -113,40 +113,37 @@ pub fn predict(settings: &Settings) -> anyhow::Result<Vec<Prediction>> {
         add(&case, BIAS, Unit::PERCENT, 100.0 * rms.bias, error, "exact field, kernel mean, k-nearest law");
         add(&case, NOISE, Unit::PERCENT, 100.0 * rms.noise, error, "Poisson's law and clusters");
     }
-    let searches: Vec<(&'static Slab, Treatment, f64)> = SLABS
+    let searches: Vec<(&'static Body, Treatment, f64)> = BODIES
         .iter()
-        .flat_map(|slab| Treatment::ALL.map(|treatment| (slab, treatment)))
-        .flat_map(|(slab, treatment)| TARGETS.map(|target| (slab, treatment, target)))
+        .flat_map(|body| Treatment::ALL.map(|treatment| (body, treatment)))
+        .flat_map(|(body, treatment)| TARGETS.map(|target| (body, treatment, target)))
         .collect();
     let found: Vec<Optimum> = searches
         .par_iter()
-        .map(|&(slab, treatment, target)| optimum(theory(slab), slab, treatment, target))
+        .map(|&(body, treatment, target)| optimum(theory(body), body, treatment, target))
         .collect::<anyhow::Result<_>>()?;
-    for ((slab, treatment, target), best) in searches.into_iter().zip(found) {
-        let case = optimum_case(slab, treatment, target);
+    for ((body, treatment, target), best) in searches.into_iter().zip(found) {
+        let case = optimum_case(body, treatment, target);
         let source = "cheapest fixed radius, by bias and noise of every layer";
         add(&case, "radius", Unit::MFP, best.radius, 0.0, source);
         add(&case, "photons per area", Unit::new("1/mfp^2"), best.density, 0.0, source);
         add(&case, "operations", Unit::ONE, best.cost, 0.0, source);
     }
-    for slab in &SLABS {
-        let collisions = theory(slab).collisions()?;
-        add(slab.name, "collisions per photon", Unit::ONE, collisions, 1e-6, "integral of the exact fluence");
-        for t in slab.depths() {
-            let (value, error) = theory(slab).exact(t)?;
-            add(
-                slab.name,
-                &format!("fluence t={t}"),
-                Unit::FLUENCE,
-                value,
-                error,
-                "exact solution of the slab",
-            );
+    for body in &BODIES {
+        let source = match body.fog {
+            Fog::Slab { .. } => "exact solution of the slab",
+            Fog::Sphere { .. } => "exact solution of the sphere",
+        };
+        let collisions = theory(body).collisions()?;
+        add(body.name, "collisions per photon", Unit::ONE, collisions, 1e-6, "integral of the exact fluence");
+        for t in body.depths() {
+            let (value, error) = theory(body).exact(t)?;
+            add(body.name, &format!("fluence t={t}"), Unit::FLUENCE, value, error, source);
         }
     }
     for (setting, treatment, layers) in &known {
         let case = setting.case(*treatment);
-        for (t, e) in setting.slab.depths().into_iter().zip(layers) {
+        for (t, e) in setting.body.depths().into_iter().zip(layers) {
             let parts = [e.edge, e.blur, e.clusters, e.noise, e.noise_independent];
             for (name, value) in PARTS.iter().zip(parts) {
                 let (value, error) = (100.0 * value, 100.0 * e.error);
@@ -194,12 +191,12 @@ impl<'a> Known<'a> {
                 error: self.get(&case, &format!("{} t={t}", PARTS[0]))?.1 / 100.0,
             })
         };
-        setting.slab.depths().into_iter().map(one).collect()
+        setting.body.depths().into_iter().map(one).collect()
     }
 
     /// What theory would do to reach a target.
-    pub fn optimum(&self, slab: &Slab, treatment: Treatment, target: f64) -> anyhow::Result<Optimum> {
-        let case = optimum_case(slab, treatment, target);
+    pub fn optimum(&self, body: &Body, treatment: Treatment, target: f64) -> anyhow::Result<Optimum> {
+        let case = optimum_case(body, treatment, target);
         Ok(Optimum {
             radius: self.get(&case, "radius")?.0,
             density: self.get(&case, "photons per area")?.0,

@@ -1,6 +1,6 @@
 //! The tables.
 
-use super::cases::{CELL, SLABS, Setting, Size, Slab, Treatment};
+use super::cases::{BODIES, Body, Setting, Size, Treatment};
 use super::choose::{Currency, best, break_even, cheapest, is_last, most_efficient, regret};
 use super::data::{Data, Measured, mean};
 use super::predict::{Known, TARGETS};
@@ -37,7 +37,7 @@ fn percent(estimate: &Estimate) -> String {
     with_error(100.0 * estimate.value(), 100.0 * estimate.std_error())
 }
 
-/// A setting without its slab.
+/// A setting without its body.
 pub fn short(setting: &Setting) -> String {
     format!("{} photons, {}", setting.photons, setting.size.name())
 }
@@ -45,11 +45,11 @@ pub fn short(setting: &Setting) -> String {
 /// The price list.
 fn prices(data: &Data, known: &Known) -> anyhow::Result<Table> {
     let mut rows = Vec::new();
-    for slab in &SLABS {
+    for body in &BODIES {
         for treatment in Treatment::ALL {
-            let cases = data.of(slab, treatment, None);
+            let cases = data.of(body, treatment, None);
             for target in TARGETS {
-                let theory = known.optimum(slab, treatment, target)?;
+                let theory = known.optimum(body, treatment, target)?;
                 let found = cheapest(&cases, target, 4096.0);
                 let (setting, error, cost) = match &found {
                     Some(c) => (short(&c.case.setting), percent(&c.rms), rough(c.case.cost(4096.0))),
@@ -62,16 +62,16 @@ fn prices(data: &Data, known: &Known) -> anyhow::Result<Table> {
                         ("none".to_string(), tried, String::new())
                     }
                 };
-                let by_paths = data.paths(slab).map_or(f64::NAN, |p| 4096.0 * p.cost(target));
+                let by_paths = data.paths(body).map_or(f64::NAN, |p| 4096.0 * p.cost(target));
                 rows.push(vec![
-                    slab.title.to_string(),
+                    body.title.to_string(),
                     treatment.name().to_string(),
                     format!("{} %", number(100.0 * target)),
                     setting,
                     error,
                     cost,
                     format!("{:.3}", theory.radius),
-                    rough(theory.density / slab.tau),
+                    rough(theory.density * body.power() / body.volume()),
                     rough(theory.cost),
                     rough(by_paths),
                 ]);
@@ -79,7 +79,7 @@ fn prices(data: &Data, known: &Known) -> anyhow::Result<Table> {
         }
     }
     let columns = [
-        "slab",
+        "fog",
         "at faces",
         "target",
         "cheapest setting",
@@ -95,7 +95,7 @@ fn prices(data: &Data, known: &Known) -> anyhow::Result<Table> {
                    settings was chosen on half of the maps, and its error is that of the other half. Where none \
                    reaches the target the lowest error of all tried stands there, with the predicted one and its bias, which more \
                    photons in balls of the same size leave: plain, it is what the faces take. Theory searched all radii for the \
-                   cheapest, with as many photons as it takes (emitted photons per cubic mean free path of the slab); \
+                   cheapest, with as many photons as it takes (emitted photons per cubic mean free path of fog); \
                    the path tracer takes as many samples as its variance asks for.";
     Ok(table(caption, &columns, rows))
 }
@@ -103,10 +103,10 @@ fn prices(data: &Data, known: &Known) -> anyhow::Result<Table> {
 /// Cost against the number of queries.
 fn queries(data: &Data) -> Table {
     let mut rows = Vec::new();
-    for slab in &SLABS {
-        let Some(paths) = data.paths(slab) else { continue };
+    for body in &BODIES {
+        let Some(paths) = data.paths(body) else { continue };
         for treatment in Treatment::ALL {
-            let cases = data.of(slab, treatment, None);
+            let cases = data.of(body, treatment, None);
             let Some(chosen) = most_efficient(&cases) else { continue };
             let error = chosen.rms.value();
             let even = |case, currency| {
@@ -117,7 +117,7 @@ fn queries(data: &Data) -> Table {
                 cheapest(&cases, TARGETS[0], 4096.0).map_or("none".to_string(), |c| even(c.case, currency))
             };
             let mut row = vec![
-                slab.title.to_string(),
+                body.title.to_string(),
                 treatment.name().to_string(),
                 short(&chosen.case.setting),
                 percent(&chosen.rms),
@@ -134,7 +134,7 @@ fn queries(data: &Data) -> Table {
         }
     }
     let columns = [
-        "slab",
+        "fog",
         "at faces",
         "most efficient setting",
         "its RMS error [%]",
@@ -159,9 +159,9 @@ fn queries(data: &Data) -> Table {
 /// What a fixed choice of k costs.
 fn regrets(data: &Data) -> Table {
     let mut rows = Vec::new();
-    for slab in &SLABS {
+    for body in &BODIES {
         for treatment in Treatment::ALL {
-            let cases = data.of(slab, treatment, Some(data.largest(slab)));
+            let cases = data.of(body, treatment, Some(data.largest(body)));
             let Some(best) = best(&cases) else { continue };
             let is_last = is_last(best.case, &cases);
             let regret_of = |k: usize| {
@@ -173,7 +173,7 @@ fn regrets(data: &Data) -> Table {
                 })
             };
             rows.push(vec![
-                slab.title.to_string(),
+                body.title.to_string(),
                 treatment.name().to_string(),
                 best.case.setting.photons.to_string(),
                 best.case.setting.size.name(),
@@ -184,7 +184,7 @@ fn regrets(data: &Data) -> Table {
         }
     }
     let columns = [
-        "slab",
+        "fog",
         "at faces",
         "photons",
         "best gather",
@@ -202,14 +202,14 @@ fn regrets(data: &Data) -> Table {
 fn counts(data: &Data) -> Table {
     let row = |size: &super::data::Size| {
         let gather = |wanted: super::cases::Size| {
-            let cases = data.of(size.slab, Treatment::Plain, Some(size.photons));
+            let cases = data.of(size.body, Treatment::Plain, Some(size.photons));
             let found = cases.iter().find(|c| c.setting.size == wanted);
             found.map_or(String::new(), |c| number(mean(&c.found)))
         };
-        let paths = data.paths(size.slab);
-        let volume = CELL * CELL * size.slab.tau;
+        let paths = data.paths(size.body);
+        let volume = size.body.volume();
         vec![
-            size.slab.title.to_string(),
+            size.body.title.to_string(),
             size.photons.to_string(),
             number(size.photons as f64 / volume),
             number(mean(&size.stored) / volume),
@@ -223,7 +223,7 @@ fn counts(data: &Data) -> Table {
         ]
     };
     let columns = [
-        "slab",
+        "fog",
         "photons",
         "emitted per mfp³",
         "stored per mfp³",
@@ -245,23 +245,23 @@ fn counts(data: &Data) -> Table {
 fn seconds(data: &Data) -> Table {
     let row = |size: &super::data::Size| {
         let query = |wanted: super::cases::Size| {
-            let cases = data.of(size.slab, Treatment::Plain, Some(size.photons));
+            let cases = data.of(size.body, Treatment::Plain, Some(size.photons));
             let found = cases.iter().find(|c| c.setting.size == wanted);
             found.map_or(String::new(), |c| format!("{:.2}", 1e6 * mean(&c.query_seconds)))
         };
         let [shooting, building] = [mean(&size.seconds[0]), mean(&size.seconds[1])];
         vec![
-            size.slab.title.to_string(),
+            size.body.title.to_string(),
             size.photons.to_string(),
             format!("{:.2}", 1e3 * shooting),
             format!("{:.2}", 1e3 * building),
             query(Size::Radius(0.2)),
             query(Size::Nearest(50)),
-            data.paths(size.slab).map_or(String::new(), |p| format!("{:.2}", 1e6 * mean(&p.seconds))),
+            data.paths(size.body).map_or(String::new(), |p| format!("{:.2}", 1e6 * mean(&p.seconds))),
         ]
     };
     let columns = [
-        "slab",
+        "fog",
         "photons",
         "shooting [ms]",
         "building [ms]",
@@ -304,7 +304,7 @@ fn deviations(data: &Data) -> Table {
     table(&caption, &columns, off(data).into_iter().map(row).collect())
 }
 
-/// The smallest error of all settings of a slab.
-pub fn best_error(data: &Data, slab: &Slab, treatment: Treatment) -> Option<Estimate> {
-    best(&data.of(slab, treatment, None)).map(|choice| choice.rms)
+/// The smallest error of all settings of a body.
+pub fn best_error(data: &Data, body: &Body, treatment: Treatment) -> Option<Estimate> {
+    best(&data.of(body, treatment, None)).map(|choice| choice.rms)
 }

@@ -1,13 +1,11 @@
 //! Mean and spread of every estimate, from theory: independent photons of the exact field, thickened by the clusters
 //! of one history.
 
-use super::cases::{CELL, Setting, Size, Slab, Treatment};
-use super::measure::inside;
-use crate::theory::{SlabGathers, clustering};
+use super::cases::{Body, Setting, Size, Treatment};
+use crate::theory::{Fog, Gathers, clustering};
 use std::f64::consts::PI;
 use turbid::estimators::Kernel;
 use turbid_analytic::nearest::{nearest_expectation, nearest_moments};
-use turbid_analytic::quadrature::GaussLegendre;
 
 /// What theory says of one estimate, as fractions of the exact fluence.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -57,24 +55,24 @@ impl Rms {
     }
 }
 
-/// The theory of one slab.
+/// The theory of one body of fog.
 pub struct Theory {
-    slab: &'static Slab,
-    gathers: SlabGathers,
+    body: &'static Body,
+    gathers: Gathers,
 }
 
 /// Largest radius that is asked of the theory, beside the settings' own \[mfp\].
 const REACH: f64 = 1.0;
-/// Panels and nodes of the quadrature over the fluence, which bends like t ln t at the faces: 10^-6 of it is left.
-const PANELS: usize = 64;
+/// Panels of the quadrature over the fluence, which bends like t ln t at the faces: 10^-6 of it is left.
+const PANELS: u32 = 64;
 
 impl Theory {
-    /// The theory of a slab whose settings are these.
-    pub fn new<'a>(slab: &'static Slab, settings: impl Iterator<Item = &'a Setting>) -> anyhow::Result<Self> {
-        let reach = settings.filter(|s| s.slab == slab).map(Setting::cap).fold(REACH, f64::max);
-        let (tau, albedo, g) = (slab.tau, slab.albedo, slab.g);
-        let gathers = SlabGathers::new(tau, albedo, g, slab.exact()?, &slab.depths(), reach);
-        Ok(Theory { slab, gathers })
+    /// The theory of a body whose settings are these.
+    pub fn new<'a>(body: &'static Body, settings: impl Iterator<Item = &'a Setting>) -> anyhow::Result<Self> {
+        let reach = settings.filter(|s| s.body == body).map(Setting::cap).fold(REACH, f64::max);
+        let (fog, albedo, g) = (body.fog, body.albedo, body.g);
+        let gathers = Gathers::new(fog, albedo, g, body.exact()?, &body.depths(), reach);
+        Ok(Theory { body, gathers })
     }
 
     /// Exact fluence and its bound.
@@ -82,12 +80,13 @@ impl Theory {
         self.gathers.exact(t)
     }
 
-    /// Collisions of a history, on average: the integral of the fluence over depth.
+    /// Collisions of a history, on average: the integral of the fluence over the fog, per unit of power.
     pub fn collisions(&self) -> anyhow::Result<f64> {
-        let rule = GaussLegendre::new(8)?;
-        let step = self.slab.tau / PANELS as f64;
-        let fluence = |t: f64| self.exact(t).map_or(f64::NAN, |(value, _)| value);
-        Ok((0..PANELS).map(|i| rule.integrate(i as f64 * step, (i as f64 + 1.0) * step, fluence)).sum())
+        let total = self.body.fog.total(self.gathers.fluence(), PANELS)?;
+        Ok(match self.body.fog {
+            Fog::Slab { .. } => total,
+            Fog::Sphere { .. } => total / self.body.power(),
+        })
     }
 
     /// One setting at one layer's depth.
@@ -103,8 +102,8 @@ impl Theory {
     pub fn within(&self, r: f64, photons: f64, treatment: Treatment, t: f64) -> anyhow::Result<Expected> {
         let (here, here_error) = self.exact(t)?;
         let mean = self.gathers.profile(t, Kernel::Uniform)?.at(r);
-        let whole = inside(self.slab, t, r)?;
-        let held = photons / (CELL * CELL) * 4.0 / 3.0 * PI * r * r * r * mean;
+        let whole = self.body.fog.inside(r, t)?;
+        let held = photons / self.body.power() * 4.0 / 3.0 * PI * r * r * r * mean;
         let (edge, value) = match treatment {
             Treatment::Plain => (whole - 1.0, mean / here),
             Treatment::Clipped => (0.0, mean / (here * whole)),
@@ -131,7 +130,7 @@ impl Theory {
         let profile = self.gathers.profile(t, Kernel::Uniform)?;
         let ball = |r: f64| density * 4.0 / 3.0 * PI * r * r * r;
         let number = |r: f64| ball(r) * profile.at(r);
-        let whole = |r: f64| inside(self.slab, t, r).unwrap_or(f64::NAN);
+        let whole = |r: f64| self.body.fog.inside(r, t).unwrap_or(f64::NAN);
         let part = |r: f64| if treatment == Treatment::Plain { 1.0 } else { whole(r) };
         let mean = |r: f64| profile.at(r) / part(r);
         let square = |r: f64| profile.at(r) / (ball(r) * part(r) * part(r));
@@ -167,41 +166,20 @@ impl Theory {
         })
     }
 
-    /// Other photons of its history that a photon of the ball has there, on average. The mean chord of a convex
-    /// body is four times its volume over its surface (Cauchy): where the slab cuts the ball, neighbours become
-    /// fewer in that proportion, an approximation.
+    /// Other photons of its history that a photon of the ball has there, on average. Where the surface cuts the ball,
+    /// neighbours become fewer in proportion to its mean chord, an approximation.
     fn clustering(&self, r: f64, t: f64) -> f64 {
-        clustering(self.slab.albedo, self.slab.g, r) * chord(self.slab, r, t)
+        clustering(self.body.albedo, self.body.g, r) * self.body.fog.chord(r, t)
     }
-}
-
-/// Mean chord of the part of a ball that lies in the slab, over that of the whole ball.
-fn chord(slab: &Slab, r: f64, t: f64) -> f64 {
-    let (up, down) = ((t / r).min(1.0), ((slab.tau - t) / r).min(1.0));
-    let volume = 0.75 * (up + down) - 0.25 * (up * up * up + down * down * down);
-    let surface = 0.5 * (up + down) + 0.25 * (2.0 - up * up - down * down);
-    volume / surface
 }
 
 #[cfg(test)]
 mod tests {
-    use super::super::cases::SLABS;
+    use super::super::cases::BODIES;
     use super::*;
 
-    fn slab(name: &str) -> &'static Slab {
-        SLABS.iter().find(|s| s.name == name).unwrap()
-    }
-
-    #[test]
-    fn chords_of_whole_and_half_balls() {
-        let thick = slab("thick");
-        assert_eq!(chord(thick, 0.5, 4.0), 1.0);
-        // Half a ball: (2/3 pi) over (3 pi), a ball (4/3 pi) over (4 pi): two thirds.
-        assert!((chord(thick, 0.5, 0.0) - 2.0 / 3.0).abs() < 1e-15);
-        // A thin disc of thickness d has the chord 2 d.
-        let thin = slab("thin");
-        let wide = chord(thin, 400.0, 0.25) * 400.0 * 4.0 / 3.0;
-        assert!((wide - 1.0).abs() < 2e-3, "{wide}");
+    fn body(name: &str) -> &'static Body {
+        BODIES.iter().find(|s| s.name == name).unwrap()
     }
 
     /// Power balance: what is absorbed and what leaves make 1, so that collisions are (1 - R - T)/(1 - albedo).
@@ -209,11 +187,12 @@ mod tests {
     fn collisions_by_power_balance() {
         use turbid_analytic::{Incidence, IsotropicSlab};
         for name in ["thin", "moderate", "thick"] {
-            let slab = slab(name);
-            let exact = IsotropicSlab::new(slab.tau, slab.albedo, Incidence::Beam { mu0: 1.0 }).unwrap();
+            let body = body(name);
+            let exact =
+                IsotropicSlab::new(body.fog.deepest(), body.albedo, Incidence::Beam { mu0: 1.0 }).unwrap();
             let balance =
-                (1.0 - exact.reflectance().value - exact.transmittance().value) / (1.0 - slab.albedo);
-            let found = Theory::new(slab, std::iter::empty()).unwrap().collisions().unwrap();
+                (1.0 - exact.reflectance().value - exact.transmittance().value) / (1.0 - body.albedo);
+            let found = Theory::new(body, std::iter::empty()).unwrap().collisions().unwrap();
             assert!((found / balance - 1.0).abs() < 1e-5, "{name}: {found}, {balance}");
         }
     }
@@ -221,14 +200,14 @@ mod tests {
     /// Where the whole ball lies inside, clipping changes nothing; at the face it doubles what is left.
     #[test]
     fn clipping_restores_the_missing_part() {
-        let theory = Theory::new(slab("moderate"), std::iter::empty()).unwrap();
-        let depth = slab("moderate").depth(0);
+        let theory = Theory::new(body("moderate"), std::iter::empty()).unwrap();
+        let depth = body("moderate").depth(0);
         let at = |treatment| theory.within(0.4, 1e5, treatment, depth).unwrap();
         let (plain, clipped) = (at(Treatment::Plain), at(Treatment::Clipped));
         let whole = 1.0 + plain.edge;
         assert!(((1.0 + plain.bias()) / whole - 1.0 - clipped.bias()).abs() < 1e-12);
         assert!((plain.noise / whole / clipped.noise - 1.0).abs() < 1e-12);
-        let middle = slab("moderate").depth(8);
+        let middle = body("moderate").depth(8);
         let at = |treatment| theory.within(0.4, 1e5, treatment, middle).unwrap();
         assert_eq!(at(Treatment::Plain).blur, at(Treatment::Clipped).blur);
     }

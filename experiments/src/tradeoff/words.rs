@@ -1,6 +1,6 @@
 //! The summary and the notes.
 
-use super::cases::{SLABS, Slab, Treatment};
+use super::cases::{BODIES, Body, Treatment};
 use super::choose::{Currency, best_over_best, break_even, cheapest, most_efficient};
 use super::conclude::left_over;
 use super::data::Data;
@@ -11,16 +11,16 @@ fn percent(estimate: &Estimate) -> String {
     with_error(100.0 * estimate.value(), 100.0 * estimate.std_error())
 }
 
-fn even(data: &Data, slab: &Slab, currency: Currency) -> Option<Estimate> {
-    let chosen = most_efficient(&data.of(slab, Treatment::Clipped, None))?;
-    break_even(chosen.case, data.paths(slab)?, currency).queries
+fn even(data: &Data, body: &Body, currency: Currency) -> Option<Estimate> {
+    let chosen = most_efficient(&data.of(body, Treatment::Clipped, None))?;
+    break_even(chosen.case, data.paths(body)?, currency).queries
 }
 
 /// The break-even in both currencies, and the error at which.
-fn both(data: &Data, slab: &Slab) -> Option<String> {
-    let chosen = most_efficient(&data.of(slab, Treatment::Clipped, None))?;
+fn both(data: &Data, body: &Body) -> Option<String> {
+    let chosen = most_efficient(&data.of(body, Treatment::Clipped, None))?;
     let text = |currency| {
-        even(data, slab, currency).map_or("never".to_string(), |q| {
+        even(data, body, currency).map_or("never".to_string(), |q| {
             format!("from {} queries on", with_error(q.value(), q.std_error()))
         })
     };
@@ -35,16 +35,17 @@ fn both(data: &Data, slab: &Slab) -> Option<String> {
 /// The summary.
 pub fn summary(data: &Data) -> Vec<String> {
     let mut paragraphs = Vec::new();
-    let (thin, thick) = (&SLABS[0], &SLABS[4]);
-    if let (Some(plain), Some(clipped), Some(in_thin), Some(in_thick)) = (
+    let (thin, thick, sphere) = (&BODIES[0], &BODIES[4], &BODIES[6]);
+    if let (Some(plain), Some(clipped), Some(in_thin), Some(in_thick), Some(in_sphere)) = (
         best_error(data, thin, Treatment::Plain),
         best_error(data, thin, Treatment::Clipped),
         both(data, thin),
         both(data, thick),
+        both(data, sphere),
     ) {
         paragraphs.push(format!(
             "Against a path tracer of the same error a photon map pays for itself, in thick isotropic fog, {in_thick}; \
-             in thin, {in_thin}, where an operation is a ray or a photon gathered, each as one. Near a face the plain \
+             in thin, {in_thin}; in a glowing sphere, {in_sphere}, where an operation is a ray or a photon gathered, each as one. Near a face the plain \
              estimate is stuck: in the thin slab the best of the gathers tried errs by ({}) %, where dividing by the \
              part of the ball inside the fog leaves ({}) %.",
             percent(&plain),
@@ -54,24 +55,24 @@ pub fn summary(data: &Data) -> Vec<String> {
     let clipping: Vec<String> = [0, 2, 4]
         .iter()
         .map(|&i| {
-            let slab = &SLABS[i];
-            let of = |treatment| data.of(slab, treatment, Some(data.largest(slab)));
+            let body = &BODIES[i];
+            let of = |treatment| data.of(body, treatment, Some(data.largest(body)));
             let ratio = best_over_best(&of(Treatment::Clipped), &of(Treatment::Plain));
-            format!("{:.2} ({})", ratio.value(), slab.title)
+            format!("{:.2} ({})", ratio.value(), body.title)
         })
         .collect();
-    let reaches = |slab: &Slab, target: f64| {
-        Treatment::ALL.iter().any(|&t| cheapest(&data.of(slab, t, None), target, 4096.0).is_some())
+    let reaches = |body: &Body, target: f64| {
+        Treatment::ALL.iter().any(|&t| cheapest(&data.of(body, t, None), target, 4096.0).is_some())
     };
-    let reached = |target| SLABS.iter().filter(|slab| reaches(slab, target)).count();
+    let reached = |target| BODIES.iter().filter(|body| reaches(body, target)).count();
     paragraphs.push(format!(
         "What limits a gather changes from scene to scene. At the largest maps the best clipped gather has {} times \
          the error of the best plain one: clipping is the first thing to do where faces are near, and changes little \
-         in thick fog. Some setting reaches 10 per cent in {} of {} slabs, 3 per cent in {} and 1 per cent in {}; theory \
+         in thick fog. Some setting reaches 10 per cent in {} of {} bodies, 3 per cent in {} and 1 per cent in {}; theory \
          says what reaches it elsewhere. Of {} measured errors {} are more than 4 standard errors from theory's; a table lists them.",
         clipping.join(", "),
         reached(0.1),
-        SLABS.len(),
+        BODIES.len(),
         reached(0.03),
         reached(0.01),
         data.measured.len(),
@@ -121,13 +122,14 @@ pub fn notes(budget: &[Entry], data: &Data) -> Vec<String> {
          far side of eight mean free paths, and the relative error there would drown all else."
             .to_string(),
         "Relative errors of the layers nearest the faces weigh as much as all others. The probes' outermost layers lie \
-         1/32 of the thickness inside: a different layout would have another floor."
+         1/32 of the thickness inside: a different layout would have another floor. In the sphere the layers hold equal \
+         volumes too, so that half of the probes are nearer to the surface than a fifth of the radius."
             .to_string(),
     ];
-    let never: Vec<&str> = SLABS
+    let never: Vec<&str> = BODIES
         .iter()
-        .filter(|slab| even(data, slab, Currency::Operations).is_none())
-        .map(|slab| slab.title)
+        .filter(|body| even(data, body, Currency::Operations).is_none())
+        .map(|body| body.title)
         .collect();
     if !never.is_empty() {
         notes.push(format!(

@@ -1,19 +1,17 @@
-//! The mean error of a gather in a slab, in parts: exact kernel means of the exact field, the k-nearest law for
+//! The mean error of a gather in a body of fog, in parts: exact kernel means of the exact field, the k-nearest law for
 //! independent photons, and the clusters of one history.
 
-use super::{Exact, Table, nearest_clustering, referee_kernel};
+use super::{Exact, Fog, Table, nearest_clustering};
 use anyhow::Context;
 use std::f64::consts::PI;
 use std::sync::OnceLock;
 use turbid::estimators::Kernel;
-use turbid_analytic::kernel as referee;
 use turbid_analytic::nearest::{nearest_expectation, nearest_expectation_biased};
-use turbid_analytic::slab_kernel::{edge_loss, slab_moment};
 
 /// The predicted error of a case in parts, each as a fraction of the exact fluence.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Parts {
-    /// Exact fluence per unit irradiance.
+    /// Exact fluence.
     pub exact: f64,
     /// Bound on its error.
     pub exact_error: f64,
@@ -59,15 +57,15 @@ pub struct NearestGather {
     pub k: usize,
     /// Largest radius \[mfp\].
     pub cap: f64,
-    /// Emitted photons per square mean free path: photons per volume where the fluence is 1.
+    /// Emitted photons over emitted power: photons per volume where the fluence is 1.
     pub density: f64,
     /// Whether the k-th photon is summed too, wrongly.
     pub is_biased: bool,
 }
 
-/// A slab with all that predictions ask of it.
-pub struct SlabGathers {
-    tau: f64,
+/// A body of fog with all that predictions ask of it.
+pub struct Gathers {
+    fog: Fog,
     albedo: f64,
     g: f64,
     exact: Exact,
@@ -80,13 +78,13 @@ pub struct SlabGathers {
 /// What interpolation of the kernel means adds to the error of a nearest expectation, tested in `table`.
 const INTERPOLATION: f64 = 1e-8;
 
-impl SlabGathers {
-    /// The theory of gathers up to radius `reach` in a slab of this fluence. Nearest gathers may be asked at the
+impl Gathers {
+    /// The theory of gathers up to radius `reach` in fog of this fluence. Nearest gathers may be asked at the
     /// given depths; histories of albedo 0 make no clusters.
-    pub fn new(tau: f64, albedo: f64, g: f64, exact: Exact, depths: &[f64], reach: f64) -> Self {
+    pub fn new(fog: Fog, albedo: f64, g: f64, exact: Exact, depths: &[f64], reach: f64) -> Self {
         let places = depths.iter().flat_map(|&depth| Kernel::ALL.map(|kernel| (depth, kernel)));
         let profiles = places.map(|(depth, kernel)| (depth, kernel, OnceLock::new())).collect();
-        SlabGathers { tau, albedo, g, exact, reach, profiles }
+        Gathers { fog, albedo, g, exact, reach, profiles }
     }
 
     /// The exact fluence at a depth, and the bound on its error.
@@ -94,32 +92,35 @@ impl SlabGathers {
         (self.exact)(t)
     }
 
+    /// The exact fluence against depth.
+    pub fn fluence(&self) -> &Exact {
+        &self.exact
+    }
+
     /// The table of int_O K_r f against r at one of the depths.
     pub fn profile(&self, depth: f64, kernel: Kernel) -> anyhow::Result<&Table> {
         let found = self.profiles.iter().find(|(d, k, _)| *d == depth && *k == kernel);
-        let (_, _, slot) = found.with_context(|| format!("depth {depth} is none of the slab's"))?;
+        let (_, _, slot) = found.with_context(|| format!("depth {depth} is none of those to be asked"))?;
         if let Some(profile) = slot.get() {
             return Ok(profile);
         }
         // Two threads may tabulate the same means at once; they find the same numbers.
-        let profile =
-            Table::of_kernel_means(referee_kernel(kernel), depth, self.tau, self.reach, &self.exact)?;
+        let profile = self.fog.kernel_means(kernel, depth, self.reach, &self.exact)?;
         Ok(slot.get_or_init(|| profile))
     }
 
     /// The parts of a gather of fixed radius, at any depth.
     pub fn within(&self, kernel: Kernel, radius: f64, t: f64) -> anyhow::Result<Parts> {
         let (here, here_error) = (self.exact)(t)?;
-        let field = |depth: f64| (self.exact)(depth).map_or(f64::NAN, |(value, _)| value);
-        let split = edge_loss(referee_kernel(kernel), radius, t, self.tau, field)?;
+        let [edge, blur] = self.fog.parts(kernel, radius, t, &self.exact)?;
         Ok(Parts {
             exact: here,
             exact_error: here_error,
-            edge: split.edge.value / here,
-            blur: split.blur.value / here,
+            edge: edge.0 / here,
+            blur: blur.0 / here,
             rule: 0.0,
             clusters: 0.0,
-            error: (split.edge.error + split.blur.error + here_error) / here,
+            error: (edge.1 + blur.1 + here_error) / here,
         })
     }
 
@@ -144,10 +145,9 @@ impl SlabGathers {
         let (counted, summed) = (self.profile(t, Kernel::Uniform)?, self.profile(t, kernel)?);
         let number = |r: f64| ball(r) * counted.at(r);
         let right = nearest_expectation(neighbors, cap, number, |r| summed.at(r))?;
-        let inside = |kernel, r| slab_moment(kernel, 0, r, t, self.tau).map_or(f64::NAN, |v| here * v.value);
-        let number_uniform = |r: f64| ball(r) * inside(referee::Kernel::Uniform, r);
-        let uniform =
-            nearest_expectation(neighbors, cap, number_uniform, |r| inside(referee_kernel(kernel), r))?;
+        let inside = |kernel, r| self.fog.mass(kernel, r, t).map_or(f64::NAN, |mass| here * mass);
+        let number_uniform = |r: f64| ball(r) * inside(Kernel::Uniform, r);
+        let uniform = nearest_expectation(neighbors, cap, number_uniform, |r| inside(kernel, r))?;
         let mut parts = Parts {
             exact: here,
             exact_error: here_error,
