@@ -123,6 +123,9 @@ fn fluences(slab: &AnisotropicSlab) -> turbid_analytic::Result<Vec<Value>> {
     (0..DEPTHS).map(|i| slab.fluence((f64::from(i) + 0.5) / f64::from(DEPTHS) * TAU)).collect()
 }
 
+/// What answers with R, T and ten fluences.
+type Solver<'a> = dyn Fn() -> Result<Vec<f64>> + 'a;
+
 /// R, T and ten fluences, from scratch.
 fn solve(medium: turbid_analytic::Result<AnisotropicMedium>) -> Result<Vec<f64>> {
     let slab = medium?.slab(TAU, BEAM)?;
@@ -160,7 +163,7 @@ fn beside_the_peer(out: &mut impl Write, phase: &Phase, slab: &AnisotropicSlab) 
         enough += 2;
     }
     let mut first = true;
-    let ours: [(String, &dyn Fn() -> Result<Vec<f64>>); 3] = [
+    let ours: [(String, &Solver); 3] = [
         ("referee, 32 streams and 24".into(), &|| with_streams(32)),
         (format!("referee, {enough} streams, as accurate"), &|| with_streams(enough)),
         ("referee, as it answers".into(), &|| solve(AnisotropicMedium::new(ALBEDO, phase))),
@@ -198,7 +201,7 @@ fn beside_the_peer(out: &mut impl Write, phase: &Phase, slab: &AnisotropicSlab) 
 }
 
 /// Mean seconds of five repetitions, as the peer's.
-fn mean_of_five(work: &dyn Fn() -> Result<Vec<f64>>) -> f64 {
+fn mean_of_five(work: &Solver) -> f64 {
     let start = ThreadTime::now();
     for _ in 0..5 {
         _ = black_box(work());
