@@ -141,6 +141,10 @@ impl FresnelSlab {
     /// `tau` optical thickness \[1\], 1e-12 to 1e5; `albedo` 0 to 1; `g` mean cosine of scattering, -0.95 to 0.95;
     /// `index` refractive index inside over outside \[1\], 0.25 to 4; `incidence` from outside, of unit irradiance, a
     /// beam with a cosine of 1e-5 to 1, refracted to one of 1e-5 to 1 or reflected whole
+    /// # Returns
+    /// a solution with errors below 1e-10 of themselves for most slabs; the bounds say how much. It takes some tens of
+    /// milliseconds, two seconds at |g| = 0.95. Scattered light of a slab thicker than 100 of albedo below 1e-4 in
+    /// diffuse light is known to 1e-14 of the incident power only
     /// # Errors
     /// `Error::OutOfRange` naming `tau`, `albedo`, `g`, `index` or `mu0`
     pub fn new(tau: f64, albedo: f64, g: f64, index: f64, incidence: Incidence) -> Result<Self> {
