@@ -28,6 +28,7 @@ mod chord;
 mod first_flight;
 mod large;
 pub(crate) mod operator;
+mod orders;
 pub(crate) mod ordinates;
 mod point;
 mod shells;
@@ -39,6 +40,7 @@ pub use first_flight::{absorbing_transmittance, escape_from, escape_uniform};
 use large::Large;
 use libm::{exp, expm1};
 use operator::ShellOperator;
+use orders::CENTRE_ORDERS;
 use shells::Shells;
 use std::f64::consts::PI;
 use std::sync::Arc;
@@ -182,6 +184,31 @@ impl Sphere {
             SphereSource::Centre => exp(-r) / (4.0 * PI * r * r),
         };
         Ok(Value::rounded(value, ulps, CLOSED))
+    }
+
+    /// Fluence at r of light scattered exactly n times.
+    ///
+    /// phi_n = (w/2) int_0^a (r'/r) \[E_1(|r-r'|) - E_1(r+r')\] phi_(n-1)(r') dr', phi_0 the direct light.
+    /// # Arguments
+    /// `n` order, 0 to 1000, of a central source 0 to 8; `r` 0 to the radius. Radii up to 64, or order 0
+    /// # Errors
+    /// `Error::OutOfRange` naming `n`, `r` or `radius`; `Error::Infinite` at a central source
+    pub fn fluence_of_order(&self, n: u32, r: f64) -> Result<Value> {
+        let (most, allowed) = match self.source {
+            SphereSource::Centre => (CENTRE_ORDERS, "0 to 8 for a central source"),
+            _ => (1000, "0 to 1000"),
+        };
+        within("n", f64::from(n), 0.0, f64::from(most), allowed)?;
+        self.check_r(r)?;
+        match &self.solution {
+            _ if n == 0 => self.fluence_direct(r),
+            Solution::Shells(shells) => Ok(shells.fluence_of_order(n, r)),
+            Solution::Direct => Ok(Value::new(0.0, 0.0, CLOSED)),
+            Solution::Large(_) => {
+                let allowed = "up to 64 for light scattered a given number of times";
+                Err(Error::OutOfRange { name: "radius", value: self.radius, allowed })
+            }
+        }
     }
 
     /// Fraction of the power that leaves the sphere \[1\]; of the incident power, the fraction not absorbed.

@@ -234,8 +234,8 @@ mod tests {
 
     #[test]
     fn the_shell_kernel_is_continuous_over_its_forms() {
-        for (r, source) in [(0.3, 0.4), (0.1, 0.5), (0.6, 2.0), (3.0, 1.0), (0.45, 0.55), (1e-3, 3e-3)] {
-            let want = (e1((r - source as f64).abs()) - e1(r + source)) * source / r;
+        for (r, source) in [(0.3_f64, 0.4), (0.1, 0.5), (0.6, 2.0), (3.0, 1.0), (0.45, 0.55), (1e-3, 3e-3)] {
+            let want = (e1((r - source).abs()) - e1(r + source)) * source / r;
             assert!((shells(r, source, (r - source).abs()) / want - 1.0).abs() < 1e-13, "{r} {source}");
         }
         // Either side of l/h = 1/4, of l = 1/2 and of a sum of 1, differences by the step alone.

@@ -38,18 +38,26 @@ impl PointSource {
         }
         let (k, discrete) = discrete(albedo);
         terms.push(Term { rate: k, total: discrete, collided: discrete });
-        for i in ENDS.0..=ENDS.1 {
-            let v = f64::from(i) * STEP;
-            let e = exp(v);
-            let x = 1.0 + e;
-            let a = 0.5 * (if v > 0.0 { log1p(2.0 / e) } else { log(2.0 + e) - v }) / x;
-            let b = 0.5 * PI / x;
+        for (x, weight, a, b) in nodes() {
             let (p, q) = (1.0 - albedo * a, albedo * b);
             let g = 1.0 / (p * p + q * q);
             let collided = (2.0 * albedo * a - albedo * albedo * (a * a + b * b)) * g;
-            terms.push(Term { rate: x, total: STEP * e * g, collided: STEP * e * collided });
+            terms.push(Term { rate: x, total: weight * g, collided: weight * collided });
         }
         PointSource { terms }
+    }
+
+    /// Light scattered n times, n >= 1.
+    pub(super) fn of_order(albedo: f64, n: u32) -> Self {
+        let term = |(x, weight, a, b): (f64, f64, f64, f64)| {
+            // (a + ib)^(n+1) by steps; its imaginary part over b.
+            let (mut re, mut im) = (a, 1.0);
+            for _ in 0..n {
+                (re, im) = (albedo * (re * a - im * b * b), albedo * (re + im * a));
+            }
+            Term { rate: x, total: weight * im, collided: weight * im }
+        };
+        PointSource { terms: nodes().map(term).collect() }
     }
 
     /// r phi(r) of collided light, and a bound on its error.
@@ -97,6 +105,17 @@ impl PointSource {
     pub(super) fn total(&self, r: f64) -> f64 {
         exp(-r) / (4.0 * PI * r) + self.collided(r).0
     }
+}
+
+/// x, the trapezoidal weight dx, A = atanh(1/x)/x and B = pi/(2x).
+fn nodes() -> impl Iterator<Item = (f64, f64, f64, f64)> {
+    (ENDS.0..=ENDS.1).map(|i| {
+        let v = f64::from(i) * STEP;
+        let e = exp(v);
+        let x = 1.0 + e;
+        let a = 0.5 * (if v > 0.0 { log1p(2.0 / e) } else { log(2.0 + e) - v }) / x;
+        (x, STEP * e, a, 0.5 * PI / x)
+    })
 }
 
 /// The sum of collided light over 4 pi, and a bound on its error.

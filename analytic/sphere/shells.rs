@@ -4,21 +4,22 @@ use super::SphereSource;
 use super::chord;
 use super::first_flight::{first_flight, mean_escape, shells, transmittance_and_loss};
 use super::operator::{Field, ShellOperator};
+use super::orders::Order;
 use super::point::{self, PointSource};
 use crate::error::{Error, Result};
 use crate::quadrature::GAUSS_24;
 use crate::value::Value;
 use libm::{exp, expm1};
 use std::f64::consts::PI;
-use std::sync::Arc;
+use std::sync::{Arc, Mutex};
 
-const METHOD: &str = "integral equation, residual bound";
+pub(super) const METHOD: &str = "integral equation, residual bound";
 
 /// Roundings of the closed forms and sums in one answer.
-const ULPS: f64 = 48.0;
+pub(super) const ULPS: f64 = 48.0;
 
 /// A shell outside: its radius, its height over the surface, its weight times the infinite medium's fluence.
-struct Outside {
+pub(super) struct Outside {
     r: f64,
     height: f64,
     weight: f64,
@@ -36,6 +37,7 @@ pub(super) struct Shells {
     source: SphereSource,
     field: Field,
     centre: Option<Centre>,
+    pub(super) orders: Mutex<Vec<Order>>,
     pub(super) escape: Value,
     pub(super) absorptance: Value,
 }
@@ -78,12 +80,20 @@ impl Shells {
                 escape = at_centre(&lit, incident(0.0, a)).scaled(0.25);
                 absorptance = at_centre(&glowing, uniform(0.0, a)).scaled(1.0 - albedo);
                 let point = PointSource::new(albedo);
-                let parts = Centre { outside: outside(a, &point), point };
-                field = solve(&|r, depth| parts.missing(albedo, r, depth), ULPS + point::ULPS)?;
+                let parts = Centre { outside: outside(a, |r| point.total(r)), point };
+                field = solve(&|r, depth| missing(&parts.outside, albedo, r, depth), ULPS + point::ULPS)?;
                 centre = Some(parts);
             }
         }
-        Ok(Shells { operator, albedo, source, field, centre, escape, absorptance })
+        Ok(Shells { operator, albedo, source, field, centre, orders: Mutex::default(), escape, absorptance })
+    }
+
+    pub(super) fn albedo(&self) -> f64 {
+        self.albedo
+    }
+
+    pub(super) fn source(&self) -> SphereSource {
+        self.source
     }
 
     pub(super) fn operator(&self) -> &Arc<ShellOperator> {
@@ -103,10 +113,10 @@ impl Shells {
     }
 
     /// The known part of the equation.
-    fn known(&self, r: f64, depth: f64) -> f64 {
+    pub(super) fn known(&self, r: f64, depth: f64) -> f64 {
         let a = self.operator.radius;
         match (&self.centre, self.source) {
-            (Some(centre), _) => centre.missing(self.albedo, r, depth),
+            (Some(centre), _) => missing(&centre.outside, self.albedo, r, depth),
             (None, SphereSource::Incident) => 4.0 * first_flight(a, r, depth).0,
             (None, _) => first_flight(a, r, depth).1,
         }
@@ -131,7 +141,7 @@ impl Shells {
         }
     }
 
-    fn volume(&self) -> f64 {
+    pub(super) fn volume(&self) -> f64 {
         let a = self.operator.radius;
         4.0 * PI / 3.0 * a * a * a
     }
@@ -174,17 +184,15 @@ impl Shells {
     }
 }
 
-impl Centre {
-    /// -(w/2) int_a^inf (r'/r) \[E_1(r'-r) - E_1(r'+r)\] phi_inf(r') dr': the light that does not come back.
-    fn missing(&self, albedo: f64, r: f64, depth: f64) -> f64 {
-        let sum: f64 = self.outside.iter().map(|o| o.weight * shells(r, o.r, depth + o.height)).sum();
-        -0.5 * albedo * sum
-    }
+/// -(w/2) int_a^inf (r'/r) \[E_1(r'-r) - E_1(r'+r)\] phi_inf(r') dr': the light that does not come back.
+pub(super) fn missing(outside: &[Outside], albedo: f64, r: f64, depth: f64) -> f64 {
+    let sum: f64 = outside.iter().map(|o| o.weight * shells(r, o.r, depth + o.height)).sum();
+    -0.5 * albedo * sum
 }
 
 /// Gauss nodes over the surface. The kernel's logarithm lies at or below the surface: on panels \[h, 6h\] it is
-/// integrated to 2.4^-48.
-fn outside(a: f64, point: &PointSource) -> Vec<Outside> {
+/// integrated to 2.4^-48. `field` is r phi(r).
+pub(super) fn outside(a: f64, mut field: impl FnMut(f64) -> f64) -> Vec<Outside> {
     const GROWTH: f64 = 6.0;
     // What lies below 1e-17 of a mean free path or of the radius weighs 40 times that.
     let mut edge = 1e-17 * a.min(1.0);
@@ -195,7 +203,7 @@ fn outside(a: f64, point: &PointSource) -> Vec<Outside> {
         for (x, w) in GAUSS_24.nodes.iter().zip(&GAUSS_24.weights) {
             let height = edge + (next - edge) * x;
             let r = a + height;
-            nodes.push(Outside { r, height, weight: w * (next - edge) * point.total(r) / r });
+            nodes.push(Outside { r, height, weight: w * (next - edge) * field(r) / r });
         }
         edge = next;
     }
@@ -203,7 +211,14 @@ fn outside(a: f64, point: &PointSource) -> Vec<Outside> {
 }
 
 /// known + (w/2) (K f)(r), with what the bound of f makes of it.
-fn through(operator: &ShellOperator, albedo: f64, field: &Field, known: f64, r: f64, depth: f64) -> Value {
+pub(super) fn through(
+    operator: &ShellOperator,
+    albedo: f64,
+    field: &Field,
+    known: f64,
+    r: f64,
+    depth: f64,
+) -> Value {
     let half = 0.5 * albedo;
     let (mut image, mut absolute, mut bound) = (0.0, 0.0, 0.0);
     if albedo > 0.0 {

@@ -161,6 +161,65 @@ fn limits() {
     }
 }
 
+/// Orders add up to the whole, and those of the central source follow from each other by the equation.
+#[test]
+fn orders_add_up() {
+    for source in [SphereSource::Uniform, SphereSource::Incident] {
+        let sphere = Sphere::new(1.2, 0.9, source).unwrap();
+        for r in [0.0, 0.5, 1.19, 1.2] {
+            // A flight stays within a radius of 1.2 with a probability under 0.7: 100 orders leave 0.63^100.
+            let (mut sum, mut error) = (0.0, 0.0);
+            for n in 0..100 {
+                let order = sphere.fluence_of_order(n, r).unwrap();
+                sum += order.value;
+                error += order.error;
+            }
+            let whole = sphere.fluence(r).unwrap();
+            assert!(near(sum, whole.value, error + whole.error), "{source:?} {r}: {sum} {whole:?}");
+            assert!(error < 1e-12 * sum);
+        }
+    }
+    // Of the central source orders 0 to 8. (w/2) K takes a bounded field to at most w (1 - e^(-a)) of its maximum, so
+    // orders from 9 on add up to some (w (1 - e^(-a)))^7 of the maximum of order 2. In the largest sphere that is
+    // 1e-14 of 3e-6 (order 2 at the radius 0.01, where its logarithm is still small), beside 5e-7 in all at its face.
+    for (a, albedo) in [(1e-3, 0.5), (1.2, 0.01), (8.0, 0.01)] {
+        let sphere = Sphere::new(a, albedo, SphereSource::Centre).unwrap();
+        for part in [1e-6, 0.1, 0.5, 0.99, 1.0] {
+            let r = part * a;
+            let (mut sum, mut error) = (0.0, 0.0);
+            for n in 0..=8 {
+                let order = sphere.fluence_of_order(n, r).unwrap();
+                sum += order.value;
+                error += order.error;
+            }
+            let whole = sphere.fluence(r).unwrap();
+            let tolerance = error + whole.error + 1e-12 * whole.value;
+            assert!(near(sum, whole.value, tolerance), "{a} {part}: {sum} {whole:?}");
+            assert!(error < 1e-10 * sum, "{a} {part}: {error:e} {sum}");
+        }
+    }
+    let sphere = Sphere::new(1.2, 0.9, SphereSource::Centre).unwrap();
+    // Order n is w^n times that without absorption.
+    let pure = sphere.with(1.0, SphereSource::Centre).unwrap();
+    for n in 1..=8 {
+        let (p, q) = (sphere.fluence_of_order(n, 0.7).unwrap(), pure.fluence_of_order(n, 0.7).unwrap());
+        let scale = pow(0.9, f64::from(n));
+        assert!(near(p.value, scale * q.value, p.error + q.error) && p.error < 1e-10 * p.value, "{n}: {p:?}");
+    }
+    // Single scattering on the surface, int over the ball of e^(-r') e^(-d)/((4 pi)^2 r'^2 d^2), by shells: the mean of
+    // e^(-d)/d^2 over a shell is int e^(-d)/(2 r r' d) dd.
+    let rule = GaussLegendre::new(60).unwrap();
+    let a = 1.2;
+    let single = rule.integrate(0.0, 1.0, |x| {
+        let source = a * (1.0 - x * x * x * x);
+        let inner = rule.integrate(libm::log(a - source), libm::log(a + source), |l| exp(-exp(l)));
+        4.0 * a * x * x * x * exp(-source) / (8.0 * PI * a * source) * inner
+    });
+    let got = pure.fluence_of_order(1, a).unwrap();
+    assert!(near(got.value, single, 1e-11 * single), "{got:?} {single}");
+    assert!(sphere.fluence_of_order(9, 0.7).is_err() && sphere.fluence_of_order(3, 2.0).is_err());
+}
+
 #[test]
 fn what_is_solved_is_what_is_interpolated() {
     for source in SOURCES {
