@@ -15,7 +15,13 @@
 //! shares the differences of its neighbours (the other fluxes, nearby depths). Rounding is counted on top, in units
 //! of the sum of the magnitudes of all modes. Photons are conserved by construction, to rounding.
 //!
-//! Source: Chandrasekhar 1960, chapters II and III; Stamnes, Tsay, Wiscombe and Jayaweera 1988.
+//! Range: thickness 1e-12 to 1e9 and half-spaces, albedo 0 to 1, Henyey-Greenstein from -0.95 to 0.99 and what has
+//! moments alike. Fluxes are known to 1e-10 of themselves, mostly to 1e-13, for |g| up to 0.95 and to 1e-8 at 0.99; T
+//! of slabs without absorption too, however thick. Radiances are known to 1e-9 for |g| up to 0.9 (1e-8 within a
+//! degree of the horizon), to 1e-6 at 0.95 and to 1e-2 at 0.99, where they take seconds.
+//!
+//! Source: Chandrasekhar 1960, chapters II and III; Stamnes, Tsay, Wiscombe and Jayaweera 1988; Wiscombe 1977
+//! and Nakajima and Tanaka 1988 for peaks.
 
 mod convolution;
 mod faces;

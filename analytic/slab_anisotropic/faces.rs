@@ -142,6 +142,9 @@ pub(super) fn fluxes(
     let absorbed = solutions.each_ref().map(Solution::absorptance);
     let whole = solutions.iter().all(|solution| solution.modes.scattering.stretch == 1.0);
     let transmitted = std::array::from_fn(|set| {
+        if tau == f64::INFINITY {
+            return Sum::ZERO;
+        }
         if whole {
             return leaving(set, Face::Far);
         }

@@ -209,9 +209,9 @@ mod tests {
                 assert!((dot(&s.v[i], &s.v[j]) - exact).abs() < 1e-15);
             }
             // G v = k u, to a few roundings of the largest column.
-            for row in 0..3 {
-                let gv: f64 = (0..3).map(|j| g[j][row] * s.v[i][j]).sum();
-                assert!((gv - s.uk[i][row]).abs() < 16.0 * f64::EPSILON * largest, "{gv} {}", s.uk[i][row]);
+            for (row, uk) in s.uk[i].iter().enumerate() {
+                let gv: f64 = g.iter().zip(&s.v[i]).map(|(column, v)| column[row] * v).sum();
+                assert!((gv - uk).abs() < 16.0 * f64::EPSILON * largest, "{gv} {uk}");
             }
         }
     }

@@ -17,12 +17,12 @@ const CUT: [f64; 2] = [1e-11, 1e-8];
 /// Nodes towards the horizon, the fewest and the most above it.
 const LOWER: [usize; 2] = [60, 50];
 const UPPER: [usize; 2] = [32, 26];
-const MOST: [usize; 2] = [330, 250];
+const MOST: [usize; 2] = [420, 330];
 
 /// Radiances scattered three times and more: a moment left out of order m of azimuth is met by the square of chi_m at
 /// least, and their product may be this.
 const RAY: [f64; 2] = [1e-10, 1e-9];
-const LOWER_RAY: [usize; 2] = [32, 26];
+const LOWER_RAY: [usize; 2] = [40, 34];
 const UPPER_RAY: [usize; 2] = [32, 26];
 const MOST_RAY: [usize; 2] = [116, 104];
 /// The most where the peak is cut off, and how much looser the rules are.
@@ -38,7 +38,7 @@ const LONG: usize = 150;
 /// What terms of the series in azimuth may be where it ends.
 const SMALL: f64 = 1e-11;
 
-const TAIL: &str = "moments that beyond l = 498 are at most 0.1 and hardly change";
+const TAIL: &str = "moments that beyond l = 658 are at most 0.1 and hardly change";
 
 /// A medium whose modes are solved once, for any number of slabs. Cloning shares them.
 #[derive(Clone)]
@@ -108,7 +108,8 @@ impl AnisotropicMedium {
     /// The same on a plain Gauss rule on each hemisphere, as few as is wanted: for comparison with other programs.
     ///
     /// # Arguments
-    /// `streams` on both hemispheres together, even, 8 to 256; bounds come from three quarters as many
+    /// `streams` on both hemispheres together, even, 8 to 256; bounds come from three quarters as many. Radiances
+    /// have nodes of their own in any case
     /// # Errors
     /// `Error::OutOfRange` naming `albedo` or `streams`
     pub fn with_streams(albedo: f64, phase: &Phase, streams: usize) -> Result<Self> {
@@ -123,7 +124,10 @@ impl AnisotropicMedium {
     }
 
     fn of(albedo: f64, phase: &Phase, sets: [(Scattering, Nodes); 2]) -> Result<Self> {
-        let sets = sets.map(|parts| Set::new(parts, 0, 0..=0));
+        let sets = sets.map(|(scattering, nodes)| {
+            let last = scattering.degree();
+            Set::new((scattering, nodes), 0, 0..=last)
+        });
         let azimuth = OnceLock::new();
         let medium = AnisotropicMedium(Arc::new(Medium { albedo, phase: phase.clone(), sets, azimuth }));
         medium.modes(0, 0)?;
@@ -162,12 +166,7 @@ impl AnisotropicMedium {
         AnisotropicSlab::of(self.clone(), f64::INFINITY, incidence)
     }
 
-    /// What set 0 (the finer) or 1 sees of the medium.
-    pub(crate) fn scattering(&self, set: usize) -> &Arc<Scattering> {
-        &self.0.sets[set].scattering
-    }
-
-    /// The modes of an order of azimuth, at most the degree of `scattering(set)`, on set 0 (the finer) or 1.
+    /// The modes of an order of azimuth, at most the degree of the moments in use, on set 0 (the finer) or 1.
     pub(crate) fn modes(&self, set: usize, order: usize) -> Result<Arc<Modes>> {
         self.0.sets[set].modes(order)
     }

@@ -175,3 +175,46 @@ fn rays_on_nodes_are_the_nodes() {
         }
     }
 }
+
+/// Radiances lie within their bounds of those of a series to which no moment is lost, on more nodes.
+#[test]
+fn bounds_of_radiances_cover_plain_series_on_more_nodes() {
+    for (tau, albedo, g) in [(1.0, 0.9, 0.6), (0.01, 1.0, -0.5), (20.0, 0.99, 0.5), (3.0, 0.7, 0.8)] {
+        let phase = Phase::henyey_greenstein(g).unwrap();
+        let nodes = Arc::new(Nodes::new(2 + phase.degree(1e-13, 1000) / 2, 44));
+        let scattering = Arc::new(Scattering::new(albedo, &phase, nodes.degree, false));
+        let mu0 = 0.55;
+        let light = Incidence::Beam { mu0 };
+        let slab = AnisotropicSlab::new(tau, albedo, g, light).unwrap();
+        // Terms of the series fall as the second power of the moments: light scattered once is not in it.
+        let orders = phase.degree(3e-7, 1000);
+        let solutions: Vec<Solution> = (0..=orders)
+            .map(|m| {
+                let modes = Arc::new(Modes::new(scattering.clone(), nodes.clone(), m).unwrap());
+                Solution::new(tau, light, modes).unwrap()
+            })
+            .collect();
+        for share in [0.0, 1e-3, 0.4, 1.0] {
+            for mu in [1.0, 0.6, 0.05, 1e-4, -1e-3, -0.3, -0.55, -0.9] {
+                for dphi in [0.0, 0.5, 2.5] {
+                    let t = share * tau;
+                    let got = slab.radiance(t, mu, dphi).unwrap();
+                    let once = crate::slab_single::single_radiance(tau, albedo, g, mu0, t, mu, dphi).unwrap();
+                    let rest: f64 = solutions
+                        .iter()
+                        .map(|s| {
+                            let source = s.modes.source(f64::abs(mu));
+                            s.last_scattered(t, mu, &source).value * libm::cos(s.modes.order as f64 * dphi)
+                        })
+                        .sum();
+                    let (want, off) = (once.value + rest, (got.value - once.value - rest).abs());
+                    assert!(
+                        off <= got.error + 1e-12 * want,
+                        "{tau} {g} {t} {mu} {dphi}: {got:?} {want:e} {off:e}"
+                    );
+                    assert!(got.error < 1e-8 * got.value + 1e-14, "{tau} {g} {t} {mu} {dphi}: {got:?}");
+                }
+            }
+        }
+    }
+}
