@@ -51,8 +51,8 @@ impl InfiniteMedium {
     /// A medium with any phase function.
     ///
     /// # Arguments
-    /// `albedo` \[1\], 0 to 1; `phase` with moments that have died away at l = 45000, as those of
-    /// Henyey-Greenstein with |g| up to 0.999
+    /// `albedo` \[1\], 0 to 1; `phase` with moments that have died away at l = 4500, as those of
+    /// Henyey-Greenstein with |g| up to 0.99
     /// # Errors
     /// `Error::OutOfRange` naming `albedo`, `phase function` or `moment` (-1 or 1: no scattering at all)
     pub fn new(albedo: f64, phase: &Phase) -> Result<Self> {
@@ -62,12 +62,12 @@ impl InfiniteMedium {
     /// A medium with Henyey-Greenstein scattering.
     ///
     /// # Arguments
-    /// `albedo` \[1\], 0 to 1; `g` mean cosine of scattering, -0.999 to 0.999
+    /// `albedo` \[1\], 0 to 1; `g` mean cosine of scattering, -0.99 to 0.99
     /// # Errors
     /// `Error::OutOfRange` naming `albedo` or `g`
     pub fn henyey_greenstein(albedo: f64, g: f64) -> Result<Self> {
         check_albedo(albedo)?;
-        within("g", g, -0.999, 0.999, "-0.999 to 0.999")?;
+        within("g", g, -0.99, 0.99, "-0.99 to 0.99")?;
         let mut moments = vec![1.0];
         let mut power = g;
         while power.abs() > CUT {
@@ -248,9 +248,9 @@ impl InfiniteMedium {
 /// The moments of `phase` up to the last that changes anything.
 pub(crate) fn moments_of(albedo: f64, phase: &Phase) -> Result<Vec<f64>> {
     check_albedo(albedo)?;
-    let last = phase.degree(CUT, 45_000);
-    if last == 45_000 {
-        within("phase function", phase.moment(last), -CUT, CUT, "moments that vanish at l = 45000")?;
+    let last = phase.degree(CUT, 4500);
+    if last == 4500 {
+        within("phase function", phase.moment(last), -CUT, CUT, "moments that vanish at l = 4500")?;
     }
     let moments: Vec<f64> = (0..=last).map(|l| phase.moment(l)).collect();
     for &moment in moments.iter().skip(1) {

@@ -133,6 +133,26 @@ fn far_beyond_what_can_be_solved_in_depth() {
     assert!(t.covers(3f64.sqrt() / 3.0 * 2.907_810_529_078_606 / (tau + 2.0 * q)), "{t:?}");
 }
 
+/// Discrete ordinates carry their modes through any thickness.
+#[test]
+fn ordinates_at_great_thickness() {
+    for (w, g) in [(1.0, 0.85), (0.999_999, 0.75)] {
+        let a = henyey_greenstein(w, g);
+        for incidence in BEAMS {
+            let (thick, slab) =
+                (a.slab(1e4, incidence).unwrap(), AnisotropicSlab::new(1e4, w, g, incidence).unwrap());
+            agree(thick.reflectance, slab.reflectance(), "R");
+            agree(thick.transmittance, slab.transmittance(), "T");
+            agree(thick.absorptance, slab.absorptance(), "A");
+            let t = slab.transmittance().value;
+            assert!(
+                (thick.transmittance.value / t - 1.0).abs() < 1e-9,
+                "{w} {g} {incidence:?} {thick:?} {t:e}"
+            );
+        }
+    }
+}
+
 #[test]
 fn thin_slabs() {
     for incidence in BEAMS {

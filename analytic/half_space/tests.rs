@@ -43,6 +43,25 @@ fn two_methods_agree_on_h() {
     }
 }
 
+/// H and R at the ends of the range of albedos, from the Fock integral with 30 digits.
+#[test]
+fn known_values_at_the_extremes() {
+    for (w, mu, h, r) in [
+        (1e-6, 1e-4, 1.000000000460522, 4.995396031772175e-7),
+        (1e-6, 0.3, 1.0000002199506557, 2.800495793218616e-7),
+        (1e-6, 1.0, 1.0000003465737912, 1.5342650699343306e-7),
+        (0.999_999, 1e-4, 1.000567243061598, 0.998999432756924),
+        (0.999_999, 0.3, 1.6416689150214916, 0.9983583310849549),
+        (0.999_999, 1.0, 2.9027819233470624, 0.9970972180766112),
+    ] {
+        let space = HalfSpace::new(w).unwrap();
+        let got = space.h(mu).unwrap();
+        assert!(got.covers(h), "{w} {mu} {got:?}");
+        let got = space.reflectance(Incidence::Beam { mu0: mu }).unwrap();
+        assert!(got.covers(r) && got.error < 1e-13 * r, "{w} {mu} {got:?}");
+    }
+}
+
 /// 25 digits of the Fock integral, rounded.
 #[test]
 fn known_values() {

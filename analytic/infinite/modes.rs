@@ -7,7 +7,7 @@
 //! nu < 1, where Q_l is complex. The recurrence is that of a symmetric matrix, so that the modes slower than k are as
 //! many as the changes of sign of g_l.
 
-use libm::{asinh, atanh, ceil, expm1, sinh, tanh};
+use libm::{asinh, atanh, ceil, cosh, expm1, sinh, tanh};
 use std::f64::consts::FRAC_PI_2;
 
 /// Modes with atanh(k) beyond this have 1 - k^2 < 1e-16, and a strength of that order.
@@ -55,25 +55,52 @@ impl Recurrence {
         real * real + imaginary * imaginary
     }
 
-    /// All modes, the slowest first.
+    /// All modes, the slowest first: parted by their count, then Newton's method within brackets.
     pub fn modes(&self) -> Vec<Mode> {
-        (1..=self.slower_than(LAST))
-            .map(|j| {
-                if j == 1 && self.h[0] == 0.0 {
-                    // k = 0: 2 k^2/(2 h_0) with k^2 = h_0 h_1.
-                    return Mode { k: 0.0, strength: self.h[1] };
+        let slow = usize::from(self.h[0] == 0.0);
+        let mut modes = Vec::new();
+        if slow == 1 {
+            // k = 0: 2 k^2/(2 h_0) with k^2 = h_0 h_1.
+            modes.push(Mode { k: 0.0, strength: self.h[1] });
+        }
+        let mut parts = vec![(1e-12, slow, LAST, self.slower_than(LAST))];
+        while let Some((low, below, high, to)) = parts.pop() {
+            let middle = (low * high).sqrt();
+            match to.saturating_sub(below) {
+                0 => {}
+                1 => modes.push(self.refine(low, high, to)),
+                _ if middle <= low || middle >= high => modes.push(self.refine(low, high, to)),
+                _ => {
+                    let count = self.slower_than(middle).clamp(below, to);
+                    parts.push((middle, count, high, to));
+                    parts.push((low, below, middle, count));
                 }
-                let (mut low, mut high) = (1e-12, LAST);
-                for _ in 0..200 {
-                    let middle = (low * high).sqrt();
-                    if middle <= low || middle >= high {
-                        break;
-                    }
-                    if self.slower_than(middle) >= j { high = middle } else { low = middle }
-                }
-                Mode { k: tanh(high), strength: self.strength(high) }
-            })
-            .collect()
+            }
+        }
+        modes
+    }
+
+    /// The mode number `j`, the only one with atanh(k) between two bounds.
+    fn refine(&self, mut low: f64, mut high: f64, j: usize) -> Mode {
+        let mut b = (low * high).sqrt();
+        for step in 1..=200 {
+            let (defect, norm) = self.balance(b);
+            let c = cosh(b);
+            let newton = b + tanh(b) * defect / (norm - defect) * c * c;
+            let settled = (newton - b).abs() <= 4.0 * f64::EPSILON * b;
+            if settled || high - low <= 4.0 * f64::EPSILON * low {
+                break;
+            }
+            if self.slower_than(b) >= j {
+                high = b
+            } else {
+                low = b
+            }
+            // A bisection now and then, lest Newton's method creep along a pole.
+            b = if step % 4 != 0 && newton > low && newton < high { newton } else { (low * high).sqrt() };
+        }
+        let k = tanh(b);
+        Mode { k, strength: 2.0 * k * k / self.balance(b).1 }
     }
 
     /// How many modes have atanh(k) < b.
@@ -111,8 +138,9 @@ impl Recurrence {
         f
     }
 
-    /// 2 k^2 f_0^2 / sum h_l f_l^2 for the mode's moments f_l, proportional to Q_l from L on.
-    fn strength(&self, b: f64) -> f64 {
+    /// D = h_0 - k f_1 and sum h_l f_l^2 for the moments f_l, f_0 = 1, that are proportional to Q_l from L on: D = 0 for
+    /// a mode, and dD/dk = -(sum - D)/k.
+    fn balance(&self, b: f64) -> (f64, f64) {
         let k = tanh(b);
         let last = self.h.len() - 1;
         let ratios = self.ratios(b);
@@ -127,7 +155,7 @@ impl Recurrence {
         let over = 2.0 / expm1(2.0 * b);
         let rest = (1.0 - tail) * (1.0 - tail) - 2.0 * over * tail;
         let scale = n * sinh(b) * f;
-        2.0 * k * k / (sum + (scale * scale * rest).max(0.0))
+        (self.h[0] - k * ratios[0], sum + (scale * scale * rest).max(0.0))
     }
 }
 
@@ -151,7 +179,7 @@ fn legendre_ratio(l: usize, b: f64, nu: f64) -> f64 {
     // Solutions grow and fall like e^(+-eta l) with cosh(eta) = nu.
     let eta = asinh(1.0 / sinh(b));
     let steps = ceil(20.0 / eta) + 4.0;
-    if steps < 40.0 * l as f64 + 4000.0 {
+    if steps < 12.0 * l as f64 + 1000.0 {
         // Downwards, any start is forgotten.
         let mut ratio = 0.0;
         for m in (l..l + steps as usize).rev() {
@@ -160,7 +188,7 @@ fn legendre_ratio(l: usize, b: f64, nu: f64) -> f64 {
         }
         return ratio;
     }
-    // Here eta l < 1/2: upwards, nothing grows.
+    // Here eta l < 2: upwards, nothing grows by more than e^4.
     let mut q = [b, nu * b - 1.0];
     for m in 1..=l {
         let n = m as f64;

@@ -157,11 +157,9 @@ proptest! {
         if n < 200 {
             x_and_y(a, b, c, d)?;
         }
-        if n < 100 {
-            if let Ok(phase) = Phase::henyey_greenstein(b) {
-                asymptotics(Asymptotics::new(a, &phase), 1.0 / d, c, d)?;
-                infinite(InfiniteMedium::new(a, &phase), c, d)?;
-            }
+        if let (Ok(phase), true) = (Phase::henyey_greenstein(b), n < 100) {
+            asymptotics(Asymptotics::new(a, &phase), 1.0 / d, c, d)?;
+            infinite(InfiniteMedium::new(a, &phase), c, d)?;
         }
     }
 }
