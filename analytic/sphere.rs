@@ -190,12 +190,12 @@ impl Sphere {
     ///
     /// phi_n = (w/2) int_0^a (r'/r) \[E_1(|r-r'|) - E_1(r+r')\] phi_(n-1)(r') dr', phi_0 the direct light.
     /// # Arguments
-    /// `n` order, 0 to 1000, of a central source 0 to 8; `r` 0 to the radius. Radii up to 64, or order 0
+    /// `n` order, 0 to 1000, of a central source 0 to 7; `r` 0 to the radius. Radii up to 64, or order 0
     /// # Errors
     /// `Error::OutOfRange` naming `n`, `r` or `radius`; `Error::Infinite` at a central source
     pub fn fluence_of_order(&self, n: u32, r: f64) -> Result<Value> {
         let (most, allowed) = match self.source {
-            SphereSource::Centre => (CENTRE_ORDERS, "0 to 8 for a central source"),
+            SphereSource::Centre => (CENTRE_ORDERS, "0 to 7 for a central source"),
             _ => (1000, "0 to 1000"),
         };
         within("n", f64::from(n), 0.0, f64::from(most), allowed)?;

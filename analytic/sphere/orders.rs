@@ -14,8 +14,9 @@ use nalgebra::DVector;
 use std::f64::consts::PI;
 use std::sync::PoisonError;
 
-/// Highest order of a central source: beyond, the expansion of its infinite medium cancels.
-pub(super) const CENTRE_ORDERS: u32 = 8;
+/// Highest order of a central source: the expansion of its infinite medium cancels like n!/2^n, beyond it to worse than
+/// 1e-10.
+pub(super) const CENTRE_ORDERS: u32 = 7;
 
 /// One order: its polynomial, and of a central source the infinite medium's part.
 pub(super) struct Order {
