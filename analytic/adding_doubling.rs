@@ -46,7 +46,7 @@ const ULPS: f64 = 8.0;
 
 /// What the Legendre moments left out may be on the finer and on the coarser nodes; and where that takes too many.
 const CUT: [f64; 2] = [1e-13, 1e-10];
-const CUT_PEAKED: [f64; 2] = [1e-10, 1e-8];
+const CUT_PEAKED: [f64; 2] = [1e-9, 1e-7];
 
 /// The last moment of all.
 const MOST: usize = 450;
@@ -102,7 +102,7 @@ impl AddingDoubling {
     /// Solves the slab with any phase function.
     ///
     /// # Arguments
-    /// as for [`Self::new`]; `phase` any whose Legendre moments beyond l = 450 are below 1e-10
+    /// as for [`Self::new`]; `phase` any whose Legendre moments beyond l = 450 are below 1e-9
     /// # Errors
     /// `Error::OutOfRange` naming `tau`, `albedo`, `phase function` (its first moment left out) or `mu0`
     pub fn with_phase(tau: f64, albedo: f64, phase: &Phase, incidence: Incidence) -> Result<Self> {
@@ -239,7 +239,7 @@ pub(crate) fn depths(tau: f64) -> Vec<f64> {
 pub(crate) fn degrees(phase: &Phase) -> Result<[usize; 2]> {
     let cut = if phase.degree(CUT[0], MOST) < MOST { CUT } else { CUT_PEAKED };
     let left = phase.moment(MOST + 1).abs();
-    within("phase function", left, 0.0, CUT_PEAKED[0], "its Legendre moments beyond l = 450 at most 1e-10")?;
+    within("phase function", left, 0.0, CUT_PEAKED[0], "its Legendre moments beyond l = 450 at most 1e-9")?;
     Ok(cut.map(|cut| phase.degree(cut, MOST)))
 }
 

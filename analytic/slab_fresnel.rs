@@ -42,8 +42,10 @@ use std::sync::{Arc, OnceLock};
 const ORDINATES: &str = "discrete ordinates between refracting faces, two node counts";
 const DOUBLING: &str = "adding and doubling between refracting faces, two node counts";
 
-/// Below this thickness doubling is the first method too.
+/// Below this thickness doubling is the first method too; with more moments than that, below this one.
 const THIN: f64 = 1e-3;
+const PEAKED: usize = 300;
+const THIN_PEAKED: f64 = 1e-5;
 
 /// Roundings of a term of the sums, in units of its magnitude.
 const ULPS: f64 = 16.0;
@@ -86,10 +88,10 @@ struct Fluxes {
 }
 
 impl Fluxes {
-    /// Whether rounding leaves less than eleven digits of any.
-    fn is_rounded(self) -> bool {
+    /// Whether rounding takes more than `share` of any.
+    fn loses(self, share: f64) -> bool {
         let parts = [self.reflected, self.transmitted, self.absorbed];
-        parts.iter().any(|part| part.rounding() > 1e-11 * part.value.abs())
+        parts.iter().any(|part| part.rounding() > share * part.value.abs())
     }
 }
 
@@ -139,6 +141,10 @@ impl FresnelSlab {
     /// `tau` optical thickness \[1\], 1e-12 to 1e5; `albedo` 0 to 1; `g` mean cosine of scattering, -0.95 to 0.95;
     /// `index` refractive index inside over outside \[1\], 0.25 to 4; `incidence` from outside, of unit irradiance, a
     /// beam with a cosine of 1e-5 to 1, refracted to one of 1e-5 to 1 or reflected whole
+    /// # Returns
+    /// a solution with errors below 1e-10 of themselves for most slabs; the bounds say how much. It takes some tens of
+    /// milliseconds, two seconds at |g| = 0.95. Scattered light of a slab thicker than 100 of albedo below 1e-4 in
+    /// diffuse light is known to 1e-14 of the incident power only
     /// # Errors
     /// `Error::OutOfRange` naming `tau`, `albedo`, `g`, `index` or `mu0`
     pub fn new(tau: f64, albedo: f64, g: f64, index: f64, incidence: Incidence) -> Result<Self> {
@@ -149,7 +155,7 @@ impl FresnelSlab {
     /// Solves the slab with any phase function.
     ///
     /// # Arguments
-    /// as for [`Self::new`]; `phase` any whose Legendre moments beyond l = 450 are below 1e-10
+    /// as for [`Self::new`]; `phase` any whose Legendre moments beyond l = 450 are below 1e-9
     /// # Errors
     /// `Error::OutOfRange` naming `tau`, `albedo`, `phase function`, `index` or `mu0`
     pub fn with_phase(
@@ -160,9 +166,11 @@ impl FresnelSlab {
         incidence: Incidence,
     ) -> Result<Self> {
         within("tau", tau, 1e-12, 1e5, "1e-12 to 1e5 between refracting faces")?;
-        let slab = Self::solve(tau, albedo, phase, index, incidence, tau < THIN)?;
+        let peaked = degrees(phase)?[0] > PEAKED;
+        let (thin, digits) = if peaked { (THIN_PEAKED, 1e-9) } else { (THIN, 1e-11) };
+        let slab = Self::solve(tau, albedo, phase, index, incidence, tau < thin)?;
         // Little light scattered out of much light on its way: a difference in discrete ordinates.
-        if slab.method == ORDINATES && tau <= 100.0 && slab.solutions[0].fluxes().is_rounded() {
+        if slab.method == ORDINATES && tau <= 100.0 && slab.solutions[0].fluxes().loses(digits) {
             return Self::solve(tau, albedo, phase, index, incidence, true);
         }
         Ok(slab)

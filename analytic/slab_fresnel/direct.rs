@@ -36,7 +36,7 @@ impl Direct {
 
     /// What one passage and one reflection leave of light at cosine `mu`: r e.
     pub fn echo(&self, mu: f64) -> f64 {
-        self.face.from_inside(mu).0 * faded(self.tau, mu)
+        self.face.reflected_inside(mu).0 * faded(self.tau, mu)
     }
 
     /// Power that meets with a first collision: the integral of the fluence over depth.
@@ -60,7 +60,7 @@ impl Direct {
 
     /// Radiance times pi at cosine `mu` inside and depth `t`, both senses together, of Lambertian light.
     pub fn radiance(&self, mu: f64, t: f64) -> f64 {
-        let (r, through) = self.face.from_inside(mu);
+        let (r, through) = self.face.reflected_inside(mu);
         self.face.spread() * through * self.both(mu, r, t)
     }
 

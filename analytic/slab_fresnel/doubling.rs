@@ -34,7 +34,7 @@ impl Closed {
         let nodes = &stack.nodes;
         let n = nodes.len();
         let root = DVector::from_fn(n, |i, _| sqrt(nodes.mu[i] * nodes.weight[i]));
-        let faces: Vec<(f64, f64)> = nodes.mu.iter().map(|&mu| face.from_inside(mu)).collect();
+        let faces: Vec<(f64, f64)> = nodes.mu.iter().map(|&mu| face.reflected_inside(mu)).collect();
         let light = DVector::from_fn(n, |i, _| match direct.incidence {
             Incidence::Beam { .. } if i == nodes.count => direct.entering() / (2.0 * PI * root[i]),
             Incidence::Diffuse if i < nodes.count => {

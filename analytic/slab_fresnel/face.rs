@@ -66,7 +66,7 @@ impl Face {
     }
 
     /// Reflectance and transmittance from inside at cosine `mu`.
-    pub fn from_inside(self, mu: f64) -> (f64, f64) {
+    pub fn reflected_inside(self, mu: f64) -> (f64, f64) {
         self.outside(mu).map_or((1.0, 0.0), |outside| self.reflected(mu, outside))
     }
 
@@ -191,9 +191,9 @@ mod tests {
             let (outer, inner) = (face.diffuse(true).unwrap(), face.diffuse(false).unwrap());
             // From outside, in the cosine inside where that is the smoother; from inside, with all that returns whole.
             let nodes = face.nodes(Rule { upper: 60, lower: 60, power: 5, degree: 0, tau: 1e-3 });
-            let got = nodes.sum(|mu| 2.0 * mu * face.from_inside(mu).0);
+            let got = nodes.sum(|mu| 2.0 * mu * face.reflected_inside(mu).0);
             assert!((got - inner.value).abs() < inner.error + 1e-13, "{n} inside {got} {inner:?}");
-            let through = nodes.sum(|mu| 2.0 * n * n * mu * face.from_inside(mu).1);
+            let through = nodes.sum(|mu| 2.0 * n * n * mu * face.reflected_inside(mu).1);
             assert!((1.0 - through - outer.value).abs() < outer.error + 1e-13, "{n} {through} {outer:?}");
             assert!(outer.error < 1e-13 && inner.error < 1e-13, "{n} {outer:?} {inner:?}");
         }

