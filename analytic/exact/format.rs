@@ -25,7 +25,8 @@ pub fn write(answer: &Answer, format: Format, out: &mut Vec<u8>) -> Result<()> {
         Format::Csv => csv(answer, out),
         Format::Json => {
             serde_json::to_writer_pretty(&mut *out, answer)?;
-            Ok(out.push(b'\n'))
+            out.push(b'\n');
+            Ok(())
         }
     }
 }

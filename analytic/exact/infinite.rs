@@ -71,7 +71,7 @@ fn drawn(args: &Args, named: &Named, medium: &InfiniteMedium) -> Result<Figure> 
     // Times r^2, so that spreading alone is flat.
     let times = |r: f64, fluence: f64| 4.0 * std::f64::consts::PI * r * r * fluence;
     let curves = vec![
-        Curve::sample("exact", &places, |r| Ok(times(r, medium.fluence(r)?.value)))?.as_reference(),
+        Curve::sample("exact", &places, |r| Ok(times(r, medium.fluence(r)?.value)))?.into_reference(),
         Curve::sample("slowest mode", &places, |r| Ok(times(r, medium.asymptotic_fluence(r)?.value)))?,
         Curve::sample("diffusion", &places, |r| Ok(times(r, medium.diffusion_fluence(r)?.value)))?,
     ];

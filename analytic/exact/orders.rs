@@ -9,9 +9,9 @@ use turbid_analytic::{Incidence, IsotropicSlab, Value};
 /// A slab whose orders of scattering are asked one by one.
 pub enum Orders {
     /// By iterating the Peierls equation.
-    Peierls(IsotropicSlab),
+    Peierls(Box<IsotropicSlab>),
     /// By following light from collision to collision.
-    Successive(ScatteringOrders),
+    Successive(Box<ScatteringOrders>),
 }
 
 /// The highest order by the Peierls equation.
@@ -21,9 +21,9 @@ impl Orders {
     /// Prepares a slab.
     pub fn new(tau: f64, albedo: f64, named: &Named, incidence: Incidence) -> Result<Self> {
         Ok(if named.is_isotropic() && tau <= PEIERLS_UP_TO {
-            Orders::Peierls(IsotropicSlab::new(tau, albedo, incidence)?)
+            Orders::Peierls(Box::new(IsotropicSlab::new(tau, albedo, incidence)?))
         } else {
-            Orders::Successive(ScatteringOrders::new(tau, albedo, &named.phase, incidence)?)
+            Orders::Successive(Box::new(ScatteringOrders::new(tau, albedo, &named.phase, incidence)?))
         })
     }
 

@@ -28,7 +28,7 @@ impl Curve {
     }
 
     /// The same line in solid black: what others are held against.
-    pub fn as_reference(self) -> Self {
+    pub fn into_reference(self) -> Self {
         Curve { reference: true, ..self }
     }
 }

@@ -38,6 +38,10 @@ pub struct Args {
     /// Cosines to the outward normal, 0 to 1, at which to give the radiance that leaves.
     #[arg(long, num_args = 1.., value_name = "MU", allow_negative_numbers = true)]
     mu: Vec<f64>,
+    /// Orders of scattering whose fluence to give at every r: 0 (direct light) to 1000, from a central source to 8; radius
+    /// up to 64.
+    #[arg(long, num_args = 1.., value_name = "N")]
+    order: Vec<u32>,
     /// What --plot draws: fluence against distance from the centre, or radiance that leaves against the angle to the
     /// normal.
     #[arg(long, value_enum, default_value = "fluence")]
@@ -90,6 +94,10 @@ pub fn answer(args: &Args, draw: bool) -> Result<Reply> {
         answer.add_at("fluence", at(), sphere.fluence(r)?);
         answer.add_at("fluence_direct", at(), sphere.fluence_direct(r)?);
         answer.add_at("escape_direct_from", at(), escape_from(args.radius, r)?);
+        for &n in &args.order {
+            let at = vec![("r", r.into()), ("order", n.into())];
+            answer.add_at("fluence_of_order", at, sphere.fluence_of_order(n, r)?);
+        }
     }
     for &mu in &args.mu {
         answer.add_at("exit_radiance", vec![("mu", mu.into())], sphere.exit_radiance(mu)?);

@@ -94,7 +94,7 @@ pub fn answer(args: &Args, draw: bool) -> Result<Reply> {
 
 fn drawn(args: &Args, named: &Named, exact: &Solved, approximations: &[TwoStream]) -> Result<Figure> {
     let depths = crowded(args.tau, 81);
-    let mut curves = vec![Curve::sample("exact", &depths, |t| Ok(exact.fluence(t)?.value))?.as_reference()];
+    let mut curves = vec![Curve::sample("exact", &depths, |t| Ok(exact.fluence(t)?.value))?.into_reference()];
     for (method, two_stream) in Method::ALL.iter().zip(approximations) {
         curves.push(Curve::sample(name(*method), &depths, |t| Ok(two_stream.fluence(t)?.value))?);
     }

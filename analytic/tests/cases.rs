@@ -153,3 +153,35 @@ fn published_values_to_their_printed_digits() {
     }
     assert_eq!(misprinted, MISPRINTED);
 }
+
+/// Far from the tables: what is known there in closed form or by a law, each row's own bound covering it.
+#[test]
+fn extremes() {
+    let columns = "id,geometry,tau,a,w,g,n,mu0,t,r,mu,dphi,extra,quantity\n";
+    let hopf = 0.710_446_089_598_763_07;
+    let h1 = 2.907_810_529_078_606;
+    // Slab without absorption and thick: (4/3) K/(tau + 2 q), K = (sqrt 3/4) H(1); thin: (w/2) tau (1 - O(tau ln tau)).
+    let thick = |tau: f64| h1 / 3f64.sqrt() / (tau + 2.0 * hopf);
+    let known: [(&str, f64, f64); 8] = [
+        ("slab,1e4,,1,0,,1,,,,,,T_total", thick(1e4), 1e-13),
+        ("slab,1e9,,1,0,,1,,,,,,T_total", thick(1e9), 1e-13),
+        ("slab,1e-8,,0.9,0,,1,,,,,,R", 0.45e-8, 3e-7),
+        // Without scattering: the direct light.
+        ("slab,100,,0,-0.95,,1,,,,,,T_total", libm::exp(-100.0), 1e-14),
+        // Isotropic incidence without absorption: fluence 4 everywhere.
+        ("sphere,,100,1,0,,,,50,,,,fluence_iso_incidence_unit_irradiance", 4.0, 1e-12),
+        ("sphere,,1e-8,0.9,0,,,,,,,,escape_uniform_source", 1.0 - 0.1 * 0.75e-8, 1e-14),
+        ("halfspace,,,1,0,,diffuse,1e3,,,,,fluence", 4.0, 1e-12),
+        ("infinite,,,0,0,,,,1e-3,,,,fluence_point", libm::exp(-1e-3) / (4e-6 * std::f64::consts::PI), 1e-13),
+    ];
+    let text: String = known.iter().map(|(words, ..)| format!("x,{words}\n")).collect();
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("extremes.csv");
+    std::fs::write(&path, format!("{columns}{text}")).unwrap();
+    for ((words, want, relative), answer) in known.iter().zip(answers(path.to_str().unwrap())) {
+        assert!(!answer["value"].is_empty(), "{words}: {answer:?}");
+        let off = (number(&answer["value"]) - want).abs();
+        assert!(off <= relative * want + number(&answer["error"]), "{words}: {answer:?} {want:e}");
+        assert!(number(&answer["error"]) <= 1e-9 * want, "{words}: {answer:?}");
+    }
+}
