@@ -16,7 +16,7 @@
 //! of the sum of the magnitudes of all modes. Photons are conserved by construction, to rounding.
 //!
 //! Range: thickness 1e-12 to 1e9 and half-spaces, albedo 0 to 1, Henyey-Greenstein from -0.95 to 0.99 and what has
-//! moments alike. Fluxes are known to 1e-8 of themselves, mostly to 1e-13, for |g| up to 0.95, and to 1e-5 at 0.99,
+//! moments alike. Fluxes are known to 1e-7 of themselves, mostly to 1e-11, for |g| up to 0.95, and to 1e-4 at 0.99,
 //! mostly to 1e-8; T of slabs without absorption too, however thick. Radiances are known to 1e-9 for |g| up to 0.9 (1e-8 within a
 //! degree of the horizon), to 1e-6 at 0.95 and to 1e-2 at 0.99, where they take seconds.
 //!
