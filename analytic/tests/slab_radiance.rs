@@ -182,20 +182,32 @@ fn half_spaces_obey_the_h_function() {
 /// the extrapolation length q' of Henyey-Greenstein scattering is a law of its own.
 #[test]
 fn thick_slabs_without_absorption_diffuse() {
-    for (g, q) in
-        [(0.0, 0.710_446_089_6), (0.5, 0.711_955_667_2), (0.75, 0.713_363_290_8), (-0.5, 0.714_075_4)]
-    {
+    for (g, q) in [
+        (0.0, 0.710_446_089_6),
+        (0.5, 0.711_955_667_2),
+        (0.75, 0.713_363_290_8),
+        (-0.5, 0.714_075_4),
+        (0.99, 0.714_938),
+    ] {
         let m = medium(1.0, g);
-        for tau in [200.0, 1e4, 1e6, 1e9] {
+        // In 200 mean free paths the sharpest peak does not settle.
+        let thick = if g > 0.9 { [2e4, 1e5, 1e6, 1e9] } else { [200.0, 1e4, 1e6, 1e9] };
+        for tau in thick {
             let t = m.slab(tau, Incidence::Diffuse).unwrap().transmittance();
             let want = (4.0 / 3.0) / ((1.0 - g) * tau + 2.0 * q);
             // Twice the last printed half digit of q.
-            let known = if g < 0.0 { 1e-7 } else { 1e-10 };
+            let known = if g > 0.9 {
+                1e-6
+            } else if g < 0.0 {
+                1e-7
+            } else {
+                1e-10
+            };
             assert!(
                 (t.value - want).abs() <= t.error + known * t.value / ((1.0 - g) * tau),
                 "{g} {tau} {t:?} {want:e}"
             );
-            assert!(t.error < 1e-11 * t.value, "{t:?}");
+            assert!(t.error < if g > 0.9 { 1e-8 } else { 1e-11 } * t.value, "{t:?}");
         }
     }
 }
