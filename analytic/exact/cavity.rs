@@ -11,7 +11,7 @@ use turbid_figure::{Axis, Figure};
 /// With rho the wall's albedo, A the fraction of isotropic incident light that the medium absorbs and E_1 the irradiance
 /// before the wall's first reflection,
 ///
-///   E = E_1/(1 - rho (1-A))          empty, any source: E(x) = E_0(x) + rho <E_0>/(1 - rho)
+///   E = E_1/(1 - rho (1-A))          empty, any source: E(x) = E_0(x) + rho mean(E_0)/(1 - rho)
 ///
 /// `irradiance_wall` is per unit of exitance that the wall itself emits evenly (a pure number); `irradiance_centre` per unit
 /// power of a point source at the centre, in 1/length^2; `irradiance_mean` of any source, in the unit of --first. `rounds`

@@ -14,7 +14,7 @@ use turbid_figure::{Axis, Figure};
 ///
 /// Light that falls isotropically and evenly on the whole surface S of a convex body of volume V travels
 ///
-///   <l> = 4 V/S
+///   mean path = 4 V/S
 ///
 /// in it before it leaves, for any phase function and any amount of scattering, if nothing is absorbed. With absorption the
 /// path to escape or absorption is l = A/(1-w) mean free paths, A the absorbed fraction: given for sphere and slab with
