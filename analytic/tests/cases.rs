@@ -158,11 +158,7 @@ fn published_values_to_their_printed_digits() {
 #[test]
 fn extremes() {
     let columns = "id,geometry,tau,a,w,g,n,mu0,t,r,mu,dphi,extra,quantity\n";
-<<<<<<< HEAD
-    let hopf = 0.710_446_089_598_763_1;
-=======
     let hopf = 0.710_446_089_598_763;
->>>>>>> exact
     let h1 = 2.907_810_529_078_606;
     // Slab without absorption and thick: (4/3) K/(tau + 2 q), K = (sqrt 3/4) H(1); thin: (w/2) tau (1 - O(tau ln tau)).
     let thick = |tau: f64| h1 / 3f64.sqrt() / (tau + 2.0 * hopf);
