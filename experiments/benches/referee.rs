@@ -15,7 +15,8 @@ use std::hint::black_box;
 use std::io::{BufRead, BufReader, Write};
 use std::process::{Child, ChildStdin, ChildStdout, Command, Stdio};
 use turbid_analytic::{
-    AnisotropicMedium, AnisotropicSlab, Incidence, IsotropicSlab, Phase, ScatteringOrders, Value,
+    AnisotropicMedium, AnisotropicSlab, Incidence, IsotropicSlab, Phase, ScatteringOrders, Sphere,
+    SphereSource, Value,
 };
 
 const ROUNDS: usize = 15;
@@ -80,6 +81,14 @@ fn main() -> Result<()> {
     })?;
     row("an isotropic slab by the integral equation", &mut || {
         Ok(IsotropicSlab::new(TAU, ALBEDO, BEAM)?.reflectance().value)
+    })?;
+    row("a sphere with a uniform source, escape and ten fluences", &mut || {
+        let sphere = Sphere::new(TAU, ALBEDO, SphereSource::Uniform)?;
+        let mut sum = sphere.escape().value;
+        for i in 0..DEPTHS {
+            sum += sphere.fluence(TAU * (f64::from(i) + 0.5) / f64::from(DEPTHS))?.value;
+        }
+        Ok(sum)
     })?;
 
     if is_wanted("known medium again") {
