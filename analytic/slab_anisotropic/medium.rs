@@ -1,7 +1,7 @@
 //! What belongs to a medium and not to a slab of it: its modes on two sets of nodes, order by order of azimuth.
 
 use super::modes::Modes;
-use super::nodes::Nodes;
+use super::nodes::{Nodes, peaked};
 use super::scattering::Scattering;
 use super::{AnisotropicSlab, METHOD};
 use crate::error::{Result, within};
@@ -17,7 +17,9 @@ const CUT: [f64; 2] = [1e-11, 1e-8];
 /// Nodes towards the horizon, the fewest and the most above it.
 const LOWER: [usize; 2] = [60, 50];
 const UPPER: [usize; 2] = [32, 26];
-const MOST: [usize; 2] = [420, 330];
+const MOST: [usize; 2] = [430, 370];
+/// Where more nodes would be needed, they are made tighter at the zenith.
+const PLAIN: usize = 128;
 
 /// Radiances scattered three times and more: a moment left out of order m of azimuth is met by the square of chi_m at
 /// least, and their product may be this.
@@ -87,16 +89,18 @@ impl AnisotropicMedium {
     /// # Errors
     /// `Error::OutOfRange` naming `albedo` or `phase function`
     pub fn new(albedo: f64, phase: &Phase) -> Result<Self> {
-        let upper = |i: usize| UPPER[i].max(2 + phase.degree(CUT[i], 2 * MOST[i]).div_ceil(2)).min(MOST[i]);
         let set = |i: usize| {
-            let nodes = Nodes::new(upper(i), LOWER[i]);
-            (
-                Scattering::new(albedo, phase, nodes.degree, phase.degree(CUT[i], usize::MAX) > nodes.degree),
-                nodes,
-            )
+            let degree = phase.degree(CUT[i], usize::MAX);
+            let plain = 2 + degree.div_ceil(2);
+            let nodes = if plain <= PLAIN {
+                Nodes::new(plain.max(UPPER[i]), LOWER[i])
+            } else {
+                Nodes::peaked(peaked(degree).min(MOST[i]), LOWER[i])
+            };
+            (Scattering::new(albedo, phase, nodes.degree, degree > nodes.degree), nodes)
         };
         check_albedo(albedo)?;
-        let last = 2 * MOST[1] - 1;
+        let last = Nodes::peaked(MOST[1], LOWER[1]).degree + 1;
         let (value, least) = (last..last + 8).fold((0.0, 1.0), |(most, least): (f64, f64), l| {
             (most.max(phase.moment(l)), least.min(phase.moment(l)))
         });
