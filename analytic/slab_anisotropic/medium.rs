@@ -170,11 +170,6 @@ impl AnisotropicMedium {
         AnisotropicSlab::of(self.clone(), f64::INFINITY, incidence)
     }
 
-    /// Whether a peak had to be cut off for fluxes.
-    pub(super) fn is_peaked(&self) -> bool {
-        self.0.sets.iter().any(|set| set.scattering.peak > 0.0)
-    }
-
     /// The modes of an order of azimuth, at most the degree of the moments in use, on set 0 (the finer) or 1.
     pub(crate) fn modes(&self, set: usize, order: usize) -> Result<Arc<Modes>> {
         self.0.sets[set].modes(order)
