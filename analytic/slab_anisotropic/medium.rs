@@ -27,9 +27,12 @@ const RAY: [f64; 2] = [1e-10, 1e-9];
 const LOWER_RAY: [usize; 2] = [40, 34];
 const UPPER_RAY: [usize; 2] = [32, 26];
 const MOST_RAY: [usize; 2] = [116, 104];
-/// The most where the peak is cut off, and how much looser the rules are.
+/// The most where the peak is cut off, and how much looser the rules are; the same where what is cut off is slight.
 const MOST_CUT: [usize; 2] = [72, 62];
 const LOOSE: f64 = 1e4;
+const MOST_SLIGHT: [usize; 2] = [112, 98];
+const LOOSE_SLIGHT: f64 = 1e2;
+const SLIGHT: f64 = 1e-4;
 /// Numbers of nodes go in steps, so that many orders share theirs.
 const STEP: usize = 8;
 
@@ -40,7 +43,7 @@ const LONG: usize = 150;
 /// What terms of the series in azimuth may be where it ends.
 const SMALL: f64 = 1e-11;
 
-const TAIL: &str = "moments that beyond l = 658 are at most 0.1 and hardly change";
+const TAIL: &str = "moments that beyond l = 1144 are at most 0.1 and hardly change";
 
 /// A medium whose modes are solved once, for any number of slabs. Cloning shares them.
 #[derive(Clone)]
@@ -85,7 +88,7 @@ impl AnisotropicMedium {
     ///
     /// # Arguments
     /// `albedo` 0 to 1; `phase` any whose moments, or their differences from a constant, have died away at
-    /// l = 300: Henyey-Greenstein from -0.95 to 0.99
+    /// l = 1100: Henyey-Greenstein from -0.95 to 0.99
     /// # Errors
     /// `Error::OutOfRange` naming `albedo` or `phase function`
     pub fn new(albedo: f64, phase: &Phase) -> Result<Self> {
@@ -184,8 +187,14 @@ impl AnisotropicMedium {
             let capped = degree(RAY[0]) > 2 * MOST_RAY[0] - 2;
             // Cut off what is a peak straight on; a peak backwards has moments of both signs.
             let cut = capped && (beyond..beyond + 8).all(|l| phase.moment(l) >= 0.0);
-            let loose = if capped { LOOSE } else { 1.0 };
-            let most = if cut { MOST_CUT } else { MOST_RAY };
+            // What is beyond the most that a slow peak is given.
+            let left = phase.moment(2 * MOST_SLIGHT[0] - 1).abs();
+            let (loose, most) = match (capped, cut) {
+                (false, _) => (1.0, MOST_RAY),
+                (true, false) => (LOOSE_SLIGHT, MOST_RAY),
+                (true, true) if left <= SLIGHT => (LOOSE_SLIGHT, MOST_SLIGHT),
+                (true, true) => (LOOSE, MOST_CUT),
+            };
             let orders = [0, 1].map(|i| {
                 let last = degree(RAY[i]).min(2 * most[i] - 2);
                 let mut row: Vec<Set> = Vec::with_capacity(last + 1);

@@ -99,9 +99,9 @@ impl Nodes {
     }
 }
 
-/// The nodes that [`Nodes::peaked`] needs for moments up to `degree`.
+/// Nodes by which moments up to `degree` are well inside what [`Nodes::peaked`] carries.
 pub(crate) fn peaked(degree: usize) -> usize {
-    2 + (degree as f64 / TURNS) as usize
+    2 + (degree as f64 / (TURNS - 0.5)) as usize
 }
 
 /// root((l-m)!/(l+m)!) P_l^m(x) for l = m to `degree`, without the sign (-1)^m: the square integrates to 2/(2l+1),
