@@ -50,9 +50,9 @@ use std::sync::OnceLock;
 
 const METHOD: &str = "discrete ordinates, two node counts";
 
-/// Roundings of the terms of a sum over modes: columns count as orthogonal at root n of them, about ten, and an
-/// eigenvector, an amplitude and an exponential have a few each.
-const ULPS: f64 = 64.0;
+/// Roundings of the terms of a sum over n modes, over root n: columns count as orthogonal at root n roundings, about
+/// ten, and an eigenvector, an amplitude and an exponential have a few such each.
+const ULPS: f64 = 6.4;
 
 /// Below this thickness the fluxes are integrals over it.
 const THIN: f64 = 1e-3;
@@ -105,14 +105,13 @@ impl AnisotropicSlab {
         };
         let solutions = [solve(0)?, solve(1)?];
         let direct = direct_transmittance(incidence, tau.min(f64::MAX))?;
-        let weak =
-            incidence == Incidence::Diffuse && medium.albedo() < WEAK && (tau < 30.0 || !medium.is_peaked());
+        let weak = incidence == Incidence::Diffuse && medium.albedo() < WEAK;
         let fluxes = if tau < THIN || weak {
             faces::fluxes(&medium, tau, incidence, &solutions)
         } else {
             let sums: [[Sum; 3]; 2] = std::array::from_fn(|set| {
                 let solution = &solutions[set];
-                let gain = faces::gain(&medium, solution, 1.0);
+                let gain = faces::gain(&medium, solution, faces::enough(solution));
                 let (t, a) = (solution.transmittance_scattered(tau), solution.absorptance());
                 // What is reflected more at first is missing from all that follows, in the proportion of its parts.
                 let r = solution.reflectance();
@@ -124,8 +123,9 @@ impl AnisotropicSlab {
             });
             std::array::from_fn(|i| [sums[0][i], sums[1][i]])
         };
-        let horizon = solutions[0].modes.nodes.horizon(tau);
-        let [reflectance, transmittance_diffuse, absorptance] = bounded(fluxes, horizon);
+        let nodes = &solutions[0].modes.nodes;
+        let (horizon, modes) = (nodes.horizon(tau), nodes.len());
+        let [reflectance, transmittance_diffuse, absorptance] = bounded(fluxes, horizon, modes);
         let (ladder, orders) = (OnceLock::new(), OnceLock::new());
         Ok(AnisotropicSlab {
             medium,
@@ -226,9 +226,10 @@ impl AnisotropicSlab {
                         solution.last_scattered(t, mu, &source)
                     }
                 });
-                let horizon = self.solutions[0].modes.nodes.horizon(self.tau);
+                let nodes = &self.solutions[0].modes.nodes;
+                let horizon = nodes.horizon(self.tau);
                 let difference = 2.0 * (fine.value - coarse.value).abs() + horizon * fine.value.abs();
-                (fine.value, difference + rounding(fine))
+                (fine.value, difference + rounding(fine, nodes.len()))
             }
         };
         Ok(Value::new(value, error + f64::MIN_POSITIVE, METHOD))
@@ -249,7 +250,10 @@ impl AnisotropicSlab {
         let relative =
             faces.iter().filter(|v| v.value != 0.0).fold(0.0, |a: f64, v| a.max(v.error / v.value.abs()));
         let shared = largest.min(relative * fine.value.abs());
-        let error = (fine.value - coarse.value).abs() + shared + rounding(fine) + f64::MIN_POSITIVE;
+        let error = (fine.value - coarse.value).abs()
+            + shared
+            + rounding(fine, self.solutions[0].modes.nodes.len())
+            + f64::MIN_POSITIVE;
         Ok(Value::new(fine.value, error, METHOD))
     }
 
@@ -270,7 +274,7 @@ impl AnisotropicSlab {
         let near = &ladder[at.saturating_sub(2)..(at + 2).min(ladder.len())];
         let shared = near.iter().fold(0.0, |a: f64, &(_, d)| a.max(d)) * fine.value.abs();
         let difference = (fine.value - coarse.value).abs();
-        let error = difference + shared + rounding(fine);
+        let error = difference + shared + rounding(fine, self.solutions[0].modes.nodes.len());
         Ok(Value::new(fine.value, error + f64::MIN_POSITIVE, METHOD))
     }
 }
@@ -281,14 +285,14 @@ fn net_fluxes(solutions: &[Solution; 2], t: f64) -> [Sum; 2] {
 }
 
 /// Rounding of a sum over modes.
-fn rounding(sum: Sum) -> f64 {
-    ULPS * f64::EPSILON * sum.magnitude
+fn rounding(sum: Sum, modes: usize) -> f64 {
+    ULPS * (modes.max(100) as f64).sqrt() * f64::EPSILON * sum.magnitude
 }
 
 /// R, diffuse T and A with their bounds: each the difference of the two solutions, plus the largest difference of the
 /// three, absolute or relative to each, whichever is less (in a thick slab T is a small number known well), plus what
 /// no rule sees of the `horizon`, relative to each.
-fn bounded(fluxes: [[Sum; 2]; 3], horizon: f64) -> [Value; 3] {
+fn bounded(fluxes: [[Sum; 2]; 3], horizon: f64, modes: usize) -> [Value; 3] {
     let differences = fluxes.map(|[fine, coarse]| (fine.value - coarse.value).abs());
     let largest = differences.iter().fold(0.0, |a: f64, &b| a.max(b));
     let relative = fluxes
@@ -299,7 +303,7 @@ fn bounded(fluxes: [[Sum; 2]; 3], horizon: f64) -> [Value; 3] {
     std::array::from_fn(|i| {
         let fine = fluxes[i][0];
         let shared = largest.min(relative * fine.value.abs()) + horizon * fine.value.abs();
-        Value::new(fine.value, differences[i] + shared + rounding(fine) + f64::MIN_POSITIVE, METHOD)
+        Value::new(fine.value, differences[i] + shared + rounding(fine, modes) + f64::MIN_POSITIVE, METHOD)
     })
 }
 

@@ -9,18 +9,19 @@
 use super::medium::AnisotropicMedium;
 use super::nodes::legendre;
 use super::scattering::Scattering;
-use super::solution::{Solution, Sum};
-use crate::exponential_integral::e_n;
+use super::solution::{Solution, Sum, colliding};
 use crate::incidence::Incidence;
 use crate::quadrature::GaussLegendre;
 use crate::slab_single::beam_path;
-use libm::expm1;
 use nalgebra::{DMatrix, DVector};
 use std::f64::consts::PI;
 
 /// Panels of nodes grow by this factor from a tenth of the thickness up to TOP, above which the moments turn.
 const RATIO: f64 = 3.0;
 const TOP: f64 = 0.05;
+
+/// Beyond this thickness transmission is no small part of what is scattered.
+const THICK: f64 = 0.1;
 
 /// Cosines and weights on \[0, 1\], for light that varies on the scale of `tau` at the horizon and has moments up to
 /// `degree`, more or fewer by `size`.
@@ -58,6 +59,12 @@ fn once(medium: &AnisotropicMedium, solution: &Solution, mu0: f64, face: Face, s
         let phase = medium.phase().azimuthal_mean(sign * mu, -mu0);
         2.0 * PI * scattered * mu * phase * beam_path(solution.tau, mu0, t, sign * mu)
     })
+}
+
+/// How many directions do, relative to [`directions`]: of the moments of a peak the last few hundred are so small that
+/// light in them need not be followed.
+pub(super) fn enough(solution: &Solution) -> f64 {
+    if solution.modes.scattering.degree() > 600 { 0.7 } else { 1.0 }
 }
 
 #[derive(Clone, Copy)]
@@ -117,9 +124,9 @@ pub(super) fn fluxes(
     incidence: Incidence,
     solutions: &[Solution; 2],
 ) -> [[Sum; 2]; 3] {
-    const SIZES: [f64; 2] = [1.0, 0.8];
     let leaving = |set: usize, face: Face| {
-        let (solution, size) = (&solutions[set], SIZES[set]);
+        let solution = &solutions[set];
+        let size = enough(solution) * [1.0, 0.8][set];
         let first = match incidence {
             Incidence::Beam { mu0 } => once(medium, solution, mu0, face, size),
             Incidence::Diffuse => gain(medium, solution, size),
@@ -148,12 +155,15 @@ pub(super) fn fluxes(
         if whole {
             return leaving(set, Face::Far);
         }
-        let scattered = match incidence {
-            Incidence::Beam { mu0 } => -expm1(-tau / mu0),
-            Incidence::Diffuse if tau > 700.0 => 1.0,
-            Incidence::Diffuse => -expm1(-tau) + tau * e_n(2, tau),
-        };
-        let (r, a) = (reflected[set], absorbed[set]);
+        if tau > THICK {
+            return solutions[set].transmittance_scattered(tau);
+        }
+        // What collides, less what leaves above and what is absorbed: at the first collision a part 1 - w of it, so
+        // that w of it is left, with all its digits, and what was cut off as straight on.
+        let solution = &solutions[set];
+        let (first, whole) = (solution.first_collisions(), colliding(incidence, tau));
+        let scattered = (whole - first) + solution.modes.scattering.albedo * first;
+        let (r, a) = (reflected[set], solution.absorbed_later());
         Sum { value: scattered - r.value - a.value, magnitude: scattered + r.magnitude + a.magnitude }
     });
     [reflected, transmitted, absorbed]

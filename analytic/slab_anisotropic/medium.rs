@@ -1,7 +1,7 @@
 //! What belongs to a medium and not to a slab of it: its modes on two sets of nodes, order by order of azimuth.
 
 use super::modes::Modes;
-use super::nodes::Nodes;
+use super::nodes::{Nodes, peaked};
 use super::scattering::Scattering;
 use super::{AnisotropicSlab, METHOD};
 use crate::error::{Result, within};
@@ -17,7 +17,9 @@ const CUT: [f64; 2] = [1e-11, 1e-8];
 /// Nodes towards the horizon, the fewest and the most above it.
 const LOWER: [usize; 2] = [60, 50];
 const UPPER: [usize; 2] = [32, 26];
-const MOST: [usize; 2] = [420, 330];
+const MOST: [usize; 2] = [430, 370];
+/// Where more nodes would be needed, they are made tighter at the zenith.
+const PLAIN: usize = 128;
 
 /// Radiances scattered three times and more: a moment left out of order m of azimuth is met by the square of chi_m at
 /// least, and their product may be this.
@@ -25,9 +27,12 @@ const RAY: [f64; 2] = [1e-10, 1e-9];
 const LOWER_RAY: [usize; 2] = [40, 34];
 const UPPER_RAY: [usize; 2] = [32, 26];
 const MOST_RAY: [usize; 2] = [116, 104];
-/// The most where the peak is cut off, and how much looser the rules are.
+/// The most where the peak is cut off, and how much looser the rules are; the same where what is cut off is slight.
 const MOST_CUT: [usize; 2] = [72, 62];
 const LOOSE: f64 = 1e4;
+const MOST_SLIGHT: [usize; 2] = [112, 98];
+const LOOSE_SLIGHT: f64 = 1e2;
+const SLIGHT: f64 = 1e-4;
 /// Numbers of nodes go in steps, so that many orders share theirs.
 const STEP: usize = 8;
 
@@ -38,7 +43,7 @@ const LONG: usize = 150;
 /// What terms of the series in azimuth may be where it ends.
 const SMALL: f64 = 1e-11;
 
-const TAIL: &str = "moments that beyond l = 658 are at most 0.1 and hardly change";
+const TAIL: &str = "moments that beyond l = 1144 are at most 0.1 and hardly change";
 
 /// A medium whose modes are solved once, for any number of slabs. Cloning shares them.
 #[derive(Clone)]
@@ -83,20 +88,22 @@ impl AnisotropicMedium {
     ///
     /// # Arguments
     /// `albedo` 0 to 1; `phase` any whose moments, or their differences from a constant, have died away at
-    /// l = 300: Henyey-Greenstein from -0.95 to 0.99
+    /// l = 1100: Henyey-Greenstein from -0.95 to 0.99
     /// # Errors
     /// `Error::OutOfRange` naming `albedo` or `phase function`
     pub fn new(albedo: f64, phase: &Phase) -> Result<Self> {
-        let upper = |i: usize| UPPER[i].max(2 + phase.degree(CUT[i], 2 * MOST[i]).div_ceil(2)).min(MOST[i]);
         let set = |i: usize| {
-            let nodes = Nodes::new(upper(i), LOWER[i]);
-            (
-                Scattering::new(albedo, phase, nodes.degree, phase.degree(CUT[i], usize::MAX) > nodes.degree),
-                nodes,
-            )
+            let degree = phase.degree(CUT[i], usize::MAX);
+            let plain = 2 + degree.div_ceil(2);
+            let nodes = if plain <= PLAIN {
+                Nodes::new(plain.max(UPPER[i]), LOWER[i])
+            } else {
+                Nodes::peaked(peaked(degree).min(MOST[i]), LOWER[i])
+            };
+            (Scattering::new(albedo, phase, nodes.degree, degree > nodes.degree), nodes)
         };
         check_albedo(albedo)?;
-        let last = 2 * MOST[1] - 1;
+        let last = Nodes::peaked(MOST[1], LOWER[1]).degree + 1;
         let (value, least) = (last..last + 8).fold((0.0, 1.0), |(most, least): (f64, f64), l| {
             (most.max(phase.moment(l)), least.min(phase.moment(l)))
         });
@@ -166,11 +173,6 @@ impl AnisotropicMedium {
         AnisotropicSlab::of(self.clone(), f64::INFINITY, incidence)
     }
 
-    /// Whether a peak had to be cut off for fluxes.
-    pub(super) fn is_peaked(&self) -> bool {
-        self.0.sets.iter().any(|set| set.scattering.peak > 0.0)
-    }
-
     /// The modes of an order of azimuth, at most the degree of the moments in use, on set 0 (the finer) or 1.
     pub(crate) fn modes(&self, set: usize, order: usize) -> Result<Arc<Modes>> {
         self.0.sets[set].modes(order)
@@ -185,8 +187,14 @@ impl AnisotropicMedium {
             let capped = degree(RAY[0]) > 2 * MOST_RAY[0] - 2;
             // Cut off what is a peak straight on; a peak backwards has moments of both signs.
             let cut = capped && (beyond..beyond + 8).all(|l| phase.moment(l) >= 0.0);
-            let loose = if capped { LOOSE } else { 1.0 };
-            let most = if cut { MOST_CUT } else { MOST_RAY };
+            // What is beyond the most that a slow peak is given.
+            let left = phase.moment(2 * MOST_SLIGHT[0] - 1).abs();
+            let (loose, most) = match (capped, cut) {
+                (false, _) => (1.0, MOST_RAY),
+                (true, false) => (LOOSE_SLIGHT, MOST_RAY),
+                (true, true) if left <= SLIGHT => (LOOSE_SLIGHT, MOST_SLIGHT),
+                (true, true) => (LOOSE, MOST_CUT),
+            };
             let orders = [0, 1].map(|i| {
                 let last = degree(RAY[i]).min(2 * most[i] - 2);
                 let mut row: Vec<Set> = Vec::with_capacity(last + 1);

@@ -124,7 +124,8 @@ impl Orders {
         let turning = sine(q.mu) * sine(q.mu0) > 0.0;
         let last = if turning { azimuth.degree(0) } else { 0 };
         // What a cut leaves open swings with the last moment: a quarter of a turn farther on it is not zero too.
-        let cut = azimuth.modes(0, 0)?.scattering.peak > 0.0;
+        let modes = azimuth.modes(0, 0)?;
+        let (cut, modes) = (modes.scattering.peak > 0.0, modes.nodes.len());
         let beside = Query { dphi: q.dphi + 0.5 * PI / (azimuth.degree(0) + 1) as f64, ..q };
         let places = if cut && turning { vec![q, beside] } else { vec![q] };
         let mut totals = Vec::with_capacity(places.len());
@@ -160,7 +161,7 @@ impl Orders {
             // The two sets cut off different peaks: their terms differ, and only sums can be compared.
             difference = totals.iter().fold(0.0, |a: f64, [fine, coarse]| a.max((fine - coarse).abs()));
         }
-        Ok((sum.value, 2.0 * difference + TAIL * tail + rounding(sum)))
+        Ok((sum.value, 2.0 * difference + TAIL * tail + rounding(sum, modes)))
     }
 
     /// The term of the series for one order of azimuth, on one set of nodes.

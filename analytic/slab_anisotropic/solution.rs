@@ -79,6 +79,16 @@ pub(super) fn decayed(rate: f64, x: f64) -> f64 {
     if rate == 0.0 || rate * x == 0.0 { x } else { -expm1(-rate * x) / rate }
 }
 
+/// Fraction of the incident power that collides within `tau` \[1\]; of diffuse light 1 - 2 E_3(tau) = 1 - e^(-tau) +
+/// tau E_2(tau).
+pub(super) fn colliding(incidence: Incidence, tau: f64) -> f64 {
+    match incidence {
+        Incidence::Beam { mu0 } => -expm1(-tau / mu0),
+        Incidence::Diffuse if tau > 700.0 => 1.0,
+        Incidence::Diffuse => -expm1(-tau) + tau * e_n(2, tau),
+    }
+}
+
 impl Beam {
     /// xi and eta of the particular solution of mode j at depth t, and the magnitude of the terms of xi.
     ///
@@ -204,6 +214,17 @@ impl Solution {
 
     /// Fraction absorbed \[1\], from the integral of the fluence.
     pub fn absorptance(&self) -> Sum {
+        let first = self.first_collisions();
+        self.absorbed_later().plus(self.modes.scattering.lost * first, self.modes.scattering.lost * first)
+    }
+
+    /// Fraction of the incident power that collides at all \[1\].
+    pub fn first_collisions(&self) -> f64 {
+        colliding(self.incidence, self.tau)
+    }
+
+    /// Fraction absorbed after at least one scattering \[1\].
+    pub fn absorbed_later(&self) -> Sum {
         let tau = self.tau;
         let lost = self.modes.scattering.lost;
         if lost == 0.0 {
@@ -229,14 +250,10 @@ impl Solution {
             let weight = 2.0 * PI * self.modes.fluence[j];
             sum = terms.iter().fold(sum, |sum, term| sum.plus(weight * term, (weight * term).abs()));
         }
-        if let Incidence::Beam { mu0 } = self.incidence {
-            let direct = -expm1(-tau / mu0);
-            sum = sum.plus(direct, direct);
-        } else {
-            // What does not go straight through: 1 - 2 E_3(tau) = 1 - e^(-tau) + tau E_2(tau), and the nodes' version.
+        if self.incidence == Incidence::Diffuse {
+            // The nodes' version of what has not been scattered.
             let ours = 2.0 * self.modes.nodes.sum(|mu| mu * -expm1(-tau / mu));
-            let exact = if tau < 700.0 { -expm1(-tau) + tau * e_n(2, tau) } else { 1.0 };
-            sum = sum.plus(exact - ours, exact + ours);
+            sum = sum.plus(-ours, ours);
         }
         sum.scaled(lost)
     }

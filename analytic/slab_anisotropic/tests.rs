@@ -218,3 +218,45 @@ fn bounds_of_radiances_cover_plain_series_on_more_nodes() {
         }
     }
 }
+
+#[test]
+fn temp_095() {
+    for (tau, albedo, g) in [(1.0, 0.9, 0.95)] {
+        let phase = Phase::henyey_greenstein(g).unwrap();
+        let nodes = Arc::new(Nodes::new(2 + phase.degree(1e-9, 1000) / 2, 44));
+        let scattering = Arc::new(Scattering::new(albedo, &phase, nodes.degree, false));
+        let mu0 = 0.55;
+        let light = Incidence::Beam { mu0 };
+        let slab = AnisotropicSlab::new(tau, albedo, g, light).unwrap();
+        let orders = phase.degree(1e-5, 1000);
+        let solutions: Vec<Solution> = (0..=orders)
+            .map(|m| {
+                let modes = Arc::new(Modes::new(scattering.clone(), nodes.clone(), m).unwrap());
+                Solution::new(tau, light, modes).unwrap()
+            })
+            .collect();
+        for share in [0.0, 1e-3, 0.4, 1.0] {
+            for mu in [1.0, 0.6, 0.05, -0.3, -0.55, -0.9] {
+                for dphi in [0.0, 0.5, 2.5] {
+                    let t = share * tau;
+                    let got = slab.radiance(t, mu, dphi).unwrap();
+                    let once = crate::slab_single::single_radiance(tau, albedo, g, mu0, t, mu, dphi).unwrap();
+                    let rest: f64 = solutions
+                        .iter()
+                        .map(|s| {
+                            let source = s.modes.source(f64::abs(mu));
+                            s.last_scattered(t, mu, &source).value * libm::cos(s.modes.order as f64 * dphi)
+                        })
+                        .sum();
+                    let (want, off) = (once.value + rest, (got.value - once.value - rest).abs());
+                    println!(
+                        "{t} {mu} {dphi}: {want:.3e} off {:.0e} bnd {:.0e} {}",
+                        off / want,
+                        got.error / want,
+                        if off > got.error { "!!" } else { "" }
+                    );
+                }
+            }
+        }
+    }
+}
