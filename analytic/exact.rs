@@ -48,6 +48,8 @@ mod sphere;
 mod thick;
 #[path = "exact/two_stream.rs"]
 mod two_stream;
+#[path = "exact/typed.rs"]
+mod typed;
 #[path = "exact/xy.rs"]
 mod xy;
 
@@ -58,6 +60,7 @@ use format::Format;
 use std::io::{self, Write};
 use std::path::PathBuf;
 use std::process::ExitCode;
+use typed::Typed;
 
 /// Exact values of light transport in fog, water and smoke, each with an absolute error bound.
 ///
@@ -87,7 +90,7 @@ struct Cli {
     command: Option<Command>,
 }
 
-#[derive(Subcommand)]
+#[derive(Clone, Subcommand)]
 enum Command {
     Slab(slab::Args),
     HalfSpace(half_space::Args),
@@ -126,6 +129,64 @@ impl Command {
             Command::Boundary(args) => boundary::answer(args, draw),
         }
     }
+
+    /// What rounding does to the parameters; estimates of densities stand it well.
+    fn typed(&self) -> Option<Typed> {
+        Some(match self {
+            Command::Slab(args) => args.typed(),
+            Command::HalfSpace(args) => args.typed(),
+            Command::Thick(args) => args.typed(),
+            Command::TwoStream(args) => args.typed(),
+            Command::Xy(args) => args.typed(),
+            Command::Sphere(args) => args.typed(),
+            Command::Cavity(args) => args.typed(),
+            Command::Critical(args) => args.typed(),
+            Command::Path(args) => args.typed(),
+            Command::Infinite(args) => args.typed(),
+            Command::Kernel(_)
+            | Command::Beams(_)
+            | Command::Nearest(_)
+            | Command::Progressive(_)
+            | Command::Boundary(_) => return None,
+        })
+    }
+
+    /// The same question with another albedo, or other secondaries.
+    fn moved(&self, to: f64) -> Self {
+        let mut moved = self.clone();
+        match &mut moved {
+            Command::Slab(args) => args.albedo = to,
+            Command::HalfSpace(args) => args.albedo = to,
+            Command::Thick(args) => args.albedo = to,
+            Command::TwoStream(args) => args.albedo = to,
+            Command::Xy(args) => args.albedo = to,
+            Command::Sphere(args) => args.albedo = to,
+            Command::Cavity(args) => args.albedo = Some(to),
+            Command::Critical(args) => args.secondaries = to,
+            Command::Path(args) => args.albedo = Some(to),
+            Command::Infinite(args) => args.albedo = to,
+            Command::Kernel(_)
+            | Command::Beams(_)
+            | Command::Nearest(_)
+            | Command::Progressive(_)
+            | Command::Boundary(_) => {}
+        }
+        moved
+    }
+
+    /// Answers, with bounds that hold for the decimals that were typed.
+    fn answer_typed(&self, draw: bool) -> Result<answer::Reply> {
+        let mut reply = self.answer(draw)?;
+        let Some(typed) = self.typed() else { return Ok(reply) };
+        let quantities: Vec<_> = reply.answer.rows.iter().map(|row| row.quantity).collect();
+        let mut values: Vec<_> = reply.answer.rows.iter_mut().map(|row| &mut row.value).collect();
+        typed.widen(&mut values, |to| {
+            let rows = self.moved(to).answer(false)?.answer.rows;
+            let same = rows.iter().map(|row| row.quantity).eq(quantities);
+            Ok(same.then(|| rows.iter().map(|row| row.value).collect()))
+        })?;
+        Ok(reply)
+    }
 }
 
 fn run() -> Result<()> {
@@ -148,7 +209,7 @@ fn run() -> Result<()> {
             if let Some(path) = &cli.plot {
                 plot::check(path)?;
             }
-            let reply = command.answer(cli.plot.is_some())?;
+            let reply = command.answer_typed(cli.plot.is_some())?;
             format::write(&reply.answer, cli.format.unwrap_or(Format::Table), &mut bytes)?;
             if let Some(path) = &cli.plot {
                 let figure = reply.figure.context("there is nothing to draw for this question")?;

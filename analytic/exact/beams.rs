@@ -21,7 +21,7 @@ use turbid_figure::{Axis, Figure};
 /// Isotropic beams: E[1/sin theta] = pi/2, and X = 1/sin theta of those that cross has a tail P(X > x) ~ (4/(3 pi)) x^-3.
 /// Lengths in one unit of your choice; density of points per volume, of beams as their length per volume.
 /// Source: Jarosz, Zwicker and Jensen 2008; Jarosz, Nowrouzezahrai, Sadeghi and Jensen 2011.
-#[derive(clap::Args)]
+#[derive(Clone, clap::Args)]
 #[command(verbatim_doc_comment)]
 pub struct Args {
     /// Kernel, by name as in `exact kernel`.

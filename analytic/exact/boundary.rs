@@ -22,7 +22,7 @@ use turbid_figure::Axis;
 /// Given are the expectation in a uniform field (1 is right), and in one that falls as e^(-s depth), and the variance
 /// over that of the whole ball in a uniform field. Lengths are in one unit of your choice.
 /// Source: Jones 1993 (local linear), Silverman 1986 (reflection), Jensen and Christensen 1998 (none).
-#[derive(clap::Args)]
+#[derive(Clone, clap::Args)]
 #[command(verbatim_doc_comment)]
 pub struct Args {
     /// The body that the medium fills.

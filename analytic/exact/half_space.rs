@@ -4,6 +4,7 @@ use crate::answer::{Answer, Reply};
 use crate::phase::{Named, PhaseArgs};
 use crate::plot::{Curve, degrees, even, figure, panel};
 use crate::read::{incidence, incidence_field, incidence_title};
+use crate::typed::Typed;
 use anyhow::{Result, bail, ensure};
 use clap::ValueEnum;
 use turbid_analytic::half_space::HalfSpace;
@@ -23,12 +24,12 @@ use turbid_figure::{Axis, Figure};
 /// fluence goes as sinh(k (t + z0)), with decay k and extrapolation length z0 in mean free paths; radiance and fluence
 /// are per unit power that leaves. With any other phase function by discrete ordinates.
 /// Source: Hopf 1934; Chandrasekhar 1960, chapter V; Stibbs and Weir 1959; Case and Zweifel 1967, chapter 6.
-#[derive(clap::Args)]
+#[derive(Clone, clap::Args)]
 #[command(verbatim_doc_comment)]
 pub struct Args {
     /// Single-scattering albedo, 0 to 1.
     #[arg(long, allow_negative_numbers = true)]
-    albedo: f64,
+    pub albedo: f64,
     #[command(flatten)]
     phase: PhaseArgs,
     /// Cosine of incidence of a beam, above 0 to 1, or the word diffuse (Lambertian light).
@@ -49,6 +50,18 @@ pub struct Args {
     /// What --plot draws: fluence against depth, radiance that leaves against the angle to the normal, or H against mu.
     #[arg(long, value_enum, default_value = "fluence")]
     draw: Draw,
+}
+
+impl Args {
+    /// What rounding touches.
+    pub fn typed(&self) -> Typed {
+        Typed {
+            albedo: Some(self.albedo),
+            g: self.phase.single_g(),
+            places: self.depth.clone(),
+            ..Typed::default()
+        }
+    }
 }
 
 /// What a figure of a half-space shows.

@@ -3,6 +3,7 @@
 use crate::answer::{Answer, Reply};
 use crate::phase::{Named, PhaseArgs};
 use crate::plot::{Curve, figure, panel, ratios};
+use crate::typed::Typed;
 use anyhow::Result;
 use turbid_analytic::infinite::InfiniteMedium;
 use turbid_figure::{Axis, Figure};
@@ -18,17 +19,29 @@ use turbid_figure::{Axis, Figure};
 /// the slowest exponential alone; `diffusion_fluence` = 3 (1-wg) e^(-kr)/(4 pi r), k^2 = 3 (1-w)(1-wg), is an
 /// approximation, whose bound is that of the formula.
 /// Source: Case, de Hoffmann and Placzek 1953; Grosjean 1956; Case and Zweifel 1967, chapter 5.
-#[derive(clap::Args)]
+#[derive(Clone, clap::Args)]
 #[command(verbatim_doc_comment)]
 pub struct Args {
     /// Single-scattering albedo, 0 to 1.
     #[arg(long, allow_negative_numbers = true)]
-    albedo: f64,
+    pub albedo: f64,
     #[command(flatten)]
     phase: PhaseArgs,
     /// Distances in mean free paths, 1e-12 to 1e6.
     #[arg(long, num_args = 1.., value_name = "R", allow_negative_numbers = true)]
     r: Vec<f64>,
+}
+
+impl Args {
+    /// What rounding touches.
+    pub fn typed(&self) -> Typed {
+        Typed {
+            albedo: Some(self.albedo),
+            g: self.phase.single_g(),
+            places: self.r.clone(),
+            ..Typed::default()
+        }
+    }
 }
 
 /// Answers; the figure shows the fluence with its two approximations.

@@ -21,7 +21,7 @@ use turbid_figure::Axis;
 ///
 /// Lengths are in radii; all values are pure numbers. The uniform kernel also gives the images of an edge and a line.
 /// Source: Silverman 1986, chapter 4; the cone is Jensen 1996.
-#[derive(clap::Args)]
+#[derive(Clone, clap::Args)]
 #[command(verbatim_doc_comment)]
 pub struct Args {
     /// uniform, epanechnikov, biweight, cone_k1 (any number for the 1), gaussian (standard deviation r, untruncated)

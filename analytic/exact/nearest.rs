@@ -20,7 +20,7 @@ use turbid_figure::Axis;
 ///
 /// M(r) the kernel's mean of the field at radius r. Lengths are in units of your choice, densities per unit volume.
 /// Source: Loftsgaarden and Quesenberry 1965; Mack and Rosenblatt 1979.
-#[derive(clap::Args)]
+#[derive(Clone, clap::Args)]
 #[command(verbatim_doc_comment)]
 pub struct Args {
     /// Points gathered, 2 to 1e6 (3 and more for a variance).

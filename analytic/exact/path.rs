@@ -2,6 +2,7 @@
 
 use crate::answer::{Answer, Reply};
 use crate::plot::{Curve, even, figure, panel};
+use crate::typed::Typed;
 use anyhow::{Context, Result};
 use clap::ValueEnum;
 use turbid_analytic::mean_path::{
@@ -20,7 +21,7 @@ use turbid_figure::{Axis, Figure};
 /// path to escape or absorption is l = A/(1-w) mean free paths, A the absorbed fraction: given for sphere and slab with
 /// isotropic scattering. Lengths in one unit of your choice; with --albedo they are mean free paths.
 /// Source: Dirac 1943; Case and Zweifel 1967, section 2.8; Blanco and Fournier 2003; Mazzolo 2004.
-#[derive(clap::Args)]
+#[derive(Clone, clap::Args)]
 #[command(verbatim_doc_comment)]
 pub struct Args {
     /// The body.
@@ -32,7 +33,14 @@ pub struct Args {
     size: Vec<f64>,
     /// Single-scattering albedo, 0 to 1, of sphere or slab (then up to 1e6 or 400 mean free paths).
     #[arg(long, allow_negative_numbers = true)]
-    albedo: Option<f64>,
+    pub albedo: Option<f64>,
+}
+
+impl Args {
+    /// What rounding touches.
+    pub fn typed(&self) -> Typed {
+        Typed { albedo: self.albedo, g: Some(0.0), places: self.size.clone(), ..Typed::default() }
+    }
 }
 
 /// The bodies, by their names on the command line.

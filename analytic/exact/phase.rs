@@ -66,6 +66,12 @@ impl Named {
 }
 
 impl PhaseArgs {
+    /// The g of Henyey-Greenstein or isotropic scattering.
+    pub fn single_g(&self) -> Option<f64> {
+        let single = !self.rayleigh && self.moments.is_none() && self.g2.is_none();
+        single.then_some(self.g.unwrap_or(0.0))
+    }
+
     /// The phase function asked for.
     pub fn read(&self) -> Result<Named> {
         if self.rayleigh {

@@ -15,7 +15,7 @@ use turbid_figure::Axis;
 ///
 /// All values are pure numbers. The mean squared error falls fastest with alpha = 4/(d+4), as n^(-4/(d+4)).
 /// Source: Hachisuka, Ogaki and Jensen 2008; Knaus and Zwicker 2011.
-#[derive(clap::Args)]
+#[derive(Clone, clap::Args)]
 #[command(verbatim_doc_comment)]
 pub struct Args {
     /// Dimension of the blur: 1 (beams at a ray), 2 (photons on a surface) or 3 (photons in a medium).

@@ -7,6 +7,7 @@ use crate::phase::{Named, PhaseArgs};
 use crate::plot::{Curve, crowded, degrees, even, figure, panel};
 use crate::read::{incidence, incidence_field, incidence_title};
 use crate::solved::{Method, Solved};
+use crate::typed::Typed;
 use anyhow::{Result, ensure};
 use clap::ValueEnum;
 use libm::cos;
@@ -26,7 +27,7 @@ use turbid_figure::{Axis, Figure};
 /// Isotropic scattering: the Peierls equation phi = phi_0 + (w/2) int E_1(|t-t'|) phi(t') dt' with a residual bound.
 /// Any other phase function: discrete ordinates on two sets of nodes.
 /// Source: Peierls 1939; Case and Zweifel 1967; Chandrasekhar 1960; Stamnes, Tsay, Wiscombe and Jayaweera 1988.
-#[derive(clap::Args)]
+#[derive(Clone, clap::Args)]
 #[command(verbatim_doc_comment)]
 pub struct Args {
     /// Optical thickness, in mean free paths.
@@ -34,7 +35,7 @@ pub struct Args {
     tau: f64,
     /// Single-scattering albedo, 0 to 1.
     #[arg(long, allow_negative_numbers = true)]
-    albedo: f64,
+    pub albedo: f64,
     #[command(flatten)]
     phase: PhaseArgs,
     /// Cosine of incidence of a beam, above 0 to 1, or the word diffuse (Lambertian light).
@@ -64,6 +65,20 @@ pub struct Args {
     /// first azimuth, one curve for each depth (without depths: at both faces).
     #[arg(long, value_enum, default_value = "fluence")]
     draw: Draw,
+}
+
+impl Args {
+    /// What rounding touches.
+    pub fn typed(&self) -> Typed {
+        Typed {
+            albedo: Some(self.albedo),
+            g: self.phase.single_g(),
+            index: Some(self.index),
+            size: Some(self.tau),
+            places: self.depth.clone(),
+            ..Typed::default()
+        }
+    }
 }
 
 /// What a figure of a slab shows.

@@ -2,6 +2,7 @@
 
 use crate::answer::{Answer, Reply};
 use crate::plot::{Curve, degrees, even, figure, panel, ratios};
+use crate::typed::Typed;
 use anyhow::Result;
 use clap::ValueEnum;
 use libm::cos;
@@ -19,7 +20,7 @@ use turbid_figure::{Axis, Figure};
 /// on the whole surface (fluence a pure number, radiance in 1/sr). Fluences include the direct light; so does radiance,
 /// but for the central source, whose direct light e^(-a)/(4 pi a^2) leaves at mu = 1 alone.
 /// Source: Davison 1957, chapter VI; Case and Zweifel 1967, chapters 2 and 6.
-#[derive(clap::Args)]
+#[derive(Clone, clap::Args)]
 #[command(verbatim_doc_comment)]
 pub struct Args {
     /// Radius in mean free paths.
@@ -27,7 +28,7 @@ pub struct Args {
     radius: f64,
     /// Single-scattering albedo, 0 to 1.
     #[arg(long, allow_negative_numbers = true)]
-    albedo: f64,
+    pub albedo: f64,
     /// Where the light comes from.
     #[arg(long, value_enum, default_value = "uniform")]
     source: Source,
@@ -46,6 +47,19 @@ pub struct Args {
     /// normal.
     #[arg(long, value_enum, default_value = "fluence")]
     draw: Draw,
+}
+
+impl Args {
+    /// What rounding touches.
+    pub fn typed(&self) -> Typed {
+        Typed {
+            albedo: Some(self.albedo),
+            g: Some(0.0),
+            size: Some(self.radius),
+            places: self.r.clone(),
+            ..Typed::default()
+        }
+    }
 }
 
 /// The sources, by their names on the command line.
