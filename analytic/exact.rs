@@ -50,6 +50,8 @@ mod thick;
 mod two_stream;
 #[path = "exact/typed.rs"]
 mod typed;
+#[path = "exact/unit.rs"]
+mod unit;
 #[path = "exact/xy.rs"]
 mod xy;
 
@@ -66,8 +68,10 @@ use typed::Typed;
 ///
 /// Lengths are mean free paths. A slab 0 <= t <= tau has its lit face at t = 0, which receives unit irradiance:
 /// fractions and fluences are dimensionless, radiances are per steradian. A cosine mu > 0 points up, towards the lit
-/// face. Every value comes with a bound on its error and with how it is known; a question outside the range in which
-/// the answer is known is refused. Each command's --help states its equation, units, ranges and sources.
+/// face. Every value comes with a unit (`mfp` a mean free path, 1 a pure number), a bound on its error, and how it is known; a
+/// question outside the range in which the answer is known is refused. Bounds hold for decimals as typed, whose rounding to
+/// double precision they count: where w is near 1, that is most of them. Each command's --help states its equation, units,
+/// ranges and sources.
 #[derive(Parser)]
 #[command(name = "exact", version, arg_required_else_help = true)]
 struct Cli {

@@ -1,6 +1,7 @@
 //! An answer as a table for eyes, as CSV or as JSON.
 
 use crate::answer::{Answer, Row, shortest};
+use crate::unit::unit;
 use anyhow::Result;
 use clap::ValueEnum;
 use std::io::Write;
@@ -43,11 +44,12 @@ fn table(answer: &Answer, out: &mut Vec<u8>) -> Result<()> {
     let coordinates = answer.coordinates();
     let mut head = vec!["quantity"];
     head.extend(&coordinates);
-    head.extend(["value", "error", "how known"]);
+    head.extend(["value", "error", "unit", "how known"]);
     let line = |row: &Row| {
         let mut cells = vec![row.quantity.to_string()];
         cells.extend(coordinates.iter().map(|name| row.place(name)));
-        cells.extend([digits(row.value), format!("{:.0e}", row.value.error), row.value.method.to_string()]);
+        let (value, error) = (digits(row.value), format!("{:.0e}", row.value.error));
+        cells.extend([value, error, unit(answer, row.quantity).to_string(), row.value.method.to_string()]);
         cells
     };
     aligned(&head, &answer.rows.iter().map(line).collect::<Vec<_>>(), out)
@@ -94,7 +96,7 @@ fn csv(answer: &Answer, out: &mut Vec<u8>) -> Result<()> {
     head.extend(own().map(|(name, _)| *name));
     head.push("quantity");
     head.extend(&coordinates);
-    head.extend(["value", "error", "method"]);
+    head.extend(["value", "error", "unit", "method"]);
     let mut writer = csv::Writer::from_writer(out);
     writer.write_record(&head)?;
     for row in &answer.rows {
@@ -104,7 +106,8 @@ fn csv(answer: &Answer, out: &mut Vec<u8>) -> Result<()> {
         for name in &coordinates {
             cells.push(row.place(name));
         }
-        cells.extend([shortest(row.value.value), shortest(row.value.error), row.value.method.to_string()]);
+        cells.extend([shortest(row.value.value), shortest(row.value.error)]);
+        cells.extend([unit(answer, row.quantity).to_string(), row.value.method.to_string()]);
         writer.write_record(&cells)?;
     }
     writer.flush()?;

@@ -185,3 +185,26 @@ fn extremes() {
         assert!(number(&answer["error"]) <= 1e-9 * want, "{words}: {answer:?}");
     }
 }
+
+/// The decimal 0.999999 is not a double: half a unit of its last place moves T by 1.1e-10 of itself here, which the bound
+/// counts. Values of the decimal by adding and doubling in multiple precision (146 nodes, 25 digits).
+#[test]
+fn bounds_hold_for_typed_decimals() {
+    let columns = "id,geometry,tau,a,w,g,n,mu0,t,r,mu,dphi,extra,quantity\n";
+    let known = [
+        ("1,,,,,,R", 0.994153317042306751),
+        ("1,,,,,,T_total", 2.02303919024601095e-6),
+        ("1,5000,,,,,fluence", 0.0666888758728189324),
+        ("0.1,,,,,,T_total", 7.71511935502967735e-7),
+        ("0.5,,,,,,T_total", 1.38402090073317538e-6),
+    ];
+    let text: String =
+        known.iter().map(|(words, _)| format!("x,slab,1e4,,0.999999,0.75,,{words}\n")).collect();
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("decimals.csv");
+    std::fs::write(&path, format!("{columns}{text}")).unwrap();
+    for ((words, want), answer) in known.iter().zip(answers(path.to_str().unwrap())) {
+        let (off, error) = ((number(&answer["value"]) - want).abs(), number(&answer["error"]));
+        assert!(off <= error && error < 1e-9 * want, "{words}: {answer:?} off by {off:e}");
+    }
+}

@@ -125,7 +125,7 @@ fn single_questions_are_answered_in_a_table() {
         "{text}"
     );
     let rows: Vec<Vec<&str>> = text.lines().map(|line| line.split_whitespace().collect()).collect();
-    assert_eq!(rows[1], ["quantity", "t", "mu", "order", "value", "error", "how", "known"]);
+    assert_eq!(rows[1], ["quantity", "t", "mu", "order", "value", "error", "unit", "how", "known"]);
     assert!(rows.iter().any(|row| row[..3] == ["radiance", "1", "-0.5"]), "{text}");
     assert!(rows.iter().any(|row| row[..3] == ["fluence_of_order", "1", "2"]), "{text}");
     assert!(text.contains("Peierls equation, residual bound"));
