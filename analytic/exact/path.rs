@@ -6,8 +6,8 @@ use crate::typed::Typed;
 use anyhow::{Context, Result};
 use clap::ValueEnum;
 use turbid_analytic::mean_path::{
-    chord_moment_slab, chord_moment_sphere, mean_path, mean_path_cuboid, mean_path_slab,
-    mean_path_slab_absorbing, mean_path_sphere, mean_path_sphere_absorbing,
+    chord_density_slab, chord_density_sphere, chord_moment_slab, chord_moment_sphere, mean_path,
+    mean_path_cuboid, mean_path_slab, mean_path_slab_absorbing, mean_path_sphere, mean_path_sphere_absorbing,
 };
 use turbid_figure::{Axis, Figure};
 
@@ -31,6 +31,9 @@ pub struct Args {
     /// surface. 1e-100 to 1e100.
     #[arg(long, num_args = 1..=3, required = true, value_name = "L", allow_negative_numbers = true)]
     size: Vec<f64>,
+    /// Lengths of chords of sphere or slab, 0 or more: gives the density of the chord length under that light.
+    #[arg(long, num_args = 1.., value_name = "L", allow_negative_numbers = true)]
+    chord: Vec<f64>,
     /// Single-scattering albedo, 0 to 1, of sphere or slab (then up to 1e6 or 400 mean free paths).
     #[arg(long, allow_negative_numbers = true)]
     pub albedo: Option<f64>,
@@ -80,6 +83,14 @@ pub fn answer(args: &Args, draw: bool) -> Result<Reply> {
             "--size has {} numbers; allowed: 1 for sphere and slab, 3 for cuboid, 2 for convex",
             sizes.len()
         ),
+    }
+    for &length in &args.chord {
+        let density = match args.shape {
+            Shape::Sphere => chord_density_sphere(args.size[0], length)?,
+            Shape::Slab => chord_density_slab(args.size[0], length)?,
+            _ => anyhow::bail!("--chord is {length}; allowed with --shape sphere and slab, not {shape}"),
+        };
+        answer.add_at("chord_density", vec![("chord", length.into())], density);
     }
     if let Some(albedo) = args.albedo {
         let mean = absorbing(args, albedo)?.with_context(|| {

@@ -41,7 +41,9 @@ pub struct Args {
     /// Cosine of incidence of a beam, above 0 to 1, or the word diffuse (Lambertian light).
     #[arg(long, default_value = "1", value_parser = incidence, allow_negative_numbers = true)]
     mu0: Incidence,
-    /// Refractive index inside over outside: faces that reflect and refract (fluxes and fluence).
+    /// Refractive index inside over outside, 0.25 to 4: faces that reflect and refract (fluxes and fluence). Gives also the
+    /// light that the first face sends back (`specular`), reflectances without it (`reflectance_diffuse`), and the part of
+    /// Lambertian light that one face reflects, from outside and from inside.
     #[arg(long, default_value_t = 1.0, allow_negative_numbers = true)]
     index: f64,
     /// Depths in mean free paths, 0 to tau, at which to give the fluence and the net flux downwards (direct light
@@ -96,7 +98,8 @@ pub fn answer(args: &Args, draw: bool) -> Result<Reply> {
     if args.index != 1.0 {
         ensure!(
             args.mu.is_empty() && args.order.is_empty() && args.draw == Draw::Fluence,
-            "--index is {}; allowed with --mu, --order and --draw radiance: 1",
+            "--index is {}; allowed with --mu, --order and --draw radiance: 1 (between refracting faces there are fluxes and \
+             fluence)",
             args.index
         );
         let (tau, albedo, index) = (args.tau, args.albedo, args.index);

@@ -6,7 +6,7 @@ use crate::typed::Typed;
 use anyhow::Result;
 use clap::ValueEnum;
 use libm::cos;
-use turbid_analytic::sphere::{Sphere, SphereSource, absorbing_transmittance, escape_from};
+use turbid_analytic::sphere::{Sphere, SphereSource, absorbing_transmittance, escape_from, escape_uniform};
 use turbid_figure::{Axis, Figure};
 
 /// A sphere with isotropic scattering: fluence, escape, absorption, radiance that leaves.
@@ -14,6 +14,9 @@ use turbid_figure::{Axis, Figure};
 /// In a ball of radius a whose surface does not reflect, with w the albedo and phi_0 the light that has not collided,
 ///
 ///   phi(r) = phi_0(r) + (w/2) int_0^a (r'/r) [E_1(|r-r'|) - E_1(r+r')] phi(r') dr'
+///
+/// `escape_direct` leaves without a collision, in closed form: all the escape of a sphere that only absorbs, for a uniform
+/// source 3/(8 a^3) [2 a^2 - 1 + (1 + 2a) e^(-2a)].
 ///
 /// Lengths are mean free paths. Sources: `uniform` emission over the volume and a point at the `centre`, of unit power
 /// (fluence in 1/mean free path^2, radiance per steradian of that); `incident` light of radiance 1/pi and irradiance 1
@@ -100,9 +103,15 @@ pub fn answer(args: &Args, draw: bool) -> Result<Reply> {
         Answer::new("sphere").with("radius", args.radius).with("albedo", args.albedo).with("source", name);
     answer.add("escape", sphere.escape());
     answer.add("absorptance", sphere.absorptance());
-    if args.source == Source::Incident {
-        answer.add("transmittance_direct", absorbing_transmittance(args.radius)?);
-    }
+    // Without a collision: what leaves a sphere that only absorbs.
+    answer.add(
+        "escape_direct",
+        match args.source {
+            Source::Uniform => escape_uniform(args.radius)?,
+            Source::Centre => escape_from(args.radius, 0.0)?,
+            Source::Incident => absorbing_transmittance(args.radius)?,
+        },
+    );
     for &r in &args.r {
         let at = || vec![("r", r.into())];
         answer.add_at("fluence", at(), sphere.fluence(r)?);

@@ -18,12 +18,12 @@ pub fn unit(answer: &Answer, quantity: &str) -> &'static str {
         },
         "slab" | "half-space" | "thick" | "two-stream" | "xy" => lit(quantity),
         "sphere" if word("source") == "incident" => match quantity {
-            "escape" => "incident power",
+            "escape" | "escape_direct" => "incident power",
             "exit_radiance" => "irradiance/sr",
             _ => lit(quantity),
         },
         "sphere" => match quantity {
-            "escape" | "absorptance" => "emitted power",
+            "escape" | "escape_direct" | "absorptance" => "emitted power",
             "exit_radiance" => "power/(mfp^2 sr)",
             _ => emitted(quantity),
         },
@@ -40,6 +40,7 @@ pub fn unit(answer: &Answer, quantity: &str) -> &'static str {
         "path" => match quantity {
             "mean_path_absorbing" => "mfp",
             "chord_moment" => "length^n",
+            "chord_density" => "1/length",
             _ => "length",
         },
         "kernel" => match quantity {
@@ -61,7 +62,7 @@ pub fn unit(answer: &Answer, quantity: &str) -> &'static str {
         },
         "boundary" => match quantity {
             "variance_over_whole_ball" => "whole ball",
-            "false_photons" => "field inside",
+            "mean_at_wall" => "field in front",
             _ => "field",
         },
         "progressive" if quantity.ends_with("_ratio") => "first pass",
@@ -90,8 +91,9 @@ fn lit(quantity: &str) -> &'static str {
 /// Where a source of unit power emits.
 fn emitted(quantity: &str) -> &'static str {
     match quantity {
-        "total_fluence" => "power mfp",
-        "mean_square_radius" => "mfp^2",
+        "total_fluence" | "transform" => "power mfp",
+        "mean_square_radius" | "mean_square_distance" => "mfp^2",
+        "mean_cosine" => "1",
         "decay" => "1/mfp",
         "escape_direct_from" => "emitted there",
         _ => "power/mfp^2",
