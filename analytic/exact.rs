@@ -248,6 +248,26 @@ fn explain(error: &clap::Error) -> Result<()> {
     }
 }
 
+/// A message of std's number parsing, with what is allowed in its place.
+fn allowed_numbers(part: &str) -> String {
+    if let Some((rest, _)) = part.split_once(" is not in 0..=").and_then(|(front, _)| front.rsplit_once(": "))
+    {
+        return format!("{rest}; allowed: a whole number, 0 to 4294967295");
+    }
+    let number = [": invalid float literal", ": cannot parse float from empty string"];
+    let whole = [
+        ": invalid digit found in string",
+        ": cannot parse integer from empty string",
+        ": number too large to fit in target type",
+    ];
+    for (endings, allowed) in [(number.as_slice(), "a number"), (&whole, "a whole number, 0 to 4294967295")] {
+        if let Some(rest) = endings.iter().find_map(|ending| part.strip_suffix(ending)) {
+            return format!("{rest}; allowed: {allowed}");
+        }
+    }
+    part.to_string()
+}
+
 /// The parts of a message of several lines, without usage and hints where to look.
 fn one_line(text: &str) -> String {
     let mut line = String::new();
@@ -255,7 +275,7 @@ fn one_line(text: &str) -> String {
         if part.starts_with("Usage:") || part.starts_with("For more information") {
             break;
         }
-        let part = part.strip_prefix("error: ").unwrap_or(part);
+        let part = &allowed_numbers(part.strip_prefix("error: ").unwrap_or(part));
         let part = part
             .strip_prefix("[possible values: ")
             .map_or(part.to_string(), |values| format!("allowed: {}", values.trim_end_matches(']')));

@@ -44,14 +44,14 @@ pub struct Args {
     #[arg(long, allow_negative_numbers = true)]
     sine: Option<f64>,
     /// Gradients |b| of fields e^(b.x), times the radius: gives each estimate's mean over the truth.
-    #[arg(long, num_args = 1.., value_name = "X", allow_negative_numbers = true)]
+    #[arg(long, num_args = 1.., value_delimiter = ',', value_name = "X", allow_negative_numbers = true)]
     gradient: Vec<f64>,
     /// Laplacians of the field over the field, in 1/length^2, not 0: gives the radius of least mean squared error, and that
     /// error, relative.
-    #[arg(long, num_args = 1.., value_name = "C", allow_negative_numbers = true)]
+    #[arg(long, num_args = 1.., value_delimiter = ',', value_name = "C", allow_negative_numbers = true)]
     curvature: Vec<f64>,
     /// Values x of 1/sin theta, 1 and more: gives the tail P(X > x) and the second moment of isotropic beams up to x.
-    #[arg(long, num_args = 1.., value_name = "X", allow_negative_numbers = true)]
+    #[arg(long, num_args = 1.., value_delimiter = ',', value_name = "X", allow_negative_numbers = true)]
     tail: Vec<f64>,
 }
 

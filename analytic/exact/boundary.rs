@@ -33,13 +33,13 @@ pub struct Args {
     #[arg(long, value_enum, default_value = "half-space")]
     body: Shape,
     /// Thickness of the slab, radius of the sphere, or edges of the cuboid (one for a cube), 1e-12 to 1e12.
-    #[arg(long, num_args = 1..=3, value_name = "L", default_values_t = [1.0], allow_negative_numbers = true)]
+    #[arg(long, num_args = 1..=3, value_delimiter = ',', value_name = "L", default_values_t = [1.0], allow_negative_numbers = true)]
     size: Vec<f64>,
     /// Radius of the kernel, 1e-12 to 1e12.
     #[arg(long, default_value_t = 1.0, allow_negative_numbers = true)]
     radius: f64,
     /// Depths of probes below the nearest face, inside the body; in a cuboid below the middle of a face.
-    #[arg(long, num_args = 1.., value_name = "H", default_values_t = [0.0, 0.5, 1.0], allow_negative_numbers = true)]
+    #[arg(long, num_args = 1.., value_delimiter = ',', value_name = "H", default_values_t = [0.0, 0.5, 1.0], allow_negative_numbers = true)]
     depth: Vec<f64>,
     /// Decay s of the field e^(-s depth), in 1/length; 0 for the uniform field alone.
     #[arg(long, default_value_t = 0.0, allow_negative_numbers = true)]

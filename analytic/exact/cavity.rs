@@ -34,7 +34,7 @@ pub struct Args {
     #[arg(long, allow_negative_numbers = true)]
     first: Option<f64>,
     /// Distances from the centre, 0 to the radius, at which to give the fluence if the wall emits evenly, per unit exitance.
-    #[arg(long, num_args = 1.., value_name = "R", allow_negative_numbers = true)]
+    #[arg(long, num_args = 1.., value_delimiter = ',', value_name = "R", allow_negative_numbers = true)]
     r: Vec<f64>,
 }
 

@@ -28,7 +28,7 @@ pub struct Args {
     #[arg(long, value_enum, default_value = "slab")]
     shape: Shape,
     /// Distances from the middle over the size, 0 to 1, at which to give the fluence over that in the middle.
-    #[arg(long, num_args = 1.., value_name = "X", allow_negative_numbers = true)]
+    #[arg(long, num_args = 1.., value_delimiter = ',', value_name = "X", allow_negative_numbers = true)]
     x: Vec<f64>,
 }
 

@@ -36,13 +36,13 @@ pub struct Args {
     #[arg(long, default_value = "1", value_parser = incidence, allow_negative_numbers = true)]
     mu0: Incidence,
     /// Cosines, 0 to 1, at which to give the radiance that leaves, and H.
-    #[arg(long, num_args = 1.., value_name = "MU", allow_negative_numbers = true)]
+    #[arg(long, num_args = 1.., value_delimiter = ',', value_name = "MU", allow_negative_numbers = true)]
     mu: Vec<f64>,
     /// Azimuths of those directions, in radians, where scattering is not isotropic: that of propagation minus the beam's.
-    #[arg(long, num_args = 1.., value_name = "PHI", default_values_t = [0.0], allow_negative_numbers = true)]
+    #[arg(long, num_args = 1.., value_delimiter = ',', value_name = "PHI", default_values_t = [0.0], allow_negative_numbers = true)]
     azimuth: Vec<f64>,
     /// Depths in mean free paths, 0 or more, at which to give fluence and net flux downwards.
-    #[arg(long, num_args = 1.., value_name = "T", allow_negative_numbers = true)]
+    #[arg(long, num_args = 1.., value_delimiter = ',', value_name = "T", allow_negative_numbers = true)]
     depth: Vec<f64>,
     /// Answer Milne's problem at these cosines and depths, instead of the lit face (albedo 0.01 to 1).
     #[arg(long)]

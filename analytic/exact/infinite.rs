@@ -28,14 +28,14 @@ pub struct Args {
     #[command(flatten)]
     phase: PhaseArgs,
     /// Distances in mean free paths, 1e-12 to 1e6.
-    #[arg(long, num_args = 1.., value_name = "R", allow_negative_numbers = true)]
+    #[arg(long, num_args = 1.., value_delimiter = ',', value_name = "R", allow_negative_numbers = true)]
     r: Vec<f64>,
     /// Wave numbers s in 1/mean free path, 0 to 1e5: gives the transform of the fluence, the fraction above.
-    #[arg(long, num_args = 1.., value_name = "S", allow_negative_numbers = true)]
+    #[arg(long, num_args = 1.., value_delimiter = ',', value_name = "S", allow_negative_numbers = true)]
     wave: Vec<f64>,
     /// Numbers n of scatterings, 0 to 999999: gives the mean cosine between the first direction and that after n, g^n, and the
     /// mean square distance from the source after the flight that follows the n-th, absorption aside.
-    #[arg(long, num_args = 1.., value_name = "N")]
+    #[arg(long, num_args = 1.., value_delimiter = ',', value_name = "N", allow_negative_numbers = true)]
     scatterings: Vec<u32>,
 }
 

@@ -33,14 +33,14 @@ pub struct Args {
     dimension: Dimension,
     /// Gradient times radius of exponential fields e^(b.x), -500 to 500 (Gaussian: 35): gives the kernel's mean over
     /// the value at the centre.
-    #[arg(long, num_args = 1.., value_name = "X", allow_negative_numbers = true)]
+    #[arg(long, num_args = 1.., value_delimiter = ',', value_name = "X", allow_negative_numbers = true)]
     gradient: Vec<f64>,
     /// Depths over the radius behind a flat face (negative: outside): gives the moments M_0, M_1, M_2 of the cut kernel
     /// (dimension 3) and, for the uniform kernel, the images of an edge and of a line.
-    #[arg(long, num_args = 1.., value_name = "X", allow_negative_numbers = true)]
+    #[arg(long, num_args = 1.., value_delimiter = ',', value_name = "X", allow_negative_numbers = true)]
     depth: Vec<f64>,
     /// Wave numbers times radius of sinusoids: gives the transfer of the kernel in three dimensions.
-    #[arg(long, num_args = 1.., value_name = "Q", allow_negative_numbers = true)]
+    #[arg(long, num_args = 1.., value_delimiter = ',', value_name = "Q", allow_negative_numbers = true)]
     wave: Vec<f64>,
 }
 

@@ -29,7 +29,7 @@ use turbid_figure::Axis;
 #[command(verbatim_doc_comment)]
 pub struct Args {
     /// Points gathered, 2 to 1e6 (3 and more for a variance).
-    #[arg(long)]
+    #[arg(long, allow_negative_numbers = true)]
     k: u32,
     /// Dimension of space: 1, 2 or 3.
     #[arg(long, default_value = "3", value_parser = dimension)]
@@ -38,17 +38,17 @@ pub struct Args {
     #[arg(long, default_value_t = 1.0, allow_negative_numbers = true)]
     density: f64,
     /// Number of points in all; without it a Poisson number.
-    #[arg(long)]
+    #[arg(long, allow_negative_numbers = true)]
     points: Option<u64>,
     /// Kernel, by name as in `exact kernel`.
     #[arg(long, default_value = "uniform", value_parser = kernel)]
     kernel: Kernel,
     /// Gradients |b| of exponential fields, in 1/length: gives the expectation over the field at the probe.
-    #[arg(long, num_args = 1.., value_name = "B", allow_negative_numbers = true)]
+    #[arg(long, num_args = 1.., value_delimiter = ',', value_name = "B", allow_negative_numbers = true)]
     gradient: Vec<f64>,
     /// Laplacians of the field over the field, in 1/length^2: gives bias, variance and mean squared error to second order in
     /// the radius, relative, and for a curvature that is not 0 the k of least mean squared error.
-    #[arg(long, num_args = 1.., value_name = "C", allow_negative_numbers = true)]
+    #[arg(long, num_args = 1.., value_delimiter = ',', value_name = "C", allow_negative_numbers = true)]
     curvature: Vec<f64>,
     /// Largest radius of a gather; without it, six times the radius within which k points are expected.
     #[arg(long, allow_negative_numbers = true)]

@@ -3,7 +3,7 @@
 use crate::answer::{Answer, Reply};
 use crate::plot::{Curve, even, figure, panel};
 use crate::typed::Typed;
-use anyhow::{Context, Result};
+use anyhow::{Context, Result, bail};
 use clap::ValueEnum;
 use turbid_analytic::mean_path::{
     chord_density_slab, chord_density_sphere, chord_moment_slab, chord_moment_sphere, mean_path,
@@ -29,10 +29,10 @@ pub struct Args {
     shape: Shape,
     /// Radius of the sphere, thickness of the slab, or the three edges of the cuboid; for any convex body its volume and its
     /// surface. 1e-100 to 1e100.
-    #[arg(long, num_args = 1..=3, required = true, value_name = "L", allow_negative_numbers = true)]
+    #[arg(long, num_args = 1..=3, value_delimiter = ',', required = true, value_name = "L", allow_negative_numbers = true)]
     size: Vec<f64>,
     /// Lengths of chords of sphere or slab, 0 or more: gives the density of the chord length under that light.
-    #[arg(long, num_args = 1.., value_name = "L", allow_negative_numbers = true)]
+    #[arg(long, num_args = 1.., value_delimiter = ',', value_name = "L", allow_negative_numbers = true)]
     chord: Vec<f64>,
     /// Single-scattering albedo, 0 to 1, of sphere or slab (then up to 1e6 or 400 mean free paths).
     #[arg(long, allow_negative_numbers = true)]
@@ -79,7 +79,7 @@ pub fn answer(args: &Args, draw: bool) -> Result<Reply> {
         }
         (Shape::Cuboid, &[x, y, z]) => answer.add("mean_path", mean_path_cuboid(x, y, z)?),
         (Shape::Convex, &[volume, surface]) => answer.add("mean_path", mean_path(volume, surface)?),
-        (_, sizes) => anyhow::bail!(
+        (_, sizes) => bail!(
             "--size has {} numbers; allowed: 1 for sphere and slab, 3 for cuboid, 2 for convex",
             sizes.len()
         ),
@@ -88,7 +88,7 @@ pub fn answer(args: &Args, draw: bool) -> Result<Reply> {
         let density = match args.shape {
             Shape::Sphere => chord_density_sphere(args.size[0], length)?,
             Shape::Slab => chord_density_slab(args.size[0], length)?,
-            _ => anyhow::bail!("--chord is {length}; allowed with --shape sphere and slab, not {shape}"),
+            _ => bail!("--chord is {length}; allowed with --shape sphere and slab, not {shape}"),
         };
         answer.add_at("chord_density", vec![("chord", length.into())], density);
     }
@@ -98,7 +98,7 @@ pub fn answer(args: &Args, draw: bool) -> Result<Reply> {
         })?;
         answer.add_at("mean_path_absorbing", vec![("albedo", albedo.into())], mean);
     }
-    let figure = if draw { drawn(args, &shape)? } else { None };
+    let figure = if draw { Some(drawn(args, &shape)?) } else { None };
     Ok(Reply { answer, figure })
 }
 
@@ -110,14 +110,14 @@ fn absorbing(args: &Args, albedo: f64) -> Result<Option<turbid_analytic::Value>>
     })
 }
 
-fn drawn(args: &Args, shape: &str) -> Result<Option<Figure>> {
+fn drawn(args: &Args, shape: &str) -> Result<Figure> {
     if matches!(args.shape, Shape::Cuboid | Shape::Convex) {
-        return Ok(None);
+        bail!("--plot draws the path against the albedo; allowed with --shape sphere and slab, not {shape}");
     }
     let curve = Curve::sample("", &even(0.0, 1.0, 21), |w| {
         Ok(absorbing(args, w)?.context("a sphere or a slab")?.value)
     })?;
     let title = format!("Mean path to escape or absorption, {shape} of {} mean free paths", args.size[0]);
     let axis = Axis::linear("Albedo", "");
-    Ok(Some(figure(title, panel(axis, "Mean path", "mean free paths", vec![curve]))))
+    Ok(figure(title, panel(axis, "Mean path", "mean free paths", vec![curve])))
 }

@@ -34,7 +34,13 @@ pub struct PhaseArgs {
     #[arg(long, help_heading = "Phase function", value_name = "FILE", conflicts_with = "moments")]
     table: Option<PathBuf>,
     /// Highest moment of --table, 0 to 1999; a peak needs about pi over its width.
-    #[arg(long, help_heading = "Phase function", default_value_t = 100, requires = "table")]
+    #[arg(
+        long,
+        help_heading = "Phase function",
+        default_value_t = 100,
+        requires = "table",
+        allow_negative_numbers = true
+    )]
     degree: u32,
 }
 

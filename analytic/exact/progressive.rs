@@ -25,7 +25,7 @@ pub struct Args {
     #[arg(long, allow_negative_numbers = true)]
     alpha: Option<f64>,
     /// Numbers of passes, 1 to 1e6.
-    #[arg(long, num_args = 1.., value_name = "N", default_values_t = [10, 100, 1000])]
+    #[arg(long, num_args = 1.., value_delimiter = ',', value_name = "N", default_values_t = [10, 100, 1000], allow_negative_numbers = true)]
     passes: Vec<u32>,
 }
 

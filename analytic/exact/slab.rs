@@ -48,17 +48,17 @@ pub struct Args {
     index: f64,
     /// Depths in mean free paths, 0 to tau, at which to give the fluence and the net flux downwards (direct light
     /// included).
-    #[arg(long, num_args = 1.., value_name = "T", allow_negative_numbers = true)]
+    #[arg(long, num_args = 1.., value_delimiter = ',', value_name = "T", allow_negative_numbers = true)]
     depth: Vec<f64>,
     /// Signed cosines (positive: towards the lit face) at which to give the radiance of scattered light, at every
     /// depth, or without depths where the light leaves.
-    #[arg(long, num_args = 1.., value_name = "MU", allow_negative_numbers = true)]
+    #[arg(long, num_args = 1.., value_delimiter = ',', value_name = "MU", allow_negative_numbers = true)]
     mu: Vec<f64>,
     /// Azimuths of those directions, in radians: that of propagation minus that of the beam.
-    #[arg(long, num_args = 1.., value_name = "PHI", default_values_t = [0.0], allow_negative_numbers = true)]
+    #[arg(long, num_args = 1.., value_delimiter = ',', value_name = "PHI", default_values_t = [0.0], allow_negative_numbers = true)]
     azimuth: Vec<f64>,
     /// Orders of scattering to give one by one, 0 (direct light) to 100, to 1000 with isotropic scattering.
-    #[arg(long, num_args = 1.., value_name = "N")]
+    #[arg(long, num_args = 1.., value_delimiter = ',', value_name = "N", allow_negative_numbers = true)]
     order: Vec<u32>,
     /// How to solve it.
     #[arg(long, value_enum, default_value = "auto")]

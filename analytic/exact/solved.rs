@@ -1,7 +1,7 @@
 //! A slab by whichever method serves the question.
 
 use crate::phase::Named;
-use anyhow::{Result, bail};
+use anyhow::{Result, bail, ensure};
 use clap::ValueEnum;
 use turbid_analytic::{AddingDoubling, AnisotropicMedium, AnisotropicSlab, Incidence, IsotropicSlab, Value};
 
@@ -35,6 +35,10 @@ impl Solved {
     /// Solves a slab.
     pub fn new(tau: f64, albedo: f64, named: &Named, incidence: Incidence, method: Method) -> Result<Self> {
         let isotropic = named.is_isotropic();
+        ensure!(
+            method != Method::Auto || (1e-12..=1e9).contains(&tau),
+            "tau is {tau}; allowed: 1e-12 to 1e9"
+        );
         if method == Method::Peierls && !isotropic {
             bail!("phase function is {}; allowed with --method peierls: isotropic", named.name);
         }

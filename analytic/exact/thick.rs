@@ -33,10 +33,10 @@ pub struct Args {
     #[arg(long, default_value = "1", value_parser = incidence, allow_negative_numbers = true)]
     mu0: Incidence,
     /// Optical thicknesses, 1 to 1e15: gives R, T and A.
-    #[arg(long, num_args = 1.., value_name = "TAU", allow_negative_numbers = true)]
+    #[arg(long, num_args = 1.., value_delimiter = ',', value_name = "TAU", allow_negative_numbers = true)]
     tau: Vec<f64>,
     /// Cosines u to the direction of decay, -1 to 1: gives the pattern P(u) of light deep inside.
-    #[arg(long, num_args = 1.., value_name = "U", allow_negative_numbers = true)]
+    #[arg(long, num_args = 1.., value_delimiter = ',', value_name = "U", allow_negative_numbers = true)]
     u: Vec<f64>,
 }
 

@@ -41,7 +41,7 @@ pub struct Args {
     #[arg(long, default_value = "1", value_parser = incidence, allow_negative_numbers = true)]
     mu0: Incidence,
     /// Depths in mean free paths, 0 to tau, at which to give the fluence.
-    #[arg(long, num_args = 1.., value_name = "T", allow_negative_numbers = true)]
+    #[arg(long, num_args = 1.., value_delimiter = ',', value_name = "T", allow_negative_numbers = true)]
     depth: Vec<f64>,
 }
 

@@ -27,7 +27,7 @@ pub struct Args {
     #[arg(long, allow_negative_numbers = true)]
     pub albedo: f64,
     /// Cosines, 0 to 1.
-    #[arg(long, num_args = 1.., value_name = "MU", default_values_t = [0.1, 0.5, 1.0], allow_negative_numbers = true)]
+    #[arg(long, num_args = 1.., value_delimiter = ',', value_name = "MU", default_values_t = [0.1, 0.5, 1.0], allow_negative_numbers = true)]
     mu: Vec<f64>,
     /// Cosine of incidence, above 0 to 1: gives R, T and the radiances that leave at every cosine.
     #[arg(long, allow_negative_numbers = true)]

@@ -10,7 +10,7 @@ mod slab;
 mod sphere;
 
 use crate::answer::shortest;
-use crate::format::{Format, aligned, digits};
+use crate::format::{Format, aligned, bound, digits};
 use anyhow::{Context, Result, anyhow, bail};
 use row::{COLUMNS, Row};
 use serde::ser::{Serialize, SerializeMap, Serializer};
@@ -97,11 +97,23 @@ fn read(path: &Path) -> Result<Vec<Row>> {
     }
     let mut rows = Vec::new();
     for record in reader.records() {
-        let record = record.with_context(|| format!("{name}"))?;
+        let record = record.map_err(|error| misread(&name.to_string(), &error))?;
         let line = record.position().map_or(0, csv::Position::line);
         rows.push(Row { line, fields: places.map(|p| record.get(p).unwrap_or("").to_string()) });
     }
     Ok(rows)
+}
+
+/// Which line cannot be read, and why.
+fn misread(name: &str, error: &csv::Error) -> anyhow::Error {
+    let line = error.position().map_or(0, csv::Position::line);
+    match error.kind() {
+        csv::ErrorKind::UnequalLengths { expected_len, len, .. } => {
+            anyhow!("{name}:{line}: {len} cells; allowed: {expected_len}, as in the first line")
+        }
+        csv::ErrorKind::Utf8 { .. } => anyhow!("{name}:{line}: not text; allowed: UTF-8"),
+        _ => anyhow!("{name}:{line}: {error}"),
+    }
 }
 
 /// A question beside its answer.
@@ -168,7 +180,7 @@ fn write(lines: &[Line<'_>], format: Format, output: &mut Vec<u8>) -> Result<()>
             let cells = |line: &Line<'_>| {
                 let mut cells = ["id", "quantity"].map(|column| line.row.text(column).to_string()).to_vec();
                 cells.extend(match &line.answer {
-                    Ok(v) => [digits(*v), format!("{:.0e}", v.error), v.method.to_string()],
+                    Ok(v) => [digits(*v), bound(v.error), v.method.to_string()],
                     Err(note) => [String::new(), String::new(), note.clone()],
                 });
                 cells
