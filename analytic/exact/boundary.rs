@@ -196,7 +196,8 @@ fn drawn(asked: &Asked<'_>, shape: &str) -> Result<turbid_figure::Figure> {
         Shape::Cuboid => even(0.0, 0.5 * args.size.iter().copied().fold(f64::INFINITY, f64::min), 41),
     };
     let curve = |treatment| {
-        Curve::sample(name(treatment), &depths, |depth| {
+        let label = if treatment == Treatment::None { "no treatment" } else { name(treatment) };
+        Curve::sample(label, &depths, |depth| {
             let mean = if args.decay == 0.0 { Asked::uniform } else { Asked::decaying };
             Ok(mean(asked, treatment, depth)?.value)
         })

@@ -98,7 +98,7 @@ pub fn answer(args: &Args, draw: bool) -> Result<Reply> {
 fn drawn(args: &Args, typical: f64, cap: f64) -> Result<turbid_figure::Figure> {
     ensure!(typical.is_finite() && typical > 0.0, "density is {}; allowed: 1e-100 to 1e100", args.density);
     let largest = args.gradient.iter().fold(1.0 / typical, |a: f64, b| a.max(b.abs()));
-    let curve = Curve::sample("", &even(0.0, largest, 17), |b| {
+    let curve = Curve::sample("", &even(0.0, largest, 41), |b| {
         let mean =
             nearest_expectation_exponential(args.kernel, args.dimension, args.k, args.density, b, cap)?;
         // Without a gradient there is no bias, and what is left of it lies within the bound.

@@ -1,7 +1,7 @@
 //! `exact path`: mean path lengths and chords.
 
 use crate::answer::{Answer, Reply};
-use crate::plot::{Curve, even, figure, panel};
+use crate::plot::{Curve, crowded, figure, panel};
 use crate::typed::Typed;
 use anyhow::{Context, Result, bail};
 use clap::ValueEnum;
@@ -114,7 +114,7 @@ fn drawn(args: &Args, shape: &str) -> Result<Figure> {
     if matches!(args.shape, Shape::Cuboid | Shape::Convex) {
         bail!("--plot draws the path against the albedo; allowed with --shape sphere and slab, not {shape}");
     }
-    let curve = Curve::sample("", &even(0.0, 1.0, 21), |w| {
+    let curve = Curve::sample("", &crowded(1.0, 41), |w| {
         Ok(absorbing(args, w)?.context("a sphere or a slab")?.value)
     })?;
     let title = format!("Mean path to escape or absorption, {shape} of {} mean free paths", args.size[0]);

@@ -63,7 +63,7 @@ pub struct Args {
     /// How to solve it.
     #[arg(long, value_enum, default_value = "auto")]
     method: Method,
-    /// What --plot draws: fluence against depth, or radiance against the angle from straight up, in the plane of the
+    /// What --plot draws: fluence against depth (with --order, of each order beside the whole), or radiance against the angle from straight up, in the plane of the
     /// first azimuth, one curve for each depth (without depths: at both faces).
     #[arg(long, value_enum, default_value = "fluence")]
     draw: Draw,
@@ -184,9 +184,21 @@ fn title(args: &Args, named: &Named) -> String {
 }
 
 fn fluence(args: &Args, named: &Named, slab: &Solved) -> Result<Figure> {
-    let curve = Curve::sample("", &crowded(args.tau, 121), |t| Ok(slab.fluence(t)?.value))?;
     let axis = Axis::linear("Depth t", "mean free paths");
-    Ok(figure(title(args, named), panel(axis, "Fluence over irradiance", "", vec![curve])))
+    let all = |depths: &[f64]| Curve::sample("all light", depths, |t| Ok(slab.fluence(t)?.value));
+    let curves = if args.order.is_empty() {
+        vec![all(&crowded(args.tau, 121))?]
+    } else {
+        let (by_order, depths) =
+            (Orders::new(args.tau, args.albedo, named, args.mu0)?, crowded(args.tau, 41));
+        let mut curves = vec![all(&depths)?.into_reference()];
+        for &n in &args.order {
+            let label = if n == 0 { "direct light".into() } else { format!("scattered {n} ×") };
+            curves.push(Curve::sample(label, &depths, |t| Ok(by_order.fluence(n, t)?.value))?);
+        }
+        curves
+    };
+    Ok(figure(title(args, named), panel(axis, "Fluence over irradiance", "", curves)))
 }
 
 fn radiance(args: &Args, named: &Named, slab: &Solved) -> Result<Figure> {
@@ -204,7 +216,7 @@ fn radiance(args: &Args, named: &Named, slab: &Solved) -> Result<Figure> {
         })?);
     }
     let axis = degrees("Angle from straight up", 180);
-    let plane = if named.is_isotropic() { String::new() } else { format!(", azimuth {dphi}") };
+    let plane = if named.is_isotropic() { String::new() } else { format!(", azimuth {dphi} rad") };
     let panel = panel(axis, "Scattered radiance over irradiance", "1/sr", curves);
     Ok(figure(format!("{}{plane}", title(args, named)), panel))
 }
