@@ -126,7 +126,7 @@ pub fn answer(args: &Args, draw: bool) -> Result<Reply> {
     };
     for &t in &args.depth {
         answer.add_at("fluence", vec![("t", t.into())], slab.fluence(t)?);
-        if let flux @ Solved::Ordinates(_) = ordinates.as_ref().unwrap_or(&slab) {
+        if let flux @ (Solved::Ordinates(_) | Solved::Both(..)) = ordinates.as_ref().unwrap_or(&slab) {
             answer.add_at("flux", vec![("t", t.into())], flux.flux(t)?);
         }
     }
