@@ -106,8 +106,8 @@ impl Typed {
             value.error += others * value.value.abs();
         }
         let Some(step) = self.step() else { return Ok(()) };
-        let matters = |v: &&mut Value| step.relative * v.value.abs() > 0.1 * v.error;
-        let nearby = if values.iter().any(|v| matters(&v)) { again(step.moved)? } else { None };
+        let matters = |v: &Value| step.relative * v.value.abs() > 0.1 * v.error;
+        let nearby = if values.iter().any(|v| matters(v)) { again(step.moved)? } else { None };
         for (i, value) in values.iter_mut().enumerate() {
             let nearby = nearby.as_ref().and_then(|all| all.get(i));
             value.error += match nearby {

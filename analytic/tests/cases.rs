@@ -192,11 +192,11 @@ fn extremes() {
 fn bounds_hold_for_typed_decimals() {
     let columns = "id,geometry,tau,a,w,g,n,mu0,t,r,mu,dphi,extra,quantity\n";
     let known = [
-        ("1,,,,,,R", 0.994153317042306751),
-        ("1,,,,,,T_total", 2.02303919024601095e-6),
-        ("1,5000,,,,,fluence", 0.0666888758728189324),
-        ("0.1,,,,,,T_total", 7.71511935502967735e-7),
-        ("0.5,,,,,,T_total", 1.38402090073317538e-6),
+        ("1,,,,,,R", 0.994_153_317_042_306_8),
+        ("1,,,,,,T_total", 2.023_039_190_246_011e-6),
+        ("1,5000,,,,,fluence", 0.066_688_875_872_818_93),
+        ("0.1,,,,,,T_total", 7.715_119_355_029_678e-7),
+        ("0.5,,,,,,T_total", 1.384_020_900_733_175_4e-6),
     ];
     let text: String =
         known.iter().map(|(words, _)| format!("x,slab,1e4,,0.999999,0.75,,{words}\n")).collect();
