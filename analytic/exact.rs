@@ -73,16 +73,16 @@ use typed::Typed;
 /// double precision they count: where w is near 1, that is most of them. Each command's --help states its equation, units,
 /// ranges and sources.
 #[derive(Parser)]
-#[command(name = "exact", version, arg_required_else_help = true)]
+#[command(name = "exact", version, arg_required_else_help = true, verbatim_doc_comment)]
 struct Cli {
     /// Answer a table of cases: CSV with the columns
     /// id,geometry,tau,a,w,g,n,mu0,t,r,mu,dphi,extra,quantity; others are ignored. Gives id, value, error, method, note
-    /// and the parameters; a row that is not answered here has an empty value and a note saying why.
-    #[arg(long, value_name = "FILE.csv")]
+    /// and the parameters; a row that is not answered here has an empty value and a note saying why
+    #[arg(verbatim_doc_comment, long, value_name = "FILE.csv")]
     cases: Option<PathBuf>,
-    /// Form of the output: a table for eyes, which shows digits as far as they are certain (four at least), or every bit as CSV or
-    /// JSON. Without it a table, and CSV for --cases.
-    #[arg(long, global = true, value_enum, help_heading = "Output")]
+    /// Form of the output: a table for eyes, which shows digits as far as they are certain (four at least), or every bit
+    /// as CSV or JSON. Without it a table, and CSV for --cases
+    #[arg(verbatim_doc_comment, long, global = true, value_enum, help_heading = "Output")]
     format: Option<Format>,
     /// Write to this file, which appears whole or not at all, in place of standard output.
     #[arg(long, global = true, help_heading = "Output", value_name = "FILE")]

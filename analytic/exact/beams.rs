@@ -47,8 +47,8 @@ pub struct Args {
     #[arg(long, num_args = 1.., value_delimiter = ',', value_name = "X", allow_negative_numbers = true)]
     gradient: Vec<f64>,
     /// Laplacians of the field over the field, in 1/length^2, not 0: gives the radius of least mean squared error, and that
-    /// error, relative.
-    #[arg(long, num_args = 1.., value_delimiter = ',', value_name = "C", allow_negative_numbers = true)]
+    /// error, relative
+    #[arg(verbatim_doc_comment, long, num_args = 1.., value_delimiter = ',', value_name = "C", allow_negative_numbers = true)]
     curvature: Vec<f64>,
     /// Values x of 1/sin theta, 1 and more: gives the tail P(X > x) and the second moment of isotropic beams up to x.
     #[arg(long, num_args = 1.., value_delimiter = ',', value_name = "X", allow_negative_numbers = true)]

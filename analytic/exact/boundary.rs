@@ -48,8 +48,8 @@ pub struct Args {
     #[arg(long)]
     corner: bool,
     /// Uniform field behind a thin flat wall as far from the probe as each depth, over the field in front: gives the
-    /// expectation over that in front with every rule that rejects photons from behind, body and treatment aside.
-    #[arg(long, allow_negative_numbers = true, value_name = "F")]
+    /// expectation over that in front with every rule that rejects photons from behind, body and treatment aside
+    #[arg(verbatim_doc_comment, long, allow_negative_numbers = true, value_name = "F")]
     behind: Option<f64>,
     /// Kernel, by name as in `exact kernel`.
     #[arg(long, default_value = "uniform", value_parser = kernel)]

@@ -20,9 +20,9 @@ use turbid_figure::{Axis, Figure};
 ///   R     = 1 - sqrt(1-w) H(mu0)                           (diffuse: averaged over 2 mu0 dmu0)
 ///   I(mu) = (w/4 pi) H(mu) H(mu0)/(mu + mu0)               [1/sr], leaving at cosine mu
 ///
-/// `h_moment` is int_0^1 mu^n H dmu. The fluence includes the direct light. In Milne's problem light comes from infinitely deep: far from the face the
-/// fluence goes as sinh(k (t + z0)), with decay k and extrapolation length z0 in mean free paths; radiance and fluence
-/// are per unit power that leaves. With any other phase function by discrete ordinates.
+/// `h_moment` is int_0^1 mu^n H dmu. The fluence includes the direct light. In Milne's problem light comes from infinitely
+/// deep: far from the face the fluence goes as sinh(k (t + z0)), with decay k and extrapolation length z0 in mean free
+/// paths; radiance and fluence are per unit power that leaves. With any other phase function by discrete ordinates.
 /// Source: Hopf 1934; Chandrasekhar 1960, chapter V; Stibbs and Weir 1959; Case and Zweifel 1967, chapter 6.
 #[derive(Clone, clap::Args)]
 #[command(verbatim_doc_comment)]

@@ -34,8 +34,8 @@ pub struct Args {
     #[arg(long, num_args = 1.., value_delimiter = ',', value_name = "S", allow_negative_numbers = true)]
     wave: Vec<f64>,
     /// Numbers n of scatterings, 0 to 999999: gives the mean cosine between the first direction and that after n, g^n, and the
-    /// mean square distance from the source after the flight that follows the n-th, absorption aside.
-    #[arg(long, num_args = 1.., value_delimiter = ',', value_name = "N", allow_negative_numbers = true)]
+    /// mean square distance from the source after the flight that follows the n-th, absorption aside
+    #[arg(verbatim_doc_comment, long, num_args = 1.., value_delimiter = ',', value_name = "N", allow_negative_numbers = true)]
     scatterings: Vec<u32>,
 }
 

@@ -47,8 +47,8 @@ pub struct Args {
     #[arg(long, num_args = 1.., value_delimiter = ',', value_name = "B", allow_negative_numbers = true)]
     gradient: Vec<f64>,
     /// Laplacians of the field over the field, in 1/length^2: gives bias, variance and mean squared error to second order in
-    /// the radius, relative, and for a curvature that is not 0 the k of least mean squared error.
-    #[arg(long, num_args = 1.., value_delimiter = ',', value_name = "C", allow_negative_numbers = true)]
+    /// the radius, relative, and for a curvature that is not 0 the k of least mean squared error
+    #[arg(verbatim_doc_comment, long, num_args = 1.., value_delimiter = ',', value_name = "C", allow_negative_numbers = true)]
     curvature: Vec<f64>,
     /// Largest radius of a gather; without it, six times the radius within which k points are expected.
     #[arg(long, allow_negative_numbers = true)]

@@ -28,8 +28,8 @@ pub struct Args {
     #[arg(long, value_enum)]
     shape: Shape,
     /// Radius of the sphere, thickness of the slab, or the three edges of the cuboid; for any convex body its volume and its
-    /// surface. 1e-100 to 1e100.
-    #[arg(long, num_args = 1..=3, value_delimiter = ',', required = true, value_name = "L", allow_negative_numbers = true)]
+    /// surface. 1e-100 to 1e100
+    #[arg(verbatim_doc_comment, long, num_args = 1..=3, value_delimiter = ',', required = true, value_name = "L", allow_negative_numbers = true)]
     size: Vec<f64>,
     /// Lengths of chords of sphere or slab, 0 or more: gives the density of the chord length under that light.
     #[arg(long, num_args = 1.., value_delimiter = ',', value_name = "L", allow_negative_numbers = true)]

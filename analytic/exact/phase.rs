@@ -7,7 +7,7 @@ use turbid_analytic::Phase;
 /// How scattering turns light; isotropic when nothing is given.
 #[derive(clap::Args, Clone, Default)]
 pub struct PhaseArgs {
-    /// Henyey-Greenstein scattering of this mean cosine.
+    /// Henyey-Greenstein scattering of this mean cosine, -0.95 to 0.99.
     #[arg(long, help_heading = "Phase function", allow_negative_numbers = true, conflicts_with_all = ["rayleigh", "moments", "table"])]
     g: Option<f64>,
     /// With --g and --share: the mean cosine of a second Henyey-Greenstein term.
@@ -26,12 +26,18 @@ pub struct PhaseArgs {
     #[arg(long, help_heading = "Phase function", conflicts_with_all = ["moments", "table"])]
     rayleigh: bool,
     /// Legendre moments chi_0 = 1, chi_1, ... of p = 1/(4 pi) sum (2l+1) chi_l P_l, separated by commas, blanks or
-    /// lines; # begins a comment.
-    #[arg(long, help_heading = "Phase function", value_name = "FILE")]
+    /// lines; # begins a comment
+    #[arg(verbatim_doc_comment, long, help_heading = "Phase function", value_name = "FILE")]
     moments: Option<PathBuf>,
     /// Values at cosines from -1 to 1 in rising order, in any unit, as lines `cosine,value`; linear in between; # begins a
-    /// comment. What is used is the sum of its Legendre moments, which must not be negative.
-    #[arg(long, help_heading = "Phase function", value_name = "FILE", conflicts_with = "moments")]
+    /// comment. What is used is the sum of its Legendre moments, which must not be negative
+    #[arg(
+        verbatim_doc_comment,
+        long,
+        help_heading = "Phase function",
+        value_name = "FILE",
+        conflicts_with = "moments"
+    )]
     table: Option<PathBuf>,
     /// Highest moment of --table, 0 to 1999; a peak needs about pi over its width.
     #[arg(

@@ -25,12 +25,12 @@ use turbid_figure::{Axis, Figure};
 /// direct light, the radiance [1/sr] leaves it out; both are per unit irradiance.
 ///
 /// Isotropic scattering: the Peierls equation phi = phi_0 + (w/2) int E_1(|t-t'|) phi(t') dt' with a residual bound.
-/// Any other phase function: discrete ordinates on two sets of nodes.
+/// Any other phase function: discrete ordinates on two sets of nodes. Thickness 1e-12 to 1e9, g -0.95 to 0.99.
 /// Source: Peierls 1939; Case and Zweifel 1967; Chandrasekhar 1960; Stamnes, Tsay, Wiscombe and Jayaweera 1988.
 #[derive(Clone, clap::Args)]
 #[command(verbatim_doc_comment)]
 pub struct Args {
-    /// Optical thickness, in mean free paths.
+    /// Optical thickness, in mean free paths, 1e-12 to 1e9.
     #[arg(long, allow_negative_numbers = true)]
     tau: f64,
     /// Single-scattering albedo, 0 to 1.
@@ -43,16 +43,16 @@ pub struct Args {
     mu0: Incidence,
     /// Refractive index inside over outside, 0.25 to 4: faces that reflect and refract (fluxes and fluence). Gives also the
     /// light that the first face sends back (`specular`), reflectances without it (`reflectance_diffuse`), and the part of
-    /// Lambertian light that one face reflects, from outside and from inside.
-    #[arg(long, default_value_t = 1.0, allow_negative_numbers = true)]
+    /// Lambertian light that one face reflects, from outside and from inside
+    #[arg(verbatim_doc_comment, long, default_value_t = 1.0, allow_negative_numbers = true)]
     index: f64,
     /// Depths in mean free paths, 0 to tau, at which to give the fluence and the net flux downwards (direct light
-    /// included).
-    #[arg(long, num_args = 1.., value_delimiter = ',', value_name = "T", allow_negative_numbers = true)]
+    /// included)
+    #[arg(verbatim_doc_comment, long, num_args = 1.., value_delimiter = ',', value_name = "T", allow_negative_numbers = true)]
     depth: Vec<f64>,
     /// Signed cosines (positive: towards the lit face) at which to give the radiance of scattered light, at every
-    /// depth, or without depths where the light leaves.
-    #[arg(long, num_args = 1.., value_delimiter = ',', value_name = "MU", allow_negative_numbers = true)]
+    /// depth, or without depths where the light leaves
+    #[arg(verbatim_doc_comment, long, num_args = 1.., value_delimiter = ',', value_name = "MU", allow_negative_numbers = true)]
     mu: Vec<f64>,
     /// Azimuths of those directions, in radians: that of propagation minus that of the beam.
     #[arg(long, num_args = 1.., value_delimiter = ',', value_name = "PHI", default_values_t = [0.0], allow_negative_numbers = true)]
@@ -63,9 +63,9 @@ pub struct Args {
     /// How to solve it.
     #[arg(long, value_enum, default_value = "auto")]
     method: Method,
-    /// What --plot draws: fluence against depth (with --order, of each order beside the whole), or radiance against the angle from straight up, in the plane of the
-    /// first azimuth, one curve for each depth (without depths: at both faces).
-    #[arg(long, value_enum, default_value = "fluence")]
+    /// What --plot draws: fluence against depth (with --order, each order beside the whole), or radiance against the angle
+    /// from straight up, in the plane of the first azimuth, one curve for each depth (without depths: at both faces)
+    #[arg(verbatim_doc_comment, long, value_enum, default_value = "fluence")]
     draw: Draw,
 }
 

@@ -8,8 +8,7 @@ use turbid_analytic::{AddingDoubling, AnisotropicMedium, AnisotropicSlab, Incide
 /// How a slab is solved.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub enum Method {
-    /// Peierls for isotropic scattering up to a thickness of 2, beyond, up to 400, of every value the better known of Peierls
-    /// and discrete ordinates; discrete ordinates for the rest.
+    /// Isotropic: Peierls, above a thickness of 2 the better known of both, above 400 ordinates; others: ordinates.
     Auto,
     /// The Peierls equation (isotropic scattering).
     Peierls,

@@ -36,19 +36,19 @@ pub struct Args {
     #[arg(long, value_enum, default_value = "uniform")]
     source: Source,
     /// Distances from the centre in mean free paths, 0 to the radius, at which to give the fluence and its direct part,
-    /// and the probability that light emitted there leaves without a collision.
-    #[arg(long, num_args = 1.., value_delimiter = ',', value_name = "R", allow_negative_numbers = true)]
+    /// and the probability that light emitted there leaves without a collision
+    #[arg(verbatim_doc_comment, long, num_args = 1.., value_delimiter = ',', value_name = "R", allow_negative_numbers = true)]
     r: Vec<f64>,
     /// Cosines to the outward normal, 0 to 1, at which to give the radiance that leaves.
     #[arg(long, num_args = 1.., value_delimiter = ',', value_name = "MU", allow_negative_numbers = true)]
     mu: Vec<f64>,
     /// Orders of scattering whose fluence to give at every r: 0 (direct light) to 1000, from a central source to 8; radius
-    /// up to 64.
-    #[arg(long, num_args = 1.., value_delimiter = ',', value_name = "N", allow_negative_numbers = true)]
+    /// up to 64
+    #[arg(verbatim_doc_comment, long, num_args = 1.., value_delimiter = ',', value_name = "N", allow_negative_numbers = true)]
     order: Vec<u32>,
     /// What --plot draws: fluence against distance from the centre, or radiance that leaves against the angle to the
-    /// normal.
-    #[arg(long, value_enum, default_value = "fluence")]
+    /// normal
+    #[arg(verbatim_doc_comment, long, value_enum, default_value = "fluence")]
     draw: Draw,
 }
 
