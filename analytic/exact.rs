@@ -48,6 +48,10 @@ mod sphere;
 mod thick;
 #[path = "exact/two_stream.rs"]
 mod two_stream;
+#[path = "exact/typed.rs"]
+mod typed;
+#[path = "exact/unit.rs"]
+mod unit;
 #[path = "exact/xy.rs"]
 mod xy;
 
@@ -58,24 +62,27 @@ use format::Format;
 use std::io::{self, Write};
 use std::path::PathBuf;
 use std::process::ExitCode;
+use typed::Typed;
 
 /// Exact values of light transport in fog, water and smoke, each with an absolute error bound.
 ///
 /// Lengths are mean free paths. A slab 0 <= t <= tau has its lit face at t = 0, which receives unit irradiance:
 /// fractions and fluences are dimensionless, radiances are per steradian. A cosine mu > 0 points up, towards the lit
-/// face. Every value comes with a bound on its error and with how it is known; a question outside the range in which
-/// the answer is known is refused. Each command's --help states its equation, units, ranges and sources.
+/// face. Every value comes with a unit (`mfp` a mean free path, 1 a pure number), a bound on its error, and how it is known; a
+/// question outside the range in which the answer is known is refused. Bounds hold for decimals as typed, whose rounding to
+/// double precision they count: where w is near 1, that is most of them. Each command's --help states its equation, units,
+/// ranges and sources.
 #[derive(Parser)]
-#[command(name = "exact", version, arg_required_else_help = true)]
+#[command(name = "exact", version, arg_required_else_help = true, verbatim_doc_comment)]
 struct Cli {
     /// Answer a table of cases: CSV with the columns
     /// id,geometry,tau,a,w,g,n,mu0,t,r,mu,dphi,extra,quantity; others are ignored. Gives id, value, error, method, note
-    /// and the parameters; a row that is not answered here has an empty value and a note saying why.
-    #[arg(long, value_name = "FILE.csv")]
+    /// and the parameters; a row that is not answered here has an empty value and a note saying why
+    #[arg(verbatim_doc_comment, long, value_name = "FILE.csv")]
     cases: Option<PathBuf>,
-    /// Form of the output: a table for eyes, which shows digits as far as they are certain (four at least), or every bit as CSV or
-    /// JSON. Without it a table, and CSV for --cases.
-    #[arg(long, global = true, value_enum, help_heading = "Output")]
+    /// Form of the output: a table for eyes, which shows digits as far as they are certain (four at least), or every bit
+    /// as CSV or JSON. Without it a table, and CSV for --cases
+    #[arg(verbatim_doc_comment, long, global = true, value_enum, help_heading = "Output")]
     format: Option<Format>,
     /// Write to this file, which appears whole or not at all, in place of standard output.
     #[arg(long, global = true, help_heading = "Output", value_name = "FILE")]
@@ -87,7 +94,7 @@ struct Cli {
     command: Option<Command>,
 }
 
-#[derive(Subcommand)]
+#[derive(Clone, Subcommand)]
 enum Command {
     Slab(slab::Args),
     HalfSpace(half_space::Args),
@@ -126,6 +133,64 @@ impl Command {
             Command::Boundary(args) => boundary::answer(args, draw),
         }
     }
+
+    /// What rounding does to the parameters; estimates of densities stand it well.
+    fn typed(&self) -> Option<Typed> {
+        Some(match self {
+            Command::Slab(args) => args.typed(),
+            Command::HalfSpace(args) => args.typed(),
+            Command::Thick(args) => args.typed(),
+            Command::TwoStream(args) => args.typed(),
+            Command::Xy(args) => args.typed(),
+            Command::Sphere(args) => args.typed(),
+            Command::Cavity(args) => args.typed(),
+            Command::Critical(args) => args.typed(),
+            Command::Path(args) => args.typed(),
+            Command::Infinite(args) => args.typed(),
+            Command::Kernel(_)
+            | Command::Beams(_)
+            | Command::Nearest(_)
+            | Command::Progressive(_)
+            | Command::Boundary(_) => return None,
+        })
+    }
+
+    /// The same question with another albedo, or other secondaries.
+    fn moved(&self, to: f64) -> Self {
+        let mut moved = self.clone();
+        match &mut moved {
+            Command::Slab(args) => args.albedo = to,
+            Command::HalfSpace(args) => args.albedo = to,
+            Command::Thick(args) => args.albedo = to,
+            Command::TwoStream(args) => args.albedo = to,
+            Command::Xy(args) => args.albedo = to,
+            Command::Sphere(args) => args.albedo = to,
+            Command::Cavity(args) => args.albedo = Some(to),
+            Command::Critical(args) => args.secondaries = to,
+            Command::Path(args) => args.albedo = Some(to),
+            Command::Infinite(args) => args.albedo = to,
+            Command::Kernel(_)
+            | Command::Beams(_)
+            | Command::Nearest(_)
+            | Command::Progressive(_)
+            | Command::Boundary(_) => {}
+        }
+        moved
+    }
+
+    /// Answers, with bounds that hold for the decimals that were typed.
+    fn answer_typed(&self, draw: bool) -> Result<answer::Reply> {
+        let mut reply = self.answer(draw)?;
+        let Some(typed) = self.typed() else { return Ok(reply) };
+        let quantities: Vec<_> = reply.answer.rows.iter().map(|row| row.quantity).collect();
+        let mut values: Vec<_> = reply.answer.rows.iter_mut().map(|row| &mut row.value).collect();
+        typed.widen(&mut values, |to| {
+            let rows = self.moved(to).answer(false)?.answer.rows;
+            let same = rows.iter().map(|row| row.quantity).eq(quantities);
+            Ok(same.then(|| rows.iter().map(|row| row.value).collect()))
+        })?;
+        Ok(reply)
+    }
 }
 
 fn run() -> Result<()> {
@@ -148,7 +213,7 @@ fn run() -> Result<()> {
             if let Some(path) = &cli.plot {
                 plot::check(path)?;
             }
-            let reply = command.answer(cli.plot.is_some())?;
+            let reply = command.answer_typed(cli.plot.is_some())?;
             format::write(&reply.answer, cli.format.unwrap_or(Format::Table), &mut bytes)?;
             if let Some(path) = &cli.plot {
                 let figure = reply.figure.context("there is nothing to draw for this question")?;
@@ -183,6 +248,26 @@ fn explain(error: &clap::Error) -> Result<()> {
     }
 }
 
+/// A message of std's number parsing, with what is allowed in its place.
+fn allowed_numbers(part: &str) -> String {
+    if let Some((rest, _)) = part.split_once(" is not in 0..=").and_then(|(front, _)| front.rsplit_once(": "))
+    {
+        return format!("{rest}; allowed: a whole number, 0 to 4294967295");
+    }
+    let number = [": invalid float literal", ": cannot parse float from empty string"];
+    let whole = [
+        ": invalid digit found in string",
+        ": cannot parse integer from empty string",
+        ": number too large to fit in target type",
+    ];
+    for (endings, allowed) in [(number.as_slice(), "a number"), (&whole, "a whole number, 0 to 4294967295")] {
+        if let Some(rest) = endings.iter().find_map(|ending| part.strip_suffix(ending)) {
+            return format!("{rest}; allowed: {allowed}");
+        }
+    }
+    part.to_string()
+}
+
 /// The parts of a message of several lines, without usage and hints where to look.
 fn one_line(text: &str) -> String {
     let mut line = String::new();
@@ -190,7 +275,7 @@ fn one_line(text: &str) -> String {
         if part.starts_with("Usage:") || part.starts_with("For more information") {
             break;
         }
-        let part = part.strip_prefix("error: ").unwrap_or(part);
+        let part = &allowed_numbers(part.strip_prefix("error: ").unwrap_or(part));
         let part = part
             .strip_prefix("[possible values: ")
             .map_or(part.to_string(), |values| format!("allowed: {}", values.trim_end_matches(']')));

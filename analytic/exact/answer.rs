@@ -1,5 +1,6 @@
 //! What a question gets back: its parameters as they were understood, and rows of values.
 
+use crate::unit::unit;
 use serde::ser::{Serialize, SerializeMap, Serializer};
 use turbid_analytic::Value;
 use turbid_figure::Figure;
@@ -152,16 +153,21 @@ impl Serialize for Named<'_> {
     }
 }
 
-impl Serialize for Row {
+/// A row under the unit of its quantity.
+struct InUnit<'a>(&'a Row, &'static str);
+
+impl Serialize for InUnit<'_> {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let InUnit(row, unit) = self;
         let mut map = serializer.serialize_map(None)?;
-        map.serialize_entry("quantity", self.quantity)?;
-        for (name, field) in &self.at {
+        map.serialize_entry("quantity", row.quantity)?;
+        for (name, field) in &row.at {
             map.serialize_entry(name, field)?;
         }
-        map.serialize_entry("value", &self.value.value)?;
-        map.serialize_entry("error", &self.value.error)?;
-        map.serialize_entry("method", self.value.method)?;
+        map.serialize_entry("value", &row.value.value)?;
+        map.serialize_entry("error", &row.value.error)?;
+        map.serialize_entry("unit", unit)?;
+        map.serialize_entry("method", row.value.method)?;
         map.end()
     }
 }
@@ -171,7 +177,8 @@ impl Serialize for Answer {
         let mut map = serializer.serialize_map(None)?;
         map.serialize_entry("problem", self.problem)?;
         map.serialize_entry("parameters", &Named(&self.parameters))?;
-        map.serialize_entry("values", &self.rows)?;
+        let rows: Vec<_> = self.rows.iter().map(|row| InUnit(row, unit(self, row.quantity))).collect();
+        map.serialize_entry("values", &rows)?;
         map.end()
     }
 }

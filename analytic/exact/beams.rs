@@ -18,10 +18,11 @@ use turbid_figure::{Axis, Figure};
 ///
 ///   R_d E[1/sin theta]/(density r^d S),   S = (int T ds)^2/int T^2 ds along the ray, T = e^(-extinction s)
 ///
+/// With --curvature, r^(d+4) = d B/(4 A^2) is best, where bias = A r^2 and variance = B/r^d.
 /// Isotropic beams: E[1/sin theta] = pi/2, and X = 1/sin theta of those that cross has a tail P(X > x) ~ (4/(3 pi)) x^-3.
 /// Lengths in one unit of your choice; density of points per volume, of beams as their length per volume.
 /// Source: Jarosz, Zwicker and Jensen 2008; Jarosz, Nowrouzezahrai, Sadeghi and Jensen 2011.
-#[derive(clap::Args)]
+#[derive(Clone, clap::Args)]
 #[command(verbatim_doc_comment)]
 pub struct Args {
     /// Kernel, by name as in `exact kernel`.
@@ -43,10 +44,14 @@ pub struct Args {
     #[arg(long, allow_negative_numbers = true)]
     sine: Option<f64>,
     /// Gradients |b| of fields e^(b.x), times the radius: gives each estimate's mean over the truth.
-    #[arg(long, num_args = 1.., value_name = "X", allow_negative_numbers = true)]
+    #[arg(long, num_args = 1.., value_delimiter = ',', value_name = "X", allow_negative_numbers = true)]
     gradient: Vec<f64>,
+    /// Laplacians of the field over the field, in 1/length^2, not 0: gives the radius of least mean squared error, and that
+    /// error, relative
+    #[arg(verbatim_doc_comment, long, num_args = 1.., value_delimiter = ',', value_name = "C", allow_negative_numbers = true)]
+    curvature: Vec<f64>,
     /// Values x of 1/sin theta, 1 and more: gives the tail P(X > x) and the second moment of isotropic beams up to x.
-    #[arg(long, num_args = 1.., value_name = "X", allow_negative_numbers = true)]
+    #[arg(long, num_args = 1.., value_delimiter = ',', value_name = "X", allow_negative_numbers = true)]
     tail: Vec<f64>,
 }
 
@@ -80,6 +85,12 @@ pub fn answer(args: &Args, draw: bool) -> Result<Reply> {
         for &x in &args.gradient {
             let at = vec![("pairing", name.into()), ("gradient", x.into())];
             answer.add_at("exponential_mean", at, pairing.exponential_mean(args.kernel, x)?);
+        }
+        for &c in &args.curvature {
+            let at = || vec![("pairing", name.into()), ("curvature", c.into())];
+            let (radius, left) = pairing.optimum(args.kernel, c, args.density, ray)?;
+            answer.add_at("optimum_radius", at(), radius);
+            answer.add_at("optimum_mean_squared_error", at(), left);
         }
     }
     for &x in &args.tail {

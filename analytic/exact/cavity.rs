@@ -2,6 +2,7 @@
 
 use crate::answer::{Answer, Reply};
 use crate::plot::{Curve, even, figure, panel};
+use crate::typed::Typed;
 use anyhow::Result;
 use turbid_analytic::cavity::Cavity;
 use turbid_figure::{Axis, Figure};
@@ -17,7 +18,7 @@ use turbid_figure::{Axis, Figure};
 /// power of a point source at the centre, in 1/length^2; `irradiance_mean` of any source, in the unit of --first. `rounds`
 /// = 1/(1 - rho (1-A)). Lengths are mean free paths (empty: any unit). Irradiance is counted before reflection.
 /// Source: Sumpner 1892; Walsh 1958, chapter 8.
-#[derive(clap::Args)]
+#[derive(Clone, clap::Args)]
 #[command(verbatim_doc_comment)]
 pub struct Args {
     /// Radius in mean free paths; empty: in any unit.
@@ -28,13 +29,26 @@ pub struct Args {
     wall_albedo: f64,
     /// Single-scattering albedo of the medium, 0 to 1; without it the cavity is empty.
     #[arg(long, allow_negative_numbers = true)]
-    albedo: Option<f64>,
+    pub albedo: Option<f64>,
     /// Mean irradiance of the wall before its first reflection, of any source: gives the mean irradiance.
     #[arg(long, allow_negative_numbers = true)]
     first: Option<f64>,
     /// Distances from the centre, 0 to the radius, at which to give the fluence if the wall emits evenly, per unit exitance.
-    #[arg(long, num_args = 1.., value_name = "R", allow_negative_numbers = true)]
+    #[arg(long, num_args = 1.., value_delimiter = ',', value_name = "R", allow_negative_numbers = true)]
     r: Vec<f64>,
+}
+
+impl Args {
+    /// What rounding touches.
+    pub fn typed(&self) -> Typed {
+        Typed {
+            albedo: self.albedo,
+            g: Some(0.0),
+            size: Some(self.radius),
+            places: self.r.clone(),
+            ..Typed::default()
+        }
+    }
 }
 
 fn solve(args: &Args, wall_albedo: f64) -> turbid_analytic::Result<Cavity> {

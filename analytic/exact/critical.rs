@@ -2,6 +2,7 @@
 
 use crate::answer::{Answer, Reply};
 use crate::plot::{Curve, even, figure, panel};
+use crate::typed::Typed;
 use anyhow::Result;
 use clap::ValueEnum;
 use turbid_analytic::critical::{Critical, CriticalShape};
@@ -17,18 +18,25 @@ use turbid_figure::{Axis, Figure};
 /// distance from the middle over the size.
 /// Source: Davison 1957, chapter VIII; Case and Zweifel 1967, section 6.8; Kaper, Lindeman and Leaf 1974; Sood, Forster
 /// and Parsons 2003.
-#[derive(clap::Args)]
+#[derive(Clone, clap::Args)]
 #[command(verbatim_doc_comment)]
 pub struct Args {
     /// Mean number of secondaries a collision, c, 1 + 1e-12 to 1000.
     #[arg(long, allow_negative_numbers = true)]
-    secondaries: f64,
+    pub secondaries: f64,
     /// The body.
     #[arg(long, value_enum, default_value = "slab")]
     shape: Shape,
     /// Distances from the middle over the size, 0 to 1, at which to give the fluence over that in the middle.
-    #[arg(long, num_args = 1.., value_name = "X", allow_negative_numbers = true)]
+    #[arg(long, num_args = 1.., value_delimiter = ',', value_name = "X", allow_negative_numbers = true)]
     x: Vec<f64>,
+}
+
+impl Args {
+    /// What rounding touches.
+    pub fn typed(&self) -> Typed {
+        Typed { secondaries: Some(self.secondaries), ..Typed::default() }
+    }
 }
 
 /// The bodies, by their names on the command line.

@@ -1,6 +1,7 @@
 //! An answer as a table for eyes, as CSV or as JSON.
 
 use crate::answer::{Answer, Row, shortest};
+use crate::unit::unit;
 use anyhow::Result;
 use clap::ValueEnum;
 use std::io::Write;
@@ -43,11 +44,12 @@ fn table(answer: &Answer, out: &mut Vec<u8>) -> Result<()> {
     let coordinates = answer.coordinates();
     let mut head = vec!["quantity"];
     head.extend(&coordinates);
-    head.extend(["value", "error", "how known"]);
+    head.extend(["value", "error", "unit", "how known"]);
     let line = |row: &Row| {
         let mut cells = vec![row.quantity.to_string()];
         cells.extend(coordinates.iter().map(|name| row.place(name)));
-        cells.extend([digits(row.value), format!("{:.0e}", row.value.error), row.value.method.to_string()]);
+        let (value, error) = (digits(row.value), bound(row.value.error));
+        cells.extend([value, error, unit(answer, row.quantity).to_string(), row.value.method.to_string()]);
         cells
     };
     aligned(&head, &answer.rows.iter().map(line).collect::<Vec<_>>(), out)
@@ -72,8 +74,8 @@ pub fn aligned(head: &[&str], lines: &[Vec<String>], out: &mut Vec<u8>) -> Resul
 /// A value to the decade of its bound, and to four digits at least: approximations are far off and told apart.
 pub fn digits(value: Value) -> String {
     let (v, error) = (value.value, value.error);
-    if v == 0.0 {
-        return "0".into();
+    if v == 0.0 || error == 0.0 && v.fract() == 0.0 {
+        return shortest(v);
     }
     let decade = |x: f64| libm::floor(libm::log10(x)) as i32;
     let error_decade = if error > 0.0 { decade(error) } else { -400 };
@@ -86,6 +88,11 @@ pub fn digits(value: Value) -> String {
     }
 }
 
+/// A bound by its first digit.
+pub fn bound(error: f64) -> String {
+    if error == 0.0 { "0".into() } else { format!("{error:.0e}") }
+}
+
 fn csv(answer: &Answer, out: &mut Vec<u8>) -> Result<()> {
     let coordinates = answer.coordinates();
     let mut head = vec!["problem"];
@@ -94,7 +101,7 @@ fn csv(answer: &Answer, out: &mut Vec<u8>) -> Result<()> {
     head.extend(own().map(|(name, _)| *name));
     head.push("quantity");
     head.extend(&coordinates);
-    head.extend(["value", "error", "method"]);
+    head.extend(["value", "error", "unit", "method"]);
     let mut writer = csv::Writer::from_writer(out);
     writer.write_record(&head)?;
     for row in &answer.rows {
@@ -104,7 +111,8 @@ fn csv(answer: &Answer, out: &mut Vec<u8>) -> Result<()> {
         for name in &coordinates {
             cells.push(row.place(name));
         }
-        cells.extend([shortest(row.value.value), shortest(row.value.error), row.value.method.to_string()]);
+        cells.extend([shortest(row.value.value), shortest(row.value.error)]);
+        cells.extend([unit(answer, row.quantity).to_string(), row.value.method.to_string()]);
         writer.write_record(&cells)?;
     }
     writer.flush()?;
@@ -120,7 +128,8 @@ mod tests {
         let show = |value, error| digits(Value { value, error, method: "" });
         assert_eq!(show(0.267_410_335_069_362_74, 2e-14), "0.26741033506936");
         assert_eq!(show(-0.267_410_335_069_362_74, 2e-5), "-0.26741");
-        assert_eq!(show(4.0, 0.0), "4.0000000000000000");
+        assert_eq!(show(4.0, 0.0), "4");
+        assert_eq!(show(4.0, 1e-16), "4.0000000000000000");
         assert_eq!(show(1.5e-9, 1e-15), "1.500000e-9");
         assert_eq!(show(123.456, 0.05), "123.46");
         // Four digits at least.

@@ -6,6 +6,7 @@ use crate::plot::{Curve, crowded, figure, panel};
 use crate::read::{incidence_field, incidence_title};
 use crate::solved::Method;
 use anyhow::{Result, bail};
+use turbid_analytic::slab_fresnel::hemispherical_reflectance;
 use turbid_analytic::{FresnelSlab, Incidence};
 use turbid_figure::Axis;
 
@@ -47,6 +48,8 @@ pub fn answer(asked: &Asked<'_>, method: Method, draw: bool) -> Result<Reply> {
         .with("index", asked.index)
         .with("mu0", incidence_field(asked.incidence));
     answer.add("specular", slab.specular());
+    answer.add("face_reflectance_outside", hemispherical_reflectance(asked.index, true)?);
+    answer.add("face_reflectance_inside", hemispherical_reflectance(asked.index, false)?);
     answer.add("reflectance", slab.reflectance());
     answer.add("reflectance_diffuse", slab.reflectance_diffuse());
     answer.add("transmittance", slab.transmittance());

@@ -4,6 +4,7 @@ use crate::answer::{Answer, Reply};
 use crate::phase::{Named, PhaseArgs};
 use crate::plot::{Curve, degrees, even, figure, panel};
 use crate::read::{incidence, incidence_field, incidence_title};
+use crate::typed::Typed;
 use anyhow::{Result, bail, ensure};
 use clap::ValueEnum;
 use turbid_analytic::half_space::HalfSpace;
@@ -19,29 +20,29 @@ use turbid_figure::{Axis, Figure};
 ///   R     = 1 - sqrt(1-w) H(mu0)                           (diffuse: averaged over 2 mu0 dmu0)
 ///   I(mu) = (w/4 pi) H(mu) H(mu0)/(mu + mu0)               [1/sr], leaving at cosine mu
 ///
-/// The fluence includes the direct light. In Milne's problem light comes from infinitely deep: far from the face the
-/// fluence goes as sinh(k (t + z0)), with decay k and extrapolation length z0 in mean free paths; radiance and fluence
-/// are per unit power that leaves. With any other phase function by discrete ordinates.
+/// `h_moment` is int_0^1 mu^n H dmu. The fluence includes the direct light. In Milne's problem light comes from infinitely
+/// deep: far from the face the fluence goes as sinh(k (t + z0)), with decay k and extrapolation length z0 in mean free
+/// paths; radiance and fluence are per unit power that leaves. With any other phase function by discrete ordinates.
 /// Source: Hopf 1934; Chandrasekhar 1960, chapter V; Stibbs and Weir 1959; Case and Zweifel 1967, chapter 6.
-#[derive(clap::Args)]
+#[derive(Clone, clap::Args)]
 #[command(verbatim_doc_comment)]
 pub struct Args {
     /// Single-scattering albedo, 0 to 1.
     #[arg(long, allow_negative_numbers = true)]
-    albedo: f64,
+    pub albedo: f64,
     #[command(flatten)]
     phase: PhaseArgs,
     /// Cosine of incidence of a beam, above 0 to 1, or the word diffuse (Lambertian light).
     #[arg(long, default_value = "1", value_parser = incidence, allow_negative_numbers = true)]
     mu0: Incidence,
     /// Cosines, 0 to 1, at which to give the radiance that leaves, and H.
-    #[arg(long, num_args = 1.., value_name = "MU", allow_negative_numbers = true)]
+    #[arg(long, num_args = 1.., value_delimiter = ',', value_name = "MU", allow_negative_numbers = true)]
     mu: Vec<f64>,
     /// Azimuths of those directions, in radians, where scattering is not isotropic: that of propagation minus the beam's.
-    #[arg(long, num_args = 1.., value_name = "PHI", default_values_t = [0.0], allow_negative_numbers = true)]
+    #[arg(long, num_args = 1.., value_delimiter = ',', value_name = "PHI", default_values_t = [0.0], allow_negative_numbers = true)]
     azimuth: Vec<f64>,
     /// Depths in mean free paths, 0 or more, at which to give fluence and net flux downwards.
-    #[arg(long, num_args = 1.., value_name = "T", allow_negative_numbers = true)]
+    #[arg(long, num_args = 1.., value_delimiter = ',', value_name = "T", allow_negative_numbers = true)]
     depth: Vec<f64>,
     /// Answer Milne's problem at these cosines and depths, instead of the lit face (albedo 0.01 to 1).
     #[arg(long)]
@@ -49,6 +50,18 @@ pub struct Args {
     /// What --plot draws: fluence against depth, radiance that leaves against the angle to the normal, or H against mu.
     #[arg(long, value_enum, default_value = "fluence")]
     draw: Draw,
+}
+
+impl Args {
+    /// What rounding touches.
+    pub fn typed(&self) -> Typed {
+        Typed {
+            albedo: Some(self.albedo),
+            g: self.phase.single_g(),
+            places: self.depth.clone(),
+            ..Typed::default()
+        }
+    }
 }
 
 /// What a figure of a half-space shows.
@@ -78,6 +91,9 @@ pub fn answer(args: &Args, draw: bool) -> Result<Reply> {
         answer = answer.with("mu0", incidence_field(args.mu0));
         answer.add("reflectance", space.reflectance(args.mu0)?);
         answer.add("absorptance", space.absorptance(args.mu0)?);
+    }
+    for n in 0..=2_u32 {
+        answer.add_at("h_moment", vec![("n", n.into())], space.moment(n)?);
     }
     for &mu in &args.mu {
         let at = || vec![("mu", mu.into())];

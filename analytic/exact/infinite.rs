@@ -3,8 +3,9 @@
 use crate::answer::{Answer, Reply};
 use crate::phase::{Named, PhaseArgs};
 use crate::plot::{Curve, figure, panel, ratios};
-use anyhow::Result;
-use turbid_analytic::infinite::InfiniteMedium;
+use crate::typed::Typed;
+use anyhow::{Result, ensure};
+use turbid_analytic::infinite::{InfiniteMedium, mean_cosine, mean_square_displacement};
 use turbid_figure::{Axis, Figure};
 
 /// An isotropic point source of unit power in an unbounded medium, beside its asymptote and diffusion theory.
@@ -18,17 +19,36 @@ use turbid_figure::{Axis, Figure};
 /// the slowest exponential alone; `diffusion_fluence` = 3 (1-wg) e^(-kr)/(4 pi r), k^2 = 3 (1-w)(1-wg), is an
 /// approximation, whose bound is that of the formula.
 /// Source: Case, de Hoffmann and Placzek 1953; Grosjean 1956; Case and Zweifel 1967, chapter 5.
-#[derive(clap::Args)]
+#[derive(Clone, clap::Args)]
 #[command(verbatim_doc_comment)]
 pub struct Args {
     /// Single-scattering albedo, 0 to 1.
     #[arg(long, allow_negative_numbers = true)]
-    albedo: f64,
+    pub albedo: f64,
     #[command(flatten)]
     phase: PhaseArgs,
     /// Distances in mean free paths, 1e-12 to 1e6.
-    #[arg(long, num_args = 1.., value_name = "R", allow_negative_numbers = true)]
+    #[arg(long, num_args = 1.., value_delimiter = ',', value_name = "R", allow_negative_numbers = true)]
     r: Vec<f64>,
+    /// Wave numbers s in 1/mean free path, 0 to 1e5: gives the transform of the fluence, the fraction above.
+    #[arg(long, num_args = 1.., value_delimiter = ',', value_name = "S", allow_negative_numbers = true)]
+    wave: Vec<f64>,
+    /// Numbers n of scatterings, 0 to 999999: gives the mean cosine between the first direction and that after n, g^n, and the
+    /// mean square distance from the source after the flight that follows the n-th, absorption aside
+    #[arg(verbatim_doc_comment, long, num_args = 1.., value_delimiter = ',', value_name = "N", allow_negative_numbers = true)]
+    scatterings: Vec<u32>,
+}
+
+impl Args {
+    /// What rounding touches.
+    pub fn typed(&self) -> Typed {
+        Typed {
+            albedo: Some(self.albedo),
+            g: self.phase.single_g(),
+            places: self.r.clone(),
+            ..Typed::default()
+        }
+    }
 }
 
 /// Answers; the figure shows the fluence with its two approximations.
@@ -50,6 +70,16 @@ pub fn answer(args: &Args, draw: bool) -> Result<Reply> {
         answer.add_at("flux", at(), medium.flux(r)?);
         answer.add_at("asymptotic_fluence", at(), medium.asymptotic_fluence(r)?);
         answer.add_at("diffusion_fluence", at(), medium.diffusion_fluence(r)?);
+    }
+    for &s in &args.wave {
+        answer.add_at("transform", vec![("s", s.into())], medium.transform(s)?);
+    }
+    for &n in &args.scatterings {
+        ensure!(n < 1_000_000, "scatterings is {n}; allowed: 0 to 999999");
+        // Depends on the mean cosine alone, for any phase function.
+        let (at, g) = (|| vec![("n", n.into())], named.phase.g());
+        answer.add_at("mean_cosine", at(), mean_cosine(g, n)?);
+        answer.add_at("mean_square_distance", at(), mean_square_displacement(g, n + 1)?);
     }
     let figure = if draw { Some(drawn(args, &named, &medium)?) } else { None };
     Ok(Reply { answer, figure })

@@ -21,26 +21,26 @@ use turbid_figure::Axis;
 ///
 /// Lengths are in radii; all values are pure numbers. The uniform kernel also gives the images of an edge and a line.
 /// Source: Silverman 1986, chapter 4; the cone is Jensen 1996.
-#[derive(clap::Args)]
+#[derive(Clone, clap::Args)]
 #[command(verbatim_doc_comment)]
 pub struct Args {
     /// uniform, epanechnikov, biweight, cone_k1 (any number for the 1), gaussian (standard deviation r, untruncated)
-    /// or truncated_gaussian (standard deviation r/3, cut at r).
-    #[arg(long, value_parser = kernel)]
+    /// or truncated_gaussian (standard deviation r/3, cut at r)
+    #[arg(verbatim_doc_comment, long, value_parser = kernel)]
     kernel: Kernel,
     /// Dimension of space: 1 (beams at a ray), 2 (photons on a surface) or 3 (photons in a medium).
     #[arg(long, default_value = "3", value_parser = dimension)]
     dimension: Dimension,
     /// Gradient times radius of exponential fields e^(b.x), -500 to 500 (Gaussian: 35): gives the kernel's mean over
-    /// the value at the centre.
-    #[arg(long, num_args = 1.., value_name = "X", allow_negative_numbers = true)]
+    /// the value at the centre
+    #[arg(verbatim_doc_comment, long, num_args = 1.., value_delimiter = ',', value_name = "X", allow_negative_numbers = true)]
     gradient: Vec<f64>,
     /// Depths over the radius behind a flat face (negative: outside): gives the moments M_0, M_1, M_2 of the cut kernel
-    /// (dimension 3) and, for the uniform kernel, the images of an edge and of a line.
-    #[arg(long, num_args = 1.., value_name = "X", allow_negative_numbers = true)]
+    /// (dimension 3) and, for the uniform kernel, the images of an edge and of a line
+    #[arg(verbatim_doc_comment, long, num_args = 1.., value_delimiter = ',', value_name = "X", allow_negative_numbers = true)]
     depth: Vec<f64>,
     /// Wave numbers times radius of sinusoids: gives the transfer of the kernel in three dimensions.
-    #[arg(long, num_args = 1.., value_name = "Q", allow_negative_numbers = true)]
+    #[arg(long, num_args = 1.., value_delimiter = ',', value_name = "Q", allow_negative_numbers = true)]
     wave: Vec<f64>,
 }
 

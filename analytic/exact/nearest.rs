@@ -5,9 +5,10 @@ use crate::plot::{Curve, even, figure, panel};
 use crate::read::{dimension, kernel, kernel_name};
 use anyhow::{Result, ensure};
 use turbid_analytic::nearest::{
-    biased_factor, nearest_expectation_exponential, nearest_square_distance, nearest_variance_uniform,
+    biased_factor, nearest_curved, nearest_expectation_exponential, nearest_square_distance,
+    nearest_variance_uniform, optimum_neighbors,
 };
-use turbid_analytic::{Dimension, Kernel};
+use turbid_analytic::{Dimension, Kernel, Value};
 use turbid_figure::Axis;
 
 /// The k nearest of independent points: what the estimate expects, how it scatters, how far it gathers.
@@ -18,13 +19,17 @@ use turbid_figure::Axis;
 ///
 ///   E = int_0^inf p_(k-2)(s) M(r(s)) ds,   p_n(s) = e^(-s) s^n/n!,   s = points expected within r,
 ///
-/// M(r) the kernel's mean of the field at radius r. Lengths are in units of your choice, densities per unit volume.
+/// M(r) the kernel's mean of the field at radius r. In a field of curvature c = lap f/f, to second order in the radius,
+///
+///   bias = A c E[r_k^2],   variance = R V/(k-2) + O(c),   A = m2/(2d), R the roughness, V the unit ball
+///
+/// and the best k makes bias^2 + variance least. Lengths are in units of your choice, densities per unit volume.
 /// Source: Loftsgaarden and Quesenberry 1965; Mack and Rosenblatt 1979.
-#[derive(clap::Args)]
+#[derive(Clone, clap::Args)]
 #[command(verbatim_doc_comment)]
 pub struct Args {
     /// Points gathered, 2 to 1e6 (3 and more for a variance).
-    #[arg(long)]
+    #[arg(long, allow_negative_numbers = true)]
     k: u32,
     /// Dimension of space: 1, 2 or 3.
     #[arg(long, default_value = "3", value_parser = dimension)]
@@ -33,14 +38,18 @@ pub struct Args {
     #[arg(long, default_value_t = 1.0, allow_negative_numbers = true)]
     density: f64,
     /// Number of points in all; without it a Poisson number.
-    #[arg(long)]
+    #[arg(long, allow_negative_numbers = true)]
     points: Option<u64>,
     /// Kernel, by name as in `exact kernel`.
     #[arg(long, default_value = "uniform", value_parser = kernel)]
     kernel: Kernel,
     /// Gradients |b| of exponential fields, in 1/length: gives the expectation over the field at the probe.
-    #[arg(long, num_args = 1.., value_name = "B", allow_negative_numbers = true)]
+    #[arg(long, num_args = 1.., value_delimiter = ',', value_name = "B", allow_negative_numbers = true)]
     gradient: Vec<f64>,
+    /// Laplacians of the field over the field, in 1/length^2: gives bias, variance and mean squared error to second order in
+    /// the radius, relative, and for a curvature that is not 0 the k of least mean squared error
+    #[arg(verbatim_doc_comment, long, num_args = 1.., value_delimiter = ',', value_name = "C", allow_negative_numbers = true)]
+    curvature: Vec<f64>,
     /// Largest radius of a gather; without it, six times the radius within which k points are expected.
     #[arg(long, allow_negative_numbers = true)]
     cap: Option<f64>,
@@ -69,6 +78,19 @@ pub fn answer(args: &Args, draw: bool) -> Result<Reply> {
         let mean = nearest_expectation_exponential(args.kernel, d, k, density, b, cap)?;
         answer.add_at("expectation_exponential", vec![("gradient", b.into()), ("cap", cap.into())], mean);
     }
+    for &c in &args.curvature {
+        let at = || vec![("curvature", c.into())];
+        let curved = nearest_curved(args.kernel, d, k, density, c)?;
+        answer.add_at("relative_bias", at(), curved.bias);
+        answer.add_at("relative_variance", at(), curved.variance);
+        answer.add_at("relative_mean_squared_error", at(), curved.mean_squared_error);
+        if c != 0.0 {
+            let (best, left) = optimum_neighbors(args.kernel, d, density, c)?;
+            let best = Value { value: f64::from(best), error: 0.0, method: "least of all whole numbers" };
+            answer.add_at("optimum_k", at(), best);
+            answer.add_at("optimum_mean_squared_error", at(), left);
+        }
+    }
     let figure = if draw { Some(drawn(args, typical, cap)?) } else { None };
     Ok(Reply { answer, figure })
 }
@@ -76,7 +98,7 @@ pub fn answer(args: &Args, draw: bool) -> Result<Reply> {
 fn drawn(args: &Args, typical: f64, cap: f64) -> Result<turbid_figure::Figure> {
     ensure!(typical.is_finite() && typical > 0.0, "density is {}; allowed: 1e-100 to 1e100", args.density);
     let largest = args.gradient.iter().fold(1.0 / typical, |a: f64, b| a.max(b.abs()));
-    let curve = Curve::sample("", &even(0.0, largest, 17), |b| {
+    let curve = Curve::sample("", &even(0.0, largest, 41), |b| {
         let mean =
             nearest_expectation_exponential(args.kernel, args.dimension, args.k, args.density, b, cap)?;
         // Without a gradient there is no bias, and what is left of it lies within the bound.

@@ -1,12 +1,13 @@
 //! `exact path`: mean path lengths and chords.
 
 use crate::answer::{Answer, Reply};
-use crate::plot::{Curve, even, figure, panel};
-use anyhow::{Context, Result};
+use crate::plot::{Curve, crowded, figure, panel};
+use crate::typed::Typed;
+use anyhow::{Context, Result, bail};
 use clap::ValueEnum;
 use turbid_analytic::mean_path::{
-    chord_moment_slab, chord_moment_sphere, mean_path, mean_path_cuboid, mean_path_slab,
-    mean_path_slab_absorbing, mean_path_sphere, mean_path_sphere_absorbing,
+    chord_density_slab, chord_density_sphere, chord_moment_slab, chord_moment_sphere, mean_path,
+    mean_path_cuboid, mean_path_slab, mean_path_slab_absorbing, mean_path_sphere, mean_path_sphere_absorbing,
 };
 use turbid_figure::{Axis, Figure};
 
@@ -20,19 +21,29 @@ use turbid_figure::{Axis, Figure};
 /// path to escape or absorption is l = A/(1-w) mean free paths, A the absorbed fraction: given for sphere and slab with
 /// isotropic scattering. Lengths in one unit of your choice; with --albedo they are mean free paths.
 /// Source: Dirac 1943; Case and Zweifel 1967, section 2.8; Blanco and Fournier 2003; Mazzolo 2004.
-#[derive(clap::Args)]
+#[derive(Clone, clap::Args)]
 #[command(verbatim_doc_comment)]
 pub struct Args {
     /// The body.
     #[arg(long, value_enum)]
     shape: Shape,
     /// Radius of the sphere, thickness of the slab, or the three edges of the cuboid; for any convex body its volume and its
-    /// surface. 1e-100 to 1e100.
-    #[arg(long, num_args = 1..=3, required = true, value_name = "L", allow_negative_numbers = true)]
+    /// surface. 1e-100 to 1e100
+    #[arg(verbatim_doc_comment, long, num_args = 1..=3, value_delimiter = ',', required = true, value_name = "L", allow_negative_numbers = true)]
     size: Vec<f64>,
+    /// Lengths of chords of sphere or slab, 0 or more: gives the density of the chord length under that light.
+    #[arg(long, num_args = 1.., value_delimiter = ',', value_name = "L", allow_negative_numbers = true)]
+    chord: Vec<f64>,
     /// Single-scattering albedo, 0 to 1, of sphere or slab (then up to 1e6 or 400 mean free paths).
     #[arg(long, allow_negative_numbers = true)]
-    albedo: Option<f64>,
+    pub albedo: Option<f64>,
+}
+
+impl Args {
+    /// What rounding touches.
+    pub fn typed(&self) -> Typed {
+        Typed { albedo: self.albedo, g: Some(0.0), places: self.size.clone(), ..Typed::default() }
+    }
 }
 
 /// The bodies, by their names on the command line.
@@ -68,10 +79,18 @@ pub fn answer(args: &Args, draw: bool) -> Result<Reply> {
         }
         (Shape::Cuboid, &[x, y, z]) => answer.add("mean_path", mean_path_cuboid(x, y, z)?),
         (Shape::Convex, &[volume, surface]) => answer.add("mean_path", mean_path(volume, surface)?),
-        (_, sizes) => anyhow::bail!(
+        (_, sizes) => bail!(
             "--size has {} numbers; allowed: 1 for sphere and slab, 3 for cuboid, 2 for convex",
             sizes.len()
         ),
+    }
+    for &length in &args.chord {
+        let density = match args.shape {
+            Shape::Sphere => chord_density_sphere(args.size[0], length)?,
+            Shape::Slab => chord_density_slab(args.size[0], length)?,
+            _ => bail!("--chord is {length}; allowed with --shape sphere and slab, not {shape}"),
+        };
+        answer.add_at("chord_density", vec![("chord", length.into())], density);
     }
     if let Some(albedo) = args.albedo {
         let mean = absorbing(args, albedo)?.with_context(|| {
@@ -79,7 +98,7 @@ pub fn answer(args: &Args, draw: bool) -> Result<Reply> {
         })?;
         answer.add_at("mean_path_absorbing", vec![("albedo", albedo.into())], mean);
     }
-    let figure = if draw { drawn(args, &shape)? } else { None };
+    let figure = if draw { Some(drawn(args, &shape)?) } else { None };
     Ok(Reply { answer, figure })
 }
 
@@ -91,14 +110,14 @@ fn absorbing(args: &Args, albedo: f64) -> Result<Option<turbid_analytic::Value>>
     })
 }
 
-fn drawn(args: &Args, shape: &str) -> Result<Option<Figure>> {
+fn drawn(args: &Args, shape: &str) -> Result<Figure> {
     if matches!(args.shape, Shape::Cuboid | Shape::Convex) {
-        return Ok(None);
+        bail!("--plot draws the path against the albedo; allowed with --shape sphere and slab, not {shape}");
     }
-    let curve = Curve::sample("", &even(0.0, 1.0, 21), |w| {
+    let curve = Curve::sample("", &crowded(1.0, 41), |w| {
         Ok(absorbing(args, w)?.context("a sphere or a slab")?.value)
     })?;
     let title = format!("Mean path to escape or absorption, {shape} of {} mean free paths", args.size[0]);
     let axis = Axis::linear("Albedo", "");
-    Ok(Some(figure(title, panel(axis, "Mean path", "mean free paths", vec![curve]))))
+    Ok(figure(title, panel(axis, "Mean path", "mean free paths", vec![curve])))
 }

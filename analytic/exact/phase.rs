@@ -7,8 +7,8 @@ use turbid_analytic::Phase;
 /// How scattering turns light; isotropic when nothing is given.
 #[derive(clap::Args, Clone, Default)]
 pub struct PhaseArgs {
-    /// Henyey-Greenstein scattering of this mean cosine.
-    #[arg(long, help_heading = "Phase function", allow_negative_numbers = true, conflicts_with_all = ["rayleigh", "moments"])]
+    /// Henyey-Greenstein scattering of this mean cosine, -0.95 to 0.99.
+    #[arg(long, help_heading = "Phase function", allow_negative_numbers = true, conflicts_with_all = ["rayleigh", "moments", "table"])]
     g: Option<f64>,
     /// With --g and --share: the mean cosine of a second Henyey-Greenstein term.
     #[arg(
@@ -23,12 +23,31 @@ pub struct PhaseArgs {
     #[arg(long, help_heading = "Phase function", allow_negative_numbers = true, requires = "g2")]
     share: Option<f64>,
     /// Rayleigh scattering without polarisation, 3 (1 + cos^2)/(16 pi).
-    #[arg(long, help_heading = "Phase function", conflicts_with = "moments")]
+    #[arg(long, help_heading = "Phase function", conflicts_with_all = ["moments", "table"])]
     rayleigh: bool,
     /// Legendre moments chi_0 = 1, chi_1, ... of p = 1/(4 pi) sum (2l+1) chi_l P_l, separated by commas, blanks or
-    /// lines; # begins a comment.
-    #[arg(long, help_heading = "Phase function", value_name = "FILE")]
+    /// lines; # begins a comment
+    #[arg(verbatim_doc_comment, long, help_heading = "Phase function", value_name = "FILE")]
     moments: Option<PathBuf>,
+    /// Values at cosines from -1 to 1 in rising order, in any unit, as lines `cosine,value`; linear in between; # begins a
+    /// comment. What is used is the sum of its Legendre moments, which must not be negative
+    #[arg(
+        verbatim_doc_comment,
+        long,
+        help_heading = "Phase function",
+        value_name = "FILE",
+        conflicts_with = "moments"
+    )]
+    table: Option<PathBuf>,
+    /// Highest moment of --table, 0 to 1999; a peak needs about pi over its width.
+    #[arg(
+        long,
+        help_heading = "Phase function",
+        default_value_t = 100,
+        requires = "table",
+        allow_negative_numbers = true
+    )]
+    degree: u32,
 }
 
 /// A phase function under the name that tables and titles give it.
@@ -66,6 +85,12 @@ impl Named {
 }
 
 impl PhaseArgs {
+    /// The g of Henyey-Greenstein or isotropic scattering.
+    pub fn single_g(&self) -> Option<f64> {
+        let single = !self.rayleigh && self.moments.is_none() && self.table.is_none() && self.g2.is_none();
+        single.then_some(self.g.unwrap_or(0.0))
+    }
+
     /// The phase function asked for.
     pub fn read(&self) -> Result<Named> {
         if self.rayleigh {
@@ -73,6 +98,9 @@ impl PhaseArgs {
         }
         if let Some(path) = &self.moments {
             return from_file(path);
+        }
+        if let Some(path) = &self.table {
+            return from_table(path, self.degree);
         }
         match (self.g, self.g2, self.share) {
             (Some(g1), Some(g2), Some(share)) => Ok(Named {
@@ -85,9 +113,40 @@ impl PhaseArgs {
     }
 }
 
+fn from_table(path: &Path, degree: u32) -> Result<Named> {
+    let shown = path.display();
+    let text = read_text(path)?;
+    let (mut cosines, mut values) = (Vec::new(), Vec::new());
+    for (i, line) in text.lines().enumerate() {
+        let line = line.split('#').next().unwrap_or_default();
+        let words: Vec<&str> = line.split([',', ' ', '\t', ';']).filter(|word| !word.is_empty()).collect();
+        let numbers = words.iter().map(|word| word.parse::<f64>()).collect::<Result<Vec<f64>, _>>();
+        match numbers.as_deref() {
+            Ok([]) => {}
+            Ok(&[cosine, value]) => {
+                cosines.push(cosine);
+                values.push(value);
+            }
+            _ => bail!("{shown}:{}: '{}'; allowed: cosine,value", i + 1, line.trim()),
+        }
+    }
+    if cosines.is_empty() {
+        bail!("{shown}: no lines; allowed: 2 or more of cosine,value");
+    }
+    let phase = Phase::tabulated(&cosines, &values, degree as usize).with_context(|| format!("{shown}"))?;
+    let file = path.file_name().unwrap_or_default().to_string_lossy();
+    Ok(Named { phase, name: format!("table {file} to degree {degree}"), single_g: None })
+}
+
+/// Text of a file, without the mark that some editors put first.
+fn read_text(path: &Path) -> Result<String> {
+    let text = std::fs::read_to_string(path).with_context(|| format!("{}", path.display()))?;
+    Ok(text.trim_start_matches('\u{feff}').to_string())
+}
+
 fn from_file(path: &Path) -> Result<Named> {
     let shown = path.display();
-    let text = std::fs::read_to_string(path).with_context(|| format!("{shown}"))?;
+    let text = read_text(path)?;
     let mut moments = Vec::new();
     for (i, line) in text.lines().enumerate() {
         let line = line.split('#').next().unwrap_or_default();

@@ -15,7 +15,7 @@ use turbid_figure::Axis;
 ///
 /// All values are pure numbers. The mean squared error falls fastest with alpha = 4/(d+4), as n^(-4/(d+4)).
 /// Source: Hachisuka, Ogaki and Jensen 2008; Knaus and Zwicker 2011.
-#[derive(clap::Args)]
+#[derive(Clone, clap::Args)]
 #[command(verbatim_doc_comment)]
 pub struct Args {
     /// Dimension of the blur: 1 (beams at a ray), 2 (photons on a surface) or 3 (photons in a medium).
@@ -25,7 +25,7 @@ pub struct Args {
     #[arg(long, allow_negative_numbers = true)]
     alpha: Option<f64>,
     /// Numbers of passes, 1 to 1e6.
-    #[arg(long, num_args = 1.., value_name = "N", default_values_t = [10, 100, 1000])]
+    #[arg(long, num_args = 1.., value_delimiter = ',', value_name = "N", default_values_t = [10, 100, 1000], allow_negative_numbers = true)]
     passes: Vec<u32>,
 }
 

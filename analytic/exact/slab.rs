@@ -7,6 +7,7 @@ use crate::phase::{Named, PhaseArgs};
 use crate::plot::{Curve, crowded, degrees, even, figure, panel};
 use crate::read::{incidence, incidence_field, incidence_title};
 use crate::solved::{Method, Solved};
+use crate::typed::Typed;
 use anyhow::{Result, ensure};
 use clap::ValueEnum;
 use libm::cos;
@@ -24,46 +25,62 @@ use turbid_figure::{Axis, Figure};
 /// direct light, the radiance [1/sr] leaves it out; both are per unit irradiance.
 ///
 /// Isotropic scattering: the Peierls equation phi = phi_0 + (w/2) int E_1(|t-t'|) phi(t') dt' with a residual bound.
-/// Any other phase function: discrete ordinates on two sets of nodes.
+/// Any other phase function: discrete ordinates on two sets of nodes. Thickness 1e-12 to 1e9, g -0.95 to 0.99.
 /// Source: Peierls 1939; Case and Zweifel 1967; Chandrasekhar 1960; Stamnes, Tsay, Wiscombe and Jayaweera 1988.
-#[derive(clap::Args)]
+#[derive(Clone, clap::Args)]
 #[command(verbatim_doc_comment)]
 pub struct Args {
-    /// Optical thickness, in mean free paths.
+    /// Optical thickness, in mean free paths, 1e-12 to 1e9.
     #[arg(long, allow_negative_numbers = true)]
     tau: f64,
     /// Single-scattering albedo, 0 to 1.
     #[arg(long, allow_negative_numbers = true)]
-    albedo: f64,
+    pub albedo: f64,
     #[command(flatten)]
     phase: PhaseArgs,
     /// Cosine of incidence of a beam, above 0 to 1, or the word diffuse (Lambertian light).
     #[arg(long, default_value = "1", value_parser = incidence, allow_negative_numbers = true)]
     mu0: Incidence,
-    /// Refractive index inside over outside: faces that reflect and refract (fluxes and fluence).
-    #[arg(long, default_value_t = 1.0, allow_negative_numbers = true)]
+    /// Refractive index inside over outside, 0.25 to 4: faces that reflect and refract (fluxes and fluence). Gives also the
+    /// light that the first face sends back (`specular`), reflectances without it (`reflectance_diffuse`), and the part of
+    /// Lambertian light that one face reflects, from outside and from inside
+    #[arg(verbatim_doc_comment, long, default_value_t = 1.0, allow_negative_numbers = true)]
     index: f64,
     /// Depths in mean free paths, 0 to tau, at which to give the fluence and the net flux downwards (direct light
-    /// included).
-    #[arg(long, num_args = 1.., value_name = "T", allow_negative_numbers = true)]
+    /// included)
+    #[arg(verbatim_doc_comment, long, num_args = 1.., value_delimiter = ',', value_name = "T", allow_negative_numbers = true)]
     depth: Vec<f64>,
     /// Signed cosines (positive: towards the lit face) at which to give the radiance of scattered light, at every
-    /// depth, or without depths where the light leaves.
-    #[arg(long, num_args = 1.., value_name = "MU", allow_negative_numbers = true)]
+    /// depth, or without depths where the light leaves
+    #[arg(verbatim_doc_comment, long, num_args = 1.., value_delimiter = ',', value_name = "MU", allow_negative_numbers = true)]
     mu: Vec<f64>,
     /// Azimuths of those directions, in radians: that of propagation minus that of the beam.
-    #[arg(long, num_args = 1.., value_name = "PHI", default_values_t = [0.0], allow_negative_numbers = true)]
+    #[arg(long, num_args = 1.., value_delimiter = ',', value_name = "PHI", default_values_t = [0.0], allow_negative_numbers = true)]
     azimuth: Vec<f64>,
     /// Orders of scattering to give one by one, 0 (direct light) to 100, to 1000 with isotropic scattering.
-    #[arg(long, num_args = 1.., value_name = "N")]
+    #[arg(long, num_args = 1.., value_delimiter = ',', value_name = "N", allow_negative_numbers = true)]
     order: Vec<u32>,
     /// How to solve it.
     #[arg(long, value_enum, default_value = "auto")]
     method: Method,
-    /// What --plot draws: fluence against depth, or radiance against the angle from straight up, in the plane of the
-    /// first azimuth, one curve for each depth (without depths: at both faces).
-    #[arg(long, value_enum, default_value = "fluence")]
+    /// What --plot draws: fluence against depth (with --order, each order beside the whole), or radiance against the angle
+    /// from straight up, in the plane of the first azimuth, one curve for each depth (without depths: at both faces)
+    #[arg(verbatim_doc_comment, long, value_enum, default_value = "fluence")]
     draw: Draw,
+}
+
+impl Args {
+    /// What rounding touches.
+    pub fn typed(&self) -> Typed {
+        Typed {
+            albedo: Some(self.albedo),
+            g: self.phase.single_g(),
+            index: Some(self.index),
+            size: Some(self.tau),
+            places: self.depth.clone(),
+            ..Typed::default()
+        }
+    }
 }
 
 /// What a figure of a slab shows.
@@ -81,7 +98,8 @@ pub fn answer(args: &Args, draw: bool) -> Result<Reply> {
     if args.index != 1.0 {
         ensure!(
             args.mu.is_empty() && args.order.is_empty() && args.draw == Draw::Fluence,
-            "--index is {}; allowed with --mu, --order and --draw radiance: 1",
+            "--index is {}; allowed with --mu, --order and --draw radiance: 1 (between refracting faces there are fluxes and \
+             fluence)",
             args.index
         );
         let (tau, albedo, index) = (args.tau, args.albedo, args.index);
@@ -108,7 +126,7 @@ pub fn answer(args: &Args, draw: bool) -> Result<Reply> {
     };
     for &t in &args.depth {
         answer.add_at("fluence", vec![("t", t.into())], slab.fluence(t)?);
-        if let flux @ Solved::Ordinates(_) = ordinates.as_ref().unwrap_or(&slab) {
+        if let flux @ (Solved::Ordinates(_) | Solved::Both(..)) = ordinates.as_ref().unwrap_or(&slab) {
             answer.add_at("flux", vec![("t", t.into())], flux.flux(t)?);
         }
     }
@@ -166,9 +184,21 @@ fn title(args: &Args, named: &Named) -> String {
 }
 
 fn fluence(args: &Args, named: &Named, slab: &Solved) -> Result<Figure> {
-    let curve = Curve::sample("", &crowded(args.tau, 121), |t| Ok(slab.fluence(t)?.value))?;
     let axis = Axis::linear("Depth t", "mean free paths");
-    Ok(figure(title(args, named), panel(axis, "Fluence over irradiance", "", vec![curve])))
+    let all = |depths: &[f64]| Curve::sample("all light", depths, |t| Ok(slab.fluence(t)?.value));
+    let curves = if args.order.is_empty() {
+        vec![all(&crowded(args.tau, 121))?]
+    } else {
+        let (by_order, depths) =
+            (Orders::new(args.tau, args.albedo, named, args.mu0)?, crowded(args.tau, 41));
+        let mut curves = vec![all(&depths)?.into_reference()];
+        for &n in &args.order {
+            let label = if n == 0 { "direct light".into() } else { format!("scattered {n} ×") };
+            curves.push(Curve::sample(label, &depths, |t| Ok(by_order.fluence(n, t)?.value))?);
+        }
+        curves
+    };
+    Ok(figure(title(args, named), panel(axis, "Fluence over irradiance", "", curves)))
 }
 
 fn radiance(args: &Args, named: &Named, slab: &Solved) -> Result<Figure> {
@@ -186,7 +216,7 @@ fn radiance(args: &Args, named: &Named, slab: &Solved) -> Result<Figure> {
         })?);
     }
     let axis = degrees("Angle from straight up", 180);
-    let plane = if named.is_isotropic() { String::new() } else { format!(", azimuth {dphi}") };
+    let plane = if named.is_isotropic() { String::new() } else { format!(", azimuth {dphi} rad") };
     let panel = panel(axis, "Scattered radiance over irradiance", "1/sr", curves);
     Ok(figure(format!("{}{plane}", title(args, named)), panel))
 }

@@ -1,14 +1,14 @@
 //! A slab by whichever method serves the question.
 
 use crate::phase::Named;
-use anyhow::{Result, bail};
+use anyhow::{Result, bail, ensure};
 use clap::ValueEnum;
 use turbid_analytic::{AddingDoubling, AnisotropicMedium, AnisotropicSlab, Incidence, IsotropicSlab, Value};
 
 /// How a slab is solved.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub enum Method {
-    /// Peierls for isotropic scattering up to a thickness of 400, discrete ordinates for the rest.
+    /// Isotropic: Peierls, above a thickness of 2 the better known of both, above 400 ordinates; others: ordinates.
     Auto,
     /// The Peierls equation (isotropic scattering).
     Peierls,
@@ -21,12 +21,17 @@ pub enum Method {
 /// Thickness up to which the Peierls equation is solved.
 pub const PEIERLS_UP_TO: f64 = 400.0;
 
+/// Thickness above which the Peierls equation, whose bound is absolute, loses to discrete ordinates in faint light.
+pub const THICK: f64 = 2.0;
+
 /// A solved slab.
 pub enum Solved {
     /// By the Peierls equation.
     Peierls(IsotropicSlab),
     /// By discrete ordinates.
     Ordinates(AnisotropicSlab),
+    /// By both, of which each value takes the one with the smaller bound.
+    Both(Box<IsotropicSlab>, Box<AnisotropicSlab>),
     /// By adding and doubling.
     Doubling(AddingDoubling),
 }
@@ -35,16 +40,41 @@ impl Solved {
     /// Solves a slab.
     pub fn new(tau: f64, albedo: f64, named: &Named, incidence: Incidence, method: Method) -> Result<Self> {
         let isotropic = named.is_isotropic();
+        ensure!(
+            method != Method::Auto || (1e-12..=1e9).contains(&tau),
+            "tau is {tau}; allowed: 1e-12 to 1e9"
+        );
         if method == Method::Peierls && !isotropic {
             bail!("phase function is {}; allowed with --method peierls: isotropic", named.name);
         }
         if method == Method::Peierls || method == Method::Auto && isotropic && tau <= PEIERLS_UP_TO {
-            return Ok(Solved::Peierls(IsotropicSlab::new(tau, albedo, incidence)?));
+            let slab = IsotropicSlab::new(tau, albedo, incidence)?;
+            return Ok(match method {
+                Method::Auto => Self::isotropic(slab, tau, || {
+                    AnisotropicMedium::new(albedo, &named.phase)?.slab(tau, incidence)
+                }),
+                _ => Solved::Peierls(slab),
+            });
         }
         if method == Method::Doubling {
             return Ok(Solved::Doubling(AddingDoubling::with_phase(tau, albedo, &named.phase, incidence)?));
         }
         Ok(Solved::Ordinates(AnisotropicMedium::new(albedo, &named.phase)?.slab(tau, incidence)?))
+    }
+
+    /// An isotropic slab with a second solution where that may know more; discrete ordinates leave out grazing beams.
+    pub fn isotropic(
+        slab: IsotropicSlab,
+        tau: f64,
+        ordinates: impl FnOnce() -> turbid_analytic::Result<AnisotropicSlab>,
+    ) -> Self {
+        if tau <= THICK {
+            return Solved::Peierls(slab);
+        }
+        match ordinates() {
+            Ok(other) => Solved::Both(Box::new(slab), Box::new(other)),
+            Err(_) => Solved::Peierls(slab),
+        }
     }
 
     /// Fraction sent back.
@@ -53,6 +83,7 @@ impl Solved {
             Solved::Peierls(slab) => slab.reflectance(),
             Solved::Ordinates(slab) => slab.reflectance(),
             Solved::Doubling(slab) => slab.reflectance(),
+            Solved::Both(a, b) => better(a.reflectance(), b.reflectance()),
         }
     }
 
@@ -62,6 +93,7 @@ impl Solved {
             Solved::Peierls(slab) => slab.transmittance(),
             Solved::Ordinates(slab) => slab.transmittance(),
             Solved::Doubling(slab) => slab.transmittance(),
+            Solved::Both(a, b) => better(a.transmittance(), b.transmittance()),
         }
     }
 
@@ -71,6 +103,7 @@ impl Solved {
             Solved::Peierls(slab) => slab.transmittance_direct(),
             Solved::Ordinates(slab) => slab.transmittance_direct(),
             Solved::Doubling(slab) => slab.transmittance_direct(),
+            Solved::Both(a, b) => better(a.transmittance_direct(), b.transmittance_direct()),
         }
     }
 
@@ -80,6 +113,7 @@ impl Solved {
             Solved::Peierls(slab) => slab.transmittance_diffuse(),
             Solved::Ordinates(slab) => slab.transmittance_diffuse(),
             Solved::Doubling(slab) => slab.transmittance_diffuse(),
+            Solved::Both(a, b) => better(a.transmittance_diffuse(), b.transmittance_diffuse()),
         }
     }
 
@@ -89,6 +123,7 @@ impl Solved {
             Solved::Peierls(slab) => slab.absorptance(),
             Solved::Ordinates(slab) => slab.absorptance(),
             Solved::Doubling(slab) => slab.absorptance(),
+            Solved::Both(a, b) => better(a.absorptance(), b.absorptance()),
         }
     }
 
@@ -98,6 +133,7 @@ impl Solved {
             Solved::Peierls(slab) => slab.fluence(t)?,
             Solved::Ordinates(slab) => slab.fluence(t)?,
             Solved::Doubling(slab) => slab.fluence(t)?,
+            Solved::Both(a, b) => better(a.fluence(t)?, b.fluence(t)?),
         })
     }
 
@@ -105,6 +141,7 @@ impl Solved {
     pub fn flux(&self, t: f64) -> Result<Value> {
         match self {
             Solved::Ordinates(slab) => Ok(slab.flux(t)?),
+            Solved::Both(_, slab) => Ok(slab.flux(t)?),
             Solved::Peierls(_) | Solved::Doubling(_) => bail!("net flux is answered by --method ordinates"),
         }
     }
@@ -115,6 +152,12 @@ impl Solved {
             Solved::Peierls(slab) => slab.radiance(t, mu)?,
             Solved::Doubling(slab) => slab.radiance(t, mu, dphi)?,
             Solved::Ordinates(slab) => slab.radiance(t, mu, dphi)?,
+            Solved::Both(a, b) => better(a.radiance(t, mu)?, b.radiance(t, mu, dphi)?),
         })
     }
+}
+
+/// The value with the smaller bound.
+pub fn better(a: Value, b: Value) -> Value {
+    if a.error <= b.error { a } else { b }
 }

@@ -2,10 +2,11 @@
 
 use crate::answer::{Answer, Reply};
 use crate::plot::{Curve, degrees, even, figure, panel, ratios};
+use crate::typed::Typed;
 use anyhow::Result;
 use clap::ValueEnum;
 use libm::cos;
-use turbid_analytic::sphere::{Sphere, SphereSource, absorbing_transmittance, escape_from};
+use turbid_analytic::sphere::{Sphere, SphereSource, absorbing_transmittance, escape_from, escape_uniform};
 use turbid_figure::{Axis, Figure};
 
 /// A sphere with isotropic scattering: fluence, escape, absorption, radiance that leaves.
@@ -14,12 +15,15 @@ use turbid_figure::{Axis, Figure};
 ///
 ///   phi(r) = phi_0(r) + (w/2) int_0^a (r'/r) [E_1(|r-r'|) - E_1(r+r')] phi(r') dr'
 ///
+/// `escape_direct` leaves without a collision, in closed form: all the escape of a sphere that only absorbs, for a uniform
+/// source 3/(8 a^3) [2 a^2 - 1 + (1 + 2a) e^(-2a)].
+///
 /// Lengths are mean free paths. Sources: `uniform` emission over the volume and a point at the `centre`, of unit power
 /// (fluence in 1/mean free path^2, radiance per steradian of that); `incident` light of radiance 1/pi and irradiance 1
 /// on the whole surface (fluence a pure number, radiance in 1/sr). Fluences include the direct light; so does radiance,
 /// but for the central source, whose direct light e^(-a)/(4 pi a^2) leaves at mu = 1 alone.
 /// Source: Davison 1957, chapter VI; Case and Zweifel 1967, chapters 2 and 6.
-#[derive(clap::Args)]
+#[derive(Clone, clap::Args)]
 #[command(verbatim_doc_comment)]
 pub struct Args {
     /// Radius in mean free paths.
@@ -27,25 +31,38 @@ pub struct Args {
     radius: f64,
     /// Single-scattering albedo, 0 to 1.
     #[arg(long, allow_negative_numbers = true)]
-    albedo: f64,
+    pub albedo: f64,
     /// Where the light comes from.
     #[arg(long, value_enum, default_value = "uniform")]
     source: Source,
     /// Distances from the centre in mean free paths, 0 to the radius, at which to give the fluence and its direct part,
-    /// and the probability that light emitted there leaves without a collision.
-    #[arg(long, num_args = 1.., value_name = "R", allow_negative_numbers = true)]
+    /// and the probability that light emitted there leaves without a collision
+    #[arg(verbatim_doc_comment, long, num_args = 1.., value_delimiter = ',', value_name = "R", allow_negative_numbers = true)]
     r: Vec<f64>,
     /// Cosines to the outward normal, 0 to 1, at which to give the radiance that leaves.
-    #[arg(long, num_args = 1.., value_name = "MU", allow_negative_numbers = true)]
+    #[arg(long, num_args = 1.., value_delimiter = ',', value_name = "MU", allow_negative_numbers = true)]
     mu: Vec<f64>,
     /// Orders of scattering whose fluence to give at every r: 0 (direct light) to 1000, from a central source to 8; radius
-    /// up to 64.
-    #[arg(long, num_args = 1.., value_name = "N")]
+    /// up to 64
+    #[arg(verbatim_doc_comment, long, num_args = 1.., value_delimiter = ',', value_name = "N", allow_negative_numbers = true)]
     order: Vec<u32>,
     /// What --plot draws: fluence against distance from the centre, or radiance that leaves against the angle to the
-    /// normal.
-    #[arg(long, value_enum, default_value = "fluence")]
+    /// normal
+    #[arg(verbatim_doc_comment, long, value_enum, default_value = "fluence")]
     draw: Draw,
+}
+
+impl Args {
+    /// What rounding touches.
+    pub fn typed(&self) -> Typed {
+        Typed {
+            albedo: Some(self.albedo),
+            g: Some(0.0),
+            size: Some(self.radius),
+            places: self.r.clone(),
+            ..Typed::default()
+        }
+    }
 }
 
 /// The sources, by their names on the command line.
@@ -86,9 +103,15 @@ pub fn answer(args: &Args, draw: bool) -> Result<Reply> {
         Answer::new("sphere").with("radius", args.radius).with("albedo", args.albedo).with("source", name);
     answer.add("escape", sphere.escape());
     answer.add("absorptance", sphere.absorptance());
-    if args.source == Source::Incident {
-        answer.add("transmittance_direct", absorbing_transmittance(args.radius)?);
-    }
+    // Without a collision: what leaves a sphere that only absorbs.
+    answer.add(
+        "escape_direct",
+        match args.source {
+            Source::Uniform => escape_uniform(args.radius)?,
+            Source::Centre => escape_from(args.radius, 0.0)?,
+            Source::Incident => absorbing_transmittance(args.radius)?,
+        },
+    );
     for &r in &args.r {
         let at = || vec![("r", r.into())];
         answer.add_at("fluence", at(), sphere.fluence(r)?);

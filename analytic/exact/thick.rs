@@ -4,6 +4,7 @@ use crate::answer::{Answer, Reply};
 use crate::phase::PhaseArgs;
 use crate::plot::{Curve, even, figure, panel};
 use crate::read::{incidence, incidence_field};
+use crate::typed::Typed;
 use anyhow::Result;
 use turbid_analytic::Incidence;
 use turbid_analytic::asymptotics::Asymptotics;
@@ -20,23 +21,35 @@ use turbid_figure::Axis;
 /// z is Milne's extrapolation length; lengths in mean free paths, decays in their inverse. The bound says how much the
 /// faster decays, k2 and beyond, may still do: in thin slabs as much as the answer.
 /// Source: van de Hulst 1980, chapter 5; Sobolev 1975, chapter 3.
-#[derive(clap::Args)]
+#[derive(Clone, clap::Args)]
 #[command(verbatim_doc_comment)]
 pub struct Args {
     /// Single-scattering albedo, 0.1 to 1.
     #[arg(long, allow_negative_numbers = true)]
-    albedo: f64,
+    pub albedo: f64,
     #[command(flatten)]
     phase: PhaseArgs,
     /// Cosine of incidence of a beam, 1e-5 to 1, or the word diffuse (Lambertian light).
     #[arg(long, default_value = "1", value_parser = incidence, allow_negative_numbers = true)]
     mu0: Incidence,
     /// Optical thicknesses, 1 to 1e15: gives R, T and A.
-    #[arg(long, num_args = 1.., value_name = "TAU", allow_negative_numbers = true)]
+    #[arg(long, num_args = 1.., value_delimiter = ',', value_name = "TAU", allow_negative_numbers = true)]
     tau: Vec<f64>,
     /// Cosines u to the direction of decay, -1 to 1: gives the pattern P(u) of light deep inside.
-    #[arg(long, num_args = 1.., value_name = "U", allow_negative_numbers = true)]
+    #[arg(long, num_args = 1.., value_delimiter = ',', value_name = "U", allow_negative_numbers = true)]
     u: Vec<f64>,
+}
+
+impl Args {
+    /// What rounding touches.
+    pub fn typed(&self) -> Typed {
+        Typed {
+            albedo: Some(self.albedo),
+            g: self.phase.single_g(),
+            places: self.tau.clone(),
+            ..Typed::default()
+        }
+    }
 }
 
 /// Answers; the figure shows the pattern of light deep inside.

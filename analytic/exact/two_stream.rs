@@ -5,6 +5,7 @@ use crate::phase::Named;
 use crate::plot::{Curve, crowded, figure, panel};
 use crate::read::{incidence, incidence_field, incidence_title};
 use crate::solved::{self, Solved};
+use crate::typed::Typed;
 use anyhow::Result;
 use turbid_analytic::two_stream::{Approximation, Method, TwoStream};
 use turbid_analytic::{Incidence, Value};
@@ -24,7 +25,7 @@ use turbid_figure::{Axis, Figure};
 /// tau in mean free paths. Each quantity comes exactly, then in every approximation, whose `error` is what it is off by (with
 /// the bound of the exact value), so that here too it covers the truth.
 /// Source: Eddington 1916; Joseph, Wiscombe and Weinman 1976; Meador and Weaver 1980.
-#[derive(clap::Args)]
+#[derive(Clone, clap::Args)]
 #[command(verbatim_doc_comment)]
 pub struct Args {
     /// Optical thickness, 1e-12 to 1e9 mean free paths.
@@ -32,7 +33,7 @@ pub struct Args {
     tau: f64,
     /// Single-scattering albedo, 0 to 1.
     #[arg(long, allow_negative_numbers = true)]
-    albedo: f64,
+    pub albedo: f64,
     /// Mean cosine of Henyey-Greenstein scattering, -0.95 to 0.99.
     #[arg(long, default_value_t = 0.0, allow_negative_numbers = true)]
     g: f64,
@@ -40,8 +41,21 @@ pub struct Args {
     #[arg(long, default_value = "1", value_parser = incidence, allow_negative_numbers = true)]
     mu0: Incidence,
     /// Depths in mean free paths, 0 to tau, at which to give the fluence.
-    #[arg(long, num_args = 1.., value_name = "T", allow_negative_numbers = true)]
+    #[arg(long, num_args = 1.., value_delimiter = ',', value_name = "T", allow_negative_numbers = true)]
     depth: Vec<f64>,
+}
+
+impl Args {
+    /// What rounding touches.
+    pub fn typed(&self) -> Typed {
+        Typed {
+            albedo: Some(self.albedo),
+            g: Some(self.g),
+            size: Some(self.tau),
+            places: self.depth.clone(),
+            ..Typed::default()
+        }
+    }
 }
 
 /// As short as a legend wants it.

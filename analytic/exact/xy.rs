@@ -2,6 +2,7 @@
 
 use crate::answer::{Answer, Reply};
 use crate::plot::{Curve, even, figure, panel};
+use crate::typed::Typed;
 use anyhow::Result;
 use turbid_analytic::xy::XAndY;
 use turbid_figure::{Axis, Figure};
@@ -16,7 +17,7 @@ use turbid_figure::{Axis, Figure};
 ///
 /// tau in mean free paths; all but the radiances are pure numbers. (1 - w a_0/2)^2 - (w b_0/2)^2 = 1 - w.
 /// Source: Chandrasekhar 1960, chapter VIII; Mullikin 1964; Sobolev 1975; van de Hulst 1980, chapter 7.
-#[derive(clap::Args)]
+#[derive(Clone, clap::Args)]
 #[command(verbatim_doc_comment)]
 pub struct Args {
     /// Optical thickness, 1e-12 to 400 mean free paths.
@@ -24,13 +25,20 @@ pub struct Args {
     tau: f64,
     /// Single-scattering albedo, 0 to 1.
     #[arg(long, allow_negative_numbers = true)]
-    albedo: f64,
+    pub albedo: f64,
     /// Cosines, 0 to 1.
-    #[arg(long, num_args = 1.., value_name = "MU", default_values_t = [0.1, 0.5, 1.0], allow_negative_numbers = true)]
+    #[arg(long, num_args = 1.., value_delimiter = ',', value_name = "MU", default_values_t = [0.1, 0.5, 1.0], allow_negative_numbers = true)]
     mu: Vec<f64>,
     /// Cosine of incidence, above 0 to 1: gives R, T and the radiances that leave at every cosine.
     #[arg(long, allow_negative_numbers = true)]
     mu0: Option<f64>,
+}
+
+impl Args {
+    /// What rounding touches.
+    pub fn typed(&self) -> Typed {
+        Typed { albedo: Some(self.albedo), g: Some(0.0), size: Some(self.tau), ..Typed::default() }
+    }
 }
 
 /// Answers; the figure shows both functions.

@@ -185,3 +185,59 @@ fn extremes() {
         assert!(number(&answer["error"]) <= 1e-9 * want, "{words}: {answer:?}");
     }
 }
+
+/// The decimal 0.999999 is not a double: half a unit of its last place moves T by 1.1e-10 of itself here, which the bound
+/// counts. Values of the decimal by adding and doubling in multiple precision (146 nodes, 25 digits).
+#[test]
+fn bounds_hold_for_typed_decimals() {
+    let columns = "id,geometry,tau,a,w,g,n,mu0,t,r,mu,dphi,extra,quantity\n";
+    let known = [
+        ("1,,,,,,R", 0.994_153_317_042_306_8),
+        ("1,,,,,,T_total", 2.023_039_190_246_011e-6),
+        ("1,5000,,,,,fluence", 0.066_688_875_872_818_93),
+        ("0.1,,,,,,T_total", 7.715_119_355_029_678e-7),
+        ("0.5,,,,,,T_total", 1.384_020_900_733_175_4e-6),
+    ];
+    let text: String =
+        known.iter().map(|(words, _)| format!("x,slab,1e4,,0.999999,0.75,,{words}\n")).collect();
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("decimals.csv");
+    std::fs::write(&path, format!("{columns}{text}")).unwrap();
+    for ((words, want), answer) in known.iter().zip(answers(path.to_str().unwrap())) {
+        let (off, error) = ((number(&answer["value"]) - want).abs(), number(&answer["error"]));
+        assert!(off <= error && error < 1e-9 * want, "{words}: {answer:?} off by {off:e}");
+    }
+}
+
+/// Light that a thick, isotropic slab lets through is known relatively, however faint: both columns ask for the same.
+#[test]
+fn faint_light_is_known_relatively() {
+    let columns = "id,geometry,tau,a,w,g,n,mu0,t,r,mu,dphi,extra,quantity\n";
+    let mut text = String::from(columns);
+    for tau in [3, 10, 30, 100, 300] {
+        for question in ["T_total", "fluence", "order=3,T_total"] {
+            let (extra, quantity) = question.split_once(',').unwrap_or(("", question));
+            text += &format!("x,slab,{tau},,0.75,0,,0.5,{tau},,,,{extra},{quantity}\n");
+        }
+        // Scattering that is isotropic to the last digit, by discrete ordinates alone.
+        text += &format!("x,slab,{tau},,0.75,1e-300,,0.5,,,,,,T_total\n");
+    }
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("faint.csv");
+    std::fs::write(&path, text).unwrap();
+    let answers = answers(path.to_str().unwrap());
+    for group in answers.chunks(4) {
+        let value = |i: usize| number(&group[i]["value"]);
+        for answer in group {
+            // Between two grids the third order at 300 differs by 0.4 per cent.
+            let limit = match (answer["tau"].as_str(), answer["extra"].as_str()) {
+                ("300", "order=3") => 0.01,
+                ("300", _) => 1e-7,
+                _ => 1e-9,
+            };
+            assert!(number(&answer["error"]) <= limit * number(&answer["value"]), "{answer:?}");
+        }
+        let off = (value(0) - value(3)).abs();
+        assert!(off <= number(&group[0]["error"]) + number(&group[3]["error"]), "{group:?}");
+    }
+}

@@ -111,7 +111,8 @@ fn mistakes_in_a_table_name_file_line_and_parameter() {
         cases(&format!("{HEAD}a,kernel,,,,,,,,,,,kernel=round;d=3,m2\n")),
         &[".csv:2", "kernel is 'round'"],
     );
-    refused(cases(&format!("{HEAD}a,slab,1\n")), &[".csv"]);
+    refused(cases(&format!("{HEAD}a,slab,1\n")), &[".csv:2: 3 cells; allowed: 14"]);
+    refused(cases(&format!("{HEAD}a,slab,nan,,0.5,0,,1,,,,,,R\n")), &[".csv:2", "tau is NaN"]);
 }
 
 #[test]
@@ -125,7 +126,7 @@ fn single_questions_are_answered_in_a_table() {
         "{text}"
     );
     let rows: Vec<Vec<&str>> = text.lines().map(|line| line.split_whitespace().collect()).collect();
-    assert_eq!(rows[1], ["quantity", "t", "mu", "order", "value", "error", "how", "known"]);
+    assert_eq!(rows[1], ["quantity", "t", "mu", "order", "value", "error", "unit", "how", "known"]);
     assert!(rows.iter().any(|row| row[..3] == ["radiance", "1", "-0.5"]), "{text}");
     assert!(rows.iter().any(|row| row[..3] == ["fluence_of_order", "1", "2"]), "{text}");
     assert!(text.contains("Peierls equation, residual bound"));
@@ -280,7 +281,7 @@ fn every_command_explains_itself() {
 fn mistakes_on_the_command_line_are_one_line_and_code_2() {
     refused(
         exact().args(["slab", "--tau", "-1", "--albedo", "0.5"]).assert(),
-        &["tau is -1; allowed: 1e-12 to 400"],
+        &["tau is -1; allowed: 1e-12 to 1e9"],
     );
     refused(exact().args(["slab", "--tau", "1", "--albedo", "nan"]).assert(), &["albedo is NaN"]);
     refused(
@@ -290,6 +291,14 @@ fn mistakes_on_the_command_line_are_one_line_and_code_2() {
     // What cannot be parsed at all: the argument, what it got and what is allowed.
     refused(exact().args(["slab", "--tau", "1"]).assert(), &["required", "--albedo"]);
     refused(exact().args(["slab", "--tau", "x", "--albedo", "0.5"]).assert(), &["'x'", "--tau"]);
+    let whole = "allowed: a whole number, 0 to 4294967295";
+    refused(
+        exact().args(["slab", "--tau", "1", "--albedo", ""]).assert(),
+        &["--albedo", "allowed: a number"],
+    );
+    for k in ["-1", "1e3", "", "1.5", "99999999999"] {
+        refused(exact().args(["nearest", "--k", k]).assert(), &["--k", whole]);
+    }
     refused(exact().args(["slab", "--tua", "1"]).assert(), &["'--tua'"]);
     refused(exact().args(["kernel", "--kernel", "square"]).assert(), &["square"]);
     refused(exact().arg("kernel").assert(), &["--kernel"]);
@@ -401,6 +410,120 @@ fn help_says_physics_and_units() {
     let version = exact().arg("--version").assert().success().get_output().clone();
     assert_eq!(version.stdout, format!("exact {}\n", env!("CARGO_PKG_VERSION")).into_bytes());
     assert!(version.stderr.is_empty());
+}
+
+/// A table as editors and spreadsheets write it: a mark in front, ends of line of two characters, quotes.
+#[test]
+fn tables_of_other_programs_are_read() {
+    let row = "\"a, b\",\"slab\",1,,0.9,0,,1,,,,,,R\n";
+    let plain = cases(&format!("{HEAD}{row}")).success().get_output().stdout.clone();
+    let marked = cases(&format!("\u{feff}{HEAD}{row}").replace('\n', "\r\n"));
+    assert_eq!(marked.success().get_output().stdout, plain);
+    assert_eq!(rows(&plain)[0]["id"], "a, b");
+}
+
+/// Isotropic scattering by a table of its phase function, and by commas in place of blanks.
+#[test]
+fn phase_functions_are_read_from_tables() {
+    let table = file("\u{feff}# cosine, value\n-1, 3\n0 3\n1;3\n");
+    let ask = [
+        "slab",
+        "--tau",
+        "1",
+        "--albedo",
+        "0.9",
+        "--method",
+        "ordinates",
+        "--depth",
+        "0,0.5",
+        "--format",
+        "csv",
+    ];
+    let values = |output: Vec<u8>| -> Vec<f64> {
+        rows(&output).iter().map(|row| row["value"].parse().unwrap()).collect()
+    };
+    let isotropic = values(exact().args(ask).output().unwrap().stdout);
+    let read = values(exact().args(ask).arg("--table").arg(table.path()).output().unwrap().stdout);
+    assert_eq!(read.len(), 9);
+    assert!(read.iter().zip(&isotropic).all(|(a, b)| (a - b).abs() < 1e-12), "{read:?} {isotropic:?}");
+    for (text, part) in [
+        ("", "allowed: 2 or more"),
+        ("-1,1\n0\n1,1\n", ".csv:2: '0'; allowed: cosine,value"),
+        ("-1,1\n0.5,1\n0,1\n1,1\n", "cosine is 0; allowed: in rising order"),
+        ("-1,1\n1,-1\n", "value is -1; allowed: 0 to 1e100"),
+    ] {
+        let table = file(text);
+        refused(exact().args(ask).arg("--table").arg(table.path()).assert(), &[part]);
+    }
+}
+
+/// Values that laws know, for what is asked of estimates: best k and radii, walls, corners, chords, walks.
+#[test]
+fn what_the_library_knows_can_be_asked() {
+    let value = |words: &str, quantity: &str, nth: usize| -> f64 {
+        let output = exact().args(words.split_whitespace()).args(["--format", "csv"]).output().unwrap();
+        assert!(output.status.success(), "{words}: {}", String::from_utf8_lossy(&output.stderr));
+        let rows = rows(&output.stdout);
+        rows.iter().filter(|row| row["quantity"] == quantity).nth(nth).unwrap()["value"].parse().unwrap()
+    };
+    for (words, quantity, nth, want) in [
+        // Flat: 1/(k-2), no bias.
+        ("nearest --k 50 --curvature 0", "relative_mean_squared_error", 0, 1.0 / 48.0),
+        // r^7 = 3 B/(4 A^2), A = c/10, B = 3/(4 pi).
+        (
+            "beams --curvature -0.2",
+            "optimum_radius",
+            0,
+            libm::pow(1125.0 / (4.0 * std::f64::consts::PI) * 5.0, 1.0 / 7.0),
+        ),
+        ("boundary --body cuboid --size 2,3,4 --radius 1 --depth 0 --corner", "mean_uniform", 0, 0.125),
+        ("boundary --body cuboid --size 2 --radius 1 --depth 0", "mean_uniform", 0, 0.5),
+        // Half the ball sees the field in front, half that behind: (1 + 3)/2.
+        ("boundary --depth 0 --behind 3", "mean_at_wall", 0, 2.0),
+        ("boundary --depth 0 --behind 3", "mean_at_wall", 9, 1.0),
+        ("path --shape slab --size 2 --chord 4", "chord_density", 0, 0.125),
+        ("infinite --albedo 0.9 --g 0.5 --scatterings 1", "mean_square_distance", 0, 5.0),
+        ("infinite --albedo 0 --wave 1", "transform", 0, std::f64::consts::FRAC_PI_4),
+        ("half-space --albedo 0.75", "h_moment", 0, 4.0 / 3.0),
+        ("sphere --radius 2 --albedo 0.5 --source centre", "escape_direct", 0, libm::exp(-2.0)),
+    ] {
+        let got = value(words, quantity, nth);
+        assert!((got - want).abs() < 1e-12 * want, "{words}: {quantity} {got} {want}");
+    }
+    // What enters a denser body cannot all leave: n^2 (1 - r_inside) = 1 - r_outside.
+    let index = "slab --tau 1 --albedo 0.9 --index 1.5";
+    let (out, inside) =
+        (value(index, "face_reflectance_outside", 0), value(index, "face_reflectance_inside", 0));
+    assert!((2.25 * (1.0 - inside) - (1.0 - out)).abs() < 1e-13);
+}
+
+/// Every row of every answer has a unit, in every form.
+#[test]
+fn every_value_has_a_unit() {
+    for (words, quantity, unit) in [
+        ("slab --tau 1 --albedo 0.9 --depth 1 --mu 0", "radiance", "irradiance/sr"),
+        ("half-space --albedo 0.9 --milne --depth 1", "fluence", "exitance"),
+        ("half-space --albedo 0.9 --milne", "extrapolation_length", "mfp"),
+        ("sphere --radius 1 --albedo 0.9 --r 0.5", "fluence", "power/mfp^2"),
+        ("sphere --radius 1 --albedo 0.9 --source incident --r 0.5", "fluence", "irradiance"),
+        ("infinite --albedo 0.9 --r 1", "decay", "1/mfp"),
+        ("critical --secondaries 1.5", "size", "mfp"),
+        ("cavity --wall-albedo 0.5", "irradiance_centre", "power/length^2"),
+        ("kernel --kernel uniform", "m2", "radius^2"),
+    ] {
+        let ask = |form: &str| stdout(exact().args(words.split_whitespace()).args(["--format", form]));
+        let table = rows(ask("csv").as_bytes());
+        assert!(table.iter().all(|row| !row["unit"].is_empty()), "{words}");
+        let row = table.iter().find(|row| row["quantity"] == quantity).unwrap();
+        assert_eq!(row["unit"], unit, "{words}");
+        let object: serde_json::Value = serde_json::from_str(&ask("json")).unwrap();
+        let same = object["values"]
+            .as_array()
+            .unwrap()
+            .iter()
+            .any(|v| v["quantity"] == quantity && v["unit"] == unit);
+        assert!(same && ask("table").contains(unit), "{words}");
+    }
 }
 
 #[test]

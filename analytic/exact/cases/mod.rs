@@ -10,7 +10,7 @@ mod slab;
 mod sphere;
 
 use crate::answer::shortest;
-use crate::format::{Format, aligned, digits};
+use crate::format::{Format, aligned, bound, digits};
 use anyhow::{Context, Result, anyhow, bail};
 use row::{COLUMNS, Row};
 use serde::ser::{Serialize, SerializeMap, Serializer};
@@ -30,25 +30,10 @@ pub fn answer(path: &Path, format: Format, output: &mut Vec<u8>) -> Result<()> {
         |i: usize| ["geometry", "tau", "a", "n", "w", "g", "extra"].map(|column| rows[i].text(column));
     order.sort_by(|&a, &b| medium(a).cmp(&medium(b)));
     let mut answers: Vec<Option<Answered>> = rows.iter().map(|_| None).collect();
-    let mut slabs = slab::Slabs::default();
-    let mut bodies = critical::Bodies::default();
-    let mut fresnel_slabs = fresnel::FresnelSlabs::default();
-    let mut half_spaces = half_space::HalfSpaces::default();
-    let mut spheres = sphere::Spheres::default();
-    let mut media = infinite::Media::default();
+    let mut media = Media::default();
     for i in order {
         let row = &rows[i];
-        let one = match row.text("geometry") {
-            "slab" | "slabXY" => slab::answer(row, &mut slabs),
-            "slab_fresnel" => fresnel::answer(row, &mut fresnel_slabs),
-            "halfspace" => half_space::answer(row, &mut half_spaces),
-            "sphere" => sphere::answer(row, &mut spheres),
-            "critical_slab" | "critical_sphere" => critical::answer(row, &mut bodies),
-            "infinite" => infinite::answer(row, &mut media),
-            "kernel" => kernel::answer(row),
-            other => Ok(Err(format!("geometry {other} is not answered here; allowed: {GEOMETRIES}"))),
-        };
-        answers[i] = Some(one.with_context(|| format!("{name}:{}", row.line))?);
+        answers[i] = Some(media.answer_typed(row).with_context(|| format!("{name}:{}", row.line))?);
     }
     let mut answered = Vec::new();
     for (row, answer) in rows.iter().zip(answers) {
@@ -58,6 +43,41 @@ pub fn answer(path: &Path, format: Format, output: &mut Vec<u8>) -> Result<()> {
         }
     }
     write(&answered, format, output)
+}
+
+/// All that has been solved so far.
+#[derive(Default)]
+struct Media {
+    slabs: slab::Slabs,
+    fresnel_slabs: fresnel::FresnelSlabs,
+    half_spaces: half_space::HalfSpaces,
+    spheres: sphere::Spheres,
+    critical: critical::Bodies,
+    infinite: infinite::Media,
+}
+
+impl Media {
+    fn answer(&mut self, row: &Row) -> Result<Answered> {
+        match row.text("geometry") {
+            "slab" | "slabXY" => slab::answer(row, &mut self.slabs),
+            "slab_fresnel" => fresnel::answer(row, &mut self.fresnel_slabs),
+            "halfspace" => half_space::answer(row, &mut self.half_spaces),
+            "sphere" => sphere::answer(row, &mut self.spheres),
+            "critical_slab" | "critical_sphere" => critical::answer(row, &mut self.critical),
+            "infinite" => infinite::answer(row, &mut self.infinite),
+            "kernel" => kernel::answer(row),
+            other => Ok(Err(format!("geometry {other} is not answered here; allowed: {GEOMETRIES}"))),
+        }
+    }
+
+    /// Answers with a bound that holds for the decimals in the row.
+    fn answer_typed(&mut self, row: &Row) -> Result<Answered> {
+        let mut answer = self.answer(row)?;
+        if let (Ok(value), Some(typed)) = (&mut answer, row.typed()) {
+            typed.widen(&mut [value], |to| Ok(self.answer(&row.moved("w", to))?.ok().map(|v| vec![v])))?;
+        }
+        Ok(answer)
+    }
 }
 
 const GEOMETRIES: &str =
@@ -77,11 +97,23 @@ fn read(path: &Path) -> Result<Vec<Row>> {
     }
     let mut rows = Vec::new();
     for record in reader.records() {
-        let record = record.with_context(|| format!("{name}"))?;
+        let record = record.map_err(|error| misread(&name.to_string(), &error))?;
         let line = record.position().map_or(0, csv::Position::line);
         rows.push(Row { line, fields: places.map(|p| record.get(p).unwrap_or("").to_string()) });
     }
     Ok(rows)
+}
+
+/// Which line cannot be read, and why.
+fn misread(name: &str, error: &csv::Error) -> anyhow::Error {
+    let line = error.position().map_or(0, csv::Position::line);
+    match error.kind() {
+        csv::ErrorKind::UnequalLengths { expected_len, len, .. } => {
+            anyhow!("{name}:{line}: {len} cells; allowed: {expected_len}, as in the first line")
+        }
+        csv::ErrorKind::Utf8 { .. } => anyhow!("{name}:{line}: not text; allowed: UTF-8"),
+        _ => anyhow!("{name}:{line}: {error}"),
+    }
 }
 
 /// A question beside its answer.
@@ -148,7 +180,7 @@ fn write(lines: &[Line<'_>], format: Format, output: &mut Vec<u8>) -> Result<()>
             let cells = |line: &Line<'_>| {
                 let mut cells = ["id", "quantity"].map(|column| line.row.text(column).to_string()).to_vec();
                 cells.extend(match &line.answer {
-                    Ok(v) => [digits(*v), format!("{:.0e}", v.error), v.method.to_string()],
+                    Ok(v) => [digits(*v), bound(v.error), v.method.to_string()],
                     Err(note) => [String::new(), String::new(), note.clone()],
                 });
                 cells

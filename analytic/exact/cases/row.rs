@@ -1,6 +1,8 @@
 //! One question of a table: its cells by column name.
 
+use crate::answer::shortest;
 use crate::read::{dimension, incidence};
+use crate::typed::Typed;
 use anyhow::{Result, anyhow, bail};
 use turbid_analytic::{Dimension, Incidence};
 
@@ -20,6 +22,32 @@ impl Row {
     /// A cell, without blanks around it.
     pub fn text(&self, column: &str) -> &str {
         COLUMNS.iter().position(|c| *c == column).map_or("", |i| self.fields[i].trim())
+    }
+
+    /// The same question with another number in one column.
+    pub fn moved(&self, column: &str, to: f64) -> Self {
+        let mut fields = self.fields.clone();
+        if let Some(i) = COLUMNS.iter().position(|c| *c == column) {
+            fields[i] = shortest(to);
+        }
+        Row { line: self.line, fields }
+    }
+
+    /// The parameters that rounding touches; cells that do not matter may be empty.
+    pub fn typed(&self) -> Option<Typed> {
+        let cell = |column: &str| self.text(column).parse::<f64>().ok();
+        Some(match self.text("geometry") {
+            "kernel" => return None,
+            "critical_slab" | "critical_sphere" => Typed { secondaries: cell("w"), ..Typed::default() },
+            _ => Typed {
+                albedo: cell("w"),
+                g: if self.extra("phase").is_some() { None } else { Some(cell("g").unwrap_or(0.0)) },
+                index: cell("n"),
+                size: cell("tau").or(cell("a")),
+                places: cell("t").into_iter().chain(cell("r")).collect(),
+                ..Typed::default()
+            },
+        })
     }
 
     /// A number that must be there.

@@ -31,13 +31,24 @@ impl Slabs {
         let key = key(albedo, named, incidence);
         if !self.solved.contains_key(&key) {
             // Slabs of one thickness share an operator.
-            let other =
-                self.solved.values().find_map(|s| if let Solved::Peierls(s) = s { Some(s) } else { None });
+            let other = self.solved.values().find_map(|s| match s {
+                Solved::Peierls(slab) => Some(slab),
+                Solved::Both(slab, _) => Some(slab.as_ref()),
+                _ => None,
+            });
             let slab = match other {
                 Some(other) => other.with(albedo, incidence)?,
                 None => IsotropicSlab::new(tau, albedo, incidence)?,
             };
-            self.solved.insert(key.clone(), Solved::Peierls(slab));
+            let media = &mut self.media;
+            let solved = Solved::isotropic(slab, tau, || {
+                let medium = match media.entry((albedo.to_bits(), named.name.clone())) {
+                    Entry::Occupied(entry) => entry.into_mut(),
+                    Entry::Vacant(entry) => entry.insert(AnisotropicMedium::new(albedo, &named.phase)?),
+                };
+                medium.slab(tau, incidence)
+            });
+            self.solved.insert(key.clone(), solved);
         }
         self.solved.get(&key).context("the slab was just solved")
     }
