@@ -22,7 +22,7 @@ pub const LENGTH: f64 = 4.0;
 pub const THICKNESS: f64 = 2.0;
 
 /// Emitted photons a map, and maps, by preset.
-const QUICK: [(u64, u64); 3] = [(2_000, 512), (16_000, 512), (64_000, 512)];
+const QUICK: [(u64, u64); 3] = [(2_000, 512), (16_000, 512), (64_000, 384)];
 const FULL: [(u64, u64); 4] = [(2_000, 2048), (16_000, 2048), (64_000, 1024), (512_000, 256)];
 
 /// Emitted photons a map, and maps.

@@ -25,7 +25,7 @@ const MAX_ROWS: usize = 3;
 
 /// Photons a map, and maps.
 fn size(settings: &Settings) -> (u64, u64) {
-    let (photons, maps) = settings.pick((20_000, 256), (80_000, 512));
+    let (photons, maps) = settings.pick((20_000, 128), (80_000, 512));
     (((f64::from(photons) * settings.photon_scale) as u64).max(1), maps)
 }
 

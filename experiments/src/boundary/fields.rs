@@ -62,7 +62,7 @@ pub const FIELDS: [Field; 7] = [
         albedo: 1.0,
         g: 0.0,
         asked: Asked::All,
-        quick: &[(5_000, 192), (20_000, 144), (80_000, 64)],
+        quick: &[(5_000, 144), (20_000, 144), (80_000, 64)],
         full: &[(5_000, 768), (20_000, 512), (80_000, 256), (320_000, 128)],
     },
     Field {
@@ -82,7 +82,7 @@ pub const FIELDS: [Field; 7] = [
         albedo: 1.0,
         g: 0.0,
         asked: Asked::Some,
-        quick: &[(20_000, 192)],
+        quick: &[(20_000, 128)],
         full: &[(20_000, 768)],
     },
     Field {
@@ -92,7 +92,7 @@ pub const FIELDS: [Field; 7] = [
         albedo: 1.0,
         g: 0.0,
         asked: Asked::Some,
-        quick: &[(20_000, 192)],
+        quick: &[(20_000, 144)],
         full: &[(20_000, 768)],
     },
     Field {

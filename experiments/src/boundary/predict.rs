@@ -59,8 +59,8 @@ pub fn uniform_mean(
     Ok((mean.value, mean.error))
 }
 
-/// The parts of one case.
-pub fn parts(case: &Case, exact: &Exact) -> anyhow::Result<Parts> {
+/// The parts of one case; `untreated` are those of the same without a treatment, if they are known.
+fn parts(case: &Case, exact: &Exact, untreated: Option<&Parts>) -> anyhow::Result<Parts> {
     let Case { field, spot, .. } = *case;
     let (treatment, kernel) = (referee(case.treatment), referee_kernel(case.kernel));
     let (here, here_error) = exact(spot.depth())?;
@@ -92,8 +92,14 @@ pub fn parts(case: &Case, exact: &Exact) -> anyhow::Result<Parts> {
             };
             // Where the medium ends inside the ball, neighbours are missing like the ball's own part.
             let plain = referee::Treatment::None;
-            let inside =
-                nearest_treated_mean_uniform(plain, kernel, neighbors, CAP, body, at, density * here)?.value;
+            let inside = match untreated {
+                Some(parts) => 1.0 + parts.edge,
+                None if treatment == plain => uniform.value,
+                None => {
+                    let here = density * here;
+                    nearest_treated_mean_uniform(plain, kernel, neighbors, CAP, body, at, here)?.value
+                }
+            };
             let raised = nearest_clustering(field.albedo, field.g, density * here * inside, k);
             (uniform, bent, raised * inside * uniform.value)
         }
@@ -111,13 +117,23 @@ fn budget(settings: &Settings) -> anyhow::Result<Vec<(Case, Parts)>> {
         let exact = field.exact()?;
         let cases: Vec<Case> =
             field.sizes(settings).into_iter().flat_map(|(n, _)| Case::all(settings, field, n)).collect();
-        let predicted: Vec<anyhow::Result<(Case, Parts)>> = cases
+        let ask = |case: &Case, untreated| parts(case, &exact, untreated).with_context(|| case.name());
+        let untreated: HashMap<String, Parts> = cases
+            .par_iter()
+            .filter(|case| case.treatment == Treatment::None)
+            .map(|case| Ok((case.name(), ask(case, None)?)))
+            .collect::<anyhow::Result<_>>()?;
+        let predicted: Vec<(Case, Parts)> = cases
             .into_par_iter()
-            .map(|case| parts(&case, &exact).map(|p| (case, p)).with_context(|| case.name()))
-            .collect();
-        for item in predicted {
-            all.push(item?);
-        }
+            .map(|case| {
+                let same = untreated.get(&Case { treatment: Treatment::None, ..case }.name());
+                match same {
+                    Some(parts) if case.treatment == Treatment::None => Ok((case, *parts)),
+                    _ => Ok((case, ask(&case, same)?)),
+                }
+            })
+            .collect::<anyhow::Result<_>>()?;
+        all.extend(predicted);
     }
     Ok(all)
 }
@@ -185,5 +201,5 @@ pub fn line(
         kernel: turbid::estimators::Kernel::Uniform,
         treatment,
     };
-    parts(&case, exact).map(|p| 100.0 * p.total())
+    parts(&case, exact, None).map(|p| 100.0 * p.total())
 }

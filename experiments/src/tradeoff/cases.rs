@@ -298,7 +298,7 @@ const NEIGHBORS: [usize; 8] = [10, 20, 50, 100, 200, 500, 1000, 2000];
 /// Photons that a fixed ball may hold where the fluence is 1: fewer are noise, more are far beyond the best.
 const FILLING: (f64, f64) = (2.0, 9000.0);
 /// Gathers of more photons are asked of every fourth probe along each side: their balls overlap all the same.
-const WIDE: f64 = 400.0;
+const WIDE: f64 = 150.0;
 /// Fewest emitted photons for each one gathered: below, the ball is no longer local.
 const MIN_SHARE: u64 = 32;
 /// Room of a nearest gather: the cap would hold so many times k photons at the least fluence, and half of it, as at a
@@ -370,6 +370,11 @@ impl Setting {
                 libm::cbrt(3.0 * volume / (4.0 * PI)).min(CELL)
             }
         }
+    }
+
+    /// How far the balls of a slab's outermost probes may leave the cell \[mfp\].
+    pub fn overhang(&self) -> f64 {
+        (self.cap() - 0.5 * CELL / self.side() as f64).max(0.0)
     }
 
     /// The gather as the estimator takes it.

@@ -76,7 +76,7 @@ fn measure_map(
     output.count("collisions", pass.collisions);
     output.count("photons stored", stored as u64);
     if let Fog::Slab { .. } = body.fog {
-        let margin = asked.iter().map(Setting::cap).fold(0.0, f64::max);
+        let margin = asked.iter().map(Setting::overhang).fold(0.0, f64::max);
         fold::surround(&mut pass.photons, CELL, margin);
     }
     let map = output.time("building", |_| PhotonMap::new(pass.photons, pass.emitted))?;
