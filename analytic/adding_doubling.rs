@@ -171,9 +171,7 @@ impl AddingDoubling {
 
     /// Fraction of the incident power that leaves through the far face, direct light included \[1\].
     pub fn transmittance(&self) -> Value {
-        let (a, b) = (self.transmittance_direct, self.transmittance_diffuse);
-        let value = a.value + b.value;
-        Value::new(value, a.error + b.error + f64::EPSILON * value, METHOD)
+        self.transmittance_direct.plus(self.transmittance_diffuse, METHOD)
     }
 
     /// Fraction of the incident power that crosses the slab without a collision \[1\].

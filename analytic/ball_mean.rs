@@ -1,4 +1,12 @@
 //! What a kernel makes of an exponential field, exactly: the closed blur of every diffusion mode.
+//!
+//! M(x) = int K_r(y) e^(b.y) dy with x = |b| r, the factor by which an estimate with the kernel K_r is too high in the
+//! field e^(b.y) wherever no face cuts the kernel. It is radial: int K(u) S_d(x u) dV, S_d the mean of e^(v n.e) over
+//! all directions.
+//!
+//! Limits: x -> 0, 1 + m2 x^2/(2d), the curvature's bias; large x, e^x over a power of x, for the Gaussian e^(x^2/2).
+//!
+//! Source: Silverman 1986, chapter 4, for the bias; the closed forms are the Bessel functions of Watson 1944.
 
 use crate::error::{Result, within};
 use crate::kernel::{Dimension, Kernel};

@@ -1,4 +1,11 @@
-//! Light that has not met the medium yet.
+//! Light that has not met the medium yet: each direction keeps e^(-t/mu) of its radiance.
+//!
+//! With unit irradiance on the face the fluence is e^(-t/mu0)/mu0 (beam) or 2 E_2(t) (diffuse, radiance 1/pi), and
+//! e^(-t/mu0) or 2 E_3(t) of the power crosses a thickness t.
+//!
+//! Limits: t = 0, fluence 1/mu0 or 2, and all of the power.
+//!
+//! Source: Bouguer 1729; Chandrasekhar 1960, appendix I, for E_n.
 
 use crate::error::{Result, within};
 use crate::exponential_integral::e_n;

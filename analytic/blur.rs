@@ -1,5 +1,12 @@
 //! How the uniform kernel blurs an edge, a line and a sinusoid, and any other kernel a sinusoid; lengths in units of the
 //! radius. Edges of other kernels are in `edge`.
+//!
+//! A step seen through the kernel is its edge spread function, the integral of the kernel's marginal; a line its marginal,
+//! the line spread function; a sinusoid keeps the marginal's cosine transform, the modulation transfer.
+//!
+//! Limits: frequency 0, transfer 1; beyond the radius an edge is 0 or 1.
+//!
+//! Source: Goodman 2005, chapter 6, for transfer functions.
 
 use crate::error::{Result, within};
 use crate::kernel::{Dimension, Kernel};

@@ -65,7 +65,9 @@ impl Cavity {
         let lost = (1.0 - rho) + rho * absorbed.value;
         let error = rho * absorbed.error + 2.0 * f64::EPSILON * lost;
         if error >= 0.5 * lost {
-            return Err(Error::Infinite("light in a cavity that absorbs nothing grows without limit"));
+            return Err(Error::Infinite(
+                "light in a cavity that absorbs nothing grows without limit; allowed: wall_albedo or albedo below 1",
+            ));
         }
         let rounds = 1.0 / lost;
         // The difference of two reciprocals, to first order doubled.

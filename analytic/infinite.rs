@@ -207,7 +207,9 @@ impl InfiniteMedium {
         }
         let value = 1.0 / far;
         if !value.is_finite() {
-            return Err(Error::Infinite("without absorption the transform at so small an s exceeds f64"));
+            return Err(Error::Infinite(
+                "without absorption the transform at so small an s exceeds f64; allowed: larger s",
+            ));
         }
         let error = (value - 1.0 / near).abs() + (8.0 + 4.0 / rate) * f64::EPSILON * value;
         Ok(Value::new(value, error, "continued fraction, two convergents"))
@@ -215,7 +217,7 @@ impl InfiniteMedium {
 
     fn absorbing(&self) -> Result<()> {
         if self.albedo == 1.0 {
-            Err(Error::Infinite("without absorption the fluence fills all space"))
+            Err(Error::Infinite("without absorption the fluence fills all space; allowed: albedo below 1"))
         } else {
             Ok(())
         }

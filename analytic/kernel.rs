@@ -43,6 +43,18 @@ pub enum Kernel {
 }
 
 impl Kernel {
+    /// One of each kind, and a sharper cone.
+    #[cfg(test)]
+    pub(crate) const SAMPLES: [Kernel; 7] = [
+        Kernel::Uniform,
+        Kernel::Epanechnikov,
+        Kernel::Biweight,
+        Kernel::Cone { kappa: 1.0 },
+        Kernel::Cone { kappa: 2.0 },
+        Kernel::TruncatedGaussian,
+        Kernel::Gaussian,
+    ];
+
     pub(crate) fn check(self) -> Result<Self> {
         if let Kernel::Cone { kappa } = self {
             within("kappa", kappa, 1.0, 1e6, "1 to 1e6")?;
@@ -273,16 +285,6 @@ mod tests {
     use super::*;
     use crate::quadrature::GaussLegendre;
 
-    const ALL: [Kernel; 7] = [
-        Kernel::Uniform,
-        Kernel::Epanechnikov,
-        Kernel::Biweight,
-        Kernel::Cone { kappa: 1.0 },
-        Kernel::Cone { kappa: 2.0 },
-        Kernel::Gaussian,
-        Kernel::TruncatedGaussian,
-    ];
-
     /// int_0^reach f by 40 nodes on ten panels.
     fn radial(kernel: Kernel, f: impl Fn(f64) -> f64) -> f64 {
         let rule = GaussLegendre::rule(40);
@@ -292,7 +294,7 @@ mod tests {
 
     #[test]
     fn closed_forms_agree_with_quadrature() {
-        for kernel in ALL {
+        for kernel in Kernel::SAMPLES {
             for d in Dimension::ALL {
                 let area = |u: f64| d.sphere_area() * libm::pow(u, f64::from(d.number() - 1));
                 for j in [0, 1, 2, 4, 7, 20] {
@@ -318,7 +320,7 @@ mod tests {
     #[test]
     fn marginal_is_the_integral_over_the_plane() {
         let rule = GaussLegendre::rule(60);
-        for kernel in ALL {
+        for kernel in Kernel::SAMPLES {
             for z in [0.0, 0.2, -0.7, 0.999] {
                 let end = if kernel == Kernel::Gaussian { 12.0 } else { f64::sqrt(1.0 - z * z) };
                 let plane = |s: f64| 2.0 * PI * s * kernel.density(Dimension::Three, (s * s + z * z).sqrt());

@@ -35,6 +35,7 @@ pub mod kernel;
 pub mod mean_path;
 pub mod nearest;
 pub mod orders;
+mod panels;
 mod peierls;
 pub mod phase;
 mod poisson;

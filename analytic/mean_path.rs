@@ -120,7 +120,7 @@ pub fn chord_moment_slab(thickness: f64, n: u32) -> Result<Value> {
     match n {
         0 => Ok(Value::new(1.0, 0.0, METHOD)),
         1 => mean_path_slab(thickness),
-        _ => Err(Error::Infinite("the chords of a slab have no second moment")),
+        _ => Err(Error::Infinite("the chords of a slab have no second moment; allowed: n of 0 or 1")),
     }
 }
 

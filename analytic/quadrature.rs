@@ -53,6 +53,13 @@ impl GaussLegendre {
         GaussLegendre { nodes, weights }
     }
 
+    /// Weights of barycentric interpolation at the nodes (Wang, Huybrechs and Vandewalle 2014), up to a factor.
+    pub(crate) fn barycentric(&self) -> Vec<f64> {
+        // (-1)^j root((1-x^2) w).
+        let weights = self.nodes.iter().zip(&self.weights).map(|(x, w)| (x * (1.0 - x) * w).sqrt());
+        weights.enumerate().map(|(j, weight)| if j.is_multiple_of(2) { weight } else { -weight }).collect()
+    }
+
     /// The rule applied to `f` on \[a, b\].
     pub fn integrate(&self, a: f64, b: f64, mut f: impl FnMut(f64) -> f64) -> f64 {
         let length = b - a;

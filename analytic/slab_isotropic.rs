@@ -165,9 +165,7 @@ impl IsotropicSlab {
 
     /// Fraction of the incident power that leaves through the far face, direct light included \[1\].
     pub fn transmittance(&self) -> Value {
-        let (a, b) = (self.transmittance_direct(), self.transmittance_diffuse());
-        let value = a.value + b.value;
-        Value::new(value, a.error + b.error + f64::EPSILON * value, METHOD)
+        self.transmittance_direct().plus(self.transmittance_diffuse(), METHOD)
     }
 
     /// Fraction of the incident power that is absorbed \[1\].

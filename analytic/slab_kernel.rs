@@ -1,4 +1,12 @@
 //! A kernel in a slab: what it makes of a field of depth only, and what it loses beyond the faces.
+//!
+//! A field of depth alone meets the kernel's marginal k(z) = int K dx dy: the plain estimate at depth h expects
+//! int_0^tau f(t) k((t-h)/r) dt/r. Its error is split by definition: edge, f(h) (M_0 - 1), M_0 the kernel's mass inside
+//! the slab, and blur, the rest.
+//!
+//! Limits: no face within the radius, M_0 = 1 and blur alone; on the face of a thick slab, M_0 = 1/2.
+//!
+//! Source: Silverman 1986, section 2.10; Jones 1993 for moments of kernels that a boundary cuts.
 
 use crate::error::{Error, Result, within};
 use crate::incidence::check_depth;
@@ -165,16 +173,6 @@ mod tests {
     use crate::{Incidence, IsotropicSlab};
     use libm::{exp, log};
 
-    const ALL: [Kernel; 7] = [
-        Kernel::Uniform,
-        Kernel::Epanechnikov,
-        Kernel::Biweight,
-        Kernel::Cone { kappa: 1.0 },
-        Kernel::Cone { kappa: 2.0 },
-        Kernel::Gaussian,
-        Kernel::TruncatedGaussian,
-    ];
-
     #[test]
     fn face_moments_have_their_closed_forms() {
         for x in [-0.7, 0.0, 0.25, 0.9, 2.0] {
@@ -187,7 +185,7 @@ mod tests {
             assert!(m(Kernel::Epanechnikov, 1).covers(15.0 / 16.0 * v * v * v / 6.0));
             assert!(m(Kernel::Biweight, 1).covers(35.0 / 32.0 * v * v * v * v / 8.0));
         }
-        for kernel in ALL {
+        for kernel in Kernel::SAMPLES {
             // On the face: half the mass, and M_2 = m_2/(2d).
             assert!(face_moment(kernel, 0, 0.0).unwrap().covers(0.5), "{kernel:?}");
             let second = kernel.bias_coefficient(Dimension::Three).unwrap().value;
@@ -197,7 +195,7 @@ mod tests {
 
     #[test]
     fn constants_give_the_mass_and_exponentials_their_mean() {
-        for kernel in ALL {
+        for kernel in Kernel::SAMPLES {
             for (r, x, tau) in [(0.3, 0.1, 0.35), (0.3, 0.0, 5.0), (2.0, 0.5, 1.0)] {
                 let mass = slab_moment(kernel, 0, r, x, tau).unwrap();
                 let got = slab_kernel_mean(kernel, r, x, tau, |_| 1.0).unwrap();

@@ -245,7 +245,9 @@ impl Sphere {
     pub fn exit_radiance(&self, mu: f64) -> Result<Value> {
         within("mu", mu, 0.0, 1.0, "0 to 1")?;
         if self.source == SphereSource::Centre && mu == 1.0 {
-            return Err(Error::Infinite("the radiance through a point source is infinite"));
+            return Err(Error::Infinite(
+                "the radiance through a point source is infinite; allowed: mu below 1",
+            ));
         }
         let chord = 2.0 * self.radius * mu;
         Ok(match (&self.solution, self.source) {
@@ -275,7 +277,7 @@ impl Sphere {
     fn check_r(&self, r: f64) -> Result<f64> {
         within("r", r, 0.0, self.radius, "0 to the radius")?;
         if self.source == SphereSource::Centre && 1.0 / (r * r) == f64::INFINITY {
-            return Err(Error::Infinite("the fluence at a point source is infinite"));
+            return Err(Error::Infinite("the fluence at a point source is infinite; allowed: r above 0"));
         }
         Ok(r)
     }

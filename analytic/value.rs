@@ -28,6 +28,12 @@ impl Value {
         Value { value, error: self.error * factor.abs() + f64::EPSILON * value.abs(), method: self.method }
     }
 
+    /// The sum of two values, known in some other way.
+    pub(crate) fn plus(self, other: Value, method: &'static str) -> Self {
+        let value = self.value + other.value;
+        Value { value, error: self.error + other.error + f64::EPSILON * value.abs(), method }
+    }
+
     /// Whether `other` lies within the bound.
     pub fn covers(&self, other: f64) -> bool {
         (self.value - other).abs() <= self.error

@@ -1,4 +1,11 @@
 //! Volumes of balls cut by a sphere or by a slab: what is left of the uniform kernel's ball inside the medium.
+//!
+//! A plane at distance x from the centre cuts off the cap (pi/3) (r-x)^2 (2r+x); a ball is cut by two parallel planes or by
+//! another ball, whose lens is two caps.
+//!
+//! Limits: no face within r, the whole ball; the centre on a flat face, half of it.
+//!
+//! Source: Kern and Bland 1938, for cap and lens.
 
 use crate::error::{Result, within};
 use crate::value::Value;

@@ -48,7 +48,6 @@ pub fn thin_slab(tau: f64, albedo: f64, incidence: Incidence) -> Result<ThinSlab
     let rest = albedo * lit * c / (1.0 - c);
     let with = |v: Value| Value::new(v.value, v.error + rest, METHOD);
     let diffuse = with(down);
-    let total = direct.value + diffuse.value;
-    let transmittance = Value::new(total, direct.error + diffuse.error + f64::EPSILON * total, METHOD);
+    let transmittance = direct.plus(diffuse, METHOD);
     Ok(ThinSlab { reflectance: with(up), transmittance, transmittance_diffuse: diffuse })
 }

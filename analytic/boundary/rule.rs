@@ -33,14 +33,7 @@ impl Rule {
         let gauss = GaussLegendre::rule(order);
         let places = gauss.nodes.iter().map(|&tau| place(tau)).collect();
         let weights = gauss.nodes.iter().zip(&gauss.weights).map(|(&tau, w)| w * slope(tau)).collect();
-        // Interpolation at Gauss nodes (Wang, Huybrechs and Vandewalle 2014).
-        let barycentric = (0..order)
-            .map(|i| {
-                let tau = gauss.nodes[i];
-                let weight = (tau * (1.0 - tau) * gauss.weights[i]).sqrt();
-                if i % 2 == 0 { weight } else { -weight }
-            })
-            .collect();
+        let barycentric = gauss.barycentric();
         Rule { gauss, places, weights, barycentric }
     }
 

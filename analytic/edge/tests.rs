@@ -6,19 +6,9 @@ use crate::slab_kernel::face_moment;
 use libm::{cos, exp, sin};
 use proptest::prelude::*;
 
-const ALL: [Kernel; 7] = [
-    Kernel::Uniform,
-    Kernel::Epanechnikov,
-    Kernel::Biweight,
-    Kernel::Cone { kappa: 1.0 },
-    Kernel::Cone { kappa: 2.0 },
-    Kernel::TruncatedGaussian,
-    Kernel::Gaussian,
-];
-
 #[test]
 fn without_decay_the_edge_is_the_cut_kernel() {
-    for kernel in ALL {
+    for kernel in Kernel::SAMPLES {
         let edge = Edge::new(kernel, 0.0).unwrap();
         assert!((edge.plateau().value - 1.0).abs() < edge.plateau().error, "{kernel:?}");
         for x in [-1.5, -1.0, -0.9, -0.3, 0.0, 0.01, 0.6, 1.0, 2.0] {
@@ -54,7 +44,7 @@ proptest! {
 
     #[test]
     fn lines_and_edges_are_integrals_over_the_kernel(s in 0.0..4.9_f64, x in -0.99..0.99_f64, which in 0_usize..7) {
-        let kernel = ALL[which];
+        let kernel = Kernel::SAMPLES[which];
         let edge = Edge::new(kernel, s).unwrap();
         let plateau = edge.plateau();
         let mean = exponential_mean(kernel, Dimension::Three, s).unwrap();
@@ -126,7 +116,7 @@ fn nearest_points_widen_the_edge() {
 /// The slope at the edge against differences of the expectation, for every kernel, with decay and a cap that matters.
 #[test]
 fn the_inverse_slope_is_that_of_the_expectation() {
-    for kernel in &ALL[..6] {
+    for kernel in &Kernel::SAMPLES[..6] {
         for (k, decay, cap) in [(5, 0.8, 3.0), (30, 0.5, 1.6), (30, 0.0, 1.4)] {
             let edge = NearestEdge::new(*kernel, k, 3.0, decay, cap).unwrap();
             let difference =
@@ -146,7 +136,7 @@ fn the_inverse_slope_is_that_of_the_expectation() {
 /// Without a cap to speak of and far inside, the expectation is that of the exponential field.
 #[test]
 fn the_plateau_is_that_of_an_exponential_field() {
-    for kernel in &ALL[..6] {
+    for kernel in &Kernel::SAMPLES[..6] {
         let (k, density, decay, cap) = (20, 50.0, 0.9, 2.0);
         let edge = NearestEdge::new(*kernel, k, density, decay, cap).unwrap();
         let want = crate::nearest::nearest_expectation_exponential(

@@ -1,14 +1,9 @@
 //! Depths: panels graded towards both faces, a polynomial on each.
 
+use crate::panels::{Basis, edges};
 use crate::quadrature::GaussLegendre;
-use libm::{exp, log};
 
-/// Panels grow by at most this factor from a face inwards: t ln t is interpolated on them to 4.3^-nodes of its size.
-const GROWTH: f64 = 2.6;
-
-/// Longest panel near a face, and the part of the depth that a deeper one may be long, up to the last length.
-const LONGEST: f64 = 2.0;
-const DEEP: f64 = 0.4;
+/// Longest panel: 16 nodes interpolate e^(-t) on it to 2/16! = 1e-13 of its largest value.
 const DEEPEST: f64 = 4.0;
 
 /// The slab cut in panels, symmetric about its middle.
@@ -18,7 +13,7 @@ pub(super) struct Mesh {
     edges: Vec<f64>,
     /// Nodes and weights on one panel.
     pub rule: GaussLegendre,
-    barycentric: Vec<f64>,
+    basis: Basis,
     /// Depth of every node, panel after panel from the lit face.
     pub depth: Vec<f64>,
     /// Distance of every node from the far face.
@@ -30,15 +25,9 @@ pub(super) struct Mesh {
 impl Mesh {
     /// `nodes` on each panel; the first panel is `first` of the slab or of a mean free path.
     pub fn new(tau: f64, first: f64, nodes: usize) -> Self {
-        let edges = edges(tau, first);
+        let edges = edges(tau, first, DEEPEST);
         let rule = GaussLegendre::rule(nodes);
-        // Barycentric weights of Legendre points (Wang and Xiang 2012): (-1)^j sqrt((1-x^2) w) up to a factor.
-        let barycentric = (0..nodes)
-            .map(|j| {
-                let sign = if j.is_multiple_of(2) { 1.0 } else { -1.0 };
-                sign * (rule.nodes[j] * (1.0 - rule.nodes[j]) * rule.weights[j]).sqrt()
-            })
-            .collect();
+        let basis = Basis::new(&rule);
         let (mut depth, mut weight) = (Vec::new(), Vec::new());
         for pair in edges.windows(2) {
             let length = pair[1] - pair[0];
@@ -51,12 +40,12 @@ impl Mesh {
         weight.extend_from_within(..);
         let half = weight.len() / 2;
         weight[half..].reverse();
-        Mesh { tau, edges, rule, barycentric, depth, height, weight }
+        Mesh { tau, edges, rule, basis, depth, height, weight }
     }
 
     /// Nodes on a panel.
     pub fn nodes(&self) -> usize {
-        self.barycentric.len()
+        self.rule.nodes.len()
     }
 
     /// Panels in one half.
@@ -91,18 +80,7 @@ impl Mesh {
     /// Values of the Lagrange polynomials of a panel at xi.
     pub fn basis(&self, xi: f64) -> Vec<f64> {
         let mut out = vec![0.0; self.nodes()];
-        let mut sum = 0.0;
-        for j in 0..out.len() {
-            let d = xi - self.rule.nodes[j];
-            if d == 0.0 {
-                out.fill(0.0);
-                out[j] = 1.0;
-                return out;
-            }
-            out[j] = self.barycentric[j] / d;
-            sum += out[j];
-        }
-        out.iter_mut().for_each(|b| *b /= sum);
+        self.basis.at(xi, &mut out);
         out
     }
 
@@ -114,33 +92,10 @@ impl Mesh {
     }
 }
 
-fn edges(tau: f64, first: f64) -> Vec<f64> {
-    let half = 0.5 * tau;
-    // Geometric up to where a panel would be longer than LONGEST, then as long as the depth allows.
-    let knee = half.min(LONGEST * GROWTH / (GROWTH - 1.0));
-    let count = (log(knee / (first * half.min(1.0))) / log(GROWTH)).ceil().max(1.0);
-    let ratio = exp(log(knee / (first * half.min(1.0))) / count);
-    let mut edges = vec![knee];
-    for _ in 0..count as usize {
-        edges.push(edges[edges.len() - 1] / ratio);
-    }
-    edges.push(0.0);
-    edges.reverse();
-    let mut deep = vec![0.0];
-    while knee + deep[deep.len() - 1] < half {
-        let last = deep[deep.len() - 1];
-        deep.push(last + LONGEST.max(DEEP * (knee + last)).min(DEEPEST));
-    }
-    let reach = deep[deep.len() - 1];
-    for (i, &offset) in deep.iter().enumerate().skip(1) {
-        edges.push(if i + 1 == deep.len() { half } else { knee + offset * ((half - knee) / reach) });
-    }
-    edges
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use libm::{exp, log};
 
     #[test]
     fn the_slab_is_covered_and_smooth_functions_are_met() {

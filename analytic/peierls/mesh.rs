@@ -1,24 +1,13 @@
 //! Panels graded towards the face, their nodes, and polynomials on them.
 
 use super::Halves;
+use crate::panels::{Basis, edges};
 use crate::quadrature::GaussLegendre;
-use libm::{exp, log};
 
 /// Nodes a panel.
 pub(crate) const NODES: usize = 20;
 
-/// Panels grow by at most this factor from the face inwards: a function that is singular at the face is interpolated
-/// to 4.3^-20 = 2e-13 of its high harmonics, t ln t to 1e-16 of its size on the panel.
-const GROWTH: f64 = 2.6;
-
-/// Longest panel near the face: e^(-t) is interpolated on it to 1e-24, and e^(-t/mu0) to 1e-12 for mu0 = 0.1.
-const LONGEST: f64 = 2.0;
-
-/// Deeper, panels may be this part of their depth d: what varies there is e^(-k d) at most, and
-/// e^(-k d) (0.4 k d)^20/(20! 2^39) is below 1e-20 for every k ...
-const DEEP: f64 = 0.4;
-
-/// ... up to this length, on which e^(-t) keeps 12 digits of its own size.
+/// Longest panel: e^(-t) keeps 12 digits of its own size on it.
 const DEEPEST: f64 = 8.0;
 
 /// The upper half of the slab, cut in panels.
@@ -35,26 +24,7 @@ pub(crate) struct Mesh {
 
 impl Mesh {
     pub(crate) fn new(tau: f64, first: f64) -> Self {
-        let half = 0.5 * tau;
-        // Geometric up to where a panel would be longer than LONGEST, then as long as the depth allows.
-        let knee = half.min(LONGEST * GROWTH / (GROWTH - 1.0));
-        let count = (log(knee / (first * half.min(1.0))) / log(GROWTH)).ceil().max(1.0);
-        let ratio = exp(log(knee / (first * half.min(1.0))) / count);
-        let mut edges = vec![knee];
-        for _ in 0..count as usize {
-            edges.push(edges[edges.len() - 1] / ratio);
-        }
-        edges.push(0.0);
-        edges.reverse();
-        let mut deep = vec![0.0];
-        while knee + deep[deep.len() - 1] < half {
-            let last = deep[deep.len() - 1];
-            deep.push(last + LONGEST.max(DEEP * (knee + last)).min(DEEPEST));
-        }
-        let reach = deep[deep.len() - 1];
-        for (i, &offset) in deep.iter().enumerate().skip(1) {
-            edges.push(if i + 1 == deep.len() { half } else { knee + offset * ((half - knee) / reach) });
-        }
+        let edges = edges(tau, first, DEEPEST);
         let rule = GaussLegendre::rule(NODES);
         let basis = Basis::new(&rule);
         let (mut nodes, mut lengths) = (Vec::new(), Vec::new());
@@ -117,48 +87,10 @@ impl Mesh {
     }
 }
 
-/// Lagrange polynomials on the nodes of a panel, in barycentric form.
-pub(crate) struct Basis {
-    nodes: [f64; NODES],
-    weights: [f64; NODES],
-}
-
-impl Basis {
-    fn new(rule: &GaussLegendre) -> Self {
-        let (mut nodes, mut weights) = ([0.0; NODES], [0.0; NODES]);
-        for j in 0..NODES {
-            let x = rule.nodes[j];
-            let sign = if j.is_multiple_of(2) { 1.0 } else { -1.0 };
-            // Barycentric weights of Legendre points (Wang and Xiang 2012): (-1)^j sqrt((1-x^2) w) up to a factor.
-            nodes[j] = x;
-            weights[j] = sign * (x * (1.0 - x) * rule.weights[j]).sqrt();
-        }
-        Basis { nodes, weights }
-    }
-
-    /// Values of all basis polynomials at xi.
-    pub(crate) fn at(&self, xi: f64, out: &mut [f64; NODES]) {
-        let mut sum = 0.0;
-        for j in 0..NODES {
-            let d = xi - self.nodes[j];
-            if d == 0.0 {
-                *out = [0.0; NODES];
-                out[j] = 1.0;
-                return;
-            }
-            out[j] = self.weights[j] / d;
-            sum += out[j];
-        }
-        let scale = 1.0 / sum;
-        for value in out.iter_mut() {
-            *value *= scale;
-        }
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::panels::{DEEP, GROWTH, LONGEST};
 
     #[test]
     fn panels_cover_the_half_and_grow_no_faster_than_stated() {

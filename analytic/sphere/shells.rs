@@ -61,7 +61,7 @@ impl Shells {
                 let mean = |f: &dyn Fn(f64, f64) -> f64| mean_of(&operator, &field, f);
                 let collided = mean(&|r, depth| first_flight(a, r, depth).0).scaled(albedo);
                 let direct = Value::rounded(mean_escape(a).0, ULPS, METHOD);
-                escape = sum(direct, collided);
+                escape = direct.plus(collided, METHOD);
                 absorptance = mean(&|_, _| 1.0).scaled(1.0 - albedo);
             }
             SphereSource::Incident => {
@@ -71,7 +71,7 @@ impl Shells {
                 let mean = |f: &dyn Fn(f64, f64) -> f64| mean_of(&operator, &field, f).scaled(a / 3.0);
                 absorptance = mean(&|_, _| 1.0).scaled(1.0 - albedo);
                 let collided = mean(&|r, depth| first_flight(a, r, depth).0).scaled(albedo);
-                escape = sum(Value::rounded(transmittance_and_loss(a).0, ULPS, METHOD), collided);
+                escape = Value::rounded(transmittance_and_loss(a).0, ULPS, METHOD).plus(collided, METHOD);
             }
             SphereSource::Centre => {
                 let (lit, glowing) = (solve(&incident, ULPS)?, solve(&uniform, ULPS)?);
@@ -163,12 +163,14 @@ impl Shells {
             (Some(centre), _) => {
                 let (whole, bound) = chord::gather_point(a, mu, &|r| centre.point.collided(r));
                 let whole = Value::new(whole, bound, METHOD);
-                sum(whole, collided).scaled(per_steradian)
+                whole.plus(collided, METHOD).scaled(per_steradian)
             }
             (None, SphereSource::Uniform) => {
                 let emitted = -expm1(-chord);
                 let emitted = Value::new(emitted, rounding(emitted), METHOD);
-                sum(emitted.scaled(1.0 / (4.0 * PI)), collided.scaled(per_steradian))
+                emitted
+                    .scaled(1.0 / (4.0 * PI))
+                    .plus(collided.scaled(per_steradian), METHOD)
                     .scaled(1.0 / self.volume())
             }
             (None, _) => {
@@ -178,7 +180,7 @@ impl Shells {
                     rounding(crossed) + chord.min(745.0) * f64::EPSILON * crossed,
                     METHOD,
                 );
-                sum(crossed, collided.scaled(per_steradian))
+                crossed.plus(collided.scaled(per_steradian), METHOD)
             }
         }
     }
@@ -242,9 +244,4 @@ fn mean_of(operator: &ShellOperator, field: &Field, g: &dyn Fn(f64, f64) -> f64)
     let value = scale * operator.integrate(&field.values, g);
     let error = scale * operator.integrate(&field.bound, g);
     Value::new(value, error + ULPS * f64::EPSILON * value + f64::MIN_POSITIVE, METHOD)
-}
-
-fn sum(a: Value, b: Value) -> Value {
-    let value = a.value + b.value;
-    Value::new(value, a.error + b.error + f64::EPSILON * value.abs(), METHOD)
 }

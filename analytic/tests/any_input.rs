@@ -1,7 +1,10 @@
 //! Every function of numbers answers with finite numbers or refuses, whatever the bits.
 #![allow(clippy::unwrap_used, reason = "tests")]
 
+mod support;
+
 use proptest::prelude::*;
+use support::any_input::{cases, number, sound};
 use turbid_analytic::ball_mean::exponential_mean;
 use turbid_analytic::beer_lambert::{direct_transmittance, uncollided_fluence};
 use turbid_analytic::blur::{edge_spread, line_spread, modulation_transfer};
@@ -13,18 +16,7 @@ use turbid_analytic::slab_single::{
     single_fluence, single_radiance, single_reflectance, single_transmittance,
 };
 use turbid_analytic::volumes::{ball_slab_volume, lens_volume};
-use turbid_analytic::{Dimension, Incidence, Kernel, Result, Value};
-
-/// Any bits, and numbers near the ranges in use.
-fn number() -> impl Strategy<Value = f64> {
-    prop_oneof![
-        any::<f64>(),
-        -3.0..3.0_f64,
-        0.0..1.0_f64,
-        prop_oneof![Just(0.0), Just(-0.0), Just(1.0), Just(-1.0), Just(5e-324), Just(f64::INFINITY)],
-        (-320.0..308.0_f64).prop_map(|e| libm::pow(10.0, e)),
-    ]
-}
+use turbid_analytic::{Dimension, Incidence, Kernel};
 
 fn any_kernel() -> impl Strategy<Value = Kernel> {
     prop_oneof![
@@ -37,20 +29,8 @@ fn any_kernel() -> impl Strategy<Value = Kernel> {
     ]
 }
 
-fn sound(answer: Result<Value>) -> std::result::Result<(), TestCaseError> {
-    if let Ok(v) = answer {
-        prop_assert!(v.value.is_finite() && v.error.is_finite() && v.error >= 0.0, "{v:?}");
-    }
-    Ok(())
-}
-
 proptest! {
-    #![proptest_config(ProptestConfig {
-        cases: 3000,
-        rng_seed: proptest::test_runner::RngSeed::Fixed(20_260_102),
-        failure_persistence: None,
-        ..ProptestConfig::default()
-    })]
+    #![proptest_config(cases(3000, 20_260_102))]
 
     #[test]
     fn functions_of_few_numbers(
@@ -95,12 +75,7 @@ proptest! {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig {
-        cases: 2000,
-        rng_seed: proptest::test_runner::RngSeed::Fixed(20_260_103),
-        failure_persistence: None,
-        ..ProptestConfig::default()
-    })]
+    #![proptest_config(cases(2000, 20_260_103))]
 
     #[test]
     fn integrals(

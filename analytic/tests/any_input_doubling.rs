@@ -1,9 +1,12 @@
 //! Slabs by doubling and between refracting faces answer with finite numbers or refuse, whatever the bits.
 #![allow(clippy::unwrap_used, reason = "tests")]
 
+mod support;
+
 use proptest::prelude::*;
+use support::any_input::{Outcome, cases, sound};
 use turbid_analytic::slab_fresnel::hemispherical_reflectance;
-use turbid_analytic::{AddingDoubling, FresnelSlab, Incidence, Result, Value};
+use turbid_analytic::{AddingDoubling, FresnelSlab, Incidence};
 
 /// Numbers near the ranges in use, ends and beyond included.
 fn near() -> impl Strategy<Value = f64> {
@@ -19,20 +22,7 @@ fn light(mu0: f64, diffuse: bool) -> Incidence {
     if diffuse { Incidence::Diffuse } else { Incidence::Beam { mu0 } }
 }
 
-fn sound(answer: Result<Value>) -> std::result::Result<(), TestCaseError> {
-    if let Ok(v) = answer {
-        prop_assert!(v.value.is_finite() && v.error.is_finite() && v.error >= 0.0, "{v:?}");
-    }
-    Ok(())
-}
-
-fn doubling(
-    tau: f64,
-    albedo: f64,
-    g: f64,
-    light: Incidence,
-    t: f64,
-) -> std::result::Result<(), TestCaseError> {
+fn doubling(tau: f64, albedo: f64, g: f64, light: Incidence, t: f64) -> Outcome {
     let Ok(slab) = AddingDoubling::new(tau, albedo, g, light) else { return Ok(()) };
     for v in [slab.reflectance(), slab.transmittance(), slab.absorptance()] {
         sound(Ok(v))?;
@@ -42,14 +32,7 @@ fn doubling(
     sound(slab.fluence(t * tau))
 }
 
-fn fresnel(
-    tau: f64,
-    albedo: f64,
-    g: f64,
-    index: f64,
-    light: Incidence,
-    t: f64,
-) -> std::result::Result<(), TestCaseError> {
+fn fresnel(tau: f64, albedo: f64, g: f64, index: f64, light: Incidence, t: f64) -> Outcome {
     let Ok(slab) = FresnelSlab::new(tau, albedo, g, index, light) else { return Ok(()) };
     let parts = [slab.reflectance(), slab.transmittance(), slab.absorptance()];
     for v in parts {
@@ -63,17 +46,8 @@ fn fresnel(
     sound(slab.fluence(t * tau))
 }
 
-fn cases(cases: u32) -> ProptestConfig {
-    ProptestConfig {
-        cases,
-        rng_seed: proptest::test_runner::RngSeed::Fixed(20_260_103),
-        failure_persistence: None,
-        ..ProptestConfig::default()
-    }
-}
-
 proptest! {
-    #![proptest_config(cases(100_000))]
+    #![proptest_config(cases(100_000, 20_260_103))]
 
     #[test]
     fn all_bits(
@@ -87,7 +61,7 @@ proptest! {
 }
 
 proptest! {
-    #![proptest_config(cases(120))]
+    #![proptest_config(cases(80, 20_260_103))]
 
     #[test]
     fn near_the_ranges(

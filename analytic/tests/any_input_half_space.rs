@@ -1,16 +1,15 @@
 //! Half-spaces, infinite media, X and Y, asymptotics and two streams answer with finite numbers or refuse.
 #![allow(clippy::unwrap_used, reason = "tests")]
 
+mod support;
+
 use proptest::prelude::*;
+use support::any_input::{Outcome, cases, sound};
 use turbid_analytic::asymptotics::thin_slab;
 use turbid_analytic::half_space::h_function;
 use turbid_analytic::infinite::{mean_cosine, mean_square_displacement};
 use turbid_analytic::two_stream::Method;
-use turbid_analytic::{
-    Asymptotics, HalfSpace, Incidence, InfiniteMedium, Phase, Result, TwoStream, Value, XAndY,
-};
-
-type Outcome = std::result::Result<(), TestCaseError>;
+use turbid_analytic::{Asymptotics, HalfSpace, Incidence, InfiniteMedium, Phase, Result, TwoStream, XAndY};
 
 /// Numbers near the ranges in use.
 fn near() -> impl Strategy<Value = f64> {
@@ -21,13 +20,6 @@ fn near() -> impl Strategy<Value = f64> {
         2 => (-20.0..8.0_f64).prop_map(|e| libm::pow(10.0, e)),
         1 => (-320.0..308.0_f64).prop_map(|e| libm::pow(10.0, e)),
     ]
-}
-
-fn sound(answer: Result<Value>) -> Outcome {
-    if let Ok(v) = answer {
-        prop_assert!(v.value.is_finite() && v.error.is_finite() && v.error >= 0.0, "{v:?}");
-    }
-    Ok(())
 }
 
 fn half_space(albedo: f64, mu0: f64, mu: f64, t: f64) -> Outcome {
@@ -104,23 +96,14 @@ fn two_stream(tau: f64, albedo: f64, g: f64, mu0: f64, t: f64) -> Outcome {
     Ok(())
 }
 
-fn config(cases: u32, seed: u64) -> ProptestConfig {
-    ProptestConfig {
-        cases,
-        rng_seed: proptest::test_runner::RngSeed::Fixed(seed),
-        failure_persistence: None,
-        ..ProptestConfig::default()
-    }
-}
-
 proptest! {
-    #![proptest_config(config(100_000, 20_260_111))]
+    #![proptest_config(cases(100_000, 20_260_111))]
 
     /// All bits. A positive number below 1 is as often as not in range, and far below 1: what takes milliseconds is
-    /// asked one time in 256.
+    /// asked one time in 1024.
     #[test]
     fn any_bits(
-        a in any::<f64>(), b in any::<f64>(), c in any::<f64>(), d in any::<f64>(), n in any::<u32>(), lot in 0..256_u32,
+        a in any::<f64>(), b in any::<f64>(), c in any::<f64>(), d in any::<f64>(), n in any::<u32>(), lot in 0..1024_u32,
     ) {
         sound(h_function(a, b))?;
         sound(mean_cosine(a, n))?;
@@ -144,12 +127,13 @@ proptest! {
 }
 
 proptest! {
-    #![proptest_config(config(200, 20_260_112))]
+    #![proptest_config(cases(200, 20_260_112))]
 
     #[test]
     fn near_the_ranges(a in near(), b in near(), c in near(), d in near(), n in 0_u32..2000) {
         half_space(a, b, c, d)?;
-        infinite(InfiniteMedium::henyey_greenstein(a, b.clamp(-0.99, 0.99)), c, d)?;
+        // The sharpest peaks take the longest.
+        infinite(InfiniteMedium::henyey_greenstein(a, if n < 200 { b.clamp(-0.99, 0.99) } else { b }), c, d)?;
         sound(mean_square_displacement(a, n))?;
         two_stream(a, b, c, d, d)?;
         two_stream(b, a, c, d, 0.5 * b)?;

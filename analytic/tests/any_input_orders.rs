@@ -1,7 +1,10 @@
 //! Slabs order by order, and the theory of kernels and beams: an answer or a refusal that names the parameter, whatever the bits.
 #![allow(clippy::unwrap_used, reason = "tests")]
 
+mod support;
+
 use proptest::prelude::*;
+use support::any_input::{cases, number, sound};
 use turbid_analytic::beams::{Pairing, Ray, blurred_field, crossing_moment, crossing_tail};
 use turbid_analytic::kernel::optimum;
 use turbid_analytic::nearest::{nearest_curved, optimum_neighbors};
@@ -9,38 +12,10 @@ use turbid_analytic::progressive::{
     progressive_asymptote, progressive_error, progressive_radius, progressive_variance,
 };
 use turbid_analytic::slab_single::{henyey_greenstein_mean, single_radiance_of};
-use turbid_analytic::{Dimension, Incidence, Kernel, Phase, Result, ScatteringOrders, Value};
-
-/// Any bits, and numbers near the ranges in use.
-fn number() -> impl Strategy<Value = f64> {
-    prop_oneof![
-        3 => any::<f64>(),
-        1 => 0.0..1.0_f64,
-        1 => prop_oneof![Just(0.0), Just(-0.0), Just(1.0), Just(-1.0), Just(5e-324), Just(f64::INFINITY)],
-        1 => (-320.0..308.0_f64).prop_map(|e| libm::pow(10.0, e)),
-    ]
-}
-
-fn config(cases: u32) -> ProptestConfig {
-    ProptestConfig {
-        cases,
-        rng_seed: proptest::test_runner::RngSeed::Fixed(20_260_104),
-        failure_persistence: None,
-        ..ProptestConfig::default()
-    }
-}
-
-fn sound(answer: Result<Value>) -> std::result::Result<(), TestCaseError> {
-    match answer {
-        Ok(v) => prop_assert!(v.value.is_finite() && v.error.is_finite() && v.error >= 0.0, "{v:?}"),
-        // One that names the parameter and its value, or says why there is no finite answer.
-        Err(e) => prop_assert!(e.to_string().contains("allowed: "), "{e}"),
-    }
-    Ok(())
-}
+use turbid_analytic::{Dimension, Incidence, Kernel, Phase, ScatteringOrders};
 
 proptest! {
-    #![proptest_config(config(100_000))]
+    #![proptest_config(cases(100_000, 20_260_104))]
 
     #[test]
     fn any_bits(
@@ -61,7 +36,7 @@ proptest! {
 }
 
 proptest! {
-    #![proptest_config(config(100_000))]
+    #![proptest_config(cases(100_000, 20_260_104))]
 
     #[test]
     fn kernels_and_beams(
@@ -98,7 +73,7 @@ proptest! {
 }
 
 proptest! {
-    #![proptest_config(config(1000))]
+    #![proptest_config(cases(1000, 20_260_104))]
 
     #[test]
     fn fields_of_kernels(which in 0_usize..3, x in number(), y in number(), kappa in number()) {
@@ -113,7 +88,7 @@ proptest! {
 }
 
 proptest! {
-    #![proptest_config(config(16))]
+    #![proptest_config(cases(16, 20_260_104))]
 
     #[test]
     fn near_the_ranges(

@@ -1,38 +1,14 @@
 //! Anisotropic media, slabs and phase functions answer with finite numbers or refuse, whatever the bits.
 #![allow(clippy::unwrap_used, reason = "tests")]
 
-use proptest::prelude::*;
-use turbid_analytic::{AnisotropicMedium, AnisotropicSlab, Error, Incidence, Phase, Result, Value};
+mod support;
 
-/// Any bits, and numbers near the ranges in use.
-fn number() -> impl Strategy<Value = f64> {
-    prop_oneof![
-        4 => any::<f64>(),
-        1 => -3.0..3.0_f64,
-        1 => prop_oneof![Just(0.0), Just(-0.0), Just(1.0), Just(-1.0), Just(5e-324), Just(f64::INFINITY)],
-        1 => (-320.0..308.0_f64).prop_map(|e| libm::pow(10.0, e)),
-    ]
-}
+use proptest::prelude::*;
+use support::any_input::{cases, number, sound};
+use turbid_analytic::{AnisotropicMedium, AnisotropicSlab, Error, Incidence, Phase};
 
 fn light() -> impl Strategy<Value = Incidence> {
     prop_oneof![Just(Incidence::Diffuse), number().prop_map(|mu0| Incidence::Beam { mu0 })]
-}
-
-fn sound(answer: Result<Value>) -> std::result::Result<(), TestCaseError> {
-    match answer {
-        Ok(v) => prop_assert!(v.value.is_finite() && v.error.is_finite() && v.error >= 0.0, "{v:?}"),
-        Err(error) => prop_assert!(matches!(error, Error::OutOfRange { .. }), "{error}"),
-    }
-    Ok(())
-}
-
-fn config(cases: u32) -> ProptestConfig {
-    ProptestConfig {
-        cases,
-        rng_seed: proptest::test_runner::RngSeed::Fixed(20_260_104),
-        failure_persistence: None,
-        ..ProptestConfig::default()
-    }
 }
 
 /// Between slabs of a few media: a mixture of what is asked and what is nearly asked.
@@ -41,7 +17,7 @@ fn near(low: f64, high: f64) -> impl Strategy<Value = f64> {
 }
 
 proptest! {
-    #![proptest_config(config(100_000))]
+    #![proptest_config(cases(100_000, 20_260_104))]
 
     #[test]
     fn slabs(tau in any::<f64>(), albedo in any::<f64>(), g in any::<f64>(), light in light()) {
@@ -68,7 +44,7 @@ proptest! {
 }
 
 proptest! {
-    #![proptest_config(config(250))]
+    #![proptest_config(cases(250, 20_260_104))]
 
     #[test]
     fn what_a_slab_answers(

@@ -1,6 +1,9 @@
 //! Photon estimates of fixed radius at boundaries, against closed forms and other quadratures.
 #![allow(clippy::unwrap_used, reason = "tests")]
 
+mod support;
+
+use support::kernels::{BALL, KERNELS, agree};
 use turbid_analytic::boundary::{
     Body, Treatment, body_moment, treated_mean, treated_mean_symmetric, treated_mean_uniform,
     treated_variance,
@@ -9,21 +12,6 @@ use turbid_analytic::quadrature::GaussLegendre;
 use turbid_analytic::slab_kernel::{face_moment, slab_kernel_mean, slab_moment};
 use turbid_analytic::volumes::lens_volume;
 use turbid_analytic::{Incidence, IsotropicSlab, Kernel, Value};
-
-const BALL: f64 = 4.0 / 3.0 * std::f64::consts::PI;
-
-const KERNELS: [Kernel; 5] = [
-    Kernel::Uniform,
-    Kernel::Epanechnikov,
-    Kernel::Biweight,
-    Kernel::Cone { kappa: 1.0 },
-    Kernel::TruncatedGaussian,
-];
-
-/// Two values agree within their bounds.
-fn agree(a: Value, b: Value) -> bool {
-    (a.value - b.value).abs() <= a.error + b.error
-}
 
 #[test]
 fn moments_at_flat_faces() {
@@ -58,21 +46,16 @@ fn lenses_of_a_sphere() {
             for r in [0.01, 0.2, 0.5, 5.0] {
                 let at = [distance * 0.6, 0.0, -distance * 0.8];
                 let got = body_moment(Kernel::Uniform, Body::Sphere { radius: a }, at, r, 0).unwrap();
-                let want = lens_volume(a, r, distance).unwrap().scaled_to(BALL * r * r * r);
+                let want = over(lens_volume(a, r, distance).unwrap(), BALL * r * r * r);
                 assert!(agree(got, want) && got.error < 1e-8, "{a} {distance} {r}: {got:?} {want:?}");
             }
         }
     }
 }
 
-trait Scaled {
-    fn scaled_to(self, unit: f64) -> Value;
-}
-
-impl Scaled for Value {
-    fn scaled_to(self, unit: f64) -> Value {
-        Value { value: self.value / unit, error: self.error / unit, method: self.method }
-    }
+/// The same value in a unit of `unit`.
+fn over(value: Value, unit: f64) -> Value {
+    Value { value: value.value / unit, error: value.error / unit, method: value.method }
 }
 
 /// int_a^b f by a rule of 40 nodes on 200 panels. A kink inside a panel of width w leaves about w^2/40^2 of its change

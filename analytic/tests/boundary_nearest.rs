@@ -1,7 +1,12 @@
 //! Gathers of the k nearest photons at boundaries, false photons, and what is refused.
 #![allow(clippy::unwrap_used, reason = "tests")]
 
+mod support;
+
 use proptest::prelude::*;
+use support::any_input::cases;
+use support::kernels::{BALL, KERNELS, agree};
+use turbid_analytic::Kernel;
 use turbid_analytic::boundary::{
     Body, Rejection, Treatment, body_moment, false_photon_mean, nearest_false_photon_mean,
     nearest_treated_mean, nearest_treated_mean_symmetric, nearest_treated_mean_uniform, treated_mean,
@@ -10,22 +15,6 @@ use turbid_analytic::boundary::{
 use turbid_analytic::nearest::nearest_expectation;
 use turbid_analytic::slab_kernel::{face_moment, slab_kernel_mean};
 use turbid_analytic::volumes::ball_slab_volume;
-use turbid_analytic::{Kernel, Value};
-
-const BALL: f64 = 4.0 / 3.0 * std::f64::consts::PI;
-
-const KERNELS: [Kernel; 5] = [
-    Kernel::Uniform,
-    Kernel::Epanechnikov,
-    Kernel::Biweight,
-    Kernel::Cone { kappa: 1.0 },
-    Kernel::TruncatedGaussian,
-];
-
-/// Two values agree within their bounds.
-fn agree(a: Value, b: Value) -> bool {
-    (a.value - b.value).abs() <= a.error + b.error
-}
 
 #[test]
 fn nearest_against_the_mixture_over_counts() {
@@ -193,12 +182,7 @@ fn refusals() {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig {
-        cases: 300,
-        rng_seed: proptest::test_runner::RngSeed::Fixed(20_260_103),
-        failure_persistence: None,
-        ..ProptestConfig::default()
-    })]
+    #![proptest_config(cases(200, 20_260_103))]
 
     /// Lengths over twenty decades and places anywhere: a finite answer with a bound, or a refusal.
     #[test]

@@ -1,36 +1,28 @@
 //! Critical sizes against tables and limits.
 #![allow(clippy::unwrap_used, reason = "tests")]
 
-use libm::{atan, pow, sqrt};
+mod support;
+
+use libm::{atan, sqrt};
+use support::table::{check, number, rows};
 use turbid_analytic::critical::{critical_half_thickness, critical_radius};
 use turbid_analytic::{Critical, CriticalShape};
 
-/// Every row of the table of foreign values, within its digits.
 #[test]
 fn table() {
-    let mut reader = csv::Reader::from_path("tests/reference/critical.csv").unwrap();
-    let headers = reader.headers().unwrap().clone();
-    let mut count = 0;
-    for row in reader.records() {
-        let row = row.unwrap();
-        let text = |name: &str| row.get(headers.iter().position(|h| h == name).unwrap()).unwrap();
-        let number = |name: &str| text(name).parse::<f64>().unwrap();
-        let shape = match text("geometry") {
+    for row in rows("critical.csv", 15) {
+        let shape = match row["geometry"].as_str() {
             "critical_slab" => CriticalShape::Slab,
             _ => CriticalShape::Sphere,
         };
-        let critical = Critical::new(shape, number("w")).unwrap();
-        let got = match text("quantity") {
-            "flux_ratio" => critical.flux_ratio(number("r")).unwrap(),
+        let critical = Critical::new(shape, number(&row, "w")).unwrap();
+        let got = match row["quantity"].as_str() {
+            "flux_ratio" => critical.flux_ratio(number(&row, "r")).unwrap(),
             _ => critical.size(),
         };
-        let want = number("value");
-        let tolerance = pow(10.0, 1.0 - number("digits")) * want;
-        assert!((got.value - want).abs() <= tolerance, "{}: {got:?} {want}", text("id"));
-        assert!(got.error < 1e-12 * want, "{got:?}");
-        count += 1;
+        check(&row, got);
+        assert!(got.error < 1e-12 * number(&row, "value"), "{row:?} {got:?}");
     }
-    assert_eq!(count, 15);
 }
 
 /// Printed by Sood, Forster and Parsons (2003) after Kaper, Lindeman and Leaf (1974): sizes to the last digit printed,

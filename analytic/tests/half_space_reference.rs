@@ -1,43 +1,23 @@
 //! The half-space and the infinite medium against their reference tables, row by row.
 #![allow(clippy::unwrap_used, reason = "tests")]
 
-use std::collections::HashMap;
+mod support;
+
+use support::table::{Row, check, number, rows};
 use turbid_analytic::half_space::hopf_constant;
 use turbid_analytic::{HalfSpace, Incidence, InfiniteMedium, Value};
 
-type Row = HashMap<String, String>;
-
-fn number(row: &Row, name: &str) -> f64 {
-    row[name].parse().unwrap()
-}
-
-/// The table has `digits` correct digits, so a deviation of 10^-(digits-1) of the value is allowed; the bound must
-/// cover the deviation but for the table's own last digit, and be small.
-fn check(file: &str, count: usize, answer: impl Fn(&Row) -> Value) {
-    let path = format!("{}/tests/reference/{file}", env!("CARGO_MANIFEST_DIR"));
-    let mut rows = 0;
-    for record in csv::Reader::from_path(path).unwrap().deserialize() {
-        let row: Row = record.unwrap();
+fn whole_table(file: &str, count: usize, answer: impl Fn(&Row) -> Value) {
+    for row in rows(file, count) {
         let got = answer(&row);
-        let (value, digits) = (number(&row, "value"), number(&row, "digits"));
-        let off = (got.value - value).abs();
-        let id = &row["id"];
-        // A table of more than 16 digits is compared at 16.
-        let digits = digits.min(16.0);
-        assert!(off <= libm::pow(10.0, 1.0 - digits) * value.abs(), "{id}: {got:?}, table {value:e}");
-        assert!(
-            off <= got.error + 2.0 * libm::pow(10.0, -digits) * value.abs(),
-            "{id}: {got:?} off by {off:e}"
-        );
-        assert!(got.error < 1e-13 * value.abs(), "{id}: {got:?}");
-        rows += 1;
+        check(&row, got);
+        assert!(got.error < 1e-13 * number(&row, "value").abs(), "{row:?}: {got:?}");
     }
-    assert_eq!(rows, count);
 }
 
 #[test]
 fn half_space() {
-    check("halfspace_H.csv", 30, |row| {
+    whole_table("halfspace_H.csv", 30, |row| {
         let quantity = row["quantity"].as_str();
         if quantity == "hopf_q_inf" {
             return hopf_constant();
@@ -56,7 +36,7 @@ fn half_space() {
 
 #[test]
 fn infinite() {
-    check("infinite.csv", 31, |row| {
+    whole_table("infinite.csv", 31, |row| {
         let medium = InfiniteMedium::henyey_greenstein(number(row, "w"), number(row, "g")).unwrap();
         match row["quantity"].as_str() {
             "diffusion_exponent_k" => medium.decays()[0],

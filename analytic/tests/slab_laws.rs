@@ -1,25 +1,18 @@
 //! Laws of the isotropic slab: balance, reciprocity, limits, orders, and an answer or a refusal for every input.
 #![allow(clippy::unwrap_used, reason = "tests")]
 
+mod support;
+
 use libm::{exp, log, pow};
 use proptest::prelude::*;
 use std::f64::consts::PI;
+use support::any_input::cases;
 use turbid_analytic::quadrature::GaussLegendre;
 use turbid_analytic::slab_single::single_radiance;
 use turbid_analytic::{Incidence, IsotropicSlab, Value};
 
 fn beam(mu0: f64) -> Incidence {
     Incidence::Beam { mu0 }
-}
-
-/// A fixed seed, so that a failure repeats; no files left behind.
-fn cases(count: u32) -> ProptestConfig {
-    ProptestConfig {
-        cases: count,
-        rng_seed: proptest::test_runner::RngSeed::Fixed(20_260_101),
-        failure_persistence: None,
-        ..ProptestConfig::default()
-    }
 }
 
 fn balance(slab: &IsotropicSlab) -> (f64, f64) {
@@ -204,7 +197,7 @@ fn grazing_light_is_answered() {
 }
 
 proptest! {
-    #![proptest_config(cases(60))]
+    #![proptest_config(cases(60, 20_260_101))]
 
     #[test]
     fn bounds_hold_over_the_domain(

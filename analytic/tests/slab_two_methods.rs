@@ -1,17 +1,11 @@
 //! The slab by two methods that share nothing: discrete ordinates (or the Peierls equation) and adding and doubling.
 #![allow(clippy::unwrap_used, reason = "tests")]
 
-use std::collections::HashMap;
-use turbid_analytic::{AddingDoubling, AnisotropicMedium, Incidence, IsotropicSlab, Phase, Value};
+mod support;
 
-const NORMAL: Incidence = Incidence::Beam { mu0: 1.0 };
-
-/// Two answers agree to `relative` of themselves, and their bounds cover the difference.
-fn close(name: &str, a: Value, b: Value, relative: f64) {
-    let off = (a.value - b.value).abs();
-    assert!(off <= relative * b.value.abs() + f64::MIN_POSITIVE, "{name}: {a:?} {b:?} off {off:e}");
-    assert!(off <= a.error + b.error, "{name}: {a:?} {b:?} off {off:e}");
-}
+use support::table::{check, incidence, number, rows};
+use support::{NORMAL, close};
+use turbid_analytic::{AddingDoubling, AnisotropicMedium, Incidence, IsotropicSlab, Phase};
 
 fn compare(medium: &AnisotropicMedium, tau: f64, light: Incidence, relative: f64) {
     let (albedo, phase) = (medium.albedo(), medium.phase());
@@ -138,17 +132,12 @@ fn light_is_conserved() {
 /// Of g = 0.85 and 0.9, which take most of the time, normal incidence alone.
 #[test]
 fn the_reference_table_of_fluxes_is_reproduced() {
-    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/reference/slab_hg_flux.csv");
     // Rows of one slab follow each other.
     let mut last: Option<([String; 4], AddingDoubling)> = None;
-    let mut rows = 0;
-    for record in csv::Reader::from_path(path).unwrap().deserialize() {
-        let row: HashMap<String, String> = record.unwrap();
-        let number = |name: &str| row[name].parse::<f64>().unwrap();
-        let light = match row["mu0"].as_str() {
-            "diffuse" => Incidence::Diffuse,
-            mu0 => Incidence::Beam { mu0: mu0.parse().unwrap() },
-        };
+    let mut answered = 0;
+    for row in rows("slab_hg_flux.csv", 208) {
+        let number = |name: &str| number(&row, name);
+        let light = incidence(&row["mu0"]);
         if number("g") > 0.8 && light != NORMAL {
             continue;
         }
@@ -165,40 +154,24 @@ fn the_reference_table_of_fluxes_is_reproduced() {
             "fluence" => slab.fluence(number("t")).unwrap(),
             other => panic!("{other}"),
         };
-        within_digits(&row, got);
-        rows += 1;
+        check(&row, got);
+        answered += 1;
     }
-    assert_eq!(rows, 208 - 57);
+    assert_eq!(answered, 208 - 57);
 }
 
 /// Full azimuth, where modes are few.
 #[test]
 fn the_reference_table_of_radiances_is_reproduced() {
-    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/reference/slab_hg_radiance.csv");
-    let mut rows = 0;
-    for record in csv::Reader::from_path(path).unwrap().deserialize() {
-        let row: HashMap<String, String> = record.unwrap();
-        let number = |name: &str| row[name].parse::<f64>().unwrap();
-        if number("g").abs() > 0.6 || number("mu0") < 1.0 && rows % 2 == 1 {
-            rows += 1;
+    for (i, row) in rows("slab_hg_radiance.csv", 36).into_iter().enumerate() {
+        let number = |name: &str| number(&row, name);
+        if number("g").abs() > 0.6 || number("mu0") < 1.0 && i % 2 == 1 {
             continue;
         }
         let light = Incidence::Beam { mu0: number("mu0") };
         let slab = AddingDoubling::new(number("tau"), number("w"), number("g"), light).unwrap();
         let got = slab.radiance(number("t"), number("mu"), number("dphi")).unwrap();
         assert!(got.error < 1e-8 * got.value, "{row:?} {got:?}");
-        within_digits(&row, got);
-        rows += 1;
+        check(&row, got);
     }
-    assert_eq!(rows, 36);
-}
-
-/// The table has `digits` correct digits, so a deviation of 10^-(digits-1) of the value is allowed; the bound must
-/// cover the deviation but for the table's own last digit.
-fn within_digits(row: &HashMap<String, String>, got: Value) {
-    let (value, digits): (f64, f64) = (row["value"].parse().unwrap(), row["digits"].parse().unwrap());
-    let off = (got.value - value).abs();
-    let last = libm::pow(10.0, 1.0 - digits) * value.abs();
-    assert!(off <= last, "{row:?}: {got:?}, off {off:e}");
-    assert!(off <= got.error + last, "{row:?}: {got:?}, off {off:e}");
 }
