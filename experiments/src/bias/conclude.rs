@@ -5,37 +5,17 @@ use super::fields::{FIELDS, Field};
 use super::measure::{is_fano_case, map_case, path_case};
 use super::predict::{COLLISIONS, Parts, recall};
 use super::{claims, figures, tables};
-use crate::harness::{Cells, Entry, Prediction, Row, Section, Settings, Term, Unit, signed, with_error};
+use crate::harness::{
+    Cells, Compared, Entry, Known, Prediction, Row, Section, Settings, Term, Unit, signed, with_error,
+};
 use crate::theory::clustering;
-use anyhow::Context;
-use std::collections::HashMap;
 use turbid::estimators::Kernel;
 use turbid::stats::Moments;
 
 /// One case with everything that is known of it; errors in per cent of the exact fluence.
-pub struct Result {
-    /// The case.
-    pub case: Case,
-    /// What was predicted.
-    pub parts: Parts,
-    /// Signed error of each map.
-    pub errors: Vec<f64>,
-    /// The same over maps.
-    pub error: Moments,
-}
+pub type Result = Compared<Case, Parts>;
 
 impl Result {
-    /// Predicted error.
-    pub fn predicted(&self) -> f64 {
-        100.0 * self.parts.total()
-    }
-
-    /// What is left of the measured error, in standard errors.
-    pub fn z(&self) -> f64 {
-        let error = libm::hypot(self.error.std_error(), 100.0 * self.parts.error);
-        (self.error.mean() - self.predicted()) / error
-    }
-
     /// Whether the measurement is fine enough to see the predicted error at all.
     pub fn sees_prediction(&self) -> bool {
         self.predicted().abs() >= 2.0 * self.error.std_error()
@@ -63,17 +43,13 @@ pub struct Mistake {
 
 /// Concludes.
 pub fn conclude(settings: &Settings, predictions: &[Prediction], cells: &Cells) -> anyhow::Result<Section> {
-    let known: HashMap<(&str, &str), (f64, f64)> =
-        predictions.iter().map(|p| ((p.case.as_str(), p.quantity.as_str()), (p.value, p.error))).collect();
+    let known = Known::new(predictions);
     let mut results = Vec::new();
     for field in &FIELDS {
         for photons in field.photons(settings) {
             for case in Case::all(field, photons) {
                 let parts = recall(&known, &case)?;
-                let values = cells.values(&case.name(), "fluence")?;
-                let errors: Vec<f64> = values.iter().map(|v| 100.0 * (v / parts.exact - 1.0)).collect();
-                let error = errors.iter().collect();
-                results.push(Result { case, parts, errors, error });
+                results.push(Compared::new(case, &case.name(), "fluence", parts, cells)?);
             }
         }
     }
@@ -103,11 +79,7 @@ fn entry(result: &Result) -> Entry {
 }
 
 /// The mistakes that need no switch inside the simulator: each map's own numbers, wrongly divided.
-fn mistakes(
-    known: &HashMap<(&str, &str), (f64, f64)>,
-    cells: &Cells,
-    results: &[Result],
-) -> anyhow::Result<Vec<Mistake>> {
+fn mistakes(known: &Known, cells: &Cells, results: &[Result]) -> anyhow::Result<Vec<Mistake>> {
     let mut mistakes = Vec::new();
     for result in results {
         let Case { field, photons, depth, size, kernel } = result.case;
@@ -127,8 +99,8 @@ fn mistakes(
         let over = |divisor: f64| 100.0 * ((1.0 + predicted / 100.0) / divisor - 1.0);
         let (error, wrong) = (wrongly(&|_| 1.0 / field.albedo), over(field.albedo));
         mistakes.push(Mistake { name: "divided by sigma_s", case, predicted, wrong, error });
-        let (collisions, _) = known.get(&(field.name, COLLISIONS)).context("collisions are not predicted")?;
-        let (error, wrong) = (wrongly(&|map| 1.0 / stored[map]), over(*collisions));
+        let (collisions, _) = known.get(field.name, COLLISIONS)?;
+        let (error, wrong) = (wrongly(&|map| 1.0 / stored[map]), over(collisions));
         mistakes.push(Mistake { name: "divided by stored photons", case, predicted, wrong, error });
     }
     Ok(mistakes)

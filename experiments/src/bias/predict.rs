@@ -2,12 +2,10 @@
 
 use super::cases::{Case, Size};
 use super::fields::{CELL, FIELDS, Field};
-use crate::harness::{Prediction, Settings, Unit};
+use crate::harness::{Known, Prediction, Settings, Unit};
 use crate::theory::{Fog, Gathers, NearestGather};
 pub use crate::theory::{PART_NAMES, Parts};
-use anyhow::Context;
 use rayon::prelude::*;
-use std::collections::HashMap;
 
 /// What is predicted of each field whose photons are all stored: collisions of a history, on average.
 pub const COLLISIONS: &str = "collisions per photon";
@@ -66,23 +64,18 @@ pub fn budget(settings: &Settings) -> anyhow::Result<Vec<(Case, Parts)>> {
 }
 
 /// The parts of a case, as they were written down.
-pub fn recall(predictions: &HashMap<(&str, &str), (f64, f64)>, case: &Case) -> anyhow::Result<Parts> {
+pub fn recall(known: &Known, case: &Case) -> anyhow::Result<Parts> {
     let name = case.name();
-    let find = |quantity: &str| {
-        let found = predictions.get(&(name.as_str(), quantity));
-        found.copied().with_context(|| format!("no prediction of {quantity} of {name}"))
-    };
-    let part = |name: &str| find(&format!("error from {name}")).map(|(value, _)| value / 100.0);
-    let (exact, exact_error) = find("exact fluence")?;
+    let (exact, exact_error) = known.get(&name, "exact fluence")?;
     let [edge, blur, rule, clusters] = PART_NAMES;
     Ok(Parts {
         exact,
         exact_error,
-        edge: part(edge)?,
-        blur: part(blur)?,
-        rule: part(rule)?,
-        clusters: part(clusters)?,
-        error: find("error")?.1 / 100.0,
+        edge: known.part(&name, edge)?,
+        blur: known.part(&name, blur)?,
+        rule: known.part(&name, rule)?,
+        clusters: known.part(&name, clusters)?,
+        error: known.get(&name, "error")?.1 / 100.0,
     })
 }
 

@@ -6,9 +6,8 @@ use super::predict::{EQUIVALENT, RISE, Theory};
 use super::profile::{equivalent_width, rise_width};
 use super::shaft::{CAP, density};
 use super::{claims, figures, shaft, tables, waves};
-use crate::harness::{Cells, Entry, Estimate, Prediction, Row, Section, Settings, Term, Unit};
+use crate::harness::{Cells, Entry, Estimate, Known, Prediction, Row, Section, Settings, Term, Unit};
 use rayon::prelude::*;
-use std::collections::HashMap;
 use std::f64::consts::PI;
 use turbid::estimators::Kernel;
 use turbid::stats::{Moments, jackknife};
@@ -97,8 +96,7 @@ pub fn inside(case: &Case) -> Vec<f64> {
 
 /// Concludes.
 pub fn conclude(settings: &Settings, predictions: &[Prediction], cells: &Cells) -> anyhow::Result<Section> {
-    let known: HashMap<(&str, &str), (f64, f64)> =
-        predictions.iter().map(|p| ((p.case.as_str(), p.quantity.as_str()), (p.value, p.error))).collect();
+    let known = Known::new(predictions);
     let results: Vec<anyhow::Result<Result>> = all_cases(settings)
         .into_par_iter()
         .map(|case| Result::new(case, Theory::recall(&known, &case)?, cells))
@@ -108,8 +106,7 @@ pub fn conclude(settings: &Settings, predictions: &[Prediction], cells: &Cells) 
     for kernel in Kernel::ALL {
         for radius in waves::RADII {
             let name = waves::case(kernel, radius);
-            let (predicted, error) =
-                known.get(&(name.as_str(), waves::QUANTITY)).copied().unwrap_or((f64::NAN, f64::NAN));
+            let (predicted, error) = known.get(&name, waves::QUANTITY)?;
             let maps = cells.values(&name, waves::QUANTITY)?;
             transfers.push(Transfer { kernel, radius, predicted, error, maps });
         }

@@ -5,7 +5,7 @@ use super::conclude::{Result, Transfer, find, find_at, largest};
 use super::predict::Exact;
 use super::waves;
 use crate::harness::{FigureFiles, bar};
-use crate::theory::referee_kernel;
+use crate::theory::{kernel_title, referee_kernel};
 use turbid::estimators::Kernel;
 use turbid::stats::Moments;
 use turbid_analytic::blur::kernel_transfer;
@@ -207,8 +207,8 @@ fn kernels(results: &[Result]) -> anyhow::Result<FigureFiles> {
             let unit = if is_equal { scale * (kernel.m2() / 3.0).sqrt() } else { scale };
             let places = grid(range.0, range.1, 80);
             let line = exact_line(&result.case, &places, unit)?;
-            panel = panel.with(Line::new(kernel.name(), class, places, line).with_dash(Dash::Solid));
-            panel = panel.with(points(result, kernel.name(), class, unit));
+            panel = panel.with(Line::new(kernel_title(kernel), class, places, line).with_dash(Dash::Solid));
+            panel = panel.with(points(result, kernel_title(kernel), class, unit));
         }
         panels.push(panel);
     }
@@ -233,7 +233,7 @@ fn contrast(transfers: &[Transfer]) -> anyhow::Result<FigureFiles> {
         let places = grid(0.0, 1.45, 145);
         let value = |&r: &f64| kernel_transfer(referee_kernel(kernel), waves::phase(r)).map(|v| v.value);
         let line = places.iter().map(value).collect::<turbid_analytic::Result<Vec<f64>>>()?;
-        panel = panel.with(Line::new(kernel.name(), class, places, line).with_dash(Dash::Solid));
+        panel = panel.with(Line::new(kernel_title(kernel), class, places, line).with_dash(Dash::Solid));
         let chosen: Vec<(f64, Moments)> = transfers
             .iter()
             .filter(|t| t.kernel == kernel)
@@ -242,7 +242,7 @@ fn contrast(transfers: &[Transfer]) -> anyhow::Result<FigureFiles> {
         let x = chosen.iter().map(|c| c.0).collect();
         let y = chosen.iter().map(|c| c.1.mean()).collect();
         let bars = chosen.iter().map(|c| bar(&c.1)).collect();
-        panel = panel.with(Points::new(kernel.name(), class, x, y).with_y_interval(bars));
+        panel = panel.with(Points::new(kernel_title(kernel), class, x, y).with_y_interval(bars));
     }
     let figure = Figure {
         width: Width::Double,

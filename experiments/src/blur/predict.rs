@@ -5,11 +5,10 @@ use super::measure::all_cases;
 use super::profile::{equivalent_width, rise_width};
 use super::shaft::{CAP, density};
 use super::waves;
-use crate::harness::{Prediction, Settings, Unit};
+use crate::harness::{Known, Prediction, Settings, Unit};
 use crate::theory::referee_kernel;
 use anyhow::Context;
 use rayon::prelude::*;
-use std::collections::HashMap;
 use turbid_analytic::Value;
 use turbid_analytic::edge::{Edge, NearestEdge};
 
@@ -97,12 +96,9 @@ impl Theory {
     }
 
     /// The theory of a case, as it was written down.
-    pub fn recall(known: &HashMap<(&str, &str), (f64, f64)>, case: &Case) -> anyhow::Result<Self> {
+    pub fn recall(known: &Known, case: &Case) -> anyhow::Result<Self> {
         let name = case.name();
-        let find = |quantity: &str| {
-            let found = known.get(&(name.as_str(), quantity));
-            found.copied().with_context(|| format!("no prediction of {quantity} of {name}"))
-        };
+        let find = |quantity: &str| known.get(&name, quantity);
         let value = |quantity: &str| find(quantity).map(|(value, _)| value);
         Ok(Theory {
             profile: case

@@ -3,6 +3,7 @@
 use super::cases::NEIGHBORS;
 use super::conclude::Result;
 use crate::harness::{Table, number, with_error};
+use crate::theory::kernel_title;
 use std::f64::consts::PI;
 use turbid_analytic::edge::{Edge, NearestEdge};
 use turbid_analytic::kernel as referee;
@@ -16,7 +17,7 @@ pub fn widths(results: &[Result]) -> Table {
         vec![
             r.case.photons.to_string(),
             r.case.gather_name(),
-            r.case.kernel.name().to_string(),
+            kernel_title(r.case.kernel).to_string(),
             format!("{scale:.4}"),
             by_scale(r.rise.value(), r.rise.std_error()),
             format!("{:.4}", r.theory.rise_probed / scale),

@@ -5,6 +5,7 @@ use super::conclude::{Found, Result, kept};
 use super::fields::{FIELDS, Field};
 use super::sheet::{Sheet, Side};
 use crate::harness::{Claim, Estimate, Settings, Unit};
+use crate::theory::treatment_title;
 use anyhow::Context;
 use turbid::estimators::Kernel;
 use turbid::estimators::boundary::{Rejection, Treatment};
@@ -71,10 +72,10 @@ fn furnaces(settings: &Settings, found: &Found) -> anyhow::Result<Vec<Claim>> {
             let where_ = format!("{}, fixed radii, all kernels, balls cut by the surface", field.title);
             let is_exact = chosen.iter().all(|r| r.predicted().abs() < 1e-6);
             claims.push(if is_exact {
-                let text = format!("{where_}: mean error, {}", treatment.name());
+                let text = format!("{where_}: mean error, {}", treatment_title(treatment));
                 Claim::within(&id, &text, Unit::PERCENT, mean_of(&chosen)?, -1.0, 1.0)
             } else {
-                let text = format!("{where_}: measured over predicted error, {}", treatment.name());
+                let text = format!("{where_}: measured over predicted error, {}", treatment_title(treatment));
                 let margin = if treatment == Treatment::None { 0.02 } else { 0.25 };
                 Claim::within(&id, &text, Unit::ONE, amplitude_of(&chosen)?, 1.0 - margin, 1.0 + margin)
             });
@@ -100,8 +101,8 @@ fn lit(found: &Found) -> anyhow::Result<Vec<Claim>> {
                 let is_cut = matches!(c.size, Size::Radius(r) if c.spot.depth() < r);
                 c.field == field && c.treatment == treatment && is_cut
             });
-            let (id, name) =
-                (format!("{}-{}", field.name, treatment.name().replace(' ', "-")), treatment.name());
+            let id = format!("{}-{}", field.name, treatment.name().replace(' ', "-"));
+            let name = treatment_title(treatment);
             if treatment == Treatment::None {
                 let text = format!("{where_}: measured over predicted error, {name}");
                 claims.push(Claim::within(

@@ -6,36 +6,18 @@ use super::predict::{Parts, recall};
 use super::sheet::Sheet;
 use super::spread::Spread;
 use super::{claims, figures, sheet, tables};
-use crate::harness::{self, Cells, Entry, Prediction, Row, Section, Settings, Term, Unit, with_error};
+use crate::harness::{
+    self, Cells, Compared, Entry, Known, Prediction, Row, Section, Settings, Term, Unit, with_error,
+};
 use anyhow::Context;
-use std::collections::HashMap;
 use turbid::estimators::Kernel;
 use turbid::estimators::boundary::{Rejection, Treatment};
 use turbid::stats::{Jackknife, Moments, jackknife};
 
 /// One case of a transported field; errors in per cent of the exact fluence.
-pub struct Result {
-    /// The case.
-    pub case: Case,
-    /// What was predicted.
-    pub parts: Parts,
-    /// Signed error of each map.
-    pub errors: Vec<f64>,
-    /// The same over maps.
-    pub error: Moments,
-}
+pub type Result = Compared<Case, Parts>;
 
 impl Result {
-    /// Predicted error.
-    pub fn predicted(&self) -> f64 {
-        100.0 * self.parts.total()
-    }
-
-    /// What is left of the measured error, in standard errors.
-    pub fn z(&self) -> f64 {
-        (self.error.mean() - self.predicted()) / libm::hypot(self.error.std_error(), 100.0 * self.parts.error)
-    }
-
     /// The standard error to expect of the mean over maps [%], before any is measured: 1/(k-2) is the relative variance of
     /// an estimate by k independent photons. Clusters and what probes share make the true one larger.
     fn expected_error(&self, k: usize) -> f64 {
@@ -123,29 +105,19 @@ pub fn conclude(settings: &Settings, predictions: &[Prediction], cells: &Cells) 
 }
 
 fn found(settings: &Settings, predictions: &[Prediction], cells: &Cells) -> anyhow::Result<Found> {
-    let known: HashMap<(&str, &str), (f64, f64)> =
-        predictions.iter().map(|p| ((p.case.as_str(), p.quantity.as_str()), (p.value, p.error))).collect();
-    let look = |case: &str, quantity: &str| {
-        known
-            .get(&(case, quantity))
-            .copied()
-            .with_context(|| format!("no prediction of {quantity} of {case}"))
-    };
+    let known = Known::new(predictions);
     let mut results = Vec::new();
     for field in &FIELDS {
         for (photons, _) in field.sizes(settings) {
             for case in Case::all(settings, field, photons) {
                 let parts = recall(&known, &case)?;
-                let values = cells.values(&case.name(), "fluence")?;
-                let errors: Vec<f64> = values.iter().map(|v| 100.0 * (v / parts.exact - 1.0)).collect();
-                let error = errors.iter().collect();
-                results.push(Result { case, parts, errors, error });
+                results.push(Compared::new(case, &case.name(), "fluence", parts, cells)?);
             }
         }
     }
     let mut sheets = Vec::new();
     for sheet in Sheet::all() {
-        let ((value, bound), inside) = (look(&sheet.name(), "density")?, sheet.fields().0);
+        let ((value, bound), inside) = (known.get(&sheet.name(), "density")?, sheet.fields().0);
         let percent = |v: f64| 100.0 * (v / inside - 1.0);
         let errors: Vec<f64> = cells.values(&sheet.name(), "density")?.into_iter().map(percent).collect();
         let error = errors.iter().collect();
@@ -155,8 +127,8 @@ fn found(settings: &Settings, predictions: &[Prediction], cells: &Cells) -> anyh
     let mut spreads = Vec::new();
     for spread in Spread::all() {
         spreads.push(SpreadResult {
-            exact: look(&spread.name(), "variance factor")?,
-            mean: look(&spread.name(), "density")?,
+            exact: known.get(&spread.name(), "variance factor")?,
+            mean: known.get(&spread.name(), "density")?,
             factors: cells.values(&spread.name(), "variance factor")?,
             means: cells.values(&spread.name(), "density")?,
             spread,

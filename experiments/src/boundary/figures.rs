@@ -8,6 +8,7 @@ use super::section::{self, ALONG, RADIUS, WIDTH, places};
 use super::sheet::{Sheet, Side};
 use super::spread::Spread;
 use crate::harness::{Cells, FigureFiles, Settings, bar};
+use crate::theory::{UNTREATED, treatment_title};
 use turbid::estimators::Kernel;
 use turbid::estimators::boundary::{Rejection, Treatment};
 use turbid::stats::{Moments, student_critical};
@@ -29,7 +30,7 @@ pub fn all(settings: &Settings, cells: &Cells, found: &Found) -> anyhow::Result<
 /// A treatment for readers who meet it for the first time.
 fn in_words(treatment: Treatment) -> &'static str {
     match treatment {
-        Treatment::None => "no treatment",
+        Treatment::None => UNTREATED,
         Treatment::Clipped => "divided by the volume inside (clipped)",
         Treatment::Reflection => "mirrored at the face (reflection)",
         Treatment::LocalLinear => "fitted by a plane (local linear)",
@@ -109,11 +110,11 @@ fn depths(settings: &Settings, found: &Found) -> anyhow::Result<FigureFiles> {
             let grid: Vec<f64> = (0..=52).map(|i| 0.025 * f64::from(i)).collect();
             let theory: anyhow::Result<Vec<f64>> =
                 grid.iter().map(|x| line(field, treatment, radius, x * radius, &exact)).collect();
-            panel = panel.with(Line::new(treatment.name(), class, grid, theory?));
+            panel = panel.with(Line::new(treatment_title(treatment), class, grid, theory?));
             let chosen = found.results.iter().filter(|r| is_on(r, settings, field, treatment));
             let shift = 0.008 * (class as f64 - 1.5);
             let (x, y, bars) = series(chosen.map(|r| (r.case.spot.depth() / radius + shift, &r.error)));
-            panel = panel.with(Points::new(treatment.name(), class, x, y).with_y_interval(bars));
+            panel = panel.with(Points::new(treatment_title(treatment), class, x, y).with_y_interval(bars));
         }
         panels.push(panel);
     }
@@ -239,7 +240,7 @@ fn spread(found: &Found) -> anyhow::Result<FigureFiles> {
             .iter()
             .map(|&depth| Spread { depth, kernel: Kernel::Uniform, treatment }.exact().map(|e| e.1.0))
             .collect();
-        panel = panel.with(Line::new(treatment.name(), class, grid, exact?));
+        panel = panel.with(Line::new(treatment_title(treatment), class, grid, exact?));
         let chosen = found
             .spreads
             .iter()
@@ -247,7 +248,7 @@ fn spread(found: &Found) -> anyhow::Result<FigureFiles> {
         let moments: Vec<(f64, Moments)> =
             chosen.map(|s| (s.spread.depth, s.factors.iter().collect())).collect();
         let (x, y, bars) = series(moments.iter().map(|(x, m)| (*x, m)));
-        panel = panel.with(Points::new(treatment.name(), class, x, y).with_y_interval(bars));
+        panel = panel.with(Points::new(treatment_title(treatment), class, x, y).with_y_interval(bars));
     }
     let panel = panel.with_legend(Legend::Right);
     let figure = Figure { width: Width::Double, heights: vec![0.5], ..Figure::new(vec![panel]) };

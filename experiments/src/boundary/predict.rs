@@ -3,7 +3,7 @@
 use super::cases::{CAP, Case, Size};
 use super::fields::{FIELDS, Field};
 use super::{sheet, spread};
-use crate::harness::{Prediction, Settings, Unit};
+use crate::harness::{Known, Predicted, Prediction, Settings, Unit};
 use crate::theory::{Exact, nearest_clustering, referee_kernel};
 use anyhow::Context;
 use rayon::prelude::*;
@@ -30,10 +30,17 @@ pub struct Parts {
     pub error: f64,
 }
 
-impl Parts {
-    /// Predicted relative error.
-    pub fn total(&self) -> f64 {
+impl Predicted for Parts {
+    fn exact(&self) -> f64 {
+        self.exact
+    }
+
+    fn total(&self) -> f64 {
         self.edge + self.blur + self.clusters
+    }
+
+    fn bound(&self) -> f64 {
+        self.error
     }
 }
 
@@ -168,20 +175,15 @@ pub fn predict(settings: &Settings) -> anyhow::Result<Vec<Prediction>> {
 }
 
 /// The parts of a case, as they were written down.
-pub fn recall(known: &HashMap<(&str, &str), (f64, f64)>, case: &Case) -> anyhow::Result<Parts> {
+pub fn recall(known: &Known, case: &Case) -> anyhow::Result<Parts> {
     let name = case.name();
-    let find = |quantity: &str| {
-        let found = known.get(&(name.as_str(), quantity));
-        found.copied().with_context(|| format!("no prediction of {quantity} of {name}"))
-    };
-    let part = |name: &str| find(&format!("error from {name}")).map(|(value, _)| value / 100.0);
     let [edge, blur, clusters] = PARTS;
     Ok(Parts {
-        exact: find("exact fluence")?.0,
-        edge: part(edge)?,
-        blur: part(blur)?,
-        clusters: part(clusters)?,
-        error: find("error")?.1 / 100.0,
+        exact: known.get(&name, "exact fluence")?.0,
+        edge: known.part(&name, edge)?,
+        blur: known.part(&name, blur)?,
+        clusters: known.part(&name, clusters)?,
+        error: known.get(&name, "error")?.1 / 100.0,
     })
 }
 

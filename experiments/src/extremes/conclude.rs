@@ -7,10 +7,9 @@ use super::storage::{self, RADIUS, Rule};
 use super::stretched::{self, Case};
 use super::{claims, figures, sampled, tables};
 use crate::harness::{
-    Cells, Entry, Estimate, Prediction, Row, Section, Settings, Term, Unit, number, with_error,
+    Cells, Entry, Estimate, Known, Prediction, Row, Section, Settings, Term, Unit, number, with_error,
 };
 use anyhow::Context;
-use std::collections::HashMap;
 use turbid::stats::{MeanTest, Moments, jackknife, t_test, z_test};
 
 /// A row of batches.
@@ -187,14 +186,8 @@ pub fn conclude(settings: &Settings, predictions: &[Prediction], cells: &Cells) 
 }
 
 fn gather(settings: &Settings, predictions: &[Prediction], cells: &Cells) -> anyhow::Result<Results> {
-    let known: HashMap<(&str, &str), (f64, f64)> =
-        predictions.iter().map(|p| ((p.case.as_str(), p.quantity.as_str()), (p.value, p.error))).collect();
-    let find = |case: &str, quantity: &str| {
-        known
-            .get(&(case, quantity))
-            .copied()
-            .with_context(|| format!("no prediction of {quantity} of {case}"))
-    };
+    let known = Known::new(predictions);
+    let find = |case: &str, quantity: &str| known.get(case, quantity);
     let mut non_finite = Vec::new();
     for (case, quantity) in cells.keys().filter(|(_, quantity)| *quantity == "non-finite") {
         let count: f64 = cells.values(case, quantity)?.iter().sum();

@@ -6,6 +6,7 @@ use super::lattice::kernel_on_lattice;
 use super::storage::{self, RADIUS, Rule};
 use super::stretched::Size;
 use crate::harness::{FigureFiles, bar};
+use crate::theory::kernel_title;
 use turbid::estimators::Kernel;
 use turbid::stats::Moments;
 use turbid_figure::{Along, Axis, Dash, Figure, Legend, Line, Panel, Points, Rule as Ruler, Scale, Width};
@@ -144,7 +145,7 @@ fn stretched(results: &Results) -> anyhow::Result<FigureFiles> {
     for (class, kernel) in Kernel::ALL.into_iter().enumerate() {
         let line: anyhow::Result<Vec<f64>> =
             grid.iter().map(|&s| Ok(100.0 * (kernel_on_lattice(kernel, s)?.0 - 1.0))).collect();
-        panel = panel.with(Line::new(kernel.name(), class, grid.clone(), line?));
+        panel = panel.with(Line::new(kernel_title(kernel), class, grid.clone(), line?));
         let spacing = |r: &StretchedResult| match r.case.size {
             Size::Radius(radius) => r.case.spacing() / radius,
             Size::Nearest(_) => 0.0,
@@ -155,7 +156,7 @@ fn stretched(results: &Results) -> anyhow::Result<FigureFiles> {
         let x = chosen.iter().map(|r| spacing(r)).collect();
         let y = chosen.iter().map(|r| percent(r).mean()).collect();
         let bars = chosen.iter().map(|r| bar(&percent(r))).collect();
-        panel = panel.with(Points::new(kernel.name(), class, x, y).with_y_interval(bars));
+        panel = panel.with(Points::new(kernel_title(kernel), class, x, y).with_y_interval(bars));
     }
     let figure = Figure {
         width: Width::Double,

@@ -5,44 +5,22 @@ use super::figures;
 use super::measure::GROUP;
 use super::predict::{Parts, TERMS, recall};
 use crate::harness::{
-    Cells, Claim, Entry, Estimate, Prediction, Row, Section, Settings, Table, Unit, signed, with_error,
+    Cells, Claim, Compared, Entry, Estimate, Known, Prediction, Row, Section, Settings, Table, Unit, signed,
+    with_error,
 };
-use std::collections::HashMap;
 use turbid::integrators::StepRule;
 use turbid::stats::{Moments, amplitude_per_map};
 
 /// One case with everything that is known of it; errors in per cent of the exact radiance.
-pub struct Result {
-    /// The case.
-    pub case: Case,
-    /// Exact radiance and its bound.
-    pub exact: (f64, f64),
-    /// What was predicted.
-    pub parts: Parts,
-    /// Signed error of each map.
-    pub errors: Vec<f64>,
-    /// The same over maps.
-    pub error: Moments,
-}
-
-impl Result {
-    /// Predicted error.
-    pub fn predicted(&self) -> f64 {
-        100.0 * self.parts.total()
-    }
-}
+pub type Result = Compared<Case, Parts>;
 
 /// Concludes.
 pub fn conclude(settings: &Settings, predictions: &[Prediction], cells: &Cells) -> anyhow::Result<Section> {
-    let known: HashMap<(&str, &str), (f64, f64)> =
-        predictions.iter().map(|p| ((p.case.as_str(), p.quantity.as_str()), (p.value, p.error))).collect();
+    let known = Known::new(predictions);
     let mut results = Vec::new();
     for case in Case::all() {
-        let (exact, bound, parts) = recall(&known, &case)?;
-        let values = cells.values(&case.name(), "radiance")?;
-        let errors: Vec<f64> = values.iter().map(|v| 100.0 * (v / exact - 1.0)).collect();
-        let error = errors.iter().collect();
-        results.push(Result { case, exact: (exact, bound), parts, errors, error });
+        let parts = recall(&known, &case)?;
+        results.push(Compared::new(case, &case.name(), "radiance", parts, cells)?);
     }
     Ok(Section {
         summary: summary(&results),
@@ -124,7 +102,7 @@ fn rows(cells: &Cells, results: &[Result]) -> anyhow::Result<Vec<Row>> {
     let mut rows = Vec::new();
     for result in results {
         let name = result.case.name();
-        let (exact, bound) = result.exact;
+        let (exact, bound) = (result.parts.exact, result.parts.exact_error);
         let radiance = cells.moments(&name, "radiance")?;
         rows.push(Row::measured(&name, "radiance", Unit::RADIANCE, &radiance)?.reference(exact, bound));
         rows.push(Row::measured(&name, "error", Unit::PERCENT, &result.error)?.predicted(result.predicted()));
@@ -161,7 +139,7 @@ fn table(results: &[Result]) -> Table {
             },
             rule_name(r.case.rule).to_string(),
             with_error(r.error.mean(), r.error.std_error()),
-            part(r.parts.total()),
+            part(r.predicted() / 100.0),
         ];
         cells.extend(r.parts.list().map(part));
         cells

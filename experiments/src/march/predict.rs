@@ -1,11 +1,9 @@
 //! What theory says of every case, before anything is measured.
 
 use super::cases::{ALBEDO, CELL, Case, REACH, Size, TAU, photons};
-use crate::harness::{Prediction, Settings, Term, Unit};
+use crate::harness::{Known, Predicted, Prediction, Settings, Term, Unit};
 use crate::theory::{Exact, Table, nearest_clustering, slab_fluence};
-use anyhow::Context;
 use rayon::prelude::*;
-use std::collections::HashMap;
 use std::f64::consts::PI;
 use turbid::integrators::StepRule;
 use turbid_analytic::kernel::Kernel;
@@ -16,6 +14,10 @@ use turbid_analytic::{Incidence, IsotropicSlab};
 /// The predicted error of a radiance in parts, each as a fraction of the exact one.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Parts {
+    /// Exact radiance.
+    pub exact: f64,
+    /// Bound on its error.
+    pub exact_error: f64,
     /// The sum over steps with the exact source, in place of the integral.
     pub step: f64,
     /// The medium ends inside the balls of the steps near its faces.
@@ -39,10 +41,19 @@ impl Parts {
     pub fn list(&self) -> [f64; 4] {
         [self.step, self.edge, self.blur, self.clusters]
     }
+}
 
-    /// Predicted relative error.
-    pub fn total(&self) -> f64 {
+impl Predicted for Parts {
+    fn exact(&self) -> f64 {
+        self.exact
+    }
+
+    fn total(&self) -> f64 {
         self.list().iter().sum()
+    }
+
+    fn bound(&self) -> f64 {
+        self.error
     }
 }
 
@@ -119,7 +130,7 @@ impl Theory {
         let held = if case.rule == StepRule::Integrated { -libm::expm1(-dx) / dx } else { 1.0 };
         let at = if case.rule == StepRule::NearEnd { 0.0 } else { 0.5 };
         let attenuated_at = if case.rule == StepRule::Middle { 0.5 } else { 0.0 };
-        let mut parts = Parts::default();
+        let mut parts = Parts { exact: radiance, exact_error: bound, ..Parts::default() };
         for i in 0..count {
             let i = f64::from(i);
             let here = self.at_depth((i + at) * dx * case.mu, case.size)?;
@@ -136,16 +147,17 @@ impl Theory {
     }
 }
 
-const NAMES: [&str; 4] = ["error from step", "error from edge", "error from blur", "error from clusters"];
+const PARTS: [&str; 4] = ["step", "edge", "blur", "clusters"];
 
 /// The predictions, as they are written down before the measurement.
 pub fn predict(settings: &Settings) -> anyhow::Result<Vec<Prediction>> {
     let theory = Theory::new(photons(settings))?;
-    let one = |case: Case| Ok((case, theory.exact(case.mu)?, theory.parts(&case)?));
+    let one = |case: Case| Ok((case, theory.parts(&case)?));
     let all: Vec<anyhow::Result<_>> = Case::all().into_par_iter().map(one).collect();
     let mut predictions = Vec::new();
     for item in all {
-        let (case, (exact, bound), parts): (Case, (f64, f64), Parts) = item?;
+        let (case, parts): (Case, Parts) = item?;
+        let (exact, bound) = (parts.exact, parts.exact_error);
         let mut add = |quantity: &str, unit, value: f64, error: f64, source: &str| {
             let (case, quantity, source) = (case.name(), quantity.to_string(), source.to_string());
             predictions.push(Prediction { case, quantity, unit, value, error, source });
@@ -161,27 +173,33 @@ pub fn predict(settings: &Settings) -> anyhow::Result<Vec<Prediction>> {
             "sum over steps of exact kernel means",
         );
         add("error", Unit::PERCENT, 100.0 * parts.total(), error, "sum of the parts");
-        for (name, value) in NAMES.iter().zip(parts.list()) {
-            add(name, Unit::PERCENT, 100.0 * value, error, "weights of the rule times the part of each step");
+        for (name, value) in PARTS.iter().zip(parts.list()) {
+            add(
+                &format!("error from {name}"),
+                Unit::PERCENT,
+                100.0 * value,
+                error,
+                "weights of the rule times the part of each step",
+            );
         }
     }
     Ok(predictions)
 }
 
-/// Exact radiance and parts of a case, as they were written down.
-pub fn recall(
-    predictions: &HashMap<(&str, &str), (f64, f64)>,
-    case: &Case,
-) -> anyhow::Result<(f64, f64, Parts)> {
+/// The parts of a case, as they were written down.
+pub fn recall(known: &Known, case: &Case) -> anyhow::Result<Parts> {
     let name = case.name();
-    let find = |quantity: &str| {
-        let found = predictions.get(&(name.as_str(), quantity)).copied();
-        found.with_context(|| format!("no prediction of {quantity} of {name}"))
-    };
-    let part = |i: usize| find(NAMES[i]).map(|(value, _)| value / 100.0);
-    let (exact, bound) = find("exact radiance")?;
-    let error = find("error")?.1 / 100.0;
-    Ok((exact, bound, Parts { step: part(0)?, edge: part(1)?, blur: part(2)?, clusters: part(3)?, error }))
+    let (exact, exact_error) = known.get(&name, "exact radiance")?;
+    let part = |i: usize| known.part(&name, PARTS[i]);
+    Ok(Parts {
+        exact,
+        exact_error,
+        step: part(0)?,
+        edge: part(1)?,
+        blur: part(2)?,
+        clusters: part(3)?,
+        error: known.get(&name, "error")?.1 / 100.0,
+    })
 }
 
 #[cfg(test)]

@@ -2,6 +2,7 @@
 //! independent photons, and the clusters of one history.
 
 use super::{Exact, Fog, Table, nearest_clustering};
+use crate::harness::Predicted;
 use anyhow::Context;
 use std::f64::consts::PI;
 use std::sync::OnceLock;
@@ -45,6 +46,20 @@ impl Parts {
     pub fn dominant(&self) -> usize {
         let sizes = self.list().map(f64::abs);
         (0..sizes.len()).fold(0, |best, i| if sizes[i] > sizes[best] { i } else { best })
+    }
+}
+
+impl Predicted for Parts {
+    fn exact(&self) -> f64 {
+        self.exact
+    }
+
+    fn total(&self) -> f64 {
+        self.total()
+    }
+
+    fn bound(&self) -> f64 {
+        self.error
     }
 }
 

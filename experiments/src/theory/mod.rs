@@ -7,6 +7,7 @@ mod returns;
 mod slab;
 mod sphere;
 mod table;
+mod words;
 
 pub use clusters::{clustering, nearest_clustering};
 pub use fog::{Fog, spiral};
@@ -14,6 +15,7 @@ pub use gathers::{Gathers, NearestGather, PART_NAMES, Parts};
 pub use slab::slab_fluence;
 pub use sphere::sphere_fluence;
 pub use table::Table;
+pub use words::{UNTREATED, kernel_title, treatment_title};
 
 use turbid::estimators::Kernel;
 use turbid_analytic::kernel as referee;

@@ -1,7 +1,7 @@
 //! The cases: six slabs and a sphere, how many photons light them, and how those are gathered.
 
 use crate::harness::Settings;
-use crate::theory::{Exact, Fog, slab_fluence, sphere_fluence, spiral};
+use crate::theory::{Exact, Fog, UNTREATED, slab_fluence, sphere_fluence, spiral};
 use anyhow::Context;
 use glam::DVec3;
 use std::f64::consts::PI;
@@ -275,6 +275,14 @@ impl Treatment {
     pub fn name(self) -> &'static str {
         match self {
             Treatment::Plain => "plain",
+            Treatment::Clipped => "clipped",
+        }
+    }
+
+    /// For readers.
+    pub fn title(self) -> &'static str {
+        match self {
+            Treatment::Plain => UNTREATED,
             Treatment::Clipped => "clipped",
         }
     }

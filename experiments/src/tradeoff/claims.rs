@@ -50,8 +50,9 @@ fn error_claims(data: &Data, body: &Body) -> Vec<Claim> {
             let (how, what) = (treatment.name(), size.name());
             let id = format!("{}-{}-{how}", body.name, what.replace('=', ""));
             let text = format!(
-                "{}, {what}, {how}: RMS error over probes and maps, measured over predicted",
-                body.title
+                "{}, {what}, {}: RMS error over probes and maps, measured over predicted",
+                body.title,
+                treatment.title()
             );
             let statistic = rms(&case.maps).times(1.0 / case.predicted().total());
             claims.push(Claim::within(&id, &text, Unit::ONE, statistic, 0.97, 1.03));
@@ -94,7 +95,7 @@ fn clipping_claim(data: &Data, body: &Body, bound: f64) -> Claim {
     let of = |treatment| data.of(body, treatment, Some(data.largest(body)));
     let ratio = best_over_best(&of(Treatment::Clipped), &of(Treatment::Plain));
     let text = format!(
-        "{}, the largest maps: RMS error of the best clipped setting over that of the best plain one",
+        "{}, the largest maps: RMS error of the best clipped setting over that of the best untreated one",
         body.title
     );
     Claim::at_most(&format!("{}-clipping", body.name), &text, Unit::ONE, ratio, bound)

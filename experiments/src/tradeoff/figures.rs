@@ -30,7 +30,7 @@ fn costs(data: &Data) -> anyhow::Result<FigureFiles> {
         let (x, y) = path_line(paths, 4096.0);
         panel = panel.with(Line::theory("path tracer", x, y));
         for (class, treatment) in Treatment::ALL.into_iter().enumerate() {
-            let label = format!("photon map, {}", treatment.name());
+            let label = format!("photon map, {}", treatment.title());
             let front = frontier(&data.of(body, treatment, None), 4096.0);
             let x: Vec<f64> = front.iter().map(|c| c.case.cost(4096.0)).collect();
             let y: Vec<f64> = front.iter().map(|c| 100.0 * c.rms.value()).collect();
@@ -46,7 +46,7 @@ fn costs(data: &Data) -> anyhow::Result<FigureFiles> {
                    (95 % intervals are smaller than most points), and the path tracer, whose error falls as one over \
                    the root of its cost and starts where each query has one sample. Left of the black line the map is the cheaper. In the thin isotropic \
                    slab it is not; in the glowing sphere, where paths gather light all along their rays, the two cost nearly the same; \
-                   in thick fog the map is the cheaper by far. Plain estimates stop early at the faces' loss.";
+                   in thick fog the map is the cheaper by far. Untreated estimates stop early at the faces' loss.";
     FigureFiles::draw("costs", caption, &figure)
 }
 
@@ -88,7 +88,7 @@ fn sizes(settings: &Settings, data: &Data) -> anyhow::Result<FigureFiles> {
             };
             let x = x.with_range(range.0, range.1);
             let y = Axis::new("RMS", "%", Scale::LogClipped).with_range(0.2, 60.0);
-            let mut panel = Panel::new(x, y).with_title(format!("{what}, {}", treatment.name()));
+            let mut panel = Panel::new(x, y).with_title(format!("{what}, {}", treatment.title()));
             type Part = (&'static str, fn(&Rms) -> f64, fn(&[super::split::MapError]) -> Estimate);
             let parts: [Part; 3] = [
                 ("error", Rms::total, rms),

@@ -3,11 +3,9 @@
 
 use super::cases::{BODIES, Body, LAYERS, PROBES, Setting, Treatment};
 use super::theory::{Expected, Rms, Theory};
-use crate::harness::{Prediction, Settings, Unit};
+use crate::harness::{self, Prediction, Settings, Unit};
 use crate::theory::Fog;
-use anyhow::Context;
 use rayon::prelude::*;
-use std::collections::HashMap;
 
 /// Root mean square errors that somebody may want.
 pub const TARGETS: [f64; 3] = [0.1, 0.03, 0.01];
@@ -158,23 +156,17 @@ pub fn predict(settings: &Settings) -> anyhow::Result<Vec<Prediction>> {
 const PARTS: [&str; 5] = ["edge", "blur", "clusters", "noise", "noise of independent photons"];
 
 /// The predictions, to be asked.
-pub struct Known<'a>(HashMap<(&'a str, &'a str), (f64, f64)>);
+pub struct Known<'a>(harness::Known<'a>);
 
 impl<'a> Known<'a> {
     /// From the list.
     pub fn new(predictions: &'a [Prediction]) -> Self {
-        Known(
-            predictions
-                .iter()
-                .map(|p| ((p.case.as_str(), p.quantity.as_str()), (p.value, p.error)))
-                .collect(),
-        )
+        Known(harness::Known::new(predictions))
     }
 
     /// One value and its bound.
     pub fn get(&self, case: &str, quantity: &str) -> anyhow::Result<(f64, f64)> {
-        let found = self.0.get(&(case, quantity)).copied();
-        found.with_context(|| format!("no prediction of {quantity} of {case}"))
+        self.0.get(case, quantity)
     }
 
     /// The layers of a setting.

@@ -65,7 +65,7 @@ fn prices(data: &Data, known: &Known) -> anyhow::Result<Table> {
                 let by_paths = data.paths(body).map_or(f64::NAN, |p| 4096.0 * p.cost(target));
                 rows.push(vec![
                     body.title.to_string(),
-                    treatment.name().to_string(),
+                    treatment.title().to_string(),
                     format!("{} %", number(100.0 * target)),
                     setting,
                     error,
@@ -118,7 +118,7 @@ fn queries(data: &Data) -> Table {
             };
             let mut row = vec![
                 body.title.to_string(),
-                treatment.name().to_string(),
+                treatment.title().to_string(),
                 short(&chosen.case.setting),
                 percent(&chosen.rms),
                 even(chosen.case, Currency::Operations),
@@ -174,7 +174,7 @@ fn regrets(data: &Data) -> Table {
             };
             rows.push(vec![
                 body.title.to_string(),
-                treatment.name().to_string(),
+                treatment.title().to_string(),
                 best.case.setting.photons.to_string(),
                 best.case.setting.size.name(),
                 if is_last { format!("at most {}", percent(&best.rms)) } else { percent(&best.rms) },
@@ -298,7 +298,7 @@ fn deviations(data: &Data) -> Table {
     let columns = ["case", "RMS error [%]", "predicted [%]", "measured over predicted", "standard errors"];
     let caption = format!(
         "Every setting whose measured root mean square error is more than {OFF} standard errors from the predicted \
-         one, of {} settings, plain and clipped.",
+         one, of {} settings, untreated and clipped.",
         data.measured.len()
     );
     table(&caption, &columns, off(data).into_iter().map(row).collect())
