@@ -16,9 +16,11 @@
 //! of the sum of the magnitudes of all modes. Photons are conserved by construction, to rounding.
 //!
 //! Range: thickness 1e-12 to 1e9 and half-spaces, albedo 0 to 1, Henyey-Greenstein from -0.95 to 0.99 and what has
-//! moments alike. Fluxes are known to 1e-7 of themselves, mostly to 1e-11, for |g| up to 0.95, and to 1e-4 at 0.99,
-//! mostly to 1e-8; T of slabs without absorption too, however thick. Radiances are known to 1e-9 for |g| up to 0.9 (1e-8 within a
-//! degree of the horizon), to 1e-6 at 0.95 and to 1e-2 at 0.99, where they take seconds.
+//! moments alike. Fluxes and fluences are known to 1e-8 of themselves, mostly to 1e-11, however thick the slab. At
+//! g = 0.99 little comes back, and its bound is looser: R to 1e-6 of itself or 1e-12 of the incident power below
+//! tau = 0.1, and diffuse T to 1e-7 of itself at albedos of 1e-6. Radiances are known to 1e-9 for |g| up to 0.9 (1e-8
+//! within a degree of the horizon), to 1e-7 at 0.95 (mostly 1e-8; 1e-6 within a few degrees of the horizon), and at 0.99 to a few per cent only, mostly 1e-2,
+//! where the first takes seconds.
 //!
 //! Source: Chandrasekhar 1960, chapters II and III; Stamnes, Tsay, Wiscombe and Jayaweera 1988; Wiscombe 1977
 //! and Nakajima and Tanaka 1988 for peaks.
@@ -82,8 +84,8 @@ impl AnisotropicSlab {
     /// `tau` optical thickness \[1\], 1e-12 to 1e9; `albedo` 0 to 1; `g` mean cosine of scattering, -0.95 to 0.99;
     /// `incidence` of unit irradiance, a beam with a cosine of 1e-5 to 1
     /// # Returns
-    /// a solution whose fluxes have an error below 1e-9 of themselves or 1e-12 of the incident power, and whose fluence
-    /// one below 1e-7 of itself, mostly far below; the bounds say how much
+    /// a solution whose fluxes have an error below 1e-9 of themselves (|g| above 0.9: 1e-8) or 1e-12 of the incident
+    /// power, and whose fluence one below 1e-7 of itself, mostly far below; the bounds say how much
     /// # Errors
     /// `Error::OutOfRange` naming `tau`, `albedo`, `g` or `mu0`
     /// # Limits
@@ -196,7 +198,7 @@ impl AnisotropicSlab {
     /// Radiance of scattered light at depth t in the direction of signed cosine mu, per unit irradiance on the lit face.
     ///
     /// The beam itself is not in it, diffuse light that has not been scattered neither. The first query of a medium
-    /// solves for its modes of every order of azimuth: a tenth of a second for g = 0.75, seconds for 0.95.
+    /// solves for its modes of every order of azimuth: a tenth of a second for g = 0.75, a second or two for 0.95.
     /// # Arguments
     /// `t` depth in mean free paths, 0 to tau; `mu` -1 to 1, positive towards the lit face, and at 0 the source
     /// function that light along the horizon has come to; `dphi` azimuth of the direction of travel minus that of the

@@ -8,7 +8,7 @@ use std::f64::consts::PI;
 use turbid_analytic::beer_lambert::{direct_transmittance, uncollided_fluence};
 use turbid_analytic::quadrature::GaussLegendre;
 use turbid_analytic::slab_single::single_radiance;
-use turbid_analytic::{AnisotropicSlab, Incidence, IsotropicSlab, Value};
+use turbid_analytic::{AnisotropicMedium, AnisotropicSlab, Incidence, IsotropicSlab, Phase, Value};
 
 fn beam(mu0: f64) -> Incidence {
     Incidence::Beam { mu0 }
@@ -203,6 +203,92 @@ fn little_light_is_known_well() {
     let (thin, thick) = (t(60.0), t(100.0));
     assert!(thick.value < 1e-22 && thick.error < 1e-11 * thick.value, "{thick:?}");
     assert!((thick.value / thin.value * exp(40.0 * k) - 1.0).abs() < 1e-11, "{thin:?} {thick:?} {k}");
+}
+
+/// Peaks, by adding and doubling in double precision on 740 nodes (280 at 0.95), with the azimuthal mean of the phase function itself
+/// between them, from a layer of 1e-14: thickness 1e4/2^n; albedo; g; mu0, or 0 for diffuse light; R, diffuse T, fluence in the
+/// middle and on the lit face. They are good to 3e-10 of themselves.
+const PEAKS: [(i32, f64, f64, f64, [f64; 4]); 17] = [
+    (13, 0.9, 0.99, 1.0, [1.7176176360e-03, 5.8706941247e-01, 9.5207829317e-01, 1.0062916730e+00]),
+    (13, 0.9, 0.99, 0.1, [1.0381282019e-01, 2.5953697351e-01, 4.4176453059e+00, 1.1005399081e+01]),
+    (13, 0.9, 0.99, 0.0, [9.3272680566e-03, 6.2720119886e-01, 1.6148937575e+00, 2.0731017260e+00]),
+    (7, 0.9, 0.99, 0.5, [1.6667083536e-02, 6.3424502553e-06, 1.4699638941e-03, 2.0552230937e+00]),
+    (7, 0.9, 0.99, 0.0, [1.6490438231e-02, 3.0113488031e-05, 5.3365374607e-03, 2.0901204032e+00]),
+    (13, 1.0, 0.99, 1.0, [2.6250338303e-03, 7.0235231000e-01, 1.0191430933e+00, 1.0113996992e+00]),
+    (7, 1.0, 0.99, 0.1, [7.3199458509e-01, 2.6800541488e-01, 1.0276214427e+00, 1.3954012024e+01]),
+    (7, 1.0, 0.99, 0.0, [3.9630828910e-01, 6.0369171087e-01, 2.0000000000e+00, 2.9827032390e+00]),
+    (40, 0.9, 0.99, 0.5, [8.0819859694e-11, 1.6290084605e-08, 2.0000000022e+00, 2.0000000038e+00]),
+    (24, 0.9, 0.99, 1.0, [1.1217365228e-06, 5.3514326875e-04, 9.9998691811e-01, 1.0000136771e+00]),
+    (24, 0.9, 0.99, 0.1, [1.6026484141e-04, 5.1860650991e-03, 1.0006380628e+01, 1.0008285614e+01]),
+    (24, 0.9, -0.95, 0.0, [1.0075835893e-03, 6.2364195163e-05, 1.9994840868e+00, 2.0058301681e+00]),
+    (13, 0.9, -0.95, 1.0, [4.6662807677e-01, 1.1670568593e-01, 1.0043031604e+00, 1.5106922152e+00]),
+    (7, 0.9, -0.95, 0.5, [6.0849995498e-01, 2.5902365166e-21, 6.8295742706e-11, 3.3102877766e+00]),
+    (24, 0.9, 0.95, 0.0, [6.1728056609e-05, 1.0082197089e-03, 1.9994845647e+00, 2.0025840114e+00]),
+    (13, 0.9, 0.95, 1.0, [9.6807144236e-03, 5.7418704827e-01, 9.9647169699e-01, 1.0301032516e+00]),
+    (7, 0.9, 0.95, 0.1, [3.0703431090e-01, 2.7274193567e-07, 3.1839877393e-04, 1.2242520234e+01]),
+];
+
+#[test]
+fn peaks_are_what_adding_and_doubling_makes_of_them() {
+    let mut media: Vec<(f64, f64, AnisotropicMedium)> = vec![];
+    for (halvings, albedo, g, mu0, want) in PEAKS {
+        let tau = 1e4 / pow(2.0, f64::from(halvings));
+        let light = if mu0 == 0.0 { Incidence::Diffuse } else { beam(mu0) };
+        if !media.iter().any(|m| (m.0, m.1) == (albedo, g)) {
+            let phase = Phase::henyey_greenstein(g).unwrap();
+            media.push((albedo, g, AnisotropicMedium::new(albedo, &phase).unwrap()));
+        }
+        let medium = &media.iter().find(|m| (m.0, m.1) == (albedo, g)).unwrap().2;
+        let slab = medium.slab(tau, light).unwrap();
+        let got = [
+            slab.reflectance(),
+            slab.transmittance_diffuse(),
+            slab.fluence(0.5 * tau).unwrap(),
+            slab.fluence(0.0).unwrap(),
+        ];
+        for (got, want) in got.into_iter().zip(want) {
+            let off = (got.value - want).abs();
+            assert!(
+                off <= got.error + 3e-10 * want,
+                "{tau} {albedo} {g} {mu0}: {got:?} {want:e} off {off:e}"
+            );
+            assert!(
+                got.error <= 1e-8 * want || got.error < 1e-12,
+                "{tau} {albedo} {g} {mu0}: {got:?} {want:e}"
+            );
+        }
+    }
+}
+
+/// Without absorption 1/T of a thick slab grows by (3/4) (1-g) per mean free path under diffuse light, and the light of a beam
+/// is in a fixed proportion to it.
+#[test]
+fn thick_peaked_slabs_obey_their_law() {
+    let g = 0.99;
+    let medium = AnisotropicMedium::new(1.0, &Phase::henyey_greenstein(g).unwrap()).unwrap();
+    let t = |tau: f64, light: Incidence| {
+        let v = medium.slab(tau, light).unwrap().transmittance();
+        (v.value, v.error / v.value)
+    };
+    let mut last: Option<[f64; 4]> = None;
+    for tau in [1e4, 1e6, 1e9] {
+        let (diffuse, bound) = t(tau, Incidence::Diffuse);
+        let mut escape = [1.0 / diffuse - 0.75 * (1.0 - g) * tau, 0.0, 0.0, 0.0];
+        let mut bounds = [bound / diffuse + 4.0 * f64::EPSILON / diffuse, 0.0, 0.0, 0.0];
+        for (i, mu0) in [1.0, 0.5, 0.1].into_iter().enumerate() {
+            let (value, error) = t(tau, beam(mu0));
+            assert!(error < 1e-8, "{tau} {mu0}: {error:e}");
+            escape[i + 1] = value / diffuse;
+            bounds[i + 1] = 2.0 * (error + bound) * escape[i + 1];
+        }
+        if let Some(last) = last {
+            for i in 0..4 {
+                let off = (escape[i] - last[i]).abs();
+                assert!(off < bounds[i] + 1e-9, "{tau} {i}: {} {} {:e}", escape[i], last[i], bounds[i]);
+            }
+        }
+        last = Some(escape);
+    }
 }
 
 /// Similar slabs (g' = 0, tau' = (1-g) tau, no absorption) are alike, not equal: here by 1.4 per cent.
