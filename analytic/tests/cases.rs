@@ -100,6 +100,15 @@ fn critical_slabs_and_spheres() {
     whole_table("critical.csv", 15, 1e-9);
 }
 
+/// Values at extremes, of programs that share nothing with this one: adding-doubling in 160 bits and, by Fourier modes and
+/// with Fresnel faces, in double precision; the Fock and spectral integrals in 30 digits; the sphere's integral equation
+/// with product integration on graded panels. `digits` is the agreement of two node sets; of the sphere's double precision,
+/// in a large sphere divided by 1 - the operator's largest eigenvalue (3e-4).
+#[test]
+fn values_from_elsewhere() {
+    whole_table("elsewhere.csv", 77, 1e-8);
+}
+
 /// Values printed in the literature, asked for in the words of the table, and digits behind the point as printed.
 const PUBLISHED: [(&str, &str, usize); 14] = [
     ("PPUB01", "halfspace,,,1,0,,,,,,,,hopf_q_inf", 15),
