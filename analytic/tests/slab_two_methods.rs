@@ -3,7 +3,7 @@
 
 mod support;
 
-use support::table::{check, incidence, number, rows};
+use support::table::{check, check_to, incidence, number, rows};
 use support::{NORMAL, close};
 use turbid_analytic::{AddingDoubling, AnisotropicMedium, Incidence, IsotropicSlab, Phase};
 
@@ -160,7 +160,8 @@ fn the_reference_table_of_fluxes_is_reproduced() {
     assert_eq!(answered, 208 - 57);
 }
 
-/// Full azimuth, where modes are few.
+/// Full azimuth, where modes are few. The table's digits are those in which 56 and 88 nodes agreed: its last one may be
+/// off by two, and both methods of ours agree against it.
 #[test]
 fn the_reference_table_of_radiances_is_reproduced() {
     for (i, row) in rows("slab_hg_radiance.csv", 36).into_iter().enumerate() {
@@ -172,6 +173,6 @@ fn the_reference_table_of_radiances_is_reproduced() {
         let slab = AddingDoubling::new(number("tau"), number("w"), number("g"), light).unwrap();
         let got = slab.radiance(number("t"), number("mu"), number("dphi")).unwrap();
         assert!(got.error < 1e-8 * got.value, "{row:?} {got:?}");
-        check(&row, got);
+        check_to(&row, got, 2.0);
     }
 }
