@@ -237,7 +237,8 @@ pub(crate) fn depths(tau: f64) -> Vec<f64> {
 pub(crate) fn degrees(phase: &Phase) -> Result<[usize; 2]> {
     let cut = if phase.degree(CUT[0], MOST) < MOST { CUT } else { CUT_PEAKED };
     let left = phase.moment(MOST + 1).abs();
-    within("phase function", left, 0.0, CUT_PEAKED[0], "its Legendre moments beyond l = 450 at most 1e-9")?;
+    const ALLOWED: &str = "at most 1e-9 with adding and doubling or refracting faces (|g| = 0.95)";
+    within("Legendre moment 451 of the phase function", left, 0.0, CUT_PEAKED[0], ALLOWED)?;
     Ok(cut.map(|cut| phase.degree(cut, MOST)))
 }
 

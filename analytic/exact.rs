@@ -203,11 +203,12 @@ fn run() -> Result<()> {
     output::apart(&paths)?;
     let mut bytes = Vec::new();
     let mut staged = Vec::new();
+    let mut refused = None;
     match (&cli.cases, &cli.command) {
         (Some(_), Some(_)) => bail!("--cases stands alone: give it or a command, not both"),
         (Some(path), None) => {
             ensure!(cli.plot.is_none(), "--plot draws the answer to one question; allowed: without --cases");
-            cases::answer(path, cli.format.unwrap_or(Format::Csv), &mut bytes)?;
+            refused = cases::answer(path, cli.format.unwrap_or(Format::Csv), &mut bytes)?;
         }
         (None, Some(command)) => {
             if let Some(path) = &cli.plot {
@@ -227,7 +228,8 @@ fn run() -> Result<()> {
         Some(path) => staged.push(output::stage(path, bytes)?),
         None => output::print(&bytes)?,
     }
-    staged.into_iter().try_for_each(output::Staged::publish)
+    staged.into_iter().try_for_each(output::Staged::publish)?;
+    refused.map_or(Ok(()), Err)
 }
 
 /// What can be asked.

@@ -252,7 +252,8 @@ pub(crate) fn moments_of(albedo: f64, phase: &Phase) -> Result<Vec<f64>> {
     check_albedo(albedo)?;
     let last = phase.degree(CUT, 4500);
     if last == 4500 {
-        within("phase function", phase.moment(last), -CUT, CUT, "moments that vanish at l = 4500")?;
+        let name = "Legendre moment 4500 of the phase function";
+        within(name, phase.moment(last), -CUT, CUT, "at most 1e-18 in an unbounded medium")?;
     }
     let moments: Vec<f64> = (0..=last).map(|l| phase.moment(l)).collect();
     for &moment in moments.iter().skip(1) {

@@ -43,7 +43,7 @@ const LONG: usize = 150;
 /// What terms of the series in azimuth may be where it ends.
 const SMALL: f64 = 1e-11;
 
-const TAIL: &str = "moments that beyond l = 1144 are at most 0.1 and hardly change";
+const TAIL: &str = "at most 0.1, and hardly changing there";
 
 /// A medium whose modes are solved once, for any number of slabs. Cloning shares them.
 #[derive(Clone)]
@@ -108,7 +108,13 @@ impl AnisotropicMedium {
             (most.max(phase.moment(l)), least.min(phase.moment(l)))
         });
         // A peak that is cut off as straight on must be of light straight on.
-        within("phase function", value, f64::MIN, 0.1f64.min(1.25 * least + 2e-5), TAIL)?;
+        within(
+            "largest Legendre moment beyond l = 1144",
+            value,
+            f64::MIN,
+            0.1f64.min(1.25 * least + 2e-5),
+            TAIL,
+        )?;
         Self::of(albedo, phase, [set(0), set(1)])
     }
 

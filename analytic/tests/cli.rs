@@ -98,21 +98,35 @@ fn mistakes_in_a_table_name_file_line_and_parameter() {
     );
     refused(cases("id,tau\n"), &[".csv:1", "no column 'geometry'"]);
     refused(
-        cases(&format!("{HEAD}a,slab,1,,1.5,0,,1,,,,,,R\n")),
-        &[".csv:2", "albedo is 1.5; allowed: 0 to 1"],
-    );
-    refused(
         cases(&format!("{HEAD}a,slab,1,,0.5,0,,1,,,,,,R\nb,slab,x,,0.5,0,,1,,,,,,R\n")),
         &[".csv:3", "tau is 'x'"],
     );
     refused(cases(&format!("{HEAD}a,slab,1,,0.5,0,,up,,,,,,R\n")), &[".csv:2", "mu0 is 'up'", "diffuse"]);
-    refused(cases(&format!("{HEAD}a,slab,1,,0.5,0,,1,2,,,,,fluence\n")), &[".csv:2", "t is 2"]);
     refused(
         cases(&format!("{HEAD}a,kernel,,,,,,,,,,,kernel=round;d=3,m2\n")),
         &[".csv:2", "kernel is 'round'"],
     );
     refused(cases(&format!("{HEAD}a,slab,1\n")), &[".csv:2: 3 cells; allowed: 14"]);
-    refused(cases(&format!("{HEAD}a,slab,nan,,0.5,0,,1,,,,,,R\n")), &[".csv:2", "tau is NaN"]);
+}
+
+#[test]
+fn a_row_out_of_range_costs_no_other_row() {
+    let text = format!(
+        "{HEAD}a,slab,1,,1.5,0,,1,,,,,,R\nb,slab,1,,0.5,0,,1,,,,,,R\nc,slab,1,,0.5,0,,1,2,,,,,fluence\n\
+         d,slab,nan,,0.5,0,,1,,,,,,R\n"
+    );
+    let output = cases(&text).code(2).get_output().clone();
+    let error = String::from_utf8(output.stderr).unwrap();
+    assert_eq!(error.lines().count(), 1, "{error}");
+    assert!(error.contains(".csv:2: albedo is 1.5; allowed: 0 to 1 (and 2 more"), "{error}");
+    let answers = rows(&output.stdout);
+    assert_eq!(answers.len(), 4);
+    for (answer, note) in answers.iter().zip(["albedo is 1.5", "", "t is 2; allowed", "tau is NaN"]) {
+        assert!(
+            answer["note"].starts_with(note) && answer["value"].is_empty() != note.is_empty(),
+            "{answer:?}"
+        );
+    }
 }
 
 #[test]

@@ -11,7 +11,7 @@ mod sphere;
 
 use crate::answer::shortest;
 use crate::format::{Format, aligned, bound, digits};
-use anyhow::{Context, Result, anyhow, bail};
+use anyhow::{Context, Error, Result, anyhow, bail};
 use row::{COLUMNS, Row};
 use serde::ser::{Serialize, SerializeMap, Serializer};
 use std::path::Path;
@@ -21,7 +21,10 @@ use turbid_analytic::Value;
 pub type Answered = std::result::Result<Value, String>;
 
 /// Reads the questions, answers them, writes them in the order of the file.
-pub fn answer(path: &Path, format: Format, output: &mut Vec<u8>) -> Result<()> {
+///
+/// A parameter out of range leaves its row without a value, with the reason as its note; the first such row comes back
+/// as the error to end with, once the other rows are written. A cell that cannot be read stops at once.
+pub fn answer(path: &Path, format: Format, output: &mut Vec<u8>) -> Result<Option<Error>> {
     let name = path.display();
     let rows = read(path)?;
     // What a medium has solved serves all its rows: answer by medium, print in the order of the file.
@@ -31,10 +34,22 @@ pub fn answer(path: &Path, format: Format, output: &mut Vec<u8>) -> Result<()> {
     order.sort_by(|&a, &b| medium(a).cmp(&medium(b)));
     let mut answers: Vec<Option<Answered>> = rows.iter().map(|_| None).collect();
     let mut media = Media::default();
+    let mut refused: Vec<(u64, String)> = Vec::new();
     for i in order {
         let row = &rows[i];
-        answers[i] = Some(media.answer_typed(row).with_context(|| format!("{name}:{}", row.line))?);
+        answers[i] = Some(match media.answer_typed(row) {
+            Err(error) if error.is::<turbid_analytic::Error>() => {
+                refused.push((row.line, format!("{error:#}")));
+                Err(format!("{error:#}"))
+            }
+            answer => answer.with_context(|| format!("{name}:{}", row.line))?,
+        });
     }
+    let more = match refused.len() {
+        0 | 1 => String::new(),
+        n => format!(" (and {} more: their notes say why)", n - 1),
+    };
+    let first = refused.into_iter().min().map(|(line, why)| anyhow!("{name}:{line}: {why}{more}"));
     let mut answered = Vec::new();
     for (row, answer) in rows.iter().zip(answers) {
         match answer {
@@ -42,7 +57,8 @@ pub fn answer(path: &Path, format: Format, output: &mut Vec<u8>) -> Result<()> {
             None => bail!("{name}:{}: no answer was made", row.line),
         }
     }
-    write(&answered, format, output)
+    write(&answered, format, output)?;
+    Ok(first)
 }
 
 /// All that has been solved so far.
