@@ -75,7 +75,7 @@ impl std::ops::Add for Sum {
 }
 
 /// int_0^x e^(-rate y) dy.
-pub(super) fn decayed(rate: f64, x: f64) -> f64 {
+pub(crate) fn decayed(rate: f64, x: f64) -> f64 {
     if rate == 0.0 || rate * x == 0.0 { x } else { -expm1(-rate * x) / rate }
 }
 
@@ -315,21 +315,27 @@ impl Solution {
     /// The two solutions of a mode at depth t, `rest` = tau - t, and their slopes.
     pub fn shapes(&self, k: f64, t: f64, rest: f64) -> ([f64; 2], [f64; 2]) {
         match self.basis {
-            Basis::Halves => {
-                let (near, gap) = (t.min(rest), (rest - t).abs());
-                let share = exp(-k * near) / (1.0 + exp(-k * self.tau));
-                let c = share * (1.0 + exp(-k * gap));
-                let s = (share * decayed(k, gap)).copysign(t - rest);
-                ([c, s], [k * k * s, c])
-            }
-            Basis::Faces => {
-                let (down, up) = (exp(-k * t), exp(-k * rest));
-                ([down, up], [-k * down, k * up])
-            }
+            Basis::Halves => by_halves(k, self.tau, t, rest),
+            Basis::Faces => by_faces(k, t, rest),
             Basis::Deep => {
                 let down = exp(-k * t);
                 ([down, 0.0], [-k * down, 0.0])
             }
         }
     }
+}
+
+/// cosh(k s)/cosh(k tau/2) and sinh(k s)/(k cosh(k tau/2)), s = t - tau/2, and their slopes; `rest` = tau - t.
+pub(crate) fn by_halves(k: f64, tau: f64, t: f64, rest: f64) -> ([f64; 2], [f64; 2]) {
+    let (near, gap) = (t.min(rest), (rest - t).abs());
+    let share = exp(-k * near) / (1.0 + exp(-k * tau));
+    let c = share * (1.0 + exp(-k * gap));
+    let s = (share * decayed(k, gap)).copysign(t - rest);
+    ([c, s], [k * k * s, c])
+}
+
+/// e^(-k t) and e^(-k rest), and their slopes.
+pub(crate) fn by_faces(k: f64, t: f64, rest: f64) -> ([f64; 2], [f64; 2]) {
+    let (down, up) = (exp(-k * t), exp(-k * rest));
+    ([down, up], [-k * down, k * up])
 }

@@ -7,6 +7,7 @@ use crate::incidence::Incidence;
 use crate::slab_anisotropic::modes::Modes;
 use crate::slab_anisotropic::nodes::Nodes;
 use crate::slab_anisotropic::scattering::Scattering;
+use crate::slab_anisotropic::solution::{by_faces, by_halves, decayed};
 use libm::{exp, expm1, log, tanh};
 use nalgebra::{DMatrix, DVector};
 use std::f64::consts::PI;
@@ -41,11 +42,6 @@ struct Source {
     beta: f64,
     pi: DVector<f64>,
     kappa: DVector<f64>,
-}
-
-/// int_0^x e^(-rate y) dy.
-fn decayed(rate: f64, x: f64) -> f64 {
-    if rate == 0.0 || rate * x == 0.0 { x } else { -expm1(-rate * x) / rate }
 }
 
 /// Below this k a particular solution is a multiple of e^(-beta t), beta >= 1.
@@ -245,17 +241,8 @@ impl Matched {
     /// The two solutions of a mode at depth t, `rest` = tau - t, and their slopes.
     fn shapes(&self, k: f64, t: f64, rest: f64) -> ([f64; 2], [f64; 2]) {
         match self.basis {
-            Basis::Halves => {
-                let (near, gap) = (t.min(rest), (rest - t).abs());
-                let share = exp(-k * near) / (1.0 + exp(-k * self.tau));
-                let c = share * (1.0 + exp(-k * gap));
-                let s = (share * decayed(k, gap)).copysign(t - rest);
-                ([c, s], [k * k * s, c])
-            }
-            Basis::Faces => {
-                let (down, up) = (exp(-k * t), exp(-k * rest));
-                ([down, up], [-k * down, k * up])
-            }
+            Basis::Halves => by_halves(k, self.tau, t, rest),
+            Basis::Faces => by_faces(k, t, rest),
         }
     }
 
