@@ -193,7 +193,7 @@ fn light_in_a_mirror_does_not_depend_on_the_largest_order() {
     let lights = vec![area_light(square, Spectrum::ONE)];
     let probe = DVec3::new(0.0, 0.0, 0.5);
     let solid_angle = |height: f64| 4.0 * atan2(1.0, height * (2.0 + height * height).sqrt());
-    let vacuum = bounded(Vec::new(), vec![mirror], lights.clone());
+    let vacuum = bounded(Vec::new(), vec![mirror.clone()], lights.clone());
     let seen = |scene: &Scene, quantity, max| {
         paths(scene, quantity, Orders { min: 0, max }, 1 << 18, 3).map(|m| (m.mean(), m))
     };
@@ -219,7 +219,7 @@ fn light_in_a_mirror_does_not_depend_on_the_largest_order() {
     let fog = region(cuboid(DVec3::splat(-2.0), DVec3::splat(2.0)), 1.0, 0.8, 0.0);
     let foggy = bounded(vec![fog], vec![mirror], lights);
     for (scene, expected) in [(&vacuum, 1.0), (&foggy, exp(-1.5))] {
-        let radiance = seen(scene, down, Some(0));
+        let radiance = seen(scene, down.clone(), Some(0));
         for c in 0..3 {
             assert!(
                 (radiance[c].0 / (rho[c] * expected) - 1.0).abs() < 1e-12,

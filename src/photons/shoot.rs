@@ -6,7 +6,7 @@ use crate::error::{Error, Result};
 use crate::geometry::{Face, Shape};
 use crate::math::Ray;
 use crate::rng::{Purpose, Stream};
-use crate::scene::{Orders, Quantity, Scene, Sensor, Target};
+use crate::scene::{Orders, Quantity, Scene, Sensor, Start, Target};
 use crate::stats::Moments;
 use crate::transport::{Progress, Roulette, Step, Visitor, Walker, run_blocks, walk};
 
@@ -173,7 +173,7 @@ impl<K: Fn(&Photon) -> bool> Tallier<'_, K> {
         let weight =
             if lights.len() > 1 { emission.power * (total / emission.power.sum()) } else { emission.power };
         Walker {
-            from: lights[index].body().map(|_| Target::Light(index)),
+            from: lights[index].body().map(|_| Start { target: Target::Light(index), primitive: 0 }),
             ..Walker::new(emission.ray, weight)
         }
     }
@@ -228,11 +228,11 @@ impl<K: Fn(&Photon) -> bool> Visitor for Tallier<'_, K> {
                     self.pass.photons.push(photon);
                 }
             }
-            Step::Absorbed(weight, region) => {
+            Step::Absorbed(weight, number) => {
                 self.pass.ledger.absorbed += weight.sum();
                 for sensor in 0..self.sensors.len() {
                     if let Quantity::Absorbed(of) = self.sensors[sensor].quantity
-                        && region == Some(of)
+                        && number == Some(of)
                     {
                         self.score(sensor, walker.order, weight);
                     }
