@@ -3,10 +3,12 @@
 mod black;
 mod lambertian;
 mod mirror;
+mod texture;
 
 pub use black::Black;
 pub use lambertian::Lambertian;
 pub use mirror::Mirror;
+pub use texture::{Checker, Image, Texture, Wood};
 
 use crate::Spectrum;
 use glam::{DVec2, DVec3};
@@ -43,7 +45,11 @@ impl Surface {
 
     /// Whether all channels are equal everywhere.
     pub fn is_grey(&self) -> bool {
-        self.largest_reflectance().is_grey()
+        match self {
+            Surface::Lambertian(s) => s.texture().is_grey(),
+            Surface::Mirror(s) => s.reflectance().is_grey(),
+            Surface::Black(_) => true,
+        }
     }
 
     /// Whether light leaves in one direction only, so that no other estimator can connect to it.
