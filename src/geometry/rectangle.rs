@@ -36,6 +36,18 @@ impl Rectangle {
         self.normal
     }
 
+    pub(super) fn corner(&self) -> DVec3 {
+        self.corner
+    }
+
+    pub(super) fn u(&self) -> DVec3 {
+        self.u
+    }
+
+    pub(super) fn v(&self) -> DVec3 {
+        self.v
+    }
+
     pub(super) fn hit(&self, ray: &Ray, from_here: bool) -> Option<Hit> {
         let denominator = ray.dir.dot(self.normal);
         if from_here || denominator == 0.0 {
@@ -51,8 +63,8 @@ impl Rectangle {
     /// Whether a point lies above or below the rectangle, seen along its normal; the edges count.
     pub fn covers(&self, p: DVec3) -> bool {
         let p = p - self.corner;
-        let (a, b) = (p.dot(self.u) / self.u.length_squared(), p.dot(self.v) / self.v.length_squared());
-        (0.0..=1.0).contains(&a) && (0.0..=1.0).contains(&b)
+        let (a, b) = (p.dot(self.u), p.dot(self.v));
+        (0.0..=self.u.length_squared()).contains(&a) && (0.0..=self.v.length_squared()).contains(&b)
     }
 
     /// How far a point lies inside the rectangle's edges, seen along its normal; outside, minus the distance \[L\].
