@@ -1,5 +1,6 @@
 //! The scene: a plain struct, validated once and trusted after; what a ray meets in it; what it requires.
 
+mod bodies;
 mod builtin;
 mod file;
 mod plan;
@@ -60,12 +61,13 @@ pub struct Parts {
 #[derive(Debug, Clone, PartialEq)]
 pub struct Scene {
     parts: Parts,
+    bodies: bodies::Bodies,
     stage: Option<Stage>,
     plan: Plan,
 }
 
 /// A body that a ray can meet.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Target {
     /// The object of this index.
     Object(usize),
@@ -90,7 +92,8 @@ impl Scene {
     pub fn new(parts: Parts) -> Result<Self> {
         let stage = validate::check(&parts)?;
         let plan = Plan::of(&parts);
-        Ok(Scene { parts, stage, plan })
+        let bodies = bodies::Bodies::of(&parts);
+        Ok(Scene { parts, bodies, stage, plan })
     }
 
     /// Media and where they are.
@@ -140,26 +143,31 @@ impl Scene {
 
     /// The nearest body ahead; `from` is the body that the ray starts on.
     pub fn hit(&self, ray: &Ray, from: Option<Target>) -> Option<SceneHit> {
-        let mut nearest: Option<SceneHit> = None;
-        let mut consider = |target, hit: Option<crate::geometry::Hit>| {
-            if let Some(hit) = hit
-                && nearest.is_none_or(|n| hit.t < n.hit.t)
+        let bodies = &self.bodies;
+        let start = from.and_then(|from| bodies.targets.iter().position(|target| *target == from));
+        let flat = bodies.rectangles.nearest(ray, start, f64::INFINITY);
+        let mut nearest = flat.and_then(|(index, _)| self.try_body(ray, from, bodies.targets[index]));
+        for &target in &bodies.others {
+            if let Some(found) = self.try_body(ray, from, target)
+                && nearest.is_none_or(|n| {
+                    found.hit.t < n.hit.t || found.hit.t == n.hit.t && target < n.target
+                })
             {
-                nearest = Some(SceneHit { target, hit });
-            }
-        };
-        for (i, object) in self.objects().iter().enumerate() {
-            let target = Target::Object(i);
-            consider(target, object.shape.hit(ray, from == Some(target)));
-        }
-        for (i, light) in self.lights().iter().enumerate() {
-            let target = Target::Light(i);
-            // Light leaves a light's body outwards, so a ray that starts on it never meets it again.
-            if from != Some(target) {
-                consider(target, light.hit(ray));
+                nearest = Some(found);
             }
         }
         nearest
+    }
+
+    /// Where a ray meets one body.
+    fn try_body(&self, ray: &Ray, from: Option<Target>, target: Target) -> Option<SceneHit> {
+        let hit = match target {
+            Target::Object(i) => self.objects()[i].shape.hit(ray, from == Some(target)),
+            // Light leaves a light's body outwards, so a ray that starts on it never meets it again.
+            Target::Light(_) if from == Some(target) => None,
+            Target::Light(i) => self.lights()[i].hit(ray),
+        };
+        hit.map(|hit| SceneHit { target, hit })
     }
 
     /// The stretches of medium on the ray up to distance `end`, nearest first.
