@@ -1,6 +1,6 @@
 //! Many rectangles, tried two at a time.
 
-use super::Rectangle;
+use super::{Hit, Rectangle};
 use crate::math::Ray;
 use glam::DVec3;
 use wide::f64x2;
@@ -55,11 +55,14 @@ struct Pair {
 
 /// A list of rectangles that answers what each of them would, bit for bit.
 #[derive(Debug, Clone, PartialEq, Default)]
-pub struct Rectangles(Vec<Pair>);
+pub struct Rectangles {
+    members: Vec<Rectangle>,
+    pairs: Vec<Pair>,
+}
 
 impl Rectangles {
     /// The list of these.
-    pub fn new(rectangles: &[Rectangle]) -> Self {
+    pub fn new(members: Vec<Rectangle>) -> Self {
         let pair = |chunk: &[Rectangle]| {
             let lanes = |part: fn(&Rectangle) -> DVec3| {
                 Vectors::new(std::array::from_fn(|i| chunk.get(i).map_or(DVec3::NAN, part)))
@@ -74,16 +77,17 @@ impl Rectangles {
                 v_squared: v.dot(v),
             }
         };
-        Rectangles(rectangles.chunks(LANES).map(pair).collect())
+        let pairs = members.chunks(LANES).map(pair).collect();
+        Rectangles { members, pairs }
     }
 
-    /// Calls `found` with the index and the distance \[L\] of each rectangle but `except` that the ray meets nearer
-    /// than the bound, which starts at `end`; `found` returns the next bound.
+    /// Calls `found` with the index and the distance \[L\] of each rectangle that the ray meets, ahead and nearer than
+    /// the bound, which starts at `end`; `found` returns the next bound, 0 to stop.
     #[inline(always)]
-    fn visit(&self, ray: &Ray, except: Option<usize>, end: f64, mut found: impl FnMut(usize, f64) -> f64) {
+    fn visit(&self, ray: &Ray, end: f64, mut found: impl FnMut(usize, f64) -> f64) {
         let (origin, dir) = (Vectors::splat(ray.origin), Vectors::splat(ray.dir));
         let (zero, mut bound) = (f64x2::ZERO, end);
-        for (index, pair) in self.0.iter().enumerate() {
+        for (index, pair) in self.pairs.iter().enumerate() {
             let t = pair.corner.minus(origin).dot(pair.normal) / dir.dot(pair.normal);
             let p = origin.moved(dir, t).minus(pair.corner);
             let (a, b) = (p.dot(pair.u), p.dot(pair.v));
@@ -93,23 +97,38 @@ impl Rectangles {
             while mask != 0 {
                 let lane = mask.trailing_zeros() as usize;
                 mask &= mask - 1;
-                let (index, t) = (LANES * index + lane, t.as_array()[lane]);
-                if t < bound && except != Some(index) {
-                    bound = found(index, t);
+                let t = t.as_array()[lane];
+                if t < bound {
+                    bound = found(LANES * index + lane, t);
+                    if bound == 0.0 {
+                        return;
+                    }
                 }
             }
         }
     }
 
-    /// Index and distance \[L\] of the nearest one ahead but `except`, if it is nearer than `end`; the first in the
-    /// list of those at the same distance.
-    pub fn nearest(&self, ray: &Ray, except: Option<usize>, end: f64) -> Option<(usize, f64)> {
-        let mut nearest = None;
-        self.visit(ray, except, end, |index, t| {
-            nearest = Some((index, t));
-            t
+    /// The nearest one ahead but `except`: its index and where the ray meets it; the first in the list of those at
+    /// the same distance.
+    pub fn nearest(&self, ray: &Ray, except: Option<usize>) -> Option<(usize, Hit)> {
+        let (mut nearest, mut bound) = (None, f64::INFINITY);
+        self.visit(ray, bound, |index, t| {
+            if except != Some(index) {
+                (nearest, bound) = (Some((index, t)), t);
+            }
+            bound
         });
-        nearest
+        nearest.map(|(index, t)| (index, self.members[index].hit_at(ray, t)))
+    }
+
+    /// Whether the ray meets one of them nearer than `end` \[L\], apart from these two.
+    pub fn block(&self, ray: &Ray, except: [Option<usize>; 2], end: f64) -> bool {
+        let mut is_blocked = false;
+        self.visit(ray, end, |index, _| {
+            is_blocked = !except.contains(&Some(index));
+            if is_blocked { 0.0 } else { end }
+        });
+        is_blocked
     }
 }
 
@@ -136,7 +155,7 @@ mod tests {
                 Rectangle::new(point(&mut stream), frame.x * a, frame.y * b).unwrap()
             })
             .collect();
-        let list = Rectangles::new(&rectangles);
+        let list = Rectangles::new(rectangles.clone());
         let mut hits = 0;
         for i in 0..20_000 {
             let dir = match i % 4 {
@@ -146,20 +165,22 @@ mod tests {
             let origin = if i % 5 == 0 { rectangles[i % 23].corner() } else { point(&mut stream) };
             let ray = Ray::new(origin, dir);
             let except = (i % 2 == 0).then_some(i % 23);
-            let end = if i % 7 == 0 { 1.0 } else { f64::INFINITY };
-            let mut expected: Option<(usize, f64)> = None;
+            let mut expected: Option<(usize, Hit)> = None;
             for (index, rectangle) in rectangles.iter().enumerate() {
                 if let Some(hit) = rectangle.hit(&ray, except == Some(index))
-                    && hit.t < expected.map_or(end, |(_, t)| t)
+                    && expected.is_none_or(|(_, nearest)| hit.t < nearest.t)
                 {
-                    expected = Some((index, hit.t));
+                    expected = Some((index, hit));
                 }
             }
-            let found = list.nearest(&ray, except, end);
-            assert_eq!(found.map(|(i, t)| (i, t.to_bits())), expected.map(|(i, t)| (i, t.to_bits())), "{ray:?}");
+            let found = list.nearest(&ray, except);
+            assert_eq!(found, expected, "{ray:?}");
+            let end = 3.0 * stream.unit();
+            let is_blocked = expected.is_some_and(|(_, hit)| hit.t < end);
+            assert_eq!(list.block(&ray, [None, except], end), is_blocked, "{ray:?}");
             hits += usize::from(found.is_some());
         }
         assert!(hits > 5_000, "{hits}");
-        assert_eq!(Rectangles::default().nearest(&Ray::new(DVec3::ZERO, DVec3::X), None, 1.0), None);
+        assert_eq!(Rectangles::default().nearest(&Ray::new(DVec3::ZERO, DVec3::X), None), None);
     }
 }

@@ -3,6 +3,8 @@
 mod bodies;
 mod builtin;
 mod file;
+mod hit;
+mod interiors;
 mod plan;
 mod segments;
 mod sensor;
@@ -10,6 +12,8 @@ mod validate;
 
 pub use builtin::{BUILTIN, Builtin};
 pub use file::SceneFile;
+pub use hit::{SceneHit, Start, Target};
+pub use interiors::{Interior, SURROUNDINGS};
 pub use plan::Plan;
 pub use segments::{MAX_REGIONS, Segment, Segments};
 pub use sensor::{Orders, Quantity, Sensor};
@@ -22,10 +26,9 @@ use crate::light::{Light, Stage};
 use crate::math::{Interval, Ray, exp};
 use crate::medium::Medium;
 use crate::surface::Surface;
-use glam::DVec3;
 
 /// A medium and the shape it fills; its boundary is index-matched and no event.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct Region {
     /// Where it is.
     pub shape: Shape,
@@ -34,7 +37,7 @@ pub struct Region {
 }
 
 /// A surface on a shape.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct Object {
     /// Where it is.
     pub shape: Shape,
@@ -47,6 +50,8 @@ pub struct Object {
 pub struct Parts {
     /// Media; where shapes overlap, the later one counts.
     pub regions: Vec<Region>,
+    /// What fills the space between dielectric surfaces; the first one is the surroundings. Empty stands for these alone.
+    pub interiors: Vec<Interior>,
     /// Surfaces.
     pub objects: Vec<Object>,
     /// Lights.
@@ -61,27 +66,11 @@ pub struct Parts {
 #[derive(Debug, Clone, PartialEq)]
 pub struct Scene {
     parts: Parts,
+    media: Vec<Medium>,
+    filling: Vec<Option<usize>>,
     bodies: bodies::Bodies,
     stage: Option<Stage>,
     plan: Plan,
-}
-
-/// A body that a ray can meet.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Target {
-    /// The object of this index.
-    Object(usize),
-    /// The light of this index.
-    Light(usize),
-}
-
-/// The nearest body on a ray.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct SceneHit {
-    /// Which body.
-    pub target: Target,
-    /// Where, and its normal.
-    pub hit: crate::geometry::Hit,
 }
 
 impl Scene {
@@ -89,11 +78,15 @@ impl Scene {
     ///
     /// # Errors
     /// `Error::Scene` or `Error::OutOfRange`, naming the part, where parts do not fit together.
-    pub fn new(parts: Parts) -> Result<Self> {
+    pub fn new(mut parts: Parts) -> Result<Self> {
+        if parts.interiors.is_empty() {
+            parts.interiors.push(Interior::surroundings());
+        }
         let stage = validate::check(&parts)?;
         let plan = Plan::of(&parts);
+        let (media, filling) = interiors::numbered(&parts.regions, &parts.interiors);
         let bodies = bodies::Bodies::of(&parts);
-        Ok(Scene { parts, bodies, stage, plan })
+        Ok(Scene { parts, media, filling, bodies, stage, plan })
     }
 
     /// Media and where they are.
@@ -131,54 +124,20 @@ impl Scene {
         self.lights().iter().fold(Spectrum::ZERO, |sum, light| sum + light.power(self.stage()))
     }
 
-    /// Index of the region that counts at a point; none in vacuum.
-    pub fn region_at(&self, p: DVec3) -> Option<usize> {
-        self.regions().iter().rposition(|r| r.shape.contains(p))
-    }
-
-    /// The medium at a point; none in vacuum.
-    pub fn medium_at(&self, p: DVec3) -> Option<&Medium> {
-        self.region_at(p).map(|index| &self.regions()[index].medium)
-    }
-
-    /// The nearest body ahead; `from` is the body that the ray starts on.
-    pub fn hit(&self, ray: &Ray, from: Option<Target>) -> Option<SceneHit> {
-        let bodies = &self.bodies;
-        let start = from.and_then(|from| bodies.targets.iter().position(|target| *target == from));
-        let flat = bodies.rectangles.nearest(ray, start, f64::INFINITY);
-        let mut nearest = flat.and_then(|(index, _)| self.try_body(ray, from, bodies.targets[index]));
-        for &target in &bodies.others {
-            if let Some(found) = self.try_body(ray, from, target)
-                && nearest.is_none_or(|n| {
-                    found.hit.t < n.hit.t || found.hit.t == n.hit.t && target < n.target
-                })
-            {
-                nearest = Some(found);
-            }
+    /// The stretches of medium on the ray up to distance `end`, nearest first, in the interior of this number: the
+    /// regions of the surroundings, or what fills another one, all the way.
+    pub fn segments(&self, ray: &Ray, end: f64, within: usize) -> Segments {
+        if within == SURROUNDINGS {
+            return Segments::new(self.regions(), ray, end);
         }
-        nearest
-    }
-
-    /// Where a ray meets one body.
-    fn try_body(&self, ray: &Ray, from: Option<Target>, target: Target) -> Option<SceneHit> {
-        let hit = match target {
-            Target::Object(i) => self.objects()[i].shape.hit(ray, from == Some(target)),
-            // Light leaves a light's body outwards, so a ray that starts on it never meets it again.
-            Target::Light(_) if from == Some(target) => None,
-            Target::Light(i) => self.lights()[i].hit(ray),
-        };
-        hit.map(|hit| SceneHit { target, hit })
-    }
-
-    /// The stretches of medium on the ray up to distance `end`, nearest first.
-    pub fn segments(&self, ray: &Ray, end: f64) -> Segments {
-        Segments::new(self.regions(), ray, end)
+        let interval = Interval { start: 0.0, end };
+        Segments::filled(self.filling(within).map(|medium| Segment { interval, medium }))
     }
 
     /// Optical depth up to distance `end` \[1\].
-    pub fn optical_depth(&self, ray: &Ray, end: f64) -> Spectrum {
+    pub fn optical_depth(&self, ray: &Ray, end: f64, within: usize) -> Spectrum {
         let mut depth = Spectrum::ZERO;
-        for segment in self.segments(ray, end).iter() {
+        for segment in self.segments(ray, end, within).iter() {
             depth += self.depth_of(segment, segment.interval);
         }
         depth
@@ -186,29 +145,13 @@ impl Scene {
 
     /// Optical depth of a part of a segment: 0 where nothing extinguishes, however long the part.
     fn depth_of(&self, segment: &Segment, part: Interval) -> Spectrum {
-        self.regions()[segment.region]
-            .medium
-            .sigma_t()
-            .map(|s| if s == 0.0 { 0.0 } else { s * part.length() })
-    }
-
-    /// Fraction of the light that passes up to distance `end` without a collision \[1\].
-    pub fn transmittance(&self, ray: &Ray, end: f64) -> Spectrum {
-        decay(self.optical_depth(ray, end))
-    }
-
-    /// Whether no body stands between the ray's origin and distance `end`, except the body at the far end.
-    pub fn is_clear(&self, ray: &Ray, from: Option<Target>, end: f64, towards: Target) -> bool {
-        match self.hit(ray, from) {
-            None => true,
-            Some(found) => found.target == towards || found.hit.t >= end,
-        }
+        self.medium(segment.medium).sigma_t().map(|s| if s == 0.0 { 0.0 } else { s * part.length() })
     }
 
     /// Emission collected along a ray from a source of emission coefficient `emission` [W/(L^3 sr)] that fills
     /// `part` of the ray: the integral of emission times transmittance, in closed form.
-    pub fn collected(&self, ray: &Ray, part: Interval, emission: Spectrum) -> Spectrum {
-        let segments = self.segments(ray, part.end);
+    pub fn collected(&self, ray: &Ray, part: Interval, within: usize, emission: Spectrum) -> Spectrum {
+        let segments = self.segments(ray, part.end, within);
         let (mut depth, mut cursor, mut sum) = (Spectrum::ZERO, part.start, Spectrum::ZERO);
         for segment in segments.iter() {
             let before = Interval { start: cursor, end: segment.interval.start.min(part.end) };
@@ -222,7 +165,7 @@ impl Scene {
             let inside = Interval { start: segment.interval.start.max(cursor), end: segment.interval.end };
             let length = inside.length();
             if length > 0.0 {
-                let sigma_t = self.regions()[segment.region].medium.sigma_t();
+                let sigma_t = self.medium(segment.medium).sigma_t();
                 let path =
                     sigma_t.map(|s| if s == 0.0 { length } else { -crate::math::exp_m1(-s * length) / s });
                 sum += decay(depth) * path;
