@@ -6,6 +6,7 @@
 //! equal angles, in multiple importance with the free flight: connections from free flights alone would have an
 //! infinite variance.
 
+use super::{Layer, Layers};
 use crate::Spectrum;
 use crate::faults::{Fault, planted};
 use crate::light::{Light, LightSample};
@@ -14,7 +15,7 @@ use crate::phase::PhaseFunction;
 use crate::rng::Stream;
 use crate::scene::{Orders, Scene, SceneHit, Target};
 use crate::surface::Surface;
-use crate::transport::{Arrival, Roulette, Step, Visitor, Walker, walk};
+use crate::transport::{Arrival, Flags, Roulette, Step, Visitor, Walker, walk};
 use glam::DVec3;
 
 /// Throughput below which paths play roulette. Any value gives the same mean; this one spends little on paths that
@@ -37,19 +38,38 @@ impl Rays {
     }
 }
 
-/// What reaches a path's origin, split by the caller: called with the order and the contribution.
-struct PathVisitor<'a, F: FnMut(u32, Spectrum)> {
+/// What reaches a path's origin, split by the caller: called with the order, the class and the contribution.
+struct PathVisitor<'a, F: FnMut(u32, Layer, Spectrum)> {
     scene: &'a Scene,
     orders: Orders,
     collect: F,
     rays: Rays,
+    /// What the path's first scattering was.
+    first: Flags,
+    /// The order at which it last met a specular surface.
+    specular_at: Option<u32>,
 }
 
-impl<F: FnMut(u32, Spectrum)> PathVisitor<'_, F> {
-    fn add(&mut self, order: u32, value: Spectrum) {
+impl<'a, F: FnMut(u32, Layer, Spectrum)> PathVisitor<'a, F> {
+    fn new(scene: &'a Scene, orders: Orders, rays: Rays, collect: F) -> Self {
+        PathVisitor { scene, orders, collect, rays, first: Flags::NONE, specular_at: None }
+    }
+
+    fn add(&mut self, order: u32, layer: Layer, value: Spectrum) {
         if self.orders.contains(order) && !value.is_black() {
-            (self.collect)(order, value);
+            (self.collect)(order, layer, value);
         }
+    }
+
+    /// The class of light that the ray ahead meets by itself.
+    fn layer_ahead(&self, walker: &Walker) -> Layer {
+        Layer::of(walker.order, self.first, self.specular_at == Some(walker.order))
+    }
+
+    /// The class of light that a connection from an event brings straight from a light.
+    fn layer_connected(&self, walker: &Walker, event: Flags) -> Layer {
+        let first = if walker.order == 0 { event } else { self.first };
+        Layer::of(walker.order + 1, first, false)
     }
 
     /// What the ray ahead meets by itself.
@@ -58,13 +78,14 @@ impl<F: FnMut(u32, Spectrum)> PathVisitor<'_, F> {
             return;
         }
         let end = hit.map_or(f64::INFINITY, |h| h.hit.t);
+        let layer = self.layer_ahead(walker);
         if let Some(found) = hit
             && let Target::Light(index) = found.target
         {
             let (radiance, pdf_light) = self.scene.lights()[index].emitted(&walker.ray, &found.hit);
             let share = walker.pdf_solid_angle.map_or(1.0, |pdf| pdf / (pdf + pdf_light));
             let seen = radiance * self.scene.transmittance(&walker.ray, end) * share;
-            self.add(walker.order, walker.weight * seen);
+            self.add(walker.order, layer, walker.weight * seen);
         }
         for light in self.scene.lights() {
             let mut seen = uncollided(self.scene, light, &walker.ray, end);
@@ -74,14 +95,14 @@ impl<F: FnMut(u32, Spectrum)> PathVisitor<'_, F> {
                 let share = walker.pdf_solid_angle.map_or(1.0, |pdf| pdf / (pdf + pdf_light));
                 seen += radiance * self.scene.transmittance(&walker.ray, end) * share;
             }
-            self.add(walker.order, walker.weight * seen);
+            self.add(walker.order, layer, walker.weight * seen);
         }
     }
 
     /// Connects an event to every light; `scattered` is the fraction scattered into a direction [1/sr].
     fn connect(
         &mut self,
-        walker: &Walker,
+        (walker, event): (&Walker, Flags),
         position: DVec3,
         from: Option<Target>,
         stream: &mut Stream,
@@ -91,6 +112,7 @@ impl<F: FnMut(u32, Spectrum)> PathVisitor<'_, F> {
         if !self.orders.contains(walker.order + 1) || !self.scene.plan().has_next_event {
             return;
         }
+        let layer = self.layer_connected(walker, event);
         for index in 0..self.scene.lights().len() {
             let light = &self.scene.lights()[index];
             let Some((sample, received)) =
@@ -105,7 +127,14 @@ impl<F: FnMut(u32, Spectrum)> PathVisitor<'_, F> {
                 (_, None) => 1.0,
             };
             let order = if planted(Fault::OrderOffByOne) { walker.order } else { walker.order + 1 };
-            self.add(order, walker.weight * fraction * received * share);
+            self.add(order, layer, walker.weight * fraction * received * share);
+        }
+    }
+
+    /// Remembers a scattering, if it is the first.
+    fn scattered(&mut self, walker: &Walker, event: Flags) {
+        if walker.order == 0 {
+            self.first = event;
         }
     }
 
@@ -139,7 +168,8 @@ impl<F: FnMut(u32, Spectrum)> PathVisitor<'_, F> {
             let density = scene.transmittance(ray, t) * medium.sigma_t();
             // Balance heuristic of the two densities; their sum divides, so neither can be small alone.
             let sum = equal_angles.pdf(t) + flight_pdf(scene, walker, density, ray, end);
-            self.add(walker.order + 1, walker.weight * fraction * density * received / sum);
+            let layer = self.layer_connected(walker, Flags::MEDIUM);
+            self.add(walker.order + 1, layer, walker.weight * fraction * density * received / sum);
         }
     }
 }
@@ -203,7 +233,7 @@ impl EqualAngles {
     }
 }
 
-impl<F: FnMut(u32, Spectrum)> Visitor for PathVisitor<'_, F> {
+impl<F: FnMut(u32, Layer, Spectrum)> Visitor for PathVisitor<'_, F> {
     fn visit(&mut self, walker: &Walker, step: Step, stream: &mut Stream) {
         match step {
             Step::Ahead(hit) => {
@@ -230,10 +260,14 @@ impl<F: FnMut(u32, Spectrum)> Visitor for PathVisitor<'_, F> {
                     let pdf = EqualAngles::new(&walker.ray, apex, span).pdf(t);
                     flight / (flight + pdf)
                 };
-                self.connect(walker, position, None, stream, scattered, point_share);
+                self.connect((walker, Flags::MEDIUM), position, None, stream, scattered, point_share);
+                self.scattered(walker, Flags::MEDIUM);
             }
             Step::Surface(Arrival { position, .. }, found) => {
                 let Target::Object(index) = found.target else { return };
+                if self.scene.objects()[index].surface.is_specular() {
+                    self.specular_at = Some(walker.order);
+                }
                 let Surface::Lambertian(surface) = self.scene.objects()[index].surface else { return };
                 let outward = found.hit.normal;
                 let normal = if walker.ray.dir.dot(outward) < 0.0 { outward } else { -outward };
@@ -242,7 +276,15 @@ impl<F: FnMut(u32, Spectrum)> Visitor for PathVisitor<'_, F> {
                     let again = if planted(Fault::CosineTwice) { cosine } else { 1.0 };
                     (surface.eval() * cosine * again, warp::pdf_cosine_hemisphere(cosine))
                 };
-                self.connect(walker, position, Some(found.target), stream, scattered, |_| 1.0);
+                self.connect(
+                    (walker, Flags::DIFFUSE),
+                    position,
+                    Some(found.target),
+                    stream,
+                    scattered,
+                    |_| 1.0,
+                );
+                self.scattered(walker, Flags::DIFFUSE);
             }
             Step::Passed(..) | Step::Absorbed(..) | Step::Escaped(_) | Step::Abandoned(_) => {}
         }
@@ -311,6 +353,29 @@ pub fn direct_flux(
     sum
 }
 
+/// One sample of the radiance that arrives at the origin of `ray` from ahead [W/(L^2 sr)], by order and class:
+/// `collect` is called with the order, the class and the contribution. Returns the work.
+pub fn classes(
+    scene: &Scene,
+    ray: Ray,
+    from: Option<Target>,
+    orders: Orders,
+    stream: &mut Stream,
+    collect: impl FnMut(u32, Layer, Spectrum),
+) -> Rays {
+    let mut visitor = PathVisitor::new(scene, orders, Rays::default(), collect);
+    let start = Walker { from, ..Walker::new(ray, Spectrum::ONE) };
+    walk(scene, start, ROULETTE, orders.max, stream, &mut visitor);
+    visitor.rays
+}
+
+/// One sample of the radiance that arrives at the origin of `ray` from ahead [W/(L^2 sr)], by class, and the work.
+pub fn layers(scene: &Scene, ray: Ray, from: Option<Target>, stream: &mut Stream) -> (Layers, Rays) {
+    let mut layers = Layers::ZERO;
+    let rays = classes(scene, ray, from, Orders::ALL, stream, |_, layer, value| layers[layer] += value);
+    (layers, rays)
+}
+
 /// One sample of the radiance that arrives at the origin of `ray` from ahead [W/(L^2 sr)], by order: `collect` is
 /// called with the order and the contribution. Returns the work.
 pub fn radiance(
@@ -319,12 +384,9 @@ pub fn radiance(
     from: Option<Target>,
     orders: Orders,
     stream: &mut Stream,
-    collect: impl FnMut(u32, Spectrum),
+    mut collect: impl FnMut(u32, Spectrum),
 ) -> Rays {
-    let mut visitor = PathVisitor { scene, orders, collect, rays: Rays::default() };
-    let start = Walker { from, ..Walker::new(ray, Spectrum::ONE) };
-    walk(scene, start, ROULETTE, orders.max, stream, &mut visitor);
-    visitor.rays
+    classes(scene, ray, from, orders, stream, |order, _, value| collect(order, value))
 }
 
 /// One sample of the fluence at a point [W/L^2], by order.
@@ -348,7 +410,7 @@ pub fn fluence(
         }
     }
     let dir = warp::square_to_sphere(stream.pair()).normalize();
-    let mut visitor = PathVisitor { scene, orders, collect, rays };
+    let mut visitor = PathVisitor::new(scene, orders, rays, |order, _, value| collect(order, value));
     let start = Walker {
         pdf_solid_angle: Some(warp::pdf_sphere()),
         ..Walker::new(Ray::new(position, dir), Spectrum::grey(FOUR_PI))
