@@ -148,7 +148,7 @@ fn lights_add_up() {
         tallies(&fog(lights.to_vec()), &[(quantity, Orders::ALL), (absorbed, Orders::ALL)], PHOTONS, 8);
     for (i, q) in [quantity, absorbed].into_iter().enumerate() {
         let expected: Vec<_> =
-            lights.iter().map(|l| paths(&fog(vec![*l]), q, Orders::ALL, 1 << 18, 9)[0]).collect();
+            lights.iter().map(|l| paths(&fog(vec![l.clone()]), q, Orders::ALL, 1 << 18, 9)[0]).collect();
         let sum: f64 = expected.iter().zip(powers).map(|(m, p)| m.mean() * p / total).sum();
         let error: f64 =
             expected.iter().zip(powers).map(|(m, p)| (m.std_error() * p / total).powi(2)).sum::<f64>().sqrt();
