@@ -298,7 +298,7 @@ fn nothing_is_non_finite() {
     places.extend([1e-300, 1e-30, 1e-12].map(|x| DVec3::new(x, 0.0, 1.0)));
     for light in lights {
         for g in [-1.0 + 1e-9, 0.0, 1.0 - 1e-9] {
-            let scene = ball(1.0, 0.99, g, light);
+            let scene = ball(1.0, 0.99, g, light.clone());
             let quantities: Vec<_> = places
                 .iter()
                 .map(|p| Quantity::Fluence(*p))
