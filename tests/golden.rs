@@ -54,7 +54,7 @@ fn emission() {
         point_light(DVec3::ZERO, Spectrum::ONE),
         area_light(rectangle(DVec3::ZERO, DVec3::X, DVec3::Y), Spectrum::ONE),
         emitting_sphere(DVec3::ZERO, 0.5),
-        isotropic(ball, Faces::Both),
+        isotropic(ball.clone(), Faces::Both),
         isotropic(scenes::layer(2.0), Faces::Both),
         scenes::volume_source(ball),
     ];

@@ -106,7 +106,7 @@ impl Area {
         let to_center = (sphere.center() - p).normalize();
         let dir = Frame::new(to_center).to_world(warp::square_to_cone(u, one_minus_mu_max)).normalize();
         // A direction on the very rim may miss by rounding: then it is as far as the rim is.
-        let distance = self.hit(&Ray::new(p, dir)).map_or_else(
+        let distance = self.hit(&Ray::new(p, dir), None).map_or_else(
             || (p.distance_squared(sphere.center()) - sphere.radius() * sphere.radius()).sqrt(),
             |hit| hit.t,
         );
@@ -114,8 +114,9 @@ impl Area {
         Some(LightSample { dir, distance, value: self.radiance / pdf, pdf_solid_angle: Some(pdf) })
     }
 
-    pub(super) fn hit(&self, ray: &Ray) -> Option<Hit> {
-        self.shape.hit(ray, false)
+    pub(super) fn hit(&self, ray: &Ray, from: Option<u32>) -> Option<Hit> {
+        // Light leaves a body outwards, so that a ray that starts on a convex one never meets it again.
+        if from.is_some() { None } else { self.shape.hit(ray, None) }
     }
 
     pub(super) fn emitted(&self, ray: &Ray, hit: &Hit) -> (Spectrum, f64) {

@@ -211,9 +211,9 @@ impl Light {
         }
     }
 
-    /// Where a ray meets the light's own body.
-    pub fn hit(&self, ray: &Ray) -> Option<Hit> {
-        if let Light::Area(l) = self { l.hit(ray) } else { None }
+    /// Where a ray meets the light's own body; `from` is the part of it that the ray starts on, if it does.
+    pub fn hit(&self, ray: &Ray, from: Option<u32>) -> Option<Hit> {
+        if let Light::Area(l) = self { l.hit(ray, from) } else { None }
     }
 
     /// Radiance sent back along a ray that meets the light's body [W/(L^2 sr)], and the density with which
