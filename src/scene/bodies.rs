@@ -19,9 +19,9 @@ pub(super) struct Bodies {
 impl Bodies {
     pub fn of(parts: &Parts) -> Self {
         let (mut list, mut targets, mut others) = (Vec::new(), Vec::new(), Vec::new());
-        let mut sort = |target: Target, shape: Option<Shape>| match shape {
+        let mut sort = |target: Target, shape: Option<&Shape>| match shape {
             Some(Shape::Rectangle(rectangle)) => {
-                list.push(rectangle);
+                list.push(*rectangle);
                 targets.push(target);
                 Some(list.len() - 1)
             }
@@ -33,7 +33,7 @@ impl Bodies {
         };
         let objects = parts.objects.iter().enumerate();
         let objects =
-            objects.map(|(i, object)| sort(Target::Object(i), Some(object.shape.clone()))).collect();
+            objects.map(|(i, object)| sort(Target::Object(i), Some(&object.shape))).collect();
         let lights = parts.lights.iter().enumerate();
         let lights = lights.map(|(i, light)| sort(Target::Light(i), light.body())).collect();
         Bodies { rectangles: Rectangles::new(list), targets, others, objects, lights }
