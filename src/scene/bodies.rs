@@ -32,8 +32,7 @@ impl Bodies {
             None => None,
         };
         let objects = parts.objects.iter().enumerate();
-        let objects =
-            objects.map(|(i, object)| sort(Target::Object(i), Some(&object.shape))).collect();
+        let objects = objects.map(|(i, object)| sort(Target::Object(i), Some(&object.shape))).collect();
         let lights = parts.lights.iter().enumerate();
         let lights = lights.map(|(i, light)| sort(Target::Light(i), light.body())).collect();
         Bodies { rectangles: Rectangles::new(list), targets, others, objects, lights }
