@@ -8,6 +8,7 @@ mod height_field;
 mod lathe;
 mod mesh;
 mod rectangle;
+mod rectangles;
 mod slab;
 mod sphere;
 
@@ -16,6 +17,7 @@ pub use height_field::{Ground, Up, Waves, height_field, listed};
 pub use lathe::{Lathe, smooth};
 pub use mesh::Mesh;
 pub use rectangle::Rectangle;
+pub use rectangles::Rectangles;
 pub use slab::{Face, Slab};
 pub use sphere::Sphere;
 
