@@ -5,7 +5,7 @@ mod tree;
 
 pub use profile::smooth;
 
-use super::Hit;
+use super::{Hit, remainder};
 use crate::error::{Error, Result};
 use crate::math::{Frame, Ray, atan2, sin_cos};
 use glam::{DVec2, DVec3};
@@ -212,11 +212,12 @@ impl Lathe {
         self.areas.last().copied().unwrap_or(0.0)
     }
 
-    /// A uniform point of the surface, the outward normal there and the number of its frustum, from three numbers in
+    /// A uniform point of the surface, the outward normal there and the number of its frustum, from two numbers in
     /// [0, 1).
-    pub fn sample_surface(&self, [u, v, w]: [f64; 3]) -> (DVec3, DVec3, u32) {
+    pub fn sample_surface(&self, [u, w]: [f64; 2]) -> (DVec3, DVec3, u32) {
         let target = u * self.area();
         let k = self.areas.partition_point(|&sum| sum <= target).min(self.areas.len() - 1);
+        let v = remainder(&self.areas, k, target);
         let (from, to) = (self.rings[k], self.rings[k + 1]);
         // The area up to a part s of the way is in proportion to 2 r0 s + (r1 - r0) s^2.
         let (r0, r1) = (from.x, to.x);

@@ -4,7 +4,7 @@ mod obj;
 mod tree;
 mod triangle;
 
-use super::Hit;
+use super::{Hit, remainder};
 use crate::error::{Error, Result};
 use crate::math::Ray;
 use glam::{DVec2, DVec3};
@@ -226,12 +226,13 @@ impl Mesh {
         self.corners.iter().map(pyramid).sum()
     }
 
-    /// A uniform point of the surface, the outward normal there and the number of its triangle, from three numbers
+    /// A uniform point of the surface, the outward normal there and the number of its triangle, from two numbers
     /// in [0, 1).
-    pub fn sample_surface(&self, [u, v, w]: [f64; 3]) -> (DVec3, DVec3, u32) {
+    pub fn sample_surface(&self, [u, w]: [f64; 2]) -> (DVec3, DVec3, u32) {
         let target = u * self.area();
         let index = self.areas.partition_point(|&sum| sum <= target).min(self.corners.len() - 1);
         let [a, b, c] = self.corners[index];
+        let v = remainder(&self.areas, index, target);
         // The square folded into a triangle: the root of v is the distance from the first corner.
         let root = v.sqrt();
         let p = a * (1.0 - root) + b * (root * (1.0 - w)) + c * (root * w);

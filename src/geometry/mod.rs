@@ -190,8 +190,8 @@ impl Shape {
     /// that it lies on ([`Hit::primitive`]). Of a slab, which has no uniform points: one above the origin.
     pub fn sample_surface(&self, u: [f64; 3]) -> (DVec3, DVec3, u32) {
         match self {
-            Shape::Mesh(s) => s.sample_surface(u),
-            Shape::Lathe(s) => s.sample_surface(u),
+            Shape::Mesh(s) => s.sample_surface([u[0], u[1]]),
+            Shape::Lathe(s) => s.sample_surface([u[0], u[1]]),
             Shape::Sphere(_) | Shape::Rectangle(_) | Shape::Slab(_) | Shape::Cuboid(_) => {
                 let (p, normal, _) = self.sample_boundary(Face::Top, 0.0, u);
                 (p, normal, 0)
@@ -230,4 +230,10 @@ impl Shape {
 /// The sphere about a box.
 fn about((min, max): (DVec3, DVec3)) -> (DVec3, f64) {
     (0.5 * (min + max), 0.5 * min.distance(max))
+}
+
+/// What is left of a number that chose an entry from sums: where between its own sum and the one before, in [0, 1).
+fn remainder(sums: &[f64], index: usize, target: f64) -> f64 {
+    let before = if index > 0 { sums[index - 1] } else { 0.0 };
+    ((target - before) / (sums[index] - before)).clamp(0.0, 1.0 - f64::EPSILON)
 }

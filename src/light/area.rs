@@ -10,7 +10,7 @@ use glam::DVec3;
 use std::f64::consts::PI;
 
 /// A black shape whose surface emits the same radiance everywhere, in all outward directions: the front of a rectangle,
-/// the outside of a sphere or a cuboid.
+/// the outside of a sphere, a cuboid, a mesh or a lathe.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Area {
     shape: Shape,
@@ -27,7 +27,8 @@ impl Area {
         let area = shape.area();
         if !area.is_finite() {
             return Err(Error::Scene(
-                "an area light needs a bounded shape: a rectangle, a sphere or a cuboid".into(),
+                "an area light needs a bounded shape: a rectangle, a sphere, a cuboid, a mesh or a lathe"
+                    .into(),
             ));
         }
         Ok(Area { shape, radiance: emissive("radiance", radiance)?, area })
@@ -49,8 +50,8 @@ impl Area {
 
     pub(super) fn needs(&self) -> Needs {
         let position = match self.shape {
-            Shape::Rectangle(_) | Shape::Sphere(_) => 2,
-            _ => 3,
+            Shape::Rectangle(_) | Shape::Sphere(_) | Shape::Mesh(_) | Shape::Lathe(_) => 2,
+            Shape::Cuboid(_) | Shape::Slab(_) => 3,
         };
         Needs { position, direction: 2 }
     }
@@ -66,6 +67,11 @@ impl Area {
         Ray::new(origin, Frame::new(normal).to_world(local))
     }
 
+    /// The part of the shape that the ray of these numbers starts on.
+    pub(super) fn primitive(&self, numbers: &EmissionNumbers) -> u32 {
+        self.shape.sample_surface(numbers.position).2
+    }
+
     /// A direction from `p`: to a uniform point of the surface, of the sides of a cuboid that face `p`, or in the cone
     /// that a sphere fills.
     pub(super) fn sample(&self, p: DVec3, u: [f64; 2]) -> Option<LightSample> {
@@ -74,6 +80,10 @@ impl Area {
             Shape::Rectangle(r) => self.towards(p, r.sample(u), r.normal()),
             Shape::Cuboid(c) => {
                 let (point, normal) = c.sample_facing(p, u)?;
+                self.towards(p, point, normal)
+            }
+            Shape::Mesh(_) | Shape::Lathe(_) => {
+                let (point, normal, _) = self.shape.sample_surface([u[0], u[1], 0.0]);
                 self.towards(p, point, normal)
             }
             Shape::Slab(_) => None,
@@ -116,7 +126,8 @@ impl Area {
 
     pub(super) fn hit(&self, ray: &Ray, from: Option<u32>) -> Option<Hit> {
         // Light leaves a body outwards, so that a ray that starts on a convex one never meets it again.
-        if from.is_some() { None } else { self.shape.hit(ray, None) }
+        let is_convex = !matches!(self.shape, Shape::Mesh(_) | Shape::Lathe(_));
+        if from.is_some() && is_convex { None } else { self.shape.hit(ray, from) }
     }
 
     pub(super) fn emitted(&self, ray: &Ray, hit: &Hit) -> (Spectrum, f64) {

@@ -65,6 +65,8 @@ impl Stage {
 pub struct Emission {
     /// Where it starts and where to.
     pub ray: Ray,
+    /// The part of the light's body that it starts on; 0 without parts.
+    pub primitive: u32,
     /// Power \[W\], as though it were the only one.
     pub power: Spectrum,
 }
@@ -191,7 +193,8 @@ impl Light {
             Light::Isotropic(l) => l.ray(stage, numbers),
             Light::VolumeSource(l) => l.ray(stage, numbers),
         };
-        Emission { ray, power: self.power(stage) }
+        let primitive = if let Light::Area(l) = self { l.primitive(numbers) } else { 0 };
+        Emission { ray, primitive, power: self.power(stage) }
     }
 
     /// One photon that carries the light's whole power.

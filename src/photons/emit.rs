@@ -24,6 +24,7 @@ pub(super) fn emit(scene: &Scene, power: Spectrum, stream: &mut Stream) -> Walke
     let emission = lights[index].emit(stage, stream);
     let weight =
         if lights.len() > 1 { emission.power * (total / emission.power.sum()) } else { emission.power };
-    let from = lights[index].body().map(|_| Start { target: Target::Light(index), primitive: 0 });
+    let from =
+        lights[index].body().map(|_| Start { target: Target::Light(index), primitive: emission.primitive });
     Walker { from, ..Walker::new(emission.ray, weight) }
 }

@@ -9,7 +9,7 @@ pub use texture::TextureFile;
 use super::{Object, Orders, Parts, Quantity, Region, Scene, Sensor};
 use crate::Spectrum;
 use crate::error::{Error, Result};
-use crate::geometry::{Face, Rectangle, Sphere};
+use crate::geometry::{Face, Rectangle};
 use crate::light::{Area, Beam, Faces, Isotropic, Light, Point, Section, Spot, Sun, VolumeSource};
 use crate::math::{Albedo, Asymmetry, NonNegative, Positive, Ray};
 use crate::medium::Homogeneous;

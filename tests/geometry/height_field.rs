@@ -73,7 +73,7 @@ fn a_body_of_water_is_closed() {
         }
         assert!(most >= 4, "{most}");
         for _ in 0..3000 {
-            let (p, normal, primitive) = solid.sample_surface(s.triple());
+            let (p, normal, primitive) = solid.sample_surface(s.pair());
             let dir = direction(&mut s);
             crossings(&Ray::new(p, dir), normal.dot(dir) < 0.0, |ray, from| {
                 solid.hit(ray, from.or(Some(primitive)))

@@ -154,7 +154,7 @@ fn rays_that_start_on_a_mesh_stay_on_their_side() {
         let star = mesh(&(corners.clone(), triangles.clone()), |p| p * scale + DVec3::splat(offset));
         let mut s = stream(3);
         for i in 0..2000 {
-            let (mut p, normal, primitive) = star.sample_surface(s.triple());
+            let (mut p, normal, primitive) = star.sample_surface(s.pair());
             let [a, b, _] = star.triangle(primitive);
             if i % 2 == 0 {
                 // As near the edge as can be.
@@ -190,7 +190,7 @@ fn a_convex_mesh_is_not_met_from_its_outside() {
     let solid = mesh(&icosphere(2), |p| p * 3.0 + 1e3);
     let mut s = stream(4);
     for _ in 0..20_000 {
-        let (p, normal, primitive) = solid.sample_surface(s.triple());
+        let (p, normal, primitive) = solid.sample_surface(s.pair());
         let dir = direction(&mut s);
         let found = solid.hit(&Ray::new(p, dir), Some(primitive));
         if dir.dot(normal) > 0.0 {
@@ -248,7 +248,7 @@ fn points_are_uniform_over_the_area() {
     // Four cells a triangle: the three corners' and the middle one, all of a quarter of the area.
     let mut counts = vec![0.0; 4 * solid.len()];
     for _ in 0..n {
-        let (p, normal, primitive) = solid.sample_surface(s.triple());
+        let (p, normal, primitive) = solid.sample_surface(s.pair());
         let [a, b, c] = solid.triangle(primitive);
         let area = (b - a).cross(c - a);
         let part = |x: DVec3, y: DVec3| (x - p).cross(y - p).dot(area) / area.length_squared();
