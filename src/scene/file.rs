@@ -276,7 +276,12 @@ impl SceneFile {
             regions: regions.collect::<Result<_>>()?,
             interiors: Vec::new(),
             objects: objects.collect::<Result<_>>()?,
-            lights: self.lights.iter().map(|l| l.light(folder)).collect::<Result<_>>()?,
+            lights: self
+                .lights
+                .iter()
+                .enumerate()
+                .map(|(i, l)| l.light(folder).map_err(|e| e.within(&format!("lights[{i}]"))))
+                .collect::<Result<_>>()?,
             cell: self.cell.map(Positive::get),
             sensors: self.sensors.iter().map(|s| s.sensor(folder)).collect::<Result<_>>()?,
         })
