@@ -4,13 +4,18 @@ use super::Hit;
 use crate::error::{Error, Result};
 use crate::faults::{Fault, planted};
 use crate::math::{Interval, Ray};
-use glam::DVec3;
+use glam::{DVec2, DVec3};
 
 /// All points between two corners.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Cuboid {
     min: DVec3,
     max: DVec3,
+}
+
+/// A hit of a face.
+fn face(t: f64, normal: DVec3) -> Hit {
+    Hit { t, normal, uv: DVec2::ZERO, primitive: 0 }
 }
 
 /// The unit vector along an axis.
@@ -77,7 +82,7 @@ impl Cuboid {
     }
 
     pub(super) fn hit(&self, ray: &Ray, from_here: bool) -> Option<Hit> {
-        let exit_hit = |(t, i): (f64, usize)| Hit { t, normal: axis(i) * ray.dir[i].signum() };
+        let exit_hit = |(t, i): (f64, usize)| face(t, axis(i) * ray.dir[i].signum());
         if from_here {
             let (i, sign) = self.face_at(ray.origin);
             if ray.dir[i] * sign >= 0.0 {
@@ -87,7 +92,7 @@ impl Cuboid {
         }
         let (entry, exit) = self.crossings(ray)?;
         if entry.0 > 0.0 {
-            return Some(Hit { t: entry.0, normal: -axis(entry.1) * ray.dir[entry.1].signum() });
+            return Some(face(entry.0, -axis(entry.1) * ray.dir[entry.1].signum()));
         }
         (exit.0 > 0.0).then(|| exit_hit(exit))
     }

@@ -11,7 +11,7 @@ use glam::DVec3;
 use std::f64::consts::PI;
 
 /// A black rectangle whose front emits the same radiance in all directions.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct Area {
     rectangle: Rectangle,
     radiance: Spectrum,
@@ -56,7 +56,7 @@ impl Area {
     }
 
     pub(super) fn hit(&self, ray: &Ray) -> Option<Hit> {
-        self.shape().hit(ray, false)
+        self.shape().hit(ray, None)
     }
 
     pub(super) fn emitted(&self, ray: &Ray, hit: &Hit) -> (Spectrum, f64) {

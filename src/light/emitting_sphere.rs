@@ -60,7 +60,7 @@ impl EmittingSphere {
     }
 
     pub(super) fn hit(&self, ray: &Ray) -> Option<Hit> {
-        self.shape().hit(ray, false)
+        self.shape().hit(ray, None)
     }
 
     pub(super) fn emitted(&self, ray: &Ray, hit: &Hit) -> (Spectrum, f64) {

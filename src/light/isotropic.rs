@@ -21,7 +21,7 @@ pub enum Faces {
 
 /// Isotropic incidence: every inward direction brings the same radiance to every point of a convex boundary.
 /// A radiance of 1/pi is an irradiance of 1.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct Isotropic {
     shape: Shape,
     faces: Faces,

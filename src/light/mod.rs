@@ -22,7 +22,7 @@ use crate::rng::Stream;
 use glam::DVec3;
 
 /// The lights at hand.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 pub enum Light {
     /// Collimated light, unbounded or of a given section.
     Beam(Beam),
@@ -163,9 +163,11 @@ impl Light {
         }
     }
 
-    /// Where a ray meets the light's own body.
-    pub fn hit(&self, ray: &Ray) -> Option<Hit> {
+    /// Where a ray meets the light's own body; `from` is the part of it that the ray starts on, if it does.
+    pub fn hit(&self, ray: &Ray, from: Option<u32>) -> Option<Hit> {
         match self {
+            // Light leaves a body outwards, so that a ray that starts on a convex one never meets it again.
+            _ if from.is_some() => None,
             Light::Area(l) => l.hit(ray),
             Light::EmittingSphere(l) => l.hit(ray),
             Light::Beam(_) | Light::Point(_) | Light::Isotropic(_) | Light::VolumeSource(_) => None,

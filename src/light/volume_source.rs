@@ -8,7 +8,7 @@ use crate::math::{FOUR_PI, Ray, warp};
 use crate::rng::Stream;
 
 /// Every volume element of a shape emits the same power, alike in all directions.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct VolumeSource {
     shape: Shape,
     density: Spectrum,

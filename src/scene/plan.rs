@@ -53,7 +53,7 @@ impl Plan {
                 .regions
                 .iter()
                 .all(|r| r.medium.sigma_t().is_grey() && r.medium.albedo().is_grey())
-                && parts.objects.iter().all(|o| o.surface.reflectance().is_grey())
+                && parts.objects.iter().all(|o| o.surface.is_grey())
                 && parts.lights.iter().all(Light::is_grey),
             has_surfaces: !parts.objects.is_empty(),
             has_specular,

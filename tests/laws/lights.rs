@@ -37,8 +37,8 @@ fn lights() -> Vec<(&'static str, Light)> {
         ("emitting sphere", Light::EmittingSphere(ball_light)),
         ("disc beam", Light::Beam(Beam::new(tilted, color, disc).unwrap())),
         ("rectangular beam", Light::Beam(Beam::new(DVec3::Z, color, Section::Rectangle(r)).unwrap())),
-        ("isotropic, sphere", isotropic(ball, Faces::Both)),
-        ("isotropic, cuboid", isotropic(block, Faces::Both)),
+        ("isotropic, sphere", isotropic(ball.clone(), Faces::Both)),
+        ("isotropic, cuboid", isotropic(block.clone(), Faces::Both)),
         ("volume source, sphere", volume_source(ball)),
         ("volume source, cuboid", volume_source(block)),
     ]
@@ -51,8 +51,8 @@ fn everything_that_is_sent_leaves_a_surrounding_sphere() {
     let around = outflow(sphere(DVec3::ZERO, 3.0));
     for (name, light) in lights() {
         let scene = bounded(Vec::new(), Vec::new(), vec![light]);
-        let by_photons = tallies(&scene, &[(around, Orders::ALL)], 4096, 1);
-        let by_paths = paths(&scene, around, Orders::ALL, MANY, 1);
+        let by_photons = tallies(&scene, &[(around.clone(), Orders::ALL)], 4096, 1);
+        let by_paths = paths(&scene, around.clone(), Orders::ALL, MANY, 1);
         for c in 0..3 {
             assert!((by_photons[0][c].mean() - 1.0).abs() < 1e-12, "{name}: {}", by_photons[0][c].mean());
             verdict::agrees(name, &by_paths[c], (1.0, 0.0), 0.15, 1);
@@ -68,8 +68,8 @@ fn photons_and_paths_agree_on_a_box_beside_the_light() {
         cuboid(DVec3::new(0.55, -1.0, -1.0), DVec3::new(1.2, 1.0, 1.0)),
     ];
     for (name, light) in lights() {
-        for (i, shape) in boxes.into_iter().enumerate() {
-            photons_and_paths_cross_a_box_alike(&format!("{name}, box {i}"), light, shape, MANY);
+        for (i, shape) in boxes.clone().into_iter().enumerate() {
+            photons_and_paths_cross_a_box_alike(&format!("{name}, box {i}"), light.clone(), shape, MANY);
         }
     }
 }
@@ -92,7 +92,7 @@ fn the_area_light_fills_its_solid_angle() {
     verdict::agrees("solid angle", &aimed, (expected, 0.0), 0.02 * expected, 4);
     let met = numbers(N, 5, |s| {
         let ray = Ray::new(p, warp::square_to_sphere(s.pair()));
-        FOUR_PI * light.hit(&ray).map_or(0.0, |hit| light.emitted(&ray, &hit).1)
+        FOUR_PI * light.hit(&ray, None).map_or(0.0, |hit| light.emitted(&ray, &hit).1)
     });
     verdict::agrees("density over rays", &met, (1.0, 0.0), 0.08, 5);
     // The wrong twin forgets the cosine.
@@ -116,7 +116,7 @@ proptest! {
             let ray = Ray::new(p, sample.dir);
             let is_area = matches!(light, Light::Area(_));
             let grazing = is_area && (u < 1e-9 || v < 1e-9 || sample.dir.z.abs() < 1e-6);
-            let Some(hit) = light.hit(&ray) else {
+            let Some(hit) = light.hit(&ray, None) else {
                 prop_assert!(grazing, "{name} missed from {p}");
                 continue;
             };
@@ -138,13 +138,13 @@ proptest! {
         let below = DVec3::new(0.5, 0.5, -0.5);
         prop_assert!(area.sample(below, [u, v]).is_none());
         let ray = Ray::new(below, dir);
-        if let Some(hit) = area.hit(&ray) {
+        if let Some(hit) = area.hit(&ray, None) {
             prop_assert_eq!(area.emitted(&ray, &hit), (Spectrum::ZERO, 0.0));
         }
         let ball = Light::EmittingSphere(EmittingSphere::new(Sphere::new(DVec3::ZERO, 1.0).unwrap(), Spectrum::ONE).unwrap());
         let inside = Ray::new(dir * 0.5, unit_vector(2.0 * u - 1.0, 6.0 * v));
         prop_assert!(ball.sample(inside.origin, [u, v]).is_none());
-        let hit = ball.hit(&inside).unwrap();
+        let hit = ball.hit(&inside, None).unwrap();
         prop_assert_eq!(ball.emitted(&inside, &hit).0, Spectrum::ZERO);
     }
 }

@@ -67,7 +67,7 @@ pub fn isotropic(shape: Shape, faces: Faces) -> Light {
 
 /// Power 1, uniform in the shape.
 pub fn volume_source(shape: Shape) -> Light {
-    Light::VolumeSource(VolumeSource::new(shape, Spectrum::grey(1.0 / shape.volume())).unwrap())
+    Light::VolumeSource(VolumeSource::new(shape.clone(), Spectrum::grey(1.0 / shape.volume())).unwrap())
 }
 
 pub fn point_light(position: DVec3, power: Spectrum) -> Light {
@@ -92,7 +92,7 @@ pub fn area_light(rectangle: Rectangle, radiance: Spectrum) -> Light {
 pub fn slab(tau: f64, albedo: f64, g: f64, how: Incidence) -> Scene {
     let shape = layer(tau);
     Scene::new(Parts {
-        regions: vec![region(shape, 1.0, albedo, g)],
+        regions: vec![region(shape.clone(), 1.0, albedo, g)],
         lights: vec![incidence(shape, how)],
         cell: Some(CELL),
         ..Parts::default()
