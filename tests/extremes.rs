@@ -32,6 +32,7 @@ fn with_sensors(scene: &Scene, quantities: &[Quantity]) -> Scene {
         objects: scene.objects().to_vec(),
         lights: scene.lights().to_vec(),
         cell: scene.stage().map(|s| s.side),
+        camera: None,
         sensors: quantities.iter().map(|q| support::run::sensor(*q, Orders::ALL)).collect(),
     })
     .unwrap()

@@ -191,7 +191,14 @@ fn slab(p: SlabParameters) -> Result<SceneFile> {
         ));
     }
     let regions = vec![region(shape, 1.0 / scale, p.albedo, p.g)?];
-    Ok(SceneFile { cell: Some(side), regions, objects: Vec::new(), lights: vec![light], sensors })
+    Ok(SceneFile {
+        cell: Some(side),
+        regions,
+        objects: Vec::new(),
+        lights: vec![light],
+        sensors,
+        camera: None,
+    })
 }
 
 fn sphere(p: SphereParameters) -> Result<SceneFile> {
@@ -223,7 +230,7 @@ fn sphere(p: SphereParameters) -> Result<SceneFile> {
         }
     }
     let regions = vec![region(shape, 1.0, p.albedo, p.g)?];
-    Ok(SceneFile { cell: None, regions, objects: Vec::new(), lights: vec![light], sensors })
+    Ok(SceneFile { cell: None, regions, objects: Vec::new(), lights: vec![light], sensors, camera: None })
 }
 
 fn shaft(p: ShaftParameters) -> Result<SceneFile> {
@@ -243,5 +250,5 @@ fn shaft(p: ShaftParameters) -> Result<SceneFile> {
     });
     let sensors = sensors.collect();
     let regions = vec![region(shape, 1.0, p.albedo, p.g)?];
-    Ok(SceneFile { cell: None, regions, objects: Vec::new(), lights: vec![light], sensors })
+    Ok(SceneFile { cell: None, regions, objects: Vec::new(), lights: vec![light], sensors, camera: None })
 }
