@@ -16,7 +16,7 @@ use turbid::integrators::{Layer, Layers, path};
 use turbid::math::{FOUR_PI, Ray, atan2, exp};
 use turbid::photons::{Flags, Histories, Photon, PhotonMap, is_in, is_indirect, shoot};
 use turbid::rng::{Purpose, Stream};
-use turbid::scene::{Orders, Quantity, Scene};
+use turbid::scene::{Orders, Quantity, SURROUNDINGS, Scene};
 use turbid::stats::Moments;
 use turbid::surface::{Lambertian, Mirror, Surface};
 use turbid::transport::NoProgress;
@@ -204,7 +204,7 @@ fn light_in_a_mirror_does_not_depend_on_the_largest_order() {
     let lights = vec![area_light(square, Spectrum::ONE)];
     let probe = DVec3::new(0.0, 0.0, 0.5);
     let solid_angle = |height: f64| 4.0 * atan2(1.0, height * (2.0 + height * height).sqrt());
-    let vacuum = bounded(Vec::new(), vec![mirror], lights.clone());
+    let vacuum = bounded(Vec::new(), vec![mirror.clone()], lights.clone());
     let seen = |scene: &Scene, quantity, max| {
         paths(scene, quantity, Orders { min: 0, max }, 1 << 18, 3).map(|m| (m.mean(), m))
     };
@@ -230,7 +230,7 @@ fn light_in_a_mirror_does_not_depend_on_the_largest_order() {
     let fog = region(cuboid(DVec3::splat(-2.0), DVec3::splat(2.0)), 1.0, 0.8, 0.0);
     let foggy = bounded(vec![fog], vec![mirror], lights);
     for (scene, expected) in [(&vacuum, 1.0), (&foggy, exp(-1.5))] {
-        let radiance = seen(scene, down, Some(0));
+        let radiance = seen(scene, down.clone(), Some(0));
         for c in 0..3 {
             assert!(
                 (radiance[c].0 / (rho[c] * expected) - 1.0).abs() < 1e-12,
@@ -245,7 +245,7 @@ fn light_in_a_mirror_does_not_depend_on_the_largest_order() {
 fn class_of_order(scene: &Scene, ray: Ray, layer: Layer, order: u32, n: u64, seed: u64) -> Moments {
     support::run::numbers(n, seed, |stream| {
         let mut sum = 0.0;
-        path::classes(scene, ray, None, Orders::only(order), stream, |_, class, value| {
+        path::classes(scene, ray, None, SURROUNDINGS, Orders::only(order), stream, |_, class, value| {
             sum += if class == layer { value[0] } else { 0.0 };
         });
         sum
@@ -260,9 +260,11 @@ fn layers_add_up_to_the_radiance() {
     let mut seen = Layers::ZERO;
     for history in 0..20_000 {
         let stream = || Stream::new(5, Purpose::Paths, 0, history);
-        let (layers, rays) = path::layers(&scene, ray, None, &mut stream());
+        let (layers, rays) = path::layers(&scene, ray, None, SURROUNDINGS, &mut stream());
         let mut sum = Spectrum::ZERO;
-        let same = path::radiance(&scene, ray, None, Orders::ALL, &mut stream(), |_, value| sum += value);
+        let same = path::radiance(&scene, ray, None, SURROUNDINGS, Orders::ALL, &mut stream(), |_, value| {
+            sum += value
+        });
         assert_eq!(rays, same);
         // A dozen terms, all positive, in another order.
         let difference = (layers.total() - sum).max().abs();

@@ -92,7 +92,7 @@ fn load(fog: &str) -> Result<Scene> {
     let path = folder().join(format!("fogbox-{fog}.toml"));
     let text = std::fs::read_to_string(&path).with_context(|| path.display().to_string())?;
     let file: SceneFile = toml::from_str(&text).with_context(|| path.display().to_string())?;
-    Ok(file.scene()?)
+    Ok(file.scene(std::path::Path::new(""))?)
 }
 
 /// One round of the path tracer.
@@ -106,9 +106,17 @@ fn by_paths(scene: &Scene, round: u64) -> Round {
             let mut stream = Stream::new(1, Purpose::Paths, round, pixel * SAMPLES + sample);
             let jitter = stream.pair();
             let ray = camera(x + jitter[0], y + jitter[1]);
-            turbid::integrators::radiance(scene, ray, None, Orders::ALL, &mut stream, |_, value| {
-                sum += value;
-            });
+            turbid::integrators::radiance(
+                scene,
+                ray,
+                None,
+                turbid::scene::SURROUNDINGS,
+                Orders::ALL,
+                &mut stream,
+                |_, value| {
+                    sum += value;
+                },
+            );
         }
         pixels.extend((sum / SAMPLES as f64).0.to_array());
     }

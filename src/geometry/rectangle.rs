@@ -3,7 +3,7 @@
 use super::Hit;
 use crate::error::{Error, Result};
 use crate::math::Ray;
-use glam::DVec3;
+use glam::{DVec2, DVec3};
 
 /// The points `corner + a u + b v` for a, b in [0, 1]; the edges u and v are perpendicular, the front is u x v.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -45,14 +45,42 @@ impl Rectangle {
         if t.is_nan() || t <= 0.0 {
             return None;
         }
-        self.covers(ray.at(t)).then_some(Hit { t, normal: self.normal })
+        self.covers(ray.at(t)).then(|| self.hit_at(ray, t))
+    }
+
+    /// The hit of a ray that meets the rectangle at this distance \[L\].
+    pub(super) fn hit_at(&self, ray: &Ray, t: f64) -> Hit {
+        Hit { t, normal: self.normal, uv: self.coordinates(ray.at(t)), primitive: 0 }
+    }
+
+    pub(super) fn corner(&self) -> DVec3 {
+        self.corner
+    }
+
+    pub(super) fn u(&self) -> DVec3 {
+        self.u
+    }
+
+    pub(super) fn v(&self) -> DVec3 {
+        self.v
     }
 
     /// Whether a point lies above or below the rectangle, seen along its normal; the edges count.
     pub fn covers(&self, p: DVec3) -> bool {
         let p = p - self.corner;
-        let (a, b) = (p.dot(self.u) / self.u.length_squared(), p.dot(self.v) / self.v.length_squared());
-        (0.0..=1.0).contains(&a) && (0.0..=1.0).contains(&b)
+        let (a, b) = (p.dot(self.u), p.dot(self.v));
+        (0.0..=self.u.length_squared()).contains(&a) && (0.0..=self.v.length_squared()).contains(&b)
+    }
+
+    /// Where a point lies along the edges, each of length 1, seen along the normal.
+    fn coordinates(&self, p: DVec3) -> DVec2 {
+        let p = p - self.corner;
+        DVec2::new(p.dot(self.u) / self.u.length_squared(), p.dot(self.v) / self.v.length_squared())
+    }
+
+    /// Length of the diagonal \[L\].
+    pub fn diagonal(&self) -> f64 {
+        (self.u + self.v).length()
     }
 
     /// How far a point lies inside the rectangle's edges, seen along its normal; outside, minus the distance \[L\].

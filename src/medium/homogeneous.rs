@@ -5,7 +5,7 @@ use crate::error::{Error, Result};
 use crate::phase::Phase;
 
 /// Extinction, albedo and phase function, the same at every point.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct Homogeneous {
     sigma_t: Spectrum,
     albedo: Spectrum,

@@ -25,7 +25,7 @@ pub trait PhaseFunction {
 }
 
 /// The phase functions at hand.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 pub enum Phase {
     /// The same in every direction.
     Isotropic(Isotropic),

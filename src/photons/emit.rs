@@ -2,7 +2,7 @@
 
 use crate::Spectrum;
 use crate::rng::Stream;
-use crate::scene::{Scene, Target};
+use crate::scene::{Scene, Start, Target};
 use crate::transport::Walker;
 
 /// A photon from one of the lights, chosen in proportion to power; it carries the power of all of them \[W\], in the
@@ -24,5 +24,6 @@ pub(super) fn emit(scene: &Scene, power: Spectrum, stream: &mut Stream) -> Walke
     let emission = lights[index].emit(stage, stream);
     let weight =
         if lights.len() > 1 { emission.power * (total / emission.power.sum()) } else { emission.power };
-    Walker { from: lights[index].body().map(|_| Target::Light(index)), ..Walker::new(emission.ray, weight) }
+    let from = lights[index].body().map(|_| Start { target: Target::Light(index), primitive: 0 });
+    Walker { from, ..Walker::new(emission.ray, weight) }
 }

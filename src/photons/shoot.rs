@@ -208,11 +208,11 @@ impl<K: Fn(&Photon) -> bool> Visitor for Tallier<'_, K> {
                     self.pass.photons.push(photon);
                 }
             }
-            Step::Absorbed(weight, region) => {
+            Step::Absorbed(weight, number) => {
                 self.pass.ledger.absorbed += weight.sum();
                 for sensor in 0..self.sensors.len() {
                     if let Quantity::Absorbed(of) = self.sensors[sensor].quantity
-                        && region == Some(of)
+                        && number == Some(of)
                     {
                         self.score(sensor, walker.order, weight);
                     }

@@ -1,0 +1,90 @@
+//! What a ray meets: the nearest body, and what lets light through on the way.
+
+use super::Scene;
+use crate::Spectrum;
+use crate::geometry::Hit;
+use crate::math::Ray;
+
+/// A body that a ray can meet.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Target {
+    /// The object of this index.
+    Object(usize),
+    /// The light of this index.
+    Light(usize),
+}
+
+/// Where a ray starts, if it starts on a body: what it must not meet again at once.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Start {
+    /// Which body.
+    pub target: Target,
+    /// Which part of its shape; 0 of a shape without parts.
+    pub primitive: u32,
+}
+
+impl Start {
+    /// The part that a ray starts on, if it starts on this body.
+    fn on(start: Option<Start>, target: Target) -> Option<u32> {
+        start.filter(|s| s.target == target).map(|s| s.primitive)
+    }
+}
+
+/// The nearest body on a ray.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct SceneHit {
+    /// Which body.
+    pub target: Target,
+    /// Where, and its normal.
+    pub hit: Hit,
+}
+
+impl SceneHit {
+    /// Rays from here start on this body.
+    pub fn start(&self) -> Start {
+        Start { target: self.target, primitive: self.hit.primitive }
+    }
+}
+
+impl Scene {
+    /// The nearest body ahead; `from` is the body that the ray starts on.
+    pub fn hit(&self, ray: &Ray, from: Option<Start>) -> Option<SceneHit> {
+        let start = from.and_then(|start| self.bodies.in_list(start.target));
+        let mut nearest = self
+            .bodies
+            .rectangles
+            .nearest(ray, start)
+            .map(|(index, hit)| SceneHit { target: self.bodies.targets[index], hit });
+        for &target in &self.bodies.others {
+            if let Some(hit) = self.try_body(ray, from, target)
+                && nearest.is_none_or(|n| hit.t < n.hit.t || hit.t == n.hit.t && target < n.target)
+            {
+                nearest = Some(SceneHit { target, hit });
+            }
+        }
+        nearest
+    }
+
+    /// Where a ray meets one body.
+    fn try_body(&self, ray: &Ray, from: Option<Start>, target: Target) -> Option<Hit> {
+        let start = Start::on(from, target);
+        match target {
+            Target::Object(i) => self.objects()[i].shape.hit(ray, start),
+            Target::Light(i) => self.lights()[i].hit(ray, start),
+        }
+    }
+
+    /// What bodies let pass between the ray's origin and distance `end` \[1\], not counting the body at the far end;
+    /// none if one of them stands in the way. Media are not asked.
+    pub fn passes(&self, ray: &Ray, from: Option<Start>, end: f64, towards: Target) -> Option<Spectrum> {
+        let bodies = &self.bodies;
+        let except = [from.and_then(|start| bodies.in_list(start.target)), bodies.in_list(towards)];
+        if bodies.rectangles.block(ray, except, end) {
+            return None;
+        }
+        let mut others = bodies.others.iter().filter(|target| **target != towards);
+        let is_blocked =
+            others.any(|target| self.try_body(ray, from, *target).is_some_and(|hit| hit.t < end));
+        (!is_blocked).then_some(Spectrum::ONE)
+    }
+}
