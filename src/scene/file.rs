@@ -1,10 +1,10 @@
 //! The scene file: TOML, strict. Every error names the line, the column and the key, and says what is allowed.
 
-use super::{Object, Orders, Parts, Quantity, Region, Scene, Sensor};
+use super::{Camera, Filter, Object, Orders, Parts, Quantity, Region, Scene, Sensor, View};
 use crate::Spectrum;
 use crate::error::{Error, Result};
 use crate::geometry::{Cuboid, Face, Rectangle, Shape, Slab, Sphere};
-use crate::light::{Area, Beam, EmittingSphere, Faces, Isotropic, Light, Point, Section, VolumeSource};
+use crate::light::{Area, Beam, Faces, Isotropic, Light, Point, Section, Spot, Sun, VolumeSource};
 use crate::math::{Albedo, Asymmetry, NonNegative, Positive, Ray};
 use crate::medium::Homogeneous;
 use crate::phase::Phase;
@@ -72,6 +72,51 @@ pub struct SceneFile {
     /// What is measured.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub sensors: Vec<SensorFile>,
+    /// Who looks.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub camera: Option<CameraFile>,
+}
+
+/// A camera.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct CameraFile {
+    /// Where it is \[L\].
+    pub position: [f64; 3],
+    /// A point in the middle of the picture \[L\].
+    pub look_at: [f64; 3],
+    /// What is up in the picture; +y if absent.
+    #[serde(default = "up", skip_serializing_if = "is_up")]
+    pub up: [f64; 3],
+    /// Full horizontal angle \[degrees\].
+    pub fov: f64,
+    /// Pixels across.
+    pub width: u32,
+    /// Pixels down.
+    pub height: u32,
+    /// How the samples of a pixel are spread; uniformly over it if absent.
+    #[serde(default, skip_serializing_if = "is_box")]
+    pub filter: Filter,
+}
+
+fn up() -> [f64; 3] {
+    [0.0, 1.0, 0.0]
+}
+
+fn is_up(given: &[f64; 3]) -> bool {
+    *given == up()
+}
+
+fn is_box(filter: &Filter) -> bool {
+    *filter == Filter::Box
+}
+
+impl CameraFile {
+    fn camera(&self) -> Result<Camera> {
+        let CameraFile { fov, width, height, filter, .. } = *self;
+        let (position, look_at, up) = (self.position.into(), self.look_at.into(), self.up.into());
+        Camera::new(View { position, look_at, up, fov, width, height, filter })
+    }
 }
 
 /// A shape; lengths in scene units.
@@ -144,9 +189,10 @@ pub enum SectionFile {
 )]
 pub enum LightFile {
     Beam { dir: [f64; 3], irradiance: Channels<NonNegative>, section: SectionFile },
-    Area { corner: [f64; 3], u: [f64; 3], v: [f64; 3], radiance: Channels<NonNegative> },
-    EmittingSphere { center: [f64; 3], radius: Positive, radiance: Channels<NonNegative> },
+    Area { shape: ShapeFile, radiance: Channels<NonNegative> },
     Point { position: [f64; 3], power: Channels<NonNegative> },
+    Spot { position: [f64; 3], dir: [f64; 3], full_angle: f64, edge_angle: f64, power: Channels<NonNegative> },
+    Sun { dir: [f64; 3], irradiance: Channels<NonNegative>, angular_radius: f64 },
     Isotropic { shape: ShapeFile, faces: Faces, radiance: Channels<NonNegative> },
     VolumeSource { shape: ShapeFile, density: Channels<NonNegative> },
 }
@@ -221,12 +267,17 @@ impl LightFile {
                 };
                 Light::Beam(Beam::new(dir.into(), irradiance.spectrum(), section)?)
             }
-            LightFile::Area { corner, u, v, radiance } => {
-                Light::Area(Area::new(rectangle(corner, u, v)?, radiance.spectrum())?)
+            LightFile::Area { ref shape, radiance } => {
+                Light::Area(Area::new(shape.shape(folder)?, radiance.spectrum())?)
             }
-            LightFile::EmittingSphere { center, radius, radiance } => {
-                let sphere = Sphere::new(center.into(), radius.get())?;
-                Light::EmittingSphere(EmittingSphere::new(sphere, radiance.spectrum())?)
+            LightFile::Spot { position, dir, full_angle, edge_angle, power } => Light::Spot(Spot::new(
+                position.into(),
+                dir.into(),
+                (full_angle, edge_angle),
+                power.spectrum(),
+            )?),
+            LightFile::Sun { dir, irradiance, angular_radius } => {
+                Light::Sun(Sun::new(dir.into(), irradiance.spectrum(), angular_radius)?)
             }
             LightFile::Point { position, power } => {
                 Light::Point(Point::new(position.into(), power.spectrum())?)
@@ -289,9 +340,15 @@ impl SceneFile {
             regions: regions.collect::<Result<_>>()?,
             interiors: Vec::new(),
             objects: objects.collect::<Result<_>>()?,
-            lights: self.lights.iter().map(|l| l.light(folder)).collect::<Result<_>>()?,
+            lights: self
+                .lights
+                .iter()
+                .enumerate()
+                .map(|(i, l)| l.light(folder).map_err(|e| e.within(&format!("lights[{i}]"))))
+                .collect::<Result<_>>()?,
             cell: self.cell.map(Positive::get),
             sensors: self.sensors.iter().map(|s| s.sensor(folder)).collect::<Result<_>>()?,
+            camera: self.camera.as_ref().map(CameraFile::camera).transpose()?,
         })
     }
 }
