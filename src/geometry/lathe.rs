@@ -42,10 +42,8 @@ struct Line {
     dir: DVec3,
     /// How far along the ray the origin was moved \[L\].
     shift: f64,
-    /// Squared distance from the axis: `c + 2 b t + a t^2`.
+    /// Squared speed across the axis.
     a: f64,
-    b: f64,
-    c: f64,
 }
 
 /// Far beyond every distance, so that its square is still finite.
@@ -56,20 +54,17 @@ impl Line {
         let (p, d) = (lathe.frame.to_local(ray.origin - lathe.base), lathe.frame.to_local(ray.dir));
         let shift = -(p - DVec3::Z * lathe.size.z).dot(d);
         let origin = p + d * shift;
-        let (across, along) = (origin.truncate(), d.truncate());
-        Line {
-            origin,
-            dir: d,
-            shift,
-            a: along.length_squared(),
-            b: across.dot(along),
-            c: across.length_squared(),
-        }
+        Line { origin, dir: d, shift, a: d.truncate().length_squared() }
     }
 
     /// Squared distance from the axis.
     fn axial(&self, t: f64) -> f64 {
-        self.c + t * (2.0 * self.b + t * self.a)
+        self.across(t).length_squared()
+    }
+
+    /// The position across the axis.
+    fn across(&self, t: f64) -> DVec2 {
+        self.origin.truncate() + self.dir.truncate() * t
     }
 
     /// Where the line passes a height. A level line counts as rising by less than anything.
@@ -143,12 +138,21 @@ impl Lathe {
         if !enters && !leaves {
             return;
         }
-        // Squared distance from the axis less the squared radius there: a t^2 + 2 b t + c.
+        // From the narrower ring, where a tip would lose the most digits, unless the line passes it far away: squared
+        // distance from the axis less the squared radius there, a t^2 + 2 b t + c.
         let slope = (to.x - from.x) / (to.y - from.y);
-        let (radius, widening) = (from.x + slope * (line.origin.z - from.y), slope * line.dir.z);
+        let ring = if from.x <= to.x { (t_from, from.x) } else { (t_to, to.x) };
+        let (start, radius) = if ring.0.abs() <= 8.0 * (self.size.x + self.size.y) {
+            ring
+        } else {
+            let nearest = 0f64.clamp(low, high);
+            (nearest, from.x + slope * (line.origin.z + nearest * line.dir.z - from.y))
+        };
+        let (low, high) = (low - start, high - start);
+        let widening = slope * line.dir.z;
         let a = line.a - widening * widening;
-        let b = line.b - radius * widening;
-        let c = line.c - radius * radius;
+        let b = line.across(start).dot(line.dir.truncate()) - radius * widening;
+        let c = line.axial(start) - radius * radius;
         let discriminant = b * b - a * c;
         if enters && leaves && !(a > 0.0 && discriminant > 0.0 && low < -b / a && -b / a < high) {
             return;
@@ -156,8 +160,14 @@ impl Lathe {
         let root = discriminant.max(0.0).sqrt();
         let q = -(b + root.copysign(b));
         // Where the value falls, and where it rises.
-        let (falling, rising) = if b.is_sign_positive() { (q / a, c / q) } else { (c / q, q / a) };
-        let within = |t: f64| if t.is_nan() { low } else { t.clamp(low, high) };
+        let (falling, rising) = if discriminant <= 0.0 {
+            (-b / a, -b / a)
+        } else if b.is_sign_positive() {
+            (q / a, c / q)
+        } else {
+            (c / q, q / a)
+        };
+        let within = |t: f64| start + if t.is_nan() { 0.0 } else { t }.clamp(low, high);
         if enters {
             found(within(falling));
         }

