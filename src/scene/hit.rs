@@ -4,6 +4,7 @@ use super::Scene;
 use crate::Spectrum;
 use crate::geometry::Hit;
 use crate::math::Ray;
+use crate::surface::Surface;
 
 /// A body that a ray can meet.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -68,12 +69,23 @@ impl Scene {
         nearest
     }
 
-    /// What bodies let pass between the ray's origin and distance `end` \[1\], not counting the body at the far end;
-    /// none if one of them stands in the way. Media are not asked.
+    /// What filters let pass between the ray's origin and distance `end` \[1\], not counting the body at the far end;
+    /// none if another body stands in the way, or nothing passes. Media are not asked.
     pub fn passes(&self, ray: &Ray, from: Option<Start>, end: f64, towards: Target) -> Option<Spectrum> {
-        match self.hit(ray, from) {
-            None => Some(Spectrum::ONE),
-            Some(found) => (found.target == towards || found.hit.t >= end).then_some(Spectrum::ONE),
+        let (mut ray, mut from, mut end, mut passed) = (*ray, from, end, Spectrum::ONE);
+        while let Some(found) = self.hit(&ray, from) {
+            if found.target == towards || found.hit.t >= end {
+                break;
+            }
+            let Target::Object(index) = found.target else { return None };
+            let Surface::Filter(filter) = &self.objects()[index].surface else { return None };
+            let position = ray.at(found.hit.t);
+            passed *= filter.transmittance(position, found.hit.uv);
+            if passed.is_black() {
+                return None;
+            }
+            (ray, from, end) = (Ray::new(position, ray.dir), Some(found.start()), end - found.hit.t);
         }
+        Some(passed)
     }
 }
