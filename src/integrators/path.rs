@@ -10,7 +10,7 @@ use super::{Layer, Layers};
 use crate::Spectrum;
 use crate::faults::{Fault, planted};
 use crate::geometry::Hit;
-use crate::light::{Light, LightSample, Point};
+use crate::light::{Light, LightSample};
 use crate::math::{FOUR_PI, Interval, Ray, atan2, cosine_pair, warp};
 use crate::phase::PhaseFunction;
 use crate::rng::Stream;
@@ -94,7 +94,13 @@ impl<'a, F: FnMut(u32, Layer, Spectrum)> PathVisitor<'a, F> {
             self.add(walker.order, layer, walker.weight * seen);
         }
         for light in self.scene.lights() {
-            let seen = uncollided(self.scene, light, walker, end, stream);
+            let mut seen = uncollided(self.scene, light, walker, end, stream);
+            if hit.is_none()
+                && let Some((radiance, pdf_light)) = light.background(walker.ray.dir)
+            {
+                let share = walker.pdf_solid_angle.map_or(1.0, |pdf| pdf / (pdf + pdf_light));
+                seen += radiance * transmittance(self.scene, &walker.ray, end, walker.within, stream) * share;
+            }
             self.add(walker.order, layer, walker.weight * seen);
         }
     }
@@ -107,7 +113,7 @@ impl<'a, F: FnMut(u32, Layer, Spectrum)> PathVisitor<'a, F> {
         from: Option<Start>,
         stream: &mut Stream,
         scattered: impl Fn(DVec3) -> (Spectrum, f64),
-        point_share: impl Fn(&Point) -> f64,
+        point_share: impl Fn(DVec3) -> f64,
     ) {
         if !self.orders.contains(walker.order + 1) || !self.scene.plan().has_next_event {
             return;
@@ -121,8 +127,8 @@ impl<'a, F: FnMut(u32, Layer, Spectrum)> PathVisitor<'a, F> {
                 continue;
             };
             let (fraction, pdf) = scattered(sample.dir);
-            let share = match (light, sample.pdf_solid_angle) {
-                (Light::Point(point), _) => point_share(point),
+            let share = match (light.apex(), sample.pdf_solid_angle) {
+                (Some(apex), _) => point_share(apex),
                 (_, Some(pdf_light)) => pdf_light / (pdf_light + pdf),
                 (_, None) => 1.0,
             };
@@ -138,7 +144,7 @@ impl<'a, F: FnMut(u32, Layer, Spectrum)> PathVisitor<'a, F> {
         }
     }
 
-    /// A connection from a point chosen with equal angles about each point light.
+    /// A connection from a point chosen with equal angles about each point or spot light.
     fn equiangular(&mut self, walker: &Walker, hit: Option<&SceneHit>, stream: &mut Stream) {
         let (scene, ray) = (self.scene, &walker.ray);
         let plan = scene.plan();
@@ -148,8 +154,8 @@ impl<'a, F: FnMut(u32, Layer, Spectrum)> PathVisitor<'a, F> {
         let end = hit.map_or(f64::INFINITY, |h| h.hit.t);
         let Some(span) = span(scene, ray, end, walker.within) else { return };
         for &index in &plan.point_lights {
-            let Light::Point(point) = &scene.lights()[index] else { continue };
-            let equal_angles = EqualAngles::new(ray, point.position(), span);
+            let Some(apex) = scene.lights()[index].apex() else { continue };
+            let equal_angles = EqualAngles::new(ray, apex, span);
             let Some(t) = equal_angles.sample(stream.unit()) else { continue };
             let segments = scene.segments(ray, end, walker.within);
             let Some(segment) = segments.iter().find(|s| t <= s.interval.end) else { continue };
@@ -249,7 +255,7 @@ impl<F: FnMut(u32, Layer, Spectrum)> Visitor for PathVisitor<'_, F> {
                     (medium.albedo() * p, p)
                 };
                 let scene = self.scene;
-                let point_share = |point: &Point| {
+                let point_share = |apex: DVec3| {
                     let t = position.distance(walker.ray.origin);
                     let hit = scene.hit(&walker.ray, walker.from);
                     let end = hit.map_or(f64::INFINITY, |h| h.hit.t);
@@ -257,7 +263,7 @@ impl<F: FnMut(u32, Layer, Spectrum)> Visitor for PathVisitor<'_, F> {
                     let passed = decay(scene.optical_depth(&walker.ray, t, walker.within));
                     let density = passed * medium.sigma_t();
                     let flight = flight_pdf(scene, walker, density, &walker.ray, end);
-                    let pdf = EqualAngles::new(&walker.ray, point.position(), span).pdf(t);
+                    let pdf = EqualAngles::new(&walker.ray, apex, span).pdf(t);
                     flight / (flight + pdf)
                 };
                 self.connect((walker, Flags::MEDIUM), position, None, stream, scattered, point_share);

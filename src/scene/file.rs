@@ -4,7 +4,7 @@ use super::{Object, Orders, Parts, Quantity, Region, Scene, Sensor};
 use crate::Spectrum;
 use crate::error::{Error, Result};
 use crate::geometry::{Cuboid, Face, Rectangle, Shape, Slab, Sphere};
-use crate::light::{Area, Beam, EmittingSphere, Faces, Isotropic, Light, Point, Section, VolumeSource};
+use crate::light::{Area, Beam, Faces, Isotropic, Light, Point, Section, Spot, Sun, VolumeSource};
 use crate::math::{Albedo, Asymmetry, NonNegative, Positive, Ray};
 use crate::medium::Homogeneous;
 use crate::phase::Phase;
@@ -144,9 +144,10 @@ pub enum SectionFile {
 )]
 pub enum LightFile {
     Beam { dir: [f64; 3], irradiance: Channels<NonNegative>, section: SectionFile },
-    Area { corner: [f64; 3], u: [f64; 3], v: [f64; 3], radiance: Channels<NonNegative> },
-    EmittingSphere { center: [f64; 3], radius: Positive, radiance: Channels<NonNegative> },
+    Area { shape: ShapeFile, radiance: Channels<NonNegative> },
     Point { position: [f64; 3], power: Channels<NonNegative> },
+    Spot { position: [f64; 3], dir: [f64; 3], full_angle: f64, edge_angle: f64, power: Channels<NonNegative> },
+    Sun { dir: [f64; 3], irradiance: Channels<NonNegative>, angular_radius: f64 },
     Isotropic { shape: ShapeFile, faces: Faces, radiance: Channels<NonNegative> },
     VolumeSource { shape: ShapeFile, density: Channels<NonNegative> },
 }
@@ -221,12 +222,17 @@ impl LightFile {
                 };
                 Light::Beam(Beam::new(dir.into(), irradiance.spectrum(), section)?)
             }
-            LightFile::Area { corner, u, v, radiance } => {
-                Light::Area(Area::new(rectangle(corner, u, v)?, radiance.spectrum())?)
+            LightFile::Area { ref shape, radiance } => {
+                Light::Area(Area::new(shape.shape(folder)?, radiance.spectrum())?)
             }
-            LightFile::EmittingSphere { center, radius, radiance } => {
-                let sphere = Sphere::new(center.into(), radius.get())?;
-                Light::EmittingSphere(EmittingSphere::new(sphere, radiance.spectrum())?)
+            LightFile::Spot { position, dir, full_angle, edge_angle, power } => Light::Spot(Spot::new(
+                position.into(),
+                dir.into(),
+                (full_angle, edge_angle),
+                power.spectrum(),
+            )?),
+            LightFile::Sun { dir, irradiance, angular_radius } => {
+                Light::Sun(Sun::new(dir.into(), irradiance.spectrum(), angular_radius)?)
             }
             LightFile::Point { position, power } => {
                 Light::Point(Point::new(position.into(), power.spectrum())?)

@@ -2,6 +2,7 @@
 
 use super::Parts;
 use crate::light::Light;
+use crate::surface::Surface;
 
 /// What a scene requires; what it does not require costs nothing.
 #[derive(Debug, Clone, PartialEq)]
@@ -16,9 +17,13 @@ pub struct Plan {
     pub has_surfaces: bool,
     /// Whether light can meet a specular surface.
     pub has_specular: bool,
+    /// Whether light can meet a boundary that refracts.
+    pub has_dielectrics: bool,
+    /// Whether light can meet a filter.
+    pub has_filters: bool,
     /// Whether some light has a direction to aim at.
     pub has_next_event: bool,
-    /// Indices of point lights: equiangular sampling towards them.
+    /// Indices of lights in one point (point and spot): equiangular sampling towards them.
     pub point_lights: Vec<usize>,
     /// Whether the first collision is forced: the media are so thin that free flights would rarely meet them.
     pub forces_first_collision: bool,
@@ -41,10 +46,13 @@ impl Plan {
         if has_specular && has_delta {
             if has_event {
                 unreachable.push(
-                    "L S+ (D|M) ... : from a beam or point light by mirrors to the first scattering".into(),
+                    "L S+ (D|M) ... : from a beam, a sun without disc, a point or spot light by mirrors to the first scattering".into(),
                 );
             }
-            unreachable.push("L S+ E : from a beam or point light by mirrors to the sensor".into());
+            unreachable.push(
+                "L S+ E : from a beam, a sun without disc, a point or spot light by mirrors to the sensor"
+                    .into(),
+            );
         }
         Plan {
             has_media: !media.is_empty(),
@@ -57,10 +65,10 @@ impl Plan {
                 && parts.lights.iter().all(Light::is_grey),
             has_surfaces: !parts.objects.is_empty(),
             has_specular,
+            has_dielectrics: parts.objects.iter().any(|o| matches!(o.surface, Surface::Dielectric(_))),
+            has_filters: parts.objects.iter().any(|o| matches!(o.surface, Surface::Filter(_))),
             has_next_event: parts.lights.iter().any(Light::has_direction),
-            point_lights: (0..parts.lights.len())
-                .filter(|&i| matches!(parts.lights[i], Light::Point(_)))
-                .collect(),
+            point_lights: (0..parts.lights.len()).filter(|&i| parts.lights[i].apex().is_some()).collect(),
             forces_first_collision: !media.is_empty() && thickest < THIN,
             unreachable,
         }

@@ -55,9 +55,9 @@ pub(super) fn check(parts: &Parts) -> Result<Option<Stage>> {
     for sensor in &parts.sensors {
         let is_finite = match sensor.quantity {
             Quantity::Fluence(p) => {
-                if parts.lights.iter().any(|l| matches!(l, Light::Point(point) if point.position() == p)) {
+                if parts.lights.iter().any(|l| l.apex() == Some(p)) {
                     return refuse(format!(
-                        "sensor {} is at a point light, where the fluence is infinite",
+                        "sensor {} is at a point or spot light, where the fluence is infinite",
                         sensor.name
                     ));
                 }
@@ -123,7 +123,7 @@ fn check_end(parts: &Parts) -> Result<()> {
                 .objects
                 .iter()
                 .any(|o| !keeps_all(o.surface.largest_reflectance()) && is_inside(&o.shape))
-                || parts.lights.iter().any(|l| l.body().is_some_and(|shape| is_inside(&shape)));
+                || parts.lights.iter().any(|l| l.body().is_some_and(is_inside));
         if !absorbs {
             return refuse(
                 "light could be caught for ever: a closed shape reflects everything and nothing in it absorbs",

@@ -468,9 +468,8 @@ fn reach(scene: &Scene, sensor: &Sensor) -> f64 {
     let walls = scene.objects().iter().map(|o| o.shape.room(p).abs()).filter(|r| *r > 0.0);
     let others = scene.regions().iter().map(|r| r.shape.room(p).abs());
     let lights = scene.lights().iter().filter_map(|light| match light {
-        Light::Point(point) => Some(0.5 * p.distance(point.position())),
         Light::Beam(beam) => Some(beam.distance_to_edge(p)),
-        _ => None,
+        _ => light.apex().map(|apex| 0.5 * p.distance(apex)),
     });
     let nearest = walls.chain(others).chain(lights).fold(half_cell, f64::min);
     nearest.min(mean_free_path(scene, sensor)).min(region.shape.room(p))

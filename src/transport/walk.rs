@@ -109,7 +109,8 @@ pub fn walk<V: Visitor>(
                 visitor.visit(&walker, Step::Abandoned(walker.weight), stream);
                 return;
             };
-            let seen = walker.weight * transmittance(scene, &walker.ray, through.hit.t, walker.within, stream);
+            let seen =
+                walker.weight * transmittance(scene, &walker.ray, through.hit.t, walker.within, stream);
             visitor.visit(&walker, Step::Abandoned(walker.weight - seen), stream);
             walker.weight = seen;
             match bounce(scene, &walker, &through, roulette, stream, visitor) {

@@ -4,7 +4,7 @@ use glam::DVec3;
 use std::f64::consts::PI;
 use turbid::Spectrum;
 use turbid::geometry::{Cuboid, Face, Rectangle, Shape, Slab, Sphere};
-use turbid::light::{Area, Beam, EmittingSphere, Faces, Isotropic, Light, Point, Section, VolumeSource};
+use turbid::light::{Area, Beam, Faces, Isotropic, Light, Point, Section, VolumeSource};
 use turbid::math::{Asymmetry, FOUR_PI};
 use turbid::medium::Homogeneous;
 use turbid::phase::Phase;
@@ -77,7 +77,7 @@ pub fn point_light(position: DVec3, power: Spectrum) -> Light {
 /// A small sphere of power 1.
 pub fn emitting_sphere(center: DVec3, radius: f64) -> Light {
     let radiance = Spectrum::grey(1.0 / (PI * FOUR_PI * radius * radius));
-    Light::EmittingSphere(EmittingSphere::new(Sphere::new(center, radius).unwrap(), radiance).unwrap())
+    Light::Area(Area::new(sphere(center, radius), radiance).unwrap())
 }
 
 pub fn lambertian(reflectance: Spectrum) -> Surface {
@@ -85,7 +85,7 @@ pub fn lambertian(reflectance: Spectrum) -> Surface {
 }
 
 pub fn area_light(rectangle: Rectangle, radiance: Spectrum) -> Light {
-    Light::Area(Area::new(rectangle, radiance).unwrap())
+    Light::Area(Area::new(Shape::Rectangle(rectangle), radiance).unwrap())
 }
 
 /// A slab of optical thickness tau, extinction 1, lit with irradiance 1 (on each lit face).
