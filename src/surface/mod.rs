@@ -64,6 +64,11 @@ impl Surface {
         matches!(self, Surface::Mirror(_) | Surface::Dielectric(_))
     }
 
+    /// Whether light that meets it has met something: everything but a filter.
+    pub fn is_event(&self) -> bool {
+        !matches!(self, Surface::Filter(_))
+    }
+
     /// The direction of travel after reflection, from the one before, the normal on the side of arrival and two
     /// numbers in [0, 1), with its density [1/sr], or none for a specular direction. What a dielectric or a filter does
     /// depends on more than that: none of theirs.
