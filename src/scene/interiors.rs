@@ -93,7 +93,9 @@ pub(super) fn check(parts: &Parts) -> Result<()> {
             continue;
         }
         if parts.interiors[..number].iter().any(|other| other.name == *name) {
-            return Err(Error::Scene(format!("two interiors are called {name}; allowed: one, and not that of the surroundings")));
+            return Err(Error::Scene(format!(
+                "two interiors are called {name}; allowed: one, and not that of the surroundings"
+            )));
         }
         let names_it = |o: &&Object| matches!(&o.surface, Surface::Dielectric(d) if d.inside() == number || d.outside() == number);
         if parts.objects.iter().find(names_it).is_none() {
@@ -121,7 +123,9 @@ fn check_sides(parts: &Parts, index: usize, dielectric: &Dielectric) -> Result<(
         return Err(Error::Scene(format!("object {index} names an interior that is not there")));
     };
     if dielectric.inside() == dielectric.outside() {
-        return Err(Error::Scene(format!("object {index} has {inside} on both sides; allowed: two interiors")));
+        return Err(Error::Scene(format!(
+            "object {index} has {inside} on both sides; allowed: two interiors"
+        )));
     }
     let shape = &parts.objects[index].shape;
     // Far from the surface by nothing that a neighbour could hide in, and by more than rounding.

@@ -1,6 +1,7 @@
 //! The scene: a plain struct, validated once and trusted after; what a ray meets in it; what it requires.
 
 mod bodies;
+mod bounds;
 mod builtin;
 mod file;
 mod hit;
@@ -21,7 +22,7 @@ pub use sensor::{Orders, Quantity, Sensor};
 use crate::Spectrum;
 use crate::error::Result;
 use crate::faults::{Fault, planted};
-use crate::geometry::Shape;
+use crate::geometry::{Shape, Sphere};
 use crate::light::{Light, Stage};
 use crate::math::{Interval, Ray, exp};
 use crate::medium::Medium;
@@ -71,6 +72,7 @@ pub struct Scene {
     light_within: Vec<Option<usize>>,
     bodies: bodies::Bodies,
     stage: Option<Stage>,
+    bounds: Option<Sphere>,
     plan: Plan,
 }
 
@@ -83,12 +85,14 @@ impl Scene {
         if parts.interiors.is_empty() {
             parts.interiors.push(Interior::surroundings());
         }
+        let bounds = bounds::of(&parts);
+        parts.lights.iter_mut().try_for_each(|light| light.cover(bounds))?;
         let stage = validate::check(&parts)?;
         let plan = Plan::of(&parts);
         let (media, filling) = interiors::numbered(&parts.regions, &parts.interiors);
         let bodies = bodies::Bodies::of(&parts);
         let light_within = Vec::new();
-        let mut scene = Scene { parts, media, filling, light_within, bodies, stage, plan };
+        let mut scene = Scene { parts, media, filling, light_within, bodies, stage, bounds, plan };
         scene.light_within = interiors::of_lights(&scene);
         Ok(scene)
     }
@@ -121,6 +125,11 @@ impl Scene {
     /// The slab and its cell, where the scene has a cell.
     pub fn stage(&self) -> Option<&Stage> {
         self.stage.as_ref()
+    }
+
+    /// A sphere about every medium, surface and body of a light; none where one of them has no end, or there is none.
+    pub fn bounds(&self) -> Option<&Sphere> {
+        self.bounds.as_ref()
     }
 
     /// Power of all lights \[W\].

@@ -45,7 +45,8 @@ impl Plan {
         let thickest = thickness.fold(0.0, f64::max);
         let has_specular = parts.objects.iter().any(|o| o.surface.is_specular());
         let has_delta = parts.lights.iter().any(Light::is_delta);
-        let has_event = has_media || parts.objects.iter().any(|o| o.surface.is_event() && !o.surface.is_specular());
+        let has_event =
+            has_media || parts.objects.iter().any(|o| o.surface.is_event() && !o.surface.is_specular());
         let mut unreachable = Vec::new();
         if has_specular && has_delta {
             if has_event {

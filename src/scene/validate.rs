@@ -175,14 +175,13 @@ fn check_end(parts: &Parts) -> Result<()> {
         let middle = |shape: &Shape| shape.sample_inside(0.0, [0.5; 3]).0;
         let is_inside =
             |shape: &Shape| object.shape.contains(middle(shape)) || shape.contains(middle(&object.shape));
-        let absorbs =
-            parts.regions.iter().any(|r| is_absorbing(&r.medium) && is_inside(&r.shape))
-                || parts.interiors.iter().any(|i| i.medium.as_ref().is_some_and(is_absorbing))
-                || parts
+        let absorbs = parts.regions.iter().any(|r| is_absorbing(&r.medium) && is_inside(&r.shape))
+            || parts.interiors.iter().any(|i| i.medium.as_ref().is_some_and(is_absorbing))
+            || parts
                 .objects
                 .iter()
                 .any(|o| !keeps_all(o.surface.largest_reflectance()) && is_inside(&o.shape))
-                || parts.lights.iter().any(|l| l.body().is_some_and(is_inside));
+            || parts.lights.iter().any(|l| l.body().is_some_and(is_inside));
         if !absorbs {
             return refuse(
                 "light could be caught for ever: a closed shape reflects everything and nothing in it absorbs",
