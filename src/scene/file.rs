@@ -4,7 +4,7 @@ mod interior;
 
 pub use interior::{DielectricFile, InteriorFile};
 
-use super::{Interior, Object, Orders, Parts, Quantity, Region, Scene, Sensor};
+use super::{Camera, Filter, Interior, Object, Orders, Parts, Quantity, Region, Scene, Sensor, View};
 use crate::Spectrum;
 use crate::error::{Error, Result};
 use crate::geometry::{Cuboid, Face, Rectangle, Shape, Slab, Sphere};
@@ -12,7 +12,7 @@ use crate::light::{Area, Beam, Faces, Isotropic, Light, Point, Section, Spot, Su
 use crate::math::{Albedo, Asymmetry, NonNegative, Positive, Ray};
 use crate::medium::Homogeneous;
 use crate::phase::Phase;
-use crate::surface::{Black, Filter, Lambertian, Mirror, Surface};
+use crate::surface::{self, Black, Lambertian, Mirror, Surface};
 use glam::DVec3;
 use serde::de::{IntoDeserializer, SeqAccess, Visitor};
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
@@ -59,7 +59,7 @@ impl<T: Serialize + PartialEq> Serialize for Channels<T> {
 }
 
 /// A whole scene file.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct SceneFile {
     /// Side of the cell that stands for an unbounded slab \[L\].
@@ -79,6 +79,51 @@ pub struct SceneFile {
     /// What is measured.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub sensors: Vec<SensorFile>,
+    /// Who looks.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub camera: Option<CameraFile>,
+}
+
+/// A camera.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct CameraFile {
+    /// Where it is \[L\].
+    pub position: [f64; 3],
+    /// A point in the middle of the picture \[L\].
+    pub look_at: [f64; 3],
+    /// What is up in the picture; +y if absent.
+    #[serde(default = "up", skip_serializing_if = "is_up")]
+    pub up: [f64; 3],
+    /// Full horizontal angle \[degrees\].
+    pub fov: f64,
+    /// Pixels across.
+    pub width: u32,
+    /// Pixels down.
+    pub height: u32,
+    /// How the samples of a pixel are spread; uniformly over it if absent.
+    #[serde(default, skip_serializing_if = "is_box")]
+    pub filter: Filter,
+}
+
+fn up() -> [f64; 3] {
+    [0.0, 1.0, 0.0]
+}
+
+fn is_up(given: &[f64; 3]) -> bool {
+    *given == up()
+}
+
+fn is_box(filter: &Filter) -> bool {
+    *filter == Filter::Box
+}
+
+impl CameraFile {
+    fn camera(&self) -> Result<Camera> {
+        let CameraFile { fov, width, height, filter, .. } = *self;
+        let (position, look_at, up) = (self.position.into(), self.look_at.into(), self.up.into());
+        Camera::new(View { position, look_at, up, fov, width, height, filter })
+    }
 }
 
 /// A shape; lengths in scene units.
@@ -214,7 +259,9 @@ impl SurfaceFile {
             }
             SurfaceFile::Mirror { reflectance } => Surface::Mirror(Mirror::new(reflectance.spectrum())?),
             SurfaceFile::Dielectric(ref names) => Surface::Dielectric(names.dielectric(interiors)?),
-            SurfaceFile::Filter { transmittance } => Surface::Filter(Filter::new(transmittance.spectrum())?),
+            SurfaceFile::Filter { transmittance } => {
+                Surface::Filter(surface::Filter::new(transmittance.spectrum())?)
+            }
             SurfaceFile::Black => Surface::Black(Black),
         })
     }
@@ -317,6 +364,7 @@ impl SceneFile {
                 .collect::<Result<_>>()?,
             cell: self.cell.map(Positive::get),
             sensors: self.sensors.iter().map(|s| s.sensor(folder)).collect::<Result<_>>()?,
+            camera: self.camera.as_ref().map(CameraFile::camera).transpose()?,
         })
     }
 }

@@ -4,6 +4,7 @@
 
 pub mod cell;
 pub mod glass;
+pub mod ledger;
 pub mod light;
 pub mod numbers;
 pub mod phase;
