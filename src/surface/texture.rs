@@ -39,7 +39,9 @@ impl Checker {
     pub fn new(values: [Spectrum; 2], tiles: [f64; 2]) -> Result<Self> {
         match tiles.iter().find(|n| !(**n > 0.0 && n.is_finite())) {
             Some(bad) => Err(Error::out_of_range("tiles", *bad, "finite and above 0")),
-            None => Ok(Checker { values: [checked(values[0])?, checked(values[1])?], tiles }),
+            None => {
+                Ok(Checker { values: [checked("values", values[0])?, checked("values", values[1])?], tiles })
+            }
         }
     }
 
@@ -51,9 +53,9 @@ impl Checker {
 }
 
 impl Texture {
-    /// The same everywhere, each channel in [0, 1].
-    pub fn constant(value: Spectrum) -> Result<Self> {
-        Ok(Texture::Constant(checked(value)?))
+    /// The same everywhere, each channel in [0, 1]; errors call it by its name.
+    pub fn constant(name: &'static str, value: Spectrum) -> Result<Self> {
+        Ok(Texture::Constant(checked(name, value)?))
     }
 
     /// The value at a position \[L\] with these surface parameters.
@@ -126,6 +128,6 @@ mod tests {
         assert!(!texture.is_grey());
         assert!(Checker::new([black, Spectrum::grey(1.5)], [1.0, 1.0]).is_err());
         assert!(Checker::new([black, white], [0.0, 1.0]).is_err());
-        assert!(Texture::constant(Spectrum::grey(-0.1)).is_err());
+        assert!(Texture::constant("reflectance", Spectrum::grey(-0.1)).is_err());
     }
 }

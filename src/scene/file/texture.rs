@@ -33,9 +33,10 @@ pub enum VaryingFile {
 }
 
 impl TextureFile {
-    pub(super) fn texture(&self, folder: &Path) -> Result<Texture> {
+    /// The texture; errors call a constant by this name.
+    pub(super) fn texture(&self, name: &'static str, folder: &Path) -> Result<Texture> {
         let varying = match self {
-            TextureFile::Constant(value) => return Texture::constant(value.spectrum()),
+            TextureFile::Constant(value) => return Texture::constant(name, value.spectrum()),
             TextureFile::Varying(varying) => varying,
         };
         Ok(match varying {

@@ -33,7 +33,7 @@ impl Wood {
             return Err(Error::out_of_range("width", width, "finite and above 0"));
         }
         Ok(Wood {
-            values: [checked(values[0])?, checked(values[1])?],
+            values: [checked("values", values[0])?, checked("values", values[1])?],
             center,
             frame: Frame::new(axis),
             width,
