@@ -51,11 +51,17 @@ pub enum Fault {
     RejectedSetRadius,
     /// A march sums its steps and forgets how long they are.
     StepForgotten,
+    /// A path's radiance is not scaled where it is refracted.
+    RadianceUnscaled,
+    /// A photon's power is scaled like radiance where it is refracted.
+    PhotonPowerScaled,
+    /// A dielectric reflects nothing but what it reflects totally.
+    FresnelForgotten,
 }
 
 impl Fault {
     /// Every fault, in the order of their definition.
-    pub const ALL: [Fault; 22] = [
+    pub const ALL: [Fault; 25] = [
         Fault::AlbedoTwice,
         Fault::AlbedoNever,
         Fault::CosineTwice,
@@ -78,6 +84,9 @@ impl Fault {
         Fault::RootForgotten,
         Fault::RejectedSetRadius,
         Fault::StepForgotten,
+        Fault::RadianceUnscaled,
+        Fault::PhotonPowerScaled,
+        Fault::FresnelForgotten,
     ];
 }
 
@@ -133,7 +142,7 @@ mod tests {
     #[test]
     fn all_are_named_in_order() {
         assert!(Fault::ALL.iter().enumerate().all(|(i, fault)| *fault as usize == i));
-        assert_eq!(Fault::ALL.len(), Fault::StepForgotten as usize + 1);
+        assert_eq!(Fault::ALL.len(), Fault::FresnelForgotten as usize + 1);
         assert!(Fault::ALL.iter().all(|fault| !planted(*fault)));
     }
 }

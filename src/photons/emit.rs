@@ -161,5 +161,6 @@ fn by_power(scene: &Scene, power: Spectrum, stream: &mut Stream) -> Walker {
 /// The walker of a photon that leaves a light.
 fn start(scene: &Scene, index: usize, ray: crate::math::Ray, weight: Spectrum) -> Walker {
     let from = scene.lights()[index].body().map(|_| Start { target: Target::Light(index), primitive: 0 });
-    Walker { from, ..Walker::new(ray, weight) }
+    let within = scene.interior_of_light(index, ray.origin);
+    Walker { from, within, ..Walker::new(ray, weight) }
 }

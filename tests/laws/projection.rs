@@ -155,7 +155,7 @@ fn projection_loses_nothing() {
             }
         }
         // Isotropic light goes anywhere from each part of its numbers, and so wide a sun nearly so.
-        let is_whole = name.starts_with("isotropic") || name == "wide sun" || name == "all of them";
+        let is_whole = name.starts_with("isotropic") || name == "wide sun";
         assert_eq!(aimed.kept() < 0.75, !is_whole, "{name}");
     }
 }
