@@ -295,7 +295,13 @@ impl<F: FnMut(u32, Layer, Spectrum)> Visitor for PathVisitor<'_, F> {
 
 /// Uncollided radiance from a light that fills the ray's far end or its way [W/(L^2 sr)]: incidence and volume
 /// sources, which no sampler aims at.
-fn uncollided(scene: &Scene, light: &Light, walker: &Walker, end: f64, stream: &mut Stream) -> Spectrum {
+pub(super) fn uncollided(
+    scene: &Scene,
+    light: &Light,
+    walker: &Walker,
+    end: f64,
+    stream: &mut Stream,
+) -> Spectrum {
     let (ray, within) = (&walker.ray, walker.within);
     match light {
         Light::Isotropic(light) if light.is_lit_against(ray.dir) => match light.shape().interval(ray) {
@@ -317,7 +323,7 @@ fn uncollided(scene: &Scene, light: &Light, walker: &Walker, end: f64, stream: &
 
 /// Light that arrives at a place (point, body, interior) straight from the light of this index, along one sampled direction: radiance
 /// over density, or the irradiance of a delta light [W/L^2].
-fn next_event(
+pub(super) fn next_event(
     scene: &Scene,
     index: usize,
     (position, from, within): (DVec3, Option<Start>, usize),

@@ -201,7 +201,14 @@ fn slab(p: SlabParameters) -> Result<SceneFile> {
         ));
     }
     let regions = vec![region(shape, 1.0 / scale, p.albedo, p.g)?];
-    Ok(SceneFile { cell: Some(side), regions, objects: Vec::new(), lights: vec![light], sensors })
+    Ok(SceneFile {
+        cell: Some(side),
+        regions,
+        objects: Vec::new(),
+        lights: vec![light],
+        sensors,
+        camera: None,
+    })
 }
 
 fn sphere(p: SphereParameters) -> Result<SceneFile> {
@@ -239,7 +246,7 @@ fn sphere(p: SphereParameters) -> Result<SceneFile> {
         }
     }
     let regions = vec![region(shape, 1.0, p.albedo, p.g)?];
-    Ok(SceneFile { cell: None, regions, objects: Vec::new(), lights: vec![light], sensors })
+    Ok(SceneFile { cell: None, regions, objects: Vec::new(), lights: vec![light], sensors, camera: None })
 }
 
 fn shaft(p: ShaftParameters) -> Result<SceneFile> {
@@ -259,5 +266,5 @@ fn shaft(p: ShaftParameters) -> Result<SceneFile> {
     });
     let sensors = sensors.collect();
     let regions = vec![region(shape, 1.0, p.albedo, p.g)?];
-    Ok(SceneFile { cell: None, regions, objects: Vec::new(), lights: vec![light], sensors })
+    Ok(SceneFile { cell: None, regions, objects: Vec::new(), lights: vec![light], sensors, camera: None })
 }

@@ -1,6 +1,6 @@
 //! The scene file: TOML, strict. Every error names the line, the column and the key, and says what is allowed.
 
-use super::{Object, Orders, Parts, Quantity, Region, Scene, Sensor};
+use super::{Camera, Filter, Object, Orders, Parts, Quantity, Region, Scene, Sensor, View};
 use crate::Spectrum;
 use crate::error::{Error, Result};
 use crate::geometry::{Cuboid, Face, Rectangle, Shape, Slab, Sphere};
@@ -72,6 +72,51 @@ pub struct SceneFile {
     /// What is measured.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub sensors: Vec<SensorFile>,
+    /// Who looks.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub camera: Option<CameraFile>,
+}
+
+/// A camera.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct CameraFile {
+    /// Where it is \[L\].
+    pub position: [f64; 3],
+    /// A point in the middle of the picture \[L\].
+    pub look_at: [f64; 3],
+    /// What is up in the picture; +y if absent.
+    #[serde(default = "up", skip_serializing_if = "is_up")]
+    pub up: [f64; 3],
+    /// Full horizontal angle \[degrees\].
+    pub fov: f64,
+    /// Pixels across.
+    pub width: u32,
+    /// Pixels down.
+    pub height: u32,
+    /// How the samples of a pixel are spread; uniformly over it if absent.
+    #[serde(default, skip_serializing_if = "is_box")]
+    pub filter: Filter,
+}
+
+fn up() -> [f64; 3] {
+    [0.0, 1.0, 0.0]
+}
+
+fn is_up(given: &[f64; 3]) -> bool {
+    *given == up()
+}
+
+fn is_box(filter: &Filter) -> bool {
+    *filter == Filter::Box
+}
+
+impl CameraFile {
+    fn camera(&self) -> Result<Camera> {
+        let CameraFile { fov, width, height, filter, .. } = *self;
+        let (position, look_at, up) = (self.position.into(), self.look_at.into(), self.up.into());
+        Camera::new(View { position, look_at, up, fov, width, height, filter })
+    }
 }
 
 /// A shape; lengths in scene units.
@@ -303,6 +348,7 @@ impl SceneFile {
                 .collect::<Result<_>>()?,
             cell: self.cell.map(Positive::get),
             sensors: self.sensors.iter().map(|s| s.sensor(folder)).collect::<Result<_>>()?,
+            camera: self.camera.as_ref().map(CameraFile::camera).transpose()?,
         })
     }
 }

@@ -3,6 +3,7 @@
 mod bodies;
 mod bounds;
 mod builtin;
+mod camera;
 mod file;
 mod hit;
 mod interiors;
@@ -12,6 +13,7 @@ mod sensor;
 mod validate;
 
 pub use builtin::{BUILTIN, Builtin};
+pub use camera::{Camera, Filter, MAX_SIDE, View};
 pub use file::SceneFile;
 pub use hit::{SceneHit, Start, Target};
 pub use interiors::{Interior, SURROUNDINGS};
@@ -61,6 +63,8 @@ pub struct Parts {
     pub cell: Option<f64>,
     /// What is measured.
     pub sensors: Vec<Sensor>,
+    /// Who looks, if anybody does.
+    pub camera: Option<Camera>,
 }
 
 /// A scene whose parts have been checked together.
@@ -111,6 +115,11 @@ impl Scene {
     /// What is measured.
     pub fn sensors(&self) -> &[Sensor] {
         &self.parts.sensors
+    }
+
+    /// The camera, if the scene has one.
+    pub fn camera(&self) -> Option<&Camera> {
+        self.parts.camera.as_ref()
     }
 
     /// What the scene requires of the simulator.
