@@ -64,7 +64,7 @@ pub fn look(scene: &Scene, camera: &Camera, radius: f64) -> Vec<View> {
         let mut stream = Stream::new(0, Purpose::Synthetic, 0, number);
         let walker =
             Walker { within: scene.interior_at(ray.origin), ..Walker::new(ray, Spectrum::ONE) };
-        walk(scene, walker, Roulette::Never, Some(0), &mut stream, &mut eye);
+        walk(scene, walker, Roulette::Below(1e-6), Some(0), &mut stream, &mut eye);
         if let (Some((place, normal)), true) = (eye.view.surface, radius > 0.0) {
             eye.view.missing = missing(scene, place, normal, radius);
         }
