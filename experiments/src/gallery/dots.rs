@@ -18,9 +18,9 @@ pub fn dots<'a>(scene: &Scene, camera: &Camera, maps: impl Iterator<Item = &'a P
         let hit = scene.hit(&Ray::new(camera.position(), towards / distance), None);
         // Positions are kept in single precision: a photon may lie behind its own surface by that much.
         let is_hidden = hit.is_some_and(|found| found.hit.t < distance * (1.0 - 1e-3));
-        let largest = photon.power.max();
+        let largest = photon.power.max_element();
         if !is_hidden && largest > 0.0 {
-            picture[y as usize * grid.width + x as usize] += photon.power / largest;
+            picture[y as usize * grid.width + x as usize] += Spectrum((photon.power / largest).as_dvec3());
         }
     }
     picture

@@ -34,7 +34,7 @@ impl Visitor for Eye<'_> {
         let Step::Ahead(hit) = step else { return };
         let end = hit.map_or(f64::INFINITY, |found| found.hit.t);
         let mut last = 0.0_f64;
-        for segment in self.scene.segments(&walker.ray, end, walker.within) {
+        for segment in self.scene.segments(&walker.ray, end, walker.within).iter() {
             let (start, stop) = (segment.interval.start, segment.interval.end);
             let (length, middle) = self.view.medium;
             let (more, at) = (stop - start, self.view.distance + 0.5 * (start + stop));
@@ -57,13 +57,13 @@ impl Visitor for Eye<'_> {
 /// # Arguments   `radius` of the discs that are probed for the surface's edges \[L\]; 0 for none
 pub fn look(scene: &Scene, camera: &Camera, radius: f64) -> Vec<View> {
     let one = |number: u64| {
-        let (x, y) = ((number % u64::from(camera.width())) as u32, (number / u64::from(camera.width())) as u32);
+        let (x, y) =
+            ((number % u64::from(camera.width())) as u32, (number / u64::from(camera.width())) as u32);
         let ray = camera.ray(glam::DVec2::new(f64::from(x) + 0.5, f64::from(y) + 0.5));
         let view = View { surface: None, cosine: 1.0, distance: 0.0, medium: (0.0, 0.0), missing: 0.0 };
         let mut eye = Eye { scene, view, start: None };
         let mut stream = Stream::new(0, Purpose::Synthetic, 0, number);
-        let walker =
-            Walker { within: scene.interior_at(ray.origin), ..Walker::new(ray, Spectrum::ONE) };
+        let walker = Walker { within: scene.interior_at(ray.origin), ..Walker::new(ray, Spectrum::ONE) };
         walk(scene, walker, Roulette::Below(1e-6), Some(0), &mut stream, &mut eye);
         if let (Some((place, normal)), true) = (eye.view.surface, radius > 0.0) {
             eye.view.missing = missing(scene, place, normal, radius);

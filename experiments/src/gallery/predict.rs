@@ -110,7 +110,13 @@ mod tests {
     fn views() -> Vec<View> {
         let view = |i: usize| {
             let place = DVec3::new((i % GRID.width) as f64 * PIXEL, (i / GRID.width) as f64 * PIXEL, 0.0);
-            View { surface: Some((place, DVec3::Z)), cosine: 1.0, distance: 1.0, medium: (0.0, 0.0), missing: 0.0 }
+            View {
+                surface: Some((place, DVec3::Z)),
+                cosine: 1.0,
+                distance: 1.0,
+                medium: (0.0, 0.0),
+                missing: 0.0,
+            }
         };
         (0..GRID.pixels()).map(view).collect()
     }

@@ -229,11 +229,8 @@ fn plates(
         Ok(())
     };
     let exposed = |radiance: &[Spectrum]| develop(grid, radiance, picture.exposure);
-    let caption = format!(
-        "Photon maps, {} samples a pixel, {}",
-        ours.facts.samples,
-        duration(ours.facts.seconds)
-    );
+    let caption =
+        format!("Photon maps, {} samples a pixel, {}", ours.facts.samples, duration(ours.facts.seconds));
     plate("photons", caption, &exposed(&ours.total))?;
     let caption =
         format!("Paths, {} samples a pixel, {}", equal.facts.samples, duration(equal.facts.seconds));
@@ -245,7 +242,8 @@ fn plates(
     plate("error", caption, &print)?;
     match picture.beside {
         Beside::Single => {
-            let single: Making = mean_layers(predicting).iter().map(|l| l.emission + l.direct + l.single).collect();
+            let single: Making =
+                mean_layers(predicting).iter().map(|l| l.emission + l.direct + l.single).collect();
             plate("single", "Single scattering alone".to_string(), &exposed(&single))?;
         }
         Beside::Maps => {

@@ -6,9 +6,9 @@ use super::pictures::Picture;
 use anyhow::{Context, anyhow};
 use cpu_time::ProcessTime;
 use std::path::Path;
-use turbid::integrators::{self, mapper};
-use turbid::photons::maps::{self, Indirect, MapSettings, Maps};
+use turbid::integrators::{mapper, path};
 use turbid::photons::PhotonMap;
+use turbid::photons::maps::{self, Indirect, MapSettings, Maps};
 use turbid::scene::{Camera, Scene, SceneFile};
 use turbid::sensor::{Film, Streams, extend};
 use turbid::transport::Progress;
@@ -172,10 +172,17 @@ impl<'a> Studio<'a> {
         progress: &dyn Progress,
     ) -> anyhow::Result<()> {
         let within = self.scene.interior_at(self.camera.position());
-        extend(film, &self.camera, samples, self.streams(replicate), progress, |ray, stream, n: &mut u64| {
-            *n += 1;
-            integrators::layers(&self.scene, ray, None, within, stream).0
-        })?;
+        extend(
+            film,
+            &self.camera,
+            samples,
+            self.streams(replicate),
+            progress,
+            |ray, stream, n: &mut u64| {
+                *n += 1;
+                path::layers(&self.scene, ray, None, within, stream).0
+            },
+        )?;
         Ok(())
     }
 
