@@ -51,6 +51,12 @@ pub enum Fault {
     RejectedSetRadius,
     /// A march sums its steps and forgets how long they are.
     StepForgotten,
+    /// A path's radiance is not scaled where it is refracted.
+    RadianceUnscaled,
+    /// A photon's power is scaled like radiance where it is refracted.
+    PhotonPowerScaled,
+    /// A dielectric reflects nothing but what it reflects totally.
+    FresnelForgotten,
     /// The volume map holds photons that come straight from a light, beside the shadow rays.
     DirectInVolumeMap,
     /// The caustic class is in the global map that is seen, beside the caustic map.
@@ -61,7 +67,7 @@ pub enum Fault {
 
 impl Fault {
     /// Every fault, in the order of their definition.
-    pub const ALL: [Fault; 25] = [
+    pub const ALL: [Fault; 28] = [
         Fault::AlbedoTwice,
         Fault::AlbedoNever,
         Fault::CosineTwice,
@@ -84,6 +90,9 @@ impl Fault {
         Fault::RootForgotten,
         Fault::RejectedSetRadius,
         Fault::StepForgotten,
+        Fault::RadianceUnscaled,
+        Fault::PhotonPowerScaled,
+        Fault::FresnelForgotten,
         Fault::DirectInVolumeMap,
         Fault::CausticTwice,
         Fault::StoredOnSurfaces,

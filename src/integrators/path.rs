@@ -9,6 +9,7 @@
 use super::{Layer, Layers};
 use crate::Spectrum;
 use crate::faults::{Fault, planted};
+use crate::geometry::Hit;
 use crate::light::{Light, LightSample};
 use crate::math::{FOUR_PI, Interval, Ray, atan2, cosine_pair, warp};
 use crate::phase::PhaseFunction;
@@ -82,7 +83,11 @@ impl<'a, F: FnMut(u32, Layer, Spectrum)> PathVisitor<'a, F> {
         if let Some(found) = hit
             && let Target::Light(index) = found.target
         {
-            let (radiance, pdf_light) = self.scene.lights()[index].emitted(&walker.ray, &found.hit);
+            // Seen from where the direction was chosen, on the far side of filters.
+            let (back, dir) = (walker.behind, walker.ray.dir);
+            let seen_along = Ray::new(walker.ray.at(-back), dir);
+            let seen_hit = Hit { t: found.hit.t + back, ..found.hit };
+            let (radiance, pdf_light) = self.scene.lights()[index].emitted(&seen_along, &seen_hit);
             let share = walker.pdf_solid_angle.map_or(1.0, |pdf| pdf / (pdf + pdf_light));
             let passed = transmittance(self.scene, &walker.ray, end, walker.within, stream);
             let seen = radiance * passed * share;

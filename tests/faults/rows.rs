@@ -1,6 +1,6 @@
 //! One row a fault: where it was seen, what it is here, and which check catches it.
 
-use crate::checks::{cell, ledger, light, numbers, phase, point_light, points, slab, threads, walls};
+use crate::checks::{cell, glass, ledger, light, numbers, phase, point_light, points, slab, threads, walls};
 use crate::support::scenes::{area_light, cuboid, rectangle};
 use glam::DVec3;
 use turbid::Spectrum;
@@ -137,6 +137,21 @@ const fn inside(fault: Fault) -> Row {
                 walls::a_constant_source_is_marched_to_its_integral()
             })
         }
+        Fault::RadianceUnscaled => {
+            ("radiance not scaled by a refraction", "a_cavity_is_brighter_by_the_squared_index", |_| {
+                glass::a_cavity_is_brighter_by_the_squared_index()
+            })
+        }
+        Fault::PhotonPowerScaled => {
+            ("photons scaled by a refraction", "photons_in_a_cavity_collide_as_its_fluence", |_| {
+                glass::photons_in_a_cavity_collide_as_its_fluence()
+            })
+        }
+        Fault::FresnelForgotten => {
+            ("a dielectric reflects nothing", "photons_cross_a_refracting_slab", |_| {
+                glass::photons_cross_a_refracting_slab()
+            })
+        }
         Fault::DirectInVolumeMap => {
             ("direct light in the volume map and by shadow rays", "a_foggy_room_keeps_its_ledger", |_| {
                 ledger::a_foggy_room_keeps_its_ledger()
@@ -205,6 +220,9 @@ pub const ROWS: &[Row] = &[
     inside(Fault::RootForgotten),
     inside(Fault::RejectedSetRadius),
     inside(Fault::StepForgotten),
+    inside(Fault::RadianceUnscaled),
+    inside(Fault::PhotonPowerScaled),
+    inside(Fault::FresnelForgotten),
     inside(Fault::DirectInVolumeMap),
     inside(Fault::CausticTwice),
     inside(Fault::StoredOnSurfaces),
