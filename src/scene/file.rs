@@ -1,6 +1,10 @@
 //! The scene file: TOML, strict. Every error names the line, the column and the key, and says what is allowed.
 
-use super::{Camera, Filter, Object, Orders, Parts, Quantity, Region, Scene, Sensor, View};
+mod interior;
+
+pub use interior::{DielectricFile, InteriorFile};
+
+use super::{Camera, Filter, Interior, Object, Orders, Parts, Quantity, Region, Scene, Sensor, View};
 use crate::Spectrum;
 use crate::error::{Error, Result};
 use crate::geometry::{Cuboid, Face, Rectangle, Shape, Slab, Sphere};
@@ -8,7 +12,7 @@ use crate::light::{Area, Beam, Faces, Isotropic, Light, Point, Section, Spot, Su
 use crate::math::{Albedo, Asymmetry, NonNegative, Positive, Ray};
 use crate::medium::Homogeneous;
 use crate::phase::Phase;
-use crate::surface::{Black, Lambertian, Mirror, Surface};
+use crate::surface::{self, Black, Lambertian, Mirror, Surface};
 use glam::DVec3;
 use serde::de::{IntoDeserializer, SeqAccess, Visitor};
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
@@ -55,7 +59,7 @@ impl<T: Serialize + PartialEq> Serialize for Channels<T> {
 }
 
 /// A whole scene file.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct SceneFile {
     /// Side of the cell that stands for an unbounded slab \[L\].
@@ -64,6 +68,9 @@ pub struct SceneFile {
     /// Media.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub regions: Vec<RegionFile>,
+    /// What fills the space between dielectric surfaces, beside the surroundings.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub interiors: Vec<InteriorFile>,
     /// Surfaces.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub objects: Vec<ObjectFile>,
@@ -167,6 +174,8 @@ pub struct ObjectFile {
 pub enum SurfaceFile {
     Lambertian { reflectance: Channels<Albedo> },
     Mirror { reflectance: Channels<Albedo> },
+    Dielectric(DielectricFile),
+    Filter { transmittance: Channels<Albedo> },
     Black,
 }
 
@@ -243,12 +252,16 @@ fn rectangle(corner: [f64; 3], u: [f64; 3], v: [f64; 3]) -> Result<Rectangle> {
 }
 
 impl SurfaceFile {
-    fn surface(&self, _folder: &Path) -> Result<Surface> {
+    fn surface(&self, _folder: &Path, interiors: &[Interior]) -> Result<Surface> {
         Ok(match *self {
             SurfaceFile::Lambertian { reflectance } => {
                 Surface::Lambertian(Lambertian::new(reflectance.spectrum())?)
             }
             SurfaceFile::Mirror { reflectance } => Surface::Mirror(Mirror::new(reflectance.spectrum())?),
+            SurfaceFile::Dielectric(ref names) => Surface::Dielectric(names.dielectric(interiors)?),
+            SurfaceFile::Filter { transmittance } => {
+                Surface::Filter(surface::Filter::new(transmittance.spectrum())?)
+            }
             SurfaceFile::Black => Surface::Black(Black),
         })
     }
@@ -332,13 +345,16 @@ impl SceneFile {
             let medium = Homogeneous::new(r.sigma_t.spectrum(), r.albedo.spectrum(), phase)?;
             Ok(Region { shape: r.shape.shape(folder)?, medium })
         });
-        let objects = self
-            .objects
-            .iter()
-            .map(|o| Ok(Object { shape: o.shape.shape(folder)?, surface: o.surface.surface(folder)? }));
+        let mut interiors = vec![Interior::surroundings()];
+        for interior in &self.interiors {
+            interiors.push(interior.interior()?);
+        }
+        let objects = self.objects.iter().map(|o| {
+            Ok(Object { shape: o.shape.shape(folder)?, surface: o.surface.surface(folder, &interiors)? })
+        });
         Scene::new(Parts {
             regions: regions.collect::<Result<_>>()?,
-            interiors: Vec::new(),
+            interiors: interiors.clone(),
             objects: objects.collect::<Result<_>>()?,
             lights: self
                 .lights

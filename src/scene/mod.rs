@@ -73,6 +73,7 @@ pub struct Scene {
     parts: Parts,
     media: Vec<Medium>,
     filling: Vec<Option<usize>>,
+    light_within: Vec<Option<usize>>,
     bodies: bodies::Bodies,
     stage: Option<Stage>,
     bounds: Option<Sphere>,
@@ -94,7 +95,10 @@ impl Scene {
         let plan = Plan::of(&parts);
         let (media, filling) = interiors::numbered(&parts.regions, &parts.interiors);
         let bodies = bodies::Bodies::of(&parts);
-        Ok(Scene { parts, media, filling, bodies, stage, bounds, plan })
+        let light_within = Vec::new();
+        let mut scene = Scene { parts, media, filling, light_within, bodies, stage, bounds, plan };
+        scene.light_within = interiors::of_lights(&scene);
+        Ok(scene)
     }
 
     /// Media and where they are.

@@ -1,6 +1,7 @@
 //! Free flight, roulette, the one random walk that paths and photons share, and blocks of histories.
 
 mod blocks;
+mod bounce;
 mod flags;
 mod flight;
 mod roulette;

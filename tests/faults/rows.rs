@@ -1,6 +1,6 @@
 //! One row a fault: where it was seen, what it is here, and which check catches it.
 
-use crate::checks::{cell, light, numbers, phase, point_light, points, slab, threads, walls};
+use crate::checks::{cell, glass, ledger, light, numbers, phase, point_light, points, slab, threads, walls};
 use crate::support::scenes::{area_light, cuboid, rectangle};
 use glam::DVec3;
 use turbid::Spectrum;
@@ -137,6 +137,34 @@ const fn inside(fault: Fault) -> Row {
                 walls::a_constant_source_is_marched_to_its_integral()
             })
         }
+        Fault::RadianceUnscaled => {
+            ("radiance not scaled by a refraction", "a_cavity_is_brighter_by_the_squared_index", |_| {
+                glass::a_cavity_is_brighter_by_the_squared_index()
+            })
+        }
+        Fault::PhotonPowerScaled => {
+            ("photons scaled by a refraction", "photons_in_a_cavity_collide_as_its_fluence", |_| {
+                glass::photons_in_a_cavity_collide_as_its_fluence()
+            })
+        }
+        Fault::FresnelForgotten => {
+            ("a dielectric reflects nothing", "photons_cross_a_refracting_slab", |_| {
+                glass::photons_cross_a_refracting_slab()
+            })
+        }
+        Fault::DirectInVolumeMap => {
+            ("direct light in the volume map and by shadow rays", "a_foggy_room_keeps_its_ledger", |_| {
+                ledger::a_foggy_room_keeps_its_ledger()
+            })
+        }
+        Fault::CausticTwice => ("caustics in two maps", "a_clear_room_keeps_its_ledger", |_| {
+            ledger::a_clear_room_keeps_its_ledger()
+        }),
+        Fault::StoredOnSurfaces => {
+            ("surface estimates divided by stored photons", "a_clear_room_keeps_its_ledger", |_| {
+                ledger::a_clear_room_keeps_its_ledger()
+            })
+        }
     };
     Row { fault: Planted::Inside(fault), title, check_name, check }
 }
@@ -192,6 +220,12 @@ pub const ROWS: &[Row] = &[
     inside(Fault::RootForgotten),
     inside(Fault::RejectedSetRadius),
     inside(Fault::StepForgotten),
+    inside(Fault::RadianceUnscaled),
+    inside(Fault::PhotonPowerScaled),
+    inside(Fault::FresnelForgotten),
+    inside(Fault::DirectInVolumeMap),
+    inside(Fault::CausticTwice),
+    inside(Fault::StoredOnSurfaces),
     outside("normal quantiles for 8 numbers", "false_alarms_are_as_rare_as_promised", |wrong| {
         numbers::false_alarms_are_as_rare_as_promised(if wrong { normal_p } else { |z| student_p(z, 7) })
     }),
