@@ -19,6 +19,7 @@
 use super::{Emitter, Flags, Ledger, Photon, PhotonMap, fold};
 use crate::Spectrum;
 use crate::error::{Error, Result};
+use crate::faults::{Fault, planted};
 use crate::rng::{Purpose, Stream};
 use crate::scene::{Scene, Target};
 use crate::surface::Surface;
@@ -146,7 +147,10 @@ pub struct Maps {
 
 /// Whether the global map holds a photon of this class.
 pub fn is_global(flags: Flags, indirect: Indirect) -> bool {
-    indirect == Indirect::Gathered || flags.has(Flags::DIFFUSE) || flags.has(Flags::MEDIUM)
+    indirect == Indirect::Gathered
+        || flags.has(Flags::DIFFUSE)
+        || flags.has(Flags::MEDIUM)
+        || (planted(Fault::CausticTwice) && is_caustic(flags))
 }
 
 /// Whether the caustic map holds a photon of this class.
@@ -156,7 +160,7 @@ pub fn is_caustic(flags: Flags) -> bool {
 
 /// Whether the volume map holds a photon of this class.
 pub fn is_volume(flags: Flags) -> bool {
-    !flags.is_direct()
+    !flags.is_direct() || planted(Fault::DirectInVolumeMap)
 }
 
 /// Fills the maps that the scene needs.
