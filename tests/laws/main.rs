@@ -11,6 +11,7 @@ mod support;
 mod flight;
 mod lights;
 mod phase;
+mod projection;
 mod roulette;
 mod shapes;
 mod warps;
