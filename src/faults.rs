@@ -57,11 +57,17 @@ pub enum Fault {
     PhotonPowerScaled,
     /// A dielectric reflects nothing but what it reflects totally.
     FresnelForgotten,
+    /// The volume map holds photons that come straight from a light, beside the shadow rays.
+    DirectInVolumeMap,
+    /// The caustic class is in the global map that is seen, beside the caustic map.
+    CausticTwice,
+    /// Estimates on surfaces divide by the stored photons, not by the emitted ones.
+    StoredOnSurfaces,
 }
 
 impl Fault {
     /// Every fault, in the order of their definition.
-    pub const ALL: [Fault; 25] = [
+    pub const ALL: [Fault; 28] = [
         Fault::AlbedoTwice,
         Fault::AlbedoNever,
         Fault::CosineTwice,
@@ -87,6 +93,9 @@ impl Fault {
         Fault::RadianceUnscaled,
         Fault::PhotonPowerScaled,
         Fault::FresnelForgotten,
+        Fault::DirectInVolumeMap,
+        Fault::CausticTwice,
+        Fault::StoredOnSurfaces,
     ];
 }
 
@@ -142,7 +151,7 @@ mod tests {
     #[test]
     fn all_are_named_in_order() {
         assert!(Fault::ALL.iter().enumerate().all(|(i, fault)| *fault as usize == i));
-        assert_eq!(Fault::ALL.len(), Fault::FresnelForgotten as usize + 1);
+        assert_eq!(Fault::ALL.len(), Fault::StoredOnSurfaces as usize + 1);
         assert!(Fault::ALL.iter().all(|fault| !planted(*fault)));
     }
 }

@@ -12,6 +12,7 @@ mod flight;
 mod fresnel;
 mod lights;
 mod phase;
+mod projection;
 mod roulette;
 mod shapes;
 mod warps;
