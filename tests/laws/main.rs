@@ -9,6 +9,7 @@ mod common;
 mod support;
 
 mod flight;
+mod fresnel;
 mod lights;
 mod phase;
 mod projection;
