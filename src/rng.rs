@@ -24,6 +24,8 @@ pub enum Purpose {
     Pilot,
     /// Photon histories of the caustic map.
     Caustics,
+    /// Particles from the camera, and the photons that learn what the picture needs.
+    Importance,
 }
 
 /// The random numbers of one history.

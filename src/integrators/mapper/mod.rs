@@ -192,6 +192,12 @@ impl Eye<'_, '_> {
         self.report.rays.segments += 1;
         for light in scene.lights() {
             self.layers.emission += walker.weight * uncollided(scene, light, walker, end, stream);
+            if hit.is_none()
+                && let Some((radiance, _)) = light.background(ray.dir)
+            {
+                let seen = walker.weight * transmittance(scene, ray, end, walker.within, stream);
+                self.layers.emission += seen * radiance;
+            }
         }
         if scene.plan().has_media {
             self.march(walker, end, stream);
