@@ -4,7 +4,7 @@
 //! 1. particles leave the camera and are counted, in the boxes of a grid, where a picture reads photons ([`reading`]): at
 //!    the first event on their way, and, where rays of a final gathering read the maps, at the second;
 //! 2. photons of a pilot score where they would be stored, as much as is read there, and every cube of a coarser grid
-//!    learns, by direction, what a photon that leaves it scores on average from there on, over its weight: its *value* J. So
+//!    learns, by direction and for the cone towards most of what is read, what a photon that leaves it scores on average from there on, over its weight: its *value* J. So
 //!    does every cell of the lights' numbers. Each round of the pilot is steered by what the rounds before it learned
 //!    ([`learn`]);
 //! 3. emission takes each cell in proportion to its power times its value; half of the photons that an event scatters go
@@ -31,7 +31,7 @@ use super::maps::Indirect;
 use crate::error::{Error, Result};
 use crate::scene::Scene;
 use crate::transport::Progress;
-use grid::{DIRECTIONS, Grid};
+use grid::{Aim, DIRECTIONS, Grid};
 
 /// How importance is learned.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -59,6 +59,7 @@ impl Default for ImportanceSettings {
 #[derive(Debug, Clone)]
 pub struct Importance {
     grid: Grid,
+    aim: Aim,
     /// By box and direction: what a photon that leaves it scores, over its weight; never 0.
     values: Vec<f64>,
     /// What a whole emission scores \[W\].

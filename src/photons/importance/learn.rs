@@ -1,6 +1,6 @@
 //! What photons are worth: a pilot of photons that score where they are read.
 
-use super::grid::{DIRECTIONS, Grid, direction_cell};
+use super::grid::{Aim, DIRECTIONS, Grid};
 use super::reading::Reading;
 use super::steer::Branching;
 use super::{Importance, ImportanceSettings};
@@ -13,7 +13,7 @@ use crate::scene::{Scene, Target};
 use crate::transport::{Progress, Step, Visitor, Walker, run_blocks};
 
 /// Cells of each light's numbers, about.
-const CELLS: usize = 256;
+const CELLS: usize = 1024;
 /// Part of the emission that follows power alone, and of the mean value that every box has at least: what the pilot never
 /// saw is found too, with weights at most this many times too large.
 const DEFENCE: f64 = 0.1;
@@ -72,6 +72,7 @@ struct Learner<'a> {
     scene: &'a Scene,
     indirect: Indirect,
     grid: &'a Grid,
+    aim: Aim,
     reading: &'a Reading,
     parent: Option<u32>,
     events: Vec<Event>,
@@ -136,7 +137,8 @@ impl Branching for Learner<'_> {
         let number = self.events.len() as u32 - 1;
         if let Some(event) = self.events.last_mut() {
             event.departed = walker.weight.sum();
-            event.index = self.grid.index(walker.ray.origin) * DIRECTIONS + direction_cell(walker.ray.dir);
+            event.index = self.grid.index(walker.ray.origin) * DIRECTIONS
+                + self.aim.directions(walker.ray.origin).index(walker.ray.dir);
         }
         number
     }
@@ -167,6 +169,7 @@ pub(super) fn learn(
     let mut importance = Importance {
         values: vec![1.0; grid.len() * DIRECTIONS],
         response: whole,
+        aim: reading.aim(),
         emitter: Emitter::chosen(scene, cells.clone(), powers.clone(), 0).ok_or_else(dark)?,
         grid,
     };
@@ -178,6 +181,7 @@ pub(super) fn learn(
                 scene,
                 indirect,
                 grid: &importance.grid,
+                aim: importance.aim,
                 reading,
                 parent: None,
                 events: Vec::new(),

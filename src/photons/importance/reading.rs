@@ -1,7 +1,7 @@
 //! Where a picture reads photons: particles from the camera.
 
 use super::ImportanceSettings;
-use super::grid::Grid;
+use super::grid::{Aim, Grid};
 use crate::Spectrum;
 use crate::error::{Error, Result};
 use crate::photons::Emitter;
@@ -25,6 +25,22 @@ struct Counts {
 }
 
 impl Reading {
+    /// A ball about most of what is read: about the mean place, wide by the standard deviation of places and half a
+    /// cube's diagonal.
+    pub fn aim(&self) -> Aim {
+        let (mut sum, mut mean, mut square) = (0.0, DVec3::ZERO, 0.0);
+        for (index, (s, m)) in self.counts.surface.iter().zip(&self.counts.medium).enumerate() {
+            let at = self.grid.middle(index);
+            sum += s + m;
+            mean += at * (s + m);
+            square += at.length_squared() * (s + m);
+        }
+        let center = mean / sum;
+        let variance = (square / sum - center.length_squared()).max(0.0);
+        let half = self.grid.middle(0).distance(self.grid.corner());
+        Aim { center, radius: variance.sqrt() + half }
+    }
+
     /// What is read of the photons that a surface keeps.
     pub fn surface(&self, p: DVec3) -> f64 {
         self.counts.surface[self.grid.index(p)]

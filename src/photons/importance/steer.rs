@@ -1,7 +1,7 @@
 //! A walk whose photons are turned, split or ended by what they are worth.
 
 use super::Importance;
-use super::grid::{DIRECTIONS, density_in_cell, direction_cell, direction_in};
+use super::grid::DIRECTIONS;
 use crate::math::{FOUR_PI, cosine_pair, warp};
 use crate::phase::PhaseFunction;
 use crate::rng::Stream;
@@ -111,33 +111,35 @@ impl Importance {
     /// The photon with its direction chosen anew by value, now and then; its weight is that of both ways to choose it
     /// together. None where nothing goes the chosen way.
     fn turned(&self, scene: &Scene, event: Left, walker: Walker, stream: &mut Stream) -> Option<Walker> {
-        let values = self.values_at(walker.ray.origin);
-        // What each cell sends on, about: its value times the density in its middle and a little, so that cells with
-        // their middle below a surface's horizon are not lost.
+        let origin = walker.ray.origin;
+        let (values, directions) = (self.values_at(origin), self.aim.directions(origin));
+        // What each sends on, about: its value times the density in its middle and a little, so that cells with their
+        // middle below a surface's horizon are not lost.
         let mut sums = [0.0; DIRECTIONS];
         let mut sum = 0.0;
-        for (cell, cumulated) in sums.iter_mut().enumerate() {
-            let middle = direction_in(cell, [0.5; 2]);
-            sum += values[cell] * (density(scene, event, middle) + 0.1 / FOUR_PI);
+        for (index, cumulated) in sums.iter_mut().enumerate() {
+            if let Some((middle, size)) = directions.middle(index) {
+                sum += values[index] * size * (density(scene, event, middle) + 0.1 / FOUR_PI);
+            }
             *cumulated = sum;
         }
+        let probability = |index: usize| (sums[index] - if index > 0 { sums[index - 1] } else { 0.0 }) / sum;
         let mut dir = walker.ray.dir;
         if stream.unit() < TURNED {
             let target = stream.unit() * sum;
-            let cell = sums.partition_point(|cumulated| *cumulated <= target).min(DIRECTIONS - 1);
-            dir = direction_in(cell, stream.pair());
+            let index = sums.partition_point(|cumulated| *cumulated <= target).min(DIRECTIONS - 1);
+            dir = directions.sample(index, stream.pair());
         }
         let natural = density(scene, event, dir);
-        let cell = direction_cell(dir);
-        let share = (sums[cell] - if cell > 0 { sums[cell - 1] } else { 0.0 }) / sum;
-        let both = (1.0 - TURNED) * natural + TURNED * share * density_in_cell();
-        let ray = crate::math::Ray::new(walker.ray.origin, dir);
+        let both = (1.0 - TURNED) * natural + TURNED * directions.density(dir, probability);
+        let ray = crate::math::Ray::new(origin, dir);
         (natural > 0.0).then(|| Walker { ray, weight: walker.weight * (natural / both), ..walker })
     }
 
     /// How many photons go on, and the factor on the weight of each: their expected product is 1.
     fn copies(&self, walker: &Walker, stream: &mut Stream) -> (usize, f64) {
-        let value = self.values_at(walker.ray.origin)[direction_cell(walker.ray.dir)];
+        let Walker { ray, .. } = walker;
+        let value = self.values_at(ray.origin)[self.aim.directions(ray.origin).index(ray.dir)];
         let ratio = walker.weight.sum() * value / self.response;
         if ratio < WINDOW.0 {
             let chance = ratio.max(LEAST);
