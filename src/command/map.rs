@@ -8,7 +8,8 @@ use super::render::check_folder;
 use anyhow::bail;
 use clap::ValueEnum;
 use std::path::PathBuf;
-use turbid::output::{Tone, write_ply, write_png};
+use turbid::Spectrum;
+use turbid::output::{Tone, auto_exposure, write_ply, write_png};
 use turbid::photons::Photon;
 use turbid::photons::maps::{Indirect, Maps, counts, fill_counted};
 use turbid::sensor::{colour, draw_photons};
@@ -18,6 +19,7 @@ use turbid::sensor::{colour, draw_photons};
 /// Photons behind opaque surfaces are hidden; glass hides nothing, and bends nothing here. The point cloud that --ply
 /// writes opens in any viewer of PLY files; it has position, direction, power, order of scattering and path class.
 #[derive(clap::Args)]
+#[command(allow_negative_numbers = true)]
 pub struct Map {
     #[command(flatten)]
     source: Source,
@@ -56,6 +58,11 @@ enum Which {
     All,
 }
 
+/// Stops that keep places with many photons apart; a dot alone is never brighter than its colour.
+fn dim(picture: &[Spectrum]) -> f64 {
+    auto_exposure(picture.iter().copied()).min(0.0)
+}
+
 impl Map {
     /// Draws and writes.
     pub fn run(self) -> anyhow::Result<()> {
@@ -80,7 +87,7 @@ impl Map {
             let (picture, seen) = draw_photons(&scene, &camera, &plain);
             Ok((photons, picture, seen))
         })?;
-        let tone = Tone { exposure: exposure.unwrap_or(-0.5), curve: self.shown.curve() };
+        let tone = Tone { exposure: exposure.unwrap_or_else(|| dim(&picture)), curve: self.shown.curve() };
         let pixels: Vec<[u8; 3]> = picture.into_iter().map(|p| tone.pixel(p)).collect();
         write_png(&self.output, (camera.width(), camera.height()), &pixels)?;
         if let Some(ply) = &self.ply {

@@ -49,7 +49,7 @@ impl Frame {
 pub struct Shown {
     /// Exposure of the PNG in stops: radiance times 2 to this power; pictures to be compared need the same
     /// [default: bright parts well exposed; the value taken is printed].
-    #[arg(long, allow_negative_numbers = true)]
+    #[arg(long)]
     pub exposure: Option<f64>,
     /// What the PNG does with light too bright for a screen.
     #[arg(long, value_enum, default_value = "soft")]

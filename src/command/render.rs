@@ -30,6 +30,7 @@ use turbid::sensor::{Film, Sample, Streams, extend};
 /// pixels share, so that the error of one map is seen only by making several (--maps); the variance is then that between
 /// maps. The classic picture is one map and a few samples: `turbid render scene.toml -o out.exr --samples 16`.
 #[derive(clap::Args)]
+#[command(allow_negative_numbers = true)]
 pub struct Render {
     #[command(flatten)]
     source: Source,
@@ -53,16 +54,16 @@ pub struct Render {
     frame: Frame,
     #[command(flatten)]
     shown: Shown,
-    #[command(flatten, next_help_heading = "Photons")]
-    photons: Photons,
-    #[command(flatten, next_help_heading = "Photons")]
-    reading: Reading,
     /// Seed: the same seed gives the same picture, on any number of threads.
     #[arg(long, default_value_t = 1)]
     seed: u64,
     /// Threads [default: all cores].
     #[arg(long, value_parser = clap::value_parser!(u16).range(1..=1024))]
     threads: Option<u16>,
+    #[command(flatten, next_help_heading = "Photons")]
+    photons: Photons,
+    #[command(flatten, next_help_heading = "Photons")]
+    reading: Reading,
 }
 
 #[derive(Clone, Copy, PartialEq, ValueEnum)]

@@ -3,6 +3,7 @@
 
 mod bad_input;
 mod output;
+mod pictures;
 
 use assert_cmd::Command;
 use std::path::{Path, PathBuf};
