@@ -51,11 +51,15 @@ pub enum Fault {
     RejectedSetRadius,
     /// A march sums its steps and forgets how long they are.
     StepForgotten,
+    /// A grid's samples are taken to lie half a cell from where they do.
+    GridHalfCellOff,
+    /// Light that meets nothing at a tentative collision keeps the weight that it came with.
+    NullWeightForgotten,
 }
 
 impl Fault {
     /// Every fault, in the order of their definition.
-    pub const ALL: [Fault; 22] = [
+    pub const ALL: [Fault; 24] = [
         Fault::AlbedoTwice,
         Fault::AlbedoNever,
         Fault::CosineTwice,
@@ -78,6 +82,8 @@ impl Fault {
         Fault::RootForgotten,
         Fault::RejectedSetRadius,
         Fault::StepForgotten,
+        Fault::GridHalfCellOff,
+        Fault::NullWeightForgotten,
     ];
 }
 
@@ -133,7 +139,7 @@ mod tests {
     #[test]
     fn all_are_named_in_order() {
         assert!(Fault::ALL.iter().enumerate().all(|(i, fault)| *fault as usize == i));
-        assert_eq!(Fault::ALL.len(), Fault::StepForgotten as usize + 1);
+        assert_eq!(Fault::ALL.len(), Fault::NullWeightForgotten as usize + 1);
         assert!(Fault::ALL.iter().all(|fault| !planted(*fault)));
     }
 }
