@@ -20,6 +20,10 @@ pub enum Purpose {
     Synthetic,
     /// Bootstrap and other resampling.
     Resampling,
+    /// Photon histories that only say how many the true ones must be.
+    Pilot,
+    /// Photon histories of the caustic map.
+    Caustics,
 }
 
 /// The random numbers of one history.

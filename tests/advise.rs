@@ -4,6 +4,7 @@
 
 mod support;
 
+use std::path::Path;
 use support::scenes::{self, Incidence};
 use support::{run, verdict};
 use turbid::Spectrum;
@@ -24,13 +25,14 @@ struct Case {
 
 impl Case {
     fn new(scene: &Scene, probes: Vec<(Quantity, f64)>) -> Self {
-        let sensors = probes.iter().map(|&(quantity, _)| run::sensor(quantity, Orders::ALL)).collect();
+        let sensors = probes.iter().map(|(quantity, _)| run::sensor(quantity.clone(), Orders::ALL)).collect();
         let scene = Scene::new(Parts {
             regions: scene.regions().to_vec(),
             objects: scene.objects().to_vec(),
             lights: scene.lights().to_vec(),
             cell: scene.stage().map(|stage| stage.side),
             sensors,
+            ..Parts::default()
         });
         Case { scene: scene.unwrap(), exact: probes.into_iter().map(|(_, exact)| exact).collect() }
     }
@@ -188,7 +190,7 @@ fn shaft(parameters: &str) -> Scene {
     let builtin = turbid::scene::BUILTIN.iter().find(|b| b.name == "shaft").unwrap();
     let mut table: toml::Table = toml::from_str(builtin.defaults).unwrap();
     table.extend(toml::from_str::<toml::Table>(parameters).unwrap());
-    (builtin.resolve)(&toml::to_string(&table).unwrap()).unwrap().unwrap().scene().unwrap()
+    (builtin.resolve)(&toml::to_string(&table).unwrap()).unwrap().unwrap().scene(Path::new("")).unwrap()
 }
 
 /// Balls end at the edge of a beam, across which the field jumps; a probe on the edge has none.
@@ -216,7 +218,11 @@ fn the_same_advice_at_another_scale() {
         let text = format!("tau = 6.0\nalbedo = 0.9\nscale = {scale:?}\nprobes = [0.25, 0.5]");
         let mut table: toml::Table = toml::from_str(builtin.defaults).unwrap();
         table.extend(toml::from_str::<toml::Table>(&text).unwrap());
-        let scene = (builtin.resolve)(&toml::to_string(&table).unwrap()).unwrap().unwrap().scene().unwrap();
+        let scene = (builtin.resolve)(&toml::to_string(&table).unwrap())
+            .unwrap()
+            .unwrap()
+            .scene(Path::new(""))
+            .unwrap();
         let settings = PilotSettings { photons: 2000, maps: 64, seed: 3 };
         Pilot::run(&scene, &settings, &NoProgress).unwrap().advise(0.1).unwrap()
     };

@@ -102,10 +102,10 @@ fn places() -> Vec<(Shape, DVec3, f64)> {
         (sphere(1.0), DVec3::new(0.3, 0.8, -0.2), 0.5),
         (sphere(1.0), DVec3::new(0.0, 0.6, -0.8), 0.3),
         (sphere(0.4), DVec3::new(0.1, 0.0, 0.0), 0.45),
-        (thin, DVec3::new(0.1, 0.4, 0.6), 0.35),
-        (thin, DVec3::new(0.1, 0.65, 0.6), 0.35),
-        (thin, DVec3::new(0.9, 0.15, 1.1), 0.35),
-        (thin, DVec3::new(1.0, 0.8, 1.2), 0.35),
+        (thin.clone(), DVec3::new(0.1, 0.4, 0.6), 0.35),
+        (thin.clone(), DVec3::new(0.1, 0.65, 0.6), 0.35),
+        (thin.clone(), DVec3::new(0.9, 0.15, 1.1), 0.35),
+        (thin.clone(), DVec3::new(1.0, 0.8, 1.2), 0.35),
         (thin, DVec3::new(0.0, 0.0, 0.5), 0.35),
     ]
 }
@@ -341,7 +341,7 @@ fn treatments_by_the_referee() {
         let cut_maps: Vec<PhotonMap> = all.iter().map(|map| cut(map, &body)).collect();
         for treatment in Treatment::ALL {
             let kernel = Kernel::Epanechnikov;
-            let boundary = Boundary::new(body, treatment).unwrap();
+            let boundary = Boundary::new(body.clone(), treatment).unwrap();
             let gather = Gather::radius(r).unwrap();
             let one = |map: &PhotonMap| treated_density(map, p, kernel, gather, &boundary).estimate.value[0];
             let values: Moments = cut_maps.iter().map(one).collect();
@@ -377,7 +377,7 @@ fn treatments_by_their_definition() {
         for kernel in Kernel::ALL {
             for gather in [Gather::radius(r).unwrap(), Gather::nearest(90, 0.5).unwrap()] {
                 for treatment in Treatment::ALL {
-                    let boundary = Boundary::new(body, treatment).unwrap();
+                    let boundary = Boundary::new(body.clone(), treatment).unwrap();
                     let found = treated_density(&map, p, kernel, gather, &boundary);
                     let (sum, radius, _) =
                         by_definition(&photons, |_| true, (treatment, kernel, gather), &body, p);
@@ -476,7 +476,8 @@ fn rejections_by_their_definition() {
                 Gather::nearest(3000, 0.35).unwrap(),
             ] {
                 let body = slab(-9.0, 18.0);
-                let boundary = Boundary::new(body, Treatment::None).unwrap().with_walls(rejection, &walls);
+                let boundary =
+                    Boundary::new(body.clone(), Treatment::None).unwrap().with_walls(rejection, &walls);
                 let found = treated_density(&map, p, Kernel::Epanechnikov, gather, &boundary);
                 let near: Vec<Photon> =
                     photons.iter().filter(|q| q.position.distance(p) < 0.9).copied().collect();
@@ -557,7 +558,7 @@ fn nearest_treatments_of_a_uniform_field() {
     let probes =
         [DVec3::ZERO, DVec3::new(0.0, 1.0, 0.5), DVec3::new(0.5, 0.5, 1.0), DVec3::new(0.5, 0.04, 0.4)];
     let mean = |map: &PhotonMap, treatment| {
-        let boundary = Boundary::new(body, treatment).unwrap();
+        let boundary = Boundary::new(body.clone(), treatment).unwrap();
         let one = |&p: &DVec3| treated_density(map, p, Kernel::Uniform, gather, &boundary).estimate.value[0];
         probes.iter().map(one).sum::<f64>() / probes.len() as f64
     };
@@ -610,7 +611,7 @@ fn rejected_photons_set_no_radius() {
     let gather = Gather::nearest(20, 0.45).unwrap();
     let maps: Vec<PhotonMap> = (0..512).map(map).collect();
     for rejection in [Rejection::BehindPlane, Rejection::Visible] {
-        let boundary = Boundary::new(dark, Treatment::Clipped).unwrap().with_walls(rejection, &walls);
+        let boundary = Boundary::new(dark.clone(), Treatment::Clipped).unwrap().with_walls(rejection, &walls);
         let one =
             |map: &PhotonMap| treated_density(map, p, Kernel::Cone, gather, &boundary).estimate.value[0];
         let values: Moments = maps.iter().map(one).collect();
@@ -619,7 +620,7 @@ fn rejected_photons_set_no_radius() {
     // The standard deviations of ratios of variances of 512 maps are below 0.1; the radius holds two fifths of the volume's
     // photons when false ones set it.
     let boundary =
-        Boundary::new(dark, Treatment::Clipped).unwrap().with_walls(Rejection::BehindPlane, &walls);
+        Boundary::new(dark.clone(), Treatment::Clipped).unwrap().with_walls(Rejection::BehindPlane, &walls);
     let (mut right, mut late, mut unclipped) = (Moments::new(), Moments::new(), Moments::new());
     for map in &maps {
         let found = treated_density(map, p, Kernel::Uniform, gather, &boundary);

@@ -18,7 +18,7 @@ use turbid::estimators::{Gather, Kernel, fluence};
 use turbid::light::Faces;
 use turbid::math::{Ray, exp};
 use turbid::photons::{Histories, Photon, PhotonMap, shoot};
-use turbid::scene::{Orders, Parts, Quantity, Scene};
+use turbid::scene::{Orders, Parts, Quantity, SURROUNDINGS, Scene, decay};
 use turbid::sensor::{PathSettings, PhotonSettings, by_paths, by_photons};
 use turbid::transport::NoProgress;
 
@@ -32,7 +32,8 @@ fn with_sensors(scene: &Scene, quantities: &[Quantity]) -> Scene {
         objects: scene.objects().to_vec(),
         lights: scene.lights().to_vec(),
         cell: scene.stage().map(|s| s.side),
-        sensors: quantities.iter().map(|q| support::run::sensor(*q, Orders::ALL)).collect(),
+        sensors: quantities.iter().map(|q| support::run::sensor(q.clone(), Orders::ALL)).collect(),
+        ..Parts::default()
     })
     .unwrap()
 }
@@ -203,7 +204,7 @@ fn few_photons_in_the_map() {
 fn a_probe_outside_the_medium() {
     let scene = ball(1.0, 0.9, 0.0, isotropic(sphere(DVec3::ZERO, 1.0), Faces::Both));
     let outside = Quantity::Fluence(DVec3::new(3.0, 0.0, 0.0));
-    let scene = with_sensors(&scene, &[outside]);
+    let scene = with_sensors(&scene, &[outside.clone()]);
     let error =
         by_photons(&scene, &photon_settings(10, Gather::radius(0.1).unwrap()), &NoProgress).unwrap_err();
     assert!(matches!(&error, Error::Scene(text) if text.contains("(3, 0, 0)")), "{error}");
@@ -247,16 +248,16 @@ fn horizontal_rays_and_faces() {
     let furnace = slab(2.0, 1.0, 0.5, Incidence::Both);
     for z in [0.0, 1.0, 2.0] {
         let ray = Ray::new(DVec3::new(0.5 * CELL, 0.5 * CELL, z), DVec3::X);
-        assert!(scene.optical_depth(&ray, f64::INFINITY)[0].is_infinite());
-        assert_eq!(scene.transmittance(&ray, f64::INFINITY)[0], 0.0);
-        assert_eq!(scene.transmittance(&ray, 0.5)[0], exp(-0.5));
+        assert!(scene.optical_depth(&ray, f64::INFINITY, SURROUNDINGS)[0].is_infinite());
+        assert_eq!(decay(scene.optical_depth(&ray, f64::INFINITY, SURROUNDINGS))[0], 0.0);
+        assert_eq!(decay(scene.optical_depth(&ray, 0.5, SURROUNDINGS))[0], exp(-0.5));
         // In the furnace every ray, these too, has the radiance 1/pi.
         let moments = paths(&furnace, Quantity::Radiance(ray), Orders::ALL, 1 << 16, 9)[0];
         verdict::agrees(&format!("radiance along z = {z}"), &moments, (1.0 / PI, 1e-15), 0.02, 9);
     }
     // Just outside, nothing is in the way.
     let outside = Ray::new(DVec3::new(0.0, 0.0, -1e-9), DVec3::X);
-    assert_eq!(scene.transmittance(&outside, f64::INFINITY)[0], 1.0);
+    assert_eq!(decay(scene.optical_depth(&outside, f64::INFINITY, SURROUNDINGS))[0], 1.0);
     let mapped =
         with_sensors(&scene, &[at_depth(0.0), at_depth(2.0), Quantity::Fluence(DVec3::new(0.0, 0.0, 1.0))]);
     let readings =
@@ -298,7 +299,7 @@ fn nothing_is_non_finite() {
     places.extend([1e-300, 1e-30, 1e-12].map(|x| DVec3::new(x, 0.0, 1.0)));
     for light in lights {
         for g in [-1.0 + 1e-9, 0.0, 1.0 - 1e-9] {
-            let scene = ball(1.0, 0.99, g, light);
+            let scene = ball(1.0, 0.99, g, light.clone());
             let quantities: Vec<_> = places
                 .iter()
                 .map(|p| Quantity::Fluence(*p))
@@ -306,7 +307,7 @@ fn nothing_is_non_finite() {
                 .collect();
             for quantity in quantities {
                 let settings = PathSettings { samples: 4096, seed: 11, replicate: 0, orders: Orders::ALL };
-                let scene = with_sensors(&scene, &[quantity]);
+                let scene = with_sensors(&scene, &[quantity.clone()]);
                 let readings = by_paths(&scene, &settings, &NoProgress).unwrap();
                 assert!(
                     readings[0].mean.is_finite() && readings[0].std_error.is_none_or(f64::is_finite),

@@ -50,11 +50,11 @@ fn emission() {
     let ball = sphere(DVec3::ZERO, 1.0);
     let scene = slab(2.0, 0.9, 0.0, Incidence::Beam(0.5));
     let lights: Vec<Light> = vec![
-        scene.lights()[0],
+        scene.lights()[0].clone(),
         point_light(DVec3::ZERO, Spectrum::ONE),
         area_light(rectangle(DVec3::ZERO, DVec3::X, DVec3::Y), Spectrum::ONE),
         emitting_sphere(DVec3::ZERO, 0.5),
-        isotropic(ball, Faces::Both),
+        isotropic(ball.clone(), Faces::Both),
         isotropic(scenes::layer(2.0), Faces::Both),
         scenes::volume_source(ball),
     ];

@@ -5,6 +5,7 @@ mod checks;
 mod support;
 
 use glam::DVec3;
+use std::path::Path;
 use support::run::pass;
 use support::scenes::{
     self, Incidence, area_light, bounded, cuboid, homogeneous, isotropic, point_light, rectangle, sphere,
@@ -28,7 +29,7 @@ fn builtin(name: &str, changes: &[(&str, &str)]) -> Scene {
         let value: toml::Table = toml::from_str(&format!("value = {value}")).unwrap();
         assert!(table.insert(key.to_string(), value["value"].clone()).is_some(), "{key}");
     }
-    (builtin.resolve)(&toml::to_string(&table).unwrap()).unwrap().unwrap().scene().unwrap()
+    (builtin.resolve)(&toml::to_string(&table).unwrap()).unwrap().unwrap().scene(Path::new("")).unwrap()
 }
 
 /// Fog in colour, mirrors, matt walls, five lights, an overlap: whatever the simulator has.
@@ -48,8 +49,8 @@ fn colorful() -> Scene {
     let lamp = rectangle(DVec3::new(-0.5, -0.5, 3.0), DVec3::Y, DVec3::X);
     bounded(
         vec![
-            Region { shape: outer, medium: fog([0.5, 1.0, 0.2], [0.9, 0.3, 0.99], 0.5) },
-            Region { shape: inner, medium: fog([2.0, 0.0, 3.0], [0.5, 0.5, 1.0], -0.3) },
+            Region { shape: outer.clone(), medium: fog([0.5, 1.0, 0.2], [0.9, 0.3, 0.99], 0.5) },
+            Region { shape: inner.clone(), medium: fog([2.0, 0.0, 3.0], [0.5, 0.5, 1.0], -0.3) },
         ],
         vec![(floor, matt), (ball, mirror)],
         vec![
@@ -103,17 +104,23 @@ fn energy_is_conserved() {
 fn energy_is_conserved_by_channel() {
     let ball = sphere(DVec3::ZERO, 1.0);
     let medium = homogeneous(Spectrum::rgb(0.5, 2.0, 1.0), Spectrum::rgb(0.95, 0.3, 0.6), 0.3);
-    let scene = bounded(vec![Region { shape: ball, medium }], Vec::new(), vec![isotropic(ball, Faces::Both)]);
+    let scene = bounded(
+        vec![Region { shape: ball.clone(), medium }],
+        Vec::new(),
+        vec![isotropic(ball.clone(), Faces::Both)],
+    );
     let sum = |sensors: &[(turbid::scene::Quantity, Orders)], replicate: u64| -> [f64; 3] {
-        let sensors: Vec<_> = sensors.iter().map(|(q, o)| support::run::sensor(*q, *o)).collect();
+        let sensors: Vec<_> = sensors.iter().map(|(q, o)| support::run::sensor(q.clone(), *o)).collect();
         let histories = Histories { count: 4096, seed: 2, replicate, max_order: None };
         let tallies = shoot(&scene, histories, &sensors, |_| false, &NoProgress).unwrap().tallies;
         [0, 1, 2].map(|c| tallies.iter().map(|t| t[c].mean()).sum())
     };
     let mut moments = [Moments::new(); 3];
     for replicate in 0..128 {
-        let both =
-            [(scenes::outflow(ball), Orders::ALL), (turbid::scene::Quantity::Absorbed(0), Orders::ALL)];
+        let both = [
+            (scenes::outflow(ball.clone()), Orders::ALL),
+            (turbid::scene::Quantity::Absorbed(0), Orders::ALL),
+        ];
         moments.iter_mut().zip(sum(&both, replicate)).for_each(|(m, x)| m.push(x));
     }
     for (c, m) in moments.iter().enumerate() {
@@ -246,7 +253,7 @@ fn the_number_of_histories_changes_no_mean() {
 fn what_is_asked_does_not_change_the_answer() {
     let scene = scenes::slab(2.0, 0.9, 0.5, Incidence::Beam(0.5));
     let (r, t) = ((scenes::reflectance(2.0), Orders::ALL), (scenes::transmittance(2.0), Orders::ALL));
-    let both = pass(&scene, &[r, t], 10_000, 9, |_| true);
+    let both = pass(&scene, &[r, t.clone()], 10_000, 9, |_| true);
     let one = pass(&scene, &[t], 10_000, 9, |_| false);
     assert_eq!(both.tallies[1], one.tallies[0]);
     assert_eq!(both.ledger, one.ledger);

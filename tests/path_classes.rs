@@ -1,4 +1,4 @@
-//! Path classes: what a stored photon has met, and what a caller can select by it.
+//! Path classes: what a stored photon has met, what a caller can select by it, and the layers of a picture.
 #![allow(clippy::unwrap_used, reason = "tests")]
 
 mod support;
@@ -12,9 +12,11 @@ use support::verdict;
 use turbid::Spectrum;
 use turbid::estimators::{Gather, Kernel, fluence};
 use turbid::geometry::Shape;
+use turbid::integrators::{Layer, Layers, path};
 use turbid::math::{FOUR_PI, Ray, atan2, exp};
 use turbid::photons::{Flags, Histories, Photon, PhotonMap, is_in, is_indirect, shoot};
-use turbid::scene::{Orders, Quantity, Scene};
+use turbid::rng::{Purpose, Stream};
+use turbid::scene::{Orders, Quantity, SURROUNDINGS, Scene};
 use turbid::stats::Moments;
 use turbid::surface::{Lambertian, Mirror, Surface};
 use turbid::transport::NoProgress;
@@ -28,6 +30,11 @@ const MIRROR: f64 = 0.8;
 
 /// A box of fog with mean free path 1; its floor is a mirror, one wall is matt, the other faces are open.
 fn room() -> Scene {
+    room_with(LIGHT_RADIUS)
+}
+
+/// The same with another size of its light.
+fn room_with(radius: f64) -> Scene {
     let (x, y, z) = (DVec3::X * 2.0, DVec3::Y * 2.0, DVec3::Z * 2.0);
     let floor = Shape::Rectangle(rectangle(DVec3::ZERO, x, y));
     let wall = Shape::Rectangle(rectangle(DVec3::ZERO, y, z));
@@ -36,7 +43,7 @@ fn room() -> Scene {
     bounded(
         vec![region(cuboid(DVec3::ZERO, DVec3::splat(2.0)), 1.0, 0.8, 0.0)],
         vec![(floor, mirror), (wall, matt)],
-        vec![emitting_sphere(LIGHT, LIGHT_RADIUS)],
+        vec![emitting_sphere(LIGHT, radius)],
     )
 }
 
@@ -125,10 +132,10 @@ fn the_caller_decides_what_a_pass_keeps() {
     assert!(selected(&|_| false).is_empty());
 }
 
-/// Fluence at a distance from the centre of the light, in fog of extinction 1: its radiance 1/(4 pi^2 a^2) over the
-/// cone that it fills, each ray with its own length to the sphere.
-fn fluence_of_the_light(distance: f64) -> f64 {
-    let a2 = LIGHT_RADIUS * LIGHT_RADIUS;
+/// Fluence at a distance from the centre of a light of radius a, in fog of extinction 1: its radiance 1/(4 pi^2 a^2)
+/// over the cone that it fills, each ray with its own length to the sphere.
+fn fluence_of(a: f64, distance: f64) -> f64 {
+    let a2 = a * a;
     let sine2 = a2 / (distance * distance);
     // c = 1 - (1 - cos of the cone) (1 - x^2): the square root at the cone's edge becomes smooth.
     let height = sine2 / (1.0 + (1.0 - sine2).sqrt());
@@ -138,6 +145,10 @@ fn fluence_of_the_light(distance: f64) -> f64 {
         2.0 * x * height * exp(-(distance * cosine - chord2.max(0.0).sqrt()))
     });
     2.0 * PI * cone / (PI * FOUR_PI * a2)
+}
+
+fn fluence_of_the_light(distance: f64) -> f64 {
+    fluence_of(LIGHT_RADIUS, distance)
 }
 
 /// Mean of that fluence over a ball about a point at that distance: at a distance s from the light lie
@@ -193,7 +204,7 @@ fn light_in_a_mirror_does_not_depend_on_the_largest_order() {
     let lights = vec![area_light(square, Spectrum::ONE)];
     let probe = DVec3::new(0.0, 0.0, 0.5);
     let solid_angle = |height: f64| 4.0 * atan2(1.0, height * (2.0 + height * height).sqrt());
-    let vacuum = bounded(Vec::new(), vec![mirror], lights.clone());
+    let vacuum = bounded(Vec::new(), vec![mirror.clone()], lights.clone());
     let seen = |scene: &Scene, quantity, max| {
         paths(scene, quantity, Orders { min: 0, max }, 1 << 18, 3).map(|m| (m.mean(), m))
     };
@@ -219,7 +230,7 @@ fn light_in_a_mirror_does_not_depend_on_the_largest_order() {
     let fog = region(cuboid(DVec3::splat(-2.0), DVec3::splat(2.0)), 1.0, 0.8, 0.0);
     let foggy = bounded(vec![fog], vec![mirror], lights);
     for (scene, expected) in [(&vacuum, 1.0), (&foggy, exp(-1.5))] {
-        let radiance = seen(scene, down, Some(0));
+        let radiance = seen(scene, down.clone(), Some(0));
         for c in 0..3 {
             assert!(
                 (radiance[c].0 / (rho[c] * expected) - 1.0).abs() < 1e-12,
@@ -227,5 +238,93 @@ fn light_in_a_mirror_does_not_depend_on_the_largest_order() {
                 radiance[c].0
             );
         }
+    }
+}
+
+/// Moments of one class at one order [W/(L^2 sr)], channel 0.
+fn class_of_order(scene: &Scene, ray: Ray, layer: Layer, order: u32, n: u64, seed: u64) -> Moments {
+    support::run::numbers(n, seed, |stream| {
+        let mut sum = 0.0;
+        path::classes(scene, ray, None, SURROUNDINGS, Orders::only(order), stream, |_, class, value| {
+            sum += if class == layer { value[0] } else { 0.0 };
+        });
+        sum
+    })
+}
+
+/// The layers of a path are its contributions by order, added up otherwise: the same histories, the same sum.
+#[test]
+fn layers_add_up_to_the_radiance() {
+    let scene = room();
+    let ray = Ray::new(DVec3::new(1.9, 0.3, 1.2), DVec3::new(-1.0, 0.4, -0.5).normalize());
+    let mut seen = Layers::ZERO;
+    for history in 0..20_000 {
+        let stream = || Stream::new(5, Purpose::Paths, 0, history);
+        let (layers, rays) = path::layers(&scene, ray, None, SURROUNDINGS, &mut stream());
+        let mut sum = Spectrum::ZERO;
+        let same = path::radiance(&scene, ray, None, SURROUNDINGS, Orders::ALL, &mut stream(), |_, value| {
+            sum += value
+        });
+        assert_eq!(rays, same);
+        // A dozen terms, all positive, in another order.
+        let difference = (layers.total() - sum).max().abs();
+        assert!(difference <= 64.0 * f64::EPSILON * sum.max(), "{history}: {difference:e}");
+        seen += layers;
+    }
+    for (layer, value) in seen.iter().filter(|(layer, _)| *layer != Layer::Emission) {
+        assert!(value.max() > 0.0, "{} never occurs", layer.name());
+    }
+}
+
+/// A wall in vacuum, lit by the lamp and by its image in the floor: irradiance pi L (a/d)^2 cos, exactly, for a sphere
+/// in full view. Seen straight, the layers are those of the light; seen in the mirror, the same, times the mirror.
+#[test]
+fn direct_and_caustic_light_of_a_wall_in_closed_form() {
+    let fog_free = {
+        let scene = room();
+        let objects = scene.objects().iter().map(|o| (o.shape.clone(), o.surface.clone())).collect();
+        // Large, so that paths by way of the mirror find it often.
+        bounded(Vec::new(), objects, vec![emitting_sphere(LIGHT, 0.4)])
+    };
+    let place = DVec3::new(0.0, 0.7, 0.9);
+    let reflected = |from: DVec3| {
+        let towards = from - place;
+        let cosine = towards.x / towards.length();
+        // Radiance 1/(4 pi^2 a^2), so that the power is 1.
+        0.6 / PI * cosine / (FOUR_PI * towards.length_squared())
+    };
+    let straight = DVec3::new(1.2, 0.4, 1.6);
+    let in_mirror = DVec3::new(1.0, 1.8, 0.8);
+    let below = DVec3::new(place.x, place.y, -place.z);
+    for (eye, target, mirror) in [(straight, place, 1.0), (in_mirror, below, MIRROR)] {
+        let ray = Ray::new(eye, (target - eye).normalize());
+        for (layer, from, by) in [(Layer::Direct, LIGHT, 1.0), (Layer::Caustic, IMAGE, MIRROR)] {
+            let expected = mirror * by * reflected(from);
+            let got = class_of_order(&fog_free, ray, layer, 1, 1 << 17, 6);
+            let what = format!("{} of the wall, mirror {mirror}", layer.name());
+            verdict::agrees(&what, &got, (expected, 1e-12), 0.2 * expected, 6);
+            let wrong = if layer == Layer::Direct { IMAGE } else { LIGHT };
+            verdict::rejects(&format!("{what}, classes exchanged"), &got, mirror * reflected(wrong), 6);
+        }
+    }
+}
+
+/// A line of sight through the fog and out of it, past the lamp, which hides no part of its image from there: light
+/// scattered once, straight from the lamp and by way of the mirror.
+#[test]
+fn light_scattered_once_by_way_of_the_lamp_and_of_its_image() {
+    const RADIUS: f64 = 0.3;
+    let scene = room_with(RADIUS);
+    let (eye, target) = (DVec3::new(0.9, 0.05, 0.3), DVec3::new(0.3, 2.0, 0.3));
+    let ray = Ray::new(eye, (target - eye).normalize());
+    let along = |source: DVec3| {
+        integrate(0.0, eye.distance(target), 4, |t| {
+            0.8 * exp(-t) * fluence_of(RADIUS, ray.at(t).distance(source)) / FOUR_PI
+        })
+    };
+    for (layer, source, by) in [(Layer::Single, LIGHT, 1.0), (Layer::Multiple, IMAGE, MIRROR)] {
+        let expected = by * along(source);
+        let got = class_of_order(&scene, ray, layer, 1, 1 << 17, 7);
+        verdict::agrees(&format!("{} of order 1", layer.name()), &got, (expected, 1e-9), 0.2 * expected, 7);
     }
 }

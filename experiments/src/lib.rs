@@ -9,6 +9,7 @@ pub mod boundary;
 pub mod budget;
 pub mod coverage;
 pub mod extremes;
+pub mod gallery;
 pub mod harness;
 pub mod march;
 pub mod rates;

@@ -2,7 +2,7 @@
 
 use anyhow::{Context, anyhow, bail};
 use std::ops::Range;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use turbid::scene::{BUILTIN, Builtin, Scene, SceneFile};
 
 /// Which scene, and what to change in it.
@@ -24,7 +24,12 @@ impl Source {
     /// The validated scene.
     pub fn load(&self) -> anyhow::Result<Scene> {
         let file = self.resolve()?;
-        file.scene().with_context(|| self.scene.clone())
+        file.scene(&self.folder()).with_context(|| self.scene.clone())
+    }
+
+    /// The folder that file names in the scene are relative to.
+    fn folder(&self) -> PathBuf {
+        Path::new(&self.scene).parent().map(Path::to_path_buf).unwrap_or_default()
     }
 
     /// The scene file with every change made.

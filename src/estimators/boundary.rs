@@ -64,7 +64,7 @@ impl Treatment {
 }
 
 /// The boundaries that an estimate is told of.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone)]
 pub struct Boundary<'a> {
     medium: Shape,
     treatment: Treatment,

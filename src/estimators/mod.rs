@@ -5,16 +5,19 @@
 //! power they arrive with:
 //! - collision density, sigma_t x fluence = sum p K_r / N [W/L^3];
 //! - fluence = sum p K_r / (N sigma_t) [W/L^2];
-//! - in-scattered radiance = sum p phase(dir -> wo) K_r / (N sigma_t) [W/(L^2 sr)].
+//! - in-scattered radiance = sum p phase(dir -> wo) K_r / (N sigma_t) [W/(L^2 sr)];
+//! - on a surface, with K_r of unit integral over the disc: irradiance = sum p K_r / N [W/L^2].
 //!
 //! A [`Kernel`] weights the photons of the ball, a [`Gather`] chooses the ball; both state the bias and
 //! variance they expect. Near the surface of a medium, or a wall, [`boundary`] says what can be done.
 
 pub mod boundary;
 mod directional;
+mod disc;
 mod gather;
 mod kernel;
 mod point;
+mod surface;
 
 pub use directional::{CosinePairs, Directional};
 pub use gather::{Gather, NeighborCount};
@@ -23,3 +26,4 @@ pub use point::{
     Ball, BallSum, Estimate, ball_sum, collision_density, count_within, fluence, for_each_photon,
     in_scattered,
 };
+pub use surface::irradiance;

@@ -173,9 +173,9 @@ fn gathered(tree: &PhotonTree, point: DVec3, gather: Gather, visitor: &mut impl 
 }
 
 /// A visitor that also counts.
-struct Counting<'v, V> {
-    found: usize,
-    visitor: &'v mut V,
+pub(super) struct Counting<'v, V> {
+    pub(super) found: usize,
+    pub(super) visitor: &'v mut V,
 }
 
 impl<V: Visit> Visit for Counting<'_, V> {
@@ -187,10 +187,10 @@ impl<V: Visit> Visit for Counting<'_, V> {
 }
 
 /// The sum while photons are found.
-struct Weighted<W> {
-    kernel: Kernel,
-    weight: W,
-    sum: LaneSum,
+pub(super) struct Weighted<W> {
+    pub(super) kernel: Kernel,
+    pub(super) weight: W,
+    pub(super) sum: LaneSum,
 }
 
 impl<W: Fn(&Neighbors<'_>) -> f32x8> Visit for Weighted<W> {
@@ -206,7 +206,7 @@ impl<W: Fn(&Neighbors<'_>) -> f32x8> Visit for Weighted<W> {
 }
 
 /// A sum that does not stall: a few rows in single precision lanes, everything else in f64.
-struct LaneSum {
+pub(super) struct LaneSum {
     lanes: [f32x8; 3],
     rows: u32,
     total: Spectrum,
@@ -242,7 +242,7 @@ impl LaneSum {
         self.rows = 0;
     }
 
-    fn total(mut self) -> Spectrum {
+    pub(super) fn total(mut self) -> Spectrum {
         self.empty();
         self.total
     }

@@ -4,13 +4,18 @@ use super::Hit;
 use crate::error::{Error, Result};
 use crate::faults::{Fault, planted};
 use crate::math::{Interval, Ray};
-use glam::DVec3;
+use glam::{DVec2, DVec3};
 
 /// All points between two corners.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Cuboid {
     min: DVec3,
     max: DVec3,
+}
+
+/// A hit of a face.
+fn face(t: f64, normal: DVec3) -> Hit {
+    Hit { t, normal, uv: DVec2::ZERO, primitive: 0 }
 }
 
 /// The unit vector along an axis.
@@ -77,7 +82,7 @@ impl Cuboid {
     }
 
     pub(super) fn hit(&self, ray: &Ray, from_here: bool) -> Option<Hit> {
-        let exit_hit = |(t, i): (f64, usize)| Hit { t, normal: axis(i) * ray.dir[i].signum() };
+        let exit_hit = |(t, i): (f64, usize)| face(t, axis(i) * ray.dir[i].signum());
         if from_here {
             let (i, sign) = self.face_at(ray.origin);
             if ray.dir[i] * sign >= 0.0 {
@@ -87,7 +92,7 @@ impl Cuboid {
         }
         let (entry, exit) = self.crossings(ray)?;
         if entry.0 > 0.0 {
-            return Some(Hit { t: entry.0, normal: -axis(entry.1) * ray.dir[entry.1].signum() });
+            return Some(face(entry.0, -axis(entry.1) * ray.dir[entry.1].signum()));
         }
         (exit.0 > 0.0).then(|| exit_hit(exit))
     }
@@ -132,6 +137,42 @@ impl Cuboid {
         p[(i + 2) % 3] = self.min[(i + 2) % 3] + e[(i + 2) % 3] * w;
         p[i] = if is_upper { self.max[i] } else { self.min[i] };
         (p, axis(i) * if is_upper { 1.0 } else { -1.0 })
+    }
+
+    /// Areas of the faces that a point outside sees, one an axis, and whether it is the upper one [L^2].
+    fn facing(&self, p: DVec3) -> [(f64, bool); 3] {
+        let e = self.max - self.min;
+        let area = [e.y * e.z, e.z * e.x, e.x * e.y];
+        std::array::from_fn(|i| {
+            let is_seen = p[i] < self.min[i] || p[i] > self.max[i];
+            (if is_seen { area[i] } else { 0.0 }, p[i] > self.max[i])
+        })
+    }
+
+    /// Area of the faces whose outside a point sees [L^2]; 0 inside.
+    pub fn facing_area(&self, p: DVec3) -> f64 {
+        self.facing(p).iter().map(|(area, _)| area).sum()
+    }
+
+    /// A uniform point on the faces whose outside `p` sees, and the normal there; none inside.
+    pub fn sample_facing(&self, p: DVec3, [u, v]: [f64; 2]) -> Option<(DVec3, DVec3)> {
+        let faces = self.facing(p);
+        let mut target = u * faces.iter().map(|(area, _)| area).sum::<f64>();
+        let last = faces.iter().rposition(|(area, _)| *area > 0.0)?;
+        let i = (0..last).find(|&i| {
+            let is_here = target < faces[i].0;
+            target -= if is_here { 0.0 } else { faces[i].0 };
+            is_here
+        });
+        let i = i.unwrap_or(last);
+        // What is left of the first number is uniform in the face that it chose.
+        let (a, is_upper) = (target / faces[i].0, faces[i].1);
+        let e = self.max - self.min;
+        let mut point = self.min;
+        point[(i + 1) % 3] = self.min[(i + 1) % 3] + e[(i + 1) % 3] * a.min(1.0);
+        point[(i + 2) % 3] = self.min[(i + 2) % 3] + e[(i + 2) % 3] * v;
+        point[i] = if is_upper { self.max[i] } else { self.min[i] };
+        Some((point, axis(i) * if is_upper { 1.0 } else { -1.0 }))
     }
 
     /// A uniform point inside.

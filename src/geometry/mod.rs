@@ -1,7 +1,7 @@
 //! Shapes with exact hits in f64: one file each.
 //!
-//! A ray that starts on a shape says so (`from_here`), and the hit it starts from is excluded by algebra, so that no
-//! shape needs an epsilon.
+//! A ray that starts on a shape says so, and the hit it starts from is excluded, by algebra or by the primitive that it
+//! starts on, so that no shape needs an epsilon.
 
 mod cuboid;
 mod rectangle;
@@ -14,19 +14,24 @@ pub use slab::{Face, Slab};
 pub use sphere::Sphere;
 
 use crate::math::{Interval, Ray};
-use glam::DVec3;
+use glam::{DVec2, DVec3};
 
 /// Where a ray meets a shape.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Hit {
     /// Distance along the ray \[L\].
     pub t: f64,
-    /// Unit normal: outwards for closed shapes, the front for a rectangle.
+    /// Unit geometric normal: outwards for closed shapes, the front for a rectangle.
     pub normal: DVec3,
+    /// Where on the surface, in [0, 1]^2: along u and v of a rectangle; 0 on the other
+    /// exact shapes.
+    pub uv: DVec2,
+    /// Which part of the shape was hit: the triangle of a mesh, 0 on a shape without parts.
+    pub primitive: u32,
 }
 
-/// The shapes at hand.
-#[derive(Debug, Clone, Copy, PartialEq)]
+/// The shapes at hand. Heavy ones share their data: a clone costs little.
+#[derive(Debug, Clone, PartialEq)]
 pub enum Shape {
     /// A ball and its surface.
     Sphere(Sphere),
@@ -50,12 +55,31 @@ macro_rules! each {
 }
 
 impl Shape {
-    /// The first crossing of the surface ahead of the ray; `from_here` if the ray starts on this very surface.
-    pub fn hit(&self, ray: &Ray, from_here: bool) -> Option<Hit> {
-        each!(self, s => s.hit(ray, from_here))
+    /// The first crossing of the surface ahead of the ray; `from` is the primitive that the ray starts on, if it starts
+    /// on this very surface.
+    pub fn hit(&self, ray: &Ray, from: Option<u32>) -> Option<Hit> {
+        each!(self, s => s.hit(ray, from.is_some()))
     }
 
-    /// The part of the ray inside, from 0 on; none for a shape without inside. Shapes are convex.
+    /// Whether it is convex and has an inside: only such shapes bound media and fill with light.
+    pub fn is_solid(&self) -> bool {
+        match self {
+            Shape::Sphere(_) | Shape::Slab(_) | Shape::Cuboid(_) => true,
+            Shape::Rectangle(_) => false,
+        }
+    }
+
+    /// A sphere about the shape, centre and radius \[L\]; none for one without end.
+    pub fn bounds(&self) -> Option<(DVec3, f64)> {
+        match self {
+            Shape::Sphere(s) => Some((s.center(), s.radius())),
+            Shape::Rectangle(r) => Some((r.sample([0.5; 2]), 0.5 * r.diagonal())),
+            Shape::Slab(_) => None,
+            Shape::Cuboid(c) => Some((0.5 * (c.min() + c.max()), 0.5 * c.min().distance(c.max()))),
+        }
+    }
+
+    /// The part of the ray inside, from 0 on; none for a shape that is not solid.
     pub fn interval(&self, ray: &Ray) -> Option<Interval> {
         match self {
             Shape::Sphere(s) => s.interval(ray),

@@ -3,7 +3,7 @@
 use super::Hit;
 use crate::error::{Error, Result};
 use crate::math::Ray;
-use glam::DVec3;
+use glam::{DVec2, DVec3};
 
 /// The points `corner + a u + b v` for a, b in [0, 1]; the edges u and v are perpendicular, the front is u x v.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -45,14 +45,31 @@ impl Rectangle {
         if t.is_nan() || t <= 0.0 {
             return None;
         }
-        self.covers(ray.at(t)).then_some(Hit { t, normal: self.normal })
+        let uv = self.coordinates(ray.at(t));
+        let unit = 0.0..=1.0;
+        (unit.contains(&uv.x) && unit.contains(&uv.y)).then_some(Hit {
+            t,
+            normal: self.normal,
+            uv,
+            primitive: 0,
+        })
     }
 
     /// Whether a point lies above or below the rectangle, seen along its normal; the edges count.
     pub fn covers(&self, p: DVec3) -> bool {
+        let uv = self.coordinates(p);
+        (0.0..=1.0).contains(&uv.x) && (0.0..=1.0).contains(&uv.y)
+    }
+
+    /// Where a point lies along the edges, each of length 1, seen along the normal.
+    fn coordinates(&self, p: DVec3) -> DVec2 {
         let p = p - self.corner;
-        let (a, b) = (p.dot(self.u) / self.u.length_squared(), p.dot(self.v) / self.v.length_squared());
-        (0.0..=1.0).contains(&a) && (0.0..=1.0).contains(&b)
+        DVec2::new(p.dot(self.u) / self.u.length_squared(), p.dot(self.v) / self.v.length_squared())
+    }
+
+    /// Length of the diagonal \[L\].
+    pub fn diagonal(&self) -> f64 {
+        (self.u + self.v).length()
     }
 
     /// How far a point lies inside the rectangle's edges, seen along its normal; outside, minus the distance \[L\].

@@ -3,7 +3,7 @@
 use super::Hit;
 use crate::error::{Error, Result};
 use crate::math::{Interval, Ray};
-use glam::DVec3;
+use glam::{DVec2, DVec3};
 
 /// The layer `top <= z <= top + thickness`, without end in x and y. Depth grows with z.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -30,6 +30,11 @@ impl Face {
             Face::Bottom => DVec3::Z,
         }
     }
+}
+
+/// A hit of a plane.
+fn plane(t: f64, normal: DVec3) -> Hit {
+    Hit { t, normal, uv: DVec2::ZERO, primitive: 0 }
 }
 
 impl Slab {
@@ -79,13 +84,9 @@ impl Slab {
             // It starts on one plane: either the other one is ahead, or none.
             let middle = self.top + 0.5 * self.thickness;
             let is_inward = (ray.origin.z < middle) == (ray.dir.z > 0.0);
-            return is_inward.then_some(Hit { t: t1, normal: along });
+            return is_inward.then_some(plane(t1, along));
         }
-        if t0 > 0.0 {
-            Some(Hit { t: t0, normal: -along })
-        } else {
-            (t1 > 0.0).then_some(Hit { t: t1, normal: along })
-        }
+        if t0 > 0.0 { Some(plane(t0, -along)) } else { (t1 > 0.0).then_some(plane(t1, along)) }
     }
 
     pub(super) fn interval(&self, ray: &Ray) -> Option<Interval> {

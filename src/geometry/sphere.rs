@@ -3,7 +3,7 @@
 use super::Hit;
 use crate::error::{Error, Result};
 use crate::math::{FOUR_PI, Interval, Ray, warp};
-use glam::DVec3;
+use glam::{DVec2, DVec3};
 
 /// All points within a radius of a centre.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -53,7 +53,8 @@ impl Sphere {
     }
 
     fn hit_at(&self, ray: &Ray, t: f64) -> Hit {
-        Hit { t, normal: ((ray.at(t) - self.center) / self.radius).normalize() }
+        let normal = ((ray.at(t) - self.center) / self.radius).normalize();
+        Hit { t, normal, uv: DVec2::ZERO, primitive: 0 }
     }
 
     pub(super) fn hit(&self, ray: &Ray, from_here: bool) -> Option<Hit> {

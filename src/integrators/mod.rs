@@ -1,7 +1,9 @@
 //! Integrators: the path tracer, and the march through a photon map.
 
+mod layers;
 mod march;
-mod path;
+pub mod path;
 
+pub use layers::{Layer, Layers};
 pub use march::{StepRule, march, march_map};
 pub use path::{Rays, direct_flux, fluence, radiance};

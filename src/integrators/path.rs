@@ -6,15 +6,16 @@
 //! equal angles, in multiple importance with the free flight: connections from free flights alone would have an
 //! infinite variance.
 
+use super::{Layer, Layers};
 use crate::Spectrum;
 use crate::faults::{Fault, planted};
-use crate::light::{Light, LightSample, Point};
+use crate::light::{Light, LightSample};
 use crate::math::{FOUR_PI, Interval, Ray, atan2, cosine_pair, warp};
 use crate::phase::PhaseFunction;
 use crate::rng::Stream;
-use crate::scene::{Orders, Scene, SceneHit, Target};
+use crate::scene::{Orders, Scene, SceneHit, Start, Target, decay};
 use crate::surface::Surface;
-use crate::transport::{Arrival, Roulette, Step, Visitor, Walker, walk};
+use crate::transport::{Arrival, Flags, Roulette, Step, Visitor, Walker, transmittance, walk};
 use glam::DVec3;
 
 /// Throughput below which paths play roulette. Any value gives the same mean; this one spends little on paths that
@@ -37,73 +38,108 @@ impl Rays {
     }
 }
 
-/// What reaches a path's origin, split by the caller: called with the order and the contribution.
-struct PathVisitor<'a, F: FnMut(u32, Spectrum)> {
+/// What reaches a path's origin, split by the caller: called with the order, the class and the contribution.
+struct PathVisitor<'a, F: FnMut(u32, Layer, Spectrum)> {
     scene: &'a Scene,
     orders: Orders,
     collect: F,
     rays: Rays,
+    /// What the path's first scattering was.
+    first: Flags,
+    /// The order at which it last met a specular surface.
+    specular_at: Option<u32>,
 }
 
-impl<F: FnMut(u32, Spectrum)> PathVisitor<'_, F> {
-    fn add(&mut self, order: u32, value: Spectrum) {
+impl<'a, F: FnMut(u32, Layer, Spectrum)> PathVisitor<'a, F> {
+    fn new(scene: &'a Scene, orders: Orders, rays: Rays, collect: F) -> Self {
+        PathVisitor { scene, orders, collect, rays, first: Flags::NONE, specular_at: None }
+    }
+
+    fn add(&mut self, order: u32, layer: Layer, value: Spectrum) {
         if self.orders.contains(order) && !value.is_black() {
-            (self.collect)(order, value);
+            (self.collect)(order, layer, value);
         }
     }
 
+    /// The class of light that the ray ahead meets by itself.
+    fn layer_ahead(&self, walker: &Walker) -> Layer {
+        Layer::of(walker.order, self.first, self.specular_at == Some(walker.order))
+    }
+
+    /// The class of light that a connection from an event brings straight from a light.
+    fn layer_connected(&self, walker: &Walker, event: Flags) -> Layer {
+        let first = if walker.order == 0 { event } else { self.first };
+        Layer::of(walker.order + 1, first, false)
+    }
+
     /// What the ray ahead meets by itself.
-    fn ahead(&mut self, walker: &Walker, hit: Option<&SceneHit>) {
+    fn ahead(&mut self, walker: &Walker, hit: Option<&SceneHit>, stream: &mut Stream) {
         if !self.orders.contains(walker.order) {
             return;
         }
         let end = hit.map_or(f64::INFINITY, |h| h.hit.t);
+        let layer = self.layer_ahead(walker);
         if let Some(found) = hit
             && let Target::Light(index) = found.target
         {
             let (radiance, pdf_light) = self.scene.lights()[index].emitted(&walker.ray, &found.hit);
             let share = walker.pdf_solid_angle.map_or(1.0, |pdf| pdf / (pdf + pdf_light));
-            let seen = radiance * self.scene.transmittance(&walker.ray, end) * share;
-            self.add(walker.order, walker.weight * seen);
+            let passed = transmittance(self.scene, &walker.ray, end, walker.within, stream);
+            let seen = radiance * passed * share;
+            self.add(walker.order, layer, walker.weight * seen);
         }
         for light in self.scene.lights() {
-            let seen = uncollided(self.scene, light, &walker.ray, end);
-            self.add(walker.order, walker.weight * seen);
+            let mut seen = uncollided(self.scene, light, walker, end, stream);
+            if hit.is_none()
+                && let Some((radiance, pdf_light)) = light.background(walker.ray.dir)
+            {
+                let share = walker.pdf_solid_angle.map_or(1.0, |pdf| pdf / (pdf + pdf_light));
+                seen += radiance * transmittance(self.scene, &walker.ray, end, walker.within, stream) * share;
+            }
+            self.add(walker.order, layer, walker.weight * seen);
         }
     }
 
     /// Connects an event to every light; `scattered` is the fraction scattered into a direction [1/sr].
     fn connect(
         &mut self,
-        walker: &Walker,
+        (walker, event): (&Walker, Flags),
         position: DVec3,
-        from: Option<Target>,
+        from: Option<Start>,
         stream: &mut Stream,
         scattered: impl Fn(DVec3) -> (Spectrum, f64),
-        point_share: impl Fn(&Point) -> f64,
+        point_share: impl Fn(DVec3) -> f64,
     ) {
         if !self.orders.contains(walker.order + 1) || !self.scene.plan().has_next_event {
             return;
         }
+        let layer = self.layer_connected(walker, event);
         for index in 0..self.scene.lights().len() {
             let light = &self.scene.lights()[index];
             let Some((sample, received)) =
-                next_event(self.scene, index, position, from, stream, &mut self.rays)
+                next_event(self.scene, index, (position, from, walker.within), stream, &mut self.rays)
             else {
                 continue;
             };
             let (fraction, pdf) = scattered(sample.dir);
-            let share = match (light, sample.pdf_solid_angle) {
-                (Light::Point(point), _) => point_share(point),
+            let share = match (light.apex(), sample.pdf_solid_angle) {
+                (Some(apex), _) => point_share(apex),
                 (_, Some(pdf_light)) => pdf_light / (pdf_light + pdf),
                 (_, None) => 1.0,
             };
             let order = if planted(Fault::OrderOffByOne) { walker.order } else { walker.order + 1 };
-            self.add(order, walker.weight * fraction * received * share);
+            self.add(order, layer, walker.weight * fraction * received * share);
         }
     }
 
-    /// A connection from a point chosen with equal angles about each point light.
+    /// Remembers a scattering, if it is the first.
+    fn scattered(&mut self, walker: &Walker, event: Flags) {
+        if walker.order == 0 {
+            self.first = event;
+        }
+    }
+
+    /// A connection from a point chosen with equal angles about each point or spot light.
     fn equiangular(&mut self, walker: &Walker, hit: Option<&SceneHit>, stream: &mut Stream) {
         let (scene, ray) = (self.scene, &walker.ray);
         let plan = scene.plan();
@@ -111,29 +147,29 @@ impl<F: FnMut(u32, Spectrum)> PathVisitor<'_, F> {
             return;
         }
         let end = hit.map_or(f64::INFINITY, |h| h.hit.t);
-        let Some(span) = span(scene, ray, end) else { return };
+        let Some(span) = span(scene, ray, end, walker.within) else { return };
         for &index in &plan.point_lights {
-            let Light::Point(point) = &scene.lights()[index] else { continue };
-            let equal_angles = EqualAngles::new(ray, point.position(), span);
+            let Some(apex) = scene.lights()[index].apex() else { continue };
+            let equal_angles = EqualAngles::new(ray, apex, span);
             let Some(t) = equal_angles.sample(stream.unit()) else { continue };
-            let Some(segment) = scene.segments(ray, end).iter().find(|s| t <= s.interval.end).copied() else {
-                continue;
-            };
+            let segments = scene.segments(ray, end, walker.within);
+            let Some(segment) = segments.iter().find(|s| t <= s.interval.end) else { continue };
             if t < segment.interval.start {
                 continue;
             }
-            let medium = &scene.regions()[segment.region].medium;
+            let medium = scene.medium(segment.medium);
             let position = ray.at(t);
-            let Some((sample, received)) = next_event(scene, index, position, None, stream, &mut self.rays)
-            else {
+            let place = (position, None, walker.within);
+            let Some((sample, received)) = next_event(scene, index, place, stream, &mut self.rays) else {
                 continue;
             };
             let (one_minus_mu, one_plus_mu) = cosine_pair(ray.dir, sample.dir);
             let fraction = medium.albedo() * medium.phase().eval(one_minus_mu, one_plus_mu);
-            let density = scene.transmittance(ray, t) * medium.sigma_t();
+            let density = decay(scene.optical_depth(ray, t, walker.within)) * medium.sigma_t();
             // Balance heuristic of the two densities; their sum divides, so neither can be small alone.
             let sum = equal_angles.pdf(t) + flight_pdf(scene, walker, density, ray, end);
-            self.add(walker.order + 1, walker.weight * fraction * density * received / sum);
+            let layer = self.layer_connected(walker, Flags::MEDIUM);
+            self.add(walker.order + 1, layer, walker.weight * fraction * density * received / sum);
         }
     }
 }
@@ -146,15 +182,15 @@ impl<F: FnMut(u32, Spectrum)> PathVisitor<'_, F> {
 fn flight_pdf(scene: &Scene, walker: &Walker, density: Spectrum, ray: &Ray, end: f64) -> f64 {
     let forced = scene.plan().forces_first_collision && walker.order == 0 && end.is_infinite();
     if forced {
-        density.mean() / -crate::math::exp_m1(-scene.optical_depth(ray, end).mean())
+        density.mean() / -crate::math::exp_m1(-scene.optical_depth(ray, end, walker.within).mean())
     } else {
         density.mean()
     }
 }
 
 /// The stretch of a ray from the first medium to the last.
-fn span(scene: &Scene, ray: &Ray, end: f64) -> Option<Interval> {
-    let segments = scene.segments(ray, end);
+fn span(scene: &Scene, ray: &Ray, end: f64, within: usize) -> Option<Interval> {
+    let segments = scene.segments(ray, end, within);
     let first = segments.iter().next()?;
     let last = segments.iter().last()?;
     Some(Interval { start: first.interval.start, end: last.interval.end })
@@ -197,16 +233,16 @@ impl EqualAngles {
     }
 }
 
-impl<F: FnMut(u32, Spectrum)> Visitor for PathVisitor<'_, F> {
+impl<F: FnMut(u32, Layer, Spectrum)> Visitor for PathVisitor<'_, F> {
     fn visit(&mut self, walker: &Walker, step: Step, stream: &mut Stream) {
         match step {
             Step::Ahead(hit) => {
                 self.rays.segments += 1;
-                self.ahead(walker, hit);
+                self.ahead(walker, hit, stream);
                 self.equiangular(walker, hit, stream);
             }
-            Step::Collision(Arrival { position, .. }, region) => {
-                let medium = &self.scene.regions()[region].medium;
+            Step::Collision(Arrival { position, .. }, number) => {
+                let medium = self.scene.medium(number);
                 let before = walker.ray.dir;
                 let scattered = |towards: DVec3| {
                     let (one_minus_mu, one_plus_mu) = cosine_pair(before, towards);
@@ -214,29 +250,43 @@ impl<F: FnMut(u32, Spectrum)> Visitor for PathVisitor<'_, F> {
                     (medium.albedo() * p, p)
                 };
                 let scene = self.scene;
-                let point_share = |point: &Point| {
+                let point_share = |apex: DVec3| {
                     let t = position.distance(walker.ray.origin);
                     let hit = scene.hit(&walker.ray, walker.from);
                     let end = hit.map_or(f64::INFINITY, |h| h.hit.t);
-                    let Some(span) = span(scene, &walker.ray, end) else { return 1.0 };
-                    let density = scene.transmittance(&walker.ray, t) * medium.sigma_t();
+                    let Some(span) = span(scene, &walker.ray, end, walker.within) else { return 1.0 };
+                    let passed = decay(scene.optical_depth(&walker.ray, t, walker.within));
+                    let density = passed * medium.sigma_t();
                     let flight = flight_pdf(scene, walker, density, &walker.ray, end);
-                    let pdf = EqualAngles::new(&walker.ray, point.position(), span).pdf(t);
+                    let pdf = EqualAngles::new(&walker.ray, apex, span).pdf(t);
                     flight / (flight + pdf)
                 };
-                self.connect(walker, position, None, stream, scattered, point_share);
+                self.connect((walker, Flags::MEDIUM), position, None, stream, scattered, point_share);
+                self.scattered(walker, Flags::MEDIUM);
             }
             Step::Surface(Arrival { position, .. }, found) => {
                 let Target::Object(index) = found.target else { return };
-                let Surface::Lambertian(surface) = self.scene.objects()[index].surface else { return };
+                if self.scene.objects()[index].surface.is_specular() {
+                    self.specular_at = Some(walker.order);
+                }
+                let Surface::Lambertian(surface) = &self.scene.objects()[index].surface else { return };
                 let outward = found.hit.normal;
                 let normal = if walker.ray.dir.dot(outward) < 0.0 { outward } else { -outward };
+                let fraction = surface.eval(position, found.hit.uv);
                 let scattered = |towards: DVec3| {
                     let cosine = towards.dot(normal).max(0.0);
                     let again = if planted(Fault::CosineTwice) { cosine } else { 1.0 };
-                    (surface.eval() * cosine * again, warp::pdf_cosine_hemisphere(cosine))
+                    (fraction * cosine * again, warp::pdf_cosine_hemisphere(cosine))
                 };
-                self.connect(walker, position, Some(found.target), stream, scattered, |_| 1.0);
+                self.connect(
+                    (walker, Flags::DIFFUSE),
+                    position,
+                    Some(found.start()),
+                    stream,
+                    scattered,
+                    |_| 1.0,
+                );
+                self.scattered(walker, Flags::DIFFUSE);
             }
             Step::Passed(..) | Step::Absorbed(..) | Step::Escaped(_) | Step::Abandoned(_) => {}
         }
@@ -245,10 +295,13 @@ impl<F: FnMut(u32, Spectrum)> Visitor for PathVisitor<'_, F> {
 
 /// Uncollided radiance from a light that fills the ray's far end or its way [W/(L^2 sr)]: incidence and volume
 /// sources, which no sampler aims at.
-fn uncollided(scene: &Scene, light: &Light, ray: &Ray, end: f64) -> Spectrum {
+fn uncollided(scene: &Scene, light: &Light, walker: &Walker, end: f64, stream: &mut Stream) -> Spectrum {
+    let (ray, within) = (&walker.ray, walker.within);
     match light {
         Light::Isotropic(light) if light.is_lit_against(ray.dir) => match light.shape().interval(ray) {
-            Some(inside) if inside.end < end => light.radiance() * scene.transmittance(ray, inside.end),
+            Some(inside) if inside.end < end => {
+                light.radiance() * transmittance(scene, ray, inside.end, within, stream)
+            }
             // A point on the boundary is inside: light comes in against a ray that leaves at once.
             None if light.shape().contains(ray.origin) => light.radiance(),
             _ => Spectrum::ZERO,
@@ -256,19 +309,18 @@ fn uncollided(scene: &Scene, light: &Light, ray: &Ray, end: f64) -> Spectrum {
         Light::VolumeSource(light) => {
             let inside =
                 light.shape().interval(ray).and_then(|i| i.intersection(Interval { start: 0.0, end }));
-            inside.map_or(Spectrum::ZERO, |inside| scene.collected(ray, inside, light.emission()))
+            inside.map_or(Spectrum::ZERO, |inside| scene.collected(ray, inside, within, light.emission()))
         }
         _ => Spectrum::ZERO,
     }
 }
 
-/// Light that arrives at `position` straight from the light of this index, along one sampled direction: radiance
+/// Light that arrives at a place (point, body, interior) straight from the light of this index, along one sampled direction: radiance
 /// over density, or the irradiance of a delta light [W/L^2].
 fn next_event(
     scene: &Scene,
     index: usize,
-    position: DVec3,
-    from: Option<Target>,
+    (position, from, within): (DVec3, Option<Start>, usize),
     stream: &mut Stream,
     rays: &mut Rays,
 ) -> Option<(LightSample, Spectrum)> {
@@ -279,10 +331,9 @@ fn next_event(
     let sample = light.sample(position, stream.pair())?;
     let ray = Ray::new(position, sample.dir);
     rays.shadow += 1;
-    if !scene.is_clear(&ray, from, sample.distance, Target::Light(index)) {
-        return None;
-    }
-    Some((sample, sample.value * scene.transmittance(&ray, sample.distance)))
+    let filtered = scene.passes(&ray, from, sample.distance, Target::Light(index))?;
+    let passed = filtered * transmittance(scene, &ray, sample.distance, within, stream);
+    Some((sample, sample.value * passed))
 }
 
 /// Power that uncollided light of beams and point lights carries through a surface element along its normal
@@ -294,10 +345,11 @@ pub fn direct_flux(
     stream: &mut Stream,
     rays: &mut Rays,
 ) -> Spectrum {
+    let within = scene.interior_at(position);
     let mut sum = Spectrum::ZERO;
     for (index, light) in scene.lights().iter().enumerate() {
         if light.is_delta()
-            && let Some((sample, received)) = next_event(scene, index, position, None, stream, rays)
+            && let Some((sample, received)) = next_event(scene, index, (position, None, within), stream, rays)
         {
             sum += received * (-sample.dir.dot(normal)).max(0.0);
         }
@@ -305,20 +357,50 @@ pub fn direct_flux(
     sum
 }
 
+/// One sample of the radiance that arrives at the origin of `ray` from ahead [W/(L^2 sr)], by order and class:
+/// `collect` is called with the order, the class and the contribution. The ray starts in the interior of number `within`.
+/// Returns the work.
+pub fn classes(
+    scene: &Scene,
+    ray: Ray,
+    from: Option<Start>,
+    within: usize,
+    orders: Orders,
+    stream: &mut Stream,
+    collect: impl FnMut(u32, Layer, Spectrum),
+) -> Rays {
+    let mut visitor = PathVisitor::new(scene, orders, Rays::default(), collect);
+    let start = Walker { from, within, ..Walker::new(ray, Spectrum::ONE) };
+    walk(scene, start, ROULETTE, orders.max, stream, &mut visitor);
+    visitor.rays
+}
+
+/// One sample of the radiance that arrives at the origin of `ray` from ahead [W/(L^2 sr)], by class, and the work.
+pub fn layers(
+    scene: &Scene,
+    ray: Ray,
+    from: Option<Start>,
+    within: usize,
+    stream: &mut Stream,
+) -> (Layers, Rays) {
+    let mut layers = Layers::ZERO;
+    let rays =
+        classes(scene, ray, from, within, Orders::ALL, stream, |_, layer, value| layers[layer] += value);
+    (layers, rays)
+}
+
 /// One sample of the radiance that arrives at the origin of `ray` from ahead [W/(L^2 sr)], by order: `collect` is
-/// called with the order and the contribution. Returns the work.
+/// called with the order and the contribution. The ray starts in the interior of number `within`. Returns the work.
 pub fn radiance(
     scene: &Scene,
     ray: Ray,
-    from: Option<Target>,
+    from: Option<Start>,
+    within: usize,
     orders: Orders,
     stream: &mut Stream,
-    collect: impl FnMut(u32, Spectrum),
+    mut collect: impl FnMut(u32, Spectrum),
 ) -> Rays {
-    let mut visitor = PathVisitor { scene, orders, collect, rays: Rays::default() };
-    let start = Walker { from, ..Walker::new(ray, Spectrum::ONE) };
-    walk(scene, start, ROULETTE, orders.max, stream, &mut visitor);
-    visitor.rays
+    classes(scene, ray, from, within, orders, stream, |order, _, value| collect(order, value))
 }
 
 /// One sample of the fluence at a point [W/L^2], by order.
@@ -333,17 +415,21 @@ pub fn fluence(
     mut collect: impl FnMut(u32, Spectrum),
 ) -> Rays {
     let mut rays = Rays::default();
+    let within = scene.interior_at(position);
     if orders.contains(0) {
         for index in 0..scene.lights().len() {
-            if let Some((sample, received)) = next_event(scene, index, position, None, stream, &mut rays) {
+            if let Some((sample, received)) =
+                next_event(scene, index, (position, None, within), stream, &mut rays)
+            {
                 let share = sample.pdf_solid_angle.map_or(1.0, |pdf| pdf / (pdf + warp::pdf_sphere()));
                 collect(0, received * share);
             }
         }
     }
     let dir = warp::square_to_sphere(stream.pair()).normalize();
-    let mut visitor = PathVisitor { scene, orders, collect, rays };
+    let mut visitor = PathVisitor::new(scene, orders, rays, |order, _, value| collect(order, value));
     let start = Walker {
+        within,
         pdf_solid_angle: Some(warp::pdf_sphere()),
         ..Walker::new(Ray::new(position, dir), Spectrum::grey(FOUR_PI))
     };

@@ -1,62 +1,122 @@
-//! A rectangle that emits from its front.
+//! A shape whose surface emits outwards.
 
-use super::{LightSample, emissive};
+use super::{EmissionNumbers, LightSample, Needs, emissive};
 use crate::Spectrum;
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::faults::{Fault, planted};
-use crate::geometry::{Hit, Rectangle, Shape};
+use crate::geometry::{Face, Hit, Shape, Sphere};
 use crate::math::{Frame, Ray, warp};
-use crate::rng::Stream;
 use glam::DVec3;
 use std::f64::consts::PI;
 
-/// A black rectangle whose front emits the same radiance in all directions.
-#[derive(Debug, Clone, Copy, PartialEq)]
+/// A black shape whose surface emits the same radiance everywhere, in all outward directions: the front of a rectangle,
+/// the outside of a sphere or a cuboid.
+#[derive(Debug, Clone, PartialEq)]
 pub struct Area {
-    rectangle: Rectangle,
+    shape: Shape,
     radiance: Spectrum,
+    area: f64,
 }
 
 impl Area {
     /// A light of the given shape and radiance [W/(L^2 sr)].
-    pub fn new(rectangle: Rectangle, radiance: Spectrum) -> Result<Self> {
-        Ok(Area { rectangle, radiance: emissive("radiance", radiance)? })
+    ///
+    /// # Errors
+    /// `Error::Scene` for a slab, whose faces have no end; `Error::OutOfRange` for the radiance.
+    pub fn new(shape: Shape, radiance: Spectrum) -> Result<Self> {
+        let area = shape.area();
+        if !area.is_finite() {
+            return Err(Error::Scene(
+                "an area light needs a bounded shape: a rectangle, a sphere or a cuboid".into(),
+            ));
+        }
+        Ok(Area { shape, radiance: emissive("radiance", radiance)?, area })
     }
 
-    pub(super) fn shape(&self) -> Shape {
-        Shape::Rectangle(self.rectangle)
+    /// The shape that emits.
+    pub fn shape(&self) -> &Shape {
+        &self.shape
+    }
+
+    /// Radiance [W/(L^2 sr)].
+    pub fn radiance(&self) -> Spectrum {
+        self.radiance
     }
 
     pub(super) fn power(&self) -> Spectrum {
-        self.radiance * (PI * self.rectangle.area())
+        self.radiance * (PI * self.area)
     }
 
-    pub(super) fn emit(&self, stream: &mut Stream) -> Ray {
-        let origin = self.rectangle.sample(stream.pair());
+    pub(super) fn needs(&self) -> Needs {
+        let position = match self.shape {
+            Shape::Rectangle(_) | Shape::Sphere(_) => 2,
+            _ => 3,
+        };
+        Needs { position, direction: 2 }
+    }
+
+    pub(super) fn ray(&self, numbers: &EmissionNumbers) -> Ray {
+        let (origin, normal, _) = self.shape.sample_boundary(Face::Top, 0.0, numbers.position);
         let local = if planted(Fault::EmissionUniform) {
-            let dir = warp::square_to_sphere(stream.pair());
+            let dir = warp::square_to_sphere(numbers.direction);
             dir.with_z(dir.z.abs())
         } else {
-            warp::square_to_cosine_hemisphere(stream.pair())
+            warp::square_to_cosine_hemisphere(numbers.direction)
         };
-        Ray::new(origin, Frame::new(self.rectangle.normal()).to_world(local))
+        Ray::new(origin, Frame::new(normal).to_world(local))
     }
 
+    /// A direction from `p`: to a uniform point of the surface, of the sides of a cuboid that face `p`, or in the cone
+    /// that a sphere fills.
     pub(super) fn sample(&self, p: DVec3, u: [f64; 2]) -> Option<LightSample> {
-        let to_light = self.rectangle.sample(u) - p;
+        match &self.shape {
+            Shape::Sphere(sphere) => self.sample_cone(sphere, p, u),
+            Shape::Rectangle(r) => self.towards(p, r.sample(u), r.normal()),
+            Shape::Cuboid(c) => {
+                let (point, normal) = c.sample_facing(p, u)?;
+                self.towards(p, point, normal)
+            }
+            Shape::Slab(_) => None,
+        }
+    }
+
+    /// The sample that aims at a point of the surface.
+    fn towards(&self, p: DVec3, point: DVec3, normal: DVec3) -> Option<LightSample> {
+        let to_light = point - p;
         let distance = to_light.length();
         let dir = to_light / distance;
-        let cosine = -dir.dot(self.rectangle.normal());
-        if cosine <= 0.0 {
-            return None;
+        let cosine = -dir.dot(normal);
+        // Written so that a NaN, from the point itself, is refused too.
+        if cosine > 0.0 {
+            let area = if planted(Fault::AreaForgotten) { 1.0 } else { self.facing_area(p) };
+            let pdf = distance * distance / (cosine * area);
+            Some(LightSample { dir, distance, value: self.radiance / pdf, pdf_solid_angle: Some(pdf) })
+        } else {
+            None
         }
-        let area = if planted(Fault::AreaForgotten) { 1.0 } else { self.rectangle.area() };
-        let pdf = distance * distance / (cosine * area);
+    }
+
+    /// Area that [`Self::sample`] chooses from [L^2].
+    fn facing_area(&self, p: DVec3) -> f64 {
+        if let Shape::Cuboid(c) = &self.shape { c.facing_area(p) } else { self.area }
+    }
+
+    fn sample_cone(&self, sphere: &Sphere, p: DVec3, u: [f64; 2]) -> Option<LightSample> {
+        let one_minus_mu_max = one_minus_mu_max(sphere, p)?;
+        let to_center = (sphere.center() - p).normalize();
+        let dir = Frame::new(to_center).to_world(warp::square_to_cone(u, one_minus_mu_max)).normalize();
+        // A direction on the very rim may miss by rounding: then it is as far as the rim is.
+        let distance = self.hit(&Ray::new(p, dir), None).map_or_else(
+            || (p.distance_squared(sphere.center()) - sphere.radius() * sphere.radius()).sqrt(),
+            |hit| hit.t,
+        );
+        let pdf = warp::pdf_cone(one_minus_mu_max);
         Some(LightSample { dir, distance, value: self.radiance / pdf, pdf_solid_angle: Some(pdf) })
     }
 
-    pub(super) fn hit(&self, ray: &Ray) -> Option<Hit> {
-        self.shape().hit(ray, false)
+    pub(super) fn hit(&self, ray: &Ray, from: Option<u32>) -> Option<Hit> {
+        // Light leaves a body outwards, so that a ray that starts on a convex one never meets it again.
+        if from.is_some() { None } else { self.shape.hit(ray, None) }
     }
 
     pub(super) fn emitted(&self, ray: &Ray, hit: &Hit) -> (Spectrum, f64) {
@@ -64,6 +124,18 @@ impl Area {
         if cosine <= 0.0 {
             return (Spectrum::ZERO, 0.0);
         }
-        (self.radiance, hit.t * hit.t / (cosine * self.rectangle.area()))
+        let pdf = if let Shape::Sphere(sphere) = &self.shape {
+            one_minus_mu_max(sphere, ray.origin).map_or(0.0, warp::pdf_cone)
+        } else {
+            hit.t * hit.t / (cosine * self.facing_area(ray.origin))
+        };
+        (self.radiance, pdf)
     }
+}
+
+/// 1 - cos of the half-angle under which a sphere is seen from `p`; none from inside.
+fn one_minus_mu_max(sphere: &Sphere, p: DVec3) -> Option<f64> {
+    let d2 = p.distance_squared(sphere.center());
+    let sin2 = sphere.radius() * sphere.radius() / d2;
+    (sin2 < 1.0).then(|| sin2 / (1.0 + (1.0 - sin2).sqrt()))
 }

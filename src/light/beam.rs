@@ -1,11 +1,10 @@
 //! Collimated light.
 
-use super::{LightSample, Stage, emissive};
+use super::{EmissionNumbers, LightSample, Stage, emissive};
 use crate::Spectrum;
 use crate::error::{Error, Result};
 use crate::geometry::{Face, Rectangle, Sphere};
 use crate::math::{Frame, Ray, warp};
-use crate::rng::Stream;
 use glam::DVec3;
 use std::f64::consts::PI;
 
@@ -83,8 +82,8 @@ impl Beam {
         self.irradiance * area
     }
 
-    pub(super) fn emit(&self, stage: Option<&Stage>, stream: &mut Stream) -> Ray {
-        let u = stream.pair();
+    pub(super) fn ray(&self, stage: Option<&Stage>, numbers: &EmissionNumbers) -> Ray {
+        let u = [numbers.position[0], numbers.position[1]];
         let origin = match (self.section, stage) {
             (Section::Unbounded, stage) => {
                 let (side, z) = stage.map_or((0.0, 0.0), |s| (s.side, s.slab.face(self.entry())));

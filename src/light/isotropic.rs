@@ -1,6 +1,6 @@
 //! The same radiance from all directions into a shape.
 
-use super::{Stage, emissive};
+use super::{EmissionNumbers, Stage, emissive};
 use crate::Spectrum;
 use crate::error::{Error, Result};
 use crate::geometry::{Face, Shape};
@@ -21,7 +21,7 @@ pub enum Faces {
 
 /// Isotropic incidence: every inward direction brings the same radiance to every point of a convex boundary.
 /// A radiance of 1/pi is an irradiance of 1.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct Isotropic {
     shape: Shape,
     faces: Faces,
@@ -60,14 +60,26 @@ impl Isotropic {
         self.radiance * (PI * area * faces)
     }
 
+    /// Whether the first number drawn chooses between two faces: it is then the last of the position, which a slab does
+    /// not need.
     fn has_two_faces(&self) -> bool {
         matches!(self.shape, Shape::Slab(_)) && self.faces == Faces::Both
     }
 
-    pub(super) fn emit(&self, stage: Option<&Stage>, stream: &mut Stream) -> Ray {
-        let face = if self.has_two_faces() && stream.unit() < 0.5 { Face::Bottom } else { Face::Top };
-        let (origin, outward, _) = self.shape.sample_boundary(face, Stage::side(stage), stream.triple());
-        let local = warp::square_to_cosine_hemisphere(stream.pair());
+    /// The numbers of a photon, the choice of the face drawn first.
+    pub(super) fn numbers(&self, stream: &mut Stream) -> EmissionNumbers {
+        let face = self.has_two_faces().then(|| stream.unit());
+        let mut position = stream.triple();
+        if let Some(face) = face {
+            position[2] = face;
+        }
+        EmissionNumbers { position, direction: stream.pair() }
+    }
+
+    pub(super) fn ray(&self, stage: Option<&Stage>, numbers: &EmissionNumbers) -> Ray {
+        let face = if self.has_two_faces() && numbers.position[2] < 0.5 { Face::Bottom } else { Face::Top };
+        let (origin, outward, _) = self.shape.sample_boundary(face, Stage::side(stage), numbers.position);
+        let local = warp::square_to_cosine_hemisphere(numbers.direction);
         Ray::new(origin, Frame::new(-outward).to_world(local))
     }
 }

@@ -2,16 +2,20 @@
 
 mod area;
 mod beam;
-mod emitting_sphere;
 mod isotropic;
+mod numbers;
 mod point;
+mod spot;
+mod sun;
 mod volume_source;
 
 pub use area::Area;
 pub use beam::{Beam, Section};
-pub use emitting_sphere::EmittingSphere;
 pub use isotropic::{Faces, Isotropic};
+pub use numbers::{EmissionNumbers, Needs};
 pub use point::Point;
+pub use spot::Spot;
+pub use sun::Sun;
 pub use volume_source::VolumeSource;
 
 use crate::Spectrum;
@@ -22,16 +26,18 @@ use crate::rng::Stream;
 use glam::DVec3;
 
 /// The lights at hand.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 pub enum Light {
     /// Collimated light, unbounded or of a given section.
     Beam(Beam),
-    /// A one-sided black rectangle that emits the same radiance everywhere.
+    /// A black shape whose surface emits the same radiance everywhere, outwards.
     Area(Area),
-    /// A black sphere that emits the same radiance everywhere.
-    EmittingSphere(EmittingSphere),
     /// A point that emits the same intensity in all directions.
     Point(Point),
+    /// A point that emits into a cone.
+    Spot(Spot),
+    /// A distant disc of uniform radiance.
+    Sun(Sun),
     /// The same radiance from all directions into a closed shape, or through the faces of a slab.
     Isotropic(Isotropic),
     /// Power emitted uniformly inside a shape, alike in all directions.
@@ -68,7 +74,7 @@ pub struct Emission {
 pub struct LightSample {
     /// Unit direction from the point towards the light.
     pub dir: DVec3,
-    /// How far the light is \[L\]; infinite for an unbounded beam.
+    /// How far the light is \[L\]; infinite for an unbounded beam and the sun.
     pub distance: f64,
     /// Radiance over density, or irradiance for a delta light [W/L^2].
     pub value: Spectrum,
@@ -88,15 +94,24 @@ fn emissive(name: &'static str, value: Spectrum) -> Result<Spectrum> {
 impl Light {
     /// Whether its radiance is a delta function, so that no ray meets it by itself.
     pub fn is_delta(&self) -> bool {
-        matches!(self, Light::Beam(_) | Light::Point(_))
+        match self {
+            Light::Beam(_) | Light::Point(_) | Light::Spot(_) => true,
+            Light::Sun(l) => l.is_delta(),
+            Light::Area(_) | Light::Isotropic(_) | Light::VolumeSource(_) => false,
+        }
     }
 
     /// The body that rays can meet, black but for its light; none for lights without.
-    pub fn body(&self) -> Option<Shape> {
+    pub fn body(&self) -> Option<&Shape> {
+        if let Light::Area(l) = self { Some(l.shape()) } else { None }
+    }
+
+    /// The one point that all its light comes from, if there is one \[L\].
+    pub fn apex(&self) -> Option<DVec3> {
         match self {
-            Light::Area(l) => Some(l.shape()),
-            Light::EmittingSphere(l) => Some(l.shape()),
-            Light::Beam(_) | Light::Point(_) | Light::Isotropic(_) | Light::VolumeSource(_) => None,
+            Light::Point(l) => Some(l.position()),
+            Light::Spot(l) => Some(l.position()),
+            _ => None,
         }
     }
 
@@ -109,9 +124,10 @@ impl Light {
     pub fn is_grey(&self) -> bool {
         match self {
             Light::Beam(l) => l.irradiance().is_grey(),
-            Light::Area(l) => l.power().is_grey(),
-            Light::EmittingSphere(l) => l.power().is_grey(),
+            Light::Area(l) => l.radiance().is_grey(),
             Light::Point(l) => l.power().is_grey(),
+            Light::Spot(l) => l.power().is_grey(),
+            Light::Sun(l) => l.irradiance().is_grey(),
             Light::Isotropic(l) => l.radiance().is_grey(),
             Light::VolumeSource(l) => l.emission().is_grey(),
         }
@@ -123,33 +139,64 @@ impl Light {
             Light::Beam(l) => l.section() == Section::Unbounded,
             Light::Isotropic(l) => matches!(l.shape(), Shape::Slab(_)),
             Light::VolumeSource(l) => matches!(l.shape(), Shape::Slab(_)),
-            Light::Area(_) | Light::EmittingSphere(_) | Light::Point(_) => false,
+            Light::Area(_) | Light::Point(_) | Light::Spot(_) | Light::Sun(_) => false,
         }
     }
 
-    /// Emitted power \[W\]; of an unbounded light the part that enters the cell.
+    /// Emitted power \[W\]; of an unbounded light the part that enters the cell, of the sun the part that can meet the
+    /// scene.
     pub fn power(&self, stage: Option<&Stage>) -> Spectrum {
         match self {
             Light::Beam(l) => l.power(stage),
             Light::Area(l) => l.power(),
-            Light::EmittingSphere(l) => l.power(),
             Light::Point(l) => l.power(),
+            Light::Spot(l) => l.power(),
+            Light::Sun(l) => l.power(),
             Light::Isotropic(l) => l.power(stage),
             Light::VolumeSource(l) => l.power(stage),
         }
     }
 
-    /// One photon that carries the light's whole power.
-    pub fn emit(&self, stage: Option<&Stage>, stream: &mut Stream) -> Emission {
+    /// How many numbers decide where a photon starts and where it goes.
+    pub fn needs(&self) -> Needs {
+        match self {
+            Light::Beam(_) => Needs { position: 2, direction: 0 },
+            Light::Point(_) | Light::Spot(_) => Needs { position: 0, direction: 2 },
+            Light::Area(l) => l.needs(),
+            Light::Sun(l) => l.needs(),
+            Light::Isotropic(_) | Light::VolumeSource(_) => Needs { position: 3, direction: 2 },
+        }
+    }
+
+    /// The numbers of one photon.
+    pub fn numbers(&self, stream: &mut Stream) -> EmissionNumbers {
+        if let Light::Isotropic(l) = self {
+            return l.numbers(stream);
+        }
+        let needs = self.needs();
+        let mut numbers = EmissionNumbers::default();
+        numbers.position[..needs.position].fill_with(|| stream.unit());
+        numbers.direction[..needs.direction].fill_with(|| stream.unit());
+        numbers
+    }
+
+    /// The photon of these numbers; it carries the light's whole power.
+    pub fn emit_at(&self, stage: Option<&Stage>, numbers: &EmissionNumbers) -> Emission {
         let ray = match self {
-            Light::Beam(l) => l.emit(stage, stream),
-            Light::Area(l) => l.emit(stream),
-            Light::EmittingSphere(l) => l.emit(stream),
-            Light::Point(l) => l.emit(stream),
-            Light::Isotropic(l) => l.emit(stage, stream),
-            Light::VolumeSource(l) => l.emit(stage, stream),
+            Light::Beam(l) => l.ray(stage, numbers),
+            Light::Area(l) => l.ray(numbers),
+            Light::Point(l) => l.ray(numbers),
+            Light::Spot(l) => l.ray(numbers),
+            Light::Sun(l) => l.ray(numbers),
+            Light::Isotropic(l) => l.ray(stage, numbers),
+            Light::VolumeSource(l) => l.ray(stage, numbers),
         };
         Emission { ray, power: self.power(stage) }
+    }
+
+    /// One photon that carries the light's whole power.
+    pub fn emit(&self, stage: Option<&Stage>, stream: &mut Stream) -> Emission {
+        self.emit_at(stage, &self.numbers(stream))
     }
 
     /// A direction from `p` towards the light; none if the light cannot be aimed at or sends nothing to `p`.
@@ -157,30 +204,27 @@ impl Light {
         match self {
             Light::Beam(l) => l.sample(p),
             Light::Area(l) => l.sample(p, u),
-            Light::EmittingSphere(l) => l.sample(p, u),
             Light::Point(l) => l.sample(p),
+            Light::Spot(l) => l.sample(p),
+            Light::Sun(l) => l.sample(u),
             Light::Isotropic(_) | Light::VolumeSource(_) => None,
         }
     }
 
-    /// Where a ray meets the light's own body.
-    pub fn hit(&self, ray: &Ray) -> Option<Hit> {
-        match self {
-            Light::Area(l) => l.hit(ray),
-            Light::EmittingSphere(l) => l.hit(ray),
-            Light::Beam(_) | Light::Point(_) | Light::Isotropic(_) | Light::VolumeSource(_) => None,
-        }
+    /// Where a ray meets the light's own body; `from` is the part of it that the ray starts on, if it does.
+    pub fn hit(&self, ray: &Ray, from: Option<u32>) -> Option<Hit> {
+        if let Light::Area(l) = self { l.hit(ray, from) } else { None }
     }
 
     /// Radiance sent back along a ray that meets the light's body [W/(L^2 sr)], and the density with which
     /// [`Self::sample`] aims from the ray's origin at that point [1/sr].
     pub fn emitted(&self, ray: &Ray, hit: &Hit) -> (Spectrum, f64) {
-        match self {
-            Light::Area(l) => l.emitted(ray, hit),
-            Light::EmittingSphere(l) => l.emitted(ray, hit),
-            Light::Beam(_) | Light::Point(_) | Light::Isotropic(_) | Light::VolumeSource(_) => {
-                (Spectrum::ZERO, 0.0)
-            }
-        }
+        if let Light::Area(l) = self { l.emitted(ray, hit) } else { (Spectrum::ZERO, 0.0) }
+    }
+
+    /// Radiance seen by a ray that leaves the scene along `dir` [W/(L^2 sr)], and the density with which
+    /// [`Self::sample`] aims there [1/sr]; none where the light has no part in it.
+    pub fn background(&self, dir: DVec3) -> Option<(Spectrum, f64)> {
+        if let Light::Sun(l) = self { l.background(dir) } else { None }
     }
 }

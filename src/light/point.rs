@@ -1,10 +1,9 @@
 //! A point light.
 
-use super::{LightSample, emissive};
+use super::{EmissionNumbers, LightSample, emissive};
 use crate::Spectrum;
 use crate::error::{Error, Result};
 use crate::math::{FOUR_PI, Ray, warp};
-use crate::rng::Stream;
 use glam::DVec3;
 
 /// A point that emits the same intensity in all directions.
@@ -37,8 +36,8 @@ impl Point {
         self.power
     }
 
-    pub(super) fn emit(&self, stream: &mut Stream) -> Ray {
-        Ray::new(self.position, warp::square_to_sphere(stream.pair()).normalize())
+    pub(super) fn ray(&self, numbers: &EmissionNumbers) -> Ray {
+        Ray::new(self.position, warp::square_to_sphere(numbers.direction).normalize())
     }
 
     pub(super) fn sample(&self, p: DVec3) -> Option<LightSample> {

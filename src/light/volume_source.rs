@@ -1,14 +1,13 @@
 //! A uniform isotropic source filling a shape.
 
-use super::{Stage, emissive};
+use super::{EmissionNumbers, Stage, emissive};
 use crate::Spectrum;
 use crate::error::{Error, Result};
 use crate::geometry::Shape;
 use crate::math::{FOUR_PI, Ray, warp};
-use crate::rng::Stream;
 
 /// Every volume element of a shape emits the same power, alike in all directions.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct VolumeSource {
     shape: Shape,
     density: Spectrum,
@@ -37,8 +36,8 @@ impl VolumeSource {
         self.density * self.shape.sample_inside(Stage::side(stage), [0.0; 3]).1
     }
 
-    pub(super) fn emit(&self, stage: Option<&Stage>, stream: &mut Stream) -> Ray {
-        let (origin, _) = self.shape.sample_inside(Stage::side(stage), stream.triple());
-        Ray::new(origin, warp::square_to_sphere(stream.pair()).normalize())
+    pub(super) fn ray(&self, stage: Option<&Stage>, numbers: &EmissionNumbers) -> Ray {
+        let (origin, _) = self.shape.sample_inside(Stage::side(stage), numbers.position);
+        Ray::new(origin, warp::square_to_sphere(numbers.direction).normalize())
     }
 }

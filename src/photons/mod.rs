@@ -1,7 +1,9 @@
 //! Photons: the record, shooting, the folded cell, the tree over their positions, maps.
 
+mod emit;
 pub mod fold;
 mod map;
+pub mod maps;
 mod record;
 mod shoot;
 pub mod synthetic;

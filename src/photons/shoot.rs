@@ -1,12 +1,13 @@
 //! Shooting: histories from the lights, photons kept where they collide, powers tallied where they leave.
 
+use super::emit::emit;
 use super::{Flags, Photon, fold};
 use crate::Spectrum;
 use crate::error::{Error, Result};
 use crate::geometry::{Face, Shape};
 use crate::math::Ray;
 use crate::rng::{Purpose, Stream};
-use crate::scene::{Orders, Quantity, Scene, Sensor, Target};
+use crate::scene::{Orders, Quantity, Scene, Sensor};
 use crate::stats::Moments;
 use crate::transport::{Progress, Roulette, Step, Visitor, Walker, run_blocks, walk};
 
@@ -138,7 +139,7 @@ struct Tallier<'a, K: Fn(&Photon) -> bool> {
 impl<K: Fn(&Photon) -> bool> Tallier<'_, K> {
     fn run(&mut self, max_order: Option<u32>, stream: &mut Stream) {
         self.scores.fill(Spectrum::ZERO);
-        let start = self.emit(stream);
+        let start = emit(self.scene, self.power, stream);
         self.pass.emitted += 1;
         self.pass.ledger.emitted += start.weight.sum();
         // Photons of order n arrive by a flight of order n: flights stop one later.
@@ -154,27 +155,6 @@ impl<K: Fn(&Photon) -> bool> Tallier<'_, K> {
                 self.pass.non_finite += u64::from(!fraction.is_finite());
                 self.pass.tallies[sensor][channel].push(fraction);
             }
-        }
-    }
-
-    /// A photon from one of the lights, chosen in proportion to power.
-    fn emit(&self, stream: &mut Stream) -> Walker {
-        let (lights, stage) = (self.scene.lights(), self.scene.stage());
-        let total = self.power.sum();
-        let mut index = 0;
-        if lights.len() > 1 {
-            let mut target = stream.unit() * total;
-            while index + 1 < lights.len() && target >= lights[index].power(stage).sum() {
-                target -= lights[index].power(stage).sum();
-                index += 1;
-            }
-        }
-        let emission = lights[index].emit(stage, stream);
-        let weight =
-            if lights.len() > 1 { emission.power * (total / emission.power.sum()) } else { emission.power };
-        Walker {
-            from: lights[index].body().map(|_| Target::Light(index)),
-            ..Walker::new(emission.ray, weight)
         }
     }
 
@@ -228,11 +208,11 @@ impl<K: Fn(&Photon) -> bool> Visitor for Tallier<'_, K> {
                     self.pass.photons.push(photon);
                 }
             }
-            Step::Absorbed(weight, region) => {
+            Step::Absorbed(weight, number) => {
                 self.pass.ledger.absorbed += weight.sum();
                 for sensor in 0..self.sensors.len() {
                     if let Quantity::Absorbed(of) = self.sensors[sensor].quantity
-                        && region == Some(of)
+                        && number == Some(of)
                     {
                         self.score(sensor, walker.order, weight);
                     }

@@ -1,6 +1,7 @@
 //! The tree over photon positions: blocks of sixteen in kd order, boxes sixteen wide above them.
 
 mod boxes;
+mod facing;
 mod nearest;
 mod order;
 mod scratch;
@@ -15,6 +16,7 @@ use order::Entry;
 use units::Units;
 use wide::f32x8;
 
+pub use facing::Tangent;
 pub use nearest::{Counted, Nearest, Shell};
 pub(crate) use within::bits;
 pub use within::{Neighbors, Visit};

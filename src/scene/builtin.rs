@@ -166,18 +166,28 @@ fn slab(p: SlabParameters) -> Result<SceneFile> {
             section: SectionFile::Unbounded,
         },
         Incidence::Diffuse => {
-            LightFile::Isotropic { shape, faces: Faces::Top, radiance: emission(1.0 / PI)? }
+            LightFile::Isotropic { shape: shape.clone(), faces: Faces::Top, radiance: emission(1.0 / PI)? }
         }
     };
     let middle = 0.5 * side.get();
     let mut sensors = vec![
-        sensor("slab", Some("reflectance"), None, QuantityFile::Outflow { shape, face: Face::Top }),
-        sensor("slab", Some("transmittance"), None, QuantityFile::Outflow { shape, face: Face::Bottom }),
+        sensor(
+            "slab",
+            Some("reflectance"),
+            None,
+            QuantityFile::Outflow { shape: shape.clone(), face: Face::Top },
+        ),
+        sensor(
+            "slab",
+            Some("transmittance"),
+            None,
+            QuantityFile::Outflow { shape: shape.clone(), face: Face::Bottom },
+        ),
         sensor(
             "slab",
             Some("transmittance_diffuse"),
             Some(1),
-            QuantityFile::Outflow { shape, face: Face::Bottom },
+            QuantityFile::Outflow { shape: shape.clone(), face: Face::Bottom },
         ),
         sensor("slab", Some("absorptance"), None, QuantityFile::Absorbed { region: 0 }),
     ];
@@ -198,16 +208,22 @@ fn sphere(p: SphereParameters) -> Result<SceneFile> {
     let radius = p.radius.get();
     let shape = ShapeFile::Sphere { center: [0.0; 3], radius: p.radius };
     let light = match p.source {
-        SphereSource::Volume => {
-            LightFile::VolumeSource { shape, density: emission(3.0 / (FOUR_PI * radius * radius * radius))? }
-        }
+        SphereSource::Volume => LightFile::VolumeSource {
+            shape: shape.clone(),
+            density: emission(3.0 / (FOUR_PI * radius * radius * radius))?,
+        },
         SphereSource::Point => LightFile::Point { position: [0.0; 3], power: emission(1.0)? },
         SphereSource::Incidence => {
-            LightFile::Isotropic { shape, faces: Faces::Both, radiance: emission(1.0 / PI)? }
+            LightFile::Isotropic { shape: shape.clone(), faces: Faces::Both, radiance: emission(1.0 / PI)? }
         }
     };
     let mut sensors = vec![
-        sensor("sphere", Some("escape"), None, QuantityFile::Outflow { shape, face: Face::Top }),
+        sensor(
+            "sphere",
+            Some("escape"),
+            None,
+            QuantityFile::Outflow { shape: shape.clone(), face: Face::Top },
+        ),
         sensor("sphere", Some("absorptance"), None, QuantityFile::Absorbed { region: 0 }),
     ];
     for part in &p.probes {

@@ -4,7 +4,7 @@ use super::{Object, Orders, Parts, Quantity, Region, Scene, Sensor};
 use crate::Spectrum;
 use crate::error::{Error, Result};
 use crate::geometry::{Cuboid, Face, Rectangle, Shape, Slab, Sphere};
-use crate::light::{Area, Beam, EmittingSphere, Faces, Isotropic, Light, Point, Section, VolumeSource};
+use crate::light::{Area, Beam, Faces, Isotropic, Light, Point, Section, Spot, Sun, VolumeSource};
 use crate::math::{Albedo, Asymmetry, NonNegative, Positive, Ray};
 use crate::medium::Homogeneous;
 use crate::phase::Phase;
@@ -12,6 +12,7 @@ use crate::surface::{Black, Lambertian, Mirror, Surface};
 use glam::DVec3;
 use serde::de::{IntoDeserializer, SeqAccess, Visitor};
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
+use std::path::Path;
 
 /// A number for all channels, or one a channel.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -74,7 +75,7 @@ pub struct SceneFile {
 }
 
 /// A shape; lengths in scene units.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 #[allow(
     missing_docs,
@@ -88,7 +89,7 @@ pub enum ShapeFile {
 }
 
 /// A medium in a shape.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct RegionFile {
     /// Where.
@@ -102,7 +103,7 @@ pub struct RegionFile {
 }
 
 /// A surface on a shape.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct ObjectFile {
     /// Where.
@@ -112,7 +113,7 @@ pub struct ObjectFile {
 }
 
 /// A surface.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 #[allow(
     missing_docs,
@@ -135,7 +136,7 @@ pub enum SectionFile {
 }
 
 /// A light.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 #[allow(
     missing_docs,
@@ -143,9 +144,10 @@ pub enum SectionFile {
 )]
 pub enum LightFile {
     Beam { dir: [f64; 3], irradiance: Channels<NonNegative>, section: SectionFile },
-    Area { corner: [f64; 3], u: [f64; 3], v: [f64; 3], radiance: Channels<NonNegative> },
-    EmittingSphere { center: [f64; 3], radius: Positive, radiance: Channels<NonNegative> },
+    Area { shape: ShapeFile, radiance: Channels<NonNegative> },
     Point { position: [f64; 3], power: Channels<NonNegative> },
+    Spot { position: [f64; 3], dir: [f64; 3], full_angle: f64, edge_angle: f64, power: Channels<NonNegative> },
+    Sun { dir: [f64; 3], irradiance: Channels<NonNegative>, angular_radius: f64 },
     Isotropic { shape: ShapeFile, faces: Faces, radiance: Channels<NonNegative> },
     VolumeSource { shape: ShapeFile, density: Channels<NonNegative> },
 }
@@ -170,7 +172,7 @@ pub struct SensorFile {
 }
 
 /// What a sensor measures.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 #[allow(missing_docs, reason = "the names are those of `scene::Quantity`, which says their meaning")]
 pub enum QuantityFile {
@@ -181,8 +183,8 @@ pub enum QuantityFile {
 }
 
 impl ShapeFile {
-    fn shape(self) -> Result<Shape> {
-        Ok(match self {
+    fn shape(&self, _folder: &Path) -> Result<Shape> {
+        Ok(match *self {
             ShapeFile::Sphere { center, radius } => Shape::Sphere(Sphere::new(center.into(), radius.get())?),
             ShapeFile::Rectangle { corner, u, v } => Shape::Rectangle(rectangle(corner, u, v)?),
             ShapeFile::Slab { top, thickness } => Shape::Slab(Slab::new(top, thickness.get())?),
@@ -196,8 +198,8 @@ fn rectangle(corner: [f64; 3], u: [f64; 3], v: [f64; 3]) -> Result<Rectangle> {
 }
 
 impl SurfaceFile {
-    fn surface(self) -> Result<Surface> {
-        Ok(match self {
+    fn surface(&self, _folder: &Path) -> Result<Surface> {
+        Ok(match *self {
             SurfaceFile::Lambertian { reflectance } => {
                 Surface::Lambertian(Lambertian::new(reflectance.spectrum())?)
             }
@@ -208,8 +210,8 @@ impl SurfaceFile {
 }
 
 impl LightFile {
-    fn light(self) -> Result<Light> {
-        Ok(match self {
+    fn light(&self, folder: &Path) -> Result<Light> {
+        Ok(match *self {
             LightFile::Beam { dir, irradiance, section } => {
                 let section = match section {
                     SectionFile::Unbounded => Section::Unbounded,
@@ -220,28 +222,33 @@ impl LightFile {
                 };
                 Light::Beam(Beam::new(dir.into(), irradiance.spectrum(), section)?)
             }
-            LightFile::Area { corner, u, v, radiance } => {
-                Light::Area(Area::new(rectangle(corner, u, v)?, radiance.spectrum())?)
+            LightFile::Area { ref shape, radiance } => {
+                Light::Area(Area::new(shape.shape(folder)?, radiance.spectrum())?)
             }
-            LightFile::EmittingSphere { center, radius, radiance } => {
-                let sphere = Sphere::new(center.into(), radius.get())?;
-                Light::EmittingSphere(EmittingSphere::new(sphere, radiance.spectrum())?)
+            LightFile::Spot { position, dir, full_angle, edge_angle, power } => Light::Spot(Spot::new(
+                position.into(),
+                dir.into(),
+                (full_angle, edge_angle),
+                power.spectrum(),
+            )?),
+            LightFile::Sun { dir, irradiance, angular_radius } => {
+                Light::Sun(Sun::new(dir.into(), irradiance.spectrum(), angular_radius)?)
             }
             LightFile::Point { position, power } => {
                 Light::Point(Point::new(position.into(), power.spectrum())?)
             }
-            LightFile::Isotropic { shape, faces, radiance } => {
-                Light::Isotropic(Isotropic::new(shape.shape()?, faces, radiance.spectrum())?)
+            LightFile::Isotropic { ref shape, faces, radiance } => {
+                Light::Isotropic(Isotropic::new(shape.shape(folder)?, faces, radiance.spectrum())?)
             }
-            LightFile::VolumeSource { shape, density } => {
-                Light::VolumeSource(VolumeSource::new(shape.shape()?, density.spectrum())?)
+            LightFile::VolumeSource { ref shape, density } => {
+                Light::VolumeSource(VolumeSource::new(shape.shape(folder)?, density.spectrum())?)
             }
         })
     }
 }
 
 impl SensorFile {
-    fn sensor(&self) -> Result<Sensor> {
+    fn sensor(&self, folder: &Path) -> Result<Sensor> {
         let (kind, quantity) = match self.measure {
             QuantityFile::Fluence { at } => ("fluence", Quantity::Fluence(at.into())),
             QuantityFile::Radiance { origin, dir } => {
@@ -253,8 +260,8 @@ impl SensorFile {
                 };
                 ("radiance", Quantity::Radiance(Ray::new(origin.into(), dir)))
             }
-            QuantityFile::Outflow { shape, face } => {
-                ("outflow", Quantity::Outflow { shape: shape.shape()?, face })
+            QuantityFile::Outflow { ref shape, face } => {
+                ("outflow", Quantity::Outflow { shape: shape.shape(folder)?, face })
             }
             QuantityFile::Absorbed { region } => ("absorptance", Quantity::Absorbed(region)),
         };
@@ -273,23 +280,24 @@ impl SensorFile {
 }
 
 impl SceneFile {
-    /// The validated scene.
-    pub fn scene(&self) -> Result<Scene> {
+    /// The validated scene; names of other files are relative to `folder`.
+    pub fn scene(&self, folder: &Path) -> Result<Scene> {
         let regions = self.regions.iter().map(|r| {
             let phase = Phase::with_asymmetry(r.g);
             let medium = Homogeneous::new(r.sigma_t.spectrum(), r.albedo.spectrum(), phase)?;
-            Ok(Region { shape: r.shape.shape()?, medium })
+            Ok(Region { shape: r.shape.shape(folder)?, medium })
         });
         let objects = self
             .objects
             .iter()
-            .map(|o| Ok(Object { shape: o.shape.shape()?, surface: o.surface.surface()? }));
+            .map(|o| Ok(Object { shape: o.shape.shape(folder)?, surface: o.surface.surface(folder)? }));
         Scene::new(Parts {
             regions: regions.collect::<Result<_>>()?,
+            interiors: Vec::new(),
             objects: objects.collect::<Result<_>>()?,
-            lights: self.lights.iter().map(|l| l.light()).collect::<Result<_>>()?,
+            lights: self.lights.iter().map(|l| l.light(folder)).collect::<Result<_>>()?,
             cell: self.cell.map(Positive::get),
-            sensors: self.sensors.iter().map(SensorFile::sensor).collect::<Result<_>>()?,
+            sensors: self.sensors.iter().map(|s| s.sensor(folder)).collect::<Result<_>>()?,
         })
     }
 }

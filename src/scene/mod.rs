@@ -2,6 +2,8 @@
 
 mod builtin;
 mod file;
+mod hit;
+mod interiors;
 mod plan;
 mod segments;
 mod sensor;
@@ -9,6 +11,8 @@ mod validate;
 
 pub use builtin::{BUILTIN, Builtin};
 pub use file::SceneFile;
+pub use hit::{SceneHit, Start, Target};
+pub use interiors::{Interior, SURROUNDINGS};
 pub use plan::Plan;
 pub use segments::{MAX_REGIONS, Segment, Segments};
 pub use sensor::{Orders, Quantity, Sensor};
@@ -21,10 +25,9 @@ use crate::light::{Light, Stage};
 use crate::math::{Interval, Ray, exp};
 use crate::medium::Medium;
 use crate::surface::Surface;
-use glam::DVec3;
 
 /// A medium and the shape it fills; its boundary is index-matched and no event.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct Region {
     /// Where it is.
     pub shape: Shape,
@@ -33,7 +36,7 @@ pub struct Region {
 }
 
 /// A surface on a shape.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct Object {
     /// Where it is.
     pub shape: Shape,
@@ -46,6 +49,8 @@ pub struct Object {
 pub struct Parts {
     /// Media; where shapes overlap, the later one counts.
     pub regions: Vec<Region>,
+    /// What fills the space between dielectric surfaces; the first one is the surroundings. Empty stands for these alone.
+    pub interiors: Vec<Interior>,
     /// Surfaces.
     pub objects: Vec<Object>,
     /// Lights.
@@ -60,26 +65,10 @@ pub struct Parts {
 #[derive(Debug, Clone, PartialEq)]
 pub struct Scene {
     parts: Parts,
+    media: Vec<Medium>,
+    filling: Vec<Option<usize>>,
     stage: Option<Stage>,
     plan: Plan,
-}
-
-/// A body that a ray can meet.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Target {
-    /// The object of this index.
-    Object(usize),
-    /// The light of this index.
-    Light(usize),
-}
-
-/// The nearest body on a ray.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct SceneHit {
-    /// Which body.
-    pub target: Target,
-    /// Where, and its normal.
-    pub hit: crate::geometry::Hit,
 }
 
 impl Scene {
@@ -87,10 +76,14 @@ impl Scene {
     ///
     /// # Errors
     /// `Error::Scene` or `Error::OutOfRange`, naming the part, where parts do not fit together.
-    pub fn new(parts: Parts) -> Result<Self> {
+    pub fn new(mut parts: Parts) -> Result<Self> {
+        if parts.interiors.is_empty() {
+            parts.interiors.push(Interior::surroundings());
+        }
         let stage = validate::check(&parts)?;
         let plan = Plan::of(&parts);
-        Ok(Scene { parts, stage, plan })
+        let (media, filling) = interiors::numbered(&parts.regions, &parts.interiors);
+        Ok(Scene { parts, media, filling, stage, plan })
     }
 
     /// Media and where they are.
@@ -128,49 +121,20 @@ impl Scene {
         self.lights().iter().fold(Spectrum::ZERO, |sum, light| sum + light.power(self.stage()))
     }
 
-    /// Index of the region that counts at a point; none in vacuum.
-    pub fn region_at(&self, p: DVec3) -> Option<usize> {
-        self.regions().iter().rposition(|r| r.shape.contains(p))
-    }
-
-    /// The medium at a point; none in vacuum.
-    pub fn medium_at(&self, p: DVec3) -> Option<&Medium> {
-        self.region_at(p).map(|index| &self.regions()[index].medium)
-    }
-
-    /// The nearest body ahead; `from` is the body that the ray starts on.
-    pub fn hit(&self, ray: &Ray, from: Option<Target>) -> Option<SceneHit> {
-        let mut nearest: Option<SceneHit> = None;
-        let mut consider = |target, hit: Option<crate::geometry::Hit>| {
-            if let Some(hit) = hit
-                && nearest.is_none_or(|n| hit.t < n.hit.t)
-            {
-                nearest = Some(SceneHit { target, hit });
-            }
-        };
-        for (i, object) in self.objects().iter().enumerate() {
-            let target = Target::Object(i);
-            consider(target, object.shape.hit(ray, from == Some(target)));
+    /// The stretches of medium on the ray up to distance `end`, nearest first, in the interior of this number: the
+    /// regions of the surroundings, or what fills another one, all the way.
+    pub fn segments(&self, ray: &Ray, end: f64, within: usize) -> Segments {
+        if within == SURROUNDINGS {
+            return Segments::new(self.regions(), ray, end);
         }
-        for (i, light) in self.lights().iter().enumerate() {
-            let target = Target::Light(i);
-            // Light leaves a light's body outwards, so a ray that starts on it never meets it again.
-            if from != Some(target) {
-                consider(target, light.hit(ray));
-            }
-        }
-        nearest
-    }
-
-    /// The stretches of medium on the ray up to distance `end`, nearest first.
-    pub fn segments(&self, ray: &Ray, end: f64) -> Segments {
-        Segments::new(self.regions(), ray, end)
+        let interval = Interval { start: 0.0, end };
+        Segments::filled(self.filling(within).map(|medium| Segment { interval, medium }))
     }
 
     /// Optical depth up to distance `end` \[1\].
-    pub fn optical_depth(&self, ray: &Ray, end: f64) -> Spectrum {
+    pub fn optical_depth(&self, ray: &Ray, end: f64, within: usize) -> Spectrum {
         let mut depth = Spectrum::ZERO;
-        for segment in self.segments(ray, end).iter() {
+        for segment in self.segments(ray, end, within).iter() {
             depth += self.depth_of(segment, segment.interval);
         }
         depth
@@ -178,29 +142,13 @@ impl Scene {
 
     /// Optical depth of a part of a segment: 0 where nothing extinguishes, however long the part.
     fn depth_of(&self, segment: &Segment, part: Interval) -> Spectrum {
-        self.regions()[segment.region]
-            .medium
-            .sigma_t()
-            .map(|s| if s == 0.0 { 0.0 } else { s * part.length() })
-    }
-
-    /// Fraction of the light that passes up to distance `end` without a collision \[1\].
-    pub fn transmittance(&self, ray: &Ray, end: f64) -> Spectrum {
-        decay(self.optical_depth(ray, end))
-    }
-
-    /// Whether no body stands between the ray's origin and distance `end`, except the body at the far end.
-    pub fn is_clear(&self, ray: &Ray, from: Option<Target>, end: f64, towards: Target) -> bool {
-        match self.hit(ray, from) {
-            None => true,
-            Some(found) => found.target == towards || found.hit.t >= end,
-        }
+        self.medium(segment.medium).sigma_t().map(|s| if s == 0.0 { 0.0 } else { s * part.length() })
     }
 
     /// Emission collected along a ray from a source of emission coefficient `emission` [W/(L^3 sr)] that fills
     /// `part` of the ray: the integral of emission times transmittance, in closed form.
-    pub fn collected(&self, ray: &Ray, part: Interval, emission: Spectrum) -> Spectrum {
-        let segments = self.segments(ray, part.end);
+    pub fn collected(&self, ray: &Ray, part: Interval, within: usize, emission: Spectrum) -> Spectrum {
+        let segments = self.segments(ray, part.end, within);
         let (mut depth, mut cursor, mut sum) = (Spectrum::ZERO, part.start, Spectrum::ZERO);
         for segment in segments.iter() {
             let before = Interval { start: cursor, end: segment.interval.start.min(part.end) };
@@ -214,7 +162,7 @@ impl Scene {
             let inside = Interval { start: segment.interval.start.max(cursor), end: segment.interval.end };
             let length = inside.length();
             if length > 0.0 {
-                let sigma_t = self.regions()[segment.region].medium.sigma_t();
+                let sigma_t = self.medium(segment.medium).sigma_t();
                 let path =
                     sigma_t.map(|s| if s == 0.0 { length } else { -crate::math::exp_m1(-s * length) / s });
                 sum += decay(depth) * path;

@@ -18,7 +18,7 @@ pub struct Plan {
     pub has_specular: bool,
     /// Whether some light has a direction to aim at.
     pub has_next_event: bool,
-    /// Indices of point lights: equiangular sampling towards them.
+    /// Indices of lights in one point (point and spot): equiangular sampling towards them.
     pub point_lights: Vec<usize>,
     /// Whether the first collision is forced: the media are so thin that free flights would rarely meet them.
     pub forces_first_collision: bool,
@@ -41,10 +41,13 @@ impl Plan {
         if has_specular && has_delta {
             if has_event {
                 unreachable.push(
-                    "L S+ (D|M) ... : from a beam or point light by mirrors to the first scattering".into(),
+                    "L S+ (D|M) ... : from a beam, a sun without disc, a point or spot light by mirrors to the first scattering".into(),
                 );
             }
-            unreachable.push("L S+ E : from a beam or point light by mirrors to the sensor".into());
+            unreachable.push(
+                "L S+ E : from a beam, a sun without disc, a point or spot light by mirrors to the sensor"
+                    .into(),
+            );
         }
         Plan {
             has_media: !media.is_empty(),
@@ -53,14 +56,12 @@ impl Plan {
                 .regions
                 .iter()
                 .all(|r| r.medium.sigma_t().is_grey() && r.medium.albedo().is_grey())
-                && parts.objects.iter().all(|o| o.surface.reflectance().is_grey())
+                && parts.objects.iter().all(|o| o.surface.is_grey())
                 && parts.lights.iter().all(Light::is_grey),
             has_surfaces: !parts.objects.is_empty(),
             has_specular,
             has_next_event: parts.lights.iter().any(Light::has_direction),
-            point_lights: (0..parts.lights.len())
-                .filter(|&i| matches!(parts.lights[i], Light::Point(_)))
-                .collect(),
+            point_lights: (0..parts.lights.len()).filter(|&i| parts.lights[i].apex().is_some()).collect(),
             forces_first_collision: !media.is_empty() && thickest < THIN,
             unreachable,
         }

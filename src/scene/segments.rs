@@ -13,8 +13,8 @@ const MAX_SEGMENTS: usize = 2 * MAX_REGIONS - 1;
 pub struct Segment {
     /// Where it is on the ray \[L\].
     pub interval: Interval,
-    /// Index of the region.
-    pub region: usize,
+    /// Number of the medium.
+    pub medium: usize,
 }
 
 /// Disjoint stretches in the order in which the ray passes them.
@@ -30,7 +30,7 @@ enum Items {
     Many { items: [Segment; MAX_SEGMENTS], len: usize },
 }
 
-const NOTHING: Segment = Segment { interval: Interval { start: 0.0, end: 0.0 }, region: 0 };
+const NOTHING: Segment = Segment { interval: Interval { start: 0.0, end: 0.0 }, medium: 0 };
 
 impl Segments {
     /// The stretches of `regions` on `ray` up to distance `end`; where shapes overlap, the later one counts.
@@ -39,7 +39,7 @@ impl Segments {
         if let [region] = regions {
             let interval = region.shape.interval(ray).and_then(|i| i.intersection(whole));
             return Segments(
-                interval.map_or(Items::None, |interval| Items::One(Segment { interval, region: 0 })),
+                interval.map_or(Items::None, |interval| Items::One(Segment { interval, medium: 0 })),
             );
         }
         let mut found = [NOTHING; MAX_REGIONS];
@@ -47,7 +47,7 @@ impl Segments {
         let mut count = 0;
         for (index, region) in regions.iter().enumerate() {
             if let Some(interval) = region.shape.interval(ray).and_then(|i| i.intersection(whole)) {
-                found[count] = Segment { interval, region: index };
+                found[count] = Segment { interval, medium: index };
                 (ends[2 * count], ends[2 * count + 1]) = (interval.start, interval.end);
                 count += 1;
             }
@@ -60,12 +60,17 @@ impl Segments {
             if part.length() > 0.0 {
                 let covers = |s: &&Segment| s.interval.start <= part.start && part.end <= s.interval.end;
                 if let Some(last) = found[..count].iter().rev().find(covers) {
-                    items[len] = Segment { interval: part, region: last.region };
+                    items[len] = Segment { interval: part, medium: last.medium };
                     len += 1;
                 }
             }
         }
         Segments(Items::Many { items, len })
+    }
+
+    /// At most one stretch.
+    pub(super) fn filled(segment: Option<Segment>) -> Self {
+        Segments(segment.map_or(Items::None, Items::One))
     }
 
     /// The stretches, nearest first.

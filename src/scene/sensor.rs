@@ -40,7 +40,7 @@ impl Orders {
 }
 
 /// What a sensor measures.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 pub enum Quantity {
     /// Radiance integrated over all directions at a point [W/L^2].
     Fluence(DVec3),

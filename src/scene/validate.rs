@@ -19,8 +19,8 @@ pub(super) fn check(parts: &Parts) -> Result<Option<Stage>> {
     if parts.regions.len() > MAX_REGIONS {
         return refuse(format!("{} regions; allowed: at most {MAX_REGIONS}", parts.regions.len()));
     }
-    if parts.regions.iter().any(|r| matches!(r.shape, Shape::Rectangle(_))) {
-        return refuse("a medium needs a shape with an inside, not a rectangle");
+    if parts.regions.iter().any(|r| !r.shape.is_solid()) {
+        return refuse("a medium needs a convex shape with an inside: a sphere, a cuboid or a slab");
     }
     if parts.lights.is_empty() {
         return refuse("a scene needs at least one light");
@@ -55,16 +55,16 @@ pub(super) fn check(parts: &Parts) -> Result<Option<Stage>> {
     for sensor in &parts.sensors {
         let is_finite = match sensor.quantity {
             Quantity::Fluence(p) => {
-                if parts.lights.iter().any(|l| matches!(l, Light::Point(point) if point.position() == p)) {
+                if parts.lights.iter().any(|l| l.apex() == Some(p)) {
                     return refuse(format!(
-                        "sensor {} is at a point light, where the fluence is infinite",
+                        "sensor {} is at a point or spot light, where the fluence is infinite",
                         sensor.name
                     ));
                 }
                 p.is_finite()
             }
             Quantity::Radiance(ray) => ray.origin.is_finite() && ray.dir.is_finite(),
-            Quantity::Outflow { shape, .. } => {
+            Quantity::Outflow { ref shape, .. } => {
                 if matches!(shape, Shape::Slab(_)) && stage.is_none() {
                     return refuse(format!("sensor {} is on a slab, so the scene needs `cell`", sensor.name));
                 }
@@ -108,8 +108,8 @@ fn stage(parts: &Parts) -> Result<Option<Stage>> {
 /// rooms made of several shapes are not recognised.
 fn check_end(parts: &Parts) -> Result<()> {
     let keeps_all = |kept: Spectrum| kept.min() >= 1.0;
-    for object in parts.objects.iter().filter(|o| keeps_all(o.surface.reflectance())) {
-        if matches!(object.shape, Shape::Rectangle(_)) {
+    for object in parts.objects.iter().filter(|o| keeps_all(o.surface.largest_reflectance())) {
+        if !object.shape.is_solid() {
             continue;
         }
         // Shapes are convex: those that share a part of their inside hold the other's middle, or nearly so.
@@ -119,8 +119,11 @@ fn check_end(parts: &Parts) -> Result<()> {
         let absorbs =
             parts.regions.iter().any(|r| {
                 !keeps_all(r.medium.albedo()) && !r.medium.sigma_t().is_black() && is_inside(&r.shape)
-            }) || parts.objects.iter().any(|o| !keeps_all(o.surface.reflectance()) && is_inside(&o.shape))
-                || parts.lights.iter().any(|l| l.body().is_some_and(|shape| is_inside(&shape)));
+            }) || parts
+                .objects
+                .iter()
+                .any(|o| !keeps_all(o.surface.largest_reflectance()) && is_inside(&o.shape))
+                || parts.lights.iter().any(|l| l.body().is_some_and(is_inside));
         if !absorbs {
             return refuse(
                 "light could be caught for ever: a closed shape reflects everything and nothing in it absorbs",

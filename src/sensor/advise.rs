@@ -461,14 +461,15 @@ fn radius(reach: f64, ball: usize) -> f64 {
 /// jumps; 0 on the boundary of its medium and on that edge.
 fn reach(scene: &Scene, sensor: &Sensor) -> f64 {
     let Quantity::Fluence(p) = sensor.quantity else { return 0.0 };
-    let Some(region) = scene.region_at(p).map(|index| &scene.regions()[index]) else { return 0.0 };
+    let Some(region) = scene.medium_number_at(p).and_then(|number| scene.regions().get(number)) else {
+        return 0.0;
+    };
     let half_cell = scene.stage().map_or(f64::INFINITY, |stage| 0.5 * stage.side);
     let walls = scene.objects().iter().map(|o| o.shape.room(p).abs()).filter(|r| *r > 0.0);
     let others = scene.regions().iter().map(|r| r.shape.room(p).abs());
     let lights = scene.lights().iter().filter_map(|light| match light {
-        Light::Point(point) => Some(0.5 * p.distance(point.position())),
         Light::Beam(beam) => Some(beam.distance_to_edge(p)),
-        _ => None,
+        _ => light.apex().map(|apex| 0.5 * p.distance(apex)),
     });
     let nearest = walls.chain(others).chain(lights).fold(half_cell, f64::min);
     nearest.min(mean_free_path(scene, sensor)).min(region.shape.room(p))

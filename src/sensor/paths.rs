@@ -102,14 +102,18 @@ pub fn sample_counted(
     let side = Stage::side(scene.stage());
     let mut sum = Spectrum::ZERO;
     let mut rays = Rays::default();
-    match *quantity {
-        Quantity::Fluence(p) => rays = fluence(scene, p, orders, stream, |_, value| sum += value),
-        Quantity::Radiance(ray) => rays = radiance(scene, ray, None, orders, stream, |_, value| sum += value),
+    match quantity {
+        Quantity::Fluence(p) => rays = fluence(scene, *p, orders, stream, |_, value| sum += value),
+        Quantity::Radiance(ray) => {
+            let within = scene.interior_at(ray.origin);
+            rays = radiance(scene, *ray, None, within, orders, stream, |_, value| sum += value);
+        }
         Quantity::Outflow { shape, face } => {
-            let (position, normal, area) = shape.sample_boundary(face, side, stream.triple());
+            let (position, normal, area) = shape.sample_boundary(*face, side, stream.triple());
             let dir = Frame::new(-normal).to_world(warp::square_to_cosine_hemisphere(stream.pair()));
             let ray = Ray::new(position, dir);
-            rays = radiance(scene, ray, None, orders, stream, |_, value| sum += value);
+            let within = scene.interior_at(position);
+            rays = radiance(scene, ray, None, within, orders, stream, |_, value| sum += value);
             sum *= PI;
             if orders.contains(0) {
                 sum += direct_flux(scene, position, normal, stream, &mut rays);
@@ -117,9 +121,10 @@ pub fn sample_counted(
             sum = per_power(sum * area, scene.power());
         }
         Quantity::Absorbed(region) => {
+            let region = *region;
             let (position, volume) = scene.regions()[region].shape.sample_inside(side, stream.triple());
             // Where a later region covers this one nothing of it is left to absorb.
-            if scene.region_at(position) == Some(region) {
+            if scene.medium_number_at(position) == Some(region) {
                 rays = fluence(scene, position, orders, stream, |_, value| sum += value);
             }
             sum = sum * scene.regions()[region].medium.sigma_a() * volume;

@@ -9,7 +9,7 @@ use crate::photons::{Histories, Ledger, Pass, PhotonMap, fold, shoot};
 use crate::rng::{Purpose, Stream};
 use crate::scene::{Orders, Quantity, Scene, Sensor, decay};
 use crate::stats::Moments;
-use crate::transport::Progress;
+use crate::transport::{Progress, transmittance};
 use glam::DVec3;
 
 /// How many photons and maps, and how maps are read.
@@ -49,7 +49,10 @@ impl PhotonReadings {
     fn book(&mut self, scene: &Scene, p: DVec3, estimate: &Estimate) {
         self.gathers += 1;
         self.underfull += u64::from(estimate.underfull);
-        let room = scene.region_at(p).map_or(0.0, |index| scene.regions()[index].shape.room(p));
+        let room = scene
+            .medium_number_at(p)
+            .and_then(|number| scene.regions().get(number))
+            .map_or(0.0, |r| r.shape.room(p));
         self.beyond += u64::from(estimate.radius > room);
     }
 }
@@ -246,13 +249,14 @@ fn radiance(
 ) -> Spectrum {
     let mut sum = Spectrum::ZERO;
     let end = scene.hit(ray, None).map_or(f64::INFINITY, |h| h.hit.t);
+    let within = scene.interior_at(ray.origin);
     if orders.contains(0) {
         let only_direct = Orders::only(0);
-        crate::integrators::radiance(scene, *ray, None, only_direct, stream, |_, value| sum += value);
+        crate::integrators::radiance(scene, *ray, None, within, only_direct, stream, |_, value| sum += value);
     }
-    for segment in scene.segments(ray, end).iter() {
-        let medium = &scene.regions()[segment.region].medium;
-        let before = scene.transmittance(ray, segment.interval.start);
+    for segment in scene.segments(ray, end, within).iter() {
+        let medium = scene.medium(segment.medium);
+        let before = transmittance(scene, ray, segment.interval.start, within, stream);
         let rate = medium.sigma_t().mean();
         if rate == 0.0 {
             continue;

@@ -3,11 +3,11 @@
 use crate::Spectrum;
 use crate::error::{Error, Result};
 use crate::math::{Frame, warp};
-use glam::DVec3;
+use glam::{DVec2, DVec3};
 use std::f64::consts::PI;
 
 /// Reflected radiance is the same in all directions: `f_r = reflectance / pi`.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct Lambertian {
     reflectance: Spectrum,
 }
@@ -26,14 +26,19 @@ impl Lambertian {
         Ok(Lambertian { reflectance: checked(reflectance)? })
     }
 
-    /// Fraction of the arriving power that is reflected.
-    pub fn reflectance(&self) -> Spectrum {
+    /// Fraction of the arriving power that is reflected, at a point \[L\] with these surface parameters.
+    pub fn reflectance(&self, _position: DVec3, _uv: DVec2) -> Spectrum {
         self.reflectance
     }
 
-    /// Reflection function [1/sr].
-    pub fn eval(&self) -> Spectrum {
-        self.reflectance / PI
+    /// An upper bound of the reflectance, over the whole surface.
+    pub fn largest_reflectance(&self) -> Spectrum {
+        self.reflectance
+    }
+
+    /// Reflection function there [1/sr].
+    pub fn eval(&self, position: DVec3, uv: DVec2) -> Spectrum {
+        self.reflectance(position, uv) / PI
     }
 
     /// A direction about `normal` with density cos/pi, and that density.

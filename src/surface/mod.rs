@@ -9,10 +9,10 @@ pub use lambertian::Lambertian;
 pub use mirror::Mirror;
 
 use crate::Spectrum;
-use glam::DVec3;
+use glam::{DVec2, DVec3};
 
 /// The surfaces at hand.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 pub enum Surface {
     /// Reflects the same radiance in all directions.
     Lambertian(Lambertian),
@@ -23,13 +23,27 @@ pub enum Surface {
 }
 
 impl Surface {
-    /// Fraction of the arriving power that leaves again, by channel.
-    pub fn reflectance(&self) -> Spectrum {
+    /// Fraction of the arriving power that leaves again, by channel, at a point \[L\] with these surface parameters.
+    pub fn reflectance(&self, position: DVec3, uv: DVec2) -> Spectrum {
         match self {
-            Surface::Lambertian(s) => s.reflectance(),
+            Surface::Lambertian(s) => s.reflectance(position, uv),
             Surface::Mirror(s) => s.reflectance(),
             Surface::Black(_) => Spectrum::ZERO,
         }
+    }
+
+    /// An upper bound of the reflectance, over the whole surface.
+    pub fn largest_reflectance(&self) -> Spectrum {
+        match self {
+            Surface::Lambertian(s) => s.largest_reflectance(),
+            Surface::Mirror(s) => s.reflectance(),
+            Surface::Black(_) => Spectrum::ZERO,
+        }
+    }
+
+    /// Whether all channels are equal everywhere.
+    pub fn is_grey(&self) -> bool {
+        self.largest_reflectance().is_grey()
     }
 
     /// Whether light leaves in one direction only, so that no other estimator can connect to it.

@@ -13,8 +13,8 @@ pub enum Flight {
     Collision {
         /// Distance flown \[L\].
         t: f64,
-        /// Index of the region.
-        region: usize,
+        /// Number of the medium.
+        medium: usize,
         /// Weight after the flight.
         weight: Spectrum,
     },
@@ -22,7 +22,7 @@ pub enum Flight {
     Passed(Spectrum),
 }
 
-/// Samples the distance to the next collision on a ray, up to distance `end` \[L\].
+/// Samples the distance to the next collision on a ray, up to distance `end` \[L\], in the interior of number `within`.
 ///
 /// Grey media: the optical depth is -ln(1-u), exactly, and the weight is unchanged. Where extinction differs by
 /// channel, one channel is chosen in proportion to its weight and the result is weighted by the balance heuristic,
@@ -32,6 +32,7 @@ pub fn free_flight(
     scene: &Scene,
     ray: &Ray,
     end: f64,
+    within: usize,
     weight: Spectrum,
     forced: bool,
     stream: &mut Stream,
@@ -44,7 +45,7 @@ pub fn free_flight(
     let mut target = -ln_1p(-stream.unit());
     let mut weight = weight;
     if forced {
-        let depth = scene.optical_depth(ray, end)[channel];
+        let depth = scene.optical_depth(ray, end, within)[channel];
         if depth == 0.0 {
             return Flight::Passed(weight);
         }
@@ -53,17 +54,17 @@ pub fn free_flight(
         target = -ln_1p(collides * exp_m1(-target)).min(depth);
         weight *= collides;
     }
-    let segments = scene.segments(ray, end);
+    let segments = scene.segments(ray, end, within);
     let mut last = None;
     for segment in segments.iter() {
-        let sigma_t = scene.regions()[segment.region].medium.sigma_t();
+        let sigma_t = scene.medium(segment.medium).sigma_t();
         if sigma_t[channel] == 0.0 {
             continue;
         }
         let depth = sigma_t[channel] * segment.interval.length();
         if target < depth || (forced && target == depth) {
             let t = segment.interval.start + target / sigma_t[channel];
-            return collision(scene, ray, t, segment.region, weight, is_grey);
+            return collision(scene, ray, t, within, segment.medium, weight);
         }
         if !planted(Fault::DepthForgotten) {
             target -= depth;
@@ -73,23 +74,23 @@ pub fn free_flight(
     match last {
         // A forced flight whose rounding carried it past the end collides at the end.
         Some(segment) if forced => {
-            collision(scene, ray, segment.interval.end, segment.region, weight, is_grey)
+            collision(scene, ray, segment.interval.end, within, segment.medium, weight)
         }
         _ if is_grey => Flight::Passed(weight),
         _ => {
-            let passed = scene.transmittance(ray, end);
+            let passed = decay(scene.optical_depth(ray, end, within));
             Flight::Passed(weight * passed * (weight.sum() / (weight * passed).sum()))
         }
     }
 }
 
-fn collision(scene: &Scene, ray: &Ray, t: f64, region: usize, weight: Spectrum, is_grey: bool) -> Flight {
-    if is_grey {
-        return Flight::Collision { t, region, weight };
+fn collision(scene: &Scene, ray: &Ray, t: f64, within: usize, medium: usize, weight: Spectrum) -> Flight {
+    if scene.plan().has_grey_extinction {
+        return Flight::Collision { t, medium, weight };
     }
-    let density = decay(scene.optical_depth(ray, t)) * scene.regions()[region].medium.sigma_t();
+    let density = decay(scene.optical_depth(ray, t, within)) * scene.medium(medium).sigma_t();
     let weighted = weight * density;
-    Flight::Collision { t, region, weight: weighted * (weight.sum() / weighted.sum()) }
+    Flight::Collision { t, medium, weight: weighted * (weight.sum() / weighted.sum()) }
 }
 
 /// A channel, in proportion to its weight.

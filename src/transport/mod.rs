@@ -4,10 +4,12 @@ mod blocks;
 mod flags;
 mod flight;
 mod roulette;
+mod transmittance;
 mod walk;
 
 pub use blocks::{BLOCK, NoProgress, Progress, run_blocks};
 pub use flags::Flags;
 pub use flight::{Flight, free_flight};
 pub use roulette::Roulette;
+pub use transmittance::transmittance;
 pub use walk::{Arrival, Step, Visitor, Walker, walk};

@@ -1,11 +1,11 @@
 //! The one random walk that paths and photons share.
 
-use super::{Flags, Flight, Roulette, free_flight};
+use super::{Flags, Flight, Roulette, free_flight, transmittance};
 use crate::Spectrum;
 use crate::math::Ray;
 use crate::phase::PhaseFunction;
 use crate::rng::Stream;
-use crate::scene::{Scene, SceneHit, Target};
+use crate::scene::{SURROUNDINGS, Scene, SceneHit, Start, Target};
 use glam::DVec3;
 
 /// Where a walk stands: a ray about to be followed.
@@ -20,15 +20,25 @@ pub struct Walker {
     /// What has been met.
     pub flags: Flags,
     /// The body that the ray starts on.
-    pub from: Option<Target>,
+    pub from: Option<Start>,
+    /// Number of the interior that the ray is in.
+    pub within: usize,
     /// Density with which the ray's direction was chosen [1/sr]; none where no other sampler could have chosen it.
     pub pdf_solid_angle: Option<f64>,
 }
 
 impl Walker {
-    /// A walk that starts along a ray.
+    /// A walk that starts along a ray, in the surroundings.
     pub fn new(ray: Ray, weight: Spectrum) -> Self {
-        Walker { ray, weight, order: 0, flags: Flags::NONE, from: None, pdf_solid_angle: None }
+        Walker {
+            ray,
+            weight,
+            order: 0,
+            flags: Flags::NONE,
+            from: None,
+            within: SURROUNDINGS,
+            pdf_solid_angle: None,
+        }
     }
 }
 
@@ -48,11 +58,11 @@ pub enum Step<'a> {
     Ahead(Option<&'a SceneHit>),
     /// Light went from the ray's origin to this distance without an event, with this weight.
     Passed(f64, Spectrum),
-    /// A collision in the region of this index.
+    /// A collision in the medium of this number.
     Collision(Arrival<'a>, usize),
     /// An arrival at a body.
     Surface(Arrival<'a>, &'a SceneHit),
-    /// A photon ended at an event: this weight is absorbed there; the index of the region, if in a medium.
+    /// A photon ended at an event: this weight is absorbed there; the number of the medium, if in one.
     Absorbed(Spectrum, Option<usize>),
     /// The weight leaves the scene.
     Escaped(Spectrum),
@@ -91,7 +101,7 @@ pub fn walk<V: Visitor>(
                 visitor.visit(&walker, Step::Abandoned(walker.weight), stream);
                 return;
             };
-            let seen = walker.weight * scene.transmittance(&walker.ray, mirror.hit.t);
+            let seen = walker.weight * transmittance(scene, &walker.ray, mirror.hit.t, walker.within, stream);
             visitor.visit(&walker, Step::Abandoned(walker.weight - seen), stream);
             walker.weight = seen;
             match reflect(scene, &walker, &mirror, roulette, stream, visitor) {
@@ -103,8 +113,8 @@ pub fn walk<V: Visitor>(
         let end = hit.map_or(f64::INFINITY, |h| h.hit.t);
         let forced = scene.plan().forces_first_collision && walker.order == 0 && hit.is_none();
         let arrived = walker.weight;
-        match free_flight(scene, &walker.ray, end, arrived, forced, stream) {
-            Flight::Collision { t, region, weight } => {
+        match free_flight(scene, &walker.ray, end, walker.within, arrived, forced, stream) {
+            Flight::Collision { t, medium: number, weight } => {
                 if forced {
                     let passed = arrived - weight;
                     visitor.visit(&walker, Step::Passed(end, passed), stream);
@@ -116,13 +126,13 @@ pub fn walk<V: Visitor>(
                 let position = walker.ray.at(t);
                 visitor.visit(
                     &walker,
-                    Step::Collision(Arrival { walker: &walker, position }, region),
+                    Step::Collision(Arrival { walker: &walker, position }, number),
                     stream,
                 );
-                let medium = &scene.regions()[region].medium;
+                let medium = scene.medium(number);
                 let Some(kept) = roulette.survive(weight, medium.albedo(), stream) else {
                     let lost = Roulette::lost(weight, medium.albedo());
-                    visitor.visit(&walker, Step::Absorbed(lost, Some(region)), stream);
+                    visitor.visit(&walker, Step::Absorbed(lost, Some(number)), stream);
                     return;
                 };
                 let before = walker.ray.dir;
@@ -137,6 +147,7 @@ pub fn walk<V: Visitor>(
                     order: walker.order + 1,
                     flags: walker.flags.with(Flags::MEDIUM),
                     from: None,
+                    within: walker.within,
                     pdf_solid_angle: V::LOOKS_AHEAD.then(pdf),
                 };
             }
@@ -178,29 +189,30 @@ fn reflect(
             let surface = &scene.objects()[index].surface;
             let dir = walker.ray.dir;
             let normal = if dir.dot(found.hit.normal) < 0.0 { found.hit.normal } else { -found.hit.normal };
-            let survivor = roulette.survive(walker.weight, reflectance(scene, found), stream);
+            let survivor = roulette.survive(walker.weight, reflectance(scene, position, found), stream);
             let scattered = surface.scatter(dir, normal, stream.pair());
             survivor.zip(scattered).map(|(weight, (dir, pdf))| Walker {
                 ray: Ray::new(position, dir),
                 weight,
                 order: walker.order + u32::from(pdf.is_some()),
                 flags: walker.flags.with(if pdf.is_some() { Flags::DIFFUSE } else { Flags::SPECULAR }),
-                from: Some(found.target),
+                from: Some(found.start()),
+                within: walker.within,
                 pdf_solid_angle: pdf,
             })
         }
     };
     if next.is_none() {
-        let lost = Roulette::lost(walker.weight, reflectance(scene, found));
+        let lost = Roulette::lost(walker.weight, reflectance(scene, position, found));
         visitor.visit(walker, Step::Absorbed(lost, None), stream);
     }
     next
 }
 
 /// Fraction of the arriving power that leaves a body again.
-fn reflectance(scene: &Scene, found: &SceneHit) -> Spectrum {
+fn reflectance(scene: &Scene, position: DVec3, found: &SceneHit) -> Spectrum {
     match found.target {
         Target::Light(_) => Spectrum::ZERO,
-        Target::Object(index) => scene.objects()[index].surface.reflectance(),
+        Target::Object(index) => scene.objects()[index].surface.reflectance(position, found.hit.uv),
     }
 }

@@ -112,7 +112,7 @@ fn escape_with_what_came_back() {
         let (out, absorbed) = (outflow(body(radius)), Quantity::Absorbed(0));
         let by_paths = numbers(PATHS, 1, |s| {
             let of = |quantity, s: &mut _| sample(&scene, &quantity, Orders::ALL, s)[0];
-            let (out, absorbed) = (of(out, s), of(absorbed, s));
+            let (out, absorbed) = (of(out.clone(), s), of(absorbed.clone(), s));
             out + psi * (1.0 - out - absorbed)
         });
         verdict::agrees(&format!("paths: emitter {emitter}"), &by_paths, reference, 0.05, 1);
@@ -182,9 +182,9 @@ fn in_vacuum_and_off_the_centre() {
     }
     let fog = ball(2.0, 0.9, 0.5, emitting_sphere(DVec3::new(0.3, 0.0, 0.0), 0.2));
     let quantities = [outflow(body(2.0)), Quantity::Absorbed(0)];
-    let photons = tallies(&fog, &quantities.map(|q| (q, Orders::ALL)), PHOTONS, 7);
+    let photons = tallies(&fog, &quantities.clone().map(|q| (q, Orders::ALL)), PHOTONS, 7);
     for (photons, quantity) in photons.iter().zip(quantities) {
-        let by_paths = paths(&fog, quantity, Orders::ALL, 1 << 16, 7)[0];
+        let by_paths = paths(&fog, quantity.clone(), Orders::ALL, 1 << 16, 7)[0];
         verdict::agree(&format!("{quantity:?}"), &photons[0], &by_paths, 0.1, 7);
     }
 }

@@ -16,7 +16,7 @@ const PATHS: u64 = 1 << 15;
 const ASYMMETRIES: [f64; 4] = [0.0, 0.95, -0.5, 0.9999];
 
 fn furnace(shape: Shape, g: f64) -> Scene {
-    bounded(vec![region(shape, 2.0, 1.0, g)], Vec::new(), vec![isotropic(shape, Faces::Both)])
+    bounded(vec![region(shape.clone(), 2.0, 1.0, g)], Vec::new(), vec![isotropic(shape, Faces::Both)])
 }
 
 #[test]
@@ -28,13 +28,13 @@ fn fluence_is_four_everywhere() {
             places.push((furnace(sphere(DVec3::ZERO, 1.0), g), Quantity::Fluence(p)));
         }
         for p in [DVec3::ZERO, DVec3::new(0.5, 2.0, 0.15), DVec3::new(0.5, 1.0, 0.15)] {
-            places.push((furnace(body, g), Quantity::Fluence(p)));
+            places.push((furnace(body.clone(), g), Quantity::Fluence(p)));
         }
         for t in [0.0, 1.0, 3.0] {
             places.push((slab(3.0, 1.0, g, Incidence::Both), at_depth(t)));
         }
         for (scene, quantity) in places {
-            let moments = paths(&scene, quantity, Orders::ALL, PATHS, 1)[0];
+            let moments = paths(&scene, quantity.clone(), Orders::ALL, PATHS, 1)[0];
             verdict::agrees(&format!("{quantity:?}, g {g}"), &moments, (4.0, 1e-13), 0.3, 1);
         }
     }

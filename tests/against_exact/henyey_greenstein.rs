@@ -46,7 +46,7 @@ fn fluxes_and_fluences() {
                 ("T", transmittance(tau), exact_slab.transmittance()),
                 ("A", Quantity::Absorbed(0), exact_slab.absorptance()),
             ];
-            let sensors = fluxes.map(|(_, quantity, _)| (quantity, Orders::ALL));
+            let sensors = fluxes.clone().map(|(_, quantity, _)| (quantity, Orders::ALL));
             let by_photons = pass(&scene, &sensors, PHOTONS, 1, |_| false).tallies;
             for ((name, quantity, value), photons) in fluxes.into_iter().zip(by_photons) {
                 verdict::agrees(&format!("photons: {name}, {what}"), &photons[0], exact(value), 0.011, 1);
@@ -98,9 +98,10 @@ fn fluxes_to_a_part_in_a_thousand() {
     let fluxes = [exact_slab.reflectance(), exact_slab.transmittance()];
     for seed in 1..=3 {
         let quantities = [reflectance(2.0), transmittance(2.0)];
-        let photons = pass(&scene, &quantities.map(|q| (q, Orders::ALL)), PHOTONS, seed, |_| false).tallies;
+        let photons =
+            pass(&scene, &quantities.clone().map(|q| (q, Orders::ALL)), PHOTONS, seed, |_| false).tallies;
         for (i, (name, value)) in ["R", "T"].into_iter().zip(fluxes).enumerate() {
-            let by_paths = paths(&scene, quantities[i], Orders::ALL, PATHS[i], seed)[0];
+            let by_paths = paths(&scene, quantities[i].clone(), Orders::ALL, PATHS[i], seed)[0];
             for (who, moments) in [("photons", &photons[i][0]), ("paths", &by_paths)] {
                 let relative = moments.std_error() / value.value;
                 assert!(relative < 1e-3, "{who}, {name}: {relative:.2e}");

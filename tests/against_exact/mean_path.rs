@@ -66,7 +66,7 @@ fn flat_box() -> Shape {
 }
 
 fn lit(shape: Shape, albedo: f64, g: f64) -> Scene {
-    bounded(vec![region(shape, SIGMA_T, albedo, g)], Vec::new(), vec![isotropic(shape, Faces::Both)])
+    bounded(vec![region(shape.clone(), SIGMA_T, albedo, g)], Vec::new(), vec![isotropic(shape, Faces::Both)])
 }
 
 #[test]
@@ -76,8 +76,8 @@ fn mean_path_is_four_volumes_over_surface() {
     let of_slab = mean_path_slab(3.0).unwrap();
     for g in ASYMMETRIES {
         let cases = [
-            ("ball", ball, lit(ball, 1.0, g), SIGMA_T, of_body(ball)),
-            ("box", body, lit(body, 1.0, g), SIGMA_T, of_body(body)),
+            ("ball", ball.clone(), lit(ball.clone(), 1.0, g), SIGMA_T, of_body(ball.clone())),
+            ("box", body.clone(), lit(body.clone(), 1.0, g), SIGMA_T, of_body(body.clone())),
             ("slab, both faces", layer(3.0), slab(3.0, 1.0, g, Incidence::Both), 1.0, of_slab),
             ("slab, one face", layer(3.0), slab(3.0, 1.0, g, Incidence::Diffuse), 1.0, of_slab),
         ];
@@ -96,7 +96,7 @@ fn mean_path_is_four_volumes_over_surface() {
     let beam = slab(3.0, 1.0, 0.75, Incidence::Beam(1.0));
     let [length, ..] = watched(&beam, HISTORIES, 2, || Path::inside(&shape));
     verdict::rejects("length under a beam", &length, 6.0, 2);
-    let [length, ..] = watched(&lit(ball, 0.99, 0.0), HISTORIES, 2, || Path::inside(&ball));
+    let [length, ..] = watched(&lit(ball.clone(), 0.99, 0.0), HISTORIES, 2, || Path::inside(&ball));
     verdict::rejects("length with an albedo of 0.99", &length, 4.0 / 3.0, 2);
 }
 
@@ -110,8 +110,8 @@ fn absorptance_is_the_mean_path() {
         let of_slab = |tau| referee(&medium(albedo, g), tau, Incidence::Diffuse).absorptance();
         let of_ball = Sphere::new(SIGMA_T, albedo, SphereSource::Incident).unwrap().absorptance();
         let cases: [(&str, Shape, Scene, f64, Option<Value>); 3] = [
-            ("ball", ball, lit(ball, albedo, g), SIGMA_T, (g == 0.0).then_some(of_ball)),
-            ("box", body, lit(body, albedo, g), SIGMA_T, None),
+            ("ball", ball.clone(), lit(ball.clone(), albedo, g), SIGMA_T, (g == 0.0).then_some(of_ball)),
+            ("box", body.clone(), lit(body.clone(), albedo, g), SIGMA_T, None),
             ("slab", layer(3.0), slab(3.0, albedo, g, Incidence::Diffuse), 1.0, Some(of_slab(3.0))),
         ];
         for (name, shape, scene, sigma_t, absorptance) in cases {
@@ -156,7 +156,7 @@ fn absorption_along_paths_that_only_scatter() {
         (format!("slab, g {g}"), layer(albedo * tau), slab(albedo * tau, 1.0, g, Incidence::Diffuse), value)
     });
     let body = sphere(DVec3::ZERO, albedo * radius);
-    let light = isotropic(body, Faces::Both);
+    let light = isotropic(body.clone(), Faces::Both);
     let value = Sphere::new(radius, albedo, SphereSource::Incident).unwrap().absorptance();
     let all =
         slabs.into_iter().chain([("ball".to_string(), body, ball(albedo * radius, 1.0, 0.0, light), value)]);

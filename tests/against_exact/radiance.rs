@@ -119,7 +119,7 @@ fn blurred(slab: &AnisotropicSlab, (part, mu, dphi): View) -> f64 {
 fn viewed((tau, albedo, g): (f64, f64, f64), how: Incidence, views: &[View]) -> Scene {
     let shape = layer(tau);
     Scene::new(Parts {
-        regions: vec![region(shape, 1.0, albedo, g)],
+        regions: vec![region(shape.clone(), 1.0, albedo, g)],
         lights: vec![incidence(shape, how)],
         sensors: views.iter().map(|view| sensor(looking(tau, *view), Orders::SCATTERED)).collect(),
         cell: Some(CELL),

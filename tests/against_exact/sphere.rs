@@ -54,7 +54,7 @@ fn escape_and_absorption() {
                 ("escape", outflow(body(radius)), exact_ball.escape()),
                 ("absorbed", Quantity::Absorbed(0), exact_ball.absorptance()),
             ];
-            let photons = tallies(&scene, &quantities.map(|(_, q, _)| (q, Orders::ALL)), PHOTONS, 1);
+            let photons = tallies(&scene, &quantities.clone().map(|(_, q, _)| (q, Orders::ALL)), PHOTONS, 1);
             for ((name, quantity, value), photons) in quantities.into_iter().zip(photons) {
                 let what = format!("{name}, {source:?}, radius {radius}, albedo {albedo}");
                 verdict::agrees(&format!("photons: {what}"), &photons[0], exact(value), 0.01, 1);
@@ -94,8 +94,9 @@ fn a_coloured_sphere_is_three_grey_ones() {
     let medium = homogeneous(sigma_t, albedo, 0.0);
     for source in [SphereSource::Uniform, SphereSource::Centre] {
         let light = light_of(source, 1.0);
-        let scene = bounded(vec![Region { shape: body, medium }], Vec::new(), vec![light]);
-        let quantities = [(outflow(body), Orders::ALL), (Quantity::Absorbed(0), Orders::ALL)];
+        let scene =
+            bounded(vec![Region { shape: body.clone(), medium: medium.clone() }], Vec::new(), vec![light]);
+        let quantities = [(outflow(body.clone()), Orders::ALL), (Quantity::Absorbed(0), Orders::ALL)];
         let photons = tallies(&scene, &quantities, 1 << 19, 3);
         let by_paths = quantities.map(|(q, orders)| paths(&scene, q, orders, 1 << 17, 3));
         for c in 0..3 {
@@ -124,12 +125,12 @@ fn a_coloured_sphere_is_three_grey_ones() {
 #[test]
 fn absorption_is_counted_where_the_medium_is() {
     let (outer, inner) = (body(1.0), body(0.7));
-    let regions = vec![region(outer, 1.0, 0.2, 0.0), region(inner, 0.5, 0.8, 0.0)];
-    let scene = bounded(regions, Vec::new(), vec![isotropic(outer, Faces::Both)]);
+    let regions = vec![region(outer.clone(), 1.0, 0.2, 0.0), region(inner, 0.5, 0.8, 0.0)];
+    let scene = bounded(regions, Vec::new(), vec![isotropic(outer.clone(), Faces::Both)]);
     let quantities = [Quantity::Absorbed(0), Quantity::Absorbed(1), outflow(outer)];
-    let photons = tallies(&scene, &quantities.map(|q| (q, Orders::ALL)), PHOTONS, 5);
+    let photons = tallies(&scene, &quantities.clone().map(|q| (q, Orders::ALL)), PHOTONS, 5);
     for (i, quantity) in quantities.into_iter().enumerate() {
-        let by_paths = paths(&scene, quantity, Orders::ALL, PATHS, 5)[0];
+        let by_paths = paths(&scene, quantity.clone(), Orders::ALL, PATHS, 5)[0];
         verdict::agree(&format!("{quantity:?}"), &photons[i][0], &by_paths, 0.03, 5);
     }
 }
@@ -144,11 +145,17 @@ fn lights_add_up() {
     let powers = [0.3, 1.0, std::f64::consts::PI];
     let total: f64 = powers.iter().sum();
     let fog = |lights: Vec<Light>| bounded(vec![region(body(1.0), 1.0, 0.7, 0.3)], Vec::new(), lights);
-    let together =
-        tallies(&fog(lights.to_vec()), &[(quantity, Orders::ALL), (absorbed, Orders::ALL)], PHOTONS, 8);
+    let together = tallies(
+        &fog(lights.to_vec()),
+        &[(quantity.clone(), Orders::ALL), (absorbed.clone(), Orders::ALL)],
+        PHOTONS,
+        8,
+    );
     for (i, q) in [quantity, absorbed].into_iter().enumerate() {
-        let expected: Vec<_> =
-            lights.iter().map(|l| paths(&fog(vec![*l]), q, Orders::ALL, 1 << 18, 9)[0]).collect();
+        let expected: Vec<_> = lights
+            .iter()
+            .map(|l| paths(&fog(vec![l.clone()]), q.clone(), Orders::ALL, 1 << 18, 9)[0])
+            .collect();
         let sum: f64 = expected.iter().zip(powers).map(|(m, p)| m.mean() * p / total).sum();
         let error: f64 =
             expected.iter().zip(powers).map(|(m, p)| (m.std_error() * p / total).powi(2)).sum::<f64>().sqrt();

@@ -26,11 +26,11 @@ fn a_matt_cavity_has_its_known_radiosity() {
     let wall = sphere(DVec3::ZERO, radius);
     for offset in [0.4, 1.2] {
         let light = point_light(DVec3::new(offset, 0.0, 0.0), Spectrum::ONE);
-        let scene = bounded(Vec::new(), vec![(wall, lambertian(rho))], vec![light]);
+        let scene = bounded(Vec::new(), vec![(wall.clone(), lambertian(rho))], vec![light]);
         let mean_direct = 1.0 / (FOUR_PI * radius * radius);
         let fluence = paths(&scene, Quantity::Fluence(DVec3::ZERO), Orders::ALL, N, 4);
         let inner = outflow(sphere(DVec3::ZERO, 0.2));
-        let crossing = tallies(&scene, &[(inner, Orders::SCATTERED)], N, 4);
+        let crossing = tallies(&scene, &[(inner.clone(), Orders::SCATTERED)], N, 4);
         let by_paths = paths(&scene, inner, Orders::SCATTERED, N, 5);
         for c in 0..3 {
             let direct = 1.0 / (FOUR_PI * offset * offset);
@@ -73,7 +73,7 @@ fn a_mirror_shows_the_image() {
         verdict::agrees(&format!("fluence, channel {c}"), &moments[c], (expected, 1e-13), 0.1 * expected, 7);
     }
     let test_sphere = outflow(sphere(p, 0.3));
-    let by_photons = tallies(&scene, &[(test_sphere, Orders::ALL)], 1 << 20, 8);
+    let by_photons = tallies(&scene, &[(test_sphere.clone(), Orders::ALL)], 1 << 20, 8);
     let by_paths = paths(&scene, test_sphere, Orders::ALL, 1 << 20, 8);
     for c in 0..3 {
         verdict::agree(&format!("through a sphere, channel {c}"), &by_photons[0][c], &by_paths[c], 0.003, 8);

@@ -15,7 +15,7 @@ use turbid::surface::{Lambertian, Surface};
 /// The share of a light's power that crosses a box: photons against paths.
 pub fn photons_and_paths_cross_a_box_alike(name: &str, light: Light, shape: Shape, paths_run: u64) {
     let scene = bounded(Vec::new(), Vec::new(), vec![light]);
-    let by_photons = tallies(&scene, &[(outflow(shape), Orders::ALL)], 1 << 17, 2);
+    let by_photons = tallies(&scene, &[(outflow(shape.clone()), Orders::ALL)], 1 << 17, 2);
     let by_paths = paths(&scene, outflow(shape), Orders::ALL, paths_run, 3);
     for c in 0..3 {
         let what = format!("{name}, channel {c}");
@@ -46,7 +46,7 @@ pub fn irradiance_under_an_area_light() {
     verdict::agrees("aimed", &aimed, (expected, 1e-14), 0.02 * expected, 1);
     let met = numbers(N, 2, |s| {
         let ray = Ray::new(DVec3::ZERO, warp::square_to_cosine_hemisphere(s.pair()));
-        PI * light.hit(&ray).map_or(0.0, |hit| light.emitted(&ray, &hit).0[0])
+        PI * light.hit(&ray, None).map_or(0.0, |hit| light.emitted(&ray, &hit).0[0])
     });
     verdict::agrees("met", &met, (expected, 1e-14), 0.03 * expected, 2);
     // The path tracer sees the floor from the side: radiance rho E / pi.

@@ -7,7 +7,7 @@ use glam::DVec3;
 use turbid::Spectrum;
 use turbid::math::{FOUR_PI, Ray, exp};
 use turbid::rng::{Purpose, Stream};
-use turbid::scene::{Orders, Quantity, Region, Scene};
+use turbid::scene::{Orders, Quantity, Region, SURROUNDINGS, Scene};
 use turbid::stats::{Moments, mean_interval};
 use turbid::transport::{Flight, free_flight};
 
@@ -49,7 +49,7 @@ pub fn by_both(scene: &Scene, nearest: f64, stream: &mut Stream) -> f64 {
 
 /// The same from a free flight alone: its variance is infinite.
 pub fn by_free_flight(scene: &Scene, nearest: f64, stream: &mut Stream) -> f64 {
-    match free_flight(scene, &ray(nearest), f64::INFINITY, Spectrum::ONE, false, stream) {
+    match free_flight(scene, &ray(nearest), f64::INFINITY, SURROUNDINGS, Spectrum::ONE, false, stream) {
         Flight::Passed(_) => 0.0,
         Flight::Collision { t, .. } => {
             let r2 = ray(nearest).at(t).length_squared();

@@ -39,7 +39,7 @@ pub fn single_scattering_is_the_closed_form() {
     let r = exact(single_reflectance(tau, albedo, incidence).unwrap());
     let t = exact(single_transmittance(tau, albedo, incidence).unwrap());
     for (name, quantity, reference) in [("R1", reflectance(tau), r), ("T1", transmittance(tau), t)] {
-        let by_paths = paths(&scene, quantity, Orders::only(1), PATHS, 3)[0];
+        let by_paths = paths(&scene, quantity.clone(), Orders::only(1), PATHS, 3)[0];
         let by_photons = pass(&scene, &[(quantity, Orders::only(1))], PHOTONS, 3, |_| false).tallies[0][0];
         for (who, moments) in [("paths", by_paths), ("photons", by_photons)] {
             verdict::agrees(&format!("{name} by {who}"), &moments, reference, 0.02, 3);
@@ -193,7 +193,7 @@ pub fn a_region_in_two_pieces_is_one() {
 }
 
 fn pass_of(scene: &Scene, sensors: &[(Quantity, Orders)], count: u64, seed: u64, replicate: u64) -> Pass {
-    let sensors: Vec<_> = sensors.iter().map(|(q, o)| crate::support::run::sensor(*q, *o)).collect();
+    let sensors: Vec<_> = sensors.iter().map(|(q, o)| crate::support::run::sensor(q.clone(), *o)).collect();
     let histories = Histories { count, seed, replicate, max_order: None };
     shoot(scene, histories, &sensors, |_| false, &NoProgress).unwrap()
 }

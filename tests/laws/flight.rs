@@ -7,7 +7,7 @@ use glam::DVec3;
 use turbid::Spectrum;
 use turbid::math::{Ray, exp, exp_m1};
 use turbid::rng::{Purpose, Stream};
-use turbid::scene::{Region, Scene};
+use turbid::scene::{Region, SURROUNDINGS, Scene};
 use turbid::transport::{Flight, free_flight};
 
 const N: u64 = 1 << 18;
@@ -18,7 +18,7 @@ fn overlapping() -> Scene {
     let shell = sphere(DVec3::ZERO, 3.0);
     bounded(
         vec![
-            region(shell, 0.4, 0.5, 0.0),
+            region(shell.clone(), 0.4, 0.5, 0.0),
             region(sphere(DVec3::ZERO, 1.0), 2.0, 0.5, 0.0),
             region(sphere(DVec3::new(0.0, 0.0, 2.0), 0.5), 0.0, 0.5, 0.0),
             region(sphere(DVec3::new(0.0, 0.0, -2.8), 0.7), 1.5, 0.5, 0.0),
@@ -38,10 +38,10 @@ fn down() -> Ray {
 fn the_later_region_counts_where_they_overlap() {
     let depth = 1.5 * 1.4 + 0.4 * 1.1 + 2.0 * 2.0 + 0.4 * 0.5 + 0.4 * 0.5;
     let scene = overlapping();
-    assert!((scene.optical_depth(&down(), f64::INFINITY)[0] - depth).abs() < 1e-14);
+    assert!((scene.optical_depth(&down(), f64::INFINITY, SURROUNDINGS)[0] - depth).abs() < 1e-14);
     // From the inside, and up to a body on the way.
     let inside = Ray::new(DVec3::ZERO, DVec3::Z);
-    assert!((scene.optical_depth(&inside, 1.2)[0] - (2.0 + 0.4 * 0.2)).abs() < 1e-14);
+    assert!((scene.optical_depth(&inside, 1.2, SURROUNDINGS)[0] - (2.0 + 0.4 * 0.2)).abs() < 1e-14);
     // Anywhere: a fine sum over what is at each point.
     let mut stream = Stream::new(1, Purpose::Synthetic, 0, 0);
     for _ in 0..200 {
@@ -55,7 +55,10 @@ fn the_later_region_counts_where_they_overlap() {
             })
             .sum();
         // Each of at most 8 ends is misplaced by half a step.
-        assert!((scene.optical_depth(&ray, f64::INFINITY)[0] - sum).abs() < 8.0 * step * 2.0, "{ray:?}");
+        assert!(
+            (scene.optical_depth(&ray, f64::INFINITY, SURROUNDINGS)[0] - sum).abs() < 8.0 * step * 2.0,
+            "{ray:?}"
+        );
     }
 }
 
@@ -63,21 +66,22 @@ fn the_later_region_counts_where_they_overlap() {
 fn the_depth_flown_is_exponential_and_passes_with_the_transmittance() {
     let scene = overlapping();
     let ray = down();
-    let depth = scene.optical_depth(&ray, f64::INFINITY)[0];
+    let depth = scene.optical_depth(&ray, f64::INFINITY, SURROUNDINGS)[0];
     let (mut flown, mut passed) = (Vec::new(), 0);
     for i in 0..N {
         match free_flight(
             &scene,
             &ray,
             f64::INFINITY,
+            SURROUNDINGS,
             Spectrum::ONE,
             false,
             &mut Stream::new(2, Purpose::Synthetic, 0, i),
         ) {
-            Flight::Collision { t, region, weight } => {
+            Flight::Collision { t, medium, weight } => {
                 assert_eq!(weight, Spectrum::ONE);
-                assert_eq!(scene.regions()[region].medium, *scene.medium_at(ray.at(t)).unwrap());
-                flown.push(scene.optical_depth(&ray, t)[0]);
+                assert_eq!(*scene.medium(medium), *scene.medium_at(ray.at(t)).unwrap());
+                flown.push(scene.optical_depth(&ray, t, SURROUNDINGS)[0]);
             }
             Flight::Passed(weight) => {
                 assert_eq!(weight, Spectrum::ONE);
@@ -98,13 +102,15 @@ fn the_depth_flown_is_exponential_and_passes_with_the_transmittance() {
 fn a_forced_flight_always_collides() {
     for sigma_t in [1e-12, 1e-8, 1e-3, 1.0, 40.0] {
         let ball = sphere(DVec3::ZERO, 1.0);
-        let scene = bounded(vec![region(ball, sigma_t, 0.5, 0.0)], Vec::new(), vec![volume_source(ball)]);
+        let scene =
+            bounded(vec![region(ball.clone(), sigma_t, 0.5, 0.0)], Vec::new(), vec![volume_source(ball)]);
         let ray = Ray::new(DVec3::new(0.0, 0.0, -2.0), DVec3::Z);
         let probability = -exp_m1(-2.0 * sigma_t);
         let flown: Vec<f64> = (0..1 << 16)
             .map(|i| {
                 let mut stream = Stream::new(3, Purpose::Synthetic, 0, i);
-                let flight = free_flight(&scene, &ray, f64::INFINITY, Spectrum::ONE, true, &mut stream);
+                let flight =
+                    free_flight(&scene, &ray, f64::INFINITY, SURROUNDINGS, Spectrum::ONE, true, &mut stream);
                 let Flight::Collision { t, weight, .. } = flight else { panic!("{flight:?}") };
                 assert!((weight[0] / probability - 1.0).abs() < 4.0 * f64::EPSILON, "{weight:?}");
                 assert!((1.0..=3.0).contains(&t), "{t}");
@@ -119,7 +125,8 @@ fn a_forced_flight_always_collides() {
 fn chromatic() -> Scene {
     let ball = sphere(DVec3::ZERO, 1.0);
     let core = sphere(DVec3::ZERO, 0.25);
-    let shell = Region { shape: ball, medium: homogeneous(Spectrum::rgb(0.2, 1.0, 3.0), Spectrum::ONE, 0.0) };
+    let shell =
+        Region { shape: ball.clone(), medium: homogeneous(Spectrum::rgb(0.2, 1.0, 3.0), Spectrum::ONE, 0.0) };
     let core = Region { shape: core, medium: homogeneous(Spectrum::rgb(2.0, 0.0, 1.0), Spectrum::ONE, 0.0) };
     bounded(vec![shell, core], Vec::new(), vec![volume_source(ball)])
 }
@@ -137,7 +144,7 @@ fn a_chromatic_flight_is_unbiased_by_channel() {
         let (low, high) = (ends[part], ends.get(part + 1).copied().unwrap_or(f64::INFINITY));
         for forced in [false, true] {
             let sampled = histories(N, seed, |stream| {
-                match free_flight(&scene, &ray, f64::INFINITY, weight, forced, stream) {
+                match free_flight(&scene, &ray, f64::INFINITY, SURROUNDINGS, weight, forced, stream) {
                     Flight::Collision { t, weight: w, .. } => {
                         assert!(forced || (w.sum() / weight.sum() - 1.0).abs() < 8.0 * f64::EPSILON);
                         if low <= t && t < high { w } else { Spectrum::ZERO }
@@ -149,7 +156,7 @@ fn a_chromatic_flight_is_unbiased_by_channel() {
                 }
             });
             for c in 0..3 {
-                let pass = |t: f64| exp(-scene.optical_depth(&ray, t)[c]);
+                let pass = |t: f64| exp(-scene.optical_depth(&ray, t, SURROUNDINGS)[c]);
                 let expected = weight[c] * if high.is_finite() { pass(low) - pass(high) } else { pass(2.0) };
                 let what = format!("from {low} to {high}, channel {c}, forced {forced}");
                 if forced && high.is_infinite() {

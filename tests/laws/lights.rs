@@ -10,9 +10,10 @@ use crate::support::scenes::{
 use crate::support::{unit_vector, verdict};
 use glam::DVec3;
 use proptest::prelude::*;
+use std::f64::consts::PI;
 use turbid::Spectrum;
-use turbid::geometry::Sphere;
-use turbid::light::{Beam, EmittingSphere, Faces, Light, Section};
+use turbid::geometry::{Shape, Sphere};
+use turbid::light::{Area, Beam, EmissionNumbers, Faces, Light, Section, Spot, Sun};
 use turbid::math::{FOUR_PI, Ray, warp};
 use turbid::scene::Orders;
 
@@ -29,19 +30,31 @@ fn lights() -> Vec<(&'static str, Light)> {
     let r = rectangle(DVec3::new(-0.5, -0.4, 0.1), DVec3::X, DVec3::Y * 0.8);
     let tilted = DVec3::new(0.6, 0.0, 0.8);
     let disc = Section::Disc { center: DVec3::new(0.1, 0.0, -0.3), radius: 0.6 };
-    let ball_light =
-        EmittingSphere::new(Sphere::new(DVec3::new(0.0, 0.2, -0.1), 0.4).unwrap(), color).unwrap();
+    let glowing = |shape: Shape| Light::Area(Area::new(shape, color).unwrap());
+    let spot = Spot::new(DVec3::new(0.3, 0.1, -0.2), tilted, (20.0, 40.0), color).unwrap();
     vec![
         ("point", point_light(DVec3::new(0.3, -0.2, 0.1), color)),
         ("area", area_light(r, color)),
-        ("emitting sphere", Light::EmittingSphere(ball_light)),
+        ("emitting sphere", glowing(sphere(DVec3::new(0.0, 0.2, -0.1), 0.4))),
+        ("emitting cuboid", glowing(block.clone())),
+        ("spot", Light::Spot(spot)),
         ("disc beam", Light::Beam(Beam::new(tilted, color, disc).unwrap())),
         ("rectangular beam", Light::Beam(Beam::new(DVec3::Z, color, Section::Rectangle(r)).unwrap())),
-        ("isotropic, sphere", isotropic(ball, Faces::Both)),
-        ("isotropic, cuboid", isotropic(block, Faces::Both)),
+        ("isotropic, sphere", isotropic(ball.clone(), Faces::Both)),
+        ("isotropic, cuboid", isotropic(block.clone(), Faces::Both)),
         ("volume source, sphere", volume_source(ball)),
         ("volume source, cuboid", volume_source(block)),
     ]
+}
+
+/// Suns whose photons cover the boxes below; their light is everywhere, so that no sphere is crossed by all of it.
+fn suns() -> Vec<(&'static str, Light)> {
+    let covered = Sphere::new(DVec3::ZERO, 2.0).unwrap();
+    let dir = DVec3::new(0.6, 0.0, 0.8);
+    let sun = |radius: f64| {
+        Light::Sun(Sun::new(dir, Spectrum::rgb(1.0, 2.0, 0.5), radius).unwrap().covering(covered))
+    };
+    vec![("wide sun", sun(30.0)), ("sun without disc", sun(0.0))]
 }
 
 /// All that a light sends out leaves a sphere around it: photons exactly, paths on average. A light's radiance, its
@@ -51,8 +64,8 @@ fn everything_that_is_sent_leaves_a_surrounding_sphere() {
     let around = outflow(sphere(DVec3::ZERO, 3.0));
     for (name, light) in lights() {
         let scene = bounded(Vec::new(), Vec::new(), vec![light]);
-        let by_photons = tallies(&scene, &[(around, Orders::ALL)], 4096, 1);
-        let by_paths = paths(&scene, around, Orders::ALL, MANY, 1);
+        let by_photons = tallies(&scene, &[(around.clone(), Orders::ALL)], 4096, 1);
+        let by_paths = paths(&scene, around.clone(), Orders::ALL, MANY, 1);
         for c in 0..3 {
             assert!((by_photons[0][c].mean() - 1.0).abs() < 1e-12, "{name}: {}", by_photons[0][c].mean());
             verdict::agrees(name, &by_paths[c], (1.0, 0.0), 0.15, 1);
@@ -67,9 +80,9 @@ fn photons_and_paths_agree_on_a_box_beside_the_light() {
         cuboid(DVec3::new(-0.7, -0.6, 0.4), DVec3::new(0.9, 0.5, 1.6)),
         cuboid(DVec3::new(0.55, -1.0, -1.0), DVec3::new(1.2, 1.0, 1.0)),
     ];
-    for (name, light) in lights() {
-        for (i, shape) in boxes.into_iter().enumerate() {
-            photons_and_paths_cross_a_box_alike(&format!("{name}, box {i}"), light, shape, MANY);
+    for (name, light) in lights().into_iter().chain(suns()) {
+        for (i, shape) in boxes.clone().into_iter().enumerate() {
+            photons_and_paths_cross_a_box_alike(&format!("{name}, box {i}"), light.clone(), shape, MANY);
         }
     }
 }
@@ -92,7 +105,7 @@ fn the_area_light_fills_its_solid_angle() {
     verdict::agrees("solid angle", &aimed, (expected, 0.0), 0.02 * expected, 4);
     let met = numbers(N, 5, |s| {
         let ray = Ray::new(p, warp::square_to_sphere(s.pair()));
-        FOUR_PI * light.hit(&ray).map_or(0.0, |hit| light.emitted(&ray, &hit).1)
+        FOUR_PI * light.hit(&ray, None).map_or(0.0, |hit| light.emitted(&ray, &hit).1)
     });
     verdict::agrees("density over rays", &met, (1.0, 0.0), 0.08, 5);
     // The wrong twin forgets the cosine.
@@ -109,20 +122,23 @@ proptest! {
     #[test]
     fn a_sampled_direction_meets_the_light(x in -6.0..6.0f64, y in -6.0..6.0f64, z in -6.0..6.0f64, u in 0.0..0.999f64, v in 0.0..1.0f64) {
         let p = DVec3::new(x, y, z);
-        for (name, light) in lights() {
+        for (name, light) in lights().into_iter().chain(suns()) {
             let Some(sample) = light.sample(p, [u, v]) else { continue };
             prop_assert!((sample.dir.length() - 1.0).abs() < 4.0 * f64::EPSILON);
             let Some(pdf) = sample.pdf_solid_angle else { continue };
             let ray = Ray::new(p, sample.dir);
-            let is_area = matches!(light, Light::Area(_));
-            let grazing = is_area && (u < 1e-9 || v < 1e-9 || sample.dir.z.abs() < 1e-6);
-            let Some(hit) = light.hit(&ray) else {
-                prop_assert!(grazing, "{name} missed from {p}");
+            if let Some((radiance, met)) = light.background(sample.dir) {
+                prop_assert_eq!((radiance / pdf, met), (sample.value, pdf));
+                continue;
+            }
+            let is_flat = name != "emitting sphere";
+            let Some(hit) = light.hit(&ray, None) else {
+                prop_assert!(is_flat && (u < 1e-9 || v < 1e-9 || sample.dir.z.abs() < 1e-6), "{name} missed from {p}");
                 continue;
             };
             let (radiance, met) = light.emitted(&ray, &hit);
-            // Area: distances and a cosine, each to rounding over the cosine. Sphere: the half-angle only.
-            let tolerance = if is_area { 1e-13 / sample.dir.z.abs() } else { 1e-13 };
+            // Flat: distances and a cosine, each to rounding over the cosine. Sphere: the half-angle only.
+            let tolerance = if is_flat { 1e-13 / sample.dir.dot(hit.normal).abs() } else { 1e-13 };
             prop_assert!((hit.t - sample.distance).abs() <= tolerance * (1.0 + hit.t), "{name}");
             prop_assert!((met / pdf - 1.0).abs() < tolerance, "{name}: {met} {pdf}");
             let value = sample.value * pdf;
@@ -138,13 +154,13 @@ proptest! {
         let below = DVec3::new(0.5, 0.5, -0.5);
         prop_assert!(area.sample(below, [u, v]).is_none());
         let ray = Ray::new(below, dir);
-        if let Some(hit) = area.hit(&ray) {
+        if let Some(hit) = area.hit(&ray, None) {
             prop_assert_eq!(area.emitted(&ray, &hit), (Spectrum::ZERO, 0.0));
         }
-        let ball = Light::EmittingSphere(EmittingSphere::new(Sphere::new(DVec3::ZERO, 1.0).unwrap(), Spectrum::ONE).unwrap());
+        let ball = Light::Area(Area::new(sphere(DVec3::ZERO, 1.0), Spectrum::ONE).unwrap());
         let inside = Ray::new(dir * 0.5, unit_vector(2.0 * u - 1.0, 6.0 * v));
         prop_assert!(ball.sample(inside.origin, [u, v]).is_none());
-        let hit = ball.hit(&inside).unwrap();
+        let hit = ball.hit(&inside, None).unwrap();
         prop_assert_eq!(ball.emitted(&inside, &hit).0, Spectrum::ZERO);
     }
 }
@@ -164,4 +180,61 @@ fn a_beam_lights_its_shaft() {
     }
     let wrong = Beam::new(DVec3::NEG_Z, Spectrum::ONE, Section::Rectangle(r));
     assert!(wrong.is_err() && Beam::new(DVec3::ZERO, Spectrum::ONE, Section::Unbounded).is_err());
+}
+
+/// A spot's power is the integral of its intensity, its photons follow it, and every number carries the same power.
+#[test]
+fn a_spot_sends_what_it_shows() {
+    let axis = DVec3::new(0.6, 0.0, 0.8);
+    for (full, edge) in [(20.0, 40.0), (0.0, 90.0), (30.0, 30.0), (0.0, 180.0), (1e-3, 2e-3)] {
+        let spot = Spot::new(DVec3::ZERO, axis, (full, edge), Spectrum::grey(3.0)).unwrap();
+        let frame = turbid::math::Frame::new(axis);
+        let one_minus_cos = |degrees: f64| {
+            let half = turbid::math::sin(degrees.to_radians() / 2.0);
+            2.0 * half * half
+        };
+        let (a, b) = (one_minus_cos(full), one_minus_cos(edge));
+        let intensity = |w: f64| spot.intensity(frame.to_world(warp::direction((w, 2.0 - w), 0.3)))[0];
+        // A cubic, by Simpson's rule exactly, except that 1 - cos of a direction is rounded to 1e-16 of its root.
+        let simpson = |from: f64, to: f64| {
+            let middle = intensity(0.5 * (from + to));
+            (to - from) / 6.0 * (intensity(from) + 4.0 * middle + intensity(to))
+        };
+        let power = 2.0 * PI * (intensity(0.0) * a + if b > a { simpson(a, b) } else { 0.0 });
+        let rounding = 1e-14 + 1e-15 / a.max(b).sqrt();
+        assert!((power / 3.0 - 1.0).abs() < rounding, "{full} {edge}: {power}");
+        let light = Light::Spot(spot);
+        let at = |u: f64| {
+            let numbers = EmissionNumbers { position: [0.0; 3], direction: [u, 0.3] };
+            turbid::math::cosine_pair(light.emit_at(None, &numbers).ray.dir, axis).0
+        };
+        // The numbers are the distribution function of 1 - cos: its slope is the intensity's share.
+        for i in 1..50 {
+            let u = f64::from(i) / 50.0;
+            let (low, high) = (at(u - 1e-4), at(u + 1e-4));
+            let share = 2.0 * PI * intensity(at(u)) / 3.0;
+            let slope = 2e-4 / (high - low);
+            // Differences: their own curvature, largest where the intensity is small.
+            assert!((slope / share - 1.0).abs() < 1e-3, "{full} {edge} at {u}: {slope} {share}");
+        }
+    }
+    assert!(Spot::new(DVec3::ZERO, axis, (50.0, 40.0), Spectrum::ONE).is_err());
+    assert!(Spot::new(DVec3::ZERO, axis, (0.0, 0.0), Spectrum::ONE).is_err());
+}
+
+/// Irradiance at normal incidence is what the sun states: by directions towards it, and by rays that meet its disc.
+#[test]
+fn the_sun_lights_a_plane_as_it_states() {
+    let sun = Light::Sun(Sun::new(DVec3::NEG_Z, Spectrum::grey(2.0), 30.0).unwrap());
+    let aimed = numbers(N, 7, |s| sun.sample(DVec3::ZERO, s.pair()).map_or(0.0, |l| l.value[0] * l.dir.z));
+    verdict::agrees("aimed", &aimed, (2.0, 1e-14), 0.01, 7);
+    let met = numbers(N, 8, |s| {
+        let dir = warp::square_to_cosine_hemisphere(s.pair());
+        PI * sun.background(dir).map_or(0.0, |(radiance, _)| radiance[0])
+    });
+    verdict::agrees("met", &met, (2.0, 1e-14), 0.08, 8);
+    assert!(
+        Sun::new(DVec3::ZERO, Spectrum::ONE, 1.0).is_err()
+            && Sun::new(DVec3::X, Spectrum::ONE, 60.0).is_err()
+    );
 }

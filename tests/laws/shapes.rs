@@ -78,7 +78,7 @@ proptest! {
     fn hits_are_the_ends_of_intervals(shape in solid(), origin in point(), dir in direction()) {
         let ray = Ray::new(origin, dir);
         let inside = shape.interval(&ray).filter(|i| i.start > 0.0 || i.end.is_finite());
-        let hit = shape.hit(&ray, false);
+        let hit = shape.hit(&ray, None);
         prop_assert_eq!(hit.map(|h| h.t), inside.map(|i| if i.start > 0.0 { i.start } else { i.end }));
         if let (Some(hit), Some(inside)) = (hit, inside) {
             prop_assert!((hit.normal.length() - 1.0).abs() < 4.0 * f64::EPSILON);
@@ -98,7 +98,7 @@ proptest! {
         let (p, outward, _) = shape.sample_boundary(face, 4.0, u);
         let cosine = if inwards { -cosine } else { cosine };
         let dir = Frame::new(outward).to_world(unit_vector(cosine, azimuth)).normalize();
-        let found = shape.hit(&Ray::new(p, dir), true);
+        let found = shape.hit(&Ray::new(p, dir), Some(0));
         if cosine > 0.0 {
             prop_assert_eq!(found, None);
         } else {
@@ -108,7 +108,7 @@ proptest! {
             prop_assert!(far.t > 0.0 && is_near_boundary(&shape, p + dir * far.t));
             prop_assert!(far.normal.dot(dir) > 0.0);
             if !is_thin {
-                let expected = 1e-4 + shape.hit(&Ray::new(middle, dir), false).unwrap().t;
+                let expected = 1e-4 + shape.hit(&Ray::new(middle, dir), None).unwrap().t;
                 prop_assert!((far.t - expected).abs() < 1e-9 * (1.0 + far.t), "{} {expected}", far.t);
             }
         }
@@ -124,13 +124,13 @@ proptest! {
         // On the very edge rounding decides.
         prop_assume!([a, b].iter().all(|x| x.abs() > 1e-9 && (x - 1.0).abs() > 1e-9));
         let ray = Ray::new(target + away * distance, -away);
-        let hit = Shape::Rectangle(r).hit(&ray, false);
+        let hit = Shape::Rectangle(r).hit(&ray, None);
         let is_on = (0.0..=1.0).contains(&a) && (0.0..=1.0).contains(&b);
         prop_assert_eq!(hit.is_some(), is_on);
         if let Some(hit) = hit {
             prop_assert!((hit.t - distance).abs() < 1e-10 && hit.normal == r.normal(), "{}", hit.t - distance);
         }
-        prop_assert_eq!(Shape::Rectangle(r).hit(&ray, true), None);
+        prop_assert_eq!(Shape::Rectangle(r).hit(&ray, Some(0)), None);
     }
 }
 
@@ -191,7 +191,7 @@ fn mean_chord_is_four_volumes_over_surface() {
                     warp::square_to_cone(u, 1.0)
                 };
                 let ray = Ray::new(p, Frame::new(-outward).to_world(local));
-                shape.hit(&ray, true).map_or(0.0, |h| h.t)
+                shape.hit(&ray, Some(0)).map_or(0.0, |h| h.t)
             })
         };
         let expected = 4.0 * shape.volume() / shape.area();
@@ -203,7 +203,7 @@ fn mean_chord_is_four_volumes_over_surface() {
     let square = numbers(1 << 18, 14, |s| {
         let (p, outward, _) = ball.sample_boundary(Face::Top, 0.0, s.triple());
         let dir = Frame::new(-outward).to_world(warp::square_to_cosine_hemisphere(s.pair()));
-        ball.hit(&Ray::new(p, dir), true).map_or(0.0, |h| h.t * h.t)
+        ball.hit(&Ray::new(p, dir), Some(0)).map_or(0.0, |h| h.t * h.t)
     });
     verdict::agrees("<L^2> of a sphere", &square, (2.0 * 0.49, 0.0), 0.02 * 0.98, 14);
 }

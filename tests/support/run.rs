@@ -3,7 +3,7 @@
 use turbid::Spectrum;
 use turbid::photons::{Histories, Pass, Photon, shoot};
 use turbid::rng::{Purpose, Stream};
-use turbid::scene::{Orders, Quantity, Scene, Sensor, Target};
+use turbid::scene::{Orders, Quantity, Scene, Sensor, Start, Target};
 use turbid::stats::Moments;
 use turbid::transport::{NoProgress, Roulette, Step, Visitor, Walker, run_blocks, walk};
 
@@ -49,7 +49,7 @@ pub fn pass(
     seed: u64,
     keep: impl Fn(&Photon) -> bool + Sync,
 ) -> Pass {
-    let sensors: Vec<Sensor> = sensors.iter().map(|(q, o)| sensor(*q, *o)).collect();
+    let sensors: Vec<Sensor> = sensors.iter().map(|(q, o)| sensor(q.clone(), *o)).collect();
     let histories = Histories { count: n, seed, replicate: 0, max_order: None };
     shoot(scene, histories, &sensors, keep, &NoProgress).unwrap()
 }
@@ -73,7 +73,7 @@ pub fn watched<const N: usize, W: Watcher<N>>(
         for history in range {
             let mut stream = Stream::new(seed, Purpose::Photons, 0, history);
             let ray = scene.lights()[0].emit(scene.stage(), &mut stream).ray;
-            let from = scene.lights()[0].body().map(|_| Target::Light(0));
+            let from = scene.lights()[0].body().map(|_| Start { target: Target::Light(0), primitive: 0 });
             let start = Walker { from, ..Walker::new(ray, Spectrum::ONE) };
             let mut watching = Watching::<W, N>(watcher());
             walk(scene, start, Roulette::Analog, None, &mut stream, &mut watching);

@@ -4,7 +4,7 @@ use glam::DVec3;
 use std::f64::consts::PI;
 use turbid::Spectrum;
 use turbid::geometry::{Cuboid, Face, Rectangle, Shape, Slab, Sphere};
-use turbid::light::{Area, Beam, EmittingSphere, Faces, Isotropic, Light, Point, Section, VolumeSource};
+use turbid::light::{Area, Beam, Faces, Isotropic, Light, Point, Section, VolumeSource};
 use turbid::math::{Asymmetry, FOUR_PI};
 use turbid::medium::Homogeneous;
 use turbid::phase::Phase;
@@ -67,7 +67,7 @@ pub fn isotropic(shape: Shape, faces: Faces) -> Light {
 
 /// Power 1, uniform in the shape.
 pub fn volume_source(shape: Shape) -> Light {
-    Light::VolumeSource(VolumeSource::new(shape, Spectrum::grey(1.0 / shape.volume())).unwrap())
+    Light::VolumeSource(VolumeSource::new(shape.clone(), Spectrum::grey(1.0 / shape.volume())).unwrap())
 }
 
 pub fn point_light(position: DVec3, power: Spectrum) -> Light {
@@ -77,7 +77,7 @@ pub fn point_light(position: DVec3, power: Spectrum) -> Light {
 /// A small sphere of power 1.
 pub fn emitting_sphere(center: DVec3, radius: f64) -> Light {
     let radiance = Spectrum::grey(1.0 / (PI * FOUR_PI * radius * radius));
-    Light::EmittingSphere(EmittingSphere::new(Sphere::new(center, radius).unwrap(), radiance).unwrap())
+    Light::Area(Area::new(sphere(center, radius), radiance).unwrap())
 }
 
 pub fn lambertian(reflectance: Spectrum) -> Surface {
@@ -85,14 +85,14 @@ pub fn lambertian(reflectance: Spectrum) -> Surface {
 }
 
 pub fn area_light(rectangle: Rectangle, radiance: Spectrum) -> Light {
-    Light::Area(Area::new(rectangle, radiance).unwrap())
+    Light::Area(Area::new(Shape::Rectangle(rectangle), radiance).unwrap())
 }
 
 /// A slab of optical thickness tau, extinction 1, lit with irradiance 1 (on each lit face).
 pub fn slab(tau: f64, albedo: f64, g: f64, how: Incidence) -> Scene {
     let shape = layer(tau);
     Scene::new(Parts {
-        regions: vec![region(shape, 1.0, albedo, g)],
+        regions: vec![region(shape.clone(), 1.0, albedo, g)],
         lights: vec![incidence(shape, how)],
         cell: Some(CELL),
         ..Parts::default()

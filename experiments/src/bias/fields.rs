@@ -197,8 +197,10 @@ impl Field {
         let medium = Homogeneous::new(Spectrum::ONE, Spectrum::grey(self.albedo), phase)?;
         let light = match self.lit {
             Lit::Beam => Light::Beam(Beam::new(DVec3::Z, Spectrum::ONE, Section::Unbounded)?),
-            Lit::Incident => Light::Isotropic(Isotropic::new(shape, Faces::Both, Spectrum::grey(1.0 / PI))?),
-            Lit::Glow => Light::VolumeSource(VolumeSource::new(shape, Spectrum::ONE)?),
+            Lit::Incident => {
+                Light::Isotropic(Isotropic::new(shape.clone(), Faces::Both, Spectrum::grey(1.0 / PI))?)
+            }
+            Lit::Glow => Light::VolumeSource(VolumeSource::new(shape.clone(), Spectrum::ONE)?),
         };
         let cell = matches!(self.fog, Fog::Slab { .. }).then_some(CELL);
         let regions = vec![Region { shape, medium }];

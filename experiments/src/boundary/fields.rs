@@ -180,7 +180,7 @@ impl Field {
         let phase = Phase::with_asymmetry(Asymmetry::new("g", self.g)?);
         let medium = Homogeneous::new(Spectrum::ONE, Spectrum::grey(self.albedo), phase)?;
         let light = if self.is_lit_alike() {
-            Light::Isotropic(Isotropic::new(shape, Faces::Both, Spectrum::grey(1.0 / PI))?)
+            Light::Isotropic(Isotropic::new(shape.clone(), Faces::Both, Spectrum::grey(1.0 / PI))?)
         } else {
             Light::Beam(Beam::new(DVec3::Z, Spectrum::ONE, Section::Unbounded)?)
         };

@@ -11,7 +11,7 @@ use turbid::math::{Asymmetry, Ray};
 use turbid::phase::{HenyeyGreenstein, PhaseFunction};
 use turbid::photons::{Histories, PhotonMap, shoot};
 use turbid::rng::{Purpose, Stream};
-use turbid::scene::{Orders, Quantity};
+use turbid::scene::{Orders, Quantity, SURROUNDINGS, decay};
 use turbid::transport::NoProgress;
 use turbid_analytic::Incidence;
 use turbid_analytic::beer_lambert::direct_transmittance;
@@ -60,7 +60,7 @@ fn uncollided(rows: &mut Vec<Checked>) -> anyhow::Result<()> {
     for tau in [1e-12, 1.0, 20.0, 300.0, 700.0, 740.0, 1e4, 1e6] {
         let scene = slab(Fog { tau, albedo: 0.5, g: 0.0 }, normal, 1.0)?;
         let through = Ray::new(at_depth(0.0, 1.0), DVec3::Z);
-        let value = scene.transmittance(&through, f64::INFINITY)[0];
+        let value = decay(scene.optical_depth(&through, f64::INFINITY, SURROUNDINGS))[0];
         let exact = direct_transmittance(normal, tau).map_or(0.0, |v| v.value);
         let bound = 8.0 * f64::EPSILON * exact + 4.0 * f64::from_bits(1);
         rows.push(Checked::new(Class::Thickness, format!("tau={tau:e} transmittance"), value, exact, bound));

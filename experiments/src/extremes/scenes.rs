@@ -38,7 +38,9 @@ pub fn slab(fog: Fog, incidence: Incidence, unit: f64) -> turbid::Result<Scene> 
             let dir = DVec3::new(((1.0 - mu0) * (1.0 + mu0)).sqrt(), 0.0, mu0);
             Light::Beam(Beam::new(dir, Spectrum::grey(1.0 / mu0), Section::Unbounded)?)
         }
-        Incidence::Diffuse => Light::Isotropic(Isotropic::new(shape, Faces::Top, Spectrum::grey(1.0 / PI))?),
+        Incidence::Diffuse => {
+            Light::Isotropic(Isotropic::new(shape.clone(), Faces::Top, Spectrum::grey(1.0 / PI))?)
+        }
     };
     let regions = vec![region(shape, 1.0 / unit, fog.albedo, fog.g)?];
     Scene::new(Parts { regions, lights: vec![light], cell: Some(CELL * unit), ..Parts::default() })
@@ -47,7 +49,7 @@ pub fn slab(fog: Fog, incidence: Incidence, unit: f64) -> turbid::Result<Scene> 
 /// The slab lit alike from both sides, which absorbs nothing: fluence 4 everywhere, at any asymmetry.
 pub fn furnace_slab(tau: f64, g: f64) -> turbid::Result<Scene> {
     let shape = Shape::Slab(Slab::new(0.0, tau)?);
-    let light = Light::Isotropic(Isotropic::new(shape, Faces::Both, Spectrum::grey(1.0 / PI))?);
+    let light = Light::Isotropic(Isotropic::new(shape.clone(), Faces::Both, Spectrum::grey(1.0 / PI))?);
     let regions = vec![region(shape, 1.0, 1.0, g)?];
     Scene::new(Parts { regions, lights: vec![light], cell: Some(CELL), ..Parts::default() })
 }
@@ -56,7 +58,7 @@ pub fn furnace_slab(tau: f64, g: f64) -> turbid::Result<Scene> {
 /// a photon, at any asymmetry.
 pub fn furnace_ball(center: DVec3, g: f64) -> turbid::Result<Scene> {
     let shape = Shape::Sphere(Sphere::new(center, 1.0)?);
-    let light = Light::Isotropic(Isotropic::new(shape, Faces::Both, Spectrum::grey(1.0 / PI))?);
+    let light = Light::Isotropic(Isotropic::new(shape.clone(), Faces::Both, Spectrum::grey(1.0 / PI))?);
     Scene::new(Parts { regions: vec![region(shape, 1.0, 1.0, g)?], lights: vec![light], ..Parts::default() })
 }
 
@@ -85,10 +87,10 @@ pub enum Flux {
 
 /// The sensor of a flux.
 pub fn sensor(scene: &Scene, flux: Flux, orders: Orders) -> Sensor {
-    let shape = scene.regions()[0].shape;
+    let shape = &scene.regions()[0].shape;
     let quantity = match flux {
-        Flux::Reflected => Quantity::Outflow { shape, face: Face::Top },
-        Flux::Transmitted => Quantity::Outflow { shape, face: Face::Bottom },
+        Flux::Reflected => Quantity::Outflow { shape: shape.clone(), face: Face::Top },
+        Flux::Transmitted => Quantity::Outflow { shape: shape.clone(), face: Face::Bottom },
         Flux::Absorbed => Quantity::Absorbed(0),
     };
     Sensor { name: "flux".to_string(), label: "flux".to_string(), quantity, orders }

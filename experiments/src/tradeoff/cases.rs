@@ -232,7 +232,9 @@ impl Body {
             Fog::Slab { .. } => {
                 (Light::Beam(Beam::new(DVec3::Z, Spectrum::ONE, Section::Unbounded)?), Some(CELL))
             }
-            Fog::Sphere { .. } => (Light::VolumeSource(VolumeSource::new(shape, Spectrum::ONE)?), None),
+            Fog::Sphere { .. } => {
+                (Light::VolumeSource(VolumeSource::new(shape.clone(), Spectrum::ONE)?), None)
+            }
         };
         let regions = vec![Region { shape, medium }];
         Ok(Scene::new(Parts { regions, lights: vec![light], cell, ..Parts::default() })?)

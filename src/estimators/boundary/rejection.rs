@@ -95,7 +95,10 @@ impl<'a> Sieve<'a> {
         // A point on the wall itself looks away from it, not at it.
         let is_on =
             |wall: &Shape| foot(wall, self.point, Rejection::Visible).is_some_and(|f| f.distance == 0.0);
-        !self.walls.iter().any(|wall| wall.hit(&ray, is_on(wall)).is_some_and(|hit| hit.t < distance))
+        !self
+            .walls
+            .iter()
+            .any(|wall| wall.hit(&ray, is_on(wall).then_some(0)).is_some_and(|hit| hit.t < distance))
     }
 }
 

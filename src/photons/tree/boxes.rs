@@ -29,6 +29,12 @@ impl Probe {
         x * x + y * y + z * z
     }
 
+    /// Ways from the point to eight positions.
+    #[inline(always)]
+    pub(super) fn offsets(&self, positions: &Row) -> Row {
+        [0, 1, 2].map(|axis| positions[axis] - f32x8::splat(self.at[axis]))
+    }
+
     /// Squared distances to eight boxes.
     ///
     /// Rounding is monotone and the operations are those of [`Probe::squared_distances`] in the same order,

@@ -49,11 +49,11 @@ pub(super) fn new_identity() -> u64 {
 }
 
 /// The sphere in the tree's units.
-struct Sphere {
-    squared: f32,
-    closer: usize,
-    tied: usize,
-    coincident: usize,
+pub(super) struct Sphere {
+    pub(super) squared: f32,
+    pub(super) closer: usize,
+    pub(super) tied: usize,
+    pub(super) coincident: usize,
 }
 
 impl PhotonTree {
@@ -149,7 +149,7 @@ impl PhotonTree {
 
     /// The squared distance within which k photons are certain to be: the k-th of the nearest node that has
     /// as many, a node of the finest level at least.
-    fn bound(&self, probe: &Probe, k: usize, near: &mut Vec<u32>) -> f32 {
+    pub(super) fn bound(&self, probe: &Probe, k: usize, near: &mut Vec<u32>) -> f32 {
         let (mut first, mut blocks) = (0, self.positions.len());
         let mut node = 0;
         for level in (1..self.levels.len()).rev() {
@@ -174,7 +174,7 @@ impl PhotonTree {
 }
 
 /// The part of each tied photon that counts.
-fn share(sphere: &Sphere, k: usize, counted: Counted) -> f32 {
+pub(super) fn share(sphere: &Sphere, k: usize, counted: Counted) -> f32 {
     let nearer = if sphere.coincident > 0 { sphere.closer } else { k - 1 };
     let counts = nearer + usize::from(counted == Counted::UpToKth);
     ((counts - sphere.closer) as f64 / sphere.tied as f64) as f32
@@ -202,13 +202,13 @@ impl Scratch {
         }
         let closer = nearer.iter().filter(|&&d| f32::from_bits(d) < kth).count();
         let tied = k - closer + farther.iter().filter(|&&d| f32::from_bits(d) == kth).count();
-        self.last = Some(Last { identity: tree.identity, k, point, squared: kth });
+        self.remember(Last { identity: tree.identity, k, point, squared: kth });
         Some(Sphere { squared: kth, closer, tied, coincident: 0 })
     }
 
     /// Half as many photons again as the last search found, if that was nearby: a guess that may fail.
-    fn guess(&self, tree: &PhotonTree, point: [f32; 3], k: usize) -> Option<f32> {
-        let last = self.last.filter(|last| last.identity == tree.identity && last.k == k)?;
+    pub(super) fn guess(&self, tree: &PhotonTree, point: [f32; 3], k: usize) -> Option<f32> {
+        let last = self.last_in(tree.identity).filter(|last| last.k == k)?;
         let step = [0, 1, 2].map(|axis| point[axis] - last.point[axis]);
         let moved = step[0] * step[0] + step[1] * step[1] + step[2] * step[2];
         (moved < last.squared).then_some(last.squared * 1.3)

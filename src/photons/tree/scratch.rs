@@ -18,8 +18,20 @@ pub(super) struct Scratch {
     pub(super) end: usize,
     /// Squared distances below the bound, as bits, which are ordered as the numbers are.
     pub(super) near: Vec<u32>,
-    /// The last search for k nearest photons.
-    pub(super) last: Option<Last>,
+    /// The last search for k nearest photons in each of some trees, which a caller may ask by turns.
+    last: [Option<Last>; 4],
+}
+
+impl Scratch {
+    /// The last search in a tree, if it is remembered.
+    pub(super) fn last_in(&self, identity: u64) -> Option<Last> {
+        self.last[(identity % 4) as usize].filter(|last| last.identity == identity)
+    }
+
+    /// Remembers a search.
+    pub(super) fn remember(&mut self, last: Last) {
+        self.last[(last.identity % 4) as usize] = Some(last);
+    }
 }
 
 /// A finished search: whose, for how many, where, and how far the k-th was.

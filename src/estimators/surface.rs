@@ -1,0 +1,59 @@
+//! Estimates on a surface.
+
+use super::point::{Counting, LaneSum, Weighted};
+use super::{Estimate, Gather, Kernel};
+use crate::photons::PhotonMap;
+use crate::photons::tree::{Counted, Nearest, Neighbors, Tangent};
+use crate::spectrum::Spectrum;
+use glam::DVec3;
+use wide::f32x8;
+
+/// Irradiance at a point of a surface [W/L^2], on the side of the tangent's normal: sum p K_r / N over the photons that
+/// lie along the tangent plane and arrive on that side, K_r of unit integral over the disc.
+///
+/// Rejected photons set no radius and count nowhere; `found` is the number of accepted ones. A matt surface of
+/// reflectance rho reflects rho/pi of the value into every direction.
+///
+/// # Limits
+/// Where the surface ends inside the disc the estimate loses what lies beyond: 2r/(3 pi) of the irradiance along each edge,
+/// in depth, for the uniform kernel. A curved surface is seen as its own projection
+/// along the normal would be, to first order.
+///
+/// # Source
+/// Jensen 1996; the k-1 of the k-nearest rule is Loftsgaarden and Quesenberry 1965.
+pub fn irradiance(
+    map: &PhotonMap,
+    point: DVec3,
+    tangent: &Tangent,
+    kernel: Kernel,
+    gather: Gather,
+) -> Estimate {
+    let tree = map.tree();
+    let weight = |_: &Neighbors<'_>| f32x8::ONE;
+    let mut sum = Weighted { kernel, weight, sum: LaneSum::default() };
+    let (k, cap, counted) = match gather {
+        Gather::Radius(radius) => (None, radius.get(), Counted::BelowKth),
+        Gather::Nearest { k, max_radius } => (Some(k.get()), max_radius.get(), Counted::BelowKth),
+        Gather::NearestBiased { k, max_radius } => (Some(k.get()), max_radius.get(), Counted::UpToKth),
+    };
+    let shell = k.map(|k| tree.nearest_facing(point, tangent, k, cap, counted, &mut sum));
+    let (radius, found, underfull, coincident) = match shell {
+        Some(Nearest::Found(shell)) => (shell.radius, shell.closer + shell.tied, false, shell.coincident),
+        _ => {
+            let mut counting = Counting { found: 0, visitor: &mut sum };
+            tree.within_facing(point, tangent, cap, &mut counting);
+            (cap, counting.found, k.is_some(), 0)
+        }
+    };
+    let emitted = map.emitted();
+    // No photon is near a point that is not finite; that is no darkness.
+    let nowhere = if point.is_finite() { 0.0 } else { f64::NAN };
+    let scale = kernel.disc_peak() / (radius * radius * emitted as f64);
+    Estimate {
+        value: (sum.sum.total() + Spectrum::grey(nowhere)) * scale,
+        radius,
+        found,
+        underfull,
+        coincident,
+    }
+}

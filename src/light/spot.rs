@@ -1,0 +1,166 @@
+//! A spot light: a point whose intensity falls off away from an axis.
+
+use super::{EmissionNumbers, LightSample, emissive};
+use crate::Spectrum;
+use crate::error::{Error, Result};
+use crate::math::{Frame, Ray, cosine_pair, sin, warp};
+use glam::DVec3;
+use std::f64::consts::PI;
+
+/// A point that emits into a cone about an axis.
+///
+/// Intensity is full up to `full_angle` from the axis, 0 from `edge_angle` on, and between them I (3 x^2 - 2 x^3), where
+/// x = (cos theta - cos edge) / (cos full - cos edge). With a = 1 - cos full and b = 1 - cos edge the power is exactly
+/// pi I (a + b).
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Spot {
+    position: DVec3,
+    frame: Frame,
+    power: Spectrum,
+    /// 1 - cos of the angle up to which intensity is full.
+    full: f64,
+    /// 1 - cos of the angle from which on it is dark.
+    edge: f64,
+}
+
+/// 1 - cos of an angle in degrees, with every digit of small ones.
+pub(super) fn one_minus_cos_degrees(degrees: f64) -> f64 {
+    let half = sin(degrees * (PI / 360.0));
+    2.0 * half * half
+}
+
+impl Spot {
+    /// A light at `position` \[L\] that shines along `dir` (of any length but 0), of the given total power \[W\]; both
+    /// angles are measured from the axis, in degrees.
+    ///
+    /// # Errors
+    /// `Error::Scene` or `Error::OutOfRange`, naming what is wrong.
+    pub fn new(
+        position: DVec3,
+        dir: DVec3,
+        (full_angle, edge_angle): (f64, f64),
+        power: Spectrum,
+    ) -> Result<Self> {
+        if !position.is_finite() {
+            return Err(Error::Scene("a spot light needs a finite position".into()));
+        }
+        let Some(dir) = dir.try_normalize() else {
+            return Err(Error::Scene("a spot light needs a finite direction other than 0 0 0".into()));
+        };
+        if !(edge_angle > 0.0 && edge_angle <= 180.0) {
+            return Err(Error::out_of_range("edge_angle", edge_angle, "above 0 and at most 180 degrees"));
+        }
+        if !(full_angle >= 0.0 && full_angle <= edge_angle) {
+            return Err(Error::out_of_range("full_angle", full_angle, "0 to edge_angle, in degrees"));
+        }
+        Ok(Spot {
+            position,
+            frame: Frame::new(dir),
+            power: emissive("power", power)?,
+            full: one_minus_cos_degrees(full_angle),
+            edge: one_minus_cos_degrees(edge_angle),
+        })
+    }
+
+    /// Where it is \[L\].
+    pub fn position(&self) -> DVec3 {
+        self.position
+    }
+
+    /// Unit direction of its axis.
+    pub fn dir(&self) -> DVec3 {
+        self.frame.z
+    }
+
+    /// Share of the full intensity at 1 - cos of an angle to the axis.
+    fn falloff(&self, one_minus_mu: f64) -> f64 {
+        if one_minus_mu <= self.full {
+            1.0
+        } else if one_minus_mu >= self.edge {
+            0.0
+        } else {
+            let x = (self.edge - one_minus_mu) / (self.edge - self.full);
+            x * x * (3.0 - 2.0 * x)
+        }
+    }
+
+    /// Intensity along a unit direction [W/sr].
+    pub fn intensity(&self, dir: DVec3) -> Spectrum {
+        self.power * (self.falloff(cosine_pair(self.frame.z, dir).0) / (PI * (self.full + self.edge)))
+    }
+
+    pub(super) fn power(&self) -> Spectrum {
+        self.power
+    }
+
+    /// 1 - cos of the angle to the axis below which a share `u` of the power goes.
+    fn one_minus_mu(&self, u: f64) -> f64 {
+        let flux = u * 0.5 * (self.full + self.edge);
+        if flux < self.full {
+            return flux;
+        }
+        // What lies beyond x of the cubic, in parts of the whole: 1 - (2 x^3 - x^4).
+        let width = self.edge - self.full;
+        let beyond = if width > 0.0 { (flux - self.full) / (0.5 * width) } else { 0.0 };
+        self.edge - width * inverse_flux(1.0 - beyond)
+    }
+
+    pub(super) fn ray(&self, numbers: &EmissionNumbers) -> Ray {
+        let one_minus_mu = self.one_minus_mu(numbers.direction[0]);
+        let local = warp::direction((one_minus_mu, 2.0 - one_minus_mu), numbers.direction[1]);
+        Ray::new(self.position, self.frame.to_world(local).normalize())
+    }
+
+    pub(super) fn sample(&self, p: DVec3) -> Option<LightSample> {
+        let to_light = self.position - p;
+        let d2 = to_light.length_squared();
+        if d2 == 0.0 {
+            return None;
+        }
+        let distance = d2.sqrt();
+        let dir = to_light / distance;
+        let intensity = self.intensity(-dir);
+        if intensity.is_black() {
+            return None;
+        }
+        Some(LightSample { dir, distance, value: intensity / d2, pdf_solid_angle: None })
+    }
+}
+
+/// The x in [0, 1] with 2 x^3 - x^4 = `share`: Newton's steps, halving where they would leave what brackets the root.
+fn inverse_flux(share: f64) -> f64 {
+    let (mut low, mut high) = (0.0, 1.0);
+    let mut x = libm::cbrt(0.5 * share);
+    // Halving alone would need 60 steps to the last digit.
+    for _ in 0..60 {
+        let excess = x * x * x * (2.0 - x) - share;
+        if excess > 0.0 {
+            high = x
+        } else {
+            low = x
+        }
+        let step = excess / (x * x * (6.0 - 4.0 * x));
+        let next = x - step;
+        let next = if next > low && next < high { next } else { 0.5 * (low + high) };
+        if (next - x).abs() <= f64::EPSILON * x {
+            return next;
+        }
+        x = next;
+    }
+    x
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_flux_is_inverted() {
+        for i in 0..=1000 {
+            let share = f64::from(i) / 1000.0;
+            let x = inverse_flux(share);
+            assert!((x * x * x * (2.0 - x) - share).abs() < 4.0 * f64::EPSILON, "{share}: {x}");
+        }
+        assert_eq!((inverse_flux(0.0), inverse_flux(1.0)), (0.0, 1.0));
+    }
+}

@@ -1,0 +1,141 @@
+//! The sun: a distant disc of uniform radiance.
+
+use super::spot::one_minus_cos_degrees;
+use super::{EmissionNumbers, LightSample, Needs, emissive};
+use crate::Spectrum;
+use crate::error::{Error, Result};
+use crate::geometry::Sphere;
+use crate::math::{Frame, Ray, cosine_pair, warp};
+use glam::DVec3;
+use std::f64::consts::PI;
+
+/// A disc of uniform radiance infinitely far away, seen by rays that leave the scene; a disc of no extent is a delta
+/// light that lights everything in parallel.
+///
+/// With angular radius alpha its radiance is irradiance / (pi sin^2 alpha). Photons cross a disc about the middle of the
+/// scene, perpendicular to the axis, wide enough for the scene seen from everywhere on the sun: radius R / cos alpha,
+/// where R is that of the sphere that holds the scene; their directions are those of the cone, in proportion to the
+/// cosine, and their power is irradiance x pi (R / cos alpha)^2.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Sun {
+    frame: Frame,
+    irradiance: Spectrum,
+    /// 1 - cos of the angular radius.
+    one_minus_mu_max: f64,
+    /// What photons must cover; none before the light is part of a scene.
+    bounds: Option<Sphere>,
+}
+
+impl Sun {
+    /// A sun whose light travels along `dir` (of any length but 0), with `irradiance` [W/L^2] on a plane perpendicular
+    /// to it, and an angular radius in degrees, 0 to 45.
+    ///
+    /// # Errors
+    /// `Error::Scene` or `Error::OutOfRange`, naming what is wrong.
+    pub fn new(dir: DVec3, irradiance: Spectrum, angular_radius: f64) -> Result<Self> {
+        let Some(dir) = dir.try_normalize() else {
+            return Err(Error::Scene("a sun needs a finite direction other than 0 0 0".into()));
+        };
+        if !(0.0..=45.0).contains(&angular_radius) {
+            return Err(Error::out_of_range("angular_radius", angular_radius, "0 to 45 degrees"));
+        }
+        Ok(Sun {
+            frame: Frame::new(dir),
+            irradiance: emissive("irradiance", irradiance)?,
+            one_minus_mu_max: one_minus_cos_degrees(angular_radius),
+            bounds: None,
+        })
+    }
+
+    /// The same sun, its photons covering a sphere.
+    pub fn covering(self, bounds: Sphere) -> Self {
+        Sun { bounds: Some(bounds), ..self }
+    }
+
+    /// Unit direction of travel of the light from the disc's middle.
+    pub fn dir(&self) -> DVec3 {
+        self.frame.z
+    }
+
+    /// Irradiance at normal incidence [W/L^2].
+    pub fn irradiance(&self) -> Spectrum {
+        self.irradiance
+    }
+
+    /// Whether the disc has no extent.
+    pub fn is_delta(&self) -> bool {
+        self.one_minus_mu_max == 0.0
+    }
+
+    /// Squared sine of the angular radius.
+    fn sin2_max(&self) -> f64 {
+        self.one_minus_mu_max * (2.0 - self.one_minus_mu_max)
+    }
+
+    /// Radiance of the disc [W/(L^2 sr)]; it has an extent.
+    fn radiance(&self) -> Spectrum {
+        self.irradiance / (PI * self.sin2_max())
+    }
+
+    /// What photons cover and the radius of the disc that they cross \[L\].
+    pub(crate) fn disc(&self) -> Option<(Sphere, f64)> {
+        self.bounds.map(|bounds| (bounds, bounds.radius() / (1.0 - self.one_minus_mu_max)))
+    }
+
+    pub(super) fn power(&self) -> Spectrum {
+        let area = self.disc().map_or(f64::INFINITY, |(_, radius)| PI * radius * radius);
+        self.irradiance * area
+    }
+
+    pub(super) fn needs(&self) -> Needs {
+        Needs { position: 2, direction: if self.is_delta() { 0 } else { 2 } }
+    }
+
+    /// How far before its disc a photon starts \[L\]: outside the sphere that holds the scene, by its radius. On a line
+    /// through the disc the sphere reaches R (1 + tan alpha) back at most.
+    pub(crate) fn run_up(&self) -> f64 {
+        let tan = self.sin2_max().sqrt() / (1.0 - self.one_minus_mu_max);
+        self.bounds.map_or(0.0, |bounds| bounds.radius() * (2.0 + tan))
+    }
+
+    /// Where a photon crosses the disc \[L\].
+    pub(crate) fn crossing(&self, u: [f64; 2]) -> DVec3 {
+        let (center, radius) = self.disc().map_or((DVec3::ZERO, 0.0), |(b, radius)| (b.center(), radius));
+        let p = warp::square_to_disc(u) * radius;
+        center + self.frame.to_world(DVec3::new(p.x, p.y, 0.0))
+    }
+
+    pub(super) fn ray(&self, numbers: &EmissionNumbers) -> Ray {
+        let [u, v] = numbers.direction;
+        let dir = if self.is_delta() {
+            self.frame.z
+        } else {
+            // In proportion to the cosine: the squared sine is uniform.
+            let sin2 = u * self.sin2_max();
+            let one_minus_mu = sin2 / (1.0 + (1.0 - sin2).sqrt());
+            self.frame.to_world(warp::direction((one_minus_mu, 2.0 - one_minus_mu), v)).normalize()
+        };
+        let [a, b, _] = numbers.position;
+        Ray::new(self.crossing([a, b]) - dir * self.run_up(), dir)
+    }
+
+    pub(super) fn sample(&self, u: [f64; 2]) -> Option<LightSample> {
+        let distance = f64::INFINITY;
+        if self.is_delta() {
+            let dir = -self.frame.z;
+            return Some(LightSample { dir, distance, value: self.irradiance, pdf_solid_angle: None });
+        }
+        let travel = self.frame.to_world(warp::square_to_cone(u, self.one_minus_mu_max)).normalize();
+        let pdf = warp::pdf_cone(self.one_minus_mu_max);
+        let value = self.radiance() / pdf;
+        Some(LightSample { dir: -travel, distance, value, pdf_solid_angle: Some(pdf) })
+    }
+
+    /// Radiance seen by a ray that leaves the scene along `dir` [W/(L^2 sr)], and the density with which
+    /// [`Self::sample`] aims there [1/sr]; none beside the disc.
+    pub(super) fn background(&self, dir: DVec3) -> Option<(Spectrum, f64)> {
+        let (_, one_plus_mu) = cosine_pair(self.frame.z, dir);
+        (!self.is_delta() && one_plus_mu <= self.one_minus_mu_max)
+            .then(|| (self.radiance(), warp::pdf_cone(self.one_minus_mu_max)))
+    }
+}
