@@ -188,6 +188,22 @@ impl Grid {
         self.cells.along(ray, part)
     }
 
+    /// Where a part of a ray passes from between some samples to between others, nearest first \[L\].
+    pub fn kinks(&self, ray: &Ray, part: Interval) -> Vec<f64> {
+        let mut all = Vec::new();
+        for axis in 0..3 {
+            for i in 0..self.count[axis] {
+                let plane = self.min[axis] + (i as f64 + 0.5) / self.scale[axis];
+                let t = (plane - ray.origin[axis]) / ray.dir[axis];
+                if part.start < t && t < part.end {
+                    all.push(t);
+                }
+            }
+        }
+        all.sort_by(f64::total_cmp);
+        all
+    }
+
     /// The cells of its bounds.
     pub fn cells(&self) -> &Cells {
         &self.cells

@@ -61,12 +61,9 @@ impl Heterogeneous {
         self.albedo.as_ref().map_or(self.matter.albedo(), |grid| grid.color_at(p))
     }
 
-    /// Emission at a point [W/(L^3 sr)].
-    pub fn emission(&self, p: DVec3) -> Spectrum {
-        if self.emission.is_black() {
-            return self.matter.emission();
-        }
-        self.matter.emission() + self.emission * self.density.at(p)
+    /// Emission where the density is known [W/(L^3 sr)].
+    pub fn emission_of(&self, density: f64) -> Spectrum {
+        self.matter.emission() + self.emission * density
     }
 
     /// Whether it emits anywhere.
@@ -97,6 +94,6 @@ impl Heterogeneous {
 
     /// Optical depth of a part of a ray, where the density has an integral in closed form \[1\].
     pub fn optical_depth(&self, ray: &Ray, part: Interval) -> Option<Spectrum> {
-        Some(self.matter.depth(self.density.integral(ray, part)?))
+        Some(self.matter.depth(self.density.closed_integral(ray, part)?))
     }
 }

@@ -96,7 +96,7 @@ impl Medium {
     pub fn emission(&self, p: DVec3) -> Spectrum {
         match self {
             Medium::Homogeneous(medium) => medium.emission(),
-            Medium::Heterogeneous(medium) => medium.emission(p),
+            Medium::Heterogeneous(medium) => medium.emission_of(medium.density().at(p)),
         }
     }
 
@@ -119,6 +119,15 @@ impl Medium {
         match self {
             Medium::Homogeneous(medium) => Some(medium.depth(part.length())),
             Medium::Heterogeneous(medium) => medium.optical_depth(ray, part),
+        }
+    }
+
+    /// Optical depth of a part of a ray \[1\]: exact but for clouds, of which it is a quadrature. Estimates use
+    /// [`Medium::optical_depth`] where there is one, and ratio tracking elsewhere.
+    pub fn integrated_depth(&self, ray: &Ray, part: Interval) -> Spectrum {
+        match self {
+            Medium::Homogeneous(medium) => medium.depth(part.length()),
+            Medium::Heterogeneous(medium) => medium.matter().depth(medium.density().integral(ray, part)),
         }
     }
 

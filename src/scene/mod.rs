@@ -131,7 +131,8 @@ impl Scene {
         Segments::filled(self.filling(within).map(|medium| Segment { interval, medium }))
     }
 
-    /// Optical depth up to distance `end` \[1\].
+    /// Optical depth up to distance `end` \[1\]: exact but in clouds, where it is a quadrature. Estimates of light use
+    /// `transport::transmittance`.
     pub fn optical_depth(&self, ray: &Ray, end: f64, within: usize) -> Spectrum {
         let mut depth = Spectrum::ZERO;
         for segment in self.segments(ray, end, within).iter() {
@@ -142,7 +143,8 @@ impl Scene {
 
     /// Optical depth of a part of a segment: 0 where nothing extinguishes, however long the part.
     fn depth_of(&self, segment: &Segment, part: Interval) -> Spectrum {
-        self.medium(segment.medium).sigma_t().map(|s| if s == 0.0 { 0.0 } else { s * part.length() })
+        let medium = self.medium(segment.medium);
+        if medium.is_homogeneous() { medium.matter().depth(part.length()) } else { self.depth_in(segment, part) }
     }
 
     /// Emission collected along a ray from a source of emission coefficient `emission` [W/(L^3 sr)] that fills

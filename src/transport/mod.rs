@@ -1,13 +1,16 @@
 //! Free flight, roulette, the one random walk that paths and photons share, and blocks of histories.
 
 mod blocks;
+mod emission;
 mod flags;
 mod flight;
 mod roulette;
+mod track;
 mod transmittance;
 mod walk;
 
 pub use blocks::{BLOCK, NoProgress, Progress, run_blocks};
+pub use emission::{collected, emission};
 pub use flags::Flags;
 pub use flight::{Flight, free_flight};
 pub use roulette::Roulette;
