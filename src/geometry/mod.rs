@@ -5,11 +5,13 @@
 
 mod cuboid;
 mod rectangle;
+mod rectangles;
 mod slab;
 mod sphere;
 
 pub use cuboid::Cuboid;
 pub use rectangle::Rectangle;
+pub use rectangles::Rectangles;
 pub use slab::{Face, Slab};
 pub use sphere::Sphere;
 

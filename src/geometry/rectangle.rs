@@ -45,20 +45,31 @@ impl Rectangle {
         if t.is_nan() || t <= 0.0 {
             return None;
         }
-        let uv = self.coordinates(ray.at(t));
-        let unit = 0.0..=1.0;
-        (unit.contains(&uv.x) && unit.contains(&uv.y)).then_some(Hit {
-            t,
-            normal: self.normal,
-            uv,
-            primitive: 0,
-        })
+        self.covers(ray.at(t)).then(|| self.hit_at(ray, t))
+    }
+
+    /// The hit of a ray that meets the rectangle at this distance \[L\].
+    pub(super) fn hit_at(&self, ray: &Ray, t: f64) -> Hit {
+        Hit { t, normal: self.normal, uv: self.coordinates(ray.at(t)), primitive: 0 }
+    }
+
+    pub(super) fn corner(&self) -> DVec3 {
+        self.corner
+    }
+
+    pub(super) fn u(&self) -> DVec3 {
+        self.u
+    }
+
+    pub(super) fn v(&self) -> DVec3 {
+        self.v
     }
 
     /// Whether a point lies above or below the rectangle, seen along its normal; the edges count.
     pub fn covers(&self, p: DVec3) -> bool {
-        let uv = self.coordinates(p);
-        (0.0..=1.0).contains(&uv.x) && (0.0..=1.0).contains(&uv.y)
+        let p = p - self.corner;
+        let (a, b) = (p.dot(self.u), p.dot(self.v));
+        (0.0..=self.u.length_squared()).contains(&a) && (0.0..=self.v.length_squared()).contains(&b)
     }
 
     /// Where a point lies along the edges, each of length 1, seen along the normal.

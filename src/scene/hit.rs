@@ -6,7 +6,7 @@ use crate::geometry::Hit;
 use crate::math::Ray;
 
 /// A body that a ray can meet.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Target {
     /// The object of this index.
     Object(usize),
@@ -49,31 +49,42 @@ impl SceneHit {
 impl Scene {
     /// The nearest body ahead; `from` is the body that the ray starts on.
     pub fn hit(&self, ray: &Ray, from: Option<Start>) -> Option<SceneHit> {
-        let mut nearest: Option<SceneHit> = None;
-        let mut consider = |target, hit: Option<Hit>| {
-            if let Some(hit) = hit
-                && nearest.is_none_or(|n| hit.t < n.hit.t)
+        let start = from.and_then(|start| self.bodies.in_list(start.target));
+        let mut nearest = self
+            .bodies
+            .rectangles
+            .nearest(ray, start)
+            .map(|(index, hit)| SceneHit { target: self.bodies.targets[index], hit });
+        for &target in &self.bodies.others {
+            if let Some(hit) = self.try_body(ray, from, target)
+                && nearest.is_none_or(|n| hit.t < n.hit.t || hit.t == n.hit.t && target < n.target)
             {
                 nearest = Some(SceneHit { target, hit });
             }
-        };
-        for (i, object) in self.objects().iter().enumerate() {
-            let target = Target::Object(i);
-            consider(target, object.shape.hit(ray, Start::on(from, target)));
-        }
-        for (i, light) in self.lights().iter().enumerate() {
-            let target = Target::Light(i);
-            consider(target, light.hit(ray, Start::on(from, target)));
         }
         nearest
+    }
+
+    /// Where a ray meets one body.
+    fn try_body(&self, ray: &Ray, from: Option<Start>, target: Target) -> Option<Hit> {
+        let start = Start::on(from, target);
+        match target {
+            Target::Object(i) => self.objects()[i].shape.hit(ray, start),
+            Target::Light(i) => self.lights()[i].hit(ray, start),
+        }
     }
 
     /// What bodies let pass between the ray's origin and distance `end` \[1\], not counting the body at the far end;
     /// none if one of them stands in the way. Media are not asked.
     pub fn passes(&self, ray: &Ray, from: Option<Start>, end: f64, towards: Target) -> Option<Spectrum> {
-        match self.hit(ray, from) {
-            None => Some(Spectrum::ONE),
-            Some(found) => (found.target == towards || found.hit.t >= end).then_some(Spectrum::ONE),
+        let bodies = &self.bodies;
+        let except = [from.and_then(|start| bodies.in_list(start.target)), bodies.in_list(towards)];
+        if bodies.rectangles.block(ray, except, end) {
+            return None;
         }
+        let mut others = bodies.others.iter().filter(|target| **target != towards);
+        let is_blocked =
+            others.any(|target| self.try_body(ray, from, *target).is_some_and(|hit| hit.t < end));
+        (!is_blocked).then_some(Spectrum::ONE)
     }
 }

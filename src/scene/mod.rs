@@ -1,5 +1,6 @@
 //! The scene: a plain struct, validated once and trusted after; what a ray meets in it; what it requires.
 
+mod bodies;
 mod builtin;
 mod file;
 mod hit;
@@ -67,6 +68,7 @@ pub struct Scene {
     parts: Parts,
     media: Vec<Medium>,
     filling: Vec<Option<usize>>,
+    bodies: bodies::Bodies,
     stage: Option<Stage>,
     plan: Plan,
 }
@@ -83,7 +85,8 @@ impl Scene {
         let stage = validate::check(&parts)?;
         let plan = Plan::of(&parts);
         let (media, filling) = interiors::numbered(&parts.regions, &parts.interiors);
-        Ok(Scene { parts, media, filling, stage, plan })
+        let bodies = bodies::Bodies::of(&parts);
+        Ok(Scene { parts, media, filling, bodies, stage, plan })
     }
 
     /// Media and where they are.

@@ -149,7 +149,7 @@ const SEQUENTIAL: [(u8, u8, u8); 9] = [
 
 impl Shading {
     /// The colour at u from 0 (lowest) to 1 (highest), held at the ends.
-    pub(crate) fn rgb(self, u: f64) -> (u8, u8, u8) {
+    pub fn rgb(self, u: f64) -> (u8, u8, u8) {
         let table: &[(u8, u8, u8)] = match self {
             Self::Diverging => &DIVERGING,
             Self::Sequential => &SEQUENTIAL,

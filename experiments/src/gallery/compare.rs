@@ -345,7 +345,7 @@ mod tests {
             let mut stream = Stream::new(3, Purpose::Synthetic, 0, n as u64);
             for x in making.iter_mut().take(1) {
                 let u = stream.open_unit();
-                *x = *x * (1.0 / turbid::math::exp(turbid::math::ln(u) / 1.1) * 20.0);
+                *x *= 20.0 / turbid::math::exp(turbid::math::ln(u) / 1.1);
             }
         }
         let comparison = compare(GRID, &makings(64, 1, 16, |_| 1.0), &b, &nothing(), 0.02);

@@ -1,0 +1,99 @@
+//! The data files of the scenes that a program has made: the stained-glass window, and the grid of the fog box.
+
+use super::{Grid, develop};
+use turbid::Spectrum;
+use turbid::math::{atan2, sin_cos};
+
+/// Size of the window's picture: 1.8 m by 2.2 m, a pixel a centimetre.
+const WINDOW: Grid = Grid { width: 180, height: 220 };
+
+/// Lead is opaque; glass passes a fifth to four fifths of its own colour.
+const LEAD: Spectrum = Spectrum::grey(0.002);
+const RUBY: Spectrum = Spectrum::rgb(0.80, 0.05, 0.04);
+const COBALT: Spectrum = Spectrum::rgb(0.05, 0.12, 0.75);
+const AMBER: Spectrum = Spectrum::rgb(0.90, 0.55, 0.06);
+const EMERALD: Spectrum = Spectrum::rgb(0.06, 0.55, 0.16);
+const CLEAR: Spectrum = Spectrum::rgb(0.85, 0.83, 0.72);
+
+/// Transmittance of the window at a point in centimetres from its lower left corner: a rose with twelve petals over
+/// three lancets.
+fn window_at(x: f64, y: f64) -> Spectrum {
+    let (dx, dy) = (x - 90.0, y - 142.0);
+    let radius = (dx * dx + dy * dy).sqrt();
+    if !(4.0..=176.0).contains(&x) || !(4.0..=216.0).contains(&y) {
+        return LEAD;
+    }
+    if radius < 70.0 {
+        rose(radius, atan2(dy, dx))
+    } else if y > 72.0 {
+        corner(radius, x, y)
+    } else {
+        lancet(x, y)
+    }
+}
+
+fn rose(radius: f64, angle: f64) -> Spectrum {
+    let turn = angle / (2.0 * std::f64::consts::PI) + 0.5;
+    let sector = |n: f64| (turn * n).floor() as i64;
+    // Distance from the nearest of n spokes.
+    let spoke = |n: f64| {
+        let part = turn * n - (turn * n).round();
+        radius * sin_cos(2.0 * std::f64::consts::PI * part / n).0.abs()
+    };
+    let is_near = |r: f64| (radius - r).abs() < 1.6;
+    match radius {
+        _ if is_near(14.0) || is_near(44.0) || radius > 66.0 => LEAD,
+        r if r < 14.0 => AMBER,
+        r if r < 44.0 && spoke(6.0) < 1.4 => LEAD,
+        r if r < 44.0 => [RUBY, COBALT][(sector(6.0) % 2) as usize],
+        _ if spoke(12.0) < 1.4 => LEAD,
+        _ => [COBALT, AMBER, RUBY, EMERALD][(sector(12.0) % 4) as usize],
+    }
+}
+
+/// Clear quarries of 12 cm beside the rose.
+fn corner(radius: f64, x: f64, y: f64) -> Spectrum {
+    let edge = |t: f64| (t / 12.0 - (t / 12.0).round()).abs() * 12.0;
+    if radius < 72.0 || edge(x + y) < 0.9 || edge(x - y) < 0.9 { LEAD } else { CLEAR }
+}
+
+fn lancet(x: f64, y: f64) -> Spectrum {
+    if !(8.0..=68.0).contains(&y) {
+        return LEAD;
+    }
+    let column = ((x - 4.0) / (172.0 / 3.0)).floor().clamp(0.0, 2.0);
+    let across = x - 4.0 - (column + 0.5) * 172.0 / 3.0;
+    // A pointed arch: two arcs of the lancet's full width about the feet of the other side.
+    let is_inside = |half: f64, foot: f64| {
+        let far = across.abs() + half;
+        across.abs() < half && (y < foot || far * far + (y - foot) * (y - foot) < 4.0 * half * half)
+    };
+    let rows = ((y - 8.0) / 15.0).fract();
+    match () {
+        () if !is_inside(24.0, 26.0) => LEAD,
+        () if !is_inside(21.5, 26.0) => [EMERALD, AMBER, EMERALD][column as usize],
+        () if !is_inside(19.5, 26.0) || rows < 0.08 => LEAD,
+        () if across.abs() + 15.0 * (rows - 0.5).abs() < 7.0 => AMBER,
+        () => [RUBY, COBALT, RUBY][column as usize],
+    }
+}
+
+/// The picture of the window, `window.png` of the scene `dusty-room`.
+pub fn window() -> anyhow::Result<Vec<u8>> {
+    let at = |i: usize| {
+        let (column, row) = (i % WINDOW.width, i / WINDOW.width);
+        window_at(column as f64 + 0.5, WINDOW.height as f64 - row as f64 - 0.5)
+    };
+    let pixels: Vec<Spectrum> = (0..WINDOW.pixels()).map(at).collect();
+    develop::plain(WINDOW, &pixels).png()
+}
+
+#[cfg(test)]
+mod tests {
+    /// The kept file is what this program makes; `gallery --assets` writes it anew.
+    #[test]
+    fn the_window_is_the_kept_one() {
+        let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes/window.png");
+        assert_eq!(std::fs::read(path).unwrap(), super::window().unwrap());
+    }
+}
