@@ -1,7 +1,9 @@
 //! Phase functions as an estimate uses them: eight photons at a time.
 
 use crate::math::FOUR_PI;
-use crate::phase::{HenyeyGreenstein, Isotropic, Phase, PhaseFunction, Rayleigh, Schlick, Tabulated, TwoTerm};
+use crate::phase::{
+    HenyeyGreenstein, Isotropic, Phase, PhaseFunction, Rayleigh, Schlick, Tabulated, TwoTerm,
+};
 use crate::photons::tree::bits;
 use wide::f32x8;
 

@@ -45,8 +45,7 @@ mod tests {
         for n in 1..30 {
             let rule = gauss_legendre(n);
             for degree in 0..2 * n {
-                let sum: f64 =
-                    rule.iter().map(|(x, w)| w * x.powi(i32::try_from(degree).unwrap_or(0))).sum();
+                let sum: f64 = rule.iter().map(|(x, w)| w * x.powi(i32::try_from(degree).unwrap_or(0))).sum();
                 let exact = if degree % 2 == 0 { 2.0 / f64::from(degree + 1) } else { 0.0 };
                 assert!((sum - exact).abs() < 1e-14, "{n} {degree}: {sum}");
             }

@@ -127,8 +127,7 @@ impl Iterator for Along<'_> {
                 }
                 let ahead = self.index[axis] + usize::from(is_up);
                 let is_between = 0 < ahead && ahead < self.cells.count[axis];
-                self.next[axis] =
-                    if is_between { self.next[axis] + self.step[axis] } else { f64::INFINITY };
+                self.next[axis] = if is_between { self.next[axis] + self.step[axis] } else { f64::INFINITY };
                 self.at = self.at.max(interval.end);
             } else {
                 self.at = self.end;

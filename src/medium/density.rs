@@ -122,6 +122,15 @@ impl Density {
         }
     }
 
+    /// Whether it depends on z alone.
+    pub fn is_layered(&self) -> bool {
+        match self {
+            Density::Grid(grid) => grid.is_layered(),
+            Density::HeightFog(fog) => fog.is_layered(),
+            Density::Cloud(_) => false,
+        }
+    }
+
     /// What it is, in a line.
     pub fn describe(&self) -> String {
         match self {
@@ -164,7 +173,11 @@ impl Density {
                 cloud([0.7, 1.4, 1.0], 2.5, super::Body::Cuboid, 12),
             ],
             Density::HeightFog(_) => {
-                vec![fog(DVec3::Y, -1.0, 0.5), fog(DVec3::new(1.0, -2.0, 0.5), 0.3, 0.05), fog(DVec3::Z, -9.0, 40.0)]
+                vec![
+                    fog(DVec3::Y, -1.0, 0.5),
+                    fog(DVec3::new(1.0, -2.0, 0.5), 0.3, 0.05),
+                    fog(DVec3::Z, -9.0, 40.0),
+                ]
             }
         };
         let first = [

@@ -68,8 +68,7 @@ impl Grid {
         }
         if let Some(at) = values.iter().position(|v| !(*v >= 0.0 && v.is_finite())) {
             let sample = at / channels;
-            let (x, y, z) =
-                (sample % count[0], sample / count[0] % count[1], sample / (count[0] * count[1]));
+            let (x, y, z) = (sample % count[0], sample / count[0] % count[1], sample / (count[0] * count[1]));
             let value = f64::from(values[at]);
             let name = format!("value of a grid at sample {x} {y} {z}");
             return Err(Error::out_of_range(name, value, "finite and at least 0"));
@@ -124,6 +123,11 @@ impl Grid {
     /// The samples: channel fastest, then x, y, z.
     pub fn values(&self) -> &[f32] {
         &self.values
+    }
+
+    /// Whether it depends on z alone.
+    pub fn is_layered(&self) -> bool {
+        self.count[0] == 1 && self.count[1] == 1
     }
 
     /// The largest value.

@@ -39,6 +39,11 @@ impl HeightFog {
         ((self.up.dot(ray.origin) - self.base) / self.scale_height, self.up.dot(ray.dir) / self.scale_height)
     }
 
+    /// Whether it depends on z alone.
+    pub fn is_layered(&self) -> bool {
+        self.up.x == 0.0 && self.up.y == 0.0
+    }
+
     /// Density at a point \[1\], 0 to 1.
     pub fn at(&self, p: DVec3) -> f64 {
         exp(-((self.up.dot(p) - self.base) / self.scale_height).max(0.0))
@@ -59,7 +64,9 @@ impl HeightFog {
             side.intersection(part)
         };
         let below = match above {
-            Some(above) => (above.start - part.start) + if above.end < part.end { part.end - above.end } else { 0.0 },
+            Some(above) => {
+                (above.start - part.start) + if above.end < part.end { part.end - above.end } else { 0.0 }
+            }
             None => part.length(),
         };
         (above, below)

@@ -66,6 +66,11 @@ impl Heterogeneous {
         self.matter.emission() + self.emission * density
     }
 
+    /// Whether it depends on z alone.
+    pub fn is_layered(&self) -> bool {
+        self.density.is_layered() && self.albedo.as_ref().is_none_or(|grid| grid.is_layered())
+    }
+
     /// Whether it emits anywhere.
     pub fn is_emitting(&self) -> bool {
         !self.matter.emission().is_black() || !self.emission.is_black()

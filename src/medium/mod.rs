@@ -136,6 +136,14 @@ impl Medium {
         matches!(self, Medium::Homogeneous(_))
     }
 
+    /// Whether it depends on z alone.
+    pub fn is_layered(&self) -> bool {
+        match self {
+            Medium::Homogeneous(_) => true,
+            Medium::Heterogeneous(medium) => medium.is_layered(),
+        }
+    }
+
     /// Whether light can collide in it.
     pub fn is_colliding(&self) -> bool {
         self.highest_sigma_t().max() > 0.0

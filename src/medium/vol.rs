@@ -62,8 +62,7 @@ impl Grid {
         }
         let channels = channels as usize;
         let float = |i: usize| f64::from(f32::from_le_bytes(word(bytes, 24 + 4 * i)));
-        let corners =
-            (DVec3::new(float(0), float(1), float(2)), DVec3::new(float(3), float(4), float(5)));
+        let corners = (DVec3::new(float(0), float(1), float(2)), DVec3::new(float(3), float(4), float(5)));
         let values = count.iter().fold(channels as u64, |product, n| product.saturating_mul(*n as u64));
         let length = values.saturating_mul(4).saturating_add(HEADER as u64);
         if bytes.len() as u64 != length {

@@ -31,10 +31,7 @@ impl HenyeyGreenstein {
         } else {
             ((1.0 + g) * (1.0 + g) - 2.0 * g * one_plus_mu).sqrt()
         };
-        (
-            (1.0 - g) / s * one_plus_mu / ((1.0 + g) + s),
-            (1.0 + g) / s * one_minus_mu / ((1.0 - g) + s),
-        )
+        ((1.0 - g) / s * one_plus_mu / ((1.0 + g) + s), (1.0 + g) / s * one_minus_mu / ((1.0 - g) + s))
     }
 
     /// The mean cosine as density and sampler use it: the same, unless a fault is planted.

@@ -112,25 +112,57 @@ impl Phase {
         let named = |phase: Phase| match phase {
             Phase::Isotropic(_) | Phase::Rayleigh(_) => vec![phase],
             Phase::HenyeyGreenstein(_) => each(
-                &[-1.0 + 1e-9, -0.9999, -0.75, -1e-6, -1e-12, 1e-12, 1e-6, 0.3, 0.75, 0.95, 0.9999, 1.0 - 1e-9],
+                &[
+                    -1.0 + 1e-9,
+                    -0.9999,
+                    -0.75,
+                    -1e-6,
+                    -1e-12,
+                    1e-12,
+                    1e-6,
+                    0.3,
+                    0.75,
+                    0.95,
+                    0.9999,
+                    1.0 - 1e-9,
+                ],
                 &Phase::with_asymmetry,
             ),
             Phase::TwoTerm(_) => {
-                let pairs = [(0.8, -0.4, 0.7), (0.0, 0.95, 0.25), (1.0 - 1e-9, -1.0 + 1e-9, 0.5), (0.9999, -1e-12, 0.99)];
+                let pairs = [
+                    (0.8, -0.4, 0.7),
+                    (0.0, 0.95, 0.25),
+                    (1.0 - 1e-9, -1.0 + 1e-9, 0.5),
+                    (0.9999, -1e-12, 0.99),
+                ];
                 let term = |(a, b, share): (f64, f64, f64)| {
                     let (a, b) = (Asymmetry::try_from(a).ok()?, Asymmetry::try_from(b).ok()?);
                     Some(Phase::TwoTerm(TwoTerm::new(a, b, Albedo::try_from(share).ok()?)))
                 };
                 pairs.into_iter().filter_map(term).collect()
             }
-            Phase::Schlick(_) => each(&[-1.0 + 1e-9, -0.9, -1e-6, 1e-12, 0.3, 0.75, 0.99, 1.0 - 1e-9], &|k| {
-                Phase::Schlick(Schlick::new(k))
-            }),
+            Phase::Schlick(_) => {
+                each(&[-1.0 + 1e-9, -0.9, -1e-6, 1e-12, 0.3, 0.75, 0.99, 1.0 - 1e-9], &|k| {
+                    Phase::Schlick(Schlick::new(k))
+                })
+            }
             Phase::Tabulated(_) => {
                 // Even; with a step; and a droplet's: a narrow forward peak, a flat side and a glory.
                 let droplet = [
-                    (0.0, 3e4), (0.01, 2.9e4), (0.03, 2e4), (0.1, 3e3), (0.5, 100.0), (2.0, 20.0), (10.0, 5.0),
-                    (45.0, 0.8), (90.0, 0.05), (120.0, 0.02), (139.0, 0.3), (150.0, 0.1), (179.0, 0.2), (180.0, 0.6),
+                    (0.0, 3e4),
+                    (0.01, 2.9e4),
+                    (0.03, 2e4),
+                    (0.1, 3e3),
+                    (0.5, 100.0),
+                    (2.0, 20.0),
+                    (10.0, 5.0),
+                    (45.0, 0.8),
+                    (90.0, 0.05),
+                    (120.0, 0.02),
+                    (139.0, 0.3),
+                    (150.0, 0.1),
+                    (179.0, 0.2),
+                    (180.0, 0.6),
                 ];
                 let step = [(0.0, 1.0), (60.0, 4.0), (60.000_001, 0.0), (100.0, 0.0), (180.0, 2.0)];
                 let tables: [&[(f64, f64)]; 3] = [&[(0.0, 7.0), (180.0, 7.0)], &step, &droplet];
@@ -142,7 +174,10 @@ impl Phase {
         let first = [
             Some(Phase::Isotropic(Isotropic)),
             half.clone().ok().map(Phase::with_asymmetry),
-            half.clone().ok().zip(Albedo::try_from(0.5).ok()).map(|(g, share)| Phase::TwoTerm(TwoTerm::new(g, g, share))),
+            half.clone()
+                .ok()
+                .zip(Albedo::try_from(0.5).ok())
+                .map(|(g, share)| Phase::TwoTerm(TwoTerm::new(g, g, share))),
             half.ok().map(|k| Phase::Schlick(Schlick::new(k))),
             Some(Phase::Rayleigh(Rayleigh)),
             Tabulated::new(&[(0.0, 1.0), (180.0, 1.0)]).ok().map(|table| Phase::Tabulated(Arc::new(table))),

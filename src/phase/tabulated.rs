@@ -68,7 +68,12 @@ impl Tabulated {
                 [] => {}
                 [angle, value] => match (angle.parse(), value.parse()) {
                     (Ok(angle), Ok(value)) => lines.push((i + 1, angle, value)),
-                    _ => return refuse(&file, format!("line {}: `{}` is no pair of numbers", i + 1, line.trim())),
+                    _ => {
+                        return refuse(
+                            &file,
+                            format!("line {}: `{}` is no pair of numbers", i + 1, line.trim()),
+                        );
+                    }
                 },
                 _ => {
                     let found = words.len();
@@ -84,7 +89,10 @@ impl Tabulated {
 
     fn checked(file: &str, row: &str, lines: &[(usize, f64, f64)]) -> Result<Self> {
         if lines.len() < 2 {
-            return refuse(file, format!("{} angles; allowed: 2 or more, from 0 to 180 degrees", lines.len()));
+            return refuse(
+                file,
+                format!("{} angles; allowed: 2 or more, from 0 to 180 degrees", lines.len()),
+            );
         }
         for &(line, angle, value) in lines {
             if !(0.0..=180.0).contains(&angle) {
@@ -97,16 +105,24 @@ impl Tabulated {
         for pair in lines.windows(2) {
             let ((_, before, _), (line, angle, _)) = (pair[0], pair[1]);
             if angle <= before {
-                return refuse(file, format!("{row} {line}: angle {angle} after {before}; allowed: rising angles"));
+                return refuse(
+                    file,
+                    format!("{row} {line}: angle {angle} after {before}; allowed: rising angles"),
+                );
             }
         }
         let (first, last) = (lines[0].1, lines[lines.len() - 1].1);
         if first != 0.0 || last != 180.0 {
-            return refuse(file, format!("angles run from {first} to {last}; allowed: from 0 to 180 degrees"));
+            return refuse(
+                file,
+                format!("angles run from {first} to {last}; allowed: from 0 to 180 degrees"),
+            );
         }
         match Tabulated::normalised(lines) {
             Some(table) => Ok(table),
-            None => refuse(file, "every value is 0, or angles too close to tell; allowed: some value above 0"),
+            None => {
+                refuse(file, "every value is 0, or angles too close to tell; allowed: some value above 0")
+            }
         }
     }
 

@@ -72,7 +72,11 @@ impl PhaseFunction for TwoTerm {
             let (m, p) = pair(r);
             let part = self.cumulated((m, p), is_below);
             // What lies below the cosine falls as r grows, what lies above it grows.
-            if (part > target) == is_below { low = low.max(r) } else { high = high.min(r) }
+            if (part > target) == is_below {
+                low = low.max(r)
+            } else {
+                high = high.min(r)
+            }
             // dF/d ln r = 2 pi p(mu) (1-mu)(1+mu)/2, with the sign of the side.
             let slope = PI * self.eval(m, p) * m * p / part;
             let step = ln(part / target) / slope;

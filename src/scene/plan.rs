@@ -10,6 +10,12 @@ pub struct Plan {
     pub has_media: bool,
     /// Whether every medium has the same extinction in all channels, so that one flight serves all.
     pub has_grey_extinction: bool,
+    /// Whether the density of some medium varies, so that flights and transmittances are tracked.
+    pub has_heterogeneous: bool,
+    /// Whether some medium emits by itself.
+    pub has_emission: bool,
+    /// What each varying density is, in words.
+    pub densities: Vec<String>,
     /// Whether every number is the same in all channels, so that one channel is reported.
     pub is_grey: bool,
     /// Whether light can meet a surface.
@@ -31,9 +37,13 @@ const THIN: f64 = 0.1;
 
 impl Plan {
     pub(super) fn of(parts: &Parts) -> Self {
-        let media: Vec<_> = parts.regions.iter().filter(|r| r.medium.sigma_t().max() > 0.0).collect();
-        let thickness = media.iter().map(|r| r.shape.shortest_extent() * r.medium.sigma_t().max());
-        let thickest = thickness.fold(0.0, f64::max);
+        let fillings = parts.interiors.iter().filter_map(|interior| interior.medium.as_ref());
+        let all: Vec<_> = parts.regions.iter().map(|region| &region.medium).chain(fillings).collect();
+        let media: Vec<_> = all.iter().filter(|medium| medium.is_colliding()).collect();
+        let has_heterogeneous = all.iter().any(|medium| !medium.is_homogeneous());
+        let dense: Vec<_> = parts.regions.iter().filter(|r| r.medium.is_colliding()).collect();
+        let thickness = dense.iter().map(|r| r.shape.shortest_extent() * r.medium.matter().sigma_t().max());
+        let is_thin = !dense.is_empty() && thickness.fold(0.0, f64::max) < THIN;
         let has_specular = parts.objects.iter().any(|o| o.surface.is_specular());
         let has_delta = parts.lights.iter().any(Light::is_delta);
         let has_event = !media.is_empty() || parts.objects.iter().any(|o| !o.surface.is_specular());
@@ -51,18 +61,18 @@ impl Plan {
         }
         Plan {
             has_media: !media.is_empty(),
-            has_grey_extinction: media.iter().all(|r| r.medium.sigma_t().is_grey()),
-            is_grey: parts
-                .regions
-                .iter()
-                .all(|r| r.medium.sigma_t().is_grey() && r.medium.albedo().is_grey())
+            has_grey_extinction: media.iter().all(|medium| medium.has_grey_extinction()),
+            has_heterogeneous,
+            has_emission: all.iter().any(|medium| medium.is_emitting()),
+            densities: all.iter().filter_map(|medium| medium.density()).map(|d| d.describe()).collect(),
+            is_grey: all.iter().all(|medium| medium.is_grey())
                 && parts.objects.iter().all(|o| o.surface.is_grey())
                 && parts.lights.iter().all(Light::is_grey),
             has_surfaces: !parts.objects.is_empty(),
             has_specular,
             has_next_event: parts.lights.iter().any(Light::has_direction),
             point_lights: (0..parts.lights.len()).filter(|&i| parts.lights[i].apex().is_some()).collect(),
-            forces_first_collision: !media.is_empty() && thickest < THIN,
+            forces_first_collision: is_thin && media.len() == dense.len() && !has_heterogeneous,
             unreachable,
         }
     }
@@ -71,6 +81,9 @@ impl Plan {
     pub fn lines(&self) -> Vec<String> {
         let mut lines = vec![
             match (self.has_media, self.forces_first_collision) {
+                (true, _) if self.has_heterogeneous => {
+                    "heterogeneous media: delta tracking, ratio tracking, majorants by cell".to_string()
+                }
                 (false, _) => "no medium: no flights, no volume map".to_string(),
                 (true, false) => "homogeneous media: flights and transmittance in closed form".to_string(),
                 (true, true) => "thin homogeneous media: closed form, first collision forced".to_string(),
@@ -80,6 +93,10 @@ impl Plan {
         ];
         if !self.has_grey_extinction {
             lines.push("extinction differs by channel: flights by channel, balance weights".to_string());
+        }
+        lines.extend(self.densities.iter().map(|density| format!("density: {density}")));
+        if self.has_emission {
+            lines.push("emitting media: seen along rays; photons start from lights only".to_string());
         }
         lines.push(match (self.has_surfaces, self.has_specular) {
             (false, _) => "no surface: nothing to intersect but media and lights".to_string(),

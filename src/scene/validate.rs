@@ -43,7 +43,7 @@ pub(super) fn check(parts: &Parts) -> Result<Option<Stage>> {
     check_end(parts)?;
     check_power(parts, stage.as_ref())?;
     for region in &parts.regions {
-        let far = extent(&region.shape) * region.medium.sigma_t().max();
+        let far = extent(&region.shape) * region.medium.highest_sigma_t().max();
         if far > MAX_EXTENT_OVER_MFP {
             return Err(Error::out_of_range(
                 "distance from the origin over the mean free path",
@@ -116,14 +116,12 @@ fn check_end(parts: &Parts) -> Result<()> {
         let middle = |shape: &Shape| shape.sample_inside(0.0, [0.5; 3]).0;
         let is_inside =
             |shape: &Shape| object.shape.contains(middle(shape)) || shape.contains(middle(&object.shape));
-        let absorbs =
-            parts.regions.iter().any(|r| {
-                !keeps_all(r.medium.albedo()) && !r.medium.sigma_t().is_black() && is_inside(&r.shape)
-            }) || parts
+        let absorbs = parts.regions.iter().any(|r| r.medium.is_absorbing() && is_inside(&r.shape))
+            || parts
                 .objects
                 .iter()
                 .any(|o| !keeps_all(o.surface.largest_reflectance()) && is_inside(&o.shape))
-                || parts.lights.iter().any(|l| l.body().is_some_and(is_inside));
+            || parts.lights.iter().any(|l| l.body().is_some_and(is_inside));
         if !absorbs {
             return refuse(
                 "light could be caught for ever: a closed shape reflects everything and nothing in it absorbs",
@@ -154,6 +152,11 @@ fn check_fold(parts: &Parts, stage: Option<&Stage>) -> Result<()> {
         && parts.lights.iter().all(Light::needs_stage);
     if !all_unbounded {
         return refuse("with `cell`, every medium, surface and light must be laterally unbounded");
+    }
+    if !parts.regions.iter().all(|r| r.medium.is_layered()) {
+        return refuse(
+            "with `cell`, a density must depend on z alone: a grid of one sample along x and y, or height fog along z",
+        );
     }
     for light in &parts.lights {
         let shape = match light {

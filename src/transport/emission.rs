@@ -41,9 +41,8 @@ fn collect(
     stream: &mut Stream,
 ) -> Spectrum {
     let (mut passed, mut sum, mut cursor) = (Spectrum::ONE, Spectrum::ZERO, 0.0);
-    let gap = |from: f64, to: f64| {
-        Interval { start: from, end: to }.intersection(part).map_or(0.0, |i| i.length())
-    };
+    let gap =
+        |from: f64, to: f64| Interval { start: from, end: to }.intersection(part).map_or(0.0, |i| i.length());
     for segment in scene.segments(ray, end, within).iter() {
         sum += passed * source * gap(cursor, segment.interval.start);
         cursor = segment.interval.end;

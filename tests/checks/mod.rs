@@ -4,6 +4,7 @@
 
 pub mod cell;
 pub mod light;
+pub mod media;
 pub mod numbers;
 pub mod phase;
 pub mod point_light;
