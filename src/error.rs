@@ -43,6 +43,17 @@ impl Error {
     pub fn out_of_range(name: impl Into<String>, value: f64, allowed: &'static str) -> Self {
         Error::OutOfRange { name: name.into(), value, allowed }
     }
+
+    /// The same error, met in a part of a scene: says which.
+    pub fn within(self, part: &str) -> Self {
+        match self {
+            Error::OutOfRange { name, value, allowed } => {
+                Error::OutOfRange { name: format!("{part}.{name}"), value, allowed }
+            }
+            Error::Scene(text) => Error::Scene(format!("{part}: {text}")),
+            other => other,
+        }
+    }
 }
 
 /// A result with the library's error.

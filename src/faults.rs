@@ -51,6 +51,12 @@ pub enum Fault {
     RejectedSetRadius,
     /// A march sums its steps and forgets how long they are.
     StepForgotten,
+    /// A path's radiance is not scaled where it is refracted.
+    RadianceUnscaled,
+    /// A photon's power is scaled like radiance where it is refracted.
+    PhotonPowerScaled,
+    /// A dielectric reflects nothing but what it reflects totally.
+    FresnelForgotten,
     /// A grid's samples are taken to lie half a cell from where they do.
     GridHalfCellOff,
     /// Light that meets nothing at a tentative collision keeps the weight that it came with.
@@ -59,7 +65,7 @@ pub enum Fault {
 
 impl Fault {
     /// Every fault, in the order of their definition.
-    pub const ALL: [Fault; 24] = [
+    pub const ALL: [Fault; 27] = [
         Fault::AlbedoTwice,
         Fault::AlbedoNever,
         Fault::CosineTwice,
@@ -82,6 +88,9 @@ impl Fault {
         Fault::RootForgotten,
         Fault::RejectedSetRadius,
         Fault::StepForgotten,
+        Fault::RadianceUnscaled,
+        Fault::PhotonPowerScaled,
+        Fault::FresnelForgotten,
         Fault::GridHalfCellOff,
         Fault::NullWeightForgotten,
     ];

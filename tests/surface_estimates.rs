@@ -163,7 +163,7 @@ fn beside_a_wall() {
 }
 
 /// N independent photons on a unit square: the k-1 rule is unbiased at finite N in the mean over maps, the biased one
-/// reads K(1) pi/(k-1) high; variances are those stated. The smallest bias seen is three per cent of the mean, half of the variance.
+/// reads K(1) pi/(k-1) high; variances are those stated. The smallest bias seen is four per cent of the mean, half of the variance.
 #[test]
 fn a_uniform_plane() {
     const N: u64 = 2000;
@@ -189,7 +189,7 @@ fn a_uniform_plane() {
             let n = N as f64;
             let expected = 1.0 + gather.expected_disc_bias(kernel, 1.0, 0.0, n);
             let what = format!("{kernel:?} {gather:?}");
-            verdict::agrees(&what, &means, (expected, 1e-3), 0.03, 8);
+            verdict::agrees(&what, &means, (expected, 1e-3), 0.04, 8);
             // Deviations of single spots, averaged over the spots of a map.
             let variance = gather.expected_disc_variance(kernel, n, 1.0);
             for read in values {

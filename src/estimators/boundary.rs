@@ -22,11 +22,13 @@ mod solid;
 pub use moments::body_moments;
 pub use rejection::Rejection;
 
-use super::{BallSum, Estimate, Gather, Kernel, ball_sum, for_each_photon};
+use super::point::in_scattered_sum;
+use super::{BallSum, Directional, Estimate, Gather, Kernel, ball_sum, for_each_photon};
 use crate::Spectrum;
 use crate::error::{Error, Result};
 use crate::geometry::Shape;
-use crate::photons::PhotonMap;
+use crate::math::cosine_pair;
+use crate::photons::{Photon, PhotonMap};
 use accepted::{Accepted, accepted};
 use glam::DVec3;
 use images::images;
@@ -134,10 +136,46 @@ pub fn treated_density(
     gather: Gather,
     boundary: &Boundary<'_>,
 ) -> Treated {
+    let plain = || ball_sum(map, point, kernel, gather);
+    treated(map, point, kernel, gather, boundary, plain, &|_| 1.0)
+}
+
+/// In-scattered radiance times sigma_t [W/(L^3 sr)], with a treatment of boundaries: each photon weighted by the phase
+/// function, images of photons by that of their own directions.
+///
+/// # Arguments
+/// `wo` unit direction of travel after the scattering; the rest as in [`treated_density`]
+pub fn treated_in_scattered(
+    map: &PhotonMap,
+    point: DVec3,
+    wo: DVec3,
+    phase: &impl Directional,
+    kernel: Kernel,
+    gather: Gather,
+    boundary: &Boundary<'_>,
+) -> Treated {
+    let plain = || in_scattered_sum(map, point, wo, phase, kernel, gather);
+    let value = |photon: &Photon| {
+        let (one_minus_mu, one_plus_mu) = cosine_pair(photon.dir.as_dvec3(), wo);
+        phase.value(one_minus_mu, one_plus_mu)
+    };
+    treated(map, point, kernel, gather, boundary, plain, &value)
+}
+
+/// The treated sum of power x weight; `plain` is the untreated one.
+fn treated(
+    map: &PhotonMap,
+    point: DVec3,
+    kernel: Kernel,
+    gather: Gather,
+    boundary: &Boundary<'_>,
+    plain: impl FnOnce() -> BallSum,
+    value: &dyn Fn(&Photon) -> f64,
+) -> Treated {
     let sieve = Sieve::new(boundary.rejection, boundary.walls, point, gather.cap());
     let (BallSum { sum, ball }, rejected) = match sieve {
-        None => (treated_sum(map, point, kernel, gather, boundary), 0),
-        Some(sieve) => sifted_sum(map, point, kernel, gather, boundary, &sieve),
+        None => (treated_sum(map, point, kernel, gather, boundary, plain(), value), 0),
+        Some(sieve) => sifted_sum(map, point, kernel, gather, boundary, &sieve, value),
     };
     let estimate = Estimate {
         value: sum / map.emitted() as f64,
@@ -156,9 +194,10 @@ fn treated_sum(
     kernel: Kernel,
     gather: Gather,
     boundary: &Boundary<'_>,
+    mut plain: BallSum,
+    value: &dyn Fn(&Photon) -> f64,
 ) -> BallSum {
     let medium = &boundary.medium;
-    let mut plain = ball_sum(map, point, kernel, gather);
     let r = plain.ball.radius;
     if medium.room(point) >= r {
         return plain;
@@ -174,7 +213,8 @@ fn treated_sum(
             for_each_photon(map, point, Kernel::Uniform, gather, |photon, share| {
                 let weight: f64 =
                     images.iter().map(|image| image_weight(kernel, (photon.position - image) / r)).sum();
-                plain.sum += Spectrum(photon.power.as_dvec3()) * (share / whole * weight / (r * r * r));
+                let weight = share / whole * weight / (r * r * r) * value(&photon);
+                plain.sum += Spectrum(photon.power.as_dvec3()) * weight;
             });
         }
         Treatment::LocalLinear => {
@@ -182,7 +222,7 @@ fn treated_sum(
             let mut first = Spectrum::ZERO;
             for_each_photon(map, point, kernel, gather, |photon, weight| {
                 let z = (photon.position - point).dot(normal) / r;
-                first += Spectrum(photon.power.as_dvec3()) * (weight * z / (r * r * r));
+                first += Spectrum(photon.power.as_dvec3()) * (weight * z / (r * r * r) * value(&photon));
             });
             plain.sum = linear(body_moments(kernel, medium, point, r), plain.sum, first);
         }
@@ -198,12 +238,14 @@ fn sifted_sum(
     gather: Gather,
     boundary: &Boundary<'_>,
     sieve: &Sieve<'_>,
+    value: &dyn Fn(&Photon) -> f64,
 ) -> (BallSum, usize) {
     let Accepted { photons, ball, rejected } = accepted(map.tree(), point, gather, sieve);
     let (medium, r) = (&boundary.medium, ball.radius);
     let sum = |weight: &dyn Fn(DVec3) -> f64| {
         photons.iter().fold(Spectrum::ZERO, |sum, (photon, share)| {
-            sum + Spectrum(photon.power.as_dvec3()) * (share * weight(photon.position) / (r * r * r))
+            let weight = share * weight(photon.position) / (r * r * r) * value(photon);
+            sum + Spectrum(photon.power.as_dvec3()) * weight
         })
     };
     // All gathered photons are in the ball, whatever rounding says of the last.

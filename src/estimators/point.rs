@@ -86,13 +86,24 @@ pub fn in_scattered(
     kernel: Kernel,
     gather: Gather,
 ) -> Estimate {
-    let wo = wo.as_vec3().to_array();
-    let sum = weighted_sum(map.tree(), point, kernel, gather, |neighbors| {
-        phase.values(CosinePairs { dir: neighbors.dir(), wo, inside: neighbors.inside() })
-    });
-    let mut estimate = per_emitted(map, sum);
+    let mut estimate = per_emitted(map, in_scattered_sum(map, point, wo, phase, kernel, gather));
     estimate.value = estimate.value / sigma_t;
     estimate
+}
+
+/// Sum of power x phase x K_r over the gathered photons [W/(L^3 sr)], divided by nothing.
+pub(super) fn in_scattered_sum(
+    map: &PhotonMap,
+    point: DVec3,
+    wo: DVec3,
+    phase: &impl Directional,
+    kernel: Kernel,
+    gather: Gather,
+) -> BallSum {
+    let wo = wo.as_vec3().to_array();
+    weighted_sum(map.tree(), point, kernel, gather, |neighbors| {
+        phase.values(CosinePairs { dir: neighbors.dir(), wo, inside: neighbors.inside() })
+    })
 }
 
 /// Sum of power x K_r over the gathered photons [W/L^3], divided by nothing.

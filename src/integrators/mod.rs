@@ -1,6 +1,7 @@
-//! Integrators: the path tracer, and the march through a photon map.
+//! Integrators: the path tracer, the photon mapper, and the march through a photon map.
 
 mod layers;
+pub mod mapper;
 mod march;
 pub mod path;
 

@@ -9,6 +9,7 @@
 use super::{Layer, Layers};
 use crate::Spectrum;
 use crate::faults::{Fault, planted};
+use crate::geometry::Hit;
 use crate::light::{Light, LightSample};
 use crate::math::{FOUR_PI, Interval, Ray, atan2, cosine_pair, warp};
 use crate::phase::PhaseFunction;
@@ -84,7 +85,11 @@ impl<'a, F: FnMut(u32, Layer, Spectrum)> PathVisitor<'a, F> {
         if let Some(found) = hit
             && let Target::Light(index) = found.target
         {
-            let (radiance, pdf_light) = self.scene.lights()[index].emitted(&walker.ray, &found.hit);
+            // Seen from where the direction was chosen, on the far side of filters.
+            let (back, dir) = (walker.behind, walker.ray.dir);
+            let seen_along = Ray::new(walker.ray.at(-back), dir);
+            let seen_hit = Hit { t: found.hit.t + back, ..found.hit };
+            let (radiance, pdf_light) = self.scene.lights()[index].emitted(&seen_along, &seen_hit);
             let share = walker.pdf_solid_angle.map_or(1.0, |pdf| pdf / (pdf + pdf_light));
             let passed = transmittance(self.scene, &walker.ray, end, walker.within, stream);
             let seen = radiance * passed * share;
@@ -306,7 +311,13 @@ impl<F: FnMut(u32, Layer, Spectrum)> Visitor for PathVisitor<'_, F> {
 
 /// Uncollided radiance from a light that fills the ray's far end or its way [W/(L^2 sr)]: incidence and volume
 /// sources, which no sampler aims at.
-fn uncollided(scene: &Scene, light: &Light, walker: &Walker, end: f64, stream: &mut Stream) -> Spectrum {
+pub(super) fn uncollided(
+    scene: &Scene,
+    light: &Light,
+    walker: &Walker,
+    end: f64,
+    stream: &mut Stream,
+) -> Spectrum {
     let (ray, within) = (&walker.ray, walker.within);
     match light {
         Light::Isotropic(light) if light.is_lit_against(ray.dir) => match light.shape().interval(ray) {
@@ -330,7 +341,7 @@ fn uncollided(scene: &Scene, light: &Light, walker: &Walker, end: f64, stream: &
 
 /// Light that arrives at a place (point, body, interior) straight from the light of this index, along one sampled direction: radiance
 /// over density, or the irradiance of a delta light [W/L^2].
-fn next_event(
+pub(super) fn next_event(
     scene: &Scene,
     index: usize,
     (position, from, within): (DVec3, Option<Start>, usize),

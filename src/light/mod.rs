@@ -20,7 +20,7 @@ pub use volume_source::VolumeSource;
 
 use crate::Spectrum;
 use crate::error::{Error, Result};
-use crate::geometry::{Hit, Shape, Slab};
+use crate::geometry::{Hit, Shape, Slab, Sphere};
 use crate::math::Ray;
 use crate::rng::Stream;
 use glam::DVec3;
@@ -113,6 +113,25 @@ impl Light {
             Light::Spot(l) => Some(l.position()),
             _ => None,
         }
+    }
+
+    /// Makes the photons of a sun cover what is in the scene, unless it was told what to cover.
+    ///
+    /// # Errors
+    /// `Error::Scene` for a sun where nothing bounds the scene.
+    pub(crate) fn cover(&mut self, bounds: Option<Sphere>) -> Result<()> {
+        if let Light::Sun(sun) = self
+            && sun.disc().is_none()
+        {
+            let Some(bounds) = bounds else {
+                return Err(Error::Scene(
+                    "a sun needs something to shine on: bodies or media, and no unbounded slab among them"
+                        .into(),
+                ));
+            };
+            *sun = sun.covering(bounds);
+        }
+        Ok(())
     }
 
     /// Whether next-event estimation can aim at it.

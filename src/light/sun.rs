@@ -78,7 +78,7 @@ impl Sun {
     }
 
     /// What photons cover and the radius of the disc that they cross \[L\].
-    pub(crate) fn disc(&self) -> Option<(Sphere, f64)> {
+    pub(super) fn disc(&self) -> Option<(Sphere, f64)> {
         self.bounds.map(|bounds| (bounds, bounds.radius() / (1.0 - self.one_minus_mu_max)))
     }
 
@@ -93,13 +93,13 @@ impl Sun {
 
     /// How far before its disc a photon starts \[L\]: outside the sphere that holds the scene, by its radius. On a line
     /// through the disc the sphere reaches R (1 + tan alpha) back at most.
-    pub(crate) fn run_up(&self) -> f64 {
+    pub(super) fn run_up(&self) -> f64 {
         let tan = self.sin2_max().sqrt() / (1.0 - self.one_minus_mu_max);
         self.bounds.map_or(0.0, |bounds| bounds.radius() * (2.0 + tan))
     }
 
     /// Where a photon crosses the disc \[L\].
-    pub(crate) fn crossing(&self, u: [f64; 2]) -> DVec3 {
+    pub(super) fn crossing(&self, u: [f64; 2]) -> DVec3 {
         let (center, radius) = self.disc().map_or((DVec3::ZERO, 0.0), |(b, radius)| (b.center(), radius));
         let p = warp::square_to_disc(u) * radius;
         center + self.frame.to_world(DVec3::new(p.x, p.y, 0.0))

@@ -1,9 +1,15 @@
-//! Files that appear whole or not at all, and tables that keep every bit.
+//! Files that appear whole or not at all: tables that keep every bit, pictures, point clouds.
 
 mod atomic;
+mod exr;
+mod ply;
 mod stdout;
 mod table;
+mod tone;
 
 pub use atomic::{WriteError, write_atomically};
+pub use exr::{PROVENANCE, encode_exr, write_exr};
+pub use ply::write_ply;
 pub use stdout::{ignore_closed_pipe, print};
 pub use table::{Format, write_aligned, write_csv, write_json, write_rows};
+pub use tone::{Curve, Tone, auto_exposure, to_srgb, write_png};

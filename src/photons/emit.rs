@@ -25,5 +25,6 @@ pub(super) fn emit(scene: &Scene, power: Spectrum, stream: &mut Stream) -> Walke
     let weight =
         if lights.len() > 1 { emission.power * (total / emission.power.sum()) } else { emission.power };
     let from = lights[index].body().map(|_| Start { target: Target::Light(index), primitive: 0 });
-    Walker { from, ..Walker::new(emission.ray, weight) }
+    let within = scene.interior_of_light(index, emission.ray.origin);
+    Walker { from, within, ..Walker::new(emission.ray, weight) }
 }

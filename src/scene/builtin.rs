@@ -201,7 +201,7 @@ fn slab(p: SlabParameters) -> Result<SceneFile> {
         ));
     }
     let regions = vec![region(shape, 1.0 / scale, p.albedo, p.g)?];
-    Ok(SceneFile { cell: Some(side), regions, objects: Vec::new(), lights: vec![light], sensors })
+    Ok(SceneFile { cell: Some(side), regions, lights: vec![light], sensors, ..SceneFile::default() })
 }
 
 fn sphere(p: SphereParameters) -> Result<SceneFile> {
@@ -239,7 +239,7 @@ fn sphere(p: SphereParameters) -> Result<SceneFile> {
         }
     }
     let regions = vec![region(shape, 1.0, p.albedo, p.g)?];
-    Ok(SceneFile { cell: None, regions, objects: Vec::new(), lights: vec![light], sensors })
+    Ok(SceneFile { regions, lights: vec![light], sensors, ..SceneFile::default() })
 }
 
 fn shaft(p: ShaftParameters) -> Result<SceneFile> {
@@ -259,5 +259,5 @@ fn shaft(p: ShaftParameters) -> Result<SceneFile> {
     });
     let sensors = sensors.collect();
     let regions = vec![region(shape, 1.0, p.albedo, p.g)?];
-    Ok(SceneFile { cell: None, regions, objects: Vec::new(), lights: vec![light], sensors })
+    Ok(SceneFile { regions, lights: vec![light], sensors, ..SceneFile::default() })
 }

@@ -1,6 +1,10 @@
 //! The scene file: TOML, strict. Every error names the line, the column and the key, and says what is allowed.
 
-use super::{Object, Orders, Parts, Quantity, Region, Scene, Sensor};
+mod interior;
+
+pub use interior::{DielectricFile, InteriorFile};
+
+use super::{Camera, Filter, Interior, Object, Orders, Parts, Quantity, Region, Scene, Sensor, View};
 use crate::Spectrum;
 use crate::error::{Error, Result};
 use crate::geometry::{Cuboid, Face, Rectangle, Shape, Slab, Sphere};
@@ -8,7 +12,7 @@ use crate::light::{Area, Beam, Faces, Isotropic, Light, Point, Section, Spot, Su
 use crate::math::{Albedo, Asymmetry, NonNegative, Positive, Ray};
 use crate::medium::Homogeneous;
 use crate::phase::Phase;
-use crate::surface::{Black, Lambertian, Mirror, Surface};
+use crate::surface::{self, Black, Lambertian, Mirror, Surface};
 use glam::DVec3;
 use serde::de::{IntoDeserializer, SeqAccess, Visitor};
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
@@ -55,7 +59,7 @@ impl<T: Serialize + PartialEq> Serialize for Channels<T> {
 }
 
 /// A whole scene file.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct SceneFile {
     /// Side of the cell that stands for an unbounded slab \[L\].
@@ -64,6 +68,9 @@ pub struct SceneFile {
     /// Media.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub regions: Vec<RegionFile>,
+    /// What fills the space between dielectric surfaces, beside the surroundings.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub interiors: Vec<InteriorFile>,
     /// Surfaces.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub objects: Vec<ObjectFile>,
@@ -72,6 +79,51 @@ pub struct SceneFile {
     /// What is measured.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub sensors: Vec<SensorFile>,
+    /// Who looks.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub camera: Option<CameraFile>,
+}
+
+/// A camera.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct CameraFile {
+    /// Where it is \[L\].
+    pub position: [f64; 3],
+    /// A point in the middle of the picture \[L\].
+    pub look_at: [f64; 3],
+    /// What is up in the picture; +y if absent.
+    #[serde(default = "up", skip_serializing_if = "is_up")]
+    pub up: [f64; 3],
+    /// Full horizontal angle \[degrees\].
+    pub fov: f64,
+    /// Pixels across.
+    pub width: u32,
+    /// Pixels down.
+    pub height: u32,
+    /// How the samples of a pixel are spread; uniformly over it if absent.
+    #[serde(default, skip_serializing_if = "is_box")]
+    pub filter: Filter,
+}
+
+fn up() -> [f64; 3] {
+    [0.0, 1.0, 0.0]
+}
+
+fn is_up(given: &[f64; 3]) -> bool {
+    *given == up()
+}
+
+fn is_box(filter: &Filter) -> bool {
+    *filter == Filter::Box
+}
+
+impl CameraFile {
+    fn camera(&self) -> Result<Camera> {
+        let CameraFile { fov, width, height, filter, .. } = *self;
+        let (position, look_at, up) = (self.position.into(), self.look_at.into(), self.up.into());
+        Camera::new(View { position, look_at, up, fov, width, height, filter })
+    }
 }
 
 /// A shape; lengths in scene units.
@@ -122,6 +174,8 @@ pub struct ObjectFile {
 pub enum SurfaceFile {
     Lambertian { reflectance: Channels<Albedo> },
     Mirror { reflectance: Channels<Albedo> },
+    Dielectric(DielectricFile),
+    Filter { transmittance: Channels<Albedo> },
     Black,
 }
 
@@ -198,12 +252,16 @@ fn rectangle(corner: [f64; 3], u: [f64; 3], v: [f64; 3]) -> Result<Rectangle> {
 }
 
 impl SurfaceFile {
-    fn surface(&self, _folder: &Path) -> Result<Surface> {
+    fn surface(&self, _folder: &Path, interiors: &[Interior]) -> Result<Surface> {
         Ok(match *self {
             SurfaceFile::Lambertian { reflectance } => {
                 Surface::Lambertian(Lambertian::new(reflectance.spectrum())?)
             }
             SurfaceFile::Mirror { reflectance } => Surface::Mirror(Mirror::new(reflectance.spectrum())?),
+            SurfaceFile::Dielectric(ref names) => Surface::Dielectric(names.dielectric(interiors)?),
+            SurfaceFile::Filter { transmittance } => {
+                Surface::Filter(surface::Filter::new(transmittance.spectrum())?)
+            }
             SurfaceFile::Black => Surface::Black(Black),
         })
     }
@@ -287,17 +345,26 @@ impl SceneFile {
             let medium = Homogeneous::new(r.sigma_t.spectrum(), r.albedo.spectrum(), phase)?.into();
             Ok(Region { shape: r.shape.shape(folder)?, medium })
         });
-        let objects = self
-            .objects
-            .iter()
-            .map(|o| Ok(Object { shape: o.shape.shape(folder)?, surface: o.surface.surface(folder)? }));
+        let mut interiors = vec![Interior::surroundings()];
+        for interior in &self.interiors {
+            interiors.push(interior.interior()?);
+        }
+        let objects = self.objects.iter().map(|o| {
+            Ok(Object { shape: o.shape.shape(folder)?, surface: o.surface.surface(folder, &interiors)? })
+        });
         Scene::new(Parts {
             regions: regions.collect::<Result<_>>()?,
-            interiors: Vec::new(),
+            interiors: interiors.clone(),
             objects: objects.collect::<Result<_>>()?,
-            lights: self.lights.iter().map(|l| l.light(folder)).collect::<Result<_>>()?,
+            lights: self
+                .lights
+                .iter()
+                .enumerate()
+                .map(|(i, l)| l.light(folder).map_err(|e| e.within(&format!("lights[{i}]"))))
+                .collect::<Result<_>>()?,
             cell: self.cell.map(Positive::get),
             sensors: self.sensors.iter().map(|s| s.sensor(folder)).collect::<Result<_>>()?,
+            camera: self.camera.as_ref().map(CameraFile::camera).transpose()?,
         })
     }
 }

@@ -1,7 +1,9 @@
 //! The scene: a plain struct, validated once and trusted after; what a ray meets in it; what it requires.
 
 mod bodies;
+mod bounds;
 mod builtin;
+mod camera;
 mod file;
 mod hit;
 mod interiors;
@@ -11,6 +13,7 @@ mod sensor;
 mod validate;
 
 pub use builtin::{BUILTIN, Builtin};
+pub use camera::{Camera, Filter, MAX_SIDE, View};
 pub use file::SceneFile;
 pub use hit::{SceneHit, Start, Target};
 pub use interiors::{Interior, SURROUNDINGS};
@@ -21,7 +24,7 @@ pub use sensor::{Orders, Quantity, Sensor};
 use crate::Spectrum;
 use crate::error::Result;
 use crate::faults::{Fault, planted};
-use crate::geometry::Shape;
+use crate::geometry::{Shape, Sphere};
 use crate::light::{Light, Stage};
 use crate::math::{Interval, Ray, exp};
 use crate::medium::Medium;
@@ -60,6 +63,8 @@ pub struct Parts {
     pub cell: Option<f64>,
     /// What is measured.
     pub sensors: Vec<Sensor>,
+    /// Who looks, if anybody does.
+    pub camera: Option<Camera>,
 }
 
 /// A scene whose parts have been checked together.
@@ -68,8 +73,10 @@ pub struct Scene {
     parts: Parts,
     media: Vec<Medium>,
     filling: Vec<Option<usize>>,
+    light_within: Vec<Option<usize>>,
     bodies: bodies::Bodies,
     stage: Option<Stage>,
+    bounds: Option<Sphere>,
     plan: Plan,
 }
 
@@ -82,11 +89,16 @@ impl Scene {
         if parts.interiors.is_empty() {
             parts.interiors.push(Interior::surroundings());
         }
+        let bounds = bounds::of(&parts);
+        parts.lights.iter_mut().try_for_each(|light| light.cover(bounds))?;
         let stage = validate::check(&parts)?;
         let plan = Plan::of(&parts);
         let (media, filling) = interiors::numbered(&parts.regions, &parts.interiors);
         let bodies = bodies::Bodies::of(&parts);
-        Ok(Scene { parts, media, filling, bodies, stage, plan })
+        let light_within = Vec::new();
+        let mut scene = Scene { parts, media, filling, light_within, bodies, stage, bounds, plan };
+        scene.light_within = interiors::of_lights(&scene);
+        Ok(scene)
     }
 
     /// Media and where they are.
@@ -109,6 +121,11 @@ impl Scene {
         &self.parts.sensors
     }
 
+    /// The camera, if the scene has one.
+    pub fn camera(&self) -> Option<&Camera> {
+        self.parts.camera.as_ref()
+    }
+
     /// What the scene requires of the simulator.
     pub fn plan(&self) -> &Plan {
         &self.plan
@@ -117,6 +134,11 @@ impl Scene {
     /// The slab and its cell, where the scene has a cell.
     pub fn stage(&self) -> Option<&Stage> {
         self.stage.as_ref()
+    }
+
+    /// A sphere about every medium, surface and body of a light; none where one of them has no end, or there is none.
+    pub fn bounds(&self) -> Option<&Sphere> {
+        self.bounds.as_ref()
     }
 
     /// Power of all lights \[W\].

@@ -1,12 +1,18 @@
-//! Sensors: what paths and photons read of a scene, one mean with its standard error a number.
+//! Sensors: what paths and photons read of a scene, one mean with its standard error a number; and pictures, a mean
+//! with its variance a pixel and layer.
 
 mod advise;
+mod film;
 mod paths;
 mod photons;
+mod render;
 
+pub use crate::scene::{Camera, Filter, View};
 pub use advise::{Advice, MIN_MAPS, PathAdvice, Pilot, PilotSettings, path_advice};
+pub use film::{Film, Pixel, Sample};
 pub use paths::{PathSettings, by_paths, sample, sample_counted};
 pub use photons::{PhotonReadings, PhotonSettings, by_photons};
+pub use render::{MAX_SAMPLES, Streams, extend, render};
 
 use crate::scene::Sensor;
 use crate::stats::{Moments, poisson_interval};

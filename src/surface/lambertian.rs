@@ -12,18 +12,18 @@ pub struct Lambertian {
     reflectance: Spectrum,
 }
 
-/// A reflectance whose channels are all in [0, 1].
-pub(super) fn checked(reflectance: Spectrum) -> Result<Spectrum> {
-    match (0..3).map(|c| reflectance[c]).find(|r| !(0.0..=1.0).contains(r)) {
-        Some(bad) => Err(Error::out_of_range("reflectance", bad, "0 to 1")),
-        None => Ok(reflectance),
+/// A fraction whose channels are all in [0, 1].
+pub(super) fn checked(name: &'static str, fraction: Spectrum) -> Result<Spectrum> {
+    match (0..3).map(|c| fraction[c]).find(|r| !(0.0..=1.0).contains(r)) {
+        Some(bad) => Err(Error::out_of_range(name, bad, "0 to 1")),
+        None => Ok(fraction),
     }
 }
 
 impl Lambertian {
     /// A surface of the given reflectance \[1\], each channel in [0, 1].
     pub fn new(reflectance: Spectrum) -> Result<Self> {
-        Ok(Lambertian { reflectance: checked(reflectance)? })
+        Ok(Lambertian { reflectance: checked("reflectance", reflectance)? })
     }
 
     /// Fraction of the arriving power that is reflected, at a point \[L\] with these surface parameters.

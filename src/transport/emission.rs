@@ -1,6 +1,7 @@
 //! Emission of media, and of sources that fill a part of a ray, collected along the ray.
 
 use super::track;
+use super::transmittance::passed as transmittance;
 use crate::Spectrum;
 use crate::math::{Interval, Ray, exp_m1};
 use crate::medium::{Homogeneous, Medium};
@@ -49,7 +50,7 @@ fn collect(
         let medium = scene.medium(segment.medium);
         for (stretch, is_source) in pieces(segment.interval, part) {
             let uniform = if is_source { source } else { Spectrum::ZERO };
-            let (light, transmittance) = match medium {
+            let (light, behind) = match medium {
                 Medium::Homogeneous(medium) => {
                     let emission = if own { medium.emission() + uniform } else { uniform };
                     closed(medium, stretch.length(), emission)
@@ -58,17 +59,10 @@ fn collect(
                     stream.work.transmittances += 1;
                     track::emitted(medium, ray, stretch, own, uniform, stream)
                 }
-                Medium::Heterogeneous(heterogeneous) => {
-                    let closed = medium.optical_depth(ray, stretch).map(decay);
-                    let passed = closed.unwrap_or_else(|| {
-                        stream.work.transmittances += 1;
-                        track::ratio(heterogeneous, ray, stretch, stream)
-                    });
-                    (Spectrum::ZERO, passed)
-                }
+                Medium::Heterogeneous(_) => (Spectrum::ZERO, transmittance(medium, ray, stretch, stream)),
             };
             sum += passed * light;
-            passed *= transmittance;
+            passed *= behind;
         }
     }
     sum + passed * source * gap(cursor, end)

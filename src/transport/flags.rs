@@ -14,6 +14,11 @@ impl Flags {
     /// Was scattered in a medium (M).
     pub const MEDIUM: Flags = Flags(4);
 
+    /// The flags as bits: 1 specular, 2 surface, 4 medium.
+    pub fn bits(self) -> u8 {
+        self.0
+    }
+
     /// Both sets of flags.
     pub fn with(self, other: Flags) -> Flags {
         Flags(self.0 | other.0)

@@ -1,6 +1,7 @@
 //! Free flight, roulette, the one random walk that paths and photons share, and blocks of histories.
 
 mod blocks;
+mod bounce;
 mod emission;
 mod flags;
 mod flight;
@@ -14,5 +15,5 @@ pub use emission::{collected, emission};
 pub use flags::Flags;
 pub use flight::{Flight, free_flight};
 pub use roulette::Roulette;
-pub use transmittance::transmittance;
+pub use transmittance::{passed, transmittance};
 pub use walk::{Arrival, Step, Visitor, Walker, walk};

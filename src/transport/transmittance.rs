@@ -2,7 +2,7 @@
 
 use super::track;
 use crate::Spectrum;
-use crate::math::Ray;
+use crate::math::{Interval, Ray};
 use crate::medium::Medium;
 use crate::rng::Stream;
 use crate::scene::{Scene, decay};
@@ -13,17 +13,27 @@ pub fn transmittance(scene: &Scene, ray: &Ray, end: f64, within: usize, stream: 
     if !scene.plan().has_heterogeneous {
         return decay(scene.optical_depth(ray, end, within));
     }
-    let (mut depth, mut passed) = (Spectrum::ZERO, Spectrum::ONE);
+    let (mut depth, mut tracked) = (Spectrum::ZERO, Spectrum::ONE);
     for segment in scene.segments(ray, end, within).iter() {
         let medium = scene.medium(segment.medium);
-        match (medium.optical_depth(ray, segment.interval), medium) {
-            (Some(closed), _) => depth += closed,
-            (None, Medium::Heterogeneous(medium)) => {
-                stream.work.transmittances += 1;
-                passed *= track::ratio(medium, ray, segment.interval, stream);
-            }
-            (None, Medium::Homogeneous(_)) => {}
+        match medium.optical_depth(ray, segment.interval) {
+            Some(closed) => depth += closed,
+            None => tracked *= passed(medium, ray, segment.interval, stream),
         }
     }
-    decay(depth) * passed
+    decay(depth) * tracked
+}
+
+/// The same of a stretch of one medium.
+pub fn passed(medium: &Medium, ray: &Ray, part: Interval, stream: &mut Stream) -> Spectrum {
+    match medium {
+        Medium::Homogeneous(medium) => decay(medium.depth(part.length())),
+        Medium::Heterogeneous(varying) => match varying.optical_depth(ray, part) {
+            Some(closed) => decay(closed),
+            None => {
+                stream.work.transmittances += 1;
+                track::ratio(varying, ray, part, stream)
+            }
+        },
+    }
 }

@@ -3,6 +3,8 @@
 #![allow(dead_code, reason = "each test binary uses a part")]
 
 pub mod cell;
+pub mod glass;
+pub mod ledger;
 pub mod light;
 pub mod media;
 pub mod numbers;

@@ -176,6 +176,47 @@ fn wrong_options() {
     assert!(refuses(&["scenes", "--resolved"]).contains("NAME"));
 }
 
+/// Lights that cannot be: each refusal names the light and the key.
+#[test]
+fn lights_that_cannot_be() {
+    let folder = Folder::new();
+    let ball = "[[regions]]\nshape = { sphere = { center = [0, 0, 0], radius = 1 } }\nsigma_t = 1\nalbedo = 0.5\ng = 0\n";
+    let spot = |angles: &str, power: &str| {
+        format!("spot = {{ position = [0, 0, 3], dir = [0, 0, -1], {angles}, power = {power} }}")
+    };
+    let cases = [
+        (
+            spot("full_angle = 20, edge_angle = 10", "1"),
+            "lights[0].full_angle is 20; allowed: 0 to edge_angle",
+        ),
+        (spot("full_angle = 0, edge_angle = 200", "1"), "lights[0].edge_angle is 200; allowed: above 0"),
+        (spot("full_angle = 0, edge_angle = 10", "0"), "lights[0].power is 0; allowed: above 0"),
+        ("sun = { dir = [0, 0, 0], irradiance = 1, angular_radius = 1 }".into(), "lights[0]: a sun needs"),
+        (
+            "sun = { dir = [0, 0, 1], irradiance = 1, angular_radius = 90 }".into(),
+            "lights[0].angular_radius is 90; allowed: 0 to 45 degrees",
+        ),
+        ("sun = { dir = [0, 0, 1], irradiance = 0, angular_radius = 1 }".into(), "lights[0].irradiance is 0"),
+        (
+            "area = { shape = { sphere = { center = [0, 0, 2], radius = 0.5 } }, radiance = [0, 0, 0] }"
+                .into(),
+            "lights[0].radiance is 0; allowed: above 0 in at least one channel",
+        ),
+        (
+            "area = { shape = { slab = { top = 2, thickness = 1 } }, radiance = 1 }".into(),
+            "lights[0]: an area light needs a bounded shape",
+        ),
+        ("area = { corner = [0, 0, 0], u = [1, 0, 0], v = [0, 1, 0], radiance = 1 }".into(), "corner"),
+    ];
+    for (index, (light, words)) in cases.into_iter().enumerate() {
+        let file = folder.file(&format!("light{index}.toml"), &format!("{ball}[[lights]]\n{light}\n"));
+        refuses_naming(&["check", text(&file)], &[words]);
+    }
+    let sky = "[[lights]]\nsun = { dir = [0, 0, 1], irradiance = 1, angular_radius = 1 }\n";
+    let file = folder.file("sky.toml", sky);
+    refuses_naming(&["check", text(&file)], &["a sun needs something to shine on"]);
+}
+
 /// A mirror turns a beam: no path from the sensor can find it, and photons without a medium leave no map.
 #[test]
 fn what_no_sampler_reaches() {

@@ -1,6 +1,6 @@
 //! One row a fault: where it was seen, what it is here, and which check catches it.
 
-use crate::checks::{cell, light, media, numbers, phase, point_light, points, slab, threads, walls};
+use crate::checks::{cell, glass, light, media, numbers, phase, point_light, points, slab, threads, walls};
 use crate::support::scenes::{area_light, cuboid, rectangle};
 use glam::DVec3;
 use turbid::Spectrum;
@@ -147,6 +147,21 @@ const fn inside(fault: Fault) -> Row {
                 walls::a_constant_source_is_marched_to_its_integral()
             })
         }
+        Fault::RadianceUnscaled => {
+            ("radiance not scaled by a refraction", "a_cavity_is_brighter_by_the_squared_index", |_| {
+                glass::a_cavity_is_brighter_by_the_squared_index()
+            })
+        }
+        Fault::PhotonPowerScaled => {
+            ("photons scaled by a refraction", "photons_in_a_cavity_collide_as_its_fluence", |_| {
+                glass::photons_in_a_cavity_collide_as_its_fluence()
+            })
+        }
+        Fault::FresnelForgotten => {
+            ("a dielectric reflects nothing", "photons_cross_a_refracting_slab", |_| {
+                glass::photons_cross_a_refracting_slab()
+            })
+        }
     };
     Row { fault: Planted::Inside(fault), title, check_name, check }
 }
@@ -202,6 +217,9 @@ pub const ROWS: &[Row] = &[
     inside(Fault::RootForgotten),
     inside(Fault::RejectedSetRadius),
     inside(Fault::StepForgotten),
+    inside(Fault::RadianceUnscaled),
+    inside(Fault::PhotonPowerScaled),
+    inside(Fault::FresnelForgotten),
     inside(Fault::GridHalfCellOff),
     inside(Fault::NullWeightForgotten),
     outside("normal quantiles for 8 numbers", "false_alarms_are_as_rare_as_promised", |wrong| {

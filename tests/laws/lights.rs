@@ -5,7 +5,7 @@ use crate::checks::light::{corner_solid_angle, photons_and_paths_cross_a_box_ali
 use crate::common::config as properties;
 use crate::support::run::{numbers, paths, tallies};
 use crate::support::scenes::{
-    area_light, bounded, cuboid, isotropic, outflow, point_light, rectangle, sphere, volume_source,
+    area_light, bounded, cuboid, isotropic, outflow, point_light, rectangle, region, sphere, volume_source,
 };
 use crate::support::{unit_vector, verdict};
 use glam::DVec3;
@@ -15,7 +15,7 @@ use turbid::Spectrum;
 use turbid::geometry::{Shape, Sphere};
 use turbid::light::{Area, Beam, EmissionNumbers, Faces, Light, Section, Spot, Sun};
 use turbid::math::{FOUR_PI, Ray, warp};
-use turbid::scene::Orders;
+use turbid::scene::{Orders, Parts, Scene};
 
 const N: u64 = 1 << 17;
 
@@ -220,6 +220,24 @@ fn a_spot_sends_what_it_shows() {
     }
     assert!(Spot::new(DVec3::ZERO, axis, (50.0, 40.0), Spectrum::ONE).is_err());
     assert!(Spot::new(DVec3::ZERO, axis, (0.0, 0.0), Spectrum::ONE).is_err());
+}
+
+/// The sun's photons cover what is in its scene, however it is tilted: fog scatters as much of them as paths find.
+#[test]
+fn the_sun_covers_its_scene() {
+    let ball = sphere(DVec3::new(3.0, -2.0, 1.0), 0.7);
+    for (radius, seed) in [(0.0, 1), (2.0, 2), (45.0, 3)] {
+        let sun = Light::Sun(Sun::new(DVec3::new(-1.0, 2.0, 3.0), Spectrum::ONE, radius).unwrap());
+        let scene = bounded(vec![region(ball.clone(), 1.0, 0.8, 0.3)], Vec::new(), vec![sun]);
+        let quantity = outflow(ball.clone());
+        let by_photons = tallies(&scene, &[(quantity.clone(), Orders::SCATTERED)], N, seed);
+        let by_paths = paths(&scene, quantity, Orders::SCATTERED, N, seed);
+        verdict::agree(&format!("sun of {radius}"), &by_photons[0][0], &by_paths[0], 0.02, seed);
+    }
+    let nothing = Parts { lights: suns().into_iter().map(|l| l.1).collect(), ..Parts::default() };
+    assert!(Scene::new(nothing).is_ok(), "these are told what to cover");
+    let lost = Light::Sun(Sun::new(DVec3::X, Spectrum::ONE, 1.0).unwrap());
+    assert!(Scene::new(Parts { lights: vec![lost], ..Parts::default() }).is_err());
 }
 
 /// Irradiance at normal incidence is what the sun states: by directions towards it, and by rays that meet its disc.

@@ -1,0 +1,113 @@
+//! The final gathering: indirect light of a matt surface by rays that read the maps one bounce away.
+//!
+//! A ray in a direction of density cos/pi brings pi times the radiance along it as irradiance. The ray flies as far as
+//! a photon would. If it collides, it brings what the medium scatters there: single scattering by shadow rays and the
+//! volume map. If it passes, it brings what the matt surface behind reflects, from the global map, which holds every
+//! class of light there, direct light too. What it meets of lights themselves, straight or by specular surfaces, is direct
+//! light and caustics of the surface where it starts, and is left out.
+
+use super::surface::Matt;
+use super::{Mapper, ROULETTE, Report};
+use crate::Spectrum;
+use crate::math::{Frame, warp};
+use crate::rng::Stream;
+use crate::transport::{Arrival, Roulette, Step, Visitor, Walker, walk};
+use std::f64::consts::PI;
+
+impl Mapper<'_> {
+    /// Indirect irradiance of a matt point [W/L^2] by `count` rays, one in each cell of a grid over the directions.
+    pub(super) fn gathered(
+        &self,
+        matt: &Matt<'_>,
+        count: u32,
+        report: &mut Report,
+        stream: &mut Stream,
+    ) -> Spectrum {
+        let frame = Frame::new(matt.normal);
+        let [rows, columns] = cells(count);
+        let mut sum = Spectrum::ZERO;
+        for cell in 0..rows * columns {
+            let [u, v] = stream.pair();
+            let u = (f64::from(cell / columns) + u) / f64::from(rows);
+            let v = (f64::from(cell % columns) + v) / f64::from(columns);
+            let dir = frame.to_world(warp::square_to_cosine_hemisphere([u, v])).normalize();
+            report.gathering += 1;
+            let mut ray = GatherRay { mapper: self, report, found: Spectrum::ZERO };
+            walk(self.scene, matt.leaving(dir), Roulette::Below(ROULETTE), Some(1), stream, &mut ray);
+            sum += ray.found;
+        }
+        sum * (PI / f64::from(count))
+    }
+}
+
+/// The grid of so many cells that is nearest to a square.
+fn cells(count: u32) -> [u32; 2] {
+    let mut rows = f64::from(count).sqrt() as u32;
+    while rows > 1 && !count.is_multiple_of(rows) {
+        rows -= 1;
+    }
+    let rows = rows.max(1);
+    [rows, count / rows]
+}
+
+/// A ray of a final gathering.
+struct GatherRay<'a, 'm, 'r> {
+    mapper: &'m Mapper<'a>,
+    report: &'r mut Report,
+    found: Spectrum,
+}
+
+impl GatherRay<'_, '_, '_> {
+    /// What a matt surface reflects back along the ray.
+    fn surface(&mut self, matt: &Matt<'_>, stream: &mut Stream) {
+        let (maps, settings) = (self.mapper.maps, self.mapper.settings);
+        if matt.reflectance.is_black() {
+            return;
+        }
+        let Some(global) = &maps.global else { return };
+        let arriving = if matt.found.hit.t < settings.near {
+            // Every class again, each by its own means.
+            let mut sum = matt.direct(self.mapper, self.report, stream);
+            if let Some(map) = &maps.caustic {
+                sum += matt.irradiance(map, settings.slope, settings.caustic, &mut self.report.caustic);
+            }
+            sum + self.mapper.gathered(matt, 1, self.report, stream)
+        } else {
+            matt.irradiance(global, settings.slope, settings.global, &mut self.report.global)
+        };
+        self.found += matt.walker.weight * matt.reflectance / PI * arriving;
+    }
+}
+
+impl Visitor for GatherRay<'_, '_, '_> {
+    const LOOKS_AHEAD: bool = false;
+
+    fn visit(&mut self, walker: &Walker, step: Step, stream: &mut Stream) {
+        match step {
+            Step::Ahead(_) if walker.order == 0 => self.report.rays.segments += 1,
+            Step::Collision(Arrival { walker, position }, number) => {
+                let scattered = self.mapper.scattered(walker, position, number, self.report, stream);
+                self.found += walker.weight * (scattered.single + scattered.multiple);
+            }
+            Step::Surface(Arrival { walker, .. }, found) => {
+                if let Some(matt) = Matt::met(self.mapper, walker, found) {
+                    self.surface(&matt, stream);
+                }
+            }
+            _ => {}
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::cells;
+
+    #[test]
+    fn cells_are_nearly_square() {
+        assert_eq!(
+            [1, 2, 4, 7, 12, 64, 100].map(cells),
+            [[1, 1], [1, 2], [2, 2], [1, 7], [3, 4], [8, 8], [10, 10]]
+        );
+    }
+}

@@ -1,0 +1,217 @@
+//! The photon mapper of Jensen and Christensen (1998): radiance along a ray from three photon maps, rays and shadow rays.
+//!
+//! From the eye the ray is followed through specular surfaces. Media on its way are marched through ([`volume`]); on the
+//! first matt surface the radiance is the sum of ([`surface`])
+//! - direct light, by shadow rays through media and filters;
+//! - caustics, from the caustic map;
+//! - the rest, by a final gathering into the global map ([`gather`]), or from the global map where the eye looks: what
+//!   the map holds decides which ([`Indirect`]), so that every class of light is counted once.
+//!
+//! Lights that no shadow ray can aim at (isotropic incidence, volume sources) are direct light too: one ray in a sampled
+//! direction looks for them.
+
+mod gather;
+mod settings;
+mod surface;
+mod volume;
+
+pub use settings::{Adaptive, March, Settings};
+
+use super::path::{Rays, next_event, uncollided};
+use super::{Layer, Layers};
+use crate::Spectrum;
+use crate::estimators::Estimate;
+use crate::geometry::Shape;
+use crate::math::Ray;
+use crate::photons::maps::Maps;
+use crate::rng::Stream;
+use crate::scene::{Scene, SceneHit, Start, Target};
+use crate::transport::{Roulette, Step, Visitor, Walker, transmittance, walk};
+use std::ops::AddAssign;
+
+/// Where mirrors have taken nine tenths of the light, rays play roulette. Any value gives the same mean.
+const ROULETTE: f64 = 0.1;
+
+/// Look-ups in one map.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Gathers {
+    /// How many.
+    pub count: u64,
+    /// How many of them found fewer than k photons within the largest radius.
+    pub underfull: u64,
+    /// Sum of their radii \[L\].
+    pub radii: f64,
+    /// Photons found.
+    pub found: u64,
+}
+
+impl Gathers {
+    fn add(&mut self, estimate: &Estimate) {
+        self.count += 1;
+        self.underfull += u64::from(estimate.underfull);
+        self.radii += estimate.radius;
+        self.found += estimate.found as u64;
+    }
+
+    /// Mean radius \[L\]; 0 of no look-ups.
+    pub fn mean_radius(&self) -> f64 {
+        if self.count == 0 { 0.0 } else { self.radii / self.count as f64 }
+    }
+}
+
+impl AddAssign for Gathers {
+    fn add_assign(&mut self, other: Gathers) {
+        self.count += other.count;
+        self.underfull += other.underfull;
+        self.radii += other.radii;
+        self.found += other.found;
+    }
+}
+
+/// The work behind pictures.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Report {
+    /// Rays followed, and shadow rays.
+    pub rays: Rays,
+    /// Rays of final gatherings, among them.
+    pub gathering: u64,
+    /// Steps of marches.
+    pub steps: u64,
+    /// Look-ups in the global map.
+    pub global: Gathers,
+    /// Look-ups in the caustic map.
+    pub caustic: Gathers,
+    /// Look-ups in the volume map.
+    pub volume: Gathers,
+}
+
+impl AddAssign for Report {
+    fn add_assign(&mut self, other: Report) {
+        self.rays.segments += other.rays.segments;
+        self.rays.shadow += other.rays.shadow;
+        self.gathering += other.gathering;
+        self.steps += other.steps;
+        self.global += other.global;
+        self.caustic += other.caustic;
+        self.volume += other.volume;
+    }
+}
+
+/// A scene, its maps, and how they are read.
+#[derive(Debug)]
+pub struct Mapper<'a> {
+    scene: &'a Scene,
+    maps: &'a Maps,
+    settings: &'a Settings,
+    /// Bodies that part photons from a point of a medium, where they are asked for.
+    walls: Vec<Shape>,
+    /// Whether some light cannot be aimed at.
+    has_unaimed: bool,
+}
+
+impl<'a> Mapper<'a> {
+    /// A mapper for a scene and the maps filled from it.
+    pub fn new(scene: &'a Scene, maps: &'a Maps, settings: &'a Settings) -> Self {
+        let walls = match settings.needs_walls() {
+            true => scene.objects().iter().map(|object| object.shape.clone()).collect(),
+            false => Vec::new(),
+        };
+        let has_unaimed = scene.lights().iter().any(|light| !light.has_direction());
+        Mapper { scene, maps, settings, walls, has_unaimed }
+    }
+
+    /// One sample of the radiance that arrives at the origin of `ray` from ahead [W/(L^2 sr)], by class, and the work.
+    ///
+    /// # Arguments
+    /// `from` the body that the ray starts on, if it does; `within` the number of the interior that it starts in
+    pub fn radiance(
+        &self,
+        ray: Ray,
+        from: Option<Start>,
+        within: usize,
+        stream: &mut Stream,
+    ) -> (Layers, Report) {
+        let mut eye = Eye { mapper: self, layers: Layers::ZERO, report: Report::default() };
+        let start = Walker { from, within, ..Walker::new(ray, Spectrum::ONE) };
+        walk(self.scene, start, Roulette::Below(ROULETTE), Some(0), stream, &mut eye);
+        (eye.layers, eye.report)
+    }
+
+    /// What a ray meets by itself of lights that have no direction to aim at.
+    fn unaimed(&self, walker: &Walker, end: f64, stream: &mut Stream) -> Spectrum {
+        let lights = self.scene.lights().iter().filter(|light| !light.has_direction());
+        lights.fold(Spectrum::ZERO, |sum, light| sum + uncollided(self.scene, light, walker, end, stream))
+    }
+
+    /// Light that arrives at a place straight from all lights, each direction weighted by `scattered`; `walker` says in
+    /// which interior. Of lights without direction: what the ray `blind` meets.
+    fn direct(
+        &self,
+        walker: &Walker,
+        from: Option<Start>,
+        report: &mut Report,
+        stream: &mut Stream,
+        scattered: impl Fn(glam::DVec3) -> f64,
+        blind: impl FnOnce(&mut Stream) -> glam::DVec3,
+    ) -> Spectrum {
+        let (position, within) = (walker.ray.origin, walker.within);
+        let mut sum = Spectrum::ZERO;
+        for index in 0..self.scene.lights().len() {
+            let place = (position, from, within);
+            if let Some((sample, received)) = next_event(self.scene, index, place, stream, &mut report.rays) {
+                sum += received * scattered(sample.dir);
+            }
+        }
+        if self.has_unaimed {
+            let ray = Ray::new(position, blind(stream));
+            report.rays.segments += 1;
+            let end = self.scene.hit(&ray, from).map_or(f64::INFINITY, |found| found.hit.t);
+            sum += self.unaimed(&Walker { ray, from, ..*walker }, end, stream);
+        }
+        sum
+    }
+}
+
+/// One sample of the radiance that arrives at the origin of `ray`, which starts in free space in the surroundings
+/// [W/(L^2 sr)], by class.
+pub fn radiance(scene: &Scene, maps: &Maps, settings: &Settings, ray: Ray, stream: &mut Stream) -> Layers {
+    Mapper::new(scene, maps, settings).radiance(ray, None, scene.interior_at(ray.origin), stream).0
+}
+
+/// Looks along a ray and on through specular surfaces.
+struct Eye<'a, 'm> {
+    mapper: &'m Mapper<'a>,
+    layers: Layers,
+    report: Report,
+}
+
+impl Eye<'_, '_> {
+    fn look(&mut self, walker: &Walker, hit: Option<&SceneHit>, stream: &mut Stream) {
+        let (scene, ray) = (self.mapper.scene, &walker.ray);
+        let end = hit.map_or(f64::INFINITY, |found| found.hit.t);
+        self.report.rays.segments += 1;
+        for light in scene.lights() {
+            self.layers.emission += walker.weight * uncollided(scene, light, walker, end, stream);
+        }
+        if scene.plan().has_media {
+            self.march(walker, end, stream);
+        }
+        let Some(found) = hit else { return };
+        match found.target {
+            Target::Light(index) => {
+                let radiance = scene.lights()[index].emitted(ray, &found.hit).0;
+                let seen = walker.weight * transmittance(scene, ray, end, walker.within, stream);
+                self.layers[Layer::Emission] += seen * radiance;
+            }
+            Target::Object(_) => self.surface(walker, found, stream),
+        }
+    }
+}
+
+impl Visitor for Eye<'_, '_> {
+    fn visit(&mut self, walker: &Walker, step: Step, stream: &mut Stream) {
+        if let Step::Ahead(hit) = step {
+            self.look(walker, hit, stream);
+        }
+    }
+}

@@ -1,0 +1,91 @@
+//! How the maps are read.
+
+use crate::error::Result;
+use crate::estimators::boundary::{Rejection, Treatment};
+use crate::estimators::{Gather, Kernel};
+use crate::integrators::StepRule;
+use crate::math::Positive;
+
+/// How steps of a march become shorter where radiance changes.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Adaptive {
+    /// Relative change of the source from one step to the next above which the step is halved.
+    pub tolerance: f64,
+    /// Steps are halved as long as they are longer than this \[L\].
+    pub shortest: Positive,
+}
+
+/// How a ray is marched through media.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct March {
+    /// Longest step \[L\].
+    pub step: Positive,
+    /// How much of a step's source reaches its near end.
+    pub rule: StepRule,
+    /// Whether places are random: the first step is then cut at random, and with [`StepRule::Integrated`] the source is
+    /// asked for at a random place of each step, in proportion to what reaches its near end, so that the sum is
+    /// unbiased whatever the step.
+    pub is_jittered: bool,
+    /// Shorter steps where radiance changes; none for equal ones. The choice of the step depends on the values found,
+    /// which costs the sum a part of its unbiasedness.
+    pub adaptive: Option<Adaptive>,
+}
+
+/// How maps are read and combined.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Settings {
+    /// Photons of the global map that an estimate uses.
+    pub global: (Kernel, Gather),
+    /// Photons of the caustic map that an estimate uses.
+    pub caustic: (Kernel, Gather),
+    /// Photons of the volume map that an estimate uses.
+    pub volume: (Kernel, Gather),
+    /// How far photons of a surface may lie off its tangent plane: sine of the angle seen from the point.
+    pub slope: f64,
+    /// Rays of a final gathering, at least 1; not used if the global map is to be seen.
+    pub gather_rays: u32,
+    /// Rays of a final gathering that are shorter than this \[L\] are traced on: in corners the map's blur would be seen.
+    /// 0 for never.
+    pub near: f64,
+    /// The march through media.
+    pub march: March,
+    /// What volume estimates do at the edge of a region.
+    pub treatment: Treatment,
+    /// Which photons volume estimates reject behind the scene's bodies.
+    pub rejection: Rejection,
+}
+
+impl Settings {
+    /// The settings of 1998, for a scene of the given size: the k nearest photons within a tenth of it, a cone on
+    /// surfaces' caustics, 64 rays a final gathering, steps of a twentieth that halve where radiance changes by half.
+    ///
+    /// # Errors
+    /// [`Error::OutOfRange`](crate::Error::OutOfRange) if k is below 2 or the size not finite and above zero.
+    pub fn for_size(size: f64, k: usize) -> Result<Self> {
+        let nearest = Gather::nearest(k, 0.1 * size)?;
+        Ok(Settings {
+            global: (Kernel::Uniform, nearest),
+            caustic: (Kernel::Cone, nearest),
+            volume: (Kernel::Uniform, nearest),
+            slope: 0.1,
+            gather_rays: 64,
+            near: 0.0,
+            march: March {
+                step: Positive::new("the step", 0.05 * size)?,
+                rule: StepRule::Integrated,
+                is_jittered: true,
+                adaptive: Some(Adaptive {
+                    tolerance: 0.5,
+                    shortest: Positive::new("the shortest step", 0.0125 * size)?,
+                }),
+            },
+            treatment: Treatment::Clipped,
+            rejection: Rejection::Off,
+        })
+    }
+
+    /// Whether volume estimates ask for the scene's bodies.
+    pub(super) fn needs_walls(&self) -> bool {
+        self.rejection != Rejection::Off
+    }
+}

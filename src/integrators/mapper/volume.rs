@@ -1,0 +1,188 @@
+//! The march of a ray through media: single scattering by shadow rays, the rest from the volume map.
+
+use super::{Eye, Mapper, Report};
+use crate::Spectrum;
+use crate::estimators::boundary::{Boundary, Treatment, treated_in_scattered};
+use crate::estimators::in_scattered;
+use crate::integrators::StepRule;
+use crate::math::{Interval, Ray, cosine_pair, exp, exp_m1, ln_1p};
+use crate::medium::Medium;
+use crate::phase::PhaseFunction;
+use crate::rng::Stream;
+use crate::scene::decay;
+use crate::transport::{Walker, passed, transmittance};
+use glam::DVec3;
+
+/// A ray is followed until less than this is left of what comes from farther away: far below what a picture's single
+/// precision tells apart.
+const LEFT: f64 = 1e-9;
+
+/// Radiance that collisions scatter into a direction, over the collisions: times sigma_t it is the source of the
+/// transfer equation.
+#[derive(Clone, Copy)]
+pub(super) struct Scattered {
+    /// Of light that comes straight from the lights.
+    pub single: Spectrum,
+    /// Of all other light, per collision coefficient: the volume map counts collisions, so that this is to be divided by
+    /// sigma_t.
+    pub multiple: Spectrum,
+}
+
+impl Mapper<'_> {
+    /// What a medium scatters at a point against the direction of a walker, over sigma_t [W/(L^2 sr)].
+    pub(super) fn scattered(
+        &self,
+        walker: &Walker,
+        position: DVec3,
+        number: usize,
+        report: &mut Report,
+        stream: &mut Stream,
+    ) -> Scattered {
+        let (scene, settings) = (self.scene, self.settings);
+        let medium = scene.medium(number);
+        let (phase, dir) = (medium.phase(), walker.ray.dir);
+        let here = Walker { ray: Ray::new(position, dir), from: None, ..*walker };
+        let value = |towards: DVec3| {
+            let (one_minus_mu, one_plus_mu) = cosine_pair(dir, towards);
+            phase.eval(one_minus_mu, one_plus_mu)
+        };
+        let blind = |stream: &mut Stream| phase.scatter(dir, stream.pair());
+        let single = self.direct(&here, None, report, stream, value, blind);
+        let mut multiple = Spectrum::ZERO;
+        if let Some(map) = &self.maps.volume {
+            let (kernel, gather) = settings.volume;
+            let is_treated = settings.treatment != Treatment::None || settings.needs_walls();
+            let shape = scene.regions().get(number).map(|region| &region.shape);
+            let boundary = shape
+                .filter(|_| is_treated)
+                .and_then(|shape| Boundary::new(shape.clone(), settings.treatment).ok());
+            let estimate = match boundary {
+                None => in_scattered(map, position, -dir, phase, Spectrum::ONE, kernel, gather),
+                Some(boundary) => {
+                    let boundary = boundary.with_walls(settings.rejection, &self.walls);
+                    treated_in_scattered(map, position, -dir, phase, kernel, gather, &boundary).estimate
+                }
+            };
+            report.volume.add(&estimate);
+            let sigma_t = medium.sigma_t(position);
+            multiple = sigma_t.map(|s| if s == 0.0 { 0.0 } else { 1.0 / s }) * estimate.value;
+        }
+        let albedo = medium.albedo(position);
+        Scattered { single: albedo * single, multiple: albedo * multiple }
+    }
+}
+
+impl Eye<'_, '_> {
+    /// Adds what media bring to the ray up to distance `end`.
+    pub(super) fn march(&mut self, walker: &Walker, end: f64, stream: &mut Stream) {
+        let scene = self.mapper.scene;
+        for segment in scene.segments(&walker.ray, end, walker.within).iter() {
+            let seen = walker.weight
+                * transmittance(scene, &walker.ray, segment.interval.start, walker.within, stream);
+            if seen.max() < LEFT * walker.weight.max() {
+                return;
+            }
+            self.march_segment(walker, seen, segment.interval, segment.medium, stream);
+        }
+    }
+
+    /// Marches through a stretch of one medium; `seen` is the weight at its near end.
+    fn march_segment(
+        &mut self,
+        walker: &Walker,
+        mut seen: Spectrum,
+        span: Interval,
+        number: usize,
+        stream: &mut Stream,
+    ) {
+        let mapper = self.mapper;
+        let march = &mapper.settings.march;
+        let medium = mapper.scene.medium(number);
+        if !medium.is_colliding() {
+            return;
+        }
+        let (longest, least) = (march.step.get(), LEFT * seen.max());
+        let mut t = span.start;
+        let mut length = if march.is_jittered { longest * (1.0 - stream.unit()) } else { longest };
+        let mut before: Option<Spectrum> = None;
+        while t < span.end && seen.max() > least {
+            // What rounding leaves of the last step joins it.
+            let rest = span.end - t;
+            let dx = if rest < length * (1.0 + 1e-9) { rest } else { length };
+            let step = match medium {
+                Medium::Homogeneous(medium) => {
+                    Placed::in_step(march.rule, march.is_jittered, medium.sigma_t(), dx, stream)
+                }
+                Medium::Heterogeneous(_) => {
+                    let place =
+                        if march.is_jittered { stream.unit() * dx } else { march.rule.place(0.0, dx) };
+                    let before = Interval { start: t, end: t + place };
+                    Placed { place, weight: passed(medium, &walker.ray, before, stream) * dx }
+                }
+            };
+            self.report.steps += 1;
+            let position = walker.ray.at(t + step.place);
+            let sigma_t = medium.sigma_t(position);
+            let scattered = if sigma_t.is_black() {
+                Scattered { single: Spectrum::ZERO, multiple: Spectrum::ZERO }
+            } else {
+                mapper.scattered(walker, position, number, &mut self.report, stream)
+            };
+            if let Some(adaptive) = &march.adaptive {
+                let source = scattered.single + scattered.multiple;
+                let change = before.map_or(0.0, |before| relative_change(before, source));
+                if change > adaptive.tolerance && dx > adaptive.shortest.get() {
+                    length = (0.5 * dx).max(adaptive.shortest.get());
+                    continue;
+                }
+                before = Some(source);
+                length = if change < 0.5 * adaptive.tolerance { (2.0 * dx).min(longest) } else { length };
+            } else {
+                length = longest;
+            }
+            let weight = seen * sigma_t * step.weight;
+            self.layers.single += weight * scattered.single;
+            self.layers.multiple += weight * scattered.multiple;
+            seen *= match medium {
+                Medium::Homogeneous(_) => decay(sigma_t * dx),
+                Medium::Heterogeneous(_) => {
+                    let behind = Interval { start: t + step.place, end: t + dx };
+                    step.weight / dx * passed(medium, &walker.ray, behind, stream)
+                }
+            };
+            t += dx;
+            if dx == rest {
+                return;
+            }
+        }
+    }
+}
+
+/// The largest difference of channels over the largest channel.
+fn relative_change(a: Spectrum, b: Spectrum) -> f64 {
+    let largest = a.max().max(b.max());
+    if largest > 0.0 { (a - b).map(f64::abs).max() / largest } else { 0.0 }
+}
+
+/// Where the source of a step is asked for, from its near end, and what it counts there \[L\].
+struct Placed {
+    place: f64,
+    weight: Spectrum,
+}
+
+impl Placed {
+    fn in_step(rule: StepRule, is_jittered: bool, sigma_t: Spectrum, dx: f64, stream: &mut Stream) -> Self {
+        if rule == StepRule::Integrated && is_jittered {
+            // Density s e^(-s x)/(1 - e^(-s dx)) with s the mean over channels; one channel's weight is e^(-s_c x) over it.
+            let s = sigma_t.mean();
+            let collides = -exp_m1(-s * dx);
+            let place = (-ln_1p(-stream.unit() * collides) / s).min(dx);
+            let weight = match sigma_t.is_grey() {
+                true => Spectrum::grey(collides / s),
+                false => sigma_t.map(|c| exp((s - c) * place)) * (collides / s),
+            };
+            return Placed { place, weight };
+        }
+        Placed { place: rule.place(0.0, dx), weight: sigma_t.map(|c| rule.weight(c, 0.0, dx)) }
+    }
+}

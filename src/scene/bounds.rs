@@ -1,0 +1,22 @@
+//! A sphere about all that a scene holds.
+
+use super::Parts;
+use crate::geometry::{Shape, Sphere};
+use glam::DVec3;
+
+/// A sphere about every medium, surface and body of a light; none where one of them has no end, or there is none.
+///
+/// Its centre is that of the box about all of them.
+pub(super) fn of(parts: &Parts) -> Option<Sphere> {
+    let shapes = || {
+        let regions = parts.regions.iter().map(|r| &r.shape);
+        let objects = parts.objects.iter().map(|o| &o.shape);
+        regions.chain(objects).chain(parts.lights.iter().filter_map(|l| l.body()))
+    };
+    let balls: Vec<(DVec3, f64)> = shapes().map(Shape::bounds).collect::<Option<_>>()?;
+    let low = balls.iter().map(|(c, r)| c - DVec3::splat(*r)).reduce(DVec3::min)?;
+    let high = balls.iter().map(|(c, r)| c + DVec3::splat(*r)).reduce(DVec3::max)?;
+    let center = 0.5 * (low + high);
+    let radius = balls.iter().map(|(c, r)| c.distance(center) + r).fold(0.0, f64::max);
+    Sphere::new(center, radius).ok()
+}
