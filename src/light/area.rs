@@ -1,6 +1,7 @@
 //! A shape whose surface emits outwards.
 
-use super::{EmissionNumbers, LightSample, Needs, emissive};
+use super::bundle::{by_number, cone};
+use super::{Bundle, EmissionCell, EmissionNumbers, LightSample, Needs, emissive};
 use crate::Spectrum;
 use crate::error::{Error, Result};
 use crate::faults::{Fault, planted};
@@ -64,6 +65,51 @@ impl Area {
             warp::square_to_cosine_hemisphere(numbers.direction)
         };
         Ray::new(origin, Frame::new(normal).to_world(local))
+    }
+
+    /// Whether it is a sphere, whose photons are aimed by choosing the direction first.
+    pub(super) fn is_sphere(&self) -> bool {
+        matches!(self.shape, Shape::Sphere(_))
+    }
+
+    /// Where the first number of the position goes from one face to the next, if the shape has faces.
+    pub(super) fn faces(&self) -> Option<Vec<f64>> {
+        if let Shape::Cuboid(c) = &self.shape { Some(c.face_ends().to_vec()) } else { None }
+    }
+
+    /// The photon of a sphere, direction first; none of other shapes.
+    pub(super) fn aimed_ray(&self, numbers: &EmissionNumbers) -> Option<Ray> {
+        let Shape::Sphere(sphere) = &self.shape else { return None };
+        let dir = warp::square_to_sphere(numbers.direction).normalize();
+        let [a, b, _] = numbers.position;
+        let p = warp::square_to_disc([a, b]);
+        let normal = Frame::new(dir).to_world(DVec3::new(p.x, p.y, (1.0 - a).sqrt()));
+        Some(Ray::new(sphere.center() + normal * sphere.radius(), dir))
+    }
+
+    pub(super) fn bundle(&self, cell: &EmissionCell) -> Option<Bundle> {
+        let u = cell.position_middle()[0];
+        let on_face = |low: [f64; 3], high: [f64; 3]| {
+            let (a, normal, _) = self.shape.sample_boundary(Face::Top, 0.0, low);
+            let (b, _, _) = self.shape.sample_boundary(Face::Top, 0.0, high);
+            let (axis, angle) = cone(cell, &Frame::new(normal), by_number::cosine_hemisphere);
+            Bundle { center: 0.5 * (a + b), radius: 0.5 * a.distance(b), axis, angle }
+        };
+        match &self.shape {
+            Shape::Sphere(s) => {
+                let (axis, angle) = cone(cell, &Frame::new(DVec3::Z), by_number::sphere);
+                Some(Bundle { center: s.center(), radius: s.radius(), axis, angle })
+            }
+            Shape::Rectangle(_) => Some(on_face(cell.low.position, cell.high.position)),
+            Shape::Cuboid(c) => {
+                let ends = c.face_ends();
+                let face = |x: f64| ends.iter().take_while(|end| **end <= x).count();
+                let is_one = face(cell.low.position[0]) == face(u) && ends[face(u)] >= cell.high.position[0];
+                let [low, high] = [cell.low.position, cell.high.position].map(|[_, v, w]| [u, v, w]);
+                is_one.then(|| on_face(low, high))
+            }
+            _ => None,
+        }
     }
 
     /// A direction from `p`: to a uniform point of the surface, of the sides of a cuboid that face `p`, or in the cone

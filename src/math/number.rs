@@ -46,6 +46,10 @@ ranged!(
     Asymmetry, "above -1 and below 1", |x| -1.0 < x && x < 1.0
 );
 ranged!(
+    /// Index of refraction, over that of vacuum.
+    Index, "finite and at least 1", |x| x >= 1.0 && x.is_finite()
+);
+ranged!(
     /// A number above zero.
     Positive, "finite and above 0", |x| x > 0.0 && x.is_finite()
 );
