@@ -57,11 +57,15 @@ pub enum Fault {
     PhotonPowerScaled,
     /// A dielectric reflects nothing but what it reflects totally.
     FresnelForgotten,
+    /// A grid's samples are taken to lie half a cell from where they do.
+    GridHalfCellOff,
+    /// Light that meets nothing at a tentative collision keeps the weight that it came with.
+    NullWeightForgotten,
 }
 
 impl Fault {
     /// Every fault, in the order of their definition.
-    pub const ALL: [Fault; 25] = [
+    pub const ALL: [Fault; 27] = [
         Fault::AlbedoTwice,
         Fault::AlbedoNever,
         Fault::CosineTwice,
@@ -87,6 +91,8 @@ impl Fault {
         Fault::RadianceUnscaled,
         Fault::PhotonPowerScaled,
         Fault::FresnelForgotten,
+        Fault::GridHalfCellOff,
+        Fault::NullWeightForgotten,
     ];
 }
 
@@ -142,7 +148,7 @@ mod tests {
     #[test]
     fn all_are_named_in_order() {
         assert!(Fault::ALL.iter().enumerate().all(|(i, fault)| *fault as usize == i));
-        assert_eq!(Fault::ALL.len(), Fault::FresnelForgotten as usize + 1);
+        assert_eq!(Fault::ALL.len(), Fault::NullWeightForgotten as usize + 1);
         assert!(Fault::ALL.iter().all(|fault| !planted(*fault)));
     }
 }

@@ -342,7 +342,7 @@ impl SceneFile {
     pub fn scene(&self, folder: &Path) -> Result<Scene> {
         let regions = self.regions.iter().map(|r| {
             let phase = Phase::with_asymmetry(r.g);
-            let medium = Homogeneous::new(r.sigma_t.spectrum(), r.albedo.spectrum(), phase)?;
+            let medium = Homogeneous::new(r.sigma_t.spectrum(), r.albedo.spectrum(), phase)?.into();
             Ok(Region { shape: r.shape.shape(folder)?, medium })
         });
         let mut interiors = vec![Interior::surroundings()];

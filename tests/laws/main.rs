@@ -10,6 +10,7 @@ mod support;
 
 mod flight;
 mod lights;
+mod media;
 mod phase;
 mod roulette;
 mod shapes;
