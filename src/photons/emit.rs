@@ -10,7 +10,7 @@ use crate::transport::Walker;
 ///
 /// # Arguments
 /// `power` of all lights, [`Scene::power`], which the caller asks for once
-pub(super) fn emit(scene: &Scene, power: Spectrum, stream: &mut Stream) -> Walker {
+pub fn emit(scene: &Scene, power: Spectrum, stream: &mut Stream) -> Walker {
     let (lights, stage) = (scene.lights(), scene.stage());
     let total = power.sum();
     let mut index = 0;

@@ -10,6 +10,7 @@ pub mod synthetic;
 pub mod tree;
 
 pub use crate::transport::Flags;
+pub use emit::emit;
 pub use map::PhotonMap;
 pub use record::Photon;
 pub use shoot::{Histories, Ledger, Pass, is_in, is_indirect, shoot};
