@@ -57,6 +57,12 @@ pub enum Fault {
     PhotonPowerScaled,
     /// A dielectric reflects nothing but what it reflects totally.
     FresnelForgotten,
+    /// The volume map holds photons that come straight from a light, beside the shadow rays.
+    DirectInVolumeMap,
+    /// The caustic class is in the global map that is seen, beside the caustic map.
+    CausticTwice,
+    /// Estimates on surfaces divide by the stored photons, not by the emitted ones.
+    StoredOnSurfaces,
     /// A grid's samples are taken to lie half a cell from where they do.
     GridHalfCellOff,
     /// Light that meets nothing at a tentative collision keeps the weight that it came with.
@@ -65,7 +71,7 @@ pub enum Fault {
 
 impl Fault {
     /// Every fault, in the order of their definition.
-    pub const ALL: [Fault; 27] = [
+    pub const ALL: [Fault; 30] = [
         Fault::AlbedoTwice,
         Fault::AlbedoNever,
         Fault::CosineTwice,
@@ -91,6 +97,9 @@ impl Fault {
         Fault::RadianceUnscaled,
         Fault::PhotonPowerScaled,
         Fault::FresnelForgotten,
+        Fault::DirectInVolumeMap,
+        Fault::CausticTwice,
+        Fault::StoredOnSurfaces,
         Fault::GridHalfCellOff,
         Fault::NullWeightForgotten,
     ];

@@ -5,25 +5,26 @@
 mod checks;
 mod support;
 
-use checks::ledger::{Room, a_mirrored_room_keeps_its_ledger, layers_are_those_of_paths, mirror};
+use checks::ledger::{
+    Room, a_clear_room_keeps_its_ledger, a_foggy_room_keeps_its_ledger,
+    a_foggy_room_keeps_its_ledger_when_gathered, layers_are_those_of_paths, mirror,
+};
 use turbid::Spectrum;
 use turbid::photons::maps::Indirect;
 
 #[test]
-fn seen_directly_with_a_mirror() {
-    a_mirrored_room_keeps_its_ledger();
+fn seen() {
+    a_foggy_room_keeps_its_ledger();
 }
 
 #[test]
-fn gathered_with_a_mirror() {
-    let room = Room {
-        floor: mirror(),
-        sigma_t: Spectrum::grey(0.5),
-        albedo: Spectrum::grey(0.8),
-        g: 0.0,
-        is_colored: false,
-    };
-    layers_are_those_of_paths(&room, Indirect::Gathered, 4, 4000, 2);
+fn gathered() {
+    a_foggy_room_keeps_its_ledger_when_gathered();
+}
+
+#[test]
+fn in_clear_air() {
+    a_clear_room_keeps_its_ledger();
 }
 
 #[test]

@@ -8,7 +8,7 @@ use super::Layer;
 use crate::Spectrum;
 use crate::math::{Ray, cosine_pair};
 use crate::phase::PhaseFunction;
-use crate::photons::emit;
+use crate::photons::Emitter;
 use crate::rng::Stream;
 use crate::scene::{Camera, Scene, SceneHit, Start, Target};
 use crate::surface::Surface;
@@ -40,17 +40,14 @@ pub struct Splat {
 /// flight is chosen with equal angles about the camera; where the flight is at t, the two ways share the light in the
 /// ratio of the mean extinction to the density of t by equal angles, which leaves at most the inverse of the flight's
 /// distance to the camera. Any share is unbiased that depends on the place alone.
-///
-/// # Arguments
-/// `power` of all lights, [`Scene::power`], which the caller asks for once
 pub fn light_tracing(
     scene: &Scene,
     camera: &Camera,
-    power: Spectrum,
+    emitter: &Emitter,
     stream: &mut Stream,
     splat: impl FnMut(Splat),
 ) {
-    let start = emit(scene, power, stream);
+    let start = emitter.emit(scene, stream);
     let mut tracer = Tracer { scene, camera, flight: None, splat };
     walk(scene, start, Roulette::Analog, None, stream, &mut tracer);
 }

@@ -239,6 +239,6 @@ fn extent(shape: &Shape) -> f64 {
         Shape::Sphere(s) => s.center().abs().max_element() + s.radius(),
         Shape::Cuboid(c) => c.min().abs().max_element().max(c.max().abs().max_element()),
         Shape::Slab(s) => s.top().abs() + s.thickness(),
-        Shape::Rectangle(_) => 0.0,
+        Shape::Rectangle(_) | Shape::Mesh(_) | Shape::Lathe(_) => 0.0,
     }
 }

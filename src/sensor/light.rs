@@ -5,6 +5,7 @@ use super::render::Streams;
 use crate::Spectrum;
 use crate::error::{Error, Result};
 use crate::integrators::{Layers, Splat, light_tracing};
+use crate::photons::Emitter;
 use crate::rng::{Purpose, Stream};
 use crate::scene::{Camera, Scene};
 use crate::transport::{Progress, run_blocks};
@@ -33,7 +34,7 @@ pub fn by_light(
     if scene.stage().is_some() {
         return refuse("an unbounded slab");
     }
-    let power = scene.power();
+    let emitter = Emitter::by_power(scene);
     let (width, height) = (camera.width() as usize, camera.height() as usize);
     let mut film = Film::new(camera.width(), camera.height());
     for number in 0..films {
@@ -42,7 +43,7 @@ pub fn by_light(
             for i in range {
                 let history = number * histories + i;
                 let mut stream = Stream::new(streams.seed, Purpose::LightTracing, streams.replicate, history);
-                light_tracing(scene, camera, power, &mut stream, |splat| splats.push(splat));
+                light_tracing(scene, camera, &emitter, &mut stream, |splat| splats.push(splat));
             }
             splats
         };

@@ -42,6 +42,14 @@ pub fn by_paths(scene: &Scene, settings: &PathSettings, progress: &dyn Progress)
 
 /// Whether paths can sample all that the scene's light does.
 pub(super) fn check(scene: &Scene) -> Result<()> {
+    let fills =
+        |s: &&Sensor| matches!(s.quantity, Quantity::Absorbed(number) if number >= scene.regions().len());
+    if let Some(sensor) = scene.sensors().iter().find(fills) {
+        return Err(Error::Unreachable(format!(
+            "sensor {}: paths measure what is absorbed in a region, not in what fills an interior: use photons",
+            sensor.name
+        )));
+    }
     if !scene.plan().unreachable.is_empty() {
         return Err(Error::Unreachable(format!(
             "the path tracer cannot sample every path of this scene ({}): use photons, or a light with an extent",

@@ -50,10 +50,7 @@ impl PhotonReadings {
     fn book(&mut self, scene: &Scene, p: DVec3, estimate: &Estimate) {
         self.gathers += 1;
         self.underfull += u64::from(estimate.underfull);
-        let room = scene
-            .medium_number_at(p)
-            .and_then(|number| scene.regions().get(number))
-            .map_or(0.0, |r| r.shape.room(p));
+        let room = scene.room(p);
         self.beyond += u64::from(estimate.radius > room);
     }
 }

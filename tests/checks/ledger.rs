@@ -186,14 +186,28 @@ pub fn layers_are_those_of_paths(room: &Room, indirect: Indirect, gather_rays: u
     }
 }
 
-/// A small ledger, maps seen directly.
-pub fn a_mirrored_room_keeps_its_ledger() {
-    let room = Room {
+/// A room with a mirror for a floor.
+fn mirrored(sigma_t: f64) -> Room {
+    Room {
         floor: mirror(),
-        sigma_t: Spectrum::grey(0.5),
+        sigma_t: Spectrum::grey(sigma_t),
         albedo: Spectrum::grey(0.8),
         g: 0.0,
         is_colored: false,
-    };
-    layers_are_those_of_paths(&room, Indirect::Seen, 1, 4000, 1);
+    }
+}
+
+/// In fog, maps seen directly.
+pub fn a_foggy_room_keeps_its_ledger() {
+    layers_are_those_of_paths(&mirrored(0.5), Indirect::Seen, 1, 4000, 1);
+}
+
+/// In fog, by a final gathering.
+pub fn a_foggy_room_keeps_its_ledger_when_gathered() {
+    layers_are_those_of_paths(&mirrored(0.5), Indirect::Gathered, 4, 4000, 2);
+}
+
+/// In clear air, maps seen directly: light by the mirror is a sixteenth of the indirect light.
+pub fn a_clear_room_keeps_its_ledger() {
+    layers_are_those_of_paths(&mirrored(0.0), Indirect::Seen, 1, 4000, 5);
 }

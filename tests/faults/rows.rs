@@ -1,6 +1,8 @@
 //! One row a fault: where it was seen, what it is here, and which check catches it.
 
-use crate::checks::{cell, glass, light, media, numbers, phase, point_light, points, slab, threads, walls};
+use crate::checks::{
+    cell, glass, ledger, light, media, numbers, phase, point_light, points, slab, threads, walls,
+};
 use crate::support::scenes::{area_light, cuboid, rectangle};
 use glam::DVec3;
 use turbid::Spectrum;
@@ -162,6 +164,19 @@ const fn inside(fault: Fault) -> Row {
                 glass::photons_cross_a_refracting_slab()
             })
         }
+        Fault::DirectInVolumeMap => {
+            ("direct light in the volume map and by shadow rays", "a_foggy_room_keeps_its_ledger", |_| {
+                ledger::a_foggy_room_keeps_its_ledger()
+            })
+        }
+        Fault::CausticTwice => ("caustics in two maps", "a_clear_room_keeps_its_ledger", |_| {
+            ledger::a_clear_room_keeps_its_ledger()
+        }),
+        Fault::StoredOnSurfaces => {
+            ("surface estimates divided by stored photons", "a_clear_room_keeps_its_ledger", |_| {
+                ledger::a_clear_room_keeps_its_ledger()
+            })
+        }
     };
     Row { fault: Planted::Inside(fault), title, check_name, check }
 }
@@ -220,6 +235,9 @@ pub const ROWS: &[Row] = &[
     inside(Fault::RadianceUnscaled),
     inside(Fault::PhotonPowerScaled),
     inside(Fault::FresnelForgotten),
+    inside(Fault::DirectInVolumeMap),
+    inside(Fault::CausticTwice),
+    inside(Fault::StoredOnSurfaces),
     inside(Fault::GridHalfCellOff),
     inside(Fault::NullWeightForgotten),
     outside("normal quantiles for 8 numbers", "false_alarms_are_as_rare_as_promised", |wrong| {

@@ -136,7 +136,7 @@ pub fn around(tau: f64) -> Shape {
 }
 
 /// An interior of some index of refraction, filled.
-pub fn filled(name: &str, index: f64, medium: Homogeneous) -> Interior {
+pub fn filled(name: &str, index: f64, medium: Medium) -> Interior {
     Interior { name: name.into(), index, medium: Some(medium) }
 }
 
