@@ -57,3 +57,8 @@ ranged!(
     /// A number of at least zero.
     NonNegative, "finite and at least 0", |x| x >= 0.0 && x.is_finite()
 );
+
+impl Positive {
+    /// One.
+    pub const ONE: Positive = Positive(1.0);
+}

@@ -34,7 +34,7 @@ impl InteriorFile {
             (None, None, None) => None,
             (Some(sigma_t), Some(albedo), Some(g)) => {
                 let phase = Phase::with_asymmetry(g);
-                Some(Homogeneous::new(sigma_t.spectrum(), albedo.spectrum(), phase)?)
+                Some(Homogeneous::new(sigma_t.spectrum(), albedo.spectrum(), phase)?.into())
             }
             _ => {
                 return Err(Error::Scene(format!(
