@@ -51,11 +51,27 @@ pub enum Fault {
     RejectedSetRadius,
     /// A march sums its steps and forgets how long they are.
     StepForgotten,
+    /// A path's radiance is not scaled where it is refracted.
+    RadianceUnscaled,
+    /// A photon's power is scaled like radiance where it is refracted.
+    PhotonPowerScaled,
+    /// A dielectric reflects nothing but what it reflects totally.
+    FresnelForgotten,
+    /// The volume map holds photons that come straight from a light, beside the shadow rays.
+    DirectInVolumeMap,
+    /// The caustic class is in the global map that is seen, beside the caustic map.
+    CausticTwice,
+    /// Estimates on surfaces divide by the stored photons, not by the emitted ones.
+    StoredOnSurfaces,
+    /// A grid's samples are taken to lie half a cell from where they do.
+    GridHalfCellOff,
+    /// Light that meets nothing at a tentative collision keeps the weight that it came with.
+    NullWeightForgotten,
 }
 
 impl Fault {
     /// Every fault, in the order of their definition.
-    pub const ALL: [Fault; 22] = [
+    pub const ALL: [Fault; 30] = [
         Fault::AlbedoTwice,
         Fault::AlbedoNever,
         Fault::CosineTwice,
@@ -78,6 +94,14 @@ impl Fault {
         Fault::RootForgotten,
         Fault::RejectedSetRadius,
         Fault::StepForgotten,
+        Fault::RadianceUnscaled,
+        Fault::PhotonPowerScaled,
+        Fault::FresnelForgotten,
+        Fault::DirectInVolumeMap,
+        Fault::CausticTwice,
+        Fault::StoredOnSurfaces,
+        Fault::GridHalfCellOff,
+        Fault::NullWeightForgotten,
     ];
 }
 
@@ -133,7 +157,7 @@ mod tests {
     #[test]
     fn all_are_named_in_order() {
         assert!(Fault::ALL.iter().enumerate().all(|(i, fault)| *fault as usize == i));
-        assert_eq!(Fault::ALL.len(), Fault::StepForgotten as usize + 1);
+        assert_eq!(Fault::ALL.len(), Fault::NullWeightForgotten as usize + 1);
         assert!(Fault::ALL.iter().all(|fault| !planted(*fault)));
     }
 }

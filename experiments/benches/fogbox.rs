@@ -92,7 +92,7 @@ fn load(fog: &str) -> Result<Scene> {
     let path = folder().join(format!("fogbox-{fog}.toml"));
     let text = std::fs::read_to_string(&path).with_context(|| path.display().to_string())?;
     let file: SceneFile = toml::from_str(&text).with_context(|| path.display().to_string())?;
-    Ok(file.scene(std::path::Path::new(""))?)
+    Ok(file.scene(&folder())?)
 }
 
 /// One round of the path tracer.

@@ -2,6 +2,7 @@
 
 use super::point::{Counting, LaneSum, Weighted};
 use super::{Estimate, Gather, Kernel};
+use crate::faults::{Fault, planted};
 use crate::photons::PhotonMap;
 use crate::photons::tree::{Counted, Nearest, Neighbors, Tangent};
 use crate::spectrum::Spectrum;
@@ -45,7 +46,7 @@ pub fn irradiance(
             (cap, counting.found, k.is_some(), 0)
         }
     };
-    let emitted = map.emitted();
+    let emitted = if planted(Fault::StoredOnSurfaces) { map.stored() as u64 } else { map.emitted() };
     // No photon is near a point that is not finite; that is no darkness.
     let nowhere = if point.is_finite() { 0.0 } else { f64::NAN };
     let scale = kernel.disc_peak() / (radius * radius * emitted as f64);

@@ -139,6 +139,18 @@ impl Cuboid {
         (p, axis(i) * if is_upper { 1.0 } else { -1.0 })
     }
 
+    /// Where the first number of [`Self::sample_surface`] goes from one face to the next, 0 and 1 included.
+    pub fn face_ends(&self) -> [f64; 7] {
+        let e = self.max - self.min;
+        let areas = [e.y * e.z, e.z * e.x, e.x * e.y];
+        let total = areas[0] + areas[1] + areas[2];
+        let mut ends = [0.0; 7];
+        for i in 0..6 {
+            ends[i + 1] = if i == 5 { 1.0 } else { ends[i] + 0.5 * areas[i / 2] / total };
+        }
+        ends
+    }
+
     /// Areas of the faces that a point outside sees, one an axis, and whether it is the upper one [L^2].
     fn facing(&self, p: DVec3) -> [(f64, bool); 3] {
         let e = self.max - self.min;

@@ -82,28 +82,24 @@ impl Rectangles {
     }
 
     /// Calls `found` with the index and the distance \[L\] of each rectangle that the ray meets, ahead and nearer than
-    /// the bound, which starts at `end`; `found` returns the next bound, 0 to stop.
+    /// the bound, which starts at `end`, or as near as the other one of its pair; `found` returns the next bound, none to
+    /// stop.
     #[inline(always)]
-    fn visit(&self, ray: &Ray, end: f64, mut found: impl FnMut(usize, f64) -> f64) {
+    fn visit(&self, ray: &Ray, end: f64, mut found: impl FnMut(usize, f64) -> Option<f64>) {
         let (origin, dir) = (Vectors::splat(ray.origin), Vectors::splat(ray.dir));
-        let (zero, mut bound) = (f64x2::ZERO, end);
+        let (zero, mut bound) = (f64x2::ZERO, f64x2::splat(end));
         for (index, pair) in self.pairs.iter().enumerate() {
             let t = pair.corner.minus(origin).dot(pair.normal) / dir.dot(pair.normal);
             let p = origin.moved(dir, t).minus(pair.corner);
             let (a, b) = (p.dot(pair.u), p.dot(pair.v));
             let inside =
                 a.simd_ge(zero) & a.simd_le(pair.u_squared) & b.simd_ge(zero) & b.simd_le(pair.v_squared);
-            let mut mask = (inside & t.simd_gt(zero)).to_bitmask();
+            let mut mask = (inside & t.simd_gt(zero) & t.simd_lt(bound)).to_bitmask();
             while mask != 0 {
                 let lane = mask.trailing_zeros() as usize;
                 mask &= mask - 1;
-                let t = t.as_array()[lane];
-                if t < bound {
-                    bound = found(LANES * index + lane, t);
-                    if bound == 0.0 {
-                        return;
-                    }
-                }
+                let Some(next) = found(LANES * index + lane, t.as_array()[lane]) else { return };
+                bound = f64x2::splat(next);
             }
         }
     }
@@ -113,10 +109,10 @@ impl Rectangles {
     pub fn nearest(&self, ray: &Ray, except: Option<usize>) -> Option<(usize, Hit)> {
         let (mut nearest, mut bound) = (None, f64::INFINITY);
         self.visit(ray, bound, |index, t| {
-            if except != Some(index) {
+            if except != Some(index) && t < bound {
                 (nearest, bound) = (Some((index, t)), t);
             }
-            bound
+            Some(bound)
         });
         nearest.map(|(index, t)| (index, self.members[index].hit_at(ray, t)))
     }
@@ -126,7 +122,7 @@ impl Rectangles {
         let mut is_blocked = false;
         self.visit(ray, end, |index, _| {
             is_blocked = !except.contains(&Some(index));
-            if is_blocked { 0.0 } else { end }
+            (!is_blocked).then_some(end)
         });
         is_blocked
     }

@@ -1,6 +1,7 @@
 //! A shape whose surface emits outwards.
 
-use super::{EmissionNumbers, LightSample, Needs, emissive};
+use super::bundle::{by_number, cone};
+use super::{Bundle, EmissionCell, EmissionNumbers, LightSample, Needs, emissive};
 use crate::Spectrum;
 use crate::error::{Error, Result};
 use crate::faults::{Fault, planted};
@@ -10,7 +11,7 @@ use glam::DVec3;
 use std::f64::consts::PI;
 
 /// A black shape whose surface emits the same radiance everywhere, in all outward directions: the front of a rectangle,
-/// the outside of a sphere or a cuboid.
+/// the outside of a sphere, a cuboid, a mesh or a lathe.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Area {
     shape: Shape,
@@ -27,7 +28,8 @@ impl Area {
         let area = shape.area();
         if !area.is_finite() {
             return Err(Error::Scene(
-                "an area light needs a bounded shape: a rectangle, a sphere or a cuboid".into(),
+                "an area light needs a bounded shape: a rectangle, a sphere, a cuboid, a mesh or a lathe"
+                    .into(),
             ));
         }
         Ok(Area { shape, radiance: emissive("radiance", radiance)?, area })
@@ -49,8 +51,8 @@ impl Area {
 
     pub(super) fn needs(&self) -> Needs {
         let position = match self.shape {
-            Shape::Rectangle(_) | Shape::Sphere(_) => 2,
-            _ => 3,
+            Shape::Rectangle(_) | Shape::Sphere(_) | Shape::Mesh(_) | Shape::Lathe(_) => 2,
+            Shape::Cuboid(_) | Shape::Slab(_) => 3,
         };
         Needs { position, direction: 2 }
     }
@@ -66,6 +68,56 @@ impl Area {
         Ray::new(origin, Frame::new(normal).to_world(local))
     }
 
+    /// The part of the shape that the ray of these numbers starts on.
+    pub(super) fn primitive(&self, numbers: &EmissionNumbers) -> u32 {
+        self.shape.sample_surface(numbers.position).2
+    }
+
+    /// Whether it is a sphere, whose photons are aimed by choosing the direction first.
+    pub(super) fn is_sphere(&self) -> bool {
+        matches!(self.shape, Shape::Sphere(_))
+    }
+
+    /// Where the first number of the position goes from one face to the next, if the shape has faces.
+    pub(super) fn faces(&self) -> Option<Vec<f64>> {
+        if let Shape::Cuboid(c) = &self.shape { Some(c.face_ends().to_vec()) } else { None }
+    }
+
+    /// The photon of a sphere, direction first; none of other shapes.
+    pub(super) fn aimed_ray(&self, numbers: &EmissionNumbers) -> Option<Ray> {
+        let Shape::Sphere(sphere) = &self.shape else { return None };
+        let dir = warp::square_to_sphere(numbers.direction).normalize();
+        let [a, b, _] = numbers.position;
+        let p = warp::square_to_disc([a, b]);
+        let normal = Frame::new(dir).to_world(DVec3::new(p.x, p.y, (1.0 - a).sqrt()));
+        Some(Ray::new(sphere.center() + normal * sphere.radius(), dir))
+    }
+
+    pub(super) fn bundle(&self, cell: &EmissionCell) -> Option<Bundle> {
+        let u = cell.position_middle()[0];
+        let on_face = |low: [f64; 3], high: [f64; 3]| {
+            let (a, normal, _) = self.shape.sample_boundary(Face::Top, 0.0, low);
+            let (b, _, _) = self.shape.sample_boundary(Face::Top, 0.0, high);
+            let (axis, angle) = cone(cell, &Frame::new(normal), by_number::cosine_hemisphere);
+            Bundle { center: 0.5 * (a + b), radius: 0.5 * a.distance(b), axis, angle }
+        };
+        match &self.shape {
+            Shape::Sphere(s) => {
+                let (axis, angle) = cone(cell, &Frame::new(DVec3::Z), by_number::sphere);
+                Some(Bundle { center: s.center(), radius: s.radius(), axis, angle })
+            }
+            Shape::Rectangle(_) => Some(on_face(cell.low.position, cell.high.position)),
+            Shape::Cuboid(c) => {
+                let ends = c.face_ends();
+                let face = |x: f64| ends.iter().take_while(|end| **end <= x).count();
+                let is_one = face(cell.low.position[0]) == face(u) && ends[face(u)] >= cell.high.position[0];
+                let [low, high] = [cell.low.position, cell.high.position].map(|[_, v, w]| [u, v, w]);
+                is_one.then(|| on_face(low, high))
+            }
+            _ => None,
+        }
+    }
+
     /// A direction from `p`: to a uniform point of the surface, of the sides of a cuboid that face `p`, or in the cone
     /// that a sphere fills.
     pub(super) fn sample(&self, p: DVec3, u: [f64; 2]) -> Option<LightSample> {
@@ -74,6 +126,10 @@ impl Area {
             Shape::Rectangle(r) => self.towards(p, r.sample(u), r.normal()),
             Shape::Cuboid(c) => {
                 let (point, normal) = c.sample_facing(p, u)?;
+                self.towards(p, point, normal)
+            }
+            Shape::Mesh(_) | Shape::Lathe(_) => {
+                let (point, normal, _) = self.shape.sample_surface([u[0], u[1], 0.0]);
                 self.towards(p, point, normal)
             }
             Shape::Slab(_) => None,
@@ -116,7 +172,8 @@ impl Area {
 
     pub(super) fn hit(&self, ray: &Ray, from: Option<u32>) -> Option<Hit> {
         // Light leaves a body outwards, so that a ray that starts on a convex one never meets it again.
-        if from.is_some() { None } else { self.shape.hit(ray, None) }
+        let is_convex = !matches!(self.shape, Shape::Mesh(_) | Shape::Lathe(_));
+        if from.is_some() && is_convex { None } else { self.shape.hit(ray, from) }
     }
 
     pub(super) fn emitted(&self, ray: &Ray, hit: &Hit) -> (Spectrum, f64) {

@@ -1,6 +1,7 @@
 //! Collimated light.
 
-use super::{EmissionNumbers, LightSample, Stage, emissive};
+use super::bundle::patch;
+use super::{Bundle, EmissionCell, EmissionNumbers, LightSample, Stage, emissive};
 use crate::Spectrum;
 use crate::error::{Error, Result};
 use crate::geometry::{Face, Rectangle, Sphere};
@@ -96,6 +97,21 @@ impl Beam {
             (Section::Rectangle(r), _) => r.sample(u),
         };
         Ray::new(origin, self.dir)
+    }
+
+    pub(super) fn bundle(&self, cell: &EmissionCell) -> Option<Bundle> {
+        let (center, radius) = match self.section {
+            Section::Unbounded => return None,
+            Section::Disc { center, radius } => {
+                let (middle, reach) = patch(cell, &Frame::new(self.dir));
+                (center + middle * radius, reach * radius)
+            }
+            Section::Rectangle(r) => {
+                let [a, b] = [cell.low.position, cell.high.position].map(|[u, v, _]| r.sample([u, v]));
+                (0.5 * (a + b), 0.5 * a.distance(b))
+            }
+        };
+        Some(Bundle { center, radius, axis: self.dir, angle: 0.0 })
     }
 
     /// How far back along the beam its section lies, or none outside the beam.

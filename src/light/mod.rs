@@ -2,6 +2,7 @@
 
 mod area;
 mod beam;
+mod bundle;
 mod isotropic;
 mod numbers;
 mod point;
@@ -11,6 +12,7 @@ mod volume_source;
 
 pub use area::Area;
 pub use beam::{Beam, Section};
+pub use bundle::{Bundle, EmissionCell};
 pub use isotropic::{Faces, Isotropic};
 pub use numbers::{EmissionNumbers, Needs};
 pub use point::Point;
@@ -21,8 +23,9 @@ pub use volume_source::VolumeSource;
 use crate::Spectrum;
 use crate::error::{Error, Result};
 use crate::geometry::{Hit, Shape, Slab, Sphere};
-use crate::math::Ray;
+use crate::math::{Frame, Ray};
 use crate::rng::Stream;
+use bundle::by_number;
 use glam::DVec3;
 
 /// The lights at hand.
@@ -65,6 +68,8 @@ impl Stage {
 pub struct Emission {
     /// Where it starts and where to.
     pub ray: Ray,
+    /// The part of the light's body that it starts on; 0 without parts.
+    pub primitive: u32,
     /// Power \[W\], as though it were the only one.
     pub power: Spectrum,
 }
@@ -210,7 +215,96 @@ impl Light {
             Light::Isotropic(l) => l.ray(stage, numbers),
             Light::VolumeSource(l) => l.ray(stage, numbers),
         };
-        Emission { ray, power: self.power(stage) }
+        let primitive = if let Light::Area(l) = self { l.primitive(numbers) } else { 0 };
+        Emission { ray, primitive, power: self.power(stage) }
+    }
+
+    /// The photon of these numbers where directions are chosen by cells: [`Self::emit_at`], but from a sphere the
+    /// direction comes first, uniform, and then the start, uniform on the disc that the sphere shows to it. Both ways
+    /// photons have the same distribution, and the light spreads its power evenly over the numbers.
+    pub fn emit_aimed(&self, stage: Option<&Stage>, numbers: &EmissionNumbers) -> Emission {
+        if let Light::Area(l) = self
+            && let Some(ray) = l.aimed_ray(numbers)
+        {
+            return Emission { ray, primitive: 0, power: l.power() };
+        }
+        self.emit_at(stage, numbers)
+    }
+
+    /// Cuts the unit cube of the light's numbers into cells, about `count` of them, small ones where the light's photons
+    /// go different ways.
+    pub fn cells(&self, count: usize) -> Vec<EmissionCell> {
+        let needs = self.needs();
+        let root = |n: usize, power: f64| (libm::pow(n as f64, power).round() as usize).max(1);
+        let uniform = |n: usize| (0..=n).map(|i| i as f64 / n as f64).collect::<Vec<f64>>();
+        let none = || uniform(1);
+        // A local light is seen by its directions: positions get a sixteenth of the cells at most, directions the rest.
+        let (mut along, mut aside) = match (needs.position, needs.direction) {
+            (_, 0) => (root(count, 0.5), 1),
+            (0, _) => (1, root(count, 0.5)),
+            _ => (if count >= 1024 { 4 } else { 2 }, 0),
+        };
+        let mut first = None;
+        match self {
+            Light::Area(l) => {
+                first = l.faces();
+                if l.is_sphere() {
+                    along = 1;
+                }
+            }
+            Light::Sun(_) => (along, aside) = (root(count, 0.5), 1),
+            Light::VolumeSource(_) => along = 1,
+            _ => {}
+        }
+        let axes = |i: usize| if i < needs.position { uniform(along) } else { none() };
+        let positions = match first {
+            Some(faces) => [faces, axes(1), axes(2)],
+            None => [axes(0), axes(1), axes(2)],
+        };
+        if aside == 0 {
+            let used: usize = positions.iter().map(|axis| axis.len() - 1).product();
+            aside = root(count.div_ceil(used), 0.5);
+        }
+        let aside = if needs.direction > 0 { uniform(aside) } else { none() };
+        let mut cells = Vec::new();
+        let parts = |axis: &[f64]| axis.windows(2).map(|w| (w[0], w[1])).collect::<Vec<_>>();
+        let [x, y, z] = positions.map(|axis| parts(&axis));
+        let direction = parts(&aside);
+        for a in &x {
+            for b in &y {
+                for c in &z {
+                    for d in &direction {
+                        for e in &direction {
+                            cells.push(EmissionCell {
+                                low: EmissionNumbers { position: [a.0, b.0, c.0], direction: [d.0, e.0] },
+                                high: EmissionNumbers { position: [a.1, b.1, c.1], direction: [d.1, e.1] },
+                            });
+                        }
+                    }
+                }
+            }
+        }
+        cells
+    }
+
+    /// A bundle that holds the rays of a cell, by [`Self::emit_aimed`]; none where they may go anywhere.
+    pub fn bundle(&self, cell: &EmissionCell) -> Option<Bundle> {
+        match self {
+            Light::Beam(l) => l.bundle(cell),
+            Light::Area(l) => l.bundle(cell),
+            Light::Point(l) => {
+                let (axis, angle) = bundle::cone(cell, &Frame::new(DVec3::Z), by_number::sphere);
+                Some(Bundle { center: l.position(), radius: 0.0, axis, angle })
+            }
+            Light::Spot(l) => Some(l.bundle(cell)),
+            Light::Sun(l) => l.bundle(cell),
+            Light::VolumeSource(l) => {
+                let (center, radius) = l.shape().bounds()?;
+                let (axis, angle) = bundle::cone(cell, &Frame::new(DVec3::Z), by_number::sphere);
+                Some(Bundle { center, radius, axis, angle })
+            }
+            Light::Isotropic(_) => None,
+        }
     }
 
     /// One photon that carries the light's whole power.

@@ -1,6 +1,7 @@
 //! A spot light: a point whose intensity falls off away from an axis.
 
-use super::{EmissionNumbers, LightSample, emissive};
+use super::bundle::cone;
+use super::{Bundle, EmissionCell, EmissionNumbers, LightSample, emissive};
 use crate::Spectrum;
 use crate::error::{Error, Result};
 use crate::math::{Frame, Ray, cosine_pair, sin, warp};
@@ -109,6 +110,11 @@ impl Spot {
         let one_minus_mu = self.one_minus_mu(numbers.direction[0]);
         let local = warp::direction((one_minus_mu, 2.0 - one_minus_mu), numbers.direction[1]);
         Ray::new(self.position, self.frame.to_world(local).normalize())
+    }
+
+    pub(super) fn bundle(&self, cell: &EmissionCell) -> Bundle {
+        let (axis, angle) = cone(cell, &self.frame, |u| self.one_minus_mu(u));
+        Bundle { center: self.position, radius: 0.0, axis, angle }
     }
 
     pub(super) fn sample(&self, p: DVec3) -> Option<LightSample> {

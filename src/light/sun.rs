@@ -1,7 +1,8 @@
 //! The sun: a distant disc of uniform radiance.
 
+use super::bundle::patch;
 use super::spot::one_minus_cos_degrees;
-use super::{EmissionNumbers, LightSample, Needs, emissive};
+use super::{Bundle, EmissionCell, EmissionNumbers, LightSample, Needs, emissive};
 use crate::Spectrum;
 use crate::error::{Error, Result};
 use crate::geometry::Sphere;
@@ -117,6 +118,19 @@ impl Sun {
         };
         let [a, b, _] = numbers.position;
         Ray::new(self.crossing([a, b]) - dir * self.run_up(), dir)
+    }
+
+    pub(super) fn bundle(&self, cell: &EmissionCell) -> Option<Bundle> {
+        let (bounds, radius) = self.disc()?;
+        let (middle, reach) = patch(cell, &self.frame);
+        // A photon starts as far before the disc as the others, along its own direction: a chord away from the axis's.
+        let chord = (2.0 * self.one_minus_mu_max).sqrt() * self.run_up();
+        Some(Bundle {
+            center: bounds.center() + middle * radius - self.frame.z * self.run_up(),
+            radius: reach * radius + chord,
+            axis: self.frame.z,
+            angle: libm::asin(self.sin2_max().sqrt()),
+        })
     }
 
     pub(super) fn sample(&self, u: [f64; 2]) -> Option<LightSample> {

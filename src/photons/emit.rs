@@ -1,16 +1,147 @@
-//! Emission: a photon from one of the lights, chosen in proportion to power.
+//! Emission: in proportion to power over all lights, everywhere or only where photons can be of use.
+//!
+//! A light spreads its power evenly over the unit cube of its numbers ([`Light::emit_at`]). Cut into cells, that cube says
+//! where photons may start: emission in proportion to power from some of the cells, whose photons then carry what these
+//! cells send out, is what all cells would have sent there.
 
 use crate::Spectrum;
+use crate::light::{Emission, EmissionCell, Light};
 use crate::rng::Stream;
 use crate::scene::{Scene, Start, Target};
 use crate::transport::Walker;
 
+/// Cells that the numbers of a light are cut into, about: each is tested against every specular body, which takes less
+/// than a microsecond, and a body that fills a thousandth of what a light sees still fills sixteen of them.
+const CELLS: usize = 1 << 14;
+
+/// From where photons leave the lights, and how often.
+#[derive(Debug, Clone)]
+pub struct Emitter {
+    /// Power of all lights \[W\].
+    power: Spectrum,
+    chosen: Option<Chosen>,
+}
+
+/// Cells of lights that photons are restricted to.
+#[derive(Debug, Clone)]
+struct Chosen {
+    /// Light and cell.
+    cells: Vec<(usize, EmissionCell)>,
+    /// Sum of the cells' probabilities up to each of them, the last one 1.
+    cumulated: Vec<f64>,
+    /// What a photon of each cell carries, over its light's power.
+    weights: Vec<f64>,
+    tested: u64,
+    /// Power that the cells send out, over that of all lights.
+    kept: f64,
+}
+
+impl Emitter {
+    /// All that the lights send out, in proportion to power.
+    pub fn by_power(scene: &Scene) -> Self {
+        Emitter { power: scene.power(), chosen: None }
+    }
+
+    /// What can meet a specular body: cells of the lights' numbers whose rays can reach the sphere about one of them.
+    /// None where the scene has no specular body, and where no light reaches one.
+    ///
+    /// Conservative: a cell is left out only if none of its rays, the light's extent included, can meet any of those
+    /// spheres. A light whose photons may go anywhere from each part of its numbers is kept whole.
+    pub fn towards_specular(scene: &Scene) -> Option<Self> {
+        if !scene.plan().has_specular {
+            return None;
+        }
+        let specular = scene.objects().iter().filter(|o| o.surface.is_specular());
+        // A body without end is met from everywhere.
+        let balls: Option<Vec<_>> = specular.map(|o| o.shape.bounds()).collect();
+        let mut tested = 0;
+        let mut cells = Vec::new();
+        for (index, light) in scene.lights().iter().enumerate() {
+            let Some(balls) =
+                balls.as_ref().filter(|_| light.bundle(&EmissionCell::WHOLE).is_some() || has_faces(light))
+            else {
+                cells.push((index, EmissionCell::WHOLE));
+                continue;
+            };
+            for cell in light.cells(CELLS) {
+                tested += 1;
+                let is_of_use = light.bundle(&cell).is_none_or(|bundle| {
+                    balls.iter().any(|(center, radius)| bundle.reaches(*center, *radius))
+                });
+                if is_of_use {
+                    cells.push((index, cell));
+                }
+            }
+        }
+        let shares = cells.iter().map(|(light, cell)| share(scene, *light, cell)).collect();
+        Self::chosen(scene, cells, shares, tested)
+    }
+
+    /// Emission from cells with probabilities in proportion to `chances`; none if all are 0.
+    pub(super) fn chosen(
+        scene: &Scene,
+        cells: Vec<(usize, EmissionCell)>,
+        chances: Vec<f64>,
+        tested: u64,
+    ) -> Option<Self> {
+        let power = scene.power();
+        let total: f64 = chances.iter().sum();
+        if total.is_nan() || total <= 0.0 {
+            return None;
+        }
+        let (mut sum, mut kept) = (0.0, 0.0);
+        let (mut cumulated, mut weights) = (Vec::new(), Vec::new());
+        for ((light, cell), chance) in cells.iter().zip(&chances) {
+            sum += chance;
+            cumulated.push(sum / total);
+            weights.push(cell.volume() * total / chance);
+            if *chance > 0.0 {
+                kept += share(scene, *light, cell);
+            }
+        }
+        let kept = kept / power.sum();
+        Some(Emitter { power, chosen: Some(Chosen { cells, cumulated, weights, tested, kept }) })
+    }
+
+    /// How many cells were tested against specular bodies.
+    pub fn projection_cells(&self) -> u64 {
+        self.chosen.as_ref().map_or(0, |chosen| chosen.tested)
+    }
+
+    /// Power that photons are sent out for, over that of all lights.
+    pub fn kept(&self) -> f64 {
+        self.chosen.as_ref().map_or(1.0, |chosen| chosen.kept)
+    }
+
+    /// A photon, ready to walk: its weight is its power as though it were the only one \[W\].
+    pub fn emit(&self, scene: &Scene, stream: &mut Stream) -> Walker {
+        let (lights, stage) = (scene.lights(), scene.stage());
+        let Some(chosen) = &self.chosen else { return by_power(scene, self.power, stream) };
+        let u = stream.unit();
+        // The first cell whose sum exceeds u: one without probability is never it.
+        let i = chosen.cumulated.partition_point(|sum| *sum <= u).min(chosen.cells.len() - 1);
+        let (index, cell) = &chosen.cells[i];
+        let light = &lights[*index];
+        let needs = light.needs();
+        let numbers = cell.numbers((needs.position, needs.direction), stream);
+        let emission = light.emit_aimed(stage, &numbers);
+        start(scene, *index, &emission, emission.power * chosen.weights[i])
+    }
+}
+
+/// Power of a light's cell, summed over channels \[W\].
+fn share(scene: &Scene, light: usize, cell: &EmissionCell) -> f64 {
+    scene.lights()[light].power(scene.stage()).sum() * cell.volume()
+}
+
+/// Whether a light's cells have bundles though the whole has none: those of a cuboid, a face each.
+fn has_faces(light: &Light) -> bool {
+    light.cells(1).first().is_some_and(|cell| light.bundle(cell).is_some())
+}
+
 /// A photon from one of the lights, chosen in proportion to power; it carries the power of all of them \[W\], in the
 /// colour of its own.
-///
-/// # Arguments
-/// `power` of all lights, [`Scene::power`], which the caller asks for once
-pub(super) fn emit(scene: &Scene, power: Spectrum, stream: &mut Stream) -> Walker {
+fn by_power(scene: &Scene, power: Spectrum, stream: &mut Stream) -> Walker {
     let (lights, stage) = (scene.lights(), scene.stage());
     let total = power.sum();
     let mut index = 0;
@@ -24,6 +155,14 @@ pub(super) fn emit(scene: &Scene, power: Spectrum, stream: &mut Stream) -> Walke
     let emission = lights[index].emit(stage, stream);
     let weight =
         if lights.len() > 1 { emission.power * (total / emission.power.sum()) } else { emission.power };
-    let from = lights[index].body().map(|_| Start { target: Target::Light(index), primitive: 0 });
-    Walker { from, ..Walker::new(emission.ray, weight) }
+    start(scene, index, &emission, weight)
+}
+
+/// The walker of a photon that leaves a light.
+fn start(scene: &Scene, index: usize, emission: &Emission, weight: Spectrum) -> Walker {
+    let from = scene.lights()[index]
+        .body()
+        .map(|_| Start { target: Target::Light(index), primitive: emission.primitive });
+    let within = scene.interior_of_light(index, emission.ray.origin);
+    Walker { from, within, ..Walker::new(emission.ray, weight) }
 }

@@ -16,10 +16,10 @@
 //! rays of a final gathering bring the medium's radiance with them, so that light scattered by the medium towards the
 //! surface that the eye looks at, L ... M D, comes with them; a map that is seen holds that class.
 
-use super::emit::emit;
-use super::{Flags, Ledger, Photon, PhotonMap, fold};
+use super::{Emitter, Flags, Ledger, Photon, PhotonMap, fold};
 use crate::Spectrum;
 use crate::error::{Error, Result};
+use crate::faults::{Fault, planted};
 use crate::rng::{Purpose, Stream};
 use crate::scene::{Scene, Target};
 use crate::surface::Surface;
@@ -122,6 +122,10 @@ pub struct MapReport {
     pub pilot: Duration,
     /// Time of building the trees.
     pub build: Duration,
+    /// Cells of the lights' numbers that were tested against specular bodies.
+    pub projection_cells: u64,
+    /// Power that could meet a specular body, over that of all lights: what the photons of the caustic map stand for.
+    pub projected: f64,
     /// Memory that the maps occupy \[bytes\].
     pub bytes: usize,
 }
@@ -143,7 +147,10 @@ pub struct Maps {
 
 /// Whether the global map holds a photon of this class.
 pub fn is_global(flags: Flags, indirect: Indirect) -> bool {
-    indirect == Indirect::Gathered || flags.has(Flags::DIFFUSE) || flags.has(Flags::MEDIUM)
+    indirect == Indirect::Gathered
+        || flags.has(Flags::DIFFUSE)
+        || flags.has(Flags::MEDIUM)
+        || (planted(Fault::CausticTwice) && is_caustic(flags))
 }
 
 /// Whether the caustic map holds a photon of this class.
@@ -153,7 +160,7 @@ pub fn is_caustic(flags: Flags) -> bool {
 
 /// Whether the volume map holds a photon of this class.
 pub fn is_volume(flags: Flags) -> bool {
-    !flags.is_direct()
+    !flags.is_direct() || planted(Fault::DirectInVolumeMap)
 }
 
 /// Fills the maps that the scene needs.
@@ -175,7 +182,8 @@ pub fn fill(scene: &Scene, settings: &MapSettings, progress: &dyn Progress) -> R
 /// [`Error::OutOfRange`] for a number of 0; [`Error::Scene`] if a map would stay empty: none of the pilot's photons was
 /// stored.
 pub fn counts(scene: &Scene, settings: &MapSettings) -> Result<Emitted> {
-    let needs = Needs::of(scene);
+    let emitters = Emitters::of(scene);
+    let needs = Needs::of(scene, &emitters);
     let asked = [
         ("global", needs.global, settings.global),
         ("volume", needs.volume, settings.volume),
@@ -185,6 +193,7 @@ pub fn counts(scene: &Scene, settings: &MapSettings) -> Result<Emitted> {
     let pilot = |class: Class| {
         let run = Run {
             scene,
+            emitter: emitters.of_class(class),
             purpose: Purpose::Pilot,
             seed: settings.seed,
             replicate: settings.replicate,
@@ -234,8 +243,10 @@ pub fn fill_counted(
     emitted: Emitted,
     progress: &dyn Progress,
 ) -> Result<Maps> {
+    let emitters = Emitters::of(scene);
     let run = |class, global, volume| Run {
         scene,
+        emitter: emitters.of_class(class),
         purpose: Purpose::Photons,
         seed: settings.seed,
         replicate: settings.replicate,
@@ -259,6 +270,9 @@ pub fn fill_counted(
     let pass = own.pass(caustic, progress)?;
     let focused = build(joined(pass.surfaces), caustic)?;
     (report.main, report.caustic) = (main, pass.report);
+    if let Some(emitter) = &emitters.caustic {
+        (report.projection_cells, report.projected) = (emitter.projection_cells(), emitter.kept());
+    }
     report.bytes = [&surfaces, &media, &focused].into_iter().flatten().map(|map| map.tree().bytes()).sum();
     Ok(Maps { global: surfaces, caustic: focused, volume: media, indirect: settings.indirect, report })
 }
@@ -270,11 +284,28 @@ struct Needs {
     volume: bool,
 }
 
-impl Needs {
+/// How photons of each pass leave the lights.
+struct Emitters {
+    main: Emitter,
+    /// Those that can meet a specular body; none if none can.
+    caustic: Option<Emitter>,
+}
+
+impl Emitters {
     fn of(scene: &Scene) -> Self {
+        Emitters { main: Emitter::by_power(scene), caustic: Emitter::towards_specular(scene) }
+    }
+
+    fn of_class(&self, class: Class) -> &Emitter {
+        self.caustic.as_ref().filter(|_| class == Class::Caustic).unwrap_or(&self.main)
+    }
+}
+
+impl Needs {
+    fn of(scene: &Scene, emitters: &Emitters) -> Self {
         let plan = scene.plan();
         let is_matt = plan.has_surfaces && scene.objects().iter().any(|o| is_matt(&o.surface));
-        Needs { global: is_matt, caustic: is_matt && plan.has_specular, volume: plan.has_media }
+        Needs { global: is_matt, caustic: is_matt && emitters.caustic.is_some(), volume: plan.has_media }
     }
 }
 
@@ -296,6 +327,7 @@ enum Class {
 #[derive(Clone, Copy)]
 struct Run<'a> {
     scene: &'a Scene,
+    emitter: &'a Emitter,
     purpose: Purpose,
     seed: u64,
     replicate: u64,
@@ -351,7 +383,7 @@ fn joined(parts: Vec<Vec<Photon>>) -> Vec<Photon> {
 
 impl Run<'_> {
     fn pass(&self, histories: u64, progress: &dyn Progress) -> Result<Stored> {
-        let (start, power) = (Instant::now(), self.scene.power());
+        let start = Instant::now();
         // A caustic photon has not been scattered: its history ends with its first scattering.
         let limit = (self.class == Class::Caustic).then_some(1);
         let block = |range: std::ops::Range<u64>| {
@@ -365,7 +397,7 @@ impl Run<'_> {
             for history in range {
                 let mut stream = Stream::new(self.seed, self.purpose, self.replicate, history);
                 store.history = history;
-                let first = emit(self.scene, power, &mut stream);
+                let first = self.emitter.emit(self.scene, &mut stream);
                 store.stored.report.emitted += 1;
                 store.stored.report.ledger.emitted += first.weight.sum();
                 walk(self.scene, first, Roulette::Analog, limit, &mut stream, &mut store);

@@ -10,7 +10,8 @@ pub mod synthetic;
 pub mod tree;
 
 pub use crate::transport::Flags;
+pub use emit::Emitter;
 pub use map::PhotonMap;
 pub use record::Photon;
-pub use shoot::{Histories, Ledger, Pass, is_in, is_indirect, shoot};
+pub use shoot::{Histories, Ledger, Pass, is_in, is_indirect, shoot, shoot_from};
 pub use tree::PhotonTree;

@@ -1,7 +1,6 @@
 //! Shooting: histories from the lights, photons kept where they collide, powers tallied where they leave.
 
-use super::emit::emit;
-use super::{Flags, Photon, fold};
+use super::{Emitter, Flags, Photon, fold};
 use crate::Spectrum;
 use crate::error::{Error, Result};
 use crate::geometry::{Face, Shape};
@@ -78,10 +77,26 @@ pub fn shoot(
     keep: impl Fn(&Photon) -> bool + Sync,
     progress: &dyn Progress,
 ) -> Result<Pass> {
+    shoot_from(scene, &Emitter::by_power(scene), histories, sensors, keep, progress)
+}
+
+/// The same with photons that leave the lights otherwise.
+///
+/// # Errors
+/// As [`shoot`].
+pub fn shoot_from(
+    scene: &Scene,
+    emitter: &Emitter,
+    histories: Histories,
+    sensors: &[Sensor],
+    keep: impl Fn(&Photon) -> bool + Sync,
+    progress: &dyn Progress,
+) -> Result<Pass> {
     let power = scene.power();
     let block = |range: std::ops::Range<u64>| {
         let mut visitor = Tallier {
             scene,
+            emitter,
             sensors,
             keep: &keep,
             power,
@@ -128,6 +143,7 @@ impl Pass {
 /// Follows the histories of one block.
 struct Tallier<'a, K: Fn(&Photon) -> bool> {
     scene: &'a Scene,
+    emitter: &'a Emitter,
     sensors: &'a [Sensor],
     keep: &'a K,
     power: Spectrum,
@@ -139,7 +155,7 @@ struct Tallier<'a, K: Fn(&Photon) -> bool> {
 impl<K: Fn(&Photon) -> bool> Tallier<'_, K> {
     fn run(&mut self, max_order: Option<u32>, stream: &mut Stream) {
         self.scores.fill(Spectrum::ZERO);
-        let start = emit(self.scene, self.power, stream);
+        let start = self.emitter.emit(self.scene, stream);
         self.pass.emitted += 1;
         self.pass.ledger.emitted += start.weight.sum();
         // Photons of order n arrive by a flight of order n: flights stop one later.

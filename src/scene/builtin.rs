@@ -142,7 +142,17 @@ fn emission(value: f64) -> Result<Channels<NonNegative>> {
 }
 
 fn region(shape: ShapeFile, sigma_t: f64, albedo: Albedo, g: Asymmetry) -> Result<RegionFile> {
-    Ok(RegionFile { shape, sigma_t: grey(NonNegative::new("sigma_t", sigma_t)?), albedo: grey(albedo), g })
+    Ok(RegionFile {
+        shape,
+        sigma_t: grey(NonNegative::new("sigma_t", sigma_t)?),
+        albedo: grey(albedo),
+        albedo_grid: None,
+        g: Some(g),
+        phase: None,
+        emission: None,
+        emission_by_density: None,
+        density: None,
+    })
 }
 
 fn sensor(
@@ -201,14 +211,7 @@ fn slab(p: SlabParameters) -> Result<SceneFile> {
         ));
     }
     let regions = vec![region(shape, 1.0 / scale, p.albedo, p.g)?];
-    Ok(SceneFile {
-        cell: Some(side),
-        regions,
-        objects: Vec::new(),
-        lights: vec![light],
-        sensors,
-        camera: None,
-    })
+    Ok(SceneFile { cell: Some(side), regions, lights: vec![light], sensors, ..SceneFile::default() })
 }
 
 fn sphere(p: SphereParameters) -> Result<SceneFile> {
@@ -246,7 +249,7 @@ fn sphere(p: SphereParameters) -> Result<SceneFile> {
         }
     }
     let regions = vec![region(shape, 1.0, p.albedo, p.g)?];
-    Ok(SceneFile { cell: None, regions, objects: Vec::new(), lights: vec![light], sensors, camera: None })
+    Ok(SceneFile { regions, lights: vec![light], sensors, ..SceneFile::default() })
 }
 
 fn shaft(p: ShaftParameters) -> Result<SceneFile> {
@@ -266,5 +269,5 @@ fn shaft(p: ShaftParameters) -> Result<SceneFile> {
     });
     let sensors = sensors.collect();
     let regions = vec![region(shape, 1.0, p.albedo, p.g)?];
-    Ok(SceneFile { cell: None, regions, objects: Vec::new(), lights: vec![light], sensors, camera: None })
+    Ok(SceneFile { regions, lights: vec![light], sensors, ..SceneFile::default() })
 }

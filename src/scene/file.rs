@@ -1,14 +1,22 @@
 //! The scene file: TOML, strict. Every error names the line, the column and the key, and says what is allowed.
 
-use super::{Camera, Filter, Object, Orders, Parts, Quantity, Region, Scene, Sensor, View};
+mod interior;
+mod medium;
+mod shape;
+mod texture;
+
+pub use interior::{DielectricFile, InteriorFile};
+pub use medium::{DensityFile, GridFile, PhaseFile};
+pub use shape::ShapeFile;
+pub use texture::TextureFile;
+
+use super::{Camera, Filter, Interior, Object, Orders, Parts, Quantity, Region, Scene, Sensor, View};
 use crate::Spectrum;
 use crate::error::{Error, Result};
-use crate::geometry::{Cuboid, Face, Rectangle, Shape, Slab, Sphere};
+use crate::geometry::{Face, Rectangle};
 use crate::light::{Area, Beam, Faces, Isotropic, Light, Point, Section, Spot, Sun, VolumeSource};
 use crate::math::{Albedo, Asymmetry, NonNegative, Positive, Ray};
-use crate::medium::Homogeneous;
-use crate::phase::Phase;
-use crate::surface::{Black, Lambertian, Mirror, Surface};
+use crate::surface::{self, Black, Lambertian, Mirror, Surface};
 use glam::DVec3;
 use serde::de::{IntoDeserializer, SeqAccess, Visitor};
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
@@ -55,7 +63,7 @@ impl<T: Serialize + PartialEq> Serialize for Channels<T> {
 }
 
 /// A whole scene file.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct SceneFile {
     /// Side of the cell that stands for an unbounded slab \[L\].
@@ -64,6 +72,9 @@ pub struct SceneFile {
     /// Media.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub regions: Vec<RegionFile>,
+    /// What fills the space between dielectric surfaces, beside the surroundings.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub interiors: Vec<InteriorFile>,
     /// Surfaces.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub objects: Vec<ObjectFile>,
@@ -119,20 +130,6 @@ impl CameraFile {
     }
 }
 
-/// A shape; lengths in scene units.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields, rename_all = "kebab-case")]
-#[allow(
-    missing_docs,
-    reason = "the names are those of the shapes' own constructors, which say their meaning"
-)]
-pub enum ShapeFile {
-    Sphere { center: [f64; 3], radius: Positive },
-    Rectangle { corner: [f64; 3], u: [f64; 3], v: [f64; 3] },
-    Slab { top: f64, thickness: Positive },
-    Cuboid { min: [f64; 3], max: [f64; 3] },
-}
-
 /// A medium in a shape.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -143,8 +140,24 @@ pub struct RegionFile {
     pub sigma_t: Channels<NonNegative>,
     /// Single-scattering albedo.
     pub albedo: Channels<Albedo>,
+    /// Albedo from place to place, times `albedo`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub albedo_grid: Option<GridFile>,
     /// Asymmetry of the Henyey-Greenstein phase function; 0 is isotropic.
-    pub g: Asymmetry,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub g: Option<Asymmetry>,
+    /// Another phase function, in place of `g`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub phase: Option<PhaseFile>,
+    /// Emission, the same everywhere [W/(L^3 sr)]; none if absent.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub emission: Option<Channels<NonNegative>>,
+    /// Emission that follows the density, where it is 1 [W/(L^3 sr)]; none if absent.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub emission_by_density: Option<Channels<NonNegative>>,
+    /// How much of it is where: the extinction is this times `sigma_t`; 1 everywhere if absent.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub density: Option<DensityFile>,
 }
 
 /// A surface on a shape.
@@ -165,8 +178,10 @@ pub struct ObjectFile {
     reason = "the names are those of the surfaces' own constructors, which say their meaning"
 )]
 pub enum SurfaceFile {
-    Lambertian { reflectance: Channels<Albedo> },
+    Lambertian { reflectance: TextureFile },
     Mirror { reflectance: Channels<Albedo> },
+    Dielectric(DielectricFile),
+    Filter { transmittance: TextureFile },
     Black,
 }
 
@@ -227,28 +242,40 @@ pub enum QuantityFile {
     Absorbed { region: usize },
 }
 
-impl ShapeFile {
-    fn shape(&self, _folder: &Path) -> Result<Shape> {
-        Ok(match *self {
-            ShapeFile::Sphere { center, radius } => Shape::Sphere(Sphere::new(center.into(), radius.get())?),
-            ShapeFile::Rectangle { corner, u, v } => Shape::Rectangle(rectangle(corner, u, v)?),
-            ShapeFile::Slab { top, thickness } => Shape::Slab(Slab::new(top, thickness.get())?),
-            ShapeFile::Cuboid { min, max } => Shape::Cuboid(Cuboid::new(min.into(), max.into())?),
-        })
-    }
-}
-
 fn rectangle(corner: [f64; 3], u: [f64; 3], v: [f64; 3]) -> Result<Rectangle> {
     Rectangle::new(corner.into(), u.into(), v.into())
 }
 
+impl RegionFile {
+    fn region(&self, folder: &Path) -> Result<Region> {
+        let keys = medium::Keys {
+            sigma_t: Some(self.sigma_t),
+            albedo: Some(self.albedo),
+            albedo_grid: self.albedo_grid.as_ref(),
+            g: self.g,
+            phase: self.phase.as_ref(),
+            emission: self.emission,
+            emission_by_density: self.emission_by_density,
+            density: self.density.as_ref(),
+        };
+        let Some(medium) = keys.medium(folder)? else {
+            return Err(Error::Scene("a region without medium".into()));
+        };
+        Ok(Region { shape: self.shape.shape(folder)?, medium })
+    }
+}
+
 impl SurfaceFile {
-    fn surface(&self, _folder: &Path) -> Result<Surface> {
-        Ok(match *self {
+    fn surface(&self, folder: &Path, interiors: &[Interior]) -> Result<Surface> {
+        Ok(match self {
             SurfaceFile::Lambertian { reflectance } => {
-                Surface::Lambertian(Lambertian::new(reflectance.spectrum())?)
+                Surface::Lambertian(Lambertian::textured(reflectance.texture("reflectance", folder)?))
             }
             SurfaceFile::Mirror { reflectance } => Surface::Mirror(Mirror::new(reflectance.spectrum())?),
+            SurfaceFile::Dielectric(names) => Surface::Dielectric(names.dielectric(interiors)?),
+            SurfaceFile::Filter { transmittance } => {
+                Surface::Filter(surface::Filter::textured(transmittance.texture("transmittance", folder)?))
+            }
             SurfaceFile::Black => Surface::Black(Black),
         })
     }
@@ -327,18 +354,23 @@ impl SensorFile {
 impl SceneFile {
     /// The validated scene; names of other files are relative to `folder`.
     pub fn scene(&self, folder: &Path) -> Result<Scene> {
-        let regions = self.regions.iter().map(|r| {
-            let phase = Phase::with_asymmetry(r.g);
-            let medium = Homogeneous::new(r.sigma_t.spectrum(), r.albedo.spectrum(), phase)?;
-            Ok(Region { shape: r.shape.shape(folder)?, medium })
-        });
-        let objects = self
-            .objects
+        let regions = self
+            .regions
             .iter()
-            .map(|o| Ok(Object { shape: o.shape.shape(folder)?, surface: o.surface.surface(folder)? }));
+            .enumerate()
+            .map(|(i, r)| r.region(folder).map_err(|e| e.within(&format!("regions[{i}]"))));
+        let mut interiors = vec![Interior::surroundings()];
+        for interior in &self.interiors {
+            interiors.push(
+                interior.interior(folder).map_err(|e| e.within(&format!("interior {}", interior.name)))?,
+            );
+        }
+        let objects = self.objects.iter().map(|o| {
+            Ok(Object { shape: o.shape.shape(folder)?, surface: o.surface.surface(folder, &interiors)? })
+        });
         Scene::new(Parts {
             regions: regions.collect::<Result<_>>()?,
-            interiors: Vec::new(),
+            interiors: interiors.clone(),
             objects: objects.collect::<Result<_>>()?,
             lights: self
                 .lights

@@ -5,8 +5,13 @@
 //! one on its outer side. An interior has one index everywhere, and at most one medium, which fills it wherever it
 //! reaches; regions do not count inside it. Whoever travels carries the number of the interior that it is in.
 
-use super::{Region, Scene};
+use super::{Object, Parts, Region, Scene};
+use crate::error::{Error, Result};
+use crate::geometry::{Face, Shape};
+use crate::light::Light;
+use crate::math::Ray;
 use crate::medium::Medium;
+use crate::surface::{Dielectric, Surface};
 use glam::DVec3;
 
 /// The number of the surroundings.
@@ -41,6 +46,113 @@ pub(super) fn numbered(regions: &[Region], interiors: &[Interior]) -> (Vec<Mediu
     (media, filling)
 }
 
+/// Where to look for a boundary: first in a direction that shapes along the axes do not share, then along the axes, up
+/// and down first since water is level.
+const DIRECTIONS: [DVec3; 7] = [
+    // (3, 4, 12)/13, a unit vector whose components are rational.
+    DVec3::new(3.0 / 13.0, 4.0 / 13.0, 12.0 / 13.0),
+    DVec3::Z,
+    DVec3::NEG_Z,
+    DVec3::Y,
+    DVec3::NEG_Y,
+    DVec3::X,
+    DVec3::NEG_X,
+];
+
+/// The interior on the near side of the first dielectric surface on a ray.
+fn side_seen(parts: &Parts, ray: &Ray) -> Option<usize> {
+    let boundaries = parts.objects.iter().filter_map(|object| {
+        let Surface::Dielectric(dielectric) = &object.surface else { return None };
+        Some((object.shape.hit(ray, None)?, dielectric))
+    });
+    let (hit, dielectric) = boundaries.min_by(|(a, _), (b, _)| a.t.total_cmp(&b.t))?;
+    Some(dielectric.sides(ray.dir, hit.normal).0)
+}
+
+/// For each light the interior that it is in, where it is in one; none where that is to be asked point by point.
+pub(super) fn of_lights(scene: &Scene) -> Vec<Option<usize>> {
+    let one = |light: &Light| {
+        if !scene.plan().has_dielectrics || light.needs_stage() {
+            return Some(SURROUNDINGS);
+        }
+        let on_body = |shape: &Shape| shape.sample_boundary(Face::Top, 0.0, [0.5; 3]).0;
+        light.apex().or_else(|| light.body().map(on_body)).map(|p| scene.interior_at(p))
+    };
+    scene.lights().iter().map(one).collect()
+}
+
+/// Whether interiors and the surfaces that name them fit together.
+pub(super) fn check(parts: &Parts) -> Result<()> {
+    for (number, interior) in parts.interiors.iter().enumerate() {
+        let (name, index) = (&interior.name, interior.index);
+        if !(index >= 1.0 && index.is_finite()) {
+            let what = format!("index of refraction of interior {name}");
+            return Err(Error::out_of_range(what, index, "finite and at least 1"));
+        }
+        if number == SURROUNDINGS {
+            continue;
+        }
+        if parts.interiors[..number].iter().any(|other| other.name == *name) {
+            return Err(Error::Scene(format!(
+                "two interiors are called {name}; allowed: one, and not that of the surroundings"
+            )));
+        }
+        let names_it = |o: &&Object| matches!(&o.surface, Surface::Dielectric(d) if d.inside() == number || d.outside() == number);
+        if parts.objects.iter().find(names_it).is_none() {
+            return Err(Error::Scene(format!(
+                "interior {name} has no boundary: allowed: at least one object with a dielectric surface that names it"
+            )));
+        }
+    }
+    for (index, object) in parts.objects.iter().enumerate() {
+        if let Surface::Dielectric(dielectric) = &object.surface {
+            check_sides(parts, index, dielectric)?;
+        }
+    }
+    Ok(())
+}
+
+/// Points of a surface at which its neighbours are asked whether they agree.
+const ASKED: u32 = 16;
+
+/// Whether a dielectric surface and its neighbours name the same interior for the space between them, where a ray along
+/// the normal meets a neighbour, at most points.
+fn check_sides(parts: &Parts, index: usize, dielectric: &Dielectric) -> Result<()> {
+    let name = |number: usize| parts.interiors.get(number).map(|i| i.name.as_str());
+    let (Some(inside), Some(outside)) = (name(dielectric.inside()), name(dielectric.outside())) else {
+        return Err(Error::Scene(format!("object {index} names an interior that is not there")));
+    };
+    if dielectric.inside() == dielectric.outside() {
+        return Err(Error::Scene(format!(
+            "object {index} has {inside} on both sides; allowed: two interiors"
+        )));
+    }
+    let shape = &parts.objects[index].shape;
+    // Far from the surface by nothing that a neighbour could hide in, and by more than rounding.
+    let step = 1e-7 * shape.bounds().map_or(shape.shortest_extent(), |(_, radius)| radius);
+    let (mut asked, mut wrong, mut other) = (0, 0, "");
+    for i in 0..ASKED {
+        // A rank-1 lattice by the plastic number: points that share no line.
+        let u = [0.754_877_666, 0.569_840_291, 0.430_159_709].map(|a| (f64::from(i) * a + 0.5).fract());
+        let (p, normal, _) = shape.sample_boundary(Face::Top, 1.0, u);
+        for (dir, named) in [(normal, dielectric.outside()), (-normal, dielectric.inside())] {
+            if let Some(seen) = side_seen(parts, &Ray::new(p + dir * step, dir)) {
+                asked += 1;
+                if seen != named {
+                    wrong += 1;
+                    other = name(seen).unwrap_or_default();
+                }
+            }
+        }
+    }
+    if 2 * wrong > asked {
+        return Err(Error::Scene(format!(
+            "object {index} has {inside} inside and {outside} outside, but the next dielectric surface has {other} on the side towards it; allowed: the same on both"
+        )));
+    }
+    Ok(())
+}
+
 impl Scene {
     /// Every interior by its number; 0 is the surroundings.
     pub fn interiors(&self) -> &[Interior] {
@@ -65,9 +177,21 @@ impl Scene {
         self.filling[within]
     }
 
-    /// Number of the interior that a point is in.
-    pub fn interior_at(&self, _p: DVec3) -> usize {
-        SURROUNDINGS
+    /// Number of the interior that a point is in: the first dielectric surface on a ray from there says it. A point that
+    /// sees none, in any of a few directions, is in the surroundings.
+    pub fn interior_at(&self, p: DVec3) -> usize {
+        if !self.plan().has_dielectrics {
+            return SURROUNDINGS;
+        }
+        DIRECTIONS.iter().find_map(|dir| side_seen(&self.parts, &Ray::new(p, *dir))).unwrap_or(SURROUNDINGS)
+    }
+
+    /// Number of the interior in which light starts from `origin` by the light of this index.
+    pub fn interior_of_light(&self, index: usize, origin: DVec3) -> usize {
+        match self.light_within[index] {
+            Some(within) => within,
+            None => self.interior_at(origin),
+        }
     }
 
     /// Number of the medium that counts at a point; none in vacuum.
@@ -75,6 +199,20 @@ impl Scene {
         match self.interior_at(p) {
             SURROUNDINGS => self.regions().iter().rposition(|r| r.shape.contains(p)),
             within => self.filling(within),
+        }
+    }
+
+    /// Distance from a point to the boundary of the medium that it is in, as far as solid shapes tell \[L\]; 0 in vacuum.
+    pub fn room(&self, p: DVec3) -> f64 {
+        let Some(number) = self.medium_number_at(p) else { return 0.0 };
+        match self.regions().get(number) {
+            Some(region) => region.shape.room(p),
+            None => {
+                let boundaries =
+                    self.objects().iter().filter(|o| matches!(o.surface, Surface::Dielectric(_)));
+                let known = boundaries.filter(|o| o.shape.is_solid());
+                known.map(|o| o.shape.room(p).abs()).reduce(f64::min).unwrap_or(0.0)
+            }
         }
     }
 

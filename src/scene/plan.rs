@@ -2,6 +2,8 @@
 
 use super::Parts;
 use crate::light::Light;
+use crate::medium::Medium;
+use crate::surface::Surface;
 
 /// What a scene requires; what it does not require costs nothing.
 #[derive(Debug, Clone, PartialEq)]
@@ -10,12 +12,22 @@ pub struct Plan {
     pub has_media: bool,
     /// Whether every medium has the same extinction in all channels, so that one flight serves all.
     pub has_grey_extinction: bool,
+    /// Whether the density of some medium varies, so that flights and transmittances are tracked.
+    pub has_heterogeneous: bool,
+    /// Whether some medium emits by itself.
+    pub has_emission: bool,
+    /// What each varying density is, in words.
+    pub densities: Vec<String>,
     /// Whether every number is the same in all channels, so that one channel is reported.
     pub is_grey: bool,
     /// Whether light can meet a surface.
     pub has_surfaces: bool,
     /// Whether light can meet a specular surface.
     pub has_specular: bool,
+    /// Whether light can meet a boundary that refracts.
+    pub has_dielectrics: bool,
+    /// Whether light can meet a filter.
+    pub has_filters: bool,
     /// Whether some light has a direction to aim at.
     pub has_next_event: bool,
     /// Indices of lights in one point (point and spot): equiangular sampling towards them.
@@ -31,38 +43,45 @@ const THIN: f64 = 0.1;
 
 impl Plan {
     pub(super) fn of(parts: &Parts) -> Self {
-        let media: Vec<_> = parts.regions.iter().filter(|r| r.medium.sigma_t().max() > 0.0).collect();
-        let thickness = media.iter().map(|r| r.shape.shortest_extent() * r.medium.sigma_t().max());
+        let filled = parts.interiors.iter().filter_map(|i| i.medium.as_ref());
+        let media: Vec<&Medium> = parts.regions.iter().map(|r| &r.medium).chain(filled).collect();
+        let has_media = media.iter().any(|m| m.is_colliding());
+        let has_heterogeneous = media.iter().any(|m| !m.is_homogeneous());
+        let regions = || parts.regions.iter().filter(|r| r.medium.is_colliding());
+        let thickness = regions().map(|r| r.shape.shortest_extent() * r.medium.highest_sigma_t().max());
         let thickest = thickness.fold(0.0, f64::max);
         let has_specular = parts.objects.iter().any(|o| o.surface.is_specular());
         let has_delta = parts.lights.iter().any(Light::is_delta);
-        let has_event = !media.is_empty() || parts.objects.iter().any(|o| !o.surface.is_specular());
+        let has_event =
+            has_media || parts.objects.iter().any(|o| o.surface.is_event() && !o.surface.is_specular());
         let mut unreachable = Vec::new();
         if has_specular && has_delta {
             if has_event {
                 unreachable.push(
-                    "L S+ (D|M) ... : from a beam, a sun without disc, a point or spot light by mirrors to the first scattering".into(),
+                    "L S+ (D|M) ... : from a beam, a sun without disc, a point or spot light by mirrors or glass to the first scattering".into(),
                 );
             }
             unreachable.push(
-                "L S+ E : from a beam, a sun without disc, a point or spot light by mirrors to the sensor"
+                "L S+ E : from a beam, a sun without disc, a point or spot light by mirrors or glass to the sensor"
                     .into(),
             );
         }
         Plan {
-            has_media: !media.is_empty(),
-            has_grey_extinction: media.iter().all(|r| r.medium.sigma_t().is_grey()),
-            is_grey: parts
-                .regions
-                .iter()
-                .all(|r| r.medium.sigma_t().is_grey() && r.medium.albedo().is_grey())
+            has_media,
+            has_grey_extinction: media.iter().all(|m| m.has_grey_extinction()),
+            has_heterogeneous,
+            has_emission: media.iter().any(|m| m.is_emitting()),
+            densities: media.iter().filter_map(|m| m.density()).map(|d| d.describe()).collect(),
+            is_grey: media.iter().all(|m| m.is_grey())
                 && parts.objects.iter().all(|o| o.surface.is_grey())
                 && parts.lights.iter().all(Light::is_grey),
             has_surfaces: !parts.objects.is_empty(),
             has_specular,
+            has_dielectrics: parts.objects.iter().any(|o| matches!(o.surface, Surface::Dielectric(_))),
+            has_filters: parts.objects.iter().any(|o| matches!(o.surface, Surface::Filter(_))),
             has_next_event: parts.lights.iter().any(Light::has_direction),
             point_lights: (0..parts.lights.len()).filter(|&i| parts.lights[i].apex().is_some()).collect(),
-            forces_first_collision: !media.is_empty() && thickest < THIN,
+            forces_first_collision: regions().next().is_some() && thickest < THIN && !has_heterogeneous,
             unreachable,
         }
     }
@@ -71,6 +90,9 @@ impl Plan {
     pub fn lines(&self) -> Vec<String> {
         let mut lines = vec![
             match (self.has_media, self.forces_first_collision) {
+                (true, _) if self.has_heterogeneous => {
+                    "heterogeneous media: delta tracking, ratio tracking, majorants by cell".to_string()
+                }
                 (false, _) => "no medium: no flights, no volume map".to_string(),
                 (true, false) => "homogeneous media: flights and transmittance in closed form".to_string(),
                 (true, true) => "thin homogeneous media: closed form, first collision forced".to_string(),
@@ -81,11 +103,21 @@ impl Plan {
         if !self.has_grey_extinction {
             lines.push("extinction differs by channel: flights by channel, balance weights".to_string());
         }
+        lines.extend(self.densities.iter().map(|density| format!("density: {density}")));
+        if self.has_emission {
+            lines.push("emitting media: seen along rays; photons start from lights only".to_string());
+        }
         lines.push(match (self.has_surfaces, self.has_specular) {
             (false, _) => "no surface: nothing to intersect but media and lights".to_string(),
             (true, false) => "matt or black surfaces: no caustic, no mirror paths".to_string(),
-            (true, true) => "mirrors: specular paths".to_string(),
+            (true, true) => "mirrors or glass: specular paths".to_string(),
         });
+        if self.has_dielectrics {
+            lines.push("dielectric boundaries: Fresnel reflection, refraction, interiors".to_string());
+        }
+        if self.has_filters {
+            lines.push("filters: shadow rays pass them, body after body".to_string());
+        }
         if !self.has_next_event {
             lines.push("no light to aim at: no next-event estimation".to_string());
         }

@@ -14,7 +14,7 @@ pub struct Mirror {
 impl Mirror {
     /// A mirror of the given reflectance \[1\], each channel in [0, 1].
     pub fn new(reflectance: Spectrum) -> Result<Self> {
-        Ok(Mirror { reflectance: checked(reflectance)? })
+        Ok(Mirror { reflectance: checked("reflectance", reflectance)? })
     }
 
     /// Fraction of the arriving power that is reflected.

@@ -1,12 +1,18 @@
-//! Opaque surfaces, alike on both sides: one file each.
+//! Surfaces, without thickness: one file each.
 
 mod black;
+mod dielectric;
+mod filter;
 mod lambertian;
 mod mirror;
+mod texture;
 
 pub use black::Black;
+pub use dielectric::{Dielectric, Refraction, fresnel, refract};
+pub use filter::Filter;
 pub use lambertian::Lambertian;
 pub use mirror::Mirror;
+pub use texture::{Checker, Image, Texture, Wood};
 
 use crate::Spectrum;
 use glam::{DVec2, DVec3};
@@ -20,39 +26,59 @@ pub enum Surface {
     Mirror(Mirror),
     /// Absorbs everything.
     Black(Black),
+    /// Reflects and refracts.
+    Dielectric(Dielectric),
+    /// Lets a fraction pass straight on.
+    Filter(Filter),
 }
 
 impl Surface {
-    /// Fraction of the arriving power that leaves again, by channel, at a point \[L\] with these surface parameters.
+    /// Fraction of the arriving power that leaves again, on either side, by channel, at a point \[L\] with these surface parameters.
     pub fn reflectance(&self, position: DVec3, uv: DVec2) -> Spectrum {
         match self {
             Surface::Lambertian(s) => s.reflectance(position, uv),
             Surface::Mirror(s) => s.reflectance(),
             Surface::Black(_) => Spectrum::ZERO,
+            Surface::Dielectric(_) => Spectrum::ONE,
+            Surface::Filter(s) => s.transmittance(position, uv),
         }
     }
 
-    /// An upper bound of the reflectance, over the whole surface.
+    /// An upper bound of that fraction, over the whole surface.
     pub fn largest_reflectance(&self) -> Spectrum {
         match self {
             Surface::Lambertian(s) => s.largest_reflectance(),
             Surface::Mirror(s) => s.reflectance(),
             Surface::Black(_) => Spectrum::ZERO,
+            Surface::Dielectric(_) => Spectrum::ONE,
+            Surface::Filter(s) => s.largest_transmittance(),
         }
     }
 
     /// Whether all channels are equal everywhere.
     pub fn is_grey(&self) -> bool {
-        self.largest_reflectance().is_grey()
+        match self {
+            Surface::Lambertian(s) => s.texture().is_grey(),
+            Surface::Mirror(s) => s.reflectance().is_grey(),
+            Surface::Filter(s) => s.texture().is_grey(),
+            Surface::Dielectric(_) | Surface::Black(_) => true,
+        }
     }
 
-    /// Whether light leaves in one direction only, so that no other estimator can connect to it.
+    /// Whether light leaves in one or two directions only, so that no other estimator can connect to it. A filter is not:
+    /// light that it lets pass has met nothing.
     pub fn is_specular(&self) -> bool {
-        matches!(self, Surface::Mirror(_))
+        matches!(self, Surface::Mirror(_) | Surface::Dielectric(_))
+    }
+
+    /// Whether light that meets it has met something: everything but a filter.
+    pub fn is_event(&self) -> bool {
+        !matches!(self, Surface::Filter(_))
     }
 
     /// The direction of travel after reflection, from the one before, the normal on the side of arrival and two
-    /// numbers in [0, 1), with its density [1/sr], or none for a specular direction.
+    /// numbers in [0, 1), with its density [1/sr], or none for a specular direction. What a dielectric or a filter does
+    /// depends on more than that: none of theirs.
     pub fn scatter(&self, dir: DVec3, normal: DVec3, u: [f64; 2]) -> Option<(DVec3, Option<f64>)> {
         match self {
             Surface::Lambertian(_) => {
@@ -60,7 +86,7 @@ impl Surface {
                 Some((out, Some(pdf)))
             }
             Surface::Mirror(_) => Some((Mirror::scatter(dir, normal), None)),
-            Surface::Black(_) => None,
+            Surface::Black(_) | Surface::Dielectric(_) | Surface::Filter(_) => None,
         }
     }
 }

@@ -1,11 +1,12 @@
 //! The one random walk that paths and photons share.
 
+use super::bounce::{bounce, is_looked_through};
 use super::{Flags, Flight, Roulette, free_flight, transmittance};
 use crate::Spectrum;
 use crate::math::Ray;
 use crate::phase::PhaseFunction;
 use crate::rng::Stream;
-use crate::scene::{SURROUNDINGS, Scene, SceneHit, Start, Target};
+use crate::scene::{SURROUNDINGS, Scene, SceneHit, Start};
 use glam::DVec3;
 
 /// Where a walk stands: a ray about to be followed.
@@ -23,6 +24,10 @@ pub struct Walker {
     pub from: Option<Start>,
     /// Number of the interior that the ray is in.
     pub within: usize,
+    /// How far behind the ray's origin its direction was chosen \[L\]: a ray starts again behind a filter, on the same way.
+    pub behind: f64,
+    /// Total reflections in a row.
+    pub total_reflections: u32,
     /// Density with which the ray's direction was chosen [1/sr]; none where no other sampler could have chosen it.
     pub pdf_solid_angle: Option<f64>,
 }
@@ -37,6 +42,8 @@ impl Walker {
             flags: Flags::NONE,
             from: None,
             within: SURROUNDINGS,
+            behind: 0.0,
+            total_reflections: 0,
             pdf_solid_angle: None,
         }
     }
@@ -73,7 +80,8 @@ pub enum Step<'a> {
 /// Who watches a walk.
 pub trait Visitor {
     /// Whether it collects what rays meet by themselves, as paths do and photons do not: then directions keep their
-    /// densities ([`Walker::pdf_solid_angle`]), and a ray of the limiting order is followed through mirrors.
+    /// densities ([`Walker::pdf_solid_angle`]), a ray of the limiting order is followed through mirrors and glass, and
+    /// weights are those of radiance, which scales with the squared index of refraction where a photon's power does not.
     const LOOKS_AHEAD: bool = true;
 
     /// One step of the walk.
@@ -82,8 +90,8 @@ pub trait Visitor {
 
 /// Follows one history to its end.
 ///
-/// It ends by absorption, by escape, or with a ray of order `limit`, which is looked along, through mirrors too since
-/// they raise no order, but not flown.
+/// It ends by absorption, by escape, or with a ray of order `limit`, which is looked along, through mirrors, glass and
+/// filters too since they raise no order, but not flown.
 pub fn walk<V: Visitor>(
     scene: &Scene,
     start: Walker,
@@ -97,15 +105,19 @@ pub fn walk<V: Visitor>(
         let hit = scene.hit(&walker.ray, walker.from);
         visitor.visit(&walker, Step::Ahead(hit.as_ref()), stream);
         if limit.is_some_and(|limit| walker.order >= limit) {
-            let Some(mirror) = hit.filter(|found| V::LOOKS_AHEAD && is_specular(scene, found)) else {
+            let Some(through) = hit.filter(|found| V::LOOKS_AHEAD && is_looked_through(scene, found)) else {
                 visitor.visit(&walker, Step::Abandoned(walker.weight), stream);
                 return;
             };
-            let seen = walker.weight * transmittance(scene, &walker.ray, mirror.hit.t, walker.within, stream);
+            let seen =
+                walker.weight * transmittance(scene, &walker.ray, through.hit.t, walker.within, stream);
             visitor.visit(&walker, Step::Abandoned(walker.weight - seen), stream);
             walker.weight = seen;
-            match reflect(scene, &walker, &mirror, roulette, stream, visitor) {
-                Some(next) => walker = next,
+            match bounce(scene, &walker, &through, roulette, stream, visitor) {
+                Some(next) => {
+                    roulette = refracted(roulette, &walker, &next);
+                    walker = next;
+                }
                 None => return,
             }
             continue;
@@ -130,8 +142,9 @@ pub fn walk<V: Visitor>(
                     stream,
                 );
                 let medium = scene.medium(number);
-                let Some(kept) = roulette.survive(weight, medium.albedo(), stream) else {
-                    let lost = Roulette::lost(weight, medium.albedo());
+                let albedo = medium.albedo(position);
+                let Some(kept) = roulette.survive(weight, albedo, stream) else {
+                    let lost = Roulette::lost(weight, albedo);
                     visitor.visit(&walker, Step::Absorbed(lost, Some(number)), stream);
                     return;
                 };
@@ -148,6 +161,8 @@ pub fn walk<V: Visitor>(
                     flags: walker.flags.with(Flags::MEDIUM),
                     from: None,
                     within: walker.within,
+                    behind: 0.0,
+                    total_reflections: 0,
                     pdf_solid_angle: V::LOOKS_AHEAD.then(pdf),
                 };
             }
@@ -158,8 +173,11 @@ pub fn walk<V: Visitor>(
                     visitor.visit(&walker, Step::Escaped(weight), stream);
                     return;
                 };
-                match reflect(scene, &walker, &found, roulette, stream, visitor) {
-                    Some(next) => walker = next,
+                match bounce(scene, &walker, &found, roulette, stream, visitor) {
+                    Some(next) => {
+                        roulette = refracted(roulette, &walker, &next);
+                        walker = next;
+                    }
                     None => return,
                 }
             }
@@ -167,52 +185,10 @@ pub fn walk<V: Visitor>(
     }
 }
 
-/// Whether a body is a mirror.
-fn is_specular(scene: &Scene, found: &SceneHit) -> bool {
-    matches!(found.target, Target::Object(index) if scene.objects()[index].surface.is_specular())
-}
-
-/// The walker after a body, or none if it ends there.
-fn reflect(
-    scene: &Scene,
-    walker: &Walker,
-    found: &SceneHit,
-    roulette: Roulette,
-    stream: &mut Stream,
-    visitor: &mut impl Visitor,
-) -> Option<Walker> {
-    let position = walker.ray.at(found.hit.t);
-    visitor.visit(walker, Step::Surface(Arrival { walker, position }, found), stream);
-    let next = match found.target {
-        Target::Light(_) => None,
-        Target::Object(index) => {
-            let surface = &scene.objects()[index].surface;
-            let dir = walker.ray.dir;
-            let normal = if dir.dot(found.hit.normal) < 0.0 { found.hit.normal } else { -found.hit.normal };
-            let survivor = roulette.survive(walker.weight, reflectance(scene, position, found), stream);
-            let scattered = surface.scatter(dir, normal, stream.pair());
-            survivor.zip(scattered).map(|(weight, (dir, pdf))| Walker {
-                ray: Ray::new(position, dir),
-                weight,
-                order: walker.order + u32::from(pdf.is_some()),
-                flags: walker.flags.with(if pdf.is_some() { Flags::DIFFUSE } else { Flags::SPECULAR }),
-                from: Some(found.start()),
-                within: walker.within,
-                pdf_solid_angle: pdf,
-            })
-        }
-    };
-    if next.is_none() {
-        let lost = Roulette::lost(walker.weight, reflectance(scene, position, found));
-        visitor.visit(walker, Step::Absorbed(lost, None), stream);
+/// The game behind a boundary: the scale of radiance is no loss, and what is refracted out again gets it back.
+fn refracted(roulette: Roulette, before: &Walker, after: &Walker) -> Roulette {
+    if after.within == before.within {
+        return roulette;
     }
-    next
-}
-
-/// Fraction of the arriving power that leaves a body again.
-fn reflectance(scene: &Scene, position: DVec3, found: &SceneHit) -> Spectrum {
-    match found.target {
-        Target::Light(_) => Spectrum::ZERO,
-        Target::Object(index) => scene.objects()[index].surface.reflectance(position, found.hit.uv),
-    }
+    roulette.scaled(after.weight.max() / before.weight.max())
 }

@@ -11,6 +11,7 @@ mod emitting_sphere;
 mod equiangular;
 mod fold;
 mod furnace;
+mod glass;
 mod henyey_greenstein;
 mod infinite;
 mod mean_path;

@@ -3,8 +3,10 @@
 #![allow(dead_code, reason = "each test binary uses a part")]
 
 pub mod cell;
+pub mod glass;
 pub mod ledger;
 pub mod light;
+pub mod media;
 pub mod numbers;
 pub mod phase;
 pub mod point_light;

@@ -1,6 +1,8 @@
 //! One row a fault: where it was seen, what it is here, and which check catches it.
 
-use crate::checks::{cell, light, numbers, phase, point_light, points, slab, threads, walls};
+use crate::checks::{
+    cell, glass, ledger, light, media, numbers, phase, point_light, points, slab, threads, walls,
+};
 use crate::support::scenes::{area_light, cuboid, rectangle};
 use glam::DVec3;
 use turbid::Spectrum;
@@ -132,9 +134,47 @@ const fn inside(fault: Fault) -> Row {
         Fault::RejectedSetRadius => ("rejected photons set the radius", "the_k_nearest_are_accepted", |_| {
             walls::the_k_nearest_are_accepted()
         }),
+        Fault::GridHalfCellOff => {
+            ("a grid's samples half a cell off", "samples_lie_in_the_middles_of_cells", |_| {
+                media::samples_lie_in_the_middles_of_cells()
+            })
+        }
+        Fault::NullWeightForgotten => (
+            "weights unchanged where a tentative collision is none",
+            "each_channel_passes_as_its_depth_says",
+            |_| media::each_channel_passes_as_its_depth_says(),
+        ),
         Fault::StepForgotten => {
             ("a march forgets its step", "a_constant_source_is_marched_to_its_integral", |_| {
                 walls::a_constant_source_is_marched_to_its_integral()
+            })
+        }
+        Fault::RadianceUnscaled => {
+            ("radiance not scaled by a refraction", "a_cavity_is_brighter_by_the_squared_index", |_| {
+                glass::a_cavity_is_brighter_by_the_squared_index()
+            })
+        }
+        Fault::PhotonPowerScaled => {
+            ("photons scaled by a refraction", "photons_in_a_cavity_collide_as_its_fluence", |_| {
+                glass::photons_in_a_cavity_collide_as_its_fluence()
+            })
+        }
+        Fault::FresnelForgotten => {
+            ("a dielectric reflects nothing", "photons_cross_a_refracting_slab", |_| {
+                glass::photons_cross_a_refracting_slab()
+            })
+        }
+        Fault::DirectInVolumeMap => {
+            ("direct light in the volume map and by shadow rays", "a_foggy_room_keeps_its_ledger", |_| {
+                ledger::a_foggy_room_keeps_its_ledger()
+            })
+        }
+        Fault::CausticTwice => ("caustics in two maps", "a_clear_room_keeps_its_ledger", |_| {
+            ledger::a_clear_room_keeps_its_ledger()
+        }),
+        Fault::StoredOnSurfaces => {
+            ("surface estimates divided by stored photons", "a_clear_room_keeps_its_ledger", |_| {
+                ledger::a_clear_room_keeps_its_ledger()
             })
         }
     };
@@ -192,6 +232,14 @@ pub const ROWS: &[Row] = &[
     inside(Fault::RootForgotten),
     inside(Fault::RejectedSetRadius),
     inside(Fault::StepForgotten),
+    inside(Fault::RadianceUnscaled),
+    inside(Fault::PhotonPowerScaled),
+    inside(Fault::FresnelForgotten),
+    inside(Fault::DirectInVolumeMap),
+    inside(Fault::CausticTwice),
+    inside(Fault::StoredOnSurfaces),
+    inside(Fault::GridHalfCellOff),
+    inside(Fault::NullWeightForgotten),
     outside("normal quantiles for 8 numbers", "false_alarms_are_as_rare_as_promised", |wrong| {
         numbers::false_alarms_are_as_rare_as_promised(if wrong { normal_p } else { |z| student_p(z, 7) })
     }),

@@ -23,7 +23,7 @@ const N: u64 = 1 << 17;
 const MANY: u64 = 1 << 20;
 
 /// Coloured lights about the origin, all within a distance of 1.5.
-fn lights() -> Vec<(&'static str, Light)> {
+pub fn lights() -> Vec<(&'static str, Light)> {
     let color = Spectrum::rgb(1.0, 2.0, 0.5);
     let ball = sphere(DVec3::new(0.2, -0.1, 0.3), 0.8);
     let block = cuboid(DVec3::splat(-0.5), DVec3::new(0.5, 0.25, 0.75));
@@ -48,7 +48,7 @@ fn lights() -> Vec<(&'static str, Light)> {
 }
 
 /// Suns whose photons cover the boxes below; their light is everywhere, so that no sphere is crossed by all of it.
-fn suns() -> Vec<(&'static str, Light)> {
+pub fn suns() -> Vec<(&'static str, Light)> {
     let covered = Sphere::new(DVec3::ZERO, 2.0).unwrap();
     let dir = DVec3::new(0.6, 0.0, 0.8);
     let sun = |radius: f64| {

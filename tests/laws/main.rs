@@ -9,8 +9,11 @@ mod common;
 mod support;
 
 mod flight;
+mod fresnel;
 mod lights;
+mod media;
 mod phase;
+mod projection;
 mod roulette;
 mod shapes;
 mod warps;

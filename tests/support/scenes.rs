@@ -6,10 +6,10 @@ use turbid::Spectrum;
 use turbid::geometry::{Cuboid, Face, Rectangle, Shape, Slab, Sphere};
 use turbid::light::{Area, Beam, Faces, Isotropic, Light, Point, Section, VolumeSource};
 use turbid::math::{Asymmetry, FOUR_PI};
-use turbid::medium::Homogeneous;
+use turbid::medium::{Homogeneous, Medium};
 use turbid::phase::Phase;
-use turbid::scene::{Object, Parts, Quantity, Region, Scene};
-use turbid::surface::{Lambertian, Surface};
+use turbid::scene::{Interior, Object, Parts, Quantity, Region, Scene};
+use turbid::surface::{Dielectric, Lambertian, Surface};
 
 /// Side of the cells of unbounded slabs [L].
 pub const CELL: f64 = 4.0;
@@ -25,8 +25,9 @@ pub enum Incidence {
     Both,
 }
 
-pub fn homogeneous(sigma_t: Spectrum, albedo: Spectrum, g: f64) -> Homogeneous {
-    Homogeneous::new(sigma_t, albedo, Phase::with_asymmetry(Asymmetry::try_from(g).unwrap())).unwrap()
+pub fn homogeneous(sigma_t: Spectrum, albedo: Spectrum, g: f64) -> Medium {
+    let phase = Phase::with_asymmetry(Asymmetry::try_from(g).unwrap());
+    Homogeneous::new(sigma_t, albedo, phase).unwrap().into()
 }
 
 pub fn region(shape: Shape, sigma_t: f64, albedo: f64, g: f64) -> Region {
@@ -127,4 +128,45 @@ pub fn transmittance(tau: f64) -> Quantity {
 
 pub fn outflow(shape: Shape) -> Quantity {
     Quantity::Outflow { shape, face: Face::Top }
+}
+
+/// The layer around a refracting slab, from which its light starts and through which it leaves.
+pub fn around(tau: f64) -> Shape {
+    Shape::Slab(Slab::new(-0.5 * tau, 2.0 * tau).unwrap())
+}
+
+/// An interior of some index of refraction, filled.
+pub fn filled(name: &str, index: f64, medium: Medium) -> Interior {
+    Interior { name: name.into(), index, medium: Some(medium) }
+}
+
+/// A boundary between the interiors of these numbers, 0 being the surroundings.
+pub fn dielectric(inside: usize, outside: usize) -> Surface {
+    Surface::Dielectric(Dielectric::new(inside, outside))
+}
+
+/// A slab of optical thickness tau, extinction 1, between smooth faces that refract, lit from outside with irradiance 1
+/// (on each lit face); its medium has number 0.
+pub fn fresnel_slab(tau: f64, albedo: f64, g: f64, index: f64, how: Incidence) -> Scene {
+    let medium = homogeneous(Spectrum::ONE, Spectrum::grey(albedo), g);
+    Scene::new(Parts {
+        interiors: vec![Interior::surroundings(), filled("slab", index, medium)],
+        objects: vec![Object { shape: layer(tau), surface: dielectric(1, 0) }],
+        lights: vec![incidence(around(tau), how)],
+        cell: Some(CELL),
+        ..Parts::default()
+    })
+    .unwrap()
+}
+
+/// A ball of radius 1 and index n under radiance 1/pi from all sides; extinction `sigma_t`, nothing absorbed.
+pub fn refracting_cavity(index: f64, sigma_t: f64, g: f64) -> Scene {
+    let medium = homogeneous(Spectrum::grey(sigma_t), Spectrum::ONE, g);
+    Scene::new(Parts {
+        interiors: vec![Interior::surroundings(), filled("ball", index, medium)],
+        objects: vec![Object { shape: sphere(DVec3::ZERO, 1.0), surface: dielectric(1, 0) }],
+        lights: vec![isotropic(sphere(DVec3::ZERO, 1.5), Faces::Both)],
+        ..Parts::default()
+    })
+    .unwrap()
 }

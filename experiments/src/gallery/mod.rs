@@ -1,8 +1,22 @@
 //! The pictures that made photon mapping in fog famous, each beside a twin that knows no photons.
+//!
+//! `gallery` renders them with the originals' numbers of photons, gives the path tracer the same CPU time, compares both
+//! with a converged twin, and writes a page. Makings are kept in files, so that an interrupted run goes on.
 
 pub mod assets;
 mod blocks;
 pub mod compare;
 pub mod develop;
+mod dots;
+pub mod keep;
+pub mod look;
+mod page;
+pub mod pictures;
+pub mod predict;
+mod run;
+mod settings;
+mod shown;
+pub mod studio;
 
 pub use blocks::{BLOCK, Grid};
+pub use run::main;

@@ -1,0 +1,165 @@
+//! Pictures kept between runs: resumable, one file a making.
+//!
+//! A file is a line of JSON, planes of single-precision numbers, and the digest of everything before it: a file that was
+//! cut short, or changed, is not taken.
+
+use crate::harness::Digest;
+use anyhow::{Context, ensure};
+use serde::{Deserialize, Serialize};
+use std::path::Path;
+use turbid::Spectrum;
+use turbid::integrators::{Layer, Layers};
+use turbid::output::write_atomically;
+use turbid::sensor::Film;
+
+/// What is known of a making beside its pixels.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Facts {
+    /// What it is, in words: two makings of equal words and equal program are equal.
+    pub words: String,
+    /// Digest of the program that made it.
+    pub program: String,
+    /// CPU seconds, filling the maps among them.
+    pub seconds: f64,
+    /// Of them, filling the maps.
+    pub map_seconds: f64,
+    /// Samples a pixel.
+    pub samples: u64,
+    /// Photons emitted by the two passes.
+    pub emitted: [u64; 2],
+    /// Photons stored: global, caustic, volume.
+    pub stored: [u64; 3],
+    /// Mean radius of gathers: global, caustic, volume \[L\].
+    pub radii: [f64; 3],
+}
+
+/// A picture by layers.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Kept {
+    /// What is known of it.
+    pub facts: Facts,
+    /// Radiance by class, row by row from the top; empty if only totals are kept.
+    pub layers: Vec<Layers>,
+    /// Radiance, row by row from the top.
+    pub total: Vec<Spectrum>,
+}
+
+impl Kept {
+    /// A film with its facts.
+    pub fn new(facts: Facts, film: &Film) -> Self {
+        let layers = film.pixels().iter().map(|p| p.layers()).collect();
+        Kept { facts, layers, total: film.pixels().iter().map(|p| p.total()).collect() }
+    }
+
+    /// The bytes of its file.
+    fn bytes(&self) -> anyhow::Result<Vec<u8>> {
+        let mut bytes = serde_json::to_vec(&self.facts)?;
+        bytes.push(b'\n');
+        let mut plane = |values: &mut dyn Iterator<Item = Spectrum>| {
+            for s in values {
+                for c in 0..3 {
+                    bytes.extend((s[c] as f32).to_le_bytes());
+                }
+            }
+        };
+        plane(&mut self.total.iter().copied());
+        if !self.layers.is_empty() {
+            for layer in Layer::ALL {
+                plane(&mut self.layers.iter().map(|l| l[layer]));
+            }
+        }
+        let digest = Digest::of(&bytes).to_string();
+        bytes.extend(digest.as_bytes());
+        Ok(bytes)
+    }
+
+    /// Writes its file.
+    pub fn write(&self, path: &Path) -> anyhow::Result<()> {
+        let bytes = self.bytes()?;
+        write_atomically(path, |out| out.write_all(&bytes))?;
+        Ok(())
+    }
+
+    /// Reads a file of a picture of so many pixels.
+    pub fn read(path: &Path, pixels: usize) -> anyhow::Result<Self> {
+        let bytes = std::fs::read(path).with_context(|| format!("cannot read {}", path.display()))?;
+        Kept::parse(&bytes, pixels).with_context(|| format!("{} is no complete picture", path.display()))
+    }
+
+    fn parse(bytes: &[u8], pixels: usize) -> anyhow::Result<Self> {
+        let mark = Digest::of(&[]).to_string().len();
+        let body = bytes.len().checked_sub(mark).context("the end mark is missing")?;
+        let (body, end) = bytes.split_at(body);
+        ensure!(end == Digest::of(body).to_string().as_bytes(), "the digest does not fit");
+        let first = body.iter().position(|&b| b == b'\n').context("the first line is missing")?;
+        let facts: Facts = serde_json::from_slice(&body[..first])?;
+        let numbers = &body[first + 1..];
+        let planes = numbers.len() / (12 * pixels).max(1);
+        ensure!(
+            numbers.len() == 12 * pixels * planes && [1, 1 + Layer::ALL.len()].contains(&planes),
+            "its size does not fit {pixels} pixels"
+        );
+        let value = |plane: usize, pixel: usize| {
+            let at = 12 * (plane * pixels + pixel);
+            let one = |c: usize| {
+                let bytes = [0, 1, 2, 3].map(|k| numbers[at + 4 * c + k]);
+                f64::from(f32::from_le_bytes(bytes))
+            };
+            Spectrum::rgb(one(0), one(1), one(2))
+        };
+        let layered = |pixel: usize| {
+            let mut layers = Layers::ZERO;
+            for (n, layer) in Layer::ALL.into_iter().enumerate() {
+                layers[layer] = value(1 + n, pixel);
+            }
+            layers
+        };
+        let layers = if planes > 1 { (0..pixels).map(layered).collect() } else { Vec::new() };
+        Ok(Kept { facts, layers, total: (0..pixels).map(|i| value(0, i)).collect() })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn kept(has_layers: bool) -> Kept {
+        let facts = Facts {
+            words: "box, paths".into(),
+            program: "00".into(),
+            seconds: 1.5,
+            map_seconds: 0.25,
+            samples: 4,
+            emitted: [10, 20],
+            stored: [1, 2, 3],
+            radii: [0.5, 0.25, 0.125],
+        };
+        let total = vec![Spectrum::rgb(1.0, 0.5, -0.25), Spectrum::grey(3.0)];
+        let mut layers = vec![Layers::ZERO; 2];
+        layers[1].multiple = Spectrum::rgb(0.0, 8.0, 0.125);
+        Kept { facts, layers: if has_layers { layers } else { Vec::new() }, total }
+    }
+
+    #[test]
+    fn a_picture_comes_back() {
+        let folder = tempfile::tempdir().unwrap();
+        for has_layers in [false, true] {
+            let path = folder.path().join("a.picture");
+            kept(has_layers).write(&path).unwrap();
+            assert_eq!(Kept::read(&path, 2).unwrap(), kept(has_layers));
+            assert!(Kept::read(&path, 3).is_err());
+        }
+    }
+
+    #[test]
+    fn every_cut_and_every_changed_byte_is_seen() {
+        let bytes = kept(true).bytes().unwrap();
+        assert!((0..bytes.len()).all(|n| Kept::parse(&bytes[..n], 2).is_err()));
+        for i in 0..bytes.len() {
+            let mut bytes = bytes.clone();
+            bytes[i] ^= 1;
+            assert!(Kept::parse(&bytes, 2).is_err(), "byte {i}");
+        }
+    }
+}

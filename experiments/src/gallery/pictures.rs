@@ -1,0 +1,193 @@
+//! The pictures: scenes, numbers of photons, and what the originals cost.
+
+use turbid::photons::maps::Amount;
+
+/// What is drawn of a picture beside the whole.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Beside {
+    /// The photons of its maps, seen from the camera.
+    Maps,
+    /// Light that was scattered once, alone.
+    Single,
+}
+
+/// One picture of the gallery.
+#[derive(Debug, Clone, Copy)]
+pub struct Picture {
+    /// Name of the scene's file and of all files made from it.
+    pub name: &'static str,
+    /// Heading.
+    pub title: &'static str,
+    /// What to see in it.
+    pub see: &'static str,
+    /// Numbers, machine and times of the original.
+    pub original: &'static str,
+    /// Photons of the global, caustic and volume map.
+    pub photons: [Amount; 3],
+    /// Photons in an estimate: global, caustic, volume.
+    pub nearest: [usize; 3],
+    /// Samples a pixel.
+    pub samples: u64,
+    /// Rays of a final gathering; 0 where the global map is seen directly.
+    pub gather: u32,
+    /// Extent of what is seen \[L\]: steps of the march are twentieths of it, gathers reach a tenth at most.
+    pub size: f64,
+    /// Radiance 1 on a scale where 1 is white.
+    pub exposure: f64,
+    /// What stands beside it.
+    pub beside: Beside,
+    /// Samples a pixel of one pass of the twin.
+    pub twin: u64,
+}
+
+/// Of a map that the scene does not need, or that nothing in the picture reads.
+const NONE: Amount = Amount::Emitted(1);
+
+/// All of them, in the order of the page.
+pub const ALL: &[Picture] = &[
+    Picture {
+        name: "cs665-box",
+        title: "The box of the lectures",
+        see: "Light gathers behind the glass sphere in a caustic on the floor, and the mirror sphere throws a second one on \
+              the wall. The map beside it is what the picture was made from.",
+        original: "171,880 photons, 25 samples a pixel: 444 s on a Pentium 4 of 3 GHz",
+        photons: [Amount::Stored(121_880), Amount::Stored(50_000), NONE],
+        nearest: [100, 60, 100],
+        samples: 25,
+        gather: 16,
+        size: 2.0,
+        exposure: 1.0,
+        beside: Beside::Maps,
+        twin: 32,
+    },
+    Picture {
+        name: "cognac",
+        title: "A glass of cognac",
+        see: "The liquid is a lens: the lamp behind the glass becomes a bright cusp on the table, in the colour that the \
+              cognac lets through.",
+        original: "200,000 photons, 64 samples a pixel: 4 h on a Pentium of 90 MHz",
+        photons: [Amount::Stored(100_000), Amount::Stored(100_000), NONE],
+        nearest: [100, 60, 100],
+        samples: 64,
+        gather: 4,
+        size: 20.0,
+        exposure: 1.0,
+        beside: Beside::Maps,
+        twin: 64,
+    },
+    Picture {
+        name: "cloud",
+        title: "A cloud",
+        see: "With single scattering alone the shaded side is black and the cloud looks like smoke; light scattered many \
+              times fills it and makes it white.",
+        original: "single scattering 61 s; multiple scattering 8 s for the map and 92 s for the picture",
+        photons: [NONE, NONE, Amount::Stored(200_000)],
+        nearest: [100, 60, 60],
+        samples: 4,
+        gather: 0,
+        size: 2.0,
+        exposure: 1.0,
+        beside: Beside::Single,
+        twin: 8,
+    },
+    Picture {
+        name: "cornell-fog",
+        title: "Cornell box in fog",
+        see: "The lamp has a halo, the walls lend their colour to the air beside them, and shadows are lifted.",
+        original: "200,000 photons, of them 65,000 in the volume map, 100 in an estimate: 4 s for the maps and 3 min 32 s \
+                   for the picture",
+        photons: [Amount::Stored(135_000), NONE, Amount::Stored(65_000)],
+        nearest: [100, 60, 100],
+        samples: 4,
+        gather: 4,
+        size: 2.0,
+        exposure: 1.0,
+        beside: Beside::Maps,
+        twin: 32,
+    },
+    Picture {
+        name: "cornell-anisotropic",
+        title: "The same in fog that scatters forwards",
+        see: "Light keeps its direction: the halo is tighter, the beam below the lamp is brighter than the air beside it.",
+        original: "200,000 photons, of them 65,000 in the volume map, 100 in an estimate: 4 s for the maps and 4 min 3 s \
+                   for the picture",
+        photons: [Amount::Stored(135_000), NONE, Amount::Stored(65_000)],
+        nearest: [100, 60, 100],
+        samples: 4,
+        gather: 4,
+        size: 2.0,
+        exposure: 1.0,
+        beside: Beside::Maps,
+        twin: 32,
+    },
+    Picture {
+        name: "cornell-smoke",
+        title: "The same in drifting smoke",
+        see: "Shreds of smoke take light from the walls behind them and cast soft shadows on the floor.",
+        original: "200,000 photons, of them 65,000 in the volume map, 50 in an estimate: 6 s for the maps (4 s elsewhere in \
+                   the same source) and 7 min 54 s for the picture",
+        photons: [Amount::Stored(135_000), NONE, Amount::Stored(65_000)],
+        nearest: [100, 60, 50],
+        samples: 4,
+        gather: 4,
+        size: 2.0,
+        exposure: 1.0,
+        beside: Beside::Maps,
+        twin: 16,
+    },
+    Picture {
+        name: "dusty-room",
+        title: "A dusty room with a stained-glass window",
+        see: "The sun paints the window on the floor, and the dust shows each pane's colour on its way through the room.",
+        original: "80,000 photons in the dust, 220,000 on surfaces: 27 s for the maps and 5 min 27 s for the picture",
+        photons: [Amount::Stored(220_000), NONE, Amount::Stored(80_000)],
+        nearest: [100, 60, 60],
+        samples: 4,
+        gather: 4,
+        size: 4.0,
+        exposure: 1.0,
+        beside: Beside::Maps,
+        twin: 32,
+    },
+    Picture {
+        name: "sunbeams",
+        title: "Sunbeams under a wavy sea",
+        see: "Waves gather the sun into shafts that hang in the water, and into a moving net on the sand.",
+        original: "from the same lectures, without numbers",
+        photons: [Amount::Stored(100_000), Amount::Stored(200_000), Amount::Stored(300_000)],
+        nearest: [100, 60, 50],
+        samples: 4,
+        gather: 0,
+        size: 8.0,
+        exposure: 1.0,
+        beside: Beside::Maps,
+        twin: 32,
+    },
+    Picture {
+        name: "pool",
+        title: "A pool",
+        see: "The net of light on the tiles is drawn by the same waves through which it is seen.",
+        original: "the closing picture of the lectures, without numbers",
+        photons: [Amount::Stored(150_000), Amount::Stored(300_000), NONE],
+        nearest: [100, 60, 60],
+        samples: 16,
+        gather: 2,
+        size: 6.0,
+        exposure: 1.0,
+        beside: Beside::Maps,
+        twin: 64,
+    },
+];
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_picture_has_its_scene() {
+        let scenes = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes");
+        for picture in ALL {
+            assert!(scenes.join(format!("{}.toml", picture.name)).is_file(), "{}", picture.name);
+        }
+    }
+}

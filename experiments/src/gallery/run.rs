@@ -1,0 +1,304 @@
+//! The whole run: makings, comparison, plates, page.
+
+use super::compare::{Making, average, compare, errors};
+use super::develop::{Print, develop, error_print};
+use super::dots::dots;
+use super::keep::Kept;
+use super::look::look;
+use super::pictures::{ALL, Beside, Picture};
+use super::predict::{Radii, predicted};
+use super::settings::Settings;
+use super::shown::{Compared, Plate, Shown};
+use super::studio::Studio;
+use super::{assets, page};
+use crate::harness::{duration, program_digest, say};
+use anyhow::Context;
+use clap::Parser;
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+use std::sync::atomic::{AtomicU64, Ordering};
+use std::time::{Duration, Instant};
+use turbid::Spectrum;
+use turbid::integrators::Layers;
+use turbid::output::write_atomically;
+use turbid::stats::Interval;
+use turbid::transport::Progress;
+
+/// Passes of the twin that predict blur and edges, and are never compared.
+const PREDICTING: u64 = 8;
+/// Makings of either side that are compared.
+const COMPARED: u64 = super::compare::FEWEST as u64;
+/// Predicted relative error above which a pixel is masked.
+const LIMIT: f64 = 0.02;
+/// Ends of the scale of relative errors.
+const SCALE: f64 = 0.2;
+
+/// Runs the gallery as a program.
+pub fn main() -> ExitCode {
+    let settings = match Settings::try_parse() {
+        Ok(settings) => settings,
+        Err(error) if !error.use_stderr() => {
+            let written = turbid::output::print(|out| write!(out, "{error}"));
+            return ExitCode::from(if written.is_ok() { 0 } else { 2 });
+        }
+        Err(error) => {
+            say(error.to_string().trim_end());
+            return ExitCode::from(2);
+        }
+    };
+    let threads = settings.threads.map_or(0, usize::from);
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().context("cannot start threads");
+    match pool.and_then(|pool| pool.install(|| run(&settings))) {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            say(&format!("error: {error:#}"));
+            ExitCode::from(2)
+        }
+    }
+}
+
+fn run(settings: &Settings) -> anyhow::Result<()> {
+    if settings.assets {
+        return write(&settings.scenes.join("window.png"), &assets::window()?);
+    }
+    let folder = settings.folder();
+    std::fs::create_dir_all(&folder).with_context(|| format!("cannot make {}", folder.display()))?;
+    let program = program_digest()?.to_string();
+    let chosen = |p: &&Picture| settings.only.is_empty() || settings.only.iter().any(|n| n == p.name);
+    for picture in ALL.iter().filter(chosen) {
+        let shown = one(picture, settings, &folder, &program).with_context(|| picture.name.to_string())?;
+        write(&folder.join(format!("{}.json", picture.name)), &serde_json::to_vec_pretty(&shown)?)?;
+        let page = page::page(&all_shown(&folder)?, settings).into_string();
+        write(&folder.join("index.html"), page.as_bytes())?;
+    }
+    say(&format!("the page is {}", folder.join("index.html").display()));
+    Ok(())
+}
+
+/// What is there of all pictures, those of earlier runs too.
+fn all_shown(folder: &Path) -> anyhow::Result<Vec<Shown>> {
+    let mut found = Vec::new();
+    for picture in ALL {
+        let path = folder.join(format!("{}.json", picture.name));
+        if let Ok(text) = std::fs::read_to_string(&path) {
+            found.push(serde_json::from_str(&text).with_context(|| path.display().to_string())?);
+        }
+    }
+    Ok(found)
+}
+
+fn write(path: &Path, bytes: &[u8]) -> anyhow::Result<()> {
+    Ok(write_atomically(path, |out| out.write_all(bytes))?)
+}
+
+/// The makings of one picture, kept in a folder.
+struct Makings<'a> {
+    settings: &'a Settings,
+    folder: PathBuf,
+    studio: &'a Studio<'a>,
+}
+
+impl Makings<'_> {
+    /// A making from its file, or made now and kept.
+    fn get(
+        &self,
+        file: &str,
+        words: &str,
+        work: u64,
+        make: impl FnOnce(&Bar) -> anyhow::Result<Kept>,
+    ) -> anyhow::Result<Kept> {
+        let path = self.folder.join(format!("{file}.picture"));
+        if !self.settings.fresh
+            && let Ok(kept) = Kept::read(&path, self.studio.grid().pixels())
+            && kept.facts.words == words
+            && (self.settings.reuse || kept.facts.program == self.studio.program)
+        {
+            return Ok(kept);
+        }
+        let mut kept = make(&Bar::new(&format!("{}, {file}", self.studio.picture.name), work))?;
+        kept.facts.words = words.to_string();
+        kept.write(&path)?;
+        Ok(kept)
+    }
+
+    fn paths(&self, file: &str, samples: u64, replicate: u64) -> anyhow::Result<Kept> {
+        let (s, work) = (self.studio, self.studio.work(samples));
+        self.get(file, &s.path_words(samples, replicate), work, |bar| s.paths(samples, replicate, bar))
+    }
+
+    fn photons(&self, file: &str, samples: u64, replicate: u64) -> anyhow::Result<Kept> {
+        let (s, work) = (self.studio, self.studio.work(samples));
+        self.get(file, &s.photon_words(samples, replicate), work, |bar| s.photons(samples, replicate, bar))
+    }
+}
+
+/// Everything of one picture.
+fn one(picture: &Picture, settings: &Settings, folder: &Path, program: &str) -> anyhow::Result<Shown> {
+    let studio = Studio::open(picture, &settings.scenes, settings.scale(), settings.seed, program)?;
+    let makings = Makings { settings, folder: settings.makings().join(picture.name), studio: &studio };
+    std::fs::create_dir_all(&makings.folder)?;
+    let ours = makings.photons("photons", picture.samples, 0)?;
+    let words = format!("{} in {} s", studio.path_words(0, 0), ours.facts.seconds);
+    let equal = makings.get("equal", &words, 0, |bar| studio.paths_for(ours.facts.seconds, 0, bar))?;
+    let samples = (picture.twin / if settings.quick { 8 } else { 1 }).max(2);
+    let predicting = (0..PREDICTING)
+        .map(|n| makings.paths(&format!("twin-{n:03}"), samples, 1 + n))
+        .collect::<anyhow::Result<Vec<Kept>>>()?;
+    let mut passes: Vec<Making> = predicting.iter().map(|k| k.total.clone()).collect();
+    let mut seconds: f64 = predicting.iter().map(|k| k.facts.seconds).sum();
+    let mut compared = None;
+    let mut masked = None;
+    if !settings.draft {
+        let (ours_again, twin, more) = both(&makings, samples)?;
+        seconds += more;
+        let prediction = predict(&studio, &ours, &predicting);
+        let comparison = compare(studio.grid(), &ours_again, &twin, &prediction, LIMIT);
+        let found = errors(&ours_again, &twin);
+        let shown_rms = errors(&[ours.total.clone(), ours.total.clone()], &twin).rms.low;
+        let pass = errors(&passes, &twin).rms;
+        let factor = (samples as f64 / equal.facts.samples as f64).sqrt();
+        let equal_rms = Interval { low: factor * pass.low, high: factor * pass.high };
+        let makings = (ours_again.len(), 1);
+        compared = Some(Compared::new(&comparison, &found, makings, shown_rms, equal_rms));
+        masked = Some(prediction.iter().map(|&e| e > LIMIT).collect::<Vec<bool>>());
+        passes.extend(twin);
+    }
+    let twin = average(passes.iter());
+    let plates = plates(&studio, folder, &ours, &equal, &twin, masked.as_deref(), &predicting)?;
+    Ok(Shown {
+        name: picture.name.to_string(),
+        command: command(picture),
+        size: (studio.grid().width, studio.grid().height),
+        ours: ours.facts,
+        equal: equal.facts,
+        twin: (samples * passes.len() as u64, seconds),
+        compared,
+        plates,
+    })
+}
+
+/// Independent makings of both sides, totals alone, and the twin's seconds.
+fn both(makings: &Makings, samples: u64) -> anyhow::Result<(Vec<Making>, Vec<Making>, f64)> {
+    let ours = (0..COMPARED)
+        .map(|n| Ok(makings.photons(&format!("maps-{n:03}"), 1, 1 + n)?.total))
+        .collect::<anyhow::Result<Vec<Making>>>()?;
+    let (mut twin, mut seconds) = (Vec::new(), 0.0);
+    for n in 0..COMPARED {
+        let kept = makings.paths(&format!("twin-{:03}", PREDICTING + n), samples, 1 + PREDICTING + n)?;
+        seconds += kept.facts.seconds;
+        twin.push(kept.total);
+    }
+    Ok((ours, twin, seconds))
+}
+
+/// The relative error that blur and edges may cause, by pixel.
+fn predict(studio: &Studio, ours: &Kept, predicting: &[Kept]) -> Vec<f64> {
+    let [global, caustic, volume] = ours.facts.radii;
+    let global = if studio.picture.gather == 0 { global } else { 0.0 };
+    let views = look(&studio.scene, &studio.camera, global.max(caustic));
+    let pixel = studio.camera.pixel_area().sqrt();
+    predicted(studio.grid(), &views, &mean_layers(predicting), Radii { global, caustic, volume }, pixel)
+}
+
+fn mean_layers(makings: &[Kept]) -> Vec<Layers> {
+    let mut sum = makings.first().map_or_else(Vec::new, |k| vec![Layers::ZERO; k.layers.len()]);
+    let share = 1.0 / makings.len() as f64;
+    for kept in makings {
+        for (sum, layers) in sum.iter_mut().zip(&kept.layers) {
+            *sum += *layers * share;
+        }
+    }
+    sum
+}
+
+fn plates(
+    studio: &Studio,
+    folder: &Path,
+    ours: &Kept,
+    equal: &Kept,
+    twin: &[Spectrum],
+    masked: Option<&[bool]>,
+    predicting: &[Kept],
+) -> anyhow::Result<Vec<Plate>> {
+    let (picture, grid) = (studio.picture, studio.grid());
+    let mut plates = Vec::new();
+    let mut plate = |kind: &str, caption: String, print: &Print| -> anyhow::Result<()> {
+        let file = format!("{}-{kind}.png", picture.name);
+        write(&folder.join(&file), &print.png()?)?;
+        plates.push(Plate { file, caption });
+        Ok(())
+    };
+    let exposed = |radiance: &[Spectrum]| develop(grid, radiance, picture.exposure);
+    let caption =
+        format!("Photon maps, {} samples a pixel, {}", ours.facts.samples, duration(ours.facts.seconds));
+    plate("photons", caption, &exposed(&ours.total))?;
+    let caption =
+        format!("Paths, {} samples a pixel, {}", equal.facts.samples, duration(equal.facts.seconds));
+    plate("paths", caption, &exposed(&equal.total))?;
+    plate("twin", "The twin: paths, converged".to_string(), &exposed(twin))?;
+    let print = error_print(grid, &ours.total, twin, masked, SCALE);
+    let grey = if masked.is_some() { "; grey: masked beforehand" } else { "" };
+    let caption = format!("Photon maps minus twin, relative: blue too dark, red too bright{grey}");
+    plate("error", caption, &print)?;
+    match picture.beside {
+        Beside::Single => {
+            let single: Making =
+                mean_layers(predicting).iter().map(|l| l.emission + l.direct + l.single).collect();
+            plate("single", "Single scattering alone".to_string(), &exposed(&single))?;
+        }
+        Beside::Maps => {
+            let maps = studio.maps(0)?;
+            let all = [("global", &maps.global), ("caustic", &maps.caustic), ("volume", &maps.volume)];
+            for (name, map) in all {
+                if let Some(map) = map.as_ref().filter(|map| map.stored() > 1000) {
+                    let picture = dots(&studio.scene, &studio.camera, std::iter::once(map));
+                    let caption = format!("The {name} map: {} photons", map.stored());
+                    plate(name, caption, &develop(grid, &picture, 0.6))?;
+                }
+            }
+        }
+    }
+    Ok(plates)
+}
+
+/// The command that renders a picture as EXR.
+fn command(picture: &Picture) -> String {
+    let [global, caustic, volume] = picture.nearest;
+    format!(
+        "turbid render experiments/scenes/{0}.toml -o {0}.exr --with photons --samples {1}  # k = {global}, {caustic}, {volume}",
+        picture.name, picture.samples
+    )
+}
+
+/// Progress with remaining time, on standard error, a line every ten seconds.
+struct Bar {
+    what: String,
+    total: u64,
+    done: AtomicU64,
+    start: Instant,
+    told: AtomicU64,
+}
+
+impl Bar {
+    fn new(what: &str, total: u64) -> Self {
+        Bar { what: what.to_string(), total, done: 0.into(), start: Instant::now(), told: 0.into() }
+    }
+}
+
+impl Progress for Bar {
+    fn advance(&self, histories: u64) {
+        let done = self.done.fetch_add(histories, Ordering::Relaxed) + histories;
+        let spent = self.start.elapsed();
+        let tens = spent.as_secs() / 10;
+        if self.told.fetch_max(tens, Ordering::Relaxed) < tens {
+            let left = if self.total == 0 {
+                String::new()
+            } else {
+                let share = (done as f64 / self.total as f64).min(1.0);
+                let left = Duration::as_secs_f64(&spent) * (1.0 - share) / share.max(1e-9);
+                format!(", {:.0} %, about {} left", 100.0 * share, duration(left))
+            };
+            say(&format!("  {}{left}", self.what));
+        }
+    }
+}

@@ -1,0 +1,106 @@
+//! What the user chooses.
+
+use super::pictures;
+use clap::Parser;
+use std::path::PathBuf;
+
+/// Renders the gallery: each picture by photons, by paths in the same time, and beside a converged twin.
+#[derive(Debug, Clone, Parser)]
+#[command(name = "gallery", version)]
+pub struct Settings {
+    /// Half the width and height, an eighth of the twin's samples: minutes instead of hours
+    #[arg(long)]
+    pub quick: bool,
+    /// Only these pictures; those made before stay on the page
+    #[arg(long, value_name = "NAME", value_delimiter = ',', value_parser = name)]
+    pub only: Vec<String>,
+    /// Show pictures without comparing them: no maps and no twin beyond what is shown
+    #[arg(long)]
+    pub draft: bool,
+    /// Seed of all random numbers
+    #[arg(long, default_value_t = 1)]
+    pub seed: u64,
+    /// Folder of the page [default: results/gallery, with --quick or --draft results/local/gallery]
+    #[arg(long)]
+    pub out: Option<PathBuf>,
+    /// Folder of the scenes
+    #[arg(long, default_value = "experiments/scenes")]
+    pub scenes: PathBuf,
+    /// Number of threads [default: all cores]
+    #[arg(long, value_parser = clap::value_parser!(u16).range(1..=1024))]
+    pub threads: Option<u16>,
+    /// Forget what earlier runs made
+    #[arg(long)]
+    pub fresh: bool,
+    /// Take what another build of the program made
+    #[arg(long, conflicts_with = "fresh")]
+    pub reuse: bool,
+    /// Only write the scenes' data files anew, into the folder of the scenes
+    #[arg(long)]
+    pub assets: bool,
+}
+
+fn name(text: &str) -> Result<String, String> {
+    if pictures::ALL.iter().any(|p| p.name == text) {
+        return Ok(text.to_string());
+    }
+    let names: Vec<&str> = pictures::ALL.iter().map(|p| p.name).collect();
+    Err(format!("allowed: {}", names.join(", ")))
+}
+
+impl Settings {
+    /// Folder of the page.
+    pub fn folder(&self) -> PathBuf {
+        let default = if self.quick || self.draft { "results/local/gallery" } else { "results/gallery" };
+        self.out.clone().unwrap_or_else(|| PathBuf::from(default))
+    }
+
+    /// Folder of the makings, which are large: beside the page only where that is a local one.
+    pub fn makings(&self) -> PathBuf {
+        match &self.out {
+            Some(out) => out.join("makings"),
+            None if self.quick || self.draft => self.folder().join("makings"),
+            None => PathBuf::from("results/local/gallery-full/makings"),
+        }
+    }
+
+    /// Size of the pictures over that of the scenes' own cameras.
+    pub fn scale(&self) -> f64 {
+        if self.quick { 0.5 } else { 1.0 }
+    }
+
+    /// The command that repeats it.
+    pub fn command(&self) -> String {
+        let mut text = "cargo run --release --bin gallery".to_string();
+        let flags = [(self.quick, " --quick"), (self.draft, " --draft")];
+        if flags.iter().any(|f| f.0) || !self.only.is_empty() || self.seed != 1 {
+            text.push_str(" --");
+        }
+        flags.iter().filter(|f| f.0).for_each(|f| text.push_str(f.1));
+        if self.seed != 1 {
+            text.push_str(&format!(" --seed {}", self.seed));
+        }
+        if !self.only.is_empty() {
+            text.push_str(&format!(" --only {}", self.only.join(",")));
+        }
+        text
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn flags() {
+        let parse = |args: &[&str]| Settings::try_parse_from([&["gallery"], args].concat());
+        assert!(parse(&["--only", "pool,cloud"]).is_ok_and(|s| s.only == ["pool", "cloud"]));
+        let quick = parse(&["--quick", "--seed", "3"]).unwrap();
+        assert_eq!(quick.command(), "cargo run --release --bin gallery -- --quick --seed 3");
+        assert_eq!(quick.folder(), PathBuf::from("results/local/gallery"));
+        assert_eq!(parse(&[]).unwrap().command(), "cargo run --release --bin gallery");
+        for bad in [&["--only", "ponds"][..], &["--fresh", "--reuse"], &["--threads", "0"]] {
+            assert!(parse(bad).is_err(), "{bad:?}");
+        }
+    }
+}

@@ -1,0 +1,96 @@
+//! What the page tells of a picture; kept beside its PNG files, so that pictures can be made one at a time.
+
+use super::compare::{Agreement, Comparison, Errors};
+use super::keep::Facts;
+use serde::{Deserialize, Serialize};
+use turbid::stats::Interval;
+
+/// One PNG file with its caption.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Plate {
+    /// Name of the file, beside the page.
+    pub file: String,
+    /// What it is.
+    pub caption: String,
+}
+
+/// Numbers of a picture's comparison with its twin.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Compared {
+    /// Independent makings of the photon mapper's picture, and their samples a pixel.
+    pub makings: (usize, u64),
+    /// Root mean square error of the picture that is shown, over its mean.
+    pub rms: f64,
+    /// The same of one making, 95 per cent.
+    pub making_rms: [f64; 2],
+    /// The systematic part, 95 per cent.
+    pub systematic: [f64; 2],
+    /// Error of the picture's mean, 95 per cent.
+    pub bias: [f64; 2],
+    /// Root mean square error of the path tracer's picture in the same time, 95 per cent.
+    pub equal_rms: [f64; 2],
+    /// The verdict in words.
+    pub verdict: String,
+    /// Blocks and channels compared, and how many differ.
+    pub blocks: (usize, usize),
+    /// Share of the picture that was masked beforehand.
+    pub masked: f64,
+    /// Share of the picture without a verdict for its heavy tails.
+    pub heavy: f64,
+    /// Median of the smallest relative deviations that are seen.
+    pub smallest: f64,
+}
+
+impl Compared {
+    /// The numbers of a comparison.
+    pub fn new(
+        comparison: &Comparison,
+        errors: &Errors,
+        makings: (usize, u64),
+        rms: f64,
+        equal_rms: Interval,
+    ) -> Self {
+        let pair = |i: Interval| [i.low, i.high];
+        let agreement = comparison.agreement();
+        let differ = if let Agreement::Differ(n) = agreement { n } else { 0 };
+        let verdict = match agreement {
+            Agreement::Agree => "agrees with its twin",
+            Agreement::Differ(_) => "differs from its twin",
+            Agreement::Undecided => "undecided: too little of the picture can be judged",
+        };
+        Compared {
+            makings,
+            rms,
+            making_rms: pair(errors.rms),
+            systematic: pair(errors.systematic),
+            bias: pair(errors.bias),
+            equal_rms: pair(equal_rms),
+            verdict: verdict.to_string(),
+            blocks: (comparison.blocks.len(), differ),
+            masked: comparison.masked,
+            heavy: comparison.heavy,
+            smallest: comparison.typical_smallest(),
+        }
+    }
+}
+
+/// All that the page tells of a picture.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Shown {
+    /// Name of the picture.
+    pub name: String,
+    /// The command that renders it as EXR.
+    pub command: String,
+    /// Columns and rows of pixels.
+    pub size: (usize, usize),
+    /// The photon mapper's picture.
+    pub ours: Facts,
+    /// The path tracer's in the same time.
+    pub equal: Facts,
+    /// Samples a pixel and CPU seconds of the twin.
+    pub twin: (u64, f64),
+    /// The comparison; none of a draft.
+    pub compared: Option<Compared>,
+    /// PNG files.
+    pub plates: Vec<Plate>,
+}

@@ -1,0 +1,201 @@
+//! Makes the pictures: photon maps and their reading, paths, each with the CPU time that it took.
+
+use super::Grid;
+use super::keep::{Facts, Kept};
+use super::pictures::Picture;
+use anyhow::{Context, anyhow};
+use cpu_time::ProcessTime;
+use std::path::Path;
+use turbid::integrators::{mapper, path};
+use turbid::photons::PhotonMap;
+use turbid::photons::maps::{self, Indirect, MapSettings, Maps};
+use turbid::scene::{Camera, Scene, SceneFile};
+use turbid::sensor::{Film, Streams, extend};
+use turbid::transport::Progress;
+
+/// One picture's scene and camera, ready to be rendered.
+pub struct Studio<'a> {
+    /// Which picture.
+    pub picture: &'a Picture,
+    /// Its scene.
+    pub scene: Scene,
+    /// Its camera, in the size wanted.
+    pub camera: Camera,
+    /// Seed of everything.
+    pub seed: u64,
+    /// Digest of the program.
+    pub program: String,
+}
+
+impl<'a> Studio<'a> {
+    /// Reads the scene of a picture from a folder of scenes.
+    ///
+    /// # Arguments   `scale` size of the picture over that of the scene's own camera
+    pub fn open(
+        picture: &'a Picture,
+        folder: &Path,
+        scale: f64,
+        seed: u64,
+        program: &str,
+    ) -> anyhow::Result<Self> {
+        let path = folder.join(format!("{}.toml", picture.name));
+        let text =
+            std::fs::read_to_string(&path).with_context(|| format!("cannot read {}", path.display()))?;
+        let file: SceneFile = toml::from_str(&text).map_err(|e| anyhow!("{}: {e}", path.display()))?;
+        let scene = file.scene(folder).with_context(|| path.display().to_string())?;
+        let camera = scene.camera().with_context(|| format!("{} has no camera", path.display()))?;
+        let size = |n: u32| ((f64::from(n) * scale).round() as u32).max(1);
+        let camera = camera.with_size(size(camera.width()), size(camera.height()))?;
+        Ok(Studio { picture, scene, camera, seed, program: program.to_string() })
+    }
+
+    /// Size of the picture.
+    pub fn grid(&self) -> Grid {
+        Grid { width: self.camera.width() as usize, height: self.camera.height() as usize }
+    }
+
+    /// Samples of a whole picture with so many a pixel.
+    pub fn work(&self, samples: u64) -> u64 {
+        samples * self.grid().pixels() as u64
+    }
+
+    fn words(&self, method: &str, samples: u64, replicate: u64) -> String {
+        let Grid { width, height } = self.grid();
+        format!(
+            "{}, {method}, {width} x {height}, {samples} samples, seed {}, replicate {replicate}",
+            self.picture.name, self.seed
+        )
+    }
+
+    /// What a making by photons will be called.
+    pub fn photon_words(&self, samples: u64, replicate: u64) -> String {
+        let p = self.picture;
+        let counts = format!("photons {:?}, nearest {:?}, gather {}", p.photons, p.nearest, p.gather);
+        self.words(&counts, samples, replicate)
+    }
+
+    /// What a making by paths will be called.
+    pub fn path_words(&self, samples: u64, replicate: u64) -> String {
+        self.words("paths", samples, replicate)
+    }
+
+    /// Fills the maps of a replicate.
+    pub fn maps(&self, replicate: u64) -> anyhow::Result<Maps> {
+        let [global, caustic, volume] = self.picture.photons;
+        let indirect = if self.picture.gather > 0 { Indirect::Gathered } else { Indirect::Seen };
+        let settings = MapSettings { global, caustic, volume, indirect, seed: self.seed, replicate };
+        Ok(maps::fill(&self.scene, &settings, &turbid::transport::NoProgress)?)
+    }
+
+    /// How the maps are read: as in 1998, with this picture's numbers of photons.
+    fn reading(&self) -> anyhow::Result<mapper::Settings> {
+        let p = self.picture;
+        let mut settings = mapper::Settings::for_size(p.size, p.nearest[0])?;
+        let gathers = [&mut settings.global, &mut settings.caustic, &mut settings.volume];
+        for (gather, k) in gathers.into_iter().zip(p.nearest) {
+            gather.1 = turbid::estimators::Gather::nearest(k, 0.1 * p.size)?;
+        }
+        settings.gather_rays = p.gather.max(1);
+        Ok(settings)
+    }
+
+    /// A picture from one set of maps.
+    pub fn photons(&self, samples: u64, replicate: u64, progress: &dyn Progress) -> anyhow::Result<Kept> {
+        let start = ProcessTime::now();
+        let maps = self.maps(replicate)?;
+        let map_seconds = start.elapsed().as_secs_f64();
+        let settings = self.reading()?;
+        let reader = mapper::Mapper::new(&self.scene, &maps, &settings);
+        let within = self.scene.interior_at(self.camera.position());
+        let mut film = Film::new(self.camera.width(), self.camera.height());
+        let report = extend(
+            &mut film,
+            &self.camera,
+            samples,
+            self.streams(replicate),
+            progress,
+            |ray, stream, report: &mut mapper::Report| {
+                let (layers, work) = reader.radiance(ray, None, within, stream);
+                *report += work;
+                layers
+            },
+        )?;
+        let stored = |map: &Option<PhotonMap>| map.as_ref().map_or(0, |m| m.stored() as u64);
+        let facts = Facts {
+            words: self.photon_words(samples, replicate),
+            program: self.program.clone(),
+            seconds: start.elapsed().as_secs_f64(),
+            map_seconds,
+            samples,
+            emitted: [maps.report.main.emitted, maps.report.caustic.emitted],
+            stored: [stored(&maps.global), stored(&maps.caustic), stored(&maps.volume)],
+            radii: [report.global, report.caustic, report.volume].map(|g| g.mean_radius()),
+        };
+        Ok(Kept::new(facts, &film))
+    }
+
+    /// A picture by paths.
+    pub fn paths(&self, samples: u64, replicate: u64, progress: &dyn Progress) -> anyhow::Result<Kept> {
+        let start = ProcessTime::now();
+        let mut film = Film::new(self.camera.width(), self.camera.height());
+        self.trace(&mut film, samples, replicate, progress)?;
+        Ok(Kept::new(self.path_facts(start, samples, replicate), &film))
+    }
+
+    /// A picture by paths that takes about so many CPU seconds: whole passes over all pixels, at least one. The number
+    /// of samples depends on the clock; a making of that number repeats it bit by bit.
+    pub fn paths_for(&self, seconds: f64, replicate: u64, progress: &dyn Progress) -> anyhow::Result<Kept> {
+        let start = ProcessTime::now();
+        let mut film = Film::new(self.camera.width(), self.camera.height());
+        self.trace(&mut film, 1, replicate, progress)?;
+        loop {
+            let (spent, done) = (start.elapsed().as_secs_f64(), film.samples());
+            let each = spent / done as f64;
+            // Half of what is left, as long as that is more than a sample: late passes are timed best.
+            let more = (0.5 * (seconds - spent) / each) as u64;
+            if spent + 0.5 * each >= seconds {
+                return Ok(Kept::new(self.path_facts(start, done, replicate), &film));
+            }
+            self.trace(&mut film, more.max(1), replicate, progress)?;
+        }
+    }
+
+    fn streams(&self, replicate: u64) -> Streams {
+        Streams { seed: self.seed, replicate }
+    }
+
+    fn trace(
+        &self,
+        film: &mut Film,
+        samples: u64,
+        replicate: u64,
+        progress: &dyn Progress,
+    ) -> anyhow::Result<()> {
+        let within = self.scene.interior_at(self.camera.position());
+        extend(
+            film,
+            &self.camera,
+            samples,
+            self.streams(replicate),
+            progress,
+            |ray, stream, n: &mut u64| {
+                *n += 1;
+                path::layers(&self.scene, ray, None, within, stream).0
+            },
+        )?;
+        Ok(())
+    }
+
+    fn path_facts(&self, start: ProcessTime, samples: u64, replicate: u64) -> Facts {
+        Facts {
+            words: self.path_words(samples, replicate),
+            program: self.program.clone(),
+            seconds: start.elapsed().as_secs_f64(),
+            map_seconds: 0.0,
+            samples,
+            emitted: [0; 2],
+            stored: [0; 3],
+            radii: [0.0; 3],
+        }
+    }
+}

@@ -1,0 +1,174 @@
+//! Emission towards specular bodies: cells of the lights' numbers, what their rays reach, and that nothing is lost.
+
+use super::lights::{lights, suns};
+use crate::common::config as properties;
+use crate::support::run::numbers;
+use crate::support::scenes::{bounded, cuboid, point_light, region, sphere};
+use crate::support::verdict;
+use glam::DVec3;
+use proptest::prelude::*;
+use turbid::Spectrum;
+use turbid::geometry::Shape;
+use turbid::light::{EmissionCell, Light};
+use turbid::photons::{Emitter, Flags, Histories, shoot_from};
+use turbid::rng::{Purpose, Stream};
+use turbid::scene::Scene;
+use turbid::stats::Moments;
+use turbid::surface::{Mirror, Surface};
+use turbid::transport::NoProgress;
+
+fn all_lights() -> Vec<(&'static str, Light)> {
+    lights().into_iter().chain(suns()).collect()
+}
+
+fn mirror() -> Surface {
+    Surface::Mirror(Mirror::new(Spectrum::rgb(1.0, 0.9, 0.8)).unwrap())
+}
+
+/// Two mirrors in fog, seen small from the lights.
+fn scene(lights: Vec<Light>) -> Scene {
+    let fog = region(cuboid(DVec3::splat(-5.0), DVec3::splat(6.0)), 0.3, 0.8, 0.0);
+    let balls = [(DVec3::new(2.3, 0.3, 2.6), 0.5), (DVec3::new(0.4, 0.3, 4.0), 0.4)];
+    bounded(vec![fog], balls.map(|(c, r)| (sphere(c, r), mirror())).to_vec(), lights)
+}
+
+#[test]
+fn cells_fill_the_numbers() {
+    for (name, light) in all_lights() {
+        for count in [1, 100, 5000] {
+            let volume: f64 = light.cells(count).iter().map(EmissionCell::volume).sum();
+            assert!((volume - 1.0).abs() < 1e-12, "{name}: {volume}");
+        }
+    }
+}
+
+proptest! {
+    #![proptest_config(properties(2000))]
+
+    /// Every ray of a cell is in the cell's bundle, and a bundle that a ray meets a ball with says that it reaches it.
+    #[test]
+    fn bundles_hold_their_rays(seed in 0..u64::MAX, count in 1..4000usize, radius in 0.01..2.0f64) {
+        let mut stream = Stream::new(seed, Purpose::Synthetic, 0, 0);
+        for (name, light) in all_lights() {
+            let cells = light.cells(count);
+            let cell = cells[stream.index(cells.len())];
+            let Some(bundle) = light.bundle(&cell) else { continue };
+            let needs = light.needs();
+            let ray = light.emit_aimed(None, &cell.numbers((needs.position, needs.direction), &mut stream)).ray;
+            let off = ray.origin.distance(bundle.center);
+            prop_assert!(off <= bundle.radius * (1.0 + 1e-12) + 1e-12, "{name}: {off} {bundle:?}");
+            let angle = turbid::math::atan2(ray.dir.cross(bundle.axis).length(), ray.dir.dot(bundle.axis));
+            prop_assert!(angle <= bundle.angle + 1e-9, "{name}: {angle} {bundle:?}");
+            let center = DVec3::from(stream.triple()) * 8.0 - 4.0;
+            let along = (center - ray.origin).dot(ray.dir).max(0.0);
+            if ray.at(along).distance(center) < radius * (1.0 - 1e-9) {
+                prop_assert!(bundle.reaches(center, radius), "{name}: {ray:?} meets {center} {radius}, {bundle:?}");
+            }
+        }
+    }
+}
+
+/// A bundle does not reach everything: seen from a point, the cells kept shrink to the cone of the ball.
+#[test]
+fn cells_shrink_to_what_is_seen() {
+    let light = point_light(DVec3::ZERO, Spectrum::ONE);
+    let (distance, radius) = (5.0, 0.5);
+    // Share of the directions: half of 1 - cos, of the ball's angle.
+    let share = 0.5 * (1.0 - (1.0f64 - 0.01).sqrt());
+    for (count, most) in [(1 << 10, 8.0), (1 << 14, 2.5), (1 << 20, 1.15)] {
+        let kept: f64 = light
+            .cells(count)
+            .iter()
+            .filter(|cell| light.bundle(cell).unwrap().reaches(DVec3::new(3.0, 4.0, 0.0), radius))
+            .map(EmissionCell::volume)
+            .sum();
+        assert!(kept >= share && kept < most * share, "{count} cells at {distance}: {}", kept / share);
+    }
+}
+
+/// Aimed numbers give the same photons as the others: shares that meet balls around the light.
+#[test]
+fn aimed_photons_are_the_same_photons() {
+    for (name, light) in lights() {
+        let needs = light.needs();
+        for (i, center) in [DVec3::new(1.5, 0.4, 1.5), DVec3::new(-1.0, -1.5, 0.5)].into_iter().enumerate() {
+            let ball: Shape = sphere(center, 0.8);
+            let meets = |ray: &turbid::math::Ray| f64::from(u8::from(ball.hit(ray, None).is_some()));
+            let plain = numbers(1 << 15, 1, |s| meets(&light.emit(None, s).ray));
+            let aimed = numbers(1 << 15, 2, |s| {
+                let numbers = EmissionCell::WHOLE.numbers((needs.position, needs.direction), s);
+                meets(&light.emit_aimed(None, &numbers).ray)
+            });
+            verdict::agree(&format!("{name}, ball {i}"), &plain, &aimed, 0.05, 2);
+        }
+    }
+}
+
+/// Power of the photons that come by mirrors alone to the fog on either side of x = 1, a value a batch.
+fn caustic(scene: &Scene, emitter: &Emitter, seed: u64) -> [[Moments; 3]; 2] {
+    const HISTORIES: u64 = 1024;
+    let mut moments = [[Moments::new(); 3]; 2];
+    for replicate in 0..64 {
+        let histories = Histories { count: HISTORIES, seed, replicate, max_order: Some(0) };
+        let keep = |photon: &turbid::photons::Photon| photon.flags == Flags::SPECULAR;
+        let sensors: [turbid::scene::Sensor; 0] = [];
+        let pass = shoot_from(scene, emitter, histories, &sensors, keep, &NoProgress).unwrap();
+        let mut sums = [[0.0; 3]; 2];
+        for photon in &pass.photons {
+            for c in 0..3 {
+                sums[usize::from(photon.position.x > 1.0)][c] += f64::from(photon.power.to_array()[c]);
+            }
+        }
+        for (moments, sums) in moments.iter_mut().zip(sums) {
+            moments.iter_mut().zip(sums).for_each(|(m, sum)| m.push(sum / HISTORIES as f64));
+        }
+    }
+    moments
+}
+
+/// Caustic light with and without projection is the same; with it, a part of the photons does.
+#[test]
+fn projection_loses_nothing() {
+    let mut cases: Vec<(&str, Vec<Light>)> = all_lights().into_iter().map(|(n, l)| (n, vec![l])).collect();
+    cases.push(("all of them", all_lights().into_iter().map(|(_, l)| l).collect()));
+    for (name, lights) in cases {
+        let scene = scene(lights);
+        let aimed = Emitter::towards_specular(&scene).unwrap();
+        let plain = caustic(&scene, &Emitter::by_power(&scene), 1);
+        let projected = caustic(&scene, &aimed, 2);
+        let mean = |m: &[[Moments; 3]; 2]| m[0][1].mean() + m[1][1].mean();
+        let error = |m: &[[Moments; 3]; 2]| libm::hypot(m[0][1].std_error(), m[1][1].std_error());
+        verdict::println_line(&format!(
+            "{name}: kept {:.4}, cells {}, relative error {:.3} plain, {:.3} projected",
+            aimed.kept(),
+            aimed.projection_cells(),
+            error(&plain) / mean(&plain),
+            error(&projected) / mean(&projected),
+        ));
+        for side in 0..2 {
+            for c in 0..3 {
+                if plain[side][c].mean() > 0.0 || projected[side][c].mean() > 0.0 {
+                    let what = format!("{name}, side {side}, channel {c}");
+                    let scale = mean(&plain).max(mean(&projected));
+                    verdict::agree(&what, &plain[side][c], &projected[side][c], scale, 1);
+                }
+            }
+        }
+        // Isotropic light goes anywhere from each part of its numbers, and so wide a sun nearly so.
+        let is_whole = name.starts_with("isotropic") || name == "wide sun";
+        assert_eq!(aimed.kept() < 0.75, !is_whole, "{name}");
+    }
+}
+
+/// A scene without specular bodies, or with none in reach, has no such emission, and costs no cell.
+#[test]
+fn nothing_to_aim_at() {
+    let light = || point_light(DVec3::ZERO, Spectrum::ONE);
+    let fog = || vec![region(sphere(DVec3::ZERO, 1.0), 1.0, 0.5, 0.0)];
+    assert!(Emitter::towards_specular(&bounded(fog(), Vec::new(), vec![light()])).is_none());
+    assert_eq!(Emitter::by_power(&bounded(fog(), Vec::new(), vec![light()])).projection_cells(), 0);
+    let beam = turbid::light::Section::Disc { center: DVec3::ZERO, radius: 0.1 };
+    let beam = Light::Beam(turbid::light::Beam::new(DVec3::X, Spectrum::ONE, beam).unwrap());
+    let behind = bounded(fog(), vec![(sphere(DVec3::new(-2.0, 0.0, 0.0), 0.5), mirror())], vec![beam]);
+    assert!(Emitter::towards_specular(&behind).is_none());
+}
