@@ -281,7 +281,11 @@ point = { position = [0, 0, 5], power = 1.0 }
         ),
         ("inside = \"glass\"", "outside = \"glass\"", "inside"),
         ("dielectric = { inside = \"glass\" }", "filter = { transmittance = 0.5 }", "glass has no boundary"),
-        ("dielectric = { inside = \"glass\" }", "filter = { transmittance = 1.5 }", "transmittance is 1.5; allowed: 0 to 1"),
+        (
+            "dielectric = { inside = \"glass\" }",
+            "filter = { transmittance = 1.5 }",
+            "transmittance is 1.5; allowed: 0 to 1",
+        ),
         ("index = 1.5", "index = 1.5, sigma_t = 1.0", "interior glass"),
     ];
     for (i, (from, to, words)) in cases.into_iter().enumerate() {
