@@ -70,7 +70,8 @@ fn importance_moves_photons_and_changes_no_mean() {
     let scene = hall();
     for indirect in [Indirect::Seen, Indirect::Gathered] {
         let settings = ImportanceSettings { pilot: 1 << 13, ..Default::default() };
-        let importance = Importance::of(&scene, indirect, &settings, &NoProgress).unwrap();
+        let importance =
+            Importance::of(&scene, scene.camera().unwrap(), indirect, &settings, &NoProgress).unwrap();
         let mut powers = [[[Moments::new(); 2]; 3]; 2];
         let mut counts = [[[0usize; 2]; 3]; 2];
         let mut ledgers = [[Moments::new(); 2]; 2];
@@ -127,7 +128,8 @@ fn importance_makes_the_picture_better() {
     let scene = hall();
     let indirect = Indirect::Seen;
     let settings = ImportanceSettings { pilot: 1 << 13, ..Default::default() };
-    let importance = Importance::of(&scene, indirect, &settings, &NoProgress).unwrap();
+    let importance =
+        Importance::of(&scene, scene.camera().unwrap(), indirect, &settings, &NoProgress).unwrap();
     let reading = Settings {
         global: (Kernel::Uniform, Gather::radius(0.5).unwrap()),
         volume: (Kernel::Uniform, Gather::radius(0.5).unwrap()),

@@ -1,7 +1,8 @@
-//! Elementary functions with the same bits everywhere, frames, rays, warps in pairs, numbers with a range.
+//! Elementary functions with the same bits everywhere, frames, rays, warps in pairs, numbers with a range, quadrature.
 
 mod frame;
 mod number;
+pub mod quadrature;
 mod ray;
 pub mod warp;
 

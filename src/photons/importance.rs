@@ -29,7 +29,7 @@ pub use steer::Branching;
 use super::Emitter;
 use super::maps::Indirect;
 use crate::error::{Error, Result};
-use crate::scene::Scene;
+use crate::scene::{Camera, Scene};
 use crate::transport::Progress;
 use grid::{Aim, DIRECTIONS, Grid};
 
@@ -68,20 +68,18 @@ pub struct Importance {
 }
 
 impl Importance {
-    /// Learns the importance of a scene with a camera.
+    /// Learns the importance of a scene to a camera.
     ///
     /// # Errors
-    /// [`Error::Scene`] for a scene without camera, without bounds, or whose camera sees no place where photons are
+    /// [`Error::Scene`] for a scene without bounds, or a camera that sees no place where photons are
     /// read or come to; [`Error::Cancelled`].
     pub fn of(
         scene: &Scene,
+        camera: &Camera,
         indirect: Indirect,
         settings: &ImportanceSettings,
         progress: &dyn Progress,
     ) -> Result<Self> {
-        let Some(camera) = scene.camera() else {
-            return Err(Error::Scene("importance starts from a camera, and the scene has none".into()));
-        };
         if scene.bounds().is_none() {
             return Err(Error::Scene("importance needs a scene with bounds, without unbounded slab".into()));
         }

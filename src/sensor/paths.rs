@@ -135,7 +135,7 @@ pub fn sample_counted(
             if scene.medium_number_at(position) == Some(region) {
                 rays = fluence(scene, position, orders, stream, |_, value| sum += value);
             }
-            sum = sum * scene.regions()[region].medium.sigma_a() * volume;
+            sum = sum * scene.regions()[region].medium.sigma_a(position) * volume;
             sum = per_power(sum, scene.power());
         }
     }
@@ -165,7 +165,7 @@ mod tests {
     fn rays_are_counted() {
         let phase = Phase::with_asymmetry(crate::math::Asymmetry::new("g", 0.0).unwrap());
         let medium = Homogeneous::new(Spectrum::ONE, Spectrum::ONE, phase).unwrap();
-        let region = Region { shape: Shape::Slab(Slab::new(0.0, 1.0).unwrap()), medium };
+        let region = Region { shape: Shape::Slab(Slab::new(0.0, 1.0).unwrap()), medium: medium.into() };
         let beam = Beam::new(DVec3::Z, Spectrum::ONE, Section::Unbounded).unwrap();
         let parts = Parts {
             regions: vec![region],

@@ -11,6 +11,7 @@ mod support;
 mod flight;
 mod fresnel;
 mod lights;
+mod media;
 mod phase;
 mod projection;
 mod roulette;

@@ -202,7 +202,7 @@ pub(super) fn learn(
         let values = means(&observed.cells, cells.len());
         let scores = values.iter().zip(&powers).map(|(value, power)| value * power);
         let response: f64 = scores.clone().sum();
-        if !(response > 0.0) {
+        if response.is_nan() || response <= 0.0 {
             return Err(dark());
         }
         let chances = scores
