@@ -148,8 +148,9 @@ pub struct Reading {
     /// How much of a step's light reaches its near end: the rule of 1998, or exact for a constant source.
     #[arg(long, value_enum, default_value = "integrated")]
     step_rule: RuleName,
-    /// Relative change of light from step to step above which steps are halved, to a quarter at most; 0 for equal steps.
-    #[arg(long, default_value_t = 0.5)]
+    /// Relative change of light from step to step above which steps are halved, to a quarter at most, as in 1998; 0 for
+    /// equal steps. The choice follows the light found, which biases it: next to lights it reads low.
+    #[arg(long, default_value_t = 0.0)]
     adapt: f64,
     /// March on places that are not random: no noise, but bands.
     #[arg(long)]
