@@ -164,7 +164,7 @@ impl Camera {
     pub fn project(&self, p: DVec3) -> Option<DVec2> {
         let towards = p - self.view.position;
         let depth = towards.dot(self.forward);
-        if !(depth > 0.0) {
+        if depth.is_nan() || depth <= 0.0 {
             return None;
         }
         let x = towards.dot(self.right) / (depth * self.right.length_squared());

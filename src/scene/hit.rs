@@ -103,8 +103,10 @@ impl Scene {
             return None;
         }
         let mut others = bodies.others.iter().filter(|target| Some(**target) != towards);
-        let is_blocked =
-            others.any(|target| self.try_body(ray, from, *target).is_some_and(|hit| hit.t < end));
+        let is_blocked = others.any(|&target| match target {
+            Target::Object(i) => self.objects()[i].shape.blocks(ray, Start::on(from, target), end),
+            Target::Light(_) => self.try_body(ray, from, target).is_some_and(|hit| hit.t < end),
+        });
         (!is_blocked).then_some(Spectrum::ONE)
     }
 

@@ -4,6 +4,7 @@
 mod bad_input;
 mod media;
 mod output;
+mod pictures;
 
 use assert_cmd::Command;
 use std::path::{Path, PathBuf};
