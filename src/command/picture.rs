@@ -76,7 +76,7 @@ impl Shown {
     /// The exposure asked for, if it is a number of stops.
     pub fn checked(&self) -> anyhow::Result<Option<f64>> {
         match self.exposure {
-            Some(stops) if !(stops.abs() <= 100.0) => {
+            Some(stops) if stops.is_nan() || stops.abs() > 100.0 => {
                 Err(anyhow!("--exposure is {stops}; allowed: -100 to 100 stops"))
             }
             other => Ok(other),
@@ -148,8 +148,9 @@ pub struct Reading {
     /// How much of a step's light reaches its near end: the rule of 1998, or exact for a constant source.
     #[arg(long, value_enum, default_value = "integrated")]
     step_rule: RuleName,
-    /// Relative change of light from step to step above which steps are halved, to a quarter at most; 0 for equal steps.
-    #[arg(long, default_value_t = 0.5)]
+    /// Relative change of light from step to step above which steps are halved, to a quarter at most, as in 1998; 0 for
+    /// equal steps. The choice follows the light found, which biases it: next to lights it reads low.
+    #[arg(long, default_value_t = 0.0)]
     adapt: f64,
     /// March on places that are not random: no noise, but bands.
     #[arg(long)]
