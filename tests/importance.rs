@@ -93,9 +93,9 @@ fn importance_moves_photons_and_changes_no_mean() {
             }
         }
         let power = scene.power().sum();
-        for way in 0..2 {
-            verdict::agrees("ledger, emitted", &ledgers[way][0], (power, 1e-9 * power), 0.1 * power, 5);
-            verdict::agrees("ledger, ended", &ledgers[way][1], (power, 1e-9 * power), 0.2 * power, 5);
+        for [emitted, ended] in &ledgers {
+            verdict::agrees("ledger, emitted", emitted, (power, 1e-9 * power), 0.1 * power, 5);
+            verdict::agrees("ledger, ended", ended, (power, 1e-9 * power), 0.2 * power, 5);
         }
         verdict::println_line(&format!("{indirect:?}: events {events:?}"));
         for (place, (name, ..)) in PLACES.iter().enumerate() {
@@ -112,8 +112,8 @@ fn importance_moves_photons_and_changes_no_mean() {
             }
         }
         // At an equal number of events too the corner gets more than twice the photons.
-        for kind in 0..2 {
-            let gain = counts[1][0][kind] as f64 / counts[0][0][kind] as f64;
+        for (steered, plain) in counts[1][0].iter().zip(&counts[0][0]) {
+            let gain = *steered as f64 / *plain as f64;
             assert!(
                 gain > 2.0 * events[1] as f64 / events[0] as f64,
                 "{indirect:?}: {gain} times the photons"

@@ -78,7 +78,7 @@ impl Shown {
     /// The exposure asked for, if it is a number of stops.
     pub fn checked(&self) -> anyhow::Result<Option<f64>> {
         match self.exposure {
-            Some(stops) if !(stops.abs() <= 100.0) => {
+            Some(stops) if stops.is_nan() || stops.abs() > 100.0 => {
                 Err(anyhow!("--exposure is {stops}; allowed: -100 to 100 stops"))
             }
             other => Ok(other),

@@ -21,7 +21,7 @@ use super::{Emitter, Flags, Ledger, Photon, PhotonMap, fold};
 use crate::Spectrum;
 use crate::error::{Error, Result};
 use crate::faults::{Fault, planted};
-use crate::rng::{Purpose, Stream};
+use crate::rng::{Purpose, Stream, Work};
 use crate::scene::{Scene, Target};
 use crate::surface::Surface;
 use crate::transport::{NoProgress, Progress, Roulette, Step, Visitor, Walker, run_blocks, walk};
@@ -108,6 +108,8 @@ pub struct PassReport {
     pub collisions: u64,
     /// Arrivals at matt surfaces, stored or not.
     pub hits: u64,
+    /// Work that the scene may not require.
+    pub work: Work,
     /// Time.
     pub time: Duration,
 }
@@ -250,6 +252,7 @@ pub fn counts_steered(
                 "at least 1",
             )),
             Amount::Emitted(number) => Ok(number),
+            Amount::Stored(number) if stored[map] == 0 && scene.plan().is_full => Ok(number),
             Amount::Stored(_) if stored[map] == 0 => Err(Error::Scene(format!(
                 "the {name} map would stay empty: none of {PILOT} photons was stored in it; say how many to emit instead"
             ))),
@@ -349,7 +352,11 @@ impl Needs {
     fn of(scene: &Scene, emitters: &Emitters) -> Self {
         let plan = scene.plan();
         let is_matt = plan.has_surfaces && scene.objects().iter().any(|o| is_matt(&o.surface));
-        Needs { global: is_matt, caustic: is_matt && emitters.caustic.is_some(), volume: plan.has_media }
+        Needs {
+            global: is_matt || plan.is_full,
+            caustic: (is_matt || plan.is_full) && emitters.caustic.is_some(),
+            volume: plan.has_media,
+        }
     }
 }
 
@@ -412,6 +419,7 @@ impl Stored {
         mine.ledger.add(&others.ledger);
         mine.collisions += others.collisions;
         mine.hits += others.hits;
+        mine.work += others.work;
         self.non_finite += other.non_finite;
         self
     }
@@ -449,6 +457,7 @@ impl Run<'_> {
                     None => walk(self.scene, first, Roulette::Analog, limit, &mut stream, &mut store),
                     Some(importance) => importance.walk(self.scene, first, limit, &mut stream, &mut store),
                 }
+                store.stored.report.work += stream.work;
             }
             let Store { mut surface, mut medium, mut stored, .. } = store;
             surface.shrink_to_fit();
