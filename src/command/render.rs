@@ -5,7 +5,7 @@ use super::on_threads;
 use super::parse_count;
 use super::picture::{Frame, Photons, Reading, Shown};
 use super::progress::Bar;
-use super::statistics::{Stages, print_statistics};
+use super::statistics::{MAPS, Stages, print_statistics};
 use anyhow::{Context, bail};
 use clap::ValueEnum;
 use cpu_time::ProcessTime;
@@ -149,7 +149,7 @@ impl Render {
                     self.photons.settings(self.reading.indirect(), streams.seed, streams.replicate);
                 let emitted = stages.time("pilot", || counts(&scene, &settings_of_maps))?;
                 let bar = Bar::stage("emission", emitted.histories());
-                let maps = stages.time("maps", || fill_counted(&scene, &settings_of_maps, emitted, &bar));
+                let maps = stages.time(MAPS, || fill_counted(&scene, &settings_of_maps, emitted, &bar));
                 bar.finish();
                 let maps = maps?;
                 let within = scene.interior_at(camera.position());
