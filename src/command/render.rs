@@ -15,7 +15,7 @@ use turbid::integrators::mapper::{Mapper, Report};
 use turbid::integrators::path;
 use turbid::output::{Tone, auto_exposure, write_exr, write_png};
 use turbid::photons::PhotonMap;
-use turbid::photons::maps::{MapReport, counts, fill_counted};
+use turbid::photons::maps::{MapReport, counts_steered, fill_counted_steered};
 use turbid::scene::{Camera, Scene};
 use turbid::sensor::{Film, Sample, Streams, extend};
 
@@ -147,9 +147,15 @@ impl Render {
             With::Photons => self.repeat(&camera, |streams, stages, left, film| {
                 let settings_of_maps =
                     self.photons.settings(self.reading.indirect(), streams.seed, streams.replicate);
-                let emitted = stages.time("pilot", || counts(&scene, &settings_of_maps))?;
+                let importance =
+                    stages.time("pilot", || self.photons.importance(&scene, &camera, &settings_of_maps))?;
+                let importance = importance.as_ref();
+                let emitted =
+                    stages.time("pilot", || counts_steered(&scene, &settings_of_maps, importance))?;
                 let bar = Bar::stage("emission", emitted.histories());
-                let maps = stages.time(MAPS, || fill_counted(&scene, &settings_of_maps, emitted, &bar));
+                let maps = stages.time(MAPS, || {
+                    fill_counted_steered(&scene, &settings_of_maps, emitted, importance, &bar)
+                });
                 bar.finish();
                 let maps = maps?;
                 let within = scene.interior_at(camera.position());
@@ -266,6 +272,7 @@ impl Render {
             "width": made.film.width(),
             "height": made.film.height(),
             "seed": self.seed,
+            "importance": by_photons && self.photons.is_steered,
             "repetitions": self.maps,
             "samples": made.samples,
             "variance": if self.maps == 1 { "between samples" } else { "between repetitions" },
