@@ -446,7 +446,7 @@ fn notes(settings: &Settings, cells: &Cells) -> Vec<String> {
     vec![
         format!(
             "The picture is {SIDE} x {SIDE} pixels of a closed box with two blocks; a map stores {stored} photons in its \
-             fog, the talk's picture some 65,000. Steps of a twentieth of a mean free path, estimates divided by the part of \
+             fog, the talk's picture had some 65,000. Steps of a twentieth of a mean free path, estimates divided by the part of \
              the ball inside the box; what the blocks cut off is not made good, as in 1998."
         ),
         format!(

@@ -48,7 +48,10 @@ pub fn edges(edges: &Edges) -> anyhow::Result<FigureFiles> {
         let own: Vec<_> = edges.edge.iter().filter(|e| e.0 == size).collect();
         let x = DEPTHS.to_vec();
         edge = edge
-            .with(Line::new(size.title(), class, x.clone(), own.iter().map(|e| e.2.predicted).collect()))
+            .with(
+                Line::new(size.title(), class, x.clone(), own.iter().map(|e| e.2.predicted).collect())
+                    .with_dash(Dash::Solid),
+            )
             .with(
                 Points::new(size.title(), class, x, own.iter().map(|e| e.2.measured.mean()).collect())
                     .with_y_interval(own.iter().map(|e| bar(&e.2.measured)).collect()),
@@ -56,7 +59,7 @@ pub fn edges(edges: &Edges) -> anyhow::Result<FigureFiles> {
     }
     let mut wall = Panel::new(
         Axis::linear("distance behind the wall", "mfp").with_range(0.0, 0.16),
-        Axis::new("light found in the dark", "%", Scale::Linear).with_range(0.0, 50.0),
+        Axis::new("light found in the dark", "%", Scale::Linear).with_range(0.0, 70.0),
     )
     .with_title("thin wall");
     for (class, size) in SIZES.into_iter().enumerate() {

@@ -20,7 +20,7 @@ pub const PAIRS: usize = 40;
 /// Photons an estimate.
 const K: usize = 50;
 /// Queries of one timing.
-const QUERIES: usize = 300;
+const QUERIES: usize = 3_000;
 
 /// Squares along the sides of each face of the box: 12 triangles for each square of a face.
 const FEW: [u32; 2] = [3, 1];
