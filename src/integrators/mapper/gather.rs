@@ -81,6 +81,7 @@ impl GatherRay<'_, '_, '_> {
 
 impl Visitor for GatherRay<'_, '_, '_> {
     const LOOKS_AHEAD: bool = false;
+    const CARRIES_RADIANCE: bool = true;
 
     fn visit(&mut self, walker: &Walker, step: Step, stream: &mut Stream) {
         match step {

@@ -18,11 +18,11 @@ mod volume;
 
 pub use settings::{Adaptive, March, Settings};
 
-use super::path::{Rays, next_event, uncollided};
-use super::{Layer, Layers};
 use crate::Spectrum;
 use crate::estimators::Estimate;
 use crate::geometry::Shape;
+use crate::integrators::path::{Rays, next_event, uncollided};
+use crate::integrators::{Layer, Layers};
 use crate::math::Ray;
 use crate::photons::maps::Maps;
 use crate::rng::Stream;
