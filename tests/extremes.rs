@@ -307,7 +307,7 @@ fn nothing_is_non_finite() {
                 .collect();
             for quantity in quantities {
                 let settings = PathSettings { samples: 4096, seed: 11, replicate: 0, orders: Orders::ALL };
-                let scene = with_sensors(&scene, std::slice::from_ref(quantity));
+                let scene = with_sensors(&scene, std::slice::from_ref(&quantity));
                 let readings = by_paths(&scene, &settings, &NoProgress).unwrap();
                 assert!(
                     readings[0].mean.is_finite() && readings[0].std_error.is_none_or(f64::is_finite),

@@ -96,7 +96,7 @@ pub fn mirror() -> Surface {
 
 /// A ray of the picture: from a corner of the room to points of its floor, two walls and its ceiling that lie farther
 /// from the edges than a disc reaches, one in each cell of a grid. The block hides some of them.
-fn look(history: u64, stream: &mut Stream) -> Ray {
+pub fn look(history: u64, stream: &mut Stream) -> Ray {
     let eye = DVec3::new(1.85, 0.15, 1.2);
     let [a, b] = stream.pair();
     let [column, row] = [history / 4 % 10, history / 40 % 10].map(|cell| cell as f64);
@@ -146,7 +146,7 @@ fn push(sheet: &mut Sheet, layers: &Layers) {
     sheet[6].push(layers.total().sum());
 }
 
-fn by_paths(scene: &Scene, n: u64, seed: u64) -> Sheet {
+pub fn by_paths(scene: &Scene, n: u64, seed: u64) -> Sheet {
     let block = |range: std::ops::Range<u64>| {
         let mut sheet = Sheet::default();
         for history in range {

@@ -25,7 +25,7 @@ use crate::integrators::path::{Rays, next_event, uncollided};
 use crate::integrators::{Layer, Layers};
 use crate::math::Ray;
 use crate::photons::maps::Maps;
-use crate::rng::Stream;
+use crate::rng::{Stream, Work};
 use crate::scene::{Scene, SceneHit, Start, Target};
 use crate::transport::{Roulette, Step, Visitor, Walker, emission, transmittance, walk};
 use std::ops::AddAssign;
@@ -84,6 +84,8 @@ pub struct Report {
     pub caustic: Gathers,
     /// Look-ups in the volume map.
     pub volume: Gathers,
+    /// Work that the scene may not require.
+    pub work: Work,
 }
 
 impl AddAssign for Report {
@@ -95,6 +97,7 @@ impl AddAssign for Report {
         self.global += other.global;
         self.caustic += other.caustic;
         self.volume += other.volume;
+        self.work += other.work;
     }
 }
 
