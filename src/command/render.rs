@@ -5,7 +5,7 @@ use super::on_threads;
 use super::parse_count;
 use super::picture::{Frame, Photons, Reading, Shown};
 use super::progress::Bar;
-use super::statistics::{Stages, print_statistics};
+use super::statistics::{MAPS, Stages, print_statistics};
 use anyhow::{Context, bail};
 use clap::ValueEnum;
 use cpu_time::ProcessTime;
@@ -153,7 +153,7 @@ impl Render {
                 let emitted =
                     stages.time("pilot", || counts_steered(&scene, &settings_of_maps, importance))?;
                 let bar = Bar::stage("emission", emitted.histories());
-                let maps = stages.time("maps", || {
+                let maps = stages.time(MAPS, || {
                     fill_counted_steered(&scene, &settings_of_maps, emitted, importance, &bar)
                 });
                 bar.finish();

@@ -78,7 +78,7 @@ pub struct Emitted {
 }
 
 impl Emitted {
-    /// Histories of both passes: what [`fill_counted`] tells its progress.
+    /// Histories of both passes: the first stages that [`fill_counted`] tells its progress.
     pub fn histories(&self) -> u64 {
         self.global.max(self.volume) + self.caustic
     }
@@ -301,20 +301,25 @@ pub fn fill_counted_steered(
         volume,
     };
     let (Emitted { global, volume, caustic }, mut report) = (emitted, MapReport::default());
-    let mut build = |photons, emitted: u64| {
+    let mut build = |parts: Vec<Vec<Photon>>, emitted: u64| {
+        if emitted == 0 {
+            return Ok(None);
+        }
         let start = Instant::now();
-        let map = (emitted > 0).then(|| PhotonMap::new_parallel(photons, emitted)).transpose();
+        let photons = joined(parts);
+        progress.stage("build", photons.len() as u64);
+        let map = PhotonMap::new_watched(photons, emitted, progress).map(Some);
         report.build += start.elapsed();
         map
     };
     let mut pass = run(Class::Main(settings.indirect), global, volume).pass(global.max(volume), progress)?;
     let main = pass.report;
-    let surfaces = build(joined(std::mem::take(&mut pass.surfaces)), global)?;
-    let media = build(joined(std::mem::take(&mut pass.media)), volume)?;
+    let surfaces = build(std::mem::take(&mut pass.surfaces), global)?;
+    let media = build(std::mem::take(&mut pass.media), volume)?;
     // Caustic photons of histories that the first pass has run too would be the same photons.
     let own = Run { purpose: Purpose::Caustics, ..run(Class::Caustic, caustic, 0) };
     let pass = own.pass(caustic, progress)?;
-    let focused = build(joined(pass.surfaces), caustic)?;
+    let focused = build(pass.surfaces, caustic)?;
     (report.main, report.caustic) = (main, pass.report);
     if let Some(emitter) = &emitters.caustic {
         (report.projection_cells, report.projected) = (emitter.projection_cells(), emitter.kept());
@@ -437,6 +442,7 @@ fn joined(parts: Vec<Vec<Photon>>) -> Vec<Photon> {
 impl Run<'_> {
     fn pass(&self, histories: u64, progress: &dyn Progress) -> Result<Stored> {
         let start = Instant::now();
+        progress.stage("emission", histories);
         // A caustic photon has not been scattered: its history ends with its first scattering.
         let limit = (self.class == Class::Caustic).then_some(1);
         let block = |range: std::ops::Range<u64>| {
