@@ -76,7 +76,6 @@ impl Room {
             let glass = Interior { name: "glass".into(), index: 1.5, medium: None };
             interiors = vec![Interior::surroundings(), glass];
         }
-<<<<<<< HEAD
         if self.has_water {
             // Its level reaches beyond the walls, which are all that bounds the water.
             let level = rectangle(DVec3::new(-9.0, -9.0, 0.4), DVec3::X * 20.0, DVec3::Y * 20.0);
@@ -84,10 +83,7 @@ impl Room {
             let water = Interior { name: "water".into(), index: 1.33, medium: None };
             interiors = vec![Interior::surroundings(), water];
         }
-        Scene::new(Parts {
-=======
         Parts {
->>>>>>> main
             regions: if self.sigma_t.is_black() { Vec::new() } else { vec![fog] },
             objects: objects.into_iter().map(|(shape, surface)| Object { shape, surface }).collect(),
             interiors,
