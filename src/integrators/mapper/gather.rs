@@ -72,7 +72,7 @@ impl GatherRay<'_, '_, '_> {
             if stream.unit() >= kept {
                 return;
             }
-            reflected /= kept;
+            reflected = reflected / kept;
             // Every class again, each by its own means.
             let mut sum = matt.direct(self.mapper, self.report, stream);
             if let Some(map) = &maps.caustic {
