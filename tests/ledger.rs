@@ -112,6 +112,7 @@ fn plain() -> Room {
         g: 0.3,
         is_colored: false,
         has_glass: false,
+        has_water: false,
     }
 }
 
