@@ -1,7 +1,7 @@
 //! `turbid render`: a picture of a scene, by photons or by paths.
 
 use super::load::Source;
-use super::on_threads;
+use super::{note, on_threads};
 use super::parse_count;
 use super::picture::{Frame, Photons, Reading, Shown};
 use super::progress::Bar;
@@ -129,6 +129,12 @@ impl Render {
             bail!(
                 "pictures of a scene with `cell`, which stands for an unbounded slab, are made by paths: --with paths"
             );
+        }
+        if self.with == With::Photons && scene.plan().has_emission {
+            note(
+                "photons start from lights alone: light of emitting media is seen straight and after one scattering, \
+                 not after more; a volume source in place of the emission, or --with paths, brings it all",
+            )?;
         }
         // Before the work, not after it.
         check_folder(&self.output)?;
