@@ -109,6 +109,8 @@ pub struct Mapper<'a> {
     settings: &'a Settings,
     /// Bodies that part photons from a point of a medium, where they are asked for.
     walls: Vec<Shape>,
+    /// Of each region the shapes of later ones, which count where they overlap; none where there is one medium alone.
+    neighbors: Vec<Vec<Shape>>,
     /// Whether some light cannot be aimed at.
     has_unaimed: bool,
 }
@@ -122,7 +124,11 @@ impl<'a> Mapper<'a> {
         };
         let has_unaimed =
             scene.plan().has_emission || scene.lights().iter().any(|light| !light.has_direction());
-        Mapper { scene, maps, settings, walls, has_unaimed }
+        let regions = scene.regions();
+        let is_alone = regions.len() + scene.interiors().iter().filter(|i| i.medium.is_some()).count() < 2;
+        let later = |index: usize| regions[index + 1..].iter().map(|r| r.shape.clone()).collect();
+        let neighbors = if is_alone { Vec::new() } else { (0..regions.len()).map(later).collect() };
+        Mapper { scene, maps, settings, walls, neighbors, has_unaimed }
     }
 
     /// One sample of the radiance that arrives at the origin of `ray` from ahead [W/(L^2 sr)], by class, and the work.
