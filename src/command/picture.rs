@@ -27,7 +27,9 @@ impl Frame {
     /// The scene's camera, in the size asked for, and able to see light.
     pub fn camera(&self, scene: &Scene) -> anyhow::Result<Camera> {
         let camera = scene.camera().ok_or_else(|| {
-            anyhow!("the scene has no [camera]: add one with position, look_at, fov, width and height")
+            anyhow!(
+                "the scene has no [camera]: add one with position, look_at, fov, width and height, or take a scene that has one, such as the built-in fogbox"
+            )
         })?;
         let follow = |given: u32, over: u32, under: u32| {
             ((f64::from(given) * f64::from(over) / f64::from(under)).round() as u32).max(1)
@@ -87,9 +89,11 @@ impl Shown {
 /// Photons on the command line: `200000` are stored, `emit:1e6` sent out.
 fn parse_amount(text: &str) -> Result<Amount, String> {
     const ALLOWED: &str =
-        "allowed: a number of photons to store, such as 200000, or to emit, such as emit:1e6";
+        "allowed: a number of photons to store, 1 to 1e9, such as 200000, or to emit, 1 to 1e12, such as emit:1e6";
     let (number, is_emitted) = text.strip_prefix("emit:").map_or((text, false), |number| (number, true));
-    let count = parse_count(number).map_err(|_| ALLOWED.to_string())?;
+    // A stored photon takes 56 bytes while maps are filled.
+    let most = if is_emitted { 1_000_000_000_000 } else { 1_000_000_000 };
+    let count = parse_count(number).ok().filter(|n| *n <= most).ok_or(ALLOWED)?;
     Ok(if is_emitted { Amount::Emitted(count) } else { Amount::Stored(count) })
 }
 
@@ -227,6 +231,10 @@ impl Reading {
         settings.gather_rays = self.gather_rays.max(1);
         settings.near = self.near;
         if let Some(step) = self.step {
+            let shortest = size / MOST_STEPS;
+            if step > 0.0 && step < shortest {
+                return Err(anyhow!("--step is {step}; allowed: at least a millionth of the scene, {shortest}"));
+            }
             settings.march.step = Positive::new("--step", step)?;
         }
         settings.march.rule = match self.step_rule {
@@ -253,6 +261,9 @@ impl Reading {
         Ok(settings)
     }
 }
+
+/// Steps across the scene, at most: a march of more would not come to an end in a user's time.
+const MOST_STEPS: f64 = 1e6;
 
 /// How large a scene is \[L\]: the edge of the cube in the ball that holds its bodies; 1 for a scene without bounds.
 fn size(scene: &Scene) -> f64 {

@@ -1,8 +1,8 @@
 //! `turbid render`: a picture of a scene, by photons or by paths.
 
 use super::load::Source;
-use super::on_threads;
 use super::parse_count;
+use super::{note, on_threads};
 use super::picture::{Frame, Photons, Reading, Shown};
 use super::progress::Bar;
 use super::statistics::{Stages, print_statistics};
@@ -15,7 +15,7 @@ use turbid::integrators::mapper::{Mapper, Report};
 use turbid::integrators::path;
 use turbid::output::{Tone, auto_exposure, write_exr, write_png};
 use turbid::photons::PhotonMap;
-use turbid::photons::maps::{MapReport, counts, fill_counted};
+use turbid::photons::maps::{MapReport, Maps, counts, fill_counted};
 use turbid::scene::{Camera, Scene};
 use turbid::sensor::{Film, Sample, Streams, extend};
 
@@ -112,6 +112,9 @@ impl Render {
         if let Some(seconds) = self.seconds.filter(|s| !(*s > 0.0 && s.is_finite())) {
             bail!("--seconds is {seconds}; allowed: finite and above 0");
         }
+        if let Some(samples) = self.samples.filter(|n| *n > u64::from(u32::MAX)) {
+            bail!("--samples is {samples}; allowed: 1 to 4294967295");
+        }
         let exposure = self.shown.checked()?;
         let file = self.source.resolve()?;
         let scene = match (self.source.load()?, self.plan) {
@@ -152,6 +155,9 @@ impl Render {
                 let maps = stages.time("maps", || fill_counted(&scene, &settings_of_maps, emitted, &bar));
                 bar.finish();
                 let maps = maps?;
+                if streams.replicate == 0 {
+                    tell_empty(&maps)?;
+                }
                 let within = scene.interior_at(camera.position());
                 let mapper = Mapper::new(&scene, &maps, &settings);
                 let sample = |ray, stream: &mut _, work: &mut Report| {
@@ -294,6 +300,23 @@ impl Filled {
     fn of(map: &PhotonMap) -> Self {
         Filled { stored: map.stored(), emitted: map.emitted() }
     }
+}
+
+/// Says which layers are black since no photon was stored for them.
+fn tell_empty(maps: &Maps) -> std::io::Result<()> {
+    let (caustic, volume) = ("the caustic layer is black", "the multiple layer has no light from it");
+    let global = "the indirect layer has no light from it";
+    for (name, map, black) in
+        [("global", &maps.global, global), ("caustic", &maps.caustic, caustic), ("volume", &maps.volume, volume)]
+    {
+        if let Some(map) = map.as_ref().filter(|map| map.stored() == 0) {
+            let emitted = map.emitted();
+            note(&format!(
+                "the {name} map is empty: none of {emitted} photons sent out was stored in it, so {black}"
+            ))?;
+        }
+    }
+    Ok(())
 }
 
 /// Refuses a file that could not be written, before an hour's work and not after it.
