@@ -25,6 +25,8 @@ pub enum Purpose {
     Pilot,
     /// Photon histories of the caustic map.
     Caustics,
+    /// Particles from the camera, and the photons that learn what the picture needs.
+    Importance,
 }
 
 /// Work that a scene may or may not require, counted where it is done.

@@ -9,8 +9,10 @@ use turbid::integrators::StepRule;
 use turbid::integrators::mapper::{Adaptive, Settings};
 use turbid::math::Positive;
 use turbid::output::Curve;
+use turbid::photons::importance::{Importance, ImportanceSettings};
 use turbid::photons::maps::{Amount, Indirect, MapSettings};
 use turbid::scene::{Camera, Scene};
+use turbid::transport::NoProgress;
 
 /// The camera's picture, in another size if asked for.
 #[derive(clap::Args)]
@@ -97,6 +99,12 @@ fn parse_amount(text: &str) -> Result<Amount, String> {
     Ok(if is_emitted { Amount::Emitted(count) } else { Amount::Stored(count) })
 }
 
+/// Photons of an estimate; whether they are enough is checked with the other settings.
+fn parse_k(text: &str) -> Result<usize, String> {
+    let k = parse_count(text).ok().filter(|k| *k <= 1_000_000_000).and_then(|k| usize::try_from(k).ok());
+    k.ok_or_else(|| "allowed: whole numbers from 2 to 1e9".to_string())
+}
+
 /// How many photons the maps get.
 #[derive(clap::Args)]
 pub struct Photons {
@@ -109,12 +117,30 @@ pub struct Photons {
     /// Photons of the volume map, those in media; used where the scene has media.
     #[arg(long, value_name = "PHOTONS", value_parser = parse_amount, default_value = "65000")]
     volume: Amount,
+    /// Let importance lead photons of the global and the volume map to where the camera reads them. For a camera that sees
+    /// a small part of a large scene; the mean is the same, powers are no longer equal.
+    #[arg(long = "importance")]
+    pub is_steered: bool,
 }
 
 impl Photons {
+    /// What the camera needs, learned, if it is asked for.
+    pub fn importance(
+        &self,
+        scene: &Scene,
+        camera: &Camera,
+        maps: &MapSettings,
+    ) -> turbid::Result<Option<Importance>> {
+        // Another seed for each repetition, so that repetitions stay independent.
+        let seed = maps.seed ^ maps.replicate.wrapping_mul(0x9e37_79b9_7f4a_7c15);
+        let settings = ImportanceSettings { seed, ..Default::default() };
+        let learn = || Importance::of(scene, camera, maps.indirect, &settings, &NoProgress);
+        self.is_steered.then(learn).transpose()
+    }
+
     /// Settings of the maps of one repetition.
     pub fn settings(&self, indirect: Indirect, seed: u64, replicate: u64) -> MapSettings {
-        let Photons { global, caustic, volume } = *self;
+        let Photons { global, caustic, volume, .. } = *self;
         MapSettings { global, caustic, volume, indirect, seed, replicate }
     }
 }
@@ -123,10 +149,10 @@ impl Photons {
 #[derive(clap::Args)]
 pub struct Reading {
     /// Photons an estimate takes, the k nearest.
-    #[arg(long, default_value_t = 100, conflicts_with = "radius")]
+    #[arg(long, value_parser = parse_k, default_value = "100", conflicts_with = "radius")]
     k: usize,
     /// The same for the volume map [default: k].
-    #[arg(long, conflicts_with = "radius")]
+    #[arg(long, value_parser = parse_k, conflicts_with = "radius")]
     volume_k: Option<usize>,
     /// Radius within which an estimate takes all photons, instead of the k nearest [L].
     #[arg(long)]
@@ -141,7 +167,7 @@ pub struct Reading {
     #[arg(long, value_enum, default_value = "cone")]
     caustic_kernel: KernelName,
     /// Rays of a final gathering at each surface that is seen; 0 reads the global map there itself: fast, and blotchy.
-    #[arg(long, default_value_t = 64)]
+    #[arg(long, default_value_t = 64, value_parser = clap::value_parser!(u32).range(0..=1_000_000))]
     gather_rays: u32,
     /// Rays of a final gathering that are shorter than this are traced on: the map's blur shows in corners [L].
     #[arg(long, default_value_t = 0.0)]

@@ -118,8 +118,13 @@ impl Emitter {
 
     /// A photon, ready to walk: its weight is its power as though it were the only one \[W\].
     pub fn emit(&self, scene: &Scene, stream: &mut Stream) -> Walker {
+        self.emit_from(scene, stream).1
+    }
+
+    /// The same, and the number of the cell that it comes from; 0 where there are no cells.
+    pub(super) fn emit_from(&self, scene: &Scene, stream: &mut Stream) -> (usize, Walker) {
         let (lights, stage) = (scene.lights(), scene.stage());
-        let Some(chosen) = &self.chosen else { return by_power(scene, self.power, stream) };
+        let Some(chosen) = &self.chosen else { return (0, by_power(scene, self.power, stream)) };
         let u = stream.unit();
         // The first cell whose sum exceeds u: one without probability is never it.
         let i = chosen.cumulated.partition_point(|sum| *sum <= u).min(chosen.cells.len() - 1);
@@ -128,7 +133,7 @@ impl Emitter {
         let needs = light.needs();
         let numbers = cell.numbers((needs.position, needs.direction), stream);
         let emission = light.emit_aimed(stage, &numbers);
-        start(scene, *index, &emission, emission.power * chosen.weights[i])
+        (i, start(scene, *index, &emission, emission.power * chosen.weights[i]))
     }
 }
 

@@ -16,6 +16,7 @@
 //! rays of a final gathering bring the medium's radiance with them, so that light scattered by the medium towards the
 //! surface that the eye looks at, L ... M D, comes with them; a map that is seen holds that class.
 
+use super::importance::{Branching, Importance};
 use super::{Emitter, Flags, Ledger, Photon, PhotonMap, fold};
 use crate::Spectrum;
 use crate::error::{Error, Result};
@@ -170,10 +171,24 @@ pub fn is_volume(flags: Flags) -> bool {
 /// # Errors
 /// those of [`counts`] and [`fill_counted`]
 pub fn fill(scene: &Scene, settings: &MapSettings, progress: &dyn Progress) -> Result<Maps> {
+    fill_steered(scene, settings, None, progress)
+}
+
+/// The same with the photons of the global and the volume map steered by importance; [`Importance::of`] must know where
+/// the global map will be read.
+///
+/// # Errors
+/// those of [`fill`]
+pub fn fill_steered(
+    scene: &Scene,
+    settings: &MapSettings,
+    importance: Option<&Importance>,
+    progress: &dyn Progress,
+) -> Result<Maps> {
     let start = Instant::now();
-    let emitted = counts(scene, settings)?;
+    let emitted = counts_steered(scene, settings, importance)?;
     let pilot = start.elapsed();
-    let mut maps = fill_counted(scene, settings, emitted, progress)?;
+    let mut maps = fill_counted_steered(scene, settings, emitted, importance, progress)?;
     maps.report.pilot = pilot;
     Ok(maps)
 }
@@ -186,7 +201,19 @@ pub fn fill(scene: &Scene, settings: &MapSettings, progress: &dyn Progress) -> R
 /// # Limits
 /// none of the pilot's photons stored: as many histories as photons were asked for, and a map that may stay empty
 pub fn counts(scene: &Scene, settings: &MapSettings) -> Result<Emitted> {
-    let emitters = Emitters::of(scene);
+    counts_steered(scene, settings, None)
+}
+
+/// The same with photons steered by importance.
+///
+/// # Errors
+/// those of [`counts`]
+pub fn counts_steered(
+    scene: &Scene,
+    settings: &MapSettings,
+    importance: Option<&Importance>,
+) -> Result<Emitted> {
+    let emitters = Emitters::of(scene, importance);
     let needs = Needs::of(scene, &emitters);
     let asked = [
         ("global", needs.global, settings.global),
@@ -198,6 +225,7 @@ pub fn counts(scene: &Scene, settings: &MapSettings) -> Result<Emitted> {
         let run = Run {
             scene,
             emitter: emitters.of_class(class),
+            importance: importance.filter(|_| class != Class::Caustic),
             purpose: Purpose::Pilot,
             seed: settings.seed,
             replicate: settings.replicate,
@@ -246,10 +274,25 @@ pub fn fill_counted(
     emitted: Emitted,
     progress: &dyn Progress,
 ) -> Result<Maps> {
-    let emitters = Emitters::of(scene);
+    fill_counted_steered(scene, settings, emitted, None, progress)
+}
+
+/// The same with photons steered by importance.
+///
+/// # Errors
+/// those of [`fill_counted`]
+pub fn fill_counted_steered(
+    scene: &Scene,
+    settings: &MapSettings,
+    emitted: Emitted,
+    importance: Option<&Importance>,
+    progress: &dyn Progress,
+) -> Result<Maps> {
+    let emitters = Emitters::of(scene, importance);
     let run = |class, global, volume| Run {
         scene,
         emitter: emitters.of_class(class),
+        importance: importance.filter(|_| class != Class::Caustic),
         purpose: Purpose::Photons,
         seed: settings.seed,
         replicate: settings.replicate,
@@ -295,8 +338,9 @@ struct Emitters {
 }
 
 impl Emitters {
-    fn of(scene: &Scene) -> Self {
-        Emitters { main: Emitter::by_power(scene), caustic: Emitter::towards_specular(scene) }
+    fn of(scene: &Scene, importance: Option<&Importance>) -> Self {
+        let main = importance.map_or_else(|| Emitter::by_power(scene), |i| i.emitter().clone());
+        Emitters { main, caustic: Emitter::towards_specular(scene) }
     }
 
     fn of_class(&self, class: Class) -> &Emitter {
@@ -317,7 +361,7 @@ impl Needs {
 }
 
 /// Whether photons are stored on a surface: some light leaves it in other than specular directions.
-fn is_matt(surface: &Surface) -> bool {
+pub(super) fn is_matt(surface: &Surface) -> bool {
     matches!(surface, Surface::Lambertian(_))
 }
 
@@ -335,6 +379,7 @@ enum Class {
 struct Run<'a> {
     scene: &'a Scene,
     emitter: &'a Emitter,
+    importance: Option<&'a Importance>,
     purpose: Purpose,
     seed: u64,
     replicate: u64,
@@ -408,7 +453,10 @@ impl Run<'_> {
                 let first = self.emitter.emit(self.scene, &mut stream);
                 store.stored.report.emitted += 1;
                 store.stored.report.ledger.emitted += first.weight.sum();
-                walk(self.scene, first, Roulette::Analog, limit, &mut stream, &mut store);
+                match self.importance {
+                    None => walk(self.scene, first, Roulette::Analog, limit, &mut stream, &mut store),
+                    Some(importance) => importance.walk(self.scene, first, limit, &mut stream, &mut store),
+                }
                 store.stored.report.work += stream.work;
             }
             let Store { mut surface, mut medium, mut stored, .. } = store;
@@ -453,6 +501,8 @@ impl Store<'_> {
         how(&mut report.ends, &mut report.ledger, weight.sum());
     }
 }
+
+impl Branching for Store<'_> {}
 
 impl Visitor for Store<'_> {
     const LOOKS_AHEAD: bool = false;

@@ -3,15 +3,19 @@
 
 use crate::checks::media::{layered, varying};
 use crate::checks::slab::{exact, referee};
-use crate::support::run::{pass, paths};
-use crate::support::scenes::{CELL, Incidence, incidence, layer, reflectance, transmittance};
+use crate::support::run::{pass, paths, sensor};
+use crate::support::scenes::{
+    CELL, Incidence, incidence, isotropic, layer, outflow, point_light, reflectance, sphere, transmittance,
+};
 use crate::support::verdict;
 use glam::DVec3;
 use turbid::Spectrum;
+use turbid::estimators::{Gather, Kernel};
 use turbid::math::{Interval, Positive, Ray};
-use turbid::medium::{Density, HeightFog, Medium};
+use turbid::medium::{Density, Grid, HeightFog, Medium};
 use turbid::photons::{Histories, PhotonMap, shoot};
 use turbid::scene::{Orders, Parts, Quantity, Region, Scene};
+use turbid::sensor::{PhotonSettings, by_photons};
 use turbid::stats::Moments;
 use turbid::transport::NoProgress;
 
@@ -135,5 +139,61 @@ fn stored_photons_carry_the_fluence_of_their_depths() {
             // The interpolated fluence has a kink of t ln t at the faces: good to 1e-5 of it.
             verdict::agrees(&format!("{name}, part {part}"), m, (integral, 1e-4 * integral), 0.1, 24);
         }
+    }
+}
+
+/// A chromatic ball of a medium, homogeneous or a constant grid that reaches beyond it, lit by a point beside it and a
+/// surface source, with a sensor of every kind.
+fn ball(medium: Medium) -> Scene {
+    let shape = sphere(DVec3::ZERO, 1.0);
+    let sensors = [
+        Quantity::Fluence(DVec3::new(0.3, 0.0, 0.1)),
+        Quantity::Radiance(Ray::new(DVec3::new(0.2, -2.0, 0.1), DVec3::Y)),
+        outflow(shape.clone()),
+        Quantity::Absorbed(0),
+    ];
+    Scene::new(Parts {
+        regions: vec![Region { shape: shape.clone(), medium }],
+        lights: vec![
+            point_light(DVec3::new(-1.6, 0.1, 0.0), Spectrum::rgb(9.0, 18.0, 9.0)),
+            isotropic(shape, turbid::light::Faces::Both),
+        ],
+        sensors: sensors.map(|quantity| sensor(quantity, Orders::ALL)).to_vec(),
+        ..Parts::default()
+    })
+    .unwrap()
+}
+
+/// The two forms of one medium agree in every sensor, by paths and by photons, in every channel.
+#[test]
+fn a_constant_grid_is_the_homogeneous_medium() {
+    let sigma_t = Spectrum::rgb(0.5, 1.0, 2.0);
+    let box_of_grid = (DVec3::splat(-0.9), DVec3::splat(0.9));
+    let density = Density::grid(Grid::sampled(box_of_grid, [5, 1, 3], |_| 2.0).unwrap()).unwrap();
+    let homogeneous = ball(crate::support::scenes::homogeneous(sigma_t, Spectrum::grey(ALBEDO), 0.0));
+    let gridded = ball(varying(sigma_t * 0.5, ALBEDO, density));
+    for (i, asked) in homogeneous.sensors().iter().enumerate() {
+        let of = |scene: &Scene, seed: u64| paths(scene, asked.quantity.clone(), Orders::ALL, 1 << 15, seed);
+        let (a, b) = (of(&homogeneous, 51), of(&gridded, 52));
+        for c in 0..3 {
+            verdict::agree(&format!("sensor {i}, channel {c}, by paths"), &a[c], &b[c], 0.5, 51);
+        }
+    }
+    let by_maps = |scene: &Scene, seed: u64| -> Vec<Moments> {
+        let mut moments = vec![Moments::new(); 12];
+        for map in 0..64 {
+            let gather = Gather::radius(0.4).unwrap();
+            let (seed, kernel) = (seed + map, Kernel::Uniform);
+            let settings =
+                PhotonSettings { photons: 8192, maps: 1, seed, orders: Orders::ALL, gather, kernel };
+            let read = by_photons(scene, &settings, &NoProgress).unwrap();
+            assert_eq!(read.readings.len(), 12);
+            moments.iter_mut().zip(&read.readings).for_each(|(m, r)| m.push(r.mean));
+        }
+        moments
+    };
+    let (a, b) = (by_maps(&homogeneous, 1000), by_maps(&gridded, 2000));
+    for (i, (a, b)) in a.iter().zip(&b).enumerate() {
+        verdict::agree(&format!("reading {i} by photons"), a, b, 0.7, 1000);
     }
 }
