@@ -90,8 +90,7 @@ impl Shown {
 
 /// Photons on the command line: `200000` are stored, `emit:1e6` sent out.
 fn parse_amount(text: &str) -> Result<Amount, String> {
-    const ALLOWED: &str =
-        "allowed: a number of photons to store, 1 to 1e9, such as 200000, or to emit, 1 to 1e12, such as emit:1e6";
+    const ALLOWED: &str = "allowed: a number of photons to store, 1 to 1e9, such as 200000, or to emit, 1 to 1e12, such as emit:1e6";
     let (number, is_emitted) = text.strip_prefix("emit:").map_or((text, false), |number| (number, true));
     // A stored photon takes 56 bytes while maps are filled.
     let most = if is_emitted { 1_000_000_000_000 } else { 1_000_000_000 };
@@ -259,7 +258,9 @@ impl Reading {
         if let Some(step) = self.step {
             let shortest = size / MOST_STEPS;
             if step > 0.0 && step < shortest {
-                return Err(anyhow!("--step is {step}; allowed: at least a millionth of the scene, {shortest}"));
+                return Err(anyhow!(
+                    "--step is {step}; allowed: at least a millionth of the scene, {shortest}"
+                ));
             }
             settings.march.step = Positive::new("--step", step)?;
         }

@@ -2,10 +2,10 @@
 
 use super::load::Source;
 use super::parse_count;
-use super::{note, on_threads, print};
 use super::picture::{Frame, Photons, Reading, Shown};
 use super::progress::Bar;
 use super::statistics::{Stages, print_statistics};
+use super::{note, on_threads, print};
 use anyhow::{Context, bail};
 use clap::ValueEnum;
 use cpu_time::ProcessTime;
@@ -319,9 +319,11 @@ impl Filled {
 fn tell_empty(maps: &Maps) -> std::io::Result<()> {
     let (caustic, volume) = ("the caustic layer is black", "the multiple layer has no light from it");
     let global = "the indirect layer has no light from it";
-    for (name, map, black) in
-        [("global", &maps.global, global), ("caustic", &maps.caustic, caustic), ("volume", &maps.volume, volume)]
-    {
+    for (name, map, black) in [
+        ("global", &maps.global, global),
+        ("caustic", &maps.caustic, caustic),
+        ("volume", &maps.volume, volume),
+    ] {
         if let Some(map) = map.as_ref().filter(|map| map.stored() == 0) {
             let emitted = map.emitted();
             note(&format!(

@@ -287,7 +287,10 @@ mod tests {
             assert!(text.contains(word), "{text}");
         };
         refused(View { width: 0, ..VIEW }, "camera.width is 0; allowed: 1 to 16384");
-        refused(View { width: 4097, height: 2048, ..VIEW }, "camera.height is 8390656; allowed: at most 8388608");
+        refused(
+            View { width: 4097, height: 2048, ..VIEW },
+            "camera.height is 8390656; allowed: at most 8388608",
+        );
         refused(View { height: 20_000, ..VIEW }, "camera.height is 20000");
         for fov in [0.0, 180.0, -1.0, f64::NAN, f64::INFINITY] {
             refused(View { fov, ..VIEW }, "camera.fov is");

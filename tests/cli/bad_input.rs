@@ -171,7 +171,7 @@ fn wrong_options() {
     refuses_naming(&["measure", "slab", "--with", "beams"], &["--with", "allowed: path, photons"]);
     refuses_naming(&["measure", "slab"], &["--with"]);
     refuses_naming(&["measure"], &["SCENE"]);
-    refuses_naming(&["render", "slab"], &["render"]);
+    refuses_naming(&["render", "slab"], &["--output"]);
     refuses_naming(&[], &["allowed: measure, advise, render, map, check, scenes"]);
     assert!(refuses(&["scenes", "--resolved"]).contains("NAME"));
 }

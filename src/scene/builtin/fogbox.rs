@@ -32,11 +32,8 @@ pub(super) struct Parameters {
 type Corner = [[f64; 3]; 3];
 
 /// Reflectances of the white, red and green paint.
-const PAINT: [[f64; 3]; 3] = [
-    [0.885809, 0.698859, 0.666422],
-    [0.570068, 0.0430135, 0.0443706],
-    [0.105421, 0.37798, 0.076425],
-];
+const PAINT: [[f64; 3]; 3] =
+    [[0.885809, 0.698859, 0.666422], [0.570068, 0.0430135, 0.0443706], [0.105421, 0.37798, 0.076425]];
 
 /// Floor, ceiling, back wall, front wall, then the tall block and the low one.
 const WHITE: [Corner; 16] = [
@@ -59,17 +56,14 @@ const WHITE: [Corner; 16] = [
 ];
 
 /// The wall on the left.
-const RED: [Corner; 1] = [
-    [[-1.0, -1.0, -1.0], [0.0, 2.0, 0.0], [0.0, 0.0, 2.0]],
-];
+const RED: [Corner; 1] = [[[-1.0, -1.0, -1.0], [0.0, 2.0, 0.0], [0.0, 0.0, 2.0]]];
 
 /// The wall on the right.
-const GREEN: [Corner; 1] = [
-    [[1.0, -1.0, 1.0], [0.0, 2.0, 0.0], [0.0, 0.0, -2.0]],
-];
+const GREEN: [Corner; 1] = [[[1.0, -1.0, 1.0], [0.0, 2.0, 0.0], [0.0, 0.0, -2.0]]];
 
 /// The lamp below the ceiling, and its radiance.
-const LAMP: (Corner, [f64; 3]) = ([[-0.23, 0.99, -0.18], [0.46, 0.0, 0.0], [0.0, 0.0, 0.38]], [18.387, 13.9873, 6.75357]);
+const LAMP: (Corner, [f64; 3]) =
+    ([[-0.23, 0.99, -0.18], [0.46, 0.0, 0.0], [0.0, 0.0, 0.38]], [18.387, 13.9873, 6.75357]);
 
 fn rectangle([corner, u, v]: Corner) -> ShapeFile {
     ShapeFile::Rectangle { corner, u, v }
