@@ -4,7 +4,7 @@ use super::load::Source;
 use super::parse_count;
 use super::picture::{Frame, Photons, Reading, Shown};
 use super::progress::Bar;
-use super::statistics::{Stages, print_statistics};
+use super::statistics::{MAPS, Stages, print_statistics};
 use super::{note, on_threads, print};
 use anyhow::{Context, bail};
 use clap::ValueEnum;
@@ -161,12 +161,12 @@ impl Render {
                 let emitted =
                     stages.time("pilot", || counts_steered(&scene, &settings_of_maps, importance))?;
                 let bar = Bar::stage("emission", emitted.histories());
-                let maps = stages.time("maps", || {
+                let maps = stages.time(MAPS, || {
                     fill_counted_steered(&scene, &settings_of_maps, emitted, importance, &bar)
                 });
                 bar.finish();
                 let maps = maps?;
-                if streams.replicate == 0 {
+                if streams.replicate == 0 && !scene.plan().is_full {
                     tell_empty(&maps)?;
                 }
                 let within = scene.interior_at(camera.position());

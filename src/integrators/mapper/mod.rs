@@ -171,11 +171,33 @@ impl<'a> Mapper<'a> {
         }
         if self.has_unaimed {
             let ray = Ray::new(position, blind(stream));
-            report.rays.segments += 1;
-            let end = self.scene.hit(&ray, from).map_or(f64::INFINITY, |found| found.hit.t);
-            sum += self.unaimed(&Walker { ray, from, ..*walker }, end, stream);
+            let start = Walker { from, within, ..Walker::new(ray, Spectrum::ONE) };
+            sum += self.unaimed_beyond(start, report, stream);
         }
         sum
+    }
+
+    /// The same up to the first body that is no filter: filters bend nothing, and what is behind them is seen straight.
+    fn unaimed_beyond(&self, start: Walker, report: &mut Report, stream: &mut Stream) -> Spectrum {
+        let (scene, mut walker, mut sum) = (self.scene, start, Spectrum::ZERO);
+        loop {
+            report.rays.segments += 1;
+            let hit = scene.hit(&walker.ray, walker.from);
+            let end = hit.map_or(f64::INFINITY, |found| found.hit.t);
+            sum += walker.weight * self.unaimed(&walker, end, stream);
+            let Some((found, filter)) = hit.and_then(|found| Some((found, scene.filter(found.target)?)))
+            else {
+                return sum;
+            };
+            let position = walker.ray.at(end);
+            let passed = transmittance(scene, &walker.ray, end, walker.within, stream);
+            let weight = walker.weight * passed * filter.transmittance(position, found.hit.uv);
+            if weight.is_black() {
+                return sum;
+            }
+            let ray = Ray::new(position, walker.ray.dir);
+            walker = Walker { ray, weight, from: Some(found.start()), ..walker };
+        }
     }
 }
 
