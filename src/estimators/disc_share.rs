@@ -54,7 +54,8 @@ fn triangle(kernel: Kernel, a: f64, b: f64) -> f64 {
         return wedge(libm::atan2(b, a));
     }
     let height = b.min((1.0 - a * a).sqrt());
-    let sum: f64 = RULE.iter().map(|(s, weight)| weight * kernel.wedge(a * a + height * height * s * s)).sum();
+    let sum: f64 =
+        RULE.iter().map(|(s, weight)| weight * kernel.wedge(a * a + height * height * s * s)).sum();
     let beyond = if height < b { libm::atan2(b, a) - libm::atan2(height, a) } else { 0.0 };
     a * height * sum + wedge(beyond)
 }
@@ -89,7 +90,8 @@ mod tests {
         for ring in 0..rings {
             let u = (f64::from(ring) + 0.5) / f64::from(rings);
             let count = (0..angles).filter(|angle| {
-                let (sine, cosine) = crate::math::sin_cos(2.0 * PI * (f64::from(*angle) + 0.5) / f64::from(angles));
+                let (sine, cosine) =
+                    crate::math::sin_cos(2.0 * PI * (f64::from(*angle) + 0.5) / f64::from(angles));
                 rectangle().covers(point + radius * u * DVec3::new(cosine, sine, 0.0))
             });
             let share = count.count() as f64 / f64::from(angles);
@@ -102,7 +104,9 @@ mod tests {
     #[test]
     fn against_counting() {
         for kernel in Kernel::ALL {
-            for (x, y) in [(0.0, 0.0), (0.1, 0.2), (1.0, 0.5), (1.9, 0.97), (2.0, 0.4), (-0.1, 0.3), (2.2, 1.1)] {
+            for (x, y) in
+                [(0.0, 0.0), (0.1, 0.2), (1.0, 0.5), (1.9, 0.97), (2.0, 0.4), (-0.1, 0.3), (2.2, 1.1)]
+            {
                 let point = DVec3::new(x, y, 0.0);
                 for radius in [0.05, 0.3, 0.8, 1.5, 4.0] {
                     let (found, counted) =

@@ -106,8 +106,8 @@ fn the_area_light_fills_its_solid_angle() {
     }
     // Far away points are chosen by area.
     let far = DVec3::new(30.0, 40.0, 60.0);
-    let corners = [(30.0, 40.0), (28.0, 40.0), (30.0, 39.0), (28.0, 39.0)]
-        .map(|(a, b)| corner_solid_angle(a, b, 60.0));
+    let corners =
+        [(30.0, 40.0), (28.0, 40.0), (30.0, 39.0), (28.0, 39.0)].map(|(a, b)| corner_solid_angle(a, b, 60.0));
     let expected_far = corners[0] - corners[1] - corners[2] + corners[3];
     let aimed =
         numbers(N, 7, |s| light.sample(far, s.pair()).map_or(0.0, |l| 1.0 / l.pdf_solid_angle.unwrap()));

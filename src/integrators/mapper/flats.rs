@@ -46,14 +46,7 @@ impl Flats {
     ///
     /// # Arguments
     /// `normal` unit, on the side where light arrives
-    pub fn share(
-        &self,
-        found: &SceneHit,
-        normal: DVec3,
-        point: DVec3,
-        kernel: Kernel,
-        radius: f64,
-    ) -> f64 {
+    pub fn share(&self, found: &SceneHit, normal: DVec3, point: DVec3, kernel: Kernel, radius: f64) -> f64 {
         let Target::Object(index) = found.target else { return 1.0 };
         let body = &self.0[index];
         let beside = match body.len() {
@@ -61,7 +54,8 @@ impl Flats {
             1 => &body[0],
             _ => &body[side(found.hit.normal)],
         };
-        let lit = beside.iter().filter(|face| !face.is_one_sided || face.rectangle.normal().dot(normal) > 0.0);
+        let lit =
+            beside.iter().filter(|face| !face.is_one_sided || face.rectangle.normal().dot(normal) > 0.0);
         // A whole disc on its own face needs no other.
         let sum = lit.fold(0.0, |sum: f64, face| {
             if sum < 1.0 { sum + disc_share(kernel, &face.rectangle, point, radius) } else { sum }
@@ -110,7 +104,8 @@ mod tests {
 
     #[test]
     fn sides_of_a_box() {
-        let shape = Shape::Cuboid(crate::geometry::Cuboid::new(DVec3::ZERO, DVec3::new(1.0, 2.0, 3.0)).unwrap());
+        let shape =
+            Shape::Cuboid(crate::geometry::Cuboid::new(DVec3::ZERO, DVec3::new(1.0, 2.0, 3.0)).unwrap());
         let faces = faces(&shape);
         assert_eq!(faces.len(), 6);
         for (index, face) in faces.iter().enumerate() {

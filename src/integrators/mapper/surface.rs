@@ -105,9 +105,7 @@ impl Eye<'_, '_> {
         }
         let Some(global) = &maps.global else { return };
         let rest = match maps.indirect {
-            Indirect::Seen => {
-                matt.irradiance(mapper, global, settings.global, &mut self.report.global)
-            }
+            Indirect::Seen => matt.irradiance(mapper, global, settings.global, &mut self.report.global),
             Indirect::Gathered => mapper.gathered(&matt, settings.gather_rays, &mut self.report, stream),
         };
         self.layers.indirect += seen * rest;
