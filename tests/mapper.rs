@@ -89,6 +89,7 @@ fn pictures_do_not_depend_on_the_number_of_photons() {
         g: 0.0,
         is_colored: true,
         has_glass: false,
+        has_water: false,
     };
     let scene = room.scene();
     let of = |emitted: u64, seed: u64| layers_of_maps(&scene, &settings(1), emitted, Indirect::Seen, seed);

@@ -188,6 +188,13 @@ impl Area {
         if from.is_some() && is_convex { None } else { self.shape.hit(ray, from) }
     }
 
+    /// Of a convex body what faces a point hides nothing of itself. Of others what is nearer by more than a millionth
+    /// stands in the way, which rounding is far below.
+    pub(super) fn hides_itself(&self, ray: &Ray, end: f64) -> bool {
+        let is_convex = !matches!(self.shape, Shape::Mesh(_) | Shape::Lathe(_));
+        !is_convex && self.shape.blocks(ray, None, end * (1.0 - 1e-6))
+    }
+
     pub(super) fn emitted(&self, ray: &Ray, hit: &Hit) -> (Spectrum, f64) {
         let cosine = -ray.dir.dot(hit.normal);
         if cosine <= 0.0 {

@@ -113,6 +113,8 @@ pub struct Mapper<'a> {
     walls: Vec<Shape>,
     /// Where flat surfaces end, if discs are to be clipped there.
     flats: Option<Flats>,
+    /// Of each region the shapes of later ones, which count where they overlap; none where there is one medium alone.
+    neighbors: Vec<Vec<Shape>>,
     /// Whether some light cannot be aimed at.
     has_unaimed: bool,
 }
@@ -127,7 +129,11 @@ impl<'a> Mapper<'a> {
         let has_unaimed =
             scene.plan().has_emission || scene.lights().iter().any(|light| !light.has_direction());
         let flats = settings.clips_discs.then(|| Flats::new(scene));
-        Mapper { scene, maps, settings, walls, flats, has_unaimed }
+        let regions = scene.regions();
+        let is_alone = regions.len() + scene.interiors().iter().filter(|i| i.medium.is_some()).count() < 2;
+        let later = |index: usize| regions[index + 1..].iter().map(|r| r.shape.clone()).collect();
+        let neighbors = if is_alone { Vec::new() } else { (0..regions.len()).map(later).collect() };
+        Mapper { scene, maps, settings, walls, flats, neighbors, has_unaimed }
     }
 
     /// One sample of the radiance that arrives at the origin of `ray` from ahead [W/(L^2 sr)], by class, and the work.

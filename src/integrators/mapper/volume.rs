@@ -60,6 +60,10 @@ impl Mapper<'_> {
                 None => in_scattered(map, position, -dir, phase, Spectrum::ONE, kernel, gather),
                 Some(boundary) => {
                     let boundary = boundary.with_walls(settings.rejection, &self.walls);
+                    let boundary = match self.neighbors.get(number) {
+                        Some(others) => boundary.among(others),
+                        None => boundary,
+                    };
                     treated_in_scattered(map, position, -dir, phase, kernel, gather, &boundary).estimate
                 }
             };
