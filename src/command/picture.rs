@@ -177,8 +177,8 @@ pub struct Reading {
     /// How much of a step's light reaches its near end: the rule of 1998, or exact for a constant source.
     #[arg(long, value_enum, default_value = "integrated")]
     step_rule: RuleName,
-    /// Relative change of light from step to step above which steps are halved, to a quarter at most, as in 1998; 0 for
-    /// equal steps. The choice follows the light found, which biases it: next to lights it reads low.
+    /// Relative change of direct light from one end of a step to the other above which it is halved, to a quarter at
+    /// most, as in 1998; 0 for equal steps.
     #[arg(long, default_value_t = 0.0)]
     adapt: f64,
     /// March on places that are not random: no noise, but bands.
@@ -187,6 +187,9 @@ pub struct Reading {
     /// What volume estimates do at the edge of a medium, behind which there are no photons.
     #[arg(long, value_enum, default_value = "clipped")]
     boundary: BoundaryName,
+    /// What surface estimates do at the edges of flat surfaces, beyond which there are no photons.
+    #[arg(long, value_enum, default_value = "clipped")]
+    edges: EdgesName,
     /// Which photons behind walls volume estimates reject.
     #[arg(long, value_enum, default_value = "off")]
     reject: RejectName,
@@ -212,6 +215,14 @@ enum BoundaryName {
     Reflection,
     /// Fits a line along the normal.
     LocalLinear,
+}
+
+#[derive(Clone, Copy, PartialEq, ValueEnum)]
+enum EdgesName {
+    /// Nothing: up to half is lost at an edge.
+    None,
+    /// Divides by the part of the kernel that is on the surface.
+    Clipped,
 }
 
 #[derive(Clone, Copy, ValueEnum)]
@@ -255,6 +266,7 @@ impl Reading {
         settings.volume = (kernel, volume);
         settings.gather_rays = self.gather_rays.max(1);
         settings.near = self.near;
+        settings.clips_discs = self.edges == EdgesName::Clipped;
         if let Some(step) = self.step {
             let shortest = size / MOST_STEPS;
             if step > 0.0 && step < shortest {
