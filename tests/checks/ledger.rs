@@ -121,6 +121,7 @@ pub fn settings(gather_rays: u32) -> Settings {
         caustic: radius(DISC),
         volume: radius(BALL),
         slope: 1e-3,
+        clips_discs: true,
         gather_rays,
         near: 0.0,
         march: March {

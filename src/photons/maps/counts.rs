@@ -12,8 +12,10 @@ use crate::transport::NoProgress;
 /// Histories that each map needs, by a pilot where a number of stored photons is asked for.
 ///
 /// # Errors
-/// [`Error::OutOfRange`] for a number of 0; [`Error::Scene`] if a map would stay empty: none of the pilot's photons was
-/// stored.
+/// [`Error::OutOfRange`] for a number of 0; those of the pilot.
+///
+/// # Limits
+/// none of the pilot's photons stored: as many histories as photons were asked for, and a map that may stay empty
 pub fn counts(scene: &Scene, settings: &MapSettings) -> Result<Emitted> {
     counts_steered(scene, settings, None)
 }
@@ -68,10 +70,7 @@ pub fn counts_steered(
                 "at least 1",
             )),
             Amount::Emitted(number) => Ok(number),
-            Amount::Stored(number) if stored[map] == 0 && scene.plan().is_full => Ok(number),
-            Amount::Stored(_) if stored[map] == 0 => Err(Error::Scene(format!(
-                "the {name} map would stay empty: none of {PILOT} photons was stored in it; say how many to emit instead"
-            ))),
+            Amount::Stored(number) if stored[map] == 0 => Ok(number),
             Amount::Stored(number) => Ok((number as f64 * PILOT as f64 / stored[map] as f64).ceil() as u64),
         }
     };
