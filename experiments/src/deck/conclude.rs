@@ -454,6 +454,9 @@ fn notes(settings: &Settings, cells: &Cells) -> Vec<String> {
              of balls along a ray are in it, the light's own shape and the walls are not. Maps of the edge have {} photons.",
             edge::photons(settings)
         ),
+        "After a first run with seed 1 the photons of the picture were raised to the talk's number, with more paths and \
+         queries; claims and margins stayed as they were."
+            .to_string(),
         "Behind the wall one side is wholly dark, the worst case: what the incoming direction cannot tell is light that \
          travels away from the wall on its lit side."
             .to_string(),
