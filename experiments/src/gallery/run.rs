@@ -1,7 +1,7 @@
 //! The whole run: makings, comparison, plates, page.
 
 use super::compare::{Making, average, compare, errors};
-use super::develop::{Print, develop, error_print};
+use super::develop::{Print, SOFT, develop, error_print, exposure};
 use super::dots::dots;
 use super::keep::Kept;
 use super::look::look;
@@ -238,7 +238,9 @@ fn plates(
     plate("twin", "The twin: paths, converged".to_string(), &exposed(twin))?;
     let print = error_print(grid, &ours.total, twin, masked, SCALE);
     let grey = if masked.is_some() { "; grey: masked beforehand" } else { "" };
-    let caption = format!("Photon maps minus twin, relative: blue too dark, red too bright{grey}");
+    let caption = format!(
+        "Photon maps minus twin, relative, means over {SOFT} by {SOFT} pixels: blue too dark, red too bright{grey}"
+    );
     plate("error", caption, &print)?;
     match picture.beside {
         Beside::Single => {
@@ -253,7 +255,7 @@ fn plates(
                 if let Some(map) = map.as_ref().filter(|map| map.stored() > 1000) {
                     let picture = dots(&studio.scene, &studio.camera, std::iter::once(map));
                     let caption = format!("The {name} map: {} photons", map.stored());
-                    plate(name, caption, &develop(grid, &picture, 0.6))?;
+                    plate(name, caption, &develop(grid, &picture, exposure(&picture).min(0.6)))?;
                 }
             }
         }
