@@ -63,11 +63,15 @@ pub enum Fault {
     CausticTwice,
     /// Estimates on surfaces divide by the stored photons, not by the emitted ones.
     StoredOnSurfaces,
+    /// A grid's samples are taken to lie half a cell from where they do.
+    GridHalfCellOff,
+    /// Light that meets nothing at a tentative collision keeps the weight that it came with.
+    NullWeightForgotten,
 }
 
 impl Fault {
     /// Every fault, in the order of their definition.
-    pub const ALL: [Fault; 28] = [
+    pub const ALL: [Fault; 30] = [
         Fault::AlbedoTwice,
         Fault::AlbedoNever,
         Fault::CosineTwice,
@@ -96,6 +100,8 @@ impl Fault {
         Fault::DirectInVolumeMap,
         Fault::CausticTwice,
         Fault::StoredOnSurfaces,
+        Fault::GridHalfCellOff,
+        Fault::NullWeightForgotten,
     ];
 }
 
@@ -151,7 +157,7 @@ mod tests {
     #[test]
     fn all_are_named_in_order() {
         assert!(Fault::ALL.iter().enumerate().all(|(i, fault)| *fault as usize == i));
-        assert_eq!(Fault::ALL.len(), Fault::StoredOnSurfaces as usize + 1);
+        assert_eq!(Fault::ALL.len(), Fault::NullWeightForgotten as usize + 1);
         assert!(Fault::ALL.iter().all(|fault| !planted(*fault)));
     }
 }

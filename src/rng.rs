@@ -26,9 +26,36 @@ pub enum Purpose {
     Caustics,
 }
 
-/// The random numbers of one history.
+/// Work that a scene may or may not require, counted where it is done.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct Work {
+    /// Stretches of a ray whose bounds were looked up.
+    pub majorants: u64,
+    /// Densities looked up.
+    pub densities: u64,
+    /// Transmittances estimated by tracking.
+    pub transmittances: u64,
+    /// Flights for which a channel was chosen.
+    pub channel_flights: u64,
+}
+
+impl Work {
+    /// Adds the work of another.
+    pub fn add(&mut self, other: &Work) {
+        self.majorants += other.majorants;
+        self.densities += other.densities;
+        self.transmittances += other.transmittances;
+        self.channel_flights += other.channel_flights;
+    }
+}
+
+/// The random numbers of one history, and the work that they were drawn for.
 #[derive(Debug, Clone)]
-pub struct Stream(Pcg64);
+pub struct Stream {
+    generator: Pcg64,
+    /// Counted since the stream was made.
+    pub work: Work,
+}
 
 /// Output function of SplitMix64 (Steele, Lea and Flood 2014): a bijection of 64 bits without structure.
 fn mix(word: u64) -> u64 {
@@ -62,12 +89,12 @@ impl Stream {
         let d = mix(c);
         let state = (u128::from(a) << 64) | u128::from(b);
         let stream = (u128::from(c) << 64) | u128::from(d);
-        Stream(Pcg64::new(state, stream))
+        Stream { generator: Pcg64::new(state, stream), work: Work::default() }
     }
 
     /// 64 random bits.
     pub fn bits(&mut self) -> u64 {
-        self.0.next_u64()
+        self.generator.next_u64()
     }
 
     /// Uniform in [0, 1): multiples of 2^-53.

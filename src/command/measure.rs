@@ -190,7 +190,7 @@ fn heavy_tails(readings: &[Reading]) -> Option<String> {
 
 /// Half the cell, or a mean free path of the densest medium.
 fn default_cap(scene: &Scene) -> f64 {
-    let densest = scene.regions().iter().map(|r| r.medium.sigma_t().max()).fold(0.0, f64::max);
+    let densest = scene.regions().iter().map(|r| r.medium.highest_sigma_t().max()).fold(0.0, f64::max);
     match scene.stage() {
         Some(stage) => 0.5 * stage.side,
         None if densest > 0.0 => 1.0 / densest,

@@ -80,7 +80,7 @@ impl Boundary<'static> {
     /// # Errors
     /// [`Error::Scene`] if `medium` is a rectangle, which has no inside.
     pub fn new(medium: Shape, treatment: Treatment) -> Result<Self> {
-        if matches!(medium, Shape::Rectangle(_)) {
+        if !medium.is_solid() {
             return Err(Error::Scene("a rectangle bounds no medium: name a sphere, slab or cuboid".into()));
         }
         Ok(Boundary { medium, treatment, rejection: Rejection::Off, walls: &[] })

@@ -1,7 +1,9 @@
 //! Phase functions as an estimate uses them: eight photons at a time.
 
 use crate::math::FOUR_PI;
-use crate::phase::{HenyeyGreenstein, Isotropic, Phase, PhaseFunction};
+use crate::phase::{
+    HenyeyGreenstein, Isotropic, Phase, PhaseFunction, Rayleigh, Schlick, Tabulated, TwoTerm,
+};
 use crate::photons::tree::bits;
 use wide::f32x8;
 
@@ -89,6 +91,51 @@ impl Directional for HenyeyGreenstein {
     }
 }
 
+impl Directional for TwoTerm {
+    fn value(&self, one_minus_mu: f64, one_plus_mu: f64) -> f64 {
+        self.eval(one_minus_mu, one_plus_mu)
+    }
+
+    #[inline(always)]
+    fn values(&self, pairs: CosinePairs<'_>) -> f32x8 {
+        let [(a, first), (b, second)] = self.terms();
+        f32x8::splat(a as f32) * first.values(pairs) + f32x8::splat(b as f32) * second.values(pairs)
+    }
+}
+
+impl Directional for Schlick {
+    fn value(&self, one_minus_mu: f64, one_plus_mu: f64) -> f64 {
+        self.eval(one_minus_mu, one_plus_mu)
+    }
+
+    /// p = (1-k^2)/(4 pi d^2), d = (1-|k|) + |k| (1-mu), mu towards the peak.
+    #[inline(always)]
+    fn values(&self, pairs: CosinePairs<'_>) -> f32x8 {
+        let size = self.k().abs();
+        let away = if self.k() >= 0.0 { pairs.one_minus_mu() } else { pairs.one_plus_mu() };
+        let d = f32x8::splat((1.0 - size) as f32) + f32x8::splat(size as f32) * away;
+        f32x8::splat(((1.0 - size) * (1.0 + size) / FOUR_PI) as f32) / (d * d)
+    }
+}
+
+impl Directional for Rayleigh {
+    fn value(&self, one_minus_mu: f64, one_plus_mu: f64) -> f64 {
+        self.eval(one_minus_mu, one_plus_mu)
+    }
+
+    #[inline(always)]
+    fn values(&self, pairs: CosinePairs<'_>) -> f32x8 {
+        let mu = f32x8::HALF * (pairs.one_plus_mu() - pairs.one_minus_mu());
+        f32x8::splat((0.75 / FOUR_PI) as f32) * (f32x8::ONE + mu * mu)
+    }
+}
+
+impl Directional for Tabulated {
+    fn value(&self, one_minus_mu: f64, one_plus_mu: f64) -> f64 {
+        self.eval(one_minus_mu, one_plus_mu)
+    }
+}
+
 impl Directional for Phase {
     fn value(&self, one_minus_mu: f64, one_plus_mu: f64) -> f64 {
         self.eval(one_minus_mu, one_plus_mu)
@@ -99,6 +146,10 @@ impl Directional for Phase {
         match self {
             Phase::Isotropic(phase) => phase.values(pairs),
             Phase::HenyeyGreenstein(phase) => phase.values(pairs),
+            Phase::TwoTerm(phase) => phase.values(pairs),
+            Phase::Schlick(phase) => phase.values(pairs),
+            Phase::Rayleigh(phase) => phase.values(pairs),
+            Phase::Tabulated(phase) => phase.values(pairs),
         }
     }
 }

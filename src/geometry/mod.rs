@@ -4,12 +4,18 @@
 //! starts on, so that no shape needs an epsilon.
 
 mod cuboid;
+mod height_field;
+mod lathe;
+mod mesh;
 mod rectangle;
 mod rectangles;
 mod slab;
 mod sphere;
 
 pub use cuboid::Cuboid;
+pub use height_field::{Ground, Up, Waves, height_field, listed};
+pub use lathe::{Lathe, smooth};
+pub use mesh::Mesh;
 pub use rectangle::Rectangle;
 pub use rectangles::Rectangles;
 pub use slab::{Face, Slab};
@@ -17,6 +23,7 @@ pub use sphere::Sphere;
 
 use crate::math::{Interval, Ray};
 use glam::{DVec2, DVec3};
+use std::sync::Arc;
 
 /// Where a ray meets a shape.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -25,10 +32,10 @@ pub struct Hit {
     pub t: f64,
     /// Unit geometric normal: outwards for closed shapes, the front for a rectangle.
     pub normal: DVec3,
-    /// Where on the surface, in [0, 1]^2: along u and v of a rectangle; 0 on the other
-    /// exact shapes.
+    /// Where on the surface: along u and v of a rectangle, around and along a lathe, as the file of a mesh says; 0 on the
+    /// other shapes.
     pub uv: DVec2,
-    /// Which part of the shape was hit: the triangle of a mesh, 0 on a shape without parts.
+    /// Which part of the shape was hit: the triangle of a mesh, the frustum of a lathe, 0 on a shape without parts.
     pub primitive: u32,
 }
 
@@ -43,6 +50,10 @@ pub enum Shape {
     Slab(Slab),
     /// A box along the axes.
     Cuboid(Cuboid),
+    /// A surface of triangles.
+    Mesh(Arc<Mesh>),
+    /// A surface of revolution.
+    Lathe(Arc<Lathe>),
 }
 
 macro_rules! each {
@@ -52,6 +63,8 @@ macro_rules! each {
             Shape::Rectangle($inner) => $body,
             Shape::Slab($inner) => $body,
             Shape::Cuboid($inner) => $body,
+            Shape::Mesh($inner) => $body,
+            Shape::Lathe($inner) => $body,
         }
     };
 }
@@ -60,14 +73,31 @@ impl Shape {
     /// The first crossing of the surface ahead of the ray; `from` is the primitive that the ray starts on, if it starts
     /// on this very surface.
     pub fn hit(&self, ray: &Ray, from: Option<u32>) -> Option<Hit> {
-        each!(self, s => s.hit(ray, from.is_some()))
+        match self {
+            Shape::Sphere(s) => s.hit(ray, from.is_some()),
+            Shape::Rectangle(s) => s.hit(ray, from.is_some()),
+            Shape::Slab(s) => s.hit(ray, from.is_some()),
+            Shape::Cuboid(s) => s.hit(ray, from.is_some()),
+            Shape::Mesh(s) => s.hit(ray, from),
+            Shape::Lathe(s) => s.hit(ray, from),
+        }
     }
 
     /// Whether it is convex and has an inside: only such shapes bound media and fill with light.
     pub fn is_solid(&self) -> bool {
         match self {
             Shape::Sphere(_) | Shape::Slab(_) | Shape::Cuboid(_) => true,
+            Shape::Rectangle(_) | Shape::Mesh(_) | Shape::Lathe(_) => false,
+        }
+    }
+
+    /// Whether the surface parts space into an inside and an outside.
+    pub fn is_closed(&self) -> bool {
+        match self {
+            Shape::Sphere(_) | Shape::Slab(_) | Shape::Cuboid(_) => true,
             Shape::Rectangle(_) => false,
+            Shape::Mesh(s) => s.is_closed(),
+            Shape::Lathe(s) => s.is_closed(),
         }
     }
 
@@ -77,7 +107,9 @@ impl Shape {
             Shape::Sphere(s) => Some((s.center(), s.radius())),
             Shape::Rectangle(r) => Some((r.sample([0.5; 2]), 0.5 * r.diagonal())),
             Shape::Slab(_) => None,
-            Shape::Cuboid(c) => Some((0.5 * (c.min() + c.max()), 0.5 * c.min().distance(c.max()))),
+            Shape::Cuboid(c) => Some(about((c.min(), c.max()))),
+            Shape::Mesh(m) => Some(about(m.bounds())),
+            Shape::Lathe(l) => Some(l.bounds()),
         }
     }
 
@@ -85,27 +117,30 @@ impl Shape {
     pub fn interval(&self, ray: &Ray) -> Option<Interval> {
         match self {
             Shape::Sphere(s) => s.interval(ray),
-            Shape::Rectangle(_) => None,
+            Shape::Rectangle(_) | Shape::Mesh(_) | Shape::Lathe(_) => None,
             Shape::Slab(s) => s.interval(ray),
             Shape::Cuboid(s) => s.interval(ray),
         }
     }
 
-    /// Whether the point is inside or on the surface.
+    /// Whether the point is inside; on the surface too, of a solid.
     pub fn contains(&self, p: DVec3) -> bool {
         match self {
             Shape::Sphere(s) => s.contains(p),
             Shape::Rectangle(_) => false,
             Shape::Slab(s) => s.contains(p),
             Shape::Cuboid(s) => s.contains(p),
+            Shape::Mesh(s) => s.contains(p),
+            Shape::Lathe(s) => s.contains(p),
         }
     }
 
-    /// Distance from a point inside to the nearest point of the surface \[L\]; negative outside, 0 for a rectangle.
+    /// Distance from a point inside to the nearest point of the surface \[L\]; negative outside, 0 for a shape that
+    /// is not solid.
     pub fn room(&self, p: DVec3) -> f64 {
         match self {
             Shape::Sphere(s) => s.radius() - p.distance(s.center()),
-            Shape::Rectangle(_) => 0.0,
+            Shape::Rectangle(_) | Shape::Mesh(_) | Shape::Lathe(_) => 0.0,
             Shape::Slab(s) => (p.z - s.top()).min(s.face(Face::Bottom) - p.z),
             Shape::Cuboid(c) => (p - c.min()).min_element().min((c.max() - p).min_element()),
         }
@@ -116,13 +151,15 @@ impl Shape {
         each!(self, s => s.area())
     }
 
-    /// Volume [L^3]; infinite for a slab, 0 for a rectangle.
+    /// Volume [L^3]; infinite for a slab, 0 for a rectangle, without meaning for other surfaces that are not closed.
     pub fn volume(&self) -> f64 {
         match self {
             Shape::Sphere(s) => s.volume(),
             Shape::Rectangle(_) => 0.0,
             Shape::Slab(_) => f64::INFINITY,
             Shape::Cuboid(s) => s.volume(),
+            Shape::Mesh(s) => s.volume(),
+            Shape::Lathe(s) => s.volume(),
         }
     }
 
@@ -142,11 +179,28 @@ impl Shape {
                 let (p, normal) = c.sample_surface(u);
                 (p, normal, c.area())
             }
+            Shape::Mesh(_) | Shape::Lathe(_) => {
+                let (p, normal, _) = self.sample_surface(u);
+                (p, normal, self.area())
+            }
+        }
+    }
+
+    /// A uniform point on the surface from three numbers in [0, 1), the outward normal there, and the part of the shape
+    /// that it lies on ([`Hit::primitive`]). Of a slab, which has no uniform points: one above the origin.
+    pub fn sample_surface(&self, u: [f64; 3]) -> (DVec3, DVec3, u32) {
+        match self {
+            Shape::Mesh(s) => s.sample_surface([u[0], u[1]]),
+            Shape::Lathe(s) => s.sample_surface([u[0], u[1]]),
+            Shape::Sphere(_) | Shape::Rectangle(_) | Shape::Slab(_) | Shape::Cuboid(_) => {
+                let (p, normal, _) = self.sample_boundary(Face::Top, 0.0, u);
+                (p, normal, 0)
+            }
         }
     }
 
     /// A uniform point inside from three numbers in [0, 1), and the volume [L^3]; of a slab, the part under the
-    /// square cell [0, side) x [0, side).
+    /// square cell [0, side) x [0, side); of a shape that is not solid, a point of its surface and 0.
     pub fn sample_inside(&self, side: f64, u: [f64; 3]) -> (DVec3, f64) {
         match self {
             Shape::Sphere(s) => (s.sample_inside(u), s.volume()),
@@ -156,6 +210,7 @@ impl Shape {
                 (p, side * side * s.thickness())
             }
             Shape::Cuboid(c) => (c.sample_inside(u), c.volume()),
+            Shape::Mesh(_) | Shape::Lathe(_) => (self.sample_surface(u).0, 0.0),
         }
     }
 
@@ -166,6 +221,19 @@ impl Shape {
             Shape::Rectangle(_) => 0.0,
             Shape::Slab(s) => s.thickness(),
             Shape::Cuboid(s) => (s.max() - s.min()).min_element(),
+            Shape::Mesh(s) => s.shortest_extent(),
+            Shape::Lathe(s) => s.shortest_extent(),
         }
     }
+}
+
+/// The sphere about a box.
+fn about((min, max): (DVec3, DVec3)) -> (DVec3, f64) {
+    (0.5 * (min + max), 0.5 * min.distance(max))
+}
+
+/// What is left of a number that chose an entry from sums: where between its own sum and the one before, in [0, 1).
+fn remainder(sums: &[f64], index: usize, target: f64) -> f64 {
+    let before = if index > 0 { sums[index - 1] } else { 0.0 };
+    ((target - before) / (sums[index] - before)).clamp(0.0, 1.0 - f64::EPSILON)
 }

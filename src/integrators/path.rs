@@ -16,7 +16,9 @@ use crate::phase::PhaseFunction;
 use crate::rng::Stream;
 use crate::scene::{Orders, Scene, SceneHit, Start, Target, decay};
 use crate::surface::Surface;
-use crate::transport::{Arrival, Flags, Roulette, Step, Visitor, Walker, transmittance, walk};
+use crate::transport::{
+    Arrival, Flags, Roulette, Step, Visitor, Walker, collected, emission, transmittance, walk,
+};
 use glam::DVec3;
 
 /// Throughput, relative to the start's, below which paths play roulette. Any value gives the same mean; 1/(variance x
@@ -94,6 +96,8 @@ impl<'a, F: FnMut(u32, Layer, Spectrum)> PathVisitor<'a, F> {
             let seen = radiance * passed * share;
             self.add(walker.order, layer, walker.weight * seen);
         }
+        let emitted = emission(self.scene, &walker.ray, end, walker.within, stream);
+        self.add(walker.order, layer, walker.weight * emitted);
         for light in self.scene.lights() {
             let mut seen = uncollided(self.scene, light, walker, end, stream);
             if hit.is_none()
@@ -170,10 +174,13 @@ impl<'a, F: FnMut(u32, Layer, Spectrum)> PathVisitor<'a, F> {
                 continue;
             };
             let (one_minus_mu, one_plus_mu) = cosine_pair(ray.dir, sample.dir);
-            let fraction = medium.albedo() * medium.phase().eval(one_minus_mu, one_plus_mu);
-            let density = decay(scene.optical_depth(ray, t, walker.within)) * medium.sigma_t();
-            // Balance heuristic of the two densities; their sum divides, so neither can be small alone.
-            let sum = equal_angles.pdf(t) + flight_pdf(scene, walker, density, ray, end);
+            let fraction = medium.albedo(position) * medium.phase().eval(one_minus_mu, one_plus_mu);
+            let density = transmittance(scene, ray, t, walker.within, stream) * medium.sigma_t(position);
+            // Balance heuristic of the two densities; their sum divides, so neither can be small alone. What delta
+            // tracking samples has no density that could be asked for: there equal angles stand alone.
+            let flight =
+                if plan.has_heterogeneous { 0.0 } else { flight_pdf(scene, walker, density, ray, end) };
+            let sum = equal_angles.pdf(t) + flight;
             let layer = self.layer_connected(walker, Flags::MEDIUM);
             self.add(walker.order + 1, layer, walker.weight * fraction * density * received / sum);
         }
@@ -250,19 +257,23 @@ impl<F: FnMut(u32, Layer, Spectrum)> Visitor for PathVisitor<'_, F> {
             Step::Collision(Arrival { position, .. }, number) => {
                 let medium = self.scene.medium(number);
                 let before = walker.ray.dir;
+                let albedo = medium.albedo(position);
                 let scattered = |towards: DVec3| {
                     let (one_minus_mu, one_plus_mu) = cosine_pair(before, towards);
                     let p = medium.phase().eval(one_minus_mu, one_plus_mu);
-                    (medium.albedo() * p, p)
+                    (albedo * p, p)
                 };
                 let scene = self.scene;
                 let point_share = |apex: DVec3| {
+                    if scene.plan().has_heterogeneous {
+                        return 0.0;
+                    }
                     let t = position.distance(walker.ray.origin);
                     let hit = scene.hit(&walker.ray, walker.from);
                     let end = hit.map_or(f64::INFINITY, |h| h.hit.t);
                     let Some(span) = span(scene, &walker.ray, end, walker.within) else { return 1.0 };
                     let passed = decay(scene.optical_depth(&walker.ray, t, walker.within));
-                    let density = passed * medium.sigma_t();
+                    let density = passed * medium.sigma_t(position);
                     let flight = flight_pdf(scene, walker, density, &walker.ray, end);
                     let pdf = EqualAngles::new(&walker.ray, apex, span).pdf(t);
                     flight / (flight + pdf)
@@ -321,7 +332,9 @@ pub(super) fn uncollided(
         Light::VolumeSource(light) => {
             let inside =
                 light.shape().interval(ray).and_then(|i| i.intersection(Interval { start: 0.0, end }));
-            inside.map_or(Spectrum::ZERO, |inside| scene.collected(ray, inside, within, light.emission()))
+            inside.map_or(Spectrum::ZERO, |inside| {
+                collected(scene, ray, inside, within, light.emission(), stream)
+            })
         }
         _ => Spectrum::ZERO,
     }

@@ -11,7 +11,7 @@ use glam::DVec3;
 use std::f64::consts::PI;
 
 /// A black shape whose surface emits the same radiance everywhere, in all outward directions: the front of a rectangle,
-/// the outside of a sphere or a cuboid.
+/// the outside of a sphere, a cuboid, a mesh or a lathe.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Area {
     shape: Shape,
@@ -28,7 +28,8 @@ impl Area {
         let area = shape.area();
         if !area.is_finite() {
             return Err(Error::Scene(
-                "an area light needs a bounded shape: a rectangle, a sphere or a cuboid".into(),
+                "an area light needs a bounded shape: a rectangle, a sphere, a cuboid, a mesh or a lathe"
+                    .into(),
             ));
         }
         Ok(Area { shape, radiance: emissive("radiance", radiance)?, area })
@@ -50,8 +51,8 @@ impl Area {
 
     pub(super) fn needs(&self) -> Needs {
         let position = match self.shape {
-            Shape::Rectangle(_) | Shape::Sphere(_) => 2,
-            _ => 3,
+            Shape::Rectangle(_) | Shape::Sphere(_) | Shape::Mesh(_) | Shape::Lathe(_) => 2,
+            Shape::Cuboid(_) | Shape::Slab(_) => 3,
         };
         Needs { position, direction: 2 }
     }
@@ -65,6 +66,11 @@ impl Area {
             warp::square_to_cosine_hemisphere(numbers.direction)
         };
         Ray::new(origin, Frame::new(normal).to_world(local))
+    }
+
+    /// The part of the shape that the ray of these numbers starts on.
+    pub(super) fn primitive(&self, numbers: &EmissionNumbers) -> u32 {
+        self.shape.sample_surface(numbers.position).2
     }
 
     /// Whether it is a sphere, whose photons are aimed by choosing the direction first.
@@ -122,6 +128,10 @@ impl Area {
                 let (point, normal) = c.sample_facing(p, u)?;
                 self.towards(p, point, normal)
             }
+            Shape::Mesh(_) | Shape::Lathe(_) => {
+                let (point, normal, _) = self.shape.sample_surface([u[0], u[1], 0.0]);
+                self.towards(p, point, normal)
+            }
             Shape::Slab(_) => None,
         }
     }
@@ -162,7 +172,8 @@ impl Area {
 
     pub(super) fn hit(&self, ray: &Ray, from: Option<u32>) -> Option<Hit> {
         // Light leaves a body outwards, so that a ray that starts on a convex one never meets it again.
-        if from.is_some() { None } else { self.shape.hit(ray, None) }
+        let is_convex = !matches!(self.shape, Shape::Mesh(_) | Shape::Lathe(_));
+        if from.is_some() && is_convex { None } else { self.shape.hit(ray, from) }
     }
 
     pub(super) fn emitted(&self, ray: &Ray, hit: &Hit) -> (Spectrum, f64) {

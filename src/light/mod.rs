@@ -68,6 +68,8 @@ impl Stage {
 pub struct Emission {
     /// Where it starts and where to.
     pub ray: Ray,
+    /// The part of the light's body that it starts on; 0 without parts.
+    pub primitive: u32,
     /// Power \[W\], as though it were the only one.
     pub power: Spectrum,
 }
@@ -213,7 +215,8 @@ impl Light {
             Light::Isotropic(l) => l.ray(stage, numbers),
             Light::VolumeSource(l) => l.ray(stage, numbers),
         };
-        Emission { ray, power: self.power(stage) }
+        let primitive = if let Light::Area(l) = self { l.primitive(numbers) } else { 0 };
+        Emission { ray, primitive, power: self.power(stage) }
     }
 
     /// The photon of these numbers where directions are chosen by cells: [`Self::emit_at`], but from a sphere the
@@ -223,7 +226,7 @@ impl Light {
         if let Light::Area(l) = self
             && let Some(ray) = l.aimed_ray(numbers)
         {
-            return Emission { ray, power: l.power() };
+            return Emission { ray, primitive: 0, power: l.power() };
         }
         self.emit_at(stage, numbers)
     }

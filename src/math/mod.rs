@@ -1,13 +1,14 @@
-//! Elementary functions with the same bits everywhere, frames, rays, warps in pairs, numbers with a range.
+//! Elementary functions with the same bits everywhere, frames, rays, warps in pairs, numbers with a range, quadrature.
 
 mod frame;
 mod number;
+pub mod quadrature;
 mod ray;
 pub mod warp;
 
 pub use frame::Frame;
 pub use libm::{atan2, cos, exp, expm1 as exp_m1, log as ln, log1p as ln_1p, sin, sincos as sin_cos};
-pub use number::{Albedo, Asymmetry, NonNegative, Positive};
+pub use number::{Albedo, Asymmetry, Index, NonNegative, Positive};
 pub use ray::{Interval, Ray};
 
 /// Full solid angle \[sr\].

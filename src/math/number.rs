@@ -46,6 +46,10 @@ ranged!(
     Asymmetry, "above -1 and below 1", |x| -1.0 < x && x < 1.0
 );
 ranged!(
+    /// Index of refraction, over that of vacuum.
+    Index, "finite and at least 1", |x| x >= 1.0 && x.is_finite()
+);
+ranged!(
     /// A number above zero.
     Positive, "finite and above 0", |x| x > 0.0 && x.is_finite()
 );
@@ -53,3 +57,8 @@ ranged!(
     /// A number of at least zero.
     NonNegative, "finite and at least 0", |x| x >= 0.0 && x.is_finite()
 );
+
+impl Positive {
+    /// One.
+    pub const ONE: Positive = Positive(1.0);
+}

@@ -4,12 +4,21 @@ use crate::Spectrum;
 use crate::error::{Error, Result};
 use crate::phase::Phase;
 
-/// Extinction, albedo and phase function, the same at every point.
+/// Extinction, albedo, phase function and emission, the same at every point.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Homogeneous {
     sigma_t: Spectrum,
     albedo: Spectrum,
     phase: Phase,
+    emission: Spectrum,
+}
+
+/// An emission coefficient: finite and not negative in every channel.
+pub(super) fn check_emission(emission: Spectrum) -> Result<()> {
+    match (0..3).map(|c| emission[c]).find(|e| !(*e >= 0.0 && e.is_finite())) {
+        Some(bad) => Err(Error::out_of_range("emission of a medium", bad, "finite and at least 0")),
+        None => Ok(()),
+    }
 }
 
 impl Homogeneous {
@@ -27,7 +36,16 @@ impl Homogeneous {
                 return Err(Error::out_of_range("albedo", a, "0 to 1"));
             }
         }
-        Ok(Homogeneous { sigma_t, albedo, phase })
+        Ok(Homogeneous { sigma_t, albedo, phase, emission: Spectrum::ZERO })
+    }
+
+    /// The same medium, emitting [W/(L^3 sr)] alike in all directions.
+    ///
+    /// # Errors
+    /// `Error::OutOfRange` if a channel is negative or not finite.
+    pub fn with_emission(self, emission: Spectrum) -> Result<Self> {
+        check_emission(emission)?;
+        Ok(Homogeneous { emission, ..self })
     }
 
     /// Extinction coefficient [1/L].
@@ -43,6 +61,17 @@ impl Homogeneous {
     /// Absorption coefficient [1/L].
     pub fn sigma_a(&self) -> Spectrum {
         self.sigma_t * (Spectrum::ONE - self.albedo)
+    }
+
+    /// Emission coefficient [W/(L^3 sr)].
+    pub fn emission(&self) -> Spectrum {
+        self.emission
+    }
+
+    /// Optical depth of a length \[1\]: 0 where nothing extinguishes, however long it is.
+    #[inline]
+    pub fn depth(&self, length: f64) -> Spectrum {
+        self.sigma_t.map(|s| if s == 0.0 { 0.0 } else { s * length })
     }
 
     /// Phase function.

@@ -22,6 +22,18 @@ impl HenyeyGreenstein {
         self.g
     }
 
+    /// Fractions of what is scattered below and above the cosine of the pair \[1\]; they sum to 1, and each keeps every
+    /// digit: (1-g)(1+mu)/(s (1+g+s)) and (1+g)(1-mu)/(s (1-g+s)), s^2 = 1 + g^2 - 2 g mu.
+    pub(super) fn cumulated(&self, one_minus_mu: f64, one_plus_mu: f64) -> (f64, f64) {
+        let g = self.g;
+        let s = if g >= 0.0 {
+            ((1.0 - g) * (1.0 - g) + 2.0 * g * one_minus_mu).sqrt()
+        } else {
+            ((1.0 + g) * (1.0 + g) - 2.0 * g * one_plus_mu).sqrt()
+        };
+        ((1.0 - g) / s * one_plus_mu / ((1.0 + g) + s), (1.0 + g) / s * one_minus_mu / ((1.0 - g) + s))
+    }
+
     /// The mean cosine as density and sampler use it: the same, unless a fault is planted.
     fn used(&self) -> f64 {
         if planted(Fault::AsymmetryClamped) {

@@ -5,12 +5,21 @@
 
 mod henyey_greenstein;
 mod isotropic;
+mod rayleigh;
+mod schlick;
+mod tabulated;
+mod two_term;
 
 pub use henyey_greenstein::HenyeyGreenstein;
 pub use isotropic::Isotropic;
+pub use rayleigh::Rayleigh;
+pub use schlick::Schlick;
+pub use tabulated::Tabulated;
+pub use two_term::TwoTerm;
 
-use crate::math::{Asymmetry, Frame, warp};
+use crate::math::{Albedo, Asymmetry, Frame, warp};
 use glam::DVec3;
+use std::sync::Arc;
 
 /// What every phase function answers.
 pub trait PhaseFunction {
@@ -31,6 +40,14 @@ pub enum Phase {
     Isotropic(Isotropic),
     /// Henyey and Greenstein 1941.
     HenyeyGreenstein(HenyeyGreenstein),
+    /// The sum of two Henyey-Greenstein functions.
+    TwoTerm(TwoTerm),
+    /// Blasi, Le Saec and Schlick 1993.
+    Schlick(Schlick),
+    /// Small particles.
+    Rayleigh(Rayleigh),
+    /// Given by a table.
+    Tabulated(Arc<Tabulated>),
 }
 
 macro_rules! each {
@@ -38,6 +55,10 @@ macro_rules! each {
         match $self {
             Phase::Isotropic($inner) => $body,
             Phase::HenyeyGreenstein($inner) => $body,
+            Phase::TwoTerm($inner) => $body,
+            Phase::Schlick($inner) => $body,
+            Phase::Rayleigh($inner) => $body,
+            Phase::Tabulated($inner) => $body,
         }
     };
 }
@@ -71,20 +92,96 @@ impl Phase {
         Frame::new(dir).to_world(warp::direction(self.sample(u), v)).normalize()
     }
 
-    /// One of each kind over its whole domain. A new kind does not compile until it is named here.
+    /// The pairs (1-mu, 1+mu) where the density has a kink, from backward to forward: quadrature breaks there.
+    pub fn kinks(&self) -> Vec<(f64, f64)> {
+        match self {
+            Phase::Tabulated(table) => table.kinks().collect(),
+            Phase::Isotropic(_)
+            | Phase::HenyeyGreenstein(_)
+            | Phase::TwoTerm(_)
+            | Phase::Schlick(_)
+            | Phase::Rayleigh(_) => Vec::new(),
+        }
+    }
+
+    /// Each kind over its whole domain. A new kind does not compile until it is named here.
     pub fn specimens() -> Vec<Phase> {
-        let asymmetries =
-            [-1.0 + 1e-9, -0.9999, -0.75, -1e-6, -1e-12, 1e-12, 1e-6, 0.3, 0.75, 0.95, 0.9999, 1.0 - 1e-9];
-        let named = |phase: Phase| match phase {
-            Phase::Isotropic(_) => vec![phase],
-            Phase::HenyeyGreenstein(_) => asymmetries
-                .iter()
-                .filter_map(|&g| Asymmetry::try_from(g).ok())
-                .map(Phase::with_asymmetry)
-                .collect(),
+        let each = |values: &[f64], make: &dyn Fn(Asymmetry) -> Phase| -> Vec<Phase> {
+            values.iter().filter_map(|&g| Asymmetry::try_from(g).ok()).map(make).collect()
         };
-        let mut all = named(Phase::Isotropic(Isotropic));
-        all.extend(Asymmetry::try_from(0.5).map(Phase::with_asymmetry).map(named).unwrap_or_default());
-        all
+        let named = |phase: Phase| match phase {
+            Phase::Isotropic(_) | Phase::Rayleigh(_) => vec![phase],
+            Phase::HenyeyGreenstein(_) => each(
+                &[
+                    -1.0 + 1e-9,
+                    -0.9999,
+                    -0.75,
+                    -1e-6,
+                    -1e-12,
+                    1e-12,
+                    1e-6,
+                    0.3,
+                    0.75,
+                    0.95,
+                    0.9999,
+                    1.0 - 1e-9,
+                ],
+                &Phase::with_asymmetry,
+            ),
+            Phase::TwoTerm(_) => {
+                let pairs = [
+                    (0.8, -0.4, 0.7),
+                    (0.0, 0.95, 0.25),
+                    (1.0 - 1e-9, -1.0 + 1e-9, 0.5),
+                    (0.9999, -1e-12, 0.99),
+                ];
+                let term = |(a, b, share): (f64, f64, f64)| {
+                    let (a, b) = (Asymmetry::try_from(a).ok()?, Asymmetry::try_from(b).ok()?);
+                    Some(Phase::TwoTerm(TwoTerm::new(a, b, Albedo::try_from(share).ok()?)))
+                };
+                pairs.into_iter().filter_map(term).collect()
+            }
+            Phase::Schlick(_) => {
+                each(&[-1.0 + 1e-9, -0.9, -1e-6, 1e-12, 0.3, 0.75, 0.99, 1.0 - 1e-9], &|k| {
+                    Phase::Schlick(Schlick::new(k))
+                })
+            }
+            Phase::Tabulated(_) => {
+                // Even; with a step; and a droplet's: a narrow forward peak, a flat side and a glory.
+                let droplet = [
+                    (0.0, 3e4),
+                    (0.01, 2.9e4),
+                    (0.03, 2e4),
+                    (0.1, 3e3),
+                    (0.5, 100.0),
+                    (2.0, 20.0),
+                    (10.0, 5.0),
+                    (45.0, 0.8),
+                    (90.0, 0.05),
+                    (120.0, 0.02),
+                    (139.0, 0.3),
+                    (150.0, 0.1),
+                    (179.0, 0.2),
+                    (180.0, 0.6),
+                ];
+                let step = [(0.0, 1.0), (60.0, 4.0), (60.000_001, 0.0), (100.0, 0.0), (180.0, 2.0)];
+                let tables: [&[(f64, f64)]; 3] = [&[(0.0, 7.0), (180.0, 7.0)], &step, &droplet];
+                let tables = tables.into_iter().filter_map(|table| Tabulated::new(table).ok());
+                tables.map(|table| Phase::Tabulated(Arc::new(table))).collect()
+            }
+        };
+        let half = Asymmetry::try_from(0.5);
+        let first = [
+            Some(Phase::Isotropic(Isotropic)),
+            half.clone().ok().map(Phase::with_asymmetry),
+            half.clone()
+                .ok()
+                .zip(Albedo::try_from(0.5).ok())
+                .map(|(g, share)| Phase::TwoTerm(TwoTerm::new(g, g, share))),
+            half.ok().map(|k| Phase::Schlick(Schlick::new(k))),
+            Some(Phase::Rayleigh(Rayleigh)),
+            Tabulated::new(&[(0.0, 1.0), (180.0, 1.0)]).ok().map(|table| Phase::Tabulated(Arc::new(table))),
+        ];
+        first.into_iter().flatten().flat_map(named).collect()
     }
 }

@@ -5,7 +5,7 @@
 //! cells send out, is what all cells would have sent there.
 
 use crate::Spectrum;
-use crate::light::{EmissionCell, Light};
+use crate::light::{Emission, EmissionCell, Light};
 use crate::rng::Stream;
 use crate::scene::{Scene, Start, Target};
 use crate::transport::Walker;
@@ -125,7 +125,7 @@ impl Emitter {
         let needs = light.needs();
         let numbers = cell.numbers((needs.position, needs.direction), stream);
         let emission = light.emit_aimed(stage, &numbers);
-        start(scene, *index, emission.ray, emission.power * chosen.weights[i])
+        start(scene, *index, &emission, emission.power * chosen.weights[i])
     }
 }
 
@@ -155,12 +155,14 @@ fn by_power(scene: &Scene, power: Spectrum, stream: &mut Stream) -> Walker {
     let emission = lights[index].emit(stage, stream);
     let weight =
         if lights.len() > 1 { emission.power * (total / emission.power.sum()) } else { emission.power };
-    start(scene, index, emission.ray, weight)
+    start(scene, index, &emission, weight)
 }
 
 /// The walker of a photon that leaves a light.
-fn start(scene: &Scene, index: usize, ray: crate::math::Ray, weight: Spectrum) -> Walker {
-    let from = scene.lights()[index].body().map(|_| Start { target: Target::Light(index), primitive: 0 });
-    let within = scene.interior_of_light(index, ray.origin);
-    Walker { from, within, ..Walker::new(ray, weight) }
+fn start(scene: &Scene, index: usize, emission: &Emission, weight: Spectrum) -> Walker {
+    let from = scene.lights()[index]
+        .body()
+        .map(|_| Start { target: Target::Light(index), primitive: emission.primitive });
+    let within = scene.interior_of_light(index, emission.ray.origin);
+    Walker { from, within, ..Walker::new(emission.ray, weight) }
 }

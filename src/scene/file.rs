@@ -1,13 +1,17 @@
 //! The scene file: TOML, strict. Every error names the line, the column and the key, and says what is allowed.
 
 mod interior;
+mod shape;
+mod texture;
 
 pub use interior::{DielectricFile, InteriorFile};
+pub use shape::ShapeFile;
+pub use texture::TextureFile;
 
 use super::{Camera, Filter, Interior, Object, Orders, Parts, Quantity, Region, Scene, Sensor, View};
 use crate::Spectrum;
 use crate::error::{Error, Result};
-use crate::geometry::{Cuboid, Face, Rectangle, Shape, Slab, Sphere};
+use crate::geometry::{Face, Rectangle};
 use crate::light::{Area, Beam, Faces, Isotropic, Light, Point, Section, Spot, Sun, VolumeSource};
 use crate::math::{Albedo, Asymmetry, NonNegative, Positive, Ray};
 use crate::medium::Homogeneous;
@@ -126,20 +130,6 @@ impl CameraFile {
     }
 }
 
-/// A shape; lengths in scene units.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields, rename_all = "kebab-case")]
-#[allow(
-    missing_docs,
-    reason = "the names are those of the shapes' own constructors, which say their meaning"
-)]
-pub enum ShapeFile {
-    Sphere { center: [f64; 3], radius: Positive },
-    Rectangle { corner: [f64; 3], u: [f64; 3], v: [f64; 3] },
-    Slab { top: f64, thickness: Positive },
-    Cuboid { min: [f64; 3], max: [f64; 3] },
-}
-
 /// A medium in a shape.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -172,10 +162,10 @@ pub struct ObjectFile {
     reason = "the names are those of the surfaces' own constructors, which say their meaning"
 )]
 pub enum SurfaceFile {
-    Lambertian { reflectance: Channels<Albedo> },
+    Lambertian { reflectance: TextureFile },
     Mirror { reflectance: Channels<Albedo> },
     Dielectric(DielectricFile),
-    Filter { transmittance: Channels<Albedo> },
+    Filter { transmittance: TextureFile },
     Black,
 }
 
@@ -236,31 +226,20 @@ pub enum QuantityFile {
     Absorbed { region: usize },
 }
 
-impl ShapeFile {
-    fn shape(&self, _folder: &Path) -> Result<Shape> {
-        Ok(match *self {
-            ShapeFile::Sphere { center, radius } => Shape::Sphere(Sphere::new(center.into(), radius.get())?),
-            ShapeFile::Rectangle { corner, u, v } => Shape::Rectangle(rectangle(corner, u, v)?),
-            ShapeFile::Slab { top, thickness } => Shape::Slab(Slab::new(top, thickness.get())?),
-            ShapeFile::Cuboid { min, max } => Shape::Cuboid(Cuboid::new(min.into(), max.into())?),
-        })
-    }
-}
-
 fn rectangle(corner: [f64; 3], u: [f64; 3], v: [f64; 3]) -> Result<Rectangle> {
     Rectangle::new(corner.into(), u.into(), v.into())
 }
 
 impl SurfaceFile {
-    fn surface(&self, _folder: &Path, interiors: &[Interior]) -> Result<Surface> {
-        Ok(match *self {
+    fn surface(&self, folder: &Path, interiors: &[Interior]) -> Result<Surface> {
+        Ok(match self {
             SurfaceFile::Lambertian { reflectance } => {
-                Surface::Lambertian(Lambertian::new(reflectance.spectrum())?)
+                Surface::Lambertian(Lambertian::textured(reflectance.texture("reflectance", folder)?))
             }
             SurfaceFile::Mirror { reflectance } => Surface::Mirror(Mirror::new(reflectance.spectrum())?),
-            SurfaceFile::Dielectric(ref names) => Surface::Dielectric(names.dielectric(interiors)?),
+            SurfaceFile::Dielectric(names) => Surface::Dielectric(names.dielectric(interiors)?),
             SurfaceFile::Filter { transmittance } => {
-                Surface::Filter(surface::Filter::new(transmittance.spectrum())?)
+                Surface::Filter(surface::Filter::textured(transmittance.texture("transmittance", folder)?))
             }
             SurfaceFile::Black => Surface::Black(Black),
         })
@@ -342,7 +321,7 @@ impl SceneFile {
     pub fn scene(&self, folder: &Path) -> Result<Scene> {
         let regions = self.regions.iter().map(|r| {
             let phase = Phase::with_asymmetry(r.g);
-            let medium = Homogeneous::new(r.sigma_t.spectrum(), r.albedo.spectrum(), phase)?;
+            let medium = Homogeneous::new(r.sigma_t.spectrum(), r.albedo.spectrum(), phase)?.into();
             Ok(Region { shape: r.shape.shape(folder)?, medium })
         });
         let mut interiors = vec![Interior::surroundings()];

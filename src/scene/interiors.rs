@@ -202,6 +202,20 @@ impl Scene {
         }
     }
 
+    /// Distance from a point to the boundary of the medium that it is in, as far as solid shapes tell \[L\]; 0 in vacuum.
+    pub fn room(&self, p: DVec3) -> f64 {
+        let Some(number) = self.medium_number_at(p) else { return 0.0 };
+        match self.regions().get(number) {
+            Some(region) => region.shape.room(p),
+            None => {
+                let boundaries =
+                    self.objects().iter().filter(|o| matches!(o.surface, Surface::Dielectric(_)));
+                let known = boundaries.filter(|o| o.shape.is_solid());
+                known.map(|o| o.shape.room(p).abs()).reduce(f64::min).unwrap_or(0.0)
+            }
+        }
+    }
+
     /// The medium at a point; none in vacuum.
     pub fn medium_at(&self, p: DVec3) -> Option<&Medium> {
         self.medium_number_at(p).map(|number| self.medium(number))

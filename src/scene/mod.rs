@@ -156,22 +156,23 @@ impl Scene {
         Segments::filled(self.filling(within).map(|medium| Segment { interval, medium }))
     }
 
-    /// Optical depth up to distance `end` \[1\].
+    /// Optical depth up to distance `end` \[1\]: exact but in clouds, where it is a quadrature. Estimates of light use
+    /// `transport::transmittance`.
     pub fn optical_depth(&self, ray: &Ray, end: f64, within: usize) -> Spectrum {
         let mut depth = Spectrum::ZERO;
         for segment in self.segments(ray, end, within).iter() {
-            depth += self.depth_of(segment, segment.interval);
+            depth += self.medium(segment.medium).integrated_depth(ray, segment.interval);
         }
         depth
     }
 
-    /// Optical depth of a part of a segment: 0 where nothing extinguishes, however long the part.
+    /// Optical depth of a part of a segment in a homogeneous medium.
     fn depth_of(&self, segment: &Segment, part: Interval) -> Spectrum {
-        self.medium(segment.medium).sigma_t().map(|s| if s == 0.0 { 0.0 } else { s * part.length() })
+        self.medium(segment.medium).matter().depth(part.length())
     }
 
     /// Emission collected along a ray from a source of emission coefficient `emission` [W/(L^3 sr)] that fills
-    /// `part` of the ray: the integral of emission times transmittance, in closed form.
+    /// `part` of the ray: the integral of emission times transmittance, in closed form. All media are homogeneous.
     pub fn collected(&self, ray: &Ray, part: Interval, within: usize, emission: Spectrum) -> Spectrum {
         let segments = self.segments(ray, part.end, within);
         let (mut depth, mut cursor, mut sum) = (Spectrum::ZERO, part.start, Spectrum::ZERO);
@@ -187,7 +188,7 @@ impl Scene {
             let inside = Interval { start: segment.interval.start.max(cursor), end: segment.interval.end };
             let length = inside.length();
             if length > 0.0 {
-                let sigma_t = self.medium(segment.medium).sigma_t();
+                let sigma_t = self.medium(segment.medium).matter().sigma_t();
                 let path =
                     sigma_t.map(|s| if s == 0.0 { length } else { -crate::math::exp_m1(-s * length) / s });
                 sum += decay(depth) * path;

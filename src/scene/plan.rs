@@ -12,6 +12,12 @@ pub struct Plan {
     pub has_media: bool,
     /// Whether every medium has the same extinction in all channels, so that one flight serves all.
     pub has_grey_extinction: bool,
+    /// Whether the density of some medium varies, so that flights and transmittances are tracked.
+    pub has_heterogeneous: bool,
+    /// Whether some medium emits by itself.
+    pub has_emission: bool,
+    /// What each varying density is, in words.
+    pub densities: Vec<String>,
     /// Whether every number is the same in all channels, so that one channel is reported.
     pub is_grey: bool,
     /// Whether light can meet a surface.
@@ -37,11 +43,12 @@ const THIN: f64 = 0.1;
 
 impl Plan {
     pub(super) fn of(parts: &Parts) -> Self {
-        let regions = || parts.regions.iter().filter(|r| r.medium.sigma_t().max() > 0.0);
         let filled = parts.interiors.iter().filter_map(|i| i.medium.as_ref());
         let media: Vec<&Medium> = parts.regions.iter().map(|r| &r.medium).chain(filled).collect();
-        let has_media = media.iter().any(|m| m.sigma_t().max() > 0.0);
-        let thickness = regions().map(|r| r.shape.shortest_extent() * r.medium.sigma_t().max());
+        let has_media = media.iter().any(|m| m.is_colliding());
+        let has_heterogeneous = media.iter().any(|m| !m.is_homogeneous());
+        let regions = || parts.regions.iter().filter(|r| r.medium.is_colliding());
+        let thickness = regions().map(|r| r.shape.shortest_extent() * r.medium.highest_sigma_t().max());
         let thickest = thickness.fold(0.0, f64::max);
         let has_specular = parts.objects.iter().any(|o| o.surface.is_specular());
         let has_delta = parts.lights.iter().any(Light::is_delta);
@@ -61,8 +68,11 @@ impl Plan {
         }
         Plan {
             has_media,
-            has_grey_extinction: media.iter().all(|m| m.sigma_t().is_grey()),
-            is_grey: media.iter().all(|m| m.sigma_t().is_grey() && m.albedo().is_grey())
+            has_grey_extinction: media.iter().all(|m| m.has_grey_extinction()),
+            has_heterogeneous,
+            has_emission: media.iter().any(|m| m.is_emitting()),
+            densities: media.iter().filter_map(|m| m.density()).map(|d| d.describe()).collect(),
+            is_grey: media.iter().all(|m| m.is_grey())
                 && parts.objects.iter().all(|o| o.surface.is_grey())
                 && parts.lights.iter().all(Light::is_grey),
             has_surfaces: !parts.objects.is_empty(),
@@ -71,7 +81,7 @@ impl Plan {
             has_filters: parts.objects.iter().any(|o| matches!(o.surface, Surface::Filter(_))),
             has_next_event: parts.lights.iter().any(Light::has_direction),
             point_lights: (0..parts.lights.len()).filter(|&i| parts.lights[i].apex().is_some()).collect(),
-            forces_first_collision: regions().next().is_some() && thickest < THIN,
+            forces_first_collision: regions().next().is_some() && thickest < THIN && !has_heterogeneous,
             unreachable,
         }
     }
@@ -80,6 +90,9 @@ impl Plan {
     pub fn lines(&self) -> Vec<String> {
         let mut lines = vec![
             match (self.has_media, self.forces_first_collision) {
+                (true, _) if self.has_heterogeneous => {
+                    "heterogeneous media: delta tracking, ratio tracking, majorants by cell".to_string()
+                }
                 (false, _) => "no medium: no flights, no volume map".to_string(),
                 (true, false) => "homogeneous media: flights and transmittance in closed form".to_string(),
                 (true, true) => "thin homogeneous media: closed form, first collision forced".to_string(),
@@ -89,6 +102,10 @@ impl Plan {
         ];
         if !self.has_grey_extinction {
             lines.push("extinction differs by channel: flights by channel, balance weights".to_string());
+        }
+        lines.extend(self.densities.iter().map(|density| format!("density: {density}")));
+        if self.has_emission {
+            lines.push("emitting media: seen along rays; photons start from lights only".to_string());
         }
         lines.push(match (self.has_surfaces, self.has_specular) {
             (false, _) => "no surface: nothing to intersect but media and lights".to_string(),

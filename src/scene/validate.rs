@@ -47,7 +47,7 @@ pub(super) fn check(parts: &Parts) -> Result<Option<Stage>> {
     check_end(parts)?;
     check_power(parts, stage.as_ref())?;
     for region in &parts.regions {
-        let far = extent(&region.shape) * region.medium.sigma_t().max();
+        let far = extent(&region.shape) * region.medium.highest_sigma_t().max();
         if far > MAX_EXTENT_OVER_MFP {
             return Err(Error::out_of_range(
                 "distance from the origin over the mean free path",
@@ -164,7 +164,6 @@ fn is_around(outer: &Shape, inner: &Shape) -> bool {
 /// rooms made of several shapes are not recognised.
 fn check_end(parts: &Parts) -> Result<()> {
     let keeps_all = |kept: Spectrum| kept.min() >= 1.0;
-    let is_absorbing = |m: &Medium| !keeps_all(m.albedo()) && !m.sigma_t().is_black();
     for object in parts.objects.iter().filter(|o| keeps_all(o.surface.largest_reflectance())) {
         // Light leaves dielectrics and filters on both sides.
         let lets_pass = matches!(object.surface, Surface::Dielectric(_) | Surface::Filter(_));
@@ -175,8 +174,8 @@ fn check_end(parts: &Parts) -> Result<()> {
         let middle = |shape: &Shape| shape.sample_inside(0.0, [0.5; 3]).0;
         let is_inside =
             |shape: &Shape| object.shape.contains(middle(shape)) || shape.contains(middle(&object.shape));
-        let absorbs = parts.regions.iter().any(|r| is_absorbing(&r.medium) && is_inside(&r.shape))
-            || parts.interiors.iter().any(|i| i.medium.as_ref().is_some_and(is_absorbing))
+        let absorbs = parts.regions.iter().any(|r| r.medium.is_absorbing() && is_inside(&r.shape))
+            || parts.interiors.iter().any(|i| i.medium.as_ref().is_some_and(Medium::is_absorbing))
             || parts
                 .objects
                 .iter()
@@ -213,6 +212,11 @@ fn check_fold(parts: &Parts, stage: Option<&Stage>) -> Result<()> {
     if !all_unbounded {
         return refuse("with `cell`, every medium, surface and light must be laterally unbounded");
     }
+    if !parts.regions.iter().all(|r| r.medium.is_layered()) {
+        return refuse(
+            "with `cell`, a density must depend on z alone: a grid of one sample along x and y, or height fog along z",
+        );
+    }
     for light in &parts.lights {
         let shape = match light {
             Light::Isotropic(l) => Some(l.shape()),
@@ -235,6 +239,6 @@ fn extent(shape: &Shape) -> f64 {
         Shape::Sphere(s) => s.center().abs().max_element() + s.radius(),
         Shape::Cuboid(c) => c.min().abs().max_element().max(c.max().abs().max_element()),
         Shape::Slab(s) => s.top().abs() + s.thickness(),
-        Shape::Rectangle(_) => 0.0,
+        Shape::Rectangle(_) | Shape::Mesh(_) | Shape::Lathe(_) => 0.0,
     }
 }

@@ -174,7 +174,7 @@ impl Pilot {
                     continue;
                 };
                 let Quantity::Fluence(p) = sensor.quantity else { continue };
-                let sigma_t = scene.medium_at(p).map_or(crate::Spectrum::ONE, |m| m.sigma_t());
+                let sigma_t = scene.medium_at(p).map_or(crate::Spectrum::ONE, |m| m.sigma_t(p));
                 let p = scene.stage().map_or(p, |s| fold::into_cell(p, s.side));
                 let mut values = [0.0; BALLS];
                 for (ball, value) in values.iter_mut().enumerate() {
@@ -478,7 +478,7 @@ fn reach(scene: &Scene, sensor: &Sensor) -> f64 {
 /// The mean free path where a probe is \[L\]; infinite outside all media.
 fn mean_free_path(scene: &Scene, sensor: &Sensor) -> f64 {
     let Quantity::Fluence(p) = sensor.quantity else { return f64::INFINITY };
-    scene.medium_at(p).map_or(f64::INFINITY, |medium| 1.0 / medium.sigma_t().max())
+    scene.medium_at(p).map_or(f64::INFINITY, |medium| 1.0 / medium.sigma_t(p).max())
 }
 
 /// The next number with two digits.

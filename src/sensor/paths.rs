@@ -42,6 +42,14 @@ pub fn by_paths(scene: &Scene, settings: &PathSettings, progress: &dyn Progress)
 
 /// Whether paths can sample all that the scene's light does.
 pub(super) fn check(scene: &Scene) -> Result<()> {
+    let fills =
+        |s: &&Sensor| matches!(s.quantity, Quantity::Absorbed(number) if number >= scene.regions().len());
+    if let Some(sensor) = scene.sensors().iter().find(fills) {
+        return Err(Error::Unreachable(format!(
+            "sensor {}: paths measure what is absorbed in a region, not in what fills an interior: use photons",
+            sensor.name
+        )));
+    }
     if !scene.plan().unreachable.is_empty() {
         return Err(Error::Unreachable(format!(
             "the path tracer cannot sample every path of this scene ({}): use photons, or a light with an extent",
@@ -127,7 +135,7 @@ pub fn sample_counted(
             if scene.medium_number_at(position) == Some(region) {
                 rays = fluence(scene, position, orders, stream, |_, value| sum += value);
             }
-            sum = sum * scene.regions()[region].medium.sigma_a() * volume;
+            sum = sum * scene.regions()[region].medium.sigma_a(position) * volume;
             sum = per_power(sum, scene.power());
         }
     }
@@ -157,7 +165,7 @@ mod tests {
     fn rays_are_counted() {
         let phase = Phase::with_asymmetry(crate::math::Asymmetry::new("g", 0.0).unwrap());
         let medium = Homogeneous::new(Spectrum::ONE, Spectrum::ONE, phase).unwrap();
-        let region = Region { shape: Shape::Slab(Slab::new(0.0, 1.0).unwrap()), medium };
+        let region = Region { shape: Shape::Slab(Slab::new(0.0, 1.0).unwrap()), medium: medium.into() };
         let beam = Beam::new(DVec3::Z, Spectrum::ONE, Section::Unbounded).unwrap();
         let parts = Parts {
             regions: vec![region],

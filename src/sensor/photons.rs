@@ -5,6 +5,7 @@ use crate::Spectrum;
 use crate::error::{Error, Result};
 use crate::estimators::{Estimate, Gather, Kernel, fluence, in_scattered};
 use crate::math::{Ray, exp_m1, ln_1p};
+use crate::medium::Medium;
 use crate::photons::{Histories, Ledger, Pass, PhotonMap, fold, shoot};
 use crate::rng::{Purpose, Stream};
 use crate::scene::{Orders, Quantity, Scene, Sensor, decay};
@@ -49,10 +50,7 @@ impl PhotonReadings {
     fn book(&mut self, scene: &Scene, p: DVec3, estimate: &Estimate) {
         self.gathers += 1;
         self.underfull += u64::from(estimate.underfull);
-        let room = scene
-            .medium_number_at(p)
-            .and_then(|number| scene.regions().get(number))
-            .map_or(0.0, |r| r.shape.room(p));
+        let room = scene.room(p);
         self.beyond += u64::from(estimate.radius > room);
     }
 }
@@ -200,7 +198,7 @@ pub(super) fn margin(sensors: &[Sensor], side: f64, cap: f64) -> Result<f64> {
 /// Whether a volume map can answer a sensor.
 pub(super) fn check(scene: &Scene, sensor: &Sensor) -> Result<()> {
     match sensor.quantity {
-        Quantity::Fluence(p) if scene.medium_at(p).is_none_or(|m| m.sigma_t().min() == 0.0) => {
+        Quantity::Fluence(p) if scene.medium_at(p).is_none_or(|m| m.sigma_t(p).min() == 0.0) => {
             Err(Error::Scene(format!(
                 "sensor {}: a photon map knows the fluence inside a medium only, and ({}, {}, {}) is outside: use paths",
                 sensor.name, p.x, p.y, p.z
@@ -226,7 +224,7 @@ fn read(
     match sensor.quantity {
         Quantity::Fluence(p) => {
             let p = scene.stage().map_or(p, |s| fold::into_cell(p, s.side));
-            let sigma_t = scene.medium_at(p).map_or(Spectrum::ONE, |m| m.sigma_t());
+            let sigma_t = scene.medium_at(p).map_or(Spectrum::ONE, |m| m.sigma_t(p));
             let estimate = fluence(map, p, sigma_t, settings.kernel, settings.gather);
             result.book(scene, p, &estimate);
             estimate.value
@@ -257,28 +255,35 @@ fn radiance(
     for segment in scene.segments(ray, end, within).iter() {
         let medium = scene.medium(segment.medium);
         let before = transmittance(scene, ray, segment.interval.start, within, stream);
-        let rate = medium.sigma_t().mean();
+        let length = segment.interval.length();
+        // Any rate is right where it is not the medium's own; about one mean length wastes few samples.
+        let rate = match medium {
+            Medium::Homogeneous(medium) => medium.sigma_t().mean(),
+            Medium::Heterogeneous(_) => medium.highest_sigma_t().mean().min(1.0 / length),
+        };
         if rate == 0.0 {
             continue;
         }
-        let collects = -exp_m1(-rate * segment.interval.length());
+        let collects = -exp_m1(-rate * length);
         for stratum in 0..STRATA {
             let u = (stratum as f64 + stream.unit()) / STRATA as f64;
             let inside = -ln_1p(-u * collects) / rate;
-            let t = segment.interval.start + inside.min(segment.interval.length());
+            let t = segment.interval.start + inside.min(length);
             let p = ray.at(t);
             let p = scene.stage().map_or(p, |s| fold::into_cell(p, s.side));
-            let (phase, sigma_t) = (medium.phase(), medium.sigma_t());
+            let (phase, sigma_t) = (medium.phase(), medium.sigma_t(p));
+            if sigma_t.is_black() {
+                continue;
+            }
             let estimate = in_scattered(map, p, -ray.dir, phase, sigma_t, settings.kernel, settings.gather);
             result.book(scene, p, &estimate);
             // Density of t is rate exp(-rate t') / collects.
-            let weight = decay(medium.sigma_t() * inside) / crate::math::exp(-rate * inside);
-            sum += before
-                * weight
-                * medium.sigma_t()
-                * medium.albedo()
-                * estimate.value
-                * (collects / (rate * STRATA as f64));
+            let passed = if medium.is_homogeneous() {
+                before * (decay(sigma_t * inside) / crate::math::exp(-rate * inside))
+            } else {
+                transmittance(scene, ray, t, within, stream) / crate::math::exp(-rate * inside)
+            };
+            sum += passed * sigma_t * medium.albedo(p) * estimate.value * (collects / (rate * STRATA as f64));
         }
     }
     sum

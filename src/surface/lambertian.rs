@@ -1,5 +1,6 @@
 //! A matt surface.
 
+use super::Texture;
 use crate::Spectrum;
 use crate::error::{Error, Result};
 use crate::math::{Frame, warp};
@@ -9,7 +10,7 @@ use std::f64::consts::PI;
 /// Reflected radiance is the same in all directions: `f_r = reflectance / pi`.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Lambertian {
-    reflectance: Spectrum,
+    reflectance: Texture,
 }
 
 /// A fraction whose channels are all in [0, 1].
@@ -23,17 +24,27 @@ pub(super) fn checked(name: &'static str, fraction: Spectrum) -> Result<Spectrum
 impl Lambertian {
     /// A surface of the given reflectance \[1\], each channel in [0, 1].
     pub fn new(reflectance: Spectrum) -> Result<Self> {
-        Ok(Lambertian { reflectance: checked("reflectance", reflectance)? })
+        Ok(Lambertian { reflectance: Texture::constant("reflectance", reflectance)? })
+    }
+
+    /// A surface whose reflectance varies from place to place.
+    pub fn textured(reflectance: Texture) -> Self {
+        Lambertian { reflectance }
+    }
+
+    /// The reflectance over the whole surface.
+    pub fn texture(&self) -> &Texture {
+        &self.reflectance
     }
 
     /// Fraction of the arriving power that is reflected, at a point \[L\] with these surface parameters.
-    pub fn reflectance(&self, _position: DVec3, _uv: DVec2) -> Spectrum {
-        self.reflectance
+    pub fn reflectance(&self, position: DVec3, uv: DVec2) -> Spectrum {
+        self.reflectance.at(position, uv)
     }
 
     /// An upper bound of the reflectance, over the whole surface.
     pub fn largest_reflectance(&self) -> Spectrum {
-        self.reflectance
+        self.reflectance.brightest()
     }
 
     /// Reflection function there [1/sr].

@@ -5,12 +5,14 @@ mod dielectric;
 mod filter;
 mod lambertian;
 mod mirror;
+mod texture;
 
 pub use black::Black;
 pub use dielectric::{Dielectric, Refraction, fresnel, refract};
 pub use filter::Filter;
 pub use lambertian::Lambertian;
 pub use mirror::Mirror;
+pub use texture::{Checker, Image, Texture, Wood};
 
 use crate::Spectrum;
 use glam::{DVec2, DVec3};
@@ -55,7 +57,12 @@ impl Surface {
 
     /// Whether all channels are equal everywhere.
     pub fn is_grey(&self) -> bool {
-        self.largest_reflectance().is_grey()
+        match self {
+            Surface::Lambertian(s) => s.texture().is_grey(),
+            Surface::Mirror(s) => s.reflectance().is_grey(),
+            Surface::Filter(s) => s.texture().is_grey(),
+            Surface::Dielectric(_) | Surface::Black(_) => true,
+        }
     }
 
     /// Whether light leaves in one or two directions only, so that no other estimator can connect to it. A filter is not:

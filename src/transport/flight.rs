@@ -1,8 +1,10 @@
 //! Free flight: how far light goes before it collides.
 
+use super::track::{self, End};
 use crate::Spectrum;
 use crate::faults::{Fault, planted};
-use crate::math::{Ray, exp_m1, ln_1p};
+use crate::math::{Interval, Ray, exp_m1, ln_1p};
+use crate::medium::{Homogeneous, Medium};
 use crate::rng::Stream;
 use crate::scene::{Scene, decay};
 
@@ -27,7 +29,8 @@ pub enum Flight {
 /// Grey media: the optical depth is -ln(1-u), exactly, and the weight is unchanged. Where extinction differs by
 /// channel, one channel is chosen in proportion to its weight and the result is weighted by the balance heuristic,
 /// which keeps the summed weight. If `forced`, the flight collides for certain (where anything is in its way) and
-/// the weight carries the probability: the caller owns what passes.
+/// the weight carries the probability: the caller owns what passes. Heterogeneous media are tracked by tentative
+/// collisions, and no flight through them is forced.
 pub fn free_flight(
     scene: &Scene,
     ray: &Ray,
@@ -40,7 +43,11 @@ pub fn free_flight(
     if !scene.plan().has_media {
         return Flight::Passed(weight);
     }
+    if scene.plan().has_heterogeneous {
+        return flight_by_stretch(scene, ray, end, within, weight, stream);
+    }
     let is_grey = scene.plan().has_grey_extinction;
+    stream.work.channel_flights += u64::from(!is_grey);
     let channel = if is_grey { 0 } else { choose(weight, stream.unit()) };
     let mut target = -ln_1p(-stream.unit());
     let mut weight = weight;
@@ -57,7 +64,7 @@ pub fn free_flight(
     let segments = scene.segments(ray, end, within);
     let mut last = None;
     for segment in segments.iter() {
-        let sigma_t = scene.medium(segment.medium).sigma_t();
+        let sigma_t = scene.medium(segment.medium).matter().sigma_t();
         if sigma_t[channel] == 0.0 {
             continue;
         }
@@ -84,11 +91,57 @@ pub fn free_flight(
     }
 }
 
+/// The flight of media of which some are heterogeneous: stretch by stretch, since each forgets what was before it.
+///
+/// Homogeneous ones in closed form, with the balance heuristic over channels; others by delta tracking. Both keep the
+/// summed weight, and each channel's expectation given the weights that come in.
+fn flight_by_stretch(
+    scene: &Scene,
+    ray: &Ray,
+    end: f64,
+    within: usize,
+    weight: Spectrum,
+    stream: &mut Stream,
+) -> Flight {
+    let mut weight = weight;
+    for segment in scene.segments(ray, end, within).iter() {
+        let stretch = match scene.medium(segment.medium) {
+            Medium::Homogeneous(medium) => closed(medium, segment.interval, weight, stream),
+            Medium::Heterogeneous(medium) => track::delta(medium, ray, segment.interval, weight, stream),
+        };
+        match stretch {
+            End::Collision(t, weight) => return Flight::Collision { t, medium: segment.medium, weight },
+            End::Passed(passed) => weight = passed,
+        }
+    }
+    Flight::Passed(weight)
+}
+
+/// One stretch of a homogeneous medium.
+fn closed(medium: &Homogeneous, part: Interval, weight: Spectrum, stream: &mut Stream) -> End {
+    let sigma_t = medium.sigma_t();
+    let is_grey = sigma_t.is_grey();
+    if sigma_t.is_black() {
+        return End::Passed(weight);
+    }
+    stream.work.channel_flights += u64::from(!is_grey);
+    let channel = if is_grey { 0 } else { choose(weight, stream.unit()) };
+    let target = -ln_1p(-stream.unit());
+    let flown = if sigma_t[channel] == 0.0 { f64::INFINITY } else { target / sigma_t[channel] };
+    let kept = |weighted: Spectrum| weighted * (weight.sum() / weighted.sum());
+    if flown >= part.length() {
+        let passed = if is_grey { weight } else { kept(weight * decay(medium.depth(part.length()))) };
+        return End::Passed(passed);
+    }
+    let after = if is_grey { weight } else { kept(weight * decay(medium.depth(flown)) * sigma_t) };
+    End::Collision(part.start + flown, after)
+}
+
 fn collision(scene: &Scene, ray: &Ray, t: f64, within: usize, medium: usize, weight: Spectrum) -> Flight {
     if scene.plan().has_grey_extinction {
         return Flight::Collision { t, medium, weight };
     }
-    let density = decay(scene.optical_depth(ray, t, within)) * scene.medium(medium).sigma_t();
+    let density = decay(scene.optical_depth(ray, t, within)) * scene.medium(medium).matter().sigma_t();
     let weighted = weight * density;
     Flight::Collision { t, medium, weight: weighted * (weight.sum() / weighted.sum()) }
 }

@@ -2,15 +2,18 @@
 
 mod blocks;
 mod bounce;
+mod emission;
 mod flags;
 mod flight;
 mod roulette;
+mod track;
 mod transmittance;
 mod walk;
 
 pub use blocks::{BLOCK, NoProgress, Progress, run_blocks};
+pub use emission::{collected, emission};
 pub use flags::Flags;
 pub use flight::{Flight, free_flight};
 pub use roulette::Roulette;
-pub use transmittance::transmittance;
+pub use transmittance::{passed, transmittance};
 pub use walk::{Arrival, Step, Visitor, Walker, walk};

@@ -139,8 +139,9 @@ pub fn walk<V: Visitor>(
                     stream,
                 );
                 let medium = scene.medium(number);
-                let Some(kept) = roulette.survive(weight, medium.albedo(), stream) else {
-                    let lost = Roulette::lost(weight, medium.albedo());
+                let albedo = medium.albedo(position);
+                let Some(kept) = roulette.survive(weight, albedo, stream) else {
+                    let lost = Roulette::lost(weight, albedo);
                     visitor.visit(&walker, Step::Absorbed(lost, Some(number)), stream);
                     return;
                 };

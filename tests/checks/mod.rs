@@ -6,6 +6,7 @@ pub mod cell;
 pub mod glass;
 pub mod ledger;
 pub mod light;
+pub mod media;
 pub mod numbers;
 pub mod phase;
 pub mod point_light;

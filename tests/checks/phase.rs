@@ -10,15 +10,33 @@ use turbid::phase::{Phase, PhaseFunction};
 /// The integral over mu of 2 pi p f, where x = ln((1-mu)/(1+mu)) runs from `a` to `b`.
 ///
 /// In x both peaks are wide: the nearest singularities of the integrand lie at a height of pi, so that 20 Gauss
-/// nodes on each part of width 1 at most are exact to rounding.
+/// nodes on each part of width 1 at most are exact to rounding; kinks of the density are ends of parts.
 fn over(phase: &Phase, (a, b): (f64, f64), f: impl Fn(f64, f64) -> f64) -> f64 {
-    let parts = (b - a).ceil().max(1.0) as u32;
-    integrate(a, b, parts, |x| {
-        let s = exp(x);
-        let (one_minus_mu, one_plus_mu) = (2.0 * s / (1.0 + s), 2.0 / (1.0 + s));
-        let slope = 2.0 * s / ((1.0 + s) * (1.0 + s));
-        2.0 * PI * phase.eval(one_minus_mu, one_plus_mu) * f(one_minus_mu, one_plus_mu) * slope
-    })
+    let kinks = phase.kinks().into_iter().rev().map(|(m, p)| ln(m) - ln(p)).filter(|x| a < *x && *x < b);
+    let mut ends: Vec<f64> = kinks.collect();
+    ends.push(b);
+    let mut low = a;
+    let mut sum = 0.0;
+    for high in ends {
+        let parts = (high - low).ceil().max(1.0) as u32;
+        sum += integrate(low, high, parts, |x| {
+            let s = exp(x);
+            let (one_minus_mu, one_plus_mu) = (2.0 * s / (1.0 + s), 2.0 / (1.0 + s));
+            let slope = 2.0 * s / ((1.0 + s) * (1.0 + s));
+            2.0 * PI * phase.eval(one_minus_mu, one_plus_mu) * f(one_minus_mu, one_plus_mu) * slope
+        });
+        low = high;
+    }
+    sum
+}
+
+/// How far a stated mean cosine may be off by its own rounding. That of Henyey-Greenstein is its parameter, that of
+/// Rayleigh 0; others are sums of a few terms near 1.
+fn rounding_of_g(phase: &Phase) -> f64 {
+    match phase {
+        Phase::Isotropic(_) | Phase::HenyeyGreenstein(_) | Phase::Rayleigh(_) => 0.0,
+        Phase::TwoTerm(_) | Phase::Schlick(_) | Phase::Tabulated(_) => 32.0 * f64::EPSILON,
+    }
 }
 
 /// Beyond 90 the integrand is below e^-90 times the peak, at most 2/(1-g)^2 = 2e18.
@@ -39,8 +57,9 @@ pub fn density_has_the_moments_it_states() {
         // 1 - g and 1 + g keep every digit at the peaks, and so g its sign.
         let (backward, forward) = (over(&phase, ALL, |m, _| m), over(&phase, ALL, |_, p| p));
         let g = phase.moment(1);
-        assert!((backward / (1.0 - g) - 1.0).abs() < ROUNDING, "{phase:?}: {backward}");
-        assert!((forward / (1.0 + g) - 1.0).abs() < ROUNDING, "{phase:?}: {forward}");
+        let slack = rounding_of_g(&phase);
+        assert!((backward - (1.0 - g)).abs() < ROUNDING * (1.0 - g) + slack, "{phase:?}: {backward}");
+        assert!((forward - (1.0 + g)).abs() < ROUNDING * (1.0 + g) + slack, "{phase:?}: {forward}");
     }
 }
 
@@ -79,7 +98,7 @@ pub fn drawn_moments_are_those_stated() {
             });
             // A standard deviation of at most 1 over 2^18 values: 7.3 of 1/512 at worst. Peaks are resolved by their
             // own spread, which is heavy-tailed beyond |g| = 0.99: those have the exact tests above.
-            if phase.moment(1).abs() < 0.99 {
+            if phase.moment(1).abs() < 0.99 && phase.moment(2).abs() < 0.99 {
                 verdict::agrees(&format!("{phase:?}, P_{l}"), &drawn, (phase.moment(l), 0.0), 0.015, 3);
             }
         }

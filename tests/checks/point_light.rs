@@ -53,7 +53,7 @@ pub fn by_free_flight(scene: &Scene, nearest: f64, stream: &mut Stream) -> f64 {
         Flight::Passed(_) => 0.0,
         Flight::Collision { t, .. } => {
             let r2 = ray(nearest).at(t).length_squared();
-            let medium = &scene.regions()[0].medium;
+            let medium = scene.regions()[0].medium.matter();
             medium.albedo()[0] / FOUR_PI * exp(-medium.sigma_t()[0] * r2.sqrt()) / (FOUR_PI * r2)
         }
     }

@@ -1,6 +1,8 @@
 //! One row a fault: where it was seen, what it is here, and which check catches it.
 
-use crate::checks::{cell, glass, ledger, light, numbers, phase, point_light, points, slab, threads, walls};
+use crate::checks::{
+    cell, glass, ledger, light, media, numbers, phase, point_light, points, slab, threads, walls,
+};
 use crate::support::scenes::{area_light, cuboid, rectangle};
 use glam::DVec3;
 use turbid::Spectrum;
@@ -132,6 +134,16 @@ const fn inside(fault: Fault) -> Row {
         Fault::RejectedSetRadius => ("rejected photons set the radius", "the_k_nearest_are_accepted", |_| {
             walls::the_k_nearest_are_accepted()
         }),
+        Fault::GridHalfCellOff => {
+            ("a grid's samples half a cell off", "samples_lie_in_the_middles_of_cells", |_| {
+                media::samples_lie_in_the_middles_of_cells()
+            })
+        }
+        Fault::NullWeightForgotten => (
+            "weights unchanged where a tentative collision is none",
+            "each_channel_passes_as_its_depth_says",
+            |_| media::each_channel_passes_as_its_depth_says(),
+        ),
         Fault::StepForgotten => {
             ("a march forgets its step", "a_constant_source_is_marched_to_its_integral", |_| {
                 walls::a_constant_source_is_marched_to_its_integral()
@@ -226,6 +238,8 @@ pub const ROWS: &[Row] = &[
     inside(Fault::DirectInVolumeMap),
     inside(Fault::CausticTwice),
     inside(Fault::StoredOnSurfaces),
+    inside(Fault::GridHalfCellOff),
+    inside(Fault::NullWeightForgotten),
     outside("normal quantiles for 8 numbers", "false_alarms_are_as_rare_as_promised", |wrong| {
         numbers::false_alarms_are_as_rare_as_promised(if wrong { normal_p } else { |z| student_p(z, 7) })
     }),

@@ -51,7 +51,8 @@ fn the_later_region_counts_where_they_overlap() {
         let step = 1e-3;
         let sum: f64 = (0..14_000)
             .map(|i| {
-                scene.medium_at(ray.at((f64::from(i) + 0.5) * step)).map_or(0.0, |m| m.sigma_t()[0] * step)
+                let p = ray.at((f64::from(i) + 0.5) * step);
+                scene.medium_at(p).map_or(0.0, |m| m.sigma_t(p)[0] * step)
             })
             .sum();
         // Each of at most 8 ends is misplaced by half a step.

@@ -9,7 +9,9 @@ mod common;
 mod support;
 
 mod flight;
+mod fresnel;
 mod lights;
+mod media;
 mod phase;
 mod projection;
 mod roulette;

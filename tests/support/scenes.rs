@@ -6,7 +6,7 @@ use turbid::Spectrum;
 use turbid::geometry::{Cuboid, Face, Rectangle, Shape, Slab, Sphere};
 use turbid::light::{Area, Beam, Faces, Isotropic, Light, Point, Section, VolumeSource};
 use turbid::math::{Asymmetry, FOUR_PI};
-use turbid::medium::Homogeneous;
+use turbid::medium::{Homogeneous, Medium};
 use turbid::phase::Phase;
 use turbid::scene::{Interior, Object, Parts, Quantity, Region, Scene};
 use turbid::surface::{Dielectric, Lambertian, Surface};
@@ -25,8 +25,9 @@ pub enum Incidence {
     Both,
 }
 
-pub fn homogeneous(sigma_t: Spectrum, albedo: Spectrum, g: f64) -> Homogeneous {
-    Homogeneous::new(sigma_t, albedo, Phase::with_asymmetry(Asymmetry::try_from(g).unwrap())).unwrap()
+pub fn homogeneous(sigma_t: Spectrum, albedo: Spectrum, g: f64) -> Medium {
+    let phase = Phase::with_asymmetry(Asymmetry::try_from(g).unwrap());
+    Homogeneous::new(sigma_t, albedo, phase).unwrap().into()
 }
 
 pub fn region(shape: Shape, sigma_t: f64, albedo: f64, g: f64) -> Region {
@@ -135,7 +136,7 @@ pub fn around(tau: f64) -> Shape {
 }
 
 /// An interior of some index of refraction, filled.
-pub fn filled(name: &str, index: f64, medium: Homogeneous) -> Interior {
+pub fn filled(name: &str, index: f64, medium: Medium) -> Interior {
     Interior { name: name.into(), index, medium: Some(medium) }
 }
 

@@ -203,7 +203,7 @@ impl Field {
             Lit::Glow => Light::VolumeSource(VolumeSource::new(shape.clone(), Spectrum::ONE)?),
         };
         let cell = matches!(self.fog, Fog::Slab { .. }).then_some(CELL);
-        let regions = vec![Region { shape, medium }];
+        let regions = vec![Region { shape, medium: medium.into() }];
         Ok(Scene::new(Parts { regions, lights: vec![light], cell, ..Parts::default() })?)
     }
 

@@ -48,6 +48,6 @@ pub fn scene() -> anyhow::Result<Scene> {
     let fog = Cuboid::new(corner, DVec3::new(WIDTH + 1.0, LENGTH + 1.0, THICKNESS))?;
     let section = Rectangle::new(DVec3::new(0.0, 0.0, -0.5), DVec3::X * WIDTH, DVec3::Y * LENGTH)?;
     let beam = Beam::new(DVec3::Z, Spectrum::ONE, Section::Rectangle(section))?;
-    let regions = vec![Region { shape: Shape::Cuboid(fog), medium }];
+    let regions = vec![Region { shape: Shape::Cuboid(fog), medium: medium.into() }];
     Ok(Scene::new(Parts { regions, lights: vec![Light::Beam(beam)], ..Parts::default() })?)
 }

@@ -185,7 +185,7 @@ impl Field {
             Light::Beam(Beam::new(DVec3::Z, Spectrum::ONE, Section::Unbounded)?)
         };
         let cell = matches!(shape, Shape::Slab(_)).then_some(CELL);
-        let regions = vec![Region { shape, medium }];
+        let regions = vec![Region { shape, medium: medium.into() }];
         Ok(Scene::new(Parts { regions, lights: vec![light], cell, ..Parts::default() })?)
     }
 

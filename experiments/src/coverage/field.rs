@@ -41,7 +41,7 @@ const TARGET: f64 = 0.05;
 pub fn scene() -> anyhow::Result<Scene> {
     let phase = Phase::with_asymmetry(Asymmetry::new("g", 0.0)?);
     let medium = Homogeneous::new(Spectrum::ONE, Spectrum::ZERO, phase)?;
-    let region = Region { shape: Shape::Slab(Slab::new(0.0, TAU)?), medium };
+    let region = Region { shape: Shape::Slab(Slab::new(0.0, TAU)?), medium: medium.into() };
     let beam = Beam::new(DVec3::Z, Spectrum::ONE, Section::Unbounded)?;
     let lights = vec![Light::Beam(beam)];
     Ok(Scene::new(Parts { regions: vec![region], lights, cell: Some(CELL), ..Parts::default() })?)

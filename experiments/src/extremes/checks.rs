@@ -173,7 +173,7 @@ fn in_unit(settings: &Settings, unit: f64) -> anyhow::Result<Vec<f64>> {
         numbers.extend(pass.tallies.iter().flat_map(|t| [t[0].mean(), t[0].std_error()]));
         numbers.extend(pass.photons.iter().flat_map(|p| (p.position / unit).to_array()));
         let map = PhotonMap::new(pass.photons, pass.emitted)?;
-        let sigma_t = scene.regions()[0].medium.sigma_t();
+        let sigma_t = scene.regions()[0].medium.matter().sigma_t();
         for depth in [0.0, 0.25, 0.5, 0.9].map(|part| part * fog.tau) {
             let point = at_depth(depth, unit);
             for gather in

@@ -27,7 +27,8 @@ pub struct Fog {
 
 fn region(shape: Shape, sigma_t: f64, albedo: f64, g: f64) -> turbid::Result<Region> {
     let phase = Phase::with_asymmetry(Asymmetry::new("g", g)?);
-    Ok(Region { shape, medium: Homogeneous::new(Spectrum::grey(sigma_t), Spectrum::grey(albedo), phase)? })
+    let medium = Homogeneous::new(Spectrum::grey(sigma_t), Spectrum::grey(albedo), phase)?;
+    Ok(Region { shape, medium: medium.into() })
 }
 
 /// The slab under unit irradiance, one mean free path being `unit` scene lengths.

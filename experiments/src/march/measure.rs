@@ -31,7 +31,7 @@ fn medium() -> turbid::Result<Homogeneous> {
 
 /// The slab under a normal beam of irradiance 1; lengths are mean free paths.
 fn scene() -> anyhow::Result<Scene> {
-    let region = Region { shape: Shape::Slab(Slab::new(0.0, TAU)?), medium: medium()? };
+    let region = Region { shape: Shape::Slab(Slab::new(0.0, TAU)?), medium: medium()?.into() };
     let lights = vec![Light::Beam(Beam::new(DVec3::Z, Spectrum::ONE, Section::Unbounded)?)];
     Ok(Scene::new(Parts { regions: vec![region], lights, cell: Some(CELL), ..Parts::default() })?)
 }

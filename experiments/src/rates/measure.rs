@@ -28,7 +28,7 @@ pub fn cells(settings: &Settings) -> Vec<CellId> {
 /// The slab under a normal beam of irradiance 1, without scattering; lengths are mean free paths.
 fn scene() -> anyhow::Result<Scene> {
     let medium = Homogeneous::new(Spectrum::ONE, Spectrum::ZERO, Phase::Isotropic(Isotropic))?;
-    let region = Region { shape: Shape::Slab(Slab::new(0.0, TAU)?), medium };
+    let region = Region { shape: Shape::Slab(Slab::new(0.0, TAU)?), medium: medium.into() };
     let lights = vec![Light::Beam(Beam::new(DVec3::Z, Spectrum::ONE, Section::Unbounded)?)];
     Ok(Scene::new(Parts { regions: vec![region], lights, cell: Some(CELL), ..Parts::default() })?)
 }

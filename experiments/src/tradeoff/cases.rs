@@ -236,7 +236,7 @@ impl Body {
                 (Light::VolumeSource(VolumeSource::new(shape.clone(), Spectrum::ONE)?), None)
             }
         };
-        let regions = vec![Region { shape, medium }];
+        let regions = vec![Region { shape, medium: medium.into() }];
         Ok(Scene::new(Parts { regions, lights: vec![light], cell, ..Parts::default() })?)
     }
 }

@@ -19,14 +19,14 @@ use glam::DVec3;
 /// rule is exact but for the Gaussian kernel, 1e-8 where an edge of a cuboid is in the ball (by cutting it into
 /// pieces)
 /// # Limits
-/// a rectangle has no inside: all moments are 0
+/// a shape that is not solid has no inside: all moments are 0
 pub fn body_moments(kernel: Kernel, body: &Shape, point: DVec3, radius: f64) -> [f64; 3] {
-    if body.room(point) >= radius && !matches!(body, Shape::Rectangle(_)) {
+    if body.room(point) >= radius && body.is_solid() {
         return [1.0, 0.0, kernel.m2() / 3.0];
     }
     let scaled = |distance: f64| distance.max(0.0) / radius;
     match body {
-        Shape::Rectangle(_) => [0.0; 3],
+        Shape::Rectangle(_) | Shape::Mesh(_) | Shape::Lathe(_) => [0.0; 3],
         Shape::Sphere(sphere) => in_sphere(kernel, sphere, point, radius),
         Shape::Slab(slab) => {
             let z = [point.z - slab.top(), slab.face(Face::Bottom) - point.z];
@@ -52,6 +52,8 @@ pub(super) fn inward_normal(body: &Shape, point: DVec3) -> DVec3 {
             nearer(low[axis], high[axis], DVec3::AXES[axis])
         }
         Shape::Rectangle(rectangle) => rectangle.normal(),
+        // Not solid: no treatment of a boundary asks them.
+        Shape::Mesh(_) | Shape::Lathe(_) => DVec3::Z,
     }
 }
 

@@ -103,7 +103,7 @@ impl<'a> Sieve<'a> {
 }
 
 /// The foot on a wall. A rectangle has one under the points that it covers; where only its plane matters, as for
-/// seeing past it, the foot on the plane stands for it.
+/// seeing past it, the foot on the plane stands for it. Meshes and lathes have none: no closed form says where.
 fn foot(wall: &Shape, p: DVec3, rejection: Rejection) -> Option<Foot> {
     // On the wall itself the side is that of the outward normal.
     let from = |place: DVec3, outward: DVec3| {
@@ -140,5 +140,6 @@ fn foot(wall: &Shape, p: DVec3, rejection: Rejection) -> Option<Foot> {
             }
             Some(from(place, outward))
         }
+        Shape::Mesh(_) | Shape::Lathe(_) => None,
     }
 }

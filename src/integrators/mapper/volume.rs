@@ -6,10 +6,11 @@ use crate::estimators::boundary::{Boundary, Treatment, treated_in_scattered};
 use crate::estimators::in_scattered;
 use crate::integrators::StepRule;
 use crate::math::{Interval, Ray, cosine_pair, exp, exp_m1, ln_1p};
+use crate::medium::Medium;
 use crate::phase::PhaseFunction;
 use crate::rng::Stream;
 use crate::scene::decay;
-use crate::transport::{Walker, transmittance};
+use crate::transport::{Walker, passed, transmittance};
 use glam::DVec3;
 
 /// A ray is followed until less than this is left of what comes from farther away: far below what a picture's single
@@ -63,9 +64,10 @@ impl Mapper<'_> {
                 }
             };
             report.volume.add(&estimate);
-            multiple = medium.sigma_t().map(|s| if s == 0.0 { 0.0 } else { 1.0 / s }) * estimate.value;
+            let sigma_t = medium.sigma_t(position);
+            multiple = sigma_t.map(|s| if s == 0.0 { 0.0 } else { 1.0 / s }) * estimate.value;
         }
-        let albedo = medium.albedo();
+        let albedo = medium.albedo(position);
         Scattered { single: albedo * single, multiple: albedo * multiple }
     }
 }
@@ -95,8 +97,8 @@ impl Eye<'_, '_> {
     ) {
         let mapper = self.mapper;
         let march = &mapper.settings.march;
-        let sigma_t = mapper.scene.medium(number).sigma_t();
-        if sigma_t.max() == 0.0 {
+        let medium = mapper.scene.medium(number);
+        if !medium.is_colliding() {
             return;
         }
         let (longest, least) = (march.step.get(), LEFT * seen.max());
@@ -107,10 +109,25 @@ impl Eye<'_, '_> {
             // What rounding leaves of the last step joins it.
             let rest = span.end - t;
             let dx = if rest < length * (1.0 + 1e-9) { rest } else { length };
-            let step = Placed::in_step(march.rule, march.is_jittered, sigma_t, dx, stream);
+            let step = match medium {
+                Medium::Homogeneous(medium) => {
+                    Placed::in_step(march.rule, march.is_jittered, medium.sigma_t(), dx, stream)
+                }
+                Medium::Heterogeneous(_) => {
+                    let place =
+                        if march.is_jittered { stream.unit() * dx } else { march.rule.place(0.0, dx) };
+                    let before = Interval { start: t, end: t + place };
+                    Placed { place, weight: passed(medium, &walker.ray, before, stream) * dx }
+                }
+            };
             self.report.steps += 1;
             let position = walker.ray.at(t + step.place);
-            let scattered = mapper.scattered(walker, position, number, &mut self.report, stream);
+            let sigma_t = medium.sigma_t(position);
+            let scattered = if sigma_t.is_black() {
+                Scattered { single: Spectrum::ZERO, multiple: Spectrum::ZERO }
+            } else {
+                mapper.scattered(walker, position, number, &mut self.report, stream)
+            };
             if let Some(adaptive) = &march.adaptive {
                 let source = scattered.single + scattered.multiple;
                 let change = before.map_or(0.0, |before| relative_change(before, source));
@@ -126,7 +143,13 @@ impl Eye<'_, '_> {
             let weight = seen * sigma_t * step.weight;
             self.layers.single += weight * scattered.single;
             self.layers.multiple += weight * scattered.multiple;
-            seen *= decay(sigma_t * dx);
+            seen *= match medium {
+                Medium::Homogeneous(_) => decay(sigma_t * dx),
+                Medium::Heterogeneous(_) => {
+                    let behind = Interval { start: t + step.place, end: t + dx };
+                    step.weight / dx * passed(medium, &walker.ray, behind, stream)
+                }
+            };
             t += dx;
             if dx == rest {
                 return;

@@ -2,7 +2,7 @@
 
 use super::Channels;
 use crate::error::{Error, Result};
-use crate::math::{Albedo, Asymmetry, NonNegative};
+use crate::math::{Albedo, Asymmetry, Index, NonNegative};
 use crate::medium::Homogeneous;
 use crate::phase::Phase;
 use crate::scene::Interior;
@@ -16,7 +16,7 @@ pub struct InteriorFile {
     /// What dielectric surfaces call it.
     pub name: String,
     /// Index of refraction \[1\], at least 1.
-    pub index: f64,
+    pub index: Index,
     /// Extinction [1/L].
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub sigma_t: Option<Channels<NonNegative>>,
@@ -34,7 +34,7 @@ impl InteriorFile {
             (None, None, None) => None,
             (Some(sigma_t), Some(albedo), Some(g)) => {
                 let phase = Phase::with_asymmetry(g);
-                Some(Homogeneous::new(sigma_t.spectrum(), albedo.spectrum(), phase)?)
+                Some(Homogeneous::new(sigma_t.spectrum(), albedo.spectrum(), phase)?.into())
             }
             _ => {
                 return Err(Error::Scene(format!(
@@ -43,7 +43,7 @@ impl InteriorFile {
                 )));
             }
         };
-        Ok(Interior { name: self.name.clone(), index: self.index, medium })
+        Ok(Interior { name: self.name.clone(), index: self.index.get(), medium })
     }
 }
 

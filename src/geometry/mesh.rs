@@ -1,0 +1,256 @@
+//! A surface of triangles.
+
+mod obj;
+mod tree;
+mod triangle;
+
+use super::{Hit, remainder};
+use crate::error::{Error, Result};
+use crate::math::Ray;
+use glam::{DVec2, DVec3};
+use std::collections::HashMap;
+use tree::Tree;
+use triangle::Shear;
+
+/// Triangles, searched through a tree of single-precision boxes and met in double precision.
+///
+/// Corners run counter-clockwise seen from outside. Triangles that share an edge leave no gap: a ray into a closed
+/// mesh always comes out.
+#[derive(Debug, Clone)]
+pub struct Mesh {
+    /// Corners in the tree's order: the number of a triangle is its place here.
+    corners: Vec<[DVec3; 3]>,
+    /// Surface parameters at the corners, where the mesh has any.
+    uvs: Option<Vec<[DVec2; 3]>>,
+    tree: Tree,
+    bounds: (DVec3, DVec3),
+    /// Sum of the areas up to and with each triangle [L^2].
+    areas: Vec<f64>,
+    dropped: usize,
+    /// How far a point computed on the mesh may be off its triangle's plane \[L\].
+    rounding: f64,
+}
+
+impl PartialEq for Mesh {
+    fn eq(&self, other: &Mesh) -> bool {
+        self.corners == other.corners && self.uvs == other.uvs
+    }
+}
+
+/// Positions on the mesh are `origin + dir t` with t up to 1000 times the largest coordinate: that rounds to 2^-43
+/// of it, and the sum once more.
+const ROUNDING: f64 = 1.0 / (1u64 << 42) as f64;
+
+/// Part of the mesh's extent within which a meeting may be that with the edge from which the ray starts.
+const NEAR: f64 = 1.0 / (1u64 << 20) as f64;
+
+impl Mesh {
+    /// A mesh from corner positions \[L\], three places among them for each triangle, and surface parameters by
+    /// triangle where there are any.
+    ///
+    /// Triangles without area are dropped, since they have no normal ([`Mesh::dropped`] counts them).
+    ///
+    /// # Errors     `Error::Scene` for positions that are not finite, places outside the list, or nothing left
+    pub fn new(positions: &[DVec3], triangles: &[[u32; 3]], uvs: Option<&[[DVec2; 3]]>) -> Result<Self> {
+        if let Some(bad) = positions.iter().position(|p| !p.is_finite()) {
+            return Err(Error::Scene(format!("corner {} of a mesh is not finite", bad + 1)));
+        }
+        if uvs.is_some_and(|uvs| uvs.len() != triangles.len() || uvs.iter().flatten().any(|c| !c.is_finite()))
+        {
+            return Err(Error::Scene("a mesh needs finite surface parameters for every triangle".into()));
+        }
+        let corner = |place: u32| {
+            positions.get(place as usize).copied().ok_or_else(|| {
+                Error::Scene(format!(
+                    "a triangle names corner {place}; allowed: 0 to {}",
+                    positions.len() as i64 - 1
+                ))
+            })
+        };
+        let (mut corners, mut kept) =
+            (Vec::with_capacity(triangles.len()), Vec::with_capacity(triangles.len()));
+        for (i, [a, b, c]) in triangles.iter().enumerate() {
+            let triangle = [corner(*a)?, corner(*b)?, corner(*c)?];
+            if unit_normal(&triangle).is_some() {
+                corners.push(triangle);
+                kept.push(i);
+            }
+        }
+        let dropped = triangles.len() - corners.len();
+        if corners.is_empty() {
+            return Err(Error::Scene(format!(
+                "a mesh needs a triangle with an area; here none of {dropped}"
+            )));
+        }
+        let boxes: Vec<(DVec3, DVec3)> =
+            corners.iter().map(|[a, b, c]| (a.min(*b).min(*c), a.max(*b).max(*c))).collect();
+        let bounds = boxes.iter().fold(boxes[0], |(a, b), x| (a.min(x.0), b.max(x.1)));
+        let rounding = ROUNDING * bounds.0.abs().max(bounds.1.abs()).max_element();
+        let (tree, order) = Tree::new(&boxes, rounding)?;
+        let corners: Vec<[DVec3; 3]> = order.iter().map(|&i| corners[i as usize]).collect();
+        let uvs = uvs.map(|uvs| order.iter().map(|&i| uvs[kept[i as usize]]).collect());
+        let mut sum = 0.0;
+        let areas = corners
+            .iter()
+            .map(|[a, b, c]| {
+                sum += 0.5 * (b - a).cross(c - a).length();
+                sum
+            })
+            .collect();
+        Ok(Mesh { corners, uvs, tree, bounds, areas, dropped, rounding })
+    }
+
+    /// A mesh from a Wavefront OBJ file, each position where `place` puts it: `v`, `vt` and `f` are read, polygons become
+    /// fans, the rest is passed over.
+    ///
+    /// # Errors     `Error::Scene` with file and line for what cannot be read
+    pub fn read(path: &std::path::Path, place: impl Fn(DVec3) -> DVec3) -> Result<Self> {
+        obj::read(path, place)
+    }
+
+    /// Number of triangles.
+    pub fn len(&self) -> usize {
+        self.corners.len()
+    }
+
+    /// Whether there is no triangle: never.
+    pub fn is_empty(&self) -> bool {
+        self.corners.is_empty()
+    }
+
+    /// Corners of a triangle \[L\], by its number in [`Hit::primitive`].
+    pub fn triangle(&self, primitive: u32) -> [DVec3; 3] {
+        self.corners[primitive as usize]
+    }
+
+    /// Number of triangles without area that were left out.
+    pub fn dropped(&self) -> usize {
+        self.dropped
+    }
+
+    /// Lower and upper corner of the box around it \[L\].
+    pub fn bounds(&self) -> (DVec3, DVec3) {
+        self.bounds
+    }
+
+    /// The first triangle ahead; `from` is the triangle that the ray starts on.
+    pub fn hit(&self, ray: &Ray, from: Option<u32>) -> Option<Hit> {
+        let shear = Shear::new(ray);
+        let mut best: Option<(usize, f64, [f64; 3])> = None;
+        self.tree.search(ray, f64::INFINITY, |index, end| {
+            if from == Some(index as u32) {
+                return end;
+            }
+            let corners = &self.corners[index];
+            let Some(meeting) = shear.meet(corners) else { return end };
+            let Some(t) = self.ahead(ray, meeting.t, corners, from) else { return end };
+            // At an edge that several share, the one of the lowest number: whatever order the tree looks in.
+            if best.is_none_or(|(other, nearest, _)| t < nearest || (t == nearest && index < other)) {
+                best = Some((index, t, meeting.weights));
+            }
+            best.map_or(end, |(_, nearest, _)| nearest)
+        });
+        let (index, t, weights) = best?;
+        let normal = unit_normal(&self.corners[index])?;
+        let uv = match &self.uvs {
+            Some(uvs) => (0..3).fold(DVec2::ZERO, |sum, i| sum + uvs[index][i] * weights[i]),
+            None => DVec2::new(weights[1], weights[2]),
+        };
+        Some(Hit { t, normal, uv, primitive: index as u32 })
+    }
+
+    /// The distance of a meeting that lies ahead, or none.
+    ///
+    /// Near the edge from which a ray starts rounding decides whether the neighbour is met just ahead or just behind.
+    /// There the shape decides: the neighbour is ahead if the start's triangle rises on the side of it from which the
+    /// ray comes, as in a hollow, and is not on a ridge or in a plane; and a ray that is outside can only enter.
+    #[inline]
+    fn ahead(&self, ray: &Ray, t: f64, corners: &[DVec3; 3], from: Option<u32>) -> Option<f64> {
+        let extent = (self.bounds.1 - self.bounds.0).max_element();
+        let Some(from) = from.filter(|_| t.abs() <= NEAR * extent) else { return (t > 0.0).then_some(t) };
+        let normal = unit_normal(corners)?;
+        let cosine = ray.dir.dot(normal);
+        if (t * cosine).abs() > self.rounding {
+            return (t > 0.0).then_some(t);
+        }
+        let start = &self.corners[from as usize];
+        let rise = |p: &DVec3| (*p - corners[0]).dot(normal) * -cosine.signum();
+        let is_hollow = start.iter().any(|p| rise(p) > self.rounding);
+        let enters_or_leaves = unit_normal(start)?.dot(ray.dir) * cosine < 0.0;
+        (is_hollow && enters_or_leaves).then_some(t.max(0.0))
+    }
+
+    /// Whether a point lies inside a closed mesh: the first crossing of a ray from it tells.
+    pub fn contains(&self, p: DVec3) -> bool {
+        let ray = Ray::new(p, DVec3::new(0.48, 0.6, 0.64));
+        let shear = Shear::new(&ray);
+        // The nearest crossing leaves the body if the point is inside.
+        let mut nearest = (f64::INFINITY, 0.0);
+        self.tree.search(&ray, f64::INFINITY, |index, end| {
+            let corners = &self.corners[index];
+            if let Some(meeting) = shear.meet(corners)
+                && meeting.t > 0.0
+                && meeting.t < nearest.0
+                && let Some(normal) = unit_normal(corners)
+            {
+                nearest = (meeting.t, normal.dot(ray.dir));
+            }
+            end.min(nearest.0)
+        });
+        nearest.1 > 0.0
+    }
+
+    /// Whether every edge joins two triangles that turn the same way: then the mesh has an inside.
+    pub fn is_closed(&self) -> bool {
+        let bits = |p: DVec3| (p + 0.0).to_array().map(f64::to_bits);
+        let mut edges: HashMap<[[u64; 3]; 2], i32> = HashMap::with_capacity(self.corners.len() * 3 / 2);
+        for triangle in &self.corners {
+            for i in 0..3 {
+                let (a, b) = (bits(triangle[i]), bits(triangle[(i + 1) % 3]));
+                let (key, turn) = if a < b { ([a, b], 1) } else { ([b, a], -1) };
+                *edges.entry(key).or_default() += turn;
+            }
+        }
+        edges.values().all(|&turns| turns == 0)
+    }
+
+    /// Area [L^2] of the outer sides.
+    pub fn area(&self) -> f64 {
+        self.areas.last().copied().unwrap_or(0.0)
+    }
+
+    /// Volume that a closed mesh encloses [L^3]: the sum of the pyramids over its triangles.
+    pub fn volume(&self) -> f64 {
+        let middle = 0.5 * (self.bounds.0 + self.bounds.1);
+        let pyramid = |[a, b, c]: &[DVec3; 3]| (a - middle).dot((b - middle).cross(c - middle)) / 6.0;
+        self.corners.iter().map(pyramid).sum()
+    }
+
+    /// A uniform point of the surface, the outward normal there and the number of its triangle, from two numbers
+    /// in [0, 1).
+    pub fn sample_surface(&self, [u, w]: [f64; 2]) -> (DVec3, DVec3, u32) {
+        let target = u * self.area();
+        let index = self.areas.partition_point(|&sum| sum <= target).min(self.corners.len() - 1);
+        let [a, b, c] = self.corners[index];
+        let v = remainder(&self.areas, index, target);
+        // The square folded into a triangle: the root of v is the distance from the first corner.
+        let root = v.sqrt();
+        let p = a * (1.0 - root) + b * (root * (1.0 - w)) + c * (root * w);
+        (p, unit_normal(&self.corners[index]).unwrap_or(DVec3::Z), index as u32)
+    }
+
+    /// Shortest edge of the box around it \[L\].
+    pub fn shortest_extent(&self) -> f64 {
+        (self.bounds.1 - self.bounds.0).min_element()
+    }
+}
+
+/// The outward unit normal of a triangle, none without an area. Edges are scaled first, so that no size underflows.
+fn unit_normal([a, b, c]: &[DVec3; 3]) -> Option<DVec3> {
+    let (u, v) = (b - a, c - a);
+    let size = u.abs().max(v.abs()).max_element();
+    if size == 0.0 {
+        return None;
+    }
+    (u / size).cross(v / size).try_normalize()
+}

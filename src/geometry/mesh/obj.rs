@@ -1,0 +1,209 @@
+//! Meshes from Wavefront OBJ files.
+//!
+//! Read here and not by a crate, since the crates' errors do not say in which line a file is wrong.
+
+use super::Mesh;
+use crate::error::{Error, Result};
+use glam::{DVec2, DVec3};
+use std::path::Path;
+
+/// Statements that say nothing about the triangles.
+const PASSED_OVER: [&str; 16] = [
+    "vn",
+    "vp",
+    "g",
+    "o",
+    "s",
+    "mg",
+    "usemtl",
+    "mtllib",
+    "l",
+    "p",
+    "lod",
+    "bevel",
+    "c_interp",
+    "d_interp",
+    "shadow_obj",
+    "trace_obj",
+];
+
+/// What has been read so far.
+#[derive(Default)]
+struct Obj {
+    positions: Vec<DVec3>,
+    parameters: Vec<DVec2>,
+    triangles: Vec<[u32; 3]>,
+    uvs: Vec<[DVec2; 3]>,
+    has_uvs: bool,
+}
+
+pub fn read(path: &Path, place: impl Fn(DVec3) -> DVec3) -> Result<Mesh> {
+    let name = path.display();
+    let bytes = std::fs::read(path).map_err(|e| Error::Scene(format!("{name}: {e}")))?;
+    parse(&String::from_utf8_lossy(&bytes), place).map_err(|e| match e {
+        Failure::At(line, what) => Error::Scene(format!("{name}:{line}: {what}")),
+        Failure::Whole(what) => Error::Scene(format!("{name}: {what}")),
+    })
+}
+
+/// What is wrong, and in which line if in one.
+#[derive(Debug, PartialEq)]
+enum Failure {
+    At(usize, String),
+    Whole(String),
+}
+
+fn parse(text: &str, place: impl Fn(DVec3) -> DVec3) -> std::result::Result<Mesh, Failure> {
+    let mut obj = Obj::default();
+    for (i, line) in text.lines().enumerate() {
+        let line = line.split('#').next().unwrap_or_default();
+        obj.statement(line).map_err(|what| Failure::At(i + 1, what))?;
+    }
+    if obj.triangles.is_empty() {
+        return Err(Failure::Whole("no faces; a mesh needs at least one line `f`".into()));
+    }
+    let positions: Vec<DVec3> = obj.positions.into_iter().map(place).collect();
+    let uvs = obj.has_uvs.then_some(&obj.uvs[..]);
+    Mesh::new(&positions, &obj.triangles, uvs).map_err(|e| Failure::Whole(e.to_string()))
+}
+
+impl Obj {
+    fn statement(&mut self, line: &str) -> std::result::Result<(), String> {
+        let mut words = line.split_whitespace();
+        match words.next() {
+            None => Ok(()),
+            Some("v") => {
+                // Some programs add a weight or a color, which say nothing about the place.
+                let numbers = numbers(words)?;
+                let [x, y, z, ..] = numbers[..] else {
+                    return Err(format!("a vertex `v` of {} numbers; allowed: x y z", numbers.len()));
+                };
+                self.positions.push(DVec3::new(x, y, z));
+                Ok(())
+            }
+            Some("vt") => {
+                let numbers = numbers(words)?;
+                let [u, ref rest @ ..] = numbers[..] else {
+                    return Err("surface parameters `vt` without a number; allowed: u, or u v".into());
+                };
+                self.parameters.push(DVec2::new(u, rest.first().copied().unwrap_or(0.0)));
+                Ok(())
+            }
+            Some("f") => self.face(words),
+            Some(word) if PASSED_OVER.contains(&word) => Ok(()),
+            Some(word) => {
+                Err(format!("unknown statement `{word}`; allowed: v, vt, vn, f, o, g, s, mtllib, usemtl"))
+            }
+        }
+    }
+
+    /// A polygon as a fan about its first corner, which is right for convex ones.
+    fn face<'a>(&mut self, words: impl Iterator<Item = &'a str>) -> std::result::Result<(), String> {
+        let corners: Vec<(u32, Option<DVec2>)> =
+            words.map(|word| self.corner(word)).collect::<std::result::Result<_, _>>()?;
+        if corners.len() < 3 {
+            return Err(format!("a face of {} corners; allowed: 3 or more", corners.len()));
+        }
+        for pair in corners[1..].windows(2) {
+            let triangle = [corners[0], pair[0], pair[1]];
+            self.triangles.push(triangle.map(|(place, _)| place));
+            let given = triangle.map(|(_, uv)| uv);
+            if let [Some(a), Some(b), Some(c)] = given {
+                self.has_uvs = true;
+                self.uvs.push([a, b, c]);
+            } else {
+                self.uvs.push([DVec2::ZERO, DVec2::X, DVec2::Y]);
+            }
+        }
+        Ok(())
+    }
+
+    /// `position`, `position/parameters`, `position//normal` or `position/parameters/normal`.
+    fn corner(&self, word: &str) -> std::result::Result<(u32, Option<DVec2>), String> {
+        let mut parts = word.split('/');
+        let first = parts.next().unwrap_or_default();
+        let position = place(first, self.positions.len(), "vertex")?;
+        let uv = match parts.next() {
+            None | Some("") => None,
+            Some(part) => Some(self.parameters[place(part, self.parameters.len(), "vt")?]),
+        };
+        Ok((position as u32, uv))
+    }
+}
+
+/// A place in a list: counted from 1, or backwards from the end with -1.
+fn place(word: &str, count: usize, what: &str) -> std::result::Result<usize, String> {
+    let allowed = || {
+        if count == 0 {
+            format!("no {what} stands before this line")
+        } else {
+            format!("allowed: 1 to {count}, or -{count} to -1")
+        }
+    };
+    let index: i64 = word
+        .parse()
+        .map_err(|_| format!("a face names {what} `{word}`, which is no whole number; {}", allowed()))?;
+    let from_start = if index < 0 { index + count as i64 } else { index - 1 };
+    usize::try_from(from_start)
+        .ok()
+        .filter(|i| *i < count)
+        .ok_or_else(|| format!("a face names {what} {index}; {}", allowed()))
+}
+
+/// Finite numbers.
+fn numbers<'a>(words: impl Iterator<Item = &'a str>) -> std::result::Result<Vec<f64>, String> {
+    words
+        .map(|word| match word.parse::<f64>() {
+            Ok(number) if number.is_finite() => Ok(number),
+            _ => Err(format!("`{word}` is no finite number")),
+        })
+        .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A quadrilateral as two triangles; indices from the end, with and without parameters.
+    #[test]
+    fn polygons_and_places() {
+        let text = "# square\nv 0 0 0\nv 1 0 0 # right\nv 1 1 0\r\nv 0 1 0 1.0\n\nvt 0 0\nvt 1 1 0\nvn 0 0 1\n\
+                    usemtl x\nf -4/1/1 2/2 3/-1/1 4/1\nf 1//1 2//1 3\n";
+        let mesh = parse(text, |p| p).unwrap();
+        assert_eq!((mesh.len(), mesh.area()), (3, 1.5));
+    }
+
+    /// Each wrong file names its line and what is allowed.
+    #[test]
+    fn errors_name_the_line() {
+        let square = "v 0 0 0\nv 1 0 0\nv 1 1 0\n";
+        let at = |line: usize, what: &str| Failure::At(line, what.to_string());
+        let cases = [
+            ("v 0 0\n".to_string(), at(1, "a vertex `v` of 2 numbers; allowed: x y z")),
+            ("v 0 0 nan\n".to_string(), at(1, "`nan` is no finite number")),
+            ("v 0 0 1e400\n".to_string(), at(1, "`1e400` is no finite number")),
+            ("f 1 2 3\n".to_string(), at(1, "a face names vertex 1; no vertex stands before this line")),
+            (format!("{square}f 1 2 4\n"), at(4, "a face names vertex 4; allowed: 1 to 3, or -3 to -1")),
+            (format!("{square}f 0 2 3\n"), at(4, "a face names vertex 0; allowed: 1 to 3, or -3 to -1")),
+            (format!("{square}f 1 2 -4\n"), at(4, "a face names vertex -4; allowed: 1 to 3, or -3 to -1")),
+            (format!("{square}f 1 2\n"), at(4, "a face of 2 corners; allowed: 3 or more")),
+            (format!("{square}f 1/1 2/1 3/1\n"), at(4, "a face names vt 1; no vt stands before this line")),
+            (
+                format!("{square}f 1 2 x\n"),
+                at(4, "a face names vertex `x`, which is no whole number; allowed: 1 to 3, or -3 to -1"),
+            ),
+            (
+                format!("{square}face 1 2 3\n"),
+                at(4, "unknown statement `face`; allowed: v, vt, vn, f, o, g, s, mtllib, usemtl"),
+            ),
+            (square.to_string(), Failure::Whole("no faces; a mesh needs at least one line `f`".into())),
+            (
+                format!("{square}f 1 1 2\n"),
+                Failure::Whole("a mesh needs a triangle with an area; here none of 1".into()),
+            ),
+        ];
+        for (text, expected) in cases {
+            assert_eq!(parse(&text, |p| p).err(), Some(expected), "{text}");
+        }
+    }
+}

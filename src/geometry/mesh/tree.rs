@@ -1,0 +1,118 @@
+//! The tree over the triangles of a mesh: boxes in single precision, wide enough that nothing is missed.
+
+use crate::error::{Error, Result};
+use crate::math::Ray;
+use glam::{DVec3, Vec3A};
+use obvhs::BvhBuildParams;
+use obvhs::aabb::Aabb;
+use obvhs::cwbvh::CwBvh;
+use obvhs::cwbvh::builder::build_cwbvh;
+use obvhs::ray::{Ray as Ray32, RayHit};
+use std::time::Duration;
+
+/// Half the extent of a mesh in the tree's own coordinates. The tree's nodes ignore what ends before a distance of
+/// 1e-4; boxes are wider than that on every side, so that nothing is lost.
+const HALF: f64 = 4096.0;
+
+/// What every box is widened by, in the tree's coordinates: 128 units in the last place of the largest coordinate.
+/// The box test of the tree rounds a coordinate 13 times by up to a unit, a direction of at least [`LEAST`] drifts
+/// from the true one by up to 28, and the eight bits that a box is stored in add up to 6.
+const PAD: f64 = HALF * 128.0 / 16_777_216.0;
+
+/// Least component of a direction in the tree: below it the tree would replace it, and confuse the signs of zeros.
+const LEAST: f32 = 1.0 / 4_194_304.0;
+
+/// Depth that the tree's own stack can follow.
+const MAX_DEPTH: usize = 30;
+
+/// A tree over boxes, in coordinates of its own: the middle of all boxes is the origin, the longest half-extent is
+/// [`HALF`].
+#[derive(Debug, Clone)]
+pub struct Tree {
+    tree: CwBvh,
+    center: DVec3,
+    /// Half the extent, widened, by axis \[L\].
+    half: DVec3,
+    /// Tree's units per L.
+    scale: f64,
+}
+
+impl Tree {
+    /// A tree over boxes (lower and upper corner), each widened by `margin` \[L\], and the order in which it keeps
+    /// them: entry i of the tree is box `order[i]`.
+    ///
+    /// # Errors     `Error::Scene` for boxes too many, too large, too small, or too deeply nested to be searched
+    pub fn new(boxes: &[(DVec3, DVec3)], margin: f64) -> Result<(Self, Vec<u32>)> {
+        if boxes.is_empty() || boxes.len() > 100_000_000 {
+            return Err(Error::Scene(format!("{} triangles; allowed: 1 to 1e8", boxes.len())));
+        }
+        let (min, max) = boxes.iter().fold((boxes[0].0, boxes[0].1), |(a, b), x| (a.min(x.0), b.max(x.1)));
+        let center = 0.5 * (min + max);
+        let reach = 0.5 * (max - min).max_element();
+        if !(1e-100..=1e100).contains(&reach) {
+            return Err(Error::out_of_range("half the extent of a mesh", reach, "1e-100 to 1e100"));
+        }
+        let scale = HALF / reach;
+        let pad = PAD.max(2.0 * margin * scale);
+        let narrow = |p: DVec3| ((p - center) * scale).as_vec3a();
+        let pad32 = Vec3A::splat(pad as f32);
+        let boxes32: Vec<Aabb> =
+            boxes.iter().map(|(a, b)| Aabb::new(narrow(*a) - pad32, narrow(*b) + pad32)).collect();
+        let tree = build_cwbvh(&boxes32, BvhBuildParams::medium_build(), &mut Duration::default());
+        if depth(&tree) > MAX_DEPTH {
+            return Err(Error::Scene("triangles nested too deeply in each other to be searched".into()));
+        }
+        let order = tree.primitive_indices.clone();
+        Ok((Tree { tree, center, half: 0.5 * (max - min) + pad / scale, scale }, order))
+    }
+
+    /// Where the ray enters and leaves the box of all boxes; none if it misses or ends before.
+    fn span(&self, ray: &Ray, end: f64) -> Option<f64> {
+        let (mut start, mut end) = (0.0f64, end);
+        for i in 0..3 {
+            let (o, d) = (ray.origin[i] - self.center[i], ray.dir[i]);
+            if d == 0.0 {
+                if o.abs() > self.half[i] {
+                    return None;
+                }
+                continue;
+            }
+            let (a, b) = ((-self.half[i] - o) / d, (self.half[i] - o) / d);
+            start = start.max(a.min(b));
+            end = end.min(a.max(b));
+        }
+        (start <= end).then_some(start)
+    }
+
+    /// Offers `test` the entries whose boxes the ray may meet before distance `end` \[L\], nearer boxes first, with
+    /// the distance beyond which nothing is looked for any more; `test` returns what that distance is from now on.
+    #[inline]
+    pub fn search(&self, ray: &Ray, end: f64, mut test: impl FnMut(usize, f64) -> f64) {
+        // From where the ray enters the box of all boxes: then single precision suffices, however far the origin.
+        let Some(start) = self.span(ray, end) else { return };
+        let origin = ((ray.at(start) - self.center) * self.scale).as_vec3a();
+        let dir = ray.dir.as_vec3a();
+        let least = Vec3A::select(dir.cmplt(Vec3A::ZERO), Vec3A::splat(-LEAST), Vec3A::splat(LEAST));
+        let dir = Vec3A::select(dir.abs().cmplt(Vec3A::splat(LEAST)), least, dir);
+        // Rounded up, and no nearer than the boxes are wide of their triangles.
+        let narrow = |t: f64| ((t - start) * self.scale * (1.0 + 2.4e-7) + PAD) as f32;
+        let mut end = end;
+        self.tree.ray_traverse(Ray32::new(origin, dir, 0.0, narrow(end)), &mut RayHit::none(), |_, entry| {
+            end = test(entry, end);
+            narrow(end)
+        });
+    }
+}
+
+/// Number of levels of nodes.
+fn depth(tree: &CwBvh) -> usize {
+    let mut deepest = 0;
+    let mut open = vec![(0usize, 1usize)];
+    while let Some((index, level)) = open.pop() {
+        let Some(node) = tree.nodes.get(index) else { continue };
+        deepest = deepest.max(level);
+        let inner = (0..8).filter(|&child| !node.is_leaf(child));
+        open.extend(inner.map(|child| (node.child_node_index(child) as usize, level + 1)));
+    }
+    deepest
+}

@@ -1,0 +1,190 @@
+//! How much of a medium is where: the densities at hand.
+
+use super::{Along, Bound, Cloud, CloudShape, Grid, HeightFog, Layers};
+use crate::error::{Error, Result};
+use crate::math::{Interval, Positive, Ray};
+use glam::DVec3;
+use std::sync::Arc;
+
+/// A density, 0 or more at every point \[1\]; extinction is this times that at density 1.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Density {
+    /// Samples on a grid.
+    Grid(Arc<Grid>),
+    /// A body broken up by noise.
+    Cloud(Arc<Cloud>),
+    /// Exponential in height.
+    HeightFog(HeightFog),
+}
+
+/// Stretches of a ray with the bounds of a density, nearest first.
+#[derive(Debug, Clone)]
+pub enum Bounds<'a> {
+    /// By cell.
+    Cells(Along<'a>),
+    /// By height.
+    Layers(Layers),
+}
+
+impl Iterator for Bounds<'_> {
+    type Item = Bound;
+
+    #[inline]
+    fn next(&mut self) -> Option<Bound> {
+        match self {
+            Bounds::Cells(cells) => cells.next(),
+            Bounds::Layers(layers) => layers.next(),
+        }
+    }
+}
+
+impl Density {
+    /// A grid of one channel.
+    ///
+    /// # Errors
+    /// `Error::OutOfRange` for a grid of more
+    pub fn grid(grid: Grid) -> Result<Self> {
+        match grid.channels() {
+            1 => Ok(Density::Grid(Arc::new(grid))),
+            more => Err(Error::out_of_range("channels of a density", more as f64, "1")),
+        }
+    }
+
+    /// The density at a point \[1\].
+    #[inline]
+    pub fn at(&self, p: DVec3) -> f64 {
+        match self {
+            Density::Grid(grid) => grid.at(p),
+            Density::Cloud(cloud) => cloud.at(p),
+            Density::HeightFog(fog) => fog.at(p),
+        }
+    }
+
+    /// Bounds along a part of a ray that hold for every point of it.
+    #[inline]
+    pub fn along(&self, ray: &Ray, part: Interval) -> Bounds<'_> {
+        match self {
+            Density::Grid(grid) => Bounds::Cells(grid.along(ray, part)),
+            Density::Cloud(cloud) => Bounds::Cells(cloud.along(ray, part)),
+            Density::HeightFog(fog) => Bounds::Layers(fog.along(ray, part)),
+        }
+    }
+
+    /// The integral along a part of a ray \[L\], where it has a closed form.
+    #[inline]
+    pub fn closed_integral(&self, ray: &Ray, part: Interval) -> Option<f64> {
+        match self {
+            Density::HeightFog(fog) => Some(fog.integral(ray, part)),
+            Density::Grid(_) | Density::Cloud(_) => None,
+        }
+    }
+
+    /// The integral along a part of a ray \[L\]: exact for height fog and, sample by sample, for grids; of a cloud by
+    /// quadrature, to some 1e-4 of its extent.
+    pub fn integral(&self, ray: &Ray, part: Interval) -> f64 {
+        let kinks = match self {
+            Density::HeightFog(fog) => return fog.integral(ray, part),
+            Density::Grid(grid) => grid.kinks(ray, part),
+            Density::Cloud(_) => Vec::new(),
+        };
+        let mut sum = 0.0;
+        for bound in self.along(ray, part) {
+            let Interval { start, end } = bound.interval;
+            if bound.high == bound.low {
+                sum += if bound.low == 0.0 { 0.0 } else { bound.low * (end - start) };
+                continue;
+            }
+            let inside = kinks.iter().copied().filter(|t| start < *t && *t < end);
+            let steps = 16;
+            let even = (1..steps).map(|i| start + (end - start) * f64::from(i) / f64::from(steps));
+            let mut ends: Vec<f64> = match self {
+                Density::Grid(_) => inside.collect(),
+                Density::Cloud(_) | Density::HeightFog(_) => even.collect(),
+            };
+            ends.push(end);
+            let mut low = start;
+            for high in ends {
+                // Two nodes of Gauss: exact for the cubic that a trilinear function is on a line.
+                let (middle, half) = (0.5 * (low + high), 0.5 * (high - low));
+                let node = half / 3.0f64.sqrt();
+                sum += half * (self.at(ray.at(middle - node)) + self.at(ray.at(middle + node)));
+                low = high;
+            }
+        }
+        sum
+    }
+
+    /// No point has more than this.
+    pub fn high(&self) -> f64 {
+        match self {
+            Density::Grid(grid) => grid.high(),
+            Density::Cloud(_) | Density::HeightFog(_) => 1.0,
+        }
+    }
+
+    /// Whether it depends on z alone.
+    pub fn is_layered(&self) -> bool {
+        match self {
+            Density::Grid(grid) => grid.is_layered(),
+            Density::HeightFog(fog) => fog.is_layered(),
+            Density::Cloud(_) => false,
+        }
+    }
+
+    /// What it is, in a line.
+    pub fn describe(&self) -> String {
+        match self {
+            Density::Grid(grid) => {
+                let [x, y, z] = grid.count();
+                format!("grid of {x} x {y} x {z} samples, majorants in {} cells", grid.cells().len())
+            }
+            Density::Cloud(cloud) => {
+                let octaves = cloud.shape().octaves;
+                format!("cloud of {octaves} octaves, majorants in {} cells", cloud.cells().len())
+            }
+            Density::HeightFog(_) => "height fog: transmittance in closed form, majorants by height".into(),
+        }
+    }
+
+    /// Some of each kind, about the origin. A new kind does not compile until it is named here.
+    pub fn specimens() -> Vec<Density> {
+        let cube = |half: f64| (DVec3::splat(-half), DVec3::splat(half));
+        let grid = |count: [usize; 3], f: &dyn Fn(DVec3) -> f64| {
+            Grid::sampled(cube(1.5), count, f).and_then(Density::grid).ok()
+        };
+        let cloud = |radii: [f64; 3], roughness: f64, body: super::Body, octaves: u32| {
+            let plain = CloudShape::plain(DVec3::new(0.1, -0.2, 0.0), radii.into());
+            let look = CloudShape { body, octaves, roughness, seed: 3, ..plain };
+            Cloud::new(look).ok().map(|c| Density::Cloud(Arc::new(c)))
+        };
+        let fog = |up: DVec3, base: f64, scale: f64| {
+            HeightFog::new(up, base, Positive::new("scale height", scale).ok()?).ok().map(Density::HeightFog)
+        };
+        let named = |density: Density| match density {
+            Density::Grid(_) => vec![
+                grid([1, 1, 1], &|_| 0.7),
+                grid([8, 8, 8], &|_| 1.25),
+                grid([2, 9, 33], &|p| (p.x * 3.0 + p.y * p.z).abs()),
+                grid([24, 24, 24], &|p| if p.length() < 1.0 { 1.0 - p.length() } else { 0.0 }),
+            ],
+            Density::Cloud(_) => vec![
+                cloud([1.0, 1.2, 0.8], 1.0, super::Body::Ellipsoid, 5),
+                cloud([1.0, 1.0, 1.0], 0.0, super::Body::Cuboid, 1),
+                cloud([0.7, 1.4, 1.0], 2.5, super::Body::Cuboid, 12),
+            ],
+            Density::HeightFog(_) => {
+                vec![
+                    fog(DVec3::Y, -1.0, 0.5),
+                    fog(DVec3::new(1.0, -2.0, 0.5), 0.3, 0.05),
+                    fog(DVec3::Z, -9.0, 40.0),
+                ]
+            }
+        };
+        let first = [
+            grid([1, 1, 1], &|_| 1.0),
+            cloud([1.0; 3], 1.0, super::Body::Ellipsoid, 1),
+            fog(DVec3::Z, 0.0, 1.0),
+        ];
+        first.into_iter().flatten().flat_map(named).flatten().collect()
+    }
+}

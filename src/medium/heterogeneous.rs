@@ -1,0 +1,104 @@
+//! A medium whose density varies.
+
+use super::{Density, Grid, Homogeneous};
+use crate::Spectrum;
+use crate::error::{Error, Result};
+use crate::math::{Interval, Ray};
+use glam::DVec3;
+use std::sync::Arc;
+
+/// Extinction proportional to a density; albedo the same everywhere or of a grid; one phase function.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Heterogeneous {
+    /// What it is where the density is 1; the emission that does not follow the density.
+    matter: Homogeneous,
+    density: Density,
+    albedo: Option<Arc<Grid>>,
+    /// Emission that follows the density, at density 1 [W/(L^3 sr)].
+    emission: Spectrum,
+}
+
+impl Heterogeneous {
+    /// `matter` thinned and thickened by a density: extinction is density times that of `matter`; its own emission is
+    /// the same everywhere.
+    pub fn new(matter: Homogeneous, density: Density) -> Self {
+        Heterogeneous { matter, density, albedo: None, emission: Spectrum::ZERO }
+    }
+
+    /// With an albedo that varies too, in place of that of the matter.
+    ///
+    /// # Errors
+    /// `Error::OutOfRange` for a grid with a value above 1
+    pub fn with_albedo(self, grid: Grid) -> Result<Self> {
+        let highest = grid.values().iter().fold(0.0f32, |high, v| high.max(*v));
+        if highest > 1.0 {
+            return Err(Error::out_of_range("albedo of a grid", f64::from(highest), "0 to 1"));
+        }
+        Ok(Heterogeneous { albedo: Some(Arc::new(grid)), ..self })
+    }
+
+    /// With an emission that follows the density: [W/(L^3 sr)] where it is 1.
+    ///
+    /// # Errors
+    /// `Error::OutOfRange` for one that is negative or not finite
+    pub fn with_emission_by_density(self, emission: Spectrum) -> Result<Self> {
+        super::homogeneous::check_emission(emission)?;
+        Ok(Heterogeneous { emission, ..self })
+    }
+
+    /// What it is where the density is 1.
+    pub fn matter(&self) -> &Homogeneous {
+        &self.matter
+    }
+
+    /// How much of it is where.
+    pub fn density(&self) -> &Density {
+        &self.density
+    }
+
+    /// Albedo at a point \[1\].
+    pub fn albedo(&self, p: DVec3) -> Spectrum {
+        self.albedo.as_ref().map_or(self.matter.albedo(), |grid| grid.color_at(p))
+    }
+
+    /// Emission where the density is known [W/(L^3 sr)].
+    pub fn emission_of(&self, density: f64) -> Spectrum {
+        self.matter.emission() + self.emission * density
+    }
+
+    /// Whether it depends on z alone.
+    pub fn is_layered(&self) -> bool {
+        self.density.is_layered() && self.albedo.as_ref().is_none_or(|grid| grid.is_layered())
+    }
+
+    /// Whether it emits anywhere.
+    pub fn is_emitting(&self) -> bool {
+        !self.matter.emission().is_black() || !self.emission.is_black()
+    }
+
+    /// Whether somewhere light that collides is not scattered in some channel.
+    pub fn is_absorbing(&self) -> bool {
+        let lowest = match &self.albedo {
+            Some(grid) => f64::from(grid.values().iter().fold(f32::INFINITY, |low, v| low.min(*v))),
+            None => self.matter.albedo().min(),
+        };
+        lowest < 1.0 && !self.matter.sigma_t().is_black() && self.density.high() > 0.0
+    }
+
+    /// Whether every number is the same in all channels.
+    pub fn is_grey(&self) -> bool {
+        let albedo = match &self.albedo {
+            Some(grid) => grid.channels() == 1,
+            None => self.matter.albedo().is_grey(),
+        };
+        albedo
+            && self.matter.sigma_t().is_grey()
+            && self.matter.emission().is_grey()
+            && self.emission.is_grey()
+    }
+
+    /// Optical depth of a part of a ray, where the density has an integral in closed form \[1\].
+    pub fn optical_depth(&self, ray: &Ray, part: Interval) -> Option<Spectrum> {
+        Some(self.matter.depth(self.density.closed_integral(ray, part)?))
+    }
+}

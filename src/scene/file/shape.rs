@@ -1,0 +1,140 @@
+//! Shapes in the scene file.
+
+use super::rectangle;
+use crate::error::{Error, Result};
+use crate::geometry::{
+    Cuboid, Ground, Lathe, Mesh, Shape, Slab, Sphere, Up, Waves, height_field, listed, smooth,
+};
+use crate::math::{NonNegative, Positive};
+use glam::{DVec2, DVec3};
+use serde::{Deserialize, Serialize};
+use std::path::Path;
+use std::sync::Arc;
+
+/// A shape; lengths in scene units.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+#[allow(
+    missing_docs,
+    reason = "the names are those of the shapes' own constructors, which say their meaning"
+)]
+pub enum ShapeFile {
+    Sphere {
+        center: [f64; 3],
+        radius: Positive,
+    },
+    Rectangle {
+        corner: [f64; 3],
+        u: [f64; 3],
+        v: [f64; 3],
+    },
+    Slab {
+        top: f64,
+        thickness: Positive,
+    },
+    Cuboid {
+        min: [f64; 3],
+        max: [f64; 3],
+    },
+    /// Triangles from an OBJ file, scaled, then moved.
+    Mesh {
+        file: String,
+        #[serde(default = "one", skip_serializing_if = "is_one")]
+        scale: Positive,
+        #[serde(default, skip_serializing_if = "is_zero")]
+        at: [f64; 3],
+    },
+    /// A profile of (radius, height), turned about the axis; `smooth` pieces between its points.
+    Lathe {
+        #[serde(default, skip_serializing_if = "is_zero")]
+        base: [f64; 3],
+        #[serde(default = "upwards")]
+        axis: [f64; 3],
+        profile: Vec<[f64; 2]>,
+        #[serde(default = "one_piece", skip_serializing_if = "is_one_piece")]
+        smooth: u32,
+    },
+    /// Heights over a rectangle of ground, added to `level`; closed by walls and a bottom with a `floor`.
+    HeightField {
+        corner: [f64; 2],
+        size: [f64; 2],
+        cells: [usize; 2],
+        #[serde(default)]
+        up: Up,
+        #[serde(default)]
+        level: f64,
+        heights: HeightsFile,
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        floor: Option<f64>,
+    },
+}
+
+/// Where the heights of a field come from.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+#[allow(missing_docs, reason = "the names are those of `geometry::Waves` and `geometry::listed`")]
+pub enum HeightsFile {
+    /// Rows along the first axis, from edge to edge.
+    Rows(Vec<Vec<f64>>),
+    /// Sines of random direction.
+    Waves { seed: u64, count: u32, wavelength: Positive, rms: NonNegative },
+}
+
+fn one() -> Positive {
+    Positive::ONE
+}
+
+fn is_one(scale: &Positive) -> bool {
+    scale.get() == 1.0
+}
+
+fn is_zero(at: &[f64; 3]) -> bool {
+    *at == [0.0; 3]
+}
+
+fn upwards() -> [f64; 3] {
+    [0.0, 0.0, 1.0]
+}
+
+fn one_piece() -> u32 {
+    1
+}
+
+fn is_one_piece(pieces: &u32) -> bool {
+    *pieces == 1
+}
+
+impl ShapeFile {
+    pub(super) fn shape(&self, folder: &Path) -> Result<Shape> {
+        Ok(match *self {
+            ShapeFile::Sphere { center, radius } => Shape::Sphere(Sphere::new(center.into(), radius.get())?),
+            ShapeFile::Rectangle { corner, u, v } => Shape::Rectangle(rectangle(corner, u, v)?),
+            ShapeFile::Slab { top, thickness } => Shape::Slab(Slab::new(top, thickness.get())?),
+            ShapeFile::Cuboid { min, max } => Shape::Cuboid(Cuboid::new(min.into(), max.into())?),
+            ShapeFile::Mesh { ref file, scale, at } => {
+                let at = DVec3::from(at);
+                Shape::Mesh(Arc::new(Mesh::read(&folder.join(file), |p| p * scale.get() + at)?))
+            }
+            ShapeFile::Lathe { base, axis, ref profile, smooth: pieces } => {
+                if !(1..=1000).contains(&pieces) {
+                    return Err(Error::out_of_range("smooth", f64::from(pieces), "1 to 1000"));
+                }
+                let points: Vec<DVec2> = profile.iter().map(|p| DVec2::from_array(*p)).collect();
+                Shape::Lathe(Arc::new(Lathe::new(base.into(), axis.into(), &smooth(&points, pieces))?))
+            }
+            ShapeFile::HeightField { corner, size, cells, up, level, ref heights, floor } => {
+                let ground = Ground { corner: corner.into(), size: size.into(), cells };
+                Shape::Mesh(Arc::new(match heights {
+                    HeightsFile::Rows(rows) => {
+                        let height = listed(&ground, rows)?;
+                        height_field(&ground, up, floor, |p| level + height(p))?
+                    }
+                    HeightsFile::Waves { seed, count, wavelength, rms } => {
+                        let waves = Waves::new(*seed, *count, wavelength.get(), rms.get())?;
+                        height_field(&ground, up, floor, |p| level + waves.height(p))?
+                    }
+                }))
+            }
+        })
+    }
+}

@@ -1,0 +1,175 @@
+//! Tracking through a density that has bounds by cell: delta tracking, ratio tracking, and collected emission.
+//!
+//! Tentative collisions have the rate of the upper bound; one is real with the density's share of it. Nothing is
+//! asked of the density where the bounds alone decide.
+
+use crate::Spectrum;
+use crate::faults::{Fault, planted};
+use crate::math::{Interval, Ray, ln_1p};
+use crate::medium::Heterogeneous;
+use crate::rng::Stream;
+
+/// How a stretch ends.
+pub(super) enum End {
+    /// With a collision at a distance along the ray \[L\], with this weight.
+    Collision(f64, Spectrum),
+    /// At the far end, with this weight.
+    Passed(Spectrum),
+}
+
+/// Depth to the next event of a process of rate 1.
+fn exponential(stream: &mut Stream) -> f64 {
+    -ln_1p(-stream.unit())
+}
+
+/// Delta tracking, with weights that know the history where extinction differs by channel.
+///
+/// With weights w_c, and q_c the share of the majorant that channel c has at a tentative collision, it is real with
+/// p = sum w_c q_c / sum w_c; then w_c becomes w_c q_c/p, else w_c (1-q_c)/(1-p). Each channel is unbiased, and the
+/// summed weight stays as it is. With equal channels the weights do not change.
+///
+/// # Source
+/// Woodcock et al. 1965; Miller, Georgiev and Jarosz 2019
+pub(super) fn delta(
+    medium: &Heterogeneous,
+    ray: &Ray,
+    part: Interval,
+    weight: Spectrum,
+    stream: &mut Stream,
+) -> End {
+    let sigma_t = medium.matter().sigma_t();
+    let scale = sigma_t.max();
+    if scale == 0.0 {
+        return End::Passed(weight);
+    }
+    let is_grey = sigma_t.is_grey();
+    let ratio = sigma_t / scale;
+    let mut weight = weight;
+    let mut target = exponential(stream);
+    for bound in medium.density().along(ray, part) {
+        stream.work.majorants += 1;
+        let rate = bound.high * scale;
+        if rate == 0.0 {
+            continue;
+        }
+        let mut at = bound.interval.start;
+        loop {
+            let t = at + target / rate;
+            if t >= bound.interval.end {
+                target = (target - rate * (bound.interval.end - at)).max(0.0);
+                break;
+            }
+            at = t;
+            let share = if is_grey { 1.0 } else { (weight * ratio).sum() / weight.sum() };
+            let u = stream.unit() * bound.high;
+            let is_real = u < bound.low * share;
+            let density = if is_real { bound.low } else { density_at(medium, ray, t, bound.high, stream) };
+            if is_real || u < density * share {
+                let after = if is_grey { weight } else { weight * ratio / share };
+                return End::Collision(t, after);
+            }
+            if !is_grey && !planted(Fault::NullWeightForgotten) {
+                let q = density / bound.high;
+                weight *= ratio.map(|r| (1.0 - r * q) / (1.0 - share * q));
+            }
+            target = exponential(stream);
+        }
+    }
+    End::Passed(weight)
+}
+
+/// The density at a distance: never above its bound, which rounding at a face between cells could break.
+fn density_at(medium: &Heterogeneous, ray: &Ray, t: f64, high: f64, stream: &mut Stream) -> f64 {
+    stream.work.densities += 1;
+    medium.density().at(ray.at(t)).min(high)
+}
+
+/// Ratio tracking: an unbiased estimate of the transmittance of a stretch.
+///
+/// The lower bound passes in closed form; what is above it meets tentative collisions of the rate of the difference
+/// of the bounds, and each lets 1 minus its share pass.
+///
+/// # Source
+/// Novak, Selle and Jarosz 2014
+pub(super) fn ratio(medium: &Heterogeneous, ray: &Ray, part: Interval, stream: &mut Stream) -> Spectrum {
+    let matter = medium.matter();
+    let scale = matter.sigma_t().max();
+    if scale == 0.0 {
+        return Spectrum::ONE;
+    }
+    let shares = matter.sigma_t() / scale;
+    let (mut passed, mut control) = (Spectrum::ONE, 0.0);
+    let mut target = exponential(stream);
+    for bound in medium.density().along(ray, part) {
+        stream.work.majorants += 1;
+        if bound.low > 0.0 {
+            control += bound.low * bound.interval.length();
+        }
+        let above = bound.high - bound.low;
+        let rate = above * scale;
+        if rate == 0.0 {
+            continue;
+        }
+        let mut at = bound.interval.start;
+        loop {
+            let t = at + target / rate;
+            if t >= bound.interval.end {
+                target = (target - rate * (bound.interval.end - at)).max(0.0);
+                break;
+            }
+            at = t;
+            let density = density_at(medium, ray, t, bound.high, stream).max(bound.low);
+            let q = (density - bound.low) / above;
+            passed *= shares.map(|s| 1.0 - s * q);
+            if passed.is_black() {
+                return passed;
+            }
+            target = exponential(stream);
+        }
+    }
+    passed * crate::scene::decay(matter.depth(control))
+}
+
+/// What a stretch emits towards the near end of the ray [W/(L^2 sr)], and its transmittance: both unbiased.
+///
+/// `uniform` [W/(L^3 sr)] is emitted beside what the medium emits itself, which counts if `own`. At a tentative collision of rate m, emission over m is
+/// collected, and 1 minus extinction over m passes; m is at least one a stretch, so that what emits but does not
+/// collide is met.
+pub(super) fn emitted(
+    medium: &Heterogeneous,
+    ray: &Ray,
+    part: Interval,
+    own: bool,
+    uniform: Spectrum,
+    stream: &mut Stream,
+) -> (Spectrum, Spectrum) {
+    let sigma_t = medium.matter().sigma_t();
+    let least = if part.length().is_finite() { 1.0 / part.length() } else { 0.0 };
+    let (mut passed, mut sum) = (Spectrum::ONE, Spectrum::ZERO);
+    let mut target = exponential(stream);
+    for bound in medium.density().along(ray, part) {
+        stream.work.majorants += 1;
+        let rate = (bound.high * sigma_t.max()).max(least);
+        if rate == 0.0 {
+            continue;
+        }
+        let mut at = bound.interval.start;
+        loop {
+            let t = at + target / rate;
+            if t >= bound.interval.end {
+                target = (target - rate * (bound.interval.end - at)).max(0.0);
+                break;
+            }
+            at = t;
+            let density = density_at(medium, ray, t, bound.high, stream);
+            let emission = if own { medium.emission_of(density) } else { Spectrum::ZERO };
+            sum += passed * (emission + uniform) / rate;
+            passed *= sigma_t.map(|s| 1.0 - s * density / rate);
+            if passed.is_black() {
+                return (sum, passed);
+            }
+            target = exponential(stream);
+        }
+    }
+    (sum, passed)
+}

@@ -1,0 +1,129 @@
+//! The photon mapper against closed forms: a furnace of fog, steps of the march, treated radiance of single photons.
+#![allow(clippy::unwrap_used, reason = "tests")]
+
+#[path = "checks/mod.rs"]
+mod checks;
+mod support;
+
+use checks::ledger::{Room, filling, layers_of_maps, settings};
+use glam::{DVec3, Vec3};
+use std::f64::consts::PI;
+use support::scenes::{bounded, cuboid, isotropic, lambertian, region};
+use support::verdict;
+use turbid::Spectrum;
+use turbid::estimators::boundary::{Boundary, Rejection, Treatment, treated_density, treated_in_scattered};
+use turbid::estimators::{Gather, Kernel};
+use turbid::integrators::StepRule;
+use turbid::integrators::mapper::{Mapper, March, Settings};
+use turbid::light::Faces;
+use turbid::math::{Asymmetry, FOUR_PI, Positive, Ray, cosine_pair, exp, exp_m1};
+use turbid::phase::{Phase, PhaseFunction};
+use turbid::photons::maps::{Indirect, fill};
+use turbid::photons::{Flags, Photon, PhotonMap};
+use turbid::rng::{Purpose, Stream};
+use turbid::stats::Moments;
+use turbid::transport::NoProgress;
+
+fn marching(step: f64, rule: StepRule, is_jittered: bool) -> Settings {
+    let step = Positive::new("the step", step).unwrap();
+    Settings { march: March { step, rule, is_jittered, adaptive: None }, ..settings(1) }
+}
+
+/// Fog of albedo 1 with the same radiance from all sides is as bright everywhere, at any anisotropy: what is lost on the
+/// way is scattered in. Single scattering alone is not even: places lie farther from the faces than a ball reaches. A constant source of steps of x mean free paths is read as each rule reads it.
+#[test]
+fn a_furnace_of_fog() {
+    let cube = cuboid(DVec3::ZERO, DVec3::splat(2.0));
+    for (g, seed) in [(0.0, 1), (0.6, 2)] {
+        let scene = bounded(
+            vec![region(cube.clone(), 1.0, 1.0, g)],
+            Vec::new(),
+            vec![isotropic(cube.clone(), Faces::Both)],
+        );
+        let maps: Vec<_> = (0..64)
+            .map(|replicate| {
+                fill(&scene, &filling(4000, Indirect::Seen, seed, replicate), &NoProgress).unwrap()
+            })
+            .collect();
+        let x: f64 = 0.4;
+        for (settings, factor) in [
+            (marching(0.7, StepRule::Integrated, true), 1.0),
+            (marching(x, StepRule::Integrated, false), 1.0),
+            (marching(x, StepRule::NearEnd, false), x / -exp_m1(-x)),
+            (marching(0.5 * x, StepRule::NearEnd, false), 0.5 * x / -exp_m1(-0.5 * x)),
+            (marching(x, StepRule::Middle, false), 0.5 * x / libm::sinh(0.5 * x)),
+        ] {
+            let mut moments = Moments::new();
+            for (replicate, maps) in maps.iter().enumerate() {
+                let mapper = Mapper::new(&scene, maps, &settings);
+                let mut sum = 0.0;
+                for history in 0..50 {
+                    let mut stream = Stream::new(seed, Purpose::Paths, replicate as u64, history);
+                    let [y, z] = stream.pair().map(|u| 0.2 + 1.6 * u);
+                    let ray = Ray::new(DVec3::new(0.4, y, z), DVec3::X);
+                    sum += mapper.radiance(ray, None, 0, &mut stream).0.total()[1];
+                }
+                moments.push(sum / 50.0 * PI);
+            }
+            let behind = exp(-1.6);
+            let expected = behind + (1.0 - behind) * factor;
+            let what = format!("g {g}, {:?}", settings.march);
+            verdict::agrees(&what, &moments, (expected, 1e-12), 0.1, seed);
+        }
+    }
+}
+
+/// More photons change no brightness.
+#[test]
+fn pictures_do_not_depend_on_the_number_of_photons() {
+    let room = Room {
+        floor: lambertian(Spectrum::grey(0.7)),
+        sigma_t: Spectrum::grey(0.5),
+        albedo: Spectrum::grey(0.8),
+        g: 0.0,
+        is_colored: true,
+        has_glass: false,
+    };
+    let scene = room.scene();
+    let of = |emitted: u64, seed: u64| layers_of_maps(&scene, &settings(1), emitted, Indirect::Seen, seed);
+    let (few, many) = (of(1000, 11), of(6000, 12));
+    for (i, name) in [(3, "indirect"), (5, "multiple"), (6, "total")] {
+        verdict::agree(name, &few[i], &many[i], 0.35 * many[i].mean(), 11);
+    }
+}
+
+/// In a map of one photon, radiance is density times the phase function, whatever is done at the boundary.
+#[test]
+fn treated_radiance_of_one_photon() {
+    let dir = Vec3::new(0.6, 0.0, 0.8);
+    let position = DVec3::new(0.3, 0.5, 0.1);
+    let photon = Photon { position, dir, power: Vec3::new(1.0, 2.0, 3.0), order: 1, flags: Flags::MEDIUM };
+    let map = PhotonMap::new(vec![photon], 3).unwrap();
+    let cube = cuboid(DVec3::ZERO, DVec3::ONE);
+    let (wo, point) = (DVec3::new(0.0, 0.6, 0.8), DVec3::new(0.35, 0.5, 0.05));
+    let wall = [cuboid(DVec3::new(0.0, 0.0, 0.5), DVec3::ONE)];
+    for g in [0.0, 0.7] {
+        let phase = Phase::with_asymmetry(Asymmetry::new("g", g).unwrap());
+        let (minus, plus) = cosine_pair(dir.as_dvec3(), wo);
+        let p = phase.eval(minus, plus);
+        assert!(g != 0.0 || (p * FOUR_PI - 1.0).abs() < 1e-15);
+        for treatment in Treatment::ALL {
+            for rejection in Rejection::ALL {
+                for kernel in Kernel::ALL {
+                    let gather = Gather::radius(0.2).unwrap();
+                    let boundary =
+                        Boundary::new(cube.clone(), treatment).unwrap().with_walls(rejection, &wall);
+                    let density = treated_density(&map, point, kernel, gather, &boundary);
+                    let radiance = treated_in_scattered(&map, point, wo, &phase, kernel, gather, &boundary);
+                    let expected = density.estimate.value[2] * p;
+                    assert!(expected > 0.0);
+                    // Single precision of the phase function's eight lanes.
+                    assert!(
+                        (radiance.estimate.value[2] / expected - 1.0).abs() < 1e-5,
+                        "{treatment:?} {rejection:?} {kernel:?} {g}"
+                    );
+                }
+            }
+        }
+    }
+}
