@@ -8,19 +8,20 @@ mod support;
 use checks::ledger::{Room, filling, layers_of_maps, settings};
 use glam::{DVec3, Vec3};
 use std::f64::consts::PI;
-use support::scenes::{bounded, cuboid, isotropic, lambertian, region};
+use support::scenes::{bounded, cuboid, emitting_sphere, homogeneous, isotropic, lambertian, region};
 use support::verdict;
 use turbid::Spectrum;
 use turbid::estimators::boundary::{Boundary, Rejection, Treatment, treated_density, treated_in_scattered};
 use turbid::estimators::{Gather, Kernel};
-use turbid::integrators::StepRule;
 use turbid::integrators::mapper::{Mapper, March, Settings};
+use turbid::integrators::{StepRule, path};
 use turbid::light::Faces;
 use turbid::math::{Asymmetry, FOUR_PI, Positive, Ray, cosine_pair, exp, exp_m1};
 use turbid::phase::{Phase, PhaseFunction};
 use turbid::photons::maps::{Indirect, fill};
 use turbid::photons::{Flags, Photon, PhotonMap};
 use turbid::rng::{Purpose, Stream};
+use turbid::scene::Region;
 use turbid::stats::Moments;
 use turbid::transport::NoProgress;
 
@@ -125,5 +126,34 @@ fn treated_radiance_of_one_photon() {
                 }
             }
         }
+    }
+}
+
+/// Fog that glows: what is seen of it straight, and what it scatters of its own light once.
+#[test]
+fn glowing_fog() {
+    let cube = cuboid(DVec3::ZERO, DVec3::splat(2.0));
+    let matter = homogeneous(Spectrum::ONE, Spectrum::rgb(0.5, 0.7, 0.9), 0.3);
+    let glowing = matter.matter().clone().with_emission(Spectrum::rgb(1.0, 2.0, 3.0)).unwrap();
+    let region = Region { shape: cube, medium: glowing.into() };
+    let scene = bounded(vec![region], Vec::new(), vec![emitting_sphere(DVec3::new(1.0, 1.0, 0.5), 0.2)]);
+    let maps = fill(&scene, &filling(100, Indirect::Seen, 1, 0), &NoProgress).unwrap();
+    let settings = marching(0.7, StepRule::Integrated, true);
+    let mapper = Mapper::new(&scene, &maps, &settings);
+    let mut all = [[Moments::new(); 2]; 2];
+    for history in 0..20_000 {
+        let mut stream = Stream::new(5, Purpose::Paths, 0, history);
+        let [y, z] = stream.pair();
+        let ray = Ray::new(DVec3::new(0.1, 0.2 + y, 1.0 + 0.5 * z), DVec3::X);
+        let by_map = mapper.radiance(ray, None, 0, &mut stream).0;
+        let by_path = path::layers(&scene, ray, None, 0, &mut stream).0;
+        for (moments, layers) in all.iter_mut().zip([by_map, by_path]) {
+            moments[0].push(layers.emission.sum());
+            moments[1].push(layers.single.sum());
+        }
+    }
+    for (i, name) in ["emission", "single"].into_iter().enumerate() {
+        let mean = all[1][i].mean();
+        verdict::agree(name, &all[0][i], &all[1][i], 0.1 * mean, 5);
     }
 }

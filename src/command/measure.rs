@@ -2,10 +2,10 @@
 
 use super::load::Source;
 use super::progress::Bar;
-use super::{FormatName, note, on_threads, parse_count};
+use super::{FormatName, KernelName, note, on_threads, parse_count};
 use anyhow::{Context, bail};
 use clap::ValueEnum;
-use turbid::estimators::{Gather, Kernel};
+use turbid::estimators::Gather;
 use turbid::output::{print, write_rows};
 use turbid::scene::{Orders, Scene};
 use turbid::sensor::{PathSettings, PhotonSettings, Reading, by_paths, by_photons};
@@ -64,15 +64,6 @@ enum With {
     Path,
     /// Photons: tallies and photon maps.
     Photons,
-}
-
-#[derive(Clone, Copy, ValueEnum)]
-enum KernelName {
-    Uniform,
-    Epanechnikov,
-    Cone,
-    Biweight,
-    Gaussian,
 }
 
 /// Orders on the command line.
@@ -135,13 +126,7 @@ impl Measure {
             seed: self.seed,
             orders: self.orders,
             gather,
-            kernel: match self.kernel {
-                KernelName::Uniform => Kernel::Uniform,
-                KernelName::Epanechnikov => Kernel::Epanechnikov,
-                KernelName::Cone => Kernel::Cone,
-                KernelName::Biweight => Kernel::Biweight,
-                KernelName::Gaussian => Kernel::Gaussian,
-            },
+            kernel: self.kernel.kernel(),
         };
         let bar = Bar::new(self.photons.saturating_mul(self.maps));
         let result = by_photons(scene, &settings, &bar);

@@ -3,9 +3,13 @@
 mod advise;
 mod check;
 mod load;
+mod map;
 mod measure;
+mod picture;
 mod progress;
+mod render;
 mod scenes;
+mod statistics;
 mod usage;
 
 pub use usage::explain;
@@ -14,6 +18,7 @@ use anyhow::Context;
 use clap::{Subcommand, ValueEnum};
 use std::io::{ErrorKind, Write};
 use std::process::ExitCode;
+use turbid::estimators::Kernel;
 use turbid::output::Format;
 
 /// What can be asked.
@@ -23,6 +28,10 @@ pub enum Command {
     Measure(measure::Measure),
     /// Say which radius and how many photons reach a wanted error, and what the path tracer would need.
     Advise(advise::Advise),
+    /// Draw the picture that a scene's camera sees, by photon maps or by paths.
+    Render(Box<render::Render>),
+    /// Draw the photons that a scene's maps hold, and export them.
+    Map(Box<map::Map>),
     /// Say what a scene requires, and which path classes no sampler reaches.
     Check(check::Check),
     /// List the built-in scenes, or print one.
@@ -35,6 +44,8 @@ impl Command {
         match self {
             Command::Measure(command) => command.run(),
             Command::Advise(command) => command.run(),
+            Command::Render(command) => command.run(),
+            Command::Map(command) => command.run(),
             Command::Check(command) => command.run(),
             Command::Scenes(command) => command.run(),
         }
@@ -74,6 +85,28 @@ impl FormatName {
             FormatName::Table => Format::Text,
             FormatName::Csv => Format::Csv,
             FormatName::Json => Format::Json,
+        }
+    }
+}
+
+/// Kernels, as the command line calls them.
+#[derive(Clone, Copy, ValueEnum)]
+enum KernelName {
+    Uniform,
+    Epanechnikov,
+    Cone,
+    Biweight,
+    Gaussian,
+}
+
+impl KernelName {
+    fn kernel(self) -> Kernel {
+        match self {
+            KernelName::Uniform => Kernel::Uniform,
+            KernelName::Epanechnikov => Kernel::Epanechnikov,
+            KernelName::Cone => Kernel::Cone,
+            KernelName::Biweight => Kernel::Biweight,
+            KernelName::Gaussian => Kernel::Gaussian,
         }
     }
 }

@@ -17,6 +17,16 @@ impl Bar {
         })
     }
 
+    /// A bar for one stage of several, with its name; hidden where stderr is no terminal.
+    pub fn stage(name: &'static str, steps: u64) -> Self {
+        let bar = Bar::new(steps);
+        let template = "{msg:>10} {bar:40} {percent:>3} %  {human_pos} of {human_len}, {eta} left";
+        Bar(match ProgressStyle::with_template(template) {
+            Ok(style) => bar.0.with_style(style).with_message(name),
+            Err(_) => bar.0,
+        })
+    }
+
     /// Takes the bar away.
     pub fn finish(&self) {
         self.0.finish_and_clear();

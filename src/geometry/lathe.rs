@@ -92,7 +92,7 @@ impl Lathe {
             if !(point.x >= 0.0 && point.x < 1e100) {
                 return Err(Error::out_of_range("radius of a profile", point.x, "finite and at least 0"));
             }
-            if !(point.y.abs() < 1e100) {
+            if point.y.is_nan() || point.y.abs() >= 1e100 {
                 return Err(Error::out_of_range("height of a profile", point.y, "finite"));
             }
         }

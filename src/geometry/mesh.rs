@@ -159,6 +159,25 @@ impl Mesh {
         Some(Hit { t, normal, uv, primitive: index as u32 })
     }
 
+    /// Whether a triangle stands before distance `end` \[L\]; `from` is the triangle that the ray starts on.
+    pub fn blocks(&self, ray: &Ray, from: Option<u32>, end: f64) -> bool {
+        let shear = Shear::new(ray);
+        let mut is_blocked = false;
+        self.tree.search(ray, end, |index, end| {
+            if is_blocked || from == Some(index as u32) {
+                return end;
+            }
+            let corners = &self.corners[index];
+            is_blocked = shear
+                .meet(corners)
+                .and_then(|meeting| self.ahead(ray, meeting.t, corners, from))
+                .is_some_and(|t| t < end);
+            // One is enough: nothing is nearer than this.
+            if is_blocked { f64::NEG_INFINITY } else { end }
+        });
+        is_blocked
+    }
+
     /// The distance of a meeting that lies ahead, or none.
     ///
     /// Near the edge from which a ray starts rounding decides whether the neighbour is met just ahead or just behind.

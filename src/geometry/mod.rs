@@ -83,6 +83,14 @@ impl Shape {
         }
     }
 
+    /// Whether the surface stands before distance `end` \[L\]: as a hit, and sooner known for many parts.
+    pub fn blocks(&self, ray: &Ray, from: Option<u32>, end: f64) -> bool {
+        match self {
+            Shape::Mesh(s) => s.blocks(ray, from, end),
+            _ => self.hit(ray, from).is_some_and(|hit| hit.t < end),
+        }
+    }
+
     /// Whether it is convex and has an inside: only such shapes bound media and fill with light.
     pub fn is_solid(&self) -> bool {
         match self {

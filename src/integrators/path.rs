@@ -11,13 +11,14 @@ use crate::Spectrum;
 use crate::faults::{Fault, planted};
 use crate::geometry::Hit;
 use crate::light::{Light, LightSample};
-use crate::math::{FOUR_PI, Interval, Ray, atan2, cosine_pair, warp};
+use crate::math::{FOUR_PI, Interval, Ray, cosine_pair, warp};
 use crate::phase::PhaseFunction;
 use crate::rng::Stream;
 use crate::scene::{Orders, Scene, SceneHit, Start, Target, decay};
 use crate::surface::Surface;
 use crate::transport::{
-    Arrival, Flags, Roulette, Step, Visitor, Walker, collected, emission, transmittance, walk,
+    Arrival, EqualAngles, Flags, Roulette, Step, Visitor, Walker, collected, emission, span, transmittance,
+    walk,
 };
 use glam::DVec3;
 
@@ -198,51 +199,6 @@ fn flight_pdf(scene: &Scene, walker: &Walker, density: Spectrum, ray: &Ray, end:
         density.mean() / -crate::math::exp_m1(-scene.optical_depth(ray, end, walker.within).mean())
     } else {
         density.mean()
-    }
-}
-
-/// The stretch of a ray from the first medium to the last.
-fn span(scene: &Scene, ray: &Ray, end: f64, within: usize) -> Option<Interval> {
-    let segments = scene.segments(ray, end, within);
-    let first = segments.iter().next()?;
-    let last = segments.iter().last()?;
-    Some(Interval { start: first.interval.start, end: last.interval.end })
-}
-
-/// Distances along a ray such that the angle seen from a point is uniform (Kulla and Fajardo 2012).
-struct EqualAngles {
-    nearest: f64,
-    distance: f64,
-    angle: (f64, f64),
-    span: Interval,
-}
-
-impl EqualAngles {
-    fn new(ray: &Ray, point: DVec3, span: Interval) -> Self {
-        let nearest = (point - ray.origin).dot(ray.dir);
-        let distance = point.distance(ray.at(nearest));
-        let angle = |t: f64| atan2(t - nearest, distance);
-        EqualAngles { nearest, distance, angle: (angle(span.start), angle(span.end)), span }
-    }
-
-    /// The angle that the span fills, or none where the angle is no coordinate: on a ray through the point itself, and
-    /// so far away that the span shrinks to nothing.
-    fn range(&self) -> Option<f64> {
-        let range = self.angle.1 - self.angle.0;
-        (self.distance > 0.0 && range > 0.0).then_some(range)
-    }
-
-    fn sample(&self, u: f64) -> Option<f64> {
-        let range = self.range()?;
-        let t = self.nearest + self.distance * libm::tan(self.angle.0 + u * range);
-        t.is_finite().then(|| t.clamp(self.span.start, self.span.end))
-    }
-
-    /// [1/L]
-    fn pdf(&self, t: f64) -> f64 {
-        let Some(range) = self.range() else { return 0.0 };
-        let along = t - self.nearest;
-        self.distance / (range * (self.distance * self.distance + along * along))
     }
 }
 

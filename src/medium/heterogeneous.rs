@@ -25,7 +25,7 @@ impl Heterogeneous {
         Heterogeneous { matter, density, albedo: None, emission: Spectrum::ZERO }
     }
 
-    /// With an albedo that varies too, in place of that of the matter.
+    /// With an albedo that varies too: that of the grid times that of the matter.
     ///
     /// # Errors
     /// `Error::OutOfRange` for a grid with a value above 1
@@ -58,7 +58,8 @@ impl Heterogeneous {
 
     /// Albedo at a point \[1\].
     pub fn albedo(&self, p: DVec3) -> Spectrum {
-        self.albedo.as_ref().map_or(self.matter.albedo(), |grid| grid.color_at(p))
+        let albedo = self.matter.albedo();
+        self.albedo.as_ref().map_or(albedo, |grid| albedo * grid.color_at(p))
     }
 
     /// Emission where the density is known [W/(L^3 sr)].
@@ -78,20 +79,17 @@ impl Heterogeneous {
 
     /// Whether somewhere light that collides is not scattered in some channel.
     pub fn is_absorbing(&self) -> bool {
-        let lowest = match &self.albedo {
-            Some(grid) => f64::from(grid.values().iter().fold(f32::INFINITY, |low, v| low.min(*v))),
-            None => self.matter.albedo().min(),
-        };
-        lowest < 1.0 && !self.matter.sigma_t().is_black() && self.density.high() > 0.0
+        let least = |grid: &Arc<Grid>| grid.values().iter().fold(1.0f32, |low, v| low.min(*v));
+        let grid = self.albedo.as_ref().map_or(1.0, least);
+        (grid < 1.0 || self.matter.albedo().min() < 1.0)
+            && !self.matter.sigma_t().is_black()
+            && self.density.high() > 0.0
     }
 
     /// Whether every number is the same in all channels.
     pub fn is_grey(&self) -> bool {
-        let albedo = match &self.albedo {
-            Some(grid) => grid.channels() == 1,
-            None => self.matter.albedo().is_grey(),
-        };
-        albedo
+        self.albedo.as_ref().is_none_or(|grid| grid.channels() == 1)
+            && self.matter.albedo().is_grey()
             && self.matter.sigma_t().is_grey()
             && self.matter.emission().is_grey()
             && self.emission.is_grey()

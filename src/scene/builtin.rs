@@ -142,7 +142,17 @@ fn emission(value: f64) -> Result<Channels<NonNegative>> {
 }
 
 fn region(shape: ShapeFile, sigma_t: f64, albedo: Albedo, g: Asymmetry) -> Result<RegionFile> {
-    Ok(RegionFile { shape, sigma_t: grey(NonNegative::new("sigma_t", sigma_t)?), albedo: grey(albedo), g })
+    Ok(RegionFile {
+        shape,
+        sigma_t: grey(NonNegative::new("sigma_t", sigma_t)?),
+        albedo: grey(albedo),
+        albedo_grid: None,
+        g: Some(g),
+        phase: None,
+        emission: None,
+        emission_by_density: None,
+        density: None,
+    })
 }
 
 fn sensor(

@@ -24,6 +24,18 @@ impl Filter {
             Filter::Tent => DVec2::new(0.5 + tent(u[0]), 0.5 + tent(u[1])),
         }
     }
+
+    /// The pixels, along one axis, that may have a sample at this raster coordinate, with its density in each.
+    pub fn pixels(self, at: f64) -> [(i64, f64); 2] {
+        match self {
+            Filter::Box => [(at.floor() as i64, 1.0), (0, 0.0)],
+            Filter::Tent => {
+                let first = (at - 0.5).floor();
+                let part = at - 0.5 - first;
+                [(first as i64, 1.0 - part), (first as i64 + 1, part)]
+            }
+        }
+    }
 }
 
 /// Density 1 - |x| on (-1, 1), by inversion.
@@ -152,7 +164,7 @@ impl Camera {
     pub fn project(&self, p: DVec3) -> Option<DVec2> {
         let towards = p - self.view.position;
         let depth = towards.dot(self.forward);
-        if !(depth > 0.0) {
+        if depth.is_nan() || depth <= 0.0 {
             return None;
         }
         let x = towards.dot(self.right) / (depth * self.right.length_squared());
@@ -171,6 +183,12 @@ impl Camera {
             && at.x < f64::from(self.view.width)
             && at.y < f64::from(self.view.height);
         is_inside.then_some((at.x as u32, at.y as u32))
+    }
+
+    /// Whether a sample of a pixel may be at this place, in raster coordinates: at most half a pixel outside.
+    pub fn is_near(&self, at: DVec2) -> bool {
+        let last = DVec2::new(f64::from(self.view.width), f64::from(self.view.height)) + 0.5;
+        at.cmpge(DVec2::splat(-0.5)).all() && at.cmple(last).all()
     }
 
     /// Area of a pixel on the plane at distance 1 [1].

@@ -1,10 +1,12 @@
 //! The scene file: TOML, strict. Every error names the line, the column and the key, and says what is allowed.
 
 mod interior;
+mod medium;
 mod shape;
 mod texture;
 
 pub use interior::{DielectricFile, InteriorFile};
+pub use medium::{DensityFile, GridFile, PhaseFile};
 pub use shape::ShapeFile;
 pub use texture::TextureFile;
 
@@ -14,8 +16,6 @@ use crate::error::{Error, Result};
 use crate::geometry::{Face, Rectangle};
 use crate::light::{Area, Beam, Faces, Isotropic, Light, Point, Section, Spot, Sun, VolumeSource};
 use crate::math::{Albedo, Asymmetry, NonNegative, Positive, Ray};
-use crate::medium::Homogeneous;
-use crate::phase::Phase;
 use crate::surface::{self, Black, Lambertian, Mirror, Surface};
 use glam::DVec3;
 use serde::de::{IntoDeserializer, SeqAccess, Visitor};
@@ -140,8 +140,24 @@ pub struct RegionFile {
     pub sigma_t: Channels<NonNegative>,
     /// Single-scattering albedo.
     pub albedo: Channels<Albedo>,
+    /// Albedo from place to place, times `albedo`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub albedo_grid: Option<GridFile>,
     /// Asymmetry of the Henyey-Greenstein phase function; 0 is isotropic.
-    pub g: Asymmetry,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub g: Option<Asymmetry>,
+    /// Another phase function, in place of `g`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub phase: Option<PhaseFile>,
+    /// Emission, the same everywhere [W/(L^3 sr)]; none if absent.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub emission: Option<Channels<NonNegative>>,
+    /// Emission that follows the density, where it is 1 [W/(L^3 sr)]; none if absent.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub emission_by_density: Option<Channels<NonNegative>>,
+    /// How much of it is where: the extinction is this times `sigma_t`; 1 everywhere if absent.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub density: Option<DensityFile>,
 }
 
 /// A surface on a shape.
@@ -228,6 +244,25 @@ pub enum QuantityFile {
 
 fn rectangle(corner: [f64; 3], u: [f64; 3], v: [f64; 3]) -> Result<Rectangle> {
     Rectangle::new(corner.into(), u.into(), v.into())
+}
+
+impl RegionFile {
+    fn region(&self, folder: &Path) -> Result<Region> {
+        let keys = medium::Keys {
+            sigma_t: Some(self.sigma_t),
+            albedo: Some(self.albedo),
+            albedo_grid: self.albedo_grid.as_ref(),
+            g: self.g,
+            phase: self.phase.as_ref(),
+            emission: self.emission,
+            emission_by_density: self.emission_by_density,
+            density: self.density.as_ref(),
+        };
+        let Some(medium) = keys.medium(folder)? else {
+            return Err(Error::Scene("a region without medium".into()));
+        };
+        Ok(Region { shape: self.shape.shape(folder)?, medium })
+    }
 }
 
 impl SurfaceFile {
@@ -319,14 +354,16 @@ impl SensorFile {
 impl SceneFile {
     /// The validated scene; names of other files are relative to `folder`.
     pub fn scene(&self, folder: &Path) -> Result<Scene> {
-        let regions = self.regions.iter().map(|r| {
-            let phase = Phase::with_asymmetry(r.g);
-            let medium = Homogeneous::new(r.sigma_t.spectrum(), r.albedo.spectrum(), phase)?.into();
-            Ok(Region { shape: r.shape.shape(folder)?, medium })
-        });
+        let regions = self
+            .regions
+            .iter()
+            .enumerate()
+            .map(|(i, r)| r.region(folder).map_err(|e| e.within(&format!("regions[{i}]"))));
         let mut interiors = vec![Interior::surroundings()];
         for interior in &self.interiors {
-            interiors.push(interior.interior()?);
+            interiors.push(
+                interior.interior(folder).map_err(|e| e.within(&format!("interior {}", interior.name)))?,
+            );
         }
         let objects = self.objects.iter().map(|o| {
             Ok(Object { shape: o.shape.shape(folder)?, surface: o.surface.surface(folder, &interiors)? })

@@ -78,25 +78,49 @@ impl Scene {
     /// What filters let pass between the ray's origin and distance `end` \[1\], not counting the body at the far end;
     /// none if another body stands in the way, or nothing passes. Media are not asked.
     pub fn passes(&self, ray: &Ray, from: Option<Start>, end: f64, towards: Target) -> Option<Spectrum> {
+        self.let_through(ray, from, end, Some(towards))
+    }
+
+    /// The same where no body is at the far end, but an eye.
+    pub fn sees(&self, ray: &Ray, from: Option<Start>, end: f64) -> Option<Spectrum> {
+        self.let_through(ray, from, end, None)
+    }
+
+    fn let_through(
+        &self,
+        ray: &Ray,
+        from: Option<Start>,
+        end: f64,
+        towards: Option<Target>,
+    ) -> Option<Spectrum> {
         if self.plan().has_filters {
             return self.passes_filters(ray, from, end, towards);
         }
         let bodies = &self.bodies;
-        let except = [from.and_then(|start| bodies.in_list(start.target)), bodies.in_list(towards)];
+        let except =
+            [from.and_then(|start| bodies.in_list(start.target)), towards.and_then(|t| bodies.in_list(t))];
         if bodies.rectangles.block(ray, except, end) {
             return None;
         }
-        let mut others = bodies.others.iter().filter(|target| **target != towards);
-        let is_blocked =
-            others.any(|target| self.try_body(ray, from, *target).is_some_and(|hit| hit.t < end));
+        let mut others = bodies.others.iter().filter(|target| Some(**target) != towards);
+        let is_blocked = others.any(|&target| match target {
+            Target::Object(i) => self.objects()[i].shape.blocks(ray, Start::on(from, target), end),
+            Target::Light(_) => self.try_body(ray, from, target).is_some_and(|hit| hit.t < end),
+        });
         (!is_blocked).then_some(Spectrum::ONE)
     }
 
     /// The same, body after body.
-    fn passes_filters(&self, ray: &Ray, from: Option<Start>, end: f64, towards: Target) -> Option<Spectrum> {
+    fn passes_filters(
+        &self,
+        ray: &Ray,
+        from: Option<Start>,
+        end: f64,
+        towards: Option<Target>,
+    ) -> Option<Spectrum> {
         let (mut ray, mut from, mut end, mut passed) = (*ray, from, end, Spectrum::ONE);
         while let Some(found) = self.hit(&ray, from) {
-            if found.target == towards || found.hit.t >= end {
+            if Some(found.target) == towards || found.hit.t >= end {
                 break;
             }
             let Target::Object(index) = found.target else { return None };

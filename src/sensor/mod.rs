@@ -3,16 +3,20 @@
 
 mod advise;
 mod film;
+mod light;
 mod paths;
 mod photons;
 mod render;
+mod view;
 
 pub use crate::scene::{Camera, Filter, View};
 pub use advise::{Advice, MIN_MAPS, PathAdvice, Pilot, PilotSettings, path_advice};
 pub use film::{Film, Pixel, Sample};
+pub use light::by_light;
 pub use paths::{PathSettings, by_paths, sample, sample_counted};
 pub use photons::{PhotonReadings, PhotonSettings, by_photons};
 pub use render::{MAX_SAMPLES, Streams, extend, render};
+pub use view::{check_camera, colour, draw_photons};
 
 use crate::scene::Sensor;
 use crate::stats::{Moments, poisson_interval};

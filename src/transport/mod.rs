@@ -3,6 +3,7 @@
 mod blocks;
 mod bounce;
 mod emission;
+mod equal_angles;
 mod flags;
 mod flight;
 mod roulette;
@@ -12,6 +13,7 @@ mod walk;
 
 pub use blocks::{BLOCK, NoProgress, Progress, run_blocks};
 pub use emission::{collected, emission};
+pub use equal_angles::{EqualAngles, span};
 pub use flags::Flags;
 pub use flight::{Flight, free_flight};
 pub use roulette::Roulette;

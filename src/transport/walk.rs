@@ -114,7 +114,10 @@ pub fn walk<V: Visitor>(
             visitor.visit(&walker, Step::Abandoned(walker.weight - seen), stream);
             walker.weight = seen;
             match bounce(scene, &walker, &through, roulette, stream, visitor) {
-                Some(next) => walker = next,
+                Some(next) => {
+                    roulette = refracted(roulette, &walker, &next);
+                    walker = next;
+                }
                 None => return,
             }
             continue;
@@ -171,10 +174,21 @@ pub fn walk<V: Visitor>(
                     return;
                 };
                 match bounce(scene, &walker, &found, roulette, stream, visitor) {
-                    Some(next) => walker = next,
+                    Some(next) => {
+                        roulette = refracted(roulette, &walker, &next);
+                        walker = next;
+                    }
                     None => return,
                 }
             }
         }
     }
+}
+
+/// The game behind a boundary: the scale of radiance is no loss, and what is refracted out again gets it back.
+fn refracted(roulette: Roulette, before: &Walker, after: &Walker) -> Roulette {
+    if after.within == before.within {
+        return roulette;
+    }
+    roulette.scaled(after.weight.max() / before.weight.max())
 }

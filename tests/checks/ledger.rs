@@ -210,7 +210,7 @@ pub fn layers_are_those_of_paths(
         // Paths find caustics by chance alone.
         let promise = if name == "caustic" { 0.8 } else { 0.2 };
         // A verdict lies 5.4 standard errors away: a bound counts as a fifth of itself.
-        let error = (0.2 * blur * path.mean()).hypot(path.std_error());
+        let error = libm::hypot(0.2 * blur * path.mean(), path.std_error());
         verdict::agrees(name, map, (path.mean(), error), promise * path.mean(), seed);
     }
 }

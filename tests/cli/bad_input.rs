@@ -257,3 +257,40 @@ fn wrong_advice() {
         refuses_naming(&arguments, words);
     }
 }
+
+/// Interiors and the boundaries that name them.
+#[test]
+fn boundaries_in_a_file() {
+    let folder = Folder::new();
+    let right = "\
+interiors = [{ name = \"glass\", index = 1.5 }]
+[[objects]]
+shape = { sphere = { center = [0, 0, 0], radius = 1.0 } }
+surface = { dielectric = { inside = \"glass\" } }
+[[lights]]
+point = { position = [0, 0, 5], power = 1.0 }
+";
+    let file = folder.file("glass.toml", right);
+    assert!(succeeds(&["check", text(&file)]).contains("dielectric boundaries"));
+    let cases = [
+        ("index = 1.5", "index = 0.9", "1:40: index is 0.9; allowed: finite and at least 1"),
+        (
+            "inside = \"glass\"",
+            "inside = \"glas\"",
+            "unknown interior `glas`; nearest: `glass`; allowed: surroundings, glass",
+        ),
+        ("inside = \"glass\"", "outside = \"glass\"", "inside"),
+        ("dielectric = { inside = \"glass\" }", "filter = { transmittance = 0.5 }", "glass has no boundary"),
+        (
+            "dielectric = { inside = \"glass\" }",
+            "filter = { transmittance = 1.5 }",
+            "transmittance is 1.5; allowed: 0 to 1",
+        ),
+        ("index = 1.5", "index = 1.5, sigma_t = 1.0", "interior glass"),
+    ];
+    for (i, (from, to, words)) in cases.into_iter().enumerate() {
+        let name = format!("glass{i}.toml");
+        let path = folder.file(&name, &right.replacen(from, to, 1));
+        refuses_naming(&["check", text(&path)], &[&name, words]);
+    }
+}

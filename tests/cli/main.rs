@@ -2,7 +2,9 @@
 #![allow(clippy::unwrap_used, reason = "tests")]
 
 mod bad_input;
+mod media;
 mod output;
+mod pictures;
 
 use assert_cmd::Command;
 use std::path::{Path, PathBuf};

@@ -89,6 +89,8 @@ fn the_tree_finds_what_brute_force_finds() {
             let origin = point(&mut s) * if i % 7 == 0 { 1e4 } else { 2.0 };
             let ray = Ray::new(origin, (target - origin).normalize());
             let (found, expected) = (soup.hit(&ray, None), brute_force(&soup, &ray));
+            let end = 3.0 * s.unit();
+            assert_eq!(soup.blocks(&ray, None, end), found.is_some_and(|f| f.t < end), "{ray:?} {end}");
             match (found, expected) {
                 (Some(found), Some((t, _))) if (found.t - t).abs() <= 1e-7 * (1.0 + t) => hits += 1,
                 (None, None) => misses += 1,

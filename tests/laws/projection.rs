@@ -113,11 +113,10 @@ fn caustic(scene: &Scene, emitter: &Emitter, seed: u64) -> [[Moments; 3]; 2] {
         let keep = |photon: &turbid::photons::Photon| photon.flags == Flags::SPECULAR;
         let sensors: [turbid::scene::Sensor; 0] = [];
         let pass = shoot_from(scene, emitter, histories, &sensors, keep, &NoProgress).unwrap();
-        let mut sums = [[0.0; 3]; 2];
+        let mut sums = [[0.0f64; 3]; 2];
         for photon in &pass.photons {
-            for c in 0..3 {
-                sums[usize::from(photon.position.x > 1.0)][c] += f64::from(photon.power.to_array()[c]);
-            }
+            let here = &mut sums[usize::from(photon.position.x > 1.0)];
+            here.iter_mut().zip(photon.power.to_array()).for_each(|(sum, power)| *sum += f64::from(power));
         }
         for (moments, sums) in moments.iter_mut().zip(sums) {
             moments.iter_mut().zip(sums).for_each(|(m, sum)| m.push(sum / HISTORIES as f64));

@@ -7,8 +7,9 @@
 //! - the rest, by a final gathering into the global map ([`gather`]), or from the global map where the eye looks: what
 //!   the map holds decides which ([`Indirect`]), so that every class of light is counted once.
 //!
-//! Lights that no shadow ray can aim at (isotropic incidence, volume sources) are direct light too: one ray in a sampled
-//! direction looks for them.
+//! Lights that no shadow ray can aim at (isotropic incidence, volume sources, emitting media) are direct light too: one
+//! ray in a sampled direction looks for them. Photons start from lights alone: what a medium's own emission lights is
+//! seen as far as that, by direct light and single scattering, and a medium that is to light a scene is a volume source.
 
 mod gather;
 mod settings;
@@ -26,7 +27,7 @@ use crate::math::Ray;
 use crate::photons::maps::Maps;
 use crate::rng::Stream;
 use crate::scene::{Scene, SceneHit, Start, Target};
-use crate::transport::{Roulette, Step, Visitor, Walker, transmittance, walk};
+use crate::transport::{Roulette, Step, Visitor, Walker, emission, transmittance, walk};
 use std::ops::AddAssign;
 
 /// Where mirrors have taken nine tenths of the light, rays play roulette. Any value gives the same mean.
@@ -116,7 +117,8 @@ impl<'a> Mapper<'a> {
             true => scene.objects().iter().map(|object| object.shape.clone()).collect(),
             false => Vec::new(),
         };
-        let has_unaimed = scene.lights().iter().any(|light| !light.has_direction());
+        let has_unaimed =
+            scene.plan().has_emission || scene.lights().iter().any(|light| !light.has_direction());
         Mapper { scene, maps, settings, walls, has_unaimed }
     }
 
@@ -137,10 +139,12 @@ impl<'a> Mapper<'a> {
         (eye.layers, eye.report)
     }
 
-    /// What a ray meets by itself of lights that have no direction to aim at.
+    /// What a ray meets by itself of lights that have no direction to aim at, emitting media among them.
     fn unaimed(&self, walker: &Walker, end: f64, stream: &mut Stream) -> Spectrum {
-        let lights = self.scene.lights().iter().filter(|light| !light.has_direction());
-        lights.fold(Spectrum::ZERO, |sum, light| sum + uncollided(self.scene, light, walker, end, stream))
+        let scene = self.scene;
+        let media = emission(scene, &walker.ray, end, walker.within, stream);
+        let lights = scene.lights().iter().filter(|light| !light.has_direction());
+        lights.fold(media, |sum, light| sum + uncollided(scene, light, walker, end, stream))
     }
 
     /// Light that arrives at a place straight from all lights, each direction weighted by `scattered`; `walker` says in
@@ -190,13 +194,21 @@ impl Eye<'_, '_> {
         let (scene, ray) = (self.mapper.scene, &walker.ray);
         let end = hit.map_or(f64::INFINITY, |found| found.hit.t);
         self.report.rays.segments += 1;
-        for light in scene.lights() {
-            self.layers.emission += walker.weight * uncollided(scene, light, walker, end, stream);
+        if self.mapper.has_unaimed {
+            self.layers.emission += walker.weight * self.mapper.unaimed(walker, end, stream);
         }
         if scene.plan().has_media {
             self.march(walker, end, stream);
         }
-        let Some(found) = hit else { return };
+        let Some(found) = hit else {
+            for light in scene.lights() {
+                if let Some((radiance, _)) = light.background(ray.dir) {
+                    let seen = walker.weight * transmittance(scene, ray, end, walker.within, stream);
+                    self.layers.emission += seen * radiance;
+                }
+            }
+            return;
+        };
         match found.target {
             Target::Light(index) => {
                 let radiance = scene.lights()[index].emitted(ray, &found.hit).0;

@@ -1,15 +1,15 @@
 //! Interiors in a scene file, and the dielectric surfaces that name them.
 
-use super::Channels;
+use super::medium::Keys;
+use super::{Channels, DensityFile, GridFile, PhaseFile};
 use crate::error::{Error, Result};
 use crate::math::{Albedo, Asymmetry, Index, NonNegative};
-use crate::medium::Homogeneous;
-use crate::phase::Phase;
 use crate::scene::Interior;
 use crate::surface::Dielectric;
 use serde::{Deserialize, Serialize};
+use std::path::Path;
 
-/// What fills the space between dielectric surfaces; a medium if all of its three keys are there.
+/// What fills the space between dielectric surfaces; a medium if its keys are there.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct InteriorFile {
@@ -23,26 +23,39 @@ pub struct InteriorFile {
     /// Single-scattering albedo.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub albedo: Option<Channels<Albedo>>,
+    /// Albedo from place to place, times `albedo`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub albedo_grid: Option<GridFile>,
     /// Asymmetry of the Henyey-Greenstein phase function; 0 is isotropic.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub g: Option<Asymmetry>,
+    /// Another phase function, in place of `g`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub phase: Option<PhaseFile>,
+    /// Emission, the same everywhere [W/(L^3 sr)]; none if absent.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub emission: Option<Channels<NonNegative>>,
+    /// Emission that follows the density, where it is 1 [W/(L^3 sr)]; none if absent.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub emission_by_density: Option<Channels<NonNegative>>,
+    /// How much of it is where: the extinction is this times `sigma_t`; 1 everywhere if absent.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub density: Option<DensityFile>,
 }
 
 impl InteriorFile {
-    pub(super) fn interior(&self) -> Result<Interior> {
-        let medium = match (self.sigma_t, self.albedo, self.g) {
-            (None, None, None) => None,
-            (Some(sigma_t), Some(albedo), Some(g)) => {
-                let phase = Phase::with_asymmetry(g);
-                Some(Homogeneous::new(sigma_t.spectrum(), albedo.spectrum(), phase)?.into())
-            }
-            _ => {
-                return Err(Error::Scene(format!(
-                    "interior {} has a part of a medium; allowed: sigma_t, albedo and g, or none of them",
-                    self.name
-                )));
-            }
+    pub(super) fn interior(&self, folder: &Path) -> Result<Interior> {
+        let keys = Keys {
+            sigma_t: self.sigma_t,
+            albedo: self.albedo,
+            albedo_grid: self.albedo_grid.as_ref(),
+            g: self.g,
+            phase: self.phase.as_ref(),
+            emission: self.emission,
+            emission_by_density: self.emission_by_density,
+            density: self.density.as_ref(),
         };
+        let medium = keys.medium(folder)?;
         Ok(Interior { name: self.name.clone(), index: self.index.get(), medium })
     }
 }

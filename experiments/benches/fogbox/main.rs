@@ -2,24 +2,28 @@
 //!
 //! `cargo bench -p turbid-experiments --bench fogbox -- iso` runs the fogs whose name contains a word.
 //!
-//! Efficiency is 1/(mean squared error x processor seconds), with the error over pixels and channels of one round,
-//! measured by the spread of independent rounds; that the rounds' means are right is tested beside it, on the mean
-//! radiance of the picture, against converged values of an independent renderer.
+//! Efficiency is 1/(mean squared error x processor seconds), over pixels and channels. Of path tracers the error is the
+//! spread of independent rounds; that their means are right is tested beside it, on the mean radiance of the picture,
+//! against converged values of an independent renderer. Of the photon mapper (`-- maps`) it is the error against the mean
+//! of all path-traced rounds, split into the spread between maps and the rest, its bias.
 //!
 //! The peer renders the same scene if there is a Python that knows it: `python3 -m venv VENV &&
 //! VENV/bin/pip install mitsuba numpy`, then `TURBID_PYTHON=VENV/bin/python` before the command. Its just-in-time
 //! compiled variant runs too if `DRJIT_LIBLLVM_PATH` names an LLVM library that works with it.
 
-mod fogbox_peer;
+mod maps;
+mod peer;
+mod scenes;
 
 use anyhow::{Context, Result};
 use cpu_time::ThreadTime;
-use fogbox_peer::Peer;
+use peer::Peer;
 use std::io::Write;
-use std::path::PathBuf;
-use turbid::math::Ray;
+use turbid::integrators::path;
 use turbid::rng::{Purpose, Stream};
-use turbid::scene::{Orders, Scene, SceneFile};
+use turbid::scene::{Camera, SURROUNDINGS, Scene};
+use turbid::sensor::{Film, Streams, render};
+use turbid::transport::NoProgress;
 
 /// Width and height of the picture in pixels.
 pub const WIDTH: usize = 128;
@@ -27,7 +31,7 @@ const ROUNDS: usize = 15;
 /// Samples a pixel and round: about a second of either renderer.
 const SAMPLES: u64 = 16;
 /// Mean radiance over pixels and channels by a converged independent renderer, and its standard error.
-const FOGS: [(&str, f64); 2] = [("iso", 0.16394), ("hg", 0.16228)];
+const FOGS: [(&str, f64); 3] = [("iso", 0.16394), ("hg", 0.16228), ("het", 0.16909)];
 const CONVERGED_ERROR: f64 = 1e-4;
 
 /// A picture of 128 x 128 x 3 radiances, and the processor seconds it took.
@@ -40,10 +44,11 @@ pub struct Round {
 
 fn main() -> Result<()> {
     let wanted: Vec<String> = std::env::args().skip(1).filter(|word| !word.starts_with('-')).collect();
+    let is_wanted = |name: &str| wanted.is_empty() || wanted.iter().any(|word| name.contains(word));
     let mut out = std::io::stdout().lock();
     let mut peers = Vec::new();
     for variant in ["scalar_rgb", "llvm_ad_rgb"] {
-        match Peer::start(variant, &folder().join("fogbox")) {
+        match Peer::start(variant, &scenes::folder().join("fogbox")) {
             Ok(peer) => peers.push((variant, peer)),
             Err(why) => writeln!(out, "Mitsuba {variant} is not beside it: {why:#}.")?,
         }
@@ -51,84 +56,60 @@ fn main() -> Result<()> {
     writeln!(out, "{WIDTH} x {WIDTH} pixels, {SAMPLES} samples a pixel and round, {ROUNDS} rounds in turn")?;
     writeln!(
         out,
-        "{:4} {:20} {:>8} {:>12} {:>22} {:>7}",
-        "fog", "", "s", "1/(MSE s)", "times the first peer", "mean z"
+        "{:4} {:20} {:>8} {:>12} {:>22} {:>9} {:>7}",
+        "fog", "", "s", "1/(MSE s)", "times the first", "mean", "z"
     )?;
     for (fog, converged) in FOGS {
-        if !wanted.is_empty() && !wanted.iter().any(|word| fog.contains(word)) {
+        let has_maps = fog == "iso" && is_wanted("maps");
+        if !is_wanted(fog) && !has_maps {
             continue;
         }
-        let scene = load(fog)?;
-        let mut rounds: Vec<(String, Vec<Round>)> = Vec::new();
-        for (variant, _) in &peers {
-            rounds.push((format!("Mitsuba {variant}"), Vec::new()));
-        }
+        let scene = scenes::load(fog)?;
+        let camera = scenes::camera()?;
+        let mut rounds: Vec<(String, Vec<Round>)> =
+            peers.iter().map(|(variant, _)| (format!("Mitsuba {variant}"), Vec::new())).collect();
         rounds.push(("turbid paths".into(), Vec::new()));
         for (_, peer) in &mut peers {
             peer.render(fog, 1, 0)?;
         }
-        for round in 0..ROUNDS {
+        for round in 0..ROUNDS as u64 {
             for ((_, peer), (_, rounds)) in peers.iter_mut().zip(&mut rounds) {
-                rounds.push(peer.render(fog, SAMPLES, round as u64 + 1)?);
+                rounds.push(peer.render(fog, SAMPLES, round + 1)?);
             }
             if let Some((_, ours)) = rounds.last_mut() {
-                ours.push(by_paths(&scene, round as u64));
+                ours.push(by_paths(&scene, &camera, round)?);
             }
         }
         for (name, ours) in &rounds {
             let first = rounds.first().map_or(ours, |(_, first)| first);
             line(&mut out, fog, name, ours, first, converged)?;
         }
+        if has_maps {
+            maps::compare(&mut out, &scene, &camera, &rounds)?;
+        }
     }
     Ok(())
 }
 
-/// Where scenes are.
-fn folder() -> PathBuf {
-    PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/scenes"))
-}
-
-fn load(fog: &str) -> Result<Scene> {
-    let path = folder().join(format!("fogbox-{fog}.toml"));
-    let text = std::fs::read_to_string(&path).with_context(|| path.display().to_string())?;
-    let file: SceneFile = toml::from_str(&text).with_context(|| path.display().to_string())?;
-    Ok(file.scene(&folder())?)
-}
-
 /// One round of the path tracer.
-fn by_paths(scene: &Scene, round: u64) -> Round {
-    let start = ThreadTime::now();
-    let mut pixels = Vec::with_capacity(WIDTH * WIDTH * 3);
-    for pixel in 0..(WIDTH * WIDTH) as u64 {
-        let (x, y) = ((pixel % WIDTH as u64) as f64, (pixel / WIDTH as u64) as f64);
-        let mut sum = turbid::Spectrum::ZERO;
-        for sample in 0..SAMPLES {
-            let mut stream = Stream::new(1, Purpose::Paths, round, pixel * SAMPLES + sample);
-            let jitter = stream.pair();
-            let ray = camera(x + jitter[0], y + jitter[1]);
-            turbid::integrators::radiance(
-                scene,
-                ray,
-                None,
-                turbid::scene::SURROUNDINGS,
-                Orders::ALL,
-                &mut stream,
-                |_, value| {
-                    sum += value;
-                },
-            );
-        }
-        pixels.extend((sum / SAMPLES as f64).0.to_array());
-    }
-    Round { pixels, seconds: start.elapsed().as_secs_f64() }
+fn by_paths(scene: &Scene, camera: &Camera, replicate: u64) -> Result<Round> {
+    timed(|| {
+        Ok(render(camera, SAMPLES, Streams { seed: 1, replicate }, &NoProgress, |ray, stream| {
+            path::layers(scene, ray, None, SURROUNDINGS, stream).0
+        })?)
+    })
 }
 
-/// The ray through a point of the picture in pixels: from (0, 0, 0.95) towards -z, 80 degrees wide.
-fn camera(x: f64, y: f64) -> Ray {
-    let half = libm::tan(40.0_f64.to_radians());
-    let on_screen = |pixel: f64| (2.0 * pixel / WIDTH as f64 - 1.0) * half;
-    let dir = glam::DVec3::new(on_screen(x), -on_screen(y), -1.0);
-    Ray::new(glam::DVec3::new(0.0, 0.0, 0.95), dir.normalize())
+/// A picture and its time, on one thread.
+fn timed(work: impl FnOnce() -> Result<Film> + Send) -> Result<Round> {
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build().context("no thread")?;
+    pool.install(|| {
+        let start = ThreadTime::now();
+        let film = work()?;
+        let seconds = start.elapsed().as_secs_f64();
+        let pixels = film.pixels().iter().flat_map(|pixel| pixel.total().0.to_array()).collect();
+        Ok(Round { pixels, seconds })
+    })
 }
 
 /// Squared error of a round [radiance^2], by its spread about the mean of all rounds.
@@ -178,7 +159,7 @@ fn line(
     let ratio = ours / efficiency(&errors_of_first, first, &all);
     writeln!(
         out,
-        "{fog:4} {name:20} {seconds:8.3} {ours:12.1} {ratio:7.2} ({:5.2} to {:5.2}) {z:7.2}",
+        "{fog:4} {name:20} {seconds:8.3} {ours:12.1} {ratio:7.2} ({:5.2} to {:5.2}) {mean:9.5} {z:7.2}",
         ratios[49], ratios[1949]
     )?;
     Ok(())

@@ -1,0 +1,116 @@
+//! `turbid map`: the photons of a scene's maps, as dots seen from its camera.
+
+use super::load::Source;
+use super::on_threads;
+use super::picture::{Frame, Photons, Shown};
+use super::progress::Bar;
+use super::render::check_folder;
+use anyhow::bail;
+use clap::ValueEnum;
+use std::path::PathBuf;
+use turbid::Spectrum;
+use turbid::output::{Tone, auto_exposure, write_ply, write_png};
+use turbid::photons::Photon;
+use turbid::photons::maps::{Indirect, Maps, counts, fill_counted};
+use turbid::sensor::{colour, draw_photons};
+
+/// Draw the photons that a scene's maps hold, as dots seen from its camera, coloured by their power.
+///
+/// Photons behind opaque surfaces are hidden; glass hides nothing, and bends nothing here. The point cloud that --ply
+/// writes opens in any viewer of PLY files; it has position, direction, power, order of scattering and path class.
+#[derive(clap::Args)]
+#[command(allow_negative_numbers = true)]
+pub struct Map {
+    #[command(flatten)]
+    source: Source,
+    /// The PNG file to write.
+    #[arg(short, long)]
+    output: PathBuf,
+    /// A PLY file to write the photons to, all of them, seen or not.
+    #[arg(long)]
+    ply: Option<PathBuf>,
+    /// Which map.
+    #[arg(long, value_enum, default_value = "all")]
+    which: Which,
+    #[command(flatten)]
+    frame: Frame,
+    #[command(flatten)]
+    shown: Shown,
+    #[command(flatten)]
+    photons: Photons,
+    /// Seed: the same seed gives the same photons, on any number of threads.
+    #[arg(long, default_value_t = 1)]
+    seed: u64,
+    /// Threads [default: all cores].
+    #[arg(long, value_parser = clap::value_parser!(u16).range(1..=1024))]
+    threads: Option<u16>,
+}
+
+#[derive(Clone, Copy, PartialEq, ValueEnum)]
+enum Which {
+    /// Photons on surfaces, of every class.
+    Global,
+    /// Photons that mirrors or glass focused on surfaces.
+    Caustic,
+    /// Photons in media that do not come straight from a light.
+    Volume,
+    /// The global and the volume map; the caustics are among the surface photons.
+    All,
+}
+
+/// Stops that keep places with many photons apart; a dot alone is never brighter than its colour.
+fn dim(picture: &[Spectrum]) -> f64 {
+    auto_exposure(picture.iter().copied()).min(0.0)
+}
+
+impl Map {
+    /// Draws and writes.
+    pub fn run(self) -> anyhow::Result<()> {
+        let extension = self.output.extension().and_then(|e| e.to_str()).unwrap_or_default();
+        if !extension.eq_ignore_ascii_case("png") {
+            bail!("--output is {}; allowed: a file name that ends in .png", self.output.display());
+        }
+        let exposure = self.shown.checked()?;
+        let scene = self.source.load()?;
+        let camera = self.frame.camera(&scene)?;
+        for file in [Some(&self.output), self.ply.as_ref()].into_iter().flatten() {
+            check_folder(file)?;
+        }
+        let settings = self.photons.settings(Indirect::Gathered, self.seed, 0);
+        let (photons, picture, seen) = on_threads(self.threads, || {
+            let emitted = counts(&scene, &settings)?;
+            let bar = Bar::stage("emission", emitted.histories());
+            let maps = fill_counted(&scene, &settings, emitted, &bar);
+            bar.finish();
+            let photons = self.chosen(&maps?)?;
+            let plain: Vec<Photon> = photons.iter().map(|(photon, _)| *photon).collect();
+            let (picture, seen) = draw_photons(&scene, &camera, &plain);
+            Ok((photons, picture, seen))
+        })?;
+        let tone = Tone { exposure: exposure.unwrap_or_else(|| dim(&picture)), curve: self.shown.curve() };
+        let pixels: Vec<[u8; 3]> = picture.into_iter().map(|p| tone.pixel(p)).collect();
+        write_png(&self.output, (camera.width(), camera.height()), &pixels)?;
+        if let Some(ply) = &self.ply {
+            let white = Tone { exposure: 0.0, curve: turbid::output::Curve::Clip };
+            write_ply(ply, &photons, |photon| white.pixel(colour(photon)))?;
+        }
+        super::print(&format!("photons        {}\nin the picture {seen}\n", photons.len()))
+    }
+
+    /// The photons of the maps asked for, each with the number that its map's pass emitted.
+    fn chosen(&self, maps: &Maps) -> anyhow::Result<Vec<(Photon, u64)>> {
+        let chosen = match self.which {
+            Which::Global => vec![&maps.global],
+            Which::Caustic => vec![&maps.caustic],
+            Which::Volume => vec![&maps.volume],
+            Which::All => vec![&maps.global, &maps.volume],
+        };
+        let maps = chosen.into_iter().flatten();
+        let photons: Vec<(Photon, u64)> =
+            maps.flat_map(|map| map.tree().photons().map(|photon| (photon, map.emitted()))).collect();
+        if photons.is_empty() {
+            bail!("the map is empty: the scene has no surface or medium that keeps such photons");
+        }
+        Ok(photons)
+    }
+}

@@ -1,0 +1,259 @@
+//! What `render` and `map` share: the camera, the photons, exposure.
+
+use super::{KernelName, parse_count};
+use anyhow::{Context, anyhow};
+use clap::ValueEnum;
+use turbid::estimators::Gather;
+use turbid::estimators::boundary::{Rejection, Treatment};
+use turbid::integrators::StepRule;
+use turbid::integrators::mapper::{Adaptive, Settings};
+use turbid::math::Positive;
+use turbid::output::Curve;
+use turbid::photons::maps::{Amount, Indirect, MapSettings};
+use turbid::scene::{Camera, Scene};
+
+/// The camera's picture, in another size if asked for.
+#[derive(clap::Args)]
+pub struct Frame {
+    /// Pixels across, instead of the scene's; the height follows unless it is given.
+    #[arg(long)]
+    width: Option<u32>,
+    /// Pixels down, instead of the scene's; the width follows unless it is given.
+    #[arg(long)]
+    height: Option<u32>,
+}
+
+impl Frame {
+    /// The scene's camera, in the size asked for, and able to see light.
+    pub fn camera(&self, scene: &Scene) -> anyhow::Result<Camera> {
+        let camera = scene.camera().ok_or_else(|| {
+            anyhow!("the scene has no [camera]: add one with position, look_at, fov, width and height")
+        })?;
+        let follow = |given: u32, over: u32, under: u32| {
+            ((f64::from(given) * f64::from(over) / f64::from(under)).round() as u32).max(1)
+        };
+        let (width, height) = match (self.width, self.height) {
+            (None, None) => (camera.width(), camera.height()),
+            (Some(w), Some(h)) => (w, h),
+            (Some(w), None) => (w, follow(w, camera.height(), camera.width())),
+            (None, Some(h)) => (follow(h, camera.width(), camera.height()), h),
+        };
+        let camera = camera.with_size(width, height).context("--width, --height")?;
+        turbid::sensor::check_camera(scene, &camera)?;
+        Ok(camera)
+    }
+}
+
+/// How a picture is shown.
+#[derive(clap::Args)]
+pub struct Shown {
+    /// Exposure of the PNG in stops: radiance times 2 to this power; pictures to be compared need the same
+    /// [default: bright parts well exposed; the value taken is printed].
+    #[arg(long)]
+    pub exposure: Option<f64>,
+    /// What the PNG does with light too bright for a screen.
+    #[arg(long, value_enum, default_value = "soft")]
+    tone: ToneName,
+}
+
+#[derive(Clone, Copy, ValueEnum)]
+enum ToneName {
+    /// Linear to 0.6 of white, then a smooth shoulder that reaches white at infinity.
+    Soft,
+    /// Linear to white, then cut.
+    Clip,
+}
+
+impl Shown {
+    /// The curve asked for.
+    pub fn curve(&self) -> Curve {
+        match self.tone {
+            ToneName::Soft => Curve::Soft,
+            ToneName::Clip => Curve::Clip,
+        }
+    }
+
+    /// The exposure asked for, if it is a number of stops.
+    pub fn checked(&self) -> anyhow::Result<Option<f64>> {
+        match self.exposure {
+            Some(stops) if !(stops.abs() <= 100.0) => {
+                Err(anyhow!("--exposure is {stops}; allowed: -100 to 100 stops"))
+            }
+            other => Ok(other),
+        }
+    }
+}
+
+/// Photons on the command line: `200000` are stored, `emit:1e6` sent out.
+fn parse_amount(text: &str) -> Result<Amount, String> {
+    const ALLOWED: &str =
+        "allowed: a number of photons to store, such as 200000, or to emit, such as emit:1e6";
+    let (number, is_emitted) = text.strip_prefix("emit:").map_or((text, false), |number| (number, true));
+    let count = parse_count(number).map_err(|_| ALLOWED.to_string())?;
+    Ok(if is_emitted { Amount::Emitted(count) } else { Amount::Stored(count) })
+}
+
+/// How many photons the maps get.
+#[derive(clap::Args)]
+pub struct Photons {
+    /// Photons of the global map, which is those on surfaces: a number to store, or `emit:1e6` to send out.
+    #[arg(long, value_name = "PHOTONS", value_parser = parse_amount, default_value = "200000")]
+    global: Amount,
+    /// Photons of the caustic map, light focused by mirrors and glass; used where the scene has such.
+    #[arg(long, value_name = "PHOTONS", value_parser = parse_amount, default_value = "50000")]
+    caustic: Amount,
+    /// Photons of the volume map, those in media; used where the scene has media.
+    #[arg(long, value_name = "PHOTONS", value_parser = parse_amount, default_value = "65000")]
+    volume: Amount,
+}
+
+impl Photons {
+    /// Settings of the maps of one repetition.
+    pub fn settings(&self, indirect: Indirect, seed: u64, replicate: u64) -> MapSettings {
+        let Photons { global, caustic, volume } = *self;
+        MapSettings { global, caustic, volume, indirect, seed, replicate }
+    }
+}
+
+/// How the maps are read.
+#[derive(clap::Args)]
+pub struct Reading {
+    /// Photons an estimate takes, the k nearest.
+    #[arg(long, default_value_t = 100, conflicts_with = "radius")]
+    k: usize,
+    /// The same for the volume map [default: k].
+    #[arg(long, conflicts_with = "radius")]
+    volume_k: Option<usize>,
+    /// Radius within which an estimate takes all photons, instead of the k nearest [L].
+    #[arg(long)]
+    radius: Option<f64>,
+    /// The farthest that the k nearest photons are sought [L; default: a tenth of the scene].
+    #[arg(long, conflicts_with = "radius")]
+    max_radius: Option<f64>,
+    /// How estimates from the global and the volume map weight their photons.
+    #[arg(long, value_enum, default_value = "uniform")]
+    kernel: KernelName,
+    /// The same for the caustic map.
+    #[arg(long, value_enum, default_value = "cone")]
+    caustic_kernel: KernelName,
+    /// Rays of a final gathering at each surface that is seen; 0 reads the global map there itself: fast, and blotchy.
+    #[arg(long, default_value_t = 64)]
+    gather_rays: u32,
+    /// Rays of a final gathering that are shorter than this are traced on: the map's blur shows in corners [L].
+    #[arg(long, default_value_t = 0.0)]
+    near: f64,
+    /// Longest step of the march through media [L; default: a twentieth of the scene].
+    #[arg(long)]
+    step: Option<f64>,
+    /// How much of a step's light reaches its near end: the rule of 1998, or exact for a constant source.
+    #[arg(long, value_enum, default_value = "integrated")]
+    step_rule: RuleName,
+    /// Relative change of light from step to step above which steps are halved, to a quarter at most; 0 for equal steps.
+    #[arg(long, default_value_t = 0.5)]
+    adapt: f64,
+    /// March on places that are not random: no noise, but bands.
+    #[arg(long)]
+    no_jitter: bool,
+    /// What volume estimates do at the edge of a medium, behind which there are no photons.
+    #[arg(long, value_enum, default_value = "clipped")]
+    boundary: BoundaryName,
+    /// Which photons behind walls volume estimates reject.
+    #[arg(long, value_enum, default_value = "off")]
+    reject: RejectName,
+}
+
+#[derive(Clone, Copy, ValueEnum)]
+enum RuleName {
+    /// The light at the near end of the step, not attenuated in it: the formula of 1998.
+    NearEnd,
+    /// The light in its middle.
+    Middle,
+    /// The exponential integrated over the step.
+    Integrated,
+}
+
+#[derive(Clone, Copy, ValueEnum)]
+enum BoundaryName {
+    /// Nothing: up to half is lost at a face.
+    None,
+    /// Divides by the part of the kernel that is inside.
+    Clipped,
+    /// Mirrors the photons in the faces.
+    Reflection,
+    /// Fits a line along the normal.
+    LocalLinear,
+}
+
+#[derive(Clone, Copy, ValueEnum)]
+enum RejectName {
+    /// None.
+    Off,
+    /// Those that do not travel towards the wall: half of the good ones go too.
+    Facing,
+    /// Those behind the wall's plane that do not travel towards it.
+    FacingBehind,
+    /// Those behind the wall's plane.
+    BehindPlane,
+    /// Those that a wall hides from the point.
+    Visible,
+}
+
+impl Reading {
+    /// Where the global map is read.
+    pub fn indirect(&self) -> Indirect {
+        if self.gather_rays == 0 { Indirect::Seen } else { Indirect::Gathered }
+    }
+
+    /// Settings of the mapper for a scene.
+    pub fn settings(&self, scene: &Scene) -> anyhow::Result<Settings> {
+        let size = size(scene);
+        let gather = |k: usize| match self.radius {
+            Some(radius) => Gather::radius(radius).context("--radius"),
+            None => Gather::nearest(k, self.max_radius.unwrap_or(0.1 * size)).context("--k, --max-radius"),
+        };
+        let (surface, volume) = (gather(self.k)?, gather(self.volume_k.unwrap_or(self.k))?);
+        if !(self.near >= 0.0 && self.near.is_finite()) {
+            return Err(anyhow!("--near is {}; allowed: finite and at least 0", self.near));
+        }
+        if !(self.adapt >= 0.0 && self.adapt.is_finite()) {
+            return Err(anyhow!("--adapt is {}; allowed: finite and at least 0", self.adapt));
+        }
+        let mut settings = Settings::for_size(size, self.k).context("--k")?;
+        let kernel = self.kernel.kernel();
+        settings.global = (kernel, surface);
+        settings.caustic = (self.caustic_kernel.kernel(), surface);
+        settings.volume = (kernel, volume);
+        settings.gather_rays = self.gather_rays.max(1);
+        settings.near = self.near;
+        if let Some(step) = self.step {
+            settings.march.step = Positive::new("--step", step)?;
+        }
+        settings.march.rule = match self.step_rule {
+            RuleName::NearEnd => StepRule::NearEnd,
+            RuleName::Middle => StepRule::Middle,
+            RuleName::Integrated => StepRule::Integrated,
+        };
+        settings.march.is_jittered = !self.no_jitter;
+        let shortest = Positive::new("the shortest step", 0.25 * settings.march.step.get())?;
+        settings.march.adaptive = (self.adapt > 0.0).then_some(Adaptive { tolerance: self.adapt, shortest });
+        settings.treatment = match self.boundary {
+            BoundaryName::None => Treatment::None,
+            BoundaryName::Clipped => Treatment::Clipped,
+            BoundaryName::Reflection => Treatment::Reflection,
+            BoundaryName::LocalLinear => Treatment::LocalLinear,
+        };
+        settings.rejection = match self.reject {
+            RejectName::Off => Rejection::Off,
+            RejectName::Facing => Rejection::Facing,
+            RejectName::FacingBehind => Rejection::FacingBehind,
+            RejectName::BehindPlane => Rejection::BehindPlane,
+            RejectName::Visible => Rejection::Visible,
+        };
+        Ok(settings)
+    }
+}
+
+/// How large a scene is \[L\]: the edge of the cube in the ball that holds its bodies; 1 for a scene without bounds.
+fn size(scene: &Scene) -> f64 {
+    scene.bounds().map_or(1.0, |ball| 2.0 * ball.radius() / 3.0f64.sqrt())
+}

@@ -1,0 +1,291 @@
+//! `turbid render`: a picture of a scene, by photons or by paths.
+
+use super::load::Source;
+use super::on_threads;
+use super::parse_count;
+use super::picture::{Frame, Photons, Reading, Shown};
+use super::progress::Bar;
+use super::statistics::{Stages, print_statistics};
+use anyhow::{Context, bail};
+use clap::ValueEnum;
+use cpu_time::ProcessTime;
+use std::ops::AddAssign;
+use std::path::{Path, PathBuf};
+use turbid::integrators::mapper::{Mapper, Report};
+use turbid::integrators::path;
+use turbid::output::{Tone, auto_exposure, write_exr, write_png};
+use turbid::photons::PhotonMap;
+use turbid::photons::maps::{MapReport, counts, fill_counted};
+use turbid::scene::{Camera, Scene};
+use turbid::sensor::{Film, Sample, Streams, extend};
+
+/// Draw the picture that a scene's camera sees, by photon maps or by paths.
+///
+/// Writes an OpenEXR file in linear light and a PNG beside it to look at. The EXR has the channels R G B; variance.R and
+/// so on, the variance of each mean; a layer for each class of light's path (emission, direct, caustic, indirect, single,
+/// multiple); photons.N, the photons behind a sample; and in its header, under `turbid`, all that the picture was made
+/// from. The scene file needs a [camera].
+///
+/// The path tracer is unbiased, and noisy. Photons are fast, and blurred: they are sent out once into maps, which all
+/// pixels share, so that the error of one map is seen only by making several (--maps); the variance is then that between
+/// maps. The classic picture is one map and a few samples: `turbid render scene.toml -o out.exr --samples 16`.
+#[derive(clap::Args)]
+#[command(allow_negative_numbers = true)]
+pub struct Render {
+    #[command(flatten)]
+    source: Source,
+    /// The EXR file to write; the PNG has the same name with .png.
+    #[arg(short, long)]
+    output: PathBuf,
+    /// Who makes the picture.
+    #[arg(long = "with", value_enum, default_value = "photons")]
+    with: With,
+    /// Samples a pixel, of each map [default: 16].
+    #[arg(long, value_parser = parse_count)]
+    samples: Option<u64>,
+    /// As many samples as this many seconds of processor time allow, maps included. The clock decides: the number taken
+    /// is printed, and --samples with it repeats the picture bit by bit.
+    #[arg(long, conflicts_with = "samples")]
+    seconds: Option<f64>,
+    /// Independent repetitions, with maps of their own if it is by photons; the picture is their mean.
+    #[arg(long, value_parser = parse_count, default_value = "1")]
+    maps: u64,
+    #[command(flatten)]
+    frame: Frame,
+    #[command(flatten)]
+    shown: Shown,
+    /// Seed: the same seed gives the same picture, on any number of threads.
+    #[arg(long, default_value_t = 1)]
+    seed: u64,
+    /// Threads [default: all cores].
+    #[arg(long, value_parser = clap::value_parser!(u16).range(1..=1024))]
+    threads: Option<u16>,
+    #[command(flatten, next_help_heading = "Photons")]
+    photons: Photons,
+    #[command(flatten, next_help_heading = "Photons")]
+    reading: Reading,
+}
+
+#[derive(Clone, Copy, PartialEq, ValueEnum)]
+enum With {
+    /// The photon mapper.
+    Photons,
+    /// The unbiased path tracer.
+    Paths,
+}
+
+/// Samples a pixel where neither their number nor a time is given.
+const SAMPLES: u64 = 16;
+
+/// What making a picture took.
+pub struct Made {
+    /// The picture.
+    pub film: Film,
+    /// Samples a pixel of each repetition.
+    pub samples: Vec<u64>,
+    /// Rays and look-ups.
+    pub work: Report,
+    /// What filling each repetition's maps took, and how full the global, caustic and volume map are.
+    pub maps: Vec<MapsMade>,
+    /// Times.
+    pub stages: Stages,
+}
+
+impl Render {
+    /// Draws and writes.
+    pub fn run(self) -> anyhow::Result<()> {
+        let extension = self.output.extension().and_then(|e| e.to_str()).unwrap_or_default();
+        if !extension.eq_ignore_ascii_case("exr") {
+            bail!("--output is {}; allowed: a file name that ends in .exr", self.output.display());
+        }
+        if let Some(seconds) = self.seconds.filter(|s| !(*s > 0.0 && s.is_finite())) {
+            bail!("--seconds is {seconds}; allowed: finite and above 0");
+        }
+        let exposure = self.shown.checked()?;
+        let file = self.source.resolve()?;
+        let scene = self.source.load()?;
+        let camera = self.frame.camera(&scene)?;
+        if self.with == With::Paths && !scene.plan().unreachable.is_empty() {
+            bail!(
+                "the path tracer cannot sample every path of this scene ({}): use photons, or a light with an extent",
+                scene.plan().unreachable.join("; ")
+            );
+        }
+        if scene.stage().is_some() && self.with == With::Photons {
+            bail!(
+                "pictures of a scene with `cell`, which stands for an unbounded slab, are made by paths: --with paths"
+            );
+        }
+        // Before the work, not after it.
+        check_folder(&self.output)?;
+        let settings = self.reading.settings(&scene)?;
+        let made = on_threads(self.threads, || match self.with {
+            With::Paths => self.repeat(&camera, |streams, stages, left, film| {
+                let within = scene.interior_at(camera.position());
+                let sample = |ray, stream: &mut _, work: &mut Report| {
+                    let (layers, rays) = path::layers(&scene, ray, None, within, stream);
+                    *work += Report { rays, ..Report::default() };
+                    Sample::from(layers)
+                };
+                let work = self.fill(film, &camera, streams, stages, left, sample)?;
+                Ok((work, None))
+            }),
+            With::Photons => self.repeat(&camera, |streams, stages, left, film| {
+                let settings_of_maps =
+                    self.photons.settings(self.reading.indirect(), streams.seed, streams.replicate);
+                let emitted = stages.time("pilot", || counts(&scene, &settings_of_maps))?;
+                let bar = Bar::stage("emission", emitted.histories());
+                let maps = stages.time("maps", || fill_counted(&scene, &settings_of_maps, emitted, &bar));
+                bar.finish();
+                let maps = maps?;
+                let within = scene.interior_at(camera.position());
+                let mapper = Mapper::new(&scene, &maps, &settings);
+                let sample = |ray, stream: &mut _, work: &mut Report| {
+                    let (layers, report) = mapper.radiance(ray, None, within, stream);
+                    *work += report;
+                    let photons = report.global.found + report.caustic.found + report.volume.found;
+                    Sample { layers, photons: photons as f64 }
+                };
+                let work = self.fill(film, &camera, streams, stages, left, sample)?;
+                let stored = [&maps.global, &maps.caustic, &maps.volume].map(|m| m.as_ref().map(Filled::of));
+                Ok((work, Some((maps.report, stored))))
+            }),
+        })?;
+        let exposure =
+            exposure.unwrap_or_else(|| auto_exposure(made.film.pixels().iter().map(|p| p.total())));
+        let tone = Tone { exposure, curve: self.shown.curve() };
+        let provenance = self.provenance(&toml::to_string(&file)?, &scene, &made, exposure)?;
+        write_exr(&self.output, &made.film, &provenance)?;
+        let png = self.output.with_extension("png");
+        let pixels: Vec<[u8; 3]> = made.film.pixels().iter().map(|p| tone.pixel(p.total())).collect();
+        write_png(&png, (made.film.width(), made.film.height()), &pixels)?;
+        print_statistics(&made, exposure)?;
+        Ok(())
+    }
+
+    /// The repetitions, and their mean: one film is what it is, several are samples of it.
+    fn repeat(
+        &self,
+        camera: &Camera,
+        one: impl Fn(Streams, &mut Stages, Option<f64>, &mut Film) -> anyhow::Result<(Report, Option<MapsMade>)>,
+    ) -> anyhow::Result<Made> {
+        let blank = || Film::new(camera.width(), camera.height());
+        let mut made = Made {
+            film: blank(),
+            samples: Vec::new(),
+            work: Report::default(),
+            maps: Vec::new(),
+            stages: Stages::default(),
+        };
+        for replicate in 0..self.maps {
+            let streams = Streams { seed: self.seed, replicate };
+            // Each repetition has an equal part of the time that is left.
+            let start = ProcessTime::now();
+            let until = self.seconds.map(|s| s / self.maps as f64);
+            let mut film = blank();
+            let left = until.map(|s| s + start.as_duration().as_secs_f64());
+            let (work, maps) = one(streams, &mut made.stages, left, &mut film)?;
+            made.work += work;
+            made.maps.extend(maps);
+            made.samples.push(film.samples());
+            if self.maps == 1 {
+                made.film = film;
+            } else {
+                made.film.push_film(&film);
+            }
+        }
+        Ok(made)
+    }
+
+    /// Fills a film with the samples asked for, or until the processor has worked so long.
+    fn fill(
+        &self,
+        film: &mut Film,
+        camera: &Camera,
+        streams: Streams,
+        stages: &mut Stages,
+        until: Option<f64>,
+        sample: impl Fn(turbid::math::Ray, &mut turbid::rng::Stream, &mut Report) -> Sample + Sync,
+    ) -> anyhow::Result<Report> {
+        let pixels = u64::from(camera.width()) * u64::from(camera.height());
+        let Some(until) = until else {
+            let samples = self.samples.unwrap_or(SAMPLES);
+            let bar = Bar::stage("gathering", samples.saturating_mul(pixels));
+            let work = stages.time("samples", || extend(film, camera, samples, streams, &bar, &sample));
+            bar.finish();
+            return Ok(work?);
+        };
+        let spent = || ProcessTime::now().as_duration().as_secs_f64();
+        let (start, mut work, mut next) = (spent(), Report::default(), 1);
+        loop {
+            let bar = Bar::stage("gathering", next * pixels);
+            let more = stages.time("samples", || extend(film, camera, next, streams, &bar, &sample));
+            bar.finish();
+            work.add_assign(more?);
+            let (now, taken) = (spent(), film.samples());
+            // As many more as fit at the speed so far, half of them at most at once.
+            let fit = ((until - now) / ((now - start) / taken as f64)).max(0.0) as u64;
+            if fit == 0 {
+                return Ok(work);
+            }
+            next = fit.div_ceil(2).max(1);
+        }
+    }
+
+    /// All that the picture was made from: no path, no time.
+    fn provenance(
+        &self,
+        scene_text: &str,
+        scene: &Scene,
+        made: &Made,
+        exposure: f64,
+    ) -> anyhow::Result<serde_json::Value> {
+        let by_photons = self.with == With::Photons;
+        let settings = self.reading.settings(scene)?;
+        let maps = self.photons.settings(self.reading.indirect(), self.seed, 0);
+        let filled: Vec<[Option<Filled>; 3]> = made.maps.iter().map(|(_, filled)| *filled).collect();
+        Ok(serde_json::json!({
+            "program": format!("turbid {}", env!("CARGO_PKG_VERSION")),
+            "with": if by_photons { "photons" } else { "paths" },
+            "width": made.film.width(),
+            "height": made.film.height(),
+            "seed": self.seed,
+            "repetitions": self.maps,
+            "samples": made.samples,
+            "variance": if self.maps == 1 { "between samples" } else { "between repetitions" },
+            "exposure": exposure,
+            "map_settings": if by_photons { format!("{maps:?}") } else { String::new() },
+            "mapper_settings": if by_photons { format!("{settings:?}") } else { String::new() },
+            "maps_global_caustic_volume": filled,
+            "scene": scene_text,
+        }))
+    }
+}
+
+/// What filling maps took, and how full the global, caustic and volume map are; none where the scene needs none.
+pub type MapsMade = (MapReport, [Option<Filled>; 3]);
+
+/// How full a map is.
+#[derive(Debug, Clone, Copy, serde::Serialize)]
+pub struct Filled {
+    /// Photons in it.
+    pub stored: usize,
+    /// Photons that its pass sent out for it.
+    pub emitted: u64,
+}
+
+impl Filled {
+    fn of(map: &PhotonMap) -> Self {
+        Filled { stored: map.stored(), emitted: map.emitted() }
+    }
+}
+
+/// Refuses a file that could not be written, before an hour's work and not after it.
+pub fn check_folder(file: &Path) -> anyhow::Result<()> {
+    let folder = file.parent().filter(|f| !f.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    let found = std::fs::metadata(folder).with_context(|| format!("cannot write {}", file.display()))?;
+    if !found.is_dir() {
+        bail!("cannot write {}: {} is no folder", file.display(), folder.display());
+    }
+    Ok(())
+}

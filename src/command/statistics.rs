@@ -1,0 +1,97 @@
+//! What a picture took: times, rays, photons, memory.
+
+use super::render::{Filled, Made};
+use cpu_time::ProcessTime;
+use std::fmt::Write;
+use std::time::{Duration, Instant};
+use turbid::integrators::mapper::Gathers;
+use turbid::photons::maps::Ends;
+
+/// Time by stage: by the clock, and of all threads' processors.
+#[derive(Default)]
+pub struct Stages(Vec<(&'static str, Duration, Duration)>);
+
+impl Stages {
+    /// Does something, and adds its time to a stage.
+    pub fn time<T>(&mut self, stage: &'static str, work: impl FnOnce() -> T) -> T {
+        let (clock, processor) = (Instant::now(), ProcessTime::now());
+        let result = work();
+        let (clock, processor) = (clock.elapsed(), processor.elapsed());
+        match self.0.iter_mut().find(|(name, ..)| *name == stage) {
+            Some((_, c, p)) => {
+                *c += clock;
+                *p += processor;
+            }
+            None => self.0.push((stage, clock, processor)),
+        }
+        result
+    }
+}
+
+/// Most memory that the process has had \[bytes\], where the system tells.
+fn peak_memory() -> Option<u64> {
+    let status = std::fs::read_to_string("/proc/self/status").ok()?;
+    let line = status.lines().find(|line| line.starts_with("VmHWM:"))?;
+    line.split_whitespace().nth(1)?.parse::<u64>().ok().map(|kilobytes| 1024 * kilobytes)
+}
+
+/// Prints what a picture took.
+pub fn print_statistics(made: &Made, exposure: f64) -> anyhow::Result<()> {
+    let mut text = String::new();
+    let pixels = made.film.pixels().len() as u64;
+    let (least, most) = (made.samples.iter().min().unwrap_or(&0), made.samples.iter().max().unwrap_or(&0));
+    let taken = if least == most { format!("{least}") } else { format!("{least} to {most}") };
+    writeln!(text, "pixels         {} x {}", made.film.width(), made.film.height())?;
+    writeln!(text, "samples        {taken} a pixel, {} repetitions", made.samples.len())?;
+    writeln!(text, "exposure       {exposure} stops")?;
+    for (number, (report, filled)) in made.maps.iter().enumerate() {
+        let names = ["global", "caustic", "volume"];
+        for (name, filled) in names.into_iter().zip(filled) {
+            if let Some(Filled { stored, emitted }) = filled {
+                writeln!(text, "map {number:<3} {name:<8} {stored} photons stored of {emitted} emitted")?;
+            }
+        }
+        for (name, pass) in [("first", &report.main), ("caustic", &report.caustic)] {
+            if pass.emitted > 0 {
+                let (Ends { absorbed, escaped, abandoned }, sent) = (pass.ends, pass.emitted);
+                writeln!(
+                    text,
+                    "map {number:<3} {name} pass of {sent}: {absorbed} absorbed, {escaped} escaped, {abandoned} abandoned"
+                )?;
+            }
+        }
+        writeln!(text, "map {number:<3} memory   {:.1} MB", report.bytes as f64 / 1e6)?;
+    }
+    let work = &made.work;
+    writeln!(text, "rays           {}, {} of them of final gatherings", work.rays.segments, work.gathering)?;
+    writeln!(text, "shadow rays    {}", work.rays.shadow)?;
+    if !made.maps.is_empty() {
+        writeln!(text, "march steps    {}", work.steps)?;
+        for (map, gathers) in [("global", &work.global), ("caustic", &work.caustic), ("volume", &work.volume)]
+        {
+            writeln!(text, "gathers        {map:<8} {}", gathered(gathers))?;
+        }
+    }
+    writeln!(text, "non-finite     0 of {} samples", made.samples.iter().sum::<u64>() * pixels)?;
+    for (stage, clock, processor) in &made.stages.0 {
+        let (clock, processor) = (clock.as_secs_f64(), processor.as_secs_f64());
+        writeln!(text, "time           {stage:<8} {clock:.3} s, {processor:.3} s of processors")?;
+    }
+    if let Some(bytes) = peak_memory() {
+        writeln!(text, "memory         {:.1} MB at most", bytes as f64 / 1e6)?;
+    }
+    super::print(&text)
+}
+
+fn gathered(gathers: &Gathers) -> String {
+    if gathers.count == 0 {
+        return "0".to_string();
+    }
+    format!(
+        "{}, {:.1} photons within {:.4} L in the mean; {} found fewer than k",
+        gathers.count,
+        gathers.found as f64 / gathers.count as f64,
+        gathers.mean_radius(),
+        gathers.underfull
+    )
+}

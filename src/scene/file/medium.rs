@@ -1,0 +1,187 @@
+//! Media in the scene file: the keys that regions and interiors share.
+
+use super::Channels;
+use crate::error::{Error, Result};
+use crate::math::{Albedo, Asymmetry, NonNegative, Positive};
+use crate::medium::{Body, Cloud, CloudShape, Density, Grid, HeightFog, Heterogeneous, Homogeneous, Medium};
+use crate::phase::{Phase, Rayleigh, Schlick, Tabulated, TwoTerm};
+use serde::{Deserialize, Serialize};
+use std::path::Path;
+use std::sync::Arc;
+
+/// A phase function that is not of one parameter `g`.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+#[allow(
+    missing_docs,
+    reason = "the names are those of the phase functions' own constructors, which say their meaning"
+)]
+pub enum PhaseFile {
+    TwoTerm { g1: Asymmetry, g2: Asymmetry, share: Albedo },
+    Schlick { k: Asymmetry },
+    Rayleigh {},
+    Table { file: String },
+}
+
+/// How much of a medium is where.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+#[allow(
+    missing_docs,
+    clippy::large_enum_variant,
+    reason = "the names are those of the densities' own constructors; there are few of them"
+)]
+pub enum DensityFile {
+    Grid(GridFile),
+    Cloud(CloudFile),
+    HeightFog { base: f64, scale_height: Positive, up: [f64; 3] },
+}
+
+/// A `.vol` file.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct GridFile {
+    /// Its name.
+    pub file: String,
+    /// What its values are multiplied by; 1 if absent.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub scale: Option<Positive>,
+    /// Lower corner of the box that it fills \[L\], with `max` in place of the file's own.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub min: Option<[f64; 3]>,
+    /// Upper corner of the box \[L\].
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub max: Option<[f64; 3]>,
+}
+
+/// A cloud; `medium::CloudShape` says the meaning of the keys, and what they are if absent.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+#[allow(missing_docs, reason = "the names are those of `medium::CloudShape`")]
+pub struct CloudFile {
+    pub center: [f64; 3],
+    pub radii: [f64; 3],
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub body: Option<Body>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub seed: Option<u64>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub frequency: Option<f64>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub octaves: Option<u32>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub gain: Option<f64>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub roughness: Option<f64>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub sharpness: Option<f64>,
+}
+
+/// What regions and interiors say of a medium.
+#[derive(Debug, Clone, Copy, Default)]
+pub(super) struct Keys<'a> {
+    pub sigma_t: Option<Channels<NonNegative>>,
+    pub albedo: Option<Channels<Albedo>>,
+    pub albedo_grid: Option<&'a GridFile>,
+    pub g: Option<Asymmetry>,
+    pub phase: Option<&'a PhaseFile>,
+    pub emission: Option<Channels<NonNegative>>,
+    pub emission_by_density: Option<Channels<NonNegative>>,
+    pub density: Option<&'a DensityFile>,
+}
+
+fn refuse<T>(text: &str) -> Result<T> {
+    Err(Error::Scene(text.into()))
+}
+
+impl Keys<'_> {
+    /// The medium, or none if no key is there.
+    pub(super) fn medium(&self, folder: &Path) -> Result<Option<Medium>> {
+        let Keys { albedo_grid, g, phase, emission, emission_by_density, density, .. } = *self;
+        let (sigma_t, albedo) = match (self.sigma_t, self.albedo) {
+            (Some(sigma_t), Some(albedo)) if g.is_some() || phase.is_some() => (sigma_t, albedo),
+            (None, None) if g.is_none() && phase.is_none() && density.is_none() && emission.is_none() => {
+                return Ok(None);
+            }
+            _ => {
+                return refuse(
+                    "a part of a medium; allowed: sigma_t, albedo and g (or phase), or none of them",
+                );
+            }
+        };
+        let phase = match (g, phase) {
+            (Some(g), None) => Phase::with_asymmetry(g),
+            (None, Some(phase)) => phase.phase(folder)?,
+            _ => return refuse("g and phase; allowed: one of the two"),
+        };
+        let mut matter = Homogeneous::new(sigma_t.spectrum(), albedo.spectrum(), phase)?;
+        if let Some(emission) = emission {
+            matter = matter.with_emission(emission.spectrum())?;
+        }
+        let Some(density) = density else {
+            if albedo_grid.is_some() || emission_by_density.is_some() {
+                return refuse("albedo_grid or emission_by_density without density; allowed: beside density");
+            }
+            return Ok(Some(matter.into()));
+        };
+        let mut medium = Heterogeneous::new(matter, density.density(folder)?);
+        if let Some(grid) = albedo_grid {
+            medium = medium.with_albedo(grid.grid(folder)?)?;
+        }
+        if let Some(emission) = emission_by_density {
+            medium = medium.with_emission_by_density(emission.spectrum())?;
+        }
+        Ok(Some(medium.into()))
+    }
+}
+
+impl PhaseFile {
+    fn phase(&self, folder: &Path) -> Result<Phase> {
+        Ok(match self {
+            PhaseFile::TwoTerm { g1, g2, share } => Phase::TwoTerm(TwoTerm::new(*g1, *g2, *share)),
+            PhaseFile::Schlick { k } => Phase::Schlick(Schlick::new(*k)),
+            PhaseFile::Rayleigh {} => Phase::Rayleigh(Rayleigh),
+            PhaseFile::Table { file } => Phase::Tabulated(Arc::new(Tabulated::read(&folder.join(file))?)),
+        })
+    }
+}
+
+impl DensityFile {
+    fn density(&self, folder: &Path) -> Result<Density> {
+        match self {
+            DensityFile::Grid(grid) => Density::grid(grid.grid(folder)?),
+            DensityFile::Cloud(cloud) => {
+                let plain = CloudShape::plain(cloud.center.into(), cloud.radii.into());
+                let look = CloudShape {
+                    body: cloud.body.unwrap_or(plain.body),
+                    seed: cloud.seed.unwrap_or(plain.seed),
+                    frequency: cloud.frequency.unwrap_or(plain.frequency),
+                    octaves: cloud.octaves.unwrap_or(plain.octaves),
+                    gain: cloud.gain.unwrap_or(plain.gain),
+                    roughness: cloud.roughness.unwrap_or(plain.roughness),
+                    sharpness: cloud.sharpness.unwrap_or(plain.sharpness),
+                    ..plain
+                };
+                Ok(Density::Cloud(Arc::new(Cloud::new(look)?)))
+            }
+            DensityFile::HeightFog { base, scale_height, up } => {
+                Ok(Density::HeightFog(HeightFog::new((*up).into(), *base, *scale_height)?))
+            }
+        }
+    }
+}
+
+impl GridFile {
+    fn grid(&self, folder: &Path) -> Result<Grid> {
+        let grid = Grid::read(&folder.join(&self.file))?;
+        let (min, max) = grid.corners();
+        match (self.min, self.max, self.scale) {
+            (None, None, None) => Ok(grid),
+            (None, None, Some(scale)) => grid.placed((min, max), scale.get()),
+            (Some(min), Some(max), scale) => {
+                grid.placed((min.into(), max.into()), scale.map_or(1.0, Positive::get))
+            }
+            _ => refuse("a grid with one of min and max; allowed: both, or neither"),
+        }
+    }
+}

@@ -1,0 +1,166 @@
+//! `turbid render` and `turbid map`: what they write, and what they refuse.
+
+use crate::{Folder, refuses_naming, succeeds, text};
+use std::path::PathBuf;
+
+/// A matt floor in a box of fog under a lamp, seen from the side.
+const ROOM: &str = r#"
+[camera]
+position = [0.0, 1.0, 4.0]
+look_at = [0.0, 0.7, 0.0]
+fov = 40.0
+width = 12
+height = 8
+
+[[regions]]
+shape = { cuboid = { min = [-1.0, 0.0, -1.0], max = [1.0, 2.0, 1.0] } }
+sigma_t = 0.5
+albedo = 0.8
+g = 0.0
+
+[[objects]]
+shape = { rectangle = { corner = [-1.0, 0.0, -1.0], u = [0.0, 0.0, 2.0], v = [2.0, 0.0, 0.0] } }
+surface = { lambertian = { reflectance = [0.8, 0.5, 0.2] } }
+
+[[lights]]
+point = { position = [0.0, 1.5, 0.0], power = 10.0 }
+"#;
+
+const QUICK: [&str; 8] =
+    ["--samples", "2", "--global", "emit:2000", "--volume", "emit:2000", "--gather-rays", "2"];
+
+fn room(folder: &Folder, name: &str, change: (&str, &str)) -> PathBuf {
+    assert!(ROOM.contains(change.0), "{}", change.0);
+    folder.file(name, &ROOM.replacen(change.0, change.1, 1))
+}
+
+/// Both renderers write an EXR and a PNG, alike on one thread and on two.
+#[test]
+fn pictures_by_photons_and_paths_have_the_same_bits_on_any_number_of_threads() {
+    let folder = Folder::new();
+    let scene = room(&folder, "room.toml", ("", ""));
+    let out = |name: &str| folder.0.path().join(name);
+    for with in ["photons", "paths"] {
+        let render = |file: &str, threads: &str| {
+            let path = out(file);
+            let arguments = ["render", text(&scene), "-o", text(&path), "--with", with, "--threads", threads];
+            let said = succeeds(&[&arguments[..], &QUICK].concat());
+            assert!(said.contains("12 x 8") && said.contains("non-finite     0 of 192 samples"), "{said}");
+            (std::fs::read(&path).unwrap(), std::fs::read(path.with_extension("png")).unwrap())
+        };
+        let (one, two) = (render("one.exr", "1"), render("two.exr", "2"));
+        assert!(one == two, "{with}: the picture depends on the number of threads");
+        assert!(one.0.starts_with(&[0x76, 0x2f, 0x31, 0x01]) && one.1.starts_with(b"\x89PNG"));
+        let header = String::from_utf8_lossy(&one.0);
+        assert!(header.contains(&format!("\"with\":\"{with}\"")), "no provenance");
+        assert!(!header.contains(text(folder.0.path())), "a path of this machine is in the file");
+    }
+    // Repetitions make variances between maps; one sample in a limited time, at least.
+    let path = out("maps.exr");
+    let arguments = ["render", text(&scene), "-o", text(&path), "--maps", "3", "--width", "6"];
+    let said = succeeds(&[&arguments[..], &QUICK].concat());
+    assert!(said.contains("6 x 4") && said.contains("3 repetitions") && said.contains("map 2"), "{said}");
+    let timed = ["render", text(&scene), "-o", text(&path), "--with", "paths", "--seconds", "1e-6"];
+    assert!(succeeds(&timed).contains("samples        1 a pixel"));
+}
+
+#[test]
+fn photons_are_drawn_and_exported() {
+    let folder = Folder::new();
+    let scene = room(&folder, "room.toml", ("", ""));
+    let (png, ply) = (folder.0.path().join("map.png"), folder.0.path().join("map.ply"));
+    let arguments = ["map", text(&scene), "-o", text(&png), "--ply", text(&ply)];
+    let said = succeeds(&[&arguments[..], &QUICK[2..6]].concat());
+    let count: usize = said.split_whitespace().nth(1).unwrap().parse().unwrap();
+    assert!(count > 100, "{said}");
+    let cloud = std::fs::read(&ply).unwrap();
+    let header = format!("element vertex {count}\n");
+    assert!(String::from_utf8_lossy(&cloud[..500]).contains(&header));
+    assert!(std::fs::read(&png).unwrap().starts_with(b"\x89PNG"));
+    let caustic = ["map", text(&scene), "-o", text(&png), "--which", "caustic"];
+    refuses_naming(&caustic, &["the map is empty"]);
+}
+
+#[test]
+fn cameras_that_see_nothing() {
+    let folder = Folder::new();
+    let out = folder.0.path().join("a.exr");
+    let cases = [
+        ("fov = 40.0", "fov = 180.0", "camera.fov is 180; allowed: above 0 and below 180"),
+        ("fov = 40.0", "fov = nan", "camera.fov is NaN"),
+        ("width = 12", "width = 0", "camera.width is 0; allowed: 1 to 16384"),
+        ("height = 8", "height = -8", "height"),
+        ("height = 8", "heigth = 8", "unknown key `heigth`; nearest: `height`"),
+        ("height = 8", "height = 8\nfilter = \"gauss\"", "unknown value `gauss`"),
+        ("look_at = [0.0, 0.7, 0.0]", "look_at = [0.0, 1.0, 4.0]", "camera.look_at"),
+        ("fov = 40.0", "up = [0.0, -0.3, -4.0]\nfov = 40.0", "camera.up"),
+        ("position = [0.0, 1.0, 4.0]", "position = [0.0, inf, 4.0]", "camera.position"),
+    ];
+    for (i, (from, to, words)) in cases.into_iter().enumerate() {
+        let name = format!("case{i}.toml");
+        let path = room(&folder, &name, (from, to));
+        refuses_naming(&["render", text(&path), "-o", text(&out)], &[&name, words]);
+    }
+    let start = ROOM.find("[[regions]]").unwrap();
+    let blind = folder.file("blind.toml", &ROOM[start..]);
+    refuses_naming(&["render", text(&blind), "-o", text(&out)], &["no [camera]"]);
+    let stone =
+        "[[objects]]\nshape = { sphere = { center = [0.0, 1.0, 4.0], radius = 0.5 } }\nsurface = \"black\"\n";
+    let enclosed = folder.file("stone.toml", &format!("{ROOM}\n{stone}"));
+    for command in ["render", "map"] {
+        let file = folder.0.path().join(if command == "map" { "a.png" } else { "a.exr" });
+        let words = ["enclosed camera", "objects[1]"];
+        refuses_naming(&[command, text(&enclosed), "-o", text(&file)], &words);
+    }
+    assert!(!out.exists());
+}
+
+#[test]
+fn wrong_options_of_pictures() {
+    let folder = Folder::new();
+    let scene = room(&folder, "room.toml", ("", ""));
+    let out = folder.0.path().join("a.exr");
+    let refuse = |options: &[&str], words: &[&str]| {
+        refuses_naming(&[&["render", text(&scene), "-o", text(&out)], options].concat(), words);
+    };
+    refuse(&["--global", "some"], &["--global", "emit:1e6"]);
+    refuse(&["--volume", "0"], &["--volume", "allowed"]);
+    refuse(&["--k", "1"], &["--k", "1; allowed"]);
+    refuse(&["--radius", "0"], &["--radius", "0; allowed"]);
+    refuse(&["--step", "-1"], &["--step"]);
+    refuse(&["--adapt", "nan"], &["--adapt is NaN"]);
+    refuse(&["--width", "0"], &["--width", "0; allowed: 1 to 16384"]);
+    refuse(&["--seconds", "0"], &["--seconds is 0; allowed"]);
+    refuse(&["--seconds", "1", "--samples", "2"], &["--samples", "--seconds"]);
+    refuse(&["--exposure", "nan"], &["--exposure is NaN"]);
+    refuse(&["--with", "magic"], &["magic", "photons, paths"]);
+    refuses_naming(&["render", text(&scene)], &["--output"]);
+    refuses_naming(&["render", text(&scene), "-o", "a.jpg"], &["a.jpg", ".exr"]);
+    refuses_naming(&["map", text(&scene), "-o", "a.exr"], &["a.exr", ".png"]);
+    let nowhere = folder.0.path().join("nowhere").join("a.exr");
+    refuses_naming(&["render", text(&scene), "-o", text(&nowhere)], &["cannot write", "nowhere"]);
+    // The lamp by way of a mirror: no path finds it.
+    let mirror = room(&folder, "mirror.toml", ("lambertian", "mirror"));
+    let paths = ["render", text(&mirror), "-o", text(&out), "--with", "paths"];
+    refuses_naming(&paths, &["path tracer cannot sample", "extent"]);
+    assert!(!out.exists());
+}
+
+/// A link to a device that is always full stands for a full disk.
+#[cfg(target_os = "linux")]
+#[test]
+fn a_full_disk_is_told_in_one_line() {
+    let folder = Folder::new();
+    let scene = room(&folder, "room.toml", ("", ""));
+    let full = |name: &str| {
+        let link = folder.0.path().join(name);
+        std::os::unix::fs::symlink("/dev/full", &link).unwrap();
+        link
+    };
+    let exr = full("full.exr");
+    let arguments = ["render", text(&scene), "-o", text(&exr)];
+    refuses_naming(&[&arguments[..], &QUICK].concat(), &["cannot write", "full.exr", "No space left"]);
+    let png = full("full.png");
+    let arguments = ["map", text(&scene), "-o", text(&png)];
+    refuses_naming(&[&arguments[..], &QUICK[2..6]].concat(), &["cannot write", "full.png", "No space left"]);
+}
