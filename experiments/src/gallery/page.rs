@@ -93,7 +93,9 @@ fn numbers(picture: &Picture, shown: &Shown) -> Markup {
                     (duration(ours.seconds - ours.map_seconds)) " of CPU time for "
                     (shown.size.0) " × " (shown.size.1) " pixels, " (ours.samples) " samples each"
                 } }
-                tr { th { "twin" } td { (shown.twin.0) " paths a pixel, " (duration(shown.twin.1)) } }
+                @if let Some((paths, seconds)) = shown.twin {
+                    tr { th { "twin" } td { (paths) " paths a pixel, " (duration(seconds)) } }
+                }
                 @if let Some(compared) = &shown.compared { (comparison(compared)) }
             }
         }

@@ -3,7 +3,7 @@
 use super::compare::{Making, average, compare, errors};
 use super::develop::{Print, SOFT, develop, error_print, exposure};
 use super::dots::dots;
-use super::keep::Kept;
+use super::keep::{Facts, Kept};
 use super::look::look;
 use super::pictures::{ALL, Beside, Picture};
 use super::predict::{Radii, predicted};
@@ -59,6 +59,7 @@ pub fn main() -> ExitCode {
 
 fn run(settings: &Settings) -> anyhow::Result<()> {
     if settings.assets {
+        write(&settings.scenes.join("fogbox/het.vol"), &assets::fogbox_het()?)?;
         return write(&settings.scenes.join("window.png"), &assets::window()?);
     }
     let folder = settings.folder();
@@ -138,42 +139,60 @@ fn one(picture: &Picture, settings: &Settings, folder: &Path, program: &str) -> 
     let makings = Makings { settings, folder: settings.makings().join(picture.name), studio: &studio };
     std::fs::create_dir_all(&makings.folder)?;
     let ours = makings.photons("photons", picture.samples, 0)?;
-    let words = format!("{} in {} s", studio.path_words(0, 0), ours.facts.seconds);
-    let equal = makings.get("equal", &words, 0, |bar| studio.paths_for(ours.facts.seconds, 0, bar))?;
-    let samples = (picture.twin / if settings.quick { 8 } else { 1 }).max(2);
-    let predicting = (0..PREDICTING)
-        .map(|n| makings.paths(&format!("twin-{n:03}"), samples, 1 + n))
-        .collect::<anyhow::Result<Vec<Kept>>>()?;
-    let mut passes: Vec<Making> = predicting.iter().map(|k| k.total.clone()).collect();
-    let mut seconds: f64 = predicting.iter().map(|k| k.facts.seconds).sum();
-    let mut compared = None;
-    let mut masked = None;
-    if !settings.draft {
-        let (ours_again, twin, more) = both(&makings, samples)?;
-        seconds += more;
-        let prediction = predict(&studio, &ours, &predicting);
-        let comparison = compare(studio.grid(), &ours_again, &twin, &prediction, LIMIT);
-        let found = errors(&ours_again, &twin);
-        let shown_rms = errors(&[ours.total.clone(), ours.total.clone()], &twin).rms.low;
-        let pass = errors(&passes, &twin).rms;
-        let factor = (samples as f64 / equal.facts.samples as f64).sqrt();
-        let equal_rms = Interval { low: factor * pass.low, high: factor * pass.high };
-        let makings = (ours_again.len(), 1);
-        compared = Some(Compared::new(&comparison, &found, makings, shown_rms, equal_rms));
-        masked = Some(prediction.iter().map(|&e| e > LIMIT).collect::<Vec<bool>>());
-        passes.extend(twin);
-    }
-    let twin = average(passes.iter());
-    let plates = plates(&studio, folder, &ours, &equal, &twin, masked.as_deref(), &predicting)?;
+    let beside = if settings.draft { None } else { Some(beside(&makings, &ours)?) };
+    let plates = plates(&studio, folder, &ours, beside.as_ref())?;
     Ok(Shown {
         name: picture.name.to_string(),
         command: command(picture),
         size: (studio.grid().width, studio.grid().height),
         ours: ours.facts,
-        equal: equal.facts,
-        twin: (samples * passes.len() as u64, seconds),
-        compared,
+        equal: beside.as_ref().map(|b| b.equal.facts.clone()),
+        twin: beside.as_ref().map(|b| b.cost),
+        compared: beside.map(|b| b.compared),
         plates,
+    })
+}
+
+/// What stands beside the photon mapper's picture.
+struct Others {
+    /// The path tracer's picture in the same time.
+    equal: Kept,
+    /// The twin, its samples a pixel and its CPU seconds.
+    twin: Making,
+    cost: (u64, f64),
+    /// Which pixels were masked.
+    masked: Vec<bool>,
+    compared: Compared,
+}
+
+fn beside(makings: &Makings, ours: &Kept) -> anyhow::Result<Others> {
+    let (studio, picture) = (makings.studio, makings.studio.picture);
+    let words = format!("{} in {} s", studio.path_words(0, 0), ours.facts.seconds);
+    let equal = makings.get("equal", &words, 0, |bar| studio.paths_for(ours.facts.seconds, 0, bar))?;
+    let samples = (picture.twin / if makings.settings.quick { 8 } else { 1 }).max(2);
+    let predicting = (0..PREDICTING)
+        .map(|n| makings.paths(&format!("twin-{n:03}"), samples, 1 + n))
+        .collect::<anyhow::Result<Vec<Kept>>>()?;
+    let (again, twin, seconds) = both(makings, samples)?;
+    let prediction = predict(studio, ours, &predicting);
+    let comparison = compare(studio.grid(), &again, &twin, &prediction, LIMIT);
+    let found = errors(&again, &twin);
+    let rms = errors(&[ours.total.clone(), ours.total.clone()], &twin).rms.low;
+    // Paths have no error that stays: that of a pass, for the number of samples that fitted into the time.
+    let mut passes: Vec<Making> = predicting.iter().map(|k| k.total.clone()).collect();
+    let pass = errors(&passes, &twin).rms;
+    let factor = (samples as f64 / equal.facts.samples as f64).sqrt();
+    let equal_rms = Interval { low: factor * pass.low, high: factor * pass.high };
+    passes.extend(twin);
+    Ok(Others {
+        equal,
+        twin: average(passes.iter()),
+        cost: (
+            samples * passes.len() as u64,
+            seconds + predicting.iter().map(|k| k.facts.seconds).sum::<f64>(),
+        ),
+        masked: prediction.iter().map(|&e| e > LIMIT).collect(),
+        compared: Compared::new(&comparison, &found, (again.len(), 1), rms, equal_rms),
     })
 }
 
@@ -215,10 +234,7 @@ fn plates(
     studio: &Studio,
     folder: &Path,
     ours: &Kept,
-    equal: &Kept,
-    twin: &[Spectrum],
-    masked: Option<&[bool]>,
-    predicting: &[Kept],
+    others: Option<&Others>,
 ) -> anyhow::Result<Vec<Plate>> {
     let (picture, grid) = (studio.picture, studio.grid());
     let mut plates = Vec::new();
@@ -229,23 +245,23 @@ fn plates(
         Ok(())
     };
     let exposed = |radiance: &[Spectrum]| develop(grid, radiance, picture.exposure);
-    let caption =
-        format!("Photon maps, {} samples a pixel, {}", ours.facts.samples, duration(ours.facts.seconds));
-    plate("photons", caption, &exposed(&ours.total))?;
-    let caption =
-        format!("Paths, {} samples a pixel, {}", equal.facts.samples, duration(equal.facts.seconds));
-    plate("paths", caption, &exposed(&equal.total))?;
-    plate("twin", "The twin: paths, converged".to_string(), &exposed(twin))?;
-    let print = error_print(grid, &ours.total, twin, masked, SCALE);
-    let grey = if masked.is_some() { "; grey: masked beforehand" } else { "" };
-    let caption = format!(
-        "Photon maps minus twin, relative, means over {SOFT} by {SOFT} pixels: blue too dark, red too bright{grey}"
-    );
-    plate("error", caption, &print)?;
+    let told = |method: &str, facts: &Facts| {
+        format!("{method}, {} samples a pixel, {}", facts.samples, duration(facts.seconds))
+    };
+    plate("photons", told("Photon maps", &ours.facts), &exposed(&ours.total))?;
+    if let Some(Others { equal, twin, masked, .. }) = others {
+        plate("paths", told("Paths", &equal.facts), &exposed(&equal.total))?;
+        plate("twin", "The twin: paths, converged".to_string(), &exposed(twin))?;
+        let print = error_print(grid, &ours.total, twin, Some(masked), SCALE);
+        let caption = format!(
+            "Photon maps minus twin, relative, means over {SOFT} by {SOFT} pixels: blue too dark, red too bright, \
+             grey masked beforehand"
+        );
+        plate("error", caption, &print)?;
+    }
     match picture.beside {
         Beside::Single => {
-            let single: Making =
-                mean_layers(predicting).iter().map(|l| l.emission + l.direct + l.single).collect();
+            let single: Making = ours.layers.iter().map(|l| l.emission + l.direct + l.single).collect();
             plate("single", "Single scattering alone".to_string(), &exposed(&single))?;
         }
         Beside::Maps => {
