@@ -3,6 +3,7 @@
 use super::Grid;
 use super::keep::{Facts, Kept};
 use super::pictures::Picture;
+use crate::harness::Digest;
 use anyhow::{Context, anyhow};
 use cpu_time::ProcessTime;
 use std::path::Path;
@@ -25,6 +26,8 @@ pub struct Studio<'a> {
     pub seed: u64,
     /// Digest of the program.
     pub program: String,
+    /// Digest of the scene's text.
+    text: String,
 }
 
 impl<'a> Studio<'a> {
@@ -43,10 +46,11 @@ impl<'a> Studio<'a> {
             std::fs::read_to_string(&path).with_context(|| format!("cannot read {}", path.display()))?;
         let file: SceneFile = toml::from_str(&text).map_err(|e| anyhow!("{}: {e}", path.display()))?;
         let scene = file.scene(folder).with_context(|| path.display().to_string())?;
+        let text = Digest::of(text.as_bytes()).to_string();
         let camera = scene.camera().with_context(|| format!("{} has no camera", path.display()))?;
         let size = |n: u32| ((f64::from(n) * scale).round() as u32).max(1);
         let camera = camera.with_size(size(camera.width()), size(camera.height()))?;
-        Ok(Studio { picture, scene, camera, seed, program: program.to_string() })
+        Ok(Studio { picture, scene, camera, seed, program: program.to_string(), text })
     }
 
     /// Size of the picture.
@@ -62,8 +66,8 @@ impl<'a> Studio<'a> {
     fn words(&self, method: &str, samples: u64, replicate: u64) -> String {
         let Grid { width, height } = self.grid();
         format!(
-            "{}, {method}, {width} x {height}, {samples} samples, seed {}, replicate {replicate}",
-            self.picture.name, self.seed
+            "{} {}, {method}, {width} x {height}, {samples} samples, seed {}, replicate {replicate}",
+            self.picture.name, self.text, self.seed
         )
     }
 
