@@ -6,6 +6,7 @@
 use crate::faults::{Fault, planted};
 use rand::Rng;
 use rand_pcg::Pcg64;
+use std::ops::AddAssign;
 
 /// What a stream is used for. Streams of different purposes are independent.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -24,6 +25,8 @@ pub enum Purpose {
     Pilot,
     /// Photon histories of the caustic map.
     Caustics,
+    /// Particles from the camera, and the photons that learn what the picture needs.
+    Importance,
 }
 
 /// Work that a scene may or may not require, counted where it is done.
@@ -35,13 +38,12 @@ pub struct Work {
     pub densities: u64,
     /// Transmittances estimated by tracking.
     pub transmittances: u64,
-    /// Flights for which a channel was chosen.
+    /// Flights whose weights are kept channel by channel.
     pub channel_flights: u64,
 }
 
-impl Work {
-    /// Adds the work of another.
-    pub fn add(&mut self, other: &Work) {
+impl AddAssign for Work {
+    fn add_assign(&mut self, other: Work) {
         self.majorants += other.majorants;
         self.densities += other.densities;
         self.transmittances += other.transmittances;

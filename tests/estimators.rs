@@ -13,7 +13,7 @@ use turbid::estimators::{
     for_each_photon, in_scattered,
 };
 use turbid::math::{Asymmetry, FOUR_PI, exp, warp};
-use turbid::phase::{HenyeyGreenstein, Isotropic};
+use turbid::phase::{HenyeyGreenstein, Isotropic, Phase};
 use turbid::photons::{Flags, Photon, PhotonMap};
 use turbid::rng::{Purpose, Stream};
 use turbid::{Result, Spectrum};
@@ -109,6 +109,25 @@ fn phase_functions_of_eight_are_those_of_one() {
             FOUR_PI * hg(g).value(pair.0, pair.1) * 8.0 * t.powi(7)
         };
         assert!((integral(around_peak) - 1.0).abs() < 1e-9, "g = {g}");
+    }
+}
+
+/// The other phase functions: sums and roots of the pair in single precision, some twelve operations each.
+#[test]
+fn every_phase_function_of_eight_is_that_of_one() {
+    let mut stream = Stream::new(4, Purpose::Synthetic, 0, 0);
+    for phase in Phase::specimens() {
+        for _ in 0..50 {
+            let dirs: [Vec3; 8] = std::array::from_fn(|_| warp::square_to_sphere(stream.pair()).as_vec3());
+            let dir = [0, 1, 2].map(|axis| f32x8::new(dirs.map(|d| d[axis])));
+            let wo = warp::square_to_sphere(stream.pair()).as_vec3().to_array();
+            let pairs = CosinePairs { dir: &dir, wo, inside: f32x8::ZERO.simd_eq(f32x8::ZERO) };
+            let fast = phase.values(pairs).to_array();
+            let slow = (|minus: f64, plus: f64| phase.value(minus, plus)).values(pairs).to_array();
+            for (fast, slow) in fast.into_iter().zip(slow) {
+                assert!((fast - slow).abs() <= 12.0 / 16_777_216.0 * slow, "{phase:?}: {fast} for {slow}");
+            }
+        }
     }
 }
 

@@ -204,7 +204,7 @@ fn few_photons_in_the_map() {
 fn a_probe_outside_the_medium() {
     let scene = ball(1.0, 0.9, 0.0, isotropic(sphere(DVec3::ZERO, 1.0), Faces::Both));
     let outside = Quantity::Fluence(DVec3::new(3.0, 0.0, 0.0));
-    let scene = with_sensors(&scene, &[outside.clone()]);
+    let scene = with_sensors(&scene, std::slice::from_ref(&outside));
     let error =
         by_photons(&scene, &photon_settings(10, Gather::radius(0.1).unwrap()), &NoProgress).unwrap_err();
     assert!(matches!(&error, Error::Scene(text) if text.contains("(3, 0, 0)")), "{error}");
@@ -307,7 +307,7 @@ fn nothing_is_non_finite() {
                 .collect();
             for quantity in quantities {
                 let settings = PathSettings { samples: 4096, seed: 11, replicate: 0, orders: Orders::ALL };
-                let scene = with_sensors(&scene, &[quantity.clone()]);
+                let scene = with_sensors(&scene, std::slice::from_ref(&quantity));
                 let readings = by_paths(&scene, &settings, &NoProgress).unwrap();
                 assert!(
                     readings[0].mean.is_finite() && readings[0].std_error.is_none_or(f64::is_finite),

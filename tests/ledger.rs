@@ -7,13 +7,18 @@ mod support;
 
 use checks::ledger::{
     Room, a_clear_room_keeps_its_ledger, a_foggy_room_keeps_its_ledger,
-    a_foggy_room_keeps_its_ledger_when_gathered, layers_are_those_of_paths, mirror, settings,
-    what_is_absent_is_not_asked,
+    a_foggy_room_keeps_its_ledger_when_gathered, layers_are_those_of_paths,
+    layers_of_the_scene_are_those_of_paths, mirror, settings, what_is_absent_is_not_asked,
 };
-use support::scenes::lambertian;
+use glam::DVec3;
+use support::scenes::{lambertian, rectangle};
 use turbid::Spectrum;
+use turbid::geometry::Shape;
 use turbid::integrators::mapper::Settings;
+use turbid::medium::{Density, Grid, Heterogeneous};
 use turbid::photons::maps::Indirect;
+use turbid::scene::{Object, Scene};
+use turbid::surface::{Checker, Filter, Lambertian, Surface, Texture};
 
 #[test]
 fn seen() {
@@ -77,4 +82,44 @@ fn gathered_twice() {
     };
     let near = Settings { near: 1.2, ..settings(4) };
     layers_are_those_of_paths(&room, Indirect::Gathered, &near, 4000, 8);
+}
+
+/// A matt room of grey fog.
+fn plain() -> Room {
+    Room {
+        floor: lambertian(Spectrum::grey(0.6)),
+        sigma_t: Spectrum::grey(0.6),
+        albedo: Spectrum::grey(0.8),
+        g: 0.3,
+        is_colored: false,
+        has_glass: false,
+    }
+}
+
+/// Fog three times as dense on one side of the room as on the other, linear between: a ball reads as much too much on
+/// one side of its middle as too little on the other.
+#[test]
+fn in_uneven_fog() {
+    let mut parts = plain().parts();
+    let corners = (DVec3::ZERO, DVec3::splat(2.0));
+    let grid = Grid::sampled(corners, [8, 4, 4], |p| 0.5 + 0.5 * p.x).unwrap();
+    let medium = parts.regions[0].medium.matter().clone();
+    parts.regions[0].medium = Heterogeneous::new(medium, Density::grid(grid).unwrap()).into();
+    let scene = Scene::new(parts).unwrap();
+    assert!(scene.plan().has_heterogeneous);
+    layers_of_the_scene_are_those_of_paths(&scene, Indirect::Gathered, &settings(4), 4000, 9);
+}
+
+/// A floor of tiles, and a red pane of glass that stands in the room and bends nothing: direct light and photons pass it.
+#[test]
+fn with_tiles_and_a_stained_pane() {
+    let mut parts = plain().parts();
+    let tiles = Checker::new([Spectrum::rgb(0.9, 0.7, 0.5), Spectrum::grey(0.1)], [4.0, 4.0]).unwrap();
+    parts.objects[0].surface = Surface::Lambertian(Lambertian::textured(Texture::Checker(tiles)));
+    let pane = rectangle(DVec3::new(1.0, 0.3, 0.8), DVec3::X * 0.9, DVec3::new(0.0, 0.9, 0.0));
+    let red = Filter::new(Spectrum::rgb(0.8, 0.2, 0.1)).unwrap();
+    parts.objects.push(Object { shape: Shape::Rectangle(pane), surface: Surface::Filter(red) });
+    let scene = Scene::new(parts).unwrap();
+    assert!(scene.plan().has_filters);
+    layers_of_the_scene_are_those_of_paths(&scene, Indirect::Seen, &settings(1), 4000, 10);
 }

@@ -8,11 +8,14 @@ mod support;
 use checks::ledger::{Room, filling, layers_of_maps, settings};
 use glam::{DVec3, Vec3};
 use std::f64::consts::PI;
-use support::scenes::{bounded, cuboid, emitting_sphere, homogeneous, isotropic, lambertian, region};
+use support::scenes::{
+    bounded, cuboid, emitting_sphere, homogeneous, isotropic, lambertian, rectangle, region, sphere,
+};
 use support::verdict;
 use turbid::Spectrum;
 use turbid::estimators::boundary::{Boundary, Rejection, Treatment, treated_density, treated_in_scattered};
 use turbid::estimators::{Gather, Kernel};
+use turbid::geometry::Shape;
 use turbid::integrators::mapper::{Mapper, March, Settings};
 use turbid::integrators::{StepRule, path};
 use turbid::light::Faces;
@@ -23,6 +26,7 @@ use turbid::photons::{Flags, Photon, PhotonMap};
 use turbid::rng::{Purpose, Stream};
 use turbid::scene::Region;
 use turbid::stats::Moments;
+use turbid::surface::{Filter, Surface};
 use turbid::transport::NoProgress;
 
 fn marching(step: f64, rule: StepRule, is_jittered: bool) -> Settings {
@@ -155,5 +159,32 @@ fn glowing_fog() {
     for (i, name) in ["emission", "single"].into_iter().enumerate() {
         let mean = all[1][i].mean();
         verdict::agree(name, &all[0][i], &all[1][i], 0.1 * mean, 5);
+    }
+}
+
+/// Light from all sides through two panes that let a half and a third of it pass is direct light of what is behind them,
+/// in every sample: lights that nothing can aim at are looked for beyond filters.
+#[test]
+fn light_from_all_sides_is_direct_behind_panes() {
+    let around = sphere(DVec3::ZERO, 3.0);
+    let pane = |half: f64, passed: f64| {
+        let filter = Filter::new(Spectrum::grey(passed)).unwrap();
+        (cuboid(DVec3::splat(-half), DVec3::splat(half)), Surface::Filter(filter))
+    };
+    let floor = rectangle(DVec3::new(-0.5, -0.5, 0.0), DVec3::X, DVec3::Y);
+    let floor = (Shape::Rectangle(floor), lambertian(Spectrum::grey(0.6)));
+    let light = isotropic(around, Faces::Both);
+    let scene = bounded(Vec::new(), vec![floor, pane(1.0, 0.5), pane(1.5, 1.0 / 3.0)], vec![light]);
+    let maps = fill(&scene, &filling(100, Indirect::Seen, 1, 0), &NoProgress).unwrap();
+    let settings = settings(1);
+    let mapper = Mapper::new(&scene, &maps, &settings);
+    for history in 0..50 {
+        let mut stream = Stream::new(1, Purpose::Paths, 0, history);
+        let [x, y] = stream.pair().map(|u| u - 0.5);
+        let ray = Ray::new(DVec3::new(x, y, 0.7), -DVec3::Z);
+        let direct = mapper.radiance(ray, None, 0, &mut stream).0.direct[0];
+        // Radiance 1/pi, a sixth of it behind the panes, from the half space above the floor.
+        let expected = 0.6 / PI / 6.0;
+        assert!((direct - expected).abs() < 1e-12, "{direct} {expected}");
     }
 }

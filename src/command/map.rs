@@ -11,7 +11,7 @@ use std::path::PathBuf;
 use turbid::Spectrum;
 use turbid::output::{Tone, auto_exposure, write_ply, write_png};
 use turbid::photons::Photon;
-use turbid::photons::maps::{Indirect, Maps, counts, fill_counted};
+use turbid::photons::maps::{Indirect, Maps, counts_steered, fill_counted_steered};
 use turbid::sensor::{colour, draw_photons};
 
 /// Draw the photons that a scene's maps hold, as dots seen from its camera, coloured by their power.
@@ -78,9 +78,10 @@ impl Map {
         }
         let settings = self.photons.settings(Indirect::Gathered, self.seed, 0);
         let (photons, picture, seen) = on_threads(self.threads, || {
-            let emitted = counts(&scene, &settings)?;
+            let importance = self.photons.importance(&scene, &camera, &settings)?;
+            let emitted = counts_steered(&scene, &settings, importance.as_ref())?;
             let bar = Bar::stage("emission", emitted.histories());
-            let maps = fill_counted(&scene, &settings, emitted, &bar);
+            let maps = fill_counted_steered(&scene, &settings, emitted, importance.as_ref(), &bar);
             bar.finish();
             let photons = self.chosen(&maps?)?;
             let plain: Vec<Photon> = photons.iter().map(|(photon, _)| *photon).collect();

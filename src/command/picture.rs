@@ -9,8 +9,10 @@ use turbid::integrators::StepRule;
 use turbid::integrators::mapper::{Adaptive, Settings};
 use turbid::math::Positive;
 use turbid::output::Curve;
+use turbid::photons::importance::{Importance, ImportanceSettings};
 use turbid::photons::maps::{Amount, Indirect, MapSettings};
 use turbid::scene::{Camera, Scene};
+use turbid::transport::NoProgress;
 
 /// The camera's picture, in another size if asked for.
 #[derive(clap::Args)]
@@ -76,7 +78,7 @@ impl Shown {
     /// The exposure asked for, if it is a number of stops.
     pub fn checked(&self) -> anyhow::Result<Option<f64>> {
         match self.exposure {
-            Some(stops) if !(stops.abs() <= 100.0) => {
+            Some(stops) if stops.is_nan() || stops.abs() > 100.0 => {
                 Err(anyhow!("--exposure is {stops}; allowed: -100 to 100 stops"))
             }
             other => Ok(other),
@@ -105,12 +107,30 @@ pub struct Photons {
     /// Photons of the volume map, those in media; used where the scene has media.
     #[arg(long, value_name = "PHOTONS", value_parser = parse_amount, default_value = "65000")]
     volume: Amount,
+    /// Let importance lead photons of the global and the volume map to where the camera reads them. For a camera that sees
+    /// a small part of a large scene; the mean is the same, powers are no longer equal.
+    #[arg(long = "importance")]
+    pub is_steered: bool,
 }
 
 impl Photons {
+    /// What the camera needs, learned, if it is asked for.
+    pub fn importance(
+        &self,
+        scene: &Scene,
+        camera: &Camera,
+        maps: &MapSettings,
+    ) -> turbid::Result<Option<Importance>> {
+        // Another seed for each repetition, so that repetitions stay independent.
+        let seed = maps.seed ^ maps.replicate.wrapping_mul(0x9e37_79b9_7f4a_7c15);
+        let settings = ImportanceSettings { seed, ..Default::default() };
+        let learn = || Importance::of(scene, camera, maps.indirect, &settings, &NoProgress);
+        self.is_steered.then(learn).transpose()
+    }
+
     /// Settings of the maps of one repetition.
     pub fn settings(&self, indirect: Indirect, seed: u64, replicate: u64) -> MapSettings {
-        let Photons { global, caustic, volume } = *self;
+        let Photons { global, caustic, volume, .. } = *self;
         MapSettings { global, caustic, volume, indirect, seed, replicate }
     }
 }
@@ -148,8 +168,9 @@ pub struct Reading {
     /// How much of a step's light reaches its near end: the rule of 1998, or exact for a constant source.
     #[arg(long, value_enum, default_value = "integrated")]
     step_rule: RuleName,
-    /// Relative change of light from step to step above which steps are halved, to a quarter at most; 0 for equal steps.
-    #[arg(long, default_value_t = 0.5)]
+    /// Relative change of light from step to step above which steps are halved, to a quarter at most, as in 1998; 0 for
+    /// equal steps. The choice follows the light found, which biases it: next to lights it reads low.
+    #[arg(long, default_value_t = 0.0)]
     adapt: f64,
     /// March on places that are not random: no noise, but bands.
     #[arg(long)]

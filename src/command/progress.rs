@@ -34,7 +34,13 @@ impl Bar {
 }
 
 impl Progress for Bar {
-    fn advance(&self, histories: u64) {
-        self.0.inc(histories);
+    fn stage(&self, name: &'static str, steps: u64) {
+        self.0.reset();
+        self.0.set_length(steps);
+        self.0.set_message(name);
+    }
+
+    fn advance(&self, steps: u64) {
+        self.0.inc(steps);
     }
 }

@@ -5,7 +5,7 @@ use super::on_threads;
 use super::parse_count;
 use super::picture::{Frame, Photons, Reading, Shown};
 use super::progress::Bar;
-use super::statistics::{Stages, print_statistics};
+use super::statistics::{MAPS, Stages, print_statistics};
 use anyhow::{Context, bail};
 use clap::ValueEnum;
 use cpu_time::ProcessTime;
@@ -15,7 +15,7 @@ use turbid::integrators::mapper::{Mapper, Report};
 use turbid::integrators::path;
 use turbid::output::{Tone, auto_exposure, write_exr, write_png};
 use turbid::photons::PhotonMap;
-use turbid::photons::maps::{MapReport, counts, fill_counted};
+use turbid::photons::maps::{MapReport, counts_steered, fill_counted_steered};
 use turbid::scene::{Camera, Scene};
 use turbid::sensor::{Film, Sample, Streams, extend};
 
@@ -40,6 +40,9 @@ pub struct Render {
     /// Who makes the picture.
     #[arg(long = "with", value_enum, default_value = "photons")]
     with: With,
+    /// What is done of all that some scenes require.
+    #[arg(long, value_enum, default_value = "auto")]
+    plan: PlanName,
     /// Samples a pixel, of each map [default: 16].
     #[arg(long, value_parser = parse_count)]
     samples: Option<u64>,
@@ -64,6 +67,14 @@ pub struct Render {
     photons: Photons,
     #[command(flatten, next_help_heading = "Photons")]
     reading: Reading,
+}
+
+#[derive(Clone, Copy, PartialEq, ValueEnum)]
+enum PlanName {
+    /// What the scene requires, and nothing else.
+    Auto,
+    /// Everything, required or not: the same picture, slower, to measure what the other saves.
+    Full,
 }
 
 #[derive(Clone, Copy, PartialEq, ValueEnum)]
@@ -103,7 +114,10 @@ impl Render {
         }
         let exposure = self.shown.checked()?;
         let file = self.source.resolve()?;
-        let scene = self.source.load()?;
+        let scene = match (self.source.load()?, self.plan) {
+            (scene, PlanName::Auto) => scene,
+            (scene, PlanName::Full) => scene.with_full_plan()?,
+        };
         let camera = self.frame.camera(&scene)?;
         if self.with == With::Paths && !scene.plan().unreachable.is_empty() {
             bail!(
@@ -124,7 +138,7 @@ impl Render {
                 let within = scene.interior_at(camera.position());
                 let sample = |ray, stream: &mut _, work: &mut Report| {
                     let (layers, rays) = path::layers(&scene, ray, None, within, stream);
-                    *work += Report { rays, ..Report::default() };
+                    *work += Report { rays, work: stream.work, ..Report::default() };
                     Sample::from(layers)
                 };
                 let work = self.fill(film, &camera, streams, stages, left, sample)?;
@@ -133,9 +147,15 @@ impl Render {
             With::Photons => self.repeat(&camera, |streams, stages, left, film| {
                 let settings_of_maps =
                     self.photons.settings(self.reading.indirect(), streams.seed, streams.replicate);
-                let emitted = stages.time("pilot", || counts(&scene, &settings_of_maps))?;
+                let importance =
+                    stages.time("pilot", || self.photons.importance(&scene, &camera, &settings_of_maps))?;
+                let importance = importance.as_ref();
+                let emitted =
+                    stages.time("pilot", || counts_steered(&scene, &settings_of_maps, importance))?;
                 let bar = Bar::stage("emission", emitted.histories());
-                let maps = stages.time("maps", || fill_counted(&scene, &settings_of_maps, emitted, &bar));
+                let maps = stages.time(MAPS, || {
+                    fill_counted_steered(&scene, &settings_of_maps, emitted, importance, &bar)
+                });
                 bar.finish();
                 let maps = maps?;
                 let within = scene.interior_at(camera.position());
@@ -143,6 +163,7 @@ impl Render {
                 let sample = |ray, stream: &mut _, work: &mut Report| {
                     let (layers, report) = mapper.radiance(ray, None, within, stream);
                     *work += report;
+                    work.work += stream.work;
                     let photons = report.global.found + report.caustic.found + report.volume.found;
                     Sample { layers, photons: photons as f64 }
                 };
@@ -247,9 +268,11 @@ impl Render {
         Ok(serde_json::json!({
             "program": format!("turbid {}", env!("CARGO_PKG_VERSION")),
             "with": if by_photons { "photons" } else { "paths" },
+            "plan": if self.plan == PlanName::Full { "full" } else { "auto" },
             "width": made.film.width(),
             "height": made.film.height(),
             "seed": self.seed,
+            "importance": by_photons && self.photons.is_steered,
             "repetitions": self.maps,
             "samples": made.samples,
             "variance": if self.maps == 1 { "between samples" } else { "between repetitions" },

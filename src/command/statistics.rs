@@ -5,11 +5,25 @@ use cpu_time::ProcessTime;
 use std::fmt::Write;
 use std::time::{Duration, Instant};
 use turbid::integrators::mapper::Gathers;
-use turbid::photons::maps::Ends;
+use turbid::photons::maps::{Ends, MapReport};
 
-/// Time by stage: by the clock, and of all threads' processors.
+/// The stage that fills the maps: emission and building the trees.
+pub const MAPS: &str = "maps";
+
+/// What a stage took.
+struct Stage {
+    name: &'static str,
+    /// By the clock.
+    clock: Duration,
+    /// Of all threads' processors.
+    processor: Duration,
+    /// Most memory that the process had had by its end \[bytes\], where the system tells.
+    memory: Option<u64>,
+}
+
+/// Time and memory by stage.
 #[derive(Default)]
-pub struct Stages(Vec<(&'static str, Duration, Duration)>);
+pub struct Stages(Vec<Stage>);
 
 impl Stages {
     /// Does something, and adds its time to a stage.
@@ -17,12 +31,14 @@ impl Stages {
         let (clock, processor) = (Instant::now(), ProcessTime::now());
         let result = work();
         let (clock, processor) = (clock.elapsed(), processor.elapsed());
-        match self.0.iter_mut().find(|(name, ..)| *name == stage) {
-            Some((_, c, p)) => {
-                *c += clock;
-                *p += processor;
+        let memory = peak_memory();
+        match self.0.iter_mut().find(|known| known.name == stage) {
+            Some(known) => {
+                known.clock += clock;
+                known.processor += processor;
+                known.memory = memory;
             }
-            None => self.0.push((stage, clock, processor)),
+            None => self.0.push(Stage { name: stage, clock, processor, memory }),
         }
         result
     }
@@ -72,10 +88,34 @@ pub fn print_statistics(made: &Made, exposure: f64) -> anyhow::Result<()> {
             writeln!(text, "gathers        {map:<8} {}", gathered(gathers))?;
         }
     }
+    let mut tracking = work.work;
+    let mut cells = 0;
+    for (report, _) in &made.maps {
+        tracking += report.main.work;
+        tracking += report.caustic.work;
+        cells += report.projection_cells;
+    }
+    writeln!(
+        text,
+        "tracking       {} majorants, {} densities, {} transmittances, {} flights by channel; {cells} projection cells",
+        tracking.majorants, tracking.densities, tracking.transmittances, tracking.channel_flights
+    )?;
     writeln!(text, "non-finite     0 of {} samples", made.samples.iter().sum::<u64>() * pixels)?;
-    for (stage, clock, processor) in &made.stages.0 {
+    for Stage { name, clock, processor, memory } in &made.stages.0 {
         let (clock, processor) = (clock.as_secs_f64(), processor.as_secs_f64());
-        writeln!(text, "time           {stage:<8} {clock:.3} s, {processor:.3} s of processors")?;
+        let memory = memory.map_or(String::new(), |bytes| format!(", {:.1} MB at most", bytes as f64 / 1e6));
+        writeln!(text, "time           {name:<8} {clock:.3} s, {processor:.3} s of processors{memory}")?;
+        if *name == MAPS {
+            let sum = |time: fn(&MapReport) -> Duration| {
+                made.maps.iter().map(|(report, _)| time(report)).sum::<Duration>().as_secs_f64()
+            };
+            writeln!(
+                text,
+                "time           of these: emission {:.3} s, build {:.3} s",
+                sum(|report| report.main.time + report.caustic.time),
+                sum(|report| report.build)
+            )?;
+        }
     }
     if let Some(bytes) = peak_memory() {
         writeln!(text, "memory         {:.1} MB at most", bytes as f64 / 1e6)?;

@@ -20,6 +20,8 @@ pub struct Emitter {
     /// Power of all lights \[W\].
     power: Spectrum,
     chosen: Option<Chosen>,
+    /// Cells that were tested against specular bodies.
+    tested: u64,
 }
 
 /// Cells of lights that photons are restricted to.
@@ -31,7 +33,6 @@ struct Chosen {
     cumulated: Vec<f64>,
     /// What a photon of each cell carries, over its light's power.
     weights: Vec<f64>,
-    tested: u64,
     /// Power that the cells send out, over that of all lights.
     kept: f64,
 }
@@ -39,7 +40,7 @@ struct Chosen {
 impl Emitter {
     /// All that the lights send out, in proportion to power.
     pub fn by_power(scene: &Scene) -> Self {
-        Emitter { power: scene.power(), chosen: None }
+        Emitter { power: scene.power(), chosen: None, tested: 0 }
     }
 
     /// What can meet a specular body: cells of the lights' numbers whose rays can reach the sphere about one of them.
@@ -74,7 +75,9 @@ impl Emitter {
             }
         }
         let shares = cells.iter().map(|(light, cell)| share(scene, *light, cell)).collect();
-        Self::chosen(scene, cells, shares, tested)
+        let emitter = Self::chosen(scene, cells, shares, tested);
+        // Where nothing is left out, photons leave though none can be of use.
+        emitter.or_else(|| scene.plan().is_full.then(|| Emitter { tested, ..Self::by_power(scene) }))
     }
 
     /// Emission from cells with probabilities in proportion to `chances`; none if all are 0.
@@ -100,12 +103,12 @@ impl Emitter {
             }
         }
         let kept = kept / power.sum();
-        Some(Emitter { power, chosen: Some(Chosen { cells, cumulated, weights, tested, kept }) })
+        Some(Emitter { power, chosen: Some(Chosen { cells, cumulated, weights, kept }), tested })
     }
 
     /// How many cells were tested against specular bodies.
     pub fn projection_cells(&self) -> u64 {
-        self.chosen.as_ref().map_or(0, |chosen| chosen.tested)
+        self.tested
     }
 
     /// Power that photons are sent out for, over that of all lights.
@@ -115,8 +118,13 @@ impl Emitter {
 
     /// A photon, ready to walk: its weight is its power as though it were the only one \[W\].
     pub fn emit(&self, scene: &Scene, stream: &mut Stream) -> Walker {
+        self.emit_from(scene, stream).1
+    }
+
+    /// The same, and the number of the cell that it comes from; 0 where there are no cells.
+    pub(super) fn emit_from(&self, scene: &Scene, stream: &mut Stream) -> (usize, Walker) {
         let (lights, stage) = (scene.lights(), scene.stage());
-        let Some(chosen) = &self.chosen else { return by_power(scene, self.power, stream) };
+        let Some(chosen) = &self.chosen else { return (0, by_power(scene, self.power, stream)) };
         let u = stream.unit();
         // The first cell whose sum exceeds u: one without probability is never it.
         let i = chosen.cumulated.partition_point(|sum| *sum <= u).min(chosen.cells.len() - 1);
@@ -125,7 +133,7 @@ impl Emitter {
         let needs = light.needs();
         let numbers = cell.numbers((needs.position, needs.direction), stream);
         let emission = light.emit_aimed(stage, &numbers);
-        start(scene, *index, &emission, emission.power * chosen.weights[i])
+        (i, start(scene, *index, &emission, emission.power * chosen.weights[i]))
     }
 }
 

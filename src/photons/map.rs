@@ -2,6 +2,7 @@
 
 use super::{Photon, PhotonTree};
 use crate::error::{Error, Result};
+use crate::transport::{NoProgress, Progress};
 
 /// Stored photons and the number **emitted** by the pass that stored them: estimates divide by that number,
 /// never by the number stored. It holds no estimator.
@@ -26,8 +27,16 @@ impl PhotonMap {
     /// # Errors
     /// As [`PhotonMap::new`].
     pub fn new_parallel(photons: Vec<Photon>, emitted: u64) -> Result<Self> {
+        Self::new_watched(photons, emitted, &NoProgress)
+    }
+
+    /// The same, and `progress` is told of every photon that is in its place.
+    ///
+    /// # Errors
+    /// As [`PhotonMap::new`].
+    pub fn new_watched(photons: Vec<Photon>, emitted: u64, progress: &dyn Progress) -> Result<Self> {
         check_emitted(emitted)?;
-        Ok(PhotonMap { tree: PhotonTree::new_parallel(photons)?, emitted })
+        Ok(PhotonMap { tree: PhotonTree::new_watched(photons, progress)?, emitted })
     }
 
     /// The photons.

@@ -16,11 +16,12 @@
 //! rays of a final gathering bring the medium's radiance with them, so that light scattered by the medium towards the
 //! surface that the eye looks at, L ... M D, comes with them; a map that is seen holds that class.
 
+use super::importance::{Branching, Importance};
 use super::{Emitter, Flags, Ledger, Photon, PhotonMap, fold};
 use crate::Spectrum;
 use crate::error::{Error, Result};
 use crate::faults::{Fault, planted};
-use crate::rng::{Purpose, Stream};
+use crate::rng::{Purpose, Stream, Work};
 use crate::scene::{Scene, Target};
 use crate::surface::Surface;
 use crate::transport::{NoProgress, Progress, Roulette, Step, Visitor, Walker, run_blocks, walk};
@@ -77,7 +78,7 @@ pub struct Emitted {
 }
 
 impl Emitted {
-    /// Histories of both passes: what [`fill_counted`] tells its progress.
+    /// Histories of both passes: the first stages that [`fill_counted`] tells its progress.
     pub fn histories(&self) -> u64 {
         self.global.max(self.volume) + self.caustic
     }
@@ -107,6 +108,8 @@ pub struct PassReport {
     pub collisions: u64,
     /// Arrivals at matt surfaces, stored or not.
     pub hits: u64,
+    /// Work that the scene may not require.
+    pub work: Work,
     /// Time.
     pub time: Duration,
 }
@@ -168,10 +171,24 @@ pub fn is_volume(flags: Flags) -> bool {
 /// # Errors
 /// those of [`counts`] and [`fill_counted`]
 pub fn fill(scene: &Scene, settings: &MapSettings, progress: &dyn Progress) -> Result<Maps> {
+    fill_steered(scene, settings, None, progress)
+}
+
+/// The same with the photons of the global and the volume map steered by importance; [`Importance::of`] must know where
+/// the global map will be read.
+///
+/// # Errors
+/// those of [`fill`]
+pub fn fill_steered(
+    scene: &Scene,
+    settings: &MapSettings,
+    importance: Option<&Importance>,
+    progress: &dyn Progress,
+) -> Result<Maps> {
     let start = Instant::now();
-    let emitted = counts(scene, settings)?;
+    let emitted = counts_steered(scene, settings, importance)?;
     let pilot = start.elapsed();
-    let mut maps = fill_counted(scene, settings, emitted, progress)?;
+    let mut maps = fill_counted_steered(scene, settings, emitted, importance, progress)?;
     maps.report.pilot = pilot;
     Ok(maps)
 }
@@ -182,7 +199,19 @@ pub fn fill(scene: &Scene, settings: &MapSettings, progress: &dyn Progress) -> R
 /// [`Error::OutOfRange`] for a number of 0; [`Error::Scene`] if a map would stay empty: none of the pilot's photons was
 /// stored.
 pub fn counts(scene: &Scene, settings: &MapSettings) -> Result<Emitted> {
-    let emitters = Emitters::of(scene);
+    counts_steered(scene, settings, None)
+}
+
+/// The same with photons steered by importance.
+///
+/// # Errors
+/// those of [`counts`]
+pub fn counts_steered(
+    scene: &Scene,
+    settings: &MapSettings,
+    importance: Option<&Importance>,
+) -> Result<Emitted> {
+    let emitters = Emitters::of(scene, importance);
     let needs = Needs::of(scene, &emitters);
     let asked = [
         ("global", needs.global, settings.global),
@@ -194,6 +223,7 @@ pub fn counts(scene: &Scene, settings: &MapSettings) -> Result<Emitted> {
         let run = Run {
             scene,
             emitter: emitters.of_class(class),
+            importance: importance.filter(|_| class != Class::Caustic),
             purpose: Purpose::Pilot,
             seed: settings.seed,
             replicate: settings.replicate,
@@ -222,6 +252,7 @@ pub fn counts(scene: &Scene, settings: &MapSettings) -> Result<Emitted> {
                 "at least 1",
             )),
             Amount::Emitted(number) => Ok(number),
+            Amount::Stored(number) if stored[map] == 0 && scene.plan().is_full => Ok(number),
             Amount::Stored(_) if stored[map] == 0 => Err(Error::Scene(format!(
                 "the {name} map would stay empty: none of {PILOT} photons was stored in it; say how many to emit instead"
             ))),
@@ -243,10 +274,25 @@ pub fn fill_counted(
     emitted: Emitted,
     progress: &dyn Progress,
 ) -> Result<Maps> {
-    let emitters = Emitters::of(scene);
+    fill_counted_steered(scene, settings, emitted, None, progress)
+}
+
+/// The same with photons steered by importance.
+///
+/// # Errors
+/// those of [`fill_counted`]
+pub fn fill_counted_steered(
+    scene: &Scene,
+    settings: &MapSettings,
+    emitted: Emitted,
+    importance: Option<&Importance>,
+    progress: &dyn Progress,
+) -> Result<Maps> {
+    let emitters = Emitters::of(scene, importance);
     let run = |class, global, volume| Run {
         scene,
         emitter: emitters.of_class(class),
+        importance: importance.filter(|_| class != Class::Caustic),
         purpose: Purpose::Photons,
         seed: settings.seed,
         replicate: settings.replicate,
@@ -255,20 +301,25 @@ pub fn fill_counted(
         volume,
     };
     let (Emitted { global, volume, caustic }, mut report) = (emitted, MapReport::default());
-    let mut build = |photons, emitted: u64| {
+    let mut build = |parts: Vec<Vec<Photon>>, emitted: u64| {
+        if emitted == 0 {
+            return Ok(None);
+        }
         let start = Instant::now();
-        let map = (emitted > 0).then(|| PhotonMap::new_parallel(photons, emitted)).transpose();
+        let photons = joined(parts);
+        progress.stage("build", photons.len() as u64);
+        let map = PhotonMap::new_watched(photons, emitted, progress).map(Some);
         report.build += start.elapsed();
         map
     };
     let mut pass = run(Class::Main(settings.indirect), global, volume).pass(global.max(volume), progress)?;
     let main = pass.report;
-    let surfaces = build(joined(std::mem::take(&mut pass.surfaces)), global)?;
-    let media = build(joined(std::mem::take(&mut pass.media)), volume)?;
+    let surfaces = build(std::mem::take(&mut pass.surfaces), global)?;
+    let media = build(std::mem::take(&mut pass.media), volume)?;
     // Caustic photons of histories that the first pass has run too would be the same photons.
     let own = Run { purpose: Purpose::Caustics, ..run(Class::Caustic, caustic, 0) };
     let pass = own.pass(caustic, progress)?;
-    let focused = build(joined(pass.surfaces), caustic)?;
+    let focused = build(pass.surfaces, caustic)?;
     (report.main, report.caustic) = (main, pass.report);
     if let Some(emitter) = &emitters.caustic {
         (report.projection_cells, report.projected) = (emitter.projection_cells(), emitter.kept());
@@ -292,8 +343,9 @@ struct Emitters {
 }
 
 impl Emitters {
-    fn of(scene: &Scene) -> Self {
-        Emitters { main: Emitter::by_power(scene), caustic: Emitter::towards_specular(scene) }
+    fn of(scene: &Scene, importance: Option<&Importance>) -> Self {
+        let main = importance.map_or_else(|| Emitter::by_power(scene), |i| i.emitter().clone());
+        Emitters { main, caustic: Emitter::towards_specular(scene) }
     }
 
     fn of_class(&self, class: Class) -> &Emitter {
@@ -305,12 +357,16 @@ impl Needs {
     fn of(scene: &Scene, emitters: &Emitters) -> Self {
         let plan = scene.plan();
         let is_matt = plan.has_surfaces && scene.objects().iter().any(|o| is_matt(&o.surface));
-        Needs { global: is_matt, caustic: is_matt && emitters.caustic.is_some(), volume: plan.has_media }
+        Needs {
+            global: is_matt || plan.is_full,
+            caustic: (is_matt || plan.is_full) && emitters.caustic.is_some(),
+            volume: plan.has_media,
+        }
     }
 }
 
 /// Whether photons are stored on a surface: some light leaves it in other than specular directions.
-fn is_matt(surface: &Surface) -> bool {
+pub(super) fn is_matt(surface: &Surface) -> bool {
     matches!(surface, Surface::Lambertian(_))
 }
 
@@ -328,6 +384,7 @@ enum Class {
 struct Run<'a> {
     scene: &'a Scene,
     emitter: &'a Emitter,
+    importance: Option<&'a Importance>,
     purpose: Purpose,
     seed: u64,
     replicate: u64,
@@ -367,6 +424,7 @@ impl Stored {
         mine.ledger.add(&others.ledger);
         mine.collisions += others.collisions;
         mine.hits += others.hits;
+        mine.work += others.work;
         self.non_finite += other.non_finite;
         self
     }
@@ -384,6 +442,7 @@ fn joined(parts: Vec<Vec<Photon>>) -> Vec<Photon> {
 impl Run<'_> {
     fn pass(&self, histories: u64, progress: &dyn Progress) -> Result<Stored> {
         let start = Instant::now();
+        progress.stage("emission", histories);
         // A caustic photon has not been scattered: its history ends with its first scattering.
         let limit = (self.class == Class::Caustic).then_some(1);
         let block = |range: std::ops::Range<u64>| {
@@ -400,7 +459,11 @@ impl Run<'_> {
                 let first = self.emitter.emit(self.scene, &mut stream);
                 store.stored.report.emitted += 1;
                 store.stored.report.ledger.emitted += first.weight.sum();
-                walk(self.scene, first, Roulette::Analog, limit, &mut stream, &mut store);
+                match self.importance {
+                    None => walk(self.scene, first, Roulette::Analog, limit, &mut stream, &mut store),
+                    Some(importance) => importance.walk(self.scene, first, limit, &mut stream, &mut store),
+                }
+                store.stored.report.work += stream.work;
             }
             let Store { mut surface, mut medium, mut stored, .. } = store;
             surface.shrink_to_fit();
@@ -444,6 +507,8 @@ impl Store<'_> {
         how(&mut report.ends, &mut report.ledger, weight.sum());
     }
 }
+
+impl Branching for Store<'_> {}
 
 impl Visitor for Store<'_> {
     const LOOKS_AHEAD: bool = false;

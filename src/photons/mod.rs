@@ -2,6 +2,7 @@
 
 mod emit;
 pub mod fold;
+pub mod importance;
 mod map;
 pub mod maps;
 mod record;

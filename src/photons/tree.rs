@@ -10,6 +10,7 @@ mod within;
 
 use super::{Flags, Photon};
 use crate::error::{Error, Result};
+use crate::transport::{NoProgress, Progress};
 use boxes::Boxes;
 use glam::Vec3;
 use order::Entry;
@@ -58,7 +59,7 @@ impl PhotonTree {
     /// [`Error::NonFinite`] if a position, direction or power is not finite; [`Error::OutOfRange`] beyond
     /// 2^32 photons.
     pub fn new(photons: Vec<Photon>) -> Result<Self> {
-        Self::build(photons, false)
+        Self::build(photons, false, &NoProgress)
     }
 
     /// The same tree, bit for bit, built by the threads of the current pool.
@@ -66,10 +67,18 @@ impl PhotonTree {
     /// # Errors
     /// As [`PhotonTree::new`].
     pub fn new_parallel(photons: Vec<Photon>) -> Result<Self> {
-        Self::build(photons, true)
+        Self::new_watched(photons, &NoProgress)
     }
 
-    fn build(photons: Vec<Photon>, parallel: bool) -> Result<Self> {
+    /// The same, and `progress` is told of every photon that is in its place.
+    ///
+    /// # Errors
+    /// As [`PhotonTree::new`].
+    pub fn new_watched(photons: Vec<Photon>, progress: &dyn Progress) -> Result<Self> {
+        Self::build(photons, true, progress)
+    }
+
+    fn build(photons: Vec<Photon>, parallel: bool, progress: &dyn Progress) -> Result<Self> {
         let stored = photons.len();
         if u32::try_from(stored).is_err() {
             return Err(Error::out_of_range("the number of photons in one map", stored as f64, "below 2^32"));
@@ -84,7 +93,7 @@ impl PhotonTree {
             })
             .collect();
         if stored > 0 {
-            order::kd_order(&mut entries, &photons, parallel);
+            order::kd_order(&mut entries, &photons, parallel, progress);
         }
 
         let blocks = stored.div_ceil(BLOCK);

@@ -4,7 +4,7 @@ use super::Scene;
 use crate::Spectrum;
 use crate::geometry::Hit;
 use crate::math::Ray;
-use crate::surface::Surface;
+use crate::surface::{Filter, Surface};
 
 /// A body that a ray can meet.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -110,6 +110,12 @@ impl Scene {
         (!is_blocked).then_some(Spectrum::ONE)
     }
 
+    /// The filter that a body is, if it is one.
+    pub fn filter(&self, target: Target) -> Option<&Filter> {
+        let Target::Object(index) = target else { return None };
+        if let Surface::Filter(filter) = &self.objects()[index].surface { Some(filter) } else { None }
+    }
+
     /// The same, body after body.
     fn passes_filters(
         &self,
@@ -123,8 +129,7 @@ impl Scene {
             if Some(found.target) == towards || found.hit.t >= end {
                 break;
             }
-            let Target::Object(index) = found.target else { return None };
-            let Surface::Filter(filter) = &self.objects()[index].surface else { return None };
+            let filter = self.filter(found.target)?;
             let position = ray.at(found.hit.t);
             passed *= filter.transmittance(position, found.hit.uv);
             if passed.is_black() {

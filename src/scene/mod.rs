@@ -5,6 +5,7 @@ mod bounds;
 mod builtin;
 mod camera;
 mod file;
+mod full;
 mod hit;
 mod interiors;
 mod plan;

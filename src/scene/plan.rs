@@ -36,6 +36,8 @@ pub struct Plan {
     pub forces_first_collision: bool,
     /// Path classes that the path tracer cannot sample, in words; photons reach them all.
     pub unreachable: Vec<String>,
+    /// Whether nothing is left out, required or not: see [`Scene::with_full_plan`](super::Scene::with_full_plan).
+    pub is_full: bool,
 }
 
 /// Below this optical thickness fewer than one free flight in ten collides, and forcing pays.
@@ -83,6 +85,24 @@ impl Plan {
             point_lights: (0..parts.lights.len()).filter(|&i| parts.lights[i].apex().is_some()).collect(),
             forces_first_collision: regions().next().is_some() && thickest < THIN && !has_heterogeneous,
             unreachable,
+            is_full: false,
+        }
+    }
+
+    /// The same with nothing left out; all media are heterogeneous. What is true of the scene and saves nothing stays.
+    pub(super) fn full(&self) -> Self {
+        Plan {
+            has_media: true,
+            has_grey_extinction: false,
+            has_heterogeneous: true,
+            has_emission: true,
+            has_specular: true,
+            has_dielectrics: true,
+            has_filters: true,
+            has_next_event: true,
+            forces_first_collision: false,
+            is_full: true,
+            ..self.clone()
         }
     }
 

@@ -10,8 +10,11 @@ pub const BLOCK: u64 = 4096;
 
 /// Who watches a long computation.
 pub trait Progress: Sync {
-    /// So many more histories are done.
-    fn advance(&self, histories: u64);
+    /// A stage begins that will take so many steps; a computation of one stage need not say it.
+    fn stage(&self, _name: &'static str, _steps: u64) {}
+
+    /// So many more steps, histories for the most part, are done.
+    fn advance(&self, steps: u64);
 
     /// Whether to stop.
     fn is_cancelled(&self) -> bool {
@@ -23,7 +26,7 @@ pub trait Progress: Sync {
 pub struct NoProgress;
 
 impl Progress for NoProgress {
-    fn advance(&self, _histories: u64) {}
+    fn advance(&self, _steps: u64) {}
 }
 
 /// Runs `histories` in blocks, in parallel, and merges the results pairwise in block order.

@@ -107,7 +107,11 @@ fn flight_by_stretch(
     for segment in scene.segments(ray, end, within).iter() {
         let stretch = match scene.medium(segment.medium) {
             Medium::Homogeneous(medium) => closed(medium, segment.interval, weight, stream),
-            Medium::Heterogeneous(medium) => track::delta(medium, ray, segment.interval, weight, stream),
+            Medium::Heterogeneous(medium) => {
+                let by_channel = scene.plan().is_full || !medium.matter().sigma_t().is_grey();
+                stream.work.channel_flights += u64::from(by_channel);
+                track::delta(medium, ray, segment.interval, weight, by_channel, stream)
+            }
         };
         match stretch {
             End::Collision(t, weight) => return Flight::Collision { t, medium: segment.medium, weight },

@@ -26,7 +26,7 @@ fn exponential(stream: &mut Stream) -> f64 {
 ///
 /// With weights w_c, and q_c the share of the majorant that channel c has at a tentative collision, it is real with
 /// p = sum w_c q_c / sum w_c; then w_c becomes w_c q_c/p, else w_c (1-q_c)/(1-p). Each channel is unbiased, and the
-/// summed weight stays as it is. With equal channels the weights do not change.
+/// summed weight stays as it is. With equal channels the weights do not change, and need not be kept `by_channel`.
 ///
 /// # Source
 /// Woodcock et al. 1965; Miller, Georgiev and Jarosz 2019
@@ -35,6 +35,7 @@ pub(super) fn delta(
     ray: &Ray,
     part: Interval,
     weight: Spectrum,
+    by_channel: bool,
     stream: &mut Stream,
 ) -> End {
     let sigma_t = medium.matter().sigma_t();
@@ -42,7 +43,6 @@ pub(super) fn delta(
     if scale == 0.0 {
         return End::Passed(weight);
     }
-    let is_grey = sigma_t.is_grey();
     let ratio = sigma_t / scale;
     let mut weight = weight;
     let mut target = exponential(stream);
@@ -60,15 +60,15 @@ pub(super) fn delta(
                 break;
             }
             at = t;
-            let share = if is_grey { 1.0 } else { (weight * ratio).sum() / weight.sum() };
+            let share = if by_channel { (weight * ratio).sum() / weight.sum() } else { 1.0 };
             let u = stream.unit() * bound.high;
             let is_real = u < bound.low * share;
             let density = if is_real { bound.low } else { density_at(medium, ray, t, bound.high, stream) };
             if is_real || u < density * share {
-                let after = if is_grey { weight } else { weight * ratio / share };
+                let after = if by_channel { weight * ratio / share } else { weight };
                 return End::Collision(t, after);
             }
-            if !is_grey && !planted(Fault::NullWeightForgotten) {
+            if by_channel && !planted(Fault::NullWeightForgotten) {
                 let q = density / bound.high;
                 weight *= ratio.map(|r| (1.0 - r * q) / (1.0 - share * q));
             }

@@ -42,6 +42,10 @@ pub struct Room {
 
 impl Room {
     pub fn scene(&self) -> Scene {
+        Scene::new(self.parts()).unwrap()
+    }
+
+    pub fn parts(&self) -> Parts {
         let (x, y, z) = (DVec3::X * SIDE, DVec3::Y * SIDE, DVec3::Z * SIDE);
         let light = emitting_sphere(DVec3::new(1.0, 1.0, 1.5), 0.4);
         let wall = |corner, u, v, rgb: [f64; 3]| {
@@ -70,14 +74,13 @@ impl Room {
             let glass = Interior { name: "glass".into(), index: 1.5, medium: None };
             interiors = vec![Interior::surroundings(), glass];
         }
-        Scene::new(Parts {
+        Parts {
             regions: if self.sigma_t.is_black() { Vec::new() } else { vec![fog] },
             objects: objects.into_iter().map(|(shape, surface)| Object { shape, surface }).collect(),
             interiors,
             lights: vec![light],
             ..Parts::default()
-        })
-        .unwrap()
+        }
     }
 }
 
@@ -87,7 +90,7 @@ pub fn mirror() -> Surface {
 
 /// A ray of the picture: from a corner of the room to points of its floor, two walls and its ceiling that lie farther
 /// from the edges than a disc reaches, one in each cell of a grid. The block hides some of them.
-fn look(history: u64, stream: &mut Stream) -> Ray {
+pub fn look(history: u64, stream: &mut Stream) -> Ray {
     let eye = DVec3::new(1.85, 0.15, 1.2);
     let [a, b] = stream.pair();
     let [column, row] = [history / 4 % 10, history / 40 % 10].map(|cell| cell as f64);
@@ -137,7 +140,7 @@ fn push(sheet: &mut Sheet, layers: &Layers) {
     sheet[6].push(layers.total().sum());
 }
 
-fn by_paths(scene: &Scene, n: u64, seed: u64) -> Sheet {
+pub fn by_paths(scene: &Scene, n: u64, seed: u64) -> Sheet {
     let block = |range: std::ops::Range<u64>| {
         let mut sheet = Sheet::default();
         for history in range {
@@ -190,9 +193,19 @@ pub fn layers_are_those_of_paths(
     emitted: u64,
     seed: u64,
 ) {
-    let scene = room.scene();
-    let paths = by_paths(&scene, 400 * 640, seed);
-    let maps = layers_of_maps(&scene, settings, emitted, indirect, seed);
+    layers_of_the_scene_are_those_of_paths(&room.scene(), indirect, settings, emitted, seed);
+}
+
+/// The same of a scene that is such a room in size and light.
+pub fn layers_of_the_scene_are_those_of_paths(
+    scene: &Scene,
+    indirect: Indirect,
+    settings: &Settings,
+    emitted: u64,
+    seed: u64,
+) {
+    let paths = by_paths(scene, 400 * 640, seed);
+    let maps = layers_of_maps(scene, settings, emitted, indirect, seed);
     let names = Layer::ALL.map(Layer::name).into_iter().chain(["total"]);
     for (i, name) in names.enumerate() {
         let (path, map) = (&paths[i], &maps[i]);

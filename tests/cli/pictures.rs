@@ -64,6 +64,41 @@ fn pictures_by_photons_and_paths_have_the_same_bits_on_any_number_of_threads() {
     assert!(succeeds(&timed).contains("samples        1 a pixel"));
 }
 
+/// The statistics tell all that was done, and that nothing was done that the scene does not require.
+#[test]
+fn statistics_of_a_picture_tell_its_work() {
+    let folder = Folder::new();
+    let scene = room(&folder, "room.toml", ("", ""));
+    let path = folder.0.path().join("out.exr");
+    let arguments = ["render", text(&scene), "-o", text(&path)];
+    let said = succeeds(&[&arguments[..], &QUICK].concat());
+    let nothing =
+        "tracking       0 majorants, 0 densities, 0 transmittances, 0 flights by channel; 0 projection cells";
+    for told in [
+        "photons stored of 2000 emitted",
+        "first pass of 2000: ",
+        " escaped, 0 abandoned",
+        " of final gatherings",
+        "shadow rays    ",
+        "march steps    ",
+        "gathers        global   ",
+        "gathers        caustic  0\n",
+        "gathers        volume   ",
+        " L in the mean; ",
+        " found fewer than k",
+        "non-finite     0 of ",
+        "time           pilot ",
+        "time           of these: emission ",
+        "time           samples ",
+        nothing,
+    ] {
+        assert!(said.contains(told), "{told} is not in:\n{said}");
+    }
+    let full = succeeds(&[&arguments[..], &["--plan", "full"], &QUICK].concat());
+    assert!(!full.contains("tracking       0 ") && !full.contains("; 0 projection cells"), "{full}");
+    assert!(!full.contains("gathers        caustic  0\n"), "{full}");
+}
+
 #[test]
 fn photons_are_drawn_and_exported() {
     let folder = Folder::new();

@@ -81,7 +81,7 @@ fn missing(scene: &Scene, place: DVec3, normal: DVec3, radius: f64) -> f64 {
     const POINTS: u32 = 16;
     let frame = Frame::new(normal);
     let is_off = |n: u32| {
-        let ring = if n % 2 == 0 { 0.5 } else { 0.866 };
+        let ring = if n.is_multiple_of(2) { 0.5 } else { 0.866 };
         let (sin, cos) = sin_cos(2.0 * std::f64::consts::PI * f64::from(n) / f64::from(POINTS));
         let height = 0.1 * radius;
         let from = place + frame.to_world(DVec3::new(cos, sin, 0.0)) * (ring * radius) + normal * height;

@@ -18,14 +18,14 @@ mod volume;
 
 pub use settings::{Adaptive, March, Settings};
 
-use super::path::{Rays, next_event, uncollided};
-use super::{Layer, Layers};
 use crate::Spectrum;
 use crate::estimators::Estimate;
 use crate::geometry::Shape;
+use crate::integrators::path::{Rays, next_event, uncollided};
+use crate::integrators::{Layer, Layers};
 use crate::math::Ray;
 use crate::photons::maps::Maps;
-use crate::rng::Stream;
+use crate::rng::{Stream, Work};
 use crate::scene::{Scene, SceneHit, Start, Target};
 use crate::transport::{Roulette, Step, Visitor, Walker, emission, transmittance, walk};
 use std::ops::AddAssign;
@@ -84,6 +84,8 @@ pub struct Report {
     pub caustic: Gathers,
     /// Look-ups in the volume map.
     pub volume: Gathers,
+    /// Work that the scene may not require.
+    pub work: Work,
 }
 
 impl AddAssign for Report {
@@ -95,6 +97,7 @@ impl AddAssign for Report {
         self.global += other.global;
         self.caustic += other.caustic;
         self.volume += other.volume;
+        self.work += other.work;
     }
 }
 
@@ -168,11 +171,33 @@ impl<'a> Mapper<'a> {
         }
         if self.has_unaimed {
             let ray = Ray::new(position, blind(stream));
-            report.rays.segments += 1;
-            let end = self.scene.hit(&ray, from).map_or(f64::INFINITY, |found| found.hit.t);
-            sum += self.unaimed(&Walker { ray, from, ..*walker }, end, stream);
+            let start = Walker { from, within, ..Walker::new(ray, Spectrum::ONE) };
+            sum += self.unaimed_beyond(start, report, stream);
         }
         sum
+    }
+
+    /// The same up to the first body that is no filter: filters bend nothing, and what is behind them is seen straight.
+    fn unaimed_beyond(&self, start: Walker, report: &mut Report, stream: &mut Stream) -> Spectrum {
+        let (scene, mut walker, mut sum) = (self.scene, start, Spectrum::ZERO);
+        loop {
+            report.rays.segments += 1;
+            let hit = scene.hit(&walker.ray, walker.from);
+            let end = hit.map_or(f64::INFINITY, |found| found.hit.t);
+            sum += walker.weight * self.unaimed(&walker, end, stream);
+            let Some((found, filter)) = hit.and_then(|found| Some((found, scene.filter(found.target)?)))
+            else {
+                return sum;
+            };
+            let position = walker.ray.at(end);
+            let passed = transmittance(scene, &walker.ray, end, walker.within, stream);
+            let weight = walker.weight * passed * filter.transmittance(position, found.hit.uv);
+            if weight.is_black() {
+                return sum;
+            }
+            let ray = Ray::new(position, walker.ray.dir);
+            walker = Walker { ray, weight, from: Some(found.start()), ..walker };
+        }
     }
 }
 

@@ -98,7 +98,8 @@ impl Eye<'_, '_> {
         let mapper = self.mapper;
         let march = &mapper.settings.march;
         let medium = mapper.scene.medium(number);
-        if !medium.is_colliding() {
+        let is_full = mapper.scene.plan().is_full;
+        if !medium.is_colliding() && !is_full {
             return;
         }
         let (longest, least) = (march.step.get(), LEFT * seen.max());
@@ -123,7 +124,7 @@ impl Eye<'_, '_> {
             self.report.steps += 1;
             let position = walker.ray.at(t + step.place);
             let sigma_t = medium.sigma_t(position);
-            let scattered = if sigma_t.is_black() {
+            let scattered = if sigma_t.is_black() && !is_full {
                 Scattered { single: Spectrum::ZERO, multiple: Spectrum::ZERO }
             } else {
                 mapper.scattered(walker, position, number, &mut self.report, stream)

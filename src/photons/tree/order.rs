@@ -2,6 +2,7 @@
 
 use super::BLOCK;
 use crate::photons::Photon;
+use crate::transport::Progress;
 use std::cmp::Ordering;
 use wide::f32x4;
 
@@ -25,10 +26,15 @@ impl Entry {
 ///
 /// Photons at the same coordinate are ordered by their records, so that the order is a function of the set of
 /// photons and not of how they came.
-pub(super) fn kd_order(entries: &mut [Entry], photons: &[Photon], parallel: bool) {
+///
+/// `progress` is told of every entry that has its place.
+pub(super) fn kd_order(entries: &mut [Entry], photons: &[Photon], parallel: bool, progress: &dyn Progress) {
     let mut spare = vec![Entry::NONE; entries.len()];
     let mut band = vec![Entry::NONE; entries.len() / 2];
-    Order { photons, parallel }.sort(entries, &mut spare, &mut band, true);
+    Order { photons, parallel, progress }.sort(entries, &mut spare, &mut band, true);
+    if entries.len() <= SERIAL {
+        progress.advance(entries.len() as u64);
+    }
 }
 
 /// What the whole recursion shares.
@@ -36,13 +42,15 @@ pub(super) fn kd_order(entries: &mut [Entry], photons: &[Photon], parallel: bool
 struct Order<'a> {
     photons: &'a [Photon],
     parallel: bool,
+    progress: &'a dyn Progress,
 }
 
 impl Order<'_> {
     /// Orders `entries`, with `spare` and `band`, half as long, to work in; the result is left in `entries`
     /// if `in_place`, else in `spare`.
     fn sort(self, entries: &mut [Entry], spare: &mut [Entry], band: &mut [Entry], in_place: bool) {
-        let blocks = entries.len().div_ceil(BLOCK);
+        let count = entries.len();
+        let blocks = count.div_ceil(BLOCK);
         let axis = widest_axis(entries);
         if blocks <= 1 {
             return self.sort_block(axis, entries, spare, in_place);
@@ -67,6 +75,12 @@ impl Order<'_> {
             let this = Order { parallel: false, ..self };
             this.sort(nearer, nearer_spare, nearer_band, in_place);
             this.sort(farther, farther_spare, farther_band, in_place);
+        }
+        if count > SERIAL {
+            let placed: usize = [middle, count - middle].into_iter().filter(|n| *n <= SERIAL).sum();
+            if placed > 0 {
+                self.progress.advance(placed as u64);
+            }
         }
     }
 

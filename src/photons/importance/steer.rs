@@ -1,0 +1,154 @@
+//! A walk whose photons are turned, split or ended by what they are worth.
+
+use super::Importance;
+use super::grid::DIRECTIONS;
+use crate::math::{FOUR_PI, cosine_pair, warp};
+use crate::phase::PhaseFunction;
+use crate::rng::Stream;
+use crate::scene::Scene;
+use crate::transport::{Roulette, Step, Visitor, Walker, walk};
+use glam::DVec3;
+
+/// How often a direction is chosen by value: weights grow by 1/(1 - this) at most.
+const TURNED: f64 = 0.5;
+/// Weights between these parts of what they should be are left alone: a game for less costs more than it saves.
+const WINDOW: (f64, f64) = (0.5, 2.0);
+/// A photon ends with nine tenths at most, and is split into eight at most, so that a value learned wrongly does little.
+const LEAST: f64 = 0.1;
+const MOST: f64 = 8.0;
+
+/// A visitor of a walk that may branch.
+pub trait Branching: Visitor {
+    /// A photon is about to fly on from an event, whose number is what [`Self::left`] gave for it; none for a photon from
+    /// a light. Called before its steps.
+    fn enter(&mut self, _event: Option<u32>) {}
+
+    /// A photon leaves an event, before it is split: the event's number.
+    fn left(&mut self, _walker: &Walker) -> u32 {
+        0
+    }
+}
+
+/// What a photon left.
+#[derive(Clone, Copy)]
+enum Left {
+    /// A medium of this number, after coming along this direction.
+    Medium(usize, DVec3),
+    /// A matt surface with this normal, on the photon's side.
+    Matt(DVec3),
+}
+
+/// Passes on one flight and keeps the photon that leaves the event at its end.
+struct Flight<'a, V> {
+    visitor: &'a mut V,
+    order: u32,
+    event: Option<Left>,
+    next: Option<Walker>,
+}
+
+impl<V: Visitor> Visitor for Flight<'_, V> {
+    const LOOKS_AHEAD: bool = V::LOOKS_AHEAD;
+
+    fn visit(&mut self, walker: &Walker, step: Step, stream: &mut Stream) {
+        match step {
+            Step::Ahead(_) if walker.order > self.order => return,
+            Step::Abandoned(_) if walker.order > self.order => {
+                self.next = Some(*walker);
+                return;
+            }
+            Step::Collision(_, number) => self.event = Some(Left::Medium(number, walker.ray.dir)),
+            Step::Surface(_, found) => {
+                let outward = found.hit.normal;
+                let is_outside = walker.ray.dir.dot(outward) < 0.0;
+                self.event = Some(Left::Matt(if is_outside { outward } else { -outward }));
+            }
+            _ => {}
+        }
+        self.visitor.visit(walker, step, stream);
+    }
+}
+
+/// Density with which an event sends photons along a direction [1/sr].
+fn density(scene: &Scene, event: Left, dir: DVec3) -> f64 {
+    match event {
+        Left::Medium(number, before) => {
+            let (one_minus_mu, one_plus_mu) = cosine_pair(before, dir);
+            scene.medium(number).phase().eval(one_minus_mu, one_plus_mu)
+        }
+        Left::Matt(normal) => warp::pdf_cosine_hemisphere(dir.dot(normal)),
+    }
+}
+
+impl Importance {
+    /// Follows one photon history to its end, steered; `limit` as for [`walk`].
+    pub(in crate::photons) fn walk<V: Branching>(
+        &self,
+        scene: &Scene,
+        start: Walker,
+        limit: Option<u32>,
+        stream: &mut Stream,
+        visitor: &mut V,
+    ) {
+        let mut waiting = vec![(start, None)];
+        while let Some((walker, event)) = waiting.pop() {
+            if limit.is_some_and(|limit| walker.order >= limit) {
+                visitor.visit(&walker, Step::Abandoned(walker.weight), stream);
+                continue;
+            }
+            visitor.enter(event);
+            let mut flight = Flight { visitor, order: walker.order, event: None, next: None };
+            walk(scene, walker, Roulette::Analog, Some(walker.order + 1), stream, &mut flight);
+            let Flight { event, next, .. } = flight;
+            let (Some(next), Some(event)) = (next, event) else { continue };
+            let Some(next) = self.turned(scene, event, next, stream) else { continue };
+            let number = Some(visitor.left(&next));
+            let (copies, factor) = self.copies(&next, stream);
+            let next = Walker { weight: next.weight * factor, ..next };
+            waiting.extend(std::iter::repeat_n((next, number), copies));
+        }
+    }
+
+    /// The photon with its direction chosen anew by value, now and then; its weight is that of both ways to choose it
+    /// together. None where nothing goes the chosen way.
+    fn turned(&self, scene: &Scene, event: Left, walker: Walker, stream: &mut Stream) -> Option<Walker> {
+        let origin = walker.ray.origin;
+        let (values, directions) = (self.values_at(origin), self.aim.directions(origin));
+        // What each sends on, about: its value times the density in its middle and a little, so that cells with their
+        // middle below a surface's horizon are not lost.
+        let mut sums = [0.0; DIRECTIONS];
+        let mut sum = 0.0;
+        for (index, cumulated) in sums.iter_mut().enumerate() {
+            if let Some((middle, size)) = directions.middle(index) {
+                sum += values[index] * size * (density(scene, event, middle) + 0.1 / FOUR_PI);
+            }
+            *cumulated = sum;
+        }
+        let probability = |index: usize| (sums[index] - if index > 0 { sums[index - 1] } else { 0.0 }) / sum;
+        let mut dir = walker.ray.dir;
+        if stream.unit() < TURNED {
+            let target = stream.unit() * sum;
+            let index = sums.partition_point(|cumulated| *cumulated <= target).min(DIRECTIONS - 1);
+            dir = directions.sample(index, stream.pair());
+        }
+        let natural = density(scene, event, dir);
+        let both = (1.0 - TURNED) * natural + TURNED * directions.density(dir, probability);
+        let ray = crate::math::Ray::new(origin, dir);
+        (natural > 0.0).then(|| Walker { ray, weight: walker.weight * (natural / both), ..walker })
+    }
+
+    /// How many photons go on, and the factor on the weight of each: their expected product is 1.
+    fn copies(&self, walker: &Walker, stream: &mut Stream) -> (usize, f64) {
+        let Walker { ray, .. } = walker;
+        let value = self.values_at(ray.origin)[self.aim.directions(ray.origin).index(ray.dir)];
+        let ratio = walker.weight.sum() * value / self.response;
+        if ratio < WINDOW.0 {
+            let chance = ratio.max(LEAST);
+            (usize::from(stream.unit() < chance), 1.0 / chance)
+        } else if ratio > WINDOW.1 {
+            let split = ratio.min(MOST);
+            ((split + stream.unit()) as usize, 1.0 / split)
+        } else {
+            (1, 1.0)
+        }
+    }
+}
