@@ -46,7 +46,7 @@ pub fn page(shown: &[Shown], settings: &Settings) -> Markup {
                     "of 95 per cent."
                 }
                 p.soft {
-                    "Blur and edges are predicted from the twin before anything is compared; pixels where they may exceed 2 per "
+                    "Blur and edges are predicted from a making with more photons before anything is compared; pixels where they may exceed 2 per "
                     "cent are masked, and what was predicted for the others is allowed. Outside the mask the means of blocks of 16 by 16 pixels are compared, "
                     "channel by channel, with errors from independent maps (Holm, family-wise 0.001)."
                 }

@@ -6,7 +6,7 @@ use super::dots::dots;
 use super::keep::{Facts, Kept};
 use super::look::look;
 use super::pictures::{ALL, Beside, Picture};
-use super::predict::{Radii, predicted};
+use super::predict::{Radii, predicted, radius};
 use super::settings::Settings;
 use super::shown::{Compared, Plate, Shown};
 use super::studio::Studio;
@@ -19,15 +19,16 @@ use std::process::ExitCode;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::{Duration, Instant};
 use turbid::Spectrum;
-use turbid::integrators::Layers;
 use turbid::output::write_atomically;
 use turbid::stats::Interval;
 use turbid::transport::Progress;
 
-/// Passes of the twin that predict blur and edges, and are never compared.
-const PREDICTING: u64 = 8;
+/// The most photons that are emitted for the making from which blur is predicted, and how many times the original's at most.
+const FINE: (u64, u64) = (40_000_000, 16);
 /// Makings of either side that are compared.
 const COMPARED: u64 = super::compare::FEWEST as u64;
+/// Half of them.
+const HALF: usize = super::compare::FEWEST / 2;
 /// Predicted relative error above which a pixel is masked.
 const LIMIT: f64 = 0.02;
 /// Ends of the scale of relative errors.
@@ -127,9 +128,10 @@ impl Makings<'_> {
         self.get(file, &s.path_words(samples, replicate), work, |bar| s.paths(samples, replicate, bar))
     }
 
-    fn photons(&self, file: &str, samples: u64, replicate: u64) -> anyhow::Result<Kept> {
+    fn photons(&self, file: &str, samples: u64, replicate: u64, factor: u64) -> anyhow::Result<Kept> {
         let (s, work) = (self.studio, self.studio.work(samples));
-        self.get(file, &s.photon_words(samples, replicate), work, |bar| s.photons(samples, replicate, bar))
+        let words = s.photon_words(samples, replicate, factor);
+        self.get(file, &words, work, |bar| s.photons(samples, replicate, factor, bar))
     }
 }
 
@@ -138,7 +140,7 @@ fn one(picture: &Picture, settings: &Settings, folder: &Path, program: &str) -> 
     let studio = Studio::open(picture, &settings.scenes, settings.scale(), settings.seed, program)?;
     let makings = Makings { settings, folder: settings.makings().join(picture.name), studio: &studio };
     std::fs::create_dir_all(&makings.folder)?;
-    let ours = makings.photons("photons", picture.samples, 0)?;
+    let ours = makings.photons("photons", picture.samples, 0, 1)?;
     let beside = if settings.draft { None } else { Some(beside(&makings, &ours)?) };
     let plates = plates(&studio, folder, &ours, beside.as_ref())?;
     Ok(Shown {
@@ -170,40 +172,33 @@ fn beside(makings: &Makings, ours: &Kept) -> anyhow::Result<Others> {
     let words = format!("{} in {} s", studio.path_words(0, 0), ours.facts.seconds);
     let equal = makings.get("equal", &words, 0, |bar| studio.paths_for(ours.facts.seconds, 0, bar))?;
     let samples = (picture.twin / if makings.settings.quick { 8 } else { 1 }).max(2);
-    let predicting = (0..PREDICTING)
-        .map(|n| makings.paths(&format!("twin-{n:03}"), samples, 1 + n))
-        .collect::<anyhow::Result<Vec<Kept>>>()?;
-    let (again, twin, seconds) = both(makings, samples)?;
-    let prediction = predict(studio, ours, &predicting);
+    let ours_samples = (picture.samples / 4).max(1);
+    let (again, twin, cost) = both(makings, ours_samples, samples)?;
+    let prediction = predict(makings, ours)?;
     let comparison = compare(studio.grid(), &again, &twin, &prediction, LIMIT);
     let found = errors(&again, &twin);
     let rms = errors(&[ours.total.clone(), ours.total.clone()], &twin).rms.low;
     // Paths have no error that stays: that of a pass, for the number of samples that fitted into the time.
-    let mut passes: Vec<Making> = predicting.iter().map(|k| k.total.clone()).collect();
-    let pass = errors(&passes, &twin).rms;
+    let pass = errors(&twin[..HALF], &twin[HALF..]).rms;
     let factor = (samples as f64 / equal.facts.samples as f64).sqrt();
     let equal_rms = Interval { low: factor * pass.low, high: factor * pass.high };
-    passes.extend(twin);
     Ok(Others {
         equal,
-        twin: average(passes.iter()),
-        cost: (
-            samples * passes.len() as u64,
-            seconds + predicting.iter().map(|k| k.facts.seconds).sum::<f64>(),
-        ),
+        twin: average(twin.iter()),
+        cost: (samples * twin.len() as u64, cost),
         masked: prediction.iter().map(|&e| e > LIMIT).collect(),
-        compared: Compared::new(&comparison, &found, (again.len(), 1), rms, equal_rms),
+        compared: Compared::new(&comparison, &found, (again.len(), ours_samples), rms, equal_rms),
     })
 }
 
-/// Independent makings of both sides, totals alone, and the twin's seconds.
-fn both(makings: &Makings, samples: u64) -> anyhow::Result<(Vec<Making>, Vec<Making>, f64)> {
+/// Independent makings of both sides, and the twin's seconds.
+fn both(makings: &Makings, ours: u64, samples: u64) -> anyhow::Result<(Vec<Making>, Vec<Making>, f64)> {
     let ours = (0..COMPARED)
-        .map(|n| Ok(makings.photons(&format!("maps-{n:03}"), 1, 1 + n)?.total))
+        .map(|n| Ok(makings.photons(&format!("maps-{n:03}"), ours, 1 + n, 1)?.total))
         .collect::<anyhow::Result<Vec<Making>>>()?;
     let (mut twin, mut seconds) = (Vec::new(), 0.0);
     for n in 0..COMPARED {
-        let kept = makings.paths(&format!("twin-{:03}", PREDICTING + n), samples, 1 + PREDICTING + n)?;
+        let kept = makings.paths(&format!("twin-{n:03}"), samples, 1 + n)?;
         seconds += kept.facts.seconds;
         twin.push(kept.total);
     }
@@ -211,23 +206,28 @@ fn both(makings: &Makings, samples: u64) -> anyhow::Result<(Vec<Making>, Vec<Mak
 }
 
 /// The relative error that blur and edges may cause, by pixel.
-fn predict(studio: &Studio, ours: &Kept, predicting: &[Kept]) -> Vec<f64> {
-    let [global, caustic, volume] = ours.facts.radii;
-    let global = if studio.picture.gather == 0 { global } else { 0.0 };
-    let views = look(&studio.scene, &studio.camera, global.max(caustic));
-    let pixel = studio.camera.pixel_area().sqrt();
-    predicted(studio.grid(), &views, &mean_layers(predicting), Radii { global, caustic, volume }, pixel)
-}
-
-fn mean_layers(makings: &[Kept]) -> Vec<Layers> {
-    let mut sum = makings.first().map_or_else(Vec::new, |k| vec![Layers::ZERO; k.layers.len()]);
-    let share = 1.0 / makings.len() as f64;
-    for kept in makings {
-        for (sum, layers) in sum.iter_mut().zip(&kept.layers) {
-            *sum += *layers * share;
-        }
-    }
-    sum
+fn predict(makings: &Makings, ours: &Kept) -> anyhow::Result<Vec<f64>> {
+    let (studio, picture) = (makings.studio, makings.studio.picture);
+    let emitted = ours.facts.emitted;
+    let factor = (FINE.0 / emitted[0].max(emitted[1]).max(1)).clamp(2, FINE.1);
+    let fine = makings.photons("fine", picture.samples.max(4), 1 + COMPARED, factor)?;
+    let power = studio.scene.power().sum();
+    let [_, _, volume] = ours.facts.radii;
+    let radii: Vec<Radii> = fine
+        .layers
+        .iter()
+        .map(|l| {
+            let reach = |map: usize, radiance: Spectrum| {
+                let each = power / emitted[map].max(1) as f64;
+                radius(picture.nearest[map], each, radiance.sum(), 0.1 * picture.size)
+            };
+            let seen = if picture.gather == 0 { reach(0, l.indirect) } else { 0.0 };
+            let caustic = if emitted[1] > 0 { reach(1, l.caustic) } else { 0.0 };
+            Radii { global: seen, caustic, volume }
+        })
+        .collect();
+    let views = look(&studio.scene, &studio.camera, |i| radii[i].global.max(radii[i].caustic));
+    Ok(predicted(studio.grid(), &views, &fine.layers, &radii, studio.camera.pixel_area().sqrt()))
 }
 
 fn plates(
@@ -265,7 +265,7 @@ fn plates(
             plate("single", "Single scattering alone".to_string(), &exposed(&single))?;
         }
         Beside::Maps => {
-            let maps = studio.maps(0)?;
+            let maps = studio.maps(0, 1)?;
             let all = [("global", &maps.global), ("caustic", &maps.caustic), ("volume", &maps.volume)];
             for (name, map) in all {
                 if let Some(map) = map.as_ref().filter(|map| map.stored() > 1000) {

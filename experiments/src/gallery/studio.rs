@@ -9,7 +9,7 @@ use cpu_time::ProcessTime;
 use std::path::Path;
 use turbid::integrators::{mapper, path};
 use turbid::photons::PhotonMap;
-use turbid::photons::maps::{self, Indirect, MapSettings, Maps};
+use turbid::photons::maps::{self, Amount, Indirect, MapSettings, Maps};
 use turbid::scene::{Camera, Scene, SceneFile};
 use turbid::sensor::{Film, Streams, extend};
 use turbid::transport::Progress;
@@ -72,9 +72,10 @@ impl<'a> Studio<'a> {
     }
 
     /// What a making by photons will be called.
-    pub fn photon_words(&self, samples: u64, replicate: u64) -> String {
+    pub fn photon_words(&self, samples: u64, replicate: u64, factor: u64) -> String {
         let p = self.picture;
-        let counts = format!("photons {:?}, nearest {:?}, gather {}", p.photons, p.nearest, p.gather);
+        let counts =
+            format!("photons {:?} x {factor}, nearest {:?}, gather {}", p.photons, p.nearest, p.gather);
         self.words(&counts, samples, replicate)
     }
 
@@ -83,9 +84,12 @@ impl<'a> Studio<'a> {
         self.words("paths", samples, replicate)
     }
 
-    /// Fills the maps of a replicate.
-    pub fn maps(&self, replicate: u64) -> anyhow::Result<Maps> {
-        let [global, caustic, volume] = self.picture.photons;
+    /// Fills the maps of a replicate, with `factor` times the photons of the original.
+    pub fn maps(&self, replicate: u64, factor: u64) -> anyhow::Result<Maps> {
+        let [global, caustic, volume] = self.picture.photons.map(|amount| match amount {
+            Amount::Emitted(n) => Amount::Emitted(n * factor),
+            Amount::Stored(n) => Amount::Stored(n * factor),
+        });
         let indirect = if self.picture.gather > 0 { Indirect::Gathered } else { Indirect::Seen };
         let settings = MapSettings { global, caustic, volume, indirect, seed: self.seed, replicate };
         Ok(maps::fill(&self.scene, &settings, &turbid::transport::NoProgress)?)
@@ -104,9 +108,15 @@ impl<'a> Studio<'a> {
     }
 
     /// A picture from one set of maps.
-    pub fn photons(&self, samples: u64, replicate: u64, progress: &dyn Progress) -> anyhow::Result<Kept> {
+    pub fn photons(
+        &self,
+        samples: u64,
+        replicate: u64,
+        factor: u64,
+        progress: &dyn Progress,
+    ) -> anyhow::Result<Kept> {
         let start = ProcessTime::now();
-        let maps = self.maps(replicate)?;
+        let maps = self.maps(replicate, factor)?;
         let map_seconds = start.elapsed().as_secs_f64();
         let settings = self.reading()?;
         let reader = mapper::Mapper::new(&self.scene, &maps, &settings);
@@ -126,7 +136,7 @@ impl<'a> Studio<'a> {
         )?;
         let stored = |map: &Option<PhotonMap>| map.as_ref().map_or(0, |m| m.stored() as u64);
         let facts = Facts {
-            words: self.photon_words(samples, replicate),
+            words: self.photon_words(samples, replicate, factor),
             program: self.program.clone(),
             seconds: start.elapsed().as_secs_f64(),
             map_seconds,
