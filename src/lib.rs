@@ -2,9 +2,10 @@
 //!
 //! By meaning, from the bottom up: [`math`], [`spectrum`], [`rng`] and [`stats`] know no light; [`phase`],
 //! [`medium`], [`surface`], [`light`] and [`geometry`] are what a [`scene`] is made of; [`transport`] is the random
-//! walk that paths and photons share; [`photons`] keeps what it meets, [`estimators`] read it; [`integrators`] trace
-//! paths; [`sensor`] turns both into numbers with standard errors; [`output`] writes files that appear whole or not
-//! at all.
+//! walk that paths and photons share; [`photons`] keeps what it meets, in [`photons::maps`] for pictures;
+//! [`estimators`] read it; [`integrators`] make radiance by class of path: the path tracer [`integrators::path`] and the
+//! photon mapper [`integrators::mapper`]; [`sensor`] turns both into numbers with standard errors, and into pictures on a
+//! [`sensor::Film`]; [`output`] writes files that appear whole or not at all.
 
 pub mod error;
 pub mod estimators;

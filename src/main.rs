@@ -5,11 +5,20 @@ mod command;
 use clap::Parser;
 use std::process::ExitCode;
 
+/// Where to begin.
+const EXAMPLES: &str = "\
+To begin with, no file is needed:
+  turbid render fogbox -o fog.exr --gather-rays 0       a picture by photons, and fog.png to look at
+  turbid render fogbox -o paths.exr --with paths        the same by the unbiased path tracer
+  turbid map fogbox -o photons.png --ply photons.ply    the photons themselves
+  turbid measure slab --with photons                    numbers with standard errors
+  turbid scenes                                         what else is built in";
+
 /// How wrong is a photon map in fog? Photons and paths in scattering media, each number with its standard error.
 ///
 /// Lengths are in scene units (L), powers in watts. Figures use the DejaVu fonts (Bitstream Vera licence).
 #[derive(Parser)]
-#[command(name = "turbid", version, arg_required_else_help = true)]
+#[command(name = "turbid", version, arg_required_else_help = true, after_help = EXAMPLES)]
 struct Arguments {
     #[command(subcommand)]
     command: command::Command,

@@ -44,6 +44,7 @@ fn in_color_and_forward() {
         g: 0.6,
         is_colored: true,
         has_glass: false,
+        has_water: false,
     };
     layers_are_those_of_paths(&room, Indirect::Seen, &settings(1), 4000, 3);
     layers_are_those_of_paths(&room, Indirect::Gathered, &settings(4), 4000, 4);
@@ -59,9 +60,26 @@ fn with_glass() {
         g: 0.0,
         is_colored: false,
         has_glass: true,
+        has_water: false,
     };
     layers_are_those_of_paths(&room, Indirect::Seen, &settings(1), 8000, 6);
     layers_are_those_of_paths(&room, Indirect::Gathered, &settings(4), 8000, 7);
+}
+
+/// Walls above water and a floor below it light each other: rays of a gathering carry radiance across the level, scaled
+/// by the squared index.
+#[test]
+fn gathered_across_water() {
+    let room = Room {
+        floor: lambertian(Spectrum::grey(0.9)),
+        sigma_t: Spectrum::grey(0.0),
+        albedo: Spectrum::grey(0.0),
+        g: 0.0,
+        is_colored: false,
+        has_glass: false,
+        has_water: true,
+    };
+    layers_are_those_of_paths(&room, Indirect::Gathered, &settings(4), 4000, 9);
 }
 
 #[test]
@@ -79,6 +97,7 @@ fn gathered_twice() {
         g: 0.0,
         is_colored: true,
         has_glass: false,
+        has_water: false,
     };
     let near = Settings { near: 1.2, ..settings(4) };
     layers_are_those_of_paths(&room, Indirect::Gathered, &near, 4000, 8);
@@ -93,6 +112,7 @@ fn plain() -> Room {
         g: 0.3,
         is_colored: false,
         has_glass: false,
+        has_water: false,
     }
 }
 

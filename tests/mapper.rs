@@ -6,6 +6,7 @@ mod checks;
 mod support;
 
 use checks::ledger::{Room, filling, layers_of_maps, settings};
+use checks::point_light;
 use glam::{DVec3, Vec3};
 use std::f64::consts::PI;
 use support::scenes::{
@@ -15,13 +16,13 @@ use support::verdict;
 use turbid::Spectrum;
 use turbid::estimators::boundary::{Boundary, Rejection, Treatment, treated_density, treated_in_scattered};
 use turbid::estimators::{Gather, Kernel};
-use turbid::geometry::Shape;
-use turbid::integrators::mapper::{Mapper, March, Settings};
+use turbid::geometry::{Rectangle, Shape};
+use turbid::integrators::mapper::{Adaptive, Mapper, March, Settings};
 use turbid::integrators::{StepRule, path};
 use turbid::light::Faces;
 use turbid::math::{Asymmetry, FOUR_PI, Positive, Ray, cosine_pair, exp, exp_m1};
 use turbid::phase::{Phase, PhaseFunction};
-use turbid::photons::maps::{Indirect, fill};
+use turbid::photons::maps::{Indirect, MapReport, Maps, fill};
 use turbid::photons::{Flags, Photon, PhotonMap};
 use turbid::rng::{Purpose, Stream};
 use turbid::scene::Region;
@@ -88,6 +89,7 @@ fn pictures_do_not_depend_on_the_number_of_photons() {
         g: 0.0,
         is_colored: true,
         has_glass: false,
+        has_water: false,
     };
     let scene = room.scene();
     let of = |emitted: u64, seed: u64| layers_of_maps(&scene, &settings(1), emitted, Indirect::Seen, seed);
@@ -159,6 +161,96 @@ fn glowing_fog() {
     for (i, name) in ["emission", "single"].into_iter().enumerate() {
         let mean = all[1][i].mean();
         verdict::agree(name, &all[0][i], &all[1][i], 0.1 * mean, 5);
+    }
+}
+
+/// Single scattering of a ray that passes close to a point light, against its integral: steps chosen by probes leave the mean
+/// alone, and take fewer steps than equal ones of the same spread.
+#[test]
+fn chosen_steps_keep_the_mean() {
+    let scene = point_light::fog(Spectrum::ONE, Spectrum::grey(0.5));
+    let maps = Maps {
+        global: None,
+        caustic: None,
+        volume: None,
+        indirect: Indirect::Seen,
+        report: MapReport::default(),
+    };
+    let expected = point_light::single_scattering(1.0, 0.5, point_light::BESIDE);
+    let adaptive = Adaptive { tolerance: 0.5, shortest: Positive::new("the shortest step", 0.0125).unwrap() };
+    // Mean, variance and steps of each way.
+    let run = |step: f64, adaptive: Option<Adaptive>, seed: u64| {
+        let mut settings = marching(step, StepRule::Integrated, true);
+        settings.march.adaptive = adaptive;
+        let mapper = Mapper::new(&scene, &maps, &settings);
+        let (mut moments, mut steps) = (Moments::new(), 0);
+        for history in 0..20_000 {
+            let mut stream = Stream::new(seed, Purpose::Paths, 0, history);
+            let ray = point_light::ray(point_light::BESIDE);
+            let (layers, report) = mapper.radiance(ray, None, 0, &mut stream);
+            moments.push(layers.single[1]);
+            steps += report.steps;
+        }
+        (moments, steps)
+    };
+    let (chosen, chosen_steps) = run(0.2, Some(adaptive), 3);
+    let (equal, equal_steps) = run(0.05, None, 4);
+    verdict::agrees("chosen steps", &chosen, (expected, 1e-9), 0.03 * expected, 3);
+    verdict::agrees("equal steps", &equal, (expected, 1e-9), 0.03 * expected, 4);
+    assert!(chosen_steps < equal_steps, "{chosen_steps} {equal_steps}");
+    assert!(chosen.variance() < equal.variance(), "{:e} {:e}", chosen.variance(), equal.variance());
+}
+
+/// Evenly lit squares, one, or two side by side in a plane: with clipped discs they are as bright at edges and in corners as
+/// in the middle, exactly in the mean over maps; without, they are darker.
+#[test]
+fn flat_surfaces_are_even_up_to_their_edges() {
+    const N: u64 = 1000;
+    let square = |x: f64| Rectangle::new(DVec3::X * x, DVec3::X, DVec3::Y).unwrap();
+    for (name, sides, clips_discs) in [("one", 1u32, true), ("two", 2, true), ("not clipped", 1, false)] {
+        let objects = (0..sides)
+            .map(|i| (Shape::Rectangle(square(f64::from(i))), lambertian(Spectrum::grey(0.5))))
+            .collect();
+        let light = emitting_sphere(DVec3::new(0.5, 0.5, 9.0), 0.1);
+        let scene = bounded(Vec::new(), objects, vec![light]);
+        let mut settings = settings(1);
+        settings.clips_discs = clips_discs;
+        settings.global = (Kernel::Uniform, Gather::nearest(20, 0.5).unwrap());
+        let mut moments = Moments::new();
+        for map in 0..200 {
+            let mut stream = Stream::new(9, Purpose::Synthetic, map, 0);
+            let photons = (0..N * u64::from(sides)).map(|_| {
+                let [x, y] = stream.pair();
+                Photon {
+                    position: DVec3::new(x * f64::from(sides), y, 0.0),
+                    dir: Vec3::NEG_Z,
+                    power: Vec3::ONE,
+                    order: 1,
+                    flags: Flags::DIFFUSE,
+                }
+            });
+            let global = PhotonMap::new(photons.collect(), N).unwrap();
+            let maps = Maps {
+                global: Some(global),
+                caustic: None,
+                volume: None,
+                indirect: Indirect::Seen,
+                report: MapReport::default(),
+            };
+            let mapper = Mapper::new(&scene, &maps, &settings);
+            let spots = [(0.001, 0.001), (0.5, 0.01), (0.97, 0.5), (0.999, 0.98), (0.05, 0.4), (0.5, 0.5)];
+            let seen = spots.map(|(x, y)| {
+                let ray = Ray::new(DVec3::new(x, y, 1.0), DVec3::NEG_Z);
+                mapper.radiance(ray, None, 0, &mut stream).0.indirect[1]
+            });
+            moments.push(seen.iter().sum::<f64>() / seen.len() as f64);
+        }
+        // Irradiance 1 (N photons of power 1, of N sent out, on area 1), reflectance 0.5.
+        let expected = 0.5 / PI;
+        match clips_discs {
+            true => verdict::agrees(name, &moments, (expected, 1e-6), 0.06 * expected, 9),
+            false => verdict::rejects(name, &moments, expected, 9),
+        }
     }
 }
 

@@ -25,6 +25,7 @@ fn room(sigma_t: f64, has_mirror: bool) -> Room {
         g: 0.3,
         is_colored: true,
         has_glass: false,
+        has_water: false,
     }
 }
 

@@ -8,6 +8,7 @@ pub mod blur;
 pub mod boundary;
 pub mod budget;
 pub mod coverage;
+pub mod deck;
 pub mod extremes;
 pub mod gallery;
 pub mod harness;
@@ -29,4 +30,5 @@ pub const ALL: &[Experiment] = &[
     tradeoff::EXPERIMENT,
     extremes::EXPERIMENT,
     coverage::EXPERIMENT,
+    deck::EXPERIMENT,
 ];

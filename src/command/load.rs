@@ -69,17 +69,46 @@ impl Source {
         let text = std::fs::read_to_string(path).with_context(|| self.scene.clone())?;
         let mut file: SceneFile =
             toml::from_str(&text).map_err(|e| anyhow!(located(&self.scene, &text, &e)))?;
+        let mut root = toml::Value::Table(toml::from_str(&text)?);
+        check_lengths(&root, &file).with_context(|| self.scene.clone())?;
         if self.sets.is_empty() {
             return Ok(file);
         }
-        let mut root = toml::Value::Table(toml::from_str(&text)?);
         for set in &self.sets {
             let (key, value) = split(set)?;
             *slot(&mut root, key).with_context(|| format!("--set {set}"))? = value;
             let changed = toml::to_string(&root)?;
             file = toml::from_str(&changed).map_err(|e| anyhow!("--set {set}: {}", say(&changed, &e)))?;
+            check_lengths(&root, &file).with_context(|| format!("--set {set}"))?;
         }
         Ok(file)
+    }
+}
+
+/// Refuses lists of numbers of which only the first ones were read, as `position = [0, 0, 0, 1]`.
+fn check_lengths(given: &toml::Value, file: &SceneFile) -> anyhow::Result<()> {
+    read_whole(given, toml::Value::try_from(file).ok().as_ref(), "")
+}
+
+/// Whether a value was read to its end; what was read is none where it is a default.
+fn read_whole(given: &toml::Value, read: Option<&toml::Value>, key: &str) -> anyhow::Result<()> {
+    let inner = |part: &str| if key.is_empty() { part.to_string() } else { format!("{key}.{part}") };
+    match given {
+        toml::Value::Table(table) => table
+            .iter()
+            .try_for_each(|(part, value)| read_whole(value, read.and_then(|r| r.get(part)), &inner(part))),
+        toml::Value::Array(list) => {
+            // Three equal channels are written as one number, and what is a default is not written: points, spectra.
+            let most = read.and_then(toml::Value::as_array).map_or(3, Vec::len);
+            if list.len() > most {
+                bail!("{key} has {} entries; allowed: {most}", list.len());
+            }
+            let entry = |i: usize| read.and_then(toml::Value::as_array).and_then(|r| r.get(i));
+            list.iter()
+                .enumerate()
+                .try_for_each(|(i, value)| read_whole(value, entry(i), &inner(&i.to_string())))
+        }
+        _ => Ok(()),
     }
 }
 
@@ -159,6 +188,12 @@ fn say(text: &str, error: &toml::de::Error) -> String {
             let known: Vec<&str> = rest.split('`').skip(2).step_by(2).collect();
             return unknown(what, word, &known);
         }
+    }
+    if let Some(rest) = message.strip_prefix("unexpected keys in table: ")
+        && let Some((words, known)) = rest.split_once(", available keys: ")
+    {
+        let first = words.split(", ").next().unwrap_or_default();
+        return unknown("key", first, &known.split(", ").collect::<Vec<_>>());
     }
     match error.span().and_then(|span| key_before(text, span)) {
         Some(key) => match message.strip_prefix("the value") {

@@ -5,7 +5,7 @@ use super::on_threads;
 use super::picture::{Frame, Photons, Shown};
 use super::progress::Bar;
 use super::render::check_folder;
-use anyhow::bail;
+use anyhow::{Context, bail};
 use clap::ValueEnum;
 use std::path::PathBuf;
 use turbid::Spectrum;
@@ -18,6 +18,7 @@ use turbid::sensor::{colour, draw_photons};
 ///
 /// Photons behind opaque surfaces are hidden; glass hides nothing, and bends nothing here. The point cloud that --ply
 /// writes opens in any viewer of PLY files; it has position, direction, power, order of scattering and path class.
+/// Without any file: `turbid map fogbox -o photons.png --ply photons.ply`.
 #[derive(clap::Args)]
 #[command(allow_negative_numbers = true)]
 pub struct Map {
@@ -70,6 +71,11 @@ impl Map {
         if !extension.eq_ignore_ascii_case("png") {
             bail!("--output is {}; allowed: a file name that ends in .png", self.output.display());
         }
+        if let Some(ply) = &self.ply
+            && !ply.extension().is_some_and(|e| e.eq_ignore_ascii_case("ply"))
+        {
+            bail!("--ply is {}; allowed: a file name that ends in .ply", ply.display());
+        }
         let exposure = self.shown.checked()?;
         let scene = self.source.load()?;
         let camera = self.frame.camera(&scene)?;
@@ -93,7 +99,8 @@ impl Map {
         write_png(&self.output, (camera.width(), camera.height()), &pixels)?;
         if let Some(ply) = &self.ply {
             let white = Tone { exposure: 0.0, curve: turbid::output::Curve::Clip };
-            write_ply(ply, &photons, |photon| white.pixel(colour(photon)))?;
+            write_ply(ply, &photons, |photon| white.pixel(colour(photon)))
+                .with_context(|| format!("{} is written, the point cloud is not", self.output.display()))?;
         }
         super::print(&format!("photons        {}\nin the picture {seen}\n", photons.len()))
     }

@@ -29,7 +29,9 @@ impl Frame {
     /// The scene's camera, in the size asked for, and able to see light.
     pub fn camera(&self, scene: &Scene) -> anyhow::Result<Camera> {
         let camera = scene.camera().ok_or_else(|| {
-            anyhow!("the scene has no [camera]: add one with position, look_at, fov, width and height")
+            anyhow!(
+                "the scene has no [camera]: add one with position, look_at, fov, width and height, or take a scene that has one, such as the built-in fogbox"
+            )
         })?;
         let follow = |given: u32, over: u32, under: u32| {
             ((f64::from(given) * f64::from(over) / f64::from(under)).round() as u32).max(1)
@@ -88,11 +90,18 @@ impl Shown {
 
 /// Photons on the command line: `200000` are stored, `emit:1e6` sent out.
 fn parse_amount(text: &str) -> Result<Amount, String> {
-    const ALLOWED: &str =
-        "allowed: a number of photons to store, such as 200000, or to emit, such as emit:1e6";
+    const ALLOWED: &str = "allowed: a number of photons to store, 1 to 1e9, such as 200000, or to emit, 1 to 1e12, such as emit:1e6";
     let (number, is_emitted) = text.strip_prefix("emit:").map_or((text, false), |number| (number, true));
-    let count = parse_count(number).map_err(|_| ALLOWED.to_string())?;
+    // A stored photon takes 56 bytes while maps are filled.
+    let most = if is_emitted { 1_000_000_000_000 } else { 1_000_000_000 };
+    let count = parse_count(number).ok().filter(|n| *n <= most).ok_or(ALLOWED)?;
     Ok(if is_emitted { Amount::Emitted(count) } else { Amount::Stored(count) })
+}
+
+/// Photons of an estimate; whether they are enough is checked with the other settings.
+fn parse_k(text: &str) -> Result<usize, String> {
+    let k = parse_count(text).ok().filter(|k| *k <= 1_000_000_000).and_then(|k| usize::try_from(k).ok());
+    k.ok_or_else(|| "allowed: whole numbers from 2 to 1e9".to_string())
 }
 
 /// How many photons the maps get.
@@ -139,10 +148,10 @@ impl Photons {
 #[derive(clap::Args)]
 pub struct Reading {
     /// Photons an estimate takes, the k nearest.
-    #[arg(long, default_value_t = 100, conflicts_with = "radius")]
+    #[arg(long, value_parser = parse_k, default_value = "100", conflicts_with = "radius")]
     k: usize,
     /// The same for the volume map [default: k].
-    #[arg(long, conflicts_with = "radius")]
+    #[arg(long, value_parser = parse_k, conflicts_with = "radius")]
     volume_k: Option<usize>,
     /// Radius within which an estimate takes all photons, instead of the k nearest [L].
     #[arg(long)]
@@ -157,7 +166,7 @@ pub struct Reading {
     #[arg(long, value_enum, default_value = "cone")]
     caustic_kernel: KernelName,
     /// Rays of a final gathering at each surface that is seen; 0 reads the global map there itself: fast, and blotchy.
-    #[arg(long, default_value_t = 64)]
+    #[arg(long, default_value_t = 64, value_parser = clap::value_parser!(u32).range(0..=1_000_000))]
     gather_rays: u32,
     /// Rays of a final gathering that are shorter than this are traced on: the map's blur shows in corners [L].
     #[arg(long, default_value_t = 0.0)]
@@ -168,8 +177,8 @@ pub struct Reading {
     /// How much of a step's light reaches its near end: the rule of 1998, or exact for a constant source.
     #[arg(long, value_enum, default_value = "integrated")]
     step_rule: RuleName,
-    /// Relative change of light from step to step above which steps are halved, to a quarter at most, as in 1998; 0 for
-    /// equal steps. The choice follows the light found, which biases it: next to lights it reads low.
+    /// Relative change of direct light from one end of a step to the other above which it is halved, to a quarter at
+    /// most, as in 1998; 0 for equal steps.
     #[arg(long, default_value_t = 0.0)]
     adapt: f64,
     /// March on places that are not random: no noise, but bands.
@@ -178,6 +187,9 @@ pub struct Reading {
     /// What volume estimates do at the edge of a medium, behind which there are no photons.
     #[arg(long, value_enum, default_value = "clipped")]
     boundary: BoundaryName,
+    /// What surface estimates do at the edges of flat surfaces, beyond which there are no photons.
+    #[arg(long, value_enum, default_value = "clipped")]
+    edges: EdgesName,
     /// Which photons behind walls volume estimates reject.
     #[arg(long, value_enum, default_value = "off")]
     reject: RejectName,
@@ -203,6 +215,14 @@ enum BoundaryName {
     Reflection,
     /// Fits a line along the normal.
     LocalLinear,
+}
+
+#[derive(Clone, Copy, PartialEq, ValueEnum)]
+enum EdgesName {
+    /// Nothing: up to half is lost at an edge.
+    None,
+    /// Divides by the part of the kernel that is on the surface.
+    Clipped,
 }
 
 #[derive(Clone, Copy, ValueEnum)]
@@ -246,7 +266,14 @@ impl Reading {
         settings.volume = (kernel, volume);
         settings.gather_rays = self.gather_rays.max(1);
         settings.near = self.near;
+        settings.clips_discs = self.edges == EdgesName::Clipped;
         if let Some(step) = self.step {
+            let shortest = size / MOST_STEPS;
+            if step > 0.0 && step < shortest {
+                return Err(anyhow!(
+                    "--step is {step}; allowed: at least a millionth of the scene, {shortest}"
+                ));
+            }
             settings.march.step = Positive::new("--step", step)?;
         }
         settings.march.rule = match self.step_rule {
@@ -273,6 +300,9 @@ impl Reading {
         Ok(settings)
     }
 }
+
+/// Steps across the scene, at most: a march of more would not come to an end in a user's time.
+const MOST_STEPS: f64 = 1e6;
 
 /// How large a scene is \[L\]: the edge of the cube in the ball that holds its bodies; 1 for a scene without bounds.
 fn size(scene: &Scene) -> f64 {

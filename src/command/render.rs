@@ -1,11 +1,11 @@
 //! `turbid render`: a picture of a scene, by photons or by paths.
 
 use super::load::Source;
-use super::on_threads;
 use super::parse_count;
 use super::picture::{Frame, Photons, Reading, Shown};
 use super::progress::Bar;
 use super::statistics::{MAPS, Stages, print_statistics};
+use super::{note, on_threads, print};
 use anyhow::{Context, bail};
 use clap::ValueEnum;
 use cpu_time::ProcessTime;
@@ -15,7 +15,7 @@ use turbid::integrators::mapper::{Mapper, Report};
 use turbid::integrators::path;
 use turbid::output::{Tone, auto_exposure, write_exr, write_png};
 use turbid::photons::PhotonMap;
-use turbid::photons::maps::{MapReport, counts_steered, fill_counted_steered};
+use turbid::photons::maps::{MapReport, Maps, counts_steered, fill_counted_steered};
 use turbid::scene::{Camera, Scene};
 use turbid::sensor::{Film, Sample, Streams, extend};
 
@@ -29,6 +29,10 @@ use turbid::sensor::{Film, Sample, Streams, extend};
 /// The path tracer is unbiased, and noisy. Photons are fast, and blurred: they are sent out once into maps, which all
 /// pixels share, so that the error of one map is seen only by making several (--maps); the variance is then that between
 /// maps. The classic picture is one map and a few samples: `turbid render scene.toml -o out.exr --samples 16`.
+///
+/// A first picture, without any file: `turbid render fogbox -o fog.exr --gather-rays 0`, in seconds; without the last
+/// option it is clean, in minutes. Glass, mirrors and the sun make caustics, which need a light with an extent to be
+/// compared with paths. SCENES.md beside the source says what a scene file may hold.
 #[derive(clap::Args)]
 #[command(allow_negative_numbers = true)]
 pub struct Render {
@@ -112,6 +116,9 @@ impl Render {
         if let Some(seconds) = self.seconds.filter(|s| !(*s > 0.0 && s.is_finite())) {
             bail!("--seconds is {seconds}; allowed: finite and above 0");
         }
+        if let Some(samples) = self.samples.filter(|n| *n > u64::from(u32::MAX)) {
+            bail!("--samples is {samples}; allowed: 1 to 4294967295");
+        }
         let exposure = self.shown.checked()?;
         let file = self.source.resolve()?;
         let scene = match (self.source.load()?, self.plan) {
@@ -130,8 +137,15 @@ impl Render {
                 "pictures of a scene with `cell`, which stands for an unbounded slab, are made by paths: --with paths"
             );
         }
+        if self.with == With::Photons && scene.plan().has_emission {
+            note(
+                "photons start from lights alone: light of emitting media is seen straight and after one scattering, \
+                 not after more; a volume source in place of the emission, or --with paths, brings it all",
+            )?;
+        }
         // Before the work, not after it.
         check_folder(&self.output)?;
+        check_folder(&self.output.with_extension("png"))?;
         let settings = self.reading.settings(&scene)?;
         let made = on_threads(self.threads, || match self.with {
             With::Paths => self.repeat(&camera, |streams, stages, left, film| {
@@ -158,6 +172,9 @@ impl Render {
                 });
                 bar.finish();
                 let maps = maps?;
+                if streams.replicate == 0 && !scene.plan().is_full {
+                    tell_empty(&maps)?;
+                }
                 let within = scene.interior_at(camera.position());
                 let mapper = Mapper::new(&scene, &maps, &settings);
                 let sample = |ray, stream: &mut _, work: &mut Report| {
@@ -179,9 +196,10 @@ impl Render {
         write_exr(&self.output, &made.film, &provenance)?;
         let png = self.output.with_extension("png");
         let pixels: Vec<[u8; 3]> = made.film.pixels().iter().map(|p| tone.pixel(p.total())).collect();
-        write_png(&png, (made.film.width(), made.film.height()), &pixels)?;
+        write_png(&png, (made.film.width(), made.film.height()), &pixels)
+            .with_context(|| format!("{} is written, the picture beside it is not", self.output.display()))?;
         print_statistics(&made, exposure)?;
-        Ok(())
+        print(&format!("written        {}, {}\n", self.output.display(), png.display()))
     }
 
     /// The repetitions, and their mean: one film is what it is, several are samples of it.
@@ -303,12 +321,34 @@ impl Filled {
     }
 }
 
+/// Says which layers are black since no photon was stored for them.
+fn tell_empty(maps: &Maps) -> std::io::Result<()> {
+    let (caustic, volume) = ("the caustic layer is black", "the multiple layer has no light from it");
+    let global = "the indirect layer has no light from it";
+    for (name, map, black) in [
+        ("global", &maps.global, global),
+        ("caustic", &maps.caustic, caustic),
+        ("volume", &maps.volume, volume),
+    ] {
+        if let Some(map) = map.as_ref().filter(|map| map.stored() == 0) {
+            let emitted = map.emitted();
+            note(&format!(
+                "the {name} map is empty: none of {emitted} photons sent out was stored in it, so {black}"
+            ))?;
+        }
+    }
+    Ok(())
+}
+
 /// Refuses a file that could not be written, before an hour's work and not after it.
 pub fn check_folder(file: &Path) -> anyhow::Result<()> {
     let folder = file.parent().filter(|f| !f.as_os_str().is_empty()).unwrap_or(Path::new("."));
     let found = std::fs::metadata(folder).with_context(|| format!("cannot write {}", file.display()))?;
     if !found.is_dir() {
         bail!("cannot write {}: {} is no folder", file.display(), folder.display());
+    }
+    if file.is_dir() {
+        bail!("cannot write {}: it is a folder", file.display());
     }
     Ok(())
 }

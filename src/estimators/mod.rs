@@ -14,12 +14,14 @@
 pub mod boundary;
 mod directional;
 mod disc;
+mod disc_share;
 mod gather;
 mod kernel;
 mod point;
 mod surface;
 
 pub use directional::{CosinePairs, Directional};
+pub use disc_share::disc_share;
 pub use gather::{Gather, NeighborCount};
 pub use kernel::Kernel;
 pub use point::{

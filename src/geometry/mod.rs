@@ -11,6 +11,7 @@ mod rectangle;
 mod rectangles;
 mod slab;
 mod sphere;
+mod spherical_rectangle;
 
 pub use cuboid::Cuboid;
 pub use height_field::{Ground, Up, Waves, height_field, listed};
@@ -20,6 +21,7 @@ pub use rectangle::Rectangle;
 pub use rectangles::Rectangles;
 pub use slab::{Face, Slab};
 pub use sphere::Sphere;
+pub use spherical_rectangle::SphericalRectangle;
 
 use crate::math::{Interval, Ray};
 use glam::{DVec2, DVec3};

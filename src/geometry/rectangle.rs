@@ -78,6 +78,13 @@ impl Rectangle {
         DVec2::new(p.dot(self.u) / self.u.length_squared(), p.dot(self.v) / self.v.length_squared())
     }
 
+    /// Where the edges lie seen from a point, along u and v \[L\]: those through the corner, and those opposite.
+    pub fn bounds_about(&self, p: DVec3) -> (DVec2, DVec2) {
+        let (lu, lv) = (self.u.length(), self.v.length());
+        let low = DVec2::new((self.corner - p).dot(self.u) / lu, (self.corner - p).dot(self.v) / lv);
+        (low, low + DVec2::new(lu, lv))
+    }
+
     /// Length of the diagonal \[L\].
     pub fn diagonal(&self) -> f64 {
         (self.u + self.v).length()

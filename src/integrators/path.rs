@@ -268,7 +268,7 @@ impl<F: FnMut(u32, Layer, Spectrum)> Visitor for PathVisitor<'_, F> {
 
 /// Uncollided radiance from a light that fills the ray's far end or its way [W/(L^2 sr)]: incidence and volume
 /// sources, which no sampler aims at.
-pub(super) fn uncollided(
+pub(in crate::integrators) fn uncollided(
     scene: &Scene,
     light: &Light,
     walker: &Walker,
@@ -298,7 +298,7 @@ pub(super) fn uncollided(
 
 /// Light that arrives at a place (point, body, interior) straight from the light of this index, along one sampled direction: radiance
 /// over density, or the irradiance of a delta light [W/L^2].
-pub(super) fn next_event(
+pub(in crate::integrators) fn next_event(
     scene: &Scene,
     index: usize,
     (position, from, within): (DVec3, Option<Start>, usize),

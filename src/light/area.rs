@@ -5,10 +5,14 @@ use super::{Bundle, EmissionCell, EmissionNumbers, LightSample, Needs, emissive}
 use crate::Spectrum;
 use crate::error::{Error, Result};
 use crate::faults::{Fault, planted};
-use crate::geometry::{Face, Hit, Shape, Sphere};
+use crate::geometry::{Face, Hit, Rectangle, Shape, Sphere, SphericalRectangle};
 use crate::math::{Frame, Ray, warp};
 use glam::DVec3;
 use std::f64::consts::PI;
+
+/// A rectangle farther than so many diagonals is aimed at by area: what it sends varies by some per cent over it, and its
+/// solid angle loses digits.
+const FAR: f64 = 32.0;
 
 /// A black shape whose surface emits the same radiance everywhere, in all outward directions: the front of a rectangle,
 /// the outside of a sphere, a cuboid, a mesh or a lathe.
@@ -118,11 +122,12 @@ impl Area {
         }
     }
 
-    /// A direction from `p`: to a uniform point of the surface, of the sides of a cuboid that face `p`, or in the cone
-    /// that a sphere fills.
+    /// A direction from `p`: uniform in the solid angle that a rectangle or a sphere fills, or to a uniform point of the
+    /// surface, of the sides of a cuboid that face `p`.
     pub(super) fn sample(&self, p: DVec3, u: [f64; 2]) -> Option<LightSample> {
         match &self.shape {
             Shape::Sphere(sphere) => self.sample_cone(sphere, p, u),
+            Shape::Rectangle(r) if is_near(r, p) => self.sample_seen(&SphericalRectangle::new(r, p)?, u),
             Shape::Rectangle(r) => self.towards(p, r.sample(u), r.normal()),
             Shape::Cuboid(c) => {
                 let (point, normal) = c.sample_facing(p, u)?;
@@ -157,6 +162,13 @@ impl Area {
         if let Shape::Cuboid(c) = &self.shape { c.facing_area(p) } else { self.area }
     }
 
+    fn sample_seen(&self, seen: &SphericalRectangle, u: [f64; 2]) -> Option<LightSample> {
+        let (way, pdf) = (seen.sample(u), 1.0 / seen.solid_angle());
+        let distance = way.length();
+        let value = self.radiance * seen.solid_angle();
+        Some(LightSample { dir: way / distance, distance, value, pdf_solid_angle: Some(pdf) })
+    }
+
     fn sample_cone(&self, sphere: &Sphere, p: DVec3, u: [f64; 2]) -> Option<LightSample> {
         let one_minus_mu_max = one_minus_mu_max(sphere, p)?;
         let to_center = (sphere.center() - p).normalize();
@@ -176,18 +188,33 @@ impl Area {
         if from.is_some() && is_convex { None } else { self.shape.hit(ray, from) }
     }
 
+    /// Of a convex body what faces a point hides nothing of itself. Of others what is nearer by more than a millionth
+    /// stands in the way, which rounding is far below.
+    pub(super) fn hides_itself(&self, ray: &Ray, end: f64) -> bool {
+        let is_convex = !matches!(self.shape, Shape::Mesh(_) | Shape::Lathe(_));
+        !is_convex && self.shape.blocks(ray, None, end * (1.0 - 1e-6))
+    }
+
     pub(super) fn emitted(&self, ray: &Ray, hit: &Hit) -> (Spectrum, f64) {
         let cosine = -ray.dir.dot(hit.normal);
         if cosine <= 0.0 {
             return (Spectrum::ZERO, 0.0);
         }
-        let pdf = if let Shape::Sphere(sphere) = &self.shape {
-            one_minus_mu_max(sphere, ray.origin).map_or(0.0, warp::pdf_cone)
-        } else {
-            hit.t * hit.t / (cosine * self.facing_area(ray.origin))
+        let pdf = match &self.shape {
+            Shape::Sphere(sphere) => one_minus_mu_max(sphere, ray.origin).map_or(0.0, warp::pdf_cone),
+            Shape::Rectangle(r) if is_near(r, ray.origin) => {
+                SphericalRectangle::new(r, ray.origin).map_or(0.0, |seen| 1.0 / seen.solid_angle())
+            }
+            _ => hit.t * hit.t / (cosine * self.facing_area(ray.origin)),
         };
         (self.radiance, pdf)
     }
+}
+
+/// Whether a rectangle is aimed at by solid angle.
+fn is_near(rectangle: &Rectangle, p: DVec3) -> bool {
+    let far = FAR * rectangle.diagonal();
+    rectangle.sample([0.5; 2]).distance_squared(p) < far * far && !planted(Fault::AreaForgotten)
 }
 
 /// 1 - cos of the half-angle under which a sphere is seen from `p`; none from inside.

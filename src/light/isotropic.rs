@@ -31,9 +31,10 @@ pub struct Isotropic {
 impl Isotropic {
     /// Incidence on a sphere, a cuboid, or faces of a slab, of the given radiance [W/(L^2 sr)].
     pub fn new(shape: Shape, faces: Faces, radiance: Spectrum) -> Result<Self> {
-        if matches!(shape, Shape::Rectangle(_)) {
+        if !shape.is_solid() {
             return Err(Error::Scene(
-                "isotropic incidence needs a closed shape or a slab, not a rectangle".into(),
+                "isotropic incidence needs a convex shape with an inside: a sphere, a cuboid or a slab"
+                    .into(),
             ));
         }
         Ok(Isotropic { shape, faces, radiance: emissive("radiance", radiance)? })

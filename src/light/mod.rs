@@ -329,6 +329,11 @@ impl Light {
         if let Light::Area(l) = self { l.hit(ray, from) } else { None }
     }
 
+    /// Whether another part of the light's own body stands before the point at distance `end` \[L\] of it.
+    pub(crate) fn hides_itself(&self, ray: &Ray, end: f64) -> bool {
+        if let Light::Area(l) = self { l.hides_itself(ray, end) } else { false }
+    }
+
     /// Radiance sent back along a ray that meets the light's body [W/(L^2 sr)], and the density with which
     /// [`Self::sample`] aims from the ray's origin at that point [1/sr].
     pub fn emitted(&self, ray: &Ray, hit: &Hit) -> (Spectrum, f64) {

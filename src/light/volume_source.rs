@@ -16,8 +16,10 @@ pub struct VolumeSource {
 impl VolumeSource {
     /// A source in a sphere, a cuboid or a slab, of the given power per volume [W/L^3].
     pub fn new(shape: Shape, density: Spectrum) -> Result<Self> {
-        if matches!(shape, Shape::Rectangle(_)) {
-            return Err(Error::Scene("a volume source needs a shape with an inside, not a rectangle".into()));
+        if !shape.is_solid() {
+            return Err(Error::Scene(
+                "a volume source needs a convex shape with an inside: a sphere, a cuboid or a slab".into(),
+            ));
         }
         Ok(VolumeSource { shape, density: emissive("density", density)? })
     }

@@ -16,15 +16,21 @@
 //! rays of a final gathering bring the medium's radiance with them, so that light scattered by the medium towards the
 //! surface that the eye looks at, L ... M D, comes with them; a map that is seen holds that class.
 
-use super::importance::{Branching, Importance};
-use super::{Emitter, Flags, Ledger, Photon, PhotonMap, fold};
-use crate::Spectrum;
-use crate::error::{Error, Result};
+mod counts;
+mod pass;
+
+pub use counts::{counts, counts_steered};
+
+use super::importance::Importance;
+use super::{Flags, Ledger, Photon, PhotonMap};
+use crate::error::Result;
 use crate::faults::{Fault, planted};
-use crate::rng::{Purpose, Stream, Work};
-use crate::scene::{Scene, Target};
+use crate::rng::{Purpose, Work};
+use crate::scene::Scene;
 use crate::surface::Surface;
-use crate::transport::{NoProgress, Progress, Roulette, Step, Visitor, Walker, run_blocks, walk};
+use crate::transport::Progress;
+use counts::Emitters;
+use pass::{Class, Run};
 use std::time::{Duration, Instant};
 
 /// Histories of the pilot that says how many photons to emit where a number of stored ones is asked for.
@@ -193,75 +199,6 @@ pub fn fill_steered(
     Ok(maps)
 }
 
-/// Histories that each map needs, by a pilot where a number of stored photons is asked for.
-///
-/// # Errors
-/// [`Error::OutOfRange`] for a number of 0; [`Error::Scene`] if a map would stay empty: none of the pilot's photons was
-/// stored.
-pub fn counts(scene: &Scene, settings: &MapSettings) -> Result<Emitted> {
-    counts_steered(scene, settings, None)
-}
-
-/// The same with photons steered by importance.
-///
-/// # Errors
-/// those of [`counts`]
-pub fn counts_steered(
-    scene: &Scene,
-    settings: &MapSettings,
-    importance: Option<&Importance>,
-) -> Result<Emitted> {
-    let emitters = Emitters::of(scene, importance);
-    let needs = Needs::of(scene, &emitters);
-    let asked = [
-        ("global", needs.global, settings.global),
-        ("volume", needs.volume, settings.volume),
-        ("caustic", needs.caustic, settings.caustic),
-    ];
-    let is_stored = |amount| matches!(amount, Amount::Stored(_));
-    let pilot = |class: Class| {
-        let run = Run {
-            scene,
-            emitter: emitters.of_class(class),
-            importance: importance.filter(|_| class != Class::Caustic),
-            purpose: Purpose::Pilot,
-            seed: settings.seed,
-            replicate: settings.replicate,
-            class,
-            global: PILOT,
-            volume: PILOT,
-        };
-        run.pass(PILOT, &NoProgress)
-    };
-    let is_piloted = |map: usize| asked[map].1 && is_stored(asked[map].2);
-    let mut stored = [0; 3];
-    if is_piloted(0) || is_piloted(1) {
-        let pass = pilot(Class::Main(settings.indirect))?;
-        (stored[0], stored[1]) = (pass.surface(), pass.medium());
-    }
-    if is_piloted(2) {
-        stored[2] = pilot(Class::Caustic)?.surface();
-    }
-    let number = |map: usize| -> Result<u64> {
-        let (name, is_needed, amount) = asked[map];
-        match amount {
-            _ if !is_needed => Ok(0),
-            Amount::Emitted(0) | Amount::Stored(0) => Err(Error::out_of_range(
-                format!("the number of photons of the {name} map"),
-                0.0,
-                "at least 1",
-            )),
-            Amount::Emitted(number) => Ok(number),
-            Amount::Stored(number) if stored[map] == 0 && scene.plan().is_full => Ok(number),
-            Amount::Stored(_) if stored[map] == 0 => Err(Error::Scene(format!(
-                "the {name} map would stay empty: none of {PILOT} photons was stored in it; say how many to emit instead"
-            ))),
-            Amount::Stored(number) => Ok((number as f64 * PILOT as f64 / stored[map] as f64).ceil() as u64),
-        }
-    };
-    Ok(Emitted { global: number(0)?, volume: number(1)?, caustic: number(2)? })
-}
-
 /// Fills the maps with the photons of so many histories.
 ///
 /// The same bits on any number of threads. Memory: 56 bytes a photon until its map's tree is built, which holds 40.
@@ -328,106 +265,9 @@ pub fn fill_counted_steered(
     Ok(Maps { global: surfaces, caustic: focused, volume: media, indirect: settings.indirect, report })
 }
 
-/// Which maps a scene needs.
-struct Needs {
-    global: bool,
-    caustic: bool,
-    volume: bool,
-}
-
-/// How photons of each pass leave the lights.
-struct Emitters {
-    main: Emitter,
-    /// Those that can meet a specular body; none if none can.
-    caustic: Option<Emitter>,
-}
-
-impl Emitters {
-    fn of(scene: &Scene, importance: Option<&Importance>) -> Self {
-        let main = importance.map_or_else(|| Emitter::by_power(scene), |i| i.emitter().clone());
-        Emitters { main, caustic: Emitter::towards_specular(scene) }
-    }
-
-    fn of_class(&self, class: Class) -> &Emitter {
-        self.caustic.as_ref().filter(|_| class == Class::Caustic).unwrap_or(&self.main)
-    }
-}
-
-impl Needs {
-    fn of(scene: &Scene, emitters: &Emitters) -> Self {
-        let plan = scene.plan();
-        let is_matt = plan.has_surfaces && scene.objects().iter().any(|o| is_matt(&o.surface));
-        Needs {
-            global: is_matt || plan.is_full,
-            caustic: (is_matt || plan.is_full) && emitters.caustic.is_some(),
-            volume: plan.has_media,
-        }
-    }
-}
-
 /// Whether photons are stored on a surface: some light leaves it in other than specular directions.
 pub(super) fn is_matt(surface: &Surface) -> bool {
     matches!(surface, Surface::Lambertian(_))
-}
-
-/// Which photons a pass stores.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Class {
-    /// Those of the global and the volume map.
-    Main(Indirect),
-    /// Those of the caustic map.
-    Caustic,
-}
-
-/// A pass to be run.
-#[derive(Clone, Copy)]
-struct Run<'a> {
-    scene: &'a Scene,
-    emitter: &'a Emitter,
-    importance: Option<&'a Importance>,
-    purpose: Purpose,
-    seed: u64,
-    replicate: u64,
-    class: Class,
-    /// Histories that store surface photons.
-    global: u64,
-    /// Histories that store volume photons.
-    volume: u64,
-}
-
-/// What a pass brought: photons in the order of their histories, a vector a block.
-#[derive(Default)]
-struct Stored {
-    surfaces: Vec<Vec<Photon>>,
-    media: Vec<Vec<Photon>>,
-    report: PassReport,
-    non_finite: u64,
-}
-
-impl Stored {
-    fn surface(&self) -> usize {
-        self.surfaces.iter().map(Vec::len).sum()
-    }
-
-    fn medium(&self) -> usize {
-        self.media.iter().map(Vec::len).sum()
-    }
-
-    fn merged(mut self, other: Stored) -> Stored {
-        self.surfaces.extend(other.surfaces);
-        self.media.extend(other.media);
-        let (mine, others) = (&mut self.report, &other.report);
-        mine.emitted += others.emitted;
-        mine.ends.absorbed += others.ends.absorbed;
-        mine.ends.escaped += others.ends.escaped;
-        mine.ends.abandoned += others.ends.abandoned;
-        mine.ledger.add(&others.ledger);
-        mine.collisions += others.collisions;
-        mine.hits += others.hits;
-        mine.work += others.work;
-        self.non_finite += other.non_finite;
-        self
-    }
 }
 
 /// One vector of all; the parts are given back one by one.
@@ -437,123 +277,4 @@ fn joined(parts: Vec<Vec<Photon>>) -> Vec<Photon> {
         all.extend_from_slice(&part);
     }
     all
-}
-
-impl Run<'_> {
-    fn pass(&self, histories: u64, progress: &dyn Progress) -> Result<Stored> {
-        let start = Instant::now();
-        progress.stage("emission", histories);
-        // A caustic photon has not been scattered: its history ends with its first scattering.
-        let limit = (self.class == Class::Caustic).then_some(1);
-        let block = |range: std::ops::Range<u64>| {
-            let mut store = Store {
-                run: self,
-                history: 0,
-                surface: Vec::new(),
-                medium: Vec::new(),
-                stored: Stored::default(),
-            };
-            for history in range {
-                let mut stream = Stream::new(self.seed, self.purpose, self.replicate, history);
-                store.history = history;
-                let first = self.emitter.emit(self.scene, &mut stream);
-                store.stored.report.emitted += 1;
-                store.stored.report.ledger.emitted += first.weight.sum();
-                match self.importance {
-                    None => walk(self.scene, first, Roulette::Analog, limit, &mut stream, &mut store),
-                    Some(importance) => importance.walk(self.scene, first, limit, &mut stream, &mut store),
-                }
-                store.stored.report.work += stream.work;
-            }
-            let Store { mut surface, mut medium, mut stored, .. } = store;
-            surface.shrink_to_fit();
-            medium.shrink_to_fit();
-            stored.surfaces.push(surface);
-            stored.media.push(medium);
-            stored
-        };
-        let mut stored = run_blocks(histories, progress, block, Stored::merged)?.unwrap_or_default();
-        stored.report.time = start.elapsed();
-        match stored.non_finite {
-            0 => Ok(stored),
-            count => Err(Error::NonFinite { count, place: "photon histories" }),
-        }
-    }
-}
-
-/// Stores the photons of one block.
-struct Store<'a> {
-    run: &'a Run<'a>,
-    history: u64,
-    surface: Vec<Photon>,
-    medium: Vec<Photon>,
-    stored: Stored,
-}
-
-impl Store<'_> {
-    fn photon(&mut self, walker: &Walker, position: glam::DVec3) -> Photon {
-        self.stored.non_finite += u64::from(!(walker.weight.is_finite() && position.is_finite()));
-        Photon {
-            position: self.run.scene.stage().map_or(position, |s| fold::into_cell(position, s.side)),
-            dir: walker.ray.dir.as_vec3(),
-            power: walker.weight.0.as_vec3(),
-            order: u16::try_from(walker.order).unwrap_or(u16::MAX),
-            flags: walker.flags,
-        }
-    }
-
-    fn ended(&mut self, weight: Spectrum, how: fn(&mut Ends, &mut Ledger, f64)) {
-        let report = &mut self.stored.report;
-        how(&mut report.ends, &mut report.ledger, weight.sum());
-    }
-}
-
-impl Branching for Store<'_> {}
-
-impl Visitor for Store<'_> {
-    const LOOKS_AHEAD: bool = false;
-
-    fn visit(&mut self, _walker: &Walker, step: Step, _stream: &mut Stream) {
-        match step {
-            Step::Collision(arrival, _) => {
-                self.stored.report.collisions += 1;
-                if matches!(self.run.class, Class::Main(_))
-                    && self.history < self.run.volume
-                    && is_volume(arrival.walker.flags)
-                {
-                    let photon = self.photon(arrival.walker, arrival.position);
-                    self.medium.push(photon);
-                }
-            }
-            Step::Surface(arrival, found) => {
-                let Target::Object(index) = found.target else { return };
-                if !is_matt(&self.run.scene.objects()[index].surface) {
-                    return;
-                }
-                self.stored.report.hits += 1;
-                let flags = arrival.walker.flags;
-                let is_stored = match self.run.class {
-                    Class::Main(indirect) => is_global(flags, indirect),
-                    Class::Caustic => is_caustic(flags),
-                };
-                if self.history < self.run.global && is_stored {
-                    let photon = self.photon(arrival.walker, arrival.position);
-                    self.surface.push(photon);
-                }
-            }
-            Step::Absorbed(weight, _) => self.ended(weight, |ends, ledger, power| {
-                ends.absorbed += 1;
-                ledger.absorbed += power;
-            }),
-            Step::Escaped(weight) => self.ended(weight, |ends, ledger, power| {
-                ends.escaped += 1;
-                ledger.escaped += power;
-            }),
-            Step::Abandoned(weight) => self.ended(weight, |ends, ledger, power| {
-                ends.abandoned += 1;
-                ledger.abandoned += power;
-            }),
-            Step::Ahead(_) | Step::Passed(..) => {}
-        }
-    }
 }

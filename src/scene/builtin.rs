@@ -1,5 +1,7 @@
 //! The built-in scenes: a few parameters each, from which the whole scene file follows.
 
+mod fogbox;
+
 use super::file::{
     Channels, LightFile, QuantityFile, RegionFile, SceneFile, SectionFile, SensorFile, ShapeFile,
 };
@@ -23,7 +25,7 @@ pub struct Builtin {
 }
 
 /// Every built-in scene.
-pub const BUILTIN: [Builtin; 3] = [
+pub const BUILTIN: [Builtin; 4] = [
     Builtin {
         name: "slab",
         about: "a plane-parallel layer of fog, without lateral end, lit on its top face with irradiance 1",
@@ -62,6 +64,12 @@ depth = 2.0         # depth of the fluence probes, in mean free paths
 probes = [-1.0, -0.5, -0.25, 0.0, 0.25, 0.5, 1.0]  # x of the fluence probes, in mean free paths
 ",
         resolve: |text| toml::from_str(text).map(shaft),
+    },
+    Builtin {
+        name: "fogbox",
+        about: "a closed box of coloured walls with two blocks and a lamp, full of fog, with a camera: for render and map",
+        defaults: fogbox::DEFAULTS,
+        resolve: |text| toml::from_str(text).map(fogbox::file),
     },
 ];
 

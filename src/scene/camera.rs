@@ -79,17 +79,25 @@ pub struct Camera {
 /// Most pixels along a side.
 pub const MAX_SIDE: u32 = 16_384;
 
+/// Most pixels: a film takes 352 bytes a pixel, twice while it is filled, which is 6 GB.
+pub const MAX_PIXELS: u64 = 1 << 23;
+
 impl Camera {
     /// A camera.
     ///
     /// # Errors
-    /// `Error::OutOfRange` for a side of 0 or above 16384 pixels and an angle outside (0, 180); `Error::Scene` for a
+    /// `Error::OutOfRange` for a side of 0 or above 16384 pixels, more than 8388608 pixels in all and an angle outside (0, 180); `Error::Scene` for a
     /// line of sight without direction, and an up along it.
     pub fn new(view: View) -> Result<Self> {
         for (name, side) in [("camera.width", view.width), ("camera.height", view.height)] {
             if !(1..=MAX_SIDE).contains(&side) {
                 return Err(Error::out_of_range(name, f64::from(side), "1 to 16384 pixels"));
             }
+        }
+        let pixels = u64::from(view.width) * u64::from(view.height);
+        if pixels > MAX_PIXELS {
+            let allowed = "at most 8388608 pixels (such as 4096 x 2048), whose film takes 6 GB of memory";
+            return Err(Error::out_of_range("camera.width times camera.height", pixels as f64, allowed));
         }
         if !(view.fov > 0.0 && view.fov < 180.0) {
             return Err(Error::out_of_range("camera.fov", view.fov, "above 0 and below 180 degrees"));
@@ -279,6 +287,10 @@ mod tests {
             assert!(text.contains(word), "{text}");
         };
         refused(View { width: 0, ..VIEW }, "camera.width is 0; allowed: 1 to 16384");
+        refused(
+            View { width: 4097, height: 2048, ..VIEW },
+            "camera.height is 8390656; allowed: at most 8388608",
+        );
         refused(View { height: 20_000, ..VIEW }, "camera.height is 20000");
         for fov in [0.0, 180.0, -1.0, f64::NAN, f64::INFINITY] {
             refused(View { fov, ..VIEW }, "camera.fov is");

@@ -365,9 +365,14 @@ impl SceneFile {
                 interior.interior(folder).map_err(|e| e.within(&format!("interior {}", interior.name)))?,
             );
         }
-        let objects = self.objects.iter().map(|o| {
+        let object = |o: &ObjectFile| {
             Ok(Object { shape: o.shape.shape(folder)?, surface: o.surface.surface(folder, &interiors)? })
-        });
+        };
+        let objects = self
+            .objects
+            .iter()
+            .enumerate()
+            .map(|(i, o)| object(o).map_err(|e: Error| e.within(&format!("objects[{i}]"))));
         Scene::new(Parts {
             regions: regions.collect::<Result<_>>()?,
             interiors: interiors.clone(),

@@ -78,6 +78,11 @@ impl Scene {
     /// What filters let pass between the ray's origin and distance `end` \[1\], not counting the body at the far end;
     /// none if another body stands in the way, or nothing passes. Media are not asked.
     pub fn passes(&self, ray: &Ray, from: Option<Start>, end: f64, towards: Target) -> Option<Spectrum> {
+        if let Target::Light(index) = towards
+            && self.lights()[index].hides_itself(ray, end)
+        {
+            return None;
+        }
         self.let_through(ray, from, end, Some(towards))
     }
 

@@ -14,7 +14,7 @@ mod sensor;
 mod validate;
 
 pub use builtin::{BUILTIN, Builtin};
-pub use camera::{Camera, Filter, MAX_SIDE, View};
+pub use camera::{Camera, Filter, MAX_PIXELS, MAX_SIDE, View};
 pub use file::SceneFile;
 pub use hit::{SceneHit, Start, Target};
 pub use interiors::{Interior, SURROUNDINGS};

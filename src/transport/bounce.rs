@@ -136,7 +136,7 @@ fn cross<V: Visitor>(
     }
     let ratio = n_near / n_far;
     let is_scaled =
-        (V::LOOKS_AHEAD && !planted(Fault::RadianceUnscaled)) || planted(Fault::PhotonPowerScaled);
+        (V::CARRIES_RADIANCE && !planted(Fault::RadianceUnscaled)) || planted(Fault::PhotonPowerScaled);
     let weight = if is_scaled { walker.weight * (ratio * ratio) } else { walker.weight };
     let dir = if n_near == n_far { dir } else { refract(dir, normal, ratio, (cosine, refraction.cos_far)) };
     Some(Walker { ray: Ray::new(position, dir), weight, within: far, ..next })

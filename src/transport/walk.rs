@@ -80,9 +80,12 @@ pub enum Step<'a> {
 /// Who watches a walk.
 pub trait Visitor {
     /// Whether it collects what rays meet by themselves, as paths do and photons do not: then directions keep their
-    /// densities ([`Walker::pdf_solid_angle`]), a ray of the limiting order is followed through mirrors and glass, and
-    /// weights are those of radiance, which scales with the squared index of refraction where a photon's power does not.
+    /// densities ([`Walker::pdf_solid_angle`]), and a ray of the limiting order is followed through mirrors and glass.
     const LOOKS_AHEAD: bool = true;
+
+    /// Whether weights are those of radiance, which scales with the squared index of refraction where a photon's power
+    /// does not.
+    const CARRIES_RADIANCE: bool = Self::LOOKS_AHEAD;
 
     /// One step of the walk.
     fn visit(&mut self, walker: &Walker, step: Step, stream: &mut Stream);

@@ -38,6 +38,8 @@ pub struct Room {
     pub is_colored: bool,
     /// Whether a ball of glass hangs in it.
     pub has_glass: bool,
+    /// Whether water stands in it, as high as a part of the block.
+    pub has_water: bool,
 }
 
 impl Room {
@@ -73,6 +75,13 @@ impl Room {
             objects.push((sphere(DVec3::new(1.3, 0.8, 0.55), 0.4), dielectric(1, 0)));
             let glass = Interior { name: "glass".into(), index: 1.5, medium: None };
             interiors = vec![Interior::surroundings(), glass];
+        }
+        if self.has_water {
+            // Its level reaches beyond the walls, which are all that bounds the water.
+            let level = rectangle(DVec3::new(-9.0, -9.0, 0.4), DVec3::X * 20.0, DVec3::Y * 20.0);
+            objects.push((Shape::Rectangle(level), dielectric(1, 0)));
+            let water = Interior { name: "water".into(), index: 1.33, medium: None };
+            interiors = vec![Interior::surroundings(), water];
         }
         Parts {
             regions: if self.sigma_t.is_black() { Vec::new() } else { vec![fog] },
@@ -112,6 +121,7 @@ pub fn settings(gather_rays: u32) -> Settings {
         caustic: radius(DISC),
         volume: radius(BALL),
         slope: 1e-3,
+        clips_discs: true,
         gather_rays,
         near: 0.0,
         march: March {
@@ -237,6 +247,7 @@ fn mirrored(sigma_t: f64) -> Room {
         g: 0.0,
         is_colored: false,
         has_glass: false,
+        has_water: false,
     }
 }
 

@@ -9,7 +9,7 @@ fn slab() -> String {
 
 #[test]
 fn scenes_that_are_not_there() {
-    refuses_naming(&["measure", "slap", "--with", "path"], &["`slap`", "slab, sphere, shaft"]);
+    refuses_naming(&["measure", "slap", "--with", "path"], &["`slap`", "slab, sphere, shaft, fogbox"]);
     refuses_naming(&["check", "missing.toml"], &["missing.toml", "No such file"]);
     refuses_naming(&["scenes", "slap"], &["`slap`", "allowed: slab"]);
     refuses_naming(&["check", "."], &["."]);
@@ -171,8 +171,8 @@ fn wrong_options() {
     refuses_naming(&["measure", "slab", "--with", "beams"], &["--with", "allowed: path, photons"]);
     refuses_naming(&["measure", "slab"], &["--with"]);
     refuses_naming(&["measure"], &["SCENE"]);
-    refuses_naming(&["render", "slab"], &["render"]);
-    refuses_naming(&[], &["allowed: measure, advise, check, scenes"]);
+    refuses_naming(&["render", "slab"], &["--output"]);
+    refuses_naming(&[], &["allowed: measure, advise, render, map, check, scenes"]);
     assert!(refuses(&["scenes", "--resolved"]).contains("NAME"));
 }
 

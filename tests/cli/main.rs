@@ -1,10 +1,13 @@
 //! The command `turbid`: what it prints, and how it refuses: exit code 2, one line on stderr, nothing on stdout.
 #![allow(clippy::unwrap_used, reason = "tests")]
 
+mod bad_files;
 mod bad_input;
+mod bad_pictures;
 mod media;
 mod output;
 mod pictures;
+mod reference;
 
 use assert_cmd::Command;
 use std::path::{Path, PathBuf};

@@ -11,7 +11,7 @@ fn scene(keys: &str) -> String {
 }
 
 /// A `.vol` file byte by byte: 2 x 1 x 1 samples over the unit cube.
-fn vol(values: [f32; 2]) -> Vec<u8> {
+pub fn vol(values: [f32; 2]) -> Vec<u8> {
     let mut bytes = vec![b'V', b'O', b'L', 3];
     for number in [1i32, 2, 1, 1, 1] {
         bytes.extend(number.to_le_bytes());

@@ -92,7 +92,7 @@ fn a_light_is_the_sum_of_its_quarters() {
     crate::checks::light::a_light_is_the_sum_of_its_quarters();
 }
 
-/// 1/density has the solid angle of the light as its mean, and is met by uniform rays with density 1/that.
+/// 1/density is the solid angle of the light, to some roundings, and is met by uniform rays with density 1/that.
 #[test]
 fn the_area_light_fills_its_solid_angle() {
     let light = area_light(rectangle(DVec3::ZERO, DVec3::X * 2.0, DVec3::Y), Spectrum::ONE);
@@ -100,9 +100,18 @@ fn the_area_light_fills_its_solid_angle() {
     let expected =
         [(0.5, 0.25), (1.5, 0.25), (0.5, 0.75), (1.5, 0.75)].map(|(a, b)| corner_solid_angle(a, b, 0.6));
     let expected: f64 = expected.iter().sum();
+    for u in [[0.1, 0.2], [0.9, 0.5]] {
+        let aimed = 1.0 / light.sample(p, u).unwrap().pdf_solid_angle.unwrap();
+        assert!((aimed / expected - 1.0).abs() < 1e-14, "{aimed} {expected}");
+    }
+    // Far away points are chosen by area.
+    let far = DVec3::new(30.0, 40.0, 60.0);
+    let corners =
+        [(30.0, 40.0), (28.0, 40.0), (30.0, 39.0), (28.0, 39.0)].map(|(a, b)| corner_solid_angle(a, b, 60.0));
+    let expected_far = corners[0] - corners[1] - corners[2] + corners[3];
     let aimed =
-        numbers(N, 4, |s| light.sample(p, s.pair()).map_or(0.0, |l| 1.0 / l.pdf_solid_angle.unwrap()));
-    verdict::agrees("solid angle", &aimed, (expected, 0.0), 0.02 * expected, 4);
+        numbers(N, 7, |s| light.sample(far, s.pair()).map_or(0.0, |l| 1.0 / l.pdf_solid_angle.unwrap()));
+    verdict::agrees("solid angle from afar", &aimed, (expected_far, 1e-14), 0.02 * expected_far, 7);
     let met = numbers(N, 5, |s| {
         let ray = Ray::new(p, warp::square_to_sphere(s.pair()));
         FOUR_PI * light.hit(&ray, None).map_or(0.0, |hit| light.emitted(&ray, &hit).1)

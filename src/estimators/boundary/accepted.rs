@@ -1,6 +1,5 @@
 //! Gathering accepted photons only: rejected ones set no radius and count for nothing.
 
-use super::rejection::Sieve;
 use crate::estimators::{Ball, Gather};
 use crate::faults::{Fault, planted};
 use crate::photons::tree::{Counted, Nearest, Neighbors};
@@ -28,7 +27,7 @@ impl Near {
         tree: &PhotonTree,
         point: DVec3,
         cap: f64,
-        sieve: &Sieve<'_>,
+        keeps: &dyn Fn(&Photon) -> bool,
         first: Option<usize>,
     ) -> Option<Self> {
         let mut near = Near { accepted: Vec::new(), rejected: Vec::new() };
@@ -36,7 +35,7 @@ impl Near {
             for (_, place) in neighbors.places() {
                 let photon = tree.photon(place);
                 let squared = photon.position.distance_squared(point);
-                if sieve.keeps(&photon) {
+                if keeps(&photon) {
                     near.accepted.push((squared, photon));
                 } else {
                     near.rejected.push(squared);
@@ -93,7 +92,12 @@ impl Near {
 ///
 /// The k nearest are looked for among the 2k nearest photons of any kind, then 4k, and so on, until k accepted ones
 /// are among them: all that are nearer than the farthest one looked at have then been seen.
-pub(super) fn accepted(tree: &PhotonTree, point: DVec3, gather: Gather, sieve: &Sieve<'_>) -> Accepted {
+pub(super) fn accepted(
+    tree: &PhotonTree,
+    point: DVec3,
+    gather: Gather,
+    keeps: &dyn Fn(&Photon) -> bool,
+) -> Accepted {
     let cap = gather.cap();
     let (k, counted) = match gather {
         Gather::Radius(_) => (None, Counted::BelowKth),
@@ -104,9 +108,9 @@ pub(super) fn accepted(tree: &PhotonTree, point: DVec3, gather: Gather, sieve: &
         let mut first = k;
         loop {
             first *= 2;
-            let near = Near::look(tree, point, cap, sieve, Some(first));
+            let near = Near::look(tree, point, cap, keeps, Some(first));
             let is_all = near.is_none();
-            let near = near.or_else(|| Near::look(tree, point, cap, sieve, None));
+            let near = near.or_else(|| Near::look(tree, point, cap, keeps, None));
             if let Some(found) = near.and_then(|near| near.through(k, counted)) {
                 return found;
             }
@@ -115,7 +119,7 @@ pub(super) fn accepted(tree: &PhotonTree, point: DVec3, gather: Gather, sieve: &
             }
         }
     }
-    let near = Near::look(tree, point, cap, sieve, None);
+    let near = Near::look(tree, point, cap, keeps, None);
     let (photons, rejected) = near.map_or((Vec::new(), 0), |near| {
         (near.accepted.into_iter().map(|(_, photon)| (photon, 1.0)).collect(), near.rejected.len())
     });

@@ -65,22 +65,30 @@ impl GatherRay<'_, '_, '_> {
             return;
         }
         let Some(global) = &maps.global else { return };
+        let mut reflected = matt.walker.weight * matt.reflectance / PI;
         let arriving = if matt.found.hit.t < settings.near {
+            // Where everything is near, rays would be traced on for ever: as many go on as the surface reflects.
+            let kept = matt.reflectance.max().min(1.0);
+            if stream.unit() >= kept {
+                return;
+            }
+            reflected = reflected / kept;
             // Every class again, each by its own means.
             let mut sum = matt.direct(self.mapper, self.report, stream);
             if let Some(map) = &maps.caustic {
-                sum += matt.irradiance(map, settings.slope, settings.caustic, &mut self.report.caustic);
+                sum += matt.irradiance(self.mapper, map, settings.caustic, &mut self.report.caustic);
             }
             sum + self.mapper.gathered(matt, 1, self.report, stream)
         } else {
-            matt.irradiance(global, settings.slope, settings.global, &mut self.report.global)
+            matt.irradiance(self.mapper, global, settings.global, &mut self.report.global)
         };
-        self.found += matt.walker.weight * matt.reflectance / PI * arriving;
+        self.found += reflected * arriving;
     }
 }
 
 impl Visitor for GatherRay<'_, '_, '_> {
     const LOOKS_AHEAD: bool = false;
+    const CARRIES_RADIANCE: bool = true;
 
     fn visit(&mut self, walker: &Walker, step: Step, stream: &mut Stream) {
         match step {

@@ -11,6 +11,7 @@
 //! ray in a sampled direction looks for them. Photons start from lights alone: what a medium's own emission lights is
 //! seen as far as that, by direct light and single scattering, and a medium that is to light a scene is a volume source.
 
+mod flats;
 mod gather;
 mod settings;
 mod surface;
@@ -28,6 +29,7 @@ use crate::photons::maps::Maps;
 use crate::rng::{Stream, Work};
 use crate::scene::{Scene, SceneHit, Start, Target};
 use crate::transport::{Roulette, Step, Visitor, Walker, emission, transmittance, walk};
+use flats::Flats;
 use std::ops::AddAssign;
 
 /// Where mirrors have taken nine tenths of the light, rays play roulette. Any value gives the same mean.
@@ -109,6 +111,10 @@ pub struct Mapper<'a> {
     settings: &'a Settings,
     /// Bodies that part photons from a point of a medium, where they are asked for.
     walls: Vec<Shape>,
+    /// Where flat surfaces end, if discs are to be clipped there.
+    flats: Option<Flats>,
+    /// Of each region the shapes of later ones, which count where they overlap; none where there is one medium alone.
+    neighbors: Vec<Vec<Shape>>,
     /// Whether some light cannot be aimed at.
     has_unaimed: bool,
 }
@@ -122,7 +128,12 @@ impl<'a> Mapper<'a> {
         };
         let has_unaimed =
             scene.plan().has_emission || scene.lights().iter().any(|light| !light.has_direction());
-        Mapper { scene, maps, settings, walls, has_unaimed }
+        let flats = settings.clips_discs.then(|| Flats::new(scene));
+        let regions = scene.regions();
+        let is_alone = regions.len() + scene.interiors().iter().filter(|i| i.medium.is_some()).count() < 2;
+        let later = |index: usize| regions[index + 1..].iter().map(|r| r.shape.clone()).collect();
+        let neighbors = if is_alone { Vec::new() } else { (0..regions.len()).map(later).collect() };
+        Mapper { scene, maps, settings, walls, flats, neighbors, has_unaimed }
     }
 
     /// One sample of the radiance that arrives at the origin of `ray` from ahead [W/(L^2 sr)], by class, and the work.

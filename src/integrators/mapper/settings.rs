@@ -9,7 +9,7 @@ use crate::math::Positive;
 /// How steps of a march become shorter where radiance changes.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Adaptive {
-    /// Relative change of the source from one step to the next above which the step is halved.
+    /// Relative change of the source from one end of a step to the other above which the step is halved.
     pub tolerance: f64,
     /// Steps are halved as long as they are longer than this \[L\].
     pub shortest: Positive,
@@ -26,8 +26,9 @@ pub struct March {
     /// asked for at a random place of each step, in proportion to what reaches its near end, so that the sum is
     /// unbiased whatever the step.
     pub is_jittered: bool,
-    /// Shorter steps where radiance changes; none for equal ones. The choice of the step depends on the values found,
-    /// which costs the sum a part of its unbiasedness.
+    /// Shorter steps where radiance changes; none for equal ones. Steps are chosen by shadow rays of their own from their
+    /// ends towards the lights' middles, never by the random places and directions that the sum is made of: a sum
+    /// that is unbiased with equal steps stays so.
     pub adaptive: Option<Adaptive>,
 }
 
@@ -42,6 +43,10 @@ pub struct Settings {
     pub volume: (Kernel, Gather),
     /// How far photons of a surface may lie off its tangent plane: sine of the angle seen from the point.
     pub slope: f64,
+    /// Whether discs that reach beyond the edges of a flat surface, a rectangle or a side of a cuboid, are divided by the
+    /// part of the kernel that lies on it, as balls are by [`Treatment::Clipped`]. Then photons count that lie on the surface
+    /// itself: within a tenth of the slope.
+    pub clips_discs: bool,
     /// Rays of a final gathering, at least 1; not used if the global map is to be seen.
     pub gather_rays: u32,
     /// Rays of a final gathering that are shorter than this \[L\] are traced on: in corners the map's blur would be seen.
@@ -68,6 +73,7 @@ impl Settings {
             caustic: (Kernel::Cone, nearest),
             volume: (Kernel::Uniform, nearest),
             slope: 0.1,
+            clips_discs: true,
             gather_rays: 64,
             near: 0.0,
             march: March {

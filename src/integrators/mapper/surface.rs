@@ -14,6 +14,9 @@ use crate::transport::{Walker, transmittance};
 use glam::DVec3;
 use std::f64::consts::PI;
 
+/// Photons of a flat surface lie on it, so that few of another one that meets it need be let in.
+const FLAT: f64 = 0.1;
+
 /// A point of a matt surface that light leaves towards a walker.
 #[derive(Clone, Copy)]
 pub(super) struct Matt<'w> {
@@ -54,15 +57,22 @@ impl<'w> Matt<'w> {
     /// Irradiance from a map [W/L^2].
     pub fn irradiance(
         &self,
+        mapper: &Mapper,
         map: &PhotonMap,
-        slope: f64,
         (kernel, gather): (Kernel, Gather),
         count: &mut Gathers,
     ) -> Spectrum {
-        let estimate =
-            irradiance(map, self.position, &Tangent { normal: self.normal, slope }, kernel, gather);
+        let (normal, slope) = (self.normal, mapper.settings.slope);
+        let flats = mapper.flats.as_ref().filter(|flats| flats.is_flat(self.found));
+        let slope = if flats.is_some() { FLAT * slope } else { slope };
+        let estimate = irradiance(map, self.position, &Tangent { normal, slope }, kernel, gather);
         count.add(&estimate);
-        estimate.value
+        match flats {
+            Some(flats) => {
+                estimate.value / flats.share(self.found, normal, self.position, kernel, estimate.radius)
+            }
+            None => estimate.value,
+        }
     }
 
     /// Irradiance straight from lights [W/L^2].
@@ -91,13 +101,11 @@ impl Eye<'_, '_> {
         self.layers.direct += seen * matt.direct(mapper, &mut self.report, stream);
         if let Some(map) = &maps.caustic {
             self.layers.caustic +=
-                seen * matt.irradiance(map, settings.slope, settings.caustic, &mut self.report.caustic);
+                seen * matt.irradiance(mapper, map, settings.caustic, &mut self.report.caustic);
         }
         let Some(global) = &maps.global else { return };
         let rest = match maps.indirect {
-            Indirect::Seen => {
-                matt.irradiance(global, settings.slope, settings.global, &mut self.report.global)
-            }
+            Indirect::Seen => matt.irradiance(mapper, global, settings.global, &mut self.report.global),
             Indirect::Gathered => mapper.gathered(&matt, settings.gather_rays, &mut self.report, stream),
         };
         self.layers.indirect += seen * rest;

@@ -9,7 +9,7 @@ use crate::math::{Interval, Ray, cosine_pair, exp, exp_m1, ln_1p};
 use crate::medium::Medium;
 use crate::phase::PhaseFunction;
 use crate::rng::Stream;
-use crate::scene::decay;
+use crate::scene::{Target, decay};
 use crate::transport::{Walker, passed, transmittance};
 use glam::DVec3;
 
@@ -60,6 +60,10 @@ impl Mapper<'_> {
                 None => in_scattered(map, position, -dir, phase, Spectrum::ONE, kernel, gather),
                 Some(boundary) => {
                     let boundary = boundary.with_walls(settings.rejection, &self.walls);
+                    let boundary = match self.neighbors.get(number) {
+                        Some(others) => boundary.among(others),
+                        None => boundary,
+                    };
                     treated_in_scattered(map, position, -dir, phase, kernel, gather, &boundary).estimate
                 }
             };
@@ -69,6 +73,35 @@ impl Mapper<'_> {
         }
         let albedo = medium.albedo(position);
         Scattered { single: albedo * single, multiple: albedo * multiple }
+    }
+}
+
+impl Mapper<'_> {
+    /// The light that a medium scatters once at a point against the direction of a walker, over sigma_t
+    /// [W/(L^2 sr)], each light aimed at in its middle: what steps are chosen by. Lights that cannot be aimed at count
+    /// nothing.
+    fn probed(
+        &self,
+        walker: &Walker,
+        position: DVec3,
+        number: usize,
+        report: &mut Report,
+        stream: &mut Stream,
+    ) -> Spectrum {
+        let (scene, dir) = (self.scene, walker.ray.dir);
+        let medium = scene.medium(number);
+        let sum = scene.lights().iter().enumerate().fold(Spectrum::ZERO, |sum, (index, light)| {
+            let Some(sample) = light.sample(position, [0.5; 2]) else { return sum };
+            let ray = Ray::new(position, sample.dir);
+            report.rays.shadow += 1;
+            let Some(filtered) = scene.passes(&ray, None, sample.distance, Target::Light(index)) else {
+                return sum;
+            };
+            let (one_minus_mu, one_plus_mu) = cosine_pair(dir, sample.dir);
+            let passed = transmittance(scene, &ray, sample.distance, walker.within, stream);
+            sum + sample.value * filtered * passed * medium.phase().eval(one_minus_mu, one_plus_mu)
+        });
+        medium.albedo(position) * sum
     }
 }
 
@@ -105,11 +138,34 @@ impl Eye<'_, '_> {
         let (longest, least) = (march.step.get(), LEFT * seen.max());
         let mut t = span.start;
         let mut length = if march.is_jittered { longest * (1.0 - stream.unit()) } else { longest };
-        let mut before: Option<Spectrum> = None;
+        // What the near end scatters of direct light, and the multiple scattering found last.
+        let mut near: Option<Spectrum> = None;
+        let mut multiple = 0.0;
         while t < span.end && seen.max() > least {
             // What rounding leaves of the last step joins it.
             let rest = span.end - t;
-            let dx = if rest < length * (1.0 + 1e-9) { rest } else { length };
+            let mut dx = if rest < length * (1.0 + 1e-9) { rest } else { length };
+            if let Some(adaptive) = &march.adaptive {
+                // Off the ends of the stretch, where walls may stand: shadow rays would meet them by rounding.
+                let off = 1e-3 * adaptive.shortest.get();
+                let mut probe = |t: f64, report: &mut Report| {
+                    let t = t.min(span.end - off).max(span.start + off);
+                    mapper.probed(walker, walker.ray.at(t), number, report, stream)
+                };
+                let first = near.unwrap_or_else(|| probe(t, &mut self.report));
+                let (change, last) = loop {
+                    let last = probe(t + dx, &mut self.report);
+                    let change = relative_change(first, last, multiple);
+                    if change <= adaptive.tolerance || dx <= adaptive.shortest.get() {
+                        break (change, last);
+                    }
+                    dx = (0.5 * dx).max(adaptive.shortest.get());
+                };
+                near = Some(last);
+                length = if change < 0.5 * adaptive.tolerance { (2.0 * dx).min(longest) } else { dx };
+            } else {
+                length = longest;
+            }
             let step = match medium {
                 Medium::Homogeneous(medium) => {
                     Placed::in_step(march.rule, march.is_jittered, medium.sigma_t(), dx, stream)
@@ -129,18 +185,7 @@ impl Eye<'_, '_> {
             } else {
                 mapper.scattered(walker, position, number, &mut self.report, stream)
             };
-            if let Some(adaptive) = &march.adaptive {
-                let source = scattered.single + scattered.multiple;
-                let change = before.map_or(0.0, |before| relative_change(before, source));
-                if change > adaptive.tolerance && dx > adaptive.shortest.get() {
-                    length = (0.5 * dx).max(adaptive.shortest.get());
-                    continue;
-                }
-                before = Some(source);
-                length = if change < 0.5 * adaptive.tolerance { (2.0 * dx).min(longest) } else { length };
-            } else {
-                length = longest;
-            }
+            multiple = scattered.multiple.max();
             let weight = seen * sigma_t * step.weight;
             self.layers.single += weight * scattered.single;
             self.layers.multiple += weight * scattered.multiple;
@@ -159,9 +204,9 @@ impl Eye<'_, '_> {
     }
 }
 
-/// The largest difference of channels over the largest channel.
-fn relative_change(a: Spectrum, b: Spectrum) -> f64 {
-    let largest = a.max().max(b.max());
+/// The largest difference of channels over the largest channel, `floor` added to both.
+fn relative_change(a: Spectrum, b: Spectrum, floor: f64) -> f64 {
+    let largest = a.max().max(b.max()) + floor;
     if largest > 0.0 { (a - b).map(f64::abs).max() / largest } else { 0.0 }
 }
 

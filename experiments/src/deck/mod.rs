@@ -1,0 +1,50 @@
+//! Claim: what the talk of 1998 says of volume photon maps in whole sentences holds in numbers.
+//! Referee: the path tracer for pixels of a box of fog, the exact slab for the edge of a medium and for light that leaks
+//! through a thin wall. Shown beside it: what a gather takes amid 36 and a million triangles.
+//!
+//! Jensen and Christensen (1998), "Efficient simulation of light transport in scenes with participating media using photon
+//! maps", as told in the talk's slides.
+
+mod conclude;
+mod edge;
+mod figures;
+mod pixels;
+mod walls;
+
+use crate::harness::{CellId, CellOutput, Experiment, Prediction, Settings};
+use anyhow::bail;
+
+/// The experiment.
+pub const EXPERIMENT: Experiment = Experiment {
+    name: "deck",
+    title: "Do the sentences of 1998 hold?",
+    question: "The talk that introduced photon maps for fog says that 50 to 100 photons an estimate work well, that the \
+               estimate is too low at the edge of a medium, that looking at the incoming direction avoids false photons, \
+               and that maps are decoupled from geometry. By how much?",
+    cells,
+    predict,
+    measure,
+    conclude: conclude::conclude,
+};
+
+fn cells(settings: &Settings) -> Vec<CellId> {
+    let mut cells = pixels::cells(settings);
+    cells.extend(edge::cells(settings));
+    cells.extend(walls::cells(settings));
+    cells
+}
+
+fn predict(settings: &Settings) -> anyhow::Result<Vec<Prediction>> {
+    let mut predictions = pixels::predict(settings)?;
+    predictions.extend(edge::predict(settings)?);
+    Ok(predictions)
+}
+
+fn measure(settings: &Settings, cell: &CellId) -> anyhow::Result<CellOutput> {
+    match cell.group.as_str() {
+        pixels::GROUP => pixels::measure(settings, cell),
+        edge::GROUP => edge::measure(settings, cell),
+        walls::GROUP => walls::measure(settings, cell),
+        other => bail!("no cells are called {other}"),
+    }
+}

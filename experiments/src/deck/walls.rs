@@ -1,0 +1,156 @@
+//! "Maps are decoupled from geometry": the same photons and queries amid walls of 36 and of a million triangles.
+//!
+//! Rays are followed to the walls between gathers, as a renderer does, so that a large mesh may push photons out of the
+//! processor's memory. Times are of this machine: they are in words and tables, not in results and claims.
+
+use crate::harness::{CellId, CellOutput, Settings};
+use glam::DVec3;
+use turbid::Spectrum;
+use turbid::estimators::{Gather, Kernel, in_scattered};
+use turbid::geometry::Mesh;
+use turbid::math::{Ray, warp};
+use turbid::phase::{Isotropic, Phase};
+use turbid::photons::{Flags, Photon, PhotonMap};
+use turbid::rng::{Purpose, Stream};
+
+/// The group of all cells.
+pub const GROUP: &str = "walls";
+/// Pairs of timings.
+pub const PAIRS: usize = 40;
+/// Photons an estimate.
+const K: usize = 50;
+/// Queries of one timing.
+const QUERIES: usize = 3_000;
+
+/// Squares along the sides of each face of the box: 12 triangles for each square of a face.
+const FEW: [u32; 2] = [3, 1];
+const MANY: [u32; 2] = [289, 289];
+
+/// Triangles of both meshes.
+pub const TRIANGLES: [u32; 2] = [12 * FEW[0] * FEW[1], 12 * MANY[0] * MANY[1]];
+
+/// Photons of the map.
+fn photons(settings: &Settings) -> u64 {
+    settings.photons(65_000, 65_000)
+}
+
+/// One cell: every pair shares the meshes.
+pub fn cells(settings: &Settings) -> Vec<CellId> {
+    vec![CellId::new(GROUP, 0, 1e6 + photons(settings) as f64)]
+}
+
+/// The name of a timing.
+pub fn phase(what: &str, triangles: u32, pair: usize) -> String {
+    format!("{what}, {triangles} triangles, pair {pair:02}")
+}
+
+/// The box from -1 to 1, each face cut into m x n squares of two triangles.
+fn tessellated([m, n]: [u32; 2]) -> anyhow::Result<Mesh> {
+    let (mut positions, mut triangles) = (Vec::new(), Vec::new());
+    for axis in 0..3 {
+        for side in [-1.0, 1.0] {
+            let first = positions.len() as u32;
+            for j in 0..=n {
+                for i in 0..=m {
+                    let (u, v) =
+                        (2.0 * f64::from(i) / f64::from(m) - 1.0, 2.0 * f64::from(j) / f64::from(n) - 1.0);
+                    let mut place = DVec3::ZERO;
+                    (place[axis], place[(axis + 1) % 3], place[(axis + 2) % 3]) = (side, u, v);
+                    positions.push(place);
+                }
+            }
+            for j in 0..n {
+                for i in 0..m {
+                    let at = |i: u32, j: u32| first + j * (m + 1) + i;
+                    triangles.push([at(i, j), at(i + 1, j), at(i + 1, j + 1)]);
+                    triangles.push([at(i, j), at(i + 1, j + 1), at(i, j + 1)]);
+                }
+            }
+        }
+    }
+    Ok(Mesh::new(&positions, &triangles, None)?)
+}
+
+/// Even light in the box: how it came there does not matter to a gather.
+fn map(settings: &Settings, replicate: u64) -> anyhow::Result<PhotonMap> {
+    let count = photons(settings);
+    let mut stream = Stream::new(settings.seed, Purpose::Synthetic, replicate, 0);
+    let photon = |_| {
+        let position = 2.0 * DVec3::from(stream.triple()) - 1.0;
+        let dir = warp::square_to_sphere(stream.pair());
+        Photon {
+            position,
+            dir: dir.as_vec3(),
+            power: Spectrum::ONE.0.as_vec3(),
+            order: 1,
+            flags: Flags::MEDIUM,
+        }
+    };
+    Ok(PhotonMap::new((0..count).map(photon).collect(), count)?)
+}
+
+/// Measures the cell.
+pub fn measure(settings: &Settings, cell: &CellId) -> anyhow::Result<CellOutput> {
+    let mut output = CellOutput::new();
+    let replicate = cell.stream("deck");
+    let map = output.time("map", |_| map(settings, replicate))?;
+    let meshes = output.time("meshes", |_| anyhow::Ok([tessellated(FEW)?, tessellated(MANY)?]))?;
+    let phase_function = Phase::Isotropic(Isotropic);
+    let gather = Gather::nearest(K, 1.0)?;
+    let mut stream = Stream::new(settings.seed, Purpose::Paths, replicate, 0);
+    let (mut same, mut asked) = (0, 0);
+    for pair in 0..PAIRS {
+        let rays: Vec<Ray> = (0..QUERIES)
+            .map(|_| {
+                let origin = 1.8 * DVec3::from(stream.triple()) - 0.9;
+                Ray::new(origin, warp::square_to_sphere(stream.pair()))
+            })
+            .collect();
+        let mut found: [Vec<f64>; 2] = [Vec::new(), Vec::new()];
+        // Each goes first in every second pair.
+        for turn in [pair % 2, 1 - pair % 2] {
+            let (mesh, triangles) = (&meshes[turn], TRIANGLES[turn]);
+            let met = output.time(&phase("rays", triangles, pair), |_| {
+                rays.iter().filter(|ray| mesh.hit(ray, None).is_some()).count()
+            });
+            anyhow::ensure!(met == rays.len(), "{met} of {} rays met the walls of a closed box", rays.len());
+            found[turn] = output.time(&phase("gathers", triangles, pair), |_| {
+                let of = |ray: &Ray| {
+                    in_scattered(
+                        &map,
+                        ray.origin,
+                        ray.dir,
+                        &phase_function,
+                        Spectrum::ONE,
+                        Kernel::Uniform,
+                        gather,
+                    )
+                    .value[0]
+                };
+                rays.iter().map(of).collect()
+            });
+        }
+        let [few, many] = &found;
+        asked += few.len() as u64;
+        same += few.iter().zip(many).filter(|(a, b)| a.to_bits() == b.to_bits()).count() as u64;
+    }
+    output.count("gathers amid walls, asked twice", asked);
+    output.count("gathers amid walls, the same bits", same);
+    Ok(output)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_box_is_closed_and_has_its_triangles() {
+        for sides in [FEW, [7, 7]] {
+            let mesh = tessellated(sides).unwrap();
+            assert_eq!(mesh.len() as u32, 12 * sides[0] * sides[1]);
+            let hit = mesh.hit(&Ray::new(DVec3::new(0.1, 0.2, 0.3), DVec3::X), None).unwrap();
+            assert!((hit.t - 0.9).abs() < 1e-12);
+        }
+        assert_eq!(TRIANGLES, [36, 1_002_252]);
+    }
+}

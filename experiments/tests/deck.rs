@@ -1,0 +1,19 @@
+//! The experiment `deck`, whole, on few photons.
+#![allow(clippy::unwrap_used, reason = "tests")]
+
+mod whole;
+
+const PROGRAM: &str = env!("CARGO_BIN_EXE_deck");
+
+/// A fiftieth of the photons, twice: the results do not depend on the threads, nor on what was timed, and a lost cell
+/// comes back as it was.
+#[test]
+fn a_fiftieth_of_the_photons() {
+    let folder = tempfile::tempdir().unwrap();
+    let one = whole::same_on_threads(PROGRAM, "0.02", folder.path());
+    assert_eq!(whole::figures(&one), 2);
+    whole::same_after_a_loss(PROGRAM, "0.02", &one, &["deck/walls-000000.csv", "deck/edge-000003.csv"]);
+    let claims = std::fs::read_to_string(one.join("claims.csv")).unwrap();
+    let decoupled = claims.lines().find(|line| line.contains("decoupled")).unwrap();
+    assert!(decoupled.contains("upheld"), "{decoupled}");
+}

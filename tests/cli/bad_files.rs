@@ -1,0 +1,210 @@
+//! Files that a scene names, missing, truncated or wrong; and keys of shapes, textures and boundaries out of range.
+
+use crate::{Folder, refuses, refuses_naming, succeeds, text};
+use std::path::PathBuf;
+
+/// A mesh with a picture on it, under a lamp.
+const SCENE: &str = r#"
+[camera]
+position = [0.0, 0.0, 4.0]
+look_at = [0.0, 0.0, 0.0]
+fov = 40.0
+width = 4
+height = 4
+
+[[objects]]
+shape = { mesh = { file = "part.obj" } }
+surface = { lambertian = { reflectance = { image = { file = "paint.png" } } } }
+
+[[lights]]
+area = { shape = { sphere = { center = [0.0, 0.0, 3.0], radius = 0.5 } }, radiance = 1.0 }
+"#;
+
+const TRIANGLE: &str = "v 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 0 1\nf 1/1 2/2 3/3\n";
+
+/// A grey PNG of one pixel: header, data, end, each with its checksum.
+pub const PIXEL: [u8; 67] = [
+    0x89, 0x50, 0x4e, 0x47, 0x0d, 0x0a, 0x1a, 0x0a, 0x00, 0x00, 0x00, 0x0d, 0x49, 0x48, 0x44, 0x52, 0x00,
+    0x00, 0x00, 0x01, 0x00, 0x00, 0x00, 0x01, 0x08, 0x00, 0x00, 0x00, 0x00, 0x3a, 0x7e, 0x9b, 0x55, 0x00,
+    0x00, 0x00, 0x0a, 0x49, 0x44, 0x41, 0x54, 0x78, 0x9c, 0x63, 0x68, 0x00, 0x00, 0x00, 0x82, 0x00, 0x81,
+    0x77, 0xcd, 0x72, 0xb6, 0x00, 0x00, 0x00, 0x00, 0x49, 0x45, 0x4e, 0x44, 0xae, 0x42, 0x60, 0x82,
+];
+
+/// The scene and its files, all right.
+fn whole() -> (Folder, PathBuf) {
+    let folder = Folder::new();
+    let scene = folder.file("scene.toml", SCENE);
+    folder.file("part.obj", TRIANGLE);
+    std::fs::write(folder.0.path().join("paint.png"), PIXEL).unwrap();
+    (folder, scene)
+}
+
+#[test]
+fn wrong_meshes() {
+    let (folder, scene) = whole();
+    succeeds(&["check", text(&scene)]);
+    for (mesh, words) in [
+        ("", "part.obj: no faces"),
+        ("v 0 0 0\nv 1 0 0\nv 0 1", "part.obj:3: a vertex `v` of 2 numbers; allowed: x y z"),
+        ("v 0 0 zero\n", "part.obj:1: "),
+        ("v 0 0 nan\nv 1 0 0\nv 0 1 0\nf 1 2 3\n", "part.obj"),
+        ("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2\n", "part.obj:4: a face of 2 corners; allowed: 3 or more"),
+        ("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 4\n", "part.obj:4: a face names vertex 4; allowed: 1 to 3"),
+        ("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 0\n", "part.obj:4: a face names vertex 0"),
+        ("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1/1 2/1 3/1\n", "no vt stands before this line"),
+        ("v 0 0 0\nv 1 0 0\nv 2 0 0\nf 1 2 3\n", "part.obj"),
+        ("curv 0 1\n", "part.obj:1: unknown statement `curv`"),
+        ("\u{0}\u{1}\u{2}", "part.obj:1: "),
+    ] {
+        folder.file("part.obj", mesh);
+        refuses_naming(&["check", text(&scene)], &["scene.toml: objects[0]", words]);
+    }
+    std::fs::remove_file(folder.0.path().join("part.obj")).unwrap();
+    refuses_naming(&["check", text(&scene)], &["part.obj: No such file"]);
+}
+
+#[test]
+fn wrong_textures() {
+    let (folder, scene) = whole();
+    let paint = folder.0.path().join("paint.png");
+    let mut huge = PIXEL;
+    huge[16..20].copy_from_slice(&0x7fff_ffff_u32.to_be_bytes());
+    for (bytes, words) in [
+        (&b""[..], "no PNG file; allowed: PNG of 8 or 16 bits"),
+        (&b"\xff\xd8\xff\xe0 a JPEG"[..], "no PNG file"),
+        (&PIXEL[..20], "damaged or truncated"),
+        (&PIXEL[..45], "damaged or truncated"),
+        (&huge[..], "paint.png: "),
+    ] {
+        std::fs::write(&paint, bytes).unwrap();
+        refuses_naming(&["check", text(&scene)], &["scene.toml: objects[0]", "paint.png: ", words]);
+    }
+    std::fs::remove_file(&paint).unwrap();
+    refuses_naming(&["check", text(&scene)], &["paint.png: No such file"]);
+}
+
+/// Wherever a scene file is cut off, it is refused in one line, or is a whole scene still.
+#[test]
+fn truncated_scenes() {
+    let (folder, _) = whole();
+    let mut refused = 0;
+    // Without its last lines the scene has no lights.
+    let last = SCENE.find("radiance").unwrap();
+    for end in (0..last).step_by(20) {
+        let file = folder.file("cut.toml", &SCENE[..end]);
+        let line = refuses(&["check", text(&file)]);
+        assert!(line.contains("cut.toml:"), "{line}");
+        refused += 1;
+    }
+    assert!(refused > 8);
+}
+
+#[test]
+fn wrong_shapes_textures_and_boundaries() {
+    let (folder, _) = whole();
+    let shape = r#"mesh = { file = "part.obj" }"#;
+    let paint = r#"{ image = { file = "paint.png" } }"#;
+    let surface = format!("lambertian = {{ reflectance = {paint} }}");
+    let lathe = |keys: &str| format!("lathe = {{ {keys} }}");
+    let ground = |keys: &str| format!("height-field = {{ corner = [0, 0], size = [1, 1], {keys} }}");
+    let field = "waves = { seed = 1, count = 3, wavelength = 1, rms = 0.1 }";
+    let cases = [
+        (
+            shape,
+            r#"mesh = { file = "part.obj", scale = 0 }"#.into(),
+            "scale is 0; allowed: finite and above 0",
+        ),
+        (
+            shape,
+            "mesh = { path = \"part.obj\" }".into(),
+            "unknown key `path`; nearest: `at`; allowed: file, scale, at",
+        ),
+        (shape, "mesh = {}".into(), "missing field `file`"),
+        (shape, "cone = { radius = 1 }".into(), "unknown value `cone`"),
+        (shape, lathe("profile = []"), "objects[0]"),
+        (shape, lathe("profile = [[-1, 0], [1, 1]]"), "objects[0]"),
+        (shape, lathe("profile = [[1, 0], [1, nan]]"), "objects[0]"),
+        (shape, lathe("axis = [0, 0, 0], profile = [[1, 0], [1, 1]]"), "objects[0]"),
+        (
+            shape,
+            lathe("profile = [[1, 0], [1, 1]], smooth = 0"),
+            "objects[0].smooth is 0; allowed: 1 to 1000",
+        ),
+        (shape, ground(&format!("cells = [0, 4], heights = {{ {field} }}")), "objects[0]"),
+        (shape, ground(&format!("cells = [99999, 99999], heights = {{ {field} }}")), "objects[0]"),
+        (shape, ground(&format!("cells = [4, 4], floor = 9, heights = {{ {field} }}")), "objects[0]"),
+        (shape, ground("cells = [2, 2], heights = { rows = [[0, 0], [0]] }"), "objects[0]"),
+        (
+            shape,
+            ground(
+                "cells = [2, 2], heights = { waves = { seed = 1, count = 0, wavelength = 1, rms = 0.1 } }",
+            ),
+            "objects[0].count is 0; allowed: 1 to 1000",
+        ),
+        (
+            shape,
+            ground(
+                "cells = [2, 2], heights = { waves = { seed = 1, count = 1, wavelength = 0, rms = 0.1 } }",
+            ),
+            "wavelength is 0; allowed: finite and above 0",
+        ),
+        (paint, "{ checker = { values = [0, 2], tiles = [1, 1] } }".into(), "values is 2; allowed: 0 to 1"),
+        (paint, "{ checker = { values = [0, 1], tiles = [0, 1] } }".into(), "tiles is 0; allowed"),
+        (
+            paint,
+            "{ checker = { values = [0, 1, 1], tiles = [1, 1] } }".into(),
+            "checker.values has 3 entries; allowed: 2",
+        ),
+        (
+            paint,
+            "{ wood = { values = [0, 1], center = [0, 0, 0], axis = [0, 0, 0], width = 1 } }".into(),
+            "axis",
+        ),
+        (paint, "{ marble = {} }".into(), "unknown value `marble`; nearest"),
+        (paint, "1.5".into(), "reflectance is 1.5; allowed: 0 to 1"),
+        ("[0.0, 0.0, 4.0]", "[0.0, 0.0, 4.0, 1.0]".into(), "camera.position has 4 entries; allowed: 3"),
+        (paint, "[0.5, 0.5, 0.5, 0.5]".into(), "reflectance has 4 entries; allowed: 3"),
+        (paint, "[0.5, 0.5]".into(), "reflectance"),
+        (&surface, "dielectric = { inside = \"glass\" }".into(), "unknown interior `glass`"),
+        (&surface, "dielectric = { outside = \"glass\" }".into(), "missing field `inside`"),
+        (&surface, "glass = {}".into(), "unknown value `glass`"),
+        (&surface, "filter = { transmittance = -1 }".into(), "transmittance is -1; allowed: 0 to 1"),
+    ];
+    for (index, (from, to, words)) in cases.into_iter().enumerate() {
+        assert!(SCENE.contains(from), "{from}");
+        let name = format!("case{index}.toml");
+        let file = folder.file(&name, &SCENE.replacen(from, &to, 1));
+        refuses_naming(&["check", text(&file)], &[&name, words]);
+    }
+    for light in [
+        "isotropic = { shape = { MESH }, faces = \"both\", radiance = 1 }",
+        "volume-source = { shape = { MESH }, density = 1 }",
+    ] {
+        let file =
+            folder.file("light.toml", &format!("{SCENE}\n[[lights]]\n{}\n", light.replace("MESH", shape)));
+        refuses_naming(&["check", text(&file)], &["lights[1]", "a convex shape with an inside"]);
+    }
+    let media = [
+        ("[[regions]]\nsigma_t = 1\nalbedo = 0.5\ng = 0\n", "missing field `shape`"),
+        (
+            "[[regions]]\nshape = { rectangle = { corner = [0, 0, 0], u = [1, 0, 0], v = [0, 1, 0] } }\nsigma_t = 1\nalbedo = 0.5\ng = 0\n",
+            "a medium needs a convex shape with an inside",
+        ),
+        (
+            "[[regions]]\nshape = { mesh = { file = \"part.obj\" } }\nsigma_t = 1\nalbedo = 0.5\ng = 0\n",
+            "a medium needs a convex shape with an inside",
+        ),
+        (
+            "[[interiors]]\nname = \"milk\"\nindex = 1.3\nsigma_t = 1\nalbedo = 0.5\ng = 0\n",
+            "milk has no boundary",
+        ),
+        ("[[interiors]]\nname = \"milk\"\nindex = inf\n", "index is inf; allowed: finite and at least 1"),
+        ("[[interiors]]\nname = \"milk\"\n", "missing field `index`"),
+        ("[[interiors]]\nname = \"surroundings\"\nindex = 1.3\n", "two interiors are called surroundings"),
+    ];
+    for (index, (keys, words)) in media.into_iter().enumerate() {
+        let name = format!("medium{index}.toml");
+        let file = folder.file(&name, &format!("{SCENE}\n{keys}"));
+        refuses_naming(&["check", text(&file)], &[&name, words]);
+    }
+}
