@@ -1,8 +1,10 @@
 //! The data files of the scenes that a program has made: the stained-glass window, and the grid of the fog box.
 
 use super::{Grid, develop};
+use glam::DVec3;
 use turbid::Spectrum;
-use turbid::math::{atan2, sin_cos};
+use turbid::math::{atan2, cos, sin, sin_cos};
+use turbid::medium;
 
 /// Size of the window's picture: 1.8 m by 2.2 m, a pixel a centimetre.
 const WINDOW: Grid = Grid { width: 180, height: 220 };
@@ -88,12 +90,30 @@ pub fn window() -> anyhow::Result<Vec<u8>> {
     develop::plain(WINDOW, &pixels).png()
 }
 
+/// The density of the scene `fogbox-het`, `fogbox/het.vol`: 32 samples along each axis of the box, their mean 1.
+///
+/// # Errors
+/// None that a user could cause: the grid's own, if its numbers were wrong.
+pub fn fogbox_het() -> anyhow::Result<Vec<u8>> {
+    let wave = |p: DVec3| {
+        let turn = |x: f64| 2.0 * std::f64::consts::PI * x;
+        let (x, y, z) = (0.5 * (p.x + 1.0), 0.5 * (p.y + 1.0), 0.5 * (p.z + 1.0));
+        let slow = sin(turn(1.5 * x + 0.2)) * cos(turn(y)) * sin(turn(1.2 * z + 0.1));
+        (1.0 + 0.6 * slow + 0.35 * sin(turn(3.0 * x + 2.0 * y + 2.5 * z))).max(0.02)
+    };
+    let corners = (DVec3::NEG_ONE, DVec3::ONE);
+    let grid = medium::Grid::sampled(corners, [32; 3], wave)?;
+    let mean = grid.values().iter().map(|&v| f64::from(v)).sum::<f64>() / grid.values().len() as f64;
+    Ok(grid.placed(corners, 1.0 / mean)?.to_bytes())
+}
+
 #[cfg(test)]
 mod tests {
-    /// The kept file is what this program makes; `gallery --assets` writes it anew.
+    /// The kept files are what this program makes; `gallery --assets` writes them anew.
     #[test]
-    fn the_window_is_the_kept_one() {
-        let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes/window.png");
-        assert_eq!(std::fs::read(path).unwrap(), super::window().unwrap());
+    fn the_kept_files_are_those_made_here() {
+        let scenes = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes");
+        assert!(std::fs::read(scenes.join("window.png")).unwrap() == super::window().unwrap());
+        assert!(std::fs::read(scenes.join("fogbox/het.vol")).unwrap() == super::fogbox_het().unwrap());
     }
 }

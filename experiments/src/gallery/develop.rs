@@ -7,6 +7,9 @@ use image::{ColorType, ImageEncoder};
 use turbid::Spectrum;
 use turbid_figure::Shading;
 
+/// Side of the squares over which pictures are averaged before errors are shown \[pixels\].
+pub const SOFT: usize = 4;
+
 /// Height of the scale under a picture of errors, and of the digits on it \[pixels\].
 const BAR: usize = 16;
 
@@ -74,8 +77,9 @@ pub fn exposure(radiance: &[Spectrum]) -> f64 {
 
 /// Signed relative errors: blue too dark, white right, red too bright, with a scale from -`limit` to +`limit` below.
 ///
-/// The error of a pixel is the difference of the channels' sums over the twin's, or over a hundredth of the twin's mean
-/// where the twin is darker than that. What is masked is grey.
+/// Both pictures are averaged over squares of [`SOFT`] pixels, so that errors that stay show through noise. The error is the
+/// difference of the channels' sums over the twin's, or over a hundredth of the twin's mean where the twin is darker than
+/// that. What is masked is grey.
 pub fn error_print(
     grid: Grid,
     ours: &[Spectrum],
@@ -85,9 +89,10 @@ pub fn error_print(
 ) -> Print {
     let floor = 0.01 * twin.iter().map(|s| s.sum()).sum::<f64>() / twin.len() as f64;
     let mut bytes = Vec::with_capacity(3 * grid.width * (grid.height + BAR));
-    for (i, (a, b)) in ours.iter().zip(twin).enumerate() {
-        let scale = b.sum().max(floor);
-        let error = if scale > 0.0 { (a.sum() - b.sum()) / scale } else { 0.0 };
+    let (ours, twin) = (softened(grid, ours), softened(grid, twin));
+    for (i, (a, b)) in ours.iter().zip(&twin).enumerate() {
+        let scale = b.max(floor);
+        let error = if scale > 0.0 { (a - b) / scale } else { 0.0 };
         let (r, g, b) = if masked.is_some_and(|m| m[i]) {
             (150, 150, 150)
         } else {
@@ -97,6 +102,17 @@ pub fn error_print(
     }
     bar(&mut bytes, grid.width, limit);
     Print { grid: Grid { width: grid.width, height: grid.height + BAR }, bytes }
+}
+
+/// Sums of channels, averaged over squares of [`SOFT`] pixels.
+fn softened(grid: Grid, picture: &[Spectrum]) -> Vec<f64> {
+    let square = |i: usize| {
+        let (x, y) = (i % grid.width / SOFT * SOFT, i / grid.width / SOFT * SOFT);
+        let (right, low) = ((x + SOFT).min(grid.width), (y + SOFT).min(grid.height));
+        let pixels = (y..low).flat_map(|y| (x..right).map(move |x| y * grid.width + x));
+        pixels.map(|j| picture[j].sum()).sum::<f64>() / ((right - x) * (low - y)) as f64
+    };
+    (0..grid.pixels()).map(square).collect()
 }
 
 fn bar(bytes: &mut Vec<u8>, width: usize, limit: f64) {
@@ -156,7 +172,7 @@ fn digit(c: char) -> [u8; 5] {
 mod tests {
     use super::*;
 
-    const GRID: Grid = Grid { width: 64, height: 2 };
+    const GRID: Grid = Grid { width: 64, height: 4 };
 
     #[test]
     fn the_tone_curve_is_smooth_and_stays_below_white() {
@@ -178,17 +194,19 @@ mod tests {
     fn errors_have_their_colours_and_a_scale() {
         let twin = vec![Spectrum::grey(2.0); GRID.pixels()];
         let mut ours = twin.clone();
-        (ours[0], ours[1]) = (Spectrum::grey(2.4), Spectrum::grey(1.0));
+        for i in 0..GRID.pixels() {
+            ours[i] *= [1.2, 0.5, 1.0][(i % GRID.width / SOFT).min(2)];
+        }
         let mut masked = vec![false; GRID.pixels()];
-        masked[3] = true;
+        masked[12] = true;
         let print = error_print(GRID, &ours, &twin, Some(&masked), 0.2);
         assert_eq!(print.grid.height, GRID.height + BAR);
         assert_eq!(print.bytes.len(), 3 * print.grid.pixels());
         let pixel = |i: usize| (print.bytes[3 * i], print.bytes[3 * i + 1], print.bytes[3 * i + 2]);
         assert_eq!(pixel(0), Shading::Diverging.rgb(1.0));
-        assert_eq!(pixel(1), Shading::Diverging.rgb(0.0));
-        assert_eq!(pixel(2), Shading::Diverging.rgb(0.5));
-        assert_eq!(pixel(3), (150, 150, 150));
+        assert_eq!(pixel(4), Shading::Diverging.rgb(0.0));
+        assert_eq!(pixel(8), Shading::Diverging.rgb(0.5));
+        assert_eq!(pixel(12), (150, 150, 150));
         assert!(print.png().unwrap().starts_with(b"\x89PNG"));
     }
 }

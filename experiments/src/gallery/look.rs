@@ -54,8 +54,8 @@ impl Visitor for Eye<'_> {
 
 /// What every pixel's middle sees, row by row from the top. At dielectrics one of both ways is followed, at random.
 ///
-/// # Arguments   `radius` of the discs that are probed for the surface's edges \[L\]; 0 for none
-pub fn look(scene: &Scene, camera: &Camera, radius: f64) -> Vec<View> {
+/// # Arguments   `radius` by pixel of the disc that is probed for the surface's edges \[L\]; 0 for none
+pub fn look(scene: &Scene, camera: &Camera, radius: impl Fn(usize) -> f64 + Sync) -> Vec<View> {
     let one = |number: u64| {
         let (x, y) =
             ((number % u64::from(camera.width())) as u32, (number / u64::from(camera.width())) as u32);
@@ -65,6 +65,7 @@ pub fn look(scene: &Scene, camera: &Camera, radius: f64) -> Vec<View> {
         let mut stream = Stream::new(0, Purpose::Synthetic, 0, number);
         let walker = Walker { within: scene.interior_at(ray.origin), ..Walker::new(ray, Spectrum::ONE) };
         walk(scene, walker, Roulette::Below(1e-6), Some(0), &mut stream, &mut eye);
+        let radius = radius(number as usize);
         if let (Some((place, normal)), true) = (eye.view.surface, radius > 0.0) {
             eye.view.missing = missing(scene, place, normal, radius);
         }

@@ -46,7 +46,7 @@ pub fn page(shown: &[Shown], settings: &Settings) -> Markup {
                     "of 95 per cent."
                 }
                 p.soft {
-                    "Blur and edges are predicted from the twin before anything is compared; pixels where they may exceed 2 per "
+                    "Blur and edges are predicted from a making with more photons before anything is compared; pixels where they may exceed 2 per "
                     "cent are masked, and what was predicted for the others is allowed. Outside the mask the means of blocks of 16 by 16 pixels are compared, "
                     "channel by channel, with errors from independent maps (Holm, family-wise 0.001)."
                 }
@@ -93,7 +93,9 @@ fn numbers(picture: &Picture, shown: &Shown) -> Markup {
                     (duration(ours.seconds - ours.map_seconds)) " of CPU time for "
                     (shown.size.0) " × " (shown.size.1) " pixels, " (ours.samples) " samples each"
                 } }
-                tr { th { "twin" } td { (shown.twin.0) " paths a pixel, " (duration(shown.twin.1)) } }
+                @if let Some((paths, seconds)) = shown.twin {
+                    tr { th { "twin" } td { (paths) " paths a pixel, " (duration(seconds)) } }
+                }
                 @if let Some(compared) = &shown.compared { (comparison(compared)) }
             }
         }

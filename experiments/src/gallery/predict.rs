@@ -1,8 +1,9 @@
-//! What blur and edges do to each pixel of a photon-mapped picture, predicted from its twin before anything is compared.
+//! What blur and edges do to each pixel of a photon-mapped picture, predicted before anything is compared.
 //!
-//! A gather averages the layer that it estimates over its disc or ball: the blur of a pixel is the mean of the twin's
-//! layer over the footprint, minus the layer. The twin is noisy; means over the footprint R and over half of it differ
-//! by 3/4 of what the blur is where the layer curves evenly, and neither is one pixel's noise.
+//! A gather averages the layer that it estimates over its disc or ball: the blur of a pixel is the mean of the layer over
+//! the footprint, minus the layer. The layers come from a making with many more photons, whose own blur is smaller, and
+//! which takes no part in the comparison. Means over the footprint R and over half of it differ by 3/4 of what the blur is
+//! where the layer curves evenly, and neither is one pixel's noise.
 //!
 //! A disc that reaches over the edge of its surface misses the photons that would lie there: the share of its area. A
 //! ball beside a wall misses its cap; along a ray that ends at a wall that is r times the integral of (1-s)^2 (2+s)/4
@@ -16,7 +17,7 @@ use turbid::integrators::{Layer, Layers};
 /// Largest reach of a footprint \[pixels\]; a larger one is taken as this.
 const REACH: f64 = 40.0;
 
-/// How far the gathers of a picture reach, mean over gathers \[L\]; 0 of a map that is not seen directly.
+/// How far the gathers of a pixel reach \[L\]; 0 of a map that is not seen directly.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Radii {
     /// Of the global map, where the eye looks.
@@ -29,11 +30,12 @@ pub struct Radii {
 
 /// The relative error that blur and edges may cause, by pixel: a bound, the sum of the absolute values of all terms.
 ///
-/// # Arguments   `layers` of the twin; `pixel` angle between neighbouring pixels \[rad\]
-pub fn predicted(grid: Grid, views: &[View], layers: &[Layers], radii: Radii, pixel: f64) -> Vec<f64> {
+/// # Arguments   `pixel` angle between neighbouring pixels \[rad\]
+pub fn predicted(grid: Grid, views: &[View], layers: &[Layers], radii: &[Radii], pixel: f64) -> Vec<f64> {
     let floor = 0.01 * layers.iter().map(|l| l.total().sum()).sum::<f64>() / layers.len() as f64;
-    let planes = [(Layer::Indirect, radii.global), (Layer::Caustic, radii.caustic)];
     let one = |i: usize| {
+        let radii = radii[i];
+        let planes = [(Layer::Indirect, radii.global), (Layer::Caustic, radii.caustic)];
         let (view, total) = (&views[i], layers[i].total().sum().max(floor));
         let mut error = 0.0;
         for (layer, radius) in planes {
@@ -61,6 +63,15 @@ pub fn predicted(grid: Grid, views: &[View], layers: &[Layers], radii: Radii, pi
     };
     use rayon::prelude::*;
     (0..grid.pixels()).into_par_iter().map(one).collect()
+}
+
+/// Radius within which the k nearest photons lie where a layer of radiance L leaves a surface: the irradiance pi L/0.7 of
+/// a surface of reflectance 0.7, over the power of a photon, is their number by area \[L\].
+///
+/// # Arguments   `power` of a photon, summed over channels \[W\]; `radiance` summed too; `largest` what gathers may reach
+pub fn radius(k: usize, power: f64, radiance: f64, largest: f64) -> f64 {
+    let density = std::f64::consts::PI * radiance / 0.7 / power;
+    (k as f64 / (std::f64::consts::PI * density)).sqrt().min(largest)
 }
 
 /// Whether two pixels see one smooth surface.
@@ -135,12 +146,17 @@ mod tests {
     fn a_curved_layer_is_blurred_as_the_disc_says() {
         let radii = Radii { caustic: 0.12, ..Radii::default() };
         let middle = GRID.pixels() / 2;
-        let curved = predicted(GRID, &views(), &layers(|x, y| x * x + y * y), radii, PIXEL)[middle];
+        let curved =
+            predicted(GRID, &views(), &layers(|x, y| x * x + y * y), &vec![radii; GRID.pixels()], PIXEL)
+                [middle];
         let expected = 0.5 * 0.12 * 0.12 / (1.0 + 2.0 * 0.4 * 0.4);
         assert!((curved / expected - 1.0).abs() < 0.1, "{curved} {expected}");
-        let plane = predicted(GRID, &views(), &layers(|x, y| 2.0 * x - y + 1.0), radii, PIXEL)[middle];
+        let plane =
+            predicted(GRID, &views(), &layers(|x, y| 2.0 * x - y + 1.0), &vec![radii; GRID.pixels()], PIXEL)
+                [middle];
         assert!(plane < 1e-12);
-        let without = predicted(GRID, &views(), &layers(|x, _| x * x), Radii::default(), PIXEL);
+        let without =
+            predicted(GRID, &views(), &layers(|x, _| x * x), &vec![Radii::default(); GRID.pixels()], PIXEL);
         assert!(without.iter().all(|&e| e == 0.0));
     }
 
@@ -150,14 +166,14 @@ mod tests {
         let radii = Radii { caustic: 0.06, ..Radii::default() };
         let step = layers(|x, _| if x < 0.4 { 1.0 } else { 3.0 });
         let beside = GRID.pixels() / 2 - 2;
-        assert!(predicted(GRID, &views(), &step, radii, PIXEL)[beside] > 0.1);
+        assert!(predicted(GRID, &views(), &step, &vec![radii; GRID.pixels()], PIXEL)[beside] > 0.1);
         let mut other = views();
         for (view, _) in other.iter_mut().zip(&step).filter(|(_, l)| l.caustic[0] > 2.0) {
             view.surface = view.surface.map(|(p, _)| (p, DVec3::X));
         }
-        assert!(predicted(GRID, &other, &step, radii, PIXEL)[beside] < 1e-12);
+        assert!(predicted(GRID, &other, &step, &vec![radii; GRID.pixels()], PIXEL)[beside] < 1e-12);
         other[beside].missing = 0.25;
-        let error = predicted(GRID, &other, &step, radii, PIXEL)[beside];
+        let error = predicted(GRID, &other, &step, &vec![radii; GRID.pixels()], PIXEL)[beside];
         assert!((error - 0.25 * 0.5).abs() < 1e-12, "{error}");
     }
 
@@ -167,7 +183,8 @@ mod tests {
         let mut views = views();
         views.iter_mut().for_each(|view| view.medium = (2.0, 1.0));
         let layers = vec![Layers { multiple: Spectrum::ONE, ..Layers::ZERO }; GRID.pixels()];
-        let error = predicted(GRID, &views, &layers, Radii { volume: 0.1, ..Radii::default() }, PIXEL)[0];
+        let radii = Radii { volume: 0.1, ..Radii::default() };
+        let error = predicted(GRID, &views, &layers, &vec![radii; GRID.pixels()], PIXEL)[0];
         assert!((error - 3.0 / 16.0 * 0.05).abs() < 1e-12, "{error}");
     }
 }

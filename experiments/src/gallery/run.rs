@@ -1,12 +1,12 @@
 //! The whole run: makings, comparison, plates, page.
 
 use super::compare::{Making, average, compare, errors};
-use super::develop::{Print, develop, error_print};
+use super::develop::{Print, SOFT, develop, error_print, exposure};
 use super::dots::dots;
-use super::keep::Kept;
+use super::keep::{Facts, Kept};
 use super::look::look;
 use super::pictures::{ALL, Beside, Picture};
-use super::predict::{Radii, predicted};
+use super::predict::{Radii, predicted, radius};
 use super::settings::Settings;
 use super::shown::{Compared, Plate, Shown};
 use super::studio::Studio;
@@ -19,15 +19,16 @@ use std::process::ExitCode;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::{Duration, Instant};
 use turbid::Spectrum;
-use turbid::integrators::Layers;
 use turbid::output::write_atomically;
 use turbid::stats::Interval;
 use turbid::transport::Progress;
 
-/// Passes of the twin that predict blur and edges, and are never compared.
-const PREDICTING: u64 = 8;
+/// The most photons that are emitted for the making from which blur is predicted, and how many times the original's at most.
+const FINE: (u64, u64) = (40_000_000, 16);
 /// Makings of either side that are compared.
 const COMPARED: u64 = super::compare::FEWEST as u64;
+/// Half of them.
+const HALF: usize = super::compare::FEWEST / 2;
 /// Predicted relative error above which a pixel is masked.
 const LIMIT: f64 = 0.02;
 /// Ends of the scale of relative errors.
@@ -59,6 +60,7 @@ pub fn main() -> ExitCode {
 
 fn run(settings: &Settings) -> anyhow::Result<()> {
     if settings.assets {
+        write(&settings.scenes.join("fogbox/het.vol"), &assets::fogbox_het()?)?;
         return write(&settings.scenes.join("window.png"), &assets::window()?);
     }
     let folder = settings.folder();
@@ -126,9 +128,10 @@ impl Makings<'_> {
         self.get(file, &s.path_words(samples, replicate), work, |bar| s.paths(samples, replicate, bar))
     }
 
-    fn photons(&self, file: &str, samples: u64, replicate: u64) -> anyhow::Result<Kept> {
+    fn photons(&self, file: &str, samples: u64, replicate: u64, factor: u64) -> anyhow::Result<Kept> {
         let (s, work) = (self.studio, self.studio.work(samples));
-        self.get(file, &s.photon_words(samples, replicate), work, |bar| s.photons(samples, replicate, bar))
+        let words = s.photon_words(samples, replicate, factor);
+        self.get(file, &words, work, |bar| s.photons(samples, replicate, factor, bar))
     }
 }
 
@@ -137,54 +140,65 @@ fn one(picture: &Picture, settings: &Settings, folder: &Path, program: &str) -> 
     let studio = Studio::open(picture, &settings.scenes, settings.scale(), settings.seed, program)?;
     let makings = Makings { settings, folder: settings.makings().join(picture.name), studio: &studio };
     std::fs::create_dir_all(&makings.folder)?;
-    let ours = makings.photons("photons", picture.samples, 0)?;
-    let words = format!("{} in {} s", studio.path_words(0, 0), ours.facts.seconds);
-    let equal = makings.get("equal", &words, 0, |bar| studio.paths_for(ours.facts.seconds, 0, bar))?;
-    let samples = (picture.twin / if settings.quick { 8 } else { 1 }).max(2);
-    let predicting = (0..PREDICTING)
-        .map(|n| makings.paths(&format!("twin-{n:03}"), samples, 1 + n))
-        .collect::<anyhow::Result<Vec<Kept>>>()?;
-    let mut passes: Vec<Making> = predicting.iter().map(|k| k.total.clone()).collect();
-    let mut seconds: f64 = predicting.iter().map(|k| k.facts.seconds).sum();
-    let mut compared = None;
-    let mut masked = None;
-    if !settings.draft {
-        let (ours_again, twin, more) = both(&makings, samples)?;
-        seconds += more;
-        let prediction = predict(&studio, &ours, &predicting);
-        let comparison = compare(studio.grid(), &ours_again, &twin, &prediction, LIMIT);
-        let found = errors(&ours_again, &twin);
-        let shown_rms = errors(&[ours.total.clone(), ours.total.clone()], &twin).rms.low;
-        let pass = errors(&passes, &twin).rms;
-        let factor = (samples as f64 / equal.facts.samples as f64).sqrt();
-        let equal_rms = Interval { low: factor * pass.low, high: factor * pass.high };
-        let makings = (ours_again.len(), 1);
-        compared = Some(Compared::new(&comparison, &found, makings, shown_rms, equal_rms));
-        masked = Some(prediction.iter().map(|&e| e > LIMIT).collect::<Vec<bool>>());
-        passes.extend(twin);
-    }
-    let twin = average(passes.iter());
-    let plates = plates(&studio, folder, &ours, &equal, &twin, masked.as_deref(), &predicting)?;
+    let ours = makings.photons("photons", picture.samples, 0, 1)?;
+    let beside = if settings.draft { None } else { Some(beside(&makings, &ours)?) };
+    let plates = plates(&studio, folder, &ours, beside.as_ref())?;
     Ok(Shown {
         name: picture.name.to_string(),
         command: command(picture),
         size: (studio.grid().width, studio.grid().height),
         ours: ours.facts,
-        equal: equal.facts,
-        twin: (samples * passes.len() as u64, seconds),
-        compared,
+        equal: beside.as_ref().map(|b| b.equal.facts.clone()),
+        twin: beside.as_ref().map(|b| b.cost),
+        compared: beside.map(|b| b.compared),
         plates,
     })
 }
 
-/// Independent makings of both sides, totals alone, and the twin's seconds.
-fn both(makings: &Makings, samples: u64) -> anyhow::Result<(Vec<Making>, Vec<Making>, f64)> {
+/// What stands beside the photon mapper's picture.
+struct Others {
+    /// The path tracer's picture in the same time.
+    equal: Kept,
+    /// The twin, its samples a pixel and its CPU seconds.
+    twin: Making,
+    cost: (u64, f64),
+    /// Which pixels were masked.
+    masked: Vec<bool>,
+    compared: Compared,
+}
+
+fn beside(makings: &Makings, ours: &Kept) -> anyhow::Result<Others> {
+    let (studio, picture) = (makings.studio, makings.studio.picture);
+    let words = format!("{} in {} s", studio.path_words(0, 0), ours.facts.seconds);
+    let equal = makings.get("equal", &words, 0, |bar| studio.paths_for(ours.facts.seconds, 0, bar))?;
+    let samples = (picture.twin / if makings.settings.quick { 8 } else { 1 }).max(2);
+    let ours_samples = (picture.samples / 4).max(1);
+    let (again, twin, cost) = both(makings, ours_samples, samples)?;
+    let prediction = predict(makings, ours)?;
+    let comparison = compare(studio.grid(), &again, &twin, &prediction, LIMIT);
+    let found = errors(&again, &twin);
+    let rms = errors(&[ours.total.clone(), ours.total.clone()], &twin).rms.low;
+    // Paths have no error that stays: that of a pass, for the number of samples that fitted into the time.
+    let pass = errors(&twin[..HALF], &twin[HALF..]).rms;
+    let factor = (samples as f64 / equal.facts.samples as f64).sqrt();
+    let equal_rms = Interval { low: factor * pass.low, high: factor * pass.high };
+    Ok(Others {
+        equal,
+        twin: average(twin.iter()),
+        cost: (samples * twin.len() as u64, cost),
+        masked: prediction.iter().map(|&e| e > LIMIT).collect(),
+        compared: Compared::new(&comparison, &found, (again.len(), ours_samples), rms, equal_rms),
+    })
+}
+
+/// Independent makings of both sides, and the twin's seconds.
+fn both(makings: &Makings, ours: u64, samples: u64) -> anyhow::Result<(Vec<Making>, Vec<Making>, f64)> {
     let ours = (0..COMPARED)
-        .map(|n| Ok(makings.photons(&format!("maps-{n:03}"), 1, 1 + n)?.total))
+        .map(|n| Ok(makings.photons(&format!("maps-{n:03}"), ours, 1 + n, 1)?.total))
         .collect::<anyhow::Result<Vec<Making>>>()?;
     let (mut twin, mut seconds) = (Vec::new(), 0.0);
     for n in 0..COMPARED {
-        let kept = makings.paths(&format!("twin-{:03}", PREDICTING + n), samples, 1 + PREDICTING + n)?;
+        let kept = makings.paths(&format!("twin-{n:03}"), samples, 1 + n)?;
         seconds += kept.facts.seconds;
         twin.push(kept.total);
     }
@@ -192,33 +206,35 @@ fn both(makings: &Makings, samples: u64) -> anyhow::Result<(Vec<Making>, Vec<Mak
 }
 
 /// The relative error that blur and edges may cause, by pixel.
-fn predict(studio: &Studio, ours: &Kept, predicting: &[Kept]) -> Vec<f64> {
-    let [global, caustic, volume] = ours.facts.radii;
-    let global = if studio.picture.gather == 0 { global } else { 0.0 };
-    let views = look(&studio.scene, &studio.camera, global.max(caustic));
-    let pixel = studio.camera.pixel_area().sqrt();
-    predicted(studio.grid(), &views, &mean_layers(predicting), Radii { global, caustic, volume }, pixel)
-}
-
-fn mean_layers(makings: &[Kept]) -> Vec<Layers> {
-    let mut sum = makings.first().map_or_else(Vec::new, |k| vec![Layers::ZERO; k.layers.len()]);
-    let share = 1.0 / makings.len() as f64;
-    for kept in makings {
-        for (sum, layers) in sum.iter_mut().zip(&kept.layers) {
-            *sum += *layers * share;
-        }
-    }
-    sum
+fn predict(makings: &Makings, ours: &Kept) -> anyhow::Result<Vec<f64>> {
+    let (studio, picture) = (makings.studio, makings.studio.picture);
+    let emitted = ours.facts.emitted;
+    let factor = (FINE.0 / emitted[0].max(emitted[1]).max(1)).clamp(2, FINE.1);
+    let fine = makings.photons("fine", picture.samples.max(4), 1 + COMPARED, factor)?;
+    let power = studio.scene.power().sum();
+    let [_, _, volume] = ours.facts.radii;
+    let radii: Vec<Radii> = fine
+        .layers
+        .iter()
+        .map(|l| {
+            let reach = |map: usize, radiance: Spectrum| {
+                let each = power / emitted[map].max(1) as f64;
+                radius(picture.nearest[map], each, radiance.sum(), 0.1 * picture.size)
+            };
+            let seen = if picture.gather == 0 { reach(0, l.indirect) } else { 0.0 };
+            let caustic = if emitted[1] > 0 { reach(1, l.caustic) } else { 0.0 };
+            Radii { global: seen, caustic, volume }
+        })
+        .collect();
+    let views = look(&studio.scene, &studio.camera, |i| radii[i].global.max(radii[i].caustic));
+    Ok(predicted(studio.grid(), &views, &fine.layers, &radii, studio.camera.pixel_area().sqrt()))
 }
 
 fn plates(
     studio: &Studio,
     folder: &Path,
     ours: &Kept,
-    equal: &Kept,
-    twin: &[Spectrum],
-    masked: Option<&[bool]>,
-    predicting: &[Kept],
+    others: Option<&Others>,
 ) -> anyhow::Result<Vec<Plate>> {
     let (picture, grid) = (studio.picture, studio.grid());
     let mut plates = Vec::new();
@@ -229,31 +245,33 @@ fn plates(
         Ok(())
     };
     let exposed = |radiance: &[Spectrum]| develop(grid, radiance, picture.exposure);
-    let caption =
-        format!("Photon maps, {} samples a pixel, {}", ours.facts.samples, duration(ours.facts.seconds));
-    plate("photons", caption, &exposed(&ours.total))?;
-    let caption =
-        format!("Paths, {} samples a pixel, {}", equal.facts.samples, duration(equal.facts.seconds));
-    plate("paths", caption, &exposed(&equal.total))?;
-    plate("twin", "The twin: paths, converged".to_string(), &exposed(twin))?;
-    let print = error_print(grid, &ours.total, twin, masked, SCALE);
-    let grey = if masked.is_some() { "; grey: masked beforehand" } else { "" };
-    let caption = format!("Photon maps minus twin, relative: blue too dark, red too bright{grey}");
-    plate("error", caption, &print)?;
+    let told = |method: &str, facts: &Facts| {
+        format!("{method}, {} samples a pixel, {}", facts.samples, duration(facts.seconds))
+    };
+    plate("photons", told("Photon maps", &ours.facts), &exposed(&ours.total))?;
+    if let Some(Others { equal, twin, masked, .. }) = others {
+        plate("paths", told("Paths", &equal.facts), &exposed(&equal.total))?;
+        plate("twin", "The twin: paths, converged".to_string(), &exposed(twin))?;
+        let print = error_print(grid, &ours.total, twin, Some(masked), SCALE);
+        let caption = format!(
+            "Photon maps minus twin, relative, means over {SOFT} by {SOFT} pixels: blue too dark, red too bright, \
+             grey masked beforehand"
+        );
+        plate("error", caption, &print)?;
+    }
     match picture.beside {
         Beside::Single => {
-            let single: Making =
-                mean_layers(predicting).iter().map(|l| l.emission + l.direct + l.single).collect();
+            let single: Making = ours.layers.iter().map(|l| l.emission + l.direct + l.single).collect();
             plate("single", "Single scattering alone".to_string(), &exposed(&single))?;
         }
         Beside::Maps => {
-            let maps = studio.maps(0)?;
+            let maps = studio.maps(0, 1)?;
             let all = [("global", &maps.global), ("caustic", &maps.caustic), ("volume", &maps.volume)];
             for (name, map) in all {
                 if let Some(map) = map.as_ref().filter(|map| map.stored() > 1000) {
                     let picture = dots(&studio.scene, &studio.camera, std::iter::once(map));
                     let caption = format!("The {name} map: {} photons", map.stored());
-                    plate(name, caption, &develop(grid, &picture, 0.6))?;
+                    plate(name, caption, &develop(grid, &picture, exposure(&picture).min(0.6)))?;
                 }
             }
         }

@@ -14,7 +14,7 @@ pub struct Settings {
     /// Only these pictures; those made before stay on the page
     #[arg(long, value_name = "NAME", value_delimiter = ',', value_parser = name)]
     pub only: Vec<String>,
-    /// Show pictures without comparing them: no maps and no twin beyond what is shown
+    /// The photon mapper's pictures alone, to look at: no paths, no twin, no comparison
     #[arg(long)]
     pub draft: bool,
     /// Seed of all random numbers

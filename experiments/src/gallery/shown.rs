@@ -85,10 +85,10 @@ pub struct Shown {
     pub size: (usize, usize),
     /// The photon mapper's picture.
     pub ours: Facts,
-    /// The path tracer's in the same time.
-    pub equal: Facts,
-    /// Samples a pixel and CPU seconds of the twin.
-    pub twin: (u64, f64),
+    /// The path tracer's in the same time; none of a draft.
+    pub equal: Option<Facts>,
+    /// Samples a pixel and CPU seconds of the twin; none of a draft.
+    pub twin: Option<(u64, f64)>,
     /// The comparison; none of a draft.
     pub compared: Option<Compared>,
     /// PNG files.

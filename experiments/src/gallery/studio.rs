@@ -3,12 +3,13 @@
 use super::Grid;
 use super::keep::{Facts, Kept};
 use super::pictures::Picture;
+use crate::harness::Digest;
 use anyhow::{Context, anyhow};
 use cpu_time::ProcessTime;
 use std::path::Path;
 use turbid::integrators::{mapper, path};
 use turbid::photons::PhotonMap;
-use turbid::photons::maps::{self, Indirect, MapSettings, Maps};
+use turbid::photons::maps::{self, Amount, Indirect, MapSettings, Maps};
 use turbid::scene::{Camera, Scene, SceneFile};
 use turbid::sensor::{Film, Streams, extend};
 use turbid::transport::Progress;
@@ -25,6 +26,8 @@ pub struct Studio<'a> {
     pub seed: u64,
     /// Digest of the program.
     pub program: String,
+    /// Digest of the scene's text.
+    text: String,
 }
 
 impl<'a> Studio<'a> {
@@ -43,10 +46,11 @@ impl<'a> Studio<'a> {
             std::fs::read_to_string(&path).with_context(|| format!("cannot read {}", path.display()))?;
         let file: SceneFile = toml::from_str(&text).map_err(|e| anyhow!("{}: {e}", path.display()))?;
         let scene = file.scene(folder).with_context(|| path.display().to_string())?;
+        let text = Digest::of(text.as_bytes()).to_string();
         let camera = scene.camera().with_context(|| format!("{} has no camera", path.display()))?;
         let size = |n: u32| ((f64::from(n) * scale).round() as u32).max(1);
         let camera = camera.with_size(size(camera.width()), size(camera.height()))?;
-        Ok(Studio { picture, scene, camera, seed, program: program.to_string() })
+        Ok(Studio { picture, scene, camera, seed, program: program.to_string(), text })
     }
 
     /// Size of the picture.
@@ -62,15 +66,16 @@ impl<'a> Studio<'a> {
     fn words(&self, method: &str, samples: u64, replicate: u64) -> String {
         let Grid { width, height } = self.grid();
         format!(
-            "{}, {method}, {width} x {height}, {samples} samples, seed {}, replicate {replicate}",
-            self.picture.name, self.seed
+            "{} {}, {method}, {width} x {height}, {samples} samples, seed {}, replicate {replicate}",
+            self.picture.name, self.text, self.seed
         )
     }
 
     /// What a making by photons will be called.
-    pub fn photon_words(&self, samples: u64, replicate: u64) -> String {
+    pub fn photon_words(&self, samples: u64, replicate: u64, factor: u64) -> String {
         let p = self.picture;
-        let counts = format!("photons {:?}, nearest {:?}, gather {}", p.photons, p.nearest, p.gather);
+        let counts =
+            format!("photons {:?} x {factor}, nearest {:?}, gather {}", p.photons, p.nearest, p.gather);
         self.words(&counts, samples, replicate)
     }
 
@@ -79,9 +84,12 @@ impl<'a> Studio<'a> {
         self.words("paths", samples, replicate)
     }
 
-    /// Fills the maps of a replicate.
-    pub fn maps(&self, replicate: u64) -> anyhow::Result<Maps> {
-        let [global, caustic, volume] = self.picture.photons;
+    /// Fills the maps of a replicate, with `factor` times the photons of the original.
+    pub fn maps(&self, replicate: u64, factor: u64) -> anyhow::Result<Maps> {
+        let [global, caustic, volume] = self.picture.photons.map(|amount| match amount {
+            Amount::Emitted(n) => Amount::Emitted(n * factor),
+            Amount::Stored(n) => Amount::Stored(n * factor),
+        });
         let indirect = if self.picture.gather > 0 { Indirect::Gathered } else { Indirect::Seen };
         let settings = MapSettings { global, caustic, volume, indirect, seed: self.seed, replicate };
         Ok(maps::fill(&self.scene, &settings, &turbid::transport::NoProgress)?)
@@ -100,9 +108,15 @@ impl<'a> Studio<'a> {
     }
 
     /// A picture from one set of maps.
-    pub fn photons(&self, samples: u64, replicate: u64, progress: &dyn Progress) -> anyhow::Result<Kept> {
+    pub fn photons(
+        &self,
+        samples: u64,
+        replicate: u64,
+        factor: u64,
+        progress: &dyn Progress,
+    ) -> anyhow::Result<Kept> {
         let start = ProcessTime::now();
-        let maps = self.maps(replicate)?;
+        let maps = self.maps(replicate, factor)?;
         let map_seconds = start.elapsed().as_secs_f64();
         let settings = self.reading()?;
         let reader = mapper::Mapper::new(&self.scene, &maps, &settings);
@@ -122,7 +136,7 @@ impl<'a> Studio<'a> {
         )?;
         let stored = |map: &Option<PhotonMap>| map.as_ref().map_or(0, |m| m.stored() as u64);
         let facts = Facts {
-            words: self.photon_words(samples, replicate),
+            words: self.photon_words(samples, replicate, factor),
             program: self.program.clone(),
             seconds: start.elapsed().as_secs_f64(),
             map_seconds,
