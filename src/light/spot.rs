@@ -135,6 +135,10 @@ impl Spot {
 
 /// The x in [0, 1] with 2 x^3 - x^4 = `share`: Newton's steps, halving where they would leave what brackets the root.
 fn inverse_flux(share: f64) -> f64 {
+    // At 0 the slope is 0 too, and a step of Newton's is 0/0.
+    if share == 0.0 {
+        return 0.0;
+    }
     let (mut low, mut high) = (0.0, 1.0);
     let mut x = libm::cbrt(0.5 * share);
     // Halving alone would need 60 steps to the last digit.
