@@ -1,17 +1,17 @@
 //! Importance: photons go where the picture needs them.
 //!
 //! Importance is to the eye what power is to the lights. Three steps make a map of it:
-//! 1. particles leave the camera and are counted, in the boxes of a grid, where a picture reads photons ([`reading`]): at
+//! 1. particles leave the camera and are counted, in the boxes of a grid, where a picture reads photons (`reading`): at
 //!    the first event on their way, and, where rays of a final gathering read the maps, at the second;
 //! 2. photons of a pilot score where they would be stored, as much as is read there, and every cube of a coarser grid
 //!    learns, by direction and for the cone towards most of what is read, what a photon that leaves it scores on average from there on, over its weight: its *value* J. So
 //!    does every cell of the lights' numbers. Each round of the pilot is steered by what the rounds before it learned
-//!    ([`learn`]);
+//!    (`learn`);
 //! 3. emission takes each cell in proportion to its power times its value; half of the photons that an event scatters go
 //!    where value times scattering is large, with the weight of both ways to choose a direction together; and the weight
 //!    that a photon should have where the value is J is R/J, R the score of all emission: one that leaves an event with a
 //!    weight r times as large goes on as r of them, each with its share, one with a weight r times as small goes on with
-//!    probability r, its weight over r ([`steer`]). These are the weight windows of neutron transport (Wagner and Haghighat
+//!    probability r, its weight over r (`steer`). These are the weight windows of neutron transport (Wagner and Haghighat
 //!    1998), learned, and steered directions (Vorba et al. 2014), by histogram.
 //!
 //! Every estimate keeps its expectation, whatever was learned: a photon's chance times its weight is unchanged. What is lost

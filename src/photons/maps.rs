@@ -204,7 +204,7 @@ pub fn fill_steered(
 /// The same bits on any number of threads. Memory: 56 bytes a photon until its map's tree is built, which holds 40.
 ///
 /// # Errors
-/// [`Error::Cancelled`]; [`Error::NonFinite`] if a photon was not finite.
+/// `Error::Cancelled`; `Error::NonFinite` if a photon was not finite.
 pub fn fill_counted(
     scene: &Scene,
     settings: &MapSettings,

@@ -199,7 +199,7 @@ impl Camera {
         at.cmpge(DVec2::splat(-0.5)).all() && at.cmple(last).all()
     }
 
-    /// Area of a pixel on the plane at distance 1 [1].
+    /// Area of a pixel on the plane at distance 1 \[1\].
     pub fn pixel_area(&self) -> f64 {
         let whole = 4.0 * self.right.length() * self.down.length();
         whole / (f64::from(self.view.width) * f64::from(self.view.height))

@@ -1,11 +1,11 @@
 //! The photon mapper of Jensen and Christensen (1998): radiance along a ray from three photon maps, rays and shadow rays.
 //!
-//! From the eye the ray is followed through specular surfaces. Media on its way are marched through ([`volume`]); on the
-//! first matt surface the radiance is the sum of ([`surface`])
+//! From the eye the ray is followed through specular surfaces. Media on its way are marched through (`volume`); on the
+//! first matt surface the radiance is the sum of (`surface`)
 //! - direct light, by shadow rays through media and filters;
 //! - caustics, from the caustic map;
-//! - the rest, by a final gathering into the global map ([`gather`]), or from the global map where the eye looks: what
-//!   the map holds decides which ([`Indirect`]), so that every class of light is counted once.
+//! - the rest, by a final gathering into the global map (`gather`), or from the global map where the eye looks: what
+//!   the map holds decides which (`Indirect`), so that every class of light is counted once.
 //!
 //! Lights that no shadow ray can aim at (isotropic incidence, volume sources, emitting media) are direct light too: one
 //! ray in a sampled direction looks for them. Photons start from lights alone: what a medium's own emission lights is
