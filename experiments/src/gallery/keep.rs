@@ -52,6 +52,12 @@ impl Kept {
         Kept { facts, layers, total: film.pixels().iter().map(|p| p.total()).collect() }
     }
 
+    /// Radiance without light that is seen straight, or through specular surfaces alone: every method counts that alike,
+    /// and the noise of its edges would hide all else.
+    pub fn scattered(&self) -> Vec<Spectrum> {
+        self.total.iter().zip(&self.layers).map(|(total, layers)| *total - layers.emission).collect()
+    }
+
     /// The bytes of its file.
     fn bytes(&self) -> anyhow::Result<Vec<u8>> {
         let mut bytes = serde_json::to_vec(&self.facts)?;
@@ -150,6 +156,13 @@ mod tests {
             assert_eq!(Kept::read(&path, 2).unwrap(), kept(has_layers));
             assert!(Kept::read(&path, 3).is_err());
         }
+    }
+
+    #[test]
+    fn light_seen_directly_is_left_out() {
+        let mut kept = kept(true);
+        kept.layers[1].emission = Spectrum::grey(1.0);
+        assert_eq!(kept.scattered(), [kept.total[0], Spectrum::grey(2.0)]);
     }
 
     #[test]

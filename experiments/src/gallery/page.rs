@@ -42,8 +42,8 @@ pub fn page(shown: &[Shown], settings: &Settings) -> Markup {
                 p {
                     "Each picture was made as in 1998: photons are stored in maps, and the maps are read along the rays of a "
                     "camera. Beside it stands what a path tracer makes of the same scene in the same CPU time, a converged twin "
-                    "that knows no photons, and the difference. Errors are relative to the mean of the picture; intervals are "
-                    "of 95 per cent."
+                    "that knows no photons, and the difference. Errors are relative to the mean of the picture, lamps that are seen "
+                    "directly left out, which both count alike; intervals are of 95 per cent."
                 }
                 p.soft {
                     "Blur and edges are predicted from a making with more photons before anything is compared; pixels where they may exceed 2 per "

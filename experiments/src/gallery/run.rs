@@ -171,38 +171,50 @@ fn beside(makings: &Makings, ours: &Kept) -> anyhow::Result<Others> {
     let (studio, picture) = (makings.studio, makings.studio.picture);
     let words = format!("{} in {} s", studio.path_words(0, 0), ours.facts.seconds);
     let equal = makings.get("equal", &words, 0, |bar| studio.paths_for(ours.facts.seconds, 0, bar))?;
-    let samples = (picture.twin / if makings.settings.quick { 8 } else { 1 }).max(2);
-    let ours_samples = (picture.samples / 4).max(1);
-    let (again, twin, cost) = both(makings, ours_samples, samples)?;
+    let samples = (picture.twin / if makings.settings.quick { 8 } else { 2 }).max(2);
+    let ours_samples = (picture.samples / 8).max(1);
+    let Both { ours: again, twin, shown, seconds } = both(makings, ours_samples, samples)?;
     let prediction = predict(makings, ours)?;
     let comparison = compare(studio.grid(), &again, &twin, &prediction, LIMIT);
     let found = errors(&again, &twin);
-    let rms = errors(&[ours.total.clone(), ours.total.clone()], &twin).rms.low;
+    let rms = errors(&[ours.scattered(), ours.scattered()], &twin).rms.low;
     // Paths have no error that stays: that of a pass, for the number of samples that fitted into the time.
     let pass = errors(&twin[..HALF], &twin[HALF..]).rms;
     let factor = (samples as f64 / equal.facts.samples as f64).sqrt();
     let equal_rms = Interval { low: factor * pass.low, high: factor * pass.high };
     Ok(Others {
         equal,
-        twin: average(twin.iter()),
-        cost: (samples * twin.len() as u64, cost),
+        twin: shown,
+        cost: (samples * twin.len() as u64, seconds),
         masked: prediction.iter().map(|&e| e > LIMIT).collect(),
         compared: Compared::new(&comparison, &found, (again.len(), ours_samples), rms, equal_rms),
     })
 }
 
-/// Independent makings of both sides, and the twin's seconds.
-fn both(makings: &Makings, ours: u64, samples: u64) -> anyhow::Result<(Vec<Making>, Vec<Making>, f64)> {
+/// Independent makings of both sides, without light that is seen directly.
+struct Both {
+    ours: Vec<Making>,
+    twin: Vec<Making>,
+    /// The twin's picture with that light.
+    shown: Making,
+    /// CPU seconds of the twin.
+    seconds: f64,
+}
+
+fn both(makings: &Makings, ours: u64, samples: u64) -> anyhow::Result<Both> {
     let ours = (0..COMPARED)
-        .map(|n| Ok(makings.photons(&format!("maps-{n:03}"), ours, 1 + n, 1)?.total))
+        .map(|n| Ok(makings.photons(&format!("maps-{n:03}"), ours, 1 + n, 1)?.scattered()))
         .collect::<anyhow::Result<Vec<Making>>>()?;
-    let (mut twin, mut seconds) = (Vec::new(), 0.0);
+    let (mut twin, mut seen, mut seconds) = (Vec::new(), Vec::new(), 0.0);
     for n in 0..COMPARED {
         let kept = makings.paths(&format!("twin-{n:03}"), samples, 1 + n)?;
         seconds += kept.facts.seconds;
-        twin.push(kept.total);
+        twin.push(kept.scattered());
+        seen.push(kept.layers.iter().map(|l| l.emission).collect());
     }
-    Ok((ours, twin, seconds))
+    let sum = |(a, b): (&Spectrum, &Spectrum)| *a + *b;
+    let shown = average(twin.iter()).iter().zip(&average(seen.iter())).map(sum).collect();
+    Ok(Both { ours, twin, shown, seconds })
 }
 
 /// The relative error that blur and edges may cause, by pixel.
