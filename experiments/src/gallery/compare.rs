@@ -93,8 +93,9 @@ impl Comparison {
 /// A pixel is left out where the relative error predicted for it is above `limit`; what was predicted for the pixels
 /// that stay is allowed for, as the mean of its absolute values over the block, times the twin's radiance.
 ///
-/// # Arguments   `predicted` relative error by pixel, made from neither `ours` nor `twin`: pixels chosen for their noise
-///              would bias what is left
+/// # Arguments
+/// `predicted` is the relative error by pixel, made from neither `ours` nor `twin`: pixels chosen for their noise would
+/// bias what is left.
 pub fn compare(grid: Grid, ours: &[Making], twin: &[Making], predicted: &[f64], limit: f64) -> Comparison {
     let keep: Vec<bool> = predicted.iter().map(|&e| e <= limit).collect();
     let (mut blocks, mut kept, mut heavy) = (Vec::new(), 0, 0);
