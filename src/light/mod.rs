@@ -7,6 +7,7 @@ mod glow;
 mod isotropic;
 mod numbers;
 mod point;
+mod portal;
 mod spot;
 mod sun;
 mod volume_source;
@@ -340,7 +341,7 @@ impl Light {
             Light::Area(l) => l.sample(p, u),
             Light::Point(l) => l.sample(p),
             Light::Spot(l) => l.sample(p),
-            Light::Sun(l) => l.sample(u),
+            Light::Sun(l) => l.sample(p, u),
             Light::Isotropic(_) | Light::VolumeSource(_) | Light::Glow(_) => None,
         }
     }
@@ -361,9 +362,9 @@ impl Light {
         if let Light::Area(l) = self { l.emitted(ray, hit) } else { (Spectrum::ZERO, 0.0) }
     }
 
-    /// Radiance seen by a ray that leaves the scene along `dir` [W/(L^2 sr)], and the density with which
-    /// [`Self::sample`] aims there [1/sr]; none where the light has no part in it.
-    pub fn background(&self, dir: DVec3) -> Option<(Spectrum, f64)> {
-        if let Light::Sun(l) = self { l.background(dir) } else { None }
+    /// Radiance seen by a ray that leaves the scene [W/(L^2 sr)], and the density with which [`Self::sample`] aims from
+    /// its origin along it [1/sr]; none where the light has no part in it.
+    pub fn background(&self, ray: &Ray) -> Option<(Spectrum, f64)> {
+        if let Light::Sun(l) = self { l.background(ray) } else { None }
     }
 }

@@ -238,7 +238,7 @@ impl Eye<'_, '_> {
         }
         let Some(found) = hit else {
             for light in scene.lights() {
-                if let Some((radiance, _)) = light.background(ray.dir) {
+                if let Some((radiance, _)) = light.background(ray) {
                     let seen = walker.weight * transmittance(scene, ray, end, walker.within, stream);
                     self.layers.emission += seen * radiance;
                 }
