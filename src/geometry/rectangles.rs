@@ -78,7 +78,8 @@ impl Pair {
         let t = self.corner.minus(origin).dot(self.normal) / dir.dot(self.normal);
         let p = origin.moved(dir, t).minus(self.corner);
         let (a, b, zero) = (p.dot(self.u), p.dot(self.v), f64x2::ZERO);
-        let inside = a.simd_ge(zero) & a.simd_le(self.u_squared) & b.simd_ge(zero) & b.simd_le(self.v_squared);
+        let inside =
+            a.simd_ge(zero) & a.simd_le(self.u_squared) & b.simd_ge(zero) & b.simd_le(self.v_squared);
         (t, inside & t.simd_gt(zero) & t.simd_lt(bound))
     }
 }
