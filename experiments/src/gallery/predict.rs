@@ -190,6 +190,6 @@ mod tests {
         let error = predicted(GRID, &views, &layers, &vec![radii; GRID.pixels()], PIXEL)[0];
         assert!((error - 3.0 / 16.0 * 0.05).abs() < 1e-12, "{error}");
         views.iter_mut().for_each(|view| view.is_at_face = true);
-        assert_eq!(predicted(GRID, &views, &layers, &radii, PIXEL)[0], 0.0);
+        assert_eq!(predicted(GRID, &views, &layers, &vec![radii; GRID.pixels()], PIXEL)[0], 0.0);
     }
 }
