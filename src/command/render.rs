@@ -33,8 +33,8 @@ use turbid::sensor::{Film, Sample, Streams, extend, extend_by_light};
 /// Light tracing (--with light) is unbiased too, and a second witness for caustics, which paths find badly or not at all:
 /// photons start from the lights and are connected to the camera at each scattering, so that --samples counts histories a
 /// pixel, wherever they are seen. It holds what scatters last on a matt surface or in a medium that the camera sees straight
-/// or through filters. The rest is black in it: lights seen directly, the whole emission layer, and all that is seen in
-/// mirrors and through glass.
+/// or through filters. The rest is black in it: lights and glowing media seen directly, the whole emission layer, and all that is
+/// seen in mirrors and through glass.
 ///
 /// A first picture, without any file: `turbid render fogbox -o fog.exr --gather-rays 0`, in seconds; without the last
 /// option it is clean, in minutes. Glass, mirrors and the sun make caustics, which need a light with an extent to be
@@ -155,8 +155,8 @@ impl Render {
         let scene = match (self.source.load()?, self.plan) {
             (scene, PlanName::Auto) => scene,
             (_, PlanName::Full) if self.with == With::Light => bail!(
-                "--plan full is for pictures by photons and paths: light tracing reads no map and looks for no emission, so \
-                 that nothing could be forced on; allowed with --with light: auto"
+                "--plan full is for pictures by photons and paths: light tracing reads no map and looks for nothing that \
+                 could be left out; allowed with --with light: auto"
             ),
             (scene, PlanName::Full) => scene.with_full_plan()?,
         };
@@ -167,24 +167,17 @@ impl Render {
                 scene.plan().unreachable.join("; ")
             );
         }
-        if self.with == With::Light {
-            light_tracing_can(&scene)?;
-            note(&format!("the picture holds {}", self.with.holds()))?;
-        }
-        if scene.stage().is_some() && self.with == With::Photons {
+        if scene.stage().is_some() && self.with != With::Paths {
             bail!(
                 "pictures of a scene with `cell`, which stands for an unbounded slab, are made by paths: --with paths"
             );
         }
-        if self.with == With::Photons && scene.plan().has_emission {
-            note(
-                "photons start from lights alone: light of emitting media is seen straight and after one scattering, \
-                 not after more; a volume source in place of the emission, or --with paths, brings it all",
-            )?;
-        }
         // Before the work, not after it.
         check_folder(&self.output)?;
         check_folder(&self.output.with_extension("png"))?;
+        if self.with == With::Light {
+            note(&format!("the picture holds {}", self.with.holds()))?;
+        }
         let settings = self.reading.settings(&scene)?;
         let made = on_threads(self.threads, || match self.with {
             With::Paths => self.repeat(&camera, |streams, stages, left, film| {
@@ -364,21 +357,6 @@ impl Filled {
     fn of(map: &PhotonMap) -> Self {
         Filled { stored: map.stored(), emitted: map.emitted() }
     }
-}
-
-/// Refuses scenes whose light photons on their way to the camera cannot bring.
-fn light_tracing_can(scene: &Scene) -> anyhow::Result<()> {
-    if scene.plan().has_emission {
-        bail!(
-            "light tracing follows photons from lights alone, and media of this scene emit: use --with paths or photons"
-        );
-    }
-    if scene.stage().is_some() {
-        bail!(
-            "pictures of a scene with `cell`, which stands for an unbounded slab, are made by paths: --with paths"
-        );
-    }
-    Ok(())
 }
 
 /// Says which layers are black since no photon was stored for them.

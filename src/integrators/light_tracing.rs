@@ -48,7 +48,7 @@ pub fn light_tracing(
     stream: &mut Stream,
     splat: impl FnMut(Splat),
 ) -> Rays {
-    let start = emitter.emit(scene, stream);
+    let Some(start) = emitter.emit(scene, stream) else { return Rays::default() };
     let mut tracer = Tracer { scene, camera, flight: None, rays: Rays::default(), splat };
     walk(scene, start, Roulette::Analog, None, stream, &mut tracer);
     tracer.rays

@@ -79,6 +79,7 @@ pub struct SceneFile {
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub objects: Vec<ObjectFile>,
     /// Lights.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub lights: Vec<LightFile>,
     /// What is measured.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]

@@ -28,7 +28,7 @@ pub struct LightCount {
 /// What the camera sees of lights themselves and by specular surfaces is not in it.
 ///
 /// # Errors
-/// `Error::Unreachable` for media that emit, and for unbounded slabs, whose photons are folded into a cell;
+/// `Error::Unreachable` for media that emit and have no end, and for unbounded slabs, whose photons are folded into a cell;
 /// `Error::NonFinite`; `Error::Cancelled`.
 pub fn by_light(
     scene: &Scene,
@@ -137,13 +137,10 @@ fn expose(
 fn check(scene: &Scene) -> Result<()> {
     let refuse =
         |what: &str| Err(Error::Unreachable(format!("light tracing cannot sample {what}: use paths")));
-    if scene.plan().has_emission {
-        return refuse("the light of media that emit");
-    }
     if scene.stage().is_some() {
         return refuse("an unbounded slab");
     }
-    Ok(())
+    scene.check_emission()
 }
 
 /// The film that is being exposed: sums of one sample, which is counted when the next one begins.

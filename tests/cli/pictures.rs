@@ -133,12 +133,15 @@ area = { shape = { rectangle = { corner = [-0.7, 3.0, -0.7], u = [1.4, 0.0, 0.0]
 #[test]
 fn light_tracing_refuses() {
     let folder = Folder::new();
-    let glowing = room(&folder, "room.toml", ("albedo = 0.8", "albedo = 0.8\nemission = 1.0"));
     let out = folder.0.path().join("out.exr");
     let render = |scene: &str, more: &[&str], words: &[&str]| {
         refuses_naming(&[&["render", scene, "-o", text(&out), "--with", "light"], more].concat(), words);
     };
-    render(text(&glowing), &[], &["media of this scene emit", "--with paths or photons"]);
+    let layer = "cell = 4.0\n[camera]\nposition = [0, 0, -2]\nlook_at = [0, 0, 0]\nfov = 40\nwidth = 4\nheight = 4\n\
+                 [[regions]]\nshape = { slab = { top = 0, thickness = 1 } }\nsigma_t = 1\nalbedo = 0.8\ng = 0\n\
+                 [[lights]]\nbeam = { dir = [0, 0, 1], irradiance = 1, section = \"unbounded\" }\n";
+    let layer = folder.file("layer.toml", layer);
+    render(text(&layer), &[], &["an unbounded slab", "--with paths"]);
     render("fogbox", &["--plan", "full"], &["--plan full", "allowed with --with light: auto"]);
     refuses_naming(
         &["render", "fogbox", "-o", text(&out), "--with", "lights"],
