@@ -22,6 +22,8 @@ pub struct Picture {
     pub see: &'static str,
     /// Numbers, machine and times of the original.
     pub original: &'static str,
+    /// Which numbers are the original's and which ours.
+    pub numbers: &'static str,
     /// Photons of the global, caustic and volume map.
     pub photons: [Amount; 3],
     /// Photons in an estimate: global, caustic, volume.
@@ -51,10 +53,11 @@ pub const ALL: &[Picture] = &[
         see: "Light gathers behind the glass sphere in a caustic on the floor, and the mirror sphere throws a second one on \
               the wall. The map beside it is what the picture was made from.",
         original: "171,880 photons, 25 samples a pixel: 444 s on a Pentium 4 of 3 GHz",
+        numbers: "171,880 photons and 25 samples a pixel are the original's; ours: how they are shared out over the global and the caustic map, 50 and 60 in an estimate, 6 rays a final gathering.",
         photons: [Amount::Stored(121_880), Amount::Stored(50_000), NONE],
-        nearest: [100, 60, 100],
+        nearest: [50, 60, 100],
         samples: 25,
-        gather: 16,
+        gather: 6,
         size: 2.0,
         exposure: 1.3,
         beside: Beside::Maps,
@@ -66,6 +69,7 @@ pub const ALL: &[Picture] = &[
         see: "The liquid is a lens: the lamp behind the glass becomes a bright cusp on the table, in the colour that the \
               cognac lets through.",
         original: "200,000 photons, 64 samples a pixel: 4 h on a Pentium of 90 MHz",
+        numbers: "200,000 photons and 64 samples a pixel are the original's; ours: half of them in the caustic map, 100 and 60 in an estimate.",
         photons: [Amount::Stored(100_000), Amount::Stored(100_000), NONE],
         nearest: [100, 60, 100],
         samples: 64,
@@ -81,6 +85,7 @@ pub const ALL: &[Picture] = &[
         see: "With single scattering alone the shaded side is black and the cloud looks like smoke; light scattered many \
               times fills it and makes it white.",
         original: "single scattering 61 s; multiple scattering 8 s for the map and 92 s for the picture",
+        numbers: "all numbers of photons are ours.",
         photons: [NONE, NONE, Amount::Stored(200_000)],
         nearest: [100, 60, 100],
         samples: 16,
@@ -96,6 +101,7 @@ pub const ALL: &[Picture] = &[
         see: "The lamp has a halo, the walls lend their colour to the air beside them, and shadows are lifted.",
         original: "200,000 photons, of them 65,000 in the volume map, 100 in an estimate: 4 s for the maps and 3 min 32 s \
                    for the picture",
+        numbers: "200,000 photons, 65,000 of them in the volume map, and 100 in an estimate are the original's; ours: samples and rays of the final gathering.",
         photons: [Amount::Stored(135_000), NONE, Amount::Stored(65_000)],
         nearest: [100, 60, 100],
         samples: 8,
@@ -111,6 +117,7 @@ pub const ALL: &[Picture] = &[
         see: "Light keeps its direction: the halo is tighter, the beam below the lamp is brighter than the air beside it.",
         original: "200,000 photons, of them 65,000 in the volume map, 100 in an estimate: 4 s for the maps and 4 min 3 s \
                    for the picture",
+        numbers: "200,000 photons, 65,000 of them in the volume map, and 100 in an estimate are the original's; ours: samples and rays of the final gathering.",
         photons: [Amount::Stored(135_000), NONE, Amount::Stored(65_000)],
         nearest: [100, 60, 100],
         samples: 8,
@@ -126,6 +133,7 @@ pub const ALL: &[Picture] = &[
         see: "Shreds of smoke take light from the walls behind them and cast soft shadows on the floor.",
         original: "200,000 photons, of them 65,000 in the volume map, 50 in an estimate: 6 s for the maps (4 s elsewhere in \
                    the same source) and 7 min 54 s for the picture",
+        numbers: "200,000 photons, 65,000 of them in the volume map, and 50 in an estimate of it are the original's; ours: 100 in an estimate on surfaces, samples and rays of the final gathering.",
         photons: [Amount::Stored(135_000), NONE, Amount::Stored(65_000)],
         nearest: [100, 60, 50],
         samples: 8,
@@ -140,6 +148,7 @@ pub const ALL: &[Picture] = &[
         title: "A dusty room with a stained-glass window",
         see: "The sun paints the window on the floor, and the dust shows each pane's colour on its way through the room.",
         original: "80,000 photons in the dust, 220,000 on surfaces: 27 s for the maps and 5 min 27 s for the picture",
+        numbers: "80,000 photons in the dust and 220,000 on surfaces are the original's; all others are ours.",
         photons: [Amount::Stored(220_000), NONE, Amount::Stored(80_000)],
         nearest: [100, 60, 60],
         samples: 16,
@@ -154,6 +163,7 @@ pub const ALL: &[Picture] = &[
         title: "Sunbeams under a wavy sea",
         see: "Sheets of light from the gaps of a jetty hang in the water; the waves break them into shafts, and into a net on the sand.",
         original: "from the same lectures, without numbers",
+        numbers: "all numbers of photons are ours.",
         photons: [Amount::Stored(100_000), Amount::Stored(200_000), Amount::Stored(1_000_000)],
         nearest: [100, 60, 30],
         samples: 4,
@@ -168,6 +178,7 @@ pub const ALL: &[Picture] = &[
         title: "A pool",
         see: "The net of light on the tiles is drawn by the same waves through which it is seen.",
         original: "the closing picture of the lectures, without numbers",
+        numbers: "all numbers of photons are ours.",
         photons: [Amount::Stored(150_000), Amount::Stored(300_000), NONE],
         nearest: [100, 60, 60],
         samples: 16,
