@@ -1,16 +1,12 @@
 //! Invariants: energy, threads, seeds, scale, and the number of histories.
-#![allow(clippy::unwrap_used, reason = "tests")]
 
-mod checks;
-mod support;
-
-use glam::DVec3;
-use std::path::Path;
-use support::run::pass;
-use support::scenes::{
+use crate::support::run::pass;
+use crate::support::scenes::{
     self, Incidence, area_light, bounded, cuboid, homogeneous, isotropic, point_light, rectangle, sphere,
 };
-use support::verdict;
+use crate::support::verdict;
+use glam::DVec3;
+use std::path::Path;
 use turbid::Spectrum;
 use turbid::estimators::{Gather, Kernel};
 use turbid::light::Faces;
@@ -110,7 +106,8 @@ fn energy_is_conserved_by_channel() {
         vec![isotropic(ball.clone(), Faces::Both)],
     );
     let sum = |sensors: &[(turbid::scene::Quantity, Orders)], replicate: u64| -> [f64; 3] {
-        let sensors: Vec<_> = sensors.iter().map(|(q, o)| support::run::sensor(q.clone(), *o)).collect();
+        let sensors: Vec<_> =
+            sensors.iter().map(|(q, o)| crate::support::run::sensor(q.clone(), *o)).collect();
         let histories = Histories { count: 4096, seed: 2, replicate, max_order: None };
         let tallies = shoot(&scene, histories, &sensors, |_| false, &NoProgress).unwrap().tallies;
         [0, 1, 2].map(|c| tallies.iter().map(|t| t[c].mean()).sum())
@@ -192,7 +189,7 @@ fn the_same_seed_gives_the_same_bits_on_any_number_of_threads() {
 
 #[test]
 fn moments_do_not_depend_on_the_threads() {
-    checks::threads::moments_do_not_depend_on_the_threads();
+    crate::checks::threads::moments_do_not_depend_on_the_threads();
 }
 
 /// The slab in units of 2^-20 and 2^20 mean free paths: the same bits, positions scaled.
@@ -243,7 +240,7 @@ fn the_number_of_histories_changes_no_mean() {
         (0..64).map(|i| reading.mean + half * if i % 2 == 0 { 1.0 } else { -1.0 }).collect()
     };
     verdict::agree("fluence at 4,000 and 16,000 photons", &fluence(4_000, 6), &fluence(16_000, 7), 0.3, 6);
-    let paths = |n| support::run::paths(&scene, scenes::at_depth(1.0), Orders::ALL, n, 8)[0];
+    let paths = |n| crate::support::run::paths(&scene, scenes::at_depth(1.0), Orders::ALL, n, 8)[0];
     verdict::agree("paths at 2^16 and 2^19", &paths(1 << 16), &paths(1 << 19), 0.1, 8);
 }
 

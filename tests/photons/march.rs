@@ -1,9 +1,6 @@
 //! The march through a photon map, against closed forms.
-#![allow(clippy::unwrap_used, reason = "tests")]
 
-mod common;
-
-use common::ALPHA;
+use crate::common::ALPHA;
 use glam::DVec3;
 use libm::{exp, expm1, sinh};
 use turbid::Spectrum;

@@ -1,10 +1,7 @@
 //! The three maps: who is in which, how many are emitted and stored, the same bits on any number of threads.
-#![allow(clippy::unwrap_used, reason = "tests")]
 
-mod support;
-
+use crate::support::scenes::{area_light, bounded, cuboid, lambertian, rectangle, region};
 use glam::DVec3;
-use support::scenes::{area_light, bounded, cuboid, lambertian, rectangle, region};
 use turbid::Spectrum;
 use turbid::geometry::Shape;
 use turbid::photons::maps::{Amount, Indirect, MapSettings, Maps, PILOT, counts, fill};
@@ -132,7 +129,7 @@ fn maps_may_stay_empty_and_say_so() {
     let black = bounded(
         vec![region(cuboid(DVec3::ZERO, DVec3::ONE), 1.0, 0.0, 0.0)],
         Vec::new(),
-        vec![support::scenes::point_light(DVec3::splat(0.5), Spectrum::ONE)],
+        vec![crate::support::scenes::point_light(DVec3::splat(0.5), Spectrum::ONE)],
     );
     let asked = MapSettings { volume: Amount::Stored(1000), ..settings(Indirect::Seen) };
     let maps = fill(&black, &asked, &NoProgress).unwrap();

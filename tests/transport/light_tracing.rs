@@ -1,11 +1,10 @@
 //! Light tracing against the path tracer, on every class of light that both sample.
-#![allow(clippy::unwrap_used, reason = "tests")]
 
-mod support;
-
+use crate::support::scenes::{
+    area_light, bounded, cuboid, dielectric, filled, homogeneous, lambertian, rectangle,
+};
+use crate::support::{scenes, verdict};
 use glam::DVec3;
-use support::scenes::{area_light, bounded, cuboid, dielectric, filled, homogeneous, lambertian, rectangle};
-use support::{scenes, verdict};
 use turbid::Spectrum;
 use turbid::geometry::Shape;
 use turbid::integrators::{Layer, path};

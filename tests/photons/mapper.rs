@@ -1,18 +1,13 @@
 //! The photon mapper against closed forms: a furnace of fog, steps of the march, treated radiance of single photons.
-#![allow(clippy::unwrap_used, reason = "tests")]
 
-#[path = "checks/mod.rs"]
-mod checks;
-mod support;
-
-use checks::ledger::{Room, filling, layers_of_maps, settings};
-use checks::point_light;
-use glam::{DVec3, Vec3};
-use std::f64::consts::PI;
-use support::scenes::{
+use crate::checks::ledger::{Room, filling, layers_of_maps, settings};
+use crate::checks::point_light;
+use crate::support::scenes::{
     bounded, cuboid, emitting_sphere, homogeneous, isotropic, lambertian, rectangle, region, sphere,
 };
-use support::verdict;
+use crate::support::verdict;
+use glam::{DVec3, Vec3};
+use std::f64::consts::PI;
 use turbid::Spectrum;
 use turbid::estimators::boundary::{Boundary, Rejection, Treatment, treated_density, treated_in_scattered};
 use turbid::estimators::{Gather, Kernel};

@@ -1,17 +1,13 @@
 //! Extremes: thin and thick, white and black, grazing, peaked, empty; every number stays finite and right.
-#![allow(clippy::unwrap_used, reason = "tests")]
 
-mod checks;
-mod support;
-
-use glam::DVec3;
-use std::f64::consts::PI;
-use support::run::{pass, paths};
-use support::scenes::{
+use crate::support::run::{pass, paths};
+use crate::support::scenes::{
     self, CELL, Incidence, at_depth, ball, isotropic, outflow, point_light, reflectance, slab, sphere,
     transmittance,
 };
-use support::verdict;
+use crate::support::verdict;
+use glam::DVec3;
+use std::f64::consts::PI;
 use turbid::Error;
 use turbid::Spectrum;
 use turbid::estimators::{Gather, Kernel, fluence};
@@ -32,7 +28,7 @@ fn with_sensors(scene: &Scene, quantities: &[Quantity]) -> Scene {
         objects: scene.objects().to_vec(),
         lights: scene.lights().to_vec(),
         cell: scene.stage().map(|s| s.side),
-        sensors: quantities.iter().map(|q| support::run::sensor(q.clone(), Orders::ALL)).collect(),
+        sensors: quantities.iter().map(|q| crate::support::run::sensor(q.clone(), Orders::ALL)).collect(),
         ..Parts::default()
     })
     .unwrap()
@@ -129,17 +125,17 @@ fn an_optical_thickness_of_1e4() {
 
 #[test]
 fn transmittance_keeps_its_digits() {
-    checks::numbers::transmittance_keeps_its_digits();
+    crate::checks::numbers::transmittance_keeps_its_digits();
 }
 
 #[test]
 fn a_box_is_seen_along_its_axes() {
-    checks::numbers::a_box_is_seen_along_its_axes();
+    crate::checks::numbers::a_box_is_seen_along_its_axes();
 }
 
 #[test]
 fn the_largest_word_is_below_one() {
-    checks::numbers::the_largest_word_is_below_one();
+    crate::checks::numbers::the_largest_word_is_below_one();
 }
 
 #[test]

@@ -2,14 +2,11 @@
 //!
 //! **A value that changes here changes every result of the same seed: note it in CHANGELOG.md.** These are the
 //! program's own past output: they say that nothing moved, not that it is right; the other tests do that.
-#![allow(clippy::unwrap_used, reason = "tests")]
 
-mod support;
-
-use glam::DVec3;
-use support::scenes::{
+use crate::support::scenes::{
     self, Incidence, area_light, emitting_sphere, isotropic, point_light, rectangle, slab, sphere,
 };
+use glam::DVec3;
 use turbid::Spectrum;
 use turbid::light::{Faces, Light};
 use turbid::math::Asymmetry;
@@ -89,7 +86,7 @@ fn bytes(photon: &Photon) -> Vec<u8> {
 #[test]
 fn photons_of_a_small_run() {
     let scene = slab(2.0, 0.9, 0.75, Incidence::Beam(0.5));
-    let photons = support::run::pass(&scene, &[], 10_000, 1, |_| true).photons;
+    let photons = crate::support::run::pass(&scene, &[], 10_000, 1, |_| true).photons;
     let found = (photons.len(), format!("{:016x}", digest(photons.iter().flat_map(bytes))));
     assert_eq!((found.0, found.1.as_str()), RUN);
 }

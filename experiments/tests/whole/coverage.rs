@@ -1,7 +1,6 @@
 //! The experiment `coverage`, whole, on few repeats.
-#![allow(clippy::unwrap_used, reason = "tests")]
 
-mod whole;
+use super::run;
 
 const PROGRAM: &str = env!("CARGO_BIN_EXE_coverage");
 
@@ -10,7 +9,7 @@ const PROGRAM: &str = env!("CARGO_BIN_EXE_coverage");
 #[test]
 fn a_twentieth_of_the_repeats() {
     let folder = tempfile::tempdir().unwrap();
-    let one = whole::same_on_threads(PROGRAM, "0.05", folder.path());
-    assert_eq!(whole::figures(&one), 3);
+    let one = run::same_on_threads(PROGRAM, "0.05", folder.path());
+    assert_eq!(run::figures(&one), 3);
     assert!(!std::fs::read_to_string(one.join("claims.csv")).unwrap().contains(",rejected,"));
 }

@@ -5,13 +5,8 @@
 //! of the ball through the k-th of N photons is Beta(k, N-k+1), and given the ball the k-1 photons in it are
 //! independent with the density over P, so the mean is E((k-1)/(N P) x (kernel mean at r(P))), an integral
 //! over the radius.
-#![allow(clippy::unwrap_used, reason = "tests")]
 
-mod checks;
-mod common;
-mod support;
-
-use common::ALPHA;
+use crate::common::ALPHA;
 use glam::DVec3;
 use statrs::distribution::{ContinuousCDF, StudentsT};
 use std::f64::consts::PI;
@@ -231,12 +226,12 @@ fn all_k_photons_read_high_as_stated() {
 
 #[test]
 fn the_nearest_rule_reads_a_uniform_field() {
-    checks::points::a_uniform_field_is_read_as_it_is(checks::points::nearest());
+    crate::checks::points::a_uniform_field_is_read_as_it_is(crate::checks::points::nearest());
 }
 
 #[test]
 fn estimates_divide_by_emitted() {
-    checks::points::a_thinned_field_is_read_as_what_is_left(|_| 1.0);
+    crate::checks::points::a_thinned_field_is_read_as_what_is_left(|_| 1.0);
 }
 
 /// A cap that holds k photons on average: about half of the gathers are under-full, and the mixture of the

@@ -1,17 +1,12 @@
 //! The ledger of the photon mapper: each class of light is the path tracer's, and they add up to the whole.
-#![allow(clippy::unwrap_used, reason = "tests")]
 
-#[path = "checks/mod.rs"]
-mod checks;
-mod support;
-
-use checks::ledger::{
+use crate::checks::ledger::{
     Room, a_clear_room_keeps_its_ledger, a_foggy_room_keeps_its_ledger,
     a_foggy_room_keeps_its_ledger_when_gathered, layers_are_those_of_paths,
     layers_of_the_scene_are_those_of_paths, mirror, settings, what_is_absent_is_not_asked,
 };
+use crate::support::scenes::{lambertian, rectangle};
 use glam::DVec3;
-use support::scenes::{lambertian, rectangle};
 use turbid::Spectrum;
 use turbid::geometry::Shape;
 use turbid::integrators::mapper::Settings;

@@ -1,12 +1,9 @@
 //! The advice of pilot maps, realised: the error that independent maps of the advised size and radius then have,
 //! against exact fluences.
-#![allow(clippy::unwrap_used, reason = "tests")]
 
-mod support;
-
+use crate::support::scenes::{self, Incidence};
+use crate::support::{run, verdict};
 use std::path::Path;
-use support::scenes::{self, Incidence};
-use support::{run, verdict};
 use turbid::Spectrum;
 use turbid::estimators::{Gather, Kernel, fluence};
 use turbid::math::exp;

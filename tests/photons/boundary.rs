@@ -1,14 +1,11 @@
 //! Estimates near boundaries on maps of independent photons: each treatment and each rejection against sums over all
 //! photons, written down as they are defined, and against the exact expectation; the moments against rules of
 //! another kind. Each law has a wrong twin.
-#![allow(clippy::unwrap_used, reason = "tests")]
 
-mod support;
-
+use crate::support::quadrature::integrate;
+use crate::support::verdict;
 use glam::DVec3;
 use std::f64::consts::PI;
-use support::quadrature::integrate;
-use support::verdict;
 use turbid::estimators::boundary::{Boundary, Rejection, Treatment, body_moments, treated_density};
 use turbid::estimators::{Estimate, Gather, Kernel, collision_density};
 use turbid::geometry::{Cuboid, Rectangle, Shape, Slab, Sphere};
@@ -80,7 +77,7 @@ fn moments_by_midpoints(kernel: Kernel, body: &Shape, p: DVec3, radius: f64, n: 
         let shell = 4.0 * PI * u * u * kernel.peak() * kernel.profile(u * u) / f64::from(n).powi(3);
         for j in 0..n {
             for k in 0..n {
-                let dir = support::unit_vector(2.0 * middle(j) - 1.0, 2.0 * PI * middle(k));
+                let dir = crate::support::unit_vector(2.0 * middle(j) - 1.0, 2.0 * PI * middle(k));
                 if body.contains(p + dir * (u * radius)) {
                     let z = u * dir.dot(normal);
                     sums[0] += shell;

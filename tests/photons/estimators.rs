@@ -1,8 +1,5 @@
 //! Estimators at a point: kernels, exact small cases, symmetries. Their statistics are in
 //! `estimators_statistics`.
-#![allow(clippy::unwrap_used, reason = "tests")]
-
-mod common;
 
 use glam::{DMat3, DVec3, Vec3};
 use proptest::prelude::*;
@@ -319,7 +316,7 @@ fn gathers(scale: f64) -> [Gather; GATHERS] {
 }
 
 proptest! {
-    #![proptest_config(common::config(60))]
+    #![proptest_config(crate::common::config(60))]
 
     /// Powers times a constant give the estimate times it; a power of two changes no bit.
     #[test]

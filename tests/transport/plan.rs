@@ -1,13 +1,8 @@
 //! What a scene does not require costs nothing, and changes nothing where it is done nevertheless.
-#![allow(clippy::unwrap_used, reason = "tests")]
 
-#[path = "checks/mod.rs"]
-mod checks;
-mod support;
-
-use checks::ledger::{Room, by_paths, filling, layers_of_maps, look, mirror, settings};
-use support::scenes::lambertian;
-use support::verdict;
+use crate::checks::ledger::{Room, by_paths, filling, layers_of_maps, look, mirror, settings};
+use crate::support::scenes::lambertian;
+use crate::support::verdict;
 use turbid::Spectrum;
 use turbid::integrators::Layer;
 use turbid::integrators::mapper::{Mapper, Report};

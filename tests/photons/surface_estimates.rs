@@ -1,12 +1,9 @@
 //! Estimates on surfaces, apart from transport: discs, who is accepted, the k nearest, bias and variance.
-#![allow(clippy::unwrap_used, reason = "tests")]
 
-mod support;
-
+use crate::support::quadrature::integrate;
+use crate::support::verdict;
 use glam::{DVec3, Vec3};
 use std::f64::consts::PI;
-use support::quadrature::integrate;
-use support::verdict;
 use turbid::estimators::{Gather, Kernel, irradiance};
 use turbid::photons::tree::Tangent;
 use turbid::photons::{Flags, Photon, PhotonMap};

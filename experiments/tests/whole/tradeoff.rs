@@ -1,7 +1,6 @@
 //! The experiment `tradeoff`, whole, on few photons.
-#![allow(clippy::unwrap_used, reason = "tests")]
 
-mod whole;
+use super::run;
 
 const PROGRAM: &str = env!("CARGO_BIN_EXE_tradeoff");
 
@@ -10,8 +9,8 @@ const PROGRAM: &str = env!("CARGO_BIN_EXE_tradeoff");
 #[test]
 fn the_same_results_on_one_thread_and_two() {
     let folder = tempfile::tempdir().unwrap();
-    let one = whole::same_on_threads(PROGRAM, "0.02", folder.path());
-    assert!(whole::figures(&one) >= 3);
+    let one = run::same_on_threads(PROGRAM, "0.02", folder.path());
+    assert!(run::figures(&one) >= 3);
     // Seconds stand apart from results: by phase in the cells, and in timing.csv.
     let timing = std::fs::read_to_string(one.join("timing.csv")).unwrap();
     assert_eq!(timing.lines().next(), Some("experiment,cell,phase,cpu_seconds"));

@@ -1,10 +1,7 @@
 //! Synthetic maps: the points follow the density they state.
-#![allow(clippy::unwrap_used, reason = "tests")]
 
-mod support;
-
+use crate::support::verdict;
 use glam::DVec3;
-use support::verdict;
 use turbid::photons::Photon;
 use turbid::photons::synthetic::{Number, Profile, Synthetic};
 use turbid::stats::Moments;

@@ -1,7 +1,4 @@
 //! The photon tree against brute force in f64 over the positions it holds.
-#![allow(clippy::unwrap_used, reason = "tests")]
-
-mod common;
 
 use glam::{DVec3, Vec3};
 use proptest::prelude::*;
@@ -253,7 +250,7 @@ fn the_order_of_arrival_changes_nothing() -> Result<()> {
 }
 
 proptest! {
-    #![proptest_config(common::config(200))]
+    #![proptest_config(crate::common::config(200))]
 
     /// Clouds squeezed by up to 10^12 along each axis, with duplicates: what brute force finds.
     #[test]

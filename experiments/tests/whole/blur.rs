@@ -1,7 +1,6 @@
 //! The experiment `blur`, whole, on few photons.
-#![allow(clippy::unwrap_used, reason = "tests")]
 
-mod whole;
+use super::run;
 
 const PROGRAM: &str = env!("CARGO_BIN_EXE_blur");
 
@@ -10,6 +9,6 @@ const PROGRAM: &str = env!("CARGO_BIN_EXE_blur");
 #[test]
 fn the_same_results_on_one_thread_and_two() {
     let folder = tempfile::tempdir().unwrap();
-    let one = whole::same_on_threads(PROGRAM, "0.02", folder.path());
-    assert!(whole::figures(&one) >= 4);
+    let one = run::same_on_threads(PROGRAM, "0.02", folder.path());
+    assert!(run::figures(&one) >= 4);
 }

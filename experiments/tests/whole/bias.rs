@@ -1,7 +1,6 @@
 //! The experiment `bias`, whole, on few photons.
-#![allow(clippy::unwrap_used, reason = "tests")]
 
-mod whole;
+use super::run;
 
 const PROGRAM: &str = env!("CARGO_BIN_EXE_bias");
 
@@ -10,12 +9,12 @@ const PROGRAM: &str = env!("CARGO_BIN_EXE_bias");
 #[test]
 fn the_same_results_on_one_thread_and_two_and_after_a_loss() {
     let folder = tempfile::tempdir().unwrap();
-    let one = whole::same_on_threads(PROGRAM, "0.02", folder.path());
-    whole::same_after_a_loss(
+    let one = run::same_on_threads(PROGRAM, "0.02", folder.path());
+    run::same_after_a_loss(
         PROGRAM,
         "0.02",
         &one,
         &["bias/albedo0.9-n4000-000003.csv", "bias/glow-n1000-000005.csv"],
     );
-    assert!(whole::figures(&one) >= 4);
+    assert!(run::figures(&one) >= 4);
 }

@@ -1,7 +1,6 @@
 //! The experiment `extremes`, whole, on few photons.
-#![allow(clippy::unwrap_used, reason = "tests")]
 
-mod whole;
+use super::run;
 
 const PROGRAM: &str = env!("CARGO_BIN_EXE_extremes");
 
@@ -10,12 +9,12 @@ const PROGRAM: &str = env!("CARGO_BIN_EXE_extremes");
 #[test]
 fn the_same_results_on_one_thread_and_two() {
     let folder = tempfile::tempdir().unwrap();
-    let one = whole::same_on_threads(PROGRAM, "0.02", folder.path());
+    let one = run::same_on_threads(PROGRAM, "0.02", folder.path());
     // What is computed, not sampled, does not depend on the photons: nothing is lost, changed, or let through.
     let claims = std::fs::read_to_string(one.join("claims.csv")).unwrap();
     for claim in ["non-finite", "checked", "scale", "refusals", "resolution"] {
         let line = claims.lines().find(|line| line.starts_with(&format!("extremes,{claim},"))).unwrap();
         assert!(line.contains(",upheld,"), "{line}");
     }
-    assert!(whole::figures(&one) >= 3);
+    assert!(run::figures(&one) >= 3);
 }

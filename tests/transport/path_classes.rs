@@ -1,14 +1,11 @@
 //! Path classes: what a stored photon has met, what a caller can select by it, and the layers of a picture.
-#![allow(clippy::unwrap_used, reason = "tests")]
 
-mod support;
-
+use crate::support::quadrature::integrate;
+use crate::support::run::{pass, paths};
+use crate::support::scenes::{area_light, bounded, cuboid, emitting_sphere, rectangle, region};
+use crate::support::verdict;
 use glam::DVec3;
 use std::f64::consts::PI;
-use support::quadrature::integrate;
-use support::run::{pass, paths};
-use support::scenes::{area_light, bounded, cuboid, emitting_sphere, rectangle, region};
-use support::verdict;
 use turbid::Spectrum;
 use turbid::estimators::{Gather, Kernel, fluence};
 use turbid::geometry::Shape;
@@ -243,7 +240,7 @@ fn light_in_a_mirror_does_not_depend_on_the_largest_order() {
 
 /// Moments of one class at one order [W/(L^2 sr)], channel 0.
 fn class_of_order(scene: &Scene, ray: Ray, layer: Layer, order: u32, n: u64, seed: u64) -> Moments {
-    support::run::numbers(n, seed, |stream| {
+    crate::support::run::numbers(n, seed, |stream| {
         let mut sum = 0.0;
         path::classes(scene, ray, None, SURROUNDINGS, Orders::only(order), stream, |_, class, value| {
             sum += if class == layer { value[0] } else { 0.0 };

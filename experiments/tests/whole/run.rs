@@ -1,5 +1,4 @@
 //! A whole experiment on few photons, through its own command.
-#![allow(dead_code, reason = "each test binary uses a part")]
 
 use assert_cmd::Command;
 use std::path::{Path, PathBuf};
@@ -40,4 +39,14 @@ pub fn figures(one: &Path) -> usize {
     let report = std::fs::read_to_string(one.join("report.html")).unwrap();
     assert!(!report.contains("NaN"));
     report.matches("<svg").count()
+}
+
+/// Runs a command on all cores: its report is drawn, and no claim is rejected.
+pub fn finds_no_contradiction(program: &str, photons: &str) {
+    let folder = tempfile::tempdir().unwrap();
+    let mut command = Command::new(program);
+    command.args(["--photons", photons, "--out"]).arg(folder.path());
+    let printed = String::from_utf8(command.assert().success().get_output().stdout.clone()).unwrap();
+    assert!(printed.contains(" 0 rejected"), "{printed}");
+    assert!(figures(folder.path()) > 0);
 }

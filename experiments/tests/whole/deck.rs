@@ -1,7 +1,6 @@
 //! The experiment `deck`, whole, on few photons.
-#![allow(clippy::unwrap_used, reason = "tests")]
 
-mod whole;
+use super::run;
 
 const PROGRAM: &str = env!("CARGO_BIN_EXE_deck");
 
@@ -10,9 +9,9 @@ const PROGRAM: &str = env!("CARGO_BIN_EXE_deck");
 #[test]
 fn a_fiftieth_of_the_photons() {
     let folder = tempfile::tempdir().unwrap();
-    let one = whole::same_on_threads(PROGRAM, "0.02", folder.path());
-    assert_eq!(whole::figures(&one), 2);
-    whole::same_after_a_loss(PROGRAM, "0.02", &one, &["deck/walls-000000.csv", "deck/edge-000003.csv"]);
+    let one = run::same_on_threads(PROGRAM, "0.02", folder.path());
+    assert_eq!(run::figures(&one), 2);
+    run::same_after_a_loss(PROGRAM, "0.02", &one, &["deck/walls-000000.csv", "deck/edge-000003.csv"]);
     let claims = std::fs::read_to_string(one.join("claims.csv")).unwrap();
     let decoupled = claims.lines().find(|line| line.contains("decoupled")).unwrap();
     assert!(decoupled.contains("upheld"), "{decoupled}");

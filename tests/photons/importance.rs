@@ -1,11 +1,8 @@
 //! Importance: photons go where the picture needs them, and every estimate keeps its expectation.
-#![allow(clippy::unwrap_used, reason = "tests")]
 
-mod support;
-
+use crate::support::verdict;
 use glam::{DVec2, DVec3};
 use std::path::Path;
-use support::verdict;
 use turbid::estimators::{Gather, Kernel};
 use turbid::integrators::mapper::{Mapper, Settings};
 use turbid::photons::importance::{Importance, ImportanceSettings};
