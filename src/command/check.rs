@@ -20,7 +20,7 @@ impl Check {
             "{} regions, {} objects, {} lights, {} sensors",
             scene.regions().len(),
             scene.objects().len(),
-            scene.lights().len(),
+            scene.named_lights().len(),
             scene.sensors().len()
         )?;
         for line in scene.plan().lines() {

@@ -137,12 +137,6 @@ impl Render {
                 "pictures of a scene with `cell`, which stands for an unbounded slab, are made by paths: --with paths"
             );
         }
-        if self.with == With::Photons && scene.plan().has_emission {
-            note(
-                "photons start from lights alone: light of emitting media is seen straight and after one scattering, \
-                 not after more; a volume source in place of the emission, or --with paths, brings it all",
-            )?;
-        }
         // Before the work, not after it.
         check_folder(&self.output)?;
         check_folder(&self.output.with_extension("png"))?;

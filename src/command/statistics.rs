@@ -69,11 +69,15 @@ pub fn print_statistics(made: &Made, exposure: f64) -> anyhow::Result<()> {
         }
         for (name, pass) in [("first", &report.main), ("caustic", &report.caustic)] {
             if pass.emitted > 0 {
-                let (Ends { absorbed, escaped, abandoned }, sent) = (pass.ends, pass.emitted);
-                writeln!(
+                let (Ends { absorbed, escaped, abandoned, refused }, sent) = (pass.ends, pass.emitted);
+                write!(
                     text,
                     "map {number:<3} {name} pass of {sent}: {absorbed} absorbed, {escaped} escaped, {abandoned} abandoned"
                 )?;
+                match refused {
+                    0 => writeln!(text)?,
+                    _ => writeln!(text, ", {refused} where a medium emits less than elsewhere or nothing")?,
+                }
             }
         }
         writeln!(text, "map {number:<3} memory   {:.1} MB", report.bytes as f64 / 1e6)?;

@@ -47,7 +47,7 @@ pub fn light_tracing(
     stream: &mut Stream,
     splat: impl FnMut(Splat),
 ) {
-    let start = emitter.emit(scene, stream);
+    let Some(start) = emitter.emit(scene, stream) else { return };
     let mut tracer = Tracer { scene, camera, flight: None, splat };
     walk(scene, start, Roulette::Analog, None, stream, &mut tracer);
 }

@@ -102,7 +102,7 @@ impl<'a, F: FnMut(u32, Layer, Spectrum)> PathVisitor<'a, F> {
         for light in self.scene.lights() {
             let mut seen = uncollided(self.scene, light, walker, end, stream);
             if hit.is_none()
-                && let Some((radiance, pdf_light)) = light.background(walker.ray.dir)
+                && let Some((radiance, pdf_light)) = light.background(&walker.ray)
             {
                 let share = walker.pdf_solid_angle.map_or(1.0, |pdf| pdf / (pdf + pdf_light));
                 seen += radiance * transmittance(self.scene, &walker.ray, end, walker.within, stream) * share;

@@ -3,9 +3,11 @@
 mod area;
 mod beam;
 mod bundle;
+mod glow;
 mod isotropic;
 mod numbers;
 mod point;
+mod portal;
 mod spot;
 mod sun;
 mod volume_source;
@@ -13,6 +15,7 @@ mod volume_source;
 pub use area::Area;
 pub use beam::{Beam, Section};
 pub use bundle::{Bundle, EmissionCell};
+pub use glow::Glow;
 pub use isotropic::{Faces, Isotropic};
 pub use numbers::{EmissionNumbers, Needs};
 pub use point::Point;
@@ -45,6 +48,8 @@ pub enum Light {
     Isotropic(Isotropic),
     /// Power emitted uniformly inside a shape, alike in all directions.
     VolumeSource(VolumeSource),
+    /// What an emitting medium sends out: a scene makes it of its media, nobody else.
+    Glow(Glow),
 }
 
 /// What unbounded lights need to start photons: the one slab of the scene and the side of its cell \[L\].
@@ -72,6 +77,8 @@ pub struct Emission {
     pub primitive: u32,
     /// Power \[W\], as though it were the only one.
     pub power: Spectrum,
+    /// Chance that it leaves at all; 1 but for media.
+    pub chance: f64,
 }
 
 /// A direction towards a light, with its contribution.
@@ -102,7 +109,7 @@ impl Light {
         match self {
             Light::Beam(_) | Light::Point(_) | Light::Spot(_) => true,
             Light::Sun(l) => l.is_delta(),
-            Light::Area(_) | Light::Isotropic(_) | Light::VolumeSource(_) => false,
+            Light::Area(_) | Light::Isotropic(_) | Light::VolumeSource(_) | Light::Glow(_) => false,
         }
     }
 
@@ -141,7 +148,7 @@ impl Light {
 
     /// Whether next-event estimation can aim at it.
     pub fn has_direction(&self) -> bool {
-        !matches!(self, Light::Isotropic(_) | Light::VolumeSource(_))
+        !matches!(self, Light::Isotropic(_) | Light::VolumeSource(_) | Light::Glow(_))
     }
 
     /// Whether all channels are equal.
@@ -154,6 +161,7 @@ impl Light {
             Light::Sun(l) => l.irradiance().is_grey(),
             Light::Isotropic(l) => l.radiance().is_grey(),
             Light::VolumeSource(l) => l.emission().is_grey(),
+            Light::Glow(l) => l.is_grey(),
         }
     }
 
@@ -163,12 +171,12 @@ impl Light {
             Light::Beam(l) => l.section() == Section::Unbounded,
             Light::Isotropic(l) => matches!(l.shape(), Shape::Slab(_)),
             Light::VolumeSource(l) => matches!(l.shape(), Shape::Slab(_)),
-            Light::Area(_) | Light::Point(_) | Light::Spot(_) | Light::Sun(_) => false,
+            Light::Area(_) | Light::Point(_) | Light::Spot(_) | Light::Sun(_) | Light::Glow(_) => false,
         }
     }
 
     /// Emitted power \[W\]; of an unbounded light the part that enters the cell, of the sun the part that can meet the
-    /// scene.
+    /// scene; of a medium a quadrature.
     pub fn power(&self, stage: Option<&Stage>) -> Spectrum {
         match self {
             Light::Beam(l) => l.power(stage),
@@ -178,7 +186,13 @@ impl Light {
             Light::Sun(l) => l.power(),
             Light::Isotropic(l) => l.power(stage),
             Light::VolumeSource(l) => l.power(stage),
+            Light::Glow(l) => l.power(),
         }
+    }
+
+    /// What photons carry together if none is refused ([`Emission::chance`]) \[W\]: the power, but for media at least that.
+    pub fn ceiling(&self, stage: Option<&Stage>) -> Spectrum {
+        if let Light::Glow(l) = self { l.ceiling() } else { self.power(stage) }
     }
 
     /// How many numbers decide where a photon starts and where it goes.
@@ -188,7 +202,9 @@ impl Light {
             Light::Point(_) | Light::Spot(_) => Needs { position: 0, direction: 2 },
             Light::Area(l) => l.needs(),
             Light::Sun(l) => l.needs(),
-            Light::Isotropic(_) | Light::VolumeSource(_) => Needs { position: 3, direction: 2 },
+            Light::Isotropic(_) | Light::VolumeSource(_) | Light::Glow(_) => {
+                Needs { position: 3, direction: 2 }
+            }
         }
     }
 
@@ -214,9 +230,10 @@ impl Light {
             Light::Sun(l) => l.ray(numbers),
             Light::Isotropic(l) => l.ray(stage, numbers),
             Light::VolumeSource(l) => l.ray(stage, numbers),
+            Light::Glow(l) => return l.emit_at(stage, numbers),
         };
         let primitive = if let Light::Area(l) = self { l.primitive(numbers) } else { 0 };
-        Emission { ray, primitive, power: self.power(stage) }
+        Emission { ray, primitive, power: self.power(stage), chance: 1.0 }
     }
 
     /// The photon of these numbers where directions are chosen by cells: [`Self::emit_at`], but from a sphere the
@@ -226,7 +243,7 @@ impl Light {
         if let Light::Area(l) = self
             && let Some(ray) = l.aimed_ray(numbers)
         {
-            return Emission { ray, primitive: 0, power: l.power() };
+            return Emission { ray, primitive: 0, power: l.power(), chance: 1.0 };
         }
         self.emit_at(stage, numbers)
     }
@@ -253,7 +270,7 @@ impl Light {
                 }
             }
             Light::Sun(_) => (along, aside) = (root(count, 0.5), 1),
-            Light::VolumeSource(_) => along = 1,
+            Light::VolumeSource(_) | Light::Glow(_) => along = 1,
             _ => {}
         }
         let axes = |i: usize| if i < needs.position { uniform(along) } else { none() };
@@ -298,8 +315,13 @@ impl Light {
             }
             Light::Spot(l) => Some(l.bundle(cell)),
             Light::Sun(l) => l.bundle(cell),
-            Light::VolumeSource(l) => {
-                let (center, radius) = l.shape().bounds()?;
+            Light::VolumeSource(_) | Light::Glow(_) => {
+                let ball = match self {
+                    Light::Glow(l) => l.ball(),
+                    Light::VolumeSource(l) => l.shape().bounds(),
+                    _ => None,
+                };
+                let (center, radius) = ball?;
                 let (axis, angle) = bundle::cone(cell, &Frame::new(DVec3::Z), by_number::sphere);
                 Some(Bundle { center, radius, axis, angle })
             }
@@ -319,8 +341,8 @@ impl Light {
             Light::Area(l) => l.sample(p, u),
             Light::Point(l) => l.sample(p),
             Light::Spot(l) => l.sample(p),
-            Light::Sun(l) => l.sample(u),
-            Light::Isotropic(_) | Light::VolumeSource(_) => None,
+            Light::Sun(l) => l.sample(p, u),
+            Light::Isotropic(_) | Light::VolumeSource(_) | Light::Glow(_) => None,
         }
     }
 
@@ -340,9 +362,9 @@ impl Light {
         if let Light::Area(l) = self { l.emitted(ray, hit) } else { (Spectrum::ZERO, 0.0) }
     }
 
-    /// Radiance seen by a ray that leaves the scene along `dir` [W/(L^2 sr)], and the density with which
-    /// [`Self::sample`] aims there [1/sr]; none where the light has no part in it.
-    pub fn background(&self, dir: DVec3) -> Option<(Spectrum, f64)> {
-        if let Light::Sun(l) = self { l.background(dir) } else { None }
+    /// Radiance seen by a ray that leaves the scene [W/(L^2 sr)], and the density with which [`Self::sample`] aims from
+    /// its origin along it [1/sr]; none where the light has no part in it.
+    pub fn background(&self, ray: &Ray) -> Option<(Spectrum, f64)> {
+        if let Light::Sun(l) = self { l.background(ray) } else { None }
     }
 }

@@ -1,11 +1,12 @@
 //! The sun: a distant disc of uniform radiance.
 
 use super::bundle::patch;
+use super::portal::Portal;
 use super::spot::one_minus_cos_degrees;
 use super::{Bundle, EmissionCell, EmissionNumbers, LightSample, Needs, emissive};
 use crate::Spectrum;
 use crate::error::{Error, Result};
-use crate::geometry::Sphere;
+use crate::geometry::{Rectangle, Sphere};
 use crate::math::{Frame, Ray, cosine_pair, warp};
 use glam::DVec3;
 use std::f64::consts::PI;
@@ -17,6 +18,9 @@ use std::f64::consts::PI;
 /// scene, perpendicular to the axis, wide enough for the scene seen from everywhere on the sun: radius R / cos alpha,
 /// where R is that of the sphere that holds the scene; their directions are those of the cone, in proportion to the
 /// cosine, and their power is irradiance x pi (R / cos alpha)^2.
+///
+/// With a portal only those of its rays exist whose line crosses a rectangle, as behind a window in a dark wall. Photons
+/// cross the portal, and none is lost on the wall.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Sun {
     frame: Frame,
@@ -25,6 +29,7 @@ pub struct Sun {
     one_minus_mu_max: f64,
     /// What photons must cover; none before the light is part of a scene.
     bounds: Option<Sphere>,
+    portal: Option<Portal>,
 }
 
 impl Sun {
@@ -45,7 +50,18 @@ impl Sun {
             irradiance: emissive("irradiance", irradiance)?,
             one_minus_mu_max: one_minus_cos_degrees(angular_radius),
             bounds: None,
+            portal: None,
         })
+    }
+
+    /// The same sun through a window: of its rays those alone whose line crosses `rectangle`, which they leave by the
+    /// front.
+    ///
+    /// # Errors
+    /// `Error::Scene` if a part of the disc is behind the rectangle or sees it edge-on.
+    pub fn through(self, rectangle: Rectangle) -> Result<Self> {
+        let portal = Portal::new(rectangle, self.frame.z, self.sin2_max().sqrt())?;
+        Ok(Sun { portal: Some(portal), ..self })
     }
 
     /// The same sun, its photons covering a sphere.
@@ -84,23 +100,28 @@ impl Sun {
     }
 
     pub(super) fn power(&self) -> Spectrum {
-        let area = self.disc().map_or(f64::INFINITY, |(_, radius)| PI * radius * radius);
-        self.irradiance * area
+        let disc = || self.disc().map_or(f64::INFINITY, |(_, radius)| PI * radius * radius);
+        self.irradiance * self.portal.map_or_else(disc, |portal| portal.projected_area())
     }
 
     pub(super) fn needs(&self) -> Needs {
         Needs { position: 2, direction: if self.is_delta() { 0 } else { 2 } }
     }
 
-    /// How far before its disc a photon starts \[L\]: outside the sphere that holds the scene, by its radius. On a line
-    /// through the disc the sphere reaches R (1 + tan alpha) back at most.
+    /// How far before its disc, or portal, a photon starts \[L\]: outside the sphere that holds the scene, by its radius.
+    /// On a line through the disc the sphere reaches R (1 + tan alpha) back at most.
     pub(super) fn run_up(&self) -> f64 {
         let tan = self.sin2_max().sqrt() / (1.0 - self.one_minus_mu_max);
-        self.bounds.map_or(0.0, |bounds| bounds.radius() * (2.0 + tan))
+        self.bounds.map_or(0.0, |bounds| {
+            self.portal.map_or(bounds.radius() * (2.0 + tan), |portal| portal.run_up(bounds))
+        })
     }
 
-    /// Where a photon crosses the disc \[L\].
+    /// Where a photon crosses the disc, or portal \[L\].
     pub(super) fn crossing(&self, u: [f64; 2]) -> DVec3 {
+        if let Some(portal) = self.portal {
+            return portal.point(u);
+        }
         let (center, radius) = self.disc().map_or((DVec3::ZERO, 0.0), |(b, radius)| (b.center(), radius));
         let p = warp::square_to_disc(u) * radius;
         center + self.frame.to_world(DVec3::new(p.x, p.y, 0.0))
@@ -110,6 +131,8 @@ impl Sun {
         let [u, v] = numbers.direction;
         let dir = if self.is_delta() {
             self.frame.z
+        } else if let Some(portal) = self.portal {
+            portal.direction([u, v], (self.sin2_max().sqrt(), 1.0 - self.one_minus_mu_max))
         } else {
             // In proportion to the cosine: the squared sine is uniform.
             let sin2 = u * self.sin2_max();
@@ -122,34 +145,49 @@ impl Sun {
 
     pub(super) fn bundle(&self, cell: &EmissionCell) -> Option<Bundle> {
         let (bounds, radius) = self.disc()?;
-        let (middle, reach) = patch(cell, &self.frame);
+        let (middle, reach) = if let Some(portal) = self.portal {
+            portal.patch(cell)
+        } else {
+            let (middle, reach) = patch(cell, &self.frame);
+            (bounds.center() + middle * radius, reach * radius)
+        };
         // A photon starts as far before the disc as the others, along its own direction: a chord away from the axis's.
         let chord = (2.0 * self.one_minus_mu_max).sqrt() * self.run_up();
         Some(Bundle {
-            center: bounds.center() + middle * radius - self.frame.z * self.run_up(),
-            radius: reach * radius + chord,
+            center: middle - self.frame.z * self.run_up(),
+            radius: reach + chord,
             axis: self.frame.z,
             angle: libm::asin(self.sin2_max().sqrt()),
         })
     }
 
-    pub(super) fn sample(&self, u: [f64; 2]) -> Option<LightSample> {
-        let distance = f64::INFINITY;
-        if self.is_delta() {
-            let dir = -self.frame.z;
-            return Some(LightSample { dir, distance, value: self.irradiance, pdf_solid_angle: None });
-        }
-        let travel = self.frame.to_world(warp::square_to_cone(u, self.one_minus_mu_max)).normalize();
-        let pdf = warp::pdf_cone(self.one_minus_mu_max);
-        let value = self.radiance() / pdf;
-        Some(LightSample { dir: -travel, distance, value, pdf_solid_angle: Some(pdf) })
+    /// Whether the line of a ray is one of those that there are: all without a portal.
+    fn has(&self, line: &Ray) -> bool {
+        self.portal.is_none_or(|portal| portal.passes(line))
     }
 
-    /// Radiance seen by a ray that leaves the scene along `dir` [W/(L^2 sr)], and the density with which
-    /// [`Self::sample`] aims there [1/sr]; none beside the disc.
-    pub(super) fn background(&self, dir: DVec3) -> Option<(Spectrum, f64)> {
-        let (_, one_plus_mu) = cosine_pair(self.frame.z, dir);
-        (!self.is_delta() && one_plus_mu <= self.one_minus_mu_max)
+    pub(super) fn sample(&self, p: DVec3, u: [f64; 2]) -> Option<LightSample> {
+        let travel = if self.is_delta() {
+            self.frame.z
+        } else {
+            self.frame.to_world(warp::square_to_cone(u, self.one_minus_mu_max)).normalize()
+        };
+        if !self.has(&Ray::new(p, travel)) {
+            return None;
+        }
+        let (dir, distance) = (-travel, f64::INFINITY);
+        if self.is_delta() {
+            return Some(LightSample { dir, distance, value: self.irradiance, pdf_solid_angle: None });
+        }
+        let pdf = warp::pdf_cone(self.one_minus_mu_max);
+        Some(LightSample { dir, distance, value: self.radiance() / pdf, pdf_solid_angle: Some(pdf) })
+    }
+
+    /// Radiance seen by a ray that leaves the scene [W/(L^2 sr)], and the density with which [`Self::sample`] aims along
+    /// it [1/sr]; none beside the disc and beside the portal.
+    pub(super) fn background(&self, ray: &Ray) -> Option<(Spectrum, f64)> {
+        let (_, one_plus_mu) = cosine_pair(self.frame.z, ray.dir);
+        (!self.is_delta() && one_plus_mu <= self.one_minus_mu_max && self.has(ray))
             .then(|| (self.radiance(), warp::pdf_cone(self.one_minus_mu_max)))
     }
 }

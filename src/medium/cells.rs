@@ -54,6 +54,27 @@ impl Cells {
         self.bounds.iter().fold(0.0, |high, bound| high.max(bound.1))
     }
 
+    /// The largest bound in a box.
+    pub fn high_in(&self, min: DVec3, max: DVec3) -> f64 {
+        let index = |p: DVec3, axis: usize| {
+            let place = (p[axis] - self.min[axis]) / self.edge[axis];
+            (place.max(0.0) as usize).min(self.count[axis] - 1)
+        };
+        // Rounding may put a point of the box beside its cell.
+        let margin = 1e-6 * self.edge;
+        let range = |axis: usize| index(min - margin, axis)..=index(max + margin, axis);
+        let [nx, ny, _] = self.count;
+        let mut high = 0.0f64;
+        for z in range(2) {
+            for y in range(1) {
+                for x in range(0) {
+                    high = high.max(self.bounds[(z * ny + y) * nx + x].1);
+                }
+            }
+        }
+        high
+    }
+
     /// How many cells there are.
     pub fn len(&self) -> usize {
         self.bounds.len()

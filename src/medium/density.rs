@@ -122,6 +122,15 @@ impl Density {
         }
     }
 
+    /// No point of a box has more than this.
+    pub fn high_in(&self, min: DVec3, max: DVec3) -> f64 {
+        match self {
+            Density::Grid(grid) => grid.cells().high_in(min, max),
+            Density::Cloud(cloud) => cloud.bounds(min, max).1,
+            Density::HeightFog(fog) => fog.high_in(min, max),
+        }
+    }
+
     /// Whether it depends on z alone.
     pub fn is_layered(&self) -> bool {
         match self {

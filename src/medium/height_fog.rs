@@ -49,6 +49,11 @@ impl HeightFog {
         exp(-((self.up.dot(p) - self.base) / self.scale_height).max(0.0))
     }
 
+    /// No point of a box has more than this: it is densest in its lowest corner.
+    pub fn high_in(&self, min: DVec3, max: DVec3) -> f64 {
+        self.at(DVec3::select(self.up.cmpge(DVec3::ZERO), min, max))
+    }
+
     /// The part of a stretch that lies above the base, and the length of the rest \[L\].
     fn split(&self, ray: &Ray, part: Interval) -> (Option<Interval>, f64) {
         let (height, slope) = self.line(ray);

@@ -1,8 +1,7 @@
 //! Media: one file each. A medium says its coefficients, bounds of them along a ray, and its phase function; it never
 //! tracks.
 //!
-//! A medium's own emission is what rays that look through it see. Photons start from lights only: a medium that is to
-//! light others is a `VolumeSource` light, of power density 4 pi times the emission, in place of the emission.
+//! A medium that emits is a light: rays that look through it see its emission, and photons start in it.
 
 mod cells;
 mod cloud;

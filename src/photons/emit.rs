@@ -3,6 +3,9 @@
 //! A light spreads its power evenly over the unit cube of its numbers ([`Light::emit_at`]). Cut into cells, that cube says
 //! where photons may start: emission in proportion to power from some of the cells, whose photons then carry what these
 //! cells send out, is what all cells would have sent there.
+//!
+//! Media that emit are lights too. Where one of them is asked for a photon and the medium is not there, or emits less than
+//! the bound by which places are chosen, no photon leaves: the history counts as emitted all the same.
 
 use crate::Spectrum;
 use crate::light::{Emission, EmissionCell, Light};
@@ -17,7 +20,7 @@ const CELLS: usize = 1 << 14;
 /// From where photons leave the lights, and how often.
 #[derive(Debug, Clone)]
 pub struct Emitter {
-    /// Power of all lights \[W\].
+    /// What photons of all lights carry together if none is refused \[W\].
     power: Spectrum,
     chosen: Option<Chosen>,
     /// Cells that were tested against specular bodies.
@@ -40,7 +43,7 @@ struct Chosen {
 impl Emitter {
     /// All that the lights send out, in proportion to power.
     pub fn by_power(scene: &Scene) -> Self {
-        Emitter { power: scene.power(), chosen: None, tested: 0 }
+        Emitter { power: scene.ceiling(), chosen: None, tested: 0 }
     }
 
     /// What can meet a specular body: cells of the lights' numbers whose rays can reach the sphere about one of them.
@@ -87,7 +90,7 @@ impl Emitter {
         chances: Vec<f64>,
         tested: u64,
     ) -> Option<Self> {
-        let power = scene.power();
+        let power = scene.ceiling();
         let total: f64 = chances.iter().sum();
         if total.is_nan() || total <= 0.0 {
             return None;
@@ -116,13 +119,14 @@ impl Emitter {
         self.chosen.as_ref().map_or(1.0, |chosen| chosen.kept)
     }
 
-    /// A photon, ready to walk: its weight is its power as though it were the only one \[W\].
-    pub fn emit(&self, scene: &Scene, stream: &mut Stream) -> Walker {
+    /// A photon, ready to walk: its weight is its power as though it were the only one \[W\]. None if none leaves this
+    /// time, which is for media alone to decide.
+    pub fn emit(&self, scene: &Scene, stream: &mut Stream) -> Option<Walker> {
         self.emit_from(scene, stream).1
     }
 
     /// The same, and the number of the cell that it comes from; 0 where there are no cells.
-    pub(super) fn emit_from(&self, scene: &Scene, stream: &mut Stream) -> (usize, Walker) {
+    pub(super) fn emit_from(&self, scene: &Scene, stream: &mut Stream) -> (usize, Option<Walker>) {
         let (lights, stage) = (scene.lights(), scene.stage());
         let Some(chosen) = &self.chosen else { return (0, by_power(scene, self.power, stream)) };
         let u = stream.unit();
@@ -133,13 +137,13 @@ impl Emitter {
         let needs = light.needs();
         let numbers = cell.numbers((needs.position, needs.direction), stream);
         let emission = light.emit_aimed(stage, &numbers);
-        (i, start(scene, *index, &emission, emission.power * chosen.weights[i]))
+        (i, start(scene, *index, &emission, emission.power * chosen.weights[i], stream))
     }
 }
 
 /// Power of a light's cell, summed over channels \[W\].
 fn share(scene: &Scene, light: usize, cell: &EmissionCell) -> f64 {
-    scene.lights()[light].power(scene.stage()).sum() * cell.volume()
+    scene.lights()[light].ceiling(scene.stage()).sum() * cell.volume()
 }
 
 /// Whether a light's cells have bundles though the whole has none: those of a cuboid, a face each.
@@ -149,28 +153,39 @@ fn has_faces(light: &Light) -> bool {
 
 /// A photon from one of the lights, chosen in proportion to power; it carries the power of all of them \[W\], in the
 /// colour of its own.
-fn by_power(scene: &Scene, power: Spectrum, stream: &mut Stream) -> Walker {
+fn by_power(scene: &Scene, power: Spectrum, stream: &mut Stream) -> Option<Walker> {
     let (lights, stage) = (scene.lights(), scene.stage());
     let total = power.sum();
     let mut index = 0;
     if lights.len() > 1 {
         let mut target = stream.unit() * total;
-        while index + 1 < lights.len() && target >= lights[index].power(stage).sum() {
-            target -= lights[index].power(stage).sum();
+        while index + 1 < lights.len() && target >= lights[index].ceiling(stage).sum() {
+            target -= lights[index].ceiling(stage).sum();
             index += 1;
         }
     }
     let emission = lights[index].emit(stage, stream);
-    let weight =
-        if lights.len() > 1 { emission.power * (total / emission.power.sum()) } else { emission.power };
-    start(scene, index, &emission, weight)
+    let own = lights[index].ceiling(stage).sum();
+    let weight = if lights.len() > 1 { emission.power * (total / own) } else { emission.power };
+    start(scene, index, &emission, weight, stream)
 }
 
-/// The walker of a photon that leaves a light.
-fn start(scene: &Scene, index: usize, emission: &Emission, weight: Spectrum) -> Walker {
-    let from = scene.lights()[index]
-        .body()
-        .map(|_| Start { target: Target::Light(index), primitive: emission.primitive });
-    let within = scene.interior_of_light(index, emission.ray.origin);
-    Walker { from, within, ..Walker::new(emission.ray, weight) }
+/// The walker of a photon that leaves a light, if it does.
+fn start(
+    scene: &Scene,
+    index: usize,
+    emission: &Emission,
+    weight: Spectrum,
+    stream: &mut Stream,
+) -> Option<Walker> {
+    let light = &scene.lights()[index];
+    let origin = emission.ray.origin;
+    if let Light::Glow(glow) = light {
+        let is_there = glow.is_certain() || scene.medium_number_at(origin) == Some(glow.number());
+        let leaves = is_there && (emission.chance >= 1.0 || stream.unit() < emission.chance);
+        return leaves.then(|| Walker { within: glow.within(), ..Walker::new(emission.ray, weight) });
+    }
+    let from = light.body().map(|_| Start { target: Target::Light(index), primitive: emission.primitive });
+    let within = scene.interior_of_light(index, origin);
+    Some(Walker { from, within, ..Walker::new(emission.ray, weight) })
 }

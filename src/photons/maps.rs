@@ -99,6 +99,8 @@ pub struct Ends {
     pub escaped: u64,
     /// Where nobody asked for more.
     pub abandoned: u64,
+    /// Before they began: a medium was asked for a photon where it emits less than elsewhere, or is not.
+    pub refused: u64,
 }
 
 /// What one pass of histories did.
@@ -225,6 +227,7 @@ pub fn fill_counted_steered(
     importance: Option<&Importance>,
     progress: &dyn Progress,
 ) -> Result<Maps> {
+    scene.check_emission()?;
     let emitters = Emitters::of(scene, importance);
     let run = |class, global, volume| Run {
         scene,

@@ -92,6 +92,7 @@ pub fn shoot_from(
     keep: impl Fn(&Photon) -> bool + Sync,
     progress: &dyn Progress,
 ) -> Result<Pass> {
+    scene.check_emission()?;
     let power = scene.power();
     let block = |range: std::ops::Range<u64>| {
         let mut visitor = Tallier {
@@ -155,11 +156,12 @@ struct Tallier<'a, K: Fn(&Photon) -> bool> {
 impl<K: Fn(&Photon) -> bool> Tallier<'_, K> {
     fn run(&mut self, max_order: Option<u32>, stream: &mut Stream) {
         self.scores.fill(Spectrum::ZERO);
-        let start = self.emitter.emit(self.scene, stream);
         self.pass.emitted += 1;
-        self.pass.ledger.emitted += start.weight.sum();
-        // Photons of order n arrive by a flight of order n: flights stop one later.
-        walk(self.scene, start, Roulette::Analog, max_order.map(|n| n.saturating_add(1)), stream, self);
+        if let Some(start) = self.emitter.emit(self.scene, stream) {
+            self.pass.ledger.emitted += start.weight.sum();
+            // Photons of order n arrive by a flight of order n: flights stop one later.
+            walk(self.scene, start, Roulette::Analog, max_order.map(|n| n.saturating_add(1)), stream, self);
+        }
         let channels = if self.scene.plan().is_grey { 1 } else { 3 };
         for (sensor, score) in self.scores.iter().enumerate() {
             if !is_tallied(&self.sensors[sensor]) {

@@ -79,6 +79,7 @@ pub struct SceneFile {
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub objects: Vec<ObjectFile>,
     /// Lights.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub lights: Vec<LightFile>,
     /// What is measured.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
@@ -195,6 +196,14 @@ pub enum SectionFile {
     Rectangle { corner: [f64; 3], u: [f64; 3], v: [f64; 3] },
 }
 
+/// What the sun's light comes through.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+#[allow(missing_docs, reason = "the names are those of `geometry::Rectangle`")]
+pub enum PortalFile {
+    Rectangle { corner: [f64; 3], u: [f64; 3], v: [f64; 3] },
+}
+
 /// A light.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
@@ -203,13 +212,42 @@ pub enum SectionFile {
     reason = "the names are those of the lights' own constructors, which say their meaning"
 )]
 pub enum LightFile {
-    Beam { dir: [f64; 3], irradiance: Channels<NonNegative>, section: SectionFile },
-    Area { shape: ShapeFile, radiance: Channels<NonNegative> },
-    Point { position: [f64; 3], power: Channels<NonNegative> },
-    Spot { position: [f64; 3], dir: [f64; 3], full_angle: f64, edge_angle: f64, power: Channels<NonNegative> },
-    Sun { dir: [f64; 3], irradiance: Channels<NonNegative>, angular_radius: f64 },
-    Isotropic { shape: ShapeFile, faces: Faces, radiance: Channels<NonNegative> },
-    VolumeSource { shape: ShapeFile, density: Channels<NonNegative> },
+    Beam {
+        dir: [f64; 3],
+        irradiance: Channels<NonNegative>,
+        section: SectionFile,
+    },
+    Area {
+        shape: ShapeFile,
+        radiance: Channels<NonNegative>,
+    },
+    Point {
+        position: [f64; 3],
+        power: Channels<NonNegative>,
+    },
+    Spot {
+        position: [f64; 3],
+        dir: [f64; 3],
+        full_angle: f64,
+        edge_angle: f64,
+        power: Channels<NonNegative>,
+    },
+    Sun {
+        dir: [f64; 3],
+        irradiance: Channels<NonNegative>,
+        angular_radius: f64,
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        portal: Option<PortalFile>,
+    },
+    Isotropic {
+        shape: ShapeFile,
+        faces: Faces,
+        radiance: Channels<NonNegative>,
+    },
+    VolumeSource {
+        shape: ShapeFile,
+        density: Channels<NonNegative>,
+    },
 }
 
 /// A sensor.
@@ -303,8 +341,14 @@ impl LightFile {
                 (full_angle, edge_angle),
                 power.spectrum(),
             )?),
-            LightFile::Sun { dir, irradiance, angular_radius } => {
-                Light::Sun(Sun::new(dir.into(), irradiance.spectrum(), angular_radius)?)
+            LightFile::Sun { dir, irradiance, angular_radius, portal } => {
+                let sun = Sun::new(dir.into(), irradiance.spectrum(), angular_radius)?;
+                Light::Sun(match portal {
+                    Some(PortalFile::Rectangle { corner, u, v }) => {
+                        sun.through(rectangle(corner, u, v).map_err(|e| e.within("portal"))?)?
+                    }
+                    None => sun,
+                })
             }
             LightFile::Point { position, power } => {
                 Light::Point(Point::new(position.into(), power.spectrum())?)

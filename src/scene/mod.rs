@@ -6,6 +6,7 @@ mod builtin;
 mod camera;
 mod file;
 mod full;
+mod glows;
 mod hit;
 mod interiors;
 mod plan;
@@ -23,7 +24,7 @@ pub use segments::{MAX_REGIONS, Segment, Segments};
 pub use sensor::{Orders, Quantity, Sensor};
 
 use crate::Spectrum;
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::faults::{Fault, planted};
 use crate::geometry::{Shape, Sphere};
 use crate::light::{Light, Stage};
@@ -74,6 +75,10 @@ pub struct Scene {
     parts: Parts,
     media: Vec<Medium>,
     filling: Vec<Option<usize>>,
+    /// Those of the parts, then media that emit.
+    lights: Vec<Light>,
+    /// Whether photons can start wherever media emit.
+    is_emission_bounded: bool,
     light_within: Vec<Option<usize>>,
     bodies: bodies::Bodies,
     stage: Option<Stage>,
@@ -96,9 +101,24 @@ impl Scene {
         let plan = Plan::of(&parts);
         let (media, filling) = interiors::numbered(&parts.regions, &parts.interiors);
         let bodies = bodies::Bodies::of(&parts);
-        let light_within = Vec::new();
-        let mut scene = Scene { parts, media, filling, light_within, bodies, stage, bounds, plan };
+        let lights = parts.lights.clone();
+        let mut scene = Scene {
+            parts,
+            media,
+            filling,
+            lights,
+            is_emission_bounded: true,
+            light_within: Vec::new(),
+            bodies,
+            stage,
+            bounds,
+            plan,
+        };
+        let (glows, is_emission_bounded) = glows::of(&scene);
+        scene.lights.extend(glows);
+        scene.is_emission_bounded = is_emission_bounded;
         scene.light_within = interiors::of_lights(&scene);
+        validate::check_power(&scene)?;
         Ok(scene)
     }
 
@@ -112,9 +132,28 @@ impl Scene {
         &self.parts.objects
     }
 
-    /// Lights.
+    /// Lights: those that were named, then media that emit.
     pub fn lights(&self) -> &[Light] {
+        &self.lights
+    }
+
+    /// Lights that were named.
+    pub fn named_lights(&self) -> &[Light] {
         &self.parts.lights
+    }
+
+    /// Whether photons can start wherever light does.
+    ///
+    /// # Errors
+    /// [`Error::Unreachable`] if a medium emits that has no end, where no cell stands for it
+    pub fn check_emission(&self) -> Result<()> {
+        if self.is_emission_bounded {
+            return Ok(());
+        }
+        Err(Error::Unreachable(
+            "photons cannot start in a medium that emits and has no end: bound it, name `cell`, or use paths"
+                .into(),
+        ))
     }
 
     /// What is measured.
@@ -145,6 +184,11 @@ impl Scene {
     /// Power of all lights \[W\].
     pub fn power(&self) -> Spectrum {
         self.lights().iter().fold(Spectrum::ZERO, |sum, light| sum + light.power(self.stage()))
+    }
+
+    /// What photons of all lights carry together if none is refused \[W\]: see [`Light::ceiling`].
+    pub fn ceiling(&self) -> Spectrum {
+        self.lights().iter().fold(Spectrum::ZERO, |sum, light| sum + light.ceiling(self.stage()))
     }
 
     /// The stretches of medium on the ray up to distance `end`, nearest first, in the interior of this number: the

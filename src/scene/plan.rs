@@ -125,7 +125,7 @@ impl Plan {
         }
         lines.extend(self.densities.iter().map(|density| format!("density: {density}")));
         if self.has_emission {
-            lines.push("emitting media: seen along rays; photons start from lights only".to_string());
+            lines.push("emitting media: seen along rays; photons start in them as from lights".to_string());
         }
         lines.push(match (self.has_surfaces, self.has_specular) {
             (false, _) => "no surface: nothing to intersect but media and lights".to_string(),

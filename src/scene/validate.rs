@@ -1,6 +1,6 @@
 //! Checks on the parts of a scene together. Each part has checked its own numbers when it was made.
 
-use super::{MAX_REGIONS, Object, Parts, Quantity, interiors};
+use super::{MAX_REGIONS, Object, Parts, Quantity, Scene, interiors};
 use crate::Spectrum;
 use crate::error::{Error, Result};
 use crate::geometry::{Face, Shape, Slab};
@@ -24,8 +24,11 @@ pub(super) fn check(parts: &Parts) -> Result<Option<Stage>> {
     if parts.regions.iter().any(|r| !r.shape.is_solid()) {
         return refuse("a medium needs a convex shape with an inside: a sphere, a cuboid or a slab");
     }
-    if parts.lights.is_empty() {
-        return refuse("a scene needs at least one light");
+    let filled = || parts.interiors.iter().filter_map(|i| i.medium.as_ref());
+    if parts.lights.is_empty()
+        && !parts.regions.iter().map(|r| &r.medium).chain(filled()).any(Medium::is_emitting)
+    {
+        return refuse("a scene needs at least one light, or a medium that emits");
     }
     interiors::check(parts)?;
     let stage = stage(parts)?;
@@ -45,7 +48,6 @@ pub(super) fn check(parts: &Parts) -> Result<Option<Stage>> {
     check_fold(parts, stage.as_ref())?;
     check_apart(parts)?;
     check_end(parts)?;
-    check_power(parts, stage.as_ref())?;
     for region in &parts.regions {
         let far = extent(&region.shape) * region.medium.highest_sigma_t().max();
         if far > MAX_EXTENT_OVER_MFP {
@@ -191,8 +193,11 @@ fn check_end(parts: &Parts) -> Result<()> {
 }
 
 /// Photons keep their power in single precision, which ends near 1e38 on both sides of 1.
-fn check_power(parts: &Parts, stage: Option<&Stage>) -> Result<()> {
-    let power = parts.lights.iter().fold(Spectrum::ZERO, |sum, light| sum + light.power(stage));
+pub(super) fn check_power(scene: &Scene) -> Result<()> {
+    if scene.lights().is_empty() {
+        return Ok(());
+    }
+    let power = scene.power();
     let is_out = |p: &f64| !(1e-30..=1e30).contains(p) && (*p != 0.0 || power.is_black());
     match (0..3).map(|c| power[c]).find(is_out) {
         Some(bad) => {

@@ -16,7 +16,7 @@ use crate::transport::{Progress, run_blocks};
 /// What the camera sees of lights themselves and by specular surfaces is not in it.
 ///
 /// # Errors
-/// `Error::Unreachable` for media that emit, and for unbounded slabs, whose photons are folded into a cell;
+/// `Error::Unreachable` for media that emit and have no end, and for unbounded slabs, whose photons are folded into a cell;
 /// `Error::NonFinite`; `Error::Cancelled`.
 pub fn by_light(
     scene: &Scene,
@@ -28,12 +28,10 @@ pub fn by_light(
 ) -> Result<Film> {
     let refuse =
         |what: &str| Err(Error::Unreachable(format!("light tracing cannot sample {what}: use paths")));
-    if scene.plan().has_emission {
-        return refuse("the light of media that emit");
-    }
     if scene.stage().is_some() {
         return refuse("an unbounded slab");
     }
+    scene.check_emission()?;
     let emitter = Emitter::by_power(scene);
     let (width, height) = (camera.width() as usize, camera.height() as usize);
     let mut film = Film::new(camera.width(), camera.height());

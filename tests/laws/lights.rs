@@ -15,7 +15,8 @@ use turbid::Spectrum;
 use turbid::geometry::{Shape, Sphere};
 use turbid::light::{Area, Beam, EmissionNumbers, Faces, Light, Section, Spot, Sun};
 use turbid::math::{FOUR_PI, Ray, warp};
-use turbid::scene::{Orders, Parts, Scene};
+use turbid::scene::{Orders, Parts, Quantity, Scene};
+use turbid::surface::{Black, Surface};
 
 const N: u64 = 1 << 17;
 
@@ -47,6 +48,13 @@ pub fn lights() -> Vec<(&'static str, Light)> {
     ]
 }
 
+/// A sun of this angular radius through a rectangle that it sees at an angle; its photons begin outside of a ball.
+fn sun_through_a_portal(radius: f64) -> Light {
+    let sun = Sun::new(DVec3::new(0.6, 0.0, 0.8), Spectrum::rgb(1.0, 2.0, 0.5), radius).unwrap();
+    let window = rectangle(DVec3::new(-1.0, -0.5, -0.6), DVec3::X * 1.6, DVec3::Y);
+    Light::Sun(sun.covering(Sphere::new(DVec3::ZERO, 2.0).unwrap()).through(window).unwrap())
+}
+
 /// Suns whose photons cover the boxes below; their light is everywhere, so that no sphere is crossed by all of it.
 pub fn suns() -> Vec<(&'static str, Light)> {
     let covered = Sphere::new(DVec3::ZERO, 2.0).unwrap();
@@ -54,7 +62,12 @@ pub fn suns() -> Vec<(&'static str, Light)> {
     let sun = |radius: f64| {
         Light::Sun(Sun::new(dir, Spectrum::rgb(1.0, 2.0, 0.5), radius).unwrap().covering(covered))
     };
-    vec![("wide sun", sun(30.0)), ("sun without disc", sun(0.0))]
+    vec![
+        ("wide sun", sun(30.0)),
+        ("sun without disc", sun(0.0)),
+        ("wide sun through a portal", sun_through_a_portal(30.0)),
+        ("sun without disc through a portal", sun_through_a_portal(0.0)),
+    ]
 }
 
 /// All that a light sends out leaves a sphere around it: photons exactly, paths on average. A light's radiance, its
@@ -136,7 +149,7 @@ proptest! {
             prop_assert!((sample.dir.length() - 1.0).abs() < 4.0 * f64::EPSILON);
             let Some(pdf) = sample.pdf_solid_angle else { continue };
             let ray = Ray::new(p, sample.dir);
-            if let Some((radiance, met)) = light.background(sample.dir) {
+            if let Some((radiance, met)) = light.background(&ray) {
                 prop_assert_eq!((radiance / pdf, met), (sample.value, pdf));
                 continue;
             }
@@ -257,11 +270,73 @@ fn the_sun_lights_a_plane_as_it_states() {
     verdict::agrees("aimed", &aimed, (2.0, 1e-14), 0.01, 7);
     let met = numbers(N, 8, |s| {
         let dir = warp::square_to_cosine_hemisphere(s.pair());
-        PI * sun.background(dir).map_or(0.0, |(radiance, _)| radiance[0])
+        PI * sun.background(&Ray::new(DVec3::ZERO, dir)).map_or(0.0, |(radiance, _)| radiance[0])
     });
     verdict::agrees("met", &met, (2.0, 1e-14), 0.08, 8);
     assert!(
         Sun::new(DVec3::ZERO, Spectrum::ONE, 1.0).is_err()
             && Sun::new(DVec3::X, Spectrum::ONE, 60.0).is_err()
     );
+}
+
+/// Behind a portal there is the light that a window in black walls lets through, and as much of it: by photons, by
+/// directions towards the sun, and by rays that meet its disc.
+#[test]
+fn a_portal_is_a_window_in_a_dark_wall() {
+    let power = Spectrum::rgb(1.0, 2.0, 0.5);
+    let window = rectangle(DVec3::new(-0.2, -0.3, 0.0), DVec3::X * 0.4, DVec3::Y * 0.6);
+    // Far enough to be walls to every ray that the fog sends back.
+    let walls = [
+        ((-9.0, -9.0), (18.0, 8.7)),
+        ((-9.0, 0.3), (18.0, 8.7)),
+        ((-9.0, -0.3), (8.8, 0.6)),
+        ((0.2, -0.3), (8.8, 0.6)),
+    ]
+    .map(|((x, y), (u, v))| {
+        let shape = rectangle(DVec3::new(x, y, 0.0), DVec3::X * u, DVec3::Y * v);
+        (Shape::Rectangle(shape), Surface::Black(Black))
+    });
+    let room = cuboid(DVec3::new(-0.8, -0.8, 0.01), DVec3::new(1.2, 0.8, 1.6));
+    for (radius, seed) in [(0.0, 1), (20.0, 2)] {
+        let sun = Sun::new(DVec3::new(0.6, 0.1, 0.8), power, radius).unwrap();
+        let fog = || vec![region(room.clone(), 1.0, 0.7, 0.2)];
+        let scenes = [
+            bounded(fog(), Vec::new(), vec![Light::Sun(sun.through(window).unwrap())]),
+            bounded(fog(), walls.to_vec(), vec![Light::Sun(sun)]),
+        ];
+        let [open, walled] = scenes.each_ref().map(|scene| scene.lights()[0].power(None)[1]);
+        let exact = 2.0 * 0.24 * 0.8 / DVec3::new(0.6, 0.1, 0.8).length();
+        assert!((open / exact - 1.0).abs() < 1e-14, "{open} {exact}");
+        // Shares of each light's power: of the sun without a portal most is lost on the walls.
+        let what = format!("sun of {radius}");
+        let absorbed = Quantity::Absorbed(0);
+        let by_photons = tallies(&scenes[0], &[(absorbed.clone(), Orders::ALL)], N, seed)[0][1];
+        let by_paths = paths(&scenes[0], absorbed.clone(), Orders::ALL, N, seed)[1];
+        verdict::agree(&format!("{what}: absorbed"), &by_photons, &by_paths, 0.15, seed);
+        // Path by path; absorbed light is a share of each light's power, and most of the open sun's is lost on the walls.
+        let at = |x, y, z| (Quantity::Fluence(DVec3::new(x, y, z)), 1.0);
+        for (quantity, share) in [(absorbed, walled / open), at(0.15, 0.05, 0.3), at(-0.5, 0.2, 0.8)] {
+            let [a, b] = scenes
+                .each_ref()
+                .map(|scene| paths(scene, quantity.clone(), Orders::ALL, 1 << 13, seed)[1].mean());
+            assert!(a > 0.0 && (b * share / a - 1.0).abs() < 1e-9, "{what}: {quantity:?} {a} {b}");
+        }
+    }
+    // Near a window all of whose points a wide disc fills, the sun's radiance times the window's solid angle; behind it
+    // nothing, but where its lines come from.
+    let (small, at) = (rectangle(DVec3::ZERO, DVec3::X * 0.1, DVec3::Y * 0.1), DVec3::new(0.0, 0.0, 0.5));
+    let wide = Light::Sun(Sun::new(DVec3::Z, Spectrum::ONE, 30.0).unwrap().through(small).unwrap());
+    let expected = corner_solid_angle(0.1, 0.1, 0.5) / (0.25 * PI);
+    let aimed = numbers(N, 4, |s| wide.sample(at, s.pair()).map_or(0.0, |l| l.value[0]));
+    verdict::agrees("aimed", &aimed, (expected, 1e-14), 0.1 * expected, 4);
+    let met = numbers(N, 5, |s| {
+        let ray = Ray::new(at, warp::square_to_cone(s.pair(), 0.5) * -1.0);
+        PI * wide.background(&ray).map_or(0.0, |(radiance, _)| radiance[0])
+    });
+    verdict::agrees("met", &met, (expected, 1e-14), 0.2 * expected, 5);
+    for bad in [-DVec3::Z, DVec3::X, DVec3::new(1.0, 0.0, 0.5)] {
+        let refused = Sun::new(bad, Spectrum::ONE, 30.0).unwrap().through(small).unwrap_err().to_string();
+        assert!(refused.contains("portal") && refused.contains("allowed: below 60"), "{refused}");
+    }
+    assert!(Sun::new(DVec3::new(1.0, 0.0, 0.5), Spectrum::ONE, 0.0).unwrap().through(small).is_ok());
 }

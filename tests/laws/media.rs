@@ -5,20 +5,24 @@ use crate::checks::media;
 use crate::checks::media::{layered, varying};
 use crate::common::config as properties;
 use crate::support::quadrature::integrate;
-use crate::support::run::{histories, paths};
-use crate::support::scenes::{bounded, cuboid, point_light, region, sphere};
+use crate::support::run::{histories, numbers, paths, tallies};
+use crate::support::scenes::{
+    CELL, bounded, cuboid, layer, outflow, point_light, region, sphere, transmittance,
+};
 use crate::support::{unit_vector, verdict};
 use glam::DVec3;
 use proptest::prelude::*;
+use std::f64::consts::PI;
 use std::sync::LazyLock;
 use turbid::Spectrum;
 use turbid::light::{Light, VolumeSource};
 use turbid::math::{FOUR_PI, Interval, Ray, exp, exp_m1};
 use turbid::medium::{Density, Grid, Heterogeneous, Homogeneous, Medium};
 use turbid::phase::{Isotropic, Phase};
+use turbid::photons::{Histories, shoot};
 use turbid::rng::{Purpose, Stream, Work};
-use turbid::scene::{Orders, Quantity, Region, SURROUNDINGS, Scene};
-use turbid::transport::{Flight, free_flight, passed};
+use turbid::scene::{Orders, Parts, Quantity, Region, SURROUNDINGS, Scene};
+use turbid::transport::{Flight, NoProgress, free_flight, passed};
 
 #[test]
 fn samples_lie_in_the_middles_of_cells() {
@@ -29,6 +33,9 @@ fn samples_lie_in_the_middles_of_cells() {
 fn each_channel_passes_as_its_depth_says() {
     media::each_channel_passes_as_its_depth_says();
 }
+
+/// Histories of a test of emission.
+const MANY: u64 = 1 << 16;
 
 static SPECIMENS: LazyLock<Vec<Density>> = LazyLock::new(Density::specimens);
 
@@ -184,6 +191,65 @@ fn uniform_emission_is_attenuated_by_a_varying_density() {
         verdict::agrees(&format!("medium, channel {c}"), &own[c], (expected, 1e-8), 0.1, 43);
         verdict::agrees(&format!("source, channel {c}"), &light[c], (expected, 1e-8), 0.1, 44);
     }
+}
+
+/// Photons of an emitting medium start where it emits, whatever its density, and as often as its power says: in half of the
+/// ball that it fills, which a clear region cuts. What they bring to a box is what paths do.
+#[test]
+fn photons_start_where_media_emit() {
+    let (whole, cut) = (sphere(DVec3::ZERO, 1.5), cuboid(DVec3::new(0.2, -2.0, -2.0), DVec3::splat(2.0)));
+    let beside = outflow(cuboid(DVec3::new(-0.8, -2.0, -0.5), DVec3::new(-0.2, 2.0, 0.9)));
+    for (i, density) in SPECIMENS.iter().enumerate() {
+        let fog = matter(Spectrum::rgb(0.2, 0.4, 0.6), Spectrum::rgb(0.1, 0.0, 0.05));
+        let fog = Heterogeneous::new(fog, density.clone());
+        let fog = fog.with_emission_by_density(Spectrum::rgb(1.0, 2.0, 0.5)).unwrap();
+        let clear = Region { shape: cut.clone(), medium: matter(Spectrum::ZERO, Spectrum::ZERO).into() };
+        let fog = Region { shape: whole.clone(), medium: fog.into() };
+        let scene = bounded(vec![fog, clear], Vec::new(), Vec::new());
+        let emitter = turbid::photons::Emitter::by_power(&scene);
+        let sent = numbers(MANY / 2, 46, |stream| {
+            f64::from(u8::from(emitter.emit(&scene, stream).is_some_and(|walker| {
+                let p = walker.ray.origin;
+                assert!(whole.contains(p) && !cut.contains(p));
+                true
+            })))
+        });
+        // The lattice of the power is good to a few thousandths.
+        let share = scene.power().sum() / scene.ceiling().sum();
+        verdict::agrees(&format!("sent, density {i}"), &sent, (share, 1e-3 * share), 0.2 * share, 46);
+        let photons = tallies(&scene, &[(beside.clone(), Orders::ALL)], MANY / 2, 47);
+        let paths = paths(&scene, beside.clone(), Orders::ALL, MANY / 2, 48);
+        for c in 0..3 {
+            verdict::agree(
+                &format!("density {i}, channel {c}"),
+                &photons[0][c],
+                &paths[c],
+                0.3 * paths[c].mean(),
+                47,
+            );
+        }
+    }
+}
+
+/// A slab that emits sends photons if a cell stands for it; one without end and cell sends none, and says so.
+#[test]
+fn photons_of_unbounded_media_need_a_cell() {
+    let medium = || -> Medium { matter(Spectrum::ONE, Spectrum::ONE).into() };
+    let scene = |cell| {
+        let regions = vec![Region { shape: layer(2.0), medium: medium() }];
+        Scene::new(Parts { regions, cell, ..Parts::default() }).unwrap()
+    };
+    let open = scene(None);
+    let histories = Histories { count: 1, seed: 1, replicate: 0, max_order: None };
+    let refused = shoot(&open, histories, &[], |_| true, &NoProgress).unwrap_err().to_string();
+    assert!(refused.contains("no end"), "{refused}");
+    // Power 4 pi in each volume, of which each face lets 2 pi (1/2 - E3(2)) E out, E the emission: E3(2) = 0.030133.
+    let closed = scene(Some(CELL));
+    let power = FOUR_PI * 2.0 * CELL * CELL;
+    assert!((closed.power()[0] / power - 1.0).abs() < 1e-12);
+    let out = tallies(&closed, &[(transmittance(2.0), Orders::ALL)], MANY, 49);
+    let expected = PI * (1.0 - 2.0 * 0.030_133_4) * CELL * CELL / power;
+    verdict::agrees("emitted by a face", &out[0][0], (expected, 1e-6 * expected), 0.1 * expected, 49);
 }
 
 /// Homogeneous media look up no majorants and estimate no transmittances; grey ones choose no channels. A grid does.

@@ -2,10 +2,11 @@
 
 use crate::checks::ledger::{
     Room, a_clear_room_keeps_its_ledger, a_foggy_room_keeps_its_ledger,
-    a_foggy_room_keeps_its_ledger_when_gathered, layers_are_those_of_paths,
+    a_foggy_room_keeps_its_ledger_when_gathered, by_paths, layers_are_those_of_paths, layers_of_maps,
     layers_of_the_scene_are_those_of_paths, mirror, settings, what_is_absent_is_not_asked,
 };
-use crate::support::scenes::{lambertian, rectangle};
+use crate::support::scenes::{homogeneous, lambertian, rectangle};
+use crate::support::verdict;
 use glam::DVec3;
 use turbid::Spectrum;
 use turbid::geometry::Shape;
@@ -137,4 +138,46 @@ fn with_tiles_and_a_stained_pane() {
     let scene = Scene::new(parts).unwrap();
     assert!(scene.plan().has_filters);
     layers_of_the_scene_are_those_of_paths(&scene, Indirect::Seen, &settings(1), 4000, 10);
+}
+
+/// Fog that glows where it is dense, more in one colour, and a ball of glowing glass in it: no light but theirs.
+#[test]
+fn lit_by_media_alone() {
+    let mut parts = Room { has_glass: true, ..plain() }.parts();
+    let corners = (DVec3::ZERO, DVec3::splat(2.0));
+    let grid = Grid::sampled(corners, [8, 4, 4], |p| 0.5 + 0.5 * p.x).unwrap();
+    let fog = Heterogeneous::new(parts.regions[0].medium.matter().clone(), Density::grid(grid).unwrap());
+    let glow = Spectrum::rgb(0.02, 0.01, 0.005);
+    parts.regions[0].medium = fog.with_emission_by_density(glow).unwrap().into();
+    let glass = homogeneous(Spectrum::grey(0.5), Spectrum::grey(0.5), 0.0).matter().clone();
+    parts.interiors[1].medium = Some(glass.with_emission(Spectrum::grey(0.1)).unwrap().into());
+    parts.lights.clear();
+    let scene = Scene::new(parts).unwrap();
+    assert_eq!((scene.named_lights().len(), scene.lights().len()), (0, 2));
+    layers_of_the_scene_are_those_of_paths(&scene, Indirect::Gathered, &settings(4), 4000, 11);
+}
+
+/// In a white room filled with anything of one temperature, which emits as it absorbs, the radiance is the source function
+/// everywhere and along every ray.
+#[test]
+fn an_isothermal_cavity_is_as_bright_as_its_source() {
+    let room = Room { floor: lambertian(Spectrum::ONE), albedo: Spectrum::rgb(0.2, 0.5, 0.8), ..plain() };
+    let mut parts = room.parts();
+    parts.objects.truncate(6);
+    for wall in &mut parts.objects {
+        wall.surface = lambertian(Spectrum::ONE);
+    }
+    parts.lights.clear();
+    let corners = (DVec3::ZERO, DVec3::splat(2.0));
+    let grid = Grid::sampled(corners, [8, 4, 4], |p| 0.5 + 0.5 * p.x).unwrap();
+    let fog = Heterogeneous::new(parts.regions[0].medium.matter().clone(), Density::grid(grid).unwrap());
+    let (source, absorbed) = (Spectrum::rgb(1.0, 2.0, 3.0), fog.matter().sigma_a());
+    parts.regions[0].medium = fog.with_emission_by_density(source * absorbed).unwrap().into();
+    let scene = Scene::new(parts).unwrap();
+    let total = source.sum();
+    verdict::agrees("paths", &by_paths(&scene, 40 * 400, 13)[6], (total, 0.0), 0.05 * total, 13);
+    for (indirect, rays) in [(Indirect::Seen, 1), (Indirect::Gathered, 4)] {
+        let maps = layers_of_maps(&scene, &settings(rays), 2000, indirect, 14);
+        verdict::agrees(&format!("{indirect:?}"), &maps[6], (total, 0.0), 0.05 * total, 14);
+    }
 }

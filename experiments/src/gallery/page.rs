@@ -114,11 +114,11 @@ fn between([low, high]: [f64; 2]) -> String {
 fn comparison(c: &Compared) -> Markup {
     html! {
         tr { th { "RMS error" } td {
-            "photon maps " (percent(c.rms)) "; paths in the same time " (between(c.equal_rms))
+            "photon maps " (between(c.rms)) "; paths in the same time " (between(c.equal_rms))
         } }
         tr { th { "of one map" } td {
-            "RMS " (between(c.making_rms)) " at " (c.makings.1) " sample a pixel, of which remains with any number of maps: "
-            (between(c.systematic)) "; bias of the mean " (between(c.bias)) " (" (c.makings.0) " maps)"
+            "what remains with any number of maps: RMS " (between(c.systematic)) "; bias of the mean " (between(c.bias))
+            " (" (c.makings) " sets of maps)"
         } }
         tr { th { "verdict" } td {
             (c.verdict) ": " (c.blocks.1) " of " (c.blocks.0) " blocks and channels differ; masked " (percent(c.masked))

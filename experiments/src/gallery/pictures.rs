@@ -36,7 +36,7 @@ pub struct Picture {
     pub exposure: f64,
     /// What stands beside it.
     pub beside: Beside,
-    /// Samples a pixel of one pass of the twin.
+    /// The most samples a pixel of one of the 64 passes of the twin: a pilot says how many are needed.
     pub twin: u64,
 }
 
@@ -58,7 +58,7 @@ pub const ALL: &[Picture] = &[
         size: 2.0,
         exposure: 1.3,
         beside: Beside::Maps,
-        twin: 32,
+        twin: 6,
     },
     Picture {
         name: "cognac",
@@ -73,7 +73,7 @@ pub const ALL: &[Picture] = &[
         size: 20.0,
         exposure: 0.85,
         beside: Beside::Maps,
-        twin: 64,
+        twin: 8,
     },
     Picture {
         name: "cloud",
@@ -103,7 +103,7 @@ pub const ALL: &[Picture] = &[
         size: 2.0,
         exposure: 1.8,
         beside: Beside::Maps,
-        twin: 32,
+        twin: 6,
     },
     Picture {
         name: "cornell-anisotropic",
@@ -118,7 +118,7 @@ pub const ALL: &[Picture] = &[
         size: 2.0,
         exposure: 1.8,
         beside: Beside::Maps,
-        twin: 32,
+        twin: 6,
     },
     Picture {
         name: "cornell-smoke",
@@ -133,7 +133,7 @@ pub const ALL: &[Picture] = &[
         size: 2.0,
         exposure: 1.8,
         beside: Beside::Maps,
-        twin: 16,
+        twin: 4,
     },
     Picture {
         name: "dusty-room",
@@ -147,7 +147,7 @@ pub const ALL: &[Picture] = &[
         size: 4.0,
         exposure: 1.7,
         beside: Beside::Maps,
-        twin: 32,
+        twin: 6,
     },
     Picture {
         name: "sunbeams",
@@ -161,7 +161,7 @@ pub const ALL: &[Picture] = &[
         size: 5.0,
         exposure: 1.0,
         beside: Beside::Maps,
-        twin: 32,
+        twin: 6,
     },
     Picture {
         name: "pool",
@@ -175,7 +175,7 @@ pub const ALL: &[Picture] = &[
         size: 6.0,
         exposure: 1.4,
         beside: Beside::Maps,
-        twin: 64,
+        twin: 8,
     },
 ];
 

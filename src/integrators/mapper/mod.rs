@@ -8,8 +8,8 @@
 //!   the map holds decides which (`Indirect`), so that every class of light is counted once.
 //!
 //! Lights that no shadow ray can aim at (isotropic incidence, volume sources, emitting media) are direct light too: one
-//! ray in a sampled direction looks for them. Photons start from lights alone: what a medium's own emission lights is
-//! seen as far as that, by direct light and single scattering, and a medium that is to light a scene is a volume source.
+//! ray in a sampled direction looks for them. Their photons, those of emitting media among them, bring what is neither
+//! direct nor scattered once.
 
 mod flats;
 mod gather;
@@ -238,7 +238,7 @@ impl Eye<'_, '_> {
         }
         let Some(found) = hit else {
             for light in scene.lights() {
-                if let Some((radiance, _)) = light.background(ray.dir) {
+                if let Some((radiance, _)) = light.background(ray) {
                     let seen = walker.weight * transmittance(scene, ray, end, walker.within, stream);
                     self.layers.emission += seen * radiance;
                 }

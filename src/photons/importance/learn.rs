@@ -161,7 +161,7 @@ pub(super) fn learn(
         .collect();
     let powers: Vec<f64> = cells
         .iter()
-        .map(|(light, cell)| scene.lights()[*light].power(scene.stage()).sum() * cell.volume())
+        .map(|(light, cell)| scene.lights()[*light].ceiling(scene.stage()).sum() * cell.volume())
         .collect();
     let dark = || Error::Scene("no photon comes where the camera reads them; importance cannot help".into());
     let whole: f64 = powers.iter().sum();
@@ -189,9 +189,11 @@ pub(super) fn learn(
             for history in range {
                 let mut stream = Stream::new(settings.seed, Purpose::Importance, 1 + round, history);
                 let (cell, start) = importance.emitter.emit_from(scene, &mut stream);
-                let weight = start.weight.sum();
-                importance.walk(scene, start, None, &mut stream, &mut learner);
-                let score = learner.finish(&mut found) / weight;
+                let score = start.map_or(0.0, |start| {
+                    let weight = start.weight.sum();
+                    importance.walk(scene, start, None, &mut stream, &mut learner);
+                    learner.finish(&mut found) / weight
+                });
                 let sums = &mut found.cells[cell];
                 *sums = (sums.0 + score, sums.1 + 1.0);
             }

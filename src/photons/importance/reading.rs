@@ -74,7 +74,7 @@ pub(super) fn extent(
         for history in range {
             let mut stream = Stream::new(settings.seed, Purpose::Importance, u64::MAX, history);
             let photon = emitter.emit(scene, &mut stream);
-            for start in [photon, particle(scene, camera, &mut stream)] {
+            for start in photon.into_iter().chain([particle(scene, camera, &mut stream)]) {
                 walk(scene, start, Roulette::Analog, None, &mut stream, &mut found);
             }
         }

@@ -29,6 +29,7 @@ pub fn counts_steered(
     settings: &MapSettings,
     importance: Option<&Importance>,
 ) -> Result<Emitted> {
+    scene.check_emission()?;
     let emitters = Emitters::of(scene, importance);
     let needs = Needs::of(scene, &emitters);
     let asked = [

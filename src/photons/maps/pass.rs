@@ -61,6 +61,7 @@ impl Stored {
         mine.ends.absorbed += others.ends.absorbed;
         mine.ends.escaped += others.ends.escaped;
         mine.ends.abandoned += others.ends.abandoned;
+        mine.ends.refused += others.ends.refused;
         mine.ledger.add(&others.ledger);
         mine.collisions += others.collisions;
         mine.hits += others.hits;
@@ -87,8 +88,11 @@ impl Run<'_> {
             for history in range {
                 let mut stream = Stream::new(self.seed, self.purpose, self.replicate, history);
                 store.history = history;
-                let first = self.emitter.emit(self.scene, &mut stream);
                 store.stored.report.emitted += 1;
+                let Some(first) = self.emitter.emit(self.scene, &mut stream) else {
+                    store.stored.report.ends.refused += 1;
+                    continue;
+                };
                 store.stored.report.ledger.emitted += first.weight.sum();
                 match self.importance {
                     None => walk(self.scene, first, Roulette::Analog, limit, &mut stream, &mut store),

@@ -1,0 +1,214 @@
+//! The light that a medium sends out by itself: where the photons of an emitting medium start.
+
+use super::{Emission, EmissionNumbers, Stage};
+use crate::Spectrum;
+use crate::geometry::{Face, Shape, remainder};
+use crate::math::{FOUR_PI, Ray, warp};
+use crate::medium::Medium;
+use glam::DVec3;
+use std::sync::Arc;
+
+/// Boxes along an axis that starts are chosen from, where emission varies or the medium is only part of its box.
+const BOXES: usize = 16;
+
+/// Emission of a medium in all directions, wherever it is the medium that counts.
+///
+/// A start is chosen in proportion to an upper bound of the emission, and a photon leaves with the *chance* that the
+/// emission there is of its bound, none where the medium is not: so all that leave have the same power, and what the
+/// bound has too much costs no more than a look-up. Photons are right whatever the power is taken to be.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Glow {
+    number: usize,
+    within: usize,
+    medium: Medium,
+    places: Places,
+    ceiling: Spectrum,
+    power: Spectrum,
+    is_certain: bool,
+}
+
+/// Where starts are looked for.
+#[derive(Debug, Clone, PartialEq)]
+enum Places {
+    /// Uniform in a solid shape, which the medium fills evenly.
+    Inside(Shape),
+    /// In boxes, in proportion to the bounds of what they emit.
+    Boxes(Arc<Boxes>),
+}
+
+#[derive(Debug, Clone, PartialEq)]
+struct Boxes {
+    low: DVec3,
+    edge: DVec3,
+    count: [usize; 3],
+    /// Bound of the density in each box \[1\], x fastest.
+    high: Vec<f64>,
+    /// Sums over boxes of bounds of the emitted power.
+    cumulated: Vec<f64>,
+}
+
+/// A box along the axes about a shape, of a slab over its cell; none for one without end.
+fn around(shape: &Shape, stage: Option<&Stage>) -> Option<(DVec3, DVec3)> {
+    match shape {
+        Shape::Cuboid(c) => Some((c.min(), c.max())),
+        Shape::Mesh(m) => Some(m.bounds()),
+        Shape::Slab(s) => {
+            let side = stage?.side;
+            Some((DVec3::new(0.0, 0.0, s.top()), DVec3::new(side, side, s.face(Face::Bottom))))
+        }
+        Shape::Sphere(_) | Shape::Rectangle(_) | Shape::Lathe(_) => {
+            let (center, radius) = shape.bounds()?;
+            Some((center - DVec3::splat(radius), center + DVec3::splat(radius)))
+        }
+    }
+}
+
+impl Glow {
+    /// The light of the medium of this number, in the interior `within`, that lies inside `shapes`, or in some of it; none
+    /// if they have no end and there is no cell.
+    ///
+    /// # Arguments
+    /// `is_certain` whether the medium fills the one shape there is, so that nobody need be asked where it is
+    pub(crate) fn new(
+        (number, within): (usize, usize),
+        medium: &Medium,
+        shapes: &[&Shape],
+        stage: Option<&Stage>,
+        is_certain: bool,
+    ) -> Option<Self> {
+        let (low, high) = shapes
+            .iter()
+            .map(|shape| around(shape, stage))
+            .try_fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(low, high), shape| {
+                shape.map(|(a, b)| (low.min(a), high.max(b)))
+            })?;
+        let (places, ceiling) = match (shapes, medium) {
+            ([shape], Medium::Homogeneous(medium)) if shape.is_solid() => {
+                let (_, volume) = shape.sample_inside(Stage::side(stage), [0.0; 3]);
+                (Places::Inside((*shape).clone()), medium.emission() * (FOUR_PI * volume))
+            }
+            _ => {
+                let (boxes, ceiling) = Boxes::new(medium, low, high);
+                (Places::Boxes(Arc::new(boxes)), ceiling)
+            }
+        };
+        let is_certain = is_certain && matches!(places, Places::Inside(_));
+        Some(Glow { number, within, medium: medium.clone(), places, ceiling, power: ceiling, is_certain })
+    }
+
+    /// The same with its power, which estimates are told to the user by, no more: `owns` says where the medium is.
+    /// A quadrature over `points` starts, where the bound is not the power itself.
+    pub(crate) fn measured(self, stage: Option<&Stage>, points: u32, owns: impl Fn(DVec3) -> bool) -> Self {
+        if self.is_certain {
+            return self;
+        }
+        let sum = (0..points).fold(Spectrum::ZERO, |sum, i| {
+            // A rank-1 lattice by the number whose cube is one more than itself squared.
+            let position =
+                [0.819_172_513_4, 0.671_043_606_7, 0.549_700_477_9].map(|a| (f64::from(i) * a + 0.5).fract());
+            let Emission { ray, power, chance, .. } =
+                self.emit_at(stage, &EmissionNumbers { position, direction: [0.5; 2] });
+            if owns(ray.origin) { sum + power * chance } else { sum }
+        });
+        Glow { power: sum / f64::from(points), ..self }
+    }
+
+    /// Number of the medium.
+    pub fn number(&self) -> usize {
+        self.number
+    }
+
+    /// Number of the interior that it is in.
+    pub fn within(&self) -> usize {
+        self.within
+    }
+
+    /// Whether every start is one, so that nobody need be asked whether the medium is there.
+    pub fn is_certain(&self) -> bool {
+        self.is_certain
+    }
+
+    pub(super) fn power(&self) -> Spectrum {
+        self.power
+    }
+
+    pub(super) fn ceiling(&self) -> Spectrum {
+        self.ceiling
+    }
+
+    pub(super) fn is_grey(&self) -> bool {
+        self.ceiling.is_grey()
+    }
+
+    /// A ball that holds all starts, as far as there is one.
+    pub(super) fn ball(&self) -> Option<(DVec3, f64)> {
+        match &self.places {
+            Places::Inside(shape) => shape.bounds(),
+            Places::Boxes(boxes) => {
+                let half = 0.5 * boxes.edge * DVec3::from_array(boxes.count.map(|n| n as f64));
+                Some((boxes.low + half, half.length()))
+            }
+        }
+    }
+
+    pub(super) fn emit_at(&self, stage: Option<&Stage>, numbers: &EmissionNumbers) -> Emission {
+        let dir = warp::square_to_sphere(numbers.direction).normalize();
+        let (origin, power, chance) = match &self.places {
+            Places::Inside(shape) => {
+                let (origin, _) = shape.sample_inside(Stage::side(stage), numbers.position);
+                (origin, self.ceiling, 1.0)
+            }
+            Places::Boxes(boxes) => {
+                let (origin, high) = boxes.place(numbers.position);
+                let (here, bound) = (self.medium.emission(origin), emission_of(&self.medium, high));
+                let chance = (here.sum() / bound.sum()).min(1.0);
+                let color = if here.is_black() { Spectrum::ZERO } else { here / here.sum() };
+                (origin, color * self.ceiling.sum(), chance)
+            }
+        };
+        Emission { ray: Ray::new(origin, dir), primitive: 0, power, chance }
+    }
+}
+
+/// Emission where the density is known [W/(L^3 sr)].
+fn emission_of(medium: &Medium, density: f64) -> Spectrum {
+    match medium {
+        Medium::Homogeneous(medium) => medium.emission(),
+        Medium::Heterogeneous(medium) => medium.emission_of(density),
+    }
+}
+
+impl Boxes {
+    /// Boxes between two corners, and the bound of the power that they send out \[W\].
+    fn new(medium: &Medium, low: DVec3, high: DVec3) -> (Self, Spectrum) {
+        let along = |axis| if medium.is_layered() && axis < 2 { 1 } else { BOXES };
+        let count = [0, 1, 2].map(along);
+        let edge = (high - low) / DVec3::from_array(count.map(|n| n as f64));
+        let volume = FOUR_PI * edge.element_product();
+        let (mut bounds, mut cumulated, mut ceiling) = (Vec::new(), Vec::new(), Spectrum::ZERO);
+        for z in 0..count[2] {
+            for y in 0..count[1] {
+                for x in 0..count[0] {
+                    let corner = low + edge * DVec3::new(x as f64, y as f64, z as f64);
+                    let bound = medium.density().map_or(1.0, |d| d.high_in(corner, corner + edge));
+                    bounds.push(bound);
+                    ceiling += emission_of(medium, bound) * volume;
+                    cumulated.push(ceiling.sum());
+                }
+            }
+        }
+        (Boxes { low, edge, count, high: bounds, cumulated }, ceiling)
+    }
+
+    /// A start, and the bound of the density in its box.
+    fn place(&self, u: [f64; 3]) -> (DVec3, f64) {
+        let total = self.cumulated.last().copied().unwrap_or(0.0);
+        let target = u[0] * total;
+        // The first box whose sum exceeds the target: one that emits nothing is never it.
+        let index = self.cumulated.partition_point(|sum| *sum <= target).min(self.high.len() - 1);
+        let [nx, ny, _] = self.count;
+        let corner = DVec3::new((index % nx) as f64, (index / nx % ny) as f64, (index / nx / ny) as f64);
+        let within = DVec3::new(remainder(&self.cumulated, index, target), u[1], u[2]);
+        (self.low + self.edge * (corner + within), self.high[index])
+    }
+}
