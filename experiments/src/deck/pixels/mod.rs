@@ -4,11 +4,14 @@
 //! The map alone is asked: light scattered once comes by shadow rays and surfaces have a map of their own. Errors are
 //! fractions of the whole pixel, as an eye sees them.
 
+pub mod conclude;
+mod figure;
+
+use super::fogbox::{ALBEDO, SIGMA_T, VOLUME, grey, scene};
 use crate::harness::{CellId, CellOutput, Prediction, Settings, Unit};
 use crate::theory::clustering;
-use anyhow::{Context, anyhow};
+use anyhow::Context;
 use glam::DVec2;
-use std::path::Path;
 use turbid::Spectrum;
 use turbid::estimators::boundary::{Boundary, Treatment, treated_in_scattered};
 use turbid::estimators::{Gather, Kernel};
@@ -17,7 +20,7 @@ use turbid::math::{Interval, Positive, Ray, exp};
 use turbid::photons::PhotonMap;
 use turbid::photons::maps::{Amount, Emitted, Indirect, MapSettings, fill_counted};
 use turbid::rng::{Purpose, Stream};
-use turbid::scene::{Scene, SceneFile};
+use turbid::scene::Scene;
 use turbid::stats::Moments;
 use turbid::transport::NoProgress;
 
@@ -31,12 +34,6 @@ pub const SIDE: usize = 5;
 const STEP: f64 = 0.1;
 /// Largest radius of a gather \[L\].
 const CAP: f64 = 0.9;
-/// The box of fog, extinction 0.5 and albedo 0.8.
-const SCENE: &str = include_str!("../../scenes/fogbox-iso.toml");
-const SIGMA_T: f64 = 0.5;
-const ALBEDO: f64 = 0.8;
-/// Volume of the box [L^3].
-const VOLUME: f64 = 8.0;
 /// Replicate of the pilot that predictions are made from.
 const PILOT: u64 = u64::MAX;
 
@@ -69,16 +66,6 @@ pub fn path_case(pixel: usize) -> String {
 /// The case of the whole picture.
 pub fn case(k: usize) -> String {
     format!("fog box k={k}")
-}
-
-/// What is seen, as one number.
-fn grey(s: Spectrum) -> f64 {
-    s.mean()
-}
-
-fn scene() -> anyhow::Result<Scene> {
-    let file: SceneFile = toml::from_str(SCENE).map_err(|e| anyhow!("fogbox-iso.toml: {e}"))?;
-    Ok(file.scene(Path::new("."))?)
 }
 
 /// The rays through the middles of the pixels, with their ends on walls.

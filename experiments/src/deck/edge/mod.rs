@@ -4,6 +4,9 @@
 //! fog goes on in the dark. The light in the room is that of a slab with nothing behind. Where the edge is open, half of
 //! the ball is empty; on the dark side of the wall, gathers find the photons of the room.
 
+pub mod conclude;
+mod figure;
+
 use crate::harness::{CellId, CellOutput, Prediction, Settings, Unit};
 use glam::DVec3;
 use std::f64::consts::PI;
