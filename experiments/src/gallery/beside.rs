@@ -133,7 +133,7 @@ fn predict(small: &Makings, ours: &Kept) -> anyhow::Result<(Vec<f64>, f64)> {
         .map(|l| {
             let reach = |map: usize, radiance: Spectrum| {
                 let each = power / emitted[map].max(1) as f64;
-                radius(picture.nearest[map], each, radiance.sum(), 0.1 * picture.size)
+                radius(picture.nearest[map], each, radiance.sum(), picture.reach)
             };
             let seen = if picture.gather == 0 { reach(0, l.indirect) } else { 0.0 };
             let caustic = if emitted[1] > 0 { reach(1, l.caustic) } else { 0.0 };

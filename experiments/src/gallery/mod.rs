@@ -10,6 +10,7 @@ pub mod compare;
 pub mod develop;
 mod dots;
 pub mod keep;
+pub mod light;
 pub mod look;
 mod makings;
 mod page;

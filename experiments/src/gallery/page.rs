@@ -129,7 +129,6 @@ fn numbers(picture: &Picture, shown: &Shown) -> Markup {
         table {
             tbody {
                 tr { th { "the original" } td { (picture.original) } }
-                tr { th { "numbers" } td { (picture.numbers) } }
                 tr { th { "here" } td {
                     (stored.join(", ")) " photons stored; maps " (duration(ours.map_seconds)) ", picture "
                     (duration(ours.seconds - ours.map_seconds)) " of CPU time for "
