@@ -51,80 +51,86 @@ struct Pair {
     v: Vectors,
     u_squared: f64x2,
     v_squared: f64x2,
+    /// Indices in the list.
+    number: f64x2,
+}
+
+impl Pair {
+    fn new(first: usize, members: &[Rectangle]) -> Self {
+        let lanes = |part: fn(&Rectangle) -> DVec3| {
+            Vectors::new(std::array::from_fn(|i| members.get(i).map_or(DVec3::NAN, part)))
+        };
+        let (u, v) = (lanes(Rectangle::u), lanes(Rectangle::v));
+        Pair {
+            corner: lanes(Rectangle::corner),
+            normal: lanes(Rectangle::normal),
+            u,
+            v,
+            u_squared: u.dot(u),
+            v_squared: v.dot(v),
+            number: f64x2::new(std::array::from_fn(|i| (first + i) as f64)),
+        }
+    }
+
+    /// Distances \[L\], and which lanes are met there, ahead and nearer than `bound`.
+    #[inline(always)]
+    fn meet(&self, origin: Vectors, dir: Vectors, bound: f64x2) -> (f64x2, f64x2) {
+        let t = self.corner.minus(origin).dot(self.normal) / dir.dot(self.normal);
+        let p = origin.moved(dir, t).minus(self.corner);
+        let (a, b, zero) = (p.dot(self.u), p.dot(self.v), f64x2::ZERO);
+        let inside =
+            a.simd_ge(zero) & a.simd_le(self.u_squared) & b.simd_ge(zero) & b.simd_le(self.v_squared);
+        (t, inside & t.simd_gt(zero) & t.simd_lt(bound))
+    }
 }
 
 /// A list of rectangles that answers what each of them would, bit for bit.
+///
+/// Nothing branches on what single rectangles answer: which of them a ray meets is as good as random, and a branch
+/// foretold wrongly costs as much as a pair of rectangles.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Rectangles {
     members: Vec<Rectangle>,
     pairs: Vec<Pair>,
 }
 
+/// An index in the list as a number in every lane; -1, which none has, for none.
+fn lanes_of(index: Option<usize>) -> f64x2 {
+    f64x2::splat(index.map_or(-1.0, |index| index as f64))
+}
+
 impl Rectangles {
     /// The list of these.
     pub fn new(members: Vec<Rectangle>) -> Self {
-        let pair = |chunk: &[Rectangle]| {
-            let lanes = |part: fn(&Rectangle) -> DVec3| {
-                Vectors::new(std::array::from_fn(|i| chunk.get(i).map_or(DVec3::NAN, part)))
-            };
-            let (u, v) = (lanes(Rectangle::u), lanes(Rectangle::v));
-            Pair {
-                corner: lanes(Rectangle::corner),
-                normal: lanes(Rectangle::normal),
-                u,
-                v,
-                u_squared: u.dot(u),
-                v_squared: v.dot(v),
-            }
-        };
-        let pairs = members.chunks(LANES).map(pair).collect();
+        let pairs = members.chunks(LANES).enumerate().map(|(i, chunk)| Pair::new(LANES * i, chunk)).collect();
         Rectangles { members, pairs }
-    }
-
-    /// Calls `found` with the index and the distance \[L\] of each rectangle that the ray meets, ahead and nearer than
-    /// the bound, which starts at `end`, or as near as the other one of its pair; `found` returns the next bound, none to
-    /// stop.
-    #[inline(always)]
-    fn visit(&self, ray: &Ray, end: f64, mut found: impl FnMut(usize, f64) -> Option<f64>) {
-        let (origin, dir) = (Vectors::splat(ray.origin), Vectors::splat(ray.dir));
-        let (zero, mut bound) = (f64x2::ZERO, f64x2::splat(end));
-        for (index, pair) in self.pairs.iter().enumerate() {
-            let t = pair.corner.minus(origin).dot(pair.normal) / dir.dot(pair.normal);
-            let p = origin.moved(dir, t).minus(pair.corner);
-            let (a, b) = (p.dot(pair.u), p.dot(pair.v));
-            let inside =
-                a.simd_ge(zero) & a.simd_le(pair.u_squared) & b.simd_ge(zero) & b.simd_le(pair.v_squared);
-            let mut mask = (inside & t.simd_gt(zero) & t.simd_lt(bound)).to_bitmask();
-            while mask != 0 {
-                let lane = mask.trailing_zeros() as usize;
-                mask &= mask - 1;
-                let Some(next) = found(LANES * index + lane, t.as_array()[lane]) else { return };
-                bound = f64x2::splat(next);
-            }
-        }
     }
 
     /// The nearest one ahead but `except`: its index and where the ray meets it; the first in the list of those at
     /// the same distance.
     pub fn nearest(&self, ray: &Ray, except: Option<usize>) -> Option<(usize, Hit)> {
-        let (mut nearest, mut bound) = (None, f64::INFINITY);
-        self.visit(ray, bound, |index, t| {
-            if except != Some(index) && t < bound {
-                (nearest, bound) = (Some((index, t)), t);
-            }
-            Some(bound)
-        });
-        nearest.map(|(index, t)| (index, self.members[index].hit_at(ray, t)))
+        let (origin, dir) = (Vectors::splat(ray.origin), Vectors::splat(ray.dir));
+        let except = lanes_of(except);
+        let (mut nearest, mut number) = (f64x2::splat(f64::INFINITY), lanes_of(None));
+        for pair in &self.pairs {
+            let (t, met) = pair.meet(origin, dir, nearest);
+            let is_nearer = met & pair.number.simd_ne(except);
+            nearest = is_nearer.select(t, nearest);
+            number = is_nearer.select(pair.number, number);
+        }
+        let ([a, b], [i, j]) = (nearest.to_array(), number.to_array());
+        let (t, index) = if a < b || a == b && i < j { (a, i) } else { (b, j) };
+        (t < f64::INFINITY).then(|| (index as usize, self.members[index as usize].hit_at(ray, t)))
     }
 
     /// Whether the ray meets one of them nearer than `end` \[L\], apart from these two.
     pub fn block(&self, ray: &Ray, except: [Option<usize>; 2], end: f64) -> bool {
-        let mut is_blocked = false;
-        self.visit(ray, end, |index, _| {
-            is_blocked = !except.contains(&Some(index));
-            (!is_blocked).then_some(end)
-        });
-        is_blocked
+        let (origin, dir) = (Vectors::splat(ray.origin), Vectors::splat(ray.dir));
+        let ([one, other], end) = (except.map(lanes_of), f64x2::splat(end));
+        self.pairs.iter().any(|pair| {
+            let (_, met) = pair.meet(origin, dir, end);
+            (met & pair.number.simd_ne(one) & pair.number.simd_ne(other)).any()
+        })
     }
 }
 

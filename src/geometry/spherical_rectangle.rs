@@ -40,8 +40,12 @@ impl SphericalRectangle {
         let corner = rectangle.corner() - p;
         let (x0, y0) = (corner.dot(axes[0]), corner.dot(axes[1]));
         let (x, y) = ([x0, x0 + lu], [y0, y0 + lv]);
-        let angle = |x: f64, y: f64| libm::atan2(x * y, depth * (x * x + y * y + depth * depth).sqrt());
-        let phi = |x: f64| angle(x, y[1]) - angle(x, y[0]);
+        // Both arc tangents lie within a quarter of a turn: their difference is the argument of a quotient.
+        let corner = |x: f64, y: f64| (depth * (x * x + y * y + depth * depth).sqrt(), x * y);
+        let phi = |x: f64| {
+            let ((re_1, im_1), (re_0, im_0)) = (corner(x, y[1]), corner(x, y[0]));
+            libm::atan2(im_1 * re_0 - re_1 * im_0, re_1 * re_0 + im_1 * im_0)
+        };
         let before = phi(x[0]);
         let solid_angle = phi(x[1]) - before;
         // Written so that a NaN is refused too.
@@ -65,8 +69,8 @@ impl SphericalRectangle {
         let h2 = self.depth * self.depth;
         let [b0, b1] = self.y.map(|y| y / (h2 + y * y).sqrt());
         let phi = self.before + u * self.solid_angle;
-        let (sine, _) = sin_cos(phi);
-        let (half, _) = sin_cos(0.5 * phi);
+        let (half, cosine_of_half) = sin_cos(0.5 * phi);
+        let sine = 2.0 * half * cosine_of_half;
         // b0^2 + b1^2 - 2 b0 b1 cos phi
         let norm = ((b1 - b0) * (b1 - b0) + 4.0 * b0 * b1 * half * half).max(0.0).sqrt();
         let a = (sine / norm).clamp(-1.0, 1.0);

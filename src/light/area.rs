@@ -10,9 +10,11 @@ use crate::math::{Frame, Ray, warp};
 use glam::DVec3;
 use std::f64::consts::PI;
 
-/// A rectangle farther than so many diagonals is aimed at by area: what it sends varies by some per cent over it, and its
-/// solid angle loses digits.
-const FAR: f64 = 32.0;
+/// A rectangle whose middle is farther than so many diagonals is aimed at by area. Near it samples by area have no bounded
+/// variance, and solid angle is worth its trigonometry; from a diagonal on, what a sample brings varies little over the
+/// rectangle. In a box of fog (`cargo bench --bench fogbox`) variances are 1 % greater with 1 than with 32, and pictures
+/// take a quarter less time.
+const FAR: f64 = 1.0;
 
 /// A black shape whose surface emits the same radiance everywhere, in all outward directions: the front of a rectangle,
 /// the outside of a sphere, a cuboid, a mesh or a lathe.
