@@ -7,6 +7,7 @@ pub mod bias;
 pub mod blur;
 pub mod boundary;
 pub mod budget;
+pub mod contest;
 pub mod coverage;
 pub mod deck;
 pub mod extremes;

@@ -130,9 +130,8 @@ impl Photons {
         camera: &Camera,
         maps: &MapSettings,
     ) -> turbid::Result<Option<Importance>> {
-        // Another seed for each repetition, so that repetitions stay independent.
-        let seed = maps.seed ^ maps.replicate.wrapping_mul(0x9e37_79b9_7f4a_7c15);
-        let settings = ImportanceSettings { seed, ..Default::default() };
+        let MapSettings { seed, replicate, .. } = *maps;
+        let settings = ImportanceSettings { seed, replicate, ..Default::default() };
         let learn = || Importance::of(scene, camera, maps.indirect, &settings, &NoProgress);
         self.is_steered.then(learn).transpose()
     }
@@ -150,6 +149,9 @@ pub struct Reading {
     /// Photons an estimate takes, the k nearest.
     #[arg(long, value_parser = parse_k, default_value = "100", conflicts_with = "radius")]
     k: usize,
+    /// The same for the caustic map [default: k].
+    #[arg(long, value_parser = parse_k, conflicts_with = "radius")]
+    caustic_k: Option<usize>,
     /// The same for the volume map [default: k].
     #[arg(long, value_parser = parse_k, conflicts_with = "radius")]
     volume_k: Option<usize>,
@@ -252,7 +254,8 @@ impl Reading {
             Some(radius) => Gather::radius(radius).context("--radius"),
             None => Gather::nearest(k, self.max_radius.unwrap_or(0.1 * size)).context("--k, --max-radius"),
         };
-        let (surface, volume) = (gather(self.k)?, gather(self.volume_k.unwrap_or(self.k))?);
+        let (surface, caustic) = (gather(self.k)?, gather(self.caustic_k.unwrap_or(self.k))?);
+        let volume = gather(self.volume_k.unwrap_or(self.k))?;
         if !(self.near >= 0.0 && self.near.is_finite()) {
             return Err(anyhow!("--near is {}; allowed: finite and at least 0", self.near));
         }
@@ -262,7 +265,7 @@ impl Reading {
         let mut settings = Settings::for_size(size, self.k).context("--k")?;
         let kernel = self.kernel.kernel();
         settings.global = (kernel, surface);
-        settings.caustic = (self.caustic_kernel.kernel(), surface);
+        settings.caustic = (self.caustic_kernel.kernel(), caustic);
         settings.volume = (kernel, volume);
         settings.gather_rays = self.gather_rays.max(1);
         settings.near = self.near;

@@ -1,6 +1,7 @@
 //! The path tracer on a box of fog, beside Mitsuba 3's volumetric path tracer, in turn, in one run on one thread each.
 //!
-//! `cargo bench -p turbid-experiments --bench fogbox -- iso` runs the fogs whose name contains a word.
+//! `cargo bench -p turbid-experiments --bench fogbox -- iso` runs the fogs whose name contains a word; a number among the
+//! words is that of the rounds.
 //!
 //! Efficiency is 1/(mean squared error x processor seconds), over pixels and channels. Of path tracers the error is the
 //! spread of independent rounds; that their means are right is tested beside it, on the mean radiance of the picture,
@@ -27,9 +28,10 @@ use turbid::transport::NoProgress;
 
 /// Width and height of the picture in pixels.
 pub const WIDTH: usize = 128;
+/// Rounds, if no number says otherwise.
 const ROUNDS: usize = 15;
 /// Samples a pixel and round: about a second of either renderer.
-const SAMPLES: u64 = 16;
+pub const SAMPLES: u64 = 16;
 /// Mean radiance over pixels and channels by a converged independent renderer, and its standard error.
 const FOGS: [(&str, f64); 3] = [("iso", 0.16394), ("hg", 0.16228), ("het", 0.16909)];
 const CONVERGED_ERROR: f64 = 1e-4;
@@ -43,7 +45,9 @@ pub struct Round {
 }
 
 fn main() -> Result<()> {
-    let wanted: Vec<String> = std::env::args().skip(1).filter(|word| !word.starts_with('-')).collect();
+    let words: Vec<String> = std::env::args().skip(1).filter(|word| !word.starts_with('-')).collect();
+    let (numbers, wanted): (Vec<_>, Vec<_>) = words.into_iter().partition(|word| word.parse::<u64>().is_ok());
+    let rounds_wanted = numbers.first().and_then(|n| n.parse().ok()).unwrap_or(ROUNDS as u64).max(2);
     let is_wanted = |name: &str| wanted.is_empty() || wanted.iter().any(|word| name.contains(word));
     let mut out = std::io::stdout().lock();
     let mut peers = Vec::new();
@@ -53,7 +57,10 @@ fn main() -> Result<()> {
             Err(why) => writeln!(out, "Mitsuba {variant} is not beside it: {why:#}.")?,
         }
     }
-    writeln!(out, "{WIDTH} x {WIDTH} pixels, {SAMPLES} samples a pixel and round, {ROUNDS} rounds in turn")?;
+    writeln!(
+        out,
+        "{WIDTH} x {WIDTH} pixels, {SAMPLES} samples a pixel and round, {rounds_wanted} rounds in turn"
+    )?;
     writeln!(
         out,
         "{:4} {:20} {:>8} {:>12} {:>22} {:>9} {:>7}",
@@ -72,7 +79,7 @@ fn main() -> Result<()> {
         for (_, peer) in &mut peers {
             peer.render(fog, 1, 0)?;
         }
-        for round in 0..ROUNDS as u64 {
+        for round in 0..rounds_wanted {
             for ((_, peer), (_, rounds)) in peers.iter_mut().zip(&mut rounds) {
                 rounds.push(peer.render(fog, SAMPLES, round + 1)?);
             }

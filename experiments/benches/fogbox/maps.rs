@@ -1,6 +1,6 @@
 //! The photon mapper on a box of fog: error against time, beside path tracers.
 
-use crate::{Round, squared_errors, timed};
+use crate::{Round, WIDTH, squared_errors, timed};
 use anyhow::{Context, Result};
 use std::io::Write;
 use turbid::estimators::{Gather, Kernel};
@@ -11,18 +11,27 @@ use turbid::rng::{Purpose, Stream};
 use turbid::scene::{Camera, SURROUNDINGS, Scene};
 use turbid::sensor::{Streams, render};
 use turbid::transport::NoProgress;
+use turbid_experiments::contest::{self, Maps, Paths};
 
-/// Photons an estimate uses.
-const K: usize = 100;
 const ROUNDS: usize = 7;
-/// Photons on surfaces and in the volume, as multiples of those of the picture of 1998, and samples a pixel: errors from
-/// 30 per cent of the mean down to where the spread of maps with this many photons an estimate is all that is left.
-const SIZES: [(f64, u64); 5] = [(0.3, 2), (1.0, 5), (2.0, 20), (4.0, 80), (16.0, 80)];
+/// Photons on surfaces and in the volume, as multiples of those of the picture of 1998, photons an estimate, and samples a
+/// pixel. Photons and k grow together; other numbers of samples follow from the variance between samples. Those of 1998 take
+/// about as many samples as 20 per cent of error ask for.
+const SIZES: [(f64, usize, u64); 4] = [(0.25, 45, 4), (1.0, 100, 6), (4.0, 220, 4), (16.0, 490, 3)];
 const SURFACE: f64 = 200_000.0;
 const VOLUME: f64 = 65_000.0;
+/// Errors, over the mean, at which times are compared.
+const ERRORS: [f64; 7] = [0.3, 0.25, 0.2, 0.15, 0.1, 0.05, 0.03];
+const PIXELS: f64 = (WIDTH * WIDTH) as f64;
 
-/// One map and its picture, the map seen directly.
-fn by_map(scene: &Scene, camera: &Camera, factor: f64, samples: u64, replicate: u64) -> Result<Round> {
+/// One map and its picture, the map seen directly; the seconds that filling took, and the variance of the mean over
+/// samples, mean over pixels and channels.
+fn by_map(
+    scene: &Scene,
+    camera: &Camera,
+    (factor, k, samples): (f64, usize, u64),
+    replicate: u64,
+) -> Result<(Round, f64, f64)> {
     let stored = |count: f64| Amount::Stored((factor * count) as u64);
     let filling = MapSettings {
         global: stored(SURFACE),
@@ -32,8 +41,8 @@ fn by_map(scene: &Scene, camera: &Camera, factor: f64, samples: u64, replicate: 
         seed: 1,
         replicate,
     };
-    let nearest = Gather::nearest(K, 1.0)?;
-    let standard = Settings::for_size(2.0, K)?;
+    let nearest = Gather::nearest(k, 1.0)?;
+    let standard = Settings::for_size(2.0, k)?;
     let settings = Settings {
         global: (Kernel::Uniform, nearest),
         volume: (Kernel::Uniform, nearest),
@@ -41,52 +50,81 @@ fn by_map(scene: &Scene, camera: &Camera, factor: f64, samples: u64, replicate: 
         march: March { step: Positive::new("the step", 4.0)?, adaptive: None, ..standard.march },
         ..standard
     };
-    timed(|| {
+    let (mut seconds, mut noise) = (0.0, 0.0);
+    let round = timed(|| {
+        let start = cpu_time::ThreadTime::now();
         let maps = fill(scene, &filling, &NoProgress)?;
+        seconds = start.elapsed().as_secs_f64();
         let mapper = Mapper::new(scene, &maps, &settings);
-        Ok(render(camera, samples, Streams { seed: 1, replicate }, &NoProgress, |ray, stream| {
+        let film = render(camera, samples, Streams { seed: 1, replicate }, &NoProgress, |ray, stream| {
             mapper.radiance(ray, None, SURROUNDINGS, stream).0
-        })?)
-    })
+        })?;
+        let variances = film.pixels().iter().filter_map(|pixel| Some(pixel.variance()?.mean()));
+        noise = variances.sum::<f64>() / PIXELS;
+        Ok(film)
+    })?;
+    Ok((round, seconds, noise))
 }
 
-/// What some rounds say of one size of maps.
-struct Row {
-    seconds: f64,
-    /// Mean squared error, and its part that varies between maps [radiance^2].
-    error: f64,
-    variance: f64,
+/// What the rounds of one size of map say, each by itself: costs, and squared errors against the mean of all rounds of path
+/// tracers and against the mean of their own.
+struct Size {
+    samples: f64,
+    seconds: Vec<f64>,
+    fill: Vec<f64>,
+    noise: Vec<f64>,
+    off: Vec<f64>,
+    between: Vec<f64>,
 }
 
-/// Rounds of maps against the mean of all rounds of path tracers, whose own error is known and taken off.
-fn row(rounds: &[Round], chosen: &[usize], truth: &[f64], error_of_truth: f64) -> Row {
-    let n = chosen.len() as f64;
-    let seconds = chosen.iter().map(|&i| rounds[i].seconds).sum::<f64>() / n;
-    let off = |round: &Round| {
-        let squares = round.pixels.iter().zip(truth).map(|(a, b)| (a - b) * (a - b));
-        squares.sum::<f64>() / truth.len() as f64
-    };
-    let spread = squared_errors(rounds);
-    Row {
-        seconds,
-        error: chosen.iter().map(|&i| off(&rounds[i])).sum::<f64>() / n - error_of_truth,
-        variance: chosen.iter().map(|&i| spread[i]).sum::<f64>() / n,
+impl Size {
+    fn new(seen: Vec<(Round, f64, f64)>, samples: u64, truth: &[f64]) -> Self {
+        let (fill, noise) = (seen.iter().map(|s| s.1).collect(), seen.iter().map(|s| s.2).collect());
+        let rounds: Vec<Round> = seen.into_iter().map(|s| s.0).collect();
+        let off = |round: &Round| {
+            let squares = round.pixels.iter().zip(truth).map(|(a, b)| (a - b) * (a - b));
+            squares.sum::<f64>() / truth.len() as f64
+        };
+        Size {
+            samples: samples as f64,
+            seconds: rounds.iter().map(|round| round.seconds).collect(),
+            fill,
+            noise,
+            off: rounds.iter().map(off).collect(),
+            between: squared_errors(&rounds),
+        }
+    }
+
+    /// Of some rounds; the error of the truth is known and taken off.
+    fn of(&self, chosen: &[usize], error_of_truth: f64) -> Maps {
+        let n = chosen.len() as f64;
+        let average = |values: &[f64]| chosen.iter().map(|&i| values[i]).sum::<f64>() / n;
+        let (error, between) = (average(&self.off) - error_of_truth, average(&self.between));
+        let (noise, fill, seconds) = (average(&self.noise), average(&self.fill), average(&self.seconds));
+        Maps {
+            fill,
+            sample: (seconds - fill) / (PIXELS * self.samples),
+            noise: noise * self.samples,
+            spread: (between - noise).max(0.0),
+            bias: (error - between).max(0.0),
+        }
     }
 }
 
-/// The error, relative to the picture's mean, at which maps and a path tracer of this efficiency take the same time:
-/// between two sizes the logarithm of the ratio of times is taken to be linear in that of the error.
-fn crossing(rows: &[Row], efficiency: f64, mean: f64) -> Option<f64> {
-    let points: Vec<[f64; 2]> = rows
-        .iter()
-        .map(|row| {
-            let advantage = 1.0 / (efficiency * row.error * row.seconds);
-            [0.5 * libm::log(row.error), libm::log(advantage)]
-        })
-        .collect();
-    let found = points.windows(2).find(|pair| pair[0][1] > 0.0 && pair[1][1] <= 0.0)?;
-    let part = found[0][1] / (found[0][1] - found[1][1]);
-    Some(libm::exp(found[0][0] + part * (found[1][0] - found[0][0])) / mean)
+/// A path tracer by some of its rounds.
+fn path_tracer(rounds: &[Round], errors: &[f64], chosen: &[usize]) -> Paths {
+    let n = chosen.len() as f64;
+    let samples = crate::SAMPLES as f64;
+    Paths {
+        sample: chosen.iter().map(|&i| rounds[i].seconds).sum::<f64>() / (n * PIXELS * samples),
+        noise: chosen.iter().map(|&i| errors[i]).sum::<f64>() / n * samples,
+    }
+}
+
+fn interval(mut values: Vec<f64>) -> [f64; 2] {
+    values.sort_unstable_by(f64::total_cmp);
+    let (last, cut) = (values.len() - 1, values.len() / 40);
+    [values[cut], values[last - cut]]
 }
 
 /// Prints error against time, and where path tracers become faster.
@@ -97,93 +135,94 @@ pub fn compare(
     paths: &[(String, Vec<Round>)],
 ) -> Result<()> {
     let count = paths.first().context("no path tracer")?.1[0].pixels.len();
-    let all: Vec<&Round> = paths.iter().flat_map(|(_, rounds)| rounds).collect();
+    let errors: Vec<Vec<f64>> = paths.iter().map(|(_, rounds)| squared_errors(rounds)).collect();
     // Every renderer's rounds weigh as much as their spread allows.
-    let weights: Vec<f64> = paths
-        .iter()
-        .flat_map(|(_, rounds)| {
-            let error = squared_errors(rounds).iter().sum::<f64>() / rounds.len() as f64;
-            rounds.iter().map(move |_| 1.0 / error)
-        })
-        .collect();
-    let total: f64 = weights.iter().sum();
-    let truth: Vec<f64> = (0..count)
-        .map(|i| all.iter().zip(&weights).map(|(round, w)| w * round.pixels[i]).sum::<f64>() / total)
-        .collect();
+    let mut truth = vec![0.0; count];
+    let mut total = 0.0;
+    for ((_, rounds), errors) in paths.iter().zip(&errors) {
+        let weight = rounds.len() as f64 / errors.iter().sum::<f64>();
+        for round in rounds {
+            truth.iter_mut().zip(&round.pixels).for_each(|(sum, value)| *sum += weight * value);
+            total += weight;
+        }
+    }
+    truth.iter_mut().for_each(|sum| *sum /= total);
     let mean = truth.iter().sum::<f64>() / count as f64;
+    let percent = |square: f64| 100.0 * square.max(0.0).sqrt() / mean;
 
-    let sizes = SIZES.map(|(factor, samples)| -> Result<Vec<Round>> {
-        (0..ROUNDS as u64).map(|round| by_map(scene, camera, factor, samples, round)).collect()
-    });
-    let sizes = sizes.into_iter().collect::<Result<Vec<_>>>()?;
-    let rows = |chosen: &[usize]| -> Vec<Row> {
-        sizes.iter().map(|rounds| row(rounds, chosen, &truth, 1.0 / total)).collect()
-    };
+    writeln!(out, "\nPhoton maps seen directly, {ROUNDS} maps of each size; errors in % of the mean")?;
     writeln!(
         out,
-        "\nPhoton maps seen directly, {K} photons an estimate, {ROUNDS} maps of each size; % of the mean"
+        "{:>9} {:>9} {:>4} {:>7} {:>7} {:>10} {:>7} {:>7} {:>10} {:>7} {:>7}",
+        "surface", "volume", "k", "samples", "fill s", "us/sample", "error", "noise/1", "spread", "bias", "s"
     )?;
-    write!(
-        out,
-        "{:>9} {:>9} {:>7} {:>8} {:>7} {:>7} {:>7} {:>10}",
-        "surface", "volume", "samples", "s", "error", "spread", "bias", "1/(MSE s)"
-    )?;
-    let efficiencies: Vec<(&str, f64)> = paths
-        .iter()
-        .map(|(name, rounds)| {
-            let error = squared_errors(rounds).iter().sum::<f64>();
-            let seconds = rounds.iter().map(|r| r.seconds).sum::<f64>();
-            (name.as_str(), (rounds.len() * rounds.len()) as f64 / (error * seconds))
-        })
-        .collect();
-    for (name, _) in &efficiencies {
-        write!(out, " {:>28}", format!("times {name}"))?;
-    }
-    writeln!(out)?;
     let mut stream = Stream::new(1, Purpose::Resampling, 1, 0);
-    let resampled: Vec<Vec<Row>> =
-        (0..1000).map(|_| rows(&(0..ROUNDS).map(|_| stream.index(ROUNDS)).collect::<Vec<_>>())).collect();
-    let whole = rows(&(0..ROUNDS).collect::<Vec<_>>());
-    let interval = |mut values: Vec<f64>| {
-        values.sort_unstable_by(f64::total_cmp);
-        [values[values.len() / 40], values[values.len() - 1 - values.len() / 40]]
-    };
-    for (i, (factor, samples)) in SIZES.into_iter().enumerate() {
-        let row = &whole[i];
-        let percent = |square: f64| 100.0 * square.max(0.0).sqrt() / mean;
-        write!(
+    let draws: Vec<Vec<usize>> =
+        (0..300).map(|_| (0..ROUNDS).map(|_| stream.index(ROUNDS)).collect()).collect();
+    let (mut whole, mut resampled) = (Vec::new(), vec![Vec::new(); draws.len()]);
+    for size in SIZES {
+        let seen =
+            (0..ROUNDS as u64).map(|round| by_map(scene, camera, size, round)).collect::<Result<Vec<_>>>()?;
+        let (factor, k, samples) = size;
+        let rounds = Size::new(seen, samples, &truth);
+        let of = |chosen: &[usize]| rounds.of(chosen, 1.0 / total);
+        let maps = of(&(0..ROUNDS).collect::<Vec<_>>());
+        writeln!(
             out,
-            "{:>9.0} {:>9.0} {samples:>7} {:>8.3} {:>7.2} {:>7.2} {:>7.2} {:>10.1}",
+            "{:>9.0} {:>9.0} {k:>4} {samples:>7} {:>7.3} {:>10.2} {:>7.2} {:>7.2} {:>10.2} {:>7.2} {:>7.3}",
             factor * SURFACE,
             factor * VOLUME,
-            row.seconds,
-            percent(row.error),
-            percent(row.variance),
-            percent(row.error - row.variance),
-            1.0 / (row.error * row.seconds)
+            maps.fill,
+            1e6 * maps.sample,
+            percent(maps.square(samples as f64)),
+            percent(maps.noise),
+            percent(maps.spread),
+            percent(maps.bias),
+            maps.fill + PIXELS * samples as f64 * maps.sample,
         )?;
-        for (_, efficiency) in &efficiencies {
-            let times = |row: &Row| 1.0 / (row.error * row.seconds * efficiency);
-            let [low, high] = interval(resampled.iter().map(|rows| times(&rows[i])).collect());
-            write!(out, " {:>9.2} ({low:7.2} to {high:6.2})", times(row))?;
-        }
-        writeln!(out)?;
+        out.flush()?;
+        resampled.iter_mut().zip(&draws).for_each(|(sizes, chosen)| sizes.push(of(chosen)));
+        whole.push(maps);
     }
-    for (name, efficiency) in efficiencies {
-        match crossing(&whole, efficiency, mean) {
-            Some(at) => {
-                let found = resampled.iter().filter_map(|rows| crossing(rows, efficiency, mean)).collect();
+    for ((name, rounds), errors) in paths.iter().zip(&errors) {
+        let all = path_tracer(rounds, errors, &(0..rounds.len()).collect::<Vec<_>>());
+        let others: Vec<Paths> = draws
+            .iter()
+            .map(|_| {
+                let chosen: Vec<usize> = (0..rounds.len()).map(|_| stream.index(rounds.len())).collect();
+                path_tracer(rounds, errors, &chosen)
+            })
+            .collect();
+        writeln!(
+            out,
+            "\nTime of {name} over that of the cheapest map, and of the map of 1998, at the same error"
+        )?;
+        for error in ERRORS {
+            let square = error * error * mean * mean;
+            let gain = |maps: &[Maps], paths: &Paths| {
+                contest::cheapest(maps, PIXELS, square).map_or(0.0, |c| paths.cost(PIXELS, square) / c.1)
+            };
+            let ratios = |maps: fn(&[Maps]) -> &[Maps]| {
+                let found = resampled.iter().zip(&others).map(|(m, p)| gain(maps(m), p)).collect();
                 let [low, high] = interval(found);
-                writeln!(
-                    out,
-                    "{name} is faster below an error of {:.2} % ({:.2} to {:.2})",
-                    100.0 * at,
-                    100.0 * low,
-                    100.0 * high
-                )?;
-            }
-            None => writeln!(out, "{name}: no crossing at these sizes")?,
+                format!("{:6.2} ({low:5.2} to {high:5.2})", gain(maps(&whole), &all))
+            };
+            let samples = whole[1].samples(square).map_or("-".into(), |n| format!("{n:.1}"));
+            writeln!(
+                out,
+                "{:>5.0} %  {}   {}   {samples} samples a pixel",
+                100.0 * error,
+                ratios(|all| all),
+                ratios(|all| &all[1..2])
+            )?;
         }
+        let crossing = |maps: &[Maps], paths: &Paths| 100.0 * contest::crossing(maps, paths, PIXELS, mean);
+        let [low, high] = interval(resampled.iter().zip(&others).map(|(m, p)| crossing(m, p)).collect());
+        writeln!(
+            out,
+            "{name} is faster below an error of {:.2} % ({low:.2} to {high:.2})",
+            crossing(&whole, &all)
+        )?;
     }
     Ok(())
 }

@@ -1,14 +1,20 @@
 //! Claim: what the talk of 1998 says of volume photon maps in whole sentences holds in numbers.
-//! Referee: the path tracer for pixels of a box of fog, the exact slab for the edge of a medium and for light that leaks
-//! through a thin wall. Shown beside it: what a gather takes amid 36 and a million triangles.
+//! Referee: the path tracer for pixels of a box of fog, for errors and for what paths cost; the exact slab for the edge of
+//! a medium and for light that leaks through a thin wall. Shown beside it: what a gather takes amid 36 and a million
+//! triangles, what multiple scattering in a cloud takes, and what importance brings.
 //!
 //! Jensen and Christensen (1998), "Efficient simulation of light transport in scenes with participating media using photon
 //! maps", as told in the talk's slides.
 
+mod clouds;
 mod conclude;
 mod edge;
-mod figures;
+mod fogbox;
+mod part;
 mod pixels;
+mod race;
+mod steering;
+mod times;
 mod walls;
 
 use crate::harness::{CellId, CellOutput, Experiment, Prediction, Settings};
@@ -18,9 +24,11 @@ use anyhow::bail;
 pub const EXPERIMENT: Experiment = Experiment {
     name: "deck",
     title: "Do the sentences of 1998 hold?",
-    question: "The talk that introduced photon maps for fog says that 50 to 100 photons an estimate work well, that the \
-               estimate is too low at the edge of a medium, that looking at the incoming direction avoids false photons, \
-               and that maps are decoupled from geometry. By how much?",
+    question: "The talk that introduced photon maps for fog says that 50 to 100 photons an estimate work well, that photon \
+               maps are faster than Monte Carlo, that the estimate is too low at the edge of a medium, that looking at \
+               the incoming direction avoids false photons, that maps are decoupled from geometry, that multiple \
+               scattering in clouds costs 100 to 61 of single scattering, and names importance as an improvement. By how \
+               much?",
     cells,
     predict,
     measure,
@@ -31,6 +39,9 @@ fn cells(settings: &Settings) -> Vec<CellId> {
     let mut cells = pixels::cells(settings);
     cells.extend(edge::cells(settings));
     cells.extend(walls::cells(settings));
+    cells.extend(race::cells(settings));
+    cells.extend(clouds::cells(settings));
+    cells.extend(steering::cells(settings));
     cells
 }
 
@@ -44,6 +55,9 @@ fn measure(settings: &Settings, cell: &CellId) -> anyhow::Result<CellOutput> {
     match cell.group.as_str() {
         pixels::GROUP => pixels::measure(settings, cell),
         edge::GROUP => edge::measure(settings, cell),
+        race::GROUP => race::measure(settings, cell),
+        clouds::GROUP => clouds::measure(settings, cell),
+        steering::GROUP => steering::measure(settings, cell),
         walls::GROUP => walls::measure(settings, cell),
         other => bail!("no cells are called {other}"),
     }

@@ -3,7 +3,9 @@
 //! Rays are followed to the walls between gathers, as a renderer does, so that a large mesh may push photons out of the
 //! processor's memory. Times are of this machine: they are in words and tables, not in results and claims.
 
-use crate::harness::{CellId, CellOutput, Settings};
+use super::part::Part;
+use super::times::Times;
+use crate::harness::{CellId, CellOutput, Cells, Claim, Estimate, Section, Settings, Unit, number};
 use glam::DVec3;
 use turbid::Spectrum;
 use turbid::estimators::{Gather, Kernel, in_scattered};
@@ -137,6 +139,45 @@ pub fn measure(settings: &Settings, cell: &CellId) -> anyhow::Result<CellOutput>
     output.count("gathers amid walls, asked twice", asked);
     output.count("gathers amid walls, the same bits", same);
     Ok(output)
+}
+
+/// Gathers whose bits do not depend on the walls [%].
+fn same(cells: &Cells) -> f64 {
+    let count = |name| cells.counter(name) as f64;
+    100.0 * count("gathers amid walls, the same bits") / count("gathers amid walls, asked twice")
+}
+
+/// Time amid many triangles over time amid few.
+fn ratio(cells: &Cells, what: &str) -> Option<Times> {
+    let took = |triangles, pair| cells.seconds(GROUP, &phase(what, triangles, pair)).first().copied();
+    Times::of((0..PAIRS).filter_map(|pair| Some([took(TRIANGLES[0], pair)?, took(TRIANGLES[1], pair)?])))
+}
+
+/// Concludes.
+pub fn conclude(cells: &Cells) -> Part {
+    let text = format!(
+        "\"maps are decoupled from geometry\": part of the gathers amid {} triangles with the bits of those amid {}",
+        TRIANGLES[1], TRIANGLES[0]
+    );
+    let exact = Estimate::exact(same(cells), 0.0);
+    let claims = vec![Claim::within("decoupled", &text, Unit::PERCENT, exact, 100.0, 100.0)];
+    let mut said = Vec::new();
+    if let (Some(gathers), Some(rays)) = (ratio(cells, "gathers"), ratio(cells, "rays")) {
+        said.push([
+            "maps are decoupled from geometry".to_string(),
+            format!(
+                "{} % of the gathers have the same bits; amid {} triangles they take {} of the time amid {} (95 %): {}. \
+                 Rays to the walls take {}",
+                number(same(cells)),
+                TRIANGLES[1],
+                gathers.words(),
+                TRIANGLES[0],
+                gathers.against(0.9, 1.1),
+                rays.words()
+            ),
+        ]);
+    }
+    Part { section: Section { claims, ..Section::default() }, said }
 }
 
 #[cfg(test)]

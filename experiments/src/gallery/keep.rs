@@ -39,23 +39,41 @@ pub struct Facts {
 pub struct Kept {
     /// What is known of it.
     pub facts: Facts,
-    /// Radiance by class, row by row from the top; empty if only totals are kept.
-    pub layers: Vec<Layers>,
     /// Radiance, row by row from the top.
     pub total: Vec<Spectrum>,
+    /// Radiance of what is seen straight, or through specular surfaces alone.
+    pub emission: Vec<Spectrum>,
+    /// Radiance by class; empty if it is not kept.
+    pub layers: Vec<Layers>,
 }
 
 impl Kept {
     /// A film with its facts.
     pub fn new(facts: Facts, film: &Film) -> Self {
-        let layers = film.pixels().iter().map(|p| p.layers()).collect();
-        Kept { facts, layers, total: film.pixels().iter().map(|p| p.total()).collect() }
+        let layers: Vec<Layers> = film.pixels().iter().map(|p| p.layers()).collect();
+        let emission = layers.iter().map(|l| l.emission).collect();
+        Kept { facts, total: film.pixels().iter().map(|p| p.total()).collect(), emission, layers }
+    }
+
+    /// The same without its classes: what is only compared needs none.
+    pub fn without_layers(mut self) -> Self {
+        self.layers = Vec::new();
+        self
+    }
+
+    /// With more light in each pixel.
+    pub fn with(mut self, more: &[Layers]) -> Self {
+        for (i, more) in more.iter().enumerate() {
+            self.layers[i] += *more;
+            self.total[i] += more.total();
+        }
+        self
     }
 
     /// Radiance without light that is seen straight, or through specular surfaces alone: every method counts that alike,
     /// and the noise of its edges would hide all else.
     pub fn scattered(&self) -> Vec<Spectrum> {
-        self.total.iter().zip(&self.layers).map(|(total, layers)| *total - layers.emission).collect()
+        self.total.iter().zip(&self.emission).map(|(total, emission)| *total - *emission).collect()
     }
 
     /// The bytes of its file.
@@ -70,6 +88,7 @@ impl Kept {
             }
         };
         plane(&mut self.total.iter().copied());
+        plane(&mut self.emission.iter().copied());
         if !self.layers.is_empty() {
             for layer in Layer::ALL {
                 plane(&mut self.layers.iter().map(|l| l[layer]));
@@ -103,7 +122,7 @@ impl Kept {
         let numbers = &body[first + 1..];
         let planes = numbers.len() / (12 * pixels).max(1);
         ensure!(
-            numbers.len() == 12 * pixels * planes && [1, 1 + Layer::ALL.len()].contains(&planes),
+            numbers.len() == 12 * pixels * planes && [2, 2 + Layer::ALL.len()].contains(&planes),
             "its size does not fit {pixels} pixels"
         );
         let value = |plane: usize, pixel: usize| {
@@ -117,12 +136,13 @@ impl Kept {
         let layered = |pixel: usize| {
             let mut layers = Layers::ZERO;
             for (n, layer) in Layer::ALL.into_iter().enumerate() {
-                layers[layer] = value(1 + n, pixel);
+                layers[layer] = value(2 + n, pixel);
             }
             layers
         };
-        let layers = if planes > 1 { (0..pixels).map(layered).collect() } else { Vec::new() };
-        Ok(Kept { facts, layers, total: (0..pixels).map(|i| value(0, i)).collect() })
+        let layers = if planes > 2 { (0..pixels).map(layered).collect() } else { Vec::new() };
+        let plane = |number: usize| (0..pixels).map(|i| value(number, i)).collect();
+        Ok(Kept { facts, total: plane(0), emission: plane(1), layers })
     }
 }
 
@@ -144,7 +164,9 @@ mod tests {
         let total = vec![Spectrum::rgb(1.0, 0.5, -0.25), Spectrum::grey(3.0)];
         let mut layers = vec![Layers::ZERO; 2];
         layers[1].multiple = Spectrum::rgb(0.0, 8.0, 0.125);
-        Kept { facts, layers: if has_layers { layers } else { Vec::new() }, total }
+        let emission = vec![Spectrum::ZERO, Spectrum::grey(1.0)];
+        let layers = if has_layers { layers } else { Vec::new() };
+        Kept { facts, total, emission, layers }
     }
 
     #[test]
@@ -160,8 +182,7 @@ mod tests {
 
     #[test]
     fn light_seen_directly_is_left_out() {
-        let mut kept = kept(true);
-        kept.layers[1].emission = Spectrum::grey(1.0);
+        let kept = kept(false);
         assert_eq!(kept.scattered(), [kept.total[0], Spectrum::grey(2.0)]);
     }
 

@@ -2,9 +2,10 @@
 
 use glam::DVec3;
 use turbid::Spectrum;
+use turbid::geometry::Shape;
 use turbid::math::{Frame, Ray, sin_cos};
 use turbid::rng::{Purpose, Stream};
-use turbid::scene::{Camera, Scene, Target};
+use turbid::scene::{Camera, Region, Scene, Target};
 use turbid::transport::{Roulette, Step, Visitor, Walker, walk};
 
 /// What a pixel's middle sees.
@@ -18,15 +19,19 @@ pub struct View {
     pub distance: f64,
     /// Length of the way in media, and the distance of its middle \[L\].
     pub medium: (f64, f64),
-    /// Share of a disc of the probed radius about the place that lies off the surface.
+    /// Share of a disc of the probed radius about the place that lies off the surface; 0 of a flat surface, where
+    /// estimates are divided by the share that lies on it.
     pub missing: f64,
+    /// Whether the regions of fog end where the surface is: behind it there is none, and estimates are divided by the part
+    /// of their balls that lies inside.
+    pub is_at_face: bool,
 }
 
 /// Follows one ray through specular surfaces to the first other one.
 struct Eye<'a> {
     scene: &'a Scene,
     view: View,
-    start: Option<turbid::scene::Start>,
+    is_flat: bool,
 }
 
 impl Visitor for Eye<'_> {
@@ -43,12 +48,18 @@ impl Visitor for Eye<'_> {
         }
         self.view.distance += if end.is_finite() { end } else { last };
         let Some(found) = hit else { return };
-        let Target::Object(_) = found.target else { return };
+        let Target::Object(index) = found.target else { return };
+        let shape = &self.scene.objects()[index].shape;
+        self.is_flat = matches!(shape, Shape::Rectangle(_) | Shape::Cuboid(_));
         let normal = found.hit.normal;
         let normal = if normal.dot(walker.ray.dir) > 0.0 { -normal } else { normal };
         self.view.surface = Some((walker.ray.at(end), normal));
         self.view.cosine = normal.dot(walker.ray.dir).abs();
-        self.start = Some(turbid::scene::Start { target: found.target, primitive: found.hit.primitive });
+        let behind = walker.ray.at(end) - 1e-6 * end * normal;
+        let mut regions = self.scene.regions().iter();
+        self.view.is_at_face = regions.all(|Region { shape, .. }| {
+            matches!(shape, Shape::Sphere(_) | Shape::Cuboid(_) | Shape::Slab(_)) && !shape.contains(behind)
+        });
     }
 }
 
@@ -60,13 +71,20 @@ pub fn look(scene: &Scene, camera: &Camera, radius: impl Fn(usize) -> f64 + Sync
         let (x, y) =
             ((number % u64::from(camera.width())) as u32, (number / u64::from(camera.width())) as u32);
         let ray = camera.ray(glam::DVec2::new(f64::from(x) + 0.5, f64::from(y) + 0.5));
-        let view = View { surface: None, cosine: 1.0, distance: 0.0, medium: (0.0, 0.0), missing: 0.0 };
-        let mut eye = Eye { scene, view, start: None };
+        let view = View {
+            surface: None,
+            cosine: 1.0,
+            distance: 0.0,
+            medium: (0.0, 0.0),
+            missing: 0.0,
+            is_at_face: false,
+        };
+        let mut eye = Eye { scene, view, is_flat: false };
         let mut stream = Stream::new(0, Purpose::Synthetic, 0, number);
         let walker = Walker { within: scene.interior_at(ray.origin), ..Walker::new(ray, Spectrum::ONE) };
         walk(scene, walker, Roulette::Below(1e-6), Some(0), &mut stream, &mut eye);
         let radius = radius(number as usize);
-        if let (Some((place, normal)), true) = (eye.view.surface, radius > 0.0) {
+        if let (Some((place, normal)), true) = (eye.view.surface, radius > 0.0 && !eye.is_flat) {
             eye.view.missing = missing(scene, place, normal, radius);
         }
         eye.view

@@ -7,7 +7,8 @@
 //!
 //! A disc that reaches over the edge of its surface misses the photons that would lie there: the share of its area. A
 //! ball beside a wall misses its cap; along a ray that ends at a wall that is r times the integral of (1-s)^2 (2+s)/4
-//! over s from 0 to 1, 3/16, over the cosine and the length of the way.
+//! over s from 0 to 1, 3/16, over the cosine and the length of the way. Neither is missing where the estimate is divided
+//! by the part of its kernel that lies inside: on flat surfaces, and at the faces of a region of fog.
 
 use super::Grid;
 use super::look::View;
@@ -52,7 +53,7 @@ pub fn predicted(grid: Grid, views: &[View], layers: &[Layers], radii: &[Radii],
                 let near = (views[j].distance - view.distance).abs() <= 2.0 * radii.volume;
                 near.then(|| layers[j][Layer::Multiple].sum())
             });
-            let cap = if view.surface.is_some() {
+            let cap = if view.surface.is_some() && !view.is_at_face {
                 (3.0 / 16.0 * radii.volume / view.cosine.max(0.05) / length).min(1.0)
             } else {
                 0.0
@@ -127,6 +128,7 @@ mod tests {
                 distance: 1.0,
                 medium: (0.0, 0.0),
                 missing: 0.0,
+                is_at_face: false,
             }
         };
         (0..GRID.pixels()).map(view).collect()
@@ -177,7 +179,8 @@ mod tests {
         assert!((error - 0.25 * 0.5).abs() < 1e-12, "{error}");
     }
 
-    /// A ray of length 2 that ends at a wall, balls of radius 0.1, all light from the volume map: 3/16 of 0.05.
+    /// A ray of length 2 that ends at a wall, balls of radius 0.1, all light from the volume map: 3/16 of 0.05; nothing
+    /// where the fog itself ends.
     #[test]
     fn balls_lose_their_caps_at_walls() {
         let mut views = views();
@@ -186,5 +189,7 @@ mod tests {
         let radii = Radii { volume: 0.1, ..Radii::default() };
         let error = predicted(GRID, &views, &layers, &vec![radii; GRID.pixels()], PIXEL)[0];
         assert!((error - 3.0 / 16.0 * 0.05).abs() < 1e-12, "{error}");
+        views.iter_mut().for_each(|view| view.is_at_face = true);
+        assert_eq!(predicted(GRID, &views, &layers, &vec![radii; GRID.pixels()], PIXEL)[0], 0.0);
     }
 }

@@ -8,7 +8,7 @@ use std::path::PathBuf;
 #[derive(Debug, Clone, Parser)]
 #[command(name = "gallery", version)]
 pub struct Settings {
-    /// Half the width and height, an eighth of the twin's samples: minutes instead of hours
+    /// Half the width and height: a quarter of the time
     #[arg(long)]
     pub quick: bool,
     /// Only these pictures; those made before stay on the page

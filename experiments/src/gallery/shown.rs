@@ -12,17 +12,17 @@ pub struct Plate {
     pub file: String,
     /// What it is.
     pub caption: String,
+    /// Which of the picture's plates: `photons`, `paths`, `twin`, `error`, ...
+    pub kind: String,
 }
 
 /// Numbers of a picture's comparison with its twin.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Compared {
-    /// Independent makings of the photon mapper's picture, and their samples a pixel.
-    pub makings: (usize, u64),
-    /// Root mean square error of the picture that is shown, over its mean.
-    pub rms: f64,
-    /// The same of one making, 95 per cent.
-    pub making_rms: [f64; 2],
+    /// Independent makings of the photon mapper's picture.
+    pub makings: usize,
+    /// Root mean square error of the picture that is shown, over its mean, 95 per cent.
+    pub rms: [f64; 2],
     /// The systematic part, 95 per cent.
     pub systematic: [f64; 2],
     /// Error of the picture's mean, 95 per cent.
@@ -46,8 +46,8 @@ impl Compared {
     pub fn new(
         comparison: &Comparison,
         errors: &Errors,
-        makings: (usize, u64),
-        rms: f64,
+        makings: usize,
+        rms: Interval,
         equal_rms: Interval,
     ) -> Self {
         let pair = |i: Interval| [i.low, i.high];
@@ -60,8 +60,7 @@ impl Compared {
         };
         Compared {
             makings,
-            rms,
-            making_rms: pair(errors.rms),
+            rms: pair(rms),
             systematic: pair(errors.systematic),
             bias: pair(errors.bias),
             equal_rms: pair(equal_rms),
@@ -83,6 +82,8 @@ pub struct Shown {
     pub command: String,
     /// Columns and rows of pixels.
     pub size: (usize, usize),
+    /// CPU seconds of everything of it.
+    pub seconds: f64,
     /// The photon mapper's picture.
     pub ours: Facts,
     /// The path tracer's in the same time; none of a draft.

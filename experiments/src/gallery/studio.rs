@@ -2,14 +2,16 @@
 
 use super::Grid;
 use super::keep::{Facts, Kept};
+use super::light::ByLight;
 use super::pictures::Picture;
+use super::recipe;
 use crate::harness::Digest;
 use anyhow::{Context, anyhow};
 use cpu_time::ProcessTime;
 use std::path::Path;
 use turbid::integrators::{mapper, path};
 use turbid::photons::PhotonMap;
-use turbid::photons::maps::{self, Amount, Indirect, MapSettings, Maps};
+use turbid::photons::maps::{self, Maps};
 use turbid::scene::{Camera, Scene, SceneFile};
 use turbid::sensor::{Film, Streams, extend};
 use turbid::transport::Progress;
@@ -48,9 +50,17 @@ impl<'a> Studio<'a> {
         let scene = file.scene(folder).with_context(|| path.display().to_string())?;
         let text = Digest::of(text.as_bytes()).to_string();
         let camera = scene.camera().with_context(|| format!("{} has no camera", path.display()))?;
-        let size = |n: u32| ((f64::from(n) * scale).round() as u32).max(1);
+        // Even, for the comparison on half the size.
+        let size = |n: u32| 2 * ((f64::from(n) * 0.5 * scale).round() as u32).max(1);
         let camera = camera.with_size(size(camera.width()), size(camera.height()))?;
         Ok(Studio { picture, scene, camera, seed, program: program.to_string(), text })
+    }
+
+    /// The same at half the width and height, for what is only compared.
+    pub fn halved(&self) -> anyhow::Result<Self> {
+        let camera = self.camera.with_size(self.camera.width() / 2, self.camera.height() / 2)?;
+        let (scene, program, text) = (self.scene.clone(), self.program.clone(), self.text.clone());
+        Ok(Studio { picture: self.picture, scene, camera, seed: self.seed, program, text })
     }
 
     /// Size of the picture.
@@ -74,8 +84,10 @@ impl<'a> Studio<'a> {
     /// What a making by photons will be called.
     pub fn photon_words(&self, samples: u64, replicate: u64, factor: u64) -> String {
         let p = self.picture;
-        let counts =
-            format!("photons {:?} x {factor}, nearest {:?}, gather {}", p.photons, p.nearest, p.gather);
+        let counts = format!(
+            "photons {:?} x {factor}, nearest {:?} within {}, gather {}, size {}",
+            p.photons, p.nearest, p.reach, p.gather, p.size
+        );
         self.words(&counts, samples, replicate)
     }
 
@@ -84,27 +96,18 @@ impl<'a> Studio<'a> {
         self.words("paths", samples, replicate)
     }
 
-    /// Fills the maps of a replicate, with `factor` times the photons of the original.
-    pub fn maps(&self, replicate: u64, factor: u64) -> anyhow::Result<Maps> {
-        let [global, caustic, volume] = self.picture.photons.map(|amount| match amount {
-            Amount::Emitted(n) => Amount::Emitted(n * factor),
-            Amount::Stored(n) => Amount::Stored(n * factor),
-        });
-        let indirect = if self.picture.gather > 0 { Indirect::Gathered } else { Indirect::Seen };
-        let settings = MapSettings { global, caustic, volume, indirect, seed: self.seed, replicate };
-        Ok(maps::fill(&self.scene, &settings, &turbid::transport::NoProgress)?)
+    /// What a pass of the twin will be called.
+    pub fn twin_words(&self, samples: u64, replicate: u64) -> String {
+        match self.picture.by_light {
+            ByLight::NOTHING => self.path_words(samples, replicate),
+            by_light => self.words(&format!("paths and {by_light:?}"), samples, replicate),
+        }
     }
 
-    /// How the maps are read: as in 1998, with this picture's numbers of photons.
-    fn reading(&self) -> anyhow::Result<mapper::Settings> {
-        let p = self.picture;
-        let mut settings = mapper::Settings::for_size(p.size, p.nearest[0])?;
-        let gathers = [&mut settings.global, &mut settings.caustic, &mut settings.volume];
-        for (gather, k) in gathers.into_iter().zip(p.nearest) {
-            gather.1 = turbid::estimators::Gather::nearest(k, 0.1 * p.size)?;
-        }
-        settings.gather_rays = p.gather.max(1);
-        Ok(settings)
+    /// Fills the maps of a replicate, with `factor` times the photons of the original.
+    pub fn maps(&self, replicate: u64, factor: u64) -> anyhow::Result<Maps> {
+        let settings = recipe::maps(self.picture, factor, self.seed, replicate);
+        Ok(maps::fill(&self.scene, &settings, &turbid::transport::NoProgress)?)
     }
 
     /// A picture from one set of maps.
@@ -118,7 +121,7 @@ impl<'a> Studio<'a> {
         let start = ProcessTime::now();
         let maps = self.maps(replicate, factor)?;
         let map_seconds = start.elapsed().as_secs_f64();
-        let settings = self.reading()?;
+        let settings = recipe::reading(self.picture)?;
         let reader = mapper::Mapper::new(&self.scene, &maps, &settings);
         let within = self.scene.interior_at(self.camera.position());
         let mut film = Film::new(self.camera.width(), self.camera.height());
@@ -154,6 +157,25 @@ impl<'a> Studio<'a> {
         let mut film = Film::new(self.camera.width(), self.camera.height());
         self.trace(&mut film, samples, replicate, progress)?;
         Ok(Kept::new(self.path_facts(start, samples, replicate), &film))
+    }
+
+    /// One pass of the twin, which knows no photons.
+    pub fn twin(&self, samples: u64, replicate: u64, progress: &dyn Progress) -> anyhow::Result<Kept> {
+        let by_light = self.picture.by_light;
+        if by_light == ByLight::NOTHING {
+            return self.paths(samples, replicate, progress);
+        }
+        let start = ProcessTime::now();
+        let within = self.scene.interior_at(self.camera.position());
+        let mut film = Film::new(self.camera.width(), self.camera.height());
+        let streams = self.streams(replicate);
+        extend(&mut film, &self.camera, samples, streams, progress, |ray, stream, n: &mut u64| {
+            *n += 1;
+            by_light.rest(&self.scene, ray, within, stream)
+        })?;
+        let found = by_light.trace(self, samples, streams)?;
+        let facts = self.path_facts(start, samples, replicate);
+        Ok(Kept::new(facts, &film).with(&found))
     }
 
     /// A picture by paths that takes about so many CPU seconds: whole passes over all pixels, at least one. The number

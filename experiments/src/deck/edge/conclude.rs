@@ -1,0 +1,209 @@
+//! What all maps say of the edge of a medium and of false photons behind a thin wall.
+
+use super::{BEHIND, DEPTHS, SIZES, Size, edge_case, figure, photons, wall_case};
+use crate::deck::part::Part;
+use crate::harness::{
+    Cells, Claim, Estimate, Known, Row, Section, Settings, Table, Unit, number, signed, with_error,
+};
+use turbid::estimators::boundary::Rejection;
+use turbid::stats::Moments;
+
+/// One measured number beside its prediction [%].
+pub struct Beside {
+    /// Over maps.
+    pub measured: Moments,
+    /// Before the run.
+    pub predicted: f64,
+}
+
+impl Beside {
+    fn of(cells: &Cells, known: &Known, case: &str, quantity: &str) -> anyhow::Result<Self> {
+        Ok(Beside { measured: cells.moments(case, quantity)?, predicted: known.get(case, quantity)?.0 })
+    }
+
+    fn ratio(&self) -> Estimate {
+        Estimate::mean(&self.measured).times(1.0 / self.predicted)
+    }
+
+    fn words(&self) -> String {
+        format!(
+            "{} % (predicted {})",
+            with_error(self.measured.mean(), self.measured.std_error()),
+            signed(self.predicted, 1).replace('+', "")
+        )
+    }
+}
+
+/// The error below the open edge, and what leaks through the wall.
+pub struct Edges {
+    /// By size and depth.
+    pub edge: Vec<(Size, f64, Beside)>,
+    /// By size, rejection and distance.
+    pub wall: Vec<(Size, Rejection, f64, Beside)>,
+}
+
+impl Edges {
+    fn read(cells: &Cells, known: &Known) -> anyhow::Result<Self> {
+        let (mut edge, mut wall) = (Vec::new(), Vec::new());
+        for size in SIZES {
+            for depth in DEPTHS {
+                edge.push((size, depth, Beside::of(cells, known, &edge_case(size, depth), "error")?));
+            }
+            for rejection in Rejection::ALL {
+                for distance in BEHIND {
+                    let case = wall_case(size, rejection, distance);
+                    wall.push((size, rejection, distance, Beside::of(cells, known, &case, "leak")?));
+                }
+            }
+        }
+        Ok(Edges { edge, wall })
+    }
+
+    fn at_edge(&self, size: Size) -> Option<&Beside> {
+        self.edge.iter().find(|e| e.0 == size && e.1 == DEPTHS[0]).map(|e| &e.2)
+    }
+
+    fn leak(&self, size: Size, rejection: Rejection, distance: f64) -> Option<&Beside> {
+        self.wall.iter().find(|w| w.0 == size && w.1 == rejection && w.2 == distance).map(|w| &w.3)
+    }
+}
+
+/// Distance behind the wall that claims and words are about [mfp].
+const NEAR: f64 = BEHIND[1];
+
+/// Concludes.
+pub fn conclude(settings: &Settings, known: &Known, cells: &Cells) -> anyhow::Result<Part> {
+    let edges = Edges::read(cells, known)?;
+    let section = Section {
+        summary: Vec::new(),
+        claims: claims(&edges),
+        figures: vec![figure::edges(&edges)?],
+        tables: vec![wall_table(&edges)],
+        notes: vec![
+            format!("Maps of the edge and the wall have {} photons.", photons(settings)),
+            "Behind the wall one side is wholly dark, the worst case: what the incoming direction cannot tell is light that \
+             travels away from the wall on its lit side."
+                .to_string(),
+        ],
+        rows: rows(&edges)?,
+        ..Section::default()
+    };
+    Ok(Part { section, said: said(&edges) })
+}
+
+fn claims(edges: &Edges) -> Vec<Claim> {
+    let mut claims = Vec::new();
+    for (size, id) in [(Size::Nearest, "edge-nearest"), (Size::Radius, "edge-radius")] {
+        let Some(at) = edges.at_edge(size) else { continue };
+        let title = size.title();
+        let text =
+            format!("\"the estimate is too low near the edge of a medium\": error on the edge, {title}");
+        let low = Estimate::mean(&at.measured);
+        claims.push(Claim::within(id, &text, Unit::PERCENT, low, -60.0, -40.0));
+        let text = format!("the same over what the empty part of the ball predicts, {title}");
+        claims.push(Claim::within(&format!("{id}-theory"), &text, Unit::ONE, at.ratio(), 0.95, 1.05));
+    }
+    for (size, id) in [(Size::Nearest, "nearest"), (Size::Radius, "radius")] {
+        let title = size.title();
+        for (rejection, name) in [(Rejection::Off, "leak"), (Rejection::FacingBehind, "incoming")] {
+            let Some(leak) = edges.leak(size, rejection, NEAR) else { continue };
+            let what = match rejection {
+                Rejection::Off => "false photons behind a thin wall",
+                _ => "\"looking at the incoming direction avoids false photons\": those left",
+            };
+            let text = format!("{what}, {title}: measured over predicted leak");
+            claims.push(Claim::within(&format!("{name}-{id}"), &text, Unit::ONE, leak.ratio(), 0.9, 1.1));
+        }
+    }
+    let (off, facing) = (
+        edges.leak(Size::Radius, Rejection::Off, NEAR),
+        edges.leak(Size::Radius, Rejection::FacingBehind, NEAR),
+    );
+    if let (Some(off), Some(facing)) = (off, facing) {
+        let text = "\"looking at the incoming direction avoids false photons\": leak left, of what leaks without a look, \
+                    radius 0.2";
+        let left = Estimate::mean(&facing.measured).times(100.0 / off.measured.mean());
+        claims.push(Claim::at_most("avoids", text, Unit::PERCENT, left, 50.0));
+    }
+    for rejection in [Rejection::BehindPlane, Rejection::Visible] {
+        let leaks = edges.wall.iter().filter(|w| w.1 == rejection);
+        let most = leaks.map(|w| w.3.measured.mean().abs()).fold(0.0, f64::max);
+        let text = format!(
+            "photons that are rejected as \"{}\" leave no light behind the wall, in any gather of any map",
+            rejection.name()
+        );
+        let id = rejection.name().replace(' ', "-");
+        claims.push(Claim::at_most(&id, &text, Unit::PERCENT, Estimate::exact(most, 0.0), 0.0));
+    }
+    claims
+}
+
+fn rows(edges: &Edges) -> anyhow::Result<Vec<Row>> {
+    let mut rows = Vec::new();
+    for (size, depth, at) in &edges.edge {
+        rows.push(Row::measured(&edge_case(*size, *depth), "error", Unit::PERCENT, &at.measured)?);
+    }
+    for (size, rejection, distance, leak) in &edges.wall {
+        let name = wall_case(*size, *rejection, *distance);
+        rows.push(match leak.predicted {
+            0.0 => Row::exact(&name, "leak", Unit::PERCENT, leak.measured.mean(), 0.0),
+            _ => Row::measured(&name, "leak", Unit::PERCENT, &leak.measured)?,
+        });
+    }
+    Ok(rows)
+}
+
+fn wall_table(edges: &Edges) -> Table {
+    let mut rows = Vec::new();
+    for size in SIZES {
+        for rejection in Rejection::ALL {
+            let mut row = vec![size.title().to_string(), rejection.name().to_string()];
+            for distance in BEHIND {
+                let cell = edges.leak(size, rejection, distance).map_or(String::new(), |leak| {
+                    match leak.predicted {
+                        0.0 => number(leak.measured.mean()),
+                        predicted => format!(
+                            "{} | {predicted:.2}",
+                            with_error(leak.measured.mean(), leak.measured.std_error())
+                        ),
+                    }
+                });
+                row.push(cell);
+            }
+            rows.push(row);
+        }
+    }
+    let mut columns = vec!["gather".to_string(), "rejection".to_string()];
+    columns.extend(BEHIND.map(|h| format!("{h} behind")));
+    Table {
+        caption: "Light that a gather finds in the dark behind a thin wall, in per cent of the fluence on its lit side, at \
+                  distances in mean free paths: measured | predicted. \"Facing\" and \"facing behind\" look at the \
+                  incoming direction."
+            .to_string(),
+        columns,
+        rows,
+    }
+}
+
+fn said(edges: &Edges) -> Vec<[String; 2]> {
+    let mut said = Vec::new();
+    let mut add = |sentence: &str, found: String| said.push([sentence.to_string(), found]);
+    if let Some(at) = edges.at_edge(Size::Nearest) {
+        add("the estimate is too low near the edge of a medium", format!("on the edge by {}", at.words()));
+    }
+    if let (Some(off), Some(facing)) = (
+        edges.leak(Size::Radius, Rejection::Off, NEAR),
+        edges.leak(Size::Radius, Rejection::FacingBehind, NEAR),
+    ) {
+        add(
+            "looking at the incoming direction avoids false photons",
+            format!(
+                "most of them: {NEAR} mean free paths behind a wall {} of the light in front leaks, with the look {}; \
+                 looking on which side of the wall they lie avoids all",
+                off.words(),
+                facing.words()
+            ),
+        );
+    }
+    said
+}

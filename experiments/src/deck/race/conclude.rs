@@ -1,0 +1,251 @@
+//! What all maps say of "photon maps are faster than Monte Carlo".
+
+use super::data::{Cell, Currency, Fit, LOOKED_AT, STORED, read};
+use super::{SIDE, Size, figure, sizes};
+use crate::contest::{cheapest, crossing};
+use crate::deck::part::Part;
+use crate::harness::{Cells, Claim, Estimate, Row, Section, Settings, Table, Unit};
+use turbid::math::exp;
+use turbid::rng::{Purpose, Stream};
+use turbid::stats::{Interval, Jackknife, jackknife_log};
+
+/// The error that the claim and the words ask about [%], chosen before the first run: what a preview may have.
+const ASKED: f64 = 30.0;
+/// Resamples of the cells for intervals.
+const RESAMPLES: u64 = 500;
+/// Sides of pictures in the table: the one measured, and what larger ones would do with the same maps and pixels.
+const SIDES: [u32; 5] = [16, 32, 64, 128, 512];
+
+/// Everything measured, with resamples of the cells.
+pub struct Race {
+    /// By cell.
+    pub cells: Vec<Cell>,
+    /// Sizes of maps.
+    pub sizes: Vec<Size>,
+    /// Numbers of cells, drawn with replacement.
+    resamples: Vec<Vec<usize>>,
+}
+
+impl Race {
+    fn new(settings: &Settings, cells: &Cells) -> anyhow::Result<Self> {
+        let cells = read(settings, cells)?;
+        let draw = |i| {
+            let mut stream = Stream::new(settings.seed, Purpose::Resampling, i, 0);
+            (0..cells.len()).map(|_| stream.index(cells.len())).collect()
+        };
+        Ok(Race { resamples: (0..RESAMPLES).map(draw).collect(), sizes: sizes(settings), cells })
+    }
+
+    /// Of all cells.
+    pub fn fit(&self, currency: Currency) -> Fit {
+        Fit::of(&self.cells.iter().collect::<Vec<_>>(), currency)
+    }
+
+    /// Of the resampled cells.
+    pub fn resampled(&self, currency: Currency) -> impl Iterator<Item = Fit> {
+        let of = move |chosen: &Vec<usize>| {
+            Fit::of(&chosen.iter().map(|&i| &self.cells[i]).collect::<Vec<_>>(), currency)
+        };
+        self.resamples.iter().map(of)
+    }
+}
+
+/// The ends of the middle 95 % of some values.
+pub fn middle(mut values: Vec<f64>) -> Interval {
+    values.sort_unstable_by(f64::total_cmp);
+    let (last, cut) = (values.len() - 1, values.len() / 40);
+    Interval::new(values[cut], values[last - cut])
+}
+
+/// Root mean square error [%] below which paths are cheaper, with its interval over cells.
+pub struct Crossing {
+    /// Of all cells [%].
+    pub at: f64,
+    /// Bootstrap interval of 95 % [%].
+    pub interval: Interval,
+}
+
+impl Crossing {
+    /// One a picture's side.
+    fn all(race: &Race, currency: Currency) -> Vec<Crossing> {
+        let of = |fit: &Fit| {
+            SIDES.map(|side| 100.0 * crossing(&fit.maps, &fit.paths, f64::from(side * side), fit.mean))
+        };
+        let whole = of(&race.fit(currency));
+        let resampled: Vec<_> = race.resampled(currency).map(|fit| of(&fit)).collect();
+        let one =
+            |i: usize| Crossing { at: whole[i], interval: middle(resampled.iter().map(|r| r[i]).collect()) };
+        (0..SIDES.len()).map(one).collect()
+    }
+
+    fn words(&self) -> String {
+        format!("{:.1} % ({:.1} to {:.1})", self.at, self.interval.low, self.interval.high)
+    }
+
+    fn verdict(&self) -> String {
+        match self.interval {
+            i if i.high < ASKED => format!("the whole interval is below {ASKED} %"),
+            i if i.low > ASKED => format!("the whole interval is above {ASKED} %"),
+            _ => format!("undecided against {ASKED} % on this machine, in this run"),
+        }
+    }
+}
+
+const PIXELS: f64 = (SIDE * SIDE) as f64;
+
+/// Concludes.
+pub fn conclude(settings: &Settings, cells: &Cells) -> anyhow::Result<Part> {
+    let race = Race::new(settings, cells)?;
+    let statistic = |chosen: &[&Cell]| {
+        let fit = Fit::of(chosen, Currency::Rays);
+        100.0 * crossing(&fit.maps, &fit.paths, PIXELS, fit.mean)
+    };
+    let log = jackknife_log(&race.cells.iter().collect::<Vec<_>>(), statistic);
+    let value = exp(log.value);
+    let in_rays = Estimate::jackknife(&Jackknife { value, std_error: value * log.std_error, ..log });
+    let text = "\"photon maps are faster than Monte Carlo\": error of a picture of 32 x 32 pixels below which paths need \
+                less work than photon maps";
+    let [rays, seconds] = [Currency::Rays, Currency::Seconds].map(|currency| Crossing::all(&race, currency));
+    let measured = SIDES.iter().position(|&side| side == SIDE).unwrap_or(0);
+    let said = vec![[
+        "photon maps are faster than Monte Carlo".to_string(),
+        format!(
+            "down to an error of {} of the mean radiance in CPU time, {} in work, for {SIDE} x {SIDE} pixels: {}; for \
+             512 x 512 pixels down to {}",
+            seconds[measured].words(),
+            rays[measured].words(),
+            seconds[measured].verdict(),
+            seconds[SIDES.len() - 1].words(),
+        ),
+    ]];
+    let section = Section {
+        claims: vec![Claim::at_most("faster", text, Unit::PERCENT, in_rays, ASKED)],
+        figures: vec![figure::race(&race, &seconds[measured], &rays[measured])?],
+        tables: vec![size_table(&race), crossing_table(&race, &rays, &seconds)],
+        notes: vec![format!(
+            "The race: a look at a map takes direct light by shadow rays, and of light scattered into a ray one random \
+             place. Work is counted in rays; a photon put into a tree counts {STORED} rays and one in an estimate \
+             {LOOKED_AT}, round numbers near this machine's times in a first run. Costs and errors of other numbers \
+             of samples follow from those of one sample. The crossing is that of the sizes of maps in the table: \
+             larger maps may go lower where a picture has more pixels to pay for them."
+        )],
+        rows: rows(&race, &in_rays)?,
+        ..Section::default()
+    };
+    Ok(Part { section, said })
+}
+
+fn rows(race: &Race, crossing: &Estimate) -> anyhow::Result<Vec<Row>> {
+    let mut rows = Vec::new();
+    if crossing.std_error() > 0.0 {
+        rows.push(Row::estimated("fog box race", "crossing in work", Unit::PERCENT, crossing)?);
+    }
+    let cells: Vec<&Cell> = race.cells.iter().collect();
+    for (i, size) in race.sizes.iter().enumerate() {
+        let square = |chosen: &[&Cell]| {
+            let fit = Fit::of(chosen, Currency::Rays);
+            fit.maps[i].square(super::SAMPLES as f64)
+        };
+        let relative =
+            |chosen: &[&Cell]| 100.0 * square(chosen).sqrt() / Fit::of(chosen, Currency::Rays).mean;
+        let log = jackknife_log(&cells, relative);
+        let value = exp(log.value);
+        let estimate = Estimate::jackknife(&Jackknife { value, std_error: value * log.std_error, ..log });
+        rows.push(Row::estimated(&size.case(), "error of 24 samples", Unit::PERCENT, &estimate)?);
+    }
+    Ok(rows)
+}
+
+/// A root mean square over the mean [%].
+fn percent(square: f64, mean: f64) -> String {
+    format!("{:.2}", 100.0 * square.max(0.0).sqrt() / mean)
+}
+
+fn size_table(race: &Race) -> Table {
+    let [rays, seconds] = [Currency::Rays, Currency::Seconds].map(|currency| race.fit(currency));
+    let mean = rays.mean;
+    let mut rows: Vec<Vec<String>> = race
+        .sizes
+        .iter()
+        .enumerate()
+        .map(|(i, size)| {
+            let (maps, timed) = (&rays.maps[i], &seconds.maps[i]);
+            vec![
+                format!("map of {}", size.photons),
+                size.k.to_string(),
+                percent(maps.noise, mean),
+                percent(maps.spread, mean),
+                percent(maps.bias, mean),
+                format!("{:.0}", maps.fill),
+                format!("{:.1}", maps.sample),
+                format!("{:.1}", 1e3 * timed.fill),
+                format!("{:.2}", 1e6 * timed.sample),
+            ]
+        })
+        .collect();
+    rows.push(vec![
+        "paths".to_string(),
+        String::new(),
+        percent(rays.paths.noise, mean),
+        String::new(),
+        String::new(),
+        String::new(),
+        format!("{:.1}", rays.paths.sample),
+        String::new(),
+        format!("{:.2}", 1e6 * seconds.paths.sample),
+    ]);
+    Table {
+        caption: "Photon maps of several sizes and paths in a box of fog: noise of one sample of a pixel, what is left of \
+                  the error with all samples, apart between maps and common to all, in per cent of the mean radiance; \
+                  the work of filling and of one sample in rays, and CPU time of this machine."
+            .to_string(),
+        columns: [
+            "photons emitted",
+            "k",
+            "noise of a sample [%]",
+            "spread of maps [%]",
+            "bias [%]",
+            "filling [rays]",
+            "a sample [rays]",
+            "filling [ms]",
+            "a sample [µs]",
+        ]
+        .map(String::from)
+        .to_vec(),
+        rows,
+    }
+}
+
+fn crossing_table(race: &Race, rays: &[Crossing], seconds: &[Crossing]) -> Table {
+    let fit = race.fit(Currency::Seconds);
+    let row = |(i, side): (usize, &u32)| {
+        let pixels = f64::from(side * side);
+        let error = fit.mean * seconds[i].at / 100.0;
+        let size = cheapest(&fit.maps, pixels, error * error * (1.0 + 1e-9))
+            .map_or(String::new(), |(size, _)| race.sizes[size].photons.to_string());
+        let mut row = vec![format!("{side} x {side}"), rays[i].words(), seconds[i].words(), size];
+        for error in [0.3, 0.2, 0.1] {
+            let square = error * error * fit.mean * fit.mean;
+            let gain = cheapest(&fit.maps, pixels, square).map(|c| fit.paths.cost(pixels, square) / c.1);
+            row.push(gain.map_or("none so good".to_string(), |gain| format!("{gain:.1}")));
+        }
+        row
+    };
+    Table {
+        caption: "Error below which paths are the cheaper, with bootstrap intervals of 95 % over cells, for pictures of \
+                  several sizes, the map that is the cheapest there, and how many times longer paths take at three errors."
+            .to_string(),
+        columns: [
+            "pixels",
+            "crossing in work",
+            "crossing in CPU time",
+            "map of photons",
+            "gain at 30 %",
+            "gain at 20 %",
+            "gain at 10 %",
+        ]
+        .map(String::from)
+        .to_vec(),
+        rows: SIDES.iter().enumerate().map(row).collect(),
+    }
+}

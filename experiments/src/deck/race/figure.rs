@@ -1,0 +1,73 @@
+//! The figure of the race.
+
+use super::conclude::{Crossing, Race, middle};
+use super::data::{Currency, Fit};
+use super::{SAMPLES, SIDE};
+use crate::harness::FigureFiles;
+use turbid_figure::{Along, Axis, Figure, Line, Panel, Points, Rule, Width};
+
+/// Samples a pixel that have points.
+const NUMBERS: [f64; 3] = [1.0, SAMPLES as f64, 64.0];
+const PIXELS: f64 = (SIDE * SIDE) as f64;
+
+fn percent(square: f64, mean: f64) -> f64 {
+    100.0 * square.sqrt() / mean
+}
+
+/// A curve of the error [%] against cost, from one sample a pixel to 4096.
+fn curve(error: impl Fn(f64) -> f64, cost: impl Fn(f64) -> f64) -> (Vec<f64>, Vec<f64>) {
+    (0..=48).map(|i| libm::exp2(0.25 * f64::from(i))).map(|n| (cost(n), error(n))).unzip()
+}
+
+fn panel(race: &Race, currency: Currency, crossing: &Crossing) -> Panel {
+    let fit = race.fit(currency);
+    let resampled: Vec<Fit> = race.resampled(currency).collect();
+    let unit = match currency {
+        Currency::Rays => ("work", "rays"),
+        Currency::Seconds => ("CPU time", "s"),
+    };
+    let mut panel =
+        Panel::new(Axis::log(unit.0, unit.1), Axis::log("error", "% of the mean").with_range(2.0, 250.0))
+            .with(Rule::new(Along::Horizontal(crossing.at)).with_label("paths are cheaper below"));
+    let paths = fit.paths;
+    let error = |fit: &Fit, n: f64| percent(fit.paths.noise / n, fit.mean);
+    let (x, y) = curve(|n| error(&fit, n), |n| PIXELS * n * paths.sample);
+    panel = panel.with(Line::new("paths", 0, x, y));
+    let x = NUMBERS.map(|n| PIXELS * n * paths.sample).to_vec();
+    let bars = NUMBERS.map(|n| {
+        let i = middle(resampled.iter().map(|f| error(f, n)).collect());
+        (i.low, i.high)
+    });
+    let y = NUMBERS.map(|n| error(&fit, n)).to_vec();
+    panel = panel.with(Points::new("paths", 0, x, y).with_y_interval(bars.to_vec()));
+    for (i, size) in race.sizes.iter().enumerate() {
+        let label = format!("map of {} photons, k = {}", size.photons, size.k);
+        let maps = fit.maps[i];
+        let error = |fit: &Fit, n: f64| percent(fit.maps[i].square(n), fit.mean);
+        let cost = |n: f64| maps.fill + PIXELS * n * maps.sample;
+        let (x, y) = curve(|n| error(&fit, n), cost);
+        let bars = NUMBERS.map(|n| {
+            let i = middle(resampled.iter().map(|f| error(f, n)).collect());
+            (i.low, i.high)
+        });
+        panel = panel.with(Line::new(&label, i + 1, x, y)).with(
+            Points::new(&label, i + 1, NUMBERS.map(cost).to_vec(), NUMBERS.map(|n| error(&fit, n)).to_vec())
+                .with_y_interval(bars.to_vec()),
+        );
+    }
+    panel
+}
+
+/// Error against cost, in CPU time and in work.
+pub fn race(race: &Race, seconds: &Crossing, rays: &Crossing) -> anyhow::Result<FigureFiles> {
+    let panels = vec![panel(race, Currency::Seconds, seconds), panel(race, Currency::Rays, rays)];
+    let figure = Figure { width: Width::Double, columns: 2, shared_legend: true, ..Figure::new(panels) };
+    let caption = format!(
+        "A picture of {SIDE} x {SIDE} pixels of a box of fog by photon maps of several sizes and by paths: root mean square \
+         error of a pixel against CPU time of this machine (left) and work (right), for 1, {SAMPLES} and 64 samples a pixel \
+         (points, with bootstrap intervals of 95 % over maps) and all between (lines). Maps start later, for they have to be \
+         filled, then fall to the error that all samples of one map share. The rule is the error below which \
+         paths are cheaper than every map."
+    );
+    FigureFiles::draw("race", &caption, &figure)
+}

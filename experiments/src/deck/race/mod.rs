@@ -1,0 +1,220 @@
+//! "Photon maps are faster than Monte Carlo": down to which error?
+//!
+//! A small picture of the box of fog by maps of several sizes, photons and k grown together, seen directly, and by paths.
+//! Of the picture's pixels one in sixteen is looked at, and costs are those of the whole picture.
+
+pub mod conclude;
+mod data;
+mod figure;
+
+use super::fogbox::{self, grey};
+use crate::harness::{CellId, CellOutput, Settings};
+use anyhow::Context;
+use turbid::estimators::{Gather, Kernel};
+use turbid::integrators::mapper::{self, Mapper, March};
+use turbid::integrators::path;
+use turbid::math::Positive;
+use turbid::photons::maps::{Amount, Emitted, Indirect, MapSettings, fill_counted};
+use turbid::rng::{Purpose, Stream};
+use turbid::scene::{Camera, Scene};
+use turbid::stats::Moments;
+use turbid::transport::NoProgress;
+
+/// The group of all cells.
+pub const GROUP: &str = "race";
+/// Pixels along a side of the picture.
+pub const SIDE: u32 = 32;
+/// Pixels along a side of the blocks of which one pixel is looked at.
+const BLOCK: u32 = 4;
+/// Pixels looked at.
+pub const PIXELS: usize = ((SIDE / BLOCK) * (SIDE / BLOCK)) as usize;
+/// Samples of a pixel from one map.
+pub const SAMPLES: u64 = 24;
+
+/// A size of map.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Size {
+    /// Photons sent out.
+    pub photons: u64,
+    /// Photons an estimate.
+    pub k: usize,
+}
+
+impl Size {
+    /// With k ~ n^(4/7): noise 1/k and squared blur (k/n)^(4/3) fall together.
+    fn new(photons: u64) -> Self {
+        let k = 100.0 * libm::pow(photons as f64 / 80_000.0, 4.0 / 7.0);
+        Size { photons, k: (k.round() as usize).max(4) }
+    }
+
+    /// The case of the whole picture.
+    pub fn case(self) -> String {
+        format!("fog box maps of {} photons", self.photons)
+    }
+
+    /// The case of one pixel.
+    pub fn pixel(self, pixel: usize) -> String {
+        format!("{} pixel {pixel}", self.case())
+    }
+}
+
+/// The sizes of maps, the smallest first; the 80,000 photons of the talk's picture are between the two largest of the full
+/// study, and twice as many as the quick one's.
+pub fn sizes(settings: &Settings) -> Vec<Size> {
+    let base: &[u64] = settings.pick(&[2_500, 10_000, 40_000], &[10_000, 40_000, 160_000, 640_000]);
+    let mut sizes: Vec<Size> = base.iter().map(|&n| Size::new(settings.photons(n, n))).collect();
+    sizes.dedup();
+    sizes
+}
+
+/// Paths of a pixel in one cell.
+fn paths(settings: &Settings) -> u64 {
+    settings.photons(160, 1024).max(4)
+}
+
+/// The case of the picture by paths.
+pub const PATHS: &str = "fog box picture by paths";
+
+/// The case of a pixel by paths.
+pub fn path_pixel(pixel: usize) -> String {
+    format!("{PATHS} pixel {pixel}")
+}
+
+/// All cells.
+pub fn cells(settings: &Settings) -> Vec<CellId> {
+    let photons: u64 = sizes(settings).iter().map(|size| size.photons).sum();
+    let cost = 5.0 * photons as f64 + 10.0 * (paths(settings) * PIXELS as u64) as f64;
+    CellId::replicates(GROUP, 64, cost).collect()
+}
+
+/// Column and row of a pixel that is looked at: places within blocks go round.
+fn place(pixel: usize) -> (u32, u32) {
+    let (pixel, row) = (pixel as u32, SIDE / BLOCK);
+    let (i, j) = (pixel % row, pixel / row);
+    (BLOCK * i + (i + 2 * j) % BLOCK, BLOCK * j + (2 * i + j) % BLOCK)
+}
+
+/// Measures one cell: all pixels by a map of each size in turn, and by paths.
+pub fn measure(settings: &Settings, cell: &CellId) -> anyhow::Result<CellOutput> {
+    let (scene, replicate) = (fogbox::scene()?, cell.stream("deck"));
+    let camera = scene.camera().context("the box has no camera")?.with_size(SIDE, SIDE)?;
+    let mut output = CellOutput::new();
+    for (index, size) in sizes(settings).into_iter().enumerate() {
+        by_map(&mut output, &scene, &camera, (index, size), settings.seed, replicate)?;
+    }
+    let (count, within) = (paths(settings), scene.interior_at(camera.position()));
+    let mut rays = 0;
+    let mut pixels = Vec::new();
+    output.time("paths", |_| {
+        for pixel in 0..PIXELS {
+            let mut moments = Moments::new();
+            for i in 0..count {
+                let mut stream =
+                    Stream::new(settings.seed, Purpose::Paths, replicate, (pixel as u64) << 32 | i);
+                let (x, y) = place(pixel);
+                let ray = camera.sample(x, y, stream.pair());
+                let (layers, work) = path::layers(&scene, ray, None, within, &mut stream);
+                moments.push(grey(layers.total()));
+                rays += work.total();
+            }
+            pixels.push(moments);
+        }
+    });
+    for (pixel, moments) in pixels.iter().enumerate() {
+        output.push(path_pixel(pixel), "radiance", moments.mean());
+    }
+    let all = (count * PIXELS as u64) as f64;
+    output.push(PATHS, "noise", mean_variance(&pixels));
+    output.push(PATHS, "rays a sample", rays as f64 / all);
+    output.push(PATHS, "samples", all);
+    Ok(output)
+}
+
+fn mean_variance(pixels: &[Moments]) -> f64 {
+    pixels.iter().map(Moments::variance).sum::<f64>() / pixels.len() as f64
+}
+
+/// The talk's eye: direct light by shadow rays, maps seen directly; light scattered into a ray is asked for at one random
+/// place on it, in proportion to what reaches the eye from there.
+fn eye(k: usize) -> anyhow::Result<mapper::Settings> {
+    let nearest = Gather::nearest(k, 1.0)?;
+    let standard = mapper::Settings::for_size(2.0, k)?;
+    Ok(mapper::Settings {
+        global: (Kernel::Uniform, nearest),
+        volume: (Kernel::Uniform, nearest),
+        march: March { step: Positive::new("the step", 4.0)?, adaptive: None, ..standard.march },
+        ..standard
+    })
+}
+
+fn by_map(
+    output: &mut CellOutput,
+    scene: &Scene,
+    camera: &Camera,
+    (index, size): (usize, Size),
+    seed: u64,
+    replicate: u64,
+) -> anyhow::Result<()> {
+    let amount = Amount::Emitted(size.photons);
+    // No two sizes share their histories.
+    let replicate = replicate ^ (index as u64 + 1) << 20;
+    let filling = MapSettings {
+        global: amount,
+        caustic: amount,
+        volume: amount,
+        indirect: Indirect::Seen,
+        seed,
+        replicate,
+    };
+    let emitted = Emitted { global: size.photons, volume: size.photons, caustic: 0 };
+    let case = size.case();
+    let maps =
+        output.time(&format!("fill {case}"), |_| fill_counted(scene, &filling, emitted, &NoProgress))?;
+    let (settings, within) = (eye(size.k)?, scene.interior_at(camera.position()));
+    let eye = Mapper::new(scene, &maps, &settings);
+    let (mut pixels, mut report) = (Vec::new(), mapper::Report::default());
+    output.time(&format!("look {case}"), |_| {
+        for pixel in 0..PIXELS {
+            let mut moments = Moments::new();
+            for i in 0..SAMPLES {
+                let mut stream = Stream::new(seed, Purpose::Paths, replicate, (pixel as u64) << 32 | i);
+                let (x, y) = place(pixel);
+                let ray = camera.sample(x, y, stream.pair());
+                let (layers, work) = eye.radiance(ray, None, within, &mut stream);
+                moments.push(grey(layers.total()));
+                report += work;
+            }
+            pixels.push(moments);
+        }
+    });
+    for (pixel, moments) in pixels.iter().enumerate() {
+        output.push(size.pixel(pixel), "radiance", moments.mean());
+    }
+    let all = (SAMPLES * PIXELS as u64) as f64;
+    let main = maps.report.main;
+    let stored = [&maps.global, &maps.volume].into_iter().flatten().map(|map| map.stored()).sum::<usize>();
+    output.push(&case, "noise", mean_variance(&pixels));
+    output.push(&case, "rays to fill", (main.collisions + main.hits) as f64);
+    output.push(&case, "photons stored", stored as f64);
+    output.push(&case, "rays a sample", report.rays.total() as f64 / all);
+    output.push(&case, "photons a sample", (report.global.found + report.volume.found) as f64 / all);
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn one_pixel_of_each_block_and_all_places_within_them() {
+        let (mut blocks, mut within) = (std::collections::BTreeSet::new(), [0; 16]);
+        for pixel in 0..PIXELS {
+            let (x, y) = place(pixel);
+            assert!(x < SIDE && y < SIDE);
+            blocks.insert((x / BLOCK, y / BLOCK));
+            within[(x % BLOCK * BLOCK + y % BLOCK) as usize] += 1;
+        }
+        assert_eq!(blocks.len(), PIXELS);
+        assert!(within.iter().filter(|&&n| n > 0).count() >= 8, "{within:?}");
+    }
+}

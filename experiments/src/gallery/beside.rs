@@ -1,0 +1,146 @@
+//! What stands beside the photon mapper's picture: paths in the same time, the twin, and the comparison with it.
+//!
+//! The twin and what is shown are of full size. For the comparison the photon mapper makes the picture again with 64
+//! sets of maps on half the width and height, a sample a pixel: means over blocks need no small pixels, and their error
+//! comes from the maps. The twin's passes are averaged over two by two pixels to fit.
+
+use super::compare::{FEWEST, Making, compare, errors, rms_of_one, spread};
+use super::keep::Kept;
+use super::look::look;
+use super::makings::Makings;
+use super::predict::{Radii, predicted, radius};
+use super::shown::Compared;
+use crate::harness::say;
+use turbid::Spectrum;
+use turbid::stats::Interval;
+
+/// Predicted relative error above which a pixel is masked.
+const LIMIT: f64 = 0.02;
+/// Standard error of a block's mean that the twin is given samples for: a third of what would be masked.
+const WANTED: f64 = LIMIT / 3.0;
+/// The most photons that are emitted for the making from which blur is predicted, and how many times the original's at most.
+const FINE: (u64, u64) = (20_000_000, 16);
+/// Samples a pixel of that making.
+const FINE_SAMPLES: u64 = 4;
+/// Makings of either side that are compared.
+const COMPARED: u64 = FEWEST as u64;
+/// Passes of a sample a pixel by which the twin's samples are chosen.
+const PILOT: u64 = 8;
+/// Numbers of the first repetition of the twin's passes, and of the pilot's: no random numbers are used twice.
+const FIRST: (u64, u64) = (1000, 2000);
+
+/// What stands beside the photon mapper's picture.
+pub struct Others {
+    /// The path tracer's picture in the same time.
+    pub equal: Kept,
+    /// The twin, its samples a pixel and its CPU seconds.
+    pub twin: Making,
+    /// Samples a pixel of the twin, and its CPU seconds.
+    pub cost: (u64, f64),
+    /// Which pixels of the half-size grid were masked.
+    pub masked: Vec<bool>,
+    /// The comparison.
+    pub compared: Compared,
+    /// CPU seconds of all this.
+    pub seconds: f64,
+}
+
+/// Makes and compares all that stands beside `ours`.
+///
+/// # Arguments   `large` makings in the size that is shown; `small` in half of it
+///
+/// # Errors
+/// those of making and of files
+pub fn beside(large: &Makings, small: &Makings, ours: &Kept) -> anyhow::Result<Others> {
+    let picture = large.studio.picture;
+    let equal = large.paths_in("equal", ours.facts.seconds)?;
+    // Before anything that is compared is made.
+    let (prediction, mut seconds) = predict(small, ours)?;
+    let masked: Vec<bool> = prediction.iter().map(|&e| e > LIMIT).collect();
+    let samples = chosen(large, &masked)?;
+    say(&format!("{}: {COMPARED} passes of {samples} samples a pixel for the twin", picture.name));
+    let twin = twin(large, samples, [ours, &equal])?;
+    let again = (0..COMPARED)
+        .map(|n| {
+            let kept = small.photons(&format!("maps-{n:03}"), 1, 1 + n)?;
+            seconds += kept.facts.seconds;
+            Ok(kept.scattered())
+        })
+        .collect::<anyhow::Result<Vec<Making>>>()?;
+    let comparison = compare(small.studio.grid(), &again, &twin.passes, &prediction, LIMIT);
+    let found = errors(small.studio.grid(), &again, &twin.passes);
+    let [rms, equal_rms] = twin.rms;
+    seconds += twin.seconds + equal.facts.seconds;
+    Ok(Others {
+        equal,
+        twin: twin.shown,
+        cost: (samples * COMPARED, twin.seconds),
+        masked,
+        compared: Compared::new(&comparison, &found, again.len(), rms, equal_rms),
+        seconds,
+    })
+}
+
+/// Samples a pixel of a pass of the twin: nine in ten of the blocks that are not masked are to have the standard error that
+/// is wanted, within the picture's budget.
+fn chosen(large: &Makings, masked: &[bool]) -> anyhow::Result<u64> {
+    let grid = large.studio.grid();
+    let passes = (0..PILOT)
+        .map(|n| Ok(grid.reduced(&large.twin(&format!("pilot-{n}"), 1, FIRST.1 + n)?.scattered())))
+        .collect::<anyhow::Result<Vec<Making>>>()?;
+    let one = spread(grid.halved(), &passes, masked);
+    let samples = (one / WANTED) * (one / WANTED) / COMPARED as f64;
+    Ok((samples.ceil() as u64).clamp(1, large.studio.picture.twin))
+}
+
+/// The passes of the twin.
+struct Twin {
+    /// Without light that is seen directly, on the half-size grid.
+    passes: Vec<Making>,
+    /// The picture with that light, in the size that is shown.
+    shown: Making,
+    /// Errors of the two pictures that are shown.
+    rms: [Interval; 2],
+    seconds: f64,
+}
+
+fn twin(large: &Makings, samples: u64, pictures: [&Kept; 2]) -> anyhow::Result<Twin> {
+    let grid = large.studio.grid();
+    let (mut passes, mut seconds) = (Vec::new(), 0.0);
+    let mut shown = vec![Spectrum::ZERO; grid.pixels()];
+    for n in 0..COMPARED {
+        let kept = large.twin(&format!("twin-{n:03}"), samples, FIRST.0 + n)?;
+        seconds += kept.facts.seconds;
+        shown.iter_mut().zip(&kept.total).for_each(|(sum, x)| *sum += *x * (1.0 / COMPARED as f64));
+        passes.push(kept.scattered());
+    }
+    let rms = pictures.map(|picture| rms_of_one(&picture.scattered(), &passes));
+    let passes = passes.iter().map(|pass| grid.reduced(pass)).collect();
+    Ok(Twin { passes, shown, rms, seconds })
+}
+
+/// The relative error that blur and edges may cause, by pixel, and the CPU seconds of knowing it.
+fn predict(small: &Makings, ours: &Kept) -> anyhow::Result<(Vec<f64>, f64)> {
+    let (studio, picture) = (small.studio, small.studio.picture);
+    let emitted = ours.facts.emitted;
+    let factor = (FINE.0 / emitted[0].max(emitted[1]).max(1)).clamp(2, FINE.1);
+    let fine = small.photons_by_class("fine", FINE_SAMPLES, 1 + COMPARED, factor)?;
+    let power = studio.scene.power().sum();
+    let [_, _, volume] = ours.facts.radii;
+    let radii: Vec<Radii> = fine
+        .layers
+        .iter()
+        .map(|l| {
+            let reach = |map: usize, radiance: Spectrum| {
+                let each = power / emitted[map].max(1) as f64;
+                radius(picture.nearest[map], each, radiance.sum(), picture.reach)
+            };
+            let seen = if picture.gather == 0 { reach(0, l.indirect) } else { 0.0 };
+            let caustic = if emitted[1] > 0 { reach(1, l.caustic) } else { 0.0 };
+            Radii { global: seen, caustic, volume }
+        })
+        .collect();
+    let views = look(&studio.scene, &studio.camera, |i| radii[i].global.max(radii[i].caustic));
+    let pixel = studio.camera.pixel_area().sqrt();
+    Ok((predicted(studio.grid(), &views, &fine.layers, &radii, pixel), fine.facts.seconds))
+}

@@ -1,0 +1,64 @@
+//! How a picture is made: settings for the photon mapper, and the command that makes the same picture as EXR.
+
+use super::pictures::Picture;
+use turbid::estimators::Gather;
+use turbid::integrators::mapper;
+use turbid::photons::maps::{Amount, Indirect, MapSettings};
+
+/// What the maps are filled with, `factor` times the photons of the original.
+pub fn maps(picture: &Picture, factor: u64, seed: u64, replicate: u64) -> MapSettings {
+    let [global, caustic, volume] = picture.photons.map(|amount| match amount {
+        Amount::Emitted(n) => Amount::Emitted(n * factor),
+        Amount::Stored(n) => Amount::Stored(n * factor),
+    });
+    let indirect = if picture.gather > 0 { Indirect::Gathered } else { Indirect::Seen };
+    MapSettings { global, caustic, volume, indirect, seed, replicate }
+}
+
+/// How the maps are read: as in 1998, with this picture's numbers of photons.
+///
+/// # Errors
+/// those of the settings
+pub fn reading(picture: &Picture) -> turbid::Result<mapper::Settings> {
+    let mut settings = mapper::Settings::for_size(picture.size, picture.nearest[0])?;
+    let gathers = [&mut settings.global, &mut settings.caustic, &mut settings.volume];
+    for (gather, k) in gathers.into_iter().zip(picture.nearest) {
+        gather.1 = Gather::nearest(k, picture.reach)?;
+    }
+    settings.gather_rays = picture.gather.max(1);
+    Ok(settings)
+}
+
+/// The arguments of `turbid` that render a picture as EXR: the very numbers of the one that is shown.
+pub fn arguments(picture: &Picture, seed: u64) -> anyhow::Result<Vec<String>> {
+    let settings = reading(picture)?;
+    let amount = |amount: Amount| match amount {
+        Amount::Stored(n) => n.to_string(),
+        Amount::Emitted(n) => format!("emit:{n}"),
+    };
+    let [global, caustic, volume] = picture.photons.map(amount);
+    let [k, caustic_k, volume_k] = picture.nearest.map(|k| k.to_string());
+    let mut arguments: Vec<String> =
+        ["render", &format!("experiments/scenes/{}.toml", picture.name)].map(str::to_string).into();
+    let mut flag = |name: &str, value: String| arguments.extend([name.to_string(), value]);
+    flag("--output", format!("{}.exr", picture.name));
+    flag("--samples", picture.samples.to_string());
+    flag("--global", global);
+    flag("--caustic", caustic);
+    flag("--volume", volume);
+    flag("--k", k);
+    flag("--caustic-k", caustic_k);
+    flag("--volume-k", volume_k);
+    flag("--max-radius", picture.reach.to_string());
+    flag("--gather-rays", picture.gather.to_string());
+    flag("--step", settings.march.step.get().to_string());
+    flag("--adapt", settings.march.adaptive.map_or(0.0, |a| a.tolerance).to_string());
+    flag("--exposure", super::develop::tone(picture.exposure).exposure.to_string());
+    flag("--seed", seed.to_string());
+    Ok(arguments)
+}
+
+/// The command of the page, for a shell in the repository's folder.
+pub fn command(picture: &Picture, seed: u64) -> anyhow::Result<String> {
+    Ok(format!("cargo run --release --bin turbid -- {}", arguments(picture, seed)?.join(" ")))
+}
