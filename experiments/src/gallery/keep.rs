@@ -61,6 +61,15 @@ impl Kept {
         self
     }
 
+    /// With more light in each pixel.
+    pub fn with(mut self, more: &[Layers]) -> Self {
+        for (i, more) in more.iter().enumerate() {
+            self.layers[i] += *more;
+            self.total[i] += more.total();
+        }
+        self
+    }
+
     /// Radiance without light that is seen straight, or through specular surfaces alone: every method counts that alike,
     /// and the noise of its edges would hide all else.
     pub fn scattered(&self) -> Vec<Spectrum> {

@@ -10,6 +10,7 @@ pub mod compare;
 pub mod develop;
 mod dots;
 pub mod keep;
+pub mod light;
 pub mod look;
 mod makings;
 mod page;
@@ -20,6 +21,7 @@ pub mod recipe;
 mod run;
 mod settings;
 mod shown;
+pub mod speed;
 pub mod studio;
 
 pub use blocks::{BLOCK, Grid};

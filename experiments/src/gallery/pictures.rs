@@ -1,5 +1,7 @@
 //! The pictures: scenes, numbers of photons, and what the originals cost.
 
+use super::light::ByLight;
+use turbid::integrators::Layer;
 use turbid::photons::maps::Amount;
 
 /// What is drawn of a picture beside the whole.
@@ -30,14 +32,18 @@ pub struct Picture {
     pub samples: u64,
     /// Rays of a final gathering; 0 where the global map is seen directly.
     pub gather: u32,
-    /// Extent of what is seen \[L\]: steps of the march are twentieths of it, gathers reach a tenth at most.
+    /// Extent of what is seen \[L\]: steps of the march are twentieths of it.
     pub size: f64,
+    /// The farthest that gathers reach \[L\].
+    pub reach: f64,
     /// Radiance 1 on a scale where 1 is white.
     pub exposure: f64,
     /// What stands beside it.
     pub beside: Beside,
     /// The most samples a pixel of one of the 64 passes of the twin: a pilot says how many are needed.
     pub twin: u64,
+    /// What of the twin is found by light tracing.
+    pub by_light: ByLight,
 }
 
 /// Of a map that the scene does not need, or that nothing in the picture reads.
@@ -49,51 +55,59 @@ pub const ALL: &[Picture] = &[
         name: "cs665-box",
         title: "The box of the lectures",
         see: "Light gathers behind the glass sphere in a caustic on the floor, and the mirror sphere throws a second one on \
-              the wall. The map beside it is what the picture was made from.",
+              the wall. The maps beside it are what the picture was made from. The \
+              number of photons and the samples are the original's; ours: their shares of the maps, 50 and 60 in an estimate.",
         original: "171,880 photons, 25 samples a pixel: 444 s on a Pentium 4 of 3 GHz",
         photons: [Amount::Stored(121_880), Amount::Stored(50_000), NONE],
-        nearest: [100, 60, 100],
+        nearest: [50, 60, 100],
         samples: 25,
-        gather: 16,
+        gather: 6,
         size: 2.0,
+        reach: 0.2,
         exposure: 1.3,
         beside: Beside::Maps,
         twin: 6,
+        by_light: ByLight::NOTHING,
     },
     Picture {
         name: "cognac",
         title: "A glass of cognac",
         see: "The liquid is a lens: the lamp behind the glass becomes a bright cusp on the table, in the colour that the \
-              cognac lets through.",
+              cognac lets through. Numbers of photons and samples are the original's.",
         original: "200,000 photons, 64 samples a pixel: 4 h on a Pentium of 90 MHz",
         photons: [Amount::Stored(100_000), Amount::Stored(100_000), NONE],
         nearest: [100, 60, 100],
         samples: 64,
         gather: 4,
         size: 20.0,
+        reach: 2.0,
         exposure: 0.85,
         beside: Beside::Maps,
         twin: 8,
+        by_light: ByLight { layers: &[Layer::Caustic], permille: 300 },
     },
     Picture {
         name: "cloud",
         title: "A cloud",
-        see: "With single scattering alone the shaded side is black and the cloud looks like smoke; light scattered many \
-              times fills it and makes it white.",
-        original: "single scattering 61 s; multiple scattering 8 s for the map and 92 s for the picture",
-        photons: [NONE, NONE, Amount::Stored(200_000)],
-        nearest: [100, 60, 100],
+        see: "With single scattering alone the cloud is a grey shell, black where the sun does not reach; light scattered many \
+              times fills it and makes it white. Numbers of photons and samples are ours.",
+        original: "single scattering 61 s; multiple scattering 8 s for the map and 92 s for the picture; no numbers of photons",
+        photons: [NONE, NONE, Amount::Stored(400_000)],
+        nearest: [100, 60, 40],
         samples: 16,
         gather: 0,
-        size: 2.0,
+        size: 1.0,
+        reach: 0.1,
         exposure: 0.8,
         beside: Beside::Single,
-        twin: 8,
+        twin: 12,
+        by_light: ByLight::NOTHING,
     },
     Picture {
         name: "cornell-fog",
         title: "Cornell box in fog",
-        see: "The lamp has a halo, the walls lend their colour to the air beside them, and shadows are lifted.",
+        see: "The lamp has a halo, the walls lend their colour to the air beside them, and shadows are lifted. Numbers of \
+              photons are the original's, samples are ours.",
         original: "200,000 photons, of them 65,000 in the volume map, 100 in an estimate: 4 s for the maps and 3 min 32 s \
                    for the picture",
         photons: [Amount::Stored(135_000), NONE, Amount::Stored(65_000)],
@@ -101,14 +115,17 @@ pub const ALL: &[Picture] = &[
         samples: 8,
         gather: 8,
         size: 2.0,
+        reach: 0.2,
         exposure: 1.8,
         beside: Beside::Maps,
         twin: 6,
+        by_light: ByLight::NOTHING,
     },
     Picture {
         name: "cornell-anisotropic",
         title: "The same in fog that scatters forwards",
-        see: "Light keeps its direction: the halo is tighter, the beam below the lamp is brighter than the air beside it.",
+        see: "Light keeps its direction: the halo is tighter, the beam below the lamp is brighter than the air beside it. \
+              Numbers of photons are the original's, samples are ours.",
         original: "200,000 photons, of them 65,000 in the volume map, 100 in an estimate: 4 s for the maps and 4 min 3 s \
                    for the picture",
         photons: [Amount::Stored(135_000), NONE, Amount::Stored(65_000)],
@@ -116,14 +133,17 @@ pub const ALL: &[Picture] = &[
         samples: 8,
         gather: 8,
         size: 2.0,
+        reach: 0.2,
         exposure: 1.8,
         beside: Beside::Maps,
         twin: 6,
+        by_light: ByLight::NOTHING,
     },
     Picture {
         name: "cornell-smoke",
         title: "The same in drifting smoke",
-        see: "Shreds of smoke take light from the walls behind them and cast soft shadows on the floor.",
+        see: "Shreds of smoke take light from the walls behind them and cast soft shadows on the floor. Numbers of photons \
+              are the original's but for the 100 in an estimate on surfaces, which are ours, as the samples are.",
         original: "200,000 photons, of them 65,000 in the volume map, 50 in an estimate: 6 s for the maps (4 s elsewhere in \
                    the same source) and 7 min 54 s for the picture",
         photons: [Amount::Stored(135_000), NONE, Amount::Stored(65_000)],
@@ -131,51 +151,65 @@ pub const ALL: &[Picture] = &[
         samples: 8,
         gather: 8,
         size: 2.0,
+        reach: 0.2,
         exposure: 1.8,
         beside: Beside::Maps,
         twin: 4,
+        by_light: ByLight::NOTHING,
     },
     Picture {
         name: "dusty-room",
         title: "A dusty room with a stained-glass window",
-        see: "The sun paints the window on the floor, and the dust shows each pane's colour on its way through the room.",
+        see: "The sun paints the window on the floor, and the dust shows each pane's colour on its way through the room. \
+              Numbers of photons are the original's, samples are ours.",
         original: "80,000 photons in the dust, 220,000 on surfaces: 27 s for the maps and 5 min 27 s for the picture",
         photons: [Amount::Stored(220_000), NONE, Amount::Stored(80_000)],
         nearest: [100, 60, 60],
         samples: 16,
         gather: 4,
         size: 4.0,
+        reach: 0.4,
         exposure: 1.7,
         beside: Beside::Maps,
-        twin: 6,
+        twin: 12,
+        by_light: ByLight::NOTHING,
     },
     Picture {
         name: "sunbeams",
-        title: "Sunbeams under a wavy sea",
-        see: "Sheets of light from the gaps of a jetty hang in the water; the waves break them into shafts, and into a net on the sand.",
+        title: "Sunbeams in a flooded cave",
+        see: "Waves on the water in the roof's opening gather the sun into shafts, seen from the side by what the silt scatters, \
+              and draw a net of light on the bottom. Numbers of photons and samples are ours.",
         original: "from the same lectures, without numbers",
-        photons: [Amount::Stored(100_000), Amount::Stored(200_000), Amount::Stored(1_000_000)],
-        nearest: [100, 60, 30],
-        samples: 4,
+        photons: [Amount::Stored(30_000), Amount::Stored(100_000), Amount::Stored(400_000)],
+        nearest: [60, 30, 6],
+        samples: 8,
         gather: 0,
-        size: 5.0,
-        exposure: 1.0,
+        size: 3.0,
+        reach: 0.06,
+        exposure: 2.0,
         beside: Beside::Maps,
-        twin: 6,
+        twin: 4,
+        by_light: ByLight {
+            layers: &[Layer::Direct, Layer::Caustic, Layer::Indirect, Layer::Single, Layer::Multiple],
+            permille: 500,
+        },
     },
     Picture {
         name: "pool",
         title: "A pool",
-        see: "The net of light on the tiles is drawn by the same waves through which it is seen.",
+        see: "The net of light on the tiles is drawn by the same waves through which it is seen. Numbers of photons and samples \
+              are ours.",
         original: "the closing picture of the lectures, without numbers",
-        photons: [Amount::Stored(150_000), Amount::Stored(300_000), NONE],
-        nearest: [100, 60, 60],
+        photons: [Amount::Stored(100_000), Amount::Stored(600_000), NONE],
+        nearest: [100, 40, 60],
         samples: 16,
-        gather: 2,
+        gather: 4,
         size: 6.0,
+        reach: 0.4,
         exposure: 1.4,
         beside: Beside::Maps,
-        twin: 8,
+        twin: 24,
+        by_light: ByLight::NOTHING,
     },
 ];
 

@@ -5,9 +5,6 @@ use turbid::estimators::Gather;
 use turbid::integrators::mapper;
 use turbid::photons::maps::{Amount, Indirect, MapSettings};
 
-/// Largest radius of gathers, over the picture's size.
-const FARTHEST: f64 = 0.1;
-
 /// What the maps are filled with, `factor` times the photons of the original.
 pub fn maps(picture: &Picture, factor: u64, seed: u64, replicate: u64) -> MapSettings {
     let [global, caustic, volume] = picture.photons.map(|amount| match amount {
@@ -26,7 +23,7 @@ pub fn reading(picture: &Picture) -> turbid::Result<mapper::Settings> {
     let mut settings = mapper::Settings::for_size(picture.size, picture.nearest[0])?;
     let gathers = [&mut settings.global, &mut settings.caustic, &mut settings.volume];
     for (gather, k) in gathers.into_iter().zip(picture.nearest) {
-        gather.1 = Gather::nearest(k, FARTHEST * picture.size)?;
+        gather.1 = Gather::nearest(k, picture.reach)?;
     }
     settings.gather_rays = picture.gather.max(1);
     Ok(settings)
@@ -52,7 +49,7 @@ pub fn arguments(picture: &Picture, seed: u64) -> anyhow::Result<Vec<String>> {
     flag("--k", k);
     flag("--caustic-k", caustic_k);
     flag("--volume-k", volume_k);
-    flag("--max-radius", (FARTHEST * picture.size).to_string());
+    flag("--max-radius", picture.reach.to_string());
     flag("--gather-rays", picture.gather.to_string());
     flag("--step", settings.march.step.get().to_string());
     flag("--adapt", settings.march.adaptive.map_or(0.0, |a| a.tolerance).to_string());

@@ -2,6 +2,7 @@
 
 use super::Grid;
 use super::keep::{Facts, Kept};
+use super::light::ByLight;
 use super::pictures::Picture;
 use super::recipe;
 use crate::harness::Digest;
@@ -83,8 +84,10 @@ impl<'a> Studio<'a> {
     /// What a making by photons will be called.
     pub fn photon_words(&self, samples: u64, replicate: u64, factor: u64) -> String {
         let p = self.picture;
-        let counts =
-            format!("photons {:?} x {factor}, nearest {:?}, gather {}", p.photons, p.nearest, p.gather);
+        let counts = format!(
+            "photons {:?} x {factor}, nearest {:?} within {}, gather {}, size {}",
+            p.photons, p.nearest, p.reach, p.gather, p.size
+        );
         self.words(&counts, samples, replicate)
     }
 
@@ -95,7 +98,10 @@ impl<'a> Studio<'a> {
 
     /// What a pass of the twin will be called.
     pub fn twin_words(&self, samples: u64, replicate: u64) -> String {
-        self.path_words(samples, replicate)
+        match self.picture.by_light {
+            ByLight::NOTHING => self.path_words(samples, replicate),
+            by_light => self.words(&format!("paths and {by_light:?}"), samples, replicate),
+        }
     }
 
     /// Fills the maps of a replicate, with `factor` times the photons of the original.
@@ -155,7 +161,21 @@ impl<'a> Studio<'a> {
 
     /// One pass of the twin, which knows no photons.
     pub fn twin(&self, samples: u64, replicate: u64, progress: &dyn Progress) -> anyhow::Result<Kept> {
-        self.paths(samples, replicate, progress)
+        let by_light = self.picture.by_light;
+        if by_light == ByLight::NOTHING {
+            return self.paths(samples, replicate, progress);
+        }
+        let start = ProcessTime::now();
+        let within = self.scene.interior_at(self.camera.position());
+        let mut film = Film::new(self.camera.width(), self.camera.height());
+        let streams = self.streams(replicate);
+        extend(&mut film, &self.camera, samples, streams, progress, |ray, stream, n: &mut u64| {
+            *n += 1;
+            by_light.rest(&self.scene, ray, within, stream)
+        })?;
+        let found = by_light.trace(self, samples, streams)?;
+        let facts = self.path_facts(start, samples, replicate);
+        Ok(Kept::new(facts, &film).with(&found))
     }
 
     /// A picture by paths that takes about so many CPU seconds: whole passes over all pixels, at least one. The number

@@ -1,0 +1,149 @@
+//! Twins by light tracing: the photons' own walk, connected to the camera, finds what lights throw through glass and
+//! water, where paths from the eye would have to meet a small light by chance.
+//!
+//! It knows only what the eye sees straight: an event X between which and the camera nothing specular stands. Paths give
+//! what is seen by specular surfaces, and all layers that are not asked for here: each class of light comes from one of the
+//! two, none from both, none from neither.
+
+use super::studio::Studio;
+use anyhow::ensure;
+use std::ops::Range;
+use turbid::Spectrum;
+use turbid::integrators::{Layer, Layers, Splat, light_tracing, path};
+use turbid::math::Ray;
+use turbid::photons::Emitter;
+use turbid::rng::{Purpose, Stream};
+use turbid::scene::{Orders, Scene};
+use turbid::sensor::Streams;
+use turbid::transport::{NoProgress, run_blocks};
+
+/// Histories whose light is kept at once, before it is added to the picture: what they send to the camera fills some
+/// hundred bytes each.
+const AT_ONCE: u64 = 1 << 18;
+
+/// Which layers of a twin are found by light tracing.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct ByLight {
+    /// These; none of them is emission.
+    pub layers: &'static [Layer],
+    /// Photons that are sent out for each sample a pixel of the paths, over the number of pixels times a thousand.
+    pub permille: u64,
+}
+
+impl ByLight {
+    /// Nothing: all by paths.
+    pub const NOTHING: ByLight = ByLight { layers: &[], permille: 0 };
+
+    /// Whether a layer is found by light.
+    fn has(&self, layer: Layer) -> bool {
+        self.layers.contains(&layer)
+    }
+
+    /// Whether all that is scattered is found by light.
+    fn has_all(&self) -> bool {
+        Layer::ALL.into_iter().all(|layer| layer == Layer::Emission || self.has(layer))
+    }
+
+    /// One sample of what paths have to find: all layers where a specular surface is seen, else those that light tracing
+    /// leaves out.
+    pub fn rest(&self, scene: &Scene, ray: Ray, within: usize, stream: &mut Stream) -> Layers {
+        if self.layers.is_empty() || is_specular_ahead(scene, &ray) {
+            return path::layers(scene, ray, None, within, stream).0;
+        }
+        // What is not scattered has order 0.
+        let orders = if self.has_all() { Orders { min: 0, max: Some(0) } } else { Orders::ALL };
+        let mut layers = Layers::ZERO;
+        path::classes(scene, ray, None, within, orders, stream, |_, layer, value| {
+            if !self.has(layer) {
+                layers[layer] += value;
+            }
+        });
+        layers
+    }
+
+    /// The layers that light tracing finds, by pixel.
+    ///
+    /// # Errors
+    /// where a specular surface is seen through a medium whose light is asked for: paths and light would both count it
+    pub fn trace(&self, studio: &Studio, samples: u64, streams: Streams) -> anyhow::Result<Vec<Layers>> {
+        let (scene, camera) = (&studio.scene, &studio.camera);
+        let mut film = vec![Layers::ZERO; studio.grid().pixels()];
+        let histories = samples * self.permille * film.len() as u64 / 1000;
+        if self.layers.is_empty() || histories == 0 {
+            return Ok(film);
+        }
+        self.check(studio)?;
+        // What arrives by specular surfaces alone was sent towards them.
+        let by_glass = Emitter::towards_specular(scene).filter(|_| self.layers == [Layer::Caustic]);
+        let emitter = by_glass.unwrap_or_else(|| Emitter::by_power(scene));
+        let (width, height) = (i64::from(camera.width()), i64::from(camera.height()));
+        for first in (0..histories).step_by(AT_ONCE as usize) {
+            let block = |range: Range<u64>| {
+                let mut splats: Vec<Splat> = Vec::new();
+                for i in range {
+                    let mut stream =
+                        Stream::new(streams.seed, Purpose::LightTracing, streams.replicate, first + i);
+                    light_tracing(scene, camera, &emitter, &mut stream, |splat| {
+                        if self.has(splat.layer) {
+                            splats.push(splat);
+                        }
+                    });
+                }
+                splats
+            };
+            let merge = |mut a: Vec<Splat>, b: Vec<Splat>| {
+                a.extend(b);
+                a
+            };
+            let count = AT_ONCE.min(histories - first);
+            let splats = run_blocks(count, &NoProgress, block, merge)?.unwrap_or_default();
+            for Splat { at, layer, value } in splats {
+                ensure!(value.is_finite(), "light tracing found a value that is not finite");
+                for (x, wide) in camera.filter().pixels(at.x) {
+                    for (y, high) in camera.filter().pixels(at.y) {
+                        if (0..width).contains(&x) && (0..height).contains(&y) && wide * high > 0.0 {
+                            film[(y * width + x) as usize][layer] += value * (wide * high);
+                        }
+                    }
+                }
+            }
+        }
+        let share = Spectrum::grey(1.0 / histories as f64);
+        film.iter_mut().for_each(|layers| *layers *= share);
+        Ok(film)
+    }
+
+    /// Light of a medium before a specular surface belongs to light tracing, behind it to paths: a sample would have to be
+    /// parted. No picture needs that.
+    fn check(&self, studio: &Studio) -> anyhow::Result<()> {
+        let (scene, camera) = (&studio.scene, &studio.camera);
+        if !(self.has(Layer::Single) || self.has(Layer::Multiple)) {
+            return Ok(());
+        }
+        let pixels = (0..camera.height()).flat_map(|y| (0..camera.width()).map(move |x| (x, y)));
+        let seen = pixels.filter(|&(x, y)| {
+            let ray = camera.ray(glam::DVec2::new(f64::from(x) + 0.5, f64::from(y) + 0.5));
+            is_specular_ahead(scene, &ray)
+        });
+        ensure!(
+            seen.count() == 0,
+            "a specular surface is seen through a medium: its twin cannot be by light"
+        );
+        Ok(())
+    }
+}
+
+/// Whether the first body on a ray, filters apart, is specular.
+fn is_specular_ahead(scene: &Scene, ray: &Ray) -> bool {
+    let (mut ray, mut from) = (*ray, None);
+    while let Some(found) = scene.hit(&ray, from) {
+        let turbid::scene::Target::Object(index) = found.target else { return false };
+        let surface = &scene.objects()[index].surface;
+        if surface.is_event() {
+            return surface.is_specular();
+        }
+        ray = Ray::new(ray.at(found.hit.t), ray.dir);
+        from = Some(found.start());
+    }
+    false
+}

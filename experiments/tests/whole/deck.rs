@@ -1,0 +1,23 @@
+//! The experiment `deck`, whole, on few photons.
+
+use super::run;
+
+const PROGRAM: &str = env!("CARGO_BIN_EXE_deck");
+
+/// A fiftieth of the photons, twice: the results do not depend on the threads, nor on what was timed, and a lost cell
+/// comes back as it was.
+#[test]
+fn a_fiftieth_of_the_photons() {
+    let folder = tempfile::tempdir().unwrap();
+    let one = run::same_on_threads(PROGRAM, "0.02", folder.path());
+    assert_eq!(run::figures(&one), 3);
+    run::same_after_a_loss(PROGRAM, "0.02", &one, &["deck/walls-000000.csv", "deck/edge-000003.csv"]);
+    let claims = std::fs::read_to_string(one.join("claims.csv")).unwrap();
+    // What so few photons decide, and no clock: gathers do not know the walls, maps need less work down to 30 per cent,
+    // importance brings photons into view; and nothing is rejected.
+    for claim in ["decoupled", "faster", "steered-photons"] {
+        let line = claims.lines().find(|line| line.contains(&format!(",{claim},"))).unwrap();
+        assert!(line.contains(",upheld,"), "{line}");
+    }
+    assert!(claims.contains("steered-mean") && !claims.contains(",rejected,"), "{claims}");
+}
