@@ -4,7 +4,7 @@
 //! sets of maps on half the width and height, a sample a pixel: means over blocks need no small pixels, and their error
 //! comes from the maps. The twin's passes are averaged over two by two pixels to fit.
 
-use super::compare::{FEWEST, Making, ShownErrors, compare, errors, spread};
+use super::compare::{FEWEST, Making, compare, errors, rms_of_one, spread};
 use super::keep::Kept;
 use super::look::look;
 use super::makings::Makings;
@@ -12,6 +12,7 @@ use super::predict::{Radii, predicted, radius};
 use super::shown::Compared;
 use crate::harness::say;
 use turbid::Spectrum;
+use turbid::stats::Interval;
 
 /// Predicted relative error above which a pixel is masked.
 const LIMIT: f64 = 0.02;
@@ -58,7 +59,7 @@ pub fn beside(large: &Makings, small: &Makings, ours: &Kept) -> anyhow::Result<O
     let masked: Vec<bool> = prediction.iter().map(|&e| e > LIMIT).collect();
     let samples = chosen(large, &masked)?;
     say(&format!("{}: {COMPARED} passes of {samples} samples a pixel for the twin", picture.name));
-    let twin = twin(large, samples, &[&ours.scattered(), &equal.scattered()])?;
+    let twin = twin(large, samples, [ours, &equal])?;
     let again = (0..COMPARED)
         .map(|n| {
             let kept = small.photons(&format!("maps-{n:03}"), 1, 1 + n)?;
@@ -67,8 +68,8 @@ pub fn beside(large: &Makings, small: &Makings, ours: &Kept) -> anyhow::Result<O
         })
         .collect::<anyhow::Result<Vec<Making>>>()?;
     let comparison = compare(small.studio.grid(), &again, &twin.passes, &prediction, LIMIT);
-    let found = errors(&again, &twin.passes);
-    let [rms, equal_rms] = [0, 1].map(|i| twin.errors.rms(i));
+    let found = errors(small.studio.grid(), &again, &twin.passes);
+    let [rms, equal_rms] = twin.rms;
     seconds += twin.seconds + equal.facts.seconds;
     Ok(Others {
         equal,
@@ -98,25 +99,24 @@ struct Twin {
     passes: Vec<Making>,
     /// The picture with that light, in the size that is shown.
     shown: Making,
-    /// Of the pictures shown, against pairs of passes.
-    errors: ShownErrors,
+    /// Errors of the two pictures that are shown.
+    rms: [Interval; 2],
     seconds: f64,
 }
 
-fn twin(large: &Makings, samples: u64, pictures: &[&[Spectrum]]) -> anyhow::Result<Twin> {
+fn twin(large: &Makings, samples: u64, pictures: [&Kept; 2]) -> anyhow::Result<Twin> {
     let grid = large.studio.grid();
     let (mut passes, mut seconds) = (Vec::new(), 0.0);
     let mut shown = vec![Spectrum::ZERO; grid.pixels()];
-    let mut errors = ShownErrors::new(pictures);
     for n in 0..COMPARED {
         let kept = large.twin(&format!("twin-{n:03}"), samples, FIRST.0 + n)?;
         seconds += kept.facts.seconds;
         shown.iter_mut().zip(&kept.total).for_each(|(sum, x)| *sum += *x * (1.0 / COMPARED as f64));
-        let scattered = kept.scattered();
-        passes.push(grid.reduced(&scattered));
-        errors.push(scattered);
+        passes.push(kept.scattered());
     }
-    Ok(Twin { passes, shown, errors, seconds })
+    let rms = pictures.map(|picture| rms_of_one(&picture.scattered(), &passes));
+    let passes = passes.iter().map(|pass| grid.reduced(pass)).collect();
+    Ok(Twin { passes, shown, rms, seconds })
 }
 
 /// The relative error that blur and edges may cause, by pixel, and the CPU seconds of knowing it.

@@ -38,6 +38,17 @@ impl Grid {
         (0..half.pixels()).map(mean).collect()
     }
 
+    /// Means over every whole block.
+    pub fn means(self, picture: &[Spectrum]) -> Vec<Spectrum> {
+        let keep = vec![true; self.pixels()];
+        let whole = self.blocks().map(|place| self.kept(place, &keep)).filter(|p| p.len() == BLOCK * BLOCK);
+        let mean = |pixels: Vec<usize>| {
+            let sum = pixels.iter().fold(Spectrum::ZERO, |sum, &i| sum + picture[i]);
+            sum * (1.0 / pixels.len() as f64)
+        };
+        whole.map(mean).collect()
+    }
+
     /// Column and row of every block; those at the right and lower rim may be narrower.
     pub fn blocks(self) -> impl Iterator<Item = (usize, usize)> {
         let columns = self.width.div_ceil(BLOCK);
@@ -70,6 +81,15 @@ mod tests {
         let half = grid.reduced(&picture);
         assert_eq!((half.len(), grid.halved()), (6, Grid { width: 3, height: 2 }));
         assert_eq!(half[4], Spectrum::rgb((14 + 15 + 20 + 21) as f64 / 4.0, 1.0, 0.0));
+    }
+
+    #[test]
+    fn means_are_of_whole_blocks() {
+        let grid = Grid { width: 2 * BLOCK + 3, height: BLOCK };
+        let picture: Vec<Spectrum> = (0..grid.pixels())
+            .map(|i| Spectrum::grey(if i % grid.width >= BLOCK { 1.0 } else { 0.0 }))
+            .collect();
+        assert_eq!(grid.means(&picture), [Spectrum::ZERO, Spectrum::ONE]);
     }
 
     #[test]

@@ -173,20 +173,23 @@ fn welch(va: f64, na: u64, vb: f64, nb: u64) -> u64 {
 pub struct Errors {
     /// Mean of the truth [W/(L^2 sr)].
     pub mean: f64,
-    /// Root mean square error of one making.
+    /// Root mean square error of a block's mean in one making.
     pub rms: Interval,
-    /// Its systematic part: the root mean square of the error that remains after infinitely many makings.
+    /// Its systematic part: what remains after infinitely many makings.
     pub systematic: Interval,
     /// Error of the picture's mean.
     pub bias: Interval,
 }
 
-/// The errors of a picture against its twin, with intervals of 95 per cent over makings.
+/// The errors of a picture against its twin over means of blocks, those that are not whole left out, with intervals of 95 per
+/// cent over makings.
 ///
 /// The twin is noisy, too. Its passes are halved, and a square is replaced by the product of the differences to
 /// either half, E[(x - a)(x - b)] = E[(x - truth)^2]; the systematic part is the product of differences between
 /// independent makings on both sides. Nothing is subtracted that was estimated, and noise leaves no bias.
-pub fn errors(ours: &[Making], twin: &[Making]) -> Errors {
+pub fn errors(grid: Grid, ours: &[Making], twin: &[Making]) -> Errors {
+    let all = |makings: &[Making]| -> Vec<Making> { makings.iter().map(|m| grid.means(m)).collect() };
+    let (ours, twin) = (&all(ours), &all(twin));
     let (left, right) = (average(twin.iter().step_by(2)), average(twin.iter().skip(1).step_by(2)));
     let both = average(twin.iter());
     let mean = both.iter().map(|s| s.mean()).sum::<f64>() / both.len() as f64;
@@ -222,48 +225,39 @@ pub fn errors(ours: &[Making], twin: &[Making]) -> Errors {
     }
 }
 
-/// The root mean square errors of pictures of which there is one each, against the passes of a twin.
+/// The root mean square error of a picture of which there is one, against passes of a twin, over the mean of the twin: 95
+/// per cent.
 ///
-/// Passes come in pairs a, b: (x - a)(x - b), averaged over pixels and channels, is the mean square error of x give or
-/// take noise of mean 0, as long as x shares no random numbers with the passes. Each pair is a value of its own, so that
-/// their spread gives the interval.
-#[derive(Debug, Clone)]
-pub struct ShownErrors {
-    pictures: Vec<Making>,
-    first: Option<Making>,
-    squares: Vec<Moments>,
-    mean: Moments,
-}
-
-impl ShownErrors {
-    /// For these pictures.
-    pub fn new(pictures: &[&[Spectrum]]) -> Self {
-        ShownErrors {
-            pictures: pictures.iter().map(|picture| picture.to_vec()).collect(),
-            first: None,
-            squares: vec![Moments::new(); pictures.len()],
-            mean: Moments::new(),
+/// The mean of (x - a)(x - b) over all pairs of passes a, b, pixels and channels is the mean square error of x give or
+/// take noise of mean 0, as long as x shares no random numbers with the passes; nothing that was estimated is subtracted. Its
+/// standard error is that of the jackknife over passes.
+pub fn rms_of_one(picture: &[Spectrum], passes: &[Making]) -> Interval {
+    let n = passes.len();
+    let distance = |i: usize, pass: &Making| picture[i] - pass[i];
+    // With S the sum of the distances d and Q that of their squares, sum over pairs i != j of d_i d_j is S^2 - Q.
+    let zero = || vec![Spectrum::ZERO; picture.len()];
+    let (mut sums, mut squares) = (zero(), zero());
+    for pass in passes {
+        for (i, (sum, square)) in sums.iter_mut().zip(&mut squares).enumerate() {
+            let d = distance(i, pass);
+            *sum += d;
+            *square += d * d;
         }
     }
-
-    /// Counts a pass of the twin.
-    pub fn push(&mut self, pass: Making) {
-        self.mean.push(pass.iter().map(|s| s.mean()).sum::<f64>() / pass.len() as f64);
-        let Some(first) = self.first.take() else {
-            self.first = Some(pass);
-            return;
-        };
-        for (picture, squares) in self.pictures.iter().zip(&mut self.squares) {
-            let one = |(x, (a, b)): (&Spectrum, (&Spectrum, &Spectrum))| ((*x - *a) * (*x - *b)).mean();
-            let sum: f64 = picture.iter().zip(first.iter().zip(&pass)).map(one).sum();
-            squares.push(sum / picture.len() as f64);
-        }
+    let pairs = |count: usize, sum: &dyn Fn(usize) -> Spectrum, square: &dyn Fn(usize) -> Spectrum| {
+        let all: f64 = (0..picture.len()).map(|i| (sum(i) * sum(i) - square(i)).mean()).sum();
+        all / (picture.len() * count * (count - 1)) as f64
+    };
+    let all = pairs(n, &|i| sums[i], &|i| squares[i]);
+    let mut values = Moments::new();
+    for pass in passes {
+        let d = |i: usize| distance(i, pass);
+        let rest = pairs(n - 1, &|i| sums[i] - d(i), &|i| squares[i] - d(i) * d(i));
+        // A pseudo-value: their mean is `all`, their standard error the jackknife's.
+        values.push(n as f64 * all - (n - 1) as f64 * rest);
     }
-
-    /// Error of a picture over the mean of the twin, 95 per cent.
-    pub fn rms(&self, picture: usize) -> Interval {
-        root(&self.squares[picture], self.mean.mean())
-    }
+    let mean = passes.iter().flatten().map(|s| s.mean()).sum::<f64>() / (n * picture.len()) as f64;
+    root(&values, mean)
 }
 
 /// The root of a mean of squares over `mean`, 95 per cent.
@@ -426,10 +420,11 @@ mod tests {
     #[test]
     fn errors_are_those_put_in() {
         let (a, b) = (makings(64, 1, 16, |_| 1.03), makings(64, 2, 4, |_| 1.0));
-        let mean = (0..GRID.pixels()).map(|i| truth(i).mean()).sum::<f64>() / GRID.pixels() as f64;
-        let square = |i: usize| (truth(i) * truth(i)).mean();
-        let rms = ((0..GRID.pixels()).map(square).sum::<f64>() / GRID.pixels() as f64).sqrt() / mean;
-        let errors = errors(&a, &b);
+        let right = GRID.means(&(0..GRID.pixels()).map(truth).collect::<Making>());
+        let mean = right.iter().map(|s| s.mean()).sum::<f64>() / right.len() as f64;
+        let square = right.iter().map(|s| (*s * *s).mean()).sum::<f64>() / right.len() as f64;
+        let rms = square.sqrt() / mean;
+        let errors = errors(GRID, &a, &b);
         // The interval of the twin's own noise, 5 % over 64 passes and 6 blocks, adds to that of our makings.
         let twins = 3.0 * 0.05 / (64.0_f64 * 6.0).sqrt();
         let near = |i: Interval, value: f64| i.low - twins * rms <= value && value <= i.high + twins * rms;
@@ -447,11 +442,9 @@ mod tests {
         let bright: Making = (0..GRID.pixels()).map(|i| truth(i) * 1.03).collect();
         let right: Making = (0..GRID.pixels()).map(truth).collect();
         let passes = makings(64, 2, 4, |_| 1.0);
-        let mut errors = ShownErrors::new(&[&bright, &right]);
-        passes.iter().for_each(|pass| errors.push(pass.clone()));
         let mean = right.iter().map(|s| s.mean()).sum::<f64>() / right.len() as f64;
         let square = right.iter().map(|s| (*s * *s).mean()).sum::<f64>() / right.len() as f64;
-        let (found, none) = (errors.rms(0), errors.rms(1));
+        let (found, none) = (rms_of_one(&bright, &passes), rms_of_one(&right, &passes));
         assert!(found.contains(0.03 * square.sqrt() / mean), "{found:?}");
         assert!(none.low == 0.0 && none.high < 0.02, "{none:?}");
         // One gamma of shape 4, a tenth of it: 5 per cent; of 18 values over 64 passes the second largest.

@@ -21,6 +21,7 @@ pub mod recipe;
 mod run;
 mod settings;
 mod shown;
+pub mod speed;
 pub mod studio;
 
 pub use blocks::{BLOCK, Grid};

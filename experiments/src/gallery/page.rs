@@ -1,10 +1,13 @@
 //! The page: every picture with its twin, its error, its maps and its numbers. It needs nothing from elsewhere.
 
 use super::pictures::{ALL, Picture};
+use super::plates::SCALE;
 use super::settings::Settings;
-use super::shown::{Compared, Shown};
+use super::shown::{Compared, Plate, Shown};
+use super::speed;
 use crate::harness::duration;
 use maud::{DOCTYPE, Markup, PreEscaped, html};
+use turbid_figure::Shading;
 
 const CSS: &str = "
 :root { --ink: #1c1f23; --soft: #5b6470; --line: #d5dae0; }
@@ -19,6 +22,10 @@ figure.main { flex-basis: 400px; }
 img { display: block; width: 100%; height: auto; image-rendering: auto; background: #000; }
 figcaption, table, pre, .soft { font-family: system-ui, 'Segoe UI', Arial, 'DejaVu Sans', sans-serif; }
 figcaption { font-size: 13.5px; line-height: 1.35; padding-top: 6px; }
+.scale { display: flex; justify-content: space-between; height: 20px; margin-top: 4px; padding: 0 4px; border: 1px solid var(--line); font-size: 12.5px; line-height: 18px; }
+.sharp { image-rendering: pixelated; }
+.verdict { font-weight: 600; }
+code { font-size: 13px; overflow-wrap: anywhere; }
 .soft { color: var(--soft); font-size: 14.5px; }
 table { border-collapse: collapse; font-size: 14px; font-variant-numeric: tabular-nums; margin: 8px 0 16px; }
 th { text-align: left; border-bottom: 1.5px solid var(--ink); padding: 4px 16px 4px 0; }
@@ -41,19 +48,30 @@ pub fn page(shown: &[Shown], settings: &Settings) -> Markup {
                 h1 { "The pictures of photon mapping in fog, and what they are worth" }
                 p {
                     "Each picture was made as in 1998: photons are stored in maps, and the maps are read along the rays of a "
-                    "camera. Beside it stands what a path tracer makes of the same scene in the same CPU time, a converged twin "
-                    "that knows no photons, and the difference. Errors are relative to the mean of the picture, lamps that are seen "
-                    "directly left out, which both count alike; intervals are of 95 per cent."
+                    "camera. Beside it stands what a path tracer makes of the same scene in the same CPU time; a twin of many more "
+                    "samples that knows no photons; and the difference. Where a row says " em { "the original" } ", photons, "
+                    "samples and times are those of the lectures or the paper; everything else is measured here."
                 }
                 p.soft {
-                    "Blur and edges are predicted from a making with more photons before anything is compared; pixels where they may exceed 2 per "
-                    "cent are masked, and what was predicted for the others is allowed. Outside the mask the means of blocks of 16 by 16 pixels are compared, "
-                    "channel by channel, with errors from independent maps (Holm, family-wise 0.001)."
+                    "How the verdict is found: what blur and edges do to each pixel is predicted from another making with up to 16 times as "
+                    "many photons, before anything is compared; pixels where they may cost more than 2 per cent are masked, and what was "
+                    "predicted for the others is allowed. Outside the mask the means of blocks of 16 by 16 pixels of 64 makings with maps "
+                    "of their own are compared with those of 64 passes of the twin, channel by channel (Holm, family-wise 0.001). Both "
+                    "sides of that are computed on half the width and height, where a block is 8 by 8. Blocks of which one side is "
+                    "heavy-tailed have no interval, hence no verdict; they are counted. A picture of which a fifth or more "
+                    "has no verdict is undecided."
+                }
+                p.soft {
+                    "Errors are relative to the mean of the picture, lamps that are seen directly left out, which both count alike; "
+                    "intervals are of 95 per cent. A small bias remains by the method: the k nearest photons reach farther where there "
+                    "are few, so that dark places take light from bright ones beside them and give none back, and discs that are cut "
+                    "off at an edge read what lies on the near side of it. It shrinks with k."
                 }
                 pre { (settings.command()) }
                 @for picture in ALL {
                     @if let Some(shown) = shown.iter().find(|s| s.name == picture.name) { (section(picture, shown)) }
                 }
+                (speed::section(speed::ROWS))
             }
         }
     }
@@ -64,15 +82,38 @@ fn section(picture: &Picture, shown: &Shown) -> Markup {
         h2 id=(picture.name) { (picture.title) }
         p { (picture.see) }
         div.plates {
-            @for plate in &shown.plates {
-                figure {
-                    img src=(plate.file) alt=(plate.caption) width=(shown.size.0);
-                    figcaption { (plate.caption) "." }
-                }
-            }
+            @for plate in &shown.plates { (figure(plate, shown.size.0)) }
         }
         (numbers(picture, shown))
+        p.soft { "The same picture as EXR, by layers:" }
         pre { (shown.command) }
+    }
+}
+
+fn figure(plate: &Plate, width: usize) -> Markup {
+    let is_sharp = ["error", "mask"].contains(&plate.kind.as_str());
+    html! {
+        figure {
+            img class=[is_sharp.then_some("sharp")] src=(plate.file) alt=(plate.caption) width=(width);
+            @if plate.kind == "error" { (scale()) }
+            figcaption { (plate.caption) "." }
+        }
+    }
+}
+
+/// The colours of relative errors, with their numbers.
+fn scale() -> Markup {
+    const STOPS: u32 = 16;
+    let stop = |n: u32| {
+        let (r, g, b) = Shading::Diverging.rgb(f64::from(n) / f64::from(STOPS));
+        format!("rgb({r},{g},{b})")
+    };
+    let colors: Vec<String> = (0..=STOPS).map(stop).collect();
+    let end = format!("{:.0} %", 100.0 * SCALE);
+    html! {
+        div.scale style=(format!("background: linear-gradient(to right, {})", colors.join(", "))) {
+            span style="color: #fff" { "−" (end) } span { "0" } span style="color: #fff" { "+" (end) }
+        }
     }
 }
 
@@ -89,12 +130,12 @@ fn numbers(picture: &Picture, shown: &Shown) -> Markup {
             tbody {
                 tr { th { "the original" } td { (picture.original) } }
                 tr { th { "here" } td {
-                    (stored.join(", ")) " photons; maps " (duration(ours.map_seconds)) ", picture "
+                    (stored.join(", ")) " photons stored; maps " (duration(ours.map_seconds)) ", picture "
                     (duration(ours.seconds - ours.map_seconds)) " of CPU time for "
                     (shown.size.0) " × " (shown.size.1) " pixels, " (ours.samples) " samples each"
                 } }
                 @if let Some((paths, seconds)) = shown.twin {
-                    tr { th { "twin" } td { (paths) " paths a pixel, " (duration(seconds)) } }
+                    tr { th { "twin" } td { (paths) " samples a pixel, " (duration(seconds)) " of CPU time" } }
                 }
                 @if let Some(compared) = &shown.compared { (comparison(compared)) }
             }
@@ -113,16 +154,34 @@ fn between([low, high]: [f64; 2]) -> String {
 
 fn comparison(c: &Compared) -> Markup {
     html! {
-        tr { th { "RMS error" } td {
+        tr { th { "RMS error of a pixel" } td {
             "photon maps " (between(c.rms)) "; paths in the same time " (between(c.equal_rms))
         } }
-        tr { th { "of one map" } td {
-            "what remains with any number of maps: RMS " (between(c.systematic)) "; bias of the mean " (between(c.bias))
-            " (" (c.makings) " sets of maps)"
+        tr { th { "bias" } td {
+            "of the picture's mean " (between(c.bias)) "; of a block of 16 by 16, root mean square, what remains with any number of maps: "
+            (between(c.systematic)) " (" (c.makings) " sets of maps)"
         } }
         tr { th { "verdict" } td {
-            (c.verdict) ": " (c.blocks.1) " of " (c.blocks.0) " blocks and channels differ; masked " (percent(c.masked))
-            ", heavy-tailed " (percent(c.heavy)) " of the picture; deviations of " (percent(c.smallest)) " in a block are seen"
+            span.verdict { (c.verdict) } ": " (c.blocks.1) " of " (c.blocks.0) " block means differ; masked " (percent(c.masked))
+            " of the picture, heavy-tailed " (percent(c.heavy)) "; in a typical block a deviation of "
+            (percent(c.smallest)) " beyond what was predicted is seen"
         } }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn percents_have_the_digits_that_matter() {
+        assert_eq!([0.1234, 0.00456, -0.02].map(percent), ["12.3 %", "0.46 %", "-2.0 %"]);
+        assert_eq!(between([0.01, 0.02]), "1.0 % to 2.0 %");
+    }
+
+    #[test]
+    fn the_scale_ends_where_errors_do() {
+        let text = scale().into_string();
+        assert!(text.contains("−20 %") && text.contains("+20 %") && text.matches("rgb(").count() == 17);
     }
 }

@@ -84,8 +84,10 @@ impl<'a> Studio<'a> {
     /// What a making by photons will be called.
     pub fn photon_words(&self, samples: u64, replicate: u64, factor: u64) -> String {
         let p = self.picture;
-        let counts =
-            format!("photons {:?} x {factor}, nearest {:?}, gather {}", p.photons, p.nearest, p.gather);
+        let counts = format!(
+            "photons {:?} x {factor}, nearest {:?} within {}, gather {}, size {}",
+            p.photons, p.nearest, p.reach, p.gather, p.size
+        );
         self.words(&counts, samples, replicate)
     }
 

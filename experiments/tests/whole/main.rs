@@ -1,0 +1,14 @@
+//! Each experiment, whole, on few photons, through its own command: two at a time.
+#![allow(clippy::unwrap_used, reason = "tests")]
+
+mod run;
+
+mod bias;
+mod blur;
+mod boundary;
+mod coverage;
+mod deck;
+mod extremes;
+mod march;
+mod rates;
+mod tradeoff;

@@ -1,0 +1,22 @@
+//! Photons: their tree, their estimates, the maps and what reads them.
+#![allow(clippy::unwrap_used, reason = "tests")]
+
+#[path = "../checks/mod.rs"]
+mod checks;
+#[path = "../common/mod.rs"]
+mod common;
+#[path = "../support/mod.rs"]
+mod support;
+
+mod advise;
+mod boundary;
+mod estimators;
+mod importance;
+mod mapper;
+mod maps;
+mod march;
+mod metrics;
+mod statistics;
+mod surface_estimates;
+mod synthetic;
+mod tree;
