@@ -196,7 +196,7 @@ mod tests {
         let pixels = u64::from(camera.width() * camera.height());
         let all = ByLight { layers: &[Layer::Direct, Layer::Caustic, Layer::Indirect], permille: 1000 };
         let one = |by_light: ByLight, replicate: u64| {
-            const SAMPLES: u64 = 30;
+            const SAMPLES: u64 = 120;
             let streams = Streams { seed: 5, replicate };
             let mut sum = Layers::ZERO;
             for i in 0..SAMPLES * pixels {
@@ -209,30 +209,25 @@ mod tests {
             by_light.trace(&scene, camera, SAMPLES, streams).unwrap().into_iter().for_each(|l| sum += l);
             sum
         };
-        let moments = |by_light: ByLight, layer: Layer, first: u64| {
-            (0..64).fold(Moments::new(), |mut m, n| {
-                m.push(one(by_light, first + n)[layer].mean());
-                m
-            })
+        let moments = |by_light: ByLight, first: u64| {
+            let mut all = vec![Moments::new(); Layer::ALL.len()];
+            for replicate in first..first + 64 {
+                let layers = one(by_light, replicate);
+                all.iter_mut().zip(Layer::ALL).for_each(|(m, layer)| m.push(layers[layer].mean()));
+            }
+            all
         };
         let caustic = ByLight { layers: &[Layer::Caustic], permille: 1000 };
-        for (number, (by_light, layer)) in [
-            (caustic, Layer::Caustic),
-            (caustic, Layer::Indirect),
-            (caustic, Layer::Emission),
-            (all, Layer::Direct),
-            (all, Layer::Caustic),
-            (all, Layer::Indirect),
-        ]
-        .into_iter()
-        .enumerate()
-        {
-            let a = moments(ByLight::NOTHING, layer, 1000 * number as u64);
-            let b = moments(by_light, layer, 1000 * number as u64 + 500);
-            let std_error = (a.std_error() * a.std_error() + b.std_error() * b.std_error()).sqrt();
-            let p = student_p((a.mean() - b.mean()).abs() / std_error, 63);
-            assert!(p > 1e-6, "{layer:?}: {} against {}, error {std_error}", b.mean(), a.mean());
-            assert!(std_error < 0.03 * a.mean(), "{layer:?}: too few samples to say anything");
+        let paths = moments(ByLight::NOTHING, 0);
+        for (by_light, first) in [(caustic, 1000), (all, 2000)] {
+            let both = moments(by_light, first);
+            for ((layer, a), b) in Layer::ALL.into_iter().zip(&paths).zip(&both).take(4) {
+                let std_error = (a.std_error() * a.std_error() + b.std_error() * b.std_error()).sqrt();
+                let p = student_p((a.mean() - b.mean()).abs() / std_error, 63);
+                assert!(p > 1e-6, "{layer:?}: {} against {}, error {std_error}", b.mean(), a.mean());
+                // Half of a layer, lost or counted twice, is seen with a power of 99 per cent: (5.42 + 2.4) x 6 %.
+                assert!(std_error < 0.06 * a.mean(), "{layer:?}: error {std_error} of {}", a.mean());
+            }
         }
     }
 }
