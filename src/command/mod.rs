@@ -28,7 +28,7 @@ pub enum Command {
     Measure(measure::Measure),
     /// Say which radius and how many photons reach a wanted error, and what the path tracer would need.
     Advise(advise::Advise),
-    /// Draw the picture that a scene's camera sees, by photon maps or by paths.
+    /// Draw the picture that a scene's camera sees, by photon maps, by paths or by light tracing.
     Render(Box<render::Render>),
     /// Draw the photons that a scene's maps hold, and export them.
     Map(Box<map::Map>),

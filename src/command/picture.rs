@@ -130,9 +130,8 @@ impl Photons {
         camera: &Camera,
         maps: &MapSettings,
     ) -> turbid::Result<Option<Importance>> {
-        // Another seed for each repetition, so that repetitions stay independent.
-        let seed = maps.seed ^ maps.replicate.wrapping_mul(0x9e37_79b9_7f4a_7c15);
-        let settings = ImportanceSettings { seed, ..Default::default() };
+        let MapSettings { seed, replicate, .. } = *maps;
+        let settings = ImportanceSettings { seed, replicate, ..Default::default() };
         let learn = || Importance::of(scene, camera, maps.indirect, &settings, &NoProgress);
         self.is_steered.then(learn).transpose()
     }

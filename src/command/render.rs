@@ -1,4 +1,4 @@
-//! `turbid render`: a picture of a scene, by photons or by paths.
+//! `turbid render`: a picture of a scene, by photons, by paths or by light tracing.
 
 use super::load::Source;
 use super::parse_count;
@@ -11,24 +11,31 @@ use clap::ValueEnum;
 use cpu_time::ProcessTime;
 use std::ops::AddAssign;
 use std::path::{Path, PathBuf};
-use turbid::integrators::mapper::{Mapper, Report};
+use turbid::estimators::boundary::Treatment;
+use turbid::integrators::mapper::{Mapper, Report, untreated};
 use turbid::integrators::path;
 use turbid::output::{Tone, auto_exposure, write_exr, write_png};
 use turbid::photons::PhotonMap;
 use turbid::photons::maps::{MapReport, Maps, counts_steered, fill_counted_steered};
 use turbid::scene::{Camera, Scene};
-use turbid::sensor::{Film, Sample, Streams, extend};
+use turbid::sensor::{Film, Sample, Streams, extend, extend_by_light};
 
-/// Draw the picture that a scene's camera sees, by photon maps or by paths.
+/// Draw the picture that a scene's camera sees, by photon maps, by paths or by light tracing.
 ///
-/// Writes an OpenEXR file in linear light and a PNG beside it to look at. The EXR has the channels R G B; variance.R and
-/// so on, the variance of each mean; a layer for each class of light's path (emission, direct, caustic, indirect, single,
-/// multiple); photons.N, the photons behind a sample; and in its header, under `turbid`, all that the picture was made
-/// from. The scene file needs a [camera].
+/// Writes an OpenEXR file in linear light and a PNG beside it to look at. The EXR has the channels R G B; a layer for each
+/// class of light's path (emission.R, direct.R, caustic.R, indirect.R, single.R, multiple.R and so on); variance.R,
+/// variance.direct.R and so on, the variance of each mean; photons.N, the photons behind a sample; and in its header, under
+/// `turbid`, all that the picture was made from. The scene file needs a [camera].
 ///
 /// The path tracer is unbiased, and noisy. Photons are fast, and blurred: they are sent out once into maps, which all
 /// pixels share, so that the error of one map is seen only by making several (--maps); the variance is then that between
 /// maps. The classic picture is one map and a few samples: `turbid render scene.toml -o out.exr --samples 16`.
+///
+/// Light tracing (--with light) is unbiased too, and a second witness for caustics, which paths find badly or not at all:
+/// photons start from the lights and are connected to the camera at each scattering, so that --samples counts histories a
+/// pixel, wherever they are seen. It holds what scatters last on a matt surface or in a medium that the camera sees straight
+/// or through filters. The rest is black in it: lights and glowing media seen directly, the whole emission layer, and all that is
+/// seen in mirrors and through glass.
 ///
 /// A first picture, without any file: `turbid render fogbox -o fog.exr --gather-rays 0`, in seconds; without the last
 /// option it is clean, in minutes. Glass, mirrors and the sun make caustics, which need a light with an extent to be
@@ -47,7 +54,7 @@ pub struct Render {
     /// What is done of all that some scenes require.
     #[arg(long, value_enum, default_value = "auto")]
     plan: PlanName,
-    /// Samples a pixel, of each map [default: 16].
+    /// Samples a pixel, of each map; of light tracing histories a pixel [default: 16].
     #[arg(long, value_parser = parse_count)]
     samples: Option<u64>,
     /// As many samples as this many seconds of processor time allow, maps included. The clock decides: the number taken
@@ -87,6 +94,29 @@ enum With {
     Photons,
     /// The unbiased path tracer.
     Paths,
+    /// The unbiased light tracer: without lights seen directly, without what is seen in mirrors and through glass.
+    Light,
+}
+
+impl With {
+    fn name(self) -> &'static str {
+        match self {
+            With::Photons => "photons",
+            With::Paths => "paths",
+            With::Light => "light",
+        }
+    }
+
+    /// What is in the picture, for those who find the file.
+    fn holds(self) -> &'static str {
+        match self {
+            With::Photons | With::Paths => "all layers",
+            With::Light => {
+                "direct, caustic, indirect, single and multiple light that the camera sees straight or through filters; \
+                 not the emission layer, and not what is seen in mirrors and through glass"
+            }
+        }
+    }
 }
 
 /// Samples a pixel where neither their number nor a time is given.
@@ -104,6 +134,8 @@ pub struct Made {
     pub maps: Vec<MapsMade>,
     /// Times.
     pub stages: Stages,
+    /// Whether it was made by light tracing.
+    pub is_by_light: bool,
 }
 
 impl Render {
@@ -123,6 +155,10 @@ impl Render {
         let file = self.source.resolve()?;
         let scene = match (self.source.load()?, self.plan) {
             (scene, PlanName::Auto) => scene,
+            (_, PlanName::Full) if self.with == With::Light => bail!(
+                "--plan full is for pictures by photons and paths: light tracing reads no map and looks for nothing that \
+                 could be left out; allowed with --with light: auto"
+            ),
             (scene, PlanName::Full) => scene.with_full_plan()?,
         };
         let camera = self.frame.camera(&scene)?;
@@ -132,7 +168,7 @@ impl Render {
                 scene.plan().unreachable.join("; ")
             );
         }
-        if scene.stage().is_some() && self.with == With::Photons {
+        if scene.stage().is_some() && self.with != With::Paths {
             bail!(
                 "pictures of a scene with `cell`, which stands for an unbounded slab, are made by paths: --with paths"
             );
@@ -140,7 +176,18 @@ impl Render {
         // Before the work, not after it.
         check_folder(&self.output)?;
         check_folder(&self.output.with_extension("png"))?;
+        if self.with == With::Light {
+            note(&format!("the picture holds {}", self.with.holds()))?;
+        }
         let settings = self.reading.settings(&scene)?;
+        let untreated = untreated(&scene);
+        if self.with == With::Photons && settings.treatment != Treatment::None && !untreated.is_empty() {
+            note(&format!(
+                "volume estimates read low beside the faces of {}: of interiors, only spheres, cuboids and slabs have a \
+                 boundary that is treated",
+                untreated.join(", ")
+            ))?;
+        }
         let made = on_threads(self.threads, || match self.with {
             With::Paths => self.repeat(&camera, |streams, stages, left, film| {
                 let within = scene.interior_at(camera.position());
@@ -149,8 +196,15 @@ impl Render {
                     *work += Report { rays, work: stream.work, ..Report::default() };
                     Sample::from(layers)
                 };
-                let work = self.fill(film, &camera, streams, stages, left, sample)?;
-                Ok((work, None))
+                let more = |film: &mut Film, n, bar: &Bar| extend(film, &camera, n, streams, bar, sample);
+                Ok((self.fill(film, stages, left, "gathering", more)?, None))
+            }),
+            With::Light => self.repeat(&camera, |streams, stages, left, film| {
+                let more = |film: &mut Film, n, bar: &Bar| {
+                    let count = extend_by_light(film, &scene, &camera, n, streams, bar)?;
+                    Ok(Report { rays: count.rays, work: count.work, ..Report::default() })
+                };
+                Ok((self.fill(film, stages, left, "photons", more)?, None))
             }),
             With::Photons => self.repeat(&camera, |streams, stages, left, film| {
                 let settings_of_maps =
@@ -178,7 +232,8 @@ impl Render {
                     let photons = report.global.found + report.caustic.found + report.volume.found;
                     Sample { layers, photons: photons as f64 }
                 };
-                let work = self.fill(film, &camera, streams, stages, left, sample)?;
+                let more = |film: &mut Film, n, bar: &Bar| extend(film, &camera, n, streams, bar, sample);
+                let work = self.fill(film, stages, left, "gathering", more)?;
                 let stored = [&maps.global, &maps.caustic, &maps.volume].map(|m| m.as_ref().map(Filled::of));
                 Ok((work, Some((maps.report, stored))))
             }),
@@ -209,6 +264,7 @@ impl Render {
             work: Report::default(),
             maps: Vec::new(),
             stages: Stages::default(),
+            is_by_light: self.with == With::Light,
         };
         for replicate in 0..self.maps {
             let streams = Streams { seed: self.seed, replicate };
@@ -230,31 +286,27 @@ impl Render {
         Ok(made)
     }
 
-    /// Fills a film with the samples asked for, or until the processor has worked so long.
+    /// Fills a film with the samples asked for, or until the processor has worked so long; `more` adds some.
     fn fill(
         &self,
         film: &mut Film,
-        camera: &Camera,
-        streams: Streams,
         stages: &mut Stages,
         until: Option<f64>,
-        sample: impl Fn(turbid::math::Ray, &mut turbid::rng::Stream, &mut Report) -> Sample + Sync,
+        name: &'static str,
+        more: impl Fn(&mut Film, u64, &Bar) -> turbid::Result<Report>,
     ) -> anyhow::Result<Report> {
-        let pixels = u64::from(camera.width()) * u64::from(camera.height());
-        let Some(until) = until else {
-            let samples = self.samples.unwrap_or(SAMPLES);
-            let bar = Bar::stage("gathering", samples.saturating_mul(pixels));
-            let work = stages.time("samples", || extend(film, camera, samples, streams, &bar, &sample));
+        let pixels = film.pixels().len() as u64;
+        let mut take = |film: &mut Film, samples: u64| {
+            let bar = Bar::stage(name, samples.saturating_mul(pixels));
+            let work = stages.time("samples", || more(film, samples, &bar));
             bar.finish();
-            return Ok(work?);
+            work
         };
+        let Some(until) = until else { return Ok(take(film, self.samples.unwrap_or(SAMPLES))?) };
         let spent = || ProcessTime::now().as_duration().as_secs_f64();
         let (start, mut work, mut next) = (spent(), Report::default(), 1);
         loop {
-            let bar = Bar::stage("gathering", next * pixels);
-            let more = stages.time("samples", || extend(film, camera, next, streams, &bar, &sample));
-            bar.finish();
-            work.add_assign(more?);
+            work.add_assign(take(film, next)?);
             let (now, taken) = (spent(), film.samples());
             // As many more as fit at the speed so far, half of them at most at once.
             let fit = ((until - now) / ((now - start) / taken as f64)).max(0.0) as u64;
@@ -279,7 +331,8 @@ impl Render {
         let filled: Vec<[Option<Filled>; 3]> = made.maps.iter().map(|(_, filled)| *filled).collect();
         Ok(serde_json::json!({
             "program": format!("turbid {}", env!("CARGO_PKG_VERSION")),
-            "with": if by_photons { "photons" } else { "paths" },
+            "with": self.with.name(),
+            "holds": self.with.holds(),
             "plan": if self.plan == PlanName::Full { "full" } else { "auto" },
             "width": made.film.width(),
             "height": made.film.height(),

@@ -83,8 +83,18 @@ pub fn print_statistics(made: &Made, exposure: f64) -> anyhow::Result<()> {
         writeln!(text, "map {number:<3} memory   {:.1} MB", report.bytes as f64 / 1e6)?;
     }
     let work = &made.work;
-    writeln!(text, "rays           {}, {} of them of final gatherings", work.rays.segments, work.gathering)?;
-    writeln!(text, "shadow rays    {}", work.rays.shadow)?;
+    let total = made.samples.iter().sum::<u64>() * pixels;
+    if made.is_by_light {
+        writeln!(text, "histories      {total} photons, {} flights", work.rays.segments)?;
+        writeln!(text, "connections    {} to the camera", work.rays.shadow)?;
+    } else {
+        writeln!(
+            text,
+            "rays           {}, {} of them of final gatherings",
+            work.rays.segments, work.gathering
+        )?;
+        writeln!(text, "shadow rays    {}", work.rays.shadow)?;
+    }
     if !made.maps.is_empty() {
         writeln!(text, "march steps    {}", work.steps)?;
         for (map, gathers) in [("global", &work.global), ("caustic", &work.caustic), ("volume", &work.volume)]
@@ -104,7 +114,7 @@ pub fn print_statistics(made: &Made, exposure: f64) -> anyhow::Result<()> {
         "tracking       {} majorants, {} densities, {} transmittances, {} flights by channel; {cells} projection cells",
         tracking.majorants, tracking.densities, tracking.transmittances, tracking.channel_flights
     )?;
-    writeln!(text, "non-finite     0 of {} samples", made.samples.iter().sum::<u64>() * pixels)?;
+    writeln!(text, "non-finite     0 of {total} samples")?;
     for Stage { name, clock, processor, memory } in &made.stages.0 {
         let (clock, processor) = (clock.as_secs_f64(), processor.as_secs_f64());
         let memory = memory.map_or(String::new(), |bytes| format!(", {:.1} MB at most", bytes as f64 / 1e6));

@@ -29,6 +29,7 @@ use crate::error::{Error, Result};
 use crate::geometry::Shape;
 use crate::math::{cosine_pair, sin_cos};
 use crate::photons::{Photon, PhotonMap};
+use crate::scene::Scene;
 use accepted::{Accepted, accepted};
 use glam::DVec3;
 use images::images;
@@ -68,12 +69,15 @@ impl Treatment {
 /// The boundaries that an estimate is told of.
 #[derive(Debug, Clone)]
 pub struct Boundary<'a> {
-    medium: Shape,
+    /// The shape of the medium; none where it is not known, and its own faces are left untreated.
+    medium: Option<Shape>,
     treatment: Treatment,
     rejection: Rejection,
     walls: &'a [Shape],
-    /// Where other media lie in this one; none where it is alone.
+    /// What else lies in the medium's shape; none where nothing does, and no other medium touches it.
     others: Option<&'a [Shape]>,
+    /// Whose photons count, where shapes alone do not tell: those in the medium of this number.
+    owner: Option<(&'a Scene, usize)>,
 }
 
 impl Boundary<'static> {
@@ -85,7 +89,12 @@ impl Boundary<'static> {
         if !medium.is_solid() {
             return Err(Error::Scene("a rectangle bounds no medium: name a sphere, slab or cuboid".into()));
         }
-        Ok(Boundary { medium, treatment, rejection: Rejection::Off, walls: &[], others: None })
+        Ok(Boundary { medium: Some(medium), ..Boundary::unknown(treatment) })
+    }
+
+    /// Of a medium whose shape is not known: only what else lies in it is treated.
+    pub fn unknown(treatment: Treatment) -> Self {
+        Boundary { medium: None, treatment, rejection: Rejection::Off, walls: &[], others: None, owner: None }
     }
 }
 
@@ -99,34 +108,61 @@ impl<'a> Boundary<'a> {
         Boundary { rejection, walls, ..self }
     }
 
-    /// The same where there are other media too: photons that collided in them are rejected, which are those outside
-    /// this one and those in `others`, shapes that lie in it and are not of it.
+    /// The same where there is more than the medium: photons that collided elsewhere are rejected, which are those outside
+    /// it and those in `others`, solid shapes that stand in it and are not of it. One that holds the point holds the medium
+    /// too, and does not count.
     pub fn among(self, others: &'a [Shape]) -> Self {
         Boundary { others: Some(others), ..self }
     }
 
-    /// Whether a ball about a point of the medium meets no other medium.
+    /// The same with the scene asked, photon by photon, whether it lies in the medium of this number.
+    pub fn owned_by(self, scene: &'a Scene, number: usize) -> Self {
+        Boundary { owner: Some((scene, number)), ..self }
+    }
+
+    /// Distance to the medium's surface \[L\]; endless where that is not known.
+    fn room(&self, point: DVec3) -> f64 {
+        self.medium.as_ref().map_or(f64::INFINITY, |medium| medium.room(point))
+    }
+
+    /// The shapes that stand in the medium about a point.
+    fn others(&self, point: DVec3) -> impl Iterator<Item = &'a Shape> {
+        self.others.unwrap_or(&[]).iter().filter(move |other| !other.contains(point))
+    }
+
+    /// Whether a ball about a point of the medium meets nothing else.
     fn is_alone(&self, point: DVec3, radius: f64) -> bool {
-        self.others.is_none_or(|_| self.medium.room(point) >= radius && !self.is_reduced(point, radius))
+        let is_alone =
+            self.others.is_none_or(|_| self.room(point) >= radius && !self.is_reduced(point, radius));
+        is_alone && self.owner.is_none()
     }
 
     /// Whether the ball reaches into what is not of the medium though it is in its shape.
     fn is_reduced(&self, point: DVec3, radius: f64) -> bool {
-        self.others.is_some_and(|others| others.iter().any(|other| is_near(other, point, radius)))
+        self.others(point).any(|other| is_near(other, point, radius))
     }
 
-    /// Whether a place is in the medium.
-    fn owns(&self, place: DVec3) -> bool {
-        self.others.is_none_or(|others| {
-            self.medium.contains(place) && !others.iter().any(|other| other.contains(place))
+    /// Whether a place is in the medium about a point.
+    fn owns(&self, point: DVec3, place: DVec3) -> bool {
+        self.others.is_none_or(|_| {
+            self.medium.as_ref().is_none_or(|medium| medium.contains(place))
+                && !self.others(point).any(|other| other.contains(place))
         })
+    }
+
+    /// Moments of the kernel inside the medium's own faces.
+    fn moments(&self, kernel: Kernel, point: DVec3, radius: f64) -> [f64; 3] {
+        match &self.medium {
+            Some(medium) => body_moments(kernel, medium, point, radius),
+            None => [1.0, 0.0, kernel.m2() / 3.0],
+        }
     }
 
     /// The part of the kernel that is inside the medium: exact beside its own faces; beside others in it by 256 points,
     /// equal parts of the ball, which is off by about a hundredth.
     fn share(&self, kernel: Kernel, point: DVec3, radius: f64) -> f64 {
         if !self.is_reduced(point, radius) {
-            return body_moments(kernel, &self.medium, point, radius)[0];
+            return self.moments(kernel, point, radius)[0];
         }
         let (mut inside, mut all) = (0.0, 0.0);
         for shell in 0..SHELLS {
@@ -137,7 +173,7 @@ impl<'a> Boundary<'a> {
                 let across = (1.0 - z * z).sqrt();
                 let (sin, cos) = sin_cos(GOLDEN_ANGLE * f64::from(n + shell * DIRECTIONS));
                 all += weight;
-                if self.owns(point + DVec3::new(across * cos, across * sin, z) * (u * radius)) {
+                if self.owns(point, point + DVec3::new(across * cos, across * sin, z) * (u * radius)) {
                     inside += weight;
                 }
             }
@@ -232,8 +268,13 @@ fn treated(
     let (BallSum { sum, ball }, rejected) = match whole {
         Some(plain) => (treated_sum(map, point, kernel, gather, boundary, plain, value), 0),
         None => {
+            let is_owned = |place: DVec3| {
+                boundary.owner.is_none_or(|(scene, number)| scene.medium_number_at(place) == Some(number))
+            };
             let keeps = |photon: &Photon| {
-                sieve.as_ref().is_none_or(|sieve| sieve.keeps(photon)) && boundary.owns(photon.position)
+                sieve.as_ref().is_none_or(|sieve| sieve.keeps(photon))
+                    && boundary.owns(point, photon.position)
+                    && is_owned(photon.position)
             };
             sifted_sum(map, point, kernel, gather, boundary, &keeps, value)
         }
@@ -258,11 +299,10 @@ fn treated_sum(
     mut plain: BallSum,
     value: &dyn Fn(&Photon) -> f64,
 ) -> BallSum {
-    let medium = &boundary.medium;
     let r = plain.ball.radius;
-    if medium.room(point) >= r {
+    let Some(medium) = boundary.medium.as_ref().filter(|medium| medium.room(point) < r) else {
         return plain;
-    }
+    };
     match boundary.treatment {
         Treatment::None => {}
         Treatment::Clipped => plain.sum = plain.sum / body_moments(kernel, medium, point, r)[0],
@@ -302,7 +342,7 @@ fn sifted_sum(
     value: &dyn Fn(&Photon) -> f64,
 ) -> (BallSum, usize) {
     let Accepted { photons, ball, rejected } = accepted(map.tree(), point, gather, keeps);
-    let (medium, r) = (&boundary.medium, ball.radius);
+    let (medium, r) = (boundary.medium.as_ref(), ball.radius);
     let sum = |weight: &dyn Fn(DVec3) -> f64| {
         photons.iter().fold(Spectrum::ZERO, |sum, (photon, share)| {
             let weight = share * weight(photon.position) / (r * r * r) * value(photon);
@@ -316,15 +356,16 @@ fn sifted_sum(
     };
     let nowhere = if point.is_finite() { 0.0 } else { f64::NAN };
     let plain = sum(&weight) + Spectrum::grey(nowhere);
-    let is_whole = medium.room(point) >= r && !boundary.is_reduced(point, r);
-    let sum = match boundary.treatment {
+    let is_whole = boundary.room(point) >= r && !boundary.is_reduced(point, r);
+    let sum = match (boundary.treatment, medium) {
         _ if is_whole => plain,
-        Treatment::None => plain,
-        Treatment::Clipped => plain / boundary.share(kernel, point, r),
-        Treatment::Reflection => images(medium, point, r)
+        (Treatment::None, _) => plain,
+        (Treatment::Clipped, _) => plain / boundary.share(kernel, point, r),
+        (_, None) => plain,
+        (Treatment::Reflection, Some(medium)) => images(medium, point, r)
             .into_iter()
             .fold(plain, |all, image| all + sum(&|place| image_weight(kernel, (place - image) / r))),
-        Treatment::LocalLinear => {
+        (Treatment::LocalLinear, Some(medium)) => {
             let normal = inward_normal(medium, point);
             let first = sum(&|place| weight(place) * (place - point).dot(normal) / r);
             linear(body_moments(kernel, medium, point, r), plain, first)

@@ -4,7 +4,7 @@
 //! ones and into fog. It does not find what the eye sees straight, lights and specular surfaces: no photon meets a
 //! pinhole by itself.
 
-use super::Layer;
+use super::{Layer, Rays};
 use crate::Spectrum;
 use crate::math::{Ray, cosine_pair};
 use crate::phase::PhaseFunction;
@@ -29,7 +29,8 @@ pub struct Splat {
     pub value: Spectrum,
 }
 
-/// Follows one history and calls `splat` with all that it sends to the camera.
+/// Follows one history and calls `splat` with all that it sends to the camera. Returns the work: flights, and connections
+/// tried.
 ///
 /// A scattering at x, of a photon of power P that leaves a fraction f [1/sr] of it towards the camera (of a surface: the
 /// reflection function times the cosine), at a distance d under an angle theta to the line of sight, is seen with
@@ -46,10 +47,11 @@ pub fn light_tracing(
     emitter: &Emitter,
     stream: &mut Stream,
     splat: impl FnMut(Splat),
-) {
-    let Some(start) = emitter.emit(scene, stream) else { return };
-    let mut tracer = Tracer { scene, camera, flight: None, splat };
+) -> Rays {
+    let Some(start) = emitter.emit(scene, stream) else { return Rays::default() };
+    let mut tracer = Tracer { scene, camera, flight: None, rays: Rays::default(), splat };
     walk(scene, start, Roulette::Analog, None, stream, &mut tracer);
+    tracer.rays
 }
 
 struct Tracer<'a, F: FnMut(Splat)> {
@@ -57,6 +59,7 @@ struct Tracer<'a, F: FnMut(Splat)> {
     camera: &'a Camera,
     /// The distances on the present flight that equal angles choose from.
     flight: Option<EqualAngles>,
+    rays: Rays,
     splat: F,
 }
 
@@ -88,6 +91,7 @@ impl<F: FnMut(Splat)> Tracer<'_, F> {
         if fraction.is_black() {
             return;
         }
+        self.rays.shadow += 1;
         let Some(passed) = self.scene.sees(&ray, event.from, distance) else { return };
         let passed = passed * transmittance(self.scene, &ray, distance, walker.within, stream);
         let cosine = -ray.dir.dot(self.camera.forward());
@@ -134,7 +138,10 @@ impl<F: FnMut(Splat)> Visitor for Tracer<'_, F> {
 
     fn visit(&mut self, walker: &Walker, step: Step, stream: &mut Stream) {
         match step {
-            Step::Ahead(hit) => self.look_from_flight(walker, hit, stream),
+            Step::Ahead(hit) => {
+                self.rays.segments += 1;
+                self.look_from_flight(walker, hit, stream);
+            }
             Step::Collision(Arrival { position, .. }, number) => {
                 let medium = self.scene.medium(number);
                 let sigma_t = medium.sigma_t(position).mean();

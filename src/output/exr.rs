@@ -18,10 +18,11 @@ const CHANNELS: [&str; 3] = ["R", "G", "B"];
 
 /// Writes a film with its provenance. The same film and provenance make the same bytes.
 ///
-/// Channels, all of 32 bits: `R G B`, the radiance; `variance.R` and so on, the variance of that mean, where there are at
-/// least two samples (between maps, where the film is made of several); `emission.R`, `direct.R`, `caustic.R`,
-/// `indirect.R`, `single.R`, `multiple.R` and so on, the layers; `photons.N`, the photons that a sample's estimates took,
-/// in the mean.
+/// Channels, all of 32 bits: `R G B`, the radiance; `emission.R`, `direct.R`, `caustic.R`, `indirect.R`, `single.R`,
+/// `multiple.R` and so on, the layers; where there are at least two samples `variance.R` and so on, the variance of the
+/// mean radiance (between maps, where the film is made of several), and `variance.direct.R` and so on, that of each layer's
+/// mean; `photons.N`, the photons that a sample's estimates took, in the mean. Layers of one pixel share their paths, so
+/// that their variances do not add up to that of the whole.
 ///
 /// # Errors
 /// [`WriteError`], naming the path; the old file is then untouched.
@@ -48,14 +49,21 @@ pub fn encode_exr(film: &Film, provenance: &serde_json::Value) -> ::exr::error::
         let samples = film.pixels().iter().map(|pixel| value(pixel) as f32).collect();
         channels.push(AnyChannel::new(text(&name), FlatSamples::F32(samples)));
     };
+    // One sample says nothing of its variance.
+    let has_variance = film.samples() >= 2;
     for (c, channel) in CHANNELS.into_iter().enumerate() {
         add(channel.to_string(), &|pixel| pixel.total()[c]);
-        if film.samples() >= 2 {
+        if has_variance {
             let variance = |pixel: &Pixel| pixel.variance().unwrap_or(Spectrum::ZERO)[c];
             add(format!("variance.{channel}"), &variance);
         }
         for layer in Layer::ALL {
-            add(format!("{}.{channel}", layer.name()), &|pixel| pixel.layers()[layer][c]);
+            let name = layer.name();
+            add(format!("{name}.{channel}"), &|pixel| pixel.layers()[layer][c]);
+            if has_variance {
+                let variance = |pixel: &Pixel| pixel.layer_variance(layer).unwrap_or(Spectrum::ZERO)[c];
+                add(format!("variance.{name}.{channel}"), &variance);
+            }
         }
     }
     add("photons.N".to_string(), &|pixel| pixel.photons());
@@ -148,7 +156,7 @@ mod tests {
         assert_eq!(image.layer_data.len(), 1);
         let layer = &image.layer_data[0];
         assert_eq!((layer.size.0, layer.size.1, layer.encoding.compression), (5, 3, Compression::ZIP16));
-        assert_eq!(layer.channel_data.list.len(), 8 * 3 + 1);
+        assert_eq!(layer.channel_data.list.len(), 14 * 3 + 1);
         let at = |name: &str, x: u32, y: u32| {
             let channel = layer.channel_data.list.iter().find(|c| c.name.to_string() == name);
             let channel = channel.unwrap_or_else(|| panic!("no channel {name}"));
@@ -166,6 +174,10 @@ mod tests {
             assert_eq!(at("G", x, y), 1500.0 + 6.0 * (base + 0.25));
             // Totals 6 apart: squared deviations 9 + 9, over 2 and 1.
             assert_eq!(at("variance.B", x, y), 9.0);
+            // Layers 1 apart: 1/4 + 1/4, over 2 and 1.
+            for layer in Layer::ALL {
+                assert_eq!(at(&format!("variance.{}.G", layer.name()), x, y), 0.25);
+            }
             assert_eq!(at("photons.N", x, y), (x + y) as f32);
         }
         let Some(AttributeValue::Text(text)) = layer.attributes.other.get(&Text::from(PROVENANCE)) else {

@@ -4,9 +4,9 @@
 //! 1. particles leave the camera and are counted, in the boxes of a grid, where a picture reads photons (`reading`): at
 //!    the first event on their way, and, where rays of a final gathering read the maps, at the second;
 //! 2. photons of a pilot score where they would be stored, as much as is read there, and every cube of a coarser grid
-//!    learns, by direction and for the cone towards most of what is read, what a photon that leaves it scores on average from there on, over its weight: its *value* J. So
-//!    does every cell of the lights' numbers. Each round of the pilot is steered by what the rounds before it learned
-//!    (`learn`);
+//!    learns, by direction and for the cone towards most of what is read, what a photon that leaves it scores on average
+//!    from there on, over its weight: its *value* J. So does every cell of the lights' numbers. Each round of the pilot is
+//!    steered by what the rounds before it learned (`learn`);
 //! 3. emission takes each cell in proportion to its power times its value; half of the photons that an event scatters go
 //!    where value times scattering is large, with the weight of both ways to choose a direction together; and the weight
 //!    that a photon should have where the value is J is R/J, R the score of all emission: one that leaves an event with a
@@ -14,8 +14,8 @@
 //!    probability r, its weight over r (`steer`). These are the weight windows of neutron transport (Wagner and Haghighat
 //!    1998), learned, and steered directions (Vorba et al. 2014), by histogram.
 //!
-//! Every estimate keeps its expectation, whatever was learned: a photon's chance times its weight is unchanged. What is lost
-//! is the equality of the photons' powers: where the picture reads, they are nearly equal still, and smaller by the
+//! Every estimate keeps its expectation, whatever was learned: a photon's chance times its weight is unchanged. What is
+//! lost is the equality of the photons' powers: where the picture reads, they are nearly equal still, and smaller by the
 //! factor by which more of them come; far from there they are few and large. The ledger of powers holds on average, not
 //! photon by photon.
 
@@ -29,6 +29,7 @@ pub use steer::Branching;
 use super::Emitter;
 use super::maps::Indirect;
 use crate::error::{Error, Result};
+use crate::rng::{Purpose, Stream};
 use crate::scene::{Camera, Scene};
 use crate::transport::Progress;
 use grid::{Aim, DIRECTIONS, Grid};
@@ -46,12 +47,37 @@ pub struct ImportanceSettings {
     pub boxes: usize,
     /// Seed of the whole computation.
     pub seed: u64,
+    /// Which independent repetition.
+    pub replicate: u64,
+}
+
+impl ImportanceSettings {
+    /// The random numbers of one history of a stage; there are fewer than 65,535 rounds.
+    fn stream(&self, stage: Stage, history: u64) -> Stream {
+        let stage = match stage {
+            Stage::Reading => 0,
+            Stage::Round(number) => 1 + number,
+            Stage::Extent => u64::MAX,
+        };
+        Stream::new(self.seed, Purpose::Importance, self.replicate << 16 ^ stage, history)
+    }
+}
+
+/// What is learned by histories of its own.
+#[derive(Debug, Clone, Copy)]
+enum Stage {
+    /// Where the camera looks.
+    Extent,
+    /// Where the picture reads photons.
+    Reading,
+    /// A round of the pilot.
+    Round(u64),
 }
 
 impl Default for ImportanceSettings {
     /// Enough to find a corner that one photon in a thousand comes to.
     fn default() -> Self {
-        ImportanceSettings { particles: 1 << 16, pilot: 1 << 15, rounds: 4, boxes: 12, seed: 1 }
+        ImportanceSettings { particles: 1 << 16, pilot: 1 << 15, rounds: 4, boxes: 12, seed: 1, replicate: 0 }
     }
 }
 

@@ -132,6 +132,9 @@ impl CameraFile {
 }
 
 /// A medium in a shape.
+///
+/// The keys of a medium stand here and in [`InteriorFile`]: `flatten` would let them stand once, but serde does not refuse
+/// unknown keys where it flattens, and a misspelt key must not pass.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct RegionFile {

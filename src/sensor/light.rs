@@ -1,14 +1,26 @@
 //! Pictures by light tracing: what photons send to the camera, spread over its pixels.
 
 use super::film::{Film, Sample};
-use super::render::Streams;
+use super::render::{MAX_SAMPLES, Streams};
 use crate::Spectrum;
 use crate::error::{Error, Result};
-use crate::integrators::{Layers, Splat, light_tracing};
+use crate::integrators::{Layers, Rays, Splat, light_tracing};
 use crate::photons::Emitter;
-use crate::rng::{Purpose, Stream};
+use crate::rng::{Purpose, Stream, Work};
 use crate::scene::{Camera, Scene};
 use crate::transport::{Progress, run_blocks};
+
+/// Histories whose light waits in a list before it is spread over the pixels: enough that threads rarely wait.
+const CHUNK: u64 = 1 << 18;
+
+/// What light tracing took.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct LightCount {
+    /// Flights of photons, and connections to the camera.
+    pub rays: Rays,
+    /// Work that the scene may not require.
+    pub work: Work,
+}
 
 /// A picture of light that scatters on matt surfaces and in media where the camera sees it straight or through filters,
 /// from `films` independent films of `histories` photons each: means are those over films, variances those between them.
@@ -26,50 +38,188 @@ pub fn by_light(
     streams: Streams,
     progress: &dyn Progress,
 ) -> Result<Film> {
+    let mut film = Film::new(camera.width(), camera.height());
+    expose(&mut film, scene, camera, (histories, films), streams, progress)?;
+    Ok(film)
+}
+
+/// Adds so many samples to each pixel of a film by light tracing. A sample of a picture is a film of its own, of as many
+/// histories as there are pixels, so that variances are those between such films.
+///
+/// A film of n samples has the same bits however many calls brought them, and on any number of threads.
+///
+/// # Errors
+/// those of [`by_light`], and `Error::OutOfRange` above [`MAX_SAMPLES`]
+pub fn extend_by_light(
+    film: &mut Film,
+    scene: &Scene,
+    camera: &Camera,
+    samples: u64,
+    streams: Streams,
+    progress: &dyn Progress,
+) -> Result<LightCount> {
+    let all = film.samples() + samples;
+    if all > MAX_SAMPLES {
+        return Err(Error::out_of_range("samples a pixel", all as f64, "at most 4294967295 in all"));
+    }
+    let pixels = u64::from(film.width()) * u64::from(film.height());
+    expose(film, scene, camera, (pixels, samples), streams, progress)
+}
+
+/// What some histories brought: each splat with the number of its film.
+#[derive(Default)]
+struct Part {
+    splats: Vec<(u64, Splat)>,
+    count: LightCount,
+}
+
+impl Part {
+    fn merged(mut self, other: Part) -> Part {
+        self.splats.extend(other.splats);
+        self.count += other.count;
+        self
+    }
+}
+
+impl std::ops::AddAssign for LightCount {
+    fn add_assign(&mut self, other: LightCount) {
+        self.rays.segments += other.rays.segments;
+        self.rays.shadow += other.rays.shadow;
+        self.work += other.work;
+    }
+}
+
+/// Counts so many films of `histories` photons as samples of a film, behind those that it has.
+fn expose(
+    film: &mut Film,
+    scene: &Scene,
+    camera: &Camera,
+    (histories, films): (u64, u64),
+    streams: Streams,
+    progress: &dyn Progress,
+) -> Result<LightCount> {
+    check(scene)?;
+    let emitter = Emitter::by_power(scene);
+    let first = film.samples() * histories;
+    let last = first + films * histories;
+    let mut count = LightCount::default();
+    let mut open = Open::new(film, camera, histories);
+    let mut start = first;
+    while start < last {
+        let end = last.min(start + CHUNK);
+        let block = |range: std::ops::Range<u64>| {
+            let mut part = Part::default();
+            for history in range.start + start..range.end + start {
+                let mut stream = Stream::new(streams.seed, Purpose::LightTracing, streams.replicate, history);
+                let number = history / histories;
+                let rays = light_tracing(scene, camera, &emitter, &mut stream, |splat| {
+                    part.splats.push((number, splat));
+                });
+                part.count += LightCount { rays, work: stream.work };
+            }
+            part
+        };
+        let part = run_blocks(end - start, progress, block, Part::merged)?.unwrap_or_default();
+        let non_finite = part.splats.iter().filter(|(_, splat)| !splat.value.is_finite()).count();
+        if non_finite > 0 {
+            return Err(Error::NonFinite { count: non_finite as u64, place: "light tracing" });
+        }
+        count += part.count;
+        // In the order of histories, whatever the chunks.
+        part.splats.into_iter().for_each(|(number, splat)| open.add(number, splat));
+        start = end;
+    }
+    open.finish(last / histories);
+    Ok(count)
+}
+
+/// Whether light tracing can follow all of the scene's light.
+fn check(scene: &Scene) -> Result<()> {
     let refuse =
         |what: &str| Err(Error::Unreachable(format!("light tracing cannot sample {what}: use paths")));
     if scene.stage().is_some() {
         return refuse("an unbounded slab");
     }
-    scene.check_emission()?;
-    let emitter = Emitter::by_power(scene);
-    let (width, height) = (camera.width() as usize, camera.height() as usize);
-    let mut film = Film::new(camera.width(), camera.height());
-    for number in 0..films {
-        let block = |range: std::ops::Range<u64>| {
-            let mut splats: Vec<Splat> = Vec::new();
-            for i in range {
-                let history = number * histories + i;
-                let mut stream = Stream::new(streams.seed, Purpose::LightTracing, streams.replicate, history);
-                light_tracing(scene, camera, &emitter, &mut stream, |splat| splats.push(splat));
-            }
-            splats
-        };
-        let merge = |mut a: Vec<Splat>, b: Vec<Splat>| {
-            a.extend(b);
-            a
-        };
-        let splats = run_blocks(histories, progress, block, merge)?.unwrap_or_default();
-        let non_finite = splats.iter().filter(|splat| !splat.value.is_finite()).count();
-        if non_finite > 0 {
-            return Err(Error::NonFinite { count: non_finite as u64, place: "light tracing" });
-        }
-        let mut sums = vec![Layers::ZERO; width * height];
-        for Splat { at, layer, value } in splats {
-            for (x, wide) in camera.filter().pixels(at.x) {
-                for (y, high) in camera.filter().pixels(at.y) {
-                    let is_inside = (0..width as i64).contains(&x) && (0..height as i64).contains(&y);
-                    if is_inside && wide * high > 0.0 {
-                        sums[y as usize * width + x as usize][layer] += value * (wide * high);
-                    }
+    scene.check_emission()
+}
+
+/// The film that is being exposed: sums of one sample, which is counted when the next one begins.
+struct Open<'a> {
+    film: &'a mut Film,
+    camera: &'a Camera,
+    share: Spectrum,
+    sums: Vec<Layers>,
+}
+
+impl<'a> Open<'a> {
+    fn new(film: &'a mut Film, camera: &'a Camera, histories: u64) -> Self {
+        let sums = vec![Layers::ZERO; film.pixels().len()];
+        Open { film, camera, share: Spectrum::grey(1.0 / histories as f64), sums }
+    }
+
+    /// Spreads light of the sample of this number over the pixels.
+    fn add(&mut self, number: u64, Splat { at, layer, value }: Splat) {
+        self.finish(number);
+        let (width, height) = (i64::from(self.film.width()), i64::from(self.film.height()));
+        for (x, wide) in self.camera.filter().pixels(at.x) {
+            for (y, high) in self.camera.filter().pixels(at.y) {
+                let is_inside = (0..width).contains(&x) && (0..height).contains(&y);
+                if is_inside && wide * high > 0.0 {
+                    self.sums[(y * width + x) as usize][layer] += value * (wide * high);
                 }
             }
         }
-        let share = Spectrum::grey(1.0 / histories as f64);
-        for (index, sum) in sums.into_iter().enumerate() {
-            let (x, y) = ((index % width) as u32, (index / width) as u32);
-            film.pixel_mut(x, y).push(&Sample::from(sum * share));
+    }
+
+    /// Counts samples until there are so many.
+    fn finish(&mut self, samples: u64) {
+        while self.film.samples() < samples {
+            let width = self.film.width() as usize;
+            for (index, sum) in self.sums.iter_mut().enumerate() {
+                let (x, y) = ((index % width) as u32, (index / width) as u32);
+                self.film.pixel_mut(x, y).push(&Sample::from(*sum * self.share));
+                *sum = Layers::ZERO;
+            }
         }
     }
-    Ok(film)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::light::{Light, Point};
+    use crate::scene::{Filter, Object, Parts, View};
+    use crate::surface::{Lambertian, Surface};
+    use crate::transport::NoProgress;
+    use glam::DVec3;
+
+    /// A film of n samples is the same in one call and in three, on one thread and on two.
+    #[test]
+    fn the_same_bits_on_any_number_of_threads_and_in_any_number_of_passes() {
+        let floor =
+            crate::geometry::Rectangle::new(DVec3::splat(-1.0), DVec3::X * 2.0, DVec3::Y * 2.0).unwrap();
+        let matt = Surface::Lambertian(Lambertian::new(Spectrum::grey(0.5)).unwrap());
+        let light = Light::Point(Point::new(DVec3::ZERO, Spectrum::ONE).unwrap());
+        let objects = vec![Object { shape: crate::geometry::Shape::Rectangle(floor), surface: matt }];
+        let scene = Scene::new(Parts { objects, lights: vec![light], ..Parts::default() }).unwrap();
+        let (position, look_at, up) = (DVec3::new(0.0, 0.0, 2.0), DVec3::ZERO, DVec3::Y);
+        let view = View { position, look_at, up, fov: 40.0, width: 9, height: 7, filter: Filter::Tent };
+        let camera = Camera::new(view).unwrap();
+        let streams = Streams { seed: 3, replicate: 1 };
+        let in_calls = |threads: usize, calls: &[u64]| {
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+            let mut film = Film::new(9, 7);
+            pool.install(|| {
+                for samples in calls {
+                    extend_by_light(&mut film, &scene, &camera, *samples, streams, &NoProgress).unwrap();
+                }
+            });
+            film
+        };
+        let whole = in_calls(2, &[200]);
+        assert_eq!(whole.samples(), 200);
+        assert!(whole == in_calls(1, &[1, 150, 49]));
+        assert!(whole == by_light(&scene, &camera, 63, 200, streams, &NoProgress).unwrap());
+        assert!(whole.pixel(4, 3).layers().direct[0] > 0.0 && whole.pixel(4, 3).variance().unwrap()[0] > 0.0);
+    }
 }

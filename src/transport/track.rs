@@ -6,7 +6,7 @@
 use crate::Spectrum;
 use crate::faults::{Fault, planted};
 use crate::math::{Interval, Ray, ln_1p};
-use crate::medium::Heterogeneous;
+use crate::medium::{Bound, Heterogeneous};
 use crate::rng::Stream;
 
 /// How a stretch ends.
@@ -20,6 +20,40 @@ pub(super) enum End {
 /// Depth to the next event of a process of rate 1.
 fn exponential(stream: &mut Stream) -> f64 {
     -ln_1p(-stream.unit())
+}
+
+/// Tentative collisions on a part of a ray, in the order in which it meets them: a process of the rate [1/L] that `rate`
+/// gives each stretch of bounds. Ends with what `meet` makes of one of them, or with none.
+#[inline(always)]
+fn tentative<T>(
+    (medium, ray, part): (&Heterogeneous, &Ray, Interval),
+    stream: &mut Stream,
+    mut rate: impl FnMut(&Bound) -> f64,
+    mut meet: impl FnMut(f64, &Bound, &mut Stream) -> Option<T>,
+) -> Option<T> {
+    let mut target = exponential(stream);
+    for bound in medium.density().along(ray, part) {
+        stream.work.majorants += 1;
+        let rate = rate(&bound);
+        if rate == 0.0 {
+            continue;
+        }
+        let mut at = bound.interval.start;
+        loop {
+            let t = at + target / rate;
+            if t >= bound.interval.end {
+                target = (target - rate * (bound.interval.end - at)).max(0.0);
+                break;
+            }
+            at = t;
+            let end = meet(t, &bound, stream);
+            if end.is_some() {
+                return end;
+            }
+            target = exponential(stream);
+        }
+    }
+    None
 }
 
 /// Delta tracking, with weights that know the history where extinction differs by channel.
@@ -45,37 +79,26 @@ pub(super) fn delta(
     }
     let ratio = sigma_t / scale;
     let mut weight = weight;
-    let mut target = exponential(stream);
-    for bound in medium.density().along(ray, part) {
-        stream.work.majorants += 1;
-        let rate = bound.high * scale;
-        if rate == 0.0 {
-            continue;
-        }
-        let mut at = bound.interval.start;
-        loop {
-            let t = at + target / rate;
-            if t >= bound.interval.end {
-                target = (target - rate * (bound.interval.end - at)).max(0.0);
-                break;
-            }
-            at = t;
+    let collision = tentative(
+        (medium, ray, part),
+        stream,
+        |bound| bound.high * scale,
+        |t, bound, stream| {
             let share = if by_channel { (weight * ratio).sum() / weight.sum() } else { 1.0 };
             let u = stream.unit() * bound.high;
             let is_real = u < bound.low * share;
             let density = if is_real { bound.low } else { density_at(medium, ray, t, bound.high, stream) };
             if is_real || u < density * share {
-                let after = if by_channel { weight * ratio / share } else { weight };
-                return End::Collision(t, after);
+                return Some(End::Collision(t, if by_channel { weight * ratio / share } else { weight }));
             }
             if by_channel && !planted(Fault::NullWeightForgotten) {
                 let q = density / bound.high;
                 weight *= ratio.map(|r| (1.0 - r * q) / (1.0 - share * q));
             }
-            target = exponential(stream);
-        }
-    }
-    End::Passed(weight)
+            None
+        },
+    );
+    collision.unwrap_or(End::Passed(weight))
 }
 
 /// The density at a distance: never above its bound, which rounding at a face between cells could break.
@@ -99,42 +122,30 @@ pub(super) fn ratio(medium: &Heterogeneous, ray: &Ray, part: Interval, stream: &
     }
     let shares = matter.sigma_t() / scale;
     let (mut passed, mut control) = (Spectrum::ONE, 0.0);
-    let mut target = exponential(stream);
-    for bound in medium.density().along(ray, part) {
-        stream.work.majorants += 1;
-        if bound.low > 0.0 {
-            control += bound.low * bound.interval.length();
-        }
-        let above = bound.high - bound.low;
-        let rate = above * scale;
-        if rate == 0.0 {
-            continue;
-        }
-        let mut at = bound.interval.start;
-        loop {
-            let t = at + target / rate;
-            if t >= bound.interval.end {
-                target = (target - rate * (bound.interval.end - at)).max(0.0);
-                break;
+    let stopped = tentative(
+        (medium, ray, part),
+        stream,
+        |bound| {
+            if bound.low > 0.0 {
+                control += bound.low * bound.interval.length();
             }
-            at = t;
+            (bound.high - bound.low) * scale
+        },
+        |t, bound, stream| {
             let density = density_at(medium, ray, t, bound.high, stream).max(bound.low);
-            let q = (density - bound.low) / above;
+            let q = (density - bound.low) / (bound.high - bound.low);
             passed *= shares.map(|s| 1.0 - s * q);
-            if passed.is_black() {
-                return passed;
-            }
-            target = exponential(stream);
-        }
-    }
-    passed * crate::scene::decay(matter.depth(control))
+            passed.is_black().then_some(())
+        },
+    );
+    if stopped.is_some() { passed } else { passed * crate::scene::decay(matter.depth(control)) }
 }
 
 /// What a stretch emits towards the near end of the ray [W/(L^2 sr)], and its transmittance: both unbiased.
 ///
-/// `uniform` [W/(L^3 sr)] is emitted beside what the medium emits itself, which counts if `own`. At a tentative collision of rate m, emission over m is
-/// collected, and 1 minus extinction over m passes; m is at least one a stretch, so that what emits but does not
-/// collide is met.
+/// `uniform` [W/(L^3 sr)] is emitted beside what the medium emits itself, which counts if `own`. At a tentative collision
+/// of rate m, emission over m is collected, and 1 minus extinction over m passes; m is at least one a stretch, so that
+/// what emits but does not collide is met.
 pub(super) fn emitted(
     medium: &Heterogeneous,
     ray: &Ray,
@@ -145,31 +156,15 @@ pub(super) fn emitted(
 ) -> (Spectrum, Spectrum) {
     let sigma_t = medium.matter().sigma_t();
     let least = if part.length().is_finite() { 1.0 / part.length() } else { 0.0 };
+    let rate = |bound: &Bound| (bound.high * sigma_t.max()).max(least);
     let (mut passed, mut sum) = (Spectrum::ONE, Spectrum::ZERO);
-    let mut target = exponential(stream);
-    for bound in medium.density().along(ray, part) {
-        stream.work.majorants += 1;
-        let rate = (bound.high * sigma_t.max()).max(least);
-        if rate == 0.0 {
-            continue;
-        }
-        let mut at = bound.interval.start;
-        loop {
-            let t = at + target / rate;
-            if t >= bound.interval.end {
-                target = (target - rate * (bound.interval.end - at)).max(0.0);
-                break;
-            }
-            at = t;
-            let density = density_at(medium, ray, t, bound.high, stream);
-            let emission = if own { medium.emission_of(density) } else { Spectrum::ZERO };
-            sum += passed * (emission + uniform) / rate;
-            passed *= sigma_t.map(|s| 1.0 - s * density / rate);
-            if passed.is_black() {
-                return (sum, passed);
-            }
-            target = exponential(stream);
-        }
-    }
+    tentative((medium, ray, part), stream, rate, |t, bound, stream| {
+        let rate = rate(bound);
+        let density = density_at(medium, ray, t, bound.high, stream);
+        let emission = if own { medium.emission_of(density) } else { Spectrum::ZERO };
+        sum += passed * (emission + uniform) / rate;
+        passed *= sigma_t.map(|s| 1.0 - s * density / rate);
+        passed.is_black().then_some(())
+    });
     (sum, passed)
 }

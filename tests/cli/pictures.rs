@@ -1,7 +1,7 @@
 //! `turbid render` and `turbid map`: what they write, and what they refuse.
 
 use crate::{Folder, refuses_naming, succeeds, text};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 /// A matt floor in a box of fog under a lamp, seen from the side.
 const ROOM: &str = r#"
@@ -34,13 +34,13 @@ fn room(folder: &Folder, name: &str, change: (&str, &str)) -> PathBuf {
     folder.file(name, &ROOM.replacen(change.0, change.1, 1))
 }
 
-/// Both renderers write an EXR and a PNG, alike on one thread and on two.
+/// Every renderer writes an EXR and a PNG, alike on one thread and on two.
 #[test]
-fn pictures_by_photons_and_paths_have_the_same_bits_on_any_number_of_threads() {
+fn pictures_have_the_same_bits_on_any_number_of_threads() {
     let folder = Folder::new();
     let scene = room(&folder, "room.toml", ("", ""));
     let out = |name: &str| folder.0.path().join(name);
-    for with in ["photons", "paths"] {
+    for with in ["photons", "paths", "light"] {
         let render = |file: &str, threads: &str| {
             let path = out(file);
             let arguments = ["render", text(&scene), "-o", text(&path), "--with", with, "--threads", threads];
@@ -60,8 +60,94 @@ fn pictures_by_photons_and_paths_have_the_same_bits_on_any_number_of_threads() {
     let arguments = ["render", text(&scene), "-o", text(&path), "--maps", "3", "--width", "6"];
     let said = succeeds(&[&arguments[..], &QUICK].concat());
     assert!(said.contains("6 x 4") && said.contains("3 repetitions") && said.contains("map 2"), "{said}");
-    let timed = ["render", text(&scene), "-o", text(&path), "--with", "paths", "--seconds", "1e-6"];
-    assert!(succeeds(&timed).contains("samples        1 a pixel"));
+    for with in ["paths", "light"] {
+        let timed = ["render", text(&scene), "-o", text(&path), "--with", with, "--seconds", "1e-6"];
+        assert!(succeeds(&timed).contains("samples        1 a pixel"));
+    }
+    let repeated = ["--with", "light", "--maps", "3", "--samples", "2"];
+    let said = succeeds(&[&["render", text(&scene), "-o", text(&path)][..], &repeated].concat());
+    assert!(said.contains("3 repetitions") && said.contains("histories      576 photons"), "{said}");
+    assert!(said.contains(" to the camera"), "{said}");
+}
+
+/// Sum of a channel over the picture and, of pixels taken for independent, its standard error.
+fn summed(file: &Path, channel: &str) -> (f64, f64) {
+    use exr::prelude::{ReadChannels, ReadLayers, read};
+    let image = read().no_deep_data().largest_resolution_level().all_channels().all_layers().all_attributes();
+    let image = image.from_file(file).unwrap();
+    let sum = |name: &str| {
+        let channels = &image.layer_data[0].channel_data.list;
+        let found = channels.iter().find(|c| c.name.to_string() == name).unwrap();
+        found.sample_data.values_as_f32().map(f64::from).sum::<f64>()
+    };
+    (sum(channel), sum(&format!("variance.{channel}")).sqrt())
+}
+
+/// Light that a ball of glass gathers on the floor beside it: paths and light tracing see as much of it, each layer by
+/// layer; what light tracing cannot see is black, and said to be.
+#[test]
+fn light_tracing_is_a_witness_for_caustics() {
+    let scene = r#"
+interiors = [{ name = "glass", index = 1.5 }]
+[camera]
+position = [2.0, 0.25, 0.0]
+look_at = [0.0, -0.02, 0.0]
+fov = 10.0
+width = 8
+height = 8
+
+[[objects]]
+shape = { rectangle = { corner = [-2.0, 0.0, -2.0], u = [0.0, 0.0, 4.0], v = [4.0, 0.0, 0.0] } }
+surface = { lambertian = { reflectance = 0.8 } }
+
+[[objects]]
+shape = { sphere = { center = [0.0, 0.7, 0.0], radius = 0.5 } }
+surface = { dielectric = { inside = "glass" } }
+
+[[lights]]
+area = { shape = { rectangle = { corner = [-0.7, 3.0, -0.7], u = [1.4, 0.0, 0.0], v = [0.0, 0.0, 1.4] } }, radiance = 5.0 }
+"#;
+    let folder = Folder::new();
+    let scene = folder.file("ball.toml", scene);
+    let out = |with: &str| folder.0.path().join(format!("{with}.exr"));
+    for (with, samples) in [("paths", "512"), ("light", "8000")] {
+        let file = out(with);
+        let arguments = ["render", text(&scene), "-o", text(&file), "--with", with, "--samples", samples];
+        let output = crate::turbid(&arguments).output().unwrap();
+        let said = String::from_utf8(output.stderr).unwrap();
+        assert!(output.status.success(), "{said}");
+        assert_eq!(said.contains("not what is seen in mirrors and through glass"), with == "light", "{said}");
+    }
+    for layer in ["direct", "caustic"] {
+        let [(a, a_error), (b, b_error)] =
+            ["paths", "light"].map(|with| summed(&out(with), &format!("{layer}.R")));
+        let error = a_error.hypot(b_error);
+        assert!(error < 0.03 * a, "{layer}: {a} {b}, error {error}");
+        // Five standard errors of a normal law: one in two million.
+        assert!((a - b).abs() < 5.0 * error, "{layer}: paths {a}, light {b}, error {error}");
+    }
+    assert_eq!(summed(&out("light"), "emission.G").0, 0.0);
+}
+
+/// What light tracing cannot do is refused before any work.
+#[test]
+fn light_tracing_refuses() {
+    let folder = Folder::new();
+    let out = folder.0.path().join("out.exr");
+    let render = |scene: &str, more: &[&str], words: &[&str]| {
+        refuses_naming(&[&["render", scene, "-o", text(&out), "--with", "light"], more].concat(), words);
+    };
+    let layer = "cell = 4.0\n[camera]\nposition = [0, 0, -2]\nlook_at = [0, 0, 0]\nfov = 40\nwidth = 4\nheight = 4\n\
+                 [[regions]]\nshape = { slab = { top = 0, thickness = 1 } }\nsigma_t = 1\nalbedo = 0.8\ng = 0\n\
+                 [[lights]]\nbeam = { dir = [0, 0, 1], irradiance = 1, section = \"unbounded\" }\n";
+    let layer = folder.file("layer.toml", layer);
+    render(text(&layer), &[], &["an unbounded slab", "--with paths"]);
+    render("fogbox", &["--plan", "full"], &["--plan full", "allowed with --with light: auto"]);
+    refuses_naming(
+        &["render", "fogbox", "-o", text(&out), "--with", "lights"],
+        &["--with", "allowed: photons, paths, light"],
+    );
+    assert!(!out.exists());
 }
 
 /// The statistics tell all that was done, and that nothing was done that the scene does not require.

@@ -5,17 +5,19 @@ use crate::checks::light::{corner_solid_angle, photons_and_paths_cross_a_box_ali
 use crate::common::config as properties;
 use crate::support::run::{numbers, paths, tallies};
 use crate::support::scenes::{
-    area_light, bounded, cuboid, isotropic, outflow, point_light, rectangle, region, sphere, volume_source,
+    area_light, bounded, cuboid, dielectric, isotropic, outflow, point_light, rectangle, region, sphere,
+    volume_source,
 };
 use crate::support::{unit_vector, verdict};
-use glam::DVec3;
+use glam::{DVec2, DVec3};
 use proptest::prelude::*;
 use std::f64::consts::PI;
+use std::sync::Arc;
 use turbid::Spectrum;
-use turbid::geometry::{Shape, Sphere};
+use turbid::geometry::{Lathe, Mesh, Shape, Sphere};
 use turbid::light::{Area, Beam, EmissionNumbers, Faces, Light, Section, Spot, Sun};
 use turbid::math::{FOUR_PI, Ray, warp};
-use turbid::scene::{Orders, Parts, Quantity, Scene};
+use turbid::scene::{Interior, Object, Orders, Parts, Quantity, Scene};
 use turbid::surface::{Black, Surface};
 
 const N: u64 = 1 << 17;
@@ -339,4 +341,93 @@ fn a_portal_is_a_window_in_a_dark_wall() {
         assert!(refused.contains("portal") && refused.contains("allowed: below 60"), "{refused}");
     }
     assert!(Sun::new(DVec3::new(1.0, 0.0, 0.5), Spectrum::ONE, 0.0).unwrap().through(small).is_ok());
+}
+
+/// A mesh of squares of half side 1/2 about the z axis at these heights, that face up.
+fn plates(heights: &[f64]) -> Shape {
+    let corners =
+        |z: f64| [(-0.5, -0.5), (0.5, -0.5), (0.5, 0.5), (-0.5, 0.5)].map(|(x, y)| DVec3::new(x, y, z));
+    let positions: Vec<DVec3> = heights.iter().flat_map(|z| corners(*z)).collect();
+    let triangles: Vec<[u32; 3]> = (0..heights.len() as u32)
+        .flat_map(|i| [[0, 1, 2], [0, 2, 3]].map(|t| t.map(|c| 4 * i + c)))
+        .collect();
+    Shape::Mesh(Arc::new(Mesh::new(&positions, &triangles, None).unwrap()))
+}
+
+/// A ball of triangles, inscribed in one of radius 1/2 about the origin.
+fn faceted() -> Shape {
+    const ROWS: u32 = 24;
+    let point = |row: u32, column: u32| {
+        let (polar, azimuth) =
+            (PI * f64::from(row) / f64::from(ROWS), PI * f64::from(column) / f64::from(ROWS));
+        0.5 * unit_vector(libm::cos(polar), azimuth)
+    };
+    let (mut positions, mut triangles) = (Vec::new(), Vec::new());
+    for (row, column) in (0..ROWS).flat_map(|row| (0..2 * ROWS).map(move |column| (row, column))) {
+        let first = positions.len() as u32;
+        positions.extend(
+            [(row, column), (row + 1, column), (row + 1, column + 1), (row, column + 1)]
+                .map(|(r, c)| point(r, c)),
+        );
+        triangles.extend([[first, first + 1, first + 2], [first, first + 2, first + 3]]);
+    }
+    Shape::Mesh(Arc::new(Mesh::new(&positions, &triangles, None).unwrap()))
+}
+
+/// One light in two forms: a rectangle and two triangles, a sphere and a fine mesh; and of two plates, one behind the other,
+/// the front one alone is seen. Fluence is the solid angle, from straight above and from the side.
+#[test]
+fn meshes_shine_as_what_they_are_made_like() {
+    let glowing = |shape: Shape| Light::Area(Area::new(shape, Spectrum::ONE).unwrap());
+    let square = rectangle(DVec3::new(-0.5, -0.5, 0.0), DVec3::X, DVec3::Y);
+    let (above, beside) = (DVec3::new(0.0, 0.0, 0.8), DVec3::new(0.5, 0.5, 0.7));
+    let ball = 2.0 * PI * (1.0 - (1.0 - 0.25 / beside.length_squared()).sqrt());
+    // Facets of an angle of pi/24 lie within cos(pi/48) of the sphere: 0.4 per cent of its area, of which a fifth counts.
+    for (i, (name, shape, p, expected, off)) in [
+        ("rectangle", Shape::Rectangle(square), above, 4.0 * corner_solid_angle(0.5, 0.5, 0.8), 1e-12),
+        ("two triangles", plates(&[0.0]), above, 4.0 * corner_solid_angle(0.5, 0.5, 0.8), 1e-12),
+        ("two triangles, beside", plates(&[0.0]), beside, corner_solid_angle(1.0, 1.0, 0.7), 1e-12),
+        ("two plates", plates(&[0.0, -0.4]), above, 4.0 * corner_solid_angle(0.5, 0.5, 0.8), 1e-12),
+        ("sphere", sphere(DVec3::ZERO, 0.5), beside, ball, 1e-12),
+        ("fine mesh", faceted(), beside, ball, 0.004 / 5.0),
+    ]
+    .into_iter()
+    .enumerate()
+    {
+        let scene = bounded(Vec::new(), Vec::new(), vec![glowing(shape)]);
+        let seed = 60 + i as u64;
+        let found = paths(&scene, Quantity::Fluence(p), Orders::ALL, 1 << 15, seed)[0];
+        verdict::agrees(name, &found, (expected, off * expected), 0.1 * expected, seed);
+    }
+}
+
+/// Lamps with parts that stand before each other: photons that meet their own lamp end there, and no path sees through it.
+#[test]
+fn lamps_hide_themselves() {
+    let color = Spectrum::rgb(1.0, 2.0, 0.5);
+    let profile = [(0.0, -0.9), (0.4, -0.6), (0.1, -0.2), (0.1, 0.2), (0.4, 0.6), (0.0, 0.9)];
+    let profile = profile.map(|(radius, height)| DVec2::new(radius, height));
+    let dumbbell = Shape::Lathe(Arc::new(Lathe::new(DVec3::ZERO, DVec3::Z, &profile).unwrap()));
+    let around = cuboid(DVec3::new(-0.7, -0.6, -0.2), DVec3::new(0.9, 0.5, 0.3));
+    for (name, shape) in [("two plates", plates(&[0.1, -0.1])), ("dumbbell", dumbbell)] {
+        let light = Light::Area(Area::new(shape, color).unwrap());
+        photons_and_paths_cross_a_box_alike(name, light, around.clone(), MANY / 2);
+    }
+}
+
+/// A lamp inside a ball of glass, some of whose light the glass keeps for long: photons and paths.
+#[test]
+fn light_leaves_glass() {
+    let glass = Interior { name: "glass".into(), index: 1.5, medium: None };
+    let scene = Scene::new(Parts {
+        interiors: vec![Interior::surroundings(), glass],
+        objects: vec![Object { shape: sphere(DVec3::ZERO, 0.6), surface: dielectric(1, 0) }],
+        lights: vec![Light::Area(Area::new(sphere(DVec3::new(0.2, 0.0, 0.0), 0.2), Spectrum::ONE).unwrap())],
+        ..Parts::default()
+    })
+    .unwrap();
+    let beside = outflow(cuboid(DVec3::new(0.7, -1.0, -1.0), DVec3::new(1.2, 1.0, 1.0)));
+    let photons = tallies(&scene, &[(beside.clone(), Orders::ALL)], N, 70);
+    let found = paths(&scene, beside, Orders::ALL, 4 * N, 71);
+    verdict::agree("beside the glass", &photons[0][0], &found[0], 0.05, 70);
 }

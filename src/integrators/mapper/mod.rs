@@ -13,10 +13,12 @@
 
 mod flats;
 mod gather;
+mod homes;
 mod settings;
 mod surface;
 mod volume;
 
+pub use homes::untreated;
 pub use settings::{Adaptive, March, Settings};
 
 use crate::Spectrum;
@@ -30,6 +32,7 @@ use crate::rng::{Stream, Work};
 use crate::scene::{Scene, SceneHit, Start, Target};
 use crate::transport::{Roulette, Step, Visitor, Walker, emission, transmittance, walk};
 use flats::Flats;
+use homes::Home;
 use std::ops::AddAssign;
 
 /// Where mirrors have taken nine tenths of the light, rays play roulette. Any value gives the same mean.
@@ -113,8 +116,8 @@ pub struct Mapper<'a> {
     walls: Vec<Shape>,
     /// Where flat surfaces end, if discs are to be clipped there.
     flats: Option<Flats>,
-    /// Of each region the shapes of later ones, which count where they overlap; none where there is one medium alone.
-    neighbors: Vec<Vec<Shape>>,
+    /// Where each medium is.
+    homes: Vec<Home>,
     /// Whether some light cannot be aimed at.
     has_unaimed: bool,
 }
@@ -129,11 +132,8 @@ impl<'a> Mapper<'a> {
         let has_unaimed =
             scene.plan().has_emission || scene.lights().iter().any(|light| !light.has_direction());
         let flats = settings.clips_discs.then(|| Flats::new(scene));
-        let regions = scene.regions();
-        let is_alone = regions.len() + scene.interiors().iter().filter(|i| i.medium.is_some()).count() < 2;
-        let later = |index: usize| regions[index + 1..].iter().map(|r| r.shape.clone()).collect();
-        let neighbors = if is_alone { Vec::new() } else { (0..regions.len()).map(later).collect() };
-        Mapper { scene, maps, settings, walls, flats, neighbors, has_unaimed }
+        let homes = homes::of(scene);
+        Mapper { scene, maps, settings, walls, flats, homes, has_unaimed }
     }
 
     /// One sample of the radiance that arrives at the origin of `ray` from ahead [W/(L^2 sr)], by class, and the work.

@@ -2,7 +2,7 @@
 
 use super::{Eye, Mapper, Report};
 use crate::Spectrum;
-use crate::estimators::boundary::{Boundary, Treatment, treated_in_scattered};
+use crate::estimators::boundary::{Treatment, treated_in_scattered};
 use crate::estimators::in_scattered;
 use crate::integrators::StepRule;
 use crate::math::{Interval, Ray, cosine_pair, exp, exp_m1, ln_1p};
@@ -51,19 +51,12 @@ impl Mapper<'_> {
         let mut multiple = Spectrum::ZERO;
         if let Some(map) = &self.maps.volume {
             let (kernel, gather) = settings.volume;
-            let is_treated = settings.treatment != Treatment::None || settings.needs_walls();
-            let shape = scene.regions().get(number).map(|region| &region.shape);
-            let boundary = shape
-                .filter(|_| is_treated)
-                .and_then(|shape| Boundary::new(shape.clone(), settings.treatment).ok());
-            let estimate = match boundary {
-                None => in_scattered(map, position, -dir, phase, Spectrum::ONE, kernel, gather),
-                Some(boundary) => {
+            let is_plain = settings.treatment == Treatment::None && !settings.needs_walls();
+            let estimate = match is_plain {
+                true => in_scattered(map, position, -dir, phase, Spectrum::ONE, kernel, gather),
+                false => {
+                    let boundary = self.homes[number].boundary(scene, number, settings.treatment);
                     let boundary = boundary.with_walls(settings.rejection, &self.walls);
-                    let boundary = match self.neighbors.get(number) {
-                        Some(others) => boundary.among(others),
-                        None => boundary,
-                    };
                     treated_in_scattered(map, position, -dir, phase, kernel, gather, &boundary).estimate
                 }
             };

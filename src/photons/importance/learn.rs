@@ -3,12 +3,12 @@
 use super::grid::{Aim, DIRECTIONS, Grid};
 use super::reading::Reading;
 use super::steer::Branching;
-use super::{Importance, ImportanceSettings};
+use super::{Importance, ImportanceSettings, Stage};
 use crate::error::{Error, Result};
 use crate::light::EmissionCell;
 use crate::photons::Emitter;
 use crate::photons::maps::{Indirect, is_global, is_matt, is_volume};
-use crate::rng::{Purpose, Stream};
+use crate::rng::Stream;
 use crate::scene::{Scene, Target};
 use crate::transport::{Progress, Step, Visitor, Walker, run_blocks};
 
@@ -187,7 +187,7 @@ pub(super) fn learn(
                 events: Vec::new(),
             };
             for history in range {
-                let mut stream = Stream::new(settings.seed, Purpose::Importance, 1 + round, history);
+                let mut stream = settings.stream(Stage::Round(round), history);
                 let (cell, start) = importance.emitter.emit_from(scene, &mut stream);
                 let score = start.map_or(0.0, |start| {
                     let weight = start.weight.sum();

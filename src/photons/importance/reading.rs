@@ -1,12 +1,12 @@
 //! Where a picture reads photons: particles from the camera.
 
-use super::ImportanceSettings;
 use super::grid::{Aim, Grid};
+use super::{ImportanceSettings, Stage};
 use crate::Spectrum;
 use crate::error::{Error, Result};
 use crate::photons::Emitter;
 use crate::photons::maps::{Indirect, is_matt};
-use crate::rng::{Purpose, Stream};
+use crate::rng::Stream;
 use crate::scene::{Camera, Scene, Target};
 use crate::transport::{BLOCK, Progress, Roulette, Step, Visitor, Walker, run_blocks, walk};
 use glam::{DVec2, DVec3};
@@ -72,7 +72,7 @@ pub(super) fn extent(
     let block = |range: std::ops::Range<u64>| {
         let mut found = Extent(DVec3::INFINITY, DVec3::NEG_INFINITY);
         for history in range {
-            let mut stream = Stream::new(settings.seed, Purpose::Importance, u64::MAX, history);
+            let mut stream = settings.stream(Stage::Extent, history);
             let photon = emitter.emit(scene, &mut stream);
             for start in photon.into_iter().chain([particle(scene, camera, &mut stream)]) {
                 walk(scene, start, Roulette::Analog, None, &mut stream, &mut found);
@@ -142,7 +142,7 @@ pub(super) fn read(
         let found = Counts { surface: vec![0.0; grid.len()], medium: vec![0.0; grid.len()] };
         let mut counter = Counter { scene, grid: &grid, indirect, found };
         for history in range {
-            let mut stream = Stream::new(settings.seed, Purpose::Importance, 0, history);
+            let mut stream = settings.stream(Stage::Reading, history);
             let start = particle(scene, camera, &mut stream);
             walk(scene, start, Roulette::Analog, Some(limit), &mut stream, &mut counter);
         }

@@ -6,7 +6,7 @@ use super::nearest::{Counted, Nearest, Shell, Sphere, share};
 use super::scratch::{Last, Scratch, with_scratch};
 use super::units::LIMIT;
 use super::within::{Neighbors, Visit};
-use super::{PhotonTree, ROW, Row};
+use super::{PhotonTree, Row};
 use glam::DVec3;
 use wide::f32x8;
 
@@ -156,16 +156,7 @@ impl Scratch {
     /// Every squared distance of an accepted photon of at most `r2`.
     fn collect_facing(&mut self, tree: &PhotonTree, probe: &Probe, sieve: &Sieve, r2: f32) {
         self.measure_facing(tree, probe, sieve, r2);
-        self.near.clear();
-        self.near.resize(self.end * ROW + 1, 0);
-        let mut end = 0;
-        for squared in &self.squared[..self.end] {
-            for &d in squared.as_array() {
-                self.near[end] = d.to_bits();
-                end += usize::from(d <= r2);
-            }
-        }
-        self.near.truncate(end);
+        self.keep_near(r2);
     }
 
     /// The sphere through the k-th accepted photon.

@@ -4,7 +4,7 @@ use super::boxes::Probe;
 use super::scratch::{Last, Scratch, with_scratch};
 use super::units::LIMIT;
 use super::within::{Neighbors, Visit};
-use super::{BLOCK, PhotonTree, ROW};
+use super::{BLOCK, PhotonTree};
 use glam::DVec3;
 use std::sync::atomic::{AtomicU64, Ordering};
 use wide::f32x8;
@@ -235,17 +235,7 @@ impl Scratch {
     fn collect(&mut self, tree: &PhotonTree, probe: &Probe, bound: f32) {
         tree.touch(probe, bound, self);
         self.measure(tree, probe, bound);
-        // Every distance is written and only those below the bound are kept: no branch to mispredict.
-        self.near.clear();
-        self.near.resize(self.end * ROW + 1, 0);
-        let mut end = 0;
-        for squared in &self.squared[..self.end] {
-            for &d in squared.as_array() {
-                self.near[end] = d.to_bits();
-                end += usize::from(d <= bound);
-            }
-        }
-        self.near.truncate(end);
+        self.keep_near(bound);
     }
 
     /// The sphere through the nearest photon that is not at the centre, where k or more are.

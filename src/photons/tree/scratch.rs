@@ -1,5 +1,6 @@
 //! Working memory of one thread's searches, kept from one to the next.
 
+use super::ROW;
 use std::cell::Cell;
 use wide::f32x8;
 
@@ -26,6 +27,22 @@ impl Scratch {
     /// The last search in a tree, if it is remembered.
     pub(super) fn last_in(&self, identity: u64) -> Option<Last> {
         self.last[(identity % 4) as usize].filter(|last| last.identity == identity)
+    }
+
+    /// Keeps every squared distance of the rows that is at most `bound`.
+    #[inline(always)]
+    pub(super) fn keep_near(&mut self, bound: f32) {
+        // Every distance is written and only those below the bound are kept: no branch to mispredict.
+        self.near.clear();
+        self.near.resize(self.end * ROW + 1, 0);
+        let mut end = 0;
+        for squared in &self.squared[..self.end] {
+            for &d in squared.as_array() {
+                self.near[end] = d.to_bits();
+                end += usize::from(d <= bound);
+            }
+        }
+        self.near.truncate(end);
     }
 
     /// Remembers a search.
