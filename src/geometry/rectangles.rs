@@ -1,136 +1,229 @@
-//! Many rectangles, tried two at a time.
+//! Many rectangles, tried as many at a time as the machine's registers hold.
 
 use super::{Hit, Rectangle};
 use crate::math::Ray;
 use glam::DVec3;
-use wide::f64x2;
+use pulp::{Arch, Simd, WithSimd};
 
-const LANES: usize = 2;
+/// Rectangles a block: as many as the widest registers hold; others take a block in several goes.
+const WIDTH: usize = 8;
 
-/// A vector a lane.
-#[derive(Debug, Clone, Copy, PartialEq)]
-struct Vectors {
-    x: f64x2,
-    y: f64x2,
-    z: f64x2,
-}
+/// One number of each rectangle of a block.
+type Column = [f64; WIDTH];
 
-impl Vectors {
-    fn new(lanes: [DVec3; LANES]) -> Self {
-        let component = |axis: usize| f64x2::new(lanes.map(|v| v[axis]));
-        Vectors { x: component(0), y: component(1), z: component(2) }
-    }
-
-    fn splat(v: DVec3) -> Self {
-        Vectors::new([v; LANES])
-    }
-
-    /// In the order in which glam adds.
-    #[inline(always)]
-    fn dot(self, other: Self) -> f64x2 {
-        self.x * other.x + self.y * other.y + self.z * other.z
-    }
-
-    #[inline(always)]
-    fn minus(self, other: Self) -> Self {
-        Vectors { x: self.x - other.x, y: self.y - other.y, z: self.z - other.z }
-    }
-
-    #[inline(always)]
-    fn moved(self, dir: Self, t: f64x2) -> Self {
-        Vectors { x: self.x + dir.x * t, y: self.y + dir.y * t, z: self.z + dir.z * t }
-    }
-}
-
-/// Two rectangles; a lane without one has a corner that is no number, so that nothing meets it.
-#[derive(Debug, Clone, Copy, PartialEq)]
-struct Pair {
-    corner: Vectors,
-    normal: Vectors,
-    u: Vectors,
-    v: Vectors,
-    u_squared: f64x2,
-    v_squared: f64x2,
+/// Some rectangles; a place without one has a corner that is no number, so that nothing meets it.
+#[derive(Debug, Clone, Copy)]
+struct Block {
+    corner: [Column; 3],
+    normal: [Column; 3],
+    u: [Column; 3],
+    v: [Column; 3],
+    u_squared: Column,
+    v_squared: Column,
     /// Indices in the list.
-    number: f64x2,
+    number: Column,
 }
 
-impl Pair {
+impl Block {
     fn new(first: usize, members: &[Rectangle]) -> Self {
-        let lanes = |part: fn(&Rectangle) -> DVec3| {
-            Vectors::new(std::array::from_fn(|i| members.get(i).map_or(DVec3::NAN, part)))
+        let number_of = |part: fn(&Rectangle) -> f64| -> Column {
+            std::array::from_fn(|i| members.get(i).map_or(f64::NAN, part))
         };
-        let (u, v) = (lanes(Rectangle::u), lanes(Rectangle::v));
-        Pair {
-            corner: lanes(Rectangle::corner),
-            normal: lanes(Rectangle::normal),
-            u,
-            v,
-            u_squared: u.dot(u),
-            v_squared: v.dot(v),
-            number: f64x2::new(std::array::from_fn(|i| (first + i) as f64)),
+        let columns = |part: fn(&Rectangle) -> DVec3| -> [Column; 3] {
+            let places: [DVec3; WIDTH] = std::array::from_fn(|i| members.get(i).map_or(DVec3::NAN, part));
+            std::array::from_fn(|axis| places.map(|v| v[axis]))
+        };
+        Block {
+            corner: columns(Rectangle::corner),
+            normal: columns(Rectangle::normal),
+            u: columns(Rectangle::u),
+            v: columns(Rectangle::v),
+            u_squared: number_of(|r| r.u().length_squared()),
+            v_squared: number_of(|r| r.v().length_squared()),
+            number: std::array::from_fn(|i| (first + i) as f64),
         }
     }
+}
 
-    /// Distances \[L\], and which lanes are met there, ahead and nearer than `bound`.
+/// A vector a lane.
+type Vectors<S> = [<S as Simd>::f64s; 3];
+
+// Written out, without closures and iterators: only functions that are always inlined run in the registers chosen.
+
+#[inline(always)]
+fn splat<S: Simd>(simd: S, v: DVec3) -> Vectors<S> {
+    [simd.splat_f64s(v.x), simd.splat_f64s(v.y), simd.splat_f64s(v.z)]
+}
+
+#[inline(always)]
+fn load<S: Simd>(columns: &[Column; 3], go: usize) -> Vectors<S> {
+    let [x, y, z] = columns;
+    [lanes::<S>(x, go), lanes::<S>(y, go), lanes::<S>(z, go)]
+}
+
+/// The numbers of a block that one register holds.
+#[inline(always)]
+fn lanes<S: Simd>(column: &Column, go: usize) -> S::f64s {
+    S::as_simd_f64s(column).0[go]
+}
+
+/// In the order in which glam adds.
+#[inline(always)]
+fn dot<S: Simd>(simd: S, [ax, ay, az]: Vectors<S>, [bx, by, bz]: Vectors<S>) -> S::f64s {
+    simd.add_f64s(simd.add_f64s(simd.mul_f64s(ax, bx), simd.mul_f64s(ay, by)), simd.mul_f64s(az, bz))
+}
+
+#[inline(always)]
+fn minus<S: Simd>(simd: S, [ax, ay, az]: Vectors<S>, [bx, by, bz]: Vectors<S>) -> Vectors<S> {
+    [simd.sub_f64s(ax, bx), simd.sub_f64s(ay, by), simd.sub_f64s(az, bz)]
+}
+
+/// Whether 0 <= x <= end.
+#[inline(always)]
+fn within<S: Simd>(simd: S, x: S::f64s, end: S::f64s) -> S::m64s {
+    let is_positive = simd.greater_than_or_equal_f64s(x, simd.splat_f64s(0.0));
+    simd.and_m64s(is_positive, simd.less_than_or_equal_f64s(x, end))
+}
+
+/// A ray in every lane.
+#[derive(Clone, Copy)]
+struct Rays<S: Simd> {
+    simd: S,
+    origin: Vectors<S>,
+    dir: Vectors<S>,
+}
+
+impl<S: Simd> Rays<S> {
     #[inline(always)]
-    fn meet(&self, origin: Vectors, dir: Vectors, bound: f64x2) -> (f64x2, f64x2) {
-        let t = self.corner.minus(origin).dot(self.normal) / dir.dot(self.normal);
-        let p = origin.moved(dir, t).minus(self.corner);
-        let (a, b, zero) = (p.dot(self.u), p.dot(self.v), f64x2::ZERO);
-        let inside =
-            a.simd_ge(zero) & a.simd_le(self.u_squared) & b.simd_ge(zero) & b.simd_le(self.v_squared);
-        (t, inside & t.simd_gt(zero) & t.simd_lt(bound))
+    fn new(simd: S, ray: &Ray) -> Self {
+        Rays { simd, origin: splat(simd, ray.origin), dir: splat(simd, ray.dir) }
+    }
+
+    /// Distances \[L\], and which lanes are met there, ahead and nearer than `bound`. What [`Rectangle::hit`] does, number
+    /// by number.
+    #[inline(always)]
+    fn meet(&self, block: &Block, go: usize, bound: S::f64s) -> (S::f64s, S::m64s) {
+        let Rays { simd, origin, dir } = *self;
+        let (corner, normal) = (load::<S>(&block.corner, go), load::<S>(&block.normal, go));
+        let height = dot(simd, minus(simd, corner, origin), normal);
+        let t = simd.div_f64s(height, dot(simd, dir, normal));
+        let at = [
+            simd.add_f64s(origin[0], simd.mul_f64s(dir[0], t)),
+            simd.add_f64s(origin[1], simd.mul_f64s(dir[1], t)),
+            simd.add_f64s(origin[2], simd.mul_f64s(dir[2], t)),
+        ];
+        let p = minus(simd, at, corner);
+        let a = dot(simd, p, load::<S>(&block.u, go));
+        let b = dot(simd, p, load::<S>(&block.v, go));
+        let inside = simd.and_m64s(
+            within(simd, a, lanes::<S>(&block.u_squared, go)),
+            within(simd, b, lanes::<S>(&block.v_squared, go)),
+        );
+        let is_ahead = simd.greater_than_f64s(t, simd.splat_f64s(0.0));
+        (t, simd.and_m64s(inside, simd.and_m64s(is_ahead, simd.less_than_f64s(t, bound))))
     }
 }
 
 /// A list of rectangles that answers what each of them would, bit for bit.
 ///
 /// Nothing branches on what single rectangles answer: which of them a ray meets is as good as random, and a branch
-/// foretold wrongly costs as much as a pair of rectangles.
-#[derive(Debug, Clone, PartialEq, Default)]
+/// foretold wrongly costs as much as a register full of rectangles.
+#[derive(Debug, Clone, Default)]
 pub struct Rectangles {
     members: Vec<Rectangle>,
-    pairs: Vec<Pair>,
+    blocks: Vec<Block>,
+    arch: Arch,
 }
 
-/// An index in the list as a number in every lane; -1, which none has, for none.
-fn lanes_of(index: Option<usize>) -> f64x2 {
-    f64x2::splat(index.map_or(-1.0, |index| index as f64))
+impl PartialEq for Rectangles {
+    fn eq(&self, other: &Self) -> bool {
+        self.members == other.members
+    }
+}
+
+/// An index in the list as a number; -1, which none has, for none.
+fn number(index: Option<usize>) -> f64 {
+    index.map_or(-1.0, |index| index as f64)
+}
+
+struct Nearest<'a> {
+    list: &'a Rectangles,
+    ray: &'a Ray,
+    except: f64,
+}
+
+impl WithSimd for Nearest<'_> {
+    type Output = (f64, f64);
+
+    /// The distance of the nearest, infinite if there is none, and its number.
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, simd: S) -> (f64, f64) {
+        let rays = Rays::new(simd, self.ray);
+        let except = simd.splat_f64s(self.except);
+        let infinite = simd.splat_f64s(f64::INFINITY);
+        let (mut nearest, mut number) = (infinite, infinite);
+        let goes = WIDTH / S::F64_LANES;
+        for i in 0..self.list.members.len().div_ceil(S::F64_LANES) {
+            let (block, go) = (&self.list.blocks[i / goes], i % goes);
+            let (t, met) = rays.meet(block, go, nearest);
+            let numbers = lanes::<S>(&block.number, go);
+            let is_nearer = simd.and_m64s(met, simd.not_m64s(simd.equal_f64s(numbers, except)));
+            nearest = simd.select_f64s(is_nearer, t, nearest);
+            number = simd.select_f64s(is_nearer, numbers, number);
+        }
+        let t = simd.reduce_min_f64s(nearest);
+        let is_at = simd.equal_f64s(nearest, simd.splat_f64s(t));
+        (t, simd.reduce_min_f64s(simd.select_f64s(is_at, number, infinite)))
+    }
+}
+
+struct Blocks<'a> {
+    list: &'a Rectangles,
+    ray: &'a Ray,
+    except: [f64; 2],
+    end: f64,
+}
+
+impl WithSimd for Blocks<'_> {
+    type Output = bool;
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, simd: S) -> bool {
+        let rays = Rays::new(simd, self.ray);
+        let (one, other) = (simd.splat_f64s(self.except[0]), simd.splat_f64s(self.except[1]));
+        let end = simd.splat_f64s(self.end);
+        let goes = WIDTH / S::F64_LANES;
+        for i in 0..self.list.members.len().div_ceil(S::F64_LANES) {
+            let (block, go) = (&self.list.blocks[i / goes], i % goes);
+            let (_, met) = rays.meet(block, go, end);
+            let numbers = lanes::<S>(&block.number, go);
+            let is_excepted = simd.or_m64s(simd.equal_f64s(numbers, one), simd.equal_f64s(numbers, other));
+            if simd.first_true_m64s(simd.and_m64s(met, simd.not_m64s(is_excepted))) < S::F64_LANES {
+                return true;
+            }
+        }
+        false
+    }
 }
 
 impl Rectangles {
     /// The list of these.
     pub fn new(members: Vec<Rectangle>) -> Self {
-        let pairs = members.chunks(LANES).enumerate().map(|(i, chunk)| Pair::new(LANES * i, chunk)).collect();
-        Rectangles { members, pairs }
+        let blocks =
+            members.chunks(WIDTH).enumerate().map(|(i, chunk)| Block::new(WIDTH * i, chunk)).collect();
+        Rectangles { members, blocks, arch: Arch::new() }
     }
 
     /// The nearest one ahead but `except`: its index and where the ray meets it; the first in the list of those at
     /// the same distance.
     pub fn nearest(&self, ray: &Ray, except: Option<usize>) -> Option<(usize, Hit)> {
-        let (origin, dir) = (Vectors::splat(ray.origin), Vectors::splat(ray.dir));
-        let except = lanes_of(except);
-        let (mut nearest, mut number) = (f64x2::splat(f64::INFINITY), lanes_of(None));
-        for pair in &self.pairs {
-            let (t, met) = pair.meet(origin, dir, nearest);
-            let is_nearer = met & pair.number.simd_ne(except);
-            nearest = is_nearer.select(t, nearest);
-            number = is_nearer.select(pair.number, number);
-        }
-        let ([a, b], [i, j]) = (nearest.to_array(), number.to_array());
-        let (t, index) = if a < b || a == b && i < j { (a, i) } else { (b, j) };
+        let (t, index) = self.arch.dispatch(Nearest { list: self, ray, except: number(except) });
         (t < f64::INFINITY).then(|| (index as usize, self.members[index as usize].hit_at(ray, t)))
     }
 
     /// Whether the ray meets one of them nearer than `end` \[L\], apart from these two.
     pub fn block(&self, ray: &Ray, except: [Option<usize>; 2], end: f64) -> bool {
-        let (origin, dir) = (Vectors::splat(ray.origin), Vectors::splat(ray.dir));
-        let ([one, other], end) = (except.map(lanes_of), f64x2::splat(end));
-        self.pairs.iter().any(|pair| {
-            let (_, met) = pair.meet(origin, dir, end);
-            (met & pair.number.simd_ne(one) & pair.number.simd_ne(other)).any()
-        })
+        self.arch.dispatch(Blocks { list: self, ray, except: except.map(number), end })
     }
 }
 

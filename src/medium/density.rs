@@ -50,6 +50,14 @@ impl Density {
         }
     }
 
+    /// The same density, bounded as suits light that collides `sigma_t` times a length where it is 1.
+    pub(super) fn bounded_for(self, sigma_t: f64) -> Self {
+        match self {
+            Density::Grid(grid) => Density::Grid(Arc::new(Arc::unwrap_or_clone(grid).bounded_for(sigma_t))),
+            Density::Cloud(_) | Density::HeightFog(_) => self,
+        }
+    }
+
     /// The density at a point \[1\].
     #[inline]
     pub fn at(&self, p: DVec3) -> f64 {

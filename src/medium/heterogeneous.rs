@@ -22,6 +22,7 @@ impl Heterogeneous {
     /// `matter` thinned and thickened by a density: extinction is density times that of `matter`; its own emission is
     /// the same everywhere.
     pub fn new(matter: Homogeneous, density: Density) -> Self {
+        let density = density.bounded_for(matter.sigma_t().max());
         Heterogeneous { matter, density, albedo: None, emission: Spectrum::ZERO }
     }
 

@@ -17,7 +17,7 @@ const ROUNDS: usize = 7;
 /// Photons on surfaces and in the volume, as multiples of those of the picture of 1998, photons an estimate, and samples a
 /// pixel. Photons and k grow together; other numbers of samples follow from the variance between samples. Those of 1998 take
 /// about as many samples as 20 per cent of error ask for.
-const SIZES: [(f64, usize, u64); 4] = [(0.25, 45, 4), (1.0, 100, 6), (4.0, 220, 4), (16.0, 490, 3)];
+const SIZES: [(f64, usize, u64); 4] = [(0.25, 45, 4), (1.0, 100, 6), (4.0, 220, 12), (16.0, 490, 8)];
 const SURFACE: f64 = 200_000.0;
 const VOLUME: f64 = 65_000.0;
 /// Errors, over the mean, at which times are compared.

@@ -59,7 +59,7 @@ irradiance = [6.0, 5.6, 5.0]
 angular_radius = 0.27
 "#;
 
-/// Photons stored in a map, about.
+/// Photons sent out for a map: about as many collide, but for the first time.
 fn photons(settings: &Settings) -> u64 {
     settings.photons(8_000, 8_000)
 }
@@ -102,8 +102,7 @@ pub fn measure(settings: &Settings, cell: &CellId) -> anyhow::Result<CellOutput>
     let camera = scene.camera().context("the cloud has no camera")?.clone();
     let mut output = CellOutput::new();
     let none = filled(scene, 0, settings.seed, replicate)?;
-    let emitted = (photons(settings) / STORED_OF_ONE).max(1);
-    let maps = output.time("map", |_| filled(scene, emitted, settings.seed, replicate))?;
+    let maps = output.time("map", |_| filled(scene, photons(settings), settings.seed, replicate))?;
     let stored = maps.volume.as_ref().map_or(0, |map| map.stored());
     output.count("photons stored in clouds", stored as u64);
     for (steps, name) in STEPS.into_iter().enumerate() {
@@ -129,9 +128,6 @@ pub fn measure(settings: &Settings, cell: &CellId) -> anyhow::Result<CellOutput>
     }
     Ok(output)
 }
-
-/// Photons that are stored of one sent out, about: of the small cloud in the whole light of its surroundings.
-const STORED_OF_ONE: u64 = 4;
 
 /// Light scattered once and more often, in the pixels of one row.
 fn look(mapper: &Mapper, camera: &Camera, row: u32, seed: u64, replicate: u64) -> [Moments; 2] {

@@ -1,6 +1,6 @@
 //! What the cells measured, and errors and costs of any choice of them.
 
-use super::{GROUP, PATHS, PIXELS, SAMPLES, Size, path_pixel, sizes};
+use super::{GROUP, PATHS, PIXELS, Size, path_pixel, sizes};
 use crate::contest::{Maps, Paths};
 use crate::harness::{Cells, Settings};
 
@@ -30,6 +30,8 @@ pub struct Seen {
     pub fill: [f64; 2],
     /// Cost of a sample, in rays and seconds.
     pub sample: [f64; 2],
+    /// Samples of a pixel.
+    pub samples: f64,
 }
 
 /// One cell.
@@ -59,12 +61,13 @@ fn maps(size: Size, cells: &Cells) -> anyhow::Result<Vec<Seen>> {
     let (looks, found) = (value("rays a sample")?, value("photons a sample")?);
     let (fill, look) =
         (cells.seconds(GROUP, &format!("fill {case}")), cells.seconds(GROUP, &format!("look {case}")));
-    let all = SAMPLES as f64 * PIXELS as f64;
+    let all = value("samples")?;
     let seen = |(i, pixels): (usize, Vec<f64>)| Seen {
         pixels,
         noise: noise[i],
         fill: [rays[i] + STORED * stored[i], fill[i]],
-        sample: [looks[i] + LOOKED_AT * found[i], look[i] / all],
+        sample: [looks[i] + LOOKED_AT * found[i], look[i] / all[i]],
+        samples: all[i] / PIXELS as f64,
     };
     Ok(pixels.into_iter().enumerate().map(seen).collect())
 }
@@ -80,6 +83,7 @@ fn paths(cells: &Cells) -> anyhow::Result<Vec<Seen>> {
         noise: noise[i],
         fill: [0.0; 2],
         sample: [rays[i], seconds[i] / samples[i]],
+        samples: samples[i] / PIXELS as f64,
     };
     Ok(pixels.into_iter().enumerate().map(seen).collect())
 }
@@ -120,12 +124,12 @@ impl Fit {
                     between += own.1 / pixels;
                     bias += ((own.0 - mean) * (own.0 - mean) - (own.1 + variance) / count) / pixels;
                 }
-                let noise = average(&|c| c.maps[size].noise);
+                let (noise, samples) = (average(&|c| c.maps[size].noise), cells[0].maps[size].samples);
                 Maps {
                     fill: average(&|c| c.maps[size].fill[which]),
                     sample: average(&|c| c.maps[size].sample[which]),
                     noise,
-                    spread: (between - noise / SAMPLES as f64).max(0.0),
+                    spread: (between - noise / samples).max(0.0),
                     bias: bias.max(0.0),
                 }
             })
@@ -144,12 +148,18 @@ mod tests {
     fn cells(count: usize, bias: f64) -> Vec<Cell> {
         let mut stream = Stream::new(9, Purpose::Synthetic, 0, 0);
         let mut even = |half: f64| 2.0 * half * (stream.unit() - 0.5);
-        let seen = |pixels: Vec<f64>, noise| Seen { pixels, noise, fill: [10.0, 1.0], sample: [2.0, 0.1] };
+        let seen = |pixels: Vec<f64>, noise| Seen {
+            pixels,
+            noise,
+            fill: [10.0, 1.0],
+            sample: [2.0, 0.1],
+            samples: 8.0,
+        };
         let one = |_| {
             let paths = (0..PIXELS).map(|_| 1.0 + even(0.3)).collect();
             let mut pixel = || {
                 let spread = even(0.2);
-                let noise = (0..SAMPLES).map(|_| even(1.0)).sum::<f64>() / SAMPLES as f64;
+                let noise = (0..8).map(|_| even(1.0)).sum::<f64>() / 8.0;
                 1.0 + bias + spread + noise
             };
             let maps = (0..PIXELS).map(|_| pixel()).collect();

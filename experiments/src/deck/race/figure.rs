@@ -1,13 +1,13 @@
 //! The figure of the race.
 
+use super::SIDE;
 use super::conclude::{Crossing, Race, middle};
 use super::data::{Currency, Fit};
-use super::{SAMPLES, SIDE};
 use crate::harness::FigureFiles;
 use turbid_figure::{Along, Axis, Figure, Line, Panel, Points, Rule, Width};
 
 /// Samples a pixel that have points.
-const NUMBERS: [f64; 3] = [1.0, SAMPLES as f64, 64.0];
+const NUMBERS: [f64; 3] = [1.0, 8.0, 64.0];
 const PIXELS: f64 = (SIDE * SIDE) as f64;
 
 fn percent(square: f64, mean: f64) -> f64 {
@@ -64,7 +64,7 @@ pub fn race(race: &Race, seconds: &Crossing, rays: &Crossing) -> anyhow::Result<
     let figure = Figure { width: Width::Double, columns: 2, shared_legend: true, ..Figure::new(panels) };
     let caption = format!(
         "A picture of {SIDE} x {SIDE} pixels of a box of fog by photon maps of several sizes and by paths: root mean square \
-         error of a pixel against CPU time of this machine (left) and work (right), for 1, {SAMPLES} and 64 samples a pixel \
+         error of a pixel against CPU time of this machine (left) and work (right), for 1, 8 and 64 samples a pixel \
          (points, with bootstrap intervals of 95 % over maps) and all between (lines). Maps start later, for they have to be \
          filled, then fall to the error that all samples of one map share. The rule is the error below which \
          paths are cheaper than every map."

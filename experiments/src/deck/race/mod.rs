@@ -29,7 +29,9 @@ const BLOCK: u32 = 4;
 /// Pixels looked at.
 pub const PIXELS: usize = ((SIDE / BLOCK) * (SIDE / BLOCK)) as usize;
 /// Samples of a pixel from one map.
-pub const SAMPLES: u64 = 24;
+pub fn samples(settings: &Settings) -> u64 {
+    settings.photons(24, 24).clamp(4, 24)
+}
 
 /// A size of map.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -100,7 +102,7 @@ pub fn measure(settings: &Settings, cell: &CellId) -> anyhow::Result<CellOutput>
     let camera = scene.camera().context("the box has no camera")?.with_size(SIDE, SIDE)?;
     let mut output = CellOutput::new();
     for (index, size) in sizes(settings).into_iter().enumerate() {
-        by_map(&mut output, &scene, &camera, (index, size), settings.seed, replicate)?;
+        by_map(settings, &mut output, (&scene, &camera), (index, size), replicate)?;
     }
     let (count, within) = (paths(settings), scene.interior_at(camera.position()));
     let mut rays = 0;
@@ -148,13 +150,13 @@ fn eye(k: usize) -> anyhow::Result<mapper::Settings> {
 }
 
 fn by_map(
+    settings: &Settings,
     output: &mut CellOutput,
-    scene: &Scene,
-    camera: &Camera,
+    (scene, camera): (&Scene, &Camera),
     (index, size): (usize, Size),
-    seed: u64,
     replicate: u64,
 ) -> anyhow::Result<()> {
+    let (seed, count) = (settings.seed, samples(settings));
     let amount = Amount::Emitted(size.photons);
     // No two sizes share their histories.
     let replicate = replicate ^ (index as u64 + 1) << 20;
@@ -170,13 +172,13 @@ fn by_map(
     let case = size.case();
     let maps =
         output.time(&format!("fill {case}"), |_| fill_counted(scene, &filling, emitted, &NoProgress))?;
-    let (settings, within) = (eye(size.k)?, scene.interior_at(camera.position()));
-    let eye = Mapper::new(scene, &maps, &settings);
+    let (reading, within) = (eye(size.k)?, scene.interior_at(camera.position()));
+    let eye = Mapper::new(scene, &maps, &reading);
     let (mut pixels, mut report) = (Vec::new(), mapper::Report::default());
     output.time(&format!("look {case}"), |_| {
         for pixel in 0..PIXELS {
             let mut moments = Moments::new();
-            for i in 0..SAMPLES {
+            for i in 0..count {
                 let mut stream = Stream::new(seed, Purpose::Paths, replicate, (pixel as u64) << 32 | i);
                 let (x, y) = place(pixel);
                 let ray = camera.sample(x, y, stream.pair());
@@ -190,10 +192,11 @@ fn by_map(
     for (pixel, moments) in pixels.iter().enumerate() {
         output.push(size.pixel(pixel), "radiance", moments.mean());
     }
-    let all = (SAMPLES * PIXELS as u64) as f64;
+    let all = (count * PIXELS as u64) as f64;
     let main = maps.report.main;
     let stored = [&maps.global, &maps.volume].into_iter().flatten().map(|map| map.stored()).sum::<usize>();
     output.push(&case, "noise", mean_variance(&pixels));
+    output.push(&case, "samples", all);
     output.push(&case, "rays to fill", (main.collisions + main.hits) as f64);
     output.push(&case, "photons stored", stored as f64);
     output.push(&case, "rays a sample", report.rays.total() as f64 / all);

@@ -120,12 +120,17 @@ pub fn conclude(_settings: &Settings, cells: &Cells) -> anyhow::Result<Part> {
         "importance would send photons where they are needed".to_string(),
         format!(
             "for the same number of events {} times as many are stored where the camera looks, and the variance of pixels \
-             is {} times smaller; at equal CPU time {} times, once {:.2} s have been spent on learning where they are needed; \
-             the picture's mean differs by {} %",
+             is {} times smaller; at equal CPU time it is {} times smaller, {:.2} s of learning not counted: {}. \
+             The picture's mean differs by {} %",
             words(&steered.photons),
             words(&steered.by_events),
             words(&by_time),
             learning.mean(),
+            match by_time.interval(0.95) {
+                i if i.low > 1.0 => "in time it pays",
+                i if i.high < 1.0 => "in time it does not pay here",
+                _ => "whether it pays in time is undecided, in this run",
+            },
             with_error(steered.difference.value(), steered.difference.std_error()),
         ),
     ]];
