@@ -76,6 +76,8 @@ pub struct Boundary<'a> {
     walls: &'a [Shape],
     /// What else lies in the medium's shape; none where nothing does, and no other medium touches it.
     others: Option<&'a [Shape]>,
+    /// Whether every photon is of this medium.
+    is_only: bool,
     /// Whose photons count, where shapes alone do not tell: those in the medium of this number.
     owner: Option<(&'a Scene, usize)>,
 }
@@ -94,7 +96,15 @@ impl Boundary<'static> {
 
     /// Of a medium whose shape is not known: only what else lies in it is treated.
     pub fn unknown(treatment: Treatment) -> Self {
-        Boundary { medium: None, treatment, rejection: Rejection::Off, walls: &[], others: None, owner: None }
+        Boundary {
+            medium: None,
+            treatment,
+            rejection: Rejection::Off,
+            walls: &[],
+            others: None,
+            is_only: true,
+            owner: None,
+        }
     }
 }
 
@@ -112,7 +122,12 @@ impl<'a> Boundary<'a> {
     /// it and those in `others`, solid shapes that stand in it and are not of it. One that holds the point holds the medium
     /// too, and does not count.
     pub fn among(self, others: &'a [Shape]) -> Self {
-        Boundary { others: Some(others), ..self }
+        Boundary { others: Some(others), is_only: false, ..self }
+    }
+
+    /// The same where solid bodies stand in the medium, which is the only one: no photon is in them.
+    pub fn about(self, bodies: &'a [Shape]) -> Self {
+        Boundary { others: Some(bodies), ..self }
     }
 
     /// The same with the scene asked, photon by photon, whether it lies in the medium of this number.
@@ -132,9 +147,8 @@ impl<'a> Boundary<'a> {
 
     /// Whether a ball about a point of the medium meets nothing else.
     fn is_alone(&self, point: DVec3, radius: f64) -> bool {
-        let is_alone =
-            self.others.is_none_or(|_| self.room(point) >= radius && !self.is_reduced(point, radius));
-        is_alone && self.owner.is_none()
+        let is_inside = self.is_only || self.room(point) >= radius;
+        is_inside && !self.is_reduced(point, radius) && self.owner.is_none()
     }
 
     /// Whether the ball reaches into what is not of the medium though it is in its shape.

@@ -121,7 +121,7 @@ area = { shape = { rectangle = { corner = [-0.7, 3.0, -0.7], u = [1.4, 0.0, 0.0]
     for layer in ["direct", "caustic"] {
         let [(a, a_error), (b, b_error)] =
             ["paths", "light"].map(|with| summed(&out(with), &format!("{layer}.R")));
-        let error = a_error.hypot(b_error);
+        let error = libm::hypot(a_error, b_error);
         assert!(error < 0.03 * a, "{layer}: {a} {b}, error {error}");
         // Five standard errors of a normal law: one in two million.
         assert!((a - b).abs() < 5.0 * error, "{layer}: paths {a}, light {b}, error {error}");

@@ -5,6 +5,9 @@
 //! which takes no part in the comparison. Means over the footprint R and over half of it differ by 3/4 of what the blur is
 //! where the layer curves evenly, and neither is one pixel's noise.
 //!
+//! Of media it is the mean along the way through them that is averaged: that the way of the next pixel is longer blurs
+//! nothing.
+//!
 //! A disc that reaches over the edge of its surface misses the photons that would lie there: the share of its area. A
 //! ball beside a wall misses its cap; along a ray that ends at a wall that is r times the integral of (1-s)^2 (2+s)/4
 //! over s from 0 to 1, 3/16, over the cosine and the length of the way. Neither is missing where the estimate is divided
@@ -51,7 +54,8 @@ pub fn predicted(grid: Grid, views: &[View], layers: &[Layers], radii: &[Radii],
         if radii.volume > 0.0 && length > 0.0 {
             let blur = blur(grid, i, radii.volume / middle / pixel, |j| {
                 let near = (views[j].distance - view.distance).abs() <= 2.0 * radii.volume;
-                near.then(|| layers[j][Layer::Multiple].sum())
+                let (other, _) = views[j].medium;
+                (near && other > 0.0).then(|| layers[j][Layer::Multiple].sum() * length / other)
             });
             let cap = if view.surface.is_some() && !view.is_at_face {
                 (3.0 / 16.0 * radii.volume / view.cosine.max(0.05) / length).min(1.0)
@@ -191,5 +195,30 @@ mod tests {
         assert!((error - 3.0 / 16.0 * 0.05).abs() < 1e-12, "{error}");
         views.iter_mut().for_each(|view| view.is_at_face = true);
         assert_eq!(predicted(GRID, &views, &layers, &vec![radii; GRID.pixels()], PIXEL)[0], 0.0);
+    }
+
+    /// Even fog behind a slanted front: the way grows from pixel to pixel, and the light with it, but nothing is blurred; light
+    /// that curves along the rows is, as the disc says.
+    #[test]
+    fn longer_ways_are_no_blur() {
+        let mut views = views();
+        for (i, view) in views.iter_mut().enumerate() {
+            view.surface = None;
+            view.medium = (1.0 + 0.1 * (i % GRID.width) as f64, 1.0);
+        }
+        let lit = |source: &dyn Fn(usize) -> f64| -> Vec<Layers> {
+            let one = |(i, view): (usize, &View)| Layers {
+                multiple: Spectrum::grey(source(i) * view.medium.0),
+                ..Layers::ZERO
+            };
+            views.iter().enumerate().map(one).collect()
+        };
+        let radii = vec![Radii { volume: 0.12, ..Radii::default() }; GRID.pixels()];
+        let even = predicted(GRID, &views, &lit(&|_| 1.0), &radii, PIXEL);
+        assert!(even.iter().all(|&e| e < 1e-12));
+        let away = |i: usize| (i / GRID.width) as f64 * PIXEL - 0.4;
+        let curved = lit(&|i| 1.0 + away(i) * away(i));
+        let middle = predicted(GRID, &views, &curved, &radii, PIXEL)[GRID.pixels() / 2];
+        assert!((middle / (0.25 * 0.12 * 0.12) - 1.0).abs() < 0.1, "{middle}");
     }
 }

@@ -56,11 +56,11 @@ impl<'a> Studio<'a> {
         Ok(Studio { picture, scene, camera, seed, program: program.to_string(), text })
     }
 
-    /// The same at half the width and height, for what is only compared.
-    pub fn halved(&self) -> anyhow::Result<Self> {
+    /// The same at half the width and height, for what is only compared, by the settings of `picture`.
+    pub fn halved(&self, picture: &'a Picture) -> anyhow::Result<Self> {
         let camera = self.camera.with_size(self.camera.width() / 2, self.camera.height() / 2)?;
         let (scene, program, text) = (self.scene.clone(), self.program.clone(), self.text.clone());
-        Ok(Studio { picture: self.picture, scene, camera, seed: self.seed, program, text })
+        Ok(Studio { picture, scene, camera, seed: self.seed, program, text })
     }
 
     /// Size of the picture.
@@ -173,7 +173,7 @@ impl<'a> Studio<'a> {
             *n += 1;
             by_light.rest(&self.scene, ray, within, stream)
         })?;
-        let found = by_light.trace(self, samples, streams)?;
+        let found = by_light.trace(&self.scene, &self.camera, samples, streams)?;
         let facts = self.path_facts(start, samples, replicate);
         Ok(Kept::new(facts, &film).with(&found))
     }

@@ -1,7 +1,7 @@
 //! Where each medium is, as far as the balls of volume estimates need to know.
 //!
 //! The faces of a region, and of an interior that one sphere, cuboid or slab of glass encloses, are known in closed form,
-//! and so are the solid bodies of glass that stand in them. Where another shape bounds an interior (a lathe, a mesh, a
+//! and so are the solid bodies that stand in them: glass, blocks, lamps. Boxes made of rectangles are none. Where another shape bounds an interior (a lathe, a mesh, a
 //! height field, a rectangle such as the level of water) its faces are left untreated: estimates read low there, up to half
 //! on the face itself. Photons of other media are told apart everywhere.
 
@@ -17,6 +17,8 @@ pub(super) struct Home {
     shape: Option<Shape>,
     /// Solid shapes in it that are not of it; none where there are none and nothing else has photons.
     others: Option<Vec<Shape>>,
+    /// Whether there is no other medium.
+    is_only: bool,
     /// Whether photons of other media can be told apart only by asking where each of them lies.
     is_asked: bool,
 }
@@ -37,10 +39,17 @@ pub(super) fn of(scene: &Scene) -> Vec<Home> {
         let solid: Vec<Shape> = shapes().filter(|shape| shape.is_solid()).cloned().collect();
         (solid, shapes().all(Shape::is_solid))
     };
-    let home = |shape: Option<Shape>, others: Vec<Shape>, is_known: bool| Home {
-        shape,
-        others: (!is_alone || !others.is_empty()).then_some(others),
-        is_asked: !is_alone && !is_known,
+    let opaque =
+        scene.objects().iter().filter(|o| !matches!(o.surface, Surface::Dielectric(_) | Surface::Filter(_)));
+    let lamps = scene.lights().iter().filter_map(|light| light.body());
+    let bodies: Vec<Shape> =
+        opaque.map(|o| &o.shape).chain(lamps).filter(|s| s.is_solid()).cloned().collect();
+    let home = |shape: Option<Shape>, mut others: Vec<Shape>, is_known: bool| {
+        if shape.is_some() {
+            others.extend(bodies.iter().cloned());
+        }
+        let others = (!is_alone || !others.is_empty()).then_some(others);
+        Home { shape, others, is_only: is_alone, is_asked: !is_alone && !is_known }
     };
     let mut homes = Vec::with_capacity(scene.media().len());
     for (number, region) in scene.regions().iter().enumerate() {
@@ -84,6 +93,7 @@ impl Home {
         let known = self.shape.as_ref().and_then(|shape| Boundary::new(shape.clone(), treatment).ok());
         let boundary = known.unwrap_or_else(|| Boundary::unknown(treatment));
         let boundary = match &self.others {
+            Some(others) if self.is_only => boundary.about(others),
             Some(others) => boundary.among(others),
             None => boundary,
         };
@@ -121,6 +131,10 @@ mod tests {
         assert!(!fogged.is_asked && fogged.others.as_ref().is_some_and(|others| others.len() == 1));
         assert!(!in_ball.is_asked && matches!(in_ball.shape, Some(Shape::Sphere(_))));
         assert!(in_ball.others.as_ref().is_some_and(Vec::is_empty));
+        let block =
+            "[[objects]]\nshape = { cuboid = { min = [2, 2, 2], max = [3, 3, 3] } }\nsurface = \"black\"\n";
+        let [about] = &homes(&format!("{fog}{block}{light}"))[..] else { panic!() };
+        assert!(about.is_only && about.others.as_ref().is_some_and(|others| others.len() == 1));
         let [alone] = &homes(&format!("{milk}{ball}{light}"))[..] else { panic!() };
         assert!(!alone.is_asked && alone.others.is_none() && alone.shape.is_some());
         let [water] = &homes(&format!("{milk}{level}{light}"))[..] else { panic!() };

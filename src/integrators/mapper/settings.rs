@@ -54,8 +54,8 @@ pub struct Settings {
     pub near: f64,
     /// The march through media.
     pub march: March,
-    /// What volume estimates do at the edge of a region, of an interior that one solid shape encloses, and at solid glass that
-    /// stands in either; unless it is nothing, photons of other media do not count.
+    /// What volume estimates do at the edge of a region, of an interior that one solid shape encloses, and at solid bodies that
+    /// stand in either; unless it is nothing, photons of other media do not count.
     pub treatment: Treatment,
     /// Which photons volume estimates reject behind the scene's bodies.
     pub rejection: Rejection,
