@@ -1,9 +1,9 @@
 //! Where each medium is, as far as the balls of volume estimates need to know.
 //!
 //! The faces of a region, and of an interior that one sphere, cuboid or slab of glass encloses, are known in closed form,
-//! and so are the solid bodies that stand in them: glass, blocks, lamps. Boxes made of rectangles are none. Where another shape bounds an interior (a lathe, a mesh, a
-//! height field, a rectangle such as the level of water) its faces are left untreated: estimates read low there, up to half
-//! on the face itself. Photons of other media are told apart everywhere.
+//! and so are the solid bodies that stand in them: glass, blocks, lamps. Boxes made of rectangles are none. Where another
+//! shape bounds an interior (a lathe, a mesh, a height field, a rectangle such as the level of water) its faces are left
+//! untreated: estimates read low there, up to half on the face itself. Photons of other media are told apart everywhere.
 
 use crate::estimators::boundary::{Boundary, Treatment};
 use crate::geometry::Shape;
