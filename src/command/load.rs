@@ -66,7 +66,7 @@ impl Source {
         if is_bare_name {
             bail!("no such scene: {}", unknown_scene(&self.scene));
         }
-        let text = std::fs::read_to_string(path).with_context(|| self.scene.clone())?;
+        let text = std::fs::read_to_string(path).with_context(|| format!("cannot read {}", self.scene))?;
         let mut file: SceneFile =
             toml::from_str(&text).map_err(|e| anyhow!(located(&self.scene, &text, &e)))?;
         let mut root = toml::Value::Table(toml::from_str(&text)?);

@@ -21,20 +21,15 @@ use std::process::ExitCode;
 use turbid::estimators::Kernel;
 use turbid::output::Format;
 
-/// What can be asked.
+/// What can be asked. The help of each is what its own file says: a word here would replace all of it.
 #[derive(Subcommand)]
+#[allow(missing_docs, reason = "a comment on a variant would hide the long help of its command")]
 pub enum Command {
-    /// Measure the sensors of a scene by paths or by photons.
     Measure(measure::Measure),
-    /// Say which radius and how many photons reach a wanted error, and what the path tracer would need.
     Advise(advise::Advise),
-    /// Draw the picture that a scene's camera sees, by photon maps, by paths or by light tracing.
     Render(Box<render::Render>),
-    /// Draw the photons that a scene's maps hold, and export them.
     Map(Box<map::Map>),
-    /// Say what a scene requires, and which path classes no sampler reaches.
     Check(check::Check),
-    /// List the built-in scenes, or print one.
     Scenes(scenes::Scenes),
 }
 

@@ -74,9 +74,9 @@ pub struct Render {
     /// Threads [default: all cores].
     #[arg(long, value_parser = clap::value_parser!(u16).range(1..=1024))]
     threads: Option<u16>,
-    #[command(flatten, next_help_heading = "Photons")]
+    #[command(flatten, next_help_heading = "Photon maps (only --with photons)")]
     photons: Photons,
-    #[command(flatten, next_help_heading = "Photons")]
+    #[command(flatten, next_help_heading = "Photon maps (only --with photons)")]
     reading: Reading,
 }
 

@@ -29,7 +29,19 @@ pub fn write_atomically(
     write: impl FnOnce(&mut dyn Write) -> io::Result<()>,
 ) -> Result<(), WriteError> {
     let path = path.as_ref();
-    try_write(path, write).map_err(|cause| WriteError { path: path.to_path_buf(), cause })
+    try_write(path, write).map_err(|cause| WriteError { path: path.to_path_buf(), cause: bare(cause) })
+}
+
+/// The system's own error, without the name of the temporary file in which it happened.
+fn bare(error: io::Error) -> io::Error {
+    let mut cause: Option<&(dyn std::error::Error + 'static)> = Some(&error);
+    while let Some(inner) = cause {
+        if let Some(code) = inner.downcast_ref::<io::Error>().and_then(io::Error::raw_os_error) {
+            return io::Error::from_raw_os_error(code);
+        }
+        cause = inner.source();
+    }
+    error
 }
 
 fn try_write(path: &Path, write: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> io::Result<()> {
@@ -74,6 +86,22 @@ mod tests {
         write_atomically(&path, |w| w.write_all(b"two")).unwrap();
         assert_eq!(fs::read(&path).unwrap(), b"two");
         assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 1);
+    }
+
+    /// What a temporary file adds to the system's errors, its own name, is taken off again.
+    #[test]
+    fn the_temporary_file_is_not_named() {
+        #[derive(Debug, thiserror::Error)]
+        #[error("{cause} at path \"/tmp/.turbid-x.tmp\"")]
+        struct At {
+            #[source]
+            cause: io::Error,
+        }
+        let full = || io::Error::from_raw_os_error(28);
+        for error in [full(), io::Error::new(io::ErrorKind::StorageFull, At { cause: full() })] {
+            assert_eq!(bare(error).to_string(), full().to_string());
+        }
+        assert_eq!(bare(io::Error::other("no")).to_string(), "no");
     }
 
     #[test]

@@ -69,10 +69,10 @@ impl Tabulated {
                 [angle, value] => match (angle.parse(), value.parse()) {
                     (Ok(angle), Ok(value)) => lines.push((i + 1, angle, value)),
                     _ => {
-                        return refuse(
-                            &file,
-                            format!("line {}: `{}` is no pair of numbers", i + 1, line.trim()),
-                        );
+                        // Of a file that is none of ours a few signs, and none that a terminal would obey.
+                        let line: String =
+                            line.trim().chars().take(40).flat_map(char::escape_debug).collect();
+                        return refuse(&file, format!("line {}: `{line}` is no pair of numbers", i + 1));
                     }
                 },
                 _ => {

@@ -54,7 +54,7 @@ fn wrong_meshes() {
         ("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1/1 2/1 3/1\n", "no vt stands before this line"),
         ("v 0 0 0\nv 1 0 0\nv 2 0 0\nf 1 2 3\n", "part.obj"),
         ("curv 0 1\n", "part.obj:1: unknown statement `curv`"),
-        ("\u{0}\u{1}\u{2}", "part.obj:1: "),
+        ("\u{0}\u{1b}[2J", "part.obj:1: unknown statement `\\0\\u{1b}[2J`"),
     ] {
         folder.file("part.obj", mesh);
         refuses_naming(&["check", text(&scene)], &["scene.toml: objects[0]", words]);

@@ -22,10 +22,10 @@ fn scene_files_that_cannot_be_read() {
     let broken = file("syntax.toml", "cell = 4.0\nregions = [\n");
     refuses_naming(&["check", text(&broken)], &["syntax.toml:2:", "array"]);
     let empty = file("empty.toml", "");
-    refuses_naming(&["check", text(&empty)], &["empty.toml:1:1", "lights"]);
+    refuses_naming(&["check", text(&empty)], &["empty.toml: a scene needs at least one light"]);
     let bytes = folder.0.path().join("bytes.toml");
     std::fs::write(&bytes, [0xff, 0xfe, 0x00]).unwrap();
-    refuses_naming(&["check", text(&bytes)], &["bytes.toml"]);
+    refuses_naming(&["check", text(&bytes)], &["cannot read", "bytes.toml", "UTF-8"]);
 }
 
 /// A number or name of the slab's file replaced by another: the refusal names line, column and key.

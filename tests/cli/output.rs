@@ -149,6 +149,15 @@ fn help_and_version() {
     for arguments in [&["--help"][..], &["measure", "--help"], &["help", "check"]] {
         assert!(succeeds(arguments).contains("Usage:"));
     }
+    // The long help is there, what each part of a picture is among it.
+    for (command, told) in [
+        ("render", &["variance.direct.R", "Light tracing", "SCENES.md", "--with photons)"][..]),
+        ("map", &["hidden", "--ply writes"]),
+        ("measure", &["no standard error from a single map"]),
+    ] {
+        let help = succeeds(&[command, "--help"]).split_whitespace().collect::<Vec<_>>().join(" ");
+        told.iter().for_each(|words| assert!(help.contains(words), "{command}: no `{words}` in {help}"));
+    }
 }
 
 /// A reader that leaves early is no error.

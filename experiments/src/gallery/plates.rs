@@ -46,7 +46,8 @@ pub fn plates(
     plate("photons", told("Photon maps", &ours.facts), &exposed(&ours.total))?;
     if let Some(Others { equal, twin, cost, masked, .. }) = others {
         plate("paths", told("Paths in the same time", &equal.facts), &exposed(&equal.total))?;
-        let caption = format!("The twin: {} samples a pixel, {} of CPU time", cost.0, duration(cost.1));
+        let by = picture.by_light.words();
+        let caption = format!("The twin, {by}: {} samples a pixel, {} of CPU time", cost.0, duration(cost.1));
         plate("twin", caption, &exposed(twin))?;
         let (half, ours, twin) = (grid.halved(), grid.reduced(&ours.total), grid.reduced(twin));
         let caption = format!(

@@ -173,7 +173,7 @@ impl<'a> Studio<'a> {
             *n += 1;
             by_light.rest(&self.scene, ray, within, stream)
         })?;
-        let found = by_light.trace(self, samples, streams)?;
+        let found = by_light.trace(&self.scene, &self.camera, samples, streams)?;
         let facts = self.path_facts(start, samples, replicate);
         Ok(Kept::new(facts, &film).with(&found))
     }

@@ -92,6 +92,8 @@ impl Obj {
             Some("f") => self.face(words),
             Some(word) if PASSED_OVER.contains(&word) => Ok(()),
             Some(word) => {
+                // Of a file that is none of ours a few signs, and none that a terminal would obey.
+                let word: String = word.chars().take(20).flat_map(char::escape_debug).collect();
                 Err(format!("unknown statement `{word}`; allowed: v, vt, vn, f, o, g, s, mtllib, usemtl"))
             }
         }

@@ -90,7 +90,7 @@ pub fn untreated(scene: &Scene) -> Vec<&str> {
 impl Home {
     /// What an estimate in the medium of this number does at its boundary.
     pub fn boundary<'a>(&'a self, scene: &'a Scene, number: usize, treatment: Treatment) -> Boundary<'a> {
-        let known = self.shape.as_ref().and_then(|shape| Boundary::new(shape.clone(), treatment).ok());
+        let known = self.shape.as_ref().and_then(|shape| Boundary::of(shape, treatment));
         let boundary = known.unwrap_or_else(|| Boundary::unknown(treatment));
         let boundary = match &self.others {
             Some(others) if self.is_only => boundary.about(others),
