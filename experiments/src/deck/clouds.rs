@@ -99,7 +99,7 @@ fn filled(scene: &Scene, emitted: u64, seed: u64, replicate: u64) -> anyhow::Res
 /// Measures one cell.
 pub fn measure(settings: &Settings, cell: &CellId) -> anyhow::Result<CellOutput> {
     let (scene, replicate) = (scene()?, cell.stream("deck"));
-    let camera = scene.camera().context("the cloud has no camera")?.clone();
+    let camera = *scene.camera().context("the cloud has no camera")?;
     let mut output = CellOutput::new();
     let none = filled(scene, 0, settings.seed, replicate)?;
     let maps = output.time("map", |_| filled(scene, photons(settings), settings.seed, replicate))?;
