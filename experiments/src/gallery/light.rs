@@ -166,7 +166,7 @@ mod tests {
     use turbid::scene::SceneFile;
     use turbid::stats::{Moments, student_p};
 
-    /// A glass ball over a floor, beside a lamp large enough for paths to find it through the glass.
+    /// A glass ball over a floor before a wall, beside a lamp large enough for paths to find it through the glass.
     const BALL: &str = r#"
         interiors = [{ name = "glass", index = 1.5 }]
         [camera]
@@ -180,6 +180,9 @@ mod tests {
         surface = { dielectric = { inside = "glass" } }
         [[objects]]
         shape = { rectangle = { corner = [-3.0, 0.0, 3.0], u = [6.0, 0.0, 0.0], v = [0.0, 0.0, -6.0] } }
+        surface = { lambertian = { reflectance = 0.6 } }
+        [[objects]]
+        shape = { rectangle = { corner = [-3.0, 0.0, -1.8], u = [6.0, 0.0, 0.0], v = [0.0, 4.0, 0.0] } }
         surface = { lambertian = { reflectance = 0.6 } }
         [[lights]]
         area = { shape = { sphere = { center = [-1.5, 2.6, -0.5], radius = 0.6 } }, radiance = 5 }
