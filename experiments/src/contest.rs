@@ -65,7 +65,7 @@ pub fn cheapest(maps: &[Maps], pixels: f64, square: f64) -> Option<(usize, f64)>
 }
 
 /// Root mean square errors that are looked at, over the picture's mean.
-const RANGE: (f64, f64) = (0.002, 2.0);
+pub const RANGE: (f64, f64) = (0.002, 2.0);
 /// Steps from one end to the other, even in the logarithm.
 const STEPS: u32 = 240;
 

@@ -35,6 +35,7 @@ use glam::DVec3;
 use images::images;
 use moments::inward_normal;
 use rejection::{Sieve, is_near};
+use std::borrow::Cow;
 
 /// What an estimate does about the part of its ball that lies outside the medium.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -70,7 +71,7 @@ impl Treatment {
 #[derive(Debug, Clone)]
 pub struct Boundary<'a> {
     /// The shape of the medium; none where it is not known, and its own faces are left untreated.
-    medium: Option<Shape>,
+    medium: Option<Cow<'a, Shape>>,
     treatment: Treatment,
     rejection: Rejection,
     walls: &'a [Shape],
@@ -91,7 +92,7 @@ impl Boundary<'static> {
         if !medium.is_solid() {
             return Err(Error::Scene("a rectangle bounds no medium: name a sphere, slab or cuboid".into()));
         }
-        Ok(Boundary { medium: Some(medium), ..Boundary::unknown(treatment) })
+        Ok(Boundary { medium: Some(Cow::Owned(medium)), ..Boundary::unknown(treatment) })
     }
 
     /// Of a medium whose shape is not known: only what else lies in it is treated.
@@ -113,6 +114,12 @@ const SHELLS: u32 = 8;
 const DIRECTIONS: u32 = 32;
 
 impl<'a> Boundary<'a> {
+    /// A treatment of the surface of a medium of this shape, which is borrowed; none where it has no inside.
+    pub fn of(medium: &'a Shape, treatment: Treatment) -> Option<Self> {
+        let medium = medium.is_solid().then_some(Cow::Borrowed(medium))?;
+        Some(Boundary { medium: Some(medium), ..Boundary::unknown(treatment) })
+    }
+
     /// The same, with photons rejected that walls part from the point.
     pub fn with_walls(self, rejection: Rejection, walls: &'a [Shape]) -> Self {
         Boundary { rejection, walls, ..self }

@@ -1,9 +1,9 @@
 //! Where each medium is, as far as the balls of volume estimates need to know.
 //!
 //! The faces of a region, and of an interior that one sphere, cuboid or slab of glass encloses, are known in closed form,
-//! and so are the solid bodies that stand in them: glass, blocks, lamps. Boxes made of rectangles are none. Where another shape bounds an interior (a lathe, a mesh, a
-//! height field, a rectangle such as the level of water) its faces are left untreated: estimates read low there, up to half
-//! on the face itself. Photons of other media are told apart everywhere.
+//! and so are the solid bodies that stand in them: glass, blocks, lamps. Boxes made of rectangles are none. Where another
+//! shape bounds an interior (a lathe, a mesh, a height field, a rectangle such as the level of water) its faces are left
+//! untreated: estimates read low there, up to half on the face itself. Photons of other media are told apart everywhere.
 
 use crate::estimators::boundary::{Boundary, Treatment};
 use crate::geometry::Shape;
@@ -90,7 +90,7 @@ pub fn untreated(scene: &Scene) -> Vec<&str> {
 impl Home {
     /// What an estimate in the medium of this number does at its boundary.
     pub fn boundary<'a>(&'a self, scene: &'a Scene, number: usize, treatment: Treatment) -> Boundary<'a> {
-        let known = self.shape.as_ref().and_then(|shape| Boundary::new(shape.clone(), treatment).ok());
+        let known = self.shape.as_ref().and_then(|shape| Boundary::of(shape, treatment));
         let boundary = known.unwrap_or_else(|| Boundary::unknown(treatment));
         let boundary = match &self.others {
             Some(others) if self.is_only => boundary.about(others),
