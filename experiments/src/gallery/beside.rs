@@ -12,15 +12,16 @@ use super::predict::{Radii, predicted, radius};
 use super::shown::Compared;
 use crate::harness::say;
 use turbid::Spectrum;
+use turbid::integrators::Layer;
 use turbid::stats::Interval;
 
 /// Predicted relative error above which a pixel is masked.
 const LIMIT: f64 = 0.02;
 /// Standard error of a block's mean that the twin is given samples for: a third of what would be masked.
 const WANTED: f64 = LIMIT / 3.0;
-/// The most photons that are emitted for the making from which blur is predicted, and how many times the original's at most.
+/// The most photons that are emitted for a making from which blur is predicted, and how many times the original's at most.
 const FINE: (u64, u64) = (20_000_000, 16);
-/// Samples a pixel of that making.
+/// Samples a pixel of such a making.
 const FINE_SAMPLES: u64 = 4;
 /// Makings of either side that are compared.
 const COMPARED: u64 = FEWEST as u64;
@@ -124,23 +125,27 @@ fn predict(small: &Makings, ours: &Kept) -> anyhow::Result<(Vec<f64>, f64)> {
     let (studio, picture) = (small.studio, small.studio.picture);
     let emitted = ours.facts.emitted;
     let factor = (FINE.0 / emitted[0].max(emitted[1]).max(1)).clamp(2, FINE.1);
-    let fine = small.photons_by_class("fine", FINE_SAMPLES, 1 + COMPARED, factor)?;
+    let fine = |n: u64| small.photons_by_class(&format!("fine-{n}"), FINE_SAMPLES, 1 + COMPARED + n, factor);
+    let (one, other) = (fine(0)?, fine(1)?);
     let power = studio.scene.power().sum();
     let [_, _, volume] = ours.facts.radii;
-    let radii: Vec<Radii> = fine
+    let radii: Vec<Radii> = one
         .layers
         .iter()
-        .map(|l| {
+        .zip(&other.layers)
+        .map(|(a, b)| {
+            let mean = |layer: Layer| (a[layer] + b[layer]) * 0.5;
             let reach = |map: usize, radiance: Spectrum| {
                 let each = power / emitted[map].max(1) as f64;
                 radius(picture.nearest[map], each, radiance.sum(), picture.reach)
             };
-            let seen = if picture.gather == 0 { reach(0, l.indirect) } else { 0.0 };
-            let caustic = if emitted[1] > 0 { reach(1, l.caustic) } else { 0.0 };
+            let seen = if picture.gather == 0 { reach(0, mean(Layer::Indirect)) } else { 0.0 };
+            let caustic = if emitted[1] > 0 { reach(1, mean(Layer::Caustic)) } else { 0.0 };
             Radii { global: seen, caustic, volume }
         })
         .collect();
     let views = look(&studio.scene, &studio.camera, |i| radii[i].global.max(radii[i].caustic));
     let pixel = studio.camera.pixel_area().sqrt();
-    Ok((predicted(studio.grid(), &views, &fine.layers, &radii, pixel), fine.facts.seconds))
+    let seconds = one.facts.seconds + other.facts.seconds;
+    Ok((predicted(studio.grid(), &views, [&one.layers, &other.layers], &radii, pixel), seconds))
 }

@@ -43,6 +43,9 @@ impl ByLight {
         match self.layers {
             [] => "by paths",
             [Layer::Caustic] => "by paths, caustics that are seen straight by light tracing",
+            [Layer::Caustic, Layer::Indirect] => {
+                "by paths; caustic and indirect light that is seen straight by light tracing"
+            }
             _ => "by light tracing",
         }
     }
@@ -86,39 +89,19 @@ impl ByLight {
             return Ok(film);
         }
         self.check(scene, camera)?;
-        // What arrives by specular surfaces alone was sent towards them.
-        let by_glass = Emitter::towards_specular(scene).filter(|_| self.layers == [Layer::Caustic]);
-        let emitter = by_glass.unwrap_or_else(|| Emitter::by_power(scene));
-        let (width, height) = (i64::from(camera.width()), i64::from(camera.height()));
-        for first in (0..histories).step_by(AT_ONCE as usize) {
-            let block = |range: Range<u64>| {
-                let mut splats: Vec<Splat> = Vec::new();
-                for i in range {
-                    let mut stream =
-                        Stream::new(streams.seed, Purpose::LightTracing, streams.replicate, first + i);
-                    light_tracing(scene, camera, &emitter, &mut stream, |splat| {
-                        if self.has(splat.layer) {
-                            splats.push(splat);
-                        }
-                    });
+        // What arrives by specular surfaces alone was sent towards them; the rest may have been sent anywhere.
+        match Emitter::towards_specular(scene).filter(|_| self.has(Layer::Caustic)) {
+            Some(by_glass) => {
+                send((scene, camera), &by_glass, 0..histories, streams, |l| l == Layer::Caustic, &mut film)?;
+                if self.layers != [Layer::Caustic] {
+                    let others = |layer| layer != Layer::Caustic && self.has(layer);
+                    let next = histories..2 * histories;
+                    send((scene, camera), &Emitter::by_power(scene), next, streams, others, &mut film)?;
                 }
-                splats
-            };
-            let merge = |mut a: Vec<Splat>, b: Vec<Splat>| {
-                a.extend(b);
-                a
-            };
-            let count = AT_ONCE.min(histories - first);
-            let splats = run_blocks(count, &NoProgress, block, merge)?.unwrap_or_default();
-            for Splat { at, layer, value } in splats {
-                ensure!(value.is_finite(), "light tracing found a value that is not finite");
-                for (x, wide) in camera.filter().pixels(at.x) {
-                    for (y, high) in camera.filter().pixels(at.y) {
-                        if (0..width).contains(&x) && (0..height).contains(&y) && wide * high > 0.0 {
-                            film[(y * width + x) as usize][layer] += value * (wide * high);
-                        }
-                    }
-                }
+            }
+            None => {
+                let all = |layer| self.has(layer);
+                send((scene, camera), &Emitter::by_power(scene), 0..histories, streams, all, &mut film)?;
             }
         }
         let share = Spectrum::grey(1.0 / histories as f64);
@@ -143,6 +126,50 @@ impl ByLight {
         );
         Ok(())
     }
+}
+
+/// Sends out the histories of these numbers, and adds what they bring to the layers that are wanted.
+fn send(
+    (scene, camera): (&Scene, &Camera),
+    emitter: &Emitter,
+    histories: Range<u64>,
+    streams: Streams,
+    is_wanted: impl Fn(Layer) -> bool + Sync,
+    film: &mut [Layers],
+) -> anyhow::Result<()> {
+    let (width, height) = (i64::from(camera.width()), i64::from(camera.height()));
+    for first in histories.clone().step_by(AT_ONCE as usize) {
+        let block = |range: Range<u64>| {
+            let mut splats: Vec<Splat> = Vec::new();
+            for i in range {
+                let mut stream =
+                    Stream::new(streams.seed, Purpose::LightTracing, streams.replicate, first + i);
+                light_tracing(scene, camera, emitter, &mut stream, |splat| {
+                    if is_wanted(splat.layer) {
+                        splats.push(splat);
+                    }
+                });
+            }
+            splats
+        };
+        let merge = |mut a: Vec<Splat>, b: Vec<Splat>| {
+            a.extend(b);
+            a
+        };
+        let count = AT_ONCE.min(histories.end - first);
+        let splats = run_blocks(count, &NoProgress, block, merge)?.unwrap_or_default();
+        for Splat { at, layer, value } in splats {
+            ensure!(value.is_finite(), "light tracing found a value that is not finite");
+            for (x, wide) in camera.filter().pixels(at.x) {
+                for (y, high) in camera.filter().pixels(at.y) {
+                    if (0..width).contains(&x) && (0..height).contains(&y) && wide * high > 0.0 {
+                        film[(y * width + x) as usize][layer] += value * (wide * high);
+                    }
+                }
+            }
+        }
+    }
+    Ok(())
 }
 
 /// Whether the first body on a ray, filters apart, is specular.

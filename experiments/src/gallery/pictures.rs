@@ -80,11 +80,11 @@ pub const ALL: &[Picture] = &[
         samples: 64,
         gather: 2,
         size: 20.0,
-        reach: 2.0,
+        reach: 1.0,
         exposure: 0.85,
         beside: Beside::Maps,
         twin: 5,
-        by_light: ByLight { layers: &[Layer::Caustic], permille: 300 },
+        by_light: ByLight { layers: &[Layer::Caustic, Layer::Indirect], permille: 1000 },
     },
     Picture {
         name: "cloud",

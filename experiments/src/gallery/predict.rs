@@ -1,9 +1,10 @@
 //! What blur and edges do to each pixel of a photon-mapped picture, predicted before anything is compared.
 //!
 //! A gather averages the layer that it estimates over its disc or ball: the blur of a pixel is the mean of the layer over
-//! the footprint, minus the layer. The layers come from a making with many more photons, whose own blur is smaller, and
-//! which takes no part in the comparison. Means over the footprint R and over half of it differ by 3/4 of what the blur is
-//! where the layer curves evenly, and neither is one pixel's noise.
+//! the footprint, minus the layer. The layers come from two makings with many more photons, whose own blur is smaller, and
+//! which take no part in the comparison. Means over the footprint R and over half of it differ by 3/4 of what the blur is
+//! where the layer curves evenly. Noise must not be taken for blur, and the two makings share none: the product of their
+//! two blurs has the mean of the blur's square. It is averaged over 5 x 5 pixels, and its root is the blur.
 //!
 //! Of media it is the mean along the way through them that is averaged: that the way of the next pixel is longer blurs
 //! nothing.
@@ -32,42 +33,102 @@ pub struct Radii {
     pub volume: f64,
 }
 
+/// Pixels to either side over which squares of blurs are averaged.
+const SMOOTH: i64 = 2;
+
 /// The relative error that blur and edges may cause, by pixel: a bound, the sum of the absolute values of all terms.
 ///
-/// # Arguments   `pixel` angle between neighbouring pixels \[rad\]
-pub fn predicted(grid: Grid, views: &[View], layers: &[Layers], radii: &[Radii], pixel: f64) -> Vec<f64> {
-    let floor = 0.01 * layers.iter().map(|l| l.total().sum()).sum::<f64>() / layers.len() as f64;
-    let one = |i: usize| {
-        let radii = radii[i];
-        let planes = [(Layer::Indirect, radii.global), (Layer::Caustic, radii.caustic)];
-        let (view, total) = (&views[i], layers[i].total().sum().max(floor));
-        let mut error = 0.0;
-        for (layer, radius) in planes {
-            if radius > 0.0 && view.surface.is_some() {
-                let blur = blur(grid, i, radius / view.distance / pixel, |j| {
-                    is_same_surface(view, &views[j]).then(|| layers[j][layer].sum())
-                });
-                error += blur.abs() + view.missing * layers[i][layer].sum();
-            }
+/// # Arguments   `halves` layers by pixel of two independent makings; `pixel` angle between neighbouring pixels \[rad\]
+pub fn predicted(
+    grid: Grid,
+    views: &[View],
+    halves: [&[Layers]; 2],
+    radii: &[Radii],
+    pixel: f64,
+) -> Vec<f64> {
+    use rayon::prelude::*;
+    let of = |i: usize, layer: Layer| 0.5 * (halves[0][i][layer].sum() + halves[1][i][layer].sum());
+    let total = |i: usize| 0.5 * (halves[0][i].total().sum() + halves[1][i].total().sum());
+    let floor = 0.01 * (0..grid.pixels()).map(total).sum::<f64>() / grid.pixels() as f64;
+    let all = || (0..grid.pixels()).into_par_iter();
+    let mut errors: Vec<f64> = all().map(|i| missing(&views[i], radii[i], |layer| of(i, layer))).collect();
+    for layer in [Layer::Indirect, Layer::Caustic, Layer::Multiple] {
+        let products: Vec<f64> = all()
+            .map(|i| {
+                halves.iter().map(|half| blurred(grid, i, layer, views, half, radii[i], pixel)).product()
+            })
+            .collect();
+        let squares: Vec<f64> = all().map(|i| smoothed(grid, i, &products)).collect();
+        errors.iter_mut().zip(squares).for_each(|(error, square)| *error += square.max(0.0).sqrt());
+    }
+    errors
+        .iter()
+        .enumerate()
+        .map(|(i, e)| if total(i) > 0.0 { e / total(i).max(floor) } else { 0.0 })
+        .collect()
+}
+
+/// What one layer of a pixel gains by blur.
+fn blurred(
+    grid: Grid,
+    i: usize,
+    layer: Layer,
+    views: &[View],
+    layers: &[Layers],
+    radii: Radii,
+    pixel: f64,
+) -> f64 {
+    let view = &views[i];
+    let (length, middle) = view.medium;
+    let on_surface = |radius: f64| {
+        if radius <= 0.0 || view.surface.is_none() {
+            return 0.0;
         }
-        let (length, middle) = view.medium;
-        if radii.volume > 0.0 && length > 0.0 {
-            let blur = blur(grid, i, radii.volume / middle / pixel, |j| {
+        let value = |j: usize| is_same_surface(view, &views[j]).then(|| layers[j][layer].sum());
+        blur(grid, i, radius / view.distance / pixel, value)
+    };
+    match layer {
+        Layer::Indirect => on_surface(radii.global),
+        Layer::Caustic => on_surface(radii.caustic),
+        Layer::Multiple if radii.volume > 0.0 && length > 0.0 => {
+            blur(grid, i, radii.volume / middle / pixel, |j| {
                 let near = (views[j].distance - view.distance).abs() <= 2.0 * radii.volume;
                 let (other, _) = views[j].medium;
-                (near && other > 0.0).then(|| layers[j][Layer::Multiple].sum() * length / other)
-            });
-            let cap = if view.surface.is_some() && !view.is_at_face {
-                (3.0 / 16.0 * radii.volume / view.cosine.max(0.05) / length).min(1.0)
-            } else {
-                0.0
-            };
-            error += blur.abs() + cap * layers[i][Layer::Multiple].sum();
+                (near && other > 0.0).then(|| layers[j][layer].sum() * length / other)
+            })
         }
-        if total > 0.0 { error / total } else { 0.0 }
-    };
-    use rayon::prelude::*;
-    (0..grid.pixels()).into_par_iter().map(one).collect()
+        _ => 0.0,
+    }
+}
+
+/// What a pixel's discs and balls miss beyond edges.
+fn missing(view: &View, radii: Radii, of: impl Fn(Layer) -> f64) -> f64 {
+    let mut error = 0.0;
+    if view.surface.is_some() {
+        for (layer, radius) in [(Layer::Indirect, radii.global), (Layer::Caustic, radii.caustic)] {
+            error += if radius > 0.0 { view.missing * of(layer) } else { 0.0 };
+        }
+    }
+    let (length, _) = view.medium;
+    if radii.volume > 0.0 && length > 0.0 && view.surface.is_some() && !view.is_at_face {
+        let cap = (3.0 / 16.0 * radii.volume / view.cosine.max(0.05) / length).min(1.0);
+        error += cap * of(Layer::Multiple);
+    }
+    error
+}
+
+/// The mean of the values about a pixel.
+fn smoothed(grid: Grid, i: usize, values: &[f64]) -> f64 {
+    let (width, height) = (grid.width as i64, grid.height as i64);
+    let (x, y) = (i as i64 % width, i as i64 / width);
+    let (mut sum, mut count) = (0.0, 0.0);
+    for py in (y - SMOOTH).max(0)..=(y + SMOOTH).min(height - 1) {
+        for px in (x - SMOOTH).max(0)..=(x + SMOOTH).min(width - 1) {
+            sum += values[(py * width + px) as usize];
+            count += 1.0;
+        }
+    }
+    sum / count
 }
 
 /// Radius within which the k nearest photons lie where a layer of radiance L leaves a surface: the irradiance pi L/0.7 of
@@ -146,23 +207,42 @@ mod tests {
         (0..GRID.pixels()).map(one).collect()
     }
 
+    /// Of one making, taken twice.
+    fn of(views: &[View], layers: &[Layers], radii: Radii) -> Vec<f64> {
+        predicted(GRID, views, [layers, layers], &vec![radii; GRID.pixels()], PIXEL)
+    }
+
+    /// Noise of 10 per cent a pixel, none of it common to the makings, is no blur of 2 per cent.
+    #[test]
+    fn noise_is_no_blur() {
+        let mut stream = turbid::rng::Stream::new(3, turbid::rng::Purpose::Synthetic, 0, 0);
+        let mut noisy = || {
+            let mut layers = layers(|_, _| 1.0);
+            layers.iter_mut().for_each(|l| l.caustic *= 1.0 + 0.35 * (stream.unit() - 0.5));
+            layers
+        };
+        let (one, other) = (noisy(), noisy());
+        let radii = vec![Radii { caustic: 0.03, ..Radii::default() }; GRID.pixels()];
+        let share = |halves| {
+            let errors = predicted(GRID, &views(), halves, &radii, PIXEL);
+            errors.iter().filter(|&&e| e > 0.02).count() as f64 / errors.len() as f64
+        };
+        assert!(share([&one, &other]) < 0.1, "{}", share([&one, &other]));
+        assert!(share([&one, &one]) > 0.5, "the same noise twice is blur");
+    }
+
     /// A uniform disc blurs a paraboloid x^2 + y^2 by r^2/2, wherever it stands, and a plane not at all. Pixels of the disc
     /// are whole: within a tenth for 12 pixels.
     #[test]
     fn a_curved_layer_is_blurred_as_the_disc_says() {
         let radii = Radii { caustic: 0.12, ..Radii::default() };
         let middle = GRID.pixels() / 2;
-        let curved =
-            predicted(GRID, &views(), &layers(|x, y| x * x + y * y), &vec![radii; GRID.pixels()], PIXEL)
-                [middle];
+        let curved = of(&views(), &layers(|x, y| x * x + y * y), radii)[middle];
         let expected = 0.5 * 0.12 * 0.12 / (1.0 + 2.0 * 0.4 * 0.4);
         assert!((curved / expected - 1.0).abs() < 0.1, "{curved} {expected}");
-        let plane =
-            predicted(GRID, &views(), &layers(|x, y| 2.0 * x - y + 1.0), &vec![radii; GRID.pixels()], PIXEL)
-                [middle];
+        let plane = of(&views(), &layers(|x, y| 2.0 * x - y + 1.0), radii)[middle];
         assert!(plane < 1e-12);
-        let without =
-            predicted(GRID, &views(), &layers(|x, _| x * x), &vec![Radii::default(); GRID.pixels()], PIXEL);
+        let without = of(&views(), &layers(|x, _| x * x), Radii::default());
         assert!(without.iter().all(|&e| e == 0.0));
     }
 
@@ -172,14 +252,14 @@ mod tests {
         let radii = Radii { caustic: 0.06, ..Radii::default() };
         let step = layers(|x, _| if x < 0.4 { 1.0 } else { 3.0 });
         let beside = GRID.pixels() / 2 - 2;
-        assert!(predicted(GRID, &views(), &step, &vec![radii; GRID.pixels()], PIXEL)[beside] > 0.1);
+        assert!(of(&views(), &step, radii)[beside] > 0.1);
         let mut other = views();
         for (view, _) in other.iter_mut().zip(&step).filter(|(_, l)| l.caustic[0] > 2.0) {
             view.surface = view.surface.map(|(p, _)| (p, DVec3::X));
         }
-        assert!(predicted(GRID, &other, &step, &vec![radii; GRID.pixels()], PIXEL)[beside] < 1e-12);
+        assert!(of(&other, &step, radii)[beside] < 1e-12);
         other[beside].missing = 0.25;
-        let error = predicted(GRID, &other, &step, &vec![radii; GRID.pixels()], PIXEL)[beside];
+        let error = of(&other, &step, radii)[beside];
         assert!((error - 0.25 * 0.5).abs() < 1e-12, "{error}");
     }
 
@@ -191,10 +271,10 @@ mod tests {
         views.iter_mut().for_each(|view| view.medium = (2.0, 1.0));
         let layers = vec![Layers { multiple: Spectrum::ONE, ..Layers::ZERO }; GRID.pixels()];
         let radii = Radii { volume: 0.1, ..Radii::default() };
-        let error = predicted(GRID, &views, &layers, &vec![radii; GRID.pixels()], PIXEL)[0];
+        let error = of(&views, &layers, radii)[0];
         assert!((error - 3.0 / 16.0 * 0.05).abs() < 1e-12, "{error}");
         views.iter_mut().for_each(|view| view.is_at_face = true);
-        assert_eq!(predicted(GRID, &views, &layers, &vec![radii; GRID.pixels()], PIXEL)[0], 0.0);
+        assert_eq!(of(&views, &layers, radii)[0], 0.0);
     }
 
     /// Even fog behind a slanted front: the way grows from pixel to pixel, and the light with it, but nothing is blurred; light
@@ -213,12 +293,12 @@ mod tests {
             };
             views.iter().enumerate().map(one).collect()
         };
-        let radii = vec![Radii { volume: 0.12, ..Radii::default() }; GRID.pixels()];
-        let even = predicted(GRID, &views, &lit(&|_| 1.0), &radii, PIXEL);
+        let radii = Radii { volume: 0.12, ..Radii::default() };
+        let even = of(&views, &lit(&|_| 1.0), radii);
         assert!(even.iter().all(|&e| e < 1e-12));
         let away = |i: usize| (i / GRID.width) as f64 * PIXEL - 0.4;
         let curved = lit(&|i| 1.0 + away(i) * away(i));
-        let middle = predicted(GRID, &views, &curved, &radii, PIXEL)[GRID.pixels() / 2];
+        let middle = of(&views, &curved, radii)[GRID.pixels() / 2];
         assert!((middle / (0.25 * 0.12 * 0.12) - 1.0).abs() < 0.1, "{middle}");
     }
 }

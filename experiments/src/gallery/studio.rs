@@ -121,7 +121,7 @@ impl<'a> Studio<'a> {
         let start = ProcessTime::now();
         let maps = self.maps(replicate, factor)?;
         let map_seconds = start.elapsed().as_secs_f64();
-        let settings = recipe::reading(self.picture)?;
+        let settings = recipe::reading(self.picture, factor)?;
         let reader = mapper::Mapper::new(&self.scene, &maps, &settings);
         let within = self.scene.interior_at(self.camera.position());
         let mut film = Film::new(self.camera.width(), self.camera.height());
