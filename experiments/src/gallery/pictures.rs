@@ -112,8 +112,8 @@ pub const ALL: &[Picture] = &[
                    for the picture",
         photons: [Amount::Stored(135_000), NONE, Amount::Stored(65_000)],
         nearest: [100, 60, 100],
-        samples: 12,
-        gather: 4,
+        samples: 8,
+        gather: 8,
         // Steps of 0.2: thin fog needs no shorter ones.
         size: 4.0,
         reach: 0.2,
@@ -131,8 +131,8 @@ pub const ALL: &[Picture] = &[
                    for the picture",
         photons: [Amount::Stored(135_000), NONE, Amount::Stored(65_000)],
         nearest: [100, 60, 100],
-        samples: 16,
-        gather: 6,
+        samples: 10,
+        gather: 8,
         // Steps of 0.2: thin fog needs no shorter ones.
         size: 4.0,
         reach: 0.2,
@@ -144,14 +144,14 @@ pub const ALL: &[Picture] = &[
     Picture {
         name: "cornell-smoke",
         title: "The same in drifting smoke",
-        see: "Shreds of smoke take light from the walls behind them and cast soft shadows on the floor. Numbers of photons \
+        see: "A bank of smoke on the left takes light from the wall and the block behind it; on the right the air is nearly clear. Numbers of photons \
               are the original's but for the 100 in an estimate on surfaces, which are ours, as the samples are.",
         original: "200,000 photons, of them 65,000 in the volume map, 50 in an estimate: 6 s for the maps (4 s elsewhere in \
                    the same source) and 7 min 54 s for the picture",
         photons: [Amount::Stored(135_000), NONE, Amount::Stored(65_000)],
         nearest: [100, 60, 50],
-        samples: 12,
-        gather: 6,
+        samples: 8,
+        gather: 8,
         // Steps of 0.2: thin fog needs no shorter ones.
         size: 4.0,
         reach: 0.2,

@@ -56,11 +56,11 @@ impl<'a> Studio<'a> {
         Ok(Studio { picture, scene, camera, seed, program: program.to_string(), text })
     }
 
-    /// The same at half the width and height, for what is only compared, by the settings of `picture`.
-    pub fn halved(&self, picture: &'a Picture) -> anyhow::Result<Self> {
+    /// The same at half the width and height, for what is only compared.
+    pub fn halved(&self) -> anyhow::Result<Self> {
         let camera = self.camera.with_size(self.camera.width() / 2, self.camera.height() / 2)?;
         let (scene, program, text) = (self.scene.clone(), self.program.clone(), self.text.clone());
-        Ok(Studio { picture, scene, camera, seed: self.seed, program, text })
+        Ok(Studio { picture: self.picture, scene, camera, seed: self.seed, program, text })
     }
 
     /// Size of the picture.
