@@ -85,8 +85,8 @@ impl<'a> Studio<'a> {
     pub fn photon_words(&self, samples: u64, replicate: u64, factor: u64) -> String {
         let p = self.picture;
         let counts = format!(
-            "photons {:?} x {factor}, nearest {:?} within {}, gather {}, size {}",
-            p.photons, p.nearest, p.reach, p.gather, p.size
+            "photons {:?} x {factor}, nearest {:?} within {}, gather {} from {}, size {}",
+            p.photons, p.nearest, p.reach, p.gather, p.near, p.size
         );
         self.words(&counts, samples, replicate)
     }
