@@ -22,8 +22,8 @@ pub struct View {
     /// Share of a disc of the probed radius about the place that lies off the surface; 0 of a flat surface, where
     /// estimates are divided by the share that lies on it.
     pub missing: f64,
-    /// Whether the regions of fog end where the surface is: behind it there is none, and estimates are divided by the part
-    /// of their balls that lies inside.
+    /// Whether the fog ends where the surface is, at its region's edge or at a solid body: behind it there is none, and
+    /// estimates are divided by the part of their balls that lies inside.
     pub is_at_face: bool,
 }
 
@@ -51,15 +51,19 @@ impl Visitor for Eye<'_> {
         let Target::Object(index) = found.target else { return };
         let shape = &self.scene.objects()[index].shape;
         self.is_flat = matches!(shape, Shape::Rectangle(_) | Shape::Cuboid(_));
+        // As the mapper does it: where there is one medium alone.
+        let is_solid = shape.is_solid() && self.scene.regions().len() == 1;
         let normal = found.hit.normal;
         let normal = if normal.dot(walker.ray.dir) > 0.0 { -normal } else { normal };
         self.view.surface = Some((walker.ray.at(end), normal));
         self.view.cosine = normal.dot(walker.ray.dir).abs();
         let behind = walker.ray.at(end) - 1e-6 * end * normal;
         let mut regions = self.scene.regions().iter();
-        self.view.is_at_face = regions.all(|Region { shape, .. }| {
-            matches!(shape, Shape::Sphere(_) | Shape::Cuboid(_) | Shape::Slab(_)) && !shape.contains(behind)
-        });
+        self.view.is_at_face = is_solid
+            || regions.all(|Region { shape, .. }| {
+                matches!(shape, Shape::Sphere(_) | Shape::Cuboid(_) | Shape::Slab(_))
+                    && !shape.contains(behind)
+            });
     }
 }
 

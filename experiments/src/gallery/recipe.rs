@@ -27,6 +27,7 @@ pub fn reading(picture: &Picture, factor: u64) -> turbid::Result<mapper::Setting
         gather.1 = Gather::nearest(k * factor.isqrt() as usize, picture.reach)?;
     }
     settings.gather_rays = picture.gather.max(1);
+    settings.near = picture.near;
     Ok(settings)
 }
 
@@ -52,6 +53,7 @@ pub fn arguments(picture: &Picture, seed: u64) -> anyhow::Result<Vec<String>> {
     flag("--volume-k", volume_k);
     flag("--max-radius", picture.reach.to_string());
     flag("--gather-rays", picture.gather.to_string());
+    flag("--near", picture.near.to_string());
     flag("--step", settings.march.step.get().to_string());
     flag("--adapt", settings.march.adaptive.map_or(0.0, |a| a.tolerance).to_string());
     flag("--exposure", super::develop::tone(picture.exposure).exposure.to_string());

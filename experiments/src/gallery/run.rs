@@ -16,8 +16,6 @@ use std::path::Path;
 use std::process::ExitCode;
 use turbid::output::write_atomically;
 
-/// The most rays of a final gathering where makings are only compared.
-const COMPARED_GATHER: u32 = 2;
 /// CPU seconds of a picture, about: what the pictures' samples and photons are chosen for.
 const EXPECTED: f64 = 330.0;
 
@@ -89,9 +87,7 @@ fn write(path: &Path, bytes: &[u8]) -> anyhow::Result<()> {
 /// Everything of one picture.
 fn one(picture: &Picture, settings: &Settings, folder: &Path, program: &str) -> anyhow::Result<Shown> {
     let studio = Studio::open(picture, &settings.scenes, settings.scale(), settings.seed, program)?;
-    // Fewer rays of a gathering have the same mean, and the maps' own errors are not theirs.
-    let coarse = Picture { gather: picture.gather.min(COMPARED_GATHER), ..*picture };
-    let half = studio.halved(&coarse)?;
+    let half = studio.halved()?;
     let kept = settings.makings().join(picture.name);
     std::fs::create_dir_all(&kept)?;
     let large = Makings { settings, folder: kept.clone(), studio: &studio };

@@ -56,11 +56,11 @@ impl<'a> Studio<'a> {
         Ok(Studio { picture, scene, camera, seed, program: program.to_string(), text })
     }
 
-    /// The same at half the width and height, for what is only compared, by the settings of `picture`.
-    pub fn halved(&self, picture: &'a Picture) -> anyhow::Result<Self> {
+    /// The same at half the width and height, for what is only compared.
+    pub fn halved(&self) -> anyhow::Result<Self> {
         let camera = self.camera.with_size(self.camera.width() / 2, self.camera.height() / 2)?;
         let (scene, program, text) = (self.scene.clone(), self.program.clone(), self.text.clone());
-        Ok(Studio { picture, scene, camera, seed: self.seed, program, text })
+        Ok(Studio { picture: self.picture, scene, camera, seed: self.seed, program, text })
     }
 
     /// Size of the picture.
@@ -85,8 +85,8 @@ impl<'a> Studio<'a> {
     pub fn photon_words(&self, samples: u64, replicate: u64, factor: u64) -> String {
         let p = self.picture;
         let counts = format!(
-            "photons {:?} x {factor}, nearest {:?} within {}, gather {}, size {}",
-            p.photons, p.nearest, p.reach, p.gather, p.size
+            "photons {:?} x {factor}, nearest {:?} within {}, gather {} from {}, size {}",
+            p.photons, p.nearest, p.reach, p.gather, p.near, p.size
         );
         self.words(&counts, samples, replicate)
     }
