@@ -20,7 +20,7 @@ const LIMIT: f64 = 0.02;
 /// Standard error of a block's mean that the twin is given samples for: a third of what would be masked.
 const WANTED: f64 = LIMIT / 3.0;
 /// The most photons that are emitted for a making from which blur is predicted, and how many times the original's at most.
-const FINE: (u64, u64) = (20_000_000, 16);
+const FINE: (u64, u64) = (8_000_000, 8);
 /// Samples a pixel of such a making.
 const FINE_SAMPLES: u64 = 4;
 /// Makings of either side that are compared.

@@ -213,11 +213,10 @@ pub const ALL: &[Picture] = &[
         name: "pool",
         title: "A pool",
         see: "Under an opening in the roof, the net of light on the tiles is drawn by the same waves through which it is \
-              seen. Numbers of photons and samples \
-              are ours.",
+              seen. Numbers of photons and samples are ours.",
         original: "the closing picture of the lectures, without numbers",
-        photons: [Amount::Stored(60_000), Amount::Stored(500_000), NONE],
-        nearest: [100, 30, 60],
+        photons: [Amount::Stored(60_000), Amount::Stored(200_000), NONE],
+        nearest: [100, 20, 60],
         samples: 16,
         gather: 2,
         near: 0.0,
