@@ -22,7 +22,7 @@ const WANTED: f64 = LIMIT / 3.0;
 /// The most photons that are emitted for a making from which blur is predicted, and how many times the original's at most.
 const FINE: (u64, u64) = (8_000_000, 8);
 /// Samples a pixel of such a making.
-const FINE_SAMPLES: u64 = 4;
+const FINE_SAMPLES: u64 = 8;
 /// Makings of either side that are compared.
 const COMPARED: u64 = FEWEST as u64;
 /// Passes of a sample a pixel by which the twin's samples are chosen.
