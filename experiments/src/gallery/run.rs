@@ -9,7 +9,7 @@ use super::settings::Settings;
 use super::shown::Shown;
 use super::studio::Studio;
 use super::{assets, page};
-use crate::harness::{duration, program_digest, say};
+use crate::harness::{duration, one_line, program_digest, say};
 use anyhow::Context;
 use clap::Parser;
 use std::path::Path;
@@ -28,7 +28,7 @@ pub fn main() -> ExitCode {
             return ExitCode::from(if written.is_ok() { 0 } else { 2 });
         }
         Err(error) => {
-            say(error.to_string().trim_end());
+            say(&one_line(&error.to_string()));
             return ExitCode::from(2);
         }
     };

@@ -44,4 +44,5 @@ pub(crate) use section::row_label;
 pub use section::{FigureFiles, OtherWidth, Section, Table, bar};
 pub use settings::{Preset, Replot, Settings};
 pub(crate) use study::cost_line;
+pub(crate) use study::one_line;
 pub use study::{Closing, Outcome, SectionReport, Study, main, main_with, run};

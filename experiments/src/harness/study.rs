@@ -155,7 +155,7 @@ fn ended(finished: anyhow::Result<u8>) -> ExitCode {
 }
 
 /// A message of the parser in one line, without usage and hints where to look.
-fn one_line(text: &str) -> String {
+pub(crate) fn one_line(text: &str) -> String {
     let parts = text.lines().map(str::trim).filter(|part| !part.is_empty());
     let parts: Vec<&str> = parts
         .take_while(|part| !part.starts_with("Usage:") && !part.starts_with("For more information"))
