@@ -126,7 +126,7 @@ fn the_best_radius_of_uncollided_photons() {
     let probes = [1.0, 2.0].map(|t| (scenes::at_depth(t), exp(-t))).to_vec();
     let case = Case::new(&scene, probes);
     let (advice, relative) =
-        case.check("squared error over the advised one, uncollided", 8_000_000, 0.05, 384, 19);
+        case.check("squared error over the advised one, uncollided", 8_000_000, 0.05, 512, 19);
     // The wrong twin leaves the bias out.
     verdict::rejects("bias left out", &relative, (advice.noise / advice.error).powi(2), 19);
     // Bias r^2/10 with error^2 = 7/3 bias^2: r = sqrt(10 x 0.05 sqrt(3/7)) = 0.572. The optimum is flat: the radius is

@@ -185,6 +185,7 @@ mod tests {
         let cells = cells(64, 0.0);
         let fit = Fit::of(&cells.iter().collect::<Vec<_>>(), Currency::Seconds);
         assert!(fit.maps[0].bias < 0.0005, "{:?}", fit.maps);
-        assert_eq!((fit.maps[0].fill, fit.maps[0].sample), (1.0, 0.1));
+        // A mean of 64 equal numbers, to rounding.
+        assert!((fit.maps[0].fill - 1.0).abs() < 1e-12 && (fit.maps[0].sample - 0.1).abs() < 1e-12);
     }
 }
