@@ -4,11 +4,12 @@ use super::run;
 
 const PROGRAM: &str = env!("CARGO_BIN_EXE_blur");
 
-/// Two studies of a fiftieth of the photons, some ten seconds each: every map of the real one is shot, every case
+/// A fiftieth of the photons, some ten seconds: every map of the real one is shot, every case
 /// predicted, gathered, judged and drawn.
 #[test]
-fn the_same_results_on_one_thread_and_two() {
+fn every_case_is_judged_and_drawn() {
     let folder = tempfile::tempdir().unwrap();
-    let one = run::same_on_threads(PROGRAM, "0.02", folder.path());
-    assert!(run::figures(&one) >= 4);
+    let one = folder.path();
+    run::run(PROGRAM, "0.02", "2", one);
+    assert!(run::figures(one) >= 4);
 }
