@@ -53,7 +53,7 @@ pub fn page(shown: &[Shown], settings: &Settings) -> Markup {
                     "samples and times are those of the lectures or the paper; everything else is measured here."
                 }
                 p.soft {
-                    "How the verdict is found: what blur and edges do to each pixel is predicted from another making with up to 16 times as "
+                    "How the verdict is found: what blur and edges do to each pixel is predicted from two other makings, with up to 8 times as "
                     "many photons, before anything is compared; pixels where they may cost more than 2 per cent are masked, and what was "
                     "predicted for the others is allowed. Outside the mask the means of blocks of 16 by 16 pixels of 64 makings with maps "
                     "of their own are compared with those of 64 passes of the twin, channel by channel (Holm, family-wise 0.001). Both "
