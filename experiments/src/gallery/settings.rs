@@ -69,19 +69,16 @@ impl Settings {
         if self.quick { 0.5 } else { 1.0 }
     }
 
-    /// The command that repeats it.
+    /// The command that makes the whole page: `--only` has made a part of it.
     pub fn command(&self) -> String {
         let mut text = "cargo run --release --bin gallery".to_string();
         let flags = [(self.quick, " --quick"), (self.draft, " --draft")];
-        if flags.iter().any(|f| f.0) || !self.only.is_empty() || self.seed != 1 {
+        if flags.iter().any(|f| f.0) || self.seed != 1 {
             text.push_str(" --");
         }
         flags.iter().filter(|f| f.0).for_each(|f| text.push_str(f.1));
         if self.seed != 1 {
             text.push_str(&format!(" --seed {}", self.seed));
-        }
-        if !self.only.is_empty() {
-            text.push_str(&format!(" --only {}", self.only.join(",")));
         }
         text
     }
