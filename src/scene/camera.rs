@@ -141,6 +141,20 @@ impl Camera {
         self.forward
     }
 
+    /// The pixels that may have a sample at a place of the raster, by number row by row from the top left, with its density
+    /// in each.
+    pub fn pixels(&self, at: DVec2) -> impl Iterator<Item = (usize, f64)> + use<> {
+        let (width, height) = (i64::from(self.view.width), i64::from(self.view.height));
+        let rows = self.view.filter.pixels(at.y);
+        let columns = self.view.filter.pixels(at.x).into_iter();
+        columns.flat_map(move |(x, wide)| rows.map(move |(y, high)| (x, y, wide * high))).filter_map(
+            move |(x, y, density)| {
+                let is_inside = (0..width).contains(&x) && (0..height).contains(&y);
+                (is_inside && density > 0.0).then_some(((y * width + x) as usize, density))
+            },
+        )
+    }
+
     /// Pixels across.
     pub fn width(&self) -> u32 {
         self.view.width

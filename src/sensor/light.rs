@@ -160,14 +160,8 @@ impl<'a> Open<'a> {
     /// Spreads light of the sample of this number over the pixels.
     fn add(&mut self, number: u64, Splat { at, layer, value }: Splat) {
         self.finish(number);
-        let (width, height) = (i64::from(self.film.width()), i64::from(self.film.height()));
-        for (x, wide) in self.camera.filter().pixels(at.x) {
-            for (y, high) in self.camera.filter().pixels(at.y) {
-                let is_inside = (0..width).contains(&x) && (0..height).contains(&y);
-                if is_inside && wide * high > 0.0 {
-                    self.sums[(y * width + x) as usize][layer] += value * (wide * high);
-                }
-            }
+        for (pixel, density) in self.camera.pixels(at) {
+            self.sums[pixel][layer] += value * density;
         }
     }
 

@@ -5,6 +5,7 @@
 //! those steps longer. Times are of this machine: they are in words, not in results and claims.
 
 use super::fogbox::grey;
+use super::maps::filled;
 use super::part::Part;
 use super::times::Times;
 use crate::harness::{CellId, CellOutput, Cells, Row, Section, Settings, Unit, with_error};
@@ -13,11 +14,10 @@ use std::path::Path;
 use std::sync::OnceLock;
 use turbid::integrators::mapper::{self, Mapper, March};
 use turbid::math::Positive;
-use turbid::photons::maps::{Amount, Emitted, Indirect, MapSettings, Maps, fill_counted};
+use turbid::photons::maps::Emitted;
 use turbid::rng::{Purpose, Stream};
 use turbid::scene::{Camera, Scene, SceneFile};
 use turbid::stats::Moments;
-use turbid::transport::NoProgress;
 
 /// The group of all cells.
 pub const GROUP: &str = "clouds";
@@ -30,8 +30,8 @@ const LOOKED_AT: [u32; 2] = [10, 7];
 const SAMPLES: u64 = 2;
 /// Photons an estimate, as in the talk's picture of uneven smoke.
 const K: usize = 50;
-/// The talk's ratio, and the range about it that the words ask about, chosen before the first run: a fifth to either
-/// side.
+/// The talk's ratio, and the range about it that the words ask about, a fifth to either side: chosen before the first run,
+/// which had steps that halve alone, and fell outside it.
 const TALK: f64 = 100.0 / 61.0;
 const ASKED: (f64, f64) = (1.31, 1.97);
 
@@ -89,20 +89,14 @@ fn eye(steps: usize) -> anyhow::Result<mapper::Settings> {
     Ok(mapper::Settings { march: if steps == 0 { equal } else { standard.march }, ..standard })
 }
 
-fn filled(scene: &Scene, emitted: u64, seed: u64, replicate: u64) -> anyhow::Result<Maps> {
-    let amount = Amount::Emitted(emitted.max(1));
-    let (global, caustic, volume) = (amount, amount, amount);
-    let settings = MapSettings { global, caustic, volume, indirect: Indirect::Seen, seed, replicate };
-    Ok(fill_counted(scene, &settings, Emitted { volume: emitted, ..Emitted::default() }, &NoProgress)?)
-}
-
 /// Measures one cell.
 pub fn measure(settings: &Settings, cell: &CellId) -> anyhow::Result<CellOutput> {
     let (scene, replicate) = (scene()?, cell.stream("deck"));
     let camera = *scene.camera().context("the cloud has no camera")?;
     let mut output = CellOutput::new();
-    let none = filled(scene, 0, settings.seed, replicate)?;
-    let maps = output.time("map", |_| filled(scene, photons(settings), settings.seed, replicate))?;
+    let emitted = Emitted { volume: photons(settings), ..Emitted::default() };
+    let none = filled(scene, Emitted::default(), None, settings.seed, replicate)?;
+    let maps = output.time("map", |_| filled(scene, emitted, None, settings.seed, replicate))?;
     let stored = maps.volume.as_ref().map_or(0, |map| map.stored());
     output.count("photons stored in clouds", stored as u64);
     for (steps, name) in STEPS.into_iter().enumerate() {
@@ -186,7 +180,9 @@ pub fn conclude(settings: &Settings, cells: &Cells) -> anyhow::Result<Part> {
     let stored = cells.counter("photons stored in clouds") as f64 / self::cells(settings).len() as f64;
     let notes = vec![format!(
         "The cloud: times of a picture of {WIDTH} x {HEIGHT} pixels with a sample each, from some of its pixels, with maps \
-         of {stored:.0} photons, {K} of them in an estimate; rows with the map and without take turns; equal steps are half a mean free path long where the cloud is densest."
+         of {stored:.0} photons, {K} of them in an estimate; rows with the map and without take turns; equal steps are half a mean free path long where the cloud is densest. \
+         A first run had halving steps alone and gave 0.88, outside the range that had been asked about before it; equal \
+         steps were added after it."
     )];
     Ok(Part { section: Section { rows, notes, ..Section::default() }, said })
 }

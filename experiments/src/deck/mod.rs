@@ -10,6 +10,7 @@ mod clouds;
 mod conclude;
 mod edge;
 mod fogbox;
+mod maps;
 mod part;
 mod pixels;
 mod race;

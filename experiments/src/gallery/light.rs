@@ -137,7 +137,6 @@ fn send(
     is_wanted: impl Fn(Layer) -> bool + Sync,
     film: &mut [Layers],
 ) -> anyhow::Result<()> {
-    let (width, height) = (i64::from(camera.width()), i64::from(camera.height()));
     for first in histories.clone().step_by(AT_ONCE as usize) {
         let block = |range: Range<u64>| {
             let mut splats: Vec<Splat> = Vec::new();
@@ -160,12 +159,8 @@ fn send(
         let splats = run_blocks(count, &NoProgress, block, merge)?.unwrap_or_default();
         for Splat { at, layer, value } in splats {
             ensure!(value.is_finite(), "light tracing found a value that is not finite");
-            for (x, wide) in camera.filter().pixels(at.x) {
-                for (y, high) in camera.filter().pixels(at.y) {
-                    if (0..width).contains(&x) && (0..height).contains(&y) && wide * high > 0.0 {
-                        film[(y * width + x) as usize][layer] += value * (wide * high);
-                    }
-                }
+            for (pixel, density) in camera.pixels(at) {
+                film[pixel][layer] += value * density;
             }
         }
     }

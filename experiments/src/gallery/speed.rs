@@ -45,7 +45,7 @@ pub const ROWS: &[Row] = &[
         ratio: 10.61,
         low: 10.12,
         high: 11.05,
-        command: "cargo bench -p turbid-experiments --bench fogbox -- maps",
+        command: "cargo bench -p turbid-experiments --bench fogbox -- maps 8",
     },
 ];
 

@@ -8,6 +8,7 @@ pub mod conclude;
 mod figure;
 
 use super::fogbox::{ALBEDO, SIGMA_T, VOLUME, grey, scene};
+use super::maps::filled;
 use crate::harness::{CellId, CellOutput, Prediction, Settings, Unit};
 use crate::theory::clustering;
 use anyhow::Context;
@@ -18,11 +19,10 @@ use turbid::estimators::{Gather, Kernel};
 use turbid::integrators::{StepRule, march, path};
 use turbid::math::{Interval, Positive, Ray, exp};
 use turbid::photons::PhotonMap;
-use turbid::photons::maps::{Amount, Emitted, Indirect, MapSettings, fill_counted};
+use turbid::photons::maps::Emitted;
 use turbid::rng::{Purpose, Stream};
 use turbid::scene::Scene;
 use turbid::stats::Moments;
-use turbid::transport::NoProgress;
 
 /// The group of all cells.
 pub const GROUP: &str = "pixels";
@@ -82,17 +82,8 @@ fn rays(scene: &Scene) -> anyhow::Result<Vec<(Ray, f64)>> {
 }
 
 fn volume_map(scene: &Scene, emitted: u64, seed: u64, replicate: u64) -> anyhow::Result<PhotonMap> {
-    let amount = Amount::Emitted(emitted);
-    let settings = MapSettings {
-        global: amount,
-        caustic: amount,
-        volume: amount,
-        indirect: Indirect::Seen,
-        seed,
-        replicate,
-    };
-    let emitted = Emitted { global: 0, volume: emitted, caustic: 0 };
-    fill_counted(scene, &settings, emitted, &NoProgress)?.volume.context("the box has no fog")
+    let emitted = Emitted { volume: emitted, ..Emitted::default() };
+    filled(scene, emitted, None, seed, replicate)?.volume.context("the box has no fog")
 }
 
 /// Multiple scattering and the whole radiance along a ray, by paths.

@@ -8,17 +8,17 @@ mod data;
 mod figure;
 
 use super::fogbox::{self, grey};
+use super::maps::filled;
 use crate::harness::{CellId, CellOutput, Settings};
 use anyhow::Context;
 use turbid::estimators::{Gather, Kernel};
 use turbid::integrators::mapper::{self, Mapper, March};
 use turbid::integrators::path;
 use turbid::math::Positive;
-use turbid::photons::maps::{Amount, Emitted, Indirect, MapSettings, fill_counted};
+use turbid::photons::maps::Emitted;
 use turbid::rng::{Purpose, Stream};
 use turbid::scene::{Camera, Scene};
 use turbid::stats::Moments;
-use turbid::transport::NoProgress;
 
 /// The group of all cells.
 pub const GROUP: &str = "race";
@@ -157,21 +157,11 @@ fn by_map(
     replicate: u64,
 ) -> anyhow::Result<()> {
     let (seed, count) = (settings.seed, samples(settings));
-    let amount = Amount::Emitted(size.photons);
     // No two sizes share their histories.
     let replicate = replicate ^ (index as u64 + 1) << 20;
-    let filling = MapSettings {
-        global: amount,
-        caustic: amount,
-        volume: amount,
-        indirect: Indirect::Seen,
-        seed,
-        replicate,
-    };
     let emitted = Emitted { global: size.photons, volume: size.photons, caustic: 0 };
     let case = size.case();
-    let maps =
-        output.time(&format!("fill {case}"), |_| fill_counted(scene, &filling, emitted, &NoProgress))?;
+    let maps = output.time(&format!("fill {case}"), |_| filled(scene, emitted, None, seed, replicate))?;
     let (reading, within) = (eye(size.k)?, scene.interior_at(camera.position()));
     let eye = Mapper::new(scene, &maps, &reading);
     let (mut pixels, mut report) = (Vec::new(), mapper::Report::default());

@@ -6,6 +6,7 @@
 pub mod conclude;
 
 use super::fogbox::grey;
+use super::maps::filled;
 use crate::harness::{CellId, CellOutput, Settings};
 use anyhow::{Context, anyhow};
 use glam::{DVec2, DVec3};
@@ -14,7 +15,7 @@ use std::sync::{Arc, Mutex};
 use turbid::estimators::{Gather, Kernel};
 use turbid::integrators::mapper::{self, Mapper};
 use turbid::photons::importance::{Importance, ImportanceSettings};
-use turbid::photons::maps::{Amount, Emitted, Indirect, MapSettings, Maps, fill_counted_steered};
+use turbid::photons::maps::{Emitted, Indirect, Maps};
 use turbid::rng::{Purpose, Stream};
 use turbid::scene::{Scene, SceneFile};
 use turbid::transport::NoProgress;
@@ -128,11 +129,7 @@ fn maps(
     seed: u64,
     replicate: u64,
 ) -> anyhow::Result<Maps> {
-    let amount = Amount::Emitted(photons);
-    let (global, caustic, volume) = (amount, amount, amount);
-    let settings = MapSettings { global, caustic, volume, indirect: Indirect::Seen, seed, replicate };
-    let emitted = Emitted { global: photons, volume: photons, caustic: 0 };
-    Ok(fill_counted_steered(scene, &settings, emitted, importance, &NoProgress)?)
+    filled(scene, Emitted { global: photons, volume: photons, caustic: 0 }, importance, seed, replicate)
 }
 
 /// Photons of both maps in the corner.
