@@ -8,7 +8,8 @@ use super::compare::{FEWEST, Making, compare, errors, rms_of_one, spread};
 use super::keep::Kept;
 use super::look::look;
 use super::makings::Makings;
-use super::predict::{Radii, predicted, radius};
+use super::predict::{Radii, Spreads, predicted, radius};
+use super::recipe::reading;
 use super::shown::Compared;
 use crate::harness::say;
 use turbid::Spectrum;
@@ -58,6 +59,8 @@ pub fn beside(large: &Makings, small: &Makings, ours: &Kept) -> anyhow::Result<O
     // Before anything that is compared is made.
     let (prediction, mut seconds) = predict(small, ours)?;
     let masked: Vec<bool> = prediction.iter().map(|&e| e > LIMIT).collect();
+    let share = masked.iter().filter(|&&is_masked| is_masked).count() as f64 / masked.len() as f64;
+    say(&format!("{}: blur and edges may matter in {:.1} % of the pixels", picture.name, 100.0 * share));
     let samples = chosen(large, &masked)?;
     say(&format!("{}: {COMPARED} passes of {samples} samples a pixel for the twin", picture.name));
     let twin = twin(large, samples, [ours, &equal])?;
@@ -147,5 +150,6 @@ fn predict(small: &Makings, ours: &Kept) -> anyhow::Result<(Vec<f64>, f64)> {
     let views = look(&studio.scene, &studio.camera, |i| radii[i].global.max(radii[i].caustic));
     let pixel = studio.camera.pixel_area().sqrt();
     let seconds = one.facts.seconds + other.facts.seconds;
-    Ok((predicted(studio.grid(), &views, [&one.layers, &other.layers], &radii, pixel), seconds))
+    let spreads = Spreads::of(&reading(picture, 1)?);
+    Ok((predicted(studio.grid(), &views, [&one.layers, &other.layers], &radii, spreads, pixel), seconds))
 }
