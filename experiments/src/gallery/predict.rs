@@ -9,7 +9,9 @@
 //! of the blur's square. It is averaged over 5 x 5 pixels, and its root is the blur.
 //!
 //! Of media it is the mean along the way through them that is averaged: that the way of the next pixel is longer blurs
-//! nothing.
+//! nothing. What balls bring from farther or nearer on the way of the eye itself is not predicted: before a dark face in
+//! the shade that is light from beyond the shadow, and the k nearest reach for it. Pictures with such places keep the
+//! reach short.
 //!
 //! A disc that reaches over the edge of its surface misses the photons that would lie there: the share of its area. A
 //! ball beside a wall misses its cap; along a ray that ends at a wall that is r times the integral of (1-s)^2 (2+s)/4
