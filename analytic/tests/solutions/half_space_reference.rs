@@ -1,9 +1,6 @@
 //! The half-space and the infinite medium against their reference tables, row by row.
-#![allow(clippy::unwrap_used, reason = "tests")]
 
-mod support;
-
-use support::table::{Row, check, number, rows};
+use crate::support::table::{Row, check, number, rows};
 use turbid_analytic::half_space::hopf_constant;
 use turbid_analytic::{HalfSpace, Incidence, InfiniteMedium, Value};
 

@@ -1,10 +1,7 @@
 //! The slab by two methods that share nothing: discrete ordinates (or the Peierls equation) and adding and doubling.
-#![allow(clippy::unwrap_used, reason = "tests")]
 
-mod support;
-
-use support::table::{check, check_to, incidence, number, rows};
-use support::{NORMAL, close};
+use crate::support::table::{check, check_to, incidence, number, rows};
+use crate::support::{NORMAL, close};
 use turbid_analytic::{AddingDoubling, AnisotropicMedium, Incidence, IsotropicSlab, Phase};
 
 fn compare(medium: &AnisotropicMedium, tau: f64, light: Incidence, relative: f64) {

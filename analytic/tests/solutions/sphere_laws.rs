@@ -1,5 +1,4 @@
 //! Laws of the sphere: balance, reciprocity, the flux of its radiance, limits; the cavity and mean paths on top of it.
-#![allow(clippy::unwrap_used, reason = "tests")]
 
 use libm::{exp, pow};
 use std::f64::consts::PI;

@@ -3,7 +3,6 @@
 //! The tables were made by other programs in higher precision; their column `method` says how. `digits` is the number of
 //! correct significant digits, so a value may be off by 10^-(digits-1) of itself, and the bound that comes with an answer
 //! must cover the deviation but for the table's own last digits.
-#![allow(clippy::unwrap_used, reason = "tests")]
 
 use assert_cmd::Command;
 use std::collections::HashMap;

@@ -1,10 +1,7 @@
 //! Slabs order by order, and the theory of kernels and beams: an answer or a refusal that names the parameter, whatever the bits.
-#![allow(clippy::unwrap_used, reason = "tests")]
 
-mod support;
-
+use crate::support::any_input::{cases, number, sound};
 use proptest::prelude::*;
-use support::any_input::{cases, number, sound};
 use turbid_analytic::beams::{Pairing, Ray, blurred_field, crossing_moment, crossing_tail};
 use turbid_analytic::kernel::optimum;
 use turbid_analytic::nearest::{nearest_curved, optimum_neighbors};

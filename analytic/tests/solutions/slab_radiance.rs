@@ -1,7 +1,5 @@
 //! Radiance of anisotropic slabs and half-spaces: foreign numbers, laws, and closed forms.
 
-#![allow(clippy::unwrap_used, reason = "tests")]
-
 use libm::{exp, pow};
 use std::collections::HashMap;
 use std::f64::consts::PI;

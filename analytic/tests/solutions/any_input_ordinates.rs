@@ -1,10 +1,7 @@
 //! Anisotropic media, slabs and phase functions answer with finite numbers or refuse, whatever the bits.
-#![allow(clippy::unwrap_used, reason = "tests")]
 
-mod support;
-
+use crate::support::any_input::{cases, number, sound};
 use proptest::prelude::*;
-use support::any_input::{cases, number, sound};
 use turbid_analytic::{AnisotropicMedium, AnisotropicSlab, Error, Incidence, Phase};
 
 fn light() -> impl Strategy<Value = Incidence> {

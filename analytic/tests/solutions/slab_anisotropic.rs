@@ -1,5 +1,4 @@
 //! The Henyey-Greenstein slab against the reference table, the isotropic slab, closed forms and exact laws.
-#![allow(clippy::unwrap_used, reason = "tests")]
 
 use libm::{exp, pow, sqrt};
 use proptest::prelude::*;

@@ -1,10 +1,7 @@
 //! Critical sizes against tables and limits.
-#![allow(clippy::unwrap_used, reason = "tests")]
 
-mod support;
-
+use crate::support::table::{check, number, rows};
 use libm::{atan, sqrt};
-use support::table::{check, number, rows};
 use turbid_analytic::critical::{critical_half_thickness, critical_radius};
 use turbid_analytic::{Critical, CriticalShape};
 

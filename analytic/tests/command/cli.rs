@@ -1,5 +1,4 @@
 //! The command `exact`: whole tables, single questions, and every way of asking wrongly.
-#![allow(clippy::unwrap_used, reason = "tests")]
 
 use assert_cmd::Command;
 use std::collections::HashMap;

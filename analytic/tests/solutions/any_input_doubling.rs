@@ -1,10 +1,7 @@
 //! Slabs by doubling and between refracting faces answer with finite numbers or refuse, whatever the bits.
-#![allow(clippy::unwrap_used, reason = "tests")]
 
-mod support;
-
+use crate::support::any_input::{Outcome, cases, sound};
 use proptest::prelude::*;
-use support::any_input::{Outcome, cases, sound};
 use turbid_analytic::slab_fresnel::hemispherical_reflectance;
 use turbid_analytic::{AddingDoubling, FresnelSlab, Incidence};
 

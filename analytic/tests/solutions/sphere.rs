@@ -1,9 +1,6 @@
 //! The sphere against the reference table, row by row.
-#![allow(clippy::unwrap_used, reason = "tests")]
 
-mod support;
-
-use support::table::{check, number, rows};
+use crate::support::table::{check, number, rows};
 use turbid_analytic::{Sphere, SphereSource, Value};
 
 /// Four rows of the table's origin, exit radiance at mu = 1, were corrupt (1e123 and the like) and are left out here:

@@ -1,10 +1,7 @@
 //! Spheres, cavities, critical bodies and mean paths answer with finite numbers or refuse, whatever the bits.
-#![allow(clippy::unwrap_used, reason = "tests")]
 
-mod support;
-
+use crate::support::any_input::{cases, sound};
 use proptest::prelude::*;
-use support::any_input::{cases, sound};
 use turbid_analytic::mean_path::{
     chord_density_slab, chord_density_sphere, chord_moment_slab, chord_moment_sphere, mean_path,
     mean_path_cuboid, mean_path_slab, mean_path_sphere, mean_path_sphere_absorbing,

@@ -1,6 +1,4 @@
 //! What the suites share: tables of reference values, and inputs of any bits.
-#![allow(dead_code, clippy::unwrap_used, reason = "each suite uses a part")]
-
 pub mod any_input;
 pub mod kernels;
 pub mod table;

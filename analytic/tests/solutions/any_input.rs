@@ -1,10 +1,7 @@
 //! Every function of numbers answers with finite numbers or refuses, whatever the bits.
-#![allow(clippy::unwrap_used, reason = "tests")]
 
-mod support;
-
+use crate::support::any_input::{cases, number, sound};
 use proptest::prelude::*;
-use support::any_input::{cases, number, sound};
 use turbid_analytic::ball_mean::exponential_mean;
 use turbid_analytic::beer_lambert::{direct_transmittance, uncollided_fluence};
 use turbid_analytic::blur::{edge_spread, line_spread, modulation_transfer};

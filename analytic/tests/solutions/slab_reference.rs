@@ -1,10 +1,7 @@
 //! The isotropic slab against the reference table, row by row.
-#![allow(clippy::unwrap_used, reason = "tests")]
 
-mod support;
-
+use crate::support::table::{check, incidence, number, rows};
 use std::collections::HashMap;
-use support::table::{check, incidence, number, rows};
 use turbid_analytic::{IsotropicSlab, Value};
 
 #[test]

@@ -1,10 +1,7 @@
 //! Half-spaces, infinite media, X and Y, asymptotics and two streams answer with finite numbers or refuse.
-#![allow(clippy::unwrap_used, reason = "tests")]
 
-mod support;
-
+use crate::support::any_input::{Outcome, cases, sound};
 use proptest::prelude::*;
-use support::any_input::{Outcome, cases, sound};
 use turbid_analytic::asymptotics::thin_slab;
 use turbid_analytic::half_space::h_function;
 use turbid_analytic::infinite::{mean_cosine, mean_square_displacement};

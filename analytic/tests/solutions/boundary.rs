@@ -1,9 +1,6 @@
 //! Photon estimates of fixed radius at boundaries, against closed forms and other quadratures.
-#![allow(clippy::unwrap_used, reason = "tests")]
 
-mod support;
-
-use support::kernels::{BALL, KERNELS, agree};
+use crate::support::kernels::{BALL, KERNELS, agree};
 use turbid_analytic::boundary::{
     Body, Treatment, body_moment, treated_mean, treated_mean_symmetric, treated_mean_uniform,
     treated_variance,

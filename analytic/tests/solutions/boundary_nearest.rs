@@ -1,11 +1,8 @@
 //! Gathers of the k nearest photons at boundaries, false photons, and what is refused.
-#![allow(clippy::unwrap_used, reason = "tests")]
 
-mod support;
-
+use crate::support::any_input::cases;
+use crate::support::kernels::{BALL, KERNELS, agree};
 use proptest::prelude::*;
-use support::any_input::cases;
-use support::kernels::{BALL, KERNELS, agree};
 use turbid_analytic::Kernel;
 use turbid_analytic::boundary::{
     Body, Rejection, Treatment, body_moment, false_photon_mean, nearest_false_photon_mean,

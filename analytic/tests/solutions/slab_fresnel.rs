@@ -1,10 +1,7 @@
 //! The slab between refracting faces: tables, laws, limits.
-#![allow(clippy::unwrap_used, reason = "tests")]
 
-mod support;
-
-use support::table::{check, number, rows};
-use support::{NORMAL, close};
+use crate::support::table::{check, number, rows};
+use crate::support::{NORMAL, close};
 use turbid_analytic::quadrature::GaussLegendre;
 use turbid_analytic::slab_fresnel::hemispherical_reflectance;
 use turbid_analytic::{AnisotropicSlab, Error, FresnelSlab, Incidence, Phase};

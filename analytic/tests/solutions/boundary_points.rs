@@ -2,7 +2,6 @@
 //!
 //! Fixed seeds; the threshold of 4.9 standard errors of the normal has a false alarm of 1e-6 a comparison, and a fault of
 //! 7.3 standard errors is seen with 99 per cent power. Each test promises what that is of the mean.
-#![allow(clippy::unwrap_used, reason = "tests")]
 
 use turbid_analytic::boundary::{
     Body, Rejection, Treatment, body_moment, false_photon_mean, nearest_false_photon_mean,

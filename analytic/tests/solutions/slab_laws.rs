@@ -1,12 +1,9 @@
 //! Laws of the isotropic slab: balance, reciprocity, limits, orders, and an answer or a refusal for every input.
-#![allow(clippy::unwrap_used, reason = "tests")]
 
-mod support;
-
+use crate::support::any_input::cases;
 use libm::{exp, log, pow};
 use proptest::prelude::*;
 use std::f64::consts::PI;
-use support::any_input::cases;
 use turbid_analytic::quadrature::GaussLegendre;
 use turbid_analytic::slab_single::single_radiance;
 use turbid_analytic::{Incidence, IsotropicSlab, Value};

@@ -1,0 +1,6 @@
+//! The command: its answers, its refusals, its handbook.
+#![allow(clippy::unwrap_used, reason = "tests")]
+
+mod cases;
+mod cli;
+mod handbook;
