@@ -16,9 +16,8 @@ body { max-width: 1120px; margin: 0 auto; padding: 40px 24px 80px; color: var(--
 h1 { font-size: 34px; line-height: 1.2; margin: 0 0 10px; font-weight: 600; }
 h2 { font-size: 25px; margin: 56px 0 6px; padding-top: 16px; border-top: 2px solid var(--ink); font-weight: 600; }
 p { max-width: 46em; margin: 0 0 12px; }
-.plates { display: flex; flex-wrap: wrap; gap: 16px; margin: 16px 0; }
-figure { margin: 0; flex: 1 1 300px; max-width: 400px; }
-figure.main { flex-basis: 400px; }
+.plates { display: grid; grid-template-columns: repeat(auto-fill, minmax(300px, 1fr)); gap: 16px; margin: 16px 0; }
+figure { margin: 0; }
 img { display: block; width: 100%; height: auto; image-rendering: auto; background: #000; }
 figcaption, table, pre, .soft { font-family: system-ui, 'Segoe UI', Arial, 'DejaVu Sans', sans-serif; }
 figcaption { font-size: 13.5px; line-height: 1.35; padding-top: 6px; }
