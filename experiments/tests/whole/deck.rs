@@ -13,11 +13,14 @@ fn a_fiftieth_of_the_photons() {
     assert_eq!(run::figures(&one), 3);
     run::same_after_a_loss(PROGRAM, "0.02", &one, &["deck/walls-000000.csv", "deck/edge-000003.csv"]);
     let claims = std::fs::read_to_string(one.join("claims.csv")).unwrap();
-    // What so few photons decide, and no clock: gathers do not know the walls, maps need less work down to 30 per cent,
-    // importance brings photons into view; and nothing is rejected.
-    for claim in ["decoupled", "faster", "steered-photons"] {
-        let line = claims.lines().find(|line| line.contains(&format!(",{claim},"))).unwrap();
-        assert!(line.contains(",upheld,"), "{line}");
+    let line = |claim: &str| claims.lines().find(|line| line.contains(&format!(",{claim},"))).unwrap();
+    // What so few photons decide, and no clock: gathers do not know the walls, importance brings photons into view; and
+    // nothing is rejected.
+    for claim in ["decoupled", "steered-photons"] {
+        assert!(line(claim).contains(",upheld,"), "{}", line(claim));
     }
+    // Maps need less work than paths. A few maps carry the variance of that: there is no verdict, but an interval.
+    let low: f64 = line("faster").split(',').nth(6).unwrap().parse().unwrap();
+    assert!(low > 1.0, "{}", line("faster"));
     assert!(claims.contains("steered-mean") && !claims.contains(",rejected,"), "{claims}");
 }
