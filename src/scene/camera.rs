@@ -165,11 +165,6 @@ impl Camera {
         self.view.height
     }
 
-    /// How the samples of a pixel are spread.
-    pub fn filter(&self) -> Filter {
-        self.view.filter
-    }
-
     /// The ray through a point of the picture, in raster coordinates.
     pub fn ray(&self, at: DVec2) -> Ray {
         let x = 2.0 * at.x / f64::from(self.view.width) - 1.0;

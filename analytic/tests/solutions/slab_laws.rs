@@ -1,16 +1,13 @@
 //! Laws of the isotropic slab: balance, reciprocity, limits, orders, and an answer or a refusal for every input.
 
 use crate::support::any_input::cases;
+use crate::support::beam;
 use libm::{exp, log, pow};
 use proptest::prelude::*;
 use std::f64::consts::PI;
 use turbid_analytic::quadrature::GaussLegendre;
 use turbid_analytic::slab_single::single_radiance;
 use turbid_analytic::{Incidence, IsotropicSlab, Value};
-
-fn beam(mu0: f64) -> Incidence {
-    Incidence::Beam { mu0 }
-}
 
 fn balance(slab: &IsotropicSlab) -> (f64, f64) {
     let (r, t, a) = (slab.reflectance(), slab.transmittance(), slab.absorptance());

@@ -1,15 +1,13 @@
 //! Radiance of anisotropic slabs and half-spaces: foreign numbers, laws, and closed forms.
 
-use libm::{exp, pow};
+use crate::support::beam;
+use crate::support::table::{check_to, number, rows};
+use libm::exp;
 use std::collections::HashMap;
 use std::f64::consts::PI;
 use turbid_analytic::quadrature::GaussLegendre;
 use turbid_analytic::slab_single::single_radiance;
 use turbid_analytic::{AnisotropicMedium, AnisotropicSlab, Incidence, IsotropicSlab, Phase, Value};
-
-fn beam(mu0: f64) -> Incidence {
-    Incidence::Beam { mu0 }
-}
 
 fn medium(albedo: f64, g: f64) -> AnisotropicMedium {
     AnisotropicMedium::new(albedo, &Phase::henyey_greenstein(g).unwrap()).unwrap()
@@ -19,24 +17,16 @@ fn medium(albedo: f64, g: f64) -> AnisotropicMedium {
 /// correct digits.
 #[test]
 fn every_row_is_reproduced_within_its_digits_and_within_the_bound() {
-    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/reference/slab_hg_radiance.csv");
     let mut slabs: HashMap<[String; 4], AnisotropicSlab> = HashMap::new();
-    let mut rows = 0;
-    for record in csv::Reader::from_path(path).unwrap().deserialize() {
-        let row: HashMap<String, String> = record.unwrap();
-        let number = |name: &str| row[name].parse::<f64>().unwrap();
+    for row in rows("slab_hg_radiance.csv", 36) {
+        let number = |name: &str| number(&row, name);
         let slab = slabs.entry(["tau", "w", "g", "mu0"].map(|name| row[name].clone())).or_insert_with(|| {
             AnisotropicSlab::new(number("tau"), number("w"), number("g"), beam(number("mu0"))).unwrap()
         });
         let got = slab.radiance(number("t"), number("mu"), number("dphi")).unwrap();
-        let (value, digits) = (number("value"), number("digits"));
-        let (off, id) = ((got.value - value).abs(), &row["id"]);
-        assert!(off <= pow(10.0, 1.0 - digits) * value, "{id}: {got:?}, table {value:e}");
-        assert!(off <= got.error + 2.0 * pow(10.0, -digits) * value, "{id}: {got:?} off by {off:e}");
-        assert!(got.error < 1e-9 * value, "{id}: {got:?}");
-        rows += 1;
+        check_to(&row, got, 2.0);
+        assert!(got.error < 1e-9 * number("value"), "{row:?}: {got:?}");
     }
-    assert_eq!(rows, 36);
 }
 
 fn agree(a: Value, b: Value, what: &str) {

@@ -134,7 +134,7 @@ pub const ALL: &[Picture] = &[
         name: "cornell-anisotropic",
         title: "The same in fog that scatters forwards",
         see: "Light keeps its direction: the halo is tighter, the beam below the lamp is brighter than the air beside it. \
-              Numbers of photons are the original's; the samples and the reach of 12 cm are ours.",
+              Numbers of photons are the original's; ours: the samples, and the reach of 12 cm, chosen above.",
         original: "200,000 photons, of them 65,000 in the volume map, 100 in an estimate: 4 s for the maps and 4 min 3 s \
                    for the picture",
         photons: [Amount::Stored(135_000), NONE, Amount::Stored(65_000)],
@@ -154,8 +154,8 @@ pub const ALL: &[Picture] = &[
         name: "cornell-smoke",
         title: "The same with smoke on the floor",
         see: "Smoke lies on the floor: it hides the feet of the blocks and takes up the light that falls on it; above, the air \
-              is clear. Numbers of photons are the original's; the 100 in an estimate on surfaces, the samples and the reach \
-              of 12 cm are ours.",
+              is clear. Numbers of photons are the original's; ours: the 100 in an estimate on surfaces, the samples, \
+              and the reach of 12 cm, chosen in the isotropic fog.",
         original: "200,000 photons, of them 65,000 in the volume map, 50 in an estimate: 6 s for the maps (4 s elsewhere in \
                    the same source) and 7 min 54 s for the picture",
         photons: [Amount::Stored(135_000), NONE, Amount::Stored(65_000)],

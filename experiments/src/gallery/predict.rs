@@ -181,9 +181,6 @@ fn is_same_surface(a: &View, b: &View) -> bool {
 /// # Arguments   `spread` mean square distance from its middle, over the square of the radius
 fn blur(grid: Grid, i: usize, radius: f64, spread: f64, value: impl Fn(usize) -> Option<f64>) -> f64 {
     let radius = radius.min(REACH);
-    if radius == 0.0 {
-        return 0.0;
-    }
     let (x, y) = ((i % grid.width) as i64, (i / grid.width) as i64);
     // At most some 300 pixels are looked at: of a large footprint every second, third... in both directions; of one smaller
     // than a pixel the neighbours.
@@ -266,6 +263,16 @@ mod tests {
     /// Of one making, taken twice.
     fn of(views: &[View], layers: &[Layers], radii: Radii) -> Vec<f64> {
         predicted(GRID, views, [layers, layers], &vec![radii; GRID.pixels()], SPREADS, PIXEL)
+    }
+
+    /// Mean squares over a uniform disc, the disc of a cone, and a uniform ball seen from the side.
+    #[test]
+    fn kernels_spread_as_the_eye_sees_them() {
+        let settings = mapper::Settings::for_size(1.0, 50).unwrap();
+        let Spreads { global, caustic, volume } = Spreads::of(&settings);
+        for (got, expected) in [(global, 1.0 / 2.0), (caustic, 3.0 / 10.0), (volume, 2.0 / 5.0)] {
+            assert!((got - expected).abs() < 1e-12, "{got} {expected}");
+        }
     }
 
     /// Noise of 10 per cent a pixel, none of it common to the makings, is no blur of 2 per cent.

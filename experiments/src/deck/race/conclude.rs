@@ -117,14 +117,18 @@ const NUMBER: f64 = 24.0;
 /// Concludes.
 pub fn conclude(settings: &Settings, cells: &Cells) -> anyhow::Result<Part> {
     let race = Race::new(settings, cells)?;
-    // Not the crossing, which has an end where it may stick: what is constant but for a few cells has no jackknife.
+    // Not the crossing, which has an end where it may stick: what is constant but for a few cells has no jackknife. Where no
+    // map is so good the gain is as good as 0, which has a logarithm.
     let statistic =
         |chosen: &[&Cell]| gain(&Fit::of(chosen, Currency::Rays), PIXELS, ASKED).unwrap_or(f64::MIN_POSITIVE);
     let log = jackknife_log(&race.cells.iter().collect::<Vec<_>>(), statistic);
     let value = exp(log.value);
     let in_rays = Estimate::jackknife(&Jackknife { value, std_error: value * log.std_error, ..log });
-    let text = "\"photon maps are faster than Monte Carlo\": work of paths over that of photon maps, for a picture of \
-                32 x 32 pixels with an error of 30 %";
+    let text = format!(
+        "\"photon maps are faster than Monte Carlo\": work of paths over that of photon maps, for a picture of \
+         {SIDE} x {SIDE} pixels with an error of {:.0} %",
+        100.0 * ASKED
+    );
     let [rays, seconds] = [Currency::Rays, Currency::Seconds].map(|currency| Crossing::all(&race, currency));
     let measured = SIDES.iter().position(|&side| side == SIDE).unwrap_or(0);
     let said = vec![[
@@ -142,7 +146,7 @@ pub fn conclude(settings: &Settings, cells: &Cells) -> anyhow::Result<Part> {
         ),
     ]];
     let section = Section {
-        claims: vec![Claim::at_least("faster", text, Unit::ONE, in_rays, 1.0)],
+        claims: vec![Claim::at_least("faster", &text, Unit::ONE, in_rays, 1.0)],
         figures: vec![figure::race(&race, &seconds[measured], &rays[measured])?],
         tables: vec![size_table(&race), crossing_table(&race, &rays, &seconds)],
         notes: vec![format!(
@@ -159,7 +163,12 @@ pub fn conclude(settings: &Settings, cells: &Cells) -> anyhow::Result<Part> {
 }
 
 fn rows(race: &Race, gain: &Estimate) -> anyhow::Result<Vec<Row>> {
-    let mut rows = vec![Row::estimated("fog box race", "work of paths over maps at 30 %", Unit::ONE, gain)?];
+    let mut rows = vec![Row::estimated(
+        "fog box race",
+        &format!("work of paths over maps at {:.0} %", 100.0 * ASKED),
+        Unit::ONE,
+        gain,
+    )?];
     let cells: Vec<&Cell> = race.cells.iter().collect();
     for (i, size) in race.sizes.iter().enumerate() {
         let square = |chosen: &[&Cell]| {
