@@ -27,6 +27,8 @@ pub enum Purpose {
     Caustics,
     /// Particles from the camera, and the photons that learn what the picture needs.
     Importance,
+    /// Histories that find out whether light comes to an end.
+    Ends,
 }
 
 /// Work that a scene may or may not require, counted where it is done.

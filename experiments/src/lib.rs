@@ -11,6 +11,7 @@ pub mod contest;
 pub mod coverage;
 pub mod deck;
 pub mod extremes;
+pub mod fuzz;
 pub mod gallery;
 pub mod harness;
 pub mod march;

@@ -3,6 +3,7 @@
 use anyhow::{Context, anyhow, bail};
 use std::ops::Range;
 use std::path::{Path, PathBuf};
+use turbid::photons::check_end;
 use turbid::scene::{BUILTIN, Builtin, Scene, SceneFile};
 
 /// Which scene, and what to change in it.
@@ -21,10 +22,12 @@ impl Source {
         Source { scene, sets: Vec::new() }
     }
 
-    /// The validated scene.
+    /// The validated scene, in which light comes to an end.
     pub fn load(&self) -> anyhow::Result<Scene> {
         let file = self.resolve()?;
-        file.scene(&self.folder()).with_context(|| self.scene.clone())
+        let scene = file.scene(&self.folder()).with_context(|| self.scene.clone())?;
+        check_end(&scene).with_context(|| self.scene.clone())?;
+        Ok(scene)
     }
 
     /// The folder that file names in the scene are relative to.

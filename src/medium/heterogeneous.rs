@@ -78,15 +78,6 @@ impl Heterogeneous {
         !self.matter.emission().is_black() || !self.emission.is_black()
     }
 
-    /// Whether somewhere light that collides is not scattered in some channel.
-    pub fn is_absorbing(&self) -> bool {
-        let least = |grid: &Arc<Grid>| grid.values().iter().fold(1.0f32, |low, v| low.min(*v));
-        let grid = self.albedo.as_ref().map_or(1.0, least);
-        (grid < 1.0 || self.matter.albedo().min() < 1.0)
-            && !self.matter.sigma_t().is_black()
-            && self.density.high() > 0.0
-    }
-
     /// Whether every number is the same in all channels.
     pub fn is_grey(&self) -> bool {
         self.albedo.as_ref().is_none_or(|grid| grid.channels() == 1)

@@ -168,12 +168,4 @@ impl Medium {
             Medium::Heterogeneous(medium) => medium.is_grey(),
         }
     }
-
-    /// Whether somewhere light that collides is not scattered in some channel.
-    pub fn is_absorbing(&self) -> bool {
-        match self {
-            Medium::Homogeneous(m) => m.albedo().min() < 1.0 && !m.sigma_t().is_black(),
-            Medium::Heterogeneous(medium) => medium.is_absorbing(),
-        }
-    }
 }

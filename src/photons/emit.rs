@@ -170,6 +170,12 @@ fn by_power(scene: &Scene, power: Spectrum, stream: &mut Stream) -> Option<Walke
     start(scene, index, &emission, weight, stream)
 }
 
+/// A photon from the light of this index, if one leaves it this time; it carries that light's power \[W\].
+pub(super) fn from_light(scene: &Scene, index: usize, stream: &mut Stream) -> Option<Walker> {
+    let emission = scene.lights()[index].emit(scene.stage(), stream);
+    start(scene, index, &emission, emission.power, stream)
+}
+
 /// The walker of a photon that leaves a light, if it does.
 fn start(
     scene: &Scene,

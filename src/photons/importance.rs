@@ -26,8 +26,8 @@ mod steer;
 
 pub use steer::Branching;
 
-use super::Emitter;
 use super::maps::Indirect;
+use super::{Emitter, check_end};
 use crate::error::{Error, Result};
 use crate::rng::{Purpose, Stream};
 use crate::scene::{Camera, Scene};
@@ -109,6 +109,7 @@ impl Importance {
         if scene.bounds().is_none() {
             return Err(Error::Scene("importance needs a scene with bounds, without unbounded slab".into()));
         }
+        check_end(scene)?;
         let (low, high) = reading::extent(scene, camera, settings, progress)?;
         let fine = Grid::new(low, high, 2 * settings.boxes);
         let reading = reading::read(scene, camera, indirect, fine, settings, progress)?;

@@ -22,7 +22,7 @@ mod pass;
 pub use counts::{counts, counts_steered};
 
 use super::importance::Importance;
-use super::{Flags, Ledger, Photon, PhotonMap};
+use super::{Flags, Ledger, Photon, PhotonMap, check_end};
 use crate::error::Result;
 use crate::faults::{Fault, planted};
 use crate::rng::{Purpose, Work};
@@ -228,6 +228,7 @@ pub fn fill_counted_steered(
     progress: &dyn Progress,
 ) -> Result<Maps> {
     scene.check_emission()?;
+    check_end(scene)?;
     let emitters = Emitters::of(scene, importance);
     let run = |class, global, volume| Run {
         scene,

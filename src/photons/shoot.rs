@@ -1,6 +1,6 @@
 //! Shooting: histories from the lights, photons kept where they collide, powers tallied where they leave.
 
-use super::{Emitter, Flags, Photon, fold};
+use super::{Emitter, Flags, Photon, check_end, fold};
 use crate::Spectrum;
 use crate::error::{Error, Result};
 use crate::geometry::{Face, Shape};
@@ -93,6 +93,7 @@ pub fn shoot_from(
     progress: &dyn Progress,
 ) -> Result<Pass> {
     scene.check_emission()?;
+    check_end(scene)?;
     let power = scene.power();
     let block = |range: std::ops::Range<u64>| {
         let mut visitor = Tallier {

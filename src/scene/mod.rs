@@ -31,6 +31,7 @@ use crate::light::{Light, Stage};
 use crate::math::{Interval, Ray, exp};
 use crate::medium::Medium;
 use crate::surface::Surface;
+use std::sync::OnceLock;
 
 /// A medium and the shape it fills; its boundary is index-matched and no event.
 #[derive(Debug, Clone, PartialEq)]
@@ -84,6 +85,17 @@ pub struct Scene {
     stage: Option<Stage>,
     bounds: Option<Sphere>,
     plan: Plan,
+    answer: Answer,
+}
+
+/// The answer to a question that is asked of a scene once; scenes that are equal have equal ones.
+#[derive(Debug, Clone, Default)]
+struct Answer(OnceLock<Result<()>>);
+
+impl PartialEq for Answer {
+    fn eq(&self, _: &Self) -> bool {
+        true
+    }
 }
 
 impl Scene {
@@ -113,6 +125,7 @@ impl Scene {
             stage,
             bounds,
             plan,
+            answer: Answer::default(),
         };
         let (glows, is_emission_bounded) = glows::of(&scene);
         scene.lights.extend(glows);
@@ -120,6 +133,11 @@ impl Scene {
         scene.light_within = interiors::of_lights(&scene);
         validate::check_power(&scene)?;
         Ok(scene)
+    }
+
+    /// Asks whether all light in the scene comes to an end, which takes histories of it: the first time only.
+    pub(crate) fn once(&self, ask: impl FnOnce() -> Result<()>) -> Result<()> {
+        self.answer.0.get_or_init(ask).clone()
     }
 
     /// Media and where they are.

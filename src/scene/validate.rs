@@ -1,7 +1,6 @@
 //! Checks on the parts of a scene together. Each part has checked its own numbers when it was made.
 
 use super::{MAX_REGIONS, Object, Parts, Quantity, Scene, interiors};
-use crate::Spectrum;
 use crate::error::{Error, Result};
 use crate::geometry::{Face, Shape, Slab};
 use crate::light::{Light, Section, Stage};
@@ -47,7 +46,6 @@ pub(super) fn check(parts: &Parts) -> Result<Option<Stage>> {
     }
     check_fold(parts, stage.as_ref())?;
     check_apart(parts)?;
-    check_end(parts)?;
     for region in &parts.regions {
         let far = extent(&region.shape) * region.medium.highest_sigma_t().max();
         if far > MAX_EXTENT_OVER_MFP {
@@ -160,36 +158,6 @@ fn is_around(outer: &Shape, inner: &Shape) -> bool {
         }
         _ => outer != inner,
     }
-}
-
-/// Light inside a closed shape that reflects everything, where nothing absorbs, would never come to an end. Closed
-/// rooms made of several shapes are not recognised.
-fn check_end(parts: &Parts) -> Result<()> {
-    let keeps_all = |kept: Spectrum| kept.min() >= 1.0;
-    for object in parts.objects.iter().filter(|o| keeps_all(o.surface.largest_reflectance())) {
-        // Light leaves dielectrics and filters on both sides.
-        let lets_pass = matches!(object.surface, Surface::Dielectric(_) | Surface::Filter(_));
-        if lets_pass || !object.shape.is_solid() {
-            continue;
-        }
-        // Shapes are convex: those that share a part of their inside hold the other's middle, or nearly so.
-        let middle = |shape: &Shape| shape.sample_inside(0.0, [0.5; 3]).0;
-        let is_inside =
-            |shape: &Shape| object.shape.contains(middle(shape)) || shape.contains(middle(&object.shape));
-        let absorbs = parts.regions.iter().any(|r| r.medium.is_absorbing() && is_inside(&r.shape))
-            || parts.interiors.iter().any(|i| i.medium.as_ref().is_some_and(Medium::is_absorbing))
-            || parts
-                .objects
-                .iter()
-                .any(|o| !keeps_all(o.surface.largest_reflectance()) && is_inside(&o.shape))
-            || parts.lights.iter().any(|l| l.body().is_some_and(is_inside));
-        if !absorbs {
-            return refuse(
-                "light could be caught for ever: a closed shape reflects everything and nothing in it absorbs",
-            );
-        }
-    }
-    Ok(())
 }
 
 /// Photons keep their power in single precision, which ends near 1e38 on both sides of 1.

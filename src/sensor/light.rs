@@ -5,7 +5,7 @@ use super::render::{MAX_SAMPLES, Streams};
 use crate::Spectrum;
 use crate::error::{Error, Result};
 use crate::integrators::{Layers, Rays, Splat, light_tracing};
-use crate::photons::Emitter;
+use crate::photons::{Emitter, check_end};
 use crate::rng::{Purpose, Stream, Work};
 use crate::scene::{Camera, Scene};
 use crate::transport::{Progress, run_blocks};
@@ -99,6 +99,7 @@ fn expose(
     progress: &dyn Progress,
 ) -> Result<LightCount> {
     check(scene)?;
+    check_end(scene)?;
     let emitter = Emitter::by_power(scene);
     let first = film.samples() * histories;
     let last = first + films * histories;

@@ -6,6 +6,7 @@ use crate::error::{Error, Result};
 use crate::integrators::{Rays, direct_flux, fluence, radiance};
 use crate::light::Stage;
 use crate::math::{Frame, Ray, warp};
+use crate::photons::check_end;
 use crate::rng::{Purpose, Stream};
 use crate::scene::{Orders, Quantity, Scene, Sensor};
 use crate::stats::Moments;
@@ -40,7 +41,7 @@ pub fn by_paths(scene: &Scene, settings: &PathSettings, progress: &dyn Progress)
     Ok(all)
 }
 
-/// Whether paths can sample all that the scene's light does.
+/// Whether paths can sample all that the scene's light does, and come to an end.
 pub(super) fn check(scene: &Scene) -> Result<()> {
     let fills =
         |s: &&Sensor| matches!(s.quantity, Quantity::Absorbed(number) if number >= scene.regions().len());
@@ -56,7 +57,7 @@ pub(super) fn check(scene: &Scene) -> Result<()> {
             scene.plan().unreachable.join("; ")
         )));
     }
-    Ok(())
+    check_end(scene)
 }
 
 /// Moments by channel of one sensor; `index` keeps the streams of sensors apart.

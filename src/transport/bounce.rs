@@ -9,9 +9,9 @@ use crate::scene::{Scene, SceneHit, Target};
 use crate::surface::{Dielectric, Filter, Surface, fresnel, refract};
 use glam::DVec3;
 
-/// Total reflections in a row after which light counts as caught: a cube of glass keeps some of the light that starts
-/// inside for ever. Only a body that nothing fills can keep it so long, and it keeps it without loss: what is abandoned
-/// would have come out of a round body never, and out of any other long before.
+/// Total reflections without a chance to leave after which light counts as caught: a cube of glass keeps some of the light
+/// that starts inside for ever. Only a body that nothing fills can keep it so long, and it keeps it without loss, mirrors
+/// on it or in it too: what is abandoned would have come out of a round body never, and out of any other long before.
 const CAUGHT: u32 = 10_000;
 
 /// Whether a ray whose order may not grow is followed beyond a body.
@@ -56,7 +56,9 @@ pub(super) fn bounce<V: Visitor>(
         from: Some(found.start()),
         within: walker.within,
         behind: 0.0,
-        total_reflections: 0,
+        events: walker.events,
+        // A mirror is no way out.
+        total_reflections: if pdf.is_some() { 0 } else { walker.total_reflections },
         pdf_solid_angle: pdf,
     });
     if next.is_none() {

@@ -18,4 +18,4 @@ pub use flags::Flags;
 pub use flight::{Flight, free_flight};
 pub use roulette::Roulette;
 pub use transmittance::{passed, transmittance};
-pub use walk::{Arrival, Step, Visitor, Walker, walk};
+pub use walk::{Arrival, LONG, Step, Visitor, Walker, walk};

@@ -17,6 +17,21 @@ pub(super) enum End {
     Passed(Spectrum),
 }
 
+/// What a stretch lets pass below which a game decides whether anything does. Tracking multiplies factors, and would go on
+/// until they underflow; a factor of 0.6 never does, since the smallest number times 0.6 is itself. Survivors count as much
+/// as this: their variance, below its square, is out of sight of a mean of fewer than 1e24 samples of size 1.
+const FAINT: f64 = 1e-12;
+
+/// Russian roulette on what a stretch lets pass: as it is while a channel is not faint, else in the mean; none if the game
+/// is lost.
+fn outlives(passed: Spectrum, stream: &mut Stream) -> Option<Spectrum> {
+    let chance = passed.max() / FAINT;
+    if chance >= 1.0 {
+        return Some(passed);
+    }
+    (chance > 0.0 && stream.unit() < chance).then(|| passed / chance)
+}
+
 /// Depth to the next event of a process of rate 1.
 fn exponential(stream: &mut Stream) -> f64 {
     -ln_1p(-stream.unit())
@@ -134,11 +149,19 @@ pub(super) fn ratio(medium: &Heterogeneous, ray: &Ray, part: Interval, stream: &
         |t, bound, stream| {
             let density = density_at(medium, ray, t, bound.high, stream).max(bound.low);
             let q = (density - bound.low) / (bound.high - bound.low);
-            passed *= shares.map(|s| 1.0 - s * q);
-            passed.is_black().then_some(())
+            match outlives(passed * shares.map(|s| 1.0 - s * q), stream) {
+                Some(kept) => {
+                    passed = kept;
+                    None
+                }
+                None => Some(()),
+            }
         },
     );
-    if stopped.is_some() { passed } else { passed * crate::scene::decay(matter.depth(control)) }
+    match stopped {
+        Some(()) => Spectrum::ZERO,
+        None => passed * crate::scene::decay(matter.depth(control)),
+    }
 }
 
 /// What a stretch emits towards the near end of the ray [W/(L^2 sr)], and its transmittance: both unbiased.
@@ -158,13 +181,18 @@ pub(super) fn emitted(
     let least = if part.length().is_finite() { 1.0 / part.length() } else { 0.0 };
     let rate = |bound: &Bound| (bound.high * sigma_t.max()).max(least);
     let (mut passed, mut sum) = (Spectrum::ONE, Spectrum::ZERO);
-    tentative((medium, ray, part), stream, rate, |t, bound, stream| {
+    let stopped = tentative((medium, ray, part), stream, rate, |t, bound, stream| {
         let rate = rate(bound);
         let density = density_at(medium, ray, t, bound.high, stream);
         let emission = if own { medium.emission_of(density) } else { Spectrum::ZERO };
         sum += passed * (emission + uniform) / rate;
-        passed *= sigma_t.map(|s| 1.0 - s * density / rate);
-        passed.is_black().then_some(())
+        match outlives(passed * sigma_t.map(|s| 1.0 - s * density / rate), stream) {
+            Some(kept) => {
+                passed = kept;
+                None
+            }
+            None => Some(()),
+        }
     });
-    (sum, passed)
+    (sum, if stopped.is_some() { Spectrum::ZERO } else { passed })
 }

@@ -26,7 +26,9 @@ pub struct Walker {
     pub within: usize,
     /// How far behind the ray's origin its direction was chosen \[L\]: a ray starts again behind a filter, on the same way.
     pub behind: f64,
-    /// Total reflections in a row.
+    /// Events and boundaries met so far.
+    pub events: u32,
+    /// Total reflections since it was last scattered, or could cross a boundary.
     pub total_reflections: u32,
     /// Density with which the ray's direction was chosen [1/sr]; none where no other sampler could have chosen it.
     pub pdf_solid_angle: Option<f64>,
@@ -43,6 +45,7 @@ impl Walker {
             from: None,
             within: SURROUNDINGS,
             behind: 0.0,
+            events: 0,
             total_reflections: 0,
             pdf_solid_angle: None,
         }
@@ -91,9 +94,27 @@ pub trait Visitor {
     fn visit(&mut self, walker: &Walker, step: Step, stream: &mut Stream);
 }
 
+/// Events after which a history plays for its life at each one, whatever it keeps: a history of so many would take longer
+/// than thousands of others, and without this one that nothing ends would never come to an end.
+pub const LONG: u32 = 1_000_000;
+
+/// The odds of that game: about so many events more.
+const LIVES: f64 = 100_000.0;
+
+/// Counts an event, and plays the game of long histories, which keeps every mean; whether the walker goes on.
+fn goes_on(walker: &mut Walker, stream: &mut Stream) -> bool {
+    walker.events = walker.events.saturating_add(1);
+    if walker.events <= LONG {
+        return true;
+    }
+    let chance = 1.0 - 1.0 / LIVES;
+    walker.weight = walker.weight / chance;
+    stream.unit() < chance
+}
+
 /// Follows one history to its end.
 ///
-/// It ends by absorption, by escape, or with a ray of order `limit`, which is looked along, through mirrors, glass and
+/// It ends by absorption, by escape, by a game of chance behind [`LONG`] events, or with a ray of order `limit`, which is looked along, through mirrors, glass and
 /// filters too since they raise no order, but not flown.
 pub fn walk<V: Visitor>(
     scene: &Scene,
@@ -105,6 +126,11 @@ pub fn walk<V: Visitor>(
 ) {
     let (mut walker, mut roulette) = (start, roulette);
     loop {
+        if !goes_on(&mut walker, stream) {
+            // What survives carries this one's share.
+            visitor.visit(&walker, Step::Abandoned(Spectrum::ZERO), stream);
+            return;
+        }
         let hit = scene.hit(&walker.ray, walker.from);
         visitor.visit(&walker, Step::Ahead(hit.as_ref()), stream);
         if limit.is_some_and(|limit| walker.order >= limit) {
@@ -165,6 +191,7 @@ pub fn walk<V: Visitor>(
                     from: None,
                     within: walker.within,
                     behind: 0.0,
+                    events: walker.events,
                     total_reflections: 0,
                     pdf_solid_angle: V::LOOKS_AHEAD.then(pdf),
                 };

@@ -64,7 +64,7 @@ impl CellOutput {
 /// First line of a cell's file.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub(super) struct Header {
+pub(crate) struct Header {
     pub format: u32,
     pub experiment: String,
     pub id: String,
@@ -94,7 +94,7 @@ pub(super) fn write(path: &Path, header: &Header, rows: &[CellRow]) -> anyhow::R
 }
 
 /// Reads the file of one cell; an error says why it is not one.
-pub(super) fn read(path: &Path) -> anyhow::Result<(Header, Vec<CellRow>)> {
+pub(crate) fn read(path: &Path) -> anyhow::Result<(Header, Vec<CellRow>)> {
     let text = std::fs::read_to_string(path).with_context(|| format!("cannot read {}", path.display()))?;
     parse(&text).with_context(|| format!("{} is no complete cell", path.display()))
 }

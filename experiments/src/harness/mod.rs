@@ -26,6 +26,7 @@ mod settings;
 mod study;
 
 pub use budget::{Entry, Term};
+pub(crate) use cell::read as read_cell;
 pub use cell::{CellOutput, CellRow};
 pub use cells::Cells;
 pub use claim::{Claim, FAMILY_WISE, FIT_LEVEL, Judged, Kind, MIN_MAPS, Verdict, judge};
@@ -39,6 +40,7 @@ pub(crate) use progress::duration;
 pub use progress::say;
 pub use provenance::Provenance;
 pub use replot::replot;
+pub(crate) use replot::try_redraw;
 pub use results::{Row, Unit};
 pub(crate) use section::row_label;
 pub use section::{FigureFiles, OtherWidth, Section, Table, bar};

@@ -88,6 +88,12 @@ fn tables(folder: &Path, only: &[String]) -> anyhow::Result<Vec<PathBuf>> {
     Ok(tables)
 }
 
+/// Redraws a figure from its table and says how many bytes the drawings have; writes nothing.
+pub(crate) fn try_redraw(table: &Path) -> anyhow::Result<usize> {
+    let redrawn = redraw(table.to_path_buf())?;
+    Ok(redrawn.files.drawings(&redrawn.stem).iter().map(|(_, bytes)| bytes.len()).sum())
+}
+
 fn redraw(table: PathBuf) -> anyhow::Result<Redrawn> {
     let place = table.display();
     let text = std::fs::read_to_string(&table).with_context(|| format!("cannot read {place}"))?;

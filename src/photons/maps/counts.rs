@@ -3,8 +3,8 @@
 use super::pass::{Class, Run};
 use super::{Amount, Emitted, MapSettings, PILOT, is_matt};
 use crate::error::{Error, Result};
-use crate::photons::Emitter;
 use crate::photons::importance::Importance;
+use crate::photons::{Emitter, check_end};
 use crate::rng::Purpose;
 use crate::scene::Scene;
 use crate::transport::NoProgress;
@@ -30,6 +30,7 @@ pub fn counts_steered(
     importance: Option<&Importance>,
 ) -> Result<Emitted> {
     scene.check_emission()?;
+    check_end(scene)?;
     let emitters = Emitters::of(scene, importance);
     let needs = Needs::of(scene, &emitters);
     let asked = [

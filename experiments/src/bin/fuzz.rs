@@ -1,0 +1,7 @@
+//! Tries inputs by chance.
+
+use std::process::ExitCode;
+
+fn main() -> ExitCode {
+    turbid_experiments::fuzz::main()
+}

@@ -1,0 +1,361 @@
+//! Trying one input: what is asked of it, and whether it was answered.
+
+use super::input::{Input, Kind};
+use super::seeds;
+use crate::harness::{read_cell, try_redraw};
+use std::fmt;
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::path::{Path, PathBuf};
+use std::process::{Command, Stdio};
+use std::sync::Mutex;
+use std::time::{Duration, Instant};
+use turbid::estimators::{Gather, Kernel};
+use turbid::integrators::mapper;
+use turbid::integrators::path::layers;
+use turbid::photons::check_end;
+use turbid::photons::importance::{Importance, ImportanceSettings};
+use turbid::photons::maps::{Amount, Indirect, MapSettings, fill_steered};
+use turbid::scene::{Camera, Orders, Scene, SceneFile};
+use turbid::sensor::{
+    Film, PathSettings, PhotonSettings, Streams, by_light, by_paths, by_photons, check_camera, render,
+};
+use turbid::transport::NoProgress;
+
+/// What became of an input.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Verdict {
+    /// It did what it says.
+    Accepted,
+    /// It was refused, in one line.
+    Refused(String),
+    /// Neither: what happened.
+    Failed(String),
+}
+
+impl Verdict {
+    /// Whether it failed.
+    pub fn is_failure(&self) -> bool {
+        matches!(self, Verdict::Failed(_))
+    }
+}
+
+impl fmt::Display for Verdict {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Verdict::Accepted => write!(f, "accepted"),
+            Verdict::Refused(why) => write!(f, "refused: {}", shown(why)),
+            Verdict::Failed(what) => write!(f, "failed: {}", shown(what)),
+        }
+    }
+}
+
+/// A text in one line that a terminal does not obey.
+pub fn shown(text: &str) -> String {
+    text.chars().map(|c| if c.is_control() { c.escape_debug().to_string() } else { c.to_string() }).collect()
+}
+
+/// What the last panic said.
+static PANIC: Mutex<String> = Mutex::new(String::new());
+
+/// Keeps what a panic says, and prints nothing.
+pub fn keep_panics() {
+    std::panic::set_hook(Box::new(|info| {
+        let text = info.payload_as_str().unwrap_or("no text");
+        let place = info.location().map(|l| format!("{}:{}", l.file(), l.line())).unwrap_or_default();
+        if let Ok(mut last) = PANIC.lock() {
+            *last = format!("{place}: {text}");
+        }
+    }));
+}
+
+/// A folder with the files that scenes name, where inputs are tried.
+pub struct Workbench {
+    folder: tempfile::TempDir,
+    program: Option<PathBuf>,
+}
+
+/// What a refusal of an input must not be.
+fn checked(message: String, file: Option<&str>) -> Verdict {
+    if message.contains('\n') {
+        Verdict::Failed(format!("a message of several lines: {message}"))
+    } else if message.chars().any(char::is_control) {
+        Verdict::Failed(format!("a message with signs that a terminal obeys: {message}"))
+    } else if file.is_some_and(|file| !message.contains(file)) {
+        Verdict::Failed(format!("a message without its file: {message}"))
+    } else if message.is_empty() {
+        Verdict::Failed("an empty message".to_string())
+    } else {
+        Verdict::Refused(message)
+    }
+}
+
+const SEED: u64 = 7;
+
+impl Workbench {
+    /// A new folder with the files that seeds name.
+    ///
+    /// # Errors
+    /// If files cannot be written.
+    pub fn new() -> std::io::Result<Self> {
+        let folder = tempfile::tempdir()?;
+        for (name, bytes) in seeds::files() {
+            std::fs::write(folder.path().join(name), bytes)?;
+        }
+        copy(&seeds::gallery(), folder.path())?;
+        std::fs::write(folder.path().join("drawn.toml"), DRAWN)?;
+        let own = std::env::current_exe()?;
+        let beside = own.ancestors().skip(1).take(2).map(|folder| folder.join("turbid"));
+        let program = beside.into_iter().find(|path| path.is_file());
+        Ok(Workbench { folder, program })
+    }
+
+    /// Tries one input.
+    pub fn judge(&self, input: &Input) -> Verdict {
+        match catch_unwind(AssertUnwindSafe(|| self.try_one(input))) {
+            Ok(verdict) => verdict,
+            Err(_) => {
+                let what = PANIC.lock().map(|last| last.clone()).unwrap_or_default();
+                Verdict::Failed(format!("panic at {what}"))
+            }
+        }
+    }
+
+    fn try_one(&self, Input { kind, bytes }: &Input) -> Verdict {
+        let name = format!("input.{}", kind.ending());
+        let path = self.folder.path().join(&name);
+        if *kind != Kind::Arguments
+            && let Err(error) = std::fs::write(&path, bytes)
+        {
+            return Verdict::Failed(format!("cannot write {}: {error}", path.display()));
+        }
+        let medium = "density = { grid = { file = \"input.vol\" } }\ng = 0.3";
+        let table = "phase = { table = { file = \"input.txt\" } }";
+        let fog = |keys: &str| {
+            format!(
+                "[[regions]]\nshape = {{ cuboid = {{ min = [-1, -1, -1], max = [1, 1, 1] }} }}\nsigma_t = 2\nalbedo = 0.8\n{keys}\n{LIT}"
+            )
+        };
+        let object = |shape: &str, surface: &str| {
+            format!(
+                "[[objects]]\nshape = {{ {shape} }}\nsurface = {{ lambertian = {{ reflectance = {surface} }} }}\n{LIT}"
+            )
+        };
+        match kind {
+            Kind::Scenes => self.scene(bytes),
+            Kind::Vol => self.scene_of(&fog(medium), &name),
+            Kind::Tables => self.scene_of(&fog(table), &name),
+            Kind::Png => {
+                let square = "rectangle = { corner = [-1, -1, 0], u = [2, 0, 0], v = [0, 2, 0] }";
+                self.scene_of(&object(square, "{ image = { file = \"input.png\" } }"), &name)
+            }
+            Kind::Obj => self.scene_of(&object("mesh = { file = \"input.obj\" }", "0.5"), &name),
+            Kind::Cells => match read_cell(&path) {
+                Ok(_) => Verdict::Accepted,
+                Err(error) => checked(format!("{error:#}"), Some(&name)),
+            },
+            Kind::Figures => match try_redraw(&path) {
+                Ok(_) => Verdict::Accepted,
+                Err(error) => checked(format!("{error:#}"), Some(&name)),
+            },
+            Kind::Arguments => self.command(bytes),
+        }
+    }
+
+    /// A scene file, as it is read by the library; one in thirty by the program too, which says where it is wrong.
+    fn scene(&self, bytes: &[u8]) -> Verdict {
+        if bytes.len() % 30 == 7
+            && let refused @ Verdict::Failed(_) = self.command(b"check\ninput.toml")
+        {
+            return refused;
+        }
+        let Ok(text) = std::str::from_utf8(bytes) else { return Verdict::Refused("not UTF-8".to_string()) };
+        self.scene_of(text, "")
+    }
+
+    /// A scene, and all that can be asked of it; what its file is refused for names `file`.
+    fn scene_of(&self, text: &str, file: &str) -> Verdict {
+        let parsed: SceneFile = match toml::from_str(text) {
+            Ok(parsed) => parsed,
+            // The program makes one line of these.
+            Err(error) => return Verdict::Refused(error.message().replace('\n', " ")),
+        };
+        let scene = match parsed.scene(self.folder.path()) {
+            Ok(scene) => scene,
+            Err(error) => return checked(error.to_string(), Some(file)),
+        };
+        if let Err(error) = check_end(&scene) {
+            return checked(error.to_string(), None);
+        }
+        let camera = scene.camera().and_then(|camera| camera.with_size(8, 8).ok());
+        let camera = camera.filter(|camera| check_camera(&scene, camera).is_ok());
+        let mut notes = Vec::new();
+        let mut note = |of: &str, outcome: turbid::Result<()>| {
+            if let Err(error) = outcome {
+                notes.push((of.to_string(), error));
+            }
+        };
+        if let Some(camera) = &camera {
+            note("paths", paths(&scene, camera));
+            note("light", light(&scene, camera));
+            for is_steered in [false, true] {
+                let indirect = if is_steered { Indirect::Gathered } else { Indirect::Seen };
+                note("photons", photons(&scene, camera, indirect, is_steered));
+            }
+        }
+        if !scene.sensors().is_empty() {
+            let settings = PathSettings { samples: 20, seed: SEED, replicate: 0, orders: Orders::ALL };
+            note("measured by paths", by_paths(&scene, &settings, &NoProgress).map(|_| ()));
+            note("measured by photons", measured(&scene));
+        }
+        for (of, error) in notes {
+            if let turbid::Error::NonFinite { .. } = error {
+                return Verdict::Failed(format!("{of}: {error}"));
+            }
+            if let failed @ Verdict::Failed(_) = checked(error.to_string(), None) {
+                return failed;
+            }
+        }
+        Verdict::Accepted
+    }
+
+    /// A command line of the program.
+    fn command(&self, bytes: &[u8]) -> Verdict {
+        let Some(program) = &self.program else {
+            return Verdict::Refused("the program turbid is not there".to_string());
+        };
+        let text = String::from_utf8_lossy(bytes).replace('\0', "");
+        let child = Command::new(program)
+            .args(text.split('\n'))
+            .current_dir(self.folder.path())
+            .env("RAYON_NUM_THREADS", "1")
+            .stdin(Stdio::null())
+            .stdout(Stdio::null())
+            .stderr(Stdio::piped())
+            .spawn();
+        let mut child = match child {
+            Ok(child) => child,
+            Err(error) => return Verdict::Refused(error.to_string()),
+        };
+        let start = Instant::now();
+        let status = loop {
+            match child.try_wait() {
+                Ok(Some(status)) => break status,
+                Ok(None) if start.elapsed() < PATIENCE => std::thread::sleep(Duration::from_millis(2)),
+                _ => {
+                    let _ended = child.kill().and_then(|()| child.wait());
+                    return Verdict::Failed(format!("the program had not ended after {PATIENCE:?}"));
+                }
+            }
+        };
+        let mut said = String::new();
+        if let Some(mut pipe) = child.stderr.take() {
+            let _unheard = std::io::Read::read_to_string(&mut pipe, &mut said);
+        }
+        match status.code() {
+            Some(0) => match said.lines().find(|line| !line.starts_with("turbid: note: ")) {
+                Some(line) => Verdict::Failed(format!("no error, but: {line}")),
+                None => Verdict::Accepted,
+            },
+            Some(2) => {
+                let line = said.strip_suffix('\n').unwrap_or(&said);
+                match line.strip_prefix("turbid: error: ") {
+                    Some(message) => checked(message.to_string(), None),
+                    None => Verdict::Failed(format!("an error that is none of turbid's: {line}")),
+                }
+            }
+            code => Verdict::Failed(format!("exit code {code:?}: {said}")),
+        }
+    }
+}
+
+/// How long a command line may take by the clock, on a machine that has other work to do.
+const PATIENCE: Duration = Duration::from_secs(60);
+
+/// Light and an eye for the scenes that files are tried in.
+const LIT: &str = "[[lights]]\npoint = { position = [0.2, 3, 2], power = 10 }\n[camera]\nposition = [0, 0.5, 4]\n\
+                   look_at = [0, 0, 0]\nfov = 50\nwidth = 8\nheight = 8\n\
+                   [[sensors]]\nname = \"s\"\nmeasure = { fluence = { at = [0.1, 0.2, 0.3] } }\n";
+
+/// A scene that command lines name.
+const DRAWN: &str = "[[objects]]\nshape = { sphere = { center = [0, 0, 0], radius = 1 } }\n\
+                     surface = { lambertian = { reflectance = 0.5 } }\n[[regions]]\n\
+                     shape = { cuboid = { min = [-2, -2, -2], max = [2, 2, 2] } }\nsigma_t = 0.5\nalbedo = 0.8\ng = 0\n\
+                     [[lights]]\npoint = { position = [0.2, 3, 2], power = 10 }\n[camera]\nposition = [0, 0.5, 4]\n\
+                     look_at = [0, 0, 0]\nfov = 50\nwidth = 8\nheight = 8\n\
+                     [[sensors]]\nname = \"s\"\nmeasure = { fluence = { at = [0, 0, 1.5] } }\n";
+
+/// Copies the files of a folder and its folders.
+fn copy(from: &Path, to: &Path) -> std::io::Result<()> {
+    for entry in std::fs::read_dir(from)? {
+        let entry = entry?;
+        let target = to.join(entry.file_name());
+        if entry.file_type()?.is_dir() {
+            std::fs::create_dir_all(&target)?;
+            copy(&entry.path(), &target)?;
+        } else {
+            std::fs::copy(entry.path(), target)?;
+        }
+    }
+    Ok(())
+}
+
+const STREAMS: Streams = Streams { seed: SEED, replicate: 0 };
+
+/// Whether every number of a film is finite.
+fn finite(film: &Film, place: &'static str) -> turbid::Result<()> {
+    let is_bad = |p: &&turbid::sensor::Pixel| {
+        !p.total().is_finite() || p.variance().is_some_and(|variance| !variance.is_finite())
+    };
+    match film.pixels().iter().filter(is_bad).count() as u64 {
+        0 => Ok(()),
+        count => Err(turbid::Error::NonFinite { count, place }),
+    }
+}
+
+fn paths(scene: &Scene, camera: &Camera) -> turbid::Result<()> {
+    let within = scene.interior_at(camera.position());
+    let film =
+        render(camera, 2, STREAMS, &NoProgress, |ray, stream| layers(scene, ray, None, within, stream).0)?;
+    finite(&film, "the film of paths")
+}
+
+fn light(scene: &Scene, camera: &Camera) -> turbid::Result<()> {
+    finite(&by_light(scene, camera, 64, 3, STREAMS, &NoProgress)?, "the film of light tracing")
+}
+
+fn photons(scene: &Scene, camera: &Camera, indirect: Indirect, is_steered: bool) -> turbid::Result<()> {
+    let amount = Amount::Emitted(200);
+    let maps =
+        MapSettings { global: amount, caustic: amount, volume: amount, indirect, seed: SEED, replicate: 0 };
+    let learned =
+        ImportanceSettings { particles: 128, pilot: 64, rounds: 2, boxes: 4, seed: SEED, replicate: 0 };
+    // Only a part of the scenes can be steered; importance says why not.
+    let importance =
+        if is_steered { Some(Importance::of(scene, camera, indirect, &learned, &NoProgress)?) } else { None };
+    let maps = fill_steered(scene, &maps, importance.as_ref(), &NoProgress)?;
+    let size = scene.bounds().map_or(1.0, |ball| 2.0 * ball.radius() / 3.0f64.sqrt());
+    let settings = mapper::Settings { gather_rays: 2, ..mapper::Settings::for_size(size, 20)? };
+    let mapper = mapper::Mapper::new(scene, &maps, &settings);
+    let within = scene.interior_at(camera.position());
+    let film =
+        render(camera, 1, STREAMS, &NoProgress, |ray, stream| mapper.radiance(ray, None, within, stream).0)?;
+    finite(&film, "the film of photons")
+}
+
+fn measured(scene: &Scene) -> turbid::Result<()> {
+    let densest = scene.regions().iter().map(|r| r.medium.highest_sigma_t().max()).fold(0.0, f64::max);
+    let cap = match scene.stage() {
+        Some(stage) => 0.5 * stage.side,
+        None if densest > 0.0 => 1.0 / densest,
+        None => 1.0,
+    };
+    let settings = PhotonSettings {
+        photons: 200,
+        maps: 2,
+        seed: SEED,
+        orders: Orders::ALL,
+        gather: Gather::nearest(10, cap)?,
+        kernel: Kernel::Uniform,
+    };
+    by_photons(scene, &settings, &NoProgress).map(|_| ())
+}
