@@ -19,7 +19,7 @@ use clap::{Subcommand, ValueEnum};
 use std::io::{ErrorKind, Write};
 use std::process::ExitCode;
 use turbid::estimators::Kernel;
-use turbid::output::Format;
+use turbid::output::{Format, one_line};
 
 /// What can be asked. The help of each is what its own file says: a word here would replace all of it.
 #[derive(Subcommand)]
@@ -57,7 +57,7 @@ pub fn exit_code(program: &str, outcome: anyhow::Result<()>) -> ExitCode {
         return ExitCode::SUCCESS;
     }
     // If even stderr is closed there is nobody left to tell.
-    let _ = writeln!(std::io::stderr().lock(), "{program}: error: {error:#}");
+    let _ = writeln!(std::io::stderr().lock(), "{program}: error: {}", one_line(&format!("{error:#}")));
     ExitCode::from(2)
 }
 
@@ -118,7 +118,7 @@ fn on_threads<T: Send>(
 
 /// Tells something beside the table.
 fn note(text: &str) -> std::io::Result<()> {
-    writeln!(std::io::stderr().lock(), "turbid: note: {text}")
+    writeln!(std::io::stderr().lock(), "turbid: note: {}", one_line(text))
 }
 
 /// A count on the command line: 1000000, 1_000_000 or 1e6; at least 1.

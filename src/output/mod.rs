@@ -10,6 +10,6 @@ mod tone;
 pub use atomic::{WriteError, write_atomically};
 pub use exr::{PROVENANCE, encode_exr, write_exr};
 pub use ply::write_ply;
-pub use stdout::{ignore_closed_pipe, print};
+pub use stdout::{ignore_closed_pipe, one_line, print};
 pub use table::{Format, write_aligned, write_csv, write_json, write_rows};
 pub use tone::{Curve, Tone, auto_exposure, to_srgb, write_png};

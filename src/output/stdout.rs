@@ -1,4 +1,4 @@
-//! Standard output, where a reader may leave early.
+//! Standard output, where a reader may leave early; and text that came from elsewhere, on its way to a terminal.
 
 use std::io::{self, BufWriter, Write};
 
@@ -25,9 +25,28 @@ pub fn ignore_closed_pipe(result: io::Result<()>) -> io::Result<()> {
     }
 }
 
+/// A text in one line that a terminal only shows: names and values from files and command lines may hold signs that it
+/// would obey. Line feeds become spaces, other control characters are spelt out.
+pub fn one_line(text: &str) -> String {
+    let mut line = String::with_capacity(text.len());
+    for c in text.chars() {
+        match c {
+            '\n' | '\r' => line.push(' '),
+            c if c.is_control() => line.extend(c.escape_debug()),
+            c => line.push(c),
+        }
+    }
+    line
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn text_from_elsewhere_is_one_line_without_control_characters() {
+        assert_eq!(one_line("a\u{1b}[31m b\nc\u{9b}d\u{7}é"), "a\\u{1b}[31m b c\\u{9b}d\\u{7}é");
+    }
 
     #[test]
     fn only_a_closed_pipe_is_ignored() {

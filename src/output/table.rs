@@ -1,5 +1,6 @@
 //! Tables of measured quantities, as aligned text, CSV or JSON.
 
+use super::one_line;
 use crate::sensor::Reading;
 use serde::Serialize;
 use std::io::{self, Write};
@@ -47,7 +48,7 @@ fn write_text(out: &mut dyn Write, rows: &[Reading]) -> io::Result<()> {
     write_aligned(out, &lines, 3)
 }
 
-/// Writes lines of cells in aligned columns, the first `words` of them flush left and the others flush right.
+/// Writes lines of cells in aligned columns, the first `words` of them flush left and the others flush right; see [`one_line`].
 ///
 /// # Errors
 /// Those of the writer.
@@ -56,9 +57,11 @@ pub fn write_aligned<const N: usize>(
     lines: &[[String; N]],
     words: usize,
 ) -> io::Result<()> {
+    let lines: Vec<[String; N]> =
+        lines.iter().map(|line| line.each_ref().map(|cell| one_line(cell))).collect();
     let width = |column: usize| lines.iter().map(|l| l[column].chars().count()).max().unwrap_or(0);
     let widths: Vec<usize> = (0..N).map(width).collect();
-    for line in lines {
+    for line in &lines {
         let mut text = String::new();
         for (column, (cell, &width)) in line.iter().zip(&widths).enumerate() {
             let cell = if column < words { format!("{cell:<width$}  ") } else { format!("{cell:>width$}  ") };

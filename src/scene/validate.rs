@@ -6,10 +6,15 @@ use crate::geometry::{Face, Shape, Slab};
 use crate::light::{Light, Section, Stage};
 use crate::medium::Medium;
 use crate::surface::Surface;
+use glam::DVec3;
 
 /// Positions keep a part in 2^53 of the scene's extent: a mean free path must stay well above that step for a
 /// flight to be resolved to 1e-6 of itself.
 const MAX_EXTENT_OVER_MFP: f64 = 1e9;
+
+/// Lengths, positions and coefficients of a scene are 0 or between 1 over this and this, in scene units: what is made of
+/// them, their sixth powers at most, stays within the numbers that f64 has.
+const LARGEST: f64 = 1e30;
 
 fn refuse<T>(text: impl Into<String>) -> Result<T> {
     Err(Error::Scene(text.into()))
@@ -29,6 +34,7 @@ pub(super) fn check(parts: &Parts) -> Result<Option<Stage>> {
     {
         return refuse("a scene needs at least one light, or a medium that emits");
     }
+    check_sizes(parts)?;
     interiors::check(parts)?;
     let stage = stage(parts)?;
     for light in &parts.lights {
@@ -92,6 +98,76 @@ pub(super) fn check(parts: &Parts) -> Result<Option<Stage>> {
         }
     }
     Ok(stage)
+}
+
+/// Whether every part is of a size that can be computed with.
+fn check_sizes(parts: &Parts) -> Result<()> {
+    let is_out = |x: f64| !(x.abs() <= LARGEST && (x == 0.0 || x.abs() >= 1.0 / LARGEST));
+    let number = |name: &str, what: &str, x: f64| {
+        if is_out(x) {
+            return Err(Error::out_of_range(format!("{name}: {what}"), x, "0, or 1e-30 to 1e30 in size"));
+        }
+        Ok(())
+    };
+    let place = |name: &str, p: DVec3| {
+        if p.abs().max_element() <= LARGEST {
+            return Ok(());
+        }
+        Err(Error::out_of_range(format!("{name}: a coordinate"), p.abs().max_element(), "up to 1e30 in size"))
+    };
+    let shape = |name: &str, shape: &Shape| match (shape, shape.bounds()) {
+        (Shape::Slab(slab), _) => {
+            place(name, DVec3::Z * slab.top())?;
+            number(name, "thickness", slab.thickness())
+        }
+        (_, Some((center, radius))) => {
+            place(name, center)?;
+            number(name, "half its extent", radius)
+        }
+        (_, None) => Ok(()),
+    };
+    let medium = |name: &str, medium: &Medium| {
+        let sigma_t = medium.highest_sigma_t();
+        (0..3).try_for_each(|channel| number(name, "largest sigma_t", sigma_t[channel]))
+    };
+    for (i, region) in parts.regions.iter().enumerate() {
+        shape(&format!("regions[{i}]"), &region.shape)?;
+        medium(&format!("regions[{i}]"), &region.medium)?;
+    }
+    for interior in &parts.interiors {
+        interior.medium.iter().try_for_each(|m| medium(&format!("interior {}", interior.name), m))?;
+    }
+    for (i, object) in parts.objects.iter().enumerate() {
+        shape(&format!("objects[{i}]"), &object.shape)?;
+    }
+    for (i, light) in parts.lights.iter().enumerate() {
+        let name = format!("lights[{i}]");
+        light.apex().map_or(Ok(()), |p| place(&name, p))?;
+        match light {
+            Light::Area(l) => shape(&name, l.shape())?,
+            Light::Isotropic(l) => shape(&name, l.shape())?,
+            Light::VolumeSource(l) => shape(&name, l.shape())?,
+            Light::Beam(l) => match l.section() {
+                Section::Disc { center, radius } => {
+                    place(&name, center)?;
+                    number(&name, "radius", radius)?;
+                }
+                Section::Rectangle(rectangle) => shape(&name, &Shape::Rectangle(rectangle))?,
+                Section::Unbounded => {}
+            },
+            _ => {}
+        }
+    }
+    for sensor in &parts.sensors {
+        let name = format!("sensor {}", sensor.name);
+        match &sensor.quantity {
+            Quantity::Fluence(p) => place(&name, *p)?,
+            Quantity::Radiance(ray) => place(&name, ray.origin)?,
+            Quantity::Outflow { shape: around, .. } => shape(&name, around)?,
+            Quantity::Absorbed(_) => {}
+        }
+    }
+    parts.camera.iter().try_for_each(|camera| place("camera", camera.position()))
 }
 
 fn stage(parts: &Parts) -> Result<Option<Stage>> {

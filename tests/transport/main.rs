@@ -6,6 +6,7 @@ mod checks;
 #[path = "../support/mod.rs"]
 mod support;
 
+mod ends;
 mod extremes;
 mod golden;
 mod invariants;

@@ -116,6 +116,16 @@ pub enum Error {
         /// What is left for each plot, in points.
         left: f64,
     },
+    /// A page that is too high: its drawing would take memory in proportion.
+    #[error(
+        "the page is {millimetres:.0} mm high; allowed: up to {allowed:.0} mm: fewer rows of panels, or lower ones"
+    )]
+    Tall {
+        /// Its height.
+        millimetres: f64,
+        /// The greatest height.
+        allowed: f64,
+    },
     /// A CSV file that says no figure.
     #[error("{line}{}: {problem}", .column.map_or_else(String::new, |c| format!(":{c}")))]
     Csv {

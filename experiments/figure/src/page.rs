@@ -84,6 +84,10 @@ pub(crate) fn compose(figure: &Figure) -> Result<Page, Error> {
             bottom += LEGEND_GAP + legend.height();
         }
     }
+    let millimetres = (bottom + BORDER) * 25.4 / 72.0;
+    if millimetres.is_nan() || millimetres > TALLEST {
+        return Err(Error::Tall { millimetres, allowed: TALLEST });
+    }
     let name = if figure.title.is_empty() { figure.panels[0].title.clone() } else { figure.title.clone() };
     Ok(Page { width, height: bottom + BORDER, name, marks })
 }
@@ -96,6 +100,9 @@ fn outside<'a>(panel: &'a Panel, place: Place, column: f64, fonts: &Fonts) -> Op
         Place::Auto | Place::Inside(_) | Place::Hidden => None,
     }
 }
+
+/// Greatest height of a page \[mm\]: twice that of a journal. Drawn in its greatest width it takes 600 MB.
+const TALLEST: f64 = 500.0;
 
 /// Sizes of plots and places of panels; ticks and sizes depend on each other, so that it goes round a few times.
 fn arrange(

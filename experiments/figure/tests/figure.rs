@@ -306,3 +306,14 @@ fn every_label_is_still_there_in_the_other_width() {
         assert_eq!(single.matches(&format!(">{text}</text>")).count(), 3, "{text}");
     }
 }
+
+/// A page that would take gigabytes is refused before it is drawn, by its height.
+#[test]
+fn pages_too_high_are_refused() {
+    let panel = || axes().with(points(vec![1.0, 2.0]));
+    for heights in [vec![20.0], vec![1e308]] {
+        let figure = Figure { width: Width::Double, heights, ..Figure::new(vec![panel()]) };
+        let error = figure.png().unwrap_err();
+        assert!(matches!(error, Error::Tall { .. }) && error.to_string().contains("up to 500 mm"), "{error}");
+    }
+}

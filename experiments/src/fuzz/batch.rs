@@ -2,7 +2,7 @@
 //! and ends; one that dies is known by what it said last.
 
 use super::input::{Input, Kind};
-use super::judge::{Verdict, Workbench, keep_panics, shown};
+use super::judge::{Verdict, Workbench, keep_panics};
 use anyhow::Context;
 use cpu_time::ProcessTime;
 use std::io::{BufRead, BufReader, Write};
@@ -11,6 +11,7 @@ use std::process::{Command, Stdio};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::Duration;
+use turbid::output::one_line;
 
 /// Processor time of an input, at most.
 const LIMIT: Duration = Duration::from_secs(10);
@@ -115,7 +116,7 @@ pub fn work(only: Option<Kind>, seed: u64, range: Range<u64>) -> anyhow::Result<
         tell(match verdict {
             Verdict::Accepted => "accepted".to_string(),
             Verdict::Refused(_) => "refused".to_string(),
-            Verdict::Failed(what) => format!("failed {}", shown(&what)),
+            Verdict::Failed(what) => format!("failed {}", one_line(&what)),
         })?;
     }
     Ok(())

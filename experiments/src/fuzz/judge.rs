@@ -12,6 +12,7 @@ use std::time::{Duration, Instant};
 use turbid::estimators::{Gather, Kernel};
 use turbid::integrators::mapper;
 use turbid::integrators::path::layers;
+use turbid::output::one_line;
 use turbid::photons::check_end;
 use turbid::photons::importance::{Importance, ImportanceSettings};
 use turbid::photons::maps::{Amount, Indirect, MapSettings, fill_steered};
@@ -43,15 +44,10 @@ impl fmt::Display for Verdict {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Verdict::Accepted => write!(f, "accepted"),
-            Verdict::Refused(why) => write!(f, "refused: {}", shown(why)),
-            Verdict::Failed(what) => write!(f, "failed: {}", shown(what)),
+            Verdict::Refused(why) => write!(f, "refused: {}", one_line(why)),
+            Verdict::Failed(what) => write!(f, "failed: {}", one_line(what)),
         }
     }
-}
-
-/// A text in one line that a terminal does not obey.
-pub fn shown(text: &str) -> String {
-    text.chars().map(|c| if c.is_control() { c.escape_debug().to_string() } else { c.to_string() }).collect()
 }
 
 /// What the last panic said.
@@ -151,11 +147,11 @@ impl Workbench {
             Kind::Obj => self.scene_of(&object("mesh = { file = \"input.obj\" }", "0.5"), &name),
             Kind::Cells => match read_cell(&path) {
                 Ok(_) => Verdict::Accepted,
-                Err(error) => checked(format!("{error:#}"), Some(&name)),
+                Err(error) => checked(one_line(&format!("{error:#}")), Some(&name)),
             },
             Kind::Figures => match try_redraw(&path) {
                 Ok(_) => Verdict::Accepted,
-                Err(error) => checked(format!("{error:#}"), Some(&name)),
+                Err(error) => checked(one_line(&format!("{error:#}")), Some(&name)),
             },
             Kind::Arguments => self.command(bytes),
         }
@@ -181,10 +177,10 @@ impl Workbench {
         };
         let scene = match parsed.scene(self.folder.path()) {
             Ok(scene) => scene,
-            Err(error) => return checked(error.to_string(), Some(file)),
+            Err(error) => return checked(one_line(&error.to_string()), Some(file)),
         };
         if let Err(error) = check_end(&scene) {
-            return checked(error.to_string(), None);
+            return checked(one_line(&error.to_string()), None);
         }
         let camera = scene.camera().and_then(|camera| camera.with_size(8, 8).ok());
         let camera = camera.filter(|camera| check_camera(&scene, camera).is_ok());
@@ -211,7 +207,7 @@ impl Workbench {
             if let turbid::Error::NonFinite { .. } = error {
                 return Verdict::Failed(format!("{of}: {error}"));
             }
-            if let failed @ Verdict::Failed(_) = checked(error.to_string(), None) {
+            if let failed @ Verdict::Failed(_) = checked(one_line(&error.to_string()), None) {
                 return failed;
             }
         }

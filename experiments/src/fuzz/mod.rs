@@ -10,6 +10,8 @@ mod input;
 mod judge;
 mod seeds;
 mod shrink;
+#[cfg(test)]
+mod tests;
 mod tree;
 
 pub use input::{Input, Kind};

@@ -4,13 +4,14 @@ use indicatif::{ProgressBar, ProgressStyle};
 use std::io::{IsTerminal, Write};
 use std::sync::Mutex;
 use std::time::{Duration, Instant};
+use turbid::output::one_line;
 
 /// Time between lines where there is no terminal.
 const INTERVAL: Duration = Duration::from_secs(10);
 
 /// Says one line on standard error. Nobody listening is no error.
 pub fn say(text: &str) {
-    let _unheard = writeln!(std::io::stderr().lock(), "{text}");
+    let _unheard = writeln!(std::io::stderr().lock(), "{}", one_line(text));
 }
 
 /// Progress of the cells, by their cost.

@@ -91,11 +91,10 @@ impl Obj {
             }
             Some("f") => self.face(words),
             Some(word) if PASSED_OVER.contains(&word) => Ok(()),
-            Some(word) => {
-                // Of a file that is none of ours a few signs, and none that a terminal would obey.
-                let word: String = word.chars().take(20).flat_map(char::escape_debug).collect();
-                Err(format!("unknown statement `{word}`; allowed: v, vt, vn, f, o, g, s, mtllib, usemtl"))
-            }
+            Some(word) => Err(format!(
+                "unknown statement `{}`; allowed: v, vt, vn, f, o, g, s, mtllib, usemtl",
+                shown(word)
+            )),
         }
     }
 
@@ -142,9 +141,9 @@ fn place(word: &str, count: usize, what: &str) -> std::result::Result<usize, Str
             format!("allowed: 1 to {count}, or -{count} to -1")
         }
     };
-    let index: i64 = word
-        .parse()
-        .map_err(|_| format!("a face names {what} `{word}`, which is no whole number; {}", allowed()))?;
+    let index: i64 = word.parse().map_err(|_| {
+        format!("a face names {what} `{}`, which is no whole number; {}", shown(word), allowed())
+    })?;
     let from_start = if index < 0 { index + count as i64 } else { index - 1 };
     usize::try_from(from_start)
         .ok()
@@ -152,12 +151,17 @@ fn place(word: &str, count: usize, what: &str) -> std::result::Result<usize, Str
         .ok_or_else(|| format!("a face names {what} {index}; {}", allowed()))
 }
 
+/// Of a word of a file that is none of ours a few signs, and none that a terminal would obey.
+fn shown(word: &str) -> String {
+    word.chars().take(20).flat_map(char::escape_debug).collect()
+}
+
 /// Finite numbers.
 fn numbers<'a>(words: impl Iterator<Item = &'a str>) -> std::result::Result<Vec<f64>, String> {
     words
         .map(|word| match word.parse::<f64>() {
             Ok(number) if number.is_finite() => Ok(number),
-            _ => Err(format!("`{word}` is no finite number")),
+            _ => Err(format!("`{}` is no finite number", shown(word))),
         })
         .collect()
 }

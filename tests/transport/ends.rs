@@ -1,0 +1,257 @@
+//! Light comes to an end, or the scene is refused in a line that says what keeps it; work is counted, not timed.
+
+use crate::support::run::pass;
+use crate::support::scenes::{
+    bounded, cuboid, homogeneous, isotropic, lambertian, outflow, point_light, rectangle, region, sphere,
+};
+use crate::support::verdict;
+use glam::DVec3;
+use turbid::Spectrum;
+use turbid::geometry::Shape;
+use turbid::light::{Faces, Light};
+use turbid::math::{Interval, Ray};
+use turbid::medium::{Density, Grid, Heterogeneous, Medium};
+use turbid::photons::importance::{Importance, ImportanceSettings};
+use turbid::photons::maps::{Amount, Indirect, MapSettings, fill};
+use turbid::photons::{Histories, MOST_EVENTS, check_end, shoot};
+use turbid::rng::{Purpose, Stream};
+use turbid::scene::{Camera, Filter, Interior, Object, Orders, Parts, Quantity, Scene, Sensor, View};
+use turbid::sensor::{PathSettings, Streams, by_light, by_paths};
+use turbid::stats::Moments;
+use turbid::surface::{Dielectric, Mirror, Surface};
+use turbid::transport::{LONG, NoProgress, Roulette, Step, Visitor, Walker, passed, walk};
+
+/// The six walls of a box of side 2, as rectangles.
+fn walls(surface: impl Fn(usize) -> Surface) -> Vec<(Shape, Surface)> {
+    let low = DVec3::splat(-1.0);
+    let (x, y, z) = (DVec3::X * 2.0, DVec3::Y * 2.0, DVec3::Z * 2.0);
+    let sides = [(low, x, y), (low + z, x, y), (low, x, z), (low + y, x, z), (low, y, z), (low + x, y, z)];
+    let wall = |(i, (corner, u, v))| (Shape::Rectangle(rectangle(corner, u, v)), surface(i));
+    sides.into_iter().enumerate().map(wall).collect()
+}
+
+fn objects(bodies: Vec<(Shape, Surface)>) -> Vec<Object> {
+    bodies.into_iter().map(|(shape, surface)| Object { shape, surface }).collect()
+}
+
+fn white(_: usize) -> Surface {
+    lambertian(Spectrum::ONE)
+}
+
+fn mirror(_: usize) -> Surface {
+    Surface::Mirror(Mirror::new(Spectrum::ONE).unwrap())
+}
+
+fn lamp() -> Light {
+    point_light(DVec3::new(0.1, 0.2, 0.3), Spectrum::ONE)
+}
+
+fn probe() -> Sensor {
+    Sensor {
+        name: "middle".into(),
+        label: "fluence".into(),
+        quantity: Quantity::Fluence(DVec3::new(0.5, 0.4, 0.3)),
+        orders: Orders::ALL,
+    }
+}
+
+fn camera() -> Camera {
+    let (position, look_at) = (DVec3::new(0.0, 0.0, -0.9), DVec3::ZERO);
+    Camera::new(View { position, look_at, up: DVec3::Y, fov: 60.0, width: 4, height: 4, filter: Filter::Box })
+        .unwrap()
+}
+
+fn room(surface: impl Fn(usize) -> Surface) -> Scene {
+    let parts = Parts {
+        objects: objects(walls(surface)),
+        lights: vec![lamp()],
+        sensors: vec![probe()],
+        camera: Some(camera()),
+        ..Parts::default()
+    };
+    Scene::new(parts).unwrap()
+}
+
+/// Counts the events of histories, and keeps the weight of the last one.
+#[derive(Default)]
+struct Events {
+    count: u64,
+    last: f64,
+}
+
+impl Visitor for Events {
+    const LOOKS_AHEAD: bool = false;
+
+    fn visit(&mut self, walker: &Walker, step: Step, _stream: &mut Stream) {
+        if let Step::Ahead(_) = step {
+            self.count += 1;
+            self.last = walker.weight.max();
+        }
+    }
+}
+
+/// Rooms that keep light, whatever they are made of; and the same with a way out, or a wall that absorbs.
+#[test]
+fn rooms_that_keep_light_are_refused_and_others_are_not() {
+    let grey = |value: f64| move |_: usize| lambertian(Spectrum::grey(value));
+    let text = |scene: &Scene| check_end(scene).unwrap_err().to_string();
+    let told = text(&room(white));
+    for part in ["light from lights[0]", "objects[0]", "objects[5]", "allowed: 100000"] {
+        assert!(told.contains(part) && !told.contains('\n'), "{told}");
+    }
+    text(&room(mirror));
+    // A million events a history, expected.
+    text(&room(grey(0.999_999)));
+    assert_eq!(check_end(&room(grey(0.999))), Ok(()));
+    assert_eq!(check_end(&room(|i| if i == 3 { grey(0.5)(i) } else { white(i) })), Ok(()));
+    let mut open = walls(white);
+    open.pop();
+    assert_eq!(check_end(&bounded(Vec::new(), open, vec![lamp()])), Ok(()));
+    // A medium that absorbs ends it too; one that does not keeps it.
+    let fog = |albedo: f64| region(cuboid(DVec3::splat(-1.0), DVec3::ONE), 1.0, albedo, 0.0);
+    assert_eq!(check_end(&bounded(vec![fog(0.9)], walls(white), vec![lamp()])), Ok(()));
+    text(&bounded(vec![fog(1.0)], walls(white), vec![lamp()]));
+    // Light of a lamp outside comes to an end; what a sensor inside could measure does not.
+    let outside = point_light(DVec3::X * 3.0, Spectrum::ONE);
+    assert_eq!(check_end(&bounded(Vec::new(), walls(white), vec![outside.clone()])), Ok(()));
+    let parts = Parts {
+        objects: objects(walls(white)),
+        lights: vec![outside],
+        sensors: vec![probe()],
+        ..Parts::default()
+    };
+    let told = text(&Scene::new(parts).unwrap());
+    assert!(told.contains("sensor middle"), "{told}");
+}
+
+/// No method hangs: each refuses the room itself.
+#[test]
+fn every_method_refuses_a_room_that_keeps_light() {
+    let scene = room(white);
+    let histories = Histories { count: 10, seed: 1, replicate: 0, max_order: None };
+    let told = |refused: turbid::Result<()>| {
+        let text = refused.unwrap_err().to_string();
+        assert!(text.contains("hardly ever ends"), "{text}");
+    };
+    told(shoot(&scene, histories, &[], |_| true, &NoProgress).map(|_| ()));
+    let amount = Amount::Stored(10);
+    let indirect = Indirect::Seen;
+    let maps =
+        MapSettings { global: amount, caustic: amount, volume: amount, indirect, seed: 1, replicate: 0 };
+    told(fill(&scene, &maps, &NoProgress).map(|_| ()));
+    let streams = Streams { seed: 1, replicate: 0 };
+    told(by_light(&scene, &camera(), 10, 1, streams, &NoProgress).map(|_| ()));
+    let settings = PathSettings { samples: 10, seed: 1, replicate: 0, orders: Orders::ALL };
+    told(by_paths(&scene, &settings, &NoProgress).map(|_| ()));
+    let learned = ImportanceSettings::default();
+    told(Importance::of(&scene, &camera(), indirect, &learned, &NoProgress).map(|_| ()));
+}
+
+/// The furnace with a white ball in it: nothing is trapped, and the fluence is 4 everywhere.
+#[test]
+fn a_white_ball_in_a_medium_that_is_lit_from_outside_is_a_furnace() {
+    let shell = sphere(DVec3::ZERO, 1.0);
+    let objects = vec![(sphere(DVec3::ZERO, 0.3), white(0))];
+    let fog = region(shell.clone(), 2.0, 1.0, 0.3);
+    let scene = bounded(vec![fog], objects, vec![isotropic(shell, Faces::Both)]);
+    let at = Quantity::Fluence(DVec3::X * 0.5);
+    let fluence = crate::support::run::paths(&scene, at, Orders::ALL, 1 << 14, 5);
+    verdict::agrees("fluence of the furnace", &fluence[0], (4.0, 1e-14), 0.05, 5);
+    let booked = pass(&scene, &[], 1 << 12, 5, |_| false).ledger;
+    assert!((booked.escaped / booked.emitted - 1.0).abs() < 1e-12);
+}
+
+/// A mirror in a cube of glass is no way out: what is caught is given up after some ten thousand reflections, and booked.
+#[test]
+fn light_caught_in_glass_with_a_mirror_in_it_is_given_up() {
+    let glass = Interior { name: "glass".into(), index: 1.6, medium: None };
+    let pane = rectangle(DVec3::new(-0.5, -0.5, 0.5), DVec3::X, DVec3::Y);
+    let parts = Parts {
+        interiors: vec![Interior::surroundings(), glass],
+        objects: vec![
+            Object {
+                shape: cuboid(DVec3::splat(-1.0), DVec3::ONE),
+                surface: Surface::Dielectric(Dielectric::new(1, 0)),
+            },
+            Object { shape: Shape::Rectangle(pane), surface: mirror(0) },
+        ],
+        lights: vec![lamp()],
+        ..Parts::default()
+    };
+    let scene = Scene::new(parts).unwrap();
+    let out = (outflow(sphere(DVec3::ZERO, 3.0)), Orders::ALL);
+    let pass = pass(&scene, &[out], 1 << 9, 3, |_| false);
+    let ledger = &pass.ledger;
+    let booked = ledger.escaped + ledger.absorbed + ledger.abandoned;
+    assert!((booked / ledger.emitted - 1.0).abs() < 1e-12 && ledger.absorbed == 0.0);
+    // The cube without the mirror keeps a third; the mirror turns light, not its angles to the faces.
+    let cone = 0.5 * (1.0 - (1.0f64 - 1.0 / (1.6 * 1.6)).sqrt());
+    verdict::agrees("out of the cube", &pass.tallies[0][0], (6.0 * cone, 1e-15), 0.2, 3);
+    for history in 0..64 {
+        let mut stream = Stream::new(3, Purpose::Synthetic, 0, history);
+        let dir = turbid::math::warp::square_to_sphere(stream.pair()).normalize();
+        let start = Walker { within: 1, ..Walker::new(Ray::new(DVec3::ZERO, dir), Spectrum::ONE) };
+        let mut events = Events::default();
+        walk(&scene, start, Roulette::Analog, None, &mut stream, &mut events);
+        assert!(events.count < 40_000, "{}", events.count);
+    }
+}
+
+/// Histories that nothing ends play for their lives: with odds of 1e5 to 1 at each event, and weights that keep the mean.
+#[test]
+fn long_histories_end_by_a_game_that_keeps_the_mean() {
+    let scene = room(white);
+    let odds = 1e5f64;
+    let mut lives = Moments::new();
+    for history in 0..64 {
+        let mut stream = Stream::new(9, Purpose::Synthetic, 0, history);
+        let start = Walker { events: LONG, ..Walker::new(Ray::new(DVec3::ZERO, DVec3::X), Spectrum::ONE) };
+        let mut events = Events::default();
+        walk(&scene, start, Roulette::Analog, None, &mut stream, &mut events);
+        let expected = (-(events.count as f64) * (-1.0 / odds).ln_1p()).exp();
+        assert!((events.last / expected - 1.0).abs() < 1e-9, "{} {expected}", events.last);
+        lives.push(events.count as f64 / odds);
+    }
+    // Exponential with mean 1: that of 64 is between these but for one chance in 1e9.
+    assert!((0.4..2.0).contains(&lives.mean()), "{}", lives.mean());
+    // Refused scenes have longer histories than that in the mean, so that the game is rare in others.
+    assert!(u64::from(LONG) >= 10 * MOST_EVENTS);
+}
+
+/// Along the layers of a dense grid every tentative collision lets 0.6 pass: after some fifty of them, not a million, the
+/// game decides.
+#[test]
+fn ratio_tracking_of_dense_layers_ends_soon() {
+    let layers = Grid::new((DVec3::ZERO, DVec3::ONE), [1, 1, 2], 1, vec![0.0, 1.0]).unwrap();
+    let dense = varying(1e6, layers);
+    let ray = Ray::new(DVec3::new(0.0, 0.5, 0.45), DVec3::X);
+    let part = Interval { start: 0.0, end: 1.0 };
+    for history in 0..64 {
+        let mut stream = Stream::new(4, Purpose::Synthetic, 0, history);
+        let through = passed(&dense, &ray, part, &mut stream);
+        assert!(stream.work.densities < 1000, "{}", stream.work.densities);
+        assert!(through.max() <= 1e-12, "{through:?}");
+    }
+}
+
+/// The game of faint transmittances keeps their mean: at a tau of 30, in steps of which each lets nine tenths pass.
+#[test]
+fn roulette_of_faint_transmittances_keeps_the_mean() {
+    let layers = Grid::new((DVec3::ZERO, DVec3::ONE), [1, 1, 2], 1, vec![0.0, 1.0]).unwrap();
+    let tau = 30.0;
+    let medium = varying(tau / 0.1, layers);
+    // Density 0.1 below a bound of 1.
+    let ray = Ray::new(DVec3::new(0.0, 0.5, 0.3), DVec3::X);
+    let part = Interval { start: 0.0, end: 1.0 };
+    let exact = (-tau).exp();
+    let through =
+        crate::support::run::numbers(1 << 16, 6, |stream| passed(&medium, &ray, part, stream)[0] / exact);
+    verdict::agrees("transmittance over the exact one", &through, (1.0, 1e-6), 0.3, 6);
+}
+
+fn varying(sigma_t: f64, grid: Grid) -> Medium {
+    match homogeneous(Spectrum::grey(sigma_t), Spectrum::grey(0.5), 0.0) {
+        Medium::Homogeneous(matter) => Heterogeneous::new(matter, Density::grid(grid).unwrap()).into(),
+        other => other,
+    }
+}
