@@ -108,32 +108,38 @@ impl PhotonTree {
             histories: Vec::with_capacity(stored),
             levels: Vec::new(),
         };
+        // Positions first: beside the records, the order alone is needed for the rest.
         for block in entries.chunks(BLOCK) {
+            tree.push_positions(block);
+        }
+        let order: Vec<u32> = entries.into_iter().map(|entry| entry.index).collect();
+        for block in order.chunks(BLOCK) {
             tree.push_block(block, &photons);
         }
         tree.levels = boxes::levels(&tree.positions, stored);
         Ok(tree)
     }
 
-    fn push_block(&mut self, entries: &[Entry], photons: &[Photon]) {
+    fn push_positions(&mut self, entries: &[Entry]) {
         // Padding lies infinitely far away, farther than any radius, and carries nothing.
         let mut position = [[f32::INFINITY; BLOCK]; 3];
+        for (lane, entry) in entries.iter().enumerate() {
+            position.iter_mut().zip(entry.position).for_each(|(row, x)| row[lane] = x);
+        }
+        self.positions.push([row(&position, 0), row(&position, ROW)]);
+    }
+
+    fn push_block(&mut self, order: &[u32], photons: &[Photon]) {
         let mut dir = [[0.0; BLOCK]; 3];
         let mut power = [[0.0; BLOCK]; 3];
-        for (lane, entry) in entries.iter().enumerate() {
-            let photon = &photons[entry.index as usize];
+        for (lane, index) in order.iter().enumerate() {
+            let photon = &photons[*index as usize];
             for axis in 0..3 {
-                position[axis][lane] = entry.position[axis];
                 dir[axis][lane] = photon.dir[axis];
                 power[axis][lane] = photon.power[axis];
             }
             self.histories.push((photon.order, photon.flags));
         }
-        let row = |lanes: &[[f32; BLOCK]; 3], first: usize| {
-            let part = |axis: usize| f32x8::from(&lanes[axis][first..first + ROW]);
-            [part(0), part(1), part(2)]
-        };
-        self.positions.push([row(&position, 0), row(&position, ROW)]);
         self.dirs.extend([row(&dir, 0), row(&dir, ROW)]);
         self.powers.extend([row(&power, 0), row(&power, ROW)]);
     }
@@ -179,4 +185,9 @@ impl PhotonTree {
     pub fn photons(&self) -> impl Iterator<Item = Photon> + '_ {
         (0..self.stored).map(|place| self.photon(place))
     }
+}
+
+/// Eight of a block's sixteen vectors.
+fn row(lanes: &[[f32; BLOCK]; 3], first: usize) -> Row {
+    [0, 1, 2].map(|axis| f32x8::from(&lanes[axis][first..first + ROW]))
 }
