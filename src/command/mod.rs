@@ -6,6 +6,7 @@ mod load;
 mod map;
 mod measure;
 mod memory;
+mod notes;
 mod picture;
 mod progress;
 mod render;

@@ -239,7 +239,8 @@ pub struct Reading {
     /// Rays of a final gathering that are shorter than this are traced on: the map's blur shows in corners [L].
     #[arg(long, default_value_t = 0.0)]
     near: f64,
-    /// Longest step of the march through media [L; default: a twentieth of the scene].
+    /// Longest step of the march through media [L; default: a twentieth of the scene, and no longer than the shortest mean
+    /// free path of media whose density varies, down to a thousandth].
     #[arg(long)]
     step: Option<f64>,
     /// How much of a step's light reaches its near end: the rule of 1998, or exact for a constant source.
@@ -313,6 +314,12 @@ impl Reading {
         if self.gather_rays == 0 { Indirect::Seen } else { Indirect::Gathered }
     }
 
+    /// Photons of an estimate from the global, the caustic and the volume map; none for a fixed radius.
+    pub fn nearest(&self) -> [Option<usize>; 3] {
+        let k = [self.k, self.caustic_k.unwrap_or(self.k), self.volume_k.unwrap_or(self.k)];
+        k.map(|k| self.radius.is_none().then_some(k))
+    }
+
     /// Settings of the mapper for a scene.
     pub fn settings(&self, scene: &Scene) -> anyhow::Result<Settings> {
         let size = size(scene);
@@ -345,6 +352,9 @@ impl Reading {
             }
             settings.march.step = Positive::new("--step", step)?;
         }
+        if self.step.is_none() {
+            settings.march.step = Positive::new("--step", default_step(scene, size))?;
+        }
         settings.march.rule = match self.step_rule {
             RuleName::NearEnd => StepRule::NearEnd,
             RuleName::Middle => StepRule::Middle,
@@ -372,6 +382,19 @@ impl Reading {
 
 /// Steps across the scene, at most: a march of more would not come to an end in a user's time.
 const MOST_STEPS: f64 = 1e6;
+
+/// Steps across the scene, at most, that are taken without being asked for.
+const MOST_DEFAULT_STEPS: f64 = 1e3;
+
+/// Longest step of a march where none is asked for \[L\]: a twentieth of the scene, as far as that is not longer than the
+/// shortest mean free path of media whose density varies. There a step's light is asked for at one place of the step, and
+/// what reaches its near end is a random product: over several mean free paths few places count much. In a homogeneous
+/// medium places are chosen by what reaches the near end, and a step may be long.
+fn default_step(scene: &Scene, size: f64) -> f64 {
+    let varying = scene.media().iter().filter(|medium| !medium.is_homogeneous());
+    let densest = varying.map(|medium| medium.highest_sigma_t().max()).fold(0.0, f64::max);
+    (0.05 * size).min((1.0 / densest).max(size / MOST_DEFAULT_STEPS))
+}
 
 /// How large a scene is \[L\]: the edge of the cube in the ball that holds its bodies; 1 for a scene without bounds.
 fn size(scene: &Scene) -> f64 {

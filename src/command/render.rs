@@ -2,6 +2,7 @@
 
 use super::load::Source;
 use super::memory::Memory;
+use super::notes::{tell_empty, tell_gathers, tell_step};
 use super::parse_count;
 use super::picture::{Frame, Photons, Reading, Shown};
 use super::progress::Bar;
@@ -17,7 +18,7 @@ use turbid::integrators::mapper::{Mapper, Report, untreated};
 use turbid::integrators::path;
 use turbid::output::{Tone, auto_exposure, write_exr, write_png};
 use turbid::photons::PhotonMap;
-use turbid::photons::maps::{MapReport, Maps, fill_counted_steered};
+use turbid::photons::maps::{MapReport, fill_counted_steered};
 use turbid::scene::{Camera, Scene};
 use turbid::sensor::{Film, Sample, Streams, extend, extend_by_light};
 
@@ -196,6 +197,9 @@ impl Render {
             |part| format!("at most {} pixels, by --width", (pixels as f64 * part) as u64),
         )?;
         let settings = self.reading.settings(&scene)?;
+        if self.with == With::Photons && scene.plan().has_media {
+            tell_step(&scene, &settings)?;
+        }
         let untreated = untreated(&scene);
         if self.with == With::Photons && settings.treatment != Treatment::None && !untreated.is_empty() {
             note(&format!(
@@ -257,6 +261,10 @@ impl Render {
                 Ok((work, Some((maps.report, stored))))
             }),
         })?;
+        if self.with == With::Photons && !scene.plan().is_full {
+            let stored = made.maps.first().map_or([None; 3], |(_, maps)| maps.map(|map| Some(map?.stored)));
+            tell_gathers(&scene, &settings, &made.work, stored, self.reading.nearest())?;
+        }
         let exposure =
             exposure.unwrap_or_else(|| auto_exposure(made.film.pixels().iter().map(|p| p.total())));
         let tone = Tone { exposure, curve: self.shown.curve() };
@@ -391,25 +399,6 @@ impl Filled {
     fn of(map: &PhotonMap) -> Self {
         Filled { stored: map.stored(), emitted: map.emitted() }
     }
-}
-
-/// Says which layers are black since no photon was stored for them.
-fn tell_empty(maps: &Maps) -> std::io::Result<()> {
-    let (caustic, volume) = ("the caustic layer is black", "the multiple layer has no light from it");
-    let global = "the indirect layer has no light from it";
-    for (name, map, black) in [
-        ("global", &maps.global, global),
-        ("caustic", &maps.caustic, caustic),
-        ("volume", &maps.volume, volume),
-    ] {
-        if let Some(map) = map.as_ref().filter(|map| map.stored() == 0) {
-            let emitted = map.emitted();
-            note(&format!(
-                "the {name} map is empty: none of {emitted} photons sent out was stored in it, so {black}"
-            ))?;
-        }
-    }
-    Ok(())
 }
 
 /// Refuses a file that could not be written, before an hour's work and not after it.
