@@ -22,7 +22,7 @@ mod pass;
 pub use counts::{Forecast, MOST_A_STORED, counts, counts_steered, forecast};
 
 use super::importance::Importance;
-use super::{Flags, Ledger, PEAK_BYTES, Photon, PhotonMap, joined};
+use super::{Flags, Ledger, PEAK_BYTES, Photon, PhotonMap};
 use crate::error::Result;
 use crate::faults::{Fault, planted};
 use crate::rng::{Purpose, Work};
@@ -251,9 +251,8 @@ pub fn fill_counted_steered(
             return Ok(None);
         }
         let start = Instant::now();
-        let photons = joined(parts);
-        progress.stage("build", photons.len() as u64);
-        let map = PhotonMap::new_watched(photons, emitted, progress).map(Some);
+        progress.stage("build", parts.iter().map(|part| part.len() as u64).sum());
+        let map = PhotonMap::of_parts(parts, emitted, progress).map(Some);
         report.build += start.elapsed();
         map
     };

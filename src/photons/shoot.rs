@@ -1,6 +1,6 @@
 //! Shooting: histories from the lights, photons kept where they collide, powers tallied where they leave.
 
-use super::{Emitter, Flags, Photon, fold, joined};
+use super::{Emitter, Flags, Photon, fold};
 use crate::Spectrum;
 use crate::error::{Error, Result};
 use crate::geometry::{Face, Shape};
@@ -93,14 +93,17 @@ pub fn shoot_from(
     keep: impl Fn(&Photon) -> bool + Sync,
     progress: &dyn Progress,
 ) -> Result<Pass> {
-    shoot_part(scene, emitter, histories, 0..histories.count, sensors, keep, progress)
+    let all = 0..histories.count;
+    let (mut pass, blocks) = shoot_blocks(scene, emitter, histories, all, sensors, keep, progress)?;
+    pass.photons = blocks.concat();
+    Ok(pass)
 }
 
-/// The same with a part of the histories: those of consecutive parts are those of the whole.
+/// The same with a part of the histories, and the photons block by block: those of consecutive parts are those of the whole.
 ///
 /// # Errors
 /// As [`shoot`].
-pub fn shoot_part(
+pub(crate) fn shoot_blocks(
     scene: &Scene,
     emitter: &Emitter,
     histories: Histories,
@@ -108,7 +111,7 @@ pub fn shoot_part(
     sensors: &[Sensor],
     keep: impl Fn(&Photon) -> bool + Sync,
     progress: &dyn Progress,
-) -> Result<Pass> {
+) -> Result<(Pass, Vec<Vec<Photon>>)> {
     scene.check_emission()?;
     let power = scene.power();
     let block = |range: Range<u64>| {
@@ -135,14 +138,14 @@ pub fn shoot_part(
     let pass =
         pass.unwrap_or_else(|| Pass { tallies: vec![Default::default(); sensors.len()], ..Pass::default() });
     let mut pass = pass;
-    pass.photons = joined(std::mem::take(&mut pass.blocks));
+    let blocks = std::mem::take(&mut pass.blocks);
     if scene.plan().is_grey {
         pass.tallies.iter_mut().for_each(|tally| *tally = [tally[0]; 3]);
     }
     if pass.non_finite > 0 {
         return Err(Error::NonFinite { count: pass.non_finite, place: "photon histories" });
     }
-    Ok(pass)
+    Ok((pass, blocks))
 }
 
 impl Pass {

@@ -4,6 +4,7 @@ mod boxes;
 mod facing;
 mod nearest;
 mod order;
+mod records;
 mod scratch;
 mod units;
 mod within;
@@ -14,6 +15,7 @@ use crate::transport::{NoProgress, Progress};
 use boxes::Boxes;
 use glam::Vec3;
 use order::Entry;
+use records::Records;
 use units::Units;
 use wide::f32x8;
 
@@ -59,7 +61,7 @@ impl PhotonTree {
     /// [`Error::NonFinite`] if a position, direction or power is not finite; [`Error::OutOfRange`] beyond
     /// 2^32 photons.
     pub fn new(photons: Vec<Photon>) -> Result<Self> {
-        Self::build(photons, false, &NoProgress)
+        Self::build(Records::new(vec![photons]), false, &NoProgress)
     }
 
     /// The same tree, bit for bit, built by the threads of the current pool.
@@ -75,15 +77,23 @@ impl PhotonTree {
     /// # Errors
     /// As [`PhotonTree::new`].
     pub fn new_watched(photons: Vec<Photon>, progress: &dyn Progress) -> Result<Self> {
-        Self::build(photons, true, progress)
+        Self::of_parts(vec![photons], progress)
     }
 
-    fn build(photons: Vec<Photon>, parallel: bool, progress: &dyn Progress) -> Result<Self> {
+    /// The same tree, bit for bit, of photons in parts: they are not brought together first.
+    ///
+    /// # Errors
+    /// As [`PhotonTree::new`].
+    pub fn of_parts(parts: Vec<Vec<Photon>>, progress: &dyn Progress) -> Result<Self> {
+        Self::build(Records::new(parts), true, progress)
+    }
+
+    fn build(photons: Records, parallel: bool, progress: &dyn Progress) -> Result<Self> {
         let stored = photons.len();
         if u32::try_from(stored).is_err() {
             return Err(Error::out_of_range("the number of photons in one map", stored as f64, "below 2^32"));
         }
-        let units = Units::of(&photons)?;
+        let units = Units::of(photons.iter())?;
         let mut entries: Vec<Entry> = photons
             .iter()
             .enumerate()
@@ -129,11 +139,11 @@ impl PhotonTree {
         self.positions.push([row(&position, 0), row(&position, ROW)]);
     }
 
-    fn push_block(&mut self, order: &[u32], photons: &[Photon]) {
+    fn push_block(&mut self, order: &[u32], photons: &Records) {
         let mut dir = [[0.0; BLOCK]; 3];
         let mut power = [[0.0; BLOCK]; 3];
         for (lane, index) in order.iter().enumerate() {
-            let photon = &photons[*index as usize];
+            let photon = photons.get(*index);
             for axis in 0..3 {
                 dir[axis][lane] = photon.dir[axis];
                 power[axis][lane] = photon.power[axis];

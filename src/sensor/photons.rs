@@ -7,7 +7,7 @@ use crate::estimators::{Estimate, Gather, Kernel, fluence, in_scattered};
 use crate::math::{Ray, exp_m1, ln_1p};
 use crate::medium::Medium;
 use crate::photons::{
-    Emitter, Histories, Ledger, PEAK_BYTES, Pass, Photon, PhotonMap, fold, shoot, shoot_part,
+    Emitter, Histories, Ledger, PEAK_BYTES, Pass, Photon, PhotonMap, fold, shoot, shoot_blocks,
 };
 use crate::rng::{Purpose, Stream};
 use crate::scene::{Orders, Quantity, Scene, Sensor, decay};
@@ -199,7 +199,7 @@ pub fn forecast(scene: &Scene, settings: &PhotonSettings, passes: u64) -> Result
     // Copies beyond the edges of the cell.
     let around = scene.stage().map_or(1.0, |stage| (1.0 + 2.0 * margin / stage.side).powi(2));
     let [met, copied] = [a_history(&met), a_history(&copied)].map(|n| n * settings.photons as f64 * around);
-    // Where several ranges of orders have a map each, the photons of all stay until the last one is built.
+    // Where several ranges of orders have a map each, the photons of all stay until the last one.
     let bytes = match ranges.len() {
         1 => PEAK_BYTES * met,
         _ => size_of::<Photon>() as f64 * met + PEAK_BYTES * copied,
@@ -259,21 +259,24 @@ pub(super) fn maps(
     let is_needed = |order| ranges.iter().any(|r| r.contains(u32::from(order)));
     let emitter = Emitter::by_power(scene);
     let keep = |photon: &Photon| is_needed(photon.order);
-    let mut pass = shoot_part(scene, &emitter, histories, part, sensors, keep, progress)?;
-    let mut photons = std::mem::take(&mut pass.photons);
+    let (pass, mut blocks) = shoot_blocks(scene, &emitter, histories, part, sensors, keep, progress)?;
     if let Some(stage) = scene.stage()
         && margin > 0.0
     {
-        fold::surround(&mut photons, stage.side, margin);
+        blocks.iter_mut().for_each(|block| fold::surround(block, stage.side, margin));
     }
     let mut maps = Vec::with_capacity(ranges.len());
-    for &range in &ranges {
-        let in_range = if ranges.len() == 1 {
-            std::mem::take(&mut photons)
-        } else {
-            photons.iter().filter(|p| range.contains(u32::from(p.order))).copied().collect()
+    for (number, &range) in ranges.iter().enumerate() {
+        let holds = |photon: &Photon| range.contains(u32::from(photon.order));
+        let parts = match number + 1 == ranges.len() {
+            true => {
+                let mut last = std::mem::take(&mut blocks);
+                last.iter_mut().for_each(|block| block.retain(holds));
+                last
+            }
+            false => blocks.iter().map(|block| block.iter().copied().filter(holds).collect()).collect(),
         };
-        maps.push((range, PhotonMap::new_parallel(in_range, pass.emitted)?));
+        maps.push((range, PhotonMap::of_parts(parts, pass.emitted, &NoProgress)?));
     }
     Ok((pass, maps))
 }
