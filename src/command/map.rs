@@ -1,6 +1,7 @@
 //! `turbid map`: the photons of a scene's maps, as dots seen from its camera.
 
 use super::load::Source;
+use super::memory::Memory;
 use super::on_threads;
 use super::picture::{Frame, Photons, Shown};
 use super::progress::Bar;
@@ -10,8 +11,8 @@ use clap::ValueEnum;
 use std::path::PathBuf;
 use turbid::Spectrum;
 use turbid::output::{Tone, auto_exposure, write_ply, write_png};
-use turbid::photons::Photon;
-use turbid::photons::maps::{Indirect, Maps, counts_steered, fill_counted_steered};
+use turbid::photons::maps::{Indirect, Maps, fill_counted_steered};
+use turbid::photons::{Photon, PhotonMap};
 use turbid::sensor::{colour, draw_photons};
 
 /// Draw the photons that a scene's maps hold, as dots seen from its camera, coloured by their power.
@@ -39,6 +40,8 @@ pub struct Map {
     shown: Shown,
     #[command(flatten)]
     photons: Photons,
+    #[command(flatten)]
+    memory: Memory,
     /// Seed: the same seed gives the same photons, on any number of threads.
     #[arg(long, default_value_t = 1)]
     seed: u64,
@@ -64,6 +67,13 @@ fn dim(picture: &[Spectrum]) -> f64 {
     auto_exposure(picture.iter().copied()).min(0.0)
 }
 
+/// Memory that a pixel of a drawing takes \[bytes\]: its light, and its colour as it is written.
+const PICTURE_BYTES: f64 = 40.0;
+
+/// Memory that a photon takes in the list that is drawn, where that is more than its map leaves free \[bytes\]; see
+/// `tests/cli/memory.rs`.
+const LIST_BYTES: f64 = 20.0;
+
 impl Map {
     /// Draws and writes.
     pub fn run(self) -> anyhow::Result<()> {
@@ -85,13 +95,16 @@ impl Map {
         let settings = self.photons.settings(Indirect::Gathered, self.seed, 0);
         let (photons, picture, seen) = on_threads(self.threads, || {
             let importance = self.photons.importance(&scene, &camera, &settings)?;
-            let emitted = counts_steered(&scene, &settings, importance.as_ref())?;
+            let pixels = f64::from(camera.width()) * f64::from(camera.height());
+            let fixed = (PICTURE_BYTES * pixels, LIST_BYTES);
+            let emitted = self.photons.ahead(&scene, &settings, importance.as_ref(), &self.memory, fixed)?;
             let bar = Bar::stage("emission", emitted.histories());
             let maps = fill_counted_steered(&scene, &settings, emitted, importance.as_ref(), &bar);
             bar.finish();
-            let photons = self.chosen(&maps?)?;
-            let plain: Vec<Photon> = photons.iter().map(|(photon, _)| *photon).collect();
-            let (picture, seen) = draw_photons(&scene, &camera, &plain);
+            let maps = maps?;
+            self.photons.tell_sparse(&maps)?;
+            let photons = self.chosen(maps)?;
+            let (picture, seen) = draw_photons(&scene, &camera, &photons);
             Ok((photons, picture, seen))
         })?;
         let tone = Tone { exposure: exposure.unwrap_or_else(|| dim(&picture)), curve: self.shown.curve() };
@@ -106,16 +119,18 @@ impl Map {
     }
 
     /// The photons of the maps asked for, each with the number that its map's pass emitted.
-    fn chosen(&self, maps: &Maps) -> anyhow::Result<Vec<(Photon, u64)>> {
+    fn chosen(&self, maps: Maps) -> anyhow::Result<Vec<(Photon, u64)>> {
         let chosen = match self.which {
-            Which::Global => vec![&maps.global],
-            Which::Caustic => vec![&maps.caustic],
-            Which::Volume => vec![&maps.volume],
-            Which::All => vec![&maps.global, &maps.volume],
+            Which::Global => vec![maps.global],
+            Which::Caustic => vec![maps.caustic],
+            Which::Volume => vec![maps.volume],
+            Which::All => vec![maps.global, maps.volume],
         };
-        let maps = chosen.into_iter().flatten();
-        let photons: Vec<(Photon, u64)> =
-            maps.flat_map(|map| map.tree().photons().map(|photon| (photon, map.emitted()))).collect();
+        let maps: Vec<PhotonMap> = chosen.into_iter().flatten().collect();
+        let mut photons: Vec<(Photon, u64)> = Vec::with_capacity(maps.iter().map(PhotonMap::stored).sum());
+        for map in maps {
+            photons.extend(map.tree().photons().map(|photon| (photon, map.emitted())));
+        }
         if photons.is_empty() {
             bail!("the map is empty: the scene has no surface or medium that keeps such photons");
         }

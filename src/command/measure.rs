@@ -1,14 +1,15 @@
 //! `turbid measure`: the sensors of a scene, by paths or by photons.
 
 use super::load::Source;
+use super::memory::{Memory, rounded_down};
 use super::progress::Bar;
-use super::{FormatName, KernelName, note, on_threads, parse_count};
+use super::{FormatName, KernelName, note, on_threads, parse_count, tell_ahead};
 use anyhow::{Context, bail};
 use clap::ValueEnum;
 use turbid::estimators::Gather;
 use turbid::output::{print, write_rows};
 use turbid::scene::{Orders, Scene};
-use turbid::sensor::{PathSettings, PhotonSettings, Reading, by_paths, by_photons};
+use turbid::sensor::{PathSettings, PhotonSettings, Reading, by_paths, by_photons_in_passes, forecast};
 
 /// Measure the sensors of a scene by paths or by photons.
 ///
@@ -32,6 +33,12 @@ pub struct Measure {
     /// Independent photon maps.
     #[arg(long, value_parser = parse_count, default_value = "1")]
     maps: u64,
+    /// Passes that the photons of a map are sent out in, one in memory at a time: the same photons and estimates, in a part
+    /// of the memory. Only with --radius: the k nearest are not known before the last pass.
+    #[arg(long, value_parser = parse_count, default_value = "1")]
+    passes: u64,
+    #[command(flatten)]
+    memory: Memory,
     /// Photons an estimate takes: the k nearest [default: 50].
     #[arg(long, conflicts_with = "radius")]
     k: Option<usize>,
@@ -128,8 +135,30 @@ impl Measure {
             gather,
             kernel: self.kernel.kernel(),
         };
+        if self.passes > 1 && self.radius.is_none() {
+            bail!(
+                "--passes is {}, which needs --radius: the k nearest photons are not known before the last pass; allowed \
+                 without it: 1, with fewer --photons",
+                self.passes
+            );
+        }
+        if self.passes > self.photons {
+            bail!("--passes is {}; allowed: at most one a photon, {}", self.passes, self.photons);
+        }
+        let ahead = forecast(scene, &settings, self.passes)?;
+        self.memory.check(&format!("a map of {:.2e} photons", ahead.stored), ahead.bytes, 0.0, |part| {
+            let fewer = rounded_down(self.photons as f64 * part);
+            // A tenth more passes than fit by the pilot, whose number of photons is an estimate.
+            let passes = (1.1 * self.passes as f64 / part).ceil();
+            match self.radius {
+                Some(_) => format!("--photons {fewer}, or --passes {passes}"),
+                None => format!("--photons {fewer}, or a fixed --radius with --passes {passes}"),
+            }
+        })?;
+        let photons = ahead.stored * self.maps as f64;
+        tell_ahead(&format!("{photons:.2e} photons to store in all"), ahead.seconds, ahead.bytes)?;
         let bar = Bar::new(self.photons.saturating_mul(self.maps));
-        let result = by_photons(scene, &settings, &bar);
+        let result = by_photons_in_passes(scene, &settings, self.passes, &bar);
         bar.finish();
         let result = result?;
         let ledger = &result.ledger;

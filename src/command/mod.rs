@@ -5,6 +5,8 @@ mod check;
 mod load;
 mod map;
 mod measure;
+mod memory;
+mod notes;
 mod picture;
 mod progress;
 mod render;
@@ -119,6 +121,18 @@ fn on_threads<T: Send>(
 /// Tells something beside the table.
 fn note(text: &str) -> std::io::Result<()> {
     writeln!(std::io::stderr().lock(), "turbid: note: {}", one_line(text))
+}
+
+/// Seconds and bytes from which on a run tells what it will take: as long as progress is silent, and a gigabyte.
+const TOLD_AHEAD: (f64, f64) = (10.0, 1e9);
+
+/// Tells what a long or a large run will take, before it begins.
+fn tell_ahead(what: &str, seconds: f64, bytes: f64) -> std::io::Result<()> {
+    if seconds < TOLD_AHEAD.0 && bytes < TOLD_AHEAD.1 {
+        return Ok(());
+    }
+    let (time, memory) = (progress::in_words(seconds), memory::in_words(bytes));
+    note(&format!("{what}: about {time} and {memory} of memory, by a pilot"))
 }
 
 /// A count on the command line: 1000000, 1_000_000 or 1e6; at least 1.

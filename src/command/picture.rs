@@ -1,6 +1,8 @@
 //! What `render` and `map` share: the camera, the photons, exposure.
 
-use super::{KernelName, parse_count};
+use super::memory::{Memory, rounded_down};
+use super::progress::Bar;
+use super::{KernelName, note, parse_count, tell_ahead};
 use anyhow::{Context, anyhow};
 use clap::ValueEnum;
 use turbid::estimators::Gather;
@@ -10,9 +12,9 @@ use turbid::integrators::mapper::{Adaptive, Settings};
 use turbid::math::Positive;
 use turbid::output::Curve;
 use turbid::photons::importance::{Importance, ImportanceSettings};
-use turbid::photons::maps::{Amount, Indirect, MapSettings};
+use turbid::photons::maps::{Amount, Emitted, Forecast, Indirect, MapSettings, Maps, forecast};
 use turbid::scene::{Camera, Scene};
-use turbid::transport::NoProgress;
+use turbid::transport::BLOCK;
 
 /// The camera's picture, in another size if asked for.
 #[derive(clap::Args)]
@@ -92,7 +94,6 @@ impl Shown {
 fn parse_amount(text: &str) -> Result<Amount, String> {
     const ALLOWED: &str = "allowed: a number of photons to store, 1 to 1e9, such as 200000, or to emit, 1 to 1e12, such as emit:1e6";
     let (number, is_emitted) = text.strip_prefix("emit:").map_or((text, false), |number| (number, true));
-    // A stored photon takes 56 bytes while maps are filled.
     let most = if is_emitted { 1_000_000_000_000 } else { 1_000_000_000 };
     let count = parse_count(number).ok().filter(|n| *n <= most).ok_or(ALLOWED)?;
     Ok(if is_emitted { Amount::Emitted(count) } else { Amount::Stored(count) })
@@ -132,8 +133,73 @@ impl Photons {
     ) -> turbid::Result<Option<Importance>> {
         let MapSettings { seed, replicate, .. } = *maps;
         let settings = ImportanceSettings { seed, replicate, ..Default::default() };
-        let learn = || Importance::of(scene, camera, maps.indirect, &settings, &NoProgress);
+        let ImportanceSettings { particles, pilot, rounds, .. } = settings;
+        let learn = || {
+            let bar = Bar::stage("importance", BLOCK + particles + pilot * rounds);
+            let learned = Importance::of(scene, camera, maps.indirect, &settings, &bar);
+            bar.finish();
+            learned
+        };
         self.is_steered.then(learn).transpose()
+    }
+
+    /// How many histories the maps take, refused if they do not fit the memory; of the first repetition told, where they take
+    /// long.
+    ///
+    /// # Arguments
+    /// `fixed` bytes that the rest takes, and `beside` those that each photon takes beside its map
+    pub fn ahead(
+        &self,
+        scene: &Scene,
+        maps: &MapSettings,
+        importance: Option<&Importance>,
+        memory: &Memory,
+        (fixed, beside): (f64, f64),
+    ) -> anyhow::Result<Emitted> {
+        let ahead = forecast(scene, maps, importance)?;
+        let Forecast { emitted, stored, seconds } = ahead;
+        let total: f64 = stored.iter().sum();
+        let bytes = fixed + ahead.bytes() + beside * total;
+        memory.check(&format!("{total:.2e} photons in maps"), bytes, fixed, |part| {
+            let asked =
+                [("global", maps.global, 0), ("volume", maps.volume, 1), ("caustic", maps.caustic, 2)];
+            let needed = asked.iter().filter(|(_, _, map)| stored[*map] > 0.0);
+            let fewer = needed.map(|(name, amount, _)| match amount {
+                Amount::Stored(n) => format!("--{name} {}", rounded_down(*n as f64 * part)),
+                Amount::Emitted(n) => format!("--{name} emit:{}", rounded_down(*n as f64 * part)),
+            });
+            fewer.collect::<Vec<_>>().join(" ")
+        })?;
+        if maps.replicate == 0 {
+            let what =
+                format!("{:.2e} photons to send out, {total:.2e} to store", emitted.histories() as f64);
+            tell_ahead(&what, seconds, bytes)?;
+        }
+        Ok(emitted)
+    }
+
+    /// Says which maps have far fewer photons than were asked for, and why.
+    pub fn tell_sparse(&self, maps: &Maps) -> std::io::Result<()> {
+        for (name, asked, map) in [
+            ("global", self.global, &maps.global),
+            ("caustic", self.caustic, &maps.caustic),
+            ("volume", self.volume, &maps.volume),
+        ] {
+            let (Amount::Stored(asked), Some(map)) = (asked, map) else { continue };
+            let (stored, emitted) = (map.stored() as u64, map.emitted());
+            // An empty map has a line of its own.
+            if stored == 0 || 2 * stored >= asked {
+                continue;
+            }
+            let part = stored as f64 / emitted as f64;
+            let all = asked as f64 / part;
+            note(&format!(
+                "the {name} map holds {stored} of {asked} photons asked for: it stores {:.2} % of those sent out, of which \
+                 there were {emitted}; --{name} emit:{all:.0e} sends out as many as it takes",
+                100.0 * part,
+            ))?;
+        }
+        Ok(())
     }
 
     /// Settings of the maps of one repetition.
@@ -173,7 +239,8 @@ pub struct Reading {
     /// Rays of a final gathering that are shorter than this are traced on: the map's blur shows in corners [L].
     #[arg(long, default_value_t = 0.0)]
     near: f64,
-    /// Longest step of the march through media [L; default: a twentieth of the scene].
+    /// Longest step of the march through media [L; default: a twentieth of the scene, and no longer than the shortest mean
+    /// free path of media whose density varies, down to a thousandth].
     #[arg(long)]
     step: Option<f64>,
     /// How much of a step's light reaches its near end: the rule of 1998, or exact for a constant source.
@@ -247,6 +314,12 @@ impl Reading {
         if self.gather_rays == 0 { Indirect::Seen } else { Indirect::Gathered }
     }
 
+    /// Photons of an estimate from the global, the caustic and the volume map; none for a fixed radius.
+    pub fn nearest(&self) -> [Option<usize>; 3] {
+        let k = [self.k, self.caustic_k.unwrap_or(self.k), self.volume_k.unwrap_or(self.k)];
+        k.map(|k| self.radius.is_none().then_some(k))
+    }
+
     /// Settings of the mapper for a scene.
     pub fn settings(&self, scene: &Scene) -> anyhow::Result<Settings> {
         let size = size(scene);
@@ -279,6 +352,9 @@ impl Reading {
             }
             settings.march.step = Positive::new("--step", step)?;
         }
+        if self.step.is_none() {
+            settings.march.step = Positive::new("--step", default_step(scene, size))?;
+        }
         settings.march.rule = match self.step_rule {
             RuleName::NearEnd => StepRule::NearEnd,
             RuleName::Middle => StepRule::Middle,
@@ -306,6 +382,19 @@ impl Reading {
 
 /// Steps across the scene, at most: a march of more would not come to an end in a user's time.
 const MOST_STEPS: f64 = 1e6;
+
+/// Steps across the scene, at most, that are taken without being asked for.
+const MOST_DEFAULT_STEPS: f64 = 1e3;
+
+/// Longest step of a march where none is asked for \[L\]: a twentieth of the scene, as far as that is not longer than the
+/// shortest mean free path of media whose density varies. There a step's light is asked for at one place of the step, and
+/// what reaches its near end is a random product: over several mean free paths few places count much. In a homogeneous
+/// medium places are chosen by what reaches the near end, and a step may be long.
+fn default_step(scene: &Scene, size: f64) -> f64 {
+    let varying = scene.media().iter().filter(|medium| !medium.is_homogeneous());
+    let densest = varying.map(|medium| medium.highest_sigma_t().max()).fold(0.0, f64::max);
+    (0.05 * size).min((1.0 / densest).max(size / MOST_DEFAULT_STEPS))
+}
 
 /// How large a scene is \[L\]: the edge of the cube in the ball that holds its bodies; 1 for a scene without bounds.
 fn size(scene: &Scene) -> f64 {

@@ -1,6 +1,8 @@
 //! `turbid render`: a picture of a scene, by photons, by paths or by light tracing.
 
 use super::load::Source;
+use super::memory::Memory;
+use super::notes::{tell_empty, tell_gathers, tell_step};
 use super::parse_count;
 use super::picture::{Frame, Photons, Reading, Shown};
 use super::progress::Bar;
@@ -16,7 +18,7 @@ use turbid::integrators::mapper::{Mapper, Report, untreated};
 use turbid::integrators::path;
 use turbid::output::{Tone, auto_exposure, write_exr, write_png};
 use turbid::photons::PhotonMap;
-use turbid::photons::maps::{MapReport, Maps, counts_steered, fill_counted_steered};
+use turbid::photons::maps::{MapReport, fill_counted_steered};
 use turbid::scene::{Camera, Scene};
 use turbid::sensor::{Film, Sample, Streams, extend, extend_by_light};
 
@@ -74,6 +76,8 @@ pub struct Render {
     /// Threads [default: all cores].
     #[arg(long, value_parser = clap::value_parser!(u16).range(1..=1024))]
     threads: Option<u16>,
+    #[command(flatten)]
+    memory: Memory,
     #[command(flatten, next_help_heading = "Photon maps (only --with photons)")]
     photons: Photons,
     #[command(flatten, next_help_heading = "Photon maps (only --with photons)")]
@@ -118,6 +122,12 @@ impl With {
         }
     }
 }
+
+/// Most memory that a pixel takes \[bytes\]: 352 on the film, the channels of the file and what packs them. Measured: see
+/// `tests/cli/memory.rs`.
+const PIXEL_BYTES: f64 = 1060.0;
+/// The same of each further film, the mean of several.
+const FILM_BYTES: f64 = 352.0;
 
 /// Samples a pixel where neither their number nor a time is given.
 const SAMPLES: u64 = 16;
@@ -179,7 +189,17 @@ impl Render {
         if self.with == With::Light {
             note(&format!("the picture holds {}", self.with.holds()))?;
         }
+        let pixels = camera.width() as usize * camera.height() as usize;
+        self.memory.check(
+            &format!("a picture of {pixels} pixels"),
+            self.film_bytes(&camera),
+            0.0,
+            |part| format!("at most {} pixels, by --width", (pixels as f64 * part) as u64),
+        )?;
         let settings = self.reading.settings(&scene)?;
+        if self.with == With::Photons && scene.plan().has_media {
+            tell_step(&scene, &settings)?;
+        }
         let untreated = untreated(&scene);
         if self.with == With::Photons && settings.treatment != Treatment::None && !untreated.is_empty() {
             note(&format!(
@@ -212,8 +232,10 @@ impl Render {
                 let importance =
                     stages.time("pilot", || self.photons.importance(&scene, &camera, &settings_of_maps))?;
                 let importance = importance.as_ref();
-                let emitted =
-                    stages.time("pilot", || counts_steered(&scene, &settings_of_maps, importance))?;
+                let fixed = (self.film_bytes(&camera), 0.0);
+                let emitted = stages.time("pilot", || {
+                    self.photons.ahead(&scene, &settings_of_maps, importance, &self.memory, fixed)
+                })?;
                 let bar = Bar::stage("emission", emitted.histories());
                 let maps = stages.time(MAPS, || {
                     fill_counted_steered(&scene, &settings_of_maps, emitted, importance, &bar)
@@ -222,6 +244,7 @@ impl Render {
                 let maps = maps?;
                 if streams.replicate == 0 && !scene.plan().is_full {
                     tell_empty(&maps)?;
+                    self.photons.tell_sparse(&maps)?;
                 }
                 let within = scene.interior_at(camera.position());
                 let mapper = Mapper::new(&scene, &maps, &settings);
@@ -238,6 +261,10 @@ impl Render {
                 Ok((work, Some((maps.report, stored))))
             }),
         })?;
+        if self.with == With::Photons && !scene.plan().is_full {
+            let stored = made.maps.first().map_or([None; 3], |(_, maps)| maps.map(|map| Some(map?.stored)));
+            tell_gathers(&scene, &settings, &made.work, stored, self.reading.nearest())?;
+        }
         let exposure =
             exposure.unwrap_or_else(|| auto_exposure(made.film.pixels().iter().map(|p| p.total())));
         let tone = Tone { exposure, curve: self.shown.curve() };
@@ -251,6 +278,12 @@ impl Render {
         print(&format!("written        {}, {}\n", self.output.display(), png.display()))
     }
 
+    /// Memory that the picture takes beside its maps \[bytes\].
+    fn film_bytes(&self, camera: &Camera) -> f64 {
+        let pixels = f64::from(camera.width()) * f64::from(camera.height());
+        pixels * if self.maps == 1 { PIXEL_BYTES } else { PIXEL_BYTES + FILM_BYTES }
+    }
+
     /// The repetitions, and their mean: one film is what it is, several are samples of it.
     fn repeat(
         &self,
@@ -259,7 +292,7 @@ impl Render {
     ) -> anyhow::Result<Made> {
         let blank = || Film::new(camera.width(), camera.height());
         let mut made = Made {
-            film: blank(),
+            film: if self.maps == 1 { Film::new(0, 0) } else { blank() },
             samples: Vec::new(),
             work: Report::default(),
             maps: Vec::new(),
@@ -366,25 +399,6 @@ impl Filled {
     fn of(map: &PhotonMap) -> Self {
         Filled { stored: map.stored(), emitted: map.emitted() }
     }
-}
-
-/// Says which layers are black since no photon was stored for them.
-fn tell_empty(maps: &Maps) -> std::io::Result<()> {
-    let (caustic, volume) = ("the caustic layer is black", "the multiple layer has no light from it");
-    let global = "the indirect layer has no light from it";
-    for (name, map, black) in [
-        ("global", &maps.global, global),
-        ("caustic", &maps.caustic, caustic),
-        ("volume", &maps.volume, volume),
-    ] {
-        if let Some(map) = map.as_ref().filter(|map| map.stored() == 0) {
-            let emitted = map.emitted();
-            note(&format!(
-                "the {name} map is empty: none of {emitted} photons sent out was stored in it, so {black}"
-            ))?;
-        }
-    }
-    Ok(())
 }
 
 /// Refuses a file that could not be written, before an hour's work and not after it.

@@ -80,6 +80,13 @@ pub fn print_statistics(made: &Made, exposure: f64) -> anyhow::Result<()> {
                 }
             }
         }
+        if report.aimed < 1.0 {
+            writeln!(
+                text,
+                "map {number:<3} first pass aimed at the {:.3} % of the power that could meet anything",
+                100.0 * report.aimed
+            )?;
+        }
         writeln!(text, "map {number:<3} memory   {:.1} MB", report.bytes as f64 / 1e6)?;
     }
     let work = &made.work;

@@ -304,6 +304,24 @@ impl Light {
         cells
     }
 
+    /// The four quarters of a cell, cut by the numbers that say most of where its photons go: where they start of beams and
+    /// suns, their direction of other lights.
+    pub fn quarters(&self, cell: &EmissionCell) -> [EmissionCell; 4] {
+        let is_parallel = matches!(self, Light::Beam(_) | Light::Sun(_));
+        [(0, 0), (0, 1), (1, 0), (1, 1)].map(|halves| {
+            let mut quarter = *cell;
+            for (axis, half) in [halves.0, halves.1].into_iter().enumerate() {
+                let (low, high) = match is_parallel {
+                    true => (&mut quarter.low.position[axis], &mut quarter.high.position[axis]),
+                    false => (&mut quarter.low.direction[axis], &mut quarter.high.direction[axis]),
+                };
+                let middle = 0.5 * (*low + *high);
+                *(if half == 0 { high } else { low }) = middle;
+            }
+            quarter
+        })
+    }
+
     /// A bundle that holds the rays of a cell, by [`Self::emit_aimed`]; none where they may go anywhere.
     pub fn bundle(&self, cell: &EmissionCell) -> Option<Bundle> {
         match self {

@@ -8,14 +8,24 @@
 //! the bound by which places are chosen, no photon leaves: the history counts as emitted all the same.
 
 use crate::Spectrum;
-use crate::light::{Emission, EmissionCell, Light};
+use crate::geometry::Shape;
+use crate::light::{Bundle, Emission, EmissionCell, Light};
 use crate::rng::Stream;
 use crate::scene::{Scene, Start, Target};
 use crate::transport::Walker;
+use glam::DVec3;
 
 /// Cells that the numbers of a light are cut into, about: each is tested against every specular body, which takes less
 /// than a microsecond, and a body that fills a thousandth of what a light sees still fills sixteen of them.
 const CELLS: usize = 1 << 14;
+
+/// Emission is restricted to what can meet the scene if that is at most this part of the power. Photons that escape cost a
+/// test against the bodies and nothing else: above a half, to leave them out would not even halve that.
+const WORTH: f64 = 0.5;
+
+/// How often cells are cut in four where few are left: the sides of the smallest, a thousandth of the first ones', are ten
+/// thousand times what rounding may move a ray of a bundle by (1e-9).
+const HALVINGS: usize = 10;
 
 /// From where photons leave the lights, and how often.
 #[derive(Debug, Clone)]
@@ -23,7 +33,7 @@ pub struct Emitter {
     /// What photons of all lights carry together if none is refused \[W\].
     power: Spectrum,
     chosen: Option<Chosen>,
-    /// Cells that were tested against specular bodies.
+    /// Cells that were tested against bodies.
     tested: u64,
 }
 
@@ -38,12 +48,27 @@ struct Chosen {
     weights: Vec<f64>,
     /// Power that the cells send out, over that of all lights.
     kept: f64,
+    /// Power that the lights send out elsewhere, summed over channels \[W\].
+    left_out: f64,
 }
 
 impl Emitter {
     /// All that the lights send out, in proportion to power.
     pub fn by_power(scene: &Scene) -> Self {
         Emitter { power: scene.ceiling(), chosen: None, tested: 0 }
+    }
+
+    /// What can meet anything at all: cells of the lights' numbers whose rays can reach the sphere about a body or about a
+    /// medium in which light collides. What the other cells send out escapes, and [`Emitter::left_out`] says how much.
+    ///
+    /// All that the lights send out, as [`Emitter::by_power`] emits it, where more than [`WORTH`] of the power is kept,
+    /// where a body or a medium has no end, where no light reaches anything, and where a plan leaves nothing out.
+    pub fn towards_scene(scene: &Scene) -> Self {
+        let aimed = cells_towards_scene(scene, CELLS).and_then(|(cells, tested)| {
+            let shares = cells.iter().map(|(light, cell)| share(scene, *light, cell)).collect();
+            Self::chosen(scene, cells, shares, tested)
+        });
+        aimed.unwrap_or_else(|| Self::by_power(scene))
     }
 
     /// What can meet a specular body: cells of the lights' numbers whose rays can reach the sphere about one of them.
@@ -61,21 +86,13 @@ impl Emitter {
         let mut tested = 0;
         let mut cells = Vec::new();
         for (index, light) in scene.lights().iter().enumerate() {
-            let Some(balls) =
-                balls.as_ref().filter(|_| light.bundle(&EmissionCell::WHOLE).is_some() || has_faces(light))
-            else {
+            let Some(balls) = balls.as_ref().filter(|_| has_bundles(light)) else {
                 cells.push((index, EmissionCell::WHOLE));
                 continue;
             };
-            for cell in light.cells(CELLS) {
-                tested += 1;
-                let is_of_use = light.bundle(&cell).is_none_or(|bundle| {
-                    balls.iter().any(|(center, radius)| bundle.reaches(*center, *radius))
-                });
-                if is_of_use {
-                    cells.push((index, cell));
-                }
-            }
+            let reaches =
+                |bundle: &Bundle| balls.iter().any(|(center, radius)| bundle.reaches(*center, *radius));
+            tested += keep(light, light.cells(CELLS), &reaches, |cell| cells.push((index, cell)));
         }
         let shares = cells.iter().map(|(light, cell)| share(scene, *light, cell)).collect();
         let emitter = Self::chosen(scene, cells, shares, tested);
@@ -106,10 +123,19 @@ impl Emitter {
             }
         }
         let kept = kept / power.sum();
-        Some(Emitter { power, chosen: Some(Chosen { cells, cumulated, weights, kept }), tested })
+        // Of media the power itself: their bounds are what photons are refused by.
+        let sent = |light: &Light| light.power(scene.stage()).sum();
+        let used = |index: usize| {
+            let own =
+                cells.iter().zip(&chances).filter(|((light, _), chance)| *light == index && **chance > 0.0);
+            own.map(|((_, cell), _)| cell.volume()).sum::<f64>()
+        };
+        let lights = scene.lights().iter().enumerate();
+        let left_out = lights.map(|(index, light)| sent(light) * (1.0 - used(index)).max(0.0)).sum();
+        Some(Emitter { power, chosen: Some(Chosen { cells, cumulated, weights, kept, left_out }), tested })
     }
 
-    /// How many cells were tested against specular bodies.
+    /// How many cells were tested against bodies.
     pub fn projection_cells(&self) -> u64 {
         self.tested
     }
@@ -117,6 +143,11 @@ impl Emitter {
     /// Power that photons are sent out for, over that of all lights.
     pub fn kept(&self) -> f64 {
         self.chosen.as_ref().map_or(1.0, |chosen| chosen.kept)
+    }
+
+    /// Power that the lights send where photons are not sent, summed over channels \[W\].
+    pub fn left_out(&self) -> f64 {
+        self.chosen.as_ref().map_or(0.0, |chosen| chosen.left_out)
     }
 
     /// A photon, ready to walk: its weight is its power as though it were the only one \[W\]. None if none leaves this
@@ -146,9 +177,73 @@ fn share(scene: &Scene, light: usize, cell: &EmissionCell) -> f64 {
     scene.lights()[light].ceiling(scene.stage()).sum() * cell.volume()
 }
 
-/// Whether a light's cells have bundles though the whole has none: those of a cuboid, a face each.
-fn has_faces(light: &Light) -> bool {
-    light.cells(1).first().is_some_and(|cell| light.bundle(cell).is_some())
+/// Whether a light's cells have bundles; those of a cuboid have them a face each, though the whole has none.
+fn has_bundles(light: &Light) -> bool {
+    let has_one = |cell: &EmissionCell| light.bundle(cell).is_some();
+    has_one(&EmissionCell::WHOLE) || light.cells(1).first().is_some_and(has_one)
+}
+
+/// Hands over those of a light's cells whose rays can reach something; returns how many were tested.
+fn keep(
+    light: &Light,
+    cells: Vec<EmissionCell>,
+    reaches: &dyn Fn(&Bundle) -> bool,
+    mut take: impl FnMut(EmissionCell),
+) -> u64 {
+    let tested = cells.len() as u64;
+    cells
+        .into_iter()
+        .filter(|cell| light.bundle(cell).is_none_or(|bundle| reaches(&bundle)))
+        .for_each(&mut take);
+    tested
+}
+
+/// Cells of the lights' numbers, about `count` a light, from which light can meet anything, and how many were tested; none
+/// where [`Emitter::towards_scene`] leaves nothing out.
+pub(super) fn cells_towards_scene(scene: &Scene, count: usize) -> Option<(Vec<(usize, EmissionCell)>, u64)> {
+    let (bounds, power) = (scene.bounds()?, scene.ceiling().sum());
+    if scene.plan().is_full || scene.stage().is_some() || fills_space(scene) {
+        return None;
+    }
+    let media = scene.regions().iter().filter(|r| r.medium.is_colliding()).map(|r| &r.shape);
+    let shapes: Vec<&Shape> = media.chain(scene.objects().iter().map(|o| &o.shape)).collect();
+    let balls = shapes.iter().map(|shape| shape.bounds()).collect::<Option<Vec<_>>>()?;
+    let (mut chosen, mut tested, mut kept) = (Vec::new(), 0, 0.0);
+    for (index, light) in scene.lights().iter().enumerate() {
+        if !has_bundles(light) {
+            chosen.push((index, EmissionCell::WHOLE));
+            kept += share(scene, index, &EmissionCell::WHOLE);
+            continue;
+        }
+        // What stands in the way of light keeps it from escaping, the bodies of other lights too.
+        let others = scene.lights().iter().enumerate().filter(|(other, _)| *other != index);
+        let bodies: Vec<_> = others.filter_map(|(_, l)| l.body()?.bounds()).collect();
+        let reaches = |bundle: &Bundle| {
+            bundle.reaches(bounds.center(), bounds.radius())
+                && balls.iter().chain(&bodies).any(|(center, radius)| bundle.reaches(*center, *radius))
+        };
+        let mut cells = Vec::new();
+        tested += keep(light, light.cells(count), &reaches, |cell| cells.push(cell));
+        for _ in 0..HALVINGS {
+            let quarters: Vec<EmissionCell> = cells.iter().flat_map(|cell| light.quarters(cell)).collect();
+            if quarters.len() > count {
+                break;
+            }
+            let mut smaller = Vec::new();
+            tested += keep(light, quarters, &reaches, |cell| smaller.push(cell));
+            cells = smaller;
+        }
+        kept += cells.iter().map(|cell| share(scene, index, cell)).sum::<f64>();
+        chosen.extend(cells.into_iter().map(|cell| (index, cell)));
+    }
+    (kept <= WORTH * power).then_some((chosen, tested))
+}
+
+/// Whether a medium that fills an interior reaches out of the scene, so that light meets it everywhere.
+fn fills_space(scene: &Scene) -> bool {
+    let Some(bounds) = scene.bounds() else { return true };
+    let outside = |dir: DVec3| scene.interior_at(bounds.center() + dir * (2.0 * bounds.radius()));
+    DVec3::AXES.into_iter().flat_map(|axis| [axis, -axis]).any(|dir| scene.filling(outside(dir)).is_some())
 }
 
 /// A photon from one of the lights, chosen in proportion to power; it carries the power of all of them \[W\], in the

@@ -39,6 +39,15 @@ impl PhotonMap {
         Ok(PhotonMap { tree: PhotonTree::new_watched(photons, progress)?, emitted })
     }
 
+    /// The same of photons in parts, as a pass stores them, which are not brought together first.
+    ///
+    /// # Errors
+    /// As [`PhotonMap::new`].
+    pub fn of_parts(parts: Vec<Vec<Photon>>, emitted: u64, progress: &dyn Progress) -> Result<Self> {
+        check_emitted(emitted)?;
+        Ok(PhotonMap { tree: PhotonTree::of_parts(parts, progress)?, emitted })
+    }
+
     /// The photons.
     pub fn tree(&self) -> &PhotonTree {
         &self.tree

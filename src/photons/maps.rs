@@ -19,10 +19,10 @@
 mod counts;
 mod pass;
 
-pub use counts::{counts, counts_steered};
+pub use counts::{Forecast, MOST_A_STORED, counts, counts_steered, forecast};
 
 use super::importance::Importance;
-use super::{Flags, Ledger, Photon, PhotonMap, check_end};
+use super::{Flags, Ledger, PEAK_BYTES, Photon, PhotonMap, check_end};
 use crate::error::Result;
 use crate::faults::{Fault, planted};
 use crate::rng::{Purpose, Work};
@@ -133,7 +133,10 @@ pub struct MapReport {
     pub pilot: Duration,
     /// Time of building the trees.
     pub build: Duration,
-    /// Cells of the lights' numbers that were tested against specular bodies.
+    /// Power of the lights that could meet anything, over all: what the photons of the main pass stand for; 1 where none was
+    /// left out.
+    pub aimed: f64,
+    /// Cells of the lights' numbers that were tested against bodies.
     pub projection_cells: u64,
     /// Power that could meet a specular body, over that of all lights: what the photons of the caustic map stand for.
     pub projected: f64,
@@ -203,7 +206,8 @@ pub fn fill_steered(
 
 /// Fills the maps with the photons of so many histories.
 ///
-/// The same bits on any number of threads. Memory: 56 bytes a photon until its map's tree is built, which holds 40.
+/// The same bits on any number of threads. Memory: [`PEAK_BYTES`] a photon at most; what stays is
+/// [`PhotonTree::bytes`](crate::photons::PhotonTree::bytes).
 ///
 /// # Errors
 /// `Error::Cancelled`; `Error::NonFinite` if a photon was not finite.
@@ -240,6 +244,7 @@ pub fn fill_counted_steered(
         class,
         global,
         volume,
+        is_pilot: false,
     };
     let (Emitted { global, volume, caustic }, mut report) = (emitted, MapReport::default());
     let mut build = |parts: Vec<Vec<Photon>>, emitted: u64| {
@@ -247,9 +252,8 @@ pub fn fill_counted_steered(
             return Ok(None);
         }
         let start = Instant::now();
-        let photons = joined(parts);
-        progress.stage("build", photons.len() as u64);
-        let map = PhotonMap::new_watched(photons, emitted, progress).map(Some);
+        progress.stage("build", parts.iter().map(|part| part.len() as u64).sum());
+        let map = PhotonMap::of_parts(parts, emitted, progress).map(Some);
         report.build += start.elapsed();
         map
     };
@@ -262,8 +266,11 @@ pub fn fill_counted_steered(
     let pass = own.pass(caustic, progress)?;
     let focused = build(pass.surfaces, caustic)?;
     (report.main, report.caustic) = (main, pass.report);
+    report.aimed = emitters.main.kept();
+    report.projection_cells = emitters.main.projection_cells();
     if let Some(emitter) = &emitters.caustic {
-        (report.projection_cells, report.projected) = (emitter.projection_cells(), emitter.kept());
+        report.projection_cells += emitter.projection_cells();
+        report.projected = emitter.kept();
     }
     report.bytes = [&surfaces, &media, &focused].into_iter().flatten().map(|map| map.tree().bytes()).sum();
     Ok(Maps { global: surfaces, caustic: focused, volume: media, indirect: settings.indirect, report })
@@ -272,13 +279,4 @@ pub fn fill_counted_steered(
 /// Whether photons are stored on a surface: some light leaves it in other than specular directions.
 pub(super) fn is_matt(surface: &Surface) -> bool {
     matches!(surface, Surface::Lambertian(_))
-}
-
-/// One vector of all; the parts are given back one by one.
-fn joined(parts: Vec<Vec<Photon>>) -> Vec<Photon> {
-    let mut all = Vec::with_capacity(parts.iter().map(Vec::len).sum());
-    for part in parts {
-        all.extend_from_slice(&part);
-    }
-    all
 }

@@ -9,6 +9,7 @@ use crate::rng::{Purpose, Stream};
 use crate::scene::{Orders, Quantity, Scene, Sensor};
 use crate::stats::Moments;
 use crate::transport::{Progress, Roulette, Step, Visitor, Walker, run_blocks, walk};
+use std::ops::Range;
 
 /// Which histories to run.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -92,10 +93,29 @@ pub fn shoot_from(
     keep: impl Fn(&Photon) -> bool + Sync,
     progress: &dyn Progress,
 ) -> Result<Pass> {
+    let all = 0..histories.count;
+    let (mut pass, blocks) = shoot_blocks(scene, emitter, histories, all, sensors, keep, progress)?;
+    pass.photons = blocks.concat();
+    Ok(pass)
+}
+
+/// The same with a part of the histories, and the photons block by block: those of consecutive parts are those of the whole.
+///
+/// # Errors
+/// As [`shoot`].
+pub(crate) fn shoot_blocks(
+    scene: &Scene,
+    emitter: &Emitter,
+    histories: Histories,
+    part: Range<u64>,
+    sensors: &[Sensor],
+    keep: impl Fn(&Photon) -> bool + Sync,
+    progress: &dyn Progress,
+) -> Result<(Pass, Vec<Vec<Photon>>)> {
     scene.check_emission()?;
     check_end(scene)?;
     let power = scene.power();
-    let block = |range: std::ops::Range<u64>| {
+    let block = |range: Range<u64>| {
         let mut visitor = Tallier {
             scene,
             emitter,
@@ -106,24 +126,27 @@ pub fn shoot_from(
             pass: Pass { tallies: vec![Default::default(); sensors.len()], ..Pass::default() },
         };
         for history in range {
-            let mut stream = Stream::new(histories.seed, Purpose::Photons, histories.replicate, history);
+            let number = part.start + history;
+            let mut stream = Stream::new(histories.seed, Purpose::Photons, histories.replicate, number);
             visitor.run(histories.max_order, &mut stream);
         }
         let mut pass = visitor.pass;
+        pass.photons.shrink_to_fit();
         pass.blocks.push(std::mem::take(&mut pass.photons));
         pass
     };
-    let pass = run_blocks(histories.count, progress, block, Pass::merged)?;
+    let pass = run_blocks(part.end - part.start, progress, block, Pass::merged)?;
     let pass =
         pass.unwrap_or_else(|| Pass { tallies: vec![Default::default(); sensors.len()], ..Pass::default() });
-    let mut pass = Pass { photons: pass.blocks.concat(), blocks: Vec::new(), ..pass };
+    let mut pass = pass;
+    let blocks = std::mem::take(&mut pass.blocks);
     if scene.plan().is_grey {
         pass.tallies.iter_mut().for_each(|tally| *tally = [tally[0]; 3]);
     }
     if pass.non_finite > 0 {
         return Err(Error::NonFinite { count: pass.non_finite, place: "photon histories" });
     }
-    Ok(pass)
+    Ok((pass, blocks))
 }
 
 impl Pass {

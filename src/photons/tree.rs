@@ -4,6 +4,7 @@ mod boxes;
 mod facing;
 mod nearest;
 mod order;
+mod records;
 mod scratch;
 mod units;
 mod within;
@@ -14,6 +15,7 @@ use crate::transport::{NoProgress, Progress};
 use boxes::Boxes;
 use glam::Vec3;
 use order::Entry;
+use records::Records;
 use units::Units;
 use wide::f32x8;
 
@@ -59,7 +61,7 @@ impl PhotonTree {
     /// [`Error::NonFinite`] if a position, direction or power is not finite; [`Error::OutOfRange`] beyond
     /// 2^32 photons.
     pub fn new(photons: Vec<Photon>) -> Result<Self> {
-        Self::build(photons, false, &NoProgress)
+        Self::build(Records::new(vec![photons]), false, &NoProgress)
     }
 
     /// The same tree, bit for bit, built by the threads of the current pool.
@@ -75,15 +77,23 @@ impl PhotonTree {
     /// # Errors
     /// As [`PhotonTree::new`].
     pub fn new_watched(photons: Vec<Photon>, progress: &dyn Progress) -> Result<Self> {
-        Self::build(photons, true, progress)
+        Self::of_parts(vec![photons], progress)
     }
 
-    fn build(photons: Vec<Photon>, parallel: bool, progress: &dyn Progress) -> Result<Self> {
+    /// The same tree, bit for bit, of photons in parts: they are not brought together first.
+    ///
+    /// # Errors
+    /// As [`PhotonTree::new`].
+    pub fn of_parts(parts: Vec<Vec<Photon>>, progress: &dyn Progress) -> Result<Self> {
+        Self::build(Records::new(parts), true, progress)
+    }
+
+    fn build(photons: Records, parallel: bool, progress: &dyn Progress) -> Result<Self> {
         let stored = photons.len();
         if u32::try_from(stored).is_err() {
             return Err(Error::out_of_range("the number of photons in one map", stored as f64, "below 2^32"));
         }
-        let units = Units::of(&photons)?;
+        let units = Units::of(photons.iter())?;
         let mut entries: Vec<Entry> = photons
             .iter()
             .enumerate()
@@ -108,32 +118,38 @@ impl PhotonTree {
             histories: Vec::with_capacity(stored),
             levels: Vec::new(),
         };
+        // Positions first: beside the records, the order alone is needed for the rest.
         for block in entries.chunks(BLOCK) {
+            tree.push_positions(block);
+        }
+        let order: Vec<u32> = entries.into_iter().map(|entry| entry.index).collect();
+        for block in order.chunks(BLOCK) {
             tree.push_block(block, &photons);
         }
         tree.levels = boxes::levels(&tree.positions, stored);
         Ok(tree)
     }
 
-    fn push_block(&mut self, entries: &[Entry], photons: &[Photon]) {
+    fn push_positions(&mut self, entries: &[Entry]) {
         // Padding lies infinitely far away, farther than any radius, and carries nothing.
         let mut position = [[f32::INFINITY; BLOCK]; 3];
+        for (lane, entry) in entries.iter().enumerate() {
+            position.iter_mut().zip(entry.position).for_each(|(row, x)| row[lane] = x);
+        }
+        self.positions.push([row(&position, 0), row(&position, ROW)]);
+    }
+
+    fn push_block(&mut self, order: &[u32], photons: &Records) {
         let mut dir = [[0.0; BLOCK]; 3];
         let mut power = [[0.0; BLOCK]; 3];
-        for (lane, entry) in entries.iter().enumerate() {
-            let photon = &photons[entry.index as usize];
+        for (lane, index) in order.iter().enumerate() {
+            let photon = photons.get(*index);
             for axis in 0..3 {
-                position[axis][lane] = entry.position[axis];
                 dir[axis][lane] = photon.dir[axis];
                 power[axis][lane] = photon.power[axis];
             }
             self.histories.push((photon.order, photon.flags));
         }
-        let row = |lanes: &[[f32; BLOCK]; 3], first: usize| {
-            let part = |axis: usize| f32x8::from(&lanes[axis][first..first + ROW]);
-            [part(0), part(1), part(2)]
-        };
-        self.positions.push([row(&position, 0), row(&position, ROW)]);
         self.dirs.extend([row(&dir, 0), row(&dir, ROW)]);
         self.powers.extend([row(&power, 0), row(&power, ROW)]);
     }
@@ -179,4 +195,9 @@ impl PhotonTree {
     pub fn photons(&self) -> impl Iterator<Item = Photon> + '_ {
         (0..self.stored).map(|place| self.photon(place))
     }
+}
+
+/// Eight of a block's sixteen vectors.
+fn row(lanes: &[[f32; BLOCK]; 3], first: usize) -> Row {
+    [0, 1, 2].map(|axis| f32x8::from(&lanes[axis][first..first + ROW]))
 }

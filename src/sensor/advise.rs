@@ -165,7 +165,7 @@ impl Pilot {
             let max_order = max_order(&chosen);
             let histories = Histories { count: settings.photons, seed: settings.seed, replicate, max_order };
             let start = Instant::now();
-            let (_, maps) = maps(scene, &chosen, histories, margin, progress)?;
+            let (_, maps) = maps(scene, &chosen, histories, 0..settings.photons, margin, progress)?;
             pilot.preparation_seconds +=
                 start.elapsed().as_secs_f64() / (settings.photons * settings.maps) as f64;
             let start = Instant::now();

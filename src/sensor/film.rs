@@ -120,6 +120,11 @@ impl Film {
         &self.pixels
     }
 
+    /// Every pixel, to be changed.
+    pub(super) fn pixels_mut(&mut self) -> &mut [Pixel] {
+        &mut self.pixels
+    }
+
     /// The pixel in column x and row y.
     pub fn pixel(&self, x: u32, y: u32) -> &Pixel {
         &self.pixels[y as usize * self.width as usize + x as usize]

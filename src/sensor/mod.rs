@@ -14,7 +14,9 @@ pub use advise::{Advice, MIN_MAPS, PathAdvice, Pilot, PilotSettings, path_advice
 pub use film::{Film, Pixel, Sample};
 pub use light::{LightCount, by_light, extend_by_light};
 pub use paths::{PathSettings, by_paths, sample, sample_counted};
-pub use photons::{PhotonReadings, PhotonSettings, by_photons};
+pub use photons::{
+    PhotonForecast, PhotonReadings, PhotonSettings, by_photons, by_photons_in_passes, forecast,
+};
 pub use render::{MAX_SAMPLES, Streams, extend, render};
 pub use view::{check_camera, colour, draw_photons};
 

@@ -6,12 +6,17 @@ use crate::error::{Error, Result};
 use crate::estimators::{Estimate, Gather, Kernel, fluence, in_scattered};
 use crate::math::{Ray, exp_m1, ln_1p};
 use crate::medium::Medium;
-use crate::photons::{Histories, Ledger, Pass, PhotonMap, fold, shoot};
+use crate::photons::{
+    Emitter, Histories, Ledger, PEAK_BYTES, Pass, Photon, PhotonMap, fold, shoot, shoot_blocks,
+};
 use crate::rng::{Purpose, Stream};
 use crate::scene::{Orders, Quantity, Scene, Sensor, decay};
 use crate::stats::Moments;
-use crate::transport::{Progress, transmittance};
+use crate::transport::{NoProgress, Progress, transmittance};
 use glam::DVec3;
+use std::ops::Range;
+use std::sync::atomic::{AtomicU64, Ordering};
+use std::time::Instant;
 
 /// How many photons and maps, and how maps are read.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -69,16 +74,34 @@ pub fn by_photons(
     settings: &PhotonSettings,
     progress: &dyn Progress,
 ) -> Result<PhotonReadings> {
-    let sensors: Vec<Sensor> = scene
-        .sensors()
-        .iter()
-        .map(|s| Sensor { orders: s.orders.and(&settings.orders), ..s.clone() })
-        .collect();
-    for sensor in &sensors {
-        check(scene, sensor)?;
+    by_photons_in_passes(scene, settings, 1, progress)
+}
+
+/// The same with the photons of each map in so many passes, one in memory at a time: their histories are those of one
+/// pass, cut into consecutive parts, and estimates in a fixed radius are sums over photons, so that those of the parts, each
+/// times its part of the histories, add up to that of the whole but for rounding.
+///
+/// # Errors
+/// those of [`by_photons`]; `Error::Scene` for several passes and the k nearest photons, which are not known before the last
+/// pass; `Error::OutOfRange` for no pass, or more of them than histories.
+pub fn by_photons_in_passes(
+    scene: &Scene,
+    settings: &PhotonSettings,
+    passes: u64,
+    progress: &dyn Progress,
+) -> Result<PhotonReadings> {
+    if passes < 1 || passes > settings.photons {
+        let allowed = "at least 1, and at most one a photon";
+        return Err(Error::out_of_range("the number of passes", passes as f64, allowed));
     }
-    let margin =
-        scene.stage().map_or(Ok(0.0), |stage| margin(&sensors, stage.side, settings.gather.cap()))?;
+    if passes > 1 && !matches!(settings.gather, Gather::Radius(_)) {
+        return Err(Error::Scene(
+            "the k nearest photons of a map cannot be found in passes that hold a part of it each: take a fixed radius, or \
+             fewer photons"
+                .into(),
+        ));
+    }
+    let (sensors, margin) = prepared(scene, settings)?;
     let mut moments = vec![[Moments::new(); 3]; sensors.len()];
     let mut result = PhotonReadings {
         readings: Vec::new(),
@@ -90,22 +113,36 @@ pub fn by_photons(
     let max_order = max_order(&sensors);
     for replicate in 0..settings.maps {
         let histories = Histories { count: settings.photons, seed: settings.seed, replicate, max_order };
-        let (pass, maps) = maps(scene, &sensors, histories, margin, progress)?;
-        result.ledger.add(&pass.ledger);
-        let tallied = sensors.iter().zip(moments.iter_mut()).zip(&pass.tallies);
-        for ((_, mine), tally) in tallied.filter(|((s, _), _)| map_orders(s).is_none()) {
-            for (m, t) in mine.iter_mut().zip(tally) {
-                m.merge(t);
+        let mut estimates = vec![Spectrum::ZERO; sensors.len()];
+        for number in 0..passes {
+            let booked = (result.gathers, result.underfull, result.beyond);
+            let part = part(settings.photons, passes, number);
+            let share = (part.end - part.start) as f64 / settings.photons as f64;
+            let (pass, maps) = maps(scene, &sensors, histories, part, margin, progress)?;
+            result.ledger.add(&pass.ledger);
+            let tallied = sensors.iter().zip(moments.iter_mut()).zip(&pass.tallies);
+            for ((_, mine), tally) in tallied.filter(|((s, _), _)| map_orders(s).is_none()) {
+                for (m, t) in mine.iter_mut().zip(tally) {
+                    m.merge(t);
+                }
+            }
+            for (range, map) in &maps {
+                let here = sensors.iter().zip(&mut estimates).filter(|(s, _)| map_orders(s) == Some(*range));
+                for (index, (sensor, sum)) in here.enumerate() {
+                    // Every pass asks at the same places.
+                    let mut stream = Stream::new(settings.seed, Purpose::Resampling, replicate, index as u64);
+                    *sum += read(scene, map, sensor, settings, &mut stream, &mut result) * share;
+                }
+            }
+            if number > 0 {
+                // The same places as those of the first pass, asked again.
+                (result.gathers, result.underfull, result.beyond) = booked;
             }
         }
-        for (range, map) in &maps {
-            let here = sensors.iter().zip(&mut moments).filter(|(s, _)| map_orders(s) == Some(*range));
-            for (index, (sensor, moments)) in here.enumerate() {
-                let mut stream = Stream::new(settings.seed, Purpose::Resampling, replicate, index as u64);
-                let value = read(scene, map, sensor, settings, &mut stream, &mut result);
-                for (channel, m) in moments.iter_mut().enumerate() {
-                    m.push(value[channel]);
-                }
+        let read = sensors.iter().zip(&mut moments).zip(estimates);
+        for ((_, moments), value) in read.filter(|((s, _), _)| map_orders(s).is_some()) {
+            for (channel, m) in moments.iter_mut().enumerate() {
+                m.push(value[channel]);
             }
         }
     }
@@ -120,42 +157,126 @@ pub fn by_photons(
     Ok(result)
 }
 
-/// The largest order of a collision that any sensor asks for, if there is one.
-pub(super) fn max_order(sensors: &[Sensor]) -> Option<u32> {
-    sensors.iter().map(|s| s.orders.max).try_fold(0, |most, max| max.map(|m| most.max(m)))
+/// What a measurement by photons will take, by a pilot.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct PhotonForecast {
+    /// Photons that one map holds, about.
+    pub stored: f64,
+    /// Most memory of one pass, about \[bytes\].
+    pub bytes: f64,
+    /// Time of shooting and building all maps at the pilot's rate \[s\].
+    pub seconds: f64,
 }
 
-/// One pass of histories and its maps, one for each range of orders that a sensor needs, continued `margin` beyond the
-/// folded cell. The pass's own photons have moved into the maps.
-pub(super) fn maps(
-    scene: &Scene,
-    sensors: &[Sensor],
-    histories: Histories,
-    margin: f64,
-    progress: &dyn Progress,
-) -> Result<(Pass, Vec<(Orders, PhotonMap)>)> {
+/// Histories of the pilot of a measurement, at most: one in 64 of the run's, so that it costs little beside it.
+const FORECAST: u64 = 1024;
+
+/// Time that a stored photon takes on its way into the tree, of one processor \[s\]: measured, on a processor of 2023.
+const BUILD_SECONDS: f64 = 0.4e-6;
+
+/// What [`by_photons_in_passes`] will take: the pilot runs the first of the run's own histories, and stores nothing.
+///
+/// # Errors
+/// those of [`by_photons_in_passes`]
+pub fn forecast(scene: &Scene, settings: &PhotonSettings, passes: u64) -> Result<PhotonForecast> {
+    let (sensors, margin) = prepared(scene, settings)?;
+    let ranges = ranges(&sensors);
+    let count = settings.photons.div_ceil(64).min(FORECAST);
+    let histories = Histories { count, seed: settings.seed, replicate: 0, max_order: max_order(&sensors) };
+    let (met, copied) = (AtomicU64::new(0), AtomicU64::new(0));
+    let keep = |photon: &Photon| {
+        let holding = ranges.iter().filter(|r| r.contains(u32::from(photon.order))).count() as u64;
+        met.fetch_add(u64::from(holding > 0), Ordering::Relaxed);
+        copied.fetch_add(holding, Ordering::Relaxed);
+        false
+    };
+    let start = Instant::now();
+    shoot(scene, histories, &[], keep, &NoProgress)?;
+    // The pilot is one block of histories and runs on one thread.
+    let threads = rayon::current_num_threads() as f64;
+    let one = start.elapsed().as_secs_f64() / count as f64;
+    let a_history = |number: &AtomicU64| number.load(Ordering::Relaxed) as f64 / count as f64;
+    // Copies beyond the edges of the cell.
+    let around = scene.stage().map_or(1.0, |stage| (1.0 + 2.0 * margin / stage.side).powi(2));
+    let [met, copied] = [a_history(&met), a_history(&copied)].map(|n| n * settings.photons as f64 * around);
+    // Where several ranges of orders have a map each, the photons of all stay until the last one.
+    let bytes = match ranges.len() {
+        1 => PEAK_BYTES * met,
+        _ => size_of::<Photon>() as f64 * met + PEAK_BYTES * copied,
+    };
+    let seconds = (one * settings.photons as f64 + BUILD_SECONDS * copied) * settings.maps as f64 / threads;
+    Ok(PhotonForecast { stored: copied, bytes: bytes / passes as f64, seconds })
+}
+
+/// The histories of one of several passes.
+fn part(count: u64, passes: u64, number: u64) -> Range<u64> {
+    let cut = |n: u64| (u128::from(count) * u128::from(n) / u128::from(passes)) as u64;
+    cut(number)..cut(number + 1)
+}
+
+/// The sensors with the orders that count, and how far beyond the cell's edges they read \[L\].
+fn prepared(scene: &Scene, settings: &PhotonSettings) -> Result<(Vec<Sensor>, f64)> {
+    let sensors: Vec<Sensor> = scene
+        .sensors()
+        .iter()
+        .map(|s| Sensor { orders: s.orders.and(&settings.orders), ..s.clone() })
+        .collect();
+    for sensor in &sensors {
+        check(scene, sensor)?;
+    }
+    let margin =
+        scene.stage().map_or(Ok(0.0), |stage| margin(&sensors, stage.side, settings.gather.cap()))?;
+    Ok((sensors, margin))
+}
+
+/// The ranges of orders that need a map each.
+fn ranges(sensors: &[Sensor]) -> Vec<Orders> {
     let mut ranges: Vec<Orders> = Vec::new();
     for range in sensors.iter().filter_map(map_orders) {
         if !ranges.contains(&range) {
             ranges.push(range);
         }
     }
+    ranges
+}
+
+/// The largest order of a collision that any sensor asks for, if there is one.
+pub(super) fn max_order(sensors: &[Sensor]) -> Option<u32> {
+    sensors.iter().map(|s| s.orders.max).try_fold(0, |most, max| max.map(|m| most.max(m)))
+}
+
+/// One pass of a part of the histories and its maps, one for each range of orders that a sensor needs, continued `margin`
+/// beyond the folded cell. The pass's own photons have moved into the maps.
+pub(super) fn maps(
+    scene: &Scene,
+    sensors: &[Sensor],
+    histories: Histories,
+    part: Range<u64>,
+    margin: f64,
+    progress: &dyn Progress,
+) -> Result<(Pass, Vec<(Orders, PhotonMap)>)> {
+    let ranges = ranges(sensors);
     let is_needed = |order| ranges.iter().any(|r| r.contains(u32::from(order)));
-    let mut pass = shoot(scene, histories, sensors, |photon| is_needed(photon.order), progress)?;
-    let mut photons = std::mem::take(&mut pass.photons);
+    let emitter = Emitter::by_power(scene);
+    let keep = |photon: &Photon| is_needed(photon.order);
+    let (pass, mut blocks) = shoot_blocks(scene, &emitter, histories, part, sensors, keep, progress)?;
     if let Some(stage) = scene.stage()
         && margin > 0.0
     {
-        fold::surround(&mut photons, stage.side, margin);
+        blocks.iter_mut().for_each(|block| fold::surround(block, stage.side, margin));
     }
     let mut maps = Vec::with_capacity(ranges.len());
-    for &range in &ranges {
-        let in_range = if ranges.len() == 1 {
-            std::mem::take(&mut photons)
-        } else {
-            photons.iter().filter(|p| range.contains(u32::from(p.order))).copied().collect()
+    for (number, &range) in ranges.iter().enumerate() {
+        let holds = |photon: &Photon| range.contains(u32::from(photon.order));
+        let parts = match number + 1 == ranges.len() {
+            true => {
+                let mut last = std::mem::take(&mut blocks);
+                last.iter_mut().for_each(|block| block.retain(holds));
+                last
+            }
+            false => blocks.iter().map(|block| block.iter().copied().filter(holds).collect()).collect(),
         };
-        maps.push((range, PhotonMap::new_parallel(in_range, pass.emitted)?));
+        maps.push((range, PhotonMap::of_parts(parts, pass.emitted, &NoProgress)?));
     }
     Ok((pass, maps))
 }

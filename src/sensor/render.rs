@@ -7,7 +7,7 @@ use crate::rng::{Purpose, Stream};
 use crate::scene::Camera;
 use crate::transport::Progress;
 use rayon::prelude::*;
-use std::ops::AddAssign;
+use std::ops::{AddAssign, Range};
 
 /// Side of a tile in pixels: large enough that threads rarely wait for the last one, small enough that the rays of a
 /// tile meet the same photons.
@@ -54,7 +54,7 @@ impl AddAssign for Nothing {
 /// Adds so many samples to each pixel of a film, and returns what `sample` counted.
 ///
 /// A film of n samples has the same bits however many calls brought them, and on any number of threads. Counts are
-/// added tile by tile, in order; within a call only.
+/// added tile by tile, in order; within a call only. After an error the film is of no use.
 ///
 /// # Errors
 /// `Error::NonFinite` if a sample was not finite; `Error::OutOfRange` above [`MAX_SAMPLES`]; `Error::Cancelled`.
@@ -74,15 +74,15 @@ pub fn extend<S: Into<Sample>, W: Default + AddAssign + Send>(
             "at most 4294967295 in all",
         ));
     }
-    let tiles = tiles(film.width(), film.height());
-    let filled = |tile: &Tile| {
+    let (width, height) = (film.width(), film.height());
+    let filled = |band: &[Pixel], top: u32, tile: &Tile| {
         if progress.is_cancelled() {
             return Err(Error::Cancelled);
         }
         let mut done = Done { pixels: Vec::with_capacity(tile.count()), count: W::default(), non_finite: 0 };
         for (x, y) in tile.places() {
-            let mut pixel = *film.pixel(x, y);
-            let number = u64::from(y) * u64::from(film.width()) + u64::from(x);
+            let mut pixel = band[((y - top) * width + x) as usize];
+            let number = u64::from(y) * u64::from(width) + u64::from(x);
             for i in first..first + samples {
                 let mut stream =
                     Stream::new(streams.seed, Purpose::Paths, streams.replicate, number << 32 | i);
@@ -96,14 +96,26 @@ pub fn extend<S: Into<Sample>, W: Default + AddAssign + Send>(
         progress.advance(samples * tile.count() as u64);
         Ok(done)
     };
-    let done: Vec<Done<W>> = tiles.par_iter().map(filled).collect::<Result<_>>()?;
-    let (mut count, mut non_finite) = (W::default(), 0);
-    for (tile, part) in tiles.iter().zip(done) {
-        for ((x, y), pixel) in tile.places().zip(part.pixels) {
-            *film.pixel_mut(x, y) = pixel;
+    // Band by band, so that beside the film there are never more new pixels than those of a band a thread.
+    let bands = film.pixels_mut().par_chunks_mut((TILE * width) as usize).enumerate();
+    let counted = bands.map(|(band, pixels)| {
+        let top = band as u32 * TILE;
+        let tiles = tiles(width, top..height.min(top + TILE));
+        let done =
+            tiles.par_iter().map(|tile| filled(pixels, top, tile)).collect::<Result<Vec<Done<W>>>>()?;
+        let mut counts = Vec::with_capacity(tiles.len());
+        for (tile, part) in tiles.iter().zip(done) {
+            for ((x, y), pixel) in tile.places().zip(part.pixels) {
+                pixels[((y - top) * width + x) as usize] = pixel;
+            }
+            counts.push((part.count, part.non_finite));
         }
-        count += part.count;
-        non_finite += part.non_finite;
+        Ok(counts)
+    });
+    let (mut count, mut non_finite) = (W::default(), 0);
+    for (part, bad) in counted.collect::<Result<Vec<_>>>()?.into_iter().flatten() {
+        count += part;
+        non_finite += bad;
     }
     if non_finite > 0 {
         return Err(Error::NonFinite { count: non_finite, place: "samples of a picture" });
@@ -134,9 +146,10 @@ impl Tile {
     }
 }
 
-fn tiles(width: u32, height: u32) -> Vec<Tile> {
-    let cut = |length: u32| (0..length.div_ceil(TILE)).map(move |i| (i * TILE, ((i + 1) * TILE).min(length)));
-    cut(height).flat_map(|y| cut(width).map(move |x| Tile { x, y })).collect()
+/// The tiles of a band of rows, not higher than a tile.
+fn tiles(width: u32, rows: Range<u32>) -> Vec<Tile> {
+    let columns = (0..width.div_ceil(TILE)).map(|i| (i * TILE, ((i + 1) * TILE).min(width)));
+    columns.map(|x| Tile { x, y: (rows.start, rows.end) }).collect()
 }
 
 #[cfg(test)]

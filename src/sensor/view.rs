@@ -13,6 +13,9 @@ use rayon::prelude::*;
 /// Rays that look for a way out, and photons that look for a way in.
 const TRIALS: u64 = 64;
 
+/// Photons that are placed at once, before they are added up in order.
+const DRAWN: usize = 1 << 16;
+
 /// Whether a surface ends every ray that meets it, or turns it back.
 fn is_opaque(surface: &Surface) -> bool {
     matches!(surface, Surface::Lambertian(_) | Surface::Mirror(_) | Surface::Black(_))
@@ -91,17 +94,19 @@ pub fn colour(photon: &Photon) -> Spectrum {
 /// Photons as dots seen from the camera, row by row from the top: every dot adds its colour, one in all, to the four
 /// pixels about the place it is seen at. Returns how many are in the picture, too.
 ///
-/// Photons behind opaque surfaces are hidden; what is seen by way of mirrors and refraction is not drawn.
-pub fn draw_photons(scene: &Scene, camera: &Camera, photons: &[Photon]) -> (Vec<Spectrum>, u64) {
+/// Photons behind opaque surfaces are hidden; what is seen by way of mirrors and refraction is not drawn. The number beside
+/// each photon, what its map's pass sent out, does not count here.
+pub fn draw_photons(scene: &Scene, camera: &Camera, photons: &[(Photon, u64)]) -> (Vec<Spectrum>, u64) {
     let (width, height) = (camera.width() as usize, camera.height() as usize);
     let place = |photon: &Photon| {
         camera.pixel(photon.position)?;
         let at = camera.project(photon.position)?;
         is_visible(scene, camera, photon.position).then_some(at)
     };
-    let seen: Vec<Option<DVec2>> = photons.par_iter().map(place).collect();
     let (mut picture, mut count) = (vec![Spectrum::ZERO; width * height], 0);
-    for (photon, at) in photons.iter().zip(seen) {
+    let parts = photons.chunks(DRAWN).map(|part| (part, part.par_iter().map(|(photon, _)| place(photon))));
+    let placed = parts.flat_map(|(part, places)| part.iter().zip(places.collect::<Vec<_>>()));
+    for ((photon, _), at) in placed {
         let Some(at) = at else { continue };
         count += 1;
         let corner = at - DVec2::splat(0.5);
@@ -169,7 +174,7 @@ mod tests {
         let before = camera().ray(DVec2::new(1.5, 5.5)).at(1.0);
         let behind_us = -DVec3::Z;
         let (picture, count) =
-            draw_photons(&scene, &camera(), &[at(left), at(hidden), at(before), at(behind_us)]);
+            draw_photons(&scene, &camera(), &[left, hidden, before, behind_us].map(|p| (at(p), 1)));
         assert_eq!(count, 2);
         let sum = picture.iter().fold(Spectrum::ZERO, |sum, p| sum + *p);
         assert!((sum.0 - DVec3::new(2.0, 1.0, 0.0)).abs().max_element() < 1e-12);

@@ -1,18 +1,22 @@
-//! Emission towards specular bodies: cells of the lights' numbers, what their rays reach, and that nothing is lost.
+//! Emission towards specular bodies, and towards anything at all: cells of the lights' numbers, what their rays reach, and
+//! that nothing is lost.
 
 use super::lights::{lights, suns};
 use crate::common::config as properties;
 use crate::support::run::numbers;
-use crate::support::scenes::{bounded, cuboid, point_light, region, sphere};
+use crate::support::scenes::{
+    bounded, cuboid, homogeneous, lambertian, point_light, rectangle, region, sphere,
+};
 use crate::support::verdict;
 use glam::DVec3;
 use proptest::prelude::*;
 use turbid::Spectrum;
 use turbid::geometry::Shape;
 use turbid::light::{EmissionCell, Light};
+use turbid::photons::maps::{Amount, Indirect, MapReport, MapSettings, fill};
 use turbid::photons::{Emitter, Flags, Histories, shoot_from};
 use turbid::rng::{Purpose, Stream};
-use turbid::scene::Scene;
+use turbid::scene::{Region, Scene};
 use turbid::stats::Moments;
 use turbid::surface::{Mirror, Surface};
 use turbid::transport::NoProgress;
@@ -170,4 +174,159 @@ fn nothing_to_aim_at() {
     let beam = Light::Beam(turbid::light::Beam::new(DVec3::X, Spectrum::ONE, beam).unwrap());
     let behind = bounded(fog(), vec![(sphere(DVec3::new(-2.0, 0.0, 0.0), 0.5), mirror())], vec![beam]);
     assert!(Emitter::towards_specular(&behind).is_none());
+}
+
+/// Fog, a diffuse ball and a mirror in empty space, where a photon of the last light goes: five units from where it starts.
+fn afar(lights: Vec<Light>, seed: u64) -> Scene {
+    let mut stream = Stream::new(seed, Purpose::Synthetic, 0, 0);
+    let ray = lights[lights.len() - 1].emit(None, &mut stream).ray;
+    let center = ray.at(5.0);
+    let beside = |stream: &mut Stream| center + (DVec3::from(stream.triple()) - 0.5) * 0.8;
+    let balls = [
+        (sphere(beside(&mut stream), 0.3), lambertian(Spectrum::rgb(0.9, 0.5, 0.7))),
+        (sphere(beside(&mut stream), 0.2), mirror()),
+    ];
+    bounded(vec![region(sphere(center, 1.0), 0.6, 0.9, 0.5)], balls.to_vec(), lights)
+}
+
+/// An emitting medium about the origin.
+fn glowing(sigma_t: f64) -> Region {
+    let medium = homogeneous(Spectrum::grey(sigma_t), Spectrum::grey(0.5), 0.0);
+    let turbid::medium::Medium::Homogeneous(medium) = medium else { unreachable!() };
+    let medium = medium.with_emission(Spectrum::rgb(0.5, 1.0, 2.0)).unwrap();
+    Region { shape: sphere(DVec3::ZERO, 0.5), medium: medium.into() }
+}
+
+/// Power that collides in a scene's fog, of light that met nothing before, a diffuse surface, a mirror: a value a batch and
+/// channel.
+fn collided(scene: &Scene, emitter: &Emitter, seed: u64) -> [[Moments; 3]; 3] {
+    const HISTORIES: u64 = 1024;
+    let mut moments = [[Moments::new(); 3]; 3];
+    for replicate in 0..64 {
+        let histories = Histories { count: HISTORIES, seed, replicate, max_order: None };
+        let pass = shoot_from(scene, emitter, histories, &[], |_| true, &NoProgress).unwrap();
+        let mut sums = [[0.0f64; 3]; 3];
+        for photon in &pass.photons {
+            let met = [Flags::DIFFUSE, Flags::SPECULAR].iter().position(|flag| photon.flags.has(*flag));
+            let here = &mut sums[met.map_or(0, |i| i + 1)];
+            here.iter_mut().zip(photon.power.to_array()).for_each(|(sum, power)| *sum += f64::from(power));
+        }
+        for (moments, sums) in moments.iter_mut().zip(sums) {
+            moments.iter_mut().zip(sums).for_each(|(m, sum)| m.push(sum / HISTORIES as f64));
+        }
+    }
+    moments
+}
+
+/// Aimed at what there is, photons bring as much light there as sent out everywhere, from every light alone and from all of
+/// them; what is kept and what is left out are all power.
+#[test]
+fn open_scenes_lose_nothing() {
+    let mut cases: Vec<(&str, Vec<Light>)> = all_lights().into_iter().map(|(n, l)| (n, vec![l])).collect();
+    cases.push(("all of them", all_lights().into_iter().map(|(_, l)| l).collect()));
+    for (number, (name, lights)) in cases.into_iter().enumerate() {
+        let scene = afar(lights, number as u64);
+        let (plain, aimed) = (Emitter::by_power(&scene), Emitter::towards_scene(&scene));
+        let whole = scene.power().sum();
+        assert!(((aimed.kept() * whole + aimed.left_out()) / whole - 1.0).abs() < 1e-12, "{name}");
+        // Isotropic light goes anywhere from each part of its numbers, and parallel light may all meet the fog.
+        if aimed.kept() == 1.0 {
+            let is_whole = ["isotropic", "beam", "sun"].iter().any(|whole| name.contains(whole));
+            assert!(is_whole, "{name}");
+            continue;
+        }
+        let (a, b) = (collided(&scene, &plain, 1), collided(&scene, &aimed, 2));
+        for (class, (a, b)) in a.iter().zip(&b).enumerate() {
+            // All channels are the same photons.
+            if a[0].is_heavy_tailed() || a[0].mean() == 0.0 {
+                continue;
+            }
+            let what = format!("{name}, kept {:.4}, class {class}", aimed.kept());
+            for c in 0..3 {
+                verdict::agree(&what, &a[c], &b[c], 0.5 * a[c].mean(), 1);
+            }
+        }
+    }
+}
+
+/// A medium that emits and in which nothing collides sends photons to what is far away.
+#[test]
+fn an_emitting_medium_is_aimed() {
+    let far = || region(sphere(DVec3::new(5.0, 2.0, 1.0), 0.8), 1.0, 0.9, 0.0);
+    let scene = bounded(vec![far(), glowing(0.0)], Vec::new(), Vec::new());
+    let aimed = Emitter::towards_scene(&scene);
+    let whole = scene.power().sum();
+    assert!(aimed.kept() < 0.1 && ((aimed.kept() * whole + aimed.left_out()) / whole - 1.0).abs() < 1e-12);
+    let (a, b) = (collided(&scene, &Emitter::by_power(&scene), 1), collided(&scene, &aimed, 2));
+    for c in 0..3 {
+        verdict::agree("emitting medium", &a[0][c], &b[0][c], 0.3 * a[0][c].mean(), 1);
+    }
+    // Where light collides in itself every direction may be of use.
+    assert_eq!(
+        Emitter::towards_scene(&bounded(vec![far(), glowing(0.1)], Vec::new(), Vec::new())).kept(),
+        1.0
+    );
+}
+
+/// Of a point, the part of its photons that meets a ball is known, and they carry the power of the cells that reach it: their
+/// product is the ball's solid angle, however small it is.
+#[test]
+fn small_bodies_are_found() {
+    for (distance, least) in [(3.0, 0.5), (30.0, 0.5), (300.0, 0.5), (3000.0, 0.4), (1e5, 0.05)] {
+        let center = DVec3::new(0.48, -0.6, 0.64) * distance;
+        let black = turbid::surface::Black;
+        let scene = bounded(
+            Vec::new(),
+            vec![(sphere(center, 1.0), Surface::Black(black))],
+            vec![point_light(DVec3::ZERO, Spectrum::ONE)],
+        );
+        let emitter = Emitter::towards_scene(&scene);
+        let n = 1 << 16;
+        let met = (0..n).filter(|history| {
+            let mut stream = Stream::new(3, Purpose::Photons, 0, *history);
+            let walker = emitter.emit(&scene, &mut stream).unwrap();
+            scene.hit(&walker.ray, None).is_some()
+        });
+        let sine2: f64 = 1.0 / (distance * distance);
+        let share = 0.5 * sine2 / (1.0 + (1.0 - sine2).sqrt());
+        let expected = share / emitter.kept();
+        let what = format!("at {distance}: kept {:.2e} for {share:.2e}", emitter.kept());
+        assert!(expected > least, "{what}");
+        verdict::rate(&what, met.count() as u64, n, expected, 0.1 * expected, 3);
+    }
+}
+
+/// The report of maps of so many histories, filled from a light above a ball, in the open and in a room.
+fn report(has_room: bool) -> MapReport {
+    let mut objects = vec![(sphere(DVec3::ZERO, 0.3), lambertian(Spectrum::grey(0.5)))];
+    if has_room {
+        let (corner, side) = (DVec3::splat(-4.0), 8.0);
+        for (u, v) in [(DVec3::X, DVec3::Y), (DVec3::Y, DVec3::Z), (DVec3::Z, DVec3::X)] {
+            for shift in [0.0, side] {
+                let wall = rectangle(corner + u.cross(v) * shift, u * side, v * side);
+                objects.push((Shape::Rectangle(wall), lambertian(Spectrum::grey(0.2))));
+            }
+        }
+    }
+    let scene = bounded(Vec::new(), objects, vec![point_light(DVec3::new(1.0, -1.0, 3.0), Spectrum::ONE)]);
+    let amount = Amount::Emitted(1 << 14);
+    let (global, caustic, volume) = (amount, amount, amount);
+    let settings =
+        MapSettings { global, caustic, volume, indirect: Indirect::Gathered, seed: 1, replicate: 0 };
+    fill(&scene, &settings, &NoProgress).unwrap().report
+}
+
+/// Power that is not sent out since it can meet nothing has escaped; in a room nothing is left out.
+#[test]
+fn what_is_left_out_has_escaped() {
+    let (open, closed) = (report(false), report(true));
+    for report in [open, closed] {
+        let ledger = report.main.ledger;
+        let settled = ledger.absorbed + ledger.escaped + ledger.abandoned;
+        assert!((settled / ledger.emitted - 1.0).abs() < 1e-10, "{ledger:?}");
+        assert!((ledger.emitted / (3.0 * report.main.emitted as f64) - 1.0).abs() < 1e-10, "{ledger:?}");
+    }
+    // The ball fills 0.2 per cent of what the light sees.
+    assert!(open.aimed < 0.01 && open.main.hits * 4 > open.main.emitted, "{open:?}");
+    assert_eq!((closed.aimed, closed.main.ends.escaped), (1.0, 0));
 }

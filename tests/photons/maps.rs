@@ -4,7 +4,9 @@ use crate::support::scenes::{area_light, bounded, cuboid, lambertian, rectangle,
 use glam::DVec3;
 use turbid::Spectrum;
 use turbid::geometry::Shape;
-use turbid::photons::maps::{Amount, Indirect, MapSettings, Maps, PILOT, counts, fill};
+use turbid::photons::maps::{
+    Amount, Indirect, MOST_A_STORED, MapSettings, Maps, PILOT, counts, fill, forecast,
+};
 use turbid::photons::{Flags, Photon, PhotonMap};
 use turbid::scene::Scene;
 use turbid::surface::{Mirror, Surface};
@@ -121,6 +123,48 @@ fn a_pilot_sets_what_is_emitted() {
     }
     assert_eq!(maps.report.main.emitted, number.global.max(number.volume));
     assert_eq!(number.histories(), maps.report.main.emitted + number.caustic);
+}
+
+/// A ball in empty space that a lamp seldom meets: photons are aimed at it, and no hundred are sent out for each that is
+/// stored. Fog that hardly ever scatters twice: what is sent out is bounded.
+#[test]
+fn emission_is_bounded() {
+    let lamp = crate::support::scenes::point_light(DVec3::new(3.0, -3.0, 6.0), Spectrum::ONE);
+    let ball = (crate::support::scenes::sphere(DVec3::ZERO, 0.3), lambertian(Spectrum::grey(0.7)));
+    let stored = Amount::Stored(20_000);
+    let asked = MapSettings { global: stored, volume: stored, ..settings(Indirect::Gathered) };
+    let vase = bounded(Vec::new(), vec![ball], vec![lamp.clone()]);
+    // A light at random would send out 4 x 10^7.
+    let number = counts(&vase, &asked).unwrap().global;
+    assert!(number < 60_000, "{number}");
+    let map = filled(&vase, asked).global.unwrap();
+    assert!((map.stored() as f64 / 20_000.0 - 1.0).abs() < 0.1, "{}", map.stored());
+    let thin = region(crate::support::scenes::sphere(DVec3::new(3.0, -3.0, 6.0), 1.0), 0.02, 1.0, 0.0);
+    let number = counts(&bounded(vec![thin], Vec::new(), vec![lamp]), &asked).unwrap().volume;
+    assert_eq!(number, 20_000 * MOST_A_STORED);
+}
+
+/// A forecast says what is then stored, where numbers to emit are asked for too.
+#[test]
+fn forecasts_come_true() {
+    let scene = room(mirror(), 0.5);
+    let asked = MapSettings {
+        global: Amount::Emitted(100_000),
+        caustic: Amount::Stored(10_000),
+        volume: Amount::Emitted(60_000),
+        ..settings(Indirect::Gathered)
+    };
+    let ahead = forecast(&scene, &asked, None).unwrap();
+    let maps = filled(&scene, asked);
+    assert_eq!(ahead.emitted, counts(&scene, &asked).unwrap());
+    for (map, expected) in [&maps.global, &maps.volume, &maps.caustic].into_iter().zip(ahead.stored) {
+        let map = map.as_ref().unwrap();
+        let (stored, a_history) = (map.stored() as f64, expected / map.emitted() as f64);
+        // As above, of the shortest pilot: a sixteenth of 60,000.
+        let error = 2.0 * (1.0 / (3750.0 * a_history) + 1.0 / stored).sqrt();
+        assert!((stored / expected - 1.0).abs() < 5.0 * error, "{stored} of {expected}, error {error}");
+    }
+    assert!(ahead.seconds > 0.0 && ahead.bytes() > 100.0 * ahead.stored.iter().sum::<f64>());
 }
 
 #[test]

@@ -7,6 +7,7 @@ use super::{Importance, ImportanceSettings, Stage};
 use crate::error::{Error, Result};
 use crate::light::EmissionCell;
 use crate::photons::Emitter;
+use crate::photons::emit::cells_towards_scene;
 use crate::photons::maps::{Indirect, is_global, is_matt, is_volume};
 use crate::rng::Stream;
 use crate::scene::{Scene, Target};
@@ -153,12 +154,12 @@ pub(super) fn learn(
     settings: &ImportanceSettings,
     progress: &dyn Progress,
 ) -> Result<Importance> {
-    let cells: Vec<(usize, EmissionCell)> = scene
-        .lights()
-        .iter()
-        .enumerate()
-        .flat_map(|(light, l)| l.cells(CELLS).into_iter().map(move |cell| (light, cell)))
-        .collect();
+    let all = || {
+        let lights = scene.lights().iter().enumerate();
+        lights.flat_map(|(light, l)| l.cells(CELLS).into_iter().map(move |cell| (light, cell))).collect()
+    };
+    let cells: Vec<(usize, EmissionCell)> =
+        cells_towards_scene(scene, CELLS).map_or_else(all, |(cells, _)| cells);
     let powers: Vec<f64> = cells
         .iter()
         .map(|(light, cell)| scene.lights()[*light].ceiling(scene.stage()).sum() * cell.volume())

@@ -68,7 +68,7 @@ pub(super) fn extent(
             }
         }
     }
-    let emitter = Emitter::by_power(scene);
+    let emitter = Emitter::towards_scene(scene);
     let block = |range: std::ops::Range<u64>| {
         let mut found = Extent(DVec3::INFINITY, DVec3::NEG_INFINITY);
         for history in range {

@@ -1,13 +1,36 @@
 //! How many histories each map needs, and from where their photons leave.
 
 use super::pass::{Class, Run};
-use super::{Amount, Emitted, MapSettings, PILOT, is_matt};
+use super::{Amount, Emitted, MapSettings, PEAK_BYTES, PILOT, is_matt};
 use crate::error::{Error, Result};
 use crate::photons::importance::Importance;
 use crate::photons::{Emitter, check_end};
 use crate::rng::Purpose;
 use crate::scene::Scene;
-use crate::transport::NoProgress;
+use crate::transport::{BLOCK, NoProgress};
+
+/// Photons sent out for each that is to be stored, at most. Where fewer than 25 of a pilot's photons are stored, the part
+/// of them that is stored is not known to a fifth: below that part, one in 400, more histories than these are not run
+/// unless a number to emit is asked for.
+pub const MOST_A_STORED: u64 = PILOT / 25;
+
+/// What a pilot says of a run.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Forecast {
+    /// Histories for each map.
+    pub emitted: Emitted,
+    /// Photons that the global, the volume and the caustic map will hold, about.
+    pub stored: [f64; 3],
+    /// Time of the emission at the pilot's rate \[s\].
+    pub seconds: f64,
+}
+
+impl Forecast {
+    /// Most memory that filling the maps takes, about \[bytes\].
+    pub fn bytes(&self) -> f64 {
+        PEAK_BYTES * self.stored.iter().sum::<f64>()
+    }
+}
 
 /// Histories that each map needs, by a pilot where a number of stored photons is asked for.
 ///
@@ -15,7 +38,8 @@ use crate::transport::NoProgress;
 /// [`Error::OutOfRange`] for a number of 0; those of the pilot.
 ///
 /// # Limits
-/// none of the pilot's photons stored: as many histories as photons were asked for, and a map that may stay empty
+/// none of the pilot's photons stored: as many histories as photons were asked for, and a map that may stay empty; few of
+/// them: [`MOST_A_STORED`]
 pub fn counts(scene: &Scene, settings: &MapSettings) -> Result<Emitted> {
     counts_steered(scene, settings, None)
 }
@@ -29,6 +53,24 @@ pub fn counts_steered(
     settings: &MapSettings,
     importance: Option<&Importance>,
 ) -> Result<Emitted> {
+    Ok(piloted(scene, settings, importance, false)?.emitted)
+}
+
+/// What filling the maps will take, by a pilot of every pass.
+///
+/// # Errors
+/// those of [`counts`]
+pub fn forecast(scene: &Scene, settings: &MapSettings, importance: Option<&Importance>) -> Result<Forecast> {
+    piloted(scene, settings, importance, true)
+}
+
+/// `has_all` whether there is a pilot where its numbers decide nothing, too.
+fn piloted(
+    scene: &Scene,
+    settings: &MapSettings,
+    importance: Option<&Importance>,
+    has_all: bool,
+) -> Result<Forecast> {
     scene.check_emission()?;
     check_end(scene)?;
     let emitters = Emitters::of(scene, importance);
@@ -38,8 +80,27 @@ pub fn counts_steered(
         ("volume", needs.volume, settings.volume),
         ("caustic", needs.caustic, settings.caustic),
     ];
-    let is_stored = |amount| matches!(amount, Amount::Stored(_));
-    let pilot = |class: Class| {
+    for (name, is_needed, amount) in asked {
+        if is_needed && matches!(amount, Amount::Emitted(0) | Amount::Stored(0)) {
+            return Err(Error::out_of_range(
+                format!("the number of photons of the {name} map"),
+                0.0,
+                "at least 1",
+            ));
+        }
+    }
+    let is_stored = |map: usize| matches!(asked[map].2, Amount::Stored(_));
+    // Where nothing depends on the pilot it is as long as one of the blocks at most, and short beside the run.
+    let length = |maps: &[usize]| {
+        let most = |map: &usize| match asked[*map].2 {
+            Amount::Emitted(number) => number.div_ceil(16).min(BLOCK),
+            Amount::Stored(_) => PILOT,
+        };
+        let needed: Vec<usize> = maps.iter().copied().filter(|map| asked[*map].1).collect();
+        let has_pilot = has_all || needed.iter().any(|map| is_stored(*map));
+        if has_pilot { needed.iter().map(most).max().unwrap_or(0) } else { 0 }
+    };
+    let pilot = |class: Class, histories: u64| {
         let run = Run {
             scene,
             emitter: emitters.of_class(class),
@@ -48,35 +109,46 @@ pub fn counts_steered(
             seed: settings.seed,
             replicate: settings.replicate,
             class,
-            global: PILOT,
-            volume: PILOT,
+            global: histories,
+            volume: histories,
+            is_pilot: true,
         };
-        run.pass(PILOT, &NoProgress)
+        run.pass(histories, &NoProgress)
     };
-    let is_piloted = |map: usize| asked[map].1 && is_stored(asked[map].2);
-    let mut stored = [0; 3];
-    if is_piloted(0) || is_piloted(1) {
-        let pass = pilot(Class::Main(settings.indirect))?;
-        (stored[0], stored[1]) = (pass.surface(), pass.medium());
+    // Photons stored by a history, and seconds that it takes.
+    let (mut rates, mut seconds) = ([0.0; 3], [0.0; 2]);
+    let lengths = [length(&[0, 1]), length(&[2])];
+    if lengths[0] > 0 {
+        let pass = pilot(Class::Main(settings.indirect), lengths[0])?;
+        (rates[0], rates[1]) = (pass.met[0] as f64, pass.met[1] as f64);
+        seconds[0] = pass.report.time.as_secs_f64() / lengths[0] as f64;
     }
-    if is_piloted(2) {
-        stored[2] = pilot(Class::Caustic)?.surface();
+    if lengths[1] > 0 {
+        let pass = pilot(Class::Caustic, lengths[1])?;
+        rates[2] = pass.met[0] as f64;
+        seconds[1] = pass.report.time.as_secs_f64() / lengths[1] as f64;
     }
-    let number = |map: usize| -> Result<u64> {
-        let (name, is_needed, amount) = asked[map];
+    let number = |map: usize| -> u64 {
+        let (_, is_needed, amount) = asked[map];
         match amount {
-            _ if !is_needed => Ok(0),
-            Amount::Emitted(0) | Amount::Stored(0) => Err(Error::out_of_range(
-                format!("the number of photons of the {name} map"),
-                0.0,
-                "at least 1",
-            )),
-            Amount::Emitted(number) => Ok(number),
-            Amount::Stored(number) if stored[map] == 0 => Ok(number),
-            Amount::Stored(number) => Ok((number as f64 * PILOT as f64 / stored[map] as f64).ceil() as u64),
+            _ if !is_needed => 0,
+            Amount::Emitted(number) => number,
+            Amount::Stored(number) if rates[map] == 0.0 => number,
+            Amount::Stored(number) => {
+                let needed = (number as f64 * lengths[map / 2] as f64 / rates[map]).ceil() as u64;
+                needed.min(number.saturating_mul(MOST_A_STORED))
+            }
         }
     };
-    Ok(Emitted { global: number(0)?, volume: number(1)?, caustic: number(2)? })
+    let emitted = Emitted { global: number(0), volume: number(1), caustic: number(2) };
+    let numbers = [emitted.global, emitted.volume, emitted.caustic];
+    let stored = [0, 1, 2].map(|map| {
+        let length = lengths[map / 2];
+        if length == 0 { 0.0 } else { rates[map] / length as f64 * numbers[map] as f64 }
+    });
+    let main = emitted.global.max(emitted.volume) as f64;
+    let seconds = seconds[0] * main + seconds[1] * emitted.caustic as f64;
+    Ok(Forecast { emitted, stored, seconds })
 }
 
 /// Which maps a scene needs.
@@ -95,7 +167,7 @@ pub(super) struct Emitters {
 
 impl Emitters {
     pub fn of(scene: &Scene, importance: Option<&Importance>) -> Self {
-        let main = importance.map_or_else(|| Emitter::by_power(scene), |i| i.emitter().clone());
+        let main = importance.map_or_else(|| Emitter::towards_scene(scene), |i| i.emitter().clone());
         Emitters { main, caustic: Emitter::towards_specular(scene) }
     }
 

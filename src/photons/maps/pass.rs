@@ -33,6 +33,8 @@ pub(super) struct Run<'a> {
     pub global: u64,
     /// Histories that store volume photons.
     pub volume: u64,
+    /// Whether photons are counted and not kept.
+    pub is_pilot: bool,
 }
 
 /// What a pass brought: photons in the order of their histories, a vector a block.
@@ -40,22 +42,17 @@ pub(super) struct Run<'a> {
 pub(super) struct Stored {
     pub surfaces: Vec<Vec<Photon>>,
     pub media: Vec<Vec<Photon>>,
+    /// Photons that met surfaces and media, kept or not.
+    pub met: [u64; 2],
     pub report: PassReport,
     non_finite: u64,
 }
 
 impl Stored {
-    pub fn surface(&self) -> usize {
-        self.surfaces.iter().map(Vec::len).sum()
-    }
-
-    pub fn medium(&self) -> usize {
-        self.media.iter().map(Vec::len).sum()
-    }
-
     fn merged(mut self, other: Stored) -> Stored {
         self.surfaces.extend(other.surfaces);
         self.media.extend(other.media);
+        self.met = [0, 1].map(|i| self.met[i] + other.met[i]);
         let (mine, others) = (&mut self.report, &other.report);
         mine.emitted += others.emitted;
         mine.ends.absorbed += others.ends.absorbed;
@@ -108,6 +105,12 @@ impl Run<'_> {
             stored
         };
         let mut stored = run_blocks(histories, progress, block, Stored::merged)?.unwrap_or_default();
+        // What a caustic map leaves out is not lost but stands in the other maps; what meets nothing escapes.
+        if matches!(self.class, Class::Main(_)) {
+            let elsewhere = self.emitter.left_out() * histories as f64;
+            stored.report.ledger.emitted += elsewhere;
+            stored.report.ledger.escaped += elsewhere;
+        }
         stored.report.time = start.elapsed();
         match stored.non_finite {
             0 => Ok(stored),
@@ -157,7 +160,10 @@ impl Visitor for Store<'_> {
                     && is_volume(arrival.walker.flags)
                 {
                     let photon = self.photon(arrival.walker, arrival.position);
-                    self.medium.push(photon);
+                    self.stored.met[1] += 1;
+                    if !self.run.is_pilot {
+                        self.medium.push(photon);
+                    }
                 }
             }
             Step::Surface(arrival, found) => {
@@ -173,7 +179,10 @@ impl Visitor for Store<'_> {
                 };
                 if self.history < self.run.global && is_stored {
                     let photon = self.photon(arrival.walker, arrival.position);
-                    self.surface.push(photon);
+                    self.stored.met[0] += 1;
+                    if !self.run.is_pilot {
+                        self.surface.push(photon);
+                    }
                 }
             }
             Step::Absorbed(weight, _) => self.ended(weight, |ends, ledger, power| {

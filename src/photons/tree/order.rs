@@ -1,6 +1,7 @@
 //! The kd order: photons that are neighbours in space become neighbours in memory.
 
 use super::BLOCK;
+use super::records::Records;
 use crate::photons::Photon;
 use crate::transport::Progress;
 use std::cmp::Ordering;
@@ -28,7 +29,7 @@ impl Entry {
 /// photons and not of how they came.
 ///
 /// `progress` is told of every entry that has its place.
-pub(super) fn kd_order(entries: &mut [Entry], photons: &[Photon], parallel: bool, progress: &dyn Progress) {
+pub(super) fn kd_order(entries: &mut [Entry], photons: &Records, parallel: bool, progress: &dyn Progress) {
     let mut spare = vec![Entry::NONE; entries.len()];
     let mut band = vec![Entry::NONE; entries.len() / 2];
     Order { photons, parallel, progress }.sort(entries, &mut spare, &mut band, true);
@@ -40,7 +41,7 @@ pub(super) fn kd_order(entries: &mut [Entry], photons: &[Photon], parallel: bool
 /// What the whole recursion shares.
 #[derive(Clone, Copy)]
 struct Order<'a> {
-    photons: &'a [Photon],
+    photons: &'a Records,
     parallel: bool,
     progress: &'a dyn Progress,
 }
@@ -209,9 +210,9 @@ fn widest_axis(entries: &[Entry]) -> usize {
 }
 
 #[cold]
-fn compare_records(a: &Entry, b: &Entry, photons: &[Photon]) -> Ordering {
+fn compare_records(a: &Entry, b: &Entry, photons: &Records) -> Ordering {
     let record = |entry: &Entry| {
-        let Photon { position: p, dir, power, order, flags } = photons[entry.index as usize];
+        let Photon { position: p, dir, power, order, flags } = *photons.get(entry.index);
         let place = [p.x, p.y, p.z].map(key);
         let rest = [dir.x, dir.y, dir.z, power.x, power.y, power.z].map(|c| key(f64::from(c)));
         (entry.position.map(|c| key(f64::from(c))), place, rest, order, flags_key(flags))

@@ -21,8 +21,9 @@ pub(super) struct Units {
 
 impl Units {
     /// The units of the box of `photons`, which must be finite in every part.
-    pub(super) fn of(photons: &[Photon]) -> Result<Self> {
-        let start = photons.first().map_or(DVec3::ZERO, |photon| photon.position);
+    pub(super) fn of<'a>(photons: impl Iterator<Item = &'a Photon>) -> Result<Self> {
+        let mut photons = photons.peekable();
+        let start = photons.peek().map_or(DVec3::ZERO, |photon| photon.position);
         let (mut lower, mut upper, mut non_finite) = (start, start, 0);
         for Photon { position, dir, power, .. } in photons {
             lower = lower.min(*position);

@@ -1,0 +1,143 @@
+//! Memory: what is free, and what a run may take.
+
+use super::parse_count;
+use anyhow::bail;
+use std::fs::read_to_string;
+
+/// What a run may take.
+#[derive(clap::Args)]
+pub struct Memory {
+    /// Memory that the run may take, such as 500M or 2G (powers of ten), instead of what is free; what does not fit is
+    /// refused before it begins.
+    #[arg(long, value_name = "SIZE", value_parser = parse_size)]
+    memory: Option<u64>,
+}
+
+/// Bytes on the command line.
+fn parse_size(text: &str) -> Result<u64, String> {
+    const ALLOWED: &str = "allowed: a number of bytes, or of k, M, G or T, such as 500M or 2G";
+    let end = text.trim_end_matches(|c: char| c.is_ascii_alphabetic());
+    let unit = match &text[end.len()..] {
+        "" | "B" => 1.0,
+        "k" | "K" | "kB" | "KB" => 1e3,
+        "M" | "MB" => 1e6,
+        "G" | "GB" => 1e9,
+        "T" | "TB" => 1e12,
+        _ => return Err(ALLOWED.to_string()),
+    };
+    let whole = parse_count(end).ok().map(|n| n as f64).or_else(|| end.parse::<f64>().ok());
+    match whole.map(|n| n * unit) {
+        Some(bytes) if (1.0..=9e15).contains(&bytes) => Ok(bytes as u64),
+        _ => Err(ALLOWED.to_string()),
+    }
+}
+
+/// Bytes in words.
+pub fn in_words(bytes: f64) -> String {
+    if bytes < 0.9995e9 { format!("{:.0} MB", bytes / 1e6) } else { format!("{:.1} GB", bytes / 1e9) }
+}
+
+/// The largest number of two digits that is not above another one, at least 1, as it is written on the command line.
+pub fn rounded_down(number: f64) -> String {
+    if number < 100.0 {
+        return format!("{}", number.floor().max(1.0));
+    }
+    let scale = libm::pow(10.0, libm::log10(number).floor() - 1.0);
+    let down = (number / scale).floor() * scale;
+    if down < 1e5 { format!("{down}") } else { format!("{down:e}") }
+}
+
+impl Memory {
+    /// Bytes that are left for the work, as far as is known.
+    fn left(&self) -> Option<f64> {
+        match self.memory {
+            Some(given) => Some(given as f64 - status("VmRSS:").unwrap_or(0.0)),
+            None => free(),
+        }
+    }
+
+    /// Refuses work that takes more memory than there is.
+    ///
+    /// # Arguments
+    /// `what` takes so many `bytes`, `fixed` of them whatever is asked for; `fits` says what to ask for instead, given the
+    /// part of the rest that fits
+    pub fn check(
+        &self,
+        what: &str,
+        bytes: f64,
+        fixed: f64,
+        fits: impl FnOnce(f64) -> String,
+    ) -> anyhow::Result<()> {
+        let Some(left) = self.left().filter(|left| bytes > *left) else { return Ok(()) };
+        let (takes, has) = (in_words(bytes), in_words(left.max(0.0)));
+        let whose = if self.memory.is_some() { "left by --memory" } else { "free" };
+        let part = (left - fixed) / (bytes - fixed);
+        if part.is_nan() || part <= 0.0 {
+            bail!(
+                "{what} takes about {takes} of memory, {has} are {whose}; allowed: more --memory, a smaller picture"
+            );
+        }
+        bail!("{what} takes about {takes} of memory, {has} are {whose}; allowed: {}", fits(part))
+    }
+}
+
+/// A number of kilobytes in a file of lines such as `MemAvailable:  123 kB`, in bytes.
+fn kilobytes(text: &str, name: &str) -> Option<f64> {
+    let line = text.lines().find(|line| line.starts_with(name))?;
+    line.split_whitespace().nth(1)?.parse::<f64>().ok().map(|n| 1024.0 * n)
+}
+
+/// What the process says of itself \[bytes\], where the system tells.
+fn status(name: &str) -> Option<f64> {
+    kilobytes(&read_to_string("/proc/self/status").ok()?, name)
+}
+
+/// Memory that is free \[bytes\], where the system tells: of the machine, of the group that the process is in, and of its own
+/// address space, the least.
+fn free() -> Option<f64> {
+    let machine = read_to_string("/proc/meminfo").ok().and_then(|text| kilobytes(&text, "MemAvailable:"));
+    let number = |file: &str| read_to_string(file).ok()?.trim().parse::<f64>().ok();
+    let group = |limit: &str, used: &str| Some(number(limit)? - number(used)?);
+    let groups = [
+        group("/sys/fs/cgroup/memory.max", "/sys/fs/cgroup/memory.current"),
+        group("/sys/fs/cgroup/memory/memory.limit_in_bytes", "/sys/fs/cgroup/memory/memory.usage_in_bytes"),
+    ];
+    let space = read_to_string("/proc/self/limits").ok().and_then(|text| {
+        let line = text.lines().find(|line| line.starts_with("Max address space"))?;
+        let limit = line.split_whitespace().nth(3)?.parse::<f64>().ok()?;
+        Some(limit - status("VmSize:")?)
+    });
+    groups.into_iter().chain([machine, space]).flatten().reduce(f64::min)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn sizes() {
+        assert_eq!(parse_size("2G"), Ok(2_000_000_000));
+        assert_eq!(parse_size("1.5GB"), Ok(1_500_000_000));
+        assert_eq!(parse_size("500M"), Ok(500_000_000));
+        assert_eq!(parse_size("1e6"), Ok(1_000_000));
+        for bad in ["", "G", "-1G", "0", "nan", "inf", "1e30", "2X", "2 G"] {
+            assert!(parse_size(bad).is_err(), "{bad}");
+        }
+    }
+
+    #[test]
+    fn numbers_that_fit() {
+        let pairs = [(0.2, "1"), (7.9, "7"), (99.9, "99"), (1299.0, "1200"), (123_456.0, "1.2e5")];
+        for (number, text) in pairs {
+            assert_eq!(rounded_down(number), text);
+            assert!(parse_count(text).is_ok());
+        }
+        assert_eq!((in_words(2.84e7), in_words(2.84e10)), ("28 MB".to_string(), "28.4 GB".to_string()));
+    }
+
+    #[cfg(target_os = "linux")]
+    #[test]
+    fn memory_is_told() {
+        assert!(free().unwrap() > 1e6 && status("VmRSS:").unwrap() > 1e6);
+    }
+}

@@ -1,0 +1,113 @@
+//! What a picture's reader should know: maps that are empty, and settings that cannot be good, with the option that helps.
+
+use super::note;
+use std::io::Result;
+use turbid::geometry::Shape;
+use turbid::integrators::StepRule;
+use turbid::integrators::mapper::{Gathers, Report, Settings};
+use turbid::photons::maps::Maps;
+use turbid::scene::Scene;
+use turbid::surface::Surface;
+
+/// Says which layers are black since no photon was stored for them.
+pub fn tell_empty(maps: &Maps) -> Result<()> {
+    let (caustic, volume) = ("the caustic layer is black", "the multiple layer has no light from it");
+    let global = "the indirect layer has no light from it";
+    for (name, map, black) in [
+        ("global", &maps.global, global),
+        ("caustic", &maps.caustic, caustic),
+        ("volume", &maps.volume, volume),
+    ] {
+        if let Some(map) = map.as_ref().filter(|map| map.stored() == 0) {
+            let emitted = map.emitted();
+            note(&format!(
+                "the {name} map is empty: none of {emitted} photons sent out was stored in it, so {black}"
+            ))?;
+        }
+    }
+    Ok(())
+}
+
+/// Shortest mean free path of the media of a scene that `counts` \[L\]; infinite without any.
+fn shortest_path(scene: &Scene, counts: impl Fn(usize) -> bool) -> f64 {
+    let media = scene.media().iter().enumerate().filter(|(number, _)| counts(*number));
+    1.0 / media.map(|(_, medium)| medium.highest_sigma_t().max()).fold(0.0, f64::max)
+}
+
+/// Says where the march steps over mean free paths. Where steps are integrated at random places, it does no harm in a
+/// homogeneous medium: the place is chosen by what reaches its near end.
+pub fn tell_step(scene: &Scene, settings: &Settings) -> Result<()> {
+    let march = &settings.march;
+    let is_exact = march.is_jittered && march.rule == StepRule::Integrated;
+    let path = shortest_path(scene, |number| !(is_exact && scene.medium(number).is_homogeneous()));
+    let step = march.step.get();
+    // By rounding a step of a mean free path may be longer than it.
+    if step <= 1.001 * path {
+        return Ok(());
+    }
+    let effect = if march.is_jittered { "noisy" } else { "wrong" };
+    note(&format!(
+        "steps of {step:.2e} L are longer than the shortest mean free path, {path:.2e} L: light in media is {effect} where it \
+         is dense; --step {path:.0e} takes shorter ones"
+    ))
+}
+
+/// Says which look-ups cannot be good, after the picture is made; `k` are the photons of an estimate from the global, the
+/// caustic and the volume map, none for a fixed radius.
+pub fn tell_gathers(
+    scene: &Scene,
+    settings: &Settings,
+    work: &Report,
+    stored: [Option<usize>; 3],
+    k: [Option<usize>; 3],
+) -> Result<()> {
+    let smallest = |shapes: &mut dyn Iterator<Item = &Shape>| {
+        shapes.map(Shape::shortest_extent).filter(|extent| *extent > 0.0).fold(f64::INFINITY, f64::min)
+    };
+    let is_diffuse = |surface: &Surface| matches!(surface, Surface::Lambertian(_));
+    let bodies = scene.objects().iter().filter(|o| is_diffuse(&o.surface));
+    let body = smallest(&mut bodies.map(|o| &o.shape));
+    let regions = scene.regions().iter().filter(|r| r.medium.is_colliding());
+    let medium = smallest(&mut regions.map(|r| &r.shape));
+    // Of the thinnest medium: a picture of several has one mean radius.
+    let colliding = scene.media().iter().filter(|m| m.is_colliding());
+    let path = 1.0 / colliding.map(|m| m.highest_sigma_t().max()).fold(f64::INFINITY, f64::min);
+    let maps = [
+        ("global", &work.global, settings.global.1.cap(), ("the smallest diffuse body", body), f64::INFINITY),
+        (
+            "caustic",
+            &work.caustic,
+            settings.caustic.1.cap(),
+            ("the smallest diffuse body", body),
+            f64::INFINITY,
+        ),
+        ("volume", &work.volume, settings.volume.1.cap(), ("the smallest medium", medium), path),
+    ];
+    for (((name, gathers, cap, (what, extent), path), stored), k) in maps.into_iter().zip(stored).zip(k) {
+        let Some(stored) = stored.filter(|stored| *stored > 0 && gathers.count > 0) else { continue };
+        let radius = Gathers::mean_radius(gathers);
+        if let Some(k) = k.filter(|k| stored < *k) {
+            note(&format!(
+                "the {name} map holds {stored} photons, fewer than an estimate takes, {k}: --{name} for more of them"
+            ))?;
+        } else if 2 * gathers.underfull > gathers.count {
+            note(&format!(
+                "{:.0} % of the look-ups in the {name} map found fewer photons than asked for within {cap:.2e} L: --{name} for \
+                 more of them, or a larger --max-radius",
+                100.0 * gathers.underfull as f64 / gathers.count as f64
+            ))?;
+        }
+        if 2.0 * radius > extent {
+            note(&format!(
+                "look-ups in the {name} map reach {radius:.2e} L in the mean, and {what} is {extent:.2e} L across: --{name} \
+                 for more photons, or a smaller --max-radius"
+            ))?;
+        } else if radius > path {
+            note(&format!(
+                "look-ups in the {name} map reach {radius:.2e} L in the mean, farther than a mean free path, {path:.2e} L: \
+                 --{name} for more photons, or a smaller --max-radius"
+            ))?;
+        }
+    }
+    Ok(())
+}
