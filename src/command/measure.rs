@@ -13,8 +13,8 @@ use turbid::sensor::{PathSettings, PhotonSettings, Reading, by_paths, by_photons
 /// Measure the sensors of a scene by paths or by photons.
 ///
 /// Prints the columns sensor, quantity, unit, mean, std_error, n. Paths and tallies have n = histories; estimates
-/// from photon maps have n = maps, and no standard error from a single map, since all estimates of one map share
-/// its photons.
+/// from photon maps have n = maps: the standard error is that between independent maps, and one map has none, since all its
+/// estimates share its photons.
 #[derive(clap::Args)]
 #[command(allow_negative_numbers = true)]
 pub struct Measure {
@@ -26,11 +26,11 @@ pub struct Measure {
     /// Paths a sensor, such as 1e6.
     #[arg(long, value_parser = parse_count, default_value = "100000")]
     samples: u64,
-    /// Photons emitted a map, such as 1e7.
+    /// Photons emitted for all maps together, such as 1e7.
     #[arg(long, value_parser = parse_count, default_value = "1000000")]
     photons: u64,
-    /// Independent photon maps.
-    #[arg(long, value_parser = parse_count, default_value = "1")]
+    /// Independent photon maps, each of an equal part of the photons.
+    #[arg(long, value_parser = parse_count, default_value = "16")]
     maps: u64,
     /// Photons an estimate takes: the k nearest [default: 50].
     #[arg(long, conflicts_with = "radius")]
@@ -121,14 +121,14 @@ impl Measure {
             }
         };
         let settings = PhotonSettings {
-            photons: self.photons,
+            photons: self.photons.div_ceil(self.maps),
             maps: self.maps,
             seed: self.seed,
             orders: self.orders,
             gather,
             kernel: self.kernel.kernel(),
         };
-        let bar = Bar::new(self.photons.saturating_mul(self.maps));
+        let bar = Bar::new(settings.photons.saturating_mul(settings.maps));
         let result = by_photons(scene, &settings, &bar);
         bar.finish();
         let result = result?;
