@@ -89,7 +89,7 @@ fn digits(value: Value) -> String {
 }
 
 /// A value in the digits that it is known to, and a bound of what the value as printed is off by, its own rounding included.
-fn printed(value: Value) -> (String, String) {
+pub fn printed(value: Value) -> (String, String) {
     let text = digits(value);
     let rounding = text.parse().map_or(0.0, |printed: f64| (printed - value.value).abs());
     let error = if rounding > 0.0 { (value.error + rounding).next_up() } else { value.error };
