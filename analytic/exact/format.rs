@@ -48,7 +48,7 @@ fn table(answer: &Answer, out: &mut Vec<u8>) -> Result<()> {
     let line = |row: &Row| {
         let mut cells = vec![row.quantity.to_string()];
         cells.extend(coordinates.iter().map(|name| row.place(name)));
-        let (value, error) = (digits(row.value), bound(row.value.error));
+        let (value, error) = printed(row.value);
         cells.extend([value, error, unit(answer, row.quantity).to_string(), row.value.method.to_string()]);
         cells
     };
@@ -72,7 +72,7 @@ pub fn aligned(head: &[&str], lines: &[Vec<String>], out: &mut Vec<u8>) -> Resul
 }
 
 /// A value to the decade of its bound, and to four digits at least: approximations are far off and told apart.
-pub fn digits(value: Value) -> String {
+fn digits(value: Value) -> String {
     let (v, error) = (value.value, value.error);
     if v == 0.0 || error == 0.0 && v.fract() == 0.0 {
         return shortest(v);
@@ -88,9 +88,28 @@ pub fn digits(value: Value) -> String {
     }
 }
 
-/// A bound by its first digit.
-pub fn bound(error: f64) -> String {
-    if error == 0.0 { "0".into() } else { format!("{error:.0e}") }
+/// A value in the digits that it is known to, and a bound of what the value as printed is off by, its own rounding included.
+pub fn printed(value: Value) -> (String, String) {
+    let text = digits(value);
+    let rounding = text.parse().map_or(0.0, |printed: f64| (printed - value.value).abs());
+    let error = if rounding > 0.0 { (value.error + rounding).next_up() } else { value.error };
+    (text, bound(error))
+}
+
+/// A bound by its first digit, rounded up.
+fn bound(error: f64) -> String {
+    if error == 0.0 {
+        return "0".into();
+    }
+    let nearest = format!("{error:.0e}");
+    if nearest.parse().is_ok_and(|printed: f64| printed >= error) {
+        return nearest;
+    }
+    match nearest.split_once('e').map(|(digit, exponent)| (digit, exponent.parse::<i32>())) {
+        Some(("9", Ok(exponent))) => format!("1e{}", exponent + 1),
+        Some((digit, Ok(exponent))) => format!("{}e{exponent}", digit.parse::<u8>().unwrap_or(9) + 1),
+        _ => nearest,
+    }
 }
 
 fn csv(answer: &Answer, out: &mut Vec<u8>) -> Result<()> {
@@ -137,5 +156,28 @@ mod tests {
         assert_eq!(show(1234567.0, 1e5), "1.235e6");
         assert_eq!(show(0.0, 1.0), "0");
         assert_eq!(show(3.0, 1e3), "3.000");
+    }
+    /// A bound as printed is never below the bound, nor twice as large; with the rounding of the printed value in it.
+    #[test]
+    fn bounds_are_rounded_up() {
+        for (error, shown) in [
+            (1.0e-3, "1e-3"),
+            (1.01e-3, "2e-3"),
+            (9.2e-8, "1e-7"),
+            (2.4e-16, "3e-16"),
+            (0.0, "0"),
+            (1e-300, "1e-300"),
+        ] {
+            assert_eq!(bound(error), shown);
+        }
+        let mut error = 1e-20;
+        while error < 1e20 {
+            let shown: f64 = bound(error).parse().unwrap();
+            assert!(shown >= error && shown <= 2.0 * error, "{error} {shown}");
+            error *= 1.0371;
+        }
+        // 0.123456 is shown as 0.1235, which is 4.4e-5 beside it.
+        let value = Value { value: 0.123_456, error: 1.0e-4, method: "" };
+        assert_eq!(printed(value), ("0.1235".into(), "2e-4".into()));
     }
 }

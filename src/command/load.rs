@@ -17,9 +17,9 @@ pub struct Source {
 }
 
 impl Source {
-    /// A scene as it stands.
-    pub fn plain(scene: String) -> Self {
-        Source { scene, sets: Vec::new() }
+    /// A scene with these changes.
+    pub fn with_sets(scene: String, sets: Vec<String>) -> Self {
+        Source { scene, sets }
     }
 
     /// The validated scene, in which light comes to an end.

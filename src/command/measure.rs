@@ -14,8 +14,8 @@ use turbid::sensor::{PathSettings, PhotonSettings, Reading, by_paths, by_photons
 /// Measure the sensors of a scene by paths or by photons.
 ///
 /// Prints the columns sensor, quantity, unit, mean, std_error, n. Paths and tallies have n = histories; estimates
-/// from photon maps have n = maps, and no standard error from a single map, since all estimates of one map share
-/// its photons.
+/// from photon maps have n = maps: the standard error is that between independent maps, and one map has none, since all its
+/// estimates share its photons.
 #[derive(clap::Args)]
 #[command(allow_negative_numbers = true)]
 pub struct Measure {
@@ -27,11 +27,11 @@ pub struct Measure {
     /// Paths a sensor, such as 1e6.
     #[arg(long, value_parser = parse_count, default_value = "100000")]
     samples: u64,
-    /// Photons emitted a map, such as 1e7.
+    /// Photons emitted for all maps together, such as 1e7.
     #[arg(long, value_parser = parse_count, default_value = "1000000")]
     photons: u64,
-    /// Independent photon maps.
-    #[arg(long, value_parser = parse_count, default_value = "1")]
+    /// Independent photon maps, each of an equal part of the photons.
+    #[arg(long, value_parser = parse_count, default_value = "16")]
     maps: u64,
     /// Passes that the photons of a map are sent out in, one in memory at a time: the same photons and estimates, in a part
     /// of the memory. Only with --radius: the k nearest are not known before the last pass.
@@ -128,7 +128,7 @@ impl Measure {
             }
         };
         let settings = PhotonSettings {
-            photons: self.photons,
+            photons: self.photons.div_ceil(self.maps),
             maps: self.maps,
             seed: self.seed,
             orders: self.orders,
@@ -142,8 +142,8 @@ impl Measure {
                 self.passes
             );
         }
-        if self.passes > self.photons {
-            bail!("--passes is {}; allowed: at most one a photon, {}", self.passes, self.photons);
+        if self.passes > settings.photons {
+            bail!("--passes is {}; allowed: at most one a photon of a map, {}", self.passes, settings.photons);
         }
         let ahead = forecast(scene, &settings, self.passes)?;
         self.memory.check(&format!("a map of {:.2e} photons", ahead.stored), ahead.bytes, 0.0, |part| {
@@ -157,7 +157,7 @@ impl Measure {
         })?;
         let photons = ahead.stored * self.maps as f64;
         tell_ahead(&format!("{photons:.2e} photons to store in all"), ahead.seconds, ahead.bytes)?;
-        let bar = Bar::new(self.photons.saturating_mul(self.maps));
+        let bar = Bar::new(settings.photons.saturating_mul(settings.maps));
         let result = by_photons_in_passes(scene, &settings, self.passes, &bar);
         bar.finish();
         let result = result?;

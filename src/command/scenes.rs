@@ -11,6 +11,9 @@ pub struct Scenes {
     /// Print the whole scene file that results, instead of the parameters.
     #[arg(long, requires = "name")]
     resolved: bool,
+    /// Change a value before the file is printed, as everywhere: `albedo=0.5`.
+    #[arg(long = "set", value_name = "KEY=VALUE", requires = "resolved")]
+    sets: Vec<String>,
 }
 
 impl Scenes {
@@ -24,7 +27,7 @@ impl Scenes {
             Some(builtin) if !self.resolved => {
                 super::print(&format!("# {}: {}\n{}", builtin.name, builtin.about, builtin.defaults))
             }
-            _ => super::print(&toml::to_string(&Source::plain(name).resolve()?)?),
+            _ => super::print(&toml::to_string(&Source::with_sets(name, self.sets).resolve()?)?),
         }
     }
 }

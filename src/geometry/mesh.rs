@@ -1,15 +1,13 @@
 //! A surface of triangles.
 
 mod obj;
-mod tree;
 mod triangle;
 
-use super::{Hit, remainder};
+use super::{Hit, Tree, remainder};
 use crate::error::{Error, Result};
 use crate::math::Ray;
 use glam::{DVec2, DVec3};
 use std::collections::HashMap;
-use tree::Tree;
 use triangle::Shear;
 
 /// Triangles, searched through a tree of single-precision boxes and met in double precision.
@@ -86,7 +84,7 @@ impl Mesh {
             corners.iter().map(|[a, b, c]| (a.min(*b).min(*c), a.max(*b).max(*c))).collect();
         let bounds = boxes.iter().fold(boxes[0], |(a, b), x| (a.min(x.0), b.max(x.1)));
         let rounding = ROUNDING * bounds.0.abs().max(bounds.1.abs()).max_element();
-        let (tree, order) = Tree::new(&boxes, rounding)?;
+        let (tree, order) = Tree::new("triangles", &boxes, rounding)?;
         let corners: Vec<[DVec3; 3]> = order.iter().map(|&i| corners[i as usize]).collect();
         let uvs = uvs.map(|uvs| order.iter().map(|&i| uvs[kept[i as usize]]).collect());
         let mut sum = 0.0;

@@ -12,6 +12,7 @@ mod rectangles;
 mod slab;
 mod sphere;
 mod spherical_rectangle;
+mod tree;
 
 pub use cuboid::Cuboid;
 pub use height_field::{Ground, Up, Waves, height_field, listed};
@@ -22,6 +23,7 @@ pub use rectangles::Rectangles;
 pub use slab::{Face, Slab};
 pub use sphere::Sphere;
 pub use spherical_rectangle::SphericalRectangle;
+pub(crate) use tree::Tree;
 
 use crate::math::{Interval, Ray};
 use glam::{DVec2, DVec3};
@@ -120,6 +122,18 @@ impl Shape {
             Shape::Cuboid(c) => Some(about((c.min(), c.max()))),
             Shape::Mesh(m) => Some(about(m.bounds())),
             Shape::Lathe(l) => Some(l.bounds()),
+        }
+    }
+
+    /// Lower and upper corner of a box about the shape along the axes \[L\]; none for one without end.
+    pub fn corners(&self) -> Option<(DVec3, DVec3)> {
+        match self {
+            Shape::Cuboid(c) => Some((c.min(), c.max())),
+            Shape::Mesh(m) => Some(m.bounds()),
+            _ => self.bounds().map(|(center, radius)| {
+                let reach = DVec3::splat(radius);
+                (center - reach, center + reach)
+            }),
         }
     }
 

@@ -197,7 +197,10 @@ impl Scene {
     /// Number of the medium that counts at a point; none in vacuum.
     pub fn medium_number_at(&self, p: DVec3) -> Option<usize> {
         match self.interior_at(p) {
-            SURROUNDINGS => self.regions().iter().rposition(|r| r.shape.contains(p)),
+            SURROUNDINGS => match &self.region_tree {
+                Some(tree) => tree.last_at(self.regions(), p),
+                None => self.regions().iter().rposition(|r| r.shape.contains(p)),
+            },
             within => self.filling(within),
         }
     }

@@ -10,6 +10,7 @@ mod glows;
 mod hit;
 mod interiors;
 mod plan;
+mod regions;
 mod segments;
 mod sensor;
 mod validate;
@@ -20,7 +21,7 @@ pub use file::SceneFile;
 pub use hit::{SceneHit, Start, Target};
 pub use interiors::{Interior, SURROUNDINGS};
 pub use plan::Plan;
-pub use segments::{MAX_REGIONS, Segment, Segments};
+pub use segments::{Segment, Segments};
 pub use sensor::{Orders, Quantity, Sensor};
 
 use crate::Spectrum;
@@ -82,6 +83,7 @@ pub struct Scene {
     is_emission_bounded: bool,
     light_within: Vec<Option<usize>>,
     bodies: bodies::Bodies,
+    region_tree: Option<regions::RegionTree>,
     stage: Option<Stage>,
     bounds: Option<Sphere>,
     plan: Plan,
@@ -113,6 +115,7 @@ impl Scene {
         let plan = Plan::of(&parts);
         let (media, filling) = interiors::numbered(&parts.regions, &parts.interiors);
         let bodies = bodies::Bodies::of(&parts);
+        let region_tree = regions::RegionTree::new(&parts.regions)?;
         let lights = parts.lights.clone();
         let mut scene = Scene {
             parts,
@@ -122,6 +125,7 @@ impl Scene {
             is_emission_bounded: true,
             light_within: Vec::new(),
             bodies,
+            region_tree,
             stage,
             bounds,
             plan,
@@ -213,7 +217,7 @@ impl Scene {
     /// regions of the surroundings, or what fills another one, all the way.
     pub fn segments(&self, ray: &Ray, end: f64, within: usize) -> Segments {
         if within == SURROUNDINGS {
-            return Segments::new(self.regions(), ray, end);
+            return Segments::new(self.regions(), self.region_tree.as_ref(), ray, end);
         }
         let interval = Interval { start: 0.0, end };
         Segments::filled(self.filling(within).map(|medium| Segment { interval, medium }))

@@ -1,12 +1,11 @@
 //! The stretches of medium that a ray passes, nearest first.
 
 use super::Region;
+use super::regions::{FEW, RegionTree};
 use crate::math::{Interval, Ray};
 
-/// The most regions a scene may have: stretches live on the stack.
-pub const MAX_REGIONS: usize = 8;
 /// n convex shapes have 2n ends on a ray, and 2n-1 stretches between them.
-const MAX_SEGMENTS: usize = 2 * MAX_REGIONS - 1;
+const MOST_OF_FEW: usize = 2 * FEW - 1;
 
 /// A stretch of one medium.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -18,32 +17,38 @@ pub struct Segment {
 }
 
 /// Disjoint stretches in the order in which the ray passes them.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone)]
 pub struct Segments(Items);
 
-/// One stretch, by far the most frequent case, costs no array.
-#[derive(Debug, Clone, Copy)]
+/// One stretch, by far the most frequent case, costs no array; those of a few regions live on the stack.
+#[derive(Debug, Clone)]
 #[allow(clippy::large_enum_variant, reason = "lives on the stack for one flight; a box would cost more")]
 enum Items {
     None,
     One(Segment),
-    Many { items: [Segment; MAX_SEGMENTS], len: usize },
+    Few { items: [Segment; MOST_OF_FEW], len: usize },
+    Many(Vec<Segment>),
 }
 
 const NOTHING: Segment = Segment { interval: Interval { start: 0.0, end: 0.0 }, medium: 0 };
 
 impl Segments {
     /// The stretches of `regions` on `ray` up to distance `end`; where shapes overlap, the later one counts.
-    pub(super) fn new(regions: &[Region], ray: &Ray, end: f64) -> Self {
+    ///
+    /// # Arguments `tree` over the regions, where there are more than a few
+    pub(super) fn new(regions: &[Region], tree: Option<&RegionTree>, ray: &Ray, end: f64) -> Self {
         let whole = Interval { start: 0.0, end };
+        if let Some(tree) = tree {
+            return Segments(Items::Many(tree.segments(regions, ray, whole)));
+        }
         if let [region] = regions {
             let interval = region.shape.interval(ray).and_then(|i| i.intersection(whole));
             return Segments(
                 interval.map_or(Items::None, |interval| Items::One(Segment { interval, medium: 0 })),
             );
         }
-        let mut found = [NOTHING; MAX_REGIONS];
-        let mut ends = [0.0f64; 2 * MAX_REGIONS];
+        let mut found = [NOTHING; FEW];
+        let mut ends = [0.0f64; 2 * FEW];
         let mut count = 0;
         for (index, region) in regions.iter().enumerate() {
             if let Some(interval) = region.shape.interval(ray).and_then(|i| i.intersection(whole)) {
@@ -52,7 +57,7 @@ impl Segments {
                 count += 1;
             }
         }
-        let (mut items, mut len) = ([NOTHING; MAX_SEGMENTS], 0);
+        let (mut items, mut len) = ([NOTHING; MOST_OF_FEW], 0);
         let ends = &mut ends[..2 * count];
         ends.sort_unstable_by(f64::total_cmp);
         for pair in ends.windows(2) {
@@ -65,7 +70,7 @@ impl Segments {
                 }
             }
         }
-        Segments(Items::Many { items, len })
+        Segments(Items::Few { items, len })
     }
 
     /// At most one stretch.
@@ -78,7 +83,8 @@ impl Segments {
         match &self.0 {
             Items::None => [].iter(),
             Items::One(segment) => std::slice::from_ref(segment).iter(),
-            Items::Many { items, len } => items[..*len].iter(),
+            Items::Few { items, len } => items[..*len].iter(),
+            Items::Many(items) => items.iter(),
         }
     }
 }

@@ -1,6 +1,6 @@
 //! Checks on the parts of a scene together. Each part has checked its own numbers when it was made.
 
-use super::{MAX_REGIONS, Object, Parts, Quantity, Scene, interiors};
+use super::{Object, Parts, Quantity, Scene, interiors};
 use crate::error::{Error, Result};
 use crate::geometry::{Face, Shape, Slab};
 use crate::light::{Light, Section, Stage};
@@ -22,9 +22,6 @@ fn refuse<T>(text: impl Into<String>) -> Result<T> {
 
 /// The slab and its cell, if the scene has a cell; an error where parts do not fit together.
 pub(super) fn check(parts: &Parts) -> Result<Option<Stage>> {
-    if parts.regions.len() > MAX_REGIONS {
-        return refuse(format!("{} regions; allowed: at most {MAX_REGIONS}", parts.regions.len()));
-    }
     if parts.regions.iter().any(|r| !r.shape.is_solid()) {
         return refuse("a medium needs a convex shape with an inside: a sphere, a cuboid or a slab");
     }

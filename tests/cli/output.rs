@@ -78,9 +78,32 @@ fn the_examples_of_the_readme_work() {
 
 #[test]
 fn one_map_has_no_standard_error() {
-    let csv = succeeds(&["measure", "slab", "--with", "photons", "--photons", "1e4", "--format", "csv"]);
+    let arguments = ["measure", "slab", "--with", "photons", "--photons", "1e4", "--format", "csv"];
+    let csv = succeeds(&with(&arguments, &["--maps", "1"]));
     let fluence = csv.lines().find(|l| l.contains("fluence")).unwrap();
     assert!(fluence.ends_with(",,1"), "{fluence}");
+}
+
+/// By default photons are shared by independent maps, so that every row has an error, and the errors are those of the numbers:
+/// the same photons in one map lie within five of them.
+#[test]
+fn every_row_has_an_error_by_default() {
+    let arguments = ["measure", "slab", "--with", "photons", "--photons", "16e4", "--format", "csv"];
+    let rows = |csv: &str| -> Vec<[f64; 3]> {
+        let numbers = |line: &str| {
+            let cells: Vec<&str> = line.split(',').collect();
+            [3, 4, 5].map(|i| cells[i].parse().unwrap_or(f64::NAN))
+        };
+        csv.lines().skip(1).map(numbers).collect()
+    };
+    let by_default = rows(&succeeds(&arguments));
+    let by_one = rows(&succeeds(&with(&arguments, &["--maps", "1"])));
+    assert!(by_default.len() >= 7, "{by_default:?}");
+    for ([mean, error, n], [other, ..]) in by_default.iter().zip(&by_one) {
+        assert!(*error > 0.0 && (*n == 16.0 || *n == 16e4), "{mean} {error} {n}");
+        // One map of the same photons is as noisy as sixteen together, each of whose balls holds as many as its own one: four times.
+        assert!((mean - other).abs() < 5.0 * (1.0f64 + 16.0).sqrt() * error, "{mean} {error} {other}");
+    }
 }
 
 #[test]
@@ -122,6 +145,8 @@ fn scenes_are_listed_printed_and_resolved() {
     let list = succeeds(&["scenes"]);
     for name in ["slab", "sphere", "shaft"] {
         assert!(list.contains(name));
+        let changed = succeeds(&["scenes", name, "--resolved", "--set", "albedo=0.125"]);
+        assert!(changed.contains("albedo = 0.125"), "{changed}");
         let parameters = succeeds(&["scenes", name]);
         let table: toml::Table = toml::from_str(&parameters).unwrap();
         assert!(table.contains_key("albedo"));
@@ -204,7 +229,7 @@ fn a_full_disk_is_an_error() {
 #[test]
 fn underfull_gathers_are_noted() {
     let arguments = ["measure", "slab", "--with", "photons", "--photons", "100", "--max-radius", "0.01"];
-    let output = turbid(&arguments).output().unwrap();
+    let output = turbid(&with(&arguments, &["--maps", "1"])).output().unwrap();
     let note = String::from_utf8(output.stderr).unwrap();
     assert!(output.status.success() && note.contains("turbid: note: 5 of 5 estimates"), "{note}");
     assert!(note.lines().all(|line| line.starts_with("turbid: note: ")), "{note}");

@@ -293,7 +293,9 @@ fn bad_meshes_are_refused() {
     assert_eq!(say(&corners, &[]), "a mesh needs a triangle with an area; here none of 0");
     assert_eq!(say(&corners, &[[0, 1, 3]]), "a mesh needs a triangle with an area; here none of 1");
     assert_eq!(say(&[DVec3::NAN, DVec3::X, DVec3::Y], &[[0, 1, 2]]), "corner 1 of a mesh is not finite");
-    assert!(say(&corners.map(|p| p * 1e120), &[[0, 1, 2]]).starts_with("half the extent of a mesh is"));
+    assert!(
+        say(&corners.map(|p| p * 1e120), &[[0, 1, 2]]).starts_with("half the extent of all triangles is")
+    );
     let solid = Mesh::new(&corners, &[[0, 1, 2], [0, 1, 3], [1, 1, 2]], None).unwrap();
     assert_eq!((solid.len(), solid.dropped()), (1, 2));
     // Many alike, with nothing to tell them apart by.

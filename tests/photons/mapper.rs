@@ -1,6 +1,7 @@
 //! The photon mapper against closed forms: a furnace of fog, steps of the march, treated radiance of single photons.
 
 use crate::checks::ledger::{Room, filling, layers_of_maps, settings};
+use crate::checks::media::{layered, varying};
 use crate::checks::point_light;
 use crate::support::scenes::{
     bounded, cuboid, emitting_sphere, homogeneous, isotropic, lambertian, point_light as point_lamp,
@@ -32,13 +33,19 @@ fn marching(step: f64, rule: StepRule, is_jittered: bool) -> Settings {
 }
 
 /// Fog of albedo 1 with the same radiance from all sides is as bright everywhere, at any anisotropy: what is lost on the
-/// way is scattered in. Single scattering alone is not even: places lie farther from the faces than a ball reaches. A constant source of steps of x mean free paths is read as each rule reads it.
+/// way is scattered in. Single scattering alone is not even: places lie farther from the faces than a ball reaches. A constant source of steps of x mean free paths is read as each rule reads it, also where the medium is one that could vary.
 #[test]
 fn a_furnace_of_fog() {
-    let cube = cuboid(DVec3::ZERO, DVec3::splat(2.0));
-    for (g, seed) in [(0.0, 1), (0.6, 2)] {
+    let corners = (DVec3::ZERO, DVec3::splat(2.0));
+    let cube = cuboid(corners.0, corners.1);
+    let grey = Spectrum::ONE;
+    for (medium, seed) in [
+        (homogeneous(grey, grey, 0.0), 1),
+        (homogeneous(grey, grey, 0.6), 2),
+        (varying(grey, 1.0, layered(corners, 1, |_| 1.0)), 3),
+    ] {
         let scene = bounded(
-            vec![region(cube.clone(), 1.0, 1.0, g)],
+            vec![Region { shape: cube.clone(), medium: medium.clone() }],
             Vec::new(),
             vec![isotropic(cube.clone(), Faces::Both)],
         );
@@ -69,7 +76,7 @@ fn a_furnace_of_fog() {
             }
             let behind = exp(-1.6);
             let expected = behind + (1.0 - behind) * factor;
-            let what = format!("g {g}, {:?}", settings.march);
+            let what = format!("seed {seed}, {:?}", settings.march);
             verdict::agrees(&what, &moments, (expected, 1e-12), 0.1, seed);
         }
     }

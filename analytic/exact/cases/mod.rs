@@ -10,7 +10,7 @@ mod slab;
 mod sphere;
 
 use crate::answer::shortest;
-use crate::format::{Format, aligned, bound, digits};
+use crate::format::{Format, aligned, printed};
 use anyhow::{Context, Error, Result, anyhow, bail};
 use row::{COLUMNS, Row};
 use serde::ser::{Serialize, SerializeMap, Serializer};
@@ -196,7 +196,10 @@ fn write(lines: &[Line<'_>], format: Format, output: &mut Vec<u8>) -> Result<()>
             let cells = |line: &Line<'_>| {
                 let mut cells = ["id", "quantity"].map(|column| line.row.text(column).to_string()).to_vec();
                 cells.extend(match &line.answer {
-                    Ok(v) => [digits(*v), bound(v.error), v.method.to_string()],
+                    Ok(v) => {
+                        let (value, error) = printed(*v);
+                        [value, error, v.method.to_string()]
+                    }
                     Err(note) => [String::new(), String::new(), note.clone()],
                 });
                 cells

@@ -1,6 +1,6 @@
 //! The march of a ray through media: single scattering by shadow rays, the rest from the volume map.
 
-use super::{Eye, Mapper, Report};
+use super::{Eye, Mapper, March, Report};
 use crate::Spectrum;
 use crate::estimators::boundary::{Treatment, treated_in_scattered};
 use crate::estimators::in_scattered;
@@ -164,10 +164,7 @@ impl Eye<'_, '_> {
                     Placed::in_step(march.rule, march.is_jittered, medium.sigma_t(), dx, stream)
                 }
                 Medium::Heterogeneous(_) => {
-                    let place =
-                        if march.is_jittered { stream.unit() * dx } else { march.rule.place(0.0, dx) };
-                    let before = Interval { start: t, end: t + place };
-                    Placed { place, weight: passed(medium, &walker.ray, before, stream) * dx }
+                    Placed::in_varying_step(march, medium, (&walker.ray, t), dx, stream)
                 }
             };
             self.report.steps += 1;
@@ -186,7 +183,7 @@ impl Eye<'_, '_> {
                 Medium::Homogeneous(_) => decay(sigma_t * dx),
                 Medium::Heterogeneous(_) => {
                     let behind = Interval { start: t + step.place, end: t + dx };
-                    step.weight / dx * passed(medium, &walker.ray, behind, stream)
+                    step.reached * passed(medium, &walker.ray, behind, stream)
                 }
             };
             t += dx;
@@ -207,6 +204,8 @@ fn relative_change(a: Spectrum, b: Spectrum, floor: f64) -> f64 {
 struct Placed {
     place: f64,
     weight: Spectrum,
+    /// The part of the light that passes from there to the near end, where the medium varies; not asked for elsewhere.
+    reached: Spectrum,
 }
 
 impl Placed {
@@ -220,8 +219,32 @@ impl Placed {
                 true => Spectrum::grey(collides / s),
                 false => sigma_t.map(|c| exp((s - c) * place)) * (collides / s),
             };
-            return Placed { place, weight };
+            return Placed { place, weight, reached: Spectrum::ONE };
         }
-        Placed { place: rule.place(0.0, dx), weight: sigma_t.map(|c| rule.weight(c, 0.0, dx)) }
+        let weight = sigma_t.map(|c| rule.weight(c, 0.0, dx));
+        Placed { place: rule.place(0.0, dx), weight, reached: Spectrum::ONE }
+    }
+
+    /// The same where the medium varies along the ray, the step beginning at `t`. Random places are uniform, and count what passes
+    /// from there, which is unbiased as the homogeneous rule is; [`StepRule::Integrated`] without jitter holds the extinction
+    /// of the middle over the step, as it does the source.
+    fn in_varying_step(
+        march: &March,
+        medium: &Medium,
+        (ray, t): (&Ray, f64),
+        dx: f64,
+        stream: &mut Stream,
+    ) -> Self {
+        let is_random = march.is_jittered && march.rule == StepRule::Integrated;
+        let place = if is_random { stream.unit() * dx } else { march.rule.place(0.0, dx) };
+        let reached = passed(medium, ray, Interval { start: t, end: t + place }, stream);
+        let weight = match march.rule {
+            StepRule::NearEnd => Spectrum::grey(dx),
+            StepRule::Integrated if !is_random => {
+                medium.sigma_t(ray.at(t + place)).map(|s| march.rule.weight(s, 0.0, dx))
+            }
+            StepRule::Middle | StepRule::Integrated => reached * dx,
+        };
+        Placed { place, weight, reached }
     }
 }

@@ -1,4 +1,5 @@
-//! The tree over the triangles of a mesh: boxes in single precision, wide enough that nothing is missed.
+//! A tree over boxes in single precision, wide enough that nothing is missed: of the triangles of a mesh, of the regions
+//! of a scene.
 
 use crate::error::{Error, Result};
 use crate::math::Ray;
@@ -10,7 +11,7 @@ use obvhs::cwbvh::builder::build_cwbvh;
 use obvhs::ray::{Ray as Ray32, RayHit};
 use std::time::Duration;
 
-/// Half the extent of a mesh in the tree's own coordinates. The tree's nodes ignore what ends before a distance of
+/// Half the extent of all boxes in the tree's own coordinates. The tree's nodes ignore what ends before a distance of
 /// 1e-4; boxes are wider than that on every side, so that nothing is lost.
 const HALF: f64 = 4096.0;
 
@@ -28,7 +29,7 @@ const MAX_DEPTH: usize = 30;
 /// A tree over boxes, in coordinates of its own: the middle of all boxes is the origin, the longest half-extent is
 /// [`HALF`].
 #[derive(Debug, Clone)]
-pub struct Tree {
+pub(crate) struct Tree {
     tree: CwBvh,
     center: DVec3,
     /// Half the extent, widened, by axis \[L\].
@@ -41,16 +42,21 @@ impl Tree {
     /// A tree over boxes (lower and upper corner), each widened by `margin` \[L\], and the order in which it keeps
     /// them: entry i of the tree is box `order[i]`.
     ///
+    /// # Arguments  `what` the boxes are about, in the plural: "triangles"
     /// # Errors     `Error::Scene` for boxes too many, too large, too small, or too deeply nested to be searched
-    pub fn new(boxes: &[(DVec3, DVec3)], margin: f64) -> Result<(Self, Vec<u32>)> {
+    pub fn new(what: &str, boxes: &[(DVec3, DVec3)], margin: f64) -> Result<(Self, Vec<u32>)> {
         if boxes.is_empty() || boxes.len() > 100_000_000 {
-            return Err(Error::Scene(format!("{} triangles; allowed: 1 to 1e8", boxes.len())));
+            return Err(Error::Scene(format!("{} {what}; allowed: 1 to 1e8", boxes.len())));
         }
         let (min, max) = boxes.iter().fold((boxes[0].0, boxes[0].1), |(a, b), x| (a.min(x.0), b.max(x.1)));
         let center = 0.5 * (min + max);
         let reach = 0.5 * (max - min).max_element();
         if !(1e-100..=1e100).contains(&reach) {
-            return Err(Error::out_of_range("half the extent of a mesh", reach, "1e-100 to 1e100"));
+            return Err(Error::out_of_range(
+                format!("half the extent of all {what}"),
+                reach,
+                "1e-100 to 1e100",
+            ));
         }
         let scale = HALF / reach;
         let pad = PAD.max(2.0 * margin * scale);
@@ -60,7 +66,7 @@ impl Tree {
             boxes.iter().map(|(a, b)| Aabb::new(narrow(*a) - pad32, narrow(*b) + pad32)).collect();
         let tree = build_cwbvh(&boxes32, BvhBuildParams::medium_build(), &mut Duration::default());
         if depth(&tree) > MAX_DEPTH {
-            return Err(Error::Scene("triangles nested too deeply in each other to be searched".into()));
+            return Err(Error::Scene(format!("{what} nested too deeply in each other to be searched")));
         }
         let order = tree.primitive_indices.clone();
         Ok((Tree { tree, center, half: 0.5 * (max - min) + pad / scale, scale }, order))
