@@ -16,6 +16,7 @@ mod mapper;
 mod maps;
 mod march;
 mod metrics;
+mod parted;
 mod statistics;
 mod surface_estimates;
 mod synthetic;
