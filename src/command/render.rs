@@ -13,8 +13,7 @@ use clap::ValueEnum;
 use cpu_time::ProcessTime;
 use std::ops::AddAssign;
 use std::path::{Path, PathBuf};
-use turbid::estimators::boundary::Treatment;
-use turbid::integrators::mapper::{Mapper, Report, untreated};
+use turbid::integrators::mapper::{Mapper, Report};
 use turbid::integrators::path;
 use turbid::output::{Tone, auto_exposure, write_exr, write_png};
 use turbid::photons::PhotonMap;
@@ -199,14 +198,6 @@ impl Render {
         let settings = self.reading.settings(&scene)?;
         if self.with == With::Photons && scene.plan().has_media {
             tell_step(&scene, &settings)?;
-        }
-        let untreated = untreated(&scene);
-        if self.with == With::Photons && settings.treatment != Treatment::None && !untreated.is_empty() {
-            note(&format!(
-                "volume estimates read low beside the faces of {}: of interiors, only spheres, cuboids and slabs have a \
-                 boundary that is treated",
-                untreated.join(", ")
-            ))?;
         }
         let made = on_threads(self.threads, || match self.with {
             With::Paths => self.repeat(&camera, |streams, stages, left, film| {

@@ -12,12 +12,17 @@
 //!
 //! All four are the plain estimate where the ball is whole. The radius of a k-nearest gather is set by real, accepted photons
 //! alone: an image, or a rejected photon, sets none.
+//!
+//! Where bodies stand in the medium, photons that they hide from x are rejected, and S_0 is divided by the part of the
+//! kernel that x sees: f again in any geometry, whichever treatment it is. Closed forms stay where only the medium's own
+//! faces are in the ball.
 
 mod accepted;
 mod images;
 mod moments;
 mod rejection;
 mod solid;
+mod visible;
 
 pub use moments::body_moments;
 pub use rejection::Rejection;
@@ -27,15 +32,15 @@ use super::{BallSum, Directional, Estimate, Gather, Kernel, ball_sum, for_each_p
 use crate::Spectrum;
 use crate::error::{Error, Result};
 use crate::geometry::Shape;
-use crate::math::{cosine_pair, sin_cos};
+use crate::math::cosine_pair;
 use crate::photons::{Photon, PhotonMap};
-use crate::scene::Scene;
 use accepted::{Accepted, accepted};
 use glam::DVec3;
 use images::images;
 use moments::inward_normal;
-use rejection::{Sieve, is_near};
+use rejection::Sieve;
 use std::borrow::Cow;
+use visible::Surroundings;
 
 /// What an estimate does about the part of its ball that lies outside the medium.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -75,12 +80,12 @@ pub struct Boundary<'a> {
     treatment: Treatment,
     rejection: Rejection,
     walls: &'a [Shape],
-    /// What else lies in the medium's shape; none where nothing does, and no other medium touches it.
-    others: Option<&'a [Shape]>,
+    /// Regions in the medium's shape that count instead of it.
+    later: &'a [Shape],
+    /// Surfaces that may part the medium.
+    bodies: &'a [Shape],
     /// Whether every photon is of this medium.
     is_only: bool,
-    /// Whose photons count, where shapes alone do not tell: those in the medium of this number.
-    owner: Option<(&'a Scene, usize)>,
 }
 
 impl Boundary<'static> {
@@ -95,23 +100,19 @@ impl Boundary<'static> {
         Ok(Boundary { medium: Some(Cow::Owned(medium)), ..Boundary::unknown(treatment) })
     }
 
-    /// Of a medium whose shape is not known: only what else lies in it is treated.
+    /// Of a medium whose shape is not known: bodies alone bound it.
     pub fn unknown(treatment: Treatment) -> Self {
         Boundary {
             medium: None,
             treatment,
             rejection: Rejection::Off,
             walls: &[],
-            others: None,
+            later: &[],
+            bodies: &[],
             is_only: true,
-            owner: None,
         }
     }
 }
-
-/// Shells and directions of the points by which the part of a ball that belongs to a medium is known.
-const SHELLS: u32 = 8;
-const DIRECTIONS: u32 = 32;
 
 impl<'a> Boundary<'a> {
     /// A treatment of the surface of a medium of this shape, which is borrowed; none where it has no inside.
@@ -126,20 +127,15 @@ impl<'a> Boundary<'a> {
     }
 
     /// The same where there is more than the medium: photons that collided elsewhere are rejected, which are those outside
-    /// it and those in `others`, solid shapes that stand in it and are not of it. One that holds the point holds the medium
+    /// it and those in `later`, regions in its shape that count instead of it. One that holds the point holds the medium
     /// too, and does not count.
-    pub fn among(self, others: &'a [Shape]) -> Self {
-        Boundary { others: Some(others), is_only: false, ..self }
+    pub fn among(self, later: &'a [Shape]) -> Self {
+        Boundary { later, is_only: false, ..self }
     }
 
-    /// The same where solid bodies stand in the medium, which is the only one: no photon is in them.
+    /// The same where these surfaces stand in the medium: photons that they hide from the point are rejected.
     pub fn about(self, bodies: &'a [Shape]) -> Self {
-        Boundary { others: Some(bodies), ..self }
-    }
-
-    /// The same with the scene asked, photon by photon, whether it lies in the medium of this number.
-    pub fn owned_by(self, scene: &'a Scene, number: usize) -> Self {
-        Boundary { owner: Some((scene, number)), ..self }
+        Boundary { bodies, ..self }
     }
 
     /// Distance to the medium's surface \[L\]; endless where that is not known.
@@ -147,64 +143,15 @@ impl<'a> Boundary<'a> {
         self.medium.as_ref().map_or(f64::INFINITY, |medium| medium.room(point))
     }
 
-    /// The shapes that stand in the medium about a point.
-    fn others(&self, point: DVec3) -> impl Iterator<Item = &'a Shape> {
-        self.others.unwrap_or(&[]).iter().filter(move |other| !other.contains(point))
-    }
-
-    /// Whether a ball about a point of the medium meets nothing else.
+    /// Whether a ball about a point of the medium meets nothing else, but maybe the medium's own faces beyond which there
+    /// are no photons.
     fn is_alone(&self, point: DVec3, radius: f64) -> bool {
-        let is_inside = self.is_only || self.room(point) >= radius;
-        is_inside && !self.is_reduced(point, radius) && self.owner.is_none()
-    }
-
-    /// Whether the ball reaches into what is not of the medium though it is in its shape.
-    fn is_reduced(&self, point: DVec3, radius: f64) -> bool {
-        self.others(point).any(|other| is_near(other, point, radius))
-    }
-
-    /// Whether a place is in the medium about a point.
-    fn owns(&self, point: DVec3, place: DVec3) -> bool {
-        self.others.is_none_or(|_| {
-            self.medium.as_ref().is_none_or(|medium| medium.contains(place))
-                && !self.others(point).any(|other| other.contains(place))
-        })
-    }
-
-    /// Moments of the kernel inside the medium's own faces.
-    fn moments(&self, kernel: Kernel, point: DVec3, radius: f64) -> [f64; 3] {
-        match &self.medium {
-            Some(medium) => body_moments(kernel, medium, point, radius),
-            None => [1.0, 0.0, kernel.m2() / 3.0],
-        }
-    }
-
-    /// The part of the kernel that is inside the medium: exact beside its own faces; beside others in it by 256 points,
-    /// equal parts of the ball, which is off by about a hundredth.
-    fn share(&self, kernel: Kernel, point: DVec3, radius: f64) -> f64 {
-        if !self.is_reduced(point, radius) {
-            return self.moments(kernel, point, radius)[0];
-        }
-        let (mut inside, mut all) = (0.0, 0.0);
-        for shell in 0..SHELLS {
-            let u = libm::cbrt((f64::from(shell) + 0.5) / f64::from(SHELLS));
-            let weight = kernel.profile(u * u);
-            for n in 0..DIRECTIONS {
-                let z = 1.0 - (2.0 * f64::from(n) + 1.0) / f64::from(DIRECTIONS);
-                let across = (1.0 - z * z).sqrt();
-                let (sin, cos) = sin_cos(GOLDEN_ANGLE * f64::from(n + shell * DIRECTIONS));
-                all += weight;
-                if self.owns(point, point + DVec3::new(across * cos, across * sin, z) * (u * radius)) {
-                    inside += weight;
-                }
-            }
-        }
-        (inside / all).max(1.0 / f64::from(SHELLS * DIRECTIONS))
+        let is_near = |shape: &Shape| shape.distance(point, radius) < radius;
+        (self.is_only || self.room(point) >= radius)
+            && !self.bodies.iter().any(is_near)
+            && !self.later.iter().any(|shape| is_near(shape) && !shape.contains(point))
     }
 }
-
-/// Turns of this angle spread points evenly about an axis \[rad\]: pi (3 - sqrt 5).
-const GOLDEN_ANGLE: f64 = 2.399_963_229_728_653;
 
 /// An estimate near a boundary.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -249,7 +196,7 @@ pub fn treated_density(
     boundary: &Boundary<'_>,
 ) -> Treated {
     let plain = || ball_sum(map, point, kernel, gather);
-    treated(map, point, kernel, gather, boundary, plain, &|_| 1.0)
+    treated(map, (point, point), kernel, gather, boundary, plain, &|_| 1.0)
 }
 
 /// In-scattered radiance times sigma_t [W/(L^3 sr)], with a treatment of boundaries: each photon weighted by the phase
@@ -271,13 +218,18 @@ pub fn treated_in_scattered(
         let (one_minus_mu, one_plus_mu) = cosine_pair(photon.dir.as_dvec3(), wo);
         phase.value(one_minus_mu, one_plus_mu)
     };
-    treated(map, point, kernel, gather, boundary, plain, &value)
+    // A step of a march may begin on a body, and goes on from there.
+    let eye = point - wo * (AHEAD * gather.cap());
+    treated(map, (point, eye), kernel, gather, boundary, plain, &value)
 }
 
-/// The treated sum of power x weight; `plain` is the untreated one.
+/// How far ahead of the point is looked from, in parts of the largest radius.
+const AHEAD: f64 = 1e-9;
+
+/// The treated sum of power x weight; `plain` is the untreated one. The second point is where bodies are looked at from.
 fn treated(
     map: &PhotonMap,
-    point: DVec3,
+    (point, eye): (DVec3, DVec3),
     kernel: Kernel,
     gather: Gather,
     boundary: &Boundary<'_>,
@@ -289,15 +241,12 @@ fn treated(
     let (BallSum { sum, ball }, rejected) = match whole {
         Some(plain) => (treated_sum(map, point, kernel, gather, boundary, plain, value), 0),
         None => {
-            let is_owned = |place: DVec3| {
-                boundary.owner.is_none_or(|(scene, number)| scene.medium_number_at(place) == Some(number))
-            };
+            let about = Surroundings::new(boundary, point, eye, gather.cap());
             let keeps = |photon: &Photon| {
-                sieve.as_ref().is_none_or(|sieve| sieve.keeps(photon))
-                    && boundary.owns(point, photon.position)
-                    && is_owned(photon.position)
+                sieve.as_ref().is_none_or(|sieve| sieve.keeps(photon)) && about.keeps(photon.position)
             };
-            sifted_sum(map, point, kernel, gather, boundary, &keeps, value)
+            let gathered = accepted(map.tree(), point, gather, &keeps);
+            sifted_sum(point, kernel, boundary, &about, gathered, value)
         }
     };
     let estimate = Estimate {
@@ -354,15 +303,14 @@ fn treated_sum(
 
 /// The same over accepted photons, and how many were rejected.
 fn sifted_sum(
-    map: &PhotonMap,
     point: DVec3,
     kernel: Kernel,
-    gather: Gather,
     boundary: &Boundary<'_>,
-    keeps: &dyn Fn(&Photon) -> bool,
+    about: &Surroundings<'_>,
+    gathered: Accepted,
     value: &dyn Fn(&Photon) -> f64,
 ) -> (BallSum, usize) {
-    let Accepted { photons, ball, rejected } = accepted(map.tree(), point, gather, keeps);
+    let Accepted { photons, ball, rejected } = gathered;
     let (medium, r) = (boundary.medium.as_ref(), ball.radius);
     let sum = |weight: &dyn Fn(DVec3) -> f64| {
         photons.iter().fold(Spectrum::ZERO, |sum, (photon, share)| {
@@ -377,11 +325,15 @@ fn sifted_sum(
     };
     let nowhere = if point.is_finite() { 0.0 } else { f64::NAN };
     let plain = sum(&weight) + Spectrum::grey(nowhere);
-    let is_whole = boundary.room(point) >= r && !boundary.is_reduced(point, r);
+    let is_clear = about.is_clear(r);
     let sum = match (boundary.treatment, medium) {
-        _ if is_whole => plain,
         (Treatment::None, _) => plain,
-        (Treatment::Clipped, _) => plain / boundary.share(kernel, point, r),
+        _ if !is_clear => {
+            // Other photons, another turn: means over maps are right at a single point too.
+            plain / about.share(kernel, r, plain[0].to_bits() ^ r.to_bits())
+        }
+        _ if boundary.room(point) >= r => plain,
+        (Treatment::Clipped, Some(medium)) => plain / body_moments(kernel, medium, point, r)[0],
         (_, None) => plain,
         (Treatment::Reflection, Some(medium)) => images(medium, point, r)
             .into_iter()

@@ -81,6 +81,23 @@ impl Kernel {
         }
     }
 
+    /// Part of the kernel within u, in [0, 1], of its centre: int_0^u 4 pi s^2 K ds.
+    pub fn within(self, u: f64) -> f64 {
+        let u2 = u * u;
+        let cubed = u * u2;
+        match self {
+            Kernel::Uniform => cubed,
+            Kernel::Epanechnikov => 0.5 * cubed * (5.0 - 3.0 * u2),
+            Kernel::Cone => cubed * (4.0 - 3.0 * u),
+            Kernel::Biweight => 0.125 * cubed * (35.0 - 42.0 * u2 + 15.0 * u2 * u2),
+            Kernel::Gaussian => {
+                let a = 4.5f64.sqrt();
+                let whole = PI.sqrt() * libm::erf(a * u) / (4.0 * 4.5 * a);
+                4.0 * PI * self.peak() * (whole - u * crate::math::exp(-4.5 * u2) / 9.0)
+            }
+        }
+    }
+
     /// Second moment.
     pub fn m2(self) -> f64 {
         match self {

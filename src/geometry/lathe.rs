@@ -251,6 +251,22 @@ impl Lathe {
         self.hit(&ray, None).is_some_and(|hit| hit.normal.dot(ray.dir) > 0.0)
     }
 
+    /// Distance from a point to the surface, or `limit` where that is farther \[L\]: that to the profile, in the half
+    /// plane of the axis and the point.
+    pub fn distance(&self, p: DVec3, limit: f64) -> f64 {
+        let p = self.frame.to_local(p - self.base);
+        let p = DVec2::new(p.truncate().length(), p.z);
+        let mut nearest = limit;
+        self.tree.near(p, limit, |k, reach| {
+            let (from, to) = (self.rings[k], self.rings[k + 1]);
+            let along = to - from;
+            let part = ((p - from).dot(along) / along.length_squared()).clamp(0.0, 1.0);
+            nearest = nearest.min(p.distance(from + along * part));
+            nearest.min(reach)
+        });
+        nearest
+    }
+
     /// Middle and radius of a sphere about it \[L\].
     pub fn bounds(&self) -> (DVec3, f64) {
         let radius = DVec2::new(self.size.x, self.size.y).length();

@@ -8,7 +8,7 @@ use crate::error::{Error, Result};
 use crate::math::Ray;
 use glam::{DVec2, DVec3};
 use std::collections::HashMap;
-use triangle::Shear;
+use triangle::{Shear, closest};
 
 /// Triangles, searched through a tree of single-precision boxes and met in double precision.
 ///
@@ -215,6 +215,16 @@ impl Mesh {
             end.min(nearest.0)
         });
         nearest.1 > 0.0
+    }
+
+    /// Distance from a point to the surface, or `limit` where that is farther \[L\].
+    pub fn distance(&self, p: DVec3, limit: f64) -> f64 {
+        let mut nearest = limit;
+        self.tree.near(p, limit, |index, reach| {
+            nearest = nearest.min(p.distance(closest(&self.corners[index], p)));
+            nearest.min(reach)
+        });
+        nearest
     }
 
     /// Whether every edge joins two triangles that turn the same way: then the mesh has an inside.

@@ -170,6 +170,19 @@ impl Shape {
         }
     }
 
+    /// Distance from a point, on either side, to the nearest point of the surface, or `limit` where that is farther \[L\].
+    pub fn distance(&self, p: DVec3, limit: f64) -> f64 {
+        let distance = match self {
+            Shape::Sphere(_) | Shape::Slab(_) => self.room(p).abs(),
+            Shape::Rectangle(r) => libm::hypot(r.height(p), r.inside(p).min(0.0)),
+            Shape::Cuboid(c) if c.contains(p) => self.room(p),
+            Shape::Cuboid(c) => p.distance(p.clamp(c.min(), c.max())),
+            Shape::Mesh(m) => m.distance(p, limit),
+            Shape::Lathe(l) => l.distance(p, limit),
+        };
+        distance.min(limit)
+    }
+
     /// Surface area [L^2]; infinite for a slab.
     pub fn area(&self) -> f64 {
         each!(self, s => s.area())

@@ -108,6 +108,32 @@ impl Tree {
             narrow(end)
         });
     }
+
+    /// Offers `test` the entries whose boxes may be nearer to a point than `reach` \[L\]; `test` returns what that
+    /// distance is from now on.
+    pub fn near(&self, point: DVec3, reach: f64, mut test: impl FnMut(usize, f64) -> f64) {
+        let point = (point - self.center) * self.scale;
+        let mut reach = reach;
+        let mut open = vec![0usize];
+        while let Some(node) = open.pop().and_then(|index| self.tree.nodes.get(index)) {
+            for child in (0..8).filter(|&child| !node.is_child_empty(child)) {
+                let around = node.child_aabb(child);
+                let (low, high) = (around.min.as_dvec3(), around.max.as_dvec3());
+                // Boxes are wider than what they hold by more than single precision rounds.
+                if point.distance(point.clamp(low, high)) > reach * self.scale {
+                    continue;
+                }
+                if node.is_leaf(child) {
+                    let (first, count) = node.child_primitives(child);
+                    for entry in first..first + count {
+                        reach = test(entry as usize, reach);
+                    }
+                } else {
+                    open.push(node.child_node_index(child) as usize);
+                }
+            }
+        }
+    }
 }
 
 /// Number of levels of nodes.

@@ -16,6 +16,7 @@ mod mapper;
 mod maps;
 mod march;
 mod metrics;
+mod parted;
 mod passes;
 mod statistics;
 mod surface_estimates;

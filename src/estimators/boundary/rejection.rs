@@ -102,11 +102,6 @@ impl<'a> Sieve<'a> {
     }
 }
 
-/// Whether a shape is nearer to a point outside than a distance, where a closed form says so.
-pub(super) fn is_near(shape: &Shape, point: DVec3, distance: f64) -> bool {
-    foot(shape, point, Rejection::Visible).is_some_and(|foot| foot.distance < distance)
-}
-
 /// The foot on a wall. A rectangle has one under the points that it covers; where only its plane matters, as for
 /// seeing past it, the foot on the plane stands for it. Meshes and lathes have none: no closed form says where.
 fn foot(wall: &Shape, p: DVec3, rejection: Rejection) -> Option<Foot> {

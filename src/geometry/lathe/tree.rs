@@ -64,6 +64,24 @@ impl Tree {
             place += 1;
         }
     }
+
+    /// Offers `test` every frustum that may be nearer to a point (radius, height) than `reach` \[L\]; `test` returns what
+    /// that distance is from now on.
+    pub fn near(&self, point: DVec2, reach: f64, mut test: impl FnMut(usize, f64) -> f64) {
+        let (mut place, mut reach) = (0, reach);
+        while let Some(node) = self.nodes.get(place) {
+            if point.distance(point.clamp(node.low, node.high)) > reach {
+                place = node.next as usize;
+                continue;
+            }
+            if (node.last - node.first) as usize <= LEAF {
+                for k in node.first..node.last {
+                    reach = test(k as usize, reach);
+                }
+            }
+            place += 1;
+        }
+    }
 }
 
 impl Node {

@@ -68,3 +68,37 @@ impl Shear {
         Some(Meeting { t, weights })
     }
 }
+
+/// The point of a triangle that is nearest to a point.
+///
+/// # Source     Ericson 2005, "Real-time collision detection", 5.1.5
+pub fn closest([a, b, c]: &[DVec3; 3], p: DVec3) -> DVec3 {
+    let (u, v) = (b - a, c - a);
+    let (from_a, from_b, from_c) = (p - a, p - b, p - c);
+    let (d1, d2) = (u.dot(from_a), v.dot(from_a));
+    if d1 <= 0.0 && d2 <= 0.0 {
+        return *a;
+    }
+    let (d3, d4) = (u.dot(from_b), v.dot(from_b));
+    if d3 >= 0.0 && d4 <= d3 {
+        return *b;
+    }
+    let over_c = d1 * d4 - d3 * d2;
+    if over_c <= 0.0 && d1 >= 0.0 && d3 <= 0.0 {
+        return a + u * (d1 / (d1 - d3));
+    }
+    let (d5, d6) = (u.dot(from_c), v.dot(from_c));
+    if d6 >= 0.0 && d5 <= d6 {
+        return *c;
+    }
+    let over_b = d5 * d2 - d1 * d6;
+    if over_b <= 0.0 && d2 >= 0.0 && d6 <= 0.0 {
+        return a + v * (d2 / (d2 - d6));
+    }
+    let over_a = d3 * d6 - d5 * d4;
+    if over_a <= 0.0 && d4 >= d3 && d5 >= d6 {
+        return b + (c - b) * ((d4 - d3) / ((d4 - d3) + (d5 - d6)));
+    }
+    let sum = over_a + over_b + over_c;
+    a + u * (over_b / sum) + v * (over_c / sum)
+}

@@ -11,14 +11,14 @@
 //! ray in a sampled direction looks for them. Their photons, those of emitting media among them, bring what is neither
 //! direct nor scattered once.
 
+mod extents;
 mod flats;
 mod gather;
-mod homes;
 mod settings;
 mod surface;
 mod volume;
 
-pub use homes::untreated;
+pub use extents::{MediumExtent, medium_extents};
 pub use settings::{Adaptive, March, Settings};
 
 use crate::Spectrum;
@@ -32,7 +32,6 @@ use crate::rng::{Stream, Work};
 use crate::scene::{Scene, SceneHit, Start, Target};
 use crate::transport::{Roulette, Step, Visitor, Walker, emission, transmittance, walk};
 use flats::Flats;
-use homes::Home;
 use std::ops::AddAssign;
 
 /// Where mirrors have taken nine tenths of the light, rays play roulette. Any value gives the same mean.
@@ -112,12 +111,12 @@ pub struct Mapper<'a> {
     scene: &'a Scene,
     maps: &'a Maps,
     settings: &'a Settings,
-    /// Bodies that part photons from a point of a medium, where they are asked for.
+    /// Bodies that part photons from a point of a medium, where a rule of the laboratory asks for them.
     walls: Vec<Shape>,
     /// Where flat surfaces end, if discs are to be clipped there.
     flats: Option<Flats>,
     /// Where each medium is.
-    homes: Vec<Home>,
+    extents: Vec<MediumExtent>,
     /// Whether some light cannot be aimed at.
     has_unaimed: bool,
 }
@@ -132,8 +131,8 @@ impl<'a> Mapper<'a> {
         let has_unaimed =
             scene.plan().has_emission || scene.lights().iter().any(|light| !light.has_direction());
         let flats = settings.clips_discs.then(|| Flats::new(scene));
-        let homes = homes::of(scene);
-        Mapper { scene, maps, settings, walls, flats, homes, has_unaimed }
+        let extents = medium_extents(scene);
+        Mapper { scene, maps, settings, walls, flats, extents, has_unaimed }
     }
 
     /// One sample of the radiance that arrives at the origin of `ray` from ahead [W/(L^2 sr)], by class, and the work.

@@ -54,10 +54,11 @@ pub struct Settings {
     pub near: f64,
     /// The march through media.
     pub march: March,
-    /// What volume estimates do at the edge of a region, of an interior that one solid shape encloses, and at solid bodies that
-    /// stand in either; unless it is nothing, photons of other media do not count.
+    /// What volume estimates do where a medium ends in their ball; unless it is nothing, photons of other media do not count,
+    /// nor do those that a body hides from the point.
     pub treatment: Treatment,
-    /// Which photons volume estimates reject behind the scene's bodies.
+    /// Rules of the laboratory about photons behind walls, instead of the last one; `Off` for none of them, and `Visible` is
+    /// the last one itself where there is a treatment.
     pub rejection: Rejection,
 }
 
@@ -91,8 +92,12 @@ impl Settings {
         })
     }
 
-    /// Whether volume estimates ask for the scene's bodies.
+    /// Whether volume estimates follow a rule of the laboratory about walls.
     pub(super) fn needs_walls(&self) -> bool {
-        self.rejection != Rejection::Off
+        match self.rejection {
+            Rejection::Off => false,
+            Rejection::Visible => self.treatment == Treatment::None,
+            Rejection::Facing | Rejection::FacingBehind | Rejection::BehindPlane => true,
+        }
     }
 }

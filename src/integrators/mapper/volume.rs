@@ -55,8 +55,11 @@ impl Mapper<'_> {
             let estimate = match is_plain {
                 true => in_scattered(map, position, -dir, phase, Spectrum::ONE, kernel, gather),
                 false => {
-                    let boundary = self.homes[number].boundary(scene, number, settings.treatment);
-                    let boundary = boundary.with_walls(settings.rejection, &self.walls);
+                    let boundary = self.extents[number].boundary(settings.treatment);
+                    let boundary = match settings.needs_walls() {
+                        true => boundary.about(&[]).with_walls(settings.rejection, &self.walls),
+                        false => boundary,
+                    };
                     treated_in_scattered(map, position, -dir, phase, kernel, gather, &boundary).estimate
                 }
             };

@@ -1,0 +1,137 @@
+//! Photons that a point sees: those of its medium that no body hides, and the part of a ball where such photons can be.
+//!
+//! What a point sees is a star about it: on a ray it ends at the first body, or where the medium ends. The part of the
+//! kernel on a ray is then known in closed form, and only the directions are sampled.
+
+use super::Boundary;
+use crate::estimators::Kernel;
+use crate::geometry::Shape;
+use crate::math::{Frame, Interval, Ray, sin_cos, warp};
+use crate::rng::{Purpose, Stream};
+use glam::DVec3;
+use std::f64::consts::TAU;
+use std::sync::LazyLock;
+
+/// Directions of a set: at a flat wall the part is then within a hundredth or so of the true one, and right in the mean.
+const DIRECTIONS: u32 = 64;
+/// Sets are added until the parts on their directions sum to this: an estimate divides by the part, and the mean of 1/part
+/// is 1 plus the part's relative variance.
+const ENOUGH: f64 = 24.0;
+/// No more directions than this; nor is a part less than one of them.
+const MOST: u32 = 16 * DIRECTIONS;
+/// Turns of this angle spread points evenly about an axis \[rad\]: pi (3 - sqrt 5).
+const GOLDEN_ANGLE: f64 = 2.399_963_229_728_653;
+
+/// A spiral of directions, each for an equal part of the sphere.
+static SPIRAL: LazyLock<Vec<DVec3>> = LazyLock::new(|| {
+    let one = |n: u32| {
+        let z = 1.0 - (2.0 * f64::from(n) + 1.0) / f64::from(DIRECTIONS);
+        let (sin, cos) = sin_cos(GOLDEN_ANGLE * f64::from(n));
+        let across = (1.0 - z * z).sqrt();
+        DVec3::new(across * cos, across * sin, z)
+    };
+    (0..DIRECTIONS).map(one).collect()
+});
+
+/// What lies about a point of a medium, within a distance.
+pub(super) struct Surroundings<'a> {
+    /// From where is looked.
+    eye: DVec3,
+    /// The shape of the medium, where other media may be beyond it.
+    medium: Option<&'a Shape>,
+    is_only: bool,
+    /// Bodies, and how far away they are \[L\].
+    bodies: Vec<(f64, &'a Shape)>,
+    /// Regions that count instead of the medium, and how far away they are \[L\].
+    later: Vec<(f64, &'a Shape)>,
+    /// Distance to the nearest of either \[L\].
+    clear: f64,
+}
+
+impl<'a> Surroundings<'a> {
+    /// What is nearer to a point than `reach`; `eye` is the point, or next to it on the side from which a body is seen that
+    /// the point lies on.
+    pub fn new(boundary: &'a Boundary<'_>, point: DVec3, eye: DVec3, reach: f64) -> Self {
+        let near = |shapes: &'a [Shape]| -> Vec<(f64, &'a Shape)> {
+            let all = shapes.iter().map(|shape| (shape.distance(point, reach), shape));
+            all.filter(|(distance, _)| *distance < reach).collect()
+        };
+        let (bodies, mut later) = (near(boundary.bodies), near(boundary.later));
+        // One that holds the point holds the medium too.
+        later.retain(|(_, shape)| !shape.contains(point));
+        let clear = bodies.iter().chain(&later).fold(f64::INFINITY, |least, (d, _)| least.min(*d));
+        let medium = boundary.medium.as_deref();
+        Surroundings { eye, medium, is_only: boundary.is_only, bodies, later, clear }
+    }
+
+    /// Whether a ball about the point meets neither bodies nor regions that count instead.
+    pub fn is_clear(&self, radius: f64) -> bool {
+        self.clear >= radius
+    }
+
+    /// Whether a photon counts: it lies in the medium, and no body hides it.
+    pub fn keeps(&self, place: DVec3) -> bool {
+        self.owns(place) && self.sees(place)
+    }
+
+    fn owns(&self, place: DVec3) -> bool {
+        (self.is_only || self.medium.is_none_or(|medium| medium.contains(place)))
+            && !self.later.iter().any(|(_, shape)| shape.contains(place))
+    }
+
+    fn sees(&self, place: DVec3) -> bool {
+        let away = place - self.eye;
+        let distance = away.length();
+        // The nearest body, that is, or the eye's own shift.
+        if distance < 0.999 * self.clear {
+            return true;
+        }
+        let Some(dir) = away.try_normalize() else { return true };
+        let ray = Ray::new(self.eye, dir);
+        !self.bodies.iter().any(|(d, body)| *d < distance && body.blocks(&ray, None, distance))
+    }
+
+    /// The part of the kernel on a ray that is in the medium and seen.
+    fn along(&self, kernel: Kernel, dir: DVec3, radius: f64) -> f64 {
+        let ray = Ray::new(self.eye, dir);
+        let mut end = radius;
+        for (_, body) in self.bodies.iter().filter(|(d, _)| *d < radius) {
+            end = body.hit(&ray, None).map_or(end, |hit| hit.t.min(end));
+        }
+        if let Some(medium) = self.medium {
+            end = medium.interval(&ray).map_or(0.0, |inside| inside.end.min(end));
+        }
+        let whole = Interval { start: 0.0, end };
+        let inside = |(_, shape): &(f64, &Shape)| shape.interval(&ray)?.intersection(whole);
+        let mut others: Vec<Interval> = self.later.iter().filter_map(inside).collect();
+        others.sort_by(|a, b| a.start.total_cmp(&b.start));
+        let up_to = |t: f64| kernel.within(t / radius);
+        let (mut sum, mut from) = (0.0, 0.0f64);
+        for other in others {
+            if other.start > from {
+                sum += up_to(other.start) - up_to(from);
+            }
+            from = from.max(other.end);
+        }
+        if end > from { sum + up_to(end) - up_to(from) } else { sum }
+    }
+
+    /// The part of the kernel in which photons are kept, by rays in directions that are turned at random: right in the mean
+    /// over turns. The turn is a function of the place and of `salt`.
+    pub fn share(&self, kernel: Kernel, radius: f64, salt: u64) -> f64 {
+        let [x, y, z] = self.eye.to_array().map(f64::to_bits);
+        let mut stream = Stream::new(x, Purpose::Resampling, y, z ^ salt.rotate_left(32));
+        let (mut sum, mut count) = (0.0, 0);
+        while sum < ENOUGH && count < MOST {
+            let axes = Frame::new(warp::square_to_sphere(stream.pair()));
+            let (sin, cos) = sin_cos(TAU * stream.unit());
+            let (across, beside) = (axes.x * cos + axes.y * sin, axes.y * cos - axes.x * sin);
+            for dir in SPIRAL.iter() {
+                let dir = across * dir.x + beside * dir.y + axes.z * dir.z;
+                sum += self.along(kernel, dir.normalize(), radius);
+            }
+            count += DIRECTIONS;
+        }
+        (sum / f64::from(count)).max(1.0 / f64::from(MOST))
+    }
+}
