@@ -17,6 +17,7 @@ pub mod harness;
 pub mod march;
 pub mod rates;
 pub mod report;
+pub mod sweep;
 pub mod theory;
 pub mod tradeoff;
 

@@ -1,0 +1,254 @@
+//! One scene by every method, and what they say of each other.
+
+use super::compare::{Check, Test, conserved, sharpness, shrinking, unbiased};
+use super::measure::{Effort, Failure, energy, light, maps, paths};
+use super::pairs::pair;
+use super::text::SceneText;
+use serde::{Deserialize, Serialize};
+use turbid::integrators::Layer;
+use turbid::sensor::check_camera;
+
+/// Above this a scene counts as undecided: the smallest relative deviation that it could have shown.
+pub const SHARP: f64 = 0.2;
+
+/// What is wrong with a scene.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Alarm {
+    /// Which comparison or method.
+    pub check: String,
+    /// What went wrong where it is no number: an error, a panic, no end.
+    pub failure: Option<String>,
+    /// The test that called for a confirmation.
+    pub first: Option<Test>,
+    /// The same test on a new seed with four times the samples.
+    pub second: Option<Test>,
+}
+
+impl Alarm {
+    /// A method that failed.
+    pub fn failure(check: &str, text: impl Into<String>) -> Self {
+        Alarm { check: check.into(), failure: Some(text.into()), first: None, second: None }
+    }
+
+    /// p-value of the confirmation; 0 where chance has no part in it.
+    pub fn p(&self) -> f64 {
+        match (&self.first, &self.second) {
+            (Some(first), Some(second)) => {
+                let same_side = (first.value > first.expected) == (second.value > second.expected);
+                if same_side { second.p } else { 1.0 }
+            }
+            // Nothing was there to be compared again.
+            (Some(_), None) => 1.0,
+            (None, _) => 0.0,
+        }
+    }
+
+    /// Where: what a smaller scene must still show.
+    pub fn place(&self) -> (String, String) {
+        let cell = self.first.as_ref().map_or("", |t| t.cell.as_str());
+        let layer = cell.split(['.', ' ']).next().unwrap_or_default();
+        (self.check.clone(), layer.to_string())
+    }
+
+    /// In lines.
+    pub fn lines(&self) -> Vec<String> {
+        let mut lines = Vec::new();
+        if let Some(failure) = &self.failure {
+            lines.push(format!("{}: {failure}", self.check));
+        }
+        for (word, test) in [("", &self.first), ("again, four times the samples: ", &self.second)] {
+            lines.extend(test.as_ref().map(|t| format!("{}: {word}{}", self.check, t.line())));
+        }
+        lines
+    }
+}
+
+/// A comparison without its tests.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Summary {
+    /// Which two.
+    pub check: String,
+    /// How many numbers were compared.
+    pub tests: usize,
+    /// [`Check::smallest`].
+    pub smallest: Option<f64>,
+    /// The farthest number.
+    pub worst: Option<Test>,
+}
+
+/// What is known of a scene.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+pub struct Examined {
+    /// Comparisons.
+    pub checks: Vec<Summary>,
+    /// The smallest deviation that would have been seen in half of the light, over all comparisons of pictures.
+    pub smallest: Option<f64>,
+    /// Methods that said they cannot, and why.
+    pub refused: Vec<String>,
+    /// Methods that were stopped by the clock.
+    pub late: Vec<String>,
+    /// What is wrong.
+    pub alarms: Vec<Alarm>,
+}
+
+impl Examined {
+    /// What a method made; why not, is kept.
+    fn keep<T>(&mut self, name: &str, made: Result<T, Failure>) -> Option<T> {
+        match made {
+            Ok(made) => return Some(made),
+            Err(Failure::Refused(text)) => self.refused.push(format!("{name}: {text}")),
+            Err(Failure::Broken(text)) => self.alarms.push(Alarm::failure(name, text)),
+            Err(Failure::Late) => self.late.push(name.to_string()),
+        }
+        None
+    }
+
+    /// Why nothing can be said, if so: too little was seen, or nothing.
+    pub fn undecided(&self) -> Option<String> {
+        if let Some(late) = self.late.first() {
+            return Some(format!("{late} took too long"));
+        }
+        if !self.checks.iter().any(|c| c.check != ENERGY) {
+            return Some("nothing to compare".into());
+        }
+        match self.smallest {
+            Some(smallest) if smallest <= SHARP => None,
+            Some(smallest) => Some(format!("a deviation of {:.0} % would not be seen", 100.0 * smallest)),
+            None => Some("heavy tails".into()),
+        }
+    }
+}
+
+/// What every method makes of a scene.
+struct Once {
+    checks: Vec<Check>,
+    examined: Examined,
+}
+
+/// Examines a scene; alarms are confirmed once, on another seed with four times the samples.
+///
+/// # Arguments   `stage` is told which method is about to work
+/// # Errors      what the scene is refused for
+pub fn examine(
+    text: &SceneText,
+    seed: u64,
+    effort: &Effort,
+    stage: &dyn Fn(&str),
+) -> anyhow::Result<Examined> {
+    let Once { checks, mut examined } = once(text, (seed, seed), effort, stage, &|_| true)?;
+    let pictures: Vec<&Check> = checks.iter().filter(|c| c.name != ENERGY).collect();
+    examined.smallest = sharpness(&pictures);
+    let suspicious: Vec<(&str, &Test)> = checks
+        .iter()
+        .flat_map(|c| c.tests.iter().filter(|t| t.is_suspicious()).map(|t| (c.name.as_str(), t)))
+        .collect();
+    if !suspicious.is_empty() {
+        let more = Effort { steps: 4.0 * effort.steps, seconds: effort.seconds.map(|s| 4.0 * s) };
+        // Only what is to be compared again.
+        let is_wanted = |name: &str| suspicious.iter().any(|(other, _)| *other == name);
+        let again = once(text, (seed ^ (1 << 40), seed), &more, stage, &is_wanted)?;
+        for (name, first) in suspicious {
+            let check = again.checks.iter().find(|c| c.name == name);
+            let second = check.and_then(|c| c.tests.iter().find(|t| t.cell == first.cell)).cloned();
+            let first = Some(first.clone());
+            examined.alarms.push(Alarm { check: name.into(), failure: None, first, second });
+        }
+    }
+    examined.checks = checks
+        .into_iter()
+        .map(|c| Summary {
+            check: c.name.clone(),
+            tests: c.tests.len(),
+            smallest: c.smallest,
+            worst: c.worst().cloned(),
+        })
+        .collect();
+    Ok(examined)
+}
+
+/// Names of comparisons; those of pairs say what was changed.
+const ENERGY: &str = "energy";
+const LIGHT_PATHS: &str = "light - paths";
+const MAPS_PATHS: &str = "maps - paths";
+const MAPS_LIGHT: &str = "maps - light";
+
+/// The comparisons that are wanted, once. Of the two seeds one is that of the methods, the other says what is changed.
+fn once(
+    text: &SceneText,
+    (seed, changed_by): (u64, u64),
+    effort: &Effort,
+    stage: &dyn Fn(&str),
+    is_wanted: &dyn Fn(&str) -> bool,
+) -> anyhow::Result<Once> {
+    stage("scene");
+    let scene = text.scene()?;
+    let camera = scene.camera().ok_or_else(|| anyhow::anyhow!("the scene has no camera"))?.clone();
+    let mut examined = Examined::default();
+    let mut checks = Vec::new();
+    // A camera that is shut in is refused by every method, in words.
+    if let Err(error) = check_camera(&scene, &camera) {
+        examined.refused.push(format!("camera: {error}"));
+        return Ok(Once { checks, examined });
+    }
+    let (has_paths, has_photons) = (scene.plan().unreachable.is_empty(), scene.stage().is_none());
+    stage("energy");
+    let balance = energy(&scene, seed, effort);
+    let steps = balance.as_ref().map_or(1.0, |e| e.steps);
+    let balance = examined.keep("energy", balance);
+    checks.extend(balance.as_ref().map(conserved));
+    let with_maps = if has_paths { MAPS_PATHS } else { MAPS_LIGHT };
+    let other = pair(text, &scene, changed_by);
+    let with_other = other.as_ref().map_or(String::new(), |other| {
+        format!("{} - {}", other.name, if has_paths { "paths" } else { "light" })
+    });
+    let (needs_maps, needs_other) = (has_photons && is_wanted(with_maps), is_wanted(&with_other));
+    let by_paths = has_paths.then(|| {
+        stage("paths");
+        examined.keep("paths", paths(&scene, &camera, seed, effort))
+    });
+    let by_light = (has_photons && (!has_paths || is_wanted(LIGHT_PATHS))).then(|| {
+        stage("light");
+        examined.keep("light", light(&scene, &camera, seed, effort))
+    });
+    let by_maps = needs_maps.then(|| {
+        stage("maps");
+        examined.keep("maps", maps(&scene, &camera, seed, effort, steps))
+    });
+    let (by_paths, by_light, by_maps) = (by_paths.flatten(), by_light.flatten(), by_maps.flatten());
+    let scatters = |layer: Layer| layer != Layer::Emission;
+    if let (Some(by_paths), Some(by_light)) = (&by_paths, &by_light) {
+        checks.push(unbiased(LIGHT_PATHS, by_light, &by_paths.straight, scatters));
+    }
+    let has_media = scene.plan().has_media;
+    match (&by_maps, &by_paths, &by_light) {
+        (Some(made), Some(by_paths), _) => {
+            checks.push(shrinking(MAPS_PATHS, made, |s| &s.all, &by_paths.all, |_| true, has_media));
+        }
+        (Some(made), None, Some(by_light)) => {
+            checks.push(shrinking(MAPS_LIGHT, made, |s| &s.straight, by_light, scatters, has_media));
+        }
+        (None, ..) | (_, None, None) => {}
+    }
+    // The same scene in other words, by paths where they reach all of it, else by light tracing.
+    stage("pair");
+    match other {
+        Ok(_) if !needs_other => {}
+        Err(error) => examined.alarms.push(Alarm::failure("pair", format!("refused: {error:#}"))),
+        Ok(other) => {
+            let camera = other.scene.camera().unwrap_or(&camera);
+            let (first, second) = match has_paths {
+                true => {
+                    let second = paths(&other.scene, camera, seed ^ (1 << 41), effort);
+                    (by_paths.map(|seen| seen.all), second.map(|seen| seen.all))
+                }
+                false => (by_light, light(&other.scene, camera, seed ^ (1 << 41), effort)),
+            };
+            if let (Some(first), Some(second)) = (first, examined.keep(&with_other, second)) {
+                let second = if other.is_mirrored { second.flipped() } else { second };
+                checks.push(unbiased(&with_other, &second, &first, |_| true));
+            }
+        }
+    }
+    checks.retain(|check| !check.is_empty());
+    Ok(Once { checks, examined })
+}

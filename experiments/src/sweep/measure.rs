@@ -1,0 +1,555 @@
+//! What each method makes of a scene: batches of small pictures, each summed by layer, channel and quarter.
+//!
+//! How much is done is decided by counts of a pilot, rays and look-ups, so that results are a function of the seed; the clock
+//! only stops what takes far longer than its counts say.
+
+use cpu_time::ProcessTime;
+use turbid::Spectrum;
+use turbid::error::Error;
+use turbid::integrators::mapper::{Mapper, Report, Settings};
+use turbid::integrators::{Layer, Layers, light_tracing, path};
+use turbid::math::Ray;
+use turbid::photons::Emitter;
+use turbid::photons::maps::{Amount, Emitted, Indirect, MapReport, MapSettings, Maps, counts, fill_counted};
+use turbid::rng::{Purpose, Stream, Work};
+use turbid::scene::{Camera, Scene, Target};
+use turbid::stats::Moments;
+use turbid::transport::{Progress, Roulette, Step, Visitor, Walker, walk};
+
+/// Layers, channels and quarters.
+pub const CELLS: usize = Layer::ALL.len() * 3 * 4;
+
+/// Which numbers a cell holds.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Cell {
+    /// Class of light.
+    pub layer: Layer,
+    /// 0 red, 1 green, 2 blue.
+    pub channel: usize,
+    /// Quarter of the picture, row by row.
+    pub quarter: usize,
+}
+
+impl Cell {
+    /// The cell of a number.
+    pub fn of(index: usize) -> Self {
+        Cell { layer: Layer::ALL[index / 12], channel: index / 4 % 3, quarter: index % 4 }
+    }
+
+    /// In words.
+    pub fn name(&self) -> String {
+        let quarter = ["top left", "top right", "bottom left", "bottom right"][self.quarter];
+        format!("{}.{} {quarter}", self.layer.name(), ["r", "g", "b"][self.channel])
+    }
+}
+
+/// Mean radiance over the pixels of each quarter, by layer and channel [W/(L^2 sr)].
+pub type Batch = [f64; CELLS];
+
+/// What a method made.
+#[derive(Debug, Clone, Default)]
+pub struct Measured {
+    /// Independent repetitions.
+    pub batches: Vec<Batch>,
+}
+
+impl Measured {
+    /// Moments over the repetitions.
+    pub fn moments(&self, cell: usize) -> Moments {
+        self.batches.iter().map(|batch| batch[cell]).collect()
+    }
+
+    /// The same with left and right exchanged.
+    pub fn flipped(&self) -> Self {
+        let flip = |batch: &Batch| std::array::from_fn(|cell| batch[cell ^ 1]);
+        Measured { batches: self.batches.iter().map(flip).collect() }
+    }
+}
+
+/// Why a method made nothing.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum Failure {
+    /// It says in one line that it cannot.
+    Refused(String),
+    /// It failed.
+    Broken(String),
+    /// It took longer than it may.
+    Late,
+}
+
+impl From<Error> for Failure {
+    fn from(error: Error) -> Self {
+        match error {
+            Error::Cancelled => Failure::Late,
+            Error::NonFinite { .. } => Failure::Broken(error.to_string()),
+            Error::OutOfRange { .. } | Error::Scene(_) | Error::Unreachable(_) => {
+                Failure::Refused(error.to_string())
+            }
+        }
+    }
+}
+
+/// How much a method may do.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Effort {
+    /// Rays and look-ups of each method.
+    pub steps: f64,
+    /// CPU seconds after which a method is stopped; never if none.
+    pub seconds: Option<f64>,
+}
+
+/// Independent repetitions of paths, of light tracing and of small maps.
+pub const BATCHES: usize = 64;
+/// Maps of eight times the photons: Student's t with 15 degrees of freedom.
+pub const LARGE_MAPS: usize = 16;
+/// Photons of the large maps over those of the small ones.
+pub const FACTOR: u64 = 8;
+/// Histories of a large map at most: as many photons as the command stores by default, about.
+const MOST_HISTORIES: f64 = 100_000.0;
+
+/// A clock that stops a method.
+struct Clock {
+    until: Option<f64>,
+}
+
+impl Clock {
+    fn of(effort: &Effort) -> Self {
+        let now = ProcessTime::now().as_duration().as_secs_f64();
+        Clock { until: effort.seconds.map(|s| now + s) }
+    }
+
+    fn check(&self) -> Result<(), Failure> {
+        if self.is_cancelled() { Err(Failure::Late) } else { Ok(()) }
+    }
+}
+
+impl Progress for Clock {
+    fn advance(&self, _steps: u64) {}
+
+    fn is_cancelled(&self) -> bool {
+        self.until.is_some_and(|until| ProcessTime::now().as_duration().as_secs_f64() > until)
+    }
+}
+
+/// Steps that work on media stands for: looking up is cheaper than a ray.
+fn cost(work: &Work) -> f64 {
+    0.3 * (work.densities + work.majorants) as f64 + work.transmittances as f64
+}
+
+/// Where pixels are.
+struct Quarters<'a> {
+    camera: &'a Camera,
+    /// Pixels of each quarter.
+    counts: [f64; 4],
+}
+
+impl<'a> Quarters<'a> {
+    fn new(camera: &'a Camera) -> Self {
+        let mut quarters = Quarters { camera, counts: [0.0; 4] };
+        for pixel in 0..quarters.pixels() {
+            let quarter = quarters.of(pixel);
+            quarters.counts[quarter] += 1.0;
+        }
+        quarters
+    }
+
+    fn pixels(&self) -> usize {
+        self.camera.width() as usize * self.camera.height() as usize
+    }
+
+    fn of(&self, pixel: usize) -> usize {
+        let (width, height) = (self.camera.width() as usize, self.camera.height() as usize);
+        usize::from(2 * (pixel % width) >= width) + 2 * usize::from(2 * (pixel / width) >= height)
+    }
+
+    fn add(&self, sums: &mut Batch, pixel: usize, layers: &Layers, factor: f64) {
+        let quarter = self.of(pixel);
+        for (index, (_, value)) in layers.iter().enumerate() {
+            for channel in 0..3 {
+                sums[index * 12 + channel * 4 + quarter] += value[channel] * factor;
+            }
+        }
+    }
+}
+
+/// Sums over so many samples of each quarter as means.
+fn means(mut sums: Batch, counts: [f64; 4]) -> Batch {
+    for (cell, sum) in sums.iter_mut().enumerate() {
+        *sum /= counts[cell % 4];
+    }
+    sums
+}
+
+/// Whether the first body on a ray, filters apart, is specular: such places are left out of what is compared with light
+/// tracing, which knows only what is seen straight.
+fn is_specular_ahead(scene: &Scene, ray: &Ray) -> bool {
+    if !scene.plan().has_specular {
+        return false;
+    }
+    let (mut ray, mut from) = (*ray, None);
+    while let Some(found) = scene.hit(&ray, from) {
+        let Target::Object(index) = found.target else { return false };
+        let surface = &scene.objects()[index].surface;
+        if surface.is_event() {
+            return surface.is_specular();
+        }
+        ray = Ray::new(ray.at(found.hit.t), ray.dir);
+        from = Some(found.start());
+    }
+    false
+}
+
+/// A whole picture, and of it what is seen straight.
+#[derive(Debug, Clone, Default)]
+pub struct Seen {
+    /// All of it.
+    pub all: Measured,
+    /// Without directions in which a specular body is seen.
+    pub straight: Measured,
+    /// Whether the two differ.
+    pub has_specular: bool,
+}
+
+/// One sample of a pixel, and what it took.
+type Sample<'a> = dyn Fn(Ray, &mut Stream) -> (Layers, f64) + 'a;
+
+/// How many samples a batch takes.
+#[derive(Debug, Clone, Copy)]
+struct Spread {
+    /// Of each pixel that has any.
+    samples: u64,
+    /// One pixel in so many has some, other ones in each batch: all have had as many after as many batches.
+    stride: u64,
+}
+
+/// The most that a batch may leave out: a quarter has pixels of every batch, and 16 batches have all of them.
+const MOST_STRIDE: u64 = 8;
+
+impl Spread {
+    /// About so many samples a pixel.
+    fn of(samples: f64) -> Self {
+        let samples = samples.clamp(1.0 / MOST_STRIDE as f64, 4096.0);
+        let stride = (1.0 / samples).floor().max(1.0) as u64;
+        // Powers of two divide the numbers of batches.
+        Spread { samples: samples.max(1.0) as u64, stride: 1 << stride.ilog2() }
+    }
+
+    fn has(&self, x: u32, y: u32, replicate: u64) -> bool {
+        (u64::from(x) + 5 * u64::from(y) + replicate).is_multiple_of(self.stride)
+    }
+}
+
+/// One batch of samples; returns the steps they took.
+fn batch(
+    (scene, quarters): (&Scene, &Quarters),
+    (seed, replicate): (u64, u64),
+    spread: Spread,
+    clock: &Clock,
+    sample: &Sample,
+    seen: &mut Seen,
+) -> Result<f64, Failure> {
+    let (mut all, mut straight, mut steps) = ([0.0; CELLS], [0.0; CELLS], 0.0);
+    let (camera, mut counts) = (quarters.camera, [0.0; 4]);
+    for pixel in 0..quarters.pixels() {
+        let (x, y) = (pixel as u32 % camera.width(), pixel as u32 / camera.width());
+        if !spread.has(x, y, replicate) {
+            continue;
+        }
+        clock.check()?;
+        counts[quarters.of(pixel)] += spread.samples as f64;
+        for i in 0..spread.samples {
+            let mut stream = Stream::new(seed, Purpose::Paths, replicate, (pixel as u64) << 32 | i);
+            let ray = camera.sample(x, y, stream.pair());
+            let (layers, took) = sample(ray, &mut stream);
+            if !layers.is_finite() {
+                return Err(Error::NonFinite { count: 1, place: "samples of a picture" }.into());
+            }
+            steps += took;
+            quarters.add(&mut all, pixel, &layers, 1.0);
+            if is_specular_ahead(scene, &ray) {
+                seen.has_specular = true;
+            } else {
+                quarters.add(&mut straight, pixel, &layers, 1.0);
+            }
+        }
+    }
+    seen.all.batches.push(means(all, counts));
+    seen.straight.batches.push(means(straight, counts));
+    Ok(steps)
+}
+
+/// Replicates of pilots, and of what must not share random numbers with paths.
+const PILOT: u64 = 1 << 48;
+const MAPS: u64 = 1 << 32;
+
+/// Paths.
+///
+/// # Errors
+/// [`Failure`]
+pub fn paths(scene: &Scene, camera: &Camera, seed: u64, effort: &Effort) -> Result<Seen, Failure> {
+    let (clock, quarters) = (Clock::of(effort), Quarters::new(camera));
+    let within = scene.interior_at(camera.position());
+    let sample = |ray: Ray, stream: &mut Stream| {
+        let (layers, rays) = path::layers(scene, ray, None, within, stream);
+        (layers, rays.total() as f64 + cost(&stream.work))
+    };
+    let on = (scene, &quarters);
+    in_batches(on, seed, effort.steps, &clock, &sample)
+}
+
+/// As many samples as a pilot says take so many steps.
+fn in_batches(
+    on: (&Scene, &Quarters),
+    seed: u64,
+    steps: f64,
+    clock: &Clock,
+    sample: &Sample,
+) -> Result<Seen, Failure> {
+    let each = batch(on, (seed, PILOT), Spread::of(1.0), clock, sample, &mut Seen::default())?;
+    let spread = Spread::of(steps / (BATCHES as f64 * each.max(1.0)));
+    let mut seen = Seen::default();
+    for replicate in 0..BATCHES as u64 {
+        batch(on, (seed, replicate), spread, clock, sample, &mut seen)?;
+    }
+    Ok(seen)
+}
+
+/// Light tracing; emission and what is seen by specular bodies are not in it.
+///
+/// # Errors
+/// [`Failure`]
+pub fn light(scene: &Scene, camera: &Camera, seed: u64, effort: &Effort) -> Result<Measured, Failure> {
+    scene.check_emission()?;
+    let (clock, quarters) = (Clock::of(effort), Quarters::new(camera));
+    let emitter = Emitter::by_power(scene);
+    let one = |replicate: u64, history: u64, sums: &mut Batch| {
+        let mut stream = Stream::new(seed, Purpose::LightTracing, replicate, history);
+        let mut is_finite = true;
+        let rays = light_tracing(scene, camera, &emitter, &mut stream, |splat| {
+            is_finite &= splat.value.is_finite();
+            if is_specular_ahead(scene, &camera.ray(splat.at)) {
+                return;
+            }
+            let mut layers = Layers::ZERO;
+            layers[splat.layer] = splat.value;
+            for (pixel, density) in camera.pixels(splat.at) {
+                quarters.add(sums, pixel, &layers, density);
+            }
+        });
+        is_finite.then_some(rays.total() as f64 + cost(&stream.work))
+    };
+    let broken = || Failure::from(Error::NonFinite { count: 1, place: "light tracing" });
+    const TRIALS: u64 = 256;
+    let mut steps = 0.0;
+    for history in 0..TRIALS {
+        clock.check()?;
+        steps += one(PILOT, history, &mut [0.0; CELLS]).ok_or_else(broken)?;
+    }
+    let each = (steps / TRIALS as f64).max(0.1);
+    let histories = (effort.steps / (BATCHES as f64 * each)).clamp(16.0, 1e6) as u64;
+    let mut measured = Measured::default();
+    for replicate in 0..BATCHES as u64 {
+        let mut sums = [0.0; CELLS];
+        for history in 0..histories {
+            if history % 64 == 0 {
+                clock.check()?;
+            }
+            one(replicate, history, &mut sums).ok_or_else(broken)?;
+        }
+        measured.batches.push(means(sums, quarters.counts.map(|pixels| pixels * histories as f64)));
+    }
+    Ok(measured)
+}
+
+/// Where emitted power went, by channel, over the power that lights should have.
+#[derive(Debug, Clone, Default)]
+pub struct Energy {
+    /// Emitted over the power of the lights, less 1.
+    pub emitted: [Moments; 3],
+    /// Absorbed and escaped over the power of the lights, less the same of what was emitted.
+    pub balance: [Moments; 3],
+    /// Rays and look-ups of a history, on average.
+    pub steps: f64,
+}
+
+/// Tallies one history.
+struct Tally {
+    ended: Spectrum,
+    steps: f64,
+}
+
+impl Visitor for Tally {
+    const LOOKS_AHEAD: bool = false;
+
+    fn visit(&mut self, _walker: &Walker, step: Step, _stream: &mut Stream) {
+        match step {
+            Step::Absorbed(weight, _) | Step::Escaped(weight) | Step::Abandoned(weight) => {
+                self.ended += weight
+            }
+            Step::Ahead(_) => self.steps += 1.0,
+            Step::Passed(..) | Step::Collision(..) | Step::Surface(..) => {}
+        }
+    }
+}
+
+/// The energy of photon histories, by channel.
+///
+/// # Errors
+/// [`Failure`]
+pub fn energy(scene: &Scene, seed: u64, effort: &Effort) -> Result<Energy, Failure> {
+    scene.check_emission()?;
+    let (clock, emitter, power) = (Clock::of(effort), Emitter::by_power(scene), scene.power());
+    let mut energy = Energy::default();
+    let one = |replicate: u64, history: u64| {
+        let mut stream = Stream::new(seed, Purpose::Photons, replicate, history);
+        let mut tally = Tally { ended: Spectrum::ZERO, steps: 0.0 };
+        let Some(first) = emitter.emit(scene, &mut stream) else { return (Spectrum::ZERO, tally) };
+        let weight = first.weight;
+        walk(scene, first, Roulette::Analog, None, &mut stream, &mut tally);
+        tally.steps += cost(&stream.work);
+        (weight, tally)
+    };
+    const TRIALS: u64 = 256;
+    for history in 0..TRIALS {
+        clock.check()?;
+        energy.steps += one(PILOT, history).1.steps / TRIALS as f64;
+    }
+    // A twentieth of what pictures take: nothing here is rare.
+    let histories = (0.1 * effort.steps / (BATCHES as f64 * energy.steps.max(0.1))).clamp(16.0, 1e5) as u64;
+    for replicate in 0..BATCHES as u64 {
+        let (mut emitted, mut ended) = (Spectrum::ZERO, Spectrum::ZERO);
+        for history in 0..histories {
+            if history % 64 == 0 {
+                clock.check()?;
+            }
+            let (weight, tally) = one(replicate, history);
+            if !(weight.is_finite() && tally.ended.is_finite()) {
+                return Err(Error::NonFinite { count: 1, place: "photon histories" }.into());
+            }
+            emitted += weight;
+            ended += tally.ended;
+        }
+        let share = |x: f64, c: usize| if power[c] > 0.0 { x / (power[c] * histories as f64) } else { x };
+        for c in 0..3 {
+            let expected = if power[c] > 0.0 { 1.0 } else { 0.0 };
+            energy.emitted[c].push(share(emitted[c], c) - expected);
+            energy.balance[c].push(share(ended[c] - emitted[c], c));
+        }
+    }
+    Ok(energy)
+}
+
+/// The photon mapper.
+#[derive(Debug, Clone, Default)]
+pub struct ByMaps {
+    /// Its rays alone: emission, direct light and single scattering, which read no map.
+    pub rays: Seen,
+    /// With few photons.
+    pub small: Seen,
+    /// With [`FACTOR`] times as many.
+    pub large: Seen,
+}
+
+/// How large a scene is \[L\]: as the command says it.
+fn size(scene: &Scene) -> f64 {
+    scene.bounds().map_or(1.0, |ball| 2.0 * ball.radius() / 3.0f64.sqrt())
+}
+
+/// Gathering rays of a sample, and steps of a march across the scene: any number has the same mean.
+const RAYS: u32 = 4;
+const MARCH: f64 = 5.0;
+/// Photons of an estimate, the command's default.
+const NEAREST: usize = 100;
+/// Steps that a look-up in a map takes as long as.
+const LOOK_UP: f64 = 15.0;
+
+/// The photon mapper as the command runs it, with few photons and many.
+///
+/// Both take the [`NEAREST`] photons. The small maps may look for them farther, in the same ratio as a full estimate does,
+/// so that radii shrink from one to the other where photons are scarce too; the large ones look as far as the command does.
+///
+/// # Arguments    `each` steps of one history
+/// # Errors       [`Failure`]
+pub fn maps(
+    scene: &Scene,
+    camera: &Camera,
+    seed: u64,
+    effort: &Effort,
+    each: f64,
+) -> Result<ByMaps, Failure> {
+    let (clock, quarters) = (Clock::of(effort), Quarters::new(camera));
+    let within = scene.interior_at(camera.position());
+    let on = (scene, &quarters);
+    let looked = |mapper: &Mapper, ray: Ray, stream: &mut Stream| {
+        let (layers, report): (Layers, Report) = mapper.radiance(ray, None, within, stream);
+        let looked = report.global.count + report.caustic.count + report.volume.count;
+        (layers, report.rays.total() as f64 + cost(&stream.work) + LOOK_UP * looked as f64)
+    };
+    let mut made = ByMaps::default();
+    let nothing = Maps {
+        global: None,
+        caustic: None,
+        volume: None,
+        indirect: Indirect::Gathered,
+        report: MapReport::default(),
+    };
+    let plain = settings(scene, true)?;
+    let mapper = Mapper::new(scene, &nothing, &plain);
+    let sample = |ray: Ray, stream: &mut Stream| looked(&mapper, ray, stream);
+    made.rays = in_batches(on, seed ^ MAPS, 0.25 * effort.steps, &clock, &sample)?;
+    // A third each for photons and for reading the large maps, a sixth for reading the small ones.
+    let third = effort.steps / 3.0;
+    let histories = (third / (LARGE_MAPS as f64 * each.max(0.1))).clamp(1000.0, MOST_HISTORIES) as u64;
+    for (is_large, number) in [(true, LARGE_MAPS), (false, BATCHES)] {
+        let count = if is_large { histories } else { (histories / FACTOR).max(1) };
+        let settings = settings(scene, is_large)?;
+        let seen = if is_large { &mut made.large } else { &mut made.small };
+        let first = if is_large { 2 * MAPS } else { MAPS };
+        let mut spread = None;
+        for replicate in first..first + number as u64 {
+            let amount = Amount::Emitted(count);
+            let of_map = MapSettings {
+                global: amount,
+                caustic: amount,
+                volume: amount,
+                indirect: Indirect::Gathered,
+                seed,
+                replicate,
+            };
+            let emitted: Emitted = counts(scene, &of_map)?;
+            let maps = fill_counted(scene, &of_map, emitted, &clock)?;
+            let mapper = Mapper::new(scene, &maps, &settings);
+            let sample = |ray: Ray, stream: &mut Stream| looked(&mapper, ray, stream);
+            let spread = match spread {
+                Some(spread) => spread,
+                None => {
+                    let few = Spread { samples: 1, stride: MOST_STRIDE };
+                    let each = batch(on, (seed, PILOT), few, &clock, &sample, &mut Seen::default())?;
+                    let budget = if is_large { third } else { 0.5 * third };
+                    let chosen = Spread::of(budget / (number as f64 * MOST_STRIDE as f64 * each.max(1.0)));
+                    *spread.insert(chosen)
+                }
+            };
+            batch(on, (seed, replicate), spread, &clock, &sample, seen)?;
+        }
+    }
+    Ok(made)
+}
+
+/// How the command reads maps by default, with fewer gathering rays and longer steps.
+fn settings(scene: &Scene, is_large: bool) -> Result<Settings, Failure> {
+    let size = size(scene);
+    let mut settings = Settings::for_size(size, NEAREST)?;
+    settings.gather_rays = RAYS;
+    settings.march.adaptive = None;
+    settings.march.step = turbid::math::Positive::new("the step", size / MARCH)?;
+    if !is_large {
+        let factor = FACTOR as f64;
+        let nearest = |reach: f64| turbid::estimators::Gather::nearest(NEAREST, 0.1 * size * reach);
+        let (on_surfaces, in_media) = (nearest(factor.sqrt())?, nearest(factor.cbrt())?);
+        settings.global.1 = on_surfaces;
+        settings.caustic.1 = on_surfaces;
+        settings.volume.1 = in_media;
+    }
+    Ok(settings)
+}

@@ -1,0 +1,143 @@
+//! A scene as text, with the files that it names.
+
+use anyhow::Context;
+use std::collections::BTreeMap;
+use std::path::Path;
+use toml::{Table, Value};
+use turbid::output::write_atomically;
+use turbid::scene::{Scene, SceneFile};
+
+/// A scene file before it is read, and what stands beside it: meshes, grids, tables.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct SceneText {
+    /// The scene file.
+    pub table: Table,
+    /// Other files by name.
+    pub files: BTreeMap<String, Vec<u8>>,
+}
+
+impl SceneText {
+    /// A scene file, and the files beside it that it names.
+    ///
+    /// # Errors
+    /// a file that cannot be read, or is no TOML
+    pub fn read(path: &Path) -> anyhow::Result<Self> {
+        let text =
+            std::fs::read_to_string(path).with_context(|| format!("cannot read {}", path.display()))?;
+        let table: Table =
+            toml::from_str(&text).map_err(|e| anyhow::anyhow!("{}: {}", path.display(), e.message()))?;
+        let folder = path.parent().unwrap_or(Path::new("."));
+        let (mut files, mut names) = (BTreeMap::new(), Vec::new());
+        named_files(&Value::Table(table.clone()), &mut names);
+        for name in names {
+            let path = folder.join(&name);
+            let bytes = std::fs::read(&path).with_context(|| format!("cannot read {}", path.display()))?;
+            files.insert(name, bytes);
+        }
+        Ok(SceneText { table, files })
+    }
+
+    /// The scene file as text.
+    pub fn toml(&self) -> String {
+        toml::to_string(&self.table).unwrap_or_default()
+    }
+
+    /// Writes the scene as `name` and its files beside it.
+    ///
+    /// # Errors
+    /// where a file cannot be written
+    pub fn write(&self, folder: &Path, name: &str) -> anyhow::Result<()> {
+        std::fs::create_dir_all(folder).with_context(|| format!("cannot make {}", folder.display()))?;
+        for (file, bytes) in &self.files {
+            write_atomically(folder.join(file), |out| out.write_all(bytes))?;
+        }
+        write_atomically(folder.join(name), |out| out.write_all(self.toml().as_bytes()))?;
+        Ok(())
+    }
+
+    /// The validated scene.
+    ///
+    /// # Errors
+    /// what the scene is refused for
+    pub fn scene(&self) -> anyhow::Result<Scene> {
+        let file: SceneFile = self.table.clone().try_into()?;
+        if self.files.is_empty() {
+            return Ok(file.scene(Path::new("."))?);
+        }
+        let folder = tempfile::tempdir()?;
+        for (name, bytes) in &self.files {
+            std::fs::write(folder.path().join(name), bytes)?;
+        }
+        Ok(file.scene(folder.path())?)
+    }
+
+    /// The parts of a kind: `objects`, `regions`, `interiors`, `lights`.
+    pub fn parts(&self, kind: &str) -> &[Value] {
+        self.table.get(kind).and_then(Value::as_array).map_or(&[], Vec::as_slice)
+    }
+
+    /// The same, to be changed.
+    pub fn parts_mut(&mut self, kind: &str) -> &mut Vec<Value> {
+        let entry = self.table.entry(kind).or_insert_with(|| Value::Array(Vec::new()));
+        if !entry.is_array() {
+            *entry = Value::Array(Vec::new());
+        }
+        match entry {
+            Value::Array(parts) => parts,
+            _ => unreachable!("an array was put there"),
+        }
+    }
+
+    /// Leaves out the files that nothing names any more.
+    pub fn without_unused(mut self) -> Self {
+        let mut names = Vec::new();
+        named_files(&Value::Table(self.table.clone()), &mut names);
+        self.files.retain(|name, _| names.contains(name));
+        self.table.retain(|_, part| part.as_array().is_none_or(|parts| !parts.is_empty()));
+        self
+    }
+}
+
+/// Every value of a key `file`.
+fn named_files(value: &Value, names: &mut Vec<String>) {
+    match value {
+        Value::Table(table) => {
+            for (key, value) in table {
+                match value {
+                    Value::String(name) if key == "file" => names.push(name.clone()),
+                    other => named_files(other, names),
+                }
+            }
+        }
+        Value::Array(values) => values.iter().for_each(|value| named_files(value, names)),
+        Value::String(_) | Value::Integer(_) | Value::Float(_) | Value::Boolean(_) | Value::Datetime(_) => {}
+    }
+}
+
+/// A table of these keys.
+pub fn table<const N: usize>(entries: [(&str, Value); N]) -> Value {
+    Value::Table(entries.into_iter().map(|(key, value)| (key.to_string(), value)).collect())
+}
+
+/// The only key of a table, and what stands there: a choice of the scene file.
+pub fn choice(value: &Value) -> Option<(&str, &Value)> {
+    let mut entries = value.as_table()?.iter();
+    let (key, value) = entries.next()?;
+    entries.next().is_none().then_some((key.as_str(), value))
+}
+
+/// A number, whole or not.
+pub fn number(value: &Value) -> Option<f64> {
+    value.as_float().or_else(|| value.as_integer().map(|i| i as f64))
+}
+
+/// Three numbers.
+pub fn point(value: &Value) -> Option<[f64; 3]> {
+    let all: Vec<f64> = value.as_array()?.iter().map(number).collect::<Option<_>>()?;
+    all.try_into().ok()
+}
+
+/// Numbers as a value.
+pub fn array(numbers: &[f64]) -> Value {
+    Value::Array(numbers.iter().map(|x| Value::Float(*x)).collect())
+}
