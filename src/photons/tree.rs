@@ -122,7 +122,9 @@ impl PhotonTree {
         for block in entries.chunks(BLOCK) {
             tree.push_positions(block);
         }
-        let order: Vec<u32> = entries.into_iter().map(|entry| entry.index).collect();
+        let mut order: Vec<u32> = entries.into_iter().map(|entry| entry.index).collect();
+        // The numbers were collected in the entries' memory, of which they need a quarter.
+        order.shrink_to_fit();
         for block in order.chunks(BLOCK) {
             tree.push_block(block, &photons);
         }

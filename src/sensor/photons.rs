@@ -7,7 +7,7 @@ use crate::estimators::{Estimate, Gather, Kernel, fluence, in_scattered};
 use crate::math::{Ray, exp_m1, ln_1p};
 use crate::medium::Medium;
 use crate::photons::{
-    Emitter, Histories, Ledger, PEAK_BYTES, Pass, Photon, PhotonMap, fold, shoot, shoot_blocks,
+    BUILD_SECONDS, Emitter, Histories, Ledger, PEAK_BYTES, Pass, Photon, PhotonMap, fold, shoot, shoot_blocks,
 };
 use crate::rng::{Purpose, Stream};
 use crate::scene::{Orders, Quantity, Scene, Sensor, decay};
@@ -170,9 +170,6 @@ pub struct PhotonForecast {
 
 /// Histories of the pilot of a measurement, at most: one in 64 of the run's, so that it costs little beside it.
 const FORECAST: u64 = 1024;
-
-/// Time that a stored photon takes on its way into the tree, of one processor \[s\]: measured, on a processor of 2023.
-const BUILD_SECONDS: f64 = 0.4e-6;
 
 /// What [`by_photons_in_passes`] will take: the pilot runs the first of the run's own histories, and stores nothing.
 ///
