@@ -1,6 +1,7 @@
 //! `turbid measure`: the sensors of a scene, by paths or by photons.
 
 use super::load::Source;
+use super::picture::BoundaryName;
 use super::progress::Bar;
 use super::{FormatName, KernelName, note, on_threads, parse_count};
 use anyhow::{Context, bail};
@@ -44,6 +45,9 @@ pub struct Measure {
     /// How an estimate weights its photons.
     #[arg(long, value_enum, default_value = "uniform")]
     kernel: KernelName,
+    /// What an estimate does where a medium ends or a body stands in its ball.
+    #[arg(long, value_enum, default_value = "clipped")]
+    boundary: BoundaryName,
     /// Orders of scattering that count: `1`, `0..3` (both ends included), `1..`.
     #[arg(long, value_parser = parse_orders, default_value = "0..")]
     orders: Orders,
@@ -127,6 +131,7 @@ impl Measure {
             orders: self.orders,
             gather,
             kernel: self.kernel.kernel(),
+            treatment: self.boundary.treatment(),
         };
         let bar = Bar::new(self.photons.saturating_mul(self.maps));
         let result = by_photons(scene, &settings, &bar);
