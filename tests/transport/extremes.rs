@@ -10,6 +10,7 @@ use glam::DVec3;
 use std::f64::consts::PI;
 use turbid::Error;
 use turbid::Spectrum;
+use turbid::estimators::boundary::Treatment;
 use turbid::estimators::{Gather, Kernel, fluence};
 use turbid::light::Faces;
 use turbid::math::{Ray, exp};
@@ -19,7 +20,15 @@ use turbid::sensor::{PathSettings, PhotonSettings, by_paths, by_photons};
 use turbid::transport::NoProgress;
 
 fn photon_settings(photons: u64, gather: Gather) -> PhotonSettings {
-    PhotonSettings { photons, maps: 1, seed: 1, orders: Orders::ALL, gather, kernel: Kernel::Uniform }
+    PhotonSettings {
+        photons,
+        maps: 1,
+        seed: 1,
+        orders: Orders::ALL,
+        gather,
+        kernel: Kernel::Uniform,
+        treatment: Treatment::Clipped,
+    }
 }
 
 fn with_sensors(scene: &Scene, quantities: &[Quantity]) -> Scene {
