@@ -156,6 +156,23 @@ impl Shape {
         }
     }
 
+    /// Whether the surface may lie within a distance \[L\] of a point: exact for a sphere, rectangle, cuboid and slab, by
+    /// the bounds of a mesh and a lathe.
+    pub fn is_near(&self, p: DVec3, distance: f64) -> bool {
+        let beyond = |(low, high): (DVec3, DVec3)| (p - p.clamp(low, high)).length();
+        match self {
+            Shape::Sphere(_) | Shape::Slab(_) => self.room(p).abs() <= distance,
+            Shape::Rectangle(r) => libm::hypot(r.height(p), r.inside(p).min(0.0)) <= distance,
+            Shape::Cuboid(c) if c.contains(p) => self.room(p) <= distance,
+            Shape::Cuboid(c) => beyond((c.min(), c.max())) <= distance,
+            Shape::Mesh(m) => beyond(m.bounds()) <= distance,
+            Shape::Lathe(l) => {
+                let (middle, radius) = l.bounds();
+                p.distance(middle) <= radius + distance
+            }
+        }
+    }
+
     /// Surface area [L^2]; infinite for a slab.
     pub fn area(&self) -> f64 {
         each!(self, s => s.area())

@@ -11,7 +11,7 @@
 //! ray in a sampled direction looks for them. Their photons, those of emitting media among them, bring what is neither
 //! direct nor scattered once.
 
-mod flats;
+mod accepted;
 mod gather;
 mod homes;
 mod settings;
@@ -31,7 +31,7 @@ use crate::photons::maps::Maps;
 use crate::rng::{Stream, Work};
 use crate::scene::{Scene, SceneHit, Start, Target};
 use crate::transport::{Roulette, Step, Visitor, Walker, emission, transmittance, walk};
-use flats::Flats;
+use accepted::Bodies;
 use homes::Home;
 use std::ops::AddAssign;
 
@@ -49,6 +49,8 @@ pub struct Gathers {
     pub radii: f64,
     /// Photons found.
     pub found: u64,
+    /// How many found photons on a surface of which no line found any: taken for dark.
+    pub unknown: u64,
 }
 
 impl Gathers {
@@ -71,6 +73,7 @@ impl AddAssign for Gathers {
         self.underfull += other.underfull;
         self.radii += other.radii;
         self.found += other.found;
+        self.unknown += other.unknown;
     }
 }
 
@@ -114,8 +117,8 @@ pub struct Mapper<'a> {
     settings: &'a Settings,
     /// Bodies that part photons from a point of a medium, where they are asked for.
     walls: Vec<Shape>,
-    /// Where flat surfaces end, if discs are to be clipped there.
-    flats: Option<Flats>,
+    /// Where surfaces end or are covered, if estimates are to be divided by what is left of their discs.
+    bodies: Option<Bodies>,
     /// Where each medium is.
     homes: Vec<Home>,
     /// Whether some light cannot be aimed at.
@@ -131,9 +134,9 @@ impl<'a> Mapper<'a> {
         };
         let has_unaimed =
             scene.plan().has_emission || scene.lights().iter().any(|light| !light.has_direction());
-        let flats = settings.clips_discs.then(|| Flats::new(scene));
+        let bodies = settings.clips_discs.then(|| Bodies::new(scene));
         let homes = homes::of(scene);
-        Mapper { scene, maps, settings, walls, flats, homes, has_unaimed }
+        Mapper { scene, maps, settings, walls, bodies, homes, has_unaimed }
     }
 
     /// One sample of the radiance that arrives at the origin of `ray` from ahead [W/(L^2 sr)], by class, and the work.
