@@ -529,6 +529,7 @@ fn ties_and_coincidence() {
     let at = |x: f64, z: f64| Photon {
         position: DVec3::new(x, 0.0, z),
         dir: glam::Vec3::Z,
+        normal: glam::Vec3::ZERO,
         power: glam::Vec3::ONE,
         order: 0,
         flags: turbid::photons::Flags::NONE,

@@ -193,6 +193,7 @@ fn few_photons_in_the_map() {
     let photon = |x: f64| Photon {
         position: DVec3::new(x, 0.0, 0.0),
         dir: glam::Vec3::Z,
+        normal: glam::Vec3::ZERO,
         power: glam::Vec3::ONE,
         order: 1,
         flags: turbid::photons::Flags::MEDIUM,
