@@ -68,7 +68,7 @@ fn memory_is_as_said() {
     let drawn = [&["map", "fogbox", "-o", &png, "--ply", &ply][..], &small].concat();
     let dark = folder.file(
         "dark.toml",
-        "[camera]\nposition = [0, -3, 0]\nlook_at = [0, 0, 0]\nfov = 30\nwidth = 480\nheight = 480\n[[objects]]\nshape = { sphere = { center = [0, 0, 0], radius = 0.001 } }\nsurface = { lambertian = { reflectance = 0.5 } }\n[[lights]]\npoint = { position = [0, 0, 1], power = 1 }\n",
+        "[camera]\nposition = [0, 0, 3]\nlook_at = [0, 0, 0]\nfov = 30\nwidth = 480\nheight = 480\n[[objects]]\nshape = { sphere = { center = [0, 0, 0], radius = 0.001 } }\nsurface = { lambertian = { reflectance = 0.5 } }\n[[lights]]\npoint = { position = [0, 1, 1], power = 1 }\n",
     );
     let large = ["render", text(&dark), "-o", &exr, "--with", "paths", "--samples", "2"];
     for (name, arguments) in
