@@ -2,6 +2,7 @@
 
 use super::load::Source;
 use super::memory::{Memory, rounded_down};
+use super::picture::BoundaryName;
 use super::progress::Bar;
 use super::{FormatName, KernelName, note, on_threads, parse_count, tell_ahead};
 use anyhow::{Context, bail};
@@ -51,6 +52,9 @@ pub struct Measure {
     /// How an estimate weights its photons.
     #[arg(long, value_enum, default_value = "uniform")]
     kernel: KernelName,
+    /// What an estimate does where a medium ends or a body stands in its ball.
+    #[arg(long, value_enum, default_value = "clipped")]
+    boundary: BoundaryName,
     /// Orders of scattering that count: `1`, `0..3` (both ends included), `1..`.
     #[arg(long, value_parser = parse_orders, default_value = "0..")]
     orders: Orders,
@@ -134,6 +138,7 @@ impl Measure {
             orders: self.orders,
             gather,
             kernel: self.kernel.kernel(),
+            treatment: self.boundary.treatment(),
         };
         if self.passes > 1 && self.radius.is_none() {
             bail!(

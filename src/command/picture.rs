@@ -253,13 +253,14 @@ pub struct Reading {
     /// March on places that are not random: no noise, but bands.
     #[arg(long)]
     no_jitter: bool,
-    /// What volume estimates do at the edge of a medium, behind which there are no photons.
+    /// What volume estimates do where a medium ends or a body stands in it: without it there are no photons, behind it
+    /// others. But for none, photons that a body hides from the point do not count.
     #[arg(long, value_enum, default_value = "clipped")]
     boundary: BoundaryName,
     /// What surface estimates do at the edges of flat surfaces, beyond which there are no photons.
     #[arg(long, value_enum, default_value = "clipped")]
     edges: EdgesName,
-    /// Which photons behind walls volume estimates reject.
+    /// A rule of the literature about photons behind walls, instead of what --boundary does about them; for the laboratory.
     #[arg(long, value_enum, default_value = "off")]
     reject: RejectName,
 }
@@ -275,7 +276,7 @@ enum RuleName {
 }
 
 #[derive(Clone, Copy, ValueEnum)]
-enum BoundaryName {
+pub enum BoundaryName {
     /// Nothing: up to half is lost at a face.
     None,
     /// Divides by the part of the kernel that is inside.
@@ -284,6 +285,18 @@ enum BoundaryName {
     Reflection,
     /// Fits a line along the normal.
     LocalLinear,
+}
+
+impl BoundaryName {
+    /// The treatment of this name.
+    pub fn treatment(self) -> Treatment {
+        match self {
+            BoundaryName::None => Treatment::None,
+            BoundaryName::Clipped => Treatment::Clipped,
+            BoundaryName::Reflection => Treatment::Reflection,
+            BoundaryName::LocalLinear => Treatment::LocalLinear,
+        }
+    }
 }
 
 #[derive(Clone, Copy, PartialEq, ValueEnum)]
@@ -296,7 +309,7 @@ enum EdgesName {
 
 #[derive(Clone, Copy, ValueEnum)]
 enum RejectName {
-    /// None.
+    /// None: photons that a body hides from the point do not count where --boundary is not none.
     Off,
     /// Those that do not travel towards the wall: half of the good ones go too.
     Facing,
@@ -304,7 +317,7 @@ enum RejectName {
     FacingBehind,
     /// Those behind the wall's plane.
     BehindPlane,
-    /// Those that a wall hides from the point.
+    /// Those that a body hides from the point, also where --boundary is none.
     Visible,
 }
 
@@ -360,12 +373,7 @@ impl Reading {
         settings.march.is_jittered = !self.no_jitter;
         let shortest = Positive::new("the shortest step", 0.25 * settings.march.step.get())?;
         settings.march.adaptive = (self.adapt > 0.0).then_some(Adaptive { tolerance: self.adapt, shortest });
-        settings.treatment = match self.boundary {
-            BoundaryName::None => Treatment::None,
-            BoundaryName::Clipped => Treatment::Clipped,
-            BoundaryName::Reflection => Treatment::Reflection,
-            BoundaryName::LocalLinear => Treatment::LocalLinear,
-        };
+        settings.treatment = self.boundary.treatment();
         settings.rejection = match self.reject {
             RejectName::Off => Rejection::Off,
             RejectName::Facing => Rejection::Facing,

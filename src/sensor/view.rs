@@ -164,6 +164,7 @@ mod tests {
         let at = |position: DVec3| Photon {
             position,
             dir: Vec3::Z,
+            normal: Vec3::ZERO,
             power: Vec3::new(2.0, 1.0, 0.0),
             order: 0,
             flags: Flags::NONE,

@@ -50,11 +50,13 @@ pub struct Settings {
     pub caustic: (Kernel, Gather),
     /// Photons of the volume map that an estimate uses.
     pub volume: (Kernel, Gather),
-    /// How far photons of a surface may lie off its tangent plane: sine of the angle seen from the point.
+    /// How far photons of a surface may lie off its tangent plane: sine of the angle seen from the point. On a sphere of
+    /// radius R they reach as far as 2 R slope.
     pub slope: f64,
-    /// Whether discs that reach beyond the edges of a flat surface, a rectangle or a side of a cuboid, are divided by the
-    /// part of the kernel that lies on it, as balls are by [`Treatment::Clipped`]. Then photons count that lie on the surface
-    /// itself: within a tenth of the slope.
+    /// Whether estimates on surfaces are divided by the part of the kernel's disc that accepted surface fills, as balls are by
+    /// [`Treatment::Clipped`]: less than 1 at edges, on curved bodies, and where another body covers the surface or stands on
+    /// it. Then flat surfaces, rectangles and the faces of cuboids and slabs, accept within a tenth of the slope. If not,
+    /// curved bodies smaller than a disc come out nearly black.
     pub clips_discs: bool,
     /// Rays of a final gathering, at least 1; not used if the global map is to be seen.
     pub gather_rays: u32,
