@@ -8,7 +8,7 @@ use clap::ValueEnum;
 use turbid::estimators::Gather;
 use turbid::estimators::boundary::{Rejection, Treatment};
 use turbid::integrators::StepRule;
-use turbid::integrators::mapper::{Adaptive, Settings};
+use turbid::integrators::mapper::{Adaptive, Settings, scene_size};
 use turbid::math::Positive;
 use turbid::output::Curve;
 use turbid::photons::importance::{Importance, ImportanceSettings};
@@ -335,7 +335,7 @@ impl Reading {
 
     /// Settings of the mapper for a scene.
     pub fn settings(&self, scene: &Scene) -> anyhow::Result<Settings> {
-        let size = size(scene);
+        let size = scene_size(scene);
         let gather = |k: usize| match self.radius {
             Some(radius) => Gather::radius(radius).context("--radius"),
             None => Gather::nearest(k, self.max_radius.unwrap_or(0.1 * size)).context("--k, --max-radius"),
@@ -348,7 +348,7 @@ impl Reading {
         if !(self.adapt >= 0.0 && self.adapt.is_finite()) {
             return Err(anyhow!("--adapt is {}; allowed: finite and at least 0", self.adapt));
         }
-        let mut settings = Settings::for_size(size, self.k).context("--k")?;
+        let mut settings = Settings::for_scene(scene, self.k).context("--k")?;
         let kernel = self.kernel.kernel();
         settings.global = (kernel, surface);
         settings.caustic = (self.caustic_kernel.kernel(), caustic);
@@ -364,9 +364,6 @@ impl Reading {
                 ));
             }
             settings.march.step = Positive::new("--step", step)?;
-        }
-        if self.step.is_none() {
-            settings.march.step = Positive::new("--step", default_step(scene, size))?;
         }
         settings.march.rule = match self.step_rule {
             RuleName::NearEnd => StepRule::NearEnd,
@@ -390,21 +387,3 @@ impl Reading {
 
 /// Steps across the scene, at most: a march of more would not come to an end in a user's time.
 const MOST_STEPS: f64 = 1e6;
-
-/// Steps across the scene, at most, that are taken without being asked for.
-const MOST_DEFAULT_STEPS: f64 = 1e3;
-
-/// Longest step of a march where none is asked for \[L\]: a twentieth of the scene, as far as that is not longer than the
-/// shortest mean free path of media whose density varies. There a step's light is asked for at one place of the step, and
-/// what reaches its near end is a random product: over several mean free paths few places count much. In a homogeneous
-/// medium places are chosen by what reaches the near end, and a step may be long.
-fn default_step(scene: &Scene, size: f64) -> f64 {
-    let varying = scene.media().iter().filter(|medium| !medium.is_homogeneous());
-    let densest = varying.map(|medium| medium.highest_sigma_t().max()).fold(0.0, f64::max);
-    (0.05 * size).min((1.0 / densest).max(size / MOST_DEFAULT_STEPS))
-}
-
-/// How large a scene is \[L\]: the edge of the cube in the ball that holds its bodies; 1 for a scene without bounds.
-fn size(scene: &Scene) -> f64 {
-    scene.bounds().map_or(1.0, |ball| 2.0 * ball.radius() / 3.0f64.sqrt())
-}

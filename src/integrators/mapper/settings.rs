@@ -5,6 +5,15 @@ use crate::estimators::boundary::{Rejection, Treatment};
 use crate::estimators::{Gather, Kernel};
 use crate::integrators::StepRule;
 use crate::math::Positive;
+use crate::scene::Scene;
+
+/// Steps across a scene, at most, that are taken without being asked for.
+const MOST_DEFAULT_STEPS: f64 = 1e3;
+
+/// How large a scene is \[L\]: the edge of the cube in the ball that holds its bodies; 1 for a scene without bounds.
+pub fn scene_size(scene: &Scene) -> f64 {
+    scene.bounds().map_or(1.0, |ball| 2.0 * ball.radius() / 3.0f64.sqrt())
+}
 
 /// How steps of a march become shorter where radiance changes.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -92,6 +101,26 @@ impl Settings {
             treatment: Treatment::Clipped,
             rejection: Rejection::Off,
         })
+    }
+
+    /// What a picture of a scene takes where nothing is asked for: those of its [`scene_size`], steps of equal length.
+    ///
+    /// The longest step is a twentieth of the scene, as far as that is not longer than the shortest mean free path of media
+    /// whose density varies. There a step's light is asked for at one place of the step, and what reaches its near end is a
+    /// random product: over several mean free paths few places count much. In a homogeneous medium places are chosen by what
+    /// reaches the near end, and a step may be long.
+    ///
+    /// # Errors
+    /// those of [`Settings::for_size`]
+    pub fn for_scene(scene: &Scene, k: usize) -> Result<Self> {
+        let size = scene_size(scene);
+        let varying = scene.media().iter().filter(|medium| !medium.is_homogeneous());
+        let densest = varying.map(|medium| medium.highest_sigma_t().max()).fold(0.0, f64::max);
+        let step = (0.05 * size).min((1.0 / densest).max(size / MOST_DEFAULT_STEPS));
+        let mut settings = Settings::for_size(size, k)?;
+        settings.march.step = Positive::new("the step", step)?;
+        settings.march.adaptive = None;
+        Ok(settings)
     }
 
     /// Whether volume estimates follow a rule of the laboratory about walls.
