@@ -118,7 +118,7 @@ fn paths_are_those_of_regions() {
                 let [a, b] = [0, 1].map(|i| {
                     let (scene, seed) = (&scenes[i], 4 + i as u64);
                     let within = scene.interior_at(origin);
-                    histories(N, seed, |stream| path::layers(scene, ray, None, within, stream).0[layer])
+                    histories(4 * N, seed, |stream| path::layers(scene, ray, None, within, stream).0[layer])
                 });
                 let what = format!("lamps {set}, {} from {origin}", layer.name());
                 verdict::agree(&what, &a[1], &b[1], 0.5 * a[1].mean(), 4);
@@ -169,7 +169,7 @@ fn light_tracing_is_that_of_regions() {
     let scenes = both(lamps().remove(0));
     let films = |i: usize| -> Vec<Film> {
         let streams = |replicate| Streams { seed: 8 + i as u64, replicate };
-        (0..64).map(|r| by_light(&scenes[i], &camera, 1000, 1, streams(r), &NoProgress).unwrap()).collect()
+        (0..64).map(|r| by_light(&scenes[i], &camera, 4000, 1, streams(r), &NoProgress).unwrap()).collect()
     };
     let (a, b) = (films(0), films(1));
     for layer in [Layer::Direct, Layer::Indirect, Layer::Single, Layer::Multiple] {
