@@ -104,7 +104,7 @@ fn alone() -> Vec<Specimen> {
         specimen("ball", vec![sphere(DVec3::ZERO, 0.4)], both),
         specimen("small ball", vec![sphere(DVec3::ZERO, 0.05)], outer),
         specimen("cuboid", vec![cuboid(-half, half)], both),
-        specimen("plate", vec![cuboid(DVec3::ZERO, DVec3::new(1.0, 1.0, 1e-3))], outer),
+        specimen("plate", vec![cuboid(DVec3::ZERO, DVec3::new(1.0, 1.0, 1e-5))], outer),
         specimen("rectangle", vec![floor()], both),
         specimen("slab", vec![Shape::Slab(Slab::new(0.0, 0.7).unwrap())], both),
         specimen("cylinder", vec![lathe(&[[0.0, 0.0], [0.3, 0.0], [0.3, 0.5], [0.0, 0.5]])], both),
