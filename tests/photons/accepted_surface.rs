@@ -104,7 +104,7 @@ fn alone() -> Vec<Specimen> {
         specimen("ball", vec![sphere(DVec3::ZERO, 0.4)], both),
         specimen("small ball", vec![sphere(DVec3::ZERO, 0.05)], outer),
         specimen("cuboid", vec![cuboid(-half, half)], both),
-        specimen("plate", vec![cuboid(DVec3::ZERO, DVec3::new(1.0, 1.0, 1e-3))], outer),
+        specimen("plate", vec![cuboid(DVec3::ZERO, DVec3::new(1.0, 1.0, 1e-5))], outer),
         specimen("rectangle", vec![floor()], both),
         specimen("slab", vec![Shape::Slab(Slab::new(0.0, 0.7).unwrap())], both),
         specimen("cylinder", vec![lathe(&[[0.0, 0.0], [0.3, 0.0], [0.3, 0.5], [0.0, 0.5]])], both),
@@ -264,7 +264,7 @@ fn read(specimen: &Specimen, clips_discs: bool, seed: u64) -> [Moments; 3] {
     let mut moments = [Moments::new(), Moments::new(), Moments::new()];
     for replicate in 0..64 {
         let mut stream = Stream::new(seed, Purpose::Synthetic, replicate, 0);
-        let photons = specimen.photons(6000.0, 1000, &mut stream);
+        let photons = specimen.photons(5000.0, 1000, &mut stream);
         let maps = global_map(photons);
         let mut sums = [0.0; 3];
         const PLACES: u32 = 48;
@@ -286,7 +286,8 @@ fn read(specimen: &Specimen, clips_discs: bool, seed: u64) -> [Moments; 3] {
     moments
 }
 
-/// Lines know the area to some per cent at a look-up; what that does to the mean of the inverse is below one.
+/// Lines on a spiral know half of a disc or more to 2 per cent of the disc, a quarter to 8 per cent of it: what that does to
+/// the mean of the inverse is below one per cent. Independent lines do nothing to it.
 const LINES: f64 = 0.01;
 
 #[test]
@@ -316,7 +317,8 @@ fn whole_discs_are_found_out() {
         alone().into_iter().filter(|s| ["ball", "small ball", "cylinder", "faceted ball"].contains(&s.name));
     let together = together().into_iter().filter(|s| s.name == "block on a floor");
     for specimen in alone.chain(together) {
-        for (moments, gather) in read(&specimen, false, 33).iter().zip(gathers()) {
+        // The k nearest may lie as near as the curvature lets them.
+        for (moments, gather) in read(&specimen, false, 33).iter().zip(gathers()).step_by(2) {
             verdict::rejects(&format!("{}, {gather:?}", specimen.name), moments, 1.0, 33);
         }
     }
@@ -368,7 +370,7 @@ fn maps_agree_with_paths_in_a_room_of_one_cuboid() {
     ];
     let objects = shapes.map(|shape| (shape, lambertian(Spectrum::grey(0.6)))).to_vec();
     let scene = bounded(Vec::new(), objects, vec![emitting_sphere(DVec3::new(1.0, 1.0, 1.7), 0.1)]);
-    let global = (Kernel::Uniform, Gather::radius(0.07).unwrap());
+    let global = (Kernel::Uniform, Gather::radius(0.09).unwrap());
     let settings = Settings { global, slope: 0.1, ..settings(1) };
     let looking = |eye: DVec3, target: DVec3| Ray::new(eye, (target - eye).normalize());
     let looks: [(&str, Look); 3] = [
@@ -388,7 +390,7 @@ fn maps_agree_with_paths_in_a_room_of_one_cuboid() {
             }),
         ),
     ];
-    let found = by_both(&scene, &settings, (Indirect::Seen, 12_000, 100), 34, &looks);
+    let found = by_both(&scene, &settings, (Indirect::Seen, 15_000, 100), 34, &looks);
     for ((name, _), [maps, paths]) in looks.iter().zip(found) {
         verdict::agree(name, &maps, &paths, 0.2 * paths.mean(), 34);
     }
