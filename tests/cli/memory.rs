@@ -173,7 +173,7 @@ fn wrong_settings_are_told() {
     told(
         &fine,
         &["--step", "0.6", "--no-jitter"],
-        &["steps of 6.00e-1 L", "wrong where it is dense", "--step 5e-1"],
+        &["steps of 6.00e-1 L", "wrong where it is dense", "--step 4.7e-1"],
     );
     // At random places a homogeneous medium takes any step.
     assert_eq!(notes(&fine, &[&["--step", "0.6"][..], &good].concat()), "");
@@ -185,4 +185,24 @@ fn wrong_settings_are_told() {
         &["--step", "0.1", "--gather-rays", "0"],
         &["steps of 1.00e-1 L", "noisy where it is dense"],
     );
+}
+
+/// In a medium whose density varies, steps that nobody asked for are no longer than the shortest mean free path: here a
+/// tenth of a twentieth of the scene; those of an even one stay.
+#[test]
+fn steps_follow_mean_free_paths() {
+    let steps = |scene: &str, more: &[&str]| -> f64 {
+        let folder = Folder::new();
+        let (file, out) = (folder.file("scene.toml", scene), folder.0.path().join("out.exr"));
+        let all = ["render", text(&file), "-o", text(&out), "--samples", "1", "--volume", "emit:100"];
+        let said = succeeds(&[&all[..], &["--gather-rays", "0"], more].concat());
+        let line = said.lines().find(|line| line.starts_with("march steps")).unwrap();
+        line.split_whitespace().last().unwrap().parse().unwrap()
+    };
+    let even = fog("sigma_t = 200\nalbedo = 0.9\ng = 0");
+    let cloud = "density = { cloud = { center = [0.5, 0.5, 0.5], radii = [0.4, 0.4, 0.4] } }";
+    let uneven = fog(&format!("sigma_t = 200\nalbedo = 0.9\ng = 0\n{cloud}"));
+    let twentieth = ["--step", "0.05"];
+    assert_eq!(steps(&even, &[]), steps(&even, &twentieth));
+    assert!(steps(&uneven, &[]) > 4.0 * steps(&uneven, &twentieth));
 }
