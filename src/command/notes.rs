@@ -48,7 +48,9 @@ pub fn tell_step(scene: &Scene, settings: &Settings) -> Result<()> {
     let effect = if march.is_jittered { "noisy" } else { "wrong" };
     note(&format!(
         "steps of {step:.2e} L are longer than the shortest mean free path, {path:.2e} L: light in media is {effect} where it \
-         is dense; --step {path:.0e} takes shorter ones"
+         is dense; --step {:.1e} takes shorter ones",
+        // Rounded, it is still shorter.
+        0.95 * path
     ))
 }
 

@@ -252,10 +252,6 @@ impl Render {
                 Ok((work, Some((maps.report, stored))))
             }),
         })?;
-        if self.with == With::Photons && !scene.plan().is_full {
-            let stored = made.maps.first().map_or([None; 3], |(_, maps)| maps.map(|map| Some(map?.stored)));
-            tell_gathers(&scene, &settings, &made.work, stored, self.reading.nearest())?;
-        }
         let exposure =
             exposure.unwrap_or_else(|| auto_exposure(made.film.pixels().iter().map(|p| p.total())));
         let tone = Tone { exposure, curve: self.shown.curve() };
@@ -266,7 +262,12 @@ impl Render {
         write_png(&png, (made.film.width(), made.film.height()), &pixels)
             .with_context(|| format!("{} is written, the picture beside it is not", self.output.display()))?;
         print_statistics(&made, exposure)?;
-        print(&format!("written        {}, {}\n", self.output.display(), png.display()))
+        print(&format!("written        {}, {}\n", self.output.display(), png.display()))?;
+        if self.with == With::Photons && !scene.plan().is_full {
+            let stored = made.maps.first().map_or([None; 3], |(_, maps)| maps.map(|map| Some(map?.stored)));
+            tell_gathers(&scene, &settings, &made.work, stored, self.reading.nearest())?;
+        }
+        Ok(())
     }
 
     /// Memory that the picture takes beside its maps \[bytes\].

@@ -222,8 +222,11 @@ fn collided(scene: &Scene, emitter: &Emitter, histories: u64, seed: u64) -> [[Mo
 #[test]
 fn open_scenes_lose_nothing() {
     let mut cases: Vec<(&str, Vec<Light>)> = all_lights().into_iter().map(|(n, l)| (n, vec![l])).collect();
-    let local = all_lights().into_iter().filter(|(name, _)| !name.starts_with("isotropic"));
-    cases.push(("all but the isotropic ones", local.map(|(_, l)| l).collect()));
+    // One body would stand in the way of every other light here; the point is the last, whose photons meet the fog.
+    let local = lights().into_iter().filter(|(name, l)| l.body().is_none() && !name.starts_with("isotropic"));
+    let mut several: Vec<Light> = local.map(|(_, l)| l).collect();
+    several.reverse();
+    cases.push(("several", several));
     for (number, (name, lights)) in cases.into_iter().enumerate() {
         let scene = afar(lights, number as u64);
         let (plain, aimed) = (Emitter::by_power(&scene), Emitter::towards_scene(&scene));
