@@ -143,7 +143,11 @@ impl Measure {
             );
         }
         if self.passes > settings.photons {
-            bail!("--passes is {}; allowed: at most one a photon of a map, {}", self.passes, settings.photons);
+            bail!(
+                "--passes is {}; allowed: at most one a photon of a map, {}",
+                self.passes,
+                settings.photons
+            );
         }
         let ahead = forecast(scene, &settings, self.passes)?;
         self.memory.check(&format!("a map of {:.2e} photons", ahead.stored), ahead.bytes, 0.0, |part| {

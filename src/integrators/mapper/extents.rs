@@ -27,7 +27,8 @@ pub struct MediumExtent {
 /// The extents of the media of a scene by their numbers.
 pub fn medium_extents(scene: &Scene) -> Vec<MediumExtent> {
     let objects = scene.objects().iter().map(|object| &object.shape);
-    let surfaces: Vec<&Shape> = objects.chain(scene.lights().iter().filter_map(|light| light.body())).collect();
+    let surfaces: Vec<&Shape> =
+        objects.chain(scene.lights().iter().filter_map(|light| light.body())).collect();
     let is_only = scene.media().len() < 2;
     let extent = |shape: Option<Shape>, later: Vec<Shape>| {
         let is_met = |body: &&&Shape| shape.as_ref().is_none_or(|medium| enters(body, medium));
@@ -50,9 +51,10 @@ pub fn medium_extents(scene: &Scene) -> Vec<MediumExtent> {
 /// The shape that encloses an interior, where that is one solid.
 fn enclosing(scene: &Scene, within: usize) -> Option<Shape> {
     let is_around = |d: &Dielectric| d.inside() == within;
-    let mut around = scene.objects().iter().filter(
-        |object| matches!(&object.surface, Surface::Dielectric(dielectric) if is_around(dielectric)),
-    );
+    let mut around = scene
+        .objects()
+        .iter()
+        .filter(|object| matches!(&object.surface, Surface::Dielectric(dielectric) if is_around(dielectric)));
     match (around.next(), around.next()) {
         (Some(object), None) if object.shape.is_solid() => Some(object.shape.clone()),
         _ => None,
