@@ -181,6 +181,7 @@ fn photon(position: DVec3, stream: &mut Stream) -> Photon {
     Photon {
         position,
         dir: warp::square_to_sphere(stream.pair()).as_vec3(),
+        normal: Vec3::ZERO,
         power: Vec3::new(1.0, 0.9, 0.8),
         order: 1,
         flags: Flags::MEDIUM,

@@ -70,9 +70,8 @@ fn dim(picture: &[Spectrum]) -> f64 {
 /// Memory that a pixel of a drawing takes \[bytes\]: its light, and its colour as it is written.
 const PICTURE_BYTES: f64 = 40.0;
 
-/// Memory that a photon takes in the list that is drawn, where that is more than its map leaves free \[bytes\]; see
-/// `tests/cli/memory.rs`.
-const LIST_BYTES: f64 = 20.0;
+/// Memory that a photon takes in the list that is drawn \[bytes\]; what its record took in the pass is seldom given back.
+const LIST_BYTES: f64 = 64.0;
 
 impl Map {
     /// Draws and writes.

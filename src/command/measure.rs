@@ -2,6 +2,7 @@
 
 use super::load::Source;
 use super::memory::{Memory, rounded_down};
+use super::picture::BoundaryName;
 use super::progress::Bar;
 use super::{FormatName, KernelName, note, on_threads, parse_count, tell_ahead};
 use anyhow::{Context, bail};
@@ -9,13 +10,16 @@ use clap::ValueEnum;
 use turbid::estimators::Gather;
 use turbid::output::{print, write_rows};
 use turbid::scene::{Orders, Scene};
-use turbid::sensor::{PathSettings, PhotonSettings, Reading, by_paths, by_photons_in_passes, forecast};
+use turbid::sensor::{
+    NoError, PathSettings, PhotonSettings, Reading, by_paths, by_photons_in_passes, forecast,
+};
 
 /// Measure the sensors of a scene by paths or by photons.
 ///
 /// Prints the columns sensor, quantity, unit, mean, std_error, n. Paths and tallies have n = histories; estimates
 /// from photon maps have n = maps: the standard error is that between independent maps, and one map has none, since all its
-/// estimates share its photons.
+/// estimates share its photons. Where no error can be trusted a word says why: one-map, nothing-found, too-few (fewer than
+/// 1,000 paths contribute), heavy-tail.
 #[derive(clap::Args)]
 #[command(allow_negative_numbers = true)]
 pub struct Measure {
@@ -51,6 +55,9 @@ pub struct Measure {
     /// How an estimate weights its photons.
     #[arg(long, value_enum, default_value = "uniform")]
     kernel: KernelName,
+    /// What an estimate does where a medium ends or a body stands in its ball.
+    #[arg(long, value_enum, default_value = "clipped")]
+    boundary: BoundaryName,
     /// Orders of scattering that count: `1`, `0..3` (both ends included), `1..`.
     #[arg(long, value_parser = parse_orders, default_value = "0..")]
     orders: Orders,
@@ -101,7 +108,7 @@ impl Measure {
             With::Path => self.measure_by_paths(&scene),
             With::Photons => self.measure_by_photons(&scene),
         })?;
-        notes.extend(heavy_tails(&readings));
+        notes.extend(without_error(&readings));
         let format = self.format.format();
         print(|out| write_rows(out, &readings, format)).context("standard output")?;
         for text in notes {
@@ -134,6 +141,7 @@ impl Measure {
             orders: self.orders,
             gather,
             kernel: self.kernel.kernel(),
+            treatment: self.boundary.treatment(),
         };
         if self.passes > 1 && self.radius.is_none() {
             bail!(
@@ -191,19 +199,15 @@ impl Measure {
     }
 }
 
-/// Names the readings whose standard error makes no interval.
-fn heavy_tails(readings: &[Reading]) -> Option<String> {
-    let heavy: Vec<String> = readings
-        .iter()
-        .filter(|r| r.is_heavy_tailed)
-        .map(|r| format!("{} {}", r.sensor, r.quantity))
-        .collect();
-    (!heavy.is_empty()).then(|| {
-        format!(
-            "heavy-tailed, so that no standard error can be given yet (variance of variance above 0.1): {}",
-            heavy.join(", ")
-        )
-    })
+/// Names the readings without a standard error, a line for each reason; that there is one map, the table says.
+fn without_error(readings: &[Reading]) -> Vec<String> {
+    let why = |why: NoError| {
+        let without = readings.iter().filter(|r| r.no_error == Some(why));
+        let names: Vec<String> = without.map(|r| format!("{} {}", r.sensor, r.quantity)).collect();
+        (!names.is_empty())
+            .then(|| format!("no standard error, {}: {}: {}", why.word(), why.reason(), names.join(", ")))
+    };
+    [NoError::Nothing, NoError::TooFew, NoError::HeavyTail].into_iter().filter_map(why).collect()
 }
 
 /// Half the cell, or a mean free path of the densest medium.

@@ -8,7 +8,7 @@ use clap::ValueEnum;
 use turbid::estimators::Gather;
 use turbid::estimators::boundary::{Rejection, Treatment};
 use turbid::integrators::StepRule;
-use turbid::integrators::mapper::{Adaptive, Settings};
+use turbid::integrators::mapper::{Adaptive, Settings, scene_size};
 use turbid::math::Positive;
 use turbid::output::Curve;
 use turbid::photons::importance::{Importance, ImportanceSettings};
@@ -253,13 +253,14 @@ pub struct Reading {
     /// March on places that are not random: no noise, but bands.
     #[arg(long)]
     no_jitter: bool,
-    /// What volume estimates do at the edge of a medium, behind which there are no photons.
+    /// What volume estimates do where a medium ends or a body stands in it: without it there are no photons, behind it
+    /// others. But for none, photons that a body hides from the point do not count.
     #[arg(long, value_enum, default_value = "clipped")]
     boundary: BoundaryName,
     /// What surface estimates do at the edges of flat surfaces, beyond which there are no photons.
     #[arg(long, value_enum, default_value = "clipped")]
     edges: EdgesName,
-    /// Which photons behind walls volume estimates reject.
+    /// A rule of the literature about photons behind walls, instead of what --boundary does about them; for the laboratory.
     #[arg(long, value_enum, default_value = "off")]
     reject: RejectName,
 }
@@ -275,7 +276,7 @@ enum RuleName {
 }
 
 #[derive(Clone, Copy, ValueEnum)]
-enum BoundaryName {
+pub enum BoundaryName {
     /// Nothing: up to half is lost at a face.
     None,
     /// Divides by the part of the kernel that is inside.
@@ -284,6 +285,18 @@ enum BoundaryName {
     Reflection,
     /// Fits a line along the normal.
     LocalLinear,
+}
+
+impl BoundaryName {
+    /// The treatment of this name.
+    pub fn treatment(self) -> Treatment {
+        match self {
+            BoundaryName::None => Treatment::None,
+            BoundaryName::Clipped => Treatment::Clipped,
+            BoundaryName::Reflection => Treatment::Reflection,
+            BoundaryName::LocalLinear => Treatment::LocalLinear,
+        }
+    }
 }
 
 #[derive(Clone, Copy, PartialEq, ValueEnum)]
@@ -296,7 +309,7 @@ enum EdgesName {
 
 #[derive(Clone, Copy, ValueEnum)]
 enum RejectName {
-    /// None.
+    /// None: photons that a body hides from the point do not count where --boundary is not none.
     Off,
     /// Those that do not travel towards the wall: half of the good ones go too.
     Facing,
@@ -304,7 +317,7 @@ enum RejectName {
     FacingBehind,
     /// Those behind the wall's plane.
     BehindPlane,
-    /// Those that a wall hides from the point.
+    /// Those that a body hides from the point, also where --boundary is none.
     Visible,
 }
 
@@ -322,7 +335,7 @@ impl Reading {
 
     /// Settings of the mapper for a scene.
     pub fn settings(&self, scene: &Scene) -> anyhow::Result<Settings> {
-        let size = size(scene);
+        let size = scene_size(scene);
         let gather = |k: usize| match self.radius {
             Some(radius) => Gather::radius(radius).context("--radius"),
             None => Gather::nearest(k, self.max_radius.unwrap_or(0.1 * size)).context("--k, --max-radius"),
@@ -335,7 +348,7 @@ impl Reading {
         if !(self.adapt >= 0.0 && self.adapt.is_finite()) {
             return Err(anyhow!("--adapt is {}; allowed: finite and at least 0", self.adapt));
         }
-        let mut settings = Settings::for_size(size, self.k).context("--k")?;
+        let mut settings = Settings::for_scene(scene, self.k).context("--k")?;
         let kernel = self.kernel.kernel();
         settings.global = (kernel, surface);
         settings.caustic = (self.caustic_kernel.kernel(), caustic);
@@ -352,9 +365,6 @@ impl Reading {
             }
             settings.march.step = Positive::new("--step", step)?;
         }
-        if self.step.is_none() {
-            settings.march.step = Positive::new("--step", default_step(scene, size))?;
-        }
         settings.march.rule = match self.step_rule {
             RuleName::NearEnd => StepRule::NearEnd,
             RuleName::Middle => StepRule::Middle,
@@ -363,12 +373,7 @@ impl Reading {
         settings.march.is_jittered = !self.no_jitter;
         let shortest = Positive::new("the shortest step", 0.25 * settings.march.step.get())?;
         settings.march.adaptive = (self.adapt > 0.0).then_some(Adaptive { tolerance: self.adapt, shortest });
-        settings.treatment = match self.boundary {
-            BoundaryName::None => Treatment::None,
-            BoundaryName::Clipped => Treatment::Clipped,
-            BoundaryName::Reflection => Treatment::Reflection,
-            BoundaryName::LocalLinear => Treatment::LocalLinear,
-        };
+        settings.treatment = self.boundary.treatment();
         settings.rejection = match self.reject {
             RejectName::Off => Rejection::Off,
             RejectName::Facing => Rejection::Facing,
@@ -382,21 +387,3 @@ impl Reading {
 
 /// Steps across the scene, at most: a march of more would not come to an end in a user's time.
 const MOST_STEPS: f64 = 1e6;
-
-/// Steps across the scene, at most, that are taken without being asked for.
-const MOST_DEFAULT_STEPS: f64 = 1e3;
-
-/// Longest step of a march where none is asked for \[L\]: a twentieth of the scene, as far as that is not longer than the
-/// shortest mean free path of media whose density varies. There a step's light is asked for at one place of the step, and
-/// what reaches its near end is a random product: over several mean free paths few places count much. In a homogeneous
-/// medium places are chosen by what reaches the near end, and a step may be long.
-fn default_step(scene: &Scene, size: f64) -> f64 {
-    let varying = scene.media().iter().filter(|medium| !medium.is_homogeneous());
-    let densest = varying.map(|medium| medium.highest_sigma_t().max()).fold(0.0, f64::max);
-    (0.05 * size).min((1.0 / densest).max(size / MOST_DEFAULT_STEPS))
-}
-
-/// How large a scene is \[L\]: the edge of the cube in the ball that holds its bodies; 1 for a scene without bounds.
-fn size(scene: &Scene) -> f64 {
-    scene.bounds().map_or(1.0, |ball| 2.0 * ball.radius() / 3.0f64.sqrt())
-}

@@ -148,11 +148,18 @@ fn gathered(gathers: &Gathers) -> String {
     if gathers.count == 0 {
         return "0".to_string();
     }
-    format!(
+    let mut text = format!(
         "{}, {:.1} photons within {:.4} L in the mean; {} found fewer than k",
         gathers.count,
         gathers.found as f64 / gathers.count as f64,
         gathers.mean_radius(),
         gathers.underfull
-    )
+    );
+    if gathers.unknown > 0 {
+        text.push_str(&format!(
+            "; {} on bodies too thin for their area to be found, taken for dark",
+            gathers.unknown
+        ));
+    }
+    text
 }

@@ -1,7 +1,8 @@
 //! Kernels on the disc of two dimensions: what estimates on surfaces use, and the bias and variance expected of them.
 
 use super::{Gather, Kernel};
-use crate::math::exp;
+use crate::math::{exp, exp_m1, ln_1p, sin};
+use libm::asin;
 use std::f64::consts::PI;
 
 /// The Gaussian's exponent at the edge: exp(-a u^2) with a = 1/(2 s^2), s = 1/3.
@@ -41,6 +42,20 @@ impl Kernel {
             Kernel::Cone => 3.0 / 2.0,
             Kernel::Biweight => 9.0 / 5.0,
             Kernel::Gaussian => 0.5 * A * (1.0 + exp(-A)) / (1.0 - exp(-A)),
+        }
+    }
+
+    /// Distance from the middle, over the radius, of a point of the disc of density K, from a number in [0, 1).
+    ///
+    /// The inverse of the part of the kernel within a distance u: u^2; 2 u^2 - u^4; 3 u^2 - 2 u^3; 1 - (1-u^2)^3;
+    /// (1 - e^(-a u^2))/(1 - e^-a).
+    pub fn sample_disc(self, part: f64) -> f64 {
+        match self {
+            Kernel::Uniform => part.sqrt(),
+            Kernel::Epanechnikov => (1.0 - (1.0 - part).sqrt()).sqrt(),
+            Kernel::Cone => 0.5 - sin(asin(1.0 - 2.0 * part) / 3.0),
+            Kernel::Biweight => (1.0 - libm::cbrt(1.0 - part)).sqrt(),
+            Kernel::Gaussian => (-ln_1p(part * exp_m1(-A)) / A).sqrt(),
         }
     }
 

@@ -42,6 +42,13 @@ pub fn disc_share(kernel: Kernel, rectangle: &Rectangle, point: DVec3, radius: f
     piece(x1, y1) - piece(x0, y1) - piece(x1, y0) + piece(x0, y0)
 }
 
+/// The integral over a spherical surface of the kernel of radius r about a point of it, as far as chords of `reach` r: the
+/// part of a sphere within a chord d has the area pi d^2, that of a flat disc, whatever the sphere's radius.
+pub fn cap_share(kernel: Kernel, reach: f64) -> f64 {
+    let w = (reach * reach).min(1.0);
+    if w == 1.0 { 1.0 } else { 2.0 * PI * w * kernel.wedge(w) }
+}
+
 /// Over the rectangle with opposite corners at the disc's centre and (a, b), in units of the radius.
 fn piece(kernel: Kernel, a: f64, b: f64) -> f64 {
     triangle(kernel, a, b) + triangle(kernel, b, a)

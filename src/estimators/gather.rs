@@ -74,6 +74,19 @@ impl Gather {
         }
     }
 
+    /// The same gather, reaching no farther than `limit`, finite or not and above zero \[L\].
+    pub fn within(self, limit: f64) -> Self {
+        let limited =
+            |radius: Positive| Positive::new("the gather radius", radius.get().min(limit)).unwrap_or(radius);
+        match self {
+            Gather::Radius(radius) => Gather::Radius(limited(radius)),
+            Gather::Nearest { k, max_radius } => Gather::Nearest { k, max_radius: limited(max_radius) },
+            Gather::NearestBiased { k, max_radius } => {
+                Gather::NearestBiased { k, max_radius: limited(max_radius) }
+            }
+        }
+    }
+
     /// [`Gather::nearest`] with the biased rule.
     ///
     /// # Errors

@@ -21,11 +21,11 @@ mod point;
 mod surface;
 
 pub use directional::{CosinePairs, Directional};
-pub use disc_share::disc_share;
+pub use disc_share::{cap_share, disc_share};
 pub use gather::{Gather, NeighborCount};
 pub use kernel::Kernel;
 pub use point::{
     Ball, BallSum, Estimate, ball_sum, collision_density, count_within, fluence, for_each_photon,
     in_scattered,
 };
-pub use surface::irradiance;
+pub use surface::{irradiance, irradiance_seen};

@@ -118,18 +118,22 @@ impl Tree {
         });
     }
 
-    /// Offers `test` the entries whose boxes may be nearer to a point than `reach` \[L\]; `test` returns what that
-    /// distance is from now on.
+    /// Offers `test` the entries whose boxes may be nearer to a point than `reach` \[L\], nearer boxes first; `test` returns
+    /// what that distance is from now on.
     pub fn near(&self, point: DVec3, reach: f64, mut test: impl FnMut(usize, f64) -> f64) {
         let point = (point - self.center) * self.scale;
         let mut reach = reach;
-        let mut open = vec![0usize];
-        while let Some(node) = open.pop().and_then(|index| self.tree.nodes.get(index)) {
+        let mut open = vec![(0.0, 0usize)];
+        while let Some((distance, index)) = open.pop() {
+            let Some(node) = self.tree.nodes.get(index).filter(|_| distance <= reach * self.scale) else {
+                continue;
+            };
+            let first = open.len();
             for child in (0..8).filter(|&child| !node.is_child_empty(child)) {
-                let around = node.child_aabb(child);
-                let (low, high) = (around.min.as_dvec3(), around.max.as_dvec3());
                 // Boxes are wider than what they hold by more than single precision rounds.
-                if point.distance(point.clamp(low, high)) > reach * self.scale {
+                let around = node.child_aabb(child);
+                let distance = point.distance(point.clamp(around.min.as_dvec3(), around.max.as_dvec3()));
+                if distance > reach * self.scale {
                     continue;
                 }
                 if node.is_leaf(child) {
@@ -138,9 +142,10 @@ impl Tree {
                         reach = test(entry as usize, reach);
                     }
                 } else {
-                    open.push(node.child_node_index(child) as usize);
+                    open.push((distance, node.child_node_index(child) as usize));
                 }
             }
+            open[first..].sort_by(|a, b| b.0.total_cmp(&a.0));
         }
     }
 }

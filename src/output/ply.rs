@@ -74,6 +74,7 @@ mod tests {
         let photon = Photon {
             position: DVec3::new(1.0, -2.0, 3.5),
             dir: Vec3::NEG_Z,
+            normal: Vec3::ZERO,
             power: Vec3::new(8.0, 4.0, 2.0),
             order: 515,
             flags: Flags::SPECULAR.with(Flags::MEDIUM),

@@ -10,6 +10,8 @@ pub struct Photon {
     pub position: DVec3,
     /// Unit direction of travel.
     pub dir: Vec3,
+    /// Unit normal of the surface where it arrived, on the side of its arrival; 0 in a medium.
+    pub normal: Vec3,
     /// Power it arrives with \[W\], as though its history were the only one emitted: estimates divide by the
     /// number emitted.
     pub power: Vec3,

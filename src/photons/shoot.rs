@@ -242,6 +242,7 @@ impl<K: Fn(&Photon) -> bool> Visitor for Tallier<'_, K> {
                         .stage()
                         .map_or(arrival.position, |s| fold::into_cell(arrival.position, s.side)),
                     dir: walker.ray.dir.as_vec3(),
+                    normal: glam::Vec3::ZERO,
                     power: weight.0.as_vec3(),
                     order: u16::try_from(walker.order).unwrap_or(u16::MAX),
                     flags: walker.flags,

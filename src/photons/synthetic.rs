@@ -145,6 +145,7 @@ impl Synthetic {
         (stream.unit() < self.kept).then(|| Photon {
             position: self.lower + (self.upper - self.lower) * along,
             dir,
+            normal: Vec3::ZERO,
             power: Vec3::ONE,
             order: 0,
             flags: Flags::NONE,

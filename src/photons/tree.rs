@@ -49,6 +49,8 @@ pub struct PhotonTree {
     identity: u64,
     positions: Vec<[Row; 2]>,
     dirs: Vec<Row>,
+    /// None in a tree of photons of media alone.
+    normals: Vec<Row>,
     powers: Vec<Row>,
     histories: Vec<(u16, Flags)>,
     levels: Vec<Vec<Boxes>>,
@@ -58,7 +60,7 @@ impl PhotonTree {
     /// The tree over `photons`, built by the calling thread.
     ///
     /// # Errors
-    /// [`Error::NonFinite`] if a position, direction or power is not finite; [`Error::OutOfRange`] beyond
+    /// [`Error::NonFinite`] if a position, direction, normal or power is not finite; [`Error::OutOfRange`] beyond
     /// 2^32 photons.
     pub fn new(photons: Vec<Photon>) -> Result<Self> {
         Self::build(Records::new(vec![photons]), false, &NoProgress)
@@ -106,6 +108,7 @@ impl PhotonTree {
             order::kd_order(&mut entries, &photons, parallel, progress);
         }
 
+        let is_on_surfaces = photons.iter().any(|photon| photon.normal != Vec3::ZERO);
         let blocks = stored.div_ceil(BLOCK);
         let rows = 2 * blocks;
         let mut tree = PhotonTree {
@@ -114,6 +117,7 @@ impl PhotonTree {
             identity: nearest::new_identity(),
             positions: Vec::with_capacity(blocks),
             dirs: Vec::with_capacity(rows),
+            normals: Vec::with_capacity(if is_on_surfaces { rows } else { 0 }),
             powers: Vec::with_capacity(rows),
             histories: Vec::with_capacity(stored),
             levels: Vec::new(),
@@ -122,9 +126,11 @@ impl PhotonTree {
         for block in entries.chunks(BLOCK) {
             tree.push_positions(block);
         }
-        let order: Vec<u32> = entries.into_iter().map(|entry| entry.index).collect();
+        let mut order: Vec<u32> = entries.into_iter().map(|entry| entry.index).collect();
+        // The numbers were collected in the entries' memory, of which they need a quarter.
+        order.shrink_to_fit();
         for block in order.chunks(BLOCK) {
-            tree.push_block(block, &photons);
+            tree.push_block(block, &photons, is_on_surfaces);
         }
         tree.levels = boxes::levels(&tree.positions, stored);
         Ok(tree)
@@ -139,18 +145,23 @@ impl PhotonTree {
         self.positions.push([row(&position, 0), row(&position, ROW)]);
     }
 
-    fn push_block(&mut self, order: &[u32], photons: &Records) {
+    fn push_block(&mut self, order: &[u32], photons: &Records, is_on_surfaces: bool) {
         let mut dir = [[0.0; BLOCK]; 3];
+        let mut normal = [[0.0; BLOCK]; 3];
         let mut power = [[0.0; BLOCK]; 3];
         for (lane, index) in order.iter().enumerate() {
             let photon = photons.get(*index);
             for axis in 0..3 {
                 dir[axis][lane] = photon.dir[axis];
+                normal[axis][lane] = photon.normal[axis];
                 power[axis][lane] = photon.power[axis];
             }
             self.histories.push((photon.order, photon.flags));
         }
         self.dirs.extend([row(&dir, 0), row(&dir, ROW)]);
+        if is_on_surfaces {
+            self.normals.extend([row(&normal, 0), row(&normal, ROW)]);
+        }
         self.powers.extend([row(&power, 0), row(&power, ROW)]);
     }
 
@@ -173,6 +184,7 @@ impl PhotonTree {
     pub fn bytes(&self) -> usize {
         let boxes: usize = self.levels.iter().map(Vec::len).sum();
         self.dirs.len() * size_of::<[Row; 3]>()
+            + self.normals.len() * size_of::<Row>()
             + self.histories.len() * size_of::<(u16, Flags)>()
             + boxes * size_of::<Boxes>()
     }
@@ -185,6 +197,7 @@ impl PhotonTree {
         Photon {
             position: self.units.absolute(vector(&self.positions[row / 2][row % 2])),
             dir: Vec3::from_array(vector(&self.dirs[row])),
+            normal: self.normals.get(row).map_or(Vec3::ZERO, |row| Vec3::from_array(vector(row))),
             power: Vec3::from_array(vector(&self.powers[row])),
             order,
             flags,

@@ -79,7 +79,7 @@ pub struct Camera {
 /// Most pixels along a side.
 pub const MAX_SIDE: u32 = 16_384;
 
-/// Most pixels: a film takes 352 bytes a pixel, twice while it is filled, which is 6 GB.
+/// Most pixels: a picture takes 545 bytes a pixel, and 715 where it is the mean of several, which is 6 GB.
 pub const MAX_PIXELS: u64 = 1 << 23;
 
 impl Camera {

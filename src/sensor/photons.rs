@@ -3,11 +3,13 @@
 use super::{Reading, Source, readings};
 use crate::Spectrum;
 use crate::error::{Error, Result};
+use crate::estimators::boundary::{Treatment, treated_fluence, treated_in_scattered};
 use crate::estimators::{Estimate, Gather, Kernel, fluence, in_scattered};
+use crate::integrators::mapper::{MediumExtent, medium_extents};
 use crate::math::{Ray, exp_m1, ln_1p};
 use crate::medium::Medium;
 use crate::photons::{
-    Emitter, Histories, Ledger, PEAK_BYTES, Pass, Photon, PhotonMap, fold, shoot, shoot_blocks,
+    BUILD_SECONDS, Emitter, Histories, Ledger, PEAK_BYTES, Pass, Photon, PhotonMap, fold, shoot, shoot_blocks,
 };
 use crate::rng::{Purpose, Stream};
 use crate::scene::{Orders, Quantity, Scene, Sensor, decay};
@@ -33,6 +35,8 @@ pub struct PhotonSettings {
     pub gather: Gather,
     /// How it weights them.
     pub kernel: Kernel,
+    /// What it does where a medium ends in its ball.
+    pub treatment: Treatment,
 }
 
 /// What photons read, and where their power went.
@@ -44,7 +48,7 @@ pub struct PhotonReadings {
     pub ledger: Ledger,
     /// Estimates that found fewer than k photons within the cap.
     pub underfull: u64,
-    /// Estimates whose ball reaches beyond the medium that the point is in.
+    /// Estimates without a treatment whose ball reaches beyond the medium that the point is in.
     pub beyond: u64,
     /// Estimates made.
     pub gathers: u64,
@@ -52,11 +56,10 @@ pub struct PhotonReadings {
 
 impl PhotonReadings {
     /// Counts an estimate at a point.
-    fn book(&mut self, scene: &Scene, p: DVec3, estimate: &Estimate) {
+    fn book(&mut self, scene: &Scene, p: DVec3, estimate: &Estimate, treatment: Treatment) {
         self.gathers += 1;
         self.underfull += u64::from(estimate.underfull);
-        let room = scene.room(p);
-        self.beyond += u64::from(estimate.radius > room);
+        self.beyond += u64::from(treatment == Treatment::None && estimate.radius > scene.room(p));
     }
 }
 
@@ -111,6 +114,7 @@ pub fn by_photons_in_passes(
         gathers: 0,
     };
     let max_order = max_order(&sensors);
+    let extents = medium_extents(scene);
     for replicate in 0..settings.maps {
         let histories = Histories { count: settings.photons, seed: settings.seed, replicate, max_order };
         let mut estimates = vec![Spectrum::ZERO; sensors.len()];
@@ -131,7 +135,7 @@ pub fn by_photons_in_passes(
                 for (index, (sensor, sum)) in here.enumerate() {
                     // Every pass asks at the same places.
                     let mut stream = Stream::new(settings.seed, Purpose::Resampling, replicate, index as u64);
-                    *sum += read(scene, map, sensor, settings, &mut stream, &mut result) * share;
+                    *sum += read((scene, &extents), map, sensor, settings, &mut stream, &mut result) * share;
                 }
             }
             if number > 0 {
@@ -152,7 +156,7 @@ pub fn by_photons_in_passes(
             return Err(Error::NonFinite { count: non_finite, place: "estimates from photon maps" });
         }
         let source = if map_orders(sensor).is_some() { Source::Maps } else { Source::Tally };
-        result.readings.extend(readings(sensor, scene.plan().is_grey, &moments, source));
+        result.readings.extend(readings(sensor, scene.plan().is_grey, &moments, None, source));
     }
     Ok(result)
 }
@@ -170,9 +174,6 @@ pub struct PhotonForecast {
 
 /// Histories of the pilot of a measurement, at most: one in 64 of the run's, so that it costs little beside it.
 const FORECAST: u64 = 1024;
-
-/// Time that a stored photon takes on its way into the tree, of one processor \[s\]: measured, on a processor of 2023.
-const BUILD_SECONDS: f64 = 0.4e-6;
 
 /// What [`by_photons_in_passes`] will take: the pilot runs the first of the run's own histories, and stores nothing.
 ///
@@ -335,7 +336,7 @@ pub(super) fn check(scene: &Scene, sensor: &Sensor) -> Result<()> {
 
 /// One estimate from a map.
 fn read(
-    scene: &Scene,
+    (scene, extents): (&Scene, &[MediumExtent]),
     map: &PhotonMap,
     sensor: &Sensor,
     settings: &PhotonSettings,
@@ -345,12 +346,22 @@ fn read(
     match sensor.quantity {
         Quantity::Fluence(p) => {
             let p = scene.stage().map_or(p, |s| fold::into_cell(p, s.side));
-            let sigma_t = scene.medium_at(p).map_or(Spectrum::ONE, |m| m.sigma_t(p));
-            let estimate = fluence(map, p, sigma_t, settings.kernel, settings.gather);
-            result.book(scene, p, &estimate);
+            let number = scene.medium_number_at(p);
+            let sigma_t = number.map_or(Spectrum::ONE, |number| scene.medium(number).sigma_t(p));
+            let (kernel, gather, treatment) = (settings.kernel, settings.gather, settings.treatment);
+            let estimate = match number.filter(|_| treatment != Treatment::None) {
+                None => fluence(map, p, sigma_t, kernel, gather),
+                Some(number) => {
+                    let boundary = extents[number].boundary(treatment);
+                    treated_fluence(map, p, sigma_t, kernel, gather, &boundary).estimate
+                }
+            };
+            result.book(scene, p, &estimate, treatment);
             estimate.value
         }
-        Quantity::Radiance(ray) => radiance(scene, map, &ray, sensor.orders, settings, stream, result),
+        Quantity::Radiance(ray) => {
+            radiance((scene, extents), map, &ray, sensor.orders, settings, stream, result)
+        }
         Quantity::Outflow { .. } | Quantity::Absorbed(_) => Spectrum::ZERO,
     }
 }
@@ -358,7 +369,7 @@ fn read(
 /// Radiance along a ray: uncollided light in closed form, and the in-scattered radiance at points chosen in
 /// proportion to what the ray collects, so that the integral along the ray has no step bias.
 fn radiance(
-    scene: &Scene,
+    (scene, extents): (&Scene, &[MediumExtent]),
     map: &PhotonMap,
     ray: &Ray,
     orders: Orders,
@@ -396,8 +407,18 @@ fn radiance(
             if sigma_t.is_black() {
                 continue;
             }
-            let estimate = in_scattered(map, p, -ray.dir, phase, sigma_t, settings.kernel, settings.gather);
-            result.book(scene, p, &estimate);
+            let (kernel, gather, treatment) = (settings.kernel, settings.gather, settings.treatment);
+            let estimate = match treatment {
+                Treatment::None => in_scattered(map, p, -ray.dir, phase, sigma_t, kernel, gather),
+                _ => {
+                    let boundary = extents[segment.medium].boundary(treatment);
+                    let mut found =
+                        treated_in_scattered(map, p, -ray.dir, phase, kernel, gather, &boundary).estimate;
+                    found.value = found.value / sigma_t;
+                    found
+                }
+            };
+            result.book(scene, p, &estimate, treatment);
             // Density of t is rate exp(-rate t') / collects.
             let passed = if medium.is_homogeneous() {
                 before * (decay(sigma_t * inside) / crate::math::exp(-rate * inside))

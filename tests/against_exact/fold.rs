@@ -49,6 +49,7 @@ fn copies_around_the_cell_are_those_of_the_lattice() {
     let photon = |position: DVec3| Photon {
         position,
         dir: glam::Vec3::Z,
+        normal: glam::Vec3::ZERO,
         power: glam::Vec3::ONE,
         order: 0,
         flags: turbid::photons::Flags::NONE,

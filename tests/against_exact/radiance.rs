@@ -19,6 +19,7 @@ use crate::support::scenes::{CELL, Incidence, incidence, layer, region, slab};
 use crate::support::verdict;
 use glam::DVec3;
 use std::f64::consts::PI;
+use turbid::estimators::boundary::Treatment;
 use turbid::estimators::{Gather, Kernel};
 use turbid::math::{Ray, exp};
 use turbid::scene::{Orders, Parts, Quantity, Scene};
@@ -139,6 +140,7 @@ fn of_maps(scene: &Scene, photons: u64, seed: u64) -> Vec<Moments> {
             orders: Orders::ALL,
             gather: Gather::radius(RADIUS).unwrap(),
             kernel: Kernel::Uniform,
+            treatment: Treatment::None,
         };
         let readings = by_photons(scene, &settings, &NoProgress).unwrap().readings;
         assert_eq!(readings.len(), views.len());

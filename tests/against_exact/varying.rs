@@ -10,6 +10,7 @@ use crate::support::scenes::{
 use crate::support::verdict;
 use glam::DVec3;
 use turbid::Spectrum;
+use turbid::estimators::boundary::Treatment;
 use turbid::estimators::{Gather, Kernel};
 use turbid::math::{Interval, Positive, Ray};
 use turbid::medium::{Density, Grid, HeightFog, Medium};
@@ -184,8 +185,15 @@ fn a_constant_grid_is_the_homogeneous_medium() {
         for map in 0..64 {
             let gather = Gather::radius(0.4).unwrap();
             let (seed, kernel) = (seed + map, Kernel::Uniform);
-            let settings =
-                PhotonSettings { photons: 8192, maps: 1, seed, orders: Orders::ALL, gather, kernel };
+            let settings = PhotonSettings {
+                photons: 8192,
+                maps: 1,
+                seed,
+                orders: Orders::ALL,
+                gather,
+                kernel,
+                treatment: Treatment::None,
+            };
             let read = by_photons(scene, &settings, &NoProgress).unwrap();
             assert_eq!(read.readings.len(), 12);
             moments.iter_mut().zip(&read.readings).for_each(|(m, r)| m.push(r.mean));

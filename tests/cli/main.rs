@@ -5,6 +5,7 @@ mod bad_files;
 mod bad_input;
 mod bad_pictures;
 mod media;
+mod memory;
 mod output;
 mod pictures;
 mod reference;

@@ -6,6 +6,7 @@ mod common;
 #[path = "../support/mod.rs"]
 mod support;
 
+mod distance;
 mod files;
 mod height_field;
 mod lathe;

@@ -365,8 +365,8 @@ fn treatments_by_the_referee() {
 }
 
 /// A uniform density of collisions in a medium that is cut in two, and in one with another medium inside: photons
-/// beyond the boundary are not of the medium, and the part of the ball that they lie in does not count. By the 256
-/// points that say how large that part is, the value may be off by a hundredth.
+/// beyond the boundary are not of the medium, and the part of the ball that they lie in does not count. That part
+/// is found by directions: the mean of its inverse is right within a hundredth.
 #[test]
 fn media_that_touch_are_told_apart() {
     let (low, high) = (DVec3::splat(-1.0), DVec3::splat(1.0));
@@ -529,6 +529,7 @@ fn ties_and_coincidence() {
     let at = |x: f64, z: f64| Photon {
         position: DVec3::new(x, 0.0, z),
         dir: glam::Vec3::Z,
+        normal: glam::Vec3::ZERO,
         power: glam::Vec3::ONE,
         order: 0,
         flags: turbid::photons::Flags::NONE,

@@ -23,6 +23,7 @@ fn photons(count: u64, seed: u64) -> Vec<Photon> {
             Photon {
                 position: DVec3::new(stream.unit(), stream.unit(), stream.unit()),
                 dir: warp::square_to_sphere(stream.pair()).as_vec3(),
+                normal: Vec3::ZERO,
                 power: Vec3::new(stream.unit() as f32, stream.unit() as f32, 1.0),
                 order: 0,
                 flags: Flags::NONE,
@@ -134,6 +135,7 @@ fn three_photons_by_hand() -> Result<()> {
     let at = |x: f64, power: f32| Photon {
         position: DVec3::new(x, 0.0, 0.0),
         dir: Vec3::X,
+        normal: Vec3::ZERO,
         power: Vec3::new(power, 0.0, 0.0),
         order: 0,
         flags: Flags::NONE,

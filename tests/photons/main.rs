@@ -8,6 +8,7 @@ mod common;
 #[path = "../support/mod.rs"]
 mod support;
 
+mod accepted_surface;
 mod advise;
 mod boundary;
 mod estimators;

@@ -107,7 +107,14 @@ fn pictures_do_not_depend_on_the_number_of_photons() {
 fn treated_radiance_of_one_photon() {
     let dir = Vec3::new(0.6, 0.0, 0.8);
     let position = DVec3::new(0.3, 0.5, 0.1);
-    let photon = Photon { position, dir, power: Vec3::new(1.0, 2.0, 3.0), order: 1, flags: Flags::MEDIUM };
+    let photon = Photon {
+        position,
+        dir,
+        normal: Vec3::ZERO,
+        power: Vec3::new(1.0, 2.0, 3.0),
+        order: 1,
+        flags: Flags::MEDIUM,
+    };
     let map = PhotonMap::new(vec![photon], 3).unwrap();
     let cube = cuboid(DVec3::ZERO, DVec3::ONE);
     let (wo, point) = (DVec3::new(0.0, 0.6, 0.8), DVec3::new(0.35, 0.5, 0.05));
@@ -227,6 +234,7 @@ fn flat_surfaces_are_even_up_to_their_edges() {
                 Photon {
                     position: DVec3::new(x * f64::from(sides), y, 0.0),
                     dir: Vec3::NEG_Z,
+                    normal: Vec3::Z,
                     power: Vec3::ONE,
                     order: 1,
                     flags: Flags::DIFFUSE,

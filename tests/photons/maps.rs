@@ -139,7 +139,7 @@ fn emission_is_bounded() {
     assert!(number < 60_000, "{number}");
     let map = filled(&vase, asked).global.unwrap();
     assert!((map.stored() as f64 / 20_000.0 - 1.0).abs() < 0.1, "{}", map.stored());
-    let thin = region(crate::support::scenes::sphere(DVec3::new(3.0, -3.0, 6.0), 1.0), 0.02, 1.0, 0.0);
+    let thin = region(crate::support::scenes::sphere(DVec3::new(3.0, -3.0, 6.0), 1.0), 0.001, 1.0, 0.0);
     let number = counts(&bounded(vec![thin], Vec::new(), vec![lamp]), &asked).unwrap().volume;
     assert_eq!(number, 20_000 * MOST_A_STORED);
 }

@@ -13,6 +13,7 @@ fn photon(position: DVec3, tag: u32) -> Photon {
     Photon {
         position,
         dir: warp::square_to_sphere(stream.pair()).as_vec3(),
+        normal: Vec3::ZERO,
         power: Vec3::new(stream.unit() as f32, 1.0, tag as f32),
         order: tag as u16,
         flags: if tag.is_multiple_of(2) { Flags::MEDIUM } else { Flags::NONE },

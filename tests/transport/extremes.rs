@@ -10,6 +10,7 @@ use glam::DVec3;
 use std::f64::consts::PI;
 use turbid::Error;
 use turbid::Spectrum;
+use turbid::estimators::boundary::Treatment;
 use turbid::estimators::{Gather, Kernel, fluence};
 use turbid::light::Faces;
 use turbid::math::{Ray, exp};
@@ -19,7 +20,15 @@ use turbid::sensor::{PathSettings, PhotonSettings, by_paths, by_photons};
 use turbid::transport::NoProgress;
 
 fn photon_settings(photons: u64, gather: Gather) -> PhotonSettings {
-    PhotonSettings { photons, maps: 1, seed: 1, orders: Orders::ALL, gather, kernel: Kernel::Uniform }
+    PhotonSettings {
+        photons,
+        maps: 1,
+        seed: 1,
+        orders: Orders::ALL,
+        gather,
+        kernel: Kernel::Uniform,
+        treatment: Treatment::Clipped,
+    }
 }
 
 fn with_sensors(scene: &Scene, quantities: &[Quantity]) -> Scene {
@@ -184,6 +193,7 @@ fn few_photons_in_the_map() {
     let photon = |x: f64| Photon {
         position: DVec3::new(x, 0.0, 0.0),
         dir: glam::Vec3::Z,
+        normal: glam::Vec3::ZERO,
         power: glam::Vec3::ONE,
         order: 1,
         flags: turbid::photons::Flags::MEDIUM,

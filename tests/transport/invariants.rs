@@ -8,6 +8,7 @@ use crate::support::verdict;
 use glam::DVec3;
 use std::path::Path;
 use turbid::Spectrum;
+use turbid::estimators::boundary::Treatment;
 use turbid::estimators::{Gather, Kernel};
 use turbid::light::Faces;
 use turbid::photons::{Histories, Photon, shoot};
@@ -142,6 +143,7 @@ fn photon_settings(seed: u64) -> PhotonSettings {
         orders: Orders::ALL,
         gather,
         kernel: Kernel::Epanechnikov,
+        treatment: Treatment::Clipped,
     }
 }
 

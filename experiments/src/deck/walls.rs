@@ -83,6 +83,7 @@ fn map(settings: &Settings, replicate: u64) -> anyhow::Result<PhotonMap> {
         Photon {
             position,
             dir: dir.as_vec3(),
+            normal: glam::Vec3::ZERO,
             power: Spectrum::ONE.0.as_vec3(),
             order: 1,
             flags: Flags::MEDIUM,

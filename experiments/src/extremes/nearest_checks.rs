@@ -53,7 +53,7 @@ pub fn number_of_neighbors(settings: &Settings, rows: &mut Vec<Checked>) -> anyh
 }
 
 fn photon(position: DVec3) -> Photon {
-    Photon { position, dir: Vec3::Z, power: Vec3::ONE, order: 1, flags: Flags::MEDIUM }
+    Photon { position, dir: Vec3::Z, normal: Vec3::ZERO, power: Vec3::ONE, order: 1, flags: Flags::MEDIUM }
 }
 
 /// A thousand photons in one place, seen from it, from beside it, and from the rim; photons in line.

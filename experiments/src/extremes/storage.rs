@@ -178,6 +178,7 @@ pub fn measure(settings: &Settings, cell: &CellId) -> anyhow::Result<CellOutput>
 const NOBODY: Photon = Photon {
     position: DVec3::ZERO,
     dir: Vec3::Z,
+    normal: Vec3::ZERO,
     power: Vec3::ONE,
     order: 0,
     flags: turbid::photons::Flags::NONE,

@@ -147,7 +147,7 @@ fn predict(small: &Makings, ours: &Kept) -> anyhow::Result<(Vec<f64>, f64)> {
             Radii { global: seen, caustic, volume }
         })
         .collect();
-    let views = look(&studio.scene, &studio.camera, |i| radii[i].global.max(radii[i].caustic));
+    let views = look(&studio.scene, &studio.camera);
     let pixel = studio.camera.pixel_area().sqrt();
     let seconds = one.facts.seconds + other.facts.seconds;
     let spreads = Spreads::of(&reading(picture, 1)?);

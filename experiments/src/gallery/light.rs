@@ -168,7 +168,7 @@ fn send(
 }
 
 /// Whether the first body on a ray, filters apart, is specular.
-fn is_specular_ahead(scene: &Scene, ray: &Ray) -> bool {
+pub(crate) fn is_specular_ahead(scene: &Scene, ray: &Ray) -> bool {
     let (mut ray, mut from) = (*ray, None);
     while let Some(found) = scene.hit(&ray, from) {
         let turbid::scene::Target::Object(index) = found.target else { return false };

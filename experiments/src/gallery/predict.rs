@@ -13,10 +13,10 @@
 //! the shade that is light from beyond the shadow, and the k nearest reach for it. Pictures with such places keep the
 //! reach short.
 //!
-//! A disc that reaches over the edge of its surface misses the photons that would lie there: the share of its area. A
-//! ball beside a wall misses its cap; along a ray that ends at a wall that is r times the integral of (1-s)^2 (2+s)/4
-//! over s from 0 to 1, 3/16, over the cosine and the length of the way. Neither is missing where the estimate is divided
-//! by the part of its kernel that lies inside: on flat surfaces, and at the faces of a region of fog.
+//! A disc that reaches over the edge of its surface, or under a body that stands there, misses nothing: estimates are divided
+//! by the part of their kernel that lies on the surface. A ball beside a wall misses its cap; along a ray that ends at a wall
+//! that is r times the integral of (1-s)^2 (2+s)/4 over s from 0 to 1, 3/16, over the cosine and the length of the way,
+//! unless the estimate is divided by the part of its kernel that lies inside, as at the faces of a region of fog.
 
 use super::Grid;
 use super::look::View;
@@ -129,20 +129,14 @@ fn blurred(
     }
 }
 
-/// What a pixel's discs and balls miss beyond edges.
+/// What a pixel's balls miss beyond a wall.
 fn missing(view: &View, radii: Radii, of: impl Fn(Layer) -> f64) -> f64 {
-    let mut error = 0.0;
-    if view.surface.is_some() {
-        for (layer, radius) in [(Layer::Indirect, radii.global), (Layer::Caustic, radii.caustic)] {
-            error += if radius > 0.0 { view.missing * of(layer) } else { 0.0 };
-        }
-    }
     let (length, _) = view.medium;
     if radii.volume > 0.0 && length > 0.0 && view.surface.is_some() && !view.is_at_face {
         let cap = (3.0 / 16.0 * radii.volume / view.cosine.max(0.05) / length).min(1.0);
-        error += cap * of(Layer::Multiple);
+        return cap * of(Layer::Multiple);
     }
-    error
+    0.0
 }
 
 /// The mean of the values up to `far` pixels away in both directions.
@@ -245,7 +239,6 @@ mod tests {
                 cosine: 1.0,
                 distance: 1.0,
                 medium: (0.0, 0.0),
-                missing: 0.0,
                 is_at_face: false,
             }
         };
@@ -313,7 +306,7 @@ mod tests {
         assert!(without.iter().all(|&e| e == 0.0));
     }
 
-    /// A step between two surfaces is no blur, the same step on one surface is; what lies off the surface is missing.
+    /// A step between two surfaces is no blur, the same step on one surface is.
     #[test]
     fn other_surfaces_are_no_part_of_a_footprint() {
         let radii = Radii { caustic: 0.06, ..Radii::default() };
@@ -325,9 +318,6 @@ mod tests {
             view.surface = view.surface.map(|(p, _)| (p, DVec3::X));
         }
         assert!(of(&other, &step, radii)[beside] < 1e-12);
-        other[beside].missing = 0.25;
-        let error = of(&other, &step, radii)[beside];
-        assert!((error - 0.25 * 0.5).abs() < 1e-12, "{error}");
     }
 
     /// A ray of length 2 that ends at a wall, balls of radius 0.1, all light from the volume map: 3/16 of 0.05; nothing

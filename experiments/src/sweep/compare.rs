@@ -211,7 +211,7 @@ pub fn shrinking(
     has_media: bool,
 ) -> Check {
     let (small, large) = (part(&maps.small), part(&maps.large));
-    let (on_surfaces, in_media) = ((1.0 / FACTOR as f64).sqrt(), (1.0 / FACTOR as f64).cbrt());
+    let (on_surfaces, in_media) = (1.0 / libm::sqrt(FACTOR as f64), 1.0 / libm::cbrt(FACTOR as f64));
     let mut tests = Vec::new();
     for index in (0..CELLS).filter(|index| knows(Cell::of(*index).layer)) {
         let cell = Cell::of(index);
@@ -247,4 +247,107 @@ pub fn shrinking(
         tests.extend(test(cell.name(), &large.moments(index), &reference_of(index), allowed));
     }
     Check::new(name, tests)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::measure::{Batch, Seen};
+    use super::*;
+    use turbid::math::{ln, sin_cos};
+    use turbid::rng::{Purpose, Stream};
+
+    /// Batches of noise of 2 per cent about 1, shifted by layer; red, green and blue by 1, 2 and 3.
+    fn made(set: u64, count: usize, shift: impl Fn(Cell) -> f64) -> Measured {
+        let mut stream = Stream::new(5, Purpose::Synthetic, set, 0);
+        let mut normal =
+            || (-2.0 * ln(stream.open_unit())).sqrt() * sin_cos(std::f64::consts::TAU * stream.unit()).1;
+        let mut batch = |_| -> Batch {
+            std::array::from_fn(|index| {
+                let cell = Cell::of(index);
+                (cell.channel + 1) as f64 * (1.0 + shift(cell)) * (1.0 + 0.02 * normal())
+            })
+        };
+        Measured { batches: (0..count).map(&mut batch).collect() }
+    }
+
+    fn seen(all: Measured) -> Seen {
+        Seen { all, ..Seen::default() }
+    }
+
+    #[test]
+    fn cells_have_their_places() {
+        let names: std::collections::BTreeSet<String> = (0..CELLS).map(|i| Cell::of(i).name()).collect();
+        assert_eq!(names.len(), CELLS);
+        assert_eq!(Cell::of(0).name(), "emission.r top left");
+        assert_eq!(Cell::of(CELLS - 1).name(), "multiple.b bottom right");
+        let measured = made(0, 64, |cell| cell.quarter as f64);
+        for index in 0..CELLS {
+            let (a, b) = (measured.flipped().moments(index), measured.moments(index ^ 1));
+            assert_eq!((a.mean(), Cell::of(index).quarter / 2), (b.mean(), Cell::of(index ^ 1).quarter / 2));
+        }
+    }
+
+    /// Right pairs, 100 of 72 numbers: no alarm at 10^-6. One number of one is off by what the comparison says it sees.
+    #[test]
+    fn two_means_differ_where_they_do() {
+        let alarms = |check: &Check| check.tests.iter().filter(|t| t.is_suspicious()).count();
+        for set in 0..100 {
+            let (a, b) = (made(2 * set, BATCHES, |_| 0.0), made(2 * set + 1, BATCHES, |_| 0.0));
+            let check = unbiased("a", &a, &b, |_| true);
+            assert_eq!((check.tests.len(), alarms(&check)), (CELLS, 0), "{:?}", check.worst());
+            // 0.02 sqrt(2/64) times 7.3 (126 degrees of freedom).
+            assert!((check.smallest.unwrap() - 0.0266).abs() < 0.003, "{:?}", check.smallest);
+        }
+        let dark = Cell::of(40);
+        let wrong = made(1000, BATCHES, |cell| if cell == dark { -0.035 } else { 0.0 });
+        let check = unbiased("a", &wrong, &made(1001, BATCHES, |_| 0.0), |_| true);
+        assert_eq!((alarms(&check), check.worst().unwrap().cell.clone()), (1, dark.name()));
+    }
+
+    /// An error that falls with the radius is none; one that stays, or a layer that is missing, is one; layers without a map
+    /// may have none at all.
+    #[test]
+    fn errors_must_shrink() {
+        let reference = made(1, BATCHES, |_| 0.0);
+        let of = |small: f64, large: f64, plain: f64| {
+            let has_map =
+                |cell: Cell| matches!(cell.layer, Layer::Caustic | Layer::Indirect | Layer::Multiple);
+            let with = |x: f64| move |cell: Cell| if has_map(cell) { x } else { 0.0 };
+            let maps = ByMaps {
+                rays: seen(made(2, BATCHES, |cell| if has_map(cell) { 0.0 } else { plain })),
+                small: seen(made(3, BATCHES, with(small))),
+                large: seen(made(4, super::super::measure::LARGE_MAPS, with(large))),
+            };
+            let check = shrinking("a", &maps, |s| &s.all, &reference, |_| true, true);
+            let mut layers: Vec<String> =
+                check.tests.iter().filter(|t| t.is_suspicious()).map(|t| t.cell.clone()).collect();
+            layers.iter_mut().for_each(|cell| cell.truncate(cell.find('.').unwrap_or(0)));
+            layers.dedup();
+            layers.join(" ")
+        };
+        assert_eq!(of(0.0, 0.0, 0.0), "");
+        // In proportion to r: on surfaces 0.35 of it stays, in media half.
+        assert_eq!(of(-0.4, -0.14, 0.0), "");
+        assert_eq!(of(-0.4, -0.19, 0.0), "caustic");
+        assert_eq!(of(-0.2, -0.2, 0.0), "caustic indirect multiple");
+        assert_eq!(of(-1.0, -1.0, 0.0), "caustic indirect multiple");
+        assert_eq!(of(0.0, 0.0, 0.05), "emission direct single");
+    }
+
+    /// A method that found nothing is wrong where there is much, and knows nothing where there is little.
+    #[test]
+    fn nothing_is_no_number() {
+        let much = made(1, BATCHES, |_| 0.0);
+        let without = |light: f64| {
+            let change = |batch: &Batch, to: f64| {
+                let mut batch = *batch;
+                batch[3] = to * batch[3];
+                batch
+            };
+            let with = |to: f64| Measured { batches: much.batches.iter().map(|b| change(b, to)).collect() };
+            unbiased("a", &with(0.0), &with(light), |_| true)
+        };
+        assert!(without(10.0).tests.iter().any(|t| t.p < 1e-12));
+        assert!(without(0.1).tests.iter().all(|t| t.p == 1.0));
+    }
 }

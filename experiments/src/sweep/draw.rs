@@ -435,7 +435,7 @@ impl Pen {
             return;
         }
         // Something inside, away from the boundary.
-        let inner = short(half * self.within(0.2, 0.55));
+        let inner = short(half * self.within(0.3, 0.55));
         match self.pick(&[(0, 0.5), (1, 0.25), (2, 0.15), (3, 0.1)]) {
             0 => {}
             1 => {
@@ -705,7 +705,11 @@ impl Pen {
                 let dir = DVec3::new(self.within(-0.5, 0.5), -1.0, self.within(-0.5, 0.5));
                 let dir = if self.setting == Setting::Corner { DVec3::new(-0.4, -1.0, -0.4) } else { dir };
                 let is_delta = self.chance(if self.specular { 0.05 } else { 0.25 });
-                let radius = if is_delta { 0.0 } else { short(self.within(2.0, 25.0)) };
+                let radius = if is_delta {
+                    0.0
+                } else {
+                    short(if self.specular { self.within(10.0, 30.0) } else { self.within(2.0, 25.0) })
+                };
                 let mut keys = toml::Table::new();
                 keys.insert("dir".into(), array(&rounded(dir)));
                 let irradiance = self.tinted(short(0.5 * power));
@@ -751,7 +755,8 @@ impl Pen {
     }
 
     fn area(&mut self, at: DVec3, power: f64) -> Value {
-        let half = short(self.within(0.1, 0.2));
+        // Large enough that paths find them by mirrors and through glass.
+        let half = short(if self.specular { self.within(0.16, 0.24) } else { self.within(0.1, 0.2) });
         let (shape, name) = match self.pick(&[(0, 0.35), (1, 0.35), (2, 0.15), (3, 0.08), (4, 0.07)]) {
             0 => (shapes::sphere(at, half), "ball lamp"),
             1 => {

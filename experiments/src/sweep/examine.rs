@@ -182,7 +182,7 @@ fn once(
 ) -> anyhow::Result<Once> {
     stage("scene");
     let scene = text.scene()?;
-    let camera = scene.camera().ok_or_else(|| anyhow::anyhow!("the scene has no camera"))?.clone();
+    let camera = *scene.camera().ok_or_else(|| anyhow::anyhow!("the scene has no camera"))?;
     let mut examined = Examined::default();
     let mut checks = Vec::new();
     // A camera that is shut in is refused by every method, in words.

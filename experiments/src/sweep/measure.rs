@@ -3,16 +3,19 @@
 //! How much is done is decided by counts of a pilot, rays and look-ups, so that results are a function of the seed; the clock
 //! only stops what takes far longer than its counts say.
 
+use crate::gallery::light::is_specular_ahead;
 use cpu_time::ProcessTime;
 use turbid::Spectrum;
 use turbid::error::Error;
-use turbid::integrators::mapper::{Mapper, Report, Settings};
+use turbid::estimators::Gather;
+use turbid::integrators::mapper::{Mapper, Report, Settings, scene_size};
 use turbid::integrators::{Layer, Layers, light_tracing, path};
-use turbid::math::Ray;
+use turbid::math::{Positive, Ray};
+use turbid::medium::Medium;
 use turbid::photons::Emitter;
 use turbid::photons::maps::{Amount, Emitted, Indirect, MapReport, MapSettings, Maps, counts, fill_counted};
 use turbid::rng::{Purpose, Stream, Work};
-use turbid::scene::{Camera, Scene, Target};
+use turbid::scene::{Camera, Scene};
 use turbid::stats::Moments;
 use turbid::transport::{Progress, Roulette, Step, Visitor, Walker, walk};
 
@@ -178,25 +181,6 @@ fn means(mut sums: Batch, counts: [f64; 4]) -> Batch {
         *sum /= counts[cell % 4];
     }
     sums
-}
-
-/// Whether the first body on a ray, filters apart, is specular: such places are left out of what is compared with light
-/// tracing, which knows only what is seen straight.
-fn is_specular_ahead(scene: &Scene, ray: &Ray) -> bool {
-    if !scene.plan().has_specular {
-        return false;
-    }
-    let (mut ray, mut from) = (*ray, None);
-    while let Some(found) = scene.hit(&ray, from) {
-        let Target::Object(index) = found.target else { return false };
-        let surface = &scene.objects()[index].surface;
-        if surface.is_event() {
-            return surface.is_specular();
-        }
-        ray = Ray::new(ray.at(found.hit.t), ray.dir);
-        from = Some(found.start());
-    }
-    false
 }
 
 /// A whole picture, and of it what is seen straight.
@@ -450,14 +434,9 @@ pub struct ByMaps {
     pub large: Seen,
 }
 
-/// How large a scene is \[L\]: as the command says it.
-fn size(scene: &Scene) -> f64 {
-    scene.bounds().map_or(1.0, |ball| 2.0 * ball.radius() / 3.0f64.sqrt())
-}
-
-/// Gathering rays of a sample, and steps of a march across the scene: any number has the same mean.
+/// Gathering rays of a sample, and steps of a march in homogeneous media over the command's: any number has the same mean.
 const RAYS: u32 = 4;
-const MARCH: f64 = 5.0;
+const LONGER: f64 = 4.0;
 /// Photons of an estimate, the command's default.
 const NEAREST: usize = 100;
 /// Steps that a look-up in a map takes as long as.
@@ -536,17 +515,18 @@ pub fn maps(
     Ok(made)
 }
 
-/// How the command reads maps by default, with fewer gathering rays and longer steps.
+/// How the command reads maps by default, with fewer gathering rays, and longer steps where they may be long.
 fn settings(scene: &Scene, is_large: bool) -> Result<Settings, Failure> {
-    let size = size(scene);
-    let mut settings = Settings::for_size(size, NEAREST)?;
+    let mut settings = Settings::for_scene(scene, NEAREST)?;
     settings.gather_rays = RAYS;
-    settings.march.adaptive = None;
-    settings.march.step = turbid::math::Positive::new("the step", size / MARCH)?;
+    if scene.media().iter().all(Medium::is_homogeneous) {
+        settings.march.step = Positive::new("the step", settings.march.step.get() * LONGER)?;
+    }
     if !is_large {
-        let factor = FACTOR as f64;
-        let nearest = |reach: f64| turbid::estimators::Gather::nearest(NEAREST, 0.1 * size * reach);
-        let (on_surfaces, in_media) = (nearest(factor.sqrt())?, nearest(factor.cbrt())?);
+        let reach = 0.1 * scene_size(scene);
+        let nearest = |factor: f64| Gather::nearest(NEAREST, reach * factor);
+        let (on_surfaces, in_media) =
+            (nearest(libm::sqrt(FACTOR as f64))?, nearest(libm::cbrt(FACTOR as f64))?);
         settings.global.1 = on_surfaces;
         settings.caustic.1 = on_surfaces;
         settings.volume.1 = in_media;

@@ -33,7 +33,7 @@ impl Motion {
     /// The rotation of a number: 24 turn a cube into itself.
     pub fn rotation(number: usize) -> DMat3 {
         let axes = [DVec3::X, DVec3::Y, DVec3::Z];
-        let (a, sign) = (number % 3, if number / 3 % 2 == 0 { 1.0 } else { -1.0 });
+        let (a, sign) = (number % 3, if (number / 3).is_multiple_of(2) { 1.0 } else { -1.0 });
         let rest = [(a + 1) % 3, (a + 2) % 3];
         let second = [axes[rest[0]], axes[rest[1]], -axes[rest[0]], -axes[rest[1]]][number / 6 % 4];
         let first = axes[a] * sign;

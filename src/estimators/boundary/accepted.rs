@@ -90,8 +90,8 @@ impl Near {
 
 /// The accepted photons of a gather: all within a radius, or the k nearest of them.
 ///
-/// The k nearest are looked for among the 2k nearest photons of any kind, then 4k, and so on, until k accepted ones
-/// are among them: all that are nearer than the farthest one looked at have then been seen.
+/// The k nearest are looked for among the 5k/2 nearest photons of any kind, since a wall rejects half, then 5k, and so
+/// on, until k accepted ones are among them: all that are nearer than the farthest one looked at have then been seen.
 pub(super) fn accepted(
     tree: &PhotonTree,
     point: DVec3,
@@ -105,7 +105,7 @@ pub(super) fn accepted(
         Gather::NearestBiased { k, .. } => (Some(k.get()), Counted::UpToKth),
     };
     if let Some(k) = k {
-        let mut first = k;
+        let mut first = k + k / 4;
         loop {
             first *= 2;
             let near = Near::look(tree, point, cap, keeps, Some(first));

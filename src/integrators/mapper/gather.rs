@@ -76,11 +76,11 @@ impl GatherRay<'_, '_, '_> {
             // Every class again, each by its own means.
             let mut sum = matt.direct(self.mapper, self.report, stream);
             if let Some(map) = &maps.caustic {
-                sum += matt.irradiance(self.mapper, map, settings.caustic, &mut self.report.caustic);
+                sum += matt.irradiance(self.mapper, map, settings.caustic, &mut self.report.caustic, stream);
             }
             sum + self.mapper.gathered(matt, 1, self.report, stream)
         } else {
-            matt.irradiance(self.mapper, global, settings.global, &mut self.report.global)
+            matt.irradiance(self.mapper, global, settings.global, &mut self.report.global, stream)
         };
         self.found += reflected * arriving;
     }

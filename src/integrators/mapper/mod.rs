@@ -11,15 +11,15 @@
 //! ray in a sampled direction looks for them. Their photons, those of emitting media among them, bring what is neither
 //! direct nor scattered once.
 
+mod accepted;
 mod extents;
-mod flats;
 mod gather;
 mod settings;
 mod surface;
 mod volume;
 
 pub use extents::{MediumExtent, medium_extents};
-pub use settings::{Adaptive, March, Settings};
+pub use settings::{Adaptive, March, Settings, scene_size};
 
 use crate::Spectrum;
 use crate::estimators::Estimate;
@@ -31,7 +31,7 @@ use crate::photons::maps::Maps;
 use crate::rng::{Stream, Work};
 use crate::scene::{Scene, SceneHit, Start, Target};
 use crate::transport::{Roulette, Step, Visitor, Walker, emission, transmittance, walk};
-use flats::Flats;
+use accepted::Bodies;
 use std::ops::AddAssign;
 
 /// Where mirrors have taken nine tenths of the light, rays play roulette. Any value gives the same mean.
@@ -48,6 +48,8 @@ pub struct Gathers {
     pub radii: f64,
     /// Photons found.
     pub found: u64,
+    /// How many found photons on a surface of which no line found any: taken for dark.
+    pub unknown: u64,
 }
 
 impl Gathers {
@@ -70,6 +72,7 @@ impl AddAssign for Gathers {
         self.underfull += other.underfull;
         self.radii += other.radii;
         self.found += other.found;
+        self.unknown += other.unknown;
     }
 }
 
@@ -113,8 +116,8 @@ pub struct Mapper<'a> {
     settings: &'a Settings,
     /// Bodies that part photons from a point of a medium, where a rule of the laboratory asks for them.
     walls: Vec<Shape>,
-    /// Where flat surfaces end, if discs are to be clipped there.
-    flats: Option<Flats>,
+    /// Where surfaces end or are covered, if estimates are to be divided by what is left of their discs.
+    bodies: Option<Bodies>,
     /// Where each medium is.
     extents: Vec<MediumExtent>,
     /// Whether some light cannot be aimed at.
@@ -130,9 +133,9 @@ impl<'a> Mapper<'a> {
         };
         let has_unaimed =
             scene.plan().has_emission || scene.lights().iter().any(|light| !light.has_direction());
-        let flats = settings.clips_discs.then(|| Flats::new(scene));
+        let bodies = settings.clips_discs.then(|| Bodies::new(scene));
         let extents = medium_extents(scene);
-        Mapper { scene, maps, settings, walls, flats, extents, has_unaimed }
+        Mapper { scene, maps, settings, walls, bodies, extents, has_unaimed }
     }
 
     /// One sample of the radiance that arrives at the origin of `ray` from ahead [W/(L^2 sr)], by class, and the work.
@@ -187,7 +190,8 @@ impl<'a> Mapper<'a> {
         sum
     }
 
-    /// The same up to the first body that is no filter: filters bend nothing, and what is behind them is seen straight.
+    /// The same up to the first body that is an event: filters and index-matched boundaries bend nothing, and what is behind
+    /// them is seen straight.
     fn unaimed_beyond(&self, start: Walker, report: &mut Report, stream: &mut Stream) -> Spectrum {
         let (scene, mut walker, mut sum) = (self.scene, start, Spectrum::ZERO);
         loop {
@@ -195,18 +199,16 @@ impl<'a> Mapper<'a> {
             let hit = scene.hit(&walker.ray, walker.from);
             let end = hit.map_or(f64::INFINITY, |found| found.hit.t);
             sum += walker.weight * self.unaimed(&walker, end, stream);
-            let Some((found, filter)) = hit.and_then(|found| Some((found, scene.filter(found.target)?)))
-            else {
-                return sum;
-            };
-            let position = walker.ray.at(end);
+            let straight =
+                hit.and_then(|found| Some((found, scene.straight_on(&walker.ray, &found, walker.within)?)));
+            let Some((found, (fraction, within))) = straight else { return sum };
             let passed = transmittance(scene, &walker.ray, end, walker.within, stream);
-            let weight = walker.weight * passed * filter.transmittance(position, found.hit.uv);
+            let weight = walker.weight * passed * fraction;
             if weight.is_black() {
                 return sum;
             }
-            let ray = Ray::new(position, walker.ray.dir);
-            walker = Walker { ray, weight, from: Some(found.start()), ..walker };
+            let ray = Ray::new(walker.ray.at(end), walker.ray.dir);
+            walker = Walker { ray, weight, within, from: Some(found.start()), ..walker };
         }
     }
 }

@@ -5,6 +5,15 @@ use crate::estimators::boundary::{Rejection, Treatment};
 use crate::estimators::{Gather, Kernel};
 use crate::integrators::StepRule;
 use crate::math::Positive;
+use crate::scene::Scene;
+
+/// Steps across a scene, at most, that are taken without being asked for.
+const MOST_DEFAULT_STEPS: f64 = 1e3;
+
+/// How large a scene is \[L\]: the edge of the cube in the ball that holds its bodies; 1 for a scene without bounds.
+pub fn scene_size(scene: &Scene) -> f64 {
+    scene.bounds().map_or(1.0, |ball| 2.0 * ball.radius() / 3.0f64.sqrt())
+}
 
 /// How steps of a march become shorter where radiance changes.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -41,11 +50,13 @@ pub struct Settings {
     pub caustic: (Kernel, Gather),
     /// Photons of the volume map that an estimate uses.
     pub volume: (Kernel, Gather),
-    /// How far photons of a surface may lie off its tangent plane: sine of the angle seen from the point.
+    /// How far photons of a surface may lie off its tangent plane: sine of the angle seen from the point. On a sphere of
+    /// radius R they reach as far as 2 R slope.
     pub slope: f64,
-    /// Whether discs that reach beyond the edges of a flat surface, a rectangle or a side of a cuboid, are divided by the
-    /// part of the kernel that lies on it, as balls are by [`Treatment::Clipped`]. Then photons count that lie on the surface
-    /// itself: within a tenth of the slope.
+    /// Whether estimates on surfaces are divided by the part of the kernel's disc that accepted surface fills, as balls are by
+    /// [`Treatment::Clipped`]: less than 1 at edges, on curved bodies, and where another body covers the surface or stands on
+    /// it. Then flat surfaces, rectangles and the faces of cuboids and slabs, accept within a tenth of the slope. If not,
+    /// curved bodies smaller than a disc come out nearly black.
     pub clips_discs: bool,
     /// Rays of a final gathering, at least 1; not used if the global map is to be seen.
     pub gather_rays: u32,
@@ -90,6 +101,26 @@ impl Settings {
             treatment: Treatment::Clipped,
             rejection: Rejection::Off,
         })
+    }
+
+    /// What a picture of a scene takes where nothing is asked for: those of its [`scene_size`], steps of equal length.
+    ///
+    /// The longest step is a twentieth of the scene, as far as that is not longer than the shortest mean free path of media
+    /// whose density varies. There a step's light is asked for at one place of the step, and what reaches its near end is a
+    /// random product: over several mean free paths few places count much. In a homogeneous medium places are chosen by what
+    /// reaches the near end, and a step may be long.
+    ///
+    /// # Errors
+    /// those of [`Settings::for_size`]
+    pub fn for_scene(scene: &Scene, k: usize) -> Result<Self> {
+        let size = scene_size(scene);
+        let varying = scene.media().iter().filter(|medium| !medium.is_homogeneous());
+        let densest = varying.map(|medium| medium.highest_sigma_t().max()).fold(0.0, f64::max);
+        let step = (0.05 * size).min((1.0 / densest).max(size / MOST_DEFAULT_STEPS));
+        let mut settings = Settings::for_size(size, k)?;
+        settings.march.step = Positive::new("the step", step)?;
+        settings.march.adaptive = None;
+        Ok(settings)
     }
 
     /// Whether volume estimates follow a rule of the laboratory about walls.

@@ -2,7 +2,7 @@
 
 use super::{Eye, Gathers, Mapper};
 use crate::Spectrum;
-use crate::estimators::{Gather, Kernel, irradiance};
+use crate::estimators::{Gather, Kernel, irradiance, irradiance_seen};
 use crate::math::Ray;
 use crate::photons::PhotonMap;
 use crate::photons::maps::Indirect;
@@ -14,8 +14,8 @@ use crate::transport::{Walker, transmittance};
 use glam::DVec3;
 use std::f64::consts::PI;
 
-/// Photons of a flat surface lie on it, so that few of another one that meets it need be let in.
-const FLAT: f64 = 0.1;
+/// How many radii are tried, each a quarter of the one before, where too little of the disc lies on a surface: thin rods.
+const SMALLER: u32 = 4;
 
 /// A point of a matt surface that light leaves towards a walker.
 #[derive(Clone, Copy)]
@@ -61,17 +61,45 @@ impl<'w> Matt<'w> {
         map: &PhotonMap,
         (kernel, gather): (Kernel, Gather),
         count: &mut Gathers,
+        stream: &Stream,
     ) -> Spectrum {
-        let (normal, slope) = (self.normal, mapper.settings.slope);
-        let flats = mapper.flats.as_ref().filter(|flats| flats.is_flat(self.found));
-        let slope = if flats.is_some() { FLAT * slope } else { slope };
-        let estimate = irradiance(map, self.position, &Tangent { normal, slope }, kernel, gather);
-        count.add(&estimate);
-        match flats {
-            Some(flats) => {
-                estimate.value / flats.share(self.found, normal, self.position, kernel, estimate.radius)
+        let slope = mapper.settings.slope;
+        let place = mapper.bodies.as_ref();
+        let Some(place) = place.and_then(|b| b.place(self.found, self.position, self.normal, slope)) else {
+            let tangent = Tangent { normal: self.normal, slope, turn: 2.0 * slope };
+            let estimate = irradiance(map, self.position, &tangent, kernel, gather);
+            count.add(&estimate);
+            return estimate.value;
+        };
+        // The lines that look for covered surface use up no numbers of the path.
+        let mut lines = stream.clone();
+        let mut gather = gather.within(place.reach());
+        let mut attempt = 1;
+        let (estimate, part) = loop {
+            let estimate = irradiance(map, self.position, &place.tangent, kernel, gather);
+            if estimate.found == 0 {
+                count.add(&estimate);
+                return estimate.value;
             }
-            None => estimate.value,
+            let part = place.part(kernel, estimate.radius, &mut lines);
+            if part.is_known || attempt == SMALLER {
+                break (estimate, part);
+            }
+            attempt += 1;
+            gather = gather.within(0.25 * estimate.radius);
+        };
+        count.add(&estimate);
+        if part.share == 0.0 {
+            count.unknown += 1;
+            return Spectrum::ZERO;
+        }
+        match part.hiding {
+            None => estimate.value / part.share,
+            Some(hiding) => {
+                let is_seen = |photon| place.sees(photon, &hiding);
+                irradiance_seen(map, self.position, &place.tangent, kernel, gather, is_seen).value
+                    / part.share
+            }
         }
     }
 
@@ -101,11 +129,13 @@ impl Eye<'_, '_> {
         self.layers.direct += seen * matt.direct(mapper, &mut self.report, stream);
         if let Some(map) = &maps.caustic {
             self.layers.caustic +=
-                seen * matt.irradiance(mapper, map, settings.caustic, &mut self.report.caustic);
+                seen * matt.irradiance(mapper, map, settings.caustic, &mut self.report.caustic, stream);
         }
         let Some(global) = &maps.global else { return };
         let rest = match maps.indirect {
-            Indirect::Seen => matt.irradiance(mapper, global, settings.global, &mut self.report.global),
+            Indirect::Seen => {
+                matt.irradiance(mapper, global, settings.global, &mut self.report.global, stream)
+            }
             Indirect::Gathered => mapper.gathered(&matt, settings.gather_rays, &mut self.report, stream),
         };
         self.layers.indirect += seen * rest;

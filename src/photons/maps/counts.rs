@@ -1,10 +1,10 @@
 //! How many histories each map needs, and from where their photons leave.
 
-use super::pass::{Class, Run};
+use super::pass::{Class, Run, Stored};
 use super::{Amount, Emitted, MapSettings, PEAK_BYTES, PILOT, is_matt};
 use crate::error::{Error, Result};
 use crate::photons::importance::Importance;
-use crate::photons::{Emitter, check_end};
+use crate::photons::{BUILD_SECONDS, Emitter, check_end};
 use crate::rng::Purpose;
 use crate::scene::Scene;
 use crate::transport::{BLOCK, NoProgress};
@@ -21,7 +21,7 @@ pub struct Forecast {
     pub emitted: Emitted,
     /// Photons that the global, the volume and the caustic map will hold, about.
     pub stored: [f64; 3],
-    /// Time of the emission at the pilot's rate \[s\].
+    /// Time of emission, at the pilot's rate, and of building the trees, about \[s\].
     pub seconds: f64,
 }
 
@@ -115,18 +115,24 @@ fn piloted(
         };
         run.pass(histories, &NoProgress)
     };
-    // Photons stored by a history, and seconds that it takes.
+    // Where there are more threads than blocks of the pilot, some of them wait.
+    let a_history = |pass: &Stored, length: u64| {
+        let threads = rayon::current_num_threads() as f64;
+        let busy = threads.min(length.div_ceil(BLOCK) as f64) / threads;
+        pass.report.time.as_secs_f64() * busy / length as f64
+    };
+    // Photons stored by the pilots, and seconds that a history takes.
     let (mut rates, mut seconds) = ([0.0; 3], [0.0; 2]);
     let lengths = [length(&[0, 1]), length(&[2])];
     if lengths[0] > 0 {
         let pass = pilot(Class::Main(settings.indirect), lengths[0])?;
         (rates[0], rates[1]) = (pass.met[0] as f64, pass.met[1] as f64);
-        seconds[0] = pass.report.time.as_secs_f64() / lengths[0] as f64;
+        seconds[0] = a_history(&pass, lengths[0]);
     }
     if lengths[1] > 0 {
         let pass = pilot(Class::Caustic, lengths[1])?;
         rates[2] = pass.met[0] as f64;
-        seconds[1] = pass.report.time.as_secs_f64() / lengths[1] as f64;
+        seconds[1] = a_history(&pass, lengths[1]);
     }
     let number = |map: usize| -> u64 {
         let (_, is_needed, amount) = asked[map];
@@ -147,7 +153,9 @@ fn piloted(
         if length == 0 { 0.0 } else { rates[map] / length as f64 * numbers[map] as f64 }
     });
     let main = emitted.global.max(emitted.volume) as f64;
-    let seconds = seconds[0] * main + seconds[1] * emitted.caustic as f64;
+    let threads = rayon::current_num_threads() as f64;
+    let built = BUILD_SECONDS * stored.iter().sum::<f64>() / threads;
+    let seconds = seconds[0] * main + seconds[1] * emitted.caustic as f64 + built;
     Ok(Forecast { emitted, stored, seconds })
 }
 

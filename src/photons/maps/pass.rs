@@ -8,6 +8,7 @@ use crate::photons::{Emitter, Ledger, Photon, fold};
 use crate::rng::{Purpose, Stream};
 use crate::scene::{Scene, Target};
 use crate::transport::{Progress, Roulette, Step, Visitor, Walker, run_blocks, walk};
+use glam::DVec3;
 use std::time::Instant;
 
 /// Which photons a pass stores.
@@ -129,11 +130,14 @@ struct Store<'a> {
 }
 
 impl Store<'_> {
-    fn photon(&mut self, walker: &Walker, position: glam::DVec3) -> Photon {
+    /// A photon at a collision, or with the outward normal of the surface that it met.
+    fn photon(&mut self, walker: &Walker, position: DVec3, outward: DVec3) -> Photon {
         self.stored.non_finite += u64::from(!(walker.weight.is_finite() && position.is_finite()));
+        let side = if walker.ray.dir.dot(outward) < 0.0 { outward } else { -outward };
         Photon {
             position: self.run.scene.stage().map_or(position, |s| fold::into_cell(position, s.side)),
             dir: walker.ray.dir.as_vec3(),
+            normal: side.as_vec3(),
             power: walker.weight.0.as_vec3(),
             order: u16::try_from(walker.order).unwrap_or(u16::MAX),
             flags: walker.flags,
@@ -159,7 +163,7 @@ impl Visitor for Store<'_> {
                     && self.history < self.run.volume
                     && is_volume(arrival.walker.flags)
                 {
-                    let photon = self.photon(arrival.walker, arrival.position);
+                    let photon = self.photon(arrival.walker, arrival.position, DVec3::ZERO);
                     self.stored.met[1] += 1;
                     if !self.run.is_pilot {
                         self.medium.push(photon);
@@ -178,7 +182,7 @@ impl Visitor for Store<'_> {
                     Class::Caustic => is_caustic(flags),
                 };
                 if self.history < self.run.global && is_stored {
-                    let photon = self.photon(arrival.walker, arrival.position);
+                    let photon = self.photon(arrival.walker, arrival.position, found.hit.normal);
                     self.stored.met[0] += 1;
                     if !self.run.is_pilot {
                         self.surface.push(photon);

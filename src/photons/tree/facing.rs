@@ -1,5 +1,5 @@
-//! Searches on a surface: photons that lie along its tangent plane and arrive on its front. What is rejected sets no
-//! radius.
+//! Searches on a surface: photons that lie along its tangent plane, on surfaces that face the same way. What is rejected
+//! sets no radius.
 
 use super::boxes::Probe;
 use super::nearest::{Counted, Nearest, Shell, Sphere, share};
@@ -10,17 +10,30 @@ use super::{PhotonTree, Row};
 use glam::DVec3;
 use wide::f32x8;
 
-/// The tangent plane at a point of a surface.
+/// The tangent plane at a point of a surface: which photons, and which points of surfaces, count there.
 ///
-/// A photon at distance d of the point is accepted if it is at most `slope` d from the plane and if it travels against
-/// the normal. The bound grows with the distance, so that whether a photon is accepted does not depend on the radius; a
-/// surface of radius of curvature R leaves its plane by d^2/(2R), which is accepted as far as d = 2 R slope.
+/// What lies at distance d of the point is accepted if it is at most `slope` d from the plane, and if its own normal n, on
+/// the side where light arrives, is at most `turn` from the tangent's: |n - normal|. The bounds do not depend on the
+/// radius of a search, so that neither does whether a photon is accepted; and they ask for nothing but the place on a
+/// surface, so that the accepted part of the surface is known ([`Tangent::accepts`]). On a sphere of radius R the chord d
+/// lies d^2/(2R) off the plane and turns the normal by d/R: the bounds end at 2 R slope and R turn.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Tangent {
     /// Unit normal, on the side where light arrives.
     pub normal: DVec3,
     /// Largest sine between the plane and the way to a photon.
     pub slope: f64,
+    /// Largest distance of the normals, unit vectors: 2 sin of half the angle between them.
+    pub turn: f64,
+}
+
+impl Tangent {
+    /// Whether a point of a surface is accepted: the way to it from the tangent's own point \[L\], and its unit normal.
+    pub fn accepts(&self, way: DVec3, normal: DVec3) -> bool {
+        let height = way.dot(self.normal);
+        height * height <= self.slope * self.slope * way.length_squared()
+            && (normal - self.normal).length_squared() <= self.turn * self.turn
+    }
 }
 
 /// The plane as searches use it.
@@ -29,6 +42,8 @@ struct Sieve {
     slope2: f32x8,
     /// What rounding of stored coordinates can put a photon beside its plane, squared, in the tree's units.
     rounding2: f32x8,
+    /// Largest squared distance of normals.
+    turn2: f32x8,
 }
 
 impl Sieve {
@@ -37,19 +52,24 @@ impl Sieve {
         let normal = tangent.normal.to_array().map(splat);
         // Three coordinates of two points, each off by 2^-25 and by as much again in the products.
         let rounding = 12.0 / f64::from(1u32 << 25);
-        Sieve { normal, slope2: splat(tangent.slope * tangent.slope), rounding2: splat(rounding * rounding) }
-    }
-
-    fn along(&self, row: &Row) -> f32x8 {
-        row[0] * self.normal[0] + row[1] * self.normal[1] + row[2] * self.normal[2]
+        // Three coordinates of two unit normals, each off by 2^-25, and their differences.
+        let turn = tangent.turn + rounding;
+        Sieve {
+            normal,
+            slope2: splat(tangent.slope * tangent.slope),
+            rounding2: splat(rounding * rounding),
+            turn2: splat(turn * turn),
+        }
     }
 
     /// Squared distances of the photons of a row, infinite where they are rejected.
     #[inline(always)]
-    fn squared(&self, probe: &Probe, positions: &Row, dirs: &Row, squared: f32x8) -> f32x8 {
-        let height = self.along(&probe.offsets(positions));
+    fn squared(&self, probe: &Probe, positions: &Row, normals: &Row, squared: f32x8) -> f32x8 {
+        let [x, y, z] = probe.offsets(positions);
+        let height = x * self.normal[0] + y * self.normal[1] + z * self.normal[2];
         let is_along = (height * height).simd_le(self.slope2 * squared + self.rounding2);
-        let is_facing = self.along(dirs).simd_lt(f32x8::ZERO);
+        let [x, y, z] = [0, 1, 2].map(|axis| normals[axis] - self.normal[axis]);
+        let is_facing = (x * x + y * y + z * z).simd_le(self.turn2);
         (is_along & is_facing).select(squared, f32x8::splat(f32::INFINITY))
     }
 }
@@ -66,7 +86,11 @@ impl PhotonTree {
         visitor: &mut impl Visit,
     ) -> Nearest {
         let point = self.units.relative(centre);
-        if self.stored < k || !centre.is_finite() || point.abs().max_element() > LIMIT {
+        if self.stored < k
+            || self.normals.is_empty()
+            || !centre.is_finite()
+            || point.abs().max_element() > LIMIT
+        {
             return Nearest::Underfull;
         }
         let cap = self.units.shrink(max_radius).min(4.0 * LIMIT);
@@ -109,7 +133,7 @@ impl PhotonTree {
     /// 2^60 times the map's size.
     pub fn within_facing(&self, centre: DVec3, tangent: &Tangent, radius: f64, visitor: &mut impl Visit) {
         let point = self.units.relative(centre);
-        if !centre.is_finite() || point.abs().max_element() > LIMIT {
+        if self.normals.is_empty() || !centre.is_finite() || point.abs().max_element() > LIMIT {
             return;
         }
         let r = self.units.shrink(radius).min(4.0 * LIMIT);
@@ -143,7 +167,7 @@ impl Scratch {
                 let row = 2 * block + half as u32;
                 let squared = probe.squared_distances(positions);
                 if squared.simd_le(bound).any() {
-                    let squared = sieve.squared(probe, positions, &tree.dirs[row as usize], squared);
+                    let squared = sieve.squared(probe, positions, &tree.normals[row as usize], squared);
                     self.rows[end] = row;
                     self.squared[end] = squared;
                     end += usize::from(squared.simd_le(bound).any());

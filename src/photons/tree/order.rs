@@ -212,9 +212,9 @@ fn widest_axis(entries: &[Entry]) -> usize {
 #[cold]
 fn compare_records(a: &Entry, b: &Entry, photons: &Records) -> Ordering {
     let record = |entry: &Entry| {
-        let Photon { position: p, dir, power, order, flags } = *photons.get(entry.index);
+        let Photon { position: p, dir, normal, power, order, flags } = *photons.get(entry.index);
         let place = [p.x, p.y, p.z].map(key);
-        let rest = [dir.x, dir.y, dir.z, power.x, power.y, power.z].map(|c| key(f64::from(c)));
+        let rest = [dir, normal, power].map(|v| v.to_array().map(|c| key(f64::from(c))));
         (entry.position.map(|c| key(f64::from(c))), place, rest, order, flags_key(flags))
     };
     record(a).cmp(&record(b))

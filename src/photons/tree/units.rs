@@ -25,10 +25,12 @@ impl Units {
         let mut photons = photons.peekable();
         let start = photons.peek().map_or(DVec3::ZERO, |photon| photon.position);
         let (mut lower, mut upper, mut non_finite) = (start, start, 0);
-        for Photon { position, dir, power, .. } in photons {
+        for Photon { position, dir, normal, power, .. } in photons {
             lower = lower.min(*position);
             upper = upper.max(*position);
-            non_finite += u64::from(!(position.is_finite() && dir.is_finite() && power.is_finite()));
+            non_finite += u64::from(
+                !(position.is_finite() && dir.is_finite() && normal.is_finite() && power.is_finite()),
+            );
         }
         match non_finite {
             0 => Ok(Units::new(lower, upper)),
