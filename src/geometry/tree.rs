@@ -58,6 +58,15 @@ impl Tree {
                 "1e-100 to 1e100",
             ));
         }
+        // Boxes in one far place have no room between them in single precision, or their middle is none that f64 has.
+        let farthest = min.abs().max(max.abs()).max_element();
+        if farthest > 1e100 {
+            return Err(Error::out_of_range(
+                format!("a coordinate of the {what}"),
+                farthest,
+                "up to 1e100 in size",
+            ));
+        }
         let scale = HALF / reach;
         let pad = PAD.max(2.0 * margin * scale);
         let narrow = |p: DVec3| ((p - center) * scale).as_vec3a();

@@ -52,16 +52,7 @@ pub(super) fn check(parts: &Parts) -> Result<Option<Stage>> {
     check_fold(parts, stage.as_ref())?;
     check_apart(parts)?;
     coincident::check(parts)?;
-    for region in &parts.regions {
-        let far = extent(&region.shape) * region.medium.highest_sigma_t().max();
-        if far > MAX_EXTENT_OVER_MFP {
-            return Err(Error::out_of_range(
-                "distance from the origin over the mean free path",
-                far,
-                "at most 1e9",
-            ));
-        }
-    }
+    check_extents(parts)?;
     for sensor in &parts.sensors {
         let is_finite = match sensor.quantity {
             Quantity::Fluence(p) => {
@@ -98,6 +89,35 @@ pub(super) fn check(parts: &Parts) -> Result<Option<Stage>> {
         }
     }
     Ok(stage)
+}
+
+/// Whether flights are resolved wherever media are: in the regions, and in interiors as far as their boundaries reach.
+fn check_extents(parts: &Parts) -> Result<()> {
+    let check = |name: &str, far: f64, medium: &Medium| {
+        let sigma_t = medium.highest_sigma_t().max();
+        if sigma_t > 0.0 && (far * sigma_t).total_cmp(&MAX_EXTENT_OVER_MFP).is_gt() {
+            let what = format!("{name}: distance from the origin over the mean free path");
+            return Err(Error::out_of_range(what, far * sigma_t, "at most 1e9"));
+        }
+        Ok(())
+    };
+    for (i, region) in parts.regions.iter().enumerate() {
+        check(&format!("regions[{i}]"), extent(&region.shape), &region.medium)?;
+    }
+    for (number, interior) in parts.interiors.iter().enumerate() {
+        let Some(medium) = &interior.medium else { continue };
+        for object in dielectrics(parts) {
+            let Surface::Dielectric(dielectric) = &object.surface else { continue };
+            if dielectric.inside() == number || dielectric.outside() == number {
+                let far = match object.shape.bounds() {
+                    Some((center, radius)) => center.abs().max_element() + radius,
+                    None => extent(&object.shape),
+                };
+                check(&format!("interior {}", interior.name), far, medium)?;
+            }
+        }
+    }
+    Ok(())
 }
 
 /// Whether every part is of a size that can be computed with.

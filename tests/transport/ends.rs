@@ -156,7 +156,7 @@ fn a_white_ball_in_a_medium_that_is_lit_from_outside_is_a_furnace() {
     let scene = bounded(vec![fog], objects, vec![isotropic(shell, Faces::Both)]);
     let at = Quantity::Fluence(DVec3::X * 0.5);
     let fluence = crate::support::run::paths(&scene, at, Orders::ALL, 1 << 14, 5);
-    verdict::agrees("fluence of the furnace", &fluence[0], (4.0, 1e-14), 0.05, 5);
+    verdict::agrees("fluence of the furnace", &fluence[0], (4.0, 1e-14), 0.2, 5);
     let booked = pass(&scene, &[], 1 << 12, 5, |_| false).ledger;
     assert!((booked.escaped / booked.emitted - 1.0).abs() < 1e-12);
 }

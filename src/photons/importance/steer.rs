@@ -123,6 +123,10 @@ impl Importance {
             }
             *cumulated = sum;
         }
+        // Nothing that left an event was ever read, as far as the pilot saw: no direction is better than another.
+        if sum == 0.0 {
+            return Some(walker);
+        }
         let probability = |index: usize| (sums[index] - if index > 0 { sums[index - 1] } else { 0.0 }) / sum;
         let mut dir = walker.ray.dir;
         if stream.unit() < TURNED {

@@ -149,7 +149,8 @@ impl PhaseFile {
 impl DensityFile {
     fn density(&self, folder: &Path) -> Result<Density> {
         match self {
-            DensityFile::Grid(grid) => Density::grid(grid.grid(folder)?),
+            DensityFile::Grid(grid) => Density::grid(grid.grid(folder)?)
+                .map_err(|e| e.within(&format!("grid {}", folder.join(&grid.file).display()))),
             DensityFile::Cloud(cloud) => {
                 let plain = CloudShape::plain(cloud.center.into(), cloud.radii.into());
                 let look = CloudShape {
