@@ -10,13 +10,16 @@ use clap::ValueEnum;
 use turbid::estimators::Gather;
 use turbid::output::{print, write_rows};
 use turbid::scene::{Orders, Scene};
-use turbid::sensor::{PathSettings, PhotonSettings, Reading, by_paths, by_photons_in_passes, forecast};
+use turbid::sensor::{
+    NoError, PathSettings, PhotonSettings, Reading, by_paths, by_photons_in_passes, forecast,
+};
 
 /// Measure the sensors of a scene by paths or by photons.
 ///
 /// Prints the columns sensor, quantity, unit, mean, std_error, n. Paths and tallies have n = histories; estimates
 /// from photon maps have n = maps: the standard error is that between independent maps, and one map has none, since all its
-/// estimates share its photons.
+/// estimates share its photons. Where no error can be trusted a word says why: one-map, nothing-found, too-few (fewer than
+/// 1,000 paths contribute), heavy-tail.
 #[derive(clap::Args)]
 #[command(allow_negative_numbers = true)]
 pub struct Measure {
@@ -105,7 +108,7 @@ impl Measure {
             With::Path => self.measure_by_paths(&scene),
             With::Photons => self.measure_by_photons(&scene),
         })?;
-        notes.extend(heavy_tails(&readings));
+        notes.extend(without_error(&readings));
         let format = self.format.format();
         print(|out| write_rows(out, &readings, format)).context("standard output")?;
         for text in notes {
@@ -148,7 +151,11 @@ impl Measure {
             );
         }
         if self.passes > settings.photons {
-            bail!("--passes is {}; allowed: at most one a photon of a map, {}", self.passes, settings.photons);
+            bail!(
+                "--passes is {}; allowed: at most one a photon of a map, {}",
+                self.passes,
+                settings.photons
+            );
         }
         let ahead = forecast(scene, &settings, self.passes)?;
         self.memory.check(&format!("a map of {:.2e} photons", ahead.stored), ahead.bytes, 0.0, |part| {
@@ -192,19 +199,15 @@ impl Measure {
     }
 }
 
-/// Names the readings whose standard error makes no interval.
-fn heavy_tails(readings: &[Reading]) -> Option<String> {
-    let heavy: Vec<String> = readings
-        .iter()
-        .filter(|r| r.is_heavy_tailed)
-        .map(|r| format!("{} {}", r.sensor, r.quantity))
-        .collect();
-    (!heavy.is_empty()).then(|| {
-        format!(
-            "heavy-tailed, so that no standard error can be given yet (variance of variance above 0.1): {}",
-            heavy.join(", ")
-        )
-    })
+/// Names the readings without a standard error, a line for each reason; that there is one map, the table says.
+fn without_error(readings: &[Reading]) -> Vec<String> {
+    let why = |why: NoError| {
+        let without = readings.iter().filter(|r| r.no_error == Some(why));
+        let names: Vec<String> = without.map(|r| format!("{} {}", r.sensor, r.quantity)).collect();
+        (!names.is_empty())
+            .then(|| format!("no standard error, {}: {}: {}", why.word(), why.reason(), names.join(", ")))
+    };
+    [NoError::Nothing, NoError::TooFew, NoError::HeavyTail].into_iter().filter_map(why).collect()
 }
 
 /// Half the cell, or a mean free path of the densest medium.

@@ -1,6 +1,6 @@
 //! A box along the axes.
 
-use super::Hit;
+use super::{Hit, Rectangle};
 use crate::error::{Error, Result};
 use crate::faults::{Fault, planted};
 use crate::math::{Interval, Ray};
@@ -137,6 +137,17 @@ impl Cuboid {
         p[(i + 2) % 3] = self.min[(i + 2) % 3] + e[(i + 2) % 3] * w;
         p[i] = if is_upper { self.max[i] } else { self.min[i] };
         (p, axis(i) * if is_upper { 1.0 } else { -1.0 })
+    }
+
+    /// Its faces as rectangles that face outwards; none of one that is too small or too thin for numbers to tell.
+    pub fn faces(&self) -> Vec<Rectangle> {
+        let mut faces = Vec::with_capacity(6);
+        for i in 0..3 {
+            let [u, v] = [(i + 1) % 3, (i + 2) % 3].map(|j| axis(j) * (self.max[j] - self.min[j]));
+            faces.extend(Rectangle::new(self.min, v, u));
+            faces.extend(Rectangle::new(self.max, -u, -v));
+        }
+        faces
     }
 
     /// Where the first number of [`Self::sample_surface`] goes from one face to the next, 0 and 1 included.

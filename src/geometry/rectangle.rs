@@ -5,6 +5,10 @@ use crate::error::{Error, Result};
 use crate::math::Ray;
 use glam::{DVec2, DVec3};
 
+/// Planes nearer than this part of the size and place of what lies in them are one: rounding is far below, and a gap that
+/// anybody means far above.
+const SAME: f64 = 1e-9;
+
 /// The points `corner + a u + b v` for a, b in [0, 1]; the edges u and v are perpendicular, the front is u x v.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Rectangle {
@@ -85,6 +89,37 @@ impl Rectangle {
         (low, low + DVec2::new(lu, lv))
     }
 
+    /// Its corners, in turn.
+    pub fn corners(&self) -> [DVec3; 4] {
+        [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]].map(|u| self.sample(u))
+    }
+
+    /// Whether it lies in one plane with another, up to a billionth of their sizes and places, and shares an area with it.
+    pub fn overlaps(&self, other: &Rectangle) -> bool {
+        // The larger one's normal is known best.
+        let (large, small) = if self.area() >= other.area() { (self, other) } else { (other, self) };
+        let far = large.corner.abs().max_element() + large.diagonal();
+        let least = SAME * far;
+        // Most are in other planes.
+        if large.height(small.corner).abs() > least {
+            return false;
+        }
+        let (mine, others) = (self.corners(), other.corners());
+        if small.corners().iter().any(|p| large.height(*p).abs() > least) {
+            return false;
+        }
+        let along = |corners: &[DVec3; 4], axis: DVec3| {
+            let at = corners.map(|p| p.dot(axis));
+            at.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), x| (low.min(*x), high.max(*x)))
+        };
+        // Apart if a line along a side of either parts them.
+        [self.u, self.v, other.u, other.v].iter().all(|edge| {
+            let axis = edge.normalize();
+            let ((low, high), (other_low, other_high)) = (along(&mine, axis), along(&others, axis));
+            high.min(other_high) - low.max(other_low) > least
+        })
+    }
+
     /// Length of the diagonal \[L\].
     pub fn diagonal(&self) -> f64 {
         (self.u + self.v).length()
@@ -114,5 +149,33 @@ impl Rectangle {
     /// A uniform point.
     pub fn sample(&self, [a, b]: [f64; 2]) -> DVec3 {
         self.corner + self.u * a + self.v * b
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn rectangle(corner: [f64; 3], u: [f64; 3], v: [f64; 3]) -> Rectangle {
+        Rectangle::new(corner.into(), u.into(), v.into()).unwrap()
+    }
+
+    #[test]
+    fn rectangles_share_an_area_or_do_not() {
+        let one = rectangle([0.0, 0.0, 0.3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]);
+        let share = |corner, u, v| {
+            let other = rectangle(corner, u, v);
+            assert_eq!(one.overlaps(&other), other.overlaps(&one));
+            one.overlaps(&other)
+        };
+        let (x, y, diagonal) = ([1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.5, 0.5, 0.0]);
+        assert!(share([0.0, 0.0, 0.3], x, y) && share([0.5, -0.9, 0.3], y, x));
+        // Along an edge, at a corner, beside it, above it, across it.
+        assert!(!share([1.0, 0.0, 0.3], x, y) && !share([1.0, 1.0, 0.3], x, y));
+        assert!(!share([3.0, 0.0, 0.3], x, y) && !share([0.0, 0.0, 0.3 + 1e-7], x, y));
+        assert!(!share([0.5, 0.2, 0.0], [0.0, 0.0, 1.0], y));
+        // Turned, with its corner inside, and with boxes that overlap though the rectangles do not.
+        assert!(share([0.9, 0.9, 0.3], diagonal, [-0.5, 0.5, 0.0]));
+        assert!(!share([1.1, 0.85, 0.3], diagonal, [-0.1, 0.1, 0.0]));
     }
 }

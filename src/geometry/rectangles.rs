@@ -22,10 +22,12 @@ struct Block {
     v_squared: Column,
     /// Indices in the list.
     number: Column,
+    /// Index of the first one of those that lie in one place.
+    place: Column,
 }
 
 impl Block {
-    fn new(first: usize, members: &[Rectangle]) -> Self {
+    fn new(first: usize, members: &[Rectangle], places: &[usize]) -> Self {
         let number_of = |part: fn(&Rectangle) -> f64| -> Column {
             std::array::from_fn(|i| members.get(i).map_or(f64::NAN, part))
         };
@@ -41,6 +43,7 @@ impl Block {
             u_squared: number_of(|r| r.u().length_squared()),
             v_squared: number_of(|r| r.v().length_squared()),
             number: std::array::from_fn(|i| (first + i) as f64),
+            place: std::array::from_fn(|i| places.get(i).map_or(f64::NAN, |place| *place as f64)),
         }
     }
 }
@@ -126,18 +129,23 @@ impl<S: Simd> Rays<S> {
 
 /// A list of rectangles that answers what each of them would, bit for bit.
 ///
+/// Those that lie in one plane and overlap are in one *place*: a ray that starts on one of them meets none of the others
+/// there, and of those that it meets at a point the first one counts, whatever rounding says.
+///
 /// Nothing branches on what single rectangles answer: which of them a ray meets is as good as random, and a branch
 /// foretold wrongly costs as much as a register full of rectangles.
 #[derive(Debug, Clone, Default)]
 pub struct Rectangles {
     members: Vec<Rectangle>,
+    /// For each the first one of its place, and whether there are others.
+    places: Vec<(usize, bool)>,
     blocks: Vec<Block>,
     arch: Arch,
 }
 
 impl PartialEq for Rectangles {
     fn eq(&self, other: &Self) -> bool {
-        self.members == other.members
+        self.members == other.members && self.places == other.places
     }
 }
 
@@ -167,7 +175,8 @@ impl WithSimd for Nearest<'_> {
             let (block, go) = (&self.list.blocks[i / goes], i % goes);
             let (t, met) = rays.meet(block, go, nearest);
             let numbers = lanes::<S>(&block.number, go);
-            let is_nearer = simd.and_m64s(met, simd.not_m64s(simd.equal_f64s(numbers, except)));
+            let places = lanes::<S>(&block.place, go);
+            let is_nearer = simd.and_m64s(met, simd.not_m64s(simd.equal_f64s(places, except)));
             nearest = simd.select_f64s(is_nearer, t, nearest);
             number = simd.select_f64s(is_nearer, numbers, number);
         }
@@ -196,8 +205,8 @@ impl WithSimd for Blocks<'_> {
         for i in 0..self.list.members.len().div_ceil(S::F64_LANES) {
             let (block, go) = (&self.list.blocks[i / goes], i % goes);
             let (_, met) = rays.meet(block, go, end);
-            let numbers = lanes::<S>(&block.number, go);
-            let is_excepted = simd.or_m64s(simd.equal_f64s(numbers, one), simd.equal_f64s(numbers, other));
+            let places = lanes::<S>(&block.place, go);
+            let is_excepted = simd.or_m64s(simd.equal_f64s(places, one), simd.equal_f64s(places, other));
             if simd.first_true_m64s(simd.and_m64s(met, simd.not_m64s(is_excepted))) < S::F64_LANES {
                 return true;
             }
@@ -209,21 +218,46 @@ impl WithSimd for Blocks<'_> {
 impl Rectangles {
     /// The list of these.
     pub fn new(members: Vec<Rectangle>) -> Self {
-        let blocks =
-            members.chunks(WIDTH).enumerate().map(|(i, chunk)| Block::new(WIDTH * i, chunk)).collect();
-        Rectangles { members, blocks, arch: Arch::new() }
+        let mut firsts: Vec<usize> = (0..members.len()).collect();
+        for (i, rectangle) in members.iter().enumerate() {
+            for j in 0..i {
+                if firsts[j] != firsts[i] && rectangle.overlaps(&members[j]) {
+                    let (low, high) = (firsts[i].min(firsts[j]), firsts[i].max(firsts[j]));
+                    firsts[..=i].iter_mut().filter(|first| **first == high).for_each(|first| *first = low);
+                }
+            }
+        }
+        let chunks = members.chunks(WIDTH).zip(firsts.chunks(WIDTH)).enumerate();
+        let blocks = chunks.map(|(i, (chunk, places))| Block::new(WIDTH * i, chunk, places)).collect();
+        let is_shared = |first: &usize| firsts.iter().filter(|other| *other == first).count() > 1;
+        let places = firsts.iter().map(|first| (*first, is_shared(first))).collect();
+        Rectangles { members, places, blocks, arch: Arch::new() }
     }
 
-    /// The nearest one ahead but `except`: its index and where the ray meets it; the first in the list of those at
-    /// the same distance.
+    /// The number of a rectangle's place.
+    fn place(&self, index: Option<usize>) -> f64 {
+        number(index.map(|index| self.places[index].0))
+    }
+
+    /// The nearest one ahead that is not in one place with `except`: its index and where the ray meets it; the first in
+    /// the list of those at the same distance.
     pub fn nearest(&self, ray: &Ray, except: Option<usize>) -> Option<(usize, Hit)> {
-        let (t, index) = self.arch.dispatch(Nearest { list: self, ray, except: number(except) });
-        (t < f64::INFINITY).then(|| (index as usize, self.members[index as usize].hit_at(ray, t)))
+        let (t, index) = self.arch.dispatch(Nearest { list: self, ray, except: self.place(except) });
+        if t == f64::INFINITY {
+            return None;
+        }
+        let mut index = index as usize;
+        if let (first, true) = self.places[index] {
+            let p = ray.at(t);
+            let mut here = (first..index).filter(|i| self.places[*i].0 == first);
+            index = here.find(|i| self.members[*i].covers(p)).unwrap_or(index);
+        }
+        Some((index, self.members[index].hit_at(ray, t)))
     }
 
-    /// Whether the ray meets one of them nearer than `end` \[L\], apart from these two.
+    /// Whether the ray meets one of them nearer than `end` \[L\], apart from those in one place with these two.
     pub fn block(&self, ray: &Ray, except: [Option<usize>; 2], end: f64) -> bool {
-        self.arch.dispatch(Blocks { list: self, ray, except: except.map(number), end })
+        self.arch.dispatch(Blocks { list: self, ray, except: except.map(|index| self.place(index)), end })
     }
 }
 
@@ -276,6 +310,34 @@ mod tests {
             hits += usize::from(found.is_some());
         }
         assert!(hits > 5_000, "{hits}");
+        assert!(list.places.iter().all(|(_, is_shared)| !is_shared));
         assert_eq!(Rectangles::default().nearest(&Ray::new(DVec3::ZERO, DVec3::X), None), None);
+    }
+
+    /// A picture on a tilted wall, whose planes differ by rounding: it is met, the wall beside it, and no ray that starts on
+    /// either meets the other.
+    #[test]
+    fn the_first_of_those_in_one_place_counts() {
+        let mut stream = Stream::new(2, Purpose::Synthetic, 0, 0);
+        let frame = Frame::new(warp::square_to_sphere(stream.pair()));
+        let at = |a: f64, b: f64| DVec3::splat(0.1) + frame.x * a + frame.y * b;
+        let rectangle =
+            |low: f64, side: f64| Rectangle::new(at(low, low), frame.x * side, frame.y * side).unwrap();
+        let elsewhere = Rectangle::new(at(0.0, 0.0) - frame.z, frame.x, frame.y).unwrap();
+        let list = Rectangles::new(vec![rectangle(0.37, 0.2), elsewhere, rectangle(-1.0, 3.0)]);
+        assert_eq!(list.places, [(0, true), (1, false), (0, true)]);
+        for _ in 0..10_000 {
+            let [a, b] = stream.pair();
+            let eye = at(0.3, 0.4) + frame.z * (0.5 + stream.unit());
+            let ray = Ray::new(eye, (at(a, b) - eye).normalize());
+            let (index, hit) = list.nearest(&ray, None).unwrap();
+            let is_on_picture = (0.37..=0.57).contains(&a) && (0.37..=0.57).contains(&b);
+            assert_eq!(index, if is_on_picture { 0 } else { 2 }, "{a} {b}");
+            let away = Ray::new(ray.at(hit.t), warp::square_to_sphere(stream.pair()).normalize());
+            let met = list.nearest(&away, Some(index));
+            assert!(met.is_none_or(|(other, _)| other == 1), "{met:?}");
+            // Towards the picture nothing of its place stands before it.
+            assert!(!list.block(&ray, [None, Some(0)], hit.t * (1.0 + 1e-15)));
+        }
     }
 }

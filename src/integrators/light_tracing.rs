@@ -13,7 +13,7 @@ use crate::rng::Stream;
 use crate::scene::{Camera, Scene, SceneHit, Start, Target};
 use crate::surface::Surface;
 use crate::transport::{
-    Arrival, EqualAngles, Flags, Roulette, Step, Visitor, Walker, span, transmittance, walk,
+    Arrival, EqualAngles, Flags, Roulette, Step, Visitor, Walker, connection, span, transmittance, walk,
 };
 use glam::{DVec2, DVec3};
 
@@ -92,8 +92,8 @@ impl<F: FnMut(Splat)> Tracer<'_, F> {
             return;
         }
         self.rays.shadow += 1;
-        let Some(passed) = self.scene.sees(&ray, event.from, distance) else { return };
-        let passed = passed * transmittance(self.scene, &ray, distance, walker.within, stream);
+        let start = (&ray, event.from, walker.within);
+        let Some(passed) = connection(self.scene, start, distance, None, stream) else { return };
         let cosine = -ray.dir.dot(self.camera.forward());
         let solid_angle = self.camera.pixel_area() * cosine * cosine * cosine;
         let value = weight * fraction * passed / (distance * distance * solid_angle);

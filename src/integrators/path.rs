@@ -4,7 +4,7 @@
 //! the transmittance; each event connects to every light that can be aimed at. Where both can find the same light,
 //! the balance heuristic shares it between them. Towards a point light a second point on the ray is sampled with
 //! equal angles, in multiple importance with the free flight: connections from free flights alone would have an
-//! infinite variance.
+//! infinite variance, and equal angles alone miss the rays that run through the light itself.
 
 use super::{Layer, Layers};
 use crate::Spectrum;
@@ -12,13 +12,14 @@ use crate::faults::{Fault, planted};
 use crate::geometry::Hit;
 use crate::light::{Light, LightSample};
 use crate::math::{FOUR_PI, Interval, Ray, cosine_pair, warp};
+use crate::medium::Medium;
 use crate::phase::PhaseFunction;
 use crate::rng::Stream;
 use crate::scene::{Orders, Scene, SceneHit, Start, Target, decay};
 use crate::surface::Surface;
 use crate::transport::{
-    Arrival, EqualAngles, Flags, Roulette, Step, Visitor, Walker, collected, emission, span, transmittance,
-    walk,
+    Arrival, EqualAngles, Flags, Roulette, Step, Visitor, Walker, collected, connection, emission, span,
+    transmittance, walk,
 };
 use glam::DVec3;
 
@@ -53,11 +54,21 @@ struct PathVisitor<'a, F: FnMut(u32, Layer, Spectrum)> {
     first: Flags,
     /// The order at which it last met a specular surface.
     specular_at: Option<u32>,
+    /// Distance to the body ahead of the present ray \[L\].
+    end: f64,
 }
 
 impl<'a, F: FnMut(u32, Layer, Spectrum)> PathVisitor<'a, F> {
     fn new(scene: &'a Scene, orders: Orders, rays: Rays, collect: F) -> Self {
-        PathVisitor { scene, orders, collect, rays, first: Flags::NONE, specular_at: None }
+        PathVisitor {
+            scene,
+            orders,
+            collect,
+            rays,
+            first: Flags::NONE,
+            specular_at: None,
+            end: f64::INFINITY,
+        }
     }
 
     fn add(&mut self, order: u32, layer: Layer, value: Spectrum) {
@@ -177,23 +188,26 @@ impl<'a, F: FnMut(u32, Layer, Spectrum)> PathVisitor<'a, F> {
             let (one_minus_mu, one_plus_mu) = cosine_pair(ray.dir, sample.dir);
             let fraction = medium.albedo(position) * medium.phase().eval(one_minus_mu, one_plus_mu);
             let density = transmittance(scene, ray, t, walker.within, stream) * medium.sigma_t(position);
-            // Balance heuristic of the two densities; their sum divides, so neither can be small alone. What delta
-            // tracking samples has no density that could be asked for: there equal angles stand alone.
-            let flight =
-                if plan.has_heterogeneous { 0.0 } else { flight_pdf(scene, walker, density, ray, end) };
-            let sum = equal_angles.pdf(t) + flight;
+            // Balance heuristic of the two densities; their sum divides, so neither can be small alone.
+            let sum = equal_angles.pdf(t) + flight_pdf(scene, walker, (t, medium), ray, end);
             let layer = self.layer_connected(walker, Flags::MEDIUM);
             self.add(walker.order + 1, layer, walker.weight * fraction * density * received / sum);
         }
     }
 }
 
-/// Density of the free flight at a distance where transmittance times extinction is `density` [1/L]: its mean over
-/// channels, and conditioned on a collision where the flight is forced.
+/// Density of the free flight at a distance in a medium [1/L]: transmittance times extinction, its mean over channels, and
+/// conditioned on a collision where the flight is forced. Where the transmittance has no closed form, about that.
 ///
 /// It weighs two ways of sampling against each other, so it must be the same number wherever it is asked for: it does
-/// not know the walker's weight, which a flight through a coloured medium changes.
-fn flight_pdf(scene: &Scene, walker: &Walker, density: Spectrum, ray: &Ray, end: f64) -> f64 {
+/// not know the walker's weight, which a flight through a coloured medium changes, and estimates nothing at random. Any
+/// number that the place alone decides leaves the mean as it is.
+fn flight_pdf(scene: &Scene, walker: &Walker, (t, medium): (f64, &Medium), ray: &Ray, end: f64) -> f64 {
+    let depth = scene
+        .segments(ray, t, walker.within)
+        .iter()
+        .fold(Spectrum::ZERO, |sum, s| sum + scene.medium(s.medium).depth_by_bounds(ray, s.interval));
+    let density = decay(depth) * medium.sigma_t(ray.at(t));
     let forced = scene.plan().forces_first_collision && walker.order == 0 && end.is_infinite();
     if forced {
         density.mean() / -crate::math::exp_m1(-scene.optical_depth(ray, end, walker.within).mean())
@@ -207,6 +221,7 @@ impl<F: FnMut(u32, Layer, Spectrum)> Visitor for PathVisitor<'_, F> {
         match step {
             Step::Ahead(hit) => {
                 self.rays.segments += 1;
+                self.end = hit.map_or(f64::INFINITY, |h| h.hit.t);
                 self.ahead(walker, hit, stream);
                 self.equiangular(walker, hit, stream);
             }
@@ -219,19 +234,16 @@ impl<F: FnMut(u32, Layer, Spectrum)> Visitor for PathVisitor<'_, F> {
                     let p = medium.phase().eval(one_minus_mu, one_plus_mu);
                     (albedo * p, p)
                 };
-                let scene = self.scene;
+                let (scene, end) = (self.scene, self.end);
                 let point_share = |apex: DVec3| {
-                    if scene.plan().has_heterogeneous {
-                        return 0.0;
-                    }
                     let t = position.distance(walker.ray.origin);
-                    let hit = scene.hit(&walker.ray, walker.from);
-                    let end = hit.map_or(f64::INFINITY, |h| h.hit.t);
                     let Some(span) = span(scene, &walker.ray, end, walker.within) else { return 1.0 };
-                    let passed = decay(scene.optical_depth(&walker.ray, t, walker.within));
-                    let density = passed * medium.sigma_t(position);
-                    let flight = flight_pdf(scene, walker, density, &walker.ray, end);
                     let pdf = EqualAngles::new(&walker.ray, apex, span).pdf(t);
+                    // Where equal angles have no density the flight stands alone, be its own ever so small.
+                    if pdf == 0.0 {
+                        return 1.0;
+                    }
+                    let flight = flight_pdf(scene, walker, (t, medium), &walker.ray, end);
                     flight / (flight + pdf)
                 };
                 self.connect((walker, Flags::MEDIUM), position, None, stream, scattered, point_share);
@@ -312,8 +324,8 @@ pub(in crate::integrators) fn next_event(
     let sample = light.sample(position, stream.pair())?;
     let ray = Ray::new(position, sample.dir);
     rays.shadow += 1;
-    let filtered = scene.passes(&ray, from, sample.distance, Target::Light(index))?;
-    let passed = filtered * transmittance(scene, &ray, sample.distance, within, stream);
+    let towards = Some(Target::Light(index));
+    let passed = connection(scene, (&ray, from, within), sample.distance, towards, stream)?;
     Some((sample, sample.value * passed))
 }
 

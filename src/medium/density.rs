@@ -122,6 +122,16 @@ impl Density {
         sum
     }
 
+    /// About the integral along a part of a ray \[L\]: in closed form where there is one, else by the middle between the
+    /// bounds of each stretch, which asks for no density.
+    pub fn integral_by_bounds(&self, ray: &Ray, part: Interval) -> f64 {
+        self.closed_integral(ray, part).unwrap_or_else(|| {
+            let middle = |b: Bound| 0.5 * (b.low + b.high);
+            let stretches = self.along(ray, part).filter(|b| b.high > 0.0);
+            stretches.map(|b| middle(b) * b.interval.length()).sum()
+        })
+    }
+
     /// No point has more than this.
     pub fn high(&self) -> f64 {
         match self {

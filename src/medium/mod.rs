@@ -130,6 +130,17 @@ impl Medium {
         }
     }
 
+    /// About the optical depth of a part of a ray \[1\], for what any number leaves unbiased: exact where it has a closed
+    /// form, else made of the bounds of the density.
+    pub fn depth_by_bounds(&self, ray: &Ray, part: Interval) -> Spectrum {
+        match self {
+            Medium::Homogeneous(medium) => medium.depth(part.length()),
+            Medium::Heterogeneous(medium) => {
+                medium.matter().depth(medium.density().integral_by_bounds(ray, part))
+            }
+        }
+    }
+
     /// Whether it is the same everywhere.
     pub fn is_homogeneous(&self) -> bool {
         matches!(self, Medium::Homogeneous(_))

@@ -35,7 +35,7 @@ fn write_text(out: &mut dyn Write, rows: &[Reading]) -> io::Result<()> {
     let mut lines = vec![COLUMNS.map(str::to_string)];
     for r in rows {
         let numbers =
-            (format!("{:.6e}", r.mean), r.std_error.map_or_else(String::new, |e| format!("{e:.1e}")));
+            (format!("{:.6e}", r.mean), r.std_error.map_or_else(|| word(r), |e| format!("{e:.1e}")));
         lines.push([
             r.sensor.clone(),
             r.quantity.clone(),
@@ -46,6 +46,11 @@ fn write_text(out: &mut dyn Write, rows: &[Reading]) -> io::Result<()> {
         ]);
     }
     write_aligned(out, &lines, 3)
+}
+
+/// What stands in the place of a standard error that is not known.
+fn word(r: &Reading) -> String {
+    r.no_error.map_or_else(String::new, |why| why.word().into())
 }
 
 /// Writes lines of cells in aligned columns, the first `words` of them flush left and the others flush right; see [`one_line`].
@@ -113,7 +118,7 @@ mod tests {
             mean,
             std_error: (std_error > 0.0).then_some(std_error),
             n: 64,
-            is_heavy_tailed: false,
+            no_error: None,
         }
     }
 

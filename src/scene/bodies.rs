@@ -3,7 +3,8 @@
 use super::{Parts, Target};
 use crate::geometry::{Rectangles, Shape};
 
-/// What a ray is tried against. Of two bodies at the same distance the first one counts, objects before lights.
+/// What a ray is tried against. Of two bodies at the same distance the first one counts, objects before lights; of
+/// rectangles in one place lights before objects, so that a lamp in its ceiling is seen.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Bodies {
     pub rectangles: Rectangles,
@@ -31,10 +32,10 @@ impl Bodies {
             }
             None => None,
         };
-        let objects = parts.objects.iter().enumerate();
-        let objects = objects.map(|(i, object)| sort(Target::Object(i), Some(&object.shape))).collect();
         let lights = parts.lights.iter().enumerate();
         let lights = lights.map(|(i, light)| sort(Target::Light(i), light.body())).collect();
+        let objects = parts.objects.iter().enumerate();
+        let objects = objects.map(|(i, object)| sort(Target::Object(i), Some(&object.shape))).collect();
         Bodies { rectangles: Rectangles::new(list), targets, others, objects, lights }
     }
 

@@ -1,10 +1,10 @@
 //! What a ray meets: the nearest body, and what lets light through on the way.
 
-use super::Scene;
+use super::{SURROUNDINGS, Scene};
 use crate::Spectrum;
 use crate::geometry::Hit;
 use crate::math::Ray;
-use crate::surface::{Filter, Surface};
+use crate::surface::Surface;
 
 /// A body that a ray can meet.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -76,7 +76,7 @@ impl Scene {
     }
 
     /// What filters let pass between the ray's origin and distance `end` \[1\], not counting the body at the far end;
-    /// none if another body stands in the way, or nothing passes. Media are not asked.
+    /// none if another body stands in the way, but for index-matched boundaries, or nothing passes. Media are not asked.
     pub fn passes(&self, ray: &Ray, from: Option<Start>, end: f64, towards: Target) -> Option<Spectrum> {
         if let Target::Light(index) = towards
             && self.lights()[index].hides_itself(ray, end)
@@ -98,8 +98,8 @@ impl Scene {
         end: f64,
         towards: Option<Target>,
     ) -> Option<Spectrum> {
-        if self.plan().has_filters {
-            return self.passes_filters(ray, from, end, towards);
+        if self.plan().has_filters || self.plan().has_matched {
+            return self.passes_straight(ray, from, end, towards);
         }
         let bodies = &self.bodies;
         let except =
@@ -115,14 +115,23 @@ impl Scene {
         (!is_blocked).then_some(Spectrum::ONE)
     }
 
-    /// The filter that a body is, if it is one.
-    pub fn filter(&self, target: Target) -> Option<&Filter> {
-        let Target::Object(index) = target else { return None };
-        if let Surface::Filter(filter) = &self.objects()[index].surface { Some(filter) } else { None }
+    /// What goes straight on behind a body that a ray meets in the interior `within`, and the interior there: through a
+    /// filter, and through an index-matched boundary. None behind any other body.
+    pub fn straight_on(&self, ray: &Ray, found: &SceneHit, within: usize) -> Option<(Spectrum, usize)> {
+        let Target::Object(index) = found.target else { return None };
+        match &self.objects()[index].surface {
+            Surface::Filter(filter) => {
+                Some((filter.transmittance(ray.at(found.hit.t), found.hit.uv), within))
+            }
+            Surface::Dielectric(boundary) if boundary.is_matched() => {
+                Some((Spectrum::ONE, boundary.sides(ray.dir, found.hit.normal).1))
+            }
+            _ => None,
+        }
     }
 
     /// The same, body after body.
-    fn passes_filters(
+    fn passes_straight(
         &self,
         ray: &Ray,
         from: Option<Start>,
@@ -134,12 +143,12 @@ impl Scene {
             if Some(found.target) == towards || found.hit.t >= end {
                 break;
             }
-            let filter = self.filter(found.target)?;
-            let position = ray.at(found.hit.t);
-            passed *= filter.transmittance(position, found.hit.uv);
+            // Which interior it is, filters need not know.
+            passed *= self.straight_on(&ray, &found, SURROUNDINGS)?.0;
             if passed.is_black() {
                 return None;
             }
+            let position = ray.at(found.hit.t);
             (ray, from, end) = (Ray::new(position, ray.dir), Some(found.start()), end - found.hit.t);
         }
         Some(passed)

@@ -46,6 +46,16 @@ pub(super) fn numbered(regions: &[Region], interiors: &[Interior]) -> (Vec<Mediu
     (media, filling)
 }
 
+/// Tells each dielectric surface whether the indices on its two sides are equal.
+pub(super) fn match_indices(parts: &mut Parts) {
+    for object in &mut parts.objects {
+        if let Surface::Dielectric(boundary) = &mut object.surface {
+            let index = |number: usize| parts.interiors[number].index;
+            *boundary = boundary.between((index(boundary.inside()), index(boundary.outside())));
+        }
+    }
+}
+
 /// Where to look for a boundary: first in a direction that shapes along the axes do not share, then along the axes, up
 /// and down first since water is level.
 const DIRECTIONS: [DVec3; 7] = [
@@ -69,16 +79,35 @@ fn side_seen(parts: &Parts, ray: &Ray) -> Option<usize> {
     Some(dielectric.sides(ray.dir, hit.normal).0)
 }
 
-/// For each light the interior that it is in, where it is in one; none where that is to be asked point by point.
+/// For each light the interior that it is in, where it is in one; none where that is to be asked point by point, as for a
+/// body that could cross the boundary of an interior.
 pub(super) fn of_lights(scene: &Scene) -> Vec<Option<usize>> {
     let one = |light: &Light| {
         if !scene.plan().has_dielectrics || light.needs_stage() {
             return Some(SURROUNDINGS);
         }
+        let is_clear = |shape: &&Shape| {
+            let mut boundaries =
+                scene.objects().iter().filter(|o| matches!(o.surface, Surface::Dielectric(_)));
+            shape.bounds().is_some_and(|ball| boundaries.all(|o| is_clear_of(ball, &o.shape)))
+        };
         let on_body = |shape: &Shape| shape.sample_boundary(Face::Top, 0.0, [0.5; 3]).0;
-        light.apex().or_else(|| light.body().map(on_body)).map(|p| scene.interior_at(p))
+        let place = light.apex().or_else(|| light.body().filter(is_clear).map(on_body));
+        place.map(|p| scene.interior_at(p))
     };
     scene.lights().iter().map(one).collect()
+}
+
+/// Whether a ball keeps clear of a surface; where it cannot be told, it does not.
+fn is_clear_of((center, radius): (DVec3, f64), shape: &Shape) -> bool {
+    match shape {
+        // Outside a cuboid the room is minus at most the distance.
+        Shape::Sphere(_) | Shape::Cuboid(_) | Shape::Slab(_) => shape.room(center).abs() > radius,
+        Shape::Rectangle(r) => libm::hypot(r.height(center), r.inside(center).min(0.0)) > radius,
+        Shape::Mesh(_) | Shape::Lathe(_) => {
+            shape.bounds().is_some_and(|(other, reach)| center.distance(other) > radius + reach)
+        }
+    }
 }
 
 /// Whether interiors and the surfaces that name them fit together.

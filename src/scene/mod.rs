@@ -4,6 +4,7 @@ mod bodies;
 mod bounds;
 mod builtin;
 mod camera;
+mod coincident;
 mod file;
 mod full;
 mod glows;
@@ -112,6 +113,7 @@ impl Scene {
         let bounds = bounds::of(&parts);
         parts.lights.iter_mut().try_for_each(|light| light.cover(bounds))?;
         let stage = validate::check(&parts)?;
+        interiors::match_indices(&mut parts);
         let plan = Plan::of(&parts);
         let (media, filling) = interiors::numbered(&parts.regions, &parts.interiors);
         let bodies = bodies::Bodies::of(&parts);
@@ -136,6 +138,7 @@ impl Scene {
         scene.is_emission_bounded = is_emission_bounded;
         scene.light_within = interiors::of_lights(&scene);
         validate::check_power(&scene)?;
+        validate::check_apexes(&scene)?;
         Ok(scene)
     }
 

@@ -24,8 +24,10 @@ pub struct Plan {
     pub has_surfaces: bool,
     /// Whether light can meet a specular surface.
     pub has_specular: bool,
-    /// Whether light can meet a boundary that refracts.
+    /// Whether there are boundaries of interiors.
     pub has_dielectrics: bool,
+    /// Whether light can meet a boundary between interiors of the same index, which it passes as though there were none.
+    pub has_matched: bool,
     /// Whether light can meet a filter.
     pub has_filters: bool,
     /// Whether some light has a direction to aim at.
@@ -80,6 +82,10 @@ impl Plan {
             has_surfaces: !parts.objects.is_empty(),
             has_specular,
             has_dielectrics: parts.objects.iter().any(|o| matches!(o.surface, Surface::Dielectric(_))),
+            has_matched: parts
+                .objects
+                .iter()
+                .any(|o| matches!(&o.surface, Surface::Dielectric(boundary) if boundary.is_matched())),
             has_filters: parts.objects.iter().any(|o| matches!(o.surface, Surface::Filter(_))),
             has_next_event: parts.lights.iter().any(Light::has_direction),
             point_lights: (0..parts.lights.len()).filter(|&i| parts.lights[i].apex().is_some()).collect(),
@@ -98,6 +104,7 @@ impl Plan {
             has_emission: true,
             has_specular: true,
             has_dielectrics: true,
+            has_matched: true,
             has_filters: true,
             has_next_event: true,
             forces_first_collision: false,
@@ -134,6 +141,9 @@ impl Plan {
         });
         if self.has_dielectrics {
             lines.push("dielectric boundaries: Fresnel reflection, refraction, interiors".to_string());
+        }
+        if self.has_matched {
+            lines.push("index-matched boundaries: no events, shadow rays pass them".to_string());
         }
         if self.has_filters {
             lines.push("filters: shadow rays pass them, body after body".to_string());

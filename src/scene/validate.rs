@@ -1,12 +1,14 @@
 //! Checks on the parts of a scene together. Each part has checked its own numbers when it was made.
 
-use super::{Object, Parts, Quantity, Scene, interiors};
+use super::{Camera, Object, Parts, Quantity, Scene, coincident, interiors};
 use crate::error::{Error, Result};
 use crate::geometry::{Face, Shape, Slab};
 use crate::light::{Light, Section, Stage};
+use crate::math::{Ray, cosine_pair};
 use crate::medium::Medium;
+use crate::phase::PhaseFunction;
 use crate::surface::Surface;
-use glam::DVec3;
+use glam::{DVec2, DVec3};
 
 /// Positions keep a part in 2^53 of the scene's extent: a mean free path must stay well above that step for a
 /// flight to be resolved to 1e-6 of itself.
@@ -49,6 +51,7 @@ pub(super) fn check(parts: &Parts) -> Result<Option<Stage>> {
     }
     check_fold(parts, stage.as_ref())?;
     check_apart(parts)?;
+    coincident::check(parts)?;
     for region in &parts.regions {
         let far = extent(&region.shape) * region.medium.highest_sigma_t().max();
         if far > MAX_EXTENT_OVER_MFP {
@@ -231,6 +234,75 @@ fn is_around(outer: &Shape, inner: &Shape) -> bool {
         }
         _ => outer != inner,
     }
+}
+
+/// Radiance along a ray through a point or spot light in a medium is infinite: light that the medium scatters once at a
+/// distance d from it goes as 1/d^2. A sensor that asks for it, and a camera at such a light, are refused.
+pub(super) fn check_apexes(scene: &Scene) -> Result<()> {
+    for sensor in scene.sensors() {
+        if let Quantity::Radiance(ray) = sensor.quantity
+            && sensor.orders.contains(1)
+            && let Some(light) = scene.lights().iter().position(|light| is_infinite_along(scene, &ray, light))
+        {
+            return refuse(format!(
+                "sensor {} looks through lights[{light}], which is in one point and in a medium: the radiance is infinite; move the ray past the light, or give the light an extent",
+                sensor.name
+            ));
+        }
+    }
+    let Some(camera) = scene.camera() else { return Ok(()) };
+    let at_camera = |light: &usize| {
+        let light = &scene.lights()[*light];
+        light.apex().is_some_and(|p| p.distance(camera.position()) <= ON_RAY * p.abs().max_element())
+            && seen_from(camera, light)
+                .any(|dir| is_infinite_along(scene, &Ray::new(camera.position(), dir), light))
+    };
+    match (0..scene.lights().len()).find(at_camera) {
+        Some(light) => refuse(format!(
+            "the camera is at lights[{light}], which is in one point and in a medium: the radiance around it is infinite; move one of them, or give the light an extent"
+        )),
+        None => Ok(()),
+    }
+}
+
+/// A ray that passes a point more closely than this part of their distances from the origin is one through it: what
+/// rounding leaves of directions, and more.
+const ON_RAY: f64 = 1e-12;
+
+/// Directions in a picture: of its corners, edges and middle, and of a spot light's axis.
+fn seen_from(camera: &Camera, light: &Light) -> impl Iterator<Item = DVec3> {
+    let (width, height) = (f64::from(camera.width()), f64::from(camera.height()));
+    let grid =
+        (0..9).map(move |i| DVec2::new(0.5 * width * f64::from(i % 3), 0.5 * height * f64::from(i / 3)));
+    let axis = if let Light::Spot(spot) = light { Some(spot.dir()) } else { None };
+    let axis = axis.filter(|dir| {
+        let at = camera.project(camera.position() + *dir);
+        at.is_some_and(|at| at.cmpge(DVec2::ZERO).all() && at.x <= width && at.y <= height)
+    });
+    grid.map(|at| camera.ray(at).dir).chain(axis)
+}
+
+/// Whether light of a light that is scattered once makes the radiance along a ray infinite.
+fn is_infinite_along(scene: &Scene, ray: &Ray, light: &Light) -> bool {
+    let Some(apex) = light.apex() else { return false };
+    let (to_apex, size) = (apex - ray.origin, apex.length().max(ray.origin.length()));
+    let t = to_apex.dot(ray.dir);
+    if apex.distance(ray.at(t)) > ON_RAY * size || t < -ON_RAY * size {
+        return false;
+    }
+    if t > 0.0 && scene.sees(ray, None, t).is_none() {
+        return false;
+    }
+    // Near the light, before and behind it.
+    let step = 1e-6 * if size > 0.0 { size } else { 1.0 };
+    [t - step, t + step].into_iter().filter(|t| *t > 0.0).any(|t| {
+        let p = ray.at(t);
+        let Some(medium) = scene.medium_at(p) else { return false };
+        let Some(sample) = light.sample(p, [0.5; 2]) else { return false };
+        let (one_minus_mu, one_plus_mu) = cosine_pair(ray.dir, sample.dir);
+        let scattered = medium.sigma_t(p) * medium.albedo(p) * sample.value;
+        !scattered.is_black() && medium.phase().eval(one_minus_mu, one_plus_mu) > 0.0
+    })
 }
 
 /// Photons keep their power in single precision, which ends near 1e38 on both sides of 1.

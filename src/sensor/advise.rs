@@ -20,7 +20,7 @@ use crate::light::Light;
 use crate::photons::{Histories, fold};
 use crate::rng::{Purpose, Stream};
 use crate::scene::{Orders, Quantity, Scene, Sensor};
-use crate::stats::{Interval, Moments};
+use crate::stats::{Interval, Moments, Tail};
 use crate::transport::Progress;
 use std::time::Instant;
 
@@ -503,7 +503,7 @@ pub fn path_advice(
     let sensors = probes(scene);
     let (mut variance, mut is_heavy_tailed) = (0.0, false);
     for (index, sensor) in sensors.iter().enumerate() {
-        let channels = paths::read(scene, sensor, index as u64, &settings, progress)?;
+        let (channels, tails) = paths::read(scene, sensor, index as u64, &settings, progress)?;
         let mean = channels.iter().map(Moments::mean).sum::<f64>() / 3.0;
         if mean == 0.0 {
             return Err(Error::Scene(format!("{samples} paths from {} found no light", sensor.name)));
@@ -511,7 +511,7 @@ pub fn path_advice(
         // The mean of the channels varies at most as much as the channels do on average.
         let own = channels.iter().map(Moments::variance).sum::<f64>() / 3.0;
         variance += own / (mean * mean) / sensors.len() as f64;
-        is_heavy_tailed |= channels.iter().any(super::is_heavy_tailed);
+        is_heavy_tailed |= channels.iter().any(super::is_heavy_tailed) || tails.iter().any(Tail::is_heavy);
     }
     Ok(PathAdvice { samples: (variance / (target * target)).max(1.0), is_heavy_tailed })
 }

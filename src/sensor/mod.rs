@@ -21,7 +21,7 @@ pub use render::{MAX_SAMPLES, Streams, extend, render};
 pub use view::{check_camera, colour, draw_photons};
 
 use crate::scene::Sensor;
-use crate::stats::{Moments, poisson_interval};
+use crate::stats::{Moments, Tail, poisson_interval};
 
 /// A measured number.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
@@ -34,15 +34,54 @@ pub struct Reading {
     pub unit: &'static str,
     /// Estimate.
     pub mean: f64,
-    /// Standard error of the mean; none where nothing is known of it: a single map, paths of which none brought
-    /// anything, a variance that is itself too uncertain. A tally of no event has that of its 95 per cent bound, 3
-    /// events.
+    /// Standard error of the mean; none where nothing is known of it. A tally of no event, or of one in every history,
+    /// has that of its 95 per cent bound, 3 events.
     pub std_error: Option<f64>,
     /// Independent histories or maps behind it.
     pub n: u64,
-    /// Whether the variance is too uncertain for a standard error: its own relative variance is above 0.1.
+    /// Why it has no standard error, if it has none.
     #[serde(skip)]
-    pub is_heavy_tailed: bool,
+    pub no_error: Option<NoError>,
+}
+
+/// Why a reading has no standard error.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum NoError {
+    /// There is one photon map, whose estimates share its photons.
+    OneMap,
+    /// Nothing was found: no path brought anything, no map has a photon there.
+    Nothing,
+    /// Fewer than [`FEWEST_PATHS`] paths brought something, one map alone, or there is one history.
+    TooFew,
+    /// The variance is too uncertain: its own relative variance is above 0.1, or the largest contributions have the tail of
+    /// a distribution whose mean they have not settled ([`Tail::shape`] above 0.7).
+    HeavyTail,
+}
+
+impl NoError {
+    /// The word that stands in the place of the number.
+    pub const fn word(self) -> &'static str {
+        match self {
+            NoError::OneMap => "one-map",
+            NoError::Nothing => "nothing-found",
+            NoError::TooFew => "too-few",
+            NoError::HeavyTail => "heavy-tail",
+        }
+    }
+
+    /// What it means, for a note.
+    pub fn reason(self) -> String {
+        match self {
+            NoError::OneMap => "the estimates of one map share its photons: ask for several".into(),
+            NoError::Nothing => "nothing was found, so that the value could be any small one".into(),
+            NoError::TooFew => {
+                format!("fewer than {FEWEST_PATHS} paths contribute, or one map or history alone")
+            }
+            NoError::HeavyTail => {
+                "rare large contributions carry the mean, and too few of them were drawn to trust the mean itself".into()
+            }
+        }
+    }
 }
 
 /// Who brought the numbers of a sensor.
@@ -63,31 +102,102 @@ fn is_heavy_tailed(m: &Moments) -> bool {
     m.n() >= TELLS_TAIL && m.is_heavy_tailed()
 }
 
-fn std_error(m: &Moments, source: Source) -> Option<f64> {
-    let brought_nothing = m.mean() == 0.0 && m.std_error() == 0.0;
+/// Fewest paths that bring something for their mean to have a standard error: where fewer do, those that would carry the
+/// mean may not have been drawn at all, and nothing in what was drawn says so.
+pub const FEWEST_PATHS: u64 = 1000;
+
+/// Equal values that one value different from them would be as good as, (sum x)^2 / sum x^2: 1 if one alone is not 0.
+fn effective_number(m: &Moments) -> f64 {
+    let n = m.n() as f64;
+    let squares = m.mean() * m.mean() + m.variance() * (n - 1.0) / n;
+    if squares == 0.0 { 0.0 } else { n * m.mean() * m.mean() / squares }
+}
+
+/// The standard error of a mean, or why it has none; paths tell their tail.
+fn std_error(m: &Moments, tail: Option<&Tail>, source: Source) -> Result<f64, NoError> {
+    let brought_nothing = m.mean() == 0.0 && (m.n() < 2 || m.variance() == 0.0);
     match source {
-        _ if m.n() < 2 => None,
-        Source::Tally if brought_nothing => Some(poisson_interval(0, 0.95).high / m.n() as f64),
-        Source::Paths if brought_nothing => None,
-        Source::Paths | Source::Maps if is_heavy_tailed(m) => None,
-        _ => Some(m.std_error()),
+        Source::Tally if m.n() < 2 => Err(NoError::TooFew),
+        // All alike: each history brings its power or none of it.
+        Source::Tally if m.variance() == 0.0 => Ok(poisson_interval(0, 0.95).high / m.n() as f64),
+        Source::Tally => Ok(m.std_error()),
+        Source::Paths | Source::Maps if brought_nothing => Err(NoError::Nothing),
+        Source::Maps if m.n() < 2 => Err(NoError::OneMap),
+        // Between that of one map, 1, and that of two, 2.
+        Source::Maps if effective_number(m) < 1.5 => Err(NoError::TooFew),
+        Source::Paths if tail.is_some_and(|tail| tail.contributing() < FEWEST_PATHS) => Err(NoError::TooFew),
+        _ if is_heavy_tailed(m) || tail.is_some_and(Tail::is_heavy) => Err(NoError::HeavyTail),
+        _ => Ok(m.std_error()),
     }
 }
 
-/// The readings of one sensor: one where the scene is grey, otherwise one a channel.
-fn readings(sensor: &Sensor, is_grey: bool, moments: &[Moments; 3], source: Source) -> Vec<Reading> {
+/// The readings of one sensor: one where the scene is grey, otherwise one a channel. Paths tell the tails of their
+/// contributions.
+fn readings(
+    sensor: &Sensor,
+    is_grey: bool,
+    moments: &[Moments; 3],
+    tails: Option<&[Tail; 3]>,
+    source: Source,
+) -> Vec<Reading> {
     let suffixes: &[&str] = if is_grey { &[""] } else { &[".r", ".g", ".b"] };
     suffixes
         .iter()
-        .zip(moments)
-        .map(|(suffix, m)| Reading {
-            sensor: sensor.name.clone(),
-            quantity: format!("{}{suffix}", sensor.label),
-            unit: sensor.unit(),
-            mean: m.mean(),
-            std_error: std_error(m, source),
-            n: m.n(),
-            is_heavy_tailed: is_heavy_tailed(m),
+        .enumerate()
+        .map(|(channel, suffix)| {
+            let m = &moments[channel];
+            let error = std_error(m, tails.map(|tails| &tails[channel]), source);
+            Reading {
+                sensor: sensor.name.clone(),
+                quantity: format!("{}{suffix}", sensor.label),
+                unit: sensor.unit(),
+                mean: m.mean(),
+                std_error: error.ok(),
+                n: m.n(),
+                no_error: error.err(),
+            }
         })
         .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn of(values: &[f64], source: Source) -> Result<f64, NoError> {
+        let mut tail = Tail::default();
+        values.iter().for_each(|x| tail.push(*x));
+        let tail = (source == Source::Paths).then_some(&tail);
+        std_error(&values.iter().collect(), tail, source)
+    }
+
+    #[test]
+    fn maps_that_found_nothing_have_no_error() {
+        assert_eq!(of(&[0.0; 10], Source::Maps), Err(NoError::Nothing));
+        assert_eq!(of(&[0.0], Source::Maps), Err(NoError::Nothing));
+        assert_eq!(of(&[1.0], Source::Maps), Err(NoError::OneMap));
+        let one_in_ten = [0.0, 0.0, 0.0, 3.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0];
+        assert_eq!(of(&one_in_ten, Source::Maps), Err(NoError::TooFew));
+        assert!(of(&[0.0, 1.0, 0.0, 1.0], Source::Maps).is_ok());
+        assert!((of(&[1.0, 3.0], Source::Maps).unwrap() - 1.0).abs() < 1e-15);
+    }
+
+    #[test]
+    fn tallies_that_are_all_alike_have_the_error_of_three_events() {
+        for value in [0.0, 1.0] {
+            let error = of(&[value; 1000], Source::Tally).unwrap();
+            assert!((error - 0.003).abs() < 1e-5, "{error}");
+            assert_eq!(of(&[value], Source::Tally), Err(NoError::TooFew));
+        }
+    }
+
+    #[test]
+    fn a_thousand_paths_must_contribute() {
+        let some = |bring: usize| {
+            let values: Vec<f64> = (0..5000).map(|i| if i < bring { 1.0 } else { 0.0 }).collect();
+            of(&values, Source::Paths)
+        };
+        assert_eq!((some(0), some(999)), (Err(NoError::Nothing), Err(NoError::TooFew)));
+        assert!(some(1000).is_ok());
+    }
 }

@@ -9,7 +9,7 @@ use crate::math::{Frame, Ray, warp};
 use crate::photons::check_end;
 use crate::rng::{Purpose, Stream};
 use crate::scene::{Orders, Quantity, Scene, Sensor};
-use crate::stats::Moments;
+use crate::stats::{Moments, Tail};
 use crate::transport::{Progress, run_blocks};
 use std::f64::consts::PI;
 
@@ -35,8 +35,8 @@ pub fn by_paths(scene: &Scene, settings: &PathSettings, progress: &dyn Progress)
     check(scene)?;
     let mut all = Vec::new();
     for (index, sensor) in scene.sensors().iter().enumerate() {
-        let moments = read(scene, sensor, index as u64, settings, progress)?;
-        all.extend(readings(sensor, scene.plan().is_grey, &moments, Source::Paths));
+        let (moments, tails) = read(scene, sensor, index as u64, settings, progress)?;
+        all.extend(readings(sensor, scene.plan().is_grey, &moments, Some(&tails), Source::Paths));
     }
     Ok(all)
 }
@@ -60,40 +60,42 @@ pub(super) fn check(scene: &Scene) -> Result<()> {
     check_end(scene)
 }
 
-/// Moments by channel of one sensor; `index` keeps the streams of sensors apart.
+/// Moments and tails by channel of one sensor; `index` keeps the streams of sensors apart.
 pub(super) fn read(
     scene: &Scene,
     sensor: &Sensor,
     index: u64,
     settings: &PathSettings,
     progress: &dyn Progress,
-) -> Result<[Moments; 3]> {
+) -> Result<([Moments; 3], [Tail; 3])> {
     let orders = sensor.orders.and(&settings.orders);
     let block = |range: std::ops::Range<u64>| {
-        let (mut moments, mut non_finite) = ([Moments::new(); 3], 0u64);
+        let (mut moments, mut tails, mut non_finite) = <([Moments; 3], [Tail; 3], u64)>::default();
         for history in range {
             // The sensor takes the upper bits of the history: no run has 2^40 of them.
             let mut stream =
                 Stream::new(settings.seed, Purpose::Paths, settings.replicate, index << 40 | history);
             let value = sample(scene, &sensor.quantity, orders, &mut stream);
             non_finite += u64::from(!value.is_finite());
-            for (channel, m) in moments.iter_mut().enumerate() {
+            for (channel, (m, tail)) in moments.iter_mut().zip(&mut tails).enumerate() {
                 m.push(value[channel]);
+                tail.push(value[channel]);
             }
         }
-        (moments, non_finite)
+        (moments, tails, non_finite)
     };
-    let merge = |mut a: ([Moments; 3], u64), b: ([Moments; 3], u64)| {
-        for (mine, others) in a.0.iter_mut().zip(&b.0) {
-            mine.merge(others);
-        }
-        (a.0, a.1 + b.1)
+    type Read = ([Moments; 3], [Tail; 3], u64);
+    let merge = |mut a: Read, b: Read| {
+        a.0.iter_mut().zip(&b.0).for_each(|(mine, others)| mine.merge(others));
+        a.1.iter_mut().zip(&b.1).for_each(|(mine, others)| mine.merge(others));
+        (a.0, a.1, a.2 + b.2)
     };
-    let (moments, non_finite) = run_blocks(settings.samples, progress, block, merge)?.unwrap_or_default();
+    let (moments, tails, non_finite) =
+        run_blocks(settings.samples, progress, block, merge)?.unwrap_or_default();
     if non_finite > 0 {
         return Err(Error::NonFinite { count: non_finite, place: "paths" });
     }
-    Ok(moments)
+    Ok((moments, tails))
 }
 
 /// One sample of a quantity.

@@ -6,7 +6,6 @@ use crate::math::{Ray, warp};
 use crate::photons::Photon;
 use crate::rng::{Purpose, Stream};
 use crate::scene::{Camera, Scene, Target};
-use crate::surface::Surface;
 use glam::{DVec2, DVec3};
 use rayon::prelude::*;
 
@@ -15,11 +14,6 @@ const TRIALS: u64 = 64;
 
 /// Photons that are placed at once, before they are added up in order.
 const DRAWN: usize = 1 << 16;
-
-/// Whether a surface ends every ray that meets it, or turns it back.
-fn is_opaque(surface: &Surface) -> bool {
-    matches!(surface, Surface::Lambertian(_) | Surface::Mirror(_) | Surface::Black(_))
-}
 
 /// Refuses a camera inside a closed opaque object that no light is in: its picture would be black.
 ///
@@ -37,7 +31,7 @@ pub fn check_camera(scene: &Scene, camera: &Camera) -> Result<()> {
         let Target::Object(index) = found.target else { return Ok(()) };
         let is_inner_side = found.hit.normal.dot(ray.dir) > 0.0;
         let is_same = around.is_none_or(|other| other == index);
-        if !(is_opaque(&scene.objects()[index].surface) && is_inner_side && is_same) {
+        if !(scene.objects()[index].surface.is_opaque() && is_inner_side && is_same) {
             return Ok(());
         }
         around = Some(index);
@@ -73,7 +67,7 @@ fn is_visible(scene: &Scene, camera: &Camera, p: DVec3) -> bool {
     for _ in 0..64 {
         let Some(found) = scene.hit(&ray, start).filter(|found| found.hit.t < left) else { return true };
         match found.target {
-            Target::Object(index) if !is_opaque(&scene.objects()[index].surface) => {
+            Target::Object(index) if !scene.objects()[index].surface.is_opaque() => {
                 left -= found.hit.t;
                 ray = Ray::new(ray.at(found.hit.t), ray.dir);
                 start = Some(crate::scene::Start { target: found.target, primitive: found.hit.primitive });
@@ -129,7 +123,7 @@ mod tests {
     use crate::geometry::{Rectangle, Shape, Sphere};
     use crate::light::{Light, Point};
     use crate::scene::{Filter, Object, Parts, View};
-    use crate::surface::Lambertian;
+    use crate::surface::{Lambertian, Surface};
     use crate::transport::Flags;
     use glam::Vec3;
 

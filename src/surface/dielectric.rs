@@ -7,6 +7,7 @@ use glam::DVec3;
 pub struct Dielectric {
     inside: usize,
     outside: usize,
+    is_matched: bool,
 }
 
 /// What a ray meets at a smooth boundary.
@@ -55,7 +56,17 @@ pub fn refract(dir: DVec3, normal: DVec3, ratio: f64, (cos_near, cos_far): (f64,
 impl Dielectric {
     /// A boundary with the interiors of these numbers on its inner side, against its outward normal, and its outer side.
     pub fn new(inside: usize, outside: usize) -> Self {
-        Dielectric { inside, outside }
+        Dielectric { inside, outside, is_matched: false }
+    }
+
+    /// The same boundary between these indices of refraction, inner and outer: a scene tells it.
+    pub(crate) fn between(self, (inside, outside): (f64, f64)) -> Self {
+        Dielectric { is_matched: inside == outside, ..self }
+    }
+
+    /// Whether the indices on both sides are equal, so that light goes straight on as though there were nothing.
+    pub fn is_matched(&self) -> bool {
+        self.is_matched
     }
 
     /// Number of the interior on the inner side.

@@ -65,15 +65,24 @@ impl Surface {
         }
     }
 
-    /// Whether light leaves in one or two directions only, so that no other estimator can connect to it. A filter is not:
-    /// light that it lets pass has met nothing.
-    pub fn is_specular(&self) -> bool {
-        matches!(self, Surface::Mirror(_) | Surface::Dielectric(_))
+    /// Whether it ends or turns back every ray that meets it.
+    pub fn is_opaque(&self) -> bool {
+        matches!(self, Surface::Lambertian(_) | Surface::Mirror(_) | Surface::Black(_))
     }
 
-    /// Whether light that meets it has met something: everything but a filter.
+    /// Whether light leaves in one or two directions only, so that no other estimator can connect to it. A filter and an
+    /// index-matched boundary are not: light that they let pass has met nothing.
+    pub fn is_specular(&self) -> bool {
+        matches!(self, Surface::Mirror(_) | Surface::Dielectric(_)) && self.is_event()
+    }
+
+    /// Whether light that meets it has met something: everything but a filter and an index-matched boundary.
     pub fn is_event(&self) -> bool {
-        !matches!(self, Surface::Filter(_))
+        match self {
+            Surface::Filter(_) => false,
+            Surface::Dielectric(boundary) => !boundary.is_matched(),
+            Surface::Lambertian(_) | Surface::Mirror(_) | Surface::Black(_) => true,
+        }
     }
 
     /// The direction of travel after reflection, from the one before, the normal on the side of arrival and two

@@ -40,6 +40,12 @@ pub(super) fn bounce<V: Visitor>(
     if let Surface::Filter(filter) = surface {
         return pass(walker, found, filter, roulette, stream, visitor);
     }
+    if let Surface::Dielectric(dielectric) = surface
+        && dielectric.is_matched()
+    {
+        let (_, within) = dielectric.sides(walker.ray.dir, found.hit.normal);
+        return Some(Walker { within, ..straight_on(walker, found, position) });
+    }
     visitor.visit(walker, Step::Surface(arrival, found), stream);
     if let Surface::Dielectric(dielectric) = surface {
         return cross(scene, (walker, position), found, dielectric, stream, visitor);
@@ -89,13 +95,17 @@ fn pass<V: Visitor>(
         visitor.visit(walker, Step::Absorbed(lost, None), stream);
         return None;
     };
-    Some(Walker {
+    Some(Walker { weight, ..straight_on(walker, found, position) })
+}
+
+/// The walker behind a body that is no event, on the same way.
+fn straight_on(walker: &Walker, found: &SceneHit, position: DVec3) -> Walker {
+    Walker {
         ray: Ray::new(position, walker.ray.dir),
-        weight,
         from: Some(found.start()),
         behind: walker.behind + found.hit.t,
         ..*walker
-    })
+    }
 }
 
 /// Reflected or refracted, in proportion: the weight stays, but for the scale of radiance behind a refraction.
@@ -140,6 +150,6 @@ fn cross<V: Visitor>(
     let is_scaled =
         (V::CARRIES_RADIANCE && !planted(Fault::RadianceUnscaled)) || planted(Fault::PhotonPowerScaled);
     let weight = if is_scaled { walker.weight * (ratio * ratio) } else { walker.weight };
-    let dir = if n_near == n_far { dir } else { refract(dir, normal, ratio, (cosine, refraction.cos_far)) };
+    let dir = refract(dir, normal, ratio, (cosine, refraction.cos_far));
     Some(Walker { ray: Ray::new(position, dir), weight, within: far, ..next })
 }

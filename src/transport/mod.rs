@@ -17,5 +17,5 @@ pub use equal_angles::{EqualAngles, span};
 pub use flags::Flags;
 pub use flight::{Flight, free_flight};
 pub use roulette::Roulette;
-pub use transmittance::{passed, transmittance};
+pub use transmittance::{connection, passed, transmittance};
 pub use walk::{Arrival, LONG, Step, Visitor, Walker, walk};

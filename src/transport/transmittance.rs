@@ -5,7 +5,7 @@ use crate::Spectrum;
 use crate::math::{Interval, Ray};
 use crate::medium::Medium;
 use crate::rng::Stream;
-use crate::scene::{Scene, decay};
+use crate::scene::{Scene, Start, Target, decay};
 
 /// The fraction of light that passes up to distance `end` \[1\], in the interior of number `within`: exact where the
 /// optical depth has a closed form, else an unbiased estimate by ratio tracking.
@@ -24,7 +24,49 @@ pub fn transmittance(scene: &Scene, ray: &Ray, end: f64, within: usize, stream: 
     decay(depth) * tracked
 }
 
-/// The same of a stretch of one medium.
+/// The fraction of light that passes straight from a place (ray, body that it starts on, interior) to distance `end` \[1\],
+/// not counting the body at the far end, `towards`, if there is one: through media, filters and index-matched boundaries.
+/// None if another body stands in the way, or nothing passes.
+pub fn connection(
+    scene: &Scene,
+    (ray, from, within): (&Ray, Option<Start>, usize),
+    end: f64,
+    towards: Option<Target>,
+    stream: &mut Stream,
+) -> Option<Spectrum> {
+    let filtered = match towards {
+        Some(target) => scene.passes(ray, from, end, target),
+        None => scene.sees(ray, from, end),
+    }?;
+    let passed = match scene.plan().has_matched {
+        true => across(scene, (ray, from, within), end, towards, stream),
+        false => transmittance(scene, ray, end, within, stream),
+    };
+    Some(filtered * passed)
+}
+
+/// The transmittance of a way that nothing blocks, from interior to interior.
+fn across(
+    scene: &Scene,
+    (ray, from, within): (&Ray, Option<Start>, usize),
+    end: f64,
+    towards: Option<Target>,
+    stream: &mut Stream,
+) -> Spectrum {
+    let (mut ray, mut from, mut within, mut end, mut passed) = (*ray, from, within, end, Spectrum::ONE);
+    loop {
+        let ahead = scene.hit(&ray, from).filter(|f| f.hit.t < end && Some(f.target) != towards);
+        let straight = ahead.and_then(|found| Some((found, scene.straight_on(&ray, &found, within)?.1)));
+        let Some((found, behind)) = straight else {
+            return passed * transmittance(scene, &ray, end, within, stream);
+        };
+        passed *= transmittance(scene, &ray, found.hit.t, within, stream);
+        ray = Ray::new(ray.at(found.hit.t), ray.dir);
+        (from, within, end) = (Some(found.start()), behind, end - found.hit.t);
+    }
+}
+
+/// The transmittance of a stretch of one medium.
 pub fn passed(medium: &Medium, ray: &Ray, part: Interval, stream: &mut Stream) -> Spectrum {
     match medium {
         Medium::Homogeneous(medium) => decay(medium.depth(part.length())),

@@ -24,7 +24,8 @@ pub struct Walker {
     pub from: Option<Start>,
     /// Number of the interior that the ray is in.
     pub within: usize,
-    /// How far behind the ray's origin its direction was chosen \[L\]: a ray starts again behind a filter, on the same way.
+    /// How far behind the ray's origin its direction was chosen \[L\]: a ray starts again behind a filter or an
+    /// index-matched boundary, on the same way.
     pub behind: f64,
     /// Events and boundaries met so far.
     pub events: u32,

@@ -4,13 +4,19 @@
 //! the light at a distance b sees it as 1/b; over all directions from a point that leaves a variance that diverges,
 //! if only as a logarithm, so that intervals are promised for radiances and for lights with an extent.
 
+use crate::checks::media::{layered, varying};
 use crate::checks::point_light::{
     BESIDE, by_both, by_free_flight, fog, intervals_cover, ray, single_scattering,
 };
+use crate::support::quadrature::integrate;
 use crate::support::run::{numbers, paths};
+use crate::support::scenes::{bounded, cuboid, homogeneous, point_light};
 use crate::support::verdict;
+use glam::DVec3;
 use turbid::Spectrum;
-use turbid::scene::{Orders, Quantity};
+use turbid::math::{FOUR_PI, Ray, exp};
+use turbid::medium::Density;
+use turbid::scene::{Orders, Quantity, Region};
 
 #[test]
 fn intervals_cover_with_equal_angles_and_not_without() {
@@ -49,4 +55,75 @@ fn single_scattering_is_the_integral() {
     let scene = fog(Spectrum::ONE, Spectrum::grey(0.9));
     let twice = numbers(1 << 19, 3, |s| by_both(&scene, BESIDE, s) + by_free_flight(&scene, BESIDE, s));
     assert!(twice.mean() > 1.5 * single_scattering(1.0, 0.9, BESIDE), "both in full must differ");
+}
+
+/// Two layers some way from the lamp at the origin: one whose density rises, or which is the same everywhere, and behind
+/// it one of its own colour.
+fn layers(density: Option<Density>) -> [Region; 2] {
+    let wide = |low: f64, high: f64| (DVec3::new(-9.0, -9.0, low), DVec3::new(9.0, 9.0, high));
+    let (near, far) = (wide(1.0, 2.0), wide(2.0, 3.5));
+    let medium = match density {
+        Some(density) => varying(NEAR, ALBEDO, density),
+        None => homogeneous(NEAR, Spectrum::grey(ALBEDO), 0.0),
+    };
+    [
+        Region { shape: cuboid(near.0, near.1), medium },
+        Region { shape: cuboid(far.0, far.1), medium: homogeneous(FAR, Spectrum::grey(ALBEDO), 0.0) },
+    ]
+}
+
+/// Extinction of the layers where the density is 1.
+const NEAR: Spectrum = Spectrum(DVec3::new(1.5, 0.7, 1.0));
+const FAR: Spectrum = Spectrum(DVec3::new(0.3, 1.0, 3.0));
+const ALBEDO: f64 = 0.9;
+
+/// A lamp and a sensor in one place, rays that start ever so closely beside the lamp, that point straight at it, and that
+/// pass it closely: the medium begins some way off, so that all of them are finite.
+///
+/// At height z, past the lamp at a distance x, sigma_s e^(-depth) / (16 pi^2 r^2), the depth of both ways being those of the
+/// height times their slants.
+#[test]
+fn rays_through_the_lamp_itself() {
+    let rising = |z: f64| 0.2 + 1.6 * (z - 1.0);
+    let grid = layered((DVec3::new(-9.0, -9.0, 1.0), DVec3::new(9.0, 9.0, 2.0)), 16, rising);
+    for density in [None, Some(grid)] {
+        let regions = layers(density.clone());
+        let scene = bounded(regions.to_vec(), Vec::new(), vec![point_light(DVec3::ZERO, Spectrum::ONE)]);
+        assert_eq!(scene.plan().has_heterogeneous, density.is_some());
+        let up = Ray::new(DVec3::ZERO, DVec3::Z);
+        // Depth straight from the lamp to a height, and extinction there.
+        let depth = |z: f64| scene.optical_depth(&up, z, 0);
+        let sigma_t = |z: f64| regions[usize::from(z > 2.0)].medium.sigma_t(DVec3::new(0.0, 0.0, z));
+        let aslant = DVec3::new(0.2, 0.1, 1.0).normalize();
+        let cases = [
+            (DVec3::ZERO, DVec3::Z),
+            (DVec3::ZERO, aslant),
+            (DVec3::new(1e-300, 0.0, 0.0), DVec3::Z),
+            (DVec3::new(1e-16, 0.0, 0.0), DVec3::Z),
+            (DVec3::new(1e-9, 0.0, 0.0), DVec3::Z),
+            (DVec3::new(0.1, 0.0, 0.0), DVec3::Z),
+            (DVec3::new(0.0, 0.0, 5.0), -DVec3::Z),
+            (5.0 * aslant, -aslant),
+            (DVec3::new(1e-5, 0.0, 5.0), -DVec3::Z),
+            (DVec3::new(0.0, 0.0, -1.0), DVec3::Z),
+        ];
+        for (origin, dir) in cases {
+            let ray = Ray::new(origin, dir);
+            let got = paths(&scene, Quantity::Radiance(ray), Orders::only(1), 1 << 14, 4);
+            for c in 0..3 {
+                let of = |z: f64| {
+                    let t = (z - origin.z) / dir.z;
+                    let r = ray.at(t).length();
+                    let seen = (depth(z)[c] - depth(origin.z.max(0.0))[c]).abs() / dir.z.abs();
+                    let lit = depth(z)[c] * r / z;
+                    sigma_t(z)[c] * exp(-seen - lit) / (r * r) / dir.z.abs()
+                };
+                // The grid's cells are a sixteenth high, its lines break in their middles.
+                let sum = integrate(1.0, 2.0, 32, of) + integrate(2.0, 3.5, 16, of);
+                let expected = ALBEDO / (FOUR_PI * FOUR_PI) * sum;
+                let what = format!("from {origin} along {dir}, varying {}, channel {c}", density.is_some());
+                verdict::agrees(&what, &got[c], (expected, 1e-9 * expected), 0.1 * expected, 4);
+            }
+        }
+    }
 }

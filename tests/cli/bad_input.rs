@@ -294,3 +294,72 @@ point = { position = [0, 0, 5], power = 1.0 }
         refuses_naming(&["check", text(&path)], &[&name, words]);
     }
 }
+
+/// Radiance along a ray through a point light in a medium has no end; where the medium keeps off the light, it has.
+#[test]
+fn rays_through_a_point_light_in_fog() {
+    let folder = Folder::new();
+    let scene = |light: &str, origin: &str, dir: &str, low: f64| {
+        let text = format!(
+            "[[regions]]\nshape = {{ cuboid = {{ min = [-9, -9, {low}], max = [9, 9, 9] }} }}\nsigma_t = 1\nalbedo = 0.5\ng = 0\n\
+             [[lights]]\n{light}\n\
+             [[sensors]]\nname = \"ahead\"\nmeasure = {{ radiance = {{ origin = {origin}, dir = {dir} }} }}\n"
+        );
+        folder.file("fog.toml", &text)
+    };
+    let bulb = "point = { position = [1, 2, 3], power = 1 }";
+    let spot = |dir: &str| {
+        format!("spot = {{ position = [1, 2, 3], dir = {dir}, full_angle = 10, edge_angle = 20, power = 1 }}")
+    };
+    let infinite = [
+        (bulb.to_string(), "[1, 2, 3]", "[0.3, 0.1, 0.7]", -9.0),
+        (bulb.to_string(), "[0, 0, 0]", "[1, 2, 3]", -9.0),
+        (spot("[0, 0, 1]"), "[1, 2, 3]", "[0.1, 0, 1]", -9.0),
+        // The sensor looks into the spot, which the fog scatters forwards.
+        (spot("[0, 0, -1]"), "[1, 2, 0]", "[0, 0, 1]", -9.0),
+        // At the face of the fog, inwards.
+        (bulb.to_string(), "[1, 2, 3]", "[0, 0, 1]", 3.0),
+    ];
+    for (light, origin, dir, low) in infinite {
+        let file = scene(&light, origin, dir, low);
+        let words =
+            ["fog.toml", "sensor ahead looks through lights[0]", "the radiance is infinite", "move the ray"];
+        refuses_naming(&["check", text(&file)], &words);
+    }
+    let finite = [
+        (bulb.to_string(), "[1.001, 2, 3]", "[0.3, 0.1, 0.7]", -9.0),
+        // Away from the light.
+        (bulb.to_string(), "[0, 0, 0]", "[-1, -2, -3]", -9.0),
+        // The fog begins behind the light.
+        (bulb.to_string(), "[1, 2, 3]", "[0, 0, 1]", 3.1),
+        // The spot shines to the side.
+        (spot("[1, 0, 0]"), "[1, 2, 3]", "[0.1, 0, 1]", -9.0),
+    ];
+    for (light, origin, dir, low) in finite {
+        succeeds(&["check", text(&scene(&light, origin, dir, low))]);
+    }
+    let camera = "[camera]\nposition = [1, 2, 3]\nlook_at = [1, 2, 9]\nfov = 40\nwidth = 8\nheight = 8\n";
+    let with = |low: f64| {
+        let file = scene(&spot("[0.1, 0, 1]"), "[0, 0, 0]", "[0, 0, 1]", low);
+        let both = camera.to_string() + &std::fs::read_to_string(file).unwrap();
+        folder.file("camera.toml", &both)
+    };
+    refuses_naming(&["check", text(&with(-9.0))], &["camera.toml", "the camera is at lights[0]", "infinite"]);
+    succeeds(&["check", text(&with(3.5))]);
+}
+
+/// Two lamps in one place are refused in one line that says what to do.
+#[test]
+fn two_lamps_in_one_place() {
+    let folder = Folder::new();
+    let scene = |height: &str| {
+        let text = format!(
+            "[[lights]]\narea = {{ shape = {{ rectangle = {{ corner = [0, 2, 0], u = [2, 0, 0], v = [0, 0, 2] }} }}, radiance = 2 }}\n\
+             [[lights]]\narea = {{ shape = {{ rectangle = {{ corner = [0.5, {height}, 0.5], u = [1, 0, 0], v = [0, 0, 1] }} }}, radiance = 1 }}\n"
+        );
+        folder.file("lamps.toml", &text)
+    };
+    let words = ["lamps.toml", "lights[0] and lights[1] have surfaces in one place", "move one of them"];
+    refuses_naming(&["check", text(&scene("2"))], &words);
+    succeeds(&["check", text(&scene("1.999999"))]);
+}

@@ -48,15 +48,27 @@ fn memory_is_as_said() {
     let folder = Folder::new();
     let out = |name: &str| text(&folder.0.path().join(name)).to_string();
     let (exr, png, ply) = (out("a.exr"), out("a.png"), out("a.ply"));
-    let slab =
-        ["measure", "slab", "--set", "tau=8", "--set", "albedo=0.9", "--with", "photons", "--photons", "3e5"];
+    let slab = [
+        "measure",
+        "slab",
+        "--set",
+        "tau=8",
+        "--set",
+        "albedo=0.9",
+        "--with",
+        "photons",
+        "--photons",
+        "3e5",
+        "--maps",
+        "1",
+    ];
     let small = ["--width", "8", "--global", "emit:4e5", "--volume", "emit:4e5", "--caustic", "1000"];
     let fogbox =
         [&["render", "fogbox", "-o", &exr, "--samples", "1", "--gather-rays", "0"][..], &small].concat();
     let drawn = [&["map", "fogbox", "-o", &png, "--ply", &ply][..], &small].concat();
     let dark = folder.file(
         "dark.toml",
-        "[camera]\nposition = [0, -3, 0]\nlook_at = [0, 0, 0]\nfov = 30\nwidth = 480\nheight = 480\n[[objects]]\nshape = { sphere = { center = [0, 0, 0], radius = 0.001 } }\nsurface = { lambertian = { reflectance = 0.5 } }\n[[lights]]\npoint = { position = [0, 0, 1], power = 1 }\n",
+        "[camera]\nposition = [0, 0, 3]\nlook_at = [0, 0, 0]\nfov = 30\nwidth = 480\nheight = 480\n[[objects]]\nshape = { sphere = { center = [0, 0, 0], radius = 0.001 } }\nsurface = { lambertian = { reflectance = 0.5 } }\n[[lights]]\npoint = { position = [0, 1, 1], power = 1 }\n",
     );
     let large = ["render", text(&dark), "-o", &exr, "--with", "paths", "--samples", "2"];
     for (name, arguments) in
@@ -74,7 +86,8 @@ fn memory_is_as_said() {
 fn what_does_not_fit_is_refused() {
     let folder = Folder::new();
     let exr = folder.0.path().join("a.exr");
-    let deep = ["measure", "slab", "--set", "tau=100", "--set", "albedo=1", "--with", "photons"];
+    let deep =
+        ["measure", "slab", "--set", "tau=100", "--set", "albedo=1", "--with", "photons", "--maps", "1"];
     let line = refuses(&[&deep[..], &["--photons", "1e9"]].concat());
     assert!(
         line.contains("are free; allowed: --photons ") && line.contains("--radius with --passes"),
@@ -104,7 +117,7 @@ fn what_does_not_fit_is_refused() {
 /// The k nearest photons are not those of parts.
 #[test]
 fn passes_need_a_radius() {
-    let slab = ["measure", "slab", "--with", "photons", "--photons", "1000"];
+    let slab = ["measure", "slab", "--with", "photons", "--photons", "1000", "--maps", "1"];
     refuses_naming(&[&slab[..], &["--passes", "2"]].concat(), &["--passes is 2", "--radius"]);
     refuses_naming(&[&slab[..], &["--passes", "0"]].concat(), &["--passes"]);
     let more = ["--radius", "0.2", "--passes", "1001"];

@@ -281,3 +281,33 @@ fn advice_in_every_format() {
     let (low, high) = (error["low"].as_f64().unwrap(), error["high"].as_f64().unwrap());
     assert!(low < error["value"].as_f64().unwrap() && error["value"].as_f64().unwrap() < high);
 }
+
+/// Where nothing or too little was found, a word stands in the place of the error, and a note says what it means.
+#[test]
+fn a_mean_without_an_error_says_why() {
+    let run = |arguments: &[&str]| {
+        let output = turbid(arguments).output().unwrap();
+        assert!(output.status.success());
+        (String::from_utf8(output.stdout).unwrap(), String::from_utf8(output.stderr).unwrap())
+    };
+    let thick = ["measure", "slab", "--set", "tau=20", "--set", "albedo=0.5", "--with", "photons"];
+    let maps = ["--photons", "1e4", "--maps", "3", "--radius", "0.2"];
+    let (table, notes) = run(&[&thick[..], &maps[..]].concat());
+    let line = |start: &str| table.lines().find(|l| l.starts_with(start)).unwrap().to_string();
+    assert!(line("depth 10").contains("0.000000e0  nothing-found"), "{table}");
+    assert!(table.lines().any(|l| l.contains(" transmittance ") && !l.contains("nothing")), "{table}");
+    assert!(
+        notes.contains("no standard error, nothing-found:") && notes.contains("depth 10 fluence"),
+        "{notes}"
+    );
+    let few = |samples| run(&["measure", "slab", "--with", "path", "--samples", samples]);
+    for samples in ["1", "2", "900"] {
+        let (table, notes) = few(samples);
+        let without = table.matches("too-few").count() + table.matches("nothing-found").count();
+        assert_eq!(without, table.lines().count() - 1, "{table}");
+        assert!(notes.contains("no standard error, too-few: fewer than 1000 paths"), "{notes}");
+    }
+    assert!(!few("5000").0.contains("too-few"));
+    let (table, _) = run(&["measure", "slab", "--with", "photons", "--photons", "1e4"]);
+    assert!(table.contains("one-map"), "{table}");
+}

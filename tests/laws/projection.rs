@@ -222,7 +222,8 @@ fn collided(scene: &Scene, emitter: &Emitter, histories: u64, seed: u64) -> [[Mo
 #[test]
 fn open_scenes_lose_nothing() {
     let mut cases: Vec<(&str, Vec<Light>)> = all_lights().into_iter().map(|(n, l)| (n, vec![l])).collect();
-    cases.push(("all of them", all_lights().into_iter().map(|(_, l)| l).collect()));
+    let local = all_lights().into_iter().filter(|(name, _)| !name.starts_with("isotropic"));
+    cases.push(("all but the isotropic ones", local.map(|(_, l)| l).collect()));
     for (number, (name, lights)) in cases.into_iter().enumerate() {
         let scene = afar(lights, number as u64);
         let (plain, aimed) = (Emitter::by_power(&scene), Emitter::towards_scene(&scene));
@@ -230,7 +231,7 @@ fn open_scenes_lose_nothing() {
         assert!(((aimed.kept() * whole + aimed.left_out()) / whole - 1.0).abs() < 1e-12, "{name}");
         // Isotropic light goes anywhere from each part of its numbers, and parallel light may all meet the fog.
         if aimed.kept() == 1.0 {
-            let is_whole = ["isotropic", "beam", "sun"].iter().any(|whole| name.contains(whole));
+            let is_whole = ["isotropic,", "beam", "sun"].iter().any(|whole| name.contains(whole));
             assert!(is_whole, "{name}");
             continue;
         }

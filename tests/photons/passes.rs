@@ -4,6 +4,7 @@ use crate::support::scenes::{Incidence, at_depth, reflectance};
 use crate::support::scenes::{bounded, cuboid, homogeneous, outflow, point_light, slab, sphere};
 use glam::DVec3;
 use turbid::Spectrum;
+use turbid::estimators::boundary::Treatment;
 use turbid::estimators::{Gather, Kernel};
 use turbid::math::Ray;
 use turbid::scene::{Orders, Parts, Quantity, Region, Scene, Sensor};
@@ -26,7 +27,8 @@ fn with_sensors(scene: &Scene, quantities: &[(Quantity, Orders)]) -> Scene {
 }
 
 fn settings(photons: u64, gather: Gather) -> PhotonSettings {
-    PhotonSettings { photons, maps: 3, seed: 4, orders: Orders::ALL, gather, kernel: Kernel::Epanechnikov }
+    let (kernel, treatment) = (Kernel::Epanechnikov, Treatment::Clipped);
+    PhotonSettings { photons, maps: 3, seed: 4, orders: Orders::ALL, gather, kernel, treatment }
 }
 
 /// A slab and a ball in colour: fluences at the cell's edge too, radiances with light that nothing scattered, tallies.

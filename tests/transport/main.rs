@@ -6,11 +6,14 @@ mod checks;
 #[path = "../support/mod.rs"]
 mod support;
 
+mod deep;
 mod ends;
 mod extremes;
 mod golden;
 mod invariants;
+mod lamps;
 mod ledger;
 mod light_tracing;
+mod matched;
 mod path_classes;
 mod plan;

@@ -9,6 +9,7 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 use std::sync::Mutex;
 use std::time::{Duration, Instant};
+use turbid::estimators::boundary::Treatment;
 use turbid::estimators::{Gather, Kernel};
 use turbid::integrators::mapper;
 use turbid::integrators::path::layers;
@@ -352,6 +353,7 @@ fn measured(scene: &Scene) -> turbid::Result<()> {
         orders: Orders::ALL,
         gather: Gather::nearest(10, cap)?,
         kernel: Kernel::Uniform,
+        treatment: Treatment::Clipped,
     };
     by_photons(scene, &settings, &NoProgress).map(|_| ())
 }

@@ -84,7 +84,7 @@ impl Bodies {
     pub fn new(scene: &Scene) -> Self {
         let (mut list, mut of_object) = (Vec::new(), Vec::new());
         for object in scene.objects() {
-            let is_opaque = !matches!(object.surface, Surface::Dielectric(_) | Surface::Filter(_));
+            let is_opaque = object.surface.is_opaque();
             of_object.push(is_opaque.then_some(list.len()));
             if is_opaque {
                 let is_diffuse = matches!(object.surface, Surface::Lambertian(_));

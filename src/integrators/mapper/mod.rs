@@ -190,7 +190,8 @@ impl<'a> Mapper<'a> {
         sum
     }
 
-    /// The same up to the first body that is no filter: filters bend nothing, and what is behind them is seen straight.
+    /// The same up to the first body that is an event: filters and index-matched boundaries bend nothing, and what is behind
+    /// them is seen straight.
     fn unaimed_beyond(&self, start: Walker, report: &mut Report, stream: &mut Stream) -> Spectrum {
         let (scene, mut walker, mut sum) = (self.scene, start, Spectrum::ZERO);
         loop {
@@ -198,18 +199,16 @@ impl<'a> Mapper<'a> {
             let hit = scene.hit(&walker.ray, walker.from);
             let end = hit.map_or(f64::INFINITY, |found| found.hit.t);
             sum += walker.weight * self.unaimed(&walker, end, stream);
-            let Some((found, filter)) = hit.and_then(|found| Some((found, scene.filter(found.target)?)))
-            else {
-                return sum;
-            };
-            let position = walker.ray.at(end);
+            let straight =
+                hit.and_then(|found| Some((found, scene.straight_on(&walker.ray, &found, walker.within)?)));
+            let Some((found, (fraction, within))) = straight else { return sum };
             let passed = transmittance(scene, &walker.ray, end, walker.within, stream);
-            let weight = walker.weight * passed * filter.transmittance(position, found.hit.uv);
+            let weight = walker.weight * passed * fraction;
             if weight.is_black() {
                 return sum;
             }
-            let ray = Ray::new(position, walker.ray.dir);
-            walker = Walker { ray, weight, from: Some(found.start()), ..walker };
+            let ray = Ray::new(walker.ray.at(end), walker.ray.dir);
+            walker = Walker { ray, weight, within, from: Some(found.start()), ..walker };
         }
     }
 }

@@ -10,7 +10,7 @@ use crate::medium::Medium;
 use crate::phase::PhaseFunction;
 use crate::rng::Stream;
 use crate::scene::{Target, decay};
-use crate::transport::{Walker, passed, transmittance};
+use crate::transport::{Walker, connection, passed, transmittance};
 use glam::DVec3;
 
 /// A ray is followed until less than this is left of what comes from farther away: far below what a picture's single
@@ -90,12 +90,13 @@ impl Mapper<'_> {
             let Some(sample) = light.sample(position, [0.5; 2]) else { return sum };
             let ray = Ray::new(position, sample.dir);
             report.rays.shadow += 1;
-            let Some(filtered) = scene.passes(&ray, None, sample.distance, Target::Light(index)) else {
+            let start = (&ray, None, walker.within);
+            let towards = Some(Target::Light(index));
+            let Some(passed) = connection(scene, start, sample.distance, towards, stream) else {
                 return sum;
             };
             let (one_minus_mu, one_plus_mu) = cosine_pair(dir, sample.dir);
-            let passed = transmittance(scene, &ray, sample.distance, walker.within, stream);
-            sum + sample.value * filtered * passed * medium.phase().eval(one_minus_mu, one_plus_mu)
+            sum + sample.value * passed * medium.phase().eval(one_minus_mu, one_plus_mu)
         });
         medium.albedo(position) * sum
     }

@@ -55,6 +55,7 @@ mod tests {
         let photon = |x: u32| Photon {
             position: DVec3::X * f64::from(x),
             dir: Vec3::Z,
+            normal: Vec3::ZERO,
             power: Vec3::ONE,
             order: 0,
             flags: Flags::NONE,

@@ -1,0 +1,70 @@
+//! Where paths hardly ever find the light: an error bar that few of them made is none.
+//!
+//! The void problem of Kobayashi, Sugimura and Nagaya (OECD/NEA 2000), number 1, half scattering: a source in the middle of
+//! a void in a shield of ten mean free paths, its reflecting planes unfolded.
+
+use crate::support::scenes::{cuboid, region};
+use glam::DVec3;
+use turbid::Spectrum;
+use turbid::light::{Light, VolumeSource};
+use turbid::scene::{Orders, Parts, Quantity, Scene, Sensor};
+use turbid::sensor::{NoError, PathSettings, by_paths};
+use turbid::transport::NoProgress;
+
+/// Places along the diagonal and the fluences of GMVP there, known to 0.1 % and 0.4 %.
+const SHALLOW: (f64, f64) = (55.0, 3.02145e-2);
+const DEEP: (f64, f64) = (95.0, 1.12892e-5);
+const BETWEEN: f64 = 75.0;
+
+fn shield(at: f64) -> Scene {
+    let box_of = |half: f64| cuboid(DVec3::splat(-half), DVec3::splat(half));
+    let source = VolumeSource::new(box_of(10.0), Spectrum::ONE).unwrap();
+    let quantity = Quantity::Fluence(DVec3::splat(at));
+    Scene::new(Parts {
+        regions: vec![
+            region(box_of(100.0), 0.1, 0.5, 0.0),
+            region(box_of(50.0), 1e-4, 0.5, 0.0),
+            region(box_of(10.0), 0.1, 0.5, 0.0),
+        ],
+        lights: vec![Light::VolumeSource(source)],
+        sensors: vec![Sensor { name: "deep".into(), label: "fluence".into(), quantity, orders: Orders::ALL }],
+        ..Parts::default()
+    })
+    .unwrap()
+}
+
+fn measured(at: f64, samples: u64, seed: u64) -> (f64, Result<f64, NoError>) {
+    let settings = PathSettings { samples, seed, replicate: 0, orders: Orders::ALL };
+    let reading = by_paths(&shield(at), &settings, &NoProgress).unwrap().remove(0);
+    (reading.mean, reading.std_error.ok_or_else(|| reading.no_error.unwrap()))
+}
+
+/// Deep in the shield most of the light comes by rare paths, through the void, of large weight. Of runs without any of
+/// them the variance of variance is small, and half of the light is missing: what is said of them is that few paths
+/// contribute.
+#[test]
+fn few_paths_make_no_error_bar() {
+    for seed in 1..=12 {
+        let (mean, error) = measured(DEEP.0, 10_000, seed);
+        assert_eq!(error, Err(NoError::TooFew), "seed {seed}: {mean:e} for {:e}", DEEP.1);
+    }
+}
+
+/// With more than a thousand of them, their tail tells.
+#[test]
+fn a_tail_that_was_not_drawn_makes_no_error_bar() {
+    for seed in 1..=3 {
+        let (mean, error) = measured(BETWEEN, 300_000, seed);
+        assert_eq!(error, Err(NoError::HeavyTail), "seed {seed}: {mean:e}");
+    }
+}
+
+/// Behind a wall of half a mean free path paths are good enough, and have their error.
+#[test]
+fn enough_paths_have_their_error() {
+    for seed in 1..=3 {
+        let (mean, error) = measured(SHALLOW.0, 100_000, seed);
+        let z = (mean - SHALLOW.1) / error.unwrap();
+        assert!(z.abs() < 4.9, "seed {seed}: {mean:e} is {z} errors off");
+    }
+}
