@@ -101,8 +101,10 @@ pub struct Effort {
     pub seconds: Option<f64>,
 }
 
-/// Independent repetitions of paths, of light tracing and of small maps.
+/// Independent repetitions of paths and of light tracing.
 pub const BATCHES: usize = 64;
+/// Maps of few photons.
+pub const SMALL_MAPS: usize = 32;
 /// Maps of eight times the photons: Student's t with 15 degrees of freedom.
 pub const LARGE_MAPS: usize = 16;
 /// Photons of the large maps over those of the small ones.
@@ -479,23 +481,18 @@ pub fn maps(
     // A third each for photons and for reading the large maps, a sixth for reading the small ones.
     let third = effort.steps / 3.0;
     let histories = (third / (LARGE_MAPS as f64 * each.max(0.1))).clamp(1000.0, MOST_HISTORIES) as u64;
-    for (is_large, number) in [(true, LARGE_MAPS), (false, BATCHES)] {
+    for (is_large, number) in [(true, LARGE_MAPS), (false, SMALL_MAPS)] {
         let count = if is_large { histories } else { (histories / FACTOR).max(1) };
         let settings = settings(scene, is_large)?;
         let seen = if is_large { &mut made.large } else { &mut made.small };
         let first = if is_large { 2 * MAPS } else { MAPS };
-        let mut spread = None;
+        let amount = Amount::Emitted(count);
+        let (indirect, mut spread) = (Indirect::Gathered, None);
+        let of_maps =
+            MapSettings { global: amount, caustic: amount, volume: amount, indirect, seed, replicate: first };
+        let emitted: Emitted = counts(scene, &of_maps)?;
         for replicate in first..first + number as u64 {
-            let amount = Amount::Emitted(count);
-            let of_map = MapSettings {
-                global: amount,
-                caustic: amount,
-                volume: amount,
-                indirect: Indirect::Gathered,
-                seed,
-                replicate,
-            };
-            let emitted: Emitted = counts(scene, &of_map)?;
+            let of_map = MapSettings { replicate, ..of_maps };
             let maps = fill_counted(scene, &of_map, emitted, &clock)?;
             let mapper = Mapper::new(scene, &maps, &settings);
             let sample = |ray: Ray, stream: &mut Stream| looked(&mapper, ray, stream);
