@@ -225,7 +225,7 @@ impl<F: FnMut(u32, Layer, Spectrum)> Visitor for PathVisitor<'_, F> {
                         return 0.0;
                     }
                     let t = position.distance(walker.ray.origin);
-                    let hit = scene.hit(&walker.ray, walker.from);
+                    let hit = scene.hit(&walker.ray, walker.from).filter(|_| !planted(Fault::WallForgotten));
                     let end = hit.map_or(f64::INFINITY, |h| h.hit.t);
                     let Some(span) = span(scene, &walker.ray, end, walker.within) else { return 1.0 };
                     let passed = decay(scene.optical_depth(&walker.ray, t, walker.within));
