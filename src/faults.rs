@@ -1,4 +1,5 @@
-//! Faults that shipped in other renderers and simulators, as switches: each is planted in tests, which must notice.
+//! Faults as switches: those that shipped in other renderers and simulators, and changes by hand that no test noticed at
+//! first. Each is planted in tests, which must notice.
 //!
 //! Without the feature `faults` nothing can be planted: [`planted`] is constant, and the compiler removes what it guards.
 //! Only the tests of this package turn the feature on; the commands that `cargo run` builds are without it.
@@ -67,11 +68,53 @@ pub enum Fault {
     GridHalfCellOff,
     /// Light that meets nothing at a tentative collision keeps the weight that it came with.
     NullWeightForgotten,
+    /// A scene counts as grey whatever the colour of its lights.
+    LightColorIgnored,
+    /// A medium counts as grey whatever the colour of its emission.
+    EmissionColorIgnored,
+    /// Photons leave lights in proportion to the largest channel of their power, weighted for its sum.
+    LightByLargestChannel,
+    /// Extinction counts as grey where that of all regions is, whatever fills interiors.
+    FillingColorIgnored,
+    /// A coloured homogeneous medium beside a varying one is flown by its first channel.
+    StretchColorIgnored,
+    /// Photons of an emitting medium have its mean colour, not that of where they start.
+    GlowColorOfAll,
+    /// Height fog along a ray that climbs by less than 1e-3 scale heights a length is taken for level.
+    GentleFogLevel,
+    /// A grid's scale is forgotten where its box is given.
+    GridScaleForgotten,
+    /// The share of equal angles takes a ray to go on behind the wall that ends it.
+    WallForgotten,
+    /// Free flights through homogeneous media are too long by [`size`].
+    FlightStretched,
+    /// The same of homogeneous media beside varying ones.
+    PieceStretched,
+    /// The same of tentative collisions.
+    TrackStretched,
+    /// A photon that is split shares its weight among as many as there are mostly, not on average.
+    WindowUnfair,
+    /// The noise that is advised forgets that photons of one history gather.
+    ClustersForgotten,
+    /// The variance of the k nearest is that of k + 1.
+    FreedomOfThree,
+    /// A picture's file holds the variance of the first channel in all three.
+    VarianceOfRed,
+    /// The weights of the channels in a picture's luminance are in reverse order.
+    LuminanceReversed,
+    /// The albedo is a little too low where a history survives: by [`size`].
+    AlbedoLowered,
+    /// Photons leave lights with a little too much power.
+    PowerRaised,
+    /// Scattering is sampled a little too far forwards: the mean cosine is too large by [`size`].
+    PhaseTurned,
+    /// Kernels weigh a little too much.
+    KernelRaised,
 }
 
 impl Fault {
     /// Every fault, in the order of their definition.
-    pub const ALL: [Fault; 30] = [
+    pub const ALL: [Fault; 51] = [
         Fault::AlbedoTwice,
         Fault::AlbedoNever,
         Fault::CosineTwice,
@@ -102,6 +145,27 @@ impl Fault {
         Fault::StoredOnSurfaces,
         Fault::GridHalfCellOff,
         Fault::NullWeightForgotten,
+        Fault::LightColorIgnored,
+        Fault::EmissionColorIgnored,
+        Fault::LightByLargestChannel,
+        Fault::FillingColorIgnored,
+        Fault::StretchColorIgnored,
+        Fault::GlowColorOfAll,
+        Fault::GentleFogLevel,
+        Fault::GridScaleForgotten,
+        Fault::WallForgotten,
+        Fault::FlightStretched,
+        Fault::PieceStretched,
+        Fault::TrackStretched,
+        Fault::WindowUnfair,
+        Fault::ClustersForgotten,
+        Fault::FreedomOfThree,
+        Fault::VarianceOfRed,
+        Fault::LuminanceReversed,
+        Fault::AlbedoLowered,
+        Fault::PowerRaised,
+        Fault::PhaseTurned,
+        Fault::KernelRaised,
     ];
 }
 
@@ -112,24 +176,59 @@ pub const fn planted(_fault: Fault) -> bool {
     false
 }
 
+/// How large a small bias is that is planted: 0.003, in this build.
+#[cfg(not(feature = "faults"))]
+pub const fn size() -> f64 {
+    SMALL
+}
+
 #[cfg(feature = "faults")]
-pub use switch::{planted, with};
+pub use switch::{planted, size, with};
+
+/// A small bias, unless another is asked for.
+const SMALL: f64 = 0.003;
 
 #[cfg(feature = "faults")]
 mod switch {
-    use crate::faults::Fault;
+    use crate::faults::{Fault, SMALL};
     use std::sync::atomic::{AtomicU8, Ordering};
-    use std::sync::{Mutex, PoisonError};
+    use std::sync::{Mutex, OnceLock, PoisonError};
 
     /// 0 for none, else one more than the fault's number.
-    static PLANTED: AtomicU8 = AtomicU8::new(0);
+    static PLANTED: AtomicU8 = AtomicU8::new(UNREAD);
+    /// Nobody has looked yet which fault the environment plants.
+    const UNREAD: u8 = u8::MAX;
     /// One fault at a time, in the whole process.
     static ALONE: Mutex<()> = Mutex::new(());
 
     /// Whether a fault is planted.
     #[inline(always)]
     pub fn planted(fault: Fault) -> bool {
-        PLANTED.load(Ordering::Relaxed) == fault as u8 + 1
+        match PLANTED.load(Ordering::Relaxed) {
+            UNREAD => asked() == fault as u8 + 1,
+            now => now == fault as u8 + 1,
+        }
+    }
+
+    /// What the environment plants, by its name in `TURBID_FAULT`: a study can be run with a fault from its start.
+    #[cold]
+    fn asked() -> u8 {
+        let name = std::env::var("TURBID_FAULT").unwrap_or_default();
+        let fault = Fault::ALL.into_iter().find(|fault| format!("{fault:?}") == name);
+        assert!(name.is_empty() || fault.is_some(), "TURBID_FAULT names no fault: {name}");
+        let number = fault.map_or(0, |fault| fault as u8 + 1);
+        // Whoever has planted something meanwhile is right.
+        let _ = PLANTED.compare_exchange(UNREAD, number, Ordering::SeqCst, Ordering::SeqCst);
+        number
+    }
+
+    /// How large a small bias is that is planted: 0.003, or what `TURBID_FAULT_SIZE` says.
+    pub fn size() -> f64 {
+        static SIZE: OnceLock<f64> = OnceLock::new();
+        *SIZE.get_or_init(|| {
+            let text = std::env::var("TURBID_FAULT_SIZE").unwrap_or_default();
+            if text.is_empty() { SMALL } else { text.parse().unwrap_or(f64::NAN) }
+        })
     }
 
     /// Takes the fault out again, however its user ends.
@@ -157,7 +256,7 @@ mod tests {
     #[test]
     fn all_are_named_in_order() {
         assert!(Fault::ALL.iter().enumerate().all(|(i, fault)| *fault as usize == i));
-        assert_eq!(Fault::ALL.len(), Fault::NullWeightForgotten as usize + 1);
+        assert_eq!(Fault::ALL.len(), Fault::KernelRaised as usize + 1);
         assert!(Fault::ALL.iter().all(|fault| !planted(*fault)));
     }
 }

@@ -8,8 +8,8 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 use turbid_experiments::harness::{
-    Claim, Closing, Estimate, Experiment, Outcome, Section, SectionReport, Settings, Study, Unit, Verdict,
-    run,
+    Claim, Closing, Estimate, Experiment, Outcome, Preset, Section, SectionReport, Settings, Study, Unit,
+    Verdict, run,
 };
 
 fn settings(out: &Path) -> Settings {
@@ -215,6 +215,50 @@ fn a_panic_in_a_cell_is_an_error_with_its_name() {
     let study = Study { experiments: &[panicking], ..fake::study() };
     let error = format!("{:#}", run(&study, &settings(folder.path())).unwrap_err());
     assert!(error.starts_with("cell slab-0000") && error.ends_with("of fake: it panicked"), "{error}");
+}
+
+/// Maps that share their random numbers are not independent, however many there are: measured twice, or all the same.
+#[test]
+fn a_map_measured_twice_is_refused() {
+    use turbid_experiments::harness::CellId;
+    let folder = tempfile::tempdir().unwrap();
+    let in_pairs = Experiment {
+        measure: |settings, cell| {
+            (fake::FAKE.measure)(settings, &CellId { replicate: cell.replicate / 2, ..cell.clone() })
+        },
+        ..fake::FAKE
+    };
+    let all_alike = Experiment {
+        measure: |settings, cell| (fake::FAKE.measure)(settings, &CellId { replicate: 7, ..cell.clone() }),
+        ..fake::FAKE
+    };
+    for experiment in [in_pairs, all_alike] {
+        let study = Study { experiments: &[experiment], ..fake::study() };
+        let fresh = Settings { fresh: true, ..settings(folder.path()) };
+        let error = format!("{:#}", run(&study, &fresh).unwrap_err());
+        let expected =
+            "cells slab-000000 and slab-000001 of fake measured the same numbers: they are one map, not two";
+        assert!(error.contains(expected), "{error}");
+        assert!(!folder.path().join("report.html").exists());
+    }
+}
+
+/// No two cells of the whole study draw from one stream, short or full.
+#[test]
+fn every_cell_has_a_stream_of_its_own() {
+    for preset in [Preset::Quick, Preset::Full] {
+        let settings = Settings { preset, ..Settings::new("unused") };
+        let mut streams = std::collections::HashMap::new();
+        for experiment in turbid_experiments::ALL {
+            for cell in (experiment.cells)(&settings) {
+                let name = format!("{} of {}", cell.id(), experiment.name);
+                if let Some(other) = streams.insert(cell.stream(experiment.name), name.clone()) {
+                    panic!("{name} draws the numbers of {other}");
+                }
+            }
+        }
+        assert!(streams.len() > 1000, "{}", streams.len());
+    }
 }
 
 #[test]

@@ -102,7 +102,7 @@ impl Gather {
         let roughness = power_ratio * kernel.disc_roughness();
         match self {
             Gather::Radius(radius) => roughness / (photons_per_area * PI * radius.get() * radius.get()),
-            Gather::Nearest { k, .. } => roughness / (k.get() as f64 - 2.0),
+            Gather::Nearest { k, .. } => roughness / k.freedom(),
             Gather::NearestBiased { k, .. } => {
                 let (k, edge) = (k.get() as f64, kernel.disc_edge());
                 let square =

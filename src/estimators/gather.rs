@@ -3,6 +3,7 @@
 use super::Kernel;
 use super::kernel::UNIT_BALL;
 use crate::error::{Error, Result};
+use crate::faults::{Fault, planted};
 use crate::math::{Positive, exp};
 
 /// The k of a k-nearest gather: at least 2, since k-1 photons are summed.
@@ -19,6 +20,11 @@ impl NeighborCount {
     /// The plain number.
     pub fn get(self) -> usize {
         self.0
+    }
+
+    /// k - 2: the volume of the k nearest has E(1/V^2) = 1/((k-1)(k-2)), infinite for k = 2.
+    pub(super) fn freedom(self) -> f64 {
+        self.0 as f64 - if planted(Fault::FreedomOfThree) { 1.0 } else { 2.0 }
     }
 }
 
@@ -150,7 +156,7 @@ impl Gather {
                 let r = radius.get();
                 roughness / (photons_per_volume * UNIT_BALL * r * r * r)
             }
-            Gather::Nearest { k, .. } => roughness / (k.get() as f64 - 2.0),
+            Gather::Nearest { k, .. } => roughness / k.freedom(),
             Gather::NearestBiased { k, .. } => {
                 let (k, edge) = (k.get() as f64, edge(kernel));
                 let square =

@@ -1,6 +1,7 @@
 //! Estimates at a point.
 
 use super::{CosinePairs, Directional, Gather, Kernel};
+use crate::faults::{Fault, planted, size};
 use crate::photons::tree::{Counted, Nearest, Neighbors, Visit};
 use crate::photons::{Photon, PhotonMap, PhotonTree};
 use crate::spectrum::Spectrum;
@@ -161,7 +162,8 @@ fn weighted_sum(
     // No photon is near a point that is not finite; that is no darkness.
     let nowhere = if point.is_finite() { 0.0 } else { f64::NAN };
     let r = ball.radius;
-    BallSum { sum: (sum.sum.total() + Spectrum::grey(nowhere)) * kernel.peak() / (r * r * r), ball }
+    let peak = if planted(Fault::KernelRaised) { kernel.peak() * (1.0 + size()) } else { kernel.peak() };
+    BallSum { sum: (sum.sum.total() + Spectrum::grey(nowhere)) * peak / (r * r * r), ball }
 }
 
 /// Visits the photons of a gather.

@@ -234,7 +234,8 @@ impl<F: FnMut(u32, Layer, Spectrum)> Visitor for PathVisitor<'_, F> {
                     let p = medium.phase().eval(one_minus_mu, one_plus_mu);
                     (albedo * p, p)
                 };
-                let (scene, end) = (self.scene, self.end);
+                let scene = self.scene;
+                let end = if planted(Fault::WallForgotten) { f64::INFINITY } else { self.end };
                 let point_share = |apex: DVec3| {
                     let t = position.distance(walker.ray.origin);
                     let Some(span) = span(scene, &walker.ray, end, walker.within) else { return 1.0 };

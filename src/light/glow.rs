@@ -2,6 +2,7 @@
 
 use super::{Emission, EmissionNumbers, Stage};
 use crate::Spectrum;
+use crate::faults::{Fault, planted};
 use crate::geometry::{Face, Shape, remainder};
 use crate::math::{FOUR_PI, Ray, warp};
 use crate::medium::Medium;
@@ -163,7 +164,9 @@ impl Glow {
                 let (here, bound) = (self.medium.emission(origin), emission_of(&self.medium, high));
                 let chance = (here.sum() / bound.sum()).min(1.0);
                 let color = if here.is_black() { Spectrum::ZERO } else { here / here.sum() };
-                (origin, color * self.ceiling.sum(), chance)
+                let power =
+                    if planted(Fault::GlowColorOfAll) { self.ceiling } else { color * self.ceiling.sum() };
+                (origin, power, chance)
             }
         };
         Emission { ray: Ray::new(origin, dir), primitive: 0, power, chance }

@@ -2,6 +2,7 @@
 
 use super::Bound;
 use crate::error::{Error, Result};
+use crate::faults::{Fault, planted};
 use crate::math::{Interval, Positive, Ray, exp, exp_m1};
 use glam::DVec3;
 
@@ -87,7 +88,8 @@ impl HeightFog {
         let lower = if slope >= 0.0 { above.start } else { above.end };
         let density = exp(-(height + slope * lower).max(0.0));
         let (slope, length) = (slope.abs(), above.length());
-        let reach = if slope == 0.0 { length } else { -exp_m1(-slope * length) / slope };
+        let is_level = slope == 0.0 || (planted(Fault::GentleFogLevel) && slope < 1e-3);
+        let reach = if is_level { length } else { -exp_m1(-slope * length) / slope };
         below + if density == 0.0 { 0.0 } else { density * reach }
     }
 

@@ -23,6 +23,7 @@ pub use homogeneous::Homogeneous;
 pub use noise::Noise;
 
 use crate::Spectrum;
+use crate::faults::{Fault, planted};
 use crate::math::{Interval, Ray};
 use crate::phase::Phase;
 use glam::DVec3;
@@ -175,7 +176,10 @@ impl Medium {
     /// Whether every number of it is the same in all channels.
     pub fn is_grey(&self) -> bool {
         match self {
-            Medium::Homogeneous(m) => m.sigma_t().is_grey() && m.albedo().is_grey() && m.emission().is_grey(),
+            Medium::Homogeneous(m) => {
+                let has_grey_emission = planted(Fault::EmissionColorIgnored) || m.emission().is_grey();
+                m.sigma_t().is_grey() && m.albedo().is_grey() && has_grey_emission
+            }
             Medium::Heterogeneous(medium) => medium.is_grey(),
         }
     }

@@ -2,6 +2,7 @@
 
 use super::{WriteError, write_atomically};
 use crate::Spectrum;
+use crate::faults::{Fault, planted};
 use crate::integrators::Layer;
 use crate::sensor::{Film, Pixel};
 use ::exr::prelude::{
@@ -52,16 +53,17 @@ pub fn encode_exr(film: &Film, provenance: &serde_json::Value) -> ::exr::error::
     // One sample says nothing of its variance.
     let has_variance = film.samples() >= 2;
     for (c, channel) in CHANNELS.into_iter().enumerate() {
+        let v = if planted(Fault::VarianceOfRed) { 0 } else { c };
         add(channel.to_string(), &|pixel| pixel.total()[c]);
         if has_variance {
-            let variance = |pixel: &Pixel| pixel.variance().unwrap_or(Spectrum::ZERO)[c];
+            let variance = |pixel: &Pixel| pixel.variance().unwrap_or(Spectrum::ZERO)[v];
             add(format!("variance.{channel}"), &variance);
         }
         for layer in Layer::ALL {
             let name = layer.name();
             add(format!("{name}.{channel}"), &|pixel| pixel.layers()[layer][c]);
             if has_variance {
-                let variance = |pixel: &Pixel| pixel.layer_variance(layer).unwrap_or(Spectrum::ZERO)[c];
+                let variance = |pixel: &Pixel| pixel.layer_variance(layer).unwrap_or(Spectrum::ZERO)[v];
                 add(format!("variance.{name}.{channel}"), &variance);
             }
         }

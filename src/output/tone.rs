@@ -2,6 +2,7 @@
 
 use super::{WriteError, write_atomically};
 use crate::Spectrum;
+use crate::faults::{Fault, planted};
 use image::ImageEncoder;
 use std::io;
 use std::path::Path;
@@ -54,7 +55,8 @@ pub fn to_srgb(linear: f64) -> u8 {
 /// Stops that bring the radiance which nine tenths of a picture do not exceed to the knee of [`Curve::Soft`], rounded to
 /// a tenth; 0 for a black picture.
 pub fn auto_exposure(picture: impl Iterator<Item = Spectrum>) -> f64 {
-    let luminance = |s: Spectrum| 0.2126 * s[0] + 0.7152 * s[1] + 0.0722 * s[2];
+    let (first, last) = if planted(Fault::LuminanceReversed) { (2, 0) } else { (0, 2) };
+    let luminance = |s: Spectrum| 0.2126 * s[first] + 0.7152 * s[1] + 0.0722 * s[last];
     let mut sorted: Vec<f64> = picture.map(luminance).filter(|y| *y > 0.0 && y.is_finite()).collect();
     sorted.sort_by(f64::total_cmp);
     match sorted.get(sorted.len() * 9 / 10) {

@@ -1,7 +1,7 @@
 //! The phase function of Henyey and Greenstein (1941), for every asymmetry below 1 in size.
 
 use super::PhaseFunction;
-use crate::faults::{Fault, planted};
+use crate::faults::{Fault, planted, size};
 use crate::math::{Asymmetry, FOUR_PI};
 
 /// `p = (1-g^2) / (4 pi (1 + g^2 - 2 g mu)^(3/2))`, written as sums of terms of one sign: no cancellation, no
@@ -61,7 +61,8 @@ impl PhaseFunction for HenyeyGreenstein {
 
     /// Exact inversion; relative error of both members of the pair below 1e-15 for |g| up to 1 - 1e-9.
     fn sample(&self, u: f64) -> (f64, f64) {
-        let g = self.used();
+        let turned = if planted(Fault::PhaseTurned) { size() } else { 0.0 };
+        let g = (self.used() + turned).min(1.0);
         let e = 1.0 - u;
         if planted(Fault::BackwardIsotropic) && g < 0.0 {
             return (2.0 * e, 2.0 * u);

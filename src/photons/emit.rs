@@ -8,6 +8,7 @@
 //! the bound by which places are chosen, no photon leaves: the history counts as emitted all the same.
 
 use crate::Spectrum;
+use crate::faults::{Fault, planted, size};
 use crate::geometry::Shape;
 use crate::light::{Bundle, Emission, EmissionCell, Light};
 use crate::rng::Stream;
@@ -251,11 +252,14 @@ fn fills_space(scene: &Scene) -> bool {
 fn by_power(scene: &Scene, power: Spectrum, stream: &mut Stream) -> Option<Walker> {
     let (lights, stage) = (scene.lights(), scene.stage());
     let total = power.sum();
+    let part = |power: Spectrum| {
+        if planted(Fault::LightByLargestChannel) { power.max() } else { power.sum() }
+    };
     let mut index = 0;
     if lights.len() > 1 {
-        let mut target = stream.unit() * total;
-        while index + 1 < lights.len() && target >= lights[index].ceiling(stage).sum() {
-            target -= lights[index].ceiling(stage).sum();
+        let mut target = stream.unit() * part(power);
+        while index + 1 < lights.len() && target >= part(lights[index].ceiling(stage)) {
+            target -= part(lights[index].ceiling(stage));
             index += 1;
         }
     }
@@ -279,6 +283,7 @@ fn start(
     weight: Spectrum,
     stream: &mut Stream,
 ) -> Option<Walker> {
+    let weight = if planted(Fault::PowerRaised) { weight * (1.0 + size()) } else { weight };
     let light = &scene.lights()[index];
     let origin = emission.ray.origin;
     if let Light::Glow(glow) = light {

@@ -24,7 +24,7 @@ mod learn;
 mod reading;
 mod steer;
 
-pub use steer::Branching;
+pub use steer::{Branching, window};
 
 use super::maps::Indirect;
 use super::{Emitter, check_end};

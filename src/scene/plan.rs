@@ -1,6 +1,7 @@
 //! What a scene requires of the simulator: computed from the scene, printed by `turbid check`, and obeyed.
 
 use super::Parts;
+use crate::faults::{Fault, planted};
 use crate::light::Light;
 use crate::medium::Medium;
 use crate::surface::Surface;
@@ -72,13 +73,16 @@ impl Plan {
         }
         Plan {
             has_media,
-            has_grey_extinction: media.iter().all(|m| m.has_grey_extinction()),
+            has_grey_extinction: media
+                .iter()
+                .take(if planted(Fault::FillingColorIgnored) { parts.regions.len() } else { usize::MAX })
+                .all(|m| m.has_grey_extinction()),
             has_heterogeneous,
             has_emission: media.iter().any(|m| m.is_emitting()),
             densities: media.iter().filter_map(|m| m.density()).map(|d| d.describe()).collect(),
             is_grey: media.iter().all(|m| m.is_grey())
                 && parts.objects.iter().all(|o| o.surface.is_grey())
-                && parts.lights.iter().all(Light::is_grey),
+                && (planted(Fault::LightColorIgnored) || parts.lights.iter().all(Light::is_grey)),
             has_surfaces: !parts.objects.is_empty(),
             has_specular,
             has_dielectrics: parts.objects.iter().any(|o| matches!(o.surface, Surface::Dielectric(_))),

@@ -16,6 +16,7 @@ use super::paths::{self, PathSettings};
 use super::photons::{check, map_orders, maps, margin, max_order};
 use crate::error::{Error, Result};
 use crate::estimators::{Gather, Kernel, fluence};
+use crate::faults::{Fault, planted};
 use crate::light::Light;
 use crate::photons::{Histories, fold};
 use crate::rng::{Purpose, Stream};
@@ -389,7 +390,8 @@ impl Probe {
     /// Relative variance of a ball of radius `r` in one map.
     fn variance(&self, law: &Law, r: f64) -> f64 {
         let u = r / self.reach;
-        (law.noise[0] + law.noise[1] * u) / (u * u * u)
+        let clusters = if planted(Fault::ClustersForgotten) { 0.0 } else { law.noise[1] };
+        (law.noise[0] + clusters * u) / (u * u * u)
     }
 }
 

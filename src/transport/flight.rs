@@ -2,7 +2,7 @@
 
 use super::track::{self, End};
 use crate::Spectrum;
-use crate::faults::{Fault, planted};
+use crate::faults::{Fault, planted, size};
 use crate::math::{Interval, Ray, exp_m1, ln_1p};
 use crate::medium::{Homogeneous, Medium};
 use crate::rng::Stream;
@@ -50,6 +50,9 @@ pub fn free_flight(
     stream.work.channel_flights += u64::from(!is_grey);
     let channel = if is_grey { 0 } else { choose(weight, stream.unit()) };
     let mut target = -ln_1p(-stream.unit());
+    if planted(Fault::FlightStretched) {
+        target *= 1.0 + size();
+    }
     let mut weight = weight;
     if forced {
         let depth = scene.optical_depth(ray, end, within)[channel];
@@ -124,13 +127,14 @@ fn flight_by_stretch(
 /// One stretch of a homogeneous medium.
 fn closed(medium: &Homogeneous, part: Interval, weight: Spectrum, stream: &mut Stream) -> End {
     let sigma_t = medium.sigma_t();
-    let is_grey = sigma_t.is_grey();
+    let is_grey = sigma_t.is_grey() || planted(Fault::StretchColorIgnored);
     if sigma_t.is_black() {
         return End::Passed(weight);
     }
     stream.work.channel_flights += u64::from(!is_grey);
     let channel = if is_grey { 0 } else { choose(weight, stream.unit()) };
-    let target = -ln_1p(-stream.unit());
+    let stretched = if planted(Fault::PieceStretched) { 1.0 + size() } else { 1.0 };
+    let target = -ln_1p(-stream.unit()) * stretched;
     let flown = if sigma_t[channel] == 0.0 { f64::INFINITY } else { target / sigma_t[channel] };
     let kept = |weighted: Spectrum| weighted * (weight.sum() / weighted.sum());
     if flown >= part.length() {

@@ -1,7 +1,7 @@
 //! Russian roulette: who survives an event, and with what weight.
 
 use crate::Spectrum;
-use crate::faults::{Fault, planted};
+use crate::faults::{Fault, planted, size};
 use crate::rng::Stream;
 
 /// How survival is decided.
@@ -29,6 +29,7 @@ impl Roulette {
     pub fn survive(self, weight: Spectrum, albedo: Spectrum, stream: &mut Stream) -> Option<Spectrum> {
         let albedo = if planted(Fault::AlbedoTwice) { albedo * albedo } else { albedo };
         let albedo = if planted(Fault::AlbedoNever) { Spectrum::ONE } else { albedo };
+        let albedo = if planted(Fault::AlbedoLowered) { albedo * (1.0 - size()) } else { albedo };
         let kept = weight * albedo;
         match self {
             Roulette::Analog if planted(Fault::NoRoulette) => Some(kept),

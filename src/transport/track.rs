@@ -4,7 +4,7 @@
 //! asked of the density where the bounds alone decide.
 
 use crate::Spectrum;
-use crate::faults::{Fault, planted};
+use crate::faults::{Fault, planted, size};
 use crate::math::{Interval, Ray, ln_1p};
 use crate::medium::{Bound, Heterogeneous};
 use crate::rng::Stream;
@@ -34,7 +34,7 @@ fn outlives(passed: Spectrum, stream: &mut Stream) -> Option<Spectrum> {
 
 /// Depth to the next event of a process of rate 1.
 fn exponential(stream: &mut Stream) -> f64 {
-    -ln_1p(-stream.unit())
+    -ln_1p(-stream.unit()) * if planted(Fault::TrackStretched) { 1.0 + size() } else { 1.0 }
 }
 
 /// Tentative collisions on a part of a ray, in the order in which it meets them: a process of the rate [1/L] that `rate`

@@ -3,14 +3,19 @@
 #![allow(dead_code, reason = "each test binary uses a part")]
 
 pub mod cell;
+pub mod color;
+pub mod flights;
+pub mod fog;
 pub mod glass;
 pub mod ledger;
 pub mod light;
 pub mod media;
 pub mod numbers;
+pub mod outputs;
 pub mod phase;
 pub mod point_light;
 pub mod points;
 pub mod slab;
 pub mod threads;
 pub mod walls;
+pub mod weights;

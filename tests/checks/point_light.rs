@@ -33,7 +33,11 @@ pub fn ray(nearest: f64) -> Ray {
 /// The integral of sigma_s e^(-sigma_t (t + r)) / (16 pi^2 r^2) along the ray. With the distance past the nearest point
 /// as b sinh x, r is b cosh x, and what is left is smooth in x.
 pub fn single_scattering(sigma_t: f64, albedo: f64, nearest: f64) -> f64 {
-    let end = (1.0 - nearest * nearest).sqrt();
+    single_scattering_up_to((1.0 - nearest * nearest).sqrt(), sigma_t, albedo, nearest)
+}
+
+/// The same up to a wall at the height `end` \[L\], inside the fog.
+pub fn single_scattering_up_to(end: f64, sigma_t: f64, albedo: f64, nearest: f64) -> f64 {
     let integrand = |x: f64| {
         let (along, r) = (nearest * libm::sinh(x), nearest * libm::cosh(x));
         exp(-sigma_t * (0.6 + along + r)) / r

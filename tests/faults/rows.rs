@@ -1,7 +1,8 @@
 //! One row a fault: where it was seen, what it is here, and which check catches it.
 
 use crate::checks::{
-    cell, glass, ledger, light, media, numbers, phase, point_light, points, slab, threads, walls,
+    cell, color, flights, fog, glass, ledger, light, media, numbers, outputs, phase, point_light, points,
+    slab, threads, walls, weights,
 };
 use crate::support::scenes::{area_light, cuboid, rectangle};
 use glam::DVec3;
@@ -177,11 +178,112 @@ const fn inside(fault: Fault) -> Row {
                 ledger::a_clear_room_keeps_its_ledger()
             })
         }
+        Fault::LightColorIgnored => {
+            ("a scene is grey whatever the colour of its lights", "two_lights_keep_their_colors", |_| {
+                color::two_lights_keep_their_colors()
+            })
+        }
+        Fault::LightByLargestChannel => (
+            "lights chosen by their largest channel, weighted for the sum",
+            "photons_carry_each_lights_power",
+            |_| color::photons_carry_each_lights_power(),
+        ),
+        Fault::FillingColorIgnored => {
+            ("a coloured filling of glass taken as grey", "a_colored_filling_passes_each_channel", |_| {
+                color::a_colored_filling_passes_each_channel()
+            })
+        }
+        Fault::StretchColorIgnored => (
+            "a coloured homogeneous medium beside a varying one taken as grey",
+            "colored_media_beside_a_varying_one",
+            |_| color::colored_media_beside_a_varying_one(),
+        ),
+        Fault::EmissionColorIgnored => (
+            "a medium is grey whatever the colour of its emission",
+            "emission_is_reported_by_channel",
+            |_| color::emission_is_reported_by_channel(),
+        ),
+        Fault::GlowColorOfAll => {
+            ("photons of an emitting medium in its mean colour", "a_glow_has_the_color_of_its_place", |_| {
+                color::a_glow_has_the_color_of_its_place()
+            })
+        }
+        Fault::GentleFogLevel => {
+            ("height fog with a slope below 1e-3 taken for level", "gentle_slopes_have_their_depth", |_| {
+                fog::gentle_slopes_have_their_depth()
+            })
+        }
+        Fault::GridScaleForgotten => {
+            ("a grid's scale forgotten beside its box", "a_grid_is_scaled_and_placed", |_| {
+                fog::a_grid_is_scaled_and_placed()
+            })
+        }
+        Fault::WallForgotten => {
+            ("the share of equal angles ignores the wall behind", "a_wall_ends_the_angles", |_| {
+                fog::a_wall_ends_the_angles()
+            })
+        }
+        Fault::FlightStretched => {
+            ("free flights 0.3 % too long, in closed form", "flights_are_the_exact_inverse", |_| {
+                flights::flights_are_the_exact_inverse()
+            })
+        }
+        Fault::PieceStretched => ("the same, piece by piece", "flights_are_the_exact_inverse", |_| {
+            flights::flights_are_the_exact_inverse()
+        }),
+        Fault::TrackStretched => {
+            ("the same, by tentative collisions", "flights_are_the_exact_inverse", |_| {
+                flights::flights_are_the_exact_inverse()
+            })
+        }
+        Fault::WindowUnfair => {
+            ("a split photon's weight shared among a rounded number", "a_window_keeps_the_weight", |_| {
+                weights::a_window_keeps_the_weight()
+            })
+        }
+        Fault::ClustersForgotten => (
+            "the noise that is advised without the photons of one history",
+            "advised_noise_is_that_of_maps",
+            |_| weights::advised_noise_is_that_of_maps(),
+        ),
+        Fault::FreedomOfThree => (
+            "1/(k-1) for 1/(k-2) in the variance of the k nearest",
+            "the_k_nearest_vary_as_their_volume",
+            |_| weights::the_k_nearest_vary_as_their_volume(),
+        ),
+        Fault::VarianceOfRed => (
+            "variances of a picture's file all of the first channel",
+            "each_channel_has_its_own_variance",
+            |_| outputs::each_channel_has_its_own_variance(),
+        ),
+        Fault::LuminanceReversed => {
+            ("weights of luminance in reverse order", "channels_weigh_as_the_eye_has_it", |_| {
+                outputs::channels_weigh_as_the_eye_has_it()
+            })
+        }
+        Fault::AlbedoLowered => ("the albedo 0.3 % too low", "photons_survive_as_the_albedo_says", |_| {
+            weights::photons_survive_as_the_albedo_says()
+        }),
+        Fault::PowerRaised => {
+            ("photons with 0.3 % too much power", "photons_carry_the_power_of_all_lights", |_| {
+                color::photons_carry_the_power_of_all_lights()
+            })
+        }
+        Fault::PhaseTurned => (
+            "scattering 0.003 too far forwards in the mean cosine",
+            "density_between_samples_is_the_step_in_u",
+            |_| phase::density_between_samples_is_the_step_in_u(),
+        ),
+        Fault::KernelRaised => {
+            ("kernels that weigh 0.3 % too much", "one_photon_is_one_over_its_ball", |_| {
+                weights::one_photon_is_one_over_its_ball()
+            })
+        }
     };
     Row { fault: Planted::Inside(fault), title, check_name, check }
 }
 
-/// All rows, in the order of the document.
+/// Faults that shipped elsewhere, in the order of TESTING.md.
 pub const ROWS: &[Row] = &[
     outside("all k photons over the ball of the k-th", "a_uniform_field_is_read_as_it_is", |wrong| {
         points::a_uniform_field_is_read_as_it_is(if wrong {
@@ -252,6 +354,31 @@ pub const ROWS: &[Row] = &[
     outside("next events to a point light from free flights alone", "intervals_cover", |wrong| {
         point_light::intervals_cover(if wrong { point_light::by_free_flight } else { point_light::by_both })
     }),
+];
+
+/// Changes by hand that no test had noticed, in the order of their own document.
+pub const BY_HAND: &[Row] = &[
+    inside(Fault::LightColorIgnored),
+    inside(Fault::LightByLargestChannel),
+    inside(Fault::FillingColorIgnored),
+    inside(Fault::StretchColorIgnored),
+    inside(Fault::EmissionColorIgnored),
+    inside(Fault::GlowColorOfAll),
+    inside(Fault::GentleFogLevel),
+    inside(Fault::GridScaleForgotten),
+    inside(Fault::WallForgotten),
+    inside(Fault::FlightStretched),
+    inside(Fault::PieceStretched),
+    inside(Fault::TrackStretched),
+    inside(Fault::WindowUnfair),
+    inside(Fault::ClustersForgotten),
+    inside(Fault::FreedomOfThree),
+    inside(Fault::VarianceOfRed),
+    inside(Fault::LuminanceReversed),
+    inside(Fault::AlbedoLowered),
+    inside(Fault::PowerRaised),
+    inside(Fault::PhaseTurned),
+    inside(Fault::KernelRaised),
 ];
 
 fn single_scattering() {

@@ -1,5 +1,6 @@
 //! Free flight: the optical depth flown is exponential; forced, through overlapping media, and by channel.
 
+use crate::checks::flights;
 use crate::support::run::histories;
 use crate::support::scenes::{bounded, homogeneous, region, sphere, volume_source};
 use crate::support::verdict;
@@ -170,4 +171,14 @@ fn a_chromatic_flight_is_unbiased_by_channel() {
             }
         }
     }
+}
+
+#[test]
+fn flights_are_the_exact_inverse() {
+    flights::flights_are_the_exact_inverse();
+}
+
+#[test]
+fn flights_are_a_mean_free_path_long() {
+    flights::flights_are_a_mean_free_path_long();
 }

@@ -8,11 +8,13 @@ mod common;
 #[path = "../support/mod.rs"]
 mod support;
 
+mod color;
 mod flight;
 mod fresnel;
 mod lights;
 mod media;
 mod phase;
+mod pictures;
 mod projection;
 mod roulette;
 mod shapes;

@@ -1,6 +1,7 @@
 //! Densities and their media: bounds hold everywhere, flights and transmittances are those of the exact integral,
 //! emission is collected in full, and homogeneous media cost nothing of it.
 
+use crate::checks::fog;
 use crate::checks::media;
 use crate::checks::media::{layered, varying};
 use crate::common::config as properties;
@@ -301,4 +302,19 @@ fn grids_go_through_their_files() {
             assert_eq!(f64::from(second), grid.color_at(corners.0)[1]);
         }
     }
+}
+
+#[test]
+fn gentle_slopes_have_their_depth() {
+    fog::gentle_slopes_have_their_depth();
+}
+
+#[test]
+fn a_grid_is_scaled_and_placed() {
+    fog::a_grid_is_scaled_and_placed();
+}
+
+#[test]
+fn a_wall_ends_the_angles() {
+    fog::a_wall_ends_the_angles();
 }

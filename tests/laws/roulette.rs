@@ -1,5 +1,6 @@
 //! Russian roulette: what survives and what is lost, exactly where it can be exact, else in expectation.
 
+use crate::checks::weights;
 use crate::support::run::histories;
 use crate::support::verdict;
 use turbid::Spectrum;
@@ -73,4 +74,9 @@ fn every_channel_holds_in_expectation() {
         verdict::agrees(&format!("lost, channel {c}"), &lost[c], (expected, 0.0), 0.05 * expected, 6);
         verdict::rejects(&format!("lost, channel {c}, wrong twin"), &wrong[c], expected, 6);
     }
+}
+
+#[test]
+fn photons_survive_as_the_albedo_says() {
+    weights::photons_survive_as_the_albedo_says();
 }

@@ -1,6 +1,7 @@
 //! The advice of pilot maps, realised: the error that independent maps of the advised size and radius then have,
 //! against exact fluences.
 
+use crate::checks::weights;
 use crate::support::scenes::{self, Incidence};
 use crate::support::{run, verdict};
 use std::path::Path;
@@ -248,4 +249,9 @@ fn what_cannot_be_advised() {
     for target in [0.0, -0.1, 1.5, f64::NAN] {
         assert!(pilot.advise(target).unwrap_err().to_string().starts_with("the target is"));
     }
+}
+
+#[test]
+fn advised_noise_is_that_of_maps() {
+    weights::advised_noise_is_that_of_maps();
 }

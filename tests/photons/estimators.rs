@@ -1,6 +1,7 @@
 //! Estimators at a point: kernels, exact small cases, symmetries. Their statistics are in
 //! `estimators_statistics`.
 
+use crate::checks::weights;
 use glam::{DMat3, DVec3, Vec3};
 use proptest::prelude::*;
 use rayon::prelude::*;
@@ -421,4 +422,14 @@ proptest! {
             prop_assert!((a.radius - b.radius).abs() <= 4.0 * resolution + 1e-6 * a.radius);
         }
     }
+}
+
+#[test]
+fn the_k_nearest_vary_as_their_volume() {
+    weights::the_k_nearest_vary_as_their_volume();
+}
+
+#[test]
+fn one_photon_is_one_over_its_ball() {
+    weights::one_photon_is_one_over_its_ball();
 }

@@ -1,5 +1,6 @@
 //! Importance: photons go where the picture needs them, and every estimate keeps its expectation.
 
+use crate::checks::weights;
 use crate::support::verdict;
 use glam::{DVec2, DVec3};
 use std::path::Path;
@@ -166,4 +167,9 @@ fn importance_makes_the_picture_better() {
         ));
     }
     assert!(cost[1] < cost[0], "variance times events: {cost:?}");
+}
+
+#[test]
+fn a_window_keeps_the_weight() {
+    weights::a_window_keeps_the_weight();
 }

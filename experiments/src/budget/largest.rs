@@ -158,7 +158,50 @@ mod tests {
     use super::super::sets::groups;
     use super::super::sets::tests::made_up;
     use super::*;
+    use crate::harness::Entry;
     use turbid::stats::{ALPHA, wilson_interval};
+
+    /// Two cases by hand: 1 to 5 against 2, with and without a numerical error, at 4 degrees: p = 1 - s (3 - s^2)/2 with
+    /// s = t/sqrt(t^2 + 4), t = sqrt 2 and 1.
+    #[test]
+    fn the_largest_by_hand() {
+        let p = |t: f64| {
+            let s = t / (t * t + 4.0).sqrt();
+            1.0 - 0.5 * s * (3.0 - s * s)
+        };
+        let maps = || vec![1.0, 2.0, 3.0, 4.0, 5.0];
+        let near = Entry::new("g", "near", &[(Term::Blur, 2.0)], 0.5f64.sqrt(), maps());
+        let far = Entry::new("g", "far", &[(Term::Blur, 2.0)], 0.0, maps());
+        let null = Null { smallest: vec![0.01, 0.2, 0.3], entries: 2 };
+        for (entries, case, t) in [(vec![&near, &far], "far", 2f64.sqrt()), (vec![&near], "near", 1.0)] {
+            let found = null.largest(&[Group { name: "g", maps: 5, entries }], None);
+            assert!(found.case == case && (found.p_alone - p(t)).abs() < 1e-12, "{found:?}");
+        }
+    }
+
+    /// A resample is that of the values themselves, each drawn as often as the stream says, by Welford's recurrence.
+    #[test]
+    fn resamples_by_a_second_way() {
+        let entries = made_up(6, &[(40, 5)], 0.0);
+        let groups = groups(entries.iter()).unwrap().0;
+        let table = Residuals::of(&groups[0]);
+        for history in 0..50 {
+            let mut stream = Stream::new(9, Purpose::Resampling, 0, history);
+            let drawn: Vec<usize> = {
+                let mut stream = stream.clone();
+                (0..40).map(|_| stream.index(40)).collect()
+            };
+            let one = |entry: &&Entry| {
+                let whole: Moments = entry.maps.iter().collect();
+                let m: Moments = drawn.iter().map(|&i| entry.maps[i]).collect();
+                student_p(distance(m.mean(), m.std_error(), whole.mean(), entry.error), 39)
+            };
+            let expected = groups[0].entries.iter().map(one).fold(1.0, f64::min);
+            let found = table.resampled(&mut stream);
+            // Single precision: 1e-6 of a deviation of at most 6, in the logarithm of p.
+            assert!((found / expected - 1.0).abs() < 1e-3, "{found} for {expected}");
+        }
+    }
 
     /// Cases that share half their variance, in groups of different sizes, some of few maps: right predictions are
     /// refused at the nominal rate, which Bonferroni's bound would miss.

@@ -166,6 +166,22 @@ pub mod tests {
         }
     }
 
+    /// Five values, 1 to 5: mean 3, standard error sqrt(1/2). Against 2 that is t = sqrt 2 at 4 degrees, whose two-sided
+    /// p is 1 - s (3 - s^2)/2 with s = t/sqrt(t^2 + 4); a numerical error of sqrt(1/2) beside it makes t = 1.
+    #[test]
+    fn what_is_left_over_by_hand() {
+        let root = 0.5f64.sqrt();
+        for (error, t, predicted) in [(0.0, 2f64.sqrt(), 2.0), (root, 1.0, 2.0), (0.0, -2f64.sqrt(), 4.0)] {
+            let terms = [(Term::Blur, predicted - 0.5), (Term::Edge, 0.5)];
+            let entry = Entry::new("g", "c", &terms, error, vec![1.0, 2.0, 3.0, 4.0, 5.0]);
+            let drawn = Drawn { entry: &entry, moments: entry.maps.iter().collect() };
+            let s: f64 = t / (t * t + 4.0f64).sqrt();
+            let below = 0.5 + 0.25 * s * (3.0 - s * s);
+            assert!((drawn.uniform(None) - below).abs() < 1e-12, "{t}: {} for {below}", drawn.uniform(None));
+            assert!((distance(3.0, root, predicted, error) - t).abs() < 1e-14);
+        }
+    }
+
     #[test]
     fn groups_are_checked() {
         let mut entries = made_up(1, &[(64, 3), (32, 2)], 0.0);

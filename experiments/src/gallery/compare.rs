@@ -334,6 +334,33 @@ mod tests {
         (0..count).map(one).collect()
     }
 
+    /// 25/(16/4 + 1/10) = 6.1; equal sides have twice the degrees of one, a side without variance none.
+    #[test]
+    fn degrees_of_freedom_by_hand() {
+        assert_eq!(welch(4.0, 5, 1.0, 11), 6);
+        assert_eq!((welch(2.0, 11, 2.0, 11), welch(3.0, 9, 0.0, 100)), (20, 8));
+        assert_eq!((welch(0.0, 9, 3.0, 65), welch(0.0, 9, 0.0, 64)), (64, 8));
+    }
+
+    /// One pixel, 16 values 3 errors away from 64 that hardly vary: the t of 15 degrees, p = 0.00897. Pooled, with 78
+    /// degrees, it would be 0.0036.
+    #[test]
+    fn a_block_by_hand() {
+        let side = |count: usize, mean: f64, by: f64| -> Vec<Making> {
+            let one = |i: usize| vec![Spectrum::grey(mean + if i % 2 == 0 { by } else { -by })];
+            (0..count).map(one).collect()
+        };
+        let error = (1.0f64 / 15.0).sqrt();
+        let (ours, twin) = (side(16, 10.0 + 3.0 * error, 1.0), side(64, 10.0, 1e-6));
+        let block = one((0, 0), 1, &[0], &ours, &twin, &[0.0]).unwrap();
+        assert!((block.std_error - error).abs() < 1e-9 && (block.difference - 3.0 * error).abs() < 1e-9);
+        assert!((block.p - 0.008_973).abs() < 2e-6, "{}", block.p);
+        // What was predicted to be off is no difference: one error of three is left.
+        let predicted = 2.0 * error / 10.0;
+        let block = one((0, 0), 1, &[0], &ours, &twin, &[predicted]).unwrap();
+        assert!((block.p - 0.333_170).abs() < 2e-6, "{}", block.p);
+    }
+
     fn nothing() -> Vec<f64> {
         vec![0.0; GRID.pixels()]
     }

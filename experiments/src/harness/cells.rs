@@ -1,9 +1,9 @@
 //! All cells of one experiment, merged in sorted order.
 
 use super::cell::{self, Header};
-use super::{CellId, Estimate};
+use super::{CellId, Digest, Estimate};
 use anyhow::{Context, bail, ensure};
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, HashMap, HashSet};
 use std::path::Path;
 use turbid::stats::Moments;
 
@@ -30,15 +30,40 @@ pub(super) struct CellSeconds {
     pub phases: BTreeMap<String, f64>,
 }
 
+/// Fewest different fractions of a cell that tell it from all others: a few counts of two maps may well be the same.
+const FEWEST_TELLING: usize = 8;
+
+/// A digest of what a cell measured, if that tells it from all others of its group.
+fn telling(rows: &[cell::CellRow]) -> Option<String> {
+    let fractions: HashSet<u64> =
+        rows.iter().map(|row| row.value).filter(|x| x.fract() != 0.0).map(f64::to_bits).collect();
+    let mut lines: Vec<String> = rows
+        .iter()
+        .map(|row| format!("{}\t{}\t{:x}\n", row.case, row.quantity, row.value.to_bits()))
+        .collect();
+    lines.sort();
+    (fractions.len() >= FEWEST_TELLING).then(|| Digest::of(lines.concat().as_bytes()).to_string())
+}
+
 impl Cells {
-    /// Reads the files of all cells; refuses a set that is not complete.
+    /// Reads the files of all cells; refuses a set that is not complete, and maps of one group that are the same.
     pub(super) fn read(folder: &Path, expected: &[CellId]) -> anyhow::Result<Self> {
         let mut ids = expected.to_vec();
         ids.sort_by_key(CellId::id);
-        let mut cells = Cells::default();
+        let (mut cells, mut seen) = (Cells::default(), HashMap::new());
         for (index, id) in ids.iter().enumerate() {
             let (header, rows) =
                 cell::read(&folder.join(format!("{}.csv", id.id()))).context("the set is incomplete")?;
+            if let Some(digest) = telling(&rows)
+                && let Some(first) = seen.insert((id.group.as_str(), digest), id)
+            {
+                bail!(
+                    "cells {} and {} of {} measured the same numbers: they are one map, not two",
+                    first.id(),
+                    id.id(),
+                    header.experiment
+                );
+            }
             cells.add(index, header, rows)?;
         }
         cells.ids = ids;

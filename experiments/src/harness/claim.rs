@@ -284,6 +284,30 @@ mod tests {
         assert_eq!(verdict(within(estimate(0, 64, 1.06, 0.05))), Verdict::Undecided);
     }
 
+    /// Verdicts turn where the interval does, to a part in a million: 64 values of 1 and -1 have the mean 0 and the error
+    /// sqrt(64/63)/8; the level of one claim is 1e-3, of two half of it.
+    #[test]
+    fn verdicts_turn_at_the_ends_of_the_interval() {
+        let statistic = Estimate::mean(&(0..64).map(|i| if i % 2 == 0 { 1.0 } else { -1.0 }).collect());
+        let error = (64.0f64 / 63.0).sqrt() / 8.0;
+        // The t of 63 degrees that is exceeded with 1e-3 and 5e-4.
+        for (claims, critical) in [(1, student_critical(1e-3, 63)), (2, student_critical(5e-4, 63))] {
+            let end = critical * error;
+            let first = |claim: Claim| judge(vec![claim; claims])[0].verdict;
+            for (part, within, beyond) in [
+                (1.0 + 1e-6, Verdict::Upheld, Verdict::Rejected),
+                (1.0 - 1e-6, Verdict::Undecided, Verdict::Undecided),
+            ] {
+                let to = end * part;
+                let claim = |low, high| Claim::within("a", "a", Unit::ONE, statistic, low, high);
+                assert_eq!(first(claim(-to, to)), within, "{claims} claims, {part} of the interval");
+                assert_eq!(first(claim(to, 10.0)), beyond, "{claims} claims, margin from {part} of the end");
+                assert_eq!(first(claim(-10.0, -to)), beyond, "{claims} claims, margin to {part} of the end");
+            }
+        }
+        assert!((student_critical(1e-3, 63) - 3.451_769).abs() < 1e-6, "{}", student_critical(1e-3, 63));
+    }
+
     #[test]
     fn the_three_verdicts_of_a_fault() {
         let fault = |statistic| Claim::detected("a", "a", Unit::ONE, statistic, 1.0, 0.05);

@@ -2,6 +2,7 @@
 
 use super::Importance;
 use super::grid::DIRECTIONS;
+use crate::faults::{Fault, planted};
 use crate::math::{FOUR_PI, cosine_pair, warp};
 use crate::phase::PhaseFunction;
 use crate::rng::Stream;
@@ -140,19 +141,30 @@ impl Importance {
         (natural > 0.0).then(|| Walker { ray, weight: walker.weight * (natural / both), ..walker })
     }
 
-    /// How many photons go on, and the factor on the weight of each: their expected product is 1.
+    /// How many photons go on, and the factor on the weight of each.
     fn copies(&self, walker: &Walker, stream: &mut Stream) -> (usize, f64) {
         let Walker { ray, .. } = walker;
         let value = self.values_at(ray.origin)[self.aim.directions(ray.origin).index(ray.dir)];
-        let ratio = walker.weight.sum() * value / self.response;
-        if ratio < WINDOW.0 {
-            let chance = ratio.max(LEAST);
-            (usize::from(stream.unit() < chance), 1.0 / chance)
-        } else if ratio > WINDOW.1 {
-            let split = ratio.min(MOST);
-            ((split + stream.unit()) as usize, 1.0 / split)
-        } else {
-            (1, 1.0)
-        }
+        window(walker.weight.sum() * value / self.response, || stream.unit())
+    }
+}
+
+/// How many photons go on for one whose weight is `ratio` times as large as it should be, and the factor on the weight of
+/// each: their expected product is 1, whatever the ratio.
+///
+/// # Arguments
+/// `unit` gives a number in [0, 1), asked for at most once
+/// # Source
+/// Wagner and Haghighat 1998: weight windows
+pub fn window(ratio: f64, unit: impl FnOnce() -> f64) -> (usize, f64) {
+    if ratio < WINDOW.0 {
+        let chance = ratio.max(LEAST);
+        (usize::from(unit() < chance), 1.0 / chance)
+    } else if ratio > WINDOW.1 {
+        let split = ratio.min(MOST);
+        let shared = if planted(Fault::WindowUnfair) { split.round() } else { split };
+        ((split + unit()) as usize, 1.0 / shared)
+    } else {
+        (1, 1.0)
     }
 }

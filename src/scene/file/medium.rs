@@ -2,6 +2,7 @@
 
 use super::Channels;
 use crate::error::{Error, Result};
+use crate::faults::{Fault, planted};
 use crate::math::{Albedo, Asymmetry, NonNegative, Positive};
 use crate::medium::{Body, Cloud, CloudShape, Density, Grid, HeightFog, Heterogeneous, Homogeneous, Medium};
 use crate::phase::{Phase, Rayleigh, Schlick, Tabulated, TwoTerm};
@@ -180,6 +181,7 @@ impl GridFile {
             (None, None, None) => Ok(grid),
             (None, None, Some(scale)) => grid.placed((min, max), scale.get()),
             (Some(min), Some(max), scale) => {
+                let scale = scale.filter(|_| !planted(Fault::GridScaleForgotten));
                 grid.placed((min.into(), max.into()), scale.map_or(1.0, Positive::get))
             }
             _ => refuse("a grid with one of min and max; allowed: both, or neither"),
