@@ -123,8 +123,8 @@ fn note(text: &str) -> std::io::Result<()> {
     writeln!(std::io::stderr().lock(), "turbid: note: {}", one_line(text))
 }
 
-/// Seconds and bytes from which on a run tells what it will take: as long as progress is silent, and a gigabyte.
-const TOLD_AHEAD: (f64, f64) = (10.0, 1e9);
+/// Seconds and bytes from which on a run tells what it will take: a minute, which is worth another decision, and a gigabyte.
+const TOLD_AHEAD: (f64, f64) = (60.0, 1e9);
 
 /// Tells what a long or a large run will take, before it begins.
 fn tell_ahead(what: &str, seconds: f64, bytes: f64) -> std::io::Result<()> {
