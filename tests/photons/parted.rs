@@ -289,15 +289,14 @@ fn ways() -> Vec<(Kernel, Gather)> {
 /// control: with the medium's own faces alone they are not.
 #[test]
 fn fields_parted_by_bodies() {
-    let maps = std::env::var("MAPS").map_or(MAPS, |n| n.parse().unwrap());
     for case in cases() {
         let extents = medium_extents(&case.scene);
         let boundary = extents[case.number].boundary(Treatment::Clipped);
-        for (values, way) in relative(&case, maps, &ways(), &boundary).iter().zip(ways()) {
+        for (values, way) in relative(&case, MAPS, &ways(), &boundary).iter().zip(ways()) {
             verdict::agrees(&format!("{}, {way:?}", case.name), values, (1.0, 0.0), 0.25, SEED);
         }
         let blind = Boundary::unknown(Treatment::Clipped);
-        for (values, way) in relative(&case, maps, &ways(), &blind).iter().zip(ways()) {
+        for (values, way) in relative(&case, MAPS, &ways(), &blind).iter().zip(ways()) {
             verdict::rejects(&format!("{}, {way:?}, bodies not known", case.name), values, 1.0, SEED);
         }
     }
