@@ -321,7 +321,9 @@ pub fn channels_in_another_order_change_nothing_else() {
             for c in 0..3 {
                 let (a, b) = (&a[order[c]], &b[c]);
                 let what = format!("quantity {which}, order {order:?}, channel {c}");
-                verdict::agree(&what, a, b, 0.3 * a.mean(), seed);
+                // Radiances relative to themselves, what is absorbed relative to the power.
+                let promise = if which < rays.len() { 0.3 * a.mean() } else { 0.01 };
+                verdict::agree(&what, a, b, promise, seed);
             }
         }
     }
