@@ -304,14 +304,14 @@ pub fn channels_in_another_order_change_nothing_else() {
         [(DVec3::new(-2.0, -0.5, 0.5), DVec3::X), (DVec3::new(0.0, -2.0, 0.6), DVec3::new(0.1, 1.0, -0.05))];
     let asked: Vec<Quantity> =
         rays.iter().map(|(from, dir)| Quantity::Radiance(Ray::new(*from, dir.normalize()))).collect();
-    let tallied = [Quantity::Absorbed(0), Quantity::Absorbed(1), Quantity::Absorbed(2)];
+    let tallied = [Quantity::Absorbed(0), Quantity::Absorbed(1)];
     let measured = |order: [usize; 3], seed: u64| {
         let scene = colorful(order);
         let mut found: Vec<[Moments; 3]> = asked
             .iter()
             .map(|quantity| paths(&scene, quantity.clone(), Orders::ALL, 1 << 13, seed))
             .collect();
-        found.extend(tallies(&scene, &tallied.clone().map(|q| (q, Orders::ALL)), 1 << 16, seed));
+        found.extend(tallies(&scene, &tallied.clone().map(|q| (q, Orders::ALL)), 1 << 17, seed));
         found
     };
     let plain = measured([0, 1, 2], 66);
@@ -321,7 +321,9 @@ pub fn channels_in_another_order_change_nothing_else() {
             for c in 0..3 {
                 let (a, b) = (&a[order[c]], &b[c]);
                 let what = format!("quantity {which}, order {order:?}, channel {c}");
-                verdict::agree(&what, a, b, 0.3 * a.mean(), seed);
+                // Radiances relative to themselves, what is absorbed relative to the power.
+                let promise = if which < rays.len() { 0.3 * a.mean() } else { 0.02 };
+                verdict::agree(&what, a, b, promise, seed);
             }
         }
     }

@@ -10,6 +10,7 @@ mod any_input_sphere;
 mod boundary;
 mod boundary_nearest;
 mod boundary_points;
+mod bounds;
 mod critical;
 mod half_space_reference;
 mod slab_anisotropic;

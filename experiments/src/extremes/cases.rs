@@ -23,11 +23,13 @@ pub enum Class {
     Faces,
     /// What cannot be answered.
     Refusal,
+    /// Nothing extreme, asked sharply.
+    Ordinary,
 }
 
 impl Class {
     /// Every class.
-    pub const ALL: [Class; 10] = [
+    pub const ALL: [Class; 11] = [
         Class::Thickness,
         Class::Albedo,
         Class::Asymmetry,
@@ -38,10 +40,18 @@ impl Class {
         Class::Coincident,
         Class::Faces,
         Class::Refusal,
+        Class::Ordinary,
     ];
     /// The classes that have sampled rows.
-    pub const SAMPLED: [Class; 6] =
-        [Class::Thickness, Class::Albedo, Class::Asymmetry, Class::Position, Class::Number, Class::Faces];
+    pub const SAMPLED: [Class; 7] = [
+        Class::Thickness,
+        Class::Albedo,
+        Class::Asymmetry,
+        Class::Position,
+        Class::Number,
+        Class::Faces,
+        Class::Ordinary,
+    ];
 
     /// Its name.
     pub fn name(self) -> &'static str {
@@ -56,6 +66,7 @@ impl Class {
             Class::Coincident => "coincident",
             Class::Faces => "faces",
             Class::Refusal => "refusal",
+            Class::Ordinary => "ordinary",
         }
     }
 }

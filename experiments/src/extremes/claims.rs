@@ -72,6 +72,7 @@ fn about(class: Class) -> &'static str {
         Class::Position => "distance from the origin, to 1e9 mean free paths",
         Class::Number => "passes of few photons",
         Class::Faces => "light along and across faces",
+        Class::Ordinary => "ordinary media, with thirty times the histories",
         Class::Scale | Class::Nearest | Class::Coincident | Class::Refusal => class.name(),
     }
 }

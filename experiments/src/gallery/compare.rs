@@ -347,7 +347,7 @@ mod tests {
     #[test]
     fn a_block_by_hand() {
         let side = |count: usize, mean: f64, by: f64| -> Vec<Making> {
-            let one = |i: usize| vec![Spectrum::grey(mean + if i % 2 == 0 { by } else { -by })];
+            let one = |i: usize| vec![Spectrum::grey(mean + if i.is_multiple_of(2) { by } else { -by })];
             (0..count).map(one).collect()
         };
         let error = (1.0f64 / 15.0).sqrt();
