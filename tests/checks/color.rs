@@ -9,6 +9,7 @@ use crate::support::verdict;
 use glam::DVec3;
 use std::f64::consts::PI;
 use turbid::Spectrum;
+use turbid::estimators::boundary::Treatment;
 use turbid::estimators::{Gather, Kernel};
 use turbid::geometry::{Face, Shape};
 use turbid::light::{Area, Light};
@@ -57,6 +58,7 @@ fn read(scene: &Scene, by: &str, replicate: u64) -> Vec<Reading> {
         orders: Orders::ALL,
         gather: Gather::radius(0.6).unwrap(),
         kernel: Kernel::Uniform,
+        treatment: Treatment::None,
     };
     by_photons(scene, &settings, &NoProgress).unwrap().readings
 }

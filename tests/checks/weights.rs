@@ -71,6 +71,7 @@ pub fn one_photon_is_one_over_its_ball() {
     let photon = Photon {
         position: DVec3::new(0.1, -0.2, 0.3),
         dir: Vec3::Z,
+        normal: Vec3::ZERO,
         power: Vec3::ONE,
         order: 1,
         flags: Flags::MEDIUM,
