@@ -14,7 +14,7 @@ fn sweep() -> Command {
     Command::new(env!("CARGO_BIN_EXE_sweep"))
 }
 
-/// A twenty-fifth of what the program does: about a second a scene.
+/// A fortieth of what the program does: about a second a scene.
 const SMALL: Effort = Effort { steps: 1.2e5, seconds: None };
 
 /// The first valid scene of a seed.

@@ -341,7 +341,7 @@ mod tests {
         let without = |light: f64| {
             let change = |batch: &Batch, to: f64| {
                 let mut batch = *batch;
-                batch[3] = to * batch[3];
+                batch[3] *= to;
                 batch
             };
             let with = |to: f64| Measured { batches: much.batches.iter().map(|b| change(b, to)).collect() };

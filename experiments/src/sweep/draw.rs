@@ -152,8 +152,9 @@ impl Pen {
         self.say(format!("{:?}", self.setting).to_lowercase());
         self.surroundings();
         self.is_tank = self.chance(0.06);
-        let is_open = self.setting == Setting::Open;
-        let bodies = self.pick(&[(0usize, if is_open { 0.0 } else { 0.08 }), (1, 0.37), (2, 0.35), (3, 0.2)]);
+        // Where nothing about the bodies scatters, one of them does.
+        let none = if self.has_diffuse { 0.08 } else { 0.0 };
+        let bodies = self.pick(&[(0usize, none), (1, 0.37), (2, 0.35), (3, 0.2)]);
         let mut columns = COLUMNS.to_vec();
         for _ in 0..bodies {
             let index = self.stream.index(columns.len());
@@ -209,6 +210,7 @@ impl Pen {
     fn wall(&mut self) -> Value {
         match self.pick(&[(0, 0.86), (1, 0.08), (2, 0.06)]) {
             0 => {
+                self.has_diffuse = true;
                 let texture = self.texture(
                     0.1,
                     0.8,
@@ -281,8 +283,7 @@ impl Pen {
     }
 
     fn surface_kind(&mut self) -> Kind {
-        // In the open the first body is one that scatters: else there may be nothing to see.
-        if self.setting == Setting::Open && !std::mem::replace(&mut self.has_diffuse, true) {
+        if !std::mem::replace(&mut self.has_diffuse, true) {
             return Kind::Diffuse;
         }
         self.pick(&[
@@ -784,7 +785,11 @@ impl Pen {
             let away = DVec3::new(self.within(-1.0, 1.0), self.within(-0.1, 0.8), 1.0).normalize();
             ((away * self.within(2.4, 3.6)).to_array().map(short), self.within(40.0, 65.0))
         };
-        if !self.is_tank && self.chance(0.04) {
+        // Nothing is seen straight from there, so that paths must reach all light.
+        let kinds = ["point", "spot", "beam"];
+        let has_delta =
+            self.text.parts("lights").iter().any(|l| kinds.iter().any(|kind| l.get(kind).is_some()));
+        if !self.is_tank && !has_delta && self.chance(0.04) {
             // An eye of glass.
             let inside = self.interior("surroundings");
             let radius = 0.05;

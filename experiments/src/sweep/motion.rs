@@ -430,7 +430,7 @@ mod tests {
     #[test]
     fn a_motion_and_its_inverse_are_nothing() {
         let grid = Grid::new((DVec3::ZERO, DVec3::ONE), [2, 3, 4], 1, (0..24).map(|i| i as f32).collect());
-        let mesh = "v 0 1 2\nv 3 4 5\nv 6 7 9\nf 1 2 3\n".to_string();
+        let mesh = "v 8 1 2\nv 3 4 5\nv 6 7 9\nf 1 2 3\n".to_string();
         let table: Table = toml::from_str(
             "camera = { position = [1.0, 2.0, 3.0], look_at = [4.0, 5.0, 6.0], up = [0.0, 1.0, 0.0] }\n\
              regions = [{ shape = { cuboid = { min = [0.0, 1.0, 2.0], max = [3.0, 5.0, 7.0] } }, sigma_t = [1.0, 2.0, 4.0],\n\

@@ -157,9 +157,9 @@ fn in_child(settings: &Settings, seed: u64, scene: Option<&Path>) -> anyhow::Res
         let text = std::fs::read_to_string(&path).context("a scene left no record")?;
         return Ok(serde_json::from_str(&text)?);
     }
-    let said = String::from_utf8_lossy(&output.stderr).lines().take(3).collect::<Vec<_>>().join("; ");
+    let said = String::from_utf8_lossy(&output.stderr).trim().lines().take(3).collect::<Vec<_>>().join("; ");
     if output.status.code() == Some(2) {
-        bail!("seed {seed}: {said}");
+        bail!("seed {seed}: {}", said.trim_start_matches("error: "));
     }
     let alarm = Alarm::failure("process", format!("ended by {}: {said}", output.status));
     let what = drawn(seed).map_or_else(|_| String::new(), |(_, (what, _))| what);
@@ -206,11 +206,11 @@ fn shrink(settings: &Settings, record: &Record, text: &SceneText) -> anyhow::Res
 /// One scene, with all that was found.
 fn one(settings: &Settings) -> anyhow::Result<u8> {
     let seed = settings.seed.unwrap_or(0);
-    let mut record = in_child(settings, seed, settings.scene.as_deref())?;
     let text = match &settings.scene {
         Some(path) => SceneText::read(path)?,
         None => drawn(seed)?.0,
     };
+    let mut record = in_child(settings, seed, settings.scene.as_deref())?;
     record.smallest = shrink(settings, &record, &text)?;
     let verdict = verdict(&record, LEVEL);
     print(|out| {

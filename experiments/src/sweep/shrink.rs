@@ -103,7 +103,7 @@ mod tests {
     use super::*;
     use crate::sweep::draw::draw;
 
-    /// Down to a light and nothing else, where everything may go; parts that are asked for stay.
+    /// Down to a light and at most what it shines on, where everything may go; parts that are asked for stay.
     #[test]
     fn parts_go_one_by_one() {
         for seed in 0..20 {
@@ -112,12 +112,10 @@ mod tests {
                 continue;
             }
             let least = shrunk(&text, |_| true);
-            assert!(
-                least.parts("objects").is_empty() && least.parts("interiors").is_empty(),
-                "{}",
-                least.toml()
-            );
-            assert!(least.parts("lights").len() + least.parts("regions").len() <= 2, "{}", least.toml());
+            // A sun needs something to shine on.
+            let left: usize =
+                ["objects", "regions", "lights"].iter().map(|kind| least.parts(kind).len()).sum();
+            assert!(left <= 2 && least.parts("interiors").len() <= 1, "{}", least.toml());
             let objects = text.parts("objects").len();
             let kept = shrunk(&text, |less| less.parts("objects").len() == objects);
             assert_eq!(kept.parts("objects").len(), objects);
