@@ -98,7 +98,6 @@ impl RegionTree {
 
 #[cfg(test)]
 mod tests {
-    use super::super::{Parts, Scene};
     use super::*;
     use crate::Spectrum;
     use crate::geometry::{Cuboid, Shape, Slab, Sphere};
@@ -107,6 +106,7 @@ mod tests {
     use crate::medium::Homogeneous;
     use crate::phase::Phase;
     use crate::rng::{Purpose, Stream};
+    use crate::scene::{Parts, SURROUNDINGS, Scene};
 
     fn region(shape: Shape, sigma_t: f64) -> Region {
         let phase = Phase::with_asymmetry(Asymmetry::new("g", 0.0).unwrap());
@@ -146,7 +146,7 @@ mod tests {
                 let dir = warp::square_to_sphere(stream.pair()).normalize();
                 let ray = Ray::new(place(&mut stream, 12.0), dir);
                 let end = 20.0 * stream.unit();
-                let segments = scene.segments(&ray, end, super::super::SURROUNDINGS);
+                let segments = scene.segments(&ray, end, SURROUNDINGS);
                 let (mut cursor, mut gaps) = (0.0, Vec::new());
                 for segment in segments.iter() {
                     let Interval { start, end } = segment.interval;
@@ -168,7 +168,7 @@ mod tests {
         let layers = (0..20).map(|i| region(Shape::Slab(Slab::new(f64::from(i), 0.5).unwrap()), 1.0));
         let scene = scene(layers.collect());
         let ray = Ray::new(DVec3::new(0.3, 0.2, -1.0), DVec3::Z);
-        assert_eq!(scene.segments(&ray, f64::INFINITY, super::super::SURROUNDINGS).iter().count(), 20);
+        assert_eq!(scene.segments(&ray, f64::INFINITY, SURROUNDINGS).iter().count(), 20);
     }
 
     /// A cube of fog cut into 512 is the cube of fog, along any ray and for any number of cuts.

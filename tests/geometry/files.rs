@@ -67,7 +67,7 @@ fn textures_are_read() {
         object(square, "lambertian = { reflectance = [0.1, 0.2, 0.3] }"),
         object(square, "lambertian = { reflectance = { image = { file = \"red.png\" } } }"),
         object(
-            square,
+            "rectangle = { corner = [0, 0, 1], u = [1, 0, 0], v = [0, 1, 0] }",
             "filter = { transmittance = { checker = { values = [0, [1, 0, 1]], tiles = [2, 1] } } }",
         ),
         object(
