@@ -36,7 +36,8 @@ const THIN: f64 = 30.0;
 const HIGH_INDEX: f64 = 10.0;
 
 /// Refuses a scene in which light does not come to an end, or hardly: where its histories have more than [`MOST_EVENTS`] events
-/// in the mean, or one has more than [`LONG`]. They start from every light, the camera, and every sensor.
+/// in the mean. They start from every light, the camera, and every sensor; one of more than [`LONG`] counts as it is
+/// followed, to the end by roulette.
 ///
 /// Light caught in clear glass by total reflection is none of these: it is given up after some thousands of reflections.
 /// What is asked is asked once a scene; the answer is a function of the scene alone.
@@ -195,15 +196,15 @@ fn probe(scene: &Scene) -> Result<()> {
             walk(scene, start, Roulette::Analog, None, &mut stream, &mut met);
             events[number] += met.events;
             all += met.events;
-            let is_long = met.events > u64::from(LONG);
-            if is_long || (all > BUDGET && events[number] > MOST_EVENTS * (pilot + 1)) {
-                let found = if is_long {
-                    format!("a history of more than {LONG} events")
-                } else {
-                    format!("{} events a history in the mean", events[number] / (pilot + 1))
+            // A long history may be one of few: in a thick medium without loss their number falls with their length.
+            let mean = events[number] / (pilot + 1);
+            if all > BUDGET && mean > MOST_EVENTS {
+                let found = match mean > u64::from(LONG) {
+                    true => format!("more than {LONG}"),
+                    false => mean.to_string(),
                 };
                 return Err(Error::Scene(format!(
-                    "{} hardly ever ends: {found} between {}; allowed: {MOST_EVENTS} in the mean; let one of them absorb more, or leave an opening",
+                    "{} hardly ever ends: {found} events a history in the mean between {}; allowed: {MOST_EVENTS} in the mean; let one of them absorb more, or leave an opening",
                     source.name(scene),
                     met.words(scene),
                 )));
