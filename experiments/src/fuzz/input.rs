@@ -106,7 +106,8 @@ fn bytes(kind: Kind, stream: &mut Stream) -> Vec<u8> {
         Kind::Arguments => return seeds::arguments(stream),
         _ => seeds::file(kind, stream),
     };
-    let changes = 1 + stream.index(4);
+    // One in four is left as it is.
+    let changes = stream.index(4);
     for _ in 0..changes {
         change(&mut bytes, kind, stream);
     }
