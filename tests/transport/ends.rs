@@ -9,7 +9,7 @@ use glam::DVec3;
 use turbid::Spectrum;
 use turbid::geometry::Shape;
 use turbid::light::{Faces, Light};
-use turbid::math::{Interval, Ray};
+use turbid::math::{Interval, Ray, exp, ln_1p};
 use turbid::medium::{Density, Grid, Heterogeneous, Medium};
 use turbid::photons::importance::{Importance, ImportanceSettings};
 use turbid::photons::maps::{Amount, Indirect, MapSettings, fill};
@@ -208,7 +208,7 @@ fn long_histories_end_by_a_game_that_keeps_the_mean() {
         let start = Walker { events: LONG, ..Walker::new(Ray::new(DVec3::ZERO, DVec3::X), Spectrum::ONE) };
         let mut events = Events::default();
         walk(&scene, start, Roulette::Analog, None, &mut stream, &mut events);
-        let expected = (-(events.count as f64) * (-1.0 / odds).ln_1p()).exp();
+        let expected = exp(-(events.count as f64) * ln_1p(-1.0 / odds));
         assert!((events.last / expected - 1.0).abs() < 1e-9, "{} {expected}", events.last);
         lives.push(events.count as f64 / odds);
     }
@@ -243,7 +243,7 @@ fn roulette_of_faint_transmittances_keeps_the_mean() {
     // Density 0.1 below a bound of 1.
     let ray = Ray::new(DVec3::new(0.0, 0.5, 0.3), DVec3::X);
     let part = Interval { start: 0.0, end: 1.0 };
-    let exact = (-tau).exp();
+    let exact = exp(-tau);
     let through =
         crate::support::run::numbers(1 << 16, 6, |stream| passed(&medium, &ray, part, stream)[0] / exact);
     verdict::agrees("transmittance over the exact one", &through, (1.0, 1e-6), 0.3, 6);
