@@ -62,7 +62,7 @@ impl Emitter {
     /// What can meet anything at all: cells of the lights' numbers whose rays can reach the sphere about a body or about a
     /// medium in which light collides. What the other cells send out escapes, and [`Emitter::left_out`] says how much.
     ///
-    /// All that the lights send out, as [`Emitter::by_power`] emits it, where more than [`WORTH`] of the power is kept,
+    /// All that the lights send out, as [`Emitter::by_power`] emits it, where more than `WORTH` of the power is kept,
     /// where a body or a medium has no end, where no light reaches anything, and where a plan leaves nothing out.
     pub fn towards_scene(scene: &Scene) -> Self {
         let aimed = cells_towards_scene(scene, CELLS).and_then(|(cells, tested)| {

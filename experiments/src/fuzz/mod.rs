@@ -1,9 +1,9 @@
 //! Inputs by chance: scenes and files that nobody would write, and whether each is refused in one line or does what it says.
 //!
-//! An input is a function of its kind, the seed and its number ([`input`]): seeds are changed a few times, scenes as trees of
-//! keys ([`tree`]), other files byte by byte. It is then tried ([`judge`]). The trying is done by child processes, a range of
+//! An input is a function of its kind, the seed and its number (`input`): seeds are changed a few times, scenes as trees of
+//! keys (`tree`), other files byte by byte. It is then tried (`judge`). The trying is done by child processes, a range of
 //! numbers each, that say which input comes next; one that takes too long, too much memory, or the process with it, is known
-//! by that ([`batch`]). Failures are made smaller ([`shrink`]) and kept as files.
+//! by that (`batch`). Failures are made smaller (`shrink`) and kept as files.
 
 mod batch;
 mod input;

@@ -446,7 +446,7 @@ const LOOK_UP: f64 = 15.0;
 
 /// The photon mapper as the command runs it, with few photons and many.
 ///
-/// Both take the [`NEAREST`] photons. The small maps may look for them farther, in the same ratio as a full estimate does,
+/// Both take the `NEAREST` photons. The small maps may look for them farther, in the same ratio as a full estimate does,
 /// so that radii shrink from one to the other where photons are scarce too; the large ones look as far as the command does.
 ///
 /// # Arguments    `each` steps of one history
