@@ -42,7 +42,12 @@ impl Cell {
     /// In words.
     pub fn name(&self) -> String {
         let quarter = ["top left", "top right", "bottom left", "bottom right"][self.quarter];
-        format!("{}.{} {quarter}", self.layer.name(), ["r", "g", "b"][self.channel])
+        format!("{} {quarter}", self.whole_name())
+    }
+
+    /// The same of the whole picture.
+    pub fn whole_name(&self) -> String {
+        format!("{}.{}", self.layer.name(), ["r", "g", "b"][self.channel])
     }
 }
 
@@ -60,6 +65,12 @@ impl Measured {
     /// Moments over the repetitions.
     pub fn moments(&self, cell: usize) -> Moments {
         self.batches.iter().map(|batch| batch[cell]).collect()
+    }
+
+    /// Moments of the whole picture in the layer and channel of a cell.
+    pub fn whole(&self, cell: usize) -> Moments {
+        let first = cell / 4 * 4;
+        self.batches.iter().map(|batch| batch[first..first + 4].iter().sum::<f64>() / 4.0).collect()
     }
 
     /// The same with left and right exchanged.

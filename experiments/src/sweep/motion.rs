@@ -1,8 +1,10 @@
 //! Scenes turned, mirrored, moved and rescaled: the picture stays the same.
 
 use super::text::{SceneText, array, choice, number, point, table};
-use glam::{DMat3, DVec3};
+use glam::{DMat3, DVec2, DVec3};
+use serde::Deserialize;
 use toml::{Table, Value};
+use turbid::geometry::Waves;
 use turbid::medium::Grid;
 
 /// p becomes s R p + t, with R a permutation of the axes with signs, so that cuboids stay cuboids.
@@ -331,6 +333,9 @@ impl Motion {
         let is_y = keys.get("up").and_then(Value::as_str) == Some("y");
         let [x, y, z] = self.offset.to_array();
         let ([first, second], height) = if is_y { ([z, x], y) } else { ([x, y], z) };
+        if self.offset != DVec3::ZERO {
+            Self::listed_waves(keys)?;
+        }
         let corner = keys.get_mut("corner").ok_or_else(|| absent("corner"))?;
         self.scaled(corner)?;
         if let Some(corner) = corner.as_array_mut() {
@@ -353,6 +358,23 @@ impl Motion {
         if let Some(waves) = heights.get_mut("waves").and_then(Value::as_table_mut) {
             Self::times(waves, &["wavelength", "rms"], self.scale)?;
         }
+        Ok(())
+    }
+
+    /// Waves are where they are in the world: those of a field that moves are listed.
+    fn listed_waves(keys: &mut Table) -> Moved<()> {
+        let file: HeightField = Value::Table(keys.clone()).try_into().map_err(|e| format!("{e}"))?;
+        let Heights::Waves { seed, count, wavelength, rms } = file.heights else { return Ok(()) };
+        let waves = Waves::new(seed, count, wavelength, rms).map_err(|e| e.to_string())?;
+        let [columns, rows] = file.cells;
+        let part = |i: usize, of: usize| i as f64 / of as f64;
+        let (corner, size) = (DVec2::from(file.corner), DVec2::from(file.size));
+        let at = |i: usize, j: usize| corner + size * DVec2::new(part(i, columns), part(j, rows));
+        let row = |j: usize| {
+            let heights: Vec<f64> = (0..=columns).map(|i| waves.height(at(i, j))).collect();
+            array(&heights)
+        };
+        keys.insert("heights".into(), table([("rows", Value::Array((0..=rows).map(row).collect()))]));
         Ok(())
     }
 
@@ -412,9 +434,55 @@ impl Motion {
     }
 }
 
+/// Where a height field is, and its heights.
+#[derive(Deserialize)]
+struct HeightField {
+    corner: [f64; 2],
+    size: [f64; 2],
+    cells: [usize; 2],
+    heights: Heights,
+}
+
+#[derive(Deserialize)]
+#[serde(rename_all = "kebab-case")]
+enum Heights {
+    Rows(serde::de::IgnoredAny),
+    Waves { seed: u64, count: u32, wavelength: f64, rms: f64 },
+}
+
 #[cfg(test)]
 mod tests {
+    use super::super::draw::draw;
     use super::*;
+    use turbid::geometry::Shape;
+
+    /// Every triangle, and the ball about every other body, is where the motion puts it.
+    #[test]
+    fn bodies_move_with_the_scene() {
+        let motion = Motion { turn: Motion::rotation(0), scale: 2.5, offset: DVec3::new(0.3, -0.7, 1.9) };
+        let mut moved_triangles = 0;
+        for seed in 0..200 {
+            let text = draw(seed, 0).text;
+            let (Ok(scene), Ok(other)) = (text.scene(), motion.of(&text)) else { continue };
+            let other = other.scene().unwrap();
+            let place = |p: DVec3| DVec3::from(motion.place(p.to_array()));
+            let near = |a: DVec3, b: DVec3| assert!(a.distance(b) < 1e-9 * b.length().max(1.0), "{seed}");
+            for (a, b) in scene.objects().iter().zip(other.objects()) {
+                if let (Shape::Mesh(a), Shape::Mesh(b)) = (&a.shape, &b.shape) {
+                    for index in 0..a.len() as u32 {
+                        a.triangle(index)
+                            .into_iter()
+                            .zip(b.triangle(index))
+                            .for_each(|(a, b)| near(b, place(a)));
+                        moved_triangles += 1;
+                    }
+                } else if let (Some(a), Some(b)) = (a.shape.bounds(), b.shape.bounds()) {
+                    near(b.0, place(a.0));
+                }
+            }
+        }
+        assert!(moved_triangles > 1000, "{moved_triangles}");
+    }
 
     /// The 24 rotations are rotations, and different.
     #[test]
