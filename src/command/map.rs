@@ -3,9 +3,9 @@
 use super::load::Source;
 use super::memory::Memory;
 use super::on_threads;
-use super::picture::{Frame, Photons, Shown};
+use super::picture::{Frame, Held, Photons, Shown};
 use super::progress::Bar;
-use super::render::check_folder;
+use super::render::{MapsMade, check_folder};
 use anyhow::{Context, bail};
 use clap::ValueEnum;
 use std::path::PathBuf;
@@ -96,12 +96,15 @@ impl Map {
             let importance = self.photons.importance(&scene, &camera, &settings)?;
             let pixels = f64::from(camera.width()) * f64::from(camera.height());
             let fixed = (PICTURE_BYTES * pixels, LIST_BYTES);
-            let emitted = self.photons.ahead(&scene, &settings, importance.as_ref(), &self.memory, fixed)?;
+            let emitted =
+                self.photons.ahead(&scene, &settings, importance.as_ref(), Held::ALL, &self.memory, fixed)?;
             let bar = Bar::stage("emission", emitted.histories());
             let maps = fill_counted_steered(&scene, &settings, emitted, importance.as_ref(), &bar);
             bar.finish();
             let maps = maps?;
-            self.photons.tell_sparse(&maps)?;
+            let mut made = MapsMade::default();
+            made.add(&maps);
+            self.photons.tell_sparse(&made.filled)?;
             let photons = self.chosen(maps)?;
             let (picture, seen) = draw_photons(&scene, &camera, &photons);
             Ok((photons, picture, seen))

@@ -1,25 +1,21 @@
 //! What a picture's reader should know: maps that are empty, and settings that cannot be good, with the option that helps.
 
 use super::note;
+use super::render::Filled;
 use std::io::Result;
 use turbid::geometry::Shape;
 use turbid::integrators::StepRule;
 use turbid::integrators::mapper::{Gathers, Report, Settings};
-use turbid::photons::maps::Maps;
 use turbid::scene::Scene;
 use turbid::surface::Surface;
 
 /// Says which layers are black since no photon was stored for them.
-pub fn tell_empty(maps: &Maps) -> Result<()> {
+pub fn tell_empty(filled: &[Option<Filled>; 3]) -> Result<()> {
     let (caustic, volume) = ("the caustic layer is black", "the multiple layer has no light from it");
     let global = "the indirect layer has no light from it";
-    for (name, map, black) in [
-        ("global", &maps.global, global),
-        ("caustic", &maps.caustic, caustic),
-        ("volume", &maps.volume, volume),
-    ] {
-        if let Some(map) = map.as_ref().filter(|map| map.stored() == 0) {
-            let emitted = map.emitted();
+    let layers = [("global", global), ("caustic", caustic), ("volume", volume)];
+    for ((name, black), filled) in layers.into_iter().zip(filled) {
+        if let Some(Filled { stored: 0, emitted }) = filled {
             note(&format!(
                 "the {name} map is empty: none of {emitted} photons sent out was stored in it, so {black}"
             ))?;

@@ -2,6 +2,7 @@
 
 use super::memory::{Memory, rounded_down};
 use super::progress::Bar;
+use super::render::Filled;
 use super::{KernelName, note, parse_count, tell_ahead};
 use anyhow::{Context, anyhow};
 use clap::ValueEnum;
@@ -12,7 +13,7 @@ use turbid::integrators::mapper::{Adaptive, Settings, scene_size};
 use turbid::math::Positive;
 use turbid::output::Curve;
 use turbid::photons::importance::{Importance, ImportanceSettings};
-use turbid::photons::maps::{Amount, Emitted, Forecast, Indirect, MapSettings, Maps, forecast};
+use turbid::photons::maps::{Amount, Emitted, Forecast, Indirect, MapSettings, forecast};
 use turbid::scene::{Camera, Scene};
 use turbid::transport::BLOCK;
 
@@ -153,13 +154,14 @@ impl Photons {
         scene: &Scene,
         maps: &MapSettings,
         importance: Option<&Importance>,
+        held: Held,
         memory: &Memory,
         (fixed, beside): (f64, f64),
     ) -> anyhow::Result<Emitted> {
         let ahead = forecast(scene, maps, importance)?;
         let Forecast { emitted, stored, seconds } = ahead;
         let total: f64 = stored.iter().sum();
-        let bytes = fixed + ahead.bytes() + beside * total;
+        let bytes = fixed + (ahead.bytes() + beside * total) / held.passes as f64;
         memory.check(&format!("{total:.2e} photons in maps"), bytes, fixed, |part| {
             let asked =
                 [("global", maps.global, 0), ("volume", maps.volume, 1), ("caustic", maps.caustic, 2)];
@@ -168,7 +170,10 @@ impl Photons {
                 Amount::Stored(n) => format!("--{name} {}", rounded_down(*n as f64 * part)),
                 Amount::Emitted(n) => format!("--{name} emit:{}", rounded_down(*n as f64 * part)),
             });
-            fewer.collect::<Vec<_>>().join(" ")
+            let fewer = fewer.collect::<Vec<_>>().join(" ");
+            // A tenth more passes than fit by the pilot, whose number of photons is an estimate.
+            let passes = (1.1 * held.passes as f64 / part).ceil();
+            if held.has_radius { format!("{fewer}, or --passes {passes}") } else { fewer }
         })?;
         if maps.replicate == 0 {
             let what =
@@ -179,14 +184,13 @@ impl Photons {
     }
 
     /// Says which maps have far fewer photons than were asked for, and why.
-    pub fn tell_sparse(&self, maps: &Maps) -> std::io::Result<()> {
-        for (name, asked, map) in [
-            ("global", self.global, &maps.global),
-            ("caustic", self.caustic, &maps.caustic),
-            ("volume", self.volume, &maps.volume),
-        ] {
-            let (Amount::Stored(asked), Some(map)) = (asked, map) else { continue };
-            let (stored, emitted) = (map.stored() as u64, map.emitted());
+    pub fn tell_sparse(&self, filled: &[Option<Filled>; 3]) -> std::io::Result<()> {
+        let asked = [("global", self.global), ("caustic", self.caustic), ("volume", self.volume)];
+        for ((name, asked), filled) in asked.into_iter().zip(filled) {
+            let (Amount::Stored(asked), Some(Filled { stored, emitted })) = (asked, *filled) else {
+                continue;
+            };
+            let stored = stored as u64;
             // An empty map has a line of its own.
             if stored == 0 || 2 * stored >= asked {
                 continue;
@@ -207,6 +211,20 @@ impl Photons {
         let Photons { global, caustic, volume, .. } = *self;
         MapSettings { global, caustic, volume, indirect, seed, replicate }
     }
+}
+
+/// How much of the photons is in memory at one time.
+#[derive(Clone, Copy)]
+pub struct Held {
+    /// One part of so many.
+    pub passes: u64,
+    /// Whether the radius is fixed, so that there may be several.
+    pub has_radius: bool,
+}
+
+impl Held {
+    /// All of them.
+    pub const ALL: Held = Held { passes: 1, has_radius: false };
 }
 
 /// How the maps are read.
@@ -325,6 +343,16 @@ impl Reading {
     /// Where the global map is read.
     pub fn indirect(&self) -> Indirect {
         if self.gather_rays == 0 { Indirect::Seen } else { Indirect::Gathered }
+    }
+
+    /// Whether an estimate takes all photons within a radius.
+    pub fn has_radius(&self) -> bool {
+        self.radius.is_some()
+    }
+
+    /// Whether steps depend on what is read.
+    pub fn is_adaptive(&self) -> bool {
+        self.adapt > 0.0
     }
 
     /// Photons of an estimate from the global, the caustic and the volume map; none for a fixed radius.

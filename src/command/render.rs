@@ -4,7 +4,7 @@ use super::load::Source;
 use super::memory::Memory;
 use super::notes::{tell_empty, tell_gathers, tell_step};
 use super::parse_count;
-use super::picture::{Frame, Photons, Reading, Shown};
+use super::picture::{Frame, Held, Photons, Reading, Shown};
 use super::progress::Bar;
 use super::statistics::{MAPS, Stages, print_statistics};
 use super::{note, on_threads, print};
@@ -16,8 +16,7 @@ use std::path::{Path, PathBuf};
 use turbid::integrators::mapper::{Mapper, Report};
 use turbid::integrators::path;
 use turbid::output::{Tone, auto_exposure, write_exr, write_png};
-use turbid::photons::PhotonMap;
-use turbid::photons::maps::{MapReport, fill_counted_steered};
+use turbid::photons::maps::{MapReport, Maps, Part, fill_part};
 use turbid::scene::{Camera, Scene};
 use turbid::sensor::{Film, Sample, Streams, extend, extend_by_light};
 
@@ -65,6 +64,10 @@ pub struct Render {
     /// Independent repetitions, with maps of their own if it is by photons; the picture is their mean.
     #[arg(long, value_parser = parse_count, default_value = "1")]
     maps: u64,
+    /// Parts of each map's photons, one in memory at a time, where the radius is fixed: the same picture in less memory, as
+    /// many times the work of rays. Its variance is that between maps, of which there must be several.
+    #[arg(long, value_parser = parse_count, default_value = "1")]
+    passes: u64,
     #[command(flatten)]
     frame: Frame,
     #[command(flatten)]
@@ -127,6 +130,8 @@ impl With {
 const PIXEL_BYTES: f64 = 545.0;
 /// The same where the picture is the mean of several: two films.
 const MEAN_BYTES: f64 = 715.0;
+/// One film more, where each is made in passes.
+const FILM_BYTES: f64 = 352.0;
 
 /// Samples a pixel where neither their number nor a time is given.
 const SAMPLES: u64 = 16;
@@ -160,6 +165,7 @@ impl Render {
         if let Some(samples) = self.samples.filter(|n| *n > u64::from(u32::MAX)) {
             bail!("--samples is {samples}; allowed: 1 to 4294967295");
         }
+        self.check_passes()?;
         let exposure = self.shown.checked()?;
         let file = self.source.resolve()?;
         let scene = match (self.source.load()?, self.plan) {
@@ -225,31 +231,41 @@ impl Render {
                 let importance = importance.as_ref();
                 let fixed = (self.film_bytes(&camera), 0.0);
                 let emitted = stages.time("pilot", || {
-                    self.photons.ahead(&scene, &settings_of_maps, importance, &self.memory, fixed)
+                    let held = Held { passes: self.passes, has_radius: self.reading.has_radius() };
+                    self.photons.ahead(&scene, &settings_of_maps, importance, held, &self.memory, fixed)
                 })?;
-                let bar = Bar::stage("emission", emitted.histories());
-                let maps = stages.time(MAPS, || {
-                    fill_counted_steered(&scene, &settings_of_maps, emitted, importance, &bar)
-                });
-                bar.finish();
-                let maps = maps?;
-                if streams.replicate == 0 && !scene.plan().is_full {
-                    tell_empty(&maps)?;
-                    self.photons.tell_sparse(&maps)?;
+                let (mut work, mut made) = (Report::default(), MapsMade::default());
+                for number in 0..self.passes {
+                    let part = Part { number, of: self.passes };
+                    let bar = Bar::stage("emission", emitted.histories() / self.passes);
+                    let maps = stages
+                        .time(MAPS, || fill_part(&scene, &settings_of_maps, emitted, importance, part, &bar));
+                    bar.finish();
+                    let maps = maps?;
+                    let within = scene.interior_at(camera.position());
+                    let mapper = Mapper::new(&scene, &maps, &settings);
+                    let sample = |ray, stream: &mut _, work: &mut Report| {
+                        let (layers, report) = mapper.radiance(ray, None, within, stream);
+                        *work += report;
+                        work.work += stream.work;
+                        let photons = report.global.found + report.caustic.found + report.volume.found;
+                        Sample { layers, photons: photons as f64 }
+                    };
+                    let more = |film: &mut Film, n, bar: &Bar| extend(film, &camera, n, streams, bar, sample);
+                    made.add(&maps);
+                    if streams.replicate == 0 && number + 1 == self.passes && !scene.plan().is_full {
+                        tell_empty(&made.filled)?;
+                        self.photons.tell_sparse(&made.filled)?;
+                    }
+                    if self.passes == 1 {
+                        work = self.fill(film, stages, left, "gathering", more)?;
+                        break;
+                    }
+                    let mut seen = Film::new(camera.width(), camera.height());
+                    work += self.fill(&mut seen, stages, left, "gathering", more)?;
+                    film.add_part(&seen, self.passes);
                 }
-                let within = scene.interior_at(camera.position());
-                let mapper = Mapper::new(&scene, &maps, &settings);
-                let sample = |ray, stream: &mut _, work: &mut Report| {
-                    let (layers, report) = mapper.radiance(ray, None, within, stream);
-                    *work += report;
-                    work.work += stream.work;
-                    let photons = report.global.found + report.caustic.found + report.volume.found;
-                    Sample { layers, photons: photons as f64 }
-                };
-                let more = |film: &mut Film, n, bar: &Bar| extend(film, &camera, n, streams, bar, sample);
-                let work = self.fill(film, stages, left, "gathering", more)?;
-                let stored = [&maps.global, &maps.caustic, &maps.volume].map(|m| m.as_ref().map(Filled::of));
-                Ok((work, Some((maps.report, stored))))
+                Ok((work, Some(made)))
             }),
         })?;
         let exposure =
@@ -264,7 +280,7 @@ impl Render {
         print_statistics(&made, exposure)?;
         print(&format!("written        {}, {}\n", self.output.display(), png.display()))?;
         if self.with == With::Photons && !scene.plan().is_full {
-            let stored = made.maps.first().map_or([None; 3], |(_, maps)| maps.map(|map| Some(map?.stored)));
+            let stored = made.maps.first().map_or([None; 3], |made| made.filled.map(|map| Some(map?.stored)));
             tell_gathers(&scene, &settings, &made.work, stored, self.reading.nearest())?;
         }
         Ok(())
@@ -273,7 +289,34 @@ impl Render {
     /// Memory that the picture takes beside its maps \[bytes\].
     fn film_bytes(&self, camera: &Camera) -> f64 {
         let pixels = f64::from(camera.width()) * f64::from(camera.height());
-        pixels * if self.maps == 1 { PIXEL_BYTES } else { MEAN_BYTES }
+        let films = if self.maps == 1 { PIXEL_BYTES } else { MEAN_BYTES };
+        pixels * (films + if self.passes == 1 { 0.0 } else { FILM_BYTES })
+    }
+
+    /// Refuses what cannot be made in passes.
+    fn check_passes(&self) -> anyhow::Result<()> {
+        if self.passes == 1 {
+            return Ok(());
+        }
+        let refuse = |why: &str| bail!("--passes is {}, {why}", self.passes);
+        match () {
+            () if self.with != With::Photons => refuse("which is for photon maps; allowed: 1"),
+            () if !self.reading.has_radius() => refuse(
+                "which needs --radius: the k nearest photons are not known before the last pass; allowed without it: 1",
+            ),
+            () if self.reading.is_adaptive() => refuse(
+                "which needs --adapt 0: steps that depend on what the maps say would differ from pass to pass; allowed \
+                 otherwise: 1",
+            ),
+            () if self.seconds.is_some() => {
+                refuse("which needs --samples in place of --seconds; allowed otherwise: 1")
+            }
+            () if self.maps == 1 => refuse(
+                "which needs several --maps: the variance of a picture made in passes is that between maps; allowed with one \
+                 map: 1",
+            ),
+            () => Ok(()),
+        }
     }
 
     /// The repetitions, and their mean: one film is what it is, several are samples of it.
@@ -301,7 +344,9 @@ impl Render {
             let (work, maps) = one(streams, &mut made.stages, left, &mut film)?;
             made.work += work;
             made.maps.extend(maps);
-            made.samples.push(film.samples());
+            // A film of passes holds their mean alone.
+            let taken = if self.passes == 1 { film.samples() } else { self.samples.unwrap_or(SAMPLES) };
+            made.samples.push(taken);
             if self.maps == 1 {
                 made.film = film;
             } else {
@@ -353,7 +398,7 @@ impl Render {
         let by_photons = self.with == With::Photons;
         let settings = self.reading.settings(scene)?;
         let maps = self.photons.settings(self.reading.indirect(), self.seed, 0);
-        let filled: Vec<[Option<Filled>; 3]> = made.maps.iter().map(|(_, filled)| *filled).collect();
+        let filled: Vec<[Option<Filled>; 3]> = made.maps.iter().map(|made| made.filled).collect();
         Ok(serde_json::json!({
             "program": format!("turbid {}", env!("CARGO_PKG_VERSION")),
             "with": self.with.name(),
@@ -364,6 +409,7 @@ impl Render {
             "seed": self.seed,
             "importance": by_photons && self.photons.is_steered,
             "repetitions": self.maps,
+            "passes": self.passes,
             "samples": made.samples,
             "variance": if self.maps == 1 { "between samples" } else { "between repetitions" },
             "exposure": exposure,
@@ -375,8 +421,25 @@ impl Render {
     }
 }
 
-/// What filling maps took, and how full the global, caustic and volume map are; none where the scene needs none.
-pub type MapsMade = (MapReport, [Option<Filled>; 3]);
+/// The maps of one repetition.
+#[derive(Default)]
+pub struct MapsMade {
+    /// What filling them took.
+    pub report: MapReport,
+    /// How full the global, caustic and volume map are; none where the scene needs none.
+    pub filled: [Option<Filled>; 3],
+}
+
+impl MapsMade {
+    /// Counts a part of the photons.
+    pub fn add(&mut self, maps: &Maps) {
+        self.report.add_part(&maps.report);
+        for (mine, map) in self.filled.iter_mut().zip([&maps.global, &maps.caustic, &maps.volume]) {
+            let before = mine.map_or(0, |filled| filled.stored);
+            *mine = map.as_ref().map(|m| Filled { stored: before + m.stored(), emitted: m.emitted() });
+        }
+    }
+}
 
 /// How full a map is.
 #[derive(Debug, Clone, Copy, serde::Serialize)]
@@ -385,12 +448,6 @@ pub struct Filled {
     pub stored: usize,
     /// Photons that its pass sent out for it.
     pub emitted: u64,
-}
-
-impl Filled {
-    fn of(map: &PhotonMap) -> Self {
-        Filled { stored: map.stored(), emitted: map.emitted() }
-    }
 }
 
 /// Refuses a file that could not be written, before an hour's work and not after it.

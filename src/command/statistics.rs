@@ -1,6 +1,6 @@
 //! What a picture took: times, rays, photons, memory.
 
-use super::render::{Filled, Made};
+use super::render::{Filled, Made, MapsMade};
 use cpu_time::ProcessTime;
 use std::fmt::Write;
 use std::time::{Duration, Instant};
@@ -60,7 +60,7 @@ pub fn print_statistics(made: &Made, exposure: f64) -> anyhow::Result<()> {
     writeln!(text, "pixels         {} x {}", made.film.width(), made.film.height())?;
     writeln!(text, "samples        {taken} a pixel, {} repetitions", made.samples.len())?;
     writeln!(text, "exposure       {exposure} stops")?;
-    for (number, (report, filled)) in made.maps.iter().enumerate() {
+    for (number, MapsMade { report, filled }) in made.maps.iter().enumerate() {
         let names = ["global", "caustic", "volume"];
         for (name, filled) in names.into_iter().zip(filled) {
             if let Some(Filled { stored, emitted }) = filled {
@@ -111,7 +111,7 @@ pub fn print_statistics(made: &Made, exposure: f64) -> anyhow::Result<()> {
     }
     let mut tracking = work.work;
     let mut cells = 0;
-    for (report, _) in &made.maps {
+    for MapsMade { report, .. } in &made.maps {
         tracking += report.main.work;
         tracking += report.caustic.work;
         cells += report.projection_cells;
@@ -128,7 +128,7 @@ pub fn print_statistics(made: &Made, exposure: f64) -> anyhow::Result<()> {
         writeln!(text, "time           {name:<8} {clock:.3} s, {processor:.3} s of processors{memory}")?;
         if *name == MAPS {
             let sum = |time: fn(&MapReport) -> Duration| {
-                made.maps.iter().map(|(report, _)| time(report)).sum::<Duration>().as_secs_f64()
+                made.maps.iter().map(|made| time(&made.report)).sum::<Duration>().as_secs_f64()
             };
             writeln!(
                 text,

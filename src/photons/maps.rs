@@ -31,6 +31,7 @@ use crate::surface::Surface;
 use crate::transport::Progress;
 use counts::Emitters;
 use pass::{Class, Run};
+use std::ops::{AddAssign, Range};
 use std::time::{Duration, Instant};
 
 /// Histories of the pilot that says how many photons to emit where a number of stored ones is asked for.
@@ -122,6 +123,43 @@ pub struct PassReport {
     pub time: Duration,
 }
 
+impl AddAssign for PassReport {
+    fn add_assign(&mut self, other: Self) {
+        self.emitted += other.emitted;
+        self.ends.absorbed += other.ends.absorbed;
+        self.ends.escaped += other.ends.escaped;
+        self.ends.abandoned += other.ends.abandoned;
+        self.ends.refused += other.ends.refused;
+        self.ledger.add(&other.ledger);
+        self.collisions += other.collisions;
+        self.hits += other.hits;
+        self.work += other.work;
+        self.time += other.time;
+    }
+}
+
+/// A part of a run's histories, whose photons are in memory at one time.
+///
+/// Photons stand for those of the other parts too: the mean of estimates with the same radius over the parts is that of one map.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Part {
+    /// Which part, from 0.
+    pub number: u64,
+    /// Of how many.
+    pub of: u64,
+}
+
+impl Part {
+    /// All of it.
+    pub const WHOLE: Part = Part { number: 0, of: 1 };
+
+    /// Its part of so many histories.
+    pub fn histories(self, count: u64) -> Range<u64> {
+        let cut = |n: u64| (u128::from(count) * u128::from(n) / u128::from(self.of)) as u64;
+        cut(self.number)..cut(self.number + 1)
+    }
+}
+
 /// What filling the maps took.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct MapReport {
@@ -142,6 +180,20 @@ pub struct MapReport {
     pub projected: f64,
     /// Memory that the maps occupy \[bytes\].
     pub bytes: usize,
+}
+
+impl MapReport {
+    /// Counts another part of the same run.
+    pub fn add_part(&mut self, other: &MapReport) {
+        self.main += other.main;
+        self.caustic += other.caustic;
+        self.pilot += other.pilot;
+        self.build += other.build;
+        self.bytes = self.bytes.max(other.bytes);
+        // What all parts have alike.
+        (self.aimed, self.projected) = (other.aimed, other.projected);
+        self.projection_cells = other.projection_cells;
+    }
 }
 
 /// The maps of one run; none where the scene needs none.
@@ -231,6 +283,21 @@ pub fn fill_counted_steered(
     importance: Option<&Importance>,
     progress: &dyn Progress,
 ) -> Result<Maps> {
+    fill_part(scene, settings, emitted, importance, Part::WHOLE, progress)
+}
+
+/// The same with the photons of a part of the histories, which stand for all.
+///
+/// # Errors
+/// those of [`fill_counted`]
+pub fn fill_part(
+    scene: &Scene,
+    settings: &MapSettings,
+    emitted: Emitted,
+    importance: Option<&Importance>,
+    part: Part,
+    progress: &dyn Progress,
+) -> Result<Maps> {
     scene.check_emission()?;
     check_end(scene)?;
     let emitters = Emitters::of(scene, importance);
@@ -244,6 +311,7 @@ pub fn fill_counted_steered(
         class,
         global,
         volume,
+        part,
         is_pilot: false,
     };
     let (Emitted { global, volume, caustic }, mut report) = (emitted, MapReport::default());

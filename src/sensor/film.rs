@@ -154,6 +154,23 @@ impl Film {
         }
     }
 
+    /// Adds the means of a film that holds the photons of one part of a map's histories, one of so many whose mean is that of
+    /// the map; variances stay unknown.
+    ///
+    /// # Panics
+    /// If the films differ in size.
+    pub fn add_part(&mut self, other: &Film, parts: u64) {
+        assert_eq!((self.width, self.height), (other.width, other.height), "films of one picture");
+        for (mine, others) in self.pixels.iter_mut().zip(&other.pixels) {
+            mine.n = 1;
+            for (mean, other) in mine.mean.iter_mut().zip(others.mean) {
+                *mean += other / parts as f64;
+            }
+            // Each part found its own.
+            mine.photons += others.photons;
+        }
+    }
+
     /// Independent films of one size as one: means over films, variances between them.
     ///
     /// # Panics

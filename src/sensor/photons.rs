@@ -8,6 +8,7 @@ use crate::estimators::{Estimate, Gather, Kernel, fluence, in_scattered};
 use crate::integrators::mapper::{MediumExtent, medium_extents};
 use crate::math::{Ray, exp_m1, ln_1p};
 use crate::medium::Medium;
+use crate::photons::maps::Part;
 use crate::photons::{
     BUILD_SECONDS, Emitter, Histories, Ledger, PEAK_BYTES, Pass, Photon, PhotonMap, fold, shoot, shoot_blocks,
 };
@@ -120,7 +121,7 @@ pub fn by_photons_in_passes(
         let mut estimates = vec![Spectrum::ZERO; sensors.len()];
         for number in 0..passes {
             let booked = (result.gathers, result.underfull, result.beyond);
-            let part = part(settings.photons, passes, number);
+            let part = Part { number, of: passes }.histories(settings.photons);
             let share = (part.end - part.start) as f64 / settings.photons as f64;
             let (pass, maps) = maps(scene, &sensors, histories, part, margin, progress)?;
             result.ledger.add(&pass.ledger);
@@ -207,12 +208,6 @@ pub fn forecast(scene: &Scene, settings: &PhotonSettings, passes: u64) -> Result
     };
     let seconds = (one * settings.photons as f64 + BUILD_SECONDS * copied) * settings.maps as f64 / threads;
     Ok(PhotonForecast { stored: copied, bytes: bytes / passes as f64, seconds })
-}
-
-/// The histories of one of several passes.
-fn part(count: u64, passes: u64, number: u64) -> Range<u64> {
-    let cut = |n: u64| (u128::from(count) * u128::from(n) / u128::from(passes)) as u64;
-    cut(number)..cut(number + 1)
 }
 
 /// The sensors with the orders that count, and how far beyond the cell's edges they read \[L\].

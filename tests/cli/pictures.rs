@@ -83,6 +83,87 @@ fn summed(file: &Path, channel: &str) -> (f64, f64) {
     (sum(channel), sum(&format!("variance.{channel}")).sqrt())
 }
 
+/// Bodies that hide photons and cover discs, glass for the caustic map, and fog that varies.
+const CROWDED: &str = r#"
+interiors = [{ name = "glass", index = 1.5 }]
+
+[[objects]]
+shape = { sphere = { center = [0.4, 0.2, 0.3], radius = 0.2 } }
+surface = { lambertian = { reflectance = 0.6 } }
+
+[[objects]]
+shape = { sphere = { center = [-0.3, 0.5, 0.0], radius = 0.3 } }
+surface = { dielectric = { inside = "glass" } }
+
+[[regions]]
+shape = { cuboid = { min = [-0.9, 0.0, -0.9], max = [0.0, 1.0, 0.9] } }
+sigma_t = 2.0
+albedo = 0.9
+g = 0.3
+density = { height-fog = { base = 0.0, scale_height = 0.4, up = [0, 1, 0] } }
+"#;
+
+/// The same photons, a part of them at a time: each pixel within 1e-5, the same bits on any number of threads.
+#[test]
+fn pictures_in_passes_are_those_of_one() {
+    let folder = Folder::new();
+    let scene = folder.file("crowded.toml", &(CROWDED.to_string() + ROOM.trim_start()));
+    let render = |name: &str, more: &[&str]| {
+        let path = folder.0.path().join(name);
+        let arguments = ["render", text(&scene), "-o", text(&path), "--maps", "2", "--radius", "0.2"];
+        let caustic = ["--caustic", "emit:2001", "--global", "emit:3001"];
+        succeeds(&[&arguments[..], &QUICK[..2], &QUICK[4..], &caustic, more].concat());
+        path
+    };
+    let whole = means(&render("whole.exr", &[]));
+    for passes in ["2", "5"] {
+        let parts = means(&render("parts.exr", &["--passes", passes]));
+        assert_eq!(parts.len(), whole.len());
+        for ((name, a), (_, b)) in whole.iter().zip(&parts) {
+            let largest = a.iter().fold(0.0f32, |most, x| most.max(x.abs()));
+            let is_near = |(x, y): (&f32, &f32)| (x - y).abs() <= 1e-5 * x.abs() + 1e-7 * largest;
+            assert!(a.iter().zip(b).all(is_near), "{passes} passes: {name}");
+            let wanted = ["caustic.R", "indirect.G", "multiple.B", "single.R", "direct.G"];
+            assert!(!wanted.contains(&name.as_str()) || largest > 0.0, "{name} is black");
+        }
+    }
+    let read = |name: &str, threads: &str| {
+        std::fs::read(render(name, &["--passes", "3", "--threads", threads])).unwrap()
+    };
+    assert!(read("one.exr", "1") == read("two.exr", "2"));
+}
+
+/// What a picture in passes needs is said.
+#[test]
+fn what_cannot_be_made_in_passes_is_refused() {
+    let folder = Folder::new();
+    let exr = folder.0.path().join("a.exr");
+    let fogbox = ["render", "fogbox", "-o", text(&exr), "--passes", "2"];
+    let (radius, maps) = (["--radius", "0.1"], ["--maps", "2"]);
+    for (more, words) in [
+        (&[&maps[..]].concat(), ["--passes is 2", "needs --radius"]),
+        (&[&radius[..]].concat(), ["--passes is 2", "several --maps"]),
+        (&[&radius[..], &maps, &["--adapt", "0.5"]].concat(), ["--passes is 2", "--adapt 0"]),
+        (&[&radius[..], &maps, &["--seconds", "1"]].concat(), ["--passes is 2", "--samples"]),
+        (&vec!["--with", "paths"], ["--passes is 2", "photon maps"]),
+    ] {
+        refuses_naming(&[&fogbox[..], more].concat(), &words);
+    }
+    let large = ["--maps", "2", "--radius", "0.1", "--global", "1e8", "--memory", "200M", "--width", "8"];
+    refuses_naming(&[&fogbox[..4], &large].concat(), &["--global ", "or --passes "]);
+    assert!(!exr.exists());
+}
+
+/// Every channel of a file but variances, by name.
+fn means(file: &Path) -> Vec<(String, Vec<f32>)> {
+    use exr::prelude::{ReadChannels, ReadLayers, read};
+    let image = read().no_deep_data().largest_resolution_level().all_channels().all_layers().all_attributes();
+    let image = image.from_file(file).unwrap();
+    let channels = &image.layer_data[0].channel_data.list;
+    let named = channels.iter().map(|c| (c.name.to_string(), c.sample_data.values_as_f32().collect()));
+    named.filter(|(name, _)| !name.starts_with("variance")).collect()
+}
+
 /// Light that a ball of glass gathers on the floor beside it: paths and light tracing see as much of it, each layer by
 /// layer; what light tracing cannot see is black, and said to be.
 #[test]

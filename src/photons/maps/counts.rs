@@ -1,7 +1,7 @@
 //! How many histories each map needs, and from where their photons leave.
 
 use super::pass::{Class, Run, Stored};
-use super::{Amount, Emitted, MapSettings, PEAK_BYTES, PILOT, is_matt};
+use super::{Amount, Emitted, MapSettings, PEAK_BYTES, PILOT, Part, is_matt};
 use crate::error::{Error, Result};
 use crate::photons::importance::Importance;
 use crate::photons::{BUILD_SECONDS, Emitter, check_end};
@@ -111,6 +111,7 @@ fn piloted(
             class,
             global: histories,
             volume: histories,
+            part: Part::WHOLE,
             is_pilot: true,
         };
         run.pass(histories, &NoProgress)

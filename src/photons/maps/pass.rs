@@ -1,6 +1,6 @@
 //! A pass of histories, and the photons that it stores.
 
-use super::{Ends, Indirect, PassReport, is_caustic, is_global, is_matt, is_volume};
+use super::{Ends, Indirect, Part, PassReport, is_caustic, is_global, is_matt, is_volume};
 use crate::Spectrum;
 use crate::error::{Error, Result};
 use crate::photons::importance::{Branching, Importance};
@@ -34,6 +34,8 @@ pub(super) struct Run<'a> {
     pub global: u64,
     /// Histories that store volume photons.
     pub volume: u64,
+    /// Which of all histories are run.
+    pub part: Part,
     /// Whether photons are counted and not kept.
     pub is_pilot: bool,
 }
@@ -54,24 +56,18 @@ impl Stored {
         self.surfaces.extend(other.surfaces);
         self.media.extend(other.media);
         self.met = [0, 1].map(|i| self.met[i] + other.met[i]);
-        let (mine, others) = (&mut self.report, &other.report);
-        mine.emitted += others.emitted;
-        mine.ends.absorbed += others.ends.absorbed;
-        mine.ends.escaped += others.ends.escaped;
-        mine.ends.abandoned += others.ends.abandoned;
-        mine.ends.refused += others.ends.refused;
-        mine.ledger.add(&others.ledger);
-        mine.collisions += others.collisions;
-        mine.hits += others.hits;
-        mine.work += others.work;
+        self.report += other.report;
         self.non_finite += other.non_finite;
         self
     }
 }
 
 impl Run<'_> {
+    /// Runs its part of so many histories.
     pub fn pass(&self, histories: u64, progress: &dyn Progress) -> Result<Stored> {
         let start = Instant::now();
+        let part = self.part.histories(histories);
+        let histories = part.end - part.start;
         progress.stage("emission", histories);
         // A caustic photon has not been scattered: its history ends with its first scattering.
         let limit = (self.class == Class::Caustic).then_some(1);
@@ -83,7 +79,7 @@ impl Run<'_> {
                 medium: Vec::new(),
                 stored: Stored::default(),
             };
-            for history in range {
+            for history in part.start + range.start..part.start + range.end {
                 let mut stream = Stream::new(self.seed, self.purpose, self.replicate, history);
                 store.history = history;
                 store.stored.report.emitted += 1;
@@ -138,7 +134,7 @@ impl Store<'_> {
             position: self.run.scene.stage().map_or(position, |s| fold::into_cell(position, s.side)),
             dir: walker.ray.dir.as_vec3(),
             normal: side.as_vec3(),
-            power: walker.weight.0.as_vec3(),
+            power: (walker.weight * self.run.part.of as f64).0.as_vec3(),
             order: u16::try_from(walker.order).unwrap_or(u16::MAX),
             flags: walker.flags,
         }
