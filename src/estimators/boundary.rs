@@ -142,15 +142,6 @@ impl<'a> Boundary<'a> {
     fn room(&self, point: DVec3) -> f64 {
         self.medium.as_ref().map_or(f64::INFINITY, |medium| medium.room(point))
     }
-
-    /// Whether a ball about a point of the medium meets nothing else, but maybe the medium's own faces beyond which there
-    /// are no photons.
-    fn is_alone(&self, point: DVec3, radius: f64) -> bool {
-        let is_near = |shape: &Shape| shape.distance(point, radius) < radius;
-        (self.is_only || self.room(point) >= radius)
-            && !self.bodies.iter().any(is_near)
-            && !self.later.iter().any(|shape| is_near(shape) && !shape.contains(point))
-    }
 }
 
 /// An estimate near a boundary.
@@ -223,6 +214,9 @@ pub fn treated_in_scattered(
     treated(map, (point, eye), kernel, gather, boundary, plain, &value)
 }
 
+/// Bodies and photons are looked for a little beyond a ball, so that rounding leaves none in it out.
+const BEYOND: f64 = 1.001;
+
 /// How far ahead of the point is looked from, in parts of the largest radius.
 const AHEAD: f64 = 1e-9;
 
@@ -237,18 +231,27 @@ fn treated(
     value: &dyn Fn(&Photon) -> f64,
 ) -> Treated {
     let sieve = Sieve::new(boundary.rejection, boundary.walls, point, gather.cap());
-    let whole = sieve.is_none().then(plain).filter(|plain| boundary.is_alone(point, plain.ball.radius));
-    let (BallSum { sum, ball }, rejected) = match whole {
-        Some(plain) => (treated_sum(map, point, kernel, gather, boundary, plain, value), 0),
+    let whole = match &sieve {
+        Some(_) => Err(None),
         None => {
-            let about = Surroundings::new(boundary, point, eye, gather.cap());
-            let keeps = |photon: &Photon| {
-                sieve.as_ref().is_none_or(|sieve| sieve.keeps(photon)) && about.keeps(photon.position)
-            };
-            let gathered = accepted(map.tree(), point, gather, &keeps);
-            sifted_sum(point, kernel, boundary, &about, gathered, value)
+            let plain = plain();
+            let reach = BEYOND * plain.ball.radius;
+            let about = Surroundings::new(boundary, point, eye, reach);
+            match about.count_rejected(map.tree(), point, reach) {
+                0 => Ok(kept_sum(map, point, kernel, gather, boundary, &about, plain, value)),
+                rejected => Err(Some(rejected)),
+            }
         }
     };
+    let (BallSum { sum, ball }, rejected) = whole.map(|plain| (plain, 0)).unwrap_or_else(|rejected| {
+        let about = Surroundings::new(boundary, point, eye, gather.cap());
+        let keeps = |place: usize| {
+            sieve.as_ref().is_none_or(|sieve| sieve.keeps(&map.tree().photon(place)))
+                && about.keeps(map.tree().position(place))
+        };
+        let gathered = accepted(map.tree(), point, gather, &keeps, rejected);
+        sifted_sum(point, kernel, boundary, &about, gathered, value)
+    });
     let estimate = Estimate {
         value: sum / map.emitted() as f64,
         radius: ball.radius,
@@ -259,7 +262,27 @@ fn treated(
     Treated { estimate, rejected }
 }
 
-/// Nothing is rejected: the sums are those of other estimates.
+/// Nothing in the ball is rejected: the sum over its photons is the plain one.
+#[expect(clippy::too_many_arguments, reason = "what an estimate is made of, passed on")]
+fn kept_sum(
+    map: &PhotonMap,
+    point: DVec3,
+    kernel: Kernel,
+    gather: Gather,
+    boundary: &Boundary<'_>,
+    about: &Surroundings<'_>,
+    mut plain: BallSum,
+    value: &dyn Fn(&Photon) -> f64,
+) -> BallSum {
+    let radius = plain.ball.radius;
+    if boundary.treatment == Treatment::None || about.is_clear(radius) {
+        return treated_sum(map, point, kernel, gather, boundary, plain, value);
+    }
+    plain.sum = plain.sum / about.share_of(kernel, radius, plain.sum);
+    plain
+}
+
+/// The sums are those of other estimates.
 fn treated_sum(
     map: &PhotonMap,
     point: DVec3,
@@ -328,10 +351,7 @@ fn sifted_sum(
     let is_clear = about.is_clear(r);
     let sum = match (boundary.treatment, medium) {
         (Treatment::None, _) => plain,
-        _ if !is_clear => {
-            // Other photons, another turn: means over maps are right at a single point too.
-            plain / about.share(kernel, r, plain[0].to_bits() ^ r.to_bits())
-        }
+        _ if !is_clear => plain / about.share_of(kernel, r, plain),
         _ if boundary.room(point) >= r => plain,
         (Treatment::Clipped, Some(medium)) => plain / body_moments(kernel, medium, point, r)[0],
         (_, None) => plain,

@@ -95,6 +95,16 @@ impl Shape {
         }
     }
 
+    /// Whether the surface stands between two points.
+    pub fn is_between(&self, from: DVec3, to: DVec3) -> bool {
+        if let Shape::Rectangle(rectangle) = self {
+            return rectangle.is_between(from, to);
+        }
+        let way = to - from;
+        let dir = way.try_normalize();
+        dir.is_some_and(|dir| self.blocks(&Ray::new(from, dir), None, way.length()))
+    }
+
     /// Whether it is convex and has an inside: only such shapes bound media and fill with light.
     pub fn is_solid(&self) -> bool {
         match self {
@@ -174,6 +184,7 @@ impl Shape {
     pub fn distance(&self, p: DVec3, limit: f64) -> f64 {
         let distance = match self {
             Shape::Sphere(_) | Shape::Slab(_) => self.room(p).abs(),
+            Shape::Rectangle(r) if r.height(p).abs() >= limit => limit,
             Shape::Rectangle(r) => libm::hypot(r.height(p), r.inside(p).min(0.0)),
             Shape::Cuboid(c) if c.contains(p) => self.room(p),
             Shape::Cuboid(c) => p.distance(p.clamp(c.min(), c.max())),

@@ -52,6 +52,13 @@ impl Rectangle {
         self.covers(ray.at(t)).then(|| self.hit_at(ray, t))
     }
 
+    /// Whether the rectangle stands between two points; in its plane neither of them is behind it.
+    pub(super) fn is_between(&self, from: DVec3, to: DVec3) -> bool {
+        let (start, end) = (self.height(from), self.height(to));
+        let crosses = (start < 0.0 && end > 0.0) || (start > 0.0 && end < 0.0);
+        crosses && self.covers(from + (to - from) * (start / (start - end)))
+    }
+
     /// The hit of a ray that meets the rectangle at this distance \[L\].
     pub(super) fn hit_at(&self, ray: &Ray, t: f64) -> Hit {
         Hit { t, normal: self.normal, uv: self.coordinates(ray.at(t)), primitive: 0 }

@@ -4,9 +4,12 @@
 //! kernel on a ray is then known in closed form, and only the directions are sampled.
 
 use super::Boundary;
+use crate::Spectrum;
 use crate::estimators::Kernel;
 use crate::geometry::Shape;
 use crate::math::{Frame, Interval, Ray, sin_cos, warp};
+use crate::photons::PhotonTree;
+use crate::photons::tree::Neighbors;
 use crate::rng::{Purpose, Stream};
 use glam::DVec3;
 use std::f64::consts::TAU;
@@ -69,6 +72,24 @@ impl<'a> Surroundings<'a> {
         self.clear >= radius
     }
 
+    /// How many photons within a radius do not count.
+    pub fn count_rejected(&self, tree: &PhotonTree, point: DVec3, radius: f64) -> usize {
+        let mut count = 0;
+        if self.rejects_within(point, radius) {
+            tree.within(point, radius, &mut |neighbors: Neighbors<'_>| {
+                let rejected = |(_, place): &(usize, usize)| !self.keeps(tree.position(*place));
+                count += neighbors.places().filter(rejected).count();
+            });
+        }
+        count
+    }
+
+    /// Whether a photon within a radius may be one that does not count.
+    fn rejects_within(&self, point: DVec3, radius: f64) -> bool {
+        !self.is_clear(radius)
+            || !self.is_only && self.medium.is_some_and(|medium| medium.room(point) < radius)
+    }
+
     /// Whether a photon counts: it lies in the medium, and no body hides it.
     pub fn keeps(&self, place: DVec3) -> bool {
         self.owns(place) && self.sees(place)
@@ -80,15 +101,10 @@ impl<'a> Surroundings<'a> {
     }
 
     fn sees(&self, place: DVec3) -> bool {
-        let away = place - self.eye;
-        let distance = away.length();
+        let distance = place.distance(self.eye);
         // The nearest body, that is, or the eye's own shift.
-        if distance < 0.999 * self.clear {
-            return true;
-        }
-        let Some(dir) = away.try_normalize() else { return true };
-        let ray = Ray::new(self.eye, dir);
-        !self.bodies.iter().any(|(d, body)| *d < distance && body.blocks(&ray, None, distance))
+        distance < 0.999 * self.clear
+            || !self.bodies.iter().any(|(d, body)| *d < distance && body.is_between(self.eye, place))
     }
 
     /// The part of the kernel on a ray that is in the medium and seen.
@@ -116,9 +132,15 @@ impl<'a> Surroundings<'a> {
         if end > from { sum + up_to(end) - up_to(from) } else { sum }
     }
 
+    /// What a sum over photons is divided by: the part of the kernel in which they are kept. Other photons, another turn of
+    /// its directions: means over maps are right at a single point too.
+    pub fn share_of(&self, kernel: Kernel, radius: f64, sum: Spectrum) -> f64 {
+        self.share(kernel, radius, sum[0].to_bits() ^ radius.to_bits())
+    }
+
     /// The part of the kernel in which photons are kept, by rays in directions that are turned at random: right in the mean
     /// over turns. The turn is a function of the place and of `salt`.
-    pub fn share(&self, kernel: Kernel, radius: f64, salt: u64) -> f64 {
+    fn share(&self, kernel: Kernel, radius: f64, salt: u64) -> f64 {
         let [x, y, z] = self.eye.to_array().map(f64::to_bits);
         let mut stream = Stream::new(x, Purpose::Resampling, y, z ^ salt.rotate_left(32));
         let (mut sum, mut count) = (0.0, 0);
