@@ -37,7 +37,7 @@ use crate::photons::{Photon, PhotonMap};
 use accepted::{Accepted, accepted};
 use glam::DVec3;
 use images::images;
-use moments::inward_normal;
+use moments::{body_part, inward_normal};
 use rejection::Sieve;
 use std::borrow::Cow;
 use visible::Surroundings;
@@ -298,7 +298,7 @@ fn treated_sum(
     };
     match boundary.treatment {
         Treatment::None => {}
-        Treatment::Clipped => plain.sum = plain.sum / body_moments(kernel, medium, point, r)[0],
+        Treatment::Clipped => plain.sum = plain.sum / body_part(kernel, medium, point, r),
         Treatment::Reflection => {
             let images = images(medium, point, r);
             // The uniform kernel's weight is the part of each photon that counts: images of the k-th count no more than
@@ -353,7 +353,7 @@ fn sifted_sum(
         (Treatment::None, _) => plain,
         _ if !is_clear => plain / about.share_of(kernel, r, plain),
         _ if boundary.room(point) >= r => plain,
-        (Treatment::Clipped, Some(medium)) => plain / body_moments(kernel, medium, point, r)[0],
+        (Treatment::Clipped, Some(medium)) => plain / body_part(kernel, medium, point, r),
         (_, None) => plain,
         (Treatment::Reflection, Some(medium)) => images(medium, point, r)
             .into_iter()

@@ -43,6 +43,17 @@ pub struct Hit {
     pub primitive: u32,
 }
 
+/// A plane between a point and what is behind it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Screen {
+    /// The foot of the perpendicular from the point.
+    pub foot: DVec3,
+    /// Unit normal on the side of the point.
+    pub normal: DVec3,
+    /// Distance of the point \[L\], above 0.
+    pub distance: f64,
+}
+
 /// The shapes at hand. Heavy ones share their data: a clone costs little.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Shape {
@@ -92,6 +103,34 @@ impl Shape {
         match self {
             Shape::Mesh(s) => s.blocks(ray, from, end),
             _ => self.hit(ray, from).is_some_and(|hit| hit.t < end),
+        }
+    }
+
+    /// The distance at which a ray first meets the surface, or `end` where that is nearer \[L\].
+    pub fn until(&self, ray: &Ray, end: f64) -> f64 {
+        match self {
+            Shape::Rectangle(rectangle) => rectangle.until(ray, end),
+            _ => self.hit(ray, None).map_or(end, |hit| hit.t.min(end)),
+        }
+    }
+
+    /// The plane of a face that parts the whole of a ball about a point outside the shape.
+    pub fn screen(&self, p: DVec3, radius: f64) -> Option<Screen> {
+        match self {
+            Shape::Rectangle(rectangle) => rectangle.screen(p, radius),
+            Shape::Cuboid(cuboid) => cuboid.screen(p, radius),
+            _ => None,
+        }
+    }
+
+    /// Whether the surface reaches no farther than `margin` \[L\] in front of a plane, as far as a box about it tells.
+    pub fn is_behind(&self, screen: &Screen, margin: f64) -> bool {
+        let is_behind = |p: DVec3| (p - screen.foot).dot(screen.normal) <= margin;
+        match self {
+            Shape::Rectangle(rectangle) => rectangle.corners().into_iter().all(is_behind),
+            _ => self.corners().is_some_and(|(min, max)| {
+                is_behind(DVec3::select(screen.normal.cmpgt(DVec3::ZERO), max, min))
+            }),
         }
     }
 
@@ -184,8 +223,7 @@ impl Shape {
     pub fn distance(&self, p: DVec3, limit: f64) -> f64 {
         let distance = match self {
             Shape::Sphere(_) | Shape::Slab(_) => self.room(p).abs(),
-            Shape::Rectangle(r) if r.height(p).abs() >= limit => limit,
-            Shape::Rectangle(r) => libm::hypot(r.height(p), r.inside(p).min(0.0)),
+            Shape::Rectangle(r) => r.distance(p, limit),
             Shape::Cuboid(c) if c.contains(p) => self.room(p),
             Shape::Cuboid(c) => p.distance(p.clamp(c.min(), c.max())),
             Shape::Mesh(m) => m.distance(p, limit),

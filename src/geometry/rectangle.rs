@@ -1,6 +1,6 @@
 //! A flat rectangle.
 
-use super::Hit;
+use super::{Hit, Screen};
 use crate::error::{Error, Result};
 use crate::math::Ray;
 use glam::{DVec2, DVec3};
@@ -62,6 +62,37 @@ impl Rectangle {
     /// The hit of a ray that meets the rectangle at this distance \[L\].
     pub(super) fn hit_at(&self, ray: &Ray, t: f64) -> Hit {
         Hit { t, normal: self.normal, uv: self.coordinates(ray.at(t)), primitive: 0 }
+    }
+
+    /// The distance at which a ray meets the rectangle, or `end` where that is nearer \[L\].
+    pub(super) fn until(&self, ray: &Ray, end: f64) -> f64 {
+        let t = -self.height(ray.origin) / ray.dir.dot(self.normal);
+        if t > 0.0 && t < end && self.covers(ray.at(t)) { t } else { end }
+    }
+
+    /// Distance from a point, or `limit` where that is farther \[L\].
+    pub(super) fn distance(&self, p: DVec3, limit: f64) -> f64 {
+        let height = self.height(p).abs();
+        let beyond = |edge: DVec3| {
+            let (x, squared) = ((p - self.corner).dot(edge), edge.length_squared());
+            let beyond = (-x).max(x - squared);
+            beyond > 0.0 && beyond * beyond > limit * limit * squared
+        };
+        if height >= limit || beyond(self.u) || beyond(self.v) {
+            return limit;
+        }
+        libm::hypot(height, self.inside(p).min(0.0)).min(limit)
+    }
+
+    /// The plane of the rectangle, where a ball about a point meets nothing else of it: it covers all that is cut of the ball.
+    pub(super) fn screen(&self, p: DVec3, radius: f64) -> Option<Screen> {
+        let height = self.height(p);
+        let across = (radius - height.abs()) * (radius + height.abs());
+        (height != 0.0 && across > 0.0 && self.inside(p) >= across.sqrt()).then(|| Screen {
+            foot: p - self.normal * height,
+            normal: self.normal * height.signum(),
+            distance: height.abs(),
+        })
     }
 
     pub(super) fn corner(&self) -> DVec3 {

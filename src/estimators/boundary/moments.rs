@@ -40,6 +40,26 @@ pub fn body_moments(kernel: Kernel, body: &Shape, point: DVec3, radius: f64) -> 
     }
 }
 
+/// M_0 alone, sooner known where one flat face is in the ball.
+pub(super) fn body_part(kernel: Kernel, body: &Shape, point: DVec3, radius: f64) -> f64 {
+    let face = |distances: &[f64]| {
+        let mut near = distances.iter().filter(|distance| **distance < radius);
+        near.next().filter(|_| near.next().is_none()).copied()
+    };
+    let only = match body {
+        Shape::Slab(slab) => face(&[point.z - slab.top(), slab.face(Face::Bottom) - point.z]),
+        Shape::Cuboid(cuboid) => {
+            let (low, high) = (point - cuboid.min(), cuboid.max() - point);
+            face(&[low.x, low.y, low.z, high.x, high.y, high.z])
+        }
+        _ => None,
+    };
+    match only {
+        Some(distance) => 1.0 - kernel.beyond_plane(distance.max(0.0) / radius),
+        None => body_moments(kernel, body, point, radius)[0],
+    }
+}
+
 /// The unit normal, inwards, at the point of the boundary that is nearest to a point inside; any one of several.
 pub(super) fn inward_normal(body: &Shape, point: DVec3) -> DVec3 {
     let nearer = |low: f64, high: f64, axis: DVec3| if low <= high { axis } else { -axis };

@@ -6,7 +6,7 @@
 use super::Boundary;
 use crate::Spectrum;
 use crate::estimators::Kernel;
-use crate::geometry::Shape;
+use crate::geometry::{Screen, Shape};
 use crate::math::{Frame, Interval, Ray, sin_cos, warp};
 use crate::photons::PhotonTree;
 use crate::photons::tree::Neighbors;
@@ -22,6 +22,9 @@ const DIRECTIONS: u32 = 64;
 const ENOUGH: f64 = 24.0;
 /// No more directions than this; nor is a part less than one of them.
 const MOST: u32 = 16 * DIRECTIONS;
+/// Bodies lie in or behind a plane if they reach no farther out of it than this part of the point's distance: what rounding
+/// of a scene's numbers leaves. They hide no larger part of the kernel then.
+const ON_PLANE: f64 = 1e-6;
 /// Turns of this angle spread points evenly about an axis \[rad\]: pi (3 - sqrt 5).
 const GOLDEN_ANGLE: f64 = 2.399_963_229_728_653;
 
@@ -42,6 +45,8 @@ pub(super) struct Surroundings<'a> {
     eye: DVec3,
     /// The shape of the medium, where other media may be beyond it.
     medium: Option<&'a Shape>,
+    /// Distance to its surface; endless where that is not known \[L\].
+    room: f64,
     is_only: bool,
     /// Bodies, and how far away they are \[L\].
     bodies: Vec<(f64, &'a Shape)>,
@@ -49,6 +54,8 @@ pub(super) struct Surroundings<'a> {
     later: Vec<(f64, &'a Shape)>,
     /// Distance to the nearest of either \[L\].
     clear: f64,
+    /// The one plane that all bodies lie in or behind, where one of them fills it as far as is looked.
+    screen: Option<Screen>,
 }
 
 impl<'a> Surroundings<'a> {
@@ -64,7 +71,13 @@ impl<'a> Surroundings<'a> {
         later.retain(|(_, shape)| !shape.contains(point));
         let clear = bodies.iter().chain(&later).fold(f64::INFINITY, |least, (d, _)| least.min(*d));
         let medium = boundary.medium.as_deref();
-        Surroundings { eye, medium, is_only: boundary.is_only, bodies, later, clear }
+        // Corners that rounding lifts out of the plane hide a part of this order.
+        let is_alone = |screen: &Screen| {
+            bodies.iter().all(|(_, body)| body.is_behind(screen, ON_PLANE * screen.distance))
+        };
+        let screen = bodies.iter().filter_map(|(_, body)| body.screen(eye, reach)).find(is_alone);
+        let room = medium.map_or(f64::INFINITY, |medium| medium.room(eye));
+        Surroundings { eye, medium, room, is_only: boundary.is_only, bodies, later, clear, screen }
     }
 
     /// Whether a ball about the point meets neither bodies nor regions that count instead.
@@ -75,19 +88,13 @@ impl<'a> Surroundings<'a> {
     /// How many photons within a radius do not count.
     pub fn count_rejected(&self, tree: &PhotonTree, point: DVec3, radius: f64) -> usize {
         let mut count = 0;
-        if self.rejects_within(point, radius) {
+        if !self.is_clear(radius) || (!self.is_only && self.room < radius) {
             tree.within(point, radius, &mut |neighbors: Neighbors<'_>| {
                 let rejected = |(_, place): &(usize, usize)| !self.keeps(tree.position(*place));
                 count += neighbors.places().filter(rejected).count();
             });
         }
         count
-    }
-
-    /// Whether a photon within a radius may be one that does not count.
-    fn rejects_within(&self, point: DVec3, radius: f64) -> bool {
-        !self.is_clear(radius)
-            || !self.is_only && self.medium.is_some_and(|medium| medium.room(point) < radius)
     }
 
     /// Whether a photon counts: it lies in the medium, and no body hides it.
@@ -101,6 +108,9 @@ impl<'a> Surroundings<'a> {
     }
 
     fn sees(&self, place: DVec3) -> bool {
+        if let Some(Screen { foot, normal, .. }) = self.screen {
+            return (place - foot).dot(normal) >= 0.0;
+        }
         let distance = place.distance(self.eye);
         // The nearest body, that is, or the eye's own shift.
         distance < 0.999 * self.clear
@@ -112,9 +122,9 @@ impl<'a> Surroundings<'a> {
         let ray = Ray::new(self.eye, dir);
         let mut end = radius;
         for (_, body) in self.bodies.iter().filter(|(d, _)| *d < radius) {
-            end = body.hit(&ray, None).map_or(end, |hit| hit.t.min(end));
+            end = body.until(&ray, end);
         }
-        if let Some(medium) = self.medium {
+        if let Some(medium) = self.medium.filter(|_| self.room < radius) {
             end = medium.interval(&ray).map_or(0.0, |inside| inside.end.min(end));
         }
         let whole = Interval { start: 0.0, end };
@@ -141,6 +151,9 @@ impl<'a> Surroundings<'a> {
     /// The part of the kernel in which photons are kept, by rays in directions that are turned at random: right in the mean
     /// over turns. The turn is a function of the place and of `salt`.
     fn share(&self, kernel: Kernel, radius: f64, salt: u64) -> f64 {
+        if let Some(screen) = self.screen.filter(|_| self.room >= radius && self.later.is_empty()) {
+            return 1.0 - kernel.beyond_plane(screen.distance / radius);
+        }
         let [x, y, z] = self.eye.to_array().map(f64::to_bits);
         let mut stream = Stream::new(x, Purpose::Resampling, y, z ^ salt.rotate_left(32));
         let (mut sum, mut count) = (0.0, 0);
