@@ -1,6 +1,6 @@
 //! A box along the axes.
 
-use super::{Hit, Rectangle, Screen};
+use super::{Front, Hit, Rectangle};
 use crate::error::{Error, Result};
 use crate::faults::{Fault, planted};
 use crate::math::{Interval, Ray};
@@ -105,21 +105,20 @@ impl Cuboid {
         (exit.0 > 0.0).then_some(Interval { start: entry.0.max(0.0), end: exit.0 })
     }
 
-    /// The plane of a face, where a ball about a point outside meets nothing else of the box: the face covers all that is cut
-    /// of the ball.
-    pub(super) fn screen(&self, p: DVec3, radius: f64) -> Option<Screen> {
-        let foot = p.clamp(self.min, self.max);
-        let away = (p - foot).abs();
+    pub(super) fn front(&self, p: DVec3) -> Option<Front> {
+        let away = (self.min - p).max(p - self.max);
         let face = away.max_position();
-        let distance = away[face];
-        let room = (p - self.min).min(self.max - p);
-        let across = (radius - distance) * (radius + distance);
-        let covers = |axis: usize| axis == face || (room[axis] > 0.0 && room[axis] * room[axis] >= across);
-        (distance > 0.0 && across > 0.0 && (0..3).all(covers)).then(|| Screen {
-            foot,
-            normal: axis(face) * (p - foot)[face].signum(),
-            distance,
-        })
+        let sign = if p[face] > self.max[face] { 1.0 } else { -1.0 };
+        (away[face] > 0.0).then(|| Front { normal: axis(face) * sign, distance: away[face] })
+    }
+
+    /// Whether its front face covers all that its plane cuts of a ball about a point outside.
+    pub(super) fn parts_ball(&self, p: DVec3, radius: f64) -> bool {
+        let away = (self.min - p).max(p - self.max);
+        let face = away.max_position();
+        let across = (radius - away[face]) * (radius + away[face]);
+        let covers = |axis: usize| axis == face || -away[axis] >= across.sqrt();
+        away[face] > 0.0 && across >= 0.0 && (0..3).all(covers)
     }
 
     pub(super) fn contains(&self, p: DVec3) -> bool {

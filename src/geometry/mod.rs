@@ -43,15 +43,20 @@ pub struct Hit {
     pub primitive: u32,
 }
 
-/// A plane between a point and what is behind it.
+/// A plane in front of a point.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Screen {
-    /// The foot of the perpendicular from the point.
-    pub foot: DVec3,
+pub struct Front {
     /// Unit normal on the side of the point.
     pub normal: DVec3,
     /// Distance of the point \[L\], above 0.
     pub distance: f64,
+}
+
+impl Front {
+    /// Height above the plane, on the side of the point, of what lies in this direction and distance of it \[L\].
+    pub fn height(&self, away: DVec3) -> f64 {
+        away.dot(self.normal) + self.distance
+    }
 }
 
 /// The shapes at hand. Heavy ones share their data: a clone costs little.
@@ -114,22 +119,35 @@ impl Shape {
         }
     }
 
-    /// The plane of a face that parts the whole of a ball about a point outside the shape.
-    pub fn screen(&self, p: DVec3, radius: f64) -> Option<Screen> {
+    /// A plane that the whole surface lies in or behind; none for a point that may be inside, or in the plane.
+    pub fn front(&self, p: DVec3) -> Option<Front> {
         match self {
-            Shape::Rectangle(rectangle) => rectangle.screen(p, radius),
-            Shape::Cuboid(cuboid) => cuboid.screen(p, radius),
-            _ => None,
+            Shape::Rectangle(rectangle) => rectangle.front(p),
+            Shape::Cuboid(cuboid) => cuboid.front(p),
+            _ => {
+                let (center, radius) = self.bounds()?;
+                let distance = p.distance(center) - radius;
+                (distance > 0.0).then(|| Front { normal: (p - center).normalize(), distance })
+            }
         }
     }
 
-    /// Whether the surface reaches no farther than `margin` \[L\] in front of a plane, as far as a box about it tells.
-    pub fn is_behind(&self, screen: &Screen, margin: f64) -> bool {
-        let is_behind = |p: DVec3| (p - screen.foot).dot(screen.normal) <= margin;
+    /// Whether the surface parts a ball about a point as the whole plane of its front does.
+    pub fn parts_ball(&self, p: DVec3, radius: f64) -> bool {
+        match self {
+            Shape::Rectangle(rectangle) => rectangle.parts_ball(p, radius),
+            Shape::Cuboid(cuboid) => cuboid.parts_ball(p, radius),
+            Shape::Sphere(_) | Shape::Slab(_) | Shape::Mesh(_) | Shape::Lathe(_) => false,
+        }
+    }
+
+    /// Whether the surface reaches no farther than `margin` \[L\] out of the front of a point, as far as a box about it tells.
+    pub fn is_behind(&self, p: DVec3, front: &Front, margin: f64) -> bool {
+        let is_behind = |corner: DVec3| front.height(corner - p) <= margin;
         match self {
             Shape::Rectangle(rectangle) => rectangle.corners().into_iter().all(is_behind),
             _ => self.corners().is_some_and(|(min, max)| {
-                is_behind(DVec3::select(screen.normal.cmpgt(DVec3::ZERO), max, min))
+                is_behind(DVec3::select(front.normal.cmpgt(DVec3::ZERO), max, min))
             }),
         }
     }

@@ -1,6 +1,6 @@
 //! A flat rectangle.
 
-use super::{Hit, Screen};
+use super::{Front, Hit};
 use crate::error::{Error, Result};
 use crate::math::Ray;
 use glam::{DVec2, DVec3};
@@ -84,15 +84,16 @@ impl Rectangle {
         libm::hypot(height, self.inside(p).min(0.0)).min(limit)
     }
 
-    /// The plane of the rectangle, where a ball about a point meets nothing else of it: it covers all that is cut of the ball.
-    pub(super) fn screen(&self, p: DVec3, radius: f64) -> Option<Screen> {
+    pub(super) fn front(&self, p: DVec3) -> Option<Front> {
         let height = self.height(p);
-        let across = (radius - height.abs()) * (radius + height.abs());
-        (height != 0.0 && across > 0.0 && self.inside(p) >= across.sqrt()).then(|| Screen {
-            foot: p - self.normal * height,
-            normal: self.normal * height.signum(),
-            distance: height.abs(),
-        })
+        (height != 0.0).then(|| Front { normal: self.normal * height.signum(), distance: height.abs() })
+    }
+
+    /// Whether the rectangle covers all that its plane cuts of a ball.
+    pub(super) fn parts_ball(&self, p: DVec3, radius: f64) -> bool {
+        let height = self.height(p).abs();
+        let across = (radius - height) * (radius + height);
+        across >= 0.0 && self.inside(p) >= across.sqrt()
     }
 
     pub(super) fn corner(&self) -> DVec3 {

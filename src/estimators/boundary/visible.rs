@@ -6,7 +6,7 @@
 use super::Boundary;
 use crate::Spectrum;
 use crate::estimators::Kernel;
-use crate::geometry::{Screen, Shape};
+use crate::geometry::{Front, Shape};
 use crate::math::{Frame, Interval, Ray, sin_cos, warp};
 use crate::photons::PhotonTree;
 use crate::photons::tree::Neighbors;
@@ -39,6 +39,15 @@ static SPIRAL: LazyLock<Vec<DVec3>> = LazyLock::new(|| {
     (0..DIRECTIONS).map(one).collect()
 });
 
+/// A body near a point.
+struct Body<'a> {
+    shape: &'a Shape,
+    /// How far away it is \[L\].
+    distance: f64,
+    /// A plane on whose near side it hides nothing.
+    front: Option<Front>,
+}
+
 /// What lies about a point of a medium, within a distance.
 pub(super) struct Surroundings<'a> {
     /// From where is looked.
@@ -48,14 +57,13 @@ pub(super) struct Surroundings<'a> {
     /// Distance to its surface; endless where that is not known \[L\].
     room: f64,
     is_only: bool,
-    /// Bodies, and how far away they are \[L\].
-    bodies: Vec<(f64, &'a Shape)>,
+    bodies: Vec<Body<'a>>,
     /// Regions that count instead of the medium, and how far away they are \[L\].
     later: Vec<(f64, &'a Shape)>,
     /// Distance to the nearest of either \[L\].
     clear: f64,
     /// The one plane that all bodies lie in or behind, where one of them fills it as far as is looked.
-    screen: Option<Screen>,
+    screen: Option<Front>,
 }
 
 impl<'a> Surroundings<'a> {
@@ -66,16 +74,19 @@ impl<'a> Surroundings<'a> {
             let all = shapes.iter().map(|shape| (shape.distance(point, reach), shape));
             all.filter(|(distance, _)| *distance < reach).collect()
         };
-        let (bodies, mut later) = (near(boundary.bodies), near(boundary.later));
+        let body = |(distance, shape): (f64, &'a Shape)| Body { shape, distance, front: shape.front(eye) };
+        let bodies: Vec<Body<'a>> = near(boundary.bodies).into_iter().map(body).collect();
+        let mut later = near(boundary.later);
         // One that holds the point holds the medium too.
         later.retain(|(_, shape)| !shape.contains(point));
-        let clear = bodies.iter().chain(&later).fold(f64::INFINITY, |least, (d, _)| least.min(*d));
-        let medium = boundary.medium.as_deref();
-        // Corners that rounding lifts out of the plane hide a part of this order.
-        let is_alone = |screen: &Screen| {
-            bodies.iter().all(|(_, body)| body.is_behind(screen, ON_PLANE * screen.distance))
+        let distances = bodies.iter().map(|body| body.distance).chain(later.iter().map(|(d, _)| *d));
+        let clear = distances.fold(f64::INFINITY, f64::min);
+        let screens = bodies.iter().filter(|body| body.shape.parts_ball(eye, reach));
+        let hides_all = |front: &Front| {
+            bodies.iter().all(|body| body.shape.is_behind(eye, front, ON_PLANE * front.distance))
         };
-        let screen = bodies.iter().filter_map(|(_, body)| body.screen(eye, reach)).find(is_alone);
+        let screen = screens.filter_map(|body| body.front).find(hides_all);
+        let medium = boundary.medium.as_deref();
         let room = medium.map_or(f64::INFINITY, |medium| medium.room(eye));
         Surroundings { eye, medium, room, is_only: boundary.is_only, bodies, later, clear, screen }
     }
@@ -108,21 +119,29 @@ impl<'a> Surroundings<'a> {
     }
 
     fn sees(&self, place: DVec3) -> bool {
-        if let Some(Screen { foot, normal, .. }) = self.screen {
-            return (place - foot).dot(normal) >= 0.0;
+        let away = place - self.eye;
+        let is_before = |front: &Front| front.height(away) >= 0.0;
+        if let Some(screen) = &self.screen {
+            return is_before(screen);
         }
-        let distance = place.distance(self.eye);
+        let distance = away.length();
+        let hides = |body: &Body| {
+            body.distance < distance
+                && !body.front.as_ref().is_some_and(is_before)
+                && body.shape.is_between(self.eye, place)
+        };
         // The nearest body, that is, or the eye's own shift.
-        distance < 0.999 * self.clear
-            || !self.bodies.iter().any(|(d, body)| *d < distance && body.is_between(self.eye, place))
+        distance < 0.999 * self.clear || !self.bodies.iter().any(hides)
     }
 
     /// The part of the kernel on a ray that is in the medium and seen.
     fn along(&self, kernel: Kernel, dir: DVec3, radius: f64) -> f64 {
         let ray = Ray::new(self.eye, dir);
         let mut end = radius;
-        for (_, body) in self.bodies.iter().filter(|(d, _)| *d < radius) {
-            end = body.until(&ray, end);
+        for body in &self.bodies {
+            if !body.front.is_some_and(|front| front.height(dir * end) >= 0.0) {
+                end = body.shape.until(&ray, end);
+            }
         }
         if let Some(medium) = self.medium.filter(|_| self.room < radius) {
             end = medium.interval(&ray).map_or(0.0, |inside| inside.end.min(end));
