@@ -116,9 +116,8 @@ impl Cuboid {
     pub(super) fn parts_ball(&self, p: DVec3, radius: f64) -> bool {
         let away = (self.min - p).max(p - self.max);
         let face = away.max_position();
-        let across = (radius - away[face]) * (radius + away[face]);
-        let covers = |axis: usize| axis == face || -away[axis] >= across.sqrt();
-        away[face] > 0.0 && across >= 0.0 && (0..3).all(covers)
+        let across = (radius - away[face]).sqrt() * (radius + away[face]).sqrt();
+        away[face] > 0.0 && (0..3).all(|axis| axis == face || -away[axis] >= across)
     }
 
     pub(super) fn contains(&self, p: DVec3) -> bool {

@@ -92,8 +92,9 @@ impl Rectangle {
     /// Whether the rectangle covers all that its plane cuts of a ball.
     pub(super) fn parts_ball(&self, p: DVec3, radius: f64) -> bool {
         let height = self.height(p).abs();
-        let across = (radius - height) * (radius + height);
-        across >= 0.0 && self.inside(p) >= across.sqrt()
+        // Roots first: squares of small lengths vanish. Not a number where the ball does not reach the plane.
+        let across = (radius - height).sqrt() * (radius + height).sqrt();
+        self.inside(p) >= across
     }
 
     pub(super) fn corner(&self) -> DVec3 {

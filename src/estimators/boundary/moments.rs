@@ -211,3 +211,33 @@ fn sum_shells(kernel: Kernel, breaks: &[f64], shell: impl Fn(f64) -> Along) -> [
     }
     sums
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geometry::{Cuboid, Slab};
+    use crate::rng::{Purpose, Stream};
+
+    /// One face or several in the ball.
+    #[test]
+    fn parts_are_the_first_moment() {
+        let mut stream = Stream::new(2, Purpose::Synthetic, 0, 0);
+        let shapes = [
+            Shape::Cuboid(Cuboid::new(DVec3::ZERO, DVec3::new(1.0, 0.7, 1.3)).unwrap()),
+            Shape::Slab(Slab::new(0.0, 0.8).unwrap()),
+        ];
+        for shape in &shapes {
+            for kernel in Kernel::ALL {
+                for _ in 0..200 {
+                    let point = DVec3::from(stream.triple()) * 0.7;
+                    let radius = stream.unit();
+                    let (part, all) = (
+                        body_part(kernel, shape, point, radius),
+                        body_moments(kernel, shape, point, radius)[0],
+                    );
+                    assert!((part - all).abs() < 1e-13, "{kernel:?} {point} {radius}: {part}, not {all}");
+                }
+            }
+        }
+    }
+}

@@ -70,13 +70,13 @@ impl<'a> Surroundings<'a> {
     /// What is nearer to a point than `reach`; `eye` is the point, or next to it on the side from which a body is seen that
     /// the point lies on.
     pub fn new(boundary: &'a Boundary<'_>, point: DVec3, eye: DVec3, reach: f64) -> Self {
-        let near = |shapes: &'a [Shape]| -> Vec<(f64, &'a Shape)> {
-            let all = shapes.iter().map(|shape| (shape.distance(point, reach), shape));
-            all.filter(|(distance, _)| *distance < reach).collect()
+        let near = |shape: &'a Shape| {
+            let distance = shape.distance(point, reach);
+            (distance < reach).then_some((distance, shape))
         };
         let body = |(distance, shape): (f64, &'a Shape)| Body { shape, distance, front: shape.front(eye) };
-        let bodies: Vec<Body<'a>> = near(boundary.bodies).into_iter().map(body).collect();
-        let mut later = near(boundary.later);
+        let bodies: Vec<Body<'a>> = boundary.bodies.iter().filter_map(near).map(body).collect();
+        let mut later: Vec<(f64, &'a Shape)> = boundary.later.iter().filter_map(near).collect();
         // One that holds the point holds the medium too.
         later.retain(|(_, shape)| !shape.contains(point));
         let distances = bodies.iter().map(|body| body.distance).chain(later.iter().map(|(d, _)| *d));
@@ -187,5 +187,79 @@ impl<'a> Surroundings<'a> {
             count += DIRECTIONS;
         }
         (sum / f64::from(count)).max(1.0 / f64::from(MOST))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::estimators::boundary::Treatment;
+    use crate::geometry::{Cuboid, Rectangle};
+    use crate::stats::Moments;
+
+    /// A block turned about z, of five rectangles or six, and one along the axes; each reaches up to about z = 0.
+    fn blocks(stream: &mut Stream) -> [Vec<Shape>; 2] {
+        let [a, b, c] = stream.triple().map(|u| 0.3 + u);
+        let (sin, cos) = sin_cos(TAU * stream.unit());
+        let (u, v, w) = (DVec3::new(cos, sin, 0.0) * a, DVec3::new(-sin, cos, 0.0) * b, DVec3::NEG_Z * c);
+        let corner = -0.5 * (u + v);
+        let sides = [(corner, u, v), (corner, u, w), (corner, v, w), (corner + u, v, w), (corner + v, u, w)];
+        // What a file rounds.
+        let rounded = |p: DVec3| (p * 1e7).round() / 1e7;
+        let side = |(corner, u, v)| Shape::Rectangle(Rectangle::new(rounded(corner), u, v).unwrap());
+        let (low, high) = (DVec3::new(-a, -b, -c), DVec3::new(a, b, 0.0));
+        [sides.map(side).to_vec(), vec![Shape::Cuboid(Cuboid::new(low, high).unwrap())]]
+    }
+
+    /// About random points near blocks: as they are, with directions alone, and with directions that ask every body.
+    fn ways<'a>(boundary: &'a Boundary<'a>, point: DVec3, radius: f64) -> [Surroundings<'a>; 3] {
+        let mut ways = [0; 3].map(|_| Surroundings::new(boundary, point, point, radius));
+        ways[1].screen = None;
+        ways[2].screen = None;
+        ways[2].bodies.iter_mut().for_each(|body| body.front = None);
+        ways
+    }
+
+    /// Where one face fills the ball, the closed form is the mean of the directions. In all places photons are seen as by
+    /// rays to them.
+    #[test]
+    fn one_face_is_known_in_closed_form() {
+        let mut stream = Stream::new(3, Purpose::Synthetic, 0, 0);
+        for (block, kernel) in (0..2).flat_map(|block| Kernel::ALL.map(|kernel| (block, kernel))) {
+            let mut ratios = Moments::new();
+            let mut others = 0;
+            while ratios.n() < 400 || others < 100 {
+                let bodies = &blocks(&mut stream)[block];
+                let boundary = Boundary::unknown(Treatment::Clipped).about(bodies);
+                let point = (DVec3::from(stream.triple()) - DVec3::new(0.5, 0.5, 0.1)) * 0.4;
+                let radius = 0.2 * stream.unit();
+                let [known, directed, asked] = ways(&boundary, point, radius);
+                if asked.is_clear(radius) {
+                    continue;
+                }
+                let salt = stream.unit().to_bits();
+                let share = directed.share(kernel, radius, salt);
+                assert_eq!(share, asked.share(kernel, radius, salt), "fronts change nothing");
+                match known.screen {
+                    Some(_) => ratios.push(share / known.share(kernel, radius, 0)),
+                    None => others += 1,
+                }
+                for _ in 0..20 {
+                    let way = warp::square_to_sphere(stream.pair()) * (radius * stream.unit());
+                    let (ray, end) = (Ray::new(point, way.normalize()), way.length());
+                    let near_plane = |front: Front| front.height(way).abs() < 1e-6 * radius;
+                    if asked.bodies.iter().filter_map(|body| body.shape.front(point)).any(near_plane) {
+                        continue;
+                    }
+                    let is_hidden = bodies.iter().any(|body| body.blocks(&ray, None, end));
+                    for about in [&known, &directed, &asked] {
+                        assert_eq!(about.sees(point + way), !is_hidden, "{point} {way} {bodies:?}");
+                    }
+                }
+            }
+            let off = ratios.mean() - 1.0;
+            assert!(ratios.std_error() < 0.0025, "{block} {kernel:?}: {}", ratios.std_error());
+            assert!(off.abs() < 4.0 * ratios.std_error(), "{block} {kernel:?}: {off}");
+        }
     }
 }
