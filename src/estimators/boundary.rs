@@ -231,27 +231,34 @@ fn treated(
     value: &dyn Fn(&Photon) -> f64,
 ) -> Treated {
     let sieve = Sieve::new(boundary.rejection, boundary.walls, point, gather.cap());
-    let whole = match &sieve {
-        Some(_) => Err(None),
+    let (mut whole, mut hidden) = (None, None);
+    if sieve.is_none() {
+        let plain = plain();
+        let radius = plain.ball.radius;
+        let about = Surroundings::new(boundary, point, eye, BEYOND * radius);
+        let count = about.count_rejected(map.tree(), point, BEYOND * radius);
+        hidden = Some(count);
+        if count == 0 {
+            // The sum over accepted photons is the plain one.
+            let is_whole = boundary.treatment == Treatment::None || about.is_clear(radius);
+            whole = Some(match is_whole {
+                true => treated_sum(map, point, kernel, gather, boundary, plain, value),
+                false => BallSum { sum: plain.sum / about.share_of(kernel, radius, plain.sum), ..plain },
+            });
+        }
+    }
+    let (BallSum { sum, ball }, rejected) = match whole {
+        Some(plain) => (plain, 0),
         None => {
-            let plain = plain();
-            let reach = BEYOND * plain.ball.radius;
-            let about = Surroundings::new(boundary, point, eye, reach);
-            match about.count_rejected(map.tree(), point, reach) {
-                0 => Ok(kept_sum(map, point, kernel, gather, boundary, &about, plain, value)),
-                rejected => Err(Some(rejected)),
-            }
+            let about = Surroundings::new(boundary, point, eye, gather.cap());
+            let keeps = |place: usize| {
+                sieve.as_ref().is_none_or(|sieve| sieve.keeps(&map.tree().photon(place)))
+                    && about.keeps(map.tree().position(place))
+            };
+            let gathered = accepted(map.tree(), point, gather, &keeps, hidden);
+            sifted_sum(point, kernel, boundary, &about, gathered, value)
         }
     };
-    let (BallSum { sum, ball }, rejected) = whole.map(|plain| (plain, 0)).unwrap_or_else(|rejected| {
-        let about = Surroundings::new(boundary, point, eye, gather.cap());
-        let keeps = |place: usize| {
-            sieve.as_ref().is_none_or(|sieve| sieve.keeps(&map.tree().photon(place)))
-                && about.keeps(map.tree().position(place))
-        };
-        let gathered = accepted(map.tree(), point, gather, &keeps, rejected);
-        sifted_sum(point, kernel, boundary, &about, gathered, value)
-    });
     let estimate = Estimate {
         value: sum / map.emitted() as f64,
         radius: ball.radius,
@@ -262,27 +269,7 @@ fn treated(
     Treated { estimate, rejected }
 }
 
-/// Nothing in the ball is rejected: the sum over its photons is the plain one.
-#[expect(clippy::too_many_arguments, reason = "what an estimate is made of, passed on")]
-fn kept_sum(
-    map: &PhotonMap,
-    point: DVec3,
-    kernel: Kernel,
-    gather: Gather,
-    boundary: &Boundary<'_>,
-    about: &Surroundings<'_>,
-    mut plain: BallSum,
-    value: &dyn Fn(&Photon) -> f64,
-) -> BallSum {
-    let radius = plain.ball.radius;
-    if boundary.treatment == Treatment::None || about.is_clear(radius) {
-        return treated_sum(map, point, kernel, gather, boundary, plain, value);
-    }
-    plain.sum = plain.sum / about.share_of(kernel, radius, plain.sum);
-    plain
-}
-
-/// The sums are those of other estimates.
+/// No body is in the ball, and nothing is rejected: the sums are those of other estimates.
 fn treated_sum(
     map: &PhotonMap,
     point: DVec3,

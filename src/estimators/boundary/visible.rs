@@ -1,7 +1,8 @@
 //! Photons that a point sees: those of its medium that no body hides, and the part of a ball where such photons can be.
 //!
 //! What a point sees is a star about it: on a ray it ends at the first body, or where the medium ends. The part of the
-//! kernel on a ray is then known in closed form, and only the directions are sampled.
+//! kernel on a ray is then known in closed form, and only the directions are sampled. Where one flat face parts the whole
+//! ball, nothing is.
 
 use super::Boundary;
 use crate::Spectrum;
@@ -100,8 +101,13 @@ impl<'a> Surroundings<'a> {
     pub fn count_rejected(&self, tree: &PhotonTree, point: DVec3, radius: f64) -> usize {
         let mut count = 0;
         if !self.is_clear(radius) || (!self.is_only && self.room < radius) {
+            // Nothing is hidden that is nearer than the nearest body, rounding allowed for.
+            let safe = if self.is_only { self.clear } else { self.clear.min(self.room).max(0.0) };
+            let safe = (0.99 * safe / radius).powi(2) as f32;
             tree.within(point, radius, &mut |neighbors: Neighbors<'_>| {
-                let rejected = |(_, place): &(usize, usize)| !self.keeps(tree.position(*place));
+                let u2 = neighbors.u2().to_array();
+                let rejected =
+                    |(lane, place): &(usize, usize)| u2[*lane] >= safe && !self.keeps(tree.position(*place));
                 count += neighbors.places().filter(rejected).count();
             });
         }
