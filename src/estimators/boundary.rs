@@ -37,7 +37,7 @@ use crate::photons::{Photon, PhotonMap};
 use accepted::{Accepted, accepted};
 use glam::DVec3;
 use images::images;
-use moments::inward_normal;
+use moments::{body_part, inward_normal};
 use rejection::Sieve;
 use std::borrow::Cow;
 use visible::Surroundings;
@@ -142,15 +142,6 @@ impl<'a> Boundary<'a> {
     fn room(&self, point: DVec3) -> f64 {
         self.medium.as_ref().map_or(f64::INFINITY, |medium| medium.room(point))
     }
-
-    /// Whether a ball about a point of the medium meets nothing else, but maybe the medium's own faces beyond which there
-    /// are no photons.
-    fn is_alone(&self, point: DVec3, radius: f64) -> bool {
-        let is_near = |shape: &Shape| shape.distance(point, radius) < radius;
-        (self.is_only || self.room(point) >= radius)
-            && !self.bodies.iter().any(is_near)
-            && !self.later.iter().any(|shape| is_near(shape) && !shape.contains(point))
-    }
 }
 
 /// An estimate near a boundary.
@@ -223,6 +214,9 @@ pub fn treated_in_scattered(
     treated(map, (point, eye), kernel, gather, boundary, plain, &value)
 }
 
+/// Bodies and photons are looked for a little beyond a ball, so that rounding leaves none in it out.
+const BEYOND: f64 = 1.001;
+
 /// How far ahead of the point is looked from, in parts of the largest radius.
 const AHEAD: f64 = 1e-9;
 
@@ -237,15 +231,31 @@ fn treated(
     value: &dyn Fn(&Photon) -> f64,
 ) -> Treated {
     let sieve = Sieve::new(boundary.rejection, boundary.walls, point, gather.cap());
-    let whole = sieve.is_none().then(plain).filter(|plain| boundary.is_alone(point, plain.ball.radius));
+    let (mut whole, mut hidden) = (None, None);
+    if sieve.is_none() {
+        let plain = plain();
+        let radius = plain.ball.radius;
+        let about = Surroundings::new(boundary, point, eye, BEYOND * radius);
+        let count = about.count_rejected(map.tree(), point, BEYOND * radius);
+        hidden = Some(count);
+        if count == 0 {
+            // The sum over accepted photons is the plain one.
+            let is_whole = boundary.treatment == Treatment::None || about.is_clear(radius);
+            whole = Some(match is_whole {
+                true => treated_sum(map, point, kernel, gather, boundary, plain, value),
+                false => BallSum { sum: plain.sum / about.share_of(kernel, radius, plain.sum), ..plain },
+            });
+        }
+    }
     let (BallSum { sum, ball }, rejected) = match whole {
-        Some(plain) => (treated_sum(map, point, kernel, gather, boundary, plain, value), 0),
+        Some(plain) => (plain, 0),
         None => {
             let about = Surroundings::new(boundary, point, eye, gather.cap());
-            let keeps = |photon: &Photon| {
-                sieve.as_ref().is_none_or(|sieve| sieve.keeps(photon)) && about.keeps(photon.position)
+            let keeps = |place: usize| {
+                sieve.as_ref().is_none_or(|sieve| sieve.keeps(&map.tree().photon(place)))
+                    && about.keeps(map.tree().position(place))
             };
-            let gathered = accepted(map.tree(), point, gather, &keeps);
+            let gathered = accepted(map.tree(), point, gather, &keeps, hidden);
             sifted_sum(point, kernel, boundary, &about, gathered, value)
         }
     };
@@ -259,7 +269,7 @@ fn treated(
     Treated { estimate, rejected }
 }
 
-/// Nothing is rejected: the sums are those of other estimates.
+/// No body is in the ball, and nothing is rejected: the sums are those of other estimates.
 fn treated_sum(
     map: &PhotonMap,
     point: DVec3,
@@ -275,7 +285,7 @@ fn treated_sum(
     };
     match boundary.treatment {
         Treatment::None => {}
-        Treatment::Clipped => plain.sum = plain.sum / body_moments(kernel, medium, point, r)[0],
+        Treatment::Clipped => plain.sum = plain.sum / body_part(kernel, medium, point, r),
         Treatment::Reflection => {
             let images = images(medium, point, r);
             // The uniform kernel's weight is the part of each photon that counts: images of the k-th count no more than
@@ -328,12 +338,9 @@ fn sifted_sum(
     let is_clear = about.is_clear(r);
     let sum = match (boundary.treatment, medium) {
         (Treatment::None, _) => plain,
-        _ if !is_clear => {
-            // Other photons, another turn: means over maps are right at a single point too.
-            plain / about.share(kernel, r, plain[0].to_bits() ^ r.to_bits())
-        }
+        _ if !is_clear => plain / about.share_of(kernel, r, plain),
         _ if boundary.room(point) >= r => plain,
-        (Treatment::Clipped, Some(medium)) => plain / body_moments(kernel, medium, point, r)[0],
+        (Treatment::Clipped, Some(medium)) => plain / body_part(kernel, medium, point, r),
         (_, None) => plain,
         (Treatment::Reflection, Some(medium)) => images(medium, point, r)
             .into_iter()

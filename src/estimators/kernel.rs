@@ -98,6 +98,30 @@ impl Kernel {
         }
     }
 
+    /// Part of the kernel beyond a plane at distance u of its centre, above 0: half of int_u^1 4 pi s^2 K (1 - u/s) ds, the
+    /// caps that the plane cuts from spheres about the centre.
+    pub fn beyond_plane(self, u: f64) -> f64 {
+        if u >= 1.0 {
+            return 0.0;
+        }
+        let rest = (1.0 - u) * (1.0 + u);
+        // int_u^1 4 pi s K ds
+        let across = match self {
+            Kernel::Uniform => 1.5 * rest,
+            Kernel::Epanechnikov => 1.875 * rest * rest,
+            Kernel::Cone => 2.0 * (1.0 - u) * (1.0 - u) * (1.0 + 2.0 * u),
+            Kernel::Biweight => 2.1875 * rest * rest * rest,
+            Kernel::Gaussian => {
+                -4.0 / 9.0
+                    * PI
+                    * self.peak()
+                    * crate::math::exp(-4.5 * u * u)
+                    * crate::math::exp_m1(-4.5 * rest)
+            }
+        };
+        (0.5 * (1.0 - self.within(u) - u * across)).max(0.0)
+    }
+
     /// Second moment.
     pub fn m2(self) -> f64 {
         match self {

@@ -1,6 +1,6 @@
 //! A box along the axes.
 
-use super::{Hit, Rectangle};
+use super::{Front, Hit, Rectangle};
 use crate::error::{Error, Result};
 use crate::faults::{Fault, planted};
 use crate::math::{Interval, Ray};
@@ -103,6 +103,21 @@ impl Cuboid {
         }
         let (entry, exit) = self.crossings(ray)?;
         (exit.0 > 0.0).then_some(Interval { start: entry.0.max(0.0), end: exit.0 })
+    }
+
+    pub(super) fn front(&self, p: DVec3) -> Option<Front> {
+        let away = (self.min - p).max(p - self.max);
+        let face = away.max_position();
+        let sign = if p[face] > self.max[face] { 1.0 } else { -1.0 };
+        (away[face] > 0.0).then(|| Front { normal: axis(face) * sign, distance: away[face] })
+    }
+
+    /// Whether its front face covers all that its plane cuts of a ball about a point outside.
+    pub(super) fn parts_ball(&self, p: DVec3, radius: f64) -> bool {
+        let away = (self.min - p).max(p - self.max);
+        let face = away.max_position();
+        let across = (radius - away[face]).sqrt() * (radius + away[face]).sqrt();
+        away[face] > 0.0 && (0..3).all(|axis| axis == face || -away[axis] >= across)
     }
 
     pub(super) fn contains(&self, p: DVec3) -> bool {

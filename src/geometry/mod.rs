@@ -43,6 +43,22 @@ pub struct Hit {
     pub primitive: u32,
 }
 
+/// A plane in front of a point.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Front {
+    /// Unit normal on the side of the point.
+    pub normal: DVec3,
+    /// Distance of the point \[L\], above 0.
+    pub distance: f64,
+}
+
+impl Front {
+    /// Height above the plane, on the side of the point, of what lies in this direction and distance of it \[L\].
+    pub fn height(&self, away: DVec3) -> f64 {
+        away.dot(self.normal) + self.distance
+    }
+}
+
 /// The shapes at hand. Heavy ones share their data: a clone costs little.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Shape {
@@ -93,6 +109,57 @@ impl Shape {
             Shape::Mesh(s) => s.blocks(ray, from, end),
             _ => self.hit(ray, from).is_some_and(|hit| hit.t < end),
         }
+    }
+
+    /// The distance at which a ray first meets the surface, or `end` where that is nearer \[L\].
+    pub fn until(&self, ray: &Ray, end: f64) -> f64 {
+        match self {
+            Shape::Rectangle(rectangle) => rectangle.until(ray, end),
+            _ => self.hit(ray, None).map_or(end, |hit| hit.t.min(end)),
+        }
+    }
+
+    /// A plane that the whole surface lies in or behind; none for a point that may be inside, or in the plane.
+    pub fn front(&self, p: DVec3) -> Option<Front> {
+        match self {
+            Shape::Rectangle(rectangle) => rectangle.front(p),
+            Shape::Cuboid(cuboid) => cuboid.front(p),
+            _ => {
+                let (center, radius) = self.bounds()?;
+                let distance = p.distance(center) - radius;
+                (distance > 0.0).then(|| Front { normal: (p - center).normalize(), distance })
+            }
+        }
+    }
+
+    /// Whether the surface parts a ball about a point as the whole plane of its front does.
+    pub fn parts_ball(&self, p: DVec3, radius: f64) -> bool {
+        match self {
+            Shape::Rectangle(rectangle) => rectangle.parts_ball(p, radius),
+            Shape::Cuboid(cuboid) => cuboid.parts_ball(p, radius),
+            Shape::Sphere(_) | Shape::Slab(_) | Shape::Mesh(_) | Shape::Lathe(_) => false,
+        }
+    }
+
+    /// Whether the surface reaches no farther than `margin` \[L\] out of the front of a point, as far as a box about it tells.
+    pub fn is_behind(&self, p: DVec3, front: &Front, margin: f64) -> bool {
+        let is_behind = |corner: DVec3| front.height(corner - p) <= margin;
+        match self {
+            Shape::Rectangle(rectangle) => rectangle.corners().into_iter().all(is_behind),
+            _ => self.corners().is_some_and(|(min, max)| {
+                is_behind(DVec3::select(front.normal.cmpgt(DVec3::ZERO), max, min))
+            }),
+        }
+    }
+
+    /// Whether the surface stands between two points.
+    pub fn is_between(&self, from: DVec3, to: DVec3) -> bool {
+        if let Shape::Rectangle(rectangle) = self {
+            return rectangle.is_between(from, to);
+        }
+        let way = to - from;
+        let dir = way.try_normalize();
+        dir.is_some_and(|dir| self.blocks(&Ray::new(from, dir), None, way.length()))
     }
 
     /// Whether it is convex and has an inside: only such shapes bound media and fill with light.
@@ -174,7 +241,7 @@ impl Shape {
     pub fn distance(&self, p: DVec3, limit: f64) -> f64 {
         let distance = match self {
             Shape::Sphere(_) | Shape::Slab(_) => self.room(p).abs(),
-            Shape::Rectangle(r) => libm::hypot(r.height(p), r.inside(p).min(0.0)),
+            Shape::Rectangle(r) => r.distance(p, limit),
             Shape::Cuboid(c) if c.contains(p) => self.room(p),
             Shape::Cuboid(c) => p.distance(p.clamp(c.min(), c.max())),
             Shape::Mesh(m) => m.distance(p, limit),

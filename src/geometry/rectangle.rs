@@ -1,6 +1,6 @@
 //! A flat rectangle.
 
-use super::Hit;
+use super::{Front, Hit};
 use crate::error::{Error, Result};
 use crate::math::Ray;
 use glam::{DVec2, DVec3};
@@ -52,9 +52,49 @@ impl Rectangle {
         self.covers(ray.at(t)).then(|| self.hit_at(ray, t))
     }
 
+    /// Whether the rectangle stands between two points; in its plane neither of them is behind it.
+    pub(super) fn is_between(&self, from: DVec3, to: DVec3) -> bool {
+        let (start, end) = (self.height(from), self.height(to));
+        let crosses = (start < 0.0 && end > 0.0) || (start > 0.0 && end < 0.0);
+        crosses && self.covers(from + (to - from) * (start / (start - end)))
+    }
+
     /// The hit of a ray that meets the rectangle at this distance \[L\].
     pub(super) fn hit_at(&self, ray: &Ray, t: f64) -> Hit {
         Hit { t, normal: self.normal, uv: self.coordinates(ray.at(t)), primitive: 0 }
+    }
+
+    /// The distance at which a ray meets the rectangle, or `end` where that is nearer \[L\].
+    pub(super) fn until(&self, ray: &Ray, end: f64) -> f64 {
+        let t = -self.height(ray.origin) / ray.dir.dot(self.normal);
+        if t > 0.0 && t < end && self.covers(ray.at(t)) { t } else { end }
+    }
+
+    /// Distance from a point, or `limit` where that is farther \[L\].
+    pub(super) fn distance(&self, p: DVec3, limit: f64) -> f64 {
+        let height = self.height(p).abs();
+        let beyond = |edge: DVec3| {
+            let (x, squared) = ((p - self.corner).dot(edge), edge.length_squared());
+            let beyond = (-x).max(x - squared);
+            beyond > 0.0 && beyond * beyond > limit * limit * squared
+        };
+        if height >= limit || beyond(self.u) || beyond(self.v) {
+            return limit;
+        }
+        libm::hypot(height, self.inside(p).min(0.0)).min(limit)
+    }
+
+    pub(super) fn front(&self, p: DVec3) -> Option<Front> {
+        let height = self.height(p);
+        (height != 0.0).then(|| Front { normal: self.normal * height.signum(), distance: height.abs() })
+    }
+
+    /// Whether the rectangle covers all that its plane cuts of a ball.
+    pub(super) fn parts_ball(&self, p: DVec3, radius: f64) -> bool {
+        let height = self.height(p).abs();
+        // Roots first: squares of small lengths vanish. Not a number where the ball does not reach the plane.
+        let across = (radius - height).sqrt() * (radius + height).sqrt();
+        self.inside(p) >= across
     }
 
     pub(super) fn corner(&self) -> DVec3 {

@@ -13,7 +13,7 @@ use super::{Flags, Photon};
 use crate::error::{Error, Result};
 use crate::transport::{NoProgress, Progress};
 use boxes::Boxes;
-use glam::Vec3;
+use glam::{DVec3, Vec3};
 use order::Entry;
 use records::Records;
 use units::Units;
@@ -195,13 +195,20 @@ impl PhotonTree {
         let vector = |row: &Row| [0, 1, 2].map(|axis| row[axis].as_array()[lane]);
         let (order, flags) = self.histories[place];
         Photon {
-            position: self.units.absolute(vector(&self.positions[row / 2][row % 2])),
+            position: self.position(place),
             dir: Vec3::from_array(vector(&self.dirs[row])),
             normal: self.normals.get(row).map_or(Vec3::ZERO, |row| Vec3::from_array(vector(row))),
             power: Vec3::from_array(vector(&self.powers[row])),
             order,
             flags,
         }
+    }
+
+    /// Where the photon at a place in the tree's order is \[L\].
+    pub fn position(&self, place: usize) -> DVec3 {
+        let (row, lane) = (place / ROW, place % ROW);
+        let positions = &self.positions[row / 2][row % 2];
+        self.units.absolute([0, 1, 2].map(|axis| positions[axis].as_array()[lane]))
     }
 
     /// Every photon, in the tree's order.

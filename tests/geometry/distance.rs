@@ -3,6 +3,7 @@
 use glam::{DVec2, DVec3};
 use std::sync::Arc;
 use turbid::geometry::{Cuboid, Ground, Lathe, Rectangle, Shape, Slab, Sphere, Up, height_field};
+use turbid::math::{Ray, warp::square_to_sphere};
 use turbid::rng::{Purpose, Stream};
 
 fn shapes() -> Vec<Shape> {
@@ -51,5 +52,61 @@ fn distances_by_points_of_the_surface() {
     let slab = Shape::Slab(Slab::new(1.0, 2.0).unwrap());
     for (z, expected) in [(0.5, 0.5), (1.0, 0.0), (1.7, 0.7), (2.5, 0.5), (4.0, 1.0)] {
         assert_eq!(slab.distance(DVec3::new(3.0, -7.0, z), 9.0), expected);
+    }
+}
+
+/// What is between two points, where a ray ends, and what lies behind the front, by hits and points of the surface.
+#[test]
+fn ways_by_hits() {
+    for shape in shapes() {
+        let mut stream = Stream::new(8, Purpose::Synthetic, 0, 0);
+        let on: Vec<DVec3> = (0..500).map(|_| shape.sample_surface(stream.triple()).0).collect();
+        let (mut crossed, mut fronts) = (0, 0);
+        for _ in 0..2000 {
+            let [a, b] = [0; 2].map(|_| DVec3::from(stream.triple()) * 3.0 - 1.5);
+            let ray = Ray::new(a, (b - a).normalize());
+            let end = a.distance(b);
+            let hit = shape.hit(&ray, None).map_or(f64::INFINITY, |hit| hit.t);
+            assert_eq!(shape.is_between(a, b), hit < end, "{shape:?} from {a} to {b}");
+            assert!((shape.until(&ray, end) - hit.min(end)).abs() < 1e-14, "{shape:?} from {a} to {b}");
+            crossed += usize::from(hit < end);
+            if let Some(front) = shape.front(a) {
+                fronts += 1;
+                assert!(front.normal.is_normalized() && front.distance > 0.0);
+                assert!(front.distance <= shape.distance(a, f64::INFINITY) * (1.0 + 1e-12));
+                assert!(on.iter().all(|p| front.height(*p - a) < 1e-12), "{shape:?} from {a}");
+                assert!(
+                    shape.is_behind(a, &front, 1e-12)
+                        || matches!(shape, Shape::Sphere(_) | Shape::Lathe(_) | Shape::Mesh(_))
+                );
+            }
+        }
+        assert!(crossed > 50 && fronts > 200, "{shape:?}: {crossed} {fronts}");
+    }
+}
+
+/// A ball is parted by a face where points of it beside the face's plane are parted by the shape.
+#[test]
+fn balls_parted_by_a_face() {
+    for shape in shapes() {
+        let mut stream = Stream::new(9, Purpose::Synthetic, 0, 0);
+        let mut parted = 0;
+        for _ in 0..4000 {
+            let p = DVec3::from(stream.triple()) * 2.0 - 1.0;
+            let radius = 0.5 * stream.unit();
+            if !shape.parts_ball(p, radius) {
+                continue;
+            }
+            parted += 1;
+            let front = shape.front(p).unwrap();
+            for _ in 0..20 {
+                let way = square_to_sphere(stream.pair()) * (radius * stream.unit());
+                if front.height(way) < 0.0 {
+                    assert!(shape.is_between(p, p + way), "{shape:?} from {p} by {way}");
+                }
+            }
+        }
+        let is_flat = matches!(shape, Shape::Rectangle(_) | Shape::Cuboid(_));
+        assert_eq!(parted > 20, is_flat, "{shape:?}: {parted}");
     }
 }

@@ -70,6 +70,21 @@ fn kernels_integrate_to_one_and_have_their_moments() {
     }
 }
 
+/// Shells beyond a plane, each with the part of it that the plane cuts off.
+#[test]
+fn kernels_cut_by_a_plane() {
+    for kernel in Kernel::ALL {
+        for u in [0.0, 1e-9, 0.1, 0.35, 0.5, 0.8, 0.99, 1.0, 3.0f64] {
+            let shell = |s: f64| 2.0 * PI * s * (s - u) * kernel.peak() * kernel.profile(s * s);
+            let length = (1.0 - u).max(0.0);
+            let expected = length * integral(|t| shell(u + length * t));
+            let found = kernel.beyond_plane(u);
+            assert!((found - expected).abs() < 1e-12, "{} {u}: {found}, not {expected}", kernel.name());
+        }
+        assert!((kernel.beyond_plane(0.0) - 0.5).abs() < 1e-15);
+    }
+}
+
 #[test]
 fn profiles_of_eight_are_those_of_one() {
     for kernel in Kernel::ALL {

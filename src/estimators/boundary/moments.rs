@@ -40,6 +40,26 @@ pub fn body_moments(kernel: Kernel, body: &Shape, point: DVec3, radius: f64) -> 
     }
 }
 
+/// M_0 alone, sooner known where one flat face is in the ball.
+pub(super) fn body_part(kernel: Kernel, body: &Shape, point: DVec3, radius: f64) -> f64 {
+    let face = |distances: &[f64]| {
+        let mut near = distances.iter().filter(|distance| **distance < radius);
+        near.next().filter(|_| near.next().is_none()).copied()
+    };
+    let only = match body {
+        Shape::Slab(slab) => face(&[point.z - slab.top(), slab.face(Face::Bottom) - point.z]),
+        Shape::Cuboid(cuboid) => {
+            let (low, high) = (point - cuboid.min(), cuboid.max() - point);
+            face(&[low.x, low.y, low.z, high.x, high.y, high.z])
+        }
+        _ => None,
+    };
+    match only {
+        Some(distance) => 1.0 - kernel.beyond_plane(distance.max(0.0) / radius),
+        None => body_moments(kernel, body, point, radius)[0],
+    }
+}
+
 /// The unit normal, inwards, at the point of the boundary that is nearest to a point inside; any one of several.
 pub(super) fn inward_normal(body: &Shape, point: DVec3) -> DVec3 {
     let nearer = |low: f64, high: f64, axis: DVec3| if low <= high { axis } else { -axis };
@@ -190,4 +210,34 @@ fn sum_shells(kernel: Kernel, breaks: &[f64], shell: impl Fn(f64) -> Along) -> [
         }
     }
     sums
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geometry::{Cuboid, Slab};
+    use crate::rng::{Purpose, Stream};
+
+    /// One face or several in the ball.
+    #[test]
+    fn parts_are_the_first_moment() {
+        let mut stream = Stream::new(2, Purpose::Synthetic, 0, 0);
+        let shapes = [
+            Shape::Cuboid(Cuboid::new(DVec3::ZERO, DVec3::new(1.0, 0.7, 1.3)).unwrap()),
+            Shape::Slab(Slab::new(0.0, 0.8).unwrap()),
+        ];
+        for shape in &shapes {
+            for kernel in Kernel::ALL {
+                for _ in 0..200 {
+                    let point = DVec3::from(stream.triple()) * 0.7;
+                    let radius = stream.unit();
+                    let (part, all) = (
+                        body_part(kernel, shape, point, radius),
+                        body_moments(kernel, shape, point, radius)[0],
+                    );
+                    assert!((part - all).abs() < 1e-13, "{kernel:?} {point} {radius}: {part}, not {all}");
+                }
+            }
+        }
+    }
 }

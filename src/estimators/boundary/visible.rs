@@ -1,12 +1,16 @@
 //! Photons that a point sees: those of its medium that no body hides, and the part of a ball where such photons can be.
 //!
 //! What a point sees is a star about it: on a ray it ends at the first body, or where the medium ends. The part of the
-//! kernel on a ray is then known in closed form, and only the directions are sampled.
+//! kernel on a ray is then known in closed form, and only the directions are sampled. Where one flat face parts the whole
+//! ball, nothing is.
 
 use super::Boundary;
+use crate::Spectrum;
 use crate::estimators::Kernel;
-use crate::geometry::Shape;
+use crate::geometry::{Front, Shape};
 use crate::math::{Frame, Interval, Ray, sin_cos, warp};
+use crate::photons::PhotonTree;
+use crate::photons::tree::Neighbors;
 use crate::rng::{Purpose, Stream};
 use glam::DVec3;
 use std::f64::consts::TAU;
@@ -19,6 +23,9 @@ const DIRECTIONS: u32 = 64;
 const ENOUGH: f64 = 24.0;
 /// No more directions than this; nor is a part less than one of them.
 const MOST: u32 = 16 * DIRECTIONS;
+/// Bodies lie in or behind a plane if they reach no farther out of it than this part of the point's distance: what rounding
+/// of a scene's numbers leaves. They hide no larger part of the kernel then.
+const ON_PLANE: f64 = 1e-6;
 /// Turns of this angle spread points evenly about an axis \[rad\]: pi (3 - sqrt 5).
 const GOLDEN_ANGLE: f64 = 2.399_963_229_728_653;
 
@@ -33,40 +40,78 @@ static SPIRAL: LazyLock<Vec<DVec3>> = LazyLock::new(|| {
     (0..DIRECTIONS).map(one).collect()
 });
 
+/// A body near a point.
+struct Body<'a> {
+    shape: &'a Shape,
+    /// How far away it is \[L\].
+    distance: f64,
+    /// A plane on whose near side it hides nothing.
+    front: Option<Front>,
+}
+
 /// What lies about a point of a medium, within a distance.
 pub(super) struct Surroundings<'a> {
     /// From where is looked.
     eye: DVec3,
     /// The shape of the medium, where other media may be beyond it.
     medium: Option<&'a Shape>,
+    /// Distance to its surface; endless where that is not known \[L\].
+    room: f64,
     is_only: bool,
-    /// Bodies, and how far away they are \[L\].
-    bodies: Vec<(f64, &'a Shape)>,
+    bodies: Vec<Body<'a>>,
     /// Regions that count instead of the medium, and how far away they are \[L\].
     later: Vec<(f64, &'a Shape)>,
     /// Distance to the nearest of either \[L\].
     clear: f64,
+    /// The one plane that all bodies lie in or behind, where one of them fills it as far as is looked.
+    screen: Option<Front>,
 }
 
 impl<'a> Surroundings<'a> {
     /// What is nearer to a point than `reach`; `eye` is the point, or next to it on the side from which a body is seen that
     /// the point lies on.
     pub fn new(boundary: &'a Boundary<'_>, point: DVec3, eye: DVec3, reach: f64) -> Self {
-        let near = |shapes: &'a [Shape]| -> Vec<(f64, &'a Shape)> {
-            let all = shapes.iter().map(|shape| (shape.distance(point, reach), shape));
-            all.filter(|(distance, _)| *distance < reach).collect()
+        let near = |shape: &'a Shape| {
+            let distance = shape.distance(point, reach);
+            (distance < reach).then_some((distance, shape))
         };
-        let (bodies, mut later) = (near(boundary.bodies), near(boundary.later));
+        let body = |(distance, shape): (f64, &'a Shape)| Body { shape, distance, front: shape.front(eye) };
+        let bodies: Vec<Body<'a>> = boundary.bodies.iter().filter_map(near).map(body).collect();
+        let mut later: Vec<(f64, &'a Shape)> = boundary.later.iter().filter_map(near).collect();
         // One that holds the point holds the medium too.
         later.retain(|(_, shape)| !shape.contains(point));
-        let clear = bodies.iter().chain(&later).fold(f64::INFINITY, |least, (d, _)| least.min(*d));
+        let distances = bodies.iter().map(|body| body.distance).chain(later.iter().map(|(d, _)| *d));
+        let clear = distances.fold(f64::INFINITY, f64::min);
+        let screens = bodies.iter().filter(|body| body.shape.parts_ball(eye, reach));
+        let hides_all = |front: &Front| {
+            bodies.iter().all(|body| body.shape.is_behind(eye, front, ON_PLANE * front.distance))
+        };
+        let screen = screens.filter_map(|body| body.front).find(hides_all);
         let medium = boundary.medium.as_deref();
-        Surroundings { eye, medium, is_only: boundary.is_only, bodies, later, clear }
+        let room = medium.map_or(f64::INFINITY, |medium| medium.room(eye));
+        Surroundings { eye, medium, room, is_only: boundary.is_only, bodies, later, clear, screen }
     }
 
     /// Whether a ball about the point meets neither bodies nor regions that count instead.
     pub fn is_clear(&self, radius: f64) -> bool {
         self.clear >= radius
+    }
+
+    /// How many photons within a radius do not count.
+    pub fn count_rejected(&self, tree: &PhotonTree, point: DVec3, radius: f64) -> usize {
+        let mut count = 0;
+        if !self.is_clear(radius) || (!self.is_only && self.room < radius) {
+            // Nothing is hidden that is nearer than the nearest body, rounding allowed for.
+            let safe = if self.is_only { self.clear } else { self.clear.min(self.room).max(0.0) };
+            let safe = (0.99 * safe / radius).powi(2) as f32;
+            tree.within(point, radius, &mut |neighbors: Neighbors<'_>| {
+                let u2 = neighbors.u2().to_array();
+                let rejected =
+                    |(lane, place): &(usize, usize)| u2[*lane] >= safe && !self.keeps(tree.position(*place));
+                count += neighbors.places().filter(rejected).count();
+            });
+        }
+        count
     }
 
     /// Whether a photon counts: it lies in the medium, and no body hides it.
@@ -81,24 +126,30 @@ impl<'a> Surroundings<'a> {
 
     fn sees(&self, place: DVec3) -> bool {
         let away = place - self.eye;
-        let distance = away.length();
-        // The nearest body, that is, or the eye's own shift.
-        if distance < 0.999 * self.clear {
-            return true;
+        let is_before = |front: &Front| front.height(away) >= 0.0;
+        if let Some(screen) = &self.screen {
+            return is_before(screen);
         }
-        let Some(dir) = away.try_normalize() else { return true };
-        let ray = Ray::new(self.eye, dir);
-        !self.bodies.iter().any(|(d, body)| *d < distance && body.blocks(&ray, None, distance))
+        let distance = away.length();
+        let hides = |body: &Body| {
+            body.distance < distance
+                && !body.front.as_ref().is_some_and(is_before)
+                && body.shape.is_between(self.eye, place)
+        };
+        // The nearest body, that is, or the eye's own shift.
+        distance < 0.999 * self.clear || !self.bodies.iter().any(hides)
     }
 
     /// The part of the kernel on a ray that is in the medium and seen.
     fn along(&self, kernel: Kernel, dir: DVec3, radius: f64) -> f64 {
         let ray = Ray::new(self.eye, dir);
         let mut end = radius;
-        for (_, body) in self.bodies.iter().filter(|(d, _)| *d < radius) {
-            end = body.hit(&ray, None).map_or(end, |hit| hit.t.min(end));
+        for body in &self.bodies {
+            if !body.front.is_some_and(|front| front.height(dir * end) >= 0.0) {
+                end = body.shape.until(&ray, end);
+            }
         }
-        if let Some(medium) = self.medium {
+        if let Some(medium) = self.medium.filter(|_| self.room < radius) {
             end = medium.interval(&ray).map_or(0.0, |inside| inside.end.min(end));
         }
         let whole = Interval { start: 0.0, end };
@@ -116,9 +167,18 @@ impl<'a> Surroundings<'a> {
         if end > from { sum + up_to(end) - up_to(from) } else { sum }
     }
 
+    /// What a sum over photons is divided by: the part of the kernel in which they are kept. Other photons, another turn of
+    /// its directions: means over maps are right at a single point too.
+    pub fn share_of(&self, kernel: Kernel, radius: f64, sum: Spectrum) -> f64 {
+        self.share(kernel, radius, sum[0].to_bits() ^ radius.to_bits())
+    }
+
     /// The part of the kernel in which photons are kept, by rays in directions that are turned at random: right in the mean
     /// over turns. The turn is a function of the place and of `salt`.
-    pub fn share(&self, kernel: Kernel, radius: f64, salt: u64) -> f64 {
+    fn share(&self, kernel: Kernel, radius: f64, salt: u64) -> f64 {
+        if let Some(screen) = self.screen.filter(|_| self.room >= radius && self.later.is_empty()) {
+            return 1.0 - kernel.beyond_plane(screen.distance / radius);
+        }
         let [x, y, z] = self.eye.to_array().map(f64::to_bits);
         let mut stream = Stream::new(x, Purpose::Resampling, y, z ^ salt.rotate_left(32));
         let (mut sum, mut count) = (0.0, 0);
@@ -133,5 +193,79 @@ impl<'a> Surroundings<'a> {
             count += DIRECTIONS;
         }
         (sum / f64::from(count)).max(1.0 / f64::from(MOST))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::estimators::boundary::Treatment;
+    use crate::geometry::{Cuboid, Rectangle};
+    use crate::stats::Moments;
+
+    /// A block turned about z, of five rectangles or six, and one along the axes; each reaches up to about z = 0.
+    fn blocks(stream: &mut Stream) -> [Vec<Shape>; 2] {
+        let [a, b, c] = stream.triple().map(|u| 0.3 + u);
+        let (sin, cos) = sin_cos(TAU * stream.unit());
+        let (u, v, w) = (DVec3::new(cos, sin, 0.0) * a, DVec3::new(-sin, cos, 0.0) * b, DVec3::NEG_Z * c);
+        let corner = -0.5 * (u + v);
+        let sides = [(corner, u, v), (corner, u, w), (corner, v, w), (corner + u, v, w), (corner + v, u, w)];
+        // What a file rounds.
+        let rounded = |p: DVec3| (p * 1e7).round() / 1e7;
+        let side = |(corner, u, v)| Shape::Rectangle(Rectangle::new(rounded(corner), u, v).unwrap());
+        let (low, high) = (DVec3::new(-a, -b, -c), DVec3::new(a, b, 0.0));
+        [sides.map(side).to_vec(), vec![Shape::Cuboid(Cuboid::new(low, high).unwrap())]]
+    }
+
+    /// About random points near blocks: as they are, with directions alone, and with directions that ask every body.
+    fn ways<'a>(boundary: &'a Boundary<'a>, point: DVec3, radius: f64) -> [Surroundings<'a>; 3] {
+        let mut ways = [0; 3].map(|_| Surroundings::new(boundary, point, point, radius));
+        ways[1].screen = None;
+        ways[2].screen = None;
+        ways[2].bodies.iter_mut().for_each(|body| body.front = None);
+        ways
+    }
+
+    /// Where one face fills the ball, the closed form is the mean of the directions. In all places photons are seen as by
+    /// rays to them.
+    #[test]
+    fn one_face_is_known_in_closed_form() {
+        let mut stream = Stream::new(3, Purpose::Synthetic, 0, 0);
+        for (block, kernel) in (0..2).flat_map(|block| Kernel::ALL.map(|kernel| (block, kernel))) {
+            let mut ratios = Moments::new();
+            let mut others = 0;
+            while ratios.n() < 400 || others < 100 {
+                let bodies = &blocks(&mut stream)[block];
+                let boundary = Boundary::unknown(Treatment::Clipped).about(bodies);
+                let point = (DVec3::from(stream.triple()) - DVec3::new(0.5, 0.5, 0.1)) * 0.4;
+                let radius = 0.2 * stream.unit();
+                let [known, directed, asked] = ways(&boundary, point, radius);
+                if asked.is_clear(radius) {
+                    continue;
+                }
+                let salt = stream.unit().to_bits();
+                let share = directed.share(kernel, radius, salt);
+                assert_eq!(share, asked.share(kernel, radius, salt), "fronts change nothing");
+                match known.screen {
+                    Some(_) => ratios.push(share / known.share(kernel, radius, 0)),
+                    None => others += 1,
+                }
+                for _ in 0..20 {
+                    let way = warp::square_to_sphere(stream.pair()) * (radius * stream.unit());
+                    let (ray, end) = (Ray::new(point, way.normalize()), way.length());
+                    let near_plane = |front: Front| front.height(way).abs() < 1e-6 * radius;
+                    if asked.bodies.iter().filter_map(|body| body.shape.front(point)).any(near_plane) {
+                        continue;
+                    }
+                    let is_hidden = bodies.iter().any(|body| body.blocks(&ray, None, end));
+                    for about in [&known, &directed, &asked] {
+                        assert_eq!(about.sees(point + way), !is_hidden, "{point} {way} {bodies:?}");
+                    }
+                }
+            }
+            let off = ratios.mean() - 1.0;
+            assert!(ratios.std_error() < 0.0025, "{block} {kernel:?}: {}", ratios.std_error());
+            assert!(off.abs() < 4.0 * ratios.std_error(), "{block} {kernel:?}: {off}");
+        }
     }
 }
