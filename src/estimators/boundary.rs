@@ -243,20 +243,20 @@ fn treated(
             let is_whole = boundary.treatment == Treatment::None || about.is_clear(radius);
             whole = Some(match is_whole {
                 true => treated_sum(map, point, kernel, gather, boundary, plain, value),
-                false => BallSum { sum: plain.sum / about.share_of(kernel, radius, plain.sum), ..plain },
+                false => BallSum { sum: plain.sum / about.share(kernel, radius, map.run()), ..plain },
             });
         }
     }
     let (BallSum { sum, ball }, rejected) = match whole {
         Some(plain) => (plain, 0),
         None => {
-            let about = Surroundings::new(boundary, point, eye, gather.cap());
+            let about = Surroundings::new(boundary, point, eye, BEYOND * gather.cap());
             let keeps = |place: usize| {
                 sieve.as_ref().is_none_or(|sieve| sieve.keeps(&map.tree().photon(place)))
                     && about.keeps(map.tree().position(place))
             };
             let gathered = accepted(map.tree(), point, gather, &keeps, hidden);
-            sifted_sum(point, kernel, boundary, &about, gathered, value)
+            sifted_sum((map.run(), point), kernel, boundary, &about, gathered, value)
         }
     };
     let estimate = Estimate {
@@ -313,7 +313,7 @@ fn treated_sum(
 
 /// The same over accepted photons, and how many were rejected.
 fn sifted_sum(
-    point: DVec3,
+    (run, point): (u64, DVec3),
     kernel: Kernel,
     boundary: &Boundary<'_>,
     about: &Surroundings<'_>,
@@ -338,7 +338,7 @@ fn sifted_sum(
     let is_clear = about.is_clear(r);
     let sum = match (boundary.treatment, medium) {
         (Treatment::None, _) => plain,
-        _ if !is_clear => plain / about.share_of(kernel, r, plain),
+        _ if !is_clear => plain / about.share(kernel, r, run),
         _ if boundary.room(point) >= r => plain,
         (Treatment::Clipped, Some(medium)) => plain / body_part(kernel, medium, point, r),
         (_, None) => plain,

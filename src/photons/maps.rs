@@ -321,7 +321,8 @@ pub fn fill_part(
         }
         let start = Instant::now();
         progress.stage("build", parts.iter().map(|part| part.len() as u64).sum());
-        let map = PhotonMap::of_parts(parts, emitted, progress).map(Some);
+        let map = PhotonMap::of_parts(parts, emitted, progress);
+        let map = map.map(|map| Some(map.of_run(settings.seed, settings.replicate)));
         report.build += start.elapsed();
         map
     };

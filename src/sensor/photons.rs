@@ -272,7 +272,8 @@ pub(super) fn maps(
             }
             false => blocks.iter().map(|block| block.iter().copied().filter(holds).collect()).collect(),
         };
-        maps.push((range, PhotonMap::of_parts(parts, pass.emitted, &NoProgress)?));
+        let map = PhotonMap::of_parts(parts, pass.emitted, &NoProgress)?;
+        maps.push((range, map.of_run(histories.seed, histories.replicate)));
     }
     Ok((pass, maps))
 }

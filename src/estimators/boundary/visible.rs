@@ -5,7 +5,6 @@
 //! ball, nothing is.
 
 use super::Boundary;
-use crate::Spectrum;
 use crate::estimators::Kernel;
 use crate::geometry::{Front, Shape};
 use crate::math::{Frame, Interval, Ray, sin_cos, warp};
@@ -167,15 +166,10 @@ impl<'a> Surroundings<'a> {
         if end > from { sum + up_to(end) - up_to(from) } else { sum }
     }
 
-    /// What a sum over photons is divided by: the part of the kernel in which they are kept. Other photons, another turn of
-    /// its directions: means over maps are right at a single point too.
-    pub fn share_of(&self, kernel: Kernel, radius: f64, sum: Spectrum) -> f64 {
-        self.share(kernel, radius, sum[0].to_bits() ^ radius.to_bits())
-    }
-
-    /// The part of the kernel in which photons are kept, by rays in directions that are turned at random: right in the mean
-    /// over turns. The turn is a function of the place and of `salt`.
-    fn share(&self, kernel: Kernel, radius: f64, salt: u64) -> f64 {
+    /// The part of the kernel in which photons are kept, which a sum over photons is divided by: by rays in directions that are
+    /// turned at random, right in the mean over turns. The turn is a function of the place and of `salt`: with that of a
+    /// map's run means over maps are right at a single point too.
+    pub fn share(&self, kernel: Kernel, radius: f64, salt: u64) -> f64 {
         if let Some(screen) = self.screen.filter(|_| self.room >= radius && self.later.is_empty()) {
             return 1.0 - kernel.beyond_plane(screen.distance / radius);
         }
