@@ -103,6 +103,19 @@ impl Examined {
         None
     }
 
+    /// What was compared, and how sharply.
+    fn summarize(&mut self, checks: &[Check]) {
+        let pictures: Vec<&Check> = checks.iter().filter(|c| c.name != ENERGY).collect();
+        self.smallest = sharpness(&pictures);
+        let summary = |c: &Check| Summary {
+            check: c.name.clone(),
+            tests: c.tests.len(),
+            smallest: c.smallest,
+            worst: c.worst().cloned(),
+        };
+        self.checks = checks.iter().map(summary).collect();
+    }
+
     /// Why nothing can be said, if so: too little was seen, or nothing.
     pub fn undecided(&self) -> Option<String> {
         if let Some(late) = self.late.first() {
@@ -126,12 +139,12 @@ struct Once {
 }
 
 /// Part of the effort that is tried first: what is then decided needs no more.
-const FIRST: f64 = 0.25;
+const FIRST: f64 = 0.2;
 
 /// Examines a scene; alarms are confirmed once, on another seed with four times the samples.
 ///
-/// What a part of the effort leaves undecided is examined with all of it. Whether it does is a matter of standard errors,
-/// not of differences.
+/// Where a part of the effort leaves a scene undecided, what was not sharp enough is compared again with all of it. That is a
+/// matter of standard errors, not of differences.
 ///
 /// # Arguments   `stage` is told which method is about to work
 /// # Errors      what the scene is refused for
@@ -146,7 +159,13 @@ pub fn examine(
     let Examined { late, alarms, .. } = &first.examined;
     if late.is_empty() && alarms.is_empty() && first.examined.undecided().is_some() {
         effort.steps /= FIRST;
-        first = once(text, (seed, seed), &effort, stage, &|_| true)?;
+        // None alone may be too blunt where no layer is sharp in all that counts for it.
+        let is_all = first.checks.iter().all(|c| c.smallest.is_some_and(|s| s <= SHARP));
+        let is_blunt = |c: &Check| is_all || c.smallest.is_none_or(|s| s > SHARP);
+        let (blunt, sharp): (Vec<Check>, Vec<Check>) = first.checks.into_iter().partition(is_blunt);
+        first = once(text, (seed, seed), &effort, stage, &|name| blunt.iter().any(|c| c.name == name))?;
+        first.checks.extend(sharp.into_iter().filter(|c| c.name != ENERGY));
+        first.examined.summarize(&first.checks);
     }
     let Once { checks, mut examined } = first;
     let suspicious: Vec<(&str, &Test)> = checks
@@ -253,15 +272,6 @@ fn once(
             }
         }
     }
-    checks.retain(|check| !check.is_empty());
-    let pictures: Vec<&Check> = checks.iter().filter(|c| c.name != ENERGY).collect();
-    examined.smallest = sharpness(&pictures);
-    let summary = |c: &Check| Summary {
-        check: c.name.clone(),
-        tests: c.tests.len(),
-        smallest: c.smallest,
-        worst: c.worst().cloned(),
-    };
-    examined.checks = checks.iter().map(summary).collect();
+    examined.summarize(&checks);
     Ok(Once { checks, examined })
 }

@@ -29,14 +29,15 @@
 //! matter of the radius. (The reach of an estimate that finds too few is made larger in the same ratio at N, so that r
 //! shrinks there too. Errors of either sign may cancel at r1 in one quarter: the largest of the four counts.)
 //!
-//! *Alarms.* A number with p < 10^-6 is measured once more, on another seed with four times the samples. Only these second
+//! *Alarms.* A number with p < 10^-5 is measured once more, on another seed with four times the samples. Only these second
 //! numbers decide, by Holm over all of them in the run, family-wise 10^-3: the family is what the first ones chose, and its
 //! data are independent of the choice. Both are printed, with the smallest scene that still shows an alarm
 //! (`shrink`).
 //!
 //! *Sharpness.* Every number says the smallest deviation that it would have shown with 99 per cent power,
-//! (t + 2.4) standard errors at 10^-6, and what the radius explains besides. A scene's number is the median over light: half of
-//! the light that was compared, each comparison counting alike, is in numbers that would have shown so much. Above 20 per cent
+//! (t + 2.4) standard errors at 10^-5, and what the radius explains besides. In a layer and channel that is the number of the
+//! sharpest comparison of unbiased pictures; where the layer is made by photon maps, the larger of this and that of the maps.
+//! A scene's number is the median over light: half of it is where so much would have been seen. Above 20 per cent
 //! the scene counts as undecided; a run in which more than a tenth is so does not pass.
 //!
 //! # Cost
