@@ -1,6 +1,7 @@
 //! `turbid advise`: how many photons, which radius.
 
 use super::load::Source;
+use super::memory::{Memory, rounded_down};
 use super::progress::Bar;
 use super::{FormatName, note, on_threads, parse_count};
 use anyhow::Context;
@@ -37,6 +38,8 @@ pub struct Advise {
     /// Threads [default: all cores].
     #[arg(long, value_parser = clap::value_parser!(u16).range(1..=1024))]
     threads: Option<u16>,
+    #[command(flatten)]
+    memory: Memory,
     /// Form of the output.
     #[arg(long, value_enum, default_value = "table")]
     format: FormatName,
@@ -83,7 +86,14 @@ impl Advise {
 
     fn advise(&self, scene: &Scene) -> anyhow::Result<(Vec<AdviceRow>, Vec<String>)> {
         let settings = PilotSettings { photons: self.pilot.div_ceil(MAPS), maps: MAPS, seed: self.seed };
-        let bar = Bar::new(settings.photons * MAPS);
+        let ahead = Pilot::forecast(scene, &settings)?;
+        self.memory.check(
+            &format!("a pilot map of {:.2e} photons", ahead.stored),
+            ahead.bytes,
+            0.0,
+            |part| format!("--pilot {}", rounded_down(self.pilot as f64 * part)),
+        )?;
+        let bar = Bar::new(settings.photons.saturating_mul(MAPS));
         let pilot = Pilot::run(scene, &settings, &bar);
         bar.finish();
         let pilot = pilot?;

@@ -191,6 +191,7 @@ impl Render {
         // Before the work, not after it.
         check_folder(&self.output)?;
         check_folder(&self.output.with_extension("png"))?;
+        let settings = self.reading.settings(&scene)?;
         if self.with == With::Light {
             note(&format!("the picture holds {}", self.with.holds()))?;
         }
@@ -201,7 +202,6 @@ impl Render {
             0.0,
             |part| format!("at most {} pixels, by --width", (pixels as f64 * part) as u64),
         )?;
-        let settings = self.reading.settings(&scene)?;
         if self.with == With::Photons && scene.plan().has_media {
             tell_step(&scene, &settings)?;
         }

@@ -39,8 +39,8 @@ pub struct Ground {
     pub cells: [usize; 2],
 }
 
-/// More cells than this are refused: 16.7 million, 4 GB of triangles.
-const MAX_CELLS: usize = 1 << 24;
+/// More cells than this are refused: a million, two million triangles, which take some 350 MB.
+const MAX_CELLS: usize = 1 << 20;
 
 /// The mesh over a grid of heights, whose up side is outside: each cell is two triangles.
 ///
@@ -58,7 +58,7 @@ pub fn height_field(
     let [columns, rows] = ground.cells;
     if columns == 0 || rows == 0 || columns > MAX_CELLS || rows > MAX_CELLS || columns * rows > MAX_CELLS {
         return Err(Error::Scene(format!(
-            "a height field of {columns} x {rows} cells; allowed: 1 to 2^24 in all"
+            "a height field of {columns} x {rows} cells; allowed: 1 to 2^20 in all"
         )));
     }
     if !(ground.corner.is_finite() && ground.size.is_finite() && ground.size.min_element() > 0.0) {

@@ -47,7 +47,7 @@ ranged!(
 );
 ranged!(
     /// Index of refraction, over that of vacuum.
-    Index, "finite and at least 1", |x| x >= 1.0 && x.is_finite()
+    Index, "1 to 1000", |x| (1.0..=1000.0).contains(&x)
 );
 ranged!(
     /// A number above zero.

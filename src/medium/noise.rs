@@ -71,9 +71,10 @@ impl Noise {
     }
 }
 
-/// The cell that a coordinate lies in. Beyond 2^53 cells have no inside.
+/// The cell that a coordinate lies in; beyond 2^53, where cells have no inside, the last one.
 fn cell(x: f64) -> i64 {
-    x.floor() as i64
+    const LAST: f64 = 9_007_199_254_740_992.0;
+    x.floor().clamp(-LAST, LAST) as i64
 }
 
 /// One octave.

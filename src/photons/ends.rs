@@ -7,8 +7,10 @@
 use super::emit;
 use crate::Spectrum;
 use crate::error::{Error, Result};
+use crate::geometry::Sphere;
 use crate::light::Stage;
 use crate::math::{Frame, Ray, warp};
+use crate::medium::Medium;
 use crate::rng::{Purpose, Stream};
 use crate::scene::{Quantity, Scene, Target};
 use crate::surface::Surface;
@@ -19,8 +21,8 @@ use crate::transport::{LONG, Roulette, Step, Visitor, Walker, walk};
 pub const MOST_EVENTS: u64 = 100_000;
 
 /// Histories from each place that light starts from or is looked for at. Where a tenth of them or more are kept for ever the mean is
-/// too long; fewer cost a run their million events each, and end by roulette.
-const PILOTS: u64 = 256;
+/// too long; fewer cost a run their million events each, and end by roulette. Openings to a medium without end may be small.
+const PILOTS: u64 = 4096;
 
 /// Events of all pilots: a quarter of a second. Where histories are so long, fewer of them say how long.
 const BUDGET: u64 = 2_000_000;
@@ -41,6 +43,9 @@ const HIGH_INDEX: f64 = 10.0;
 ///
 /// Light caught in clear glass by total reflection is none of these: it is given up after some thousands of reflections.
 /// What is asked is asked once a scene; the answer is a function of the scene alone.
+///
+/// Nor does it end in a medium without loss and without end, behind a surface that encloses nothing; there emission that
+/// nothing absorbs has no end either.
 ///
 /// # Errors
 /// [`Error::Scene`], naming the light, and what keeps it
@@ -73,7 +78,14 @@ fn is_short(scene: &Scene) -> bool {
         .sum();
     thickness < THIN
         && surfaces.into_iter().all(is_lossy)
-        && fills.into_iter().all(|medium| !keeps_all(medium.matter().albedo()))
+        && fills.into_iter().all(|medium| !keeps_all(medium.matter().albedo()) && !glows_clear(medium))
+}
+
+/// Whether rays through a medium gather emission that nothing absorbs, in some channel: without end where the medium has
+/// none.
+fn glows_clear(medium: &Medium) -> bool {
+    let (sigma_t, emission) = (medium.matter().sigma_t(), medium.matter().emission());
+    (0..3).any(|channel| emission[channel] > 0.0 && sigma_t[channel] == 0.0)
 }
 
 /// Where a history starts.
@@ -134,19 +146,40 @@ impl Source {
 }
 
 /// What a history meets.
-struct Met {
+struct Met<'a> {
+    scene: &'a Scene,
     events: u64,
     objects: Vec<bool>,
     media: Vec<bool>,
+    /// A medium without end from which light does not come back, or on whose way it gathers without end.
+    endless: Option<(usize, &'static str)>,
 }
 
-impl Visitor for Met {
+/// Beyond so many radii of the scene light in a medium without loss comes back at most every second time, and not from the
+/// next such distance.
+const FAR: f64 = 2.0;
+
+impl Visitor for Met<'_> {
     const LOOKS_AHEAD: bool = false;
 
-    fn visit(&mut self, _walker: &Walker, step: Step, _stream: &mut Stream) {
+    fn visit(&mut self, walker: &Walker, step: Step, _stream: &mut Stream) {
         match step {
             Step::Ahead(_) => self.events += 1,
-            Step::Collision(_, number) => self.media[number] = true,
+            Step::Collision(arrival, number) => {
+                self.media[number] = true;
+                let fills = number >= self.scene.regions().len();
+                let is_far = |ball: &Sphere| arrival.position.distance(ball.center()) > FAR * ball.radius();
+                let keeps = self.scene.media()[number].matter().albedo().max() >= 1.0;
+                if fills && keeps && self.scene.bounds().is_some_and(is_far) {
+                    self.endless = Some((walker.within, "absorbs nothing"));
+                }
+            }
+            Step::Escaped(_) => {
+                let filling = self.scene.filling(walker.within);
+                if filling.is_some_and(|number| glows_clear(&self.scene.media()[number])) {
+                    self.endless = Some((walker.within, "emits and absorbs nothing"));
+                }
+            }
             Step::Surface(_, found) => {
                 if let Target::Object(index) = found.target {
                     self.objects[index] = true;
@@ -157,7 +190,7 @@ impl Visitor for Met {
     }
 }
 
-impl Met {
+impl Met<'_> {
     /// What it met, in words: the first ones of each kind.
     fn words(&self, scene: &Scene) -> String {
         const NAMED: usize = 6;
@@ -184,9 +217,11 @@ impl Met {
 fn probe(scene: &Scene) -> Result<()> {
     let sources = Source::all(scene);
     let blank = || Met {
+        scene,
         events: 0,
         objects: vec![false; scene.objects().len()],
         media: vec![false; scene.media().len()],
+        endless: None,
     };
     let mut met: Vec<(u64, Met)> = sources.iter().map(|_| (0, blank())).collect();
     let turns = (0..PILOTS).flat_map(|pilot| (0..sources.len()).map(move |number| (pilot, number)));
@@ -200,11 +235,18 @@ fn probe(scene: &Scene) -> Result<()> {
             walk(scene, start, Roulette::Analog, None, &mut stream, met);
             all += met.events - before;
         }
-        if all > BUDGET {
+        if all > BUDGET || met.endless.is_some() {
             break;
         }
     }
     for (source, (histories, met)) in sources.iter().zip(&met) {
+        if let Some((within, what)) = met.endless {
+            return Err(Error::Scene(format!(
+                "{} does not end in interior {}, which no body encloses and whose medium {what}; allowed: a medium that absorbs, or bodies all around it",
+                source.name(scene),
+                scene.interiors()[within].name
+            )));
+        }
         // One long history is no room that keeps light: in a thick medium without loss there are a few.
         let mean = met.events / (*histories).max(1);
         if mean > MOST_EVENTS {

@@ -4,6 +4,8 @@ use super::{Object, Parts};
 use crate::error::{Error, Result};
 use crate::geometry::{Face, Rectangle, Shape, Sphere};
 use crate::light::Light;
+use glam::DVec3;
+use std::collections::BTreeMap;
 
 /// Surfaces nearer than this part of their size, and of their distance from the origin, count as in one place: rounding is
 /// far below, and a gap that anybody means far above.
@@ -40,7 +42,8 @@ struct Body<'a> {
 /// Those of a dielectric or a filter with any other, and of lamps. Of opaque rectangles in one plane, and of one with a lamp
 /// that is a rectangle, the first counts ([`Rectangles`](crate::geometry::Rectangles)). Opaque solids may touch and stand
 /// on rectangles, and lamps that are cuboids may touch each other: nobody sees where they do. Rectangles, cuboids, slabs
-/// and spheres are compared, other shapes only with their equals.
+/// and spheres are compared, meshes with other meshes and flat faces where one of the two is clear; otherwise meshes and
+/// lathes only with their equals.
 ///
 /// # Errors
 /// `Error::Scene`, naming both bodies.
@@ -50,13 +53,112 @@ pub(super) fn check(parts: &Parts) -> Result<()> {
     let bodies: Vec<Body> = objects.chain(lights).collect();
     for (index, a) in bodies.iter().enumerate() {
         if let Some(b) = bodies[index + 1..].iter().find(|b| matters(a, b)) {
-            return Err(Error::Scene(format!(
-                "{} and {} have surfaces in one place, where rounding decides which of them light meets; move one of them, if only by a millionth of its size",
-                a.name, b.name
-            )));
+            return refuse(a, b);
         }
     }
-    Ok(())
+    match clear_facets(&bodies) {
+        Some((a, b)) => refuse(a, b),
+        None => Ok(()),
+    }
+}
+
+fn refuse(a: &Body, b: &Body) -> Result<()> {
+    Err(Error::Scene(format!(
+        "{} and {} have surfaces in one place, where rounding decides which of them light meets; move one of them, if only by a millionth of its size",
+        a.name, b.name
+    )))
+}
+
+/// A triangle of a mesh, or a flat face.
+struct Facet {
+    body: usize,
+    corners: Vec<DVec3>,
+    /// Unit.
+    normal: DVec3,
+    /// Along the axis by which facets of one plane are sorted \[L\].
+    span: (f64, f64),
+}
+
+/// Two bodies, one of them a mesh and one of them clear, that share an area.
+fn clear_facets<'a>(bodies: &'a [Body<'a>]) -> Option<(&'a Body<'a>, &'a Body<'a>)> {
+    let is_mesh = |body: &Body| matches!(body.shape, Shape::Mesh(_));
+    let is_clear = |body: &Body| body.kind == Kind::Clear;
+    if !bodies.iter().any(is_mesh) || !bodies.iter().any(is_clear) {
+        return None;
+    }
+    let facets: Vec<(usize, Vec<DVec3>)> = bodies
+        .iter()
+        .enumerate()
+        .flat_map(|(i, body)| body.facets().into_iter().map(move |f| (i, f)))
+        .collect();
+    let points = facets.iter().flat_map(|(_, corners)| corners);
+    let far = points.map(|p| p.abs().max_element()).fold(0.0, f64::max);
+    // Planes by their normal, either way round, and their distance from the origin.
+    let mut planes: BTreeMap<[i64; 4], Vec<Facet>> = BTreeMap::new();
+    for (number, corners) in facets {
+        let normal = (corners[1] - corners[0]).cross(corners[2] - corners[0]);
+        let Some(normal) = normal.try_normalize() else { continue };
+        let upward = [normal.z, normal.y, normal.x].into_iter().find(|x| x.abs() > 1e-6).unwrap_or(1.0);
+        let normal = normal * upward.signum();
+        let key = (normal.extend(normal.dot(corners[0]) / far) * 1e6).round().to_array().map(|x| x as i64);
+        // The same for all in the plane, whatever rounding says of its normal.
+        let [x, y, z, _] = key.map(|x| x as f64);
+        let axis = DVec3::new(x, y, z).normalize().any_orthonormal_vector();
+        let along = corners.iter().map(|p| p.dot(axis));
+        let span = along.fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), x| (a.min(x), b.max(x)));
+        planes.entry(key).or_default().push(Facet { body: number, corners, normal, span });
+    }
+    for mut facets in planes.into_values() {
+        facets.sort_by(|a, b| a.span.0.total_cmp(&b.span.0));
+        for (index, f) in facets.iter().enumerate() {
+            let beside = facets[index + 1..].iter().take_while(|g| g.span.0 < f.span.1);
+            for g in beside.filter(|g| g.body != f.body) {
+                let (a, b) = (&bodies[f.body], &bodies[g.body]);
+                if (is_mesh(a) || is_mesh(b)) && (is_clear(a) || is_clear(b)) && f.overlaps(g) {
+                    return Some(if f.body < g.body { (a, b) } else { (b, a) });
+                }
+            }
+        }
+    }
+    None
+}
+
+impl Facet {
+    /// Whether two convex facets lie in one plane and share an area: no line along an edge of either parts them.
+    fn overlaps(&self, other: &Facet) -> bool {
+        let all = || self.corners.iter().chain(&other.corners);
+        let far = all().map(|p| p.abs().max_element()).fold(0.0, f64::max);
+        let least = SAME * far;
+        if other.corners.iter().any(|p| (*p - self.corners[0]).dot(self.normal).abs() > least) {
+            return false;
+        }
+        let along = |facet: &Facet, axis: DVec3| {
+            let at = facet.corners.iter().map(|p| p.dot(axis));
+            at.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), x| (low.min(x), high.max(x)))
+        };
+        [self, other].into_iter().all(|facet| {
+            (0..facet.corners.len()).all(|i| {
+                let edge = facet.corners[(i + 1) % facet.corners.len()] - facet.corners[i];
+                let axis = edge.cross(self.normal).normalize_or_zero();
+                let ((low, high), (other_low, other_high)) = (along(self, axis), along(other, axis));
+                high.min(other_high) - low.max(other_low) > least
+            })
+        })
+    }
+}
+
+impl Body<'_> {
+    /// Triangles and flat faces with corners, one after the other around each.
+    fn facets(&self) -> Vec<Vec<DVec3>> {
+        if let Shape::Mesh(mesh) = self.shape {
+            return (0..mesh.len() as u32).map(|index| mesh.triangle(index).to_vec()).collect();
+        }
+        let flat = |face: &Flat| match face {
+            Flat::Rectangle(r) => Some(r.corners().to_vec()),
+            Flat::Level(_) => None,
+        };
+        self.faces.iter().filter_map(flat).collect()
+    }
 }
 
 fn of_object(index: usize, object: &Object) -> Body<'_> {

@@ -9,7 +9,7 @@ use super::{Object, Parts, Region, Scene};
 use crate::error::{Error, Result};
 use crate::geometry::{Face, Shape};
 use crate::light::Light;
-use crate::math::Ray;
+use crate::math::{Index, Ray};
 use crate::medium::Medium;
 use crate::surface::{Dielectric, Surface};
 use glam::DVec3;
@@ -114,10 +114,7 @@ fn is_clear_of((center, radius): (DVec3, f64), shape: &Shape) -> bool {
 pub(super) fn check(parts: &Parts) -> Result<()> {
     for (number, interior) in parts.interiors.iter().enumerate() {
         let (name, index) = (&interior.name, interior.index);
-        if !(index >= 1.0 && index.is_finite()) {
-            let what = format!("index of refraction of interior {name}");
-            return Err(Error::out_of_range(what, index, "finite and at least 1"));
-        }
+        Index::new(&format!("index of refraction of interior {name}"), index)?;
         if number == SURROUNDINGS {
             continue;
         }

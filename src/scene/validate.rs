@@ -148,7 +148,14 @@ fn check_sizes(parts: &Parts) -> Result<()> {
     };
     let medium = |name: &str, medium: &Medium| {
         let sigma_t = medium.highest_sigma_t();
-        (0..3).try_for_each(|channel| number(name, "largest sigma_t", sigma_t[channel]))
+        let emission = match medium {
+            Medium::Homogeneous(m) => m.emission(),
+            Medium::Heterogeneous(m) => m.emission_of(1.0),
+        };
+        (0..3).try_for_each(|channel| {
+            number(name, "largest sigma_t", sigma_t[channel])?;
+            number(name, "emission", emission[channel])
+        })
     };
     for (i, region) in parts.regions.iter().enumerate() {
         shape(&format!("regions[{i}]"), &region.shape)?;

@@ -13,7 +13,7 @@
 //! prior distribution of that standard deviation, and the prediction carries what remains uncertain.
 
 use super::paths::{self, PathSettings};
-use super::photons::{check, map_orders, maps, margin, max_order};
+use super::photons::{PhotonForecast, check, forecast_of, map_orders, maps, margin, max_order};
 use crate::error::{Error, Result};
 use crate::estimators::{Gather, Kernel, fluence};
 use crate::faults::{Fault, planted};
@@ -123,6 +123,32 @@ impl Pilot {
     /// `Error::Scene` if the scene has no fluence probe inside a medium and off its boundary; `Error::OutOfRange` for
     /// fewer than [`MIN_MAPS`] maps or pilot photons that leave a probe dark; those of shooting.
     pub fn run(scene: &Scene, settings: &PilotSettings, progress: &dyn Progress) -> Result<Self> {
+        let (mut pilot, chosen, margin) = Self::prepared(scene, settings)?;
+        for replicate in 0..settings.maps {
+            pilot.read_map(scene, &chosen, margin, settings, replicate, progress)?;
+        }
+        let dark = pilot.probes.iter().find(|p| p.found * (settings.maps as f64) < FEWEST_FOUND);
+        match dark {
+            Some(probe) => Err(Error::Scene(format!(
+                "the pilot maps found {} photons about {}; allowed: at least {FEWEST_FOUND}: ask for a larger pilot",
+                probe.found * settings.maps as f64,
+                probe.name
+            ))),
+            None => Ok(pilot),
+        }
+    }
+
+    /// What [`Pilot::run`] will take: a pilot of the pilot, which stores nothing.
+    ///
+    /// # Errors
+    /// those of [`Pilot::run`] before its first map
+    pub fn forecast(scene: &Scene, settings: &PilotSettings) -> Result<PhotonForecast> {
+        let (_, chosen, margin) = Self::prepared(scene, settings)?;
+        forecast_of(scene, &chosen, margin, (settings.photons, settings.maps, settings.seed))
+    }
+
+    /// A pilot without maps, the probes that can be asked, and how far beyond the cell's edges they read \[L\].
+    fn prepared(scene: &Scene, settings: &PilotSettings) -> Result<(Self, Vec<Sensor>, f64)> {
         if settings.maps < MIN_MAPS {
             return Err(Error::out_of_range("the number of pilot maps", settings.maps as f64, "at least 32"));
         }
@@ -162,46 +188,48 @@ impl Pilot {
         }
         let widest = pilot.probes.iter().map(|p| p.reach).fold(0.0, f64::max);
         let margin = scene.stage().map_or(Ok(0.0), |stage| margin(&chosen, stage.side, widest))?;
-        for replicate in 0..settings.maps {
-            let max_order = max_order(&chosen);
-            let histories = Histories { count: settings.photons, seed: settings.seed, replicate, max_order };
-            let start = Instant::now();
-            let (_, maps) = maps(scene, &chosen, histories, 0..settings.photons, margin, progress)?;
-            pilot.preparation_seconds +=
-                start.elapsed().as_secs_f64() / (settings.photons * settings.maps) as f64;
-            let start = Instant::now();
-            for (sensor, probe) in chosen.iter().zip(&mut pilot.probes) {
-                let Some((_, map)) = maps.iter().find(|(range, _)| map_orders(sensor) == Some(*range)) else {
-                    continue;
-                };
-                let Quantity::Fluence(p) = sensor.quantity else { continue };
-                let sigma_t = scene.medium_at(p).map_or(crate::Spectrum::ONE, |m| m.sigma_t(p));
-                let p = scene.stage().map_or(p, |s| fold::into_cell(p, s.side));
-                let mut values = [0.0; BALLS];
-                for (ball, value) in values.iter_mut().enumerate() {
-                    let gather = Gather::radius(radius(probe.reach, ball))?;
-                    let estimate = fluence(map, p, sigma_t, Kernel::Uniform, gather);
-                    *value = estimate.value.mean();
-                    if ball == 0 {
-                        probe.found += estimate.found as f64 / settings.maps as f64;
-                    }
+        Ok((pilot, chosen, margin))
+    }
+
+    /// Shoots one map and reads the balls about each probe.
+    fn read_map(
+        &mut self,
+        scene: &Scene,
+        chosen: &[Sensor],
+        margin: f64,
+        settings: &PilotSettings,
+        replicate: u64,
+        progress: &dyn Progress,
+    ) -> Result<()> {
+        let max_order = max_order(chosen);
+        let histories = Histories { count: settings.photons, seed: settings.seed, replicate, max_order };
+        let start = Instant::now();
+        let (_, maps) = maps(scene, chosen, histories, 0..settings.photons, margin, progress)?;
+        self.preparation_seconds += start.elapsed().as_secs_f64() / (settings.photons * settings.maps) as f64;
+        let start = Instant::now();
+        for (sensor, probe) in chosen.iter().zip(&mut self.probes) {
+            let Some((_, map)) = maps.iter().find(|(range, _)| map_orders(sensor) == Some(*range)) else {
+                continue;
+            };
+            let Quantity::Fluence(p) = sensor.quantity else { continue };
+            let sigma_t = scene.medium_at(p).map_or(crate::Spectrum::ONE, |m| m.sigma_t(p));
+            let p = scene.stage().map_or(p, |s| fold::into_cell(p, s.side));
+            let mut values = [0.0; BALLS];
+            for (ball, value) in values.iter_mut().enumerate() {
+                let gather = Gather::radius(radius(probe.reach, ball))?;
+                let estimate = fluence(map, p, sigma_t, Kernel::Uniform, gather);
+                *value = estimate.value.mean();
+                if ball == 0 {
+                    probe.found += estimate.found as f64 / settings.maps as f64;
                 }
-                let weights = FIT.get_or_init(bend_weights);
-                probe.bends.push(values.iter().zip(weights).map(|(x, w)| w * x).sum());
-                probe.values.push(values);
             }
-            let queries = (chosen.len() * BALLS) as f64 * settings.maps as f64;
-            pilot.query_seconds += start.elapsed().as_secs_f64() / queries;
+            let weights = FIT.get_or_init(bend_weights);
+            probe.bends.push(values.iter().zip(weights).map(|(x, w)| w * x).sum());
+            probe.values.push(values);
         }
-        let dark = pilot.probes.iter().find(|p| p.found * (settings.maps as f64) < FEWEST_FOUND);
-        match dark {
-            Some(probe) => Err(Error::Scene(format!(
-                "the pilot maps found {} photons about {}; allowed: at least {FEWEST_FOUND}: ask for a larger pilot",
-                probe.found * settings.maps as f64,
-                probe.name
-            ))),
-            None => Ok(pilot),
-        }
+        let queries = (chosen.len() * BALLS) as f64 * settings.maps as f64;
+        self.query_seconds += start.elapsed().as_secs_f64() / queries;
+        Ok(())
     }
 
     /// The radius and the number of photons that bring the root mean square relative error over the probes to `target`.

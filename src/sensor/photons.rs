@@ -182,9 +182,21 @@ const FORECAST: u64 = 1024;
 /// those of [`by_photons_in_passes`]
 pub fn forecast(scene: &Scene, settings: &PhotonSettings, passes: u64) -> Result<PhotonForecast> {
     let (sensors, margin) = prepared(scene, settings)?;
-    let ranges = ranges(&sensors);
-    let count = settings.photons.div_ceil(64).min(FORECAST);
-    let histories = Histories { count, seed: settings.seed, replicate: 0, max_order: max_order(&sensors) };
+    let PhotonSettings { photons, maps, seed, .. } = *settings;
+    let whole = forecast_of(scene, &sensors, margin, (photons, maps, seed))?;
+    Ok(PhotonForecast { bytes: whole.bytes / passes as f64, ..whole })
+}
+
+/// The same for sensors that are checked, `margin` beyond the cell: so many photons a map, so many maps, and the seed.
+pub(super) fn forecast_of(
+    scene: &Scene,
+    sensors: &[Sensor],
+    margin: f64,
+    (photons, maps, seed): (u64, u64, u64),
+) -> Result<PhotonForecast> {
+    let ranges = ranges(sensors);
+    let count = photons.div_ceil(64).min(FORECAST);
+    let histories = Histories { count, seed, replicate: 0, max_order: max_order(sensors) };
     let (met, copied) = (AtomicU64::new(0), AtomicU64::new(0));
     let keep = |photon: &Photon| {
         let holding = ranges.iter().filter(|r| r.contains(u32::from(photon.order))).count() as u64;
@@ -200,14 +212,14 @@ pub fn forecast(scene: &Scene, settings: &PhotonSettings, passes: u64) -> Result
     let a_history = |number: &AtomicU64| number.load(Ordering::Relaxed) as f64 / count as f64;
     // Copies beyond the edges of the cell.
     let around = scene.stage().map_or(1.0, |stage| (1.0 + 2.0 * margin / stage.side).powi(2));
-    let [met, copied] = [a_history(&met), a_history(&copied)].map(|n| n * settings.photons as f64 * around);
+    let [met, copied] = [a_history(&met), a_history(&copied)].map(|n| n * photons as f64 * around);
     // Where several ranges of orders have a map each, the photons of all stay until the last one.
     let bytes = match ranges.len() {
         1 => PEAK_BYTES * met,
         _ => size_of::<Photon>() as f64 * met + PEAK_BYTES * copied,
     };
-    let seconds = (one * settings.photons as f64 + BUILD_SECONDS * copied) * settings.maps as f64 / threads;
-    Ok(PhotonForecast { stored: copied, bytes: bytes / passes as f64, seconds })
+    let seconds = (one * photons as f64 + BUILD_SECONDS * copied) * maps as f64 / threads;
+    Ok(PhotonForecast { stored: copied, bytes, seconds })
 }
 
 /// The sensors with the orders that count, and how far beyond the cell's edges they read \[L\].

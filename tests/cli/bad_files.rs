@@ -198,7 +198,12 @@ fn wrong_shapes_textures_and_boundaries() {
             "[[interiors]]\nname = \"milk\"\nindex = 1.3\nsigma_t = 1\nalbedo = 0.5\ng = 0\n",
             "milk has no boundary",
         ),
-        ("[[interiors]]\nname = \"milk\"\nindex = inf\n", "index is inf; allowed: finite and at least 1"),
+        ("[[interiors]]\nname = \"milk\"\nindex = inf\n", "index is inf; allowed: 1 to 1000"),
+        ("[[interiors]]\nname = \"milk\"\nindex = 1e308\n", "allowed: 1 to 1000"),
+        (
+            "[[regions]]\nshape = { sphere = { center = [0, 0, 0], radius = 1 } }\nsigma_t = 1\nalbedo = 0.5\ng = 0\nemission = 1e300\n",
+            "regions[0]: emission is 1e300; allowed: 0, or 1e-30 to 1e30 in size",
+        ),
         ("[[interiors]]\nname = \"milk\"\n", "missing field `index`"),
         ("[[interiors]]\nname = \"surroundings\"\nindex = 1.3\n", "two interiors are called surroundings"),
     ];

@@ -273,7 +273,7 @@ point = { position = [0, 0, 5], power = 1.0 }
     let file = folder.file("glass.toml", right);
     assert!(succeeds(&["check", text(&file)]).contains("dielectric boundaries"));
     let cases = [
-        ("index = 1.5", "index = 0.9", "1:40: index is 0.9; allowed: finite and at least 1"),
+        ("index = 1.5", "index = 0.9", "1:40: index is 0.9; allowed: 1 to 1000"),
         (
             "inside = \"glass\"",
             "inside = \"glas\"",

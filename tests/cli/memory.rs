@@ -109,6 +109,8 @@ fn what_does_not_fit_is_refused() {
         &[&fogbox[..5], &["2000", "--memory", "1G"]].concat(),
         &["a picture of", "pixels, by --width"],
     );
+    let advised = ["advise", "slab", "--set", "tau=100", "--set", "albedo=1", "--target", "5%"];
+    refuses_naming(&[&advised[..], &["--pilot", "1e10"]].concat(), &["a pilot map of ", "allowed: --pilot "]);
     for (size, word) in [("0", "0"), ("2X", "2X"), ("-1", "-1")] {
         refuses_naming(&[&deep[..], &[&format!("--memory={size}")]].concat(), &[word, "allowed", "2G"]);
     }

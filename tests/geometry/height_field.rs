@@ -130,7 +130,7 @@ fn bad_fields_are_refused() {
     assert_eq!(say(&GROUND, Some(0.0), 0.0), "floor is 0; allowed: finite and below every height");
     assert_eq!(say(&GROUND, None, f64::NAN), "height is NaN; allowed: finite");
     let none = Ground { cells: [0, 3], ..GROUND };
-    assert_eq!(say(&none, None, 0.0), "a height field of 0 x 3 cells; allowed: 1 to 2^24 in all");
+    assert_eq!(say(&none, None, 0.0), "a height field of 0 x 3 cells; allowed: 1 to 2^20 in all");
     let flat = Ground { size: DVec2::new(0.0, 1.0), ..GROUND };
     assert_eq!(say(&flat, None, 0.0), "a height field needs a finite corner and a size above 0 on both axes");
     assert!(

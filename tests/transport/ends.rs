@@ -9,8 +9,9 @@ use glam::DVec3;
 use turbid::Spectrum;
 use turbid::geometry::Shape;
 use turbid::light::{Faces, Light};
-use turbid::math::{Interval, Ray, exp, ln_1p};
-use turbid::medium::{Density, Grid, Heterogeneous, Medium};
+use turbid::math::{Asymmetry, Interval, Ray, exp, ln_1p};
+use turbid::medium::{Density, Grid, Heterogeneous, Homogeneous, Medium};
+use turbid::phase::Phase;
 use turbid::photons::importance::{Importance, ImportanceSettings};
 use turbid::photons::maps::{Amount, Indirect, MapSettings, fill};
 use turbid::photons::{Histories, MOST_EVENTS, check_end, shoot};
@@ -125,6 +126,49 @@ fn rooms_that_keep_light_are_refused_and_others_are_not() {
 }
 
 /// No method hangs: each refuses the room itself.
+/// Behind a pane that encloses nothing a medium has no end: if it absorbs nothing, light does not come back, and if it
+/// glows, a ray gathers without end. What absorbs, and what bodies enclose, is right.
+#[test]
+fn media_without_end_are_refused_where_light_does_not_end_in_them() {
+    let says = |medium: (f64, f64, f64), body: Shape| {
+        let (sigma_t, albedo, emission) = medium;
+        let phase = Phase::with_asymmetry(Asymmetry::try_from(0.0).unwrap());
+        let matter = Homogeneous::new(Spectrum::grey(sigma_t), Spectrum::grey(albedo), phase).unwrap();
+        let matter = matter.with_emission(Spectrum::grey(emission)).unwrap();
+        let interiors = vec![
+            Interior::surroundings(),
+            Interior { name: "milk".into(), index: 1.4, medium: Some(matter.into()) },
+        ];
+        let boundary = Surface::Dielectric(Dielectric::new(1, 0));
+        let parts = Parts {
+            interiors,
+            objects: objects(vec![(body, boundary)]),
+            lights: vec![lamp()],
+            camera: Some(camera()),
+            ..Parts::default()
+        };
+        check_end(&Scene::new(parts).unwrap()).map_or_else(|error| error.to_string(), |()| String::new())
+    };
+    let pane = || Shape::Rectangle(rectangle(DVec3::new(-0.3, -0.3, 0.5), DVec3::X * 0.6, DVec3::Y * 0.6));
+    let ball = || sphere(DVec3::new(0.0, 0.0, 0.5), 0.2);
+    let lost = says((1.0, 1.0, 0.0), pane());
+    assert!(
+        lost.contains("milk, which no body encloses and whose medium absorbs nothing; allowed"),
+        "{lost}"
+    );
+    let glows = says((0.0, 0.5, 0.2), pane());
+    assert!(glows.contains("whose medium emits and absorbs nothing; allowed"), "{glows}");
+    for (medium, body) in [
+        ((1.0, 0.999, 0.0), pane()),
+        ((0.0, 0.5, 0.0), pane()),
+        ((0.3, 0.5, 0.2), pane()),
+        ((1.0, 1.0, 0.0), ball()),
+        ((0.0, 0.5, 0.2), ball()),
+    ] {
+        assert_eq!(says(medium, body), "", "{medium:?}");
+    }
+}
+
 #[test]
 fn every_method_refuses_a_room_that_keeps_light() {
     let scene = room(white);

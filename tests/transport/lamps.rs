@@ -5,9 +5,10 @@ use crate::support::scenes::{
     area_light, bounded, cuboid, dielectric, filled, homogeneous, lambertian, outflow, rectangle, sphere,
 };
 use crate::support::verdict;
-use glam::DVec3;
+use glam::{DVec2, DVec3};
+use std::sync::Arc;
 use turbid::Spectrum;
-use turbid::geometry::{Face, Rectangle, Shape};
+use turbid::geometry::{Face, Ground, Rectangle, Shape, Up, Waves, height_field};
 use turbid::light::{Area, Light};
 use turbid::math::{Frame, Ray};
 use turbid::scene::{Interior, Object, Orders, Parts, Quantity, Scene};
@@ -90,6 +91,12 @@ fn surfaces_in_one_place_are_refused() {
     let elsewhere = || vec![glow(9.0, 1.0)];
     let clear = || Surface::Filter(Filter::new(Spectrum::grey(0.5)).unwrap());
     let ball = |radius: f64| sphere(DVec3::new(0.1, 0.2, 0.3), radius);
+    // Ground of a side of 2 on a flat bottom at a height, turned with its file's axes.
+    let ground = |floor: f64, rms: f64| {
+        let waves = Waves::new(1, 2, 0.7, rms).unwrap();
+        let ground = Ground { corner: DVec2::splat(-1.0), size: DVec2::splat(2.0), cells: [3, 3] };
+        Shape::Mesh(Arc::new(height_field(&ground, Up::Z, Some(floor), |p| waves.height(p)).unwrap()))
+    };
     let chance = [
         ("two lamps", vec![], vec![glow(1.0, 1.0), glow(1.0, 0.3)]),
         ("round lamps", vec![], vec![lamp(ball(0.7)), lamp(ball(0.7))]),
@@ -103,6 +110,26 @@ fn surfaces_in_one_place_are_refused() {
         ),
         ("glass in stone", vec![(ball(0.5), matt()), (ball(0.5), dielectric(1, 0))], elsewhere()),
         ("a pane on a wall", vec![(flat(0.0, 2.0), matt()), (flat(0.0, 1.0), clear())], elsewhere()),
+        (
+            "two grounds of glass",
+            vec![(ground(-1.0, 0.02), clear()), (ground(-1.0, 0.03), clear())],
+            elsewhere(),
+        ),
+        (
+            "water on a floor",
+            vec![(flat(-1.0, 2.0), matt()), (ground(-1.0, 0.0), dielectric(1, 0))],
+            elsewhere(),
+        ),
+        (
+            "a pane on a block of facets",
+            vec![(ground(-1.0, 0.0), matt()), (flat(0.0, 0.3), clear())],
+            elsewhere(),
+        ),
+        (
+            "a block of facets beside a pane",
+            vec![(flat(-1.0, 0.2), clear()), (ground(-1.0, 0.1), matt())],
+            elsewhere(),
+        ),
         ("a picture on a block", vec![(flat(1.0, 0.5), matt()), (block(-1.0, 1.0), matt())], elsewhere()),
     ];
     for (what, objects, lights) in chance {
@@ -126,6 +153,12 @@ fn surfaces_in_one_place_are_refused() {
         (
             "a block on a block",
             vec![(block(0.0, 1.0), matt()), (cuboid(DVec3::Z, DVec3::new(1.0, 1.0, 2.0)), matt())],
+            elsewhere(),
+        ),
+        ("facets on a floor", vec![(flat(-1.0, 2.0), matt()), (ground(-1.0, 0.1), matt())], elsewhere()),
+        (
+            "water above a floor",
+            vec![(flat(-1.001, 2.0), matt()), (ground(-1.0, 0.1), dielectric(1, 0))],
             elsewhere(),
         ),
         ("balls that touch", vec![(ball(0.5), matt()), (ball(0.4), matt())], elsewhere()),

@@ -332,8 +332,7 @@ fn photons(scene: &Scene, camera: &Camera, indirect: Indirect, is_steered: bool)
     let importance =
         if is_steered { Some(Importance::of(scene, camera, indirect, &learned, &NoProgress)?) } else { None };
     let maps = fill_steered(scene, &maps, importance.as_ref(), &NoProgress)?;
-    let size = scene.bounds().map_or(1.0, |ball| 2.0 * ball.radius() / 3.0f64.sqrt());
-    let settings = mapper::Settings { gather_rays: 2, ..mapper::Settings::for_size(size, 20)? };
+    let settings = mapper::Settings { gather_rays: 2, ..mapper::Settings::for_scene(scene, 20)? };
     let mapper = mapper::Mapper::new(scene, &maps, &settings);
     let within = scene.interior_at(camera.position());
     let film =

@@ -19,18 +19,25 @@ pub struct Wood {
 /// How far the rings wander from circles, in widths of a ring: three turns about the axis, and along it one in 20 widths.
 const WANDER: f64 = 0.6;
 
+/// Lengths are at most this: their squares are finite.
+const LARGEST: f64 = 1e30;
+
 impl Wood {
     /// Rings of `width` \[L\] about the line through `center` along `axis`, of any length but 0: the first value in early
     /// wood, the second in late wood.
     ///
-    /// # Errors     `Error::OutOfRange` for values outside [0, 1] or a width that is not above 0, `Error::Scene` for an
-    /// axis or a centre that is none
+    /// # Errors     `Error::OutOfRange` for values outside [0, 1], a width that is not above 0, or lengths above 1e30;
+    /// `Error::Scene` for an axis that is none
     pub fn new(values: [Spectrum; 2], center: DVec3, axis: DVec3, width: f64) -> Result<Self> {
-        let Some(axis) = axis.try_normalize().filter(|_| center.is_finite()) else {
-            return Err(Error::Scene("wood needs a finite center and an axis other than 0 0 0".into()));
+        let Some(axis) = axis.try_normalize() else {
+            return Err(Error::Scene("wood needs an axis other than 0 0 0".into()));
         };
-        if !(width > 0.0 && width.is_finite()) {
-            return Err(Error::out_of_range("width", width, "finite and above 0"));
+        let far = center.abs().max_element();
+        if !(far <= LARGEST && center.is_finite()) {
+            return Err(Error::out_of_range("center", far, "coordinates up to 1e30 in size"));
+        }
+        if !(1.0 / LARGEST..=LARGEST).contains(&width) {
+            return Err(Error::out_of_range("width", width, "1e-30 to 1e30"));
         }
         Ok(Wood {
             values: [checked("values", values[0])?, checked("values", values[1])?],
