@@ -212,7 +212,7 @@ fn boundaries_that_do_not_fit_are_refused() {
                 vec![(ball(1.0), dielectric(1, 0))],
                 lamp(),
             ),
-            "index of refraction of interior bubble is 0.9; allowed: finite and at least 1",
+            "index of refraction of interior bubble is 0.9; allowed: 1 to 1000",
         ),
         (
             refused(
