@@ -33,7 +33,7 @@ use turbid::sensor::{Film, Sample, Streams, extend, extend_by_light};
 ///
 /// Light tracing (--with light) is unbiased too, and a second witness for caustics, which paths find badly or not at all:
 /// photons start from the lights and are connected to the camera at each scattering, so that --samples counts histories a
-/// pixel, wherever they are seen. It holds what scatters last on a matt surface or in a medium that the camera sees straight
+/// pixel, wherever they are seen. It holds what scatters last on a diffuse surface or in a medium that the camera sees straight
 /// or through filters. The rest is black in it: lights and glowing media seen directly, the whole emission layer, and all that is
 /// seen in mirrors and through glass.
 ///

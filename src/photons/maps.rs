@@ -5,9 +5,9 @@
 //!
 //! | map | holds | read |
 //! |---|---|---|
-//! | caustic | L S+ D | where the eye looks at a matt surface |
+//! | caustic | L S+ D | where the eye looks at a diffuse surface |
 //! | volume | L (S, D, M)+ M: every collision that is not direct | along rays through media |
-//! | global, seen | L ... D with a D or M on the way | where the eye looks at a matt surface |
+//! | global, seen | L ... D with a D or M on the way | where the eye looks at a diffuse surface |
 //! | global, gathered | every L ... D | where a ray that left that surface meets the next one |
 //!
 //! Direct light comes by shadow rays where the eye looks, so neither it nor the caustic class is in a global map that is
@@ -115,7 +115,7 @@ pub struct PassReport {
     pub ledger: Ledger,
     /// Collisions in media, stored or not.
     pub collisions: u64,
-    /// Arrivals at matt surfaces, stored or not.
+    /// Arrivals at diffuse surfaces, stored or not.
     pub hits: u64,
     /// Work that the scene may not require.
     pub work: Work,

@@ -1,4 +1,4 @@
-//! The final gathering: indirect light of a matt surface by rays that read the maps one bounce away.
+//! The final gathering: indirect light of a diffuse surface by rays that read the maps one bounce away.
 //!
 //! A ray in a direction of density cos/pi brings pi times the radiance along it as irradiance. The ray flies as far as
 //! a photon would. If it collides, it brings what the medium scatters there: single scattering by shadow rays and the
@@ -58,7 +58,7 @@ struct GatherRay<'a, 'm, 'r> {
 }
 
 impl GatherRay<'_, '_, '_> {
-    /// What a matt surface reflects back along the ray.
+    /// What a diffuse surface reflects back along the ray.
     fn surface(&mut self, matt: &Matt<'_>, stream: &mut Stream) {
         let (maps, settings) = (self.mapper.maps, self.mapper.settings);
         if matt.reflectance.is_black() {

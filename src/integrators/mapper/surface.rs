@@ -1,4 +1,4 @@
-//! Radiance that leaves a matt surface towards the eye.
+//! Radiance that leaves a diffuse surface towards the eye.
 
 use super::{Eye, Gathers, Mapper};
 use crate::Spectrum;
@@ -17,7 +17,7 @@ use std::f64::consts::PI;
 /// How many radii are tried, each a quarter of the one before, where too little of the disc lies on a surface: thin rods.
 const SMALLER: u32 = 4;
 
-/// A point of a matt surface that light leaves towards a walker.
+/// A point of a diffuse surface that light leaves towards a walker.
 #[derive(Clone, Copy)]
 pub(super) struct Matt<'w> {
     /// Who looks, or gathers: on the interior's side.
