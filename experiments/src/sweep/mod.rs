@@ -29,8 +29,8 @@
 //! matter of the radius. (The reach of an estimate that finds too few is made larger in the same ratio at N, so that r
 //! shrinks there too. Errors of either sign may cancel at r1 in one quarter: the largest of the four counts.)
 //!
-//! *Alarms.* A number with p < 10^-5 is measured once more, on another seed with four times the samples of the whole effort. Only these second
-//! numbers decide, by Holm over all of them in the run, family-wise 10^-3: the family is what the first ones chose, and its
+//! *Alarms.* A number with p < 10^-5 is measured once more, on another seed with four times the samples of the whole
+//! effort. Only these second numbers decide, by Holm over all of them in the run, family-wise 10^-3: the family is what the first ones chose, and its
 //! data are independent of the choice. Both are printed, with the smallest scene that still shows an alarm
 //! (`shrink`).
 //!
