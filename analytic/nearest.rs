@@ -60,7 +60,7 @@ pub fn nearest_expectation(
     expectation(k, cap, whole, &lambda, &kernel_mean)
 }
 
-/// Expectation of the wrong twin that counts k points, not k - 1, over the ball of the k-th (uniform kernel).
+/// Expectation of the negative control that counts k points, not k - 1, over the ball of the k-th (uniform kernel).
 ///
 /// Gathers with fewer than k points within the cap are right in it, as they are in the rule.
 /// # Arguments

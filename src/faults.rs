@@ -12,7 +12,7 @@ pub enum Fault {
     AlbedoTwice,
     /// The albedo is not applied: every history survives.
     AlbedoNever,
-    /// A matt surface counts the cosine of incidence twice where paths connect to a light.
+    /// A diffuse surface counts the cosine of incidence twice where paths connect to a light.
     CosineTwice,
     /// An area light sends photons uniformly over the hemisphere, not in proportion to the cosine.
     EmissionUniform,

@@ -15,8 +15,8 @@ fn a_uniform_field_is_met_exactly_for_every_k_and_cap() {
         }
     }
     let lambda = |r: f64| BALL * r * r * r;
-    let twin = nearest_expectation_biased(20, 50.0, lambda, |_| 1.0).unwrap();
-    assert!((twin.value - 20.0 / 19.0).abs() <= twin.error);
+    let control = nearest_expectation_biased(20, 50.0, lambda, |_| 1.0).unwrap();
+    assert!((control.value - 20.0 / 19.0).abs() <= control.error);
 }
 
 #[test]
@@ -153,9 +153,9 @@ fn mean_and_variance_agree_with_simulated_points() {
             seen.variance,
             got.variance
         );
-        let twin = nearest_expectation_biased(k, cap, lambda, |r| mean_of(kernel, r)).unwrap();
+        let control = nearest_expectation_biased(k, cap, lambda, |r| mean_of(kernel, r)).unwrap();
         if got.underfull.value < 0.3 {
-            assert!((seen.mean - twin.value).abs() > 4.9 * seen.mean_error, "the wrong twin passes");
+            assert!((seen.mean - control.value).abs() > 4.9 * seen.mean_error, "the negative control passes");
         }
     }
 }

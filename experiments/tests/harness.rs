@@ -53,14 +53,14 @@ fn undisturbed() -> BTreeMap<String, Vec<u8>> {
 }
 
 #[test]
-fn right_is_upheld_wrong_is_rejected_and_the_twin_is_seen() {
+fn right_is_upheld_wrong_is_rejected_and_the_negative_control_is_detected() {
     let folder = tempfile::tempdir().unwrap();
     let outcome = run(&fake::study(), &settings(folder.path())).unwrap();
     let expected = [
         ("amplitude", Verdict::Upheld),
         ("residual", Verdict::Undecided),
         ("wrong", Verdict::Rejected),
-        ("twin", Verdict::Upheld),
+        ("control", Verdict::Upheld),
     ];
     assert_eq!(verdicts(&outcome), expected.map(|(id, verdict)| (id.to_string(), verdict)));
     assert_eq!((outcome.measured, outcome.strict_code()), (64, 1));
@@ -374,7 +374,7 @@ fn verdicts_of_many_studies() {
     }
     let count = |id: &str, word: &'static str| counts.get(&(id.to_string(), word)).copied().unwrap_or(0);
     assert_eq!(count("wrong", "rejected"), 12);
-    assert_eq!(count("twin", "upheld"), 12);
+    assert_eq!(count("control", "upheld"), 12);
     assert_eq!(count("amplitude", "rejected") + count("residual", "rejected"), 0);
     assert_eq!(count("amplitude", "upheld"), 12);
 }

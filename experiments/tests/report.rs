@@ -58,7 +58,7 @@ fn every_experiment_claim_and_figure_can_be_reached() {
         for figure in ["bias", "again"] {
             assert!(reached.contains(format!("figure-{}-{figure}", experiment.name).as_str()));
         }
-        assert!(reached.contains(format!("claim-{}-twin--again-4", experiment.name).as_str()));
+        assert!(reached.contains(format!("claim-{}-control--again-4", experiment.name).as_str()));
     }
     // Long tables are folded, and no claim that is open or rejected is folded away.
     assert!(page.contains("Show all 24 rows") && page.contains("Show all 160 rows"));

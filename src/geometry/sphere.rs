@@ -34,6 +34,12 @@ impl Sphere {
         self.radius
     }
 
+    /// 1 - cos of the half-angle under which it is seen from `p`; none from inside.
+    pub(crate) fn one_minus_mu_max(&self, p: DVec3) -> Option<f64> {
+        let sin2 = self.radius * self.radius / p.distance_squared(self.center);
+        (sin2 < 1.0).then(|| sin2 / (1.0 + (1.0 - sin2).sqrt()))
+    }
+
     /// Both crossings of the line through the ray, nearer first, or none if it misses.
     ///
     /// The discriminant comes from the distance of the line to the centre, and the smaller root from the product

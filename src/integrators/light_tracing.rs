@@ -1,6 +1,6 @@
 //! Light tracing: the photons' own walk, connected to a pinhole camera at each scattering.
 //!
-//! It finds light that paths from the eye find badly, or not at all: what lights and specular surfaces throw on matt
+//! It finds light that paths from the eye find badly, or not at all: what lights and specular surfaces throw on diffuse
 //! ones and into fog. It does not find what the eye sees straight, lights and specular surfaces: no photon meets a
 //! pinhole by itself.
 

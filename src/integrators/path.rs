@@ -1,8 +1,8 @@
 //! The unbiased path tracer.
 //!
 //! Each ray collects in closed form what it would meet by itself (lights' bodies, incidence, volume sources), times
-//! the transmittance; each event connects to every light that can be aimed at. Where both can find the same light,
-//! the balance heuristic shares it between them. Towards a point light a second point on the ray is sampled with
+//! the transmittance; each event connects to every light that can be aimed at, to a volume source from outside of its
+//! ball along one whole ray. Where both can find the same light, the balance heuristic shares it between them. Towards a point light a second point on the ray is sampled with
 //! equal angles, in multiple importance with the free flight: connections from free flights alone would have an
 //! infinite variance, and equal angles alone miss the rays that run through the light itself.
 
@@ -112,6 +112,9 @@ impl<'a, F: FnMut(u32, Layer, Spectrum)> PathVisitor<'a, F> {
         self.add(walker.order, layer, walker.weight * emitted);
         for light in self.scene.lights() {
             let mut seen = uncollided(self.scene, light, walker, end, stream);
+            if let (Light::VolumeSource(source), Some(pdf)) = (light, walker.pdf_solid_angle) {
+                seen *= pdf / (pdf + source.pdf_solid_angle(walker.ray.at(-walker.behind)));
+            }
             if hit.is_none()
                 && let Some((radiance, pdf_light)) = light.background(&walker.ray)
             {
@@ -279,8 +282,36 @@ impl<F: FnMut(u32, Layer, Spectrum)> Visitor for PathVisitor<'_, F> {
     }
 }
 
+/// What a ray meets up to the first body that is an event, by `seen`, which is given the walker and the distance to the
+/// body ahead \[L\]: filters and index-matched boundaries bend nothing, and what is behind them is seen straight.
+pub(in crate::integrators) fn seen_straight(
+    scene: &Scene,
+    mut walker: Walker,
+    rays: &mut u64,
+    stream: &mut Stream,
+    seen: impl Fn(&Walker, f64, &mut Stream) -> Spectrum,
+) -> Spectrum {
+    let mut sum = Spectrum::ZERO;
+    loop {
+        *rays += 1;
+        let hit = scene.hit(&walker.ray, walker.from);
+        let end = hit.map_or(f64::INFINITY, |found| found.hit.t);
+        sum += walker.weight * seen(&walker, end, stream);
+        let straight =
+            hit.and_then(|found| Some((found, scene.straight_on(&walker.ray, &found, walker.within)?)));
+        let Some((found, (fraction, within))) = straight else { return sum };
+        let passed = transmittance(scene, &walker.ray, end, walker.within, stream);
+        let weight = walker.weight * passed * fraction;
+        if weight.is_black() {
+            return sum;
+        }
+        let ray = Ray::new(walker.ray.at(end), walker.ray.dir);
+        walker = Walker { ray, weight, within, from: Some(found.start()), ..walker };
+    }
+}
+
 /// Uncollided radiance from a light that fills the ray's far end or its way [W/(L^2 sr)]: incidence and volume
-/// sources, which no sampler aims at.
+/// sources.
 pub(in crate::integrators) fn uncollided(
     scene: &Scene,
     light: &Light,
@@ -319,11 +350,18 @@ pub(in crate::integrators) fn next_event(
     rays: &mut Rays,
 ) -> Option<(LightSample, Spectrum)> {
     let light = &scene.lights()[index];
-    if !light.has_direction() {
+    if !light.has_direction_from(position) {
         return None;
     }
     let sample = light.sample(position, stream.pair())?;
     let ray = Ray::new(position, sample.dir);
+    if let (Light::VolumeSource(_), Some(pdf)) = (light, sample.pdf_solid_angle) {
+        let start = Walker { from, within, ..Walker::new(ray, Spectrum::ONE) };
+        let seen = seen_straight(scene, start, &mut rays.shadow, stream, |walker, end, stream| {
+            uncollided(scene, light, walker, end, stream)
+        });
+        return Some((sample, seen / pdf));
+    }
     rays.shadow += 1;
     let towards = Some(Target::Light(index));
     let passed = connection(scene, (&ray, from, within), sample.distance, towards, stream)?;

@@ -172,7 +172,7 @@ impl Area {
     }
 
     fn sample_cone(&self, sphere: &Sphere, p: DVec3, u: [f64; 2]) -> Option<LightSample> {
-        let one_minus_mu_max = one_minus_mu_max(sphere, p)?;
+        let one_minus_mu_max = sphere.one_minus_mu_max(p)?;
         let to_center = (sphere.center() - p).normalize();
         let dir = Frame::new(to_center).to_world(warp::square_to_cone(u, one_minus_mu_max)).normalize();
         // A direction on the very rim may miss by rounding: then it is as far as the rim is.
@@ -203,7 +203,7 @@ impl Area {
             return (Spectrum::ZERO, 0.0);
         }
         let pdf = match &self.shape {
-            Shape::Sphere(sphere) => one_minus_mu_max(sphere, ray.origin).map_or(0.0, warp::pdf_cone),
+            Shape::Sphere(sphere) => sphere.one_minus_mu_max(ray.origin).map_or(0.0, warp::pdf_cone),
             Shape::Rectangle(r) if is_near(r, ray.origin) => {
                 SphericalRectangle::new(r, ray.origin).map_or(0.0, |seen| 1.0 / seen.solid_angle())
             }
@@ -217,11 +217,4 @@ impl Area {
 fn is_near(rectangle: &Rectangle, p: DVec3) -> bool {
     let far = FAR * rectangle.diagonal();
     rectangle.sample([0.5; 2]).distance_squared(p) < far * far && !planted(Fault::AreaForgotten)
-}
-
-/// 1 - cos of the half-angle under which a sphere is seen from `p`; none from inside.
-fn one_minus_mu_max(sphere: &Sphere, p: DVec3) -> Option<f64> {
-    let d2 = p.distance_squared(sphere.center());
-    let sin2 = sphere.radius() * sphere.radius() / d2;
-    (sin2 < 1.0).then(|| sin2 / (1.0 + (1.0 - sin2).sqrt()))
 }

@@ -86,9 +86,9 @@ pub struct Emission {
 pub struct LightSample {
     /// Unit direction from the point towards the light.
     pub dir: DVec3,
-    /// How far the light is \[L\]; infinite for an unbounded beam and the sun.
+    /// How far the light is \[L\], where it begins if it fills a volume; infinite for an unbounded beam and the sun.
     pub distance: f64,
-    /// Radiance over density, or irradiance for a delta light [W/L^2].
+    /// Radiance over density, or irradiance for a delta light [W/L^2]; of a volume source what would come through nothing.
     pub value: Spectrum,
     /// Density of the direction [1/sr], or none for a delta light.
     pub pdf_solid_angle: Option<f64>,
@@ -146,9 +146,21 @@ impl Light {
         Ok(())
     }
 
-    /// Whether next-event estimation can aim at it.
+    /// Whether next-event estimation can aim at it, from some points at least.
     pub fn has_direction(&self) -> bool {
-        !matches!(self, Light::Isotropic(_) | Light::VolumeSource(_) | Light::Glow(_))
+        match self {
+            Light::Isotropic(_) | Light::Glow(_) => false,
+            Light::VolumeSource(l) => l.ball().is_some(),
+            Light::Beam(_) | Light::Area(_) | Light::Point(_) | Light::Spot(_) | Light::Sun(_) => true,
+        }
+    }
+
+    /// The same from the point `p`: a volume source is met by chance from inside of the ball about it.
+    pub fn has_direction_from(&self, p: DVec3) -> bool {
+        match self {
+            Light::VolumeSource(l) => l.pdf_solid_angle(p) > 0.0,
+            _ => self.has_direction(),
+        }
     }
 
     /// Whether all channels are equal.
@@ -360,7 +372,8 @@ impl Light {
             Light::Point(l) => l.sample(p),
             Light::Spot(l) => l.sample(p),
             Light::Sun(l) => l.sample(p, u),
-            Light::Isotropic(_) | Light::VolumeSource(_) | Light::Glow(_) => None,
+            Light::VolumeSource(l) => l.sample(p, u),
+            Light::Isotropic(_) | Light::Glow(_) => None,
         }
     }
 

@@ -1,10 +1,11 @@
 //! A uniform isotropic source filling a shape.
 
-use super::{EmissionNumbers, Stage, emissive};
+use super::{EmissionNumbers, LightSample, Stage, emissive};
 use crate::Spectrum;
 use crate::error::{Error, Result};
-use crate::geometry::Shape;
-use crate::math::{FOUR_PI, Ray, warp};
+use crate::geometry::{Shape, Sphere};
+use crate::math::{FOUR_PI, Frame, Ray, warp};
+use glam::DVec3;
 
 /// Every volume element of a shape emits the same power, alike in all directions.
 #[derive(Debug, Clone, PartialEq)]
@@ -32,6 +33,30 @@ impl VolumeSource {
     /// Emission coefficient [W/(L^3 sr)].
     pub fn emission(&self) -> Spectrum {
         self.density / FOUR_PI
+    }
+
+    /// The ball about the shape, which is what directions are aimed at; nothing bounds a slab.
+    pub(super) fn ball(&self) -> Option<Sphere> {
+        let (center, radius) = self.shape.bounds()?;
+        Sphere::new(center, radius).ok()
+    }
+
+    /// Density with which [`super::Light::sample`] aims from `p` at any point of the shape [1/sr]: uniform in the cone about
+    /// its ball, and 0 from inside of the ball, where every direction may meet the shape.
+    pub fn pdf_solid_angle(&self, p: DVec3) -> f64 {
+        self.ball().and_then(|ball| ball.one_minus_mu_max(p)).map_or(0.0, warp::pdf_cone)
+    }
+
+    /// A direction from `p`, and what comes along it where nothing stands or absorbs on the way.
+    pub(super) fn sample(&self, p: DVec3, u: [f64; 2]) -> Option<LightSample> {
+        let ball = self.ball()?;
+        let one_minus_mu_max = ball.one_minus_mu_max(p)?;
+        let to_center = Frame::new((ball.center() - p).normalize());
+        let dir = to_center.to_world(warp::square_to_cone(u, one_minus_mu_max)).normalize();
+        let inside = self.shape.interval(&Ray::new(p, dir))?;
+        let pdf = warp::pdf_cone(one_minus_mu_max);
+        let value = self.emission() * inside.length() / pdf;
+        Some(LightSample { dir, distance: inside.start, value, pdf_solid_angle: Some(pdf) })
     }
 
     pub(super) fn power(&self, stage: Option<&Stage>) -> Spectrum {

@@ -1,6 +1,6 @@
 //! The three maps of Jensen and Christensen (1998): global, caustic, volume.
 //!
-//! With L a light, S a specular surface, D a matt one and M a collision, a photon stored at an event belongs to the class
+//! With L a light, S a specular surface, D a diffuse one and M a collision, a photon stored at an event belongs to the class
 //! of what it met before. Each class of light is read exactly once:
 //!
 //! | map | holds | read |
@@ -346,6 +346,6 @@ pub fn fill_part(
 }
 
 /// Whether photons are stored on a surface: some light leaves it in other than specular directions.
-pub(super) fn is_matt(surface: &Surface) -> bool {
+pub(super) fn is_diffuse(surface: &Surface) -> bool {
     matches!(surface, Surface::Lambertian(_))
 }

@@ -140,7 +140,7 @@ impl Plan {
         }
         lines.push(match (self.has_surfaces, self.has_specular) {
             (false, _) => "no surface: nothing to intersect but media and lights".to_string(),
-            (true, false) => "matt or black surfaces: no caustic, no mirror paths".to_string(),
+            (true, false) => "diffuse or black surfaces: no caustic, no mirror paths".to_string(),
             (true, true) => "mirrors or glass: specular paths".to_string(),
         });
         if self.has_dielectrics {

@@ -22,7 +22,7 @@ pub struct LightCount {
     pub work: Work,
 }
 
-/// A picture of light that scatters on matt surfaces and in media where the camera sees it straight or through filters,
+/// A picture of light that scatters on diffuse surfaces and in media where the camera sees it straight or through filters,
 /// from `films` independent films of `histories` photons each: means are those over films, variances those between them.
 ///
 /// What the camera sees of lights themselves and by specular surfaces is not in it.
@@ -193,9 +193,9 @@ mod tests {
     fn the_same_bits_on_any_number_of_threads_and_in_any_number_of_passes() {
         let floor =
             crate::geometry::Rectangle::new(DVec3::splat(-1.0), DVec3::X * 2.0, DVec3::Y * 2.0).unwrap();
-        let matt = Surface::Lambertian(Lambertian::new(Spectrum::grey(0.5)).unwrap());
+        let diffuse = Surface::Lambertian(Lambertian::new(Spectrum::grey(0.5)).unwrap());
         let light = Light::Point(Point::new(DVec3::ZERO, Spectrum::ONE).unwrap());
-        let objects = vec![Object { shape: crate::geometry::Shape::Rectangle(floor), surface: matt }];
+        let objects = vec![Object { shape: crate::geometry::Shape::Rectangle(floor), surface: diffuse }];
         let scene = Scene::new(Parts { objects, lights: vec![light], ..Parts::default() }).unwrap();
         let (position, look_at, up) = (DVec3::new(0.0, 0.0, 2.0), DVec3::ZERO, DVec3::Y);
         let view = View { position, look_at, up, fov: 40.0, width: 9, height: 7, filter: Filter::Tent };

@@ -217,7 +217,7 @@ mod tests {
     }
 
     /// A variance of 16 maps of 5 independent places: the interval by the logarithm covers, the one about the variance
-    /// itself (the wrong twin) does not.
+    /// itself (the negative control) does not.
     #[test]
     fn intervals_of_variances_cover_by_their_logarithm() {
         let variance = |v: &[[f64; 5]]| {

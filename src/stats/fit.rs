@@ -123,11 +123,11 @@ mod tests {
     }
 
     /// Maps whose points share most of their noise: the interval over maps covers, the scatter about the line of one
-    /// mean map (the wrong twin) does not.
+    /// mean map (the negative control) does not.
     #[test]
     fn amplitude_covers_although_points_share_photons() {
         let predicted = [0.1, 0.2, 0.4, 0.8];
-        let (mut inside, mut twin) = (0, 0);
+        let (mut inside, mut control) = (0, 0);
         for set in 0..2000 {
             let mut stream = Stream::new(19, Purpose::Synthetic, set, 0);
             let maps: Vec<Vec<f64>> = (0..16)
@@ -144,9 +144,9 @@ mod tests {
             let scatter: f64 = points.iter().map(|&(p, y, _)| (y - a * p) * (y - a * p)).sum::<f64>() / 3.0;
             let error = (scatter / predicted.iter().map(|p| p * p).sum::<f64>()).sqrt();
             // t(0.975; 3) = 3.182.
-            twin += u64::from((a - 1.05).abs() <= 3.182 * error);
+            control += u64::from((a - 1.05).abs() <= 3.182 * error);
         }
         assert!(wilson_interval(inside, 2000, 1.0 - ALPHA).contains(0.95), "{inside} of 2000");
-        assert!(wilson_interval(twin, 2000, 1.0 - ALPHA).high < 0.95, "{twin} of 2000");
+        assert!(wilson_interval(control, 2000, 1.0 - ALPHA).high < 0.95, "{control} of 2000");
     }
 }

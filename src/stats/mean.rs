@@ -115,7 +115,7 @@ pub(super) mod tests {
     }
 
     /// False alarms at 1 % over 20,000 right sets of 8 maps: the rate lies in its own interval. The normal
-    /// threshold on the same data is the wrong twin: it must be seen to be wrong.
+    /// threshold on the same data is the negative control: it must be seen to be wrong.
     #[test]
     fn false_alarm_rate_on_right_data() {
         let (mut by_t, mut by_normal) = (0, 0);

@@ -39,7 +39,7 @@ mod tests {
     }
 
     /// 20 true nulls, 10,000 families: a false rejection at 5 % happens in 4.9 % of them; without the adjustment
-    /// (the wrong twin) in 64 %.
+    /// (the negative control) in 64 %.
     #[test]
     fn family_wise_rate() {
         let (mut adjusted, mut plain) = (0, 0);

@@ -2,9 +2,9 @@
 
 /// The most values that are kept.
 const KEPT: usize = 200;
-/// Shape of a tail from which on a mean's standard error is not to be trusted: the variance is infinite from 1/2 on, and
-/// above 0.7 means of any practical number of values are not yet normal (Vehtari et al. 2024).
-const HEAVY_SHAPE: f64 = 0.7;
+/// Shape of a tail from which on a mean has no standard error: the variance is infinite. (Vehtari et al. 2024 take means
+/// for useful up to 0.7, which says nothing of their errors.)
+const HEAVY_SHAPE: f64 = 0.5;
 /// Fewest values of a tail that its shape is fitted to: its standard deviation is about (1 + shape)/sqrt(values).
 const FEWEST: usize = 20;
 
@@ -70,7 +70,7 @@ impl Tail {
         pareto_shape(&excess)
     }
 
-    /// Whether the tail is too heavy for a standard error: [`Tail::shape`] above 0.7.
+    /// Whether the tail is too heavy for a standard error: [`Tail::shape`] above 1/2.
     pub fn is_heavy(&self) -> bool {
         self.shape().is_some_and(|shape| shape > HEAVY_SHAPE)
     }

@@ -1,4 +1,4 @@
-//! A matt surface.
+//! A diffuse surface.
 
 use super::Texture;
 use crate::Spectrum;

@@ -1,6 +1,6 @@
 //! A point light in fog: single scattering along a ray against its closed form, and intervals that can be trusted.
 //!
-//! Connections from free flights alone have an infinite variance: they are the wrong twin. A ray that passes
+//! Connections from free flights alone have an infinite variance: they are the negative control. A ray that passes
 //! the light at a distance b sees it as 1/b; over all directions from a point that leaves a variance that diverges,
 //! if only as a logarithm, so that intervals are promised for radiances and for lights with an extent.
 

@@ -31,7 +31,7 @@ fn photons_of_an_oblique_beam_lie_evenly_over_the_cell() {
 
 /// Folded, the photons of an oblique beam are even; under four mirrors they are not.
 #[test]
-fn four_mirrors_are_a_wrong_twin() {
+fn four_mirrors_are_rejected() {
     an_oblique_beam_fills_the_cell_evenly(folded);
     let points = unfolded(&slab(2.0, 0.9, 0.75, Incidence::Beam(0.3)));
     verdict::misfits("mirrored", evenness(&counts(points.into_iter().map(mirrored))), 2);

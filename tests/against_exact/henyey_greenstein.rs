@@ -107,11 +107,11 @@ fn fluxes_to_a_part_in_a_thousand() {
             verdict::agrees(&format!("{name} by {who}"), moments, exact(value), 8e-3 * value.value, seed);
         }
     }
-    wrong_twins(&scene, &exact_slab);
+    negative_controls(&scene, &exact_slab);
 }
 
 /// g or the albedo off by half a per cent must be seen: the reference is the right one, the medium is not.
-fn wrong_twins(right: &Scene, exact_slab: &AnisotropicSlab) {
+fn negative_controls(right: &Scene, exact_slab: &AnisotropicSlab) {
     let wrong = slab(2.0, 0.9, 0.75 * 1.005, Incidence::Beam(1.0));
     assert_ne!(right.regions(), wrong.regions());
     let moments = pass(&wrong, &[(reflectance(2.0), Orders::ALL)], 3_000_000, 4, |_| false).tallies[0][0];

@@ -21,7 +21,7 @@ fn irradiance_under_an_area_light() {
 /// Lambertian sphere of radius a about a point light anywhere inside, of power 1: the irradiance is the direct one plus
 /// rho/(1-rho) times its mean 1/(4 pi a^2), and the fluence at the centre is the direct one plus 4 rho E-mean.
 #[test]
-fn a_matt_cavity_has_its_known_radiosity() {
+fn a_diffuse_cavity_has_its_known_radiosity() {
     let (radius, rho) = (2.0, Spectrum::rgb(0.7, 0.2, 0.0));
     let wall = sphere(DVec3::ZERO, radius);
     for offset in [0.4, 1.2] {

@@ -29,7 +29,7 @@ const DISC: f64 = 0.04;
 /// Radius of volume estimates [L].
 const BALL: f64 = 0.1;
 
-/// A matt room with a ball of light under its ceiling, a floor and a block on it, filled with fog.
+/// A diffuse room with a ball of light under its ceiling, a floor and a block on it, filled with fog.
 pub struct Room {
     pub floor: Surface,
     pub sigma_t: Spectrum,
@@ -268,10 +268,10 @@ pub fn a_clear_room_keeps_its_ledger() {
 
 /// Absent maps are never asked, and the march and shadow rays through fog are not there without it.
 pub fn what_is_absent_is_not_asked() {
-    let matt = || Room { floor: lambertian(Spectrum::grey(0.5)), ..mirrored(0.0) };
+    let diffuse = || Room { floor: lambertian(Spectrum::grey(0.5)), ..mirrored(0.0) };
     let foggy = Room { floor: lambertian(Spectrum::grey(0.5)), ..mirrored(0.5) };
     for (room, has_caustic, has_volume) in [
-        (matt(), false, false),
+        (diffuse(), false, false),
         (foggy, false, true),
         (mirrored(0.0), true, false),
         (mirrored(0.5), true, true),

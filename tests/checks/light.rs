@@ -52,14 +52,14 @@ pub fn irradiance_under_an_area_light() {
     // The path tracer sees the floor from the side: radiance rho E / pi.
     let floor = Shape::Rectangle(rectangle(DVec3::new(-5.0, -5.0, 0.0), DVec3::X * 10.0, DVec3::Y * 10.0));
     let rho = Spectrum::rgb(0.5, 1.0, 0.2);
-    let matt = Surface::Lambertian(Lambertian::new(rho).unwrap());
-    let scene = bounded(Vec::new(), vec![(floor, matt)], vec![light]);
+    let diffuse = Surface::Lambertian(Lambertian::new(rho).unwrap());
+    let scene = bounded(Vec::new(), vec![(floor, diffuse)], vec![light]);
     let eye = DVec3::new(-2.0, 0.0, 0.5);
     let seen = paths(&scene, Quantity::Radiance(Ray::new(eye, (-eye).normalize())), Orders::ALL, N, 3);
     for c in 0..3 {
         let value = rho[c] * expected / PI;
         verdict::agrees(&format!("path tracer, channel {c}"), &seen[c], (value, 1e-14), 0.02 * value, 3);
-        // Counting both ways in full, without sharing, is a wrong twin.
+        // Counting both ways in full, without sharing, is the negative control.
         verdict::rejects(&format!("both in full, channel {c}"), &seen[c], 2.0 * value, 3);
     }
 }

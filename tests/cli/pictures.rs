@@ -3,7 +3,7 @@
 use crate::{Folder, refuses_naming, succeeds, text};
 use std::path::{Path, PathBuf};
 
-/// A matt floor in a box of fog under a lamp, seen from the side.
+/// A diffuse floor in a box of fog under a lamp, seen from the side.
 const ROOM: &str = r#"
 [camera]
 position = [0.0, 1.0, 4.0]

@@ -57,7 +57,7 @@ const fn inside(fault: Fault) -> Row {
             ("albedo not applied", "single_scattering_is_the_closed_form", |_| single_scattering())
         }
         Fault::CosineTwice => {
-            ("cosine counted twice on a matt surface", "irradiance_under_an_area_light", |_| {
+            ("cosine counted twice on a diffuse surface", "irradiance_under_an_area_light", |_| {
                 light::irradiance_under_an_area_light()
             })
         }

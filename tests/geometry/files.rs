@@ -21,7 +21,7 @@ fn object(shape: &str, surface: &str) -> String {
     format!("[[objects]]\nshape = {{ {shape} }}\nsurface = {{ {surface} }}\n")
 }
 
-const MATT: &str = "lambertian = { reflectance = 0.5 }";
+const DIFFUSE: &str = "lambertian = { reflectance = 0.5 }";
 
 #[test]
 fn shapes_are_read() {
@@ -29,22 +29,22 @@ fn shapes_are_read() {
     let square = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n";
     std::fs::write(folder.path().join("square.obj"), square).unwrap();
     let objects = [
-        object("mesh = { file = \"square.obj\" }", MATT),
-        object("mesh = { file = \"square.obj\", scale = 2, at = [0, 0, 1] }", MATT),
-        object("lathe = { profile = [[0.0, 0.0], [1.0, 0.0], [1.0, 2.0], [0.0, 2.0]] }", MATT),
+        object("mesh = { file = \"square.obj\" }", DIFFUSE),
+        object("mesh = { file = \"square.obj\", scale = 2, at = [0, 0, 1] }", DIFFUSE),
+        object("lathe = { profile = [[0.0, 0.0], [1.0, 0.0], [1.0, 2.0], [0.0, 2.0]] }", DIFFUSE),
         object(
             "lathe = { base = [0, 1, 0], axis = [0, 1, 0], smooth = 4, profile = [[1, 0], [2, 1], [1, 2]] }",
-            MATT,
+            DIFFUSE,
         ),
         object(
             "height-field = { corner = [0, 0], size = [2, 2], cells = [4, 4], up = \"y\", level = 1.0, floor = 0.0, \
              heights = { rows = [[0, 0], [0, 0]] } }",
-            MATT,
+            DIFFUSE,
         ),
         object(
             "height-field = { corner = [0, 0], size = [2, 2], cells = [4, 4], \
              heights = { waves = { seed = 1, count = 3, wavelength = 1.0, rms = 0.1 } } }",
-            MATT,
+            DIFFUSE,
         ),
     ];
     let scene = scene(folder.path(), &objects.concat()).unwrap();
@@ -94,23 +94,23 @@ fn what_cannot_be_read_is_refused() {
     std::fs::write(folder.path().join("cut.obj"), "v 0 0 0\nv 1 0 0\nv 1 1\n").unwrap();
     std::fs::write(folder.path().join("no.png"), "no picture").unwrap();
     let field =
-        |rest: &str| object(&format!("height-field = {{ corner = [0, 0], size = [1, 1], {rest} }}"), MATT);
+        |rest: &str| object(&format!("height-field = {{ corner = [0, 0], size = [1, 1], {rest} }}"), DIFFUSE);
     let ball = "sphere = { center = [0, 0, 0], radius = 1 }";
     let cases: [(String, &[&str]); 14] = [
-        (object("mesh = { file = \"none.obj\" }", MATT), &["none.obj: No such file"]),
+        (object("mesh = { file = \"none.obj\" }", DIFFUSE), &["none.obj: No such file"]),
         (
-            object("mesh = { file = \"cut.obj\" }", MATT),
+            object("mesh = { file = \"cut.obj\" }", DIFFUSE),
             &["cut.obj:3: a vertex `v` of 2 numbers; allowed: x y z"],
         ),
-        (object("mesh = { file = \"cut.obj\", scale = 0 }", MATT), &["0; allowed: finite and above 0"]),
+        (object("mesh = { file = \"cut.obj\", scale = 0 }", DIFFUSE), &["0; allowed: finite and above 0"]),
         (
-            object("mesh = { name = \"cut.obj\" }", MATT),
+            object("mesh = { name = \"cut.obj\" }", DIFFUSE),
             &["unexpected keys in table: name, available keys: file, scale, at"],
         ),
-        (object("lathe = { profile = [[-1, 0], [1, 1]] }", MATT), &["radius of a profile is -1; allowed"]),
-        (object("lathe = { profile = [] }", MATT), &["a profile needs two points"]),
+        (object("lathe = { profile = [[-1, 0], [1, 1]] }", DIFFUSE), &["radius of a profile is -1; allowed"]),
+        (object("lathe = { profile = [] }", DIFFUSE), &["a profile needs two points"]),
         (
-            object("lathe = { profile = [[1, 0], [1, 1]], smooth = 0 }", MATT),
+            object("lathe = { profile = [[1, 0], [1, 1]], smooth = 0 }", DIFFUSE),
             &["smooth is 0; allowed: 1 to 1000"],
         ),
         (field("cells = [0, 1], heights = { rows = [[0, 0], [0, 0]] }"), &["0 x 1 cells; allowed"]),

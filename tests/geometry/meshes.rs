@@ -45,7 +45,7 @@ fn a_box_of_triangles_is_the_box() {
     }
 }
 
-/// The wrong twin's way: every triangle in turn, by the textbook's determinants (Moller and Trumbore 1997).
+/// The negative control's way: every triangle in turn, by the textbook's determinants (Moller and Trumbore 1997).
 fn brute_force(solid: &Mesh, ray: &Ray) -> Option<(f64, f64)> {
     let mut best: Option<(f64, f64)> = None;
     for i in 0..solid.len() {
@@ -238,7 +238,7 @@ fn stream_points(block: &Mesh) -> f64 {
     f64::from(count) / 20_000.0
 }
 
-/// Points fall on triangles in proportion to their areas, and evenly within them; the wrong twin takes triangles alike.
+/// Points fall on triangles in proportion to their areas, and evenly within them; the negative control takes triangles alike.
 #[test]
 fn points_are_uniform_over_the_area() {
     let corners: Vec<DVec3> =

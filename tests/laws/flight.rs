@@ -93,7 +93,7 @@ fn the_depth_flown_is_exponential_and_passes_with_the_transmittance() {
     }
     let cdf = |tau: f64| exp_m1(-tau) / exp_m1(-depth);
     verdict::fits("depth of collisions", verdict::cumulated(&flown, cdf), 0.01, 2);
-    // The wrong twin: extinction half a per cent off.
+    // The negative control: extinction half a per cent off.
     let wrong: Vec<f64> = flown.iter().map(|tau| tau * 1.02).collect();
     verdict::misfits("extinction 2 % off", verdict::cumulated(&wrong, cdf), 2);
     verdict::rate("passed", passed, N, exp(-depth), 1e-3, 2);

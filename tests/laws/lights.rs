@@ -132,7 +132,7 @@ fn the_area_light_fills_its_solid_angle() {
         FOUR_PI * light.hit(&ray, None).map_or(0.0, |hit| light.emitted(&ray, &hit).1)
     });
     verdict::agrees("density over rays", &met, (1.0, 0.0), 0.08, 5);
-    // The wrong twin forgets the cosine.
+    // The negative control forgets the cosine.
     let wrong = numbers(N, 6, |s| {
         light.sample(p, s.pair()).map_or(0.0, |l| 1.0 / (l.pdf_solid_angle.unwrap() * l.dir.z.abs()))
     });

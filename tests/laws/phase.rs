@@ -123,7 +123,7 @@ proptest! {
     }
 }
 
-/// Stream, sampler and density together: the cumulated density of the samples is uniform. The wrong twin is drawn
+/// Stream, sampler and density together: the cumulated density of the samples is uniform. The negative control is drawn
 /// with g off by 0.005.
 #[test]
 fn samples_of_a_stream_follow_the_density() {
@@ -141,8 +141,8 @@ fn samples_of_a_stream_follow_the_density() {
     };
     for (seed, g) in [(1, -0.75), (2, 0.3), (3, 0.75), (4, 0.95)] {
         verdict::fits(&format!("g = {g}"), verdict::cumulated(&draw(g, seed), cdf(g)), 5e-3, seed);
-        let twin = verdict::cumulated(&draw(g + 0.005, seed), cdf(g));
-        verdict::misfits(&format!("g = {g}, drawn with 0.005 more"), twin, seed);
+        let control = verdict::cumulated(&draw(g + 0.005, seed), cdf(g));
+        verdict::misfits(&format!("g = {g}, drawn with 0.005 more"), control, seed);
     }
 }
 

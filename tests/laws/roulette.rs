@@ -43,7 +43,7 @@ fn a_coloured_survivor_keeps_the_summed_power() {
     }
 }
 
-/// Each channel in expectation: the survivors carry albedo x weight, the others the rest. The wrong twin books the
+/// Each channel in expectation: the survivors carry albedo x weight, the others the rest. The negative control books the
 /// whole arriving power of those that end as absorbed.
 #[test]
 fn every_channel_holds_in_expectation() {
@@ -72,7 +72,7 @@ fn every_channel_holds_in_expectation() {
     for c in 0..3 {
         let expected = weight[c] * (1.0 - albedo[c]);
         verdict::agrees(&format!("lost, channel {c}"), &lost[c], (expected, 0.0), 0.05 * expected, 6);
-        verdict::rejects(&format!("lost, channel {c}, wrong twin"), &wrong[c], expected, 6);
+        verdict::rejects(&format!("lost, channel {c}, negative control"), &wrong[c], expected, 6);
     }
 }
 

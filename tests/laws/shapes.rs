@@ -172,7 +172,7 @@ fn volumes_by_counting() {
 }
 
 /// Cauchy's formula ties area, volume, boundary sampling and intervals together: isotropic light that enters a
-/// convex body uniformly runs 4 V/S on average. The wrong twin enters with directions uniform over the hemisphere.
+/// convex body uniformly runs 4 V/S on average. The negative control enters with directions uniform over the hemisphere.
 #[test]
 fn mean_chord_is_four_volumes_over_surface() {
     let shapes = [
@@ -196,7 +196,7 @@ fn mean_chord_is_four_volumes_over_surface() {
         };
         let expected = 4.0 * shape.volume() / shape.area();
         verdict::agrees(&format!("{shape:?}"), &chord(true, 12), (expected, 0.0), 0.02 * expected, 12);
-        verdict::rejects(&format!("{shape:?}, wrong twin"), &chord(false, 13), expected, 13);
+        verdict::rejects(&format!("{shape:?}, negative control"), &chord(false, 13), expected, 13);
     }
     // Of a sphere also the second moment: chords have density L / (2 a^2), so that <L^2> = 2 a^2.
     let ball = sphere(DVec3::ZERO, 0.7);

@@ -105,7 +105,7 @@ fn isotropic_slab() {
     let case = Case::slab(0.0);
     let (advice, relative) =
         case.check("squared error over the advised one, g = 0", 2_000_000, 0.05, 256, 11);
-    // The wrong twin has half of the variance.
+    // The negative control has half of the variance.
     let (bias, noise, all) = (advice.bias.powi(2), advice.noise.powi(2), advice.error.powi(2));
     verdict::rejects("half of the variance", &relative, (bias + 0.5 * noise) / all, 11);
 }
@@ -128,7 +128,7 @@ fn the_best_radius_of_uncollided_photons() {
     let case = Case::new(&scene, probes);
     let (advice, relative) =
         case.check("squared error over the advised one, uncollided", 8_000_000, 0.05, 512, 19);
-    // The wrong twin leaves the bias out.
+    // The negative control leaves the bias out.
     verdict::rejects("bias left out", &relative, (advice.noise / advice.error).powi(2), 19);
     // Bias r^2/10 with error^2 = 7/3 bias^2: r = sqrt(10 x 0.05 sqrt(3/7)) = 0.572. The optimum is flat: the radius is
     // known to a tenth where its photons are known to a hundredth.
@@ -176,7 +176,7 @@ fn the_interval_covers_the_exact_error() {
             without_bias += u64::from(advice.interval.contains(variance.sqrt()));
         }
         assert!(wilson_interval(covered, 100, 1.0 - ALPHA).high >= 0.95, "{target}: {covered} of 100");
-        // The wrong twin leaves the bias out.
+        // The negative control leaves the bias out.
         assert!(
             wilson_interval(without_bias, 100, 1.0 - ALPHA).high < 0.95,
             "{target}: {without_bias} of 100"
@@ -200,7 +200,7 @@ fn the_edge_of_a_beam_limits_the_radius() {
     assert!(advice.radius <= 0.25, "{advice:?}");
     assert!(advice.limited_by.is_some(), "{advice:?}");
     // A ball of 0.5 loses the part (1 - h)^2 (2 + h)/4 = 0.156 beyond the edge, h = 1/2, and gains r^2/10 = 0.025 by the
-    // bend: the twin's error at that probe whatever the photons.
+    // bend: the control's error at that probe whatever the photons.
     let wider: Moments = case.realise(0.5, 20 * advice.photons, 16, 29).iter().collect();
     assert!(wider.mean() > 0.5 * 0.13 * 0.13, "{wider:?}");
     let settings = PilotSettings { photons: 5000, maps: 64, seed: 1 };

@@ -1,6 +1,6 @@
 //! Estimates near boundaries on maps of independent photons: each treatment and each rejection against sums over all
 //! photons, written down as they are defined, and against the exact expectation; the moments against rules of
-//! another kind. Each law has a wrong twin.
+//! another kind. Each law has a negative control.
 
 use crate::support::quadrature::integrate;
 use crate::support::verdict;
@@ -322,7 +322,7 @@ fn moments_by_the_referee() {
     }
 }
 
-/// A linear field in each body, fixed radius: the mean over maps against the exact expectation. The wrong twins:
+/// A linear field in each body, fixed radius: the mean over maps against the exact expectation. The negative controls:
 /// reflection without its images, clipping with the moments of a whole ball, a linear fit without its slope.
 #[test]
 fn treatments_by_the_referee() {
@@ -572,7 +572,7 @@ fn over_maps(field: Synthetic, photons: u64, maps: u64, value: impl Fn(&PhotonMa
 }
 
 /// A uniform field between flat faces: every k-nearest treatment but none is unbiased, since real photons alone set
-/// the radius. The wrong twins: nothing done, the ball's whole volume for clipping, the k-th photon chosen among photons
+/// the radius. The negative controls: nothing done, the ball's whole volume for clipping, the k-th photon chosen among photons
 /// and images together.
 #[test]
 fn nearest_treatments_of_a_uniform_field() {
@@ -615,7 +615,7 @@ fn nearest_treatments_of_a_uniform_field() {
     verdict::rejects("images set the radius", &images_too, 1.0, SEED);
 }
 
-/// A sheet between two uniform fields, k-nearest: behind-plane with clipping finds the field on this side. The wrong twins:
+/// A sheet between two uniform fields, k-nearest: behind-plane with clipping finds the field on this side. The negative controls:
 /// rejecting after the radius was set, which leaves the mean (the k-1 nearer photons are a fair sample of their ball) but
 /// fewer photons and so more variance; and not clipping.
 #[test]

@@ -317,7 +317,7 @@ fn by_maps(
     moments
 }
 
-/// A matt ball with a point light in its middle, every ray of the gathering traced on: they end by the reflectance, and
+/// A diffuse ball with a point light in its middle, every ray of the gathering traced on: they end by the reflectance, and
 /// the radiance is rho E/pi (1 + rho + rho^2 + ...).
 #[test]
 fn rays_traced_on_come_to_an_end() {
@@ -333,7 +333,7 @@ fn rays_traced_on_come_to_an_end() {
     }
 }
 
-/// Between mirrors that lose nothing rays of the gathering end at the light or the one matt body there is.
+/// Between mirrors that lose nothing rays of the gathering end at the light or the one diffuse body there is.
 #[test]
 fn rays_between_mirrors_come_to_an_end() {
     let edge = |corner: DVec3, u: DVec3, v: DVec3| {

@@ -12,7 +12,7 @@ use turbid::scene::Scene;
 use turbid::surface::{Mirror, Surface};
 use turbid::transport::NoProgress;
 
-/// A box of matt walls with a light under its ceiling, and a block in it; fog where asked for.
+/// A box of diffuse walls with a light under its ceiling, and a block in it; fog where asked for.
 fn room(block: Surface, sigma_t: f64) -> Scene {
     let (x, y, z) = (DVec3::X * 2.0, DVec3::Y * 2.0, DVec3::Z * 2.0);
     let light = rectangle(DVec3::new(0.6, 0.6, 1.9), DVec3::Y * 0.8, DVec3::X * 0.8);
@@ -63,18 +63,18 @@ fn each_map_holds_its_classes() {
     assert_eq!(all.len() - rest, photons(&seen.global).len());
     assert!(all.iter().any(|p| p.flags == Flags::NONE) && all.iter().any(|p| p.flags == Flags::SPECULAR));
     assert_eq!(photons(&gathered.volume).len(), photons(&seen.volume).len());
-    // Every hit of a matt surface is stored when gathered, and every collision is counted.
+    // Every hit of a diffuse surface is stored when gathered, and every collision is counted.
     assert_eq!(gathered.report.main.hits, all.len() as u64);
     assert!(gathered.report.main.collisions > photons(&seen.volume).len() as u64);
 }
 
 #[test]
 fn what_a_scene_does_not_need_is_absent() {
-    let matt = lambertian(Spectrum::grey(0.5));
-    let clear = filled(&room(matt.clone(), 0.0), settings(Indirect::Seen));
+    let diffuse = lambertian(Spectrum::grey(0.5));
+    let clear = filled(&room(diffuse.clone(), 0.0), settings(Indirect::Seen));
     assert!(clear.volume.is_none() && clear.caustic.is_none() && clear.global.is_some());
     assert_eq!((clear.report.caustic.emitted, clear.report.main.collisions), (0, 0));
-    let foggy = filled(&room(matt, 0.5), settings(Indirect::Seen));
+    let foggy = filled(&room(diffuse, 0.5), settings(Indirect::Seen));
     assert!(foggy.volume.is_some() && foggy.caustic.is_none());
     let mirrored = filled(&room(mirror(), 0.0), settings(Indirect::Seen));
     assert!(mirrored.volume.is_none() && mirrored.caustic.is_some());

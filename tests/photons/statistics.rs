@@ -1,5 +1,5 @@
 //! Estimators on maps of independent photons of known density: the mean of every kernel and gather against
-//! its exact value, and the variance against the stated one. Each law has wrong twins that must be rejected.
+//! its exact value, and the variance against the stated one. Each law has negative controls that must be rejected.
 //!
 //! The exact mean at a fixed radius is that of the kernel over the density. For the k-nearest rule the mass P
 //! of the ball through the k-th of N photons is Beta(k, N-k+1), and given the ball the k-1 photons in it are
@@ -189,7 +189,7 @@ fn every_kernel_and_gather_has_its_exact_mean() {
             let verdict = Verdict::new(&column, 1.0);
             let what = format!("{profile:?} {} {gather:?}", kernel.name());
             verdict.accept(&what, 0.03);
-            // The wrong twin of a normalisation: the Gaussian of infinite extent, three per cent low.
+            // The negative control of a normalisation: the Gaussian of infinite extent, three per cent low.
             if *kernel == Kernel::Gaussian && profile == Profile::Constant {
                 let uncut = 1.0 / (2.0 * PI / 9.0 * (2.0 * PI / 9.0).sqrt()) / kernel.peak();
                 let wrong: Vec<f64> = column.iter().map(|v| v * uncut).collect();
@@ -270,7 +270,7 @@ fn variances_are_as_stated() {
             });
             let what = format!("variance, {} {gather:?}", kernel.name());
             Verdict::new(&squares, 1.0).accept(&what, 0.15);
-            // The wrong twin: the variance of the uniform kernel for all of them.
+            // The negative control: the variance of the uniform kernel for all of them.
             if kernel == Kernel::Gaussian {
                 let uniform = gather.expected_relative_variance(Kernel::Uniform, PHOTONS as f64, 1.0);
                 let wrong: Vec<f64> = squares.iter().map(|s| s * stated / uniform).collect();

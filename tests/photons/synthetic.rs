@@ -96,13 +96,13 @@ fn points_follow_the_density() {
             };
             let name = format!("{profile:?} along {what}");
             verdict::fits(&name, fit(expected), 0.02, 17);
-            // The wrong twin: a density 10 per cent steeper across the box.
+            // The negative control: a density 10 per cent steeper across the box.
             let steeper: Vec<f64> = (0..PARTS)
                 .map(|i| expected[i] * (1.0 + 0.1 * (2.0 * (i as f64 + 0.5) / PARTS as f64 - 1.0)))
                 .collect();
             let total: f64 = steeper.iter().sum();
-            let twin = fit(&steeper.iter().map(|e| e / total).collect::<Vec<_>>());
-            verdict::misfits(&format!("{name}, steeper"), twin, 17);
+            let control = fit(&steeper.iter().map(|e| e / total).collect::<Vec<_>>());
+            verdict::misfits(&format!("{name}, steeper"), control, 17);
         }
     }
 }

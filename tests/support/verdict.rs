@@ -52,7 +52,7 @@ thread_local! {
     static TRIAL: RefCell<Option<Trial>> = const { RefCell::new(None) };
 }
 
-/// Runs a check of the suite and keeps its verdicts instead of asserting them. Wrong twins are left out.
+/// Runs a check of the suite and keeps its verdicts instead of asserting them. Negative controls are left out.
 pub fn trial(check: impl FnOnce()) -> Trial {
     TRIAL.set(Some(Trial::default()));
     let ended = catch_unwind(AssertUnwindSafe(check));
@@ -115,7 +115,7 @@ pub fn agrees(
     assert!(test.smallest_bias <= promise, "too weak for the promised {promise:.2e}; {line}");
 }
 
-/// A wrong twin: the same test must reject it.
+/// A negative control: the same test must reject it.
 pub fn rejects(what: &str, moments: &Moments, reference: f64, seed: u64) {
     let test = t_test(moments, reference, 0.0);
     let line = describe(what, moments.mean(), reference, &test, moments.n(), seed);
@@ -123,7 +123,7 @@ pub fn rejects(what: &str, moments: &Moments, reference: f64, seed: u64) {
     if on_trial(None) {
         return;
     }
-    assert!(test.p < ALPHA, "a wrong twin passes; {line}");
+    assert!(test.p < ALPHA, "a wrong value passes; {line}");
 }
 
 /// Two independent means of the same quantity.
@@ -153,7 +153,7 @@ pub fn differ(what: &str, a: &Moments, b: &Moments, seed: u64) {
     if on_trial(None) {
         return;
     }
-    assert!(test.p < ALPHA, "a wrong twin passes; {line}");
+    assert!(test.p < ALPHA, "a wrong value passes; {line}");
 }
 
 /// Degrees of freedom are those of the smaller sample: fewer than Welch's, hence cautious.
@@ -227,12 +227,12 @@ pub fn fits(what: &str, fit: Fit, promise: f64, seed: u64) {
     assert!(fit.smallest <= promise, "too weak for the promised {promise:.2e}; {line}");
 }
 
-/// The goodness-of-fit test of a wrong twin.
+/// The goodness-of-fit test of a negative control.
 pub fn misfits(what: &str, fit: Fit, seed: u64) {
     let line = describe_fit(what, &fit, seed);
     println_line(&line);
     if !on_trial(None) {
-        assert!(fit.p < ALPHA, "a wrong twin passes; {line}");
+        assert!(fit.p < ALPHA, "a wrong value passes; {line}");
     }
 }
 

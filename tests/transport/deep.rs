@@ -39,14 +39,14 @@ fn measured(at: f64, samples: u64, seed: u64) -> (f64, Result<f64, NoError>) {
     (reading.mean, reading.std_error.ok_or_else(|| reading.no_error.unwrap()))
 }
 
-/// Deep in the shield most of the light comes by rare paths, through the void, of large weight. Of runs without any of
-/// them the variance of variance is small, and half of the light is missing: what is said of them is that few paths
-/// contribute.
+/// Deep in the shield most of the light comes by rare paths, through the void, of large weight. Connections to the source
+/// bring a little in every path, so that the variance of variance of some runs is small, and a third of the light is
+/// missing: the shape of their tail tells.
 #[test]
 fn few_paths_make_no_error_bar() {
-    for seed in 1..=12 {
+    for seed in 1..=24 {
         let (mean, error) = measured(DEEP.0, 10_000, seed);
-        assert_eq!(error, Err(NoError::TooFew), "seed {seed}: {mean:e} for {:e}", DEEP.1);
+        assert!(error.is_err(), "seed {seed}: {mean:e} +- {error:?} for {:e}", DEEP.1);
     }
 }
 

@@ -29,7 +29,7 @@ fn builtin(name: &str, changes: &[(&str, &str)]) -> Scene {
     (builtin.resolve)(&toml::to_string(&table).unwrap()).unwrap().unwrap().scene(Path::new("")).unwrap()
 }
 
-/// Fog in colour, mirrors, matt walls, five lights, an overlap: whatever the simulator has.
+/// Fog in colour, mirrors, diffuse walls, five lights, an overlap: whatever the simulator has.
 fn colorful() -> Scene {
     let (outer, inner) = (sphere(DVec3::ZERO, 2.0), cuboid(DVec3::splat(-0.5), DVec3::splat(0.8)));
     let fog = |s: [f64; 3], a: [f64; 3], g| {
@@ -41,7 +41,7 @@ fn colorful() -> Scene {
         DVec3::Y * 6.0,
     ));
     let ball = sphere(DVec3::new(0.0, 2.5, 0.0), 0.7);
-    let matt = Surface::Lambertian(Lambertian::new(Spectrum::rgb(0.9, 0.5, 0.1)).unwrap());
+    let diffuse = Surface::Lambertian(Lambertian::new(Spectrum::rgb(0.9, 0.5, 0.1)).unwrap());
     let mirror = Surface::Mirror(Mirror::new(Spectrum::rgb(0.8, 0.9, 1.0)).unwrap());
     let lamp = rectangle(DVec3::new(-0.5, -0.5, 3.0), DVec3::Y, DVec3::X);
     bounded(
@@ -49,7 +49,7 @@ fn colorful() -> Scene {
             Region { shape: outer.clone(), medium: fog([0.5, 1.0, 0.2], [0.9, 0.3, 0.99], 0.5) },
             Region { shape: inner.clone(), medium: fog([2.0, 0.0, 3.0], [0.5, 0.5, 1.0], -0.3) },
         ],
-        vec![(floor, matt), (ball, mirror)],
+        vec![(floor, diffuse), (ball, mirror)],
         vec![
             area_light(lamp, Spectrum::rgb(1.0, 0.5, 0.0)),
             point_light(DVec3::new(0.1, 0.2, 0.3), Spectrum::rgb(0.0, 0.0, 3.0)),

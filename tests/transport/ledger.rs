@@ -99,7 +99,7 @@ fn gathered_twice() {
     layers_are_those_of_paths(&room, Indirect::Gathered, &near, 4000, 8);
 }
 
-/// A matt room of grey fog.
+/// A diffuse room of grey fog.
 fn plain() -> Room {
     Room {
         floor: lambertian(Spectrum::grey(0.6)),

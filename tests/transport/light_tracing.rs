@@ -22,13 +22,13 @@ const FILMS: u64 = 64;
 fn room() -> Scene {
     let (x, y, z) = (DVec3::X * 2.0, DVec3::Y * 2.0, DVec3::Z * 2.0);
     let (low, high) = (DVec3::splat(-1.0), DVec3::splat(1.0));
-    let matt = |shape, r, g, b| (Shape::Rectangle(shape), lambertian(Spectrum::rgb(r, g, b)));
+    let diffuse = |shape, r, g, b| (Shape::Rectangle(shape), lambertian(Spectrum::rgb(r, g, b)));
     let objects = vec![
-        matt(rectangle(low, x, z), 0.8, 0.7, 0.6),
-        matt(rectangle(high, -x, -z), 0.7, 0.7, 0.7),
-        matt(rectangle(low, y, x), 0.7, 0.7, 0.7),
-        matt(rectangle(low, z, y), 0.6, 0.1, 0.1),
-        matt(rectangle(high, -z, -y), 0.1, 0.4, 0.2),
+        diffuse(rectangle(low, x, z), 0.8, 0.7, 0.6),
+        diffuse(rectangle(high, -x, -z), 0.7, 0.7, 0.7),
+        diffuse(rectangle(low, y, x), 0.7, 0.7, 0.7),
+        diffuse(rectangle(low, z, y), 0.6, 0.1, 0.1),
+        diffuse(rectangle(high, -z, -y), 0.1, 0.4, 0.2),
     ];
     let light = rectangle(DVec3::new(-0.4, 0.9, -0.4), DVec3::X * 0.8, DVec3::Z * 0.8);
     let fog = scenes::region(cuboid(low, high), 0.5, 0.8, 0.5);

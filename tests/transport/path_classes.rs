@@ -25,7 +25,7 @@ const IMAGE: DVec3 = DVec3::new(1.5, 1.0, -0.5);
 const LIGHT_RADIUS: f64 = 0.1;
 const MIRROR: f64 = 0.8;
 
-/// A box of fog with mean free path 1; its floor is a mirror, one wall is matt, the other faces are open.
+/// A box of fog with mean free path 1; its floor is a mirror, one wall is diffuse, the other faces are open.
 fn room() -> Scene {
     room_with(LIGHT_RADIUS)
 }
@@ -36,10 +36,10 @@ fn room_with(radius: f64) -> Scene {
     let floor = Shape::Rectangle(rectangle(DVec3::ZERO, x, y));
     let wall = Shape::Rectangle(rectangle(DVec3::ZERO, y, z));
     let mirror = Surface::Mirror(Mirror::new(Spectrum::grey(MIRROR)).unwrap());
-    let matt = Surface::Lambertian(Lambertian::new(Spectrum::grey(0.6)).unwrap());
+    let diffuse = Surface::Lambertian(Lambertian::new(Spectrum::grey(0.6)).unwrap());
     bounded(
         vec![region(cuboid(DVec3::ZERO, DVec3::splat(2.0)), 1.0, 0.8, 0.0)],
-        vec![(floor, mirror), (wall, matt)],
+        vec![(floor, mirror), (wall, diffuse)],
         vec![emitting_sphere(LIGHT, radius)],
     )
 }

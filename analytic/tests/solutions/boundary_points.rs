@@ -159,7 +159,7 @@ fn nearest_and_fixed_means() {
         let mut random = Random(11);
         let table = Moments::new(scene, kernel, cap);
         let (mut nearest, mut fixed) = (vec![Vec::new(); 4], vec![Vec::new(); 4]);
-        let mut twins = Vec::new();
+        let mut controls = Vec::new();
         for _ in 0..20_000 {
             let photons = random.points(scene.at, cap, n * scene.most, |y| scene.density(y) / scene.most);
             let (radius, used) =
@@ -171,13 +171,13 @@ fn nearest_and_fixed_means() {
             for (values, estimate) in fixed.iter_mut().zip(scene.estimates(kernel, &table, cap, &photons)) {
                 values.push(estimate / n);
             }
-            // The wrong twin: photons and images together set r_k.
+            // The negative control: photons and images together set r_k.
             let mut all: Vec<f64> = photons.iter().map(|p| p.0).collect();
             all.extend(photons.iter().flat_map(|p| (scene.images)(p.1)).map(|i| distance(i, scene.at)));
             all.sort_by(f64::total_cmp);
             let radius = all.get(k - 1).map_or(cap, |r| r.min(cap));
             let below: Vec<(f64, Point)> = photons.iter().copied().filter(|p| p.0 < radius).collect();
-            twins.push(scene.estimates(kernel, &table, radius, &below)[2] / n);
+            controls.push(scene.estimates(kernel, &table, radius, &below)[2] / n);
         }
         for (i, treatment) in Treatment::ALL.into_iter().enumerate() {
             let (body, at, field) = (scene.body, scene.at, scene.field);
@@ -191,10 +191,10 @@ fn nearest_and_fixed_means() {
                 assert!(7.3 * error < promise * mean, "{body:?} {treatment:?}: {}", error / mean);
             }
             if treatment == Treatment::Reflection {
-                let [mean, error, ..] = moments(&twins);
+                let [mean, error, ..] = moments(&controls);
                 assert!(
                     (mean - gather.value).abs() > 4.9 * error,
-                    "the wrong twin passes: {mean} {gather:?}"
+                    "the negative control passes: {mean} {gather:?}"
                 );
             }
         }
@@ -269,11 +269,12 @@ fn false_photons() {
             let (radius, used) = if kept.len() < k { (cap, kept.len()) } else { (kept[k - 1], k - 1) };
             let nearest = sum(radius, &kept[..used]);
             let fixed = sum(cap, &kept);
-            // The wrong twin: rejected photons have set the radius.
+            // The negative control: rejected photons have set the radius.
             let early = photons.get(k - 1).map_or(cap, |p| p.0);
             let below: Vec<f64> = kept.iter().copied().filter(|r| *r < early).collect();
-            let twin = sum(early, &below);
-            let all = [fixed, fixed / mass(cap), nearest, nearest / mass(radius), twin, twin / mass(early)];
+            let control = sum(early, &below);
+            let all =
+                [fixed, fixed / mass(cap), nearest, nearest / mass(radius), control, control / mass(early)];
             for (list, value) in values.iter_mut().zip(all) {
                 list.push(value);
             }
@@ -291,11 +292,11 @@ fn false_photons() {
                 assert!(z.abs() < 4.9, "{rejection:?} {clipped}: {mean} {want:?} z {z}");
                 assert!(7.3 * error < 0.04 * mean, "{}", error / mean);
             }
-            let [twin, error, ..] = moments(&values[i + 4]);
+            let [control, error, ..] = moments(&values[i + 4]);
             if rejection == Rejection::Facing {
                 assert!(
-                    (twin - gather.value).abs() > 4.9 * error,
-                    "the wrong twin passes: {twin} {gather:?}"
+                    (control - gather.value).abs() > 4.9 * error,
+                    "the negative control passes: {control} {gather:?}"
                 );
             }
         }

@@ -1,6 +1,6 @@
 //! Do two pictures agree, and how far apart are they? Statistics of pictures that were made several times.
 //!
-//! A picture comes as independent makings of one size: a map each for the photon mapper, a pass each for its twin.
+//! A picture comes as independent makings of one size: a map each for the photon mapper, a pass each for its control.
 //! Pixels of one map share photons, so that errors come from the spread over maps, never over pixels.
 
 use super::blocks::Grid;
@@ -25,9 +25,9 @@ pub struct Block {
     pub place: (usize, usize),
     /// 0 red, 1 green, 2 blue.
     pub channel: usize,
-    /// Mean of the twin over the block's pixels [W/(L^2 sr)].
-    pub twin: f64,
-    /// Ours minus the twin's.
+    /// Mean of the control over the block's pixels [W/(L^2 sr)].
+    pub control: f64,
+    /// Ours minus the control's.
     pub difference: f64,
     /// Its standard error.
     pub std_error: f64,
@@ -76,8 +76,8 @@ impl Comparison {
 
     /// The median over blocks of the smallest relative deviation seen.
     pub fn typical_smallest(&self) -> f64 {
-        let bright = self.blocks.iter().filter(|b| b.twin > 0.0);
-        let mut all: Vec<f64> = bright.map(|b| b.smallest / b.twin).collect();
+        let bright = self.blocks.iter().filter(|b| b.control > 0.0);
+        let mut all: Vec<f64> = bright.map(|b| b.smallest / b.control).collect();
         all.sort_by(f64::total_cmp);
         all.get(all.len() / 2).copied().unwrap_or(f64::NAN)
     }
@@ -91,12 +91,12 @@ impl Comparison {
 /// Compares two pictures block by block.
 ///
 /// A pixel is left out where the relative error predicted for it is above `limit`; what was predicted for the pixels
-/// that stay is allowed for, as the mean of its absolute values over the block, times the twin's radiance.
+/// that stay is allowed for, as the mean of its absolute values over the block, times the control's radiance.
 ///
 /// # Arguments
-/// `predicted` is the relative error by pixel, made from neither `ours` nor `twin`: pixels chosen for their noise would
+/// `predicted` is the relative error by pixel, made from neither `ours` nor `control`: pixels chosen for their noise would
 /// bias what is left.
-pub fn compare(grid: Grid, ours: &[Making], twin: &[Making], predicted: &[f64], limit: f64) -> Comparison {
+pub fn compare(grid: Grid, ours: &[Making], control: &[Making], predicted: &[f64], limit: f64) -> Comparison {
     let keep: Vec<bool> = predicted.iter().map(|&e| e <= limit).collect();
     let (mut blocks, mut kept, mut heavy) = (Vec::new(), 0, 0);
     for place in grid.blocks() {
@@ -106,7 +106,7 @@ pub fn compare(grid: Grid, ours: &[Making], twin: &[Making], predicted: &[f64], 
         }
         kept += pixels.len();
         let channels: Vec<Option<Block>> =
-            (0..3).map(|channel| one(place, channel, &pixels, ours, twin, predicted)).collect();
+            (0..3).map(|channel| one(place, channel, &pixels, ours, control, predicted)).collect();
         if channels.iter().any(Option::is_none) {
             heavy += pixels.len();
         }
@@ -126,7 +126,7 @@ fn one(
     channel: usize,
     pixels: &[usize],
     ours: &[Making],
-    twin: &[Making],
+    control: &[Making],
     predicted: &[f64],
 ) -> Option<Block> {
     let mean =
@@ -137,7 +137,7 @@ fn one(
             m
         })
     };
-    let (a, b) = (moments(ours), moments(twin));
+    let (a, b) = (moments(ours), moments(control));
     if a.is_heavy_tailed() || b.is_heavy_tailed() {
         return None;
     }
@@ -151,7 +151,7 @@ fn one(
     Some(Block {
         place,
         channel,
-        twin: b.mean(),
+        control: b.mean(),
         difference,
         std_error,
         allowed,
@@ -181,17 +181,17 @@ pub struct Errors {
     pub bias: Interval,
 }
 
-/// The errors of a picture against its twin over means of blocks, those that are not whole left out, with intervals of 95 per
+/// The errors of a picture against its control over means of blocks, those that are not whole left out, with intervals of 95 per
 /// cent over makings.
 ///
-/// The twin is noisy, too. Its passes are halved, and a square is replaced by the product of the differences to
+/// The control is noisy, too. Its passes are halved, and a square is replaced by the product of the differences to
 /// either half, E[(x - a)(x - b)] = E[(x - truth)^2]; the systematic part is the product of differences between
 /// independent makings on both sides. Nothing is subtracted that was estimated, and noise leaves no bias.
-pub fn errors(grid: Grid, ours: &[Making], twin: &[Making]) -> Errors {
+pub fn errors(grid: Grid, ours: &[Making], control: &[Making]) -> Errors {
     let all = |makings: &[Making]| -> Vec<Making> { makings.iter().map(|m| grid.means(m)).collect() };
-    let (ours, twin) = (&all(ours), &all(twin));
-    let (left, right) = (average(twin.iter().step_by(2)), average(twin.iter().skip(1).step_by(2)));
-    let both = average(twin.iter());
+    let (ours, control) = (&all(ours), &all(control));
+    let (left, right) = (average(control.iter().step_by(2)), average(control.iter().skip(1).step_by(2)));
+    let both = average(control.iter());
     let mean = both.iter().map(|s| s.mean()).sum::<f64>() / both.len() as f64;
     let product = |x: &[Spectrum], y: &[Spectrum]| {
         let one = |((x, y), (l, r)): ((&Spectrum, &Spectrum), (&Spectrum, &Spectrum))| {
@@ -208,15 +208,15 @@ pub fn errors(grid: Grid, ours: &[Making], twin: &[Making]) -> Errors {
     for pair in ours.chunks_exact(2) {
         systematic.push(0.5 * (product(&pair[0], &pair[1]) + product(&pair[1], &pair[0])));
     }
-    let mut twins = Moments::new();
-    for pass in twin {
-        twins.push(pass.iter().map(|s| s.mean()).sum::<f64>() / pass.len() as f64 / mean);
+    let mut controls = Moments::new();
+    for pass in control {
+        controls.push(pass.iter().map(|s| s.mean()).sum::<f64>() / pass.len() as f64 / mean);
     }
     let half = |m: &Moments| {
         let i = mean_interval(m, 0.95);
         0.5 * (i.high - i.low)
     };
-    let width = (half(&bias) * half(&bias) + half(&twins) * half(&twins)).sqrt();
+    let width = (half(&bias) * half(&bias) + half(&controls) * half(&controls)).sqrt();
     Errors {
         mean,
         rms: root(&square, mean),
@@ -225,7 +225,7 @@ pub fn errors(grid: Grid, ours: &[Making], twin: &[Making]) -> Errors {
     }
 }
 
-/// The root mean square error of a picture of which there is one, against passes of a twin, over the mean of the twin: 95
+/// The root mean square error of a picture of which there is one, against passes of a control, over the mean of the control: 95
 /// per cent.
 ///
 /// The mean of (x - a)(x - b) over all pairs of passes a, b, pixels and channels is the mean square error of x give or
@@ -351,13 +351,13 @@ mod tests {
             (0..count).map(one).collect()
         };
         let error = (1.0f64 / 15.0).sqrt();
-        let (ours, twin) = (side(16, 10.0 + 3.0 * error, 1.0), side(64, 10.0, 1e-6));
-        let block = one((0, 0), 1, &[0], &ours, &twin, &[0.0]).unwrap();
+        let (ours, control) = (side(16, 10.0 + 3.0 * error, 1.0), side(64, 10.0, 1e-6));
+        let block = one((0, 0), 1, &[0], &ours, &control, &[0.0]).unwrap();
         assert!((block.std_error - error).abs() < 1e-9 && (block.difference - 3.0 * error).abs() < 1e-9);
         assert!((block.p - 0.008_973).abs() < 2e-6, "{}", block.p);
         // What was predicted to be off is no difference: one error of three is left.
         let predicted = 2.0 * error / 10.0;
-        let block = one((0, 0), 1, &[0], &ours, &twin, &[predicted]).unwrap();
+        let block = one((0, 0), 1, &[0], &ours, &control, &[predicted]).unwrap();
         assert!((block.p - 0.333_170).abs() < 2e-6, "{}", block.p);
     }
 
@@ -442,7 +442,7 @@ mod tests {
         assert_eq!(comparison.agreement(), Agreement::Agree);
     }
 
-    /// Errors that are known: ours are 3 per cent too bright with independent noise of 2.5 per cent a block, the twin
+    /// Errors that are known: ours are 3 per cent too bright with independent noise of 2.5 per cent a block, the control
     /// has noise of 5 per cent that must not count.
     #[test]
     fn errors_are_those_put_in() {
@@ -452,15 +452,15 @@ mod tests {
         let square = right.iter().map(|s| (*s * *s).mean()).sum::<f64>() / right.len() as f64;
         let rms = square.sqrt() / mean;
         let errors = errors(GRID, &a, &b);
-        // The interval of the twin's own noise, 5 % over 64 passes and 6 blocks, adds to that of our makings.
-        let twins = 3.0 * 0.05 / (64.0_f64 * 6.0).sqrt();
-        let near = |i: Interval, value: f64| i.low - twins * rms <= value && value <= i.high + twins * rms;
+        // The interval of the control's own noise, 5 % over 64 passes and 6 blocks, adds to that of our makings.
+        let slack = 3.0 * 0.05 / (64.0_f64 * 6.0).sqrt();
+        let near = |i: Interval, value: f64| i.low - slack * rms <= value && value <= i.high + slack * rms;
         assert!(near(errors.systematic, 0.03 * rms), "{errors:?}");
         let noise = 1.03 * 0.025;
         assert!(near(errors.rms, rms * (0.03_f64 * 0.03 + noise * noise).sqrt()), "{errors:?}");
         assert!(errors.bias.contains(0.03), "{errors:?}");
         assert!(errors.bias.high - errors.bias.low < 0.02, "{errors:?}");
-        assert!((errors.mean / mean - 1.0).abs() < twins, "{errors:?}");
+        assert!((errors.mean / mean - 1.0).abs() < slack, "{errors:?}");
     }
     /// A picture 3 per cent too bright, against passes with noise of 5 per cent a block: the error put in, give or take the
     /// interval; and what a block of such passes varies by.

@@ -20,7 +20,7 @@ use turbid::transport::{NoProgress, run_blocks};
 /// hundred bytes each.
 const AT_ONCE: u64 = 1 << 18;
 
-/// Which layers of a twin are found by light tracing.
+/// Which layers of a control are found by light tracing.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct ByLight {
     /// These; none of them is emission.
@@ -38,7 +38,7 @@ impl ByLight {
         self.layers.contains(&layer)
     }
 
-    /// Who made the twin, in words.
+    /// Who made the control, in words.
     pub fn words(&self) -> &'static str {
         match self.layers {
             [] => "by paths",
@@ -122,7 +122,7 @@ impl ByLight {
         });
         ensure!(
             seen.count() == 0,
-            "a specular surface is seen through a medium: its twin cannot be by light"
+            "a specular surface is seen through a medium: its control cannot be by light"
         );
         Ok(())
     }

@@ -10,7 +10,7 @@ use turbid::transport::{Roulette, Step, Visitor, Walker, walk};
 /// What a pixel's middle sees.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct View {
-    /// The matt surface, if there is one: place and normal.
+    /// The diffuse surface, if there is one: place and normal.
     pub surface: Option<(DVec3, DVec3)>,
     /// Cosine between the line of sight and the normal.
     pub cosine: f64,

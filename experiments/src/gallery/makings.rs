@@ -49,11 +49,11 @@ impl Makings<'_> {
         self.get(file, &words, 0, |bar| Ok(s.paths_for(seconds, 0, bar)?.without_layers()))
     }
 
-    /// A pass of the twin.
-    pub fn twin(&self, file: &str, samples: u64, replicate: u64) -> anyhow::Result<Kept> {
+    /// A pass of the control.
+    pub fn control(&self, file: &str, samples: u64, replicate: u64) -> anyhow::Result<Kept> {
         let (s, work) = (self.studio, self.studio.work(samples));
-        let words = s.twin_words(samples, replicate);
-        self.get(file, &words, work, |bar| Ok(s.twin(samples, replicate, bar)?.without_layers()))
+        let words = s.replicate_words(samples, replicate);
+        self.get(file, &words, work, |bar| Ok(s.control(samples, replicate, bar)?.without_layers()))
     }
 
     /// The photon mapper's picture.

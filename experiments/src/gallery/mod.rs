@@ -1,7 +1,7 @@
-//! The pictures that made photon mapping in fog famous, each beside a twin that knows no photons.
+//! The pictures that made photon mapping in fog famous, each beside a control that knows no photons.
 //!
 //! `gallery` renders them with the originals' numbers of photons, gives the path tracer the same CPU time, compares both
-//! with a converged twin, and writes a page. Makings are kept in files, so that an interrupted run goes on.
+//! with a converged control, and writes a page. Makings are kept in files, so that an interrupted run goes on.
 
 pub mod assets;
 mod beside;

@@ -44,19 +44,20 @@ pub fn plates(
         format!("{method}, {} samples a pixel, {} of CPU time", facts.samples, duration(facts.seconds))
     };
     plate("photons", told("Photon maps", &ours.facts), &exposed(&ours.total))?;
-    if let Some(Others { equal, twin, cost, masked, .. }) = others {
+    if let Some(Others { equal, control, cost, masked, .. }) = others {
         plate("paths", told("Paths in the same time", &equal.facts), &exposed(&equal.total))?;
         let by = picture.by_light.words();
-        let caption = format!("The twin, {by}: {} samples a pixel, {} of CPU time", cost.0, duration(cost.1));
-        plate("twin", caption, &exposed(twin))?;
-        let (half, ours, twin) = (grid.halved(), grid.reduced(&ours.total), grid.reduced(twin));
+        let caption =
+            format!("The control, {by}: {} samples a pixel, {} of CPU time", cost.0, duration(cost.1));
+        plate("control", caption, &exposed(control))?;
+        let (half, ours, control) = (grid.halved(), grid.reduced(&ours.total), grid.reduced(control));
         let caption = format!(
-            "Photon maps minus twin, over the twin, means of {0} by {0} pixels; what was masked is grey",
+            "Photon maps minus control, over the control, means of {0} by {0} pixels; what was masked is grey",
             2 * SOFT
         );
-        plate("error", caption, &error_print(half, &ours, &twin, masked, SCALE))?;
+        plate("error", caption, &error_print(half, &ours, &control, masked, SCALE))?;
         let caption = "Masked before the comparison, grey: blur or edges may cost more than 2 per cent there";
-        plate("mask", caption.to_string(), &mask_print(half, &twin, masked, exposure))?;
+        plate("mask", caption.to_string(), &mask_print(half, &control, masked, exposure))?;
     }
     match picture.beside {
         Beside::Single => {

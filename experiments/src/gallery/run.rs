@@ -104,7 +104,7 @@ fn one(picture: &Picture, settings: &Settings, folder: &Path, program: &str) -> 
         seconds,
         ours: ours.facts,
         equal: others.as_ref().map(|o| o.equal.facts.clone()),
-        twin: others.as_ref().map(|o| o.cost),
+        control: others.as_ref().map(|o| o.cost),
         compared: others.map(|o| o.compared),
         plates,
     })

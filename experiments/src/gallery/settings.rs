@@ -4,7 +4,7 @@ use super::pictures;
 use clap::Parser;
 use std::path::PathBuf;
 
-/// Renders the gallery: each picture by photons, by paths in the same time, and beside a converged twin.
+/// Renders the gallery: each picture by photons, by paths in the same time, and beside a converged control.
 #[derive(Debug, Clone, Parser)]
 #[command(name = "gallery", version)]
 pub struct Settings {
@@ -14,7 +14,7 @@ pub struct Settings {
     /// Only these pictures; those made before stay on the page
     #[arg(long, value_name = "NAME", value_delimiter = ',', value_parser = name)]
     pub only: Vec<String>,
-    /// The photon mapper's pictures alone, to look at: no paths, no twin, no comparison
+    /// The photon mapper's pictures alone, to look at: no paths, no control, no comparison
     #[arg(long)]
     pub draft: bool,
     /// Seed of all random numbers

@@ -12,11 +12,11 @@ pub struct Plate {
     pub file: String,
     /// What it is.
     pub caption: String,
-    /// Which of the picture's plates: `photons`, `paths`, `twin`, `error`, ...
+    /// Which of the picture's plates: `photons`, `paths`, `control`, `error`, ...
     pub kind: String,
 }
 
-/// Numbers of a picture's comparison with its twin.
+/// Numbers of a picture's comparison with its control.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Compared {
     /// Independent makings of the photon mapper's picture.
@@ -54,8 +54,8 @@ impl Compared {
         let agreement = comparison.agreement();
         let differ = if let Agreement::Differ(n) = agreement { n } else { 0 };
         let verdict = match agreement {
-            Agreement::Agree => "agrees with its twin",
-            Agreement::Differ(_) => "differs from its twin",
+            Agreement::Agree => "agrees with its control",
+            Agreement::Differ(_) => "differs from its control",
             Agreement::Undecided => "undecided: too little of the picture can be judged",
         };
         Compared {
@@ -88,8 +88,8 @@ pub struct Shown {
     pub ours: Facts,
     /// The path tracer's in the same time; none of a draft.
     pub equal: Option<Facts>,
-    /// Samples a pixel and CPU seconds of the twin; none of a draft.
-    pub twin: Option<(u64, f64)>,
+    /// Samples a pixel and CPU seconds of the control; none of a draft.
+    pub control: Option<(u64, f64)>,
     /// The comparison; none of a draft.
     pub compared: Option<Compared>,
     /// PNG files.

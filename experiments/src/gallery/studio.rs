@@ -91,13 +91,13 @@ impl<'a> Studio<'a> {
         self.words(&counts, samples, replicate)
     }
 
-    /// What a making by paths will be called.
+    /// What a replicate by paths will be called.
     pub fn path_words(&self, samples: u64, replicate: u64) -> String {
         self.words("paths", samples, replicate)
     }
 
-    /// What a pass of the twin will be called.
-    pub fn twin_words(&self, samples: u64, replicate: u64) -> String {
+    /// What a pass of the control will be called.
+    pub fn replicate_words(&self, samples: u64, replicate: u64) -> String {
         match self.picture.by_light {
             ByLight::NOTHING => self.path_words(samples, replicate),
             by_light => self.words(&format!("paths and {by_light:?}"), samples, replicate),
@@ -159,8 +159,8 @@ impl<'a> Studio<'a> {
         Ok(Kept::new(self.path_facts(start, samples, replicate), &film))
     }
 
-    /// One pass of the twin, which knows no photons.
-    pub fn twin(&self, samples: u64, replicate: u64, progress: &dyn Progress) -> anyhow::Result<Kept> {
+    /// One pass of the control, which knows no photons.
+    pub fn control(&self, samples: u64, replicate: u64, progress: &dyn Progress) -> anyhow::Result<Kept> {
         let by_light = self.picture.by_light;
         if by_light == ByLight::NOTHING {
             return self.paths(samples, replicate, progress);

@@ -14,7 +14,7 @@ pub fn all(data: &Data) -> Vec<Claim> {
     for body in &BODIES {
         claims.extend(error_claims(data, body));
     }
-    claims.extend(twin_claim(data, &BODIES[2]));
+    claims.extend(independent_claim(data, &BODIES[2]));
     for body in &BODIES {
         claims.extend(regret_claims(data, body));
     }
@@ -62,7 +62,7 @@ fn error_claims(data: &Data, body: &Body) -> Vec<Claim> {
 }
 
 /// Wrong on purpose: the noise that independent photons would make.
-fn twin_claim(data: &Data, body: &Body) -> Option<Claim> {
+fn independent_claim(data: &Data, body: &Body) -> Option<Claim> {
     let case = find(data, body, Treatment::Plain, Size::Radius(0.2))?;
     let squares: Vec<f64> = case.expected.iter().map(|e| e.noise_independent * e.noise_independent).collect();
     let independent = super::data::mean(&squares).sqrt();

@@ -110,10 +110,10 @@ mod tests {
         (0..count).map(one).collect()
     }
 
-    /// The naive split, the mean's square, is high by noise/(maps x probes): with bias 0 that is all it sees. The
+    /// The naive split, the mean's square, is high by noise/(maps x probes): with bias 0 that is all it finds. The
     /// mean over many sets tells them apart.
     #[test]
-    fn the_split_is_unbiased_and_its_naive_twin_is_not() {
+    fn the_split_is_unbiased_and_the_naive_split_is_not() {
         let (bias, noise) = (0.02, 1.0);
         let (mut right, mut naive) = (Vec::new(), Vec::new());
         for set in 0..400 {
@@ -126,7 +126,7 @@ mod tests {
             let moments: turbid::stats::Moments = values.iter().collect();
             (moments.mean() - bias * bias) / moments.std_error()
         };
-        // Two-sided 1e-6 is 4.9; the twin is off by 1/128 with an error of 7e-5.
+        // Two-sided 1e-6 is 4.9; the control is off by 1/128 with an error of 7e-5.
         assert!(z(&right).abs() < 4.9, "{}", z(&right));
         assert!(z(&naive) > 50.0, "{}", z(&naive));
     }

@@ -1,4 +1,4 @@
-//! A tiny experiment: maps whose mean is known, an estimator that is right and a planted twin that is not.
+//! A tiny experiment: maps whose mean is known, an estimator that is right and a planted control that is not.
 
 use turbid::math::{ln, sin_cos};
 use turbid::rng::{Purpose, Stream};
@@ -11,7 +11,7 @@ use turbid_figure::{Axis, Figure, Line, Panel, Points};
 /// The gather sizes.
 pub const RADII: [f64; 4] = [0.1, 0.2, 0.4, 0.8];
 
-/// The right estimator reads 1 + r^2/10, as predicted; the twin reads 5 per cent more.
+/// The right estimator reads 1 + r^2/10, as predicted; the control reads 5 per cent more.
 pub fn predicted(r: f64) -> f64 {
     0.1 * r * r
 }
@@ -71,7 +71,7 @@ fn measure(settings: &Settings, cell: &CellId) -> anyhow::Result<CellOutput> {
     for r in RADII {
         let noise = scale * (shared + 0.5 * normal());
         output.push(case(r), "bias", predicted(r) + noise);
-        output.push(case(r), "twin", predicted(r) + 0.05 + noise);
+        output.push(case(r), "control", predicted(r) + 0.05 + noise);
     }
     if settings.out.join("broken").exists() {
         output.push("r = 0", "bias", f64::NAN);
@@ -98,7 +98,7 @@ fn conclude(_: &Settings, predictions: &[Prediction], cells: &Cells) -> anyhow::
         .ok_or_else(|| anyhow::anyhow!("no fit"))?;
     let amplitude = turbid_experiments::harness::Estimate::mean(&fit.moments);
     rows.push(Row::estimated("all radii", "measured over predicted", Unit::ONE, &amplitude)?.predicted(1.0));
-    let twin = cells.estimate(&case(0.1), "twin")?.minus(predicted(0.1)).times(100.0);
+    let control = cells.estimate(&case(0.1), "control")?.minus(predicted(0.1)).times(100.0);
     let small = cells.estimate(&case(0.8), "bias")?.minus(predicted(0.8)).times(100.0);
     Ok(Section {
         summary: vec![
@@ -110,8 +110,8 @@ fn conclude(_: &Settings, predictions: &[Prediction], cells: &Cells) -> anyhow::
         claims: vec![
             Claim::within("amplitude", "Measured bias over predicted bias is 1 within 10 per cent.", Unit::ONE, amplitude, 0.9, 1.1),
             Claim::within("residual", "No bias is left at r = 0.8 beside the predicted one, within 0.05 per cent.", Unit::PERCENT, small, -0.05, 0.05),
-            Claim::within("wrong", "The twin has no bias beyond the predicted one, within 1 per cent.", Unit::PERCENT, twin, -1.0, 1.0),
-            Claim::detected("twin", "The planted fault of 5 per cent is seen.", Unit::PERCENT, twin, 0.0, 2.5),
+            Claim::within("wrong", "The control has no bias beyond the predicted one, within 1 per cent.", Unit::PERCENT, control, -1.0, 1.0),
+            Claim::detected("control", "The planted fault of 5 per cent is seen.", Unit::PERCENT, control, 0.0, 2.5),
         ],
         figures: vec![figure(cells)?],
         tables: vec![Table::of_rows("Bias at four gather sizes: the measured values scatter about the prediction by their errors.", &rows)],

@@ -2,11 +2,11 @@
 //!
 //! A ray in a direction of density cos/pi brings pi times the radiance along it as irradiance. The ray flies as far as
 //! a photon would. If it collides, it brings what the medium scatters there: single scattering by shadow rays and the
-//! volume map. If it passes, it brings what the matt surface behind reflects, from the global map, which holds every
+//! volume map. If it passes, it brings what the diffuse surface behind reflects, from the global map, which holds every
 //! class of light there, direct light too. What it meets of lights themselves, straight or by specular surfaces, is direct
 //! light and caustics of the surface where it starts, and is left out.
 
-use super::surface::Matt;
+use super::surface::Diffuse;
 use super::{Mapper, ROULETTE, Report};
 use crate::Spectrum;
 use crate::math::{Frame, warp};
@@ -15,15 +15,15 @@ use crate::transport::{Arrival, Roulette, Step, Visitor, Walker, walk};
 use std::f64::consts::PI;
 
 impl Mapper<'_> {
-    /// Indirect irradiance of a matt point [W/L^2] by `count` rays, one in each cell of a grid over the directions.
+    /// Indirect irradiance of a diffuse point [W/L^2] by `count` rays, one in each cell of a grid over the directions.
     pub(super) fn gathered(
         &self,
-        matt: &Matt<'_>,
+        diffuse: &Diffuse<'_>,
         count: u32,
         report: &mut Report,
         stream: &mut Stream,
     ) -> Spectrum {
-        let frame = Frame::new(matt.normal);
+        let frame = Frame::new(diffuse.normal);
         let [rows, columns] = cells(count);
         let mut sum = Spectrum::ZERO;
         for cell in 0..rows * columns {
@@ -33,7 +33,7 @@ impl Mapper<'_> {
             let dir = frame.to_world(warp::square_to_cosine_hemisphere([u, v])).normalize();
             report.gathering += 1;
             let mut ray = GatherRay { mapper: self, report, found: Spectrum::ZERO };
-            walk(self.scene, matt.leaving(dir), Roulette::Below(ROULETTE), Some(1), stream, &mut ray);
+            walk(self.scene, diffuse.leaving(dir), Roulette::Below(ROULETTE), Some(1), stream, &mut ray);
             sum += ray.found;
         }
         sum * (PI / f64::from(count))
@@ -59,28 +59,29 @@ struct GatherRay<'a, 'm, 'r> {
 
 impl GatherRay<'_, '_, '_> {
     /// What a diffuse surface reflects back along the ray.
-    fn surface(&mut self, matt: &Matt<'_>, stream: &mut Stream) {
+    fn surface(&mut self, diffuse: &Diffuse<'_>, stream: &mut Stream) {
         let (maps, settings) = (self.mapper.maps, self.mapper.settings);
-        if matt.reflectance.is_black() {
+        if diffuse.reflectance.is_black() {
             return;
         }
         let Some(global) = &maps.global else { return };
-        let mut reflected = matt.walker.weight * matt.reflectance / PI;
-        let arriving = if matt.found.hit.t < settings.near {
+        let mut reflected = diffuse.walker.weight * diffuse.reflectance / PI;
+        let arriving = if diffuse.found.hit.t < settings.near {
             // Where everything is near, rays would be traced on for ever: as many go on as the surface reflects.
-            let kept = matt.reflectance.max().min(1.0);
+            let kept = diffuse.reflectance.max().min(1.0);
             if stream.unit() >= kept {
                 return;
             }
             reflected = reflected / kept;
             // Every class again, each by its own means.
-            let mut sum = matt.direct(self.mapper, self.report, stream);
+            let mut sum = diffuse.direct(self.mapper, self.report, stream);
             if let Some(map) = &maps.caustic {
-                sum += matt.irradiance(self.mapper, map, settings.caustic, &mut self.report.caustic, stream);
+                sum +=
+                    diffuse.irradiance(self.mapper, map, settings.caustic, &mut self.report.caustic, stream);
             }
-            sum + self.mapper.gathered(matt, 1, self.report, stream)
+            sum + self.mapper.gathered(diffuse, 1, self.report, stream)
         } else {
-            matt.irradiance(self.mapper, global, settings.global, &mut self.report.global, stream)
+            diffuse.irradiance(self.mapper, global, settings.global, &mut self.report.global, stream)
         };
         self.found += reflected * arriving;
     }
@@ -98,8 +99,8 @@ impl Visitor for GatherRay<'_, '_, '_> {
                 self.found += walker.weight * (scattered.single + scattered.multiple);
             }
             Step::Surface(Arrival { walker, .. }, found) => {
-                if let Some(matt) = Matt::met(self.mapper, walker, found) {
-                    self.surface(&matt, stream);
+                if let Some(diffuse) = Diffuse::met(self.mapper, walker, found) {
+                    self.surface(&diffuse, stream);
                 }
             }
             _ => {}

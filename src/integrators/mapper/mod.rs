@@ -1,15 +1,15 @@
 //! The photon mapper of Jensen and Christensen (1998): radiance along a ray from three photon maps, rays and shadow rays.
 //!
 //! From the eye the ray is followed through specular surfaces. Media on its way are marched through (`volume`); on the
-//! first matt surface the radiance is the sum of (`surface`)
+//! first diffuse surface the radiance is the sum of (`surface`)
 //! - direct light, by shadow rays through media and filters;
 //! - caustics, from the caustic map;
 //! - the rest, by a final gathering into the global map (`gather`), or from the global map where the eye looks: what
 //!   the map holds decides which (`Indirect`), so that every class of light is counted once.
 //!
-//! Lights that no shadow ray can aim at (isotropic incidence, volume sources, emitting media) are direct light too: one
-//! ray in a sampled direction looks for them. Their photons, those of emitting media among them, bring what is neither
-//! direct nor scattered once.
+//! Lights that no shadow ray can aim at (isotropic incidence, emitting media, volume sources from within the ball about
+//! them) are direct light too: one ray in a sampled direction looks for them. Their photons, those of emitting media among
+//! them, bring what is neither direct nor scattered once.
 
 mod accepted;
 mod extents;
@@ -24,14 +24,16 @@ pub use settings::{Adaptive, March, Settings, scene_size};
 use crate::Spectrum;
 use crate::estimators::Estimate;
 use crate::geometry::Shape;
-use crate::integrators::path::{Rays, next_event, uncollided};
+use crate::integrators::path::{Rays, next_event, seen_straight, uncollided};
 use crate::integrators::{Layer, Layers};
+use crate::light::Light;
 use crate::math::Ray;
 use crate::photons::maps::Maps;
 use crate::rng::{Stream, Work};
 use crate::scene::{Scene, SceneHit, Start, Target};
 use crate::transport::{Roulette, Step, Visitor, Walker, emission, transmittance, walk};
 use accepted::Bodies;
+use glam::DVec3;
 use std::ops::AddAssign;
 
 /// Where mirrors have taken nine tenths of the light, rays play roulette. Any value gives the same mean.
@@ -120,8 +122,6 @@ pub struct Mapper<'a> {
     bodies: Option<Bodies>,
     /// Where each medium is.
     extents: Vec<MediumExtent>,
-    /// Whether some light cannot be aimed at.
-    has_unaimed: bool,
 }
 
 impl<'a> Mapper<'a> {
@@ -131,11 +131,9 @@ impl<'a> Mapper<'a> {
             true => scene.objects().iter().map(|object| object.shape.clone()).collect(),
             false => Vec::new(),
         };
-        let has_unaimed =
-            scene.plan().has_emission || scene.lights().iter().any(|light| !light.has_direction());
         let bodies = settings.clips_discs.then(|| Bodies::new(scene));
         let extents = medium_extents(scene);
-        Mapper { scene, maps, settings, walls, bodies, extents, has_unaimed }
+        Mapper { scene, maps, settings, walls, bodies, extents }
     }
 
     /// One sample of the radiance that arrives at the origin of `ray` from ahead [W/(L^2 sr)], by class, and the work.
@@ -155,11 +153,12 @@ impl<'a> Mapper<'a> {
         (eye.layers, eye.report)
     }
 
-    /// What a ray meets by itself of lights that have no direction to aim at, emitting media among them.
-    fn unaimed(&self, walker: &Walker, end: f64, stream: &mut Stream) -> Spectrum {
+    /// What a ray meets by itself of media and lights that it runs through, but for lights that are aimed at from `aimed_from`.
+    fn met(&self, walker: &Walker, end: f64, aimed_from: Option<DVec3>, stream: &mut Stream) -> Spectrum {
         let scene = self.scene;
         let media = emission(scene, &walker.ray, end, walker.within, stream);
-        let lights = scene.lights().iter().filter(|light| !light.has_direction());
+        let is_aimed = |light: &Light| aimed_from.is_some_and(|p| light.has_direction_from(p));
+        let lights = scene.lights().iter().filter(|light| !is_aimed(light));
         lights.fold(media, |sum, light| sum + uncollided(scene, light, walker, end, stream))
     }
 
@@ -171,8 +170,8 @@ impl<'a> Mapper<'a> {
         from: Option<Start>,
         report: &mut Report,
         stream: &mut Stream,
-        scattered: impl Fn(glam::DVec3) -> f64,
-        blind: impl FnOnce(&mut Stream) -> glam::DVec3,
+        scattered: impl Fn(DVec3) -> f64,
+        blind: impl FnOnce(&mut Stream) -> DVec3,
     ) -> Spectrum {
         let (position, within) = (walker.ray.origin, walker.within);
         let mut sum = Spectrum::ZERO;
@@ -182,34 +181,16 @@ impl<'a> Mapper<'a> {
                 sum += received * scattered(sample.dir);
             }
         }
-        if self.has_unaimed {
+        let scene = self.scene;
+        let is_missed = |light: &Light| !light.has_direction_from(position);
+        if scene.plan().has_emission || scene.lights().iter().any(is_missed) {
             let ray = Ray::new(position, blind(stream));
             let start = Walker { from, within, ..Walker::new(ray, Spectrum::ONE) };
-            sum += self.unaimed_beyond(start, report, stream);
+            sum += seen_straight(scene, start, &mut report.rays.segments, stream, |walker, end, stream| {
+                self.met(walker, end, Some(position), stream)
+            });
         }
         sum
-    }
-
-    /// The same up to the first body that is an event: filters and index-matched boundaries bend nothing, and what is behind
-    /// them is seen straight.
-    fn unaimed_beyond(&self, start: Walker, report: &mut Report, stream: &mut Stream) -> Spectrum {
-        let (scene, mut walker, mut sum) = (self.scene, start, Spectrum::ZERO);
-        loop {
-            report.rays.segments += 1;
-            let hit = scene.hit(&walker.ray, walker.from);
-            let end = hit.map_or(f64::INFINITY, |found| found.hit.t);
-            sum += walker.weight * self.unaimed(&walker, end, stream);
-            let straight =
-                hit.and_then(|found| Some((found, scene.straight_on(&walker.ray, &found, walker.within)?)));
-            let Some((found, (fraction, within))) = straight else { return sum };
-            let passed = transmittance(scene, &walker.ray, end, walker.within, stream);
-            let weight = walker.weight * passed * fraction;
-            if weight.is_black() {
-                return sum;
-            }
-            let ray = Ray::new(walker.ray.at(end), walker.ray.dir);
-            walker = Walker { ray, weight, within, from: Some(found.start()), ..walker };
-        }
     }
 }
 
@@ -231,9 +212,7 @@ impl Eye<'_, '_> {
         let (scene, ray) = (self.mapper.scene, &walker.ray);
         let end = hit.map_or(f64::INFINITY, |found| found.hit.t);
         self.report.rays.segments += 1;
-        if self.mapper.has_unaimed {
-            self.layers.emission += walker.weight * self.mapper.unaimed(walker, end, stream);
-        }
+        self.layers.emission += walker.weight * self.mapper.met(walker, end, None, stream);
         if scene.plan().has_media {
             self.march(walker, end, stream);
         }

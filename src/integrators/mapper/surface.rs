@@ -19,7 +19,7 @@ const SMALLER: u32 = 4;
 
 /// A point of a diffuse surface that light leaves towards a walker.
 #[derive(Clone, Copy)]
-pub(super) struct Matt<'w> {
+pub(super) struct Diffuse<'w> {
     /// Who looks, or gathers: on the interior's side.
     pub walker: &'w Walker,
     /// What it met.
@@ -32,14 +32,14 @@ pub(super) struct Matt<'w> {
     pub reflectance: Spectrum,
 }
 
-impl<'w> Matt<'w> {
-    /// The point that a ray met, if its surface is matt.
+impl<'w> Diffuse<'w> {
+    /// The point that a ray met, if its surface is diffuse.
     pub fn met(mapper: &Mapper, walker: &'w Walker, found: &'w SceneHit) -> Option<Self> {
         let Target::Object(index) = found.target else { return None };
         let Surface::Lambertian(surface) = &mapper.scene.objects()[index].surface else { return None };
         let (position, outward) = (walker.ray.at(found.hit.t), found.hit.normal);
         let normal = if walker.ray.dir.dot(outward) < 0.0 { outward } else { -outward };
-        Some(Matt {
+        Some(Diffuse {
             walker,
             found,
             position,
@@ -116,27 +116,27 @@ impl<'w> Matt<'w> {
 }
 
 impl Eye<'_, '_> {
-    /// What a body reflects towards the eye, if it is matt.
+    /// What a body reflects towards the eye, if it is diffuse.
     pub(super) fn surface(&mut self, walker: &Walker, found: &SceneHit, stream: &mut Stream) {
         let mapper = self.mapper;
         let (maps, settings) = (mapper.maps, mapper.settings);
-        let Some(matt) = Matt::met(mapper, walker, found) else { return };
-        if matt.reflectance.is_black() {
+        let Some(diffuse) = Diffuse::met(mapper, walker, found) else { return };
+        if diffuse.reflectance.is_black() {
             return;
         }
         let passed = transmittance(mapper.scene, &walker.ray, found.hit.t, walker.within, stream);
-        let seen = walker.weight * passed * matt.reflectance / PI;
-        self.layers.direct += seen * matt.direct(mapper, &mut self.report, stream);
+        let seen = walker.weight * passed * diffuse.reflectance / PI;
+        self.layers.direct += seen * diffuse.direct(mapper, &mut self.report, stream);
         if let Some(map) = &maps.caustic {
             self.layers.caustic +=
-                seen * matt.irradiance(mapper, map, settings.caustic, &mut self.report.caustic, stream);
+                seen * diffuse.irradiance(mapper, map, settings.caustic, &mut self.report.caustic, stream);
         }
         let Some(global) = &maps.global else { return };
         let rest = match maps.indirect {
             Indirect::Seen => {
-                matt.irradiance(mapper, global, settings.global, &mut self.report.global, stream)
+                diffuse.irradiance(mapper, global, settings.global, &mut self.report.global, stream)
             }
-            Indirect::Gathered => mapper.gathered(&matt, settings.gather_rays, &mut self.report, stream),
+            Indirect::Gathered => mapper.gathered(&diffuse, settings.gather_rays, &mut self.report, stream),
         };
         self.layers.indirect += seen * rest;
     }

@@ -8,7 +8,7 @@ use crate::error::{Error, Result};
 use crate::light::EmissionCell;
 use crate::photons::Emitter;
 use crate::photons::emit::cells_towards_scene;
-use crate::photons::maps::{Indirect, is_global, is_matt, is_volume};
+use crate::photons::maps::{Indirect, is_diffuse, is_global, is_volume};
 use crate::rng::Stream;
 use crate::scene::{Scene, Target};
 use crate::transport::{Progress, Step, Visitor, Walker, run_blocks};
@@ -116,7 +116,7 @@ impl Visitor for Learner<'_> {
             }
             Step::Surface(arrival, found) => {
                 if let Target::Object(index) = found.target
-                    && is_matt(&self.scene.objects()[index].surface)
+                    && is_diffuse(&self.scene.objects()[index].surface)
                 {
                     let walker = arrival.walker;
                     let is_stored = is_global(walker.flags, self.indirect);

@@ -5,7 +5,7 @@ use super::{ImportanceSettings, Stage};
 use crate::Spectrum;
 use crate::error::{Error, Result};
 use crate::photons::Emitter;
-use crate::photons::maps::{Indirect, is_matt};
+use crate::photons::maps::{Indirect, is_diffuse};
 use crate::rng::Stream;
 use crate::scene::{Camera, Scene, Target};
 use crate::transport::{BLOCK, Progress, Roulette, Step, Visitor, Walker, run_blocks, walk};
@@ -115,7 +115,7 @@ impl Visitor for Counter<'_> {
                 let order = if self.indirect == Indirect::Gathered { 1 } else { 0 };
                 if arrival.walker.order == order
                     && let Target::Object(index) = found.target
-                    && is_matt(&self.scene.objects()[index].surface)
+                    && is_diffuse(&self.scene.objects()[index].surface)
                 {
                     self.found.surface[self.grid.index(arrival.position)] += arrival.walker.weight.mean();
                 }

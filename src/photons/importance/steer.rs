@@ -35,8 +35,8 @@ pub trait Branching: Visitor {
 enum Left {
     /// A medium of this number, after coming along this direction.
     Medium(usize, DVec3),
-    /// A matt surface with this normal, on the photon's side.
-    Matt(DVec3),
+    /// A diffuse surface with this normal, on the photon's side.
+    Diffuse(DVec3),
 }
 
 /// Passes on one flight and keeps the photon that leaves the event at its end.
@@ -61,7 +61,7 @@ impl<V: Visitor> Visitor for Flight<'_, V> {
             Step::Surface(_, found) => {
                 let outward = found.hit.normal;
                 let is_outside = walker.ray.dir.dot(outward) < 0.0;
-                self.event = Some(Left::Matt(if is_outside { outward } else { -outward }));
+                self.event = Some(Left::Diffuse(if is_outside { outward } else { -outward }));
             }
             _ => {}
         }
@@ -76,7 +76,7 @@ fn density(scene: &Scene, event: Left, dir: DVec3) -> f64 {
             let (one_minus_mu, one_plus_mu) = cosine_pair(before, dir);
             scene.medium(number).phase().eval(one_minus_mu, one_plus_mu)
         }
-        Left::Matt(normal) => warp::pdf_cosine_hemisphere(dir.dot(normal)),
+        Left::Diffuse(normal) => warp::pdf_cosine_hemisphere(dir.dot(normal)),
     }
 }
 

@@ -1,7 +1,7 @@
 //! How many histories each map needs, and from where their photons leave.
 
 use super::pass::{Class, Run, Stored};
-use super::{Amount, Emitted, MapSettings, PEAK_BYTES, PILOT, Part, is_matt};
+use super::{Amount, Emitted, MapSettings, PEAK_BYTES, PILOT, Part, is_diffuse};
 use crate::error::{Error, Result};
 use crate::photons::importance::Importance;
 use crate::photons::{BUILD_SECONDS, Emitter, check_end};
@@ -188,10 +188,10 @@ impl Emitters {
 impl Needs {
     fn of(scene: &Scene, emitters: &Emitters) -> Self {
         let plan = scene.plan();
-        let is_matt = plan.has_surfaces && scene.objects().iter().any(|o| is_matt(&o.surface));
+        let is_diffuse = plan.has_surfaces && scene.objects().iter().any(|o| is_diffuse(&o.surface));
         Needs {
-            global: is_matt || plan.is_full,
-            caustic: (is_matt || plan.is_full) && emitters.caustic.is_some(),
+            global: is_diffuse || plan.is_full,
+            caustic: (is_diffuse || plan.is_full) && emitters.caustic.is_some(),
             volume: plan.has_media,
         }
     }

@@ -1,6 +1,6 @@
 //! A pass of histories, and the photons that it stores.
 
-use super::{Ends, Indirect, Part, PassReport, is_caustic, is_global, is_matt, is_volume};
+use super::{Ends, Indirect, Part, PassReport, is_caustic, is_diffuse, is_global, is_volume};
 use crate::Spectrum;
 use crate::error::{Error, Result};
 use crate::photons::importance::{Branching, Importance};
@@ -168,7 +168,7 @@ impl Visitor for Store<'_> {
             }
             Step::Surface(arrival, found) => {
                 let Target::Object(index) = found.target else { return };
-                if !is_matt(&self.run.scene.objects()[index].surface) {
+                if !is_diffuse(&self.run.scene.objects()[index].surface) {
                     return;
                 }
                 self.stored.report.hits += 1;
