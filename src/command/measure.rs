@@ -1,7 +1,7 @@
 //! `turbid measure`: the sensors of a scene, by paths or by photons.
 
 use super::load::Source;
-use super::memory::{Memory, rounded_down};
+use super::memory::{Memory, passes_that_fit, rounded_down};
 use super::picture::BoundaryName;
 use super::progress::Bar;
 use super::{FormatName, KernelName, note, on_threads, parse_count, tell_ahead};
@@ -160,8 +160,7 @@ impl Measure {
         let ahead = forecast(scene, &settings, self.passes)?;
         self.memory.check(&format!("a map of {:.2e} photons", ahead.stored), ahead.bytes, 0.0, |part| {
             let fewer = rounded_down(self.photons as f64 * part);
-            // A tenth more passes than fit by the pilot, whose number of photons is an estimate.
-            let passes = (1.1 * self.passes as f64 / part).ceil();
+            let passes = passes_that_fit(self.passes, part);
             match self.radius {
                 Some(_) => format!("--photons {fewer}, or --passes {passes}"),
                 None => format!("--photons {fewer}, or a fixed --radius with --passes {passes}"),

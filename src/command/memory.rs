@@ -47,6 +47,11 @@ pub fn rounded_down(number: f64) -> String {
     if down < 1e5 { format!("{down}") } else { format!("{down:e}") }
 }
 
+/// How many passes would fit where `part` of what a pass holds does: a tenth more, since the number of photons is a pilot's.
+pub fn passes_that_fit(passes: u64, part: f64) -> f64 {
+    (1.1 * passes as f64 / part).ceil()
+}
+
 impl Memory {
     /// Bytes that are left for the work, as far as is known.
     fn left(&self) -> Option<f64> {

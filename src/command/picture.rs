@@ -1,6 +1,6 @@
 //! What `render` and `map` share: the camera, the photons, exposure.
 
-use super::memory::{Memory, rounded_down};
+use super::memory::{Memory, passes_that_fit, rounded_down};
 use super::progress::Bar;
 use super::render::Filled;
 use super::{KernelName, note, parse_count, tell_ahead};
@@ -171,8 +171,7 @@ impl Photons {
                 Amount::Emitted(n) => format!("--{name} emit:{}", rounded_down(*n as f64 * part)),
             });
             let fewer = fewer.collect::<Vec<_>>().join(" ");
-            // A tenth more passes than fit by the pilot, whose number of photons is an estimate.
-            let passes = (1.1 * held.passes as f64 / part).ceil();
+            let passes = passes_that_fit(held.passes, part);
             if held.has_radius { format!("{fewer}, or --passes {passes}") } else { fewer }
         })?;
         if maps.replicate == 0 {

@@ -82,10 +82,14 @@ fn is_short(scene: &Scene) -> bool {
 }
 
 /// Whether rays through a medium gather emission that nothing absorbs, in some channel: without end where the medium has
-/// none.
+/// none. Light that escapes has passed a density that ends, but emission that does not follow the density does not end.
 fn glows_clear(medium: &Medium) -> bool {
-    let (sigma_t, emission) = (medium.matter().sigma_t(), medium.matter().emission());
-    (0..3).any(|channel| emission[channel] > 0.0 && sigma_t[channel] == 0.0)
+    let (sigma_t, everywhere) = (medium.matter().sigma_t(), medium.matter().emission());
+    let (ends, emission) = match medium {
+        Medium::Homogeneous(_) => (false, everywhere),
+        Medium::Heterogeneous(medium) => (true, medium.emission_of(1.0)),
+    };
+    (0..3).any(|c| (emission[c] > 0.0 && sigma_t[c] == 0.0) || (ends && everywhere[c] > 0.0))
 }
 
 /// Where a history starts.
@@ -177,7 +181,7 @@ impl Visitor for Met<'_> {
             Step::Escaped(_) => {
                 let filling = self.scene.filling(walker.within);
                 if filling.is_some_and(|number| glows_clear(&self.scene.media()[number])) {
-                    self.endless = Some((walker.within, "emits and absorbs nothing"));
+                    self.endless = Some((walker.within, "emits where nothing absorbs"));
                 }
             }
             Step::Surface(_, found) => {

@@ -9,8 +9,8 @@ use glam::DVec3;
 use turbid::Spectrum;
 use turbid::geometry::Shape;
 use turbid::light::{Faces, Light};
-use turbid::math::{Asymmetry, Interval, Ray, exp, ln_1p};
-use turbid::medium::{Density, Grid, Heterogeneous, Homogeneous, Medium};
+use turbid::math::{Asymmetry, Interval, Positive, Ray, exp, ln_1p};
+use turbid::medium::{Density, Grid, HeightFog, Heterogeneous, Homogeneous, Medium};
 use turbid::phase::Phase;
 use turbid::photons::importance::{Importance, ImportanceSettings};
 use turbid::photons::maps::{Amount, Indirect, MapSettings, fill};
@@ -125,20 +125,18 @@ fn rooms_that_keep_light_are_refused_and_others_are_not() {
     assert!(told.contains("sensor middle"), "{told}");
 }
 
-/// No method hangs: each refuses the room itself.
 /// Behind a pane that encloses nothing a medium has no end: if it absorbs nothing, light does not come back, and if it
 /// glows, a ray gathers without end. What absorbs, and what bodies enclose, is right.
 #[test]
 fn media_without_end_are_refused_where_light_does_not_end_in_them() {
-    let says = |medium: (f64, f64, f64), body: Shape| {
-        let (sigma_t, albedo, emission) = medium;
+    let matter = |(sigma_t, albedo, emission): (f64, f64, f64)| {
         let phase = Phase::with_asymmetry(Asymmetry::try_from(0.0).unwrap());
         let matter = Homogeneous::new(Spectrum::grey(sigma_t), Spectrum::grey(albedo), phase).unwrap();
-        let matter = matter.with_emission(Spectrum::grey(emission)).unwrap();
-        let interiors = vec![
-            Interior::surroundings(),
-            Interior { name: "milk".into(), index: 1.4, medium: Some(matter.into()) },
-        ];
+        matter.with_emission(Spectrum::grey(emission)).unwrap()
+    };
+    let filled = |medium: Medium, body: Shape| {
+        let milk = Interior { name: "milk".into(), index: 1.4, medium: Some(medium) };
+        let interiors = vec![Interior::surroundings(), milk];
         let boundary = Surface::Dielectric(Dielectric::new(1, 0));
         let parts = Parts {
             interiors,
@@ -149,6 +147,7 @@ fn media_without_end_are_refused_where_light_does_not_end_in_them() {
         };
         check_end(&Scene::new(parts).unwrap()).map_or_else(|error| error.to_string(), |()| String::new())
     };
+    let says = |medium, body: Shape| filled(matter(medium).into(), body);
     let pane = || Shape::Rectangle(rectangle(DVec3::new(-0.3, -0.3, 0.5), DVec3::X * 0.6, DVec3::Y * 0.6));
     let ball = || sphere(DVec3::new(0.0, 0.0, 0.5), 0.2);
     let lost = says((1.0, 1.0, 0.0), pane());
@@ -157,7 +156,7 @@ fn media_without_end_are_refused_where_light_does_not_end_in_them() {
         "{lost}"
     );
     let glows = says((0.0, 0.5, 0.2), pane());
-    assert!(glows.contains("whose medium emits and absorbs nothing; allowed"), "{glows}");
+    assert!(glows.contains("whose medium emits where nothing absorbs; allowed"), "{glows}");
     for (medium, body) in [
         ((1.0, 0.999, 0.0), pane()),
         ((0.0, 0.5, 0.0), pane()),
@@ -167,8 +166,21 @@ fn media_without_end_are_refused_where_light_does_not_end_in_them() {
     ] {
         assert_eq!(says(medium, body), "", "{medium:?}");
     }
+    // Fog ends above, its light where it is as dense; light that is the same everywhere does not.
+    let fog = |medium, by_density: f64| {
+        let height = Positive::try_from(0.3).unwrap();
+        let density = Density::HeightFog(HeightFog::new(DVec3::Z, 0.0, height).unwrap());
+        let medium = Heterogeneous::new(matter(medium), density);
+        filled(medium.with_emission_by_density(Spectrum::grey(by_density)).unwrap().into(), pane())
+    };
+    let glows = fog((0.5, 0.5, 0.2), 0.0);
+    assert!(glows.contains("whose medium emits where nothing absorbs; allowed"), "{glows}");
+    assert_eq!(fog((0.5, 0.5, 0.0), 0.2), "");
+    let clear = fog((0.0, 0.5, 0.0), 0.2);
+    assert!(clear.contains("whose medium emits where nothing absorbs; allowed"), "{clear}");
 }
 
+/// No method hangs: each refuses the room itself.
 #[test]
 fn every_method_refuses_a_room_that_keeps_light() {
     let scene = room(white);

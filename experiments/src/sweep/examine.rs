@@ -37,8 +37,14 @@ impl Alarm {
                 let same_side = (first.value > first.expected) == (second.value > second.expected);
                 if same_side { second.p } else { 1.0 }
             }
-            // Nothing was there to be compared again.
-            (Some(_), None) => 1.0,
+            // Stopped by the clock before it was compared again, or nothing was there to be.
+            (Some(first), None) => {
+                if self.failure.is_some() {
+                    first.p
+                } else {
+                    1.0
+                }
+            }
             (None, _) => 0.0,
         }
     }
@@ -178,12 +184,13 @@ pub fn examine(
         let is_wanted = |name: &str| suspicious.iter().any(|(other, _)| *other == name);
         let again = once(text, (seed ^ (1 << 40), seed), &more, stage, &is_wanted)?;
         examined.alarms.extend(again.examined.alarms);
-        examined.late.extend(again.examined.late.iter().map(|name| format!("again, {name}")));
+        let late = again.examined.late.first().map(|name| format!("{name} took too long to confirm this"));
         for (name, first) in suspicious {
             let check = again.checks.iter().find(|c| c.name == name);
             let second = check.and_then(|c| c.tests.iter().find(|t| t.cell == first.cell)).cloned();
             let first = Some(first.clone());
-            examined.alarms.push(Alarm { check: name.into(), failure: None, first, second });
+            let failure = if second.is_none() { late.clone() } else { None };
+            examined.alarms.push(Alarm { check: name.into(), failure, first, second });
         }
     }
     Ok(examined)
