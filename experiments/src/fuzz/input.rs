@@ -25,14 +25,14 @@ pub enum Kind {
     Arguments,
 }
 
-/// Kinds by turns: scenes are half, command lines, a process each, one in fifty.
+/// Kinds by turns: scenes are half; figures, which take long to draw, and command lines, a process each, one in fifty.
 const TURNS: [(Kind, u64); 8] = [
     (Kind::Scenes, 50),
     (Kind::Vol, 60),
     (Kind::Png, 70),
     (Kind::Obj, 80),
-    (Kind::Tables, 87),
-    (Kind::Cells, 92),
+    (Kind::Tables, 88),
+    (Kind::Cells, 96),
     (Kind::Figures, 98),
     (Kind::Arguments, 100),
 ];

@@ -185,7 +185,7 @@ impl Workbench {
         if let Err(error) = check_end(&scene) {
             return checked(one_line(&error.to_string()), None);
         }
-        let camera = scene.camera().and_then(|camera| camera.with_size(8, 8).ok());
+        let camera = scene.camera().and_then(|camera| camera.with_size(4, 4).ok());
         let camera = camera.filter(|camera| check_camera(&scene, camera).is_ok());
         let mut notes = Vec::new();
         let mut note = |of: &str, outcome: turbid::Result<()>| {
@@ -202,7 +202,7 @@ impl Workbench {
             }
         }
         if !scene.sensors().is_empty() {
-            let settings = PathSettings { samples: 20, seed: SEED, replicate: 0, orders: Orders::ALL };
+            let settings = PathSettings { samples: 10, seed: SEED, replicate: 0, orders: Orders::ALL };
             note("measured by paths", by_paths(&scene, &settings, &NoProgress).map(|_| ()));
             note("measured by photons", measured(&scene));
         }
@@ -319,15 +319,15 @@ fn paths(scene: &Scene, camera: &Camera) -> turbid::Result<()> {
 }
 
 fn light(scene: &Scene, camera: &Camera) -> turbid::Result<()> {
-    finite(&by_light(scene, camera, 64, 3, STREAMS, &NoProgress)?, "the film of light tracing")
+    finite(&by_light(scene, camera, 16, 3, STREAMS, &NoProgress)?, "the film of light tracing")
 }
 
 fn photons(scene: &Scene, camera: &Camera, indirect: Indirect, is_steered: bool) -> turbid::Result<()> {
-    let amount = Amount::Emitted(200);
+    let amount = Amount::Emitted(100);
     let maps =
         MapSettings { global: amount, caustic: amount, volume: amount, indirect, seed: SEED, replicate: 0 };
     let learned =
-        ImportanceSettings { particles: 128, pilot: 64, rounds: 2, boxes: 4, seed: SEED, replicate: 0 };
+        ImportanceSettings { particles: 64, pilot: 32, rounds: 2, boxes: 4, seed: SEED, replicate: 0 };
     // Only a part of the scenes can be steered; importance says why not.
     let importance =
         if is_steered { Some(Importance::of(scene, camera, indirect, &learned, &NoProgress)?) } else { None };
@@ -348,7 +348,7 @@ fn measured(scene: &Scene) -> turbid::Result<()> {
         None => 1.0,
     };
     let settings = PhotonSettings {
-        photons: 200,
+        photons: 100,
         maps: 2,
         seed: SEED,
         orders: Orders::ALL,
