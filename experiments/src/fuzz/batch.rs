@@ -2,15 +2,16 @@
 //! and ends; one that dies is known by what it said last.
 
 use super::input::{Input, Kind};
-use super::judge::{Verdict, Workbench, keep_panics};
+use super::judge::{Thoroughness, Verdict, Workbench, keep_panics};
+use crate::harness::{duration, say};
 use anyhow::Context;
 use cpu_time::ProcessTime;
 use std::io::{BufRead, BufReader, Write};
 use std::ops::Range;
 use std::process::{Command, Stdio};
-use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
-use std::time::Duration;
+use std::sync::{Arc, Mutex};
+use std::time::{Duration, Instant};
 use turbid::output::one_line;
 
 /// Processor time of an input, at most.
@@ -35,23 +36,60 @@ pub struct Found {
     pub peak: u64,
 }
 
-/// Tries a range of inputs in so many processes at a time.
-pub fn run(only: Option<Kind>, seed: u64, range: Range<u64>, jobs: usize) -> anyhow::Result<Found> {
-    let size = (range.end - range.start).div_ceil(jobs as u64).max(1);
-    let parts: Vec<Range<u64>> = (0..jobs as u64)
-        .map(|i| range.start + i * size..(range.start + (i + 1) * size).min(range.end))
-        .filter(|part| !part.is_empty())
-        .collect();
-    let threads: Vec<_> =
-        parts.into_iter().map(|part| std::thread::spawn(move || watch(only, seed, part))).collect();
-    let mut all = Found::default();
-    for thread in threads {
-        let found = thread.join().map_err(|_| anyhow::anyhow!("a watcher of inputs failed"))??;
-        all.accepted += found.accepted;
-        all.refused += found.refused;
-        all.failures.extend(found.failures);
-        all.peak = all.peak.max(found.peak);
+impl Found {
+    /// Inputs that were tried.
+    pub fn count(&self) -> u64 {
+        self.accepted + self.refused + self.failures.len() as u64
     }
+
+    fn add(&mut self, other: Found) {
+        self.accepted += other.accepted;
+        self.refused += other.refused;
+        self.failures.extend(other.failures);
+        self.peak = self.peak.max(other.peak);
+    }
+}
+
+/// Inputs that a process tries before it makes room for another one.
+const BATCH: u64 = 1000;
+
+/// How often it is told how far a run is.
+const TOLD: Duration = Duration::from_secs(10);
+
+/// Tries a range of inputs in so many processes at a time. Tells failures as they come, and how far it is.
+pub fn run(only: Option<Kind>, seed: u64, range: Range<u64>, jobs: usize) -> anyhow::Result<Found> {
+    let (next, start) = (AtomicU64::new(range.start), Instant::now());
+    let state = Mutex::new((Found::default(), Instant::now()));
+    let work = || -> anyhow::Result<()> {
+        loop {
+            let first = next.fetch_add(BATCH, Ordering::Relaxed);
+            if first >= range.end {
+                return Ok(());
+            }
+            let found = watch(only, seed, first..(first + BATCH).min(range.end))?;
+            for (number, what) in &found.failures {
+                say(&format!("input {number} of seed {seed}: {what}"));
+            }
+            let mut state = state.lock().map_err(|_| anyhow::anyhow!("a watcher of inputs failed"))?;
+            let (all, told) = &mut *state;
+            all.add(found);
+            if told.elapsed() > TOLD {
+                *told = Instant::now();
+                let (done, count) = (all.count(), range.end - range.start);
+                let left = start.elapsed().as_secs_f64() * (count - done) as f64 / done as f64;
+                let failed = all.failures.len();
+                say(&format!("  {done} of {count} inputs, {failed} failed, {} left", duration(left)));
+            }
+        }
+    };
+    std::thread::scope(|scope| {
+        let threads: Vec<_> = (0..jobs).map(|_| scope.spawn(work)).collect();
+        threads.into_iter().try_for_each(|thread| {
+            thread.join().map_err(|_| anyhow::anyhow!("a watcher of inputs failed"))?
+        })
+    })?;
+    let mut all = state.into_inner().map_err(|_| anyhow::anyhow!("a watcher of inputs failed"))?.0;
+    all.failures.sort();
     Ok(all)
 }
 
@@ -95,7 +133,7 @@ fn watch(only: Option<Kind>, seed: u64, range: Range<u64>) -> anyhow::Result<Fou
 /// Tries a range of inputs in this process and says what becomes of each.
 pub fn work(only: Option<Kind>, seed: u64, range: Range<u64>) -> anyhow::Result<()> {
     keep_panics();
-    let bench = Workbench::new().context("cannot write the files that scenes name")?;
+    let bench = Workbench::new(Thoroughness::ByTurns).context("cannot write the files that scenes name")?;
     let tried = Arc::new(AtomicU64::new(0));
     guard(Arc::clone(&tried));
     let tell = |line: String| -> std::io::Result<()> {
@@ -175,7 +213,7 @@ fn guard(tried: Arc<AtomicU64>) {
 /// Tries one input in this process, which ends if that takes too long or too much.
 pub fn watched(input: &Input) -> anyhow::Result<Verdict> {
     keep_panics();
-    let bench = Workbench::new().context("cannot write the files that scenes name")?;
+    let bench = Workbench::new(Thoroughness::All).context("cannot write the files that scenes name")?;
     guard(Arc::new(AtomicU64::new(0)));
     Ok(measured(&bench, input).0)
 }

@@ -15,7 +15,7 @@ mod tests;
 mod tree;
 
 pub use input::{Input, Kind};
-pub use judge::{Verdict, Workbench};
+pub use judge::{Thoroughness, Verdict, Workbench};
 
 use crate::harness::{one_line, say};
 use anyhow::{Context, bail};
@@ -144,7 +144,7 @@ fn report(arguments: &Arguments, found: &Found) -> anyhow::Result<u8> {
     let Found { accepted, refused, failures, peak } = found;
     lines.push(format!(
         "{} inputs, seed {}: {accepted} accepted, {refused} refused, {} failed; {} MB at most in a process",
-        accepted + refused + failures.len() as u64,
+        found.count(),
         arguments.seed,
         failures.len(),
         peak / 1_000_000

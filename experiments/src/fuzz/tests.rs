@@ -1,6 +1,6 @@
 //! A few hundred inputs, and the harness itself.
 
-use super::{Input, Kind, Verdict, Workbench, shrink, tree};
+use super::{Input, Kind, Thoroughness, Verdict, Workbench, shrink, tree};
 
 /// Kinds that are tried in this process.
 const KINDS: [Kind; 7] =
@@ -9,7 +9,7 @@ const KINDS: [Kind; 7] =
 /// Every input is refused in a line or does what it says, and both happen.
 #[test]
 fn inputs_by_chance_are_refused_or_do_what_they_say() {
-    let bench = Workbench::new().unwrap();
+    let bench = Workbench::new(Thoroughness::All).unwrap();
     for kind in KINDS {
         let (mut accepted, mut refused) = (0, 0);
         let count = if kind == Kind::Scenes { 160 } else { 24 };
