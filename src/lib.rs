@@ -5,12 +5,13 @@
 //! walk that paths and photons share; [`photons`] keeps what it meets, in [`photons::maps`] for pictures;
 //! [`estimators`] read it; [`integrators`] make radiance by class of path: the path tracer [`integrators::path`] and the
 //! photon mapper [`integrators::mapper`]; [`sensor`] turns both into numbers with standard errors, and into pictures on a
-//! [`sensor::Film`]; [`output`] writes files that appear whole or not at all.
+//! [`sensor::Film`]; [`input`] reads files of a bounded size; [`output`] writes files that appear whole or not at all.
 
 pub mod error;
 pub mod estimators;
 pub mod faults;
 pub mod geometry;
+pub mod input;
 pub mod integrators;
 pub mod light;
 pub mod math;

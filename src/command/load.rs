@@ -3,6 +3,7 @@
 use anyhow::{Context, anyhow, bail};
 use std::ops::Range;
 use std::path::{Path, PathBuf};
+use turbid::input::{read_stream, text};
 use turbid::photons::check_end;
 use turbid::scene::{BUILTIN, Builtin, Scene, SceneFile};
 
@@ -15,6 +16,9 @@ pub struct Source {
     #[arg(long = "set", value_name = "KEY=VALUE")]
     sets: Vec<String>,
 }
+
+/// Larger scene files are refused.
+const MOST_BYTES: u64 = 1 << 26;
 
 impl Source {
     /// A scene with these changes.
@@ -69,7 +73,10 @@ impl Source {
         if is_bare_name {
             bail!("no such scene: {}", unknown_scene(&self.scene));
         }
-        let text = std::fs::read_to_string(path).with_context(|| format!("cannot read {}", self.scene))?;
+        // A scene may come through a pipe.
+        let text = read_stream(path, MOST_BYTES)
+            .and_then(text)
+            .with_context(|| format!("cannot read {}", self.scene))?;
         let mut file: SceneFile =
             toml::from_str(&text).map_err(|e| anyhow!(located(&self.scene, &text, &e)))?;
         let mut root = toml::Value::Table(toml::from_str(&text)?);

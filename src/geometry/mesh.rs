@@ -8,6 +8,7 @@ use crate::error::{Error, Result};
 use crate::math::Ray;
 use glam::{DVec2, DVec3};
 use std::collections::HashMap;
+use std::hash::{DefaultHasher, Hash, Hasher};
 use triangle::{Shear, closest};
 
 /// Triangles, searched through a tree of single-precision boxes and met in double precision.
@@ -42,11 +43,40 @@ const ROUNDING: f64 = 1.0 / (1u64 << 42) as f64;
 /// Part of the mesh's extent within which a meeting may be that with the edge from which the ray starts.
 const NEAR: f64 = 1.0 / (1u64 << 20) as f64;
 
+/// Whether each triangle has the three corners of an earlier one, in whatever order.
+fn repeated(triangles: &[[DVec3; 3]]) -> Vec<bool> {
+    let bits = |triangle: &[DVec3; 3]| {
+        // Adding 0 makes -0 the same as 0.
+        let mut bits = triangle.map(|p| (p + DVec3::ZERO).to_array().map(f64::to_bits));
+        bits.sort_unstable();
+        bits
+    };
+    let mut by_hash: Vec<(u64, u32)> = (0u32..)
+        .zip(triangles)
+        .map(|(i, triangle)| {
+            let mut hasher = DefaultHasher::new();
+            bits(triangle).hash(&mut hasher);
+            (hasher.finish(), i)
+        })
+        .collect();
+    by_hash.sort_unstable();
+    let mut again = vec![false; triangles.len()];
+    // Others of the same hash are compared with the first: a third one that only shares the hash may stay.
+    for alike in by_hash.chunk_by(|a, b| a.0 == b.0).filter(|alike| alike.len() > 1) {
+        let first = bits(&triangles[alike[0].1 as usize]);
+        for (_, i) in &alike[1..] {
+            again[*i as usize] = bits(&triangles[*i as usize]) == first;
+        }
+    }
+    again
+}
+
 impl Mesh {
     /// A mesh from corner positions \[L\], three places among them for each triangle, and surface parameters by
     /// triangle where there are any.
     ///
-    /// Triangles without area are dropped, since they have no normal ([`Mesh::dropped`] counts them).
+    /// Triangles without area are dropped, since they have no normal, and of those with the same three corners all but the
+    /// first, which is the one that rays meet ([`Mesh::dropped`] counts them).
     ///
     /// # Errors     `Error::Scene` for positions that are not finite, places outside the list, or nothing left
     pub fn new(positions: &[DVec3], triangles: &[[u32; 3]], uvs: Option<&[[DVec2; 3]]>) -> Result<Self> {
@@ -74,12 +104,20 @@ impl Mesh {
                 kept.push(i);
             }
         }
-        let dropped = triangles.len() - corners.len();
         if corners.is_empty() {
             return Err(Error::Scene(format!(
-                "a mesh needs a triangle with an area; here none of {dropped}"
+                "a mesh needs a triangle with an area; here none of {}",
+                triangles.len()
             )));
         }
+        let again = repeated(&corners);
+        if again.contains(&true) {
+            let mut is_again = again.iter();
+            corners.retain(|_| is_again.next() != Some(&true));
+            let mut is_again = again.iter();
+            kept.retain(|_| is_again.next() != Some(&true));
+        }
+        let dropped = triangles.len() - corners.len();
         let boxes: Vec<(DVec3, DVec3)> =
             corners.iter().map(|[a, b, c]| (a.min(*b).min(*c), a.max(*b).max(*c))).collect();
         let bounds = boxes.iter().fold(boxes[0], |(a, b), x| (a.min(x.0), b.max(x.1)));
@@ -121,7 +159,7 @@ impl Mesh {
         self.corners[primitive as usize]
     }
 
-    /// Number of triangles without area that were left out.
+    /// Number of triangles without area, or with the corners of an earlier one, that were left out.
     pub fn dropped(&self) -> usize {
         self.dropped
     }

@@ -18,6 +18,9 @@ fn word(bytes: &[u8], at: usize) -> [u8; 4] {
     [bytes[at], bytes[at + 1], bytes[at + 2], bytes[at + 3]]
 }
 
+/// Larger files are refused: 1024^3 samples.
+const MOST_BYTES: u64 = (1 << 32) + HEADER as u64;
+
 impl Grid {
     /// Reads a `.vol` file.
     ///
@@ -25,7 +28,8 @@ impl Grid {
     /// `Error::Scene` that names the file: missing, too short or too long, not of this format, of another version or
     /// type, with a size or channels out of range, with values that are negative or not finite
     pub fn read(path: &Path) -> Result<Self> {
-        let bytes = std::fs::read(path).map_err(|cause| refused(path, &cause.to_string()))?;
+        let bytes =
+            crate::input::read(path, MOST_BYTES).map_err(|cause| refused(path, &cause.to_string()))?;
         Grid::from_bytes(&bytes).map_err(|cause| refused(path, &cause.to_string()))
     }
 

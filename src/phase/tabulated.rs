@@ -38,6 +38,9 @@ fn refuse<T>(place: &str, text: impl std::fmt::Display) -> Result<T> {
     Err(Error::Scene(format!("{place}: {text}")))
 }
 
+/// Larger tables are refused: a million angles.
+const MOST_BYTES: u64 = 1 << 25;
+
 impl Tabulated {
     /// A table of angles in degrees, rising from 0 (forward) to 180, and values in any unit.
     ///
@@ -56,7 +59,7 @@ impl Tabulated {
     /// `Error::Scene` that names the file and the line
     pub fn read(path: &Path) -> Result<Self> {
         let file = format!("phase table {}", path.display());
-        let text = match std::fs::read_to_string(path) {
+        let text = match crate::input::read_text(path, MOST_BYTES) {
             Ok(text) => text,
             Err(cause) => return refuse(&file, cause),
         };

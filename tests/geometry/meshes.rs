@@ -298,9 +298,17 @@ fn bad_meshes_are_refused() {
     );
     let solid = Mesh::new(&corners, &[[0, 1, 2], [0, 1, 3], [1, 1, 2]], None).unwrap();
     assert_eq!((solid.len(), solid.dropped()), (1, 2));
-    // Many alike, with nothing to tell them apart by.
-    let same = Mesh::new(&corners, &vec![[0, 1, 2]; 30], None).unwrap();
+    // Many in one place are one, however their corners are named.
+    let mut named = [[0, 1, 2], [1, 2, 0], [2, 1, 0], [4, 1, 2]].repeat(30_000);
+    named.push([0, 1, 5]);
+    let [a, b, c, _] = corners;
+    let same = Mesh::new(&[a, b, c, a, a * -1.0, a + b + c], &named, None).unwrap();
     let found = same.hit(&Ray::new(DVec3::new(0.2, 0.2, 1.0), DVec3::NEG_Z), None).unwrap();
-    assert!((found.t - 1.0).abs() < 1e-15 && same.len() == 30);
-    assert!(say(&corners, &vec![[0, 1, 2]; 10_000]).contains("nested too deeply"));
+    assert!((found.t - 1.0).abs() < 1e-15 && (same.len(), same.dropped()) == (2, 119_999));
+    // Many alike, with nothing that single precision tells apart.
+    let alike: Vec<DVec3> =
+        (1..=10_000).map(|i| a + DVec3::X * (1e-300 * f64::from(i))).chain([b, c]).collect();
+    let fan = |count: u32| (0..count).map(|i| [i, 10_000, 10_001]).collect::<Vec<_>>();
+    assert_eq!(Mesh::new(&alike, &fan(30), None).unwrap().len(), 30);
+    assert!(say(&alike, &fan(10_000)).contains("nested too deeply"));
 }

@@ -93,9 +93,13 @@ pub(super) fn write(path: &Path, header: &Header, rows: &[CellRow]) -> anyhow::R
     Ok(())
 }
 
+/// Larger files are no cells.
+const MOST_BYTES: u64 = 1 << 28;
+
 /// Reads the file of one cell; an error says why it is not one.
 pub(crate) fn read(path: &Path) -> anyhow::Result<(Header, Vec<CellRow>)> {
-    let text = std::fs::read_to_string(path).with_context(|| format!("cannot read {}", path.display()))?;
+    let text = turbid::input::read_text(path, MOST_BYTES)
+        .with_context(|| format!("cannot read {}", path.display()))?;
     parse(&text).with_context(|| format!("{} is no complete cell", path.display()))
 }
 

@@ -88,6 +88,9 @@ fn tables(folder: &Path, only: &[String]) -> anyhow::Result<Vec<PathBuf>> {
     Ok(tables)
 }
 
+/// Larger tables of a figure are refused.
+const MOST_BYTES: u64 = 1 << 26;
+
 /// Redraws a figure from its table and says how many bytes the drawings have; writes nothing.
 pub(crate) fn try_redraw(table: &Path) -> anyhow::Result<usize> {
     let redrawn = redraw(table.to_path_buf())?;
@@ -96,7 +99,8 @@ pub(crate) fn try_redraw(table: &Path) -> anyhow::Result<usize> {
 
 fn redraw(table: PathBuf) -> anyhow::Result<Redrawn> {
     let place = table.display();
-    let text = std::fs::read_to_string(&table).with_context(|| format!("cannot read {place}"))?;
+    let text =
+        turbid::input::read_text(&table, MOST_BYTES).with_context(|| format!("cannot read {place}"))?;
     let stem = table.file_stem().and_then(|s| s.to_str()).unwrap_or("figure").to_string();
     let (figure, caption) = Figure::from_csv(&text).map_err(|e| match e {
         Error::Csv { .. } => anyhow::anyhow!("{place}:{e}"),

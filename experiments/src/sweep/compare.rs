@@ -1,10 +1,10 @@
 //! Tests of what two methods made: cell by cell, layer by layer, and what they could have seen.
 
-use super::measure::{BATCHES, ByMaps, CELLS, Cell, Energy, FACTOR, Measured};
+use super::measure::{ByMaps, CELLS, Cell, Energy, FACTOR, Mean, Measured, is_heavy};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use turbid::integrators::Layer;
-use turbid::stats::{HEAVY_TAIL, Moments, POWER_QUANTILE, student_critical, student_p};
+use turbid::stats::{POWER_QUANTILE, student_critical, student_p};
 
 /// Level at which a number is measured again: what is no matter of chance must be seen then too, so that it may be larger than
 /// that of tests which decide.
@@ -149,14 +149,6 @@ impl Check {
     }
 }
 
-/// Whether nothing can be said of a mean: the variance of variance, above what normal numbers have by their count, is larger
-/// than allowed for [`BATCHES`].
-fn is_heavy(m: &Moments) -> bool {
-    let normal = |n: f64| 2.0 / n;
-    let excess = m.vov() - normal(m.n() as f64);
-    excess.is_nan() || excess > HEAVY_TAIL - normal(BATCHES as f64)
-}
-
 /// Degrees of freedom of a difference of two means (Welch 1947), rounded down; the second may be a constant.
 fn freedom(va: f64, na: u64, vb: f64, nb: u64) -> u64 {
     let sum = va + vb;
@@ -165,7 +157,9 @@ fn freedom(va: f64, na: u64, vb: f64, nb: u64) -> u64 {
 }
 
 /// A difference of means beyond what is allowed, itself known to an error.
-fn test(cell: String, a: &Moments, b: &Moments, (allowed, allowed_error): (f64, f64)) -> Option<Test> {
+fn test(cell: String, a: &Mean, b: &Mean, (allowed, allowed_error): (f64, f64)) -> Option<Test> {
+    let is_heavy = a.is_heavy || b.is_heavy;
+    let (a, b) = (&a.moments, &b.moments);
     let (value, expected) = (a.mean(), b.mean());
     if value == 0.0 && expected == 0.0 {
         return None;
@@ -174,7 +168,6 @@ fn test(cell: String, a: &Moments, b: &Moments, (allowed, allowed_error): (f64, 
     let std_error = (va + vb + allowed_error * allowed_error).sqrt();
     let freedom = freedom(va, a.n(), vb, b.n());
     let beyond = ((value - expected).abs() - allowed).max(0.0);
-    let is_heavy = is_heavy(a) || is_heavy(b);
     let p = match std_error {
         // Constants: rounding is no difference.
         0.0 if beyond <= 1e-9 * expected.abs() => 1.0,
@@ -223,7 +216,7 @@ fn unbiased_at(index: usize, a: &Measured, b: &Measured) -> impl Iterator<Item =
     let whole = (cell.quarter == 0)
         .then(|| test(cell.whole_name(), &a.whole(index), &b.whole(index), (0.0, 0.0)))
         .flatten();
-    whole.into_iter().chain(test(cell.name(), &a.moments(index), &b.moments(index), (0.0, 0.0)))
+    whole.into_iter().chain(test(cell.name(), &a.mean(index), &b.mean(index), (0.0, 0.0)))
 }
 
 /// Emitted is what the lights have, and ends as absorbed or escaped.
@@ -289,11 +282,11 @@ pub fn shrinking(
                 }
             }
         };
-        let reference_of = |index: usize| reference.moments(index);
+        let reference_of = |index: usize| reference.mean(index);
         // The errors of the small maps in each quarter, with their own errors.
         let coarse: [(f64, f64); 4] = std::array::from_fn(|quarter| {
             let at = index / 4 * 4 + quarter;
-            let (a, b) = (small.moments(at), reference_of(at));
+            let (a, b) = (small.mean(at).moments, reference_of(at).moments);
             let error = libm::hypot(a.std_error(), b.std_error());
             (ratio * (a.mean() - b.mean()).abs(), ratio * error)
         });
@@ -304,14 +297,14 @@ pub fn shrinking(
             tests.extend(test(cell.whole_name(), &large.whole(index), &reference.whole(index), allowed));
         }
         let largest = coarse.into_iter().max_by(|a, b| a.0.total_cmp(&b.0)).unwrap_or_default();
-        tests.extend(test(cell.name(), &large.moments(index), &reference_of(index), largest));
+        tests.extend(test(cell.name(), &large.mean(index), &reference_of(index), largest));
     }
     Check::new(name, known(tests))
 }
 
 #[cfg(test)]
 mod tests {
-    use super::super::measure::{Batch, Seen};
+    use super::super::measure::{BATCHES, Batch, Seen};
     use super::*;
     use turbid::math::{ln, sin_cos};
     use turbid::rng::{Purpose, Stream};
@@ -361,7 +354,7 @@ mod tests {
                 (cell.channel + 1) as f64 * (1.0 + shift(cell)) * (1.0 + 0.02 * normal())
             })
         };
-        Measured { batches: (0..count).map(&mut batch).collect() }
+        Measured { batches: (0..count).map(&mut batch).collect(), tails: Vec::new() }
     }
 
     fn seen(all: Measured) -> Seen {
@@ -376,7 +369,7 @@ mod tests {
         assert_eq!(Cell::of(CELLS - 1).name(), "multiple.b bottom right");
         let measured = made(0, 64, |cell| cell.quarter as f64);
         for index in 0..CELLS {
-            let (a, b) = (measured.flipped().moments(index), measured.moments(index ^ 1));
+            let (a, b) = (measured.flipped().mean(index).moments, measured.mean(index ^ 1).moments);
             assert_eq!((a.mean(), Cell::of(index).quarter / 2), (b.mean(), Cell::of(index ^ 1).quarter / 2));
         }
     }
@@ -438,7 +431,10 @@ mod tests {
                 batch[3] *= to;
                 batch
             };
-            let with = |to: f64| Measured { batches: much.batches.iter().map(|b| change(b, to)).collect() };
+            let with = |to: f64| {
+                let batches = much.batches.iter().map(|b| change(b, to)).collect();
+                Measured { batches, tails: Vec::new() }
+            };
             unbiased("a", &with(0.0), &with(light), |_| true)
         };
         assert!(without(10.0).tests.iter().any(|t| t.p < 1e-12));

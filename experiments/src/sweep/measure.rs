@@ -16,7 +16,7 @@ use turbid::photons::Emitter;
 use turbid::photons::maps::{Amount, Emitted, Indirect, MapReport, MapSettings, Maps, counts, fill_counted};
 use turbid::rng::{Purpose, Stream, Work};
 use turbid::scene::{Camera, Scene};
-use turbid::stats::Moments;
+use turbid::stats::{HEAVY_TAIL, Moments, Tail};
 use turbid::transport::{Progress, Roulette, Step, Visitor, Walker, walk};
 
 /// Layers, channels and quarters.
@@ -59,24 +59,63 @@ pub type Batch = [f64; CELLS];
 pub struct Measured {
     /// Independent repetitions.
     pub batches: Vec<Batch>,
+    /// The largest contributions of single paths or histories to each cell; none of photon maps.
+    pub tails: Vec<Tail>,
+}
+
+/// A mean over repetitions.
+#[derive(Debug, Clone)]
+pub struct Mean {
+    /// Over the repetitions.
+    pub moments: Moments,
+    /// Whether its error is not known, by the repetitions or by the tail of what they are made of: what is rare and large may
+    /// not have been drawn, and repetitions without it have small errors.
+    pub is_heavy: bool,
+}
+
+/// Whether nothing can be said of a mean: the variance of variance, above what normal numbers have by their count, is larger
+/// than allowed for [`BATCHES`].
+pub fn is_heavy(m: &Moments) -> bool {
+    let normal = |n: f64| 2.0 / n;
+    let excess = m.vov() - normal(m.n() as f64);
+    excess.is_nan() || excess > HEAVY_TAIL - normal(BATCHES as f64)
 }
 
 impl Measured {
-    /// Moments over the repetitions.
-    pub fn moments(&self, cell: usize) -> Moments {
-        self.batches.iter().map(|batch| batch[cell]).collect()
+    /// So many repetitions to come, of paths or histories.
+    fn with_tails() -> Self {
+        Measured { batches: Vec::new(), tails: vec![Tail::default(); CELLS] }
     }
 
-    /// Moments of the whole picture in the layer and channel of a cell.
-    pub fn whole(&self, cell: usize) -> Moments {
+    /// The mean of a cell.
+    pub fn mean(&self, cell: usize) -> Mean {
+        let moments: Moments = self.batches.iter().map(|batch| batch[cell]).collect();
+        let is_heavy = is_heavy(&moments) || self.tails.get(cell).is_some_and(Tail::is_heavy);
+        Mean { moments, is_heavy }
+    }
+
+    /// The mean of the whole picture in the layer and channel of a cell.
+    pub fn whole(&self, cell: usize) -> Mean {
         let first = cell / 4 * 4;
-        self.batches.iter().map(|batch| batch[first..first + 4].iter().sum::<f64>() / 4.0).collect()
+        let all = |batch: &Batch| batch[first..first + 4].iter().sum::<f64>() / 4.0;
+        let moments: Moments = self.batches.iter().map(all).collect();
+        let mut tail = Tail::default();
+        self.tails.iter().skip(first).take(4).for_each(|part| tail.merge(part));
+        Mean { is_heavy: is_heavy(&moments) || tail.is_heavy(), moments }
     }
 
     /// The same with left and right exchanged.
     pub fn flipped(&self) -> Self {
         let flip = |batch: &Batch| std::array::from_fn(|cell| batch[cell ^ 1]);
-        Measured { batches: self.batches.iter().map(flip).collect() }
+        let tails = (0..self.tails.len()).map(|cell| self.tails[cell ^ 1].clone()).collect();
+        Measured { batches: self.batches.iter().map(flip).collect(), tails }
+    }
+
+    /// Adds what one path or history brought.
+    fn keep(&mut self, one: &Batch) {
+        for (tail, value) in self.tails.iter_mut().zip(one).filter(|(_, value)| **value > 0.0) {
+            tail.push(*value);
+        }
     }
 }
 
@@ -263,10 +302,14 @@ fn batch(
             }
             steps += took;
             quarters.add(&mut all, pixel, &layers, 1.0);
+            let mut one = [0.0; CELLS];
+            quarters.add(&mut one, pixel, &layers, 1.0);
+            seen.all.keep(&one);
             if is_specular_ahead(scene, &ray) {
                 seen.has_specular = true;
             } else {
                 quarters.add(&mut straight, pixel, &layers, 1.0);
+                seen.straight.keep(&one);
             }
         }
     }
@@ -304,7 +347,8 @@ fn in_batches(
 ) -> Result<Seen, Failure> {
     let each = batch(on, (seed, PILOT), Spread::of(1.0), clock, sample, &mut Seen::default())?;
     let spread = Spread::of(steps / (BATCHES as f64 * each.max(1.0)));
-    let mut seen = Seen::default();
+    let mut seen =
+        Seen { all: Measured::with_tails(), straight: Measured::with_tails(), has_specular: false };
     for replicate in 0..BATCHES as u64 {
         batch(on, (seed, replicate), spread, clock, sample, &mut seen)?;
     }
@@ -344,14 +388,17 @@ pub fn light(scene: &Scene, camera: &Camera, seed: u64, effort: &Effort) -> Resu
     }
     let each = (steps / TRIALS as f64).max(0.1);
     let histories = (effort.steps / (BATCHES as f64 * each)).clamp(16.0, 1e6) as u64;
-    let mut measured = Measured::default();
+    let mut measured = Measured::with_tails();
     for replicate in 0..BATCHES as u64 {
         let mut sums = [0.0; CELLS];
         for history in 0..histories {
             if history % 64 == 0 {
                 clock.check()?;
             }
-            one(replicate, history, &mut sums).ok_or_else(broken)?;
+            let mut brought = [0.0; CELLS];
+            one(replicate, history, &mut brought).ok_or_else(broken)?;
+            measured.keep(&brought);
+            sums.iter_mut().zip(brought).for_each(|(sum, value)| *sum += value);
         }
         measured.batches.push(means(sums, quarters.counts.map(|pixels| pixels * histories as f64)));
     }

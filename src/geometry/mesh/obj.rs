@@ -37,9 +37,12 @@ struct Obj {
     has_uvs: bool,
 }
 
+/// Larger files are refused: some 10 million triangles.
+const MOST_BYTES: u64 = 1 << 30;
+
 pub fn read(path: &Path, place: impl Fn(DVec3) -> DVec3) -> Result<Mesh> {
     let name = path.display();
-    let bytes = std::fs::read(path).map_err(|e| Error::Scene(format!("{name}: {e}")))?;
+    let bytes = crate::input::read(path, MOST_BYTES).map_err(|e| Error::Scene(format!("{name}: {e}")))?;
     parse(&String::from_utf8_lossy(&bytes), place).map_err(|e| match e {
         Failure::At(line, what) => Error::Scene(format!("{name}:{line}: {what}")),
         Failure::Whole(what) => Error::Scene(format!("{name}: {what}")),

@@ -16,8 +16,11 @@ pub struct Image {
     pixels: Vec<[f32; 3]>,
 }
 
-/// More pixels than this are refused: 2^28, 3 GB.
-const MAX_PIXELS: u64 = 1 << 28;
+/// More pixels than this are refused, before any is decoded: 8192 x 8192, 0.8 GB, and up to 1.7 GB while they are read.
+const MAX_PIXELS: u64 = 1 << 26;
+
+/// Larger files are refused: so many pixels in 16 bits, not compressed.
+const MOST_BYTES: u64 = 8 * MAX_PIXELS + (1 << 20);
 
 /// Linear light of a value of the sRGB transfer function (IEC 61966-2-1), both in [0, 1].
 fn linear(value: f64) -> f64 {
@@ -32,7 +35,7 @@ impl Image {
     pub fn read(path: &Path) -> Result<Self> {
         let name = path.display();
         let refuse = |what: String| Error::Scene(format!("{name}: {what}"));
-        let bytes = std::fs::read(path).map_err(|e| refuse(e.to_string()))?;
+        let bytes = crate::input::read(path, MOST_BYTES).map_err(|e| refuse(e.to_string()))?;
         if !bytes.starts_with(b"\x89PNG\r\n\x1a\n") {
             return Err(refuse("no PNG file; allowed: PNG of 8 or 16 bits".into()));
         }
@@ -40,15 +43,15 @@ impl Image {
         let reader = || image::io::Reader::with_format(std::io::Cursor::new(&bytes), image::ImageFormat::Png);
         let (width, height) = reader().into_dimensions().map_err(broken)?;
         if u64::from(width) * u64::from(height) > MAX_PIXELS {
-            return Err(refuse(format!("{width} x {height} pixels; allowed: up to 2^28")));
+            return Err(refuse(format!("{width} x {height} pixels; allowed: up to 2^26")));
         }
         let picture = reader().decode().map_err(broken)?;
         let pixels = if picture.color().bytes_per_pixel() / picture.color().channel_count() == 1 {
             let table: Vec<f32> = (0..=255).map(|i| linear(f64::from(i) / 255.0) as f32).collect();
-            picture.to_rgb8().pixels().map(|p| p.0.map(|c| table[usize::from(c)])).collect()
+            picture.into_rgb8().pixels().map(|p| p.0.map(|c| table[usize::from(c)])).collect()
         } else {
             let decode = |c: u16| linear(f64::from(c) / 65535.0) as f32;
-            picture.to_rgb16().pixels().map(|p| p.0.map(decode)).collect()
+            picture.into_rgb16().pixels().map(|p| p.0.map(decode)).collect()
         };
         Image::new(width as usize, height as usize, pixels).map_err(|e| refuse(e.to_string()))
     }
