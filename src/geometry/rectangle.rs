@@ -2,7 +2,7 @@
 
 use super::{Front, Hit};
 use crate::error::{Error, Result};
-use crate::math::Ray;
+use crate::math::{Interval, Ray};
 use glam::{DVec2, DVec3};
 
 /// Planes nearer than this part of the size and place of what lies in them are one: rounding is far below, and a gap that
@@ -114,6 +114,19 @@ impl Rectangle {
         let p = p - self.corner;
         let (a, b) = (p.dot(self.u), p.dot(self.v));
         (0.0..=self.u.length_squared()).contains(&a) && (0.0..=self.v.length_squared()).contains(&b)
+    }
+
+    /// The part of a ray in front of the rectangle, straight above it.
+    pub(crate) fn above(&self, ray: &Ray) -> Option<Interval> {
+        let from = ray.origin - self.corner;
+        let between = |edge: DVec3| {
+            let (at_0, slope) = (from.dot(edge), ray.dir.dot(edge));
+            let beyond = Interval::of_positive(edge.length_squared() - at_0, -slope);
+            Interval::of_positive(at_0, slope).intersection(beyond)
+        };
+        let in_front = Interval::of_positive(from.dot(self.normal), ray.dir.dot(self.normal));
+        let ahead = Interval { start: 0.0, end: f64::INFINITY };
+        between(self.u)?.intersection(between(self.v)?)?.intersection(in_front)?.intersection(ahead)
     }
 
     /// Where a point lies along the edges, each of length 1, seen along the normal.

@@ -4,7 +4,8 @@
 //! the transmittance; each event connects to every light that can be aimed at, to a volume source from outside of its
 //! ball along one whole ray. Where both can find the same light, the balance heuristic shares it between them. Towards a point light a second point on the ray is sampled with
 //! equal angles, in multiple importance with the free flight: connections from free flights alone would have an
-//! infinite variance, and equal angles alone miss the rays that run through the light itself.
+//! infinite variance, and equal angles alone miss the rays that run through the light itself. For a beam the second point is
+//! sampled evenly where the beam crosses the ray: free flights hardly ever end in a narrow one.
 
 use super::{Layer, Layers};
 use crate::Spectrum;
@@ -18,7 +19,7 @@ use crate::rng::Stream;
 use crate::scene::{Orders, Scene, SceneHit, Start, Target, decay};
 use crate::surface::Surface;
 use crate::transport::{
-    Arrival, EqualAngles, Flags, Roulette, Step, Visitor, Walker, collected, connection, emission, span,
+    Arrival, Distances, Flags, Roulette, Step, Visitor, Walker, collected, connection, emission, span,
     transmittance, walk,
 };
 use glam::DVec3;
@@ -133,7 +134,7 @@ impl<'a, F: FnMut(u32, Layer, Spectrum)> PathVisitor<'a, F> {
         from: Option<Start>,
         stream: &mut Stream,
         scattered: impl Fn(DVec3) -> (Spectrum, f64),
-        point_share: impl Fn(DVec3) -> f64,
+        delta_share: impl Fn(&Light) -> f64,
     ) {
         if !self.orders.contains(walker.order + 1) || !self.scene.plan().has_next_event {
             return;
@@ -147,10 +148,9 @@ impl<'a, F: FnMut(u32, Layer, Spectrum)> PathVisitor<'a, F> {
                 continue;
             };
             let (fraction, pdf) = scattered(sample.dir);
-            let share = match (light.apex(), sample.pdf_solid_angle) {
-                (Some(apex), _) => point_share(apex),
-                (_, Some(pdf_light)) => pdf_light / (pdf_light + pdf),
-                (_, None) => 1.0,
+            let share = match sample.pdf_solid_angle {
+                Some(pdf_light) => pdf_light / (pdf_light + pdf),
+                None => delta_share(light),
             };
             let order = if planted(Fault::OrderOffByOne) { walker.order } else { walker.order + 1 };
             self.add(order, layer, walker.weight * fraction * received * share);
@@ -164,19 +164,18 @@ impl<'a, F: FnMut(u32, Layer, Spectrum)> PathVisitor<'a, F> {
         }
     }
 
-    /// A connection from a point chosen with equal angles about each point or spot light.
-    fn equiangular(&mut self, walker: &Walker, hit: Option<&SceneHit>, stream: &mut Stream) {
+    /// A connection from a point of the ray that is chosen for each light for which distances are.
+    fn connect_from_ray(&mut self, walker: &Walker, hit: Option<&SceneHit>, stream: &mut Stream) {
         let (scene, ray) = (self.scene, &walker.ray);
         let plan = scene.plan();
-        if plan.point_lights.is_empty() || !plan.has_media || !self.orders.contains(walker.order + 1) {
+        if plan.distance_lights.is_empty() || !plan.has_media || !self.orders.contains(walker.order + 1) {
             return;
         }
         let end = hit.map_or(f64::INFINITY, |h| h.hit.t);
         let Some(span) = span(scene, ray, end, walker.within) else { return };
-        for &index in &plan.point_lights {
-            let Some(apex) = scene.lights()[index].apex() else { continue };
-            let equal_angles = EqualAngles::new(ray, apex, span);
-            let Some(t) = equal_angles.sample(stream.unit()) else { continue };
+        for &index in &plan.distance_lights {
+            let Some(distances) = Distances::of(&scene.lights()[index], ray, span) else { continue };
+            let Some(t) = distances.sample(stream.unit()) else { continue };
             let segments = scene.segments(ray, end, walker.within);
             let Some(segment) = segments.iter().find(|s| t <= s.interval.end) else { continue };
             if t < segment.interval.start {
@@ -192,7 +191,7 @@ impl<'a, F: FnMut(u32, Layer, Spectrum)> PathVisitor<'a, F> {
             let fraction = medium.albedo(position) * medium.phase().eval(one_minus_mu, one_plus_mu);
             let density = transmittance(scene, ray, t, walker.within, stream) * medium.sigma_t(position);
             // Balance heuristic of the two densities; their sum divides, so neither can be small alone.
-            let sum = equal_angles.pdf(t) + flight_pdf(scene, walker, (t, medium), ray, end);
+            let sum = distances.pdf(t) + flight_pdf(scene, walker, (t, medium), ray, end);
             let layer = self.layer_connected(walker, Flags::MEDIUM);
             self.add(walker.order + 1, layer, walker.weight * fraction * density * received / sum);
         }
@@ -226,7 +225,7 @@ impl<F: FnMut(u32, Layer, Spectrum)> Visitor for PathVisitor<'_, F> {
                 self.rays.segments += 1;
                 self.end = hit.map_or(f64::INFINITY, |h| h.hit.t);
                 self.ahead(walker, hit, stream);
-                self.equiangular(walker, hit, stream);
+                self.connect_from_ray(walker, hit, stream);
             }
             Step::Collision(Arrival { position, .. }, number) => {
                 let medium = self.scene.medium(number);
@@ -239,18 +238,19 @@ impl<F: FnMut(u32, Layer, Spectrum)> Visitor for PathVisitor<'_, F> {
                 };
                 let scene = self.scene;
                 let end = if planted(Fault::WallForgotten) { f64::INFINITY } else { self.end };
-                let point_share = |apex: DVec3| {
+                let delta_share = |light: &Light| {
                     let t = position.distance(walker.ray.origin);
                     let Some(span) = span(scene, &walker.ray, end, walker.within) else { return 1.0 };
-                    let pdf = EqualAngles::new(&walker.ray, apex, span).pdf(t);
-                    // Where equal angles have no density the flight stands alone, be its own ever so small.
+                    let pdf =
+                        Distances::of(light, &walker.ray, span).map_or(0.0, |distances| distances.pdf(t));
+                    // Where distances have no density the flight stands alone, be its own ever so small.
                     if pdf == 0.0 {
                         return 1.0;
                     }
                     let flight = flight_pdf(scene, walker, (t, medium), &walker.ray, end);
                     flight / (flight + pdf)
                 };
-                self.connect((walker, Flags::MEDIUM), position, None, stream, scattered, point_share);
+                self.connect((walker, Flags::MEDIUM), position, None, stream, scattered, delta_share);
                 self.scattered(walker, Flags::MEDIUM);
             }
             Step::Surface(Arrival { position, .. }, found) => {

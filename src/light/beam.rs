@@ -5,7 +5,7 @@ use super::{Bundle, EmissionCell, EmissionNumbers, LightSample, Stage, emissive}
 use crate::Spectrum;
 use crate::error::{Error, Result};
 use crate::geometry::{Face, Rectangle, Sphere};
-use crate::math::{Frame, Ray, warp};
+use crate::math::{Frame, Interval, Ray, warp};
 use glam::DVec3;
 use std::f64::consts::PI;
 
@@ -126,6 +126,31 @@ impl Beam {
             }
             // By its plane, not by a hit: points on the section itself are lit too, as those of a disc are.
             Section::Rectangle(r) => Some(r.height(p)).filter(|along| *along >= 0.0 && r.covers(p)),
+        }
+    }
+
+    /// The part of a ray that the beam lights, within its sides and not before its section; none too of an unbounded beam,
+    /// which has no sides.
+    pub fn interval(&self, ray: &Ray) -> Option<Interval> {
+        match self.section {
+            Section::Unbounded => None,
+            Section::Disc { center, radius } => {
+                let from = ray.origin - center;
+                let (along, slope) = (from.dot(self.dir), ray.dir.dot(self.dir));
+                let (off, across) = (from - self.dir * along, ray.dir - self.dir * slope);
+                let square = across.length_squared();
+                let inside = if square > 0.0 {
+                    let nearest = -off.dot(across) / square;
+                    let left = radius * radius - (off + across * nearest).length_squared();
+                    let half = (left.max(0.0) / square).sqrt();
+                    Interval { start: nearest - half, end: nearest + half }
+                } else {
+                    Interval::of_positive(radius - off.length(), 0.0)
+                };
+                let ahead = Interval { start: 0.0, end: f64::INFINITY };
+                inside.intersection(Interval::of_positive(along, slope))?.intersection(ahead)
+            }
+            Section::Rectangle(r) => r.above(ray),
         }
     }
 

@@ -127,6 +127,11 @@ impl Light {
         }
     }
 
+    /// Whether it lights a part of space with sides: a bounded beam.
+    pub fn is_shaft(&self) -> bool {
+        matches!(self, Light::Beam(l) if l.section() != Section::Unbounded)
+    }
+
     /// Makes the photons of a sun cover what is in the scene, unless it was told what to cover.
     ///
     /// # Errors

@@ -33,6 +33,18 @@ pub struct Interval {
 }
 
 impl Interval {
+    /// Where `at_0 + slope t` is at least 0; may be empty, with its ends swapped.
+    pub fn of_positive(at_0: f64, slope: f64) -> Self {
+        let (start, end) = (f64::NEG_INFINITY, f64::INFINITY);
+        let root = -at_0 / slope;
+        match slope {
+            s if s > 0.0 => Interval { start: root, end },
+            s if s < 0.0 => Interval { start, end: root },
+            _ if at_0 >= 0.0 => Interval { start, end },
+            _ => Interval { start: end, end: start },
+        }
+    }
+
     /// Length \[L\]; zero if the ends are swapped.
     pub fn length(&self) -> f64 {
         (self.end - self.start).max(0.0)

@@ -33,8 +33,8 @@ pub struct Plan {
     pub has_filters: bool,
     /// Whether some light has a direction to aim at.
     pub has_next_event: bool,
-    /// Indices of lights in one point (point and spot): equiangular sampling towards them.
-    pub point_lights: Vec<usize>,
+    /// Indices of lights for which a distance is sampled on every ray: in one point (point and spot), and bounded beams.
+    pub distance_lights: Vec<usize>,
     /// Whether the first collision is forced: the media are so thin that free flights would rarely meet them.
     pub forces_first_collision: bool,
     /// Path classes that the path tracer cannot sample, in words; photons reach them all.
@@ -92,7 +92,9 @@ impl Plan {
                 .any(|o| matches!(&o.surface, Surface::Dielectric(boundary) if boundary.is_matched())),
             has_filters: parts.objects.iter().any(|o| matches!(o.surface, Surface::Filter(_))),
             has_next_event: parts.lights.iter().any(Light::has_direction),
-            point_lights: (0..parts.lights.len()).filter(|&i| parts.lights[i].apex().is_some()).collect(),
+            distance_lights: (0..parts.lights.len())
+                .filter(|&i| parts.lights[i].apex().is_some() || parts.lights[i].is_shaft())
+                .collect(),
             forces_first_collision: regions().next().is_some() && thickest < THIN && !has_heterogeneous,
             unreachable,
             is_full: false,
@@ -155,9 +157,11 @@ impl Plan {
         if !self.has_next_event {
             lines.push("no light to aim at: no next-event estimation".to_string());
         }
-        if !self.point_lights.is_empty() {
+        if !self.distance_lights.is_empty() {
             lines.push(
-                "point lights: equiangular sampling, in multiple importance with free flight".to_string(),
+                "point lights and beams: distances sampled by equal angles or within the beam, in multiple importance with \
+                 free flight"
+                    .to_string(),
             );
         }
         lines

@@ -1,5 +1,6 @@
 //! Equal angles: distances on a ray chosen for a point beside it, a light or an eye.
 
+use crate::light::Light;
 use crate::math::{Interval, Ray, atan2, sin_cos};
 use crate::scene::Scene;
 use glam::DVec3;
@@ -65,6 +66,44 @@ impl EqualAngles {
         let Some(angle) = self.angle else { return 0.0 };
         let past = t - self.nearest;
         1.0 / (angle * (self.distance * self.distance + past * past))
+    }
+}
+
+/// Distances on a ray chosen for a light: by equal angles about the point that it comes from, or evenly where a beam
+/// crosses the ray.
+pub enum Distances {
+    /// About a point.
+    EqualAngles(EqualAngles),
+    /// Even on this part.
+    Even(Interval),
+}
+
+impl Distances {
+    /// Those for a light on a stretch of the ray; none for other lights, and where a beam does not cross it or never leaves it.
+    pub fn of(light: &Light, ray: &Ray, span: Interval) -> Option<Self> {
+        if let Some(apex) = light.apex() {
+            return Some(Distances::EqualAngles(EqualAngles::new(ray, apex, span)));
+        }
+        let Light::Beam(beam) = light else { return None };
+        let part = beam.interval(ray)?.intersection(span)?;
+        part.length().is_finite().then_some(Distances::Even(part))
+    }
+
+    /// A distance \[L\], from a number in [0, 1).
+    pub fn sample(&self, u: f64) -> Option<f64> {
+        match self {
+            Distances::EqualAngles(angles) => angles.sample(u),
+            Distances::Even(part) => Some((part.start + u * part.length()).min(part.end)),
+        }
+    }
+
+    /// Density of [`Self::sample`] [1/L].
+    pub fn pdf(&self, t: f64) -> f64 {
+        match self {
+            Distances::EqualAngles(angles) => angles.pdf(t),
+            Distances::Even(part) if (part.start..=part.end).contains(&t) => 1.0 / part.length(),
+            Distances::Even(_) => 0.0,
+        }
     }
 }
 

@@ -13,7 +13,7 @@ mod walk;
 
 pub use blocks::{BLOCK, NoProgress, Progress, run_blocks};
 pub use emission::{collected, emission};
-pub use equal_angles::{EqualAngles, span};
+pub use equal_angles::{Distances, EqualAngles, span};
 pub use flags::Flags;
 pub use flight::{Flight, free_flight};
 pub use roulette::Roulette;

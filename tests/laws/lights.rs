@@ -177,6 +177,27 @@ proptest! {
         }
     }
 
+    /// The part of a ray that a beam lights holds the points that it lights, and no others.
+    #[test]
+    fn a_beam_crosses_a_ray_where_it_lights_it(x in -3.0..3.0f64, y in -3.0..3.0f64, z in -3.0..3.0f64, mu in -1.0..=1.0f64, azimuth in 0.0..6.3f64, t in 0.0..8.0f64, tilt in -1.0..=1.0f64) {
+        let frame = turbid::math::Frame::new(unit_vector(tilt, 1.0 + azimuth));
+        let center = DVec3::new(0.1, 0.2, -0.3);
+        let corner = center - frame.x - 0.5 * frame.y;
+        let square = Section::Rectangle(rectangle(corner, frame.x * 2.0, frame.y));
+        for section in [square, Section::Disc { center, radius: 0.8 }] {
+            let beam = Beam::new(frame.z, Spectrum::ONE, section).unwrap();
+            // Any way, along the beam, and across it.
+            for dir in [unit_vector(mu, azimuth), frame.z, -frame.z, frame.x] {
+                let ray = Ray::new(DVec3::new(x, y, z), dir);
+                let part = beam.interval(&ray);
+                let is_lit = Light::Beam(beam).sample(ray.at(t), [0.5; 2]).is_some();
+                let is_in = part.is_some_and(|part| (part.start..=part.end).contains(&t));
+                let is_at_end = part.is_some_and(|part| (t - part.start).abs().min((t - part.end).abs()) < 1e-9);
+                prop_assert!(is_lit == is_in || is_at_end, "{section:?} {ray:?} {t} {part:?}");
+            }
+        }
+    }
+
     /// Seen from behind or inside nothing is sampled and nothing is met.
     #[test]
     fn lights_are_dark_from_behind(z in -1.0..=1.0f64, azimuth in 0.0..6.3f64, u in 0.0..1.0f64, v in 0.0..1.0f64) {

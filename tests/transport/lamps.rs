@@ -2,8 +2,8 @@
 
 use crate::support::run::{histories, numbers, pass, paths};
 use crate::support::scenes::{
-    area_light, bounded, cuboid, dielectric, filled, homogeneous, lambertian, outflow, rectangle, sphere,
-    volume_source,
+    area_light, bounded, cuboid, dielectric, filled, homogeneous, lambertian, outflow, rectangle, region,
+    sphere, volume_source,
 };
 use crate::support::verdict;
 use glam::{DVec2, DVec3};
@@ -13,8 +13,8 @@ use turbid::Spectrum;
 use turbid::geometry::{Face, Ground, Rectangle, Shape, Up, Waves, height_field};
 use turbid::integrators::mapper::{Mapper, Settings};
 use turbid::integrators::{Layer, path};
-use turbid::light::{Area, Light};
-use turbid::math::{Frame, Ray};
+use turbid::light::{Area, Beam, Light, Section};
+use turbid::math::{Frame, Ray, exp};
 use turbid::photons::maps::{Indirect, MapReport, Maps};
 use turbid::scene::{Interior, Object, Orders, Parts, Quantity, Scene};
 use turbid::sensor::sample;
@@ -93,7 +93,7 @@ fn small_volume_sources_are_aimed_at() {
         let scene = bounded(Vec::new(), objects, vec![volume_source(shape)]);
         let radiance = passed / (4.0 * PI * PI * distance * distance);
         let by_paths = numbers(N, 4, |stream| path::layers(&scene, ray, None, 0, stream).0[Layer::Direct][0]);
-        verdict::agrees(&format!("{what}, paths"), &by_paths, (radiance, 0.0), 0.01, 4);
+        verdict::agrees(&format!("{what}, paths"), &by_paths, (radiance, 0.0), 0.02 * radiance, 4);
         let maps = Maps {
             global: None,
             caustic: None,
@@ -104,7 +104,46 @@ fn small_volume_sources_are_aimed_at() {
         let settings = Settings::for_scene(&scene, 100).unwrap();
         let mapper = Mapper::new(&scene, &maps, &settings);
         let by_mapper = numbers(N, 5, |stream| mapper.radiance(ray, None, 0, stream).0[Layer::Direct][0]);
-        verdict::agrees(&format!("{what}, photon mapper"), &by_mapper, (radiance, 0.0), 0.01, 5);
+        verdict::agrees(&format!("{what}, photon mapper"), &by_mapper, (radiance, 0.0), 0.02 * radiance, 5);
+    }
+}
+
+/// A beam a thousandth of a mean free path wide, seen from the side, from behind and along its shaft: single scattering is a
+/// closed form. Of free flights one in a thousand would end in it.
+#[test]
+fn narrow_beams_are_met_by_every_ray_that_crosses_them() {
+    let (half, sigma_t, albedo, irradiance) = (5e-4, 1.0, 0.8, 1e3);
+    let fog = || vec![region(cuboid(DVec3::splat(-1.0), DVec3::splat(1.0)), sigma_t, albedo, 0.0)];
+    let corner = DVec3::new(-half, -half, -2.0);
+    let square = Section::Rectangle(rectangle(corner, DVec3::X * 2.0 * half, DVec3::Y * 2.0 * half));
+    let round = Section::Disc { center: DVec3::Z * -2.0, radius: half };
+    // Origin, direction, and where the ray enters and leaves the beam; light has come to a height h through 1 + h.
+    let eyes = [
+        ("from the side", DVec3::new(3.0, 0.0, 0.25), DVec3::NEG_X, (3.0 - half, 3.0 + half)),
+        (
+            "obliquely",
+            DVec3::new(0.0, -1.5, -1.5),
+            DVec3::new(0.0, 0.6, 0.8),
+            (2.5 - half / 0.6, 2.5 + half / 0.6),
+        ),
+        ("along it", DVec3::new(0.0, 0.0, 3.0), DVec3::NEG_Z, (2.0, 4.0)),
+    ];
+    for (name, section) in [("square", square), ("round", round)] {
+        for (what, origin, dir, (near, far)) in eyes {
+            let beam = Light::Beam(Beam::new(DVec3::Z, Spectrum::grey(irradiance), section).unwrap());
+            let ray = Ray::new(origin, dir);
+            let scene = bounded(fog(), Vec::new(), vec![beam]);
+            let enters = scene.regions()[0].shape.interval(&ray).unwrap().start;
+            // int of e^(-(1 + z) - (t - enters)) over the beam: an exponential in t.
+            let rate = sigma_t * (1.0 + dir.z);
+            let at = |t: f64| exp(-sigma_t * (1.0 + origin.z + dir.z * t + t - enters));
+            let integral = if rate == 0.0 { at(near) * (far - near) } else { (at(near) - at(far)) / rate };
+            let radiance = irradiance * albedo * sigma_t / (4.0 * PI) * integral;
+            let by_paths =
+                numbers(N, 6, |stream| path::layers(&scene, ray, None, 0, stream).0[Layer::Single][0]);
+            let promise = 0.02 * radiance;
+            verdict::agrees(&format!("{name}, {what}"), &by_paths, (radiance, 0.0), promise, 6);
+        }
     }
 }
 

@@ -8,7 +8,7 @@ use turbid::stats::{POWER_QUANTILE, student_critical, student_p};
 
 /// Level at which a number is measured again: what is no matter of chance must be seen then too, so that it may be larger than
 /// that of tests which decide.
-const ALPHA: f64 = 1e-5;
+const ALPHA: f64 = 1e-4;
 
 /// The smallest deviation that is hardly ever missed at this level.
 fn smallest_deviation(std_error: f64, freedom: u64) -> f64 {
@@ -374,17 +374,21 @@ mod tests {
         }
     }
 
-    /// Right pairs, 100 of 72 numbers: no alarm at 10^-5. One number of one is off by what the comparison says it sees.
+    /// Right pairs, 100 of 90 numbers: at 10^-4 one is measured again in the mean, six or more are in one of a thousand such
+    /// sets. One number of one is off by what the comparison says it sees.
     #[test]
     fn two_means_differ_where_they_do() {
         let alarms = |check: &Check| check.tests.iter().filter(|t| t.is_suspicious()).count();
+        let mut again = 0;
         for set in 0..100 {
             let (a, b) = (made(2 * set, BATCHES, |_| 0.0), made(2 * set + 1, BATCHES, |_| 0.0));
             let check = unbiased("a", &a, &b, |_| true);
-            assert_eq!((check.tests.len(), alarms(&check)), (CELLS / 4 * 5, 0), "{:?}", check.worst());
-            // 0.02 sqrt(2/64) times 6.7 (126 degrees of freedom), half of it for the whole picture.
-            assert!((check.smallest.unwrap() - 0.0122).abs() < 0.002, "{:?}", check.smallest);
+            assert_eq!(check.tests.len(), CELLS / 4 * 5);
+            again += alarms(&check);
+            // 0.02 sqrt(2/64) times 6.4 (126 degrees of freedom), half of it for the whole picture.
+            assert!((check.smallest.unwrap() - 0.0113).abs() < 0.001, "{:?}", check.smallest);
         }
+        assert!(again < 6, "{again}");
         let dark = Cell::of(40);
         let wrong = made(1000, BATCHES, |cell| if cell == dark { -0.035 } else { 0.0 });
         let check = unbiased("a", &wrong, &made(1001, BATCHES, |_| 0.0), |_| true);

@@ -19,7 +19,9 @@
 //! # Criteria
 //!
 //! *Two unbiased means* differ by chance as Student's t says: 64 independent repetitions each, Welch's degrees of freedom. A
-//! number whose variance is itself unknown (variance of variance above 0.1) is not tested.
+//! number whose variance is itself unknown is not tested: variance of variance above 0.1, or single paths or histories with a
+//! tail of shape 1/2 or more, whose largest contributions may not have been drawn (a lamp that paths find in a mirror, after
+//! a collision, with one in 20,000).
 //!
 //! *Photon maps.* An estimate from a radius r reads the mean of its field over r. Where the field is smooth the error of that is
 //! in proportion to r^2; within r of an edge (a shadow's, a body's, a medium's) it is of the order of the field, and the part of a quarter
@@ -29,13 +31,13 @@
 //! matter of the radius. (The reach of an estimate that finds too few is made larger in the same ratio at N, so that r
 //! shrinks there too. Errors of either sign may cancel at r1 in one quarter: the largest of the four counts.)
 //!
-//! *Alarms.* A number with p < 10^-5 is measured once more, on another seed with four times the samples of the whole
+//! *Alarms.* A number with p < 10^-4 is measured once more, on another seed with four times the samples of the whole
 //! effort. Only these second numbers decide, by Holm over all of them in the run, family-wise 10^-3: the family is what the first ones chose, and its
 //! data are independent of the choice. Both are printed, with the smallest scene that still shows an alarm
 //! (`shrink`).
 //!
 //! *Sharpness.* Every number says the smallest deviation that it would have shown with 99 per cent power,
-//! (t + 2.4) standard errors at 10^-5, and what the radius explains besides. In a layer and channel that is the number of the
+//! (t + 2.4) standard errors at 10^-4, and what the radius explains besides. In a layer and channel that is the number of the
 //! sharpest comparison of unbiased pictures; where the layer is made by photon maps, the larger of this and that of the maps.
 //! A scene's number is the median over light: half of it is where so much would have been seen. Above 20 per cent
 //! the scene counts as undecided; a run in which more than a tenth is so does not pass.
