@@ -294,6 +294,75 @@ fn only_chooses_experiments_and_knows_their_names() {
     );
 }
 
+/// A folder is one study's at a time, whatever becomes of that one.
+#[test]
+fn a_folder_holds_one_study_at_a_time() {
+    let folder = tempfile::tempdir().unwrap();
+    let held = fs::File::create(folder.path().join(".lock")).unwrap();
+    held.lock().unwrap();
+    let error = run(&fake::study(), &settings(folder.path())).unwrap_err().to_string();
+    assert!(error.starts_with("another study is at work in ") && error.contains("allowed: "), "{error}");
+    assert!(!folder.path().join("cells").exists());
+    drop(held);
+    assert_eq!(run(&fake::study(), &settings(folder.path())).unwrap().measured, 64);
+}
+
+/// A cell of other settings that comes into the folder after its cells were looked through.
+#[test]
+fn cells_of_two_seeds_do_not_mix() {
+    let intruded = Experiment {
+        measure: |settings, cell| {
+            if cell.replicate == 40 {
+                fs::copy(settings.out.join("other.csv"), settings.out.join("cells/fake/slab-000000.csv"))?;
+            }
+            (fake::FAKE.measure)(settings, cell)
+        },
+        ..fake::FAKE
+    };
+    let (other, folder) = (tempfile::tempdir().unwrap(), tempfile::tempdir().unwrap());
+    run(&fake::study(), &Settings { seed: 2, ..settings(other.path()) }).unwrap();
+    fs::copy(other.path().join("cells/fake/slab-000000.csv"), folder.path().join("other.csv")).unwrap();
+    let study = Study { experiments: &[intruded], ..fake::study() };
+    let one = Settings { threads: 1, ..settings(folder.path()) };
+    let error = format!("{:#}", run(&study, &one).unwrap_err());
+    assert!(error.contains("by other settings (quick, seed 2, not quick, seed 1)"), "{error}");
+    assert!(!folder.path().join("report.html").exists());
+}
+
+/// An experiment that cannot predict or conclude, or panics there, says so; the others and the report stand.
+#[test]
+fn an_experiment_without_a_conclusion_stops_no_other() {
+    let mute =
+        Experiment { name: "mute", conclude: |_, _, _| anyhow::bail!("panel 2 is empty"), ..fake::FAKE };
+    let rash = Experiment { name: "rash", conclude: |_, _, _| panic!("3 of 2"), ..fake::FAKE };
+    let blind = Experiment { name: "blind", predict: |_| anyhow::bail!("no field"), ..fake::FAKE };
+    let folder = tempfile::tempdir().unwrap();
+    let study = Study { experiments: &[mute, rash, blind, fake::FAKE], ..fake::study() };
+    let outcome = run(&study, &settings(folder.path())).unwrap();
+    let failures: Vec<Option<&str>> = outcome.sections.iter().map(|s| s.failure.as_deref()).collect();
+    let expected = ["panel 2 is empty", "it panicked", "predictions of blind: no field"].map(Some);
+    assert_eq!((&failures[..3], failures[3]), (&expected[..], None));
+    assert_eq!((outcome.measured, outcome.sections[3].judged.len()), (3 * 64, 4));
+    let page = String::from_utf8(read(folder.path(), "report.html")).unwrap();
+    assert!(page.contains("No conclusion: panel 2 is empty."));
+    let alone = Study { experiments: &[mute], ..fake::study() };
+    let only = Settings { only: vec!["mute".to_string()], ..settings(folder.path()) };
+    assert_eq!(run(&alone, &only).unwrap().strict_code(), 3);
+}
+
+/// `--fresh --only` forgets the cells of the experiments that it names.
+#[test]
+fn fresh_leaves_the_cells_of_others() {
+    let other = Experiment { name: "other", ..fake::FAKE };
+    let folder = tempfile::tempdir().unwrap();
+    let study = Study { experiments: &[fake::FAKE, other], ..fake::study() };
+    let plain = settings(folder.path());
+    assert_eq!(run(&study, &plain).unwrap().measured, 128);
+    let fresh = Settings { fresh: true, only: vec!["other".to_string()], ..plain.clone() };
+    assert_eq!(run(&study, &fresh).unwrap().measured, 64);
+    assert_eq!(run(&study, &plain).unwrap().measured, 0);
+}
+
 /// Says how many rows the sections before it have, and claims it if there are any settings to run all of them.
 fn count_rows(settings: &Settings, sections: &[SectionReport]) -> anyhow::Result<Section> {
     let rows: usize = sections.iter().map(|s| s.section.rows.len()).sum();

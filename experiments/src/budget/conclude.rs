@@ -324,6 +324,7 @@ mod tests {
             judged: Vec::new(),
             counters: Vec::new(),
             cells: (0, 0.0),
+            failure: None,
         }
     }
 

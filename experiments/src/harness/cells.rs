@@ -46,14 +46,23 @@ fn telling(rows: &[cell::CellRow]) -> Option<String> {
 }
 
 impl Cells {
-    /// Reads the files of all cells; refuses a set that is not complete, and maps of one group that are the same.
-    pub(super) fn read(folder: &Path, expected: &[CellId]) -> anyhow::Result<Self> {
+    /// Reads the files of all cells; refuses a set that is not complete or not of these settings, and maps of one group that
+    /// are the same.
+    pub(super) fn read(folder: &Path, expected: &[CellId], settings: &str) -> anyhow::Result<Self> {
         let mut ids = expected.to_vec();
         ids.sort_by_key(CellId::id);
         let (mut cells, mut seen) = (Cells::default(), HashMap::new());
         for (index, id) in ids.iter().enumerate() {
             let (header, rows) =
                 cell::read(&folder.join(format!("{}.csv", id.id()))).context("the set is incomplete")?;
+            ensure!(
+                header.settings == settings && header.id == id.id(),
+                "cell {} in {} is that of {} by other settings ({}, not {settings})",
+                id.id(),
+                folder.display(),
+                header.id,
+                header.settings
+            );
             if let Some(digest) = telling(&rows)
                 && let Some(first) = seen.insert((id.group.as_str(), digest), id)
             {

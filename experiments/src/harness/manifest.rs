@@ -34,8 +34,13 @@ impl Manifest {
         let path = folder.join(FILE);
         let earlier = std::fs::read(&path).ok().map(|bytes| serde_json::from_slice::<Manifest>(&bytes).ok());
         if settings.fresh && earlier.is_some() {
-            // Only a folder with a manifest is ours to empty.
-            std::fs::remove_dir_all(folder).with_context(|| format!("cannot empty {}", folder.display()))?;
+            // Only a folder with a manifest is ours to empty; of some experiments only their own cells are.
+            let own = settings.only.iter().map(|name| folder.join(name)).filter(|own| own.is_dir());
+            let own: Vec<_> =
+                if settings.only.is_empty() { vec![folder.to_path_buf()] } else { own.collect() };
+            for own in own {
+                std::fs::remove_dir_all(&own).with_context(|| format!("cannot empty {}", own.display()))?;
+            }
         } else if let Some(reason) = earlier.flatten().and_then(|earlier| self.refusal(&earlier, settings)) {
             say(&reason);
         }

@@ -14,6 +14,7 @@ mod estimate;
 mod experiment;
 mod format;
 mod known;
+mod lock;
 mod manifest;
 mod measure;
 mod outputs;

@@ -150,3 +150,14 @@ pub struct Section {
     /// How many predicted cases a rule of the experiment's own keeps out of `budget`.
     pub left_out: usize,
 }
+
+impl Section {
+    /// What stands in the place of a section that could not be made.
+    pub(super) fn without_conclusion(why: &str) -> Self {
+        let why = why.trim_end_matches('.');
+        Section {
+            summary: vec![format!("No conclusion: {why}. More photons or maps may help.")],
+            ..Section::default()
+        }
+    }
+}

@@ -70,7 +70,7 @@ struct Flags {
     /// Factor on every number of photons
     #[arg(long, value_name = "SCALE", default_value_t = 1.0, value_parser = scale)]
     photons: f64,
-    /// Folder of the report [default: results/local/NAME, with -full after --full]
+    /// Folder of the report [default: results/local/NAME, with -full, -seedN and -photonsX after those flags]
     #[arg(long)]
     out: Option<PathBuf>,
     /// Number of threads [default: all cores]
@@ -139,8 +139,17 @@ impl Settings {
         let matches = Flags::command().name(study).try_get_matches_from(args)?;
         let flags = Flags::from_arg_matches(&matches)?;
         let preset = if flags.full { Preset::Full } else { Preset::Quick };
-        // A quick look must not write over a night's work.
-        let folder = if flags.full { format!("{study}-full") } else { study.to_string() };
+        // A quick look must not write over a night's work, nor one seed over another.
+        let mut folder = study.to_string();
+        if flags.full {
+            folder.push_str("-full");
+        }
+        if flags.seed != 1 {
+            folder.push_str(&format!("-seed{}", flags.seed));
+        }
+        if flags.photons != 1.0 {
+            folder.push_str(&format!("-photons{}", flags.photons));
+        }
         Ok(Settings {
             preset,
             seed: flags.seed,
@@ -218,7 +227,10 @@ mod tests {
     fn defaults_are_a_quick_study() {
         let settings = parse(&[]).unwrap();
         assert_eq!(settings, Settings::new("results/local/bias"));
-        assert_eq!(parse(&["--full"]).unwrap().out, PathBuf::from("results/local/bias-full"));
+        let folder = |args: &[&str]| parse(args).unwrap().out;
+        assert_eq!(folder(&["--full"]), PathBuf::from("results/local/bias-full"));
+        let other = folder(&["--seed", "2", "--photons", "0.003"]);
+        assert_eq!(other, PathBuf::from("results/local/bias-seed2-photons0.003"));
     }
 
     #[test]

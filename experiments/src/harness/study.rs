@@ -1,5 +1,6 @@
 //! A whole study: predictions, then measurements, then conclusions, then the report.
 
+use super::lock;
 use super::manifest::Manifest;
 use super::measure::{Task, cell_path, measure};
 use super::outputs::{Seconds, keep_or_write, prediction_table, write_if_changed, write_results};
@@ -11,6 +12,7 @@ use super::{
 use crate::report;
 use anyhow::{Context, bail, ensure};
 use std::collections::BTreeSet;
+use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::PathBuf;
 use std::process::ExitCode;
 use std::time::Instant;
@@ -45,7 +47,7 @@ pub struct Closing {
 
 impl Closing {
     /// The section with the heading of an experiment that has no cells.
-    fn report(&self, settings: &Settings, sections: &[SectionReport]) -> anyhow::Result<SectionReport> {
+    fn report(&self, settings: &Settings, sections: &[SectionReport]) -> SectionReport {
         let heading = Experiment {
             name: self.name,
             title: self.title,
@@ -55,14 +57,22 @@ impl Closing {
             measure: |_, _| bail!("a closing section measures nothing"),
             conclude: |_, _, _| Ok(Section::default()),
         };
-        Ok(SectionReport {
+        let (section, failure) = match whole(|| (self.conclude)(settings, sections)) {
+            Ok(section) => (section, None),
+            Err(error) => {
+                let failure = format!("{error:#}");
+                (Section::without_conclusion(&failure), Some(failure))
+            }
+        };
+        SectionReport {
             experiment: heading,
             predictions: Vec::new(),
-            section: (self.conclude)(settings, sections).with_context(|| self.name)?,
+            section,
             judged: Vec::new(),
             counters: Vec::new(),
             cells: (0, 0.0),
-        })
+            failure,
+        }
     }
 }
 
@@ -81,6 +91,8 @@ pub struct SectionReport {
     pub counters: Vec<(String, u64)>,
     /// Number of cells and their CPU seconds.
     pub cells: (usize, f64),
+    /// Why it has no conclusion, if so.
+    pub failure: Option<String>,
 }
 
 /// What a finished study leaves.
@@ -100,9 +112,11 @@ impl Outcome {
         self.sections.iter().flat_map(|s| &s.judged).filter(|j| j.verdict == verdict).count()
     }
 
-    /// Exit code of `--strict`: 1 after a rejected claim, else 3 after an undecided one, else 0.
+    /// Exit code of `--strict`: 1 after a rejected claim, else 3 after an undecided one or an experiment without a conclusion,
+    /// else 0.
     pub fn strict_code(&self) -> u8 {
-        match (self.count(Verdict::Rejected), self.count(Verdict::Undecided)) {
+        let without = self.sections.iter().filter(|s| s.failure.is_some()).count();
+        match (self.count(Verdict::Rejected), self.count(Verdict::Undecided) + without) {
             (0, 0) => 0,
             (0, _) => 3,
             _ => 1,
@@ -174,6 +188,7 @@ pub(crate) fn one_line(text: &str) -> String {
 /// Whatever stops it; finished cells stay, and the next run goes on from there.
 pub fn run(study: &Study, settings: &Settings) -> anyhow::Result<Outcome> {
     let experiments = selected(study.experiments, &settings.only)?;
+    let _held = lock::hold(&settings.out)?;
     let cells_folder = settings.out.join("cells");
     let manifest = Manifest::new(settings, &study.program);
     manifest.prepare(&cells_folder, settings)?;
@@ -193,19 +208,27 @@ pub fn run(study: &Study, settings: &Settings) -> anyhow::Result<Outcome> {
         }
         sets.push(cells);
     }
-    let total: usize = sets.iter().map(Vec::len).sum();
-    let measured = tasks.len();
-
     let mut predictions = Vec::new();
+    let mut failures = Vec::new();
     let mut late_predictions = false;
-    for (experiment, cells) in experiments.iter().zip(&sets) {
-        let own = predict(experiment, settings)?;
+    for (experiment, cells) in experiments.iter().zip(&mut sets) {
+        let (own, failure) = match whole(|| predict(experiment, settings)) {
+            Ok(own) => (own, None),
+            Err(error) => {
+                // What has no predictions is not measured.
+                tasks.retain(|task| task.experiment.name != experiment.name);
+                cells.clear();
+                (Vec::new(), Some(format!("{error:#}")))
+            }
+        };
+        failures.push(failure);
         let table = prediction_table(&[*experiment], std::slice::from_ref(&own))?;
         let changed = write_if_changed(&cells_folder.join(experiment.name).join("predictions.csv"), &table)?;
         let missing = tasks.iter().filter(|task| task.experiment.name == experiment.name).count();
         late_predictions |= changed && missing < cells.len();
         predictions.push(own);
     }
+    let (total, measured) = (sets.iter().map(Vec::len).sum(), tasks.len());
     write_if_changed(&settings.out.join("predictions.csv"), &prediction_table(&experiments, &predictions)?)?;
     say(&opening(study.name, settings, total, measured, predictions.iter().map(Vec::len).sum()));
 
@@ -216,11 +239,20 @@ pub fn run(study: &Study, settings: &Settings) -> anyhow::Result<Outcome> {
     let mut sections = Vec::new();
     let mut seconds = Vec::new();
     let mut foreign = 0;
-    for ((experiment, cells), predictions) in experiments.iter().zip(&sets).zip(predictions) {
-        let cells =
-            Cells::read(&cells_folder.join(experiment.name), cells).with_context(|| experiment.name)?;
-        let mut section =
-            (experiment.conclude)(settings, &predictions, &cells).with_context(|| experiment.name)?;
+    for (((experiment, cells), predictions), failure) in
+        experiments.iter().zip(&sets).zip(predictions).zip(failures)
+    {
+        let folder = cells_folder.join(experiment.name);
+        let cells = Cells::read(&folder, cells, &manifest.settings).with_context(|| experiment.name)?;
+        let concluded = match failure {
+            Some(failure) => Err(failure),
+            None => whole(|| (experiment.conclude)(settings, &predictions, &cells))
+                .map_err(|error| format!("{error:#}")),
+        };
+        let (mut section, failure) = match concluded {
+            Ok(section) => (section, None),
+            Err(failure) => (Section::without_conclusion(&failure), Some(failure)),
+        };
         section.rows = section.rows.into_iter().map(|row| row.predicted_from(&predictions)).collect();
         foreign += cells.programs.iter().filter(|p| **p != study.program).count();
         let own_seconds: f64 = cells.seconds.iter().map(|s| s.total).sum();
@@ -234,10 +266,11 @@ pub fn run(study: &Study, settings: &Settings) -> anyhow::Result<Outcome> {
             judged: Vec::new(),
             counters,
             cells,
+            failure,
         });
     }
     if let Some(closing) = &study.closing {
-        let own = closing.report(settings, &sections)?;
+        let own = closing.report(settings, &sections);
         let place = if own.section.claims.is_empty() { sections.len() } else { 0 };
         sections.insert(place, own);
     }
@@ -260,6 +293,11 @@ pub fn run(study: &Study, settings: &Settings) -> anyhow::Result<Outcome> {
     let path = settings.out.join("report.html");
     write_atomically(&path, |out| out.write_all(page.as_bytes()))?;
     Ok(Outcome { report: path, sections, measured })
+}
+
+/// What a part of an experiment makes; a panic in it is an error.
+fn whole<T>(part: impl FnOnce() -> anyhow::Result<T>) -> anyhow::Result<T> {
+    catch_unwind(AssertUnwindSafe(part)).unwrap_or_else(|_| bail!("it panicked"))
 }
 
 fn selected(all: &[Experiment], only: &[String]) -> anyhow::Result<Vec<Experiment>> {

@@ -32,5 +32,10 @@ fn counts(outcome: &Outcome) -> String {
     let total = upheld + rejected + undecided;
     let noun = if total == 1 { "claim" } else { "claims" };
     let cost = crate::harness::cost_line(&outcome.sections);
-    format!("{total} {noun}: {upheld} upheld, {rejected} rejected, {undecided} undecided ({cost}).")
+    let without = match outcome.sections.iter().filter(|s| s.failure.is_some()).count() {
+        0 => String::new(),
+        1 => ", 1 section without a conclusion".to_string(),
+        n => format!(", {n} sections without a conclusion"),
+    };
+    format!("{total} {noun}: {upheld} upheld, {rejected} rejected, {undecided} undecided{without} ({cost}).")
 }

@@ -1,0 +1,34 @@
+//! One study at a time in a folder.
+
+use super::progress::say;
+use anyhow::{Context, bail};
+use std::fs::{File, TryLockError};
+use std::path::Path;
+
+/// The lock's file; it stays when the study ends, and says nothing by itself.
+const FILE: &str = ".lock";
+
+/// Holds a folder, which is made if it is not there, until the value is dropped or the process ends in whatever way.
+///
+/// # Errors
+/// If another study holds it, or the folder cannot be written to
+pub(super) fn hold(folder: &Path) -> anyhow::Result<File> {
+    std::fs::create_dir_all(folder).with_context(|| format!("cannot create {}", folder.display()))?;
+    let path = folder.join(FILE);
+    let file = File::create(&path).with_context(|| format!("cannot write {}", path.display()))?;
+    match file.try_lock() {
+        Ok(()) => {}
+        Err(TryLockError::WouldBlock) => {
+            bail!(
+                "another study is at work in {}; allowed: wait for its end, or name another --out",
+                folder.display()
+            )
+        }
+        // Some network drives have no locks.
+        Err(TryLockError::Error(error)) => say(&format!(
+            "{} cannot be locked ({error}): start no second study there before this one ends.",
+            folder.display()
+        )),
+    }
+    Ok(file)
+}
