@@ -5,12 +5,12 @@ use super::memory::Memory;
 use super::on_threads;
 use super::picture::{Frame, Held, Photons, Shown};
 use super::progress::Bar;
-use super::render::{MapsMade, check_folder};
+use super::render::MapsMade;
 use anyhow::{Context, bail};
 use clap::ValueEnum;
 use std::path::PathBuf;
 use turbid::Spectrum;
-use turbid::output::{Tone, auto_exposure, write_ply, write_png};
+use turbid::output::{Tone, auto_exposure, check_writable, is_same_file, write_ply, write_png};
 use turbid::photons::maps::{Indirect, Maps, fill_counted_steered};
 use turbid::photons::{Photon, PhotonMap};
 use turbid::sensor::{colour, draw_photons};
@@ -88,8 +88,12 @@ impl Map {
         let exposure = self.shown.checked()?;
         let scene = self.source.load()?;
         let camera = self.frame.camera(&scene)?;
-        for file in [Some(&self.output), self.ply.as_ref()].into_iter().flatten() {
-            check_folder(file)?;
+        check_writable(&self.output)?;
+        if let Some(ply) = &self.ply {
+            check_writable(ply)?;
+            if is_same_file(&self.output, ply)? {
+                bail!("--output {} and --ply {} lead to one file", self.output.display(), ply.display());
+            }
         }
         let settings = self.photons.settings(Indirect::Gathered, self.seed, 0);
         let (photons, picture, seen) = on_threads(self.threads, || {

@@ -12,10 +12,10 @@ use anyhow::{Context, bail};
 use clap::ValueEnum;
 use cpu_time::ProcessTime;
 use std::ops::AddAssign;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use turbid::integrators::mapper::{Mapper, Report};
 use turbid::integrators::path;
-use turbid::output::{Tone, auto_exposure, write_exr, write_png};
+use turbid::output::{Tone, auto_exposure, check_writable, is_same_file, write_exr, write_png};
 use turbid::photons::maps::{MapReport, Maps, Part, fill_part};
 use turbid::scene::{Camera, Scene};
 use turbid::sensor::{Film, Sample, Streams, extend, extend_by_light};
@@ -189,8 +189,12 @@ impl Render {
             );
         }
         // Before the work, not after it.
-        check_folder(&self.output)?;
-        check_folder(&self.output.with_extension("png"))?;
+        let png = self.output.with_extension("png");
+        check_writable(&self.output)?;
+        check_writable(&png)?;
+        if is_same_file(&self.output, &png)? {
+            bail!("--output {} and {} lead to one file", self.output.display(), png.display());
+        }
         let settings = self.reading.settings(&scene)?;
         if self.with == With::Light {
             note(&format!("the picture holds {}", self.with.holds()))?;
@@ -448,17 +452,4 @@ pub struct Filled {
     pub stored: usize,
     /// Photons that its pass sent out for it.
     pub emitted: u64,
-}
-
-/// Refuses a file that could not be written, before an hour's work and not after it.
-pub fn check_folder(file: &Path) -> anyhow::Result<()> {
-    let folder = file.parent().filter(|f| !f.as_os_str().is_empty()).unwrap_or(Path::new("."));
-    let found = std::fs::metadata(folder).with_context(|| format!("cannot write {}", file.display()))?;
-    if !found.is_dir() {
-        bail!("cannot write {}: {} is no folder", file.display(), folder.display());
-    }
-    if file.is_dir() {
-        bail!("cannot write {}: it is a folder", file.display());
-    }
-    Ok(())
 }

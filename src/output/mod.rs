@@ -7,7 +7,7 @@ mod stdout;
 mod table;
 mod tone;
 
-pub use atomic::{WriteError, write_atomically};
+pub use atomic::{WriteError, check_writable, is_same_file, target, write_atomically};
 pub use exr::{PROVENANCE, encode_exr, write_exr};
 pub use ply::write_ply;
 pub use stdout::{ignore_closed_pipe, one_line, print};
