@@ -4,6 +4,7 @@ mod command;
 
 use clap::Parser;
 use std::process::ExitCode;
+use turbid::output::end_on_signal;
 
 /// Where to begin.
 const EXAMPLES: &str = "\
@@ -25,6 +26,7 @@ struct Arguments {
 }
 
 fn main() -> ExitCode {
+    end_on_signal(|| "turbid: stopped by a signal; files appear whole or not at all".to_string());
     let outcome = match Arguments::try_parse() {
         Ok(arguments) => arguments.command.run(),
         Err(error) => command::explain(&error),

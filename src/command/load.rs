@@ -2,7 +2,7 @@
 
 use anyhow::{Context, anyhow, bail};
 use std::ops::Range;
-use std::path::{Path, PathBuf};
+use std::path::{Component, Path, PathBuf};
 use turbid::input::{read_stream, text};
 use turbid::photons::check_end;
 use turbid::scene::{BUILTIN, Builtin, Scene, SceneFile};
@@ -15,6 +15,10 @@ pub struct Source {
     /// Change a value before the scene is made: `albedo=0.5` of a built-in scene, `regions.0.albedo=0.5` of a file.
     #[arg(long = "set", value_name = "KEY=VALUE")]
     sets: Vec<String>,
+    /// Refuse a scene that names files outside of its own folder: by an absolute name, by `..`, or through a link. For scenes
+    /// of strangers.
+    #[arg(long)]
+    confined: bool,
 }
 
 /// Larger scene files are refused.
@@ -23,12 +27,16 @@ const MOST_BYTES: u64 = 1 << 26;
 impl Source {
     /// A scene with these changes.
     pub fn with_sets(scene: String, sets: Vec<String>) -> Self {
-        Source { scene, sets }
+        Source { scene, sets, confined: false }
     }
 
     /// The validated scene, in which light comes to an end.
     pub fn load(&self) -> anyhow::Result<Scene> {
         let file = self.resolve()?;
+        if self.confined {
+            let folder = self.folder();
+            check_confined(&toml::Value::try_from(&file)?, &folder).with_context(|| self.scene.clone())?;
+        }
         let scene = file.scene(&self.folder()).with_context(|| self.scene.clone())?;
         check_end(&scene).with_context(|| self.scene.clone())?;
         Ok(scene)
@@ -93,6 +101,32 @@ impl Source {
         }
         Ok(file)
     }
+}
+
+/// Refuses names of files, the values of all keys `file`, that lead out of a folder.
+fn check_confined(value: &toml::Value, folder: &Path) -> anyhow::Result<()> {
+    match value {
+        toml::Value::Table(table) => table.iter().try_for_each(|(key, value)| match value {
+            toml::Value::String(name) if key == "file" => check_inside(name, folder),
+            other => check_confined(other, folder),
+        }),
+        toml::Value::Array(values) => values.iter().try_for_each(|value| check_confined(value, folder)),
+        _ => Ok(()),
+    }
+}
+
+fn check_inside(name: &str, folder: &Path) -> anyhow::Result<()> {
+    let folder = if folder.as_os_str().is_empty() { Path::new(".") } else { folder };
+    let is_plain = Path::new(name).components().all(|c| matches!(c, Component::Normal(_) | Component::CurDir));
+    // What is not there is refused by who reads it.
+    let leads_inside = match (folder.canonicalize(), folder.join(name).canonicalize()) {
+        (Ok(folder), Ok(file)) => file.starts_with(folder),
+        _ => true,
+    };
+    if !(is_plain && leads_inside) {
+        bail!("file {name:?} is outside of the scene's folder; allowed with --confined: files in it");
+    }
+    Ok(())
 }
 
 /// Refuses lists of numbers of which only the first ones were read, as `position = [0, 0, 0, 1]`.

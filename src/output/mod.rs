@@ -3,6 +3,7 @@
 mod atomic;
 mod exr;
 mod ply;
+mod signal;
 mod stdout;
 mod table;
 mod tone;
@@ -10,6 +11,7 @@ mod tone;
 pub use atomic::{WriteError, check_writable, is_same_file, target, write_atomically};
 pub use exr::{PROVENANCE, encode_exr, write_exr};
 pub use ply::write_ply;
+pub use signal::end_on_signal;
 pub use stdout::{ignore_closed_pipe, one_line, print};
 pub use table::{Format, write_aligned, write_csv, write_json, write_rows};
 pub use tone::{Curve, Tone, auto_exposure, to_srgb, write_png};

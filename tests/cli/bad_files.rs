@@ -213,3 +213,62 @@ fn wrong_shapes_textures_and_boundaries() {
         refuses_naming(&["check", text(&file)], &[&name, words]);
     }
 }
+
+/// A PNG file's checksum (ISO 3309).
+fn checksum(bytes: &[u8]) -> u32 {
+    !bytes.iter().fold(!0u32, |sum, byte| {
+        (0..8).fold(sum ^ u32::from(*byte), |sum, _| if sum & 1 == 1 { (sum >> 1) ^ 0xedb8_8320 } else { sum >> 1 })
+    })
+}
+
+/// What says that it is large is refused before it is read, and what has no end is no file.
+#[test]
+fn large_and_endless_files_are_refused() {
+    let (folder, scene) = whole();
+    let mut large = PIXEL;
+    large[16..24].copy_from_slice(&[0, 0, 64, 0, 0, 0, 64, 0]);
+    let sum = checksum(&large[12..29]).to_be_bytes();
+    large[29..33].copy_from_slice(&sum);
+    assert_eq!(checksum(&PIXEL[12..29]).to_be_bytes(), PIXEL[29..33]);
+    std::fs::write(folder.0.path().join("paint.png"), large).unwrap();
+    refuses_naming(&["check", text(&scene)], &["paint.png: 16384 x 16384 pixels; allowed: up to 2^26"]);
+    std::fs::write(folder.0.path().join("paint.png"), PIXEL).unwrap();
+    if cfg!(unix) {
+        let zero = SCENE.replace("part.obj", "/dev/zero");
+        let zero = folder.file("zero.toml", &zero);
+        refuses_naming(
+            &["check", text(&zero)],
+            &["/dev/zero: a folder, a device or a pipe; allowed: a file"],
+        );
+    }
+    let table = SCENE.replace("[[lights]]", "[[regions]]\nshape = { sphere = { center = [0, 0, 0], radius = 2 } }\nsigma_t = 1\nalbedo = 0.5\nphase = { table = { file = \".\" } }\n[[lights]]");
+    let table = folder.file("table.toml", &table);
+    refuses_naming(&["check", text(&table)], &["a folder, a device or a pipe; allowed: a file"]);
+}
+
+/// With `--confined` a scene reads nothing outside of its folder; without, it does.
+#[test]
+fn confined_scenes_stay_in_their_folder() {
+    let (folder, _) = whole();
+    let inner = folder.0.path().join("inner");
+    std::fs::create_dir(&inner).unwrap();
+    std::fs::copy(folder.0.path().join("paint.png"), inner.join("paint.png")).unwrap();
+    let absolute = text(&folder.0.path().join("part.obj")).to_string();
+    let mut names = vec!["../part.obj".to_string(), absolute];
+    if cfg!(unix) {
+        #[cfg(unix)]
+        std::os::unix::fs::symlink("../part.obj", inner.join("link.obj")).unwrap();
+        names.push("link.obj".to_string());
+    }
+    for name in names {
+        let scene = inner.join("scene.toml");
+        std::fs::write(&scene, SCENE.replace("part.obj", &name)).unwrap();
+        succeeds(&["check", text(&scene)]);
+        let said = format!("file {name:?} is outside of the scene's folder; allowed with --confined: files in it");
+        refuses_naming(&["check", text(&scene), "--confined"], &[&said]);
+    }
+    std::fs::copy(folder.0.path().join("part.obj"), inner.join("part.obj")).unwrap();
+    let scene = inner.join("scene.toml");
+    std::fs::write(&scene, SCENE).unwrap();
+    succeeds(&["check", text(&scene), "--confined"]);
+}

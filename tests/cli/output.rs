@@ -225,6 +225,46 @@ fn a_full_disk_is_an_error() {
     }
 }
 
+/// An interrupt ends a run with one line, and with nothing half-written.
+#[cfg(unix)]
+#[test]
+fn a_signal_ends_with_a_word() {
+    let folder = crate::Folder::new();
+    let picture = folder.0.path().join("fog.exr");
+    for signal in ["-INT", "-TERM"] {
+        let mut child = Command::new(env!("CARGO_BIN_EXE_turbid"))
+            .args(["render", "fogbox", "--with", "paths", "--samples", "1000000", "-o", crate::text(&picture)])
+            .stderr(Stdio::piped())
+            .spawn()
+            .unwrap();
+        std::thread::sleep(std::time::Duration::from_millis(500));
+        assert!(Command::new("kill").args([signal, &child.id().to_string()]).status().unwrap().success());
+        let mut stderr = String::new();
+        child.stderr.take().unwrap().read_to_string(&mut stderr).unwrap();
+        assert_eq!(child.wait().unwrap().code(), Some(130), "{signal}: {stderr}");
+        let last = stderr.lines().last().unwrap_or_default();
+        assert_eq!(last, "turbid: stopped by a signal; files appear whole or not at all", "{signal}");
+        assert_eq!(std::fs::read_dir(folder.0.path()).unwrap().count(), 0, "{signal}");
+    }
+}
+
+/// What could not be written, or would be written over, is refused before the work.
+#[test]
+fn outputs_are_tried_before_the_work() {
+    let folder = crate::Folder::new();
+    let at = |name: &str| crate::text(&folder.0.path().join(name)).to_string();
+    let long = at(&format!("{}.exr", "x".repeat(300)));
+    let many = ["render", "fogbox", "--samples", "1000000000", "-o"];
+    crate::refuses_naming(&with(&many, &[&long]), &["cannot write ", "name too long"]);
+    crate::refuses_naming(&with(&many, &[&at("none/a.exr")]), &["none/a.exr: No such file"]);
+    #[cfg(unix)]
+    {
+        std::os::unix::fs::symlink("photons.png", folder.0.path().join("link.ply")).unwrap();
+        let arguments = ["map", "fogbox", "-o", &at("photons.png"), "--ply", &at("link.ply")];
+        crate::refuses_naming(&arguments, &["photons.png", "link.ply lead to one file"]);
+    }
+}
+
 /// Under-full gathers are noted on stderr, and the numbers still come.
 #[test]
 fn underfull_gathers_are_noted() {

@@ -16,7 +16,7 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::PathBuf;
 use std::process::ExitCode;
 use std::time::Instant;
-use turbid::output::{print, write_atomically, write_csv};
+use turbid::output::{end_on_signal, print, write_atomically, write_csv};
 
 /// What is studied, by which program.
 #[derive(Debug, Clone)]
@@ -142,6 +142,10 @@ pub fn main_with(name: &'static str, experiments: &[Experiment], closing: Option
             return ExitCode::from(2);
         }
     };
+    let cells = settings.out.join("cells").display().to_string();
+    end_on_signal(move || {
+        format!("{name}: stopped by a signal; finished cells are kept in {cells}, and the same command goes on from there")
+    });
     if let Some(what) = &settings.replot {
         let done = replot(&settings, what).and_then(|said| Ok(print(|out| writeln!(out, "{said}"))?));
         return ended(done.map(|()| 0));
