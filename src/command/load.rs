@@ -117,7 +117,8 @@ fn check_confined(value: &toml::Value, folder: &Path) -> anyhow::Result<()> {
 
 fn check_inside(name: &str, folder: &Path) -> anyhow::Result<()> {
     let folder = if folder.as_os_str().is_empty() { Path::new(".") } else { folder };
-    let is_plain = Path::new(name).components().all(|c| matches!(c, Component::Normal(_) | Component::CurDir));
+    let is_plain =
+        Path::new(name).components().all(|c| matches!(c, Component::Normal(_) | Component::CurDir));
     // What is not there is refused by who reads it.
     let leads_inside = match (folder.canonicalize(), folder.join(name).canonicalize()) {
         (Ok(folder), Ok(file)) => file.starts_with(folder),

@@ -217,7 +217,10 @@ fn wrong_shapes_textures_and_boundaries() {
 /// A PNG file's checksum (ISO 3309).
 fn checksum(bytes: &[u8]) -> u32 {
     !bytes.iter().fold(!0u32, |sum, byte| {
-        (0..8).fold(sum ^ u32::from(*byte), |sum, _| if sum & 1 == 1 { (sum >> 1) ^ 0xedb8_8320 } else { sum >> 1 })
+        (0..8).fold(
+            sum ^ u32::from(*byte),
+            |sum, _| if sum & 1 == 1 { (sum >> 1) ^ 0xedb8_8320 } else { sum >> 1 },
+        )
     })
 }
 
@@ -264,7 +267,8 @@ fn confined_scenes_stay_in_their_folder() {
         let scene = inner.join("scene.toml");
         std::fs::write(&scene, SCENE.replace("part.obj", &name)).unwrap();
         succeeds(&["check", text(&scene)]);
-        let said = format!("file {name:?} is outside of the scene's folder; allowed with --confined: files in it");
+        let said =
+            format!("file {name:?} is outside of the scene's folder; allowed with --confined: files in it");
         refuses_naming(&["check", text(&scene), "--confined"], &[&said]);
     }
     std::fs::copy(folder.0.path().join("part.obj"), inner.join("part.obj")).unwrap();

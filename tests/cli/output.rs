@@ -233,7 +233,16 @@ fn a_signal_ends_with_a_word() {
     let picture = folder.0.path().join("fog.exr");
     for signal in ["-INT", "-TERM"] {
         let mut child = Command::new(env!("CARGO_BIN_EXE_turbid"))
-            .args(["render", "fogbox", "--with", "paths", "--samples", "1000000", "-o", crate::text(&picture)])
+            .args([
+                "render",
+                "fogbox",
+                "--with",
+                "paths",
+                "--samples",
+                "1000000",
+                "-o",
+                crate::text(&picture),
+            ])
             .stderr(Stdio::piped())
             .spawn()
             .unwrap();

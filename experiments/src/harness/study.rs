@@ -144,7 +144,9 @@ pub fn main_with(name: &'static str, experiments: &[Experiment], closing: Option
     };
     let cells = settings.out.join("cells").display().to_string();
     end_on_signal(move || {
-        format!("{name}: stopped by a signal; finished cells are kept in {cells}, and the same command goes on from there")
+        format!(
+            "{name}: stopped by a signal; finished cells are kept in {cells}, and the same command goes on from there"
+        )
     });
     if let Some(what) = &settings.replot {
         let done = replot(&settings, what).and_then(|said| Ok(print(|out| writeln!(out, "{said}"))?));
