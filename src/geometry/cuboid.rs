@@ -172,7 +172,7 @@ impl Cuboid {
         let total = areas[0] + areas[1] + areas[2];
         let mut ends = [0.0; 7];
         for i in 0..6 {
-            ends[i + 1] = if i == 5 { 1.0 } else { ends[i] + 0.5 * areas[i / 2] / total };
+            ends[i + 1] = if i == 5 { 1.0 } else { (ends[i] + 0.5 * areas[i / 2] / total).min(1.0) };
         }
         ends
     }

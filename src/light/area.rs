@@ -115,8 +115,9 @@ impl Area {
             Shape::Rectangle(_) => Some(on_face(cell.low.position, cell.high.position)),
             Shape::Cuboid(c) => {
                 let ends = c.face_ends();
-                let face = |x: f64| ends.iter().take_while(|end| **end <= x).count();
-                let is_one = face(cell.low.position[0]) == face(u) && ends[face(u)] >= cell.high.position[0];
+                let face = |x: f64| ends[1..6].iter().take_while(|end| **end <= x).count();
+                let is_one =
+                    face(cell.low.position[0]) == face(u) && ends[face(u) + 1] >= cell.high.position[0];
                 let [low, high] = [cell.low.position, cell.high.position].map(|[_, v, w]| [u, v, w]);
                 is_one.then(|| on_face(low, high))
             }

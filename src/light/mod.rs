@@ -301,7 +301,9 @@ impl Light {
         }
         let aside = if needs.direction > 0 { uniform(aside) } else { none() };
         let mut cells = Vec::new();
-        let parts = |axis: &[f64]| axis.windows(2).map(|w| (w[0], w[1])).collect::<Vec<_>>();
+        // A face may be nothing beside the others, so that its ends coincide.
+        let parts =
+            |axis: &[f64]| axis.windows(2).filter(|w| w[0] < w[1]).map(|w| (w[0], w[1])).collect::<Vec<_>>();
         let [x, y, z] = positions.map(|axis| parts(&axis));
         let direction = parts(&aside);
         for a in &x {

@@ -71,14 +71,15 @@ impl Cloud {
     /// A cloud of this look.
     ///
     /// # Errors
-    /// `Error::Scene` or `Error::OutOfRange` for a centre that is not finite; radii, frequency, gain or sharpness not
-    /// above 0; a roughness below 0; octaves out of 1 to 12; each at most 1e6 but for the radii
+    /// `Error::OutOfRange` for a centre beyond 1e100 and radii out of 1e-100 to 1e100; frequency, gain or sharpness not
+    /// above 0; a roughness below 0; octaves out of 1 to 12; each at most 1e6 but for centre and radii
     pub fn new(shape: CloudShape) -> Result<Self> {
-        if !shape.center.is_finite() {
-            return Err(Error::Scene("a cloud needs a finite centre".into()));
+        // Farther out squares of lengths are no numbers.
+        if let Some(bad) = shape.center.to_array().into_iter().find(|x| x.is_nan() || x.abs() > 1e100) {
+            return Err(Error::out_of_range("coordinate of a cloud's centre", bad, "up to 1e100 in size"));
         }
-        if let Some(bad) = shape.radii.to_array().into_iter().find(|r| !(*r > 0.0 && r.is_finite())) {
-            return Err(Error::out_of_range("radius of a cloud", bad, "finite and above 0"));
+        if let Some(bad) = shape.radii.to_array().into_iter().find(|r| !(1e-100..=1e100).contains(r)) {
+            return Err(Error::out_of_range("radius of a cloud", bad, "1e-100 to 1e100"));
         }
         let above_0 = [("frequency", shape.frequency), ("gain", shape.gain), ("sharpness", shape.sharpness)];
         if let Some((name, bad)) = above_0.into_iter().find(|(_, x)| !(*x > 0.0 && *x <= 1e6)) {

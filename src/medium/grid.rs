@@ -44,10 +44,11 @@ impl Grid {
         channels: usize,
         values: Vec<f32>,
     ) -> Result<Self> {
-        let is_box = min.is_finite() && max.is_finite() && (max - min).min_element() > 0.0;
-        if !is_box {
+        // Farther out squares of lengths are no numbers.
+        let is_near = min.abs().max(max.abs()).cmple(DVec3::splat(1e100)).all();
+        if !(is_near && (max - min).cmpge(DVec3::splat(1e-100)).all()) {
             return Err(Error::Scene(format!(
-                "a grid's box goes from {min} to {max}; allowed: finite, and longer than 0 along each axis"
+                "a grid's box goes from {min} to {max}; allowed: up to 1e100 in size, and at least 1e-100 long along each axis"
             )));
         }
         if let Some(bad) = count.iter().find(|n| **n == 0) {

@@ -37,14 +37,8 @@ impl Alarm {
                 let same_side = (first.value > first.expected) == (second.value > second.expected);
                 if same_side { second.p } else { 1.0 }
             }
-            // Stopped by the clock before it was compared again, or nothing was there to be.
-            (Some(first), None) => {
-                if self.failure.is_some() {
-                    first.p
-                } else {
-                    1.0
-                }
-            }
+            // Stopped by the clock before it was compared again, so that the scene is undecided, or nothing was there to be.
+            (Some(_), None) => 1.0,
             (None, _) => 0.0,
         }
     }
@@ -184,6 +178,7 @@ pub fn examine(
         let is_wanted = |name: &str| suspicious.iter().any(|(other, _)| *other == name);
         let again = once(text, (seed ^ (1 << 40), seed), &more, stage, &is_wanted)?;
         examined.alarms.extend(again.examined.alarms);
+        examined.late.extend(again.examined.late.iter().map(|name| format!("again, {name}")));
         let late = again.examined.late.first().map(|name| format!("{name} took too long to confirm this"));
         for (name, first) in suspicious {
             let check = again.checks.iter().find(|c| c.name == name);

@@ -29,7 +29,8 @@
 //! their ratio q = r2/r1: |D(r2)| <= q |D(r1)|. With the same number of nearest photons of 8 times as many q is 8^(-1/3) = 0.5 in
 //! media, where the volume is shared out, and 8^(-1/2) = 0.35 on surfaces. What exceeds that, by more than chance, is no
 //! matter of the radius. (The reach of an estimate that finds too few is made larger in the same ratio at N, so that r
-//! shrinks there too. Errors of either sign may cancel at r1 in one quarter: the largest of the four counts.)
+//! shrinks there too. Errors of either sign may cancel at r1 in one quarter: the largest of the four counts. A bright spot beside a dark quarter
+//! counts as the inverse of the disc, more in the smaller one: a hundredth of the brightest quarter is no error of another.)
 //!
 //! *Alarms.* A number with p < 10^-4 is measured once more, on another seed with four times the samples of the whole
 //! effort. Only these second numbers decide, by Holm over all of them in the run, family-wise 10^-3: the family is what the first ones chose, and its

@@ -29,6 +29,8 @@ const SHRINK: f64 = 1e-4;
 const DRAWS: u64 = 20;
 /// Scenes that are tried on the way to the smallest.
 const TRIES: usize = 60;
+/// Time in which a smaller scene is looked for.
+const LONGEST_SHRINKING: Duration = Duration::from_secs(180);
 
 /// What is kept of a seed.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
@@ -183,7 +185,7 @@ fn shrink(settings: &Settings, record: &Record, text: &SceneText) -> anyhow::Res
         return Ok(None);
     }
     let folder = tempfile::tempdir()?;
-    let mut tries = 0;
+    let (mut tries, start) = (0, Instant::now());
     let smallest = shrunk(text, |less| {
         tries += 1;
         let own = folder.path().join(tries.to_string());
@@ -192,6 +194,7 @@ fn shrink(settings: &Settings, record: &Record, text: &SceneText) -> anyhow::Res
             in_child(settings, record.seed, Some(&own.join("less.toml")))
         })();
         tries <= TRIES
+            && start.elapsed() < LONGEST_SHRINKING
             && tried.is_ok_and(|less| clear_alarms(&less).any(|alarm| places.contains(&alarm.place())))
     });
     let name = match &settings.scene {
