@@ -58,6 +58,12 @@ impl Spectrum {
         self.0.min_element()
     }
 
+    /// The quotient by channel, and 0 where the divisor is: what never collides has left nothing to be divided.
+    pub fn over(self, other: Spectrum) -> Self {
+        let over = |a: f64, b: f64| if b == 0.0 { 0.0 } else { a / b };
+        Spectrum::rgb(over(self[0], other[0]), over(self[1], other[1]), over(self[2], other[2]))
+    }
+
     /// A function applied to each channel.
     pub fn map(self, f: impl Fn(f64) -> f64) -> Self {
         Spectrum(DVec3::new(f(self.0.x), f(self.0.y), f(self.0.z)))

@@ -166,7 +166,7 @@ pub fn treated_fluence(
     boundary: &Boundary<'_>,
 ) -> Treated {
     let mut treated = treated_density(map, point, kernel, gather, boundary);
-    treated.estimate.value = treated.estimate.value / sigma_t;
+    treated.estimate.value = treated.estimate.value.over(sigma_t);
     treated
 }
 

@@ -61,7 +61,7 @@ pub struct BallSum {
 /// Jensen and Christensen 1998; the k-1 of the k-nearest rule is Loftsgaarden and Quesenberry 1965.
 pub fn fluence(map: &PhotonMap, point: DVec3, sigma_t: Spectrum, kernel: Kernel, gather: Gather) -> Estimate {
     let mut estimate = collision_density(map, point, kernel, gather);
-    estimate.value = estimate.value / sigma_t;
+    estimate.value = estimate.value.over(sigma_t);
     estimate
 }
 
@@ -88,7 +88,7 @@ pub fn in_scattered(
     gather: Gather,
 ) -> Estimate {
     let mut estimate = per_emitted(map, in_scattered_sum(map, point, wo, phase, kernel, gather));
-    estimate.value = estimate.value / sigma_t;
+    estimate.value = estimate.value.over(sigma_t);
     estimate
 }
 

@@ -34,7 +34,7 @@ pub struct Sun {
 
 impl Sun {
     /// A sun whose light travels along `dir` (of any length but 0), with `irradiance` [W/L^2] on a plane perpendicular
-    /// to it, and an angular radius in degrees, 0 to 45.
+    /// to it, and an angular radius in degrees, 0 or 1e-6 to 45.
     ///
     /// # Errors
     /// `Error::Scene` or `Error::OutOfRange`, naming what is wrong.
@@ -42,8 +42,8 @@ impl Sun {
         let Some(dir) = dir.try_normalize() else {
             return Err(Error::Scene("a sun needs a finite direction other than 0 0 0".into()));
         };
-        if !(0.0..=45.0).contains(&angular_radius) {
-            return Err(Error::out_of_range("angular_radius", angular_radius, "0 to 45 degrees"));
+        if angular_radius != 0.0 && !(1e-6..=45.0).contains(&angular_radius) {
+            return Err(Error::out_of_range("angular_radius", angular_radius, "0, or 1e-6 to 45 degrees"));
         }
         Ok(Sun {
             frame: Frame::new(dir),

@@ -206,6 +206,11 @@ impl Scene {
         self.bounds.as_ref()
     }
 
+    /// The same about all of them that have an end, which a slab has not; none if there is none.
+    pub fn bounds_of_bounded(&self) -> Option<Sphere> {
+        bounds::of_bounded(&self.parts)
+    }
+
     /// Power of all lights \[W\].
     pub fn power(&self) -> Spectrum {
         self.lights().iter().fold(Spectrum::ZERO, |sum, light| sum + light.power(self.stage()))

@@ -5,7 +5,7 @@ use crate::error::{Error, Result};
 use crate::geometry::{Face, Shape, Slab};
 use crate::light::{Light, Section, Stage};
 use crate::math::{Ray, cosine_pair};
-use crate::medium::Medium;
+use crate::medium::{Density, Medium};
 use crate::phase::PhaseFunction;
 use crate::surface::Surface;
 use glam::{DVec2, DVec3};
@@ -13,6 +13,9 @@ use glam::{DVec2, DVec3};
 /// Positions keep a part in 2^53 of the scene's extent: a mean free path must stay well above that step for a
 /// flight to be resolved to 1e-6 of itself.
 const MAX_EXTENT_OVER_MFP: f64 = 1e9;
+
+/// Tentative collisions on a ray: some milliseconds.
+const MAX_TRACKED_DEPTH: f64 = 1e5;
 
 /// Lengths, positions and coefficients of a scene are 0 or between 1 over this and this, in scene units: what is made of
 /// them, their sixth powers at most, stays within the numbers that f64 has.
@@ -102,7 +105,9 @@ fn check_extents(parts: &Parts) -> Result<()> {
         Ok(())
     };
     for (i, region) in parts.regions.iter().enumerate() {
-        check(&format!("regions[{i}]"), extent(&region.shape), &region.medium)?;
+        let name = format!("regions[{i}]");
+        check(&name, extent(&region.shape), &region.medium)?;
+        check_tracking(&name, region.shape.bounds(), &region.medium)?;
     }
     for (number, interior) in parts.interiors.iter().enumerate() {
         let Some(medium) = &interior.medium else { continue };
@@ -113,9 +118,31 @@ fn check_extents(parts: &Parts) -> Result<()> {
                     Some((center, radius)) => center.abs().max_element() + radius,
                     None => extent(&object.shape),
                 };
-                check(&format!("interior {}", interior.name), far, medium)?;
+                let name = format!("interior {}", interior.name);
+                check(&name, far, medium)?;
+                check_tracking(&name, object.shape.bounds(), medium)?;
             }
         }
+    }
+    Ok(())
+}
+
+/// Whether tracking through a medium that varies, inside of a ball, has bounded work: its tentative collisions are as many
+/// as the depth of its upper bound, where it is thin itself or lets one channel pass.
+fn check_tracking(name: &str, ball: Option<(DVec3, f64)>, medium: &Medium) -> Result<()> {
+    let Some(density) = medium.density() else { return Ok(()) };
+    let reach = match density {
+        // Nothing is outside of it.
+        Density::Cloud(cloud) => {
+            Some(cloud.shape().radii.max_element() * (1.0 + cloud.shape().roughness).sqrt())
+        }
+        Density::Grid(_) | Density::HeightFog(_) => None,
+    };
+    let radius = [ball.map(|(_, radius)| radius), reach].into_iter().flatten().reduce(f64::min);
+    let depth = 2.0 * radius.unwrap_or(0.0) * medium.highest_sigma_t().max();
+    if depth > MAX_TRACKED_DEPTH {
+        let what = format!("{name}: diameter over the shortest mean free path, of a density that varies");
+        return Err(Error::out_of_range(what, depth, "at most 1e5"));
     }
     Ok(())
 }

@@ -422,7 +422,7 @@ fn radiance(
                     let boundary = extents[segment.medium].boundary(treatment);
                     let mut found =
                         treated_in_scattered(map, p, -ray.dir, phase, kernel, gather, &boundary).estimate;
-                    found.value = found.value / sigma_t;
+                    found.value = found.value.over(sigma_t);
                     found
                 }
             };

@@ -55,6 +55,14 @@ fn wrong_keys_of_a_medium() {
         ("g = 0\nemission_by_density = 1", "allowed: beside density"),
         ("g = 0\ndensity = { cloud = { center = [0, 0, 0], radii = [0, 1, 1] } }", "radius of a cloud is 0"),
         ("g = 0\ndensity = { cloud = { center = [0, 0, 0], radii = [1, 1, 1], octaves = 13 } }", "1 to 12"),
+        (
+            "g = 0\ndensity = { cloud = { center = [0, 0, 0], radii = [1, 1, 1e308] } }",
+            "radius of a cloud is 1e308; allowed: 1e-100 to 1e100",
+        ),
+        (
+            "g = 0\ndensity = { cloud = { center = [0, -1e300, 0], radii = [1, 1, 1] } }",
+            "coordinate of a cloud's centre is -1e300; allowed: up to 1e100 in size",
+        ),
         ("g = 0\ndensity = { height-fog = { base = 0, scale_height = 0, up = [0, 1, 0] } }", "above 0"),
         (
             "g = 0\ndensity = { height-fog = { base = 0, scale_height = 1, up = [0, 0, 0] } }",
@@ -128,4 +136,42 @@ fn densities_that_no_cell_can_stand_for() {
         succeeds(&["scenes", "slab", "--resolved"]).replacen("g = 0.0\n", &format!("g = 0.0\n{cloud}"), 1);
     let file = folder.file("slab.toml", &slab);
     refuses_naming(&["check", text(&file)], &["a density must depend on z alone"]);
+}
+
+/// Tracking through what varies takes tentative collisions by the depth of its upper bound, which is limited; a cloud is no
+/// larger than itself, whatever the region.
+#[test]
+fn media_that_vary_have_a_limited_depth() {
+    let folder = Folder::new();
+    let of = |density: &str| {
+        format!(
+            "[[regions]]\nshape = {{ sphere = {{ center = [0, 0, 0], radius = 1000 }} }}\nsigma_t = 1000\nalbedo = 0.5\ng = 0\n\
+             density = {{ {density} }}\n[[lights]]\npoint = {{ position = [0, 0, 0], power = 1 }}\n"
+        )
+    };
+    let fog =
+        folder.file("fog.toml", &of("height-fog = { base = 1000, scale_height = 1000, up = [0, 0, 1] }"));
+    let words = "regions[0]: diameter over the shortest mean free path, of a density that varies is";
+    refuses_naming(&["check", text(&fog)], &[words, "allowed: at most 1e5"]);
+    let cloud = folder.file("cloud.toml", &of("cloud = { center = [0, 0, 0], radii = [2, 1, 1] }"));
+    succeeds(&["check", text(&cloud)]);
+}
+
+/// A channel in which nothing collides has no light from the volume map, and no number that is none.
+#[test]
+fn a_clear_channel_has_no_scattered_light() {
+    let folder = Folder::new();
+    let file = folder.file(
+        "clear.toml",
+        "[[regions]]\nshape = { cuboid = { min = [-2, -2, -2], max = [2, 2, 2] } }\nsigma_t = [0, 2.4, 1]\nalbedo = 0.4\ng = 0.3\n\
+         [[lights]]\npoint = { position = [0.8, 0.3, 0.6], power = 5 }\n\
+         [[sensors]]\nname = \"s\"\nmeasure = { radiance = { origin = [-0.6, 0, -0.1], dir = [0.1, 0.2, 1] } }\n",
+    );
+    let arguments = ["measure", text(&file), "--with", "photons", "--photons", "1000", "--maps", "4"];
+    let said = succeeds(&[&arguments[..], &["--format", "csv"]].concat());
+    let mean = |channel: &str| -> f64 {
+        let line = said.lines().find(|line| line.contains(&format!("radiance{channel}"))).unwrap();
+        line.split(',').find_map(|field| field.parse().ok()).unwrap()
+    };
+    assert!(mean(".r") == 0.0 && mean(".g") > 0.0, "{said}");
 }

@@ -46,6 +46,20 @@ fn cells_fill_the_numbers() {
     }
 }
 
+/// A lamp so long that its ends are nothing beside its sides: no cell is of those, and halves of cells have a bundle each.
+#[test]
+fn faces_that_are_nothing_have_no_cells() {
+    let rod = cuboid(DVec3::new(-0.4, -0.5, -0.3), DVec3::new(0.7, 0.04, 1e16));
+    let light = Light::Area(turbid::light::Area::new(rod, Spectrum::ONE).unwrap());
+    let mut cells = light.cells(500);
+    for _ in 0..60 {
+        assert!(cells.iter().all(|cell| cell.low.position[0] < 1.0));
+        let bundles = cells.iter().filter(|cell| light.bundle(cell).is_some()).count();
+        assert!(bundles > 0);
+        cells = vec![light.quarters(&cells[cells.len() - 1])[3]];
+    }
+}
+
 proptest! {
     #![proptest_config(properties(2000))]
 

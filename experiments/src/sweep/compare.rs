@@ -270,6 +270,9 @@ pub fn shrinking(
     let mut tests = Vec::new();
     for index in (0..CELLS).filter(|index| knows(Cell::of(*index).layer)) {
         let cell = Cell::of(index);
+        let is_scarce = maps.scarce.contains(&cell.layer);
+        let unknown = |test: Test| Test { p: 1.0, smallest: None, ..test };
+        let of_map = |found: Option<Test>| if is_scarce { found.map(unknown) } else { found };
         let ratio = match cell.layer {
             Layer::Emission | Layer::Direct | Layer::Single => {
                 tests.extend(unbiased_at(index, part(&maps.rays), reference));
@@ -298,14 +301,19 @@ pub fn shrinking(
             // Errors of either sign do not cancel in what is allowed.
             let error = coarse.iter().map(|(_, error)| error * error).sum::<f64>().sqrt() / 4.0;
             let allowed = (coarse.iter().map(|(error, _)| error).sum::<f64>() / 4.0, error);
-            tests.extend(test(cell.whole_name(), &large.whole(index), &reference.whole(index), allowed));
+            tests.extend(of_map(test(
+                cell.whole_name(),
+                &large.whole(index),
+                &reference.whole(index),
+                allowed,
+            )));
         }
         let (largest, error) = coarse.into_iter().max_by(|a, b| a.0.total_cmp(&b.0)).unwrap_or_default();
         // A dim quarter has what is carried over its border from a bright one.
         let first = index / 4 * 4;
         let brightest = (first..first + 4).map(|at| reference.mean(at).moments.mean()).fold(0.0, f64::max);
         let allowed = (largest + CARRIED * brightest, error);
-        tests.extend(test(cell.name(), &large.mean(index), &reference_of(index), allowed));
+        tests.extend(of_map(test(cell.name(), &large.mean(index), &reference_of(index), allowed)));
     }
     Check::new(name, known(tests))
 }
@@ -416,6 +424,7 @@ mod tests {
                 rays: seen(made(2, BATCHES, |cell| if has_map(cell) { 0.0 } else { plain })),
                 small: seen(made(3, BATCHES, with(small))),
                 large: seen(made(4, super::super::measure::LARGE_MAPS, with(large))),
+                scarce: Vec::new(),
             };
             let check = shrinking("a", &maps, |s| &s.all, &reference, |_| true, true);
             let mut layers: Vec<String> =

@@ -12,8 +12,8 @@ use turbid::integrators::mapper::{Mapper, Report, Settings, scene_size};
 use turbid::integrators::{Layer, Layers, light_tracing, path};
 use turbid::math::{Positive, Ray};
 use turbid::medium::Medium;
-use turbid::photons::Emitter;
 use turbid::photons::maps::{Amount, Emitted, Indirect, MapReport, MapSettings, Maps, counts, fill_counted};
+use turbid::photons::{Emitter, PhotonMap};
 use turbid::rng::{Purpose, Stream, Work};
 use turbid::scene::{Camera, Scene};
 use turbid::stats::{HEAVY_TAIL, Moments, Tail};
@@ -492,7 +492,13 @@ pub struct ByMaps {
     pub small: Seen,
     /// With [`FACTOR`] times as many.
     pub large: Seen,
+    /// Layers whose map has so few photons that an estimate takes a good part of all of them, wherever they are: its radius
+    /// does not fall with their number as it does where they are many.
+    pub scarce: Vec<Layer>,
 }
+
+/// Fewest photons of a small map, over those of an estimate.
+const FEWEST_OVER_NEAREST: u64 = 4;
 
 /// Gathering rays of a sample, and steps of a march in homogeneous media over the command's: any number has the same mean.
 const RAYS: u32 = 4;
@@ -552,6 +558,9 @@ pub fn maps(
         for replicate in first..first + number as u64 {
             let of_map = MapSettings { replicate, ..of_maps };
             let maps = fill_counted(scene, &of_map, emitted, &clock)?;
+            if !is_large && replicate == first {
+                made.scarce = scarce(&maps);
+            }
             let mapper = Mapper::new(scene, &maps, &settings);
             let sample = |ray: Ray, stream: &mut Stream| looked(&mapper, ray, stream);
             let spread = match spread {
@@ -568,6 +577,17 @@ pub fn maps(
         }
     }
     Ok(made)
+}
+
+/// The layers of maps that have too few photons.
+fn scarce(maps: &Maps) -> Vec<Layer> {
+    let is_scarce = |map: &Option<PhotonMap>| {
+        let stored = map.as_ref().map_or(0, PhotonMap::stored) as u64;
+        map.is_some() && stored < FEWEST_OVER_NEAREST * NEAREST as u64
+    };
+    let layers =
+        [(&maps.global, Layer::Indirect), (&maps.caustic, Layer::Caustic), (&maps.volume, Layer::Multiple)];
+    layers.into_iter().filter(|(map, _)| is_scarce(map)).map(|(_, layer)| layer).collect()
 }
 
 /// How the command reads maps by default, with fewer gathering rays, and longer steps where they may be long.

@@ -10,9 +10,10 @@ use crate::scene::Scene;
 /// Steps across a scene, at most, that are taken without being asked for.
 const MOST_DEFAULT_STEPS: f64 = 1e3;
 
-/// How large a scene is \[L\]: the edge of the cube in the ball that holds its bodies; 1 for a scene without bounds.
+/// How large a scene is \[L\]: the edge of the cube in the ball about its bodies and media, but for slabs, which have no
+/// end; 1 for a scene of slabs.
 pub fn scene_size(scene: &Scene) -> f64 {
-    scene.bounds().map_or(1.0, |ball| 2.0 * ball.radius() / 3.0f64.sqrt())
+    scene.bounds_of_bounded().map_or(1.0, |ball| 2.0 * ball.radius() / 3.0f64.sqrt())
 }
 
 /// How steps of a march become shorter where radiance changes.

@@ -65,7 +65,7 @@ impl Mapper<'_> {
             };
             report.volume.add(&estimate);
             let sigma_t = medium.sigma_t(position);
-            multiple = sigma_t.map(|s| if s == 0.0 { 0.0 } else { 1.0 / s }) * estimate.value;
+            multiple = estimate.value.over(sigma_t);
         }
         let albedo = medium.albedo(position);
         Scattered { single: albedo * single, multiple: albedo * multiple }
