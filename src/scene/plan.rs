@@ -159,7 +159,7 @@ impl Plan {
         }
         if !self.distance_lights.is_empty() {
             lines.push(
-                "point lights and beams: distances sampled by equal angles or within the beam, in multiple importance with \
+                "point lights and beams: equiangular sampling, or even sampling within the beam, in multiple importance with \
                  free flight"
                     .to_string(),
             );

@@ -177,7 +177,7 @@ mod tests {
     #[test]
     fn polygons_and_places() {
         let text = "# square\nv 0 0 0\nv 1 0 0 # right\nv 1 1 0\r\nv 0 1 0 1.0\n\nvt 0 0\nvt 1 1 0\nvn 0 0 1\n\
-                    usemtl x\nf -4/1/1 2/2 3/-1/1 4/1\nf 1//1 2//1 3\n";
+                    usemtl x\nf -4/1/1 2/2 3/-1/1 4/1\nf 1//1 2//1 4\n";
         let mesh = parse(text, |p| p).unwrap();
         assert_eq!((mesh.len(), mesh.area()), (3, 1.5));
     }
