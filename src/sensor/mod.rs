@@ -54,7 +54,7 @@ pub enum NoError {
     /// Fewer than [`FEWEST_PATHS`] paths brought something, one map alone, or there is one history.
     TooFew,
     /// The variance is too uncertain: its own relative variance is above 0.1, or the largest contributions have the tail of
-    /// a distribution whose mean they have not settled ([`Tail::shape`] above 0.7).
+    /// a distribution whose mean they have not settled ([`Tail::shape`] above 1/2).
     HeavyTail,
 }
 
