@@ -345,6 +345,18 @@ fn an_experiment_without_a_conclusion_stops_no_other() {
     assert_eq!((outcome.measured, outcome.sections[3].judged.len()), (3 * 64, 4));
     let page = String::from_utf8(read(folder.path(), "report.html")).unwrap();
     assert!(page.contains("No conclusion: panel 2 is empty."));
+    // Where photons are so few that two sizes are one, too.
+    let double = Experiment {
+        name: "double",
+        cells: |settings| [(fake::FAKE.cells)(settings), (fake::FAKE.cells)(settings)].concat(),
+        ..fake::FAKE
+    };
+    let few = tempfile::tempdir().unwrap();
+    let study = Study { experiments: &[double, fake::FAKE], ..fake::study() };
+    let outcome = run(&study, &Settings { photon_scale: 0.1, ..settings(few.path()) }).unwrap();
+    let said = outcome.sections[0].failure.as_deref();
+    assert_eq!(said, Some("double: two cells are called slab-000000"));
+    assert_eq!((outcome.sections[0].cells.0, outcome.measured), (0, 64));
     let alone = Study { experiments: &[mute], ..fake::study() };
     let only = Settings { only: vec!["mute".to_string()], ..settings(folder.path()) };
     assert_eq!(run(&alone, &only).unwrap().strict_code(), 3);

@@ -1,7 +1,7 @@
 //! All cells of one experiment, merged in sorted order.
 
 use super::cell::{self, Header};
-use super::{CellId, Digest, Estimate};
+use super::{CellId, Digest, Estimate, Settings};
 use anyhow::{Context, bail, ensure};
 use std::collections::{BTreeMap, HashMap, HashSet};
 use std::path::Path;
@@ -48,7 +48,8 @@ fn telling(rows: &[cell::CellRow]) -> Option<String> {
 impl Cells {
     /// Reads the files of all cells; refuses a set that is not complete or not of these settings, and maps of one group that
     /// are the same.
-    pub(super) fn read(folder: &Path, expected: &[CellId], settings: &str) -> anyhow::Result<Self> {
+    pub(super) fn read(folder: &Path, expected: &[CellId], settings: &Settings) -> anyhow::Result<Self> {
+        let (settings, is_scaled) = (settings.words(), settings.photon_scale != 1.0);
         let mut ids = expected.to_vec();
         ids.sort_by_key(CellId::id);
         let (mut cells, mut seen) = (Cells::default(), HashMap::new());
@@ -73,13 +74,20 @@ impl Cells {
                     header.experiment
                 );
             }
-            cells.add(index, header, rows)?;
+            cells.add(index, header, rows, is_scaled)?;
         }
         cells.ids = ids;
         Ok(cells)
     }
 
-    fn add(&mut self, index: usize, header: Header, rows: Vec<cell::CellRow>) -> anyhow::Result<()> {
+    /// Adds a cell; a scale of photons may make two of its cases one, of which the first counts.
+    fn add(
+        &mut self,
+        index: usize,
+        header: Header,
+        rows: Vec<cell::CellRow>,
+        is_scaled: bool,
+    ) -> anyhow::Result<()> {
         if header.non_finite > 0 {
             bail!(
                 "{} non-finite contributions in cell {} of {}; allowed: 0",
@@ -91,8 +99,15 @@ impl Cells {
         for row in rows {
             let values = self.values.entry((row.case, row.quantity)).or_default();
             let twice = values.last().is_some_and(|last| last.0 == index);
-            ensure!(!twice, "cell {} of {} gives one quantity twice", header.id, header.experiment);
-            values.push((index, row.value));
+            ensure!(
+                !twice || is_scaled,
+                "cell {} of {} gives one quantity twice",
+                header.id,
+                header.experiment
+            );
+            if !twice {
+                values.push((index, row.value));
+            }
         }
         for (name, count) in header.counters {
             *self.counters.entry(name).or_insert(0) += count;

@@ -201,37 +201,36 @@ pub fn run(study: &Study, settings: &Settings) -> anyhow::Result<Outcome> {
 
     let mut sets: Vec<Vec<CellId>> = Vec::new();
     let mut tasks = Vec::new();
+    let mut predictions = Vec::new();
+    let mut failures = Vec::new();
+    let mut late_predictions = false;
     for experiment in &experiments {
         let folder = cells_folder.join(experiment.name);
         std::fs::create_dir_all(&folder).with_context(|| format!("cannot create {}", folder.display()))?;
-        let cells = (experiment.cells)(settings);
-        check_names(experiment, &cells)?;
+        let mut cells = (experiment.cells)(settings);
+        let named = check_names(experiment, &cells);
+        // A small part of the photons may make two sizes one.
+        let named = if settings.photon_scale == 1.0 { Ok(named?) } else { named };
+        let (own, failure) = match named.and_then(|()| whole(|| predict(experiment, settings))) {
+            Ok(own) => (own, None),
+            Err(error) => {
+                // What has no predictions is not measured.
+                cells.clear();
+                (Vec::new(), Some(format!("{error:#}")))
+            }
+        };
+        let before = tasks.len();
         for cell in &cells {
             let path = cell_path(&cells_folder, experiment, cell);
             if !manifest.accepts(&path, experiment.name, &cell.id(), settings) {
                 tasks.push(Task { experiment, cell: cell.clone(), path });
             }
         }
-        sets.push(cells);
-    }
-    let mut predictions = Vec::new();
-    let mut failures = Vec::new();
-    let mut late_predictions = false;
-    for (experiment, cells) in experiments.iter().zip(&mut sets) {
-        let (own, failure) = match whole(|| predict(experiment, settings)) {
-            Ok(own) => (own, None),
-            Err(error) => {
-                // What has no predictions is not measured.
-                tasks.retain(|task| task.experiment.name != experiment.name);
-                cells.clear();
-                (Vec::new(), Some(format!("{error:#}")))
-            }
-        };
-        failures.push(failure);
         let table = prediction_table(&[*experiment], std::slice::from_ref(&own))?;
-        let changed = write_if_changed(&cells_folder.join(experiment.name).join("predictions.csv"), &table)?;
-        let missing = tasks.iter().filter(|task| task.experiment.name == experiment.name).count();
-        late_predictions |= changed && missing < cells.len();
+        let changed = write_if_changed(&folder.join("predictions.csv"), &table)?;
+        late_predictions |= changed && tasks.len() - before < cells.len();
+        sets.push(cells);
+        failures.push(failure);
         predictions.push(own);
     }
     let (total, measured) = (sets.iter().map(Vec::len).sum(), tasks.len());
@@ -249,7 +248,7 @@ pub fn run(study: &Study, settings: &Settings) -> anyhow::Result<Outcome> {
         experiments.iter().zip(&sets).zip(predictions).zip(failures)
     {
         let folder = cells_folder.join(experiment.name);
-        let cells = Cells::read(&folder, cells, &manifest.settings).with_context(|| experiment.name)?;
+        let cells = Cells::read(&folder, cells, settings).with_context(|| experiment.name)?;
         let concluded = match failure {
             Some(failure) => Err(failure),
             None => whole(|| (experiment.conclude)(settings, &predictions, &cells))
