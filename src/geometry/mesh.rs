@@ -111,12 +111,8 @@ impl Mesh {
             )));
         }
         let again = repeated(&corners);
-        if again.contains(&true) {
-            let mut is_again = again.iter();
-            corners.retain(|_| is_again.next() != Some(&true));
-            let mut is_again = again.iter();
-            kept.retain(|_| is_again.next() != Some(&true));
-        }
+        let first = corners.into_iter().zip(kept).zip(again).filter(|(_, again)| !again);
+        let (corners, kept): (Vec<_>, Vec<_>) = first.map(|(triangle, _)| triangle).unzip();
         let dropped = triangles.len() - corners.len();
         let boxes: Vec<(DVec3, DVec3)> =
             corners.iter().map(|[a, b, c]| (a.min(*b).min(*c), a.max(*b).max(*c))).collect();

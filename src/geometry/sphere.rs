@@ -2,7 +2,7 @@
 
 use super::Hit;
 use crate::error::{Error, Result};
-use crate::math::{FOUR_PI, Interval, Ray, warp};
+use crate::math::{FOUR_PI, Frame, Interval, Ray, warp};
 use glam::{DVec2, DVec3};
 
 /// All points within a radius of a centre.
@@ -35,9 +35,22 @@ impl Sphere {
     }
 
     /// 1 - cos of the half-angle under which it is seen from `p`; none from inside.
-    pub(crate) fn one_minus_mu_max(&self, p: DVec3) -> Option<f64> {
+    fn one_minus_mu_max(&self, p: DVec3) -> Option<f64> {
         let sin2 = self.radius * self.radius / p.distance_squared(self.center);
         (sin2 < 1.0).then(|| sin2 / (1.0 + (1.0 - sin2).sqrt()))
+    }
+
+    /// A uniform direction from `p` within the cone that the sphere fills, and its density [1/sr]; none from inside.
+    pub(crate) fn sample_cone(&self, p: DVec3, u: [f64; 2]) -> Option<(DVec3, f64)> {
+        let one_minus_mu_max = self.one_minus_mu_max(p)?;
+        let to_center = Frame::new((self.center - p).normalize());
+        let dir = to_center.to_world(warp::square_to_cone(u, one_minus_mu_max)).normalize();
+        Some((dir, warp::pdf_cone(one_minus_mu_max)))
+    }
+
+    /// The density of [`Self::sample_cone`] [1/sr]; 0 from inside.
+    pub(crate) fn pdf_cone(&self, p: DVec3) -> f64 {
+        self.one_minus_mu_max(p).map_or(0.0, warp::pdf_cone)
     }
 
     /// Both crossings of the line through the ray, nearer first, or none if it misses.

@@ -2,10 +2,11 @@
 //!
 //! Each ray collects in closed form what it would meet by itself (lights' bodies, incidence, volume sources), times
 //! the transmittance; each event connects to every light that can be aimed at, to a volume source from outside of its
-//! ball along one whole ray. Where both can find the same light, the balance heuristic shares it between them. Towards a point light a second point on the ray is sampled with
-//! equal angles, in multiple importance with the free flight: connections from free flights alone would have an
-//! infinite variance, and equal angles alone miss the rays that run through the light itself. For a beam the second point is
-//! sampled evenly where the beam crosses the ray: free flights hardly ever end in a narrow one.
+//! ball along one whole ray. Where both can find the same light, the balance heuristic shares it between them. Towards a
+//! point light a second point on the ray is sampled with equal angles, in multiple importance with the free flight:
+//! connections from free flights alone would have an infinite variance, and equal angles alone miss the rays that run
+//! through the light itself. For a beam the second point is sampled evenly where the beam crosses the ray: free flights
+//! hardly ever end in a narrow one.
 
 use super::{Layer, Layers};
 use crate::Spectrum;

@@ -173,15 +173,12 @@ impl Area {
     }
 
     fn sample_cone(&self, sphere: &Sphere, p: DVec3, u: [f64; 2]) -> Option<LightSample> {
-        let one_minus_mu_max = sphere.one_minus_mu_max(p)?;
-        let to_center = (sphere.center() - p).normalize();
-        let dir = Frame::new(to_center).to_world(warp::square_to_cone(u, one_minus_mu_max)).normalize();
+        let (dir, pdf) = sphere.sample_cone(p, u)?;
         // A direction on the very rim may miss by rounding: then it is as far as the rim is.
         let distance = self.hit(&Ray::new(p, dir), None).map_or_else(
             || (p.distance_squared(sphere.center()) - sphere.radius() * sphere.radius()).sqrt(),
             |hit| hit.t,
         );
-        let pdf = warp::pdf_cone(one_minus_mu_max);
         Some(LightSample { dir, distance, value: self.radiance / pdf, pdf_solid_angle: Some(pdf) })
     }
 
@@ -204,7 +201,7 @@ impl Area {
             return (Spectrum::ZERO, 0.0);
         }
         let pdf = match &self.shape {
-            Shape::Sphere(sphere) => sphere.one_minus_mu_max(ray.origin).map_or(0.0, warp::pdf_cone),
+            Shape::Sphere(sphere) => sphere.pdf_cone(ray.origin),
             Shape::Rectangle(r) if is_near(r, ray.origin) => {
                 SphericalRectangle::new(r, ray.origin).map_or(0.0, |seen| 1.0 / seen.solid_angle())
             }

@@ -4,7 +4,7 @@ use super::{EmissionNumbers, LightSample, Stage, emissive};
 use crate::Spectrum;
 use crate::error::{Error, Result};
 use crate::geometry::{Shape, Sphere};
-use crate::math::{FOUR_PI, Frame, Ray, warp};
+use crate::math::{FOUR_PI, Ray, warp};
 use glam::DVec3;
 
 /// Every volume element of a shape emits the same power, alike in all directions.
@@ -44,17 +44,13 @@ impl VolumeSource {
     /// Density with which [`super::Light::sample`] aims from `p` at any point of the shape [1/sr]: uniform in the cone about
     /// its ball, and 0 from inside of the ball, where every direction may meet the shape.
     pub fn pdf_solid_angle(&self, p: DVec3) -> f64 {
-        self.ball().and_then(|ball| ball.one_minus_mu_max(p)).map_or(0.0, warp::pdf_cone)
+        self.ball().map_or(0.0, |ball| ball.pdf_cone(p))
     }
 
     /// A direction from `p`, and what comes along it where nothing stands or absorbs on the way.
     pub(super) fn sample(&self, p: DVec3, u: [f64; 2]) -> Option<LightSample> {
-        let ball = self.ball()?;
-        let one_minus_mu_max = ball.one_minus_mu_max(p)?;
-        let to_center = Frame::new((ball.center() - p).normalize());
-        let dir = to_center.to_world(warp::square_to_cone(u, one_minus_mu_max)).normalize();
+        let (dir, pdf) = self.ball()?.sample_cone(p, u)?;
         let inside = self.shape.interval(&Ray::new(p, dir))?;
-        let pdf = warp::pdf_cone(one_minus_mu_max);
         let value = self.emission() * inside.length() / pdf;
         Some(LightSample { dir, distance: inside.start, value, pdf_solid_angle: Some(pdf) })
     }

@@ -53,7 +53,7 @@ fn bare(error: io::Error) -> io::Error {
 ///
 /// # Errors
 /// For links that lead back to themselves
-pub fn target(path: &Path) -> io::Result<PathBuf> {
+fn target(path: &Path) -> io::Result<PathBuf> {
     const MOST_LINKS: usize = 40;
     let mut target = path.to_path_buf();
     for _ in 0..MOST_LINKS {
@@ -67,7 +67,7 @@ pub fn target(path: &Path) -> io::Result<PathBuf> {
 /// Whether two paths lead to one file.
 ///
 /// # Errors
-/// As [`target`]
+/// For links that lead back to themselves
 pub fn is_same_file(a: &Path, b: &Path) -> io::Result<bool> {
     let whole = |path: &Path| -> io::Result<(PathBuf, Option<std::ffi::OsString>)> {
         let target = target(path)?;

@@ -8,7 +8,7 @@ mod stdout;
 mod table;
 mod tone;
 
-pub use atomic::{WriteError, check_writable, is_same_file, target, write_atomically};
+pub use atomic::{WriteError, check_writable, is_same_file, write_atomically};
 pub use exr::{PROVENANCE, encode_exr, write_exr};
 pub use ply::write_ply;
 pub use signal::end_on_signal;

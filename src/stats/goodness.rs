@@ -216,7 +216,7 @@ mod tests {
         assert_eq!(chi_squared_test(&[1.0, 1.0], &[1.0, 1.0], 0).p, 1.0);
     }
 
-    /// Data as far off as stated are seen at least 98 times in 100. Twin: a third of it is hardly ever seen.
+    /// Data as far off as stated are seen at least 98 times in 100. Negative control: a third of it is hardly ever seen.
     #[test]
     fn the_smallest_deviations_are_seen() {
         let (n, sets) = (2000u64, 400u64);

@@ -58,15 +58,16 @@ const TOLD: Duration = Duration::from_secs(10);
 
 /// Tries a range of inputs in so many processes at a time. Tells failures as they come, and how far it is.
 pub fn run(only: Option<Kind>, seed: u64, range: Range<u64>, jobs: usize) -> anyhow::Result<Found> {
-    let (next, start) = (AtomicU64::new(range.start), Instant::now());
+    let (batches, start) = (AtomicU64::new(0), Instant::now());
     let state = Mutex::new((Found::default(), Instant::now()));
     let work = || -> anyhow::Result<()> {
         loop {
-            let first = next.fetch_add(BATCH, Ordering::Relaxed);
+            let batch = batches.fetch_add(1, Ordering::Relaxed);
+            let first = range.start.saturating_add(batch.saturating_mul(BATCH));
             if first >= range.end {
                 return Ok(());
             }
-            let found = watch(only, seed, first..(first + BATCH).min(range.end))?;
+            let found = watch(only, seed, first..first.saturating_add(BATCH).min(range.end))?;
             for (number, what) in &found.failures {
                 say(&format!("input {number} of seed {seed}: {what}"));
             }

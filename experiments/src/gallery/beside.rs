@@ -1,13 +1,13 @@
-//! What stands beside the photon mapper's picture: paths in the same time, the control, and the comparison with it.
+//! What stands beside the photon mapper's picture: paths in the same time, the reference, and the comparison with it.
 //!
-//! The control and what is shown are of full size. For the comparison the photon mapper makes the picture again with 64
+//! The reference and what is shown are of full size. For the comparison the photon mapper makes the picture again with 64
 //! sets of maps on half the width and height, a sample a pixel: means over blocks need no small pixels, and their error
-//! comes from the maps. The control's passes are averaged over two by two pixels to fit.
+//! comes from the maps. The reference's passes are averaged over two by two pixels to fit.
 
-use super::compare::{FEWEST, Making, compare, errors, rms_of_one, spread};
+use super::cache::Cache;
+use super::compare::{FEWEST, Replicate, compare, errors, rms_of_one, spread};
 use super::keep::Kept;
 use super::look::look;
-use super::makings::Makings;
 use super::predict::{Radii, Spreads, predicted, radius};
 use super::recipe::reading;
 use super::shown::Compared;
@@ -18,26 +18,26 @@ use turbid::stats::Interval;
 
 /// Predicted relative error above which a pixel is masked.
 const LIMIT: f64 = 0.02;
-/// Standard error of a block's mean that the control is given samples for: a third of what would be masked.
+/// Standard error of a block's mean that the reference is given samples for: a third of what would be masked.
 const WANTED: f64 = LIMIT / 3.0;
-/// The most photons that are emitted for a making from which blur is predicted, and how many times the original's at most.
+/// The most photons that are emitted for a replicate from which blur is predicted, and how many times the original's at most.
 const FINE: (u64, u64) = (8_000_000, 8);
-/// Samples a pixel of such a making.
+/// Samples a pixel of such a replicate.
 const FINE_SAMPLES: u64 = 8;
-/// Makings of either side that are compared.
+/// Replicates of either side that are compared.
 const COMPARED: u64 = FEWEST as u64;
-/// Passes of a sample a pixel by which the control's samples are chosen.
+/// Passes of a sample a pixel by which the reference's samples are chosen.
 const PILOT: u64 = 8;
-/// Numbers of the first repetition of the control's passes, and of the pilot's: no random numbers are used twice.
+/// Numbers of the first repetition of the reference's passes, and of the pilot's: no random numbers are used twice.
 const FIRST: (u64, u64) = (1000, 2000);
 
 /// What stands beside the photon mapper's picture.
 pub struct Others {
     /// The path tracer's picture in the same time.
     pub equal: Kept,
-    /// The control, its samples a pixel and its CPU seconds.
-    pub control: Making,
-    /// Samples a pixel of the control, and its CPU seconds.
+    /// The reference, its samples a pixel and its CPU seconds.
+    pub reference: Replicate,
+    /// Samples a pixel of the reference, and its CPU seconds.
     pub cost: (u64, f64),
     /// Which pixels of the half-size grid were masked.
     pub masked: Vec<bool>,
@@ -49,11 +49,11 @@ pub struct Others {
 
 /// Makes and compares all that stands beside `ours`.
 ///
-/// # Arguments   `large` makings in the size that is shown; `small` in half of it
+/// # Arguments   `large` cached renders in the size that is shown; `small` in half of it
 ///
 /// # Errors
-/// those of making and of files
-pub fn beside(large: &Makings, small: &Makings, ours: &Kept) -> anyhow::Result<Others> {
+/// those of rendering and of files
+pub fn beside(large: &Cache, small: &Cache, ours: &Kept) -> anyhow::Result<Others> {
     let picture = large.studio.picture;
     let equal = large.paths_in("equal", ours.facts.seconds)?;
     // Before anything that is compared is made.
@@ -62,69 +62,69 @@ pub fn beside(large: &Makings, small: &Makings, ours: &Kept) -> anyhow::Result<O
     let share = masked.iter().filter(|&&is_masked| is_masked).count() as f64 / masked.len() as f64;
     say(&format!("{}: blur and edges may matter in {:.1} % of the pixels", picture.name, 100.0 * share));
     let samples = chosen(large, &masked)?;
-    say(&format!("{}: {COMPARED} passes of {samples} samples a pixel for the control", picture.name));
-    let control = control(large, samples, [ours, &equal])?;
+    say(&format!("{}: {COMPARED} passes of {samples} samples a pixel for the reference", picture.name));
+    let reference = reference(large, samples, [ours, &equal])?;
     let again = (0..COMPARED)
         .map(|n| {
             let kept = small.photons(&format!("maps-{n:03}"), 1, 1 + n)?;
             seconds += kept.facts.seconds;
             Ok(kept.scattered())
         })
-        .collect::<anyhow::Result<Vec<Making>>>()?;
-    let comparison = compare(small.studio.grid(), &again, &control.passes, &prediction, LIMIT);
-    let found = errors(small.studio.grid(), &again, &control.passes);
-    let [rms, equal_rms] = control.rms;
-    seconds += control.seconds + equal.facts.seconds;
+        .collect::<anyhow::Result<Vec<Replicate>>>()?;
+    let comparison = compare(small.studio.grid(), &again, &reference.passes, &prediction, LIMIT);
+    let found = errors(small.studio.grid(), &again, &reference.passes);
+    let [rms, equal_rms] = reference.rms;
+    seconds += reference.seconds + equal.facts.seconds;
     Ok(Others {
         equal,
-        control: control.shown,
-        cost: (samples * COMPARED, control.seconds),
+        reference: reference.shown,
+        cost: (samples * COMPARED, reference.seconds),
         masked,
         compared: Compared::new(&comparison, &found, again.len(), rms, equal_rms),
         seconds,
     })
 }
 
-/// Samples a pixel of a pass of the control: nine in ten of the blocks that are not masked are to have the standard error that
+/// Samples a pixel of a pass of the reference: nine in ten of the blocks that are not masked are to have the standard error that
 /// is wanted, within the picture's budget.
-fn chosen(large: &Makings, masked: &[bool]) -> anyhow::Result<u64> {
+fn chosen(large: &Cache, masked: &[bool]) -> anyhow::Result<u64> {
     let grid = large.studio.grid();
     let passes = (0..PILOT)
-        .map(|n| Ok(grid.reduced(&large.control(&format!("pilot-{n}"), 1, FIRST.1 + n)?.scattered())))
-        .collect::<anyhow::Result<Vec<Making>>>()?;
+        .map(|n| Ok(grid.reduced(&large.reference(&format!("pilot-{n}"), 1, FIRST.1 + n)?.scattered())))
+        .collect::<anyhow::Result<Vec<Replicate>>>()?;
     let one = spread(grid.halved(), &passes, masked);
     let samples = (one / WANTED) * (one / WANTED) / COMPARED as f64;
-    Ok((samples.ceil() as u64).clamp(1, large.studio.picture.control))
+    Ok((samples.ceil() as u64).clamp(1, large.studio.picture.reference))
 }
 
-/// The passes of the control.
-struct Twin {
+/// The passes of the reference.
+struct Reference {
     /// Without light that is seen directly, on the half-size grid.
-    passes: Vec<Making>,
+    passes: Vec<Replicate>,
     /// The picture with that light, in the size that is shown.
-    shown: Making,
+    shown: Replicate,
     /// Errors of the two pictures that are shown.
     rms: [Interval; 2],
     seconds: f64,
 }
 
-fn control(large: &Makings, samples: u64, pictures: [&Kept; 2]) -> anyhow::Result<Twin> {
+fn reference(large: &Cache, samples: u64, pictures: [&Kept; 2]) -> anyhow::Result<Reference> {
     let grid = large.studio.grid();
     let (mut passes, mut seconds) = (Vec::new(), 0.0);
     let mut shown = vec![Spectrum::ZERO; grid.pixels()];
     for n in 0..COMPARED {
-        let kept = large.control(&format!("control-{n:03}"), samples, FIRST.0 + n)?;
+        let kept = large.reference(&format!("reference-{n:03}"), samples, FIRST.0 + n)?;
         seconds += kept.facts.seconds;
         shown.iter_mut().zip(&kept.total).for_each(|(sum, x)| *sum += *x * (1.0 / COMPARED as f64));
         passes.push(kept.scattered());
     }
     let rms = pictures.map(|picture| rms_of_one(&picture.scattered(), &passes));
     let passes = passes.iter().map(|pass| grid.reduced(pass)).collect();
-    Ok(Twin { passes, shown, rms, seconds })
+    Ok(Reference { passes, shown, rms, seconds })
 }
 
 /// The relative error that blur and edges may cause, by pixel, and the CPU seconds of knowing it.
-fn predict(small: &Makings, ours: &Kept) -> anyhow::Result<(Vec<f64>, f64)> {
+fn predict(small: &Cache, ours: &Kept) -> anyhow::Result<(Vec<f64>, f64)> {
     let (studio, picture) = (small.studio, small.studio.picture);
     let emitted = ours.facts.emitted;
     let factor = (FINE.0 / emitted[0].max(emitted[1]).max(1)).clamp(2, FINE.1);

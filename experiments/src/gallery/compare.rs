@@ -1,6 +1,6 @@
 //! Do two pictures agree, and how far apart are they? Statistics of pictures that were made several times.
 //!
-//! A picture comes as independent makings of one size: a map each for the photon mapper, a pass each for its control.
+//! A picture comes as independent replicates of one size: a map each for the photon mapper, a pass each for its reference.
 //! Pixels of one map share photons, so that errors come from the spread over maps, never over pixels.
 
 use super::blocks::Grid;
@@ -11,12 +11,12 @@ use turbid::stats::{Interval, Moments, holm, mean_interval, smallest_detectable_
 pub const LEVEL: f64 = 1e-3;
 /// The largest part of a picture that may stay without a verdict.
 pub const LARGEST_MASK: f64 = 0.2;
-/// The fewest makings of either side. The variance of variance of n normal values is 2/n, give or take sqrt(24/n)/n: with 32
+/// The fewest replicates of either side. The variance of variance of n normal values is 2/n, give or take sqrt(24/n)/n: with 32
 /// one block in ten crosses the bound of heavy tails by chance, with 64 none does.
 pub const FEWEST: usize = 64;
 
-/// One making of a picture: radiance by pixel, row by row from the top left.
-pub type Making = Vec<Spectrum>;
+/// One replicate of a picture: radiance by pixel, row by row from the top left.
+pub type Replicate = Vec<Spectrum>;
 
 /// One channel of one block.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -25,9 +25,9 @@ pub struct Block {
     pub place: (usize, usize),
     /// 0 red, 1 green, 2 blue.
     pub channel: usize,
-    /// Mean of the control over the block's pixels [W/(L^2 sr)].
-    pub control: f64,
-    /// Ours minus the control's.
+    /// Mean of the reference over the block's pixels [W/(L^2 sr)].
+    pub reference: f64,
+    /// Ours minus the reference's.
     pub difference: f64,
     /// Its standard error.
     pub std_error: f64,
@@ -76,8 +76,8 @@ impl Comparison {
 
     /// The median over blocks of the smallest relative deviation seen.
     pub fn typical_smallest(&self) -> f64 {
-        let bright = self.blocks.iter().filter(|b| b.control > 0.0);
-        let mut all: Vec<f64> = bright.map(|b| b.smallest / b.control).collect();
+        let bright = self.blocks.iter().filter(|b| b.reference > 0.0);
+        let mut all: Vec<f64> = bright.map(|b| b.smallest / b.reference).collect();
         all.sort_by(f64::total_cmp);
         all.get(all.len() / 2).copied().unwrap_or(f64::NAN)
     }
@@ -91,12 +91,18 @@ impl Comparison {
 /// Compares two pictures block by block.
 ///
 /// A pixel is left out where the relative error predicted for it is above `limit`; what was predicted for the pixels
-/// that stay is allowed for, as the mean of its absolute values over the block, times the control's radiance.
+/// that stay is allowed for, as the mean of its absolute values over the block, times the reference's radiance.
 ///
 /// # Arguments
-/// `predicted` is the relative error by pixel, made from neither `ours` nor `control`: pixels chosen for their noise would
+/// `predicted` is the relative error by pixel, made from neither `ours` nor `reference`: pixels chosen for their noise would
 /// bias what is left.
-pub fn compare(grid: Grid, ours: &[Making], control: &[Making], predicted: &[f64], limit: f64) -> Comparison {
+pub fn compare(
+    grid: Grid,
+    ours: &[Replicate],
+    reference: &[Replicate],
+    predicted: &[f64],
+    limit: f64,
+) -> Comparison {
     let keep: Vec<bool> = predicted.iter().map(|&e| e <= limit).collect();
     let (mut blocks, mut kept, mut heavy) = (Vec::new(), 0, 0);
     for place in grid.blocks() {
@@ -106,7 +112,7 @@ pub fn compare(grid: Grid, ours: &[Making], control: &[Making], predicted: &[f64
         }
         kept += pixels.len();
         let channels: Vec<Option<Block>> =
-            (0..3).map(|channel| one(place, channel, &pixels, ours, control, predicted)).collect();
+            (0..3).map(|channel| one(place, channel, &pixels, ours, reference, predicted)).collect();
         if channels.iter().any(Option::is_none) {
             heavy += pixels.len();
         }
@@ -125,19 +131,20 @@ fn one(
     place: (usize, usize),
     channel: usize,
     pixels: &[usize],
-    ours: &[Making],
-    control: &[Making],
+    ours: &[Replicate],
+    reference: &[Replicate],
     predicted: &[f64],
 ) -> Option<Block> {
-    let mean =
-        |making: &Making| pixels.iter().map(|&i| making[i][channel]).sum::<f64>() / pixels.len() as f64;
-    let moments = |makings: &[Making]| {
-        makings.iter().map(mean).fold(Moments::new(), |mut m, x| {
+    let mean = |replicate: &Replicate| {
+        pixels.iter().map(|&i| replicate[i][channel]).sum::<f64>() / pixels.len() as f64
+    };
+    let moments = |replicates: &[Replicate]| {
+        replicates.iter().map(mean).fold(Moments::new(), |mut m, x| {
             m.push(x);
             m
         })
     };
-    let (a, b) = (moments(ours), moments(control));
+    let (a, b) = (moments(ours), moments(reference));
     if a.is_heavy_tailed() || b.is_heavy_tailed() {
         return None;
     }
@@ -151,7 +158,7 @@ fn one(
     Some(Block {
         place,
         channel,
-        control: b.mean(),
+        reference: b.mean(),
         difference,
         std_error,
         allowed,
@@ -173,25 +180,26 @@ fn welch(va: f64, na: u64, vb: f64, nb: u64) -> u64 {
 pub struct Errors {
     /// Mean of the truth [W/(L^2 sr)].
     pub mean: f64,
-    /// Root mean square error of a block's mean in one making.
+    /// Root mean square error of a block's mean in one replicate.
     pub rms: Interval,
-    /// Its systematic part: what remains after infinitely many makings.
+    /// Its systematic part: what remains after infinitely many replicates.
     pub systematic: Interval,
     /// Error of the picture's mean.
     pub bias: Interval,
 }
 
-/// The errors of a picture against its control over means of blocks, those that are not whole left out, with intervals of 95 per
-/// cent over makings.
+/// The errors of a picture against its reference over means of blocks, those that are not whole left out, with intervals of 95 per
+/// cent over replicates.
 ///
-/// The control is noisy, too. Its passes are halved, and a square is replaced by the product of the differences to
+/// The reference is noisy, too. Its passes are halved, and a square is replaced by the product of the differences to
 /// either half, E[(x - a)(x - b)] = E[(x - truth)^2]; the systematic part is the product of differences between
-/// independent makings on both sides. Nothing is subtracted that was estimated, and noise leaves no bias.
-pub fn errors(grid: Grid, ours: &[Making], control: &[Making]) -> Errors {
-    let all = |makings: &[Making]| -> Vec<Making> { makings.iter().map(|m| grid.means(m)).collect() };
-    let (ours, control) = (&all(ours), &all(control));
-    let (left, right) = (average(control.iter().step_by(2)), average(control.iter().skip(1).step_by(2)));
-    let both = average(control.iter());
+/// independent replicates on both sides. Nothing is subtracted that was estimated, and noise leaves no bias.
+pub fn errors(grid: Grid, ours: &[Replicate], reference: &[Replicate]) -> Errors {
+    let all =
+        |replicates: &[Replicate]| -> Vec<Replicate> { replicates.iter().map(|m| grid.means(m)).collect() };
+    let (ours, reference) = (&all(ours), &all(reference));
+    let (left, right) = (average(reference.iter().step_by(2)), average(reference.iter().skip(1).step_by(2)));
+    let both = average(reference.iter());
     let mean = both.iter().map(|s| s.mean()).sum::<f64>() / both.len() as f64;
     let product = |x: &[Spectrum], y: &[Spectrum]| {
         let one = |((x, y), (l, r)): ((&Spectrum, &Spectrum), (&Spectrum, &Spectrum))| {
@@ -201,22 +209,22 @@ pub fn errors(grid: Grid, ours: &[Making], control: &[Making]) -> Errors {
         x.iter().zip(y).zip(left.iter().zip(&right)).map(one).sum::<f64>() / x.len() as f64
     };
     let (mut square, mut systematic, mut bias) = (Moments::new(), Moments::new(), Moments::new());
-    for making in ours {
-        square.push(product(making, making));
-        bias.push(making.iter().map(|s| s.mean()).sum::<f64>() / making.len() as f64 / mean - 1.0);
+    for replicate in ours {
+        square.push(product(replicate, replicate));
+        bias.push(replicate.iter().map(|s| s.mean()).sum::<f64>() / replicate.len() as f64 / mean - 1.0);
     }
     for pair in ours.chunks_exact(2) {
         systematic.push(0.5 * (product(&pair[0], &pair[1]) + product(&pair[1], &pair[0])));
     }
-    let mut controls = Moments::new();
-    for pass in control {
-        controls.push(pass.iter().map(|s| s.mean()).sum::<f64>() / pass.len() as f64 / mean);
+    let mut references = Moments::new();
+    for pass in reference {
+        references.push(pass.iter().map(|s| s.mean()).sum::<f64>() / pass.len() as f64 / mean);
     }
     let half = |m: &Moments| {
         let i = mean_interval(m, 0.95);
         0.5 * (i.high - i.low)
     };
-    let width = (half(&bias) * half(&bias) + half(&controls) * half(&controls)).sqrt();
+    let width = (half(&bias) * half(&bias) + half(&references) * half(&references)).sqrt();
     Errors {
         mean,
         rms: root(&square, mean),
@@ -225,15 +233,15 @@ pub fn errors(grid: Grid, ours: &[Making], control: &[Making]) -> Errors {
     }
 }
 
-/// The root mean square error of a picture of which there is one, against passes of a control, over the mean of the control: 95
+/// The root mean square error of a picture of which there is one, against passes of a reference, over the mean of the reference: 95
 /// per cent.
 ///
 /// The mean of (x - a)(x - b) over all pairs of passes a, b, pixels and channels is the mean square error of x give or
 /// take noise of mean 0, as long as x shares no random numbers with the passes; nothing that was estimated is subtracted. Its
 /// standard error is that of the jackknife over passes.
-pub fn rms_of_one(picture: &[Spectrum], passes: &[Making]) -> Interval {
+pub fn rms_of_one(picture: &[Spectrum], passes: &[Replicate]) -> Interval {
     let n = passes.len();
-    let distance = |i: usize, pass: &Making| picture[i] - pass[i];
+    let distance = |i: usize, pass: &Replicate| picture[i] - pass[i];
     // With S the sum of the distances d and Q that of their squares, sum over pairs i != j of d_i d_j is S^2 - Q.
     let zero = || vec![Spectrum::ZERO; picture.len()];
     let (mut sums, mut squares) = (zero(), zero());
@@ -267,19 +275,20 @@ fn root(squares: &Moments, mean: f64) -> Interval {
     Interval { low: root(i.low), high: root(i.high) }
 }
 
-/// The standard deviation of a block's mean from one making to the next, over the mean, which nine in ten of all blocks and
+/// The standard deviation of a block's mean from one replicate to the next, over the mean, which nine in ten of all blocks and
 /// channels do not exceed; pixels that are masked are left out. 0 without any block.
-pub fn spread(grid: Grid, makings: &[Making], masked: &[bool]) -> f64 {
+pub fn spread(grid: Grid, replicates: &[Replicate], masked: &[bool]) -> f64 {
     let keep: Vec<bool> = masked.iter().map(|&is_masked| !is_masked).collect();
     let mut all = Vec::new();
     for pixels in grid.blocks().map(|place| grid.kept(place, &keep)).filter(|p| p.len() >= grid.fewest()) {
         for channel in 0..3 {
             let mut moments = Moments::new();
-            for making in makings {
-                moments.push(pixels.iter().map(|&i| making[i][channel]).sum::<f64>() / pixels.len() as f64);
+            for replicate in replicates {
+                moments
+                    .push(pixels.iter().map(|&i| replicate[i][channel]).sum::<f64>() / pixels.len() as f64);
             }
             if moments.mean() > 0.0 {
-                all.push(moments.std_error() * (makings.len() as f64).sqrt() / moments.mean());
+                all.push(moments.std_error() * (replicates.len() as f64).sqrt() / moments.mean());
             }
         }
     }
@@ -287,15 +296,15 @@ pub fn spread(grid: Grid, makings: &[Making], masked: &[bool]) -> f64 {
     all.get(all.len() * 9 / 10).copied().unwrap_or(0.0)
 }
 
-/// Mean over makings, pixel by pixel; empty without any.
-pub fn average<'a>(makings: impl Iterator<Item = &'a Making>) -> Making {
-    let mut sum: Making = Vec::new();
+/// Mean over replicates, pixel by pixel; empty without any.
+pub fn average<'a>(replicates: impl Iterator<Item = &'a Replicate>) -> Replicate {
+    let mut sum: Replicate = Vec::new();
     let mut count = 0.0;
-    for making in makings {
+    for replicate in replicates {
         if sum.is_empty() {
-            sum = vec![Spectrum::ZERO; making.len()];
+            sum = vec![Spectrum::ZERO; replicate.len()];
         }
-        for (s, x) in sum.iter_mut().zip(making) {
+        for (s, x) in sum.iter_mut().zip(replicate) {
             *s += *x;
         }
         count += 1.0;
@@ -317,11 +326,11 @@ mod tests {
         Spectrum::rgb(0.2 + 0.04 * x, 1.0 + 0.02 * y, 0.5)
     }
 
-    /// Makings whose pixels share their noise within a block, as those of one map do: a sum of `sum` exponentials,
+    /// Replicates whose pixels share their noise within a block, as those of one map do: a sum of `sum` exponentials,
     /// of mean 1 and a long tail to the right.
-    fn makings(count: u64, replicate: u64, sum: u32, change: impl Fn(usize) -> f64) -> Vec<Making> {
-        let one = |making: u64| {
-            let mut stream = Stream::new(17, Purpose::Synthetic, replicate, making);
+    fn replicates(count: u64, set: u64, sum: u32, change: impl Fn(usize) -> f64) -> Vec<Replicate> {
+        let one = |number: u64| {
+            let mut stream = Stream::new(17, Purpose::Synthetic, set, number);
             let mut picture = vec![Spectrum::ZERO; GRID.pixels()];
             for place in GRID.blocks() {
                 let gamma: f64 = (0..sum).map(|_| -turbid::math::ln(stream.open_unit())).sum();
@@ -346,18 +355,18 @@ mod tests {
     /// degrees, it would be 0.0036.
     #[test]
     fn a_block_by_hand() {
-        let side = |count: usize, mean: f64, by: f64| -> Vec<Making> {
+        let side = |count: usize, mean: f64, by: f64| -> Vec<Replicate> {
             let one = |i: usize| vec![Spectrum::grey(mean + if i.is_multiple_of(2) { by } else { -by })];
             (0..count).map(one).collect()
         };
         let error = (1.0f64 / 15.0).sqrt();
-        let (ours, control) = (side(16, 10.0 + 3.0 * error, 1.0), side(64, 10.0, 1e-6));
-        let block = one((0, 0), 1, &[0], &ours, &control, &[0.0]).unwrap();
+        let (ours, reference) = (side(16, 10.0 + 3.0 * error, 1.0), side(64, 10.0, 1e-6));
+        let block = one((0, 0), 1, &[0], &ours, &reference, &[0.0]).unwrap();
         assert!((block.std_error - error).abs() < 1e-9 && (block.difference - 3.0 * error).abs() < 1e-9);
         assert!((block.p - 0.008_973).abs() < 2e-6, "{}", block.p);
         // What was predicted to be off is no difference: one error of three is left.
         let predicted = 2.0 * error / 10.0;
-        let block = one((0, 0), 1, &[0], &ours, &control, &[predicted]).unwrap();
+        let block = one((0, 0), 1, &[0], &ours, &reference, &[predicted]).unwrap();
         assert!((block.p - 0.333_170).abs() < 2e-6, "{}", block.p);
     }
 
@@ -371,7 +380,7 @@ mod tests {
     #[test]
     fn false_alarms_are_as_rare_as_promised() {
         let alarms = (0..400).filter(|&n| {
-            let (a, b) = (makings(32, 2 * n, 4, |_| 1.0), makings(32, 2 * n + 1, 4, |_| 1.0));
+            let (a, b) = (replicates(32, 2 * n, 4, |_| 1.0), replicates(32, 2 * n + 1, 4, |_| 1.0));
             let comparison = compare(GRID, &a, &b, &nothing(), 0.02);
             comparison.blocks.iter().any(|block| block.adjusted <= 0.05)
         });
@@ -379,7 +388,7 @@ mod tests {
         assert!(rate.low <= 0.05 && rate.high >= 0.05 / 3.0 / 2.0, "{rate:?}");
     }
 
-    /// One block of six is 5 per cent too dark; noise of 2.5 per cent a making (gamma of shape 16) in 64 makings each
+    /// One block of six is 5 per cent too dark; noise of 2.5 per cent a replicate (gamma of shape 16) in 64 replicates each
     /// gives a difference with an error of 0.44 per cent, so that 5 per cent are 11 errors: of 100 such pictures none
     /// is missed. In a few the block has a long tail by chance and gets no verdict, and the area says so.
     #[test]
@@ -387,7 +396,7 @@ mod tests {
         let dark = |i: usize| if i % GRID.width < 8 && i / GRID.width >= 8 { 0.95 } else { 1.0 };
         let mut seen = 0;
         for n in 0..100 {
-            let (a, b) = (makings(64, 2 * n, 16, dark), makings(64, 2 * n + 1, 16, |_| 1.0));
+            let (a, b) = (replicates(64, 2 * n, 16, dark), replicates(64, 2 * n + 1, 16, |_| 1.0));
             let comparison = compare(GRID, &a, &b, &nothing(), 0.02);
             let is_judged = comparison.blocks.iter().any(|block| block.place == (0, 1));
             assert_eq!(comparison.agreement() != Agreement::Agree, is_judged, "{n}");
@@ -400,7 +409,7 @@ mod tests {
     /// What was predicted is allowed: a deviation of 1.9 per cent where 2 were predicted is none, where 1 was it is.
     #[test]
     fn predicted_errors_are_allowed_and_no_more() {
-        let (a, b) = (makings(64, 1, 400, |_| 1.019), makings(64, 2, 400, |_| 1.0));
+        let (a, b) = (replicates(64, 1, 400, |_| 1.019), replicates(64, 2, 400, |_| 1.0));
         let with = |e: f64| compare(GRID, &a, &b, &vec![e; GRID.pixels()], 0.02).agreement();
         assert_eq!(with(0.02), Agreement::Agree);
         assert_eq!(with(0.01), Agreement::Differ(18));
@@ -411,7 +420,7 @@ mod tests {
     #[test]
     fn masked_pixels_are_left_out_and_counted() {
         let wrong = |i: usize| if i % GRID.width < 4 { 0.5 } else { 1.0 };
-        let (a, b) = (makings(64, 1, 400, wrong), makings(64, 2, 400, |_| 1.0));
+        let (a, b) = (replicates(64, 1, 400, wrong), replicates(64, 2, 400, |_| 1.0));
         let masked = |columns: usize| -> Vec<f64> {
             (0..GRID.pixels()).map(|i| if i % GRID.width < columns { 0.5 } else { 0.0 }).collect()
         };
@@ -428,31 +437,31 @@ mod tests {
     /// A pixel with a tail of index 1.1, of infinite variance: its block gets no interval instead of a false one.
     #[test]
     fn heavy_tails_get_no_verdict() {
-        let mut b = makings(64, 2, 16, |_| 1.0);
-        for (n, making) in b.iter_mut().enumerate() {
+        let mut b = replicates(64, 2, 16, |_| 1.0);
+        for (n, replicate) in b.iter_mut().enumerate() {
             let mut stream = Stream::new(3, Purpose::Synthetic, 0, n as u64);
-            for x in making.iter_mut().take(1) {
+            for x in replicate.iter_mut().take(1) {
                 let u = stream.open_unit();
                 *x *= 20.0 / turbid::math::exp(turbid::math::ln(u) / 1.1);
             }
         }
-        let comparison = compare(GRID, &makings(64, 1, 16, |_| 1.0), &b, &nothing(), 0.02);
+        let comparison = compare(GRID, &replicates(64, 1, 16, |_| 1.0), &b, &nothing(), 0.02);
         assert_eq!(comparison.heavy, 1.0 / 6.0);
         assert!(comparison.blocks.iter().all(|block| block.place != (0, 0)));
         assert_eq!(comparison.agreement(), Agreement::Agree);
     }
 
-    /// Errors that are known: ours are 3 per cent too bright with independent noise of 2.5 per cent a block, the control
+    /// Errors that are known: ours are 3 per cent too bright with independent noise of 2.5 per cent a block, the reference
     /// has noise of 5 per cent that must not count.
     #[test]
     fn errors_are_those_put_in() {
-        let (a, b) = (makings(64, 1, 16, |_| 1.03), makings(64, 2, 4, |_| 1.0));
-        let right = GRID.means(&(0..GRID.pixels()).map(truth).collect::<Making>());
+        let (a, b) = (replicates(64, 1, 16, |_| 1.03), replicates(64, 2, 4, |_| 1.0));
+        let right = GRID.means(&(0..GRID.pixels()).map(truth).collect::<Replicate>());
         let mean = right.iter().map(|s| s.mean()).sum::<f64>() / right.len() as f64;
         let square = right.iter().map(|s| (*s * *s).mean()).sum::<f64>() / right.len() as f64;
         let rms = square.sqrt() / mean;
         let errors = errors(GRID, &a, &b);
-        // The interval of the control's own noise, 5 % over 64 passes and 6 blocks, adds to that of our makings.
+        // The interval of the reference's own noise, 5 % over 64 passes and 6 blocks, adds to that of our replicates.
         let slack = 3.0 * 0.05 / (64.0_f64 * 6.0).sqrt();
         let near = |i: Interval, value: f64| i.low - slack * rms <= value && value <= i.high + slack * rms;
         assert!(near(errors.systematic, 0.03 * rms), "{errors:?}");
@@ -466,9 +475,9 @@ mod tests {
     /// interval; and what a block of such passes varies by.
     #[test]
     fn the_error_of_one_picture_is_that_put_in() {
-        let bright: Making = (0..GRID.pixels()).map(|i| truth(i) * 1.03).collect();
-        let right: Making = (0..GRID.pixels()).map(truth).collect();
-        let passes = makings(64, 2, 4, |_| 1.0);
+        let bright: Replicate = (0..GRID.pixels()).map(|i| truth(i) * 1.03).collect();
+        let right: Replicate = (0..GRID.pixels()).map(truth).collect();
+        let passes = replicates(64, 2, 4, |_| 1.0);
         let mean = right.iter().map(|s| s.mean()).sum::<f64>() / right.len() as f64;
         let square = right.iter().map(|s| (*s * *s).mean()).sum::<f64>() / right.len() as f64;
         let (found, none) = (rms_of_one(&bright, &passes), rms_of_one(&right, &passes));

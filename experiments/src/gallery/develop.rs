@@ -50,20 +50,20 @@ pub fn plain(grid: Grid, values: &[Spectrum]) -> Print {
 /// colour at `limit`.
 ///
 /// Both pictures are averaged over squares of [`SOFT`] pixels, so that errors that stay show through noise. The error is the
-/// difference of the channels' sums over the control's, or over a hundredth of the control's mean where the control is darker than
+/// difference of the channels' sums over the reference's, or over a hundredth of the reference's mean where the reference is darker than
 /// that. What is masked is grey.
 pub fn error_print(
     grid: Grid,
     ours: &[Spectrum],
-    control: &[Spectrum],
+    reference: &[Spectrum],
     masked: &[bool],
     limit: f64,
 ) -> Print {
-    let floor = 0.01 * control.iter().map(|s| s.sum()).sum::<f64>() / control.len() as f64;
-    let (ours, control) = (softened(grid, ours), softened(grid, control));
+    let floor = 0.01 * reference.iter().map(|s| s.sum()).sum::<f64>() / reference.len() as f64;
+    let (ours, reference) = (softened(grid, ours), softened(grid, reference));
     let pixel = |i: usize| {
-        let scale = control[i].max(floor);
-        let error = if scale > 0.0 { (ours[i] - control[i]) / scale } else { 0.0 };
+        let scale = reference[i].max(floor);
+        let error = if scale > 0.0 { (ours[i] - reference[i]) / scale } else { 0.0 };
         let (r, g, b) = Shading::Diverging.rgb(0.5 + 0.5 * error / limit);
         if masked[i] { MASKED } else { [r, g, b] }
     };
@@ -111,19 +111,19 @@ mod tests {
 
     #[test]
     fn errors_have_their_colours() {
-        let control = vec![Spectrum::grey(2.0); GRID.pixels()];
-        let mut ours = control.clone();
+        let reference = vec![Spectrum::grey(2.0); GRID.pixels()];
+        let mut ours = reference.clone();
         for i in 0..GRID.pixels() {
             ours[i] *= [1.2, 0.5, 1.0][(i % GRID.width / SOFT).min(2)];
         }
         let mut masked = vec![false; GRID.pixels()];
         masked[12] = true;
-        let print = error_print(GRID, &ours, &control, &masked, 0.2);
+        let print = error_print(GRID, &ours, &reference, &masked, 0.2);
         assert_eq!((print.grid.width, print.pixels.len()), (2 * GRID.width, 4 * GRID.pixels()));
         let shade = |u| <[u8; 3]>::from(Shading::Diverging.rgb(u));
         let pixel = |i: usize| print.pixels[2 * i];
         assert_eq!([pixel(0), pixel(SOFT), pixel(2 * SOFT)], [shade(1.0), shade(0.0), shade(0.5)]);
         assert_eq!(pixel(12), MASKED);
-        assert_eq!(mask_print(GRID, &control, &masked, tone(0.1)).pixels[24], [90; 3]);
+        assert_eq!(mask_print(GRID, &reference, &masked, tone(0.1)).pixels[24], [90; 3]);
     }
 }

@@ -1,4 +1,4 @@
-//! Pictures kept between runs: resumable, one file a making.
+//! Pictures kept between runs: resumable, one file a render.
 //!
 //! A file is a line of JSON, planes of single-precision numbers, and the digest of everything before it: a file that was
 //! cut short, or changed, is not taken.
@@ -12,11 +12,11 @@ use turbid::integrators::{Layer, Layers};
 use turbid::output::write_atomically;
 use turbid::sensor::Film;
 
-/// What is known of a making beside its pixels.
+/// What is known of a render beside its pixels.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Facts {
-    /// What it is, in words: two makings of equal words and equal program are equal.
+    /// What it is, in words: two renders of equal words and equal program are equal.
     pub words: String,
     /// Digest of the program that made it.
     pub program: String,

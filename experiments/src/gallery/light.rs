@@ -1,4 +1,4 @@
-//! Twins by light tracing: the photons' own walk, connected to the camera, finds what lights throw through glass and
+//! References by light tracing: the photons' own walk, connected to the camera, finds what lights throw through glass and
 //! water, where paths from the eye would have to meet a small light by chance.
 //!
 //! It knows only what the eye sees straight: an event X between which and the camera nothing specular stands. Paths give
@@ -20,7 +20,7 @@ use turbid::transport::{NoProgress, run_blocks};
 /// hundred bytes each.
 const AT_ONCE: u64 = 1 << 18;
 
-/// Which layers of a control are found by light tracing.
+/// Which layers of a reference are found by light tracing.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct ByLight {
     /// These; none of them is emission.
@@ -38,7 +38,7 @@ impl ByLight {
         self.layers.contains(&layer)
     }
 
-    /// Who made the control, in words.
+    /// Who made the reference, in words.
     pub fn words(&self) -> &'static str {
         match self.layers {
             [] => "by paths",
@@ -122,7 +122,7 @@ impl ByLight {
         });
         ensure!(
             seen.count() == 0,
-            "a specular surface is seen through a medium: its control cannot be by light"
+            "a specular surface is seen through a medium: its reference cannot be by light"
         );
         Ok(())
     }

@@ -1,4 +1,4 @@
-//! The page: every picture with its control, its error, its maps and its numbers. It needs nothing from elsewhere.
+//! The page: every picture with its reference, its error, its maps and its numbers. It needs nothing from elsewhere.
 
 use super::pictures::{ALL, Picture};
 use super::plates::SCALE;
@@ -47,15 +47,15 @@ pub fn page(shown: &[Shown], settings: &Settings) -> Markup {
                 h1 { "The pictures of photon mapping in fog, and what they are worth" }
                 p {
                     "Each picture was made as in 1998: photons are stored in maps, and the maps are read along the rays of a "
-                    "camera. Beside it stands what a path tracer makes of the same scene in the same CPU time; a control of many more "
+                    "camera. Beside it stands what a path tracer makes of the same scene in the same CPU time; a reference of many more "
                     "samples that knows no photons; and the difference. Where a row says " em { "the original" } ", photons, "
                     "samples and times are those of the lectures or the paper; everything else is measured here."
                 }
                 p.soft {
-                    "How the verdict is found: what blur and edges do to each pixel is predicted from two other makings, with up to 8 times as "
+                    "How the verdict is found: what blur and edges do to each pixel is predicted from two other replicates, with up to 8 times as "
                     "many photons, before anything is compared; pixels where they may cost more than 2 per cent are masked, and what was "
-                    "predicted for the others is allowed. Outside the mask the means of blocks of 16 by 16 pixels of 64 makings with maps "
-                    "of their own are compared with those of 64 passes of the control, channel by channel (Holm, family-wise 0.001). Both "
+                    "predicted for the others is allowed. Outside the mask the means of blocks of 16 by 16 pixels of 64 replicates with maps "
+                    "of their own are compared with those of 64 passes of the reference, channel by channel (Holm, family-wise 0.001). Both "
                     "sides of that are computed on half the width and height, where a block is 8 by 8. Blocks of which one side is "
                     "heavy-tailed have no interval, hence no verdict; they are counted. A picture of which a fifth or more "
                     "has no verdict is undecided. Settings that are ours were chosen on runs with other seeds, or for "
@@ -134,8 +134,8 @@ fn numbers(picture: &Picture, shown: &Shown) -> Markup {
                     (duration(ours.seconds - ours.map_seconds)) " of CPU time for "
                     (shown.size.0) " × " (shown.size.1) " pixels, " (ours.samples) " samples each"
                 } }
-                @if let Some((paths, seconds)) = shown.control {
-                    tr { th { "control" } td { (paths) " samples a pixel, " (duration(seconds)) " of CPU time" } }
+                @if let Some((paths, seconds)) = shown.reference {
+                    tr { th { "reference" } td { (paths) " samples a pixel, " (duration(seconds)) " of CPU time" } }
                 }
                 @if let Some(compared) = &shown.compared { (comparison(compared)) }
             }
@@ -159,7 +159,7 @@ fn comparison(c: &Compared) -> Markup {
         } }
         tr { th { "bias" } td {
             "of the picture's mean " (between(c.bias)) "; of a block of 16 by 16, root mean square, what remains with any number of maps: "
-            (between(c.systematic)) " (" (c.makings) " sets of maps)"
+            (between(c.systematic)) " (" (c.replicates) " sets of maps)"
         } }
         tr { th { "verdict" } td {
             span.verdict { (c.verdict) } ": " (c.blocks.1) " of " (c.blocks.0) " block means differ; masked " (percent(c.masked))

@@ -43,9 +43,9 @@ pub struct Picture {
     pub exposure: f64,
     /// What stands beside it.
     pub beside: Beside,
-    /// The most samples a pixel of one of the 64 passes of the control: a pilot says how many are needed.
-    pub control: u64,
-    /// What of the control is found by light tracing.
+    /// The most samples a pixel of one of the 64 passes of the reference: a pilot says how many are needed.
+    pub reference: u64,
+    /// What of the reference is found by light tracing.
     pub by_light: ByLight,
 }
 
@@ -70,7 +70,7 @@ pub const ALL: &[Picture] = &[
         reach: 0.2,
         exposure: 1.3,
         beside: Beside::Maps,
-        control: 6,
+        reference: 6,
         by_light: ByLight::NOTHING,
     },
     Picture {
@@ -88,7 +88,7 @@ pub const ALL: &[Picture] = &[
         reach: 1.0,
         exposure: 0.85,
         beside: Beside::Maps,
-        control: 5,
+        reference: 5,
         by_light: ByLight { layers: &[Layer::Caustic, Layer::Indirect], permille: 1000 },
     },
     Picture {
@@ -106,7 +106,7 @@ pub const ALL: &[Picture] = &[
         reach: 0.1,
         exposure: 0.8,
         beside: Beside::Single,
-        control: 4,
+        reference: 4,
         by_light: ByLight::NOTHING,
     },
     Picture {
@@ -127,7 +127,7 @@ pub const ALL: &[Picture] = &[
         reach: 0.12,
         exposure: 1.8,
         beside: Beside::Maps,
-        control: 6,
+        reference: 6,
         by_light: ByLight::NOTHING,
     },
     Picture {
@@ -147,7 +147,7 @@ pub const ALL: &[Picture] = &[
         reach: 0.12,
         exposure: 1.8,
         beside: Beside::Maps,
-        control: 6,
+        reference: 6,
         by_light: ByLight::NOTHING,
     },
     Picture {
@@ -168,7 +168,7 @@ pub const ALL: &[Picture] = &[
         reach: 0.12,
         exposure: 1.8,
         beside: Beside::Maps,
-        control: 4,
+        reference: 4,
         by_light: ByLight::NOTHING,
     },
     Picture {
@@ -186,7 +186,7 @@ pub const ALL: &[Picture] = &[
         reach: 0.4,
         exposure: 2.2,
         beside: Beside::Maps,
-        control: 4,
+        reference: 4,
         by_light: ByLight::NOTHING,
     },
     Picture {
@@ -204,7 +204,7 @@ pub const ALL: &[Picture] = &[
         reach: 0.035,
         exposure: 1.3,
         beside: Beside::Maps,
-        control: 8,
+        reference: 8,
         by_light: ByLight {
             layers: &[Layer::Direct, Layer::Caustic, Layer::Indirect, Layer::Single, Layer::Multiple],
             permille: 500,
@@ -225,7 +225,7 @@ pub const ALL: &[Picture] = &[
         reach: 0.4,
         exposure: 0.95,
         beside: Beside::Maps,
-        control: 10,
+        reference: 10,
         by_light: ByLight::NOTHING,
     },
 ];

@@ -1,7 +1,7 @@
 //! The PNG files of a picture.
 
 use super::beside::Others;
-use super::compare::Making;
+use super::compare::Replicate;
 use super::develop::{Print, SOFT, develop, error_print, mask_print, tone};
 use super::dots::dots;
 use super::keep::{Facts, Kept};
@@ -44,24 +44,24 @@ pub fn plates(
         format!("{method}, {} samples a pixel, {} of CPU time", facts.samples, duration(facts.seconds))
     };
     plate("photons", told("Photon maps", &ours.facts), &exposed(&ours.total))?;
-    if let Some(Others { equal, control, cost, masked, .. }) = others {
+    if let Some(Others { equal, reference, cost, masked, .. }) = others {
         plate("paths", told("Paths in the same time", &equal.facts), &exposed(&equal.total))?;
         let by = picture.by_light.words();
         let caption =
-            format!("The control, {by}: {} samples a pixel, {} of CPU time", cost.0, duration(cost.1));
-        plate("control", caption, &exposed(control))?;
-        let (half, ours, control) = (grid.halved(), grid.reduced(&ours.total), grid.reduced(control));
+            format!("The reference, {by}: {} samples a pixel, {} of CPU time", cost.0, duration(cost.1));
+        plate("reference", caption, &exposed(reference))?;
+        let (half, ours, reference) = (grid.halved(), grid.reduced(&ours.total), grid.reduced(reference));
         let caption = format!(
-            "Photon maps minus control, over the control, means of {0} by {0} pixels; what was masked is grey",
+            "Photon maps minus reference, over the reference, means of {0} by {0} pixels; what was masked is grey",
             2 * SOFT
         );
-        plate("error", caption, &error_print(half, &ours, &control, masked, SCALE))?;
+        plate("error", caption, &error_print(half, &ours, &reference, masked, SCALE))?;
         let caption = "Masked before the comparison, grey: blur or edges may cost more than 2 per cent there";
-        plate("mask", caption.to_string(), &mask_print(half, &control, masked, exposure))?;
+        plate("mask", caption.to_string(), &mask_print(half, &reference, masked, exposure))?;
     }
     match picture.beside {
         Beside::Single => {
-            let single: Making = ours.layers.iter().map(|l| l.emission + l.direct + l.single).collect();
+            let single: Replicate = ours.layers.iter().map(|l| l.emission + l.direct + l.single).collect();
             plate("single", "Single scattering alone".to_string(), &exposed(&single))?;
         }
         Beside::Maps => {

@@ -1,11 +1,11 @@
 //! What blur and edges do to each pixel of a photon-mapped picture, predicted before anything is compared.
 //!
 //! A gather averages the layer that it estimates over its disc or ball: the blur of a pixel is the mean of the layer over
-//! the footprint, minus the layer. The layers come from two makings with many more photons, whose own blur is smaller, and
+//! the footprint, minus the layer. The layers come from two replicates with many more photons, whose own blur is smaller, and
 //! which take no part in the comparison. Where a layer curves evenly the mean over a footprint differs from the layer in
 //! proportion to the mean square distance from the middle: means over the pixels of the footprint and of half of it, and
 //! those distances, tell what a disc or ball does that is no whole number of pixels. Noise must not be taken for blur, and
-//! the two makings share none: the product of their two blurs, each the mean of a pixel and its neighbours, has the mean
+//! the two replicates share none: the product of their two blurs, each the mean of a pixel and its neighbours, has the mean
 //! of the blur's square. It is averaged over 5 x 5 pixels, and its root is the blur.
 //!
 //! Of media it is the mean along the way through them that is averaged: that the way of the next pixel is longer blurs
@@ -64,7 +64,7 @@ const SMOOTH: (i64, i64) = (1, 2);
 
 /// The relative error that blur and edges may cause, by pixel: a bound, the sum of the absolute values of all terms.
 ///
-/// # Arguments   `halves` layers by pixel of two independent makings; `pixel` angle between neighbouring pixels \[rad\]
+/// # Arguments   `halves` layers by pixel of two independent replicates; `pixel` angle between neighbouring pixels \[rad\]
 pub fn predicted(
     grid: Grid,
     views: &[View],
@@ -253,7 +253,7 @@ mod tests {
         (0..GRID.pixels()).map(one).collect()
     }
 
-    /// Of one making, taken twice.
+    /// Of one replicate, taken twice.
     fn of(views: &[View], layers: &[Layers], radii: Radii) -> Vec<f64> {
         predicted(GRID, views, [layers, layers], &vec![radii; GRID.pixels()], SPREADS, PIXEL)
     }
@@ -268,7 +268,7 @@ mod tests {
         }
     }
 
-    /// Noise of 10 per cent a pixel, none of it common to the makings, is no blur of 2 per cent.
+    /// Noise of 10 per cent a pixel, none of it common to the replicates, is no blur of 2 per cent.
     #[test]
     fn noise_is_no_blur() {
         let mut stream = turbid::rng::Stream::new(3, turbid::rng::Purpose::Synthetic, 0, 0);

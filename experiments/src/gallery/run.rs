@@ -1,7 +1,7 @@
-//! The whole run: makings, comparison, plates, page.
+//! The whole run: replicates, comparison, plates, page.
 
 use super::beside::beside;
-use super::makings::Makings;
+use super::cache::Cache;
 use super::pictures::{ALL, Picture};
 use super::plates::plates;
 use super::recipe::command;
@@ -88,10 +88,10 @@ fn write(path: &Path, bytes: &[u8]) -> anyhow::Result<()> {
 fn one(picture: &Picture, settings: &Settings, folder: &Path, program: &str) -> anyhow::Result<Shown> {
     let studio = Studio::open(picture, &settings.scenes, settings.scale(), settings.seed, program)?;
     let half = studio.halved()?;
-    let kept = settings.makings().join(picture.name);
+    let kept = settings.cache().join(picture.name);
     std::fs::create_dir_all(&kept)?;
-    let large = Makings { settings, folder: kept.clone(), studio: &studio };
-    let small = Makings { settings, folder: kept, studio: &half };
+    let large = Cache { settings, folder: kept.clone(), studio: &studio };
+    let small = Cache { settings, folder: kept, studio: &half };
     let ours = large.photons_by_class("photons", picture.samples, 0, 1)?;
     let others = if settings.draft { None } else { Some(beside(&large, &small, &ours)?) };
     let plates = plates(&studio, folder, &ours, others.as_ref())?;
@@ -104,8 +104,27 @@ fn one(picture: &Picture, settings: &Settings, folder: &Path, program: &str) -> 
         seconds,
         ours: ours.facts,
         equal: others.as_ref().map(|o| o.equal.facts.clone()),
-        control: others.as_ref().map(|o| o.cost),
+        reference: others.as_ref().map(|o| o.cost),
         compared: others.map(|o| o.compared),
         plates,
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The gallery in the repository is read whole: every picture of it has its reference, its comparison and its files.
+    #[test]
+    fn what_is_kept_is_read_whole() {
+        let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../results/gallery");
+        let kept = all_shown(&folder).unwrap();
+        let files = std::fs::read_dir(&folder).unwrap().map(|entry| entry.unwrap().path());
+        assert_eq!(kept.len(), files.filter(|path| path.extension().is_some_and(|e| e == "json")).count());
+        for shown in kept {
+            assert!(shown.reference.is_some() && shown.compared.is_some(), "{}", shown.name);
+            assert!(shown.plates.iter().any(|plate| plate.kind == "reference"), "{}", shown.name);
+            assert!(shown.plates.iter().all(|plate| folder.join(&plate.file).exists()), "{}", shown.name);
+        }
+    }
 }

@@ -4,7 +4,7 @@ use super::pictures;
 use clap::Parser;
 use std::path::PathBuf;
 
-/// Renders the gallery: each picture by photons, by paths in the same time, and beside a converged control.
+/// Renders the gallery: each picture by photons, by paths in the same time, and beside a converged reference.
 #[derive(Debug, Clone, Parser)]
 #[command(name = "gallery", version)]
 pub struct Settings {
@@ -14,7 +14,7 @@ pub struct Settings {
     /// Only these pictures; those made before stay on the page
     #[arg(long, value_name = "NAME", value_delimiter = ',', value_parser = name)]
     pub only: Vec<String>,
-    /// The photon mapper's pictures alone, to look at: no paths, no control, no comparison
+    /// The photon mapper's pictures alone, to look at: no paths, no reference, no comparison
     #[arg(long)]
     pub draft: bool,
     /// Seed of all random numbers
@@ -55,12 +55,12 @@ impl Settings {
         self.out.clone().unwrap_or_else(|| PathBuf::from(default))
     }
 
-    /// Folder of the makings, which are large: beside the page only where that is a local one.
-    pub fn makings(&self) -> PathBuf {
+    /// Folder of the cached renders, which are large: beside the page only where that is a local one.
+    pub fn cache(&self) -> PathBuf {
         match &self.out {
-            Some(out) => out.join("makings"),
-            None if self.quick || self.draft => self.folder().join("makings"),
-            None => PathBuf::from("results/local/gallery-full/makings"),
+            Some(out) => out.join("cache"),
+            None if self.quick || self.draft => self.folder().join("cache"),
+            None => PathBuf::from("results/local/gallery-full/cache"),
         }
     }
 

@@ -12,15 +12,15 @@ pub struct Plate {
     pub file: String,
     /// What it is.
     pub caption: String,
-    /// Which of the picture's plates: `photons`, `paths`, `control`, `error`, ...
+    /// Which of the picture's plates: `photons`, `paths`, `reference`, `error`, ...
     pub kind: String,
 }
 
-/// Numbers of a picture's comparison with its control.
+/// Numbers of a picture's comparison with its reference.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Compared {
-    /// Independent makings of the photon mapper's picture.
-    pub makings: usize,
+    /// Independent replicates of the photon mapper's picture.
+    pub replicates: usize,
     /// Root mean square error of the picture that is shown, over its mean, 95 per cent.
     pub rms: [f64; 2],
     /// The systematic part, 95 per cent.
@@ -46,7 +46,7 @@ impl Compared {
     pub fn new(
         comparison: &Comparison,
         errors: &Errors,
-        makings: usize,
+        replicates: usize,
         rms: Interval,
         equal_rms: Interval,
     ) -> Self {
@@ -54,12 +54,12 @@ impl Compared {
         let agreement = comparison.agreement();
         let differ = if let Agreement::Differ(n) = agreement { n } else { 0 };
         let verdict = match agreement {
-            Agreement::Agree => "agrees with its control",
-            Agreement::Differ(_) => "differs from its control",
+            Agreement::Agree => "agrees with its reference",
+            Agreement::Differ(_) => "differs from its reference",
             Agreement::Undecided => "undecided: too little of the picture can be judged",
         };
         Compared {
-            makings,
+            replicates,
             rms: pair(rms),
             systematic: pair(errors.systematic),
             bias: pair(errors.bias),
@@ -88,8 +88,8 @@ pub struct Shown {
     pub ours: Facts,
     /// The path tracer's in the same time; none of a draft.
     pub equal: Option<Facts>,
-    /// Samples a pixel and CPU seconds of the control; none of a draft.
-    pub control: Option<(u64, f64)>,
+    /// Samples a pixel and CPU seconds of the reference; none of a draft.
+    pub reference: Option<(u64, f64)>,
     /// The comparison; none of a draft.
     pub compared: Option<Compared>,
     /// PNG files.

@@ -81,7 +81,7 @@ impl<'a> Studio<'a> {
         )
     }
 
-    /// What a making by photons will be called.
+    /// What a render by photons will be called.
     pub fn photon_words(&self, samples: u64, replicate: u64, factor: u64) -> String {
         let p = self.picture;
         let counts = format!(
@@ -91,13 +91,13 @@ impl<'a> Studio<'a> {
         self.words(&counts, samples, replicate)
     }
 
-    /// What a replicate by paths will be called.
+    /// What a render by paths will be called.
     pub fn path_words(&self, samples: u64, replicate: u64) -> String {
         self.words("paths", samples, replicate)
     }
 
-    /// What a pass of the control will be called.
-    pub fn replicate_words(&self, samples: u64, replicate: u64) -> String {
+    /// What a pass of the reference will be called.
+    pub fn reference_words(&self, samples: u64, replicate: u64) -> String {
         match self.picture.by_light {
             ByLight::NOTHING => self.path_words(samples, replicate),
             by_light => self.words(&format!("paths and {by_light:?}"), samples, replicate),
@@ -159,8 +159,8 @@ impl<'a> Studio<'a> {
         Ok(Kept::new(self.path_facts(start, samples, replicate), &film))
     }
 
-    /// One pass of the control, which knows no photons.
-    pub fn control(&self, samples: u64, replicate: u64, progress: &dyn Progress) -> anyhow::Result<Kept> {
+    /// One pass of the reference, which knows no photons.
+    pub fn reference(&self, samples: u64, replicate: u64, progress: &dyn Progress) -> anyhow::Result<Kept> {
         let by_light = self.picture.by_light;
         if by_light == ByLight::NOTHING {
             return self.paths(samples, replicate, progress);
@@ -179,7 +179,7 @@ impl<'a> Studio<'a> {
     }
 
     /// A picture by paths that takes about so many CPU seconds: whole passes over all pixels, at least one. The number
-    /// of samples depends on the clock; a making of that number repeats it bit by bit.
+    /// of samples depends on the clock; a render of that number repeats it bit by bit.
     pub fn paths_for(&self, seconds: f64, replicate: u64, progress: &dyn Progress) -> anyhow::Result<Kept> {
         let start = ProcessTime::now();
         let mut film = Film::new(self.camera.width(), self.camera.height());

@@ -1,4 +1,4 @@
-//! A tiny experiment: maps whose mean is known, an estimator that is right and a planted control that is not.
+//! A tiny experiment: maps whose mean is known, an estimator that is right and a negative control that is not.
 
 use turbid::math::{ln, sin_cos};
 use turbid::rng::{Purpose, Stream};

@@ -1,4 +1,4 @@
-//! Makings of a picture, each kept in a file as soon as it is made: an interrupted run goes on where it stopped.
+//! Cached renders of a picture, each kept in a file as soon as it is made: an interrupted run goes on where it stopped.
 
 use super::keep::Kept;
 use super::settings::Settings;
@@ -9,8 +9,8 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::{Duration, Instant};
 use turbid::transport::Progress;
 
-/// The makings of one picture in one size, kept in a folder.
-pub struct Makings<'a> {
+/// The cached renders of one picture in one size, in a folder.
+pub struct Cache<'a> {
     /// What the user chose.
     pub settings: &'a Settings,
     /// Where they are kept.
@@ -19,8 +19,8 @@ pub struct Makings<'a> {
     pub studio: &'a Studio<'a>,
 }
 
-impl Makings<'_> {
-    /// A making from its file, or made now and kept.
+impl Cache<'_> {
+    /// A render from its file, or made now and kept.
     fn get(
         &self,
         file: &str,
@@ -49,11 +49,11 @@ impl Makings<'_> {
         self.get(file, &words, 0, |bar| Ok(s.paths_for(seconds, 0, bar)?.without_layers()))
     }
 
-    /// A pass of the control.
-    pub fn control(&self, file: &str, samples: u64, replicate: u64) -> anyhow::Result<Kept> {
+    /// A pass of the reference.
+    pub fn reference(&self, file: &str, samples: u64, replicate: u64) -> anyhow::Result<Kept> {
         let (s, work) = (self.studio, self.studio.work(samples));
-        let words = s.replicate_words(samples, replicate);
-        self.get(file, &words, work, |bar| Ok(s.control(samples, replicate, bar)?.without_layers()))
+        let words = s.reference_words(samples, replicate);
+        self.get(file, &words, work, |bar| Ok(s.reference(samples, replicate, bar)?.without_layers()))
     }
 
     /// The photon mapper's picture.
