@@ -16,12 +16,12 @@ use crate::scene::{Quantity, Scene, Target};
 use crate::surface::Surface;
 use crate::transport::{LONG, Roulette, Step, Visitor, Walker, walk};
 
-/// Events of a history, in the mean, above which a scene is refused: 100,000 photons of so many events each take about a
-/// quarter of an hour.
-pub const MOST_EVENTS: u64 = 100_000;
+/// Events of a history, in the mean, above which a scene is refused: 100,000 photons of so many events each take about three
+/// minutes. From the middle of a layer that absorbs nothing they leave after 3/8 of its squared thickness, tau = 230.
+pub const MOST_EVENTS: u64 = 20_000;
 
-/// Histories from each place that light starts from or is looked for at. Where a tenth of them or more are kept for ever the mean is
-/// too long; fewer cost a run their million events each, and end by roulette. Openings to a medium without end may be small.
+/// Histories from each place that light starts from or is looked for at. Where a fifteenth of them or more are kept for ever the mean is
+/// too long; fewer cost a run their 300,000 events each, and end by roulette. Openings to a medium without end may be small.
 const PILOTS: u64 = 4096;
 
 /// Events of all pilots: a quarter of a second. Where histories are so long, fewer of them say how long.

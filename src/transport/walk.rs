@@ -97,7 +97,7 @@ pub trait Visitor {
 
 /// Events after which a history plays for its life at each one, whatever it keeps: a history of so many would take longer
 /// than thousands of others, and without this one that nothing ends would never come to an end.
-pub const LONG: u32 = 1_000_000;
+pub const LONG: u32 = 200_000;
 
 /// The odds of that game: about so many events more.
 const LIVES: f64 = 100_000.0;
@@ -115,8 +115,8 @@ fn goes_on(walker: &mut Walker, stream: &mut Stream) -> bool {
 
 /// Follows one history to its end.
 ///
-/// It ends by absorption, by escape, by a game of chance behind [`LONG`] events, or with a ray of order `limit`, which is looked along, through mirrors, glass and
-/// filters too since they raise no order, but not flown.
+/// It ends by absorption, by escape, by a game of chance behind [`LONG`] events, or with a ray of order `limit`, which is
+/// looked along, through mirrors, glass and filters too since they raise no order, but not flown.
 pub fn walk<V: Visitor>(
     scene: &Scene,
     start: Walker,

@@ -97,7 +97,7 @@ fn rooms_that_keep_light_are_refused_and_others_are_not() {
     let grey = |value: f64| move |_: usize| lambertian(Spectrum::grey(value));
     let text = |scene: &Scene| check_end(scene).unwrap_err().to_string();
     let told = text(&room(white));
-    for part in ["light from lights[0]", "objects[0]", "objects[5]", "allowed: 100000"] {
+    for part in ["light from lights[0]", "objects[0]", "objects[5]", "allowed: 20000"] {
         assert!(told.contains(part) && !told.contains('\n'), "{told}");
     }
     text(&room(mirror));

@@ -127,7 +127,10 @@ fn an_optical_thickness_of_1e4() {
     let white = slab(tau, 1.0, 0.0, Incidence::Diffuse);
     let both = [(reflectance(tau), Orders::ALL), (transmittance(tau), Orders::ALL)];
     let tallies = pass(&white, &both, 64, 3, |_| false).tallies;
-    assert!((tallies[0][0].mean() + tallies[1][0].mean() - 1.0).abs() < 1e-15);
+    // What is reflected or passes is all there is: exactly, but for histories of more than 200,000 events, which end by a
+    // game that keeps the mean.
+    let lost = 1.0 - tallies[0][0].mean() - tallies[1][0].mean();
+    assert!(lost.abs() < 1e-15 + 4.0 * tallies[0][0].std_error(), "{lost}");
     // Conservative and thick: T = (4/3)/(tau + 2 x 0.7104) = 1.3e-4, so that of 64 hardly one passes.
     assert!(tallies[1][0].mean() <= 3.0 / 64.0);
 }

@@ -8,7 +8,7 @@ use crate::photons::Emitter;
 use crate::photons::maps::{Indirect, is_diffuse};
 use crate::rng::Stream;
 use crate::scene::{Camera, Scene, Target};
-use crate::transport::{BLOCK, Progress, Roulette, Step, Visitor, Walker, run_blocks, walk};
+use crate::transport::{Progress, Roulette, Step, Visitor, Walker, run_blocks, walk};
 use glam::{DVec2, DVec3};
 
 /// What is read in each box, 0 to 1, on surfaces and in media.
@@ -52,6 +52,9 @@ impl Reading {
     }
 }
 
+/// Particles, and photons, that say how far events reach. In rooms that keep light long they are most of the cost.
+const EXTENT: u64 = 1024;
+
 /// A box about the events of some particles from the camera and some photons.
 pub(super) fn extent(
     scene: &Scene,
@@ -81,7 +84,7 @@ pub(super) fn extent(
         found
     };
     let merge = |a: Extent, b: Extent| Extent(a.0.min(b.0), a.1.max(b.1));
-    match run_blocks(BLOCK, progress, block, merge)? {
+    match run_blocks(EXTENT, progress, block, merge)? {
         Some(Extent(low, high)) if low.is_finite() && high.is_finite() => Ok((low, high)),
         _ => Err(Error::Scene("the camera sees nothing, and light meets nothing".into())),
     }
