@@ -11,7 +11,7 @@ use turbid::scene::{BUILTIN, Builtin, Scene, SceneFile};
 #[derive(clap::Args)]
 pub struct Source {
     /// A built-in scene (see `turbid scenes`) or a scene file.
-    scene: String,
+    scene: PathBuf,
     /// Change a value before the scene is made: `albedo=0.5` of a built-in scene, `regions.0.albedo=0.5` of a file.
     #[arg(long = "set", value_name = "KEY=VALUE")]
     sets: Vec<String>,
@@ -26,8 +26,13 @@ const MOST_BYTES: u64 = 1 << 26;
 
 impl Source {
     /// A scene with these changes.
-    pub fn with_sets(scene: String, sets: Vec<String>) -> Self {
-        Source { scene, sets, confined: false }
+    pub fn with_sets(scene: &str, sets: Vec<String>) -> Self {
+        Source { scene: scene.into(), sets, confined: false }
+    }
+
+    /// What messages call it.
+    fn name(&self) -> String {
+        self.scene.display().to_string()
     }
 
     /// The validated scene, in which light comes to an end.
@@ -35,21 +40,21 @@ impl Source {
         let file = self.resolve()?;
         if self.confined {
             let folder = self.folder();
-            check_confined(&toml::Value::try_from(&file)?, &folder).with_context(|| self.scene.clone())?;
+            check_confined(&toml::Value::try_from(&file)?, &folder).with_context(|| self.name())?;
         }
-        let scene = file.scene(&self.folder()).with_context(|| self.scene.clone())?;
-        check_end(&scene).with_context(|| self.scene.clone())?;
+        let scene = file.scene(&self.folder()).with_context(|| self.name())?;
+        check_end(&scene).with_context(|| self.name())?;
         Ok(scene)
     }
 
     /// The folder that file names in the scene are relative to.
     fn folder(&self) -> PathBuf {
-        Path::new(&self.scene).parent().map(Path::to_path_buf).unwrap_or_default()
+        self.scene.parent().map(Path::to_path_buf).unwrap_or_default()
     }
 
     /// The scene file with every change made.
     pub fn resolve(&self) -> anyhow::Result<SceneFile> {
-        match BUILTIN.iter().find(|b| b.name == self.scene) {
+        match BUILTIN.iter().find(|b| Path::new(b.name) == self.scene) {
             Some(builtin) => self.resolve_builtin(builtin),
             None => self.resolve_file(),
         }
@@ -76,19 +81,19 @@ impl Source {
     }
 
     fn resolve_file(&self) -> anyhow::Result<SceneFile> {
-        let path = Path::new(&self.scene);
+        let path = &self.scene;
         let is_bare_name = !path.exists() && path.extension().is_none();
         if is_bare_name {
-            bail!("no such scene: {}", unknown_scene(&self.scene));
+            bail!("no such scene: {}", unknown_scene(&self.name()));
         }
         // A scene may come through a pipe.
         let text = read_stream(path, MOST_BYTES)
             .and_then(text)
-            .with_context(|| format!("cannot read {}", self.scene))?;
+            .with_context(|| format!("cannot read {}", self.name()))?;
         let mut file: SceneFile =
-            toml::from_str(&text).map_err(|e| anyhow!(located(&self.scene, &text, &e)))?;
+            toml::from_str(&text).map_err(|e| anyhow!(located(&self.name(), &text, &e)))?;
         let mut root = toml::Value::Table(toml::from_str(&text)?);
-        check_lengths(&root, &file).with_context(|| self.scene.clone())?;
+        check_lengths(&root, &file).with_context(|| self.name())?;
         if self.sets.is_empty() {
             return Ok(file);
         }

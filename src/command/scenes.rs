@@ -27,7 +27,7 @@ impl Scenes {
             Some(builtin) if !self.resolved => {
                 super::print(&format!("# {}: {}\n{}", builtin.name, builtin.about, builtin.defaults))
             }
-            _ => super::print(&toml::to_string(&Source::with_sets(name, self.sets).resolve()?)?),
+            _ => super::print(&toml::to_string(&Source::with_sets(&name, self.sets).resolve()?)?),
         }
     }
 }

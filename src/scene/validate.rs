@@ -277,6 +277,26 @@ fn check_apart(parts: &Parts) -> Result<()> {
             ));
         }
     }
+    let sensors = parts.sensors.iter().filter_map(|sensor| match sensor.quantity {
+        Quantity::Fluence(p) => Some((format!("sensor {}", sensor.name), p)),
+        Quantity::Radiance(ray) => Some((format!("sensor {}", sensor.name), ray.origin)),
+        Quantity::Outflow { .. } | Quantity::Absorbed(_) => None,
+    });
+    let lights = parts.lights.iter().enumerate();
+    let apexes = lights.filter_map(|(i, light)| Some((format!("lights[{i}]"), light.apex()?)));
+    let camera = parts.camera.iter().map(|camera| ("the camera".to_string(), camera.position()));
+    for (name, p) in sensors.chain(apexes).chain(camera) {
+        let nearest = |shape: &Shape| {
+            let size = p.abs().max_element().max(shape.bounds().map_or(0.0, |(_, radius)| radius));
+            shape.distance(p, f64::INFINITY) <= ON_RAY * size
+        };
+        let is_met = |o: &Object| matches!(o.surface, Surface::Dielectric(_)) && nearest(&o.shape);
+        if let Some(object) = parts.objects.iter().position(is_met) {
+            return refuse(format!(
+                "{name} is on the surface of objects[{object}], which refracts, and could be on either side of it; allowed: a place off that surface"
+            ));
+        }
+    }
     Ok(())
 }
 

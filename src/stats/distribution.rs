@@ -2,7 +2,7 @@
 
 use crate::math::exp;
 use statrs::distribution::{ContinuousCDF, StudentsT};
-use statrs::function::gamma::gamma_lr;
+use statrs::function::gamma::{gamma_lr, gamma_ur};
 
 /// Two-sided p-value of a standard normal `z`, by libm's complementary error function: that of statrs 0.19 is 4.5e-11
 /// off at 2.
@@ -21,6 +21,11 @@ pub fn student_p(t: f64, freedom: u64) -> f64 {
         Ok(distribution) => 2.0 * distribution.sf(t.abs()),
         Err(_) => f64::NAN,
     }
+}
+
+/// P(sum of the squares of `freedom` standard normals >= `sum`).
+pub fn chi_squared_p(sum: f64, freedom: u64) -> f64 {
+    if freedom == 0 || sum <= 0.0 { 1.0 } else { gamma_ur(0.5 * freedom as f64, 0.5 * sum) }
 }
 
 /// The z that a standard normal exceeds in size with probability `alpha`, in (0, 1).
@@ -44,7 +49,7 @@ pub fn poisson_upper_tail(count: u64, mean: f64) -> f64 {
 
 /// P(count <= `count`) for a Poisson count of mean `mean`.
 pub(super) fn poisson_lower_tail(count: u64, mean: f64) -> f64 {
-    if mean <= 0.0 { 1.0 } else { statrs::function::gamma::gamma_ur(count as f64 + 1.0, mean) }
+    if mean <= 0.0 { 1.0 } else { gamma_ur(count as f64 + 1.0, mean) }
 }
 
 /// The x >= 0 with `falling(x) = level`, for a function that falls from at least `level` towards 0.

@@ -1,9 +1,9 @@
 //! Tests of a whole distribution: Kolmogorov-Smirnov and chi-squared.
 
-use super::distribution::{kolmogorov_later_terms, root_of_falling};
+use super::distribution::{chi_squared_p, kolmogorov_later_terms, root_of_falling};
 use super::{ALPHA, POWER_QUANTILE};
 use crate::math::{exp, ln, ln_1p};
-use statrs::function::gamma::{gamma_ur, ln_gamma};
+use statrs::function::gamma::ln_gamma;
 
 /// Expected count below which a cell of a chi-squared test is pooled (Cochran 1954).
 const SMALLEST_CELL: f64 = 5.0;
@@ -112,9 +112,7 @@ pub fn chi_squared_test(observed: &[f64], expected: &[f64], fitted: u64) -> ChiS
     }
     let statistic = pooled.iter().map(|&(o, e)| (o - e) * (o - e) / e).sum();
     let freedom = (pooled.len() as u64).saturating_sub(1 + fitted);
-    let p =
-        if freedom == 0 || statistic == 0.0 { 1.0 } else { gamma_ur(0.5 * freedom as f64, 0.5 * statistic) };
-    ChiSquared { statistic, freedom, p }
+    ChiSquared { statistic, freedom, p: chi_squared_p(statistic, freedom) }
 }
 
 /// The smallest distance between two distribution functions that a Kolmogorov-Smirnov test of `n` values at [`ALPHA`]
@@ -135,7 +133,7 @@ pub fn smallest_detectable_distance(n: usize) -> f64 {
 /// lighter than the normal one, so that this is cautious.
 pub fn smallest_detectable_deviation(total: f64, freedom: u64) -> f64 {
     let k = freedom as f64;
-    let critical = root_of_falling(ALPHA, |x| if x <= 0.0 { 1.0 } else { gamma_ur(0.5 * k, 0.5 * x) });
+    let critical = root_of_falling(ALPHA, |x| chi_squared_p(x, freedom));
     // L + k - critical = q sqrt(2k + 4L), squared; the larger root.
     let (above, q2) = (critical - k, POWER_QUANTILE * POWER_QUANTILE);
     let half = above + 2.0 * q2;

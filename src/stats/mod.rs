@@ -15,7 +15,9 @@ mod multiple;
 mod tail;
 
 pub use bootstrap::{Jackknife, bootstrap_interval, jackknife, jackknife_log, positive_interval};
-pub use distribution::{normal_critical, normal_p, poisson_upper_tail, student_critical, student_p};
+pub use distribution::{
+    chi_squared_p, normal_critical, normal_p, poisson_upper_tail, student_critical, student_p,
+};
 pub use fit::{Amplitude, Line, amplitude_per_map, fit_line};
 pub use goodness::{
     ChiSquared, KolmogorovSmirnov, chi_squared_test, kolmogorov_smirnov_test, smallest_detectable_deviation,

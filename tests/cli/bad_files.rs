@@ -63,6 +63,61 @@ fn wrong_meshes() {
     refuses_naming(&["check", text(&scene)], &["part.obj: No such file"]);
 }
 
+/// A polygon of 800 corners, a scene whose name is no text, and a camera next to the face of a filled ball are right; what is on
+/// that face is on neither side.
+#[test]
+fn what_is_unusual_and_right() {
+    let (folder, scene) = whole();
+    let corners: String = (0..800u32)
+        .map(|i| {
+            let (sin, cos) = turbid::math::sin_cos(std::f64::consts::TAU * f64::from(i) / 800.0);
+            format!("v {cos} {sin} 0\nvt {cos} {sin}\n")
+        })
+        .collect();
+    let face: String = (1..=800).map(|i| format!(" {i}/{i}")).collect();
+    folder.file("part.obj", &format!("{corners}f{face}\n"));
+    succeeds(&["check", text(&scene)]);
+    #[cfg(unix)]
+    {
+        use std::os::unix::ffi::OsStrExt;
+        let named = folder.0.path().join(std::ffi::OsStr::from_bytes(b"sc\xff.toml"));
+        std::fs::copy(&scene, &named).unwrap();
+        let status = crate::turbid(&["check"]).arg(&named).output().unwrap().status;
+        assert!(status.success());
+    }
+    let ball = folder.file(
+        "ball.toml",
+        "[camera]\nposition = [0, 0, 1]\nlook_at = [0, 0, 0]\nfov = 50\nwidth = 4\nheight = 4\n\
+         [[interiors]]\nname = \"milk\"\nindex = 1.33\nsigma_t = 2\nalbedo = 0.9\ng = 0\n\
+         [[objects]]\nshape = { sphere = { center = [0, 0, 0], radius = 1 } }\n\
+         surface = { dielectric = { inside = \"milk\" } }\n\
+         [[lights]]\nisotropic = { shape = { sphere = { center = [0, 0, 0], radius = 3 } }, radiance = 1, faces = \"both\" }\n",
+    );
+    let on = "is on the surface of objects[0], which refracts, and could be on either side of it; allowed: ";
+    refuses_naming(&["check", text(&ball)], &["ball.toml: the camera ", on]);
+    // Off it by a billionth, to both sides, wherever the camera looks.
+    let picture = folder.0.path().join("ball.exr");
+    for place in ["1.000000001", "0.999999999"] {
+        for turned in ["look_at=[0,0,0]", "look_at=[0,0,4]", "look_at=[4,0,1]"] {
+            for method in ["paths", "light", "photons"] {
+                let (place, turned) = (format!("camera.position=[0,0,{place}]"), format!("camera.{turned}"));
+                let set = ["--set", &place, "--set", &turned];
+                let render = ["render", text(&ball), "--with", method, "--samples", "2"];
+                succeeds(&[&render[..], &set, &["--output", text(&picture)]].concat());
+            }
+        }
+    }
+    for part in [
+        "[[lights]]\npoint = { position = [0, 1, 0], power = 1 }\n",
+        "[[sensors]]\nname = \"s\"\nmeasure = { fluence = { at = [0, 0.6, 0.8] } }\n",
+        "[[sensors]]\nname = \"s\"\nmeasure = { radiance = { origin = [0, 0.6, 0.8], dir = [0, 1, 0] } }\n",
+    ] {
+        let scene = std::fs::read_to_string(&ball).unwrap().replace("[0, 0, 1]", "[0, 0, 2]");
+        let scene = folder.file("part.toml", &(scene + part));
+        refuses_naming(&["check", text(&scene)], &["part.toml: ", on]);
+    }
+}
+
 #[test]
 fn wrong_textures() {
     let (folder, scene) = whole();

@@ -1,5 +1,6 @@
 //! What all cases of a study say together.
 
+use super::common::{Common, Left};
 use super::figures;
 use super::largest::{Largest, Null};
 use super::sets::{Drawn, Group, MOST, carries, fit, groups};
@@ -8,7 +9,7 @@ use crate::harness::{
 };
 use rayon::prelude::*;
 use turbid::rng::{Purpose, Stream};
-use turbid::stats::{KolmogorovSmirnov, Moments, kolmogorov_smirnov_test, normal_p};
+use turbid::stats::{KolmogorovSmirnov, Moments, kolmogorov_smirnov_test, normal_critical, normal_p};
 
 /// Fewest cases for a verdict.
 const FEWEST_CASES: usize = 1000;
@@ -79,7 +80,7 @@ pub fn conclude(settings: &Settings, sections: &[SectionReport]) -> anyhow::Resu
     }
     let null = Null::new(&groups, settings.seed, RESAMPLES);
     let whole = Tests::new(&groups, &drawn, &null, None);
-    let by_group = fit(&Drawn::whole(&groups, settings.seed), None);
+    let common = Common::new(&groups);
     let mut parts = Vec::new();
     for term in Term::ALL.map(Some) {
         let own = Drawn::all(&groups, settings.seed, term);
@@ -91,10 +92,10 @@ pub fn conclude(settings: &Settings, sections: &[SectionReport]) -> anyhow::Resu
     let kept: Vec<&Entry> = groups.iter().flat_map(|g| g.entries.iter().copied()).collect();
     let z: Vec<f64> = drawn.iter().map(|d| deviation(d.uniform(None))).collect();
     Ok(Section {
-        summary: summary(&kept, groups.len(), &whole, &by_group, &parts, &null, shift),
-        claims: claims(&whole, &by_group, &parts),
+        summary: summary(&kept, groups.len(), &whole, &common, &parts, &null, shift),
+        claims: claims(&whole, &common, &parts),
         figures: vec![figures::sum(&kept, groups.len(), &z)?],
-        tables: vec![table(groups.len(), &whole, &parts, &null)],
+        tables: vec![table(groups.len(), &whole, &parts, &null), group_table(&common)],
         notes: notes(&kept, dropped, sections),
         ..Section::default()
     })
@@ -103,7 +104,7 @@ pub fn conclude(settings: &Settings, sections: &[SectionReport]) -> anyhow::Resu
 /// The normal number below which a share of 0 to 1 lies.
 fn deviation(share: f64) -> f64 {
     let tail = share.min(1.0 - share).max(f64::MIN_POSITIVE);
-    let size = if tail >= 0.5 { 0.0 } else { turbid::stats::normal_critical(2.0 * tail) };
+    let size = if tail >= 0.5 { 0.0 } else { normal_critical(2.0 * tail) };
     if share < 0.5 { -size } else { size }
 }
 
@@ -137,7 +138,7 @@ fn below(z: f64) -> f64 {
     if z < 0.0 { tail } else { 1.0 - tail }
 }
 
-fn claims(whole: &Tests, by_group: &KolmogorovSmirnov, parts: &[Tests]) -> Vec<Claim> {
+fn claims(whole: &Tests, common: &Common, parts: &[Tests]) -> Vec<Claim> {
     let mut claims = vec![
         Claim::fits(
             "sets",
@@ -145,9 +146,14 @@ fn claims(whole: &Tests, by_group: &KolmogorovSmirnov, parts: &[Tests]) -> Vec<C
             whole.fit.p,
         ),
         Claim::fits(
+            "common",
+            "all cases summed, weighted by what they know: nothing is left over in all of them alike, p",
+            common.p_all,
+        ),
+        Claim::fits(
             "groups",
-            "one case a group with all of its maps: what is left over follows Student's t, p of Kolmogorov and Smirnov",
-            by_group.p,
+            "the cases of each group summed: nothing is left over in the groups, to either side, p of chi squared",
+            common.p_groups,
         ),
         Claim::fits(
             "largest",
@@ -169,12 +175,13 @@ fn summary(
     entries: &[&Entry],
     groups: usize,
     whole: &Tests,
-    by_group: &KolmogorovSmirnov,
+    common: &Common,
     parts: &[Tests],
     null: &Null,
     shift: f64,
 ) -> Vec<String> {
-    let is_good = [whole.fit.p, by_group.p, whole.largest.p].into_iter().all(|p| p > FIT_LEVEL);
+    let is_good =
+        [whole.fit.p, common.p_all, common.p_groups, whole.largest.p].into_iter().all(|p| p > FIT_LEVEL);
     let sets = whole.sets;
     let seen = |by: &str| {
         let names: Vec<&str> =
@@ -197,9 +204,17 @@ fn summary(
         format!(
             "The maps of {groups} groups, which share nothing, are cut into {sets} independent sets of at most {MOST}. \
              One case was drawn for each set, and what its prediction leaves over compared with Student's t: p = {} \
-             (Kolmogorov and Smirnov). One case a group, with all of its maps: p = {}.",
-            number(whole.fit.p),
-            number(by_group.p)
+             (Kolmogorov and Smirnov).",
+            number(whole.fit.p)
+        ),
+        format!(
+            "Summed over all cases, each weighted by what it knows, {} % of the exact values is left over \
+             (p = {}). Summed over the cases of one group, the {groups} groups are off to either side as far as chance has it \
+             with p = {} (chi squared): the middle one is known to {} %.",
+            in_per_cent(common.all),
+            p_text(common.p_all),
+            p_text(common.p_groups),
+            number(rounded(100.0 * common.middle_error()))
         ),
         format!(
             "Each term was taken away in turn, and asked of the cases that carry it. Seen by both tests: {}; by the \
@@ -211,12 +226,42 @@ fn summary(
         ),
         format!(
             "The smallest fault that is seen with a probability of {} %: by the map sets, a bias of {shift:.2} standard \
-             errors of one set in all cases alike; by the largest distance, a bias of {:.1} standard errors, over all of \
-             its maps, in a single case.",
+             errors of one set in all cases alike; by the sum of all cases, a bias of {} % in all alike; by the largest \
+             distance, a bias of {:.1} standard errors, over all of its maps, in a single case.",
             100.0 * POWER,
+            number(rounded(100.0 * common.all.error * (normal_critical(FIT_LEVEL) + deviation(POWER)))),
             null.bound(FIT_LEVEL) + deviation(POWER)
         ),
     ]
+}
+
+/// The groups farthest off.
+fn group_table(common: &Common) -> Table {
+    const ROWS: usize = 10;
+    let row = |(name, left, p): &(&str, Left, f64)| {
+        vec![name.to_string(), in_per_cent(*left), format!("{:.1}", left.distance()), p_text(*p)]
+    };
+    Table {
+        caption: format!(
+            "What is left over in a group, its cases summed map by map, in per cent of the exact values with its standard \
+             error: the {ROWS} farthest off of {}, of which the smallest p is 1/{} by chance.",
+            common.groups.len(),
+            common.groups.len()
+        ),
+        columns: ["group", "left over, %", "standard errors", "p by itself"].map(String::from).to_vec(),
+        rows: common.groups.iter().take(ROWS).map(row).collect(),
+    }
+}
+
+/// Two digits.
+fn rounded(x: f64) -> f64 {
+    format!("{x:.1e}").parse().unwrap_or(x)
+}
+
+/// In per cent with its standard error, both to the hundredth of a per cent or finer.
+fn in_per_cent(left: Left) -> String {
+    let digits = if left.error < 1e-4 { 3 } else { 2 };
+    format!("{:.digits$} ± {:.digits$}", 100.0 * left.mean, 100.0 * left.error)
 }
 
 fn sizes(largest: &Largest) -> String {
@@ -265,7 +310,7 @@ fn table(groups: usize, whole: &Tests, parts: &[Tests], null: &Null) -> Table {
 }
 
 fn p_text(p: f64) -> String {
-    if p < 1e-12 { "below 10⁻¹²".to_string() } else { number(format!("{p:.1e}").parse().unwrap_or(p)) }
+    if p < 1e-12 { "below 10⁻¹²".to_string() } else { number(rounded(p)) }
 }
 
 fn notes(entries: &[&Entry], dropped: usize, sections: &[SectionReport]) -> Vec<String> {
@@ -345,10 +390,9 @@ mod tests {
     /// Nothing left over is upheld, with each term that is there needed; 1 % left over is rejected.
     #[test]
     fn the_verdicts_of_made_up_studies() {
-        let upheld = ["sets", "groups", "largest", "without-blur", "without-edge"];
+        let upheld = ["sets", "common", "groups", "largest", "without-blur", "without-edge"];
         assert_eq!(verdicts(0.0), upheld.map(|id| (id.to_string(), Verdict::Upheld)));
-        assert_eq!(verdicts(0.01)[0].1, Verdict::Rejected);
-        assert_eq!(verdicts(0.01)[2].1, Verdict::Rejected);
+        assert!(verdicts(0.01)[..4].iter().all(|v| v.1 == Verdict::Rejected));
     }
 
     /// Kolmogorov's distance at 1e-3 is 1.95 / sqrt(n); a shift moves the middle by 0.4 of itself, and 2.3 deviations of

@@ -143,7 +143,7 @@ impl Residuals {
 }
 
 /// A two-sided p-value in deviations of a normal number.
-fn deviations(p: f64) -> f64 {
+pub fn deviations(p: f64) -> f64 {
     if p >= 1.0 {
         0.0
     } else if p < f64::MIN_POSITIVE {

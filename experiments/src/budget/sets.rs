@@ -100,17 +100,6 @@ impl<'a> Drawn<'a> {
         drawn
     }
 
-    /// Draws one entry for every group, with all of its maps.
-    pub fn whole(groups: &[Group<'a>], seed: u64) -> Vec<Drawn<'a>> {
-        let one = |group: &Group<'a>| {
-            let name = Digest::of(format!("budget/whole/{}", group.name).as_bytes()).word();
-            let mut stream = Stream::new(seed, Purpose::Resampling, name, 0);
-            let entry = group.entries[stream.index(group.entries.len())];
-            Drawn { entry, moments: entry.maps.iter().collect() }
-        };
-        groups.iter().map(one).collect()
-    }
-
     /// The value of Student's distribution function at what is left over: uniform if nothing is.
     pub fn uniform(&self, without: Option<Term>) -> f64 {
         let Drawn { entry, moments } = self;
@@ -238,7 +227,5 @@ pub mod tests {
         assert!(edge.len() == 30 && edge.iter().all(|d| d.entry.terms[Term::Edge as usize] != 0.0));
         assert!(fit(&edge, None).p > 1e-3 && fit(&edge, Some(Term::Edge)).p < 1e-12);
         assert!(Drawn::all(&groups, 1, Some(Term::Step)).is_empty());
-        let whole = Drawn::whole(&groups, 1);
-        assert!(whole.len() == 2 && whole[0].moments.n() == 640);
     }
 }

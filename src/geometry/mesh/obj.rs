@@ -37,6 +37,9 @@ struct Obj {
     has_uvs: bool,
 }
 
+/// Surface parameters beyond have lost the place within a picture that repeats.
+const MOST_UV: f64 = 1e9;
+
 /// Larger files are refused: some 10 million triangles.
 const MOST_BYTES: u64 = 1 << 30;
 
@@ -89,7 +92,14 @@ impl Obj {
                 let [u, ref rest @ ..] = numbers[..] else {
                     return Err("surface parameters `vt` without a number; allowed: u, or u v".into());
                 };
-                self.parameters.push(DVec2::new(u, rest.first().copied().unwrap_or(0.0)));
+                let uv = DVec2::new(u, rest.first().copied().unwrap_or(0.0));
+                if uv.abs().max_element() > MOST_UV {
+                    return Err(format!(
+                        "surface parameters `vt` of {:e}; allowed: -{MOST_UV:e} to {MOST_UV:e}",
+                        uv.abs().max_element()
+                    ));
+                }
+                self.parameters.push(uv);
                 Ok(())
             }
             Some("f") => self.face(words),
@@ -101,25 +111,33 @@ impl Obj {
         }
     }
 
-    /// A polygon as a fan about its first corner, which is right for convex ones.
+    /// A convex polygon. Every second corner is cut off, and again what is left: a fan about one corner would be hundreds of
+    /// triangles that lie over each other seen from everywhere but in front, and no tree would part them.
     fn face<'a>(&mut self, words: impl Iterator<Item = &'a str>) -> std::result::Result<(), String> {
         let corners: Vec<(u32, Option<DVec2>)> =
             words.map(|word| self.corner(word)).collect::<std::result::Result<_, _>>()?;
         if corners.len() < 3 {
             return Err(format!("a face of {} corners; allowed: 3 or more", corners.len()));
         }
-        for pair in corners[1..].windows(2) {
-            let triangle = [corners[0], pair[0], pair[1]];
-            self.triangles.push(triangle.map(|(place, _)| place));
-            let given = triangle.map(|(_, uv)| uv);
-            if let [Some(a), Some(b), Some(c)] = given {
-                self.has_uvs = true;
-                self.uvs.push([a, b, c]);
-            } else {
-                self.uvs.push([DVec2::ZERO, DVec2::X, DVec2::Y]);
+        let mut ring = corners;
+        while ring.len() > 2 {
+            ring.windows(3).step_by(2).for_each(|cut| self.triangle([cut[0], cut[1], cut[2]]));
+            if let ([first, .., before, last], true) = (&ring[..], ring.len().is_multiple_of(2)) {
+                self.triangle([*first, *before, *last]);
             }
+            ring = ring.into_iter().step_by(2).collect();
         }
         Ok(())
+    }
+
+    fn triangle(&mut self, corners: [(u32, Option<DVec2>); 3]) {
+        self.triangles.push(corners.map(|(place, _)| place));
+        if let [Some(a), Some(b), Some(c)] = corners.map(|(_, uv)| uv) {
+            self.has_uvs = true;
+            self.uvs.push([a, b, c]);
+        } else {
+            self.uvs.push([DVec2::ZERO, DVec2::X, DVec2::Y]);
+        }
     }
 
     /// `position`, `position/parameters`, `position//normal` or `position/parameters/normal`.
@@ -182,6 +200,32 @@ mod tests {
         assert_eq!((mesh.len(), mesh.area()), (3, 1.5));
     }
 
+    /// Regular polygons of 3 to 800 corners, of n - 2 triangles that turn alike; parameters go with their corners.
+    #[test]
+    fn polygons_of_many_corners() {
+        for n in (3..40).chain([800]) {
+            let angle = |i: u32| std::f64::consts::TAU * f64::from(i) / f64::from(n);
+            let mut text = String::new();
+            for i in 0..n {
+                let (sin, cos) = crate::math::sin_cos(angle(i));
+                text += &format!("v {cos} {sin} 0\nvt {} {}\n", 3.0 * cos, 3.0 * sin);
+            }
+            text += "f";
+            (1..=n).for_each(|i| text += &format!(" {i}/{i}"));
+            let mut obj = Obj::default();
+            text.lines().for_each(|line| obj.statement(line).unwrap());
+            assert_eq!(obj.triangles.len(), n as usize - 2);
+            for (corners, uvs) in obj.triangles.iter().zip(&obj.uvs) {
+                let [a, b, c] = corners.map(|i| obj.positions[i as usize]);
+                assert!((b - a).cross(c - a).z > 0.0);
+                assert_eq!(*uvs, [a, b, c].map(|p| 3.0 * p.truncate()));
+            }
+            let mesh = parse(&text, |p| p).unwrap();
+            let area = 0.5 * f64::from(n) * crate::math::sin_cos(angle(1)).0;
+            assert!((mesh.area() / area - 1.0).abs() < 1e-12, "{n}");
+        }
+    }
+
     /// Each wrong file names its line and what is allowed.
     #[test]
     fn errors_name_the_line() {
@@ -191,6 +235,7 @@ mod tests {
             ("v 0 0\n".to_string(), at(1, "a vertex `v` of 2 numbers; allowed: x y z")),
             ("v 0 0 nan\n".to_string(), at(1, "`nan` is no finite number")),
             ("v 0 0 1e400\n".to_string(), at(1, "`1e400` is no finite number")),
+            ("vt 0 -1e308\n".to_string(), at(1, "surface parameters `vt` of 1e308; allowed: -1e9 to 1e9")),
             ("f 1 2 3\n".to_string(), at(1, "a face names vertex 1; no vertex stands before this line")),
             (format!("{square}f 1 2 4\n"), at(4, "a face names vertex 4; allowed: 1 to 3, or -3 to -1")),
             (format!("{square}f 0 2 3\n"), at(4, "a face names vertex 0; allowed: 1 to 3, or -3 to -1")),
