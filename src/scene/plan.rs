@@ -1,6 +1,6 @@
 //! What a scene requires of the simulator: computed from the scene, printed by `turbid check`, and obeyed.
 
-use super::Parts;
+use super::{Object, Parts};
 use crate::faults::{Fault, planted};
 use crate::light::Light;
 use crate::medium::Medium;
@@ -27,6 +27,8 @@ pub struct Plan {
     pub has_specular: bool,
     /// Whether there are boundaries of interiors.
     pub has_dielectrics: bool,
+    /// Whether light can meet a boundary between interiors of different indices.
+    pub has_refraction: bool,
     /// Whether light can meet a boundary between interiors of the same index, which it passes as though there were none.
     pub has_matched: bool,
     /// Whether light can meet a filter.
@@ -60,6 +62,11 @@ impl Plan {
         let has_event =
             has_media || parts.objects.iter().any(|o| o.surface.is_event() && !o.surface.is_specular());
         let mut unreachable = Vec::new();
+        let has_boundary = |matched: bool| {
+            let is_one =
+                |o: &Object| matches!(&o.surface, Surface::Dielectric(d) if d.is_matched() == matched);
+            parts.objects.iter().any(is_one)
+        };
         if has_specular && has_delta {
             if has_event {
                 unreachable.push(
@@ -85,11 +92,9 @@ impl Plan {
                 && (planted(Fault::LightColorIgnored) || parts.lights.iter().all(Light::is_grey)),
             has_surfaces: !parts.objects.is_empty(),
             has_specular,
-            has_dielectrics: parts.objects.iter().any(|o| matches!(o.surface, Surface::Dielectric(_))),
-            has_matched: parts
-                .objects
-                .iter()
-                .any(|o| matches!(&o.surface, Surface::Dielectric(boundary) if boundary.is_matched())),
+            has_dielectrics: has_boundary(false) || has_boundary(true),
+            has_refraction: has_boundary(false),
+            has_matched: has_boundary(true),
             has_filters: parts.objects.iter().any(|o| matches!(o.surface, Surface::Filter(_))),
             has_next_event: parts.lights.iter().any(Light::has_direction),
             distance_lights: (0..parts.lights.len())
@@ -110,6 +115,7 @@ impl Plan {
             has_emission: true,
             has_specular: true,
             has_dielectrics: true,
+            has_refraction: true,
             has_matched: true,
             has_filters: true,
             has_next_event: true,
@@ -145,11 +151,13 @@ impl Plan {
             (true, false) => "diffuse or black surfaces: no caustic, no mirror paths".to_string(),
             (true, true) => "mirrors or glass: specular paths".to_string(),
         });
-        if self.has_dielectrics {
+        if self.has_refraction {
             lines.push("dielectric boundaries: Fresnel reflection, refraction, interiors".to_string());
         }
         if self.has_matched {
-            lines.push("index-matched boundaries: no events, shadow rays pass them".to_string());
+            lines.push(
+                "index-matched boundaries: interiors, but no events, and shadow rays pass them".to_string(),
+            );
         }
         if self.has_filters {
             lines.push("filters: shadow rays pass them, body after body".to_string());

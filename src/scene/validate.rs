@@ -293,7 +293,7 @@ fn check_apart(parts: &Parts) -> Result<()> {
         let is_met = |o: &Object| matches!(o.surface, Surface::Dielectric(_)) && nearest(&o.shape);
         if let Some(object) = parts.objects.iter().position(is_met) {
             return refuse(format!(
-                "{name} is on the surface of objects[{object}], which refracts, and could be on either side of it; allowed: a place off that surface"
+                "{name} is on the surface of objects[{object}], which parts two interiors, and could be in either; allowed: a place off that surface"
             ));
         }
     }

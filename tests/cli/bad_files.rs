@@ -93,7 +93,7 @@ fn what_is_unusual_and_right() {
          surface = { dielectric = { inside = \"milk\" } }\n\
          [[lights]]\nisotropic = { shape = { sphere = { center = [0, 0, 0], radius = 3 } }, radiance = 1, faces = \"both\" }\n",
     );
-    let on = "is on the surface of objects[0], which refracts, and could be on either side of it; allowed: ";
+    let on = "is on the surface of objects[0], which parts two interiors, and could be in either; allowed: ";
     refuses_naming(&["check", text(&ball)], &["ball.toml: the camera ", on]);
     // Off it by a billionth, to both sides, wherever the camera looks.
     let picture = folder.0.path().join("ball.exr");

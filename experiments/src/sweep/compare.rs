@@ -222,9 +222,12 @@ fn unbiased_at(index: usize, a: &Measured, b: &Measured) -> impl Iterator<Item =
 /// Emitted is what the lights have, and ends as absorbed or escaped.
 pub fn conserved(energy: &Energy) -> Check {
     let mut tests = Vec::new();
-    for (name, all) in [("emitted", &energy.emitted), ("absorbed and escaped", &energy.balance)] {
+    let parts =
+        [("emitted", &energy.emitted, energy.power_error), ("absorbed and escaped", &energy.balance, 0.0)];
+    for (name, all, allowed) in parts {
         for (moments, channel) in all.iter().zip(["r", "g", "b"]) {
-            let z = if moments.mean() == 0.0 { 0.0 } else { moments.mean() / moments.std_error() };
+            let beyond = (moments.mean().abs() - allowed).max(0.0);
+            let z = if beyond == 0.0 { 0.0 } else { beyond / moments.std_error() };
             let heavy = is_heavy(moments);
             let is_rounding = moments.mean().abs() < 1e-9;
             let p = if heavy || is_rounding { 1.0 } else { student_p(z, moments.n() - 1) };
@@ -234,9 +237,10 @@ pub fn conserved(energy: &Energy) -> Check {
                 value: 1.0 + moments.mean(),
                 expected: 1.0,
                 std_error: moments.std_error(),
-                allowed: 0.0,
+                allowed,
                 p,
-                smallest: (!heavy).then(|| smallest_deviation(moments.std_error(), moments.n() - 1)),
+                smallest: (!heavy)
+                    .then(|| allowed + smallest_deviation(moments.std_error(), moments.n() - 1)),
                 weight: 1.0,
             });
         }
