@@ -29,6 +29,8 @@ pub enum Purpose {
     Importance,
     /// Histories that find out whether light comes to an end.
     Ends,
+    /// Points that find out how much a medium emits.
+    Emission,
 }
 
 /// Work that a scene may or may not require, counted where it is done.

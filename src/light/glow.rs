@@ -97,21 +97,19 @@ impl Glow {
         Some(Glow { number, within, medium: medium.clone(), places, ceiling, power: ceiling, is_certain })
     }
 
-    /// The same with its power, which estimates are told to the user by, no more: `owns` says where the medium is.
-    /// A quadrature over `points` starts, where the bound is not the power itself.
-    pub(crate) fn measured(self, stage: Option<&Stage>, points: u32, owns: impl Fn(DVec3) -> bool) -> Self {
-        if self.is_certain {
-            return self;
+    /// The same with this power \[W\].
+    pub(crate) fn with_power(self, power: Spectrum) -> Self {
+        Glow { power, ..self }
+    }
+
+    /// The corners of a box that holds all starts.
+    pub(crate) fn extent(&self, stage: Option<&Stage>) -> Option<(DVec3, DVec3)> {
+        match &self.places {
+            Places::Inside(shape) => around(shape, stage),
+            Places::Boxes(boxes) => {
+                Some((boxes.low, boxes.low + boxes.edge * DVec3::from_array(boxes.count.map(|n| n as f64))))
+            }
         }
-        let sum = (0..points).fold(Spectrum::ZERO, |sum, i| {
-            // A rank-1 lattice by the number whose cube is one more than itself squared.
-            let position =
-                [0.819_172_513_4, 0.671_043_606_7, 0.549_700_477_9].map(|a| (f64::from(i) * a + 0.5).fract());
-            let Emission { ray, power, chance, .. } =
-                self.emit_at(stage, &EmissionNumbers { position, direction: [0.5; 2] });
-            if owns(ray.origin) { sum + power * chance } else { sum }
-        });
-        Glow { power: sum / f64::from(points), ..self }
     }
 
     /// Number of the medium.

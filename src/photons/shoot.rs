@@ -114,7 +114,7 @@ pub(crate) fn shoot_blocks(
 ) -> Result<(Pass, Vec<Vec<Photon>>)> {
     scene.check_emission()?;
     check_end(scene)?;
-    let power = scene.power();
+    let power = if sensors.is_empty() { Spectrum::ONE } else { scene.power() };
     let block = |range: Range<u64>| {
         let mut visitor = Tallier {
             scene,

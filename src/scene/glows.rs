@@ -1,12 +1,23 @@
 //! Media that emit, as lights: their photons start in them.
 
+use super::interiors::is_clear_of;
 use super::{Parts, SURROUNDINGS, Scene};
+use crate::Spectrum;
 use crate::geometry::Shape;
 use crate::light::{Glow, Light};
+use crate::math::FOUR_PI;
+use crate::rng::{Purpose, Stream};
 use crate::surface::Surface;
+use glam::DVec3;
 
-/// Points of the quadrature of a medium's power: by a lattice it is good to about a thousandth.
-const POINTS: u32 = 1 << 14;
+/// Cells of the quadrature of a medium's power when a scene is made: good to some per cent, for choices between lights.
+const ROUGH: usize = 1 << 10;
+
+/// The same where readings are divided by the power: some hundredths of a second.
+const FINE: usize = 1 << 17;
+
+/// A part of the power below which its error does not matter.
+const FINE_ENOUGH: f64 = 1e-4;
 
 /// The lights that the media of a scene are, those of regions first; and whether that is all of them: a medium without
 /// end, where no cell stands for it, sends out no photon that could be followed.
@@ -29,8 +40,8 @@ pub(super) fn of(scene: &Scene) -> (Vec<Light>, bool) {
         };
         match glow {
             Some(glow) => {
-                let owns = |p| scene.medium_number_at(p) == Some(number);
-                lights.push(Light::Glow(glow.measured(stage, POINTS, owns)));
+                let power = measured(scene, &glow, ROUGH).0;
+                lights.push(Light::Glow(glow.with_power(power)));
             }
             None => is_all = false,
         }
@@ -42,10 +53,91 @@ pub(super) fn of(scene: &Scene) -> (Vec<Light>, bool) {
     for within in 0..parts.interiors.len() {
         if let Some(number) = scene.filling(within) {
             let shapes = enclosing(parts, within).unwrap_or(ball.iter().collect());
-            add(number, within, &shapes, false);
+            let boundaries = parts.objects.iter().filter(|o| matches!(o.surface, Surface::Dielectric(_)));
+            let is_alone = match shapes[..] {
+                [shape] if shape.is_solid() => shape.bounds().is_some_and(|ball| {
+                    boundaries.filter(|o| !std::ptr::eq(&o.shape, shape)).all(|o| is_clear_of(ball, &o.shape))
+                }),
+                _ => false,
+            };
+            add(number, within, &shapes, is_alone);
         }
     }
     (lights, is_all)
+}
+
+/// The power of a medium, and its standard error \[W\]: by cells of a box, halved along each axis where a boundary runs through
+/// them or the medium varies, down to `most` of them or so. In whole cells of an even medium the power is exact; in the others it is asked
+/// for at two random points.
+fn measured(scene: &Scene, glow: &Glow, most: usize) -> (Spectrum, Spectrum) {
+    let known = Light::Glow(glow.clone()).power(scene.stage());
+    let Some((low, high)) = glow.extent(scene.stage()).filter(|_| !glow.is_certain()) else {
+        return (known, Spectrum::ZERO);
+    };
+    let (number, medium) = (glow.number(), scene.medium(glow.number()));
+    let boundaries: Vec<&Shape> = {
+        let dielectrics = scene.objects().iter().filter(|o| matches!(o.surface, Surface::Dielectric(_)));
+        let regions = scene.regions().iter().map(|region| &region.shape);
+        dielectrics.map(|o| &o.shape).chain(regions.filter(|_| glow.within() == SURROUNDINGS)).collect()
+    };
+    // An open surface decides of places far from itself.
+    let is_local = boundaries.iter().all(|shape| shape.is_closed());
+    let owns = |p: DVec3| scene.medium_number_at(p) == Some(number);
+    let (mut sum, mut squares) = (Spectrum::ZERO, Spectrum::ZERO);
+    // Middles of cells, and whether a boundary may run through.
+    let mut cells = vec![(0.5 * (low + high), true)];
+    let mut half = 0.5 * (high - low);
+    let volume = |half: DVec3| FOUR_PI * 8.0 * half.element_product();
+    while !cells.is_empty() && cells.len() * 4 <= most {
+        half *= 0.5;
+        let radius = half.length();
+        let mut smaller = Vec::with_capacity(8 * cells.len());
+        for (middle, was_near) in cells {
+            for corner in 0..8 {
+                let sign = |bit: u32| if corner >> bit & 1 == 1 { 1.0 } else { -1.0 };
+                let middle = middle + half * DVec3::new(sign(0), sign(1), sign(2));
+                let is_near =
+                    was_near && (!is_local || boundaries.iter().any(|b| b.distance(middle, radius) < radius));
+                if is_near || (owns(middle) && !medium.is_homogeneous()) {
+                    smaller.push((middle, is_near));
+                } else if owns(middle) {
+                    sum += medium.emission(middle) * volume(half);
+                }
+            }
+        }
+        cells = smaller;
+        // Half of the cells' power is as far as they could be off, each by itself.
+        let left =
+            0.5 * (cells.len() as f64).sqrt() * volume(half) * medium.emission(0.5 * (low + high)).max();
+        if medium.is_homogeneous() && left < FINE_ENOUGH * sum.max() {
+            break;
+        }
+    }
+    for (index, (middle, _)) in cells.iter().enumerate() {
+        let mut stream = Stream::new(0, Purpose::Emission, number as u64, index as u64);
+        let mut one = || {
+            let p = *middle + half * (2.0 * DVec3::from(stream.triple()) - 1.0);
+            if owns(p) { medium.emission(p) * volume(half) } else { Spectrum::ZERO }
+        };
+        let (a, b) = (one(), one());
+        sum += (a + b) * 0.5;
+        squares += ((a - b) * 0.5).map(|x| x * x);
+    }
+    (sum, squares.map(f64::sqrt))
+}
+
+/// The power of all lights, and its standard error \[W\].
+pub(super) fn power(scene: &Scene) -> (Spectrum, Spectrum) {
+    let (mut sum, mut squares) = (Spectrum::ZERO, Spectrum::ZERO);
+    for light in scene.lights() {
+        let (power, error) = match light {
+            Light::Glow(glow) => measured(scene, glow, FINE),
+            light => (light.power(scene.stage()), Spectrum::ZERO),
+        };
+        sum += power;
+        squares += error.map(|x| x * x);
+    }
+    (sum, squares.map(f64::sqrt))
 }
 
 /// The shapes that an interior lies in, if its boundary encloses it; it may lie in a part of them only.

@@ -99,7 +99,7 @@ pub(super) fn of_lights(scene: &Scene) -> Vec<Option<usize>> {
 }
 
 /// Whether a ball keeps clear of a surface; where it cannot be told, it does not.
-fn is_clear_of((center, radius): (DVec3, f64), shape: &Shape) -> bool {
+pub(super) fn is_clear_of((center, radius): (DVec3, f64), shape: &Shape) -> bool {
     match shape {
         // Outside a cuboid the room is minus at most the distance.
         Shape::Sphere(_) | Shape::Cuboid(_) | Shape::Slab(_) => shape.room(center).abs() > radius,

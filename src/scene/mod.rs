@@ -88,14 +88,19 @@ pub struct Scene {
     stage: Option<Stage>,
     bounds: Option<Sphere>,
     plan: Plan,
-    answer: Answer,
+    answers: Answers,
 }
 
-/// The answer to a question that is asked of a scene once; scenes that are equal have equal ones.
+/// Answers to questions that are asked of a scene once; scenes that are equal have equal ones.
 #[derive(Debug, Clone, Default)]
-struct Answer(OnceLock<Result<()>>);
+struct Answers {
+    /// Whether light ends.
+    ends: OnceLock<Result<()>>,
+    /// Power and its standard error.
+    power: OnceLock<(Spectrum, Spectrum)>,
+}
 
-impl PartialEq for Answer {
+impl PartialEq for Answers {
     fn eq(&self, _: &Self) -> bool {
         true
     }
@@ -131,7 +136,7 @@ impl Scene {
             stage,
             bounds,
             plan,
-            answer: Answer::default(),
+            answers: Answers::default(),
         };
         let (glows, is_emission_bounded) = glows::of(&scene);
         scene.lights.extend(glows);
@@ -144,7 +149,7 @@ impl Scene {
 
     /// Asks whether all light in the scene comes to an end, which takes histories of it: the first time only.
     pub(crate) fn once(&self, ask: impl FnOnce() -> Result<()>) -> Result<()> {
-        self.answer.0.get_or_init(ask).clone()
+        self.answers.ends.get_or_init(ask).clone()
     }
 
     /// Media and where they are.
@@ -211,9 +216,17 @@ impl Scene {
         bounds::of_bounded(&self.parts)
     }
 
-    /// Power of all lights \[W\].
+    /// Power of all lights \[W\], to [`Scene::power_error`]. Where media emit that fill no simple shape of their own, it takes some
+    /// hundredths of a second, the first time.
     pub fn power(&self) -> Spectrum {
-        self.lights().iter().fold(Spectrum::ZERO, |sum, light| sum + light.power(self.stage()))
+        self.answers.power.get_or_init(|| glows::power(self)).0
+    }
+
+    /// Standard error of the power, over it: 0 but where media emit whose place is known point by point.
+    pub fn power_error(&self) -> Spectrum {
+        let (power, error) = *self.answers.power.get_or_init(|| glows::power(self));
+        let part = |c: usize| if power[c] > 0.0 { error[c] / power[c] } else { 0.0 };
+        Spectrum::rgb(part(0), part(1), part(2))
     }
 
     /// What photons of all lights carry together if none is refused \[W\]: see [`Light::ceiling`].

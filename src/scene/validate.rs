@@ -1,6 +1,7 @@
 //! Checks on the parts of a scene together. Each part has checked its own numbers when it was made.
 
 use super::{Camera, Object, Parts, Quantity, Scene, coincident, interiors};
+use crate::Spectrum;
 use crate::error::{Error, Result};
 use crate::geometry::{Face, Shape, Slab};
 use crate::light::{Light, Section, Stage};
@@ -384,7 +385,7 @@ pub(super) fn check_power(scene: &Scene) -> Result<()> {
     if scene.lights().is_empty() {
         return Ok(());
     }
-    let power = scene.power();
+    let power = scene.lights().iter().fold(Spectrum::ZERO, |sum, light| sum + light.power(scene.stage()));
     let is_out = |p: &f64| !(1e-30..=1e30).contains(p) && (*p != 0.0 || power.is_black());
     match (0..3).map(|c| power[c]).find(is_out) {
         Some(bad) => {

@@ -20,7 +20,8 @@ pub use photons::{
 pub use render::{MAX_SAMPLES, Streams, extend, render};
 pub use view::{check_camera, colour, draw_photons};
 
-use crate::scene::Sensor;
+use crate::Spectrum;
+use crate::scene::{Quantity, Scene, Sensor};
 use crate::stats::{Moments, Tail, poisson_interval};
 
 /// A measured number.
@@ -134,19 +135,25 @@ fn std_error(m: &Moments, tail: Option<&Tail>, source: Source) -> Result<f64, No
 /// The readings of one sensor: one where the scene is grey, otherwise one a channel. Paths tell the tails of their
 /// contributions.
 fn readings(
+    scene: &Scene,
     sensor: &Sensor,
-    is_grey: bool,
     moments: &[Moments; 3],
     tails: Option<&[Tail; 3]>,
     source: Source,
 ) -> Vec<Reading> {
-    let suffixes: &[&str] = if is_grey { &[""] } else { &[".r", ".g", ".b"] };
+    // The power that parts of it are divided by may be known to an error of its own.
+    let of_power = match sensor.quantity {
+        Quantity::Outflow { .. } | Quantity::Absorbed(_) => scene.power_error(),
+        Quantity::Fluence(_) | Quantity::Radiance(_) => Spectrum::ZERO,
+    };
+    let suffixes: &[&str] = if scene.plan().is_grey { &[""] } else { &[".r", ".g", ".b"] };
     suffixes
         .iter()
         .enumerate()
         .map(|(channel, suffix)| {
             let m = &moments[channel];
             let error = std_error(m, tails.map(|tails| &tails[channel]), source);
+            let error = error.map(|error| libm::hypot(error, of_power[channel] * m.mean()));
             Reading {
                 sensor: sensor.name.clone(),
                 quantity: format!("{}{suffix}", sensor.label),

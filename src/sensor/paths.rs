@@ -36,7 +36,7 @@ pub fn by_paths(scene: &Scene, settings: &PathSettings, progress: &dyn Progress)
     let mut all = Vec::new();
     for (index, sensor) in scene.sensors().iter().enumerate() {
         let (moments, tails) = read(scene, sensor, index as u64, settings, progress)?;
-        all.extend(readings(sensor, scene.plan().is_grey, &moments, Some(&tails), Source::Paths));
+        all.extend(readings(scene, sensor, &moments, Some(&tails), Source::Paths));
     }
     Ok(all)
 }

@@ -157,7 +157,7 @@ pub fn by_photons_in_passes(
             return Err(Error::NonFinite { count: non_finite, place: "estimates from photon maps" });
         }
         let source = if map_orders(sensor).is_some() { Source::Maps } else { Source::Tally };
-        result.readings.extend(readings(sensor, scene.plan().is_grey, &moments, None, source));
+        result.readings.extend(readings(scene, sensor, &moments, None, source));
     }
     Ok(result)
 }

@@ -412,7 +412,7 @@ pub struct Energy {
     pub emitted: [Moments; 3],
     /// Absorbed and escaped over the power of the lights, less the same of what was emitted.
     pub balance: [Moments; 3],
-    /// How well the power is known: that of emitting media is a quadrature, good to about a thousandth; others' is exact.
+    /// How well the power is known, over it: four standard errors.
     pub power_error: f64,
     /// Rays and look-ups of a history, on average.
     pub steps: f64,
@@ -445,8 +445,7 @@ impl Visitor for Tally {
 pub fn energy(scene: &Scene, seed: u64, effort: &Effort) -> Result<Energy, Failure> {
     scene.check_emission()?;
     let (clock, emitter, power) = (Clock::of(effort), Emitter::by_power(scene), scene.power());
-    let emits = scene.media().iter().any(|medium| medium.is_emitting());
-    let mut energy = Energy { power_error: if emits { 1e-3 } else { 0.0 }, ..Energy::default() };
+    let mut energy = Energy { power_error: 4.0 * scene.power_error().max(), ..Energy::default() };
     let one = |replicate: u64, history: u64| {
         let mut stream = Stream::new(seed, Purpose::Photons, replicate, history);
         let mut tally = Tally { ended: Spectrum::ZERO, steps: 0.0 };
