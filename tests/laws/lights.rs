@@ -514,7 +514,6 @@ fn filled_bodies_emit_by_their_volume() {
         verdict::agrees(&format!("body {i}"), &emitted, (expected, 1e-9 * expected), 0.2 * expected, 13);
         let power = scene.power();
         let (off, known) = (power[0] / expected - 1.0, scene.power_error()[0]);
-        println!("body {i}: power off by {off:.1e}, known to {known:.1e}");
         assert!(
             off.abs() <= 4.0 * known + 1e-12 && known < 1e-3 && power[1] == 2.0 * power[0],
             "body {i}: {power:?} for {expected}"
