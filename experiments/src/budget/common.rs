@@ -146,7 +146,7 @@ mod tests {
             entries = made_up(seed, &[(64, 6); 100], 0.0);
             for entry in &mut entries {
                 let number: u32 = entry.group[1..].parse().unwrap();
-                let sign = if number % 2 == 0 { 1.0 } else { -1.0 };
+                let sign = if number.is_multiple_of(2) { 1.0 } else { -1.0 };
                 entry.maps.iter_mut().for_each(|x| *x += 0.01 * sign);
             }
             let found = common(&entries);
