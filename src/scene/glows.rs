@@ -40,7 +40,9 @@ pub(super) fn of(scene: &Scene) -> (Vec<Light>, bool) {
         };
         match glow {
             Some(glow) => {
-                let power = measured(scene, &glow, ROUGH).0;
+                // Thin shells may be missed.
+                let rough = measured(scene, &glow, ROUGH).0;
+                let power = if rough.is_black() { measured(scene, &glow, FINE).0 } else { rough };
                 lights.push(Light::Glow(glow.with_power(power)));
             }
             None => is_all = false,
@@ -98,10 +100,14 @@ fn measured(scene: &Scene, glow: &Glow, most: usize) -> (Spectrum, Spectrum) {
                 let middle = middle + half * DVec3::new(sign(0), sign(1), sign(2));
                 let is_near =
                     was_near && (!is_local || boundaries.iter().any(|b| b.distance(middle, radius) < radius));
-                if is_near || (owns(middle) && !medium.is_homogeneous()) {
-                    smaller.push((middle, is_near));
-                } else if owns(middle) {
+                if is_near {
+                    smaller.push((middle, true));
+                } else if !owns(middle) {
+                    continue;
+                } else if medium.is_homogeneous() {
                     sum += medium.emission(middle) * volume(half);
+                } else {
+                    smaller.push((middle, false));
                 }
             }
         }
