@@ -48,8 +48,8 @@ impl Spot {
         let Some(dir) = dir.try_normalize() else {
             return Err(Error::Scene("a spot light needs a finite direction other than 0 0 0".into()));
         };
-        if !(edge_angle > 0.0 && edge_angle <= 180.0) {
-            return Err(Error::out_of_range("edge_angle", edge_angle, "above 0 and at most 180 degrees"));
+        if !(1e-6..=180.0).contains(&edge_angle) {
+            return Err(Error::out_of_range("edge_angle", edge_angle, "1e-6 to 180 degrees"));
         }
         if !(full_angle >= 0.0 && full_angle <= edge_angle) {
             return Err(Error::out_of_range("full_angle", full_angle, "0 to edge_angle, in degrees"));

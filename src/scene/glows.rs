@@ -1,6 +1,6 @@
 //! Media that emit, as lights: their photons start in them.
 
-use super::interiors::is_clear_of;
+use super::interiors::{dielectrics, is_clear_of};
 use super::{Parts, SURROUNDINGS, Scene};
 use crate::Spectrum;
 use crate::geometry::Shape;
@@ -13,7 +13,7 @@ use glam::DVec3;
 /// Cells of the quadrature of a medium's power when a scene is made: good to some per cent, for choices between lights.
 const ROUGH: usize = 1 << 10;
 
-/// The same where readings are divided by the power: some hundredths of a second.
+/// The same where readings are divided by the power: a tenth of a second or so.
 const FINE: usize = 1 << 17;
 
 /// A part of the power below which its error does not matter.
@@ -54,15 +54,15 @@ pub(super) fn of(scene: &Scene) -> (Vec<Light>, bool) {
     }
     for within in 0..parts.interiors.len() {
         if let Some(number) = scene.filling(within) {
-            let shapes = enclosing(parts, within).unwrap_or(ball.iter().collect());
-            let boundaries = parts.objects.iter().filter(|o| matches!(o.surface, Surface::Dielectric(_)));
-            let is_alone = match shapes[..] {
-                [shape] if shape.is_solid() => shape.bounds().is_some_and(|ball| {
-                    boundaries.filter(|o| !std::ptr::eq(&o.shape, shape)).all(|o| is_clear_of(ball, &o.shape))
-                }),
+            let bodies = enclosing(parts, within);
+            let mut others = dielectrics(&parts.objects).filter(|o| !encloses(&o.surface, within));
+            let is_alone = match bodies.as_deref() {
+                Some([body]) if body.is_solid() => {
+                    body.bounds().is_some_and(|ball| others.all(|o| is_clear_of(ball, &o.shape)))
+                }
                 _ => false,
             };
-            add(number, within, &shapes, is_alone);
+            add(number, within, &bodies.unwrap_or(ball.iter().collect()), is_alone);
         }
     }
     (lights, is_all)
@@ -77,11 +77,9 @@ fn measured(scene: &Scene, glow: &Glow, most: usize) -> (Spectrum, Spectrum) {
         return (known, Spectrum::ZERO);
     };
     let (number, medium) = (glow.number(), scene.medium(glow.number()));
-    let boundaries: Vec<&Shape> = {
-        let dielectrics = scene.objects().iter().filter(|o| matches!(o.surface, Surface::Dielectric(_)));
-        let regions = scene.regions().iter().map(|region| &region.shape);
-        dielectrics.map(|o| &o.shape).chain(regions.filter(|_| glow.within() == SURROUNDINGS)).collect()
-    };
+    let regions = if glow.within() == SURROUNDINGS { scene.regions() } else { &[] };
+    let bodies = dielectrics(scene.objects()).map(|o| &o.shape);
+    let boundaries: Vec<&Shape> = bodies.chain(regions.iter().map(|region| &region.shape)).collect();
     // An open surface decides of places far from itself.
     let is_local = boundaries.iter().all(|shape| shape.is_closed());
     let owns = |p: DVec3| scene.medium_number_at(p) == Some(number);
@@ -89,7 +87,8 @@ fn measured(scene: &Scene, glow: &Glow, most: usize) -> (Spectrum, Spectrum) {
     // Middles of cells, and whether a boundary may run through.
     let mut cells = vec![(0.5 * (low + high), true)];
     let mut half = 0.5 * (high - low);
-    let volume = |half: DVec3| FOUR_PI * 8.0 * half.element_product();
+    // What a cell sends out of an emission of 1.
+    let unit = |half: DVec3| FOUR_PI * 8.0 * half.element_product();
     while !cells.is_empty() && cells.len() * 4 <= most {
         half *= 0.5;
         let radius = half.length();
@@ -105,7 +104,7 @@ fn measured(scene: &Scene, glow: &Glow, most: usize) -> (Spectrum, Spectrum) {
                 } else if !owns(middle) {
                     continue;
                 } else if medium.is_homogeneous() {
-                    sum += medium.emission(middle) * volume(half);
+                    sum += medium.emission(middle) * unit(half);
                 } else {
                     smaller.push((middle, false));
                 }
@@ -113,8 +112,7 @@ fn measured(scene: &Scene, glow: &Glow, most: usize) -> (Spectrum, Spectrum) {
         }
         cells = smaller;
         // Half of the cells' power is as far as they could be off, each by itself.
-        let left =
-            0.5 * (cells.len() as f64).sqrt() * volume(half) * medium.emission(0.5 * (low + high)).max();
+        let left = 0.5 * (cells.len() as f64).sqrt() * unit(half) * medium.emission(0.5 * (low + high)).max();
         if medium.is_homogeneous() && left < FINE_ENOUGH * sum.max() {
             break;
         }
@@ -123,7 +121,7 @@ fn measured(scene: &Scene, glow: &Glow, most: usize) -> (Spectrum, Spectrum) {
         let mut stream = Stream::new(0, Purpose::Emission, number as u64, index as u64);
         let mut one = || {
             let p = *middle + half * (2.0 * DVec3::from(stream.triple()) - 1.0);
-            if owns(p) { medium.emission(p) * volume(half) } else { Spectrum::ZERO }
+            if owns(p) { medium.emission(p) * unit(half) } else { Spectrum::ZERO }
         };
         let (a, b) = (one(), one());
         sum += (a + b) * 0.5;
@@ -146,10 +144,14 @@ pub(super) fn power(scene: &Scene) -> (Spectrum, Spectrum) {
     (sum, squares.map(f64::sqrt))
 }
 
+/// Whether a surface has an interior on its inside.
+fn encloses(surface: &Surface, within: usize) -> bool {
+    matches!(surface, Surface::Dielectric(dielectric) if dielectric.inside() == within)
+}
+
 /// The shapes that an interior lies in, if its boundary encloses it; it may lie in a part of them only.
 fn enclosing(parts: &Parts, within: usize) -> Option<Vec<&Shape>> {
-    let names_it = |surface: &Surface| matches!(surface, Surface::Dielectric(d) if d.inside() == within);
-    let shapes: Vec<&Shape> =
-        parts.objects.iter().filter(|o| names_it(&o.surface)).map(|o| &o.shape).collect();
+    let bodies = parts.objects.iter().filter(|o| encloses(&o.surface, within));
+    let shapes: Vec<&Shape> = bodies.map(|o| &o.shape).collect();
     (!shapes.is_empty() && shapes.iter().all(|shape| shape.is_closed())).then_some(shapes)
 }

@@ -69,6 +69,11 @@ const DIRECTIONS: [DVec3; 7] = [
     DVec3::NEG_X,
 ];
 
+/// The objects that are boundaries of interiors.
+pub(super) fn dielectrics(objects: &[Object]) -> impl Iterator<Item = &Object> {
+    objects.iter().filter(|o| matches!(o.surface, Surface::Dielectric(_)))
+}
+
 /// The interior on the near side of the first dielectric surface on a ray.
 fn side_seen(parts: &Parts, ray: &Ray) -> Option<usize> {
     let boundaries = parts.objects.iter().filter_map(|object| {
@@ -87,8 +92,7 @@ pub(super) fn of_lights(scene: &Scene) -> Vec<Option<usize>> {
             return Some(SURROUNDINGS);
         }
         let is_clear = |shape: &&Shape| {
-            let mut boundaries =
-                scene.objects().iter().filter(|o| matches!(o.surface, Surface::Dielectric(_)));
+            let mut boundaries = dielectrics(scene.objects());
             shape.bounds().is_some_and(|ball| boundaries.all(|o| is_clear_of(ball, &o.shape)))
         };
         let on_body = |shape: &Shape| shape.sample_boundary(Face::Top, 0.0, [0.5; 3]).0;
@@ -237,9 +241,7 @@ impl Scene {
         match self.regions().get(number) {
             Some(region) => region.shape.room(p),
             None => {
-                let boundaries =
-                    self.objects().iter().filter(|o| matches!(o.surface, Surface::Dielectric(_)));
-                let known = boundaries.filter(|o| o.shape.is_solid());
+                let known = dielectrics(self.objects()).filter(|o| o.shape.is_solid());
                 known.map(|o| o.shape.room(p).abs()).reduce(f64::min).unwrap_or(0.0)
             }
         }

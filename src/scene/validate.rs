@@ -1,5 +1,6 @@
 //! Checks on the parts of a scene together. Each part has checked its own numbers when it was made.
 
+use super::interiors::dielectrics;
 use super::{Camera, Object, Parts, Quantity, Scene, coincident, interiors};
 use crate::Spectrum;
 use crate::error::{Error, Result};
@@ -112,7 +113,7 @@ fn check_extents(parts: &Parts) -> Result<()> {
     }
     for (number, interior) in parts.interiors.iter().enumerate() {
         let Some(medium) = &interior.medium else { continue };
-        for object in dielectrics(parts) {
+        for object in dielectrics(&parts.objects) {
             let Surface::Dielectric(dielectric) = &object.surface else { continue };
             if dielectric.inside() == number || dielectric.outside() == number {
                 let far = match object.shape.bounds() {
@@ -232,8 +233,7 @@ fn stage(parts: &Parts) -> Result<Option<Stage>> {
     }
     let as_slab = |shape: &Shape| if let Shape::Slab(slab) = shape { Some(*slab) } else { None };
     let slabs: Vec<Slab> = parts.regions.iter().filter_map(|r| as_slab(&r.shape)).collect();
-    let refracting = parts.objects.iter().filter(|o| matches!(o.surface, Surface::Dielectric(_)));
-    let refracting: Vec<Slab> = refracting.filter_map(|o| as_slab(&o.shape)).collect();
+    let refracting: Vec<Slab> = dielectrics(&parts.objects).filter_map(|o| as_slab(&o.shape)).collect();
     match slabs[..] {
         _ if !refracting.is_empty() => Ok(Some(Stage { slab: around(&slabs, &refracting)?, side })),
         [slab] => Ok(Some(Stage { slab, side })),
@@ -251,16 +251,11 @@ fn around(slabs: &[Slab], refracting: &[Slab]) -> Result<Slab> {
     Slab::new(top - 0.5 * thickness, 2.0 * thickness)
 }
 
-/// The objects that refract.
-fn dielectrics(parts: &Parts) -> impl Iterator<Item = &Object> {
-    parts.objects.iter().filter(|o| matches!(o.surface, Surface::Dielectric(_)))
-}
-
 /// Light that starts or is measured on the very surface that refracts it could be on either side.
 fn check_apart(parts: &Parts) -> Result<()> {
     for light in &parts.lights {
         if let Light::Isotropic(isotropic) = light
-            && let Some(same) = dielectrics(parts).find(|o| !is_around(isotropic.shape(), &o.shape))
+            && let Some(same) = dielectrics(&parts.objects).find(|o| !is_around(isotropic.shape(), &o.shape))
         {
             return refuse(format!(
                 "isotropic light starts on its shape, which must lie outside every dielectric surface: not so for {:?}",
@@ -270,7 +265,7 @@ fn check_apart(parts: &Parts) -> Result<()> {
     }
     for sensor in &parts.sensors {
         if let Quantity::Outflow { shape, .. } = &sensor.quantity
-            && dielectrics(parts).any(|o| o.shape == *shape)
+            && dielectrics(&parts.objects).any(|o| o.shape == *shape)
         {
             return refuse(format!(
                 "sensor {} is on a dielectric surface, where what leaves could still be reflected; allowed: a larger shape",
@@ -417,7 +412,7 @@ fn check_fold(parts: &Parts, stage: Option<&Stage>) -> Result<()> {
             _ => None,
         };
         if let Some(shape) = shape
-            && dielectrics(parts).next().is_none()
+            && dielectrics(&parts.objects).next().is_none()
             && *shape != Shape::Slab(stage.slab)
         {
             return refuse("an unbounded light's slab must be the slab of the medium");

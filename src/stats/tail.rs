@@ -45,6 +45,11 @@ impl Tail {
         other.largest.iter().for_each(|x| self.keep(*x));
     }
 
+    /// The largest value; 0 of none.
+    pub fn largest(&self) -> f64 {
+        self.largest.iter().copied().fold(0.0, f64::max)
+    }
+
     /// How many values are above 0.
     pub fn contributing(&self) -> u64 {
         self.contributing

@@ -22,14 +22,17 @@ pub(super) enum End {
 /// as this: their variance, below its square, is out of sight of a mean of fewer than 1e24 samples of size 1.
 const FAINT: f64 = 1e-12;
 
-/// Russian roulette on what a stretch lets pass: as it is while a channel is not faint, else in the mean; none if the game
-/// is lost.
-fn outlives(passed: Spectrum, stream: &mut Stream) -> Option<Spectrum> {
-    let chance = passed.max() / FAINT;
+/// Russian roulette on what a stretch lets pass: the factor that what is faint counts with, in the mean 1; 0 if the game is
+/// lost.
+fn outlives(passed: f64, stream: &mut Stream) -> f64 {
+    let chance = passed / FAINT;
     if chance >= 1.0 {
-        return Some(passed);
+        1.0
+    } else if chance > 0.0 && stream.unit() < chance {
+        1.0 / chance
+    } else {
+        0.0
     }
-    (chance > 0.0 && stream.unit() < chance).then(|| passed / chance)
 }
 
 /// Depth to the next event of a process of rate 1.
@@ -125,42 +128,44 @@ fn density_at(medium: &Heterogeneous, ray: &Ray, t: f64, high: f64, stream: &mut
 /// Ratio tracking: an unbiased estimate of the transmittance of a stretch.
 ///
 /// The lower bound passes in closed form; what is above it meets tentative collisions of the rate of the difference
-/// of the bounds, and each lets 1 minus its share pass.
+/// of the bounds, and each lets 1 minus its share pass. The rate is that of the densest channel that still lets anything
+/// pass.
 ///
 /// # Source
 /// Novak, Selle and Jarosz 2014
 pub(super) fn ratio(medium: &Heterogeneous, ray: &Ray, part: Interval, stream: &mut Stream) -> Spectrum {
     let matter = medium.matter();
-    let scale = matter.sigma_t().max();
-    if scale == 0.0 {
-        return Spectrum::ONE;
-    }
-    let shares = matter.sigma_t() / scale;
-    let (mut passed, mut control) = (Spectrum::ONE, 0.0);
-    let stopped = tentative(
-        (medium, ray, part),
-        stream,
-        |bound| {
-            if bound.low > 0.0 {
-                control += bound.low * bound.interval.length();
-            }
-            (bound.high - bound.low) * scale
-        },
-        |t, bound, stream| {
-            let density = density_at(medium, ray, t, bound.high, stream).max(bound.low);
-            let q = (density - bound.low) / (bound.high - bound.low);
-            match outlives(passed * shares.map(|s| 1.0 - s * q), stream) {
-                Some(kept) => {
-                    passed = kept;
-                    None
+    let mut alive = matter.sigma_t();
+    let (mut passed, mut left) = (Spectrum::ONE, part);
+    let (mut control, mut before) = (0.0, 0.0);
+    loop {
+        let scale = alive.max();
+        let Some(densest) = (0..3).find(|c| alive[*c] == scale && scale > 0.0) else { return passed };
+        let shares = alive / scale;
+        let lost = tentative(
+            (medium, ray, left),
+            stream,
+            |bound| {
+                before = control;
+                if bound.low > 0.0 {
+                    control += bound.low * bound.interval.length();
                 }
-                None => Some(()),
-            }
-        },
-    );
-    match stopped {
-        Some(()) => Spectrum::ZERO,
-        None => passed * crate::scene::decay(matter.depth(control)),
+                (bound.high - bound.low) * scale
+            },
+            |t, bound, stream| {
+                let density = density_at(medium, ray, t, bound.high, stream).max(bound.low);
+                let q = (density - bound.low) / (bound.high - bound.low);
+                passed *= shares.map(|s| 1.0 - s * q);
+                let factor = outlives(passed[densest], stream);
+                passed *= shares.map(|s| if s == 1.0 { factor } else { 1.0 });
+                (factor == 0.0).then_some((t, bound.low * (t - bound.interval.start)))
+            },
+        );
+        let Some((t, within)) = lost else {
+            return passed * crate::scene::decay(matter.depth(control));
+        };
+        alive = alive.map(|sigma_t| if sigma_t == scale { 0.0 } else { sigma_t });
+        (left.start, control) = (t, before + within);
     }
 }
 
@@ -181,18 +186,14 @@ pub(super) fn emitted(
     let least = if part.length().is_finite() { 1.0 / part.length() } else { 0.0 };
     let rate = |bound: &Bound| (bound.high * sigma_t.max()).max(least);
     let (mut passed, mut sum) = (Spectrum::ONE, Spectrum::ZERO);
-    let stopped = tentative((medium, ray, part), stream, rate, |t, bound, stream| {
+    tentative((medium, ray, part), stream, rate, |t, bound, stream| {
         let rate = rate(bound);
         let density = density_at(medium, ray, t, bound.high, stream);
         let emission = if own { medium.emission_of(density) } else { Spectrum::ZERO };
         sum += passed * (emission + uniform) / rate;
-        match outlives(passed * sigma_t.map(|s| 1.0 - s * density / rate), stream) {
-            Some(kept) => {
-                passed = kept;
-                None
-            }
-            None => Some(()),
-        }
+        passed *= sigma_t.map(|s| 1.0 - s * density / rate);
+        passed *= outlives(passed.max(), stream);
+        passed.is_black().then_some(())
     });
-    (sum, if stopped.is_some() { Spectrum::ZERO } else { passed })
+    (sum, passed)
 }

@@ -189,7 +189,11 @@ fn lights_that_cannot_be() {
             spot("full_angle = 20, edge_angle = 10", "1"),
             "lights[0].full_angle is 20; allowed: 0 to edge_angle",
         ),
-        (spot("full_angle = 0, edge_angle = 200", "1"), "lights[0].edge_angle is 200; allowed: above 0"),
+        (spot("full_angle = 0, edge_angle = 200", "1"), "lights[0].edge_angle is 200; allowed: 1e-6 to 180"),
+        (
+            spot("full_angle = 0, edge_angle = 1e-7", "1"),
+            "lights[0].edge_angle is 1e-7; allowed: 1e-6 to 180",
+        ),
         (spot("full_angle = 0, edge_angle = 10", "0"), "lights[0].power is 0; allowed: above 0"),
         ("sun = { dir = [0, 0, 0], irradiance = 1, angular_radius = 1 }".into(), "lights[0]: a sun needs"),
         (

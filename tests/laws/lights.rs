@@ -16,13 +16,8 @@ use std::sync::Arc;
 use turbid::Spectrum;
 use turbid::geometry::{Lathe, Mesh, Shape, Sphere};
 use turbid::light::{Area, Beam, EmissionNumbers, Faces, Light, Section, Spot, Sun};
-use turbid::math::{Asymmetry, FOUR_PI, Frame, Ray, warp};
-use turbid::medium::Homogeneous;
-use turbid::phase::Phase;
-use turbid::photons::Emitter;
-use turbid::rng::{Purpose, Stream};
+use turbid::math::{FOUR_PI, Ray, warp};
 use turbid::scene::{Interior, Object, Orders, Parts, Quantity, Scene};
-use turbid::stats::Moments;
 use turbid::surface::{Black, Surface};
 
 const N: u64 = 1 << 17;
@@ -463,60 +458,4 @@ fn light_leaves_glass() {
     let photons = tallies(&scene, &[(beside.clone(), Orders::ALL)], N, 70);
     let found = paths(&scene, beside, Orders::ALL, 4 * N, 71);
     verdict::agree("beside the glass", &photons[0][0], &found[0], 0.05, 70);
-}
-
-/// What fills a closed body, whatever its shape and however it is turned, sends out 4 pi times its emission and its volume: as the
-/// scene states it, and in photons.
-#[test]
-fn filled_bodies_emit_by_their_volume() {
-    let mut turned = Stream::new(12, Purpose::Synthetic, 0, 0);
-    let at = DVec3::new(0.4, -0.2, 0.3);
-    let ring = |r: f64, h: f64| DVec2::new(r, h);
-    let profiles = [
-        vec![ring(0.0, -0.5), ring(0.5, -0.5), ring(0.5, 0.5), ring(0.0, 0.5)],
-        vec![ring(0.0, -0.1), ring(0.8, 0.0), ring(0.0, 0.3)],
-        vec![ring(0.4, -0.2), ring(0.6, -0.2), ring(0.6, 0.2), ring(0.4, 0.2), ring(0.4, -0.2)],
-    ];
-    let mut shapes = vec![sphere(at, 0.5), cuboid(at, at + DVec3::new(0.3, 0.1, 1.0))];
-    for _ in 0..4 {
-        let axis = warp::square_to_sphere(turned.pair());
-        for profile in &profiles {
-            shapes.push(Shape::Lathe(Arc::new(Lathe::new(at, axis, profile).unwrap())));
-        }
-        let frame = Frame::new(axis.normalize());
-        let place = |x: f64, y: f64, z: f64| at + frame.to_world(DVec3::new(x, y, z));
-        let corners =
-            [place(0.0, 0.0, 0.0), place(1.0, 0.0, 0.0), place(0.0, 0.5, 0.0), place(0.1, 0.1, 0.4)];
-        let faces = [[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]];
-        shapes.push(Shape::Mesh(Arc::new(Mesh::new(&corners, &faces, None).unwrap())));
-    }
-    for (i, shape) in shapes.into_iter().enumerate() {
-        let glow = Homogeneous::new(
-            Spectrum::ONE,
-            Spectrum::ZERO,
-            Phase::with_asymmetry(Asymmetry::new("g", 0.0).unwrap()),
-        );
-        let glow = glow.unwrap().with_emission(Spectrum::rgb(1.0, 2.0, 0.5)).unwrap();
-        let glass = Interior { name: "glass".into(), index: 1.5, medium: Some(glow.into()) };
-        let expected = FOUR_PI * shape.volume();
-        let parts = Parts {
-            interiors: vec![Interior::surroundings(), glass],
-            objects: vec![Object { shape, surface: dielectric(1, 0) }],
-            ..Parts::default()
-        };
-        let scene = Scene::new(parts).unwrap();
-        let emitter = Emitter::by_power(&scene);
-        let mut emitted = Moments::new();
-        for history in 0..1 << 15 {
-            let mut stream = Stream::new(13, Purpose::Photons, i as u64, history);
-            emitted.push(emitter.emit(&scene, &mut stream).map_or(0.0, |photon| photon.weight[0]));
-        }
-        verdict::agrees(&format!("body {i}"), &emitted, (expected, 1e-9 * expected), 0.2 * expected, 13);
-        let power = scene.power();
-        let (off, known) = (power[0] / expected - 1.0, scene.power_error()[0]);
-        assert!(
-            off.abs() <= 4.0 * known + 1e-12 && known < 1e-3 && power[1] == 2.0 * power[0],
-            "body {i}: {power:?} for {expected}"
-        );
-    }
 }

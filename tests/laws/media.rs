@@ -8,21 +8,23 @@ use crate::common::config as properties;
 use crate::support::quadrature::integrate;
 use crate::support::run::{histories, numbers, paths, tallies};
 use crate::support::scenes::{
-    CELL, bounded, cuboid, layer, outflow, point_light, region, sphere, transmittance,
+    CELL, bounded, cuboid, dielectric, filled, layer, outflow, point_light, region, sphere, transmittance,
 };
 use crate::support::{unit_vector, verdict};
-use glam::DVec3;
+use glam::{DVec2, DVec3};
 use proptest::prelude::*;
 use std::f64::consts::PI;
-use std::sync::LazyLock;
+use std::sync::{Arc, LazyLock};
 use turbid::Spectrum;
+use turbid::geometry::{Lathe, Mesh, Shape};
 use turbid::light::{Light, VolumeSource};
-use turbid::math::{FOUR_PI, Interval, Ray, exp, exp_m1};
+use turbid::math::{FOUR_PI, Frame, Interval, Ray, exp, exp_m1, warp};
 use turbid::medium::{Density, Grid, Heterogeneous, Homogeneous, Medium};
 use turbid::phase::{Isotropic, Phase};
-use turbid::photons::{Histories, shoot};
+use turbid::photons::{Emitter, Histories, shoot};
 use turbid::rng::{Purpose, Stream, Work};
-use turbid::scene::{Orders, Parts, Quantity, Region, SURROUNDINGS, Scene};
+use turbid::scene::{Interior, Object, Orders, Parts, Quantity, Region, SURROUNDINGS, Scene};
+use turbid::stats::Moments;
 use turbid::transport::{Flight, NoProgress, free_flight, passed};
 
 #[test]
@@ -207,7 +209,7 @@ fn photons_start_where_media_emit() {
         let clear = Region { shape: cut.clone(), medium: matter(Spectrum::ZERO, Spectrum::ZERO).into() };
         let fog = Region { shape: whole.clone(), medium: fog.into() };
         let scene = bounded(vec![fog, clear], Vec::new(), Vec::new());
-        let emitter = turbid::photons::Emitter::by_power(&scene);
+        let emitter = Emitter::by_power(&scene);
         let sent = numbers(MANY / 2, 46, |stream| {
             f64::from(u8::from(emitter.emit(&scene, stream).is_some_and(|walker| {
                 let p = walker.ray.origin;
@@ -215,7 +217,7 @@ fn photons_start_where_media_emit() {
                 true
             })))
         });
-        // The lattice of the power is good to a few thousandths.
+        // The power is known to a few ten-thousandths.
         let share = scene.power().sum() / scene.ceiling().sum();
         verdict::agrees(&format!("sent, density {i}"), &sent, (share, 1e-3 * share), 0.2 * share, 46);
         let photons = tallies(&scene, &[(beside.clone(), Orders::ALL)], MANY / 2, 47);
@@ -317,4 +319,55 @@ fn a_grid_is_scaled_and_placed() {
 #[test]
 fn a_wall_ends_the_angles() {
     fog::a_wall_ends_the_angles();
+}
+
+/// What fills a closed body, whatever its shape and however it is turned, sends out 4 pi times its emission and its volume: as the
+/// scene states it, and in photons.
+#[test]
+fn filled_bodies_emit_by_their_volume() {
+    let mut turned = Stream::new(12, Purpose::Synthetic, 0, 0);
+    let at = DVec3::new(0.4, -0.2, 0.3);
+    let ring = |r: f64, h: f64| DVec2::new(r, h);
+    let profiles = [
+        vec![ring(0.0, -0.5), ring(0.5, -0.5), ring(0.5, 0.5), ring(0.0, 0.5)],
+        vec![ring(0.0, -0.1), ring(0.8, 0.0), ring(0.0, 0.3)],
+        vec![ring(0.4, -0.2), ring(0.6, -0.2), ring(0.6, 0.2), ring(0.4, 0.2), ring(0.4, -0.2)],
+    ];
+    let mut shapes = vec![sphere(at, 0.5), cuboid(at, at + DVec3::new(0.3, 0.1, 1.0))];
+    for _ in 0..4 {
+        let axis = warp::square_to_sphere(turned.pair());
+        for profile in &profiles {
+            shapes.push(Shape::Lathe(Arc::new(Lathe::new(at, axis, profile).unwrap())));
+        }
+        let frame = Frame::new(axis.normalize());
+        let place = |x: f64, y: f64, z: f64| at + frame.to_world(DVec3::new(x, y, z));
+        let corners =
+            [place(0.0, 0.0, 0.0), place(1.0, 0.0, 0.0), place(0.0, 0.5, 0.0), place(0.1, 0.1, 0.4)];
+        let faces = [[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]];
+        shapes.push(Shape::Mesh(Arc::new(Mesh::new(&corners, &faces, None).unwrap())));
+    }
+    for (i, shape) in shapes.into_iter().enumerate() {
+        let glow = matter(Spectrum::ONE, Spectrum::rgb(1.0, 2.0, 0.5));
+        let glass = filled("glass", 1.5, glow.into());
+        let expected = FOUR_PI * shape.volume();
+        let parts = Parts {
+            interiors: vec![Interior::surroundings(), glass],
+            objects: vec![Object { shape, surface: dielectric(1, 0) }],
+            ..Parts::default()
+        };
+        let scene = Scene::new(parts).unwrap();
+        let emitter = Emitter::by_power(&scene);
+        let mut emitted = Moments::new();
+        for history in 0..1 << 15 {
+            let mut stream = Stream::new(13, Purpose::Photons, i as u64, history);
+            emitted.push(emitter.emit(&scene, &mut stream).map_or(0.0, |photon| photon.weight[0]));
+        }
+        verdict::agrees(&format!("body {i}"), &emitted, (expected, 1e-9 * expected), 0.2 * expected, 13);
+        let power = scene.power();
+        let (off, known) = (power[0] / expected - 1.0, scene.power_error()[0]);
+        assert!(
+            off.abs() <= 4.0 * known + 1e-12 && known < 1e-3 && power[1] == 2.0 * power[0],
+            "body {i}: {power:?} for {expected}"
+        );
+    }
 }

@@ -279,7 +279,7 @@ fn long_histories_end_by_a_game_that_keeps_the_mean() {
 #[test]
 fn ratio_tracking_of_dense_layers_ends_soon() {
     let layers = Grid::new((DVec3::ZERO, DVec3::ONE), [1, 1, 2], 1, vec![0.0, 1.0]).unwrap();
-    let dense = varying(1e6, layers);
+    let dense = varying(Spectrum::grey(1e6), layers);
     let ray = Ray::new(DVec3::new(0.0, 0.5, 0.45), DVec3::X);
     let part = Interval { start: 0.0, end: 1.0 };
     for history in 0..64 {
@@ -295,7 +295,7 @@ fn ratio_tracking_of_dense_layers_ends_soon() {
 fn roulette_of_faint_transmittances_keeps_the_mean() {
     let layers = Grid::new((DVec3::ZERO, DVec3::ONE), [1, 1, 2], 1, vec![0.0, 1.0]).unwrap();
     let tau = 30.0;
-    let medium = varying(tau / 0.1, layers);
+    let medium = varying(Spectrum::grey(tau / 0.1), layers);
     // Density 0.1 below a bound of 1.
     let ray = Ray::new(DVec3::new(0.0, 0.5, 0.3), DVec3::X);
     let part = Interval { start: 0.0, end: 1.0 };
@@ -305,8 +305,38 @@ fn roulette_of_faint_transmittances_keeps_the_mean() {
     verdict::agrees("transmittance over the exact one", &through, (1.0, 1e-6), 0.3, 6);
 }
 
-fn varying(sigma_t: f64, grid: Grid) -> Medium {
-    match homogeneous(Spectrum::grey(sigma_t), Spectrum::grey(0.5), 0.0) {
+/// A channel that lets nothing pass does not set the pace of the others: the game ends each by itself, wherever along the
+/// ray, and keeps the mean of what the others meet behind.
+#[test]
+fn roulette_of_faint_transmittances_is_by_channel() {
+    let tau = Spectrum::rgb(1.0, 1e5, 30.0);
+    let ray = Ray::new(DVec3::new(0.0, 0.5, 0.3), DVec3::X);
+    let part = Interval { start: 0.0, end: 1.0 };
+    // Nothing below the density; half of it or more; bounds that differ along the ray, and are often met.
+    let samples: [fn(usize, usize) -> f32; 3] =
+        [|_, z| z as f32, |_, z| [0.5, 1.0][z], |x, z| (1.0 + (x % 7) as f32) * [0.1, 0.5][z]];
+    for (i, sample) in samples.into_iter().enumerate() {
+        let values = (0..128).map(|i| sample(i % 64, i / 64)).collect();
+        let grid = Grid::new((DVec3::ZERO, DVec3::ONE), [64, 1, 2], 1, values).unwrap();
+        let density = Density::grid(grid.clone()).unwrap();
+        let medium = varying(tau / density.integral(&ray, part), grid);
+        let mut through = [Moments::new(), Moments::new()];
+        for history in 0..1 << 14 {
+            let mut stream = Stream::new(6, Purpose::Synthetic, 1, history);
+            let passed = passed(&medium, &ray, part, &mut stream);
+            // The dense channel alone has 1e5.
+            assert!(stream.work.densities < 10_000, "{}", stream.work.densities);
+            assert!(passed[1] <= 1e-12, "{passed:?}");
+            through[0].push(passed[0] / exp(-tau[0]));
+            through[1].push(passed[2] / exp(-tau[2]));
+        }
+        verdict::agrees(&format!("the thin channel, {i}"), &through[0], (1.0, 1e-6), 0.1, 6);
+        verdict::agrees(&format!("the faint channel, {i}"), &through[1], (1.0, 1e-6), 0.9, 6);
+    }
+}
+
+fn varying(sigma_t: Spectrum, grid: Grid) -> Medium {
+    match homogeneous(sigma_t, Spectrum::grey(0.5), 0.0) {
         Medium::Homogeneous(matter) => Heterogeneous::new(matter, Density::grid(grid).unwrap()).into(),
         other => other,
     }

@@ -25,7 +25,7 @@ impl Left {
 }
 
 /// What is left of one group, and its p-value by Student's t.
-pub fn left_of_group(group: &Group) -> (Left, f64) {
+fn left_of_group(group: &Group) -> (Left, f64) {
     let mut sums = vec![0.0; group.maps];
     let (mut weights, mut bound) = (0.0, 0.0);
     for entry in &group.entries {

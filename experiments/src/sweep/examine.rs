@@ -1,7 +1,8 @@
 //! One scene by every method, and what they say of each other.
 
 use super::compare::{Check, Test, conserved, sharpness, shrinking, unbiased};
-use super::measure::{Effort, Failure, energy, light, maps, paths};
+use super::energy::energy;
+use super::measure::{Effort, Failure, light, maps, paths};
 use super::pairs::pair;
 use super::text::SceneText;
 use serde::{Deserialize, Serialize};
@@ -139,7 +140,7 @@ struct Once {
 }
 
 /// Part of the effort that is tried first: what is then decided needs no more.
-const FIRST: f64 = 0.2;
+const FIRST: f64 = 0.15;
 
 /// Examines a scene; alarms are confirmed once, on another seed with four times the samples of all the effort: what a part of
 /// it found by chance a few times or never, such as a lamp in a mirror, is then found often enough to have an error.

@@ -5,7 +5,6 @@
 
 use crate::gallery::light::is_specular_ahead;
 use cpu_time::ProcessTime;
-use turbid::Spectrum;
 use turbid::error::Error;
 use turbid::estimators::Gather;
 use turbid::integrators::mapper::{Mapper, Report, Settings, scene_size};
@@ -17,7 +16,7 @@ use turbid::photons::{Emitter, PhotonMap};
 use turbid::rng::{Purpose, Stream, Work};
 use turbid::scene::{Camera, Scene};
 use turbid::stats::{HEAVY_TAIL, Moments, Tail};
-use turbid::transport::{Progress, Roulette, Step, Visitor, Walker, walk};
+use turbid::transport::Progress;
 
 /// Layers, channels and quarters.
 pub const CELLS: usize = Layer::ALL.len() * 3 * 4;
@@ -61,6 +60,8 @@ pub struct Measured {
     pub batches: Vec<Batch>,
     /// The largest contributions of single paths or histories to each cell; none of photon maps.
     pub tails: Vec<Tail>,
+    /// Over how many such contributions each quarter is a mean.
+    pub samples: [f64; 4],
 }
 
 /// A mean over repetitions.
@@ -71,6 +72,9 @@ pub struct Mean {
     /// Whether its error is not known, by the repetitions or by the tail of what they are made of: what is rare and large may
     /// not have been drawn, and repetitions without it have small errors.
     pub is_heavy: bool,
+    /// What one contribution would add to it that is as large as the largest of this layer and channel, in whichever quarter;
+    /// 0 where none is known.
+    pub largest: f64,
 }
 
 /// Whether nothing can be said of a mean: the variance of variance, above what normal numbers have by their count, is larger
@@ -84,14 +88,14 @@ pub fn is_heavy(m: &Moments) -> bool {
 impl Measured {
     /// So many repetitions to come, of paths or histories.
     fn with_tails() -> Self {
-        Measured { batches: Vec::new(), tails: vec![Tail::default(); CELLS] }
+        Measured { batches: Vec::new(), tails: vec![Tail::default(); CELLS], samples: [0.0; 4] }
     }
 
     /// The mean of a cell.
     pub fn mean(&self, cell: usize) -> Mean {
         let moments: Moments = self.batches.iter().map(|batch| batch[cell]).collect();
         let is_heavy = is_heavy(&moments) || self.tails.get(cell).is_some_and(Tail::is_heavy);
-        Mean { moments, is_heavy }
+        Mean { moments, is_heavy, largest: self.largest(cell) }
     }
 
     /// The mean of the whole picture in the layer and channel of a cell.
@@ -101,14 +105,31 @@ impl Measured {
         let moments: Moments = self.batches.iter().map(all).collect();
         let mut tail = Tail::default();
         self.tails.iter().skip(first).take(4).for_each(|part| tail.merge(part));
-        Mean { is_heavy: is_heavy(&moments) || tail.is_heavy(), moments }
+        let largest = (first..first + 4).map(|cell| self.largest(cell)).fold(0.0, f64::max) / 4.0;
+        Mean { is_heavy: is_heavy(&moments) || tail.is_heavy(), moments, largest }
+    }
+
+    fn largest(&self, cell: usize) -> f64 {
+        let quarters = self.tails.iter().skip(cell / 4 * 4).take(4);
+        let largest = quarters.map(Tail::largest).fold(0.0, f64::max);
+        if largest > 0.0 { largest / self.samples[cell % 4] } else { 0.0 }
     }
 
     /// The same with left and right exchanged.
     pub fn flipped(&self) -> Self {
         let flip = |batch: &Batch| std::array::from_fn(|cell| batch[cell ^ 1]);
         let tails = (0..self.tails.len()).map(|cell| self.tails[cell ^ 1].clone()).collect();
-        Measured { batches: self.batches.iter().map(flip).collect(), tails }
+        let samples = std::array::from_fn(|quarter| self.samples[quarter ^ 1]);
+        Measured { batches: self.batches.iter().map(flip).collect(), tails, samples }
+    }
+
+    /// Adds a repetition: sums over so many samples of each quarter.
+    fn push(&mut self, mut sums: Batch, counts: [f64; 4]) {
+        for (cell, sum) in sums.iter_mut().enumerate() {
+            *sum /= counts[cell % 4];
+        }
+        self.batches.push(sums);
+        self.samples.iter_mut().zip(counts).for_each(|(sum, count)| *sum += count);
     }
 
     /// Adds what one path or history brought.
@@ -163,17 +184,17 @@ pub const FACTOR: u64 = 8;
 const MOST_HISTORIES: f64 = 100_000.0;
 
 /// A clock that stops a method.
-struct Clock {
+pub(super) struct Clock {
     until: Option<f64>,
 }
 
 impl Clock {
-    fn of(effort: &Effort) -> Self {
+    pub fn of(effort: &Effort) -> Self {
         let now = ProcessTime::now().as_duration().as_secs_f64();
         Clock { until: effort.seconds.map(|s| now + s) }
     }
 
-    fn check(&self) -> Result<(), Failure> {
+    pub fn check(&self) -> Result<(), Failure> {
         if self.is_cancelled() { Err(Failure::Late) } else { Ok(()) }
     }
 }
@@ -187,7 +208,7 @@ impl Progress for Clock {
 }
 
 /// Steps that work on media stands for: looking up is cheaper than a ray.
-fn cost(work: &Work) -> f64 {
+pub(super) fn cost(work: &Work) -> f64 {
     0.3 * (work.densities + work.majorants) as f64 + work.transmittances as f64
 }
 
@@ -225,14 +246,6 @@ impl<'a> Quarters<'a> {
             }
         }
     }
-}
-
-/// Sums over so many samples of each quarter as means.
-fn means(mut sums: Batch, counts: [f64; 4]) -> Batch {
-    for (cell, sum) in sums.iter_mut().enumerate() {
-        *sum /= counts[cell % 4];
-    }
-    sums
 }
 
 /// A whole picture, and of it what is seen straight.
@@ -313,13 +326,14 @@ fn batch(
             }
         }
     }
-    seen.all.batches.push(means(all, counts));
-    seen.straight.batches.push(means(straight, counts));
+    for (measured, sums) in [(&mut seen.all, all), (&mut seen.straight, straight)] {
+        measured.push(sums, counts);
+    }
     Ok(steps)
 }
 
 /// Replicates of pilots, and of what must not share random numbers with paths.
-const PILOT: u64 = 1 << 48;
+pub(super) const PILOT: u64 = 1 << 48;
 const MAPS: u64 = 1 << 32;
 
 /// Paths.
@@ -400,89 +414,9 @@ pub fn light(scene: &Scene, camera: &Camera, seed: u64, effort: &Effort) -> Resu
             measured.keep(&brought);
             sums.iter_mut().zip(brought).for_each(|(sum, value)| *sum += value);
         }
-        measured.batches.push(means(sums, quarters.counts.map(|pixels| pixels * histories as f64)));
+        measured.push(sums, quarters.counts.map(|pixels| pixels * histories as f64));
     }
     Ok(measured)
-}
-
-/// Where emitted power went, by channel, over the power that lights should have.
-#[derive(Debug, Clone, Default)]
-pub struct Energy {
-    /// Emitted over the power of the lights, less 1.
-    pub emitted: [Moments; 3],
-    /// Absorbed and escaped over the power of the lights, less the same of what was emitted.
-    pub balance: [Moments; 3],
-    /// How well the power is known, over it: four standard errors.
-    pub power_error: f64,
-    /// Rays and look-ups of a history, on average.
-    pub steps: f64,
-}
-
-/// Tallies one history.
-struct Tally {
-    ended: Spectrum,
-    steps: f64,
-}
-
-impl Visitor for Tally {
-    const LOOKS_AHEAD: bool = false;
-
-    fn visit(&mut self, _walker: &Walker, step: Step, _stream: &mut Stream) {
-        match step {
-            Step::Absorbed(weight, _) | Step::Escaped(weight) | Step::Abandoned(weight) => {
-                self.ended += weight
-            }
-            Step::Ahead(_) => self.steps += 1.0,
-            Step::Passed(..) | Step::Collision(..) | Step::Surface(..) => {}
-        }
-    }
-}
-
-/// The energy of photon histories, by channel.
-///
-/// # Errors
-/// [`Failure`]
-pub fn energy(scene: &Scene, seed: u64, effort: &Effort) -> Result<Energy, Failure> {
-    scene.check_emission()?;
-    let (clock, emitter, power) = (Clock::of(effort), Emitter::by_power(scene), scene.power());
-    let mut energy = Energy { power_error: 4.0 * scene.power_error().max(), ..Energy::default() };
-    let one = |replicate: u64, history: u64| {
-        let mut stream = Stream::new(seed, Purpose::Photons, replicate, history);
-        let mut tally = Tally { ended: Spectrum::ZERO, steps: 0.0 };
-        let Some(first) = emitter.emit(scene, &mut stream) else { return (Spectrum::ZERO, tally) };
-        let weight = first.weight;
-        walk(scene, first, Roulette::Analog, None, &mut stream, &mut tally);
-        tally.steps += cost(&stream.work);
-        (weight, tally)
-    };
-    const TRIALS: u64 = 256;
-    for history in 0..TRIALS {
-        clock.check()?;
-        energy.steps += one(PILOT, history).1.steps / TRIALS as f64;
-    }
-    // A twentieth of what pictures take: nothing here is rare.
-    let histories = (0.1 * effort.steps / (BATCHES as f64 * energy.steps.max(0.1))).clamp(16.0, 1e5) as u64;
-    for replicate in 0..BATCHES as u64 {
-        let (mut emitted, mut ended) = (Spectrum::ZERO, Spectrum::ZERO);
-        for history in 0..histories {
-            if history % 64 == 0 {
-                clock.check()?;
-            }
-            let (weight, tally) = one(replicate, history);
-            if !(weight.is_finite() && tally.ended.is_finite()) {
-                return Err(Error::NonFinite { count: 1, place: "photon histories" }.into());
-            }
-            emitted += weight;
-            ended += tally.ended;
-        }
-        let share = |x: f64, c: usize| if power[c] > 0.0 { x / (power[c] * histories as f64) } else { x };
-        for c in 0..3 {
-            let expected = if power[c] > 0.0 { 1.0 } else { 0.0 };
-            energy.emitted[c].push(share(emitted[c], c) - expected);
-            energy.balance[c].push(share(ended[c] - emitted[c], c));
-        }
-    }
-    Ok(energy)
 }
 
 /// The photon mapper.

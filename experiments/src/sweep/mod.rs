@@ -51,6 +51,7 @@
 
 pub mod compare;
 pub mod draw;
+pub mod energy;
 pub mod examine;
 pub mod measure;
 pub mod motion;

@@ -20,7 +20,7 @@ pub struct Settings {
     /// A scene file of your own in place of a drawn one
     #[arg(long, value_name = "FILE")]
     pub scene: Option<PathBuf>,
-    /// Work of each method, over that of some two seconds
+    /// Work of each method, over that of some three seconds
     #[arg(long, default_value_t = 1.0)]
     pub effort: f64,
     /// Scenes at a time [default: all cores]
@@ -43,10 +43,10 @@ pub struct Settings {
     pub child: Option<PathBuf>,
 }
 
-/// Rays and look-ups of an effort of 1, which take some two seconds.
-const STEPS: f64 = 4.5e6;
+/// Rays and look-ups of an effort of 1, which take some three seconds.
+const STEPS: f64 = 6.5e6;
 /// CPU seconds of a method at an effort of 1, after which it is stopped.
-const SECONDS: f64 = 6.0;
+const SECONDS: f64 = 8.0;
 
 fn seeds(text: &str) -> Result<Range<u64>, String> {
     let parse = |text: &str| text.trim().parse::<u64>().ok();

@@ -92,14 +92,13 @@ impl Obj {
                 let [u, ref rest @ ..] = numbers[..] else {
                     return Err("surface parameters `vt` without a number; allowed: u, or u v".into());
                 };
-                let uv = DVec2::new(u, rest.first().copied().unwrap_or(0.0));
-                if uv.abs().max_element() > MOST_UV {
+                let v = rest.first().copied().unwrap_or(0.0);
+                if let Some(far) = [u, v].iter().find(|x| x.abs() > MOST_UV) {
                     return Err(format!(
-                        "surface parameters `vt` of {:e}; allowed: -{MOST_UV:e} to {MOST_UV:e}",
-                        uv.abs().max_element()
+                        "surface parameters `vt` of {far:e}; allowed: -{MOST_UV:e} to {MOST_UV:e}"
                     ));
                 }
-                self.parameters.push(uv);
+                self.parameters.push(DVec2::new(u, v));
                 Ok(())
             }
             Some("f") => self.face(words),
@@ -235,7 +234,7 @@ mod tests {
             ("v 0 0\n".to_string(), at(1, "a vertex `v` of 2 numbers; allowed: x y z")),
             ("v 0 0 nan\n".to_string(), at(1, "`nan` is no finite number")),
             ("v 0 0 1e400\n".to_string(), at(1, "`1e400` is no finite number")),
-            ("vt 0 -1e308\n".to_string(), at(1, "surface parameters `vt` of 1e308; allowed: -1e9 to 1e9")),
+            ("vt 0 -1e308\n".to_string(), at(1, "surface parameters `vt` of -1e308; allowed: -1e9 to 1e9")),
             ("f 1 2 3\n".to_string(), at(1, "a face names vertex 1; no vertex stands before this line")),
             (format!("{square}f 1 2 4\n"), at(4, "a face names vertex 4; allowed: 1 to 3, or -3 to -1")),
             (format!("{square}f 0 2 3\n"), at(4, "a face names vertex 0; allowed: 1 to 3, or -3 to -1")),
