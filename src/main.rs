@@ -4,7 +4,7 @@ mod command;
 
 use clap::Parser;
 use std::process::ExitCode;
-use turbid::output::end_on_signal;
+use turbid::output::{end_on_signal, without_panic};
 
 /// Where to begin.
 const EXAMPLES: &str = "\
@@ -27,9 +27,11 @@ struct Arguments {
 
 fn main() -> ExitCode {
     end_on_signal(|| "turbid: stopped by a signal; files appear whole or not at all".to_string());
-    let outcome = match Arguments::try_parse() {
-        Ok(arguments) => arguments.command.run(),
-        Err(error) => command::explain(&error),
-    };
-    command::exit_code("turbid", outcome)
+    without_panic("turbid", || {
+        let outcome = match Arguments::try_parse() {
+            Ok(arguments) => arguments.command.run(),
+            Err(error) => command::explain(&error),
+        };
+        command::exit_code("turbid", outcome)
+    })
 }

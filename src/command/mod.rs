@@ -21,7 +21,7 @@ use clap::{Subcommand, ValueEnum};
 use std::io::{ErrorKind, Write};
 use std::process::ExitCode;
 use turbid::estimators::Kernel;
-use turbid::output::{Format, one_line};
+use turbid::output::{Format, WriteError, one_line};
 
 /// What can be asked. The help of each is what its own file says: a word here would replace all of it.
 #[derive(Subcommand)]
@@ -53,7 +53,8 @@ impl Command {
 pub fn exit_code(program: &str, outcome: anyhow::Result<()>) -> ExitCode {
     let Err(error) = outcome else { return ExitCode::SUCCESS };
     let is_closed_pipe = error.chain().any(|cause| {
-        cause.downcast_ref::<std::io::Error>().is_some_and(|e| e.kind() == ErrorKind::BrokenPipe)
+        let file = cause.downcast_ref::<WriteError>().map(|error| &error.cause);
+        file.or(cause.downcast_ref()).is_some_and(|error| error.kind() == ErrorKind::BrokenPipe)
     });
     if is_closed_pipe {
         return ExitCode::SUCCESS;
@@ -114,7 +115,9 @@ fn on_threads<T: Send>(
     work: impl FnOnce() -> anyhow::Result<T> + Send,
 ) -> anyhow::Result<T> {
     let threads = threads.map_or(0, usize::from);
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().context("--threads")?;
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
+    // Its message ends with its source.
+    let pool = pool.map_err(|error| anyhow::anyhow!("--threads: {error}"))?;
     pool.install(work)
 }
 

@@ -15,10 +15,10 @@ use std::ops::AddAssign;
 use std::path::PathBuf;
 use turbid::integrators::mapper::{Mapper, Report};
 use turbid::integrators::path;
-use turbid::output::{Tone, auto_exposure, check_writable, is_same_file, write_exr, write_png};
+use turbid::output::{Tone, auto_exposure, check_writable, is_same_file, one_line, write_exr, write_png};
 use turbid::photons::maps::{MapReport, Maps, Part, fill_part};
 use turbid::scene::{Camera, Scene};
-use turbid::sensor::{Film, Sample, Streams, extend, extend_by_light};
+use turbid::sensor::{Film, LIGHT_BYTES, LIGHT_PIXEL_BYTES, Sample, Streams, extend, extend_by_light};
 
 /// Draw the picture that a scene's camera sees, by photon maps, by paths or by light tracing.
 ///
@@ -203,7 +203,7 @@ impl Render {
         self.memory.check(
             &format!("a picture of {pixels} pixels"),
             self.film_bytes(&camera),
-            0.0,
+            if self.with == With::Light { LIGHT_BYTES } else { 0.0 },
             |part| format!("at most {} pixels, by --width", (pixels as f64 * part) as u64),
         )?;
         if self.with == With::Photons && scene.plan().has_media {
@@ -282,7 +282,11 @@ impl Render {
         write_png(&png, (made.film.width(), made.film.height()), &pixels)
             .with_context(|| format!("{} is written, the picture beside it is not", self.output.display()))?;
         print_statistics(&made, exposure)?;
-        print(&format!("written        {}, {}\n", self.output.display(), png.display()))?;
+        print(&format!(
+            "written        {}, {}\n",
+            one_line(&self.output.display().to_string()),
+            one_line(&png.display().to_string())
+        ))?;
         if self.with == With::Photons && !scene.plan().is_full {
             let stored = made.maps.first().map_or([None; 3], |made| made.filled.map(|map| Some(map?.stored)));
             tell_gathers(&scene, &settings, &made.work, stored, self.reading.nearest())?;
@@ -294,7 +298,11 @@ impl Render {
     fn film_bytes(&self, camera: &Camera) -> f64 {
         let pixels = f64::from(camera.width()) * f64::from(camera.height());
         let films = if self.maps == 1 { PIXEL_BYTES } else { MEAN_BYTES };
-        pixels * (films + if self.passes == 1 { 0.0 } else { FILM_BYTES })
+        let films = pixels * (films + if self.passes == 1 { 0.0 } else { FILM_BYTES });
+        match self.with {
+            With::Photons | With::Paths => films,
+            With::Light => films + pixels * LIGHT_PIXEL_BYTES + LIGHT_BYTES,
+        }
     }
 
     /// Refuses what cannot be made in passes.

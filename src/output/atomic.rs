@@ -13,8 +13,7 @@ use std::time::Duration;
 pub struct WriteError {
     /// The file that was wanted.
     pub path: PathBuf,
-    /// What stopped it.
-    #[source]
+    /// What stopped it: part of the message, and so no source of its own.
     pub cause: io::Error,
 }
 
@@ -78,14 +77,15 @@ pub fn is_same_file(a: &Path, b: &Path) -> io::Result<bool> {
     Ok(whole(a)? == whole(b)?)
 }
 
-/// Tries whether [`write_atomically`] could write a file, but for the space that it takes; leaves nothing behind.
+/// Tries whether [`write_atomically`] could write a file, but for the space that it takes; leaves nothing behind. Pipes and
+/// devices are not tried: who reads a pipe would take the try for all there is.
 ///
 /// # Errors
 /// [`WriteError`] as there
 pub fn check_writable(path: impl AsRef<Path>) -> Result<(), WriteError> {
     let path = path.as_ref();
     let try_it = || match place(path)? {
-        Place::Direct(target) => fs::OpenOptions::new().write(true).open(target).map(|_| ()),
+        Place::Direct(_) => Ok(()),
         Place::Renamed(target) => temporary(folder_of(&target)).map(|_| ()),
     };
     try_it().map_err(|cause| WriteError { path: path.to_path_buf(), cause: bare(cause) })

@@ -2,6 +2,7 @@
 
 mod atomic;
 mod exr;
+mod panic;
 mod ply;
 mod signal;
 mod stdout;
@@ -10,6 +11,7 @@ mod tone;
 
 pub use atomic::{WriteError, check_writable, is_same_file, write_atomically};
 pub use exr::{PROVENANCE, encode_exr, write_exr};
+pub use panic::without_panic;
 pub use ply::write_ply;
 pub use signal::end_on_signal;
 pub use stdout::{ignore_closed_pipe, one_line, print};

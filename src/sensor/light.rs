@@ -8,10 +8,19 @@ use crate::integrators::{Layers, Rays, Splat, light_tracing};
 use crate::photons::{Emitter, check_end};
 use crate::rng::{Purpose, Stream, Work};
 use crate::scene::{Camera, Scene};
-use crate::transport::{Progress, run_blocks};
+use crate::transport::{Progress, run_blocks_of};
 
-/// Histories whose light waits in a list before it is spread over the pixels: enough that threads rarely wait.
-const CHUNK: u64 = 1 << 18;
+/// Histories whose light waits in a list before it is spread over the pixels: enough that threads rarely wait, and at first so
+/// few that long ones fit.
+const CHUNKS: std::ops::RangeInclusive<u64> = 1 << 8..=1 << 18;
+/// Histories of a block: threads share small chunks too.
+const BLOCK: u64 = 64;
+/// Splats that wait, about \[64 bytes each\]: later chunks are of as many histories as have brought so many.
+const WAITING: u64 = 1 << 18;
+/// Most memory of light tracing beside its film \[bytes\]: a chunk may bring four times as much as is wanted.
+pub const LIGHT_BYTES: f64 = 4.0 * 64.0 * WAITING as f64;
+/// Most memory of light tracing a pixel beside its film \[bytes\]: the sample that is being made.
+pub const LIGHT_PIXEL_BYTES: f64 = 144.0;
 
 /// What light tracing took.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -105,9 +114,9 @@ fn expose(
     let last = first + films * histories;
     let mut count = LightCount::default();
     let mut open = Open::new(film, camera, histories);
-    let mut start = first;
+    let (mut start, mut chunk) = (first, *CHUNKS.start());
     while start < last {
-        let end = last.min(start + CHUNK);
+        let end = last.min(start + chunk);
         let block = |range: std::ops::Range<u64>| {
             let mut part = Part::default();
             for history in range.start + start..range.end + start {
@@ -120,12 +129,14 @@ fn expose(
             }
             part
         };
-        let part = run_blocks(end - start, progress, block, Part::merged)?.unwrap_or_default();
+        let part = run_blocks_of(BLOCK, end - start, progress, block, Part::merged)?.unwrap_or_default();
         let non_finite = part.splats.iter().filter(|(_, splat)| !splat.value.is_finite()).count();
         if non_finite > 0 {
             return Err(Error::NonFinite { count: non_finite as u64, place: "light tracing" });
         }
         count += part.count;
+        let most = WAITING * (end - start) / (part.splats.len() as u64).max(1);
+        chunk = most.min(4 * chunk).clamp(*CHUNKS.start(), *CHUNKS.end());
         // In the order of histories, whatever the chunks.
         part.splats.into_iter().for_each(|(number, splat)| open.add(number, splat));
         start = end;

@@ -44,6 +44,20 @@ pub fn run_blocks<T: Send>(
     } else {
         BLOCK
     };
+    run_blocks_of(size, histories, progress, block, merge)
+}
+
+/// The same in blocks of another size, for results that do not depend on it.
+///
+/// # Errors
+/// `Error::Cancelled` if the progress says so.
+pub fn run_blocks_of<T: Send>(
+    size: u64,
+    histories: u64,
+    progress: &dyn Progress,
+    block: impl Fn(Range<u64>) -> T + Sync,
+    merge: impl Fn(T, T) -> T,
+) -> Result<Option<T>> {
     let one = |index: u64| {
         if progress.is_cancelled() {
             return Err(Error::Cancelled);

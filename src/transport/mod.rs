@@ -11,7 +11,7 @@ mod track;
 mod transmittance;
 mod walk;
 
-pub use blocks::{BLOCK, NoProgress, Progress, run_blocks};
+pub use blocks::{BLOCK, NoProgress, Progress, run_blocks, run_blocks_of};
 pub use emission::{collected, emission};
 pub use equal_angles::{Distances, EqualAngles, span};
 pub use flags::Flags;

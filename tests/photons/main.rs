@@ -14,6 +14,7 @@ mod boundary;
 mod estimators;
 mod importance;
 mod mapper;
+mod mapper_march;
 mod maps;
 mod march;
 mod metrics;

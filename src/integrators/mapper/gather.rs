@@ -31,10 +31,16 @@ impl Mapper<'_> {
             let u = (f64::from(cell / columns) + u) / f64::from(rows);
             let v = (f64::from(cell % columns) + v) / f64::from(columns);
             let dir = frame.to_world(warp::square_to_cosine_hemisphere([u, v])).normalize();
-            report.gathering += 1;
-            let mut ray = GatherRay { mapper: self, report, found: Spectrum::ZERO };
-            walk(self.scene, diffuse.leaving(dir), Roulette::Below(ROULETTE), Some(1), stream, &mut ray);
-            sum += ray.found;
+            let mut onwards = Some((diffuse.leaving(dir), Spectrum::ONE));
+            // In a bright corner there may be thousands, one behind the other.
+            while let Some((start, weight)) = onwards {
+                report.gathering += 1;
+                let mut ray =
+                    GatherRay { mapper: self, report, weight, found: Spectrum::ZERO, onwards: None };
+                walk(self.scene, start, Roulette::Below(ROULETTE), Some(1), stream, &mut ray);
+                sum += ray.found;
+                onwards = ray.onwards;
+            }
         }
         sum * (PI / f64::from(count))
     }
@@ -54,7 +60,11 @@ fn cells(count: u32) -> [u32; 2] {
 struct GatherRay<'a, 'm, 'r> {
     mapper: &'m Mapper<'a>,
     report: &'r mut Report,
+    /// What it counts.
+    weight: Spectrum,
     found: Spectrum,
+    /// The ray that takes its place where what it met is near, and its weight.
+    onwards: Option<(Walker, Spectrum)>,
 }
 
 impl GatherRay<'_, '_, '_> {
@@ -65,7 +75,7 @@ impl GatherRay<'_, '_, '_> {
             return;
         }
         let Some(global) = &maps.global else { return };
-        let mut reflected = diffuse.walker.weight * diffuse.reflectance / PI;
+        let mut reflected = self.weight * diffuse.walker.weight * diffuse.reflectance / PI;
         let arriving = if diffuse.found.hit.t < settings.near {
             // Where everything is near, rays would be traced on for ever: as many go on as the surface reflects.
             let kept = diffuse.reflectance.max().min(1.0);
@@ -79,7 +89,10 @@ impl GatherRay<'_, '_, '_> {
                 sum +=
                     diffuse.irradiance(self.mapper, map, settings.caustic, &mut self.report.caustic, stream);
             }
-            sum + self.mapper.gathered(diffuse, 1, self.report, stream)
+            let dir = warp::square_to_cosine_hemisphere(stream.pair());
+            let dir = Frame::new(diffuse.normal).to_world(dir).normalize();
+            self.onwards = Some((diffuse.leaving(dir), reflected * PI));
+            sum
         } else {
             diffuse.irradiance(self.mapper, global, settings.global, &mut self.report.global, stream)
         };
@@ -96,7 +109,7 @@ impl Visitor for GatherRay<'_, '_, '_> {
             Step::Ahead(_) if walker.order == 0 => self.report.rays.segments += 1,
             Step::Collision(Arrival { walker, position }, number) => {
                 let scattered = self.mapper.scattered(walker, position, number, self.report, stream);
-                self.found += walker.weight * (scattered.single + scattered.multiple);
+                self.found += self.weight * walker.weight * (scattered.single + scattered.multiple);
             }
             Step::Surface(Arrival { walker, .. }, found) => {
                 if let Some(diffuse) = Diffuse::met(self.mapper, walker, found) {

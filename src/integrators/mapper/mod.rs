@@ -122,6 +122,8 @@ pub struct Mapper<'a> {
     bodies: Option<Bodies>,
     /// Where each medium is.
     extents: Vec<MediumExtent>,
+    /// How large the scene is \[L\].
+    size: f64,
 }
 
 impl<'a> Mapper<'a> {
@@ -133,7 +135,7 @@ impl<'a> Mapper<'a> {
         };
         let bodies = settings.clips_discs.then(|| Bodies::new(scene));
         let extents = medium_extents(scene);
-        Mapper { scene, maps, settings, walls, bodies, extents }
+        Mapper { scene, maps, settings, walls, bodies, extents, size: scene_size(scene) }
     }
 
     /// One sample of the radiance that arrives at the origin of `ray` from ahead [W/(L^2 sr)], by class, and the work.

@@ -17,6 +17,11 @@ use glam::DVec3;
 /// precision tells apart.
 const LEFT: f64 = 1e-9;
 
+/// Where media have no end, steps grow: behind so many sizes of the scene by this part of the distance, so that a ray has some
+/// hundreds. Media with an end are shorter.
+const FAR: f64 = 4.0;
+const GROWTH: f64 = 1.0 / 16.0;
+
 /// Radiance that collisions scatter into a direction, over the collisions: times sigma_t it is the source of the
 /// transfer equation.
 #[derive(Clone, Copy)]
@@ -109,8 +114,9 @@ impl Eye<'_, '_> {
         for segment in scene.segments(&walker.ray, end, walker.within).iter() {
             let seen = walker.weight
                 * transmittance(scene, &walker.ray, segment.interval.start, walker.within, stream);
+            // Of media that vary it is an estimate of its own for each segment: what one of them says ends no other.
             if seen.max() < LEFT * walker.weight.max() {
-                return;
+                continue;
             }
             self.march_segment(walker, seen, segment.interval, segment.medium, stream);
         }
@@ -129,19 +135,25 @@ impl Eye<'_, '_> {
         let march = &mapper.settings.march;
         let medium = mapper.scene.medium(number);
         let is_full = mapper.scene.plan().is_full;
-        if !medium.is_colliding() && !is_full {
+        if !medium.is_colliding() && (!is_full || span.end == f64::INFINITY) {
             return;
         }
+        // Channels that meet nothing pass for ever, and bring nothing.
+        let counts = match medium.is_colliding() {
+            true => medium.matter().sigma_t().map(|s| if s > 0.0 { 1.0 } else { 0.0 }),
+            false => Spectrum::ONE,
+        };
         let (longest, least) = (march.step.get(), LEFT * seen.max());
         let mut t = span.start;
         let mut length = if march.is_jittered { longest * (1.0 - stream.unit()) } else { longest };
         // What the near end scatters of direct light, and the multiple scattering found last.
         let mut near: Option<Spectrum> = None;
         let mut multiple = 0.0;
-        while t < span.end && seen.max() > least {
+        while t < span.end && (seen * counts).max() > least {
+            let grown = GROWTH * (t - span.start - FAR * mapper.size).max(0.0);
             // What rounding leaves of the last step joins it.
-            let rest = span.end - t;
-            let mut dx = if rest < length * (1.0 + 1e-9) { rest } else { length };
+            let (rest, reach) = (span.end - t, length + grown);
+            let mut dx = if rest < reach * (1.0 + 1e-9) { rest } else { reach };
             if let Some(adaptive) = &march.adaptive {
                 // Off the ends of the stretch, where walls may stand: shadow rays would meet them by rounding.
                 let off = 1e-3 * adaptive.shortest.get();
@@ -153,13 +165,15 @@ impl Eye<'_, '_> {
                 let (change, last) = loop {
                     let last = probe(t + dx, &mut self.report);
                     let change = relative_change(first, last, multiple);
-                    if change <= adaptive.tolerance || dx <= adaptive.shortest.get() {
+                    let shortest = adaptive.shortest.get() + grown;
+                    if change <= adaptive.tolerance || dx <= shortest {
                         break (change, last);
                     }
-                    dx = (0.5 * dx).max(adaptive.shortest.get());
+                    dx = (0.5 * dx).max(shortest);
                 };
                 near = Some(last);
-                length = if change < 0.5 * adaptive.tolerance { (2.0 * dx).min(longest) } else { dx };
+                length =
+                    if change < 0.5 * adaptive.tolerance { (2.0 * dx).min(longest) } else { dx.min(longest) };
             } else {
                 length = longest;
             }

@@ -1,0 +1,17 @@
+//! A fault of the program, told as any error is.
+
+use super::one_line;
+use std::io::Write;
+use std::panic::{AssertUnwindSafe, catch_unwind, set_hook};
+use std::process::ExitCode;
+
+/// Runs a program; a panic, which is a fault of the program, ends it with one line on stderr that says where, and exit code 2.
+pub fn without_panic(program: &'static str, run: impl FnOnce() -> ExitCode) -> ExitCode {
+    set_hook(Box::new(move |info| {
+        let place = info.location().map(ToString::to_string).unwrap_or_default();
+        let what = one_line(info.payload_as_str().unwrap_or("no text"));
+        let line = format!("{program}: error: a fault of the program, please report it: {place}: {what}");
+        let _unheard = writeln!(std::io::stderr().lock(), "{line}");
+    }));
+    catch_unwind(AssertUnwindSafe(run)).unwrap_or(ExitCode::from(2))
+}
