@@ -26,6 +26,21 @@ const LEAST: f32 = 1.0 / 4_194_304.0;
 /// Depth that the tree's own stack can follow.
 const MAX_DEPTH: usize = 30;
 
+/// Boxes that are one within their margin: more of them are nested too deeply, and would take the square of their number to
+/// sort. Some 300 are too many already.
+const MOST_ALIKE: usize = 1000;
+
+/// Whether too many boxes are one within their margin.
+fn are_too_many_alike(boxes: &[Aabb], margin: f32) -> bool {
+    if boxes.len() <= MOST_ALIKE {
+        return false;
+    }
+    let steps = |v: Vec3A| (v / margin).to_array().map(|x| x as i32);
+    let mut boxes: Vec<[[i32; 3]; 2]> = boxes.iter().map(|b| [steps(b.min), steps(b.max)]).collect();
+    boxes.sort_unstable();
+    boxes.chunk_by(|a, b| a == b).any(|alike| alike.len() > MOST_ALIKE)
+}
+
 /// A tree over boxes, in coordinates of its own: the middle of all boxes is the origin, the longest half-extent is
 /// [`HALF`].
 #[derive(Debug, Clone)]
@@ -73,9 +88,13 @@ impl Tree {
         let pad32 = Vec3A::splat(pad as f32);
         let boxes32: Vec<Aabb> =
             boxes.iter().map(|(a, b)| Aabb::new(narrow(*a) - pad32, narrow(*b) + pad32)).collect();
+        let too_deep = || Error::Scene(format!("{what} nested too deeply in each other to be searched"));
+        if are_too_many_alike(&boxes32, pad as f32) {
+            return Err(too_deep());
+        }
         let tree = build_cwbvh(&boxes32, BvhBuildParams::medium_build(), &mut Duration::default());
         if depth(&tree) > MAX_DEPTH {
-            return Err(Error::Scene(format!("{what} nested too deeply in each other to be searched")));
+            return Err(too_deep());
         }
         let order = tree.primitive_indices.clone();
         Ok((Tree { tree, center, half: 0.5 * (max - min) + pad / scale, scale }, order))

@@ -12,13 +12,14 @@ use crate::transport::{Progress, run_blocks_of};
 
 /// Histories whose light waits in a list before it is spread over the pixels: enough that threads rarely wait, and at first so
 /// few that long ones fit.
-const CHUNKS: std::ops::RangeInclusive<u64> = 1 << 8..=1 << 18;
+const CHUNKS: std::ops::RangeInclusive<u64> = 1 << 6..=1 << 18;
 /// Histories of a block: threads share small chunks too.
-const BLOCK: u64 = 64;
+const BLOCK: u64 = 8;
 /// Splats that wait, about \[64 bytes each\]: later chunks are of as many histories as have brought so many.
-const WAITING: u64 = 1 << 18;
-/// Most memory of light tracing beside its film \[bytes\]: a chunk may bring four times as much as is wanted.
-pub const LIGHT_BYTES: f64 = 4.0 * 64.0 * WAITING as f64;
+const WAITING: u64 = 1 << 17;
+/// Most memory of light tracing beside its film \[bytes\]: a chunk may bring four times as much as is wanted,
+/// in lists that double.
+pub const LIGHT_BYTES: f64 = 8.0 * 64.0 * WAITING as f64;
 /// Most memory of light tracing a pixel beside its film \[bytes\]: the sample that is being made.
 pub const LIGHT_PIXEL_BYTES: f64 = 144.0;
 

@@ -7,7 +7,6 @@ use crate::estimators::boundary::{Treatment, treated_fluence, treated_in_scatter
 use crate::estimators::{Estimate, Gather, Kernel, fluence, in_scattered};
 use crate::integrators::mapper::{MediumExtent, medium_extents};
 use crate::math::{Ray, exp_m1, ln_1p};
-use crate::medium::Medium;
 use crate::photons::maps::Part;
 use crate::photons::{
     BUILD_SECONDS, Emitter, Histories, Ledger, PEAK_BYTES, Pass, Photon, PhotonMap, fold, shoot, shoot_blocks,
@@ -397,17 +396,26 @@ fn radiance(
         let before = transmittance(scene, ray, segment.interval.start, within, stream);
         let length = segment.interval.length();
         // Any rate is right where it is not the medium's own; about one mean length wastes few samples.
-        let rate = match medium {
-            Medium::Homogeneous(medium) => medium.sigma_t().mean(),
-            Medium::Heterogeneous(_) => medium.highest_sigma_t().mean().min(1.0 / length),
-        };
-        if rate == 0.0 {
+        let highest = medium.highest_sigma_t().mean();
+        if highest == 0.0 {
             continue;
         }
+        let is_endless = !medium.is_homogeneous() && length == f64::INFINITY;
+        // Of a density that may fall without end no rate is safe: a distance or more has the chance 1/(1 + rate distance).
+        let rate = match medium.is_homogeneous() || is_endless {
+            true => highest,
+            false => highest.min(1.0 / length),
+        };
         let collects = -exp_m1(-rate * length);
         for stratum in 0..STRATA {
             let u = (stratum as f64 + stream.unit()) / STRATA as f64;
-            let inside = -ln_1p(-u * collects) / rate;
+            let (inside, share) = if is_endless {
+                let inside = u / ((1.0 - u) * rate);
+                (inside, 1.0 / ((1.0 + rate * inside) * (1.0 + rate * inside)))
+            } else {
+                let inside = -ln_1p(-u * collects) / rate;
+                (inside, crate::math::exp(-rate * inside))
+            };
             let t = segment.interval.start + inside.min(length);
             let p = ray.at(t);
             let p = scene.stage().map_or(p, |s| fold::into_cell(p, s.side));
@@ -427,11 +435,11 @@ fn radiance(
                 }
             };
             result.book(scene, p, &estimate, treatment);
-            // Density of t is rate exp(-rate t') / collects.
+            // Density of t is rate share / collects.
             let passed = if medium.is_homogeneous() {
-                before * (decay(sigma_t * inside) / crate::math::exp(-rate * inside))
+                before * (decay(sigma_t * inside) / share)
             } else {
-                transmittance(scene, ray, t, within, stream) / crate::math::exp(-rate * inside)
+                transmittance(scene, ray, t, within, stream) / share
             };
             sum += passed * sigma_t * medium.albedo(p) * estimate.value * (collects / (rate * STRATA as f64));
         }

@@ -302,6 +302,54 @@ fn large_and_endless_files_are_refused() {
     let table = SCENE.replace("[[lights]]", "[[regions]]\nshape = { sphere = { center = [0, 0, 0], radius = 2 } }\nsigma_t = 1\nalbedo = 0.5\nphase = { table = { file = \".\" } }\n[[lights]]");
     let table = folder.file("table.toml", &table);
     refuses_naming(&["check", text(&table)], &["a folder, a device or a pipe; allowed: a file"]);
+    // A million cells are as many as may be, and a thousand sines in each are too many; triangles that lie in one place but
+    // for their ninth digit would be sorted for minutes.
+    let ground = |cells: usize, count: u32| {
+        let field = format!(
+            "height-field = {{ corner = [0, 0], size = [1, 1], level = 0, cells = [{cells}, {cells}], heights = {{ waves = {{ seed = 1, count = {count}, wavelength = 1, rms = 0.1 }} }} }}"
+        );
+        folder.file("ground.toml", &SCENE.replace("mesh = { file = \"part.obj\" }", &field))
+    };
+    refuses_naming(&["check", text(&ground(4000, 3))], &["4000 x 4000 cells; allowed: 1 to 2^20"]);
+    refuses_naming(
+        &["check", text(&ground(1024, 1000))],
+        &["count times the cells", "allowed: at most 2^26"],
+    );
+    let mut alike = "v 0 0 0\nv 1 0 0\nv 0 1 0\n".to_string();
+    for i in 0..100_000 {
+        alike += &format!("v 0 0 {}\nf 1 2 {}\n", 1e-12 * f64::from(i), 4 + i);
+    }
+    std::fs::write(folder.0.path().join("part.obj"), alike).unwrap();
+    refuses_naming(&["check", text(&scene)], &["part.obj: triangles nested too deeply"]);
+}
+
+/// Light that never ends is refused by every command, and filled glass farther across than numbers carry.
+#[test]
+fn endless_rooms_and_opaque_interiors_are_refused() {
+    let folder = Folder::new();
+    let corners =
+        ["[-1, -1, -1]", "[-1, -1, 1]", "[-1, -1, -1]", "[-1, 1, -1]", "[-1, -1, -1]", "[1, -1, -1]"];
+    let edges = [("[2, 0, 0]", "[0, 2, 0]"), ("[2, 0, 0]", "[0, 0, 2]"), ("[0, 2, 0]", "[0, 0, 2]")];
+    let seen = "[camera]\nposition = [0, 0, 0.5]\nlook_at = [0, 0, 0]\nup = [0, 1, 0]\nfov = 50\nwidth = 4\nheight = 4\n[[lights]]\npoint = { position = [0.1, 0.2, 0.4], power = 1 }\n";
+    let walls = corners.iter().enumerate().map(|(i, corner)| {
+        let (u, v) = edges[i / 2];
+        format!("[[objects]]\nshape = {{ rectangle = {{ corner = {corner}, u = {u}, v = {v} }} }}\nsurface = {{ lambertian = {{ reflectance = 1 }} }}\n")
+    });
+    let room = folder.file("room.toml", &format!("{seen}{}", walls.collect::<String>()));
+    let picture = folder.0.path().join("a.exr");
+    let told = ["hardly ever ends", "objects[0]", "objects[5]", "allowed: 20000 in the mean"];
+    refuses_naming(&["check", text(&room)], &told);
+    for with in ["photons", "paths", "light"] {
+        refuses_naming(&["render", text(&room), "--with", with, "-o", text(&picture)], &told);
+    }
+    let ink = |sigma_t: &str| {
+        let filling =
+            format!("[[interiors]]\nname = \"ink\"\nindex = 1.3\nsigma_t = {sigma_t}\nalbedo = 0.5\ng = 0\n");
+        let ball = "[[objects]]\nshape = { sphere = { center = [0, 0, -3], radius = 1 } }\nsurface = { dielectric = { inside = \"ink\" } }\n";
+        folder.file("ink.toml", &format!("{seen}{filling}{ball}"))
+    };
+    succeeds(&["check", text(&ink("1e7"))]);
+    refuses_naming(&["check", text(&ink("1e15"))], &["interior ink", "allowed: at most 1e9"]);
 }
 
 /// With `--confined` a scene reads nothing outside of its folder; without, it does.

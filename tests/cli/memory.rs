@@ -80,6 +80,17 @@ fn memory_is_as_said() {
         assert!(taken > 50e6, "{name}: {taken}");
         assert!((0.75..1.12).contains(&(taken / said)), "{name}: {said} said, {taken} taken");
     }
+    // Histories that are seen a thousand times each wait in lists of a bounded length.
+    let thick = folder.file(
+        "thick.toml",
+        "[camera]\nposition = [0, 0, 3]\nlook_at = [0, 0, 0]\nfov = 50\nwidth = 64\nheight = 64\n[[regions]]\nshape = { sphere = { center = [0, 0, 0], radius = 1 } }\nsigma_t = 40\nalbedo = 1\ng = 0\n[[lights]]\npoint = { position = [0, 0, 0.1], power = 1 }\n",
+    );
+    let by_light = ["render", text(&thick), "-o", &exr, "--with", "light", "--samples", "1"];
+    let taken = peak(&by_light);
+    assert!(taken < 70e6, "{taken}");
+    let told = turbid(&[&by_light[..], &["--memory", "40M"]].concat()).output().unwrap();
+    let told = String::from_utf8(told.stderr).unwrap();
+    assert!(told.contains("a picture of 4096 pixels takes about 70 MB of memory"), "{told}");
 }
 
 /// What does not fit is refused in a line with what fits; and what is said to fit does.

@@ -284,7 +284,35 @@ fn outputs_are_tried_before_the_work() {
         std::os::unix::fs::symlink("photons.png", folder.0.path().join("link.ply")).unwrap();
         let arguments = ["map", "fogbox", "-o", &at("photons.png"), "--ply", &at("link.ply")];
         crate::refuses_naming(&arguments, &["photons.png", "link.ply lead to one file"]);
+        crate::refuses_naming(&with(&many, &["/proc/a.exr"]), &["cannot write /proc/a.exr: "]);
     }
+    // The cause once, wherever it is found.
+    let told = crate::refuses(&with(&many, &[&at("none/a.exr")]));
+    assert_eq!(told.matches("No such file").count(), 1, "{told}");
+}
+
+/// A picture into a pipe: its reader has all of it, and is not sent away by a try.
+#[cfg(unix)]
+#[test]
+fn pictures_go_into_pipes() {
+    let folder = crate::Folder::new();
+    let pipe = folder.0.path().join("pipe.exr");
+    assert!(Command::new("mkfifo").arg(&pipe).status().unwrap().success());
+    let reader = std::thread::spawn({
+        let pipe = pipe.clone();
+        move || std::fs::read(pipe).unwrap()
+    });
+    let small =
+        ["render", "fogbox", "--with", "paths", "--width", "8", "--height", "8", "--samples", "1", "-o"];
+    let output = turbid(&with(&small, &[crate::text(&pipe)])).output().unwrap();
+    assert!(output.status.success(), "{output:?}");
+    assert_eq!(&reader.join().unwrap()[..4], [0x76, 0x2f, 0x31, 0x01]);
+    // What is shown of a name is one line.
+    let odd = folder.0.path().join("a\u{1b}[31m\nb.exr");
+    let output = turbid(&with(&small, &[crate::text(&odd)])).output().unwrap();
+    let told = String::from_utf8(output.stdout).unwrap();
+    assert!(output.status.success() && odd.exists());
+    assert!(told.contains("a\\u{1b}[31m b.exr, ") && !told.contains('\u{1b}'), "{told}");
 }
 
 /// Under-full gathers are noted on stderr, and the numbers still come.

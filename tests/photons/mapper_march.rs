@@ -2,20 +2,25 @@
 
 use crate::checks::media::{layered, varying};
 use crate::support::quadrature::integrate;
+use crate::support::run::sensor;
 use crate::support::scenes::{bounded, cuboid, homogeneous, lambertian, point_light, region, sphere};
 use crate::support::verdict;
 use glam::DVec3;
 use turbid::Spectrum;
+use turbid::estimators::boundary::Treatment;
+use turbid::estimators::{Gather, Kernel};
 use turbid::geometry::{Shape, Slab};
 use turbid::integrators::mapper::{Mapper, March, Settings, scene_size};
 use turbid::integrators::{StepRule, path};
 use turbid::light::{Light, Sun};
 use turbid::math::{FOUR_PI, Positive, Ray, exp, exp_m1};
-use turbid::medium::{Density, Grid, Medium};
+use turbid::medium::{Density, Grid, HeightFog, Heterogeneous, Medium};
 use turbid::photons::maps::{Indirect, MapReport, Maps};
 use turbid::rng::{Purpose, Stream};
-use turbid::scene::{Region, Scene};
+use turbid::scene::{Orders, Parts, Quantity, Region, Scene};
+use turbid::sensor::{PhotonSettings, by_photons};
 use turbid::stats::Moments;
+use turbid::transport::NoProgress;
 
 /// Maps for what needs none.
 fn nothing() -> Maps {
@@ -161,4 +166,39 @@ fn rays_without_end_take_some_hundred_steps() {
         expected.push(path::layers(&scene, ray, None, 0, &mut stream).0.single[1]);
     }
     verdict::agree("a ray without end", &found, &expected, 0.05 * expected.mean(), 8);
+}
+
+/// Fog without end whose density is 1 where the ray runs, but could vary: `measure` finds along a level ray by photons what it
+/// finds in a homogeneous one.
+#[test]
+fn level_rays_in_varying_fog_without_end() {
+    let read = |medium: Medium, seed: u64| {
+        let shape = Shape::Slab(Slab::new(-1.0, 2.0).unwrap());
+        let ray = Ray::new(DVec3::new(0.0, 0.3, 0.0), DVec3::X);
+        let parts = Parts {
+            regions: vec![Region { shape, medium }],
+            lights: vec![point_light(DVec3::X, Spectrum::ONE)],
+            sensors: vec![sensor(Quantity::Radiance(ray), Orders::ALL)],
+            ..Parts::default()
+        };
+        let settings = PhotonSettings {
+            photons: 1 << 14,
+            maps: 32,
+            seed,
+            orders: Orders::ALL,
+            gather: Gather::nearest(50, 1.0).unwrap(),
+            kernel: Kernel::Uniform,
+            treatment: Treatment::None,
+        };
+        let readings = by_photons(&Scene::new(parts).unwrap(), &settings, &NoProgress).unwrap().readings;
+        (readings[0].mean, readings[0].std_error.unwrap())
+    };
+    let matter = homogeneous(Spectrum::grey(0.5), Spectrum::grey(0.9), 0.0);
+    let fog =
+        Density::HeightFog(HeightFog::new(DVec3::Z, 2.0, Positive::new("scale", 1.0).unwrap()).unwrap());
+    let varying = Heterogeneous::new(matter.matter().clone(), fog).into();
+    let (even, could_vary) = (read(matter, 1), read(varying, 2));
+    let error = libm::hypot(even.1, could_vary.1);
+    assert!(error < 0.05 * even.0, "{even:?} {could_vary:?}");
+    assert!((even.0 - could_vary.0).abs() < 4.0 * error, "{even:?} {could_vary:?}");
 }

@@ -104,6 +104,9 @@ fn is_one_piece(pieces: &u32) -> bool {
     *pieces == 1
 }
 
+/// Sines that heights are sums of: more take seconds.
+const MOST_SINES: f64 = (1u64 << 26) as f64;
+
 impl ShapeFile {
     pub(super) fn shape(&self, folder: &Path) -> Result<Shape> {
         Ok(match *self {
@@ -131,6 +134,15 @@ impl ShapeFile {
                     }
                     HeightsFile::Waves { seed, count, wavelength, rms } => {
                         let waves = Waves::new(*seed, *count, wavelength.get(), rms.get())?;
+                        let sines =
+                            cells.iter().fold(f64::from(*count), |sines, cells| sines * *cells as f64);
+                        if sines > MOST_SINES {
+                            return Err(Error::out_of_range(
+                                "count times the cells",
+                                sines,
+                                "at most 2^26 = 67108864",
+                            ));
+                        }
                         height_field(&ground, up, floor, |p| level + waves.height(p))?
                     }
                 }))
