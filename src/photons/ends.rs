@@ -27,6 +27,9 @@ const PILOTS: u64 = 4096;
 /// Events of all pilots: a quarter of a second. Where histories are so long, fewer of them say how long.
 const BUDGET: u64 = 2_000_000;
 
+/// Look-ups in densities that take as long as an event: in a grid of voids one flight may take a hundred thousand.
+const LOOK_UPS: u64 = 8;
+
 /// Where at least this part is lost at every event, the mean is below its inverse.
 const LOSS: f64 = 1e-3;
 
@@ -237,7 +240,7 @@ fn probe(scene: &Scene) -> Result<()> {
         if let Some(start) = sources[number].start(scene, &mut stream) {
             let before = met.events;
             walk(scene, start, Roulette::Analog, None, &mut stream, met);
-            all += met.events - before;
+            all += met.events - before + stream.work.densities / LOOK_UPS;
         }
         if all > BUDGET || met.endless.is_some() {
             break;

@@ -132,10 +132,13 @@ impl Measured {
         self.samples.iter_mut().zip(counts).for_each(|(sum, count)| *sum += count);
     }
 
-    /// Adds what one path or history brought.
-    fn keep(&mut self, one: &Batch) {
-        for (tail, value) in self.tails.iter_mut().zip(one).filter(|(_, value)| **value > 0.0) {
-            tail.push(*value);
+    /// Adds what one path or history brought to cells.
+    fn keep(&mut self, one: impl Iterator<Item = (usize, f64)>) {
+        if self.tails.is_empty() {
+            return;
+        }
+        for (cell, value) in one.filter(|(_, value)| *value > 0.0) {
+            self.tails[cell].push(value);
         }
     }
 }
@@ -240,12 +243,18 @@ impl<'a> Quarters<'a> {
 
     fn add(&self, sums: &mut Batch, pixel: usize, layers: &Layers, factor: f64) {
         let quarter = self.of(pixel);
-        for (index, (_, value)) in layers.iter().enumerate() {
-            for channel in 0..3 {
-                sums[index * 12 + channel * 4 + quarter] += value[channel] * factor;
-            }
+        for (cell, value) in cells_of(quarter, layers) {
+            sums[cell] += value * factor;
         }
     }
+}
+
+/// The cells of a quarter that are not black.
+fn cells_of(quarter: usize, layers: &Layers) -> impl Iterator<Item = (usize, f64)> {
+    let lit = layers.iter().enumerate().filter(|(_, (_, value))| !value.is_black());
+    lit.flat_map(move |(index, (_, value))| {
+        (0..3).map(move |channel| (index * 12 + channel * 4 + quarter, value[channel]))
+    })
 }
 
 /// A whole picture, and of it what is seen straight.
@@ -258,6 +267,9 @@ pub struct Seen {
     /// Whether the two differ.
     pub has_specular: bool,
 }
+
+/// Steps that a sample itself stands for: its place, its random numbers and its sums.
+const SAMPLE: f64 = 1.0;
 
 /// One sample of a pixel, and what it took.
 type Sample<'a> = dyn Fn(Ray, &mut Stream) -> (Layers, f64) + 'a;
@@ -313,16 +325,15 @@ fn batch(
             if !layers.is_finite() {
                 return Err(Error::NonFinite { count: 1, place: "samples of a picture" }.into());
             }
-            steps += took;
+            steps += SAMPLE + took;
+            let quarter = quarters.of(pixel);
             quarters.add(&mut all, pixel, &layers, 1.0);
-            let mut one = [0.0; CELLS];
-            quarters.add(&mut one, pixel, &layers, 1.0);
-            seen.all.keep(&one);
+            seen.all.keep(cells_of(quarter, &layers));
             if is_specular_ahead(scene, &ray) {
                 seen.has_specular = true;
             } else {
                 quarters.add(&mut straight, pixel, &layers, 1.0);
-                seen.straight.keep(&one);
+                seen.straight.keep(cells_of(quarter, &layers));
             }
         }
     }
@@ -411,7 +422,7 @@ pub fn light(scene: &Scene, camera: &Camera, seed: u64, effort: &Effort) -> Resu
             }
             let mut brought = [0.0; CELLS];
             one(replicate, history, &mut brought).ok_or_else(broken)?;
-            measured.keep(&brought);
+            measured.keep(brought.iter().copied().enumerate());
             sums.iter_mut().zip(brought).for_each(|(sum, value)| *sum += value);
         }
         measured.push(sums, quarters.counts.map(|pixels| pixels * histories as f64));
