@@ -20,6 +20,8 @@ mod fresnel;
 mod half_space;
 #[path = "exact/infinite.rs"]
 mod infinite;
+#[path = "exact/input.rs"]
+mod input;
 #[path = "exact/kernel.rs"]
 mod kernel;
 #[path = "exact/nearest.rs"]
@@ -44,6 +46,8 @@ mod slab;
 mod solved;
 #[path = "exact/sphere.rs"]
 mod sphere;
+#[path = "exact/text.rs"]
+mod text;
 #[path = "exact/thick.rs"]
 mod thick;
 #[path = "exact/two_stream.rs"]
@@ -62,6 +66,7 @@ use format::Format;
 use std::io::{self, Write};
 use std::path::PathBuf;
 use std::process::ExitCode;
+use text::{one_line, panicked};
 use typed::Typed;
 
 /// Exact values of light transport in fog, water and smoke, each with an absolute error bound.
@@ -77,15 +82,17 @@ use typed::Typed;
 struct Cli {
     /// Answer a table of cases: CSV with the columns
     /// id,geometry,tau,a,w,g,n,mu0,t,r,mu,dphi,extra,quantity; others are ignored. Gives id, value, error, method, note
-    /// and the parameters; a row that is not answered here has an empty value and a note saying why
+    /// and the parameters; a row that is not answered here has an empty value and a note saying why. A file of up to
+    /// 16 MiB, no pipe; control characters in its cells are spelt out
     #[arg(verbatim_doc_comment, long, value_name = "FILE.csv")]
     cases: Option<PathBuf>,
     /// Form of the output: a table for eyes, which shows digits as far as they are certain (four at least), or every bit
     /// as CSV or JSON. Without it a table, and CSV for --cases
     #[arg(verbatim_doc_comment, long, global = true, value_enum, help_heading = "Output")]
     format: Option<Format>,
-    /// Write to this file, which appears whole or not at all, in place of standard output.
-    #[arg(long, global = true, help_heading = "Output", value_name = "FILE")]
+    /// Write to this file, which appears whole or not at all, in place of standard output. Before all is answered nothing
+    /// is written: a run that is ended leaves the old file
+    #[arg(verbatim_doc_comment, long, global = true, help_heading = "Output", value_name = "FILE")]
     out: Option<PathBuf>,
     /// Draw the field to this file as well.
     #[arg(long, global = true, help_heading = "Output", value_name = "FILE.svg|FILE.png")]
@@ -201,6 +208,13 @@ fn run() -> Result<()> {
     let paths =
         [("--cases", cli.cases.as_deref()), ("--out", cli.out.as_deref()), ("--plot", cli.plot.as_deref())];
     output::apart(&paths)?;
+    if let Some(path) = &cli.plot {
+        plot::check(path)?;
+    }
+    // Before the work, which may be long.
+    for path in [&cli.out, &cli.plot].into_iter().flatten() {
+        output::check_writable(path)?;
+    }
     let mut bytes = Vec::new();
     let mut staged = Vec::new();
     let mut refused = None;
@@ -211,9 +225,6 @@ fn run() -> Result<()> {
             refused = cases::answer(path, cli.format.unwrap_or(Format::Csv), &mut bytes)?;
         }
         (None, Some(command)) => {
-            if let Some(path) = &cli.plot {
-                plot::check(path)?;
-            }
             let reply = command.answer_typed(cli.plot.is_some())?;
             format::write(&reply.answer, cli.format.unwrap_or(Format::Table), &mut bytes)?;
             if let Some(path) = &cli.plot {
@@ -246,7 +257,7 @@ fn explain(error: &clap::Error) -> Result<()> {
         ErrorKind::DisplayHelpOnMissingArgumentOrSubcommand => {
             bail!("nothing asked; allowed: {}; more with --help", allowed())
         }
-        _ => bail!("{}", one_line(&text)),
+        _ => bail!("{}", condensed(&text)),
     }
 }
 
@@ -271,7 +282,7 @@ fn allowed_numbers(part: &str) -> String {
 }
 
 /// The parts of a message of several lines, without usage and hints where to look.
-fn one_line(text: &str) -> String {
+fn condensed(text: &str) -> String {
     let mut line = String::new();
     for part in text.lines().map(str::trim).filter(|part| !part.is_empty()) {
         if part.starts_with("Usage:") || part.starts_with("For more information") {
@@ -289,9 +300,50 @@ fn one_line(text: &str) -> String {
     line
 }
 
-fn main() -> ExitCode {
-    let Err(error) = run() else { return ExitCode::SUCCESS };
+/// Says an error in one line.
+fn say(error: &str) {
     // If stderr is closed too, the exit code is all that is left to say.
-    let _ = writeln!(io::stderr().lock(), "error: {error:#}");
-    ExitCode::from(2)
+    let _ = writeln!(io::stderr().lock(), "exact: error: {}", one_line(error));
+}
+
+/// Exit code of a run: 2 for an error, told in one line on stderr, a panic among them.
+fn exit_code(run: fn() -> Result<()>) -> u8 {
+    std::panic::set_hook(Box::new(|info| say(&panicked(info))));
+    match std::panic::catch_unwind(run) {
+        Ok(Ok(())) => 0,
+        Ok(Err(error)) => {
+            say(&format!("{error:#}"));
+            2
+        }
+        // The hook has said it.
+        Err(_) => 2,
+    }
+}
+
+fn main() -> ExitCode {
+    ExitCode::from(exit_code(run))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// In a process of its own, this test again: the hook is one for all tests.
+    #[test]
+    fn a_panic_is_one_line_and_code_2() {
+        const CHILD: &str = "EXACT_TEST_PANICS";
+        if std::env::var_os(CHILD).is_some() {
+            std::process::exit(i32::from(exit_code(|| panic!("two\nlines and \u{1b}[31m colour"))));
+        }
+        let child = std::process::Command::new(std::env::current_exe().unwrap())
+            .args(["--exact", "--nocapture", "tests::a_panic_is_one_line_and_code_2"])
+            .env(CHILD, "")
+            .env("RUST_BACKTRACE", "1")
+            .output()
+            .unwrap();
+        let said = String::from_utf8(child.stderr).unwrap();
+        assert_eq!((child.status.code(), said.lines().count()), (Some(2), 1), "{said}");
+        assert!(said.starts_with("exact: error: internal error at analytic/exact.rs:"), "{said}");
+        assert!(said.ends_with(", please report: two lines and \\u{1b}[31m colour\n"), "{said}");
+    }
 }

@@ -115,7 +115,7 @@ impl Answer {
             let Value { value, error, .. } = row.value;
             anyhow::ensure!(
                 value.is_finite() && error.is_finite(),
-                "{} is {value} ± {error}: a fault of ours",
+                "{} is {value} ± {error}: internal error, please report",
                 row.quantity
             );
         }

@@ -1,6 +1,7 @@
 //! An answer as a table for eyes, as CSV or as JSON.
 
 use crate::answer::{Answer, Row, shortest};
+use crate::text::one_line;
 use crate::unit::unit;
 use anyhow::Result;
 use clap::ValueEnum;
@@ -33,7 +34,8 @@ pub fn write(answer: &Answer, format: Format, out: &mut Vec<u8>) -> Result<()> {
 }
 
 fn table(answer: &Answer, out: &mut Vec<u8>) -> Result<()> {
-    let parameters: Vec<String> = answer.parameters.iter().map(|(name, f)| format!("{name} = {f}")).collect();
+    let parameters: Vec<String> =
+        answer.parameters.iter().map(|(name, f)| one_line(&format!("{name} = {f}"))).collect();
     writeln!(
         out,
         "{}{}{}",
@@ -55,8 +57,10 @@ fn table(answer: &Answer, out: &mut Vec<u8>) -> Result<()> {
     aligned(&head, &answer.rows.iter().map(line).collect::<Vec<_>>(), out)
 }
 
-/// Writes cells in columns under a head.
+/// Writes cells in columns under a head; see [`one_line`].
 pub fn aligned(head: &[&str], lines: &[Vec<String>], out: &mut Vec<u8>) -> Result<()> {
+    let lines: Vec<Vec<String>> =
+        lines.iter().map(|line| line.iter().map(|cell| one_line(cell)).collect()).collect();
     let length = |cell: &str| cell.chars().count();
     let width = |c: usize| lines.iter().map(|line| length(&line[c])).fold(length(head[c]), usize::max);
     let widths: Vec<usize> = (0..head.len()).map(width).collect();
@@ -65,7 +69,7 @@ pub fn aligned(head: &[&str], lines: &[Vec<String>], out: &mut Vec<u8>) -> Resul
         writeln!(out, "{}", padded.collect::<Vec<_>>().join("  ").trim_end())
     };
     write(&mut head.iter().copied())?;
-    for line in lines {
+    for line in &lines {
         write(&mut line.iter().map(String::as_str))?;
     }
     Ok(())

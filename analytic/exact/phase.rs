@@ -1,5 +1,7 @@
 //! Phase functions on the command line.
 
+use crate::input::read_text;
+use crate::text::one_line;
 use anyhow::{Context, Result, anyhow, bail};
 use std::path::{Path, PathBuf};
 use turbid_analytic::Phase;
@@ -26,11 +28,11 @@ pub struct PhaseArgs {
     #[arg(long, help_heading = "Phase function", conflicts_with_all = ["moments", "table"])]
     rayleigh: bool,
     /// Legendre moments chi_0 = 1, chi_1, ... of p = 1/(4 pi) sum (2l+1) chi_l P_l, separated by commas, blanks or
-    /// lines; # begins a comment
+    /// lines, in a file of up to 16 MiB; # begins a comment
     #[arg(verbatim_doc_comment, long, help_heading = "Phase function", value_name = "FILE")]
     moments: Option<PathBuf>,
-    /// Values at cosines from -1 to 1 in rising order, in any unit, as lines `cosine,value`; linear in between; # begins a
-    /// comment. What is used is the sum of its Legendre moments, which must not be negative
+    /// Values at cosines from -1 to 1 in rising order, in any unit, as lines `cosine,value` of a file of up to 16 MiB;
+    /// linear in between; # begins a comment. What is used is the sum of its Legendre moments, which must not be negative
     #[arg(
         verbatim_doc_comment,
         long,
@@ -134,14 +136,13 @@ fn from_table(path: &Path, degree: u32) -> Result<Named> {
         bail!("{shown}: no lines; allowed: 2 or more of cosine,value");
     }
     let phase = Phase::tabulated(&cosines, &values, degree as usize).with_context(|| format!("{shown}"))?;
-    let file = path.file_name().unwrap_or_default().to_string_lossy();
+    let file = file_name(path);
     Ok(Named { phase, name: format!("table {file} to degree {degree}"), single_g: None })
 }
 
-/// Text of a file, without the mark that some editors put first.
-fn read_text(path: &Path) -> Result<String> {
-    let text = std::fs::read_to_string(path).with_context(|| format!("{}", path.display()))?;
-    Ok(text.trim_start_matches('\u{feff}').to_string())
+/// The name of a file in tables and titles.
+fn file_name(path: &Path) -> String {
+    one_line(&path.file_name().unwrap_or_default().to_string_lossy())
 }
 
 fn from_file(path: &Path) -> Result<Named> {
@@ -163,6 +164,6 @@ fn from_file(path: &Path) -> Result<Named> {
     }
     let count = moments.len();
     let phase = Phase::legendre(moments).with_context(|| format!("{shown}"))?;
-    let file = path.file_name().unwrap_or_default().to_string_lossy();
+    let file = file_name(path);
     Ok(Named { phase, name: format!("{count} Legendre moments of {file}"), single_g: None })
 }

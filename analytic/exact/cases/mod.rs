@@ -11,6 +11,7 @@ mod sphere;
 
 use crate::answer::shortest;
 use crate::format::{Format, aligned, printed};
+use crate::text::one_line;
 use anyhow::{Context, Error, Result, anyhow, bail};
 use row::{COLUMNS, Row};
 use serde::ser::{Serialize, SerializeMap, Serializer};
@@ -101,9 +102,9 @@ const GEOMETRIES: &str =
 
 fn read(path: &Path) -> Result<Vec<Row>> {
     let name = path.display();
-    let file = std::fs::File::open(path).with_context(|| format!("{name}"))?;
-    let mut reader = csv::Reader::from_reader(file);
-    let headers = reader.headers().with_context(|| format!("{name}"))?.clone();
+    let bytes = crate::input::read(path)?;
+    let mut reader = csv::Reader::from_reader(bytes.as_slice());
+    let headers = reader.headers().map_err(|error| misread(&name.to_string(), &error))?.clone();
     let mut places = [0; COLUMNS.len()];
     for (place, column) in places.iter_mut().zip(COLUMNS) {
         *place = headers
@@ -115,7 +116,7 @@ fn read(path: &Path) -> Result<Vec<Row>> {
     for record in reader.records() {
         let record = record.map_err(|error| misread(&name.to_string(), &error))?;
         let line = record.position().map_or(0, csv::Position::line);
-        rows.push(Row { line, fields: places.map(|p| record.get(p).unwrap_or("").to_string()) });
+        rows.push(Row { line, fields: places.map(|p| one_line(record.get(p).unwrap_or(""))) });
     }
     Ok(rows)
 }

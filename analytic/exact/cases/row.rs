@@ -14,7 +14,7 @@ pub const COLUMNS: [&str; 14] =
 pub struct Row {
     /// Line of the file, from 1.
     pub line: u64,
-    /// Cells in the order of [`COLUMNS`].
+    /// Cells in the order of [`COLUMNS`], each in one line: all that is said of them goes on from here.
     pub fields: [String; COLUMNS.len()],
 }
 
