@@ -60,6 +60,7 @@ enum Faces {
 }
 
 /// What one incidence does to a half-space.
+#[derive(Clone, Copy)]
 struct Entrance {
     /// K: a quarter of the fluence that decays slowest, at the face.
     escape: Value,
@@ -104,7 +105,7 @@ impl Asymptotics {
         within("albedo", albedo, 0.1, 1.0, "0.1 to 1 for a slowest decay")?;
         let ordinates = ordinates::Ordinates::new(AnisotropicMedium::new(albedo, phase)?)?;
         let length = ordinates.length();
-        let diffuse = ordinates.entrance(Incidence::Diffuse)?.0.escape;
+        let diffuse = ordinates.diffuse()?;
         Self::of(albedo, phase, Faces::Ordinates(ordinates), length, diffuse)
     }
 
@@ -265,8 +266,9 @@ impl Asymptotics {
         match &self.faces {
             Faces::Closed(space) => closed::entrance(space, incidence, tau),
             Faces::Ordinates(ordinates) => {
-                let (entrance, solutions) = ordinates.entrance(incidence)?;
-                Ok((entrance, ordinates::faster(&solutions, tau), ordinates.echo(tau)))
+                let entered = ordinates.entrance(incidence)?;
+                let faster = ordinates.faster(&entered.solutions, tau);
+                Ok((entered.entrance, faster, ordinates.echo(tau)))
             }
         }
     }

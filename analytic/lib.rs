@@ -50,6 +50,7 @@ pub mod sphere;
 pub mod two_stream;
 pub mod value;
 pub mod volumes;
+mod work;
 pub mod xy;
 
 pub use adding_doubling::AddingDoubling;

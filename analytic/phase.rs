@@ -11,7 +11,9 @@
 
 use crate::error::{Error, Result, within};
 use crate::quadrature::GaussLegendre;
+use crate::work;
 use libm::{ceil, cos, log, pow};
+use nalgebra::DMatrix;
 use std::f64::consts::PI;
 
 const OPEN: &str = "above -1, below 1";
@@ -196,6 +198,27 @@ impl Phase {
         }
     }
 
+    /// [`Phase::azimuthal_mean`] between every cosine x (rows) and y (columns). Of a list of moments it is one product of
+    /// matrices: polynomials are found once a cosine, not once a pair.
+    pub(crate) fn azimuthal_means(&self, x: &[f64], y: &[f64]) -> DMatrix<f64> {
+        match &self.0 {
+            Kind::HenyeyGreenstein { .. } => {
+                DMatrix::from_fn(x.len(), y.len(), |i, j| self.azimuthal_mean(x[i], y[j]))
+            }
+            Kind::Moments(moments) => {
+                let table = |cosines: &[f64]| {
+                    let columns = cosines.iter().flat_map(|&c| polynomials(moments.len() - 1, c));
+                    DMatrix::from_iterator(moments.len(), cosines.len(), columns)
+                };
+                let mut right = table(y);
+                for (l, mut row) in right.row_iter_mut().enumerate() {
+                    row *= (2 * l + 1) as f64 * moments[l] / (4.0 * PI);
+                }
+                table(x).transpose() * right
+            }
+        }
+    }
+
     /// Whether `value` is a closed form, and not a sum over moments.
     pub(crate) fn is_closed(&self) -> bool {
         matches!(self.0, Kind::HenyeyGreenstein { .. })
@@ -245,6 +268,7 @@ fn elliptic_e(complement: f64) -> f64 {
 
 /// P_0(x) to P_degree(x).
 fn polynomials(degree: usize, x: f64) -> Vec<f64> {
+    work::add(degree);
     let mut p = vec![1.0, x];
     for l in 2..=degree {
         let n = l as f64;
@@ -302,6 +326,20 @@ mod tests {
         assert!((elliptic_e(1.0) - 0.5 * PI).abs() < 1e-15 && (elliptic_e(1e-12) - 1.0).abs() < 1e-10);
         let half = 1.350_643_881_047_675_5;
         assert!((elliptic_e(0.5) - half).abs() < 4e-16);
+    }
+
+    #[test]
+    fn means_over_azimuth_of_many_pairs_are_those_of_each() {
+        let (x, y) = ([1.0, 0.3, 1e-9], [-1.0, -0.8, 0.3, 0.9]);
+        for phase in specimens() {
+            let all = phase.azimuthal_means(&x, &y);
+            for (i, &x) in x.iter().enumerate() {
+                for (j, &y) in y.iter().enumerate() {
+                    let one = phase.azimuthal_mean(x, y);
+                    assert!((all[(i, j)] - one).abs() < 1e-15 * (1.0 + one), "{phase:?} {x} {y}");
+                }
+            }
+        }
     }
 
     #[test]

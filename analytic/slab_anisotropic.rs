@@ -28,7 +28,7 @@
 mod convolution;
 mod faces;
 mod jacobi;
-mod matching;
+pub(crate) mod matching;
 mod medium;
 pub(crate) mod modes;
 pub(crate) mod nodes;
@@ -141,6 +141,11 @@ impl AnisotropicSlab {
             ladder,
             orders,
         })
+    }
+
+    /// The two solutions, the finer first.
+    pub(crate) fn into_solutions(self) -> [Solution; 2] {
+        self.solutions
     }
 
     /// What the slab is made of.

@@ -4,13 +4,14 @@ use super::{Entrance, METHOD};
 use crate::error::{Error, Result};
 use crate::incidence::Incidence;
 use crate::slab_anisotropic::AnisotropicMedium;
+use crate::slab_anisotropic::matching::columns;
 use crate::slab_anisotropic::modes::Modes;
 use crate::slab_anisotropic::solution::Solution;
 use crate::value::Value;
 use libm::{exp, log1p};
-use nalgebra::{DMatrix, DVector};
+use nalgebra::DVector;
 use std::f64::consts::PI;
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 /// Roundings of an amplitude, as in a slab by discrete ordinates.
 const ULPS: f64 = 256.0;
@@ -19,6 +20,14 @@ const ULPS: f64 = 256.0;
 pub(super) struct Ordinates {
     medium: AnisotropicMedium,
     milne: [Milne; 2],
+    /// The first incidence that was asked for: slabs of every thickness share its half-space.
+    first: OnceLock<(Incidence, Arc<Entered>)>,
+}
+
+/// A half-space under one incidence.
+pub(super) struct Entered {
+    pub entrance: Entrance,
+    pub solutions: [Solution; 2],
 }
 
 /// What comes back from the face for sinh(kt)/k (of unit fluence per slope) coming up: amplitudes of all modes.
@@ -36,10 +45,7 @@ impl Milne {
         let n = modes.nodes.len();
         let slowest = (0..n).fold(0, |best, j| if modes.k[j] < modes.k[best] { j } else { best });
         // Downwards 2 I- = p f - q f': the decaying modes take away what the growing one brings, -q.
-        let mut leaving = DMatrix::zeros(n, n);
-        for (j, &k) in modes.k.iter().enumerate() {
-            leaving.set_column(j, &(modes.even.column(j) + modes.odd.column(j) * k));
-        }
+        let leaving = columns(&modes, |_| 1.0, |k| k);
         let unit = 2.0 * PI * modes.fluence[slowest];
         let back = leaving.lu().solve(&(modes.odd.column(slowest) / unit)).ok_or(SINGULAR)?;
         let (k, own) = (modes.k[slowest], back[slowest] * unit);
@@ -50,13 +56,10 @@ impl Milne {
     }
 }
 
-/// Two half-spaces under one incidence, with the numbers of their slowest modes.
-pub(super) type Solutions = [(Solution, usize); 2];
-
 impl Ordinates {
     pub fn new(medium: AnisotropicMedium) -> Result<Self> {
         let milne = [Milne::new(medium.modes(0, 0)?)?, Milne::new(medium.modes(1, 0)?)?];
-        Ok(Ordinates { medium, milne })
+        Ok(Ordinates { medium, milne, first: OnceLock::new() })
     }
 
     pub fn length(&self) -> Value {
@@ -64,16 +67,34 @@ impl Ordinates {
         Value::new(a, 2.0 * (a - b).abs() + ULPS * f64::EPSILON * (a.abs() + 1.0), METHOD)
     }
 
-    pub fn entrance(&self, incidence: Incidence) -> Result<(Entrance, Solutions)> {
-        let solve = |milne: &Milne| -> Result<(Solution, usize)> {
-            Ok((Solution::new(f64::INFINITY, incidence, milne.modes.clone())?, milne.slowest))
-        };
-        let solutions = [solve(&self.milne[0])?, solve(&self.milne[1])?];
-        let [a, b] = solutions.each_ref().map(|(solution, slowest)| deep(solution, *slowest));
-        let escape = Value::new(0.25 * a, 0.5 * (a - b).abs() + ULPS * f64::EPSILON * a.abs(), METHOD);
+    /// n, which takes the solutions alone.
+    pub fn diffuse(&self) -> Result<Value> {
+        let solve = |milne: &Milne| Solution::new(f64::INFINITY, Incidence::Diffuse, milne.modes.clone());
+        Ok(self.escape(&[solve(&self.milne[0])?, solve(&self.milne[1])?]))
+    }
+
+    fn escape(&self, solutions: &[Solution; 2]) -> Value {
+        let [a, b] = std::array::from_fn(|set| deep(&solutions[set], self.milne[set].slowest));
+        Value::new(0.25 * a, 0.5 * (a - b).abs() + ULPS * f64::EPSILON * a.abs(), METHOD)
+    }
+
+    pub fn entrance(&self, incidence: Incidence) -> Result<Arc<Entered>> {
+        if let Some((_, entered)) = self.first.get().filter(|(first, _)| *first == incidence) {
+            return Ok(entered.clone());
+        }
         let space = self.medium.half_space(incidence)?;
-        let entrance = Entrance { escape, reflected: space.reflectance(), absorbed: space.absorptance() };
-        Ok((entrance, solutions))
+        let (reflected, absorbed) = (space.reflectance(), space.absorptance());
+        let solutions = space.into_solutions();
+        let entrance = Entrance { escape: self.escape(&solutions), reflected, absorbed };
+        let entered = Arc::new(Entered { entrance, solutions });
+        // Another incidence may have been the first.
+        let _kept = self.first.set((incidence, entered.clone()));
+        Ok(entered)
+    }
+
+    /// Bound on the flux of all but the slowest mode at depth `tau` of a half-space.
+    pub fn faster(&self, solutions: &[Solution; 2], tau: f64) -> f64 {
+        (0..2).map(|set| faster(&solutions[set], self.milne[set].slowest, tau)).fold(0.0, f64::max)
     }
 
     /// Flux at a face of the faster light that a wave of unit slope leaves `tau` away.
@@ -97,29 +118,25 @@ fn deep(solution: &Solution, slowest: usize) -> f64 {
     2.0 * PI * modes.fluence[slowest] * amplitude
 }
 
-/// Bound on the flux of all but the slowest mode at depth `tau` of a half-space.
-pub(super) fn faster(solutions: &Solutions, tau: f64) -> f64 {
-    let bound = |(solution, slowest): &(Solution, usize)| {
-        let depth = tau * solution.modes.scattering.stretch;
-        let mut sum = faster_modes(&solution.modes, *slowest, depth, |j| solution.first[j].abs());
-        match (&solution.beam, solution.incidence) {
-            (Some(beam), Incidence::Beam { mu0 }) => {
-                // Direct light, and the sources that follow it: each mode's is a convolution of e^(-beta t) and
-                // e^(-k t) of at most t times the slower.
-                sum += exp(-beam.beta * depth) / mu0;
-                for (j, &k) in solution.modes.k.iter().enumerate() {
-                    let gap = (k - beam.beta).abs();
-                    let slower = if j == *slowest { beam.beta } else { k.min(beam.beta) };
-                    let source = (k * beam.kappa[j]).abs() + beam.pi[j].abs();
-                    let width = if gap * depth > 1.0 { 1.0 / gap } else { depth };
-                    sum += norm(&solution.modes, j) * source * width * exp(-slower * depth) / k.max(0.5);
-                }
+fn faster(solution: &Solution, slowest: usize, tau: f64) -> f64 {
+    let depth = tau * solution.modes.scattering.stretch;
+    let mut sum = faster_modes(&solution.modes, slowest, depth, |j| solution.first[j].abs());
+    match (&solution.beam, solution.incidence) {
+        (Some(beam), Incidence::Beam { mu0 }) => {
+            // Direct light, and the sources that follow it: each mode's is a convolution of e^(-beta t) and
+            // e^(-k t) of at most t times the slower.
+            sum += exp(-beam.beta * depth) / mu0;
+            for (j, &k) in solution.modes.k.iter().enumerate() {
+                let gap = (k - beam.beta).abs();
+                let slower = if j == slowest { beam.beta } else { k.min(beam.beta) };
+                let source = (k * beam.kappa[j]).abs() + beam.pi[j].abs();
+                let width = if gap * depth > 1.0 { 1.0 / gap } else { depth };
+                sum += norm(&solution.modes, j) * source * width * exp(-slower * depth) / k.max(0.5);
             }
-            _ => sum += 2.0 * exp(-depth),
         }
-        sum
-    };
-    solutions.iter().map(bound).fold(0.0, f64::max)
+        _ => sum += 2.0 * exp(-depth),
+    }
+    sum
 }
 
 fn faster_modes(modes: &Modes, slowest: usize, depth: f64, amplitude: impl Fn(usize) -> f64) -> f64 {

@@ -1,4 +1,5 @@
 use super::*;
+use crate::work;
 use crate::{AnisotropicSlab, IsotropicSlab};
 
 const BEAMS: [Incidence; 3] =
@@ -150,6 +151,28 @@ fn ordinates_at_great_thickness() {
                 "{w} {g} {incidence:?} {thick:?} {t:e}"
             );
         }
+    }
+}
+
+/// A question takes two decompositions, of 490 and 420 modes in ten or eleven sweeps, and six systems; more thicknesses
+/// take none, and diffuse light on a list of moments one recurrence a direction, not one a pair of directions.
+#[test]
+fn work_is_bounded() {
+    let list = Phase::legendre((0..2000).map(|l| libm::pow(0.99, f64::from(l))).collect()).unwrap();
+    let cube = |n: usize| n * n * n;
+    let sweep = (cube(490) + cube(420)) / 2;
+    let systems = (cube(490) + cube(420)) / 3;
+    for (phase, albedo, incidence) in [
+        (Phase::henyey_greenstein(0.99).unwrap(), 1.0 - f64::EPSILON / 2.0, BEAMS[0]),
+        (Phase::henyey_greenstein(-0.95).unwrap(), 0.9, BEAMS[2]),
+        (list, 1.0, BEAMS[2]),
+    ] {
+        let (deep, solved) = work::of(|| Asymptotics::new(albedo, &phase).unwrap());
+        let (_, first) = work::of(|| deep.slab(10.0, incidence).unwrap());
+        let (_, more) = work::of(|| (1..100).map(|i| deep.slab(f64::from(i), incidence).unwrap()).count());
+        assert!(solved <= 14 * sweep + 2 * systems, "{phase:?}: {solved} terms, {sweep} a sweep");
+        assert!(first <= systems + systems / 4, "{phase:?}: {first} terms, {systems} a pair of systems");
+        assert_eq!(more, 0, "{phase:?}");
     }
 }
 

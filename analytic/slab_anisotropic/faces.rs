@@ -107,10 +107,12 @@ pub(super) fn gain(medium: &AnisotropicMedium, solution: &Solution, size: f64) -
     }
     let cut = table(&rule).transpose() * lit_table;
     let whole = medium.albedo() / scattering.stretch;
+    let [from, to] = [&lit, &rule].map(|list| list.iter().map(|&(mu, _)| mu).collect::<Vec<_>>());
+    let means = medium.phase().azimuthal_means(&to, &from.iter().map(|mu0| -mu0).collect::<Vec<_>>());
     let mut sum = 0.0;
     for (j, &(mu0, share)) in lit.iter().enumerate() {
         for (i, &(mu, weight)) in rule.iter().enumerate() {
-            let more = whole * medium.phase().azimuthal_mean(mu, -mu0) - scattering.albedo * cut[(i, j)];
+            let more = whole * means[(i, j)] - scattering.albedo * cut[(i, j)];
             sum += share * weight * 2.0 * PI * mu * more * beam_path(tau, mu0, 0.0, mu);
         }
     }

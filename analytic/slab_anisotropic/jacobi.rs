@@ -1,9 +1,11 @@
 //! Singular values of a graded matrix, each to its own relative accuracy: one-sided Jacobi rotations.
 
 use crate::error::{Error, Result};
+use crate::work;
 
-/// Sweeps over all pairs of columns. Convergence is quadratic at the end and takes three to six.
-const SWEEPS: usize = 60;
+/// Sweeps over all pairs of columns. Convergence is quadratic at the end: ten or eleven at 490 columns, and 14 at most in all
+/// tests. Twice as many bound the work.
+const SWEEPS: usize = 28;
 
 /// Singular values k of G, with the columns of U K and of V, G = U K V^T.
 pub(super) struct Singular {
@@ -126,6 +128,7 @@ fn orthogonalize(columns: &mut [Vec<f64>]) -> Result<Vec<Vec<f64>>> {
         .collect();
     for _ in 0..SWEEPS {
         let mut settled = true;
+        work::add(n * n * n / 2);
         let mut squares: Vec<f64> = columns.iter().map(|c| dot(c, c)).collect();
         for i in 0..n {
             for j in i + 1..n {

@@ -1,6 +1,7 @@
 //! Amplitudes of the modes from the light that enters at the faces.
 
 use super::modes::Modes;
+use crate::work;
 use libm::{exp, tanh};
 use nalgebra::{DMatrix, DVector};
 
@@ -10,8 +11,9 @@ pub(super) fn half_width(k: f64, tau: f64) -> f64 {
 }
 
 /// The matrix of columns p_j a(k_j) + q_j b(k_j).
-pub(super) fn columns(modes: &Modes, a: impl Fn(f64) -> f64, b: impl Fn(f64) -> f64) -> DMatrix<f64> {
+pub(crate) fn columns(modes: &Modes, a: impl Fn(f64) -> f64, b: impl Fn(f64) -> f64) -> DMatrix<f64> {
     let n = modes.nodes.len();
+    work::add(n * n * n / 3);
     let mut matrix = DMatrix::zeros(n, n);
     for (j, &k) in modes.k.iter().enumerate() {
         matrix.set_column(j, &(modes.even.column(j) * a(k) + modes.odd.column(j) * b(k)));
