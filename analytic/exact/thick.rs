@@ -19,7 +19,8 @@ use turbid_figure::Axis;
 ///   albedo 1: T = (4/3) K/((1-g)(tau + 2z)),  R = 1 - T
 ///
 /// z is Milne's extrapolation length; lengths in mean free paths, decays in their inverse. The bound says how much the
-/// faster decays, k2 and beyond, may still do: in thin slabs as much as the answer.
+/// faster decays, k2 and beyond, may still do: in thin slabs as much as the answer. A peak, by --g or by moments, takes some
+/// seconds, however many thicknesses are asked.
 /// Source: van de Hulst 1980, chapter 5; Sobolev 1975, chapter 3.
 #[derive(Clone, clap::Args)]
 #[command(verbatim_doc_comment)]

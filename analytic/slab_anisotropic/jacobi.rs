@@ -3,8 +3,8 @@
 use crate::error::{Error, Result};
 use crate::work;
 
-/// Sweeps over all pairs of columns. Convergence is quadratic at the end: ten or eleven at 490 columns, and 14 at most in all
-/// tests. Twice as many bound the work.
+/// Sweeps over all pairs of columns. Convergence is quadratic at the end: ten or eleven at 490 columns, and 14 at most in the
+/// unit tests. Twice as many bound the work.
 const SWEEPS: usize = 28;
 
 /// Singular values k of G, with the columns of U K and of V, G = U K V^T.

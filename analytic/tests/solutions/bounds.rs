@@ -5,14 +5,20 @@
 //! difference over both bounds together, and the mean of log10 of the bound over the value. Elementary functions come from
 //! `libm`, so that both are the same on every machine; a change of method moves them, and has to say so here.
 
+use crate::support::kernels::BALL;
 use crate::support::table::{number, rows};
 use crate::support::{NORMAL, beam};
+use std::f64::consts::PI;
+use turbid_analytic::beams::{Pairing, blurred_field};
 use turbid_analytic::boundary::{Body, body_moment};
+use turbid_analytic::nearest::{nearest_expectation_exponential, nearest_moments, nearest_variance_uniform};
+use turbid_analytic::quadrature::GaussLegendre;
 use turbid_analytic::slab_kernel::face_moment;
+use turbid_analytic::volumes::lens_volume;
 use turbid_analytic::{
-    AddingDoubling, AnisotropicMedium, Asymptotics, Critical, CriticalShape, FresnelSlab, HalfSpace,
-    Incidence, InfiniteMedium, IsotropicSlab, Kernel, Phase, ScatteringOrders, Sphere, SphereSource, Value,
-    XAndY,
+    AddingDoubling, AnisotropicMedium, Asymptotics, Critical, CriticalShape, Dimension, FresnelSlab,
+    HalfSpace, Incidence, InfiniteMedium, IsotropicSlab, Kernel, Phase, ScatteringOrders, Sphere,
+    SphereSource, Value, XAndY,
 };
 
 /// What is seen of a family.
@@ -236,10 +242,136 @@ fn kernels(seen: &mut Seen) {
     }
 }
 
+/// The law of H against discrete ordinates, at the face and below it.
+fn half_space_fields(seen: &mut Seen) {
+    for albedo in [0.3, 0.9, 1.0] {
+        let space = HalfSpace::new(albedo).unwrap();
+        let medium = AnisotropicMedium::new(albedo, &Phase::isotropic()).unwrap();
+        for light in LIGHTS {
+            let ordinates = medium.half_space(light).unwrap();
+            for mu in [0.05, 0.5, 1.0] {
+                seen.push(space.radiance(light, mu).unwrap(), ordinates.radiance(0.0, mu, 0.0).unwrap());
+            }
+            for t in [0.0, 0.1, 2.0] {
+                seen.push(space.fluence(light, t).unwrap(), ordinates.fluence(t).unwrap());
+            }
+        }
+    }
+}
+
+/// Shells against the table: fluence, or the radiance that leaves.
+fn sphere_fields(seen: &mut Seen, wanted: &str) {
+    for row in rows("sphere.csv", 91) {
+        let quantity = row["quantity"].as_str();
+        let source = match quantity {
+            q if q.contains("uniform") => SphereSource::Uniform,
+            q if q.contains("iso_incidence") => SphereSource::Incident,
+            _ => SphereSource::Centre,
+        };
+        if quantity.starts_with(wanted) && number(&row, "a") < 5.0 {
+            let sphere = Sphere::new(number(&row, "a"), number(&row, "w"), source).unwrap();
+            let got = match wanted {
+                "fluence" => sphere.fluence(number(&row, "r")),
+                _ => sphere.exit_radiance(number(&row, "mu")),
+            };
+            against_row(seen, got.unwrap(), &row);
+        }
+    }
+}
+
+fn sphere_fluence(seen: &mut Seen) {
+    sphere_fields(seen, "fluence");
+}
+
+fn sphere_radiance(seen: &mut Seen) {
+    sphere_fields(seen, "exit_radiance");
+}
+
+/// Cut kernels by quadrature against lenses, and against what a face, an edge and a corner leave.
+fn moments_in_bodies(seen: &mut Seen) {
+    for (a, distance, r) in [(0.3, 0.05, 0.5), (1.0, 0.29, 0.8), (2.0, 1.9, 0.2), (1.0, 1.0, 0.5)] {
+        let at = [distance * 0.6, 0.0, -distance * 0.8];
+        let got = body_moment(Kernel::Uniform, Body::Sphere { radius: a }, at, r, 0).unwrap();
+        let lens = lens_volume(a, r, distance).unwrap();
+        let ball = BALL * r * r * r;
+        seen.against(got, lens.value / ball, lens.error / ball);
+    }
+    let body = Body::Cuboid { edges: [3.0, 2.0, 4.0] };
+    for kernel in [Kernel::Uniform, Kernel::Epanechnikov, Kernel::Cone { kappa: 1.0 }] {
+        let moment = |at, j| body_moment(kernel, body, at, 0.4, j).unwrap();
+        for h in [0.1, 0.3] {
+            for j in 0..3 {
+                seen.push(moment([1.5, 1.0, h], j), face_moment(kernel, j, h / 0.4).unwrap());
+            }
+        }
+        seen.against(moment([0.0, 2.0, 2.0], 0), 0.25, 0.0);
+        seen.against(moment([3.0, 0.0, 4.0], 0), 0.125, 0.0);
+        let face = face_moment(kernel, 1, 0.0).unwrap();
+        seen.against(moment([3.0, 0.0, 4.0], 1), 0.25 * face.value, 0.25 * face.error);
+    }
+}
+
+/// Beams and rays in an exponential field: series against products of Gauss rules.
+fn beams(seen: &mut Seen) {
+    let pairings = [
+        (Pairing::PointPoints, Dimension::Three),
+        (Pairing::RayPoints, Dimension::Two),
+        (Pairing::RayBeams { sine: 0.5 }, Dimension::One),
+    ];
+    for (pairing, d) in pairings {
+        let share = 1.0 / f64::from(d.number()).sqrt();
+        for kernel in [Kernel::Uniform, Kernel::Epanechnikov, Kernel::Cone { kappa: 1.0 }] {
+            for x in [0.1, -2.0, 5.0] {
+                let field = |p: [f64; 3]| libm::exp(x * share * (p[0] + p[1] + p[2]));
+                seen.push(
+                    pairing.exponential_mean(kernel, x).unwrap(),
+                    blurred_field(kernel, d, 1.0, field).unwrap(),
+                );
+            }
+        }
+    }
+}
+
+/// The k nearest in the field e^(b z), over the points expected within a radius, against the same over the radius, in closed
+/// form but for one integral; the variance in a uniform field against 1/(k-2).
+fn nearest(seen: &mut Seen) {
+    let rule = GaussLegendre::new(40).unwrap();
+    for (k, b, cap) in [(2_u32, 0.3, 1.0), (10, 2.0, 1.2), (50, -1.0, 0.9)] {
+        let density = 20.0;
+        // (x cosh x - sinh x)/x^3 by its series, 2 n/(2n+1)! x^(2n-2).
+        let within = |r: f64| {
+            let x = b * r;
+            let (mut term, mut sum, mut n) = (1.0 / 3.0, 0.0, 1.0);
+            while term > 1e-18 * sum {
+                sum += term;
+                term *= x * x / (2.0 * n * (2.0 * n + 3.0));
+                n += 1.0;
+            }
+            sum
+        };
+        let lambda = |r: f64| 4.0 * PI * density * r * r * r * within(r);
+        let slope = |r: f64| 4.0 * PI * density * r * libm::sinh(b * r) / b;
+        let poisson = |n: u32, s: f64| (1..=n).fold(libm::exp(-s), |p, i| p * s / f64::from(i));
+        let mean = |r: f64| 3.0 * within(r);
+        let gathers = |r: f64| poisson(k - 2, lambda(r)) * slope(r) * mean(r);
+        let sum: f64 = (0..20)
+            .map(|i| rule.integrate(cap * f64::from(i) / 20.0, cap * f64::from(i + 1) / 20.0, gathers))
+            .sum();
+        let underfull: f64 = (0..k - 1).map(|n| poisson(n, lambda(cap))).sum();
+        let got = nearest_expectation_exponential(Kernel::Uniform, Dimension::Three, k, density, b, cap);
+        seen.against(got.unwrap(), sum + underfull * mean(cap), 64.0 * f64::EPSILON);
+    }
+    for k in [3, 10, 100] {
+        let lambda = |r: f64| 30.0 * BALL * r * r * r;
+        let got = nearest_moments(k, 1e3, lambda, |_| 1.0, |r| 1.0 / lambda(r)).unwrap().variance;
+        seen.push(got, nearest_variance_uniform(k, None).unwrap());
+    }
+}
+
 /// Name; largest difference over both bounds; mean log10 of the relative bound: as recorded.
 type Family = (&'static str, fn(&mut Seen), f64, f64);
 
-const FAMILIES: [Family; 12] = [
+const FAMILIES: [Family; 18] = [
     ("isotropic slab", isotropic_slab, 2.02e-2, -13.84),
     ("anisotropic slab", anisotropic_slab, 1.52e-2, -11.53),
     ("radiance", radiance, 3.98e-5, -10.66),
@@ -252,6 +384,12 @@ const FAMILIES: [Family; 12] = [
     ("critical bodies", critical, 1.45e-3, -13.23),
     ("unbounded medium", infinite, 3.93e-2, -14.03),
     ("kernels at a face", kernels, 1.05e-2, -12.76),
+    ("fields of a half-space", half_space_fields, 5.79e-2, -14.30),
+    ("fluence of a sphere", sphere_fluence, 6.31e-3, -13.67),
+    ("radiance of a sphere", sphere_radiance, 1.88e-4, -13.82),
+    ("kernels in sphere and cuboid", moments_in_bodies, 7.80e-3, -12.78),
+    ("beams", beams, 1.72e-1, -13.81),
+    ("nearest points", nearest, 2.08e-2, -12.23),
 ];
 
 /// Differences lie within the bounds, and neither moves against the other: differences by no more than a factor of 2,
