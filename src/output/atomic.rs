@@ -100,13 +100,13 @@ enum Place {
 }
 
 fn place(path: &Path) -> io::Result<Place> {
-    let target = target(path)?;
-    match fs::metadata(&target) {
+    match fs::metadata(path) {
         Ok(found) if found.is_dir() => Err(io::Error::new(io::ErrorKind::IsADirectory, "it is a folder")),
-        Ok(found) if !found.is_file() => Ok(Place::Direct(target)),
+        // Where links such as /dev/stdout lead to has a name that cannot be opened.
+        Ok(found) if !found.is_file() => Ok(Place::Direct(path.to_path_buf())),
         // A name that is too long, a folder that is none.
         Err(error) if error.kind() != io::ErrorKind::NotFound => Err(error),
-        _ => Ok(Place::Renamed(target)),
+        _ => Ok(Place::Renamed(target(path)?)),
     }
 }
 
@@ -162,9 +162,12 @@ fn try_write(path: &Path, write: impl FnOnce(&mut dyn Write) -> io::Result<()>) 
         }
         Place::Renamed(target) => target,
     };
-    let mut buffered = BufWriter::new(temporary(folder_of(&target))?);
+    let mut temporary = temporary(folder_of(&target))?;
+    // As a plain file, whose errors do not name it.
+    let mut buffered = BufWriter::new(temporary.as_file_mut());
     write(&mut buffered)?;
-    let temporary = buffered.into_inner().map_err(io::IntoInnerError::into_error)?;
+    buffered.flush()?;
+    drop(buffered);
     temporary.as_file().sync_all()?;
     temporary.persist(&target).map_err(|e| e.error)?;
     Ok(())

@@ -142,6 +142,20 @@ fn full_disks() {
         &[&map[..], &TINY[..2], &TINY[6..]].concat(),
         &["map.png is written", "cannot write", "cloud.ply", "No space left"],
     );
+    // A disk that is full in the middle of a file, as far as a process can tell.
+    let limited = std::process::Command::new("sh")
+        .args(["-c", "trap '' 25; ulimit -f 4; exec \"$0\" \"$@\""])
+        .arg(assert_cmd::cargo::cargo_bin("turbid"))
+        .args(["render", "fogbox", "--with", "paths", "--samples", "1", "--width", "200", "-o"])
+        .arg(path("large.exr"))
+        .output()
+        .unwrap();
+    let told = String::from_utf8(limited.stderr).unwrap();
+    let expected = format!(
+        "turbid: error: cannot write {}: File too large (os error 27)\n",
+        path("large.exr").display()
+    );
+    assert_eq!((limited.status.code(), told.lines().last()), (Some(2), expected.lines().last()));
     std::fs::create_dir(path("folder.exr")).unwrap();
     refuses_naming(&["render", "fogbox", "-o", text(&path("folder.exr"))], &["folder.exr: it is a folder"]);
     let mut left: Vec<_> = std::fs::read_dir(folder.0.path())

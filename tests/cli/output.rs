@@ -307,6 +307,11 @@ fn pictures_go_into_pipes() {
     let output = turbid(&with(&small, &[crate::text(&pipe)])).output().unwrap();
     assert!(output.status.success(), "{output:?}");
     assert_eq!(&reader.join().unwrap()[..4], [0x76, 0x2f, 0x31, 0x01]);
+    // Standard output by a link, which is a pipe here.
+    let link = folder.0.path().join("link.exr");
+    std::os::unix::fs::symlink("/dev/stdout", &link).unwrap();
+    let output = turbid(&with(&small, &[crate::text(&link)])).output().unwrap();
+    assert!(output.status.success() && output.stdout.starts_with(&[0x76, 0x2f, 0x31, 0x01]), "{output:?}");
     // What is shown of a name is one line.
     let odd = folder.0.path().join("a\u{1b}[31m\nb.exr");
     let output = turbid(&with(&small, &[crate::text(&odd)])).output().unwrap();
