@@ -14,7 +14,8 @@ use crate::support::scenes::{bounded, cuboid, homogeneous, point_light};
 use crate::support::verdict;
 use glam::DVec3;
 use turbid::Spectrum;
-use turbid::math::{FOUR_PI, Ray, exp};
+use turbid::light::{Light, Spot};
+use turbid::math::{FOUR_PI, Ray, exp, sin_cos};
 use turbid::medium::Density;
 use turbid::scene::{Orders, Quantity, Region};
 
@@ -86,9 +87,19 @@ const ALBEDO: f64 = 0.9;
 fn rays_through_the_lamp_itself() {
     let rising = |z: f64| 0.2 + 1.6 * (z - 1.0);
     let grid = layered((DVec3::new(-9.0, -9.0, 1.0), DVec3::new(9.0, 9.0, 2.0)), 16, rising);
-    for density in [None, Some(grid)] {
+    // A spot that is as bright in its cone, which holds all that the rays meet.
+    let part = |degrees: f64| 1.0 - sin_cos(degrees.to_radians()).1;
+    let power = Spectrum::grey(0.25 * (part(20.0) + part(40.0)));
+    let spot = Light::Spot(Spot::new(DVec3::ZERO, DVec3::Z, (20.0, 40.0), power).unwrap());
+    let point = point_light(DVec3::ZERO, Spectrum::ONE);
+    for (name, lamp, density) in [
+        ("point", &point, None),
+        ("point", &point, Some(grid.clone())),
+        ("spot", &spot, None),
+        ("spot", &spot, Some(grid)),
+    ] {
         let regions = layers(density.clone());
-        let scene = bounded(regions.to_vec(), Vec::new(), vec![point_light(DVec3::ZERO, Spectrum::ONE)]);
+        let scene = bounded(regions.to_vec(), Vec::new(), vec![lamp.clone()]);
         assert_eq!(scene.plan().has_heterogeneous, density.is_some());
         let up = Ray::new(DVec3::ZERO, DVec3::Z);
         // Depth straight from the lamp to a height, and extinction there.
@@ -121,7 +132,8 @@ fn rays_through_the_lamp_itself() {
                 // The grid's cells are a sixteenth high, its lines break in their middles.
                 let sum = integrate(1.0, 2.0, 32, of) + integrate(2.0, 3.5, 16, of);
                 let expected = ALBEDO / (FOUR_PI * FOUR_PI) * sum;
-                let what = format!("from {origin} along {dir}, varying {}, channel {c}", density.is_some());
+                let varies = density.is_some();
+                let what = format!("{name}, from {origin} along {dir}, varying {varies}, channel {c}");
                 verdict::agrees(&what, got, (expected, 1e-9 * expected), 0.1 * expected, 4);
             }
         }
