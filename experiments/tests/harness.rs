@@ -8,8 +8,8 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 use turbid_experiments::harness::{
-    Claim, Closing, Estimate, Experiment, Outcome, Preset, Section, SectionReport, Settings, Study, Unit,
-    Verdict, run,
+    CellId, CellOutput, Claim, Closing, Estimate, Experiment, Outcome, Preset, Replot, Section, SectionReport,
+    Settings, Study, Unit, Verdict, replot, run,
 };
 
 fn settings(out: &Path) -> Settings {
@@ -105,15 +105,33 @@ fn another_seed_gives_other_results() {
 fn a_failed_cell_keeps_the_others_and_the_next_run_goes_on() {
     let folder = tempfile::tempdir().unwrap();
     fs::write(folder.path().join("fail"), b"").unwrap();
-    let error = run(&fake::study(), &settings(folder.path())).unwrap_err();
-    assert_eq!(format!("{error:#}"), "cell slab-000040 of fake: asked to fail");
-    assert!(!folder.path().join("report.html").exists());
+    let other = Experiment { name: "other", measure: unfailing, ..fake::FAKE };
+    let both = Study { experiments: &[fake::FAKE, other], ..fake::study() };
+    let outcome = run(&both, &settings(folder.path())).unwrap();
+    assert_eq!(failure(&outcome), Some("cell slab-000040 of fake: asked to fail"));
+    assert_eq!((outcome.sections[1].judged.len(), outcome.strict_code()), (4, 1));
+    let page = String::from_utf8(read(folder.path(), "report.html")).unwrap();
+    assert!(page.contains("No conclusion: cell slab-000040 of fake: asked to fail."));
     let kept = cell_files(folder.path()).len();
     assert!((40..64).contains(&kept), "{kept}");
+    assert_eq!(outcome.measured, 64 + kept);
     fs::remove_file(folder.path().join("fail")).unwrap();
+    fs::remove_dir_all(folder.path().join("figures")).unwrap();
     let outcome = run(&fake::study(), &settings(folder.path())).unwrap();
     assert_eq!(outcome.measured, 64 - kept);
     assert_eq!(results(folder.path()), undisturbed());
+}
+
+/// Why the first section has no conclusion.
+fn failure(outcome: &Outcome) -> Option<&str> {
+    outcome.sections[0].failure.as_deref()
+}
+
+/// Measures in spite of what the folder asks for.
+fn unfailing(settings: &Settings, cell: &CellId) -> anyhow::Result<CellOutput> {
+    let folder = tempfile::tempdir()?;
+    fs::write(folder.path().join("predictions.csv"), b"")?;
+    (fake::FAKE.measure)(&Settings { out: folder.path().to_path_buf(), ..settings.clone() }, cell)
 }
 
 const ABORT_IN: &str = "TURBID_TEST_ABORT_IN";
@@ -200,27 +218,29 @@ fn a_folder_without_a_manifest_is_not_emptied() {
 }
 
 #[test]
-fn non_finite_values_fail_the_study() {
+fn non_finite_values_fail_their_experiment() {
     let folder = tempfile::tempdir().unwrap();
     fs::write(folder.path().join("broken"), b"").unwrap();
-    let error = format!("{:#}", run(&fake::study(), &settings(folder.path())).unwrap_err());
-    assert!(error.contains("1 non-finite contributions in cell slab-000000 of fake; allowed: 0"), "{error}");
-    assert!(!folder.path().join("report.html").exists());
+    let outcome = run(&fake::study(), &settings(folder.path())).unwrap();
+    let expected = "1 non-finite contributions in cell slab-000000 of fake; allowed: 0";
+    assert_eq!((failure(&outcome), verdicts(&outcome).len()), (Some(expected), 0));
+    assert_eq!(outcome.strict_code(), 3);
 }
 
 #[test]
-fn a_panic_in_a_cell_is_an_error_with_its_name() {
+fn a_panic_in_a_cell_is_told_with_its_name() {
     let panicking = Experiment { measure: |_, cell| panic!("replicate {}", cell.replicate), ..fake::FAKE };
     let folder = tempfile::tempdir().unwrap();
     let study = Study { experiments: &[panicking], ..fake::study() };
-    let error = format!("{:#}", run(&study, &settings(folder.path())).unwrap_err());
-    assert!(error.starts_with("cell slab-0000") && error.ends_with("of fake: it panicked"), "{error}");
+    let outcome = run(&study, &settings(folder.path())).unwrap();
+    let said = failure(&outcome).unwrap();
+    assert!(said.starts_with("cell slab-0000") && said.contains(" of fake: internal error"), "{said}");
+    assert!(said.contains(": replicate ") && outcome.sections[0].section.summary[0].contains("Please report it"));
 }
 
 /// Maps that share their random numbers are not independent, however many there are: measured twice, or all the same.
 #[test]
 fn a_map_measured_twice_is_refused() {
-    use turbid_experiments::harness::CellId;
     let folder = tempfile::tempdir().unwrap();
     let in_pairs = Experiment {
         measure: |settings, cell| {
@@ -235,11 +255,10 @@ fn a_map_measured_twice_is_refused() {
     for experiment in [in_pairs, all_alike] {
         let study = Study { experiments: &[experiment], ..fake::study() };
         let fresh = Settings { fresh: true, ..settings(folder.path()) };
-        let error = format!("{:#}", run(&study, &fresh).unwrap_err());
+        let outcome = run(&study, &fresh).unwrap();
         let expected =
             "cells slab-000000 and slab-000001 of fake measured the same numbers: they are one map, not two";
-        assert!(error.contains(expected), "{error}");
-        assert!(!folder.path().join("report.html").exists());
+        assert_eq!((failure(&outcome), verdicts(&outcome).len()), (Some(expected), 0));
     }
 }
 
@@ -263,7 +282,6 @@ fn every_cell_has_a_stream_of_its_own() {
 
 #[test]
 fn cell_names_are_checked() {
-    use turbid_experiments::harness::CellId;
     let folder = tempfile::tempdir().unwrap();
     let twice =
         Experiment { cells: |_| vec![CellId::new("a", 0, 1.0), CellId::new("a", 0, 1.0)], ..fake::FAKE };
@@ -271,8 +289,8 @@ fn cell_names_are_checked() {
     for (experiment, text) in [(twice, "two cells are called a-000000"), (unsafe_name, "no name for a file")]
     {
         let study = Study { experiments: &[experiment], ..fake::study() };
-        let error = format!("{:#}", run(&study, &settings(folder.path())).unwrap_err());
-        assert!(error.contains(text), "{error}");
+        let outcome = run(&study, &settings(folder.path())).unwrap();
+        assert!(failure(&outcome).is_some_and(|said| said.contains(text)), "{:?}", failure(&outcome));
     }
 }
 
@@ -303,8 +321,57 @@ fn a_folder_holds_one_study_at_a_time() {
     let error = run(&fake::study(), &settings(folder.path())).unwrap_err().to_string();
     assert!(error.starts_with("another study is at work in ") && error.contains("allowed: "), "{error}");
     assert!(!folder.path().join("cells").exists());
+    // Nor are figures redrawn meanwhile.
+    fs::create_dir(folder.path().join("figures")).unwrap();
+    let error = replot(&settings(folder.path()), &Replot::default()).unwrap_err().to_string();
+    assert!(error.starts_with("another study is at work in "), "{error}");
     drop(held);
     assert_eq!(run(&fake::study(), &settings(folder.path())).unwrap().measured, 64);
+}
+
+/// What cannot be written, or is no file, is said in a line before anything is measured.
+#[cfg(unix)]
+#[test]
+fn outputs_are_tried_before_the_work() {
+    for (name, said) in [
+        ("report.html", "cannot write {}: a folder, a device or a pipe; allowed: a file"),
+        ("results.csv", "cannot write {}: a folder, a device or a pipe; allowed: a file"),
+        ("figures", "cannot create {}: File exists (os error 17)"),
+        ("cells/manifest.json", "cannot read {}: a folder, a device or a pipe; allowed: a file"),
+        (".lock", "cannot write {}: a folder, a device or a pipe; allowed: a file"),
+    ] {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join(name);
+        if name == "figures" {
+            fs::write(&path, b"").unwrap();
+        } else {
+            fs::create_dir_all(&path).unwrap();
+        }
+        let error = format!("{:#}", run(&fake::study(), &settings(folder.path())).unwrap_err());
+        assert_eq!(error, said.replace("{}", &path.display().to_string()));
+        assert!(!folder.path().join("cells/fake").exists(), "{name}");
+    }
+}
+
+/// Pipes that nobody writes to are not waited for: the record of an earlier run, and the report that is redrawn.
+#[cfg(unix)]
+#[test]
+fn pipes_are_no_notes() {
+    let pipe = |path: &Path| {
+        fs::remove_file(path).unwrap();
+        assert!(Command::new("mkfifo").arg(path).status().unwrap().success());
+    };
+    let folder = tempfile::tempdir().unwrap();
+    let own = settings(folder.path());
+    run(&fake::study(), &own).unwrap();
+    pipe(&folder.path().join("report.html"));
+    let error = format!("{:#}", replot(&own, &Replot::default()).unwrap_err());
+    assert!(error.ends_with("report.html: a folder, a device or a pipe; allowed: a file"), "{error}");
+    pipe(&folder.path().join("provenance.json"));
+    pipe(&folder.path().join("figures/fake-bias.svg"));
+    fs::remove_file(folder.path().join("report.html")).unwrap();
+    let error = format!("{:#}", run(&fake::study(), &own).unwrap_err());
+    assert!(error.contains("a folder, a device or a pipe"), "{error}");
 }
 
 /// A cell of other settings that comes into the folder after its cells were looked through.
@@ -324,9 +391,30 @@ fn cells_of_two_seeds_do_not_mix() {
     fs::copy(other.path().join("cells/fake/slab-000000.csv"), folder.path().join("other.csv")).unwrap();
     let study = Study { experiments: &[intruded], ..fake::study() };
     let one = Settings { threads: 1, ..settings(folder.path()) };
-    let error = format!("{:#}", run(&study, &one).unwrap_err());
-    assert!(error.contains("by other settings (quick, seed 2, not quick, seed 1)"), "{error}");
-    assert!(!folder.path().join("report.html").exists());
+    let outcome = run(&study, &one).unwrap();
+    let said = failure(&outcome).unwrap();
+    assert!(said.contains("by other settings (quick, seed 2, not quick, seed 1)"), "{said}");
+}
+
+/// A whole cell of another experiment, under the name of one of this.
+#[test]
+fn cells_of_two_experiments_do_not_mix() {
+    let intruded = Experiment {
+        measure: |settings, cell| {
+            if cell.replicate == 40 {
+                let from = settings.out.join("cells/other/slab-000000.csv");
+                fs::copy(from, settings.out.join("cells/fake/slab-000000.csv"))?;
+            }
+            (fake::FAKE.measure)(settings, cell)
+        },
+        ..fake::FAKE
+    };
+    let other = Experiment { name: "other", ..fake::FAKE };
+    let folder = tempfile::tempdir().unwrap();
+    let one = Settings { threads: 1, ..settings(folder.path()) };
+    run(&Study { experiments: &[other], ..fake::study() }, &one).unwrap();
+    let outcome = run(&Study { experiments: &[intruded], ..fake::study() }, &one).unwrap();
+    assert_eq!(failure(&outcome), Some("cell slab-000000 of fake is that of other"));
 }
 
 /// An experiment that cannot predict or conclude, or panics there, says so; the others and the report stand.
@@ -337,12 +425,28 @@ fn an_experiment_without_a_conclusion_stops_no_other() {
     let rash = Experiment { name: "rash", conclude: |_, _, _| panic!("3 of 2"), ..fake::FAKE };
     let blind = Experiment { name: "blind", predict: |_| anyhow::bail!("no field"), ..fake::FAKE };
     let folder = tempfile::tempdir().unwrap();
-    let study = Study { experiments: &[mute, rash, blind, fake::FAKE], ..fake::study() };
+    let lost = Experiment { name: "lost", cells: |_| panic!("no cell"), ..fake::FAKE };
+    let twice = Experiment {
+        name: "twice",
+        conclude: |settings, predictions, cells| {
+            let mut section = (fake::FAKE.conclude)(settings, predictions, cells)?;
+            section.claims[1].id = section.claims[0].id.clone();
+            Ok(section)
+        },
+        ..fake::FAKE
+    };
+    let study = Study { experiments: &[mute, rash, blind, lost, twice, fake::FAKE], ..fake::study() };
     let outcome = run(&study, &settings(folder.path())).unwrap();
     let failures: Vec<Option<&str>> = outcome.sections.iter().map(|s| s.failure.as_deref()).collect();
-    let expected = ["panel 2 is empty", "it panicked", "predictions of blind: no field"].map(Some);
-    assert_eq!((&failures[..3], failures[3]), (&expected[..], None));
-    assert_eq!((outcome.measured, outcome.sections[3].judged.len()), (3 * 64, 4));
+    let expected = [
+        "panel 2 is empty",
+        "internal error: 3 of 2",
+        "predictions of blind: no field",
+        "internal error: no cell",
+        "two claims have the same name, amplitude",
+    ];
+    assert_eq!((&failures[..5], failures[5]), (&expected.map(Some)[..], None));
+    assert_eq!((outcome.measured, outcome.sections[5].judged.len()), (4 * 64, 4));
     let page = String::from_utf8(read(folder.path(), "report.html")).unwrap();
     assert!(page.contains("No conclusion: panel 2 is empty."));
     // Where photons are so few that two sizes are one, too.

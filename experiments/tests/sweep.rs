@@ -15,7 +15,7 @@ fn sweep() -> Command {
 }
 
 /// A fortieth of what the program does: about a second a scene.
-const SMALL: Effort = Effort { steps: 1.2e5, seconds: None };
+const SMALL: Effort = Effort { steps: 1.2e5, seconds: None, control: 1.0 };
 
 /// The first valid scene of a seed.
 fn scene(seed: u64) -> (SceneText, String) {
@@ -50,6 +50,13 @@ fn fixed_scenes_agree() {
     assert_eq!(examined.len(), 32);
     for (seed, what, examined) in &examined {
         println!("seed {seed} ({what})\n{}", lines(examined));
+        // What refuses a valid scene is an alarm below; maps were read wherever photons have a place to start.
+        let has_maps = examined.checks.iter().any(|check| check.check.starts_with("maps - "));
+        let is_endless = scene(*seed).0.scene().unwrap().check_emission().is_err();
+        let is_shut_in = examined.refused.iter().any(|line| line.starts_with("camera: "));
+        let has_cell = scene(*seed).0.table.contains_key("cell");
+        assert_eq!(has_maps, !is_endless && !is_shut_in && !has_cell, "seed {seed}: {:?}", examined.refused);
+        assert_eq!(examined.refused.is_empty(), !is_endless && !is_shut_in, "seed {seed}: {:?}", examined.refused);
     }
     let alarms: Vec<(u64, &Alarm)> =
         examined.iter().flat_map(|(seed, _, e)| e.alarms.iter().map(move |a| (*seed, a))).collect();
@@ -99,12 +106,69 @@ fn a_wrong_pair_is_seen() {
     assert_eq!((alarms(1.1) > 0, alarms(0.999)), (true, 0));
 }
 
+/// A small scene: a white square under a lamp, and a black ball that changes nothing much.
+const SQUARE: &str = r#"
+camera = { position = [0, 0, 3], look_at = [0, 0, 0], fov = 50, width = 16, height = 12 }
+objects = [
+    { shape = { rectangle = { corner = [-1, -1, 0], u = [2, 0, 0], v = [0, 2, 0] } }, surface = { lambertian = { reflectance = 0.5 } } },
+    { shape = { sphere = { center = [0.5, 0.5, 0.3], radius = 0.1 } }, surface = "black" },
+]
+lights = [{ area = { shape = { sphere = { center = [0, 2, 2], radius = 0.3 } }, radiance = 5 } }]
+"#;
+
+/// The exit code, standard output and standard error of a run.
+fn ran(arguments: &[&str]) -> (Option<i32>, String, String) {
+    let output = sweep().args(arguments).output().unwrap();
+    let text = |bytes: &[u8]| String::from_utf8(bytes.to_vec()).unwrap();
+    (output.status.code(), text(&output.stdout), text(&output.stderr))
+}
+
+/// The negative control of the whole program: paths that are twice too bright are an alarm, which is confirmed, traced to a
+/// scene with less in it, and told by the exit code; too little work is undecided, and told by another one.
+#[test]
+fn a_wrong_method_is_an_alarm_to_the_end() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("square.toml");
+    std::fs::write(&file, SQUARE).unwrap();
+    let (file, out) = (file.to_str().unwrap(), folder.path().join("out"));
+    let out = out.to_str().unwrap();
+    let own = ["--scene", file, "--out", out, "--effort", "0.02"];
+    let (code, said, errors) = ran(&own);
+    assert_eq!((code, errors.as_str()), (Some(0), ""), "{said}");
+    assert!(said.contains("\nagree; "), "{said}");
+    let (code, said, errors) = ran(&[&own[..], &["--control", "2"]].concat());
+    assert_eq!((code, errors.as_str()), (Some(1), ""), "{said}");
+    assert!(said.contains("ALARM light - paths: again, four times the samples: "), "{said}");
+    assert!(said.contains("ALARM maps - paths: again, four times the samples: "), "{said}");
+    let smallest = std::fs::read_to_string(folder.path().join("out/failures/square/scene.toml")).unwrap();
+    assert!(said.contains("the smallest scene that shows it, ") && said.contains(&smallest), "{said}");
+    assert!(smallest.contains("rectangle") && !smallest.contains("black"), "{smallest}");
+    // The file shows it again.
+    let again = format!("{out}/failures/square/scene.toml");
+    let (code, said, _) = ran(&["--scene", &again, "--effort", "0.02", "--control", "2", "--no-shrink"]);
+    assert_eq!(code, Some(1), "{said}");
+    // A run over seeds, with an alarm and with too little work.
+    let seeds = ["--seeds", "1000..1002", "--out", out, "--no-shrink", "--effort"];
+    let (code, said, errors) = ran(&[&seeds[..], &["0.02", "--control", "8"]].concat());
+    assert_eq!(code, Some(1), "{said}");
+    assert!(said.contains("ALARM: seed 100") && errors.contains("again, four times the samples"), "{said}{errors}");
+    let (code, said, errors) = ran(&[&seeds[..], &["1e-4"]].concat());
+    assert_eq!((code, errors.as_str()), (Some(3), ""), "{said}");
+    assert!(said.contains("0 alarms") && said.contains("undecided: seed 1000: "), "{said}");
+    let (code, said, _) = ran(&["--seed", "1000", "--effort", "1e-4", "--out", out]);
+    assert_eq!(code, Some(3), "{said}");
+}
+
 #[test]
 fn bad_values_give_one_line_and_exit_2() {
     for bad in [
         &["--seeds", "5"][..],
         &["--seeds", "5..5"],
         &["--effort", "0"],
+        &["--control", "0"],
+        &["--scene", "/dev/zero"],
+        &["--seeds", "0..1", "--out", "Cargo.toml/out"],
+        &["--seed", "1", "--out", "Cargo.toml/out"],
         &["--seeds", "0..2", "--seed", "1"],
         &["--scene", "no.toml"],
     ] {

@@ -4,7 +4,7 @@
 use super::input::{Input, Kind};
 use super::judge::{Thoroughness, Verdict, Workbench, keep_panics};
 use crate::harness::{duration, say};
-use anyhow::Context;
+use anyhow::{Context, bail};
 use cpu_time::ProcessTime;
 use std::io::{BufRead, BufReader, Write};
 use std::ops::Range;
@@ -24,6 +24,9 @@ const MEMORY_FACTOR: u64 = 256;
 
 /// Memory at which a process ends itself \[bytes\].
 const TOO_MUCH: u64 = 2 << 30;
+
+/// Exit code of a process that was ended by a signal: `turbid::output::end_on_signal`.
+const INTERRUPTED: i32 = 130;
 
 /// What a run found.
 #[derive(Debug, Default, Clone, PartialEq)]
@@ -123,6 +126,11 @@ fn watch(only: Option<Kind>, seed: u64, range: Range<u64>) -> anyhow::Result<Fou
             }
         }
         let status = child.wait().context("a process is lost")?;
+        if status.code() == Some(INTERRUPTED) {
+            // Most often the signal was for all processes, and this one is about to end by its own last word.
+            std::thread::sleep(Duration::from_secs(1));
+            bail!("stopped by a signal");
+        }
         if let Some(died) = current {
             found.failures.push((died, format!("the process died: {status}")));
             next = died + 1;

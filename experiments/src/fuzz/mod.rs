@@ -17,14 +17,14 @@ mod tree;
 pub use input::{Input, Kind};
 pub use judge::{Thoroughness, Verdict, Workbench};
 
-use crate::harness::{one_line, say};
+use crate::harness::{check_later, guarded, one_line, say};
 use anyhow::{Context, bail};
 use batch::Found;
 use clap::Parser;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
-use turbid::output::print;
+use turbid::output::{end_on_signal, print};
 
 /// Tries inputs by chance: each is refused in one line, or does what it says.
 ///
@@ -60,6 +60,10 @@ struct Arguments {
 
 /// The program `fuzz`: 0 if nothing failed, 1 if something did, 2 for an error.
 pub fn main() -> ExitCode {
+    guarded("fuzz", unguarded)
+}
+
+fn unguarded() -> ExitCode {
     let arguments = match Arguments::try_parse() {
         Ok(arguments) => arguments,
         Err(error) if !error.use_stderr() => {
@@ -71,6 +75,9 @@ pub fn main() -> ExitCode {
             return ExitCode::from(2);
         }
     };
+    end_on_signal(|| {
+        "fuzz: stopped by a signal; no file is kept: --seed, --first and --count try again what failed".to_string()
+    });
     match run(&arguments) {
         Ok(code) => ExitCode::from(code),
         Err(error) => {
@@ -95,9 +102,13 @@ fn run(arguments: &Arguments) -> anyhow::Result<u8> {
         Some(jobs) => jobs,
         None => std::thread::available_parallelism().map_or(1, usize::from),
     };
+    check_later(&arguments.out)?;
     let found = batch::run(only, seed, range, jobs)?;
     report(arguments, &found)
 }
+
+/// Larger files are not tried.
+const MOST_BYTES: u64 = 1 << 28;
 
 /// Tries one file.
 fn one_file(file: &Path, only: Option<Kind>, is_child: bool) -> anyhow::Result<u8> {
@@ -105,7 +116,7 @@ fn one_file(file: &Path, only: Option<Kind>, is_child: bool) -> anyhow::Result<u
     let Some(kind) = only.or_else(|| Kind::of_file(name)) else {
         bail!("{}: of no kind that its name tells; name it with --only", file.display());
     };
-    let bytes = std::fs::read(file).with_context(|| format!("cannot read {}", file.display()))?;
+    let bytes = turbid::input::read(file, MOST_BYTES).with_context(|| format!("cannot read {}", file.display()))?;
     let input = Input { kind, bytes };
     let verdict = if is_child { batch::watched(&input)? } else { batch::alone(&input)? };
     print(|out| writeln!(out, "{verdict}")).context("standard output")?;

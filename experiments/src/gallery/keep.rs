@@ -12,6 +12,9 @@ use turbid::integrators::{Layer, Layers};
 use turbid::output::write_atomically;
 use turbid::sensor::Film;
 
+/// Larger files are no pictures.
+const MOST_BYTES: u64 = 1 << 32;
+
 /// What is known of a render beside its pixels.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -108,7 +111,7 @@ impl Kept {
 
     /// Reads a file of a picture of so many pixels.
     pub fn read(path: &Path, pixels: usize) -> anyhow::Result<Self> {
-        let bytes = std::fs::read(path).with_context(|| format!("cannot read {}", path.display()))?;
+        let bytes = turbid::input::read(path, MOST_BYTES).with_context(|| format!("cannot read {}", path.display()))?;
         Kept::parse(&bytes, pixels).with_context(|| format!("{} is no complete picture", path.display()))
     }
 

@@ -9,18 +9,22 @@ use super::settings::Settings;
 use super::shown::Shown;
 use super::studio::Studio;
 use super::{assets, page};
-use crate::harness::{duration, one_line, program_digest, say};
+use crate::harness::{check_folder, duration, guarded, one_line, program_digest, read_if_there, say};
 use anyhow::Context;
 use clap::Parser;
 use std::path::Path;
 use std::process::ExitCode;
-use turbid::output::write_atomically;
+use turbid::output::{end_on_signal, write_atomically};
 
 /// CPU seconds of a picture: mean of those that are kept.
 const EXPECTED: f64 = 580.0;
 
 /// Runs the gallery as a program.
 pub fn main() -> ExitCode {
+    guarded("gallery", unguarded)
+}
+
+fn unguarded() -> ExitCode {
     let settings = match Settings::try_parse() {
         Ok(settings) => settings,
         Err(error) if !error.use_stderr() => {
@@ -32,6 +36,10 @@ pub fn main() -> ExitCode {
             return ExitCode::from(2);
         }
     };
+    let cache = settings.cache().display().to_string();
+    end_on_signal(move || {
+        format!("gallery: stopped by a signal; finished renders are kept in {cache}, and the same command goes on from there")
+    });
     let threads = settings.threads.map_or(0, usize::from);
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().context("cannot start threads");
     match pool.and_then(|pool| pool.install(|| run(&settings))) {
@@ -49,9 +57,13 @@ fn run(settings: &Settings) -> anyhow::Result<()> {
         return Ok(assets::window().write(&settings.scenes.join("window.png"))?);
     }
     let folder = settings.folder();
-    std::fs::create_dir_all(&folder).with_context(|| format!("cannot make {}", folder.display()))?;
     let program = program_digest()?.to_string();
     let chosen = |p: &&Picture| settings.only.is_empty() || settings.only.iter().any(|n| n == p.name);
+    check_folder(&folder, &["index.html"])?;
+    for picture in ALL.iter().filter(chosen) {
+        check_folder(&folder, &[&format!("{}.json", picture.name)])?;
+        check_folder(&settings.cache().join(picture.name), &["photons.picture"])?;
+    }
     let expected = ALL.iter().filter(chosen).count() as f64 * EXPECTED;
     let share = if settings.draft { 0.25 } else { 1.0 };
     say(&format!(
@@ -68,13 +80,16 @@ fn run(settings: &Settings) -> anyhow::Result<()> {
     Ok(())
 }
 
+/// Larger files about a picture are none.
+const MOST_BYTES: u64 = 1 << 26;
+
 /// What is there of all pictures, those of earlier runs too.
 fn all_shown(folder: &Path) -> anyhow::Result<Vec<Shown>> {
     let mut found = Vec::new();
     for picture in ALL {
         let path = folder.join(format!("{}.json", picture.name));
-        if let Ok(text) = std::fs::read_to_string(&path) {
-            found.push(serde_json::from_str(&text).with_context(|| path.display().to_string())?);
+        if let Some(text) = read_if_there(&path, MOST_BYTES)? {
+            found.push(serde_json::from_slice(&text).with_context(|| path.display().to_string())?);
         }
     }
     Ok(found)
@@ -89,7 +104,6 @@ fn one(picture: &Picture, settings: &Settings, folder: &Path, program: &str) -> 
     let studio = Studio::open(picture, &settings.scenes, settings.scale(), settings.seed, program)?;
     let half = studio.halved()?;
     let kept = settings.cache().join(picture.name);
-    std::fs::create_dir_all(&kept)?;
     let large = Cache { settings, folder: kept.clone(), studio: &studio };
     let small = Cache { settings, folder: kept, studio: &half };
     let ours = large.photons_by_class("photons", picture.samples, 0, 1)?;

@@ -45,7 +45,7 @@ impl<'a> Studio<'a> {
     ) -> anyhow::Result<Self> {
         let path = folder.join(format!("{}.toml", picture.name));
         let text =
-            std::fs::read_to_string(&path).with_context(|| format!("cannot read {}", path.display()))?;
+            turbid::input::read_text(&path, 1 << 26).with_context(|| format!("cannot read {}", path.display()))?;
         let file: SceneFile = toml::from_str(&text).map_err(|e| anyhow!("{}: {e}", path.display()))?;
         let scene = file.scene(folder).with_context(|| path.display().to_string())?;
         let text = Digest::of(text.as_bytes()).to_string();

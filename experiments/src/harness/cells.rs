@@ -46,9 +46,14 @@ fn telling(rows: &[cell::CellRow]) -> Option<String> {
 }
 
 impl Cells {
-    /// Reads the files of all cells; refuses a set that is not complete or not of these settings, and maps of one group that
-    /// are the same.
-    pub(super) fn read(folder: &Path, expected: &[CellId], settings: &Settings) -> anyhow::Result<Self> {
+    /// Reads the files of all cells of an experiment; refuses a set that is not complete, of another experiment or of other
+    /// settings, and maps of one group that are the same.
+    pub(super) fn read(
+        folder: &Path,
+        experiment: &str,
+        expected: &[CellId],
+        settings: &Settings,
+    ) -> anyhow::Result<Self> {
         let (settings, is_scaled) = (settings.words(), settings.photon_scale != 1.0);
         let mut ids = expected.to_vec();
         ids.sort_by_key(CellId::id);
@@ -56,6 +61,12 @@ impl Cells {
         for (index, id) in ids.iter().enumerate() {
             let (header, rows) =
                 cell::read(&folder.join(format!("{}.csv", id.id()))).context("the set is incomplete")?;
+            ensure!(
+                header.experiment == experiment,
+                "cell {} of {experiment} is that of {}",
+                id.id(),
+                header.experiment
+            );
             ensure!(
                 header.settings == settings && header.id == id.id(),
                 "cell {} in {} is that of {} by other settings ({}, not {settings})",

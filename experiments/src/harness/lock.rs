@@ -1,5 +1,6 @@
 //! One study at a time in a folder.
 
+use super::outputs::check_plain;
 use super::progress::say;
 use anyhow::{Context, bail};
 use std::fs::{File, TryLockError};
@@ -15,6 +16,7 @@ const FILE: &str = ".lock";
 pub(super) fn hold(folder: &Path) -> anyhow::Result<File> {
     std::fs::create_dir_all(folder).with_context(|| format!("cannot create {}", folder.display()))?;
     let path = folder.join(FILE);
+    check_plain(&path)?;
     let file = File::create(&path).with_context(|| format!("cannot write {}", path.display()))?;
     match file.try_lock() {
         Ok(()) => {}

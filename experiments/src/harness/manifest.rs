@@ -2,6 +2,7 @@
 
 use super::Settings;
 use super::cell::{self, FORMAT};
+use super::outputs::{MOST_NOTES, read_if_there};
 use super::progress::say;
 use anyhow::Context;
 use serde::{Deserialize, Serialize};
@@ -32,7 +33,8 @@ impl Manifest {
     /// Prepares the folder: forgets its cells if asked to, says which cells are not reused, writes the manifest.
     pub(super) fn prepare(&self, folder: &Path, settings: &Settings) -> anyhow::Result<()> {
         let path = folder.join(FILE);
-        let earlier = std::fs::read(&path).ok().map(|bytes| serde_json::from_slice::<Manifest>(&bytes).ok());
+        let earlier =
+            read_if_there(&path, MOST_NOTES)?.map(|bytes| serde_json::from_slice::<Manifest>(&bytes).ok());
         if settings.fresh && earlier.is_some() {
             // Only a folder with a manifest is ours to empty; of some experiments only their own cells are.
             let own = settings.only.iter().map(|name| folder.join(name)).filter(|own| own.is_dir());

@@ -2,11 +2,12 @@
 
 use super::cell::{self, CellOutput, FORMAT, Header};
 use super::manifest::Manifest;
+use super::panics::caught;
 use super::progress::Progress;
 use super::{CellId, Experiment, Settings};
 use anyhow::{Context, anyhow};
 use cpu_time::ThreadTime;
-use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -23,11 +24,35 @@ pub(super) fn cell_path(cells: &Path, experiment: &Experiment, cell: &CellId) ->
     cells.join(experiment.name).join(format!("{}.csv", cell.id()))
 }
 
-/// Measures all tasks on `settings.threads` threads, the largest first. After an error no further cell is begun;
-/// cells in work are finished and kept.
-pub(super) fn measure(mut tasks: Vec<Task>, manifest: &Manifest, settings: &Settings) -> anyhow::Result<()> {
+/// What became of the tasks.
+#[derive(Debug, Default)]
+pub(super) struct Done {
+    /// How many cells were measured and kept.
+    pub measured: usize,
+    /// Why an experiment is without some of its cells: the first of its failures, by its name.
+    pub failures: BTreeMap<&'static str, String>,
+}
+
+/// Why a cell is not there.
+enum Failure {
+    /// The experiment failed.
+    Measured(anyhow::Error),
+    /// Its file could not be written, nor could others.
+    Written(anyhow::Error),
+}
+
+/// Measures all tasks on `settings.threads` threads, the largest first. After a failure no further cell of that experiment
+/// is begun; cells in work are finished and kept.
+///
+/// # Errors
+/// If a cell cannot be written
+pub(super) fn measure(
+    mut tasks: Vec<Task>,
+    manifest: &Manifest,
+    settings: &Settings,
+) -> anyhow::Result<Done> {
     if tasks.is_empty() {
-        return Ok(());
+        return Ok(Done::default());
     }
     tasks.sort_by(|a, b| b.cell.cost.total_cmp(&a.cell.cost));
     let pool = rayon::ThreadPoolBuilder::new()
@@ -36,34 +61,44 @@ pub(super) fn measure(mut tasks: Vec<Task>, manifest: &Manifest, settings: &Sett
         .context("cannot start threads")?;
     let progress = Progress::new(tasks.len(), tasks.iter().map(|t| t.cell.cost).sum());
     let next = AtomicUsize::new(0);
-    let failure: Mutex<Option<anyhow::Error>> = Mutex::new(None);
+    let done = Mutex::new((Done::default(), None));
+    let lost = || anyhow!("a thread that measures failed");
     pool.broadcast(|_| {
         while let Some(task) = tasks.get(next.fetch_add(1, Ordering::Relaxed)) {
-            match measure_one(task, manifest, settings) {
-                Ok(()) => progress.advance(task.cell.cost),
-                Err(error) => {
+            let name = task.experiment.name;
+            if done.lock().is_ok_and(|done| done.0.failures.contains_key(name)) {
+                progress.advance(task.cell.cost);
+                continue;
+            }
+            let outcome = measure_one(task, manifest, settings);
+            progress.advance(task.cell.cost);
+            let Ok(mut done) = done.lock() else { return };
+            match outcome {
+                Ok(()) => done.0.measured += 1,
+                Err(Failure::Measured(error)) => {
+                    done.0.failures.entry(name).or_insert_with(|| format!("{error:#}"));
+                }
+                Err(Failure::Written(error)) => {
                     next.store(tasks.len(), Ordering::Relaxed);
-                    if let Ok(mut failure) = failure.lock() {
-                        failure.get_or_insert(error);
-                    }
-                    return;
+                    done.1.get_or_insert(error);
                 }
             }
         }
     });
     progress.finish();
-    match failure.into_inner() {
-        Ok(Some(error)) => Err(error),
-        _ => Ok(()),
+    match done.into_inner().map_err(|_| lost())? {
+        (_, Some(error)) => Err(error),
+        (done, None) => Ok(done),
     }
 }
 
-fn measure_one(task: &Task, manifest: &Manifest, settings: &Settings) -> anyhow::Result<()> {
+fn measure_one(task: &Task, manifest: &Manifest, settings: &Settings) -> Result<(), Failure> {
     let name = || format!("cell {} of {}", task.cell.id(), task.experiment.name);
     let start = ThreadTime::now();
-    let output = catch_unwind(AssertUnwindSafe(|| (task.experiment.measure)(settings, &task.cell)))
-        .unwrap_or_else(|_| Err(anyhow!("it panicked")))
-        .with_context(name)?;
+    let output = caught(|| (task.experiment.measure)(settings, &task.cell))
+        .unwrap_or_else(|panic| Err(anyhow!(panic)))
+        .with_context(name)
+        .map_err(Failure::Measured)?;
     let CellOutput { rows, counters, seconds, non_finite } = output;
     // A value that is not finite is counted, however the rows were made.
     let non_finite = non_finite.max(rows.iter().filter(|row| !row.value.is_finite()).count() as u64);
@@ -78,5 +113,5 @@ fn measure_one(task: &Task, manifest: &Manifest, settings: &Settings) -> anyhow:
         non_finite,
         counters,
     };
-    cell::write(&task.path, &header, &rows).with_context(name)
+    cell::write(&task.path, &header, &rows).with_context(name).map_err(Failure::Written)
 }

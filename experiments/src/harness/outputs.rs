@@ -3,10 +3,11 @@
 use super::cells::CellSeconds;
 use super::results::Record;
 use super::{Experiment, Judged, Prediction, Provenance, SectionReport, Unit};
-use anyhow::Context;
+use anyhow::{Context, anyhow, ensure};
 use serde::Serialize;
+use std::io::ErrorKind;
 use std::path::Path;
-use turbid::output::{write_atomically, write_csv, write_json};
+use turbid::output::{check_writable, write_atomically, write_csv, write_json};
 
 /// The phase of timing.csv that is the whole cell.
 const WHOLE: &str = "all";
@@ -66,11 +67,62 @@ pub(super) fn prediction_table(
     Ok(bytes)
 }
 
+/// The bytes of a file of at most `most` bytes; nothing if there is none.
+///
+/// # Errors
+/// A file that cannot be read, is too large, or is none: what is a pipe or a device is not waited for
+pub(crate) fn read_if_there(path: &Path, most: u64) -> anyhow::Result<Option<Vec<u8>>> {
+    match turbid::input::read(path, most) {
+        Ok(bytes) => Ok(Some(bytes)),
+        Err(error) if error.kind() == ErrorKind::NotFound => Ok(None),
+        Err(error) => Err(error).with_context(|| format!("cannot read {}", path.display())),
+    }
+}
+
+/// Refuses to write to what is there and no file: to open a pipe that nobody reads from would wait for ever.
+pub(super) fn check_plain(path: &Path) -> anyhow::Result<()> {
+    let is_plain = std::fs::metadata(path).map_or(true, |about| about.is_file());
+    ensure!(is_plain, "cannot write {}: a folder, a device or a pipe; allowed: a file", path.display());
+    Ok(())
+}
+
+/// Makes a folder, and tries before the work whether these files of it could be written.
+///
+/// # Errors
+/// The folder that cannot be made, or the first file that cannot be written
+pub(crate) fn check_folder(folder: &Path, files: &[&str]) -> anyhow::Result<()> {
+    std::fs::create_dir_all(folder).with_context(|| format!("cannot create {}", folder.display()))?;
+    for path in files.iter().map(|name| folder.join(name)) {
+        check_plain(&path)?;
+        check_writable(path)?;
+    }
+    Ok(())
+}
+
+/// Tries before the work whether files could be written to a folder, which need not be there yet; makes nothing.
+///
+/// # Errors
+/// The file that cannot be written, or the folder in which the next one cannot be made
+pub(crate) fn check_later(folder: &Path) -> anyhow::Result<()> {
+    let there = folder.ancestors().find(|above| above.as_os_str().is_empty() || above.exists());
+    let there = there.filter(|above| !above.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    let file = there.join("file");
+    check_writable(file).map_err(|error| anyhow!("cannot write to {}: {}", folder.display(), error.cause))
+}
+
+/// Files of notes that a study leaves for the next run are no larger.
+pub(super) const MOST_NOTES: u64 = 1 << 20;
+
 /// Writes a file unless it already holds these bytes, so that its date says when they were made. Tells whether it
 /// was written.
 pub(super) fn write_if_changed(path: &Path, bytes: &[u8]) -> anyhow::Result<bool> {
-    if std::fs::read(path).is_ok_and(|old| old == bytes) {
-        return Ok(false);
+    check_plain(path)?;
+    if let Ok(about) = std::fs::metadata(path) {
+        let is_same = about.len() == bytes.len() as u64
+            && turbid::input::read(path, about.len()).is_ok_and(|old| old == bytes);
+        if is_same {
+            return Ok(false);
+        }
     }
     write_atomically(path, |out| out.write_all(bytes))?;
     Ok(true)
@@ -79,7 +131,8 @@ pub(super) fn write_if_changed(path: &Path, bytes: &[u8]) -> anyhow::Result<bool
 /// A run that measured nothing keeps the record of the run that did; late predictions stay on record until every
 /// cell is measured anew.
 pub(super) fn keep_or_write(path: &Path, mut new: Provenance) -> anyhow::Result<Provenance> {
-    let old = std::fs::read(path).ok().and_then(|bytes| serde_json::from_slice::<Provenance>(&bytes).ok());
+    let old = read_if_there(path, MOST_NOTES)?
+        .and_then(|bytes| serde_json::from_slice::<Provenance>(&bytes).ok());
     if let Some(old) = old {
         let is_same = old.command == new.command && old.program == new.program && old.cells == new.cells;
         if is_same && new.measured == 0 && !new.late_predictions {

@@ -1,5 +1,6 @@
 //! Figures redrawn from their tables, without measuring anything.
 
+use super::lock;
 use super::outputs::write_if_changed;
 use super::{FigureFiles, Replot, Settings};
 use crate::report;
@@ -22,15 +23,17 @@ struct Redrawn {
 /// All tables are read and all figures drawn before anything is written; each file then appears whole.
 ///
 /// # Errors
-/// If there is no table, one cannot be read, with file and line, or a file cannot be written.
+/// If a study is at work in the folder, there is no table, one cannot be read, with file and line, or a file cannot be written.
 pub fn replot(settings: &Settings, what: &Replot) -> anyhow::Result<String> {
     let folder = settings.out.join("figures");
+    // A table alone is drawn beside itself, wherever that is; a study's figures and report are that study's while it runs.
+    let _held = if what.files.is_empty() && folder.is_dir() { Some(lock::hold(&settings.out)?) } else { None };
     let tables = if what.files.is_empty() { tables(&folder, &settings.only)? } else { what.files.clone() };
     let redrawn: Vec<Redrawn> = tables.into_par_iter().map(redraw).collect::<anyhow::Result<_>>()?;
     let own_report = settings.out.join("report.html");
     // The page is made before the first file is written too.
     let page = if what.files.is_empty() && own_report.exists() {
-        let mut page = std::fs::read_to_string(&own_report)
+        let mut page = turbid::input::read_text(&own_report, MOST_OF_A_REPORT)
             .with_context(|| format!("cannot read {}", own_report.display()))?;
         for Redrawn { stem, files, .. } in &redrawn {
             page = report::with_figure(&page, stem, &files.svg, &files.caption).unwrap_or(page);
@@ -87,6 +90,9 @@ fn tables(folder: &Path, only: &[String]) -> anyhow::Result<Vec<PathBuf>> {
     tables.sort();
     Ok(tables)
 }
+
+/// Larger reports are refused.
+const MOST_OF_A_REPORT: u64 = 1 << 30;
 
 /// Larger tables of a figure are refused.
 const MOST_BYTES: u64 = 1 << 26;

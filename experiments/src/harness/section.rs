@@ -155,8 +155,10 @@ impl Section {
     /// What stands in the place of a section that could not be made.
     pub(super) fn without_conclusion(why: &str) -> Self {
         let why = why.trim_end_matches('.');
+        let advice =
+            if why.contains("internal error") { "Please report it" } else { "More photons or maps may help" };
         Section {
-            summary: vec![format!("No conclusion: {why}. More photons or maps may help.")],
+            summary: vec![format!("No conclusion: {why}. {advice}.")],
             ..Section::default()
         }
     }

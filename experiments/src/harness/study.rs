@@ -3,7 +3,10 @@
 use super::lock;
 use super::manifest::Manifest;
 use super::measure::{Task, cell_path, measure};
-use super::outputs::{Seconds, keep_or_write, prediction_table, write_if_changed, write_results};
+use super::outputs::{
+    Seconds, check_folder, keep_or_write, prediction_table, write_if_changed, write_results,
+};
+use super::panics::{caught, guarded};
 use super::progress::{duration, say};
 use super::{
     CellId, Cells, Claim, Experiment, Judged, Prediction, Provenance, Section, Settings, Verdict, judge,
@@ -12,7 +15,6 @@ use super::{
 use crate::report;
 use anyhow::{Context, bail, ensure};
 use std::collections::BTreeSet;
-use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::PathBuf;
 use std::process::ExitCode;
 use std::time::Instant;
@@ -57,7 +59,8 @@ impl Closing {
             measure: |_, _| bail!("a closing section measures nothing"),
             conclude: |_, _, _| Ok(Section::default()),
         };
-        let (section, failure) = match whole(|| (self.conclude)(settings, sections)) {
+        let concluded = whole(|| (self.conclude)(settings, sections)).and_then(with_claims_apart);
+        let (section, failure) = match concluded {
             Ok(section) => (section, None),
             Err(error) => {
                 let failure = format!("{error:#}");
@@ -131,6 +134,10 @@ pub fn main(name: &'static str, experiments: &[Experiment]) -> ExitCode {
 
 /// The same with a closing section.
 pub fn main_with(name: &'static str, experiments: &[Experiment], closing: Option<Closing>) -> ExitCode {
+    guarded(name, || unguarded(name, experiments, closing))
+}
+
+fn unguarded(name: &'static str, experiments: &[Experiment], closing: Option<Closing>) -> ExitCode {
     let settings = match Settings::parse(name, std::env::args_os()) {
         Ok(settings) => settings,
         Err(error) if !error.use_stderr() => {
@@ -188,13 +195,17 @@ pub(crate) fn one_line(text: &str) -> String {
     line
 }
 
-/// Runs a study, or what is left of it, and writes its report.
+/// Runs a study, or what is left of it, and writes its report. An experiment that fails anywhere says so in its section;
+/// the others and the report stand.
 ///
 /// # Errors
-/// Whatever stops it; finished cells stay, and the next run goes on from there.
+/// A folder that is another study's or cannot be written, an experiment that is not there; finished cells stay, and the next
+/// run goes on from there.
 pub fn run(study: &Study, settings: &Settings) -> anyhow::Result<Outcome> {
     let experiments = selected(study.experiments, &settings.only)?;
     let _held = lock::hold(&settings.out)?;
+    check_folder(&settings.out, &["report.html", "results.csv", "claims.csv", "timing.csv", "provenance.json"])?;
+    check_folder(&settings.out.join("figures"), &["figure.svg"])?;
     let cells_folder = settings.out.join("cells");
     let manifest = Manifest::new(settings, &study.program);
     manifest.prepare(&cells_folder, settings)?;
@@ -207,17 +218,15 @@ pub fn run(study: &Study, settings: &Settings) -> anyhow::Result<Outcome> {
     for experiment in &experiments {
         let folder = cells_folder.join(experiment.name);
         std::fs::create_dir_all(&folder).with_context(|| format!("cannot create {}", folder.display()))?;
-        let mut cells = (experiment.cells)(settings);
-        let named = check_names(experiment, &cells);
-        // A small part of the photons may make two sizes one.
-        let named = if settings.photon_scale == 1.0 { Ok(named?) } else { named };
-        let (own, failure) = match named.and_then(|()| whole(|| predict(experiment, settings))) {
-            Ok(own) => (own, None),
-            Err(error) => {
-                // What has no predictions is not measured.
-                cells.clear();
-                (Vec::new(), Some(format!("{error:#}")))
-            }
+        let planned = whole(|| {
+            let cells = (experiment.cells)(settings);
+            check_names(experiment, &cells)?;
+            Ok((cells, predict(experiment, settings)?))
+        });
+        let (cells, own, failure) = match planned {
+            Ok((cells, own)) => (cells, own, None),
+            // What has no predictions is not measured.
+            Err(error) => (Vec::new(), Vec::new(), Some(format!("{error:#}"))),
         };
         let before = tasks.len();
         for cell in &cells {
@@ -233,12 +242,12 @@ pub fn run(study: &Study, settings: &Settings) -> anyhow::Result<Outcome> {
         failures.push(failure);
         predictions.push(own);
     }
-    let (total, measured) = (sets.iter().map(Vec::len).sum(), tasks.len());
+    let (total, missing) = (sets.iter().map(Vec::len).sum(), tasks.len());
     write_if_changed(&settings.out.join("predictions.csv"), &prediction_table(&experiments, &predictions)?)?;
-    say(&opening(study.name, settings, total, measured, predictions.iter().map(Vec::len).sum()));
+    say(&opening(study.name, settings, total, missing, predictions.iter().map(Vec::len).sum()));
 
     let start = Instant::now();
-    measure(tasks, &manifest, settings)?;
+    let done = measure(tasks, &manifest, settings)?;
     let wall_seconds = start.elapsed().as_secs_f64();
 
     let mut sections = Vec::new();
@@ -248,11 +257,17 @@ pub fn run(study: &Study, settings: &Settings) -> anyhow::Result<Outcome> {
         experiments.iter().zip(&sets).zip(predictions).zip(failures)
     {
         let folder = cells_folder.join(experiment.name);
-        let cells = Cells::read(&folder, cells, settings).with_context(|| experiment.name)?;
-        let concluded = match failure {
+        let failure = failure.or_else(|| done.failures.get(experiment.name).cloned());
+        let read = match failure {
             Some(failure) => Err(failure),
-            None => whole(|| (experiment.conclude)(settings, &predictions, &cells))
-                .map_err(|error| format!("{error:#}")),
+            None => Cells::read(&folder, experiment.name, cells, settings).map_err(|e| format!("{e:#}")),
+        };
+        let (concluded, cells) = match read {
+            Ok(cells) => {
+                let section = whole(|| (experiment.conclude)(settings, &predictions, &cells));
+                (section.and_then(with_claims_apart).map_err(|error| format!("{error:#}")), cells)
+            }
+            Err(failure) => (Err(failure), Cells::default()),
         };
         let (mut section, failure) = match concluded {
             Ok(section) => (section, None),
@@ -279,11 +294,11 @@ pub fn run(study: &Study, settings: &Settings) -> anyhow::Result<Outcome> {
         let place = if own.section.claims.is_empty() { sections.len() } else { 0 };
         sections.insert(place, own);
     }
-    judge_all(&mut sections)?;
+    judge_all(&mut sections);
 
     let mut provenance = Provenance::now(study.name, settings, &study.program);
     provenance.cells = total;
-    provenance.measured = measured;
+    provenance.measured = done.measured;
     provenance.foreign = foreign;
     provenance.cpu_seconds = seconds.iter().map(|(_, cell)| cell.total).sum();
     provenance.wall_seconds = wall_seconds;
@@ -297,12 +312,12 @@ pub fn run(study: &Study, settings: &Settings) -> anyhow::Result<Outcome> {
     let page = report::page(study.name, settings, &sections, &provenance);
     let path = settings.out.join("report.html");
     write_atomically(&path, |out| out.write_all(page.as_bytes()))?;
-    Ok(Outcome { report: path, sections, measured })
+    Ok(Outcome { report: path, sections, measured: done.measured })
 }
 
 /// What a part of an experiment makes; a panic in it is an error.
 fn whole<T>(part: impl FnOnce() -> anyhow::Result<T>) -> anyhow::Result<T> {
-    catch_unwind(AssertUnwindSafe(part)).unwrap_or_else(|_| bail!("it panicked"))
+    caught(part).unwrap_or_else(|panic| bail!(panic))
 }
 
 fn selected(all: &[Experiment], only: &[String]) -> anyhow::Result<Vec<Experiment>> {
@@ -349,14 +364,21 @@ fn opening(study: &str, settings: &Settings, total: usize, missing: usize, predi
     }
 }
 
+/// A section whose claims have names of their own.
+fn with_claims_apart(section: Section) -> anyhow::Result<Section> {
+    let mut seen = BTreeSet::new();
+    for claim in &section.claims {
+        ensure!(seen.insert(claim.id.as_str()), "two claims have the same name, {}", claim.id);
+    }
+    Ok(section)
+}
+
 /// Judges the claims of all sections together and gives each section its own back.
-fn judge_all(sections: &mut [SectionReport]) -> anyhow::Result<()> {
+fn judge_all(sections: &mut [SectionReport]) {
     let mut all: Vec<Claim> = Vec::new();
     let mut counts = Vec::new();
     for part in sections.iter_mut() {
         let claims = std::mem::take(&mut part.section.claims);
-        let ids: BTreeSet<&str> = claims.iter().map(|c| c.id.as_str()).collect();
-        ensure!(ids.len() == claims.len(), "{}: two claims have the same name", part.experiment.name);
         counts.push(claims.len());
         all.extend(claims);
     }
@@ -364,7 +386,6 @@ fn judge_all(sections: &mut [SectionReport]) -> anyhow::Result<()> {
     for (part, count) in sections.iter_mut().zip(counts) {
         part.judged = judged.by_ref().take(count).collect();
     }
-    Ok(())
 }
 
 /// Seconds for the summary's last line.

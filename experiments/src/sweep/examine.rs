@@ -7,6 +7,7 @@ use super::pairs::pair;
 use super::text::SceneText;
 use serde::{Deserialize, Serialize};
 use turbid::integrators::Layer;
+use turbid::scene::Scene;
 use turbid::sensor::check_camera;
 
 /// Above this a scene counts as undecided: the smallest relative deviation that it could have shown.
@@ -84,7 +85,7 @@ pub struct Examined {
     pub checks: Vec<Summary>,
     /// The smallest deviation that would have been seen in half of the light, over all comparisons of pictures.
     pub smallest: Option<f64>,
-    /// Methods that said they cannot, and why.
+    /// Methods that rightly said they cannot, and why: what is allowed is in the module's text.
     pub refused: Vec<String>,
     /// Methods that were stopped by the clock.
     pub late: Vec<String>,
@@ -93,11 +94,13 @@ pub struct Examined {
 }
 
 impl Examined {
-    /// What a method made; why not, is kept.
-    fn keep<T>(&mut self, name: &str, made: Result<T, Failure>) -> Option<T> {
+    /// What a method made; why not, is kept. A refusal is an alarm, but for the one that is `allowed`: every method takes a
+    /// valid scene.
+    fn keep<T>(&mut self, name: &str, made: Result<T, Failure>, allowed: Option<&str>) -> Option<T> {
         match made {
             Ok(made) => return Some(made),
-            Err(Failure::Refused(text)) => self.refused.push(format!("{name}: {text}")),
+            Err(Failure::Refused(text)) if allowed == Some(&text) => self.refused.push(format!("{name}: {text}")),
+            Err(Failure::Refused(text)) => self.alarms.push(Alarm::failure(name, format!("refused: {text}"))),
             Err(Failure::Broken(text)) => self.alarms.push(Alarm::failure(name, text)),
             Err(Failure::Late) => self.late.push(name.to_string()),
         }
@@ -164,8 +167,10 @@ pub fn examine(
         let is_all = first.checks.iter().all(|c| c.smallest.is_some_and(|s| s <= SHARP));
         let is_blunt = |c: &Check| is_all || c.smallest.is_none_or(|s| s > SHARP);
         let (blunt, sharp): (Vec<Check>, Vec<Check>) = first.checks.into_iter().partition(is_blunt);
+        let refused = first.examined.refused;
         first = once(text, (seed, seed), effort, stage, &|name| blunt.iter().any(|c| c.name == name))?;
         first.checks.extend(sharp.into_iter().filter(|c| c.name != ENERGY));
+        first.examined.refused = refused;
         first.examined.summarize(&first.checks);
     }
     let Once { checks, mut examined } = first;
@@ -174,7 +179,8 @@ pub fn examine(
         .flat_map(|c| c.tests.iter().filter(|t| t.is_suspicious()).map(|t| (c.name.as_str(), t)))
         .collect();
     if !suspicious.is_empty() {
-        let more = Effort { steps: 4.0 * effort.steps, seconds: effort.seconds.map(|s| 4.0 * s) };
+        let (steps, seconds) = (4.0 * effort.steps, effort.seconds.map(|s| 4.0 * s));
+        let more = Effort { steps, seconds, ..*effort };
         // Only what is to be compared again.
         let is_wanted = |name: &str| suspicious.iter().any(|(other, _)| *other == name);
         let again = once(text, (seed ^ (1 << 40), seed), &more, stage, &is_wanted)?;
@@ -198,6 +204,11 @@ const LIGHT_PATHS: &str = "light - paths";
 const MAPS_PATHS: &str = "maps - paths";
 const MAPS_LIGHT: &str = "maps - light";
 
+/// What methods by photons rightly refuse a scene for, if so: a medium that emits and has no end.
+fn cannot_emit(scene: &Scene) -> Option<String> {
+    scene.check_emission().err().map(|error| error.to_string())
+}
+
 /// The comparisons that are wanted, once. Of the two seeds one is that of the methods, the other says what is changed.
 fn once(
     text: &SceneText,
@@ -216,11 +227,13 @@ fn once(
         examined.refused.push(format!("camera: {error}"));
         return Ok(Once { checks, examined });
     }
+    let endless = cannot_emit(&scene);
+    let endless = endless.as_deref();
     let (has_paths, has_photons) = (scene.plan().unreachable.is_empty(), scene.stage().is_none());
     stage("energy");
     let balance = energy(&scene, seed, effort);
     let steps = balance.as_ref().map_or(1.0, |e| e.steps);
-    let balance = examined.keep("energy", balance);
+    let balance = examined.keep("energy", balance, endless);
     checks.extend(balance.as_ref().map(conserved));
     let with_maps = if has_paths { MAPS_PATHS } else { MAPS_LIGHT };
     let other = pair(text, &scene, changed_by);
@@ -230,15 +243,15 @@ fn once(
     let (needs_maps, needs_other) = (has_photons && is_wanted(with_maps), is_wanted(&with_other));
     let by_paths = has_paths.then(|| {
         stage("paths");
-        examined.keep("paths", paths(&scene, &camera, seed, effort))
+        examined.keep("paths", paths(&scene, &camera, seed, effort), None)
     });
     let by_light = (has_photons && (!has_paths || is_wanted(LIGHT_PATHS))).then(|| {
         stage("light");
-        examined.keep("light", light(&scene, &camera, seed, effort))
+        examined.keep("light", light(&scene, &camera, seed, effort), endless)
     });
     let by_maps = needs_maps.then(|| {
         stage("maps");
-        examined.keep("maps", maps(&scene, &camera, seed, effort, steps))
+        examined.keep("maps", maps(&scene, &camera, seed, effort, steps), endless)
     });
     let (by_paths, by_light, by_maps) = (by_paths.flatten(), by_light.flatten(), by_maps.flatten());
     let scatters = |layer: Layer| layer != Layer::Emission;
@@ -269,7 +282,9 @@ fn once(
                 }
                 false => (by_light, light(&other.scene, camera, seed ^ (1 << 41), effort)),
             };
-            if let (Some(first), Some(second)) = (first, examined.keep(&with_other, second)) {
+            let endless = cannot_emit(&other.scene).filter(|_| !has_paths);
+            let second = examined.keep(&with_other, second, endless.as_deref());
+            if let (Some(first), Some(second)) = (first, second) {
                 let second = if other.is_mirrored { second.flipped() } else { second };
                 checks.push(unbiased(&with_other, &second, &first, |_| true));
             }
@@ -277,4 +292,43 @@ fn once(
     }
     examined.summarize(&checks);
     Ok(Once { checks, examined })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A refusal is an alarm at any level, unless it is the one of physics, by its words.
+    #[test]
+    fn a_refusal_is_an_alarm_unless_it_is_physics() {
+        let refused = |text: &str| -> Result<(), Failure> { Err(Failure::Refused(text.to_string())) };
+        let mut examined = Examined::default();
+        assert_eq!(examined.keep("maps", refused("no end"), Some("no end")), None);
+        assert_eq!((examined.refused.as_slice(), examined.alarms.len()), (&["maps: no end".to_string()][..], 0));
+        for allowed in [None, Some("no end")] {
+            let mut examined = Examined::default();
+            assert_eq!(examined.keep("maps", refused("the step is 0"), allowed), None);
+            assert_eq!((examined.refused.len(), examined.alarms.len()), (0, 1));
+            assert_eq!(examined.alarms[0].p(), 0.0);
+            assert_eq!(examined.alarms[0].lines(), ["maps: refused: the step is 0"]);
+        }
+    }
+
+    /// A medium without end that emits: energy, light tracing and maps refuse it in words, and that is no alarm.
+    #[test]
+    fn a_glow_without_end_is_refused_and_no_alarm() {
+        let table = toml::from_str(
+            r#"
+            camera = { position = [0, 0, -4], look_at = [0, 0, 0], fov = 50, width = 16, height = 12 }
+            regions = [{ shape = { slab = { top = 0, thickness = 2 } }, sigma_t = 1, albedo = 0.5, g = 0, emission = 1 }]
+            "#,
+        );
+        let text = SceneText { table: table.unwrap(), ..SceneText::default() };
+        let effort = Effort { steps: 2e4, ..Effort::default() };
+        let examined = examine(&text, 1, &effort, &|_| {}).unwrap();
+        assert!(examined.alarms.is_empty(), "{:?}", examined.alarms);
+        let refused: Vec<&str> =
+            examined.refused.iter().map(|line| line.split(':').next().unwrap()).collect();
+        assert_eq!(refused, ["energy", "light", "maps"]);
+    }
 }

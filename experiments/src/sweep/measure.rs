@@ -173,6 +173,15 @@ pub struct Effort {
     pub steps: f64,
     /// CPU seconds after which a method is stopped; never if none.
     pub seconds: Option<f64>,
+    /// Factor on what paths make: 1, but in a negative control.
+    pub control: f64,
+}
+
+impl Default for Effort {
+    /// As much as nobody stops, and nothing wrong with it.
+    fn default() -> Self {
+        Effort { steps: 0.0, seconds: None, control: 1.0 }
+    }
 }
 
 /// Independent repetitions of paths and of light tracing.
@@ -356,7 +365,7 @@ pub fn paths(scene: &Scene, camera: &Camera, seed: u64, effort: &Effort) -> Resu
     let within = scene.interior_at(camera.position());
     let sample = |ray: Ray, stream: &mut Stream| {
         let (layers, rays) = path::layers(scene, ray, None, within, stream);
-        (layers, rays.total() as f64 + cost(&stream.work))
+        (layers * effort.control, rays.total() as f64 + cost(&stream.work))
     };
     let on = (scene, &quarters);
     in_batches(on, seed, effort.steps, &clock, &sample)

@@ -14,7 +14,8 @@
 //! - **Energy by channel**: photons carry the power of the lights, and what is absorbed and escapes is what was emitted.
 //! - **Photon maps** as the command reads them, with N and with 8 N photons, against paths. Layers that read no map are
 //!   unbiased and tested as such. The error of the others must shrink with the radius, below.
-//! - **Failures**: an error that is no refusal in words, a panic, a history without end.
+//! - **Failures**: an error, a panic, a history without end. A valid scene is refused by no method, with two exceptions: a
+//!   camera that is shut in sees nothing by any method, and photons cannot start in a medium that emits and has no end.
 //!
 //! # Criteria
 //!

@@ -5,7 +5,7 @@ use super::examine::{Alarm, Examined, examine};
 use super::settings::Settings;
 use super::shrink::shrunk;
 use super::text::SceneText;
-use crate::harness::{duration, one_line, program_digest, say};
+use crate::harness::{caught, check_folder, check_later, duration, guarded, one_line, program_digest, say};
 use anyhow::{Context, bail};
 use clap::Parser;
 use cpu_time::ProcessTime;
@@ -16,7 +16,8 @@ use std::path::Path;
 use std::process::{Command, ExitCode, Stdio};
 use std::sync::{Arc, Mutex};
 use std::time::{Duration, Instant};
-use turbid::output::{print, write_atomically};
+use turbid::input::read_text;
+use turbid::output::{end_on_signal, print, write_atomically};
 use turbid::stats::holm;
 
 /// Family-wise level of a run.
@@ -51,8 +52,25 @@ pub struct Record {
     pub smallest: Option<String>,
 }
 
+/// Records of scenes are no larger.
+const MOST_OF_A_RECORD: u64 = 1 << 26;
+/// Exit code of a scene's process that was ended by a signal: [`end_on_signal`].
+const INTERRUPTED: i32 = 130;
+
+impl Record {
+    /// That of a scene which ended a method, or the whole process.
+    fn broken(seed: u64, check: &str, text: &str) -> Self {
+        let found = Examined { alarms: vec![Alarm::failure(check, text)], ..Examined::default() };
+        Record { seed, found, ..Record::default() }
+    }
+}
+
 /// Runs the sweep as a program.
 pub fn main() -> ExitCode {
+    guarded("sweep", unguarded)
+}
+
+fn unguarded() -> ExitCode {
     let settings = match Settings::try_parse() {
         Ok(settings) => settings,
         Err(error) if !error.use_stderr() => {
@@ -63,6 +81,13 @@ pub fn main() -> ExitCode {
             return ExitCode::from(2);
         }
     };
+    let kept = match settings.seed.is_some() || settings.scene.is_some() {
+        true => "nothing is kept".to_string(),
+        false => {
+            format!("finished scenes are kept in {}, and the same command goes on from there", settings.out.display())
+        }
+    };
+    end_on_signal(move || format!("sweep: stopped by a signal; {kept}"));
     match run(&settings) {
         Ok(code) => ExitCode::from(code),
         Err(error) => {
@@ -74,7 +99,10 @@ pub fn main() -> ExitCode {
 
 fn run(settings: &Settings) -> anyhow::Result<u8> {
     if let Some(path) = &settings.child {
-        let record = examined(settings)?;
+        let record = match caught(|| examined(settings)) {
+            Ok(examined) => examined?,
+            Err(panic) => Record::broken(settings.seed.unwrap_or(0), "scene", &panic),
+        };
         let text = serde_json::to_vec(&record)?;
         write_atomically(path, |out| out.write_all(&text))?;
         return Ok(0);
@@ -125,8 +153,8 @@ fn examined(settings: &Settings) -> anyhow::Result<Record> {
             if ProcessTime::now().as_duration().as_secs_f64() - since < most {
                 continue;
             }
-            let alarm = Alarm::failure(name, format!("does not end: more than {most:.0} s of CPU time"));
-            let found = Examined { alarms: vec![alarm], ..Examined::default() };
+            let text = format!("does not end: more than {most:.0} s of CPU time");
+            let found = Record::broken(0, name, &text).found;
             let seconds = ProcessTime::now().as_duration().as_secs_f64();
             let record = Record { found, seconds, ..template };
             let text = serde_json::to_vec(&record).unwrap_or_default();
@@ -139,7 +167,13 @@ fn examined(settings: &Settings) -> anyhow::Result<Record> {
             *state = (name.to_string(), ProcessTime::now().as_duration().as_secs_f64());
         }
     };
-    let found = examine(&text, seed, &effort, &tell)?;
+    let found = match caught(|| examine(&text, seed, &effort, &tell)) {
+        Ok(found) => found?,
+        Err(panic) => {
+            let name = stage.lock().map(|state| state.0.clone()).unwrap_or_default();
+            Record::broken(seed, &name, &panic).found
+        }
+    };
     let seconds = ProcessTime::now().as_duration().as_secs_f64();
     Ok(Record { found, seconds, ..record })
 }
@@ -150,27 +184,27 @@ fn in_child(settings: &Settings, seed: u64, scene: Option<&Path>) -> anyhow::Res
     let path = folder.path().join("record.json");
     let mut command = Command::new(std::env::current_exe()?);
     command.env("RAYON_NUM_THREADS", "1").args(["--effort", &settings.effort.to_string()]);
+    command.args(["--control", &settings.control.to_string()]);
     command.args(["--seed", &seed.to_string()]).arg("--child").arg(&path);
     if let Some(scene) = scene {
         command.arg("--scene").arg(scene);
     }
     let output = command.stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::piped()).output()?;
     if output.status.success() {
-        let text = std::fs::read_to_string(&path).context("a scene left no record")?;
+        let text = read_text(&path, MOST_OF_A_RECORD).context("a scene left no record")?;
         return Ok(serde_json::from_str(&text)?);
     }
     let said = String::from_utf8_lossy(&output.stderr).trim().lines().take(3).collect::<Vec<_>>().join("; ");
     if output.status.code() == Some(2) {
         bail!("seed {seed}: {}", said.trim_start_matches("error: "));
     }
-    let alarm = Alarm::failure("process", format!("ended by {}: {said}", output.status));
+    if output.status.code() == Some(INTERRUPTED) {
+        // Most often the signal was for all processes, and this one is about to end by its own last word.
+        std::thread::sleep(Duration::from_secs(1));
+        bail!("seed {seed}: stopped by a signal");
+    }
     let what = drawn(seed).map_or_else(|_| String::new(), |(_, (what, _))| what);
-    Ok(Record {
-        seed,
-        what,
-        found: Examined { alarms: vec![alarm], ..Examined::default() },
-        ..Record::default()
-    })
+    Ok(Record { what, ..Record::broken(seed, "process", &format!("ended by {}: {said}", output.status)) })
 }
 
 /// Alarms that are not waiting for the whole run's verdict.
@@ -213,6 +247,9 @@ fn one(settings: &Settings) -> anyhow::Result<u8> {
         Some(path) => SceneText::read(path)?,
         None => drawn(seed)?.0,
     };
+    if !settings.no_shrink {
+        check_later(&settings.out.join("failures"))?;
+    }
     let mut record = in_child(settings, seed, settings.scene.as_deref())?;
     record.smallest = shrink(settings, &record, &text)?;
     let verdict = verdict(&record, LEVEL);
@@ -246,7 +283,7 @@ fn one(settings: &Settings) -> anyhow::Result<u8> {
         )
     })?;
     if let Some(path) = &record.smallest {
-        let smallest = std::fs::read_to_string(path).unwrap_or_default();
+        let smallest = read_text(Path::new(path), MOST_OF_A_RECORD).unwrap_or_default();
         print(|out| {
             write!(out, "the smallest scene that shows it, {path}:\n{smallest}\n")?;
             writeln!(out, "again: cargo run --release --bin sweep -- --seed {seed} --scene {path}")
@@ -292,11 +329,11 @@ fn verdict(record: &Record, level: f64) -> Verdict {
 
 /// All seeds.
 fn many(settings: &Settings) -> anyhow::Result<u8> {
-    std::fs::create_dir_all(&settings.out)
-        .with_context(|| format!("cannot make {}", settings.out.display()))?;
-    let header = format!("effort {}, program {}", settings.effort, program_digest()?);
+    check_folder(&settings.out, &["record.json"])?;
+    let wrong = if settings.control == 1.0 { String::new() } else { format!(", control {}", settings.control) };
+    let header = format!("effort {}{wrong}, program {}", settings.effort, program_digest()?);
     let kept = |seed: u64| -> Option<Record> {
-        let text = std::fs::read_to_string(settings.out.join(format!("{seed}.json"))).ok()?;
+        let text = read_text(&settings.out.join(format!("{seed}.json")), MOST_OF_A_RECORD).ok()?;
         let record: Record = serde_json::from_str(&text).ok()?;
         (settings.reuse || record.header == header).then_some(record)
     };

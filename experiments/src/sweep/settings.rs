@@ -38,6 +38,9 @@ pub struct Settings {
     /// Print the scene of --seed, and nothing else
     #[arg(long, requires = "seed")]
     pub print: bool,
+    /// Negative control: paths are too bright by this factor, which every scene that they see must show
+    #[arg(long, value_name = "FACTOR", default_value_t = 1.0, hide_default_value = true)]
+    pub control: f64,
     /// Examine in this process and write what was found here
     #[arg(long, hide = true)]
     pub child: Option<PathBuf>,
@@ -61,13 +64,19 @@ impl Settings {
     /// How much each method may do.
     ///
     /// # Errors
-    /// for an effort that is not a number above 0
+    /// for an effort or a factor that is not a number above 0
     pub fn effort(&self) -> anyhow::Result<Effort> {
         anyhow::ensure!(
             self.effort > 0.0 && self.effort <= 1e4,
             "--effort is {}; allowed: above 0, to 10000",
             self.effort
         );
-        Ok(Effort { steps: STEPS * self.effort, seconds: Some(SECONDS * self.effort.max(1.0)) })
+        anyhow::ensure!(
+            self.control > 0.0 && self.control <= 1e4,
+            "--control is {}; allowed: above 0, to 10000",
+            self.control
+        );
+        let seconds = Some(SECONDS * self.effort.max(1.0));
+        Ok(Effort { steps: STEPS * self.effort, seconds, control: self.control })
     }
 }

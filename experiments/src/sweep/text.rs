@@ -4,8 +4,12 @@ use anyhow::Context;
 use std::collections::BTreeMap;
 use std::path::Path;
 use toml::{Table, Value};
+use turbid::input::{read, read_text};
 use turbid::output::write_atomically;
 use turbid::scene::{Scene, SceneFile};
+
+/// Larger files of a scene are refused.
+const MOST_BYTES: u64 = 1 << 28;
 
 /// A scene file before it is read, and what stands beside it: meshes, grids, tables.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -23,7 +27,7 @@ impl SceneText {
     /// a file that cannot be read, or is no TOML
     pub fn read(path: &Path) -> anyhow::Result<Self> {
         let text =
-            std::fs::read_to_string(path).with_context(|| format!("cannot read {}", path.display()))?;
+            read_text(path, MOST_BYTES).with_context(|| format!("cannot read {}", path.display()))?;
         let table: Table =
             toml::from_str(&text).map_err(|e| anyhow::anyhow!("{}: {}", path.display(), e.message()))?;
         let folder = path.parent().unwrap_or(Path::new("."));
@@ -31,7 +35,7 @@ impl SceneText {
         named_files(&Value::Table(table.clone()), &mut names);
         for name in names {
             let path = folder.join(&name);
-            let bytes = std::fs::read(&path).with_context(|| format!("cannot read {}", path.display()))?;
+            let bytes = read(&path, MOST_BYTES).with_context(|| format!("cannot read {}", path.display()))?;
             files.insert(name, bytes);
         }
         Ok(SceneText { table, files })
