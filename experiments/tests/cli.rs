@@ -19,6 +19,7 @@ fn bad_values_give_one_line_and_exit_2() {
         &["--quick", "--full"],
         &["--no-such-flag"],
         &["--only", "nothing", "--out", out],
+        &["--only", "rates", "--photons", "1e6", "--out", out],
     ] {
         let run = study().args(bad).assert().code(2).stdout("");
         let text = String::from_utf8(run.get_output().stderr.clone()).unwrap();

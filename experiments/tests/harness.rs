@@ -8,8 +8,8 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 use turbid_experiments::harness::{
-    CellId, CellOutput, Claim, Closing, Estimate, Experiment, Outcome, Preset, Replot, Section, SectionReport,
-    Settings, Study, Unit, Verdict, replot, run,
+    CellId, CellOutput, Claim, Closing, Estimate, Experiment, Outcome, Preset, Replot, Section,
+    SectionReport, Settings, Study, Unit, Verdict, replot, run,
 };
 
 fn settings(out: &Path) -> Settings {
@@ -235,7 +235,9 @@ fn a_panic_in_a_cell_is_told_with_its_name() {
     let outcome = run(&study, &settings(folder.path())).unwrap();
     let said = failure(&outcome).unwrap();
     assert!(said.starts_with("cell slab-0000") && said.contains(" of fake: internal error"), "{said}");
-    assert!(said.contains(": replicate ") && outcome.sections[0].section.summary[0].contains("Please report it"));
+    assert!(
+        said.contains(": replicate ") && outcome.sections[0].section.summary[0].contains("Please report it")
+    );
 }
 
 /// Maps that share their random numbers are not independent, however many there are: measured twice, or all the same.
@@ -327,6 +329,25 @@ fn a_folder_holds_one_study_at_a_time() {
     assert!(error.starts_with("another study is at work in "), "{error}");
     drop(held);
     assert_eq!(run(&fake::study(), &settings(folder.path())).unwrap().measured, 64);
+}
+
+/// A map that cannot fit is refused in a line, with the scale that would, before anything is predicted.
+#[cfg(target_os = "linux")]
+#[test]
+fn what_does_not_fit_is_refused_before_the_work() {
+    let large = Experiment {
+        cells: |settings| vec![CellId::new("a", 0, 1.0).holding(settings.photons(1_000_000, 1))],
+        predict: |_| panic!("predicted"),
+        ..fake::FAKE
+    };
+    let folder = tempfile::tempdir().unwrap();
+    let study = Study { experiments: &[large], ..fake::study() };
+    let scaled = |photon_scale: f64| run(&study, &Settings { photon_scale, ..settings(folder.path()) });
+    let error = scaled(1e6).unwrap_err().to_string();
+    assert!(error.starts_with("a map of 1000000000000 photons takes "), "{error}");
+    let allowed: f64 = error.rsplit(' ').next().unwrap().replace(',', "").parse().unwrap();
+    assert!(allowed > 1.0 && allowed < 1e6, "{error}");
+    assert!(failure(&scaled(1.0).unwrap()).unwrap().ends_with("predicted"));
 }
 
 /// What cannot be written, or is no file, is said in a line before anything is measured.

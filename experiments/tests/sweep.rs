@@ -56,7 +56,12 @@ fn fixed_scenes_agree() {
         let is_shut_in = examined.refused.iter().any(|line| line.starts_with("camera: "));
         let has_cell = scene(*seed).0.table.contains_key("cell");
         assert_eq!(has_maps, !is_endless && !is_shut_in && !has_cell, "seed {seed}: {:?}", examined.refused);
-        assert_eq!(examined.refused.is_empty(), !is_endless && !is_shut_in, "seed {seed}: {:?}", examined.refused);
+        assert_eq!(
+            examined.refused.is_empty(),
+            !is_endless && !is_shut_in,
+            "seed {seed}: {:?}",
+            examined.refused
+        );
     }
     let alarms: Vec<(u64, &Alarm)> =
         examined.iter().flat_map(|(seed, _, e)| e.alarms.iter().map(move |a| (*seed, a))).collect();
@@ -151,7 +156,10 @@ fn a_wrong_method_is_an_alarm_to_the_end() {
     let seeds = ["--seeds", "1000..1002", "--out", out, "--no-shrink", "--effort"];
     let (code, said, errors) = ran(&[&seeds[..], &["0.02", "--control", "8"]].concat());
     assert_eq!(code, Some(1), "{said}");
-    assert!(said.contains("ALARM: seed 100") && errors.contains("again, four times the samples"), "{said}{errors}");
+    assert!(
+        said.contains("ALARM: seed 100") && errors.contains("again, four times the samples"),
+        "{said}{errors}"
+    );
     let (code, said, errors) = ran(&[&seeds[..], &["1e-4"]].concat());
     assert_eq!((code, errors.as_str()), (Some(3), ""), "{said}");
     assert!(said.contains("0 alarms") && said.contains("undecided: seed 1000: "), "{said}");

@@ -35,7 +35,9 @@ pub fn cells(settings: &Settings) -> Vec<CellId> {
         for (photons, maps) in field.sizes(settings) {
             // A history of all orders has a few collisions, and each photon is stored, sorted and gathered.
             let cost = photons as f64 * if field.has_clusters() { 4.0 } else { 1.0 };
-            cells.extend(CellId::replicates(&Case::group(field, photons), maps, cost));
+            cells.extend(
+                CellId::replicates(&Case::group(field, photons), maps, cost).map(|c| c.holding(photons)),
+            );
         }
         if field.has_clusters() {
             let (batches, paths) = field.paths;

@@ -14,7 +14,8 @@ pub fn cells(settings: &Settings) -> Vec<CellId> {
     let mut cells = Vec::new();
     for (photons, maps) in shaft::sizes(settings) {
         // Whatever the photons, a map is asked a few thousand times.
-        cells.extend(CellId::replicates(&Case::group(photons), maps, photons as f64 + 10_000.0));
+        let maps = CellId::replicates(&Case::group(photons), maps, photons as f64 + 10_000.0);
+        cells.extend(maps.map(|cell| cell.holding(photons)));
     }
     cells.extend(waves::cells(settings));
     cells

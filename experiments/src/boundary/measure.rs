@@ -15,7 +15,9 @@ pub fn cells(settings: &Settings) -> Vec<CellId> {
     for field in &FIELDS {
         for (photons, maps) in field.sizes(settings) {
             let cost = photons as f64 * field.stored_per_photon();
-            cells.extend(CellId::replicates(&Case::group(field, photons), maps, cost));
+            cells.extend(
+                CellId::replicates(&Case::group(field, photons), maps, cost).map(|c| c.holding(photons)),
+            );
         }
     }
     cells.extend(section::cells(settings));

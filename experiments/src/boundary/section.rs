@@ -24,6 +24,7 @@ const PHOTONS: u64 = 20_000;
 pub fn cells(settings: &Settings) -> impl Iterator<Item = CellId> {
     let photons = settings.photons(PHOTONS, PHOTONS);
     CellId::replicates(GROUP, settings.pick(64, 512), 6.0 * photons as f64)
+        .map(move |cell| cell.holding(photons))
 }
 
 /// The places of one quadrant that are in the sphere: column, row and distance from the centre.

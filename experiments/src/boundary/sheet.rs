@@ -145,7 +145,9 @@ fn bright(settings: &Settings) -> u64 {
 
 /// The cells.
 pub fn cells(settings: &Settings) -> impl Iterator<Item = CellId> {
-    CellId::replicates(GROUP, settings.pick(128, 1024), 4.0 * bright(settings) as f64)
+    let photons = bright(settings);
+    CellId::replicates(GROUP, settings.pick(128, 1024), 4.0 * photons as f64)
+        .map(move |cell| cell.holding(photons))
 }
 
 /// The two halves of the box, bright above and dark below z = 0, as one map in units of the bright field.

@@ -68,7 +68,9 @@ fn photons(settings: &Settings) -> u64 {
 
 /// The cells.
 pub fn cells(settings: &Settings) -> impl Iterator<Item = CellId> {
-    CellId::replicates(GROUP, settings.pick(288, 1024), 2.0 * photons(settings) as f64)
+    let photons = photons(settings);
+    CellId::replicates(GROUP, settings.pick(288, 1024), 2.0 * photons as f64)
+        .map(move |cell| cell.holding(photons))
 }
 
 /// Measures one map: mean over its probes, and their variance over that expected in a whole ball.

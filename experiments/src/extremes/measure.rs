@@ -49,7 +49,7 @@ pub fn large_cases(settings: &Settings) -> anyhow::Result<Vec<(String, f64, f64)
 pub fn cells(settings: &Settings) -> Vec<CellId> {
     let mut cells = sampled::cells(settings);
     cells.push(CellId::new(CHECKED, 0, 2e6 * settings.photon_scale));
-    cells.push(CellId::new(LARGE, 0, large(settings) as f64));
+    cells.push(CellId::new(LARGE, 0, large(settings) as f64).holding(large(settings)));
     cells.extend(storage::cells(settings));
     cells.extend(stretched::cells(settings));
     cells

@@ -98,6 +98,47 @@ fn checked(message: String, file: Option<&str>) -> Verdict {
     }
 }
 
+/// The same of what the library or the laboratory says, as it is before a program makes one line of it: line feeds and
+/// control characters are not its own, but at most those of the input, which it may quote.
+fn said(message: &str, quotable: &str, file: Option<&str>) -> Verdict {
+    match message.chars().find(|c| c.is_control() && !quotable.contains(*c)) {
+        Some(c) => Verdict::Failed(format!("a message with {c:?} of its own: {message}")),
+        None => checked(one_line(message), file),
+    }
+}
+
+/// What a message may quote of a file: its text, of which readers take a line at a time.
+fn quotable(bytes: &[u8]) -> String {
+    String::from_utf8_lossy(bytes).replace('\n', "")
+}
+
+/// The same of a scene: the keys and strings that are written in it.
+fn strings(text: &str) -> String {
+    fn add(value: &toml::Value, all: &mut String) {
+        match value {
+            toml::Value::String(text) => all.push_str(text),
+            toml::Value::Table(table) => table.iter().for_each(|(key, inner)| {
+                all.push_str(key);
+                add(inner, all);
+            }),
+            toml::Value::Array(list) => list.iter().for_each(|inner| add(inner, all)),
+            _ => {}
+        }
+    }
+    let mut all = String::new();
+    if let Ok(table) = toml::from_str(text) {
+        add(&toml::Value::Table(table), &mut all);
+    }
+    all
+}
+
+/// The program `turbid` beside this one, or beside the folder that this one is in.
+pub fn program() -> Option<PathBuf> {
+    let own = std::env::current_exe().ok()?;
+    let name = format!("turbid{}", std::env::consts::EXE_SUFFIX);
+    own.ancestors().skip(1).take(2).map(|folder| folder.join(&name)).find(|path| path.is_file())
+}
+
 const SEED: u64 = 7;
 
 impl Workbench {
@@ -112,10 +153,7 @@ impl Workbench {
         }
         copy(&seeds::gallery(), folder.path())?;
         std::fs::write(folder.path().join("drawn.toml"), DRAWN)?;
-        let own = std::env::current_exe()?;
-        let beside = own.ancestors().skip(1).take(2).map(|folder| folder.join("turbid"));
-        let program = beside.into_iter().find(|path| path.is_file());
-        Ok(Workbench { folder, program, thoroughness })
+        Ok(Workbench { folder, program: program(), thoroughness })
     }
 
     /// Tries one input.
@@ -151,49 +189,53 @@ impl Workbench {
         };
         match kind {
             Kind::Scenes => self.scene(bytes),
-            Kind::Vol => self.scene_of(&fog(medium), &name),
-            Kind::Tables => self.scene_of(&fog(table), &name),
+            Kind::Vol => self.scene_of(&fog(medium), &quotable(bytes), Some(&name)),
+            Kind::Tables => self.scene_of(&fog(table), &quotable(bytes), Some(&name)),
             Kind::Png => {
                 let square = "rectangle = { corner = [-1, -1, 0], u = [2, 0, 0], v = [0, 2, 0] }";
-                self.scene_of(&object(square, "{ image = { file = \"input.png\" } }"), &name)
+                let scene = object(square, "{ image = { file = \"input.png\" } }");
+                self.scene_of(&scene, &quotable(bytes), Some(&name))
             }
-            Kind::Obj => self.scene_of(&object("mesh = { file = \"input.obj\" }", "0.5"), &name),
+            Kind::Obj => {
+                let scene = object("mesh = { file = \"input.obj\" }", "0.5");
+                self.scene_of(&scene, &quotable(bytes), Some(&name))
+            }
             Kind::Cells => match read_cell(&path) {
                 Ok(_) => Verdict::Accepted,
-                Err(error) => checked(one_line(&format!("{error:#}")), Some(&name)),
+                Err(error) => said(&format!("{error:#}"), &quotable(bytes), Some(&name)),
             },
             Kind::Figures => match try_redraw(&path) {
                 Ok(_) => Verdict::Accepted,
-                Err(error) => checked(one_line(&format!("{error:#}")), Some(&name)),
+                Err(error) => said(&format!("{error:#}"), &quotable(bytes), Some(&name)),
             },
-            Kind::Arguments => self.command(bytes),
+            Kind::Arguments => self.command(bytes, None),
         }
     }
 
-    /// A scene file, as it is read by the library; one in thirty by the program too, which says where it is wrong.
+    /// A scene file, as it is read by the library; one in ten by the program too, which says where it is wrong.
     fn scene(&self, bytes: &[u8]) -> Verdict {
-        if bytes.len() % 30 == 7
-            && let refused @ Verdict::Failed(_) = self.command(b"check\ninput.toml")
+        if bytes.len() % 10 == 7
+            && let refused @ Verdict::Failed(_) = self.command(b"check\ninput.toml", Some("input.toml"))
         {
             return refused;
         }
         let Ok(text) = std::str::from_utf8(bytes) else { return Verdict::Refused("not UTF-8".to_string()) };
-        self.scene_of(text, "")
+        self.scene_of(text, &strings(text), None)
     }
 
-    /// A scene, and all that can be asked of it; what its file is refused for names `file`.
-    fn scene_of(&self, text: &str, file: &str) -> Verdict {
+    /// A scene, and all that can be asked of it; what its file is refused for names `file`, and may quote something.
+    fn scene_of(&self, text: &str, quotable: &str, file: Option<&str>) -> Verdict {
         let parsed: SceneFile = match toml::from_str(text) {
             Ok(parsed) => parsed,
             // The program makes one line of these.
-            Err(error) => return Verdict::Refused(error.message().replace('\n', " ")),
+            Err(error) => return checked(one_line(error.message()), None),
         };
         let scene = match parsed.scene(self.folder.path()) {
             Ok(scene) => scene,
-            Err(error) => return checked(one_line(&error.to_string()), Some(file)),
+            Err(error) => return said(&error.to_string(), quotable, file),
         };
         if let Err(error) = check_end(&scene) {
-            return checked(one_line(&error.to_string()), None);
+            return said(&error.to_string(), quotable, None);
         }
         let camera = scene.camera().and_then(|camera| camera.with_size(4, 4).ok());
         let camera = camera.filter(|camera| check_camera(&scene, camera).is_ok());
@@ -227,15 +269,15 @@ impl Workbench {
             if let turbid::Error::NonFinite { .. } = error {
                 return Verdict::Failed(format!("{of}: {error}"));
             }
-            if let failed @ Verdict::Failed(_) = checked(one_line(&error.to_string()), None) {
+            if let failed @ Verdict::Failed(_) = said(&error.to_string(), quotable, None) {
                 return failed;
             }
         }
         Verdict::Accepted
     }
 
-    /// A command line of the program.
-    fn command(&self, bytes: &[u8]) -> Verdict {
+    /// A command line of the program; what it is refused for names `file`.
+    fn command(&self, bytes: &[u8], file: Option<&str>) -> Verdict {
         let Some(program) = &self.program else {
             return Verdict::Refused("the program turbid is not there".to_string());
         };
@@ -275,7 +317,7 @@ impl Workbench {
             Some(2) => {
                 let line = said.strip_suffix('\n').unwrap_or(&said);
                 match line.strip_prefix("turbid: error: ") {
-                    Some(message) => checked(message.to_string(), None),
+                    Some(message) => checked(message.to_string(), file),
                     None => Verdict::Failed(format!("an error that is none of turbid's: {line}")),
                 }
             }
@@ -374,4 +416,29 @@ fn measured(scene: &Scene) -> turbid::Result<()> {
         treatment: Treatment::Clipped,
     };
     by_photons(scene, &settings, &NoProgress).map(|_| ())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// What a message must not be is found in what the library says and in what the program prints.
+    #[test]
+    fn messages_are_looked_at_as_they_are() {
+        let failed = |verdict: Verdict| verdict.is_failure();
+        assert!(failed(said("two\nlines", "", None)) && failed(said("red \u{1b}[31m", "x", None)));
+        assert!(failed(said("", "", None)) && failed(said("no file", "", Some("input.vol"))));
+        assert_eq!(
+            said("interior \u{1b}x", "a\u{1b}x", None),
+            Verdict::Refused("interior \\u{1b}x".to_string())
+        );
+        assert!(
+            failed(checked("two\nlines".to_string(), None)) && failed(checked("\u{7}".to_string(), None))
+        );
+        assert!(!failed(checked("input.toml: no light".to_string(), Some("input.toml"))));
+        assert!(failed(checked("no light".to_string(), Some("input.toml"))));
+        // Line feeds of a file stand between its lines; those of a scene may be in a name.
+        assert!(failed(said("two\nlines", &quotable(b"v 1\nf 2\n"), None)));
+        assert_eq!(strings("a = [1, { name = \"x\\ny\" }]\n\"k\\u001b\" = 2\n"), "anamex\nyk\u{1b}");
+    }
 }

@@ -76,7 +76,8 @@ fn unguarded() -> ExitCode {
         }
     };
     end_on_signal(|| {
-        "fuzz: stopped by a signal; no file is kept: --seed, --first and --count try again what failed".to_string()
+        "fuzz: stopped by a signal; no file is kept: --seed, --first and --count try again what failed"
+            .to_string()
     });
     match run(&arguments) {
         Ok(code) => ExitCode::from(code),
@@ -103,6 +104,15 @@ fn run(arguments: &Arguments) -> anyhow::Result<u8> {
         None => std::thread::available_parallelism().map_or(1, usize::from),
     };
     check_later(&arguments.out)?;
+    if judge::program().is_none() {
+        let missing = "the program turbid is not beside this one";
+        if only == Some(Kind::Arguments) {
+            bail!("{missing}; allowed: cargo build --release, then the same again");
+        }
+        say(&format!(
+            "fuzz: note: {missing}, so that no command line is tried: cargo build --release makes it"
+        ));
+    }
     let found = batch::run(only, seed, range, jobs)?;
     report(arguments, &found)
 }
@@ -116,7 +126,8 @@ fn one_file(file: &Path, only: Option<Kind>, is_child: bool) -> anyhow::Result<u
     let Some(kind) = only.or_else(|| Kind::of_file(name)) else {
         bail!("{}: of no kind that its name tells; name it with --only", file.display());
     };
-    let bytes = turbid::input::read(file, MOST_BYTES).with_context(|| format!("cannot read {}", file.display()))?;
+    let bytes =
+        turbid::input::read(file, MOST_BYTES).with_context(|| format!("cannot read {}", file.display()))?;
     let input = Input { kind, bytes };
     let verdict = if is_child { batch::watched(&input)? } else { batch::alone(&input)? };
     print(|out| writeln!(out, "{verdict}")).context("standard output")?;

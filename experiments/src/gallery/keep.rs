@@ -111,7 +111,8 @@ impl Kept {
 
     /// Reads a file of a picture of so many pixels.
     pub fn read(path: &Path, pixels: usize) -> anyhow::Result<Self> {
-        let bytes = turbid::input::read(path, MOST_BYTES).with_context(|| format!("cannot read {}", path.display()))?;
+        let bytes = turbid::input::read(path, MOST_BYTES)
+            .with_context(|| format!("cannot read {}", path.display()))?;
         Kept::parse(&bytes, pixels).with_context(|| format!("{} is no complete picture", path.display()))
     }
 

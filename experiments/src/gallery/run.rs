@@ -38,7 +38,9 @@ fn unguarded() -> ExitCode {
     };
     let cache = settings.cache().display().to_string();
     end_on_signal(move || {
-        format!("gallery: stopped by a signal; finished renders are kept in {cache}, and the same command goes on from there")
+        format!(
+            "gallery: stopped by a signal; finished renders are kept in {cache}, and the same command goes on from there"
+        )
     });
     let threads = settings.threads.map_or(0, usize::from);
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().context("cannot start threads");

@@ -32,12 +32,20 @@ pub struct CellId {
     pub replicate: u64,
     /// Work, in any unit that all cells of the study share, such as photons: for order and remaining time.
     pub cost: f64,
+    /// Photons that it holds at one time, at least; 0 where their number does not follow the settings.
+    pub held: u64,
 }
 
 impl CellId {
     /// A cell of `group` (lower case letters, digits, `.`, `_` and `-`).
     pub fn new(group: impl Into<String>, replicate: u64, cost: f64) -> Self {
-        CellId { group: group.into(), replicate, cost }
+        CellId { group: group.into(), replicate, cost, held: 0 }
+    }
+
+    /// The same, of a map of at least so many photons.
+    #[must_use]
+    pub fn holding(self, photons: u64) -> Self {
+        CellId { held: photons, ..self }
     }
 
     /// All `maps` cells of a group.

@@ -131,8 +131,8 @@ pub(super) fn write_if_changed(path: &Path, bytes: &[u8]) -> anyhow::Result<bool
 /// A run that measured nothing keeps the record of the run that did; late predictions stay on record until every
 /// cell is measured anew.
 pub(super) fn keep_or_write(path: &Path, mut new: Provenance) -> anyhow::Result<Provenance> {
-    let old = read_if_there(path, MOST_NOTES)?
-        .and_then(|bytes| serde_json::from_slice::<Provenance>(&bytes).ok());
+    let old =
+        read_if_there(path, MOST_NOTES)?.and_then(|bytes| serde_json::from_slice::<Provenance>(&bytes).ok());
     if let Some(old) = old {
         let is_same = old.command == new.command && old.program == new.program && old.cells == new.cells;
         if is_same && new.measured == 0 && !new.late_predictions {

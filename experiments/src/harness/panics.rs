@@ -67,7 +67,8 @@ fn words(payload: &(dyn Any + Send)) -> String {
 
 /// File and line; of a file elsewhere the package's folder and what is below.
 fn place(info: &PanicHookInfo) -> String {
-    info.location().map_or("an unknown place".to_string(), |l| format!("{}:{}", in_package(l.file()), l.line()))
+    info.location()
+        .map_or("an unknown place".to_string(), |l| format!("{}:{}", in_package(l.file()), l.line()))
 }
 
 /// A file's name without the folders above its package: reports hold no absolute paths.
@@ -87,6 +88,45 @@ mod tests {
         let said = caught(|| panic!("{} of 2", 3)).map(|()| 0).unwrap_err();
         assert!(said.starts_with("internal error") && said.ends_with(": 3 of 2"), "{said}");
         assert_eq!(CATCHING.load(Ordering::SeqCst), 0);
+    }
+
+    const PANIC_IN: &str = "TURBID_TEST_PANIC";
+
+    /// Not a test by itself: the process that the next one starts.
+    #[test]
+    fn child_that_panics() {
+        if std::env::var_os(PANIC_IN).is_some() {
+            let code = guarded("child", || {
+                let said = caught(|| rayon::join(|| 1, || panic!("{} on purpose\n\u{1b}", 2)));
+                say(&format!("child: {}", said.map(|_: (i32, i32)| String::new()).unwrap_or_else(|e| e)));
+                panic!("{} of 2\n\u{1b}[31m", 3)
+            });
+            std::process::exit(if code == ExitCode::from(2) { 2 } else { 1 });
+        }
+    }
+
+    /// A panic is one line with its place, and exit code 2; one that is caught is told by whoever catches it, with its place too.
+    #[test]
+    fn a_panic_is_one_line() {
+        let child = std::process::Command::new(std::env::current_exe().unwrap())
+            .args(["--exact", "harness::panics::tests::child_that_panics", "--test-threads=1"])
+            .env(PANIC_IN, "1")
+            .output()
+            .unwrap();
+        let text = String::from_utf8(child.stderr).unwrap();
+        assert_eq!(child.status.code(), Some(2), "{text}");
+        let lines: Vec<&str> = text.lines().collect();
+        assert_eq!(lines.len(), 2, "{text}");
+        let place = |line: &str, start: &str, end: &str| -> bool {
+            let inner = line.strip_prefix(start).and_then(|rest| rest.strip_suffix(end));
+            inner.is_some_and(|place| {
+                place.rsplit_once(':').is_some_and(|(file, line)| {
+                    file.ends_with("src/harness/panics.rs") && line.parse::<u32>().is_ok()
+                })
+            })
+        };
+        assert!(place(lines[0], "child: internal error at ", ": 2 on purpose \\u{1b}"), "{text}");
+        assert!(place(lines[1], "child: error: internal error at ", ": 3 of 2 \\u{1b}[31m"), "{text}");
     }
 
     #[test]

@@ -157,9 +157,6 @@ impl Section {
         let why = why.trim_end_matches('.');
         let advice =
             if why.contains("internal error") { "Please report it" } else { "More photons or maps may help" };
-        Section {
-            summary: vec![format!("No conclusion: {why}. {advice}.")],
-            ..Section::default()
-        }
+        Section { summary: vec![format!("No conclusion: {why}. {advice}.")], ..Section::default() }
     }
 }

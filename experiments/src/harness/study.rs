@@ -8,9 +8,10 @@ use super::outputs::{
 };
 use super::panics::{caught, guarded};
 use super::progress::{duration, say};
+use super::provenance::free_memory;
 use super::{
     CellId, Cells, Claim, Experiment, Judged, Prediction, Provenance, Section, Settings, Verdict, judge,
-    program_digest, replot,
+    number, program_digest, replot,
 };
 use crate::report;
 use anyhow::{Context, bail, ensure};
@@ -19,6 +20,7 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 use std::time::Instant;
 use turbid::output::{end_on_signal, print, write_atomically, write_csv};
+use turbid::photons::Photon;
 
 /// What is studied, by which program.
 #[derive(Debug, Clone)]
@@ -204,7 +206,13 @@ pub(crate) fn one_line(text: &str) -> String {
 pub fn run(study: &Study, settings: &Settings) -> anyhow::Result<Outcome> {
     let experiments = selected(study.experiments, &settings.only)?;
     let _held = lock::hold(&settings.out)?;
-    check_folder(&settings.out, &["report.html", "results.csv", "claims.csv", "timing.csv", "provenance.json"])?;
+    let planned: Vec<anyhow::Result<Vec<CellId>>> =
+        experiments.iter().map(|experiment| whole(|| plan(experiment, settings))).collect();
+    check_memory(planned.iter().flatten().flatten().map(|cell| cell.held).max().unwrap_or(0), settings)?;
+    check_folder(
+        &settings.out,
+        &["report.html", "results.csv", "claims.csv", "timing.csv", "provenance.json"],
+    )?;
     check_folder(&settings.out.join("figures"), &["figure.svg"])?;
     let cells_folder = settings.out.join("cells");
     let manifest = Manifest::new(settings, &study.program);
@@ -215,15 +223,11 @@ pub fn run(study: &Study, settings: &Settings) -> anyhow::Result<Outcome> {
     let mut predictions = Vec::new();
     let mut failures = Vec::new();
     let mut late_predictions = false;
-    for experiment in &experiments {
+    for (experiment, cells) in experiments.iter().zip(planned) {
         let folder = cells_folder.join(experiment.name);
         std::fs::create_dir_all(&folder).with_context(|| format!("cannot create {}", folder.display()))?;
-        let planned = whole(|| {
-            let cells = (experiment.cells)(settings);
-            check_names(experiment, &cells)?;
-            Ok((cells, predict(experiment, settings)?))
-        });
-        let (cells, own, failure) = match planned {
+        let predicted = cells.and_then(|cells| Ok((cells, whole(|| predict(experiment, settings))?)));
+        let (cells, own, failure) = match predicted {
             Ok((cells, own)) => (cells, own, None),
             // What has no predictions is not measured.
             Err(error) => (Vec::new(), Vec::new(), Some(format!("{error:#}"))),
@@ -330,12 +334,28 @@ fn selected(all: &[Experiment], only: &[String]) -> anyhow::Result<Vec<Experimen
     Ok(all.iter().filter(|e| only.is_empty() || only.iter().any(|name| name == e.name)).copied().collect())
 }
 
-fn check_names(experiment: &Experiment, cells: &[CellId]) -> anyhow::Result<()> {
+/// The cells of an experiment, with names of their own.
+fn plan(experiment: &Experiment, settings: &Settings) -> anyhow::Result<Vec<CellId>> {
+    let cells = (experiment.cells)(settings);
     let mut seen = BTreeSet::new();
-    for cell in cells {
+    for cell in &cells {
         ensure!(cell.is_file_safe(), "{}: the group {:?} is no name for a file", experiment.name, cell.group);
         ensure!(seen.insert(cell.id()), "{}: two cells are called {}", experiment.name, cell.id());
     }
+    Ok(cells)
+}
+
+/// Refuses a map of so many photons if not even the photons fit into the memory that is free: a tree takes more.
+fn check_memory(photons: u64, settings: &Settings) -> anyhow::Result<()> {
+    let Some(free) = free_memory() else { return Ok(()) };
+    let takes = photons as f64 * size_of::<Photon>() as f64;
+    ensure!(
+        takes <= free,
+        "a map of {photons} photons takes {:.1} GB of memory at least, {:.1} GB are free; allowed: --photons below {}",
+        takes / 1e9,
+        free / 1e9,
+        number(settings.photon_scale * free / takes)
+    );
     Ok(())
 }
 

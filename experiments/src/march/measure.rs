@@ -22,7 +22,10 @@ pub const GROUP: &str = "slab";
 /// All cells.
 pub fn cells(settings: &Settings) -> Vec<CellId> {
     // A history has some three collisions; the rays of a map cost as much as its photons.
-    CellId::replicates(GROUP, maps(settings), 8.0 * photons(settings) as f64).collect()
+    let photons = photons(settings);
+    CellId::replicates(GROUP, maps(settings), 8.0 * photons as f64)
+        .map(|cell| cell.holding(photons))
+        .collect()
 }
 
 fn medium() -> turbid::Result<Homogeneous> {

@@ -20,7 +20,9 @@ pub fn cells(settings: &Settings) -> Vec<CellId> {
     let mut all = Vec::new();
     for size in Size::all(settings) {
         let cost = 1.5 * (size.photons * size.batch) as f64;
-        all.extend(CellId::replicates(&size.group(), cases::cells(settings), cost));
+        all.extend(
+            CellId::replicates(&size.group(), cases::cells(settings), cost).map(|c| c.holding(size.photons)),
+        );
     }
     all
 }

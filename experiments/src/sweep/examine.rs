@@ -99,7 +99,9 @@ impl Examined {
     fn keep<T>(&mut self, name: &str, made: Result<T, Failure>, allowed: Option<&str>) -> Option<T> {
         match made {
             Ok(made) => return Some(made),
-            Err(Failure::Refused(text)) if allowed == Some(&text) => self.refused.push(format!("{name}: {text}")),
+            Err(Failure::Refused(text)) if allowed == Some(&text) => {
+                self.refused.push(format!("{name}: {text}"))
+            }
             Err(Failure::Refused(text)) => self.alarms.push(Alarm::failure(name, format!("refused: {text}"))),
             Err(Failure::Broken(text)) => self.alarms.push(Alarm::failure(name, text)),
             Err(Failure::Late) => self.late.push(name.to_string()),
@@ -304,7 +306,10 @@ mod tests {
         let refused = |text: &str| -> Result<(), Failure> { Err(Failure::Refused(text.to_string())) };
         let mut examined = Examined::default();
         assert_eq!(examined.keep("maps", refused("no end"), Some("no end")), None);
-        assert_eq!((examined.refused.as_slice(), examined.alarms.len()), (&["maps: no end".to_string()][..], 0));
+        assert_eq!(
+            (examined.refused.as_slice(), examined.alarms.len()),
+            (&["maps: no end".to_string()][..], 0)
+        );
         for allowed in [None, Some("no end")] {
             let mut examined = Examined::default();
             assert_eq!(examined.keep("maps", refused("the step is 0"), allowed), None);

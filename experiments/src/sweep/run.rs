@@ -84,7 +84,10 @@ fn unguarded() -> ExitCode {
     let kept = match settings.seed.is_some() || settings.scene.is_some() {
         true => "nothing is kept".to_string(),
         false => {
-            format!("finished scenes are kept in {}, and the same command goes on from there", settings.out.display())
+            format!(
+                "finished scenes are kept in {}, and the same command goes on from there",
+                settings.out.display()
+            )
         }
     };
     end_on_signal(move || format!("sweep: stopped by a signal; {kept}"));
@@ -189,7 +192,8 @@ fn in_child(settings: &Settings, seed: u64, scene: Option<&Path>) -> anyhow::Res
     if let Some(scene) = scene {
         command.arg("--scene").arg(scene);
     }
-    let output = command.stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::piped()).output()?;
+    let output = command.stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::piped()).output();
+    let output = output.context("cannot start a process")?;
     if output.status.success() {
         let text = read_text(&path, MOST_OF_A_RECORD).context("a scene left no record")?;
         return Ok(serde_json::from_str(&text)?);
@@ -330,7 +334,8 @@ fn verdict(record: &Record, level: f64) -> Verdict {
 /// All seeds.
 fn many(settings: &Settings) -> anyhow::Result<u8> {
     check_folder(&settings.out, &["record.json"])?;
-    let wrong = if settings.control == 1.0 { String::new() } else { format!(", control {}", settings.control) };
+    let wrong =
+        if settings.control == 1.0 { String::new() } else { format!(", control {}", settings.control) };
     let header = format!("effort {}{wrong}, program {}", settings.effort, program_digest()?);
     let kept = |seed: u64| -> Option<Record> {
         let text = read_text(&settings.out.join(format!("{seed}.json")), MOST_OF_A_RECORD).ok()?;

@@ -26,8 +26,7 @@ impl SceneText {
     /// # Errors
     /// a file that cannot be read, or is no TOML
     pub fn read(path: &Path) -> anyhow::Result<Self> {
-        let text =
-            read_text(path, MOST_BYTES).with_context(|| format!("cannot read {}", path.display()))?;
+        let text = read_text(path, MOST_BYTES).with_context(|| format!("cannot read {}", path.display()))?;
         let table: Table =
             toml::from_str(&text).map_err(|e| anyhow::anyhow!("{}: {}", path.display(), e.message()))?;
         let folder = path.parent().unwrap_or(Path::new("."));

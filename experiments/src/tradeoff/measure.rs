@@ -35,7 +35,8 @@ pub fn cells(settings: &Settings) -> Vec<CellId> {
             let asked = Setting::all(body, photons);
             let gathers = asked.iter().map(|s| s.lateral() * LAYERS).sum::<usize>() as f64;
             let cost = photons as f64 * (4.0 + 2.0 * body.fog.deepest()) + 20.0 * gathers;
-            cells.extend(CellId::replicates(&Setting::group(body, photons), MAPS, cost));
+            let maps = CellId::replicates(&Setting::group(body, photons), MAPS, cost);
+            cells.extend(maps.map(|cell| cell.holding(photons)));
         }
         let cost = 20.0 * paths(settings) as f64 * LAYERS as f64;
         cells.extend(CellId::replicates(&paths_group(body), MAPS, cost));

@@ -7,3 +7,8 @@ use super::run;
 fn the_experiment_runs_and_finds_no_contradiction() {
     run::finds_no_contradiction(env!("CARGO_BIN_EXE_rates"), "0.05");
 }
+
+#[test]
+fn the_fewest_photons_end_with_a_report() {
+    run::ends_with_the_fewest_photons(env!("CARGO_BIN_EXE_rates"));
+}

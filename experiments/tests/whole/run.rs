@@ -50,3 +50,11 @@ pub fn finds_no_contradiction(program: &str, photons: &str) {
     assert!(printed.contains(" 0 rejected"), "{printed}");
     assert!(figures(folder.path()) > 0);
 }
+
+/// With the fewest photons that are allowed, one a map, a study still ends with a report.
+pub fn ends_with_the_fewest_photons(program: &str) {
+    let folder = tempfile::tempdir().unwrap();
+    let printed = run(program, "1e-6", "2", folder.path());
+    assert!(printed.contains("Report: "), "{printed}");
+    figures(folder.path());
+}
