@@ -49,8 +49,9 @@ impl CellId {
     }
 
     /// All `maps` cells of a group.
-    pub fn replicates(group: &str, maps: u64, cost: f64) -> impl Iterator<Item = CellId> {
-        (0..maps).map(move |replicate| CellId::new(group, replicate, cost))
+    pub fn replicates(group: &str, maps: u64, cost: f64) -> impl Iterator<Item = CellId> + use<> {
+        let group = group.to_string();
+        (0..maps).map(move |replicate| CellId::new(group.as_str(), replicate, cost))
     }
 
     /// The unique file-safe name; names sort as replicates do.
