@@ -82,7 +82,7 @@ fn the_other_programs_end_with_a_line() {
     let folder = tempfile::tempdir().unwrap();
     let out = folder.path().to_str().unwrap();
     for signal in [TERM, INT] {
-        let said = ended_by(signal, started(GALLERY, &["--draft", "--only", "fogbox", "--out", out]));
+        let said = ended_by(signal, started(GALLERY, &["--draft", "--only", "pool", "--out", out]));
         assert!(said.starts_with("gallery: stopped by a signal; finished renders are kept in "), "{said}");
         let said = ended_by(signal, started(SWEEP, &["--seeds", "0..500", "--effort", "0.02", "--out", out]));
         assert!(said.starts_with("sweep: stopped by a signal; finished scenes are kept in "), "{said}");

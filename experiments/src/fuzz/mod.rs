@@ -104,14 +104,14 @@ fn run(arguments: &Arguments) -> anyhow::Result<u8> {
         None => std::thread::available_parallelism().map_or(1, usize::from),
     };
     check_later(&arguments.out)?;
-    if judge::program().is_none() {
-        let missing = "the program turbid is not beside this one";
-        if only == Some(Kind::Arguments) {
-            bail!("{missing}; allowed: cargo build --release, then the same again");
-        }
-        say(&format!(
-            "fuzz: note: {missing}, so that no command line is tried: cargo build --release makes it"
-        ));
+    let missing = "the program turbid is not beside this one";
+    match only {
+        _ if judge::program().is_some() => {}
+        Some(Kind::Arguments) => bail!("{missing}; allowed: cargo build --release, then the same again"),
+        None => say(&format!(
+            "fuzz: note: {missing}, so that it is tried by no command line: cargo build --release"
+        )),
+        Some(_) => {}
     }
     let found = batch::run(only, seed, range, jobs)?;
     report(arguments, &found)
