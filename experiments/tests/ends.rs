@@ -126,3 +126,23 @@ fn outputs_are_tried_before_the_work() {
         assert!(said.lines().count() == 1 && said.contains("cannot "), "{arguments:?}: {said}");
     }
 }
+
+/// What has no end is no file: said in one line.
+#[test]
+fn devices_are_no_inputs() {
+    for (program, arguments) in [
+        (FUZZ, &["--only", "vol", "--file", "/dev/zero"][..]),
+        (SWEEP, &["--scene", "/dev/zero"]),
+        (STUDY, &["--replot", "/dev/zero"]),
+    ] {
+        let output = started(program, arguments).wait_with_output().unwrap();
+        let said = text(&output.stderr);
+        assert_eq!(
+            (output.status.code(), text(&output.stdout).as_str()),
+            (Some(2), ""),
+            "{arguments:?}: {said}"
+        );
+        let expected = "cannot read /dev/zero: a folder, a device or a pipe; allowed: a file\n";
+        assert!(said.ends_with(expected) && said.lines().count() == 1, "{arguments:?}: {said}");
+    }
+}

@@ -9,7 +9,9 @@ use super::settings::Settings;
 use super::shown::Shown;
 use super::studio::Studio;
 use super::{assets, page};
-use crate::harness::{check_folder, duration, guarded, one_line, program_digest, read_if_there, say};
+use crate::harness::{
+    check_folder, check_later, duration, guarded, one_line, program_digest, read_if_there, say,
+};
 use anyhow::Context;
 use clap::Parser;
 use std::path::Path;
@@ -55,6 +57,7 @@ fn unguarded() -> ExitCode {
 
 fn run(settings: &Settings) -> anyhow::Result<()> {
     if settings.assets {
+        check_later(&settings.scenes.join("fogbox"))?;
         write(&settings.scenes.join("fogbox/het.vol"), &assets::fogbox_het()?)?;
         return Ok(assets::window().write(&settings.scenes.join("window.png"))?);
     }
