@@ -10,8 +10,24 @@ pub fn without_panic(program: &'static str, run: impl FnOnce() -> ExitCode) -> E
     set_hook(Box::new(move |info| {
         let place = info.location().map(ToString::to_string).unwrap_or_default();
         let what = one_line(info.payload_as_str().unwrap_or("no text"));
-        let line = format!("{program}: error: a fault of the program, please report it: {place}: {what}");
+        let line = format!("{program}: error: internal error at {place}, please report it: {what}");
         let _unheard = writeln!(std::io::stderr().lock(), "{line}");
     }));
     catch_unwind(AssertUnwindSafe(run)).unwrap_or(ExitCode::from(2))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::panic::take_hook;
+
+    #[test]
+    fn a_panic_ends_with_code_2() {
+        let hook = take_hook();
+        let codes =
+            [without_panic("test", || panic!("on purpose")), without_panic("test", || ExitCode::SUCCESS)];
+        set_hook(hook);
+        let expected = [ExitCode::from(2), ExitCode::SUCCESS];
+        assert_eq!(format!("{codes:?}"), format!("{expected:?}"));
+    }
 }
