@@ -139,6 +139,10 @@ pub fn program() -> Option<PathBuf> {
     own.ancestors().skip(1).take(2).map(|folder| folder.join(&name)).find(|path| path.is_file())
 }
 
+/// What a scene is made of: one of them is in every message about it.
+const PARTS: [&str; 9] =
+    ["object", "region", "light", "interior", "camera", "sensor", "cell", "a sun needs", "a medium needs"];
+
 const SEED: u64 = 7;
 
 impl Workbench {
@@ -232,7 +236,15 @@ impl Workbench {
         };
         let scene = match parsed.scene(self.folder.path()) {
             Ok(scene) => scene,
-            Err(error) => return said(&error.to_string(), quotable, file),
+            Err(error) => {
+                let message = error.to_string();
+                // The program names the file; where in it is for the library to say.
+                return if file.is_some() || PARTS.iter().any(|part| message.contains(part)) {
+                    said(&message, quotable, file)
+                } else {
+                    Verdict::Failed(format!("a message without a part of the scene: {message}"))
+                };
+            }
         };
         if let Err(error) = check_end(&scene) {
             return said(&error.to_string(), quotable, None);
