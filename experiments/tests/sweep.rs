@@ -14,8 +14,8 @@ fn sweep() -> Command {
     Command::new(env!("CARGO_BIN_EXE_sweep"))
 }
 
-/// A fortieth of what the program does: about a second a scene.
-const SMALL: Effort = Effort { steps: 1.2e5, seconds: None, control: 1.0 };
+/// A thirtieth of what the program does: about a second a scene.
+const SMALL: Effort = Effort { steps: 2.2e5, seconds: None, control: 1.0 };
 
 /// The first valid scene of a seed.
 fn scene(seed: u64) -> (SceneText, String) {

@@ -380,7 +380,8 @@ impl SensorFile {
                 ("radiance", Quantity::Radiance(Ray::new(origin.into(), dir)))
             }
             QuantityFile::Outflow { ref shape, face } => {
-                ("outflow", Quantity::Outflow { shape: shape.shape(folder)?, face })
+                let shape = shape.shape(folder).map_err(|e| e.within(&format!("sensor {}", self.name)))?;
+                ("outflow", Quantity::Outflow { shape, face })
             }
             QuantityFile::Absorbed { region } => ("absorptance", Quantity::Absorbed(region)),
         };

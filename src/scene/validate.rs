@@ -29,8 +29,10 @@ fn refuse<T>(text: impl Into<String>) -> Result<T> {
 
 /// The slab and its cell, if the scene has a cell; an error where parts do not fit together.
 pub(super) fn check(parts: &Parts) -> Result<Option<Stage>> {
-    if parts.regions.iter().any(|r| !r.shape.is_solid()) {
-        return refuse("a medium needs a convex shape with an inside: a sphere, a cuboid or a slab");
+    if let Some(i) = parts.regions.iter().position(|r| !r.shape.is_solid()) {
+        return refuse(format!(
+            "regions[{i}] needs a convex shape with an inside: a sphere, a cuboid or a slab"
+        ));
     }
     let filled = || parts.interiors.iter().filter_map(|i| i.medium.as_ref());
     if parts.lights.is_empty()

@@ -243,11 +243,11 @@ fn wrong_shapes_textures_and_boundaries() {
         ("[[regions]]\nsigma_t = 1\nalbedo = 0.5\ng = 0\n", "missing field `shape`"),
         (
             "[[regions]]\nshape = { rectangle = { corner = [0, 0, 0], u = [1, 0, 0], v = [0, 1, 0] } }\nsigma_t = 1\nalbedo = 0.5\ng = 0\n",
-            "a medium needs a convex shape with an inside",
+            "regions[0] needs a convex shape with an inside",
         ),
         (
             "[[regions]]\nshape = { mesh = { file = \"part.obj\" } }\nsigma_t = 1\nalbedo = 0.5\ng = 0\n",
-            "a medium needs a convex shape with an inside",
+            "regions[0] needs a convex shape with an inside",
         ),
         (
             "[[interiors]]\nname = \"milk\"\nindex = 1.3\nsigma_t = 1\nalbedo = 0.5\ng = 0\n",
@@ -260,6 +260,10 @@ fn wrong_shapes_textures_and_boundaries() {
             "regions[0]: emission is 1e300; allowed: 0, or 1e-30 to 1e30 in size",
         ),
         ("[[interiors]]\nname = \"milk\"\n", "missing field `index`"),
+        (
+            "[[sensors]]\nname = \"out\"\nmeasure = { outflow = { shape = { sphere = { center = [inf, 0, 0], radius = 1 } }, face = \"top\" } }\n",
+            "sensor out",
+        ),
         ("[[interiors]]\nname = \"surroundings\"\nindex = 1.3\n", "two interiors are called surroundings"),
     ];
     for (index, (keys, words)) in media.into_iter().enumerate() {

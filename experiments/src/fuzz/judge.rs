@@ -140,8 +140,7 @@ pub fn program() -> Option<PathBuf> {
 }
 
 /// What a scene is made of: one of them is in every message about it.
-const PARTS: [&str; 9] =
-    ["object", "region", "light", "interior", "camera", "sensor", "cell", "a sun needs", "a medium needs"];
+const PARTS: [&str; 8] = ["object", "region", "light", "interior", "camera", "sensor", "cell", "a sun needs"];
 
 const SEED: u64 = 7;
 

@@ -47,7 +47,7 @@ pub struct Settings {
 }
 
 /// Rays and look-ups of an effort of 1, which take some three seconds.
-const STEPS: f64 = 6.5e6;
+const STEPS: f64 = 7e6;
 /// CPU seconds of a method at an effort of 1, after which it is stopped.
 const SECONDS: f64 = 8.0;
 
