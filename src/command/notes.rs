@@ -50,9 +50,6 @@ pub fn tell_step(scene: &Scene, settings: &Settings) -> Result<()> {
     ))
 }
 
-/// Part of the look-ups that may be taken for dark without a word.
-const MOST_UNKNOWN: f64 = 1e-3;
-
 /// Says which look-ups cannot be good, after the picture is made; `k` are the photons of an estimate from the global, the
 /// caustic and the volume map, none for a fixed radius.
 pub fn tell_gathers(
@@ -96,13 +93,6 @@ pub fn tell_gathers(
                 "{:.0} % of the look-ups in the {name} map found fewer photons than asked for within {cap:.2e} L: --{name} for \
                  more of them, or a larger --max-radius",
                 100.0 * gathers.underfull as f64 / gathers.count as f64
-            ))?;
-        }
-        if gathers.unknown as f64 > MOST_UNKNOWN * gathers.count as f64 {
-            note(&format!(
-                "{:.1} % of the look-ups in the {name} map are on bodies too thin for their area to be found, and are taken for \
-                 dark: --{name} for more photons, or a smaller --max-radius",
-                100.0 * gathers.unknown as f64 / gathers.count as f64
             ))?;
         }
         if 2.0 * radius > extent {

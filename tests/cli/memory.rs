@@ -212,6 +212,28 @@ fn wrong_settings_are_told() {
         &["--step", "0.1", "--gather-rays", "0"],
         &["steps of 1.00e-1 L", "noisy where it is dense"],
     );
+    // A rod in a room, and a glass ball.
+    let rod = "lathe = { base = [0.5, 0.3, 0.5], axis = [0, 1, 0], profile = [[0, 0], [0.002, 0], [0.002, 0.4], [0, 0.4]] }";
+    let ball = "sphere = { center = [0.3, 0.3, 0.3], radius = 0.1 }";
+    let room = "cuboid = { min = [0, 0, 0], max = [1, 1, 1] }";
+    let grey = "lambertian = { reflectance = 0.5 }";
+    let bodies = [(room, grey), (rod, grey), (ball, "dielectric = { inside = \"glass\" }")];
+    let bodies = bodies
+        .map(|(shape, surface)| format!("[[objects]]\nshape = {{ {shape} }}\nsurface = {{ {surface} }}\n"));
+    let inside = CAMERA.replace("0.5, 0.5, 4", "0.5, 0.5, 0.9");
+    let scene = format!(
+        "{inside}{}[[interiors]]\nname = \"glass\"\nindex = 1.5\n[[lights]]\npoint = {{ position = [0.3, 0.8, 0.7], power = 1 }}\n",
+        bodies.concat()
+    );
+    told(
+        &scene,
+        &["--global", "2e4", "--caustic", "emit:60", "--gather-rays", "0"],
+        &[
+            "the caustic map holds 38 photons, fewer than an estimate takes, 100",
+            "look-ups in the global map reach",
+            "the smallest diffuse body is 4.00e-3 L across",
+        ],
+    );
 }
 
 /// In a medium whose density varies, steps that nobody asked for are no longer than the shortest mean free path: here a
