@@ -80,11 +80,11 @@ pub fn flights_are_the_exact_inverse() {
 /// A mean of n exponential numbers is known to 1/sqrt n: 5.4e7 see 0.1 per cent at the level of the suite, 1e7 0.25.
 pub fn flights_are_a_mean_free_path_long() {
     let [closed, piece_by_piece, tracked] = ways();
-    let of_even = |t: f64| t;
-    let cases: [(_, fn(f64) -> f64, _, _); 4] = [
-        (closed, of_even, 26, 1e-3),
-        (piece_by_piece, of_even, 23, 2.6e-3),
-        (tracked, of_even, 23, 2.6e-3),
+    let even: fn(f64) -> f64 = |t| t;
+    let cases = [
+        (closed, even, 26, 1e-3),
+        (piece_by_piece, even, 23, 2.6e-3),
+        (tracked, even, 23, 2.6e-3),
         (("tracked where density rises", rising()), of_rising, 23, 2.6e-3),
     ];
     for ((name, scene), depth, log2, promise) in cases {
