@@ -48,8 +48,9 @@ pub struct Settings {
 
 /// Rays and look-ups of an effort of 1, which take some three seconds.
 const STEPS: f64 = 7e6;
-/// CPU seconds of a method at an effort of 1, after which it is stopped.
-const SECONDS: f64 = 8.0;
+/// CPU seconds of a method at an effort of 1, after which it is stopped: what rays take differs by scene, and what it takes to
+/// fill photon maps is counted by the histories of one.
+const SECONDS: f64 = 16.0;
 
 fn seeds(text: &str) -> Result<Range<u64>, String> {
     let parse = |text: &str| text.trim().parse::<u64>().ok();
