@@ -5,7 +5,7 @@
 //! walk that paths and photons share; [`photons`] keeps what it meets, in [`photons::maps`] for pictures;
 //! [`estimators`] read it; [`integrators`] make radiance by class of path: the path tracer [`integrators::path`] and the
 //! photon mapper [`integrators::mapper`]; [`sensor`] turns both into numbers with standard errors, and into pictures on a
-//! [`sensor::Film`]; [`input`] reads files of a bounded size; [`output`] writes files that appear whole or not at all.
+//! [`sensor::Film`]; [`input`] reads files of a bounded size, [`memory`] says what is free; [`output`] writes files that appear whole or not at all.
 
 pub mod error;
 pub mod estimators;
@@ -16,6 +16,7 @@ pub mod integrators;
 pub mod light;
 pub mod math;
 pub mod medium;
+pub mod memory;
 pub mod output;
 pub mod phase;
 pub mod photons;

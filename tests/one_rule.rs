@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 const ORDER: [&[&str]; 16] = [
     &["faults"],
     &["error"],
-    &["input"],
+    &["input", "memory"],
     &["math"],
     &["spectrum"],
     &["rng"],

@@ -94,7 +94,16 @@ fn the_other_programs_end_with_a_line() {
     }
 }
 
-/// A folder below a file, and files that are folders: said in one line, before any work.
+/// The one line of a program that ends with exit code 2.
+fn refused(program: &str, arguments: &[&str]) -> String {
+    let output = started(program, arguments).wait_with_output().unwrap();
+    let said = text(&output.stderr);
+    let found = (output.status.code(), text(&output.stdout), said.lines().count());
+    assert_eq!(found, (Some(2), String::new(), 1), "{arguments:?}: {said}");
+    said
+}
+
+/// A folder below a file, and files that are folders: one line, before any work.
 #[test]
 fn outputs_are_tried_before_the_work() {
     let folder = tempfile::tempdir().unwrap();
@@ -116,18 +125,12 @@ fn outputs_are_tried_before_the_work() {
         (FUZZ, &["--only", "vol", "--count", "10000000", "--out", below]),
         (FUZZ, &["--only", "vol", "--count", "10000000", "--out", "/proc/self/none"]),
     ] {
-        let output = started(program, arguments).wait_with_output().unwrap();
-        let said = text(&output.stderr);
-        assert_eq!(
-            (output.status.code(), text(&output.stdout).as_str()),
-            (Some(2), ""),
-            "{arguments:?}: {said}"
-        );
-        assert!(said.lines().count() == 1 && said.contains("cannot "), "{arguments:?}: {said}");
+        let said = refused(program, arguments);
+        assert!(said.contains("cannot "), "{arguments:?}: {said}");
     }
 }
 
-/// What has no end is no file: said in one line.
+/// What has no end is no file: one line.
 #[test]
 fn devices_are_no_inputs() {
     for (program, arguments) in [
@@ -135,14 +138,8 @@ fn devices_are_no_inputs() {
         (SWEEP, &["--scene", "/dev/zero"]),
         (STUDY, &["--replot", "/dev/zero"]),
     ] {
-        let output = started(program, arguments).wait_with_output().unwrap();
-        let said = text(&output.stderr);
-        assert_eq!(
-            (output.status.code(), text(&output.stdout).as_str()),
-            (Some(2), ""),
-            "{arguments:?}: {said}"
-        );
+        let said = refused(program, arguments);
         let expected = "cannot read /dev/zero: a folder, a device or a pipe; allowed: a file\n";
-        assert!(said.ends_with(expected) && said.lines().count() == 1, "{arguments:?}: {said}");
+        assert!(said.ends_with(expected), "{arguments:?}: {said}");
     }
 }

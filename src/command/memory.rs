@@ -1,8 +1,8 @@
-//! Memory: what is free, and what a run may take.
+//! What memory a run may take.
 
 use super::parse_count;
 use anyhow::bail;
-use std::fs::read_to_string;
+use turbid::memory::{free, used};
 
 /// What a run may take.
 #[derive(clap::Args)]
@@ -56,7 +56,7 @@ impl Memory {
     /// Bytes that are left for the work, as far as is known.
     fn left(&self) -> Option<f64> {
         match self.memory {
-            Some(given) => Some(given as f64 - status("VmRSS:").unwrap_or(0.0)),
+            Some(given) => Some(given as f64 - used().unwrap_or(0.0)),
             None => free(),
         }
     }
@@ -86,35 +86,6 @@ impl Memory {
     }
 }
 
-/// A number of kilobytes in a file of lines such as `MemAvailable:  123 kB`, in bytes.
-fn kilobytes(text: &str, name: &str) -> Option<f64> {
-    let line = text.lines().find(|line| line.starts_with(name))?;
-    line.split_whitespace().nth(1)?.parse::<f64>().ok().map(|n| 1024.0 * n)
-}
-
-/// What the process says of itself \[bytes\], where the system tells.
-fn status(name: &str) -> Option<f64> {
-    kilobytes(&read_to_string("/proc/self/status").ok()?, name)
-}
-
-/// Memory that is free \[bytes\], where the system tells: of the machine, of the group that the process is in, and of its own
-/// address space, the least.
-fn free() -> Option<f64> {
-    let machine = read_to_string("/proc/meminfo").ok().and_then(|text| kilobytes(&text, "MemAvailable:"));
-    let number = |file: &str| read_to_string(file).ok()?.trim().parse::<f64>().ok();
-    let group = |limit: &str, used: &str| Some(number(limit)? - number(used)?);
-    let groups = [
-        group("/sys/fs/cgroup/memory.max", "/sys/fs/cgroup/memory.current"),
-        group("/sys/fs/cgroup/memory/memory.limit_in_bytes", "/sys/fs/cgroup/memory/memory.usage_in_bytes"),
-    ];
-    let space = read_to_string("/proc/self/limits").ok().and_then(|text| {
-        let line = text.lines().find(|line| line.starts_with("Max address space"))?;
-        let limit = line.split_whitespace().nth(3)?.parse::<f64>().ok()?;
-        Some(limit - status("VmSize:")?)
-    });
-    groups.into_iter().chain([machine, space]).flatten().reduce(f64::min)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -138,11 +109,5 @@ mod tests {
             assert!(parse_count(text).is_ok());
         }
         assert_eq!((in_words(2.84e7), in_words(2.84e10)), ("28 MB".to_string(), "28.4 GB".to_string()));
-    }
-
-    #[cfg(target_os = "linux")]
-    #[test]
-    fn memory_is_told() {
-        assert!(free().unwrap() > 1e6 && status("VmRSS:").unwrap() > 1e6);
     }
 }

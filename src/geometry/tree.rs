@@ -26,19 +26,25 @@ const LEAST: f32 = 1.0 / 4_194_304.0;
 /// Depth that the tree's own stack can follow.
 const MAX_DEPTH: usize = 30;
 
-/// Boxes that are one within their margin: more of them are nested too deeply, and would take the square of their number to
-/// sort. Some 300 are too many already.
+/// Boxes that are one to a millionth of their size: their unions have the same area in single precision, so that more of them are
+/// nested too deeply, and would take the square of their number to sort. Some 300 that stretch across the scene are too many
+/// already; small ones that lie side by side differ by much of their size.
 const MOST_ALIKE: usize = 1000;
 
-/// Whether too many boxes are one within their margin.
-fn are_too_many_alike(boxes: &[Aabb], margin: f32) -> bool {
+/// Whether too many boxes are one.
+fn are_too_many_alike(boxes: &[Aabb]) -> bool {
     if boxes.len() <= MOST_ALIKE {
         return false;
     }
-    let steps = |v: Vec3A| (v / margin).to_array().map(|x| x as i32);
-    let mut boxes: Vec<[[i32; 3]; 2]> = boxes.iter().map(|b| [steps(b.min), steps(b.max)]).collect();
-    boxes.sort_unstable();
-    boxes.chunk_by(|a, b| a == b).any(|alike| alike.len() > MOST_ALIKE)
+    let place = |b: &Aabb| {
+        // The power of two below a millionth of the size, which alike boxes share.
+        let size = (b.max - b.min).max_element();
+        let grain = f64::from(f32::from_bits(size.to_bits() & 0x7f80_0000)) / f64::from(1 << 20);
+        [b.min, b.max].map(|v| v.to_array().map(|x| (f64::from(x) / grain) as i64))
+    };
+    let mut places: Vec<[[i64; 3]; 2]> = boxes.iter().map(place).collect();
+    places.sort_unstable();
+    places.chunk_by(|a, b| a == b).any(|alike| alike.len() > MOST_ALIKE)
 }
 
 /// A tree over boxes, in coordinates of its own: the middle of all boxes is the origin, the longest half-extent is
@@ -89,7 +95,7 @@ impl Tree {
         let boxes32: Vec<Aabb> =
             boxes.iter().map(|(a, b)| Aabb::new(narrow(*a) - pad32, narrow(*b) + pad32)).collect();
         let too_deep = || Error::Scene(format!("{what} nested too deeply in each other to be searched"));
-        if are_too_many_alike(&boxes32, pad as f32) {
+        if are_too_many_alike(&boxes32) {
             return Err(too_deep());
         }
         let tree = build_cwbvh(&boxes32, BvhBuildParams::medium_build(), &mut Duration::default());

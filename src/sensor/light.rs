@@ -17,10 +17,10 @@ const CHUNKS: std::ops::RangeInclusive<u64> = 1 << 6..=1 << 18;
 const BLOCK: u64 = 8;
 /// Splats that wait, about \[64 bytes each\]: later chunks are of as many histories as have brought so many.
 const WAITING: u64 = 1 << 17;
-/// Most memory of light tracing beside its film \[bytes\]: a chunk may bring four times as much as is wanted,
-/// in lists that double.
+/// Memory of light tracing beside its film \[bytes\], as an estimate from above: a chunk may bring four times as much as is
+/// wanted, in lists that double.
 pub const LIGHT_BYTES: f64 = 8.0 * 64.0 * WAITING as f64;
-/// Most memory of light tracing a pixel beside its film \[bytes\]: the sample that is being made.
+/// Memory of light tracing a pixel beside its film \[bytes\]: the sample that is being made.
 pub const LIGHT_PIXEL_BYTES: f64 = 144.0;
 
 /// What light tracing took.

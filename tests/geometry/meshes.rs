@@ -3,8 +3,9 @@
 use crate::solids::{crossings, cube, direction, icosphere, mesh, point, stream};
 use crate::support::verdict;
 use glam::{DVec2, DVec3};
+use std::f64::consts::{PI, TAU};
 use turbid::geometry::{Cuboid, Mesh, Shape};
-use turbid::math::Ray;
+use turbid::math::{Ray, sin_cos};
 
 /// Where meshes are put: a scale and an offset.
 const PLACES: [(f64, f64); 6] = [(1.0, 0.0), (1.0, 1e6), (1e-6, 0.0), (1e-6, 1.0), (1e30, 0.0), (1e-60, 0.0)];
@@ -311,4 +312,16 @@ fn bad_meshes_are_refused() {
     let fan = |count: u32| (0..count).map(|i| [i, 10_000, 10_001]).collect::<Vec<_>>();
     assert_eq!(Mesh::new(&alike, &fan(30), None).unwrap().len(), 30);
     assert!(say(&alike, &fan(10_000)).contains("nested too deeply"));
+    // A fine ball is none of those, however small it is beside the rest.
+    let mut corners = vec![DVec3::new(-3.0, 0.0, 0.0), DVec3::new(3.0, 0.0, 0.0), DVec3::new(0.0, 3.0, 0.0)];
+    let mut triangles = vec![[0, 1, 2]];
+    for (i, j) in (0..=30).flat_map(|i| (0..60).map(move |j| (i, j))) {
+        let ((s, c), (t, u)) = (sin_cos(PI * f64::from(i) / 30.0), sin_cos(TAU * f64::from(j) / 60.0));
+        corners.push(DVec3::new(1.5, 0.3123, 0.2017) + 1e-6 * DVec3::new(s * u, s * t, c));
+        if i < 30 {
+            let [a, b] = [j, (j + 1) % 60].map(|j| 3 + 60 * i + j);
+            triangles.extend([[a, a + 60, b], [b, a + 60, b + 60]]);
+        }
+    }
+    assert_eq!(Mesh::new(&corners, &triangles, None).unwrap().len(), 1 + 2 * 29 * 60);
 }

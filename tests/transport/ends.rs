@@ -2,7 +2,7 @@
 
 use crate::support::run::pass;
 use crate::support::scenes::{
-    bounded, cuboid, homogeneous, isotropic, lambertian, outflow, point_light, rectangle, region, sphere,
+    bounded, cuboid, isotropic, lambertian, outflow, point_light, rectangle, region, sphere,
 };
 use crate::support::verdict;
 use glam::DVec3;
@@ -16,11 +16,11 @@ use turbid::photons::importance::{Importance, ImportanceSettings};
 use turbid::photons::maps::{Amount, Indirect, MapSettings, fill};
 use turbid::photons::{Histories, MOST_EVENTS, check_end, shoot};
 use turbid::rng::{Purpose, Stream};
-use turbid::scene::{Camera, Filter, Interior, Object, Orders, Parts, Quantity, Scene, Sensor, View};
+use turbid::scene::{Camera, Filter, Interior, Object, Orders, Parts, Quantity, Region, Scene, Sensor, View};
 use turbid::sensor::{PathSettings, Streams, by_light, by_paths};
 use turbid::stats::Moments;
 use turbid::surface::{Dielectric, Mirror, Surface};
-use turbid::transport::{LONG, NoProgress, Roulette, Step, Visitor, Walker, passed, walk};
+use turbid::transport::{LONG, NoProgress, Roulette, Step, Visitor, Walker, emission, passed, walk};
 
 /// The six walls of a box of side 2, as rectangles.
 fn walls(surface: impl Fn(usize) -> Surface) -> Vec<(Shape, Surface)> {
@@ -335,9 +335,45 @@ fn roulette_of_faint_transmittances_is_by_channel() {
     }
 }
 
-fn varying(sigma_t: Spectrum, grid: Grid) -> Medium {
-    match homogeneous(sigma_t, Spectrum::grey(0.5), 0.0) {
-        Medium::Homogeneous(matter) => Heterogeneous::new(matter, Density::grid(grid).unwrap()).into(),
-        other => other,
+/// The same where the layers emit, and what is behind them: emission is collected by a game of its own.
+#[test]
+fn roulette_of_faint_emission_keeps_the_mean_and_ends() {
+    let layers = Grid::new((DVec3::ZERO, DVec3::ONE), [1, 1, 2], 1, vec![0.0, 1.0]).unwrap();
+    let behind = |emission: f64| {
+        let thin = Homogeneous::new(Spectrum::ZERO, Spectrum::ZERO, even()).unwrap();
+        let medium = thin.with_emission(Spectrum::grey(emission)).unwrap().into();
+        Region { shape: cuboid(DVec3::X * 2.0, DVec3::new(3.0, 1.0, 1.0)), medium }
+    };
+    let before = |sigma_t: f64| {
+        let dense = heterogeneous(Spectrum::grey(sigma_t), layers.clone());
+        let medium = dense.with_emission_by_density(Spectrum::grey(sigma_t)).unwrap().into();
+        Region { shape: cuboid(DVec3::ZERO, DVec3::ONE), medium }
+    };
+    // What the layers send is 1, and so is what passes them from behind.
+    let tau = 30.0;
+    let scene = bounded(vec![before(tau / 0.1), behind(exp(tau))], Vec::new(), Vec::new());
+    let ray = Ray::new(DVec3::new(0.0, 0.5, 0.3), DVec3::X);
+    let light = crate::support::run::numbers(1 << 16, 6, |stream| emission(&scene, &ray, 4.0, 0, stream)[0]);
+    verdict::agrees("emission of layers and from behind", &light, (2.0, 1e-6), 0.2, 6);
+    // Without the game each of these takes fifty thousand look-ups.
+    let dense = bounded(vec![before(5e4), behind(1.0)], Vec::new(), Vec::new());
+    let ray = Ray::new(DVec3::new(0.0, 0.5, 0.45), DVec3::X);
+    for history in 0..64 {
+        let mut stream = Stream::new(4, Purpose::Synthetic, 0, history);
+        let light = emission(&dense, &ray, 4.0, 0, &mut stream)[0];
+        assert!(stream.work.densities < 1000 && light.is_finite(), "{} {light}", stream.work.densities);
     }
+}
+
+fn varying(sigma_t: Spectrum, grid: Grid) -> Medium {
+    heterogeneous(sigma_t, grid).into()
+}
+
+fn heterogeneous(sigma_t: Spectrum, grid: Grid) -> Heterogeneous {
+    let matter = Homogeneous::new(sigma_t, Spectrum::grey(0.5), even()).unwrap();
+    Heterogeneous::new(matter, Density::grid(grid).unwrap())
+}
+
+fn even() -> Phase {
+    Phase::with_asymmetry(Asymmetry::try_from(0.0).unwrap())
 }

@@ -92,18 +92,8 @@ fn field(path: &str, key: &str) -> Option<String> {
 }
 
 fn memory_gib() -> Option<f64> {
-    let kib = kilobytes("MemTotal")?;
+    let kib: f64 = field("/proc/meminfo", "MemTotal")?.split(' ').next()?.parse().ok()?;
     Some((kib / 1024.0 / 1024.0 * 10.0).round() / 10.0)
-}
-
-/// A line of what Linux says of the machine's memory.
-fn kilobytes(name: &str) -> Option<f64> {
-    field("/proc/meminfo", name)?.split(' ').next()?.parse().ok()
-}
-
-/// Memory of the machine that is free \[bytes\], where the system tells.
-pub(super) fn free_memory() -> Option<f64> {
-    kilobytes("MemAvailable").map(|kib| 1024.0 * kib)
 }
 
 fn system() -> String {

@@ -8,7 +8,6 @@ use super::outputs::{
 };
 use super::panics::{caught, guarded};
 use super::progress::{duration, say};
-use super::provenance::free_memory;
 use super::{
     CellId, Cells, Claim, Experiment, Judged, Prediction, Provenance, Section, Settings, Verdict, judge,
     number, program_digest, replot,
@@ -347,7 +346,7 @@ fn plan(experiment: &Experiment, settings: &Settings) -> anyhow::Result<Vec<Cell
 
 /// Refuses a map of so many photons if not even the photons fit into the memory that is free: a tree takes more.
 fn check_memory(photons: u64, settings: &Settings) -> anyhow::Result<()> {
-    let Some(free) = free_memory() else { return Ok(()) };
+    let Some(free) = turbid::memory::free() else { return Ok(()) };
     let takes = photons as f64 * size_of::<Photon>() as f64;
     ensure!(
         takes <= free,

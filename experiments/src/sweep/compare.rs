@@ -1,7 +1,8 @@
 //! Tests of what two methods made: cell by cell, layer by layer, and what they could have seen.
 
 use super::energy::Energy;
-use super::measure::{ByMaps, CELLS, Cell, FACTOR, Mean, Measured, is_heavy};
+use super::maps::{ByMaps, FACTOR};
+use super::measure::{CELLS, Cell, Mean, Measured, Seen, is_heavy};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use turbid::Spectrum;
@@ -275,7 +276,7 @@ const CARRIED: f64 = 0.01;
 pub fn shrinking(
     name: &str,
     maps: &ByMaps,
-    part: impl Fn(&super::measure::Seen) -> &Measured,
+    part: impl Fn(&Seen) -> &Measured,
     reference: &Measured,
     knows: impl Fn(Layer) -> bool,
     has_media: bool,
@@ -335,7 +336,8 @@ pub fn shrinking(
 
 #[cfg(test)]
 mod tests {
-    use super::super::measure::{BATCHES, Batch, Seen};
+    use super::super::maps::LARGE_MAPS;
+    use super::super::measure::{BATCHES, Batch};
     use super::*;
     use turbid::math::{ln, sin_cos};
     use turbid::rng::{Purpose, Stream};
@@ -438,7 +440,7 @@ mod tests {
             let maps = ByMaps {
                 rays: seen(made(2, BATCHES, |cell| if has_map(cell) { 0.0 } else { plain })),
                 small: seen(made(3, BATCHES, with(small))),
-                large: seen(made(4, super::super::measure::LARGE_MAPS, with(large))),
+                large: seen(made(4, LARGE_MAPS, with(large))),
                 scarce: Vec::new(),
             };
             let check = shrinking("a", &maps, |s| &s.all, &reference, |_| true, true);

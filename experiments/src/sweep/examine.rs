@@ -2,7 +2,8 @@
 
 use super::compare::{Check, Test, conserved, sharpness, shrinking, unbiased};
 use super::energy::energy;
-use super::measure::{Effort, Failure, light, maps, paths};
+use super::maps::maps;
+use super::measure::{Effort, Failure, light, paths};
 use super::pairs::pair;
 use super::text::SceneText;
 use serde::{Deserialize, Serialize};

@@ -15,7 +15,7 @@
 //! - **Photon maps** as the command reads them, with N and with 8 N photons, against paths. Layers that read no map are
 //!   unbiased and tested as such. The error of the others must shrink with the radius, below.
 //! - **Failures**: an error, a panic, a history without end. A valid scene is refused by no method, with two exceptions: a
-//!   camera that is shut in sees nothing by any method, and photons cannot start in a medium that emits and has no end.
+//!   camera that is shut in is refused by every method, and photons cannot start in a medium that emits and has no end.
 //!
 //! # Criteria
 //!
@@ -54,6 +54,7 @@ pub mod compare;
 pub mod draw;
 pub mod energy;
 pub mod examine;
+pub mod maps;
 pub mod measure;
 pub mod motion;
 pub mod pairs;
