@@ -1,6 +1,12 @@
 //! Memory: what is free, and what is in use.
 
+use crate::error::{Error, Result};
 use std::fs::read_to_string;
+
+/// Bytes in words.
+pub fn in_words(bytes: f64) -> String {
+    if bytes < 0.9995e9 { format!("{:.0} MB", bytes / 1e6) } else { format!("{:.1} GB", bytes / 1e9) }
+}
 
 /// A number of kilobytes in a file of lines such as `MemAvailable:  123 kB`, in bytes.
 fn kilobytes(text: &str, name: &str) -> Option<f64> {
@@ -36,13 +42,39 @@ pub fn free() -> Option<f64> {
     groups.into_iter().chain([machine, space]).flatten().reduce(f64::min)
 }
 
+/// Refuses what takes more memory than is free, before any of it is asked for: a request that the system cannot meet ends the
+/// process.
+///
+/// # Arguments  `what` takes about so many `bytes`, an estimate from above
+/// # Errors     `Error::Scene`
+pub fn check(what: impl FnOnce() -> String, bytes: f64) -> Result<()> {
+    match free() {
+        Some(free) if bytes > free => Err(Error::Scene(format!(
+            "{} takes about {} of memory; allowed: what is free, {}",
+            what(),
+            in_words(bytes),
+            in_words(free.max(0.0))
+        ))),
+        Some(_) | None => Ok(()),
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn bytes_in_words() {
+        assert_eq!((in_words(2.84e7), in_words(2.84e10)), ("28 MB".to_string(), "28.4 GB".to_string()));
+    }
 
     #[cfg(target_os = "linux")]
     #[test]
     fn memory_is_told() {
         assert!(free().unwrap() > 1e6 && used().unwrap() > 1e6);
+        assert_eq!(check(|| unreachable!(), 1e3), Ok(()));
+        let told = check(|| "a thing".into(), 1e18).unwrap_err().to_string();
+        let expected = "a thing takes about 1000000000.0 GB of memory; allowed: what is free, ";
+        assert!(told.starts_with(expected), "{told}");
     }
 }

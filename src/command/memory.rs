@@ -2,7 +2,7 @@
 
 use super::parse_count;
 use anyhow::bail;
-use turbid::memory::{free, used};
+use turbid::memory::{free, in_words, used};
 
 /// What a run may take.
 #[derive(clap::Args)]
@@ -30,11 +30,6 @@ fn parse_size(text: &str) -> Result<u64, String> {
         Some(bytes) if (1.0..=9e15).contains(&bytes) => Ok(bytes as u64),
         _ => Err(ALLOWED.to_string()),
     }
-}
-
-/// Bytes in words.
-pub fn in_words(bytes: f64) -> String {
-    if bytes < 0.9995e9 { format!("{:.0} MB", bytes / 1e6) } else { format!("{:.1} GB", bytes / 1e9) }
 }
 
 /// The largest number of two digits that is not above another one, at least 1, as it is written on the command line.
@@ -108,6 +103,5 @@ mod tests {
             assert_eq!(rounded_down(number), text);
             assert!(parse_count(text).is_ok());
         }
-        assert_eq!((in_words(2.84e7), in_words(2.84e10)), ("28 MB".to_string(), "28.4 GB".to_string()));
     }
 }

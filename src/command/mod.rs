@@ -134,7 +134,7 @@ fn tell_ahead(what: &str, seconds: f64, bytes: f64) -> std::io::Result<()> {
     if seconds < TOLD_AHEAD.0 && bytes < TOLD_AHEAD.1 {
         return Ok(());
     }
-    let (time, memory) = (progress::in_words(seconds), memory::in_words(bytes));
+    let (time, memory) = (progress::in_words(seconds), turbid::memory::in_words(bytes));
     note(&format!("{what}: about {time} and {memory} of memory, by a pilot"))
 }
 

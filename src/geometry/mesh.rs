@@ -71,6 +71,9 @@ fn repeated(triangles: &[[DVec3; 3]]) -> Vec<bool> {
     again
 }
 
+/// Memory that a triangle takes while its mesh is made \[bytes\], its tree included.
+const TRIANGLE_BYTES: f64 = 500.0;
+
 impl Mesh {
     /// A mesh from corner positions \[L\], three places among them for each triangle, and surface parameters by
     /// triangle where there are any.
@@ -78,7 +81,8 @@ impl Mesh {
     /// Triangles without area are dropped, since they have no normal, and of those with the same three corners all but the
     /// first, which is the one that rays meet ([`Mesh::dropped`] counts them).
     ///
-    /// # Errors     `Error::Scene` for positions that are not finite, places outside the list, or nothing left
+    /// # Errors     `Error::Scene` for positions that are not finite, places outside the list, nothing left,
+    /// or more than the memory that is free
     pub fn new(positions: &[DVec3], triangles: &[[u32; 3]], uvs: Option<&[[DVec2; 3]]>) -> Result<Self> {
         if let Some(bad) = positions.iter().position(|p| !p.is_finite()) {
             return Err(Error::Scene(format!("corner {} of a mesh is not finite", bad + 1)));
@@ -87,6 +91,8 @@ impl Mesh {
         {
             return Err(Error::Scene("a mesh needs finite surface parameters for every triangle".into()));
         }
+        let what = || format!("a mesh of {} triangles", triangles.len());
+        crate::memory::check(what, TRIANGLE_BYTES * triangles.len() as f64)?;
         let corner = |place: u32| {
             positions.get(place as usize).copied().ok_or_else(|| {
                 Error::Scene(format!(

@@ -30,6 +30,9 @@ impl Grid {
     pub fn read(path: &Path) -> Result<Self> {
         let bytes =
             crate::input::read(path, MOST_BYTES).map_err(|cause| refused(path, &cause.to_string()))?;
+        // The values once more, and their bounds.
+        crate::memory::check(|| format!("a grid of {} bytes", bytes.len()), 1.2 * bytes.len() as f64)
+            .map_err(|cause| refused(path, &cause.to_string()))?;
         Grid::from_bytes(&bytes).map_err(|cause| refused(path, &cause.to_string()))
     }
 

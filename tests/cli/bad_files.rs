@@ -1,7 +1,7 @@
 //! Files that a scene names, missing, truncated or wrong; and keys of shapes, textures and boundaries out of range.
 
 use crate::{Folder, refuses, refuses_naming, succeeds, text};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 /// A mesh with a picture on it, under a lamp.
 const SCENE: &str = r#"
@@ -325,6 +325,47 @@ fn large_and_endless_files_are_refused() {
     }
     std::fs::write(folder.0.path().join("part.obj"), alike).unwrap();
     refuses_naming(&["check", text(&scene)], &["part.obj: triangles nested too deeply"]);
+}
+
+/// Meshes, pictures and grids that do not fit into the memory that is free are refused before it is asked for.
+#[cfg(target_os = "linux")]
+#[test]
+fn files_beyond_the_free_memory_are_refused() {
+    let (folder, scene) = whole();
+    let path = |name: &str| folder.0.path().join(name);
+    let refused = |scene: &Path, file: &str, what: &str| {
+        let output = std::process::Command::new("sh")
+            .args(["-c", "ulimit -v 400000; exec \"$0\" \"$@\""])
+            .arg(assert_cmd::cargo::cargo_bin("turbid"))
+            .arg("check")
+            .arg(scene)
+            .output()
+            .unwrap();
+        let told = String::from_utf8(output.stderr).unwrap();
+        let is_told = told.contains(&format!("{file}: {what}"))
+            && told.contains("of memory; allowed: what is free, ")
+            && told.lines().count() == 1;
+        assert!(is_told && output.status.code() == Some(2), "{told}");
+    };
+    // A disk holds no byte of these.
+    let hollow = |name: &str, head: &[u8], length: u64| {
+        std::fs::write(path(name), head).unwrap();
+        std::fs::OpenOptions::new().write(true).open(path(name)).unwrap().set_len(length).unwrap();
+    };
+    let mut picture = PIXEL;
+    picture[16..24].copy_from_slice(&[0, 0, 32, 0, 0, 0, 32, 0]);
+    let sum = checksum(&picture[12..29]).to_be_bytes();
+    picture[29..33].copy_from_slice(&sum);
+    std::fs::write(path("paint.png"), picture).unwrap();
+    refused(&scene, "paint.png", "8192 x 8192 pixels takes about 1.3 GB");
+    std::fs::write(path("paint.png"), PIXEL).unwrap();
+    hollow("part.obj", b"", 50_000_000);
+    refused(&scene, "part.obj", "a mesh of 50000000 bytes takes about 500 MB");
+    hollow("fog.vol", b"VOL", 200_000_000);
+    let fog = SCENE.replace("[[lights]]", "[[regions]]\nshape = { cuboid = { min = [-1, -1, -1], max = [1, 1, 1] } }\nsigma_t = 1\nalbedo = 0.5\ng = 0\ndensity = { grid = { file = \"fog.vol\" } }\n[[lights]]");
+    let fog = folder.file("fog.toml", &fog.replace("part.obj", "whole.obj"));
+    std::fs::write(path("whole.obj"), "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n").unwrap();
+    refused(&fog, "fog.vol", "a grid of 200000000 bytes takes about 240 MB");
 }
 
 /// Light that never ends is refused by every command, and filled glass farther across than numbers carry.

@@ -18,6 +18,7 @@ use std::collections::BTreeSet;
 use std::path::PathBuf;
 use std::process::ExitCode;
 use std::time::Instant;
+use turbid::memory::{free, in_words};
 use turbid::output::{end_on_signal, print, write_atomically, write_csv};
 use turbid::photons::Photon;
 
@@ -346,13 +347,13 @@ fn plan(experiment: &Experiment, settings: &Settings) -> anyhow::Result<Vec<Cell
 
 /// Refuses a map of so many photons if not even the photons fit into the memory that is free: a tree takes more.
 fn check_memory(photons: u64, settings: &Settings) -> anyhow::Result<()> {
-    let Some(free) = turbid::memory::free() else { return Ok(()) };
+    let Some(free) = free() else { return Ok(()) };
     let takes = photons as f64 * size_of::<Photon>() as f64;
     ensure!(
         takes <= free,
-        "a map of {photons} photons takes {:.1} GB of memory at least, {:.1} GB are free; allowed: --photons below {}",
-        takes / 1e9,
-        free / 1e9,
+        "a map of {photons} photons takes {} of memory at least, {} are free; allowed: --photons below {}",
+        in_words(takes),
+        in_words(free),
         number(settings.photon_scale * free / takes)
     );
     Ok(())

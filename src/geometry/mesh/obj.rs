@@ -43,9 +43,15 @@ const MOST_UV: f64 = 1e9;
 /// Larger files are refused: some 10 million triangles.
 const MOST_BYTES: u64 = 1 << 30;
 
+/// Memory of a mesh over the size of its file, while it is made.
+const IN_MEMORY: f64 = 10.0;
+
 pub fn read(path: &Path, place: impl Fn(DVec3) -> DVec3) -> Result<Mesh> {
     let name = path.display();
-    let bytes = crate::input::read(path, MOST_BYTES).map_err(|e| Error::Scene(format!("{name}: {e}")))?;
+    let refuse = |what: String| Error::Scene(format!("{name}: {what}"));
+    let bytes = crate::input::read(path, MOST_BYTES).map_err(|e| refuse(e.to_string()))?;
+    let what = || format!("a mesh of {} bytes", bytes.len());
+    crate::memory::check(what, IN_MEMORY * bytes.len() as f64).map_err(|e| refuse(e.to_string()))?;
     parse(&String::from_utf8_lossy(&bytes), place).map_err(|e| match e {
         Failure::At(line, what) => Error::Scene(format!("{name}:{line}: {what}")),
         Failure::Whole(what) => Error::Scene(format!("{name}: {what}")),

@@ -22,6 +22,9 @@ const MAX_PIXELS: u64 = 1 << 26;
 /// Larger files are refused: so many pixels in 16 bits, not compressed.
 const MOST_BYTES: u64 = 8 * MAX_PIXELS + (1 << 20);
 
+/// Memory that a pixel takes while it is decoded \[bytes\]: 8 of 16-bit color, 6 without alpha, 12 of what is kept.
+const PIXEL_BYTES: f64 = 20.0;
+
 /// Linear light of a value of the sRGB transfer function (IEC 61966-2-1), both in [0, 1].
 fn linear(value: f64) -> f64 {
     if value <= 0.04045 { value / 12.92 } else { libm::pow((value + 0.055) / 1.055, 2.4) }
@@ -45,6 +48,8 @@ impl Image {
         if u64::from(width) * u64::from(height) > MAX_PIXELS {
             return Err(refuse(format!("{width} x {height} pixels; allowed: up to 2^26")));
         }
+        let (what, pixels) = (|| format!("{width} x {height} pixels"), f64::from(width) * f64::from(height));
+        crate::memory::check(what, PIXEL_BYTES * pixels).map_err(|e| refuse(e.to_string()))?;
         let picture = reader().decode().map_err(broken)?;
         let pixels = if picture.color().bytes_per_pixel() / picture.color().channel_count() == 1 {
             let table: Vec<f32> = (0..=255).map(|i| linear(f64::from(i) / 255.0) as f32).collect();
