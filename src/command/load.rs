@@ -24,6 +24,9 @@ pub struct Source {
 /// Larger scene files are refused.
 const MOST_BYTES: u64 = 1 << 26;
 
+/// Memory that a scene file takes over its size while it is read, at most: each number of a long list is a value.
+const IN_MEMORY: f64 = 80.0;
+
 impl Source {
     /// A scene with these changes.
     pub fn with_sets(scene: &str, sets: Vec<String>) -> Self {
@@ -90,6 +93,8 @@ impl Source {
         let text = read_stream(path, MOST_BYTES)
             .and_then(text)
             .with_context(|| format!("cannot read {}", self.name()))?;
+        let what = || format!("a scene file of {} bytes", text.len());
+        turbid::memory::check(what, IN_MEMORY * text.len() as f64).with_context(|| self.name())?;
         let mut file: SceneFile =
             toml::from_str(&text).map_err(|e| anyhow!(located(&self.name(), &text, &e)))?;
         let mut root = toml::Value::Table(toml::from_str(&text)?);

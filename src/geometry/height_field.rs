@@ -1,6 +1,7 @@
 //! Height fields: a mesh over a grid of heights, such as a water surface.
 
 use super::Mesh;
+use super::mesh::TRIANGLE_BYTES;
 use crate::error::{Error, Result};
 use crate::math::sin;
 use crate::rng::{Purpose, Stream};
@@ -39,7 +40,7 @@ pub struct Ground {
     pub cells: [usize; 2],
 }
 
-/// More cells than this are refused: a million, two million triangles, which take some 350 MB.
+/// More cells than this are refused: a million, two million triangles, which take some 1 GB while they are made.
 const MAX_CELLS: usize = 1 << 20;
 
 /// The mesh over a grid of heights, whose up side is outside: each cell is two triangles.
@@ -48,7 +49,8 @@ const MAX_CELLS: usize = 1 << 20;
 ///
 /// # Arguments   `height` of the point in ground coordinates \[L\]
 /// # Errors      `Error::Scene` or `Error::OutOfRange` for a ground without extent or cells, heights that are not finite,
-/// or a floor that is not below them
+/// a floor that is not below them,
+/// or more than the memory that is free
 pub fn height_field(
     ground: &Ground,
     up: Up,
@@ -66,6 +68,8 @@ pub fn height_field(
             "a height field needs a finite corner and a size above 0 on both axes".into(),
         ));
     }
+    let what = || format!("a height field of {columns} x {rows} cells");
+    crate::memory::check(what, 2.0 * TRIANGLE_BYTES * (columns * rows) as f64)?;
     let at = |i: usize, j: usize| {
         ground.corner + ground.size * DVec2::new(i as f64 / columns as f64, j as f64 / rows as f64)
     };

@@ -72,7 +72,7 @@ fn repeated(triangles: &[[DVec3; 3]]) -> Vec<bool> {
 }
 
 /// Memory that a triangle takes while its mesh is made \[bytes\], its tree included.
-const TRIANGLE_BYTES: f64 = 500.0;
+pub(super) const TRIANGLE_BYTES: f64 = 500.0;
 
 impl Mesh {
     /// A mesh from corner positions \[L\], three places among them for each triangle, and surface parameters by

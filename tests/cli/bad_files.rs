@@ -319,6 +319,13 @@ fn large_and_endless_files_are_refused() {
         &["check", text(&ground(1024, 1000))],
         &["count times the cells", "allowed: at most 2^26"],
     );
+    let points: Vec<String> = (0..1050).map(|i| format!("[1, {i}]")).collect();
+    let lathe = format!("lathe = {{ profile = [{}], smooth = 1000 }}", points.join(", "));
+    let lathe = folder.file("lathe.toml", &SCENE.replace("mesh = { file = \"part.obj\" }", &lathe));
+    refuses_naming(
+        &["check", text(&lathe)],
+        &["smooth times the points of the profile is 1050000; allowed: at most 2^20"],
+    );
     let mut alike = "v 0 0 0\nv 1 0 0\nv 0 1 0\n".to_string();
     for i in 0..100_000 {
         alike += &format!("v 0 0 {}\nf 1 2 {}\n", 1e-12 * f64::from(i), 4 + i);
@@ -366,6 +373,11 @@ fn files_beyond_the_free_memory_are_refused() {
     let fog = folder.file("fog.toml", &fog.replace("part.obj", "whole.obj"));
     std::fs::write(path("whole.obj"), "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n").unwrap();
     refused(&fog, "fog.vol", "a grid of 200000000 bytes takes about 240 MB");
+    let waves = "height-field = { corner = [0, 0], size = [1, 1], cells = [1024, 1000], heights = { waves = { seed = 1, count = 1, wavelength = 1, rms = 0.1 } } }";
+    let waves = folder.file("waves.toml", &SCENE.replace("mesh = { file = \"part.obj\" }", waves));
+    refused(&waves, "objects[0]", "a height field of 1024 x 1000 cells takes about 1.0 GB");
+    let long = folder.file("long.toml", &format!("{SCENE}# {}", "-".repeat(10_000_000)));
+    refused(&long, "long.toml", "a scene file of 10000");
 }
 
 /// Light that never ends is refused by every command, and filled glass farther across than numbers carry.

@@ -107,6 +107,9 @@ fn is_one_piece(pieces: &u32) -> bool {
 /// Sines that heights are sums of: more take seconds.
 const MOST_SINES: f64 = (1u64 << 26) as f64;
 
+/// Pieces that a profile is cut into: more take gigabytes.
+const MOST_PIECES: f64 = (1u64 << 20) as f64;
+
 impl ShapeFile {
     pub(super) fn shape(&self, folder: &Path) -> Result<Shape> {
         Ok(match *self {
@@ -121,6 +124,14 @@ impl ShapeFile {
             ShapeFile::Lathe { base, axis, ref profile, smooth: pieces } => {
                 if !(1..=1000).contains(&pieces) {
                     return Err(Error::out_of_range("smooth", f64::from(pieces), "1 to 1000"));
+                }
+                let all = f64::from(pieces) * profile.len() as f64;
+                if all > MOST_PIECES {
+                    return Err(Error::out_of_range(
+                        "smooth times the points of the profile",
+                        all,
+                        "at most 2^20",
+                    ));
                 }
                 let points: Vec<DVec2> = profile.iter().map(|p| DVec2::from_array(*p)).collect();
                 Shape::Lathe(Arc::new(Lathe::new(base.into(), axis.into(), &smooth(&points, pieces))?))
