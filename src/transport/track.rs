@@ -183,7 +183,8 @@ pub(super) fn emitted(
     stream: &mut Stream,
 ) -> (Spectrum, Spectrum) {
     let sigma_t = medium.matter().sigma_t();
-    let least = if part.length().is_finite() { 1.0 / part.length() } else { 0.0 };
+    // Nothing is emitted in a stretch too short for a rate, of 5e-309 or less.
+    let least = Some(1.0 / part.length()).filter(|rate| rate.is_finite()).unwrap_or(0.0);
     let rate = |bound: &Bound| (bound.high * sigma_t.max()).max(least);
     let (mut passed, mut sum) = (Spectrum::ONE, Spectrum::ZERO);
     tentative((medium, ray, part), stream, rate, |t, bound, stream| {

@@ -365,6 +365,25 @@ fn roulette_of_faint_emission_keeps_the_mean_and_ends() {
     }
 }
 
+/// A stretch through an emitting medium may be so short that one over its length is no number.
+#[test]
+fn emission_of_the_shortest_stretch_ends() {
+    for thickness in [5e-324, 5e-309, 1e-300, 1e-20] {
+        let layers = Grid::new((DVec3::ZERO, DVec3::ONE), [1, 1, 2], 1, vec![0.0, 1.0]).unwrap();
+        let shape = cuboid(DVec3::new(-1.0, -1.0, -1.0), DVec3::new(2.0, thickness, 2.0));
+        let medium = heterogeneous(Spectrum::ONE, layers).with_emission_by_density(Spectrum::ONE).unwrap();
+        let scene = bounded(vec![Region { shape, medium: medium.into() }], Vec::new(), Vec::new());
+        let mut sum = 0.0;
+        for history in 0..64 {
+            let ray = Ray::new(DVec3::new(0.5, 0.0, 0.7), DVec3::new(0.0, 0.8, 0.6));
+            let mut stream = Stream::new(4, Purpose::Synthetic, 0, history);
+            sum += emission(&scene, &ray, 4.0, 0, &mut stream)[0];
+            assert!(stream.work.densities < 100, "{thickness:e}: {}", stream.work.densities);
+        }
+        assert!(sum >= 0.0 && sum < 64e3 * thickness.max(1e-300), "{thickness:e}: {sum:e}");
+    }
+}
+
 fn varying(sigma_t: Spectrum, grid: Grid) -> Medium {
     heterogeneous(sigma_t, grid).into()
 }
