@@ -11,7 +11,6 @@ use clap::Parser;
 use cpu_time::ProcessTime;
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
-use statrs::distribution::{Binomial, DiscreteCDF};
 use std::collections::BTreeMap;
 use std::path::Path;
 use std::process::{Command, ExitCode, Stdio};
@@ -24,11 +23,7 @@ use turbid::stats::holm;
 /// Family-wise level of a run.
 pub const LEVEL: f64 = 1e-3;
 /// The largest part of all scenes that may stay undecided.
-const MOST_UNDECIDED: f64 = 0.1;
-/// Scenes from which on that is taken as it stands. In fewer of them more are undecided by chance.
-const MANY: usize = 1000;
-/// Chance of as many undecided scenes, where [`MOST_UNDECIDED`] of all are, below which fewer scenes are too many.
-const CHANCE: f64 = 0.05;
+pub const MOST_UNDECIDED: f64 = 0.1;
 /// p-value of a confirmation from which a smaller scene is looked for at once, before the run's end decides.
 const SHRINK: f64 = 1e-4;
 /// Draws of a seed, at most, until one is valid.
@@ -389,17 +384,6 @@ fn many(settings: &Settings) -> anyhow::Result<u8> {
     summary(&records)
 }
 
-/// How many of so many scenes may stay undecided.
-fn most_undecided(scenes: usize) -> usize {
-    let tenth = (MOST_UNDECIDED * scenes as f64) as usize;
-    let Ok(chance) = Binomial::new(MOST_UNDECIDED, scenes as u64) else { return tenth };
-    if scenes >= MANY {
-        return tenth;
-    }
-    // As many or more: above one fewer.
-    (tenth..scenes).take_while(|most| chance.sf(*most as u64) >= CHANCE).last().map_or(tenth, |most| most + 1)
-}
-
 /// The table, and what the run says.
 fn summary(records: &[Record]) -> anyhow::Result<u8> {
     // Holm over all confirmations of the run: each tests one number, chosen on other data.
@@ -414,7 +398,6 @@ fn summary(records: &[Record]) -> anyhow::Result<u8> {
     };
     let count = |wanted: Verdict| records.iter().filter(|r| verdict(r) == wanted).count();
     let (wrong, undecided) = (count(Verdict::Alarm), count(Verdict::Undecided));
-    let most = most_undecided(records.len());
     let mut refusals: BTreeMap<&str, usize> = BTreeMap::new();
     for reason in records.iter().flat_map(|r| &r.refused_scenes) {
         *refusals.entry(reason).or_default() += 1;
@@ -472,29 +455,16 @@ fn summary(records: &[Record]) -> anyhow::Result<u8> {
         let seconds: f64 = records.iter().map(|r| r.seconds).sum();
         writeln!(
             out,
-            "{} scenes: {} agree, {undecided} undecided (at most {most} may be), {wrong} alarms; {} of CPU time",
+            "{} scenes: {} agree, {undecided} undecided (at most {:.0} may be), {wrong} alarms; {} of CPU time",
             records.len(),
             records.len() - wrong - undecided,
+            (MOST_UNDECIDED * records.len() as f64).floor(),
             duration(seconds)
         )
     })?;
     Ok(match () {
         () if wrong > 0 => 1,
-        () if undecided > most => 3,
+        () if undecided as f64 > MOST_UNDECIDED * records.len() as f64 => 3,
         () => 0,
     })
-}
-
-#[cfg(test)]
-mod tests {
-    use super::most_undecided;
-
-    /// Where a tenth is undecided, more than these are in fewer than one of twenty runs.
-    #[test]
-    fn short_runs_have_more_undecided_by_chance() {
-        // 1 - 0.9^n - n 0.1 0.9^(n-1) - ... by hand: 0.1 of one; 0.19 and 0.01 of two; 0.133 for four and 0.043
-        // for five of 20; of 999 by sums of binomial coefficients.
-        let most = [0, 1, 2, 20, 999, 1000, 2000].map(most_undecided);
-        assert_eq!(most, [0, 1, 1, 4, 116, 100, 200]);
-    }
 }
