@@ -130,7 +130,7 @@ fn outputs_are_tried_before_the_work() {
     }
 }
 
-/// What has no end is no file: one line.
+/// Devices, which may have no end, are not files: one line.
 #[test]
 fn devices_are_no_inputs() {
     for (program, arguments) in [

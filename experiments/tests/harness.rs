@@ -350,7 +350,7 @@ fn what_does_not_fit_is_refused_before_the_work() {
     assert!(failure(&scaled(1.0).unwrap()).unwrap().ends_with("predicted"));
 }
 
-/// What cannot be written, or is no file, ends in one line before anything is measured.
+/// What cannot be written, or is not a file, ends in one line before anything is measured.
 #[cfg(unix)]
 #[test]
 fn outputs_are_tried_before_the_work() {

@@ -37,7 +37,7 @@ use crate::photons::{Photon, PhotonMap};
 use accepted::{Accepted, accepted};
 use glam::DVec3;
 use images::images;
-use moments::{body_part, inward_normal};
+use moments::{LEAST_PART, body_part, inward_normal};
 use rejection::Sieve;
 use std::borrow::Cow;
 use visible::Surroundings;
@@ -360,7 +360,9 @@ fn image_weight(kernel: Kernel, away: DVec3) -> f64 {
     if u2 <= 1.0 { kernel.peak() * kernel.profile(u2) } else { 0.0 }
 }
 
-/// The constant of the straight line fitted to a field with moments S_0 and S_1.
+/// The constant of the straight line fitted to a field with moments S_0 and S_1; that of a constant, in a body too thin for a
+/// line.
 fn linear([m0, m1, m2]: [f64; 3], s0: Spectrum, s1: Spectrum) -> Spectrum {
-    (s0 * m2 - s1 * m1) / (m0 * m2 - m1 * m1)
+    let determinant = m0 * m2 - m1 * m1;
+    if determinant > 0.0 { (s0 * m2 - s1 * m1) / determinant } else { s0 / m0.max(LEAST_PART) }
 }

@@ -183,8 +183,9 @@ pub(super) fn emitted(
     stream: &mut Stream,
 ) -> (Spectrum, Spectrum) {
     let sigma_t = medium.matter().sigma_t();
-    // Nothing is emitted in a stretch too short for a rate, of 5e-309 or less.
-    let least = Some(1.0 / part.length()).filter(|rate| rate.is_finite()).unwrap_or(0.0);
+    // A stretch shorter than 5.6e-309 has no finite rate, and sends nothing that counts.
+    let least = 1.0 / part.length();
+    let least = if least.is_finite() { least } else { 0.0 };
     let rate = |bound: &Bound| (bound.high * sigma_t.max()).max(least);
     let (mut passed, mut sum) = (Spectrum::ONE, Spectrum::ZERO);
     tentative((medium, ray, part), stream, rate, |t, bound, stream| {

@@ -334,7 +334,7 @@ fn large_and_endless_files_are_refused() {
     refuses_naming(&["check", text(&scene)], &["part.obj: triangles nested too deeply"]);
 }
 
-/// Meshes, pictures and grids that do not fit into the memory that is free are refused before it is asked for.
+/// Meshes, pictures, grids and scenes that do not fit into the memory that is free are refused before it is asked for.
 #[cfg(target_os = "linux")]
 #[test]
 fn files_beyond_the_free_memory_are_refused() {
@@ -354,7 +354,7 @@ fn files_beyond_the_free_memory_are_refused() {
             && told.lines().count() == 1;
         assert!(is_told && output.status.code() == Some(2), "{told}");
     };
-    // A disk holds no byte of these.
+    // Sparse files, which take no place on a disk.
     let hollow = |name: &str, head: &[u8], length: u64| {
         std::fs::write(path(name), head).unwrap();
         std::fs::OpenOptions::new().write(true).open(path(name)).unwrap().set_len(length).unwrap();
@@ -376,8 +376,9 @@ fn files_beyond_the_free_memory_are_refused() {
     let waves = "height-field = { corner = [0, 0], size = [1, 1], cells = [1024, 1000], heights = { waves = { seed = 1, count = 1, wavelength = 1, rms = 0.1 } } }";
     let waves = folder.file("waves.toml", &SCENE.replace("mesh = { file = \"part.obj\" }", waves));
     refused(&waves, "objects[0]", "a height field of 1024 x 1000 cells takes about 1.0 GB");
-    let long = folder.file("long.toml", &format!("{SCENE}# {}", "-".repeat(10_000_000)));
-    refused(&long, "long.toml", "a scene file of 10000");
+    let long = format!("{SCENE}# {}", "-".repeat(10_000_000));
+    let what = format!("a scene file of {} bytes takes about 800 MB", long.len());
+    refused(&folder.file("long.toml", &long), "long.toml", &what);
 }
 
 /// Light that never ends is refused by every command, and filled glass farther across than numbers carry.

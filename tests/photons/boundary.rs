@@ -10,7 +10,7 @@ use turbid::estimators::boundary::{Boundary, Rejection, Treatment, body_moments,
 use turbid::estimators::{Estimate, Gather, Kernel, collision_density};
 use turbid::geometry::{Cuboid, Rectangle, Shape, Slab, Sphere};
 use turbid::photons::synthetic::{Number, Profile, Synthetic};
-use turbid::photons::{Photon, PhotonMap};
+use turbid::photons::{Flags, Photon, PhotonMap};
 use turbid::rng::{Purpose, Stream};
 use turbid::stats::Moments;
 use turbid_analytic::boundary as referee;
@@ -202,6 +202,39 @@ fn moments_of_pieces_add_up() {
             let whole = body_moments(kernel, &cuboid(size), p, 0.5)[0];
             let sum: f64 = pieces.iter().map(|piece| body_moments(kernel, piece, p, 0.5)[0]).sum();
             assert!((whole - sum).abs() < 1e-8, "{kernel:?} at {p}: {whole} {sum}");
+        }
+    }
+}
+
+/// Media thinner than the moments have digits: an empty map estimates 0 in them, one photon something finite.
+#[test]
+fn media_without_an_inside_have_finite_estimates() {
+    let photon = Photon {
+        position: DVec3::ZERO,
+        dir: glam::Vec3::X,
+        normal: glam::Vec3::ZERO,
+        power: glam::Vec3::ONE,
+        order: 1,
+        flags: Flags::NONE,
+    };
+    let maps = [Vec::new(), vec![photon]].map(|photons| PhotonMap::new(photons, 10).unwrap());
+    for thickness in [1e-12, 1e-16, 1e-20, 1e-100, 1e-150, 1e-300, 5e-324] {
+        let bodies = [slab(0.0, thickness), sphere(thickness), cuboid(DVec3::new(1.0, thickness, 1.0))];
+        for (body, treatment, kernel) in bodies
+            .iter()
+            .flat_map(|body| Treatment::ALL.map(|treatment| (body, treatment)))
+            .flat_map(|(body, treatment)| Kernel::ALL.map(|kernel| (body, treatment, kernel)))
+        {
+            for boundary in
+                [Boundary::of(body, treatment).unwrap(), Boundary::of(body, treatment).unwrap().among(&[])]
+            {
+                let found = [0, 1].map(|i| {
+                    let gather = Gather::radius(0.4).unwrap();
+                    treated_density(&maps[i], DVec3::ZERO, kernel, gather, &boundary).estimate.value[0]
+                });
+                let what = format!("{body:?}, {treatment:?}, {kernel:?}: {found:?}");
+                assert!(found[0] == 0.0 && found[1].is_finite(), "{what}");
+            }
         }
     }
 }

@@ -40,7 +40,11 @@ pub fn body_moments(kernel: Kernel, body: &Shape, point: DVec3, radius: f64) -> 
     }
 }
 
-/// M_0 alone, sooner known where one flat face is in the ball.
+/// The least part that is told from none: the absolute error of [`body_moments`]. Bodies thinner than this part of the radius
+/// hold no photons but by chance.
+pub(super) const LEAST_PART: f64 = 1e-13;
+
+/// M_0 alone, sooner known where one flat face is in the ball; at least [`LEAST_PART`], since it divides.
 pub(super) fn body_part(kernel: Kernel, body: &Shape, point: DVec3, radius: f64) -> f64 {
     let face = |distances: &[f64]| {
         let mut near = distances.iter().filter(|distance| **distance < radius);
@@ -54,10 +58,11 @@ pub(super) fn body_part(kernel: Kernel, body: &Shape, point: DVec3, radius: f64)
         }
         _ => None,
     };
-    match only {
+    let part = match only {
         Some(distance) => 1.0 - kernel.beyond_plane(distance.max(0.0) / radius),
         None => body_moments(kernel, body, point, radius)[0],
-    }
+    };
+    part.max(LEAST_PART)
 }
 
 /// The unit normal, inwards, at the point of the boundary that is nearest to a point inside; any one of several.
