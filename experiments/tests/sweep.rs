@@ -14,7 +14,7 @@ fn sweep() -> Command {
     Command::new(env!("CARGO_BIN_EXE_sweep"))
 }
 
-/// A thirtieth of what the program does: about a second a scene.
+/// An eightieth of what the program does: about a second a scene.
 const SMALL: Effort = Effort { steps: 2.2e5, seconds: None, control: 1.0 };
 
 /// The first valid scene of a seed.

@@ -3,7 +3,7 @@
 use super::compare::{Check, Test, conserved, sharpness, shrinking, unbiased};
 use super::energy::energy;
 use super::maps::maps;
-use super::measure::{Effort, Failure, light, paths};
+use super::measure::{Effort, Failure, Seen, light, paths};
 use super::pairs::pair;
 use super::text::SceneText;
 use serde::{Deserialize, Serialize};
@@ -145,13 +145,14 @@ struct Once {
     examined: Examined,
 }
 
-/// Part of the effort that is tried first: what is then decided needs no more.
-const FIRST: f64 = 0.15;
+/// Parts of the effort that are tried in turn: what is decided by one needs no more. Alarms are confirmed with four times the
+/// samples of the second, or of the third where it was needed.
+const PARTS: [f64; 3] = [0.06, 0.4, 1.0];
 
-/// Examines a scene; alarms are confirmed once, on another seed with four times the samples of all the effort: what a part of
-/// it found by chance a few times or never, such as a lamp in a mirror, is then found often enough to have an error.
+/// Examines a scene; alarms are confirmed once, on another seed with four times the samples of a large part of the effort: what
+/// a small part found by chance a few times or never, such as a lamp in a mirror, is then found often enough to have an error.
 ///
-/// Where a part of the effort leaves a scene undecided, what was not sharp enough is compared again with all of it. That is a
+/// Where a part of the effort leaves a scene undecided, what was not sharp enough is compared again with more of it. That is a
 /// matter of standard errors, not of differences.
 ///
 /// # Arguments   `stage` is told which method is about to work
@@ -162,28 +163,33 @@ pub fn examine(
     effort: &Effort,
     stage: &dyn Fn(&str),
 ) -> anyhow::Result<Examined> {
-    let little = Effort { steps: FIRST * effort.steps, ..*effort };
-    let mut first = once(text, (seed, seed), &little, stage, &|_| true)?;
-    let Examined { late, alarms, .. } = &first.examined;
-    if late.is_empty() && alarms.is_empty() && first.examined.undecided().is_some() {
+    let part = |part: f64| Effort { steps: part * effort.steps, ..*effort };
+    let mut found = once(text, (seed, seed), &part(PARTS[0]), stage, &|_| true)?;
+    let mut most = PARTS[1];
+    for more in &PARTS[1..] {
+        let Examined { late, alarms, .. } = &found.examined;
+        if !late.is_empty() || !alarms.is_empty() || found.examined.undecided().is_none() {
+            break;
+        }
         // None alone may be too blunt where no layer is sharp in all that counts for it.
-        let is_all = first.checks.iter().all(|c| c.smallest.is_some_and(|s| s <= SHARP));
+        let is_all = found.checks.iter().all(|c| c.smallest.is_some_and(|s| s <= SHARP));
         let is_blunt = |c: &Check| is_all || c.smallest.is_none_or(|s| s > SHARP);
-        let (blunt, sharp): (Vec<Check>, Vec<Check>) = first.checks.into_iter().partition(is_blunt);
-        let refused = first.examined.refused;
-        first = once(text, (seed, seed), effort, stage, &|name| blunt.iter().any(|c| c.name == name))?;
-        first.checks.extend(sharp.into_iter().filter(|c| c.name != ENERGY));
-        first.examined.refused = refused;
-        first.examined.summarize(&first.checks);
+        let (blunt, mut sharp): (Vec<Check>, Vec<Check>) = found.checks.into_iter().partition(is_blunt);
+        let refused = found.examined.refused;
+        most = *more;
+        found = once(text, (seed, seed), &part(*more), stage, &|name| blunt.iter().any(|c| c.name == name))?;
+        sharp.retain(|old| found.checks.iter().all(|new| new.name != old.name));
+        found.checks.extend(sharp);
+        found.examined.refused = refused;
+        found.examined.summarize(&found.checks);
     }
-    let Once { checks, mut examined } = first;
+    let Once { checks, mut examined } = found;
     let suspicious: Vec<(&str, &Test)> = checks
         .iter()
         .flat_map(|c| c.tests.iter().filter(|t| t.is_suspicious()).map(|t| (c.name.as_str(), t)))
         .collect();
     if !suspicious.is_empty() {
-        let (steps, seconds) = (4.0 * effort.steps, effort.seconds.map(|s| 4.0 * s));
-        let more = Effort { steps, seconds, ..*effort };
+        let more = Effort { seconds: effort.seconds.map(|s| 4.0 * s), ..part(4.0 * most) };
         // Only what is to be compared again.
         let is_wanted = |name: &str| suspicious.iter().any(|(other, _)| *other == name);
         let again = once(text, (seed ^ (1 << 40), seed), &more, stage, &is_wanted)?;
@@ -206,6 +212,8 @@ const ENERGY: &str = "energy";
 const LIGHT_PATHS: &str = "light - paths";
 const MAPS_PATHS: &str = "maps - paths";
 const MAPS_LIGHT: &str = "maps - light";
+/// The same again, without directions in which a specular body is seen.
+const BUT_SPECULAR: &str = ", but for specular bodies";
 
 /// What methods by photons rightly refuse a scene for, if so: a medium that emits and has no end.
 fn cannot_emit(scene: &Scene) -> Option<String> {
@@ -243,6 +251,8 @@ fn once(
     let with_other = other.as_ref().map_or(String::new(), |other| {
         format!("{} - {}", other.name, if has_paths { "paths" } else { "light" })
     });
+    let but_specular = |name: &str| format!("{name}{BUT_SPECULAR}");
+    let is_wanted = |name: &str| is_wanted(name) || is_wanted(&but_specular(name));
     let (needs_maps, needs_other) = (has_photons && is_wanted(with_maps), is_wanted(&with_other));
     let by_paths = has_paths.then(|| {
         stage("paths");
@@ -265,6 +275,10 @@ fn once(
     match (&by_maps, &by_paths, &by_light) {
         (Some(made), Some(by_paths), _) => {
             checks.push(shrinking(MAPS_PATHS, made, |s| &s.all, &by_paths.all, |_| true, has_media));
+            if by_paths.has_specular {
+                let (name, straight) = (but_specular(MAPS_PATHS), &by_paths.straight);
+                checks.push(shrinking(&name, made, |s| &s.straight, straight, |_| true, has_media));
+            }
         }
         (Some(made), None, Some(by_light)) => {
             checks.push(shrinking(MAPS_LIGHT, made, |s| &s.straight, by_light, scatters, has_media));
@@ -278,18 +292,21 @@ fn once(
         Err(error) => examined.alarms.push(Alarm::failure("pair", format!("refused: {error:#}"))),
         Ok(other) => {
             let camera = other.scene.camera().unwrap_or(&camera);
-            let (first, second) = match has_paths {
-                true => {
-                    let second = paths(&other.scene, camera, seed ^ (1 << 41), effort);
-                    (by_paths.map(|seen| seen.all), second.map(|seen| seen.all))
-                }
-                false => (by_light, light(&other.scene, camera, seed ^ (1 << 41), effort)),
-            };
             let endless = cannot_emit(&other.scene).filter(|_| !has_paths);
+            let seed = seed ^ (1 << 41);
+            let second = match has_paths {
+                true => paths(&other.scene, camera, seed, effort),
+                false => light(&other.scene, camera, seed, effort).map(Seen::from),
+            };
             let second = examined.keep(&with_other, second, endless.as_deref());
+            let first = if has_paths { by_paths } else { by_light.map(Seen::from) };
             if let (Some(first), Some(second)) = (first, second) {
                 let second = if other.is_mirrored { second.flipped() } else { second };
-                checks.push(unbiased(&with_other, &second, &first, |_| true));
+                checks.push(unbiased(&with_other, &second.all, &first.all, |_| true));
+                if first.has_specular {
+                    let name = but_specular(&with_other);
+                    checks.push(unbiased(&name, &second.straight, &first.straight, |_| true));
+                }
             }
         }
     }

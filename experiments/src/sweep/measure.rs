@@ -73,24 +73,34 @@ pub struct Mean {
     pub largest: f64,
 }
 
-/// Whether nothing can be said of a mean: the variance of variance, above what normal numbers have by their count, is larger
-/// than allowed for [`BATCHES`].
+/// Whether nothing can be said of a mean whose contributions are not known: the variance of variance, above what normal numbers
+/// have by their count, is larger than allowed for [`BATCHES`].
 pub fn is_heavy(m: &Moments) -> bool {
     let normal = |n: f64| 2.0 / n;
     let excess = m.vov() - normal(m.n() as f64);
     excess.is_nan() || excess > HEAVY_TAIL - normal(BATCHES as f64)
 }
 
+/// Shape of a tail up to which means are compared. From 1/2 on the variance is infinite, and the error of a mean is of the
+/// order of its largest contributions: comparisons count a multiple of the largest as unknown, so that what they then say is
+/// right up to here (a test says so). That means are useful up to 0.7 is a finding of Vehtari et al. 2024.
+const MOST_SHAPE: f64 = 0.7;
+
+/// Whether nothing can be said of a mean: by the tail of its contributions, or where too few are known, by its repetitions.
+fn is_unknown(moments: &Moments, tail: Option<&Tail>) -> bool {
+    tail.and_then(Tail::shape).map_or_else(|| is_heavy(moments), |shape| shape > MOST_SHAPE)
+}
+
 impl Measured {
     /// So many repetitions to come, of paths or histories.
-    fn with_tails() -> Self {
+    pub(super) fn with_tails() -> Self {
         Measured { batches: Vec::new(), tails: vec![Tail::default(); CELLS], samples: [0.0; 4] }
     }
 
     /// The mean of a cell.
     pub fn mean(&self, cell: usize) -> Mean {
         let moments: Moments = self.batches.iter().map(|batch| batch[cell]).collect();
-        let is_heavy = is_heavy(&moments) || self.tails.get(cell).is_some_and(Tail::is_heavy);
+        let is_heavy = is_unknown(&moments, self.tails.get(cell));
         Mean { moments, is_heavy, largest: self.largest(cell) }
     }
 
@@ -102,7 +112,7 @@ impl Measured {
         let mut tail = Tail::default();
         self.tails.iter().skip(first).take(4).for_each(|part| tail.merge(part));
         let largest = (first..first + 4).map(|cell| self.largest(cell)).fold(0.0, f64::max) / 4.0;
-        Mean { is_heavy: is_heavy(&moments) || tail.is_heavy(), moments, largest }
+        Mean { is_heavy: is_unknown(&moments, Some(&tail)), moments, largest }
     }
 
     fn largest(&self, cell: usize) -> f64 {
@@ -120,7 +130,7 @@ impl Measured {
     }
 
     /// Adds a repetition: sums over so many samples of each quarter.
-    fn push(&mut self, mut sums: Batch, counts: [f64; 4]) {
+    pub(super) fn push(&mut self, mut sums: Batch, counts: [f64; 4]) {
         for (cell, sum) in sums.iter_mut().enumerate() {
             *sum /= counts[cell % 4];
         }
@@ -129,7 +139,7 @@ impl Measured {
     }
 
     /// Adds what one path or history brought to cells.
-    fn keep(&mut self, one: impl Iterator<Item = (usize, f64)>) {
+    pub(super) fn keep(&mut self, one: impl Iterator<Item = (usize, f64)>) {
         if self.tails.is_empty() {
             return;
         }
@@ -263,6 +273,21 @@ pub struct Seen {
     pub straight: Measured,
     /// Whether the two differ.
     pub has_specular: bool,
+}
+
+impl Seen {
+    /// The same with left and right exchanged.
+    pub fn flipped(&self) -> Self {
+        let (all, straight) = (self.all.flipped(), self.straight.flipped());
+        Seen { all, straight, has_specular: self.has_specular }
+    }
+}
+
+impl From<Measured> for Seen {
+    /// What light tracing made, which finds nothing by specular bodies.
+    fn from(all: Measured) -> Self {
+        Seen { all, ..Seen::default() }
+    }
 }
 
 /// Steps that a sample itself stands for: its place, its random numbers and its sums.
