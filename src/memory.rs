@@ -5,7 +5,11 @@ use std::fs::read_to_string;
 
 /// Bytes in words.
 pub fn in_words(bytes: f64) -> String {
-    if bytes < 0.9995e9 { format!("{:.0} MB", bytes / 1e6) } else { format!("{:.1} GB", bytes / 1e9) }
+    match bytes {
+        _ if bytes < 0.9995e6 => format!("{:.0} kB", bytes / 1e3),
+        _ if bytes < 0.9995e9 => format!("{:.0} MB", bytes / 1e6),
+        _ => format!("{:.1} GB", bytes / 1e9),
+    }
 }
 
 /// A number of kilobytes in a file of lines such as `MemAvailable:  123 kB`, in bytes.
@@ -65,7 +69,7 @@ mod tests {
 
     #[test]
     fn bytes_in_words() {
-        assert_eq!((in_words(2.84e7), in_words(2.84e10)), ("28 MB".to_string(), "28.4 GB".to_string()));
+        assert_eq!([3.99e3, 2.84e7, 2.84e10].map(in_words), ["4 kB", "28 MB", "28.4 GB"]);
     }
 
     #[cfg(target_os = "linux")]

@@ -255,3 +255,29 @@ fn steps_follow_mean_free_paths() {
     assert_eq!(steps(&even, &[]), steps(&even, &twentieth));
     assert!(steps(&uneven, &[]) > 4.0 * steps(&uneven, &twentieth));
 }
+
+/// Whatever memory a command may have, it succeeds, or ends with exit code 2: what cannot be foreseen too.
+#[cfg(target_os = "linux")]
+#[test]
+fn memory_that_ends_is_exit_code_2() {
+    let (mut ended, folder) = (0, Folder::new());
+    for (megabytes, method) in
+        [20, 40, 80, 150].into_iter().flat_map(|m| ["photons", "light"].map(|w| (m, w)))
+    {
+        let output = std::process::Command::new("sh")
+            .args(["-c", &format!("ulimit -v {megabytes}000; exec \"$0\" \"$@\"")])
+            .arg(assert_cmd::cargo::cargo_bin("turbid"))
+            .args(["render", "fogbox", "--samples", "1", "--threads", "2", "--with", method, "--output"])
+            .arg(folder.0.path().join("a.exr"))
+            .output()
+            .unwrap();
+        let told = String::from_utf8_lossy(&output.stderr);
+        assert!(
+            matches!(output.status.code(), Some(0 | 2)),
+            "{megabytes} MB, {method}: {:?}, {told}",
+            output.status
+        );
+        ended += usize::from(output.status.code() == Some(2));
+    }
+    assert!(ended > 2, "{ended}");
+}
