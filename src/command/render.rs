@@ -16,7 +16,8 @@ use std::path::PathBuf;
 use turbid::integrators::mapper::{Mapper, Report};
 use turbid::integrators::path;
 use turbid::output::{Tone, auto_exposure, check_writable, is_same_file, one_line, write_exr, write_png};
-use turbid::photons::maps::{MapReport, Maps, Part, fill_part};
+use turbid::photons::Part;
+use turbid::photons::maps::{MapReport, Maps, fill_part};
 use turbid::scene::{Camera, Scene};
 use turbid::sensor::{Film, LIGHT_BYTES, LIGHT_PIXEL_BYTES, Sample, Streams, extend, extend_by_light};
 

@@ -5,7 +5,8 @@ use cpu_time::ProcessTime;
 use std::fmt::Write;
 use std::time::{Duration, Instant};
 use turbid::integrators::mapper::Gathers;
-use turbid::photons::maps::{Ends, MapReport};
+use turbid::photons::Ends;
+use turbid::photons::maps::MapReport;
 
 /// The stage that fills the maps: emission and building the trees.
 pub const MAPS: &str = "maps";

@@ -230,6 +230,9 @@ fn treated(
     plain: impl FnOnce() -> BallSum,
     value: &dyn Fn(&Photon) -> f64,
 ) -> Treated {
+    let eye = eye - point;
+    let point = map.place(point, gather.cap());
+    let eye = point + eye;
     let sieve = Sieve::new(boundary.rejection, boundary.walls, point, gather.cap());
     let (mut whole, mut hidden) = (None, None);
     if sieve.is_none() {

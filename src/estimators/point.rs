@@ -102,20 +102,22 @@ pub(super) fn in_scattered_sum(
     gather: Gather,
 ) -> BallSum {
     let wo = wo.as_vec3().to_array();
-    weighted_sum(map.tree(), point, kernel, gather, |neighbors| {
+    weighted_sum(map, point, kernel, gather, |neighbors| {
         phase.values(CosinePairs { dir: neighbors.dir(), wo, inside: neighbors.inside() })
     })
 }
 
 /// Sum of power x K_r over the gathered photons [W/L^3], divided by nothing.
 pub fn ball_sum(map: &PhotonMap, point: DVec3, kernel: Kernel, gather: Gather) -> BallSum {
-    weighted_sum(map.tree(), point, kernel, gather, |_| f32x8::ONE)
+    weighted_sum(map, point, kernel, gather, |_| f32x8::ONE)
 }
 
-/// Number of photons at most `radius` \[L\] from a point.
+/// Number of photons at most `radius` \[L\] from a point; 0 where a folded cell has no copies that far ([`PhotonMap::place`]).
 pub fn count_within(map: &PhotonMap, point: DVec3, radius: f64) -> usize {
     let mut count = 0;
-    map.tree().within(point, radius, &mut |neighbors: Neighbors<'_>| count += number(&neighbors));
+    map.tree().within(map.place(point, radius), radius, &mut |neighbors: Neighbors<'_>| {
+        count += number(&neighbors)
+    });
     count
 }
 
@@ -128,7 +130,7 @@ pub fn for_each_photon(
     gather: Gather,
     mut visit: impl FnMut(Photon, f64),
 ) -> Ball {
-    let tree = map.tree();
+    let (tree, point) = (map.tree(), map.place(point, gather.cap()));
     gathered(tree, point, gather, &mut |neighbors: Neighbors<'_>| {
         let u2 = neighbors.u2().to_array();
         let scale = kernel.peak() * f64::from(neighbors.share());
@@ -151,14 +153,15 @@ fn number(neighbors: &Neighbors<'_>) -> usize {
 /// Sum of power x K_r x weight.
 #[inline(always)]
 fn weighted_sum(
-    tree: &PhotonTree,
+    map: &PhotonMap,
     point: DVec3,
     kernel: Kernel,
     gather: Gather,
     weight: impl Fn(&Neighbors<'_>) -> f32x8,
 ) -> BallSum {
     let mut sum = Weighted { kernel, weight, sum: LaneSum::default() };
-    let ball = gathered(tree, point, gather, &mut sum);
+    let point = map.place(point, gather.cap());
+    let ball = gathered(map.tree(), point, gather, &mut sum);
     // No photon is near a point that is not finite; that is no darkness.
     let nowhere = if point.is_finite() { 0.0 } else { f64::NAN };
     let r = ball.radius;

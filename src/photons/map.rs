@@ -1,17 +1,28 @@
 //! A photon map: the photons that one pass stored, and how many that pass emitted.
 
-use super::{Photon, PhotonTree};
+use super::{Photon, PhotonTree, fold};
 use crate::error::{Error, Result};
 use crate::transport::{NoProgress, Progress};
 use glam::DVec3;
 
 /// Stored photons and the number **emitted** by the pass that stored them: estimates divide by that number,
 /// never by the number stored. It holds no estimator.
+///
+/// That of a folded cell stands for an unbounded slab: whoever asks may ask at any place of it.
 #[derive(Debug)]
 pub struct PhotonMap {
     tree: PhotonTree,
     emitted: u64,
     run: u64,
+    period: Option<Period>,
+}
+
+/// A world that repeats itself in x and y.
+#[derive(Debug, Clone, Copy)]
+struct Period {
+    side: f64,
+    /// How far beyond the cell's edges the map holds copies.
+    reach: f64,
 }
 
 impl PhotonMap {
@@ -47,6 +58,31 @@ impl PhotonMap {
         Self::of(PhotonTree::of_parts(parts, progress), emitted)
     }
 
+    /// The map of a cell [0, side) x [0, side), if a side is given, with copies for balls that reach so far beyond its edges, at
+    /// most its side \[L\].
+    ///
+    /// # Errors
+    /// As [`PhotonMap::new`]; [`Error::OutOfRange`] for a reach beyond the side.
+    pub fn periodic(
+        mut parts: Vec<Vec<Photon>>,
+        emitted: u64,
+        cell: Option<(f64, f64)>,
+        progress: &dyn Progress,
+    ) -> Result<Self> {
+        let period = cell.map(|(side, reach)| Period { side, reach });
+        if let Some(Period { side, reach }) = period {
+            if !(0.0..=side).contains(&reach) {
+                return Err(Error::out_of_range(
+                    "the reach beyond the cell",
+                    reach,
+                    "from 0 to the side of the cell",
+                ));
+            }
+            parts.iter_mut().for_each(|part| fold::surround(part, side, reach));
+        }
+        Ok(PhotonMap { period, ..Self::of_parts(parts, emitted, progress)? })
+    }
+
     fn of(tree: Result<PhotonTree>, emitted: u64) -> Result<Self> {
         if emitted == 0 {
             return Err(Error::out_of_range("the number of emitted photons", 0.0, "at least 1"));
@@ -55,7 +91,7 @@ impl PhotonMap {
         // Other photons, other numbers.
         let first = if tree.is_empty() { DVec3::ZERO } else { tree.position(0) };
         let run = first.to_array().into_iter().fold(emitted, |mix, x| mix.rotate_left(21) ^ x.to_bits());
-        Ok(PhotonMap { tree, emitted, run })
+        Ok(PhotonMap { tree, emitted, run, period: None })
     }
 
     /// The same map as one of a run, whole or in parts: in all of them estimates choose alike what they choose at random.
@@ -63,7 +99,19 @@ impl PhotonMap {
         PhotonMap { run: seed.rotate_left(32) ^ replicate, ..self }
     }
 
-    /// The photons.
+    /// Where the tree is asked for the photons within a distance \[L\] of a place: in a folded cell, the place in it. Not a number
+    /// where the ball reaches beyond the copies about the cell, so that what is estimated there is not one either.
+    pub fn place(&self, point: DVec3, distance: f64) -> DVec3 {
+        let Some(Period { side, reach }) = self.period else { return point };
+        let place = fold::into_cell(point, side);
+        // The reach may have been the difference of such numbers: rounding is no lack of copies.
+        let least = place.x.min(place.y).min(side - place.x).min(side - place.y)
+            + reach * (1.0 + 1e-9)
+            + 1e-12 * side;
+        if distance <= least { place } else { DVec3::NAN }
+    }
+
+    /// The photons, with the copies of a folded cell.
     pub fn tree(&self) -> &PhotonTree {
         &self.tree
     }

@@ -17,21 +17,17 @@
 //! surface that the eye looks at, L ... M D, comes with them; a map that is seen holds that class.
 
 mod counts;
-mod pass;
 
 pub use counts::{Forecast, MOST_A_STORED, counts, counts_steered, forecast};
 
 use super::importance::Importance;
-use super::{Flags, Ledger, PEAK_BYTES, Photon, PhotonMap, check_end};
+use super::{Flags, Histories, PEAK_BYTES, Part, Pass, PassReport, Photon, PhotonMap, Run, Storage};
 use crate::error::Result;
 use crate::faults::{Fault, planted};
-use crate::rng::{Purpose, Work};
+use crate::rng::Purpose;
 use crate::scene::Scene;
-use crate::surface::Surface;
 use crate::transport::Progress;
 use counts::Emitters;
-use pass::{Class, Run};
-use std::ops::{AddAssign, Range};
 use std::time::{Duration, Instant};
 
 /// Histories of the pilot that says how many photons to emit where a number of stored ones is asked for.
@@ -88,75 +84,6 @@ impl Emitted {
     /// Histories of both passes: the first stages that [`fill_counted`] tells its progress.
     pub fn histories(&self) -> u64 {
         self.global.max(self.volume) + self.caustic
-    }
-}
-
-/// How histories ended.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub struct Ends {
-    /// In a medium or on a body.
-    pub absorbed: u64,
-    /// Out of the scene.
-    pub escaped: u64,
-    /// Where nobody asked for more.
-    pub abandoned: u64,
-    /// Before they began: a medium was asked for a photon where it emits less than elsewhere, or is not.
-    pub refused: u64,
-}
-
-/// What one pass of histories did.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct PassReport {
-    /// Histories run.
-    pub emitted: u64,
-    /// How they ended.
-    pub ends: Ends,
-    /// Where the power went.
-    pub ledger: Ledger,
-    /// Collisions in media, stored or not.
-    pub collisions: u64,
-    /// Arrivals at diffuse surfaces, stored or not.
-    pub hits: u64,
-    /// Work that the scene may not require.
-    pub work: Work,
-    /// Time.
-    pub time: Duration,
-}
-
-impl AddAssign for PassReport {
-    fn add_assign(&mut self, other: Self) {
-        self.emitted += other.emitted;
-        self.ends.absorbed += other.ends.absorbed;
-        self.ends.escaped += other.ends.escaped;
-        self.ends.abandoned += other.ends.abandoned;
-        self.ends.refused += other.ends.refused;
-        self.ledger.add(&other.ledger);
-        self.collisions += other.collisions;
-        self.hits += other.hits;
-        self.work += other.work;
-        self.time += other.time;
-    }
-}
-
-/// A part of a run's histories, whose photons are in memory at one time.
-///
-/// Photons stand for those of the other parts too: the mean of estimates with the same radius over the parts is that of one map.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Part {
-    /// Which part, from 0.
-    pub number: u64,
-    /// Of how many.
-    pub of: u64,
-}
-
-impl Part {
-    /// All of it.
-    pub const WHOLE: Part = Part { number: 0, of: 1 };
-
-    /// Its part of so many histories.
-    pub fn histories(self, count: u64) -> Range<u64> {
-        let cut = |n: u64| (u128::from(count) * u128::from(n) / u128::from(self.of)) as u64;
-        cut(self.number)..cut(self.number + 1)
     }
 }
 
@@ -298,22 +225,7 @@ pub fn fill_part(
     part: Part,
     progress: &dyn Progress,
 ) -> Result<Maps> {
-    scene.check_emission()?;
-    check_end(scene)?;
     let emitters = Emitters::of(scene, importance);
-    let run = |class, global, volume| Run {
-        scene,
-        emitter: emitters.of_class(class),
-        importance: importance.filter(|_| class != Class::Caustic),
-        purpose: Purpose::Photons,
-        seed: settings.seed,
-        replicate: settings.replicate,
-        class,
-        global,
-        volume,
-        part,
-        is_pilot: false,
-    };
     let (Emitted { global, volume, caustic }, mut report) = (emitted, MapReport::default());
     let mut build = |parts: Vec<Vec<Photon>>, emitted: u64| {
         if emitted == 0 {
@@ -326,15 +238,26 @@ pub fn fill_part(
         report.build += start.elapsed();
         map
     };
-    let mut pass = run(Class::Main(settings.indirect), global, volume).pass(global.max(volume), progress)?;
-    let main = pass.report;
-    let surfaces = build(std::mem::take(&mut pass.surfaces), global)?;
-    let media = build(std::mem::take(&mut pass.media), volume)?;
+    let shot = |purpose: Purpose, class: Class, [global, volume]: [u64; 2]| -> Result<Pass> {
+        let (count, store) = (global.max(volume), Classes { class, global, volume });
+        let histories = part.histories(count);
+        progress.stage("emission", histories.end - histories.start);
+        let run = Run { purpose, part, ..class.run(scene, &emitters, importance, settings, count) };
+        let mut pass = run.pass(&store, progress)?;
+        // What a caustic map leaves out is not lost but stands in the other maps; what meets nothing escapes.
+        if class != Class::Caustic {
+            let elsewhere = run.emitter.left_out() * (histories.end - histories.start) as f64;
+            pass.report.ledger.emitted += elsewhere;
+            pass.report.ledger.escaped += elsewhere;
+        }
+        Ok(pass)
+    };
+    let main = shot(Purpose::Photons, Class::Main(settings.indirect), [global, volume])?;
+    let (surfaces, media) = (build(main.surfaces, global)?, build(main.media, volume)?);
     // Caustic photons of histories that the first pass has run too would be the same photons.
-    let own = Run { purpose: Purpose::Caustics, ..run(Class::Caustic, caustic, 0) };
-    let pass = own.pass(caustic, progress)?;
+    let pass = shot(Purpose::Caustics, Class::Caustic, [caustic, 0])?;
     let focused = build(pass.surfaces, caustic)?;
-    (report.main, report.caustic) = (main, pass.report);
+    (report.main, report.caustic) = (main.report, pass.report);
     report.aimed = emitters.main.kept();
     report.projection_cells = emitters.main.projection_cells();
     if let Some(emitter) = &emitters.caustic {
@@ -345,7 +268,52 @@ pub fn fill_part(
     Ok(Maps { global: surfaces, caustic: focused, volume: media, indirect: settings.indirect, report })
 }
 
-/// Whether photons are stored on a surface: some light leaves it in other than specular directions.
-pub(super) fn is_diffuse(surface: &Surface) -> bool {
-    matches!(surface, Surface::Lambertian(_))
+/// Which photons a pass stores.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Class {
+    /// Those of the global and the volume map.
+    Main(Indirect),
+    /// Those of the caustic map.
+    Caustic,
+}
+
+impl Class {
+    /// The pass that fills maps of this class by so many histories.
+    fn run<'a>(
+        self,
+        scene: &'a Scene,
+        emitters: &'a Emitters,
+        importance: Option<&'a Importance>,
+        settings: &MapSettings,
+        count: u64,
+    ) -> Run<'a> {
+        // A caustic photon has not been scattered: its history ends with its first scattering.
+        let max_order = (self == Class::Caustic).then_some(0);
+        let histories = Histories { count, seed: settings.seed, replicate: settings.replicate, max_order };
+        let importance = importance.filter(|_| self != Class::Caustic);
+        Run { importance, ..Run::new(scene, emitters.of_class(self), histories) }
+    }
+}
+
+/// The photons of the maps of a class.
+struct Classes {
+    class: Class,
+    /// Histories that store surface photons.
+    global: u64,
+    /// Histories that store volume photons.
+    volume: u64,
+}
+
+impl Storage for Classes {
+    fn in_medium(&self, history: u64, photon: &Photon) -> bool {
+        self.class != Class::Caustic && history < self.volume && is_volume(photon.flags)
+    }
+
+    fn on_surface(&self, history: u64, photon: &Photon) -> bool {
+        let is_stored = match self.class {
+            Class::Main(indirect) => is_global(photon.flags, indirect),
+            Class::Caustic => is_caustic(photon.flags),
+        };
+        history < self.global && is_stored
+    }
 }

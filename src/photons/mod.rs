@@ -1,4 +1,4 @@
-//! Photons: the record, shooting, the folded cell, the tree over their positions, maps.
+//! Photons: the record, the pass that stores them, the folded cell, the tree over their positions, maps.
 
 mod emit;
 mod ends;
@@ -6,8 +6,8 @@ pub mod fold;
 pub mod importance;
 mod map;
 pub mod maps;
+mod pass;
 mod record;
-mod shoot;
 pub mod synthetic;
 pub mod tree;
 
@@ -15,9 +15,8 @@ pub use crate::transport::Flags;
 pub use emit::Emitter;
 pub use ends::{MOST_EVENTS, check_end};
 pub use map::PhotonMap;
+pub use pass::{Ends, Histories, Ledger, Part, Pass, PassReport, Run, Storage, is_in, is_indirect, shoot};
 pub use record::Photon;
-pub(crate) use shoot::shoot_blocks;
-pub use shoot::{Histories, Ledger, Pass, is_in, is_indirect, shoot, shoot_from};
 pub use tree::PhotonTree;
 
 /// Most memory that a stored photon takes on its way into a map \[bytes\]: 64 as a record until the tree is complete, beside

@@ -18,7 +18,7 @@ use crate::error::{Error, Result};
 use crate::estimators::{Gather, Kernel, fluence};
 use crate::faults::{Fault, planted};
 use crate::light::Light;
-use crate::photons::{Histories, fold};
+use crate::photons::{Histories, Part};
 use crate::rng::{Purpose, Stream};
 use crate::scene::{Orders, Quantity, Scene, Sensor};
 use crate::stats::{Interval, Moments, Tail};
@@ -204,7 +204,7 @@ impl Pilot {
         let max_order = max_order(chosen);
         let histories = Histories { count: settings.photons, seed: settings.seed, replicate, max_order };
         let start = Instant::now();
-        let (_, maps) = maps(scene, chosen, histories, 0..settings.photons, margin, progress)?;
+        let (_, maps) = maps(scene, chosen, histories, Part::WHOLE, margin, progress)?;
         self.preparation_seconds += start.elapsed().as_secs_f64() / (settings.photons * settings.maps) as f64;
         let start = Instant::now();
         for (sensor, probe) in chosen.iter().zip(&mut self.probes) {
@@ -213,7 +213,6 @@ impl Pilot {
             };
             let Quantity::Fluence(p) = sensor.quantity else { continue };
             let sigma_t = scene.medium_at(p).map_or(crate::Spectrum::ONE, |m| m.sigma_t(p));
-            let p = scene.stage().map_or(p, |s| fold::into_cell(p, s.side));
             let mut values = [0.0; BALLS];
             for (ball, value) in values.iter_mut().enumerate() {
                 let gather = Gather::radius(radius(probe.reach, ball))?;

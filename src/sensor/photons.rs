@@ -7,16 +7,14 @@ use crate::estimators::boundary::{Treatment, treated_fluence, treated_in_scatter
 use crate::estimators::{Estimate, Gather, Kernel, fluence, in_scattered};
 use crate::integrators::mapper::{MediumExtent, medium_extents};
 use crate::math::{Ray, exp_m1, ln_1p};
-use crate::photons::maps::Part;
 use crate::photons::{
-    BUILD_SECONDS, Emitter, Histories, Ledger, PEAK_BYTES, Pass, Photon, PhotonMap, fold, shoot, shoot_blocks,
+    BUILD_SECONDS, Emitter, Histories, Ledger, PEAK_BYTES, Part, Pass, Photon, PhotonMap, Run, fold, shoot,
 };
 use crate::rng::{Purpose, Stream};
 use crate::scene::{Orders, Quantity, Scene, Sensor, decay};
 use crate::stats::Moments;
 use crate::transport::{NoProgress, Progress, transmittance};
 use glam::DVec3;
-use std::ops::Range;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::Instant;
 
@@ -120,10 +118,9 @@ pub fn by_photons_in_passes(
         let mut estimates = vec![Spectrum::ZERO; sensors.len()];
         for number in 0..passes {
             let booked = (result.gathers, result.underfull, result.beyond);
-            let part = Part { number, of: passes }.histories(settings.photons);
-            let share = (part.end - part.start) as f64 / settings.photons as f64;
+            let part = Part { number, of: passes };
             let (pass, maps) = maps(scene, &sensors, histories, part, margin, progress)?;
-            result.ledger.add(&pass.ledger);
+            result.ledger += pass.report.ledger;
             let tallied = sensors.iter().zip(moments.iter_mut()).zip(&pass.tallies);
             for ((_, mine), tally) in tallied.filter(|((s, _), _)| map_orders(s).is_none()) {
                 for (m, t) in mine.iter_mut().zip(tally) {
@@ -135,7 +132,8 @@ pub fn by_photons_in_passes(
                 for (index, (sensor, sum)) in here.enumerate() {
                     // Every pass asks at the same places.
                     let mut stream = Stream::new(settings.seed, Purpose::Resampling, replicate, index as u64);
-                    *sum += read((scene, &extents), map, sensor, settings, &mut stream, &mut result) * share;
+                    *sum += read((scene, &extents), map, sensor, settings, &mut stream, &mut result)
+                        / passes as f64;
                 }
             }
             if number > 0 {
@@ -258,20 +256,16 @@ pub(super) fn maps(
     scene: &Scene,
     sensors: &[Sensor],
     histories: Histories,
-    part: Range<u64>,
+    part: Part,
     margin: f64,
     progress: &dyn Progress,
 ) -> Result<(Pass, Vec<(Orders, PhotonMap)>)> {
     let ranges = ranges(sensors);
-    let is_needed = |order| ranges.iter().any(|r| r.contains(u32::from(order)));
+    let is_needed = |photon: &Photon| ranges.iter().any(|r| r.contains(u32::from(photon.order)));
     let emitter = Emitter::by_power(scene);
-    let keep = |photon: &Photon| is_needed(photon.order);
-    let (pass, mut blocks) = shoot_blocks(scene, &emitter, histories, part, sensors, keep, progress)?;
-    if let Some(stage) = scene.stage()
-        && margin > 0.0
-    {
-        blocks.iter_mut().for_each(|block| fold::surround(block, stage.side, margin));
-    }
+    let run = Run { part, sensors, ..Run::new(scene, &emitter, histories) };
+    let mut pass = run.pass(&is_needed, progress)?;
+    let mut blocks = std::mem::take(&mut pass.media);
     let mut maps = Vec::with_capacity(ranges.len());
     for (number, &range) in ranges.iter().enumerate() {
         let holds = |photon: &Photon| range.contains(u32::from(photon.order));
@@ -283,7 +277,8 @@ pub(super) fn maps(
             }
             false => blocks.iter().map(|block| block.iter().copied().filter(holds).collect()).collect(),
         };
-        let map = PhotonMap::of_parts(parts, pass.emitted, &NoProgress)?;
+        let cell = scene.stage().map(|stage| (stage.side, margin));
+        let map = PhotonMap::periodic(parts, histories.count, cell, &NoProgress)?;
         maps.push((range, map.of_run(histories.seed, histories.replicate)));
     }
     Ok((pass, maps))
@@ -352,7 +347,6 @@ fn read(
 ) -> Spectrum {
     match sensor.quantity {
         Quantity::Fluence(p) => {
-            let p = scene.stage().map_or(p, |s| fold::into_cell(p, s.side));
             let number = scene.medium_number_at(p);
             let sigma_t = number.map_or(Spectrum::ONE, |number| scene.medium(number).sigma_t(p));
             let (kernel, gather, treatment) = (settings.kernel, settings.gather, settings.treatment);
@@ -418,7 +412,6 @@ fn radiance(
             };
             let t = segment.interval.start + inside.min(length);
             let p = ray.at(t);
-            let p = scene.stage().map_or(p, |s| fold::into_cell(p, s.side));
             let (phase, sigma_t) = (medium.phase(), medium.sigma_t(p));
             if sigma_t.is_black() {
                 continue;

@@ -7,15 +7,17 @@ use crate::support::run::pass;
 use crate::support::scenes::{CELL, Incidence, slab};
 use crate::support::verdict;
 use glam::DVec3;
-use turbid::photons::{Photon, fold};
+use turbid::estimators::{Gather, Kernel, collision_density, count_within};
+use turbid::photons::{Photon, PhotonMap};
 use turbid::rng::{Purpose, Stream};
+use turbid::transport::NoProgress;
 
 /// One order at a time: a history has at most one photon of each, so that the counts are independent.
 #[test]
 fn photons_of_an_oblique_beam_lie_evenly_over_the_cell() {
     for how in [Incidence::Beam(0.3), Incidence::Beam(1.0), Incidence::Diffuse] {
         let scene = slab(2.0, 0.9, 0.75, how);
-        let photons = pass(&scene, &[], HISTORIES, 1, |p| p.order < 4).photons;
+        let photons = pass(&scene, &[], HISTORIES, 1, |p| p.order < 4).media.concat();
         assert!(
             photons
                 .iter()
@@ -56,21 +58,31 @@ fn copies_around_the_cell_are_those_of_the_lattice() {
     };
     let photons: Vec<Photon> =
         (0..500).map(|_| photon(DVec3::from_array(stream.triple()) * DVec3::new(CELL, CELL, 1.0))).collect();
+    let map = |reach: f64| PhotonMap::periodic(vec![photons.clone()], 1, Some((CELL, reach)), &NoProgress);
+    assert!(map(1.01 * CELL).is_err() && map(-0.1).is_err());
     for margin in [0.3, 0.5 * CELL, 0.8 * CELL, CELL] {
-        let mut around = photons.clone();
-        fold::surround(&mut around, CELL, margin);
+        let (around, alone) = (map(margin).unwrap(), map(0.0).unwrap());
+        let gather = Gather::radius(margin).unwrap();
         let mut missed_without_copies = 0;
-        for _ in 0..200 {
+        for number in 0..200 {
             let probe = DVec3::from_array(stream.triple()) * DVec3::new(CELL, CELL, 1.0);
-            let is_near = |p: DVec3| p.distance(probe) <= margin;
-            let found = around.iter().filter(|p| is_near(p.position)).count();
             let shifts = (-2..=2)
                 .flat_map(|i| (-2..=2).map(move |j| DVec3::new(f64::from(i), f64::from(j), 0.0) * CELL));
-            let expected: usize =
-                shifts.map(|shift| photons.iter().filter(|p| is_near(p.position + shift)).count()).sum();
-            assert_eq!(found, expected, "margin {margin}, probe {probe}");
-            missed_without_copies +=
-                usize::from(photons.iter().filter(|p| is_near(p.position)).count() != expected);
+            // The tree holds positions to a part in 2^24 of its box.
+            let [least, most] = [-1e-6, 1e-6].map(|rounding| {
+                let is_near = |p: DVec3| p.distance(probe) <= margin + rounding;
+                let near = |shift: DVec3| photons.iter().filter(|p| is_near(p.position + shift)).count();
+                shifts.clone().map(near).sum::<usize>()
+            });
+            // Asked anywhere in the lattice.
+            let there = probe + DVec3::new(f64::from(number % 7 - 3), f64::from(number % 5 - 2), 0.0) * CELL;
+            let found = count_within(&around, there, margin);
+            assert!((least..=most).contains(&found), "margin {margin}, {probe}: {found}, {least} to {most}");
+            // Without copies only balls within the cell have an estimate.
+            let is_inside = [probe.x, probe.y].iter().all(|x| (margin..=CELL - margin).contains(x));
+            let estimate = collision_density(&alone, there, Kernel::Uniform, gather).value[0];
+            assert_eq!(estimate.is_finite(), is_inside, "margin {margin}, {probe}");
+            missed_without_copies += usize::from(!is_inside);
         }
         assert!(missed_without_copies > 0);
     }

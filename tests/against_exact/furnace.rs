@@ -50,13 +50,13 @@ fn photons_fill_the_furnace_evenly() {
         let histories = Histories { count: 2048, seed: 3, replicate, max_order: None };
         let pass = shoot(&scene, histories, &[], |_| true, &NoProgress).unwrap();
         let mut sums = [0.0; 8];
-        for photon in &pass.photons {
+        for photon in pass.photons() {
             let upper = photon.position.cmpgt(0.5 * edge);
             sums[upper.bitmask() as usize] += f64::from(photon.power.x);
         }
         let volume = edge.element_product() / 8.0;
         for (m, sum) in eighths.iter_mut().zip(sums) {
-            m.push(sum / (pass.emitted as f64 * 2.0 * volume));
+            m.push(sum / (pass.emitted() as f64 * 2.0 * volume));
         }
     }
     for (i, moments) in eighths.iter().enumerate() {

@@ -49,7 +49,7 @@ fn how_far_scattering_takes_them() {
             let pass = shoot(&scene, histories, &[], |_| true, &NoProgress).unwrap();
             let mut batch = [[0.0; 2]; FLIGHTS as usize];
             let mut first = DVec3::ZERO;
-            for photon in &pass.photons {
+            for photon in pass.photons() {
                 let dir = photon.dir.as_dvec3();
                 if photon.order == 0 {
                     first = dir;
@@ -60,7 +60,7 @@ fn how_far_scattering_takes_them() {
             }
             for (moments, batch) in sums.iter_mut().zip(batch) {
                 for (m, sum) in moments.iter_mut().zip(batch) {
-                    m.push(sum / pass.emitted as f64);
+                    m.push(sum / pass.emitted() as f64);
                 }
             }
         }

@@ -30,7 +30,7 @@ pub fn in_shells(scene: &Scene, edges: &[f64], count: u64, seed: u64) -> Vec<Mom
         let histories = Histories { count, seed, replicate, max_order: None };
         let pass = shoot(scene, histories, &[], |_| true, &NoProgress).unwrap();
         let mut sums = vec![0.0; shells.len()];
-        for photon in &pass.photons {
+        for photon in pass.photons() {
             let above = edges.partition_point(|&edge| edge <= photon.position.length());
             if (1..edges.len()).contains(&above) {
                 sums[above - 1] += f64::from(photon.power.x);
@@ -39,7 +39,7 @@ pub fn in_shells(scene: &Scene, edges: &[f64], count: u64, seed: u64) -> Vec<Mom
         for ((moments, sum), edges) in shells.iter_mut().zip(sums).zip(edges.windows(2)) {
             let (a, b) = (edges[0], edges[1]);
             let volume = FOUR_PI / 3.0 * (b - a) * (a * a + a * b + b * b);
-            moments.push(sum / (pass.emitted as f64 * volume));
+            moments.push(sum / (pass.emitted() as f64 * volume));
         }
     }
     shells

@@ -14,7 +14,7 @@ use turbid::estimators::boundary::Treatment;
 use turbid::estimators::{Gather, Kernel};
 use turbid::math::{Interval, Positive, Ray};
 use turbid::medium::{Density, Grid, HeightFog, Medium};
-use turbid::photons::{Histories, PhotonMap, shoot};
+use turbid::photons::{Histories, shoot};
 use turbid::scene::{Orders, Parts, Quantity, Region, Scene};
 use turbid::sensor::{PhotonSettings, by_photons};
 use turbid::stats::Moments;
@@ -122,9 +122,9 @@ fn stored_photons_carry_the_fluence_of_their_depths() {
         for replicate in 0..64 {
             let histories = Histories { count: 2048, seed: 24, replicate, max_order: None };
             let pass = shoot(&scene, histories, &[], |_| true, &NoProgress).unwrap();
-            let map = PhotonMap::new(pass.photons.clone(), pass.emitted).unwrap();
+            let map = pass.clone().into_map(0.0).unwrap();
             let mut sums = vec![0.0; parts];
-            for photon in &pass.photons {
+            for photon in pass.photons() {
                 let depth =
                     medium.integrated_depth(&down(), Interval { start: 0.0, end: photon.position.z })[0];
                 let part = ((depth / tau * parts as f64) as usize).min(parts - 1);

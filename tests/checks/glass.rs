@@ -35,8 +35,8 @@ pub fn photons_in_a_cavity_collide_as_its_fluence() {
     let mut moments = Moments::new();
     for seed in 0..64 {
         let pass = pass(&scene, &[], 1 << 11, seed, |photon| photon.position.length() < inner);
-        let power: f64 = pass.photons.iter().map(|photon| f64::from(photon.power.x)).sum();
-        moments.push(power / pass.emitted as f64);
+        let power: f64 = pass.photons().map(|photon| f64::from(photon.power.x)).sum();
+        moments.push(power / pass.emitted() as f64);
     }
     let volume = FOUR_PI / 3.0 * inner.powi(3);
     let expected = sigma_t * 4.0 * index * index * volume;

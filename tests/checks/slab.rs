@@ -7,7 +7,7 @@ use crate::support::scenes::{
 use crate::support::verdict;
 use glam::DVec3;
 use turbid::estimators::count_within;
-use turbid::photons::{Histories, Pass, Photon, PhotonMap, shoot};
+use turbid::photons::{Histories, Pass, Photon, shoot};
 use turbid::scene::{Orders, Quantity, Scene};
 use turbid::stats::Moments;
 use turbid::transport::NoProgress;
@@ -68,9 +68,11 @@ pub fn layer_means<const N: usize>(
         let pass = shoot(scene, histories, &[], |_| true, &NoProgress).unwrap();
         let volume = CELL * CELL * tau / LAYERS as f64;
         let mut sums = vec![[0.0; LAYERS]; N];
-        for photon in &pass.photons {
+        for photon in pass.photons() {
             let index = ((photon.position.z / tau * LAYERS as f64) as usize).min(LAYERS - 1);
-            number(photon, &mut |which, value| sums[which][index] += value / (pass.emitted as f64 * volume));
+            number(photon, &mut |which, value| {
+                sums[which][index] += value / (pass.emitted() as f64 * volume)
+            });
         }
         for (m, s) in moments.iter_mut().zip(&sums) {
             m.iter_mut().zip(s).for_each(|(m, s)| m.push(*s));
@@ -124,13 +126,13 @@ pub fn stored_power_over_extinction_is_the_fluence(coefficient: f64) {
 
 /// Collisions over histories.
 pub fn by_histories(pass: &Pass) -> f64 {
-    pass.collisions as f64 / pass.emitted as f64
+    pass.report.collisions as f64 / pass.emitted() as f64
 }
 
 /// The same, traced until 16 photons are stored and the last path cut: over the histories begun. Every history of a thick
 /// slab collides, and begins with a photon of order 0.
 pub fn until_so_many_are_stored(pass: &Pass) -> f64 {
-    let stored = &pass.photons[..16];
+    let stored = &pass.media.concat()[..16];
     16.0 / stored.iter().filter(|photon| photon.order == 0).count() as f64
 }
 
@@ -160,7 +162,7 @@ pub fn counts_vary_as_poisson(orders: Orders) {
             orders.contains(u32::from(photon.order)) && (photon.position.z - 1.0).abs() < 0.3
         };
         let pass = shoot(&scene, histories, &[], keep, &NoProgress).unwrap();
-        let map = PhotonMap::new(pass.photons, pass.emitted).unwrap();
+        let map = pass.into_map(0.0).unwrap();
         let place = |i: usize| DVec3::new(0.2 + 0.4 * (i % 10) as f64, 0.2 + 0.4 * (i / 10) as f64, 1.0);
         let counts: Moments = (0..100).map(|i| count_within(&map, place(i), radius) as f64).collect();
         pairs.push((counts.mean(), counts.variance()));

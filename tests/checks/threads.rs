@@ -11,7 +11,7 @@ pub fn moments_do_not_depend_on_the_threads() {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
         pool.install(|| {
             let photons = pass(&scene, &[(reflectance(2.0), Orders::ALL)], 20_000, 7, |_| false);
-            (photons.tallies, photons.ledger, paths(&scene, at_depth(1.0), Orders::ALL, 20_000, 7))
+            (photons.tallies, photons.report.ledger, paths(&scene, at_depth(1.0), Orders::ALL, 20_000, 7))
         })
     };
     let one = run(1);

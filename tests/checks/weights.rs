@@ -156,7 +156,7 @@ pub fn advised_noise_is_that_of_maps() {
     for replicate in 0..MAPS {
         let histories = Histories { count: PHOTONS, seed: 83, replicate, max_order: None };
         let pass = shoot(&scene, histories, &[], |_| true, &NoProgress).unwrap();
-        let map = PhotonMap::new(pass.photons, pass.emitted).unwrap();
+        let map = pass.into_map(0.0).unwrap();
         let gather = Gather::radius(radius).unwrap();
         // The fluence is 4 everywhere, but for photons that a ball loses nowhere.
         let error =

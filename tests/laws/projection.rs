@@ -14,7 +14,7 @@ use turbid::Spectrum;
 use turbid::geometry::Shape;
 use turbid::light::{EmissionCell, Light};
 use turbid::photons::maps::{Amount, Indirect, MapReport, MapSettings, fill};
-use turbid::photons::{Emitter, Flags, Histories, shoot_from};
+use turbid::photons::{Emitter, Flags, Histories, Photon, Run};
 use turbid::rng::{Purpose, Stream};
 use turbid::scene::{Region, Scene};
 use turbid::stats::Moments;
@@ -128,11 +128,10 @@ fn caustic(scene: &Scene, emitter: &Emitter, seed: u64) -> [[Moments; 3]; 2] {
     let mut moments = [[Moments::new(); 3]; 2];
     for replicate in 0..64 {
         let histories = Histories { count: HISTORIES, seed, replicate, max_order: Some(0) };
-        let keep = |photon: &turbid::photons::Photon| photon.flags == Flags::SPECULAR;
-        let sensors: [turbid::scene::Sensor; 0] = [];
-        let pass = shoot_from(scene, emitter, histories, &sensors, keep, &NoProgress).unwrap();
+        let keep = |photon: &Photon| photon.flags == Flags::SPECULAR;
+        let pass = Run::new(scene, emitter, histories).pass(&keep, &NoProgress).unwrap();
         let mut sums = [[0.0f64; 3]; 2];
-        for photon in &pass.photons {
+        for photon in pass.photons() {
             let here = &mut sums[usize::from(photon.position.x > 1.0)];
             here.iter_mut().zip(photon.power.to_array()).for_each(|(sum, power)| *sum += f64::from(power));
         }
@@ -217,9 +216,9 @@ fn collided(scene: &Scene, emitter: &Emitter, histories: u64, seed: u64) -> [[Mo
     let mut moments = [[Moments::new(); 3]; 3];
     for replicate in 0..64 {
         let count = Histories { count: histories, seed, replicate, max_order: None };
-        let pass = shoot_from(scene, emitter, count, &[], |_| true, &NoProgress).unwrap();
+        let pass = Run::new(scene, emitter, count).pass(&|_: &Photon| true, &NoProgress).unwrap();
         let mut sums = [[0.0f64; 3]; 3];
-        for photon in &pass.photons {
+        for photon in pass.photons() {
             let met = [Flags::DIFFUSE, Flags::SPECULAR].iter().position(|flag| photon.flags.has(*flag));
             let here = &mut sums[met.map_or(0, |i| i + 1)];
             here.iter_mut().zip(photon.power.to_array()).for_each(|(sum, power)| *sum += f64::from(power));

@@ -8,7 +8,7 @@ use std::path::Path;
 use turbid::Spectrum;
 use turbid::estimators::{Gather, Kernel, fluence};
 use turbid::math::exp;
-use turbid::photons::{Histories, PhotonMap, fold, shoot};
+use turbid::photons::{Histories, shoot};
 use turbid::scene::{Orders, Parts, Quantity, Scene};
 use turbid::sensor::{Advice, Pilot, PilotSettings};
 use turbid::stats::{ALPHA, Moments, wilson_interval};
@@ -69,11 +69,7 @@ impl Case {
         for replicate in 0..maps {
             let histories = Histories { count: photons, seed, replicate, max_order: None };
             let pass = shoot(&self.scene, histories, &[], |_| true, &NoProgress).unwrap();
-            let mut stored = pass.photons;
-            if let Some(stage) = self.scene.stage() {
-                fold::surround(&mut stored, stage.side, radius);
-            }
-            let map = PhotonMap::new_parallel(stored, pass.emitted).unwrap();
+            let map = pass.into_map(radius).unwrap();
             let gather = Gather::radius(radius).unwrap();
             let squares = self.scene.sensors().iter().zip(&self.exact).map(|(sensor, exact)| {
                 let Quantity::Fluence(p) = sensor.quantity else { return f64::NAN };

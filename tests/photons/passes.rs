@@ -119,7 +119,7 @@ fn a_forecast_says_what_is_stored() {
     // Collisions a history, from 1024 of them; each is in the maps of all orders, and fewer in those of two.
     let plain =
         crate::support::run::pass(&slab(2.0, 0.9, 0.5, Incidence::Beam(0.7)), &[], 20_000, 9, |_| true);
-    let collisions = plain.photons.len() as f64 / 20_000.0 * 200_000.0;
+    let collisions = plain.photons().count() as f64 / 20_000.0 * 200_000.0;
     let ratio = one.stored / collisions;
     // Three ranges of orders, one of them up to 2; copies of a margin of 0.3 beyond a cell of 4, (1 + 0.15)^2.
     assert!(ratio > 2.0 && ratio < 3.0 * 1.33 * 1.2, "{ratio}");

@@ -213,7 +213,7 @@ fn a_white_ball_in_a_medium_that_is_lit_from_outside_is_a_furnace() {
     let at = Quantity::Fluence(DVec3::X * 0.5);
     let fluence = crate::support::run::paths(&scene, at, Orders::ALL, 1 << 14, 5);
     verdict::agrees("fluence of the furnace", &fluence[0], (4.0, 1e-14), 0.2, 5);
-    let booked = pass(&scene, &[], 1 << 12, 5, |_| false).ledger;
+    let booked = pass(&scene, &[], 1 << 12, 5, |_| false).report.ledger;
     assert!((booked.escaped / booked.emitted - 1.0).abs() < 1e-12);
 }
 
@@ -237,7 +237,7 @@ fn light_caught_in_glass_with_a_mirror_in_it_is_given_up() {
     let scene = Scene::new(parts).unwrap();
     let out = (outflow(sphere(DVec3::ZERO, 3.0)), Orders::ALL);
     let pass = pass(&scene, &[out], 1 << 9, 3, |_| false);
-    let ledger = &pass.ledger;
+    let ledger = &pass.report.ledger;
     let booked = ledger.escaped + ledger.absorbed + ledger.abandoned;
     assert!((booked / ledger.emitted - 1.0).abs() < 1e-12 && ledger.absorbed == 0.0);
     // The cube without the mirror keeps a third; the mirror turns light, not its angles to the faces.

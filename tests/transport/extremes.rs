@@ -190,14 +190,14 @@ fn black_and_white_media() {
         |_| true,
     );
     assert_eq!(photons.tallies[0][0].mean(), 0.0);
-    assert!(photons.photons.iter().all(|p| p.order == 0 && p.flags.is_direct()));
+    assert!(photons.photons().all(|p| p.order == 0 && p.flags.is_direct()));
     verdict::agrees("T of a black slab", &photons.tallies[1][0], (exp(-4.0), 1e-15), 0.01, 4);
     assert_eq!(paths(&black, reflectance(2.0), Orders::ALL, 4096, 4)[0].mean(), 0.0);
     let phi = paths(&black, at_depth(1.0), Orders::ALL, 4096, 4)[0];
     assert!((phi.mean() / (2.0 * exp(-2.0)) - 1.0).abs() < 1e-14 && phi.std_error() < 1e-15);
     let white = slab(2.0, 1.0, 0.5, Incidence::Beam(0.5));
     let photons = pass(&white, &[(Quantity::Absorbed(0), Orders::ALL)], 1 << 12, 4, |_| false);
-    assert_eq!((photons.tallies[0][0].mean(), photons.ledger.absorbed), (0.0, 0.0));
+    assert_eq!((photons.tallies[0][0].mean(), photons.report.ledger.absorbed), (0.0, 0.0));
     assert_eq!(paths(&white, Quantity::Absorbed(0), Orders::ALL, 4096, 4)[0].mean(), 0.0);
 }
 
@@ -206,7 +206,7 @@ fn no_photons_at_all() {
     let scene = with_sensors(&slab(1.0, 0.9, 0.0, Incidence::Beam(1.0)), &[reflectance(1.0), at_depth(0.5)]);
     let histories = Histories { count: 0, seed: 1, replicate: 0, max_order: None };
     let pass = shoot(&scene, histories, scene.sensors(), |_| true, &NoProgress).unwrap();
-    assert_eq!((pass.emitted, pass.photons.len(), pass.tallies.len()), (0, 0, 2));
+    assert_eq!((pass.emitted(), pass.photons().count(), pass.tallies.len()), (0, 0, 2));
     assert!(pass.tallies[0][0].std_error().is_infinite());
     let refused = PhotonMap::new(Vec::new(), 0).unwrap_err().to_string();
     assert!(refused.contains("emitted") && refused.contains("at least 1"), "{refused}");

@@ -45,7 +45,7 @@ fn room_with(radius: f64) -> Scene {
 }
 
 fn whole() -> Vec<Photon> {
-    pass(&room(), &[], N, 1, |_| true).photons
+    pass(&room(), &[], N, 1, |_| true).media.concat()
 }
 
 /// Every set of flags.
@@ -107,25 +107,27 @@ fn indirect_is_what_does_not_come_straight_from_the_light() {
 #[test]
 fn the_caller_decides_what_a_pass_keeps() {
     let everything = pass(&room(), &[], N, 1, |_| true);
+    let stored = everything.photons().count();
     let selected = |keep: &(dyn Fn(&Photon) -> bool + Sync)| {
         let kept = pass(&room(), &[], N, 1, keep);
-        assert_eq!((kept.emitted, kept.collisions), (N, everything.collisions));
-        let expected: Vec<Photon> = everything.photons.iter().filter(|p| keep(p)).copied().collect();
-        assert!(kept.photons == expected, "{} kept, not {}", kept.photons.len(), expected.len());
-        kept.photons
+        assert_eq!((kept.emitted(), kept.report.collisions), (N, everything.report.collisions));
+        let expected: Vec<Photon> = everything.photons().filter(|p| keep(p)).copied().collect();
+        let kept = kept.media.concat();
+        assert!(kept == expected, "{} kept, not {}", kept.len(), expected.len());
+        kept
     };
-    assert_eq!(everything.photons.len() as u64, everything.collisions);
+    assert_eq!(stored as u64, everything.report.collisions);
     let by_class: usize = classes().iter().map(|class| selected(&|p| p.flags == *class).len()).sum();
-    assert_eq!(by_class, everything.photons.len());
+    assert_eq!(by_class, stored);
     let mut by_order = selected(&is_in(Orders { min: 4, max: None })).len();
     for order in 0..4 {
         let kept = selected(&is_in(Orders::only(order)));
         assert!(!kept.is_empty() && kept.iter().all(|p| u32::from(p.order) == order));
         by_order += kept.len();
     }
-    assert_eq!(by_order, everything.photons.len());
+    assert_eq!(by_order, stored);
     let direct = selected(&|p| !is_indirect(p)).len();
-    assert_eq!(direct + selected(&is_indirect).len(), everything.photons.len());
+    assert_eq!(direct + selected(&is_indirect).len(), stored);
     assert!(selected(&|_| false).is_empty());
 }
 
@@ -167,7 +169,8 @@ fn photons_off_the_mirror_are_the_light_of_the_image() {
     let (mut by_mirror, mut uncollided) = (Moments::new(), Moments::new());
     for replicate in 0..MAPS {
         let histories = Histories { count: PHOTONS, seed: 2, replicate, max_order: Some(0) };
-        let photons = shoot(&scene, histories, &[], is_in(Orders::only(0)), &NoProgress).unwrap().photons;
+        let photons =
+            shoot(&scene, histories, &[], is_in(Orders::only(0)), &NoProgress).unwrap().media.concat();
         let estimate = |photons: Vec<Photon>| {
             let map = PhotonMap::new(photons, PHOTONS).unwrap();
             let gather = Gather::radius(radius).unwrap();

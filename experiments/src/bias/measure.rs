@@ -8,7 +8,7 @@ use anyhow::Context;
 use glam::DVec3;
 use turbid::Spectrum;
 use turbid::estimators::fluence;
-use turbid::photons::{Histories, PhotonMap, is_in, shoot};
+use turbid::photons::{Histories, is_in, shoot};
 use turbid::rng::{Purpose, Stream};
 use turbid::scene::{Quantity, Scene};
 use turbid::sensor::sample;
@@ -71,15 +71,15 @@ fn measure_map(
     let histories = Histories { count: photons, seed: settings.seed, replicate, max_order: field.orders.max };
     let pass = shoot(scene, histories, &[], is_in(field.orders), &NoProgress)?;
     let mut output = CellOutput::new();
-    output.count("photons emitted", pass.emitted);
-    output.count("collisions", pass.collisions);
-    output.count("photons stored", pass.photons.len() as u64);
+    output.count("photons emitted", pass.emitted());
+    output.count("collisions", pass.report.collisions);
+    output.count("photons stored", pass.photons().count() as u64);
     output.push(
         map_case(field, photons),
         "stored per emitted",
-        pass.photons.len() as f64 / pass.emitted as f64,
+        pass.photons().count() as f64 / pass.emitted() as f64,
     );
-    let map = PhotonMap::new(pass.photons, pass.emitted)?;
+    let map = pass.into_map(0.0)?;
     for case in Case::all(field, photons) {
         let gather = case.gather()?;
         let (mut values, mut counts, mut gathered) = (Moments::new(), Moments::new(), 0u64);

@@ -6,7 +6,7 @@ use crate::harness::{CellId, CellOutput, Settings};
 use anyhow::Context;
 use turbid::Spectrum;
 use turbid::estimators::fluence;
-use turbid::photons::{Histories, PhotonMap, shoot};
+use turbid::photons::{Histories, shoot};
 use turbid::transport::NoProgress;
 
 /// All cells: maps of the shaft by number of photons, and maps of a sinusoid.
@@ -44,9 +44,9 @@ pub fn measure(settings: &Settings, cell: &CellId) -> anyhow::Result<CellOutput>
         Histories { count: photons, seed: settings.seed, replicate: cell.stream("blur"), max_order: Some(0) };
     let pass = shoot(&scene, histories, &[], |_| true, &NoProgress)?;
     let mut output = CellOutput::new();
-    output.count("photons emitted", pass.emitted);
-    output.count("photons stored", pass.photons.len() as u64);
-    let map = PhotonMap::new(pass.photons, pass.emitted)?;
+    output.count("photons emitted", pass.emitted());
+    output.count("photons stored", pass.photons().count() as u64);
+    let map = pass.into_map(0.0)?;
     for case in cases(settings, photons) {
         let gather = case.gather()?;
         for place in case.places() {

@@ -218,7 +218,7 @@ impl Field {
         let replicate = cell.stream("boundary");
         let histories = Histories { count: photons, seed: settings.seed, replicate, max_order: None };
         let pass = shoot(&self.scene()?, histories, &[], |_| true, &NoProgress)?;
-        Ok(PhotonMap::new(pass.photons, pass.emitted)?)
+        Ok(pass.into_map(0.0)?)
     }
 
     /// Collisions that a photon leaves in the map, roughly: for the work of a cell.

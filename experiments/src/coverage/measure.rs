@@ -7,7 +7,7 @@ use crate::harness::{CellId, CellOutput, Estimate, MIN_MAPS, Settings};
 use anyhow::Context;
 use turbid::Spectrum;
 use turbid::estimators::{Gather, Kernel, fluence};
-use turbid::photons::{Histories, PhotonMap, shoot};
+use turbid::photons::{Histories, shoot};
 use turbid::scene::Scene;
 use turbid::stats::{Moments, normal_critical, student_critical};
 use turbid::transport::NoProgress;
@@ -179,7 +179,7 @@ impl Tally {
 fn ask(scene: &Scene, exact: &Exact, seed: u64, replicate: u64) -> anyhow::Result<[Answer; ROWS]> {
     let histories = Histories { count: PHOTONS, seed, replicate, max_order: Some(0) };
     let pass = shoot(scene, histories, &[], is_near, &NoProgress)?;
-    let map = PhotonMap::new(pass.photons, pass.emitted)?;
+    let map = pass.into_map(0.0)?;
     let fixed = RADII.map(Gather::radius);
     let nearest = Gather::nearest(NEIGHBORS, REACH)?;
     let mut answers = [Answer::default(); ROWS];

@@ -171,8 +171,8 @@ fn in_unit(settings: &Settings, unit: f64) -> anyhow::Result<Vec<f64>> {
         let histories = Histories { count: 8192, seed: settings.seed, replicate: 0, max_order: None };
         let pass = shoot(&scene, histories, &sensors, |_| true, &NoProgress)?;
         numbers.extend(pass.tallies.iter().flat_map(|t| [t[0].mean(), t[0].std_error()]));
-        numbers.extend(pass.photons.iter().flat_map(|p| (p.position / unit).to_array()));
-        let map = PhotonMap::new(pass.photons, pass.emitted)?;
+        numbers.extend(pass.photons().flat_map(|p| (p.position / unit).to_array()));
+        let map = pass.into_map(0.0)?;
         let sigma_t = scene.regions()[0].medium.matter().sigma_t();
         for depth in [0.0, 0.25, 0.5, 0.9].map(|part| part * fog.tau) {
             let point = at_depth(depth, unit);
@@ -229,7 +229,7 @@ fn refusals(settings: &Settings, rows: &mut Vec<Checked>) {
             shoot(&scene, histories, &sensors, |_| true, &NoProgress)
         });
     let is_empty = empty.is_ok_and(|pass| {
-        pass.emitted == 0 && pass.photons.is_empty() && pass.tallies[0][0].std_error().is_infinite()
+        pass.emitted() == 0 && pass.photons().next().is_none() && pass.tallies[0][0].std_error().is_infinite()
     });
     let name = "no histories: nothing, of infinite error";
     rows.push(Checked::new(Class::Number, name, f64::from(u8::from(is_empty)), 1.0, 0.0));

@@ -8,7 +8,7 @@ use super::{storage, stretched};
 use crate::harness::{CellId, CellOutput, Settings};
 use anyhow::bail;
 use turbid::estimators::count_within;
-use turbid::photons::{Histories, Photon, PhotonMap, shoot};
+use turbid::photons::{Histories, Photon, shoot};
 use turbid::scene::Orders;
 use turbid::transport::NoProgress;
 use turbid_analytic::ball_mean::exponential_mean;
@@ -110,16 +110,14 @@ fn measure_large(settings: &Settings, cell: &CellId) -> anyhow::Result<CellOutpu
     let centre = at_depth(depth, 1.0);
     let keep = |photon: &Photon| (photon.position - centre).abs().max_element() <= 2.0 * radius;
     let pass = shoot(&scene, histories, &sensors, keep, &NoProgress)?;
-    let map = PhotonMap::new(pass.photons, pass.emitted)?;
     let mut output = CellOutput::new();
-    output.count("photons emitted", pass.emitted);
-    let counts = [
-        (pass.tallies[0][0].mean() * pass.emitted as f64).round(),
-        count_within(&map, centre, radius) as f64,
-    ];
+    let emitted = pass.emitted();
+    output.count("photons emitted", emitted);
+    let transmitted = (pass.tallies[0][0].mean() * emitted as f64).round();
+    let counts = [transmitted, count_within(&pass.into_map(0.0)?, centre, radius) as f64];
     for ((case, ..), count) in large_cases(settings)?.iter().zip(counts) {
         output.push(case, "count", count);
-        output.push(case, "emitted", pass.emitted as f64);
+        output.push(case, "emitted", emitted as f64);
     }
     Ok(output)
 }

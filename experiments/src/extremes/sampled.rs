@@ -10,7 +10,7 @@ use turbid::Spectrum;
 use turbid::error::Error;
 use turbid::estimators::{Gather, Kernel, fluence};
 use turbid::math::{FOUR_PI, Ray};
-use turbid::photons::{Histories, Pass, Photon, PhotonMap, shoot};
+use turbid::photons::{Histories, Pass, Photon, shoot};
 use turbid::rng::{Purpose, Stream};
 use turbid::scene::{Orders, Quantity, Scene};
 use turbid::transport::NoProgress;
@@ -252,7 +252,7 @@ fn paths(scene: &Scene, quantity: &Quantity, orders: Orders, batch: &Batch) -> B
 /// Fluence at a point from a map of all photons, within a radius.
 fn by_map(scene: &Scene, point: DVec3, radius: f64, batch: &Batch) -> anyhow::Result<Brought> {
     let (pass, non_finite) = pass(scene, batch, None, |_| true)?;
-    let map = PhotonMap::new(pass.photons, batch.histories)?;
+    let map = pass.into_map(0.0)?;
     let estimate = fluence(&map, point, Spectrum::ONE, Kernel::Uniform, Gather::radius(radius)?);
     let non_finite = non_finite + u64::from(!estimate.value.is_finite());
     Ok(Brought { value: estimate.value[0], non_finite })
@@ -260,7 +260,7 @@ fn by_map(scene: &Scene, point: DVec3, radius: f64, batch: &Batch) -> anyhow::Re
 
 fn collisions(scene: &Scene, batch: &Batch) -> anyhow::Result<Brought> {
     let (pass, non_finite) = pass(scene, batch, None, |_| false)?;
-    Ok(Brought { value: pass.collisions as f64 / batch.histories as f64, non_finite })
+    Ok(Brought { value: pass.report.collisions as f64 / batch.histories as f64, non_finite })
 }
 
 fn thickness(rows: &mut Rows) {
@@ -460,9 +460,9 @@ fn faces(rows: &mut Rows) {
                 Ok(Brought { value: mean(&pass), non_finite })
             });
         };
-    let per_photon = |pass: &Pass| pass.photons.len() as f64 / pass.emitted as f64;
+    let per_photon = |pass: &Pass| pass.photons().count() as f64 / pass.emitted() as f64;
     let path = |pass: &Pass| {
-        pass.photons.iter().map(|p| p.position.x).sum::<f64>() / pass.photons.len().max(1) as f64
+        pass.photons().map(|p| p.position.x).sum::<f64>() / pass.photons().count().max(1) as f64
     };
     along("beam along the faces, mean free path", 1.0, 1.0, "mean of an exponential", path, rows);
     for (name, z) in [("lit", 0.0), ("far", 2.0)] {

@@ -115,9 +115,10 @@ pub fn measure(settings: &Settings, cell: &CellId) -> anyhow::Result<CellOutput>
     let histories = Histories { count: photons(settings), seed: settings.seed, replicate, max_order: None };
     let pass = shoot(&scene, histories, &[], |_| true, &NoProgress)?;
     let mut output = CellOutput::new();
-    output.count("photons emitted", pass.emitted);
-    output.count("collisions", pass.collisions);
-    let plain = Plain::new(&pass.photons, pass.emitted);
+    output.count("photons emitted", pass.emitted());
+    output.count("collisions", pass.report.collisions);
+    let stored = pass.media.concat();
+    let plain = Plain::new(&stored, pass.emitted());
     let probes = probes();
     let mut exact: Vec<Vec<(f64, usize)>> = Vec::new();
     for rule in Rule::ALL {
@@ -134,14 +135,14 @@ pub fn measure(settings: &Settings, cell: &CellId) -> anyhow::Result<CellOutput>
         exact.push(answers);
     }
     for power in POWERS {
-        let mut photons = pass.photons.clone();
+        let mut photons = stored.clone();
         let far = DVec3::X * extent(power);
         photons.push(Photon { position: far, ..photons.first().copied().unwrap_or(NOBODY) });
         // The second channel tells photons apart; nobody gathers it.
         for (index, photon) in photons.iter_mut().enumerate() {
             photon.power.y = index as f32;
         }
-        let map = PhotonMap::new(photons.clone(), pass.emitted)?;
+        let map = PhotonMap::new(photons.clone(), pass.emitted())?;
         let resolution = map.tree().resolution();
         let worst = map
             .tree()

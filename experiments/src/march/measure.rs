@@ -11,7 +11,7 @@ use turbid::light::{Beam, Light, Section};
 use turbid::math::{Interval, Positive};
 use turbid::medium::Homogeneous;
 use turbid::phase::{Isotropic, Phase};
-use turbid::photons::{Histories, PhotonMap, fold, is_in, shoot};
+use turbid::photons::{Histories, is_in, shoot};
 use turbid::scene::{Orders, Parts, Region, Scene};
 use turbid::stats::Moments;
 use turbid::transport::NoProgress;
@@ -50,10 +50,8 @@ pub fn measure(settings: &Settings, cell: &CellId) -> anyhow::Result<CellOutput>
     };
     let pass = shoot(&scene, histories, &[], is_in(Orders::ALL), &NoProgress)?;
     let mut output = CellOutput::new();
-    output.count("photons emitted", pass.emitted);
-    let mut photons = pass.photons;
-    fold::surround(&mut photons, CELL, REACH);
-    let map = PhotonMap::new(photons, pass.emitted)?;
+    output.count("photons emitted", pass.emitted());
+    let map = pass.into_map(REACH)?;
     for case in Case::all() {
         let gather = case.gather()?;
         let step = Positive::new("the step", case.step)?;
@@ -63,10 +61,8 @@ pub fn measure(settings: &Settings, cell: &CellId) -> anyhow::Result<CellOutput>
             let radiance = if case.mu == 1.0 {
                 march_map(&map, &medium, &ray, span, (step, case.rule), (Kernel::Uniform, gather))
             } else {
-                // A slanted ray leaves the cell, and goes on where it would enter it.
                 let source = |t: f64| {
-                    let place = fold::into_cell(ray.at(t), CELL);
-                    let wo = -ray.dir;
+                    let (place, wo) = (ray.at(t), -ray.dir);
                     let scattered =
                         in_scattered(&map, place, wo, medium.phase(), Spectrum::ONE, Kernel::Uniform, gather);
                     medium.albedo() * scattered.value

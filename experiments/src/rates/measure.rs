@@ -10,7 +10,7 @@ use turbid::geometry::{Shape, Slab};
 use turbid::light::{Beam, Light, Section};
 use turbid::medium::Homogeneous;
 use turbid::phase::{Isotropic, Phase};
-use turbid::photons::{Histories, PhotonMap, is_in, shoot};
+use turbid::photons::{Histories, is_in, shoot};
 use turbid::scene::{Orders, Parts, Region, Scene};
 use turbid::stats::Moments;
 use turbid::transport::NoProgress;
@@ -50,8 +50,8 @@ pub fn measure(settings: &Settings, cell: &CellId) -> anyhow::Result<CellOutput>
         let replicate = cell.stream("rates") ^ map << 16;
         let histories = Histories { count: size.photons, seed: settings.seed, replicate, max_order: Some(0) };
         let pass = shoot(&scene, histories, &[], is_in(Orders::only(0)), &NoProgress)?;
-        output.count("photons emitted", pass.emitted);
-        let map = PhotonMap::new(pass.photons, pass.emitted)?;
+        output.count("photons emitted", pass.emitted());
+        let map = pass.into_map(0.0)?;
         for (d, &depth) in DEPTHS.iter().enumerate() {
             let exact = libm::exp(-depth);
             for (r, &radius) in radii.iter().enumerate() {

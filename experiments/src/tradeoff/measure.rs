@@ -7,7 +7,7 @@ use anyhow::Context;
 use glam::DVec3;
 use turbid::Spectrum;
 use turbid::estimators::{Estimate, Kernel, fluence};
-use turbid::photons::{Histories, PhotonMap, fold, is_in, shoot};
+use turbid::photons::{Histories, PhotonMap, is_in, shoot};
 use turbid::rng::{Purpose, Stream};
 use turbid::scene::{Orders, Quantity, Scene};
 use turbid::sensor::sample_counted;
@@ -67,24 +67,21 @@ fn measure_map(
     let mut output = CellOutput::new();
     let asked = Setting::all(body, photons);
     let histories = Histories { count: photons, seed: settings.seed, replicate, max_order: None };
-    let mut pass =
-        output.time("shooting", |_| shoot(scene, histories, &[], is_in(Orders::ALL), &NoProgress))?;
-    let stored = pass.photons.len();
+    let pass = output.time("shooting", |_| shoot(scene, histories, &[], is_in(Orders::ALL), &NoProgress))?;
+    let stored = pass.photons().count();
     // Every history is absorbed at a collision or escapes by one flight more.
-    let escaped = pass.ledger.escaped / pass.ledger.emitted * photons as f64;
-    let rays = pass.collisions as f64 + escaped.round();
-    output.count("photons emitted", pass.emitted);
-    output.count("collisions", pass.collisions);
+    let escaped = pass.report.ledger.escaped / pass.report.ledger.emitted * photons as f64;
+    let collisions = pass.report.collisions;
+    let rays = collisions as f64 + escaped.round();
+    output.count("photons emitted", pass.emitted());
+    output.count("collisions", collisions);
     output.count("photons stored", stored as u64);
-    if let Fog::Slab { .. } = body.fog {
-        let margin = asked.iter().map(Setting::overhang).fold(0.0, f64::max);
-        fold::surround(&mut pass.photons, CELL, margin);
-    }
-    let map = output.time("building", |_| PhotonMap::new(pass.photons, pass.emitted))?;
+    let reach = asked.iter().map(Setting::overhang).fold(0.0, f64::max);
+    let map = output.time("building", |_| pass.into_map(reach))?;
     // Records of the cell itself among those of its surroundings.
     let share = stored as f64 / map.stored() as f64;
     let case = Setting::group(body, photons);
-    output.push(&case, "collisions", pass.collisions as f64);
+    output.push(&case, "collisions", collisions as f64);
     output.push(&case, "rays", rays);
     output.push(&case, "stored", stored as f64);
     output.push(&case, "share of the tree", share);
@@ -196,7 +193,7 @@ mod tests {
             let histories = Histories { count: 2000, seed: 3, replicate: 0, max_order: None };
             let pass =
                 shoot(&body.scene().unwrap(), histories, &[], is_in(Orders::ALL), &NoProgress).unwrap();
-            let map = PhotonMap::new(pass.photons, pass.emitted).unwrap();
+            let map = pass.into_map(0.0).unwrap();
             let boundary = Boundary::new(body.fog.shape().unwrap(), Remedy::Clipped).unwrap();
             for size in [Size::Radius(0.4), Size::Nearest(50)] {
                 let gather = Setting { body, photons: 2000, size }.gather().unwrap();

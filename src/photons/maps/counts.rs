@@ -1,10 +1,10 @@
 //! How many histories each map needs, and from where their photons leave.
 
-use super::pass::{Class, Run, Stored};
-use super::{Amount, Emitted, MapSettings, PEAK_BYTES, PILOT, Part, is_diffuse};
+use super::{Amount, Class, Classes, Emitted, MapSettings, PEAK_BYTES, PILOT};
 use crate::error::{Error, Result};
 use crate::photons::importance::Importance;
-use crate::photons::{BUILD_SECONDS, Emitter, check_end};
+use crate::photons::pass::is_diffuse;
+use crate::photons::{BUILD_SECONDS, Emitter, Pass, Run, check_end};
 use crate::rng::Purpose;
 use crate::scene::Scene;
 use crate::transport::{BLOCK, NoProgress};
@@ -101,23 +101,12 @@ fn piloted(
         if has_pilot { needed.iter().map(most).max().unwrap_or(0) } else { 0 }
     };
     let pilot = |class: Class, histories: u64| {
-        let run = Run {
-            scene,
-            emitter: emitters.of_class(class),
-            importance: importance.filter(|_| class != Class::Caustic),
-            purpose: Purpose::Pilot,
-            seed: settings.seed,
-            replicate: settings.replicate,
-            class,
-            global: histories,
-            volume: histories,
-            part: Part::WHOLE,
-            is_pilot: true,
-        };
-        run.pass(histories, &NoProgress)
+        let run = class.run(scene, &emitters, importance, settings, histories);
+        let store = Classes { class, global: histories, volume: histories };
+        Run { purpose: Purpose::Pilot, is_pilot: true, ..run }.pass(&store, &NoProgress)
     };
     // Where there are more threads than blocks of the pilot, some of them wait.
-    let a_history = |pass: &Stored, length: u64| {
+    let a_history = |pass: &Pass, length: u64| {
         let threads = rayon::current_num_threads() as f64;
         let busy = threads.min(length.div_ceil(BLOCK) as f64) / threads;
         pass.report.time.as_secs_f64() * busy / length as f64

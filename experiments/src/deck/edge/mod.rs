@@ -17,7 +17,7 @@ use turbid::geometry::{Rectangle, Shape, Slab};
 use turbid::light::{Beam, Light, Section};
 use turbid::medium::Homogeneous;
 use turbid::phase::{Isotropic, Phase};
-use turbid::photons::{Histories, PhotonMap, fold, is_in, shoot};
+use turbid::photons::{Histories, is_in, shoot};
 use turbid::scene::{Orders, Parts, Region, Scene};
 use turbid::stats::Moments;
 use turbid::transport::NoProgress;
@@ -110,10 +110,8 @@ pub fn measure(settings: &Settings, cell: &CellId) -> anyhow::Result<CellOutput>
         max_order: None,
     };
     let pass = shoot(&scene()?, histories, &[], is_in(Orders::ALL), &NoProgress)?;
-    output.count("photons emitted", pass.emitted);
-    let mut photons = pass.photons;
-    fold::surround(&mut photons, CELL, REACH);
-    let map = PhotonMap::new(photons, pass.emitted)?;
+    output.count("photons emitted", pass.emitted());
+    let map = pass.into_map(REACH)?;
     let truth = IsotropicSlab::new(ROOM, ALBEDO, Incidence::Beam { mu0: 1.0 })?;
     // The fog of both rooms, and the wall, wider than the cell and all gathers.
     let fog = Shape::Slab(Slab::new(0.0, 3.0 * ROOM)?);
