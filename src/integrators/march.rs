@@ -1,11 +1,13 @@
-//! Marching a ray through a photon map in steps.
+//! Marching a ray through a medium in steps.
 
 use crate::Spectrum;
-use crate::estimators::{Gather, Kernel, in_scattered};
 use crate::faults::{Fault, planted};
-use crate::math::{Interval, Positive, Ray, exp, exp_m1};
-use crate::medium::Homogeneous;
-use crate::photons::PhotonMap;
+use crate::math::{Interval, Positive, Ray, exp, exp_m1, ln_1p};
+use crate::medium::Medium;
+use crate::rng::Stream;
+use crate::scene::decay;
+use crate::transport::passed;
+use glam::DVec3;
 
 /// How much of a source one step of a march brings to the near end of the ray; step i runs from `t` to `t + dx`.
 ///
@@ -49,51 +51,214 @@ impl StepRule {
     }
 }
 
-/// Radiance at the near end of a stretch of a ray [W/(L^2 sr)], from sources along it, in a homogeneous medium.
-///
-/// int_0^s q(t) e^(-sigma_t t) dt as a sum over the fewest equal steps that are no longer than `step`.
-///
-/// # Arguments
-/// `sigma_t` [1/L]; `span` of finite length; `source` q [W/(L^3 sr)] at a distance along the ray, emission and
-/// in-scattering together
-pub fn march(
-    sigma_t: Spectrum,
-    span: Interval,
-    step: Positive,
-    rule: StepRule,
-    mut source: impl FnMut(f64) -> Spectrum,
-) -> Spectrum {
-    // A length that is a whole number of steps but for rounding is no step longer.
-    let count = (span.length() / step.get() * (1.0 - 4.0 * f64::EPSILON)).ceil();
-    let dx = span.length() / count;
-    let mut sum = Spectrum::ZERO;
-    let mut i = 0.0;
-    while i < count {
-        let t = i * dx;
-        sum += source(span.start + rule.place(t, dx)) * sigma_t.map(|s| rule.weight(s, t, dx));
-        i += 1.0;
-    }
-    sum
+/// How steps of a march become shorter where radiance changes.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Adaptive {
+    /// Relative change of the source from one end of a step to the other above which the step is halved.
+    pub tolerance: f64,
+    /// Steps are halved as long as they are longer than this \[L\].
+    pub shortest: Positive,
 }
 
-/// Radiance that a photon map scatters towards the near end of a stretch of a ray [W/(L^2 sr)].
+/// How a ray is marched through media.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct March {
+    /// Longest step \[L\].
+    pub step: Positive,
+    /// How much of a step's source reaches its near end.
+    pub rule: StepRule,
+    /// Whether places are random: the first step is then cut at random, and with [`StepRule::Integrated`] the source is
+    /// asked for at a random place of each step, in proportion to what reaches its near end, so that the sum is
+    /// unbiased whatever the step. If not, and where no steps are shorter, they are the fewest of one length.
+    pub is_jittered: bool,
+    /// Shorter steps where radiance changes; none for equal ones. Steps are chosen by shadow rays of their own from their
+    /// ends towards the lights' middles, never by the random places and directions that the sum is made of: a sum
+    /// that is unbiased with equal steps stays so.
+    pub adaptive: Option<Adaptive>,
+}
+
+impl March {
+    /// Equal steps, and the source where the rule asks for it.
+    pub fn equal(step: Positive, rule: StepRule) -> Self {
+        March { step, rule, is_jittered: false, adaptive: None }
+    }
+}
+
+/// A ray is followed until less than this is left of what comes from farther away: far below what a picture's single
+/// precision tells apart.
+pub(super) const LEFT: f64 = 1e-9;
+
+/// Where media have no end, steps grow: behind so many sizes of the scene by this part of the distance, so that a ray has some
+/// hundreds. Media with an end are shorter.
+const FAR: f64 = 4.0;
+const GROWTH: f64 = 1.0 / 16.0;
+
+/// What a march asks along a ray.
+pub trait Source {
+    /// Takes in what the medium sends against the ray from a place: times both, the weight at the near end of its step, and
+    /// what a source there counts for \[L\]. Returns the light of it that [`Source::probed`] does not know.
+    fn take(&mut self, place: DVec3, seen: Spectrum, weight: Spectrum, stream: &mut Stream) -> f64;
+
+    /// What steps are chosen by, at a place: nothing makes them equal.
+    fn probed(&mut self, _place: DVec3, _stream: &mut Stream) -> Spectrum {
+        Spectrum::ZERO
+    }
+}
+
+/// Radiance at the near end of a stretch of a ray [W/(L^2 sr)], from sources along it.
+///
+/// int q(t) T(t) dt as a sum over steps.
 ///
 /// # Arguments
-/// `ray` looks away from the receiver, so that light travels against it; `span` of finite length in `medium`
+/// `ray` looks away from the receiver, so that light travels against it; `span` in the `medium`; `size` of the scene, which
+/// tells what is far \[L\]; `source` q at a place [W/(L^3 sr)], emission and in-scattering together
 ///
 /// # Limits
-/// What is in the map is scattered, no more: light that comes straight from behind the stretch is not in it.
-pub fn march_map(
-    map: &PhotonMap,
-    medium: &Homogeneous,
-    ray: &Ray,
-    span: Interval,
-    (step, rule): (Positive, StepRule),
-    (kernel, gather): (Kernel, Gather),
+/// what passes less than 1e-9 is left away
+pub fn along(
+    medium: &Medium,
+    (ray, span): (&Ray, Interval),
+    march: &March,
+    size: f64,
+    stream: &mut Stream,
+    source: impl FnMut(DVec3) -> Spectrum,
 ) -> Spectrum {
-    march(medium.sigma_t(), span, step, rule, |t| {
-        // sigma_s/sigma_t is the albedo: channels that nothing scatters divide nothing by zero.
-        let collided = in_scattered(map, ray.at(t), -ray.dir, medium.phase(), Spectrum::ONE, kernel, gather);
-        medium.albedo() * collided.value
-    })
+    struct Sum<S>(Spectrum, S);
+    impl<S: FnMut(DVec3) -> Spectrum> Source for Sum<S> {
+        fn take(&mut self, place: DVec3, seen: Spectrum, weight: Spectrum, _stream: &mut Stream) -> f64 {
+            self.0 += seen * weight * self.1(place);
+            0.0
+        }
+    }
+    let mut sum = Sum(Spectrum::ZERO, source);
+    self::march(medium, (ray, span), (march, size), Spectrum::ONE, stream, &mut sum);
+    sum.0
+}
+
+/// Marches through a stretch of one medium; `seen` is the weight at its near end.
+pub(super) fn march(
+    medium: &Medium,
+    (ray, span): (&Ray, Interval),
+    (march, size): (&March, f64),
+    mut seen: Spectrum,
+    stream: &mut Stream,
+    source: &mut impl Source,
+) {
+    // Channels that meet nothing pass for ever, and bring nothing.
+    let counts = match medium.is_colliding() {
+        true => medium.matter().sigma_t().map(|s| if s > 0.0 { 1.0 } else { 0.0 }),
+        false => Spectrum::ONE,
+    };
+    let longest = match march.is_jittered || march.adaptive.is_some() || span.length() == f64::INFINITY {
+        true => march.step.get(),
+        // A length that is a whole number of steps but for rounding is no step longer.
+        false => span.length() / (span.length() / march.step.get() * (1.0 - 4.0 * f64::EPSILON)).ceil(),
+    };
+    let least = LEFT * seen.max();
+    let mut t = span.start;
+    let mut length = if march.is_jittered { longest * (1.0 - stream.unit()) } else { longest };
+    // What was probed at the near end, and the other light found last.
+    let mut near: Option<Spectrum> = None;
+    let mut other = 0.0;
+    while t < span.end && (seen * counts).max() > least {
+        let grown = GROWTH * (t - span.start - FAR * size).max(0.0);
+        // What rounding leaves of the last step joins it.
+        let (rest, reach) = (span.end - t, length + grown);
+        let mut dx = if rest < reach * (1.0 + 1e-9) { rest } else { reach };
+        if let Some(adaptive) = &march.adaptive {
+            // Off the ends of the stretch, where walls may stand: shadow rays would meet them by rounding.
+            let off = 1e-3 * adaptive.shortest.get();
+            let mut probe =
+                |t: f64| source.probed(ray.at(t.min(span.end - off).max(span.start + off)), stream);
+            let first = near.unwrap_or_else(|| probe(t));
+            let (change, last) = loop {
+                let last = probe(t + dx);
+                let change = relative_change(first, last, other);
+                let shortest = adaptive.shortest.get() + grown;
+                if change <= adaptive.tolerance || dx <= shortest {
+                    break (change, last);
+                }
+                dx = (0.5 * dx).max(shortest);
+            };
+            near = Some(last);
+            length =
+                if change < 0.5 * adaptive.tolerance { (2.0 * dx).min(longest) } else { dx.min(longest) };
+        } else {
+            length = longest;
+        }
+        let step = match medium {
+            Medium::Homogeneous(medium) => {
+                Placed::in_step(march.rule, march.is_jittered, medium.sigma_t(), dx, stream)
+            }
+            Medium::Heterogeneous(_) => Placed::in_varying_step(march, medium, (ray, t), dx, stream),
+        };
+        let place = ray.at(t + step.place);
+        other = source.take(place, seen, step.weight, stream);
+        seen *= match medium {
+            Medium::Homogeneous(medium) => decay(medium.sigma_t() * dx),
+            Medium::Heterogeneous(_) => {
+                let behind = Interval { start: t + step.place, end: t + dx };
+                step.reached * passed(medium, ray, behind, stream)
+            }
+        };
+        t += dx;
+        if dx == rest {
+            return;
+        }
+    }
+}
+
+/// The largest difference of channels over the largest channel, `floor` added to both.
+fn relative_change(a: Spectrum, b: Spectrum, floor: f64) -> f64 {
+    let largest = a.max().max(b.max()) + floor;
+    if largest > 0.0 { (a - b).map(f64::abs).max() / largest } else { 0.0 }
+}
+
+/// Where the source of a step is asked for, from its near end, and what it counts there \[L\].
+struct Placed {
+    place: f64,
+    weight: Spectrum,
+    /// The part of the light that passes from there to the near end, where the medium varies; not asked for elsewhere.
+    reached: Spectrum,
+}
+
+impl Placed {
+    fn in_step(rule: StepRule, is_jittered: bool, sigma_t: Spectrum, dx: f64, stream: &mut Stream) -> Self {
+        if rule == StepRule::Integrated && is_jittered {
+            // Density s e^(-s x)/(1 - e^(-s dx)) with s the mean over channels; one channel's weight is e^(-s_c x) over it.
+            let s = sigma_t.mean();
+            let collides = -exp_m1(-s * dx);
+            let place = (-ln_1p(-stream.unit() * collides) / s).min(dx);
+            let weight = match sigma_t.is_grey() {
+                true => Spectrum::grey(collides / s),
+                false => sigma_t.map(|c| exp((s - c) * place)) * (collides / s),
+            };
+            return Placed { place, weight, reached: Spectrum::ONE };
+        }
+        let weight = sigma_t.map(|c| rule.weight(c, 0.0, dx));
+        Placed { place: rule.place(0.0, dx), weight, reached: Spectrum::ONE }
+    }
+
+    /// The same where the medium varies along the ray, the step beginning at `t`. Random places are uniform, and count what passes
+    /// from there, which is unbiased as the homogeneous rule is; [`StepRule::Integrated`] without jitter holds the extinction
+    /// of the middle over the step, as it does the source.
+    fn in_varying_step(
+        march: &March,
+        medium: &Medium,
+        (ray, t): (&Ray, f64),
+        dx: f64,
+        stream: &mut Stream,
+    ) -> Self {
+        let is_random = march.is_jittered && march.rule == StepRule::Integrated;
+        let place = if is_random { stream.unit() * dx } else { march.rule.place(0.0, dx) };
+        let reached = passed(medium, ray, Interval { start: t, end: t + place }, stream);
+        let weight = match march.rule {
+            StepRule::NearEnd => Spectrum::grey(dx),
+            StepRule::Integrated if !is_random => {
+                medium.sigma_t(ray.at(t + place)).map(|s| march.rule.weight(s, 0.0, dx))
+            }
+            StepRule::Middle | StepRule::Integrated => reached * dx,
+        };
+        Placed { place, weight, reached }
+    }
 }

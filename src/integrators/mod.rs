@@ -1,4 +1,4 @@
-//! Integrators: the path tracer, the photon mapper, light tracing, and the march through a photon map.
+//! Integrators: the path tracer, the photon mapper, light tracing, and the march of a ray through media.
 
 mod layers;
 mod light_tracing;
@@ -8,5 +8,5 @@ pub mod path;
 
 pub use layers::{Layer, Layers};
 pub use light_tracing::{Splat, light_tracing};
-pub use march::{StepRule, march, march_map};
+pub use march::{Adaptive, March, StepRule, along};
 pub use path::{Rays, direct_flux, fluence, radiance};

@@ -5,13 +5,15 @@ use crate::Spectrum;
 use crate::error::{Error, Result};
 use crate::estimators::boundary::{Treatment, treated_fluence, treated_in_scattered};
 use crate::estimators::{Estimate, Gather, Kernel, fluence, in_scattered};
-use crate::integrators::mapper::{MediumExtent, medium_extents};
-use crate::math::{Ray, exp_m1, ln_1p};
+use crate::integrators::mapper::{MediumExtent, medium_extents, scene_size};
+use crate::integrators::{March, StepRule, along};
+use crate::math::{Positive, Ray};
+use crate::medium::Medium;
 use crate::photons::{
     BUILD_SECONDS, Emitter, Histories, Ledger, PEAK_BYTES, Part, Pass, Photon, PhotonMap, Run, fold, shoot,
 };
 use crate::rng::{Purpose, Stream};
-use crate::scene::{Orders, Quantity, Scene, Sensor, decay};
+use crate::scene::{Orders, Quantity, Scene, Sensor};
 use crate::stats::Moments;
 use crate::transport::{NoProgress, Progress, transmittance};
 use glam::DVec3;
@@ -61,9 +63,10 @@ impl PhotonReadings {
     }
 }
 
-/// Points on a ray at which in-scattered radiance is estimated, one in each of as many equal parts of what the ray
-/// collects.
-const STRATA: usize = 64;
+/// Steps of a ray through a medium, about, and the optical depth that they reach if there is so much: behind it lies 2e-9 of what
+/// the ray collects.
+const STEPS: f64 = 200.0;
+const DEPTH: f64 = 20.0;
 
 /// Reads every sensor of the scene by photons.
 ///
@@ -367,8 +370,8 @@ fn read(
     }
 }
 
-/// Radiance along a ray: uncollided light in closed form, and the in-scattered radiance at points chosen in
-/// proportion to what the ray collects, so that the integral along the ray has no step bias.
+/// Radiance along a ray: uncollided light in closed form, and what media scatter, marched in random steps, so that the integral
+/// along the ray has no step bias.
 fn radiance(
     (scene, extents): (&Scene, &[MediumExtent]),
     map: &PhotonMap,
@@ -386,56 +389,36 @@ fn radiance(
         crate::integrators::radiance(scene, *ray, None, within, only_direct, stream, |_, value| sum += value);
     }
     for segment in scene.segments(ray, end, within).iter() {
-        let medium = scene.medium(segment.medium);
-        let before = transmittance(scene, ray, segment.interval.start, within, stream);
-        let length = segment.interval.length();
-        // Any rate is right where it is not the medium's own; about one mean length wastes few samples.
-        let highest = medium.highest_sigma_t().mean();
-        if highest == 0.0 {
-            continue;
-        }
-        let is_endless = !medium.is_homogeneous() && length == f64::INFINITY;
-        // Of a density that may fall without end no rate is safe: a distance or more has the chance 1/(1 + rate distance).
-        let rate = match medium.is_homogeneous() || is_endless {
-            true => highest,
-            false => highest.min(1.0 / length),
-        };
-        let collects = -exp_m1(-rate * length);
-        for stratum in 0..STRATA {
-            let u = (stratum as f64 + stream.unit()) / STRATA as f64;
-            let (inside, share) = if is_endless {
-                let inside = u / ((1.0 - u) * rate);
-                (inside, 1.0 / ((1.0 + rate * inside) * (1.0 + rate * inside)))
-            } else {
-                let inside = -ln_1p(-u * collects) / rate;
-                (inside, crate::math::exp(-rate * inside))
-            };
-            let t = segment.interval.start + inside.min(length);
-            let p = ray.at(t);
-            let (phase, sigma_t) = (medium.phase(), medium.sigma_t(p));
-            if sigma_t.is_black() {
-                continue;
+        let (medium, span) = (scene.medium(segment.medium), segment.interval);
+        let before = transmittance(scene, ray, span.start, within, stream);
+        let Some(step) = step(medium, span.length()).filter(|_| !before.is_black()) else { continue };
+        let march = March { is_jittered: true, ..March::equal(step, StepRule::Integrated) };
+        let source = |p: DVec3| {
+            if medium.sigma_t(p).is_black() {
+                return Spectrum::ZERO;
             }
+            let (wo, phase) = (-ray.dir, medium.phase());
             let (kernel, gather, treatment) = (settings.kernel, settings.gather, settings.treatment);
             let estimate = match treatment {
-                Treatment::None => in_scattered(map, p, -ray.dir, phase, sigma_t, kernel, gather),
+                Treatment::None => in_scattered(map, p, wo, phase, Spectrum::ONE, kernel, gather),
                 _ => {
                     let boundary = extents[segment.medium].boundary(treatment);
-                    let mut found =
-                        treated_in_scattered(map, p, -ray.dir, phase, kernel, gather, &boundary).estimate;
-                    found.value = found.value.over(sigma_t);
-                    found
+                    treated_in_scattered(map, p, wo, phase, kernel, gather, &boundary).estimate
                 }
             };
             result.book(scene, p, &estimate, treatment);
-            // Density of t is rate share / collects.
-            let passed = if medium.is_homogeneous() {
-                before * (decay(sigma_t * inside) / share)
-            } else {
-                transmittance(scene, ray, t, within, stream) / share
-            };
-            sum += passed * sigma_t * medium.albedo(p) * estimate.value * (collects / (rate * STRATA as f64));
-        }
+            medium.albedo(p) * estimate.value
+        };
+        sum += before * along(medium, (ray, span), &march, scene_size(scene), stream, source);
     }
     sum
+}
+
+/// Steps of a march through a stretch of a medium of which nothing is known but its bounds \[L\]; none where nothing collides.
+fn step(medium: &Medium, length: f64) -> Option<Positive> {
+    let least = medium.highest_sigma_t().0.to_array().into_iter().filter(|s| *s > 0.0).reduce(f64::min)?;
+    // Where the density varies it may be far below its bound.
+    let is_short = !medium.is_homogeneous() && length < f64::INFINITY;
+    let reach = if is_short { length } else { length.min(DEPTH / least) };
+    Positive::new("the step", reach / STEPS).ok()
 }

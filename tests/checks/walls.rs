@@ -1,13 +1,15 @@
 //! Beside a wall, and along a marched ray.
 
+use crate::support::scenes::homogeneous;
 use glam::DVec3;
 use turbid::Spectrum;
 use turbid::estimators::boundary::{Boundary, Rejection, Treatment, treated_density};
 use turbid::estimators::{Gather, Kernel};
 use turbid::geometry::{Cuboid, Rectangle, Shape};
-use turbid::integrators::{StepRule, march};
-use turbid::math::{Interval, Positive, exp_m1};
+use turbid::integrators::{March, StepRule, along};
+use turbid::math::{Interval, Positive, Ray, exp_m1};
 use turbid::photons::synthetic::{Number, Profile, Synthetic};
+use turbid::rng::{Purpose, Stream};
 
 /// The k nearest photons on one side of a wall are k accepted ones, whatever stands behind it.
 pub fn the_k_nearest_are_accepted() {
@@ -28,10 +30,13 @@ pub fn the_k_nearest_are_accepted() {
 pub fn a_constant_source_is_marched_to_its_integral() {
     let span = Interval { start: 0.0, end: 2.0 };
     let exact = -exp_m1(-1.5 * 2.0) / 1.5;
+    let medium = homogeneous(Spectrum::grey(1.5), Spectrum::ZERO, 0.0);
     for step in [0.5, 0.25, 0.01] {
-        let step = Positive::new("step", step).unwrap();
-        let sum = march(Spectrum::grey(1.5), span, step, StepRule::Integrated, |_| Spectrum::ONE)[0];
+        let equal = March::equal(Positive::new("step", step).unwrap(), StepRule::Integrated);
+        let ray = Ray::new(DVec3::ZERO, DVec3::X);
+        let mut stream = Stream::new(1, Purpose::Synthetic, 0, 0);
+        let sum = along(&medium, (&ray, span), &equal, 1.0, &mut stream, |_| Spectrum::ONE)[0];
         // Two hundred terms of one sign, a few roundings each.
-        assert!((sum / exact - 1.0).abs() < 1e-12, "step {}: {sum}, not {exact}", step.get());
+        assert!((sum / exact - 1.0).abs() < 1e-12, "step {step}: {sum}, not {exact}");
     }
 }

@@ -12,7 +12,8 @@ use crate::harness::{CellId, CellOutput, Cells, Row, Section, Settings, Unit, wi
 use anyhow::{Context, anyhow};
 use std::path::Path;
 use std::sync::OnceLock;
-use turbid::integrators::mapper::{self, Mapper, March};
+use turbid::integrators::March;
+use turbid::integrators::mapper::{self, Mapper};
 use turbid::math::Positive;
 use turbid::photons::maps::Emitted;
 use turbid::rng::{Purpose, Stream};

@@ -6,12 +6,13 @@ use glam::DVec3;
 use turbid::Spectrum;
 use turbid::estimators::{Kernel, in_scattered};
 use turbid::geometry::{Shape, Slab};
-use turbid::integrators::{march, march_map};
+use turbid::integrators::{March, along};
 use turbid::light::{Beam, Light, Section};
 use turbid::math::{Interval, Positive};
-use turbid::medium::Homogeneous;
+use turbid::medium::{Homogeneous, Medium};
 use turbid::phase::{Isotropic, Phase};
 use turbid::photons::{Histories, is_in, shoot};
+use turbid::rng::{Purpose, Stream};
 use turbid::scene::{Orders, Parts, Region, Scene};
 use turbid::stats::Moments;
 use turbid::transport::NoProgress;
@@ -41,7 +42,9 @@ fn scene() -> anyhow::Result<Scene> {
 
 /// Measures one cell.
 pub fn measure(settings: &Settings, cell: &CellId) -> anyhow::Result<CellOutput> {
-    let (scene, medium) = (scene()?, medium()?);
+    let scene = scene()?;
+    let medium = Medium::from(medium()?);
+    let (phase, albedo) = (medium.phase(), Spectrum::grey(ALBEDO));
     let histories = Histories {
         count: photons(settings),
         seed: settings.seed,
@@ -54,21 +57,17 @@ pub fn measure(settings: &Settings, cell: &CellId) -> anyhow::Result<CellOutput>
     let map = pass.into_map(REACH)?;
     for case in Case::all() {
         let gather = case.gather()?;
-        let step = Positive::new("the step", case.step)?;
+        let equal = March::equal(Positive::new("the step", case.step)?, case.rule);
         let span = Interval { start: 0.0, end: case.length() };
         let mut values = Moments::new();
         for ray in case.rays() {
-            let radiance = if case.mu == 1.0 {
-                march_map(&map, &medium, &ray, span, (step, case.rule), (Kernel::Uniform, gather))
-            } else {
-                let source = |t: f64| {
-                    let (place, wo) = (ray.at(t), -ray.dir);
-                    let scattered =
-                        in_scattered(&map, place, wo, medium.phase(), Spectrum::ONE, Kernel::Uniform, gather);
-                    medium.albedo() * scattered.value
-                };
-                march(medium.sigma_t(), span, step, case.rule, source)
+            let source = |place: DVec3| {
+                let (one, kernel) = (Spectrum::ONE, Kernel::Uniform);
+                albedo * in_scattered(&map, place, -ray.dir, phase, one, kernel, gather).value
             };
+            // Nothing is drawn.
+            let mut stream = Stream::new(settings.seed, Purpose::Synthetic, 0, 0);
+            let radiance = along(&medium, (&ray, span), &equal, TAU, &mut stream, source);
             values.push(radiance[0]);
             output.count("steps", (case.length() / case.step).round() as u64);
         }

@@ -3,7 +3,7 @@
 use crate::error::Result;
 use crate::estimators::boundary::{Rejection, Treatment};
 use crate::estimators::{Gather, Kernel};
-use crate::integrators::StepRule;
+use crate::integrators::{Adaptive, March, StepRule};
 use crate::math::Positive;
 use crate::scene::Scene;
 
@@ -14,32 +14,6 @@ const MOST_DEFAULT_STEPS: f64 = 1e3;
 /// end; 1 for a scene of slabs.
 pub fn scene_size(scene: &Scene) -> f64 {
     scene.bounds_of_bounded().map_or(1.0, |ball| 2.0 * ball.radius() / 3.0f64.sqrt())
-}
-
-/// How steps of a march become shorter where radiance changes.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Adaptive {
-    /// Relative change of the source from one end of a step to the other above which the step is halved.
-    pub tolerance: f64,
-    /// Steps are halved as long as they are longer than this \[L\].
-    pub shortest: Positive,
-}
-
-/// How a ray is marched through media.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct March {
-    /// Longest step \[L\].
-    pub step: Positive,
-    /// How much of a step's source reaches its near end.
-    pub rule: StepRule,
-    /// Whether places are random: the first step is then cut at random, and with [`StepRule::Integrated`] the source is
-    /// asked for at a random place of each step, in proportion to what reaches its near end, so that the sum is
-    /// unbiased whatever the step.
-    pub is_jittered: bool,
-    /// Shorter steps where radiance changes; none for equal ones. Steps are chosen by shadow rays of their own from their
-    /// ends towards the lights' middles, never by the random places and directions that the sum is made of: a sum
-    /// that is unbiased with equal steps stays so.
-    pub adaptive: Option<Adaptive>,
 }
 
 /// How maps are read and combined.

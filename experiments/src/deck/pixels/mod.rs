@@ -12,11 +12,11 @@ use super::maps::filled;
 use crate::harness::{CellId, CellOutput, Prediction, Settings, Unit};
 use crate::theory::clustering;
 use anyhow::Context;
-use glam::DVec2;
+use glam::{DVec2, DVec3};
 use turbid::Spectrum;
 use turbid::estimators::boundary::{Boundary, Treatment, treated_in_scattered};
 use turbid::estimators::{Gather, Kernel};
-use turbid::integrators::{StepRule, march, path};
+use turbid::integrators::{March, StepRule, along, path};
 use turbid::math::{Interval, Positive, Ray, exp};
 use turbid::photons::PhotonMap;
 use turbid::photons::maps::Emitted;
@@ -108,7 +108,7 @@ pub fn measure(settings: &Settings, cell: &CellId) -> anyhow::Result<CellOutput>
     let region = scene.regions().first().context("the box has no fog")?;
     let (phase, albedo) = (region.medium.phase(), Spectrum::grey(ALBEDO));
     let boundary = Boundary::new(region.shape.clone(), Treatment::Clipped)?;
-    let step = Positive::new("the step", STEP)?;
+    let equal = March::equal(Positive::new("the step", STEP)?, StepRule::Integrated);
     let rays = rays(&scene)?;
     for k in NEIGHBORS {
         let gather = Gather::nearest(k, CAP)?;
@@ -116,19 +116,16 @@ pub fn measure(settings: &Settings, cell: &CellId) -> anyhow::Result<CellOutput>
         output.time(&format!("gathering k={k}"), |output| {
             for (pixel, (ray, end)) in rays.iter().enumerate() {
                 let span = Interval { start: 0.0, end: *end };
-                let radiance = march(Spectrum::grey(SIGMA_T), span, step, StepRule::Integrated, |t| {
-                    let treated = treated_in_scattered(
-                        &map,
-                        ray.at(t),
-                        -ray.dir,
-                        phase,
-                        Kernel::Uniform,
-                        gather,
-                        &boundary,
-                    );
+                let source = |place: DVec3| {
+                    let kernel = Kernel::Uniform;
+                    let treated =
+                        treated_in_scattered(&map, place, -ray.dir, phase, kernel, gather, &boundary);
                     found += treated.estimate.found as u64;
                     albedo * treated.estimate.value
-                });
+                };
+                // Nothing is drawn.
+                let mut stream = Stream::new(settings.seed, Purpose::Synthetic, 0, 0);
+                let radiance = along(&region.medium, (ray, span), &equal, 1.0, &mut stream, source);
                 output.push(map_case(k, pixel), "multiple", grey(radiance));
             }
         });
