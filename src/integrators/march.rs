@@ -94,12 +94,13 @@ const FAR: f64 = 4.0;
 const GROWTH: f64 = 1.0 / 16.0;
 
 /// What a march asks along a ray.
-pub trait Source {
-    /// Takes in what the medium sends against the ray from a place: times both, the weight at the near end of its step, and
-    /// what a source there counts for \[L\]. Returns the light of it that [`Source::probed`] does not know.
+pub(super) trait Source {
+    /// Takes in what the medium sends against the ray from a place of a step: `seen` is the part that comes from the step's near
+    /// end to the eye, `weight` what a source at the place counts for at that end \[L\]. Returns how bright the light is that
+    /// [`Source::probed`] does not know.
     fn take(&mut self, place: DVec3, seen: Spectrum, weight: Spectrum, stream: &mut Stream) -> f64;
 
-    /// What steps are chosen by, at a place: nothing makes them equal.
+    /// The light at a place that adaptive steps are chosen by.
     fn probed(&mut self, _place: DVec3, _stream: &mut Stream) -> Spectrum {
         Spectrum::ZERO
     }
@@ -114,7 +115,7 @@ pub trait Source {
 /// tells what is far \[L\]; `source` q at a place [W/(L^3 sr)], emission and in-scattering together
 ///
 /// # Limits
-/// what passes less than 1e-9 is left away
+/// the march ends where less than 1e-9 passes
 pub fn along(
     medium: &Medium,
     (ray, span): (&Ray, Interval),

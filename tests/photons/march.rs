@@ -47,7 +47,7 @@ fn a_constant_source() {
                 (StepRule::Integrated, 1.0),
             ] {
                 let found = by_steps(length, sigma_t, step, rule, |_| 1.0);
-                // Some hundred products and sums; what passes less than 1e-9 is left away.
+                // Some hundred products and sums; the march ends where less than 1e-9 passes.
                 let rounding = if sigma_t * length < 20.0 { 2e-13 } else { 1e-9 };
                 let error = found / (exact * factor) - 1.0;
                 assert!(error.abs() < rounding, "{rule:?} {sigma_t} {step}: {error:e}");
