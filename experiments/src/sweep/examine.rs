@@ -213,7 +213,7 @@ const LIGHT_PATHS: &str = "light - paths";
 const MAPS_PATHS: &str = "maps - paths";
 const MAPS_LIGHT: &str = "maps - light";
 /// The same again, without directions in which a specular body is seen.
-const BUT_SPECULAR: &str = ", but for specular bodies";
+const BUT_SPECULAR: &str = ", no specular";
 
 /// What methods by photons rightly refuse a scene for, if so: a medium that emits and has no end.
 fn cannot_emit(scene: &Scene) -> Option<String> {

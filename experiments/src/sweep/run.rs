@@ -266,14 +266,15 @@ fn one(settings: &Settings) -> anyhow::Result<u8> {
             writeln!(out, "refused or late: {line}")?;
         }
         for check in &record.found.checks {
-            let smallest = check.smallest.map_or("heavy tails".into(), |s| format!("{:.1} %", 100.0 * s));
+            let none = if check.tests == 0 { "nothing" } else { "heavy tails" };
+            let smallest = check.smallest.map_or(none.into(), |s| format!("{:.1} %", 100.0 * s));
             writeln!(
                 out,
-                "{:28} {:3} numbers, smallest deviation seen {smallest}",
+                "{:44} {:3} numbers, smallest deviation seen {smallest}",
                 check.check, check.tests
             )?;
             if let Some(worst) = &check.worst {
-                writeln!(out, "{:28} farthest {}", "", worst.line())?;
+                writeln!(out, "{:44} farthest {}", "", worst.line())?;
             }
         }
         for alarm in &record.found.alarms {
@@ -416,13 +417,13 @@ fn summary(records: &[Record]) -> anyhow::Result<u8> {
     print(|out| {
         writeln!(
             out,
-            "{:30} {:>6} {:>8} {:>10} {:>10}",
+            "{:44} {:>6} {:>8} {:>10} {:>10}",
             "compared", "scenes", "numbers", "median", "nine in ten"
         )?;
         for (name, (scenes, numbers, mut smallest)) in sharp {
             smallest.sort_by(f64::total_cmp);
             let at = |share: f64| 100.0 * smallest[((smallest.len() - 1) as f64 * share) as usize];
-            writeln!(out, "{name:30} {scenes:6} {numbers:8} {:8.1} % {:8.1} %", at(0.5), at(0.9))?;
+            writeln!(out, "{name:44} {scenes:6} {numbers:8} {:8.1} % {:8.1} %", at(0.5), at(0.9))?;
         }
         let mut smallest: Vec<f64> =
             records.iter().map(|r| r.found.smallest.unwrap_or(f64::INFINITY)).collect();
@@ -430,7 +431,7 @@ fn summary(records: &[Record]) -> anyhow::Result<u8> {
         let at = |share: f64| {
             smallest.get((smallest.len() as f64 * share) as usize).map_or(f64::NAN, |s| 100.0 * s)
         };
-        writeln!(out, "{:30} {:6} {:>8} {:8.1} % {:8.1} %", "scene", records.len(), "", at(0.5), at(0.9))?;
+        writeln!(out, "{:44} {:6} {:>8} {:8.1} % {:8.1} %", "scene", records.len(), "", at(0.5), at(0.9))?;
         for (reason, count) in &refusals {
             writeln!(out, "scenes refused: {count} x {reason}")?;
         }
