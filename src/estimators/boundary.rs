@@ -186,6 +186,7 @@ pub fn treated_density(
     gather: Gather,
     boundary: &Boundary<'_>,
 ) -> Treated {
+    let point = map.place(point, gather.cap());
     let plain = || ball_sum(map, point, kernel, gather);
     treated(map, (point, point), kernel, gather, boundary, plain, &|_| 1.0)
 }
@@ -204,6 +205,7 @@ pub fn treated_in_scattered(
     gather: Gather,
     boundary: &Boundary<'_>,
 ) -> Treated {
+    let point = map.place(point, gather.cap());
     let plain = || in_scattered_sum(map, point, wo, phase, kernel, gather);
     let value = |photon: &Photon| {
         let (one_minus_mu, one_plus_mu) = cosine_pair(photon.dir.as_dvec3(), wo);
@@ -220,7 +222,8 @@ const BEYOND: f64 = 1.001;
 /// How far ahead of the point is looked from, in parts of the largest radius.
 const AHEAD: f64 = 1e-9;
 
-/// The treated sum of power x weight; `plain` is the untreated one. The second point is where bodies are looked at from.
+/// The treated sum of power x weight at a point where the tree may be asked; `plain` is the untreated one. The second point is
+/// where bodies are looked at from.
 fn treated(
     map: &PhotonMap,
     (point, eye): (DVec3, DVec3),
@@ -230,9 +233,6 @@ fn treated(
     plain: impl FnOnce() -> BallSum,
     value: &dyn Fn(&Photon) -> f64,
 ) -> Treated {
-    let eye = eye - point;
-    let point = map.place(point, gather.cap());
-    let eye = point + eye;
     let sieve = Sieve::new(boundary.rejection, boundary.walls, point, gather.cap());
     let (mut whole, mut hidden) = (None, None);
     if sieve.is_none() {

@@ -189,7 +189,8 @@ pub(super) fn march(
         }
         let step = match medium {
             Medium::Homogeneous(medium) => {
-                Placed::in_step(march.rule, march.is_jittered, medium.sigma_t(), dx, stream)
+                let how = (march.rule, march.is_jittered);
+                Placed::in_step(how, medium.sigma_t(), seen * counts, dx, stream)
             }
             Medium::Heterogeneous(_) => Placed::in_varying_step(march, medium, (ray, t), dx, stream),
         };
@@ -209,6 +210,19 @@ pub(super) fn march(
     }
 }
 
+/// Optical depth of a step below which light reaches its near end from everywhere, within what a double tells apart.
+const CLEAR: f64 = 1e-16;
+
+/// The integral of e^(-s x) over a step \[L\].
+fn reaching(s: f64, dx: f64) -> f64 {
+    if s * dx < CLEAR { dx } else { -exp_m1(-s * dx) / s }
+}
+
+/// A place of a step, of density e^(-s x) over that integral \[L\].
+fn place_reaching(s: f64, dx: f64, unit: f64) -> f64 {
+    if s * dx < CLEAR { unit * dx } else { (-ln_1p(unit * exp_m1(-s * dx)) / s).min(dx) }
+}
+
 /// The largest difference of channels over the largest channel, `floor` added to both.
 fn relative_change(a: Spectrum, b: Spectrum, floor: f64) -> f64 {
     let largest = a.max().max(b.max()) + floor;
@@ -224,16 +238,34 @@ struct Placed {
 }
 
 impl Placed {
-    fn in_step(rule: StepRule, is_jittered: bool, sigma_t: Spectrum, dx: f64, stream: &mut Stream) -> Self {
+    /// In a medium of constant extinction; `counts` is how much the light of each channel matters, more than 0 for one of them.
+    fn in_step(
+        (rule, is_jittered): (StepRule, bool),
+        sigma_t: Spectrum,
+        counts: Spectrum,
+        dx: f64,
+        stream: &mut Stream,
+    ) -> Self {
         if rule == StepRule::Integrated && is_jittered {
-            // Density s e^(-s x)/(1 - e^(-s dx)) with s the mean over channels; one channel's weight is e^(-s_c x) over it.
-            let s = sigma_t.mean();
-            let collides = -exp_m1(-s * dx);
-            let place = (-ln_1p(-stream.unit() * collides) / s).min(dx);
-            let weight = match sigma_t.is_grey() {
-                true => Spectrum::grey(collides / s),
-                false => sigma_t.map(|c| exp((s - c) * place)) * (collides / s),
-            };
+            let unit = stream.unit();
+            if sigma_t.is_grey() {
+                let s = sigma_t.mean();
+                let (place, weight) = (place_reaching(s, dx, unit), Spectrum::grey(reaching(s, dx)));
+                return Placed { place, weight, reached: Spectrum::ONE };
+            }
+            // By the extinction of one channel, chosen by what matters. Over the mean of the channels' densities no channel has
+            // a weight beyond reach over chance, whatever the others are.
+            let chances = counts / (counts[0] + counts[1] + counts[2]);
+            let (mut channel, mut below) = (0, 0.0);
+            while channel < 2 && unit >= below + chances[channel] {
+                below += chances[channel];
+                channel += 1;
+            }
+            let rest = ((unit - below) / chances[channel]).clamp(0.0, 1.0 - f64::EPSILON);
+            let place = place_reaching(sigma_t[channel], dx, rest);
+            let passed = sigma_t.map(|s| exp(-s * place));
+            let densities = passed / sigma_t.map(|s| reaching(s, dx));
+            let weight = passed / (chances * densities).0.element_sum();
             return Placed { place, weight, reached: Spectrum::ONE };
         }
         let weight = sigma_t.map(|c| rule.weight(c, 0.0, dx));

@@ -78,7 +78,9 @@ impl PhotonMap {
                     "from 0 to the side of the cell",
                 ));
             }
-            parts.iter_mut().for_each(|part| fold::surround(part, side, reach));
+            if reach > 0.0 {
+                parts.iter_mut().for_each(|part| fold::surround(part, side, reach));
+            }
         }
         Ok(PhotonMap { period, ..Self::of_parts(parts, emitted, progress)? })
     }

@@ -225,6 +225,7 @@ pub fn fill_part(
     part: Part,
     progress: &dyn Progress,
 ) -> Result<Maps> {
+    scene.check_emission()?;
     let emitters = Emitters::of(scene, importance);
     let (Emitted { global, volume, caustic }, mut report) = (emitted, MapReport::default());
     let mut build = |parts: Vec<Vec<Photon>>, emitted: u64| {

@@ -7,7 +7,7 @@ use crate::estimators::boundary::{Treatment, treated_fluence, treated_in_scatter
 use crate::estimators::{Estimate, Gather, Kernel, fluence, in_scattered};
 use crate::integrators::mapper::{MediumExtent, medium_extents, scene_size};
 use crate::integrators::{March, StepRule, along};
-use crate::math::{Positive, Ray};
+use crate::math::{Interval, Positive, Ray};
 use crate::medium::Medium;
 use crate::photons::{
     BUILD_SECONDS, Emitter, Histories, Ledger, PEAK_BYTES, Part, Pass, Photon, PhotonMap, Run, fold, shoot,
@@ -63,8 +63,7 @@ impl PhotonReadings {
     }
 }
 
-/// Steps of a ray through a medium, about, and the optical depth that they reach if there is so much: behind it lies 2e-9 of what
-/// the ray collects.
+/// Steps of a ray through a medium, about, as far as a channel reaches: behind this optical depth lies 2e-9 of what it brings.
 const STEPS: f64 = 200.0;
 const DEPTH: f64 = 20.0;
 
@@ -383,17 +382,14 @@ fn radiance(
 ) -> Spectrum {
     let mut sum = Spectrum::ZERO;
     let end = scene.hit(ray, None).map_or(f64::INFINITY, |h| h.hit.t);
-    let within = scene.interior_at(ray.origin);
+    let (within, size) = (scene.interior_at(ray.origin), scene_size(scene));
     if orders.contains(0) {
         let only_direct = Orders::only(0);
         crate::integrators::radiance(scene, *ray, None, within, only_direct, stream, |_, value| sum += value);
     }
     for segment in scene.segments(ray, end, within).iter() {
-        let (medium, span) = (scene.medium(segment.medium), segment.interval);
-        let before = transmittance(scene, ray, span.start, within, stream);
-        let Some(step) = step(medium, span.length()).filter(|_| !before.is_black()) else { continue };
-        let march = March { is_jittered: true, ..March::equal(step, StepRule::Integrated) };
-        let source = |p: DVec3| {
+        let medium = scene.medium(segment.medium);
+        let mut source = |p: DVec3| {
             if medium.sigma_t(p).is_black() {
                 return Spectrum::ZERO;
             }
@@ -409,16 +405,34 @@ fn radiance(
             result.book(scene, p, &estimate, treatment);
             medium.albedo(p) * estimate.value
         };
-        sum += before * along(medium, (ray, span), &march, scene_size(scene), stream, source);
+        for (span, step) in stretches(medium, segment.interval) {
+            let before = transmittance(scene, ray, span.start, within, stream);
+            if !before.is_black() {
+                let march = March { is_jittered: true, ..March::equal(step, StepRule::Integrated) };
+                sum += before * along(medium, (ray, span), &march, size, stream, &mut source);
+            }
+        }
     }
     sum
 }
 
-/// Steps of a march through a stretch of a medium of which nothing is known but its bounds \[L\]; none where nothing collides.
-fn step(medium: &Medium, length: f64) -> Option<Positive> {
-    let least = medium.highest_sigma_t().0.to_array().into_iter().filter(|s| *s > 0.0).reduce(f64::min)?;
+/// How a span of a medium is marched through: parts of it with their steps \[L\], one as far as each channel reaches, so that
+/// the densest is not one step among those of the thinnest; none where nothing collides.
+fn stretches(medium: &Medium, span: Interval) -> Vec<(Interval, Positive)> {
+    let colliding = medium.highest_sigma_t().0.to_array().into_iter().filter(|s| *s > 0.0);
     // Where the density varies it may be far below its bound.
-    let is_short = !medium.is_homogeneous() && length < f64::INFINITY;
-    let reach = if is_short { length } else { length.min(DEPTH / least) };
-    Positive::new("the step", reach / STEPS).ok()
+    let is_short = !medium.is_homogeneous() && span.length() < f64::INFINITY;
+    let reach = |s: f64| if is_short { span.length() } else { span.length().min(DEPTH / s) };
+    let mut reaches: Vec<f64> = colliding.map(reach).collect();
+    reaches.sort_by(f64::total_cmp);
+    reaches.dedup();
+    let last = reaches.len().saturating_sub(1);
+    let mut start = span.start;
+    let part = |(number, reach): (usize, f64)| {
+        let end = if number == last { span.end } else { span.start + reach };
+        let part = Interval { start, end };
+        start = end;
+        Some((part, Positive::new("the step", reach / STEPS).ok()?))
+    };
+    reaches.into_iter().enumerate().filter_map(part).collect()
 }

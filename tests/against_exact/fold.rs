@@ -4,9 +4,10 @@ use crate::checks::cell::{
     HISTORIES, UNEVEN, an_oblique_beam_fills_the_cell_evenly, counts, evenness, folded, mirrored, unfolded,
 };
 use crate::support::run::pass;
-use crate::support::scenes::{CELL, Incidence, slab};
+use crate::support::scenes::{CELL, Incidence, layer, slab};
 use crate::support::verdict;
 use glam::DVec3;
+use turbid::estimators::boundary::{Boundary, Treatment, treated_density};
 use turbid::estimators::{Gather, Kernel, collision_density, count_within};
 use turbid::photons::{Photon, PhotonMap};
 use turbid::rng::{Purpose, Stream};
@@ -82,6 +83,15 @@ fn copies_around_the_cell_are_those_of_the_lattice() {
             let is_inside = [probe.x, probe.y].iter().all(|x| (margin..=CELL - margin).contains(x));
             let estimate = collision_density(&alone, there, Kernel::Uniform, gather).value[0];
             assert_eq!(estimate.is_finite(), is_inside, "margin {margin}, {probe}");
+            for treatment in Treatment::ALL {
+                let boundary = Boundary::new(layer(1.0), treatment).unwrap();
+                let treated = treated_density(&alone, there, Kernel::Uniform, gather, &boundary).estimate;
+                assert_eq!(
+                    treated.value[0].is_finite(),
+                    is_inside,
+                    "{treatment:?}, margin {margin}, {probe}"
+                );
+            }
             missed_without_copies += usize::from(!is_inside);
         }
         assert!(missed_without_copies > 0);

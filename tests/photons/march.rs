@@ -1,7 +1,9 @@
 //! The march through a photon map, against closed forms.
 
 use crate::common::ALPHA;
+use crate::support::run::histories;
 use crate::support::scenes::homogeneous;
+use crate::support::verdict;
 use glam::DVec3;
 use libm::{exp, expm1, sinh};
 use turbid::Spectrum;
@@ -137,6 +139,36 @@ fn a_uniform_map() {
             let test = t_test(moments, *factor, 1e-6);
             assert!(test.p > ALPHA, "{rule:?} g {g}: {} of {factor}, z {}", moments.mean(), test.z);
             assert!(smallest_detectable_bias(moments.std_error(), 127) < promise, "{}", moments.std_error());
+        }
+    }
+}
+
+/// Random places in steps of many mean free paths of one channel and few of another: a source e^(-b t) brings
+/// (1 - e^(-(s+b) L))/(s+b) in each channel, and no place counts more than what all of it reaches over the chance of its
+/// channel, a third where all matter alike; the first step is cut, so that there are two.
+#[test]
+fn random_places_in_colours() {
+    let (length, b) = (20.0, 0.05);
+    let sigma_t = Spectrum::rgb(0.01, 1.0, 100.0);
+    let medium = homogeneous(sigma_t, Spectrum::ZERO, 0.0);
+    for (step, promise) in [(20.0, 0.05), (2.0, 0.05)] {
+        let march = March {
+            is_jittered: true,
+            ..March::equal(Positive::new("the step", step).unwrap(), StepRule::Integrated)
+        };
+        let (span, ray) = (Interval { start: 0.0, end: length }, Ray::new(DVec3::ZERO, DVec3::X));
+        let most = sigma_t.map(|s| 2.0 * 3.001 * -expm1(-s * length) / s);
+        let found = histories(1 << 16, 5, |stream| {
+            let source = |place: DVec3| Spectrum::grey(exp(-b * place.x));
+            let value = along(&medium, (&ray, span), &march, 1e3, stream, source);
+            assert!(value.0.cmple(most.0).all(), "steps of {step}: {value:?}");
+            value
+        });
+        for (channel, moments) in found.iter().enumerate() {
+            let s = sigma_t[channel];
+            let exact = -expm1(-(s + b) * length) / (s + b);
+            let what = format!("steps of {step}, channel {channel}");
+            verdict::agrees(&what, moments, (exact, 1e-9 * exact), promise * exact, 5);
         }
     }
 }

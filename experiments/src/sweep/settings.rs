@@ -46,7 +46,7 @@ pub struct Settings {
     pub child: Option<PathBuf>,
 }
 
-/// Rays and look-ups of an effort of 1. Few scenes need all of it: in the mean a method takes about a second.
+/// Rays and look-ups of an effort of 1. Few scenes need all of it: in the mean a method takes 1.4 s.
 const STEPS: f64 = 1.75e7;
 /// CPU seconds of a method at an effort of 1, after which it is stopped: what rays take differs by scene, and what it takes to
 /// fill photon maps is counted by the histories of one.
