@@ -100,8 +100,9 @@ impl Map {
             let importance = self.photons.importance(&scene, &camera, &settings)?;
             let pixels = f64::from(camera.width()) * f64::from(camera.height());
             let fixed = (PICTURE_BYTES * pixels, LIST_BYTES);
-            let emitted =
+            let ahead =
                 self.photons.ahead(&scene, &settings, importance.as_ref(), Held::ALL, &self.memory, fixed)?;
+            let emitted = ahead.emitted;
             let bar = Bar::stage("emission", emitted.histories());
             let maps = fill_counted_steered(&scene, &settings, emitted, importance.as_ref(), &bar);
             bar.finish();

@@ -50,14 +50,13 @@ pub fn tell_step(scene: &Scene, settings: &Settings) -> Result<()> {
     ))
 }
 
-/// Says which look-ups cannot be good, after the picture is made; `k` are the photons of an estimate from the global, the
-/// caustic and the volume map, none for a fixed radius.
+/// Says which look-ups cannot be good, after the picture is made; `stored` are the photons in the global, the caustic and the
+/// volume map.
 pub fn tell_gathers(
     scene: &Scene,
     settings: &Settings,
     work: &Report,
     stored: [Option<usize>; 3],
-    k: [Option<usize>; 3],
 ) -> Result<()> {
     let smallest = |shapes: &mut dyn Iterator<Item = &Shape>| {
         shapes.map(Shape::shortest_extent).filter(|extent| *extent > 0.0).fold(f64::INFINITY, f64::min)
@@ -81,7 +80,9 @@ pub fn tell_gathers(
         ),
         ("volume", &work.volume, settings.volume.1.cap(), ("the smallest medium", medium), path),
     ];
-    for (((name, gathers, cap, (what, extent), path), stored), k) in maps.into_iter().zip(stored).zip(k) {
+    for (((name, gathers, cap, (what, extent), path), stored), k) in
+        maps.into_iter().zip(stored).zip(settings.nearest())
+    {
         let Some(stored) = stored.filter(|stored| *stored > 0 && gathers.count > 0) else { continue };
         let radius = Gathers::mean_radius(gathers);
         if let Some(k) = k.filter(|k| stored < *k) {
@@ -89,10 +90,15 @@ pub fn tell_gathers(
                 "the {name} map holds {stored} photons, fewer than an estimate takes, {k}: --{name} for more of them"
             ))?;
         } else if 2 * gathers.underfull > gathers.count {
+            let part = 100.0 * gathers.underfull as f64 / gathers.count as f64;
+            // Curved bodies end sooner.
+            let (within, or) = match radius < 0.9 * cap {
+                true => (radius, ""),
+                false => (cap, ", or a larger --max-radius"),
+            };
             note(&format!(
-                "{:.0} % of the look-ups in the {name} map found fewer photons than asked for within {cap:.2e} L: --{name} for \
-                 more of them, or a larger --max-radius",
-                100.0 * gathers.underfull as f64 / gathers.count as f64
+                "{part:.0} % of the look-ups in the {name} map found fewer photons than asked for within {within:.2e} L: \
+                 --{name} for more of them{or}"
             ))?;
         }
         if 2.0 * radius > extent {

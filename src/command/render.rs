@@ -13,12 +13,12 @@ use clap::ValueEnum;
 use cpu_time::ProcessTime;
 use std::ops::AddAssign;
 use std::path::PathBuf;
-use turbid::integrators::mapper::{Mapper, Report};
+use turbid::integrators::mapper::{Mapper, Report, Settings};
 use turbid::integrators::path;
 use turbid::output::{Tone, auto_exposure, check_writable, is_same_file, one_line, write_exr, write_png};
 use turbid::photons::Part;
-use turbid::photons::maps::{MapReport, Maps, fill_part};
-use turbid::scene::{Camera, Scene};
+use turbid::photons::maps::{Forecast, MapReport, Maps, fill_part};
+use turbid::scene::Camera;
 use turbid::sensor::{Film, LIGHT_BYTES, LIGHT_PIXEL_BYTES, Sample, Streams, extend, extend_by_light};
 
 /// Draw the picture that a scene's camera sees, by photon maps, by paths or by light tracing.
@@ -196,7 +196,7 @@ impl Render {
         if is_same_file(&self.output, &png)? {
             bail!("--output {} and {} lead to one file", self.output.display(), png.display());
         }
-        let settings = self.reading.settings(&scene)?;
+        let usual = self.reading.usual_settings(&scene)?;
         if self.with == With::Light {
             note(&format!("the picture holds {}", self.with.holds()))?;
         }
@@ -208,7 +208,7 @@ impl Render {
             |part| format!("at most {} pixels, by --width", (pixels as f64 * part) as u64),
         )?;
         if self.with == With::Photons && scene.plan().has_media {
-            tell_step(&scene, &settings)?;
+            tell_step(&scene, &usual)?;
         }
         let made = on_threads(self.threads, || match self.with {
             With::Paths => self.repeat(&camera, |streams, stages, left, film| {
@@ -235,11 +235,13 @@ impl Render {
                     stages.time("pilot", || self.photons.importance(&scene, &camera, &settings_of_maps))?;
                 let importance = importance.as_ref();
                 let fixed = (self.film_bytes(&camera), 0.0);
-                let emitted = stages.time("pilot", || {
+                let Forecast { emitted, stored, .. } = stages.time("pilot", || {
                     let held = Held { passes: self.passes, has_radius: self.reading.has_radius() };
                     self.photons.ahead(&scene, &settings_of_maps, importance, held, &self.memory, fixed)
                 })?;
+                let settings = self.reading.settings(&scene, stored)?;
                 let (mut work, mut made) = (Report::default(), MapsMade::default());
+                made.settings = Some(settings);
                 for number in 0..self.passes {
                     let part = Part { number, of: self.passes };
                     let bar = Bar::stage("emission", emitted.histories() / self.passes);
@@ -276,7 +278,7 @@ impl Render {
         let exposure =
             exposure.unwrap_or_else(|| auto_exposure(made.film.pixels().iter().map(|p| p.total())));
         let tone = Tone { exposure, curve: self.shown.curve() };
-        let provenance = self.provenance(&toml::to_string(&file)?, &scene, &made, exposure)?;
+        let provenance = self.provenance(&toml::to_string(&file)?, &made, exposure)?;
         write_exr(&self.output, &made.film, &provenance)?;
         let png = self.output.with_extension("png");
         let pixels: Vec<[u8; 3]> = made.film.pixels().iter().map(|p| tone.pixel(p.total())).collect();
@@ -289,8 +291,14 @@ impl Render {
             one_line(&png.display().to_string())
         ))?;
         if self.with == With::Photons && !scene.plan().is_full {
-            let stored = made.maps.first().map_or([None; 3], |made| made.filled.map(|map| Some(map?.stored)));
-            tell_gathers(&scene, &settings, &made.work, stored, self.reading.nearest())?;
+            let first = made.maps.first();
+            let stored = first.map_or([None; 3], |made| made.filled.map(|map| Some(map?.stored)));
+            tell_gathers(
+                &scene,
+                first.and_then(|made| made.settings.as_ref()).unwrap_or(&usual),
+                &made.work,
+                stored,
+            )?;
         }
         Ok(())
     }
@@ -401,15 +409,9 @@ impl Render {
     }
 
     /// All that the picture was made from: no path, no time.
-    fn provenance(
-        &self,
-        scene_text: &str,
-        scene: &Scene,
-        made: &Made,
-        exposure: f64,
-    ) -> anyhow::Result<serde_json::Value> {
+    fn provenance(&self, scene_text: &str, made: &Made, exposure: f64) -> anyhow::Result<serde_json::Value> {
         let by_photons = self.with == With::Photons;
-        let settings = self.reading.settings(scene)?;
+        let settings = made.maps.first().and_then(|made| made.settings);
         let maps = self.photons.settings(self.reading.indirect(), self.seed, 0);
         let filled: Vec<[Option<Filled>; 3]> = made.maps.iter().map(|made| made.filled).collect();
         Ok(serde_json::json!({
@@ -427,7 +429,7 @@ impl Render {
             "variance": if self.maps == 1 { "between samples" } else { "between repetitions" },
             "exposure": exposure,
             "map_settings": if by_photons { format!("{maps:?}") } else { String::new() },
-            "mapper_settings": if by_photons { format!("{settings:?}") } else { String::new() },
+            "mapper_settings": settings.map_or(String::new(), |settings| format!("{settings:?}")),
             "maps_global_caustic_volume": filled,
             "scene": scene_text,
         }))
@@ -441,6 +443,8 @@ pub struct MapsMade {
     pub report: MapReport,
     /// How full the global, caustic and volume map are; none where the scene needs none.
     pub filled: [Option<Filled>; 3],
+    /// How they are read, if they are.
+    pub settings: Option<Settings>,
 }
 
 impl MapsMade {

@@ -61,11 +61,16 @@ pub fn print_statistics(made: &Made, exposure: f64) -> anyhow::Result<()> {
     writeln!(text, "pixels         {} x {}", made.film.width(), made.film.height())?;
     writeln!(text, "samples        {taken} a pixel, {} repetitions", made.samples.len())?;
     writeln!(text, "exposure       {exposure} stops")?;
-    for (number, MapsMade { report, filled }) in made.maps.iter().enumerate() {
+    for (number, MapsMade { report, filled, settings }) in made.maps.iter().enumerate() {
         let names = ["global", "caustic", "volume"];
-        for (name, filled) in names.into_iter().zip(filled) {
+        let nearest = settings.map_or([None; 3], |settings| settings.nearest());
+        for ((name, filled), k) in names.into_iter().zip(filled).zip(nearest) {
             if let Some(Filled { stored, emitted }) = filled {
-                writeln!(text, "map {number:<3} {name:<8} {stored} photons stored of {emitted} emitted")?;
+                let taken = k.map_or(String::new(), |k| format!(", the {k} nearest an estimate"));
+                writeln!(
+                    text,
+                    "map {number:<3} {name:<8} {stored} photons stored of {emitted} emitted{taken}"
+                )?;
             }
         }
         for (name, pass) in [("first", &report.main), ("caustic", &report.caustic)] {

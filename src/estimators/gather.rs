@@ -72,6 +72,14 @@ impl Gather {
         Ok(Gather::Nearest { k: NeighborCount::new(k)?, max_radius })
     }
 
+    /// Which photon sets the radius; none where it is fixed.
+    pub fn k(self) -> Option<usize> {
+        match self {
+            Gather::Radius(_) => None,
+            Gather::Nearest { k, .. } | Gather::NearestBiased { k, .. } => Some(k.get()),
+        }
+    }
+
     /// The farthest that a photon may be taken from \[L\].
     pub fn cap(self) -> f64 {
         match self {

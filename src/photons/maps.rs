@@ -43,6 +43,16 @@ pub enum Amount {
     Stored(u64),
 }
 
+impl std::fmt::Display for Amount {
+    /// As the command takes it.
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Amount::Emitted(number) => write!(f, "emit:{number}"),
+            Amount::Stored(number) => write!(f, "{number}"),
+        }
+    }
+}
+
 /// Where the global map is read.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Indirect {

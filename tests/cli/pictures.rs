@@ -266,6 +266,45 @@ fn statistics_of_a_picture_tell_its_work() {
     assert!(!full.contains("gathers        caustic  0\n"), "{full}");
 }
 
+/// Where nothing is asked for an estimate takes more photons from maps that hold more, where they are read without a mean over
+/// many places; 100 at least.
+#[test]
+fn photons_of_an_estimate_follow_those_of_the_map() {
+    let folder = Folder::new();
+    let path = folder.0.path().join("out.exr");
+    let taken = |more: &[&str]| -> Vec<usize> {
+        let common = ["render", "fogbox", "-o", text(&path), "--width", "4", "--samples", "1"];
+        let said = succeeds(&[&common[..], more].concat());
+        let lines = said.lines().filter(|line| line.contains(" photons stored of "));
+        lines
+            .map(|line| line.split(", the ").nth(1).unwrap().split(' ').next().unwrap().parse().unwrap())
+            .collect()
+    };
+    let (surfaces, media) = (["--global", "70000"], ["--volume", "160000"]);
+    let seen = [&surfaces[..], &media, &["--gather-rays", "0"]].concat();
+    // Eight times as many as 20,000: 8^(4/7).
+    assert_eq!(taken(&seen), [100, 328]);
+    assert_eq!(taken(&["--global", "280000", "--volume", "2000", "--gather-rays", "0"]), [252, 100]);
+    assert_eq!(taken(&["--global", "280000", "--volume", "2000", "--gather-rays", "1"]), [100, 100]);
+    assert_eq!(taken(&[&seen[..], &["--k", "30", "--volume-k", "40"]].concat()), [30, 40]);
+    assert!(
+        succeeds(&[
+            "render",
+            "fogbox",
+            "-o",
+            text(&path),
+            "--width",
+            "4",
+            "--samples",
+            "1",
+            "--radius",
+            "0.1"
+        ])
+        .lines()
+        .all(|line| !line.contains(" an estimate"))
+    );
+}
+
 #[test]
 fn photons_are_drawn_and_exported() {
     let folder = Folder::new();

@@ -250,23 +250,25 @@ fn global_map(photons: Vec<Photon>) -> Maps {
     }
 }
 
-fn gathers() -> [(Kernel, Gather); 3] {
+/// With more photons than a curved body has within its reach the last takes what there is.
+fn gathers() -> [(Kernel, Gather); 4] {
     [
         (Kernel::Uniform, Gather::radius(0.12).unwrap()),
         (Kernel::Cone, Gather::nearest(20, 0.3).unwrap()),
         (Kernel::Gaussian, Gather::radius(0.25).unwrap()),
+        (Kernel::Cone, Gather::nearest(400, 0.3).unwrap()),
     ]
 }
 
 /// Irradiance over what it should be, for each gather, in the mean over some places of each of 64 maps.
-fn read(specimen: &Specimen, clips_discs: bool, seed: u64) -> [Moments; 3] {
+fn read(specimen: &Specimen, clips_discs: bool, seed: u64) -> [Moments; 4] {
     let scene = specimen.scene();
-    let mut moments = [Moments::new(), Moments::new(), Moments::new()];
+    let mut moments = [(); 4].map(|()| Moments::new());
     for replicate in 0..64 {
         let mut stream = Stream::new(seed, Purpose::Synthetic, replicate, 0);
         let photons = specimen.photons(5000.0, 1000, &mut stream);
         let maps = global_map(photons);
-        let mut sums = [0.0; 3];
+        let mut sums = [0.0; 4];
         const PLACES: u32 = 48;
         for _ in 0..PLACES {
             let (point, normal, lit) = specimen.place(&mut stream);

@@ -231,6 +231,12 @@ impl Place<'_> {
         }
     }
 
+    /// Whether [`Place::reach`], or where flat faces end, is known. Elsewhere photons tell how far the accepted surface reaches:
+    /// where all of them are fewer than k, the farthest.
+    pub fn has_reach(&self) -> bool {
+        !matches!(self.exact, Exact::Unknown)
+    }
+
     /// The part of a kernel's disc about the place that accepted surface fills.
     pub fn part(&self, kernel: Kernel, radius: f64, stream: &mut Stream) -> Part {
         let (exact, has_overlap) = self.known(kernel, radius);

@@ -98,6 +98,11 @@ impl Settings {
         Ok(settings)
     }
 
+    /// Photons of an estimate from the global, the caustic and the volume map; none for a fixed radius.
+    pub fn nearest(&self) -> [Option<usize>; 3] {
+        [self.global, self.caustic, self.volume].map(|(_, gather)| gather.k())
+    }
+
     /// Whether volume estimates follow a rule of the laboratory about walls.
     pub(super) fn needs_walls(&self) -> bool {
         match self.rejection {

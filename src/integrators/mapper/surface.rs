@@ -2,7 +2,7 @@
 
 use super::{Eye, Gathers, Mapper};
 use crate::Spectrum;
-use crate::estimators::{Gather, Kernel, irradiance, irradiance_seen};
+use crate::estimators::{Estimate, Gather, Kernel, irradiance, irradiance_seen};
 use crate::math::Ray;
 use crate::photons::PhotonMap;
 use crate::photons::maps::Indirect;
@@ -16,6 +16,11 @@ use std::f64::consts::PI;
 
 /// How many radii are tried, each a quarter of the one before, where too little of the disc lies on a surface: thin rods.
 const SMALLER: u32 = 4;
+
+/// Where a curved body's accepted surface ends before k photons are found, all n that are found take the place of k: the farthest
+/// tells how far the surface reaches. Of n in an area the estimate stays unbiased, and 1/(n (n-2)) is added to its relative
+/// variance: less than what lines over a larger disc would add, 1/32, from here on.
+const TELLING: usize = 7;
 
 /// A point of a diffuse surface that light leaves towards a walker.
 #[derive(Clone, Copy)]
@@ -76,7 +81,12 @@ impl<'w> Diffuse<'w> {
         let mut gather = gather.within(place.reach());
         let mut attempt = 1;
         let (estimate, part) = loop {
-            let estimate = irradiance(map, self.position, &place.tangent, kernel, gather);
+            let mut estimate = irradiance(map, self.position, &place.tangent, kernel, gather);
+            if estimate.underfull && estimate.found >= TELLING && !place.has_reach() {
+                gather = Gather::nearest(estimate.found, estimate.radius).unwrap_or(gather);
+                let nearer = irradiance(map, self.position, &place.tangent, kernel, gather);
+                estimate = Estimate { underfull: true, ..nearer };
+            }
             if estimate.found == 0 {
                 count.add(&estimate);
                 return estimate.value;
