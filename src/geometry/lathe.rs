@@ -5,7 +5,7 @@ mod tree;
 
 pub use profile::smooth;
 
-use super::{Hit, remainder};
+use super::{ASLANT, Hit, remainder};
 use crate::error::{Error, Result};
 use crate::math::{Frame, Ray, atan2, sin_cos};
 use glam::{DVec2, DVec3};
@@ -247,7 +247,7 @@ impl Lathe {
 
     /// Whether a point lies inside a closed lathe: the first crossing of a ray from it tells.
     pub fn contains(&self, p: DVec3) -> bool {
-        let ray = Ray::new(p, DVec3::new(0.48, 0.6, 0.64));
+        let ray = Ray::new(p, ASLANT);
         self.hit(&ray, None).is_some_and(|hit| hit.normal.dot(ray.dir) > 0.0)
     }
 

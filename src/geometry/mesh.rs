@@ -3,12 +3,13 @@
 mod obj;
 mod triangle;
 
-use super::{Hit, Tree, remainder};
+use super::{ASLANT, Hit, Tree, remainder};
 use crate::error::{Error, Result};
 use crate::math::Ray;
 use glam::{DVec2, DVec3};
 use std::collections::HashMap;
 use std::hash::{DefaultHasher, Hash, Hasher};
+use std::sync::OnceLock;
 use triangle::{Shear, closest};
 
 /// Triangles, searched through a tree of single-precision boxes and met in double precision.
@@ -28,6 +29,8 @@ pub struct Mesh {
     dropped: usize,
     /// How far a point computed on the mesh may be off its triangle's plane \[L\].
     rounding: f64,
+    /// Whether it has an inside, once that has been asked.
+    is_closed: OnceLock<bool>,
 }
 
 impl PartialEq for Mesh {
@@ -135,7 +138,7 @@ impl Mesh {
                 sum
             })
             .collect();
-        Ok(Mesh { corners, uvs, tree, bounds, areas, dropped, rounding })
+        Ok(Mesh { corners, uvs, tree, bounds, areas, dropped, rounding, is_closed: OnceLock::new() })
     }
 
     /// A mesh from a Wavefront OBJ file, each position where `place` puts it: `v`, `vt` and `f` are read, polygons are cut
@@ -239,7 +242,7 @@ impl Mesh {
 
     /// Whether a point lies inside a closed mesh: the first crossing of a ray from it tells.
     pub fn contains(&self, p: DVec3) -> bool {
-        let ray = Ray::new(p, DVec3::new(0.48, 0.6, 0.64));
+        let ray = Ray::new(p, ASLANT);
         let shear = Shear::new(&ray);
         // The nearest crossing leaves the body if the point is inside.
         let mut nearest = (f64::INFINITY, 0.0);
@@ -269,6 +272,10 @@ impl Mesh {
 
     /// Whether every edge joins two triangles that turn the same way: then the mesh has an inside.
     pub fn is_closed(&self) -> bool {
+        *self.is_closed.get_or_init(|| self.has_inside())
+    }
+
+    fn has_inside(&self) -> bool {
         let bits = |p: DVec3| (p + 0.0).to_array().map(f64::to_bits);
         let mut edges: HashMap<[[u64; 3]; 2], i32> = HashMap::with_capacity(self.corners.len() * 3 / 2);
         for triangle in &self.corners {

@@ -7,7 +7,7 @@
 
 use super::{Object, Parts, Region, Scene};
 use crate::error::{Error, Result};
-use crate::geometry::{Face, Shape};
+use crate::geometry::{ASLANT, Face, Shape};
 use crate::light::Light;
 use crate::math::{Index, Ray};
 use crate::medium::Medium;
@@ -56,32 +56,27 @@ pub(super) fn match_indices(parts: &mut Parts) {
     }
 }
 
-/// Where to look for a boundary: first in a direction that shapes along the axes do not share, then along the axes, up
-/// and down first since water is level.
-const DIRECTIONS: [DVec3; 7] = [
-    // (3, 4, 12)/13, a unit vector whose components are rational.
-    DVec3::new(3.0 / 13.0, 4.0 / 13.0, 12.0 / 13.0),
-    DVec3::Z,
-    DVec3::NEG_Z,
-    DVec3::Y,
-    DVec3::NEG_Y,
-    DVec3::X,
-    DVec3::NEG_X,
-];
+/// Where to look for boundaries that are not met aslant: up and down first since water is level.
+const DIRECTIONS: [DVec3; 6] = [DVec3::Z, DVec3::NEG_Z, DVec3::Y, DVec3::NEG_Y, DVec3::X, DVec3::NEG_X];
 
 /// The objects that are boundaries of interiors.
 pub(super) fn dielectrics(objects: &[Object]) -> impl Iterator<Item = &Object> {
     objects.iter().filter(|o| matches!(o.surface, Surface::Dielectric(_)))
 }
 
-/// The interior on the near side of the first dielectric surface on a ray.
-fn side_seen(parts: &Parts, ray: &Ray) -> Option<usize> {
+/// The interior on the near side of the first dielectric surface in a direction from a point; `is_outside` of all closed ones.
+fn side_seen(parts: &Parts, p: DVec3, dir: DVec3, is_outside: bool) -> Option<usize> {
+    let ray = Ray::new(p, dir);
     let boundaries = parts.objects.iter().filter_map(|object| {
         let Surface::Dielectric(dielectric) = &object.surface else { return None };
-        Some((object.shape.hit(ray, None)?, dielectric))
+        Some((object.shape.hit(&ray, None)?, &object.shape, dielectric))
     });
-    let (hit, dielectric) = boundaries.min_by(|(a, _), (b, _)| a.t.total_cmp(&b.t))?;
-    Some(dielectric.sides(ray.dir, hit.normal).0)
+    let (hit, shape, dielectric) = boundaries.min_by(|(a, ..), (b, ..)| a.t.total_cmp(&b.t))?;
+    match is_outside && shape.is_closed() {
+        // Where the ray touches an edge, it may have met the back.
+        true => Some(dielectric.outside()),
+        false => Some(dielectric.sides(dir, hit.normal).0),
+    }
 }
 
 /// For each light the interior that it is in, where it is in one; none where that is to be asked point by point, as for a
@@ -166,7 +161,7 @@ fn check_sides(parts: &Parts, index: usize, dielectric: &Dielectric) -> Result<(
         let u = [0.754_877_666, 0.569_840_291, 0.430_159_709].map(|a| (f64::from(i) * a + 0.5).fract());
         let (p, normal, _) = shape.sample_boundary(Face::Top, 1.0, u);
         for (dir, named) in [(normal, dielectric.outside()), (-normal, dielectric.inside())] {
-            if let Some(seen) = side_seen(parts, &Ray::new(p + dir * step, dir)) {
+            if let Some(seen) = side_seen(parts, p + dir * step, dir, false) {
                 asked += 1;
                 if seen != named {
                     wrong += 1;
@@ -213,7 +208,10 @@ impl Scene {
         if !self.plan().has_dielectrics {
             return SURROUNDINGS;
         }
-        DIRECTIONS.iter().find_map(|dir| side_seen(&self.parts, &Ray::new(p, *dir))).unwrap_or(SURROUNDINGS)
+        let aslant = side_seen(&self.parts, p, ASLANT, false);
+        // Inside a closed body its boundary lies in every direction.
+        let straight = || DIRECTIONS.iter().find_map(|dir| side_seen(&self.parts, p, *dir, true));
+        aslant.or_else(straight).unwrap_or(SURROUNDINGS)
     }
 
     /// Number of the interior in which light starts from `origin` by the light of this index.

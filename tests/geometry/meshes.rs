@@ -4,7 +4,7 @@ use crate::solids::{crossings, cube, direction, icosphere, mesh, point, stream};
 use crate::support::verdict;
 use glam::{DVec2, DVec3};
 use std::f64::consts::{PI, TAU};
-use turbid::geometry::{Cuboid, Mesh, Shape};
+use turbid::geometry::{Cuboid, Lathe, Mesh, Shape};
 use turbid::math::{Ray, sin_cos};
 
 /// Where meshes are put: a scale and an offset.
@@ -237,6 +237,33 @@ fn stream_points(block: &Mesh) -> f64 {
         count += u32::from(block.contains(p));
     }
     f64::from(count) / 20_000.0
+}
+
+/// Inside and outside are told apart from every place of a lattice that bodies of round numbers share: an octahedron and a double
+/// cone, whose edges and tips lie where rays in directions of rational ratios meet them.
+#[test]
+fn places_on_a_lattice_are_inside_or_outside() {
+    let corners = [DVec3::Y, DVec3::NEG_Y, DVec3::Z, DVec3::NEG_Z, DVec3::X, DVec3::NEG_X];
+    let half = [[0, 2, 4], [2, 1, 4], [1, 3, 4], [3, 0, 4]];
+    let faces: Vec<[u32; 3]> = half.into_iter().chain(half.map(|[a, b, _]| [b, a, 5])).collect();
+    let octahedron = Mesh::new(&corners, &faces, None).unwrap();
+    assert!(octahedron.is_closed() && octahedron.volume() > 0.0);
+    let profile = [DVec2::new(0.0, -1.0), DVec2::new(1.0, 0.0), DVec2::new(0.0, 1.0)];
+    let cones = Lathe::new(DVec3::ZERO, DVec3::Z, &profile).unwrap();
+    for parts in [16, 25, 26] {
+        let at = |i: i32| (f64::from(i) + 0.5) / f64::from(parts);
+        let places = -2 * parts..2 * parts;
+        for (x, y, z) in places.clone().flat_map(|i| {
+            let places = places.clone();
+            places.clone().flat_map(move |j| places.clone().map(move |k| (at(i), at(j), at(k))))
+        }) {
+            let p = DVec3::new(x, y, z);
+            let (mesh, lathe) = (p.abs().element_sum() - 1.0, x.hypot(y) + z.abs() - 1.0);
+            // Rounding decides of places on a face.
+            assert!(mesh.abs() < 1e-9 || octahedron.contains(p) == (mesh < 0.0), "octahedron, {p}");
+            assert!(lathe.abs() < 1e-9 || cones.contains(p) == (lathe < 0.0), "cones, {p}");
+        }
+    }
 }
 
 /// Points fall on triangles in proportion to their areas, and evenly within them; the negative control takes triangles alike.

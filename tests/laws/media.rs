@@ -346,6 +346,12 @@ fn filled_bodies_emit_by_their_volume() {
         let faces = [[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]];
         shapes.push(Shape::Mesh(Arc::new(Mesh::new(&corners, &faces, None).unwrap())));
     }
+    // Of places on a lattice many see an edge of this one in directions of rational ratios.
+    let corners =
+        [DVec3::Y, DVec3::NEG_Y, DVec3::Z, DVec3::NEG_Z, DVec3::X, DVec3::NEG_X].map(|p| at + 0.5 * p);
+    let half = [[0, 2, 4], [2, 1, 4], [1, 3, 4], [3, 0, 4]];
+    let faces: Vec<[u32; 3]> = half.into_iter().chain(half.map(|[a, b, _]| [b, a, 5])).collect();
+    shapes.push(Shape::Mesh(Arc::new(Mesh::new(&corners, &faces, None).unwrap())));
     for (i, shape) in shapes.into_iter().enumerate() {
         let glow = matter(Spectrum::ONE, Spectrum::rgb(1.0, 2.0, 0.5));
         let glass = filled("glass", 1.5, glow.into());
