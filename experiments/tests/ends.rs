@@ -81,7 +81,8 @@ fn a_study_ends_with_a_line() {
 fn the_other_programs_end_with_a_line() {
     let folder = tempfile::tempdir().unwrap();
     let out = folder.path().to_str().unwrap();
-    for signal in [TERM, INT] {
+    // Whoever runs the tests may ignore interrupts, as shells do for what they start in the background.
+    for signal in [TERM, INT].into_iter().filter(|signal| !ignores(std::process::id(), signal.1)) {
         let said = ended_by(signal, started(GALLERY, &["--draft", "--only", "pool", "--out", out]));
         assert!(said.starts_with("gallery: stopped by a signal; finished renders are kept in "), "{said}");
         let said = ended_by(signal, started(SWEEP, &["--seeds", "0..500", "--effort", "0.02", "--out", out]));
@@ -92,6 +93,26 @@ fn the_other_programs_end_with_a_line() {
         );
         assert!(said.starts_with("fuzz: stopped by a signal; no file is kept: "), "{said}");
     }
+}
+
+/// Whether a process ignores a signal, by its number.
+#[cfg(target_os = "linux")]
+fn ignores(process: u32, signal: u32) -> bool {
+    let status = std::fs::read_to_string(format!("/proc/{process}/status")).unwrap();
+    let ignored = status.lines().find_map(|line| line.strip_prefix("SigIgn:")).unwrap().trim();
+    u64::from_str_radix(ignored, 16).unwrap() & 1 << (signal - 1) != 0
+}
+
+/// Under `nohup` a study goes on when its terminal closes, and has its last word when it is asked to end.
+#[cfg(target_os = "linux")]
+#[test]
+fn a_request_to_end_is_heard_where_a_hangup_is_ignored() {
+    let folder = tempfile::tempdir().unwrap();
+    let arguments = [STUDY, "--only", "rates", "--out", folder.path().to_str().unwrap()];
+    let child = started("sh", &[&["-c", "trap '' HUP; exec \"$@\"", "sh"], &arguments[..]].concat());
+    wait_until(|| catches(&child, TERM.1));
+    assert!(ignores(child.id(), 1) && !catches(&child, 1));
+    assert!(ended_by(TERM, child).starts_with("study: stopped by a signal; "));
 }
 
 /// The one line of a program that ends with exit code 2.
