@@ -11,10 +11,9 @@ use std::hint::black_box;
 use std::io::Write;
 use std::path::PathBuf;
 use turbid::integrators::mapper::{Mapper, Settings};
-use turbid::integrators::path;
 use turbid::photons::maps::{Amount, Indirect, MapSettings, fill};
-use turbid::scene::{SURROUNDINGS, Scene, SceneFile};
-use turbid::sensor::{Streams, render};
+use turbid::scene::{Scene, SceneFile};
+use turbid::sensor::{Method, Streams};
 use turbid::transport::NoProgress;
 
 /// Pairs of rounds.
@@ -64,8 +63,7 @@ const STREAMS: Streams = Streams { seed: 1, replicate: 0 };
 
 fn by_paths(scene: &Scene) {
     let Some(camera) = scene.camera().and_then(|camera| camera.with_size(WIDTH, WIDTH).ok()) else { return };
-    let sample = |ray, stream: &mut _| path::layers(scene, ray, None, SURROUNDINGS, stream).0;
-    let _ = black_box(render(&camera, 8, STREAMS, &NoProgress, sample));
+    let _ = black_box(Method::Paths(scene).render(&camera, 8, STREAMS, &NoProgress));
 }
 
 fn by_photons(scene: &Scene) {
@@ -82,9 +80,8 @@ fn by_photons(scene: &Scene) {
     let made = fill(scene, &of_maps, &NoProgress)
         .and_then(|maps| Ok((maps, Settings::for_size(2.0, 50)?)))
         .and_then(|(maps, settings)| {
-            let mapper = Mapper::new(scene, &maps, &settings);
-            let sample = |ray, stream: &mut _| mapper.radiance(ray, None, SURROUNDINGS, stream).0;
-            render(&camera, 1, STREAMS, &NoProgress, sample)
+            let photons = Method::Photons(Mapper::new(scene, &maps, &settings));
+            photons.render(&camera, 1, STREAMS, &NoProgress)
         });
     let _ = black_box(made);
 }

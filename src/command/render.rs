@@ -14,12 +14,11 @@ use cpu_time::ProcessTime;
 use std::ops::AddAssign;
 use std::path::PathBuf;
 use turbid::integrators::mapper::{Mapper, Report, Settings};
-use turbid::integrators::path;
 use turbid::output::{Tone, auto_exposure, check_writable, is_same_file, one_line, write_exr, write_png};
 use turbid::photons::Part;
 use turbid::photons::maps::{Forecast, MapReport, Maps, fill_part};
 use turbid::scene::Camera;
-use turbid::sensor::{Film, LIGHT_BYTES, LIGHT_PIXEL_BYTES, Sample, Streams, extend, extend_by_light};
+use turbid::sensor::{Film, LIGHT_BYTES, LIGHT_PIXEL_BYTES, Method, Streams};
 
 /// Draw the picture that a scene's camera sees, by photon maps, by paths or by light tracing.
 ///
@@ -212,21 +211,10 @@ impl Render {
         }
         let made = on_threads(self.threads, || match self.with {
             With::Paths => self.repeat(&camera, |streams, stages, left, film| {
-                let within = scene.interior_at(camera.position());
-                let sample = |ray, stream: &mut _, work: &mut Report| {
-                    let (layers, rays) = path::layers(&scene, ray, None, within, stream);
-                    *work += Report { rays, work: stream.work, ..Report::default() };
-                    Sample::from(layers)
-                };
-                let more = |film: &mut Film, n, bar: &Bar| extend(film, &camera, n, streams, bar, sample);
-                Ok((self.fill(film, stages, left, "gathering", more)?, None))
+                Ok((self.fill(film, stages, left, &Method::Paths(&scene), (&camera, streams))?, None))
             }),
             With::Light => self.repeat(&camera, |streams, stages, left, film| {
-                let more = |film: &mut Film, n, bar: &Bar| {
-                    let count = extend_by_light(film, &scene, &camera, n, streams, bar)?;
-                    Ok(Report { rays: count.rays, work: count.work, ..Report::default() })
-                };
-                Ok((self.fill(film, stages, left, "photons", more)?, None))
+                Ok((self.fill(film, stages, left, &Method::Light(&scene), (&camera, streams))?, None))
             }),
             With::Photons => self.repeat(&camera, |streams, stages, left, film| {
                 let settings_of_maps =
@@ -249,27 +237,18 @@ impl Render {
                         .time(MAPS, || fill_part(&scene, &settings_of_maps, emitted, importance, part, &bar));
                     bar.finish();
                     let maps = maps?;
-                    let within = scene.interior_at(camera.position());
-                    let mapper = Mapper::new(&scene, &maps, &settings);
-                    let sample = |ray, stream: &mut _, work: &mut Report| {
-                        let (layers, report) = mapper.radiance(ray, None, within, stream);
-                        *work += report;
-                        work.work += stream.work;
-                        let photons = report.global.found + report.caustic.found + report.volume.found;
-                        Sample { layers, photons: photons as f64 }
-                    };
-                    let more = |film: &mut Film, n, bar: &Bar| extend(film, &camera, n, streams, bar, sample);
+                    let method = Method::Photons(Mapper::new(&scene, &maps, &settings));
                     made.add(&maps);
                     if streams.replicate == 0 && number + 1 == self.passes && !scene.plan().is_full {
                         tell_empty(&made.filled)?;
                         self.photons.tell_sparse(&made.filled)?;
                     }
                     if self.passes == 1 {
-                        work = self.fill(film, stages, left, "gathering", more)?;
+                        work = self.fill(film, stages, left, &method, (&camera, streams))?;
                         break;
                     }
                     let mut seen = Film::new(camera.width(), camera.height());
-                    work += self.fill(&mut seen, stages, left, "gathering", more)?;
+                    work += self.fill(&mut seen, stages, left, &method, (&camera, streams))?;
                     film.add_part(&seen, self.passes);
                 }
                 Ok((work, Some(made)))
@@ -377,19 +356,20 @@ impl Render {
         Ok(made)
     }
 
-    /// Fills a film with the samples asked for, or until the processor has worked so long; `more` adds some.
+    /// Fills a film with the samples asked for, or until the processor has worked so long.
     fn fill(
         &self,
         film: &mut Film,
         stages: &mut Stages,
         until: Option<f64>,
-        name: &'static str,
-        more: impl Fn(&mut Film, u64, &Bar) -> turbid::Result<Report>,
+        method: &Method<'_>,
+        (camera, streams): (&Camera, Streams),
     ) -> anyhow::Result<Report> {
         let pixels = film.pixels().len() as u64;
         let mut take = |film: &mut Film, samples: u64| {
+            let name = if matches!(method, Method::Light(_)) { "photons" } else { "gathering" };
             let bar = Bar::stage(name, samples.saturating_mul(pixels));
-            let work = stages.time("samples", || more(film, samples, &bar));
+            let work = stages.time("samples", || method.extend(film, camera, samples, streams, &bar));
             bar.finish();
             work
         };

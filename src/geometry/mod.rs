@@ -33,7 +33,7 @@ use std::sync::Arc;
 /// rational ratio: from places on a lattice it meets no edge and no corner of bodies with such coordinates. A ray that touches an
 /// edge meets a front and a back there, at once.
 pub(crate) const ASLANT: DVec3 =
-    DVec3::new(0.277_046_696_451_239_86, 0.489_632_103_568_690_86, 0.826_743_933_234_682_65);
+    DVec3::new(0.277_046_696_451_239_86, 0.489_632_103_568_690_86, 0.826_743_933_234_682_7);
 
 /// Where a ray meets a shape.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -4,6 +4,7 @@
 mod advise;
 mod film;
 mod light;
+mod method;
 mod paths;
 mod photons;
 mod render;
@@ -13,11 +14,12 @@ pub use crate::scene::{Camera, Filter, View};
 pub use advise::{Advice, MIN_MAPS, PathAdvice, Pilot, PilotSettings, path_advice};
 pub use film::{Film, Pixel, Sample};
 pub use light::{LIGHT_BYTES, LIGHT_PIXEL_BYTES, LightCount, by_light, extend_by_light};
+pub use method::Method;
 pub use paths::{PathSettings, by_paths, sample, sample_counted};
 pub use photons::{
     PhotonForecast, PhotonReadings, PhotonSettings, by_photons, by_photons_in_passes, forecast,
 };
-pub use render::{MAX_SAMPLES, Streams, extend, render};
+pub use render::{MAX_SAMPLES, Streams, extend};
 pub use view::{check_camera, colour, draw_photons};
 
 use crate::Spectrum;

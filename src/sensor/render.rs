@@ -25,32 +25,6 @@ pub struct Streams {
     pub replicate: u64,
 }
 
-/// A picture with so many samples a pixel. `sample` follows one ray; it is told nothing else.
-///
-/// # Errors
-/// `Error::NonFinite` if a sample was not finite; `Error::Cancelled`.
-pub fn render<S: Into<Sample>>(
-    camera: &Camera,
-    samples: u64,
-    streams: Streams,
-    progress: &dyn Progress,
-    sample: impl Fn(Ray, &mut Stream) -> S + Sync,
-) -> Result<Film> {
-    let mut film = Film::new(camera.width(), camera.height());
-    extend(&mut film, camera, samples, streams, progress, |ray, stream, _: &mut Nothing| {
-        sample(ray, stream)
-    })?;
-    Ok(film)
-}
-
-/// Nothing to count.
-#[derive(Default)]
-struct Nothing;
-
-impl AddAssign for Nothing {
-    fn add_assign(&mut self, _other: Nothing) {}
-}
-
 /// Adds so many samples to each pixel of a film, and returns what `sample` counted.
 ///
 /// A film of n samples has the same bits however many calls brought them, and on any number of threads. Counts are
@@ -167,6 +141,28 @@ mod tests {
     }
 
     const STREAMS: Streams = Streams { seed: 3, replicate: 1 };
+
+    /// Nothing to count.
+    #[derive(Default)]
+    struct Nothing;
+
+    impl AddAssign for Nothing {
+        fn add_assign(&mut self, _other: Nothing) {}
+    }
+
+    fn render(
+        camera: &Camera,
+        samples: u64,
+        streams: Streams,
+        progress: &dyn Progress,
+        sample: impl Fn(Ray, &mut Stream) -> Layers + Sync,
+    ) -> Result<Film> {
+        let mut film = Film::new(camera.width(), camera.height());
+        extend(&mut film, camera, samples, streams, progress, |ray, stream, _: &mut Nothing| {
+            sample(ray, stream)
+        })?;
+        Ok(film)
+    }
 
     fn noisy(ray: Ray, stream: &mut Stream) -> Layers {
         Layers { direct: Spectrum::grey(ray.dir.x + stream.unit()), ..Layers::ZERO }

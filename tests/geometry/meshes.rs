@@ -258,7 +258,7 @@ fn places_on_a_lattice_are_inside_or_outside() {
             places.clone().flat_map(move |j| places.clone().map(move |k| (at(i), at(j), at(k))))
         }) {
             let p = DVec3::new(x, y, z);
-            let (mesh, lathe) = (p.abs().element_sum() - 1.0, x.hypot(y) + z.abs() - 1.0);
+            let (mesh, lathe) = (p.abs().element_sum() - 1.0, libm::hypot(x, y) + z.abs() - 1.0);
             // Rounding decides of places on a face.
             assert!(mesh.abs() < 1e-9 || octahedron.contains(p) == (mesh < 0.0), "octahedron, {p}");
             assert!(lathe.abs() < 1e-9 || cones.contains(p) == (lathe < 0.0), "cones, {p}");

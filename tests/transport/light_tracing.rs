@@ -7,9 +7,9 @@ use crate::support::{scenes, verdict};
 use glam::DVec3;
 use turbid::Spectrum;
 use turbid::geometry::Shape;
-use turbid::integrators::{Layer, path};
-use turbid::scene::{Camera, Filter, Interior, Object, Parts, SURROUNDINGS, Scene, View};
-use turbid::sensor::{Film, Streams, by_light, render};
+use turbid::integrators::Layer;
+use turbid::scene::{Camera, Filter, Interior, Object, Parts, Scene, View};
+use turbid::sensor::{Film, Method, Streams, by_light};
 use turbid::stats::Moments;
 use turbid::surface::Surface;
 use turbid::transport::NoProgress;
@@ -64,11 +64,8 @@ fn compare(what: &str, paths: &[Film], photons: &[Film], layer: Layer, channel: 
 }
 
 fn by_paths(scene: &Scene, camera: &Camera, samples: u64) -> Vec<Film> {
-    let film = |replicate| {
-        render(camera, samples, Streams { seed: 1, replicate }, &NoProgress, |ray, stream| {
-            path::layers(scene, ray, None, SURROUNDINGS, stream).0
-        })
-    };
+    let film =
+        |replicate| Method::Paths(scene).render(camera, samples, Streams { seed: 1, replicate }, &NoProgress);
     (0..FILMS).map(|replicate| film(replicate).unwrap()).collect()
 }
 

@@ -20,10 +20,9 @@ use anyhow::{Context, Result};
 use cpu_time::ThreadTime;
 use peer::Peer;
 use std::io::Write;
-use turbid::integrators::path;
 use turbid::rng::{Purpose, Stream};
-use turbid::scene::{Camera, SURROUNDINGS, Scene};
-use turbid::sensor::{Film, Streams, render};
+use turbid::scene::{Camera, Scene};
+use turbid::sensor::{Film, Method, Streams};
 use turbid::transport::NoProgress;
 
 /// Width and height of the picture in pixels.
@@ -100,11 +99,7 @@ fn main() -> Result<()> {
 
 /// One round of the path tracer.
 fn by_paths(scene: &Scene, camera: &Camera, replicate: u64) -> Result<Round> {
-    timed(|| {
-        Ok(render(camera, SAMPLES, Streams { seed: 1, replicate }, &NoProgress, |ray, stream| {
-            path::layers(scene, ray, None, SURROUNDINGS, stream).0
-        })?)
-    })
+    timed(|| Ok(Method::Paths(scene).render(camera, SAMPLES, Streams { seed: 1, replicate }, &NoProgress)?))
 }
 
 /// A picture and its time, on one thread.

@@ -9,8 +9,8 @@ use turbid::integrators::mapper::{Mapper, Settings};
 use turbid::math::Positive;
 use turbid::photons::maps::{Amount, Indirect, MapSettings, fill};
 use turbid::rng::{Purpose, Stream};
-use turbid::scene::{Camera, SURROUNDINGS, Scene};
-use turbid::sensor::{Streams, render};
+use turbid::scene::{Camera, Scene};
+use turbid::sensor::{Method, Streams};
 use turbid::transport::NoProgress;
 use turbid_experiments::contest::{self, Maps, Paths};
 
@@ -56,10 +56,8 @@ fn by_map(
         let start = cpu_time::ThreadTime::now();
         let maps = fill(scene, &filling, &NoProgress)?;
         seconds = start.elapsed().as_secs_f64();
-        let mapper = Mapper::new(scene, &maps, &settings);
-        let film = render(camera, samples, Streams { seed: 1, replicate }, &NoProgress, |ray, stream| {
-            mapper.radiance(ray, None, SURROUNDINGS, stream).0
-        })?;
+        let photons = Method::Photons(Mapper::new(scene, &maps, &settings));
+        let film = photons.render(camera, samples, Streams { seed: 1, replicate }, &NoProgress)?;
         let variances = film.pixels().iter().filter_map(|pixel| Some(pixel.variance()?.mean()));
         noise = variances.sum::<f64>() / PIXELS;
         Ok(film)

@@ -12,14 +12,13 @@ use std::time::{Duration, Instant};
 use turbid::estimators::boundary::Treatment;
 use turbid::estimators::{Gather, Kernel};
 use turbid::integrators::mapper;
-use turbid::integrators::path::layers;
 use turbid::output::one_line;
 use turbid::photons::check_end;
 use turbid::photons::importance::{Importance, ImportanceSettings};
 use turbid::photons::maps::{Amount, Indirect, MapSettings, fill_steered};
 use turbid::scene::{Camera, Orders, Scene, SceneFile};
 use turbid::sensor::{
-    Film, PathSettings, PhotonSettings, Streams, by_light, by_paths, by_photons, check_camera, render,
+    Film, Method, PathSettings, PhotonSettings, Streams, by_light, by_paths, by_photons, check_camera,
 };
 use turbid::transport::NoProgress;
 
@@ -382,9 +381,7 @@ fn finite(film: &Film, place: &'static str) -> turbid::Result<()> {
 }
 
 fn paths(scene: &Scene, camera: &Camera) -> turbid::Result<()> {
-    let within = scene.interior_at(camera.position());
-    let film =
-        render(camera, 2, STREAMS, &NoProgress, |ray, stream| layers(scene, ray, None, within, stream).0)?;
+    let film = Method::Paths(scene).render(camera, 2, STREAMS, &NoProgress)?;
     finite(&film, "the film of paths")
 }
 
@@ -403,10 +400,8 @@ fn photons(scene: &Scene, camera: &Camera, indirect: Indirect, is_steered: bool)
         if is_steered { Some(Importance::of(scene, camera, indirect, &learned, &NoProgress)?) } else { None };
     let maps = fill_steered(scene, &maps, importance.as_ref(), &NoProgress)?;
     let settings = mapper::Settings { gather_rays: 2, ..mapper::Settings::for_scene(scene, 20)? };
-    let mapper = mapper::Mapper::new(scene, &maps, &settings);
-    let within = scene.interior_at(camera.position());
-    let film =
-        render(camera, 1, STREAMS, &NoProgress, |ray, stream| mapper.radiance(ray, None, within, stream).0)?;
+    let photons = Method::Photons(mapper::Mapper::new(scene, &maps, &settings));
+    let film = photons.render(camera, 1, STREAMS, &NoProgress)?;
     finite(&film, "the film of photons")
 }
 

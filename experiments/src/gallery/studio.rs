@@ -9,11 +9,11 @@ use crate::harness::Digest;
 use anyhow::{Context, anyhow};
 use cpu_time::ProcessTime;
 use std::path::Path;
-use turbid::integrators::{mapper, path};
+use turbid::integrators::mapper;
 use turbid::photons::PhotonMap;
 use turbid::photons::maps::{self, Maps};
 use turbid::scene::{Camera, Scene, SceneFile};
-use turbid::sensor::{Film, Streams, extend};
+use turbid::sensor::{Film, Method, Streams, extend};
 use turbid::transport::Progress;
 
 /// One picture's scene and camera, ready to be rendered.
@@ -122,21 +122,9 @@ impl<'a> Studio<'a> {
         let maps = self.maps(replicate, factor)?;
         let map_seconds = start.elapsed().as_secs_f64();
         let settings = recipe::reading(self.picture, factor)?;
-        let reader = mapper::Mapper::new(&self.scene, &maps, &settings);
-        let within = self.scene.interior_at(self.camera.position());
+        let method = Method::Photons(mapper::Mapper::new(&self.scene, &maps, &settings));
         let mut film = Film::new(self.camera.width(), self.camera.height());
-        let report = extend(
-            &mut film,
-            &self.camera,
-            samples,
-            self.streams(replicate),
-            progress,
-            |ray, stream, report: &mut mapper::Report| {
-                let (layers, work) = reader.radiance(ray, None, within, stream);
-                *report += work;
-                layers
-            },
-        )?;
+        let report = method.extend(&mut film, &self.camera, samples, self.streams(replicate), progress)?;
         let stored = |map: &Option<PhotonMap>| map.as_ref().map_or(0, |m| m.stored() as u64);
         let facts = Facts {
             words: self.photon_words(samples, replicate, factor),
@@ -207,18 +195,8 @@ impl<'a> Studio<'a> {
         replicate: u64,
         progress: &dyn Progress,
     ) -> anyhow::Result<()> {
-        let within = self.scene.interior_at(self.camera.position());
-        extend(
-            film,
-            &self.camera,
-            samples,
-            self.streams(replicate),
-            progress,
-            |ray, stream, n: &mut u64| {
-                *n += 1;
-                path::layers(&self.scene, ray, None, within, stream).0
-            },
-        )?;
+        let method = Method::Paths(&self.scene);
+        method.extend(film, &self.camera, samples, self.streams(replicate), progress)?;
         Ok(())
     }
 

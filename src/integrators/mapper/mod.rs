@@ -138,6 +138,11 @@ impl<'a> Mapper<'a> {
         Mapper { scene, maps, settings, walls, bodies, extents, size: scene_size(scene) }
     }
 
+    /// What it looks at.
+    pub fn scene(&self) -> &'a Scene {
+        self.scene
+    }
+
     /// One sample of the radiance that arrives at the origin of `ray` from ahead [W/(L^2 sr)], by class, and the work.
     ///
     /// # Arguments

@@ -1,0 +1,82 @@
+//! Who makes a picture: photon maps, paths or light tracing, behind one call.
+
+use super::film::{Film, Sample};
+use super::light::{LightCount, extend_by_light};
+use super::render::{Streams, extend};
+use crate::error::Result;
+use crate::integrators::mapper::{Mapper, Report};
+use crate::integrators::path;
+use crate::rng::Stream;
+use crate::scene::{Camera, Scene};
+use crate::transport::Progress;
+
+/// What makes pictures of a scene.
+#[derive(Debug)]
+pub enum Method<'a> {
+    /// The photon mapper, with maps that are filled.
+    Photons(Mapper<'a>),
+    /// The unbiased path tracer.
+    Paths(&'a Scene),
+    /// The unbiased light tracer: what the camera sees straight or through filters of light that scatters last on a diffuse
+    /// surface or in a medium.
+    Light(&'a Scene),
+}
+
+impl Method<'_> {
+    /// A picture with so many samples a pixel.
+    ///
+    /// # Errors
+    /// those of [`Method::extend`]
+    pub fn render(
+        &self,
+        camera: &Camera,
+        samples: u64,
+        streams: Streams,
+        progress: &dyn Progress,
+    ) -> Result<Film> {
+        let mut film = Film::new(camera.width(), camera.height());
+        self.extend(&mut film, camera, samples, streams, progress)?;
+        Ok(film)
+    }
+
+    /// Adds so many samples to each pixel of a film, and returns the work: of light tracing, histories a pixel and rays.
+    ///
+    /// A film of n samples has the same bits however many calls brought them, and on any number of threads.
+    ///
+    /// # Errors
+    /// those of [`extend`] and of [`extend_by_light`]
+    pub fn extend(
+        &self,
+        film: &mut Film,
+        camera: &Camera,
+        samples: u64,
+        streams: Streams,
+        progress: &dyn Progress,
+    ) -> Result<Report> {
+        match self {
+            Method::Photons(mapper) => {
+                let within = mapper.scene().interior_at(camera.position());
+                extend(film, camera, samples, streams, progress, |ray, stream: &mut Stream, work| {
+                    let (layers, report) = mapper.radiance(ray, None, within, stream);
+                    *work += report;
+                    *work += Report { work: stream.work, ..Report::default() };
+                    let photons = report.global.found + report.caustic.found + report.volume.found;
+                    Sample { layers, photons: photons as f64 }
+                })
+            }
+            Method::Paths(scene) => {
+                let within = scene.interior_at(camera.position());
+                extend(film, camera, samples, streams, progress, |ray, stream: &mut Stream, work| {
+                    let (layers, rays) = path::layers(scene, ray, None, within, stream);
+                    *work += Report { rays, work: stream.work, ..Report::default() };
+                    layers
+                })
+            }
+            Method::Light(scene) => {
+                let LightCount { rays, work } =
+                    extend_by_light(film, scene, camera, samples, streams, progress)?;
+                Ok(Report { rays, work, ..Report::default() })
+            }
+        }
+    }
+}
