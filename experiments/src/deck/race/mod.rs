@@ -12,10 +12,10 @@ use super::maps::filled;
 use crate::harness::{CellId, CellOutput, Settings};
 use anyhow::Context;
 use turbid::estimators::{Gather, Kernel};
-use turbid::integrators::March;
 use turbid::integrators::mapper::{self, Mapper};
 use turbid::integrators::path;
-use turbid::math::Positive;
+use turbid::integrators::{Layers, March};
+use turbid::math::{Positive, Ray};
 use turbid::photons::maps::Emitted;
 use turbid::rng::{Purpose, Stream};
 use turbid::scene::{Camera, Scene};
@@ -107,21 +107,12 @@ pub fn measure(settings: &Settings, cell: &CellId) -> anyhow::Result<CellOutput>
     }
     let (count, within) = (paths(settings), scene.interior_at(camera.position()));
     let mut rays = 0;
-    let mut pixels = Vec::new();
-    output.time("paths", |_| {
-        for pixel in 0..PIXELS {
-            let mut moments = Moments::new();
-            for i in 0..count {
-                let mut stream =
-                    Stream::new(settings.seed, Purpose::Paths, replicate, (pixel as u64) << 32 | i);
-                let (x, y) = place(pixel);
-                let ray = camera.sample(x, y, stream.pair());
-                let (layers, work) = path::layers(&scene, ray, None, within, &mut stream);
-                moments.push(grey(layers.total()));
-                rays += work.total();
-            }
-            pixels.push(moments);
-        }
+    let pixels = output.time("paths", |_| {
+        look(&camera, settings.seed, replicate, count, |ray, stream| {
+            let (layers, work) = path::layers(&scene, ray, None, within, stream);
+            rays += work.total();
+            layers
+        })
     });
     for (pixel, moments) in pixels.iter().enumerate() {
         output.push(path_pixel(pixel), "radiance", moments.mean());
@@ -131,6 +122,27 @@ pub fn measure(settings: &Settings, cell: &CellId) -> anyhow::Result<CellOutput>
     output.push(PATHS, "rays a sample", rays as f64 / all);
     output.push(PATHS, "samples", all);
     Ok(output)
+}
+
+/// So many samples of each pixel that is looked at.
+fn look(
+    camera: &Camera,
+    seed: u64,
+    replicate: u64,
+    count: u64,
+    mut see: impl FnMut(Ray, &mut Stream) -> Layers,
+) -> Vec<Moments> {
+    let pixel = |pixel: usize| {
+        let mut moments = Moments::new();
+        for i in 0..count {
+            let mut stream = Stream::new(seed, Purpose::Paths, replicate, (pixel as u64) << 32 | i);
+            let (x, y) = place(pixel);
+            let ray = camera.sample(x, y, stream.pair());
+            moments.push(grey(see(ray, &mut stream).total()));
+        }
+        moments
+    };
+    (0..PIXELS).map(pixel).collect()
 }
 
 fn mean_variance(pixels: &[Moments]) -> f64 {
@@ -165,20 +177,13 @@ fn by_map(
     let maps = output.time(&format!("fill {case}"), |_| filled(scene, emitted, None, seed, replicate))?;
     let (reading, within) = (eye(size.k)?, scene.interior_at(camera.position()));
     let eye = Mapper::new(scene, &maps, &reading);
-    let (mut pixels, mut report) = (Vec::new(), mapper::Report::default());
-    output.time(&format!("look {case}"), |_| {
-        for pixel in 0..PIXELS {
-            let mut moments = Moments::new();
-            for i in 0..count {
-                let mut stream = Stream::new(seed, Purpose::Paths, replicate, (pixel as u64) << 32 | i);
-                let (x, y) = place(pixel);
-                let ray = camera.sample(x, y, stream.pair());
-                let (layers, work) = eye.radiance(ray, None, within, &mut stream);
-                moments.push(grey(layers.total()));
-                report += work;
-            }
-            pixels.push(moments);
-        }
+    let mut report = mapper::Report::default();
+    let pixels = output.time(&format!("look {case}"), |_| {
+        look(camera, seed, replicate, count, |ray, stream| {
+            let (layers, work) = eye.radiance(ray, None, within, stream);
+            report += work;
+            layers
+        })
     });
     for (pixel, moments) in pixels.iter().enumerate() {
         output.push(size.pixel(pixel), "radiance", moments.mean());
