@@ -91,9 +91,10 @@ pub fn tell_gathers(
             ))?;
         } else if 2 * gathers.underfull > gathers.count {
             let part = 100.0 * gathers.underfull as f64 / gathers.count as f64;
+            let reach = gathers.underfull_radii / gathers.underfull as f64;
             // Curved bodies end sooner.
-            let (within, or) = match radius < 0.9 * cap {
-                true => (radius, ""),
+            let (within, or) = match reach < 0.9 * cap {
+                true => (reach, ""),
                 false => (cap, ", or a larger --max-radius"),
             };
             note(&format!(

@@ -13,10 +13,11 @@ use clap::ValueEnum;
 use cpu_time::ProcessTime;
 use std::ops::AddAssign;
 use std::path::PathBuf;
+use std::sync::OnceLock;
 use turbid::integrators::mapper::{Mapper, Report, Settings};
 use turbid::output::{Tone, auto_exposure, check_writable, is_same_file, one_line, write_exr, write_png};
-use turbid::photons::Part;
-use turbid::photons::maps::{Forecast, MapReport, Maps, fill_part};
+use turbid::photons::maps::{MapReport, Maps, fill_part};
+use turbid::photons::{Part, PhotonMap};
 use turbid::scene::Camera;
 use turbid::sensor::{Film, LIGHT_BYTES, LIGHT_PIXEL_BYTES, Method, Streams};
 
@@ -209,6 +210,7 @@ impl Render {
         if self.with == With::Photons && scene.plan().has_media {
             tell_step(&scene, &usual)?;
         }
+        let read = OnceLock::new();
         let made = on_threads(self.threads, || match self.with {
             With::Paths => self.repeat(&camera, |streams, stages, left, film| {
                 Ok((self.fill(film, stages, left, &Method::Paths(&scene), (&camera, streams))?, None))
@@ -223,13 +225,11 @@ impl Render {
                     stages.time("pilot", || self.photons.importance(&scene, &camera, &settings_of_maps))?;
                 let importance = importance.as_ref();
                 let fixed = (self.film_bytes(&camera), 0.0);
-                let Forecast { emitted, stored, .. } = stages.time("pilot", || {
+                let emitted = stages.time("pilot", || {
                     let held = Held { passes: self.passes, has_radius: self.reading.has_radius() };
                     self.photons.ahead(&scene, &settings_of_maps, importance, held, &self.memory, fixed)
                 })?;
-                let settings = self.reading.settings(&scene, stored)?;
                 let (mut work, mut made) = (Report::default(), MapsMade::default());
-                made.settings = Some(settings);
                 for number in 0..self.passes {
                     let part = Part { number, of: self.passes };
                     let bar = Bar::stage("emission", emitted.histories() / self.passes);
@@ -237,6 +237,15 @@ impl Render {
                         .time(MAPS, || fill_part(&scene, &settings_of_maps, emitted, importance, part, &bar));
                     bar.finish();
                     let maps = maps?;
+                    let stored = [&maps.global, &maps.caustic, &maps.volume];
+                    let stored = stored.map(|map| map.as_ref().map_or(0, PhotonMap::stored));
+                    // Every map is read as the first is.
+                    let settings = match read.get() {
+                        Some(settings) => *settings,
+                        None => self.reading.settings(&scene, stored)?,
+                    };
+                    let settings = *read.get_or_init(|| settings);
+                    made.settings = Some(settings);
                     let method = Method::Photons(Mapper::new(&scene, &maps, &settings));
                     made.add(&maps);
                     if streams.replicate == 0 && number + 1 == self.passes && !scene.plan().is_full {

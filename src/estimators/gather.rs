@@ -101,6 +101,16 @@ impl Gather {
         }
     }
 
+    /// The same gather of so many photons, at least 2; of a fixed radius, itself.
+    pub fn with_k(self, number: usize) -> Self {
+        let k = NeighborCount(number.max(2));
+        match self {
+            Gather::Radius(_) => self,
+            Gather::Nearest { max_radius, .. } => Gather::Nearest { k, max_radius },
+            Gather::NearestBiased { max_radius, .. } => Gather::NearestBiased { k, max_radius },
+        }
+    }
+
     /// [`Gather::nearest`] with the biased rule.
     ///
     /// # Errors

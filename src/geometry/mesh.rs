@@ -31,6 +31,8 @@ pub struct Mesh {
     rounding: f64,
     /// Whether it has an inside, once that has been asked.
     is_closed: OnceLock<bool>,
+    /// What it encloses [L^3], likewise.
+    volume: OnceLock<f64>,
 }
 
 impl PartialEq for Mesh {
@@ -138,7 +140,17 @@ impl Mesh {
                 sum
             })
             .collect();
-        Ok(Mesh { corners, uvs, tree, bounds, areas, dropped, rounding, is_closed: OnceLock::new() })
+        Ok(Mesh {
+            corners,
+            uvs,
+            tree,
+            bounds,
+            areas,
+            dropped,
+            rounding,
+            is_closed: OnceLock::new(),
+            volume: OnceLock::new(),
+        })
     }
 
     /// A mesh from a Wavefront OBJ file, each position where `place` puts it: `v`, `vt` and `f` are read, polygons are cut
@@ -297,7 +309,7 @@ impl Mesh {
     pub fn volume(&self) -> f64 {
         let middle = 0.5 * (self.bounds.0 + self.bounds.1);
         let pyramid = |[a, b, c]: &[DVec3; 3]| (a - middle).dot((b - middle).cross(c - middle)) / 6.0;
-        self.corners.iter().map(pyramid).sum()
+        *self.volume.get_or_init(|| self.corners.iter().map(pyramid).sum())
     }
 
     /// A uniform point of the surface, the outward normal there and the number of its triangle, from two numbers

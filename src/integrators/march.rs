@@ -187,6 +187,10 @@ pub(super) fn march(
         } else {
             length = longest;
         }
+        // Far from the ray's origin a step may be less than numbers tell apart.
+        if t + dx == t {
+            dx = rest;
+        }
         let step = match medium {
             Medium::Homogeneous(medium) => {
                 let how = (march.rule, march.is_jittered);
@@ -260,6 +264,10 @@ impl Placed {
             while channel < 2 && unit >= below + chances[channel] {
                 below += chances[channel];
                 channel += 1;
+            }
+            // Rounding may leave a number for a channel that has no chance.
+            if chances[channel] == 0.0 {
+                channel = if chances[0] > 0.0 { 0 } else { 1 };
             }
             let rest = ((unit - below) / chances[channel]).clamp(0.0, 1.0 - f64::EPSILON);
             let place = place_reaching(sigma_t[channel], dx, rest);

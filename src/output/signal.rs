@@ -13,7 +13,8 @@ pub fn end_on_signal(last_word: impl Fn() -> String + Send + 'static) {
         use std::io::Write;
         let heard = [SIGHUP, SIGINT, SIGTERM].into_iter().filter(|signal| !is_ignored(*signal));
         let Ok(mut signals) = signal_hook::iterator::Signals::new(heard) else { return };
-        std::thread::spawn(move || {
+        // Without a thread signals are heard no longer, and do what they did.
+        let _unheard = std::thread::Builder::new().spawn(move || {
             if signals.forever().next().is_some() {
                 let _unheard = writeln!(std::io::stderr().lock(), "{}", super::one_line(&last_word()));
                 std::process::exit(INTERRUPTED)
@@ -24,11 +25,13 @@ pub fn end_on_signal(last_word: impl Fn() -> String + Send + 'static) {
     drop(last_word);
 }
 
-/// Whether the program was started with a signal ignored, as far as the system tells.
+/// Whether the program was started with a signal ignored; where the system does not tell, a hangup.
 #[cfg(unix)]
 fn is_ignored(signal: i32) -> bool {
     let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
     let mask = status.lines().find_map(|line| line.strip_prefix("SigIgn:"));
-    let mask = mask.and_then(|mask| u64::from_str_radix(mask.trim(), 16).ok()).unwrap_or(0);
-    mask >> (signal - 1) & 1 == 1
+    match mask.and_then(|mask| u64::from_str_radix(mask.trim(), 16).ok()) {
+        Some(mask) => mask >> (signal - 1) & 1 == 1,
+        None => signal == signal_hook::consts::SIGHUP,
+    }
 }

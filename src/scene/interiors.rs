@@ -72,11 +72,11 @@ fn side_seen(parts: &Parts, p: DVec3, dir: DVec3, is_outside: bool) -> Option<us
         Some((object.shape.hit(&ray, None)?, &object.shape, dielectric))
     });
     let (hit, shape, dielectric) = boundaries.min_by(|(a, ..), (b, ..)| a.t.total_cmp(&b.t))?;
-    match is_outside && shape.is_closed() {
-        // Where the ray touches an edge, it may have met the back.
-        true => Some(dielectric.outside()),
-        false => Some(dielectric.sides(dir, hit.normal).0),
+    if is_outside && shape.is_closed() {
+        // Where the ray touches an edge, it may have met the back. Normals that point inwards enclose less than nothing.
+        return Some(if shape.volume() < 0.0 { dielectric.inside() } else { dielectric.outside() });
     }
+    Some(dielectric.sides(dir, hit.normal).0)
 }
 
 /// For each light the interior that it is in, where it is in one; none where that is to be asked point by point, as for a

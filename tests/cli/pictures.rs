@@ -272,21 +272,27 @@ fn statistics_of_a_picture_tell_its_work() {
 fn photons_of_an_estimate_follow_those_of_the_map() {
     let folder = Folder::new();
     let path = folder.0.path().join("out.exr");
-    let taken = |more: &[&str]| -> Vec<usize> {
+    // Photons of each map, and those of an estimate.
+    let taken = |more: &[&str]| -> Vec<[usize; 2]> {
         let common = ["render", "fogbox", "-o", text(&path), "--width", "4", "--samples", "1"];
         let said = succeeds(&[&common[..], more].concat());
         let lines = said.lines().filter(|line| line.contains(" photons stored of "));
-        lines
-            .map(|line| line.split(", the ").nth(1).unwrap().split(' ').next().unwrap().parse().unwrap())
-            .collect()
+        let number = |text: &str| text.split_whitespace().next().unwrap().parse().unwrap();
+        let numbers = |line: &str| [number(&line[15..]), number(line.split(", the ").nth(1).unwrap())];
+        lines.map(numbers).collect()
     };
-    let (surfaces, media) = (["--global", "70000"], ["--volume", "160000"]);
-    let seen = [&surfaces[..], &media, &["--gather-rays", "0"]].concat();
-    // Eight times as many as 20,000: 8^(4/7).
-    assert_eq!(taken(&seen), [100, 328]);
-    assert_eq!(taken(&["--global", "280000", "--volume", "2000", "--gather-rays", "0"]), [252, 100]);
-    assert_eq!(taken(&["--global", "280000", "--volume", "2000", "--gather-rays", "1"]), [100, 100]);
-    assert_eq!(taken(&[&seen[..], &["--k", "30", "--volume-k", "40"]].concat()), [30, 40]);
+    let many = ["--global", "280000", "--volume", "160000", "--gather-rays"];
+    let seen = taken(&[&many[..], &["0", "--maps", "2"]].concat());
+    for (index, (from, power)) in [(70_000.0, 2.0 / 3.0), (20_000.0, 4.0 / 7.0)].into_iter().enumerate() {
+        let [stored, k] = seen[index];
+        assert!((k as f64 - 100.0 * libm::pow(stored as f64 / from, power)).abs() <= 0.51, "{seen:?}");
+        // The second map is read as the first is.
+        assert!(seen[index + 2][1] == k && k > 200, "{seen:?}");
+    }
+    let k = |more: &[&str]| taken(more).iter().map(|numbers| numbers[1]).collect::<Vec<_>>();
+    assert_eq!(k(&["--global", "20000", "--volume", "2000", "--gather-rays", "0"]), [100, 100]);
+    assert_eq!(k(&[&many[..2], &["--volume", "2000", "--gather-rays", "1"]].concat()), [100, 100]);
+    assert_eq!(k(&[&many[..], &["0", "--k", "30", "--volume-k", "40"]].concat()), [30, 40]);
     assert!(
         succeeds(&[
             "render",

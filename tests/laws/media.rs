@@ -321,6 +321,36 @@ fn a_wall_ends_the_angles() {
     fog::a_wall_ends_the_angles();
 }
 
+/// A closed body whose normals point inwards has its inside where they point from: the same scene with both names exchanged.
+#[test]
+fn bodies_turned_inside_out_part_the_same_places() {
+    let corners = [DVec3::Y, DVec3::NEG_Y, DVec3::Z, DVec3::NEG_Z, DVec3::X, DVec3::NEG_X];
+    let half = [[0, 2, 4], [2, 1, 4], [1, 3, 4], [3, 0, 4]];
+    let faces: Vec<[u32; 3]> = half.into_iter().chain(half.map(|[a, b, _]| [b, a, 5])).collect();
+    let turned: Vec<[u32; 3]> = faces.iter().map(|[a, b, c]| [*a, *c, *b]).collect();
+    let mesh = |faces: &[[u32; 3]]| Shape::Mesh(Arc::new(Mesh::new(&corners, faces, None).unwrap()));
+    let profile = [DVec2::new(0.0, -1.0), DVec2::new(1.0, 0.0), DVec2::new(0.0, 1.0)];
+    let back = [profile[2], profile[1], profile[0]];
+    let lathe =
+        |profile: &[DVec2]| Shape::Lathe(Arc::new(Lathe::new(DVec3::ZERO, DVec3::Z, profile).unwrap()));
+    for (right, wrong) in [(mesh(&faces), mesh(&turned)), (lathe(&profile), lathe(&back))] {
+        let scene = |shape: Shape, inside: usize| {
+            let objects = vec![Object { shape, surface: dielectric(inside, 1 - inside) }];
+            let interiors = vec![
+                Interior::surroundings(),
+                filled("glass", 1.5, matter(Spectrum::ONE, Spectrum::ONE).into()),
+            ];
+            Scene::new(Parts { interiors, objects, ..Parts::default() }).unwrap()
+        };
+        let (one, other) = (scene(right, 1), scene(wrong, 0));
+        let mut stream = Stream::new(14, Purpose::Synthetic, 0, 0);
+        for _ in 0..20_000 {
+            let p = 3.0 * (2.0 * DVec3::from_array(stream.triple()) - 1.0);
+            assert_eq!(one.interior_at(p), other.interior_at(p), "{p}");
+        }
+    }
+}
+
 /// What fills a closed body, whatever its shape and however it is turned, sends out 4 pi times its emission and its volume: as the
 /// scene states it, and in photons.
 #[test]

@@ -298,6 +298,10 @@ fn every_shape_from_either_side() {
         for (moments, gather) in read(&specimen, true, 31).iter().zip(gathers()) {
             let what = format!("{}, {gather:?}", specimen.name);
             verdict::agrees(&what, moments, (1.0, LINES), 0.1, 31);
+            // With all photons in place of k 0.0025; with lines over a disc much larger than what is accepted 0.0075.
+            if specimen.name == "faceted ball" && gather.1.k() == Some(400) {
+                assert!(moments.std_error() < 0.005, "{}", moments.std_error());
+            }
         }
     }
 }

@@ -143,6 +143,21 @@ fn a_uniform_map() {
     }
 }
 
+/// Where a step is less than numbers tell apart, the rest is one step: the march ends.
+#[test]
+fn steps_far_from_the_origin_end() {
+    let medium = homogeneous(Spectrum::rgb(1e-9, 1.0, 5e8), Spectrum::ZERO, 0.0);
+    let ray = Ray::new(DVec3::ZERO, DVec3::X);
+    for (start, step) in [(1e7, 1e-10), (1e17, 0.05)] {
+        let step = Positive::new("the step", step).unwrap();
+        let march = March { is_jittered: true, ..March::equal(step, StepRule::Integrated) };
+        let span = Interval { start, end: start * (1.0 + 1e-12) };
+        let mut stream = Stream::new(1, Purpose::Synthetic, 0, 0);
+        let found = along(&medium, (&ray, span), &march, 1.0, &mut stream, |_| Spectrum::ONE);
+        assert!(found.is_finite() && found[0] > 0.0, "{found:?}");
+    }
+}
+
 /// Random places in steps of many mean free paths of one channel and few of another: a source e^(-b t) brings
 /// (1 - e^(-(s+b) L))/(s+b) in each channel, and no place counts more than what all of it reaches over the chance of its
 /// channel, a third where all matter alike; the first step is cut, so that there are two.

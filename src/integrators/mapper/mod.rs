@@ -48,6 +48,8 @@ pub struct Gathers {
     pub underfull: u64,
     /// Sum of their radii \[L\].
     pub radii: f64,
+    /// Sum of the radii of those that found fewer \[L\].
+    pub underfull_radii: f64,
     /// Photons found.
     pub found: u64,
     /// How many found photons on a surface of which no line found any: taken for dark.
@@ -59,6 +61,7 @@ impl Gathers {
         self.count += 1;
         self.underfull += u64::from(estimate.underfull);
         self.radii += estimate.radius;
+        self.underfull_radii += if estimate.underfull { estimate.radius } else { 0.0 };
         self.found += estimate.found as u64;
     }
 
@@ -73,6 +76,7 @@ impl AddAssign for Gathers {
         self.count += other.count;
         self.underfull += other.underfull;
         self.radii += other.radii;
+        self.underfull_radii += other.underfull_radii;
         self.found += other.found;
         self.unknown += other.unknown;
     }

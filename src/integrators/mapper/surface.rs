@@ -83,7 +83,7 @@ impl<'w> Diffuse<'w> {
         let (estimate, part) = loop {
             let mut estimate = irradiance(map, self.position, &place.tangent, kernel, gather);
             if estimate.underfull && estimate.found >= TELLING && !place.has_reach() {
-                gather = Gather::nearest(estimate.found, estimate.radius).unwrap_or(gather);
+                gather = gather.with_k(estimate.found).within(estimate.radius);
                 let nearer = irradiance(map, self.position, &place.tangent, kernel, gather);
                 estimate = Estimate { underfull: true, ..nearer };
             }
