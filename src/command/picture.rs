@@ -114,8 +114,9 @@ const LEAST_K: usize = 100;
 const MOST_K: f64 = 1000.0;
 
 /// Photons of a map from which on more than [`LEAST_K`] an estimate are better, and of what dimension their neighbourhoods are:
-/// the global map where the eye looks, the caustic and the volume map. In a smooth scene (fogbox) errors were least with two to
-/// four times as many as this gives, in one with a spot light, a checker and blocks with one to two times as many.
+/// the global map where the eye looks, the caustic and the volume map. Chosen by pictures against paths, at `--k` 10 to 800: in
+/// the smooth fogbox errors are least with two to four times as many as this gives, in a room with a spot light, a checker and
+/// blocks, where blur counts more, with one to two times as many.
 const BALANCED: [(f64, f64); 3] = [(70_000.0, 2.0), (50_000.0, 2.0), (20_000.0, 3.0)];
 
 /// Photons of an estimate that balance noise and blur in a map of so many.
@@ -382,9 +383,9 @@ impl Reading {
         [self.k, self.caustic_k.or(self.k), self.volume_k.or(self.k)]
     }
 
-    /// Settings of the mapper for a scene and the photons that its global, caustic and volume map hold.
-    pub fn settings(&self, scene: &Scene, stored: [usize; 3]) -> anyhow::Result<Settings> {
-        let mut settings = self.usual_settings(scene)?;
+    /// Settings that suit the photons that the global, the caustic and the volume map hold, from those of [`Reading::settings`].
+    pub fn suited(&self, settings: &Settings, stored: [usize; 3]) -> anyhow::Result<Settings> {
+        let mut settings = *settings;
         let maps = [&mut settings.global.1, &mut settings.caustic.1, &mut settings.volume.1];
         for (index, (gather, stored)) in maps.into_iter().zip(stored).enumerate() {
             let is_asked_for = self.radius.is_some() || self.nearest()[index].is_some();
@@ -397,8 +398,8 @@ impl Reading {
         Ok(settings)
     }
 
-    /// The same before the maps are known.
-    pub fn usual_settings(&self, scene: &Scene) -> anyhow::Result<Settings> {
+    /// Settings of the mapper for a scene whose maps are not known.
+    pub fn settings(&self, scene: &Scene) -> anyhow::Result<Settings> {
         let size = scene_size(scene);
         let gather = |k: Option<usize>| match self.radius {
             Some(radius) => Gather::radius(radius).context("--radius"),

@@ -13,7 +13,6 @@ use clap::ValueEnum;
 use cpu_time::ProcessTime;
 use std::ops::AddAssign;
 use std::path::PathBuf;
-use std::sync::OnceLock;
 use turbid::integrators::mapper::{Mapper, Report, Settings};
 use turbid::output::{Tone, auto_exposure, check_writable, is_same_file, one_line, write_exr, write_png};
 use turbid::photons::maps::{MapReport, Maps, fill_part};
@@ -196,7 +195,7 @@ impl Render {
         if is_same_file(&self.output, &png)? {
             bail!("--output {} and {} lead to one file", self.output.display(), png.display());
         }
-        let usual = self.reading.usual_settings(&scene)?;
+        let usual = self.reading.settings(&scene)?;
         if self.with == With::Light {
             note(&format!("the picture holds {}", self.with.holds()))?;
         }
@@ -210,7 +209,8 @@ impl Render {
         if self.with == With::Photons && scene.plan().has_media {
             tell_step(&scene, &usual)?;
         }
-        let read = OnceLock::new();
+        // Every map is read as the first is.
+        let mut read = None;
         let made = on_threads(self.threads, || match self.with {
             With::Paths => self.repeat(&camera, |streams, stages, left, film| {
                 Ok((self.fill(film, stages, left, &Method::Paths(&scene), (&camera, streams))?, None))
@@ -239,12 +239,10 @@ impl Render {
                     let maps = maps?;
                     let stored = [&maps.global, &maps.caustic, &maps.volume];
                     let stored = stored.map(|map| map.as_ref().map_or(0, PhotonMap::stored));
-                    // Every map is read as the first is.
-                    let settings = match read.get() {
-                        Some(settings) => *settings,
-                        None => self.reading.settings(&scene, stored)?,
+                    let settings = match read {
+                        Some(settings) => settings,
+                        None => *read.insert(self.reading.suited(&usual, stored)?),
                     };
-                    let settings = *read.get_or_init(|| settings);
                     made.settings = Some(settings);
                     let method = Method::Photons(Mapper::new(&scene, &maps, &settings));
                     made.add(&maps);
@@ -332,7 +330,12 @@ impl Render {
     fn repeat(
         &self,
         camera: &Camera,
-        one: impl Fn(Streams, &mut Stages, Option<f64>, &mut Film) -> anyhow::Result<(Report, Option<MapsMade>)>,
+        mut one: impl FnMut(
+            Streams,
+            &mut Stages,
+            Option<f64>,
+            &mut Film,
+        ) -> anyhow::Result<(Report, Option<MapsMade>)>,
     ) -> anyhow::Result<Made> {
         let blank = || Film::new(camera.width(), camera.height());
         let mut made = Made {

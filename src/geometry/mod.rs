@@ -31,8 +31,7 @@ use std::sync::Arc;
 
 /// Where rays look to tell inside from outside, a unit vector. Its components, as sqrt 2 - 1 to sqrt 3 - 1 to sqrt 5 - 1, are
 /// independent over the rationals: it lies in no lattice plane, so that from places on a lattice it meets no edge and no corner
-/// of bodies with such coordinates. A ray that touches an
-/// edge meets a front and a back there, at once.
+/// of bodies with such coordinates. A ray that touches an edge meets a front and a back there, at once.
 pub(crate) const ASLANT: DVec3 =
     DVec3::new(0.277_046_696_451_239_86, 0.489_632_103_568_690_86, 0.826_743_933_234_682_7);
 

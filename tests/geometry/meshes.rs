@@ -1,6 +1,7 @@
 //! Meshes: against exact shapes and brute force, without gaps, at all sizes.
 
 use crate::solids::{crossings, cube, direction, icosphere, mesh, point, stream};
+use crate::support::scenes::octahedron;
 use crate::support::verdict;
 use glam::{DVec2, DVec3};
 use std::f64::consts::{PI, TAU};
@@ -243,21 +244,17 @@ fn stream_points(block: &Mesh) -> f64 {
 /// cone, whose edges and tips lie where rays in directions of rational ratios meet them.
 #[test]
 fn places_on_a_lattice_are_inside_or_outside() {
-    let corners = [DVec3::Y, DVec3::NEG_Y, DVec3::Z, DVec3::NEG_Z, DVec3::X, DVec3::NEG_X];
-    let half = [[0, 2, 4], [2, 1, 4], [1, 3, 4], [3, 0, 4]];
-    let faces: Vec<[u32; 3]> = half.into_iter().chain(half.map(|[a, b, _]| [b, a, 5])).collect();
+    let (corners, faces) = octahedron();
     let octahedron = Mesh::new(&corners, &faces, None).unwrap();
     assert!(octahedron.is_closed() && octahedron.volume() > 0.0);
     let profile = [DVec2::new(0.0, -1.0), DVec2::new(1.0, 0.0), DVec2::new(0.0, 1.0)];
     let cones = Lathe::new(DVec3::ZERO, DVec3::Z, &profile).unwrap();
     for parts in [16, 25, 26] {
-        let at = |i: i32| (f64::from(i) + 0.5) / f64::from(parts);
-        let places = -2 * parts..2 * parts;
-        for (x, y, z) in places.clone().flat_map(|i| {
-            let places = places.clone();
-            places.clone().flat_map(move |j| places.clone().map(move |k| (at(i), at(j), at(k))))
-        }) {
-            let p = DVec3::new(x, y, z);
+        let at = |i: i32| (f64::from(i) + 0.5) / f64::from(parts) - 2.0;
+        let side = 4 * parts;
+        for place in 0..side * side * side {
+            let (i, j, k) = (place / (side * side), place / side % side, place % side);
+            let p @ DVec3 { x, y, z } = DVec3::new(at(i), at(j), at(k));
             let (mesh, lathe) = (p.abs().element_sum() - 1.0, libm::hypot(x, y) + z.abs() - 1.0);
             // Rounding decides of places on a face.
             assert!(mesh.abs() < 1e-9 || octahedron.contains(p) == (mesh < 0.0), "octahedron, {p}");

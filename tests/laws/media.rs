@@ -8,7 +8,8 @@ use crate::common::config as properties;
 use crate::support::quadrature::integrate;
 use crate::support::run::{histories, numbers, paths, tallies};
 use crate::support::scenes::{
-    CELL, bounded, cuboid, dielectric, filled, layer, outflow, point_light, region, sphere, transmittance,
+    CELL, bounded, cuboid, dielectric, filled, layer, octahedron, outflow, point_light, region, sphere,
+    transmittance,
 };
 use crate::support::{unit_vector, verdict};
 use glam::{DVec2, DVec3};
@@ -324,10 +325,8 @@ fn a_wall_ends_the_angles() {
 /// A closed body whose normals point inwards has its inside where they point from: the same scene with both names exchanged.
 #[test]
 fn bodies_turned_inside_out_part_the_same_places() {
-    let corners = [DVec3::Y, DVec3::NEG_Y, DVec3::Z, DVec3::NEG_Z, DVec3::X, DVec3::NEG_X];
-    let half = [[0, 2, 4], [2, 1, 4], [1, 3, 4], [3, 0, 4]];
-    let faces: Vec<[u32; 3]> = half.into_iter().chain(half.map(|[a, b, _]| [b, a, 5])).collect();
-    let turned: Vec<[u32; 3]> = faces.iter().map(|[a, b, c]| [*a, *c, *b]).collect();
+    let (corners, faces) = octahedron();
+    let turned = faces.map(|[a, b, c]| [a, c, b]);
     let mesh = |faces: &[[u32; 3]]| Shape::Mesh(Arc::new(Mesh::new(&corners, faces, None).unwrap()));
     let profile = [DVec2::new(0.0, -1.0), DVec2::new(1.0, 0.0), DVec2::new(0.0, 1.0)];
     let back = [profile[2], profile[1], profile[0]];
@@ -377,10 +376,8 @@ fn filled_bodies_emit_by_their_volume() {
         shapes.push(Shape::Mesh(Arc::new(Mesh::new(&corners, &faces, None).unwrap())));
     }
     // Of places on a lattice many see an edge of this one in directions of rational ratios.
-    let corners =
-        [DVec3::Y, DVec3::NEG_Y, DVec3::Z, DVec3::NEG_Z, DVec3::X, DVec3::NEG_X].map(|p| at + 0.5 * p);
-    let half = [[0, 2, 4], [2, 1, 4], [1, 3, 4], [3, 0, 4]];
-    let faces: Vec<[u32; 3]> = half.into_iter().chain(half.map(|[a, b, _]| [b, a, 5])).collect();
+    let (corners, faces) = octahedron();
+    let corners = corners.map(|p| at + 0.5 * p);
     shapes.push(Shape::Mesh(Arc::new(Mesh::new(&corners, &faces, None).unwrap())));
     for (i, shape) in shapes.into_iter().enumerate() {
         let glow = matter(Spectrum::ONE, Spectrum::rgb(1.0, 2.0, 0.5));

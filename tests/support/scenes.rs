@@ -38,6 +38,13 @@ pub fn sphere(center: DVec3, radius: f64) -> Shape {
     Shape::Sphere(Sphere::new(center, radius).unwrap())
 }
 
+/// Corners and triangles of an octahedron with its corners on the axes at a distance of 1, normals outwards.
+pub fn octahedron() -> ([DVec3; 6], [[u32; 3]; 8]) {
+    let corners = [DVec3::Y, DVec3::NEG_Y, DVec3::Z, DVec3::NEG_Z, DVec3::X, DVec3::NEG_X];
+    let faces = [[0, 2, 4], [2, 1, 4], [1, 3, 4], [3, 0, 4], [2, 0, 5], [1, 2, 5], [3, 1, 5], [0, 3, 5]];
+    (corners, faces)
+}
+
 pub fn cuboid(min: DVec3, max: DVec3) -> Shape {
     Shape::Cuboid(Cuboid::new(min, max).unwrap())
 }

@@ -34,11 +34,7 @@ pub fn reading(picture: &Picture, factor: u64) -> turbid::Result<mapper::Setting
 /// The arguments of `turbid` that render a picture as EXR: the very numbers of the one that is shown.
 pub fn arguments(picture: &Picture, seed: u64) -> anyhow::Result<Vec<String>> {
     let settings = reading(picture, 1)?;
-    let amount = |amount: Amount| match amount {
-        Amount::Stored(n) => n.to_string(),
-        Amount::Emitted(n) => format!("emit:{n}"),
-    };
-    let [global, caustic, volume] = picture.photons.map(amount);
+    let [global, caustic, volume] = picture.photons.map(|amount| amount.to_string());
     let [k, caustic_k, volume_k] = picture.nearest.map(|k| k.to_string());
     let mut arguments: Vec<String> =
         ["render", &format!("experiments/scenes/{}.toml", picture.name)].map(str::to_string).into();
