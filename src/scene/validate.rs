@@ -1,7 +1,7 @@
 //! Checks on the parts of a scene together. Each part has checked its own numbers when it was made.
 
 use super::interiors::dielectrics;
-use super::{Camera, Object, Parts, Quantity, Scene, coincident, interiors};
+use super::{Camera, Parts, Quantity, Scene, coincident, interiors};
 use crate::Spectrum;
 use crate::error::{Error, Result};
 use crate::geometry::{Face, Shape, Slab};
@@ -253,7 +253,7 @@ fn around(slabs: &[Slab], refracting: &[Slab]) -> Result<Slab> {
     Slab::new(top - 0.5 * thickness, 2.0 * thickness)
 }
 
-/// Light that starts or is measured on the very surface that refracts it could be on either side.
+/// Light that starts or is measured on the very surface that it meets, or that refracts it, could be on either side.
 fn check_apart(parts: &Parts) -> Result<()> {
     for light in &parts.lights {
         if let Light::Isotropic(isotropic) = light
@@ -284,14 +284,20 @@ fn check_apart(parts: &Parts) -> Result<()> {
     let apexes = lights.filter_map(|(i, light)| Some((format!("lights[{i}]"), light.apex()?)));
     let camera = parts.camera.iter().map(|camera| ("the camera".to_string(), camera.position()));
     for (name, p) in sensors.chain(apexes).chain(camera) {
-        let nearest = |shape: &Shape| {
+        let is_on = |shape: &Shape| {
             let size = p.abs().max_element().max(shape.bounds().map_or(0.0, |(_, radius)| radius));
             shape.distance(p, f64::INFINITY) <= ON_RAY * size
         };
-        let is_met = |o: &Object| matches!(o.surface, Surface::Dielectric(_)) && nearest(&o.shape);
-        if let Some(object) = parts.objects.iter().position(is_met) {
+        let objects =
+            parts.objects.iter().enumerate().map(|(i, object)| (format!("objects[{i}]"), &object.shape));
+        let lamps = parts
+            .lights
+            .iter()
+            .enumerate()
+            .filter_map(|(i, light)| Some((format!("lights[{i}]"), light.body()?)));
+        if let Some((body, _)) = objects.chain(lamps).find(|(_, shape)| is_on(shape)) {
             return refuse(format!(
-                "{name} is on the surface of objects[{object}], which parts two interiors, and could be in either; allowed: a place off that surface"
+                "{name} is on the surface of {body}, where rounding decides on which side it is; move one of them, if only by a millionth of its size"
             ));
         }
     }

@@ -93,7 +93,7 @@ fn what_is_unusual_and_right() {
          surface = { dielectric = { inside = \"milk\" } }\n\
          [[lights]]\nisotropic = { shape = { sphere = { center = [0, 0, 0], radius = 3 } }, radiance = 1, faces = \"both\" }\n",
     );
-    let on = "is on the surface of objects[0], which parts two interiors, and could be in either; allowed: ";
+    let on = "is on the surface of objects[0], where rounding decides on which side it is; move one of them";
     refuses_naming(&["check", text(&ball)], &["ball.toml: the camera ", on]);
     // Off it by a billionth, to both sides, wherever the camera looks.
     let picture = folder.0.path().join("ball.exr");
@@ -115,6 +115,32 @@ fn what_is_unusual_and_right() {
         let scene = std::fs::read_to_string(&ball).unwrap().replace("[0, 0, 1]", "[0, 0, 2]");
         let scene = folder.file("part.toml", &(scene + part));
         refuses_naming(&["check", text(&scene)], &["part.toml: ", on]);
+    }
+    // On a wall, and on a lamp: a shadow ray from below the lamp met its face before the light in it, or not.
+    let room = "[[objects]]\nshape = { cuboid = { min = [-1, -1, -1], max = [1, 1, 1] } }\n\
+                surface = { lambertian = { reflectance = 0.5 } }\n\
+                [[lights]]\narea = { radiance = 1, shape = { cuboid = { min = [-0.1, 0.1, -0.1], max = [0.1, 0.3, 0.1] } } }\n";
+    for (part, body) in [
+        (
+            "[[lights]]\nspot = { position = [0.05, 0.1, 0], dir = [1, -0.6, 0], full_angle = 29, edge_angle = 50, power = 1 }\n",
+            "lights[1] is on the surface of lights[0]",
+        ),
+        (
+            "[[lights]]\npoint = { position = [0.05, 1, 0], power = 1 }\n",
+            "lights[1] is on the surface of objects[0]",
+        ),
+        (
+            "[camera]\nposition = [0, -1, 0.2]\nlook_at = [0, 0, 0]\nfov = 50\nwidth = 4\nheight = 4\n",
+            "the camera is on the surface of objects[0]",
+        ),
+    ] {
+        let scene = folder.file("room.toml", &(room.to_string() + part));
+        refuses_naming(&["check", text(&scene)], &["room.toml: ", body, "; move one of them"]);
+        let apart = part
+            .replace("0.1, 0]", "0.0999999, 0]")
+            .replace("1, 0]", "0.999999, 0]")
+            .replace("-1, 0.2]", "-0.999999, 0.2]");
+        succeeds(&["check", text(&folder.file("apart.toml", &(room.to_string() + &apart)))]);
     }
 }
 
