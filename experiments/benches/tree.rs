@@ -15,7 +15,8 @@ use std::hint::black_box;
 use std::io::Write;
 use std::num::NonZero;
 use turbid::Spectrum;
-use turbid::estimators::{Gather, Kernel, count_within, in_scattered};
+use turbid::estimators::boundary::Boundary;
+use turbid::estimators::{Estimator, Gather, Kernel, count_within};
 use turbid::math::{Asymmetry, FOUR_PI, warp};
 use turbid::phase::HenyeyGreenstein;
 use turbid::photons::{Flags, Photon, PhotonMap, PhotonTree};
@@ -162,7 +163,8 @@ impl Scatter {
 }
 
 fn scattered(map: &PhotonMap, q: &DVec3, phase: &HenyeyGreenstein, gather: Gather) -> Spectrum {
-    in_scattered(map, *q, DVec3::Z, phase, Spectrum::ONE, Kernel::Uniform, gather).value
+    let estimator = Estimator::new(Kernel::Uniform, gather);
+    estimator.in_scattered(map, *q, DVec3::Z, phase, Spectrum::ONE, &Boundary::UNKNOWN).value
 }
 
 /// The radius that holds 75 photons on average, over the queries that meet light.

@@ -4,10 +4,10 @@ use super::load::Source;
 use super::memory::{Memory, passes_that_fit, rounded_down};
 use super::picture::BoundaryName;
 use super::progress::Bar;
-use super::{FormatName, KernelName, note, on_threads, parse_count, tell_ahead};
+use super::{FormatName, kernels, note, on_threads, parse_count, tell_ahead};
 use anyhow::{Context, bail};
 use clap::ValueEnum;
-use turbid::estimators::Gather;
+use turbid::estimators::{Estimator, Gather, Kernel};
 use turbid::output::{print, write_rows};
 use turbid::scene::{Orders, Scene};
 use turbid::sensor::{
@@ -53,8 +53,8 @@ pub struct Measure {
     #[arg(long, conflicts_with = "radius")]
     max_radius: Option<f64>,
     /// How an estimate weights its photons.
-    #[arg(long, value_enum, default_value = "uniform")]
-    kernel: KernelName,
+    #[arg(long, value_parser = kernels(), default_value = "uniform")]
+    kernel: Kernel,
     /// What an estimate does where a medium ends or a body stands in its ball.
     #[arg(long, value_enum, default_value = "clipped")]
     boundary: BoundaryName,
@@ -139,9 +139,7 @@ impl Measure {
             maps: self.maps,
             seed: self.seed,
             orders: self.orders,
-            gather,
-            kernel: self.kernel.kernel(),
-            treatment: self.boundary.treatment(),
+            estimator: Estimator::new(self.kernel, gather).treated(self.boundary.treatment()),
         };
         if self.passes > 1 && self.radius.is_none() {
             bail!(

@@ -17,6 +17,7 @@ mod usage;
 pub use usage::explain;
 
 use anyhow::Context;
+use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::{Subcommand, ValueEnum};
 use std::io::{ErrorKind, Write};
 use std::process::ExitCode;
@@ -87,26 +88,10 @@ impl FormatName {
     }
 }
 
-/// Kernels, as the command line calls them.
-#[derive(Clone, Copy, ValueEnum)]
-enum KernelName {
-    Uniform,
-    Epanechnikov,
-    Cone,
-    Biweight,
-    Gaussian,
-}
-
-impl KernelName {
-    fn kernel(self) -> Kernel {
-        match self {
-            KernelName::Uniform => Kernel::Uniform,
-            KernelName::Epanechnikov => Kernel::Epanechnikov,
-            KernelName::Cone => Kernel::Cone,
-            KernelName::Biweight => Kernel::Biweight,
-            KernelName::Gaussian => Kernel::Gaussian,
-        }
-    }
+/// Kernels by their names.
+fn kernels() -> impl TypedValueParser<Value = Kernel> {
+    let names = PossibleValuesParser::new(Kernel::ALL.map(Kernel::name));
+    names.try_map(|name| Kernel::named(&name).ok_or("no kernel of this name"))
 }
 
 /// Runs something on its own pool of threads: all cores unless a number is given.

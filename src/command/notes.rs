@@ -78,7 +78,7 @@ pub fn tell_gathers(
             ("the smallest diffuse body", body),
             f64::INFINITY,
         ),
-        ("volume", &work.volume, settings.volume.1.cap(), ("the smallest medium", medium), path),
+        ("volume", &work.volume, settings.volume.gather.cap(), ("the smallest medium", medium), path),
     ];
     for (((name, gathers, cap, (what, extent), path), stored), k) in
         maps.into_iter().zip(stored).zip(settings.nearest())

@@ -3,11 +3,11 @@
 use super::memory::{Memory, passes_that_fit, rounded_down};
 use super::progress::Bar;
 use super::render::Filled;
-use super::{KernelName, note, parse_count, tell_ahead};
+use super::{kernels, note, parse_count, tell_ahead};
 use anyhow::{Context, anyhow};
 use clap::ValueEnum;
-use turbid::estimators::Gather;
 use turbid::estimators::boundary::{Rejection, Treatment};
+use turbid::estimators::{Estimator, Gather, Kernel};
 use turbid::integrators::mapper::{Settings, scene_size};
 use turbid::integrators::{Adaptive, StepRule};
 use turbid::math::Positive;
@@ -269,11 +269,11 @@ pub struct Reading {
     #[arg(long, conflicts_with = "radius")]
     max_radius: Option<f64>,
     /// How estimates from the global and the volume map weight their photons.
-    #[arg(long, value_enum, default_value = "uniform")]
-    kernel: KernelName,
+    #[arg(long, value_parser = kernels(), default_value = "uniform")]
+    kernel: Kernel,
     /// The same for the caustic map.
-    #[arg(long, value_enum, default_value = "cone")]
-    caustic_kernel: KernelName,
+    #[arg(long, value_parser = kernels(), default_value = "cone")]
+    caustic_kernel: Kernel,
     /// Rays of a final gathering at each surface that is seen; 0 reads the global map there itself: fast, and blotchy.
     #[arg(long, default_value_t = 64, value_parser = clap::value_parser!(u32).range(0..=1_000_000))]
     gather_rays: u32,
@@ -386,7 +386,7 @@ impl Reading {
     /// Settings that suit the photons that the global, the caustic and the volume map hold, from those of [`Reading::settings`].
     pub fn suited(&self, settings: &Settings, stored: [usize; 3]) -> anyhow::Result<Settings> {
         let mut settings = *settings;
-        let maps = [&mut settings.global.1, &mut settings.caustic.1, &mut settings.volume.1];
+        let maps = [&mut settings.global.1, &mut settings.caustic.1, &mut settings.volume.gather];
         for (index, (gather, stored)) in maps.into_iter().zip(stored).enumerate() {
             let is_asked_for = self.radius.is_some() || self.nearest()[index].is_some();
             // A final gathering is the mean over many places.
@@ -417,10 +417,17 @@ impl Reading {
             return Err(anyhow!("--adapt is {}; allowed: finite and at least 0", self.adapt));
         }
         let mut settings = Settings::for_scene(scene, LEAST_K)?;
-        let kernel = self.kernel.kernel();
-        settings.global = (kernel, surface);
-        settings.caustic = (self.caustic_kernel.kernel(), caustic);
-        settings.volume = (kernel, volume);
+        settings.global = (self.kernel, surface);
+        settings.caustic = (self.caustic_kernel, caustic);
+        let rejection = match self.reject {
+            RejectName::Off => Rejection::Off,
+            RejectName::Facing => Rejection::Facing,
+            RejectName::FacingBehind => Rejection::FacingBehind,
+            RejectName::BehindPlane => Rejection::BehindPlane,
+            RejectName::Visible => Rejection::Visible,
+        };
+        let volume = Estimator::new(self.kernel, volume);
+        settings.volume = volume.treated(self.boundary.treatment()).rejecting(rejection);
         settings.gather_rays = self.gather_rays.max(1);
         settings.near = self.near;
         settings.clips_discs = self.edges == EdgesName::Clipped;
@@ -441,14 +448,6 @@ impl Reading {
         settings.march.is_jittered = !self.no_jitter;
         let shortest = Positive::new("the shortest step", 0.25 * settings.march.step.get())?;
         settings.march.adaptive = (self.adapt > 0.0).then_some(Adaptive { tolerance: self.adapt, shortest });
-        settings.treatment = self.boundary.treatment();
-        settings.rejection = match self.reject {
-            RejectName::Off => Rejection::Off,
-            RejectName::Facing => Rejection::Facing,
-            RejectName::FacingBehind => Rejection::FacingBehind,
-            RejectName::BehindPlane => Rejection::BehindPlane,
-            RejectName::Visible => Rejection::Visible,
-        };
         Ok(settings)
     }
 }

@@ -67,21 +67,6 @@ fn triangle(kernel: Kernel, a: f64, b: f64) -> f64 {
     a * height * sum + wedge(beyond)
 }
 
-impl Kernel {
-    /// The integral of K over a wedge of one radian out to sqrt(w), over w.
-    fn wedge(self, w: f64) -> f64 {
-        self.disc_peak()
-            * match self {
-                Kernel::Uniform => 0.5,
-                Kernel::Epanechnikov => 0.5 - 0.25 * w,
-                Kernel::Cone => 0.5 - w.sqrt() / 3.0,
-                Kernel::Biweight => 0.5 - w * (0.5 - w / 6.0),
-                Kernel::Gaussian if w == 0.0 => 0.5,
-                Kernel::Gaussian => -crate::math::exp_m1(-4.5 * w) / (9.0 * w),
-            }
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;

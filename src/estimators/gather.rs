@@ -5,6 +5,9 @@ use super::kernel::UNIT_BALL;
 use crate::error::{Error, Result};
 use crate::faults::{Fault, planted};
 use crate::math::{Positive, exp};
+use crate::photons::tree::Counted;
+use std::f64::consts::PI;
+use std::fmt;
 
 /// The k of a k-nearest gather: at least 2, since k-1 photons are summed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -23,7 +26,7 @@ impl NeighborCount {
     }
 
     /// k - 2: the volume of the k nearest has E(1/V^2) = 1/((k-1)(k-2)), infinite for k = 2.
-    pub(super) fn freedom(self) -> f64 {
+    fn freedom(self) -> f64 {
         self.0 as f64 - if planted(Fault::FreedomOfThree) { 1.0 } else { 2.0 }
     }
 }
@@ -72,20 +75,23 @@ impl Gather {
         Ok(Gather::Nearest { k: NeighborCount::new(k)?, max_radius })
     }
 
+    /// Which photon sets the radius, if one does; the farthest that photons are taken from \[L\]; which of them count.
+    pub(super) fn rule(self) -> (Option<NeighborCount>, f64, Counted) {
+        match self {
+            Gather::Radius(radius) => (None, radius.get(), Counted::BelowKth),
+            Gather::Nearest { k, max_radius } => (Some(k), max_radius.get(), Counted::BelowKth),
+            Gather::NearestBiased { k, max_radius } => (Some(k), max_radius.get(), Counted::UpToKth),
+        }
+    }
+
     /// Which photon sets the radius; none where it is fixed.
     pub fn k(self) -> Option<usize> {
-        match self {
-            Gather::Radius(_) => None,
-            Gather::Nearest { k, .. } | Gather::NearestBiased { k, .. } => Some(k.get()),
-        }
+        self.rule().0.map(NeighborCount::get)
     }
 
     /// The farthest that a photon may be taken from \[L\].
     pub fn cap(self) -> f64 {
-        match self {
-            Gather::Radius(radius) => radius.get(),
-            Gather::Nearest { max_radius, .. } | Gather::NearestBiased { max_radius, .. } => max_radius.get(),
-        }
+        self.rule().1
     }
 
     /// The same gather, reaching no farther than `limit`, finite or not and above zero \[L\].
@@ -126,15 +132,19 @@ impl Gather {
     /// photons per volume, and not E(r_k^2): the estimate carries 1/r_k^3, which favours small radii. The cap
     /// is left out.
     pub fn effective_squared_radius(self, photons_per_volume: f64) -> f64 {
-        match self {
-            Gather::Radius(radius) => radius.get() * radius.get(),
-            Gather::Nearest { k, .. } | Gather::NearestBiased { k, .. } => {
-                let below = k.get() as f64 - 1.0;
-                let one_photon = libm::cbrt(1.0 / (photons_per_volume * UNIT_BALL));
-                let ratio = exp(libm::lgamma(below + 2.0 / 3.0) - libm::lgamma(below));
-                one_photon * one_photon * ratio
-            }
-        }
+        let (k, cap, _) = self.rule();
+        let Some(k) = k else { return cap * cap };
+        let below = k.get() as f64 - 1.0;
+        let one_photon = libm::cbrt(1.0 / (photons_per_volume * UNIT_BALL));
+        let ratio = exp(libm::lgamma(below + 2.0 / 3.0) - libm::lgamma(below));
+        one_photon * one_photon * ratio
+    }
+
+    /// The same on a plane, for the disc: E(r_{k-1}^2) = (k-1)/(pi n) for the k-nearest rule, n the photons per area.
+    pub fn effective_squared_disc(self, photons_per_area: f64) -> f64 {
+        let (k, cap, _) = self.rule();
+        let Some(k) = k else { return cap * cap };
+        (k.get() as f64 - 1.0) / (PI * photons_per_area)
     }
 
     /// Bias expected of an estimate of a field from independent photons, to second order in the radius.
@@ -146,9 +156,28 @@ impl Gather {
     /// # Returns   in the unit of the field
     pub fn expected_bias(self, kernel: Kernel, field: f64, laplacian: f64, photons_per_volume: f64) -> f64 {
         let blur = kernel.m2() / 6.0 * self.effective_squared_radius(photons_per_volume) * laplacian;
+        self.with_last(blur, field, ball_edge(kernel))
+    }
+
+    /// Bias expected of an irradiance on a plane, to second order in the radius: (m2/4) r^2 laplacian, and of the
+    /// biased rule the k-th photon's own weight.
+    ///
+    /// # Arguments `field` and its `laplacian` (per L^2) along the plane; `photons_per_area` [1/L^2], stored
+    pub fn expected_disc_bias(
+        self,
+        kernel: Kernel,
+        field: f64,
+        laplacian: f64,
+        photons_per_area: f64,
+    ) -> f64 {
+        let blur = kernel.disc_m2() / 4.0 * self.effective_squared_disc(photons_per_area) * laplacian;
+        self.with_last(blur, field, disc_edge(kernel))
+    }
+
+    fn with_last(self, blur: f64, field: f64, edge: f64) -> f64 {
         match self {
-            Gather::NearestBiased { k, .. } => blur + field * edge(kernel) / (k.get() as f64 - 1.0),
-            _ => blur,
+            Gather::NearestBiased { k, .. } => blur + field * edge / (k.get() as f64 - 1.0),
+            Gather::Radius(_) | Gather::Nearest { .. } => blur,
         }
     }
 
@@ -169,14 +198,25 @@ impl Gather {
         power_ratio: f64,
     ) -> f64 {
         let roughness = power_ratio * kernel.roughness() * UNIT_BALL;
+        let r = self.cap();
+        let held = photons_per_volume * UNIT_BALL * r * r * r;
+        self.relative_variance(roughness, held, ball_edge(kernel), power_ratio)
+    }
+
+    /// The same of an irradiance on an evenly lit plane; `photons_per_area` [1/L^2], stored.
+    pub fn expected_disc_variance(self, kernel: Kernel, photons_per_area: f64, power_ratio: f64) -> f64 {
+        let roughness = power_ratio * kernel.disc_roughness();
+        let r = self.cap();
+        self.relative_variance(roughness, photons_per_area * PI * r * r, disc_edge(kernel), power_ratio)
+    }
+
+    /// `held` photons are within a fixed radius on average.
+    fn relative_variance(self, roughness: f64, held: f64, edge: f64, power_ratio: f64) -> f64 {
         match self {
-            Gather::Radius(radius) => {
-                let r = radius.get();
-                roughness / (photons_per_volume * UNIT_BALL * r * r * r)
-            }
+            Gather::Radius(_) => roughness / held,
             Gather::Nearest { k, .. } => roughness / k.freedom(),
             Gather::NearestBiased { k, .. } => {
-                let (k, edge) = (k.get() as f64, edge(kernel));
+                let k = k.get() as f64;
                 let square =
                     (k - 1.0) * (roughness + k - 2.0) + 2.0 * edge * (k - 1.0) + power_ratio * edge * edge;
                 let mean = 1.0 + edge / (k - 1.0);
@@ -186,7 +226,23 @@ impl Gather {
     }
 }
 
+impl fmt::Display for Gather {
+    /// Such as "k=50".
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Gather::Radius(radius) => write!(f, "r={}", radius.get()),
+            Gather::Nearest { k, .. } => write!(f, "k={}", k.get()),
+            Gather::NearestBiased { k, .. } => write!(f, "k={}(biased)", k.get()),
+        }
+    }
+}
+
 /// The kernel at its edge over its mean in the ball.
-fn edge(kernel: Kernel) -> f64 {
+fn ball_edge(kernel: Kernel) -> f64 {
     kernel.peak() * kernel.profile(1.0) * UNIT_BALL
+}
+
+/// The kernel at its edge over its mean on the disc.
+fn disc_edge(kernel: Kernel) -> f64 {
+    kernel.disc_peak() * kernel.profile(1.0) * PI
 }

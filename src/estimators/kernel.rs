@@ -1,5 +1,7 @@
-//! Kernels: how the photons of a ball are weighted by their distance from its centre.
+//! Kernels: how the photons of a ball, or of a disc, are weighted by their distance from its centre.
 
+use crate::math::{exp, exp_m1, ln_1p, sin};
+use libm::{asin, cbrt, erf};
 use serde::{Deserialize, Serialize};
 use std::f64::consts::PI;
 use wide::f32x8;
@@ -7,12 +9,11 @@ use wide::f32x8;
 /// Volume of the ball of radius 1.
 pub const UNIT_BALL: f64 = 4.0 / 3.0 * PI;
 
-/// A radial weight K(u) on the unit ball of three dimensions, u the distance over the radius; zero beyond u =
-/// 1.
+/// A radial weight K(u), u the distance over the radius; zero beyond u = 1.
 ///
-/// K integrates to one over the ball, so the kernel of radius r is K(u)/r^3. The moments are m_j = int u^j K
-/// dV and the roughness is int K^2 dV. Kernels are compared at equal standard deviation a coordinate, r
-/// sqrt(m2/3).
+/// K integrates to one over the unit ball of three dimensions, so the kernel of radius r is K(u)/r^3; the same profile,
+/// normalised over the disc of two, is that of estimates on surfaces, K(u)/r^2. The moments are m_j = int u^j K dV and the
+/// roughness is int K^2 dV. Kernels are compared at equal standard deviation a coordinate, r sqrt(m2/3).
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Kernel {
@@ -28,33 +29,109 @@ pub enum Kernel {
     Gaussian,
 }
 
+/// What is known of a kernel in closed form; profiles apart, a kernel is a row of these.
+struct Closed {
+    name: &'static str,
+    /// K at the centre, second and fourth moment, and roughness times the volume of the ball.
+    ball: [f64; 4],
+    /// K at the centre, second moment, and roughness times the area of the disc.
+    disc: [f64; 3],
+    /// int_0^u 4 pi s^2 K ds.
+    within: fn(f64) -> f64,
+    /// int_u^1 4 pi s K ds.
+    across: fn(f64) -> f64,
+    /// int_0^sqrt(w) s profile(s^2) ds over w.
+    wedge: fn(f64) -> f64,
+    /// The inverse of the part of the disc's kernel within a distance.
+    sample_disc: fn(f64) -> f64,
+}
+
+/// (1 - u) (1 + u).
+fn rest(u: f64) -> f64 {
+    (1.0 - u) * (1.0 + u)
+}
+
+const UNIFORM: Closed = Closed {
+    name: "uniform",
+    ball: [3.0 / (4.0 * PI), 3.0 / 5.0, 3.0 / 7.0, 1.0],
+    disc: [1.0 / PI, 1.0 / 2.0, 1.0],
+    within: |u| u * (u * u),
+    across: |u| 1.5 * rest(u),
+    wedge: |_| 0.5,
+    sample_disc: f64::sqrt,
+};
+
+const EPANECHNIKOV: Closed = Closed {
+    name: "epanechnikov",
+    ball: [15.0 / (8.0 * PI), 3.0 / 7.0, 5.0 / 21.0, 10.0 / 7.0],
+    disc: [2.0 / PI, 1.0 / 3.0, 4.0 / 3.0],
+    within: |u| 0.5 * (u * (u * u)) * (5.0 - 3.0 * (u * u)),
+    across: |u| 1.875 * rest(u) * rest(u),
+    wedge: |w| 0.5 - 0.25 * w,
+    // 2 u^2 - u^4.
+    sample_disc: |part| (1.0 - (1.0 - part).sqrt()).sqrt(),
+};
+
+const CONE: Closed = Closed {
+    name: "cone",
+    ball: [3.0 / PI, 2.0 / 5.0, 3.0 / 14.0, 8.0 / 5.0],
+    disc: [3.0 / PI, 3.0 / 10.0, 3.0 / 2.0],
+    within: |u| u * (u * u) * (4.0 - 3.0 * u),
+    across: |u| 2.0 * (1.0 - u) * (1.0 - u) * (1.0 + 2.0 * u),
+    wedge: |w| 0.5 - w.sqrt() / 3.0,
+    // 3 u^2 - 2 u^3.
+    sample_disc: |part| 0.5 - sin(asin(1.0 - 2.0 * part) / 3.0),
+};
+
+const BIWEIGHT: Closed = Closed {
+    name: "biweight",
+    ball: [105.0 / (32.0 * PI), 1.0 / 3.0, 5.0 / 33.0, 70.0 / 33.0],
+    disc: [3.0 / PI, 1.0 / 4.0, 9.0 / 5.0],
+    within: |u| 0.125 * (u * (u * u)) * (35.0 - 42.0 * (u * u) + 15.0 * (u * u) * (u * u)),
+    across: |u| 2.1875 * rest(u) * rest(u) * rest(u),
+    wedge: |w| 0.5 - w * (0.5 - w / 6.0),
+    // 1 - (1 - u^2)^3.
+    sample_disc: |part| (1.0 - cbrt(1.0 - part)).sqrt(),
+};
+
+/// The Gaussian's exponent at the edge: exp(-a u^2) with a = 1/(2 s^2), s = 1/3.
+const A: f64 = 4.5;
+
+/// In the ball K is 1/(4 pi I2) at the centre, I2 = int_0^1 u^2 exp(-a u^2) du = sqrt(pi) erf(sqrt a)/(4 a^(3/2)) -
+/// exp(-a)/(2 a); its moments follow by parts from the same integral. On the disc it is a/(pi (1 - e^-a)), the second moment
+/// 1/a - e^-a/(1 - e^-a) and the roughness (a/2) (1 + e^-a)/(1 - e^-a).
+const GAUSSIAN: Closed = Closed {
+    name: "gaussian",
+    ball: [
+        1.766_057_561_883_723_7,
+        0.305_939_863_855_431_13,
+        0.142_573_121_552_892_87,
+        2.693_198_085_847_398_3,
+    ],
+    disc: [1.448_485_710_571_490_1, 0.210_988_429_519_736_65, 2.300_552_067_161_184_8],
+    within: |u| {
+        let whole = PI.sqrt() * erf(A.sqrt() * u) / (4.0 * A * A.sqrt());
+        4.0 * PI * GAUSSIAN.ball[0] * (whole - u * exp(-A * (u * u)) / 9.0)
+    },
+    across: |u| -4.0 / 9.0 * PI * GAUSSIAN.ball[0] * exp(-A * u * u) * exp_m1(-A * rest(u)),
+    wedge: |w| if w == 0.0 { 0.5 } else { -exp_m1(-A * w) / (9.0 * w) },
+    // (1 - e^(-a u^2))/(1 - e^-a).
+    sample_disc: |part| (-ln_1p(part * exp_m1(-A)) / A).sqrt(),
+};
+
 impl Kernel {
     /// Every kernel.
     pub const ALL: [Kernel; 5] =
         [Kernel::Uniform, Kernel::Epanechnikov, Kernel::Cone, Kernel::Biweight, Kernel::Gaussian];
 
-    /// Its name in files and tables.
-    pub fn name(self) -> &'static str {
+    #[inline(always)]
+    fn closed(self) -> &'static Closed {
         match self {
-            Kernel::Uniform => "uniform",
-            Kernel::Epanechnikov => "epanechnikov",
-            Kernel::Cone => "cone",
-            Kernel::Biweight => "biweight",
-            Kernel::Gaussian => "gaussian",
-        }
-    }
-
-    /// K at the centre, where every profile is 1: what makes the integral over the ball one.
-    ///
-    /// The Gaussian's is 1/(4 pi I2), I2 = int_0^1 u^2 exp(-9 u^2/2) du = sqrt(pi) erf(a)/(4 a^3) -
-    /// exp(-a^2)/(2 a^2) with a^2 = 9/2; its moments follow by parts from the same integral.
-    pub fn peak(self) -> f64 {
-        match self {
-            Kernel::Uniform => 3.0 / (4.0 * PI),
-            Kernel::Epanechnikov => 15.0 / (8.0 * PI),
-            Kernel::Cone => 3.0 / PI,
-            Kernel::Biweight => 105.0 / (32.0 * PI),
-            Kernel::Gaussian => 1.766_057_561_883_723_7,
+            Kernel::Uniform => &UNIFORM,
+            Kernel::Epanechnikov => &EPANECHNIKOV,
+            Kernel::Cone => &CONE,
+            Kernel::Biweight => &BIWEIGHT,
+            Kernel::Gaussian => &GAUSSIAN,
         }
     }
 
@@ -65,7 +142,7 @@ impl Kernel {
             Kernel::Epanechnikov => 1.0 - u2,
             Kernel::Cone => 1.0 - u2.sqrt(),
             Kernel::Biweight => (1.0 - u2) * (1.0 - u2),
-            Kernel::Gaussian => crate::math::exp(-4.5 * u2),
+            Kernel::Gaussian => exp(-A * u2),
         }
     }
 
@@ -81,21 +158,54 @@ impl Kernel {
         }
     }
 
+    /// Its name in files and tables.
+    pub fn name(self) -> &'static str {
+        self.closed().name
+    }
+
+    /// The kernel of this name.
+    pub fn named(name: &str) -> Option<Kernel> {
+        Kernel::ALL.into_iter().find(|kernel| kernel.name() == name)
+    }
+
+    /// K at the centre of the ball, where every profile is 1: what makes its integral one.
+    pub fn peak(self) -> f64 {
+        self.closed().ball[0]
+    }
+
+    /// Second moment.
+    pub fn m2(self) -> f64 {
+        self.closed().ball[1]
+    }
+
+    /// Fourth moment.
+    pub fn m4(self) -> f64 {
+        self.closed().ball[2]
+    }
+
+    /// Roughness, int K^2 dV; times the ball's volume it is the variance in units of the uniform kernel's.
+    pub fn roughness(self) -> f64 {
+        self.closed().ball[3] / UNIT_BALL
+    }
+
+    /// K at the centre of the disc.
+    pub fn disc_peak(self) -> f64 {
+        self.closed().disc[0]
+    }
+
+    /// Second moment on the disc, int u^2 K dA.
+    pub fn disc_m2(self) -> f64 {
+        self.closed().disc[1]
+    }
+
+    /// Roughness on the disc, int K^2 dA, times its area: the variance in units of the uniform kernel's.
+    pub fn disc_roughness(self) -> f64 {
+        self.closed().disc[2]
+    }
+
     /// Part of the kernel within u, in [0, 1], of its centre: int_0^u 4 pi s^2 K ds.
     pub fn within(self, u: f64) -> f64 {
-        let u2 = u * u;
-        let cubed = u * u2;
-        match self {
-            Kernel::Uniform => cubed,
-            Kernel::Epanechnikov => 0.5 * cubed * (5.0 - 3.0 * u2),
-            Kernel::Cone => cubed * (4.0 - 3.0 * u),
-            Kernel::Biweight => 0.125 * cubed * (35.0 - 42.0 * u2 + 15.0 * u2 * u2),
-            Kernel::Gaussian => {
-                let a = 4.5f64.sqrt();
-                let whole = PI.sqrt() * libm::erf(a * u) / (4.0 * 4.5 * a);
-                4.0 * PI * self.peak() * (whole - u * crate::math::exp(-4.5 * u2) / 9.0)
-            }
-        }
+        (self.closed().within)(u)
     }
 
     /// Part of the kernel beyond a plane at distance u of its centre, above 0: half of int_u^1 4 pi s^2 K (1 - u/s) ds, the
@@ -104,56 +214,17 @@ impl Kernel {
         if u >= 1.0 {
             return 0.0;
         }
-        let rest = (1.0 - u) * (1.0 + u);
-        // int_u^1 4 pi s K ds
-        let across = match self {
-            Kernel::Uniform => 1.5 * rest,
-            Kernel::Epanechnikov => 1.875 * rest * rest,
-            Kernel::Cone => 2.0 * (1.0 - u) * (1.0 - u) * (1.0 + 2.0 * u),
-            Kernel::Biweight => 2.1875 * rest * rest * rest,
-            Kernel::Gaussian => {
-                -4.0 / 9.0
-                    * PI
-                    * self.peak()
-                    * crate::math::exp(-4.5 * u * u)
-                    * crate::math::exp_m1(-4.5 * rest)
-            }
-        };
-        (0.5 * (1.0 - self.within(u) - u * across)).max(0.0)
+        (0.5 * (1.0 - self.within(u) - u * (self.closed().across)(u))).max(0.0)
     }
 
-    /// Second moment.
-    pub fn m2(self) -> f64 {
-        match self {
-            Kernel::Uniform => 3.0 / 5.0,
-            Kernel::Epanechnikov => 3.0 / 7.0,
-            Kernel::Cone => 2.0 / 5.0,
-            Kernel::Biweight => 1.0 / 3.0,
-            Kernel::Gaussian => 0.305_939_863_855_431_13,
-        }
+    /// The integral of the disc's K over a wedge of one radian out to sqrt(w), over w.
+    pub(super) fn wedge(self, w: f64) -> f64 {
+        self.disc_peak() * (self.closed().wedge)(w)
     }
 
-    /// Fourth moment.
-    pub fn m4(self) -> f64 {
-        match self {
-            Kernel::Uniform => 3.0 / 7.0,
-            Kernel::Epanechnikov => 5.0 / 21.0,
-            Kernel::Cone => 3.0 / 14.0,
-            Kernel::Biweight => 5.0 / 33.0,
-            Kernel::Gaussian => 0.142_573_121_552_892_87,
-        }
-    }
-
-    /// Roughness, int K^2 dV; times the ball's volume it is the variance in units of the uniform kernel's.
-    pub fn roughness(self) -> f64 {
-        let relative = match self {
-            Kernel::Uniform => 1.0,
-            Kernel::Epanechnikov => 10.0 / 7.0,
-            Kernel::Cone => 8.0 / 5.0,
-            Kernel::Biweight => 70.0 / 33.0,
-            Kernel::Gaussian => 2.693_198_085_847_398_3,
-        };
-        relative / UNIT_BALL
+    /// Distance from the middle, over the radius, of a point of the disc of density K, from a number in [0, 1).
+    pub fn sample_disc(self, part: f64) -> f64 {
+        (self.closed().sample_disc)(part)
     }
 }
 

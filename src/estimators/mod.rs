@@ -8,13 +8,13 @@
 //! - in-scattered radiance = sum p phase(dir -> wo) K_r / (N sigma_t) [W/(L^2 sr)];
 //! - on a surface, with K_r of unit integral over the disc: irradiance = sum p K_r / N [W/L^2].
 //!
-//! A [`Kernel`] weights the photons of the ball, a [`Gather`] chooses the ball; both state the bias and
-//! variance they expect. Near the surface of a medium, or a wall, [`boundary`] says what can be done.
+//! An [`Estimator`] is a [`Kernel`], which weights the photons of the ball, a [`Gather`], which chooses the ball, and what it
+//! does near the surface of a medium, or a wall ([`boundary`]); it states the bias and variance that it expects.
 
 pub mod boundary;
 mod directional;
-mod disc;
 mod disc_share;
+mod estimator;
 mod gather;
 mod kernel;
 mod point;
@@ -22,10 +22,8 @@ mod surface;
 
 pub use directional::{CosinePairs, Directional};
 pub use disc_share::{cap_share, disc_share};
+pub use estimator::Estimator;
 pub use gather::{Gather, NeighborCount};
 pub use kernel::Kernel;
-pub use point::{
-    Ball, BallSum, Estimate, ball_sum, collision_density, count_within, fluence, for_each_photon,
-    in_scattered,
-};
+pub use point::{Ball, BallSum, Estimate, ball_sum, count_within, for_each_photon};
 pub use surface::{irradiance, irradiance_seen};

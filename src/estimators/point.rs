@@ -1,8 +1,8 @@
-//! Estimates at a point.
+//! Sums over the photons about a point.
 
 use super::{CosinePairs, Directional, Gather, Kernel};
 use crate::faults::{Fault, planted, size};
-use crate::photons::tree::{Counted, Nearest, Neighbors, Visit};
+use crate::photons::tree::{Nearest, Neighbors, Visit};
 use crate::photons::{Photon, PhotonMap, PhotonTree};
 use crate::spectrum::Spectrum;
 use glam::DVec3;
@@ -15,13 +15,23 @@ pub struct Estimate {
     pub value: Spectrum,
     /// Radius of the ball \[L\].
     pub radius: f64,
-    /// Photons in the ball, those on its surface included.
+    /// Photons in the ball that count, those on its surface included.
     pub found: usize,
     /// Whether fewer than k photons were within the cap, so that the ball is the cap.
     pub underfull: bool,
     /// Photons at the point itself if they were k or more, so that the ball reaches to the next one out; else
     /// 0.
     pub coincident: usize,
+    /// Photons in the ball that do not count, since they are of another medium, hidden by a body, or rejected behind a wall.
+    pub rejected: usize,
+}
+
+impl Estimate {
+    pub(super) fn new(map: &PhotonMap, BallSum { sum, ball }: BallSum, rejected: usize) -> Self {
+        let Ball { radius, found, underfull, coincident } = ball;
+        let value = sum / map.emitted() as f64;
+        Estimate { value, radius, found, underfull, coincident, rejected }
+    }
 }
 
 /// The ball that a gather chose.
@@ -45,51 +55,6 @@ pub struct BallSum {
     pub sum: Spectrum,
     /// The ball.
     pub ball: Ball,
-}
-
-/// Fluence at a point [W/L^2]: sum p K_r / (N sigma_t).
-///
-/// # Arguments
-/// `sigma_t` [1/L] at the point, above zero in every channel: a channel in which it is zero gives a
-/// non-finite value, never a silent zero.
-///
-/// # Limits
-/// Where sigma_t varies this is the blurred collision density over the local sigma_t; see [`for_each_photon`]
-/// for sums that weight each photon by its own.
-///
-/// # Source
-/// Jensen and Christensen 1998; the k-1 of the k-nearest rule is Loftsgaarden and Quesenberry 1965.
-pub fn fluence(map: &PhotonMap, point: DVec3, sigma_t: Spectrum, kernel: Kernel, gather: Gather) -> Estimate {
-    let mut estimate = collision_density(map, point, kernel, gather);
-    estimate.value = estimate.value.over(sigma_t);
-    estimate
-}
-
-/// Density of collisions at a point, by power [W/L^3]: sum p K_r / N.
-pub fn collision_density(map: &PhotonMap, point: DVec3, kernel: Kernel, gather: Gather) -> Estimate {
-    per_emitted(map, ball_sum(map, point, kernel, gather))
-}
-
-/// In-scattered radiance at a point [W/(L^2 sr)]: sum p phase(dir -> wo) K_r / (N sigma_t).
-///
-/// # Arguments
-/// `wo` unit direction of travel after the scattering; `phase` [1/sr]; `sigma_t` as in [`fluence`].
-///
-/// # Limits
-/// Directions are held in single precision, which blurs a phase function over about 1e-7 rad: peaks of |g|
-/// above 0.9999 feel it. The source term of the transfer equation is sigma_s times the value.
-pub fn in_scattered(
-    map: &PhotonMap,
-    point: DVec3,
-    wo: DVec3,
-    phase: &impl Directional,
-    sigma_t: Spectrum,
-    kernel: Kernel,
-    gather: Gather,
-) -> Estimate {
-    let mut estimate = per_emitted(map, in_scattered_sum(map, point, wo, phase, kernel, gather));
-    estimate.value = estimate.value.over(sigma_t);
-    estimate
 }
 
 /// Sum of power x phase x K_r over the gathered photons [W/(L^3 sr)], divided by nothing.
@@ -140,11 +105,6 @@ pub fn for_each_photon(
     })
 }
 
-fn per_emitted(map: &PhotonMap, BallSum { sum, ball }: BallSum) -> Estimate {
-    let Ball { radius, found, underfull, coincident } = ball;
-    Estimate { value: sum / map.emitted() as f64, radius, found, underfull, coincident }
-}
-
 #[inline(always)]
 fn number(neighbors: &Neighbors<'_>) -> usize {
     neighbors.inside().to_bitmask().count_ones() as usize
@@ -172,13 +132,9 @@ fn weighted_sum(
 /// Visits the photons of a gather.
 #[inline(always)]
 fn gathered(tree: &PhotonTree, point: DVec3, gather: Gather, visitor: &mut impl Visit) -> Ball {
-    let (k, cap, counted) = match gather {
-        Gather::Radius(radius) => (None, radius.get(), Counted::BelowKth),
-        Gather::Nearest { k, max_radius } => (Some(k.get()), max_radius.get(), Counted::BelowKth),
-        Gather::NearestBiased { k, max_radius } => (Some(k.get()), max_radius.get(), Counted::UpToKth),
-    };
+    let (k, cap, counted) = gather.rule();
     if let Some(k) = k
-        && let Nearest::Found(shell) = tree.nearest(point, k, cap, counted, visitor)
+        && let Nearest::Found(shell) = tree.nearest(point, k.get(), cap, counted, visitor)
     {
         let found = shell.closer + shell.tied;
         return Ball { radius: shell.radius, found, underfull: false, coincident: shell.coincident };

@@ -4,7 +4,7 @@ use super::point::{Counting, LaneSum, Weighted};
 use super::{Estimate, Gather, Kernel};
 use crate::faults::{Fault, planted};
 use crate::photons::PhotonMap;
-use crate::photons::tree::{Counted, Nearest, Neighbors, ROW, Tangent};
+use crate::photons::tree::{Nearest, Neighbors, ROW, Tangent};
 use crate::spectrum::Spectrum;
 use glam::DVec3;
 use wide::f32x8;
@@ -65,12 +65,8 @@ fn weighted(
 ) -> Estimate {
     let tree = map.tree();
     let mut sum = Weighted { kernel, weight, sum: LaneSum::default() };
-    let (k, cap, counted) = match gather {
-        Gather::Radius(radius) => (None, radius.get(), Counted::BelowKth),
-        Gather::Nearest { k, max_radius } => (Some(k.get()), max_radius.get(), Counted::BelowKth),
-        Gather::NearestBiased { k, max_radius } => (Some(k.get()), max_radius.get(), Counted::UpToKth),
-    };
-    let shell = k.map(|k| tree.nearest_facing(point, tangent, k, cap, counted, &mut sum));
+    let (k, cap, counted) = gather.rule();
+    let shell = k.map(|k| tree.nearest_facing(point, tangent, k.get(), cap, counted, &mut sum));
     let (radius, found, underfull, coincident) = match shell {
         Some(Nearest::Found(shell)) => (shell.radius, shell.closer + shell.tied, false, shell.coincident),
         _ => {
@@ -89,5 +85,6 @@ fn weighted(
         found,
         underfull,
         coincident,
+        rejected: 0,
     }
 }

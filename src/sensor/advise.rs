@@ -15,7 +15,8 @@
 use super::paths::{self, PathSettings};
 use super::photons::{PhotonForecast, check, forecast_of, map_orders, maps, margin, max_order};
 use crate::error::{Error, Result};
-use crate::estimators::{Gather, Kernel, fluence};
+use crate::estimators::boundary::Boundary;
+use crate::estimators::{Estimator, Gather, Kernel};
 use crate::faults::{Fault, planted};
 use crate::light::Light;
 use crate::photons::{Histories, Part};
@@ -216,7 +217,8 @@ impl Pilot {
             let mut values = [0.0; BALLS];
             for (ball, value) in values.iter_mut().enumerate() {
                 let gather = Gather::radius(radius(probe.reach, ball))?;
-                let estimate = fluence(map, p, sigma_t, Kernel::Uniform, gather);
+                let uniform = Estimator::new(Kernel::Uniform, gather);
+                let estimate = uniform.fluence(map, p, sigma_t, &Boundary::UNKNOWN);
                 *value = estimate.value.mean();
                 if ball == 0 {
                     probe.found += estimate.found as f64 / settings.maps as f64;

@@ -3,8 +3,8 @@
 use super::{Reading, Source, readings};
 use crate::Spectrum;
 use crate::error::{Error, Result};
-use crate::estimators::boundary::{Treatment, treated_fluence, treated_in_scattered};
-use crate::estimators::{Estimate, Gather, Kernel, fluence, in_scattered};
+use crate::estimators::boundary::{Boundary, Treatment};
+use crate::estimators::{Estimate, Estimator, Gather};
 use crate::integrators::mapper::{MediumExtent, medium_extents, scene_size};
 use crate::integrators::{March, StepRule, along};
 use crate::math::{Interval, Positive, Ray};
@@ -31,12 +31,8 @@ pub struct PhotonSettings {
     pub seed: u64,
     /// Orders that count, beside each sensor's own range.
     pub orders: Orders,
-    /// Which photons an estimate takes.
-    pub gather: Gather,
-    /// How it weights them.
-    pub kernel: Kernel,
-    /// What it does where a medium ends in its ball.
-    pub treatment: Treatment,
+    /// How maps are read.
+    pub estimator: Estimator,
 }
 
 /// What photons read, and where their power went.
@@ -97,7 +93,7 @@ pub fn by_photons_in_passes(
         let allowed = "at least 1, and at most one a photon";
         return Err(Error::out_of_range("the number of passes", passes as f64, allowed));
     }
-    if passes > 1 && !matches!(settings.gather, Gather::Radius(_)) {
+    if passes > 1 && !matches!(settings.estimator.gather, Gather::Radius(_)) {
         return Err(Error::Scene(
             "the k nearest photons of a map cannot be found in passes that hold a part of it each: take a fixed radius, or \
              fewer photons"
@@ -231,8 +227,9 @@ fn prepared(scene: &Scene, settings: &PhotonSettings) -> Result<(Vec<Sensor>, f6
     for sensor in &sensors {
         check(scene, sensor)?;
     }
-    let margin =
-        scene.stage().map_or(Ok(0.0), |stage| margin(&sensors, stage.side, settings.gather.cap()))?;
+    let margin = scene
+        .stage()
+        .map_or(Ok(0.0), |stage| margin(&sensors, stage.side, settings.estimator.gather.cap()))?;
     Ok((sensors, margin))
 }
 
@@ -351,15 +348,9 @@ fn read(
         Quantity::Fluence(p) => {
             let number = scene.medium_number_at(p);
             let sigma_t = number.map_or(Spectrum::ONE, |number| scene.medium(number).sigma_t(p));
-            let (kernel, gather, treatment) = (settings.kernel, settings.gather, settings.treatment);
-            let estimate = match number.filter(|_| treatment != Treatment::None) {
-                None => fluence(map, p, sigma_t, kernel, gather),
-                Some(number) => {
-                    let boundary = extents[number].boundary(treatment);
-                    treated_fluence(map, p, sigma_t, kernel, gather, &boundary).estimate
-                }
-            };
-            result.book(scene, p, &estimate, treatment);
+            let boundary = number.map_or(Boundary::UNKNOWN, |number| extents[number].boundary());
+            let estimate = settings.estimator.fluence(map, p, sigma_t, &boundary);
+            result.book(scene, p, &estimate, settings.estimator.treatment);
             estimate.value
         }
         Quantity::Radiance(ray) => {
@@ -394,15 +385,9 @@ fn radiance(
                 return Spectrum::ZERO;
             }
             let (wo, phase) = (-ray.dir, medium.phase());
-            let (kernel, gather, treatment) = (settings.kernel, settings.gather, settings.treatment);
-            let estimate = match treatment {
-                Treatment::None => in_scattered(map, p, wo, phase, Spectrum::ONE, kernel, gather),
-                _ => {
-                    let boundary = extents[segment.medium].boundary(treatment);
-                    treated_in_scattered(map, p, wo, phase, kernel, gather, &boundary).estimate
-                }
-            };
-            result.book(scene, p, &estimate, treatment);
+            let boundary = extents[segment.medium].boundary();
+            let estimate = settings.estimator.in_scattered(map, p, wo, phase, Spectrum::ONE, &boundary);
+            result.book(scene, p, &estimate, settings.estimator.treatment);
             medium.albedo(p) * estimate.value
         };
         for (span, step) in stretches(medium, segment.interval) {

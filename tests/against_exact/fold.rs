@@ -7,8 +7,8 @@ use crate::support::run::pass;
 use crate::support::scenes::{CELL, Incidence, layer, slab};
 use crate::support::verdict;
 use glam::DVec3;
-use turbid::estimators::boundary::{Boundary, Treatment, treated_density};
-use turbid::estimators::{Gather, Kernel, collision_density, count_within};
+use turbid::estimators::boundary::{Boundary, Treatment};
+use turbid::estimators::{Estimator, Gather, Kernel, count_within};
 use turbid::photons::{Photon, PhotonMap};
 use turbid::rng::{Purpose, Stream};
 use turbid::transport::NoProgress;
@@ -64,6 +64,8 @@ fn copies_around_the_cell_are_those_of_the_lattice() {
     for margin in [0.3, 0.5 * CELL, 0.8 * CELL, CELL] {
         let (around, alone) = (map(margin).unwrap(), map(0.0).unwrap());
         let gather = Gather::radius(margin).unwrap();
+        let medium = layer(1.0);
+        let boundary = Boundary::of(&medium).unwrap();
         let mut missed_without_copies = 0;
         for number in 0..200 {
             let probe = DVec3::from_array(stream.triple()) * DVec3::new(CELL, CELL, 1.0);
@@ -81,16 +83,10 @@ fn copies_around_the_cell_are_those_of_the_lattice() {
             assert!((least..=most).contains(&found), "margin {margin}, {probe}: {found}, {least} to {most}");
             // Without copies only balls within the cell have an estimate.
             let is_inside = [probe.x, probe.y].iter().all(|x| (margin..=CELL - margin).contains(x));
-            let estimate = collision_density(&alone, there, Kernel::Uniform, gather).value[0];
-            assert_eq!(estimate.is_finite(), is_inside, "margin {margin}, {probe}");
             for treatment in Treatment::ALL {
-                let boundary = Boundary::new(layer(1.0), treatment).unwrap();
-                let treated = treated_density(&alone, there, Kernel::Uniform, gather, &boundary).estimate;
-                assert_eq!(
-                    treated.value[0].is_finite(),
-                    is_inside,
-                    "{treatment:?}, margin {margin}, {probe}"
-                );
+                let estimator = Estimator::new(Kernel::Uniform, gather).treated(treatment);
+                let value = estimator.collision_density(&alone, there, &boundary).value[0];
+                assert_eq!(value.is_finite(), is_inside, "{treatment:?}, margin {margin}, {probe}");
             }
             missed_without_copies += usize::from(!is_inside);
         }

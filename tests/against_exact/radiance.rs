@@ -20,8 +20,7 @@ use crate::support::verdict;
 use glam::DVec3;
 use std::f64::consts::PI;
 use turbid::Spectrum;
-use turbid::estimators::boundary::Treatment;
-use turbid::estimators::{Gather, Kernel};
+use turbid::estimators::{Estimator, Gather, Kernel};
 use turbid::math::{Ray, exp};
 use turbid::scene::{Orders, Parts, Quantity, Region, Scene};
 use turbid::sensor::{PhotonSettings, by_photons};
@@ -143,9 +142,7 @@ fn of_maps(scene: &Scene, photons: u64, seed: u64) -> Vec<Moments> {
             maps: 1,
             seed: (seed << 32) + map,
             orders: Orders::ALL,
-            gather: Gather::radius(RADIUS).unwrap(),
-            kernel: Kernel::Uniform,
-            treatment: Treatment::None,
+            estimator: Estimator::new(Kernel::Uniform, Gather::radius(RADIUS).unwrap()),
         };
         let readings = by_photons(scene, &settings, &NoProgress).unwrap().readings;
         views.resize(readings.len(), Moments::new());

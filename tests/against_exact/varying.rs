@@ -10,8 +10,7 @@ use crate::support::scenes::{
 use crate::support::verdict;
 use glam::DVec3;
 use turbid::Spectrum;
-use turbid::estimators::boundary::Treatment;
-use turbid::estimators::{Gather, Kernel};
+use turbid::estimators::{Estimator, Gather, Kernel};
 use turbid::math::{Interval, Positive, Ray};
 use turbid::medium::{Density, Grid, HeightFog, Medium};
 use turbid::photons::{Histories, shoot};
@@ -184,15 +183,12 @@ fn a_constant_grid_is_the_homogeneous_medium() {
         let mut moments = vec![Moments::new(); 12];
         for map in 0..64 {
             let gather = Gather::radius(0.4).unwrap();
-            let (seed, kernel) = (seed + map, Kernel::Uniform);
             let settings = PhotonSettings {
                 photons: 8192,
                 maps: 1,
-                seed,
+                seed: seed + map,
                 orders: Orders::ALL,
-                gather,
-                kernel,
-                treatment: Treatment::None,
+                estimator: Estimator::new(Kernel::Uniform, gather),
             };
             let read = by_photons(scene, &settings, &NoProgress).unwrap();
             assert_eq!(read.readings.len(), 12);

@@ -9,8 +9,7 @@ use crate::support::verdict;
 use glam::DVec3;
 use std::f64::consts::PI;
 use turbid::Spectrum;
-use turbid::estimators::boundary::Treatment;
-use turbid::estimators::{Gather, Kernel};
+use turbid::estimators::{Estimator, Gather, Kernel};
 use turbid::geometry::{Face, Shape};
 use turbid::light::{Area, Light};
 use turbid::math::{FOUR_PI, Interval, Ray, exp, exp_m1};
@@ -56,9 +55,7 @@ fn read(scene: &Scene, by: &str, replicate: u64) -> Vec<Reading> {
         maps: 1,
         seed: 1000 + replicate,
         orders: Orders::ALL,
-        gather: Gather::radius(0.6).unwrap(),
-        kernel: Kernel::Uniform,
-        treatment: Treatment::None,
+        estimator: Estimator::new(Kernel::Uniform, Gather::radius(0.6).unwrap()),
     };
     by_photons(scene, &settings, &NoProgress).unwrap().readings
 }

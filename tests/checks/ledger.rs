@@ -6,8 +6,8 @@ use crate::support::scenes::{
 use crate::support::verdict;
 use glam::DVec3;
 use turbid::Spectrum;
-use turbid::estimators::boundary::{Rejection, Treatment};
-use turbid::estimators::{Gather, Kernel};
+use turbid::estimators::boundary::Treatment;
+use turbid::estimators::{Estimator, Gather, Kernel};
 use turbid::geometry::Shape;
 use turbid::integrators::March;
 use turbid::integrators::mapper::{Mapper, Report, Settings};
@@ -120,7 +120,7 @@ pub fn settings(gather_rays: u32) -> Settings {
     Settings {
         global: radius(DISC),
         caustic: radius(DISC),
-        volume: radius(BALL),
+        volume: Estimator::new(radius(BALL).0, radius(BALL).1).treated(Treatment::Clipped),
         slope: 1e-3,
         clips_discs: true,
         gather_rays,
@@ -131,8 +131,6 @@ pub fn settings(gather_rays: u32) -> Settings {
             is_jittered: true,
             adaptive: None,
         },
-        treatment: Treatment::Clipped,
-        rejection: Rejection::Off,
     }
 }
 

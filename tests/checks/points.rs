@@ -2,7 +2,8 @@
 
 use crate::support::verdict;
 use glam::DVec3;
-use turbid::estimators::{Gather, Kernel, collision_density};
+use turbid::estimators::boundary::Boundary;
+use turbid::estimators::{Estimator, Gather, Kernel};
 use turbid::photons::PhotonMap;
 use turbid::photons::synthetic::{Number, Profile, Synthetic};
 use turbid::stats::Moments;
@@ -34,9 +35,10 @@ fn probes() -> impl Iterator<Item = DVec3> {
 /// One number a map of unit density, of which a share is stored: the mean over the places.
 fn means(kept: f64, gather: Gather, factor: fn(&PhotonMap) -> f64) -> Moments {
     let points = Synthetic::new(Profile::Constant, DVec3::ZERO, DVec3::ONE).unwrap().thinned(kept).unwrap();
+    let estimator = Estimator::new(Kernel::Uniform, gather);
     let mean = |replicate| {
         let map = points.map(Number::Exact(PHOTONS), SEED, replicate).unwrap();
-        let at = |p: DVec3| collision_density(&map, p, Kernel::Uniform, gather).value.mean();
+        let at = |p: DVec3| estimator.collision_density(&map, p, &Boundary::UNKNOWN).value.mean();
         factor(&map) * probes().map(at).sum::<f64>() / 27.0
     };
     (0..MAPS).map(mean).collect()

@@ -3,8 +3,8 @@
 use crate::support::scenes::homogeneous;
 use glam::DVec3;
 use turbid::Spectrum;
-use turbid::estimators::boundary::{Boundary, Rejection, Treatment, treated_density};
-use turbid::estimators::{Gather, Kernel};
+use turbid::estimators::boundary::{Boundary, Rejection, Treatment};
+use turbid::estimators::{Estimator, Gather, Kernel};
 use turbid::geometry::{Cuboid, Rectangle, Shape};
 use turbid::integrators::{March, StepRule, along};
 use turbid::math::{Interval, Positive, Ray, exp_m1};
@@ -18,11 +18,11 @@ pub fn the_k_nearest_are_accepted() {
     let wall = Rectangle::new(DVec3::new(0.0, -2.0, -2.0), DVec3::Y * 4.0, DVec3::Z * 4.0).unwrap();
     let side = Shape::Cuboid(Cuboid::new(low, DVec3::new(0.0, 0.5, 0.5)).unwrap());
     let walls = [Shape::Rectangle(wall)];
-    let boundary =
-        Boundary::new(side, Treatment::Clipped).unwrap().with_walls(Rejection::BehindPlane, &walls);
-    let gather = Gather::nearest(20, 0.45).unwrap();
-    let found = treated_density(&map, DVec3::new(-0.02, 0.0, 0.0), Kernel::Uniform, gather, &boundary);
-    let ball = found.estimate;
+    let boundary = Boundary::of(&side).unwrap().with_walls(&walls);
+    let estimator = Estimator::new(Kernel::Uniform, Gather::nearest(20, 0.45).unwrap())
+        .treated(Treatment::Clipped)
+        .rejecting(Rejection::BehindPlane);
+    let ball = estimator.collision_density(&map, DVec3::new(-0.02, 0.0, 0.0), &boundary);
     assert!(!ball.underfull && ball.found == 20, "{} accepted photons in the ball of the 20th", ball.found);
 }
 

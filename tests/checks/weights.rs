@@ -7,7 +7,8 @@ use crate::support::verdict;
 use glam::{DVec3, Vec3};
 use std::f64::consts::PI;
 use turbid::Spectrum;
-use turbid::estimators::{Gather, Kernel, collision_density, fluence};
+use turbid::estimators::boundary::Boundary;
+use turbid::estimators::{Estimator, Gather, Kernel};
 use turbid::light::Faces;
 use turbid::math::exp;
 use turbid::photons::importance::window;
@@ -78,8 +79,8 @@ pub fn one_photon_is_one_over_its_ball() {
     };
     let map = PhotonMap::new(vec![photon], 1).unwrap();
     for r in [0.01, 0.5, 7.0] {
-        let gather = Gather::radius(r).unwrap();
-        let found = collision_density(&map, photon.position, Kernel::Uniform, gather).value[0];
+        let estimator = Estimator::new(Kernel::Uniform, Gather::radius(r).unwrap());
+        let found = estimator.collision_density(&map, photon.position, &Boundary::UNKNOWN).value[0];
         let expected = 3.0 / (4.0 * PI * r * r * r);
         assert!((found / expected - 1.0).abs() < 1e-6, "{found} for {expected}");
     }
@@ -157,10 +158,11 @@ pub fn advised_noise_is_that_of_maps() {
         let histories = Histories { count: PHOTONS, seed: 83, replicate, max_order: None };
         let pass = shoot(&scene, histories, &[], |_| true, &NoProgress).unwrap();
         let map = pass.into_map(0.0).unwrap();
-        let gather = Gather::radius(radius).unwrap();
+        let estimator = Estimator::new(Kernel::Uniform, Gather::radius(radius).unwrap());
         // The fluence is 4 everywhere, but for photons that a ball loses nowhere.
-        let error =
-            |p: &DVec3| fluence(&map, *p, Spectrum::ONE, Kernel::Uniform, gather).value.mean() / 4.0 - 1.0;
+        let error = |p: &DVec3| {
+            estimator.fluence(&map, *p, Spectrum::ONE, &Boundary::UNKNOWN).value.mean() / 4.0 - 1.0
+        };
         squares.push(at.iter().map(|p| error(p) * error(p)).sum::<f64>() / at.len() as f64);
     }
     let promise = 0.25 * squares.mean();

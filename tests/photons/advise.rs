@@ -6,7 +6,8 @@ use crate::support::scenes::{self, Incidence};
 use crate::support::{run, verdict};
 use std::path::Path;
 use turbid::Spectrum;
-use turbid::estimators::{Gather, Kernel, fluence};
+use turbid::estimators::boundary::Boundary;
+use turbid::estimators::{Estimator, Gather, Kernel};
 use turbid::math::exp;
 use turbid::photons::{Histories, shoot};
 use turbid::scene::{Orders, Parts, Quantity, Scene};
@@ -70,10 +71,10 @@ impl Case {
             let histories = Histories { count: photons, seed, replicate, max_order: None };
             let pass = shoot(&self.scene, histories, &[], |_| true, &NoProgress).unwrap();
             let map = pass.into_map(radius).unwrap();
-            let gather = Gather::radius(radius).unwrap();
+            let estimator = Estimator::new(Kernel::Uniform, Gather::radius(radius).unwrap());
             let squares = self.scene.sensors().iter().zip(&self.exact).map(|(sensor, exact)| {
                 let Quantity::Fluence(p) = sensor.quantity else { return f64::NAN };
-                let estimate = fluence(&map, p, Spectrum::ONE, Kernel::Uniform, gather).value.mean();
+                let estimate = estimator.fluence(&map, p, Spectrum::ONE, &Boundary::UNKNOWN).value.mean();
                 (estimate / exact - 1.0) * (estimate / exact - 1.0)
             });
             errors.push(squares.sum::<f64>() / self.exact.len() as f64);

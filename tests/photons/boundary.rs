@@ -6,8 +6,8 @@ use crate::support::quadrature::integrate;
 use crate::support::verdict;
 use glam::DVec3;
 use std::f64::consts::PI;
-use turbid::estimators::boundary::{Boundary, Rejection, Treatment, body_moments, treated_density};
-use turbid::estimators::{Estimate, Gather, Kernel, collision_density};
+use turbid::estimators::boundary::{Boundary, Rejection, Treatment, body_moments};
+use turbid::estimators::{Estimate, Estimator, Gather, Kernel};
 use turbid::geometry::{Cuboid, Rectangle, Shape, Slab, Sphere};
 use turbid::photons::synthetic::{Number, Profile, Synthetic};
 use turbid::photons::{Flags, Photon, PhotonMap};
@@ -225,13 +225,10 @@ fn media_without_an_inside_have_finite_estimates() {
             .flat_map(|body| Treatment::ALL.map(|treatment| (body, treatment)))
             .flat_map(|(body, treatment)| Kernel::ALL.map(|kernel| (body, treatment, kernel)))
         {
-            for boundary in
-                [Boundary::of(body, treatment).unwrap(), Boundary::of(body, treatment).unwrap().among(&[])]
-            {
-                let found = [0, 1].map(|i| {
-                    let gather = Gather::radius(0.4).unwrap();
-                    treated_density(&maps[i], DVec3::ZERO, kernel, gather, &boundary).estimate.value[0]
-                });
+            let estimator = Estimator::new(kernel, Gather::radius(0.4).unwrap()).treated(treatment);
+            for boundary in [Boundary::of(body).unwrap(), Boundary::of(body).unwrap().among(&[])] {
+                let found =
+                    [0, 1].map(|i| estimator.collision_density(&maps[i], DVec3::ZERO, &boundary).value[0]);
                 let what = format!("{body:?}, {treatment:?}, {kernel:?}: {found:?}");
                 assert!(found[0] == 0.0 && found[1].is_finite(), "{what}");
             }
@@ -371,9 +368,9 @@ fn treatments_by_the_referee() {
         let cut_maps: Vec<PhotonMap> = all.iter().map(|map| cut(map, &body)).collect();
         for treatment in Treatment::ALL {
             let kernel = Kernel::Epanechnikov;
-            let boundary = Boundary::new(body.clone(), treatment).unwrap();
-            let gather = Gather::radius(r).unwrap();
-            let one = |map: &PhotonMap| treated_density(map, p, kernel, gather, &boundary).estimate.value[0];
+            let boundary = Boundary::of(&body).unwrap();
+            let estimator = Estimator::new(kernel, Gather::radius(r).unwrap()).treated(treatment);
+            let one = |map: &PhotonMap| estimator.collision_density(map, p, &boundary).value[0];
             let values: Moments = cut_maps.iter().map(one).collect();
             let density = |q: [f64; 3]| field.density(DVec3::from_array(q));
             let mean = |treatment: Treatment| {
@@ -407,15 +404,15 @@ fn media_that_touch_are_told_apart() {
     let half = Shape::Cuboid(Cuboid::new(low, DVec3::new(0.0, 1.0, 1.0)).unwrap());
     let whole = Shape::Cuboid(Cuboid::new(low, high).unwrap());
     let inner = [sphere(0.4)];
-    let gather = Gather::radius(0.3).unwrap();
+    let estimator = Estimator::new(Kernel::Uniform, Gather::radius(0.3).unwrap()).treated(Treatment::Clipped);
     for (what, boundary, point, off) in [
-        ("half", Boundary::new(half, Treatment::Clipped).unwrap().among(&[]), -0.05 * DVec3::X, 0.0),
-        ("outer", Boundary::new(whole, Treatment::Clipped).unwrap().among(&inner), -0.45 * DVec3::X, 0.01),
+        ("half", Boundary::of(&half).unwrap().among(&[]), -0.05 * DVec3::X, 0.0),
+        ("outer", Boundary::of(&whole).unwrap().among(&inner), -0.45 * DVec3::X, 0.01),
     ] {
         let values: Moments = (0..64)
             .map(|m| {
                 let map = field.map(Number::Expected(12_000), SEED, 900 + m).unwrap();
-                treated_density(&map, point, Kernel::Uniform, gather, &boundary).estimate.value[0]
+                estimator.collision_density(&map, point, &boundary).value[0]
             })
             .collect();
         let exact = field.density(point);
@@ -435,19 +432,20 @@ fn treatments_by_their_definition() {
         for kernel in Kernel::ALL {
             for gather in [Gather::radius(r).unwrap(), Gather::nearest(90, 0.5).unwrap()] {
                 for treatment in Treatment::ALL {
-                    let boundary = Boundary::new(body.clone(), treatment).unwrap();
-                    let found = treated_density(&map, p, kernel, gather, &boundary);
+                    let boundary = Boundary::of(&body).unwrap();
+                    let estimator = Estimator::new(kernel, gather).treated(treatment);
+                    let found = estimator.collision_density(&map, p, &boundary);
                     let (sum, radius, _) =
                         by_definition(&photons, |_| true, (treatment, kernel, gather), &body, p);
                     let exact = sum / map.emitted() as f64;
                     // Squared distances are rounded to 2^-22 of their size and coordinates to 2^-24 of the box: 1e-6
                     // of the radius, which every kernel takes with a factor below 6; local linear multiplies by 10.
-                    let off = found.estimate.value[0] / exact - 1.0;
+                    let off = found.value[0] / exact - 1.0;
                     assert!(
                         off.abs() < 6e-5,
                         "{treatment:?} {kernel:?} {gather:?} at {p} in {body:?}: {off:.1e}"
                     );
-                    assert!((found.estimate.radius / radius - 1.0).abs() < 4e-6 && found.rejected == 0);
+                    assert!((found.radius / radius - 1.0).abs() < 4e-6 && found.rejected == 0);
                 }
             }
         }
@@ -460,28 +458,31 @@ fn whole_balls_are_the_plain_estimate_bit_by_bit() {
     let map = all.map(Number::Exact(20_000), SEED, 3).unwrap();
     let middle = DVec3::new(0.9, 1.0, 1.05);
     let far = [sheet(-0.5), sheet(2.5)];
+    let medium = cuboid(DVec3::splat(2.0));
+    let boundary = Boundary::of(&medium).unwrap().with_walls(&far);
     for kernel in Kernel::ALL {
         for gather in [Gather::radius(0.4).unwrap(), Gather::nearest(50, 0.9).unwrap()] {
-            let plain = collision_density(&map, middle, kernel, gather);
+            let plain = Estimator::new(kernel, gather);
+            let untreated = plain.collision_density(&map, middle, &Boundary::UNKNOWN);
             for treatment in Treatment::ALL {
                 for rejection in Rejection::ALL {
-                    let boundary = Boundary::new(cuboid(DVec3::splat(2.0)), treatment).unwrap();
-                    let boundary = boundary.with_walls(rejection, &far);
-                    let treated = treated_density(&map, middle, kernel, gather, &boundary);
-                    assert_eq!(treated.estimate, plain);
+                    let estimator = plain.treated(treatment).rejecting(rejection);
+                    assert_eq!(estimator.collision_density(&map, middle, &boundary), untreated);
                 }
             }
         }
     }
     // A wall in the ball with all photons on this side of it: the same photons, one by one.
     let walls = [sheet(0.0)];
+    let medium = slab(-9.0, 18.0);
+    let boundary = Boundary::of(&medium).unwrap().with_walls(&walls);
+    let point = DVec3::new(0.9, 1.0, 0.1);
     for gather in [Gather::radius(1.04).unwrap(), Gather::nearest(700, 1.04).unwrap()] {
-        let plain = collision_density(&map, DVec3::new(0.9, 1.0, 0.1), Kernel::Cone, gather);
+        let estimator = Estimator::new(Kernel::Cone, gather);
+        let plain = estimator.collision_density(&map, point, &Boundary::UNKNOWN);
         for rejection in [Rejection::BehindPlane, Rejection::FacingBehind, Rejection::Visible] {
-            let boundary =
-                Boundary::new(slab(-9.0, 18.0), Treatment::Clipped).unwrap().with_walls(rejection, &walls);
-            let Estimate { value, found, .. } =
-                treated_density(&map, DVec3::new(0.9, 1.0, 0.1), Kernel::Cone, gather, &boundary).estimate;
+            let estimator = estimator.treated(Treatment::Clipped).rejecting(rejection);
+            let Estimate { value, found, .. } = estimator.collision_density(&map, point, &boundary);
             assert!((value[0] / plain.value[0] - 1.0).abs() < 1e-5 && found == plain.found);
         }
     }
@@ -534,16 +535,16 @@ fn rejections_by_their_definition() {
                 Gather::nearest(3000, 0.35).unwrap(),
             ] {
                 let body = slab(-9.0, 18.0);
-                let boundary =
-                    Boundary::new(body.clone(), Treatment::None).unwrap().with_walls(rejection, &walls);
-                let found = treated_density(&map, p, Kernel::Epanechnikov, gather, &boundary);
+                let boundary = Boundary::of(&body).unwrap().with_walls(&walls);
+                let estimator = Estimator::new(Kernel::Epanechnikov, gather).rejecting(rejection);
+                let found = estimator.collision_density(&map, p, &boundary);
                 let near: Vec<Photon> =
                     photons.iter().filter(|q| q.position.distance(p) < 0.9).copied().collect();
                 let how = (Treatment::None, Kernel::Epanechnikov, gather);
                 let (sum, radius, _) = by_definition(&near, accepts, how, &body, p);
-                let off = found.estimate.value[0] / (sum / map.emitted() as f64) - 1.0;
+                let off = found.value[0] / (sum / map.emitted() as f64) - 1.0;
                 assert!(off.abs() < 2e-5, "{rejection:?} {gather:?} at {p}: {off:.1e}");
-                assert!((found.estimate.radius / radius - 1.0).abs() < 4e-6);
+                assert!((found.radius / radius - 1.0).abs() < 4e-6);
                 let reach = radius * (1.0 - 4e-6);
                 let rejected = near.iter().filter(|q| q.position.distance(p) < reach && !accepts(q)).count();
                 assert!(
@@ -568,34 +569,30 @@ fn ties_and_coincidence() {
         flags: turbid::photons::Flags::NONE,
     };
     let walls = [sheet(0.0)];
-    let boundary = Boundary::new(slab(0.0, 9.0), Treatment::None).unwrap();
-    let boundary = boundary.with_walls(Rejection::BehindPlane, &walls);
+    let medium = slab(0.0, 9.0);
+    let boundary = Boundary::of(&medium).unwrap().with_walls(&walls);
     let p = DVec3::new(0.0, 0.0, 0.5);
-    let estimate = |photons: &[Photon], k: usize| {
+    let within = |photons: &[Photon], k: usize, cap: f64| {
         let map = PhotonMap::new(photons.to_vec(), 1).unwrap();
-        treated_density(&map, p, Kernel::Uniform, Gather::nearest(k, 4.0).unwrap(), &boundary)
+        let estimator = Estimator::new(Kernel::Uniform, Gather::nearest(k, cap).unwrap());
+        estimator.rejecting(Rejection::BehindPlane).collision_density(&map, p, &boundary)
     };
+    let estimate = |photons: &[Photon], k: usize| within(photons, k, 4.0);
     let ball = |r: f64| 4.0 / 3.0 * PI * r * r * r;
     // Two of four at distance 1 tie with the third; three behind the wall are nearer than they.
     let behind = [at(0.0, -0.25), at(0.1, -0.1), at(0.2, -0.2)];
     let tied = [&[at(0.0, 0.75), at(1.0, 0.5), at(-1.0, 0.5)][..], &behind].concat();
     let found = estimate(&tied, 3);
-    assert!((found.estimate.value[0] * ball(1.0) - 2.0).abs() < 1e-6);
-    assert_eq!((found.estimate.radius, found.estimate.found, found.rejected), (1.0, 3, 3));
+    assert!((found.value[0] * ball(1.0) - 2.0).abs() < 1e-6);
+    assert_eq!((found.radius, found.found, found.rejected), (1.0, 3, 3));
     let coincident = [&[at(0.0, 0.5), at(0.0, 0.5), at(2.0, 0.5)][..], &behind].concat();
     let found = estimate(&coincident, 2);
-    assert!((found.estimate.value[0] * ball(2.0) - 2.0).abs() < 1e-6 && found.estimate.coincident == 2);
+    assert!((found.value[0] * ball(2.0) - 2.0).abs() < 1e-6 && found.coincident == 2);
     let found = estimate(&coincident, 4);
-    assert!(found.estimate.underfull && found.estimate.radius == 4.0 && found.estimate.found == 3);
+    assert!(found.underfull && found.radius == 4.0 && found.found == 3);
     // Nothing near, and nowhere.
-    let far = treated_density(
-        &PhotonMap::new(behind.to_vec(), 1).unwrap(),
-        p,
-        Kernel::Uniform,
-        Gather::nearest(2, 0.7).unwrap(),
-        &boundary,
-    );
-    assert!(far.estimate.value[0] == 0.0 && far.estimate.underfull);
+    let far = within(&behind, 2, 0.7);
+    assert!(far.value[0] == 0.0 && far.underfull);
 }
 
 /// One value a map at one point: maps of independent photons in a box.
@@ -616,9 +613,10 @@ fn nearest_treatments_of_a_uniform_field() {
     // A corner, an edge, a face and near one.
     let probes =
         [DVec3::ZERO, DVec3::new(0.0, 1.0, 0.5), DVec3::new(0.5, 0.5, 1.0), DVec3::new(0.5, 0.04, 0.4)];
+    let estimator = Estimator::new(Kernel::Uniform, gather);
     let mean = |map: &PhotonMap, treatment| {
-        let boundary = Boundary::new(body.clone(), treatment).unwrap();
-        let one = |&p: &DVec3| treated_density(map, p, Kernel::Uniform, gather, &boundary).estimate.value[0];
+        let boundary = Boundary::of(&body).unwrap();
+        let one = |&p: &DVec3| estimator.treated(treatment).collision_density(map, p, &boundary).value[0];
         probes.iter().map(one).sum::<f64>() / probes.len() as f64
     };
     for treatment in [Treatment::Clipped, Treatment::Reflection, Treatment::LocalLinear] {
@@ -629,20 +627,20 @@ fn nearest_treatments_of_a_uniform_field() {
     let untreated = over_maps(field, photons, maps, |map| mean(map, Treatment::None));
     verdict::rejects("no treatment", &untreated, 1.0, SEED);
     // The face's share for the corner's and the edge's: clipped by the wrong volume.
+    let layer = slab(0.0, 1.0);
+    let boundary = Boundary::of(&layer).unwrap();
     let face_alone = over_maps(field, photons, maps, |map| {
-        let boundary = Boundary::new(slab(0.0, 1.0), Treatment::Clipped).unwrap();
-        treated_density(map, DVec3::ZERO, Kernel::Uniform, gather, &boundary).estimate.value[0]
+        estimator.treated(Treatment::Clipped).collision_density(map, DVec3::ZERO, &boundary).value[0]
     });
     verdict::rejects("clipped by the wrong volume", &face_alone, 1.0, SEED);
     // Among reals and images together the radius is that of a whole ball of k: (k-1) counted, k/(k - 1) of what the rule
     // for images needs at a face, where every image comes with its photon.
     let images_too = over_maps(field, photons, maps, |map| {
-        let boundary = Boundary::new(slab(0.0, 1.0), Treatment::Reflection).unwrap();
-        let ten = Gather::nearest(10, 0.24).unwrap();
+        let ten = Estimator::new(Kernel::Uniform, Gather::nearest(10, 0.24).unwrap());
+        let ten = ten.treated(Treatment::Reflection);
         let places =
             (0..9).map(|i| DVec3::new(0.25 * f64::from(i % 3 + 1), 0.25 * f64::from(i / 3 + 1), 0.0));
-        let right =
-            places.map(|p| treated_density(map, p, Kernel::Uniform, ten, &boundary).estimate.value[0]);
+        let right = places.map(|p| ten.collision_density(map, p, &boundary).value[0]);
         right.sum::<f64>() / 9.0 * 19.0 / 18.0
     });
     verdict::rejects("images set the radius", &images_too, 1.0, SEED);
@@ -669,25 +667,25 @@ fn rejected_photons_set_no_radius() {
     let p = DVec3::new(-0.03, 0.0, 0.0);
     let gather = Gather::nearest(20, 0.45).unwrap();
     let maps: Vec<PhotonMap> = (0..512).map(map).collect();
+    let boundary = Boundary::of(&dark).unwrap().with_walls(&walls);
     for rejection in [Rejection::BehindPlane, Rejection::Visible] {
-        let boundary = Boundary::new(dark.clone(), Treatment::Clipped).unwrap().with_walls(rejection, &walls);
-        let one =
-            |map: &PhotonMap| treated_density(map, p, Kernel::Cone, gather, &boundary).estimate.value[0];
+        let estimator = Estimator::new(Kernel::Cone, gather).treated(Treatment::Clipped).rejecting(rejection);
+        let one = |map: &PhotonMap| estimator.collision_density(map, p, &boundary).value[0];
         let values: Moments = maps.iter().map(one).collect();
         verdict::agrees(rejection.name(), &values, (0.4, 0.0), 0.06, SEED);
     }
     // The standard deviations of ratios of variances of 512 maps are below 0.1; the radius holds two fifths of the volume's
     // photons when false ones set it.
-    let boundary =
-        Boundary::new(dark.clone(), Treatment::Clipped).unwrap().with_walls(Rejection::BehindPlane, &walls);
+    let plain = Estimator::new(Kernel::Uniform, gather);
+    let estimator = plain.treated(Treatment::Clipped).rejecting(Rejection::BehindPlane);
     let (mut right, mut late, mut unclipped) = (Moments::new(), Moments::new(), Moments::new());
     for map in &maps {
-        let found = treated_density(map, p, Kernel::Uniform, gather, &boundary);
-        assert!(found.estimate.found == 20 || found.estimate.underfull);
-        right.push(found.estimate.value[0]);
-        let inside = body_moments(Kernel::Uniform, &dark, p, found.estimate.radius)[0];
-        unclipped.push(found.estimate.value[0] * inside);
-        let all = collision_density(map, p, Kernel::Uniform, gather);
+        let found = estimator.collision_density(map, p, &boundary);
+        assert!(found.found == 20 || found.underfull);
+        right.push(found.value[0]);
+        let inside = body_moments(Kernel::Uniform, &dark, p, found.radius)[0];
+        unclipped.push(found.value[0] * inside);
+        let all = plain.collision_density(map, p, &Boundary::UNKNOWN);
         let inside = body_moments(Kernel::Uniform, &dark, p, all.radius)[0];
         let kept = map
             .tree()

@@ -4,7 +4,8 @@ use crate::checks::weights;
 use crate::support::verdict;
 use glam::{DVec2, DVec3};
 use std::path::Path;
-use turbid::estimators::{Gather, Kernel};
+use turbid::estimators::boundary::Treatment;
+use turbid::estimators::{Estimator, Gather, Kernel};
 use turbid::integrators::mapper::{Mapper, Settings};
 use turbid::photons::importance::{Importance, ImportanceSettings};
 use turbid::photons::maps::{
@@ -130,7 +131,7 @@ fn importance_makes_the_picture_better() {
         Importance::of(&scene, scene.camera().unwrap(), indirect, &settings, &NoProgress).unwrap();
     let reading = Settings {
         global: (Kernel::Uniform, Gather::radius(0.5).unwrap()),
-        volume: (Kernel::Uniform, Gather::radius(0.5).unwrap()),
+        volume: Estimator::new(Kernel::Uniform, Gather::radius(0.5).unwrap()).treated(Treatment::Clipped),
         ..Settings::for_size(10.0, 50).unwrap()
     };
     let camera = scene.camera().unwrap();

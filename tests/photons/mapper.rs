@@ -11,8 +11,8 @@ use crate::support::verdict;
 use glam::{DVec3, Vec3};
 use std::f64::consts::PI;
 use turbid::Spectrum;
-use turbid::estimators::boundary::{Boundary, Rejection, Treatment, treated_density, treated_in_scattered};
-use turbid::estimators::{Gather, Kernel};
+use turbid::estimators::boundary::{Boundary, Rejection, Treatment};
+use turbid::estimators::{Estimator, Gather, Kernel};
 use turbid::geometry::{Rectangle, Shape};
 use turbid::integrators::mapper::{Mapper, Settings};
 use turbid::integrators::{Adaptive, March};
@@ -129,15 +129,15 @@ fn treated_radiance_of_one_photon() {
             for rejection in Rejection::ALL {
                 for kernel in Kernel::ALL {
                     let gather = Gather::radius(0.2).unwrap();
-                    let boundary =
-                        Boundary::new(cube.clone(), treatment).unwrap().with_walls(rejection, &wall);
-                    let density = treated_density(&map, point, kernel, gather, &boundary);
-                    let radiance = treated_in_scattered(&map, point, wo, &phase, kernel, gather, &boundary);
-                    let expected = density.estimate.value[2] * p;
+                    let boundary = Boundary::of(&cube).unwrap().with_walls(&wall);
+                    let estimator = Estimator::new(kernel, gather).treated(treatment).rejecting(rejection);
+                    let density = estimator.collision_density(&map, point, &boundary);
+                    let radiance = estimator.in_scattered(&map, point, wo, &phase, Spectrum::ONE, &boundary);
+                    let expected = density.value[2] * p;
                     assert!(expected > 0.0);
                     // Single precision of the phase function's eight lanes.
                     assert!(
-                        (radiance.estimate.value[2] / expected - 1.0).abs() < 1e-5,
+                        (radiance.value[2] / expected - 1.0).abs() < 1e-5,
                         "{treatment:?} {rejection:?} {kernel:?} {g}"
                     );
                 }
@@ -374,7 +374,7 @@ fn fog_cut_in_two_is_the_same_fog() {
         let [u, v] = stream.pair();
         Ray::new(DVec3::new(0.97 + 0.06 * u, 0.2 + 0.8 * v, -0.1), DVec3::Z)
     };
-    let wide = (Kernel::Uniform, Gather::radius(0.25).unwrap());
+    let wide = Estimator::new(Kernel::Uniform, Gather::radius(0.25).unwrap()).treated(Treatment::Clipped);
     let settings = Settings { volume: wide, ..marching(0.5, StepRule::Integrated, true) };
     let multiple = |layers: &Layers| layers.multiple[0];
     let whole = by_maps(&scene(vec![cuboid(low, high)]), &settings, (4000, 150), 22, ray, multiple);
@@ -392,7 +392,10 @@ fn balls_are_clipped_at_glass() {
         Ray::new(DVec3::new(u, v, -1.3), DVec3::Z)
     };
     let scene = refracting_cavity(1.33, 2.0, 0.0);
-    let treated = |treatment| Settings { treatment, ..marching(0.3, StepRule::Integrated, true) };
+    let treated = |treatment| {
+        let settings = marching(0.3, StepRule::Integrated, true);
+        Settings { volume: settings.volume.treated(treatment), ..settings }
+    };
     let total = |layers: &Layers| layers.total()[0] * PI;
     let clipped = by_maps(&scene, &treated(Treatment::Clipped), (3000, 300), 25, ray, total);
     verdict::agrees("clipped", &clipped, (1.0, 1e-4), 0.05, 25);

@@ -7,8 +7,7 @@ use crate::support::scenes::{bounded, cuboid, homogeneous, lambertian, point_lig
 use crate::support::verdict;
 use glam::DVec3;
 use turbid::Spectrum;
-use turbid::estimators::boundary::Treatment;
-use turbid::estimators::{Gather, Kernel};
+use turbid::estimators::{Estimator, Gather, Kernel};
 use turbid::geometry::{Shape, Slab};
 use turbid::integrators::mapper::{Mapper, Settings, scene_size};
 use turbid::integrators::{March, StepRule, path};
@@ -187,9 +186,7 @@ fn level_rays_in_varying_fog_without_end() {
             maps: 32,
             seed,
             orders: Orders::ALL,
-            gather: Gather::nearest(50, 1.0).unwrap(),
-            kernel: Kernel::Uniform,
-            treatment: Treatment::None,
+            estimator: Estimator::new(Kernel::Uniform, Gather::nearest(50, 1.0).unwrap()),
         };
         let readings = by_photons(&Scene::new(parts).unwrap(), &settings, &NoProgress).unwrap().readings;
         (readings[0].mean, readings[0].std_error.unwrap())

@@ -7,7 +7,8 @@ use crate::support::verdict;
 use glam::DVec3;
 use libm::{exp, expm1, sinh};
 use turbid::Spectrum;
-use turbid::estimators::{Gather, Kernel, in_scattered};
+use turbid::estimators::boundary::Boundary;
+use turbid::estimators::{Estimator, Gather, Kernel};
 use turbid::integrators::{March, StepRule, along};
 use turbid::math::{Asymmetry, FOUR_PI, Interval, Positive, Ray};
 use turbid::medium::{Homogeneous, Medium};
@@ -107,7 +108,7 @@ fn steps_divide_the_stretch() {
 fn a_uniform_map() {
     let photons = Synthetic::new(Profile::Constant, DVec3::ZERO, DVec3::new(4.0, 2.0, 2.0)).unwrap();
     let step = Positive::new("the step", 0.5).unwrap();
-    let gather = (Kernel::Epanechnikov, Gather::radius(0.3).unwrap());
+    let estimator = Estimator::new(Kernel::Epanechnikov, Gather::radius(0.3).unwrap());
     let span = Interval { start: 0.0, end: 3.0 };
     // One watt in a volume of 16, collided: 1/16 per volume, over all directions.
     let exact = 0.8 / 16.0 / FOUR_PI * -expm1(-3.0);
@@ -127,7 +128,8 @@ fn a_uniform_map() {
                     let start = DVec3::new(0.5, 0.4 * f64::from(1 + i % 4), 0.4 * f64::from(1 + i / 4));
                     let (ray, phase, one) = (Ray::new(start, DVec3::X), medium.phase(), Spectrum::ONE);
                     let source = |place: DVec3| {
-                        in_scattered(&map, place, -DVec3::X, phase, one, gather.0, gather.1).value * 0.8
+                        let (wo, nowhere) = (-DVec3::X, &Boundary::UNKNOWN);
+                        estimator.in_scattered(&map, place, wo, phase, one, nowhere).value * 0.8
                     };
                     let mut stream = Stream::new(1, Purpose::Synthetic, 0, 0);
                     along(&medium, (&ray, span), &March::equal(step, *rule), 1.0, &mut stream, source)[1]

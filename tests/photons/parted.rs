@@ -11,8 +11,8 @@ use glam::{DVec2, DVec3};
 use std::f64::consts::PI;
 use std::sync::Arc;
 use turbid::Spectrum;
-use turbid::estimators::boundary::{Boundary, Treatment, treated_density, treated_in_scattered};
-use turbid::estimators::{Gather, Kernel};
+use turbid::estimators::boundary::{Boundary, Treatment};
+use turbid::estimators::{Estimator, Gather, Kernel};
 use turbid::geometry::{Ground, Lathe, Mesh, Shape, Up, height_field};
 use turbid::integrators::mapper::{Mapper, Settings, medium_extents};
 use turbid::integrators::path;
@@ -262,14 +262,14 @@ fn map(field: &dyn Fn(DVec3) -> f64, photons: u64, replicate: u64) -> PhotonMap 
 
 /// Estimates over the field at their points, in the mean over the points of a case: for each way to gather one value a
 /// map.
-fn relative(case: &Case, maps: u64, ways: &[(Kernel, Gather)], boundary: &Boundary<'_>) -> Vec<Moments> {
+fn relative(case: &Case, maps: u64, ways: &[Estimator], boundary: &Boundary<'_>) -> Vec<Moments> {
     let mut all = vec![Moments::new(); ways.len()];
     for replicate in 0..maps {
         let map = map(&case.field, PHOTONS, replicate);
         let scale = 8.0 * map.emitted() as f64 / PHOTONS as f64;
-        for (moments, (kernel, gather)) in all.iter_mut().zip(ways) {
+        for (moments, estimator) in all.iter_mut().zip(ways) {
             let ask = |p: &DVec3| {
-                let found = treated_density(&map, *p, *kernel, *gather, boundary).estimate;
+                let found = estimator.collision_density(&map, *p, boundary);
                 found.value[0] * scale / (case.field)(*p)
             };
             moments.push(case.points.iter().map(ask).sum::<f64>() / case.points.len() as f64);
@@ -278,11 +278,12 @@ fn relative(case: &Case, maps: u64, ways: &[(Kernel, Gather)], boundary: &Bounda
     all
 }
 
-fn ways() -> Vec<(Kernel, Gather)> {
-    vec![
-        (Kernel::Uniform, Gather::nearest(30, 0.6).unwrap()),
-        (Kernel::Epanechnikov, Gather::radius(0.25).unwrap()),
+fn ways(treatment: Treatment) -> [Estimator; 2] {
+    [
+        Estimator::new(Kernel::Uniform, Gather::nearest(30, 0.6).unwrap()),
+        Estimator::new(Kernel::Epanechnikov, Gather::radius(0.25).unwrap()),
     ]
+    .map(|way| way.treated(treatment))
 }
 
 /// Uniform fields on every side of a body are read as they are, at any radius and k, beside every kind of body. Negative
@@ -291,13 +292,12 @@ fn ways() -> Vec<(Kernel, Gather)> {
 fn fields_parted_by_bodies() {
     for case in cases() {
         let extents = medium_extents(&case.scene);
-        let boundary = extents[case.number].boundary(Treatment::Clipped);
-        for (values, way) in relative(&case, MAPS, &ways(), &boundary).iter().zip(ways()) {
-            verdict::agrees(&format!("{}, {way:?}", case.name), values, (1.0, 0.0), 0.25, SEED);
+        let (boundary, ways) = (extents[case.number].boundary(), ways(Treatment::Clipped));
+        for (values, way) in relative(&case, MAPS, &ways, &boundary).iter().zip(ways) {
+            verdict::agrees(&format!("{}, {}", case.name, way.name()), values, (1.0, 0.0), 0.25, SEED);
         }
-        let blind = Boundary::unknown(Treatment::Clipped);
-        for (values, way) in relative(&case, MAPS, &ways(), &blind).iter().zip(ways()) {
-            verdict::rejects(&format!("{}, {way:?}, bodies not known", case.name), values, 1.0, SEED);
+        for (values, way) in relative(&case, MAPS, &ways, &Boundary::UNKNOWN).iter().zip(ways) {
+            verdict::rejects(&format!("{}, {}, bodies not known", case.name, way.name()), values, 1.0, SEED);
         }
     }
 }
@@ -308,9 +308,9 @@ fn treatments_beside_bodies() {
     let case = cases().into_iter().find(|case| case.name == "in a room with fog beyond").unwrap();
     let extents = medium_extents(&case.scene);
     for treatment in [Treatment::Reflection, Treatment::LocalLinear] {
-        let values = relative(&case, MAPS, &ways(), &extents[case.number].boundary(treatment));
-        for (values, way) in values.iter().zip(ways()) {
-            verdict::agrees(&format!("{}, {way:?}", treatment.name()), values, (1.0, 0.0), 0.25, SEED);
+        let values = relative(&case, MAPS, &ways(treatment), &extents[case.number].boundary());
+        for (values, way) in values.iter().zip(ways(treatment)) {
+            verdict::agrees(&way.name(), values, (1.0, 0.0), 0.25, SEED);
         }
     }
 }
@@ -320,15 +320,15 @@ fn treatments_beside_bodies() {
 fn points_on_a_screen_look_ahead() {
     let case = cases().into_iter().find(|case| case.name == "at a screen").unwrap();
     let extents = medium_extents(&case.scene);
-    let boundary = extents[case.number].boundary(Treatment::Clipped);
-    let (kernel, gather) = ways()[0];
+    let boundary = extents[case.number].boundary();
+    let [estimator, _] = ways(Treatment::Clipped);
     let phase = Phase::with_asymmetry(Asymmetry::new("g", 0.0).unwrap());
     for (ahead, expected) in [(DVec3::Z, 1.0), (DVec3::NEG_Z, 0.2)] {
         let one = |replicate: u64| {
             let map = map(&case.field, PHOTONS, replicate);
             let ask = |x: f64| {
                 let p = DVec3::new(x, 0.1, 0.0);
-                treated_in_scattered(&map, p, -ahead, &phase, kernel, gather, &boundary).estimate.value[0]
+                estimator.in_scattered(&map, p, -ahead, &phase, Spectrum::ONE, &boundary).value[0]
             };
             let scale = FOUR_PI * 8.0 * map.emitted() as f64 / PHOTONS as f64;
             (0..4).map(|i| ask(0.4 * f64::from(i) - 0.6)).sum::<f64>() / 4.0 * scale
@@ -346,11 +346,9 @@ fn walls_on_faces_cost_nothing() {
     let (bare, walled) = (foggy(Vec::new()), foggy(vec![wall]));
     let (bare, walled) = (medium_extents(&bare), medium_extents(&walled));
     for p in [[0.0, 0.0, -0.99], [0.9, 0.9, -0.9], [0.2, 0.1, 0.0]].map(DVec3::from) {
-        for (kernel, gather) in ways() {
-            let [bare, walled] = [&bare, &walled].map(|extents| {
-                let boundary = extents[0].boundary(Treatment::Clipped);
-                treated_density(&even, p, kernel, gather, &boundary).estimate
-            });
+        for estimator in ways(Treatment::Clipped) {
+            let [bare, walled] =
+                [&bare, &walled].map(|extents| estimator.collision_density(&even, p, &extents[0].boundary()));
             assert_eq!(bare, walled, "{p}");
         }
     }
@@ -370,7 +368,8 @@ fn light_along_a_floor_with_fog_below() {
         let [y, z] = stream.pair();
         Ray::new(DVec3::new(-0.45, 0.6 * y - 0.3, -0.499 + 0.02 * z), DVec3::X)
     };
-    let settings = Settings { volume: (Kernel::Uniform, Gather::nearest(40, 0.3).unwrap()), ..settings(1) };
+    let volume = Estimator { gather: Gather::nearest(40, 0.3).unwrap(), ..settings(1).volume };
+    let settings = Settings { volume, ..settings(1) };
     let (mut by_maps, mut by_paths) = (Moments::new(), Moments::new());
     for replicate in 0..64 {
         let maps = fill(&scene, &filling(5000, Indirect::Seen, SEED, replicate), &NoProgress).unwrap();
@@ -409,9 +408,8 @@ fn fluence_beside_a_wall_with_fog_beyond() {
                 maps: 1,
                 seed,
                 orders: Orders::ALL,
-                gather: Gather::nearest(40, 0.3).unwrap(),
-                kernel: Kernel::Uniform,
-                treatment,
+                estimator: Estimator::new(Kernel::Uniform, Gather::nearest(40, 0.3).unwrap())
+                    .treated(treatment),
             };
             let result = by_photons(&scene, &settings, &NoProgress).unwrap();
             assert_eq!(result.beyond, 0);

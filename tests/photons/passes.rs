@@ -5,7 +5,7 @@ use crate::support::scenes::{bounded, cuboid, homogeneous, outflow, point_light,
 use glam::DVec3;
 use turbid::Spectrum;
 use turbid::estimators::boundary::Treatment;
-use turbid::estimators::{Gather, Kernel};
+use turbid::estimators::{Estimator, Gather, Kernel};
 use turbid::math::Ray;
 use turbid::scene::{Orders, Parts, Quantity, Region, Scene, Sensor};
 use turbid::sensor::{PhotonReadings, PhotonSettings, by_photons, by_photons_in_passes, forecast};
@@ -27,8 +27,8 @@ fn with_sensors(scene: &Scene, quantities: &[(Quantity, Orders)]) -> Scene {
 }
 
 fn settings(photons: u64, gather: Gather) -> PhotonSettings {
-    let (kernel, treatment) = (Kernel::Epanechnikov, Treatment::Clipped);
-    PhotonSettings { photons, maps: 3, seed: 4, orders: Orders::ALL, gather, kernel, treatment }
+    let estimator = Estimator::new(Kernel::Epanechnikov, gather).treated(Treatment::Clipped);
+    PhotonSettings { photons, maps: 3, seed: 4, orders: Orders::ALL, estimator }
 }
 
 /// A slab and a ball in colour: fluences at the cell's edge too, radiances with light that nothing scattered, tallies.

@@ -11,7 +11,8 @@ use glam::DVec3;
 use statrs::distribution::{ContinuousCDF, StudentsT};
 use std::f64::consts::PI;
 use turbid::Spectrum;
-use turbid::estimators::{Gather, Kernel, collision_density, in_scattered};
+use turbid::estimators::boundary::Boundary;
+use turbid::estimators::{Estimator, Gather, Kernel};
 use turbid::math::{Asymmetry, FOUR_PI, exp, ln, sin_cos};
 use turbid::phase::HenyeyGreenstein;
 use turbid::photons::PhotonMap;
@@ -142,11 +143,11 @@ impl Local {
 }
 
 /// One number a map: the mean over probes of estimate over exact value, for each question.
-fn ratios(map: &PhotonMap, questions: &[(Kernel, Gather)], exact: &[Vec<f64>]) -> Vec<f64> {
-    let ratio = |(&(kernel, gather), exact): (&(Kernel, Gather), &Vec<f64>)| {
+fn ratios(map: &PhotonMap, questions: &[Estimator], exact: &[Vec<f64>]) -> Vec<f64> {
+    let ratio = |(estimator, exact): (&Estimator, &Vec<f64>)| {
         let each = probes().zip(exact).map(|(at, exact)| {
-            let estimate = collision_density(map, at, kernel, gather);
-            assert!(!estimate.underfull || matches!(gather, Gather::Radius(_)));
+            let estimate = estimator.collision_density(map, at, &Boundary::UNKNOWN);
+            assert!(!estimate.underfull || estimator.gather.k().is_none());
             estimate.value.mean() / exact
         });
         each.sum::<f64>() / 27.0
@@ -164,19 +165,20 @@ fn every_kernel_and_gather_has_its_exact_mean() {
         Profile::Exponential { rate: 1.5 },
         Profile::Sinusoid { amplitude: 0.5, periods: 3 },
     ];
-    let questions: Vec<(Kernel, Gather)> = Kernel::ALL
+    let questions: Vec<Estimator> = Kernel::ALL
         .into_iter()
         .flat_map(|kernel| {
-            [Gather::radius(RADIUS), Gather::nearest(K, CAP)].map(|gather| (kernel, gather.unwrap()))
+            [Gather::radius(RADIUS), Gather::nearest(K, CAP)]
+                .map(|gather| Estimator::new(kernel, gather.unwrap()))
         })
         .collect();
     for profile in profiles {
         let exact: Vec<Vec<f64>> = questions
             .iter()
-            .map(|&(kernel, gather)| {
-                let mean = |at: DVec3| match gather {
-                    Gather::Radius(radius) => Local::new(profile, at).kernel_mean(kernel, radius.get()),
-                    _ => Local::new(profile, at).nearest_mean(kernel),
+            .map(|&Estimator { kernel, gather, .. }| {
+                let mean = |at: DVec3| match gather.k() {
+                    None => Local::new(profile, at).kernel_mean(kernel, gather.cap()),
+                    Some(_) => Local::new(profile, at).nearest_mean(kernel),
                 };
                 probes().map(mean).collect()
             })
@@ -184,13 +186,14 @@ fn every_kernel_and_gather_has_its_exact_mean() {
         let by_map: Vec<Vec<f64>> = maps(synthetic(profile), Number::Exact(PHOTONS))
             .map(|map| ratios(&map, &questions, &exact))
             .collect();
-        for (i, (kernel, gather)) in questions.iter().enumerate() {
+        for (i, estimator) in questions.iter().enumerate() {
+            let kernel = estimator.kernel;
             let column: Vec<f64> = by_map.iter().map(|row| row[i]).collect();
             let verdict = Verdict::new(&column, 1.0);
-            let what = format!("{profile:?} {} {gather:?}", kernel.name());
+            let what = format!("{profile:?} {}", estimator.name());
             verdict.accept(&what, 0.03);
             // The negative control of a normalisation: the Gaussian of infinite extent, three per cent low.
-            if *kernel == Kernel::Gaussian && profile == Profile::Constant {
+            if kernel == Kernel::Gaussian && profile == Profile::Constant {
                 let uncut = 1.0 / (2.0 * PI / 9.0 * (2.0 * PI / 9.0).sqrt()) / kernel.peak();
                 let wrong: Vec<f64> = column.iter().map(|v| v * uncut).collect();
                 Verdict::new(&wrong, 1.0).reject(&what);
@@ -205,7 +208,7 @@ fn by_map(synthetic: Synthetic, number: Number, mean: impl Fn(&PhotonMap, DVec3)
 }
 
 fn density_at(map: &PhotonMap, at: DVec3, kernel: Kernel, gather: Gather) -> f64 {
-    collision_density(map, at, kernel, gather).value.mean()
+    Estimator::new(kernel, gather).collision_density(map, at, &Boundary::UNKNOWN).value.mean()
 }
 
 #[test]
@@ -239,10 +242,10 @@ fn estimates_divide_by_emitted() {
 #[test]
 fn the_mixture_with_under_full_gathers_is_unbiased() {
     let cap = libm::cbrt(K as f64 / (PHOTONS as f64 * 4.0 / 3.0 * PI));
-    let gather = Gather::nearest(K, cap).unwrap();
+    let estimator = Estimator::new(Kernel::Epanechnikov, Gather::nearest(K, cap).unwrap());
     let ask = |wrong: bool| {
         by_map(synthetic(Profile::Constant), Number::Expected(PHOTONS), |map, at| {
-            let estimate = collision_density(map, at, Kernel::Epanechnikov, gather);
+            let estimate = estimator.collision_density(map, at, &Boundary::UNKNOWN);
             let n = estimate.found as f64;
             let factor = if wrong && estimate.underfull && n > 0.0 { (n - 1.0) / n } else { 1.0 };
             estimate.value.mean() * factor
@@ -261,7 +264,7 @@ fn variances_are_as_stated() {
         for gather in gathers.map(|gather| gather.unwrap()) {
             let bias = match gather {
                 Gather::NearestBiased { .. } => gather.expected_bias(kernel, 1.0, 0.0, PHOTONS as f64),
-                _ => 0.0,
+                Gather::Radius(_) | Gather::Nearest { .. } => 0.0,
             };
             let stated = gather.expected_relative_variance(kernel, PHOTONS as f64, 1.0);
             let squares = by_map(synthetic(Profile::Constant), Number::Expected(PHOTONS), |map, at| {
@@ -310,13 +313,13 @@ fn an_edge_is_blurred_as_stated() {
 /// function.
 #[test]
 fn isotropic_light_scatters_alike() {
-    let gather = Gather::radius(RADIUS).unwrap();
+    let estimator = Estimator::new(Kernel::Epanechnikov, Gather::radius(RADIUS).unwrap());
     for g in [-0.5, 0.0, 0.8] {
         let phase = HenyeyGreenstein::new(Asymmetry::new("g", g).unwrap());
         let (sigma_t, wo) = (Spectrum::grey(2.5), DVec3::new(0.0, 0.6, -0.8));
         let values = by_map(synthetic(Profile::Constant), Number::Exact(PHOTONS), |map, at| {
-            let kernel = Kernel::Epanechnikov;
-            in_scattered(map, at, wo, &phase, sigma_t, kernel, gather).value.mean() * FOUR_PI * 2.5
+            let found = estimator.in_scattered(map, at, wo, &phase, sigma_t, &Boundary::UNKNOWN);
+            found.value.mean() * FOUR_PI * 2.5
         });
         Verdict::new(&values, 1.0).accept(&format!("in-scattered, g = {g}"), 0.06);
     }

@@ -10,8 +10,8 @@ use glam::DVec3;
 use std::f64::consts::PI;
 use turbid::Error;
 use turbid::Spectrum;
-use turbid::estimators::boundary::Treatment;
-use turbid::estimators::{Gather, Kernel, fluence};
+use turbid::estimators::boundary::{Boundary, Treatment};
+use turbid::estimators::{Estimator, Gather, Kernel};
 use turbid::light::Faces;
 use turbid::math::{Ray, exp};
 use turbid::photons::{Emitter, Histories, Photon, PhotonMap, shoot};
@@ -26,9 +26,7 @@ fn photon_settings(photons: u64, gather: Gather) -> PhotonSettings {
         maps: 1,
         seed: 1,
         orders: Orders::ALL,
-        gather,
-        kernel: Kernel::Uniform,
-        treatment: Treatment::Clipped,
+        estimator: Estimator::new(Kernel::Uniform, gather).treated(Treatment::Clipped),
     }
 }
 
@@ -217,9 +215,12 @@ fn no_photons_at_all() {
 /// the cap, counted as under-full.
 #[test]
 fn few_photons_in_the_map() {
+    let fluence = |map: &PhotonMap, sigma_t: Spectrum, gather: Gather| {
+        Estimator::new(Kernel::Uniform, gather).fluence(map, DVec3::ZERO, sigma_t, &Boundary::UNKNOWN)
+    };
     let empty = PhotonMap::new(Vec::new(), 10).unwrap();
     for gather in [Gather::radius(1.0).unwrap(), Gather::nearest(50, 1.0).unwrap()] {
-        let estimate = fluence(&empty, DVec3::ZERO, Spectrum::ONE, Kernel::Uniform, gather);
+        let estimate = fluence(&empty, Spectrum::ONE, gather);
         assert_eq!((estimate.value, estimate.found), (Spectrum::ZERO, 0));
     }
     let photon = |x: f64| Photon {
@@ -231,8 +232,7 @@ fn few_photons_in_the_map() {
         flags: turbid::photons::Flags::MEDIUM,
     };
     let map = PhotonMap::new((0..5).map(|i| photon(0.1 * f64::from(i))).collect(), 10).unwrap();
-    let estimate =
-        fluence(&map, DVec3::ZERO, Spectrum::grey(2.0), Kernel::Uniform, Gather::nearest(50, 1.0).unwrap());
+    let estimate = fluence(&map, Spectrum::grey(2.0), Gather::nearest(50, 1.0).unwrap());
     let ball = 4.0 / 3.0 * PI;
     assert!(estimate.underfull && estimate.found == 5);
     assert!((estimate.value[0] / (5.0 / (10.0 * 2.0 * ball)) - 1.0).abs() < 1e-6, "{estimate:?}");

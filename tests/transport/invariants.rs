@@ -9,7 +9,7 @@ use glam::DVec3;
 use std::path::Path;
 use turbid::Spectrum;
 use turbid::estimators::boundary::Treatment;
-use turbid::estimators::{Gather, Kernel};
+use turbid::estimators::{Estimator, Gather, Kernel};
 use turbid::light::Faces;
 use turbid::photons::{Histories, Photon, shoot};
 use turbid::scene::{BUILTIN, Orders, Region, Scene};
@@ -133,16 +133,17 @@ fn path_settings(seed: u64) -> PathSettings {
     PathSettings { samples: 20_000, seed, replicate: 0, orders: Orders::ALL }
 }
 
-fn photon_settings(seed: u64) -> PhotonSettings {
-    let gather = Gather::nearest(50, 1.0).unwrap();
+fn nearest() -> Gather {
+    Gather::nearest(50, 1.0).unwrap()
+}
+
+fn photon_settings(seed: u64, gather: Gather) -> PhotonSettings {
     PhotonSettings {
         photons: 20_000,
         maps: 2,
         seed,
         orders: Orders::ALL,
-        gather,
-        kernel: Kernel::Epanechnikov,
-        treatment: Treatment::Clipped,
+        estimator: Estimator::new(Kernel::Epanechnikov, gather).treated(Treatment::Clipped),
     }
 }
 
@@ -170,7 +171,7 @@ fn the_same_seed_gives_the_same_bits_on_any_number_of_threads() {
         let all = |threads: usize, seed: u64| {
             in_pool(threads, || {
                 let paths = by_paths(&scene, &path_settings(seed), &NoProgress).unwrap();
-                let photons = by_photons(&scene, &photon_settings(seed), &NoProgress).unwrap();
+                let photons = by_photons(&scene, &photon_settings(seed, nearest()), &NoProgress).unwrap();
                 (bits(&paths), bits(&photons.readings), photons.ledger)
             })
         };
@@ -200,9 +201,8 @@ fn scale_changes_no_bit() {
     let small = 1.0 / 1_048_576.0;
     let readings = |scale: f64| {
         let scene = builtin("slab", &[("scale", &format!("{scale:e}")), ("mu0", "0.5"), ("g", "0.75")]);
-        let gather =
-            |r: f64| PhotonSettings { gather: Gather::radius(r * scale).unwrap(), ..photon_settings(3) };
-        let nearest = PhotonSettings { gather: Gather::nearest(50, scale).unwrap(), ..photon_settings(3) };
+        let gather = |r: f64| photon_settings(3, Gather::radius(r * scale).unwrap());
+        let nearest = photon_settings(3, Gather::nearest(50, scale).unwrap());
         (
             bits(&by_paths(&scene, &path_settings(3), &NoProgress).unwrap()),
             bits(&by_photons(&scene, &gather(0.25), &NoProgress).unwrap().readings),
@@ -228,12 +228,8 @@ fn the_number_of_histories_changes_no_mean() {
     let long = pass(&scene, &[], 40_000, 5, |_| true).media.concat();
     assert!(photon_bits(&long)[..short.len()] == photon_bits(&short)[..]);
     let fluence = |photons: u64, seed: u64| -> Moments {
-        let settings = PhotonSettings {
-            photons,
-            maps: 64,
-            gather: Gather::radius(0.4).unwrap(),
-            ..photon_settings(seed)
-        };
+        let settings =
+            PhotonSettings { photons, maps: 64, ..photon_settings(seed, Gather::radius(0.4).unwrap()) };
         let result = by_photons(&scene, &settings, &NoProgress).unwrap();
         let reading = &result.readings[6];
         assert_eq!((reading.quantity.as_str(), reading.n), ("fluence", 64));

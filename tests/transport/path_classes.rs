@@ -7,7 +7,8 @@ use crate::support::verdict;
 use glam::DVec3;
 use std::f64::consts::PI;
 use turbid::Spectrum;
-use turbid::estimators::{Gather, Kernel, fluence};
+use turbid::estimators::boundary::Boundary;
+use turbid::estimators::{Estimator, Gather, Kernel};
 use turbid::geometry::Shape;
 use turbid::integrators::{Layer, Layers, path};
 use turbid::math::{FOUR_PI, Ray, atan2, exp};
@@ -173,8 +174,8 @@ fn photons_off_the_mirror_are_the_light_of_the_image() {
             shoot(&scene, histories, &[], is_in(Orders::only(0)), &NoProgress).unwrap().media.concat();
         let estimate = |photons: Vec<Photon>| {
             let map = PhotonMap::new(photons, PHOTONS).unwrap();
-            let gather = Gather::radius(radius).unwrap();
-            fluence(&map, place, Spectrum::ONE, Kernel::Uniform, gather).value[0]
+            let estimator = Estimator::new(Kernel::Uniform, Gather::radius(radius).unwrap());
+            estimator.fluence(&map, place, Spectrum::ONE, &Boundary::UNKNOWN).value[0]
         };
         let specular = photons.iter().filter(|p| p.flags == Flags::SPECULAR).copied().collect();
         by_mirror.push(estimate(specular));

@@ -3,7 +3,7 @@
 use crate::{Round, WIDTH, squared_errors, timed};
 use anyhow::{Context, Result};
 use std::io::Write;
-use turbid::estimators::{Gather, Kernel};
+use turbid::estimators::{Estimator, Gather, Kernel};
 use turbid::integrators::March;
 use turbid::integrators::mapper::{Mapper, Settings};
 use turbid::math::Positive;
@@ -46,7 +46,7 @@ fn by_map(
     let standard = Settings::for_size(2.0, k)?;
     let settings = Settings {
         global: (Kernel::Uniform, nearest),
-        volume: (Kernel::Uniform, nearest),
+        volume: Estimator { gather: nearest, ..standard.volume },
         // One random place a ray, in proportion to what reaches the eye from it: unbiased, whatever the step.
         march: March { step: Positive::new("the step", 4.0)?, adaptive: None, ..standard.march },
         ..standard

@@ -3,7 +3,7 @@
 use super::fields::{CELL, Field};
 use crate::theory::{Fog, spiral};
 use glam::DVec3;
-use turbid::estimators::{Gather, Kernel};
+use turbid::estimators::{Estimator, Gather, Kernel};
 
 /// How large a gather is.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -99,13 +99,7 @@ impl Case {
 
     /// The kernel in a word.
     pub fn kernel_name(&self) -> &'static str {
-        match self.kernel {
-            Kernel::Uniform => "uniform",
-            Kernel::Epanechnikov => "epanechnikov",
-            Kernel::Cone => "cone",
-            Kernel::Biweight => "biweight",
-            Kernel::Gaussian => "gaussian",
-        }
+        self.kernel.name()
     }
 
     /// Whether it is wrong on purpose.
@@ -139,13 +133,14 @@ impl Case {
         }
     }
 
-    /// The gather as the estimator takes it.
-    pub fn gather(&self) -> turbid::Result<Gather> {
-        match self.size {
+    /// What is asked.
+    pub fn estimator(&self) -> turbid::Result<Estimator> {
+        let gather = match self.size {
             Size::Radius(r) => Gather::radius(r),
             Size::Nearest(k) => Gather::nearest(k, self.cap()),
             Size::NearestBiased(k) => Gather::nearest_biased(k, self.cap()),
-        }
+        };
+        Ok(Estimator::new(self.kernel, gather?))
     }
 
     /// The probes: on a lattice in a slab, on a spiral in a sphere. Their balls do not overlap, save a few at a

@@ -7,7 +7,7 @@ use crate::theory::Fog;
 use anyhow::Context;
 use glam::DVec3;
 use turbid::Spectrum;
-use turbid::estimators::fluence;
+use turbid::estimators::boundary::Boundary;
 use turbid::photons::{Histories, is_in, shoot};
 use turbid::rng::{Purpose, Stream};
 use turbid::scene::{Quantity, Scene};
@@ -81,10 +81,10 @@ fn measure_map(
     );
     let map = pass.into_map(0.0)?;
     for case in Case::all(field, photons) {
-        let gather = case.gather()?;
+        let estimator = case.estimator()?;
         let (mut values, mut counts, mut gathered) = (Moments::new(), Moments::new(), 0u64);
         for probe in case.probes() {
-            let estimate = fluence(&map, probe, Spectrum::ONE, case.kernel, gather);
+            let estimate = estimator.fluence(&map, probe, Spectrum::ONE, &Boundary::UNKNOWN);
             values.push(estimate.value[0]);
             gathered += estimate.found as u64;
             output.count("estimates", 1);

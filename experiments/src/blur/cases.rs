@@ -3,7 +3,7 @@
 use super::shaft::{CAP, DEPTH, LENGTH, WIDTH, density};
 use glam::DVec3;
 use std::f64::consts::PI;
-use turbid::estimators::{Gather, Kernel};
+use turbid::estimators::{Estimator, Gather, Kernel};
 
 /// How large a gather is.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -100,12 +100,13 @@ impl Case {
         }
     }
 
-    /// The gather as the estimator takes it.
-    pub fn gather(&self) -> turbid::Result<Gather> {
-        match self.size {
+    /// What is asked.
+    pub fn estimator(&self) -> turbid::Result<Estimator> {
+        let gather = match self.size {
             Size::Nearest(k) => Gather::nearest(k, CAP),
-            _ => Gather::radius(self.scale()),
-        }
+            Size::Radius(_) | Size::Deviation(_) => Gather::radius(self.scale()),
+        };
+        Ok(Estimator::new(self.kernel, gather?))
     }
 
     /// Distances of the probes inside the edge over the scale, negative outside, rising. Fixed radii see nothing

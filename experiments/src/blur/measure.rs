@@ -5,7 +5,7 @@ use super::{shaft, waves};
 use crate::harness::{CellId, CellOutput, Settings};
 use anyhow::Context;
 use turbid::Spectrum;
-use turbid::estimators::fluence;
+use turbid::estimators::boundary::Boundary;
 use turbid::photons::{Histories, shoot};
 use turbid::transport::NoProgress;
 
@@ -48,11 +48,11 @@ pub fn measure(settings: &Settings, cell: &CellId) -> anyhow::Result<CellOutput>
     output.count("photons stored", pass.photons().count() as u64);
     let map = pass.into_map(0.0)?;
     for case in cases(settings, photons) {
-        let gather = case.gather()?;
+        let estimator = case.estimator()?;
         for place in case.places() {
             let (mut sum, mut probes) = (0.0, 0u64);
             for probe in case.probes(place) {
-                let estimate = fluence(&map, probe, Spectrum::ONE, case.kernel, gather);
+                let estimate = estimator.fluence(&map, probe, Spectrum::ONE, &Boundary::UNKNOWN);
                 sum += estimate.value[0];
                 probes += 1;
                 output.count("under-full estimates", u64::from(estimate.underfull));

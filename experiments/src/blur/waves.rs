@@ -4,7 +4,8 @@ use crate::harness::{CellId, CellOutput, Prediction, Settings, Unit};
 use crate::theory::referee_kernel;
 use glam::DVec3;
 use std::f64::consts::PI;
-use turbid::estimators::{Gather, Kernel, collision_density};
+use turbid::estimators::boundary::Boundary;
+use turbid::estimators::{Estimator, Gather, Kernel};
 use turbid::photons::synthetic::{Number, Profile, Synthetic};
 use turbid_analytic::blur::kernel_transfer;
 
@@ -66,13 +67,14 @@ pub fn measure(settings: &Settings, cell: &CellId) -> anyhow::Result<CellOutput>
         let (rows, step) = rows(radius);
         let at = |i: usize| 0.5 * SIDE + step * (i as f64 - 0.5 * (rows as f64 - 1.0));
         for kernel in Kernel::ALL {
+            let estimator = Estimator::new(kernel, gather);
             let (mut sum, mut probes) = (0.0, 0u64);
             for i in 0..PROBED * PHASES {
                 let x = first + (f64::from(i) + 0.5) / f64::from(PHASES);
                 let cosine = libm::cos(2.0 * PI * x);
                 for j in 0..rows * rows {
                     let probe = DVec3::new(x, at(j % rows), at(j / rows));
-                    let estimate = collision_density(&map, probe, kernel, gather);
+                    let estimate = estimator.collision_density(&map, probe, &Boundary::UNKNOWN);
                     sum += estimate.value[0] * cosine;
                     probes += 1;
                 }

@@ -6,7 +6,7 @@ use crate::theory::spiral;
 use glam::DVec3;
 use std::f64::consts::PI;
 use turbid::estimators::boundary::Treatment;
-use turbid::estimators::{Gather, Kernel};
+use turbid::estimators::{Estimator, Gather, Kernel};
 use turbid_analytic::boundary::Body;
 
 /// How large a gather is.
@@ -168,12 +168,13 @@ impl Case {
         )
     }
 
-    /// The gather as the estimator takes it.
-    pub fn gather(&self) -> turbid::Result<Gather> {
-        match self.size {
+    /// What is asked.
+    pub fn estimator(&self) -> turbid::Result<Estimator> {
+        let gather = match self.size {
             Size::Radius(r) => Gather::radius(r),
             Size::Nearest(k) => Gather::nearest(k, CAP),
-        }
+        };
+        Ok(Estimator::new(self.kernel, gather?).treated(self.treatment))
     }
 
     /// One place that stands for all probes.

@@ -6,7 +6,7 @@ use super::{section, sheet, spread};
 use crate::harness::{CellId, CellOutput, Settings};
 use anyhow::Context;
 use turbid::Spectrum;
-use turbid::estimators::boundary::{Boundary, treated_fluence};
+use turbid::estimators::boundary::Boundary;
 use turbid::stats::Moments;
 
 /// All cells.
@@ -50,14 +50,15 @@ fn measure_map(
     let mut output = CellOutput::new();
     output.count("photons emitted", photons);
     output.count("photons stored", map.stored() as u64);
+    let medium = field.shape()?;
+    let boundary = Boundary::of(&medium)?;
     for case in Case::all(settings, field, photons) {
-        let boundary = Boundary::new(field.shape()?, case.treatment)?;
-        let gather = case.gather()?;
+        let estimator = case.estimator()?;
         let mut values = Moments::new();
         for probe in case.probes() {
-            let treated = treated_fluence(&map, probe, Spectrum::ONE, case.kernel, gather, &boundary);
-            values.push(treated.estimate.value[0]);
-            output.count("under-full estimates", u64::from(treated.estimate.underfull));
+            let estimate = estimator.fluence(&map, probe, Spectrum::ONE, &boundary);
+            values.push(estimate.value[0]);
+            output.count("under-full estimates", u64::from(estimate.underfull));
         }
         output.count("estimates", values.n());
         output.push(case.name(), "fluence", values.mean());

@@ -5,8 +5,8 @@ use super::fields::Field;
 use crate::harness::{CellId, CellOutput, Settings};
 use glam::{DVec3, Vec3Swizzles};
 use turbid::Spectrum;
-use turbid::estimators::boundary::{Boundary, Treatment, treated_fluence};
-use turbid::estimators::{Gather, Kernel};
+use turbid::estimators::boundary::{Boundary, Treatment};
+use turbid::estimators::{Estimator, Gather, Kernel};
 use turbid::stats::Moments;
 
 /// The group of its maps.
@@ -50,18 +50,18 @@ pub fn measure(settings: &Settings, cell: &CellId) -> anyhow::Result<CellOutput>
     let mut output = CellOutput::new();
     output.count("photons emitted", photons);
     output.count("photons stored", map.stored() as u64);
-    let gather = Gather::radius(MAIN.0)?;
+    let medium = field.shape()?;
+    let boundary = Boundary::of(&medium)?;
+    let untreated = Estimator::new(Kernel::Uniform, Gather::radius(MAIN.0)?);
     for treatment in Treatment::ALL {
-        let boundary = Boundary::new(field.shape()?, treatment)?;
+        let estimator = untreated.treated(treatment);
         for (column, row, distance) in places() {
             let along = DVec3::new(column as f64 + 0.5, 0.0, row as f64 + 0.5).normalize() * distance;
             let mut values = Moments::new();
             for (x, z) in [(1.0, 1.0), (-1.0, 1.0), (1.0, -1.0), (-1.0, -1.0)] {
                 let probe = along * DVec3::new(x, 1.0, z);
                 for probe in [probe, probe.zxy()] {
-                    let treated =
-                        treated_fluence(&map, probe, Spectrum::ONE, Kernel::Uniform, gather, &boundary);
-                    values.push(treated.estimate.value[0]);
+                    values.push(estimator.fluence(&map, probe, Spectrum::ONE, &boundary).value[0]);
                 }
             }
             output.count("estimates", values.n());

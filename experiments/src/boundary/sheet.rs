@@ -4,8 +4,8 @@ use super::cases::Size;
 use crate::harness::{CellId, CellOutput, Prediction, Settings, Unit};
 use crate::theory::referee_kernel;
 use glam::DVec3;
-use turbid::estimators::boundary::{Boundary, Rejection, Treatment, treated_density};
-use turbid::estimators::{Gather, Kernel, for_each_photon};
+use turbid::estimators::boundary::{Boundary, Rejection, Treatment};
+use turbid::estimators::{Estimator, Gather, Kernel, for_each_photon};
 use turbid::geometry::{Cuboid, Rectangle, Shape};
 use turbid::photons::PhotonMap;
 use turbid::photons::synthetic::{Number, Profile, Synthetic};
@@ -100,11 +100,13 @@ impl Sheet {
         }
     }
 
-    fn gather(&self) -> turbid::Result<Gather> {
-        match self.size {
+    fn estimator(&self) -> turbid::Result<Estimator> {
+        let gather = match self.size {
             Size::Radius(r) => Gather::radius(r),
             Size::Nearest(k) => Gather::nearest(k, NEAREST.1),
-        }
+        };
+        let treatment = if self.is_clipped { Treatment::Clipped } else { Treatment::None };
+        Ok(Estimator::new(self.kernel, gather?).treated(treatment).rejecting(self.rejection))
     }
 
     /// The exact expectation and its bound, for fields of [`Sheet::fields`].
@@ -175,14 +177,15 @@ pub fn measure(settings: &Settings, cell: &CellId) -> anyhow::Result<CellOutput>
     let corner = DVec3::new(-9.0, -9.0, 0.0);
     let walls = [Shape::Rectangle(Rectangle::new(corner, DVec3::X * 20.0, DVec3::Y * 20.0)?)];
     for sheet in Sheet::all() {
-        let boundary = boundary(sheet.side, sheet.is_clipped)?.with_walls(sheet.rejection, &walls);
-        let gather = sheet.gather()?;
+        let medium = medium(sheet.side)?;
+        let boundary = Boundary::of(&medium)?.with_walls(&walls);
+        let estimator = sheet.estimator()?;
         let mut values = Moments::new();
         for probe in probes(sheet.side, sheet.distance) {
-            let treated = treated_density(&map, probe, sheet.kernel, gather, &boundary);
-            values.push(treated.estimate.value[0]);
-            output.count("photons rejected", treated.rejected as u64);
-            output.count("photons accepted", treated.estimate.found as u64);
+            let estimate = estimator.collision_density(&map, probe, &boundary);
+            values.push(estimate.value[0]);
+            output.count("photons rejected", estimate.rejected as u64);
+            output.count("photons accepted", estimate.found as u64);
         }
         output.count("estimates", values.n());
         output.push(sheet.name(), "density", values.mean());
@@ -207,13 +210,12 @@ pub fn is_spread_case(sheet: &Sheet) -> bool {
 }
 
 /// The side of the probe as the medium.
-fn boundary(side: Side, is_clipped: bool) -> turbid::Result<Boundary<'static>> {
+fn medium(side: Side) -> turbid::Result<Shape> {
     let (low, high) = match side {
         Side::Bright => (0.0, 9.0),
         Side::Dark => (-9.0, 0.0),
     };
-    let medium = Cuboid::new(DVec3::new(-9.0, -9.0, low), DVec3::new(9.0, 9.0, high))?;
-    Boundary::new(Shape::Cuboid(medium), if is_clipped { Treatment::Clipped } else { Treatment::None })
+    Ok(Shape::Cuboid(Cuboid::new(DVec3::new(-9.0, -9.0, low), DVec3::new(9.0, 9.0, high))?))
 }
 
 /// A lattice at a distance from the sheet; nearest gathers do not reach the box's edges.

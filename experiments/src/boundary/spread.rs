@@ -4,8 +4,8 @@ use super::cases::Size;
 use crate::harness::{CellId, CellOutput, Prediction, Settings, Unit};
 use crate::theory::referee_kernel;
 use glam::DVec3;
-use turbid::estimators::boundary::{Boundary, Treatment, treated_density};
-use turbid::estimators::{Gather, Kernel};
+use turbid::estimators::boundary::{Boundary, Treatment};
+use turbid::estimators::{Estimator, Gather, Kernel};
 use turbid::geometry::{Shape, Slab};
 use turbid::photons::synthetic::{Number, Profile, Synthetic};
 use turbid::stats::Moments;
@@ -81,15 +81,16 @@ pub fn measure(settings: &Settings, cell: &CellId) -> anyhow::Result<CellOutput>
     let gather = Gather::radius(RADIUS)?;
     let mut output = CellOutput::new();
     output.count("photons emitted", number);
+    let medium = Shape::Slab(Slab::new(0.0, 2.0)?);
+    let boundary = Boundary::of(&medium)?;
     for spread in Spread::all() {
-        let boundary = Boundary::new(Shape::Slab(Slab::new(0.0, 2.0)?), spread.treatment)?;
-        let whole = gather.expected_relative_variance(spread.kernel, number as f64, 1.0);
+        let estimator = Estimator::new(spread.kernel, gather).treated(spread.treatment);
+        let whole = estimator.expected_relative_variance(number as f64, 1.0);
         let place = |i: usize| (i as f64 + 0.5) / SIDE as f64;
         let probes =
             (0..SIDE * SIDE).map(|i| DVec3::new(place(i % SIDE), place(i / SIDE), spread.depth * RADIUS));
-        let values: Moments = probes
-            .map(|probe| treated_density(&map, probe, spread.kernel, gather, &boundary).estimate.value[0])
-            .collect();
+        let values: Moments =
+            probes.map(|probe| estimator.collision_density(&map, probe, &boundary).value[0]).collect();
         output.count("estimates", values.n());
         output.push(spread.name(), "density", values.mean());
         output.push(spread.name(), "variance factor", values.variance() / whole);

@@ -6,7 +6,8 @@ use super::nulls::{LEVELS, Population, alarms};
 use crate::harness::{CellId, CellOutput, Estimate, MIN_MAPS, Settings};
 use anyhow::Context;
 use turbid::Spectrum;
-use turbid::estimators::{Gather, Kernel, fluence};
+use turbid::estimators::boundary::Boundary;
+use turbid::estimators::{Estimator, Gather, Kernel};
 use turbid::photons::{Histories, shoot};
 use turbid::scene::Scene;
 use turbid::stats::{Moments, normal_critical, student_critical};
@@ -188,7 +189,8 @@ fn ask(scene: &Scene, exact: &Exact, seed: u64, replicate: u64) -> anyhow::Resul
         for index in 0..PLACES {
             let at = place(row, index);
             let error = |gather| {
-                let estimate = fluence(&map, at, Spectrum::ONE, Kernel::Uniform, gather);
+                let estimator = Estimator::new(Kernel::Uniform, gather);
+                let estimate = estimator.fluence(&map, at, Spectrum::ONE, &Boundary::UNKNOWN);
                 (estimate.value[0] / exact.fluence - 1.0, estimate.found)
             };
             for (i, gather) in fixed.iter().enumerate() {

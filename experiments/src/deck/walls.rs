@@ -8,7 +8,8 @@ use super::times::Times;
 use crate::harness::{CellId, CellOutput, Cells, Claim, Estimate, Section, Settings, Unit, number};
 use glam::DVec3;
 use turbid::Spectrum;
-use turbid::estimators::{Gather, Kernel, in_scattered};
+use turbid::estimators::boundary::Boundary;
+use turbid::estimators::{Estimator, Gather, Kernel};
 use turbid::geometry::Mesh;
 use turbid::math::{Ray, warp};
 use turbid::phase::{Isotropic, Phase};
@@ -99,7 +100,7 @@ pub fn measure(settings: &Settings, cell: &CellId) -> anyhow::Result<CellOutput>
     let map = output.time("map", |_| map(settings, replicate))?;
     let meshes = output.time("meshes", |_| anyhow::Ok([tessellated(FEW)?, tessellated(MANY)?]))?;
     let phase_function = Phase::Isotropic(Isotropic);
-    let gather = Gather::nearest(K, 1.0)?;
+    let estimator = Estimator::new(Kernel::Uniform, Gather::nearest(K, 1.0)?);
     let mut stream = Stream::new(settings.seed, Purpose::Paths, replicate, 0);
     let (mut same, mut asked) = (0, 0);
     for pair in 0..PAIRS {
@@ -119,16 +120,8 @@ pub fn measure(settings: &Settings, cell: &CellId) -> anyhow::Result<CellOutput>
             anyhow::ensure!(met == rays.len(), "{met} of {} rays met the walls of a closed box", rays.len());
             found[turn] = output.time(&phase("gathers", triangles, pair), |_| {
                 let of = |ray: &Ray| {
-                    in_scattered(
-                        &map,
-                        ray.origin,
-                        ray.dir,
-                        &phase_function,
-                        Spectrum::ONE,
-                        Kernel::Uniform,
-                        gather,
-                    )
-                    .value[0]
+                    let (at, wo, one) = (ray.origin, ray.dir, Spectrum::ONE);
+                    estimator.in_scattered(&map, at, wo, &phase_function, one, &Boundary::UNKNOWN).value[0]
                 };
                 rays.iter().map(of).collect()
             });

@@ -6,7 +6,8 @@ use super::sampled::near_one;
 use super::scenes::{Flux, Fog, at_depth, furnace_ball, sensor, slab};
 use crate::harness::Settings;
 use glam::DVec3;
-use turbid::estimators::{Gather, Kernel, fluence};
+use turbid::estimators::boundary::Boundary;
+use turbid::estimators::{Estimator, Gather, Kernel};
 use turbid::math::{Asymmetry, Ray};
 use turbid::phase::{HenyeyGreenstein, PhaseFunction};
 use turbid::photons::{Histories, PhotonMap, shoot};
@@ -180,7 +181,8 @@ fn in_unit(settings: &Settings, unit: f64) -> anyhow::Result<Vec<f64>> {
                 [Gather::radius(0.3 * unit)?, Gather::nearest(10, unit)?, Gather::nearest(200, unit)?]
             {
                 for kernel in Kernel::ALL {
-                    let estimate = fluence(&map, point, sigma_t, kernel, gather);
+                    let estimator = Estimator::new(kernel, gather);
+                    let estimate = estimator.fluence(&map, point, sigma_t, &Boundary::UNKNOWN);
                     numbers.extend([estimate.value[0], estimate.radius / unit]);
                 }
             }

@@ -6,7 +6,8 @@ use super::plain::Plain;
 use crate::harness::Settings;
 use glam::{DVec3, Vec3};
 use std::f64::consts::PI;
-use turbid::estimators::{Gather, Kernel, collision_density, count_within};
+use turbid::estimators::boundary::Boundary;
+use turbid::estimators::{Estimate, Estimator, Gather, Kernel, count_within};
 use turbid::photons::synthetic::{Number, Profile, Synthetic};
 use turbid::photons::{Flags, Photon, PhotonMap};
 
@@ -16,6 +17,10 @@ const SUM: f64 = 40.0 / (1u64 << 24) as f64;
 
 fn ball(radius: f64) -> f64 {
     4.0 / 3.0 * PI * radius * radius * radius
+}
+
+fn estimate(map: &PhotonMap, point: DVec3, gather: Gather) -> Estimate {
+    Estimator::new(Kernel::Uniform, gather).collision_density(map, point, &Boundary::UNKNOWN)
 }
 
 /// From 2 neighbours to all photons, against a plain search in double precision.
@@ -32,7 +37,7 @@ pub fn number_of_neighbors(settings: &Settings, rows: &mut Vec<Checked>) -> anyh
     let point = DVec3::new(0.4, 0.55, 0.3);
     let cap = 2.0;
     for k in [2, 3, 10, 100, stored / 10, stored - 1, stored] {
-        let estimate = collision_density(&map, point, Kernel::Uniform, Gather::nearest(k, cap)?);
+        let estimate = estimate(&map, point, Gather::nearest(k, cap)?);
         let (exact, radius) = plain.nearest(point, k, cap);
         let distance = 2.0 * 3f64.sqrt() * map.tree().resolution() / radius + 4.0 / f64::from(1u32 << 24);
         let name = format!("k={k} of {stored}");
@@ -45,7 +50,7 @@ pub fn number_of_neighbors(settings: &Settings, rows: &mut Vec<Checked>) -> anyh
         ));
     }
     // One more than there are: all of them, in the ball of the cap.
-    let estimate = collision_density(&map, point, Kernel::Uniform, Gather::nearest(stored + 1, cap)?);
+    let estimate = estimate(&map, point, Gather::nearest(stored + 1, cap)?);
     let (exact, _) = plain.within(point, cap);
     let name = format!("k={} of {stored}: all in the cap", stored + 1);
     rows.push(Checked::new(Class::Nearest, name, estimate.value[0], exact, exact * SUM));
@@ -66,7 +71,7 @@ pub fn coincident(rows: &mut Vec<Checked>) -> anyhow::Result<()> {
     {
         let map = PhotonMap::new(vec![photon(at); COUNT], 10)?;
         let mut add = |what: &str, point: DVec3, gather: Gather, exact: f64| {
-            let value = collision_density(&map, point, Kernel::Uniform, gather).value[0];
+            let value = estimate(&map, point, gather).value[0];
             let name = format!("1000 photons at {place}: {what}");
             rows.push(Checked::new(class, name, value, exact, exact * (SUM + 12.0 / f64::from(1u32 << 24))));
         };
@@ -82,7 +87,7 @@ pub fn coincident(rows: &mut Vec<Checked>) -> anyhow::Result<()> {
     let mut photons = vec![photon(DVec3::ZERO); COUNT];
     photons.push(photon(DVec3::X));
     let map = PhotonMap::new(photons, 10)?;
-    let estimate = collision_density(&map, DVec3::ZERO, Kernel::Uniform, Gather::nearest(10, 4.0)?);
+    let estimate = estimate(&map, DVec3::ZERO, Gather::nearest(10, 4.0)?);
     let exact = n / (10.0 * ball(1.0));
     let name = "1000 photons and one beyond: the nearest 10 from within";
     rows.push(Checked::new(class, name, estimate.value[0], exact, exact * SUM));

@@ -8,7 +8,8 @@ use glam::DVec3;
 use std::sync::{Arc, OnceLock};
 use turbid::Spectrum;
 use turbid::error::Error;
-use turbid::estimators::{Gather, Kernel, fluence};
+use turbid::estimators::boundary::Boundary;
+use turbid::estimators::{Estimator, Gather, Kernel};
 use turbid::math::{FOUR_PI, Ray};
 use turbid::photons::{Histories, Pass, Photon, shoot};
 use turbid::rng::{Purpose, Stream};
@@ -253,7 +254,8 @@ fn paths(scene: &Scene, quantity: &Quantity, orders: Orders, batch: &Batch) -> B
 fn by_map(scene: &Scene, point: DVec3, radius: f64, batch: &Batch) -> anyhow::Result<Brought> {
     let (pass, non_finite) = pass(scene, batch, None, |_| true)?;
     let map = pass.into_map(0.0)?;
-    let estimate = fluence(&map, point, Spectrum::ONE, Kernel::Uniform, Gather::radius(radius)?);
+    let estimator = Estimator::new(Kernel::Uniform, Gather::radius(radius)?);
+    let estimate = estimator.fluence(&map, point, Spectrum::ONE, &Boundary::UNKNOWN);
     let non_finite = non_finite + u64::from(!estimate.value.is_finite());
     Ok(Brought { value: estimate.value[0], non_finite })
 }

@@ -9,7 +9,8 @@ use super::plain::Plain;
 use super::scenes::furnace_ball;
 use crate::harness::{CellId, CellOutput, Settings};
 use glam::{DVec3, Vec3};
-use turbid::estimators::{Estimate, Gather, Kernel, collision_density};
+use turbid::estimators::boundary::Boundary;
+use turbid::estimators::{Estimate, Estimator, Gather, Kernel};
 use turbid::photons::{Histories, Photon, PhotonMap, shoot};
 use turbid::transport::NoProgress;
 
@@ -154,12 +155,12 @@ pub fn measure(settings: &Settings, cell: &CellId) -> anyhow::Result<CellOutput>
             worst.fold(0.0, f64::max) / resolution,
         );
         for (rule, answers) in Rule::ALL.into_iter().zip(&exact) {
-            let gather = rule.gather()?;
+            let estimator = Estimator::new(Kernel::Uniform, rule.gather()?);
             let pairs: Vec<Pair> = probes
                 .iter()
                 .zip(answers)
                 .map(|(&p, &(double, found))| {
-                    let estimate = collision_density(&map, p, Kernel::Uniform, gather);
+                    let estimate = estimator.collision_density(&map, p, &Boundary::UNKNOWN);
                     pair(rule, estimate, double, found)
                 })
                 .collect();

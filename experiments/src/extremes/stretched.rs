@@ -9,7 +9,8 @@ use crate::harness::{CellId, CellOutput, Settings};
 use anyhow::Context;
 use glam::DVec3;
 use std::f64::consts::PI;
-use turbid::estimators::{Gather, Kernel, collision_density};
+use turbid::estimators::boundary::Boundary;
+use turbid::estimators::{Estimator, Gather, Kernel};
 use turbid::photons::synthetic::{Number, Profile, Synthetic};
 use turbid::photons::{Photon, PhotonMap};
 use turbid_analytic::nearest::nearest_expectation;
@@ -84,11 +85,12 @@ impl Case {
         format!("planes 2^{} apart, {size} {}", self.power, self.kernel.name())
     }
 
-    fn gather(&self) -> turbid::Result<Gather> {
-        match self.size {
+    fn estimator(&self) -> turbid::Result<Estimator> {
+        let gather = match self.size {
             Size::Radius(r) => Gather::radius(r),
             Size::Nearest(k) => Gather::nearest(k, CAP),
-        }
+        };
+        Ok(Estimator::new(self.kernel, gather?))
     }
 
     /// Error of the estimate over the density, and a bound on its own error.
@@ -157,16 +159,16 @@ pub fn measure(settings: &Settings, cell: &CellId) -> anyhow::Result<CellOutput>
     let map = PhotonMap::new(photons, map.emitted())?;
     let exact = synthetic.density(DVec3::splat(0.5 * SIDE));
     for case in Case::all(power) {
-        let gather = case.gather()?;
+        let estimator = case.estimator()?;
         // A gather and the two roundings stay in the cube.
-        let margin = gather.cap() + case.spacing();
+        let margin = estimator.gather.cap() + case.spacing();
         let step = (SIDE - 2.0 * margin) / f64::from(PROBES);
         let place = |i: u32| margin + (f64::from(i) + 0.5) * step;
         let mut sum = 0.0;
         for i in 0..PROBES * PROBES * PROBES {
             let probe =
                 DVec3::new(place(i % PROBES), place(i / PROBES % PROBES), place(i / (PROBES * PROBES)));
-            sum += collision_density(&map, probe, case.kernel, gather).value[0];
+            sum += estimator.collision_density(&map, probe, &Boundary::UNKNOWN).value[0];
         }
         let count = PROBES * PROBES * PROBES;
         output.count("estimates", u64::from(count));

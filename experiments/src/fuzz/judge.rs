@@ -10,7 +10,7 @@ use std::process::{Command, Stdio};
 use std::sync::Mutex;
 use std::time::{Duration, Instant};
 use turbid::estimators::boundary::Treatment;
-use turbid::estimators::{Gather, Kernel};
+use turbid::estimators::{Estimator, Gather, Kernel};
 use turbid::integrators::mapper;
 use turbid::output::one_line;
 use turbid::photons::check_end;
@@ -417,9 +417,7 @@ fn measured(scene: &Scene) -> turbid::Result<()> {
         maps: 2,
         seed: SEED,
         orders: Orders::ALL,
-        gather: Gather::nearest(10, cap)?,
-        kernel: Kernel::Uniform,
-        treatment: Treatment::Clipped,
+        estimator: Estimator::new(Kernel::Uniform, Gather::nearest(10, cap)?).treated(Treatment::Clipped),
     };
     by_photons(scene, &settings, &NoProgress).map(|_| ())
 }

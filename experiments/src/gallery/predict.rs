@@ -54,7 +54,7 @@ impl Spreads {
         Spreads {
             global: settings.global.0.disc_m2(),
             caustic: settings.caustic.0.disc_m2(),
-            volume: settings.volume.0.m2() * 2.0 / 3.0,
+            volume: settings.volume.kernel.m2() * 2.0 / 3.0,
         }
     }
 }

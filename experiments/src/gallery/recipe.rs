@@ -22,9 +22,9 @@ pub fn maps(picture: &Picture, factor: u64, seed: u64, replicate: u64) -> MapSet
 /// those of the settings
 pub fn reading(picture: &Picture, factor: u64) -> turbid::Result<mapper::Settings> {
     let mut settings = mapper::Settings::for_size(picture.size, picture.nearest[0])?;
-    let gathers = [&mut settings.global, &mut settings.caustic, &mut settings.volume];
+    let gathers = [&mut settings.global.1, &mut settings.caustic.1, &mut settings.volume.gather];
     for (gather, k) in gathers.into_iter().zip(picture.nearest) {
-        gather.1 = Gather::nearest(k * factor.isqrt() as usize, picture.reach)?;
+        *gather = Gather::nearest(k * factor.isqrt() as usize, picture.reach)?;
     }
     settings.gather_rays = picture.gather.max(1);
     settings.near = picture.near;

@@ -2,7 +2,7 @@
 
 use crate::harness::Settings;
 use glam::DVec3;
-use turbid::estimators::Gather;
+use turbid::estimators::{Estimator, Gather, Kernel};
 use turbid::integrators::StepRule;
 use turbid::math::Ray;
 
@@ -71,12 +71,13 @@ impl Case {
         format!("mu={} dx={} {gather} {}", self.mu, self.step, rule_name(self.rule))
     }
 
-    /// The gather as the estimator takes it.
-    pub fn gather(&self) -> turbid::Result<Gather> {
-        match self.size {
+    /// What is asked at each step.
+    pub fn estimator(&self) -> turbid::Result<Estimator> {
+        let gather = match self.size {
             Size::Radius(r) => Gather::radius(r),
             Size::Nearest(k) => Gather::nearest(k, REACH),
-        }
+        };
+        Ok(Estimator::new(Kernel::Uniform, gather?))
     }
 
     /// Length of a ray [mfp].

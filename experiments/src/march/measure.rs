@@ -4,7 +4,7 @@ use super::cases::{ALBEDO, CELL, Case, REACH, TAU, maps, photons};
 use crate::harness::{CellId, CellOutput, Settings};
 use glam::DVec3;
 use turbid::Spectrum;
-use turbid::estimators::{Kernel, in_scattered};
+use turbid::estimators::boundary::Boundary;
 use turbid::geometry::{Shape, Slab};
 use turbid::integrators::{March, along};
 use turbid::light::{Beam, Light, Section};
@@ -56,14 +56,14 @@ pub fn measure(settings: &Settings, cell: &CellId) -> anyhow::Result<CellOutput>
     output.count("photons emitted", pass.emitted());
     let map = pass.into_map(REACH)?;
     for case in Case::all() {
-        let gather = case.gather()?;
+        let estimator = case.estimator()?;
         let equal = March::equal(Positive::new("the step", case.step)?, case.rule);
         let span = Interval { start: 0.0, end: case.length() };
         let mut values = Moments::new();
         for ray in case.rays() {
             let source = |place: DVec3| {
-                let (one, kernel) = (Spectrum::ONE, Kernel::Uniform);
-                albedo * in_scattered(&map, place, -ray.dir, phase, one, kernel, gather).value
+                let (wo, one) = (-ray.dir, Spectrum::ONE);
+                albedo * estimator.in_scattered(&map, place, wo, phase, one, &Boundary::UNKNOWN).value
             };
             // Nothing is drawn.
             let mut stream = Stream::new(settings.seed, Purpose::Synthetic, 0, 0);

@@ -5,7 +5,8 @@ use crate::harness::{CellId, CellOutput, Settings};
 use anyhow::Context;
 use glam::DVec3;
 use turbid::Spectrum;
-use turbid::estimators::{Gather, Kernel, fluence};
+use turbid::estimators::boundary::Boundary;
+use turbid::estimators::{Estimator, Gather, Kernel};
 use turbid::geometry::{Shape, Slab};
 use turbid::light::{Beam, Light, Section};
 use turbid::medium::Homogeneous;
@@ -55,9 +56,9 @@ pub fn measure(settings: &Settings, cell: &CellId) -> anyhow::Result<CellOutput>
         for (d, &depth) in DEPTHS.iter().enumerate() {
             let exact = libm::exp(-depth);
             for (r, &radius) in radii.iter().enumerate() {
-                let gather = Gather::radius(radius)?;
+                let estimator = Estimator::new(Kernel::Uniform, Gather::radius(radius)?);
                 for probe in probes(depth) {
-                    let estimate = fluence(&map, probe, Spectrum::ONE, Kernel::Uniform, gather);
+                    let estimate = estimator.fluence(&map, probe, Spectrum::ONE, &Boundary::UNKNOWN);
                     let error = estimate.value[0] / exact - 1.0;
                     errors[d * radii.len() + r].push(error);
                     squares[d * radii.len() + r].push(error * error);

@@ -145,7 +145,7 @@ fn settings(scene: &Scene, is_large: bool) -> Result<Settings, Failure> {
             (nearest(libm::sqrt(FACTOR as f64))?, nearest(libm::cbrt(FACTOR as f64))?);
         settings.global.1 = on_surfaces;
         settings.caustic.1 = on_surfaces;
-        settings.volume.1 = in_media;
+        settings.volume.gather = in_media;
     }
     Ok(settings)
 }

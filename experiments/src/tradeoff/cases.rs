@@ -6,7 +6,7 @@ use anyhow::Context;
 use glam::DVec3;
 use std::f64::consts::PI;
 use turbid::Spectrum;
-use turbid::estimators::Gather;
+use turbid::estimators::{Estimator, Gather, Kernel};
 use turbid::light::{Beam, Light, Section, VolumeSource};
 use turbid::math::Asymmetry;
 use turbid::medium::Homogeneous;
@@ -387,12 +387,13 @@ impl Setting {
         (self.cap() - 0.5 * CELL / self.side() as f64).max(0.0)
     }
 
-    /// The gather as the estimator takes it.
-    pub fn gather(&self) -> turbid::Result<Gather> {
-        match self.size {
+    /// What is asked.
+    pub fn estimator(&self) -> turbid::Result<Estimator> {
+        let gather = match self.size {
             Size::Radius(r) => Gather::radius(r),
             Size::Nearest(k) => Gather::nearest(k, self.cap()),
-        }
+        };
+        Ok(Estimator::new(Kernel::Uniform, gather?))
     }
 }
 

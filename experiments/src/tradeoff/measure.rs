@@ -6,7 +6,8 @@ use crate::theory::Fog;
 use anyhow::Context;
 use glam::DVec3;
 use turbid::Spectrum;
-use turbid::estimators::{Estimate, Kernel, fluence};
+use turbid::estimators::Estimate;
+use turbid::estimators::boundary::Boundary;
 use turbid::photons::{Histories, PhotonMap, is_in, shoot};
 use turbid::rng::{Purpose, Stream};
 use turbid::scene::{Orders, Quantity, Scene};
@@ -101,11 +102,11 @@ struct Layer {
 }
 
 fn gather(output: &mut CellOutput, map: &PhotonMap, setting: &Setting) -> anyhow::Result<()> {
-    let (body, how) = (setting.body, setting.gather()?);
+    let (body, estimator) = (setting.body, setting.estimator()?);
     let (mut found, mut underfull) = (0u64, 0u64);
     let phase = format!("gathering {}", setting.size.name());
     let estimates: Vec<Vec<Estimate>> = output.time(&phase, |_| {
-        let ask = |probe| fluence(map, probe, Spectrum::ONE, Kernel::Uniform, how);
+        let ask = |probe| estimator.fluence(map, probe, Spectrum::ONE, &Boundary::UNKNOWN);
         let layer = |depth| probes(body, setting.side(), depth).into_iter().map(ask).collect();
         body.depths().into_iter().map(layer).collect()
     });
@@ -183,7 +184,8 @@ fn measure_paths(settings: &Settings, body: &Body, scene: &Scene, replicate: u64
 mod tests {
     use super::super::cases::Size;
     use super::*;
-    use turbid::estimators::boundary::{Boundary, Treatment as Remedy, treated_fluence};
+    use turbid::estimators::Estimator;
+    use turbid::estimators::boundary::Treatment as Remedy;
 
     /// Clipping here is the library's, in a slab and in a sphere, near the surface and deep.
     #[test]
@@ -194,14 +196,14 @@ mod tests {
             let pass =
                 shoot(&body.scene().unwrap(), histories, &[], is_in(Orders::ALL), &NoProgress).unwrap();
             let map = pass.into_map(0.0).unwrap();
-            let boundary = Boundary::new(body.fog.shape().unwrap(), Remedy::Clipped).unwrap();
+            let medium = body.fog.shape().unwrap();
+            let boundary = Boundary::of(&medium).unwrap();
             for size in [Size::Radius(0.4), Size::Nearest(50)] {
-                let gather = Setting { body, photons: 2000, size }.gather().unwrap();
+                let estimator = Setting { body, photons: 2000, size }.estimator().unwrap();
                 for depth in [0, 1, 8, 15].map(|layer| body.depth(layer)) {
                     let probe = probes(body, 4, depth)[5];
-                    let ask = |b| treated_fluence(&map, probe, Spectrum::ONE, Kernel::Uniform, gather, b);
-                    let library = ask(&boundary).estimate.value[0];
-                    let plain = fluence(&map, probe, Spectrum::ONE, Kernel::Uniform, gather);
+                    let ask = |estimator: Estimator| estimator.fluence(&map, probe, Spectrum::ONE, &boundary);
+                    let (library, plain) = (ask(estimator.treated(Remedy::Clipped)).value[0], ask(estimator));
                     let here = plain.value[0] / body.fog.inside(plain.radius, depth).unwrap();
                     // The library's quadrature is good to 1e-13 of a whole ball; a third of one is left at least.
                     assert!((here / library - 1.0).abs() < 1e-12, "{name}, depth {depth}: {here} {library}");

@@ -1,13 +1,15 @@
 //! Gathering accepted photons only: rejected ones set no radius and count for nothing.
 
-use crate::estimators::{Ball, Gather};
+use super::treatment::Gathered;
+use crate::estimators::{Ball, Gather, Kernel, NeighborCount};
 use crate::faults::{Fault, planted};
 use crate::photons::tree::{Counted, Nearest, Neighbors};
 use crate::photons::{Photon, PhotonTree};
 use glam::DVec3;
 
-/// The accepted photons of a gather.
-pub(super) struct Accepted {
+/// The accepted photons of a gather about a point.
+pub(in crate::estimators) struct Accepted {
+    point: DVec3,
     /// Each with the part of it that counts: 1, but for photons that tie with the k-th.
     pub photons: Vec<(Photon, f64)>,
     /// The ball, set by accepted photons; `found` counts them alone.
@@ -16,9 +18,21 @@ pub(super) struct Accepted {
     pub rejected: usize,
 }
 
+impl Gathered for Accepted {
+    fn each(&self, kernel: Kernel, visit: &mut dyn FnMut(&Photon, f64)) {
+        let r2 = self.ball.radius * self.ball.radius;
+        for (photon, share) in &self.photons {
+            // All of them are in the ball, whatever rounding says of the last.
+            let u2 = (photon.position - self.point).length_squared() / r2;
+            visit(photon, share * kernel.peak() * kernel.profile(u2.min(1.0)));
+        }
+    }
+}
+
 /// All photons near a point, the nearest first, as far as they have been asked.
 struct Near<'a> {
     tree: &'a PhotonTree,
+    point: DVec3,
     keeps: &'a dyn Fn(usize) -> bool,
     /// Squared distances, and places in the tree.
     all: Vec<(f64, usize)>,
@@ -51,7 +65,7 @@ impl<'a> Near<'a> {
             }
         }
         all.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
-        Some(Near { tree, keeps, all, accepted: Vec::new(), rejected: Vec::new() })
+        Some(Near { tree, point, keeps, all, accepted: Vec::new(), rejected: Vec::new() })
     }
 
     /// Asks the photons one by one, up to the first one beyond the k-th accepted; all of them if there is no k.
@@ -101,7 +115,7 @@ impl<'a> Near<'a> {
         };
         let photons = self.accepted[..found].iter().enumerate().map(of).collect();
         let ball = Ball { radius: squared.sqrt(), found, underfull: false, coincident };
-        Some(Accepted { photons, ball, rejected })
+        Some(Accepted { point: self.point, photons, ball, rejected })
     }
 
     /// All of them.
@@ -120,19 +134,15 @@ impl<'a> Near<'a> {
 ///
 /// # Arguments
 /// `keeps` whether the photon at a place in the tree's order is accepted
-pub(super) fn accepted(
+pub(in crate::estimators) fn accepted(
     tree: &PhotonTree,
     point: DVec3,
     gather: Gather,
     keeps: &dyn Fn(usize) -> bool,
     rejected: Option<usize>,
 ) -> Accepted {
-    let cap = gather.cap();
-    let (k, counted) = match gather {
-        Gather::Radius(_) => (None, Counted::BelowKth),
-        Gather::Nearest { k, .. } => (Some(k.get()), Counted::BelowKth),
-        Gather::NearestBiased { k, .. } => (Some(k.get()), Counted::UpToKth),
-    };
+    let (k, cap, counted) = gather.rule();
+    let k = k.map(NeighborCount::get);
     if let Some(k) = k {
         let kept = rejected.map_or(k.div_ceil(2), |rejected| k.saturating_sub(rejected).max(k.div_ceil(8)));
         let mut first = (k + k / 4).saturating_mul(k) / kept;
@@ -152,5 +162,5 @@ pub(super) fn accepted(
     let near = Near::look(tree, point, cap, keeps, None);
     let (photons, rejected) = near.map_or((Vec::new(), 0), Near::everything);
     let ball = Ball { radius: cap, found: photons.len(), underfull: k.is_some(), coincident: 0 };
-    Accepted { photons, ball, rejected }
+    Accepted { point, photons, ball, rejected }
 }

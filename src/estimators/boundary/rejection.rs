@@ -55,7 +55,7 @@ struct Foot {
 }
 
 /// A rejection about one point.
-pub(super) struct Sieve<'a> {
+pub(in crate::estimators) struct Sieve<'a> {
     rejection: Rejection,
     foot: Foot,
     walls: &'a [Shape],
@@ -64,7 +64,12 @@ pub(super) struct Sieve<'a> {
 
 impl<'a> Sieve<'a> {
     /// The sieve about a point, unless nothing is rejected there.
-    pub(super) fn new(rejection: Rejection, walls: &'a [Shape], point: DVec3, reach: f64) -> Option<Self> {
+    pub(in crate::estimators) fn new(
+        rejection: Rejection,
+        walls: &'a [Shape],
+        point: DVec3,
+        reach: f64,
+    ) -> Option<Self> {
         if rejection == Rejection::Off {
             return None;
         }
@@ -74,7 +79,7 @@ impl<'a> Sieve<'a> {
     }
 
     /// Whether a photon is kept.
-    pub(super) fn keeps(&self, photon: &Photon) -> bool {
+    pub(in crate::estimators) fn keeps(&self, photon: &Photon) -> bool {
         let normal = self.foot.normal;
         let in_front = || (photon.position - self.foot.place).dot(normal) >= 0.0;
         let faces = || photon.dir.as_dvec3().dot(normal) < 0.0;

@@ -49,7 +49,7 @@ struct Body<'a> {
 }
 
 /// What lies about a point of a medium, within a distance.
-pub(super) struct Surroundings<'a> {
+pub(in crate::estimators) struct Surroundings<'a> {
     /// From where is looked.
     eye: DVec3,
     /// The shape of the medium, where other media may be beyond it.
@@ -86,7 +86,7 @@ impl<'a> Surroundings<'a> {
             bodies.iter().all(|body| body.shape.is_behind(eye, front, ON_PLANE * front.distance))
         };
         let screen = screens.filter_map(|body| body.front).find(hides_all);
-        let medium = boundary.medium.as_deref();
+        let medium = boundary.medium;
         let room = medium.map_or(f64::INFINITY, |medium| medium.room(eye));
         Surroundings { eye, medium, room, is_only: boundary.is_only, bodies, later, clear, screen }
     }
@@ -193,7 +193,6 @@ impl<'a> Surroundings<'a> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::estimators::boundary::Treatment;
     use crate::geometry::{Cuboid, Rectangle};
     use crate::stats::Moments;
 
@@ -230,7 +229,7 @@ mod tests {
             let mut others = 0;
             while ratios.n() < 400 || others < 100 {
                 let bodies = &blocks(&mut stream)[block];
-                let boundary = Boundary::unknown(Treatment::Clipped).about(bodies);
+                let boundary = Boundary::UNKNOWN.about(bodies);
                 let point = (DVec3::from(stream.triple()) - DVec3::new(0.5, 0.5, 0.1)) * 0.4;
                 let radius = 0.2 * stream.unit();
                 let [known, directed, asked] = ways(&boundary, point, radius);

@@ -5,7 +5,7 @@
 //! water. Near them an estimate asks what its point sees. A surface on the medium's own faces, or beyond them, parts
 //! nothing.
 
-use crate::estimators::boundary::{Boundary, Treatment};
+use crate::estimators::boundary::Boundary;
 use crate::geometry::{Face, Shape};
 use crate::scene::Scene;
 use crate::surface::{Dielectric, Surface};
@@ -113,10 +113,10 @@ fn enters(body: &Shape, solid: &Shape) -> bool {
 }
 
 impl MediumExtent {
-    /// What an estimate in the medium does at its boundary.
-    pub fn boundary(&self, treatment: Treatment) -> Boundary<'_> {
-        let known = self.shape.as_ref().and_then(|shape| Boundary::of(shape, treatment));
-        let boundary = known.unwrap_or_else(|| Boundary::unknown(treatment)).about(&self.bodies);
+    /// The boundary of the medium, as an estimator is told of it.
+    pub fn boundary(&self) -> Boundary<'_> {
+        let known = self.shape.as_ref().and_then(|shape| Boundary::of(shape).ok());
+        let boundary = known.unwrap_or(Boundary::UNKNOWN).about(&self.bodies);
         if self.is_only { boundary } else { boundary.among(&self.later) }
     }
 }

@@ -2,7 +2,7 @@
 
 use crate::error::Result;
 use crate::estimators::boundary::{Rejection, Treatment};
-use crate::estimators::{Gather, Kernel};
+use crate::estimators::{Estimator, Gather, Kernel};
 use crate::integrators::{Adaptive, March, StepRule};
 use crate::math::Positive;
 use crate::scene::Scene;
@@ -23,8 +23,10 @@ pub struct Settings {
     pub global: (Kernel, Gather),
     /// Photons of the caustic map that an estimate uses.
     pub caustic: (Kernel, Gather),
-    /// Photons of the volume map that an estimate uses.
-    pub volume: (Kernel, Gather),
+    /// How the volume map is read. Unless its treatment is none photons of other media do not count, nor do those that a body
+    /// hides from the point; its rejection, a rule of the laboratory about photons behind walls, takes the place of the latter,
+    /// and `Visible` is the latter itself where there is a treatment.
+    pub volume: Estimator,
     /// How far photons of a surface may lie off its tangent plane: sine of the angle seen from the point. On a sphere of
     /// radius R they reach as far as 2 R slope.
     pub slope: f64,
@@ -40,12 +42,6 @@ pub struct Settings {
     pub near: f64,
     /// The march through media.
     pub march: March,
-    /// What volume estimates do where a medium ends in their ball; unless it is nothing, photons of other media do not count,
-    /// nor do those that a body hides from the point.
-    pub treatment: Treatment,
-    /// Rules of the laboratory about photons behind walls, instead of the last one; `Off` for none of them, and `Visible` is
-    /// the last one itself where there is a treatment.
-    pub rejection: Rejection,
 }
 
 impl Settings {
@@ -59,7 +55,7 @@ impl Settings {
         Ok(Settings {
             global: (Kernel::Uniform, nearest),
             caustic: (Kernel::Cone, nearest),
-            volume: (Kernel::Uniform, nearest),
+            volume: Estimator::new(Kernel::Uniform, nearest).treated(Treatment::Clipped),
             slope: 0.1,
             clips_discs: true,
             gather_rays: 64,
@@ -73,8 +69,6 @@ impl Settings {
                     shortest: Positive::new("the shortest step", 0.0125 * size)?,
                 }),
             },
-            treatment: Treatment::Clipped,
-            rejection: Rejection::Off,
         })
     }
 
@@ -100,14 +94,14 @@ impl Settings {
 
     /// Photons of an estimate from the global, the caustic and the volume map; none for a fixed radius.
     pub fn nearest(&self) -> [Option<usize>; 3] {
-        [self.global, self.caustic, self.volume].map(|(_, gather)| gather.k())
+        [self.global.1, self.caustic.1, self.volume.gather].map(Gather::k)
     }
 
     /// Whether volume estimates follow a rule of the laboratory about walls.
     pub(super) fn needs_walls(&self) -> bool {
-        match self.rejection {
+        match self.volume.rejection {
             Rejection::Off => false,
-            Rejection::Visible => self.treatment == Treatment::None,
+            Rejection::Visible => self.volume.treatment == Treatment::None,
             Rejection::Facing | Rejection::FacingBehind | Rejection::BehindPlane => true,
         }
     }

@@ -2,8 +2,6 @@
 
 use super::{Eye, Mapper, Report};
 use crate::Spectrum;
-use crate::estimators::boundary::{Treatment, treated_in_scattered};
-use crate::estimators::in_scattered;
 use crate::integrators::march::{self, LEFT, Source};
 use crate::math::{Interval, Ray, cosine_pair};
 use crate::phase::PhaseFunction;
@@ -45,19 +43,12 @@ impl Mapper<'_> {
         let single = self.direct(&here, None, report, stream, value, blind);
         let mut multiple = Spectrum::ZERO;
         if let Some(map) = &self.maps.volume {
-            let (kernel, gather) = settings.volume;
-            let is_plain = settings.treatment == Treatment::None && !settings.needs_walls();
-            let estimate = match is_plain {
-                true => in_scattered(map, position, -dir, phase, Spectrum::ONE, kernel, gather),
-                false => {
-                    let boundary = self.extents[number].boundary(settings.treatment);
-                    let boundary = match settings.needs_walls() {
-                        true => boundary.about(&[]).with_walls(settings.rejection, &self.walls),
-                        false => boundary,
-                    };
-                    treated_in_scattered(map, position, -dir, phase, kernel, gather, &boundary).estimate
-                }
+            let boundary = self.extents[number].boundary();
+            let boundary = match settings.needs_walls() {
+                true => boundary.about(&[]).with_walls(&self.walls),
+                false => boundary,
             };
+            let estimate = settings.volume.in_scattered(map, position, -dir, phase, Spectrum::ONE, &boundary);
             report.volume.add(&estimate);
             let sigma_t = medium.sigma_t(position);
             multiple = estimate.value.over(sigma_t);

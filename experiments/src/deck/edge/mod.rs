@@ -11,8 +11,8 @@ use crate::harness::{CellId, CellOutput, Prediction, Settings, Unit};
 use glam::DVec3;
 use std::f64::consts::PI;
 use turbid::Spectrum;
-use turbid::estimators::boundary::{Boundary, Rejection, Treatment, treated_fluence};
-use turbid::estimators::{Gather, Kernel};
+use turbid::estimators::boundary::{Boundary, Rejection};
+use turbid::estimators::{Estimator, Gather, Kernel};
 use turbid::geometry::{Rectangle, Shape, Slab};
 use turbid::light::{Beam, Light, Section};
 use turbid::medium::Homogeneous;
@@ -118,13 +118,13 @@ pub fn measure(settings: &Settings, cell: &CellId) -> anyhow::Result<CellOutput>
     let wide = 10.0 * CELL;
     let corner = DVec3::new(-wide, -wide, ROOM);
     let wall = [Shape::Rectangle(Rectangle::new(corner, 2.0 * wide * DVec3::X, 2.0 * wide * DVec3::Y)?)];
-    let boundary = Boundary::new(fog, Treatment::None)?;
+    let boundary = Boundary::of(&fog)?.with_walls(&wall);
     let place = |i: usize| (i as f64 + 0.5) * CELL / SIDE as f64;
     let mean = |z: f64, gather: Gather, rejection: Rejection| {
-        let boundary = boundary.clone().with_walls(rejection, &wall);
+        let estimator = Estimator::new(Kernel::Uniform, gather).rejecting(rejection);
         let at = |i: usize| {
             let point = DVec3::new(place(i % SIDE), place(i / SIDE), z);
-            treated_fluence(&map, point, Spectrum::ONE, Kernel::Uniform, gather, &boundary).estimate.value[0]
+            estimator.fluence(&map, point, Spectrum::ONE, &boundary).value[0]
         };
         (0..SIDE * SIDE).map(at).collect::<Moments>().mean()
     };

@@ -14,8 +14,8 @@ use crate::theory::clustering;
 use anyhow::Context;
 use glam::{DVec2, DVec3};
 use turbid::Spectrum;
-use turbid::estimators::boundary::{Boundary, Treatment, treated_in_scattered};
-use turbid::estimators::{Gather, Kernel};
+use turbid::estimators::boundary::{Boundary, Treatment};
+use turbid::estimators::{Estimator, Gather, Kernel};
 use turbid::integrators::{March, StepRule, along, path};
 use turbid::math::{Interval, Positive, Ray, exp};
 use turbid::photons::PhotonMap;
@@ -107,21 +107,20 @@ pub fn measure(settings: &Settings, cell: &CellId) -> anyhow::Result<CellOutput>
     output.count("photons stored", map.stored() as u64);
     let region = scene.regions().first().context("the box has no fog")?;
     let (phase, albedo) = (region.medium.phase(), Spectrum::grey(ALBEDO));
-    let boundary = Boundary::new(region.shape.clone(), Treatment::Clipped)?;
+    let boundary = Boundary::of(&region.shape)?;
     let equal = March::equal(Positive::new("the step", STEP)?, StepRule::Integrated);
     let rays = rays(&scene)?;
     for k in NEIGHBORS {
-        let gather = Gather::nearest(k, CAP)?;
+        let estimator = Estimator::new(Kernel::Uniform, Gather::nearest(k, CAP)?).treated(Treatment::Clipped);
         let mut found = 0;
         output.time(&format!("gathering k={k}"), |output| {
             for (pixel, (ray, end)) in rays.iter().enumerate() {
                 let span = Interval { start: 0.0, end: *end };
                 let source = |place: DVec3| {
-                    let kernel = Kernel::Uniform;
-                    let treated =
-                        treated_in_scattered(&map, place, -ray.dir, phase, kernel, gather, &boundary);
-                    found += treated.estimate.found as u64;
-                    albedo * treated.estimate.value
+                    let estimate =
+                        estimator.in_scattered(&map, place, -ray.dir, phase, Spectrum::ONE, &boundary);
+                    found += estimate.found as u64;
+                    albedo * estimate.value
                 };
                 // Nothing is drawn.
                 let mut stream = Stream::new(settings.seed, Purpose::Synthetic, 0, 0);

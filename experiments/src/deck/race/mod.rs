@@ -11,7 +11,7 @@ use super::fogbox::{self, grey};
 use super::maps::filled;
 use crate::harness::{CellId, CellOutput, Settings};
 use anyhow::Context;
-use turbid::estimators::{Gather, Kernel};
+use turbid::estimators::{Estimator, Gather, Kernel};
 use turbid::integrators::mapper::{self, Mapper};
 use turbid::integrators::path;
 use turbid::integrators::{Layers, March};
@@ -156,7 +156,7 @@ fn eye(k: usize) -> anyhow::Result<mapper::Settings> {
     let standard = mapper::Settings::for_size(2.0, k)?;
     Ok(mapper::Settings {
         global: (Kernel::Uniform, nearest),
-        volume: (Kernel::Uniform, nearest),
+        volume: Estimator { gather: nearest, ..standard.volume },
         march: March { step: Positive::new("the step", 4.0)?, adaptive: None, ..standard.march },
         ..standard
     })

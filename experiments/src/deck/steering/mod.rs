@@ -12,7 +12,7 @@ use anyhow::{Context, anyhow};
 use glam::{DVec2, DVec3};
 use std::path::Path;
 use std::sync::{Arc, Mutex};
-use turbid::estimators::{Gather, Kernel};
+use turbid::estimators::{Estimator, Gather, Kernel};
 use turbid::integrators::mapper::{self, Mapper};
 use turbid::photons::importance::{Importance, ImportanceSettings};
 use turbid::photons::maps::{Emitted, Indirect, Maps};
@@ -142,9 +142,10 @@ fn in_view(maps: &Maps) -> f64 {
 /// What the maps bring to each pixel.
 fn picture(scene: &Scene, maps: &Maps) -> anyhow::Result<Vec<f64>> {
     let camera = scene.camera().context("the hall has no camera")?;
-    let within = (Kernel::Uniform, Gather::radius(RADIUS)?);
-    let reading =
-        mapper::Settings { global: within, volume: within, ..mapper::Settings::for_size(10.0, 50)? };
+    let gather = Gather::radius(RADIUS)?;
+    let standard = mapper::Settings::for_size(10.0, 50)?;
+    let volume = Estimator { gather, ..standard.volume };
+    let reading = mapper::Settings { global: (Kernel::Uniform, gather), volume, ..standard };
     let mapper = Mapper::new(scene, maps, &reading);
     let (width, height) = (f64::from(camera.width()), f64::from(camera.height()));
     let pixel = |i: usize| {

@@ -1,0 +1,237 @@
+//! An estimator: what a photon map is asked, and how.
+
+use super::boundary::{Boundary, Gathered, Rejection, Sieve, Surroundings, Treatment, accepted};
+use super::point::{ball_sum, for_each_photon, in_scattered_sum};
+use super::{BallSum, Directional, Estimate, Gather, Kernel, NeighborCount};
+use crate::Spectrum;
+use crate::math::{Positive, cosine_pair};
+use crate::photons::{Photon, PhotonMap};
+use glam::DVec3;
+
+/// How light at a point of a medium is estimated from the photons about it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Estimator {
+    /// How photons are weighted by their distance.
+    pub kernel: Kernel,
+    /// Which photons are used.
+    pub gather: Gather,
+    /// What is done where the medium ends in the ball, or bodies stand in it.
+    pub treatment: Treatment,
+    /// Which photons that walls part from the point are rejected.
+    pub rejection: Rejection,
+}
+
+/// Bodies and photons are looked for a little beyond a ball, so that rounding leaves none in it out.
+const BEYOND: f64 = 1.001;
+
+/// How far ahead of the point is looked from, in parts of the largest radius.
+const AHEAD: f64 = 1e-9;
+
+impl Estimator {
+    /// Of all photons that a gather finds, wherever they are.
+    pub fn new(kernel: Kernel, gather: Gather) -> Self {
+        Estimator { kernel, gather, treatment: Treatment::None, rejection: Rejection::Off }
+    }
+
+    /// The same with a treatment of boundaries.
+    pub fn treated(self, treatment: Treatment) -> Self {
+        Estimator { treatment, ..self }
+    }
+
+    /// The same with photons behind walls rejected.
+    pub fn rejecting(self, rejection: Rejection) -> Self {
+        Estimator { rejection, ..self }
+    }
+
+    /// Every kernel with every gather and every treatment, at this radius \[L\], or this k as far as that.
+    pub fn specimens(radius: Positive, k: NeighborCount) -> Vec<Estimator> {
+        let max_radius = radius;
+        let gathers = [
+            Gather::Radius(radius),
+            Gather::Nearest { k, max_radius },
+            Gather::NearestBiased { k, max_radius },
+        ];
+        let mut all = Vec::new();
+        for kernel in Kernel::ALL {
+            for gather in gathers {
+                for treatment in Treatment::ALL {
+                    all.push(Estimator::new(kernel, gather).treated(treatment));
+                }
+            }
+        }
+        all
+    }
+
+    /// Its name, such as "cone, k=50, clipped".
+    pub fn name(&self) -> String {
+        let Estimator { kernel, gather, treatment, rejection } = self;
+        let mut name = format!("{}, {gather}", kernel.name());
+        if *treatment != Treatment::None {
+            name += &format!(", {}", treatment.name());
+        }
+        if *rejection != Rejection::Off {
+            name += &format!(", {}", rejection.name());
+        }
+        name
+    }
+
+    /// Bias expected in a field from independent photons away from boundaries, to second order in the radius
+    /// ([`Gather::expected_bias`]).
+    ///
+    /// # Arguments `field` and its `laplacian` (per L^2) at the point; `photons_per_volume` [1/L^3], stored
+    /// # Returns   in the unit of the field
+    pub fn expected_bias(&self, field: f64, laplacian: f64, photons_per_volume: f64) -> f64 {
+        self.gather.expected_bias(self.kernel, field, laplacian, photons_per_volume)
+    }
+
+    /// Variance expected from independent photons in a uniform field away from boundaries, over the square of the field
+    /// ([`Gather::expected_relative_variance`]).
+    ///
+    /// # Arguments `power_ratio` q, at least 1; `photons_per_volume` [1/L^3], stored
+    pub fn expected_relative_variance(&self, photons_per_volume: f64, power_ratio: f64) -> f64 {
+        self.gather.expected_relative_variance(self.kernel, photons_per_volume, power_ratio)
+    }
+
+    /// Density of collisions at a point, by power [W/L^3]: sum p K_r / N, and what the treatment makes of it.
+    ///
+    /// # Arguments
+    /// `point` inside the medium or on its boundary. Reflection in a slab, or a cuboid, is exact for radii up to the
+    /// distance of opposite faces
+    /// # Limits
+    /// with a whole ball and nothing rejected all treatments are the same, bit by bit
+    /// # Source
+    /// Jensen and Christensen 1998; the k-1 of the k-nearest rule is Loftsgaarden and Quesenberry 1965; Jones 1993, "Simple
+    /// boundary correction for kernel density estimation"
+    pub fn collision_density(&self, map: &PhotonMap, point: DVec3, boundary: &Boundary<'_>) -> Estimate {
+        let point = map.place(point, self.gather.cap());
+        let plain = || ball_sum(map, point, self.kernel, self.gather);
+        self.asked(map, (point, point), boundary, plain, &|_| 1.0)
+    }
+
+    /// Fluence at a point [W/L^2], [`Estimator::collision_density`] over sigma_t.
+    ///
+    /// # Arguments
+    /// `sigma_t` [1/L] at the point, above zero in every channel: a channel in which it is zero gives a
+    /// non-finite value, never a silent zero.
+    ///
+    /// # Limits
+    /// Where sigma_t varies this is the blurred collision density over the local sigma_t; see [`for_each_photon`]
+    /// for sums that weight each photon by its own.
+    pub fn fluence(
+        &self,
+        map: &PhotonMap,
+        point: DVec3,
+        sigma_t: Spectrum,
+        boundary: &Boundary<'_>,
+    ) -> Estimate {
+        let mut estimate = self.collision_density(map, point, boundary);
+        estimate.value = estimate.value.over(sigma_t);
+        estimate
+    }
+
+    /// In-scattered radiance at a point [W/(L^2 sr)], sum p phase(dir -> wo) K_r / (N sigma_t), and what the treatment makes
+    /// of it: images of photons are weighted by their own directions.
+    ///
+    /// # Arguments
+    /// `wo` unit direction of travel after the scattering; `phase` [1/sr]; the rest as in [`Estimator::fluence`]
+    ///
+    /// # Limits
+    /// Directions are held in single precision, which blurs a phase function over about 1e-7 rad: peaks of |g|
+    /// above 0.9999 feel it. The source term of the transfer equation is sigma_s times the value.
+    pub fn in_scattered(
+        &self,
+        map: &PhotonMap,
+        point: DVec3,
+        wo: DVec3,
+        phase: &impl Directional,
+        sigma_t: Spectrum,
+        boundary: &Boundary<'_>,
+    ) -> Estimate {
+        let point = map.place(point, self.gather.cap());
+        let plain = || in_scattered_sum(map, point, wo, phase, self.kernel, self.gather);
+        let value = |photon: &Photon| {
+            let (one_minus_mu, one_plus_mu) = cosine_pair(photon.dir.as_dvec3(), wo);
+            phase.value(one_minus_mu, one_plus_mu)
+        };
+        // A step of a march may begin on a body, and goes on from there.
+        let eye = point - wo * (AHEAD * self.gather.cap());
+        let mut estimate = self.asked(map, (point, eye), boundary, plain, &value);
+        estimate.value = estimate.value.over(sigma_t);
+        estimate
+    }
+
+    /// The sum of power x value over the number emitted, at a point where the tree may be asked; `plain` is the untreated one.
+    /// The second point is where bodies are looked at from.
+    fn asked(
+        &self,
+        map: &PhotonMap,
+        (point, eye): (DVec3, DVec3),
+        boundary: &Boundary<'_>,
+        plain: impl FnOnce() -> BallSum,
+        value: &dyn Fn(&Photon) -> f64,
+    ) -> Estimate {
+        let Estimator { kernel, gather, treatment, rejection } = *self;
+        let sieve = Sieve::new(rejection, boundary.walls, point, gather.cap());
+        let alone;
+        let boundary = match treatment {
+            Treatment::None if sieve.is_none() => return Estimate::new(map, plain(), 0),
+            Treatment::None => {
+                alone = boundary.alone();
+                &alone
+            }
+            Treatment::Clipped | Treatment::Reflection | Treatment::LocalLinear => boundary,
+        };
+        let medium = |radius: f64| boundary.medium.filter(|medium| medium.room(point) < radius);
+        let mut hidden = None;
+        if sieve.is_none() {
+            let plain = plain();
+            let r = plain.ball.radius;
+            let about = Surroundings::new(boundary, point, eye, BEYOND * r);
+            let count = about.count_rejected(map.tree(), point, BEYOND * r);
+            if count == 0 {
+                // The sum over accepted photons is the plain one.
+                let sum = match medium(r) {
+                    _ if !about.is_clear(r) => plain.sum / about.share(kernel, r, map.run()),
+                    None => plain.sum,
+                    Some(medium) => {
+                        let photons = All { map, point, gather };
+                        treatment.treated((medium, point, r), kernel, plain.sum, &photons, value)
+                    }
+                };
+                return Estimate::new(map, BallSum { sum, ..plain }, 0);
+            }
+            hidden = Some(count);
+        }
+        let about = Surroundings::new(boundary, point, eye, BEYOND * gather.cap());
+        let keeps = |place: usize| {
+            sieve.as_ref().is_none_or(|sieve| sieve.keeps(&map.tree().photon(place)))
+                && about.keeps(map.tree().position(place))
+        };
+        let photons = accepted(map.tree(), point, gather, &keeps, hidden);
+        let (ball, r) = (photons.ball, photons.ball.radius);
+        let mut plain = Spectrum::grey(if point.is_finite() { 0.0 } else { f64::NAN });
+        photons.each(kernel, &mut |photon, weight| {
+            plain += Spectrum(photon.power.as_dvec3()) * (weight / (r * r * r) * value(photon));
+        });
+        let sum = match medium(r) {
+            _ if treatment == Treatment::None => plain,
+            _ if !about.is_clear(r) => plain / about.share(kernel, r, map.run()),
+            None => plain,
+            Some(medium) => treatment.treated((medium, point, r), kernel, plain, &photons, value),
+        };
+        Estimate::new(map, BallSum { sum, ball }, photons.rejected)
+    }
+}
+
+/// All photons of a gather.
+struct All<'a> {
+    map: &'a PhotonMap,
+    point: DVec3,
+    gather: Gather,
+}
+
+impl Gathered for All<'_> {
+    fn each(&self, kernel: Kernel, visit: &mut dyn FnMut(&Photon, f64)) {
+        for_each_photon(self.map, self.point, kernel, self.gather, |photon, weight| visit(&photon, weight));
+    }
+}
