@@ -287,8 +287,10 @@ fn leaves_of(tree: &[Token], before: &[String], found: &mut Vec<(Vec<String>, Op
     while let Some(token) = tree.get(at) {
         match token {
             Token::Word(word) if word == "as" => {
-                found.push((path, tree.get(at + 1).and_then(Token::word).map(str::to_string)));
-                return;
+                path.truncate(
+                    path.len() - usize::from(path.len() > 1 && path.ends_with(&["self".to_string()])),
+                );
+                return found.push((path, tree.get(at + 1).and_then(Token::word).map(str::to_string)));
             }
             Token::Word(word) => path.push(word.clone()),
             Token::Sign('*') => return found.push((path, None)),
