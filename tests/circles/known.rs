@@ -73,7 +73,6 @@ pub const KNOWN: &[&[&str]] = &[
         "src/scene/file/texture.rs",
     ],
     &["src/surface/lambertian.rs", "src/surface/texture.rs", "src/surface/texture/wood.rs"],
-    &["src/transport/bounce.rs", "src/transport/walk.rs"],
     &["analytic/asymptotics.rs", "analytic/asymptotics/closed.rs", "analytic/asymptotics/ordinates.rs"],
     &["analytic/peierls/mesh.rs", "analytic/peierls/mod.rs", "analytic/peierls/weights.rs"],
     &[
