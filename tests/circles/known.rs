@@ -4,23 +4,6 @@
 pub const KNOWN: &[&[&str]] = &[
     &["src/estimators/boundary.rs", "src/estimators/boundary/visible.rs"],
     &[
-        "src/photons/importance.rs",
-        "src/photons/importance/learn.rs",
-        "src/photons/importance/reading.rs",
-        "src/photons/importance/steer.rs",
-        "src/photons/maps.rs",
-        "src/photons/maps/counts.rs",
-        "src/photons/pass.rs",
-    ],
-    &[
-        "src/photons/tree.rs",
-        "src/photons/tree/boxes.rs",
-        "src/photons/tree/nearest.rs",
-        "src/photons/tree/order.rs",
-        "src/photons/tree/scratch.rs",
-        "src/photons/tree/within.rs",
-    ],
-    &[
         "src/scene/bodies.rs",
         "src/scene/bounds.rs",
         "src/scene/coincident.rs",
