@@ -3,27 +3,6 @@
 /// Each by its files: no new one is added, and one that is cut is taken off.
 pub const KNOWN: &[&[&str]] = &[
     &["src/estimators/boundary.rs", "src/estimators/boundary/visible.rs"],
-    &[
-        "src/scene/bodies.rs",
-        "src/scene/bounds.rs",
-        "src/scene/coincident.rs",
-        "src/scene/glows.rs",
-        "src/scene/hit.rs",
-        "src/scene/interiors.rs",
-        "src/scene/mod.rs",
-        "src/scene/plan.rs",
-        "src/scene/regions.rs",
-        "src/scene/segments.rs",
-        "src/scene/validate.rs",
-    ],
-    &["src/scene/builtin.rs", "src/scene/builtin/fogbox.rs"],
-    &[
-        "src/scene/file.rs",
-        "src/scene/file/interior.rs",
-        "src/scene/file/medium.rs",
-        "src/scene/file/shape.rs",
-        "src/scene/file/texture.rs",
-    ],
     &["analytic/asymptotics.rs", "analytic/asymptotics/closed.rs", "analytic/asymptotics/ordinates.rs"],
     &["analytic/peierls/mesh.rs", "analytic/peierls/mod.rs", "analytic/peierls/weights.rs"],
     &[
