@@ -1,4 +1,4 @@
-//! Circles that are still there.
+//! Circles that are left: those of the referee, and one of the estimators.
 
 /// Each by its files: no new one is added, and one that is cut is taken off.
 pub const KNOWN: &[&[&str]] = &[
