@@ -113,7 +113,7 @@ pub fn fill_steered(
 
 /// Fills the maps with the photons of so many histories.
 ///
-/// The same bits on any number of threads. Memory: [`PEAK_BYTES`] a photon at most; what stays is
+/// The same bits on any number of threads. Memory: [`PEAK_BYTES`](super::PEAK_BYTES) a photon at most; what stays is
 /// [`PhotonTree::bytes`](crate::photons::PhotonTree::bytes).
 ///
 /// # Errors
