@@ -3,7 +3,7 @@
 use super::load::Source;
 use super::memory::{Memory, rounded_down};
 use super::progress::Bar;
-use super::{FormatName, note, on_threads, parse_count};
+use super::shared::{FormatName, note, on_threads, parse_count};
 use anyhow::Context;
 use serde::Serialize;
 use std::time::Instant;

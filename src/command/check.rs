@@ -1,6 +1,7 @@
 //! `turbid check`: what a scene requires.
 
 use super::load::Source;
+use super::shared::print;
 use std::fmt::Write;
 
 /// Say what a scene requires, and which path classes no sampler reaches.
@@ -32,6 +33,6 @@ impl Check {
         for class in &scene.plan().unreachable {
             writeln!(text, "out of reach of the path tracer: {class}")?;
         }
-        super::print(&text)
+        print(&text)
     }
 }

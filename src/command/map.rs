@@ -1,11 +1,11 @@
 //! `turbid map`: the photons of a scene's maps, as dots seen from its camera.
 
 use super::load::Source;
+use super::made::MapsMade;
 use super::memory::Memory;
-use super::on_threads;
 use super::picture::{Frame, Held, Photons, Shown};
 use super::progress::Bar;
-use super::render::MapsMade;
+use super::shared::{on_threads, print};
 use anyhow::{Context, bail};
 use clap::ValueEnum;
 use std::path::PathBuf;
@@ -121,7 +121,7 @@ impl Map {
             write_ply(ply, &photons, |photon| white.pixel(colour(photon)))
                 .with_context(|| format!("{} is written, the point cloud is not", self.output.display()))?;
         }
-        super::print(&format!("photons        {}\nin the picture {seen}\n", photons.len()))
+        print(&format!("photons        {}\nin the picture {seen}\n", photons.len()))
     }
 
     /// The photons of the maps asked for, each with the number that its map's pass emitted.

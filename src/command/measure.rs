@@ -4,7 +4,7 @@ use super::load::Source;
 use super::memory::{Memory, passes_that_fit, rounded_down};
 use super::picture::BoundaryName;
 use super::progress::Bar;
-use super::{FormatName, kernels, note, on_threads, parse_count, tell_ahead};
+use super::shared::{FormatName, kernels, note, on_threads, parse_count, tell_ahead};
 use anyhow::{Context, bail};
 use clap::ValueEnum;
 use turbid::estimators::{Estimator, Gather, Kernel};

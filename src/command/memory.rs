@@ -1,6 +1,6 @@
 //! What memory a run may take.
 
-use super::parse_count;
+use super::shared::parse_count;
 use anyhow::bail;
 use turbid::memory::{free, in_words, used};
 

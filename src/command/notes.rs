@@ -1,7 +1,7 @@
 //! What a picture's reader should know: maps that are empty, and settings that cannot be good, with the option that helps.
 
-use super::note;
-use super::render::Filled;
+use super::made::Filled;
+use super::shared::note;
 use std::io::Result;
 use turbid::geometry::Shape;
 use turbid::integrators::StepRule;

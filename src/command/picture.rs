@@ -1,9 +1,9 @@
 //! What `render` and `map` share: the camera, the photons, exposure.
 
+use super::made::Filled;
 use super::memory::{Memory, passes_that_fit, rounded_down};
 use super::progress::Bar;
-use super::render::Filled;
-use super::{kernels, note, parse_count, tell_ahead};
+use super::shared::{kernels, note, parse_count, tell_ahead};
 use anyhow::{Context, anyhow};
 use clap::ValueEnum;
 use turbid::estimators::boundary::{Rejection, Treatment};

@@ -1,21 +1,21 @@
 //! `turbid render`: a picture of a scene, by photons, by paths or by light tracing.
 
 use super::load::Source;
+use super::made::{Filled, Made, MapsMade, Stages};
 use super::memory::Memory;
 use super::notes::{tell_empty, tell_gathers, tell_step};
-use super::parse_count;
 use super::picture::{Frame, Held, Photons, Reading, Shown};
 use super::progress::Bar;
-use super::statistics::{MAPS, Stages, print_statistics};
-use super::{note, on_threads, print};
+use super::shared::{note, on_threads, parse_count, print};
+use super::statistics::{MAPS, print_statistics};
 use anyhow::{Context, bail};
 use clap::ValueEnum;
 use cpu_time::ProcessTime;
 use std::ops::AddAssign;
 use std::path::PathBuf;
-use turbid::integrators::mapper::{Mapper, Report, Settings};
+use turbid::integrators::mapper::{Mapper, Report};
 use turbid::output::{Tone, auto_exposure, check_writable, is_same_file, one_line, write_exr, write_png};
-use turbid::photons::maps::{MapReport, Maps, fill_part};
+use turbid::photons::maps::fill_part;
 use turbid::photons::{Part, PhotonMap};
 use turbid::scene::Camera;
 use turbid::sensor::{Film, LIGHT_BYTES, LIGHT_PIXEL_BYTES, Method, Streams};
@@ -135,22 +135,6 @@ const FILM_BYTES: f64 = 352.0;
 
 /// Samples a pixel where neither their number nor a time is given.
 const SAMPLES: u64 = 16;
-
-/// What making a picture took.
-pub struct Made {
-    /// The picture.
-    pub film: Film,
-    /// Samples a pixel of each repetition.
-    pub samples: Vec<u64>,
-    /// Rays and look-ups.
-    pub work: Report,
-    /// What filling each repetition's maps took, and how full the global, caustic and volume map are.
-    pub maps: Vec<MapsMade>,
-    /// Times.
-    pub stages: Stages,
-    /// Whether it was made by light tracing.
-    pub is_by_light: bool,
-}
 
 impl Render {
     /// Draws and writes.
@@ -426,35 +410,4 @@ impl Render {
             "scene": scene_text,
         }))
     }
-}
-
-/// The maps of one repetition.
-#[derive(Default)]
-pub struct MapsMade {
-    /// What filling them took.
-    pub report: MapReport,
-    /// How full the global, caustic and volume map are; none where the scene needs none.
-    pub filled: [Option<Filled>; 3],
-    /// How they are read, if they are.
-    pub settings: Option<Settings>,
-}
-
-impl MapsMade {
-    /// Counts a part of the photons.
-    pub fn add(&mut self, maps: &Maps) {
-        self.report.add_part(&maps.report);
-        for (mine, map) in self.filled.iter_mut().zip([&maps.global, &maps.caustic, &maps.volume]) {
-            let before = mine.map_or(0, |filled| filled.stored);
-            *mine = map.as_ref().map(|m| Filled { stored: before + m.stored(), emitted: m.emitted() });
-        }
-    }
-}
-
-/// How full a map is.
-#[derive(Debug, Clone, Copy, serde::Serialize)]
-pub struct Filled {
-    /// Photons in it.
-    pub stored: usize,
-    /// Photons that its pass sent out for it.
-    pub emitted: u64,
 }

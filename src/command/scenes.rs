@@ -1,6 +1,7 @@
 //! `turbid scenes`: the built-in ones.
 
 use super::load::Source;
+use super::shared::print;
 use turbid::scene::BUILTIN;
 
 /// List the built-in scenes, or print one.
@@ -21,13 +22,13 @@ impl Scenes {
     pub fn run(self) -> anyhow::Result<()> {
         let Some(name) = self.name else {
             let lines: String = BUILTIN.iter().map(|b| format!("{:8} {}\n", b.name, b.about)).collect();
-            return super::print(&format!("{lines}\n`turbid scenes NAME` prints the parameters of one.\n"));
+            return print(&format!("{lines}\n`turbid scenes NAME` prints the parameters of one.\n"));
         };
         match BUILTIN.iter().find(|b| b.name == name) {
             Some(builtin) if !self.resolved => {
-                super::print(&format!("# {}: {}\n{}", builtin.name, builtin.about, builtin.defaults))
+                print(&format!("# {}: {}\n{}", builtin.name, builtin.about, builtin.defaults))
             }
-            _ => super::print(&toml::to_string(&Source::with_sets(&name, self.sets).resolve()?)?),
+            _ => print(&toml::to_string(&Source::with_sets(&name, self.sets).resolve()?)?),
         }
     }
 }

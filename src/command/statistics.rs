@@ -1,56 +1,15 @@
 //! What a picture took: times, rays, photons, memory.
 
-use super::render::{Filled, Made, MapsMade};
-use cpu_time::ProcessTime;
+use super::made::{Filled, Made, MapsMade, Stage, peak_memory};
+use super::shared::print;
 use std::fmt::Write;
-use std::time::{Duration, Instant};
+use std::time::Duration;
 use turbid::integrators::mapper::Gathers;
 use turbid::photons::Ends;
 use turbid::photons::maps::MapReport;
 
 /// The stage that fills the maps: emission and building the trees.
 pub const MAPS: &str = "maps";
-
-/// What a stage took.
-struct Stage {
-    name: &'static str,
-    /// By the clock.
-    clock: Duration,
-    /// Of all threads' processors.
-    processor: Duration,
-    /// Most memory that the process had had by its end \[bytes\], where the system tells.
-    memory: Option<u64>,
-}
-
-/// Time and memory by stage.
-#[derive(Default)]
-pub struct Stages(Vec<Stage>);
-
-impl Stages {
-    /// Does something, and adds its time to a stage.
-    pub fn time<T>(&mut self, stage: &'static str, work: impl FnOnce() -> T) -> T {
-        let (clock, processor) = (Instant::now(), ProcessTime::now());
-        let result = work();
-        let (clock, processor) = (clock.elapsed(), processor.elapsed());
-        let memory = peak_memory();
-        match self.0.iter_mut().find(|known| known.name == stage) {
-            Some(known) => {
-                known.clock += clock;
-                known.processor += processor;
-                known.memory = memory;
-            }
-            None => self.0.push(Stage { name: stage, clock, processor, memory }),
-        }
-        result
-    }
-}
-
-/// Most memory that the process has had \[bytes\], where the system tells.
-fn peak_memory() -> Option<u64> {
-    let status = std::fs::read_to_string("/proc/self/status").ok()?;
-    let line = status.lines().find(|line| line.starts_with("VmHWM:"))?;
-    line.split_whitespace().nth(1)?.parse::<u64>().ok().map(|kilobytes| 1024 * kilobytes)
-}
 
 /// Prints what a picture took.
 pub fn print_statistics(made: &Made, exposure: f64) -> anyhow::Result<()> {
@@ -147,7 +106,7 @@ pub fn print_statistics(made: &Made, exposure: f64) -> anyhow::Result<()> {
     if let Some(bytes) = peak_memory() {
         writeln!(text, "memory         {:.1} MB at most", bytes as f64 / 1e6)?;
     }
-    super::print(&text)
+    print(&text)
 }
 
 fn gathered(gathers: &Gathers) -> String {

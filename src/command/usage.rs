@@ -1,6 +1,6 @@
 //! What is wrong with a command line, in one line.
 
-use super::print;
+use super::shared::print;
 use clap::error::ErrorKind;
 
 /// Help and version go to stdout; a command line that cannot be understood becomes an error of one line.

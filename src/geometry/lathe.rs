@@ -1,8 +1,10 @@
 //! A surface of revolution.
 
+mod line;
 mod profile;
 mod tree;
 
+use line::Line;
 pub use profile::smooth;
 
 use super::{ASLANT, Hit, remainder};
@@ -34,16 +36,6 @@ impl PartialEq for Lathe {
     fn eq(&self, other: &Lathe) -> bool {
         (self.base, self.frame, &self.rings) == (other.base, other.frame, &other.rings)
     }
-}
-
-/// The line of a ray in the axis' own coordinates, its origin moved to where it passes the body's middle.
-struct Line {
-    origin: DVec3,
-    dir: DVec3,
-    /// How far along the ray the origin was moved \[L\].
-    shift: f64,
-    /// Squared speed across the axis.
-    a: f64,
 }
 
 /// Far beyond every distance, so that its square is still finite.

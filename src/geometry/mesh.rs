@@ -153,14 +153,6 @@ impl Mesh {
         })
     }
 
-    /// A mesh from a Wavefront OBJ file, each position where `place` puts it: `v`, `vt` and `f` are read, polygons are cut
-    /// into triangles, the rest is passed over.
-    ///
-    /// # Errors     `Error::Scene` with file and line for what cannot be read
-    pub fn read(path: &std::path::Path, place: impl Fn(DVec3) -> DVec3) -> Result<Self> {
-        obj::read(path, place)
-    }
-
     /// Number of triangles.
     pub fn len(&self) -> usize {
         self.corners.len()

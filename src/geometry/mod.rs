@@ -5,6 +5,7 @@
 
 mod cuboid;
 mod height_field;
+mod hit;
 mod lathe;
 mod mesh;
 mod rectangle;
@@ -12,10 +13,13 @@ mod rectangles;
 mod slab;
 mod sphere;
 mod spherical_rectangle;
+mod sums;
 mod tree;
 
 pub use cuboid::Cuboid;
 pub use height_field::{Ground, Up, Waves, height_field, listed};
+pub(crate) use hit::ASLANT;
+pub use hit::{Front, Hit};
 pub use lathe::{Lathe, smooth};
 pub use mesh::Mesh;
 pub use rectangle::Rectangle;
@@ -23,47 +27,12 @@ pub use rectangles::Rectangles;
 pub use slab::{Face, Slab};
 pub use sphere::Sphere;
 pub use spherical_rectangle::SphericalRectangle;
+pub(crate) use sums::remainder;
 pub(crate) use tree::Tree;
 
 use crate::math::{Interval, Ray};
-use glam::{DVec2, DVec3};
+use glam::DVec3;
 use std::sync::Arc;
-
-/// Where rays look to tell inside from outside, a unit vector. Its components, as sqrt 2 - 1 to sqrt 3 - 1 to sqrt 5 - 1, are
-/// independent over the rationals: it lies in no lattice plane, so that from places on a lattice it meets no edge and no corner
-/// of bodies with such coordinates. A ray that touches an edge meets a front and a back there, at once.
-pub(crate) const ASLANT: DVec3 =
-    DVec3::new(0.277_046_696_451_239_86, 0.489_632_103_568_690_86, 0.826_743_933_234_682_7);
-
-/// Where a ray meets a shape.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Hit {
-    /// Distance along the ray \[L\].
-    pub t: f64,
-    /// Unit geometric normal: outwards for closed shapes, the front for a rectangle.
-    pub normal: DVec3,
-    /// Where on the surface: along u and v of a rectangle, around and along a lathe, as the file of a mesh says; 0 on the
-    /// other shapes.
-    pub uv: DVec2,
-    /// Which part of the shape was hit: the triangle of a mesh, the frustum of a lathe, 0 on a shape without parts.
-    pub primitive: u32,
-}
-
-/// A plane in front of a point.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Front {
-    /// Unit normal on the side of the point.
-    pub normal: DVec3,
-    /// Distance of the point \[L\], above 0.
-    pub distance: f64,
-}
-
-impl Front {
-    /// Height above the plane, on the side of the point, of what lies in this direction and distance of it \[L\].
-    pub fn height(&self, away: DVec3) -> f64 {
-        away.dot(self.normal) + self.distance
-    }
-}
 
 /// The shapes at hand. Heavy ones share their data: a clone costs little.
 #[derive(Debug, Clone, PartialEq)]
@@ -340,10 +309,4 @@ impl Shape {
 /// The sphere about a box.
 fn about((min, max): (DVec3, DVec3)) -> (DVec3, f64) {
     (0.5 * (min + max), 0.5 * min.distance(max))
-}
-
-/// What is left of a number that chose an entry from sums: where between its own sum and the one before, in [0, 1).
-pub(crate) fn remainder(sums: &[f64], index: usize, target: f64) -> f64 {
-    let before = if index > 0 { sums[index - 1] } else { 0.0 };
-    ((target - before) / (sums[index] - before)).clamp(0.0, 1.0 - f64::EPSILON)
 }

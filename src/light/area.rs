@@ -1,7 +1,8 @@
 //! A shape whose surface emits outwards.
 
 use super::bundle::{by_number, cone};
-use super::{Bundle, EmissionCell, EmissionNumbers, LightSample, Needs, emissive};
+use super::emission::emissive;
+use super::{Bundle, EmissionCell, EmissionNumbers, LightSample, Needs};
 use crate::Spectrum;
 use crate::error::{Error, Result};
 use crate::faults::{Fault, planted};

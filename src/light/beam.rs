@@ -1,7 +1,8 @@
 //! Collimated light.
 
 use super::bundle::patch;
-use super::{Bundle, EmissionCell, EmissionNumbers, LightSample, Stage, emissive};
+use super::emission::emissive;
+use super::{Bundle, EmissionCell, EmissionNumbers, LightSample, Stage};
 use crate::Spectrum;
 use crate::error::{Error, Result};
 use crate::geometry::{Face, Rectangle, Sphere};

@@ -1,6 +1,7 @@
 //! The same radiance from all directions into a shape.
 
-use super::{EmissionNumbers, Stage, emissive};
+use super::emission::emissive;
+use super::{EmissionNumbers, Stage};
 use crate::Spectrum;
 use crate::error::{Error, Result};
 use crate::geometry::{Face, Shape};

@@ -3,6 +3,7 @@
 mod area;
 mod beam;
 mod bundle;
+mod emission;
 mod glow;
 mod isotropic;
 mod numbers;
@@ -15,6 +16,7 @@ mod volume_source;
 pub use area::Area;
 pub use beam::{Beam, Section};
 pub use bundle::{Bundle, EmissionCell};
+pub use emission::{Emission, LightSample, Stage};
 pub use glow::Glow;
 pub use isotropic::{Faces, Isotropic};
 pub use numbers::{EmissionNumbers, Needs};
@@ -25,7 +27,7 @@ pub use volume_source::VolumeSource;
 
 use crate::Spectrum;
 use crate::error::{Error, Result};
-use crate::geometry::{Hit, Shape, Slab, Sphere};
+use crate::geometry::{Hit, Shape, Sphere};
 use crate::math::{Frame, Ray};
 use crate::rng::Stream;
 use bundle::by_number;
@@ -50,57 +52,6 @@ pub enum Light {
     VolumeSource(VolumeSource),
     /// What an emitting medium sends out: a scene makes it of its media, nobody else.
     Glow(Glow),
-}
-
-/// What unbounded lights need to start photons: the one slab of the scene and the side of its cell \[L\].
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Stage {
-    /// The layer.
-    pub slab: Slab,
-    /// Side of the square cell [0, side) x [0, side) that stands for the whole layer \[L\].
-    pub side: f64,
-}
-
-impl Stage {
-    /// Side of the cell \[L\]; 0 where there is none.
-    pub fn side(stage: Option<&Stage>) -> f64 {
-        stage.map_or(0.0, |s| s.side)
-    }
-}
-
-/// A photon on its way.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Emission {
-    /// Where it starts and where to.
-    pub ray: Ray,
-    /// The part of the light's body that it starts on; 0 without parts.
-    pub primitive: u32,
-    /// Power \[W\], as though it were the only one.
-    pub power: Spectrum,
-    /// Chance that it leaves at all; 1 but for media.
-    pub chance: f64,
-}
-
-/// A direction towards a light, with its contribution.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct LightSample {
-    /// Unit direction from the point towards the light.
-    pub dir: DVec3,
-    /// How far the light is \[L\], where it begins if it fills a volume; infinite for an unbounded beam and the sun.
-    pub distance: f64,
-    /// Radiance over density, or irradiance for a delta light [W/L^2]; of a volume source what would come through nothing.
-    pub value: Spectrum,
-    /// Density of the direction [1/sr], or none for a delta light.
-    pub pdf_solid_angle: Option<f64>,
-}
-
-/// A radiance, irradiance or power whose channels are finite, not negative and not all 0.
-fn emissive(name: &'static str, value: Spectrum) -> Result<Spectrum> {
-    match (0..3).map(|c| value[c]).find(|v| !(*v >= 0.0 && v.is_finite())) {
-        Some(bad) => Err(Error::out_of_range(name, bad, "finite and at least 0")),
-        None if value.is_black() => Err(Error::out_of_range(name, 0.0, "above 0 in at least one channel")),
-        None => Ok(value),
-    }
 }
 
 impl Light {

@@ -1,6 +1,7 @@
 //! A point light.
 
-use super::{EmissionNumbers, LightSample, emissive};
+use super::emission::emissive;
+use super::{EmissionNumbers, LightSample};
 use crate::Spectrum;
 use crate::error::{Error, Result};
 use crate::math::{FOUR_PI, Ray, warp};

@@ -1,7 +1,8 @@
 //! A spot light: a point whose intensity falls off away from an axis.
 
 use super::bundle::cone;
-use super::{Bundle, EmissionCell, EmissionNumbers, LightSample, emissive};
+use super::emission::emissive;
+use super::{Bundle, EmissionCell, EmissionNumbers, LightSample};
 use crate::Spectrum;
 use crate::error::{Error, Result};
 use crate::math::{Frame, Ray, cosine_pair, sin, warp};

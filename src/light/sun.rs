@@ -1,9 +1,10 @@
 //! The sun: a distant disc of uniform radiance.
 
 use super::bundle::patch;
+use super::emission::emissive;
 use super::portal::Portal;
 use super::spot::one_minus_cos_degrees;
-use super::{Bundle, EmissionCell, EmissionNumbers, LightSample, Needs, emissive};
+use super::{Bundle, EmissionCell, EmissionNumbers, LightSample, Needs};
 use crate::Spectrum;
 use crate::error::{Error, Result};
 use crate::geometry::{Rectangle, Sphere};

@@ -1,6 +1,7 @@
 //! A uniform isotropic source filling a shape.
 
-use super::{EmissionNumbers, LightSample, Stage, emissive};
+use super::emission::emissive;
+use super::{EmissionNumbers, LightSample, Stage};
 use crate::Spectrum;
 use crate::error::{Error, Result};
 use crate::geometry::{Shape, Sphere};

@@ -3,6 +3,7 @@
 //! Every method takes or returns the pair (1-mu, 1+mu) of the cosine between the directions of travel before and
 //! after: that keeps every digit at both peaks.
 
+mod function;
 mod henyey_greenstein;
 mod isotropic;
 mod rayleigh;
@@ -10,6 +11,7 @@ mod schlick;
 mod tabulated;
 mod two_term;
 
+pub use function::PhaseFunction;
 pub use henyey_greenstein::HenyeyGreenstein;
 pub use isotropic::Isotropic;
 pub use rayleigh::Rayleigh;
@@ -20,18 +22,6 @@ pub use two_term::TwoTerm;
 use crate::math::{Albedo, Asymmetry, Frame, warp};
 use glam::DVec3;
 use std::sync::Arc;
-
-/// What every phase function answers.
-pub trait PhaseFunction {
-    /// Density over directions [1/sr]: integrates to 1 over the sphere, and is the density of [`Self::sample`].
-    fn eval(&self, one_minus_mu: f64, one_plus_mu: f64) -> f64;
-
-    /// The pair (1-mu, 1+mu) by exact inversion of `u` in [0, 1): mu grows with `u`.
-    fn sample(&self, u: f64) -> (f64, f64);
-
-    /// Legendre moment of degree `l`, the mean of P_l(mu): moment 0 is 1, moment 1 is g.
-    fn moment(&self, l: u32) -> f64;
-}
 
 /// The phase functions at hand.
 #[derive(Debug, Clone, PartialEq)]

@@ -22,76 +22,20 @@
 mod grid;
 mod learn;
 mod reading;
+mod settings;
 mod steer;
+mod values;
 
+pub use settings::ImportanceSettings;
 pub use steer::{Branching, window};
+pub use values::Importance;
 
+use super::check_end;
 use super::maps::Indirect;
-use super::{Emitter, check_end};
 use crate::error::{Error, Result};
-use crate::rng::{Purpose, Stream};
 use crate::scene::{Camera, Scene};
 use crate::transport::Progress;
-use grid::{Aim, DIRECTIONS, Grid};
-
-/// How importance is learned.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct ImportanceSettings {
-    /// Particles from the camera.
-    pub particles: u64,
-    /// Photon histories of each round of the pilot.
-    pub pilot: u64,
-    /// Rounds of the pilot.
-    pub rounds: u64,
-    /// Cubes of the grid of values along the longest edge of the scene; that of what is read has twice as many.
-    pub boxes: usize,
-    /// Seed of the whole computation.
-    pub seed: u64,
-    /// Which independent repetition.
-    pub replicate: u64,
-}
-
-impl ImportanceSettings {
-    /// The random numbers of one history of a stage; there are fewer than 65,535 rounds.
-    fn stream(&self, stage: Stage, history: u64) -> Stream {
-        let stage = match stage {
-            Stage::Reading => 0,
-            Stage::Round(number) => 1 + number,
-            Stage::Extent => u64::MAX,
-        };
-        Stream::new(self.seed, Purpose::Importance, self.replicate << 16 ^ stage, history)
-    }
-}
-
-/// What is learned by histories of its own.
-#[derive(Debug, Clone, Copy)]
-enum Stage {
-    /// Where the camera looks.
-    Extent,
-    /// Where the picture reads photons.
-    Reading,
-    /// A round of the pilot.
-    Round(u64),
-}
-
-impl Default for ImportanceSettings {
-    /// Enough to find a corner that one photon in a thousand comes to.
-    fn default() -> Self {
-        ImportanceSettings { particles: 1 << 16, pilot: 1 << 15, rounds: 4, boxes: 12, seed: 1, replicate: 0 }
-    }
-}
-
-/// The importance map of a scene and its camera: how photons leave the lights, and what they are worth where.
-#[derive(Debug, Clone)]
-pub struct Importance {
-    grid: Grid,
-    aim: Aim,
-    /// By box and direction: what a photon that leaves it scores, over its weight; never 0.
-    values: Vec<f64>,
-    /// What a whole emission scores \[W\].
-    response: f64,
-    emitter: Emitter,
-}
+use grid::Grid;
 
 impl Importance {
     /// Learns the importance of a scene to a camera.
@@ -114,16 +58,5 @@ impl Importance {
         let fine = Grid::new(low, high, 2 * settings.boxes);
         let reading = reading::read(scene, camera, indirect, fine, settings, progress)?;
         learn::learn(scene, indirect, Grid::new(low, high, settings.boxes), &reading, settings, progress)
-    }
-
-    /// How photons leave the lights.
-    pub fn emitter(&self) -> &Emitter {
-        &self.emitter
-    }
-
-    /// Values of the directions in which a photon may leave `p`.
-    fn values_at(&self, p: glam::DVec3) -> &[f64] {
-        let start = self.grid.index(p) * DIRECTIONS;
-        &self.values[start..start + DIRECTIONS]
     }
 }

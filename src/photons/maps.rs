@@ -16,86 +16,22 @@
 //! rays of a final gathering bring the medium's radiance with them, so that light scattered by the medium towards the
 //! surface that the eye looks at, L ... M D, comes with them; a map that is seen holds that class.
 
+mod classes;
 mod counts;
+mod settings;
 
+pub use classes::{is_caustic, is_global, is_volume};
 pub use counts::{Forecast, MOST_A_STORED, counts, counts_steered, forecast};
+pub use settings::{Amount, Emitted, Indirect, MapSettings, PILOT};
 
 use super::importance::Importance;
-use super::{Flags, Histories, PEAK_BYTES, Part, Pass, PassReport, Photon, PhotonMap, Run, Storage};
+use super::{Part, Pass, PassReport, Photon, PhotonMap, Run};
 use crate::error::Result;
-use crate::faults::{Fault, planted};
 use crate::rng::Purpose;
 use crate::scene::Scene;
 use crate::transport::Progress;
-use counts::Emitters;
+use classes::{Class, Classes, Emitters};
 use std::time::{Duration, Instant};
-
-/// Histories of the pilot that says how many photons to emit where a number of stored ones is asked for.
-pub const PILOT: u64 = 10_000;
-
-/// How many photons a map gets.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Amount {
-    /// So many are sent out.
-    Emitted(u64),
-    /// So many are to be stored, about: a pilot of [`PILOT`] histories sets the number sent out, which does not depend
-    /// on what is then stored.
-    Stored(u64),
-}
-
-impl std::fmt::Display for Amount {
-    /// As the command takes it.
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        match self {
-            Amount::Emitted(number) => write!(f, "emit:{number}"),
-            Amount::Stored(number) => write!(f, "{number}"),
-        }
-    }
-}
-
-/// Where the global map is read.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Indirect {
-    /// Where rays of a final gathering meet surfaces: the map holds every class.
-    Gathered,
-    /// Where the eye looks: the map holds what is neither direct nor a caustic.
-    Seen,
-}
-
-/// What the maps are filled with.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct MapSettings {
-    /// Photons of the global map.
-    pub global: Amount,
-    /// Photons of the caustic map, used where the scene has specular surfaces.
-    pub caustic: Amount,
-    /// Photons of the volume map, used where the scene has media.
-    pub volume: Amount,
-    /// Where the global map will be read.
-    pub indirect: Indirect,
-    /// Seed of the whole computation.
-    pub seed: u64,
-    /// Which independent repetition.
-    pub replicate: u64,
-}
-
-/// Histories to run for each map; 0 where the scene needs none.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub struct Emitted {
-    /// For the global map.
-    pub global: u64,
-    /// For the volume map: the same histories, as far as they go.
-    pub volume: u64,
-    /// For the caustic map: histories of their own.
-    pub caustic: u64,
-}
-
-impl Emitted {
-    /// Histories of both passes: the first stages that [`fill_counted`] tells its progress.
-    pub fn histories(&self) -> u64 {
-        self.global.max(self.volume) + self.caustic
-    }
-}
 
 /// What filling the maps took.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -148,24 +84,6 @@ pub struct Maps {
     pub report: MapReport,
 }
 
-/// Whether the global map holds a photon of this class.
-pub fn is_global(flags: Flags, indirect: Indirect) -> bool {
-    indirect == Indirect::Gathered
-        || flags.has(Flags::DIFFUSE)
-        || flags.has(Flags::MEDIUM)
-        || (planted(Fault::CausticTwice) && is_caustic(flags))
-}
-
-/// Whether the caustic map holds a photon of this class.
-pub fn is_caustic(flags: Flags) -> bool {
-    flags == Flags::SPECULAR
-}
-
-/// Whether the volume map holds a photon of this class.
-pub fn is_volume(flags: Flags) -> bool {
-    !flags.is_direct() || planted(Fault::DirectInVolumeMap)
-}
-
 /// Fills the maps that the scene needs.
 ///
 /// # Errors
@@ -195,7 +113,7 @@ pub fn fill_steered(
 
 /// Fills the maps with the photons of so many histories.
 ///
-/// The same bits on any number of threads. Memory: [`PEAK_BYTES`] a photon at most; what stays is
+/// The same bits on any number of threads. Memory: [`PEAK_BYTES`](super::PEAK_BYTES) a photon at most; what stays is
 /// [`PhotonTree::bytes`](crate::photons::PhotonTree::bytes).
 ///
 /// # Errors
@@ -277,54 +195,4 @@ pub fn fill_part(
     }
     report.bytes = [&surfaces, &media, &focused].into_iter().flatten().map(|map| map.tree().bytes()).sum();
     Ok(Maps { global: surfaces, caustic: focused, volume: media, indirect: settings.indirect, report })
-}
-
-/// Which photons a pass stores.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Class {
-    /// Those of the global and the volume map.
-    Main(Indirect),
-    /// Those of the caustic map.
-    Caustic,
-}
-
-impl Class {
-    /// The pass that fills maps of this class by so many histories.
-    fn run<'a>(
-        self,
-        scene: &'a Scene,
-        emitters: &'a Emitters,
-        importance: Option<&'a Importance>,
-        settings: &MapSettings,
-        count: u64,
-    ) -> Run<'a> {
-        // A caustic photon has not been scattered: its history ends with its first scattering.
-        let max_order = (self == Class::Caustic).then_some(0);
-        let histories = Histories { count, seed: settings.seed, replicate: settings.replicate, max_order };
-        let importance = importance.filter(|_| self != Class::Caustic);
-        Run { importance, ..Run::new(scene, emitters.of_class(self), histories) }
-    }
-}
-
-/// The photons of the maps of a class.
-struct Classes {
-    class: Class,
-    /// Histories that store surface photons.
-    global: u64,
-    /// Histories that store volume photons.
-    volume: u64,
-}
-
-impl Storage for Classes {
-    fn in_medium(&self, history: u64, photon: &Photon) -> bool {
-        self.class != Class::Caustic && history < self.volume && is_volume(photon.flags)
-    }
-
-    fn on_surface(&self, history: u64, photon: &Photon) -> bool {
-        let is_stored = match self.class {
-            Class::Main(indirect) => is_global(photon.flags, indirect),
-            Class::Caustic => is_caustic(photon.flags),
-        };
-        history < self.global && is_stored
-    }
 }

@@ -1,5 +1,6 @@
 //! The tree over photon positions: blocks of sixteen in kd order, boxes sixteen wide above them.
 
+mod block;
 mod boxes;
 mod facing;
 mod nearest;
@@ -12,6 +13,7 @@ mod within;
 use super::{Flags, Photon};
 use crate::error::{Error, Result};
 use crate::transport::{NoProgress, Progress};
+use block::{BLOCK, Row};
 use boxes::Boxes;
 use glam::{DVec3, Vec3};
 use order::Entry;
@@ -19,19 +21,11 @@ use records::Records;
 use units::Units;
 use wide::f32x8;
 
+pub use block::ROW;
 pub use facing::Tangent;
 pub use nearest::{Counted, Nearest, Shell};
 pub(crate) use within::bits;
 pub use within::{Neighbors, Visit};
-
-/// Photons in a block: two rows of eight, what the registers of every processor hold without spilling.
-const BLOCK: usize = 16;
-
-/// Photons in a row, and lanes of its arrays.
-pub const ROW: usize = 8;
-
-/// Eight vectors, an array a coordinate.
-type Row = [f32x8; 3];
 
 /// Photons, ordered so that neighbours in space are neighbours in memory; the only copy of them.
 ///
@@ -114,7 +108,7 @@ impl PhotonTree {
         let mut tree = PhotonTree {
             units,
             stored,
-            identity: nearest::new_identity(),
+            identity: scratch::new_identity(),
             positions: Vec::with_capacity(blocks),
             dirs: Vec::with_capacity(rows),
             normals: Vec::with_capacity(if is_on_surfaces { rows } else { 0 }),

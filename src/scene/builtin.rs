@@ -1,14 +1,14 @@
 //! The built-in scenes: a few parameters each, from which the whole scene file follows.
 
 mod fogbox;
+mod region;
 
-use super::file::{
-    Channels, LightFile, QuantityFile, RegionFile, SceneFile, SectionFile, SensorFile, ShapeFile,
-};
+use super::file::{Channels, LightFile, QuantityFile, SceneFile, SectionFile, SensorFile, ShapeFile};
 use crate::error::{Error, Result};
 use crate::geometry::Face;
 use crate::light::Faces;
 use crate::math::{Albedo, Asymmetry, FOUR_PI, NonNegative, Positive};
+use region::{grey, region};
 use serde::{Deserialize, Serialize};
 use std::f64::consts::PI;
 
@@ -140,27 +140,9 @@ struct ShaftParameters {
     probes: Vec<f64>,
 }
 
-fn grey<T: Copy>(value: T) -> Channels<T> {
-    Channels([value; 3])
-}
-
 /// A grey emission that the scene file takes.
 fn emission(value: f64) -> Result<Channels<NonNegative>> {
     NonNegative::new("emission", value).map(grey)
-}
-
-fn region(shape: ShapeFile, sigma_t: f64, albedo: Albedo, g: Asymmetry) -> Result<RegionFile> {
-    Ok(RegionFile {
-        shape,
-        sigma_t: grey(NonNegative::new("sigma_t", sigma_t)?),
-        albedo: grey(albedo),
-        albedo_grid: None,
-        g: Some(g),
-        phase: None,
-        emission: None,
-        emission_by_density: None,
-        density: None,
-    })
 }
 
 fn sensor(

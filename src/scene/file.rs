@@ -4,63 +4,25 @@ mod interior;
 mod medium;
 mod shape;
 mod texture;
+mod values;
 
 pub use interior::{DielectricFile, InteriorFile};
 pub use medium::{DensityFile, GridFile, PhaseFile};
 pub use shape::ShapeFile;
 pub use texture::TextureFile;
+pub use values::Channels;
+
+use values::rectangle;
 
 use super::{Camera, Filter, Interior, Object, Orders, Parts, Quantity, Region, Scene, Sensor, View};
-use crate::Spectrum;
 use crate::error::{Error, Result};
-use crate::geometry::{Face, Rectangle};
+use crate::geometry::Face;
 use crate::light::{Area, Beam, Faces, Isotropic, Light, Point, Section, Spot, Sun, VolumeSource};
 use crate::math::{Albedo, Asymmetry, NonNegative, Positive, Ray};
 use crate::surface::{self, Black, Lambertian, Mirror, Surface};
 use glam::DVec3;
-use serde::de::{IntoDeserializer, SeqAccess, Visitor};
-use serde::{Deserialize, Deserializer, Serialize, Serializer};
+use serde::{Deserialize, Serialize};
 use std::path::Path;
-
-/// A number for all channels, or one a channel.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Channels<T>(pub [T; 3]);
-
-impl<T: Into<f64> + Copy> Channels<T> {
-    fn spectrum(self) -> Spectrum {
-        let [r, g, b] = self.0;
-        Spectrum::rgb(r.into(), g.into(), b.into())
-    }
-}
-
-impl<'de, T: Deserialize<'de> + Copy> Deserialize<'de> for Channels<T> {
-    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> std::result::Result<Self, D::Error> {
-        struct Either<T>(std::marker::PhantomData<T>);
-        impl<'de, T: Deserialize<'de> + Copy> Visitor<'de> for Either<T> {
-            type Value = Channels<T>;
-            fn expecting(&self, f: &mut std::fmt::Formatter) -> std::fmt::Result {
-                f.write_str("a number, or three numbers for red, green and blue")
-            }
-            fn visit_f64<E: serde::de::Error>(self, v: f64) -> std::result::Result<Self::Value, E> {
-                T::deserialize(v.into_deserializer()).map(|x| Channels([x; 3]))
-            }
-            fn visit_i64<E: serde::de::Error>(self, v: i64) -> std::result::Result<Self::Value, E> {
-                self.visit_f64(v as f64)
-            }
-            fn visit_seq<A: SeqAccess<'de>>(self, seq: A) -> std::result::Result<Self::Value, A::Error> {
-                <[T; 3]>::deserialize(serde::de::value::SeqAccessDeserializer::new(seq)).map(Channels)
-            }
-        }
-        deserializer.deserialize_any(Either(std::marker::PhantomData))
-    }
-}
-
-impl<T: Serialize + PartialEq> Serialize for Channels<T> {
-    fn serialize<S: Serializer>(&self, serializer: S) -> std::result::Result<S::Ok, S::Error> {
-        let [r, g, b] = &self.0;
-        if r == g && g == b { r.serialize(serializer) } else { self.0.serialize(serializer) }
-    }
-}
 
 /// A whole scene file.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
@@ -281,10 +243,6 @@ pub enum QuantityFile {
     Radiance { origin: [f64; 3], dir: [f64; 3] },
     Outflow { shape: ShapeFile, face: Face },
     Absorbed { region: usize },
-}
-
-fn rectangle(corner: [f64; 3], u: [f64; 3], v: [f64; 3]) -> Result<Rectangle> {
-    Rectangle::new(corner.into(), u.into(), v.into())
 }
 
 impl RegionFile {

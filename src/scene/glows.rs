@@ -155,3 +155,18 @@ fn enclosing(parts: &Parts, within: usize) -> Option<Vec<&Shape>> {
     let shapes: Vec<&Shape> = bodies.map(|o| &o.shape).collect();
     (!shapes.is_empty() && shapes.iter().all(|shape| shape.is_closed())).then_some(shapes)
 }
+
+impl Scene {
+    /// Power of all lights \[W\], to [`Scene::power_error`]. Where media emit that fill no simple shape of their own, it takes some
+    /// hundredths of a second, the first time.
+    pub fn power(&self) -> Spectrum {
+        self.answers.power.get_or_init(|| power(self)).0
+    }
+
+    /// Standard error of the power, over it: 0 but where media emit whose place is known point by point.
+    pub fn power_error(&self) -> Spectrum {
+        let (power, error) = *self.answers.power.get_or_init(|| power(self));
+        let part = |c: usize| if power[c] > 0.0 { error[c] / power[c] } else { 0.0 };
+        Spectrum::rgb(part(0), part(1), part(2))
+    }
+}

@@ -1,51 +1,10 @@
 //! What a ray meets: the nearest body, and what lets light through on the way.
 
-use super::{SURROUNDINGS, Scene};
+use super::{SURROUNDINGS, Scene, SceneHit, Start, Target};
 use crate::Spectrum;
 use crate::geometry::Hit;
 use crate::math::Ray;
 use crate::surface::Surface;
-
-/// A body that a ray can meet.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Target {
-    /// The object of this index.
-    Object(usize),
-    /// The light of this index.
-    Light(usize),
-}
-
-/// Where a ray starts, if it starts on a body: what it must not meet again at once.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Start {
-    /// Which body.
-    pub target: Target,
-    /// Which part of its shape; 0 of a shape without parts.
-    pub primitive: u32,
-}
-
-impl Start {
-    /// The part that a ray starts on, if it starts on this body.
-    fn on(start: Option<Start>, target: Target) -> Option<u32> {
-        start.filter(|s| s.target == target).map(|s| s.primitive)
-    }
-}
-
-/// The nearest body on a ray.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct SceneHit {
-    /// Which body.
-    pub target: Target,
-    /// Where, and its normal.
-    pub hit: Hit,
-}
-
-impl SceneHit {
-    /// Rays from here start on this body.
-    pub fn start(&self) -> Start {
-        Start { target: self.target, primitive: self.hit.primitive }
-    }
-}
 
 impl Scene {
     /// The nearest body ahead; `from` is the body that the ray starts on.

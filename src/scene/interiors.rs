@@ -5,7 +5,7 @@
 //! one on its outer side. An interior has one index everywhere, and at most one medium, which fills it wherever it
 //! reaches; regions do not count inside it. Whoever travels carries the number of the interior that it is in.
 
-use super::{Object, Parts, Region, Scene};
+use super::{Interior, Object, Parts, Region, SURROUNDINGS, Scene};
 use crate::error::{Error, Result};
 use crate::geometry::{ASLANT, Face, Shape};
 use crate::light::Light;
@@ -13,27 +13,6 @@ use crate::math::{Index, Ray};
 use crate::medium::Medium;
 use crate::surface::{Dielectric, Surface};
 use glam::DVec3;
-
-/// The number of the surroundings.
-pub const SURROUNDINGS: usize = 0;
-
-/// What fills the space between dielectric surfaces.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Interior {
-    /// What dielectric surfaces call it.
-    pub name: String,
-    /// Index of refraction \[1\], at least 1.
-    pub index: f64,
-    /// What it is filled with; nothing that collides if none. Of the surroundings, regions say it.
-    pub medium: Option<Medium>,
-}
-
-impl Interior {
-    /// The space outside every dielectric.
-    pub fn surroundings() -> Self {
-        Interior { name: "surroundings".into(), index: 1.0, medium: None }
-    }
-}
 
 /// Media by number, regions first, then interiors that are filled; and for each interior the number of its medium.
 pub(super) fn numbered(regions: &[Region], interiors: &[Interior]) -> (Vec<Medium>, Vec<Option<usize>>) {

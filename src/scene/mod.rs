@@ -4,107 +4,35 @@ mod bodies;
 mod bounds;
 mod builtin;
 mod camera;
+mod checked;
 mod coincident;
 mod file;
 mod full;
 mod glows;
 mod hit;
 mod interiors;
+mod parts;
 mod plan;
 mod regions;
+mod segment;
 mod segments;
 mod sensor;
+mod target;
 mod validate;
 
 pub use builtin::{BUILTIN, Builtin};
 pub use camera::{Camera, Filter, MAX_PIXELS, MAX_SIDE, View};
+pub use checked::{Scene, decay};
 pub use file::SceneFile;
-pub use hit::{SceneHit, Start, Target};
-pub use interiors::{Interior, SURROUNDINGS};
+pub use parts::{Interior, Object, Parts, Region, SURROUNDINGS};
 pub use plan::Plan;
-pub use segments::{Segment, Segments};
+pub use segment::Segment;
+pub use segments::Segments;
 pub use sensor::{Orders, Quantity, Sensor};
+pub use target::{SceneHit, Start, Target};
 
-use crate::Spectrum;
-use crate::error::{Error, Result};
-use crate::faults::{Fault, planted};
-use crate::geometry::{Shape, Sphere};
-use crate::light::{Light, Stage};
-use crate::math::{Interval, Ray, exp};
-use crate::medium::Medium;
-use crate::surface::Surface;
-use std::sync::OnceLock;
-
-/// A medium and the shape it fills; its boundary is index-matched and no event.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Region {
-    /// Where it is.
-    pub shape: Shape,
-    /// What it is.
-    pub medium: Medium,
-}
-
-/// A surface on a shape.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Object {
-    /// Where it is.
-    pub shape: Shape,
-    /// How it reflects.
-    pub surface: Surface,
-}
-
-/// What a scene is made of, before it is checked.
-#[derive(Debug, Clone, PartialEq, Default)]
-pub struct Parts {
-    /// Media; where shapes overlap, the later one counts.
-    pub regions: Vec<Region>,
-    /// What fills the space between dielectric surfaces; the first one is the surroundings. Empty stands for these alone.
-    pub interiors: Vec<Interior>,
-    /// Surfaces.
-    pub objects: Vec<Object>,
-    /// Lights.
-    pub lights: Vec<Light>,
-    /// Side of the square cell that stands for an unbounded slab \[L\].
-    pub cell: Option<f64>,
-    /// What is measured.
-    pub sensors: Vec<Sensor>,
-    /// Who looks, if anybody does.
-    pub camera: Option<Camera>,
-}
-
-/// A scene whose parts have been checked together.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Scene {
-    parts: Parts,
-    media: Vec<Medium>,
-    filling: Vec<Option<usize>>,
-    /// Those of the parts, then media that emit.
-    lights: Vec<Light>,
-    /// Whether photons can start wherever media emit.
-    is_emission_bounded: bool,
-    light_within: Vec<Option<usize>>,
-    bodies: bodies::Bodies,
-    region_tree: Option<regions::RegionTree>,
-    stage: Option<Stage>,
-    bounds: Option<Sphere>,
-    plan: Plan,
-    answers: Answers,
-}
-
-/// Answers to questions that are asked of a scene once; scenes that are equal have equal ones.
-#[derive(Debug, Clone, Default)]
-struct Answers {
-    /// Whether light ends.
-    ends: OnceLock<Result<()>>,
-    /// Power and its standard error.
-    power: OnceLock<(Spectrum, Spectrum)>,
-}
-
-impl PartialEq for Answers {
-    fn eq(&self, _: &Self) -> bool {
-        true
-    }
-}
+use crate::error::Result;
+use checked::Answers;
 
 impl Scene {
     /// A scene from its parts.
@@ -146,155 +74,4 @@ impl Scene {
         validate::check_apexes(&scene)?;
         Ok(scene)
     }
-
-    /// Asks whether all light in the scene comes to an end, which takes histories of it: the first time only.
-    pub(crate) fn once(&self, ask: impl FnOnce() -> Result<()>) -> Result<()> {
-        self.answers.ends.get_or_init(ask).clone()
-    }
-
-    /// Media and where they are.
-    pub fn regions(&self) -> &[Region] {
-        &self.parts.regions
-    }
-
-    /// Surfaces and where they are.
-    pub fn objects(&self) -> &[Object] {
-        &self.parts.objects
-    }
-
-    /// Lights: those that were named, then media that emit.
-    pub fn lights(&self) -> &[Light] {
-        &self.lights
-    }
-
-    /// Lights that were named.
-    pub fn named_lights(&self) -> &[Light] {
-        &self.parts.lights
-    }
-
-    /// Whether photons can start wherever light does.
-    ///
-    /// # Errors
-    /// [`Error::Unreachable`] if a medium emits that has no end, where no cell stands for it
-    pub fn check_emission(&self) -> Result<()> {
-        if self.is_emission_bounded {
-            return Ok(());
-        }
-        Err(Error::Unreachable(
-            "photons cannot start in a medium that emits and has no end: bound it, name `cell`, or use paths"
-                .into(),
-        ))
-    }
-
-    /// What is measured.
-    pub fn sensors(&self) -> &[Sensor] {
-        &self.parts.sensors
-    }
-
-    /// The camera, if the scene has one.
-    pub fn camera(&self) -> Option<&Camera> {
-        self.parts.camera.as_ref()
-    }
-
-    /// What the scene requires of the simulator.
-    pub fn plan(&self) -> &Plan {
-        &self.plan
-    }
-
-    /// The slab and its cell, where the scene has a cell.
-    pub fn stage(&self) -> Option<&Stage> {
-        self.stage.as_ref()
-    }
-
-    /// A sphere about every medium, surface and body of a light; none where one of them has no end, or there is none.
-    pub fn bounds(&self) -> Option<&Sphere> {
-        self.bounds.as_ref()
-    }
-
-    /// The same about all of them that have an end, which a slab has not; none if there is none.
-    pub fn bounds_of_bounded(&self) -> Option<Sphere> {
-        bounds::of_bounded(&self.parts)
-    }
-
-    /// Power of all lights \[W\], to [`Scene::power_error`]. Where media emit that fill no simple shape of their own, it takes some
-    /// hundredths of a second, the first time.
-    pub fn power(&self) -> Spectrum {
-        self.answers.power.get_or_init(|| glows::power(self)).0
-    }
-
-    /// Standard error of the power, over it: 0 but where media emit whose place is known point by point.
-    pub fn power_error(&self) -> Spectrum {
-        let (power, error) = *self.answers.power.get_or_init(|| glows::power(self));
-        let part = |c: usize| if power[c] > 0.0 { error[c] / power[c] } else { 0.0 };
-        Spectrum::rgb(part(0), part(1), part(2))
-    }
-
-    /// What photons of all lights carry together if none is refused \[W\]: see [`Light::ceiling`].
-    pub fn ceiling(&self) -> Spectrum {
-        self.lights().iter().fold(Spectrum::ZERO, |sum, light| sum + light.ceiling(self.stage()))
-    }
-
-    /// The stretches of medium on the ray up to distance `end`, nearest first, in the interior of this number: the
-    /// regions of the surroundings, or what fills another one, all the way.
-    pub fn segments(&self, ray: &Ray, end: f64, within: usize) -> Segments {
-        if within == SURROUNDINGS {
-            return Segments::new(self.regions(), self.region_tree.as_ref(), ray, end);
-        }
-        let interval = Interval { start: 0.0, end };
-        Segments::filled(self.filling(within).map(|medium| Segment { interval, medium }))
-    }
-
-    /// Optical depth up to distance `end` \[1\]: exact but in clouds, where it is a quadrature. Estimates of light use
-    /// `transport::transmittance`.
-    pub fn optical_depth(&self, ray: &Ray, end: f64, within: usize) -> Spectrum {
-        let mut depth = Spectrum::ZERO;
-        for segment in self.segments(ray, end, within).iter() {
-            depth += self.medium(segment.medium).integrated_depth(ray, segment.interval);
-        }
-        depth
-    }
-
-    /// Optical depth of a part of a segment in a homogeneous medium.
-    fn depth_of(&self, segment: &Segment, part: Interval) -> Spectrum {
-        self.medium(segment.medium).matter().depth(part.length())
-    }
-
-    /// Emission collected along a ray from a source of emission coefficient `emission` [W/(L^3 sr)] that fills
-    /// `part` of the ray: the integral of emission times transmittance, in closed form. All media are homogeneous.
-    pub fn collected(&self, ray: &Ray, part: Interval, within: usize, emission: Spectrum) -> Spectrum {
-        let segments = self.segments(ray, part.end, within);
-        let (mut depth, mut cursor, mut sum) = (Spectrum::ZERO, part.start, Spectrum::ZERO);
-        for segment in segments.iter() {
-            let before = Interval { start: cursor, end: segment.interval.start.min(part.end) };
-            if before.length() > 0.0 {
-                sum += decay(depth) * before.length();
-                cursor = before.end;
-            }
-            let outside =
-                Interval { start: segment.interval.start, end: segment.interval.end.min(part.start) };
-            depth += self.depth_of(segment, outside);
-            let inside = Interval { start: segment.interval.start.max(cursor), end: segment.interval.end };
-            let length = inside.length();
-            if length > 0.0 {
-                let sigma_t = self.medium(segment.medium).matter().sigma_t();
-                let path =
-                    sigma_t.map(|s| if s == 0.0 { length } else { -crate::math::exp_m1(-s * length) / s });
-                sum += decay(depth) * path;
-                depth += self.depth_of(segment, inside);
-                cursor = inside.end;
-            }
-        }
-        if part.end > cursor {
-            sum += decay(depth) * (part.end - cursor);
-        }
-        sum * emission
-    }
-}
-
-/// `exp(-depth)` by channel, with one exponential where the channels are equal.
-pub fn decay(depth: Spectrum) -> Spectrum {
-    if planted(Fault::TransmittanceUnderflows) {
-        return depth.map(|d| f64::from(exp(-d) as f32));
-    }
-    if depth.is_grey() { Spectrum::grey(exp(-depth[0])) } else { depth.map(|d| exp(-d)) }
 }

@@ -1,7 +1,7 @@
 //! Where the regions of a scene are: the stretches of medium that a ray passes, the region that a point is in.
 
 use super::Region;
-use super::segments::Segment;
+use super::segment::Segment;
 use crate::error::Result;
 use crate::geometry::Tree;
 use crate::math::{Interval, Ray};

@@ -2,19 +2,11 @@
 
 use super::Region;
 use super::regions::{FEW, RegionTree};
+use super::segment::Segment;
 use crate::math::{Interval, Ray};
 
 /// n convex shapes have 2n ends on a ray, and 2n-1 stretches between them.
 const MOST_OF_FEW: usize = 2 * FEW - 1;
-
-/// A stretch of one medium.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Segment {
-    /// Where it is on the ray \[L\].
-    pub interval: Interval,
-    /// Number of the medium.
-    pub medium: usize,
-}
 
 /// Disjoint stretches in the order in which the ray passes them.
 #[derive(Debug, Clone)]

@@ -2,7 +2,7 @@
 
 use super::Texture;
 use crate::Spectrum;
-use crate::error::{Error, Result};
+use crate::error::Result;
 use crate::math::{Frame, warp};
 use glam::{DVec2, DVec3};
 use std::f64::consts::PI;
@@ -11,14 +11,6 @@ use std::f64::consts::PI;
 #[derive(Debug, Clone, PartialEq)]
 pub struct Lambertian {
     reflectance: Texture,
-}
-
-/// A fraction whose channels are all in [0, 1].
-pub(super) fn checked(name: &'static str, fraction: Spectrum) -> Result<Spectrum> {
-    match (0..3).map(|c| fraction[c]).find(|r| !(0.0..=1.0).contains(r)) {
-        Some(bad) => Err(Error::out_of_range(name, bad, "0 to 1")),
-        None => Ok(fraction),
-    }
 }
 
 impl Lambertian {

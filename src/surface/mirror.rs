@@ -1,6 +1,6 @@
 //! A perfect mirror.
 
-use super::lambertian::checked;
+use super::fraction::checked;
 use crate::Spectrum;
 use crate::error::Result;
 use glam::DVec3;

@@ -3,6 +3,7 @@
 mod black;
 mod dielectric;
 mod filter;
+mod fraction;
 mod lambertian;
 mod mirror;
 mod texture;

@@ -6,7 +6,7 @@ mod wood;
 pub use self::image::Image;
 pub use wood::Wood;
 
-use super::lambertian::checked;
+use super::fraction::checked;
 use crate::Spectrum;
 use crate::error::{Error, Result};
 use glam::{DVec2, DVec3};

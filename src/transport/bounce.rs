@@ -1,6 +1,6 @@
 //! What becomes of a walker at a body.
 
-use super::walk::{Arrival, Step, Visitor, Walker};
+use super::visitor::{Arrival, Step, Visitor, Walker};
 use super::{Flags, Roulette};
 use crate::faults::{Fault, planted};
 use crate::math::Ray;

@@ -9,6 +9,7 @@ mod flight;
 mod roulette;
 mod track;
 mod transmittance;
+mod visitor;
 mod walk;
 
 pub use blocks::{BLOCK, NoProgress, Progress, run_blocks, run_blocks_of};
@@ -18,4 +19,5 @@ pub use flags::Flags;
 pub use flight::{Flight, free_flight};
 pub use roulette::Roulette;
 pub use transmittance::{connection, passed, transmittance};
-pub use walk::{Arrival, LONG, Step, Visitor, Walker, walk};
+pub use visitor::{Arrival, Step, Visitor, Walker};
+pub use walk::{LONG, walk};

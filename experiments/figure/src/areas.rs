@@ -4,8 +4,10 @@ use crate::clip;
 use crate::extent::colors;
 use crate::layer::{Align, At, Heatmap, Histogram, Note};
 use crate::mark::{Mark, Paint, Point};
+use crate::note;
 use crate::palette::Dash;
-use crate::plot::{Plot, light, note, stroke};
+use crate::plot::Plot;
+use crate::style::{HATCH, light, stroke};
 use crate::text::Fonts;
 
 /// Bars with their outline, and the counts of what lies beyond them.
@@ -40,13 +42,10 @@ pub(crate) fn histogram(
     ] {
         if count > 0 {
             let note = Note { text, at: At::Fraction(at, 0.16), align };
-            self::note(plot, &note, fonts, last);
+            note::note(plot, &note, fonts, last);
         }
     }
 }
-
-/// Distance and width of the lines that tell a sign [pt].
-pub(crate) const HATCH: (f64, f64) = (3.0, 0.25);
 
 /// Lines across the cells that need them, on levels counted from the bottom of the plot.
 fn hatch(plot: &Plot, l: &Heatmap, marks: &mut Vec<Mark>) {

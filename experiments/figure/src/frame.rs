@@ -1,6 +1,5 @@
 //! What surrounds a plot: box, grid, ticks, labels, heading, colour bar; and how much room that takes.
 
-use crate::areas::HATCH;
 use crate::axis::Axis;
 use crate::extent::{Spans, colors};
 use crate::figure::Panel;
@@ -9,6 +8,7 @@ use crate::mark::{Mark, Paint, Rect, Text};
 use crate::number::power_of_ten;
 use crate::plot::Plot;
 use crate::scale::Span;
+use crate::style::HATCH;
 use crate::text::{DIGIT, Fonts, LEADING, NORMAL, SMALL, plain};
 use crate::ticks::{Tick, Ticks, ticks};
 

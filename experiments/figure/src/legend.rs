@@ -4,7 +4,7 @@ use crate::crowd::Look;
 use crate::figure::Corner;
 use crate::layer::{Align, Layer};
 use crate::mark::{Mark, Paint, Point, Rect};
-use crate::plot::{LINE, RULE, light, stroke};
+use crate::style::{LINE, RULE, light, stroke};
 use crate::text::{DIGIT, Fonts, LEADING, SMALL, plain};
 
 const SWATCH: f64 = 17.0;

@@ -3,7 +3,8 @@
 use crate::clip;
 use crate::layer::Layer;
 use crate::mark::Point;
-use crate::plot::{Plot, note_box};
+use crate::note::note_box;
+use crate::plot::Plot;
 use crate::text::Fonts;
 
 /// Places that a legend should leave free, close enough together that none slips through it.

@@ -1,6 +1,7 @@
 //! From a figure to marks on a page: sizes, places, then drawing.
 
 use crate::check;
+use crate::draw::draw;
 use crate::error::Error;
 use crate::extent::{Spans, spans};
 use crate::figure::{Figure, Legend as Place, Panel};
@@ -9,7 +10,7 @@ use crate::layer::Align;
 use crate::legend::Legend;
 use crate::mark::{Mark, Page, Rect, Text};
 use crate::obstacles;
-use crate::plot::{self, Plot};
+use crate::plot::Plot;
 use crate::text::{Fonts, LARGE, LEADING, SMALL, plain};
 
 /// White border of the page [pt].
@@ -72,7 +73,7 @@ pub(crate) fn compose(figure: &Figure) -> Result<Page, Error> {
         let plot = Plot { rect: layout.rects[i], spans: spans[i] };
         let frame = &layout.frames[i];
         frame.draw_under(&plot, panel, &mut marks);
-        plot::draw(&plot, &panel.layers, &fonts, &mut marks);
+        draw(&plot, &panel.layers, &fonts, &mut marks);
         frame.draw_over(&plot, panel, &mut marks);
         draw_legend(panel, places[i], &plot.rect, frame, layout.column, &fonts, &mut marks);
     }

@@ -3,10 +3,10 @@
 //! same kind have more room than they need. Margins are those of the quick preset, and a full run, which sees more, is
 //! judged by the same.
 
-use super::cases::{Case, Size};
-use super::conclude::{Mistake, Result, exact_at, largest, pick, predicted_fano};
+use super::cases::Size;
 use super::fields::{FIELDS, Field};
 use super::measure::{is_fano_case, path_case};
+use super::results::{Mistake, Result, exact_at, excess, largest, pick, predicted_fano};
 use crate::harness::{Cells, Claim, Estimate, Settings, Unit};
 use crate::theory::Fog;
 use turbid::estimators::Kernel;
@@ -205,15 +205,6 @@ fn fano_claim(cells: &Cells, results: &[Result], field: &'static Field) -> anyho
     Ok(fitted.map(|a| {
         Claim::within(&id, &text, Unit::ONE, Estimate::mean(&a.moments), 1.0 - margin, 1.0 + margin)
     }))
-}
-
-/// Variance over mean of the photon counts, less 1, a map each; the mean over all maps divides, since the ratio of
-/// two numbers of one map would be biased.
-pub fn excess(cells: &Cells, case: &Case) -> anyhow::Result<Vec<f64>> {
-    let counts = cells.values(&case.name(), "count")?;
-    let variances = cells.values(&case.name(), "count variance")?;
-    let mean = counts.iter().sum::<f64>() / counts.len() as f64;
-    Ok(variances.iter().map(|v| v / mean - 1.0).collect())
 }
 
 /// Clusters draw the k-th photon nearer: a part in a few hundred at small k, seen when all fields are taken together.

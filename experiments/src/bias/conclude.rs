@@ -1,45 +1,16 @@
 //! What all maps together say: rows, claims, tables.
 
 use super::cases::{Case, Size};
-use super::fields::{FIELDS, Field};
-use super::measure::{is_fano_case, map_case, path_case};
-use super::predict::{COLLISIONS, Parts, recall};
+use super::fields::FIELDS;
+use super::measure::{map_case, path_case};
+use super::predict::{COLLISIONS, recall};
+use super::results::{Mistake, Result, exact_at, fano, largest, pick, predicted_fano};
 use super::{claims, figures, tables};
 use crate::harness::{
     Cells, Compared, Entry, Known, Prediction, Row, Section, Settings, Term, Unit, signed, with_error,
 };
-use crate::theory::clustering;
 use turbid::estimators::Kernel;
 use turbid::stats::Moments;
-
-/// One case with everything that is known of it; errors in per cent of the exact fluence.
-pub type Result = Compared<Case, Parts>;
-
-impl Result {
-    /// Whether the measurement is fine enough to see the predicted error at all.
-    pub fn sees_prediction(&self) -> bool {
-        self.predicted().abs() >= 2.0 * self.error.std_error()
-    }
-
-    /// Whether the medium fills every ball, as far as the prediction can tell.
-    pub fn is_whole(&self) -> bool {
-        self.parts.edge.abs() < 1e-6
-    }
-}
-
-/// A number that somebody else would report from the same photons.
-pub struct Mistake {
-    /// What was done wrong.
-    pub name: &'static str,
-    /// The case whose photons it uses.
-    pub case: Case,
-    /// Error predicted for the right estimate [%].
-    pub predicted: f64,
-    /// Error predicted for the wrong one [%].
-    pub wrong: f64,
-    /// Signed error [%] over maps.
-    pub error: Moments,
-}
 
 /// Concludes.
 pub fn conclude(settings: &Settings, predictions: &[Prediction], cells: &Cells) -> anyhow::Result<Section> {
@@ -106,11 +77,6 @@ fn mistakes(known: &Known, cells: &Cells, results: &[Result]) -> anyhow::Result<
     Ok(mistakes)
 }
 
-/// The largest number of photons a map of a field.
-pub fn largest(results: &[Result], field: &Field) -> u64 {
-    results.iter().filter(|r| r.case.field == field).map(|r| r.case.photons).max().unwrap_or(0)
-}
-
 fn rows(cells: &Cells, results: &[Result], mistakes: &[Mistake]) -> anyhow::Result<Vec<Row>> {
     let mut rows = Vec::new();
     for result in results {
@@ -150,34 +116,6 @@ fn rows(cells: &Cells, results: &[Result], mistakes: &[Mistake]) -> anyhow::Resu
         }
     }
     Ok(rows)
-}
-
-/// The exact fluence at a probe and its bound.
-pub fn exact_at(results: &[Result], field: &Field, depth: f64) -> (f64, f64) {
-    let found = results.iter().find(|r| r.case.field == field && r.case.depth == depth);
-    found.map_or((f64::NAN, f64::NAN), |r| (r.parts.exact, r.parts.exact_error))
-}
-
-/// Variance over mean of the photon counts, where they are compared.
-pub fn fano(cells: &Cells, case: &Case) -> anyhow::Result<Option<Moments>> {
-    if !is_fano_case(case) {
-        return Ok(None);
-    }
-    let factors: Vec<f64> = claims::excess(cells, case)?.iter().map(|e| 1.0 + e).collect();
-    Ok(Some(factors.iter().collect()))
-}
-
-/// What clusters add to a Fano factor of 1.
-pub fn predicted_fano(case: &Case) -> f64 {
-    match case.size {
-        Size::Radius(r) if case.field.has_clusters() => clustering(case.field.albedo, case.field.g, r),
-        _ => 0.0,
-    }
-}
-
-/// The results of right estimators that a test picks.
-pub fn pick(results: &[Result], test: impl Fn(&Result) -> bool) -> Vec<&Result> {
-    results.iter().filter(|r| !r.case.is_biased() && test(r)).collect()
 }
 
 fn summarise(section: &mut Section, settings: &Settings, results: &[Result]) {

@@ -1,10 +1,10 @@
 //! The figures.
 
 use super::cases::{Case, Size};
-use super::conclude::{Mistake, Result, exact_at, fano, largest, predicted_fano};
 use super::fields::{FIELDS, Field};
 use super::measure::{is_fano_case, path_case};
 use super::predict::{PART_NAMES, Theory};
+use super::results::{Mistake, Result, exact_at, fano, largest, predicted_fano};
 use crate::harness::{Cells, FigureFiles, Settings, bar};
 use turbid::estimators::Kernel;
 use turbid::stats::Moments;

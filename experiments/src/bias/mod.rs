@@ -15,6 +15,7 @@ mod fields;
 mod figures;
 mod measure;
 mod predict;
+mod results;
 mod tables;
 
 use crate::harness::Experiment;

@@ -1,9 +1,9 @@
 //! The tables.
 
 use super::cases::Size;
-use super::conclude::{Result, exact_at, largest, pick};
 use super::fields::FIELDS;
 use super::measure::path_case;
+use super::results::{Result, exact_at, largest, pick};
 use crate::harness::{Cells, Table, signed, with_error};
 use turbid::estimators::Kernel;
 

@@ -2,7 +2,7 @@
 //! errors that trial runs of the quick preset had shown.
 
 use super::cases::{KERNELS_AT, KERNELS_K, NEIGHBORS, Size};
-use super::conclude::{Result, Transfer, find, find_at, largest};
+use super::results::{Result, Transfer, find, find_at, largest};
 use crate::harness::{Claim, Estimate, Unit, number};
 use turbid::estimators::Kernel;
 use turbid::stats::{Moments, amplitude_per_map};

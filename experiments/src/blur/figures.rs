@@ -1,8 +1,8 @@
 //! The figures.
 
 use super::cases::{Case, KERNELS_AT, NEIGHBORS, RADII, Size};
-use super::conclude::{Result, Transfer, find, find_at, largest};
 use super::predict::Exact;
+use super::results::{Result, Transfer, find, find_at, largest};
 use super::waves;
 use crate::harness::{FigureFiles, bar};
 use crate::theory::{kernel_title, referee_kernel};

@@ -14,6 +14,7 @@ mod figures;
 mod measure;
 mod predict;
 mod profile;
+mod results;
 mod shaft;
 mod tables;
 mod waves;

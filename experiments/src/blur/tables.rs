@@ -1,7 +1,7 @@
 //! The tables.
 
 use super::cases::NEIGHBORS;
-use super::conclude::Result;
+use super::results::Result;
 use crate::harness::{Table, number, with_error};
 use crate::theory::kernel_title;
 use std::f64::consts::PI;

@@ -1,8 +1,8 @@
 //! The claims. Each is judged on one number a map; margins leave at least five standard errors of the quick preset.
 
 use super::cases::{Case, MAIN, Size, Spot, whole_radius};
-use super::conclude::{Found, Result, kept};
 use super::fields::{FIELDS, Field};
+use super::results::{Found, Result, kept};
 use super::sheet::{Sheet, Side};
 use crate::harness::{Claim, Estimate, Settings, Unit};
 use crate::theory::treatment_title;

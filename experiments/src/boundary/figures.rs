@@ -1,9 +1,9 @@
 //! The figures.
 
 use super::cases::{MAIN, Size, Spot};
-use super::conclude::{Found, Result, rims};
 use super::fields::{FIELDS, FURNACE, Field};
 use super::predict::line;
+use super::results::{Found, Result, rims};
 use super::section::{self, ALONG, RADIUS, WIDTH, places};
 use super::sheet::{Sheet, Side};
 use super::spread::Spread;

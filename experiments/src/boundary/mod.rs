@@ -11,10 +11,12 @@
 mod cases;
 mod claims;
 mod conclude;
+mod exact;
 mod fields;
 mod figures;
 mod measure;
 mod predict;
+mod results;
 mod section;
 mod sheet;
 mod spread;

@@ -1,6 +1,7 @@
 //! What theory predicts of every case, in parts, before anything is measured.
 
 use super::cases::{CAP, Case, Size};
+use super::exact::referee;
 use super::fields::{FIELDS, Field};
 use super::{sheet, spread};
 use crate::harness::{Known, Predicted, Prediction, Settings, Unit};
@@ -13,7 +14,6 @@ use turbid_analytic::boundary::{
     self as referee, Body, nearest_treated_mean_symmetric, nearest_treated_mean_uniform,
     treated_mean_symmetric, treated_mean_uniform,
 };
-use turbid_analytic::kernel::Kernel;
 
 /// The predicted error of a case in parts, each as a fraction of the exact fluence.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -42,28 +42,6 @@ impl Predicted for Parts {
     fn bound(&self) -> f64 {
         self.error
     }
-}
-
-/// The treatment as the referee knows it.
-pub fn referee(treatment: Treatment) -> referee::Treatment {
-    match treatment {
-        Treatment::None => referee::Treatment::None,
-        Treatment::Clipped => referee::Treatment::Clipped,
-        Treatment::Reflection => referee::Treatment::Reflection,
-        Treatment::LocalLinear => referee::Treatment::LocalLinear,
-    }
-}
-
-/// The exact mean over a uniform field of 1, and its bound.
-pub fn uniform_mean(
-    treatment: referee::Treatment,
-    kernel: Kernel,
-    body: Body,
-    at: [f64; 3],
-    radius: f64,
-) -> anyhow::Result<(f64, f64)> {
-    let mean = treated_mean_uniform(treatment, kernel, body, at, radius)?;
-    Ok((mean.value, mean.error))
 }
 
 /// The parts of one case; `untreated` are those of the same without a treatment, if they are known.

@@ -1,6 +1,7 @@
 //! What a treatment costs in variance: independent photons of uniform density below one face.
 
 use super::cases::Size;
+use super::exact;
 use crate::harness::{CellId, CellOutput, Prediction, Settings, Unit};
 use crate::theory::referee_kernel;
 use glam::DVec3;
@@ -53,9 +54,9 @@ impl Spread {
 
     /// The exact mean over the density, and the exact variance over that of a whole ball, with their bounds.
     pub fn exact(&self) -> anyhow::Result<((f64, f64), (f64, f64))> {
-        let (kernel, treatment) = (referee_kernel(self.kernel), super::predict::referee(self.treatment));
+        let (kernel, treatment) = (referee_kernel(self.kernel), exact::referee(self.treatment));
         let at = [0.0, 0.0, self.depth];
-        let mean = super::predict::uniform_mean(treatment, kernel, Body::HalfSpace, at, 1.0)?;
+        let mean = exact::uniform_mean(treatment, kernel, Body::HalfSpace, at, 1.0)?;
         let factor = treated_variance(treatment, kernel, Body::HalfSpace, at, 1.0)?;
         Ok((mean, (factor.value, factor.error)))
     }

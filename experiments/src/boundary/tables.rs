@@ -2,8 +2,8 @@
 
 use super::cases::{Size, Spot};
 use super::claims::is_main;
-use super::conclude::{Found, VISIBLE, integrals, kept, rims, signed};
 use super::fields::FIELDS;
+use super::results::{Found, VISIBLE, integrals, kept, rims, signed};
 use super::sheet::{Sheet, Side};
 use crate::harness::{Settings, Table, with_error};
 use turbid::estimators::Kernel;

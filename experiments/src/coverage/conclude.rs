@@ -3,14 +3,13 @@
 use super::field::{Exact, RADII};
 use super::figures;
 use super::intervals::Kind;
-use super::measure::{
-    GROUP, MAPS, SIZES, alarm_name, case, nearest_case, null_case, p_names, radius_case, repeats,
-};
+use super::measure::{GROUP, MAPS, SIZES, alarm_name, case, nearest_case, null_case, radius_case, repeats};
 use super::nulls::{LEVELS, Population, VALUES};
+use super::results::uniformity;
 use crate::harness::{
     Cells, Claim, Entry, Estimate, Prediction, Row, Section, Settings, Table, Term, Unit, number, with_error,
 };
-use turbid::stats::{KolmogorovSmirnov, Moments, kolmogorov_smirnov_test, student_p};
+use turbid::stats::{Moments, student_p};
 
 /// Margins of the shares of 2,000 repeats: three of their binomial standard errors, 0.49 and 0.22 per cent.
 const COVERAGE_MARGIN: f64 = 1.5;
@@ -58,18 +57,6 @@ pub fn predict(_settings: &Settings) -> anyhow::Result<Vec<Prediction>> {
     }
     add(nearest_case(), "error", Unit::ONE, exact.nearest, NUMERICAL, "independent points");
     Ok(all)
-}
-
-/// The p-values of one kind, one a repeat.
-pub fn p_values(cells: &Cells, kind: Kind) -> Vec<f64> {
-    let names = p_names().filter_map(|name| cells.values(&case(kind, MAPS), &name).ok());
-    names.flatten().collect()
-}
-
-/// Kolmogorov's distance of the p-values from uniform ones.
-pub fn uniformity(cells: &Cells, kind: Kind) -> (KolmogorovSmirnov, usize) {
-    let values = p_values(cells, kind);
-    (kolmogorov_smirnov_test(&values, |p| p), values.len())
 }
 
 /// Concludes.

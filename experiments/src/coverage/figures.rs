@@ -1,9 +1,9 @@
 //! The figures.
 
-use super::conclude::{p_values, uniformity};
 use super::intervals::Kind;
 use super::measure::{SIZES, alarm_name, case, null_case};
 use super::nulls::{LEVELS, Population};
+use super::results::{p_values, uniformity};
 use crate::harness::{Cells, FigureFiles, bar};
 use turbid_figure::{Along, Axis, Color, Figure, Legend, Line, Panel, Points, Rule, Scale, Width};
 

@@ -13,6 +13,7 @@ mod figures;
 mod intervals;
 mod measure;
 mod nulls;
+mod results;
 
 use crate::harness::Experiment;
 

@@ -73,3 +73,25 @@ impl Class {
 
 /// Batches of histories behind a sampled row: one a cell.
 pub const BATCHES: u64 = 64;
+
+/// One row.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Checked {
+    /// What it is about.
+    pub class: Class,
+    /// Its case, unique.
+    pub name: String,
+    /// What the simulator says.
+    pub value: f64,
+    /// What is exact.
+    pub exact: f64,
+    /// How far apart the two may be: roundings, counted.
+    pub bound: f64,
+}
+
+impl Checked {
+    /// A row; a bound of 0 asks for the very same number.
+    pub fn new(class: Class, name: impl Into<String>, value: f64, exact: f64, bound: f64) -> Self {
+        Checked { class, name: name.into(), value, exact, bound }
+    }
+}

@@ -1,6 +1,6 @@
 //! Checked rows: computed once, against an exact value within a derived bound.
 
-use super::cases::Class;
+use super::cases::{Checked, Class};
 use super::nearest_checks;
 use super::sampled::near_one;
 use super::scenes::{Flux, Fog, at_depth, furnace_ball, sensor, slab};
@@ -17,28 +17,6 @@ use turbid::transport::NoProgress;
 use turbid_analytic::Incidence;
 use turbid_analytic::beer_lambert::direct_transmittance;
 use turbid_analytic::quadrature::GaussLegendre;
-
-/// One row.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Checked {
-    /// What it is about.
-    pub class: Class,
-    /// Its case, unique.
-    pub name: String,
-    /// What the simulator says.
-    pub value: f64,
-    /// What is exact.
-    pub exact: f64,
-    /// How far apart the two may be: roundings, counted.
-    pub bound: f64,
-}
-
-impl Checked {
-    /// A row; a bound of 0 asks for the very same number.
-    pub fn new(class: Class, name: impl Into<String>, value: f64, exact: f64, bound: f64) -> Self {
-        Checked { class, name: name.into(), value, exact, bound }
-    }
-}
 
 /// All rows.
 pub fn all(settings: &Settings) -> anyhow::Result<Vec<Checked>> {

@@ -2,7 +2,7 @@
 //! had shown. One was widened after the first trial for that reason: fixed radii on planes 1/2 apart (0.03 to 0.05).
 
 use super::cases::Class;
-use super::conclude::{LargeResult, Results, STANDARD_ERRORS, SampledResult, StorageResult};
+use super::results::{LargeResult, Results, STANDARD_ERRORS, SampledResult, StorageResult};
 use super::storage::Rule;
 use super::stretched::Size;
 use crate::harness::{Claim, Estimate, Unit};

@@ -1,8 +1,8 @@
 //! The figures.
 
 use super::cases::Class;
-use super::conclude::{Results, StretchedResult};
 use super::lattice::kernel_on_lattice;
+use super::results::{Results, StretchedResult};
 use super::storage::{self, RADIUS, Rule};
 use super::stretched::Size;
 use crate::harness::{FigureFiles, bar};

@@ -20,6 +20,7 @@ mod measure;
 mod nearest_checks;
 mod plain;
 mod predict;
+mod results;
 mod sampled;
 mod scenes;
 mod storage;

@@ -1,7 +1,6 @@
 //! Checked rows of the photon tree: any number of neighbours, and photons in one place or in line.
 
-use super::cases::Class;
-use super::checks::Checked;
+use super::cases::{Checked, Class};
 use super::plain::Plain;
 use crate::harness::Settings;
 use glam::{DVec3, Vec3};

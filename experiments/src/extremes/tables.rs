@@ -1,6 +1,6 @@
 //! The tables.
 
-use super::conclude::Results;
+use super::results::Results;
 use super::storage::{self};
 use crate::harness::{Table, number, signed, with_error};
 

@@ -1,8 +1,9 @@
 //! Inputs by the batch, in child processes that are watched from within: one that takes too long or too much memory says so
 //! and ends; one that dies is known by what it said last.
 
-use super::input::{Input, Kind};
+use super::input::Input;
 use super::judge::{Thoroughness, Verdict, Workbench, keep_panics};
+use super::kind::Kind;
 use crate::harness::{duration, say};
 use anyhow::{Context, bail};
 use cpu_time::ProcessTime;

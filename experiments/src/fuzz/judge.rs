@@ -1,6 +1,7 @@
 //! Trying one input: what is asked of it, and whether it was answered.
 
-use super::input::{Input, Kind};
+use super::input::Input;
+use super::kind::Kind;
 use super::seeds;
 use crate::harness::{read_cell, try_redraw};
 use std::fmt;

@@ -8,14 +8,16 @@
 mod batch;
 mod input;
 mod judge;
+mod kind;
 mod seeds;
 mod shrink;
 #[cfg(test)]
 mod tests;
 mod tree;
 
-pub use input::{Input, Kind};
+pub use input::Input;
 pub use judge::{Thoroughness, Verdict, Workbench};
+pub use kind::Kind;
 
 use crate::harness::{check_later, guarded, one_line, say};
 use anyhow::{Context, bail};

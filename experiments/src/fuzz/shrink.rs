@@ -1,8 +1,9 @@
 //! Failures made smaller: a scene loses tables and keys for as long as it fails in the same way.
 
 use super::batch::alone;
-use super::input::{Input, Kind};
+use super::input::Input;
 use super::judge::Verdict;
+use super::kind::Kind;
 use super::tree::{at, places, remove};
 use toml::Value;
 

@@ -3,16 +3,14 @@
 use super::cases::{COSINES, Case, RADIUS, Size, photons, rule_name};
 use super::figures;
 use super::measure::GROUP;
-use super::predict::{Parts, TERMS, recall};
+use super::predict::{TERMS, recall};
+use super::results::Result;
 use crate::harness::{
     Cells, Claim, Compared, Entry, Estimate, Known, Prediction, Row, Section, Settings, Table, Unit, signed,
     with_error,
 };
 use turbid::integrators::StepRule;
 use turbid::stats::{Moments, amplitude_per_map};
-
-/// One case with everything that is known of it; errors in per cent of the exact radiance.
-pub type Result = Compared<Case, Parts>;
 
 /// Concludes.
 pub fn conclude(settings: &Settings, predictions: &[Prediction], cells: &Cells) -> anyhow::Result<Section> {

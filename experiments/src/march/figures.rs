@@ -1,7 +1,7 @@
 //! The figure: error against step.
 
 use super::cases::{COSINES, RADIUS, Size, rule_name};
-use super::conclude::Result;
+use super::results::Result;
 use crate::harness::{FigureFiles, bar};
 use turbid::integrators::StepRule;
 use turbid_figure::{Axis, Dash, Figure, Line, Panel, Points, Scale, Width};

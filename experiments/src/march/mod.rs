@@ -10,6 +10,7 @@ mod conclude;
 mod figures;
 mod measure;
 mod predict;
+mod results;
 
 use crate::harness::Experiment;
 

@@ -11,6 +11,7 @@ mod figures;
 mod fit;
 mod measure;
 mod predict;
+mod results;
 
 use crate::harness::Experiment;
 

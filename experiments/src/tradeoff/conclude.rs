@@ -2,7 +2,7 @@
 
 use super::cases::{BODIES, PROBES, Setting, Size, Treatment};
 use super::choose::{BreakEven, Currency, best_over_best, break_even, most_efficient, regret};
-use super::data::{Data, Measured, mean};
+use super::data::{Data, Measured};
 use super::measure::MAPS;
 use super::predict::{BIAS, Known, NOISE, RMS};
 use super::split::{rms, rms_bias, rms_noise};
@@ -154,15 +154,4 @@ fn expected_error(setting: &Setting, depth: f64, noise: f64, radius: f64) -> f64
     let probes = setting.lateral() as f64;
     let shared = 0.8 * std::f64::consts::PI * radius * radius / setting.body.area(depth);
     noise * ((1.0 / probes + shared).min(1.0) / MAPS as f64).sqrt()
-}
-
-/// Numbers of the budget, for the notes: entries, root mean square of what is left in standard errors, the largest.
-pub fn left_over(entries: &[Entry]) -> (usize, f64, f64) {
-    let z = |entry: &Entry| {
-        let moments: Moments = entry.maps.iter().collect();
-        (moments.mean() - entry.predicted()) / libm::hypot(moments.std_error(), entry.error)
-    };
-    let scores: Vec<f64> = entries.iter().map(z).collect();
-    let squares: Vec<f64> = scores.iter().map(|z| z * z).collect();
-    (scores.len(), mean(&squares).sqrt(), scores.iter().map(|z| z.abs()).fold(0.0, f64::max))
 }

@@ -2,10 +2,10 @@
 
 use super::cases::{BODIES, Body, Treatment};
 use super::choose::{Currency, best_over_best, break_even, cheapest, most_efficient};
-use super::conclude::left_over;
-use super::data::Data;
+use super::data::{Data, mean};
 use super::tables::{best_error, off};
 use crate::harness::{Entry, Estimate, with_error};
+use turbid::stats::Moments;
 
 fn percent(estimate: &Estimate) -> String {
     with_error(100.0 * estimate.value(), 100.0 * estimate.std_error())
@@ -139,4 +139,15 @@ pub fn notes(budget: &[Entry], data: &Data) -> Vec<String> {
         ));
     }
     notes
+}
+
+/// Numbers of the budget, for the notes: entries, root mean square of what is left in standard errors, the largest.
+fn left_over(entries: &[Entry]) -> (usize, f64, f64) {
+    let z = |entry: &Entry| {
+        let moments: Moments = entry.maps.iter().collect();
+        (moments.mean() - entry.predicted()) / libm::hypot(moments.std_error(), entry.error)
+    };
+    let scores: Vec<f64> = entries.iter().map(z).collect();
+    let squares: Vec<f64> = scores.iter().map(|z| z * z).collect();
+    (scores.len(), mean(&squares).sqrt(), scores.iter().map(|z| z.abs()).fold(0.0, f64::max))
 }

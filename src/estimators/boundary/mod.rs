@@ -22,71 +22,16 @@ mod images;
 mod moments;
 mod rejection;
 mod solid;
+mod surfaces;
 mod treatment;
 mod visible;
 
 pub use moments::body_moments;
 pub use rejection::Rejection;
+pub use surfaces::Boundary;
 pub use treatment::Treatment;
 
 pub(super) use accepted::accepted;
 pub(super) use rejection::Sieve;
 pub(super) use treatment::Gathered;
 pub(super) use visible::Surroundings;
-
-use crate::error::{Error, Result};
-use crate::geometry::Shape;
-
-/// The boundaries about a point that an estimate is told of.
-#[derive(Debug, Clone, Copy)]
-pub struct Boundary<'a> {
-    /// The shape of the medium; none where it is not known, and its own faces are left untreated.
-    pub(super) medium: Option<&'a Shape>,
-    pub(super) walls: &'a [Shape],
-    /// Regions in the medium's shape that count instead of it.
-    later: &'a [Shape],
-    /// Surfaces that may part the medium.
-    bodies: &'a [Shape],
-    /// Whether every photon is of this medium.
-    is_only: bool,
-}
-
-impl Boundary<'static> {
-    /// None are known.
-    pub const UNKNOWN: Self = Boundary { medium: None, walls: &[], later: &[], bodies: &[], is_only: true };
-}
-
-impl<'a> Boundary<'a> {
-    /// The surface of the medium, or of the part of it that is on the points' side of a wall.
-    ///
-    /// # Errors
-    /// [`Error::Scene`] if `medium` has no inside, as a rectangle.
-    pub fn of(medium: &'a Shape) -> Result<Self> {
-        if !medium.is_solid() {
-            return Err(Error::Scene("a rectangle bounds no medium: name a sphere, slab or cuboid".into()));
-        }
-        Ok(Boundary { medium: Some(medium), ..Boundary::UNKNOWN })
-    }
-
-    /// The same with walls, by which an estimator may reject photons.
-    pub fn with_walls(self, walls: &'a [Shape]) -> Self {
-        Boundary { walls, ..self }
-    }
-
-    /// The same where there is more than the medium: photons that collided elsewhere are rejected, which are those outside
-    /// it and those in `later`, regions in its shape that count instead of it. One that holds the point holds the medium
-    /// too, and does not count.
-    pub fn among(self, later: &'a [Shape]) -> Self {
-        Boundary { later, is_only: false, ..self }
-    }
-
-    /// The same where these surfaces stand in the medium: photons that they hide from the point are rejected.
-    pub fn about(self, bodies: &'a [Shape]) -> Self {
-        Boundary { bodies, ..self }
-    }
-
-    /// The medium's own faces and the walls alone.
-    pub(super) fn alone(self) -> Self {
-        Boundary { later: &[], bodies: &[], is_only: true, ..self }
-    }
-}

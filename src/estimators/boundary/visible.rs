@@ -4,7 +4,7 @@
 //! kernel on a ray is then known in closed form, and only the directions are sampled. Where one flat face parts the whole
 //! ball, nothing is.
 
-use super::Boundary;
+use super::surfaces::Boundary;
 use crate::estimators::Kernel;
 use crate::geometry::{Front, Shape};
 use crate::math::{Frame, Interval, Ray, sin_cos, warp};

@@ -1,6 +1,6 @@
 //! The tree over the frusta of a lathe.
 
-use super::Line;
+use super::line::Line;
 use glam::DVec2;
 
 /// Frusta that follow each other, and the ring-shaped box around them.

@@ -46,7 +46,17 @@ const MOST_BYTES: u64 = 1 << 30;
 /// Memory of a mesh over the size of its file, while it is made.
 const IN_MEMORY: f64 = 10.0;
 
-pub fn read(path: &Path, place: impl Fn(DVec3) -> DVec3) -> Result<Mesh> {
+impl Mesh {
+    /// A mesh from a Wavefront OBJ file, each position where `place` puts it: `v`, `vt` and `f` are read, polygons are cut
+    /// into triangles, the rest is passed over.
+    ///
+    /// # Errors     `Error::Scene` with file and line for what cannot be read
+    pub fn read(path: &Path, place: impl Fn(DVec3) -> DVec3) -> Result<Self> {
+        read(path, place)
+    }
+}
+
+fn read(path: &Path, place: impl Fn(DVec3) -> DVec3) -> Result<Mesh> {
     let name = path.display();
     let refuse = |what: String| Error::Scene(format!("{name}: {what}"));
     let bytes = crate::input::read(path, MOST_BYTES).map_err(|e| refuse(e.to_string()))?;

@@ -2,8 +2,9 @@
 
 use super::grid::{Aim, DIRECTIONS, Grid};
 use super::reading::Reading;
+use super::settings::{ImportanceSettings, Stage};
 use super::steer::Branching;
-use super::{Importance, ImportanceSettings, Stage};
+use super::values::Importance;
 use crate::error::{Error, Result};
 use crate::light::EmissionCell;
 use crate::photons::Emitter;

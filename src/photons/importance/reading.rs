@@ -1,7 +1,7 @@
 //! Where a picture reads photons: particles from the camera.
 
 use super::grid::{Aim, Grid};
-use super::{ImportanceSettings, Stage};
+use super::settings::{ImportanceSettings, Stage};
 use crate::Spectrum;
 use crate::error::{Error, Result};
 use crate::photons::Emitter;

@@ -1,7 +1,7 @@
 //! A walk whose photons are turned, split or ended by what they are worth.
 
-use super::Importance;
 use super::grid::DIRECTIONS;
+use super::values::Importance;
 use crate::faults::{Fault, planted};
 use crate::math::{FOUR_PI, cosine_pair, warp};
 use crate::phase::PhaseFunction;

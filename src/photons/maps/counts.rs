@@ -1,10 +1,12 @@
 //! How many histories each map needs, and from where their photons leave.
 
-use super::{Amount, Class, Classes, Emitted, MapSettings, PEAK_BYTES, PILOT};
+use super::classes::{Class, Classes, Emitters};
+use super::settings::{Amount, Emitted, MapSettings, PILOT};
 use crate::error::{Error, Result};
+use crate::photons::PEAK_BYTES;
 use crate::photons::importance::Importance;
 use crate::photons::pass::is_diffuse;
-use crate::photons::{BUILD_SECONDS, Emitter, Pass, Run, check_end};
+use crate::photons::{BUILD_SECONDS, Pass, Run, check_end};
 use crate::rng::Purpose;
 use crate::scene::Scene;
 use crate::transport::{BLOCK, NoProgress};
@@ -154,24 +156,6 @@ struct Needs {
     global: bool,
     caustic: bool,
     volume: bool,
-}
-
-/// How photons of each pass leave the lights.
-pub(super) struct Emitters {
-    pub main: Emitter,
-    /// Those that can meet a specular body; none if none can.
-    pub caustic: Option<Emitter>,
-}
-
-impl Emitters {
-    pub fn of(scene: &Scene, importance: Option<&Importance>) -> Self {
-        let main = importance.map_or_else(|| Emitter::towards_scene(scene), |i| i.emitter().clone());
-        Emitters { main, caustic: Emitter::towards_specular(scene) }
-    }
-
-    pub fn of_class(&self, class: Class) -> &Emitter {
-        self.caustic.as_ref().filter(|_| class == Class::Caustic).unwrap_or(&self.main)
-    }
 }
 
 impl Needs {

@@ -1,6 +1,6 @@
 //! Levels of boxes, sixteen wide, above the blocks.
 
-use super::{BLOCK, ROW, Row};
+use super::block::{BLOCK, ROW, Row};
 use wide::f32x8;
 
 /// Sixteen boxes as arrays, in two rows of eight. Places without a box hold one that is infinitely far away.

@@ -1,12 +1,13 @@
 //! Searches on a surface: photons that lie along its tangent plane, on surfaces that face the same way. What is rejected
 //! sets no radius.
 
+use super::PhotonTree;
+use super::block::Row;
 use super::boxes::Probe;
 use super::nearest::{Counted, Nearest, Shell, Sphere, share};
 use super::scratch::{Last, Scratch, with_scratch};
 use super::units::LIMIT;
 use super::within::{Neighbors, Visit};
-use super::{PhotonTree, Row};
 use glam::DVec3;
 use wide::f32x8;
 

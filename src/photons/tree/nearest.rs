@@ -1,12 +1,12 @@
 //! The k nearest photons, without a heap: a bound, every squared distance below it, the k-th of them.
 
+use super::PhotonTree;
+use super::block::BLOCK;
 use super::boxes::Probe;
 use super::scratch::{Last, Scratch, with_scratch};
 use super::units::LIMIT;
 use super::within::{Neighbors, Visit};
-use super::{BLOCK, PhotonTree};
 use glam::DVec3;
-use std::sync::atomic::{AtomicU64, Ordering};
 use wide::f32x8;
 
 /// What a search for the k nearest photons found.
@@ -40,12 +40,6 @@ pub enum Counted {
     BelowKth,
     /// The k-th too.
     UpToKth,
-}
-
-/// A number that no other tree of this process has; results do not depend on it.
-pub(super) fn new_identity() -> u64 {
-    static NEXT: AtomicU64 = AtomicU64::new(0);
-    NEXT.fetch_add(1, Ordering::Relaxed)
 }
 
 /// The sphere in the tree's units.

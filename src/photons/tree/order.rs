@@ -1,6 +1,6 @@
 //! The kd order: photons that are neighbours in space become neighbours in memory.
 
-use super::BLOCK;
+use super::block::BLOCK;
 use super::records::Records;
 use crate::photons::Photon;
 use crate::transport::Progress;

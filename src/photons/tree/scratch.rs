@@ -1,7 +1,8 @@
 //! Working memory of one thread's searches, kept from one to the next.
 
-use super::ROW;
+use super::block::ROW;
 use std::cell::Cell;
+use std::sync::atomic::{AtomicU64, Ordering};
 use wide::f32x8;
 
 /// Lists that a search fills; their contents mean nothing between searches, but for `last`.
@@ -71,4 +72,10 @@ pub(super) fn with_scratch<T>(work: impl FnOnce(&mut Scratch) -> T) -> T {
     let result = work(&mut scratch);
     SCRATCH.set(Some(scratch));
     result
+}
+
+/// A number that no other tree of this process has; results do not depend on it.
+pub(super) fn new_identity() -> u64 {
+    static NEXT: AtomicU64 = AtomicU64::new(0);
+    NEXT.fetch_add(1, Ordering::Relaxed)
 }

@@ -1,10 +1,11 @@
 //! Every photon within a fixed radius: boxes that touch the ball, then one masked pass a block; no list is
 //! kept.
 
+use super::PhotonTree;
+use super::block::{ROW, Row};
 use super::boxes::Probe;
 use super::scratch::{Scratch, with_scratch};
 use super::units::LIMIT;
-use super::{PhotonTree, ROW, Row};
 use glam::DVec3;
 use wide::f32x8;
 

@@ -1,6 +1,6 @@
 //! The built-in box of fog: a closed room of coloured walls with two blocks and a lamp, seen from within.
 
-use super::region;
+use super::region::region;
 use crate::error::Result;
 use crate::math::{Albedo, Asymmetry, NonNegative};
 use crate::scene::Filter;

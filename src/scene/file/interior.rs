@@ -1,7 +1,8 @@
 //! Interiors in a scene file, and the dielectric surfaces that name them.
 
 use super::medium::Keys;
-use super::{Channels, DensityFile, GridFile, PhaseFile};
+use super::medium::{DensityFile, GridFile, PhaseFile};
+use super::values::Channels;
 use crate::error::{Error, Result};
 use crate::math::{Albedo, Asymmetry, Index, NonNegative};
 use crate::scene::Interior;

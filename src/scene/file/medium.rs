@@ -1,6 +1,6 @@
 //! Media in the scene file: the keys that regions and interiors share.
 
-use super::Channels;
+use super::values::Channels;
 use crate::error::{Error, Result};
 use crate::faults::{Fault, planted};
 use crate::math::{Albedo, Asymmetry, NonNegative, Positive};

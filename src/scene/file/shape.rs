@@ -1,6 +1,6 @@
 //! Shapes in the scene file.
 
-use super::rectangle;
+use super::values::rectangle;
 use crate::error::{Error, Result};
 use crate::geometry::{
     Cuboid, Ground, Lathe, Mesh, Shape, Slab, Sphere, Up, Waves, height_field, listed, smooth,

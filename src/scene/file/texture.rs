@@ -1,6 +1,6 @@
 //! Textures in the scene file.
 
-use super::Channels;
+use super::values::Channels;
 use crate::error::Result;
 use crate::math::{Albedo, Positive};
 use crate::surface::{Checker, Image, Texture, Wood};

@@ -3,7 +3,7 @@
 use crate::Spectrum;
 use crate::error::{Error, Result};
 use crate::math::{Frame, atan2, sin};
-use crate::surface::lambertian::checked;
+use crate::surface::fraction::checked;
 use glam::DVec3;
 use std::f64::consts::PI;
 

@@ -1,6 +1,6 @@
 //! The figure of the edge and the wall.
 
-use super::conclude::Edges;
+use super::results::Edges;
 use super::{BEHIND, DEPTHS, SIZES};
 use crate::harness::{FigureFiles, bar};
 use turbid::estimators::boundary::Rejection;

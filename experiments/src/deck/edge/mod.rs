@@ -6,6 +6,7 @@
 
 pub mod conclude;
 mod figure;
+mod results;
 
 use crate::harness::{CellId, CellOutput, Prediction, Settings, Unit};
 use glam::DVec3;

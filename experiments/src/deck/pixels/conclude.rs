@@ -1,5 +1,6 @@
 //! What all maps say of "50 to 100 photons per estimate work well".
 
+use super::results::Picture;
 use super::{NEIGHBORS, SIDE, case, cells as ids, figure, map_case, path_case};
 use crate::deck::part::Part;
 use crate::harness::{
@@ -7,22 +8,6 @@ use crate::harness::{
 };
 use turbid::math::exp;
 use turbid::stats::{Jackknife, Moments, jackknife, jackknife_log};
-
-/// The picture at one number of neighbours; all in per cent of the pixel.
-pub struct Picture {
-    /// Number of neighbours.
-    pub k: usize,
-    /// Noise between independent maps, root mean square over the pixels.
-    pub noise: Estimate,
-    /// What was predicted of it.
-    pub predicted: f64,
-    /// Mean error of the whole picture, one a map.
-    pub bias: Moments,
-    /// Mean square over the pixels of what no number of maps removes [%²].
-    pub square: Estimate,
-    /// Map against paths by pixel: mean error.
-    pub by_pixel: Vec<f64>,
-}
 
 fn pictures(cells: &Cells, known: &Known) -> anyhow::Result<Vec<Picture>> {
     let list = |case: &dyn Fn(usize) -> String| (0..SIDE * SIDE).map(case).collect::<Vec<_>>();

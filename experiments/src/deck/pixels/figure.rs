@@ -1,6 +1,6 @@
 //! The figure of the marched pixels.
 
-use super::conclude::Picture;
+use super::results::Picture;
 use crate::harness::{FigureFiles, bar};
 use turbid_figure::{Along, Axis, Figure, Line, Panel, Points, Rule, Width};
 

@@ -6,6 +6,7 @@
 
 pub mod conclude;
 mod figure;
+mod results;
 
 use super::fogbox::{ALBEDO, SIGMA_T, VOLUME, grey, scene};
 use super::maps::filled;

@@ -1,116 +1,14 @@
 //! What all maps say of "photon maps are faster than Monte Carlo".
 
-use super::data::{Cell, Currency, Fit, LOOKED_AT, STORED, read};
-use super::{SIDE, Size, figure, sizes};
-use crate::contest::{RANGE, cheapest, crossing};
+use super::data::{Cell, Currency, Fit, LOOKED_AT, STORED};
+use super::results::{ASKED, Crossing, PIXELS, Race, SIDES, gain};
+use super::{SIDE, figure};
+use crate::contest::cheapest;
 use crate::deck::part::Part;
 use crate::harness::{Cells, Claim, Estimate, Row, Section, Settings, Table, Unit};
 use turbid::math::exp;
-use turbid::rng::{Purpose, Stream};
-use turbid::stats::{Interval, Jackknife, jackknife_log};
+use turbid::stats::{Jackknife, jackknife_log};
 
-/// The error that the claim and the words ask about, chosen before the first run: what a preview may have.
-const ASKED: f64 = 0.3;
-/// Resamples of the cells for intervals.
-const RESAMPLES: u64 = 500;
-/// Sides of pictures in the table: the one measured, and what larger ones would do with the same maps and pixels.
-const SIDES: [u32; 5] = [16, 32, 64, 128, 512];
-
-/// Everything measured, with resamples of the cells.
-pub struct Race {
-    /// By cell.
-    pub cells: Vec<Cell>,
-    /// Sizes of maps.
-    pub sizes: Vec<Size>,
-    /// Numbers of cells, drawn with replacement.
-    resamples: Vec<Vec<usize>>,
-}
-
-impl Race {
-    fn new(settings: &Settings, cells: &Cells) -> anyhow::Result<Self> {
-        let cells = read(settings, cells)?;
-        let draw = |i| {
-            let mut stream = Stream::new(settings.seed, Purpose::Resampling, i, 0);
-            (0..cells.len()).map(|_| stream.index(cells.len())).collect()
-        };
-        Ok(Race { resamples: (0..RESAMPLES).map(draw).collect(), sizes: sizes(settings), cells })
-    }
-
-    /// Of all cells.
-    pub fn fit(&self, currency: Currency) -> Fit {
-        Fit::of(&self.cells.iter().collect::<Vec<_>>(), currency)
-    }
-
-    /// Time of paths over that of the cheapest map at an error over the mean, with its interval.
-    fn gain(&self, error: f64) -> String {
-        let of = |fit: &Fit| gain(fit, PIXELS, error).unwrap_or(0.0);
-        let interval = middle(self.resampled(Currency::Seconds).map(|fit| of(&fit)).collect());
-        format!("{:.1} ({:.1} to {:.1})", of(&self.fit(Currency::Seconds)), interval.low, interval.high)
-    }
-
-    /// Of the resampled cells.
-    pub fn resampled(&self, currency: Currency) -> impl Iterator<Item = Fit> {
-        let of = move |chosen: &Vec<usize>| {
-            Fit::of(&chosen.iter().map(|&i| &self.cells[i]).collect::<Vec<_>>(), currency)
-        };
-        self.resamples.iter().map(of)
-    }
-}
-
-/// Cost of paths over that of the cheapest map at an error over the mean; none below what every map has left.
-fn gain(fit: &Fit, pixels: f64, error: f64) -> Option<f64> {
-    let square = error * error * fit.mean * fit.mean;
-    cheapest(&fit.maps, pixels, square).map(|(_, cost)| fit.paths.cost(pixels, square) / cost)
-}
-
-/// The ends of the middle 95 % of some values.
-pub fn middle(mut values: Vec<f64>) -> Interval {
-    values.sort_unstable_by(f64::total_cmp);
-    let (last, cut) = (values.len() - 1, values.len() / 40);
-    Interval::new(values[cut], values[last - cut])
-}
-
-/// Root mean square error [%] below which paths are cheaper, with its interval over cells.
-pub struct Crossing {
-    /// Of all cells [%].
-    pub at: f64,
-    /// Bootstrap interval of 95 % [%].
-    pub interval: Interval,
-}
-
-impl Crossing {
-    /// One a picture's side.
-    fn all(race: &Race, currency: Currency) -> Vec<Crossing> {
-        let of = |fit: &Fit| {
-            SIDES.map(|side| 100.0 * crossing(&fit.maps, &fit.paths, f64::from(side * side), fit.mean))
-        };
-        let whole = of(&race.fit(currency));
-        let resampled: Vec<_> = race.resampled(currency).map(|fit| of(&fit)).collect();
-        let one =
-            |i: usize| Crossing { at: whole[i], interval: middle(resampled.iter().map(|r| r[i]).collect()) };
-        (0..SIDES.len()).map(one).collect()
-    }
-
-    /// No error below the range is looked at: where maps win at its lower end, they win down to that at least.
-    fn words(&self) -> String {
-        let one = |error: f64| match error <= 100.0 * RANGE.0 {
-            true => format!("at most {error:.1}"),
-            false => format!("{error:.1}"),
-        };
-        format!("{} % ({} to {})", one(self.at), one(self.interval.low), one(self.interval.high))
-    }
-
-    fn verdict(&self) -> String {
-        let asked = 100.0 * ASKED;
-        match self.interval {
-            i if i.high < asked => format!("the whole interval is below {asked} %"),
-            i if i.low > asked => format!("the whole interval is above {asked} %"),
-            _ => format!("undecided against {asked} % on this machine, in this run"),
-        }
-    }
-}
-
-const PIXELS: f64 = (SIDE * SIDE) as f64;
 /// Samples a pixel of the results' errors.
 const NUMBER: f64 = 24.0;
 

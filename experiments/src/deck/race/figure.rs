@@ -1,8 +1,8 @@
 //! The figure of the race.
 
 use super::SIDE;
-use super::conclude::{Crossing, Race, middle};
 use super::data::{Currency, Fit};
+use super::results::{Crossing, Race, middle};
 use crate::harness::FigureFiles;
 use turbid_figure::{Along, Axis, Figure, Line, Panel, Points, Rule, Width};
 

@@ -6,6 +6,7 @@
 pub mod conclude;
 mod data;
 mod figure;
+mod results;
 
 use super::fogbox::{self, grey};
 use super::maps::filled;

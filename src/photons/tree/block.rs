@@ -1,0 +1,12 @@
+//! Blocks and rows of photons.
+
+use wide::f32x8;
+
+/// Photons in a block: two rows of eight, what the registers of every processor hold without spilling.
+pub(super) const BLOCK: usize = 16;
+
+/// Photons in a row, and lanes of its arrays.
+pub const ROW: usize = 8;
+
+/// Eight vectors, an array a coordinate.
+pub(super) type Row = [f32x8; 3];

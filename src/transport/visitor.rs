@@ -1,0 +1,94 @@
+//! Who watches a walk, and what it is told.
+
+use super::Flags;
+use crate::Spectrum;
+use crate::math::Ray;
+use crate::rng::Stream;
+use crate::scene::{SURROUNDINGS, SceneHit, Start};
+use glam::DVec3;
+
+/// Where a walk stands: a ray about to be followed.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Walker {
+    /// The ray ahead.
+    pub ray: Ray,
+    /// Power of a photon \[W\], or throughput of a path.
+    pub weight: Spectrum,
+    /// Number of scatterings so far by media and non-specular surfaces.
+    pub order: u32,
+    /// What has been met.
+    pub flags: Flags,
+    /// The body that the ray starts on.
+    pub from: Option<Start>,
+    /// Number of the interior that the ray is in.
+    pub within: usize,
+    /// How far behind the ray's origin its direction was chosen \[L\]: a ray starts again behind a filter or an
+    /// index-matched boundary, on the same way.
+    pub behind: f64,
+    /// Events and boundaries met so far.
+    pub events: u32,
+    /// Total reflections since it was last scattered, or could cross a boundary.
+    pub total_reflections: u32,
+    /// Density with which the ray's direction was chosen [1/sr]; none where no other sampler could have chosen it.
+    pub pdf_solid_angle: Option<f64>,
+}
+
+impl Walker {
+    /// A walk that starts along a ray, in the surroundings.
+    pub fn new(ray: Ray, weight: Spectrum) -> Self {
+        Walker {
+            ray,
+            weight,
+            order: 0,
+            flags: Flags::NONE,
+            from: None,
+            within: SURROUNDINGS,
+            behind: 0.0,
+            events: 0,
+            total_reflections: 0,
+            pdf_solid_angle: None,
+        }
+    }
+}
+
+/// An event: the walker as it arrives, before the albedo decides.
+#[derive(Debug, Clone, Copy)]
+pub struct Arrival<'a> {
+    /// The walker, its weight as it arrives.
+    pub walker: &'a Walker,
+    /// Where \[L\].
+    pub position: DVec3,
+}
+
+/// What a step of the walk tells its visitor.
+#[derive(Debug, Clone, Copy)]
+pub enum Step<'a> {
+    /// A ray is about to be followed up to the body ahead, if there is one.
+    Ahead(Option<&'a SceneHit>),
+    /// Light went from the ray's origin to this distance without an event, with this weight.
+    Passed(f64, Spectrum),
+    /// A collision in the medium of this number.
+    Collision(Arrival<'a>, usize),
+    /// An arrival at a body.
+    Surface(Arrival<'a>, &'a SceneHit),
+    /// A photon ended at an event: this weight is absorbed there; the number of the medium, if in one.
+    Absorbed(Spectrum, Option<usize>),
+    /// The weight leaves the scene.
+    Escaped(Spectrum),
+    /// The weight is followed no further, since nobody asked for higher orders.
+    Abandoned(Spectrum),
+}
+
+/// Who watches a walk.
+pub trait Visitor {
+    /// Whether it collects what rays meet by themselves, as paths do and photons do not: then directions keep their
+    /// densities ([`Walker::pdf_solid_angle`]), and a ray of the limiting order is followed through mirrors and glass.
+    const LOOKS_AHEAD: bool = true;
+
+    /// Whether weights are those of radiance, which scales with the squared index of refraction where a photon's power
+    /// does not.
+    const CARRIES_RADIANCE: bool = Self::LOOKS_AHEAD;
+
+    /// One step of the walk.
+    fn visit(&mut self, walker: &Walker, step: Step, stream: &mut Stream);
+}
