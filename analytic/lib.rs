@@ -8,8 +8,8 @@
 //! irradiance on that face; the signed cosine mu > 0 points up, towards the lit face.
 //!
 //! * Special functions and rules: [`exponential_integral`], [`quadrature`]; phase functions: [`phase`]
-//! * Slab: [`beer_lambert`], [`slab_single`], [`slab_isotropic`], [`slab_anisotropic`], [`adding_doubling`]; between
-//!   refracting faces [`slab_fresnel`]; by order of scattering [`orders`];
+//! * Slab: [`slab`], by the best of [`slab_isotropic`], [`slab_anisotropic`] and [`adding_doubling`]; [`beer_lambert`],
+//!   [`slab_single`]; between refracting faces [`slab_fresnel`]; by order of scattering [`orders`];
 //!   thick [`asymptotics`]; approximations [`two_stream`]
 //! * Half-space: [`half_space`]; infinite medium: [`infinite`]; X and Y functions: [`xy`]
 //! * Sphere: [`sphere`], [`cavity`]; critical bodies: [`critical`]; path lengths: [`mean_path`]
@@ -41,6 +41,7 @@ pub mod phase;
 mod poisson;
 pub mod progressive;
 pub mod quadrature;
+pub mod slab;
 pub mod slab_anisotropic;
 pub mod slab_fresnel;
 pub mod slab_isotropic;
@@ -64,6 +65,7 @@ pub use infinite::InfiniteMedium;
 pub use kernel::{Dimension, Kernel};
 pub use orders::ScatteringOrders;
 pub use phase::Phase;
+pub use slab::{Slab, SlabMedium, SlabOrders};
 pub use slab_anisotropic::{AnisotropicMedium, AnisotropicSlab};
 pub use slab_fresnel::FresnelSlab;
 pub use slab_isotropic::IsotropicSlab;

@@ -39,6 +39,11 @@ impl Phase {
         Phase(Kind::Moments(vec![1.0]))
     }
 
+    /// Whether light is scattered alike in all directions, and known to be: a single Legendre moment.
+    pub fn is_isotropic(&self) -> bool {
+        *self == Self::isotropic()
+    }
+
     /// Henyey-Greenstein, p = (1-g^2)/(4 pi (1 + g^2 - 2 g c)^(3/2)).
     ///
     /// # Errors

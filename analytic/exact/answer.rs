@@ -1,9 +1,8 @@
 //! What a question gets back: its parameters as they were understood, and rows of values.
 
-use crate::unit::unit;
+use crate::unit::Unit;
 use serde::ser::{Serialize, SerializeMap, Serializer};
 use turbid_analytic::Value;
-use turbid_figure::Figure;
 
 /// A parameter or a coordinate.
 #[derive(Debug, Clone, PartialEq)]
@@ -84,10 +83,12 @@ pub struct Row {
     pub at: Fields,
     /// The value, its bound, how it is known.
     pub value: Value,
+    /// What the value is a multiple of.
+    pub unit: Unit,
 }
 
-/// The answer to one question.
-#[derive(Debug, Clone)]
+/// The answer to one question, or the first value of the one quantity that is wanted.
+#[derive(Debug, Clone, Default)]
 pub struct Answer {
     /// The subcommand.
     pub problem: &'static str,
@@ -95,16 +96,23 @@ pub struct Answer {
     pub parameters: Fields,
     /// What is known.
     pub rows: Vec<Row>,
+    wanted: Option<&'static str>,
 }
 
 impl Answer {
-    /// An answer without rows.
-    pub fn new(problem: &'static str) -> Self {
-        Answer { problem, parameters: Vec::new(), rows: Vec::new() }
+    /// An answer without rows, to all that is asked or to what is wanted alone.
+    pub fn new(wanted: Option<&'static str>) -> Self {
+        Answer { wanted, ..Answer::default() }
     }
 
-    /// The same with one more parameter.
-    pub fn with(mut self, name: &'static str, field: impl Into<Field>) -> Self {
+    /// Names the subcommand.
+    pub fn of(&mut self, problem: &'static str) -> &mut Self {
+        self.problem = problem;
+        self
+    }
+
+    /// Adds a parameter.
+    pub fn with(&mut self, name: &'static str, field: impl Into<Field>) -> &mut Self {
         self.parameters.push((name, field.into()));
         self
     }
@@ -122,14 +130,40 @@ impl Answer {
         Ok(())
     }
 
-    /// Adds a value that has no place.
-    pub fn add(&mut self, quantity: &'static str, value: Value) {
-        self.add_at(quantity, Vec::new(), value);
+    /// Adds a value at a place, or at none.
+    pub fn add(&mut self, quantity: &'static str, unit: Unit, at: &[(&'static str, Field)], value: Value) {
+        if self.wanted.is_none_or(|wanted| wanted == quantity && self.rows.is_empty()) {
+            self.rows.push(Row { quantity, at: at.to_vec(), value, unit });
+        }
     }
 
-    /// Adds a value at a place.
-    pub fn add_at(&mut self, quantity: &'static str, at: Fields, value: Value) {
-        self.rows.push(Row { quantity, at, value });
+    /// Adds a value that is computed only where it is wanted.
+    pub fn ask(
+        &mut self,
+        quantity: &'static str,
+        unit: Unit,
+        at: &[(&'static str, Field)],
+        value: impl FnOnce() -> anyhow::Result<Value>,
+    ) -> anyhow::Result<()> {
+        if self.wanted.is_none_or(|wanted| wanted == quantity && self.rows.is_empty()) {
+            self.add(quantity, unit, at, value()?);
+        }
+        Ok(())
+    }
+
+    /// Adds a value that is given only where it is wanted by name.
+    pub fn ask_by_name(
+        &mut self,
+        quantity: &'static str,
+        unit: Unit,
+        value: impl FnOnce() -> anyhow::Result<Value>,
+    ) -> anyhow::Result<()> {
+        if self.is_one() { self.ask(quantity, unit, &[], value) } else { Ok(()) }
+    }
+
+    /// Whether one quantity is wanted alone.
+    pub fn is_one(&self) -> bool {
+        self.wanted.is_some()
     }
 
     /// The names of all coordinates, in the order in which rows use them first.
@@ -153,21 +187,17 @@ impl Serialize for Named<'_> {
     }
 }
 
-/// A row under the unit of its quantity.
-struct InUnit<'a>(&'a Row, &'static str);
-
-impl Serialize for InUnit<'_> {
+impl Serialize for Row {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        let InUnit(row, unit) = self;
         let mut map = serializer.serialize_map(None)?;
-        map.serialize_entry("quantity", row.quantity)?;
-        for (name, field) in &row.at {
+        map.serialize_entry("quantity", self.quantity)?;
+        for (name, field) in &self.at {
             map.serialize_entry(name, field)?;
         }
-        map.serialize_entry("value", &row.value.value)?;
-        map.serialize_entry("error", &row.value.error)?;
-        map.serialize_entry("unit", unit)?;
-        map.serialize_entry("method", row.value.method)?;
+        map.serialize_entry("value", &self.value.value)?;
+        map.serialize_entry("error", &self.value.error)?;
+        map.serialize_entry("unit", &self.unit)?;
+        map.serialize_entry("method", self.value.method)?;
         map.end()
     }
 }
@@ -177,8 +207,7 @@ impl Serialize for Answer {
         let mut map = serializer.serialize_map(None)?;
         map.serialize_entry("problem", self.problem)?;
         map.serialize_entry("parameters", &Named(&self.parameters))?;
-        let rows: Vec<_> = self.rows.iter().map(|row| InUnit(row, unit(self, row.quantity))).collect();
-        map.serialize_entry("values", &rows)?;
+        map.serialize_entry("values", &self.rows)?;
         map.end()
     }
 }
@@ -188,12 +217,4 @@ impl Row {
     pub fn place(&self, name: &str) -> String {
         self.at.iter().find(|(n, _)| *n == name).map_or_else(String::new, |(_, field)| field.to_string())
     }
-}
-
-/// What a subcommand hands back.
-pub struct Reply {
-    /// The values.
-    pub answer: Answer,
-    /// The picture, if it was asked for.
-    pub figure: Option<Figure>,
 }

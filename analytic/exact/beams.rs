@@ -1,8 +1,10 @@
 //! `exact beams`: photons and rays as points or as beams.
 
-use crate::answer::{Answer, Reply};
+use crate::answer::Answer;
 use crate::plot::{Curve, figure, panel, ratios};
+use crate::question::{Question, Solved};
 use crate::read::{kernel, kernel_name};
+use crate::unit::Unit;
 use anyhow::Result;
 use turbid_analytic::beams::{Pairing, Ray, crossing_moment, crossing_tail};
 use turbid_analytic::{Kernel, Value};
@@ -55,61 +57,70 @@ pub struct Args {
     tail: Vec<f64>,
 }
 
-/// The three ways, by name.
-fn pairings(args: &Args) -> [(Pairing, &'static str); 3] {
-    let beams = match args.sine {
-        Some(sine) => (Pairing::RayBeams { sine }, "ray, beams"),
-        None => (Pairing::RayIsotropicBeams, "ray, isotropic beams"),
-    };
-    [(Pairing::PointPoints, "point, points"), (Pairing::RayPoints, "ray, points"), beams]
+impl Args {
+    fn ray(&self) -> Ray {
+        Ray { length: self.length, extinction: self.extinction }
+    }
+
+    /// The three ways, by name.
+    fn pairings(&self) -> [(Pairing, &'static str); 3] {
+        let beams = match self.sine {
+            Some(sine) => (Pairing::RayBeams { sine }, "ray, beams"),
+            None => (Pairing::RayIsotropicBeams, "ray, isotropic beams"),
+        };
+        [(Pairing::PointPoints, "point, points"), (Pairing::RayPoints, "ray, points"), beams]
+    }
 }
 
-/// Answers; the figure shows the three variances against the radius.
-pub fn answer(args: &Args, draw: bool) -> Result<Reply> {
-    let ray = Ray { length: args.length, extinction: args.extinction };
-    let mut answer = Answer::new("beams")
-        .with("kernel", kernel_name(args.kernel))
-        .with("radius", args.radius)
-        .with("density", args.density)
-        .with("length", args.length)
-        .with("extinction", args.extinction);
-    if let Some(sine) = args.sine {
-        answer = answer.with("sine", sine);
-    }
-    for (pairing, name) in pairings(args) {
-        let at = || vec![("pairing", name.into())];
-        answer.add_at("bias_per_r2_laplacian", at(), pairing.bias_coefficient(args.kernel)?);
-        answer.add_at("inverse_sine", at(), pairing.inverse_sine()?);
-        let variance = pairing.relative_variance(args.kernel, args.radius, args.density, ray)?;
-        answer.add_at("relative_variance", at(), variance);
-        for &x in &args.gradient {
-            let at = vec![("pairing", name.into()), ("gradient", x.into())];
-            answer.add_at("exponential_mean", at, pairing.exponential_mean(args.kernel, x)?);
+impl Question for Args {
+    fn answer(&self, answer: &mut Answer, _: &Solved) -> Result<()> {
+        let ray = self.ray();
+        answer
+            .of("beams")
+            .with("kernel", kernel_name(self.kernel))
+            .with("radius", self.radius)
+            .with("density", self.density)
+            .with("length", self.length)
+            .with("extinction", self.extinction);
+        if let Some(sine) = self.sine {
+            answer.with("sine", sine);
         }
-        for &c in &args.curvature {
-            let at = || vec![("pairing", name.into()), ("curvature", c.into())];
-            let (radius, left) = pairing.optimum(args.kernel, c, args.density, ray)?;
-            answer.add_at("optimum_radius", at(), radius);
-            answer.add_at("optimum_mean_squared_error", at(), left);
+        for (pairing, name) in self.pairings() {
+            let at = [("pairing", name.into())];
+            answer.add("bias_per_r2_laplacian", Unit::One, &at, pairing.bias_coefficient(self.kernel)?);
+            answer.add("inverse_sine", Unit::One, &at, pairing.inverse_sine()?);
+            let variance = pairing.relative_variance(self.kernel, self.radius, self.density, ray)?;
+            answer.add("relative_variance", Unit::One, &at, variance);
+            for &x in &self.gradient {
+                let at = [("pairing", name.into()), ("gradient", x.into())];
+                answer.add("exponential_mean", Unit::Field, &at, pairing.exponential_mean(self.kernel, x)?);
+            }
+            for &c in &self.curvature {
+                let at = [("pairing", name.into()), ("curvature", c.into())];
+                let (radius, left) = pairing.optimum(self.kernel, c, self.density, ray)?;
+                answer.add("optimum_radius", Unit::Length(1), &at, radius);
+                answer.add("optimum_mean_squared_error", Unit::One, &at, left);
+            }
         }
+        for &x in &self.tail {
+            let at = [("x", x.into())];
+            answer.add("crossing_tail", Unit::One, &at, crossing_tail(x)?);
+            answer.add("crossing_second_moment", Unit::One, &at, crossing_moment(2, x)?);
+        }
+        Ok(())
     }
-    for &x in &args.tail {
-        answer.add_at("crossing_tail", vec![("x", x.into())], crossing_tail(x)?);
-        answer.add_at("crossing_second_moment", vec![("x", x.into())], crossing_moment(2, x)?);
-    }
-    let figure = if draw { Some(drawn(args, ray)?) } else { None };
-    Ok(Reply { answer, figure })
-}
 
-fn drawn(args: &Args, ray: Ray) -> Result<Figure> {
-    let radii = ratios(0.1 * args.radius, 10.0 * args.radius, 41);
-    let deviation = |v: Value| 100.0 * v.value.sqrt();
-    let curve = |(pairing, name): (Pairing, &str)| {
-        Curve::sample(name, &radii, |r| {
-            Ok(deviation(pairing.relative_variance(args.kernel, r, args.density, ray)?))
-        })
-    };
-    let curves = pairings(args).into_iter().map(curve).collect::<Result<Vec<_>>>()?;
-    let title = format!("Points and beams, density {}, ray of length {}", args.density, args.length);
-    Ok(figure(title, panel(Axis::log("Radius r", "length"), "Standard deviation", "%", curves)))
+    /// The three variances against the radius.
+    fn figure(&self, _: &Solved) -> Result<Figure> {
+        let (radii, ray) = (ratios(0.1 * self.radius, 10.0 * self.radius, 41), self.ray());
+        let deviation = |v: Value| 100.0 * v.value.sqrt();
+        let curve = |(pairing, name): (Pairing, &str)| {
+            Curve::sample(name, &radii, |r| {
+                Ok(deviation(pairing.relative_variance(self.kernel, r, self.density, ray)?))
+            })
+        };
+        let curves = self.pairings().into_iter().map(curve).collect::<Result<Vec<_>>>()?;
+        let title = format!("Points and beams, density {}, ray of length {}", self.density, self.length);
+        Ok(figure(title, panel(Axis::log("Radius r", "length"), "Standard deviation", "%", curves)))
+    }
 }

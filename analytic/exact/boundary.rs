@@ -1,8 +1,10 @@
 //! `exact boundary`: photon estimates near the faces of a body.
 
-use crate::answer::{Answer, Reply};
+use crate::answer::Answer;
 use crate::plot::{Curve, crowded, even, figure, panel};
+use crate::question::{Question, Solved};
 use crate::read::{kernel, kernel_name};
+use crate::unit::Unit;
 use anyhow::{Result, bail, ensure};
 use clap::ValueEnum;
 use turbid_analytic::boundary::{
@@ -10,7 +12,7 @@ use turbid_analytic::boundary::{
     treated_variance,
 };
 use turbid_analytic::{Kernel, Value};
-use turbid_figure::Axis;
+use turbid_figure::{Axis, Figure};
 
 /// Photon estimates near a face: four treatments of the ball that the face cuts.
 ///
@@ -69,37 +71,48 @@ enum Shape {
     Cuboid,
 }
 
-/// A question: the body and everything about the kernel.
-struct Asked<'a> {
-    args: &'a Args,
-    body: Body,
-}
+impl Args {
+    /// The body, of as many lengths as it has.
+    fn shape(&self) -> Result<Body> {
+        Ok(match (self.body, self.size.as_slice()) {
+            (Shape::HalfSpace, _) => Body::HalfSpace,
+            (Shape::Slab, &[thickness]) => Body::Slab { thickness },
+            (Shape::Sphere, &[radius]) => Body::Sphere { radius },
+            (Shape::Cuboid, &[edge]) => Body::Cuboid { edges: [edge; 3] },
+            (Shape::Cuboid, &[x, y, z]) => Body::Cuboid { edges: [x, y, z] },
+            (_, sizes) => {
+                bail!("--size has {} numbers; allowed: 1 for slab and sphere, 1 or 3 for cuboid", sizes.len())
+            }
+        })
+    }
 
-impl Asked<'_> {
+    fn shape_name(&self) -> String {
+        self.body.to_possible_value().map_or_else(String::new, |v| v.get_name().to_string())
+    }
+
     /// A probe below the face.
-    fn probe(&self, depth: f64) -> [f64; 3] {
-        match self.body {
+    fn probe(&self, body: Body, depth: f64) -> [f64; 3] {
+        match body {
             Body::Sphere { radius } => [0.0, 0.0, depth - radius],
-            Body::Cuboid { .. } if self.args.corner => [depth; 3],
+            Body::Cuboid { .. } if self.corner => [depth; 3],
             Body::Cuboid { edges } => [0.5 * edges[0], 0.5 * edges[1], depth],
-            _ => [0.0, 0.0, depth],
+            Body::HalfSpace | Body::Slab { .. } => [0.0, 0.0, depth],
         }
     }
 
-    fn uniform(&self, treatment: Treatment, depth: f64) -> Result<Value> {
-        let args = self.args;
-        Ok(treated_mean_uniform(treatment, args.kernel, self.body, self.probe(depth), args.radius)?)
+    fn uniform(&self, body: Body, treatment: Treatment, depth: f64) -> Result<Value> {
+        Ok(treated_mean_uniform(treatment, self.kernel, body, self.probe(body, depth), self.radius)?)
     }
 
     /// Expectation in the field e^(-s (place - probe)): over the field at the probe.
-    fn decaying(&self, treatment: Treatment, depth: f64) -> Result<Value> {
-        let args = self.args;
-        let fall = |place: f64| libm::exp(-args.decay * (place - depth));
-        let field = |z: f64| match self.body {
+    fn decaying(&self, body: Body, treatment: Treatment, depth: f64) -> Result<Value> {
+        let fall = |place: f64| libm::exp(-self.decay * (place - depth));
+        let field = |z: f64| match body {
             Body::Sphere { radius } => fall(radius - z),
-            _ => fall(z),
+            Body::HalfSpace | Body::Slab { .. } | Body::Cuboid { .. } => fall(z),
         };
-        Ok(treated_mean_symmetric(treatment, args.kernel, self.body, self.probe(depth), args.radius, field)?)
+        let probe = self.probe(body, depth);
+        Ok(treated_mean_symmetric(treatment, self.kernel, body, probe, self.radius, field)?)
     }
 }
 
@@ -122,94 +135,81 @@ fn rule_name(rule: Rejection) -> &'static str {
     }
 }
 
-/// Answers; the figure shows the expectation against the depth, one curve a treatment.
-pub fn answer(args: &Args, draw: bool) -> Result<Reply> {
-    let body = match (args.body, args.size.as_slice()) {
-        (Shape::HalfSpace, _) => Body::HalfSpace,
-        (Shape::Slab, &[thickness]) => Body::Slab { thickness },
-        (Shape::Sphere, &[radius]) => Body::Sphere { radius },
-        (Shape::Cuboid, &[edge]) => Body::Cuboid { edges: [edge; 3] },
-        (Shape::Cuboid, &[x, y, z]) => Body::Cuboid { edges: [x, y, z] },
-        (_, sizes) => {
-            bail!("--size has {} numbers; allowed: 1 for slab and sphere, 1 or 3 for cuboid", sizes.len())
-        }
-    };
-    ensure!(!args.corner || args.body == Shape::Cuboid, "--corner is given; allowed with --body cuboid");
-    ensure!(
-        args.decay == 0.0 || args.body != Shape::Cuboid,
-        "--decay is {}; allowed with --body cuboid: 0, the uniform field",
-        args.decay
-    );
-    let asked = Asked { args, body };
-    let shape = args.body.to_possible_value().map_or_else(String::new, |v| v.get_name().to_string());
-    let mut answer = Answer::new("boundary").with("body", shape.as_str());
-    if args.body != Shape::HalfSpace {
-        for (name, &length) in ["size", "size_2", "size_3"].into_iter().zip(&args.size) {
-            answer = answer.with(name, length);
-        }
-    }
-    if args.corner {
-        answer = answer.with("place", "corner");
-    }
-    answer = answer.with("radius", args.radius).with("kernel", kernel_name(args.kernel));
-    if args.decay != 0.0 {
-        answer = answer.with("decay", args.decay);
-    }
-    for &depth in &args.depth {
-        for treatment in Treatment::ALL {
-            let at = || vec![("treatment", name(treatment).into()), ("depth", depth.into())];
-            answer.add_at("mean_uniform", at(), asked.uniform(treatment, depth)?);
-            if args.decay != 0.0 {
-                answer.add_at("mean_decaying", at(), asked.decaying(treatment, depth)?);
+impl Question for Args {
+    fn answer(&self, answer: &mut Answer, _: &Solved) -> Result<()> {
+        let body = self.shape()?;
+        ensure!(!self.corner || self.body == Shape::Cuboid, "--corner is given; allowed with --body cuboid");
+        ensure!(
+            self.decay == 0.0 || self.body != Shape::Cuboid,
+            "--decay is {}; allowed with --body cuboid: 0, the uniform field",
+            self.decay
+        );
+        answer.of("boundary").with("body", self.shape_name());
+        if self.body != Shape::HalfSpace {
+            for (name, &length) in ["size", "size_2", "size_3"].into_iter().zip(&self.size) {
+                answer.with(name, length);
             }
-            let variance = treated_variance(treatment, args.kernel, body, asked.probe(depth), args.radius)?;
-            answer.add_at("variance_over_whole_ball", at(), variance);
         }
-    }
-    if let Some(behind) = args.behind {
-        answer = answer.with("behind", behind);
-        for &depth in &args.depth {
+        if self.corner {
+            answer.with("place", "corner");
+        }
+        answer.with("radius", self.radius).with("kernel", kernel_name(self.kernel));
+        if self.decay != 0.0 {
+            answer.with("decay", self.decay);
+        }
+        for &depth in &self.depth {
+            for treatment in Treatment::ALL {
+                let at = [("treatment", name(treatment).into()), ("depth", depth.into())];
+                answer.add("mean_uniform", Unit::Field, &at, self.uniform(body, treatment, depth)?);
+                if self.decay != 0.0 {
+                    answer.add("mean_decaying", Unit::Field, &at, self.decaying(body, treatment, depth)?);
+                }
+                let probe = self.probe(body, depth);
+                let variance = treated_variance(treatment, self.kernel, body, probe, self.radius)?;
+                answer.add("variance_over_whole_ball", Unit::WholeBall, &at, variance);
+            }
+        }
+        let Some(behind) = self.behind else { return Ok(()) };
+        answer.with("behind", behind);
+        for &depth in &self.depth {
             for rule in Rejection::ALL {
                 for (clipped, divisor) in [(false, "1"), (true, "M_0")] {
                     let mean =
-                        false_photon_mean(rule, clipped, args.kernel, args.radius, depth, 1.0, behind)?;
-                    let at = vec![
-                        ("rule", rule_name(rule).into()),
-                        ("over", divisor.into()),
-                        ("depth", depth.into()),
-                    ];
-                    answer.add_at("mean_at_wall", at, mean);
+                        false_photon_mean(rule, clipped, self.kernel, self.radius, depth, 1.0, behind)?;
+                    let at =
+                        [("rule", rule_name(rule).into()), ("over", divisor.into()), ("depth", depth.into())];
+                    answer.add("mean_at_wall", Unit::FieldInFront, &at, mean);
                 }
             }
         }
+        Ok(())
     }
-    let figure = if draw { Some(drawn(&asked, &shape)?) } else { None };
-    Ok(Reply { answer, figure })
-}
 
-fn drawn(asked: &Asked<'_>, shape: &str) -> Result<turbid_figure::Figure> {
-    let args = asked.args;
-    let depths = match args.body {
-        Shape::HalfSpace => even(0.0, 1.25 * args.radius, 81),
-        Shape::Slab => crowded(args.size[0], 81),
-        Shape::Sphere => even(0.0, args.size[0], 81),
-        Shape::Cuboid => even(0.0, 0.5 * args.size.iter().copied().fold(f64::INFINITY, f64::min), 41),
-    };
-    let curve = |treatment| {
-        let label = if treatment == Treatment::None { "no treatment" } else { name(treatment) };
-        Curve::sample(label, &depths, |depth| {
-            let mean = if args.decay == 0.0 { Asked::uniform } else { Asked::decaying };
-            Ok(mean(asked, treatment, depth)?.value)
-        })
-    };
-    let curves = Treatment::ALL.into_iter().map(curve).collect::<Result<Vec<_>>>()?;
-    let field = if args.decay == 0.0 {
-        String::new()
-    } else {
-        format!(", field exp(−{} h)", args.decay).replace("−1 h", "−h")
-    };
-    let name = kernel_name(args.kernel).replace('_', " ");
-    let title = format!("At the face of a {shape}: {name} kernel, r = {}{field}", args.radius);
-    let axis = Axis::linear("Depth of the probe h", "length");
-    Ok(figure(title, panel(axis, "Expectation over the field at the probe", "", curves)))
+    /// The expectation against the depth, one curve a treatment.
+    fn figure(&self, _: &Solved) -> Result<Figure> {
+        let body = self.shape()?;
+        let depths = match self.body {
+            Shape::HalfSpace => even(0.0, 1.25 * self.radius, 81),
+            Shape::Slab => crowded(self.size[0], 81),
+            Shape::Sphere => even(0.0, self.size[0], 81),
+            Shape::Cuboid => even(0.0, 0.5 * self.size.iter().copied().fold(f64::INFINITY, f64::min), 41),
+        };
+        let curve = |treatment| {
+            let label = if treatment == Treatment::None { "no treatment" } else { name(treatment) };
+            Curve::sample(label, &depths, |depth| {
+                let mean = if self.decay == 0.0 { Args::uniform } else { Args::decaying };
+                Ok(mean(self, body, treatment, depth)?.value)
+            })
+        };
+        let curves = Treatment::ALL.into_iter().map(curve).collect::<Result<Vec<_>>>()?;
+        let field = if self.decay == 0.0 {
+            String::new()
+        } else {
+            format!(", field exp(−{} h)", self.decay).replace("−1 h", "−h")
+        };
+        let (shape, name) = (self.shape_name(), kernel_name(self.kernel).replace('_', " "));
+        let title = format!("At the face of a {shape}: {name} kernel, r = {}{field}", self.radius);
+        let axis = Axis::linear("Depth of the probe h", "length");
+        Ok(figure(title, panel(axis, "Expectation over the field at the probe", "", curves)))
+    }
 }

@@ -1,8 +1,10 @@
 //! `exact cavity`: the Lambertian cavity.
 
-use crate::answer::{Answer, Reply};
+use crate::answer::Answer;
 use crate::plot::{Curve, even, figure, panel};
+use crate::question::{Question, Solved};
 use crate::typed::Typed;
+use crate::unit::Unit;
 use anyhow::Result;
 use turbid_analytic::cavity::Cavity;
 use turbid_figure::{Axis, Figure};
@@ -29,26 +31,13 @@ pub struct Args {
     wall_albedo: f64,
     /// Single-scattering albedo of the medium, 0 to 1; without it the cavity is empty.
     #[arg(long, allow_negative_numbers = true)]
-    pub albedo: Option<f64>,
+    albedo: Option<f64>,
     /// Mean irradiance of the wall before its first reflection, of any source: gives the mean irradiance.
     #[arg(long, allow_negative_numbers = true)]
     first: Option<f64>,
     /// Distances from the centre, 0 to the radius, at which to give the fluence if the wall emits evenly, per unit exitance.
     #[arg(long, num_args = 1.., value_delimiter = ',', value_name = "R", allow_negative_numbers = true)]
     r: Vec<f64>,
-}
-
-impl Args {
-    /// What rounding touches.
-    pub fn typed(&self) -> Typed {
-        Typed {
-            albedo: self.albedo,
-            g: Some(0.0),
-            size: Some(self.radius),
-            places: self.r.clone(),
-            ..Typed::default()
-        }
-    }
 }
 
 fn solve(args: &Args, wall_albedo: f64) -> turbid_analytic::Result<Cavity> {
@@ -58,35 +47,58 @@ fn solve(args: &Args, wall_albedo: f64) -> turbid_analytic::Result<Cavity> {
     }
 }
 
-/// Answers; the figure shows the wall's irradiance against its albedo.
-pub fn answer(args: &Args, draw: bool) -> Result<Reply> {
-    let cavity = solve(args, args.wall_albedo)?;
-    let mut answer = Answer::new("cavity").with("radius", args.radius).with("wall_albedo", args.wall_albedo);
-    answer = match args.albedo {
-        Some(albedo) => answer.with("albedo", albedo),
-        None => answer.with("medium", "none"),
-    };
-    answer.add("rounds", cavity.rounds());
-    answer.add("irradiance_wall", cavity.irradiance_wall());
-    answer.add("irradiance_centre", cavity.irradiance_centre());
-    if let Some(first) = args.first {
-        answer.add_at("irradiance_mean", vec![("first", first.into())], cavity.irradiance_mean(first)?);
+impl Question for Args {
+    fn answer(&self, answer: &mut Answer, _: &Solved) -> Result<()> {
+        let cavity = solve(self, self.wall_albedo)?;
+        answer.of("cavity").with("radius", self.radius).with("wall_albedo", self.wall_albedo);
+        let at_centre = match self.albedo {
+            Some(albedo) => {
+                answer.with("albedo", albedo);
+                Unit::PowerPerMfp2
+            }
+            None => {
+                answer.with("medium", "none");
+                Unit::PowerPerLength2
+            }
+        };
+        answer.add("rounds", Unit::One, &[], cavity.rounds());
+        answer.add("irradiance_wall", Unit::Exitance, &[], cavity.irradiance_wall());
+        answer.add("irradiance_centre", at_centre, &[], cavity.irradiance_centre());
+        if let Some(first) = self.first {
+            let mean = cavity.irradiance_mean(first)?;
+            answer.add("irradiance_mean", Unit::First, &[("first", first.into())], mean);
+        }
+        for &r in &self.r {
+            answer.add("fluence_wall", Unit::Exitance, &[("r", r.into())], cavity.fluence_wall(r)?);
+        }
+        Ok(())
     }
-    for &r in &args.r {
-        answer.add_at("fluence_wall", vec![("r", r.into())], cavity.fluence_wall(r)?);
-    }
-    let figure = if draw { Some(drawn(args)?) } else { None };
-    Ok(Reply { answer, figure })
-}
 
-fn drawn(args: &Args) -> Result<Figure> {
-    // What a black wall receives of its own light, 1 - A, decides about all others.
-    let reach = solve(args, 0.0)?.irradiance_wall().value;
-    let curve = Curve::sample("", &even(0.0, 0.98, 99), |rho| Ok(reach / (1.0 - rho * reach)))?;
-    let medium = args.albedo.map_or("empty".to_string(), |w| format!("radius {}, albedo {w}", args.radius));
-    let axis = Axis::linear("Albedo of the wall ρ", "");
-    Ok(figure(
-        format!("Lambertian cavity, {medium}"),
-        panel(axis, "Irradiance over exitance of the wall", "", vec![curve]),
-    ))
+    /// The wall's irradiance against its albedo.
+    fn figure(&self, _: &Solved) -> Result<Figure> {
+        // What a black wall receives of its own light, 1 - A, decides about all others.
+        let reach = solve(self, 0.0)?.irradiance_wall().value;
+        let curve = Curve::sample("", &even(0.0, 0.98, 99), |rho| Ok(reach / (1.0 - rho * reach)))?;
+        let medium =
+            self.albedo.map_or("empty".to_string(), |w| format!("radius {}, albedo {w}", self.radius));
+        let axis = Axis::linear("Albedo of the wall ρ", "");
+        Ok(figure(
+            format!("Lambertian cavity, {medium}"),
+            panel(axis, "Irradiance over exitance of the wall", "", vec![curve]),
+        ))
+    }
+
+    fn typed(&self) -> Option<Typed> {
+        Some(Typed {
+            albedo: self.albedo,
+            g: Some(0.0),
+            size: Some(self.radius),
+            places: self.r.clone(),
+            ..Typed::default()
+        })
+    }
+
+    fn moved(&self, to: f64) -> Option<Box<dyn Question>> {
+        Some(Box::new(Args { albedo: Some(to), ..self.clone() }))
+    }
 }

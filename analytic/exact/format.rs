@@ -2,7 +2,6 @@
 
 use crate::answer::{Answer, Row, shortest};
 use crate::text::one_line;
-use crate::unit::unit;
 use anyhow::Result;
 use clap::ValueEnum;
 use std::io::Write;
@@ -21,7 +20,6 @@ pub enum Format {
 
 /// Writes an answer.
 pub fn write(answer: &Answer, format: Format, out: &mut Vec<u8>) -> Result<()> {
-    answer.check()?;
     match format {
         Format::Table => table(answer, out),
         Format::Csv => csv(answer, out),
@@ -51,7 +49,7 @@ fn table(answer: &Answer, out: &mut Vec<u8>) -> Result<()> {
         let mut cells = vec![row.quantity.to_string()];
         cells.extend(coordinates.iter().map(|name| row.place(name)));
         let (value, error) = printed(row.value);
-        cells.extend([value, error, unit(answer, row.quantity).to_string(), row.value.method.to_string()]);
+        cells.extend([value, error, row.unit.to_string(), row.value.method.to_string()]);
         cells
     };
     aligned(&head, &answer.rows.iter().map(line).collect::<Vec<_>>(), out)
@@ -135,7 +133,7 @@ fn csv(answer: &Answer, out: &mut Vec<u8>) -> Result<()> {
             cells.push(row.place(name));
         }
         cells.extend([shortest(row.value.value), shortest(row.value.error)]);
-        cells.extend([unit(answer, row.quantity).to_string(), row.value.method.to_string()]);
+        cells.extend([row.unit.to_string(), row.value.method.to_string()]);
         writer.write_record(&cells)?;
     }
     writer.flush()?;

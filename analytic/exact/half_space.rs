@@ -1,14 +1,17 @@
 //! `exact half-space`: the half-space with isotropic scattering.
 
-use crate::answer::{Answer, Reply};
+use crate::answer::Answer;
 use crate::phase::{Named, PhaseArgs};
 use crate::plot::{Curve, degrees, even, figure, panel};
+use crate::question::{Question, Solved};
 use crate::read::{incidence, incidence_field, incidence_title};
 use crate::typed::Typed;
+use crate::unit::Unit;
 use anyhow::{Result, bail, ensure};
 use clap::ValueEnum;
+use std::rc::Rc;
 use turbid_analytic::half_space::HalfSpace;
-use turbid_analytic::{AnisotropicMedium, Incidence};
+use turbid_analytic::{AnisotropicMedium, AnisotropicSlab, Incidence, Value};
 use turbid_figure::{Axis, Figure};
 
 /// A half-space: H function, reflectance, radiance, fluence, Milne's problem.
@@ -29,7 +32,7 @@ use turbid_figure::{Axis, Figure};
 pub struct Args {
     /// Single-scattering albedo, 0 to 1.
     #[arg(long, allow_negative_numbers = true)]
-    pub albedo: f64,
+    albedo: f64,
     #[command(flatten)]
     phase: PhaseArgs,
     /// Cosine of incidence of a beam, above 0 to 1, or the word diffuse (Lambertian light).
@@ -52,18 +55,6 @@ pub struct Args {
     draw: Draw,
 }
 
-impl Args {
-    /// What rounding touches.
-    pub fn typed(&self) -> Typed {
-        Typed {
-            albedo: Some(self.albedo),
-            g: self.phase.single_g(),
-            places: self.depth.clone(),
-            ..Typed::default()
-        }
-    }
-}
-
 /// What a figure of a half-space shows.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 enum Draw {
@@ -75,128 +66,161 @@ enum Draw {
     H,
 }
 
-/// Answers.
-pub fn answer(args: &Args, draw: bool) -> Result<Reply> {
-    let named = args.phase.read()?;
-    let mut answer = Answer::new("half-space").with("albedo", args.albedo).with("phase", named.name.as_str());
-    if !named.is_isotropic() {
-        return anisotropic(args, &named, answer, draw);
+impl Args {
+    fn space(&self, solved: &Solved) -> Result<Rc<HalfSpace>> {
+        solved.once(self.albedo, || Ok(HalfSpace::new(self.albedo)?))
     }
-    let space = HalfSpace::new(args.albedo)?;
-    if args.milne {
-        answer = answer.with("source", "infinitely deep");
-        answer.add("extrapolation_length", space.extrapolation_length()?);
-        answer.add("decay", space.decay());
-    } else {
-        answer = answer.with("mu0", incidence_field(args.mu0));
-        answer.add("reflectance", space.reflectance(args.mu0)?);
-        answer.add("absorptance", space.absorptance(args.mu0)?);
-    }
-    for n in 0..=2_u32 {
-        answer.add_at("h_moment", vec![("n", n.into())], space.moment(n)?);
-    }
-    for &mu in &args.mu {
-        let at = || vec![("mu", mu.into())];
-        answer.add_at("h", at(), space.h(mu)?);
-        let radiance = if args.milne { space.milne_radiance(mu)? } else { space.radiance(args.mu0, mu)? };
-        answer.add_at("radiance", at(), radiance);
-    }
-    for &t in &args.depth {
-        let at = || vec![("t", t.into())];
-        if args.milne {
-            answer.add_at("fluence", at(), space.milne_fluence(t)?);
-        } else {
-            answer.add_at("fluence", at(), space.fluence(args.mu0, t)?);
-            answer.add_at("flux", at(), space.flux(args.mu0, t)?);
-        }
-    }
-    let figure = if draw { Some(drawn(args, &space)?) } else { None };
-    Ok(Reply { answer, figure })
-}
 
-/// Discrete ordinates, which answer for any phase function.
-fn anisotropic(args: &Args, named: &Named, answer: Answer, draw: bool) -> Result<Reply> {
-    ensure!(
-        !args.milne && args.draw != Draw::H,
-        "phase function is {}; allowed with --milne and --draw h: isotropic",
-        named.name
-    );
-    if let Some(mu) = args.mu.iter().find(|mu| !(0.0..=1.0).contains(*mu)) {
-        bail!("mu is {mu}; allowed: 0 to 1");
-    }
-    let space = AnisotropicMedium::new(args.albedo, &named.phase)?.half_space(args.mu0)?;
-    let mut answer = answer.with("mu0", incidence_field(args.mu0));
-    answer.add("reflectance", space.reflectance());
-    answer.add("absorptance", space.absorptance());
-    for &mu in &args.mu {
-        for &dphi in &args.azimuth {
-            let at = vec![("mu", mu.into()), ("azimuth", dphi.into())];
-            answer.add_at("radiance", at, space.radiance(0.0, mu, dphi)?);
+    /// Discrete ordinates, which answer for any phase function.
+    fn ordinates(&self, named: &Named, solved: &Solved) -> Result<Rc<AnisotropicSlab>> {
+        ensure!(
+            !self.milne && self.draw != Draw::H,
+            "phase function is {}; allowed with --milne and --draw h: isotropic",
+            named.name
+        );
+        if let Some(mu) = self.mu.iter().find(|mu| !(0.0..=1.0).contains(*mu)) {
+            bail!("mu is {mu}; allowed: 0 to 1");
         }
+        solved.once((self.albedo, &named.name, self.mu0), || {
+            Ok(AnisotropicMedium::new(self.albedo, &named.phase)?.half_space(self.mu0)?)
+        })
     }
-    for &t in &args.depth {
-        answer.add_at("fluence", vec![("t", t.into())], space.fluence(t)?);
-        answer.add_at("flux", vec![("t", t.into())], space.flux(t)?);
+
+    fn isotropic(&self, answer: &mut Answer, space: &HalfSpace) -> Result<()> {
+        let (fluence, radiance) = if self.milne {
+            answer.with("source", "infinitely deep");
+            answer.ask("extrapolation_length", Unit::Mfp(1), &[], || Ok(space.extrapolation_length()?))?;
+            answer.add("decay", Unit::Mfp(-1), &[], space.decay());
+            (Unit::Exitance, Unit::ExitancePerSr)
+        } else {
+            answer.with("mu0", incidence_field(self.mu0));
+            answer.ask("reflectance", Unit::IncidentPower, &[], || Ok(space.reflectance(self.mu0)?))?;
+            answer.ask("absorptance", Unit::IncidentPower, &[], || Ok(space.absorptance(self.mu0)?))?;
+            (Unit::Irradiance, Unit::IrradiancePerSr)
+        };
+        for n in 0..=2_u32 {
+            answer.ask("h_moment", Unit::One, &[("n", n.into())], || Ok(space.moment(n)?))?;
+        }
+        for &mu in &self.mu {
+            let at = [("mu", mu.into())];
+            answer.ask("h", Unit::One, &at, || Ok(space.h(mu)?))?;
+            answer.ask("radiance", radiance, &at, || self.radiance(space, mu))?;
+        }
+        for &t in &self.depth {
+            let at = [("t", t.into())];
+            answer.ask("fluence", fluence, &at, || self.fluence(space, t))?;
+            if !self.milne {
+                answer.ask("flux", Unit::Irradiance, &at, || Ok(space.flux(self.mu0, t)?))?;
+            }
+        }
+        Ok(())
     }
-    let figure = if draw {
-        let light = incidence_title(args.mu0);
-        let title = format!("Half-space, albedo {}, {}, {light}", args.albedo, named.name);
-        let panel = if args.draw == Draw::Radiance {
+
+    fn radiance(&self, space: &HalfSpace, mu: f64) -> Result<Value> {
+        Ok(if self.milne { space.milne_radiance(mu)? } else { space.radiance(self.mu0, mu)? })
+    }
+
+    fn fluence(&self, space: &HalfSpace, t: f64) -> Result<Value> {
+        Ok(if self.milne { space.milne_fluence(t)? } else { space.fluence(self.mu0, t)? })
+    }
+
+    fn anisotropic(&self, answer: &mut Answer, space: &AnisotropicSlab) -> Result<()> {
+        answer.with("mu0", incidence_field(self.mu0));
+        answer.add("reflectance", Unit::IncidentPower, &[], space.reflectance());
+        answer.add("absorptance", Unit::IncidentPower, &[], space.absorptance());
+        for &mu in &self.mu {
+            for &dphi in &self.azimuth {
+                let at = [("mu", mu.into()), ("azimuth", dphi.into())];
+                answer.ask("radiance", Unit::IrradiancePerSr, &at, || Ok(space.radiance(0.0, mu, dphi)?))?;
+            }
+        }
+        for &t in &self.depth {
+            let at = [("t", t.into())];
+            answer.ask("fluence", Unit::Irradiance, &at, || Ok(space.fluence(t)?))?;
+            answer.ask("flux", Unit::Irradiance, &at, || Ok(space.flux(t)?))?;
+        }
+        Ok(())
+    }
+
+    /// Depths to draw, closer at the face, where the field bends most.
+    fn depths(&self) -> Vec<f64> {
+        let last = self.depth.iter().fold(5.0, |a: f64, &t| a.max(t));
+        even(0.0, 1.0, 101).into_iter().map(|x| last * x * x).collect()
+    }
+
+    fn drawn_anisotropic(&self, named: &Named, space: &AnisotropicSlab) -> Result<Figure> {
+        let light = incidence_title(self.mu0);
+        let title = format!("Half-space, albedo {}, {}, {light}", self.albedo, named.name);
+        let panel = if self.draw == Draw::Radiance {
             let curve = |&dphi: &f64| {
                 Curve::sample(format!("azimuth {dphi}"), &even(0.0, 90.0, 46), |angle| {
                     Ok(space.radiance(0.0, libm::cos(angle.to_radians()), dphi)?.value)
                 })
             };
-            let curves = args.azimuth.iter().map(curve).collect::<Result<Vec<_>>>()?;
+            let curves = self.azimuth.iter().map(curve).collect::<Result<Vec<_>>>()?;
             panel(degrees("Angle to the normal", 90), "Radiance over irradiance", "1/sr", curves)
         } else {
-            let curve = Curve::sample("", &depths(args), |t| Ok(space.fluence(t)?.value))?;
+            let curve = Curve::sample("", &self.depths(), |t| Ok(space.fluence(t)?.value))?;
             panel(Axis::linear("Depth t", "mean free paths"), "Fluence over irradiance", "", vec![curve])
         };
-        Some(figure(title, panel))
-    } else {
-        None
-    };
-    Ok(Reply { answer, figure })
+        Ok(figure(title, panel))
+    }
 }
 
-/// Depths to draw, closer at the face, where the field bends most.
-fn depths(args: &Args) -> Vec<f64> {
-    let last = args.depth.iter().fold(5.0, |a: f64, &t| a.max(t));
-    even(0.0, 1.0, 101).into_iter().map(|x| last * x * x).collect()
-}
+impl Question for Args {
+    fn answer(&self, answer: &mut Answer, solved: &Solved) -> Result<()> {
+        let named = self.phase.read()?;
+        answer.of("half-space").with("albedo", self.albedo).with("phase", named.name.as_str());
+        if named.is_isotropic() {
+            return self.isotropic(answer, &*self.space(solved)?);
+        }
+        self.anisotropic(answer, &*self.ordinates(&named, solved)?)
+    }
 
-fn drawn(args: &Args, space: &HalfSpace) -> Result<Figure> {
-    let (light, per) = if args.milne {
-        ("light from deep inside".to_string(), "flux that leaves")
-    } else {
-        (incidence_title(args.mu0), "irradiance")
-    };
-    let title = format!("Half-space, albedo {}, isotropic, {light}", args.albedo);
-    let (title, panel) = match args.draw {
-        Draw::H => {
-            let curve = Curve::sample("", &even(0.0, 1.0, 101), |mu| Ok(space.h(mu)?.value))?;
-            let title = format!("Chandrasekhar's H function, albedo {}", args.albedo);
-            (title, panel(Axis::linear("Cosine μ", ""), "H(μ)", "", vec![curve]))
+    fn figure(&self, solved: &Solved) -> Result<Figure> {
+        let named = self.phase.read()?;
+        if !named.is_isotropic() {
+            return self.drawn_anisotropic(&named, &*self.ordinates(&named, solved)?);
         }
-        Draw::Radiance => {
-            let curve = Curve::sample("", &even(0.0, 90.0, 91), |angle| {
-                let mu = libm::cos(angle.to_radians());
-                let radiance =
-                    if args.milne { space.milne_radiance(mu) } else { space.radiance(args.mu0, mu) };
-                Ok(radiance?.value)
-            })?;
-            let axis = degrees("Angle to the normal", 90);
-            (title, panel(axis, &format!("Radiance over {per}"), "1/sr", vec![curve]))
-        }
-        Draw::Fluence => {
-            let curve = Curve::sample("", &depths(args), |t| {
-                let fluence = if args.milne { space.milne_fluence(t) } else { space.fluence(args.mu0, t) };
-                Ok(fluence?.value)
-            })?;
-            let axis = Axis::linear("Depth t", "mean free paths");
-            (title, panel(axis, &format!("Fluence over {per}"), "", vec![curve]))
-        }
-    };
-    Ok(figure(title, panel))
+        let space = self.space(solved)?;
+        let (light, per) = if self.milne {
+            ("light from deep inside".to_string(), "flux that leaves")
+        } else {
+            (incidence_title(self.mu0), "irradiance")
+        };
+        let title = format!("Half-space, albedo {}, isotropic, {light}", self.albedo);
+        let (title, panel) = match self.draw {
+            Draw::H => {
+                let curve = Curve::sample("", &even(0.0, 1.0, 101), |mu| Ok(space.h(mu)?.value))?;
+                let title = format!("Chandrasekhar's H function, albedo {}", self.albedo);
+                (title, panel(Axis::linear("Cosine μ", ""), "H(μ)", "", vec![curve]))
+            }
+            Draw::Radiance => {
+                let curve = Curve::sample("", &even(0.0, 90.0, 91), |angle| {
+                    Ok(self.radiance(&space, libm::cos(angle.to_radians()))?.value)
+                })?;
+                let axis = degrees("Angle to the normal", 90);
+                (title, panel(axis, &format!("Radiance over {per}"), "1/sr", vec![curve]))
+            }
+            Draw::Fluence => {
+                let curve = Curve::sample("", &self.depths(), |t| Ok(self.fluence(&space, t)?.value))?;
+                let axis = Axis::linear("Depth t", "mean free paths");
+                (title, panel(axis, &format!("Fluence over {per}"), "", vec![curve]))
+            }
+        };
+        Ok(figure(title, panel))
+    }
+
+    fn typed(&self) -> Option<Typed> {
+        Some(Typed {
+            albedo: Some(self.albedo),
+            g: self.phase.single_g(),
+            places: self.depth.clone(),
+            ..Typed::default()
+        })
+    }
+
+    fn moved(&self, to: f64) -> Option<Box<dyn Question>> {
+        Some(Box::new(Args { albedo: to, ..self.clone() }))
+    }
 }

@@ -1,10 +1,13 @@
 //! `exact infinite`: a point source in an unbounded medium.
 
-use crate::answer::{Answer, Reply};
+use crate::answer::Answer;
 use crate::phase::{Named, PhaseArgs};
 use crate::plot::{Curve, figure, panel, ratios};
+use crate::question::{Question, Solved};
 use crate::typed::Typed;
+use crate::unit::Unit;
 use anyhow::{Result, ensure};
+use std::rc::Rc;
 use turbid_analytic::infinite::{InfiniteMedium, mean_cosine, mean_square_displacement};
 use turbid_figure::{Axis, Figure};
 
@@ -24,7 +27,7 @@ use turbid_figure::{Axis, Figure};
 pub struct Args {
     /// Single-scattering albedo, 0 to 1.
     #[arg(long, allow_negative_numbers = true)]
-    pub albedo: f64,
+    albedo: f64,
     #[command(flatten)]
     phase: PhaseArgs,
     /// Distances in mean free paths, 1e-12 to 1e6.
@@ -40,72 +43,79 @@ pub struct Args {
 }
 
 impl Args {
-    /// What rounding touches.
-    pub fn typed(&self) -> Typed {
-        Typed {
+    fn medium(&self, named: &Named, solved: &Solved) -> Result<Rc<InfiniteMedium>> {
+        solved.once((self.albedo, &named.name), || {
+            Ok(match named.single_g {
+                // Whose moments are known to any order.
+                Some(g) => InfiniteMedium::henyey_greenstein(self.albedo, g)?,
+                None => InfiniteMedium::new(self.albedo, &named.phase)?,
+            })
+        })
+    }
+}
+
+impl Question for Args {
+    fn answer(&self, answer: &mut Answer, solved: &Solved) -> Result<()> {
+        let named = self.phase.read()?;
+        let medium = self.medium(&named, solved)?;
+        answer.of("infinite").with("albedo", self.albedo).with("phase", named.name.as_str());
+        for (j, k) in (0_u32..).zip(medium.decays()) {
+            answer.add("decay", Unit::Mfp(-1), &[("mode", j.into())], k);
+        }
+        // Without absorption both grow beyond all limits.
+        if self.albedo < 1.0 || answer.is_one() {
+            answer.ask("total_fluence", Unit::PowerMfp, &[], || Ok(medium.total_fluence()?))?;
+            answer.ask("mean_square_radius", Unit::Mfp(2), &[], || Ok(medium.mean_square_radius()?))?;
+        }
+        for &r in &self.r {
+            let (at, unit) = ([("r", r.into())], Unit::PowerPerMfp2);
+            answer.ask("fluence", unit, &at, || Ok(medium.fluence(r)?))?;
+            answer.ask("flux", unit, &at, || Ok(medium.flux(r)?))?;
+            answer.ask("asymptotic_fluence", unit, &at, || Ok(medium.asymptotic_fluence(r)?))?;
+            answer.ask("diffusion_fluence", unit, &at, || Ok(medium.diffusion_fluence(r)?))?;
+        }
+        for &s in &self.wave {
+            answer.ask("transform", Unit::PowerMfp, &[("s", s.into())], || Ok(medium.transform(s)?))?;
+        }
+        for &n in &self.scatterings {
+            ensure!(n < 1_000_000, "scatterings is {n}; allowed: 0 to 999999");
+            // Depends on the mean cosine alone, for any phase function.
+            let (at, g) = ([("n", n.into())], named.phase.g());
+            answer.add("mean_cosine", Unit::One, &at, mean_cosine(g, n)?);
+            answer.add("mean_square_distance", Unit::Mfp(2), &at, mean_square_displacement(g, n + 1)?);
+        }
+        Ok(())
+    }
+
+    /// The fluence with its two approximations.
+    fn figure(&self, solved: &Solved) -> Result<Figure> {
+        let named = self.phase.read()?;
+        let medium = self.medium(&named, solved)?;
+        let (low, high) =
+            self.r.iter().fold((0.1, 10.0), |(low, high): (f64, f64), &r| (low.min(r), high.max(r)));
+        let places = ratios(low, high, 121);
+        // Times r^2, so that spreading alone is flat.
+        let times = |r: f64, fluence: f64| 4.0 * std::f64::consts::PI * r * r * fluence;
+        let curves = vec![
+            Curve::sample("exact", &places, |r| Ok(times(r, medium.fluence(r)?.value)))?.into_reference(),
+            Curve::sample("slowest mode", &places, |r| Ok(times(r, medium.asymptotic_fluence(r)?.value)))?,
+            Curve::sample("diffusion", &places, |r| Ok(times(r, medium.diffusion_fluence(r)?.value)))?,
+        ];
+        let title = format!("Point source in an unbounded medium, albedo {}, {}", self.albedo, named.name);
+        let axis = Axis::log("Distance r", "mean free paths");
+        Ok(figure(title, panel(axis, "4π r² × fluence over power", "", curves)))
+    }
+
+    fn typed(&self) -> Option<Typed> {
+        Some(Typed {
             albedo: Some(self.albedo),
             g: self.phase.single_g(),
             places: self.r.clone(),
             ..Typed::default()
-        }
+        })
     }
-}
 
-/// Answers; the figure shows the fluence with its two approximations.
-pub fn answer(args: &Args, draw: bool) -> Result<Reply> {
-    let named = args.phase.read()?;
-    let medium = solve(args.albedo, &named)?;
-    let mut answer = Answer::new("infinite").with("albedo", args.albedo).with("phase", named.name.as_str());
-    for (j, k) in (0_u32..).zip(medium.decays()) {
-        answer.add_at("decay", vec![("mode", j.into())], k);
+    fn moved(&self, to: f64) -> Option<Box<dyn Question>> {
+        Some(Box::new(Args { albedo: to, ..self.clone() }))
     }
-    // Without absorption both grow beyond all limits.
-    if args.albedo < 1.0 {
-        answer.add("total_fluence", medium.total_fluence()?);
-        answer.add("mean_square_radius", medium.mean_square_radius()?);
-    }
-    for &r in &args.r {
-        let at = || vec![("r", r.into())];
-        answer.add_at("fluence", at(), medium.fluence(r)?);
-        answer.add_at("flux", at(), medium.flux(r)?);
-        answer.add_at("asymptotic_fluence", at(), medium.asymptotic_fluence(r)?);
-        answer.add_at("diffusion_fluence", at(), medium.diffusion_fluence(r)?);
-    }
-    for &s in &args.wave {
-        answer.add_at("transform", vec![("s", s.into())], medium.transform(s)?);
-    }
-    for &n in &args.scatterings {
-        ensure!(n < 1_000_000, "scatterings is {n}; allowed: 0 to 999999");
-        // Depends on the mean cosine alone, for any phase function.
-        let (at, g) = (|| vec![("n", n.into())], named.phase.g());
-        answer.add_at("mean_cosine", at(), mean_cosine(g, n)?);
-        answer.add_at("mean_square_distance", at(), mean_square_displacement(g, n + 1)?);
-    }
-    let figure = if draw { Some(drawn(args, &named, &medium)?) } else { None };
-    Ok(Reply { answer, figure })
-}
-
-/// The medium of a phase function.
-pub fn solve(albedo: f64, named: &Named) -> Result<InfiniteMedium> {
-    Ok(match named.single_g {
-        // Whose moments are known to any order.
-        Some(g) => InfiniteMedium::henyey_greenstein(albedo, g)?,
-        None => InfiniteMedium::new(albedo, &named.phase)?,
-    })
-}
-
-fn drawn(args: &Args, named: &Named, medium: &InfiniteMedium) -> Result<Figure> {
-    let (low, high) =
-        args.r.iter().fold((0.1, 10.0), |(low, high): (f64, f64), &r| (low.min(r), high.max(r)));
-    let places = ratios(low, high, 121);
-    // Times r^2, so that spreading alone is flat.
-    let times = |r: f64, fluence: f64| 4.0 * std::f64::consts::PI * r * r * fluence;
-    let curves = vec![
-        Curve::sample("exact", &places, |r| Ok(times(r, medium.fluence(r)?.value)))?.into_reference(),
-        Curve::sample("slowest mode", &places, |r| Ok(times(r, medium.asymptotic_fluence(r)?.value)))?,
-        Curve::sample("diffusion", &places, |r| Ok(times(r, medium.diffusion_fluence(r)?.value)))?,
-    ];
-    let title = format!("Point source in an unbounded medium, albedo {}, {}", args.albedo, named.name);
-    let axis = Axis::log("Distance r", "mean free paths");
-    Ok(figure(title, panel(axis, "4π r² × fluence over power", "", curves)))
 }

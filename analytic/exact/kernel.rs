@@ -1,8 +1,10 @@
 //! `exact kernel`: what is known of one kernel.
 
-use crate::answer::{Answer, Reply};
+use crate::answer::Answer;
 use crate::plot::{Curve, even, figure, panel};
+use crate::question::{Question, Solved};
 use crate::read::{dimension, kernel, kernel_name};
+use crate::unit::Unit;
 use anyhow::Result;
 use turbid_analytic::ball_mean::exponential_mean;
 use turbid_analytic::blur::{
@@ -10,7 +12,7 @@ use turbid_analytic::blur::{
 };
 use turbid_analytic::slab_kernel::face_moment;
 use turbid_analytic::{Dimension, Kernel};
-use turbid_figure::Axis;
+use turbid_figure::{Axis, Figure};
 
 /// A smoothing kernel: moments, variance, exponential fields, faces, edges and sinusoids.
 ///
@@ -44,51 +46,55 @@ pub struct Args {
     wave: Vec<f64>,
 }
 
-/// Answers; the figure shows the profile K(u).
-pub fn answer(args: &Args, draw: bool) -> Result<Reply> {
-    let (kernel, d) = (args.kernel, args.dimension);
-    let name = kernel_name(kernel);
-    let mut answer = Answer::new("kernel").with("kernel", name.as_str()).with("dimension", d.number());
-    answer.add("normalization", kernel.normalization(d)?);
-    answer.add("m2", kernel.moment(d, 2)?);
-    answer.add("m4", kernel.moment(d, 4)?);
-    answer.add("roughness", kernel.roughness(d)?);
-    answer.add("bias_per_r2_laplacian", kernel.bias_coefficient(d)?);
-    answer.add("bias_per_r4_bilaplacian", kernel.second_bias_coefficient(d)?);
-    answer.add("variance_coefficient", kernel.variance_coefficient(d)?);
-    let uniform = kernel == Kernel::Uniform;
-    if uniform {
-        answer.add("equivalent_width", equivalent_width(d));
-        answer.add("line_deviation", line_deviation(d));
-        answer.add("rise_width_10_90", rise_width(d));
-        answer.add("missing_length", missing_length(d));
-    }
-    for &x in &args.gradient {
-        answer.add_at("exponential_mean", vec![("gradient", x.into())], exponential_mean(kernel, d, x)?);
-    }
-    for &x in &args.depth {
-        let at = || vec![("depth", x.into())];
-        if d == Dimension::Three {
-            for (j, moment) in (0..).zip(["face_moment_0", "face_moment_1", "face_moment_2"]) {
-                answer.add_at(moment, at(), face_moment(kernel, j, x)?);
+impl Question for Args {
+    fn answer(&self, answer: &mut Answer, _: &Solved) -> Result<()> {
+        let (kernel, d) = (self.kernel, self.dimension);
+        answer.of("kernel").with("kernel", kernel_name(kernel)).with("dimension", d.number());
+        answer.ask("normalization", Unit::PerRadiusD, &[], || Ok(kernel.normalization(d)?))?;
+        answer.ask("m2", Unit::Radius(2), &[], || Ok(kernel.moment(d, 2)?))?;
+        answer.ask("m4", Unit::Radius(4), &[], || Ok(kernel.moment(d, 4)?))?;
+        answer.ask("roughness", Unit::PerRadiusD, &[], || Ok(kernel.roughness(d)?))?;
+        answer.ask("bias_per_r2_laplacian", Unit::One, &[], || Ok(kernel.bias_coefficient(d)?))?;
+        answer.ask("bias_per_r4_bilaplacian", Unit::One, &[], || Ok(kernel.second_bias_coefficient(d)?))?;
+        answer.ask("variance_coefficient", Unit::One, &[], || Ok(kernel.variance_coefficient(d)?))?;
+        let uniform = kernel == Kernel::Uniform;
+        if uniform {
+            answer.add("equivalent_width", Unit::Radius(1), &[], equivalent_width(d));
+            answer.add("line_deviation", Unit::Radius(1), &[], line_deviation(d));
+            answer.add("rise_width_10_90", Unit::Radius(1), &[], rise_width(d));
+            answer.add("missing_length", Unit::Radius(1), &[], missing_length(d));
+        }
+        for &x in &self.gradient {
+            let at = [("gradient", x.into())];
+            answer.ask("exponential_mean", Unit::Field, &at, || Ok(exponential_mean(kernel, d, x)?))?;
+        }
+        for &x in &self.depth {
+            let at = [("depth", x.into())];
+            if d == Dimension::Three {
+                let units = [Unit::One, Unit::Radius(1), Unit::Radius(2)];
+                let moments = ["face_moment_0", "face_moment_1", "face_moment_2"].into_iter().zip(units);
+                for (j, (moment, unit)) in (0..).zip(moments) {
+                    answer.ask(moment, unit, &at, || Ok(face_moment(kernel, j, x)?))?;
+                }
+            }
+            if uniform {
+                answer.ask("edge_spread", Unit::One, &at, || Ok(edge_spread(d, x)?))?;
+                answer.ask("line_spread", Unit::Radius(-1), &at, || Ok(line_spread(d, x)?))?;
             }
         }
-        if uniform {
-            answer.add_at("edge_spread", at(), edge_spread(d, x)?);
-            answer.add_at("line_spread", at(), line_spread(d, x)?);
+        for &q in &self.wave {
+            anyhow::ensure!(d == Dimension::Three, "dimension is {}; allowed with --wave: 3", d.number());
+            answer.ask("transfer", Unit::One, &[("wave", q.into())], || Ok(kernel_transfer(kernel, q)?))?;
         }
+        Ok(())
     }
-    for &q in &args.wave {
-        anyhow::ensure!(d == Dimension::Three, "dimension is {}; allowed with --wave: 3", d.number());
-        answer.add_at("transfer", vec![("wave", q.into())], kernel_transfer(kernel, q)?);
-    }
-    let figure = if draw { Some(profiles(kernel, d, &name)?) } else { None };
-    Ok(Reply { answer, figure })
-}
 
-fn profiles(kernel: Kernel, d: Dimension, name: &str) -> Result<turbid_figure::Figure> {
-    let reach = if kernel == Kernel::Gaussian { 3.0 } else { 1.0 };
-    let curve = Curve::sample("", &even(0.0, reach, 201), |u| Ok(kernel.profile(d, u)?.value))?;
-    let panel = panel(Axis::linear("Distance over radius, u/r", ""), "Kernel K(u)", "", vec![curve]);
-    Ok(figure(format!("Kernel: {}, {} dimensions", name.replace('_', " "), d.number()), panel))
+    /// The profile K(u).
+    fn figure(&self, _: &Solved) -> Result<Figure> {
+        let (kernel, d, name) = (self.kernel, self.dimension, kernel_name(self.kernel));
+        let reach = if kernel == Kernel::Gaussian { 3.0 } else { 1.0 };
+        let curve = Curve::sample("", &even(0.0, reach, 201), |u| Ok(kernel.profile(d, u)?.value))?;
+        let panel = panel(Axis::linear("Distance over radius, u/r", ""), "Kernel K(u)", "", vec![curve]);
+        Ok(figure(format!("Kernel: {}, {} dimensions", name.replace('_', " "), d.number()), panel))
+    }
 }

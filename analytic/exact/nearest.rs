@@ -1,15 +1,17 @@
 //! `exact nearest`: the estimate from the k nearest points.
 
-use crate::answer::{Answer, Reply};
+use crate::answer::Answer;
 use crate::plot::{Curve, even, figure, panel};
+use crate::question::{Question, Solved};
 use crate::read::{dimension, kernel, kernel_name};
+use crate::unit::Unit;
 use anyhow::{Result, ensure};
 use turbid_analytic::nearest::{
     biased_factor, nearest_curved, nearest_expectation_exponential, nearest_square_distance,
     nearest_variance_uniform, optimum_neighbors,
 };
 use turbid_analytic::{Dimension, Kernel, Value};
-use turbid_figure::Axis;
+use turbid_figure::{Axis, Figure};
 
 /// The k nearest of independent points: what the estimate expects, how it scatters, how far it gathers.
 ///
@@ -55,58 +57,81 @@ pub struct Args {
     cap: Option<f64>,
 }
 
-/// Answers; the figure shows the expectation in an exponential field against its gradient.
-pub fn answer(args: &Args, draw: bool) -> Result<Reply> {
-    let (k, d, density) = (args.k, args.dimension, args.density);
-    let mut answer = Answer::new("nearest")
-        .with("k", k)
-        .with("dimension", d.number())
-        .with("density", density)
-        .with("kernel", kernel_name(args.kernel));
-    if let Some(points) = args.points {
-        answer = answer.with("points", points);
+impl Args {
+    /// The radius within which k points are expected, and the largest radius of a gather.
+    fn reach(&self) -> (f64, f64) {
+        let d = self.dimension;
+        let typical =
+            libm::pow(f64::from(self.k) / (self.density * d.ball_volume()), 1.0 / f64::from(d.number()));
+        (typical, self.cap.unwrap_or(6.0 * typical))
     }
-    answer.add("k_over_volume_factor", biased_factor(k)?);
-    if k > 2 {
-        answer.add("relative_variance_uniform", nearest_variance_uniform(k, args.points)?);
-    }
-    answer.add("mean_square_distance_k", nearest_square_distance(d, k, density, args.points)?);
-    answer.add("mean_square_distance_k_minus_1", nearest_square_distance(d, k - 1, density, args.points)?);
-    let typical = libm::pow(f64::from(k) / (density * d.ball_volume()), 1.0 / f64::from(d.number()));
-    let cap = args.cap.unwrap_or(6.0 * typical);
-    for &b in &args.gradient {
-        let mean = nearest_expectation_exponential(args.kernel, d, k, density, b, cap)?;
-        answer.add_at("expectation_exponential", vec![("gradient", b.into()), ("cap", cap.into())], mean);
-    }
-    for &c in &args.curvature {
-        let at = || vec![("curvature", c.into())];
-        let curved = nearest_curved(args.kernel, d, k, density, c)?;
-        answer.add_at("relative_bias", at(), curved.bias);
-        answer.add_at("relative_variance", at(), curved.variance);
-        answer.add_at("relative_mean_squared_error", at(), curved.mean_squared_error);
-        if c != 0.0 {
-            let (best, left) = optimum_neighbors(args.kernel, d, density, c)?;
-            let best = Value { value: f64::from(best), error: 0.0, method: "least of all whole numbers" };
-            answer.add_at("optimum_k", at(), best);
-            answer.add_at("optimum_mean_squared_error", at(), left);
-        }
-    }
-    let figure = if draw { Some(drawn(args, typical, cap)?) } else { None };
-    Ok(Reply { answer, figure })
 }
 
-fn drawn(args: &Args, typical: f64, cap: f64) -> Result<turbid_figure::Figure> {
-    ensure!(typical.is_finite() && typical > 0.0, "density is {}; allowed: 1e-100 to 1e100", args.density);
-    let largest = args.gradient.iter().fold(1.0 / typical, |a: f64, b| a.max(b.abs()));
-    let curve = Curve::sample("", &even(0.0, largest, 41), |b| {
-        let mean =
-            nearest_expectation_exponential(args.kernel, args.dimension, args.k, args.density, b, cap)?;
-        // Without a gradient there is no bias, and what is left of it lies within the bound.
-        let bias = mean.value - 1.0;
-        Ok(if bias <= mean.error { 0.0 } else { 100.0 * bias })
-    })?;
-    let title =
-        format!("The {} nearest in the field exp(b·x), {} dimensions", args.k, args.dimension.number());
-    let x = Axis::linear("Gradient |b|", "1/length");
-    Ok(figure(title, panel(x, "Bias", "% of the field at the probe", vec![curve])))
+impl Question for Args {
+    fn answer(&self, answer: &mut Answer, _: &Solved) -> Result<()> {
+        let (k, d, density) = (self.k, self.dimension, self.density);
+        answer
+            .of("nearest")
+            .with("k", k)
+            .with("dimension", d.number())
+            .with("density", density)
+            .with("kernel", kernel_name(self.kernel));
+        if let Some(points) = self.points {
+            answer.with("points", points);
+        }
+        answer.add("k_over_volume_factor", Unit::One, &[], biased_factor(k)?);
+        if k > 2 {
+            answer.add(
+                "relative_variance_uniform",
+                Unit::One,
+                &[],
+                nearest_variance_uniform(k, self.points)?,
+            );
+        }
+        let distance = |k| nearest_square_distance(d, k, density, self.points);
+        answer.add("mean_square_distance_k", Unit::Length(2), &[], distance(k)?);
+        answer.add("mean_square_distance_k_minus_1", Unit::Length(2), &[], distance(k - 1)?);
+        let (_, cap) = self.reach();
+        for &b in &self.gradient {
+            let mean = nearest_expectation_exponential(self.kernel, d, k, density, b, cap)?;
+            let at = [("gradient", b.into()), ("cap", cap.into())];
+            answer.add("expectation_exponential", Unit::Field, &at, mean);
+        }
+        for &c in &self.curvature {
+            let at = [("curvature", c.into())];
+            let curved = nearest_curved(self.kernel, d, k, density, c)?;
+            answer.add("relative_bias", Unit::One, &at, curved.bias);
+            answer.add("relative_variance", Unit::One, &at, curved.variance);
+            answer.add("relative_mean_squared_error", Unit::One, &at, curved.mean_squared_error);
+            if c != 0.0 {
+                let (best, left) = optimum_neighbors(self.kernel, d, density, c)?;
+                let best = Value { value: f64::from(best), error: 0.0, method: "least of all whole numbers" };
+                answer.add("optimum_k", Unit::One, &at, best);
+                answer.add("optimum_mean_squared_error", Unit::One, &at, left);
+            }
+        }
+        Ok(())
+    }
+
+    /// The expectation in an exponential field against its gradient.
+    fn figure(&self, _: &Solved) -> Result<Figure> {
+        let (typical, cap) = self.reach();
+        ensure!(
+            typical.is_finite() && typical > 0.0,
+            "density is {}; allowed: 1e-100 to 1e100",
+            self.density
+        );
+        let largest = self.gradient.iter().fold(1.0 / typical, |a: f64, b| a.max(b.abs()));
+        let curve = Curve::sample("", &even(0.0, largest, 41), |b| {
+            let mean =
+                nearest_expectation_exponential(self.kernel, self.dimension, self.k, self.density, b, cap)?;
+            // Without a gradient there is no bias, and what is left of it lies within the bound.
+            let bias = mean.value - 1.0;
+            Ok(if bias <= mean.error { 0.0 } else { 100.0 * bias })
+        })?;
+        let title =
+            format!("The {} nearest in the field exp(b·x), {} dimensions", self.k, self.dimension.number());
+        let x = Axis::linear("Gradient |b|", "1/length");
+        Ok(figure(title, panel(x, "Bias", "% of the field at the probe", vec![curve])))
+    }
 }

@@ -1,8 +1,10 @@
 //! `exact path`: mean path lengths and chords.
 
-use crate::answer::{Answer, Reply};
+use crate::answer::Answer;
 use crate::plot::{Curve, crowded, figure, panel};
+use crate::question::{Question, Solved};
 use crate::typed::Typed;
+use crate::unit::Unit;
 use anyhow::{Context, Result, bail};
 use clap::ValueEnum;
 use turbid_analytic::mean_path::{
@@ -36,14 +38,7 @@ pub struct Args {
     chord: Vec<f64>,
     /// Single-scattering albedo, 0 to 1, of sphere or slab (then up to 1e6 or 400 mean free paths).
     #[arg(long, allow_negative_numbers = true)]
-    pub albedo: Option<f64>,
-}
-
-impl Args {
-    /// What rounding touches.
-    pub fn typed(&self) -> Typed {
-        Typed { albedo: self.albedo, g: Some(0.0), places: self.size.clone(), ..Typed::default() }
-    }
+    albedo: Option<f64>,
 }
 
 /// The bodies, by their names on the command line.
@@ -59,65 +54,89 @@ enum Shape {
     Convex,
 }
 
-/// Answers; the figure shows the mean path over 4 V/S against the albedo, for sphere and slab.
-pub fn answer(args: &Args, draw: bool) -> Result<Reply> {
-    let shape = args.shape.to_possible_value().map_or_else(String::new, |v| v.get_name().to_string());
-    let mut answer = Answer::new("path").with("shape", shape.as_str());
-    for (name, &length) in ["size", "size_2", "size_3"].into_iter().zip(&args.size) {
-        answer = answer.with(name, length);
+impl Args {
+    fn shape(&self) -> String {
+        self.shape.to_possible_value().map_or_else(String::new, |v| v.get_name().to_string())
     }
-    match (args.shape, args.size.as_slice()) {
-        (Shape::Sphere, &[radius]) => {
-            answer.add("mean_path", mean_path_sphere(radius)?);
-            answer.add_at("chord_moment", vec![("n", 1_u32.into())], chord_moment_sphere(radius, 1)?);
-            answer.add_at("chord_moment", vec![("n", 2_u32.into())], chord_moment_sphere(radius, 2)?);
-        }
-        (Shape::Slab, &[thickness]) => {
-            answer.add("mean_path", mean_path_slab(thickness)?);
-            // The second is infinite: grazing chords are long.
-            answer.add_at("chord_moment", vec![("n", 1_u32.into())], chord_moment_slab(thickness, 1)?);
-        }
-        (Shape::Cuboid, &[x, y, z]) => answer.add("mean_path", mean_path_cuboid(x, y, z)?),
-        (Shape::Convex, &[volume, surface]) => answer.add("mean_path", mean_path(volume, surface)?),
-        (_, sizes) => bail!(
-            "--size has {} numbers; allowed: 1 for sphere and slab, 3 for cuboid, 2 for convex",
-            sizes.len()
-        ),
+
+    fn absorbing(&self, albedo: f64) -> Result<Option<turbid_analytic::Value>> {
+        Ok(match self.shape {
+            Shape::Sphere => Some(mean_path_sphere_absorbing(self.size[0], albedo)?),
+            Shape::Slab => Some(mean_path_slab_absorbing(self.size[0], albedo)?),
+            Shape::Cuboid | Shape::Convex => None,
+        })
     }
-    for &length in &args.chord {
-        let density = match args.shape {
-            Shape::Sphere => chord_density_sphere(args.size[0], length)?,
-            Shape::Slab => chord_density_slab(args.size[0], length)?,
-            _ => bail!("--chord is {length}; allowed with --shape sphere and slab, not {shape}"),
+}
+
+impl Question for Args {
+    fn answer(&self, answer: &mut Answer, _: &Solved) -> Result<()> {
+        let shape = self.shape();
+        answer.of("path").with("shape", shape.as_str());
+        for (name, &length) in ["size", "size_2", "size_3"].into_iter().zip(&self.size) {
+            answer.with(name, length);
+        }
+        let mean_path = match (self.shape, self.size.as_slice()) {
+            (Shape::Sphere, &[radius]) => mean_path_sphere(radius)?,
+            (Shape::Slab, &[thickness]) => mean_path_slab(thickness)?,
+            (Shape::Cuboid, &[x, y, z]) => mean_path_cuboid(x, y, z)?,
+            (Shape::Convex, &[volume, surface]) => mean_path(volume, surface)?,
+            (_, sizes) => bail!(
+                "--size has {} numbers; allowed: 1 for sphere and slab, 3 for cuboid, 2 for convex",
+                sizes.len()
+            ),
         };
-        answer.add_at("chord_density", vec![("chord", length.into())], density);
+        answer.add("mean_path", Unit::Length(1), &[], mean_path);
+        let mut moment =
+            |n: u32, value| answer.add("chord_moment", Unit::LengthToN, &[("n", n.into())], value);
+        match self.shape {
+            Shape::Sphere => {
+                moment(1, chord_moment_sphere(self.size[0], 1)?);
+                moment(2, chord_moment_sphere(self.size[0], 2)?);
+            }
+            // The second is infinite: grazing chords are long.
+            Shape::Slab => moment(1, chord_moment_slab(self.size[0], 1)?),
+            Shape::Cuboid | Shape::Convex => {}
+        }
+        for &length in &self.chord {
+            let density = match self.shape {
+                Shape::Sphere => chord_density_sphere(self.size[0], length)?,
+                Shape::Slab => chord_density_slab(self.size[0], length)?,
+                Shape::Cuboid | Shape::Convex => {
+                    bail!("--chord is {length}; allowed with --shape sphere and slab, not {shape}")
+                }
+            };
+            answer.add("chord_density", Unit::Length(-1), &[("chord", length.into())], density);
+        }
+        if let Some(albedo) = self.albedo {
+            let mean = self.absorbing(albedo)?.with_context(|| {
+                format!("--albedo is {albedo}; allowed with --shape sphere and slab, not {shape}")
+            })?;
+            answer.add("mean_path_absorbing", Unit::Mfp(1), &[("albedo", albedo.into())], mean);
+        }
+        Ok(())
     }
-    if let Some(albedo) = args.albedo {
-        let mean = absorbing(args, albedo)?.with_context(|| {
-            format!("--albedo is {albedo}; allowed with --shape sphere and slab, not {shape}")
+
+    /// The mean path over 4 V/S against the albedo, for sphere and slab.
+    fn figure(&self, _: &Solved) -> Result<Figure> {
+        let shape = self.shape();
+        if matches!(self.shape, Shape::Cuboid | Shape::Convex) {
+            bail!(
+                "--plot draws the path against the albedo; allowed with --shape sphere and slab, not {shape}"
+            );
+        }
+        let curve = Curve::sample("", &crowded(1.0, 41), |w| {
+            Ok(self.absorbing(w)?.context("a sphere or a slab")?.value)
         })?;
-        answer.add_at("mean_path_absorbing", vec![("albedo", albedo.into())], mean);
+        let title = format!("Mean path to escape or absorption, {shape} of {} mean free paths", self.size[0]);
+        let axis = Axis::linear("Albedo", "");
+        Ok(figure(title, panel(axis, "Mean path", "mean free paths", vec![curve])))
     }
-    let figure = if draw { Some(drawn(args, &shape)?) } else { None };
-    Ok(Reply { answer, figure })
-}
 
-fn absorbing(args: &Args, albedo: f64) -> Result<Option<turbid_analytic::Value>> {
-    Ok(match args.shape {
-        Shape::Sphere => Some(mean_path_sphere_absorbing(args.size[0], albedo)?),
-        Shape::Slab => Some(mean_path_slab_absorbing(args.size[0], albedo)?),
-        Shape::Cuboid | Shape::Convex => None,
-    })
-}
-
-fn drawn(args: &Args, shape: &str) -> Result<Figure> {
-    if matches!(args.shape, Shape::Cuboid | Shape::Convex) {
-        bail!("--plot draws the path against the albedo; allowed with --shape sphere and slab, not {shape}");
+    fn typed(&self) -> Option<Typed> {
+        Some(Typed { albedo: self.albedo, g: Some(0.0), places: self.size.clone(), ..Typed::default() })
     }
-    let curve = Curve::sample("", &crowded(1.0, 41), |w| {
-        Ok(absorbing(args, w)?.context("a sphere or a slab")?.value)
-    })?;
-    let title = format!("Mean path to escape or absorption, {shape} of {} mean free paths", args.size[0]);
-    let axis = Axis::linear("Albedo", "");
-    Ok(figure(title, panel(axis, "Mean path", "mean free paths", vec![curve])))
+
+    fn moved(&self, to: f64) -> Option<Box<dyn Question>> {
+        Some(Box::new(Args { albedo: Some(to), ..self.clone() }))
+    }
 }

@@ -1,12 +1,14 @@
 //! `exact progressive`: schedules of shrinking radii, one map a pass.
 
-use crate::answer::{Answer, Reply};
+use crate::answer::Answer;
 use crate::plot::{Curve, figure, panel, ratios};
+use crate::question::{Question, Solved};
 use crate::read::dimension;
+use crate::unit::Unit;
 use anyhow::Result;
 use turbid_analytic::Dimension;
 use turbid_analytic::progressive::progressive;
-use turbid_figure::Axis;
+use turbid_figure::{Axis, Figure};
 
 /// Progressive estimates: radius, variance and bias of the mean of n passes, over those of the first.
 ///
@@ -29,31 +31,38 @@ pub struct Args {
     passes: Vec<u32>,
 }
 
-/// Answers; the figure shows the three ratios against the number of passes.
-pub fn answer(args: &Args, draw: bool) -> Result<Reply> {
-    let d = args.dimension;
-    let alpha = args.alpha.unwrap_or(4.0 / (f64::from(d.number()) + 4.0));
-    let mut answer = Answer::new("progressive").with("dimension", d.number()).with("alpha", alpha);
-    for &n in &args.passes {
-        let at = || vec![("passes", n.into())];
-        let mean = progressive(d, alpha, n)?;
-        answer.add_at("radius_ratio", at(), mean.radius);
-        answer.add_at("variance_ratio", at(), mean.variance);
-        answer.add_at("bias_ratio", at(), mean.bias);
+impl Args {
+    fn alpha(&self) -> f64 {
+        self.alpha.unwrap_or(4.0 / (f64::from(self.dimension.number()) + 4.0))
     }
-    let figure = if draw { Some(schedule(args, alpha)?) } else { None };
-    Ok(Reply { answer, figure })
 }
 
-fn schedule(args: &Args, alpha: f64) -> Result<turbid_figure::Figure> {
-    let last = f64::from(args.passes.iter().copied().max().unwrap_or(1).max(10));
-    let x: Vec<f64> = ratios(1.0, last, 61).into_iter().map(libm::round).collect();
-    let at = |n: f64| progressive(args.dimension, alpha, n as u32);
-    let curves = vec![
-        Curve::sample("radius", &x, |n| Ok(at(n)?.radius.value))?,
-        Curve::sample("variance of the mean", &x, |n| Ok(at(n)?.variance.value))?,
-        Curve::sample("bias of the mean", &x, |n| Ok(at(n)?.bias.value))?,
-    ];
-    let title = format!("Progressive passes in {} dimensions, α = {alpha:.3}", args.dimension.number());
-    Ok(figure(title, panel(Axis::log("Passes n", ""), "Over the first pass", "", curves)))
+impl Question for Args {
+    fn answer(&self, answer: &mut Answer, _: &Solved) -> Result<()> {
+        let (d, alpha) = (self.dimension, self.alpha());
+        answer.of("progressive").with("dimension", d.number()).with("alpha", alpha);
+        for &n in &self.passes {
+            let at = [("passes", n.into())];
+            let mean = progressive(d, alpha, n)?;
+            answer.add("radius_ratio", Unit::FirstPass, &at, mean.radius);
+            answer.add("variance_ratio", Unit::FirstPass, &at, mean.variance);
+            answer.add("bias_ratio", Unit::FirstPass, &at, mean.bias);
+        }
+        Ok(())
+    }
+
+    /// The three ratios against the number of passes.
+    fn figure(&self, _: &Solved) -> Result<Figure> {
+        let alpha = self.alpha();
+        let last = f64::from(self.passes.iter().copied().max().unwrap_or(1).max(10));
+        let x: Vec<f64> = ratios(1.0, last, 61).into_iter().map(libm::round).collect();
+        let at = |n: f64| progressive(self.dimension, alpha, n as u32);
+        let curves = vec![
+            Curve::sample("radius", &x, |n| Ok(at(n)?.radius.value))?,
+            Curve::sample("variance of the mean", &x, |n| Ok(at(n)?.variance.value))?,
+            Curve::sample("bias of the mean", &x, |n| Ok(at(n)?.bias.value))?,
+        ];
+        let title = format!("Progressive passes in {} dimensions, α = {alpha:.3}", self.dimension.number());
+        Ok(figure(title, panel(Axis::log("Passes n", ""), "Over the first pass", "", curves)))
+    }
 }

@@ -1,11 +1,14 @@
 //! `exact sphere`: the finite sphere of isotropic scattering.
 
-use crate::answer::{Answer, Reply};
+use crate::answer::Answer;
 use crate::plot::{Curve, degrees, even, figure, panel, ratios};
+use crate::question::{Question, Solved};
 use crate::typed::Typed;
+use crate::unit::Unit;
 use anyhow::Result;
 use clap::ValueEnum;
 use libm::cos;
+use std::rc::Rc;
 use turbid_analytic::sphere::{Sphere, SphereSource, absorbing_transmittance, escape_from, escape_uniform};
 use turbid_figure::{Axis, Figure};
 
@@ -31,7 +34,7 @@ pub struct Args {
     radius: f64,
     /// Single-scattering albedo, 0 to 1.
     #[arg(long, allow_negative_numbers = true)]
-    pub albedo: f64,
+    albedo: f64,
     /// Where the light comes from.
     #[arg(long, value_enum, default_value = "uniform")]
     source: Source,
@@ -50,19 +53,6 @@ pub struct Args {
     /// normal
     #[arg(verbatim_doc_comment, long, value_enum, default_value = "fluence")]
     draw: Draw,
-}
-
-impl Args {
-    /// What rounding touches.
-    pub fn typed(&self) -> Typed {
-        Typed {
-            albedo: Some(self.albedo),
-            g: Some(0.0),
-            size: Some(self.radius),
-            places: self.r.clone(),
-            ..Typed::default()
-        }
-    }
 }
 
 /// The sources, by their names on the command line.
@@ -95,72 +85,106 @@ enum Draw {
     Radiance,
 }
 
-/// Answers.
-pub fn answer(args: &Args, draw: bool) -> Result<Reply> {
-    let (source, name, _) = args.source.known();
-    let sphere = Sphere::new(args.radius, args.albedo, source)?;
-    let mut answer =
-        Answer::new("sphere").with("radius", args.radius).with("albedo", args.albedo).with("source", name);
-    answer.add("escape", sphere.escape());
-    answer.add("absorptance", sphere.absorptance());
-    // Without a collision: what leaves a sphere that only absorbs.
-    answer.add(
-        "escape_direct",
-        match args.source {
-            Source::Uniform => escape_uniform(args.radius)?,
-            Source::Centre => escape_from(args.radius, 0.0)?,
-            Source::Incident => absorbing_transmittance(args.radius)?,
-        },
-    );
-    for &r in &args.r {
-        let at = || vec![("r", r.into())];
-        answer.add_at("fluence", at(), sphere.fluence(r)?);
-        answer.add_at("fluence_direct", at(), sphere.fluence_direct(r)?);
-        answer.add_at("escape_direct_from", at(), escape_from(args.radius, r)?);
-        for &n in &args.order {
-            let at = vec![("r", r.into()), ("order", n.into())];
-            answer.add_at("fluence_of_order", at, sphere.fluence_of_order(n, r)?);
-        }
+impl Args {
+    fn sphere(&self, solved: &Solved) -> Result<Rc<Sphere>> {
+        let (source, name, _) = self.source.known();
+        solved.once((self.radius, self.albedo, name), || {
+            // Spheres of one radius share an operator.
+            Ok(match solved.latest(|_, other: &Sphere| other.radius().to_bits() == self.radius.to_bits()) {
+                Some(other) => other.with(self.albedo, source)?,
+                None => Sphere::new(self.radius, self.albedo, source)?,
+            })
+        })
     }
-    for &mu in &args.mu {
-        answer.add_at("exit_radiance", vec![("mu", mu.into())], sphere.exit_radiance(mu)?);
-    }
-    let figure = if draw { Some(drawn(args, &sphere)?) } else { None };
-    Ok(Reply { answer, figure })
 }
 
-fn drawn(args: &Args, sphere: &Sphere) -> Result<Figure> {
-    let (a, (_, _, source)) = (args.radius, args.source.known());
-    let title = format!("Sphere of radius {a}, albedo {}, {source}", args.albedo);
-    let centre = args.source == Source::Centre;
-    let per = if args.source == Source::Incident { "irradiance" } else { "power" };
-    let unit = |of: &str| match (args.source, of) {
-        (Source::Incident, unit) => unit.to_string(),
-        (_, "") => "1/mean free path²".to_string(),
-        (_, unit) => format!("{unit}/mean free path²"),
-    };
-    let panel = match args.draw {
-        Draw::Fluence => {
-            // The field bends at the surface; a point source is seen over two decades of distance.
-            let places = if centre {
-                ratios(0.01 * a, a, 121)
-            } else {
-                even(0.0, 1.0, 121).into_iter().map(|x| a * (1.0 - (1.0 - x) * (1.0 - x))).collect()
-            };
-            let all = Curve::sample("all light", &places, |r| Ok(sphere.fluence(r)?.value))?;
-            let direct = Curve::sample("direct light", &places, |r| Ok(sphere.fluence_direct(r)?.value))?;
-            let label = "Distance from the centre r";
-            let axis = if centre { Axis::log } else { Axis::linear }(label, "mean free paths");
-            panel(axis, &format!("Fluence over {per}"), &unit(""), vec![all, direct])
+impl Question for Args {
+    fn answer(&self, answer: &mut Answer, solved: &Solved) -> Result<()> {
+        let sphere = || self.sphere(solved);
+        let (power, fluence, radiance) = match self.source {
+            Source::Uniform | Source::Centre => {
+                (Unit::EmittedPower, Unit::PowerPerMfp2, Unit::PowerPerMfp2Sr)
+            }
+            Source::Incident => (Unit::IncidentPower, Unit::Irradiance, Unit::IrradiancePerSr),
+        };
+        let (_, name, _) = self.source.known();
+        answer.of("sphere").with("radius", self.radius).with("albedo", self.albedo).with("source", name);
+        answer.ask("escape", power, &[], || Ok(sphere()?.escape()))?;
+        answer.ask("absorptance", power, &[], || Ok(sphere()?.absorptance()))?;
+        // Without a collision: what leaves a sphere that only absorbs.
+        answer.ask("escape_direct", power, &[], || {
+            Ok(match self.source {
+                Source::Uniform => escape_uniform(self.radius)?,
+                Source::Centre => escape_from(self.radius, 0.0)?,
+                Source::Incident => absorbing_transmittance(self.radius)?,
+            })
+        })?;
+        for &r in &self.r {
+            let at = [("r", r.into())];
+            answer.ask("fluence", fluence, &at, || Ok(sphere()?.fluence(r)?))?;
+            answer.ask("fluence_direct", fluence, &at, || Ok(sphere()?.fluence_direct(r)?))?;
+            answer.ask("escape_direct_from", Unit::EmittedThere, &at, || Ok(escape_from(self.radius, r)?))?;
+            for &n in &self.order {
+                let at = [("r", r.into()), ("order", n.into())];
+                answer.ask("fluence_of_order", fluence, &at, || Ok(sphere()?.fluence_of_order(n, r)?))?;
+            }
         }
-        Draw::Radiance => {
-            // Towards the normal the scattered light of a central source grows without limit.
-            let angles = even(if centre { 1.0 } else { 0.0 }, 90.0, 91);
-            let curve =
-                Curve::sample("", &angles, |angle| Ok(sphere.exit_radiance(cos(angle.to_radians()))?.value))?;
-            let axis = degrees("Angle to the normal", 90);
-            panel(axis, &format!("Radiance that leaves over {per}"), &unit("1/sr"), vec![curve])
+        for &mu in &self.mu {
+            answer
+                .ask("exit_radiance", radiance, &[("mu", mu.into())], || Ok(sphere()?.exit_radiance(mu)?))?;
         }
-    };
-    Ok(figure(title, panel))
+        Ok(())
+    }
+
+    fn figure(&self, solved: &Solved) -> Result<Figure> {
+        let sphere = self.sphere(solved)?;
+        let (a, (_, _, source)) = (self.radius, self.source.known());
+        let title = format!("Sphere of radius {a}, albedo {}, {source}", self.albedo);
+        let centre = self.source == Source::Centre;
+        let per = if self.source == Source::Incident { "irradiance" } else { "power" };
+        let unit = |of: &str| match (self.source, of) {
+            (Source::Incident, unit) => unit.to_string(),
+            (_, "") => "1/mean free path²".to_string(),
+            (_, unit) => format!("{unit}/mean free path²"),
+        };
+        let panel = match self.draw {
+            Draw::Fluence => {
+                // The field bends at the surface; a point source is seen over two decades of distance.
+                let places = if centre {
+                    ratios(0.01 * a, a, 121)
+                } else {
+                    even(0.0, 1.0, 121).into_iter().map(|x| a * (1.0 - (1.0 - x) * (1.0 - x))).collect()
+                };
+                let all = Curve::sample("all light", &places, |r| Ok(sphere.fluence(r)?.value))?;
+                let direct = Curve::sample("direct light", &places, |r| Ok(sphere.fluence_direct(r)?.value))?;
+                let label = "Distance from the centre r";
+                let axis = if centre { Axis::log } else { Axis::linear }(label, "mean free paths");
+                panel(axis, &format!("Fluence over {per}"), &unit(""), vec![all, direct])
+            }
+            Draw::Radiance => {
+                // Towards the normal the scattered light of a central source grows without limit.
+                let angles = even(if centre { 1.0 } else { 0.0 }, 90.0, 91);
+                let curve = Curve::sample("", &angles, |angle| {
+                    Ok(sphere.exit_radiance(cos(angle.to_radians()))?.value)
+                })?;
+                let axis = degrees("Angle to the normal", 90);
+                panel(axis, &format!("Radiance that leaves over {per}"), &unit("1/sr"), vec![curve])
+            }
+        };
+        Ok(figure(title, panel))
+    }
+
+    fn typed(&self) -> Option<Typed> {
+        Some(Typed {
+            albedo: Some(self.albedo),
+            g: Some(0.0),
+            size: Some(self.radius),
+            places: self.r.clone(),
+            ..Typed::default()
+        })
+    }
+
+    fn moved(&self, to: f64) -> Option<Box<dyn Question>> {
+        Some(Box::new(Args { albedo: to, ..self.clone() }))
+    }
 }

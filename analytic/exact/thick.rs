@@ -1,14 +1,17 @@
 //! `exact thick`: slabs of any thickness by asymptotics.
 
-use crate::answer::{Answer, Reply};
-use crate::phase::PhaseArgs;
+use crate::answer::Answer;
+use crate::phase::{Named, PhaseArgs};
 use crate::plot::{Curve, even, figure, panel};
+use crate::question::{Question, Solved};
 use crate::read::{incidence, incidence_field};
 use crate::typed::Typed;
+use crate::unit::Unit;
 use anyhow::Result;
+use std::rc::Rc;
 use turbid_analytic::Incidence;
 use turbid_analytic::asymptotics::Asymptotics;
-use turbid_figure::Axis;
+use turbid_figure::{Axis, Figure};
 
 /// Thick slabs by asymptotics: decays, deep pattern, escape, and R and T of any thickness above some.
 ///
@@ -27,7 +30,7 @@ use turbid_figure::Axis;
 pub struct Args {
     /// Single-scattering albedo, 0.1 to 1.
     #[arg(long, allow_negative_numbers = true)]
-    pub albedo: f64,
+    albedo: f64,
     #[command(flatten)]
     phase: PhaseArgs,
     /// Cosine of incidence of a beam, 1e-5 to 1, or the word diffuse (Lambertian light).
@@ -42,52 +45,66 @@ pub struct Args {
 }
 
 impl Args {
-    /// What rounding touches.
-    pub fn typed(&self) -> Typed {
-        Typed {
+    fn deep(&self, named: &Named, solved: &Solved) -> Result<Rc<Asymptotics>> {
+        solved.once((self.albedo, &named.name), || {
+            Ok(if named.is_isotropic() {
+                Asymptotics::isotropic(self.albedo)?
+            } else {
+                Asymptotics::new(self.albedo, &named.phase)?
+            })
+        })
+    }
+}
+
+impl Question for Args {
+    fn answer(&self, answer: &mut Answer, solved: &Solved) -> Result<()> {
+        let named = self.phase.read()?;
+        let deep = self.deep(&named, solved)?;
+        answer
+            .of("thick")
+            .with("albedo", self.albedo)
+            .with("phase", named.name.as_str())
+            .with("mu0", incidence_field(self.mu0));
+        answer.add("decay", Unit::Mfp(-1), &[], deep.decay());
+        answer.add("second_decay", Unit::Mfp(-1), &[], deep.second_decay());
+        answer.add("m", Unit::One, &[], deep.m());
+        answer.add("n", Unit::One, &[], deep.n());
+        answer.add("l", Unit::One, &[], deep.l());
+        answer.add("extrapolation_length", Unit::Mfp(1), &[], deep.extrapolation_length());
+        answer.add("escape", Unit::One, &[], deep.escape(self.mu0)?);
+        for &tau in &self.tau {
+            let slab = deep.slab(tau, self.mu0)?;
+            let at = [("tau", tau.into())];
+            answer.add("reflectance", Unit::IncidentPower, &at, slab.reflectance);
+            answer.add("transmittance", Unit::IncidentPower, &at, slab.transmittance);
+            answer.add("absorptance", Unit::IncidentPower, &at, slab.absorptance);
+        }
+        for &u in &self.u {
+            answer.add("pattern", Unit::One, &[("u", u.into())], deep.pattern(u)?);
+        }
+        Ok(())
+    }
+
+    /// The pattern of light deep inside.
+    fn figure(&self, solved: &Solved) -> Result<Figure> {
+        let named = self.phase.read()?;
+        let deep = self.deep(&named, solved)?;
+        let curve = Curve::sample("", &even(-1.0, 1.0, 101), |u| Ok(deep.pattern(u)?.value))?;
+        let title = format!("Light deep inside, albedo {}, {}", self.albedo, named.name);
+        let axis = Axis::linear("Cosine u to the direction of decay", "");
+        Ok(figure(title, panel(axis, "Radiance over its mean, P(u)", "", vec![curve])))
+    }
+
+    fn typed(&self) -> Option<Typed> {
+        Some(Typed {
             albedo: Some(self.albedo),
             g: self.phase.single_g(),
             places: self.tau.clone(),
             ..Typed::default()
-        }
+        })
     }
-}
 
-/// Answers; the figure shows the pattern of light deep inside.
-pub fn answer(args: &Args, draw: bool) -> Result<Reply> {
-    let named = args.phase.read()?;
-    let deep = if named.is_isotropic() {
-        Asymptotics::isotropic(args.albedo)?
-    } else {
-        Asymptotics::new(args.albedo, &named.phase)?
-    };
-    let mut answer = Answer::new("thick")
-        .with("albedo", args.albedo)
-        .with("phase", named.name.as_str())
-        .with("mu0", incidence_field(args.mu0));
-    answer.add("decay", deep.decay());
-    answer.add("second_decay", deep.second_decay());
-    answer.add("m", deep.m());
-    answer.add("n", deep.n());
-    answer.add("l", deep.l());
-    answer.add("extrapolation_length", deep.extrapolation_length());
-    answer.add("escape", deep.escape(args.mu0)?);
-    for &tau in &args.tau {
-        let slab = deep.slab(tau, args.mu0)?;
-        answer.add_at("reflectance", vec![("tau", tau.into())], slab.reflectance);
-        answer.add_at("transmittance", vec![("tau", tau.into())], slab.transmittance);
-        answer.add_at("absorptance", vec![("tau", tau.into())], slab.absorptance);
+    fn moved(&self, to: f64) -> Option<Box<dyn Question>> {
+        Some(Box::new(Args { albedo: to, ..self.clone() }))
     }
-    for &u in &args.u {
-        answer.add_at("pattern", vec![("u", u.into())], deep.pattern(u)?);
-    }
-    let figure = if draw {
-        let curve = Curve::sample("", &even(-1.0, 1.0, 101), |u| Ok(deep.pattern(u)?.value))?;
-        let title = format!("Light deep inside, albedo {}, {}", args.albedo, named.name);
-        let axis = Axis::linear("Cosine u to the direction of decay", "");
-        Some(figure(title, panel(axis, "Radiance over its mean, P(u)", "", vec![curve])))
-    } else {
-        None
-    };
-    Ok(Reply { answer, figure })
 }

@@ -1,14 +1,18 @@
 //! `exact two-stream`: the approximations beside the exact values.
 
-use crate::answer::{Answer, Reply};
+use crate::answer::Answer;
+use crate::method;
 use crate::phase::Named;
 use crate::plot::{Curve, crowded, figure, panel};
+use crate::question::{Question, Solved};
 use crate::read::{incidence, incidence_field, incidence_title};
-use crate::solved::{self, Solved};
+use crate::slab;
 use crate::typed::Typed;
+use crate::unit::Unit;
 use anyhow::Result;
+use std::rc::Rc;
 use turbid_analytic::two_stream::{Approximation, Method, TwoStream};
-use turbid_analytic::{Incidence, Value};
+use turbid_analytic::{Incidence, Slab, Value};
 use turbid_figure::{Axis, Figure};
 
 /// Two streams and diffusion beside the exact slab: how wrong they are.
@@ -33,7 +37,7 @@ pub struct Args {
     tau: f64,
     /// Single-scattering albedo, 0 to 1.
     #[arg(long, allow_negative_numbers = true)]
-    pub albedo: f64,
+    albedo: f64,
     /// Mean cosine of Henyey-Greenstein scattering, -0.95 to 0.99.
     #[arg(long, default_value_t = 0.0, allow_negative_numbers = true)]
     g: f64,
@@ -43,19 +47,6 @@ pub struct Args {
     /// Depths in mean free paths, 0 to tau, at which to give the fluence.
     #[arg(long, num_args = 1.., value_delimiter = ',', value_name = "T", allow_negative_numbers = true)]
     depth: Vec<f64>,
-}
-
-impl Args {
-    /// What rounding touches.
-    pub fn typed(&self) -> Typed {
-        Typed {
-            albedo: Some(self.albedo),
-            g: Some(self.g),
-            size: Some(self.tau),
-            places: self.depth.clone(),
-            ..Typed::default()
-        }
-    }
 }
 
 /// As short as a legend wants it.
@@ -68,53 +59,86 @@ fn name(method: Method) -> &'static str {
     }
 }
 
-/// Answers; the figure shows the exact fluence and the approximations against depth.
-pub fn answer(args: &Args, draw: bool) -> Result<Reply> {
-    let named = Named::henyey_greenstein(args.g)?;
-    let exact = Solved::new(args.tau, args.albedo, &named, args.mu0, solved::Method::Auto)?;
-    let approximations =
-        Method::ALL.map(|method| TwoStream::slab(method, args.tau, args.albedo, args.g, args.mu0));
-    let approximations: Vec<TwoStream> =
-        approximations.into_iter().collect::<turbid_analytic::Result<_>>()?;
-    let mut answer = Answer::new("two-stream")
-        .with("tau", args.tau)
-        .with("albedo", args.albedo)
-        .with("phase", named.name.as_str())
-        .with("mu0", incidence_field(args.mu0));
-    let mut compare =
-        |quantity, t: Option<f64>, truth: Value, of: &dyn Fn(&TwoStream) -> Result<Approximation>| {
+/// An approximation beside its method.
+type Approximate = (Method, TwoStream);
+
+impl Args {
+    /// The exact slab, and the approximations to hold against it.
+    fn models(&self, named: &Named, solved: &Solved) -> Result<(Rc<Slab>, Vec<Approximate>)> {
+        let exact = slab::solve(self.tau, self.albedo, named, self.mu0, method::Method::Auto, solved)?;
+        let approximation =
+            |method| Ok((method, TwoStream::slab(method, self.tau, self.albedo, self.g, self.mu0)?));
+        Ok((exact, Method::ALL.into_iter().map(approximation).collect::<Result<_>>()?))
+    }
+}
+
+impl Question for Args {
+    fn answer(&self, answer: &mut Answer, solved: &Solved) -> Result<()> {
+        let named = Named::henyey_greenstein(self.g)?;
+        let (exact, approximations) = self.models(&named, solved)?;
+        answer
+            .of("two-stream")
+            .with("tau", self.tau)
+            .with("albedo", self.albedo)
+            .with("phase", named.name.as_str())
+            .with("mu0", incidence_field(self.mu0));
+        let mut compare = |quantity,
+                           unit: Unit,
+                           t: Option<f64>,
+                           truth: Value,
+                           of: &dyn Fn(&TwoStream) -> Result<Approximation>| {
             let at = |model: &str| {
                 let mut at = vec![("model", model.into())];
                 at.extend(t.map(|t| ("t", t.into())));
                 at
             };
-            answer.add_at(quantity, at("exact"), truth);
-            for (method, two_stream) in Method::ALL.iter().zip(&approximations) {
+            answer.add(quantity, unit, &at("exact"), truth);
+            for (method, two_stream) in &approximations {
                 let Approximation { value, .. } = of(two_stream)?;
                 let error = (value - truth.value).abs() + truth.error;
-                answer.add_at(quantity, at(name(*method)), Value { value, error, method: "approximation" });
+                let value = Value { value, error, method: "approximation" };
+                answer.add(quantity, unit, &at(name(*method)), value);
             }
             anyhow::Ok(())
         };
-    compare("reflectance", None, exact.reflectance(), &|s| Ok(s.reflectance()))?;
-    compare("transmittance", None, exact.transmittance(), &|s| Ok(s.transmittance()))?;
-    compare("absorptance", None, exact.absorptance(), &|s| Ok(s.absorptance()))?;
-    for &t in &args.depth {
-        compare("fluence", Some(t), exact.fluence(t)?, &|s| Ok(s.fluence(t)?))?;
+        let power = Unit::IncidentPower;
+        compare("reflectance", power, None, exact.reflectance(), &|s| Ok(s.reflectance()))?;
+        compare("transmittance", power, None, exact.transmittance(), &|s| Ok(s.transmittance()))?;
+        compare("absorptance", power, None, exact.absorptance(), &|s| Ok(s.absorptance()))?;
+        for &t in &self.depth {
+            compare("fluence", Unit::Irradiance, Some(t), exact.fluence(t)?, &|s| Ok(s.fluence(t)?))?;
+        }
+        Ok(())
     }
-    let figure = if draw { Some(drawn(args, &named, &exact, &approximations)?) } else { None };
-    Ok(Reply { answer, figure })
-}
 
-fn drawn(args: &Args, named: &Named, exact: &Solved, approximations: &[TwoStream]) -> Result<Figure> {
-    let depths = crowded(args.tau, 81);
-    let mut curves = vec![Curve::sample("exact", &depths, |t| Ok(exact.fluence(t)?.value))?.into_reference()];
-    for (method, two_stream) in Method::ALL.iter().zip(approximations) {
-        curves.push(Curve::sample(name(*method), &depths, |t| Ok(two_stream.fluence(t)?.value))?);
+    /// The exact fluence and the approximations against depth.
+    fn figure(&self, solved: &Solved) -> Result<Figure> {
+        let named = Named::henyey_greenstein(self.g)?;
+        let (exact, approximations) = self.models(&named, solved)?;
+        let depths = crowded(self.tau, 81);
+        let mut curves =
+            vec![Curve::sample("exact", &depths, |t| Ok(exact.fluence(t)?.value))?.into_reference()];
+        for (method, two_stream) in &approximations {
+            curves.push(Curve::sample(name(*method), &depths, |t| Ok(two_stream.fluence(t)?.value))?);
+        }
+        let light = incidence_title(self.mu0);
+        let title =
+            format!("Approximations, slab τ = {}, albedo {}, {}, {light}", self.tau, self.albedo, named.name);
+        let axis = Axis::linear("Depth t", "mean free paths");
+        Ok(figure(title, panel(axis, "Fluence over irradiance", "", curves)))
     }
-    let light = incidence_title(args.mu0);
-    let title =
-        format!("Approximations, slab τ = {}, albedo {}, {}, {light}", args.tau, args.albedo, named.name);
-    let axis = Axis::linear("Depth t", "mean free paths");
-    Ok(figure(title, panel(axis, "Fluence over irradiance", "", curves)))
+
+    fn typed(&self) -> Option<Typed> {
+        Some(Typed {
+            albedo: Some(self.albedo),
+            g: Some(self.g),
+            size: Some(self.tau),
+            places: self.depth.clone(),
+            ..Typed::default()
+        })
+    }
+
+    fn moved(&self, to: f64) -> Option<Box<dyn Question>> {
+        Some(Box::new(Args { albedo: to, ..self.clone() }))
+    }
 }

@@ -1,101 +1,101 @@
-//! The unit of every quantity: what its value is a multiple of. `mfp` is a mean free path, 1 a pure number.
+//! Units: what a value is a multiple of.
 
-use crate::answer::{Answer, Field};
+use serde::{Serialize, Serializer};
+use std::fmt;
 
-/// The unit of a quantity in an answer.
-pub fn unit(answer: &Answer, quantity: &str) -> &'static str {
-    let word = |name: &str| {
-        answer.parameters.iter().find(|(n, _)| *n == name).map_or("", |(_, field)| match field {
-            Field::Text(text) => text.as_str(),
-            _ => "",
+/// The unit of a value, chosen where the value is made.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Unit {
+    /// A pure number.
+    One,
+    /// A power of a mean free path.
+    Mfp(i8),
+    /// A power of the unit of length that the user has chosen.
+    Length(i8),
+    /// `length^n`, n in the same row.
+    LengthToN,
+    /// A power of the kernel's radius.
+    Radius(i8),
+    /// As many dimensions in the denominator as space has.
+    PerRadiusD,
+    /// Power on the lit face.
+    IncidentPower,
+    /// Power on the lit face, per area.
+    Irradiance,
+    /// Irradiance per steradian.
+    IrradiancePerSr,
+    /// Power that leaves a face or a wall, per area.
+    Exitance,
+    /// Exitance per steradian.
+    ExitancePerSr,
+    /// Power of the source.
+    EmittedPower,
+    /// Power that is emitted at the place in the same row.
+    EmittedThere,
+    /// Power of the source, times a mean free path.
+    PowerMfp,
+    /// Power of the source, per squared mean free path.
+    PowerPerMfp2,
+    /// The same per steradian.
+    PowerPerMfp2Sr,
+    /// Power of the source, per squared length.
+    PowerPerLength2,
+    /// The unit of `--first`.
+    First,
+    /// The fluence in the middle.
+    Middle,
+    /// The field at the probe.
+    Field,
+    /// The field in front of a wall.
+    FieldInFront,
+    /// The same of a ball that no face cuts.
+    WholeBall,
+    /// The same of the first pass.
+    FirstPass,
+}
+
+/// A power of a length by name.
+fn power(f: &mut fmt::Formatter<'_>, name: &str, n: i8) -> fmt::Result {
+    match n {
+        -1 => write!(f, "1/{name}"),
+        1 => write!(f, "{name}"),
+        n if n < 0 => write!(f, "1/{name}^{}", -n),
+        n => write!(f, "{name}^{n}"),
+    }
+}
+
+impl fmt::Display for Unit {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Unit::Mfp(n) => return power(f, "mfp", *n),
+            Unit::Length(n) => return power(f, "length", *n),
+            Unit::Radius(n) => return power(f, "radius", *n),
+            Unit::One => "1",
+            Unit::LengthToN => "length^n",
+            Unit::PerRadiusD => "1/radius^d",
+            Unit::IncidentPower => "incident power",
+            Unit::Irradiance => "irradiance",
+            Unit::IrradiancePerSr => "irradiance/sr",
+            Unit::Exitance => "exitance",
+            Unit::ExitancePerSr => "exitance/sr",
+            Unit::EmittedPower => "emitted power",
+            Unit::EmittedThere => "emitted there",
+            Unit::PowerMfp => "power mfp",
+            Unit::PowerPerMfp2 => "power/mfp^2",
+            Unit::PowerPerMfp2Sr => "power/(mfp^2 sr)",
+            Unit::PowerPerLength2 => "power/length^2",
+            Unit::First => "unit of first",
+            Unit::Middle => "middle",
+            Unit::Field => "field",
+            Unit::FieldInFront => "field in front",
+            Unit::WholeBall => "whole ball",
+            Unit::FirstPass => "first pass",
         })
-    };
-    match answer.problem {
-        "half-space" if word("source") == "infinitely deep" => match quantity {
-            "fluence" => "exitance",
-            "radiance" => "exitance/sr",
-            _ => lit(quantity),
-        },
-        "slab" | "half-space" | "thick" | "two-stream" | "xy" => lit(quantity),
-        "sphere" if word("source") == "incident" => match quantity {
-            "escape" | "escape_direct" => "incident power",
-            "exit_radiance" => "irradiance/sr",
-            _ => lit(quantity),
-        },
-        "sphere" => match quantity {
-            "escape" | "escape_direct" | "absorptance" => "emitted power",
-            "exit_radiance" => "power/(mfp^2 sr)",
-            _ => emitted(quantity),
-        },
-        "infinite" => emitted(quantity),
-        "cavity" => match quantity {
-            "irradiance_wall" | "fluence_wall" => "exitance",
-            "irradiance_centre" if word("medium") == "none" => "power/length^2",
-            "irradiance_centre" => "power/mfp^2",
-            "irradiance_mean" => "unit of first",
-            _ => "1",
-        },
-        "critical" if quantity == "size" => "mfp",
-        "critical" => "middle",
-        "path" => match quantity {
-            "mean_path_absorbing" => "mfp",
-            "chord_moment" => "length^n",
-            "chord_density" => "1/length",
-            _ => "length",
-        },
-        "kernel" => match quantity {
-            "m2" => "radius^2",
-            "m4" => "radius^4",
-            "roughness" | "normalization" => "1/radius^d",
-            "equivalent_width" | "line_deviation" | "rise_width_10_90" | "missing_length" => "radius",
-            "line_spread" => "1/radius",
-            "face_moment_1" => "radius",
-            "face_moment_2" => "radius^2",
-            "exponential_mean" => "field",
-            _ => "1",
-        },
-        "beams" | "nearest" => match quantity {
-            "exponential_mean" | "expectation_exponential" => "field",
-            "mean_square_distance_k" | "mean_square_distance_k_minus_1" => "length^2",
-            "optimum_radius" => "length",
-            _ => "1",
-        },
-        "boundary" => match quantity {
-            "variance_over_whole_ball" => "whole ball",
-            "mean_at_wall" => "field in front",
-            _ => "field",
-        },
-        "progressive" if quantity.ends_with("_ratio") => "first pass",
-        _ => "1",
     }
 }
 
-/// Where light of unit irradiance falls on a face.
-fn lit(quantity: &str) -> &'static str {
-    match quantity {
-        _ if quantity.starts_with("fluence") || quantity == "flux" => "irradiance",
-        _ if quantity.starts_with("radiance") => "irradiance/sr",
-        _ if ["reflectance", "transmittance", "absorptance", "specular"]
-            .iter()
-            .any(|q| quantity.starts_with(q)) =>
-        {
-            "incident power"
-        }
-        "decay" | "second_decay" => "1/mfp",
-        "extrapolation_length" => "mfp",
-        "escape_direct_from" => "emitted there",
-        _ => "1",
-    }
-}
-
-/// Where a source of unit power emits.
-fn emitted(quantity: &str) -> &'static str {
-    match quantity {
-        "total_fluence" | "transform" => "power mfp",
-        "mean_square_radius" | "mean_square_distance" => "mfp^2",
-        "mean_cosine" => "1",
-        "decay" => "1/mfp",
-        "escape_direct_from" => "emitted there",
-        _ => "power/mfp^2",
+impl Serialize for Unit {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.collect_str(self)
     }
 }

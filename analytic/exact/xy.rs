@@ -1,9 +1,12 @@
 //! `exact xy`: Chandrasekhar's X and Y functions.
 
-use crate::answer::{Answer, Reply};
+use crate::answer::Answer;
 use crate::plot::{Curve, even, figure, panel};
+use crate::question::{Question, Solved};
 use crate::typed::Typed;
+use crate::unit::Unit;
 use anyhow::Result;
+use std::rc::Rc;
 use turbid_analytic::xy::XAndY;
 use turbid_figure::{Axis, Figure};
 
@@ -25,7 +28,7 @@ pub struct Args {
     tau: f64,
     /// Single-scattering albedo, 0 to 1.
     #[arg(long, allow_negative_numbers = true)]
-    pub albedo: f64,
+    albedo: f64,
     /// Cosines, 0 to 1.
     #[arg(long, num_args = 1.., value_delimiter = ',', value_name = "MU", default_values_t = [0.1, 0.5, 1.0], allow_negative_numbers = true)]
     mu: Vec<f64>,
@@ -35,51 +38,60 @@ pub struct Args {
 }
 
 impl Args {
-    /// What rounding touches.
-    pub fn typed(&self) -> Typed {
-        Typed { albedo: Some(self.albedo), g: Some(0.0), size: Some(self.tau), ..Typed::default() }
+    fn xy(&self, solved: &Solved) -> Result<Rc<XAndY>> {
+        solved.once((self.tau, self.albedo), || Ok(XAndY::new(self.tau, self.albedo)?))
     }
 }
 
-/// Answers; the figure shows both functions.
-pub fn answer(args: &Args, draw: bool) -> Result<Reply> {
-    let xy = XAndY::new(args.tau, args.albedo)?;
-    let mut answer = Answer::new("xy").with("tau", args.tau).with("albedo", args.albedo);
-    if let Some(mu0) = args.mu0 {
-        answer = answer.with("mu0", mu0);
-    }
-    let [a0, b0] = xy.integrals()?;
-    answer.add("a0", a0);
-    answer.add("b0", b0);
-    if let Some(mu0) = args.mu0 {
-        let [reflectance, transmittance] = xy.fluxes(mu0)?;
-        answer.add("reflectance", reflectance);
-        answer.add("transmittance", transmittance);
-    }
-    for &mu in &args.mu {
-        let at = || vec![("mu", mu.into())];
-        let [x, y] = xy.at(mu)?;
-        answer.add_at("x", at(), x);
-        answer.add_at("y", at(), y);
-        if let Some(mu0) = args.mu0 {
-            answer.add_at("radiance_up", at(), xy.radiance_up(mu0, mu)?);
-            // At the beam's own cosine the formula is a difference over zero; `exact slab` has the value.
-            if (mu - mu0).abs() >= 1e-6 {
-                answer.add_at("radiance_down", at(), xy.radiance_down(mu0, mu)?);
+impl Question for Args {
+    fn answer(&self, answer: &mut Answer, solved: &Solved) -> Result<()> {
+        let xy = self.xy(solved)?;
+        answer.of("xy").with("tau", self.tau).with("albedo", self.albedo);
+        if let Some(mu0) = self.mu0 {
+            answer.with("mu0", mu0);
+        }
+        let [a0, b0] = xy.integrals()?;
+        answer.add("a0", Unit::One, &[], a0);
+        answer.add("b0", Unit::One, &[], b0);
+        if let Some(mu0) = self.mu0 {
+            let [reflectance, transmittance] = xy.fluxes(mu0)?;
+            answer.add("reflectance", Unit::IncidentPower, &[], reflectance);
+            answer.add("transmittance", Unit::IncidentPower, &[], transmittance);
+        }
+        for &mu in &self.mu {
+            let at = [("mu", mu.into())];
+            let [x, y] = xy.at(mu)?;
+            answer.add("x", Unit::One, &at, x);
+            answer.add("y", Unit::One, &at, y);
+            if let Some(mu0) = self.mu0 {
+                answer.add("radiance_up", Unit::IrradiancePerSr, &at, xy.radiance_up(mu0, mu)?);
+                // At the beam's own cosine the formula is a difference over zero; `exact slab` has the value.
+                if (mu - mu0).abs() >= 1e-6 {
+                    answer.add("radiance_down", Unit::IrradiancePerSr, &at, xy.radiance_down(mu0, mu)?);
+                }
             }
         }
+        Ok(())
     }
-    let figure = if draw { Some(drawn(args, &xy)?) } else { None };
-    Ok(Reply { answer, figure })
-}
 
-fn drawn(args: &Args, xy: &XAndY) -> Result<Figure> {
-    // Closer towards the horizon, where X rises like mu ln mu.
-    let cosines: Vec<f64> = even(0.0, 1.0, 41).into_iter().map(|x| x * x).collect();
-    let curves = vec![
-        Curve::sample("X", &cosines, |mu| Ok(xy.at(mu)?[0].value))?,
-        Curve::sample("Y", &cosines, |mu| Ok(xy.at(mu)?[1].value))?,
-    ];
-    let title = format!("Chandrasekhar's X and Y, τ = {}, albedo {}", args.tau, args.albedo);
-    Ok(figure(title, panel(Axis::linear("Cosine μ", ""), "X(μ), Y(μ)", "", curves)))
+    /// Both functions.
+    fn figure(&self, solved: &Solved) -> Result<Figure> {
+        let xy = self.xy(solved)?;
+        // Closer towards the horizon, where X rises like mu ln mu.
+        let cosines: Vec<f64> = even(0.0, 1.0, 41).into_iter().map(|x| x * x).collect();
+        let curves = vec![
+            Curve::sample("X", &cosines, |mu| Ok(xy.at(mu)?[0].value))?,
+            Curve::sample("Y", &cosines, |mu| Ok(xy.at(mu)?[1].value))?,
+        ];
+        let title = format!("Chandrasekhar's X and Y, τ = {}, albedo {}", self.tau, self.albedo);
+        Ok(figure(title, panel(Axis::linear("Cosine μ", ""), "X(μ), Y(μ)", "", curves)))
+    }
+
+    fn typed(&self) -> Option<Typed> {
+        Some(Typed { albedo: Some(self.albedo), g: Some(0.0), size: Some(self.tau), ..Typed::default() })
+    }
+
+    fn moved(&self, to: f64) -> Option<Box<dyn Question>> {
+        Some(Box::new(Args { albedo: to, ..self.clone() }))
+    }
 }

@@ -23,15 +23,4 @@ pub const KNOWN: &[&[&str]] = &[
         "analytic/sphere/orders.rs",
         "analytic/sphere/shells.rs",
     ],
-    &["analytic/exact/answer.rs", "analytic/exact/unit.rs"],
-    &[
-        "analytic/exact/cases/critical.rs",
-        "analytic/exact/cases/fresnel.rs",
-        "analytic/exact/cases/half_space.rs",
-        "analytic/exact/cases/infinite.rs",
-        "analytic/exact/cases/kernel.rs",
-        "analytic/exact/cases/mod.rs",
-        "analytic/exact/cases/slab.rs",
-        "analytic/exact/cases/sphere.rs",
-    ],
 ];

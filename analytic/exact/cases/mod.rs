@@ -1,25 +1,25 @@
 //! `exact --cases`: a table of questions, each medium solved once.
 
-mod critical;
-mod fresnel;
-mod half_space;
-mod infinite;
-mod kernel;
+mod closed;
+mod geometry;
 mod row;
-mod slab;
-mod sphere;
 
 use crate::answer::shortest;
+use crate::command::Command;
 use crate::format::{Format, aligned, printed};
+use crate::question::{Solved, ask};
 use crate::text::one_line;
+use crate::usage;
 use anyhow::{Context, Error, Result, anyhow, bail};
+use clap::{FromArgMatches, Subcommand};
+use geometry::GEOMETRIES;
 use row::{COLUMNS, Row};
 use serde::ser::{Serialize, SerializeMap, Serializer};
 use std::path::Path;
 use turbid_analytic::Value;
 
 /// A value, or why there is none.
-pub type Answered = std::result::Result<Value, String>;
+type Answered = std::result::Result<Value, String>;
 
 /// Reads the questions, answers them, writes them in the order of the file.
 ///
@@ -34,11 +34,11 @@ pub fn answer(path: &Path, format: Format, output: &mut Vec<u8>) -> Result<Optio
         |i: usize| ["geometry", "tau", "a", "n", "w", "g", "extra"].map(|column| rows[i].text(column));
     order.sort_by(|&a, &b| medium(a).cmp(&medium(b)));
     let mut answers: Vec<Option<Answered>> = rows.iter().map(|_| None).collect();
-    let mut media = Media::default();
+    let mut reader = Reader::default();
     let mut refused: Vec<(u64, String)> = Vec::new();
     for i in order {
         let row = &rows[i];
-        answers[i] = Some(match media.answer_typed(row) {
+        answers[i] = Some(match reader.answer(row) {
             Err(error) if error.is::<turbid_analytic::Error>() => {
                 refused.push((row.line, format!("{error:#}")));
                 Err(format!("{error:#}"))
@@ -62,43 +62,43 @@ pub fn answer(path: &Path, format: Format, output: &mut Vec<u8>) -> Result<Optio
     Ok(first)
 }
 
-/// All that has been solved so far.
-#[derive(Default)]
-struct Media {
-    slabs: slab::Slabs,
-    fresnel_slabs: fresnel::FresnelSlabs,
-    half_spaces: half_space::HalfSpaces,
-    spheres: sphere::Spheres,
-    critical: critical::Bodies,
-    infinite: infinite::Media,
+/// Rows become questions here, and what they solve serves the next.
+struct Reader {
+    parser: clap::Command,
+    solved: Solved,
 }
 
-impl Media {
-    fn answer(&mut self, row: &Row) -> Result<Answered> {
-        match row.text("geometry") {
-            "slab" | "slabXY" => slab::answer(row, &mut self.slabs),
-            "slab_fresnel" => fresnel::answer(row, &mut self.fresnel_slabs),
-            "halfspace" => half_space::answer(row, &mut self.half_spaces),
-            "sphere" => sphere::answer(row, &mut self.spheres),
-            "critical_slab" | "critical_sphere" => critical::answer(row, &mut self.critical),
-            "infinite" => infinite::answer(row, &mut self.infinite),
-            "kernel" => kernel::answer(row),
-            other => Ok(Err(format!("geometry {other} is not answered here; allowed: {GEOMETRIES}"))),
-        }
+impl Default for Reader {
+    fn default() -> Self {
+        let parser = Command::augment_subcommands(clap::Command::new("exact"));
+        Reader { parser, solved: Solved::default() }
     }
+}
 
+impl Reader {
     /// Answers with a bound that holds for the decimals in the row.
-    fn answer_typed(&mut self, row: &Row) -> Result<Answered> {
-        let mut answer = self.answer(row)?;
-        if let (Ok(value), Some(typed)) = (&mut answer, row.typed()) {
-            typed.widen(&mut [value], |to| Ok(self.answer(&row.moved("w", to))?.ok().map(|v| vec![v])))?;
+    fn answer(&mut self, row: &Row) -> Result<Answered> {
+        if let Some(value) = closed::answer(row)? {
+            return Ok(Ok(value));
         }
-        Ok(answer)
+        let name = row.text("geometry");
+        let Some(geometry) = GEOMETRIES.iter().find(|geometry| geometry.name == name) else {
+            let allowed = GEOMETRIES.map(|geometry| geometry.name).join(", ");
+            return Ok(Err(format!("geometry {name} is not answered here; allowed: {allowed}")));
+        };
+        let asked = match geometry.words(row)? {
+            Ok(asked) => asked,
+            Err(note) => return Ok(Err(note)),
+        };
+        let command = self.parser.try_get_matches_from_mut(asked.words);
+        let command = command.and_then(|matches| Command::from_arg_matches(&matches));
+        let command = command
+            .map_err(|error| anyhow!("{}", usage::of_cell(&error, |option| geometry.column(option))))?;
+        let answer = ask(command.question(), Some(asked.wanted), &self.solved)?;
+        let value = answer.rows.first().map(|row| row.value);
+        Ok(value.ok_or(asked.absent))
     }
 }
-
-const GEOMETRIES: &str =
-    "slab, slabXY, slab_fresnel, halfspace, sphere, infinite, critical_slab, critical_sphere, kernel";
 
 fn read(path: &Path) -> Result<Vec<Row>> {
     let name = path.display();
@@ -210,4 +210,88 @@ fn write(lines: &[Line<'_>], format: Format, output: &mut Vec<u8>) -> Result<()>
         }
     }
     Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A row with something in every cell, and in every name of `extra`; some of it replaced.
+    fn row(geometry: &str, quantity: &str, other: &[(&str, &str)]) -> Row {
+        let (w, n) = match geometry {
+            "critical_slab" | "critical_sphere" => ("1.3", "1"),
+            "slab_fresnel" => ("0.9", "1.5"),
+            _ => ("0.9", "1"),
+        };
+        let mut cells = vec![
+            ("id", "1"),
+            ("geometry", geometry),
+            ("tau", "1"),
+            ("a", "1.0"),
+            ("w", w),
+            ("g", "0"),
+            ("n", n),
+            ("mu0", "0.5"),
+            ("t", "5e-1"),
+            ("r", "0.5"),
+            ("mu", "0.25"),
+            ("dphi", "0"),
+            ("quantity", quantity),
+            ("kernel", "uniform"),
+            ("d", "3.0"),
+            ("b_r", "0.1"),
+            ("x_over_r", "0.1"),
+            ("s", "1"),
+        ];
+        for &(name, text) in other {
+            cells.retain(|cell| cell.0 != name);
+            cells.push((name, text));
+        }
+        let extra = cells.iter().filter(|(name, _)| !COLUMNS.contains(name));
+        let extra: Vec<String> = extra.map(|(name, text)| format!("{name}={text}")).collect();
+        let fields = COLUMNS.map(|column| match cells.iter().find(|cell| cell.0 == column) {
+            Some((_, text)) => text.to_string(),
+            None => extra.join("; "),
+        });
+        Row { line: 2, fields }
+    }
+
+    #[test]
+    fn every_quantity_of_every_geometry_is_answered() {
+        let mut reader = Reader::default();
+        let mut count = 0;
+        for geometry in &GEOMETRIES {
+            for name in geometry.names() {
+                let (quantity, other) = match name.strip_suffix(" by order") {
+                    Some(quantity) => (quantity, [("order", "1.0")].as_slice()),
+                    None => (name, [].as_slice()),
+                };
+                let value = reader.answer(&row(geometry.name, quantity, other)).unwrap();
+                let value = value.unwrap_or_else(|note| panic!("{} {name}: {note}", geometry.name));
+                assert!(value.value.is_finite() && value.error.is_finite(), "{} {name}", geometry.name);
+                count += 1;
+            }
+        }
+        assert_eq!(count, 103);
+    }
+
+    /// Of every column that a geometry takes: a word in place of a number, two values, and a word that is an option.
+    #[test]
+    fn every_column_of_every_geometry_is_read() {
+        let mut reader = Reader::default();
+        for geometry in &GEOMETRIES {
+            for column in geometry.column_names().filter(|column| *column != "order") {
+                let quantity = geometry.names().next().unwrap();
+                for text in ["x", "0.1,0.2", "--help"] {
+                    let said = reader.answer(&row(geometry.name, quantity, &[(column, text)])).unwrap_err();
+                    let said = said.to_string();
+                    assert!(
+                        said.contains(&format!("is '{text}'; allowed: ")),
+                        "{} {column}: {said}",
+                        geometry.name
+                    );
+                }
+            }
+        }
+    }
 }

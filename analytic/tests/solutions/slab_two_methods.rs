@@ -2,7 +2,9 @@
 
 use crate::support::table::{check, check_to, incidence, number, rows};
 use crate::support::{NORMAL, close};
-use turbid_analytic::{AddingDoubling, AnisotropicMedium, Incidence, IsotropicSlab, Phase};
+use turbid_analytic::{
+    AddingDoubling, AnisotropicMedium, Error, Incidence, IsotropicSlab, Phase, Slab, SlabMedium, Value,
+};
 
 fn compare(medium: &AnisotropicMedium, tau: f64, light: Incidence, relative: f64) {
     let (albedo, phase) = (medium.albedo(), medium.phase());
@@ -172,4 +174,38 @@ fn the_reference_table_of_radiances_is_reproduced() {
         assert!(got.error < 1e-8 * got.value, "{row:?} {got:?}");
         check_to(&row, got, 2.0);
     }
+}
+
+/// Where two methods solve a slab each value is the one with the smaller bound; elsewhere it is that of the only one.
+#[test]
+fn the_better_of_two_methods_is_given() {
+    let isotropic = SlabMedium::new(0.75, &Phase::isotropic()).unwrap();
+    for (tau, light) in [(1.0, NORMAL), (3.0, Incidence::Diffuse), (100.0, NORMAL), (500.0, NORMAL)] {
+        let slab = Slab::solve(tau, &isotropic, light).unwrap();
+        let a = IsotropicSlab::new(tau, 0.75, light);
+        let b = AnisotropicMedium::new(0.75, &Phase::isotropic()).unwrap().slab(tau, light).unwrap();
+        let expected = |a: Option<Value>, b: Value| match a {
+            Some(a) if tau <= 2.0 || a.error <= b.error => a,
+            _ => b,
+        };
+        let a = a.ok();
+        let r = expected(a.as_ref().map(IsotropicSlab::reflectance), b.reflectance());
+        let t = expected(a.as_ref().map(IsotropicSlab::transmittance), b.transmittance());
+        let deep = expected(a.as_ref().map(|a| a.fluence(tau).unwrap()), b.fluence(tau).unwrap());
+        assert_eq!(slab.reflectance(), r, "{tau}");
+        assert_eq!(slab.transmittance(), t, "{tau}");
+        assert_eq!(slab.fluence(tau).unwrap(), deep, "{tau}");
+        assert_eq!(slab.flux(0.5 * tau).unwrap(), b.flux(0.5 * tau).unwrap(), "{tau}");
+        // Another light on the same operator.
+        let other = slab.with(&isotropic, Incidence::Diffuse).unwrap();
+        let anew = Slab::solve(tau, &isotropic, Incidence::Diffuse).unwrap();
+        close("R", other.reflectance(), anew.reflectance(), 1e-12);
+    }
+    // Grazing beams, which the second method leaves out, are answered by the first.
+    let grazing = Incidence::Beam { mu0: 1e-7 };
+    let slab = Slab::solve(5.0, &isotropic, grazing).unwrap();
+    assert_eq!(slab.reflectance(), IsotropicSlab::new(5.0, 0.75, grazing).unwrap().reflectance());
+    assert!(matches!(slab.flux(1.0), Err(Error::OutOfRange { name: "mu0", .. })));
+    assert!(matches!(Slab::solve(f64::NAN, &isotropic, NORMAL), Err(Error::OutOfRange { name: "tau", .. })));
+    assert!(SlabMedium::new(1.5, &Phase::isotropic()).is_err());
 }
