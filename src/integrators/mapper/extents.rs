@@ -131,7 +131,7 @@ mod tests {
         medium_extents(&file.scene(std::path::Path::new(".")).unwrap())
     }
 
-    const LIGHT: &str = "[[lights]]\npoint = { position = [0, 0, 9], power = 1 }\n";
+    const LIGHT: &str = "[[lights]]\npoint = { position = [0, 0, 8.5], power = 1 }\n";
     const MEDIUM: &str = "sigma_t = 1\nalbedo = 0.5\ng = 0\n";
 
     fn fog() -> String {
