@@ -36,7 +36,7 @@ pub fn lights() -> Vec<(&'static str, Light)> {
     let glowing = |shape: Shape| Light::Area(Area::new(shape, color).unwrap());
     let spot = Spot::new(DVec3::new(0.3, 0.1, -0.2), tilted, (20.0, 40.0), color).unwrap();
     vec![
-        ("point", point_light(DVec3::new(0.3, -0.2, 0.1), color)),
+        ("point", point_light(DVec3::new(0.3, -0.2, 0.12), color)),
         ("area", area_light(r, color)),
         ("emitting sphere", glowing(sphere(DVec3::new(0.0, 0.2, -0.1), 0.4))),
         ("emitting cuboid", glowing(block.clone())),
