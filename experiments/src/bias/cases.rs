@@ -1,20 +1,9 @@
 //! The cases: at which depth, with which gather and kernel, each map is asked.
 
-use super::fields::{CELL, Field};
-use crate::theory::{Fog, spiral};
+use super::fields::Field;
+use crate::setups::{Body, CELL, Size, spiral};
 use glam::DVec3;
 use turbid::estimators::{Estimator, Gather, Kernel};
-
-/// How large a gather is.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Size {
-    /// All photons within this radius [mfp].
-    Radius(f64),
-    /// The k nearest photons; the k-th sets the radius and is not summed.
-    Nearest(usize),
-    /// The k nearest photons, all summed: wrong on purpose.
-    NearestBiased(usize),
-}
 
 /// One question to a map.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -27,6 +16,8 @@ pub struct Case {
     pub depth: f64,
     /// Gather size.
     pub size: Size,
+    /// Whether all k nearest photons are summed, the k-th too: wrong on purpose.
+    pub is_biased: bool,
     /// Kernel.
     pub kernel: Kernel,
 }
@@ -50,7 +41,8 @@ impl Case {
         let mut cases = Vec::new();
         let is_local = |k: usize| k as u64 * MIN_SHARE <= photons;
         for &depth in field.depths {
-            let mut add = |size, kernel| cases.push(Case { field, photons, depth, size, kernel });
+            let mut add =
+                |size, kernel| cases.push(Case { field, photons, depth, size, is_biased: false, kernel });
             for kernel in Kernel::ALL {
                 let is_first = kernel == Kernel::Uniform;
                 for radius in RADII {
@@ -65,7 +57,8 @@ impl Case {
                 }
             }
             for k in BIASED.into_iter().filter(|&k| is_local(k)) {
-                add(Size::NearestBiased(k), Kernel::Uniform);
+                let (size, kernel) = (Size::Nearest(k), Kernel::Uniform);
+                cases.push(Case { field, photons, depth, size, is_biased: true, kernel });
             }
         }
         cases
@@ -84,27 +77,13 @@ impl Case {
             self.photons,
             self.depth,
             self.gather_name(),
-            self.kernel_name()
+            self.kernel.name()
         )
     }
 
     /// The gather in words.
     pub fn gather_name(&self) -> String {
-        match self.size {
-            Size::Radius(r) => format!("r={r}"),
-            Size::Nearest(k) => format!("k={k}"),
-            Size::NearestBiased(k) => format!("k={k}(biased)"),
-        }
-    }
-
-    /// The kernel in a word.
-    pub fn kernel_name(&self) -> &'static str {
-        self.kernel.name()
-    }
-
-    /// Whether it is wrong on purpose.
-    pub fn is_biased(&self) -> bool {
-        matches!(self.size, Size::NearestBiased(_))
+        format!("{}{}", self.size.name(), if self.is_biased { "(biased)" } else { "" })
     }
 
     /// The radius that the gather is given room for: a nearest one has it for four times the photons that a rough guess
@@ -112,9 +91,9 @@ impl Case {
     fn reach(&self) -> f64 {
         match self.size {
             Size::Radius(r) => r,
-            Size::Nearest(k) | Size::NearestBiased(k) => {
+            Size::Nearest(k) => {
                 let guess = if self.field.has_clusters() { 0.5 } else { libm::exp(-self.depth) };
-                let density = guess * self.field.density(self.photons);
+                let density = guess * self.field.setup.density(self.photons);
                 libm::cbrt(4.0 * 3.0 * k as f64 / (4.0 * std::f64::consts::PI * density))
             }
         }
@@ -127,18 +106,17 @@ impl Case {
 
     /// The cap of nearest gathers [mfp]: in a slab half the distance between probes.
     pub fn cap(&self) -> f64 {
-        match self.field.fog {
-            Fog::Slab { .. } => 0.5 * CELL / self.side() as f64,
-            Fog::Sphere { .. } => self.reach(),
+        match self.field.setup.body {
+            Body::Slab { .. } => 0.5 * CELL / self.side() as f64,
+            Body::Sphere { .. } | Body::Cuboid { .. } => self.reach(),
         }
     }
 
     /// What is asked.
     pub fn estimator(&self) -> turbid::Result<Estimator> {
         let gather = match self.size {
-            Size::Radius(r) => Gather::radius(r),
-            Size::Nearest(k) => Gather::nearest(k, self.cap()),
-            Size::NearestBiased(k) => Gather::nearest_biased(k, self.cap()),
+            Size::Nearest(k) if self.is_biased => Gather::nearest_biased(k, self.cap()),
+            size => size.gather(self.cap()),
         };
         Ok(Estimator::new(self.kernel, gather?))
     }
@@ -146,13 +124,10 @@ impl Case {
     /// The probes: on a lattice in a slab, on a spiral in a sphere. Their balls do not overlap, save a few at a
     /// spiral's ends.
     pub fn probes(&self) -> Vec<DVec3> {
-        match self.field.fog {
-            Fog::Slab { .. } => {
-                let (side, step) = (self.side(), 2.0 * self.cap());
-                let place = |i: usize| (i as f64 + 0.5) * step;
-                (0..side * side).map(|i| DVec3::new(place(i % side), place(i / side), self.depth)).collect()
-            }
-            Fog::Sphere { radius } => {
+        let body = self.field.setup.body;
+        match body {
+            Body::Slab { .. } | Body::Cuboid { .. } => body.places(self.side(), self.depth),
+            Body::Sphere { radius } => {
                 let from_centre = radius - self.depth;
                 let along = 1.545 * from_centre / self.reach();
                 let number = ((along * along) as usize).clamp(1, MAX_SIDE * MAX_SIDE);

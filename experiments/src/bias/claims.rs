@@ -3,12 +3,13 @@
 //! same kind have more room than they need. Margins are those of the quick preset, and a full run, which sees more, is
 //! judged by the same.
 
-use super::cases::Size;
 use super::fields::{FIELDS, Field};
 use super::measure::{is_fano_case, path_case};
-use super::results::{Mistake, Result, exact_at, excess, largest, pick, predicted_fano};
+use super::results::{CaseResult, Mistake, exact_at, excess, largest, pick, predicted_fano};
 use crate::harness::{Cells, Claim, Estimate, Settings, Unit};
-use crate::theory::Fog;
+use crate::prediction::{Term, amplitude};
+use crate::setups::Body;
+use crate::setups::Size;
 use turbid::estimators::Kernel;
 use turbid::stats::{Moments, amplitude_per_map};
 
@@ -16,7 +17,7 @@ use turbid::stats::{Moments, amplitude_per_map};
 pub fn all(
     settings: &Settings,
     cells: &Cells,
-    results: &[Result],
+    results: &[CaseResult],
     mistakes: &[Mistake],
 ) -> anyhow::Result<Vec<Claim>> {
     let mut claims = radius_claims(results);
@@ -44,22 +45,10 @@ pub fn all(
     Ok(claims)
 }
 
-/// Measured over predicted part of the error of some cases: one amplitude a map, weighted by what all maps say of the
-/// noise. `part` says which part of the prediction is tested; the others are taken away first.
-fn amplitude_of(results: &[&Result], part: impl Fn(&Result) -> f64) -> Option<Estimate> {
-    // Cases of different numbers of photons come from different maps; joining them by number is a free choice.
-    let maps = results.iter().map(|r| r.errors.len()).min()?;
-    let predicted: Vec<f64> = results.iter().map(|r| part(r)).collect();
-    let weights: Vec<f64> = results.iter().map(|r| 1.0 / r.error.variance()).collect();
-    let left = |r: &Result, m: usize| r.errors[m] - (r.predicted() - part(r));
-    let per_map: Vec<Vec<f64>> = (0..maps).map(|m| results.iter().map(|r| left(r, m)).collect()).collect();
-    amplitude_per_map(&predicted, &per_map, &weights).map(|a| Estimate::mean(&a.moments))
-}
-
 /// A claim that measured over predicted error is 1 within a margin.
-fn amplitude_claim(id: &str, text: &str, chosen: &[&Result], margin: f64) -> Option<Claim> {
+fn amplitude_claim(id: &str, text: &str, chosen: &[&CaseResult], margin: f64) -> Option<Claim> {
     let text = format!("{text}: measured over predicted error");
-    amplitude_of(chosen, Result::predicted)
+    amplitude(chosen, CaseResult::predicted)
         .map(|statistic| Claim::within(id, &text, Unit::ONE, statistic, 1.0 - margin, 1.0 + margin))
 }
 
@@ -68,15 +57,15 @@ fn moments(values: impl Iterator<Item = f64>) -> Moments {
     values.collect::<Vec<f64>>().iter().collect()
 }
 
-fn is_fixed(result: &Result) -> bool {
+fn is_fixed(result: &CaseResult) -> bool {
     matches!(result.case.size, Size::Radius(_))
 }
 
 /// The order in the radius: one claim a radius, since a sum over radii would hear the largest alone.
-fn radius_claims(results: &[Result]) -> Vec<Claim> {
+fn radius_claims(results: &[CaseResult]) -> Vec<Claim> {
     let free = &FIELDS[0];
     let most = largest(results, free);
-    let is_free = |r: &Result| r.case.field == free && r.is_whole() && r.case.photons == most;
+    let is_free = |r: &CaseResult| r.case.field == free && r.is_whole() && r.case.photons == most;
     let mut claims = Vec::new();
     for (radius, margin) in [(0.2, 0.35), (0.4, 0.1), (0.8, 0.02)] {
         let chosen = pick(results, |r| {
@@ -96,7 +85,7 @@ fn radius_claims(results: &[Result]) -> Vec<Claim> {
 }
 
 /// The orders in k and in the number of photons, where the predicted error is large enough to be seen.
-fn nearest_claims(settings: &Settings, results: &[Result]) -> Vec<Claim> {
+fn nearest_claims(settings: &Settings, results: &[CaseResult]) -> Vec<Claim> {
     let counts = FIELDS[0].photons(settings);
     let mut claims = Vec::new();
     for (index, k, margin) in [(0, 50, 0.8), (0, 100, 0.5), (1, 100, 0.9), (1, 500, 0.25)] {
@@ -116,7 +105,7 @@ fn nearest_claims(settings: &Settings, results: &[Result]) -> Vec<Claim> {
 }
 
 /// At a fixed radius the error does not depend on the number of photons.
-fn number_claim(settings: &Settings, results: &[Result]) -> Option<Claim> {
+fn number_claim(settings: &Settings, results: &[CaseResult]) -> Option<Claim> {
     let counts = FIELDS[0].photons(settings);
     let find = |photons: Option<&u64>| {
         results.iter().find(|r| {
@@ -136,32 +125,32 @@ fn number_claim(settings: &Settings, results: &[Result]) -> Option<Claim> {
 }
 
 /// At the lit face half of each ball is empty.
-fn face_claim(results: &[Result], field: &'static Field) -> Option<Claim> {
+fn face_claim(results: &[CaseResult], field: &'static Field) -> Option<Claim> {
     let chosen = pick(results, |r| r.case.field == field && r.case.depth == 0.0);
-    let text = format!("{}, at the {}, every gather", field.title, field.surface());
+    let text = format!("{}, at the {}, every gather", field.title, field.setup.surface());
     amplitude_claim(&format!("{}-face", field.name), &text, &chosen, 0.004 * field.slack)
 }
 
 /// Fixed radii inside the medium.
-fn blur_claim(results: &[Result], field: &'static Field) -> Option<Claim> {
+fn blur_claim(results: &[CaseResult], field: &'static Field) -> Option<Claim> {
     let chosen = pick(results, |r| r.case.field == field && is_fixed(r) && r.is_whole());
     let text = format!("{}, whole balls of fixed radius, all kernels", field.title);
     // Light that turns back at its first collision bends little: there the claim is that the blur is there.
-    let margin = if field.g < 0.0 { 0.7 } else { 0.2 };
+    let margin = if field.setup.g < 0.0 { 0.7 } else { 0.2 };
     amplitude_claim(&format!("{}-blur", field.name), &text, &chosen, margin)
 }
 
 /// Mean of what is left over in all cases below the face, weighted by what all maps say of the noise.
-fn left_over_claim(results: &[Result], field: &'static Field) -> Claim {
+fn left_over_claim(results: &[CaseResult], field: &'static Field) -> Claim {
     let chosen = pick(results, |r| r.case.field == field && r.case.depth > 0.0);
     let maps = chosen.iter().map(|r| r.errors.len()).min().unwrap_or(0);
     let weights: Vec<f64> = chosen.iter().map(|r| 1.0 / r.error.variance()).collect();
     let sum: f64 = weights.iter().sum();
     let mean = |m: usize| {
-        let one = |(r, w): (&&Result, &f64)| w * (r.errors[m] - r.predicted());
+        let one = |(r, w): (&&CaseResult, &f64)| w * (r.errors[m] - r.predicted());
         chosen.iter().zip(&weights).map(one).sum::<f64>() / sum
     };
-    let below = if let Fog::Slab { .. } = field.fog { "face" } else { "surface" };
+    let below = if let Body::Slab { .. } = field.setup.body { "face" } else { "surface" };
     Claim::within(
         &format!("{}-left-over", field.name),
         &format!("{}, below the {}: error left over by the prediction", field.title, below),
@@ -173,7 +162,7 @@ fn left_over_claim(results: &[Result], field: &'static Field) -> Claim {
 }
 
 /// Photons of one history cluster as predicted; independent ones do not.
-fn fano_claim(cells: &Cells, results: &[Result], field: &'static Field) -> anyhow::Result<Option<Claim>> {
+fn fano_claim(cells: &Cells, results: &[CaseResult], field: &'static Field) -> anyhow::Result<Option<Claim>> {
     let most = largest(results, field);
     let mut per_case = Vec::new();
     for result in pick(results, |r| r.case.field == field && r.case.photons == most) {
@@ -201,29 +190,34 @@ fn fano_claim(cells: &Cells, results: &[Result], field: &'static Field) -> anyho
     );
     let fitted = amplitude_per_map(&predicted, &per_map, &weights);
     // Where little is scattered there are few clusters to see.
-    let margin = if field.albedo < 0.9 { 0.25 } else { 0.2 } * field.slack.min(2.0);
+    let margin = if field.setup.albedo < 0.9 { 0.25 } else { 0.2 } * field.slack.min(2.0);
     Ok(fitted.map(|a| {
         Claim::within(&id, &text, Unit::ONE, Estimate::mean(&a.moments), 1.0 - margin, 1.0 + margin)
     }))
 }
 
 /// Clusters draw the k-th photon nearer: a part in a few hundred at small k, seen when all fields are taken together.
-fn cluster_claim(results: &[Result]) -> Option<Claim> {
+fn cluster_claim(results: &[CaseResult]) -> Option<Claim> {
     let chosen = pick(results, |r| {
         r.case.field.has_clusters() && r.is_whole() && matches!(r.case.size, Size::Nearest(4 | 10))
     });
     let text = "k = 4 and 10 in whole balls, all fogs: error from clusters of photons of one history, measured over predicted";
-    amplitude_of(&chosen, |r| 100.0 * r.parts.clusters)
+    amplitude(&chosen, |r| 100.0 * r.expected.of(Term::Clusters))
         .map(|statistic| Claim::within("clusters", text, Unit::ONE, statistic, 0.3, 1.7))
 }
 
 /// The path tracer agrees with the exact slab.
-fn path_claim(cells: &Cells, results: &[Result], field: &'static Field, depth: f64) -> anyhow::Result<Claim> {
+fn path_claim(
+    cells: &Cells,
+    results: &[CaseResult],
+    field: &'static Field,
+    depth: f64,
+) -> anyhow::Result<Claim> {
     let (exact, _) = exact_at(results, field, depth);
     let values = cells.values(&path_case(field, depth), "fluence")?;
     let errors = moments(values.iter().map(|value| 100.0 * (value / exact - 1.0)));
     // Behind a forward peak few paths turn towards the beam, and each connection counts for more.
-    let margin = if field.g > 0.0 { 1.0 } else { 0.5 } * field.slack;
+    let margin = if field.setup.g > 0.0 { 1.0 } else { 0.5 } * field.slack;
     let text = format!("{}, depth {depth}: error of the path tracer", field.title);
     let id = format!("{}-paths-{depth}", field.name);
     Ok(Claim::within(&id, &text, Unit::PERCENT, Estimate::mean(&errors), -margin, margin))
@@ -231,15 +225,19 @@ fn path_claim(cells: &Cells, results: &[Result], field: &'static Field, depth: f
 
 /// The wrong estimators are wrong: the rule that sums all k photons is seen to be, and those that divide by a wrong number,
 /// which no estimate could hide, are wrong by what was predicted of them.
-fn mistake_claims(results: &[Result], mistakes: &[Mistake]) -> Vec<Claim> {
+fn mistake_claims(results: &[CaseResult], mistakes: &[Mistake]) -> Vec<Claim> {
     let mut claims = Vec::new();
     let most = largest(results, &FIELDS[0]);
     let biased = results.iter().find(|r| {
         let c = &r.case;
-        c.field == &FIELDS[0] && c.photons == most && c.depth == 1.0 && c.size == Size::NearestBiased(10)
+        c.field == &FIELDS[0]
+            && c.photons == most
+            && c.depth == 1.0
+            && c.is_biased
+            && c.size == Size::Nearest(10)
     });
     if let Some(result) = biased {
-        let right = 100.0 * (result.parts.total() - result.parts.rule);
+        let right = 100.0 * (result.expected.total() - result.expected.of(Term::Nearest));
         let text = "wrong on purpose, all k photons summed, k = 10: error";
         let statistic = Estimate::mean(&result.error);
         claims.push(Claim::detected("biased-k", text, Unit::PERCENT, statistic, right, 5.0));

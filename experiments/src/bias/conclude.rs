@@ -1,32 +1,36 @@
 //! What all maps together say: rows, claims, tables.
 
-use super::cases::{Case, Size};
+use super::cases::Case;
 use super::fields::FIELDS;
 use super::measure::{map_case, path_case};
-use super::predict::{COLLISIONS, recall};
-use super::results::{Mistake, Result, exact_at, fano, largest, pick, predicted_fano};
+use super::predict::COLLISIONS;
+use super::results::{CaseResult, Mistake, exact_at, fano, largest, pick, predicted_fano};
 use super::{claims, figures, tables};
-use crate::harness::{
-    Cells, Compared, Entry, Known, Prediction, Row, Section, Settings, Term, Unit, signed, with_error,
-};
+use crate::harness::{Cells, Row, Section, Settings, Unit, signed, with_error};
+use crate::prediction::{Compared, PredictedError, Prediction, Predictions};
+use crate::setups::Size;
+use crate::theory::GATHER_TERMS;
 use turbid::estimators::Kernel;
 use turbid::stats::Moments;
 
 /// Concludes.
 pub fn conclude(settings: &Settings, predictions: &[Prediction], cells: &Cells) -> anyhow::Result<Section> {
-    let known = Known::new(predictions);
+    let known = Predictions::new(predictions);
     let mut results = Vec::new();
     for field in &FIELDS {
         for photons in field.photons(settings) {
             for case in Case::all(field, photons) {
-                let parts = recall(&known, &case)?;
-                results.push(Compared::new(case, &case.name(), "fluence", parts, cells)?);
+                let name = case.name();
+                let expected = PredictedError::read(&known, &name, "fluence", &GATHER_TERMS)?;
+                results.push(Compared::new(case, &name, "fluence", expected, cells)?);
             }
         }
     }
     let mistakes = mistakes(&known, cells, &results)?;
     let mut section = Section { rows: rows(cells, &results, &mistakes)?, ..Section::default() };
-    section.budget = results.iter().map(entry).collect();
+    // The wrong rule is there too: what it adds is predicted like the rest.
+    let group = |case: &Case| Case::group(case.field, case.photons);
+    section.budget = results.iter().map(|r| r.entry(group(&r.case), &r.case.name())).collect();
     section.claims = claims::all(settings, cells, &results, &mistakes)?;
     section.figures = figures::all(settings, cells, &results, &mistakes)?;
     section.tables.push(tables::errors(&results));
@@ -35,26 +39,13 @@ pub fn conclude(settings: &Settings, predictions: &[Prediction], cells: &Cells) 
     Ok(section)
 }
 
-/// The case in the error budget of the study. The wrong rule is there too: what it adds is predicted like the rest.
-fn entry(result: &Result) -> Entry {
-    let parts = &result.parts;
-    let terms = [
-        (Term::Edge, parts.edge),
-        (Term::Blur, parts.blur),
-        (Term::Nearest, parts.rule),
-        (Term::Clusters, parts.clusters),
-    ];
-    let group = Case::group(result.case.field, result.case.photons);
-    let maps = result.errors.iter().map(|e| e / 100.0).collect();
-    Entry::new(group, result.case.name(), &terms, parts.error, maps)
-}
-
 /// The mistakes that need no switch inside the simulator: each map's own numbers, wrongly divided.
-fn mistakes(known: &Known, cells: &Cells, results: &[Result]) -> anyhow::Result<Vec<Mistake>> {
+fn mistakes(known: &Predictions, cells: &Cells, results: &[CaseResult]) -> anyhow::Result<Vec<Mistake>> {
     let mut mistakes = Vec::new();
     for result in results {
-        let Case { field, photons, depth, size, kernel } = result.case;
+        let Case { field, photons, depth, size, is_biased, kernel } = result.case;
         let is_shown = depth == 1.0
+            && !is_biased
             && kernel == Kernel::Uniform
             && matches!(size, Size::Nearest(50) | Size::Radius(0.4));
         if !is_shown || photons != largest(results, field) || !field.has_clusters() {
@@ -68,7 +59,7 @@ fn mistakes(known: &Known, cells: &Cells, results: &[Result]) -> anyhow::Result<
         let case = result.case;
         let predicted = result.predicted();
         let over = |divisor: f64| 100.0 * ((1.0 + predicted / 100.0) / divisor - 1.0);
-        let (error, wrong) = (wrongly(&|_| 1.0 / field.albedo), over(field.albedo));
+        let (error, wrong) = (wrongly(&|_| 1.0 / field.setup.albedo), over(field.setup.albedo));
         mistakes.push(Mistake { name: "divided by sigma_s", case, predicted, wrong, error });
         let (collisions, _) = known.get(field.name, COLLISIONS)?;
         let (error, wrong) = (wrongly(&|map| 1.0 / stored[map]), over(collisions));
@@ -77,23 +68,13 @@ fn mistakes(known: &Known, cells: &Cells, results: &[Result]) -> anyhow::Result<
     Ok(mistakes)
 }
 
-fn rows(cells: &Cells, results: &[Result], mistakes: &[Mistake]) -> anyhow::Result<Vec<Row>> {
+fn rows(cells: &Cells, results: &[CaseResult], mistakes: &[Mistake]) -> anyhow::Result<Vec<Row>> {
     let mut rows = Vec::new();
     for result in results {
-        let (name, parts) = (result.case.name(), &result.parts);
-        let fluence = cells.moments(&name, "fluence")?;
-        let gathers = "photons emitted";
-        rows.push(
-            Row::measured(&name, "fluence", Unit::FLUENCE, &fluence)?
-                .reference(parts.exact, parts.exact_error)
-                .cost(result.case.photons * fluence.n(), gathers),
-        );
-        rows.push(Row::measured(&name, "error", Unit::PERCENT, &result.error)?.predicted(result.predicted()));
-        let left: Moments = result.errors.iter().map(|e| e - result.predicted()).collect();
-        rows.push(
-            Row::measured(&name, "error left over", Unit::PERCENT, &left)?
-                .reference(0.0, 100.0 * parts.error),
-        );
+        let name = result.case.name();
+        let [fluence, error, left] = result.rows(&name, ("fluence", Unit::FLUENCE), cells)?;
+        let maps = result.errors.len() as u64;
+        rows.extend([fluence.cost(result.case.photons * maps, "photons emitted"), error, left]);
         if let Some(fano) = fano(cells, &result.case)? {
             rows.push(
                 Row::measured(&name, "Fano factor", Unit::ONE, &fano)?
@@ -118,7 +99,7 @@ fn rows(cells: &Cells, results: &[Result], mistakes: &[Mistake]) -> anyhow::Resu
     Ok(rows)
 }
 
-fn summarise(section: &mut Section, settings: &Settings, results: &[Result]) {
+fn summarise(section: &mut Section, settings: &Settings, results: &[CaseResult]) {
     let chosen = pick(results, |_| true);
     let squares: f64 = chosen.iter().map(|r| r.z() * r.z()).sum();
     let largest = chosen.iter().map(|r| r.z().abs()).fold(0.0, f64::max);
@@ -151,7 +132,7 @@ fn summarise(section: &mut Section, settings: &Settings, results: &[Result]) {
     }
     let glow = &FIELDS[5];
     let in_glow = |depth: f64, radius: f64| {
-        let fits = |r: &&Result| {
+        let fits = |r: &&CaseResult| {
             let c = &r.case;
             (c.field, c.depth, c.size, c.kernel) == (glow, depth, Size::Radius(radius), Kernel::Uniform)
         };

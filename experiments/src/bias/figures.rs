@@ -1,11 +1,14 @@
 //! The figures.
 
-use super::cases::{Case, Size};
+use super::cases::Case;
 use super::fields::{FIELDS, Field};
 use super::measure::{is_fano_case, path_case};
-use super::predict::{PART_NAMES, Theory};
-use super::results::{Mistake, Result, exact_at, fano, largest, predicted_fano};
+use super::predict::Theory;
+use super::results::{CaseResult, Mistake, exact_at, fano, largest, predicted_fano};
 use crate::harness::{Cells, FigureFiles, Settings, bar};
+use crate::prediction::Term;
+use crate::setups::Size;
+use crate::theory::GATHER_TERMS;
 use turbid::estimators::Kernel;
 use turbid::stats::Moments;
 use turbid_figure::{Along, Axis, Color, Figure, Histogram, Legend, Line, Panel, Points, Rule, Scale, Width};
@@ -14,7 +17,7 @@ use turbid_figure::{Along, Axis, Color, Figure, Histogram, Legend, Line, Panel, 
 pub fn all(
     settings: &Settings,
     cells: &Cells,
-    results: &[Result],
+    results: &[CaseResult],
     mistakes: &[Mistake],
 ) -> anyhow::Result<Vec<FigureFiles>> {
     Ok(vec![
@@ -26,35 +29,36 @@ pub fn all(
 }
 
 /// Measured against predicted error of every case, and what is left.
-fn budget(results: &[Result], mistakes: &[Mistake]) -> anyhow::Result<FigureFiles> {
+fn budget(results: &[CaseResult], mistakes: &[Mistake]) -> anyhow::Result<FigureFiles> {
     let axis = |label: &str| Axis::new(label, "%", Scale::SymLog { threshold: 1.0 });
     let mut panel = Panel::new(axis("predicted error"), axis("measured error"))
         .with(Rule::new(Along::Diagonal).with_label("measured = predicted"));
-    let blind: Vec<&Result> =
-        results.iter().filter(|r| !r.case.is_biased() && !r.sees_prediction()).collect();
+    let blind: Vec<&CaseResult> =
+        results.iter().filter(|r| !r.case.is_biased && !r.sees_prediction()).collect();
     let x = blind.iter().map(|r| r.predicted()).collect();
     let y = blind.iter().map(|r| r.error.mean()).collect();
     let bars = blind.iter().map(|r| bar(&r.error)).collect();
     let label = "too noisy to see its prediction";
     let noisy = Points::new(label, 0, x, y).with_y_interval(bars);
     panel = panel.with(Points { color: Color::Grey, ..noisy });
-    for (class, part) in PART_NAMES.iter().enumerate() {
+    for (class, term) in GATHER_TERMS.into_iter().enumerate() {
         // The rule's own part is a fault, and drawn as one.
-        let chosen: Vec<&Result> = results
+        let chosen: Vec<&CaseResult> = results
             .iter()
-            .filter(|r| !r.case.is_biased() && r.sees_prediction() && r.parts.dominant() == class)
+            .filter(|r| !r.case.is_biased && r.sees_prediction() && r.expected.dominant() == Some(term))
             .collect();
         if chosen.is_empty() {
             continue;
         }
-        let label = format!("mostly {part}");
+        let label = format!("mostly {}", term.name());
         let x = chosen.iter().map(|r| r.predicted()).collect();
         let y = chosen.iter().map(|r| r.error.mean()).collect();
         let bars = chosen.iter().map(|r| bar(&r.error)).collect();
         panel = panel.with(Points::new(&label, class, x, y).with_y_interval(bars));
     }
-    let biased: Vec<&Result> = results.iter().filter(|r| r.case.is_biased() && r.is_whole()).collect();
-    let x: Vec<f64> = biased.iter().map(|r| 100.0 * (r.parts.total() - r.parts.rule)).collect();
+    let biased: Vec<&CaseResult> = results.iter().filter(|r| r.case.is_biased && r.is_whole()).collect();
+    let x: Vec<f64> =
+        biased.iter().map(|r| 100.0 * (r.expected.total() - r.expected.of(Term::Nearest))).collect();
     let y: Vec<f64> = biased.iter().map(|r| r.error.mean()).collect();
     let bars = biased.iter().map(|r| bar(&r.error)).collect();
     panel = panel.with(Points::new("wrong: k-th photon summed", 2, x, y).with_y_interval(bars));
@@ -65,7 +69,7 @@ fn budget(results: &[Result], mistakes: &[Mistake]) -> anyhow::Result<FigureFile
         let bars = chosen.iter().map(|m| bar(&m.error)).collect();
         panel = panel.with(Points::new(format!("wrong: {name}"), class, x, y).with_y_interval(bars));
     }
-    let z: Vec<f64> = results.iter().filter(|r| !r.case.is_biased()).map(Result::z).collect();
+    let z: Vec<f64> = results.iter().filter(|r| !r.case.is_biased).map(CaseResult::z).collect();
     let edges: Vec<f64> = (-10..=10).map(|i| 0.5 * f64::from(i)).collect();
     let grid: Vec<f64> = (-50..=50).map(|i| 0.1 * f64::from(i)).collect();
     let normal = grid.iter().map(|x| libm::exp(-0.5 * x * x) / (2.0 * std::f64::consts::PI).sqrt()).collect();
@@ -91,7 +95,7 @@ fn budget(results: &[Result], mistakes: &[Mistake]) -> anyhow::Result<FigureFile
 }
 
 /// The orders in radius, photons and k, on uncollided photons.
-fn orders(results: &[Result]) -> anyhow::Result<FigureFiles> {
+fn orders(results: &[CaseResult]) -> anyhow::Result<FigureFiles> {
     let free = &FIELDS[0];
     let most = largest(results, free);
     let of = |depth: f64, photons: u64, is_fixed: bool| {
@@ -99,8 +103,7 @@ fn orders(results: &[Result]) -> anyhow::Result<FigureFiles> {
             let c = &r.case;
             let fits = match c.size {
                 Size::Radius(_) => is_fixed,
-                Size::Nearest(_) => !is_fixed,
-                Size::NearestBiased(_) => false,
+                Size::Nearest(_) => !is_fixed && !c.is_biased,
             };
             c.field == free && c.photons == photons && c.depth == depth && c.kernel == Kernel::Uniform && fits
         })
@@ -108,16 +111,16 @@ fn orders(results: &[Result]) -> anyhow::Result<FigureFiles> {
     let known = Theory::new(free)?;
     let theory = |photons, depth, sizes: &[Size]| {
         let one = |&size: &Size| {
-            let case = Case { field: free, photons, depth, size, kernel: Kernel::Uniform };
-            known.parts(&case).map(|p| 100.0 * p.total())
+            let case = Case { field: free, photons, depth, size, is_biased: false, kernel: Kernel::Uniform };
+            known.error(&case).map(|error| 100.0 * error.total())
         };
         sizes.iter().map(one).collect::<anyhow::Result<Vec<f64>>>()
     };
     let size = |case: &Case| match case.size {
         Size::Radius(r) => r,
-        Size::Nearest(k) | Size::NearestBiased(k) => k as f64,
+        Size::Nearest(k) => k as f64,
     };
-    let points = |chosen: &[&Result], label: &str, class: usize| {
+    let points = |chosen: &[&CaseResult], label: &str, class: usize| {
         let x: Vec<f64> = chosen.iter().map(|r| size(&r.case)).collect();
         let bars = chosen.iter().map(|r| bar(&r.error)).collect();
         let y = chosen.iter().map(|r| r.error.mean()).collect();
@@ -143,7 +146,7 @@ fn orders(results: &[Result]) -> anyhow::Result<FigureFiles> {
     for (class, &photons) in counts.iter().enumerate() {
         let label = format!("{photons} photons");
         // Lines stop where the measured cases do.
-        let measured: Vec<&Result> = of(1.0, photons, false).collect();
+        let measured: Vec<&CaseResult> = of(1.0, photons, false).collect();
         if measured.is_empty() {
             continue;
         }
@@ -163,7 +166,7 @@ fn orders(results: &[Result]) -> anyhow::Result<FigureFiles> {
 }
 
 /// Error against depth in each field of all orders.
-fn depths(settings: &Settings, cells: &Cells, results: &[Result]) -> anyhow::Result<FigureFiles> {
+fn depths(settings: &Settings, cells: &Cells, results: &[CaseResult]) -> anyhow::Result<FigureFiles> {
     let mut panels = Vec::new();
     for field in FIELDS.iter().filter(|f| f.has_clusters()) {
         let known = Theory::new(field)?;
@@ -172,13 +175,13 @@ fn depths(settings: &Settings, cells: &Cells, results: &[Result]) -> anyhow::Res
         let mut panel = Panel::new(Axis::linear("depth", "mfp"), axis).with_title(field.title);
         for (class, radius) in [(0, 0.1), (1, 0.2), (2, 0.4)] {
             let size = Size::Radius(radius);
-            let grid: Vec<f64> = (0..=80).map(|i| field.fog.deepest() * f64::from(i) / 80.0).collect();
+            let grid: Vec<f64> = (0..=80).map(|i| field.setup.body.deepest() * f64::from(i) / 80.0).collect();
             let theory = grid.iter().map(|&depth| {
-                let case = Case { field, photons, depth, size, kernel: Kernel::Uniform };
-                known.parts(&case).map(|p| 100.0 * p.total())
+                let case = Case { field, photons, depth, size, is_biased: false, kernel: Kernel::Uniform };
+                known.error(&case).map(|error| 100.0 * error.total())
             });
             let theory = theory.collect::<anyhow::Result<Vec<f64>>>()?;
-            let chosen: Vec<&Result> = results
+            let chosen: Vec<&CaseResult> = results
                 .iter()
                 .filter(|r| {
                     let c = &r.case;
@@ -207,7 +210,7 @@ fn depths(settings: &Settings, cells: &Cells, results: &[Result]) -> anyhow::Res
 
 type PointsWithBars = (Vec<f64>, Vec<f64>, Vec<(f64, f64)>);
 
-fn path_points(cells: &Cells, results: &[Result], field: &Field) -> anyhow::Result<PointsWithBars> {
+fn path_points(cells: &Cells, results: &[CaseResult], field: &Field) -> anyhow::Result<PointsWithBars> {
     let (mut x, mut y, mut bars) = (Vec::new(), Vec::new(), Vec::new());
     for &depth in field.depths {
         let (exact, _) = exact_at(results, field, depth);
@@ -223,7 +226,7 @@ fn path_points(cells: &Cells, results: &[Result], field: &Field) -> anyhow::Resu
 }
 
 /// Fano factor of the photon counts.
-fn counts(cells: &Cells, results: &[Result]) -> anyhow::Result<FigureFiles> {
+fn counts(cells: &Cells, results: &[CaseResult]) -> anyhow::Result<FigureFiles> {
     let mut panel = Panel::new(
         Axis::linear("radius", "mfp"),
         Axis::linear("variance over mean of photon counts, less 1", ""),
@@ -248,6 +251,7 @@ fn counts(cells: &Cells, results: &[Result]) -> anyhow::Result<FigureFiles> {
                 photons: most,
                 depth: 1.0,
                 size: Size::Radius(r),
+                is_biased: false,
                 kernel: Kernel::Uniform,
             })
         };

@@ -1,12 +1,12 @@
 //! Measuring one map, or one batch of paths.
 
-use super::cases::{Case, Size};
-use super::fields::{CELL, FIELDS, Field};
+use super::cases::Case;
+use super::fields::{FIELDS, Field};
 use crate::harness::{CellId, CellOutput, Settings};
-use crate::theory::Fog;
+use crate::setups::Size;
 use anyhow::Context;
-use glam::DVec3;
 use turbid::Spectrum;
+use turbid::estimators::Kernel;
 use turbid::estimators::boundary::Boundary;
 use turbid::photons::{Histories, is_in, shoot};
 use turbid::rng::{Purpose, Stream};
@@ -52,7 +52,7 @@ pub fn cells(settings: &Settings) -> Vec<CellId> {
 pub fn measure(settings: &Settings, cell: &CellId) -> anyhow::Result<CellOutput> {
     let (name, what) = cell.group.rsplit_once('-').with_context(|| format!("group {}", cell.group))?;
     let field = Field::named(name)?;
-    let scene = field.scene()?;
+    let scene = field.setup.scene()?;
     if what == BY_PATHS {
         return Ok(measure_paths(settings, field, &scene, cell.replicate));
     }
@@ -107,8 +107,8 @@ const FEWEST: usize = 25;
 /// Whether photon counts of a case are compared with Poisson's law: whole balls, uniform kernel, enough probes.
 pub fn is_fano_case(case: &Case) -> bool {
     let Size::Radius(r) = case.size else { return false };
-    let is_whole = case.field.fog.room(case.depth) >= r;
-    is_whole && case.kernel_name() == "uniform" && case.probes().len() >= FEWEST
+    let is_whole = case.field.setup.body.room(case.depth) >= r;
+    is_whole && case.kernel == Kernel::Uniform && case.probes().len() >= FEWEST
 }
 
 fn measure_paths(settings: &Settings, field: &Field, scene: &Scene, replicate: u64) -> CellOutput {
@@ -116,11 +116,7 @@ fn measure_paths(settings: &Settings, field: &Field, scene: &Scene, replicate: u
     let mut output = CellOutput::new();
     let paths = ((field.paths.1 as f64 * settings.photon_scale) as u64).max(2);
     for (index, &depth) in field.depths.iter().enumerate() {
-        let place = match field.fog {
-            Fog::Slab { .. } => DVec3::new(0.5 * CELL, 0.5 * CELL, depth),
-            Fog::Sphere { radius } => DVec3::new(0.0, 0.0, radius - depth),
-        };
-        let quantity = Quantity::Fluence(place);
+        let quantity = Quantity::Fluence(field.setup.body.middle(depth));
         let mut values = Moments::new();
         for path in 0..paths {
             let history = (index as u64) << 40 | path;

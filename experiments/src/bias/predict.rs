@@ -1,10 +1,11 @@
 //! What theory predicts of every case, in parts, before anything is measured.
 
-use super::cases::{Case, Size};
-use super::fields::{CELL, FIELDS, Field};
-use crate::harness::{Known, Prediction, Settings, Unit};
-use crate::theory::{Fog, Gathers, NearestGather};
-pub use crate::theory::{PART_NAMES, Parts};
+use super::cases::Case;
+use super::fields::{FIELDS, Field};
+use crate::harness::{Settings, Unit};
+use crate::prediction::{PredictedError, Prediction, Term};
+use crate::setups::{CELL, Size};
+use crate::theory::{Gathers, NearestGather};
 use rayon::prelude::*;
 
 /// What is predicted of each field whose photons are all stored: collisions of a history, on average.
@@ -19,43 +20,36 @@ pub struct Theory(Gathers);
 impl Theory {
     /// The theory of a field.
     pub fn new(field: &'static Field) -> anyhow::Result<Self> {
-        let (fog, albedo, g) = (field.fog, field.albedo, field.g);
-        Ok(Theory(Gathers::new(fog, albedo, g, field.exact()?, field.depths, 0.5 * CELL)))
+        Ok(Theory(Gathers::new(field.setup, field.depths, 0.5 * CELL)?))
     }
 
-    /// The parts of one case. Fixed radii may be asked at any depth, nearest gathers at the field's own.
-    pub fn parts(&self, case: &Case) -> anyhow::Result<Parts> {
-        let nearest = |k, is_biased| {
-            let density = case.field.density(case.photons);
-            let gather = NearestGather { kernel: case.kernel, k, cap: case.cap(), density, is_biased };
-            self.0.nearest(&gather, case.depth)
-        };
+    /// The predicted error of one case. Fixed radii may be asked at any depth, nearest gathers at the field's own.
+    pub fn error(&self, case: &Case) -> anyhow::Result<PredictedError> {
         match case.size {
             Size::Radius(r) => self.0.within(case.kernel, r, case.depth),
-            Size::Nearest(k) => nearest(k, false),
-            Size::NearestBiased(k) => nearest(k, true),
+            Size::Nearest(k) => {
+                let (density, is_biased) = (case.field.setup.density(case.photons), case.is_biased);
+                let gather = NearestGather { kernel: case.kernel, k, cap: case.cap(), density, is_biased };
+                self.0.nearest(&gather, case.depth)
+            }
         }
     }
 }
 
-/// Collisions of a history, on average: the integral of the fluence over the fog, per unit of power.
+/// Collisions of a history, on average.
 fn collisions(field: &'static Field) -> anyhow::Result<f64> {
-    let total = field.fog.total(&field.exact()?, PANELS)?;
-    Ok(match field.fog {
-        Fog::Slab { .. } => total,
-        Fog::Sphere { .. } => total / field.power(),
-    })
+    field.setup.collisions(&field.setup.exact()?, PANELS)
 }
 
-/// All cases of a study with their parts, computed in parallel.
-pub fn budget(settings: &Settings) -> anyhow::Result<Vec<(Case, Parts)>> {
+/// All cases of a study with their predicted errors, computed in parallel.
+pub fn budget(settings: &Settings) -> anyhow::Result<Vec<(Case, PredictedError)>> {
     let mut all = Vec::new();
     for field in &FIELDS {
         let theory = Theory::new(field)?;
         let cases: Vec<Case> =
             field.photons(settings).into_iter().flat_map(|n| Case::all(field, n)).collect();
-        let predicted: Vec<anyhow::Result<(Case, Parts)>> =
-            cases.into_par_iter().map(|case| theory.parts(&case).map(|p| (case, p))).collect();
+        let predicted: Vec<anyhow::Result<(Case, PredictedError)>> =
+            cases.into_par_iter().map(|case| theory.error(&case).map(|error| (case, error))).collect();
         for item in predicted {
             all.push(item?);
         }
@@ -63,59 +57,23 @@ pub fn budget(settings: &Settings) -> anyhow::Result<Vec<(Case, Parts)>> {
     Ok(all)
 }
 
-/// The parts of a case, as they were written down.
-pub fn recall(known: &Known, case: &Case) -> anyhow::Result<Parts> {
-    let name = case.name();
-    let (exact, exact_error) = known.get(&name, "exact fluence")?;
-    let [edge, blur, rule, clusters] = PART_NAMES;
-    Ok(Parts {
-        exact,
-        exact_error,
-        edge: known.part(&name, edge)?,
-        blur: known.part(&name, blur)?,
-        rule: known.part(&name, rule)?,
-        clusters: known.part(&name, clusters)?,
-        error: known.get(&name, "error")?.1 / 100.0,
-    })
-}
-
 /// The predictions, as they are written down before the measurement.
 pub fn predict(settings: &Settings) -> anyhow::Result<Vec<Prediction>> {
     let mut predictions = Vec::new();
-    for (case, parts) in budget(settings)? {
-        let mut add = |quantity: &str, unit, value: f64, error: f64, source: &str| {
-            let (case, quantity, source) = (case.name(), quantity.to_string(), source.to_string());
-            predictions.push(Prediction { case, quantity, unit, value, error, source });
-        };
-        let fluence = parts.exact * (1.0 + parts.total());
-        add("exact fluence", Unit::FLUENCE, parts.exact, parts.exact_error, case.field.source());
-        add(
-            "fluence",
-            Unit::FLUENCE,
-            fluence,
-            parts.exact * parts.error,
-            "exact field, kernel mean, k-nearest law",
-        );
-        add("error", Unit::PERCENT, 100.0 * parts.total(), 100.0 * parts.error, "sum of the parts");
-        let sources = [
-            "kernel mean of a uniform field in the medium, less 1",
-            "kernel mean of the exact field, less the edge",
-            "expectation with the k-th photon summed, less without",
-            "photons of one history, far from faces",
-        ];
-        for ((name, value), source) in PART_NAMES.iter().zip(parts.list()).zip(sources) {
-            add(&format!("error from {name}"), Unit::PERCENT, 100.0 * value, 100.0 * parts.error, source);
-        }
+    let source = |term| match term {
+        Term::Edge => "kernel mean of a uniform field in the medium, less 1",
+        Term::Blur => "kernel mean of the exact field, less the edge",
+        Term::Nearest => "expectation with the k-th photon summed, less without",
+        Term::Clusters => "photons of one history, far from faces",
+        Term::Step | Term::Storage => "none",
+    };
+    for (case, error) in budget(settings)? {
+        let sources = [case.field.setup.source(), "exact field, kernel mean, k-nearest law"];
+        predictions.extend(error.predictions(&case.name(), ("fluence", Unit::FLUENCE), sources, source));
     }
     for field in FIELDS.iter().filter(|f| f.has_clusters()) {
-        predictions.push(Prediction {
-            case: field.name.to_string(),
-            quantity: COLLISIONS.to_string(),
-            unit: Unit::ONE,
-            value: collisions(field)?,
-            error: 1e-5,
-            source: "integral of the exact fluence".to_string(),
-        });
+        let (value, source) = ((collisions(field)?, 1e-5), "integral of the exact fluence");
+        predictions.push(Prediction::new(field.name, COLLISIONS, Unit::ONE, value, source));
     }
     Ok(predictions)
 }
@@ -126,8 +84,9 @@ mod tests {
     use turbid::estimators::Kernel;
 
     fn total(field: &'static Field, depth: f64, radius: f64) -> f64 {
-        let case = Case { field, photons: 1, depth, size: Size::Radius(radius), kernel: Kernel::Uniform };
-        100.0 * Theory::new(field).unwrap().parts(&case).unwrap().total()
+        let (size, kernel) = (Size::Radius(radius), Kernel::Uniform);
+        let case = Case { field, photons: 1, depth, size, is_biased: false, kernel };
+        100.0 * Theory::new(field).unwrap().error(&case).unwrap().total()
     }
 
     /// Errors in per cent of the plain estimate in the slab of albedo 0.9, computed elsewhere by another program and
@@ -157,11 +116,18 @@ mod tests {
     fn the_biased_rule_reads_high() {
         let field = Field::named("uncollided").unwrap();
         let theory = Theory::new(field).unwrap();
-        let case = |size| Case { field, photons: 1_000_000, depth: 1.0, size, kernel: Kernel::Uniform };
-        let right = theory.parts(&case(Size::Nearest(10))).unwrap();
-        let wrong = theory.parts(&case(Size::NearestBiased(10))).unwrap();
+        let case = |is_biased| {
+            let (photons, size, kernel) = (1_000_000, Size::Nearest(10), Kernel::Uniform);
+            Case { field, photons, depth: 1.0, size, is_biased, kernel }
+        };
+        let right = theory.error(&case(false)).unwrap();
+        let wrong = theory.error(&case(true)).unwrap();
         assert!(right.total().abs() < 1e-3);
         // One part in 9 of the right value; the few under-full gathers, which are right, take 1e-3 of it.
-        assert!((wrong.rule / (1.0 + right.total()) - 1.0 / 9.0).abs() < 2e-4, "{}", wrong.rule);
+        assert!(
+            (wrong.of(Term::Nearest) / (1.0 + right.total()) - 1.0 / 9.0).abs() < 2e-4,
+            "{}",
+            wrong.of(Term::Nearest)
+        );
     }
 }

@@ -1,17 +1,18 @@
 //! What the maps say of each case, and how results are picked.
 
-use super::cases::{Case, Size};
+use super::cases::Case;
 use super::fields::Field;
 use super::measure::is_fano_case;
-use super::predict::Parts;
-use crate::harness::{Cells, Compared};
+use crate::harness::Cells;
+use crate::prediction::{Compared, Term};
+use crate::setups::Size;
 use crate::theory::clustering;
 use turbid::stats::Moments;
 
 /// One case with everything that is known of it; errors in per cent of the exact fluence.
-pub type Result = Compared<Case, Parts>;
+pub type CaseResult = Compared<Case>;
 
-impl Result {
+impl CaseResult {
     /// Whether the measurement is fine enough to see the predicted error at all.
     pub fn sees_prediction(&self) -> bool {
         self.predicted().abs() >= 2.0 * self.error.std_error()
@@ -19,7 +20,7 @@ impl Result {
 
     /// Whether the medium fills every ball, as far as the prediction can tell.
     pub fn is_whole(&self) -> bool {
-        self.parts.edge.abs() < 1e-6
+        self.expected.of(Term::Edge).abs() < 1e-6
     }
 }
 
@@ -38,14 +39,14 @@ pub struct Mistake {
 }
 
 /// The largest number of photons a map of a field.
-pub fn largest(results: &[Result], field: &Field) -> u64 {
+pub fn largest(results: &[CaseResult], field: &Field) -> u64 {
     results.iter().filter(|r| r.case.field == field).map(|r| r.case.photons).max().unwrap_or(0)
 }
 
 /// The exact fluence at a probe and its bound.
-pub fn exact_at(results: &[Result], field: &Field, depth: f64) -> (f64, f64) {
+pub fn exact_at(results: &[CaseResult], field: &Field, depth: f64) -> (f64, f64) {
     let found = results.iter().find(|r| r.case.field == field && r.case.depth == depth);
-    found.map_or((f64::NAN, f64::NAN), |r| (r.parts.exact, r.parts.exact_error))
+    found.map_or((f64::NAN, f64::NAN), |r| r.expected.exact)
 }
 
 /// Variance over mean of the photon counts, where they are compared.
@@ -60,14 +61,16 @@ pub fn fano(cells: &Cells, case: &Case) -> anyhow::Result<Option<Moments>> {
 /// What clusters add to a Fano factor of 1.
 pub fn predicted_fano(case: &Case) -> f64 {
     match case.size {
-        Size::Radius(r) if case.field.has_clusters() => clustering(case.field.albedo, case.field.g, r),
+        Size::Radius(r) if case.field.has_clusters() => {
+            clustering(case.field.setup.albedo, case.field.setup.g, r)
+        }
         _ => 0.0,
     }
 }
 
 /// The results of right estimators that a test picks.
-pub fn pick(results: &[Result], test: impl Fn(&Result) -> bool) -> Vec<&Result> {
-    results.iter().filter(|r| !r.case.is_biased() && test(r)).collect()
+pub fn pick(results: &[CaseResult], test: impl Fn(&CaseResult) -> bool) -> Vec<&CaseResult> {
+    results.iter().filter(|r| !r.case.is_biased && test(r)).collect()
 }
 
 /// Variance over mean of the photon counts, less 1, a map each; the mean over all maps divides, since the ratio of

@@ -1,14 +1,15 @@
 //! The tables.
 
-use super::cases::Size;
 use super::fields::FIELDS;
 use super::measure::path_case;
-use super::results::{Result, exact_at, largest, pick};
+use super::results::{CaseResult, exact_at, largest, pick};
 use crate::harness::{Cells, Table, signed, with_error};
+use crate::prediction::Term;
+use crate::setups::Size;
 use turbid::estimators::Kernel;
 
 /// Measured and predicted error with its parts.
-pub fn errors(results: &[Result]) -> Table {
+pub fn errors(results: &[CaseResult]) -> Table {
     let columns = [
         "field",
         "photons",
@@ -27,17 +28,17 @@ pub fn errors(results: &[Result]) -> Table {
         let is_shown = matches!(r.case.size, Size::Radius(_) | Size::Nearest(50 | 500));
         is_shown && r.case.kernel == Kernel::Uniform && r.case.photons == largest(results, r.case.field)
     });
-    let row = |r: &&Result| {
+    let row = |r: &&CaseResult| {
         vec![
             r.case.field.name.to_string(),
             r.case.photons.to_string(),
             r.case.depth.to_string(),
             r.case.gather_name(),
             with_error(r.error.mean(), r.error.std_error()),
-            percent(r.parts.total()),
-            percent(r.parts.edge),
-            percent(r.parts.blur),
-            percent(r.parts.clusters),
+            percent(r.expected.total()),
+            percent(r.expected.of(Term::Edge)),
+            percent(r.expected.of(Term::Blur)),
+            percent(r.expected.of(Term::Clusters)),
             signed(r.z(), 1),
             if r.sees_prediction() { "" } else { "cannot see its prediction" }.to_string(),
         ]
@@ -54,7 +55,7 @@ pub fn errors(results: &[Result]) -> Table {
 }
 
 /// Exact fluence, path tracer and photon map.
-pub fn paths(cells: &Cells, results: &[Result]) -> anyhow::Result<Table> {
+pub fn paths(cells: &Cells, results: &[CaseResult]) -> anyhow::Result<Table> {
     let mut rows = Vec::new();
     for field in FIELDS.iter().filter(|f| f.has_clusters()) {
         for &depth in field.depths {
@@ -65,6 +66,7 @@ pub fn paths(cells: &Cells, results: &[Result]) -> anyhow::Result<Table> {
                 c.field == field
                     && c.depth == depth
                     && c.size == Size::Nearest(50)
+                    && !c.is_biased
                     && c.photons == largest(results, field)
             });
             let map = map.map_or_else(String::new, |r| {

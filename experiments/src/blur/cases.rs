@@ -1,28 +1,20 @@
 //! The cases: with which gather and kernel the edges of each map are probed, and where.
 
 use super::shaft::{CAP, DEPTH, LENGTH, WIDTH, density};
+use crate::setups::Size;
 use glam::DVec3;
 use std::f64::consts::PI;
 use turbid::estimators::{Estimator, Gather, Kernel};
-
-/// How large a gather is.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Size {
-    /// All photons within this radius [mfp].
-    Radius(f64),
-    /// All photons within the radius at which the kernel has the standard deviation of the uniform one of this radius.
-    Deviation(f64),
-    /// The k nearest photons.
-    Nearest(usize),
-}
 
 /// One profile across the edges of a map.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Case {
     /// Photons emitted into the map.
     pub photons: u64,
-    /// Gather size.
+    /// Gather size: a radius is that of the uniform kernel of the same standard deviation, if `is_deviation`.
     pub size: Size,
+    /// Whether kernels are compared at equal standard deviation, and not at equal radius.
+    pub is_deviation: bool,
     /// Kernel.
     pub kernel: Kernel,
 }
@@ -45,23 +37,23 @@ impl Case {
     /// the others.
     pub fn all(photons: u64, is_largest: bool) -> Vec<Case> {
         let mut cases = Vec::new();
-        let mut add = |size, kernel| {
-            let case = Case { photons, size, kernel };
+        let mut add = |size, is_deviation, kernel| {
+            let case = Case { photons, size, is_deviation, kernel };
             if case.scale() <= LARGEST * CAP {
                 cases.push(case);
             }
         };
         for radius in RADII {
-            add(Size::Radius(radius), Kernel::Uniform);
+            add(Size::Radius(radius), false, Kernel::Uniform);
         }
         for k in NEIGHBORS {
-            add(Size::Nearest(k), Kernel::Uniform);
+            add(Size::Nearest(k), false, Kernel::Uniform);
         }
         if is_largest {
             for kernel in Kernel::ALL.into_iter().filter(|&k| k != Kernel::Uniform) {
-                add(Size::Radius(KERNELS_AT), kernel);
-                add(Size::Deviation(KERNELS_AT), kernel);
-                add(Size::Nearest(KERNELS_K), kernel);
+                add(Size::Radius(KERNELS_AT), false, kernel);
+                add(Size::Radius(KERNELS_AT), true, kernel);
+                add(Size::Nearest(KERNELS_K), false, kernel);
             }
         }
         cases
@@ -79,23 +71,14 @@ impl Case {
 
     /// The gather in words.
     pub fn gather_name(&self) -> String {
-        match self.size {
-            Size::Radius(r) => format!("r={r}"),
-            Size::Deviation(r) => format!("deviation of r={r}"),
-            Size::Nearest(k) => format!("k={k}"),
-        }
-    }
-
-    /// Whether the k-th photon sets the radius.
-    pub fn is_nearest(&self) -> bool {
-        matches!(self.size, Size::Nearest(_))
+        format!("{}{}", if self.is_deviation { "deviation of " } else { "" }, self.size.name())
     }
 
     /// The radius, or that of the ball that holds k photons far inside on average [mfp].
     pub fn scale(&self) -> f64 {
         match self.size {
-            Size::Radius(r) => r,
-            Size::Deviation(r) => r * (Kernel::Uniform.m2() / self.kernel.m2()).sqrt(),
+            Size::Radius(r) if !self.is_deviation => r,
+            Size::Radius(r) => r * (Kernel::Uniform.m2() / self.kernel.m2()).sqrt(),
             Size::Nearest(k) => libm::cbrt(3.0 * k as f64 / (4.0 * PI * density(self.photons))),
         }
     }
@@ -104,7 +87,7 @@ impl Case {
     pub fn estimator(&self) -> turbid::Result<Estimator> {
         let gather = match self.size {
             Size::Nearest(k) => Gather::nearest(k, CAP),
-            Size::Radius(_) | Size::Deviation(_) => Gather::radius(self.scale()),
+            Size::Radius(_) => Gather::radius(self.scale()),
         };
         Ok(Estimator::new(self.kernel, gather?))
     }
@@ -112,7 +95,7 @@ impl Case {
     /// Distances of the probes inside the edge over the scale, negative outside, rising. Fixed radii see nothing
     /// beyond -1.
     pub fn places(&self) -> Vec<f64> {
-        if self.is_nearest() {
+        if self.size.is_nearest() {
             (-13..=10).map(|i| 0.15 * f64::from(i)).collect()
         } else {
             (-9..=11).map(|i| 0.1 * f64::from(i)).collect()
@@ -144,7 +127,7 @@ impl Case {
 
     /// Farthest that a photon is taken from [mfp].
     pub fn reach(&self) -> f64 {
-        if self.is_nearest() { CAP } else { self.scale() }
+        if self.size.is_nearest() { CAP } else { self.scale() }
     }
 }
 
@@ -188,7 +171,7 @@ mod tests {
     #[test]
     fn deviations_are_equal() {
         for kernel in Kernel::ALL {
-            let case = Case { photons: 1, size: Size::Deviation(0.2), kernel };
+            let case = Case { photons: 1, size: Size::Radius(0.2), is_deviation: true, kernel };
             let deviation = case.scale() * (kernel.m2() / 3.0).sqrt();
             assert!((deviation - 0.2 / 5.0f64.sqrt()).abs() < 1e-15, "{kernel:?} {deviation}");
         }

@@ -1,22 +1,24 @@
 //! What all maps together say: rows, budget, claims, figures, tables.
 
-use super::cases::{Case, Size};
+use super::cases::Case;
 use super::measure::all_cases;
 use super::predict::{EQUIVALENT, RISE, Theory};
-use super::results::{Result, Transfer, find};
+use super::results::{CaseResult, Transfer, find};
 use super::shaft::CAP;
 use super::{claims, figures, shaft, tables, waves};
-use crate::harness::{Cells, Entry, Estimate, Known, Prediction, Row, Section, Settings, Term, Unit};
+use crate::harness::{Cells, Estimate, Row, Section, Settings, Unit};
+use crate::prediction::{Entry, Prediction, Predictions, Term};
+use crate::setups::Size;
 use rayon::prelude::*;
 use turbid::estimators::Kernel;
 use turbid::stats::Moments;
 
 /// Concludes.
 pub fn conclude(settings: &Settings, predictions: &[Prediction], cells: &Cells) -> anyhow::Result<Section> {
-    let known = Known::new(predictions);
-    let results: Vec<anyhow::Result<Result>> = all_cases(settings)
+    let known = Predictions::new(predictions);
+    let results: Vec<anyhow::Result<CaseResult>> = all_cases(settings)
         .into_par_iter()
-        .map(|case| Result::new(case, Theory::recall(&known, &case)?, cells))
+        .map(|case| CaseResult::new(case, Theory::recall(&known, &case)?, cells))
         .collect();
     let results = results.into_iter().collect::<anyhow::Result<Vec<_>>>()?;
     let mut transfers = Vec::new();
@@ -48,7 +50,7 @@ const ENOUGH: f64 = 100.0;
 
 /// The places of a profile in the error budget, in parts of the exact fluence inside. On the edge itself the exact value
 /// is taken to be the mean of both sides.
-fn entries(result: &Result) -> Vec<Entry> {
+fn entries(result: &CaseResult) -> Vec<Entry> {
     let group = format!("blur-{}", Case::group(result.case.photons));
     let mut entries = Vec::new();
     for (index, place) in result.case.places().into_iter().enumerate() {
@@ -64,7 +66,7 @@ fn entries(result: &Result) -> Vec<Entry> {
     entries
 }
 
-fn rows(results: &[Result], transfers: &[Transfer]) -> anyhow::Result<Vec<Row>> {
+fn rows(results: &[CaseResult], transfers: &[Transfer]) -> anyhow::Result<Vec<Row>> {
     let mut rows = Vec::new();
     for result in results {
         let (name, theory) = (result.case.name(), &result.theory);
@@ -100,8 +102,8 @@ fn rows(results: &[Result], transfers: &[Transfer]) -> anyhow::Result<Vec<Row>> 
     Ok(rows)
 }
 
-fn summarise(section: &mut Section, results: &[Result], transfers: &[Transfer]) {
-    let by_scale = |r: &Result| r.rise.times(1.0 / r.case.scale());
+fn summarise(section: &mut Section, results: &[CaseResult], transfers: &[Transfer]) {
+    let by_scale = |r: &CaseResult| r.rise.times(1.0 / r.case.scale());
     let text = |e: &Estimate| crate::harness::with_error(e.value(), e.std_error());
     let fixed = find(results, Size::Radius(0.2), Kernel::Uniform);
     let nearest = find(results, Size::Nearest(100), Kernel::Uniform);
@@ -138,7 +140,7 @@ fn summarise(section: &mut Section, results: &[Result], transfers: &[Transfer]) 
         (squares / scored.len().max(1) as f64).sqrt(),
         scored.iter().map(|z| z.abs()).fold(0.0, f64::max)
     ));
-    let off = |r: &Result| (r.theory.rise_probed / r.theory.rise - 1.0).abs();
+    let off = |r: &CaseResult| (r.theory.rise_probed / r.theory.rise - 1.0).abs();
     section.notes.push(format!(
         "Widths are read off the mean profile of all maps through its probes, a tenth of a radius apart (k nearest: \
          three twentieths), by a monotone interpolant; the prediction is the same number read off the expected \

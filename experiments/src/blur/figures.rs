@@ -1,10 +1,11 @@
 //! The figures.
 
-use super::cases::{Case, KERNELS_AT, NEIGHBORS, RADII, Size};
+use super::cases::{Case, KERNELS_AT, NEIGHBORS, RADII};
 use super::predict::Exact;
-use super::results::{Result, Transfer, find, find_at, largest};
+use super::results::{CaseResult, Transfer, find, find_at, find_deviation};
 use super::waves;
 use crate::harness::{FigureFiles, bar};
+use crate::setups::Size;
 use crate::theory::{kernel_title, referee_kernel};
 use turbid::estimators::Kernel;
 use turbid::stats::Moments;
@@ -14,7 +15,7 @@ use turbid_analytic::kernel as referee;
 use turbid_figure::{Along, Axis, Color, Dash, Figure, Legend, Line, Panel, Points, Rule, Scale, Width};
 
 /// All figures.
-pub fn all(results: &[Result], transfers: &[Transfer]) -> anyhow::Result<Vec<FigureFiles>> {
+pub fn all(results: &[CaseResult], transfers: &[Transfer]) -> anyhow::Result<Vec<FigureFiles>> {
     Ok(vec![edges(results)?, widths(results)?, kernels(results)?, contrast(transfers)?])
 }
 
@@ -31,7 +32,7 @@ fn exact_line(case: &Case, places: &[f64], unit: f64) -> anyhow::Result<Vec<f64>
 }
 
 /// The measured profile over the exact plateau, at distances in units of `unit`.
-fn points(result: &Result, label: &str, class: usize, unit: f64) -> Points {
+fn points(result: &CaseResult, label: &str, class: usize, unit: f64) -> Points {
     let plateau = result.theory.plateau;
     let scale = result.case.scale();
     let x = result.case.places().iter().map(|p| p * scale / unit).collect();
@@ -42,7 +43,7 @@ fn points(result: &Result, label: &str, class: usize, unit: f64) -> Points {
 }
 
 /// What the prediction leaves of the profile, in per cent of the plateau.
-fn residuals(result: &Result, label: &str, class: usize, shift: f64) -> Points {
+fn residuals(result: &CaseResult, label: &str, class: usize, shift: f64) -> Points {
     let plateau = result.theory.plateau;
     let x = result.case.places().iter().map(|p| p + shift).collect();
     let over = |i: usize, v: f64| 100.0 * (v - result.theory.profile[i].0) / plateau;
@@ -53,7 +54,7 @@ fn residuals(result: &Result, label: &str, class: usize, shift: f64) -> Points {
 }
 
 /// Edge spread, fixed radius and k nearest, and what the predictions leave.
-fn edges(results: &[Result]) -> anyhow::Result<FigureFiles> {
+fn edges(results: &[CaseResult]) -> anyhow::Result<FigureFiles> {
     let fixed: Vec<(Size, String)> = RADII.map(|r| (Size::Radius(r), format!("r = {r} mfp"))).to_vec();
     let nearest: Vec<(Size, String)> =
         [20, 100, 500].map(|k| (Size::Nearest(k), format!("k = {k}"))).to_vec();
@@ -105,7 +106,7 @@ fn edges(results: &[Result]) -> anyhow::Result<FigureFiles> {
 }
 
 /// Width against radius, k and number of photons: in mean free paths, and in radii.
-fn widths(results: &[Result]) -> anyhow::Result<FigureFiles> {
+fn widths(results: &[CaseResult]) -> anyhow::Result<FigureFiles> {
     let mut counts: Vec<u64> = results.iter().map(|r| r.case.photons).collect();
     counts.dedup();
     // With few photons an interval may reach below 0.
@@ -117,7 +118,7 @@ fn widths(results: &[Result]) -> anyhow::Result<FigureFiles> {
     let mut left_radii = Panel::new(radius(), Axis::linear("width / radius", "").with_range(1.1, 1.3));
     let mut right_radii =
         Panel::new(k_axis(), Axis::linear("width / plateau radius", "").with_range(1.1, 2.1));
-    let case = |photons, size| Case { photons, size, kernel: Kernel::Uniform };
+    let case = |photons, size| Case { photons, size, is_deviation: false, kernel: Kernel::Uniform };
     let exact = |photons, size| Exact::new(&case(photons, size))?.widths().map(|w| w.0);
     let radii: Vec<f64> = grid(0.0, 1.0, 20).iter().map(|t| 0.08 * libm::exp(t * libm::log(6.0))).collect();
     let line = radii.iter().map(|&r| exact(1, Size::Radius(r))).collect::<anyhow::Result<Vec<f64>>>()?;
@@ -127,14 +128,14 @@ fn widths(results: &[Result]) -> anyhow::Result<FigureFiles> {
     for (class, &photons) in counts.iter().enumerate() {
         let label = format!("{photons} photons a map");
         let series = |sizes: &[(f64, Size)], in_radii: bool| {
-            let found: Vec<(f64, &Result)> = sizes
+            let found: Vec<(f64, &CaseResult)> = sizes
                 .iter()
                 .filter_map(|&(x, size)| Some((x, find_at(results, photons, size, Kernel::Uniform)?)))
                 .collect();
-            let unit = |r: &Result| if in_radii { r.case.scale() } else { 1.0 };
+            let unit = |r: &CaseResult| if in_radii { r.case.scale() } else { 1.0 };
             // Widths in radii are nearly the same for all numbers of photons: side by side.
             let shift = if in_radii { 1.0 + 0.04 * (class as f64 - 1.0) } else { 1.0 };
-            let bar = |r: &Result| {
+            let bar = |r: &CaseResult| {
                 let interval = r.rise.interval(0.95);
                 (interval.low / unit(r), interval.high / unit(r))
             };
@@ -183,8 +184,7 @@ fn widths(results: &[Result]) -> anyhow::Result<FigureFiles> {
 }
 
 /// All kernels, at equal radius and at equal standard deviation.
-fn kernels(results: &[Result]) -> anyhow::Result<FigureFiles> {
-    let most = largest(results);
+fn kernels(results: &[CaseResult]) -> anyhow::Result<FigureFiles> {
     let mut panels = Vec::new();
     for (title, x, is_equal) in [
         ("equal radius", "distance inside the edge / radius", false),
@@ -197,12 +197,12 @@ fn kernels(results: &[Result]) -> anyhow::Result<FigureFiles> {
         )
         .with_title(title);
         for (class, kernel) in Kernel::ALL.into_iter().enumerate() {
-            let size = match kernel {
-                Kernel::Uniform => Size::Radius(KERNELS_AT),
-                _ if is_equal => Size::Deviation(KERNELS_AT),
-                _ => Size::Radius(KERNELS_AT),
+            let found = match kernel {
+                Kernel::Uniform => find(results, Size::Radius(KERNELS_AT), kernel),
+                _ if is_equal => find_deviation(results, KERNELS_AT, kernel),
+                _ => find(results, Size::Radius(KERNELS_AT), kernel),
             };
-            let Some(result) = find_at(results, most, size, kernel) else { continue };
+            let Some(result) = found else { continue };
             let scale = result.case.scale();
             let unit = if is_equal { scale * (kernel.m2() / 3.0).sqrt() } else { scale };
             let places = grid(range.0, range.1, 80);

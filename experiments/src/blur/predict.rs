@@ -1,11 +1,13 @@
 //! Profiles and widths of every case, before anything is measured.
 
-use super::cases::{Case, Size};
+use super::cases::Case;
 use super::measure::all_cases;
 use super::profile::{equivalent_width, rise_width};
 use super::shaft::{CAP, density};
 use super::waves;
-use crate::harness::{Known, Prediction, Settings, Unit};
+use crate::harness::{Settings, Unit};
+use crate::prediction::{Prediction, Predictions};
+use crate::setups::Size;
 use crate::theory::referee_kernel;
 use anyhow::Context;
 use rayon::prelude::*;
@@ -96,7 +98,7 @@ impl Theory {
     }
 
     /// The theory of a case, as it was written down.
-    pub fn recall(known: &Known, case: &Case) -> anyhow::Result<Self> {
+    pub fn recall(known: &Predictions, case: &Case) -> anyhow::Result<Self> {
         let name = case.name();
         let find = |quantity: &str| known.get(&name, quantity);
         let value = |quantity: &str| find(quantity).map(|(value, _)| value);
@@ -131,24 +133,24 @@ pub fn predict(settings: &Settings) -> anyhow::Result<Vec<Prediction>> {
     let mut predictions = Vec::new();
     for theory in theories {
         let (case, theory) = theory?;
-        let mut add = |quantity: &str, unit, value: f64, error: f64, source: &str| {
-            let (case, quantity, source) = (case.name(), quantity.to_string(), source.to_string());
-            predictions.push(Prediction { case, quantity, unit, value, error, source });
+        let name = case.name();
+        let mut add = |quantity: &str, unit, value: (f64, f64), source: &str| {
+            predictions.push(Prediction::new(&name, quantity, unit, value, source));
         };
-        let source = if case.is_nearest() {
+        let source = if case.size.is_nearest() {
             "edge of a decaying shaft, law of the k-th photon"
         } else {
             "edge of a decaying shaft, kernel"
         };
-        for (place, (value, error)) in case.places().iter().zip(&theory.profile) {
-            add(&Case::quantity(*place), Unit::ONE, *value, *error, source);
+        for (place, value) in case.places().iter().zip(&theory.profile) {
+            add(&Case::quantity(*place), Unit::ONE, *value, source);
         }
-        add(PLATEAU, Unit::ONE, theory.plateau, 1e-10, source);
-        add(RISE_EXACT, Unit::MFP, theory.rise, 1e-9, source);
-        add(EQUIVALENT_EXACT, Unit::MFP, theory.equivalent, 1e-9, source);
+        add(PLATEAU, Unit::ONE, (theory.plateau, 1e-10), source);
+        add(RISE_EXACT, Unit::MFP, (theory.rise, 1e-9), source);
+        add(EQUIVALENT_EXACT, Unit::MFP, (theory.equivalent, 1e-9), source);
         let probed = "the same functional of the expected profile at the probes";
-        add(RISE, Unit::MFP, theory.rise_probed, 1e-9, probed);
-        add(EQUIVALENT, Unit::MFP, theory.equivalent_probed, 1e-9, probed);
+        add(RISE, Unit::MFP, (theory.rise_probed, 1e-9), probed);
+        add(EQUIVALENT, Unit::MFP, (theory.equivalent_probed, 1e-9), probed);
     }
     predictions.extend(waves::predict()?);
     Ok(predictions)
@@ -160,7 +162,7 @@ mod tests {
     use turbid::estimators::Kernel;
 
     fn theory(size: Size, photons: u64) -> (Theory, f64) {
-        let case = Case { photons, size, kernel: Kernel::Uniform };
+        let case = Case { photons, size, is_deviation: false, kernel: Kernel::Uniform };
         (Theory::new(&case).unwrap(), case.scale())
     }
 

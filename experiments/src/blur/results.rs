@@ -1,10 +1,11 @@
 //! What the maps say of each case, and how results are found.
 
-use super::cases::{Case, Size};
+use super::cases::Case;
 use super::predict::Theory;
 use super::profile::{equivalent_width, rise_width};
 use super::shaft::{CAP, density};
 use crate::harness::{Cells, Estimate};
+use crate::setups::Size;
 use std::f64::consts::PI;
 use turbid::estimators::Kernel;
 use turbid::stats::{Moments, jackknife};
@@ -12,7 +13,7 @@ use turbid_analytic::edge::Edge;
 use turbid_analytic::kernel as referee;
 
 /// One profile with everything that is known of it.
-pub struct Result {
+pub struct CaseResult {
     /// The case.
     pub case: Case,
     /// What was predicted.
@@ -41,7 +42,7 @@ pub struct Transfer {
     pub maps: Vec<f64>,
 }
 
-impl Result {
+impl CaseResult {
     pub fn new(case: Case, theory: Theory, cells: &Cells) -> anyhow::Result<Self> {
         let name = case.name();
         let values = |place: &f64| cells.values(&name, &Case::quantity(*place));
@@ -60,7 +61,7 @@ impl Result {
         let equivalent = (equivalent.value.is_finite() && equivalent.std_error.is_finite())
             .then(|| Estimate::jackknife(&equivalent));
         let rise = Estimate::jackknife(&rise);
-        Ok(Result { case, theory, profile, rise, equivalent, single: single.iter().collect() })
+        Ok(CaseResult { case, theory, profile, rise, equivalent, single: single.iter().collect() })
     }
 
     /// Mean profile at one place over maps.
@@ -92,16 +93,22 @@ pub fn inside(case: &Case) -> Vec<f64> {
 }
 
 /// The largest number of photons a map.
-pub fn largest(results: &[Result]) -> u64 {
+pub fn largest(results: &[CaseResult]) -> u64 {
     results.iter().map(|r| r.case.photons).max().unwrap_or(0)
 }
 
 /// The profile of the largest maps with a gather and kernel.
-pub fn find(results: &[Result], size: Size, kernel: Kernel) -> Option<&Result> {
+pub fn find(results: &[CaseResult], size: Size, kernel: Kernel) -> Option<&CaseResult> {
     find_at(results, largest(results), size, kernel)
 }
 
 /// The profile of maps of a number of photons.
-pub fn find_at(results: &[Result], photons: u64, size: Size, kernel: Kernel) -> Option<&Result> {
-    results.iter().find(|r| r.case == Case { photons, size, kernel })
+pub fn find_at(results: &[CaseResult], photons: u64, size: Size, kernel: Kernel) -> Option<&CaseResult> {
+    results.iter().find(|r| r.case == Case { photons, size, is_deviation: false, kernel })
+}
+
+/// The profile of the largest maps with a kernel at the standard deviation of the uniform one of this radius.
+pub fn find_deviation(results: &[CaseResult], radius: f64, kernel: Kernel) -> Option<&CaseResult> {
+    let case = Case { photons: largest(results), size: Size::Radius(radius), is_deviation: true, kernel };
+    results.iter().find(|r| r.case == case)
 }

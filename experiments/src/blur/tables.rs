@@ -1,7 +1,7 @@
 //! The tables.
 
 use super::cases::NEIGHBORS;
-use super::results::Result;
+use super::results::CaseResult;
 use crate::harness::{Table, number, with_error};
 use crate::theory::kernel_title;
 use std::f64::consts::PI;
@@ -9,8 +9,8 @@ use turbid_analytic::edge::{Edge, NearestEdge};
 use turbid_analytic::kernel as referee;
 
 /// Widths of every profile.
-pub fn widths(results: &[Result]) -> Table {
-    let row = |r: &Result| {
+pub fn widths(results: &[CaseResult]) -> Table {
+    let row = |r: &CaseResult| {
         let scale = r.case.scale();
         let by_scale = |value: f64, error: f64| with_error(value / scale, error / scale);
         let single = &r.single;

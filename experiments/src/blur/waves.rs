@@ -1,6 +1,7 @@
 //! A sinusoidal pattern of independent photons: what is left of its contrast at each radius.
 
-use crate::harness::{CellId, CellOutput, Prediction, Settings, Unit};
+use crate::harness::{CellId, CellOutput, Settings, Unit};
+use crate::prediction::Prediction;
 use crate::theory::referee_kernel;
 use glam::DVec3;
 use std::f64::consts::PI;
@@ -99,14 +100,9 @@ pub fn predict() -> anyhow::Result<Vec<Prediction>> {
     for kernel in Kernel::ALL {
         for radius in RADII {
             let transfer = kernel_transfer(referee_kernel(kernel), phase(radius))?;
-            predictions.push(Prediction {
-                case: case(kernel, radius),
-                quantity: QUANTITY.to_string(),
-                unit: Unit::ONE,
-                value: transfer.value,
-                error: transfer.error,
-                source: "cosine transform of the kernel's marginal".to_string(),
-            });
+            let (value, source) =
+                ((transfer.value, transfer.error), "cosine transform of the kernel's marginal");
+            predictions.push(Prediction::new(case(kernel, radius), QUANTITY, Unit::ONE, value, source));
         }
     }
     Ok(predictions)

@@ -1,26 +1,16 @@
 //! The cases asked of transported maps: where, with which gather, kernel and treatment.
 
-use super::fields::{Asked, CELL, FURNACE, Field};
+use super::fields::{CaseSet, Field};
 use crate::harness::Settings;
-use crate::theory::spiral;
+use crate::setups::{Body, CELL, FURNACE, Size, spiral};
 use glam::DVec3;
 use std::f64::consts::PI;
 use turbid::estimators::boundary::Treatment;
-use turbid::estimators::{Estimator, Gather, Kernel};
-use turbid_analytic::boundary::Body;
-
-/// How large a gather is.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Size {
-    /// All photons within this radius [mfp].
-    Radius(f64),
-    /// The k nearest photons.
-    Nearest(usize),
-}
+use turbid::estimators::{Estimator, Kernel};
 
 /// Where probes stand.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Spot {
+pub enum Place {
     /// At this depth, far from edges and corners [mfp].
     Face(f64),
     /// At this depth below both faces of an edge [mfp].
@@ -37,7 +27,7 @@ pub struct Case {
     /// Photons emitted into the map.
     pub photons: u64,
     /// Where.
-    pub spot: Spot,
+    pub place: Place,
     /// Gather size.
     pub size: Size,
     /// Kernel.
@@ -63,29 +53,19 @@ const SIDE: usize = 6;
 /// Probes on a sphere.
 const ON_SPHERE: usize = 32;
 
-impl Spot {
+impl Place {
     /// Depth below the nearest face [mfp].
     pub fn depth(self) -> f64 {
         match self {
-            Spot::Face(h) | Spot::Edge(h) | Spot::Corner(h) => h,
+            Place::Face(h) | Place::Edge(h) | Place::Corner(h) => h,
         }
     }
 
     fn name(self) -> String {
         match self {
-            Spot::Face(h) => format!("h={h}"),
-            Spot::Edge(h) => format!("edge h={h}"),
-            Spot::Corner(h) => format!("corner h={h}"),
-        }
-    }
-}
-
-impl Size {
-    /// Its name.
-    pub fn name(self) -> String {
-        match self {
-            Size::Radius(r) => format!("r={r}"),
-            Size::Nearest(k) => format!("k={k}"),
+            Place::Face(h) => format!("h={h}"),
+            Place::Edge(h) => format!("edge h={h}"),
+            Place::Corner(h) => format!("corner h={h}"),
         }
     }
 }
@@ -96,16 +76,16 @@ impl Case {
         let mut cases = Vec::new();
         let sizes = field.sizes(settings);
         let is_main = photons == field.main_size(settings);
-        let mut add = |spot, size, kernel, treatment| {
+        let mut add = |place, size, kernel, treatment| {
             // In whole balls all treatments are one.
-            let is_whole = matches!(size, Size::Radius(r) if Spot::depth(spot) >= r);
+            let is_whole = matches!(size, Size::Radius(r) if Place::depth(place) >= r);
             if !is_whole || treatment == Treatment::None {
-                cases.push(Case { field, photons, spot, size, kernel, treatment });
+                cases.push(Case { field, photons, place, size, kernel, treatment });
             }
         };
         let mut radii = vec![MAIN.0];
         let mut neighbors = vec![MAIN.1];
-        if field.asked == Asked::All {
+        if field.cases == CaseSet::All {
             // Wide balls for few photons, narrow ones for many.
             radii = if sizes.first().is_some_and(|s| s.0 == photons) {
                 vec![0.2, 0.4, 0.8]
@@ -113,34 +93,34 @@ impl Case {
                 vec![0.1, 0.2, 0.4]
             };
             neighbors = NEIGHBORS.to_vec();
-        } else if !field.is_furnace() {
+        } else if !field.setup.is_furnace() {
             radii = vec![0.1, 0.2, 0.4];
         }
         for treatment in Treatment::ALL {
             for &r in &radii {
                 for x in DEPTHS {
-                    add(Spot::Face(rounded(x * r)), Size::Radius(r), Kernel::Uniform, treatment);
+                    add(Place::Face(rounded(x * r)), Size::Radius(r), Kernel::Uniform, treatment);
                 }
             }
             for &k in &neighbors {
                 let scale = whole_radius(field, photons, k);
                 for x in NEAREST_DEPTHS {
-                    add(Spot::Face(rounded(x * scale)), Size::Nearest(k), Kernel::Uniform, treatment);
+                    add(Place::Face(rounded(x * scale)), Size::Nearest(k), Kernel::Uniform, treatment);
                 }
             }
             for kernel in Kernel::ALL.into_iter().filter(|&k| is_main && k != Kernel::Uniform) {
                 for h in FEW {
-                    add(Spot::Face(h), Size::Radius(MAIN.0), kernel, treatment);
-                    add(Spot::Face(h), Size::Nearest(MAIN.1), kernel, treatment);
+                    add(Place::Face(h), Size::Radius(MAIN.0), kernel, treatment);
+                    add(Place::Face(h), Size::Nearest(MAIN.1), kernel, treatment);
                 }
             }
-            if let Body::Cuboid { .. } = field.body {
+            if let Body::Cuboid { .. } = field.setup.body {
                 for kernel in Kernel::ALL {
                     for h in FEW {
-                        for spot in [Spot::Edge(h), Spot::Corner(h)] {
-                            add(spot, Size::Radius(MAIN.0), kernel, treatment);
+                        for place in [Place::Edge(h), Place::Corner(h)] {
+                            add(place, Size::Radius(MAIN.0), kernel, treatment);
                             if kernel == Kernel::Uniform {
-                                add(spot, Size::Nearest(MAIN.1), kernel, treatment);
+                                add(place, Size::Nearest(MAIN.1), kernel, treatment);
                             }
                         }
                     }
@@ -161,7 +141,7 @@ impl Case {
             "{} n={} {} {} {} {}",
             self.field.name,
             self.photons,
-            self.spot.name(),
+            self.place.name(),
             self.size.name(),
             self.kernel.name(),
             self.treatment.name()
@@ -170,30 +150,26 @@ impl Case {
 
     /// What is asked.
     pub fn estimator(&self) -> turbid::Result<Estimator> {
-        let gather = match self.size {
-            Size::Radius(r) => Gather::radius(r),
-            Size::Nearest(k) => Gather::nearest(k, CAP),
-        };
-        Ok(Estimator::new(self.kernel, gather?).treated(self.treatment))
+        Ok(Estimator::new(self.kernel, self.size.gather(CAP)?).treated(self.treatment))
     }
 
     /// One place that stands for all probes.
-    pub fn place(&self) -> [f64; 3] {
-        match (self.field.body, self.spot) {
-            (Body::Sphere { radius }, spot) => [0.0, 0.0, radius - spot.depth()],
-            (Body::Cuboid { edges: [a, b, _] }, Spot::Face(h)) => [0.5 * a, 0.5 * b, h],
-            (Body::Cuboid { edges: [_, b, _] }, Spot::Edge(h)) => [h, 0.5 * b, h],
-            (Body::Cuboid { .. }, Spot::Corner(h)) => [h, h, h],
-            (_, spot) => [0.0, 0.0, spot.depth()],
+    pub fn point(&self) -> [f64; 3] {
+        match (self.field.setup.body, self.place) {
+            (Body::Sphere { radius }, place) => [0.0, 0.0, radius - place.depth()],
+            (Body::Cuboid { edges: [a, b, _] }, Place::Face(h)) => [0.5 * a, 0.5 * b, h],
+            (Body::Cuboid { edges: [_, b, _] }, Place::Edge(h)) => [h, 0.5 * b, h],
+            (Body::Cuboid { .. }, Place::Corner(h)) => [h, h, h],
+            (Body::Slab { .. }, place) => [0.0, 0.0, place.depth()],
         }
     }
 
     /// The probes: alike by symmetry; a slab that is lit through one face has them there alone.
     pub fn probes(&self) -> Vec<DVec3> {
-        let h = self.spot.depth();
-        match self.field.body {
+        let h = self.place.depth();
+        match self.field.setup.body {
             Body::Sphere { radius } => spiral(ON_SPHERE).map(|dir| dir * (radius - h)).collect(),
-            Body::Cuboid { edges } => in_cuboid(DVec3::from_array(edges), self.spot),
+            Body::Cuboid { edges } => in_cuboid(DVec3::from_array(edges), self.place),
             Body::Slab { thickness } => {
                 let both = self.field.is_lit_alike();
                 let step = (CELL - 2.0) / (SIDE - 1) as f64;
@@ -203,7 +179,6 @@ impl Case {
                     .map(|i| DVec3::new(at(i % SIDE), at(i / SIDE), from_face(i + i / SIDE)))
                     .collect()
             }
-            Body::HalfSpace => vec![DVec3::new(0.0, 0.0, h)],
         }
     }
 }
@@ -216,22 +191,22 @@ fn rounded(length: f64) -> f64 {
 /// The radius in which k photons are expected far from any face, where the fluence is that of the furnace [mfp]; at most
 /// what keeps the deepest probe in the upper half of the bodies.
 pub fn whole_radius(field: &Field, photons: u64, k: usize) -> f64 {
-    let density = FURNACE * field.density(photons);
+    let density = FURNACE * field.setup.density(photons);
     libm::cbrt(3.0 * k as f64 / (4.0 * PI * density)).min(0.5)
 }
 
 /// Places at a depth under the faces, edges or corners: of each face and edge at the middle.
-fn in_cuboid(edges: DVec3, spot: Spot) -> Vec<DVec3> {
-    let h = spot.depth();
+fn in_cuboid(edges: DVec3, place: Place) -> Vec<DVec3> {
+    let h = place.depth();
     let mut found = Vec::new();
     // Each coordinate is low, in the middle or high.
     for index in 0..27 {
         let digits = [index % 3, index / 3 % 3, index / 9];
         let faces = digits.iter().filter(|&&d| d != 1).count();
-        let wanted = match spot {
-            Spot::Face(_) => 1,
-            Spot::Edge(_) => 2,
-            Spot::Corner(_) => 3,
+        let wanted = match place {
+            Place::Face(_) => 1,
+            Place::Edge(_) => 2,
+            Place::Corner(_) => 3,
         };
         if faces == wanted {
             let place = |i: usize| [h, 0.5 * edges[i], edges[i] - h][digits[i]];

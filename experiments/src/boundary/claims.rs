@@ -1,16 +1,16 @@
 //! The claims. Each is judged on one number a map; margins leave at least five standard errors of the quick preset.
 
-use super::cases::{Case, MAIN, Size, Spot, whole_radius};
+use super::cases::{Case, MAIN, Place, whole_radius};
 use super::fields::{FIELDS, Field};
-use super::results::{Found, Result, kept};
+use super::results::{CaseResult, Found, kept};
 use super::sheet::{Sheet, Side};
 use crate::harness::{Claim, Estimate, Settings, Unit};
+use crate::setups::{Body, Size};
 use crate::theory::treatment_title;
 use anyhow::Context;
 use turbid::estimators::Kernel;
 use turbid::estimators::boundary::{Rejection, Treatment};
 use turbid::stats::{Moments, amplitude_per_map};
-use turbid_analytic::boundary::Body;
 
 /// All claims of the experiment.
 pub fn all(settings: &Settings, found: &Found) -> anyhow::Result<Vec<Claim>> {
@@ -33,9 +33,8 @@ fn amplitude(cases: &[(f64, &[f64])]) -> anyhow::Result<Estimate> {
     Ok(Estimate::mean(&fitted.moments))
 }
 
-fn amplitude_of(results: &[&Result]) -> anyhow::Result<Estimate> {
-    let pairs: Vec<(f64, &[f64])> = results.iter().map(|r| (r.predicted(), &r.errors[..])).collect();
-    amplitude(&pairs)
+fn amplitude_of(results: &[&CaseResult]) -> anyhow::Result<Estimate> {
+    crate::prediction::amplitude(results, CaseResult::predicted).context("nothing was predicted")
 }
 
 /// The mean error of some cases of the same maps, weighted alike.
@@ -44,7 +43,7 @@ fn mean_error(lists: &[&[f64]]) -> anyhow::Result<Estimate> {
     amplitude(&ones)
 }
 
-fn mean_of(results: &[&Result]) -> anyhow::Result<Estimate> {
+fn mean_of(results: &[&CaseResult]) -> anyhow::Result<Estimate> {
     let lists: Vec<&[f64]> = results.iter().map(|r| &r.errors[..]).collect();
     mean_error(&lists)
 }
@@ -55,17 +54,17 @@ fn cut<'a>(
     found: &'a Found,
     field: &'static Field,
     treatment: Treatment,
-) -> Vec<&'a Result> {
+) -> Vec<&'a CaseResult> {
     let photons = field.main_size(settings);
     found.pick(|c: &Case| {
-        let is_cut = matches!(c.size, Size::Radius(r) if c.spot.depth() < r);
+        let is_cut = matches!(c.size, Size::Radius(r) if c.place.depth() < r);
         (c.field, c.photons, c.treatment) == (field, photons, treatment) && is_cut
     })
 }
 
 fn furnaces(settings: &Settings, found: &Found) -> anyhow::Result<Vec<Claim>> {
     let mut claims = Vec::new();
-    for field in FIELDS.iter().filter(|f| f.is_furnace()) {
+    for field in FIELDS.iter().filter(|f| f.setup.is_furnace()) {
         for treatment in Treatment::ALL {
             let chosen = cut(settings, found, field, treatment);
             let id = format!("{}-{}", field.name, treatment.name().replace(' ', "-"));
@@ -87,10 +86,10 @@ fn furnaces(settings: &Settings, found: &Found) -> anyhow::Result<Vec<Claim>> {
 /// Fields that are no furnaces: they bend in the ball.
 fn lit(found: &Found) -> anyhow::Result<Vec<Claim>> {
     let mut claims = Vec::new();
-    for field in FIELDS.iter().filter(|f| !f.is_furnace()) {
-        let (what, face) = match field.body {
-            Body::Slab { .. } if field.g == 0.0 => ("lit slab".to_string(), "lit face"),
-            Body::Slab { .. } => (format!("lit slab, g = {}", field.g), "lit face"),
+    for field in FIELDS.iter().filter(|f| !f.setup.is_furnace()) {
+        let (what, face) = match field.setup.body {
+            Body::Slab { .. } if field.setup.g == 0.0 => ("lit slab".to_string(), "lit face"),
+            Body::Slab { .. } => (format!("lit slab, g = {}", field.setup.g), "lit face"),
             _ => ("lit sphere".to_string(), "surface"),
         };
         let where_ = format!("{what}, fixed radii, balls cut by the {face}");
@@ -98,7 +97,7 @@ fn lit(found: &Found) -> anyhow::Result<Vec<Claim>> {
         let margin = if field.name == "lit" { 1.0 } else { 2.0 };
         for treatment in Treatment::ALL {
             let chosen = found.pick(|c| {
-                let is_cut = matches!(c.size, Size::Radius(r) if c.spot.depth() < r);
+                let is_cut = matches!(c.size, Size::Radius(r) if c.place.depth() < r);
                 c.field == field && c.treatment == treatment && is_cut
             });
             let id = format!("{}-{}", field.name, treatment.name().replace(' ', "-"));
@@ -134,7 +133,7 @@ fn nearest(settings: &Settings, found: &Found) -> anyhow::Result<Vec<Claim>> {
         let chosen = |treatment| {
             found.pick(move |c| {
                 (c.field, c.photons, c.treatment, c.size) == (field, photons, treatment, Size::Nearest(200))
-                    && c.spot.depth() < 0.6 * whole_radius(field, photons, 200)
+                    && c.place.depth() < 0.6 * whole_radius(field, photons, 200)
             })
         };
         let none = amplitude_of(&chosen(Treatment::None))?;
@@ -273,5 +272,5 @@ fn visible(found: &Found) -> anyhow::Result<Claim> {
 
 /// The place and size that tables and figures show.
 pub fn is_main(c: &Case) -> bool {
-    c.size == Size::Radius(MAIN.0) && c.kernel == Kernel::Uniform && matches!(c.spot, Spot::Face(_))
+    c.size == Size::Radius(MAIN.0) && c.kernel == Kernel::Uniform && matches!(c.place, Place::Face(_))
 }

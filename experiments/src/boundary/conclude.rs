@@ -1,15 +1,15 @@
 //! What all maps together say.
 
-use super::cases::{Case, Size, Spot};
+use super::cases::{Case, Place};
 use super::fields::{FIELDS, Field};
-use super::predict::recall;
-use super::results::{Found, Result, SheetResult, SpreadResult, integrals, kept, rims};
+use super::predict::TERMS;
+use super::results::{CaseResult, Found, SheetResult, SpreadResult, integrals, kept, rims};
 use super::sheet::Sheet;
 use super::spread::Spread;
 use super::{claims, figures, sheet, tables};
-use crate::harness::{
-    Cells, Compared, Entry, Known, Prediction, Row, Section, Settings, Term, Unit, with_error,
-};
+use crate::harness::{Cells, Row, Section, Settings, Unit, with_error};
+use crate::prediction::{Compared, Entry, PredictedError, Prediction, Predictions, Term};
+use crate::setups::Size;
 use anyhow::Context;
 use turbid::estimators::Kernel;
 use turbid::estimators::boundary::{Rejection, Treatment};
@@ -29,13 +29,14 @@ pub fn conclude(settings: &Settings, predictions: &[Prediction], cells: &Cells) 
 }
 
 fn found(settings: &Settings, predictions: &[Prediction], cells: &Cells) -> anyhow::Result<Found> {
-    let known = Known::new(predictions);
+    let known = Predictions::new(predictions);
     let mut results = Vec::new();
     for field in &FIELDS {
         for (photons, _) in field.sizes(settings) {
             for case in Case::all(settings, field, photons) {
-                let parts = recall(&known, &case)?;
-                results.push(Compared::new(case, &case.name(), "fluence", parts, cells)?);
+                let name = case.name();
+                let expected = PredictedError::read(&known, &name, "fluence", &TERMS)?;
+                results.push(Compared::new(case, &name, "fluence", expected, cells)?);
             }
         }
     }
@@ -67,11 +68,8 @@ fn found(settings: &Settings, predictions: &[Prediction], cells: &Cells) -> anyh
 /// Every case whose mean is predicted, for the budget of the study: right and wrong estimators alike.
 fn entries(found: &Found) -> Vec<Entry> {
     let fraction = |errors: &[f64]| errors.iter().map(|e| e / 100.0).collect::<Vec<f64>>();
-    let of_field = |r: &Result| {
-        let terms =
-            [(Term::Edge, r.parts.edge), (Term::Blur, r.parts.blur), (Term::Clusters, r.parts.clusters)];
-        let group = format!("boundary/{}", Case::group(r.case.field, r.case.photons));
-        Entry::new(group, r.case.name(), &terms, r.parts.error, fraction(&r.errors))
+    let of_field = |r: &CaseResult| {
+        r.entry(format!("boundary/{}", Case::group(r.case.field, r.case.photons)), &r.case.name())
     };
     let of_sheet = |s: &SheetResult| {
         let terms = [(Term::Edge, s.predicted / 100.0)];
@@ -92,18 +90,9 @@ fn entries(found: &Found) -> Vec<Entry> {
 fn rows(settings: &Settings, cells: &Cells, found: &Found) -> anyhow::Result<Vec<Row>> {
     let mut rows = Vec::new();
     for r in &found.results {
-        let (name, fluence) = (r.case.name(), cells.moments(&r.case.name(), "fluence")?);
-        rows.push(
-            Row::measured(&name, "fluence", Unit::FLUENCE, &fluence)?
-                .reference(r.parts.exact, 0.0)
-                .cost(r.case.photons * fluence.n(), "photons emitted"),
-        );
-        rows.push(Row::measured(&name, "error", Unit::PERCENT, &r.error)?.predicted(r.predicted()));
-        let left: Moments = r.errors.iter().map(|e| e - r.predicted()).collect();
-        rows.push(
-            Row::measured(&name, "error left over", Unit::PERCENT, &left)?
-                .reference(0.0, 100.0 * r.parts.error),
-        );
+        let [fluence, error, left] = r.rows(&r.case.name(), ("fluence", Unit::FLUENCE), cells)?;
+        let maps = r.errors.len() as u64;
+        rows.extend([fluence.cost(r.case.photons * maps, "photons emitted"), error, left]);
     }
     for s in &found.sheets {
         let (name, inside) = (s.sheet.name(), s.sheet.fields().0);
@@ -142,7 +131,7 @@ fn summarise(section: &mut Section, settings: &Settings, found: &Found) -> anyho
     let face = |treatment| {
         found.one(|c| {
             (c.field, c.photons, c.treatment) == (field, field.main_size(settings), treatment)
-                && (c.spot, c.size, c.kernel) == (Spot::Face(0.0), Size::Radius(0.4), Kernel::Uniform)
+                && (c.place, c.size, c.kernel) == (Place::Face(0.0), Size::Radius(0.4), Kernel::Uniform)
         })
     };
     let text = |m: &Moments| with_error(m.mean(), m.std_error());
@@ -173,7 +162,7 @@ fn summarise(section: &mut Section, settings: &Settings, found: &Found) -> anyho
     let sphere = Field::named("lit-sphere")?;
     let on_sphere = |treatment| -> anyhow::Result<String> {
         let r = found.one(|c| {
-            (c.field, c.treatment, c.spot) == (sphere, treatment, Spot::Face(0.0))
+            (c.field, c.treatment, c.place) == (sphere, treatment, Place::Face(0.0))
                 && (c.size, c.kernel) == (Size::Radius(0.4), Kernel::Uniform)
         })?;
         Ok(format!("({}) %", text(&r.error)))
@@ -182,7 +171,7 @@ fn summarise(section: &mut Section, settings: &Settings, found: &Found) -> anyho
         "Dividing by the volume inside mends geometry alone. Where the light falls off below a curved surface, on a sphere of albedo {} lit from \
          all sides and gathered within 0.4 mean free paths, the estimate errs by {} untreated, {} mirrored, {} clipped and {} with a plane \
          fitted: the treatment that knows of a slope is worth its noise there.",
-        sphere.albedo,
+        sphere.setup.albedo,
         on_sphere(Treatment::None)?,
         on_sphere(Treatment::Reflection)?,
         on_sphere(Treatment::Clipped)?,

@@ -1,13 +1,14 @@
 //! The figures.
 
-use super::cases::{MAIN, Size, Spot};
-use super::fields::{FIELDS, FURNACE, Field};
+use super::cases::{MAIN, Place};
+use super::fields::{FIELDS, Field};
 use super::predict::line;
-use super::results::{Found, Result, rims};
+use super::results::{CaseResult, Found, rims};
 use super::section::{self, ALONG, RADIUS, WIDTH, places};
 use super::sheet::{Sheet, Side};
 use super::spread::Spread;
 use crate::harness::{Cells, FigureFiles, Settings, bar};
+use crate::setups::{FURNACE, Size};
 use crate::theory::{UNTREATED, treatment_title};
 use turbid::estimators::Kernel;
 use turbid::estimators::boundary::{Rejection, Treatment};
@@ -102,7 +103,7 @@ fn depths(settings: &Settings, found: &Found) -> anyhow::Result<FigureFiles> {
     let radius = MAIN.0;
     for name in ["slab", "sphere", "cuboid", "lit", "lit-g0.75", "lit-sphere"] {
         let field = Field::named(name)?;
-        let exact = field.exact()?;
+        let exact = field.setup.exact()?;
         let axis = Axis::new("error", "%", Scale::SymLog { threshold: 1.0 }).with_range(-70.0, 20.0);
         let mut panel = Panel::new(Axis::linear("depth / radius", "").with_range(-0.05, 1.3), axis)
             .with_title(field.title);
@@ -113,7 +114,7 @@ fn depths(settings: &Settings, found: &Found) -> anyhow::Result<FigureFiles> {
             panel = panel.with(Line::new(treatment_title(treatment), class, grid, theory?));
             let chosen = found.results.iter().filter(|r| is_on(r, settings, field, treatment));
             let shift = 0.008 * (class as f64 - 1.5);
-            let (x, y, bars) = series(chosen.map(|r| (r.case.spot.depth() / radius + shift, &r.error)));
+            let (x, y, bars) = series(chosen.map(|r| (r.case.place.depth() / radius + shift, &r.error)));
             panel = panel.with(Points::new(treatment_title(treatment), class, x, y).with_y_interval(bars));
         }
         panels.push(panel);
@@ -128,11 +129,11 @@ fn depths(settings: &Settings, found: &Found) -> anyhow::Result<FigureFiles> {
     FigureFiles::draw("depths", caption, &figure)
 }
 
-fn is_on(r: &Result, settings: &Settings, field: &'static Field, treatment: Treatment) -> bool {
+fn is_on(r: &CaseResult, settings: &Settings, field: &'static Field, treatment: Treatment) -> bool {
     let c = &r.case;
     (c.field, c.photons, c.treatment) == (field, field.main_size(settings), treatment)
         && (c.size, c.kernel) == (Size::Radius(MAIN.0), Kernel::Uniform)
-        && matches!(c.spot, Spot::Face(h) if h <= 1.25 * MAIN.0)
+        && matches!(c.place, Place::Face(h) if h <= 1.25 * MAIN.0)
 }
 
 /// The dark rim against radius and against photons.

@@ -50,7 +50,7 @@ fn measure_map(
     let mut output = CellOutput::new();
     output.count("photons emitted", photons);
     output.count("photons stored", map.stored() as u64);
-    let medium = field.shape()?;
+    let medium = field.setup.body.shape()?;
     let boundary = Boundary::of(&medium)?;
     for case in Case::all(settings, field, photons) {
         let estimator = case.estimator()?;

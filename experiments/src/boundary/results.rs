@@ -1,21 +1,22 @@
 //! What the maps say: results, what is made of them, and what is kept of an error.
 
-use super::cases::{Case, Size, Spot};
+use super::cases::{Case, Place};
 use super::fields::{FIELDS, Field};
-use super::predict::Parts;
 use super::sheet;
 use super::sheet::Sheet;
 use super::spread::Spread;
-use crate::harness::{self, Compared, Settings};
+use crate::harness::{self, Settings};
+use crate::prediction::{Compared, Term};
+use crate::setups::Size;
 use anyhow::Context;
 use turbid::estimators::Kernel;
 use turbid::estimators::boundary::{Rejection, Treatment};
 use turbid::stats::{Jackknife, Moments, jackknife};
 
 /// One case of a transported field; errors in per cent of the exact fluence.
-pub type Result = Compared<Case, Parts>;
+pub type CaseResult = Compared<Case>;
 
-impl Result {
+impl CaseResult {
     /// The standard error to expect of the mean over maps [%], before any is measured: 1/(k-2) is the relative variance of
     /// an estimate by k independent photons. Clusters and what probes share make the true one larger.
     fn expected_error(&self, k: usize) -> f64 {
@@ -27,8 +28,8 @@ impl Result {
     /// three tenths where a face is in the ball. What was measured has no say in it.
     pub fn is_predicted_well(&self) -> bool {
         let Size::Nearest(k) = self.case.size else { return true };
-        let unsure = if self.case.spot.depth() > 0.4 { 0.1 } else { 0.3 };
-        100.0 * unsure * self.parts.clusters.abs() <= 0.1 * self.expected_error(k)
+        let unsure = if self.case.place.depth() > 0.4 { 0.1 } else { 0.3 };
+        100.0 * unsure * self.expected.of(Term::Clusters).abs() <= 0.1 * self.expected_error(k)
     }
 }
 
@@ -63,7 +64,7 @@ pub struct SpreadResult {
 /// Everything that was found.
 pub struct Found {
     /// Transported fields.
-    pub results: Vec<Result>,
+    pub results: Vec<CaseResult>,
     /// The sheet.
     pub sheets: Vec<SheetResult>,
     /// The variances.
@@ -74,12 +75,12 @@ pub struct Found {
 
 impl Found {
     /// The results that a test picks.
-    pub fn pick(&self, test: impl Fn(&Case) -> bool) -> Vec<&Result> {
+    pub fn pick(&self, test: impl Fn(&Case) -> bool) -> Vec<&CaseResult> {
         self.results.iter().filter(|r| test(&r.case)).collect()
     }
 
     /// One result.
-    pub fn one(&self, test: impl Fn(&Case) -> bool) -> anyhow::Result<&Result> {
+    pub fn one(&self, test: impl Fn(&Case) -> bool) -> anyhow::Result<&CaseResult> {
         self.results.iter().find(|r| test(&r.case)).context("a case is missing")
     }
 
@@ -136,9 +137,9 @@ pub fn rims(settings: &Settings, found: &Found) -> Vec<Rim> {
             let treatment = Treatment::None;
             let chosen = found.pick(|c| {
                 let is_this = (c.field, c.photons, c.size, c.treatment) == (field, photons, size, treatment);
-                is_this && c.kernel == Kernel::Uniform && matches!(c.spot, Spot::Face(_))
+                is_this && c.kernel == Kernel::Uniform && matches!(c.place, Place::Face(_))
             });
-            let depths: Vec<f64> = chosen.iter().map(|r| r.case.spot.depth()).collect();
+            let depths: Vec<f64> = chosen.iter().map(|r| r.case.place.depth()).collect();
             let maps = chosen.iter().map(|r| r.errors.len()).min().unwrap_or(0);
             let profiles: Vec<Vec<f64>> =
                 (0..maps).map(|m| chosen.iter().map(|r| r.errors[m]).collect()).collect();
@@ -200,14 +201,14 @@ pub fn integrals(settings: &Settings, found: &Found) -> Vec<Integral> {
             for treatment in Treatment::ALL {
                 let mut chosen = found.pick(|c| {
                     // In whole balls all treatments are one, which is asked once.
-                    let is_whole = matches!(size, Size::Radius(r) if c.spot.depth() >= r);
+                    let is_whole = matches!(size, Size::Radius(r) if c.place.depth() >= r);
                     let asked = if is_whole { Treatment::None } else { treatment };
                     (c.field, c.photons, c.size, c.treatment) == (field, photons, size, asked)
                         && c.kernel == Kernel::Uniform
-                        && matches!(c.spot, Spot::Face(_))
+                        && matches!(c.place, Place::Face(_))
                 });
-                chosen.sort_by(|a, b| a.case.spot.depth().total_cmp(&b.case.spot.depth()));
-                let depths: Vec<f64> = chosen.iter().map(|r| r.case.spot.depth()).collect();
+                chosen.sort_by(|a, b| a.case.place.depth().total_cmp(&b.case.place.depth()));
+                let depths: Vec<f64> = chosen.iter().map(|r| r.case.place.depth()).collect();
                 let maps = chosen.iter().map(|r| r.errors.len()).min().unwrap_or(0);
                 let profiles: Vec<Vec<f64>> =
                     (0..maps).map(|m| chosen.iter().map(|r| r.errors[m]).collect()).collect();

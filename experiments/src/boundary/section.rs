@@ -50,7 +50,7 @@ pub fn measure(settings: &Settings, cell: &CellId) -> anyhow::Result<CellOutput>
     let mut output = CellOutput::new();
     output.count("photons emitted", photons);
     output.count("photons stored", map.stored() as u64);
-    let medium = field.shape()?;
+    let medium = field.setup.body.shape()?;
     let boundary = Boundary::of(&medium)?;
     let untreated = Estimator::new(Kernel::Uniform, Gather::radius(MAIN.0)?);
     for treatment in Treatment::ALL {

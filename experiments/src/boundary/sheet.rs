@@ -1,7 +1,8 @@
 //! False photons: a thin opaque sheet between two uniform isotropic fields of independent photons.
 
-use super::cases::Size;
-use crate::harness::{CellId, CellOutput, Prediction, Settings, Unit};
+use crate::harness::{CellId, CellOutput, Settings, Unit};
+use crate::prediction::Prediction;
+use crate::setups::Size;
 use crate::theory::referee_kernel;
 use glam::DVec3;
 use turbid::estimators::boundary::{Boundary, Rejection, Treatment};
@@ -101,12 +102,9 @@ impl Sheet {
     }
 
     fn estimator(&self) -> turbid::Result<Estimator> {
-        let gather = match self.size {
-            Size::Radius(r) => Gather::radius(r),
-            Size::Nearest(k) => Gather::nearest(k, NEAREST.1),
-        };
+        let gather = self.size.gather(NEAREST.1)?;
         let treatment = if self.is_clipped { Treatment::Clipped } else { Treatment::None };
-        Ok(Estimator::new(self.kernel, gather?).treated(treatment).rejecting(self.rejection))
+        Ok(Estimator::new(self.kernel, gather).treated(treatment).rejecting(self.rejection))
     }
 
     /// The exact expectation and its bound, for fields of [`Sheet::fields`].
@@ -247,15 +245,8 @@ fn late(map: &PhotonMap) -> anyhow::Result<Moments> {
 pub fn predict(settings: &Settings) -> anyhow::Result<Vec<Prediction>> {
     let mut predictions = Vec::new();
     for sheet in Sheet::all() {
-        let (value, error) = sheet.exact(settings)?;
-        predictions.push(Prediction {
-            case: sheet.name(),
-            quantity: "density".to_string(),
-            unit: Unit::ONE,
-            value,
-            error,
-            source: "exact mean beside a sheet between two uniform fields".to_string(),
-        });
+        let source = "exact mean beside a sheet between two uniform fields";
+        predictions.push(Prediction::new(sheet.name(), "density", Unit::ONE, sheet.exact(settings)?, source));
     }
     Ok(predictions)
 }

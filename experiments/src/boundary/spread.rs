@@ -1,8 +1,9 @@
 //! What a treatment costs in variance: independent photons of uniform density below one face.
 
-use super::cases::Size;
 use super::exact;
-use crate::harness::{CellId, CellOutput, Prediction, Settings, Unit};
+use crate::harness::{CellId, CellOutput, Settings, Unit};
+use crate::prediction::Prediction;
+use crate::setups::Size;
 use crate::theory::referee_kernel;
 use glam::DVec3;
 use turbid::estimators::boundary::{Boundary, Treatment};
@@ -108,14 +109,7 @@ pub fn predict() -> anyhow::Result<Vec<Prediction>> {
             ("density", mean, "exact mean of the treated kernel"),
             ("variance factor", factor, "integral of the treated kernel's square"),
         ] {
-            predictions.push(Prediction {
-                case: spread.name(),
-                quantity: quantity.to_string(),
-                unit: Unit::ONE,
-                value,
-                error,
-                source: source.to_string(),
-            });
+            predictions.push(Prediction::new(spread.name(), quantity, Unit::ONE, (value, error), source));
         }
     }
     Ok(predictions)

@@ -1,11 +1,12 @@
 //! The tables.
 
-use super::cases::{Size, Spot};
+use super::cases::Place;
 use super::claims::is_main;
 use super::fields::FIELDS;
 use super::results::{Found, VISIBLE, integrals, kept, rims, signed};
 use super::sheet::{Sheet, Side};
 use crate::harness::{Settings, Table, with_error};
+use crate::setups::Size;
 use turbid::estimators::Kernel;
 use turbid::estimators::boundary::{Rejection, Treatment};
 use turbid::stats::Moments;
@@ -76,13 +77,13 @@ fn verdict(found: &Found) -> anyhow::Result<Table> {
 fn treatments(settings: &Settings, found: &Found) -> anyhow::Result<Table> {
     let mut rows = Vec::new();
     for field in &FIELDS {
-        for spot in [Spot::Face(0.0), Spot::Edge(0.0), Spot::Corner(0.0)] {
-            let mut row = vec![format!("{}, {}", field.title, words(spot))];
+        for place in [Place::Face(0.0), Place::Edge(0.0), Place::Corner(0.0)] {
+            let mut row = vec![format!("{}, {}", field.title, words(place))];
             for treatment in Treatment::ALL {
                 let one = found.results.iter().find(|r| {
                     let c = &r.case;
-                    (c.field, c.photons, c.treatment, c.spot)
-                        == (field, field.main_size(settings), treatment, spot)
+                    (c.field, c.photons, c.treatment, c.place)
+                        == (field, field.main_size(settings), treatment, place)
                         && (is_main(c) || c.size == Size::Radius(0.4) && c.kernel == Kernel::Uniform)
                 });
                 if let Some(r) = one {
@@ -116,11 +117,11 @@ fn treatments(settings: &Settings, found: &Found) -> anyhow::Result<Table> {
     })
 }
 
-fn words(spot: Spot) -> &'static str {
-    match spot {
-        Spot::Face(_) => "on a face",
-        Spot::Edge(_) => "on an edge",
-        Spot::Corner(_) => "on a corner",
+fn words(place: Place) -> &'static str {
+    match place {
+        Place::Face(_) => "on a face",
+        Place::Edge(_) => "on an edge",
+        Place::Corner(_) => "on a corner",
     }
 }
 

@@ -94,7 +94,7 @@ mod tests {
     use super::super::sets::groups;
     use super::super::sets::tests::made_up;
     use super::*;
-    use crate::harness::{Entry, Term};
+    use crate::prediction::{Entry, Term};
     use turbid::stats::{ALPHA, wilson_interval};
 
     fn common(entries: &[Entry]) -> Common<'_> {

@@ -4,9 +4,8 @@ use super::common::{Common, Left};
 use super::figures;
 use super::largest::{Largest, Null};
 use super::sets::{Drawn, Group, MOST, carries, fit, groups};
-use crate::harness::{
-    Claim, Digest, Entry, FIT_LEVEL, Section, SectionReport, Settings, Table, Term, number,
-};
+use crate::harness::{Claim, Digest, FIT_LEVEL, Section, SectionReport, Settings, Table, number};
+use crate::prediction::{Entry, Term};
 use rayon::prelude::*;
 use turbid::rng::{Purpose, Stream};
 use turbid::stats::{KolmogorovSmirnov, Moments, kolmogorov_smirnov_test, normal_critical, normal_p};

@@ -1,7 +1,8 @@
 //! Measured against predicted error, and what is left.
 
 use super::sets::MOST;
-use crate::harness::{Entry, FigureFiles, Term, bar};
+use crate::harness::{FigureFiles, bar};
+use crate::prediction::{Entry, Term};
 use turbid::stats::Moments;
 use turbid_figure::{Along, Axis, Color, Figure, Histogram, Legend, Line, Panel, Points, Rule, Scale, Width};
 

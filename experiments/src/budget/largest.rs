@@ -9,7 +9,8 @@
 //! distance is the one with the smallest p of Student's t.
 
 use super::sets::{Group, distance, predicted};
-use crate::harness::{Digest, Term};
+use crate::harness::Digest;
+use crate::prediction::Term;
 use rayon::prelude::*;
 use turbid::rng::{Purpose, Stream};
 use turbid::stats::{Moments, normal_critical, student_p};
@@ -158,7 +159,7 @@ mod tests {
     use super::super::sets::groups;
     use super::super::sets::tests::made_up;
     use super::*;
-    use crate::harness::Entry;
+    use crate::prediction::Entry;
     use turbid::stats::{ALPHA, wilson_interval};
 
     /// Two cases by hand: 1 to 5 against 2, with and without a numerical error, at 4 degrees: p = 1 - s (3 - s^2)/2 with

@@ -1,6 +1,7 @@
 //! Independent sets of maps, and one case drawn for each.
 
-use crate::harness::{Digest, Entry, Term};
+use crate::harness::Digest;
+use crate::prediction::{Entry, Term};
 use anyhow::ensure;
 use std::ops::Range;
 use turbid::rng::{Purpose, Stream};

@@ -6,9 +6,8 @@ use super::intervals::Kind;
 use super::measure::{GROUP, MAPS, SIZES, alarm_name, case, nearest_case, null_case, radius_case, repeats};
 use super::nulls::{LEVELS, Population, VALUES};
 use super::results::uniformity;
-use crate::harness::{
-    Cells, Claim, Entry, Estimate, Prediction, Row, Section, Settings, Table, Term, Unit, number, with_error,
-};
+use crate::harness::{Cells, Claim, Estimate, Row, Section, Settings, Table, Unit, number, with_error};
+use crate::prediction::{Entry, Prediction, Term};
 use turbid::stats::{Moments, student_p};
 
 /// Margins of the shares of 2,000 repeats: three of their binomial standard errors, 0.49 and 0.22 per cent.
@@ -32,8 +31,7 @@ pub fn predict(_settings: &Settings) -> anyhow::Result<Vec<Prediction>> {
     let exact = Exact::new()?;
     let mut all = Vec::new();
     let mut add = |case: String, quantity: &str, unit: Unit, value: f64, error: f64, source: &str| {
-        let (quantity, source) = (quantity.to_string(), source.to_string());
-        all.push(Prediction { case, quantity, unit, value, error, source });
+        all.push(Prediction::new(case, quantity, unit, (value, error), source));
     };
     for kind in Kind::ALL {
         for maps in SIZES {

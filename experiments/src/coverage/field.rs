@@ -1,26 +1,20 @@
 //! The small study: a field, the places where each map is asked, and the exact expectation of all that it states.
 
+use crate::setups::Setup;
 use crate::theory::Table;
 use glam::DVec3;
 use std::f64::consts::PI;
-use turbid::Spectrum;
-use turbid::geometry::{Shape, Slab};
-use turbid::light::{Beam, Light, Section};
-use turbid::math::Asymmetry;
-use turbid::medium::Homogeneous;
-use turbid::phase::Phase;
 use turbid::photons::Photon;
-use turbid::scene::{Parts, Region, Scene};
 use turbid_analytic::kernel::Kernel;
 use turbid_analytic::nearest::{fixed_radius_variance, nearest_expectation};
 use turbid_analytic::slab_kernel::slab_kernel_mean;
 
 /// Photons emitted a map.
 pub const PHOTONS: u64 = 2000;
-/// Side of the cell that stands for the slab [mfp].
-const CELL: f64 = 4.0;
 /// Thickness of the slab [mfp].
 const TAU: f64 = 1.0;
+/// The slab under a normal beam, which only absorbs: fluence e^-t.
+pub const SETUP: Setup = Setup::slab(TAU, 0.0, 0.0);
 /// Depth of all places [mfp]: the balls touch no face.
 const DEPTH: f64 = 0.5;
 /// Radii of fixed gathers [mfp]. The last is that of every quantity but the amplitude.
@@ -37,16 +31,6 @@ pub const PLACES: usize = 5;
 /// Relative root mean square error whose price is asked.
 const TARGET: f64 = 0.05;
 
-/// The slab of black fog under a normal beam of irradiance 1: fluence e^-t.
-pub fn scene() -> anyhow::Result<Scene> {
-    let phase = Phase::with_asymmetry(Asymmetry::new("g", 0.0)?);
-    let medium = Homogeneous::new(Spectrum::ONE, Spectrum::ZERO, phase)?;
-    let region = Region { shape: Shape::Slab(Slab::new(0.0, TAU)?), medium: medium.into() };
-    let beam = Beam::new(DVec3::Z, Spectrum::ONE, Section::Unbounded)?;
-    let lights = vec![Light::Beam(beam)];
-    Ok(Scene::new(Parts { regions: vec![region], lights, cell: Some(CELL), ..Parts::default() })?)
-}
-
 /// One place of the lattice.
 pub fn place(row: usize, index: usize) -> DVec3 {
     let at = |i: usize| REACH * (2 * i + 1) as f64;
@@ -60,7 +44,7 @@ pub fn is_near(photon: &Photon) -> bool {
 
 /// Photons in a ball whose mean fluence is 1.
 fn ball(r: f64) -> f64 {
-    PHOTONS as f64 / (CELL * CELL) * 4.0 / 3.0 * PI * r * r * r
+    SETUP.density(PHOTONS) * 4.0 / 3.0 * PI * r * r * r
 }
 
 /// What is exact.
@@ -86,7 +70,7 @@ impl Exact {
         for (error, r) in errors.iter_mut().zip(RADII) {
             *error = mean(r)? / here - 1.0;
         }
-        let exact: crate::theory::Exact = Box::new(move |t| Ok((field(t), 0.0)));
+        let exact = SETUP.exact()?;
         let means = Table::of_kernel_means(Kernel::Uniform, DEPTH, TAU, REACH, &exact)?;
         let number = |r: f64| ball(r) * means.at(r);
         let nearest = nearest_expectation(u32::try_from(NEIGHBORS)?, REACH, number, |r| means.at(r))?;

@@ -1,6 +1,6 @@
 //! Measuring a batch of repeats.
 
-use super::field::{Exact, NEIGHBORS, PHOTONS, PLACES, RADII, REACH, ROWS, is_near, place, scene};
+use super::field::{Exact, NEIGHBORS, PHOTONS, PLACES, RADII, REACH, ROWS, SETUP, is_near, place};
 use super::intervals::{Answer, Kind};
 use super::nulls::{LEVELS, Population, alarms};
 use crate::harness::{CellId, CellOutput, Estimate, MIN_MAPS, Settings};
@@ -104,7 +104,7 @@ struct Tally {
 }
 
 fn measure_repeats(settings: &Settings, cell: &CellId) -> anyhow::Result<CellOutput> {
-    let (scene, exact) = (scene()?, Exact::new()?);
+    let (scene, exact) = (SETUP.scene()?, Exact::new()?);
     let mut output = CellOutput::new();
     let mut tallies = vec![vec![Tally::default(); SIZES.len()]; Kind::ALL.len()];
     let critical = SIZES.map(|maps| student_critical(0.05, maps as u64 - 1));

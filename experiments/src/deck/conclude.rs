@@ -2,11 +2,12 @@
 
 use super::part::Part;
 use super::{clouds, edge, pixels, race, steering, walls};
-use crate::harness::{Cells, Known, Prediction, Section, Settings, Table};
+use crate::harness::{Cells, Section, Settings, Table};
+use crate::prediction::{Prediction, Predictions};
 
 /// Concludes.
 pub fn conclude(settings: &Settings, predictions: &[Prediction], cells: &Cells) -> anyhow::Result<Section> {
-    let known = Known::new(predictions);
+    let known = Predictions::new(predictions);
     let parts = [
         pixels::conclude::conclude(settings, &known, cells)?,
         race::conclude::conclude(settings, cells)?,

@@ -18,7 +18,8 @@ mod steering;
 mod times;
 mod walls;
 
-use crate::harness::{CellId, CellOutput, Experiment, Prediction, Settings};
+use crate::harness::{CellId, CellOutput, Experiment, Settings};
+use crate::prediction::Prediction;
 use anyhow::bail;
 
 /// The experiment.

@@ -4,8 +4,8 @@
 use super::cases::Class;
 use super::results::{LargeResult, Results, STANDARD_ERRORS, SampledResult, StorageResult};
 use super::storage::Rule;
-use super::stretched::Size;
 use crate::harness::{Claim, Estimate, Unit};
+use crate::setups::Size;
 use turbid::stats::{Moments, amplitude_per_map};
 
 /// All claims of the experiment.

@@ -8,9 +8,8 @@ use super::results::{
 use super::storage::{self, Rule};
 use super::stretched::{self, Case};
 use super::{claims, figures, sampled, tables};
-use crate::harness::{
-    Cells, Entry, Estimate, Known, Prediction, Row, Section, Settings, Term, Unit, number, with_error,
-};
+use crate::harness::{Cells, Estimate, Row, Section, Settings, Unit, number, with_error};
+use crate::prediction::{Entry, Prediction, Predictions, Term};
 use anyhow::Context;
 use turbid::stats::{Moments, jackknife};
 
@@ -31,7 +30,7 @@ pub fn conclude(settings: &Settings, predictions: &[Prediction], cells: &Cells) 
 }
 
 fn gather(settings: &Settings, predictions: &[Prediction], cells: &Cells) -> anyhow::Result<Results> {
-    let known = Known::new(predictions);
+    let known = Predictions::new(predictions);
     let find = |case: &str, quantity: &str| known.get(case, quantity);
     let mut non_finite = Vec::new();
     for (case, quantity) in cells.keys().filter(|(_, quantity)| *quantity == "non-finite") {

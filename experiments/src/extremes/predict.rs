@@ -6,7 +6,8 @@ use super::measure::large_cases;
 use super::storage::{self, K, RADIUS, Rule};
 use super::stretched::{Case, nearest_on_lattice};
 use super::{sampled, stretched};
-use crate::harness::{Prediction, Settings, Unit};
+use crate::harness::{Settings, Unit};
+use crate::prediction::Prediction;
 use crate::theory::{clustering, nearest_clustering};
 use rayon::prelude::*;
 use std::f64::consts::PI;
@@ -73,14 +74,12 @@ pub fn storage(settings: &Settings, rule: Rule, spacing: f64) -> anyhow::Result<
 /// The predictions, as they are written down before the measurement.
 pub fn predict(settings: &Settings) -> anyhow::Result<Vec<Prediction>> {
     let one = |row: sampled::Sampled| {
-        let (value, error) = (row.exact)()?;
-        let (quantity, source, unit) = ("value".to_string(), row.source.to_string(), row.unit());
-        Ok(Prediction { case: row.name, quantity, unit, value, error, source })
+        let (exact, unit) = ((row.exact)()?, row.unit());
+        Ok(Prediction::new(row.name, "value", unit, exact, row.source))
     };
     let mut predictions = sampled::all().into_par_iter().map(one).collect::<anyhow::Result<Vec<_>>>()?;
     let mut add = |case: String, quantity: &str, unit, value, error, source: &str| {
-        let (quantity, source) = (quantity.to_string(), source.to_string());
-        predictions.push(Prediction { case, quantity, unit, value, error, source });
+        predictions.push(Prediction::new(case, quantity, unit, (value, error), source));
     };
     for (case, value, error) in large_cases(settings)? {
         add(case, "rate", Unit::ONE, value, error, "Beer and Lambert; mean of e^-t over a ball");

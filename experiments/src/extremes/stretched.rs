@@ -6,11 +6,12 @@
 
 use super::lattice::kernel_on_lattice;
 use crate::harness::{CellId, CellOutput, Settings};
+use crate::setups::Size;
 use anyhow::Context;
 use glam::DVec3;
 use std::f64::consts::PI;
 use turbid::estimators::boundary::Boundary;
-use turbid::estimators::{Estimator, Gather, Kernel};
+use turbid::estimators::{Estimator, Kernel};
 use turbid::photons::synthetic::{Number, Profile, Synthetic};
 use turbid::photons::{Photon, PhotonMap};
 use turbid_analytic::nearest::nearest_expectation;
@@ -31,15 +32,6 @@ const PROBES: u32 = 6;
 /// The photons' first storage, in a map of the cube alone, has planes 2^-21 apart: nothing beside the coarser ones, and
 /// the same fine ones where they are finest.
 const ROUNDING: f64 = 3e-6;
-
-/// How photons are gathered.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Size {
-    /// Within this radius.
-    Radius(f64),
-    /// The k nearest.
-    Nearest(usize),
-}
 
 /// One question to a map.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -78,19 +70,11 @@ impl Case {
 
     /// The name in tables.
     pub fn name(&self) -> String {
-        let size = match self.size {
-            Size::Radius(r) => format!("r={r}"),
-            Size::Nearest(k) => format!("k={k}"),
-        };
-        format!("planes 2^{} apart, {size} {}", self.power, self.kernel.name())
+        format!("planes 2^{} apart, {} {}", self.power, self.size.name(), self.kernel.name())
     }
 
     fn estimator(&self) -> turbid::Result<Estimator> {
-        let gather = match self.size {
-            Size::Radius(r) => Gather::radius(r),
-            Size::Nearest(k) => Gather::nearest(k, CAP),
-        };
-        Ok(Estimator::new(self.kernel, gather?))
+        Ok(Estimator::new(self.kernel, self.size.gather(CAP)?))
     }
 
     /// Error of the estimate over the density, and a bound on its own error.

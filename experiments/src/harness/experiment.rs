@@ -1,6 +1,7 @@
 //! What an experiment is made of.
 
-use super::{CellId, CellOutput, Cells, Prediction, Section, Settings};
+use super::{CellId, CellOutput, Cells, Section, Settings};
+use crate::prediction::Prediction;
 
 /// One experiment: a claim or a few, what they predict, how it is measured and what follows.
 ///

@@ -4,23 +4,19 @@
 //! settings, each one map; they run in parallel, are kept in files, and are merged in sorted order, so that results
 //! are the same bits on any number of threads and after any interruption.
 
-mod budget;
 mod cell;
 mod cells;
 mod claim;
-mod compared;
 mod digest;
 mod estimate;
 mod experiment;
 mod format;
-mod known;
 mod lock;
 mod manifest;
 mod measure;
 mod outcome;
 mod outputs;
 mod panics;
-mod prediction;
 mod progress;
 mod provenance;
 mod replot;
@@ -30,22 +26,18 @@ mod settings;
 mod study;
 mod unit;
 
-pub use budget::{Entry, Term};
 pub(crate) use cell::read as read_cell;
 pub use cell::{CellId, CellOutput, CellRow};
 pub use cells::Cells;
 pub use claim::{Claim, FAMILY_WISE, FIT_LEVEL, Judged, Kind, MIN_MAPS, Verdict, judge};
-pub use compared::{Compared, Predicted};
 pub use digest::{Digest, program_digest};
 pub use estimate::Estimate;
 pub use experiment::Experiment;
 pub use format::{number, signed, with_error};
-pub use known::Known;
 pub(crate) use outcome::cost_line;
 pub use outcome::{Outcome, SectionReport};
 pub(crate) use outputs::{check_folder, check_later, read_if_there};
 pub(crate) use panics::{caught, guarded};
-pub use prediction::Prediction;
 pub(crate) use progress::duration;
 pub use progress::say;
 pub use provenance::Provenance;

@@ -1,7 +1,8 @@
 //! What a study leaves: sections with their verdicts.
 
 use super::progress::duration;
-use super::{Experiment, Judged, Prediction, Section, Verdict};
+use super::{Experiment, Judged, Section, Verdict};
+use crate::prediction::Prediction;
 use std::path::PathBuf;
 
 /// One experiment with all that it found.

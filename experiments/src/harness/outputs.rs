@@ -2,7 +2,8 @@
 
 use super::cells::CellSeconds;
 use super::results::Record;
-use super::{Experiment, Judged, Prediction, Provenance, SectionReport, Unit};
+use super::{Experiment, Judged, Provenance, SectionReport, Unit};
+use crate::prediction::Prediction;
 use anyhow::{Context, anyhow, ensure};
 use serde::Serialize;
 use std::io::ErrorKind;

@@ -1,6 +1,7 @@
 //! Rows of the result table. A row without an error and a unit cannot be built.
 
-use super::{Estimate, Prediction, Unit};
+use super::{Estimate, Unit};
+use crate::prediction::Prediction;
 use anyhow::ensure;
 use serde::Serialize;
 use turbid::stats::{ALPHA, Moments, poisson_interval};

@@ -1,7 +1,8 @@
 //! What an experiment says in the report.
 
 use super::format::{number, with_error};
-use super::{Claim, Entry, Row};
+use super::{Claim, Row};
+use crate::prediction::Entry;
 use turbid::stats::{Moments, mean_interval};
 use turbid_figure::Figure;
 

@@ -9,9 +9,10 @@ use super::outputs::{
 use super::panics::{caught, guarded};
 use super::progress::say;
 use super::{
-    CellId, Cells, Claim, Experiment, Outcome, Prediction, Provenance, Section, SectionReport, Settings,
-    judge, number, program_digest, replot,
+    CellId, Cells, Claim, Experiment, Outcome, Provenance, Section, SectionReport, Settings, judge, number,
+    program_digest, replot,
 };
+use crate::prediction::Prediction;
 use crate::report;
 use anyhow::{Context, bail, ensure};
 use std::collections::BTreeSet;

@@ -1,8 +1,9 @@
 //! The cases: which ray, which steps, which gather.
 
 use crate::harness::Settings;
+use crate::setups::{CELL, Setup, Size};
 use glam::DVec3;
-use turbid::estimators::{Estimator, Gather, Kernel};
+use turbid::estimators::{Estimator, Kernel};
 use turbid::integrators::StepRule;
 use turbid::math::Ray;
 
@@ -10,8 +11,8 @@ use turbid::math::Ray;
 pub const TAU: f64 = 2.0;
 /// Its single-scattering albedo; it scatters isotropically.
 pub const ALBEDO: f64 = 0.9;
-/// Side of the cell that stands for the slab [mfp].
-pub const CELL: f64 = 4.0;
+/// The slab under a normal beam.
+pub const SETUP: Setup = Setup::slab(TAU, ALBEDO, 0.0);
 /// Farthest that a photon is taken from [mfp].
 pub const REACH: f64 = 0.3;
 /// Directions of the rays: cosine with the normal.
@@ -20,15 +21,6 @@ pub const COSINES: [f64; 3] = [1.0, 0.5, 0.2];
 pub const STEPS: [f64; 5] = [0.05, 0.1, 0.2, 0.5, 1.0];
 /// Radius of most gathers [mfp].
 pub const RADIUS: f64 = 0.2;
-
-/// How large a gather is.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Size {
-    /// All photons within this radius [mfp].
-    Radius(f64),
-    /// The k nearest photons.
-    Nearest(usize),
-}
 
 /// One question to a map: the radiance that leaves the lit face.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -64,20 +56,13 @@ impl Case {
 
     /// The name in tables.
     pub fn name(&self) -> String {
-        let gather = match self.size {
-            Size::Radius(r) => format!("r={r}"),
-            Size::Nearest(k) => format!("k={k}"),
-        };
+        let gather = self.size.name();
         format!("mu={} dx={} {gather} {}", self.mu, self.step, rule_name(self.rule))
     }
 
     /// What is asked at each step.
     pub fn estimator(&self) -> turbid::Result<Estimator> {
-        let gather = match self.size {
-            Size::Radius(r) => Gather::radius(r),
-            Size::Nearest(k) => Gather::nearest(k, REACH),
-        };
-        Ok(Estimator::new(Kernel::Uniform, gather?))
+        Ok(Estimator::new(Kernel::Uniform, self.size.gather(REACH)?))
     }
 
     /// Length of a ray [mfp].
@@ -87,7 +72,7 @@ impl Case {
 
     /// The rays, from the lit face into the slab. Small gathers are noisy, and cheap: they get more of them.
     pub fn rays(&self) -> impl Iterator<Item = Ray> {
-        let side = if matches!(self.size, Size::Nearest(_)) { 16 } else { 3 };
+        let side = if self.size.is_nearest() { 16 } else { 3 };
         let dir = DVec3::new((1.0 - self.mu * self.mu).sqrt(), 0.0, self.mu);
         let place = move |i: usize| (i as f64 + 0.5) * CELL / side as f64;
         (0..side * side).map(move |i| Ray::new(DVec3::new(place(i % side), place(i / side), 0.0), dir))

@@ -1,24 +1,23 @@
 //! What all maps together say.
 
-use super::cases::{COSINES, Case, RADIUS, Size, photons, rule_name};
+use super::cases::{COSINES, Case, RADIUS, photons, rule_name};
 use super::figures;
 use super::measure::GROUP;
-use super::predict::{TERMS, recall};
-use super::results::Result;
-use crate::harness::{
-    Cells, Claim, Compared, Entry, Estimate, Known, Prediction, Row, Section, Settings, Table, Unit, signed,
-    with_error,
-};
+use super::predict::TERMS;
+use super::results::CaseResult;
+use crate::harness::{Cells, Claim, Estimate, Row, Section, Settings, Table, Unit, signed, with_error};
+use crate::prediction::{Compared, PredictedError, Prediction, Predictions, Term, amplitude};
+use crate::setups::Size;
 use turbid::integrators::StepRule;
-use turbid::stats::{Moments, amplitude_per_map};
 
 /// Concludes.
 pub fn conclude(settings: &Settings, predictions: &[Prediction], cells: &Cells) -> anyhow::Result<Section> {
-    let known = Known::new(predictions);
+    let known = Predictions::new(predictions);
     let mut results = Vec::new();
     for case in Case::all() {
-        let parts = recall(&known, &case)?;
-        results.push(Compared::new(case, &case.name(), "radiance", parts, cells)?);
+        let name = case.name();
+        let expected = PredictedError::read(&known, &name, "radiance", &TERMS)?;
+        results.push(Compared::new(case, &name, "radiance", expected, cells)?);
     }
     Ok(Section {
         summary: summary(&results),
@@ -27,32 +26,26 @@ pub fn conclude(settings: &Settings, predictions: &[Prediction], cells: &Cells) 
         tables: vec![table(&results)],
         notes: notes(settings),
         rows: rows(cells, &results)?,
-        budget: results.iter().map(entry).collect(),
+        budget: results.iter().map(|r| r.entry(format!("march-{GROUP}"), &r.case.name())).collect(),
         left_out: 0,
     })
 }
 
-fn entry(result: &Result) -> Entry {
-    let terms: Vec<_> = TERMS.into_iter().zip(result.parts.list()).collect();
-    let maps = result.errors.iter().map(|e| e / 100.0).collect();
-    Entry::new(format!("march-{GROUP}"), result.case.name(), &terms, result.parts.error, maps)
-}
-
 /// The case along `mu` at this step and rule, at the usual radius.
-fn find(results: &[Result], mu: f64, step: f64, rule: StepRule) -> Option<&Result> {
+fn find(results: &[CaseResult], mu: f64, step: f64, rule: StepRule) -> Option<&CaseResult> {
     results.iter().find(|r| r.case == Case { mu, step, rule, size: Size::Radius(RADIUS) })
 }
 
-fn claims(results: &[Result]) -> Vec<Claim> {
+fn claims(results: &[CaseResult]) -> Vec<Claim> {
     let mut claims = Vec::new();
     // Five standard errors of trial runs, and what they had found off 1.
     let margin = 0.05;
     for rule in StepRule::ALL {
-        let chosen: Vec<&Result> = results
+        let chosen: Vec<&CaseResult> = results
             .iter()
             .filter(|r| r.case.rule == rule && matches!(r.case.size, Size::Radius(_)))
             .collect();
-        if let Some(amplitude) = amplitude(&chosen, Result::predicted) {
+        if let Some(amplitude) = amplitude(&chosen, CaseResult::predicted) {
             let name = rule_name(rule);
             let text = format!(
                 "steps by the rule \"{name}\", all rays, steps and radii: measured over predicted error"
@@ -61,9 +54,9 @@ fn claims(results: &[Result]) -> Vec<Claim> {
             claims.push(Claim::within(&format!("rule-{name}"), &text, Unit::ONE, amplitude, low, high));
         }
     }
-    let nearest: Vec<&Result> =
+    let nearest: Vec<&CaseResult> =
         results.iter().filter(|r| matches!(r.case.size, Size::Nearest(4 | 10))).collect();
-    if let Some(amplitude) = amplitude(&nearest, |r| 100.0 * r.parts.clusters) {
+    if let Some(amplitude) = amplitude(&nearest, |r| 100.0 * r.expected.of(Term::Clusters)) {
         let text = "steps with the 4 or 10 nearest photons: error from clusters of photons of one history, measured \
                     over predicted";
         claims.push(Claim::within("clusters", text, Unit::ONE, amplitude, 0.0, 2.0));
@@ -86,34 +79,15 @@ fn claims(results: &[Result]) -> Vec<Claim> {
     claims
 }
 
-/// Measured over predicted part of the error: one amplitude a map, the other parts taken away first.
-fn amplitude(results: &[&Result], part: impl Fn(&Result) -> f64) -> Option<Estimate> {
-    let maps = results.iter().map(|r| r.errors.len()).min()?;
-    let predicted: Vec<f64> = results.iter().map(|r| part(r)).collect();
-    let weights: Vec<f64> = results.iter().map(|r| 1.0 / r.error.variance()).collect();
-    let left = |r: &Result, m: usize| r.errors[m] - (r.predicted() - part(r));
-    let per_map: Vec<Vec<f64>> = (0..maps).map(|m| results.iter().map(|r| left(r, m)).collect()).collect();
-    amplitude_per_map(&predicted, &per_map, &weights).map(|a| Estimate::mean(&a.moments))
-}
-
-fn rows(cells: &Cells, results: &[Result]) -> anyhow::Result<Vec<Row>> {
+fn rows(cells: &Cells, results: &[CaseResult]) -> anyhow::Result<Vec<Row>> {
     let mut rows = Vec::new();
     for result in results {
-        let name = result.case.name();
-        let (exact, bound) = (result.parts.exact, result.parts.exact_error);
-        let radiance = cells.moments(&name, "radiance")?;
-        rows.push(Row::measured(&name, "radiance", Unit::RADIANCE, &radiance)?.reference(exact, bound));
-        rows.push(Row::measured(&name, "error", Unit::PERCENT, &result.error)?.predicted(result.predicted()));
-        let left: Moments = result.errors.iter().map(|e| e - result.predicted()).collect();
-        rows.push(
-            Row::measured(&name, "error left over", Unit::PERCENT, &left)?
-                .reference(0.0, 100.0 * result.parts.error),
-        );
+        rows.extend(result.rows(&result.case.name(), ("radiance", Unit::RADIANCE), cells)?);
     }
     Ok(rows)
 }
 
-fn table(results: &[Result]) -> Table {
+fn table(results: &[CaseResult]) -> Table {
     let columns = [
         "ray",
         "step",
@@ -127,22 +101,19 @@ fn table(results: &[Result]) -> Table {
         "clusters",
     ];
     let part = |x: f64| if x.abs() < 5e-5 { "0".to_string() } else { signed(100.0 * x, 2) };
-    let row = |r: &Result| {
+    let row = |r: &CaseResult| {
         let mut cells = vec![
             format!("mu {}", r.case.mu),
             r.case.step.to_string(),
-            match r.case.size {
-                Size::Radius(radius) => format!("radius {radius}"),
-                Size::Nearest(k) => format!("k = {k}"),
-            },
+            r.case.size.title(),
             rule_name(r.case.rule).to_string(),
             with_error(r.error.mean(), r.error.std_error()),
             part(r.predicted() / 100.0),
         ];
-        cells.extend(r.parts.list().map(part));
+        cells.extend(TERMS.map(|term| part(r.expected.of(term))));
         cells
     };
-    let shown = |r: &&Result| r.case.size != Size::Radius(RADIUS) || r.case.mu == 1.0;
+    let shown = |r: &&CaseResult| r.case.size != Size::Radius(RADIUS) || r.case.mu == 1.0;
     Table {
         caption: "Signed error of the radiance that leaves the lit face, in per cent of the exact value, with its \
                   standard error over maps, beside what was predicted and its parts; steps and radii in mean free \
@@ -153,9 +124,9 @@ fn table(results: &[Result]) -> Table {
     }
 }
 
-fn summary(results: &[Result]) -> Vec<String> {
+fn summary(results: &[CaseResult]) -> Vec<String> {
     let mut summary = Vec::new();
-    let words = |r: &Result| {
+    let words = |r: &CaseResult| {
         format!(
             "{} % (predicted {} %)",
             with_error(r.error.mean(), r.error.std_error()),
@@ -168,8 +139,8 @@ fn summary(results: &[Result]) -> Vec<String> {
             "Fog of albedo 0.9, marched in steps of 0.2 mean free paths, reads {} % high by the formula of 1998 where the \
              light in it is exactly known, and {} % high with the exponential integrated over each step; through a \
              photon map the errors are {} and {}, since the map loses light at the face.",
-            signed(100.0 * old.parts.step, 1),
-            signed(100.0 * new.parts.step, 1),
+            signed(100.0 * old.expected.of(Term::Step), 1),
+            signed(100.0 * new.expected.of(Term::Step), 1),
             words(old),
             words(new)
         ));
@@ -178,8 +149,8 @@ fn summary(results: &[Result]) -> Vec<String> {
              step, too much by half a step at first; but the first of these points stands on the face, where half of \
              each ball is empty ({} %), and a first value halved is the trapezoidal rule. Once the face is treated, \
              the excess of {} % is left.",
-            signed(100.0 * old.parts.edge, 1),
-            signed(100.0 * old.parts.step, 1)
+            signed(100.0 * old.expected.of(Term::Edge), 1),
+            signed(100.0 * old.expected.of(Term::Step), 1)
         ));
     }
     let worst = COSINES.iter().filter_map(|&mu| find(results, mu, 1.0, StepRule::NearEnd));

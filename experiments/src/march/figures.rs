@@ -1,20 +1,22 @@
 //! The figure: error against step.
 
-use super::cases::{COSINES, RADIUS, Size, rule_name};
-use super::results::Result;
+use super::cases::{COSINES, RADIUS, rule_name};
+use super::results::CaseResult;
 use crate::harness::{FigureFiles, bar};
+use crate::prediction::Term;
+use crate::setups::Size;
 use turbid::integrators::StepRule;
 use turbid_figure::{Axis, Dash, Figure, Line, Panel, Points, Scale, Width};
 
 /// Error against step for each ray and rule, with what the steps alone would do.
-pub fn steps(results: &[Result]) -> anyhow::Result<FigureFiles> {
+pub fn steps(results: &[CaseResult]) -> anyhow::Result<FigureFiles> {
     let mut panels = Vec::new();
     for mu in COSINES {
         let axis = Axis::new("error", "%", Scale::SymLog { threshold: 1.0 }).with_range(-50.0, 100.0);
         let mut panel =
             Panel::new(Axis::log("step", "mfp").with_range(0.04, 1.25), axis).with_title(format!("μ = {mu}"));
         for (class, rule) in StepRule::ALL.into_iter().enumerate() {
-            let chosen: Vec<&Result> = results
+            let chosen: Vec<&CaseResult> = results
                 .iter()
                 .filter(|r| r.case.mu == mu && r.case.rule == rule && r.case.size == Size::Radius(RADIUS))
                 .collect();
@@ -25,7 +27,7 @@ pub fn steps(results: &[Result]) -> anyhow::Result<FigureFiles> {
             };
             let total = chosen.iter().map(|r| r.predicted()).collect();
             panel = panel.with(Line::new(&label, class, x.clone(), total).with_dash(Dash::Solid));
-            let alone = chosen.iter().map(|r| 100.0 * r.parts.step).collect();
+            let alone = chosen.iter().map(|r| 100.0 * r.expected.of(Term::Step)).collect();
             let label_alone = format!("{label}, steps alone");
             let alone = Line::new(&label_alone, class, x.clone(), alone).with_dash(Dash::Dotted);
             panel = panel.with(alone);

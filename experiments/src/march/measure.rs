@@ -1,19 +1,15 @@
 //! Measuring one map.
 
-use super::cases::{ALBEDO, CELL, Case, REACH, TAU, maps, photons};
+use super::cases::{ALBEDO, Case, REACH, SETUP, TAU, maps, photons};
 use crate::harness::{CellId, CellOutput, Settings};
 use glam::DVec3;
 use turbid::Spectrum;
 use turbid::estimators::boundary::Boundary;
-use turbid::geometry::{Shape, Slab};
 use turbid::integrators::{March, along};
-use turbid::light::{Beam, Light, Section};
 use turbid::math::{Interval, Positive};
-use turbid::medium::{Homogeneous, Medium};
-use turbid::phase::{Isotropic, Phase};
 use turbid::photons::{Histories, is_in, shoot};
 use turbid::rng::{Purpose, Stream};
-use turbid::scene::{Orders, Parts, Region, Scene};
+use turbid::scene::Orders;
 use turbid::stats::Moments;
 use turbid::transport::NoProgress;
 
@@ -29,21 +25,10 @@ pub fn cells(settings: &Settings) -> Vec<CellId> {
         .collect()
 }
 
-fn medium() -> turbid::Result<Homogeneous> {
-    Homogeneous::new(Spectrum::ONE, Spectrum::grey(ALBEDO), Phase::Isotropic(Isotropic))
-}
-
-/// The slab under a normal beam of irradiance 1; lengths are mean free paths.
-fn scene() -> anyhow::Result<Scene> {
-    let region = Region { shape: Shape::Slab(Slab::new(0.0, TAU)?), medium: medium()?.into() };
-    let lights = vec![Light::Beam(Beam::new(DVec3::Z, Spectrum::ONE, Section::Unbounded)?)];
-    Ok(Scene::new(Parts { regions: vec![region], lights, cell: Some(CELL), ..Parts::default() })?)
-}
-
 /// Measures one cell.
 pub fn measure(settings: &Settings, cell: &CellId) -> anyhow::Result<CellOutput> {
-    let scene = scene()?;
-    let medium = Medium::from(medium()?);
+    let scene = SETUP.scene()?;
+    let medium = &scene.regions()[0].medium;
     let (phase, albedo) = (medium.phase(), Spectrum::grey(ALBEDO));
     let histories = Histories {
         count: photons(settings),
@@ -67,7 +52,7 @@ pub fn measure(settings: &Settings, cell: &CellId) -> anyhow::Result<CellOutput>
             };
             // Nothing is drawn.
             let mut stream = Stream::new(settings.seed, Purpose::Synthetic, 0, 0);
-            let radiance = along(&medium, (&ray, span), &equal, TAU, &mut stream, source);
+            let radiance = along(medium, (&ray, span), &equal, TAU, &mut stream, source);
             values.push(radiance[0]);
             output.count("steps", (case.length() / case.step).round() as u64);
         }

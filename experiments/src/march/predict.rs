@@ -1,8 +1,10 @@
 //! What theory says of every case, before anything is measured.
 
-use super::cases::{ALBEDO, CELL, Case, REACH, Size, TAU, photons};
-use crate::harness::{Known, Predicted, Prediction, Settings, Term, Unit};
-use crate::theory::{Exact, Table, nearest_clustering, slab_fluence};
+use super::cases::{ALBEDO, Case, REACH, SETUP, TAU, photons};
+use crate::harness::{Settings, Unit};
+use crate::prediction::{PredictedError, Prediction, Term};
+use crate::setups::Size;
+use crate::theory::{Exact, Table, nearest_clustering};
 use rayon::prelude::*;
 use std::f64::consts::PI;
 use turbid::integrators::StepRule;
@@ -11,51 +13,11 @@ use turbid_analytic::nearest::nearest_expectation;
 use turbid_analytic::slab_kernel::{edge_loss, slab_moment};
 use turbid_analytic::{Incidence, IsotropicSlab};
 
-/// The predicted error of a radiance in parts, each as a fraction of the exact one.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct Parts {
-    /// Exact radiance.
-    pub exact: f64,
-    /// Bound on its error.
-    pub exact_error: f64,
-    /// The sum over steps with the exact source, in place of the integral.
-    pub step: f64,
-    /// The medium ends inside the balls of the steps near its faces.
-    pub edge: f64,
-    /// The fluence bends inside the balls.
-    pub blur: f64,
-    /// Photons of one history draw the k-th photon nearer.
-    pub clusters: f64,
-    /// Bound on the numerical error of the sum.
-    pub error: f64,
-}
-
-/// The terms in the order of [`Parts::list`].
+/// The terms of a case.
 pub const TERMS: [Term; 4] = [Term::Step, Term::Edge, Term::Blur, Term::Clusters];
 
 /// What interpolation of the kernel means adds to the error of a nearest expectation, tested in `theory::table`.
 const INTERPOLATION: f64 = 1e-8;
-
-impl Parts {
-    /// The parts in the order of [`TERMS`].
-    pub fn list(&self) -> [f64; 4] {
-        [self.step, self.edge, self.blur, self.clusters]
-    }
-}
-
-impl Predicted for Parts {
-    fn exact(&self) -> f64 {
-        self.exact
-    }
-
-    fn total(&self) -> f64 {
-        self.list().iter().sum()
-    }
-
-    fn bound(&self) -> f64 {
-        self.error
-    }
-}
 
 /// What the estimate of the fluence at one depth is expected to be, over the exact fluence there less 1, in parts.
 #[derive(Debug, Clone, Copy)]
@@ -79,11 +41,10 @@ pub struct Theory {
 impl Theory {
     /// The theory of maps of so many photons.
     pub fn new(photons: u64) -> anyhow::Result<Self> {
-        let incidence = Incidence::Beam { mu0: 1.0 };
         Ok(Theory {
-            slab: IsotropicSlab::new(TAU, ALBEDO, incidence)?,
-            fluence: slab_fluence(TAU, ALBEDO, 0.0, incidence)?,
-            density: photons as f64 / (CELL * CELL),
+            slab: IsotropicSlab::new(TAU, ALBEDO, Incidence::Beam { mu0: 1.0 })?,
+            fluence: SETUP.exact()?,
+            density: SETUP.density(photons),
         })
     }
 
@@ -122,84 +83,41 @@ impl Theory {
         }
     }
 
-    /// The parts of one case. The weights of the rules are written here a second time: the simulator's own are what is
+    /// The predicted error of one case. The weights of the rules are written here a second time: the simulator's own are what is
     /// tested.
-    pub fn parts(&self, case: &Case) -> anyhow::Result<Parts> {
+    pub fn error(&self, case: &Case) -> anyhow::Result<PredictedError> {
         let (radiance, bound) = self.exact(case.mu)?;
         let (dx, count) = (case.step, (case.length() / case.step).round() as u32);
         let held = if case.rule == StepRule::Integrated { -libm::expm1(-dx) / dx } else { 1.0 };
         let at = if case.rule == StepRule::NearEnd { 0.0 } else { 0.5 };
         let attenuated_at = if case.rule == StepRule::Middle { 0.5 } else { 0.0 };
-        let mut parts = Parts { exact: radiance, exact_error: bound, ..Parts::default() };
+        let (mut step, mut edge, mut blur, mut clusters, mut error) = (0.0, 0.0, 0.0, 0.0, 0.0);
         for i in 0..count {
             let i = f64::from(i);
             let here = self.at_depth((i + at) * dx * case.mu, case.size)?;
             let weight = held * dx * libm::exp(-(i + attenuated_at) * dx) * ALBEDO / (4.0 * PI) / radiance;
-            parts.step += weight * here.exact;
-            parts.edge += weight * here.exact * here.edge;
-            parts.blur += weight * here.exact * here.blur;
-            parts.clusters += weight * here.exact * here.clusters;
-            parts.error += weight * here.error;
+            step += weight * here.exact;
+            edge += weight * here.exact * here.edge;
+            blur += weight * here.exact * here.blur;
+            clusters += weight * here.exact * here.clusters;
+            error += weight * here.error;
         }
-        parts.step -= 1.0;
-        parts.error += 2.0 * bound / radiance;
-        Ok(parts)
+        error += 2.0 * bound / radiance;
+        let terms = TERMS.into_iter().zip([step - 1.0, edge, blur, clusters]).collect();
+        Ok(PredictedError { exact: (radiance, bound), terms, error })
     }
 }
-
-const PARTS: [&str; 4] = ["step", "edge", "blur", "clusters"];
 
 /// The predictions, as they are written down before the measurement.
 pub fn predict(settings: &Settings) -> anyhow::Result<Vec<Prediction>> {
     let theory = Theory::new(photons(settings))?;
-    let one = |case: Case| Ok((case, theory.parts(&case)?));
-    let all: Vec<anyhow::Result<_>> = Case::all().into_par_iter().map(one).collect();
-    let mut predictions = Vec::new();
-    for item in all {
-        let (case, parts): (Case, Parts) = item?;
-        let (exact, bound) = (parts.exact, parts.exact_error);
-        let mut add = |quantity: &str, unit, value: f64, error: f64, source: &str| {
-            let (case, quantity, source) = (case.name(), quantity.to_string(), source.to_string());
-            predictions.push(Prediction { case, quantity, unit, value, error, source });
-        };
-        let radiance = exact * (1.0 + parts.total());
-        let error = 100.0 * parts.error;
-        add("exact radiance", Unit::RADIANCE, exact, bound, "exact solution of the slab");
-        add(
-            "radiance",
-            Unit::RADIANCE,
-            radiance,
-            exact * parts.error,
-            "sum over steps of exact kernel means",
-        );
-        add("error", Unit::PERCENT, 100.0 * parts.total(), error, "sum of the parts");
-        for (name, value) in PARTS.iter().zip(parts.list()) {
-            add(
-                &format!("error from {name}"),
-                Unit::PERCENT,
-                100.0 * value,
-                error,
-                "weights of the rule times the part of each step",
-            );
-        }
-    }
-    Ok(predictions)
-}
-
-/// The parts of a case, as they were written down.
-pub fn recall(known: &Known, case: &Case) -> anyhow::Result<Parts> {
-    let name = case.name();
-    let (exact, exact_error) = known.get(&name, "exact radiance")?;
-    let part = |i: usize| known.part(&name, PARTS[i]);
-    Ok(Parts {
-        exact,
-        exact_error,
-        step: part(0)?,
-        edge: part(1)?,
-        blur: part(2)?,
-        clusters: part(3)?,
-        error: known.get(&name, "error")?.1 / 100.0,
-    })
+    let one = |case: Case| {
+        let sources = ["exact solution of the slab", "sum over steps of exact kernel means"];
+        let source = |_| "weights of the rule times the part of each step";
+        Ok(theory.error(&case)?.predictions(&case.name(), ("radiance", Unit::RADIANCE), sources, source))
+    };
+    let all: Vec<Vec<Prediction>> = Case::all().into_par_iter().map(one).collect::<anyhow::Result<_>>()?;
+    Ok(all.into_iter().flatten().collect())
 }
 
 #[cfg(test)]
@@ -217,7 +135,7 @@ mod tests {
     #[test]
     fn step_errors_fall_as_they_must() {
         let theory = Theory::new(50_000).unwrap();
-        let step = |dx, rule| theory.parts(&case(1.0, dx, rule)).unwrap().step;
+        let step = |dx, rule| theory.error(&case(1.0, dx, rule)).unwrap().of(Term::Step);
         let per_fluence = ALBEDO / (4.0 * PI) / theory.exact(1.0).unwrap().0;
         let near = (theory.fluence)(0.0).unwrap().0 * per_fluence;
         let far = (theory.fluence)(TAU).unwrap().0 * libm::exp(-TAU) * per_fluence;
@@ -237,15 +155,15 @@ mod tests {
     #[test]
     fn parts_are_sums_over_depths() {
         let theory = Theory::new(50_000).unwrap();
-        let parts = theory.parts(&case(0.5, 1.0, StepRule::Middle)).unwrap();
+        let error = theory.error(&case(0.5, 1.0, StepRule::Middle)).unwrap();
         let (radiance, _) = theory.exact(0.5).unwrap();
         let sum: f64 = [0.25, 0.75, 1.25, 1.75]
             .iter()
             .zip([0.5, 1.5, 2.5, 3.5])
             .map(|(&t, x)| libm::exp(-x) * (theory.fluence)(t).unwrap().0)
             .sum();
-        assert!((parts.step + 1.0 - sum * ALBEDO / (4.0 * PI) / radiance).abs() < 1e-12);
+        assert!((error.of(Term::Step) + 1.0 - sum * ALBEDO / (4.0 * PI) / radiance).abs() < 1e-12);
         // No ball of these steps reaches a face.
-        assert!(parts.edge.abs() < 1e-12 && parts.clusters == 0.0);
+        assert!(error.of(Term::Edge).abs() < 1e-12 && error.of(Term::Clusters) == 0.0);
     }
 }

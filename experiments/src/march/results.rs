@@ -1,8 +1,7 @@
 //! What the maps say of each case.
 
 use super::cases::Case;
-use super::predict::Parts;
-use crate::harness::Compared;
+use crate::prediction::Compared;
 
 /// One case with everything that is known of it; errors in per cent of the exact radiance.
-pub type Result = Compared<Case, Parts>;
+pub type CaseResult = Compared<Case>;

@@ -1,12 +1,13 @@
 //! The cases: how many photons, at which depth, within which radius.
 
 use crate::harness::Settings;
+use crate::setups::{CELL, Setup};
 use glam::DVec3;
 
 /// Optical thickness of the slab, which only absorbs.
 pub const TAU: f64 = 4.0;
-/// Side of the cell that stands for the slab [mfp].
-pub const CELL: f64 = 4.0;
+/// The slab under a normal beam.
+pub const SETUP: Setup = Setup::slab(TAU, 0.0, 0.0);
 /// Depth at which whole balls lie in the medium [mfp].
 pub const INSIDE: f64 = 1.0;
 /// The lit face.

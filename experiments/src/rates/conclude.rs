@@ -5,9 +5,8 @@ use super::figures;
 use super::fit::{exponent, exponent_of_means};
 use super::predict::Case;
 use super::results::{Curve, Point, ladder};
-use crate::harness::{
-    Cells, Claim, Entry, Estimate, Prediction, Row, Section, Settings, Table, Term, Unit, signed, with_error,
-};
+use crate::harness::{Cells, Claim, Estimate, Row, Section, Settings, Table, Unit, signed, with_error};
+use crate::prediction::{Entry, Prediction, Term};
 use turbid::stats::Moments;
 
 /// Concludes.

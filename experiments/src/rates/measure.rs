@@ -1,18 +1,13 @@
 //! Measuring one batch of maps.
 
-use super::cases::{self, CELL, DEPTHS, Size, TAU, name, probes, radii};
+use super::cases::{self, DEPTHS, SETUP, Size, name, probes, radii};
 use crate::harness::{CellId, CellOutput, Settings};
 use anyhow::Context;
-use glam::DVec3;
 use turbid::Spectrum;
 use turbid::estimators::boundary::Boundary;
 use turbid::estimators::{Estimator, Gather, Kernel};
-use turbid::geometry::{Shape, Slab};
-use turbid::light::{Beam, Light, Section};
-use turbid::medium::Homogeneous;
-use turbid::phase::{Isotropic, Phase};
 use turbid::photons::{Histories, is_in, shoot};
-use turbid::scene::{Orders, Parts, Region, Scene};
+use turbid::scene::Orders;
 use turbid::stats::Moments;
 use turbid::transport::NoProgress;
 
@@ -28,20 +23,12 @@ pub fn cells(settings: &Settings) -> Vec<CellId> {
     all
 }
 
-/// The slab under a normal beam of irradiance 1, without scattering; lengths are mean free paths.
-fn scene() -> anyhow::Result<Scene> {
-    let medium = Homogeneous::new(Spectrum::ONE, Spectrum::ZERO, Phase::Isotropic(Isotropic))?;
-    let region = Region { shape: Shape::Slab(Slab::new(0.0, TAU)?), medium: medium.into() };
-    let lights = vec![Light::Beam(Beam::new(DVec3::Z, Spectrum::ONE, Section::Unbounded)?)];
-    Ok(Scene::new(Parts { regions: vec![region], lights, cell: Some(CELL), ..Parts::default() })?)
-}
-
 /// Measures one cell: error and squared error, relative to e^-t, over the probes of all maps of the batch.
 pub fn measure(settings: &Settings, cell: &CellId) -> anyhow::Result<CellOutput> {
     let sizes = Size::all(settings);
     let own = sizes.iter().find(|size| size.group() == cell.group);
     let size = own.with_context(|| format!("group {}", cell.group))?;
-    let scene = scene()?;
+    let scene = SETUP.scene()?;
     let radii = radii();
     let mut output = CellOutput::new();
     let mut errors = vec![Moments::new(); DEPTHS.len() * radii.len()];

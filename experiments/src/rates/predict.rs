@@ -1,7 +1,9 @@
 //! What theory says of every case, before anything is measured.
 
-use super::cases::{CELL, DEPTHS, Size, TAU, name, radii};
-use crate::harness::{Prediction, Settings, Unit};
+use super::cases::{DEPTHS, Size, TAU, name, radii};
+use crate::harness::{Settings, Unit};
+use crate::prediction::Prediction;
+use crate::setups::CELL;
 use std::f64::consts::PI;
 use turbid_analytic::kernel::Kernel;
 use turbid_analytic::nearest::fixed_radius_variance;
@@ -55,19 +57,14 @@ pub fn predict(settings: &Settings) -> anyhow::Result<Vec<Prediction>> {
         for depth in DEPTHS {
             for radius in radii() {
                 let case = Case::new(size.photons, depth, radius)?;
-                let mut add = |quantity: &str, value: f64, error: f64, source: &str| {
-                    let (quantity, source) = (quantity.to_string(), source.to_string());
-                    let case = name(size.photons, depth, radius);
-                    predictions.push(Prediction { case, quantity, unit: Unit::ONE, value, error, source });
-                };
-                add("error", case.bias(), case.error, "kernel mean of e^-t in the slab");
-                let error = 2.0 * case.bias().abs() * case.error + 1e-12 * case.variance;
-                add(
-                    "squared error",
-                    case.squared(),
-                    error,
-                    "squared bias and variance of independent points",
-                );
+                let name = name(size.photons, depth, radius);
+                let source = "kernel mean of e^-t in the slab";
+                let bias = (case.bias(), case.error);
+                predictions.push(Prediction::new(&name, "error", Unit::ONE, bias, source));
+                let squared = 2.0 * case.bias().abs() * case.error + 1e-12 * case.variance;
+                let squared = (case.squared(), squared);
+                let source = "squared bias and variance of independent points";
+                predictions.push(Prediction::new(name, "squared error", Unit::ONE, squared, source));
             }
         }
     }

@@ -6,9 +6,10 @@ use super::figures;
 use super::style::CSS;
 use super::tables::{self, Numbers};
 use crate::harness::{
-    FAMILY_WISE, FIT_LEVEL, FigureFiles, MIN_MAPS, Prediction, Provenance, Row, SectionReport, Settings,
-    Table, Verdict, number, row_label, with_error,
+    FAMILY_WISE, FIT_LEVEL, FigureFiles, MIN_MAPS, Provenance, Row, SectionReport, Settings, Table, Verdict,
+    number, row_label, with_error,
 };
+use crate::prediction::Prediction;
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 
 /// Predictions shown in a section; the rest is in predictions.csv.

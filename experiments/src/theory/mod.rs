@@ -1,8 +1,8 @@
 //! What theory says, shared by the experiments: exact fields, kernels as the referee knows them, clusters of photons.
 
 mod clusters;
-mod fog;
 mod gathers;
+mod means;
 mod returns;
 mod slab;
 mod sphere;
@@ -10,8 +10,7 @@ mod table;
 mod words;
 
 pub use clusters::{clustering, nearest_clustering};
-pub use fog::{Fog, spiral};
-pub use gathers::{Gathers, NearestGather, PART_NAMES, Parts};
+pub use gathers::{GATHER_TERMS, Gathers, NearestGather};
 pub use slab::slab_fluence;
 pub use sphere::sphere_fluence;
 pub use table::Table;

@@ -1,21 +1,12 @@
 //! The cases: six slabs and a sphere, how many photons light them, and how those are gathered.
 
 use crate::harness::Settings;
-use crate::theory::{Exact, Fog, UNTREATED, slab_fluence, sphere_fluence, spiral};
+use crate::setups::{Body, CELL, Lighting, Setup, Size};
+use crate::theory::UNTREATED;
 use anyhow::Context;
-use glam::DVec3;
 use std::f64::consts::PI;
-use turbid::Spectrum;
-use turbid::estimators::{Estimator, Gather, Kernel};
-use turbid::light::{Beam, Light, Section, VolumeSource};
-use turbid::math::Asymmetry;
-use turbid::medium::Homogeneous;
-use turbid::phase::Phase;
-use turbid::scene::{Parts, Region, Scene};
-use turbid_analytic::{Incidence, SphereSource};
+use turbid::estimators::{Estimator, Kernel};
 
-/// Side of the cell that stands for a slab \[mfp\].
-pub const CELL: f64 = 4.0;
 /// Probes along one side of the cell; their square is the number of probes of a layer.
 pub const SIDE: usize = 16;
 /// Layers of probes.
@@ -25,7 +16,7 @@ pub const PROBES: usize = SIDE * SIDE * LAYERS;
 
 /// From how many queries on a map costs fewer operations than paths of the same error.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Pays {
+pub enum Worth {
     /// No number pays for it.
     Never,
     /// Some number does.
@@ -34,20 +25,16 @@ pub enum Pays {
     By4096,
 }
 
-/// One body of fog and its light: a slab under a normal beam of irradiance 1, or a sphere that glows with power 1 per
+/// One body of medium and its light: a slab under a normal beam of irradiance 1, or a sphere that glows with power 1 per
 /// volume; lengths are mean free paths.
 #[derive(Debug, PartialEq)]
-pub struct Body {
+pub struct Field {
     /// Short name in cases and groups.
     pub name: &'static str,
     /// What it is, for readers.
     pub title: &'static str,
-    /// Where the fog is.
-    pub fog: Fog,
-    /// Single-scattering albedo.
-    pub albedo: f64,
-    /// Asymmetry.
-    pub g: f64,
+    /// The medium and its light.
+    pub setup: Setup,
     /// A guess of the least fluence at a probe: what caps of nearest gathers are made from.
     least: f64,
     /// Whether a map is to cost fewer operations than paths. An error e takes 1/e² gathered photons, more by clusters and
@@ -56,7 +43,7 @@ pub struct Body {
     /// map. In the sphere every ray collects its own glow in closed form, V is 0.8 and R above 3: the map pays, late.
     /// This, and the sphere's bounds on regret and clipping, were set after a trial run with seed 1, which refused `Never`:
     /// seed 1 confirms none of them, another seed may.
-    pub pays: Pays,
+    pub worth: Worth,
     /// What 50 and 100 neighbours cost over the best gather, at least: less in the sphere, whose light bends more for its
     /// number of photons, so that blur ends the gain of wider gathers earlier.
     pub regret: [f64; 2],
@@ -65,99 +52,90 @@ pub struct Body {
     full: &'static [u64],
 }
 
-/// Every body, in the order of the report. The thick slabs absorb less, since with an albedo of 0.9 hardly a photon
+/// Every field, in the order of the report. The thick slabs absorb less, since with an albedo of 0.9 hardly a photon
 /// in a hundred would reach their far side.
-pub const BODIES: [Body; 7] = [
-    Body {
+pub const FIELDS: [Field; 7] = [
+    Field {
         name: "thin",
         title: "τ = 0.5, isotropic",
-        fog: Fog::Slab { thickness: 0.5 },
-        albedo: 0.9,
-        g: 0.0,
+        setup: Setup::slab(0.5, 0.9, 0.0),
         least: 0.7,
-        pays: Pays::Never,
+        worth: Worth::Never,
         regret: [1.5, 1.2],
         quick: &[8_192, 65_536],
         full: &[8_192, 65_536, 524_288],
     },
-    Body {
+    Field {
         name: "thin-g0.75",
         title: "τ = 0.5, g = 0.75",
-        fog: Fog::Slab { thickness: 0.5 },
-        albedo: 0.9,
-        g: 0.75,
+        setup: Setup::slab(0.5, 0.9, 0.75),
         least: 0.9,
-        pays: Pays::By4096,
+        worth: Worth::By4096,
         regret: [1.5, 1.2],
         quick: &[8_192, 65_536],
         full: &[8_192, 65_536, 524_288],
     },
-    Body {
+    Field {
         name: "moderate",
         title: "τ = 2, isotropic",
-        fog: Fog::Slab { thickness: 2.0 },
-        albedo: 0.9,
-        g: 0.0,
+        setup: Setup::slab(2.0, 0.9, 0.0),
         least: 0.45,
-        pays: Pays::By4096,
+        worth: Worth::By4096,
         regret: [1.5, 1.2],
         quick: &[4_096, 32_768],
         full: &[4_096, 32_768, 262_144],
     },
-    Body {
+    Field {
         name: "moderate-g0.75",
         title: "τ = 2, g = 0.75",
-        fog: Fog::Slab { thickness: 2.0 },
-        albedo: 0.9,
-        g: 0.75,
+        setup: Setup::slab(2.0, 0.9, 0.75),
         least: 0.8,
-        pays: Pays::By4096,
+        worth: Worth::By4096,
         regret: [1.5, 1.2],
         quick: &[4_096, 32_768],
         full: &[4_096, 32_768, 262_144],
     },
-    Body {
+    Field {
         name: "thick",
         title: "τ = 8, isotropic",
-        fog: Fog::Slab { thickness: 8.0 },
-        albedo: 0.99,
-        g: 0.0,
+        setup: Setup::slab(8.0, 0.99, 0.0),
         least: 0.2,
-        pays: Pays::By4096,
+        worth: Worth::By4096,
         regret: [1.5, 1.2],
         quick: &[4_096, 16_384],
         full: &[4_096, 16_384, 131_072],
     },
-    Body {
+    Field {
         name: "thick-g0.75",
         title: "τ = 8, g = 0.75",
-        fog: Fog::Slab { thickness: 8.0 },
-        albedo: 0.99,
-        g: 0.75,
+        setup: Setup::slab(8.0, 0.99, 0.75),
         least: 0.6,
-        pays: Pays::By4096,
+        worth: Worth::By4096,
         regret: [1.5, 1.2],
         quick: &[4_096, 16_384],
         full: &[4_096, 16_384, 131_072],
     },
-    Body {
+    Field {
         name: "sphere",
         title: "glowing sphere, radius 2",
-        fog: Fog::Sphere { radius: 2.0 },
-        albedo: 0.9,
-        g: 0.0,
+        setup: Setup {
+            body: Body::Sphere { radius: 2.0 },
+            lighting: Lighting::Emission,
+            albedo: 0.9,
+            g: 0.0,
+        },
         least: 0.9,
-        pays: Pays::Late,
+        worth: Worth::Late,
         regret: [1.25, 1.05],
         quick: &[4_096, 32_768],
         full: &[4_096, 32_768, 262_144],
     },
 ];
 
-impl Body {
-    /// The body of a name.
-    pub fn named(name: &str) -> anyhow::Result<&'static Body> {
-        BODIES.iter().find(|s| s.name == name).with_context(|| format!("no body of fog is called {name}"))
+impl Field {
+    /// The field of a name.
+    pub fn named(name: &str) -> anyhow::Result<&'static Field> {
+        FIELDS.iter().find(|s| s.name == name).with_context(|| format!("no field is called {name}"))
     }
 
     /// Emitted photons of each size of map.
@@ -170,9 +148,9 @@ impl Body {
     /// decimals.
     pub fn depth(&self, layer: usize) -> f64 {
         let share = layer as f64 + 0.5;
-        match self.fog {
-            Fog::Slab { thickness } => share * thickness / LAYERS as f64,
-            Fog::Sphere { radius } => {
+        match self.setup.body {
+            Body::Slab { .. } | Body::Cuboid { .. } => share * self.setup.body.deepest() / LAYERS as f64,
+            Body::Sphere { radius } => {
                 let from_centre = radius * libm::cbrt(1.0 - share / LAYERS as f64);
                 (1e4 * (radius - from_centre)).round() / 1e4
             }
@@ -182,81 +160,6 @@ impl Body {
     /// The depths of all layers \[mfp\].
     pub fn depths(&self) -> Vec<f64> {
         (0..LAYERS).map(|layer| self.depth(layer)).collect()
-    }
-
-    /// The area over which the probes of a layer spread: the cell's, or that of a sphere \[mfp²\].
-    pub fn area(&self, depth: f64) -> f64 {
-        match self.fog {
-            Fog::Slab { .. } => CELL * CELL,
-            Fog::Sphere { radius } => 4.0 * PI * (radius - depth) * (radius - depth),
-        }
-    }
-
-    /// The volume of fog: the cell's part of a slab \[mfp³\].
-    pub fn volume(&self) -> f64 {
-        match self.fog {
-            Fog::Slab { thickness } => CELL * CELL * thickness,
-            Fog::Sphere { radius } => 4.0 / 3.0 * PI * radius * radius * radius,
-        }
-    }
-
-    /// The power of the light: on the cell's face, or in all of the sphere.
-    pub fn power(&self) -> f64 {
-        match self.fog {
-            Fog::Slab { .. } => CELL * CELL,
-            Fog::Sphere { .. } => self.volume(),
-        }
-    }
-
-    /// The exact fluence against depth.
-    pub fn exact(&self) -> anyhow::Result<Exact> {
-        match self.fog {
-            Fog::Slab { thickness } => {
-                slab_fluence(thickness, self.albedo, self.g, Incidence::Beam { mu0: 1.0 })
-            }
-            Fog::Sphere { radius } => {
-                // The referee's source has the power 1 in all.
-                let (of_unit, power) =
-                    (sphere_fluence(radius, self.albedo, SphereSource::Uniform)?, self.power());
-                Ok(Box::new(move |t| of_unit(t).map(|(value, error)| (power * value, power * error))))
-            }
-        }
-    }
-
-    /// The scene, of extinction 1.
-    pub fn scene(&self) -> anyhow::Result<Scene> {
-        let shape = self.fog.shape()?;
-        let phase = Phase::with_asymmetry(Asymmetry::new("g", self.g)?);
-        let medium = Homogeneous::new(Spectrum::ONE, Spectrum::grey(self.albedo), phase)?;
-        let (light, cell) = match self.fog {
-            Fog::Slab { .. } => {
-                (Light::Beam(Beam::new(DVec3::Z, Spectrum::ONE, Section::Unbounded)?), Some(CELL))
-            }
-            Fog::Sphere { .. } => {
-                (Light::VolumeSource(VolumeSource::new(shape.clone(), Spectrum::ONE)?), None)
-            }
-        };
-        let regions = vec![Region { shape, medium: medium.into() }];
-        Ok(Scene::new(Parts { regions, lights: vec![light], cell, ..Parts::default() })?)
-    }
-}
-
-/// How large a gather is.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Size {
-    /// All photons within this radius [mfp].
-    Radius(f64),
-    /// The k nearest photons; the k-th sets the radius and is not summed.
-    Nearest(usize),
-}
-
-impl Size {
-    /// In words.
-    pub fn name(self) -> String {
-        match self {
-            Size::Radius(r) => format!("r={r}"),
-            Size::Nearest(k) => format!("k={k}"),
-        }
     }
 }
 
@@ -293,8 +196,8 @@ impl Treatment {
 /// What one map is asked, at every probe.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Setting {
-    /// The body of fog.
-    pub body: &'static Body,
+    /// The field of fog.
+    pub field: &'static Field,
     /// Photons emitted into the map.
     pub photons: u64,
     /// Gather size.
@@ -316,26 +219,26 @@ const MIN_SHARE: u64 = 32;
 const ROOM: f64 = 6.0;
 
 impl Setting {
-    /// Everything that maps of one body and number of photons are asked.
-    pub fn all(body: &'static Body, photons: u64) -> Vec<Setting> {
-        let held = |r: &f64| Setting { body, photons, size: Size::Radius(*r) }.held();
+    /// Everything that maps of one field and number of photons are asked.
+    pub fn all(field: &'static Field, photons: u64) -> Vec<Setting> {
+        let held = |r: &f64| Setting { field, photons, size: Size::Radius(*r) }.held();
         let radii =
             RADII.into_iter().filter(|r| (FILLING.0..=FILLING.1).contains(&held(r))).map(Size::Radius);
         let nearest = NEIGHBORS.into_iter().filter(|&k| k as u64 * MIN_SHARE <= photons).map(Size::Nearest);
-        radii.chain(nearest).map(|size| Setting { body, photons, size }).collect()
+        radii.chain(nearest).map(|size| Setting { field, photons, size }).collect()
     }
 
     /// Every setting of a study.
     pub fn every(settings: &Settings) -> Vec<Setting> {
-        let of_body =
-            |body: &'static Body| body.photons(settings).into_iter().flat_map(move |n| Setting::all(body, n));
-        BODIES.iter().flat_map(of_body).collect()
+        let of_body = |field: &'static Field| {
+            field.photons(settings).into_iter().flat_map(move |n| Setting::all(field, n))
+        };
+        FIELDS.iter().flat_map(of_body).collect()
     }
 
-    /// Emitted photons over emitted power, in slabs per area of the face: photons stored per cubic mean free path
-    /// where the fluence is 1.
+    /// Photons stored per cubic mean free path where the fluence is 1.
     pub fn density(&self) -> f64 {
-        self.photons as f64 / self.body.power()
+        self.field.setup.density(self.photons)
     }
 
     /// Photons in a whole ball where the fluence is 1.
@@ -357,13 +260,13 @@ impl Setting {
     }
 
     /// The group of cells that answer it, and the case of whole maps.
-    pub fn group(body: &Body, photons: u64) -> String {
-        format!("{}-n{photons}", body.name)
+    pub fn group(field: &Field, photons: u64) -> String {
+        format!("{}-n{photons}", field.name)
     }
 
     /// The name in tables, whatever is done at the faces.
     pub fn name(&self) -> String {
-        format!("{} n={} {}", self.body.name, self.photons, self.size.name())
+        format!("{} n={} {}", self.field.name, self.photons, self.size.name())
     }
 
     /// The name in tables with what is done at the faces.
@@ -376,7 +279,7 @@ impl Setting {
         match self.size {
             Size::Radius(r) => r,
             Size::Nearest(k) => {
-                let volume = ROOM * k as f64 / (self.body.least * self.density());
+                let volume = ROOM * k as f64 / (self.field.least * self.density());
                 libm::cbrt(3.0 * volume / (4.0 * PI)).min(CELL)
             }
         }
@@ -389,33 +292,18 @@ impl Setting {
 
     /// What is asked.
     pub fn estimator(&self) -> turbid::Result<Estimator> {
-        let gather = match self.size {
-            Size::Radius(r) => Gather::radius(r),
-            Size::Nearest(k) => Gather::nearest(k, self.cap()),
-        };
-        Ok(Estimator::new(Kernel::Uniform, gather?))
+        Ok(Estimator::new(Kernel::Uniform, self.size.gather(self.cap())?))
     }
 }
 
-/// The probes of one layer: a square lattice of so many along each side, or as many on a spiral about a sphere.
-pub fn probes(body: &Body, side: usize, depth: f64) -> Vec<DVec3> {
-    match body.fog {
-        Fog::Slab { .. } => {
-            let place = move |i: usize| (i as f64 + 0.5) * CELL / side as f64;
-            (0..side * side).map(|i| DVec3::new(place(i % side), place(i / side), depth)).collect()
-        }
-        Fog::Sphere { radius } => spiral(side * side).map(|dir| dir * (radius - depth)).collect(),
-    }
-}
-
-/// The group of a body's path batches.
-pub fn paths_group(body: &Body) -> String {
-    format!("{}-paths", body.name)
+/// The group of a field's path batches.
+pub fn paths_group(field: &Field) -> String {
+    format!("{}-paths", field.name)
 }
 
 /// The name of a path tracer's case.
-pub fn paths_case(body: &Body, layer: usize) -> String {
-    format!("{} paths t={}", body.name, body.depth(layer))
+pub fn paths_case(field: &Field, layer: usize) -> String {
+    format!("{} paths t={}", field.name, field.depth(layer))
 }
 
 #[cfg(test)]
@@ -425,10 +313,10 @@ mod tests {
     /// The guessed least fluence is below the true one, so that caps have the room they claim, but not by much.
     #[test]
     fn caps_have_room() {
-        for body in &BODIES {
-            let exact = body.exact().unwrap();
-            let least = body.depths().iter().map(|&t| exact(t).unwrap().0).fold(f64::INFINITY, f64::min);
-            assert!(body.least <= least && least <= 2.0 * body.least, "{}: {least}", body.name);
+        for field in &FIELDS {
+            let exact = field.setup.exact().unwrap();
+            let least = field.depths().iter().map(|&t| exact(t).unwrap().0).fold(f64::INFINITY, f64::min);
+            assert!(field.least <= least && least <= 2.0 * field.least, "{}: {least}", field.name);
         }
     }
 }

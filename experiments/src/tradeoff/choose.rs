@@ -1,9 +1,10 @@
 //! Choosing settings on half of the maps, reporting them on the other half, and what the choice costs.
 
-use super::cases::{PROBES, Size};
+use super::cases::PROBES;
 use super::data::{Measured, Paths};
 use super::split::{Split, halves, positive, rms};
 use crate::harness::Estimate;
+use crate::setups::Size;
 
 /// A setting chosen on one half of its maps.
 #[derive(Clone, Copy)]

@@ -1,57 +1,58 @@
 //! The claims, by counts alone. The margin of measured over predicted error, 3 per cent, is what the theory of noise
 //! leaves out: clusters near faces. Margins of regret are round numbers that somebody who chooses settings would act on.
 
-use super::cases::{BODIES, Body, Pays, Size, Treatment};
+use super::cases::{FIELDS, Field, Treatment, Worth};
 use super::choose::{BreakEven, Currency, best_over_best, break_even, most_efficient, regret};
 use super::data::{Data, Measured};
 use super::split::{rms, rms_noise};
 use crate::harness::{Claim, Estimate, Unit};
+use crate::setups::Size;
 use turbid::stats::Moments;
 
 /// All claims of the experiment.
 pub fn all(data: &Data) -> Vec<Claim> {
     let mut claims = Vec::new();
-    for body in &BODIES {
-        claims.extend(error_claims(data, body));
+    for field in &FIELDS {
+        claims.extend(error_claims(data, field));
     }
-    claims.extend(independent_claim(data, &BODIES[2]));
-    for body in &BODIES {
-        claims.extend(regret_claims(data, body));
+    claims.extend(independent_claim(data, &FIELDS[2]));
+    for field in &FIELDS {
+        claims.extend(regret_claims(data, field));
     }
-    for body in &BODIES[..4] {
-        claims.push(clipping_claim(data, body, 0.75));
+    for field in &FIELDS[..4] {
+        claims.push(clipping_claim(data, field, 0.75));
     }
-    claims.push(clipping_claim(data, &BODIES[6], 0.9));
-    for body in &BODIES {
-        claims.extend(break_even_claim(data, body));
+    claims.push(clipping_claim(data, &FIELDS[6], 0.9));
+    for field in &FIELDS {
+        claims.extend(break_even_claim(data, field));
     }
-    for body in &BODIES {
-        claims.extend(path_claim(data, body));
+    for field in &FIELDS {
+        claims.extend(path_claim(data, field));
     }
     claims
 }
 
-/// A case of the largest maps of a body.
-fn find<'a>(data: &'a Data, body: &Body, treatment: Treatment, size: Size) -> Option<&'a Measured> {
-    data.of(body, treatment, Some(data.largest(body))).into_iter().find(|m| m.setting.size == size)
+/// A case of the largest maps of a field.
+fn find<'a>(data: &'a Data, field: &Field, treatment: Treatment, size: Size) -> Option<&'a Measured> {
+    data.of(field, treatment, Some(data.largest(field))).into_iter().find(|m| m.setting.size == size)
 }
 
 /// The main settings have the predicted error.
-fn error_claims(data: &Data, body: &Body) -> Vec<Claim> {
+fn error_claims(data: &Data, field: &Field) -> Vec<Claim> {
     let mut claims = Vec::new();
     for size in [Size::Radius(0.2), Size::Nearest(50)] {
         for treatment in Treatment::ALL {
-            let Some(case) = find(data, body, treatment, size) else { continue };
+            let Some(case) = find(data, field, treatment, size) else { continue };
             // Where no ball is cut, clipped is plain.
-            let plain = find(data, body, Treatment::Plain, size);
+            let plain = find(data, field, Treatment::Plain, size);
             if treatment == Treatment::Clipped && plain.is_some_and(|p| p.maps == case.maps) {
                 continue;
             }
             let (how, what) = (treatment.name(), size.name());
-            let id = format!("{}-{}-{how}", body.name, what.replace('=', ""));
+            let id = format!("{}-{}-{how}", field.name, what.replace('=', ""));
             let text = format!(
                 "{}, {what}, {}: RMS error over probes and maps, measured over predicted",
-                body.title,
+                field.title,
                 treatment.title()
             );
             let statistic = rms(&case.maps).times(1.0 / case.predicted().total());
@@ -62,67 +63,67 @@ fn error_claims(data: &Data, body: &Body) -> Vec<Claim> {
 }
 
 /// Wrong on purpose: the noise that independent photons would make.
-fn independent_claim(data: &Data, body: &Body) -> Option<Claim> {
-    let case = find(data, body, Treatment::Plain, Size::Radius(0.2))?;
+fn independent_claim(data: &Data, field: &Field) -> Option<Claim> {
+    let case = find(data, field, Treatment::Plain, Size::Radius(0.2))?;
     let squares: Vec<f64> = case.expected.iter().map(|e| e.noise_independent * e.noise_independent).collect();
     let independent = super::data::mean(&squares).sqrt();
     let statistic = rms_noise(&case.maps).times(1.0 / independent);
     let text = format!(
         "wrong on purpose, photons of one history taken as independent, {}, r=0.2: RMS noise, measured over predicted",
-        body.title
+        field.title
     );
     Some(Claim::detected("independent-photons", &text, Unit::ONE, statistic, 1.0, 0.05))
 }
 
 /// What everybody's k costs.
-fn regret_claims(data: &Data, body: &Body) -> Vec<Claim> {
-    let cases = data.of(body, Treatment::Clipped, Some(data.largest(body)));
+fn regret_claims(data: &Data, field: &Field) -> Vec<Claim> {
+    let cases = data.of(field, Treatment::Clipped, Some(data.largest(field)));
     let mut claims = Vec::new();
-    for (k, margin) in [50, 100].into_iter().zip(body.regret) {
-        let Some(case) = find(data, body, Treatment::Clipped, Size::Nearest(k)) else { continue };
+    for (k, margin) in [50, 100].into_iter().zip(field.regret) {
+        let Some(case) = find(data, field, Treatment::Clipped, Size::Nearest(k)) else { continue };
         let text = format!(
             "{}, the largest maps, clipped: RMS error with k = {k} over that of the best setting tried, chosen on other maps",
-            body.title
+            field.title
         );
-        let id = format!("{}-regret-{k}", body.name);
+        let id = format!("{}-regret-{k}", field.name);
         claims.push(Claim::at_least(&id, &text, Unit::ONE, regret(case, &cases), margin));
     }
     claims
 }
 
 /// Where faces are near, clipping buys more than any choice of k or radius.
-fn clipping_claim(data: &Data, body: &Body, bound: f64) -> Claim {
-    let of = |treatment| data.of(body, treatment, Some(data.largest(body)));
+fn clipping_claim(data: &Data, field: &Field, bound: f64) -> Claim {
+    let of = |treatment| data.of(field, treatment, Some(data.largest(field)));
     let ratio = best_over_best(&of(Treatment::Clipped), &of(Treatment::Plain));
     let text = format!(
         "{}, the largest maps: RMS error of the best clipped setting over that of the best untreated one",
-        body.title
+        field.title
     );
-    Claim::at_most(&format!("{}-clipping", body.name), &text, Unit::ONE, ratio, bound)
+    Claim::at_most(&format!("{}-clipping", field.name), &text, Unit::ONE, ratio, bound)
 }
 
-/// Whether a map pays. Which of the two is claimed of a body is fixed with the body.
-fn break_even_claim(data: &Data, body: &Body) -> Option<Claim> {
-    let chosen = most_efficient(&data.of(body, Treatment::Clipped, None))?;
-    let BreakEven { ratio, share, .. } = break_even(chosen.case, data.paths(body)?, Currency::Operations);
-    let id = format!("{}-break-even", body.name);
-    let title = body.title;
-    let claim = match body.pays {
-        Pays::By4096 => {
+/// Whether a map pays. Which of the two is claimed of a field is fixed with the field.
+fn break_even_claim(data: &Data, field: &Field) -> Option<Claim> {
+    let chosen = most_efficient(&data.of(field, Treatment::Clipped, None))?;
+    let BreakEven { ratio, share, .. } = break_even(chosen.case, data.paths(field)?, Currency::Operations);
+    let id = format!("{}-break-even", field.name);
+    let title = field.title;
+    let claim = match field.worth {
+        Worth::By4096 => {
             let text = format!(
                 "{title}, clipped, in operations: 4096 queries from the most efficient map, the map included, over as \
                  many by paths of the same error"
             );
             Claim::at_most(&id, &text, Unit::ONE, share, 1.0)
         }
-        Pays::Late => {
+        Worth::Late => {
             let text = format!(
                 "{title}, clipped, in operations, a photon gathered counted like a ray: rays of a path query over \
                  photons gathered from the most efficient map of the same error, so that from some number of queries on it pays"
             );
             Claim::at_least(&id, &text, Unit::ONE, ratio, 1.0)
         }
-        Pays::Never => {
+        Worth::Never => {
             let text = format!(
                 "{title}, clipped, in operations, a photon gathered counted like a ray: rays of a path query over photons \
                  gathered from the most efficient map of the same error, so that no number of queries pays for it"
@@ -134,10 +135,10 @@ fn break_even_claim(data: &Data, body: &Body) -> Option<Claim> {
 }
 
 /// The path tracer agrees with the exact solution.
-fn path_claim(data: &Data, body: &Body) -> Option<Claim> {
-    let errors: Vec<f64> = data.paths(body)?.error.iter().map(|e| 100.0 * e).collect();
+fn path_claim(data: &Data, field: &Field) -> Option<Claim> {
+    let errors: Vec<f64> = data.paths(field)?.error.iter().map(|e| 100.0 * e).collect();
     let statistic = Estimate::mean(&errors.iter().collect::<Moments>());
-    // Behind a forward peak few paths turn towards the beam, and long paths add up: 5 errors of the noisiest body.
-    let text = format!("{}: error of the path tracer, averaged over depth", body.title);
-    Some(Claim::within(&format!("{}-paths", body.name), &text, Unit::PERCENT, statistic, -2.5, 2.5))
+    // Behind a forward peak few paths turn towards the beam, and long paths add up: 5 errors of the noisiest field.
+    let text = format!("{}: error of the path tracer, averaged over depth", field.title);
+    Some(Claim::within(&format!("{}-paths", field.name), &text, Unit::PERCENT, statistic, -2.5, 2.5))
 }

@@ -1,18 +1,20 @@
 //! What all maps together say: rows, claims, tables, the error budget of the study.
 
-use super::cases::{BODIES, PROBES, Setting, Size, Treatment};
+use super::cases::{FIELDS, PROBES, Setting, Treatment};
 use super::choose::{BreakEven, Currency, best_over_best, break_even, most_efficient, regret};
 use super::data::{Data, Measured};
 use super::measure::MAPS;
-use super::predict::{BIAS, Known, NOISE, RMS};
+use super::predict::{BIAS, NOISE, RMS};
 use super::split::{rms, rms_bias, rms_noise};
 use super::{claims, figures, tables, words};
-use crate::harness::{Cells, Entry, Estimate, Prediction, Row, Section, Settings, Term, Unit};
+use crate::harness::{Cells, Estimate, Row, Section, Settings, Unit};
+use crate::prediction::{Entry, Prediction, Predictions, Term};
+use crate::setups::Size;
 use turbid::stats::Moments;
 
 /// Concludes.
 pub fn conclude(settings: &Settings, predictions: &[Prediction], cells: &Cells) -> anyhow::Result<Section> {
-    let known = Known::new(predictions);
+    let known = Predictions::new(predictions);
     let data = Data::read(settings, &known, cells)?;
     let mut section = Section { rows: rows(&data, &known)?, ..Section::default() };
     section.budget = data.measured.iter().flat_map(entries).collect();
@@ -25,7 +27,7 @@ pub fn conclude(settings: &Settings, predictions: &[Prediction], cells: &Cells) 
     Ok(section)
 }
 
-fn rows(data: &Data, known: &Known) -> anyhow::Result<Vec<Row>> {
+fn rows(data: &Data, known: &Predictions) -> anyhow::Result<Vec<Row>> {
     let mut rows = Vec::new();
     for measured in &data.measured {
         let case = measured.case();
@@ -45,11 +47,11 @@ fn rows(data: &Data, known: &Known) -> anyhow::Result<Vec<Row>> {
         }
     }
     for size in &data.sizes {
-        let group = Setting::group(size.body, size.photons);
+        let group = Setting::group(size.field, size.photons);
         let per_photon =
             |values: &[f64]| values.iter().map(|v| v / size.photons as f64).collect::<Vec<f64>>();
         let collisions: Moments = per_photon(&size.collisions).iter().collect();
-        let (exact, bound) = known.get(size.body.name, "collisions per photon")?;
+        let (exact, bound) = known.get(size.field.name, "collisions per photon")?;
         rows.push(
             Row::measured(&group, "collisions per photon", Unit::ONE, &collisions)?.reference(exact, bound),
         );
@@ -59,7 +61,7 @@ fn rows(data: &Data, known: &Known) -> anyhow::Result<Vec<Row>> {
         rows.push(Row::measured(&group, "memory of the map", Unit::new("byte"), &bytes)?);
     }
     for paths in &data.paths {
-        let case = format!("{} paths", paths.body.name);
+        let case = format!("{} paths", paths.field.name);
         let error: Moments = paths.error.iter().map(|e| 100.0 * e).collect::<Vec<f64>>().iter().collect();
         rows.push(Row::measured(&case, "error", Unit::PERCENT, &error)?.reference(0.0, 0.0));
         let variance: Moments = paths.variance.iter().collect();
@@ -67,17 +69,17 @@ fn rows(data: &Data, known: &Known) -> anyhow::Result<Vec<Row>> {
         let rays: Moments = paths.rays.iter().collect();
         rows.push(Row::measured(&case, "rays of a sample", Unit::ONE, &rays)?);
     }
-    for body in &BODIES {
-        let Some(paths) = data.paths(body) else { continue };
+    for field in &FIELDS {
+        let Some(paths) = data.paths(field) else { continue };
         for treatment in Treatment::ALL {
-            let case = format!("{} {}", body.name, treatment.name());
-            let Some(chosen) = most_efficient(&data.of(body, treatment, None)) else { continue };
+            let case = format!("{} {}", field.name, treatment.name());
+            let Some(chosen) = most_efficient(&data.of(field, treatment, None)) else { continue };
             let BreakEven { ratio, queries, .. } = break_even(chosen.case, paths, Currency::Operations);
             rows.push(Row::estimated(&case, "rays of a path query per photon gathered", Unit::ONE, &ratio)?);
             if let Some(queries) = queries {
                 rows.push(Row::estimated(&case, "break-even queries", Unit::ONE, &queries)?);
             }
-            let cases = data.of(body, treatment, Some(data.largest(body)));
+            let cases = data.of(field, treatment, Some(data.largest(field)));
             for measured in &cases {
                 let value = regret(measured, &cases);
                 if let (Size::Nearest(50 | 100), true) = (measured.setting.size, has_spread(&value)) {
@@ -86,10 +88,10 @@ fn rows(data: &Data, known: &Known) -> anyhow::Result<Vec<Row>> {
             }
         }
     }
-    for body in &BODIES {
-        let of = |treatment| data.of(body, treatment, Some(data.largest(body)));
+    for field in &FIELDS {
+        let of = |treatment| data.of(field, treatment, Some(data.largest(field)));
         let ratio = best_over_best(&of(Treatment::Clipped), &of(Treatment::Plain));
-        let case = Setting::group(body, data.largest(body));
+        let case = Setting::group(field, data.largest(field));
         rows.push(Row::estimated(&case, "best clipped over best plain error", Unit::ONE, &ratio)?);
     }
     Ok(rows)
@@ -115,11 +117,11 @@ const HIDDEN: f64 = 0.2;
 /// only where the medium ends inside the ball, since elsewhere they are the plain ones.
 fn entries(measured: &Measured) -> Vec<Entry> {
     let (setting, treatment) = (&measured.setting, measured.treatment);
-    let body = setting.body;
-    let group = format!("tradeoff-{}", Setting::group(body, setting.photons));
+    let field = setting.field;
+    let group = format!("tradeoff-{}", Setting::group(field, setting.photons));
     let mut entries = Vec::new();
     for (layer, expected) in measured.expected.iter().enumerate() {
-        let depth = body.depth(layer);
+        let depth = field.depth(layer);
         // What the layer's balls hold, and their radius, from the noise of independent photons.
         let held = 1.0 / (expected.noise_independent * expected.noise_independent);
         let radius = match setting.size {
@@ -129,7 +131,7 @@ fn entries(measured: &Measured) -> Vec<Entry> {
                 libm::cbrt(3.0 * volume / (4.0 * std::f64::consts::PI))
             }
         };
-        let is_cut = radius > body.fog.room(depth);
+        let is_cut = radius > field.setup.body.room(depth);
         if treatment == Treatment::Clipped && !is_cut || held * (setting.lateral() as f64) < FEWEST_COUNTS {
             continue;
         }
@@ -152,6 +154,6 @@ fn entries(measured: &Measured) -> Vec<Entry> {
 /// part in common integrates over all lateral distances to 4/5 pi r^2.
 fn expected_error(setting: &Setting, depth: f64, noise: f64, radius: f64) -> f64 {
     let probes = setting.lateral() as f64;
-    let shared = 0.8 * std::f64::consts::PI * radius * radius / setting.body.area(depth);
+    let shared = 0.8 * std::f64::consts::PI * radius * radius / setting.field.setup.body.area(depth);
     noise * ((1.0 / probes + shared).min(1.0) / MAPS as f64).sqrt()
 }

@@ -1,11 +1,12 @@
 //! Everything that was measured, case by case.
 
-use super::cases::{BODIES, Body, LAYERS, Setting, Treatment, paths_case, paths_group};
+use super::cases::{FIELDS, Field, LAYERS, Setting, Treatment, paths_case, paths_group};
 use super::measure::layer_quantity;
-use super::predict::Known;
+use super::predict::layers;
 use super::split::MapError;
 use super::theory::{Expected, Rms};
 use crate::harness::{Cells, Settings};
+use crate::prediction::Predictions;
 
 /// One setting and treatment: what was predicted and what each map said.
 pub struct Measured {
@@ -44,10 +45,10 @@ impl Measured {
     }
 }
 
-/// The path tracer in one body.
+/// The path tracer in one field.
 pub struct Paths {
-    /// The body.
-    pub body: &'static Body,
+    /// The field.
+    pub field: &'static Field,
     /// Relative error of each batch, averaged over layers.
     pub error: Vec<f64>,
     /// Relative variance of one sample by batch, averaged over layers.
@@ -65,10 +66,10 @@ impl Paths {
     }
 }
 
-/// A size of map in one body.
-pub struct Size {
-    /// The body.
-    pub body: &'static Body,
+/// A size of map in one field.
+pub struct MapSize {
+    /// The field.
+    pub field: &'static Field,
     /// Photons emitted.
     pub photons: u64,
     /// Rays of each map.
@@ -87,10 +88,10 @@ pub struct Size {
 pub struct Data {
     /// By setting and treatment.
     pub measured: Vec<Measured>,
-    /// By body.
+    /// By field.
     pub paths: Vec<Paths>,
-    /// By body and number of photons.
-    pub sizes: Vec<Size>,
+    /// By field and number of photons.
+    pub sizes: Vec<MapSize>,
 }
 
 /// The mean of a list.
@@ -100,25 +101,25 @@ pub fn mean(values: &[f64]) -> f64 {
 
 impl Data {
     /// Reads the cells.
-    pub fn read(settings: &Settings, known: &Known, cells: &Cells) -> anyhow::Result<Self> {
+    pub fn read(settings: &Settings, known: &Predictions, cells: &Cells) -> anyhow::Result<Self> {
         let mut data = Data { measured: Vec::new(), paths: Vec::new(), sizes: Vec::new() };
-        for body in &BODIES {
-            let exact: Vec<f64> = body
+        for field in &FIELDS {
+            let exact: Vec<f64> = field
                 .depths()
                 .iter()
-                .map(|t| known.get(body.name, &format!("fluence t={t}")).map(|v| v.0))
+                .map(|t| known.get(field.name, &format!("fluence t={t}")).map(|v| v.0))
                 .collect::<anyhow::Result<_>>()?;
-            for photons in body.photons(settings) {
-                let size = size(body, photons, cells)?;
+            for photons in field.photons(settings) {
+                let size = size(field, photons, cells)?;
                 let records = |(rays, stored): (&f64, &f64)| rays + stored;
                 let [shooting, building] = &size.seconds;
                 let prepare_seconds: Vec<f64> = shooting.iter().zip(building).map(|(a, b)| a + b).collect();
                 let prepare: Vec<f64> = size.rays.iter().zip(&size.stored).map(records).collect();
-                for setting in Setting::all(body, photons) {
+                for setting in Setting::all(field, photons) {
                     let asked = (setting.lateral() * LAYERS) as f64;
                     let timed = |what: &str| {
                         let phase = format!("{what} {}", setting.size.name());
-                        cells.seconds(&Setting::group(body, photons), &phase)
+                        cells.seconds(&Setting::group(field, photons), &phase)
                     };
                     let plain: Vec<f64> = timed("gathering").iter().map(|s| s / asked).collect();
                     let clipped: Vec<f64> =
@@ -127,7 +128,7 @@ impl Data {
                         data.measured.push(Measured {
                             setting,
                             treatment,
-                            expected: known.layers(&setting, treatment)?,
+                            expected: layers(known, &setting, treatment)?,
                             maps: map_errors(&setting, treatment, &exact, cells)?,
                             prepare: prepare.clone(),
                             found: cells.values(&setting.name(), "found")?,
@@ -141,40 +142,40 @@ impl Data {
                 }
                 data.sizes.push(size);
             }
-            data.paths.push(paths(body, &exact, cells)?);
+            data.paths.push(paths(field, &exact, cells)?);
         }
         Ok(data)
     }
 
-    /// The cases of one body, treatment and, if given, number of photons.
-    pub fn of(&self, body: &Body, treatment: Treatment, photons: Option<u64>) -> Vec<&Measured> {
+    /// The cases of one field, treatment and, if given, number of photons.
+    pub fn of(&self, field: &Field, treatment: Treatment, photons: Option<u64>) -> Vec<&Measured> {
         let fits = |m: &&Measured| {
-            m.setting.body == body
+            m.setting.field == field
                 && m.treatment == treatment
                 && photons.is_none_or(|n| m.setting.photons == n)
         };
         self.measured.iter().filter(fits).collect()
     }
 
-    /// The path tracer in one body.
-    pub fn paths(&self, body: &Body) -> Option<&Paths> {
-        self.paths.iter().find(|p| p.body == body)
+    /// The path tracer in one field.
+    pub fn paths(&self, field: &Field) -> Option<&Paths> {
+        self.paths.iter().find(|p| p.field == field)
     }
 
-    /// The largest maps of a body.
-    pub fn largest(&self, body: &Body) -> u64 {
-        self.sizes.iter().filter(|s| s.body == body).map(|s| s.photons).max().unwrap_or(0)
+    /// The largest maps of a field.
+    pub fn largest(&self, field: &Field) -> u64 {
+        self.sizes.iter().filter(|s| s.field == field).map(|s| s.photons).max().unwrap_or(0)
     }
 }
 
-fn size(body: &'static Body, photons: u64, cells: &Cells) -> anyhow::Result<Size> {
-    let group = Setting::group(body, photons);
+fn size(field: &'static Field, photons: u64, cells: &Cells) -> anyhow::Result<MapSize> {
+    let group = Setting::group(field, photons);
     let shares = cells.values(&group, "share of the tree")?;
     // The tree holds copies of photons across the cell's edges: building is charged for the cell's own share.
     let building = cells.seconds(&group, "building");
     let own: Vec<f64> = building.iter().zip(&shares).map(|(seconds, share)| seconds * share).collect();
-    Ok(Size {
-        body,
+    Ok(MapSize {
+        field,
         photons,
         rays: cells.values(&group, "rays")?,
         collisions: cells.values(&group, "collisions")?,
@@ -190,11 +191,11 @@ fn map_errors(
     exact: &[f64],
     cells: &Cells,
 ) -> anyhow::Result<Vec<MapError>> {
-    let (case, body) = (setting.case(treatment), setting.body);
+    let (case, field) = (setting.case(treatment), setting.field);
     let mut maps: Vec<MapError> = Vec::new();
     for (layer, exact) in exact.iter().enumerate() {
-        let means = cells.values(&case, &layer_quantity("fluence", body, layer))?;
-        let squares = cells.values(&case, &layer_quantity("square", body, layer))?;
+        let means = cells.values(&case, &layer_quantity("fluence", field, layer))?;
+        let squares = cells.values(&case, &layer_quantity("square", field, layer))?;
         maps.resize(means.len(), MapError { error: [0.0; LAYERS], square: 0.0 });
         for ((map, mean), square) in maps.iter_mut().zip(means).zip(squares) {
             let ratio = mean / exact;
@@ -205,10 +206,10 @@ fn map_errors(
     Ok(maps)
 }
 
-fn paths(body: &'static Body, exact: &[f64], cells: &Cells) -> anyhow::Result<Paths> {
+fn paths(field: &'static Field, exact: &[f64], cells: &Cells) -> anyhow::Result<Paths> {
     let (mut error, mut variance, mut rays) = (Vec::new(), Vec::new(), Vec::new());
     for (layer, exact) in exact.iter().enumerate() {
-        let case = paths_case(body, layer);
+        let case = paths_case(field, layer);
         let means = cells.values(&case, "fluence")?;
         let squares = cells.values(&case, "square")?;
         let counts = cells.values(&case, "rays")?;
@@ -223,9 +224,9 @@ fn paths(body: &'static Body, exact: &[f64], cells: &Cells) -> anyhow::Result<Pa
             rays[batch] += counts[batch] / LAYERS as f64;
         }
     }
-    let total = cells.seconds(&paths_group(body), "path tracing");
-    let samples = cells.values(&paths_case(body, 0), "samples")?;
+    let total = cells.seconds(&paths_group(field), "path tracing");
+    let samples = cells.values(&paths_case(field, 0), "samples")?;
     let seconds =
         total.iter().zip(samples).map(|(total, samples)| total / (samples * LAYERS as f64)).collect();
-    Ok(Paths { body, error, variance, rays, seconds })
+    Ok(Paths { field, error, variance, rays, seconds })
 }

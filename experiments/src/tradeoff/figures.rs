@@ -1,11 +1,12 @@
 //! The figures.
 
-use super::cases::{BODIES, Body, Setting, Size, Treatment};
+use super::cases::{FIELDS, Field, Setting, Treatment};
 use super::choose::{Choice, Currency, break_even, frontier, most_efficient};
 use super::data::{Data, Measured, Paths, mean};
 use super::split::{rms, rms_bias, rms_noise};
 use super::theory::{Expected, Rms, Theory};
 use crate::harness::{Estimate, FigureFiles, Settings};
+use crate::setups::Size;
 use turbid_figure::{Align, Along, At, Axis, Dash, Figure, Line, Note, Panel, Points, Rule, Scale, Width};
 
 /// All figures.
@@ -22,16 +23,16 @@ fn interval(estimate: &Estimate) -> (f64, f64) {
 /// Error against cost.
 fn costs(data: &Data) -> anyhow::Result<FigureFiles> {
     let mut panels = Vec::new();
-    for body in &BODIES {
-        let Some(paths) = data.paths(body) else { continue };
+    for field in &FIELDS {
+        let Some(paths) = data.paths(field) else { continue };
         let x = Axis::log("operations for 4096 queries", "").with_range(4e3, 3e7);
         let mut panel =
-            Panel::new(x, Axis::log("RMS error", "%").with_range(1.0, 100.0)).with_title(body.title);
+            Panel::new(x, Axis::log("RMS error", "%").with_range(1.0, 100.0)).with_title(field.title);
         let (x, y) = path_line(paths, 4096.0);
         panel = panel.with(Line::theory("path tracer", x, y));
         for (class, treatment) in Treatment::ALL.into_iter().enumerate() {
             let label = format!("photon map, {}", treatment.title());
-            let front = frontier(&data.of(body, treatment, None), 4096.0);
+            let front = frontier(&data.of(field, treatment, None), 4096.0);
             let x: Vec<f64> = front.iter().map(|c| c.case.cost(4096.0)).collect();
             let y: Vec<f64> = front.iter().map(|c| 100.0 * c.rms.value()).collect();
             let bars = front.iter().map(|c: &Choice| interval(&c.rms)).collect();
@@ -59,13 +60,13 @@ fn path_line(paths: &Paths, queries: f64) -> (Vec<f64>, Vec<f64>) {
 
 /// Error, bias and noise against gather size.
 fn sizes(settings: &Settings, data: &Data) -> anyhow::Result<FigureFiles> {
-    let body: &'static Body = &BODIES[2];
-    let photons = data.largest(body);
+    let field: &'static Field = &FIELDS[2];
+    let photons = data.largest(field);
     let every = Setting::every(settings);
-    let theory = Theory::new(body, every.iter())?;
+    let theory = Theory::new(field, every.iter())?;
     let mut panels = Vec::new();
     for treatment in Treatment::ALL {
-        let cases = data.of(body, treatment, Some(photons));
+        let cases = data.of(field, treatment, Some(photons));
         for is_fixed in [true, false] {
             let chosen: Vec<&Measured> = cases
                 .iter()
@@ -80,7 +81,7 @@ fn sizes(settings: &Settings, data: &Data) -> anyhow::Result<FigureFiles> {
             let most = chosen.iter().map(|m| size(m)).fold(0.0, f64::max);
             let range = (least / 1.3, most * 1.3);
             let (lines, x, what) = if is_fixed {
-                let lines = radius_lines(&theory, body, photons, treatment, range)?;
+                let lines = radius_lines(&theory, field, photons, treatment, range)?;
                 (lines, Axis::log("radius", "mfp"), "fixed radius")
             } else {
                 let lines: Vec<(f64, Rms)> = chosen.iter().map(|m| (size(m), m.predicted())).collect();
@@ -113,21 +114,21 @@ fn sizes(settings: &Settings, data: &Data) -> anyhow::Result<FigureFiles> {
          size of the gather; points measured with 95 % intervals over maps, lines predicted before the run. Noise \
          falls and bias grows with the size, and the error is least where they cross, or nearly. Plain estimates carry \
          the loss at the faces as a bias that no radius in reach makes small; clipping leaves the blur.",
-        body.title
+        field.title
     );
     FigureFiles::draw("sizes", &caption, &figure)
 }
 
 fn radius_lines(
     theory: &Theory,
-    body: &Body,
+    field: &Field,
     photons: u64,
     treatment: Treatment,
     (from, to): (f64, f64),
 ) -> anyhow::Result<Vec<(f64, Rms)>> {
     let one = |i: i32| {
         let radius = from * libm::pow(to / from, f64::from(i) / 40.0);
-        let layers = body.depths().into_iter().map(|t| theory.within(radius, photons as f64, treatment, t));
+        let layers = field.depths().into_iter().map(|t| theory.within(radius, photons as f64, treatment, t));
         Ok((radius, Rms::of(&layers.collect::<anyhow::Result<Vec<Expected>>>()?)))
     };
     (0..=40).map(one).collect()
@@ -136,8 +137,8 @@ fn radius_lines(
 /// Cost against the number of queries.
 fn queries(data: &Data) -> anyhow::Result<FigureFiles> {
     let mut panels = Vec::new();
-    for body in &BODIES {
-        let (Some(paths), cases) = (data.paths(body), data.of(body, Treatment::Clipped, None)) else {
+    for field in &FIELDS {
+        let (Some(paths), cases) = (data.paths(field), data.of(field, Treatment::Clipped, None)) else {
             continue;
         };
         let Some(chosen) = most_efficient(&cases) else { continue };
@@ -148,7 +149,7 @@ fn queries(data: &Data) -> anyhow::Result<FigureFiles> {
             Axis::log("queries", "").with_range(1.0, 1e6),
             Axis::log("operations", "").with_range(10.0, 1e11),
         )
-        .with_title(format!("{}, to {:.1} %", body.title, 100.0 * chosen.rms.value()))
+        .with_title(format!("{}, to {:.1} %", field.title, 100.0 * chosen.rms.value()))
         .with(Line::theory("path tracer", x.clone(), by_paths))
         .with(Line::new("photon map, clipped", 1, x, map));
         let text = match break_even(chosen.case, paths, Currency::Operations).queries {

@@ -1,10 +1,8 @@
 //! Measuring one map, or one batch of paths.
 
-use super::cases::{BODIES, Body, CELL, LAYERS, Setting, Treatment, paths_case, paths_group, probes};
+use super::cases::{FIELDS, Field, LAYERS, Setting, Treatment, paths_case, paths_group};
 use crate::harness::{CellId, CellOutput, Settings};
-use crate::theory::Fog;
 use anyhow::Context;
-use glam::DVec3;
 use turbid::Spectrum;
 use turbid::estimators::Estimate;
 use turbid::estimators::boundary::Boundary;
@@ -19,8 +17,8 @@ use turbid::transport::NoProgress;
 pub const MAPS: u64 = 64;
 
 /// The quantity of a layer of probes: mean over its probes of the estimate, or of its square.
-pub fn layer_quantity(what: &str, body: &Body, layer: usize) -> String {
-    format!("{what} t={}", body.depth(layer))
+pub fn layer_quantity(what: &str, field: &Field, layer: usize) -> String {
+    format!("{what} t={}", field.depth(layer))
 }
 
 /// Paths of one batch in one layer.
@@ -28,19 +26,19 @@ fn paths(settings: &Settings) -> u64 {
     settings.photons(256, 4096).max(16)
 }
 
-/// All cells: maps by body and number of photons, and batches of paths.
+/// All cells: maps by field and number of photons, and batches of paths.
 pub fn cells(settings: &Settings) -> Vec<CellId> {
     let mut cells = Vec::new();
-    for body in &BODIES {
-        for photons in body.photons(settings) {
-            let asked = Setting::all(body, photons);
+    for field in &FIELDS {
+        for photons in field.photons(settings) {
+            let asked = Setting::all(field, photons);
             let gathers = asked.iter().map(|s| s.lateral() * LAYERS).sum::<usize>() as f64;
-            let cost = photons as f64 * (4.0 + 2.0 * body.fog.deepest()) + 20.0 * gathers;
-            let maps = CellId::replicates(&Setting::group(body, photons), MAPS, cost);
+            let cost = photons as f64 * (4.0 + 2.0 * field.setup.body.deepest()) + 20.0 * gathers;
+            let maps = CellId::replicates(&Setting::group(field, photons), MAPS, cost);
             cells.extend(maps.map(|cell| cell.holding(photons)));
         }
         let cost = 20.0 * paths(settings) as f64 * LAYERS as f64;
-        cells.extend(CellId::replicates(&paths_group(body), MAPS, cost));
+        cells.extend(CellId::replicates(&paths_group(field), MAPS, cost));
     }
     cells
 }
@@ -48,25 +46,25 @@ pub fn cells(settings: &Settings) -> Vec<CellId> {
 /// Measures one cell.
 pub fn measure(settings: &Settings, cell: &CellId) -> anyhow::Result<CellOutput> {
     let (name, what) = cell.group.rsplit_once('-').with_context(|| format!("group {}", cell.group))?;
-    let body = Body::named(name)?;
-    let scene = body.scene()?;
+    let field = Field::named(name)?;
+    let scene = field.setup.scene()?;
     let replicate = cell.stream("tradeoff");
     if what == "paths" {
-        return Ok(measure_paths(settings, body, &scene, replicate));
+        return Ok(measure_paths(settings, field, &scene, replicate));
     }
     let photons = what.trim_start_matches('n').parse().with_context(|| format!("group {}", cell.group))?;
-    measure_map(settings, body, &scene, photons, replicate)
+    measure_map(settings, field, &scene, photons, replicate)
 }
 
 fn measure_map(
     settings: &Settings,
-    body: &'static Body,
+    field: &'static Field,
     scene: &Scene,
     photons: u64,
     replicate: u64,
 ) -> anyhow::Result<CellOutput> {
     let mut output = CellOutput::new();
-    let asked = Setting::all(body, photons);
+    let asked = Setting::all(field, photons);
     let histories = Histories { count: photons, seed: settings.seed, replicate, max_order: None };
     let pass = output.time("shooting", |_| shoot(scene, histories, &[], is_in(Orders::ALL), &NoProgress))?;
     let stored = pass.photons().count();
@@ -81,7 +79,7 @@ fn measure_map(
     let map = output.time("building", |_| pass.into_map(reach))?;
     // Records of the cell itself among those of its surroundings.
     let share = stored as f64 / map.stored() as f64;
-    let case = Setting::group(body, photons);
+    let case = Setting::group(field, photons);
     output.push(&case, "collisions", collisions as f64);
     output.push(&case, "rays", rays);
     output.push(&case, "stored", stored as f64);
@@ -102,26 +100,29 @@ struct Layer {
 }
 
 fn gather(output: &mut CellOutput, map: &PhotonMap, setting: &Setting) -> anyhow::Result<()> {
-    let (body, estimator) = (setting.body, setting.estimator()?);
+    let (field, estimator) = (setting.field, setting.estimator()?);
     let (mut found, mut underfull) = (0u64, 0u64);
     let phase = format!("gathering {}", setting.size.name());
     let estimates: Vec<Vec<Estimate>> = output.time(&phase, |_| {
         let ask = |probe| estimator.fluence(map, probe, Spectrum::ONE, &Boundary::UNKNOWN);
-        let layer = |depth| probes(body, setting.side(), depth).into_iter().map(ask).collect();
-        body.depths().into_iter().map(layer).collect()
+        let layer = |depth| field.setup.body.places(setting.side(), depth).into_iter().map(ask).collect();
+        field.depths().into_iter().map(layer).collect()
     });
     let phase = format!("clipping {}", setting.size.name());
     let layers = output.time(&phase, |_| -> anyhow::Result<Vec<Layer>> {
         let mut layers = Vec::with_capacity(LAYERS);
-        for (depth, estimates) in body.depths().into_iter().zip(&estimates) {
-            let room = body.fog.room(depth);
+        for (depth, estimates) in field.depths().into_iter().zip(&estimates) {
+            let room = field.setup.body.room(depth);
             let mut layer = Layer::default();
             for estimate in estimates {
                 found += estimate.found as u64;
                 underfull += u64::from(estimate.underfull);
                 let value = estimate.value[0];
-                let inside =
-                    if estimate.radius <= room { 1.0 } else { body.fog.inside(estimate.radius, depth)? };
+                let inside = if estimate.radius <= room {
+                    1.0
+                } else {
+                    field.setup.body.inside(estimate.radius, depth)?
+                };
                 for (sums, value) in [(&mut layer.plain, value), (&mut layer.clipped, value / inside)] {
                     sums[0] += value;
                     sums[1] += value * value;
@@ -140,23 +141,19 @@ fn gather(output: &mut CellOutput, map: &PhotonMap, setting: &Setting) -> anyhow
     for (index, layer) in layers.iter().enumerate() {
         for (treatment, sums) in Treatment::ALL.iter().zip([layer.plain, layer.clipped]) {
             let case = setting.case(*treatment);
-            output.push(&case, layer_quantity("fluence", body, index), sums[0] / probes);
-            output.push(&case, layer_quantity("square", body, index), sums[1] / probes);
+            output.push(&case, layer_quantity("fluence", field, index), sums[0] / probes);
+            output.push(&case, layer_quantity("square", field, index), sums[1] / probes);
         }
     }
     Ok(())
 }
 
-fn measure_paths(settings: &Settings, body: &Body, scene: &Scene, replicate: u64) -> CellOutput {
+fn measure_paths(settings: &Settings, field: &Field, scene: &Scene, replicate: u64) -> CellOutput {
     let mut output = CellOutput::new();
     let paths = paths(settings);
     for layer in 0..LAYERS {
-        let depth = body.depth(layer);
-        let place = match body.fog {
-            Fog::Slab { .. } => DVec3::new(0.5 * CELL, 0.5 * CELL, depth),
-            Fog::Sphere { radius } => DVec3::new(0.0, 0.0, radius - depth),
-        };
-        let quantity = Quantity::Fluence(place);
+        let depth = field.depth(layer);
+        let quantity = Quantity::Fluence(field.setup.body.middle(depth));
         let (mut values, mut squares, mut total) = (Moments::new(), Moments::new(), 0u64);
         output.time("path tracing", |output| {
             for path in 0..paths {
@@ -171,7 +168,7 @@ fn measure_paths(settings: &Settings, body: &Body, scene: &Scene, replicate: u64
         });
         output.count("paths", paths);
         output.count("rays of paths", total);
-        let case = paths_case(body, layer);
+        let case = paths_case(field, layer);
         output.push(&case, "fluence", values.mean());
         output.push(&case, "square", squares.mean());
         output.push(&case, "samples", paths as f64);
@@ -182,8 +179,8 @@ fn measure_paths(settings: &Settings, body: &Body, scene: &Scene, replicate: u64
 
 #[cfg(test)]
 mod tests {
-    use super::super::cases::Size;
     use super::*;
+    use crate::setups::Size;
     use turbid::estimators::Estimator;
     use turbid::estimators::boundary::Treatment as Remedy;
 
@@ -191,20 +188,20 @@ mod tests {
     #[test]
     fn clipping_is_that_of_the_library() {
         for name in ["thin", "sphere"] {
-            let body = Body::named(name).unwrap();
+            let field = Field::named(name).unwrap();
             let histories = Histories { count: 2000, seed: 3, replicate: 0, max_order: None };
-            let pass =
-                shoot(&body.scene().unwrap(), histories, &[], is_in(Orders::ALL), &NoProgress).unwrap();
+            let pass = shoot(&field.setup.scene().unwrap(), histories, &[], is_in(Orders::ALL), &NoProgress)
+                .unwrap();
             let map = pass.into_map(0.0).unwrap();
-            let medium = body.fog.shape().unwrap();
+            let medium = field.setup.body.shape().unwrap();
             let boundary = Boundary::of(&medium).unwrap();
             for size in [Size::Radius(0.4), Size::Nearest(50)] {
-                let estimator = Setting { body, photons: 2000, size }.estimator().unwrap();
-                for depth in [0, 1, 8, 15].map(|layer| body.depth(layer)) {
-                    let probe = probes(body, 4, depth)[5];
+                let estimator = Setting { field, photons: 2000, size }.estimator().unwrap();
+                for depth in [0, 1, 8, 15].map(|layer| field.depth(layer)) {
+                    let probe = field.setup.body.places(4, depth)[5];
                     let ask = |estimator: Estimator| estimator.fluence(&map, probe, Spectrum::ONE, &boundary);
                     let (library, plain) = (ask(estimator.treated(Remedy::Clipped)).value[0], ask(estimator));
-                    let here = plain.value[0] / body.fog.inside(plain.radius, depth).unwrap();
+                    let here = plain.value[0] / field.setup.body.inside(plain.radius, depth).unwrap();
                     // The library's quadrature is good to 1e-13 of a whole ball; a third of one is left at least.
                     assert!((here / library - 1.0).abs() < 1e-12, "{name}, depth {depth}: {here} {library}");
                 }

@@ -1,10 +1,10 @@
 //! What theory says of every setting, before anything is measured: its error, split, and the settings that would
 //! reach a target beyond those that are measured.
 
-use super::cases::{BODIES, Body, LAYERS, PROBES, Setting, Treatment};
+use super::cases::{FIELDS, Field, LAYERS, PROBES, Setting, Treatment};
 use super::theory::{Expected, Rms, Theory};
-use crate::harness::{self, Prediction, Settings, Unit};
-use crate::theory::Fog;
+use crate::harness::{Settings, Unit};
+use crate::prediction::{Prediction, Predictions};
 use rayon::prelude::*;
 
 /// Root mean square errors that somebody may want.
@@ -35,8 +35,8 @@ pub struct Optimum {
 }
 
 /// The name of the search for a target.
-pub fn optimum_case(body: &Body, treatment: Treatment, target: f64) -> String {
-    format!("{} {} to reach {}%", body.name, treatment.name(), 100.0 * target)
+pub fn optimum_case(field: &Field, treatment: Treatment, target: f64) -> String {
+    format!("{} {} to reach {}%", field.name, treatment.name(), 100.0 * target)
 }
 
 /// Operations per emitted photon before the first query: its rays (every collision is one, and the escape of those
@@ -46,13 +46,13 @@ pub fn prepare(collisions: f64, albedo: f64) -> f64 {
 }
 
 /// The fixed radius and the number of photons that reach a target with the fewest operations for 4096 queries.
-fn optimum(theory: &Theory, body: &Body, treatment: Treatment, target: f64) -> anyhow::Result<Optimum> {
-    let per_photon = prepare(theory.collisions()?, body.albedo);
+fn optimum(theory: &Theory, field: &Field, treatment: Treatment, target: f64) -> anyhow::Result<Optimum> {
+    let per_photon = prepare(theory.collisions()?, field.setup.albedo);
     let mut best = Optimum { radius: f64::NAN, density: f64::NAN, cost: f64::INFINITY };
     for i in 0..TRIED {
         let step = i as f64 / (TRIED - 1) as f64;
         let radius = TRIED_FROM * libm::pow(TRIED_TO / TRIED_FROM, step);
-        let layers = body.depths().into_iter().map(|t| theory.within(radius, REFERENCE, treatment, t));
+        let layers = field.depths().into_iter().map(|t| theory.within(radius, REFERENCE, treatment, t));
         let layers = layers.collect::<anyhow::Result<Vec<Expected>>>()?;
         let rms = Rms::of(&layers);
         let room = target * target - rms.bias * rms.bias;
@@ -60,22 +60,22 @@ fn optimum(theory: &Theory, body: &Body, treatment: Treatment, target: f64) -> a
             continue;
         }
         let photons = REFERENCE * rms.noise * rms.noise / room;
-        let cost = photons * per_photon + PROBES as f64 * found(theory, body, radius, photons)?;
+        let cost = photons * per_photon + PROBES as f64 * found(theory, field, radius, photons)?;
         if cost < best.cost {
-            best = Optimum { radius, density: photons / body.power(), cost };
+            best = Optimum { radius, density: photons / field.setup.power(), cost };
         }
     }
     Ok(best)
 }
 
 /// Photons in a ball of fixed radius, on average over the layers.
-fn found(theory: &Theory, body: &Body, radius: f64, photons: f64) -> anyhow::Result<f64> {
+fn found(theory: &Theory, field: &Field, radius: f64, photons: f64) -> anyhow::Result<f64> {
     let mut sum = 0.0;
-    for t in body.depths() {
+    for t in field.depths() {
         let (here, _) = theory.exact(t)?;
         let part = 1.0 + theory.within(radius, photons, Treatment::Plain, t)?.bias();
         let ball = 4.0 / 3.0 * std::f64::consts::PI * radius * radius * radius;
-        sum += photons / body.power() * ball * here * part;
+        sum += photons / field.setup.power() * ball * here * part;
     }
     Ok(sum / LAYERS as f64)
 }
@@ -84,9 +84,9 @@ fn found(theory: &Theory, body: &Body, radius: f64, photons: f64) -> anyhow::Res
 pub fn predict(settings: &Settings) -> anyhow::Result<Vec<Prediction>> {
     let every = Setting::every(settings);
     let theories: Vec<Theory> =
-        BODIES.iter().map(|body| Theory::new(body, every.iter())).collect::<anyhow::Result<_>>()?;
-    let theory = |body: &Body| {
-        let index = BODIES.iter().position(|s| s == body).unwrap_or(0);
+        FIELDS.iter().map(|field| Theory::new(field, every.iter())).collect::<anyhow::Result<_>>()?;
+    let theory = |field: &Field| {
+        let index = FIELDS.iter().position(|s| s == field).unwrap_or(0);
         &theories[index]
     };
     let asked: Vec<(Setting, Treatment)> =
@@ -94,105 +94,104 @@ pub fn predict(settings: &Settings) -> anyhow::Result<Vec<Prediction>> {
     let known: Vec<(Setting, Treatment, Vec<Expected>)> = asked
         .into_par_iter()
         .map(|(setting, treatment)| {
-            let one = |t| theory(setting.body).expected(&setting, treatment, t);
-            let layers: anyhow::Result<_> = setting.body.depths().into_iter().map(one).collect();
+            let one = |t| theory(setting.field).expected(&setting, treatment, t);
+            let layers: anyhow::Result<_> = setting.field.depths().into_iter().map(one).collect();
             Ok((setting, treatment, layers?))
         })
         .collect::<anyhow::Result<_>>()?;
     let mut all = Vec::new();
-    let mut add = |case: &str, quantity: &str, unit, value: f64, error: f64, source: &str| {
-        let (case, quantity, source) = (case.to_string(), quantity.to_string(), source.to_string());
-        all.push(Prediction { case, quantity, unit, value, error, source });
+    let mut add = |case: &str, quantity: &str, unit, value: (f64, f64), source: &str| {
+        all.push(Prediction::new(case, quantity, unit, value, source));
     };
     for (setting, treatment, layers) in &known {
         let (case, rms) = (setting.case(*treatment), Rms::of(layers));
         let error = 100.0 * layers.iter().map(|e| e.error).fold(0.0, f64::max);
-        add(&case, RMS, Unit::PERCENT, 100.0 * rms.total(), error, "bias and noise of every layer");
-        add(&case, BIAS, Unit::PERCENT, 100.0 * rms.bias, error, "exact field, kernel mean, k-nearest law");
-        add(&case, NOISE, Unit::PERCENT, 100.0 * rms.noise, error, "Poisson's law and clusters");
+        let percent = |fraction: f64| (100.0 * fraction, error);
+        add(&case, RMS, Unit::PERCENT, percent(rms.total()), "bias and noise of every layer");
+        add(&case, BIAS, Unit::PERCENT, percent(rms.bias), "exact field, kernel mean, k-nearest law");
+        add(&case, NOISE, Unit::PERCENT, percent(rms.noise), "Poisson's law and clusters");
     }
-    let searches: Vec<(&'static Body, Treatment, f64)> = BODIES
+    let searches: Vec<(&'static Field, Treatment, f64)> = FIELDS
         .iter()
-        .flat_map(|body| Treatment::ALL.map(|treatment| (body, treatment)))
-        .flat_map(|(body, treatment)| TARGETS.map(|target| (body, treatment, target)))
+        .flat_map(|field| Treatment::ALL.map(|treatment| (field, treatment)))
+        .flat_map(|(field, treatment)| TARGETS.map(|target| (field, treatment, target)))
         .collect();
     let found: Vec<Optimum> = searches
         .par_iter()
-        .map(|&(body, treatment, target)| optimum(theory(body), body, treatment, target))
+        .map(|&(field, treatment, target)| optimum(theory(field), field, treatment, target))
         .collect::<anyhow::Result<_>>()?;
-    for ((body, treatment, target), best) in searches.into_iter().zip(found) {
-        let case = optimum_case(body, treatment, target);
+    for ((field, treatment, target), best) in searches.into_iter().zip(found) {
+        let case = optimum_case(field, treatment, target);
         let source = "cheapest fixed radius, by bias and noise of every layer";
-        add(&case, "radius", Unit::MFP, best.radius, 0.0, source);
-        add(&case, "photons per area", Unit::new("1/mfp^2"), best.density, 0.0, source);
-        add(&case, "operations", Unit::ONE, best.cost, 0.0, source);
+        add(&case, "radius", Unit::MFP, (best.radius, 0.0), source);
+        add(&case, "photons per area", Unit::new("1/mfp^2"), (best.density, 0.0), source);
+        add(&case, "operations", Unit::ONE, (best.cost, 0.0), source);
     }
-    for body in &BODIES {
-        let source = match body.fog {
-            Fog::Slab { .. } => "exact solution of the slab",
-            Fog::Sphere { .. } => "exact solution of the sphere",
-        };
-        let collisions = theory(body).collisions()?;
-        add(body.name, "collisions per photon", Unit::ONE, collisions, 1e-6, "integral of the exact fluence");
-        for t in body.depths() {
-            let (value, error) = theory(body).exact(t)?;
-            add(body.name, &format!("fluence t={t}"), Unit::FLUENCE, value, error, source);
+    for field in &FIELDS {
+        let source = field.setup.source();
+        let collisions = theory(field).collisions()?;
+        add(
+            field.name,
+            "collisions per photon",
+            Unit::ONE,
+            (collisions, 1e-6),
+            "integral of the exact fluence",
+        );
+        for t in field.depths() {
+            let exact = theory(field).exact(t)?;
+            add(field.name, &format!("fluence t={t}"), Unit::FLUENCE, exact, source);
         }
     }
     for (setting, treatment, layers) in &known {
         let case = setting.case(*treatment);
-        for (t, e) in setting.body.depths().into_iter().zip(layers) {
-            let parts = [e.edge, e.blur, e.clusters, e.noise, e.noise_independent];
-            for (name, value) in PARTS.iter().zip(parts) {
-                let (value, error) = (100.0 * value, 100.0 * e.error);
-                add(&case, &format!("{name} t={t}"), Unit::PERCENT, value, error, "theory of one layer");
+        for (t, e) in setting.field.depths().into_iter().zip(layers) {
+            for (name, part) in PARTS {
+                let value = (100.0 * part(e), 100.0 * e.error);
+                add(&case, &format!("{name} t={t}"), Unit::PERCENT, value, "theory of one layer");
             }
         }
     }
     Ok(all)
 }
 
-/// The parts of a layer's prediction.
-const PARTS: [&str; 5] = ["edge", "blur", "clusters", "noise", "noise of independent photons"];
+/// What is written down of a layer, by name.
+type Part = (&'static str, fn(&Expected) -> f64);
+const EDGE: Part = ("edge", |e| e.edge);
+const BLUR: Part = ("blur", |e| e.blur);
+const CLUSTERS: Part = ("clusters", |e| e.clusters);
+const SPREAD: Part = ("noise", |e| e.noise);
+const INDEPENDENT: Part = ("noise of independent photons", |e| e.noise_independent);
+const PARTS: [Part; 5] = [EDGE, BLUR, CLUSTERS, SPREAD, INDEPENDENT];
 
-/// The predictions, to be asked.
-pub struct Known<'a>(harness::Known<'a>);
-
-impl<'a> Known<'a> {
-    /// From the list.
-    pub fn new(predictions: &'a [Prediction]) -> Self {
-        Known(harness::Known::new(predictions))
-    }
-
-    /// One value and its bound.
-    pub fn get(&self, case: &str, quantity: &str) -> anyhow::Result<(f64, f64)> {
-        self.0.get(case, quantity)
-    }
-
-    /// The layers of a setting.
-    pub fn layers(&self, setting: &Setting, treatment: Treatment) -> anyhow::Result<Vec<Expected>> {
-        let case = setting.case(treatment);
-        let one = |t: f64| {
-            let part = |i: usize| self.get(&case, &format!("{} t={t}", PARTS[i])).map(|v| v.0 / 100.0);
-            Ok(Expected {
-                edge: part(0)?,
-                blur: part(1)?,
-                clusters: part(2)?,
-                noise: part(3)?,
-                noise_independent: part(4)?,
-                error: self.get(&case, &format!("{} t={t}", PARTS[0]))?.1 / 100.0,
-            })
-        };
-        setting.body.depths().into_iter().map(one).collect()
-    }
-
-    /// What theory would do to reach a target.
-    pub fn optimum(&self, body: &Body, treatment: Treatment, target: f64) -> anyhow::Result<Optimum> {
-        let case = optimum_case(body, treatment, target);
-        Ok(Optimum {
-            radius: self.get(&case, "radius")?.0,
-            density: self.get(&case, "photons per area")?.0,
-            cost: self.get(&case, "operations")?.0,
+/// The layers of a setting, as they were written down.
+pub fn layers(known: &Predictions, setting: &Setting, treatment: Treatment) -> anyhow::Result<Vec<Expected>> {
+    let case = setting.case(treatment);
+    let one = |t: f64| {
+        let read = |(name, _): Part| known.get(&case, &format!("{name} t={t}"));
+        let fraction = |part: Part| read(part).map(|(value, _)| value / 100.0);
+        Ok(Expected {
+            edge: fraction(EDGE)?,
+            blur: fraction(BLUR)?,
+            clusters: fraction(CLUSTERS)?,
+            noise: fraction(SPREAD)?,
+            noise_independent: fraction(INDEPENDENT)?,
+            error: read(EDGE)?.1 / 100.0,
         })
-    }
+    };
+    setting.field.depths().into_iter().map(one).collect()
+}
+
+/// What theory would do to reach a target, as it was written down.
+pub fn known_optimum(
+    known: &Predictions,
+    field: &Field,
+    treatment: Treatment,
+    target: f64,
+) -> anyhow::Result<Optimum> {
+    let case = optimum_case(field, treatment, target);
+    Ok(Optimum {
+        radius: known.get(&case, "radius")?.0,
+        density: known.get(&case, "photons per area")?.0,
+        cost: known.get(&case, "operations")?.0,
+    })
 }

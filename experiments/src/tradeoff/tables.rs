@@ -1,17 +1,19 @@
 //! The tables.
 
-use super::cases::{BODIES, Body, Setting, Size, Treatment};
+use super::cases::{FIELDS, Field, Setting, Treatment};
 use super::choose::{Currency, best, break_even, cheapest, is_last, most_efficient, regret};
 use super::data::{Data, Measured, mean};
-use super::predict::{Known, TARGETS};
+use super::predict::{TARGETS, known_optimum};
 use super::split::rms;
 use crate::harness::{Estimate, Table, number, with_error};
+use crate::prediction::Predictions;
+use crate::setups::Size;
 
 /// Numbers of queries at which costs are shown.
 pub const QUERIES: [f64; 4] = [1.0, 64.0, 4096.0, 1e6];
 
 /// All tables.
-pub fn all(data: &Data, known: &Known) -> anyhow::Result<Vec<Table>> {
+pub fn all(data: &Data, known: &Predictions) -> anyhow::Result<Vec<Table>> {
     Ok(vec![
         prices(data, known)?,
         queries(data),
@@ -37,19 +39,19 @@ fn percent(estimate: &Estimate) -> String {
     with_error(100.0 * estimate.value(), 100.0 * estimate.std_error())
 }
 
-/// A setting without its body.
+/// A setting without its field.
 pub fn short(setting: &Setting) -> String {
     format!("{} photons, {}", setting.photons, setting.size.name())
 }
 
 /// The price list.
-fn prices(data: &Data, known: &Known) -> anyhow::Result<Table> {
+fn prices(data: &Data, known: &Predictions) -> anyhow::Result<Table> {
     let mut rows = Vec::new();
-    for body in &BODIES {
+    for field in &FIELDS {
         for treatment in Treatment::ALL {
-            let cases = data.of(body, treatment, None);
+            let cases = data.of(field, treatment, None);
             for target in TARGETS {
-                let theory = known.optimum(body, treatment, target)?;
+                let theory = known_optimum(known, field, treatment, target)?;
                 let found = cheapest(&cases, target, 4096.0);
                 let (setting, error, cost) = match &found {
                     Some(c) => (short(&c.case.setting), percent(&c.rms), rough(c.case.cost(4096.0))),
@@ -62,16 +64,16 @@ fn prices(data: &Data, known: &Known) -> anyhow::Result<Table> {
                         ("none".to_string(), tried, String::new())
                     }
                 };
-                let by_paths = data.paths(body).map_or(f64::NAN, |p| 4096.0 * p.cost(target));
+                let by_paths = data.paths(field).map_or(f64::NAN, |p| 4096.0 * p.cost(target));
                 rows.push(vec![
-                    body.title.to_string(),
+                    field.title.to_string(),
                     treatment.title().to_string(),
                     format!("{} %", number(100.0 * target)),
                     setting,
                     error,
                     cost,
                     format!("{:.3}", theory.radius),
-                    rough(theory.density * body.power() / body.volume()),
+                    rough(theory.density * field.setup.power() / field.setup.body.volume()),
                     rough(theory.cost),
                     rough(by_paths),
                 ]);
@@ -103,10 +105,10 @@ fn prices(data: &Data, known: &Known) -> anyhow::Result<Table> {
 /// Cost against the number of queries.
 fn queries(data: &Data) -> Table {
     let mut rows = Vec::new();
-    for body in &BODIES {
-        let Some(paths) = data.paths(body) else { continue };
+    for field in &FIELDS {
+        let Some(paths) = data.paths(field) else { continue };
         for treatment in Treatment::ALL {
-            let cases = data.of(body, treatment, None);
+            let cases = data.of(field, treatment, None);
             let Some(chosen) = most_efficient(&cases) else { continue };
             let error = chosen.rms.value();
             let even = |case, currency| {
@@ -117,7 +119,7 @@ fn queries(data: &Data) -> Table {
                 cheapest(&cases, TARGETS[0], 4096.0).map_or("none".to_string(), |c| even(c.case, currency))
             };
             let mut row = vec![
-                body.title.to_string(),
+                field.title.to_string(),
                 treatment.title().to_string(),
                 short(&chosen.case.setting),
                 percent(&chosen.rms),
@@ -159,9 +161,9 @@ fn queries(data: &Data) -> Table {
 /// What a fixed choice of k costs.
 fn regrets(data: &Data) -> Table {
     let mut rows = Vec::new();
-    for body in &BODIES {
+    for field in &FIELDS {
         for treatment in Treatment::ALL {
-            let cases = data.of(body, treatment, Some(data.largest(body)));
+            let cases = data.of(field, treatment, Some(data.largest(field)));
             let Some(best) = best(&cases) else { continue };
             let is_last = is_last(best.case, &cases);
             let regret_of = |k: usize| {
@@ -173,7 +175,7 @@ fn regrets(data: &Data) -> Table {
                 })
             };
             rows.push(vec![
-                body.title.to_string(),
+                field.title.to_string(),
                 treatment.title().to_string(),
                 best.case.setting.photons.to_string(),
                 best.case.setting.size.name(),
@@ -200,16 +202,16 @@ fn regrets(data: &Data) -> Table {
 
 /// Costs apart, in counts.
 fn counts(data: &Data) -> Table {
-    let row = |size: &super::data::Size| {
-        let gather = |wanted: super::cases::Size| {
-            let cases = data.of(size.body, Treatment::Plain, Some(size.photons));
+    let row = |size: &super::data::MapSize| {
+        let gather = |wanted: Size| {
+            let cases = data.of(size.field, Treatment::Plain, Some(size.photons));
             let found = cases.iter().find(|c| c.setting.size == wanted);
             found.map_or(String::new(), |c| number(mean(&c.found)))
         };
-        let paths = data.paths(size.body);
-        let volume = size.body.volume();
+        let paths = data.paths(size.field);
+        let volume = size.field.setup.body.volume();
         vec![
-            size.body.title.to_string(),
+            size.field.title.to_string(),
             size.photons.to_string(),
             number(size.photons as f64 / volume),
             number(mean(&size.stored) / volume),
@@ -243,21 +245,21 @@ fn counts(data: &Data) -> Table {
 
 /// The same in seconds.
 fn seconds(data: &Data) -> Table {
-    let row = |size: &super::data::Size| {
-        let query = |wanted: super::cases::Size| {
-            let cases = data.of(size.body, Treatment::Plain, Some(size.photons));
+    let row = |size: &super::data::MapSize| {
+        let query = |wanted: Size| {
+            let cases = data.of(size.field, Treatment::Plain, Some(size.photons));
             let found = cases.iter().find(|c| c.setting.size == wanted);
             found.map_or(String::new(), |c| format!("{:.2}", 1e6 * mean(&c.query_seconds)))
         };
         let [shooting, building] = [mean(&size.seconds[0]), mean(&size.seconds[1])];
         vec![
-            size.body.title.to_string(),
+            size.field.title.to_string(),
             size.photons.to_string(),
             format!("{:.2}", 1e3 * shooting),
             format!("{:.2}", 1e3 * building),
             query(Size::Radius(0.2)),
             query(Size::Nearest(50)),
-            data.paths(size.body).map_or(String::new(), |p| format!("{:.2}", 1e6 * mean(&p.seconds))),
+            data.paths(size.field).map_or(String::new(), |p| format!("{:.2}", 1e6 * mean(&p.seconds))),
         ]
     };
     let columns = [
@@ -304,7 +306,7 @@ fn deviations(data: &Data) -> Table {
     table(&caption, &columns, off(data).into_iter().map(row).collect())
 }
 
-/// The smallest error of all settings of a body.
-pub fn best_error(data: &Data, body: &Body, treatment: Treatment) -> Option<Estimate> {
-    best(&data.of(body, treatment, None)).map(|choice| choice.rms)
+/// The smallest error of all settings of a field.
+pub fn best_error(data: &Data, field: &Field, treatment: Treatment) -> Option<Estimate> {
+    best(&data.of(field, treatment, None)).map(|choice| choice.rms)
 }

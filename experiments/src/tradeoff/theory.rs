@@ -1,8 +1,9 @@
 //! Mean and spread of every estimate, from theory: independent photons of the exact field, thickened by the clusters
 //! of one history.
 
-use super::cases::{Body, Setting, Size, Treatment};
-use crate::theory::{Fog, Gathers, clustering};
+use super::cases::{Field, Setting, Treatment};
+use crate::setups::{Setup, Size};
+use crate::theory::{Gathers, clustering};
 use std::f64::consts::PI;
 use turbid::estimators::Kernel;
 use turbid_analytic::nearest::{nearest_expectation, nearest_moments};
@@ -55,9 +56,9 @@ impl Rms {
     }
 }
 
-/// The theory of one body of fog.
+/// The theory of one field of fog.
 pub struct Theory {
-    body: &'static Body,
+    field: &'static Field,
     gathers: Gathers,
 }
 
@@ -67,12 +68,14 @@ const REACH: f64 = 1.0;
 const PANELS: u32 = 64;
 
 impl Theory {
-    /// The theory of a body whose settings are these.
-    pub fn new<'a>(body: &'static Body, settings: impl Iterator<Item = &'a Setting>) -> anyhow::Result<Self> {
-        let reach = settings.filter(|s| s.body == body).map(Setting::cap).fold(REACH, f64::max);
-        let (fog, albedo, g) = (body.fog, body.albedo, body.g);
-        let gathers = Gathers::new(fog, albedo, g, body.exact()?, &body.depths(), reach);
-        Ok(Theory { body, gathers })
+    /// The theory of a field whose settings are these.
+    pub fn new<'a>(
+        field: &'static Field,
+        settings: impl Iterator<Item = &'a Setting>,
+    ) -> anyhow::Result<Self> {
+        let reach = settings.filter(|s| s.field == field).map(Setting::cap).fold(REACH, f64::max);
+        let gathers = Gathers::new(field.setup, &field.depths(), reach)?;
+        Ok(Theory { field, gathers })
     }
 
     /// Exact fluence and its bound.
@@ -82,11 +85,7 @@ impl Theory {
 
     /// Collisions of a history, on average: the integral of the fluence over the fog, per unit of power.
     pub fn collisions(&self) -> anyhow::Result<f64> {
-        let total = self.body.fog.total(self.gathers.fluence(), PANELS)?;
-        Ok(match self.body.fog {
-            Fog::Slab { .. } => total,
-            Fog::Sphere { .. } => total / self.body.power(),
-        })
+        self.field.setup.collisions(self.gathers.fluence(), PANELS)
     }
 
     /// One setting at one layer's depth.
@@ -102,8 +101,8 @@ impl Theory {
     pub fn within(&self, r: f64, photons: f64, treatment: Treatment, t: f64) -> anyhow::Result<Expected> {
         let (here, here_error) = self.exact(t)?;
         let mean = self.gathers.profile(t, Kernel::Uniform)?.at(r);
-        let whole = self.body.fog.inside(r, t)?;
-        let held = photons / self.body.power() * 4.0 / 3.0 * PI * r * r * r * mean;
+        let whole = self.field.setup.body.inside(r, t)?;
+        let held = photons / self.field.setup.power() * 4.0 / 3.0 * PI * r * r * r * mean;
         let (edge, value) = match treatment {
             Treatment::Plain => (whole - 1.0, mean / here),
             Treatment::Clipped => (0.0, mean / (here * whole)),
@@ -113,7 +112,7 @@ impl Theory {
             edge,
             blur: value - 1.0 - edge,
             clusters: 0.0,
-            noise: spread(self.clustering(r, t)),
+            noise: spread(self.clustering(r, t)?),
             noise_independent: spread(0.0),
             error: here_error / here + 1e-8,
         })
@@ -130,7 +129,7 @@ impl Theory {
         let profile = self.gathers.profile(t, Kernel::Uniform)?;
         let ball = |r: f64| density * 4.0 / 3.0 * PI * r * r * r;
         let number = |r: f64| ball(r) * profile.at(r);
-        let whole = |r: f64| self.body.fog.inside(r, t).unwrap_or(f64::NAN);
+        let whole = |r: f64| self.field.setup.body.inside(r, t).unwrap_or(f64::NAN);
         let part = |r: f64| if treatment == Treatment::Plain { 1.0 } else { whole(r) };
         let mean = |r: f64| profile.at(r) / part(r);
         let square = |r: f64| profile.at(r) / (ball(r) * part(r) * part(r));
@@ -160,7 +159,7 @@ impl Theory {
             edge,
             blur: right - 1.0 - edge,
             clusters,
-            noise: spread(self.clustering(low, t)),
+            noise: spread(self.clustering(low, t)?),
             noise_independent: spread(0.0),
             error: (moments.mean.error + uniform.error + here_error) / here + 1e-8,
         })
@@ -168,18 +167,19 @@ impl Theory {
 
     /// Other photons of its history that a photon of the ball has there, on average. Where the surface cuts the ball,
     /// neighbours become fewer in proportion to its mean chord, an approximation.
-    fn clustering(&self, r: f64, t: f64) -> f64 {
-        clustering(self.body.albedo, self.body.g, r) * self.body.fog.chord(r, t)
+    fn clustering(&self, r: f64, t: f64) -> anyhow::Result<f64> {
+        let Setup { body, albedo, g, .. } = self.field.setup;
+        Ok(clustering(albedo, g, r) * body.chord(r, t)?)
     }
 }
 
 #[cfg(test)]
 mod tests {
-    use super::super::cases::BODIES;
+    use super::super::cases::FIELDS;
     use super::*;
 
-    fn body(name: &str) -> &'static Body {
-        BODIES.iter().find(|s| s.name == name).unwrap()
+    fn field(name: &str) -> &'static Field {
+        FIELDS.iter().find(|s| s.name == name).unwrap()
     }
 
     /// Power balance: what is absorbed and what leaves make 1, so that collisions are (1 - R - T)/(1 - albedo).
@@ -187,12 +187,16 @@ mod tests {
     fn collisions_by_power_balance() {
         use turbid_analytic::{Incidence, IsotropicSlab};
         for name in ["thin", "moderate", "thick"] {
-            let body = body(name);
-            let exact =
-                IsotropicSlab::new(body.fog.deepest(), body.albedo, Incidence::Beam { mu0: 1.0 }).unwrap();
+            let field = field(name);
+            let exact = IsotropicSlab::new(
+                field.setup.body.deepest(),
+                field.setup.albedo,
+                Incidence::Beam { mu0: 1.0 },
+            )
+            .unwrap();
             let balance =
-                (1.0 - exact.reflectance().value - exact.transmittance().value) / (1.0 - body.albedo);
-            let found = Theory::new(body, std::iter::empty()).unwrap().collisions().unwrap();
+                (1.0 - exact.reflectance().value - exact.transmittance().value) / (1.0 - field.setup.albedo);
+            let found = Theory::new(field, std::iter::empty()).unwrap().collisions().unwrap();
             assert!((found / balance - 1.0).abs() < 1e-5, "{name}: {found}, {balance}");
         }
     }
@@ -200,14 +204,14 @@ mod tests {
     /// Where the whole ball lies inside, clipping changes nothing; at the face it doubles what is left.
     #[test]
     fn clipping_restores_the_missing_part() {
-        let theory = Theory::new(body("moderate"), std::iter::empty()).unwrap();
-        let depth = body("moderate").depth(0);
+        let theory = Theory::new(field("moderate"), std::iter::empty()).unwrap();
+        let depth = field("moderate").depth(0);
         let at = |treatment| theory.within(0.4, 1e5, treatment, depth).unwrap();
         let (plain, clipped) = (at(Treatment::Plain), at(Treatment::Clipped));
         let whole = 1.0 + plain.edge;
         assert!(((1.0 + plain.bias()) / whole - 1.0 - clipped.bias()).abs() < 1e-12);
         assert!((plain.noise / whole / clipped.noise - 1.0).abs() < 1e-12);
-        let middle = body("moderate").depth(8);
+        let middle = field("moderate").depth(8);
         let at = |treatment| theory.within(0.4, 1e5, treatment, middle).unwrap();
         assert_eq!(at(Treatment::Plain).blur, at(Treatment::Clipped).blur);
     }

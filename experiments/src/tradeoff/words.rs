@@ -1,26 +1,27 @@
 //! The summary and the notes.
 
-use super::cases::{BODIES, Body, Treatment};
+use super::cases::{FIELDS, Field, Treatment};
 use super::choose::{Currency, best_over_best, break_even, cheapest, most_efficient};
 use super::data::{Data, mean};
 use super::tables::{best_error, off};
-use crate::harness::{Entry, Estimate, with_error};
+use crate::harness::{Estimate, with_error};
+use crate::prediction::Entry;
 use turbid::stats::Moments;
 
 fn percent(estimate: &Estimate) -> String {
     with_error(100.0 * estimate.value(), 100.0 * estimate.std_error())
 }
 
-fn even(data: &Data, body: &Body, currency: Currency) -> Option<Estimate> {
-    let chosen = most_efficient(&data.of(body, Treatment::Clipped, None))?;
-    break_even(chosen.case, data.paths(body)?, currency).queries
+fn even(data: &Data, field: &Field, currency: Currency) -> Option<Estimate> {
+    let chosen = most_efficient(&data.of(field, Treatment::Clipped, None))?;
+    break_even(chosen.case, data.paths(field)?, currency).queries
 }
 
 /// The break-even in both currencies, and the error at which.
-fn both(data: &Data, body: &Body) -> Option<String> {
-    let chosen = most_efficient(&data.of(body, Treatment::Clipped, None))?;
+fn both(data: &Data, field: &Field) -> Option<String> {
+    let chosen = most_efficient(&data.of(field, Treatment::Clipped, None))?;
     let text = |currency| {
-        even(data, body, currency).map_or("never".to_string(), |q| {
+        even(data, field, currency).map_or("never".to_string(), |q| {
             format!("from {} queries on", with_error(q.value(), q.std_error()))
         })
     };
@@ -35,7 +36,7 @@ fn both(data: &Data, body: &Body) -> Option<String> {
 /// The summary.
 pub fn summary(data: &Data) -> Vec<String> {
     let mut paragraphs = Vec::new();
-    let (thin, thick, sphere) = (&BODIES[0], &BODIES[4], &BODIES[6]);
+    let (thin, thick, sphere) = (&FIELDS[0], &FIELDS[4], &FIELDS[6]);
     if let (Some(plain), Some(clipped), Some(in_thin), Some(in_thick), Some(in_sphere)) = (
         best_error(data, thin, Treatment::Plain),
         best_error(data, thin, Treatment::Clipped),
@@ -55,24 +56,24 @@ pub fn summary(data: &Data) -> Vec<String> {
     let clipping: Vec<String> = [0, 2, 4]
         .iter()
         .map(|&i| {
-            let body = &BODIES[i];
-            let of = |treatment| data.of(body, treatment, Some(data.largest(body)));
+            let field = &FIELDS[i];
+            let of = |treatment| data.of(field, treatment, Some(data.largest(field)));
             let ratio = best_over_best(&of(Treatment::Clipped), &of(Treatment::Plain));
-            format!("{:.2} ({})", ratio.value(), body.title)
+            format!("{:.2} ({})", ratio.value(), field.title)
         })
         .collect();
-    let reaches = |body: &Body, target: f64| {
-        Treatment::ALL.iter().any(|&t| cheapest(&data.of(body, t, None), target, 4096.0).is_some())
+    let reaches = |field: &Field, target: f64| {
+        Treatment::ALL.iter().any(|&t| cheapest(&data.of(field, t, None), target, 4096.0).is_some())
     };
-    let reached = |target| BODIES.iter().filter(|body| reaches(body, target)).count();
+    let reached = |target| FIELDS.iter().filter(|field| reaches(field, target)).count();
     paragraphs.push(format!(
         "What limits a gather changes from scene to scene. At the largest maps the best clipped gather has {} times \
          the error of the best plain one: clipping is the first thing to do where faces are near, and changes little \
-         in thick fog. Some setting reaches 10 per cent in {} of {} bodies, 3 per cent in {} and 1 per cent in {}; theory \
+         in thick fog. Some setting reaches 10 per cent in {} of {} fields, 3 per cent in {} and 1 per cent in {}; theory \
          says what reaches it elsewhere. Of {} measured errors {} are more than 4 standard errors from theory's; a table lists them.",
         clipping.join(", "),
         reached(0.1),
-        BODIES.len(),
+        FIELDS.len(),
         reached(0.03),
         reached(0.01),
         data.measured.len(),
@@ -126,10 +127,10 @@ pub fn notes(budget: &[Entry], data: &Data) -> Vec<String> {
          volumes too, so that half of the probes are nearer to the surface than a fifth of the radius."
             .to_string(),
     ];
-    let never: Vec<&str> = BODIES
+    let never: Vec<&str> = FIELDS
         .iter()
-        .filter(|body| even(data, body, Currency::Operations).is_none())
-        .map(|body| body.title)
+        .filter(|field| even(data, field, Currency::Operations).is_none())
+        .map(|field| field.title)
         .collect();
     if !never.is_empty() {
         notes.push(format!(

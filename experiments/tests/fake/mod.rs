@@ -3,9 +3,10 @@
 use turbid::math::{ln, sin_cos};
 use turbid::rng::{Purpose, Stream};
 use turbid_experiments::harness::{
-    CellId, CellOutput, Cells, Claim, Experiment, FigureFiles, Prediction, Row, Section, Settings, Study,
-    Table, Unit, bar,
+    CellId, CellOutput, Cells, Claim, Experiment, FigureFiles, Row, Section, Settings, Study, Table, Unit,
+    bar,
 };
+use turbid_experiments::prediction::Prediction;
 use turbid_figure::{Axis, Figure, Line, Panel, Points};
 
 /// The gather sizes.

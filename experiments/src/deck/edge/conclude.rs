@@ -1,18 +1,17 @@
 //! What all maps say of the edge of a medium and of false photons behind a thin wall.
 
 use super::results::Edges;
-use super::{BEHIND, SIZES, Size, edge_case, figure, photons, wall_case};
+use super::{BEHIND, FIXED, NEAREST, SIZES, edge_case, figure, photons, wall_case};
 use crate::deck::part::Part;
-use crate::harness::{
-    Cells, Claim, Estimate, Known, Row, Section, Settings, Table, Unit, number, with_error,
-};
+use crate::harness::{Cells, Claim, Estimate, Row, Section, Settings, Table, Unit, number, with_error};
+use crate::prediction::Predictions;
 use turbid::estimators::boundary::Rejection;
 
 /// Distance behind the wall that claims and words are about [mfp].
 const NEAR: f64 = BEHIND[1];
 
 /// Concludes.
-pub fn conclude(settings: &Settings, known: &Known, cells: &Cells) -> anyhow::Result<Part> {
+pub fn conclude(settings: &Settings, known: &Predictions, cells: &Cells) -> anyhow::Result<Part> {
     let edges = Edges::read(cells, known)?;
     let section = Section {
         summary: Vec::new(),
@@ -33,7 +32,7 @@ pub fn conclude(settings: &Settings, known: &Known, cells: &Cells) -> anyhow::Re
 
 fn claims(edges: &Edges) -> Vec<Claim> {
     let mut claims = Vec::new();
-    for (size, id) in [(Size::Nearest, "edge-nearest"), (Size::Radius, "edge-radius")] {
+    for (size, id) in [(NEAREST, "edge-nearest"), (FIXED, "edge-radius")] {
         let Some(at) = edges.at_edge(size) else { continue };
         let title = size.title();
         let text =
@@ -43,7 +42,7 @@ fn claims(edges: &Edges) -> Vec<Claim> {
         let text = format!("the same over what the empty part of the ball predicts, {title}");
         claims.push(Claim::within(&format!("{id}-theory"), &text, Unit::ONE, at.ratio(), 0.95, 1.05));
     }
-    for (size, id) in [(Size::Nearest, "nearest"), (Size::Radius, "radius")] {
+    for (size, id) in [(NEAREST, "nearest"), (FIXED, "radius")] {
         let title = size.title();
         for (rejection, name) in [(Rejection::Off, "leak"), (Rejection::FacingBehind, "incoming")] {
             let Some(leak) = edges.leak(size, rejection, NEAR) else { continue };
@@ -55,10 +54,8 @@ fn claims(edges: &Edges) -> Vec<Claim> {
             claims.push(Claim::within(&format!("{name}-{id}"), &text, Unit::ONE, leak.ratio(), 0.9, 1.1));
         }
     }
-    let (off, facing) = (
-        edges.leak(Size::Radius, Rejection::Off, NEAR),
-        edges.leak(Size::Radius, Rejection::FacingBehind, NEAR),
-    );
+    let (off, facing) =
+        (edges.leak(FIXED, Rejection::Off, NEAR), edges.leak(FIXED, Rejection::FacingBehind, NEAR));
     if let (Some(off), Some(facing)) = (off, facing) {
         let text = "\"looking at the incoming direction avoids false photons\": leak left, of what leaks without a look, \
                     radius 0.2";
@@ -97,7 +94,7 @@ fn wall_table(edges: &Edges) -> Table {
     let mut rows = Vec::new();
     for size in SIZES {
         for rejection in Rejection::ALL {
-            let mut row = vec![size.title().to_string(), rejection.name().to_string()];
+            let mut row = vec![size.title(), rejection.name().to_string()];
             for distance in BEHIND {
                 let cell = edges.leak(size, rejection, distance).map_or(String::new(), |leak| {
                     match leak.predicted {
@@ -128,13 +125,12 @@ fn wall_table(edges: &Edges) -> Table {
 fn said(edges: &Edges) -> Vec<[String; 2]> {
     let mut said = Vec::new();
     let mut add = |sentence: &str, found: String| said.push([sentence.to_string(), found]);
-    if let Some(at) = edges.at_edge(Size::Nearest) {
+    if let Some(at) = edges.at_edge(NEAREST) {
         add("the estimate is too low near the edge of a medium", format!("on the edge by {}", at.words()));
     }
-    if let (Some(off), Some(facing)) = (
-        edges.leak(Size::Radius, Rejection::Off, NEAR),
-        edges.leak(Size::Radius, Rejection::FacingBehind, NEAR),
-    ) {
+    if let (Some(off), Some(facing)) =
+        (edges.leak(FIXED, Rejection::Off, NEAR), edges.leak(FIXED, Rejection::FacingBehind, NEAR))
+    {
         add(
             "looking at the incoming direction avoids false photons",
             format!(

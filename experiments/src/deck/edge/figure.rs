@@ -35,7 +35,7 @@ pub fn edges(edges: &Edges) -> anyhow::Result<FigureFiles> {
         for (rejection, dash) in [(Rejection::Off, Dash::Solid), (Rejection::FacingBehind, Dash::Dotted)] {
             let own: Vec<_> = edges.wall.iter().filter(|w| w.0 == size && w.1 == rejection).collect();
             let label = match rejection {
-                Rejection::Off => size.title().to_string(),
+                Rejection::Off => size.title(),
                 _ => format!("{}, incoming direction looked at", size.title()),
             };
             let x = BEHIND.to_vec();

@@ -8,18 +8,17 @@ pub mod conclude;
 mod figure;
 mod results;
 
-use crate::harness::{CellId, CellOutput, Prediction, Settings, Unit};
+use crate::harness::{CellId, CellOutput, Settings, Unit};
+use crate::prediction::Prediction;
+use crate::setups::{CELL, Setup, Size};
 use glam::DVec3;
 use std::f64::consts::PI;
 use turbid::Spectrum;
 use turbid::estimators::boundary::{Boundary, Rejection};
 use turbid::estimators::{Estimator, Gather, Kernel};
 use turbid::geometry::{Rectangle, Shape, Slab};
-use turbid::light::{Beam, Light, Section};
-use turbid::medium::Homogeneous;
-use turbid::phase::{Isotropic, Phase};
 use turbid::photons::{Histories, is_in, shoot};
-use turbid::scene::{Orders, Parts, Region, Scene};
+use turbid::scene::Orders;
 use turbid::stats::Moments;
 use turbid::transport::NoProgress;
 use turbid_analytic::nearest::nearest_expectation;
@@ -30,49 +29,23 @@ use turbid_analytic::{Incidence, IsotropicSlab};
 pub const GROUP: &str = "edge";
 /// Depth of the lit room [mfp]: the wall is there.
 pub const ROOM: f64 = 1.0;
-const ALBEDO: f64 = 0.9;
-/// Side of the cell that stands for the room's width [mfp].
-const CELL: f64 = 4.0;
+/// The room: a slab under a normal beam.
+const SETUP: Setup = Setup::slab(ROOM, 0.9, 0.0);
 /// Farthest that a photon is taken from [mfp].
 const REACH: f64 = 0.5;
 /// Probes along a side of the cell.
 const SIDE: usize = 4;
-/// Radius of the fixed gathers [mfp].
-const RADIUS: f64 = 0.2;
 /// Depths below the open edge [mfp].
 pub const DEPTHS: [f64; 6] = [0.0, 0.03, 0.06, 0.1, 0.15, 0.3];
 /// Distances behind the wall [mfp].
 pub const BEHIND: [f64; 5] = [0.01, 0.03, 0.06, 0.1, 0.15];
 
-/// How large a gather is.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Size {
-    /// All photons within [`RADIUS`].
-    Radius,
-    /// The 50 nearest, the talk's own number.
-    Nearest,
-}
-
-/// Both.
-pub const SIZES: [Size; 2] = [Size::Radius, Size::Nearest];
-const K: u32 = 50;
-
-impl Size {
-    /// For readers.
-    pub fn title(self) -> &'static str {
-        match self {
-            Size::Radius => "radius 0.2",
-            Size::Nearest => "50 nearest",
-        }
-    }
-
-    fn gather(self) -> turbid::Result<Gather> {
-        match self {
-            Size::Radius => Gather::radius(RADIUS),
-            Size::Nearest => Gather::nearest(K as usize, REACH),
-        }
-    }
-}
+/// The gathers: a fixed radius, and the 50 nearest, the talk's own number.
+pub const SIZES: [Size; 2] = [FIXED, NEAREST];
+/// Photons within a radius.
+pub const FIXED: Size = Size::Radius(0.2);
+/// The nearest photons.
+pub const NEAREST: Size = Size::Nearest(50);
 
 /// The case of a depth below the open edge.
 pub fn edge_case(size: Size, depth: f64) -> String {
@@ -94,13 +67,6 @@ pub fn cells(settings: &Settings) -> Vec<CellId> {
     CellId::replicates(GROUP, settings.pick(96, 256), 4.0 * photons(settings) as f64).collect()
 }
 
-fn scene() -> anyhow::Result<Scene> {
-    let medium = Homogeneous::new(Spectrum::ONE, Spectrum::grey(ALBEDO), Phase::Isotropic(Isotropic))?;
-    let region = Region { shape: Shape::Slab(Slab::new(0.0, ROOM)?), medium: medium.into() };
-    let lights = vec![Light::Beam(Beam::new(DVec3::Z, Spectrum::ONE, Section::Unbounded)?)];
-    Ok(Scene::new(Parts { regions: vec![region], lights, cell: Some(CELL), ..Parts::default() })?)
-}
-
 /// Measures one cell: everything over the exact fluence, that of the wall's lit side for what is behind it.
 pub fn measure(settings: &Settings, cell: &CellId) -> anyhow::Result<CellOutput> {
     let mut output = CellOutput::new();
@@ -110,10 +76,10 @@ pub fn measure(settings: &Settings, cell: &CellId) -> anyhow::Result<CellOutput>
         replicate: cell.stream("deck"),
         max_order: None,
     };
-    let pass = shoot(&scene()?, histories, &[], is_in(Orders::ALL), &NoProgress)?;
+    let pass = shoot(&SETUP.scene()?, histories, &[], is_in(Orders::ALL), &NoProgress)?;
     output.count("photons emitted", pass.emitted());
     let map = pass.into_map(REACH)?;
-    let truth = IsotropicSlab::new(ROOM, ALBEDO, Incidence::Beam { mu0: 1.0 })?;
+    let truth = IsotropicSlab::new(ROOM, SETUP.albedo, Incidence::Beam { mu0: 1.0 })?;
     // The fog of both rooms, and the wall, wider than the cell and all gathers.
     let fog = Shape::Slab(Slab::new(0.0, 3.0 * ROOM)?);
     let wide = 10.0 * CELL;
@@ -131,7 +97,7 @@ pub fn measure(settings: &Settings, cell: &CellId) -> anyhow::Result<CellOutput>
     };
     let at_wall = truth.fluence(ROOM)?.value;
     for size in SIZES {
-        let gather = size.gather()?;
+        let gather = size.gather(REACH)?;
         for depth in DEPTHS {
             let exact = truth.fluence(depth)?.value;
             let low = 100.0 * (mean(depth, gather, Rejection::Off) / exact - 1.0);
@@ -189,8 +155,8 @@ impl Profile {
     /// Expectation of a gather about a depth; `density` photons a volume where the field is 1.
     fn expected(&self, depth: f64, size: Size, density: f64) -> anyhow::Result<f64> {
         match size {
-            Size::Radius => Ok(self.ball_mean(depth, RADIUS)),
-            Size::Nearest => {
+            Size::Radius(r) => Ok(self.ball_mean(depth, r)),
+            Size::Nearest(k) => {
                 let radius = |i: usize| REACH * i as f64 / POINTS as f64;
                 let means: Vec<f64> =
                     (0..=POINTS).map(|i| self.ball_mean(depth, radius(i).max(1e-6 * REACH))).collect();
@@ -201,7 +167,7 @@ impl Profile {
                     means[i] * (1.0 - part) + means[i + 1] * part
                 };
                 let ball = |r: f64| density * 4.0 / 3.0 * PI * r * r * r;
-                Ok(nearest_expectation(K, REACH, |r| ball(r) * mean(r), mean)?.value)
+                Ok(nearest_expectation(u32::try_from(k)?, REACH, |r| ball(r) * mean(r), mean)?.value)
             }
         }
     }
@@ -212,7 +178,7 @@ impl Profile {
 /// At the edge the ball's part outside is empty. Behind the wall a gather sees the room's photons alone; with a look at the
 /// incoming direction, those that travel away from the wall, whose fluence is 2 pi int_0^1 I(t, mu) dmu.
 pub fn predict(settings: &Settings) -> anyhow::Result<Vec<Prediction>> {
-    let slab = IsotropicSlab::new(ROOM, ALBEDO, Incidence::Beam { mu0: 1.0 })?;
+    let slab = IsotropicSlab::new(ROOM, SETUP.albedo, Incidence::Beam { mu0: 1.0 })?;
     let all = Profile::new(|t| Ok(slab.fluence_interpolated(t)?.value))?;
     let away = {
         let rule = GaussLegendre::new(16)?;
@@ -224,13 +190,12 @@ pub fn predict(settings: &Settings) -> anyhow::Result<Vec<Prediction>> {
         };
         Profile::new(fluence)?
     };
-    let density = photons(settings) as f64 / (CELL * CELL);
+    let density = SETUP.density(photons(settings));
     let at_wall = slab.fluence(ROOM)?.value;
     let mut predictions = Vec::new();
     let mut add = |case: String, quantity: &str, value: f64, source: &str| {
-        let (quantity, source) = (quantity.to_string(), source.to_string());
         // Linear pieces of a 400th of the room.
-        predictions.push(Prediction { case, quantity, unit: Unit::PERCENT, value, error: 0.02, source });
+        predictions.push(Prediction::new(case, quantity, Unit::PERCENT, (value, 0.02), source));
     };
     for size in SIZES {
         for depth in DEPTHS {

@@ -1,7 +1,9 @@
 //! What the maps say of edges.
 
-use super::{BEHIND, DEPTHS, SIZES, Size, edge_case, wall_case};
-use crate::harness::{Cells, Estimate, Known, signed, with_error};
+use super::{BEHIND, DEPTHS, SIZES, edge_case, wall_case};
+use crate::harness::{Cells, Estimate, signed, with_error};
+use crate::prediction::Predictions;
+use crate::setups::Size;
 use turbid::estimators::boundary::Rejection;
 use turbid::stats::Moments;
 
@@ -14,7 +16,7 @@ pub struct Beside {
 }
 
 impl Beside {
-    fn of(cells: &Cells, known: &Known, case: &str, quantity: &str) -> anyhow::Result<Self> {
+    fn of(cells: &Cells, known: &Predictions, case: &str, quantity: &str) -> anyhow::Result<Self> {
         Ok(Beside { measured: cells.moments(case, quantity)?, predicted: known.get(case, quantity)?.0 })
     }
 
@@ -40,7 +42,7 @@ pub struct Edges {
 }
 
 impl Edges {
-    pub fn read(cells: &Cells, known: &Known) -> anyhow::Result<Self> {
+    pub fn read(cells: &Cells, known: &Predictions) -> anyhow::Result<Self> {
         let (mut edge, mut wall) = (Vec::new(), Vec::new());
         for size in SIZES {
             for depth in DEPTHS {

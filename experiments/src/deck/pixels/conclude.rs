@@ -4,12 +4,13 @@ use super::results::Picture;
 use super::{NEIGHBORS, SIDE, case, cells as ids, figure, map_case, path_case};
 use crate::deck::part::Part;
 use crate::harness::{
-    Cells, Claim, Estimate, Known, Row, Section, Settings, Table, Unit, bar, number, signed, with_error,
+    Cells, Claim, Estimate, Row, Section, Settings, Table, Unit, bar, number, signed, with_error,
 };
+use crate::prediction::Predictions;
 use turbid::math::exp;
 use turbid::stats::{Jackknife, Moments, jackknife, jackknife_log};
 
-fn pictures(cells: &Cells, known: &Known) -> anyhow::Result<Vec<Picture>> {
+fn pictures(cells: &Cells, known: &Predictions) -> anyhow::Result<Vec<Picture>> {
     let list = |case: &dyn Fn(usize) -> String| (0..SIDE * SIDE).map(case).collect::<Vec<_>>();
     let multiple = cells.per_map(&list(&path_case), "multiple")?;
     let totals = list(&path_case);
@@ -65,7 +66,7 @@ fn pictures(cells: &Cells, known: &Known) -> anyhow::Result<Vec<Picture>> {
 }
 
 /// Concludes.
-pub fn conclude(settings: &Settings, known: &Known, cells: &Cells) -> anyhow::Result<Part> {
+pub fn conclude(settings: &Settings, known: &Predictions, cells: &Cells) -> anyhow::Result<Part> {
     let pictures = pictures(cells, known)?;
     let section = Section {
         summary: headline(&pictures),

@@ -10,7 +10,8 @@ mod results;
 
 use super::fogbox::{ALBEDO, SIGMA_T, VOLUME, grey, scene};
 use super::maps::filled;
-use crate::harness::{CellId, CellOutput, Prediction, Settings, Unit};
+use crate::harness::{CellId, CellOutput, Settings, Unit};
+use crate::prediction::Prediction;
 use crate::theory::clustering;
 use anyhow::Context;
 use glam::{DVec2, DVec3};
@@ -168,15 +169,10 @@ pub fn predict(settings: &Settings) -> anyhow::Result<Vec<Prediction>> {
         let one = (1.0 + clustering(ALBEDO, 0.0, SIGMA_T * radius)) / k as f64;
         let square = |&(share, end): &(f64, f64)| share * share * one * shared(end, radius);
         let mean = shares.iter().map(square).sum::<f64>() / shares.len() as f64;
-        predictions.push(Prediction {
-            case: case(k),
-            quantity: "noise".to_string(),
-            unit: Unit::PERCENT,
-            value: 100.0 * mean.sqrt(),
-            // What 200 paths a pixel leave open.
-            error: 10.0 * mean.sqrt(),
-            source: "overlap of the balls along a ray in even light, after a pilot".to_string(),
-        });
+        // The bound is what 200 paths a pixel leave open.
+        let value = (100.0 * mean.sqrt(), 10.0 * mean.sqrt());
+        let source = "overlap of the balls along a ray in even light, after a pilot";
+        predictions.push(Prediction::new(case(k), "noise", Unit::PERCENT, value, source));
     }
     Ok(predictions)
 }
