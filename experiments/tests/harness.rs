@@ -8,7 +8,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 use turbid_experiments::harness::{
-    CellId, CellOutput, Claim, Closing, Estimate, Experiment, Outcome, Preset, Replot, Section,
+    CellId, CellOutput, Claim, Closing, Estimate, Experiment, Group, Outcome, Preset, Replot, Section,
     SectionReport, Settings, Study, Unit, Verdict, replot, run,
 };
 
@@ -105,7 +105,8 @@ fn another_seed_gives_other_results() {
 fn a_failed_cell_keeps_the_others_and_the_next_run_goes_on() {
     let folder = tempfile::tempdir().unwrap();
     fs::write(folder.path().join("fail"), b"").unwrap();
-    let other = Experiment { name: "other", measure: unfailing, ..fake::FAKE };
+    let other =
+        Experiment { name: "other", groups: |settings| fake::group(settings, unfailing), ..fake::FAKE };
     let both = Study { experiments: &[fake::FAKE, other], ..fake::study() };
     let outcome = run(&both, &settings(folder.path())).unwrap();
     assert_eq!(failure(&outcome), Some("cell slab-000040 of fake: asked to fail"));
@@ -131,7 +132,7 @@ fn failure(outcome: &Outcome) -> Option<&str> {
 fn unfailing(settings: &Settings, cell: &CellId) -> anyhow::Result<CellOutput> {
     let folder = tempfile::tempdir()?;
     fs::write(folder.path().join("predictions.csv"), b"")?;
-    (fake::FAKE.measure)(&Settings { out: folder.path().to_path_buf(), ..settings.clone() }, cell)
+    fake::measure(&Settings { out: folder.path().to_path_buf(), ..settings.clone() }, cell)
 }
 
 const ABORT_IN: &str = "TURBID_TEST_ABORT_IN";
@@ -229,7 +230,10 @@ fn non_finite_values_fail_their_experiment() {
 
 #[test]
 fn a_panic_in_a_cell_is_told_with_its_name() {
-    let panicking = Experiment { measure: |_, cell| panic!("replicate {}", cell.replicate), ..fake::FAKE };
+    let panicking = Experiment {
+        groups: |settings| fake::group(settings, |_, cell| panic!("replicate {}", cell.replicate)),
+        ..fake::FAKE
+    };
     let folder = tempfile::tempdir().unwrap();
     let study = Study { experiments: &[panicking], ..fake::study() };
     let outcome = run(&study, &settings(folder.path())).unwrap();
@@ -245,13 +249,19 @@ fn a_panic_in_a_cell_is_told_with_its_name() {
 fn a_map_measured_twice_is_refused() {
     let folder = tempfile::tempdir().unwrap();
     let in_pairs = Experiment {
-        measure: |settings, cell| {
-            (fake::FAKE.measure)(settings, &CellId { replicate: cell.replicate / 2, ..cell.clone() })
+        groups: |settings| {
+            fake::group(settings, |settings, cell| {
+                fake::measure(settings, &CellId { replicate: cell.replicate / 2, ..cell.clone() })
+            })
         },
         ..fake::FAKE
     };
     let all_alike = Experiment {
-        measure: |settings, cell| (fake::FAKE.measure)(settings, &CellId { replicate: 7, ..cell.clone() }),
+        groups: |settings| {
+            fake::group(settings, |settings, cell| {
+                fake::measure(settings, &CellId { replicate: 7, ..cell.clone() })
+            })
+        },
         ..fake::FAKE
     };
     for experiment in [in_pairs, all_alike] {
@@ -271,7 +281,7 @@ fn every_cell_has_a_stream_of_its_own() {
         let settings = Settings { preset, ..Settings::new("unused") };
         let mut streams = std::collections::HashMap::new();
         for experiment in turbid_experiments::ALL {
-            for cell in (experiment.cells)(&settings) {
+            for cell in (experiment.groups)(&settings).iter().flat_map(Group::cells) {
                 let name = format!("{} of {}", cell.id(), experiment.name);
                 if let Some(other) = streams.insert(cell.stream(experiment.name), name.clone()) {
                     panic!("{name} draws the numbers of {other}");
@@ -285,9 +295,11 @@ fn every_cell_has_a_stream_of_its_own() {
 #[test]
 fn cell_names_are_checked() {
     let folder = tempfile::tempdir().unwrap();
-    let twice =
-        Experiment { cells: |_| vec![CellId::new("a", 0, 1.0), CellId::new("a", 0, 1.0)], ..fake::FAKE };
-    let unsafe_name = Experiment { cells: |_| vec![CellId::new("../a", 0, 1.0)], ..fake::FAKE };
+    fn one(name: &str) -> Group {
+        Group::new(name, 1, 1.0, fake::measure)
+    }
+    let twice = Experiment { groups: |_| vec![one("a"), one("a")], ..fake::FAKE };
+    let unsafe_name = Experiment { groups: |_| vec![one("../a")], ..fake::FAKE };
     for (experiment, text) in [(twice, "two cells are called a-000000"), (unsafe_name, "no name for a file")]
     {
         let study = Study { experiments: &[experiment], ..fake::study() };
@@ -336,7 +348,9 @@ fn a_folder_holds_one_study_at_a_time() {
 #[test]
 fn what_does_not_fit_is_refused_before_the_work() {
     let large = Experiment {
-        cells: |settings| vec![CellId::new("a", 0, 1.0).holding(settings.photons(1_000_000, 1))],
+        groups: |settings| {
+            vec![Group::new("a", 1, 1.0, fake::measure).holding(settings.photons(1_000_000, 1))]
+        },
         predict: |_| panic!("predicted"),
         ..fake::FAKE
     };
@@ -399,11 +413,16 @@ fn pipes_are_no_notes() {
 #[test]
 fn cells_of_two_seeds_do_not_mix() {
     let intruded = Experiment {
-        measure: |settings, cell| {
-            if cell.replicate == 40 {
-                fs::copy(settings.out.join("other.csv"), settings.out.join("cells/fake/slab-000000.csv"))?;
-            }
-            (fake::FAKE.measure)(settings, cell)
+        groups: |settings| {
+            fake::group(settings, |settings, cell| {
+                if cell.replicate == 40 {
+                    fs::copy(
+                        settings.out.join("other.csv"),
+                        settings.out.join("cells/fake/slab-000000.csv"),
+                    )?;
+                }
+                fake::measure(settings, cell)
+            })
         },
         ..fake::FAKE
     };
@@ -421,12 +440,14 @@ fn cells_of_two_seeds_do_not_mix() {
 #[test]
 fn cells_of_two_experiments_do_not_mix() {
     let intruded = Experiment {
-        measure: |settings, cell| {
-            if cell.replicate == 40 {
-                let from = settings.out.join("cells/other/slab-000000.csv");
-                fs::copy(from, settings.out.join("cells/fake/slab-000000.csv"))?;
-            }
-            (fake::FAKE.measure)(settings, cell)
+        groups: |settings| {
+            fake::group(settings, |settings, cell| {
+                if cell.replicate == 40 {
+                    let from = settings.out.join("cells/other/slab-000000.csv");
+                    fs::copy(from, settings.out.join("cells/fake/slab-000000.csv"))?;
+                }
+                fake::measure(settings, cell)
+            })
         },
         ..fake::FAKE
     };
@@ -446,7 +467,7 @@ fn an_experiment_without_a_conclusion_stops_no_other() {
     let rash = Experiment { name: "rash", conclude: |_, _, _| panic!("3 of 2"), ..fake::FAKE };
     let blind = Experiment { name: "blind", predict: |_| anyhow::bail!("no field"), ..fake::FAKE };
     let folder = tempfile::tempdir().unwrap();
-    let lost = Experiment { name: "lost", cells: |_| panic!("no cell"), ..fake::FAKE };
+    let lost = Experiment { name: "lost", groups: |_| panic!("no cell"), ..fake::FAKE };
     let twice = Experiment {
         name: "twice",
         conclude: |settings, predictions, cells| {
@@ -473,7 +494,7 @@ fn an_experiment_without_a_conclusion_stops_no_other() {
     // Where photons are so few that two sizes are one, too.
     let double = Experiment {
         name: "double",
-        cells: |settings| [(fake::FAKE.cells)(settings), (fake::FAKE.cells)(settings)].concat(),
+        groups: |settings| [(fake::FAKE.groups)(settings), (fake::FAKE.groups)(settings)].concat(),
         ..fake::FAKE
     };
     let few = tempfile::tempdir().unwrap();

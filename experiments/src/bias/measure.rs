@@ -2,15 +2,14 @@
 
 use super::cases::Case;
 use super::fields::{FIELDS, Field};
-use crate::harness::{CellId, CellOutput, Settings};
+use crate::harness::{CellId, CellOutput, Group, Settings};
 use crate::setups::Size;
-use anyhow::Context;
 use turbid::Spectrum;
 use turbid::estimators::Kernel;
 use turbid::estimators::boundary::Boundary;
 use turbid::photons::{Histories, is_in, shoot};
 use turbid::rng::{Purpose, Stream};
-use turbid::scene::{Quantity, Scene};
+use turbid::scene::Quantity;
 use turbid::sensor::sample;
 use turbid::stats::Moments;
 use turbid::transport::NoProgress;
@@ -29,47 +28,38 @@ pub fn map_case(field: &Field, photons: u64) -> String {
 }
 
 /// All cells: maps by field and number of photons, and batches of paths for the fields that need them.
-pub fn cells(settings: &Settings) -> Vec<CellId> {
-    let mut cells = Vec::new();
+pub fn groups(settings: &Settings) -> Vec<Group> {
+    let mut groups = Vec::new();
     for field in &FIELDS {
         for (photons, maps) in field.sizes(settings) {
             // A history of all orders has a few collisions, and each photon is stored, sorted and gathered.
             let cost = photons as f64 * if field.has_clusters() { 4.0 } else { 1.0 };
-            cells.extend(
-                CellId::replicates(&Case::group(field, photons), maps, cost).map(|c| c.holding(photons)),
-            );
+            let measure = move |settings: &Settings, cell: &CellId| {
+                measure_map(settings, field, photons, cell.replicate)
+            };
+            groups.push(Group::new(Case::group(field, photons), maps, cost, measure).holding(photons));
         }
         if field.has_clusters() {
             let (batches, paths) = field.paths;
             let cost = paths as f64 * settings.photon_scale * field.depths.len() as f64;
-            cells.extend(CellId::replicates(&format!("{}-{BY_PATHS}", field.name), batches, cost));
+            let name = format!("{}-{BY_PATHS}", field.name);
+            groups.push(Group::new(name, batches, cost, |settings, cell| {
+                measure_paths(settings, field, cell.replicate)
+            }));
         }
     }
-    cells
-}
-
-/// Measures one cell.
-pub fn measure(settings: &Settings, cell: &CellId) -> anyhow::Result<CellOutput> {
-    let (name, what) = cell.group.rsplit_once('-').with_context(|| format!("group {}", cell.group))?;
-    let field = Field::named(name)?;
-    let scene = field.setup.scene()?;
-    if what == BY_PATHS {
-        return Ok(measure_paths(settings, field, &scene, cell.replicate));
-    }
-    let photons = what.trim_start_matches('n').parse().with_context(|| format!("group {}", cell.group))?;
-    measure_map(settings, field, &scene, photons, cell.replicate)
+    groups
 }
 
 fn measure_map(
     settings: &Settings,
     field: &'static Field,
-    scene: &Scene,
     photons: u64,
     replicate: u64,
 ) -> anyhow::Result<CellOutput> {
     let replicate = field.replicate(settings, photons, replicate);
     let histories = Histories { count: photons, seed: settings.seed, replicate, max_order: field.orders.max };
-    let pass = shoot(scene, histories, &[], is_in(field.orders), &NoProgress)?;
+    let pass = shoot(&field.setup.scene()?, histories, &[], is_in(field.orders), &NoProgress)?;
     let mut output = CellOutput::new();
     output.count("photons emitted", pass.emitted());
     output.count("collisions", pass.report.collisions);
@@ -111,7 +101,8 @@ pub fn is_fano_case(case: &Case) -> bool {
     is_whole && case.kernel == Kernel::Uniform && case.probes().len() >= FEWEST
 }
 
-fn measure_paths(settings: &Settings, field: &Field, scene: &Scene, replicate: u64) -> CellOutput {
+fn measure_paths(settings: &Settings, field: &Field, replicate: u64) -> anyhow::Result<CellOutput> {
+    let scene = field.setup.scene()?;
     let replicate = field.replicate(settings, 0, replicate);
     let mut output = CellOutput::new();
     let paths = ((field.paths.1 as f64 * settings.photon_scale) as u64).max(2);
@@ -121,12 +112,12 @@ fn measure_paths(settings: &Settings, field: &Field, scene: &Scene, replicate: u
         for path in 0..paths {
             let history = (index as u64) << 40 | path;
             let mut stream = Stream::new(settings.seed, Purpose::Paths, replicate, history);
-            let value = sample(scene, &quantity, field.orders, &mut stream);
+            let value = sample(&scene, &quantity, field.orders, &mut stream);
             output.non_finite += u64::from(!value.is_finite());
             values.push(value[0]);
         }
         output.count("paths", paths);
         output.push(path_case(field, depth), "fluence", values.mean());
     }
-    output
+    Ok(output)
 }

@@ -27,8 +27,7 @@ pub const EXPERIMENT: Experiment = Experiment {
     question: "A photon map smooths the light over the ball that its photons come from. By how much does that make \
                its fluence wrong, at each number of photons, gather size and depth, and is the error the one that \
                theory predicts before the run?",
-    cells: measure::cells,
+    groups: measure::groups,
     predict: predict::predict,
-    measure: measure::measure,
     conclude: conclude::conclude,
 };

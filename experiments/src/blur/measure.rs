@@ -2,23 +2,23 @@
 
 use super::cases::Case;
 use super::{shaft, waves};
-use crate::harness::{CellId, CellOutput, Settings};
-use anyhow::Context;
+use crate::harness::{CellId, CellOutput, Group, Settings};
 use turbid::Spectrum;
 use turbid::estimators::boundary::Boundary;
 use turbid::photons::{Histories, shoot};
 use turbid::transport::NoProgress;
 
 /// All cells: maps of the shaft by number of photons, and maps of a sinusoid.
-pub fn cells(settings: &Settings) -> Vec<CellId> {
-    let mut cells = Vec::new();
+pub fn groups(settings: &Settings) -> Vec<Group> {
+    let mut groups = Vec::new();
     for (photons, maps) in shaft::sizes(settings) {
         // Whatever the photons, a map is asked a few thousand times.
-        let maps = CellId::replicates(&Case::group(photons), maps, photons as f64 + 10_000.0);
-        cells.extend(maps.map(|cell| cell.holding(photons)));
+        let cost = photons as f64 + 10_000.0;
+        let measure = move |settings: &Settings, cell: &CellId| measure(settings, cell, photons);
+        groups.push(Group::new(Case::group(photons), maps, cost, measure).holding(photons));
     }
-    cells.extend(waves::cells(settings));
-    cells
+    groups.push(waves::group(settings));
+    groups
 }
 
 /// The cases of maps of one number of photons.
@@ -32,13 +32,8 @@ pub fn all_cases(settings: &Settings) -> Vec<Case> {
     shaft::sizes(settings).into_iter().flat_map(|(photons, _)| cases(settings, photons)).collect()
 }
 
-/// Measures one cell.
-pub fn measure(settings: &Settings, cell: &CellId) -> anyhow::Result<CellOutput> {
-    if cell.group == waves::GROUP {
-        return waves::measure(settings, cell);
-    }
-    let photons = cell.group.strip_prefix("shaft-n").and_then(|n| n.parse().ok());
-    let photons: u64 = photons.with_context(|| format!("group {}", cell.group))?;
+/// Measures one map.
+fn measure(settings: &Settings, cell: &CellId, photons: u64) -> anyhow::Result<CellOutput> {
     let scene = shaft::scene()?;
     let histories =
         Histories { count: photons, seed: settings.seed, replicate: cell.stream("blur"), max_order: Some(0) };

@@ -28,8 +28,7 @@ pub const EXPERIMENT: Experiment = Experiment {
     question: "The edge of a shaft of light is sharp; its image in a photon map is not, since every estimate gathers \
                over a ball. How wide is the image at each radius, kernel, k and number of photons, what is left of a \
                fine pattern, and how many photons does a given sharpness cost?",
-    cells: measure::cells,
+    groups: measure::groups,
     predict: predict::predict,
-    measure: measure::measure,
     conclude: conclude::conclude,
 };

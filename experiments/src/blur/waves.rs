@@ -1,6 +1,6 @@
 //! A sinusoidal pattern of independent photons: what is left of its contrast at each radius.
 
-use crate::harness::{CellId, CellOutput, Settings, Unit};
+use crate::harness::{CellId, CellOutput, Group, Settings, Unit};
 use crate::prediction::Prediction;
 use crate::theory::referee_kernel;
 use glam::DVec3;
@@ -44,17 +44,17 @@ pub fn phase(radius: f64) -> f64 {
     2.0 * PI * radius
 }
 
-/// The cells.
-pub fn cells(settings: &Settings) -> impl Iterator<Item = CellId> {
+/// The maps.
+pub fn group(settings: &Settings) -> Group {
     let (photons, maps) = size(settings);
     // A synthetic photon costs little, but each is gathered often.
-    CellId::replicates(GROUP, maps, 2.0 * photons as f64)
+    Group::new(GROUP, maps, 2.0 * photons as f64, measure)
 }
 
 /// Measures one map.
 ///
 /// The contrast is the projection of the estimates on the wave: the other terms of their series vanish on even probes.
-pub fn measure(settings: &Settings, cell: &CellId) -> anyhow::Result<CellOutput> {
+fn measure(settings: &Settings, cell: &CellId) -> anyhow::Result<CellOutput> {
     let (photons, _) = size(settings);
     let ends = DVec3::new(f64::from(PERIODS), SIDE, SIDE);
     let wave = Synthetic::new(Profile::Sinusoid { amplitude: 1.0, periods: PERIODS }, DVec3::ZERO, ends)?;

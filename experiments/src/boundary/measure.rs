@@ -3,41 +3,24 @@
 use super::cases::Case;
 use super::fields::{FIELDS, Field};
 use super::{section, sheet, spread};
-use crate::harness::{CellId, CellOutput, Settings};
-use anyhow::Context;
+use crate::harness::{CellId, CellOutput, Group, Settings};
 use turbid::Spectrum;
 use turbid::estimators::boundary::Boundary;
 use turbid::stats::Moments;
 
 /// All cells.
-pub fn cells(settings: &Settings) -> Vec<CellId> {
-    let mut cells: Vec<CellId> = Vec::new();
+pub fn groups(settings: &Settings) -> Vec<Group> {
+    let mut groups = Vec::new();
     for field in &FIELDS {
         for (photons, maps) in field.sizes(settings) {
             let cost = photons as f64 * field.stored_per_photon();
-            cells.extend(
-                CellId::replicates(&Case::group(field, photons), maps, cost).map(|c| c.holding(photons)),
-            );
+            let measure =
+                move |settings: &Settings, cell: &CellId| measure_map(settings, cell, field, photons);
+            groups.push(Group::new(Case::group(field, photons), maps, cost, measure).holding(photons));
         }
     }
-    cells.extend(section::cells(settings));
-    cells.extend(sheet::cells(settings));
-    cells.extend(spread::cells(settings));
-    cells
-}
-
-/// Measures one cell.
-pub fn measure(settings: &Settings, cell: &CellId) -> anyhow::Result<CellOutput> {
-    match cell.group.as_str() {
-        section::GROUP => section::measure(settings, cell),
-        sheet::GROUP => sheet::measure(settings, cell),
-        spread::GROUP => spread::measure(settings, cell),
-        group => {
-            let (name, photons) = group.rsplit_once("-n").with_context(|| format!("group {group}"))?;
-            let photons = photons.parse().with_context(|| format!("group {group}"))?;
-            measure_map(settings, cell, Field::named(name)?, photons)
-        }
-    }
+    groups.extend([section::group(settings), sheet::group(settings), spread::group(settings)]);
+    groups
 }
 
 fn measure_map(

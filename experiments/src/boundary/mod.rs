@@ -31,8 +31,7 @@ pub const EXPERIMENT: Experiment = Experiment {
     question: "Where the fog ends inside the ball that an estimate gathers from, the estimate is too dark; where a thin \
                wall stands in the ball, photons from the other side leak in. Which remedies cure which of the two \
                faults, at what price? In particular: what does looking at the photons' incoming direction cure?",
-    cells: measure::cells,
+    groups: measure::groups,
     predict: predict::predict,
-    measure: measure::measure,
     conclude: conclude::conclude,
 };

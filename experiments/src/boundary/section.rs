@@ -2,7 +2,7 @@
 
 use super::cases::MAIN;
 use super::fields::Field;
-use crate::harness::{CellId, CellOutput, Settings};
+use crate::harness::{CellId, CellOutput, Group, Settings};
 use glam::{DVec3, Vec3Swizzles};
 use turbid::Spectrum;
 use turbid::estimators::boundary::{Boundary, Treatment};
@@ -20,11 +20,10 @@ pub const RADIUS: f64 = WIDTH * ALONG as f64;
 /// Emitted photons a map.
 const PHOTONS: u64 = 20_000;
 
-/// The cells.
-pub fn cells(settings: &Settings) -> impl Iterator<Item = CellId> {
+/// The maps.
+pub fn group(settings: &Settings) -> Group {
     let photons = settings.photons(PHOTONS, PHOTONS);
-    CellId::replicates(GROUP, settings.pick(64, 512), 6.0 * photons as f64)
-        .map(move |cell| cell.holding(photons))
+    Group::new(GROUP, settings.pick(64, 512), 6.0 * photons as f64, measure).holding(photons)
 }
 
 /// The places of one quadrant that are in the sphere: column, row and distance from the centre.
@@ -43,7 +42,7 @@ pub fn case(treatment: Treatment, column: usize, row: usize) -> String {
 }
 
 /// Measures one map: at each place the four mirrored ones are averaged, in two planes.
-pub fn measure(settings: &Settings, cell: &CellId) -> anyhow::Result<CellOutput> {
+fn measure(settings: &Settings, cell: &CellId) -> anyhow::Result<CellOutput> {
     let field = Field::named("sphere")?;
     let photons = settings.photons(PHOTONS, PHOTONS);
     let map = field.map(settings, cell, photons)?;

@@ -1,6 +1,6 @@
 //! False photons: a thin opaque sheet between two uniform isotropic fields of independent photons.
 
-use crate::harness::{CellId, CellOutput, Settings, Unit};
+use crate::harness::{CellId, CellOutput, Group, Settings, Unit};
 use crate::prediction::Prediction;
 use crate::setups::Size;
 use crate::theory::referee_kernel;
@@ -143,11 +143,10 @@ fn bright(settings: &Settings) -> u64 {
     settings.photons(PHOTONS, PHOTONS)
 }
 
-/// The cells.
-pub fn cells(settings: &Settings) -> impl Iterator<Item = CellId> {
+/// The maps.
+pub fn group(settings: &Settings) -> Group {
     let photons = bright(settings);
-    CellId::replicates(GROUP, settings.pick(128, 1024), 4.0 * photons as f64)
-        .map(move |cell| cell.holding(photons))
+    Group::new(GROUP, settings.pick(128, 1024), 4.0 * photons as f64, measure).holding(photons)
 }
 
 /// The two halves of the box, bright above and dark below z = 0, as one map in units of the bright field.
@@ -168,7 +167,7 @@ fn map(settings: &Settings, cell: &CellId) -> anyhow::Result<PhotonMap> {
 }
 
 /// Measures one map.
-pub fn measure(settings: &Settings, cell: &CellId) -> anyhow::Result<CellOutput> {
+fn measure(settings: &Settings, cell: &CellId) -> anyhow::Result<CellOutput> {
     let map = map(settings, cell)?;
     let mut output = CellOutput::new();
     output.count("photons emitted", map.stored() as u64);

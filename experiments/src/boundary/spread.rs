@@ -1,7 +1,7 @@
 //! What a treatment costs in variance: independent photons of uniform density below one face.
 
 use super::exact;
-use crate::harness::{CellId, CellOutput, Settings, Unit};
+use crate::harness::{CellId, CellOutput, Group, Settings, Unit};
 use crate::prediction::Prediction;
 use crate::setups::Size;
 use crate::theory::referee_kernel;
@@ -68,15 +68,14 @@ fn photons(settings: &Settings) -> u64 {
     settings.photons(PHOTONS, PHOTONS)
 }
 
-/// The cells.
-pub fn cells(settings: &Settings) -> impl Iterator<Item = CellId> {
+/// The maps.
+pub fn group(settings: &Settings) -> Group {
     let photons = photons(settings);
-    CellId::replicates(GROUP, settings.pick(288, 1024), 2.0 * photons as f64)
-        .map(move |cell| cell.holding(photons))
+    Group::new(GROUP, settings.pick(288, 1024), 2.0 * photons as f64, measure).holding(photons)
 }
 
 /// Measures one map: mean over its probes, and their variance over that expected in a whole ball.
-pub fn measure(settings: &Settings, cell: &CellId) -> anyhow::Result<CellOutput> {
+fn measure(settings: &Settings, cell: &CellId) -> anyhow::Result<CellOutput> {
     let number = photons(settings);
     let field = Synthetic::new(Profile::Constant, DVec3::ZERO, DVec3::ONE)?;
     let map = field.map(Number::Expected(number), settings.seed, cell.stream("boundary"))?;

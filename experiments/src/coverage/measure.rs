@@ -3,8 +3,7 @@
 use super::field::{Exact, NEIGHBORS, PHOTONS, PLACES, RADII, REACH, ROWS, SETUP, is_near, place};
 use super::intervals::{Answer, Kind};
 use super::nulls::{LEVELS, Population, alarms};
-use crate::harness::{CellId, CellOutput, Estimate, MIN_MAPS, Settings};
-use anyhow::Context;
+use crate::harness::{CellId, CellOutput, Estimate, Group, MIN_MAPS, Settings};
 use turbid::Spectrum;
 use turbid::estimators::boundary::Boundary;
 use turbid::estimators::{Estimator, Gather, Kernel};
@@ -56,15 +55,16 @@ pub fn alarm_name(level: f64) -> String {
 
 /// All cells. The number of photons does not follow the scale: a study of fewer photons a map would be another one, so
 /// the scale goes to the repeats.
-pub fn cells(settings: &Settings) -> Vec<CellId> {
+pub fn groups(settings: &Settings) -> Vec<Group> {
     let count = settings.pick(CELLS.0, CELLS.1);
     let cost = PHOTONS as f64 * (MAPS * scaled(settings)) as f64;
-    let mut cells: Vec<CellId> = CellId::replicates(GROUP, count, cost).collect();
+    let mut groups = vec![Group::new(GROUP, count, cost, measure_repeats)];
     for population in Population::ALL {
         let cost = 8.0 * tests(population, settings) as f64;
-        cells.extend(CellId::replicates(&format!("null-{}", population.name()), count, cost));
+        let measure = move |settings: &Settings, cell: &CellId| Ok(measure_null(settings, cell, population));
+        groups.push(Group::new(format!("null-{}", population.name()), count, cost, measure));
     }
-    cells
+    groups
 }
 
 /// Repeats of one cell.
@@ -77,14 +77,8 @@ fn tests(population: Population, settings: &Settings) -> u64 {
     ((population.tests() as f64 * settings.photon_scale) as u64).clamp(100, population.tests())
 }
 
-/// Measures one cell.
-pub fn measure(settings: &Settings, cell: &CellId) -> anyhow::Result<CellOutput> {
-    if cell.group == GROUP {
-        return measure_repeats(settings, cell);
-    }
-    let name = cell.group.trim_start_matches("null-");
-    let population = Population::ALL.into_iter().find(|p| p.name() == name);
-    let population = population.with_context(|| format!("group {}", cell.group))?;
+/// Measures one batch of tests on right data.
+fn measure_null(settings: &Settings, cell: &CellId, population: Population) -> CellOutput {
     let tests = tests(population, settings);
     let mut output = CellOutput::new();
     output.count("tests on right data", tests);
@@ -92,7 +86,7 @@ pub fn measure(settings: &Settings, cell: &CellId) -> anyhow::Result<CellOutput>
     for (level, count) in LEVELS.into_iter().zip(counts) {
         output.push(null_case(population), alarm_name(level), count as f64 / tests as f64);
     }
-    Ok(output)
+    output
 }
 
 /// What was found for one kind of interval of so many maps.
@@ -114,7 +108,8 @@ fn measure_repeats(settings: &Settings, cell: &CellId) -> anyhow::Result<CellOut
         let mut maps = Vec::with_capacity(MAPS);
         for map in 0..MAPS {
             let index = (repeat * MAPS + map) as u64;
-            let own = CellId::new(GROUP, cell.replicate * (REPEATS * MAPS) as u64 + index, 0.0);
+            let replicate = cell.replicate * (REPEATS * MAPS) as u64 + index;
+            let own = CellId::of(GROUP, replicate);
             maps.push(ask(&scene, &exact, settings.seed, own.stream("coverage"))?);
         }
         output.count("photons emitted", PHOTONS * MAPS as u64);

@@ -24,8 +24,7 @@ pub const EXPERIMENT: Experiment = Experiment {
     question: "Every verdict rests on intervals over independent maps. When a whole small study is repeated thousands of \
                times, how often do its 95 % intervals contain the exact value, and how often do its tests raise an alarm \
                although nothing is wrong?",
-    cells: measure::cells,
+    groups: measure::groups,
     predict: conclude::predict,
-    measure: measure::measure,
     conclude: conclude::conclude,
 };

@@ -8,7 +8,7 @@ use super::fogbox::grey;
 use super::maps::filled;
 use super::part::Part;
 use super::times::Times;
-use crate::harness::{CellId, CellOutput, Cells, Row, Section, Settings, Unit, with_error};
+use crate::harness::{CellId, CellOutput, Cells, Group, Row, Section, Settings, Unit, with_error};
 use anyhow::{Context, anyhow};
 use std::path::Path;
 use std::sync::OnceLock;
@@ -66,8 +66,8 @@ fn photons(settings: &Settings) -> u64 {
 }
 
 /// All cells, a map each.
-pub fn cells(settings: &Settings) -> Vec<CellId> {
-    CellId::replicates(GROUP, 40, 1e5 + 10.0 * photons(settings) as f64).collect()
+pub fn group(settings: &Settings) -> Group {
+    Group::new(GROUP, 40, 1e5 + 10.0 * photons(settings) as f64, measure)
 }
 
 /// The cloud, the same for all cells of a process.
@@ -91,7 +91,7 @@ fn eye(steps: usize) -> anyhow::Result<mapper::Settings> {
 }
 
 /// Measures one cell.
-pub fn measure(settings: &Settings, cell: &CellId) -> anyhow::Result<CellOutput> {
+fn measure(settings: &Settings, cell: &CellId) -> anyhow::Result<CellOutput> {
     let (scene, replicate) = (scene()?, cell.stream("deck"));
     let camera = *scene.camera().context("the cloud has no camera")?;
     let mut output = CellOutput::new();
@@ -178,7 +178,7 @@ pub fn conclude(settings: &Settings, cells: &Cells) -> anyhow::Result<Part> {
             ),
         ]);
     }
-    let stored = cells.counter("photons stored in clouds") as f64 / self::cells(settings).len() as f64;
+    let stored = cells.counter("photons stored in clouds") as f64 / group(settings).cells().count() as f64;
     let notes = vec![format!(
         "The cloud: times of a picture of {WIDTH} x {HEIGHT} pixels with a sample each, from some of its pixels, with maps \
          of {stored:.0} photons, {K} of them in an estimate; rows with the map and without take turns; equal steps are half a mean free path long where the cloud is densest. \

@@ -18,9 +18,8 @@ mod steering;
 mod times;
 mod walls;
 
-use crate::harness::{CellId, CellOutput, Experiment, Settings};
+use crate::harness::{Experiment, Group, Settings};
 use crate::prediction::Prediction;
-use anyhow::bail;
 
 /// The experiment.
 pub const EXPERIMENT: Experiment = Experiment {
@@ -31,36 +30,24 @@ pub const EXPERIMENT: Experiment = Experiment {
                the incoming direction avoids false photons, that maps are decoupled from geometry, that multiple \
                scattering in clouds costs 100 to 61 of single scattering, and names importance as an improvement. By how \
                much?",
-    cells,
+    groups,
     predict,
-    measure,
     conclude: conclude::conclude,
 };
 
-fn cells(settings: &Settings) -> Vec<CellId> {
-    let mut cells = pixels::cells(settings);
-    cells.extend(edge::cells(settings));
-    cells.extend(walls::cells(settings));
-    cells.extend(race::cells(settings));
-    cells.extend(clouds::cells(settings));
-    cells.extend(steering::cells(settings));
-    cells
+fn groups(settings: &Settings) -> Vec<Group> {
+    vec![
+        pixels::group(settings),
+        edge::group(settings),
+        walls::group(settings),
+        race::group(settings),
+        clouds::group(settings),
+        steering::group(settings),
+    ]
 }
 
 fn predict(settings: &Settings) -> anyhow::Result<Vec<Prediction>> {
     let mut predictions = pixels::predict(settings)?;
     predictions.extend(edge::predict(settings)?);
     Ok(predictions)
-}
-
-fn measure(settings: &Settings, cell: &CellId) -> anyhow::Result<CellOutput> {
-    match cell.group.as_str() {
-        pixels::GROUP => pixels::measure(settings, cell),
-        edge::GROUP => edge::measure(settings, cell),
-        race::GROUP => race::measure(settings, cell),
-        clouds::GROUP => clouds::measure(settings, cell),
-        steering::GROUP => steering::measure(settings, cell),
-        walls::GROUP => walls::measure(settings, cell),
-        other => bail!("no cells are called {other}"),
-    }
 }

@@ -5,7 +5,7 @@
 
 use super::part::Part;
 use super::times::Times;
-use crate::harness::{CellId, CellOutput, Cells, Claim, Estimate, Section, Settings, Unit, number};
+use crate::harness::{CellId, CellOutput, Cells, Claim, Estimate, Group, Section, Settings, Unit, number};
 use glam::DVec3;
 use turbid::Spectrum;
 use turbid::estimators::boundary::Boundary;
@@ -38,8 +38,8 @@ fn photons(settings: &Settings) -> u64 {
 }
 
 /// One cell: every pair shares the meshes.
-pub fn cells(settings: &Settings) -> Vec<CellId> {
-    vec![CellId::new(GROUP, 0, 1e6 + photons(settings) as f64)]
+pub fn group(settings: &Settings) -> Group {
+    Group::new(GROUP, 1, 1e6 + photons(settings) as f64, measure)
 }
 
 /// The name of a timing.
@@ -94,7 +94,7 @@ fn map(settings: &Settings, replicate: u64) -> anyhow::Result<PhotonMap> {
 }
 
 /// Measures the cell.
-pub fn measure(settings: &Settings, cell: &CellId) -> anyhow::Result<CellOutput> {
+fn measure(settings: &Settings, cell: &CellId) -> anyhow::Result<CellOutput> {
     let mut output = CellOutput::new();
     let replicate = cell.stream("deck");
     let map = output.time("map", |_| map(settings, replicate))?;

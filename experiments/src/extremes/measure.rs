@@ -1,12 +1,11 @@
 //! Cells: batches of sampled rows, the checked rows, one large map, and the maps of the storage questions.
 
-use super::cases::Class;
+use super::cases::{BATCHES, Class};
 use super::checks;
-use super::sampled::{self, Sampled};
+use super::sampled;
 use super::scenes::{CELL, Flux, Fog, at_depth, sensor, slab};
 use super::{storage, stretched};
-use crate::harness::{CellId, CellOutput, Settings};
-use anyhow::bail;
+use crate::harness::{CellId, CellOutput, Group, Settings};
 use turbid::estimators::count_within;
 use turbid::photons::{Histories, Photon, shoot};
 use turbid::scene::Orders;
@@ -46,27 +45,24 @@ pub fn large_cases(settings: &Settings) -> anyhow::Result<Vec<(String, f64, f64)
 }
 
 /// All cells.
-pub fn cells(settings: &Settings) -> Vec<CellId> {
-    let mut cells = sampled::cells(settings);
-    cells.push(CellId::new(CHECKED, 0, 2e6 * settings.photon_scale));
-    cells.push(CellId::new(LARGE, 0, large(settings) as f64).holding(large(settings)));
-    cells.extend(storage::cells(settings));
-    cells.extend(stretched::cells(settings));
-    cells
-}
-
-/// Measures one cell.
-pub fn measure(settings: &Settings, cell: &CellId) -> anyhow::Result<CellOutput> {
-    if let Some(class) = Class::SAMPLED.into_iter().find(|&class| Sampled::group(class) == cell.group) {
-        return measure_sampled(settings, class, cell.replicate);
-    }
-    match cell.group.as_str() {
-        CHECKED => measure_checked(settings),
-        LARGE => measure_large(settings, cell),
-        storage::GROUP => storage::measure(settings, cell),
-        group if group.starts_with("stretched-") => stretched::measure(settings, cell),
-        group => bail!("no group is called {group}"),
-    }
+pub fn groups(settings: &Settings) -> Vec<Group> {
+    let mut groups: Vec<Group> = Class::SAMPLED
+        .into_iter()
+        .map(|class| {
+            let rows = sampled::all().into_iter().filter(|row| row.class == class);
+            let cost = rows.map(|row| row.histories(settings) as f64 * 4.0).sum();
+            let measure =
+                move |settings: &Settings, cell: &CellId| measure_sampled(settings, class, cell.replicate);
+            Group::new(format!("sampled-{}", class.name()), BATCHES, cost, measure)
+        })
+        .collect();
+    let checked = 2e6 * settings.photon_scale;
+    groups.push(Group::new(CHECKED, 1, checked, |settings, _| measure_checked(settings)));
+    let photons = large(settings);
+    groups.push(Group::new(LARGE, 1, photons as f64, measure_large).holding(photons));
+    groups.push(storage::group(settings));
+    groups.extend(stretched::groups(settings));
+    groups
 }
 
 /// Numbers that are not finite are counted and left out, so that the report can say where they were met.

@@ -36,8 +36,7 @@ pub const EXPERIMENT: Experiment = Experiment {
     question: "Do the path tracer and the photon map stay finite and right where media are thinnest, thickest, \
                blackest, whitest and most peaked, where lengths are tiny, huge or far from the origin, where photons \
                are few, many or all in one place? And does single precision in the photon tree matter?",
-    cells: measure::cells,
+    groups: measure::groups,
     predict: predict::predict,
-    measure: measure::measure,
     conclude: conclude::conclude,
 };

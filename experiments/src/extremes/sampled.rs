@@ -1,6 +1,6 @@
 //! Sampled rows: a mean over independent batches of histories, against an exact value.
 
-use super::cases::{BATCHES, Class};
+use super::cases::Class;
 use super::half_space::{half_space_reflectance, thick_white_transmittance};
 use super::scenes::{Flux, Fog, at_depth, beam_along, furnace_ball, furnace_slab, sensor, slab};
 use crate::harness::{CellId, Settings, Unit};
@@ -77,13 +77,8 @@ impl Sampled {
 
     /// Measures one batch; every row has streams of its own.
     pub fn measure(&self, settings: &Settings, batch: u64) -> anyhow::Result<Brought> {
-        let replicate = CellId::new(self.name.as_str(), batch, 0.0).stream("extremes");
+        let replicate = CellId::of(&self.name, batch).stream("extremes");
         (self.run)(&Batch { histories: self.histories(settings), seed: settings.seed, replicate })
-    }
-
-    /// The name of its cells' group.
-    pub fn group(class: Class) -> String {
-        format!("sampled-{}", class.name())
     }
 }
 
@@ -98,19 +93,6 @@ pub fn all() -> Vec<Sampled> {
     faces(&mut rows);
     ordinary(&mut rows);
     rows.0
-}
-
-/// Cells of the sampled rows.
-pub fn cells(settings: &Settings) -> Vec<CellId> {
-    let rows = all();
-    let cost =
-        |class| rows.iter().filter(|r| r.class == class).map(|r| r.histories(settings) as f64 * 4.0).sum();
-    Class::SAMPLED
-        .into_iter()
-        .flat_map(|class| {
-            CellId::replicates(&Sampled::group(class), BATCHES, cost(class)).collect::<Vec<_>>()
-        })
-        .collect()
 }
 
 /// Asymmetries below this change a flux by less than its own bound: by a part of g, and g here is 1e-12.

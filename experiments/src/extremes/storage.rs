@@ -7,7 +7,7 @@
 
 use super::plain::Plain;
 use super::scenes::furnace_ball;
-use crate::harness::{CellId, CellOutput, Settings};
+use crate::harness::{CellId, CellOutput, Group, Settings};
 use glam::{DVec3, Vec3};
 use turbid::estimators::boundary::Boundary;
 use turbid::estimators::{Estimate, Estimator, Gather, Kernel};
@@ -85,9 +85,9 @@ pub fn case_double(rule: Rule) -> String {
 }
 
 /// The maps.
-pub fn cells(settings: &Settings) -> Vec<CellId> {
+pub fn group(settings: &Settings) -> Group {
     let cost = photons(settings) as f64 * 40.0;
-    CellId::replicates(GROUP, settings.pick(176, 512), cost).collect()
+    Group::new(GROUP, settings.pick(176, 512), cost, measure)
 }
 
 /// Points that fill a ball evenly, by the fractional parts of multiples of three irrational numbers (Roberts 2018).
@@ -110,7 +110,7 @@ struct Pair {
 }
 
 /// Measures one map.
-pub fn measure(settings: &Settings, cell: &CellId) -> anyhow::Result<CellOutput> {
+fn measure(settings: &Settings, cell: &CellId) -> anyhow::Result<CellOutput> {
     let scene = furnace_ball(DVec3::ZERO, 0.0)?;
     let replicate = cell.stream("extremes");
     let histories = Histories { count: photons(settings), seed: settings.seed, replicate, max_order: None };

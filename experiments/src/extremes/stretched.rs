@@ -5,9 +5,8 @@
 //! the planes. The cube is then at 0.75 u from the middle of the map, where single precision has that spacing.
 
 use super::lattice::kernel_on_lattice;
-use crate::harness::{CellId, CellOutput, Settings};
+use crate::harness::{CellId, CellOutput, Group, Settings};
 use crate::setups::Size;
-use anyhow::Context;
 use glam::DVec3;
 use std::f64::consts::PI;
 use turbid::estimators::boundary::Boundary;
@@ -118,19 +117,15 @@ pub fn group(power: i32) -> String {
 }
 
 /// The maps.
-pub fn cells(settings: &Settings) -> Vec<CellId> {
-    let maps = settings.pick(64, 256);
-    POWERS
-        .into_iter()
-        .flat_map(|power| {
-            CellId::replicates(&group(power), maps, photons(settings) as f64 * 10.0).collect::<Vec<_>>()
-        })
-        .collect()
+pub fn groups(settings: &Settings) -> impl Iterator<Item = Group> {
+    let (maps, cost) = (settings.pick(64, 256), photons(settings) as f64 * 10.0);
+    POWERS.into_iter().map(move |power| {
+        Group::new(group(power), maps, cost, move |settings, cell| measure(settings, cell, power))
+    })
 }
 
 /// Measures one map.
-pub fn measure(settings: &Settings, cell: &CellId) -> anyhow::Result<CellOutput> {
-    let power = POWERS.into_iter().find(|&p| group(p) == cell.group).context("no such spacing")?;
+fn measure(settings: &Settings, cell: &CellId, power: i32) -> anyhow::Result<CellOutput> {
     let synthetic = Synthetic::new(Profile::Constant, DVec3::ZERO, DVec3::splat(SIDE))?;
     let map = synthetic.map(Number::Expected(photons(settings)), settings.seed, cell.stream("extremes"))?;
     let mut photons: Vec<Photon> = map.tree().photons().collect();

@@ -201,21 +201,9 @@ pub struct CellId {
 }
 
 impl CellId {
-    /// A cell of `group` (lower case letters, digits, `.`, `_` and `-`).
-    pub fn new(group: impl Into<String>, replicate: u64, cost: f64) -> Self {
-        CellId { group: group.into(), replicate, cost, held: 0 }
-    }
-
-    /// The same, of a map of at least so many photons.
-    #[must_use]
-    pub fn holding(self, photons: u64) -> Self {
-        CellId { held: photons, ..self }
-    }
-
-    /// All `maps` cells of a group.
-    pub fn replicates(group: &str, maps: u64, cost: f64) -> impl Iterator<Item = CellId> + use<> {
-        let group = group.to_string();
-        (0..maps).map(move |replicate| CellId::new(group.as_str(), replicate, cost))
+    /// A cell that is known by its name alone.
+    pub fn of(group: &str, replicate: u64) -> Self {
+        CellId { group: group.to_string(), replicate, cost: 0.0, held: 0 }
     }
 
     /// The unique file-safe name; names sort as replicates do.

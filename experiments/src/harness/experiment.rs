@@ -1,11 +1,11 @@
 //! What an experiment is made of.
 
-use super::{CellId, CellOutput, Cells, Section, Settings};
+use super::{Cells, Group, Section, Settings};
 use crate::prediction::Prediction;
 
 /// One experiment: a claim or a few, what they predict, how it is measured and what follows.
 ///
-/// The four functions are pure: everything they return is a function of their arguments.
+/// The three functions are pure: everything they return is a function of their arguments.
 #[derive(Debug, Clone, Copy)]
 pub struct Experiment {
     /// File-safe name, that of the module.
@@ -14,12 +14,10 @@ pub struct Experiment {
     pub title: &'static str,
     /// What is asked, one or two sentences.
     pub question: &'static str,
-    /// The maps to be measured.
-    pub cells: fn(&Settings) -> Vec<CellId>,
+    /// The maps to be measured, and how.
+    pub groups: fn(&Settings) -> Vec<Group>,
     /// What theory says, computed before anything is measured.
     pub predict: fn(&Settings) -> anyhow::Result<Vec<Prediction>>,
-    /// Measures one map.
-    pub measure: fn(&Settings, &CellId) -> anyhow::Result<CellOutput>,
     /// What all maps together say.
     pub conclude: fn(&Settings, &[Prediction], &Cells) -> anyhow::Result<Section>,
 }

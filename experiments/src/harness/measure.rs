@@ -1,6 +1,7 @@
 //! Measures the cells that are missing, in parallel.
 
 use super::cell::{self, CellOutput, FORMAT, Header};
+use super::group::Measure;
 use super::manifest::Manifest;
 use super::panics::caught;
 use super::progress::Progress;
@@ -16,6 +17,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 pub(super) struct Task<'a> {
     pub experiment: &'a Experiment,
     pub cell: CellId,
+    pub measure: Measure,
     pub path: PathBuf,
 }
 
@@ -95,7 +97,7 @@ pub(super) fn measure(
 fn measure_one(task: &Task, manifest: &Manifest, settings: &Settings) -> Result<(), Failure> {
     let name = || format!("cell {} of {}", task.cell.id(), task.experiment.name);
     let start = ThreadTime::now();
-    let output = caught(|| (task.experiment.measure)(settings, &task.cell))
+    let output = caught(|| (task.measure)(settings, &task.cell))
         .unwrap_or_else(|panic| Err(anyhow!(panic)))
         .with_context(name)
         .map_err(Failure::Measured)?;

@@ -1,5 +1,6 @@
 //! A whole study: predictions, then measurements, then conclusions, then the report.
 
+use super::group::Measure;
 use super::lock;
 use super::manifest::Manifest;
 use super::measure::{Task, cell_path, measure};
@@ -56,9 +57,8 @@ impl Closing {
             name: self.name,
             title: self.title,
             question: self.question,
-            cells: |_| Vec::new(),
+            groups: |_| Vec::new(),
             predict: |_| Ok(Vec::new()),
-            measure: |_, _| bail!("a closing section measures nothing"),
             conclude: |_, _, _| Ok(Section::default()),
         };
         let concluded = whole(|| (self.conclude)(settings, sections)).and_then(with_claims_apart);
@@ -158,9 +158,9 @@ pub(crate) fn one_line(text: &str) -> String {
 pub fn run(study: &Study, settings: &Settings) -> anyhow::Result<Outcome> {
     let experiments = selected(study.experiments, &settings.only)?;
     let _held = lock::hold(&settings.out)?;
-    let planned: Vec<anyhow::Result<Vec<CellId>>> =
+    let planned: Vec<anyhow::Result<Vec<(CellId, Measure)>>> =
         experiments.iter().map(|experiment| whole(|| plan(experiment, settings))).collect();
-    check_memory(planned.iter().flatten().flatten().map(|cell| cell.held).max().unwrap_or(0), settings)?;
+    check_memory(planned.iter().flatten().flatten().map(|(cell, _)| cell.held).max().unwrap_or(0), settings)?;
     check_folder(
         &settings.out,
         &["report.html", "results.csv", "claims.csv", "timing.csv", "provenance.json"],
@@ -185,16 +185,16 @@ pub fn run(study: &Study, settings: &Settings) -> anyhow::Result<Outcome> {
             Err(error) => (Vec::new(), Vec::new(), Some(format!("{error:#}"))),
         };
         let before = tasks.len();
-        for cell in &cells {
+        for (cell, measure) in &cells {
             let path = cell_path(&cells_folder, experiment, cell);
             if !manifest.accepts(&path, experiment.name, &cell.id(), settings) {
-                tasks.push(Task { experiment, cell: cell.clone(), path });
+                tasks.push(Task { experiment, cell: cell.clone(), measure: measure.clone(), path });
             }
         }
         let table = prediction_table(&[*experiment], std::slice::from_ref(&own))?;
         let changed = write_if_changed(&folder.join("predictions.csv"), &table)?;
         late_predictions |= changed && tasks.len() - before < cells.len();
-        sets.push(cells);
+        sets.push(cells.into_iter().map(|(cell, _)| cell).collect());
         failures.push(failure);
         predictions.push(own);
     }
@@ -287,12 +287,16 @@ fn selected(all: &[Experiment], only: &[String]) -> anyhow::Result<Vec<Experimen
 }
 
 /// The cells of an experiment, with names of their own.
-fn plan(experiment: &Experiment, settings: &Settings) -> anyhow::Result<Vec<CellId>> {
-    let cells = (experiment.cells)(settings);
+fn plan(experiment: &Experiment, settings: &Settings) -> anyhow::Result<Vec<(CellId, Measure)>> {
+    let mut cells = Vec::new();
     let mut seen = BTreeSet::new();
-    for cell in &cells {
-        ensure!(cell.is_file_safe(), "{}: the group {:?} is no name for a file", experiment.name, cell.group);
-        ensure!(seen.insert(cell.id()), "{}: two cells are called {}", experiment.name, cell.id());
+    for group in (experiment.groups)(settings) {
+        for cell in group.cells() {
+            let name = experiment.name;
+            ensure!(cell.is_file_safe(), "{name}: the group {:?} is no name for a file", cell.group);
+            ensure!(seen.insert(cell.id()), "{name}: two cells are called {}", cell.id());
+            cells.push((cell, group.measure.clone()));
+        }
     }
     Ok(cells)
 }

@@ -1,7 +1,7 @@
 //! Measuring one map.
 
 use super::cases::{ALBEDO, Case, REACH, SETUP, TAU, maps, photons};
-use crate::harness::{CellId, CellOutput, Settings};
+use crate::harness::{CellId, CellOutput, Group, Settings};
 use glam::DVec3;
 use turbid::Spectrum;
 use turbid::estimators::boundary::Boundary;
@@ -17,16 +17,14 @@ use turbid::transport::NoProgress;
 pub const GROUP: &str = "slab";
 
 /// All cells.
-pub fn cells(settings: &Settings) -> Vec<CellId> {
+pub fn groups(settings: &Settings) -> Vec<Group> {
     // A history has some three collisions; the rays of a map cost as much as its photons.
     let photons = photons(settings);
-    CellId::replicates(GROUP, maps(settings), 8.0 * photons as f64)
-        .map(|cell| cell.holding(photons))
-        .collect()
+    vec![Group::new(GROUP, maps(settings), 8.0 * photons as f64, measure).holding(photons)]
 }
 
 /// Measures one cell.
-pub fn measure(settings: &Settings, cell: &CellId) -> anyhow::Result<CellOutput> {
+fn measure(settings: &Settings, cell: &CellId) -> anyhow::Result<CellOutput> {
     let scene = SETUP.scene()?;
     let medium = &scene.regions()[0].medium;
     let (phase, albedo) = (medium.phase(), Spectrum::grey(ALBEDO));

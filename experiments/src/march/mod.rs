@@ -21,8 +21,7 @@ pub const EXPERIMENT: Experiment = Experiment {
     question: "To see fog, a photon map is asked along each ray, in steps. By how much do steps of finite length make \
                the radiance wrong, with the formula of 1998 and with better weights, and do the errors of step and \
                map add up as predicted?",
-    cells: measure::cells,
+    groups: measure::groups,
     predict: predict::predict,
-    measure: measure::measure,
     conclude: conclude::conclude,
 };

@@ -1,8 +1,7 @@
 //! Measuring one batch of maps.
 
 use super::cases::{self, DEPTHS, SETUP, Size, name, probes, radii};
-use crate::harness::{CellId, CellOutput, Settings};
-use anyhow::Context;
+use crate::harness::{CellId, CellOutput, Group, Settings};
 use turbid::Spectrum;
 use turbid::estimators::boundary::Boundary;
 use turbid::estimators::{Estimator, Gather, Kernel};
@@ -12,22 +11,17 @@ use turbid::stats::Moments;
 use turbid::transport::NoProgress;
 
 /// All cells.
-pub fn cells(settings: &Settings) -> Vec<CellId> {
-    let mut all = Vec::new();
-    for size in Size::all(settings) {
+pub fn groups(settings: &Settings) -> Vec<Group> {
+    let group = |size: Size| {
         let cost = 1.5 * (size.photons * size.batch) as f64;
-        all.extend(
-            CellId::replicates(&size.group(), cases::cells(settings), cost).map(|c| c.holding(size.photons)),
-        );
-    }
-    all
+        let measure = move |settings: &Settings, cell: &CellId| measure(settings, cell, size);
+        Group::new(size.group(), cases::cells(settings), cost, measure).holding(size.photons)
+    };
+    Size::all(settings).into_iter().map(group).collect()
 }
 
 /// Measures one cell: error and squared error, relative to e^-t, over the probes of all maps of the batch.
-pub fn measure(settings: &Settings, cell: &CellId) -> anyhow::Result<CellOutput> {
-    let sizes = Size::all(settings);
-    let own = sizes.iter().find(|size| size.group() == cell.group);
-    let size = own.with_context(|| format!("group {}", cell.group))?;
+fn measure(settings: &Settings, cell: &CellId, size: Size) -> anyhow::Result<CellOutput> {
     let scene = SETUP.scene()?;
     let radii = radii();
     let mut output = CellOutput::new();

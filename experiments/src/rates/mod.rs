@@ -21,8 +21,7 @@ pub const EXPERIMENT: Experiment = Experiment {
     title: "How fast do more photons help?",
     question: "With N times the photons and the best radius for them, by how much does the mean squared error fall? And \
                what becomes of it at a fixed radius, or at a face that nothing is done about?",
-    cells: measure::cells,
+    groups: measure::groups,
     predict: predict::predict,
-    measure: measure::measure,
     conclude: conclude::conclude,
 };

@@ -3,7 +3,6 @@
 use crate::harness::Settings;
 use crate::setups::{Body, CELL, Lighting, Setup, Size};
 use crate::theory::UNTREATED;
-use anyhow::Context;
 use std::f64::consts::PI;
 use turbid::estimators::{Estimator, Kernel};
 
@@ -133,11 +132,6 @@ pub const FIELDS: [Field; 7] = [
 ];
 
 impl Field {
-    /// The field of a name.
-    pub fn named(name: &str) -> anyhow::Result<&'static Field> {
-        FIELDS.iter().find(|s| s.name == name).with_context(|| format!("no field is called {name}"))
-    }
-
     /// Emitted photons of each size of map.
     pub fn photons(&self, settings: &Settings) -> Vec<u64> {
         let scale = |&n: &u64| ((n as f64 * settings.photon_scale) as u64).max(100);

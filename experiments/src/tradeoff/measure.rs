@@ -1,14 +1,13 @@
 //! Measuring one map, or one batch of paths.
 
 use super::cases::{FIELDS, Field, LAYERS, Setting, Treatment, paths_case, paths_group};
-use crate::harness::{CellId, CellOutput, Settings};
-use anyhow::Context;
+use crate::harness::{CellId, CellOutput, Group, Settings};
 use turbid::Spectrum;
 use turbid::estimators::Estimate;
 use turbid::estimators::boundary::Boundary;
 use turbid::photons::{Histories, PhotonMap, is_in, shoot};
 use turbid::rng::{Purpose, Stream};
-use turbid::scene::{Orders, Quantity, Scene};
+use turbid::scene::{Orders, Quantity};
 use turbid::sensor::sample_counted;
 use turbid::stats::Moments;
 use turbid::transport::NoProgress;
@@ -27,46 +26,35 @@ fn paths(settings: &Settings) -> u64 {
 }
 
 /// All cells: maps by field and number of photons, and batches of paths.
-pub fn cells(settings: &Settings) -> Vec<CellId> {
-    let mut cells = Vec::new();
+pub fn groups(settings: &Settings) -> Vec<Group> {
+    let mut groups = Vec::new();
     for field in &FIELDS {
         for photons in field.photons(settings) {
             let asked = Setting::all(field, photons);
             let gathers = asked.iter().map(|s| s.lateral() * LAYERS).sum::<usize>() as f64;
             let cost = photons as f64 * (4.0 + 2.0 * field.setup.body.deepest()) + 20.0 * gathers;
-            let maps = CellId::replicates(&Setting::group(field, photons), MAPS, cost);
-            cells.extend(maps.map(|cell| cell.holding(photons)));
+            let measure =
+                move |settings: &Settings, cell: &CellId| measure_map(settings, cell, field, photons);
+            groups.push(Group::new(Setting::group(field, photons), MAPS, cost, measure).holding(photons));
         }
         let cost = 20.0 * paths(settings) as f64 * LAYERS as f64;
-        cells.extend(CellId::replicates(&paths_group(field), MAPS, cost));
+        let measure = |settings: &Settings, cell: &CellId| measure_paths(settings, cell, field);
+        groups.push(Group::new(paths_group(field), MAPS, cost, measure));
     }
-    cells
-}
-
-/// Measures one cell.
-pub fn measure(settings: &Settings, cell: &CellId) -> anyhow::Result<CellOutput> {
-    let (name, what) = cell.group.rsplit_once('-').with_context(|| format!("group {}", cell.group))?;
-    let field = Field::named(name)?;
-    let scene = field.setup.scene()?;
-    let replicate = cell.stream("tradeoff");
-    if what == "paths" {
-        return Ok(measure_paths(settings, field, &scene, replicate));
-    }
-    let photons = what.trim_start_matches('n').parse().with_context(|| format!("group {}", cell.group))?;
-    measure_map(settings, field, &scene, photons, replicate)
+    groups
 }
 
 fn measure_map(
     settings: &Settings,
+    cell: &CellId,
     field: &'static Field,
-    scene: &Scene,
     photons: u64,
-    replicate: u64,
 ) -> anyhow::Result<CellOutput> {
+    let (scene, replicate) = (field.setup.scene()?, cell.stream("tradeoff"));
     let mut output = CellOutput::new();
     let asked = Setting::all(field, photons);
     let histories = Histories { count: photons, seed: settings.seed, replicate, max_order: None };
-    let pass = output.time("shooting", |_| shoot(scene, histories, &[], is_in(Orders::ALL), &NoProgress))?;
+    let pass = output.time("shooting", |_| shoot(&scene, histories, &[], is_in(Orders::ALL), &NoProgress))?;
     let stored = pass.photons().count();
     // Every history is absorbed at a collision or escapes by one flight more.
     let escaped = pass.report.ledger.escaped / pass.report.ledger.emitted * photons as f64;
@@ -148,7 +136,8 @@ fn gather(output: &mut CellOutput, map: &PhotonMap, setting: &Setting) -> anyhow
     Ok(())
 }
 
-fn measure_paths(settings: &Settings, field: &Field, scene: &Scene, replicate: u64) -> CellOutput {
+fn measure_paths(settings: &Settings, cell: &CellId, field: &Field) -> anyhow::Result<CellOutput> {
+    let (scene, replicate) = (field.setup.scene()?, cell.stream("tradeoff"));
     let mut output = CellOutput::new();
     let paths = paths(settings);
     for layer in 0..LAYERS {
@@ -159,7 +148,7 @@ fn measure_paths(settings: &Settings, field: &Field, scene: &Scene, replicate: u
             for path in 0..paths {
                 let history = (layer as u64) << 40 | path;
                 let mut stream = Stream::new(settings.seed, Purpose::Paths, replicate, history);
-                let (value, rays) = sample_counted(scene, &quantity, Orders::ALL, &mut stream);
+                let (value, rays) = sample_counted(&scene, &quantity, Orders::ALL, &mut stream);
                 output.non_finite += u64::from(!value.is_finite());
                 values.push(value[0]);
                 squares.push(value[0] * value[0]);
@@ -174,7 +163,7 @@ fn measure_paths(settings: &Settings, field: &Field, scene: &Scene, replicate: u
         output.push(&case, "samples", paths as f64);
         output.push(&case, "rays", total as f64 / paths as f64);
     }
-    output
+    Ok(output)
 }
 
 #[cfg(test)]
@@ -188,7 +177,7 @@ mod tests {
     #[test]
     fn clipping_is_that_of_the_library() {
         for name in ["thin", "sphere"] {
-            let field = Field::named(name).unwrap();
+            let field = FIELDS.iter().find(|field| field.name == name).unwrap();
             let histories = Histories { count: 2000, seed: 3, replicate: 0, max_order: None };
             let pass = shoot(&field.setup.scene().unwrap(), histories, &[], is_in(Orders::ALL), &NoProgress)
                 .unwrap();

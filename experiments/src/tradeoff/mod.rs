@@ -28,8 +28,7 @@ pub const EXPERIMENT: Experiment = Experiment {
     question: "A photon map is paid for once and then asked often; a path tracer is paid for at every query. How many \
                photons, and which gather, reach 10, 3 and 1 per cent, at what cost, and from how many queries on is \
                the map the cheaper of the two?",
-    cells: measure::cells,
+    groups: measure::groups,
     predict: predict::predict,
-    measure: measure::measure,
     conclude: conclude::conclude,
 };

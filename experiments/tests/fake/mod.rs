@@ -3,8 +3,8 @@
 use turbid::math::{ln, sin_cos};
 use turbid::rng::{Purpose, Stream};
 use turbid_experiments::harness::{
-    CellId, CellOutput, Cells, Claim, Experiment, FigureFiles, Row, Section, Settings, Study, Table, Unit,
-    bar,
+    CellId, CellOutput, Cells, Claim, Experiment, FigureFiles, Group, Row, Section, Settings, Study, Table,
+    Unit, bar,
 };
 use turbid_experiments::prediction::Prediction;
 use turbid_figure::{Axis, Figure, Line, Panel, Points};
@@ -26,9 +26,8 @@ pub const FAKE: Experiment = Experiment {
     name: "fake",
     title: "The blur of a known mean",
     question: "Does the estimate of a known mean carry the predicted bias, and is a planted fault of 5 per cent seen?",
-    cells,
+    groups,
     predict,
-    measure,
     conclude,
 };
 
@@ -37,24 +36,27 @@ pub fn study() -> Study<'static> {
     Study { name: "fake", experiments: &[FAKE], closing: None, program: "program-1".to_string() }
 }
 
-fn cells(settings: &Settings) -> Vec<CellId> {
-    CellId::replicates("slab", settings.pick(64, 256), settings.photons(10_000, 10_000) as f64).collect()
+fn groups(settings: &Settings) -> Vec<Group> {
+    group(settings, measure)
+}
+
+/// The group of its cells, measured otherwise.
+pub fn group(
+    settings: &Settings,
+    measure: impl Fn(&Settings, &CellId) -> anyhow::Result<CellOutput> + Send + Sync + 'static,
+) -> Vec<Group> {
+    let cost = settings.photons(10_000, 10_000) as f64;
+    vec![Group::new("slab", settings.pick(64, 256), cost, measure)]
 }
 
 fn predict(_: &Settings) -> anyhow::Result<Vec<Prediction>> {
-    let prediction = |&r: &f64| Prediction {
-        case: case(r),
-        quantity: "bias".to_string(),
-        unit: Unit::ONE,
-        value: predicted(r),
-        error: 0.0,
-        source: "the definition, r²/10".to_string(),
-    };
+    let prediction =
+        |&r: &f64| Prediction::new(case(r), "bias", Unit::ONE, (predicted(r), 0.0), "the definition, r²/10");
     Ok(RADII.iter().map(prediction).collect())
 }
 
 /// One map: all its values share one random number, as estimates of one map share photons.
-fn measure(settings: &Settings, cell: &CellId) -> anyhow::Result<CellOutput> {
+pub fn measure(settings: &Settings, cell: &CellId) -> anyhow::Result<CellOutput> {
     anyhow::ensure!(settings.out.join("predictions.csv").exists(), "measured before it was predicted");
     if settings.out.join("fail").exists() && cell.replicate == 40 {
         anyhow::bail!("asked to fail");

@@ -8,7 +8,7 @@ pub mod conclude;
 mod figure;
 mod results;
 
-use crate::harness::{CellId, CellOutput, Settings, Unit};
+use crate::harness::{CellId, CellOutput, Group, Settings, Unit};
 use crate::prediction::Prediction;
 use crate::setups::{CELL, Setup, Size};
 use glam::DVec3;
@@ -63,12 +63,12 @@ pub fn photons(settings: &Settings) -> u64 {
 }
 
 /// All cells.
-pub fn cells(settings: &Settings) -> Vec<CellId> {
-    CellId::replicates(GROUP, settings.pick(96, 256), 4.0 * photons(settings) as f64).collect()
+pub fn group(settings: &Settings) -> Group {
+    Group::new(GROUP, settings.pick(96, 256), 4.0 * photons(settings) as f64, measure)
 }
 
 /// Measures one cell: everything over the exact fluence, that of the wall's lit side for what is behind it.
-pub fn measure(settings: &Settings, cell: &CellId) -> anyhow::Result<CellOutput> {
+fn measure(settings: &Settings, cell: &CellId) -> anyhow::Result<CellOutput> {
     let mut output = CellOutput::new();
     let histories = Histories {
         count: photons(settings),

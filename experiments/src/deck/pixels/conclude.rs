@@ -1,7 +1,7 @@
 //! What all maps say of "50 to 100 photons per estimate work well".
 
 use super::results::Picture;
-use super::{NEIGHBORS, SIDE, case, cells as ids, figure, map_case, path_case};
+use super::{NEIGHBORS, SIDE, case, figure, group, map_case, path_case};
 use crate::deck::part::Part;
 use crate::harness::{
     Cells, Claim, Estimate, Row, Section, Settings, Table, Unit, bar, number, signed, with_error,
@@ -173,7 +173,7 @@ fn said(pictures: &[Picture]) -> Vec<[String; 2]> {
 }
 
 fn notes(settings: &Settings, cells: &Cells) -> Vec<String> {
-    let stored = cells.counter("photons stored") / ids(settings).len().max(1) as u64;
+    let stored = cells.counter("photons stored") / group(settings).cells().count().max(1) as u64;
     vec![
         format!(
             "The picture is {SIDE} x {SIDE} pixels of a closed box with two blocks; a map stores {stored} photons in its \

@@ -10,7 +10,7 @@ mod results;
 
 use super::fogbox::{ALBEDO, SIGMA_T, VOLUME, grey, scene};
 use super::maps::filled;
-use crate::harness::{CellId, CellOutput, Settings, Unit};
+use crate::harness::{CellId, CellOutput, Group, Settings, Unit};
 use crate::prediction::Prediction;
 use crate::theory::clustering;
 use anyhow::Context;
@@ -50,9 +50,9 @@ fn paths(settings: &Settings) -> u64 {
 }
 
 /// All cells.
-pub fn cells(settings: &Settings) -> Vec<CellId> {
+pub fn group(settings: &Settings) -> Group {
     let cost = 8.0 * photons(settings) as f64 + 5.0 * (paths(settings) * (SIDE * SIDE) as u64) as f64;
-    CellId::replicates(GROUP, settings.pick(64, 128), cost).collect()
+    Group::new(GROUP, settings.pick(64, 128), cost, measure)
 }
 
 /// The case of one pixel at one number of neighbours.
@@ -100,7 +100,7 @@ fn by_paths(scene: &Scene, ray: Ray, count: u64, mut stream: impl FnMut(u64) -> 
 }
 
 /// Measures one cell: a map, and paths.
-pub fn measure(settings: &Settings, cell: &CellId) -> anyhow::Result<CellOutput> {
+fn measure(settings: &Settings, cell: &CellId) -> anyhow::Result<CellOutput> {
     let (scene, replicate) = (scene()?, cell.stream("deck"));
     let mut output = CellOutput::new();
     let emitted = photons(settings);

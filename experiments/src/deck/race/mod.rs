@@ -10,7 +10,7 @@ mod results;
 
 use super::fogbox::{self, grey};
 use super::maps::filled;
-use crate::harness::{CellId, CellOutput, Settings};
+use crate::harness::{CellId, CellOutput, Group, Settings};
 use anyhow::Context;
 use turbid::estimators::{Estimator, Gather, Kernel};
 use turbid::integrators::mapper::{self, Mapper};
@@ -85,10 +85,10 @@ pub fn path_pixel(pixel: usize) -> String {
 }
 
 /// All cells.
-pub fn cells(settings: &Settings) -> Vec<CellId> {
+pub fn group(settings: &Settings) -> Group {
     let photons: u64 = sizes(settings).iter().map(|size| size.photons).sum();
     let cost = 5.0 * photons as f64 + 10.0 * (paths(settings) * PIXELS as u64) as f64;
-    CellId::replicates(GROUP, 64, cost).collect()
+    Group::new(GROUP, 64, cost, measure)
 }
 
 /// Column and row of a pixel that is looked at: places within blocks go round.
@@ -99,7 +99,7 @@ fn place(pixel: usize) -> (u32, u32) {
 }
 
 /// Measures one cell: all pixels by a map of each size in turn, and by paths.
-pub fn measure(settings: &Settings, cell: &CellId) -> anyhow::Result<CellOutput> {
+fn measure(settings: &Settings, cell: &CellId) -> anyhow::Result<CellOutput> {
     let (scene, replicate) = (fogbox::scene()?, cell.stream("deck"));
     let camera = scene.camera().context("the box has no camera")?.with_size(SIDE, SIDE)?;
     let mut output = CellOutput::new();

@@ -7,7 +7,7 @@ pub mod conclude;
 
 use super::fogbox::grey;
 use super::maps::filled;
-use crate::harness::{CellId, CellOutput, Settings};
+use crate::harness::{CellId, CellOutput, Group, Settings};
 use anyhow::{Context, anyhow};
 use glam::{DVec2, DVec3};
 use std::path::Path;
@@ -69,9 +69,9 @@ impl Way {
 }
 
 /// All cells.
-pub fn cells(settings: &Settings) -> Vec<CellId> {
+pub fn group(settings: &Settings) -> Group {
     let photons: u64 = Way::ALL.iter().map(|way| way.photons(settings)).sum();
-    CellId::replicates(GROUP, 64, 8.0 * photons as f64).collect()
+    Group::new(GROUP, 64, 8.0 * photons as f64, measure)
 }
 
 /// Importance: the same for all cells, which need not learn it each for itself.
@@ -96,7 +96,7 @@ fn learned(
 }
 
 /// Measures one cell: a map of each kind.
-pub fn measure(settings: &Settings, cell: &CellId) -> anyhow::Result<CellOutput> {
+fn measure(settings: &Settings, cell: &CellId) -> anyhow::Result<CellOutput> {
     let file: SceneFile = toml::from_str(SCENE).map_err(|e| anyhow!("importance.toml: {e}"))?;
     let (scene, replicate) = (file.scene(Path::new("."))?, cell.stream("deck"));
     let mut output = CellOutput::new();
