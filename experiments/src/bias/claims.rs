@@ -3,7 +3,7 @@
 //! same kind have more room than they need. Margins are those of the quick preset, and a full run, which sees more, is
 //! judged by the same.
 
-use super::fields::{FIELDS, Field};
+use super::fields::{FIELDS, Field, UNCOLLIDED};
 use super::measure::{is_fano_case, path_case};
 use super::results::{CaseResult, Mistake, exact_at, excess, largest, pick, predicted_fano};
 use crate::harness::{Cells, Claim, Estimate, Settings, Unit};
@@ -23,20 +23,20 @@ pub fn all(
     let mut claims = radius_claims(results);
     claims.extend(nearest_claims(settings, results));
     claims.extend(number_claim(settings, results));
-    for field in &FIELDS {
+    for field in FIELDS {
         claims.extend(face_claim(results, field));
     }
-    for field in FIELDS.iter().filter(|f| f.has_clusters()) {
+    for field in FIELDS.into_iter().filter(|f| f.has_clusters()) {
         claims.extend(blur_claim(results, field));
     }
-    for field in &FIELDS {
+    for field in FIELDS {
         claims.push(left_over_claim(results, field));
     }
-    for field in &FIELDS {
+    for field in FIELDS {
         claims.extend(fano_claim(cells, results, field)?);
     }
     claims.extend(cluster_claim(results));
-    for field in FIELDS.iter().filter(|f| f.has_clusters()) {
+    for field in FIELDS.into_iter().filter(|f| f.has_clusters()) {
         for &depth in field.depths {
             claims.push(path_claim(cells, results, field, depth)?);
         }
@@ -63,7 +63,7 @@ fn is_fixed(result: &CaseResult) -> bool {
 
 /// The order in the radius: one claim a radius, since a sum over radii would hear the largest alone.
 fn radius_claims(results: &[CaseResult]) -> Vec<Claim> {
-    let free = &FIELDS[0];
+    let free = &UNCOLLIDED;
     let most = largest(results, free);
     let is_free = |r: &CaseResult| r.case.field == free && r.is_whole() && r.case.photons == most;
     let mut claims = Vec::new();
@@ -86,13 +86,13 @@ fn radius_claims(results: &[CaseResult]) -> Vec<Claim> {
 
 /// The orders in k and in the number of photons, where the predicted error is large enough to be seen.
 fn nearest_claims(settings: &Settings, results: &[CaseResult]) -> Vec<Claim> {
-    let counts = FIELDS[0].photons(settings);
+    let counts = UNCOLLIDED.photons(settings);
     let mut claims = Vec::new();
     for (index, k, margin) in [(0, 50, 0.8), (0, 100, 0.5), (1, 100, 0.9), (1, 500, 0.25)] {
         let Some(&photons) = counts.get(index) else { continue };
         let chosen = pick(results, |r| {
             let c = &r.case;
-            c.field == &FIELDS[0]
+            c.field == &UNCOLLIDED
                 && c.photons == photons
                 && c.depth >= 1.0
                 && c.size == Size::Nearest(k)
@@ -106,11 +106,11 @@ fn nearest_claims(settings: &Settings, results: &[CaseResult]) -> Vec<Claim> {
 
 /// At a fixed radius the error does not depend on the number of photons.
 fn number_claim(settings: &Settings, results: &[CaseResult]) -> Option<Claim> {
-    let counts = FIELDS[0].photons(settings);
+    let counts = UNCOLLIDED.photons(settings);
     let find = |photons: Option<&u64>| {
         results.iter().find(|r| {
             let c = &r.case;
-            c.field == &FIELDS[0]
+            c.field == &UNCOLLIDED
                 && Some(&c.photons) == photons
                 && c.depth == 1.0
                 && c.kernel == Kernel::Uniform
@@ -227,10 +227,10 @@ fn path_claim(
 /// which no estimate could hide, are wrong by what was predicted of them.
 fn mistake_claims(results: &[CaseResult], mistakes: &[Mistake]) -> Vec<Claim> {
     let mut claims = Vec::new();
-    let most = largest(results, &FIELDS[0]);
+    let most = largest(results, &UNCOLLIDED);
     let biased = results.iter().find(|r| {
         let c = &r.case;
-        c.field == &FIELDS[0]
+        c.field == &UNCOLLIDED
             && c.photons == most
             && c.depth == 1.0
             && c.is_biased

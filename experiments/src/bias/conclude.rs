@@ -1,7 +1,7 @@
 //! What all maps together say: rows, claims, tables.
 
 use super::cases::Case;
-use super::fields::FIELDS;
+use super::fields::{EMITTING_SPHERE, FIELDS, HIGH_ALBEDO};
 use super::measure::{map_case, path_case};
 use super::predict::COLLISIONS;
 use super::results::{CaseResult, Mistake, exact_at, fano, largest, pick, predicted_fano};
@@ -17,7 +17,7 @@ use turbid::stats::Moments;
 pub fn conclude(settings: &Settings, predictions: &[Prediction], cells: &Cells) -> anyhow::Result<Section> {
     let known = Predictions::new(predictions);
     let mut results = Vec::new();
-    for field in &FIELDS {
+    for field in FIELDS {
         for photons in field.photons(settings) {
             for case in Case::all(field, photons) {
                 let name = case.name();
@@ -86,7 +86,7 @@ fn rows(cells: &Cells, results: &[CaseResult], mistakes: &[Mistake]) -> anyhow::
         let name = format!("{} {}", mistake.case.name(), mistake.name);
         rows.push(Row::measured(&name, "error", Unit::PERCENT, &mistake.error)?.predicted(mistake.wrong));
     }
-    for field in FIELDS.iter().filter(|f| f.has_clusters()) {
+    for field in FIELDS.into_iter().filter(|f| f.has_clusters()) {
         for &depth in field.depths {
             let name = path_case(field, depth);
             let (exact, error) = exact_at(results, field, depth);
@@ -107,19 +107,21 @@ fn summarise(section: &mut Section, settings: &Settings, results: &[CaseResult])
     let example = |size: Size| {
         results.iter().find(|r| {
             let c = &r.case;
-            c.field == &FIELDS[2]
+            c.field == &HIGH_ALBEDO
                 && c.depth == 1.0
                 && c.size == size
                 && c.kernel == Kernel::Uniform
-                && c.photons == FIELDS[2].photons(settings).last().copied().unwrap_or(0)
+                && c.photons == HIGH_ALBEDO.photons(settings).last().copied().unwrap_or(0)
         })
     };
     if let (Some(fixed), Some(face)) = (
         example(Size::Radius(0.4)),
         results
             .iter()
-            .filter(|r| r.case.photons == FIELDS[2].photons(settings).last().copied().unwrap_or(0))
-            .find(|r| r.case.field == &FIELDS[2] && r.case.depth == 0.0 && r.case.size == Size::Radius(0.4)),
+            .filter(|r| r.case.photons == HIGH_ALBEDO.photons(settings).last().copied().unwrap_or(0))
+            .find(|r| {
+                r.case.field == &HIGH_ALBEDO && r.case.depth == 0.0 && r.case.size == Size::Radius(0.4)
+            }),
     ) {
         section.summary.push(format!(
             "In fog of albedo 0.9, photons gathered within 0.4 mean free paths read the fluence {} % wrong in the middle \
@@ -130,7 +132,7 @@ fn summarise(section: &mut Section, settings: &Settings, results: &[CaseResult])
             signed(face.predicted(), 2)
         ));
     }
-    let glow = &FIELDS[5];
+    let glow = &EMITTING_SPHERE;
     let in_glow = |depth: f64, radius: f64| {
         let fits = |r: &&CaseResult| {
             let c = &r.case;

@@ -1,7 +1,7 @@
 //! The figures.
 
 use super::cases::Case;
-use super::fields::{FIELDS, Field};
+use super::fields::{FIELDS, Field, UNCOLLIDED};
 use super::measure::{is_fano_case, path_case};
 use super::predict::Theory;
 use super::results::{CaseResult, Mistake, exact_at, fano, largest, predicted_fano};
@@ -96,7 +96,7 @@ fn budget(results: &[CaseResult], mistakes: &[Mistake]) -> anyhow::Result<Figure
 
 /// The orders in radius, photons and k, on uncollided photons.
 fn orders(results: &[CaseResult]) -> anyhow::Result<FigureFiles> {
-    let free = &FIELDS[0];
+    let free = &UNCOLLIDED;
     let most = largest(results, free);
     let of = |depth: f64, photons: u64, is_fixed: bool| {
         results.iter().filter(move |r| {
@@ -168,7 +168,7 @@ fn orders(results: &[CaseResult]) -> anyhow::Result<FigureFiles> {
 /// Error against depth in each field of all orders.
 fn depths(settings: &Settings, cells: &Cells, results: &[CaseResult]) -> anyhow::Result<FigureFiles> {
     let mut panels = Vec::new();
-    for field in FIELDS.iter().filter(|f| f.has_clusters()) {
+    for field in FIELDS.into_iter().filter(|f| f.has_clusters()) {
         let known = Theory::new(field)?;
         let photons = field.photons(settings).last().copied().unwrap_or(1);
         let axis = Axis::new("error", "%", Scale::SymLog { threshold: 1.0 }).with_range(-100.0, 10.0);
@@ -231,7 +231,7 @@ fn counts(cells: &Cells, results: &[CaseResult]) -> anyhow::Result<FigureFiles> 
         Axis::linear("radius", "mfp"),
         Axis::linear("variance over mean of photon counts, less 1", ""),
     );
-    for (class, field) in FIELDS.iter().enumerate() {
+    for (class, field) in FIELDS.into_iter().enumerate() {
         let most = largest(results, field);
         let (mut x, mut y, mut bars) = (Vec::new(), Vec::new(), Vec::new());
         for result in

@@ -30,7 +30,7 @@ pub fn map_case(field: &Field, photons: u64) -> String {
 /// All cells: maps by field and number of photons, and batches of paths for the fields that need them.
 pub fn groups(settings: &Settings) -> Vec<Group> {
     let mut groups = Vec::new();
-    for field in &FIELDS {
+    for field in FIELDS {
         for (photons, maps) in field.sizes(settings) {
             // A history of all orders has a few collisions, and each photon is stored, sorted and gathered.
             let cost = photons as f64 * if field.has_clusters() { 4.0 } else { 1.0 };

@@ -44,7 +44,7 @@ fn collisions(field: &'static Field) -> anyhow::Result<f64> {
 /// All cases of a study with their predicted errors, computed in parallel.
 pub fn budget(settings: &Settings) -> anyhow::Result<Vec<(Case, PredictedError)>> {
     let mut all = Vec::new();
-    for field in &FIELDS {
+    for field in FIELDS {
         let theory = Theory::new(field)?;
         let cases: Vec<Case> =
             field.photons(settings).into_iter().flat_map(|n| Case::all(field, n)).collect();
@@ -71,7 +71,7 @@ pub fn predict(settings: &Settings) -> anyhow::Result<Vec<Prediction>> {
         let sources = [case.field.setup.source(), "exact field, kernel mean, k-nearest law"];
         predictions.extend(error.predictions(&case.name(), ("fluence", Unit::FLUENCE), sources, source));
     }
-    for field in FIELDS.iter().filter(|f| f.has_clusters()) {
+    for field in FIELDS.into_iter().filter(|f| f.has_clusters()) {
         let (value, source) = ((collisions(field)?, 1e-5), "integral of the exact fluence");
         predictions.push(Prediction::new(field.name, COLLISIONS, Unit::ONE, value, source));
     }
@@ -80,6 +80,7 @@ pub fn predict(settings: &Settings) -> anyhow::Result<Vec<Prediction>> {
 
 #[cfg(test)]
 mod tests {
+    use super::super::fields::{HIGH_ALBEDO, UNCOLLIDED};
     use super::*;
     use turbid::estimators::Kernel;
 
@@ -93,7 +94,7 @@ mod tests {
     /// printed to 0.01.
     #[test]
     fn known_errors_at_and_near_the_lit_face() {
-        let field = Field::named("albedo0.9").unwrap();
+        let field = &HIGH_ALBEDO;
         for (radius, depth, error) in [(0.2, 0.0, -47.12), (0.2, 0.1, -15.89), (0.4, 0.4, -1.43)] {
             let found = total(field, depth, radius);
             assert!((found - error).abs() < 0.0051, "radius {radius} depth {depth}: {found}, not {error}");
@@ -103,7 +104,7 @@ mod tests {
     /// The ball mean of e^-t in closed form, 3 (x cosh x - sinh x) / x^3.
     #[test]
     fn whole_balls_of_uncollided_photons() {
-        let field = Field::named("uncollided").unwrap();
+        let field = &UNCOLLIDED;
         for x in [0.1, 0.4, 0.8] {
             let mean = 3.0 * (x * libm::cosh(x) - libm::sinh(x)) / (x * x * x);
             // Cancellation of the closed form at small x: a few 1e-16 over x^2.
@@ -114,7 +115,7 @@ mod tests {
     /// In a field of small slope the biased rule reads k/(k-1) high, and the right one does not.
     #[test]
     fn the_biased_rule_reads_high() {
-        let field = Field::named("uncollided").unwrap();
+        let field = &UNCOLLIDED;
         let theory = Theory::new(field).unwrap();
         let case = |is_biased| {
             let (photons, size, kernel) = (1_000_000, Size::Nearest(10), Kernel::Uniform);

@@ -57,7 +57,7 @@ pub fn errors(results: &[CaseResult]) -> Table {
 /// Exact fluence, path tracer and photon map.
 pub fn paths(cells: &Cells, results: &[CaseResult]) -> anyhow::Result<Table> {
     let mut rows = Vec::new();
-    for field in FIELDS.iter().filter(|f| f.has_clusters()) {
+    for field in FIELDS.into_iter().filter(|f| f.has_clusters()) {
         for &depth in field.depths {
             let paths = cells.moments(&path_case(field, depth), "fluence")?;
             let (exact, bound) = exact_at(results, field, depth);

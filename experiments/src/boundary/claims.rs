@@ -1,7 +1,7 @@
 //! The claims. Each is judged on one number a map; margins leave at least five standard errors of the quick preset.
 
 use super::cases::{Case, MAIN, Place, whole_radius};
-use super::fields::{FIELDS, Field};
+use super::fields::{FIELDS, FURNACE_SLAB, Field};
 use super::results::{CaseResult, Found, kept};
 use super::sheet::{Sheet, Side};
 use crate::harness::{Claim, Estimate, Settings, Unit};
@@ -64,7 +64,7 @@ fn cut<'a>(
 
 fn furnaces(settings: &Settings, found: &Found) -> anyhow::Result<Vec<Claim>> {
     let mut claims = Vec::new();
-    for field in FIELDS.iter().filter(|f| f.setup.is_furnace()) {
+    for field in FIELDS.into_iter().filter(|f| f.setup.is_furnace()) {
         for treatment in Treatment::ALL {
             let chosen = cut(settings, found, field, treatment);
             let id = format!("{}-{}", field.name, treatment.name().replace(' ', "-"));
@@ -86,7 +86,7 @@ fn furnaces(settings: &Settings, found: &Found) -> anyhow::Result<Vec<Claim>> {
 /// Fields that are no furnaces: they bend in the ball.
 fn lit(found: &Found) -> anyhow::Result<Vec<Claim>> {
     let mut claims = Vec::new();
-    for field in FIELDS.iter().filter(|f| !f.setup.is_furnace()) {
+    for field in FIELDS.into_iter().filter(|f| !f.setup.is_furnace()) {
         let (what, face) = match field.setup.body {
             Body::Slab { .. } if field.setup.g == 0.0 => ("lit slab".to_string(), "lit face"),
             Body::Slab { .. } => (format!("lit slab, g = {}", field.setup.g), "lit face"),
@@ -127,7 +127,7 @@ fn lit(found: &Found) -> anyhow::Result<Vec<Claim>> {
 
 /// The k nearest in the furnace slab, where clusters are small, and at every number of photons.
 fn nearest(settings: &Settings, found: &Found) -> anyhow::Result<Vec<Claim>> {
-    let field = &FIELDS[0];
+    let field = &FURNACE_SLAB;
     let mut claims = Vec::new();
     for (photons, _) in field.sizes(settings) {
         let chosen = |treatment| {

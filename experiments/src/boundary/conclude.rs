@@ -1,7 +1,7 @@
 //! What all maps together say.
 
 use super::cases::{Case, Place};
-use super::fields::{FIELDS, Field};
+use super::fields::{FIELDS, FURNACE_SLAB, LIT_SPHERE};
 use super::predict::TERMS;
 use super::results::{CaseResult, Found, SheetResult, SpreadResult, integrals, kept, rims};
 use super::sheet::Sheet;
@@ -31,7 +31,7 @@ pub fn conclude(settings: &Settings, predictions: &[Prediction], cells: &Cells) 
 fn found(settings: &Settings, predictions: &[Prediction], cells: &Cells) -> anyhow::Result<Found> {
     let known = Predictions::new(predictions);
     let mut results = Vec::new();
-    for field in &FIELDS {
+    for field in FIELDS {
         for (photons, _) in field.sizes(settings) {
             for case in Case::all(settings, field, photons) {
                 let name = case.name();
@@ -127,7 +127,7 @@ fn rows(settings: &Settings, cells: &Cells, found: &Found) -> anyhow::Result<Vec
 }
 
 fn summarise(section: &mut Section, settings: &Settings, found: &Found) -> anyhow::Result<()> {
-    let field = &FIELDS[0];
+    let field = &FURNACE_SLAB;
     let face = |treatment| {
         found.one(|c| {
             (c.field, c.photons, c.treatment) == (field, field.main_size(settings), treatment)
@@ -159,7 +159,7 @@ fn summarise(section: &mut Section, settings: &Settings, found: &Found) -> anyho
          gone: these estimates are unbiased on either side of the wall, at any distance, kernel and gather.",
         facing[0], facing[1],
     ));
-    let sphere = Field::named("lit-sphere")?;
+    let sphere = &LIT_SPHERE;
     let on_sphere = |treatment| -> anyhow::Result<String> {
         let r = found.one(|c| {
             (c.field, c.treatment, c.place) == (sphere, treatment, Place::Face(0.0))

@@ -2,7 +2,6 @@
 
 use crate::harness::{CellId, Settings};
 use crate::setups::{Body, FURNACE, Lighting, Setup};
-use anyhow::Context;
 use turbid::photons::{Histories, PhotonMap, shoot};
 use turbid::transport::NoProgress;
 
@@ -39,71 +38,74 @@ const fn lit(body: Body, albedo: f64, g: f64) -> Setup {
 const SLAB: Body = Body::Slab { thickness: 2.0 };
 
 /// Every field. The first four are furnaces; slabs of the others are lit by a normal beam, the sphere from all sides.
-pub const FIELDS: [Field; 7] = [
-    Field {
-        name: "slab",
-        title: "furnace, slab",
-        setup: lit(SLAB, 1.0, 0.0),
-        cases: CaseSet::All,
-        quick: &[(5_000, 144), (20_000, 144), (80_000, 64)],
-        full: &[(5_000, 768), (20_000, 512), (80_000, 256), (320_000, 128)],
-    },
-    Field {
-        name: "slab-g0.75",
-        title: "furnace, slab, g = 0.75",
-        setup: lit(SLAB, 1.0, 0.75),
-        cases: CaseSet::Some,
-        quick: &[(20_000, 128)],
-        full: &[(20_000, 512)],
-    },
-    Field {
-        name: "sphere",
-        title: "furnace, sphere",
-        setup: lit(Body::Sphere { radius: 2.0 }, 1.0, 0.0),
-        cases: CaseSet::Some,
-        quick: &[(20_000, 128)],
-        full: &[(20_000, 768)],
-    },
-    Field {
-        name: "cuboid",
-        title: "furnace, cuboid",
-        setup: lit(Body::Cuboid { edges: [2.0, 2.5, 3.0] }, 1.0, 0.0),
-        cases: CaseSet::Some,
-        quick: &[(20_000, 144)],
-        full: &[(20_000, 768)],
-    },
-    Field {
-        name: "lit",
-        title: "slab lit by a beam",
-        setup: Setup::slab(2.0, 0.9, 0.0),
-        cases: CaseSet::Some,
-        quick: &[(20_000, 192)],
-        full: &[(20_000, 768)],
-    },
-    Field {
-        name: "lit-g0.75",
-        title: "slab lit by a beam, g = 0.75",
-        setup: Setup::slab(2.0, 0.9, 0.75),
-        cases: CaseSet::Some,
-        quick: &[(20_000, 80)],
-        full: &[(20_000, 512)],
-    },
-    Field {
-        name: "lit-sphere",
-        title: "sphere lit from all sides",
-        setup: lit(Body::Sphere { radius: 2.0 }, 0.5, 0.0),
-        cases: CaseSet::Some,
-        quick: &[(20_000, 80)],
-        full: &[(20_000, 512)],
-    },
-];
+pub static FIELDS: [&Field; 7] =
+    [&FURNACE_SLAB, &FURNACE_FORWARD, &FURNACE_SPHERE, &FURNACE_CUBOID, &LIT_SLAB, &LIT_FORWARD, &LIT_SPHERE];
+
+/// Furnace, slab.
+pub static FURNACE_SLAB: Field = Field {
+    name: "slab",
+    title: "furnace, slab",
+    setup: lit(SLAB, 1.0, 0.0),
+    cases: CaseSet::All,
+    quick: &[(5_000, 144), (20_000, 144), (80_000, 64)],
+    full: &[(5_000, 768), (20_000, 512), (80_000, 256), (320_000, 128)],
+};
+/// Furnace, slab, g = 0.75.
+pub static FURNACE_FORWARD: Field = Field {
+    name: "slab-g0.75",
+    title: "furnace, slab, g = 0.75",
+    setup: lit(SLAB, 1.0, 0.75),
+    cases: CaseSet::Some,
+    quick: &[(20_000, 128)],
+    full: &[(20_000, 512)],
+};
+/// Furnace, sphere.
+pub static FURNACE_SPHERE: Field = Field {
+    name: "sphere",
+    title: "furnace, sphere",
+    setup: lit(Body::Sphere { radius: 2.0 }, 1.0, 0.0),
+    cases: CaseSet::Some,
+    quick: &[(20_000, 128)],
+    full: &[(20_000, 768)],
+};
+/// Furnace, cuboid.
+pub static FURNACE_CUBOID: Field = Field {
+    name: "cuboid",
+    title: "furnace, cuboid",
+    setup: lit(Body::Cuboid { edges: [2.0, 2.5, 3.0] }, 1.0, 0.0),
+    cases: CaseSet::Some,
+    quick: &[(20_000, 144)],
+    full: &[(20_000, 768)],
+};
+/// Slab lit by a beam.
+pub static LIT_SLAB: Field = Field {
+    name: "lit",
+    title: "slab lit by a beam",
+    setup: Setup::slab(2.0, 0.9, 0.0),
+    cases: CaseSet::Some,
+    quick: &[(20_000, 192)],
+    full: &[(20_000, 768)],
+};
+/// Slab lit by a beam, g = 0.75.
+pub static LIT_FORWARD: Field = Field {
+    name: "lit-g0.75",
+    title: "slab lit by a beam, g = 0.75",
+    setup: Setup::slab(2.0, 0.9, 0.75),
+    cases: CaseSet::Some,
+    quick: &[(20_000, 80)],
+    full: &[(20_000, 512)],
+};
+/// Sphere lit from all sides.
+pub static LIT_SPHERE: Field = Field {
+    name: "lit-sphere",
+    title: "sphere lit from all sides",
+    setup: lit(Body::Sphere { radius: 2.0 }, 0.5, 0.0),
+    cases: CaseSet::Some,
+    quick: &[(20_000, 80)],
+    full: &[(20_000, 512)],
+};
 
 impl Field {
-    /// The field of a name.
-    pub fn named(name: &str) -> anyhow::Result<&'static Field> {
-        FIELDS.iter().find(|f| f.name == name).with_context(|| format!("no field is called {name}"))
-    }
-
     /// Whether light comes in everywhere alike, and not through one face.
     pub fn is_lit_alike(&self) -> bool {
         self.setup.lighting == Lighting::Isotropic

@@ -1,7 +1,7 @@
 //! The figures.
 
 use super::cases::{MAIN, Place};
-use super::fields::{FIELDS, Field};
+use super::fields::{FURNACE_CUBOID, FURNACE_SLAB, FURNACE_SPHERE, Field, LIT_FORWARD, LIT_SLAB, LIT_SPHERE};
 use super::predict::line;
 use super::results::{CaseResult, Found, rims};
 use super::section::{self, ALONG, RADIUS, WIDTH, places};
@@ -101,8 +101,9 @@ fn series<'a>(chosen: impl Iterator<Item = (f64, &'a Moments)>) -> Series {
 fn depths(settings: &Settings, found: &Found) -> anyhow::Result<FigureFiles> {
     let mut panels = Vec::new();
     let radius = MAIN.0;
-    for name in ["slab", "sphere", "cuboid", "lit", "lit-g0.75", "lit-sphere"] {
-        let field = Field::named(name)?;
+    let (furnaces, lit) =
+        ([&FURNACE_SLAB, &FURNACE_SPHERE, &FURNACE_CUBOID], [&LIT_SLAB, &LIT_FORWARD, &LIT_SPHERE]);
+    for field in furnaces.into_iter().chain(lit) {
         let exact = field.setup.exact()?;
         let axis = Axis::new("error", "%", Scale::SymLog { threshold: 1.0 }).with_range(-70.0, 20.0);
         let mut panel = Panel::new(Axis::linear("depth / radius", "").with_range(-0.05, 1.3), axis)
@@ -149,7 +150,7 @@ fn rim(settings: &Settings, found: &Found) -> anyhow::Result<FigureFiles> {
     let law: Vec<f64> = radii.iter().map(|r| 3.0 / 16.0 * r).collect();
     left = left.with(Line::theory("3/16 radius, exact", radii, law));
     let mut right = Panel::new(Axis::log("photons emitted", ""), y_axis()).with_title("k nearest");
-    for (class, (photons, _)) in FIELDS[0].sizes(settings).into_iter().enumerate() {
+    for (class, (photons, _)) in FURNACE_SLAB.sizes(settings).into_iter().enumerate() {
         let chosen = rims.iter().filter(|r| r.photons == photons);
         let (mut x, mut y, mut bars) = Series::default();
         for rim in chosen {

@@ -11,7 +11,7 @@ use turbid::stats::Moments;
 /// All cells.
 pub fn groups(settings: &Settings) -> Vec<Group> {
     let mut groups = Vec::new();
-    for field in &FIELDS {
+    for field in FIELDS {
         for (photons, maps) in field.sizes(settings) {
             let cost = photons as f64 * field.stored_per_photon();
             let measure =

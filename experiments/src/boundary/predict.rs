@@ -76,7 +76,7 @@ fn expected(
 /// All cases of a study with their predicted errors, computed in parallel.
 fn budget(settings: &Settings) -> anyhow::Result<Vec<(Case, PredictedError)>> {
     let mut all = Vec::new();
-    for field in &FIELDS {
+    for field in FIELDS {
         let exact = field.setup.exact()?;
         let cases: Vec<Case> =
             field.sizes(settings).into_iter().flat_map(|(n, _)| Case::all(settings, field, n)).collect();

@@ -1,7 +1,7 @@
 //! What the maps say: results, what is made of them, and what is kept of an error.
 
 use super::cases::{Case, Place};
-use super::fields::{FIELDS, Field};
+use super::fields::{FIELDS, FURNACE_SLAB, Field};
 use super::sheet;
 use super::sheet::Sheet;
 use super::spread::Spread;
@@ -122,7 +122,7 @@ impl Rim {
 
 /// Rims of the untreated estimate in the furnace slab, at every size and number of photons.
 pub fn rims(settings: &Settings, found: &Found) -> Vec<Rim> {
-    let field = &FIELDS[0];
+    let field = &FURNACE_SLAB;
     let mut rims = Vec::new();
     for (photons, _) in field.sizes(settings) {
         let all = Case::all(settings, field, photons);
@@ -189,7 +189,7 @@ impl Integral {
 /// The size of the error over depth in every field's main maps, for each gather and treatment.
 pub fn integrals(settings: &Settings, found: &Found) -> Vec<Integral> {
     let mut integrals = Vec::new();
-    for field in &FIELDS {
+    for field in FIELDS {
         let photons = field.main_size(settings);
         let mut sizes: Vec<Size> = Vec::new();
         for case in Case::all(settings, field, photons) {

@@ -1,7 +1,7 @@
 //! The picture: the furnace sphere in section, every place of it.
 
 use super::cases::MAIN;
-use super::fields::Field;
+use super::fields::FURNACE_SPHERE;
 use crate::harness::{CellId, CellOutput, Group, Settings};
 use glam::{DVec3, Vec3Swizzles};
 use turbid::Spectrum;
@@ -43,7 +43,7 @@ pub fn case(treatment: Treatment, column: usize, row: usize) -> String {
 
 /// Measures one map: at each place the four mirrored ones are averaged, in two planes.
 fn measure(settings: &Settings, cell: &CellId) -> anyhow::Result<CellOutput> {
-    let field = Field::named("sphere")?;
+    let field = &FURNACE_SPHERE;
     let photons = settings.photons(PHOTONS, PHOTONS);
     let map = field.map(settings, cell, photons)?;
     let mut output = CellOutput::new();

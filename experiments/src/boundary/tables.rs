@@ -76,7 +76,7 @@ fn verdict(found: &Found) -> anyhow::Result<Table> {
 /// Treatments at the surface of each body.
 fn treatments(settings: &Settings, found: &Found) -> anyhow::Result<Table> {
     let mut rows = Vec::new();
-    for field in &FIELDS {
+    for field in FIELDS {
         for place in [Place::Face(0.0), Place::Edge(0.0), Place::Corner(0.0)] {
             let mut row = vec![format!("{}, {}", field.title, words(place))];
             for treatment in Treatment::ALL {

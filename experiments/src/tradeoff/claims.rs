@@ -1,7 +1,7 @@
 //! The claims, by counts alone. The margin of measured over predicted error, 3 per cent, is what the theory of noise
 //! leaves out: clusters near faces. Margins of regret are round numbers that somebody who chooses settings would act on.
 
-use super::cases::{FIELDS, Field, Treatment, Worth};
+use super::cases::{FIELDS, Field, MODERATE, MODERATE_FORWARD, SPHERE, THIN, THIN_FORWARD, Treatment, Worth};
 use super::choose::{BreakEven, Currency, best_over_best, break_even, most_efficient, regret};
 use super::data::{Data, Measured};
 use super::split::{rms, rms_noise};
@@ -12,21 +12,21 @@ use turbid::stats::Moments;
 /// All claims of the experiment.
 pub fn all(data: &Data) -> Vec<Claim> {
     let mut claims = Vec::new();
-    for field in &FIELDS {
+    for field in FIELDS {
         claims.extend(error_claims(data, field));
     }
-    claims.extend(independent_claim(data, &FIELDS[2]));
-    for field in &FIELDS {
+    claims.extend(independent_claim(data, &MODERATE));
+    for field in FIELDS {
         claims.extend(regret_claims(data, field));
     }
-    for field in &FIELDS[..4] {
+    for field in [&THIN, &THIN_FORWARD, &MODERATE, &MODERATE_FORWARD] {
         claims.push(clipping_claim(data, field, 0.75));
     }
-    claims.push(clipping_claim(data, &FIELDS[6], 0.9));
-    for field in &FIELDS {
+    claims.push(clipping_claim(data, &SPHERE, 0.9));
+    for field in FIELDS {
         claims.extend(break_even_claim(data, field));
     }
-    for field in &FIELDS {
+    for field in FIELDS {
         claims.extend(path_claim(data, field));
     }
     claims

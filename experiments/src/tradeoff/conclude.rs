@@ -69,7 +69,7 @@ fn rows(data: &Data, known: &Predictions) -> anyhow::Result<Vec<Row>> {
         let rays: Moments = paths.rays.iter().collect();
         rows.push(Row::measured(&case, "rays of a sample", Unit::ONE, &rays)?);
     }
-    for field in &FIELDS {
+    for field in FIELDS {
         let Some(paths) = data.paths(field) else { continue };
         for treatment in Treatment::ALL {
             let case = format!("{} {}", field.name, treatment.name());
@@ -88,7 +88,7 @@ fn rows(data: &Data, known: &Predictions) -> anyhow::Result<Vec<Row>> {
             }
         }
     }
-    for field in &FIELDS {
+    for field in FIELDS {
         let of = |treatment| data.of(field, treatment, Some(data.largest(field)));
         let ratio = best_over_best(&of(Treatment::Clipped), &of(Treatment::Plain));
         let case = Setting::group(field, data.largest(field));

@@ -103,7 +103,7 @@ impl Data {
     /// Reads the cells.
     pub fn read(settings: &Settings, known: &Predictions, cells: &Cells) -> anyhow::Result<Self> {
         let mut data = Data { measured: Vec::new(), paths: Vec::new(), sizes: Vec::new() };
-        for field in &FIELDS {
+        for field in FIELDS {
             let exact: Vec<f64> = field
                 .depths()
                 .iter()

@@ -1,6 +1,6 @@
 //! The figures.
 
-use super::cases::{FIELDS, Field, Setting, Treatment};
+use super::cases::{FIELDS, Field, MODERATE, Setting, Treatment};
 use super::choose::{Choice, Currency, break_even, frontier, most_efficient};
 use super::data::{Data, Measured, Paths, mean};
 use super::split::{rms, rms_bias, rms_noise};
@@ -23,7 +23,7 @@ fn interval(estimate: &Estimate) -> (f64, f64) {
 /// Error against cost.
 fn costs(data: &Data) -> anyhow::Result<FigureFiles> {
     let mut panels = Vec::new();
-    for field in &FIELDS {
+    for field in FIELDS {
         let Some(paths) = data.paths(field) else { continue };
         let x = Axis::log("operations for 4096 queries", "").with_range(4e3, 3e7);
         let mut panel =
@@ -60,7 +60,7 @@ fn path_line(paths: &Paths, queries: f64) -> (Vec<f64>, Vec<f64>) {
 
 /// Error, bias and noise against gather size.
 fn sizes(settings: &Settings, data: &Data) -> anyhow::Result<FigureFiles> {
-    let field: &'static Field = &FIELDS[2];
+    let field: &'static Field = &MODERATE;
     let photons = data.largest(field);
     let every = Setting::every(settings);
     let theory = Theory::new(field, every.iter())?;
@@ -137,7 +137,7 @@ fn radius_lines(
 /// Cost against the number of queries.
 fn queries(data: &Data) -> anyhow::Result<FigureFiles> {
     let mut panels = Vec::new();
-    for field in &FIELDS {
+    for field in FIELDS {
         let (Some(paths), cases) = (data.paths(field), data.of(field, Treatment::Clipped, None)) else {
             continue;
         };

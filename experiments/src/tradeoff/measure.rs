@@ -28,7 +28,7 @@ fn paths(settings: &Settings) -> u64 {
 /// All cells: maps by field and number of photons, and batches of paths.
 pub fn groups(settings: &Settings) -> Vec<Group> {
     let mut groups = Vec::new();
-    for field in &FIELDS {
+    for field in FIELDS {
         for photons in field.photons(settings) {
             let asked = Setting::all(field, photons);
             let gathers = asked.iter().map(|s| s.lateral() * LAYERS).sum::<usize>() as f64;
@@ -177,7 +177,7 @@ mod tests {
     #[test]
     fn clipping_is_that_of_the_library() {
         for name in ["thin", "sphere"] {
-            let field = FIELDS.iter().find(|field| field.name == name).unwrap();
+            let field = FIELDS.into_iter().find(|field| field.name == name).unwrap();
             let histories = Histories { count: 2000, seed: 3, replicate: 0, max_order: None };
             let pass = shoot(&field.setup.scene().unwrap(), histories, &[], is_in(Orders::ALL), &NoProgress)
                 .unwrap();

@@ -84,9 +84,9 @@ fn found(theory: &Theory, field: &Field, radius: f64, photons: f64) -> anyhow::R
 pub fn predict(settings: &Settings) -> anyhow::Result<Vec<Prediction>> {
     let every = Setting::every(settings);
     let theories: Vec<Theory> =
-        FIELDS.iter().map(|field| Theory::new(field, every.iter())).collect::<anyhow::Result<_>>()?;
+        FIELDS.into_iter().map(|field| Theory::new(field, every.iter())).collect::<anyhow::Result<_>>()?;
     let theory = |field: &Field| {
-        let index = FIELDS.iter().position(|s| s == field).unwrap_or(0);
+        let index = FIELDS.into_iter().position(|s| s == field).unwrap_or(0);
         &theories[index]
     };
     let asked: Vec<(Setting, Treatment)> =
@@ -112,7 +112,7 @@ pub fn predict(settings: &Settings) -> anyhow::Result<Vec<Prediction>> {
         add(&case, NOISE, Unit::PERCENT, percent(rms.noise), "Poisson's law and clusters");
     }
     let searches: Vec<(&'static Field, Treatment, f64)> = FIELDS
-        .iter()
+        .into_iter()
         .flat_map(|field| Treatment::ALL.map(|treatment| (field, treatment)))
         .flat_map(|(field, treatment)| TARGETS.map(|target| (field, treatment, target)))
         .collect();
@@ -127,7 +127,7 @@ pub fn predict(settings: &Settings) -> anyhow::Result<Vec<Prediction>> {
         add(&case, "photons per area", Unit::new("1/mfp^2"), (best.density, 0.0), source);
         add(&case, "operations", Unit::ONE, (best.cost, 0.0), source);
     }
-    for field in &FIELDS {
+    for field in FIELDS {
         let source = field.setup.source();
         let collisions = theory(field).collisions()?;
         add(

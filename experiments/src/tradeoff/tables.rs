@@ -47,7 +47,7 @@ pub fn short(setting: &Setting) -> String {
 /// The price list.
 fn prices(data: &Data, known: &Predictions) -> anyhow::Result<Table> {
     let mut rows = Vec::new();
-    for field in &FIELDS {
+    for field in FIELDS {
         for treatment in Treatment::ALL {
             let cases = data.of(field, treatment, None);
             for target in TARGETS {
@@ -105,7 +105,7 @@ fn prices(data: &Data, known: &Predictions) -> anyhow::Result<Table> {
 /// Cost against the number of queries.
 fn queries(data: &Data) -> Table {
     let mut rows = Vec::new();
-    for field in &FIELDS {
+    for field in FIELDS {
         let Some(paths) = data.paths(field) else { continue };
         for treatment in Treatment::ALL {
             let cases = data.of(field, treatment, None);
@@ -161,7 +161,7 @@ fn queries(data: &Data) -> Table {
 /// What a fixed choice of k costs.
 fn regrets(data: &Data) -> Table {
     let mut rows = Vec::new();
-    for field in &FIELDS {
+    for field in FIELDS {
         for treatment in Treatment::ALL {
             let cases = data.of(field, treatment, Some(data.largest(field)));
             let Some(best) = best(&cases) else { continue };

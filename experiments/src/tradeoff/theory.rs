@@ -179,7 +179,7 @@ mod tests {
     use super::*;
 
     fn field(name: &str) -> &'static Field {
-        FIELDS.iter().find(|s| s.name == name).unwrap()
+        FIELDS.into_iter().find(|s| s.name == name).unwrap()
     }
 
     /// Power balance: what is absorbed and what leaves make 1, so that collisions are (1 - R - T)/(1 - albedo).

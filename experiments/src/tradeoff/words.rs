@@ -1,6 +1,6 @@
 //! The summary and the notes.
 
-use super::cases::{FIELDS, Field, Treatment};
+use super::cases::{FIELDS, Field, MODERATE, SPHERE, THICK, THIN, Treatment};
 use super::choose::{Currency, best_over_best, break_even, cheapest, most_efficient};
 use super::data::{Data, mean};
 use super::tables::{best_error, off};
@@ -36,7 +36,7 @@ fn both(data: &Data, field: &Field) -> Option<String> {
 /// The summary.
 pub fn summary(data: &Data) -> Vec<String> {
     let mut paragraphs = Vec::new();
-    let (thin, thick, sphere) = (&FIELDS[0], &FIELDS[4], &FIELDS[6]);
+    let (thin, thick, sphere) = (&THIN, &THICK, &SPHERE);
     if let (Some(plain), Some(clipped), Some(in_thin), Some(in_thick), Some(in_sphere)) = (
         best_error(data, thin, Treatment::Plain),
         best_error(data, thin, Treatment::Clipped),
@@ -53,10 +53,9 @@ pub fn summary(data: &Data) -> Vec<String> {
             percent(&clipped)
         ));
     }
-    let clipping: Vec<String> = [0, 2, 4]
-        .iter()
-        .map(|&i| {
-            let field = &FIELDS[i];
+    let clipping: Vec<String> = [thin, &MODERATE, thick]
+        .into_iter()
+        .map(|field| {
             let of = |treatment| data.of(field, treatment, Some(data.largest(field)));
             let ratio = best_over_best(&of(Treatment::Clipped), &of(Treatment::Plain));
             format!("{:.2} ({})", ratio.value(), field.title)
@@ -65,7 +64,7 @@ pub fn summary(data: &Data) -> Vec<String> {
     let reaches = |field: &Field, target: f64| {
         Treatment::ALL.iter().any(|&t| cheapest(&data.of(field, t, None), target, 4096.0).is_some())
     };
-    let reached = |target| FIELDS.iter().filter(|field| reaches(field, target)).count();
+    let reached = |target| FIELDS.into_iter().filter(|field| reaches(field, target)).count();
     paragraphs.push(format!(
         "What limits a gather changes from scene to scene. At the largest maps the best clipped gather has {} times \
          the error of the best plain one: clipping is the first thing to do where faces are near, and changes little \
@@ -128,7 +127,7 @@ pub fn notes(budget: &[Entry], data: &Data) -> Vec<String> {
             .to_string(),
     ];
     let never: Vec<&str> = FIELDS
-        .iter()
+        .into_iter()
         .filter(|field| even(data, field, Currency::Operations).is_none())
         .map(|field| field.title)
         .collect();
