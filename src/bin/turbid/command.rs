@@ -1,23 +1,6 @@
-//! The commands, one file each, exit codes, and what commands share.
+//! The commands, one file each, and their exit code.
 
-mod advise;
-mod check;
-mod load;
-mod made;
-mod map;
-mod measure;
-mod memory;
-mod notes;
-mod picture;
-mod progress;
-mod render;
-mod scenes;
-mod shared;
-mod statistics;
-mod usage;
-
-pub use usage::explain;
-
+use crate::{advise, check, map, measure, render, scenes};
 use clap::Subcommand;
 use std::io::{ErrorKind, Write};
 use std::process::ExitCode;

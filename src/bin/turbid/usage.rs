@@ -11,11 +11,12 @@ pub fn explain(error: &clap::Error) -> anyhow::Result<()> {
     match error.kind() {
         ErrorKind::DisplayHelp | ErrorKind::DisplayVersion => print(&error.render().to_string()),
         ErrorKind::DisplayHelpOnMissingArgumentOrSubcommand => {
-            let names: Vec<String> =
-                <super::Command as clap::Subcommand>::augment_subcommands(clap::Command::new("turbid"))
-                    .get_subcommands()
-                    .map(|command| command.get_name().to_string())
-                    .collect();
+            let names: Vec<String> = <crate::command::Command as clap::Subcommand>::augment_subcommands(
+                clap::Command::new("turbid"),
+            )
+            .get_subcommands()
+            .map(|command| command.get_name().to_string())
+            .collect();
             anyhow::bail!("no command given; allowed: {}; more with --help", names.join(", "))
         }
         _ => anyhow::bail!("{}", one_line(&error.render().to_string())),

@@ -1,6 +1,21 @@
-//! The command `turbid`: parses, calls one file of `command/`, reports errors in one line.
+//! The command `turbid`: parses, calls the file of the command, reports errors in one line.
 
+mod advise;
+mod check;
 mod command;
+mod load;
+mod made;
+mod map;
+mod measure;
+mod memory;
+mod notes;
+mod picture;
+mod progress;
+mod render;
+mod scenes;
+mod shared;
+mod statistics;
+mod usage;
 
 use clap::Parser;
 use std::process::ExitCode;
@@ -30,7 +45,7 @@ fn main() -> ExitCode {
     without_panic("turbid", || {
         let outcome = match Arguments::try_parse() {
             Ok(arguments) => arguments.command.run(),
-            Err(error) => command::explain(&error),
+            Err(error) => usage::explain(&error),
         };
         command::exit_code("turbid", outcome)
     })
