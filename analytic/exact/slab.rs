@@ -63,7 +63,8 @@ pub struct Args {
     /// Azimuths of those directions, in radians: that of propagation minus that of the beam.
     #[arg(long, num_args = 1.., value_delimiter = ',', value_name = "PHI", default_values_t = [0.0], allow_negative_numbers = true)]
     azimuth: Vec<f64>,
-    /// Orders of scattering to give one by one, 0 (direct light) to 100, to 1000 with isotropic scattering.
+    /// Orders of scattering to give one by one, 0 (direct light) to 100, to 1000 with isotropic scattering up to
+    /// thickness 400
     #[arg(long, num_args = 1.., value_delimiter = ',', value_name = "N", allow_negative_numbers = true)]
     order: Vec<u32>,
     /// How to solve it.
@@ -249,8 +250,10 @@ impl Question for Args {
         for &t in &self.depth {
             let at = [("t", t.into())];
             answer.ask("fluence", Unit::Irradiance, &at, || Ok(slab()?.fluence(t)?))?;
-            // The other methods have no net flux at a depth.
-            if matches!(self.method, Method::Auto | Method::Ordinates) {
+            // The other methods have no net flux at a depth, and ordinates no beam that grazes more.
+            let grazes = matches!(self.mu0, Incidence::Beam { mu0 } if mu0 < 1e-5) && named.is_isotropic();
+            let has_flux = self.method == Method::Ordinates || self.method == Method::Auto && !grazes;
+            if has_flux {
                 answer.ask("flux", Unit::Irradiance, &at, || Ok(slab()?.flux(t)?))?;
             }
         }

@@ -69,7 +69,11 @@ fn condensed(text: &str) -> String {
 }
 
 /// The same of a cell that became an option, under the name of its column.
-pub fn of_cell(error: &clap::Error, column: impl Fn(&str) -> Option<String>) -> String {
+pub fn of_cell(
+    error: &clap::Error,
+    column: impl Fn(&str) -> Option<String>,
+    counts: impl Fn(&str) -> &'static str,
+) -> String {
     let text = |kind| match error.get(kind) {
         Some(ContextValue::String(text)) => Some(text.as_str()),
         Some(ContextValue::Strings(all)) => all.first().map(String::as_str),
@@ -82,7 +86,9 @@ pub fn of_cell(error: &clap::Error, column: impl Fn(&str) -> Option<String>) -> 
     match error.source() {
         // What we read ourselves says what is allowed.
         Some(cause) if cause.to_string().contains("; allowed: ") => cause.to_string(),
-        Some(cause) if !cause.is::<ParseFloatError>() => format!("{column} is '{value}'; allowed: {WHOLE}"),
+        Some(cause) if !cause.is::<ParseFloatError>() => {
+            format!("{column} is '{value}'; allowed: {}", counts(&column))
+        }
         _ => format!("{column} is '{value}'; allowed: a number"),
     }
 }

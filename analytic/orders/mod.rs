@@ -271,7 +271,7 @@ impl ScatteringOrders {
 
 fn check_order(n: u32) -> Result<()> {
     if n > HIGHEST {
-        return Err(Error::OutOfRange { name: "n", value: f64::from(n), allowed: "0 to 100" });
+        return Err(Error::OutOfRange { name: "order", value: f64::from(n), allowed: "0 to 100" });
     }
     Ok(())
 }

@@ -60,7 +60,7 @@ impl SlabOrders {
     /// Fraction of the incident power that leaves the lit face after exactly n scatterings \[1\].
     ///
     /// # Arguments
-    /// `n` order, 0 (direct light) to 100, to 1000 by the Peierls equation
+    /// `n` order, 0 (direct light) to 100, to 1000 with isotropic scattering up to thickness 400
     /// # Errors
     /// `Error::OutOfRange` naming `order`
     pub fn reflectance(&self, n: u32) -> Result<Value> {

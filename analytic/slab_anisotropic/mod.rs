@@ -320,12 +320,12 @@ fn fluences(solutions: &[Solution; 2], t: f64) -> [Sum; 2] {
 }
 
 fn check_tau(tau: f64) -> Result<f64> {
-    within("tau", tau, 1e-12, 1e9, "1e-12 to 1e9 with anisotropic scattering")
+    within("tau", tau, 1e-12, 1e9, "1e-12 to 1e9 by discrete ordinates")
 }
 
 fn check_incidence(incidence: Incidence) -> Result<Incidence> {
     if let Incidence::Beam { mu0 } = incidence {
-        within("mu0", mu0, 1e-5, 1.0, "1e-5 to 1 with anisotropic scattering, or diffuse")?;
+        within("mu0", mu0, 1e-5, 1.0, "1e-5 to 1 by discrete ordinates, or diffuse")?;
     }
     Ok(incidence)
 }

@@ -501,7 +501,10 @@ fn an_experiment_without_a_conclusion_stops_no_other() {
     let study = Study { experiments: &[double, fake::FAKE], ..fake::study() };
     let outcome = run(&study, &Settings { photon_scale: 0.1, ..settings(few.path()) }).unwrap();
     let said = outcome.sections[0].failure.as_deref();
-    assert_eq!(said, Some("double: two cells are called slab-000000"));
+    assert_eq!(
+        said,
+        Some("double: two cells are called slab-000000: at this --photons two numbers of photons are one")
+    );
     assert_eq!((outcome.sections[0].cells.0, outcome.measured), (0, 64));
     let alone = Study { experiments: &[mute], ..fake::study() };
     let only = Settings { only: vec!["mute".to_string()], ..settings(folder.path()) };

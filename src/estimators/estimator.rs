@@ -1,6 +1,6 @@
 //! An estimator: what a photon map is asked, and how.
 
-use super::boundary::{Boundary, Gathered, Rejection, Sieve, Surroundings, Treatment, accepted};
+use super::boundary::{Boundary, Gathered, PhotonFilter, Rejection, Surroundings, Treatment, accepted};
 use super::point::{ball_sum, for_each_photon, in_scattered_sum};
 use super::{BallSum, Directional, Estimate, Gather, Kernel, NeighborCount};
 use crate::Spectrum;
@@ -171,10 +171,10 @@ impl Estimator {
         value: &dyn Fn(&Photon) -> f64,
     ) -> Estimate {
         let Estimator { kernel, gather, treatment, rejection } = *self;
-        let sieve = Sieve::new(rejection, boundary.walls, point, gather.cap());
+        let filter = PhotonFilter::new(rejection, boundary.walls, point, gather.cap());
         let alone;
         let boundary = match treatment {
-            Treatment::None if sieve.is_none() => return Estimate::new(map, plain(), 0),
+            Treatment::None if filter.is_none() => return Estimate::new(map, plain(), 0),
             Treatment::None => {
                 alone = boundary.alone();
                 &alone
@@ -183,7 +183,7 @@ impl Estimator {
         };
         let medium = |radius: f64| boundary.medium.filter(|medium| medium.room(point) < radius);
         let mut hidden = None;
-        if sieve.is_none() {
+        if filter.is_none() {
             let plain = plain();
             let r = plain.ball.radius;
             let about = Surroundings::new(boundary, point, eye, BEYOND * r);
@@ -204,7 +204,7 @@ impl Estimator {
         }
         let about = Surroundings::new(boundary, point, eye, BEYOND * gather.cap());
         let keeps = |place: usize| {
-            sieve.as_ref().is_none_or(|sieve| sieve.keeps(&map.tree().photon(place)))
+            filter.as_ref().is_none_or(|filter| filter.keeps(&map.tree().photon(place)))
                 && about.keeps(map.tree().position(place))
         };
         let photons = accepted(map.tree(), point, gather, &keeps, hidden);

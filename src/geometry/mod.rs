@@ -6,10 +6,10 @@
 mod cuboid;
 mod height_field;
 mod hit;
-mod lathe;
 mod mesh;
 mod rectangle;
 mod rectangles;
+mod revolution;
 mod slab;
 mod sphere;
 mod spherical_rectangle;
@@ -20,10 +20,10 @@ pub use cuboid::Cuboid;
 pub use height_field::{Ground, Up, Waves, height_field, listed};
 pub(crate) use hit::ASLANT;
 pub use hit::{Front, Hit};
-pub use lathe::{Lathe, smooth};
 pub use mesh::Mesh;
 pub use rectangle::Rectangle;
 pub use rectangles::Rectangles;
+pub use revolution::{Revolution, smooth};
 pub use slab::{Face, Slab};
 pub use sphere::Sphere;
 pub use spherical_rectangle::SphericalRectangle;
@@ -48,7 +48,7 @@ pub enum Shape {
     /// A surface of triangles.
     Mesh(Arc<Mesh>),
     /// A surface of revolution.
-    Lathe(Arc<Lathe>),
+    Revolution(Arc<Revolution>),
 }
 
 macro_rules! each {
@@ -59,7 +59,7 @@ macro_rules! each {
             Shape::Slab($inner) => $body,
             Shape::Cuboid($inner) => $body,
             Shape::Mesh($inner) => $body,
-            Shape::Lathe($inner) => $body,
+            Shape::Revolution($inner) => $body,
         }
     };
 }
@@ -74,7 +74,7 @@ impl Shape {
             Shape::Slab(s) => s.hit(ray, from.is_some()),
             Shape::Cuboid(s) => s.hit(ray, from.is_some()),
             Shape::Mesh(s) => s.hit(ray, from),
-            Shape::Lathe(s) => s.hit(ray, from),
+            Shape::Revolution(s) => s.hit(ray, from),
         }
     }
 
@@ -112,7 +112,7 @@ impl Shape {
         match self {
             Shape::Rectangle(rectangle) => rectangle.parts_ball(p, radius),
             Shape::Cuboid(cuboid) => cuboid.parts_ball(p, radius),
-            Shape::Sphere(_) | Shape::Slab(_) | Shape::Mesh(_) | Shape::Lathe(_) => false,
+            Shape::Sphere(_) | Shape::Slab(_) | Shape::Mesh(_) | Shape::Revolution(_) => false,
         }
     }
 
@@ -141,7 +141,7 @@ impl Shape {
     pub fn is_solid(&self) -> bool {
         match self {
             Shape::Sphere(_) | Shape::Slab(_) | Shape::Cuboid(_) => true,
-            Shape::Rectangle(_) | Shape::Mesh(_) | Shape::Lathe(_) => false,
+            Shape::Rectangle(_) | Shape::Mesh(_) | Shape::Revolution(_) => false,
         }
     }
 
@@ -151,7 +151,7 @@ impl Shape {
             Shape::Sphere(_) | Shape::Slab(_) | Shape::Cuboid(_) => true,
             Shape::Rectangle(_) => false,
             Shape::Mesh(s) => s.is_closed(),
-            Shape::Lathe(s) => s.is_closed(),
+            Shape::Revolution(s) => s.is_closed(),
         }
     }
 
@@ -163,7 +163,7 @@ impl Shape {
             Shape::Slab(_) => None,
             Shape::Cuboid(c) => Some(about((c.min(), c.max()))),
             Shape::Mesh(m) => Some(about(m.bounds())),
-            Shape::Lathe(l) => Some(l.bounds()),
+            Shape::Revolution(l) => Some(l.bounds()),
         }
     }
 
@@ -183,7 +183,7 @@ impl Shape {
     pub fn interval(&self, ray: &Ray) -> Option<Interval> {
         match self {
             Shape::Sphere(s) => s.interval(ray),
-            Shape::Rectangle(_) | Shape::Mesh(_) | Shape::Lathe(_) => None,
+            Shape::Rectangle(_) | Shape::Mesh(_) | Shape::Revolution(_) => None,
             Shape::Slab(s) => s.interval(ray),
             Shape::Cuboid(s) => s.interval(ray),
         }
@@ -197,7 +197,7 @@ impl Shape {
             Shape::Slab(s) => s.contains(p),
             Shape::Cuboid(s) => s.contains(p),
             Shape::Mesh(s) => s.contains(p),
-            Shape::Lathe(s) => s.contains(p),
+            Shape::Revolution(s) => s.contains(p),
         }
     }
 
@@ -206,7 +206,7 @@ impl Shape {
     pub fn room(&self, p: DVec3) -> f64 {
         match self {
             Shape::Sphere(s) => s.radius() - p.distance(s.center()),
-            Shape::Rectangle(_) | Shape::Mesh(_) | Shape::Lathe(_) => 0.0,
+            Shape::Rectangle(_) | Shape::Mesh(_) | Shape::Revolution(_) => 0.0,
             Shape::Slab(s) => (p.z - s.top()).min(s.face(Face::Bottom) - p.z),
             Shape::Cuboid(c) => (p - c.min()).min_element().min((c.max() - p).min_element()),
         }
@@ -220,7 +220,7 @@ impl Shape {
             Shape::Cuboid(c) if c.contains(p) => self.room(p),
             Shape::Cuboid(c) => p.distance(p.clamp(c.min(), c.max())),
             Shape::Mesh(m) => m.distance(p, limit),
-            Shape::Lathe(l) => l.distance(p, limit),
+            Shape::Revolution(l) => l.distance(p, limit),
         };
         distance.min(limit)
     }
@@ -238,7 +238,7 @@ impl Shape {
             Shape::Slab(_) => f64::INFINITY,
             Shape::Cuboid(s) => s.volume(),
             Shape::Mesh(s) => s.volume(),
-            Shape::Lathe(s) => s.volume(),
+            Shape::Revolution(s) => s.volume(),
         }
     }
 
@@ -258,7 +258,7 @@ impl Shape {
                 let (p, normal) = c.sample_surface(u);
                 (p, normal, c.area())
             }
-            Shape::Mesh(_) | Shape::Lathe(_) => {
+            Shape::Mesh(_) | Shape::Revolution(_) => {
                 let (p, normal, _) = self.sample_surface(u);
                 (p, normal, self.area())
             }
@@ -270,7 +270,7 @@ impl Shape {
     pub fn sample_surface(&self, u: [f64; 3]) -> (DVec3, DVec3, u32) {
         match self {
             Shape::Mesh(s) => s.sample_surface([u[0], u[1]]),
-            Shape::Lathe(s) => s.sample_surface([u[0], u[1]]),
+            Shape::Revolution(s) => s.sample_surface([u[0], u[1]]),
             Shape::Sphere(_) | Shape::Rectangle(_) | Shape::Slab(_) | Shape::Cuboid(_) => {
                 let (p, normal, _) = self.sample_boundary(Face::Top, 0.0, u);
                 (p, normal, 0)
@@ -289,7 +289,7 @@ impl Shape {
                 (p, side * side * s.thickness())
             }
             Shape::Cuboid(c) => (c.sample_inside(u), c.volume()),
-            Shape::Mesh(_) | Shape::Lathe(_) => (self.sample_surface(u).0, 0.0),
+            Shape::Mesh(_) | Shape::Revolution(_) => (self.sample_surface(u).0, 0.0),
         }
     }
 
@@ -301,7 +301,7 @@ impl Shape {
             Shape::Slab(s) => s.thickness(),
             Shape::Cuboid(s) => (s.max() - s.min()).min_element(),
             Shape::Mesh(s) => s.shortest_extent(),
-            Shape::Lathe(s) => s.shortest_extent(),
+            Shape::Revolution(s) => s.shortest_extent(),
         }
     }
 }

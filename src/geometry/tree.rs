@@ -6,8 +6,11 @@ use crate::math::Ray;
 use glam::{DVec3, Vec3A};
 use obvhs::BvhBuildParams;
 use obvhs::aabb::Aabb;
+use obvhs::bvh2::Bvh2;
+use obvhs::bvh2::node::Bvh2Node;
 use obvhs::cwbvh::CwBvh;
 use obvhs::cwbvh::builder::build_cwbvh;
+use obvhs::cwbvh::bvh2_to_cwbvh::bvh2_to_cwbvh;
 use obvhs::ray::{Ray as Ray32, RayHit};
 use std::time::Duration;
 
@@ -31,20 +34,55 @@ const MAX_DEPTH: usize = 30;
 /// already; small ones that lie side by side differ by much of their size.
 const MOST_ALIKE: usize = 1000;
 
-/// Whether too many boxes are one.
-fn are_too_many_alike(boxes: &[Aabb]) -> bool {
-    if boxes.len() <= MOST_ALIKE {
+/// Boxes that lie over each other but for a part of their size, of which no more are merged one after the other: where the
+/// unions of many cost nearly alike, that takes the square of their number.
+const MOST_OVER_EACH_OTHER: usize = 64;
+
+/// Whether more boxes than that are one, to one part in 2^`bits` of their size.
+fn are_alike(boxes: &[Aabb], bits: u32, most: usize) -> bool {
+    if boxes.len() <= most {
         return false;
     }
     let place = |b: &Aabb| {
-        // The power of two below a millionth of the size, which alike boxes share.
+        // The power of two below that part of the size, which alike boxes share.
         let size = (b.max - b.min).max_element();
-        let grain = f64::from(f32::from_bits(size.to_bits() & 0x7f80_0000)) / f64::from(1 << 20);
+        let grain = f64::from(f32::from_bits(size.to_bits() & 0x7f80_0000)) / f64::from(1u32 << bits);
         [b.min, b.max].map(|v| v.to_array().map(|x| (f64::from(x) / grain) as i64))
     };
     let mut places: Vec<[[i64; 3]; 2]> = boxes.iter().map(place).collect();
     places.sort_unstable();
-    places.chunk_by(|a, b| a == b).any(|alike| alike.len() > MOST_ALIKE)
+    places.chunk_by(|a, b| a == b).any(|alike| alike.len() > most)
+}
+
+/// A tree of boxes cut in halves of as many, across the longest extent of their middles: no better than it need be, in n log n
+/// whatever the boxes.
+fn halved(boxes: &[Aabb]) -> CwBvh {
+    let mut order: Vec<u32> = (0..boxes.len() as u32).collect();
+    let mut nodes = vec![Bvh2Node::default()];
+    let mut open = vec![(0usize, 0usize, order.len())];
+    while let Some((node, start, end)) = open.pop() {
+        let part = &mut order[start..end];
+        let around = |f: &dyn Fn(&Aabb) -> Aabb| {
+            part.iter().map(|&i| f(&boxes[i as usize])).reduce(|a, b| a.union(&b)).unwrap_or_default()
+        };
+        let aabb = around(&|b| *b);
+        if part.len() == 1 {
+            nodes[node] = Bvh2Node::new(aabb, 1, start as u32);
+            continue;
+        }
+        let middles = around(&|b| Aabb::new(b.center(), b.center()));
+        let extent = middles.max - middles.min;
+        let axis = (0..3).fold(0, |best, axis| if extent[axis] > extent[best] { axis } else { best });
+        let middle = |i: u32| boxes[i as usize].center()[axis];
+        let half = part.len() / 2;
+        part.select_nth_unstable_by(half, |&a, &b| middle(a).total_cmp(&middle(b)).then(a.cmp(&b)));
+        let first = nodes.len();
+        nodes[node] = Bvh2Node::new(aabb, 0, first as u32);
+        nodes.extend([Bvh2Node::default(); 2]);
+        open.extend([(first, start, start + half), (first + 1, start + half, end)]);
+    }
+    let tree = Bvh2 { nodes, primitive_indices: order, ..Bvh2::default() };
+    bvh2_to_cwbvh(&tree, 3, true, false)
 }
 
 /// A tree over boxes, in coordinates of its own: the middle of all boxes is the origin, the longest half-extent is
@@ -95,10 +133,14 @@ impl Tree {
         let boxes32: Vec<Aabb> =
             boxes.iter().map(|(a, b)| Aabb::new(narrow(*a) - pad32, narrow(*b) + pad32)).collect();
         let too_deep = || Error::Scene(format!("{what} nested too deeply in each other to be searched"));
-        if are_too_many_alike(&boxes32) {
+        if are_alike(&boxes32, 20, MOST_ALIKE) {
             return Err(too_deep());
         }
-        let tree = build_cwbvh(&boxes32, BvhBuildParams::medium_build(), &mut Duration::default());
+        let tree = if are_alike(&boxes32, 4, MOST_OVER_EACH_OTHER) {
+            halved(&boxes32)
+        } else {
+            build_cwbvh(&boxes32, BvhBuildParams::medium_build(), &mut Duration::default())
+        };
         if depth(&tree) > MAX_DEPTH {
             return Err(too_deep());
         }
@@ -186,4 +228,39 @@ fn depth(tree: &CwBvh) -> usize {
         open.extend(inner.map(|child| (node.child_node_index(child) as usize, level + 1)));
     }
     deepest
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Boxes over each other but for a part of their size, and nested ones, as many as merging one by one took minutes for:
+    /// every box that a ray meets is offered.
+    #[test]
+    fn boxes_over_each_other_are_found() {
+        let many = 30_000;
+        for apart in [1e-9, 1e-6, 1e-4] {
+            let step = |i: u32| f64::from(i) * apart;
+            let beside = |i| (DVec3::new(0.0, 0.0, step(i)), DVec3::new(1.0, 1.0, step(i) + 1e-3));
+            let nested = |i| (DVec3::splat(-step(i)), DVec3::splat(1.0 + step(i)));
+            for (name, boxes) in [
+                ("beside", (0..many).map(beside).collect::<Vec<_>>()),
+                ("nested", (0..many).map(nested).collect()),
+            ] {
+                let built = Tree::new("boxes", &boxes, 0.0);
+                if apart < 1e-8 {
+                    assert!(built.is_err(), "{name}, {apart} apart");
+                    continue;
+                }
+                let (tree, order) = built.unwrap();
+                let mut found = vec![0u32; boxes.len()];
+                let ray = Ray::new(DVec3::new(0.3, 0.4, -100.0), DVec3::Z);
+                tree.search(&ray, f64::INFINITY, |entry, end| {
+                    found[order[entry] as usize] += 1;
+                    end
+                });
+                assert!(found.iter().all(|&n| n == 1), "{name}, {apart} apart");
+            }
+        }
+    }
 }

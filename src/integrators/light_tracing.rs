@@ -165,7 +165,7 @@ impl<F: FnMut(Splat)> Visitor for Tracer<'_, F> {
                     reflection * towards.dot(normal).max(0.0)
                 });
             }
-            Step::Passed(..) | Step::Absorbed(..) | Step::Escaped(_) | Step::Abandoned(_) => {}
+            Step::Passed(..) | Step::Absorbed(..) | Step::Escaped(_) | Step::Truncated(_) => {}
         }
     }
 }

@@ -278,7 +278,7 @@ impl<F: FnMut(u32, Layer, Spectrum)> Visitor for PathVisitor<'_, F> {
                 );
                 self.scattered(walker, Flags::DIFFUSE);
             }
-            Step::Passed(..) | Step::Absorbed(..) | Step::Escaped(_) | Step::Abandoned(_) => {}
+            Step::Passed(..) | Step::Absorbed(..) | Step::Escaped(_) | Step::Truncated(_) => {}
         }
     }
 }

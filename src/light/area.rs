@@ -2,7 +2,7 @@
 
 use super::bundle::{by_number, cone};
 use super::emission::emissive;
-use super::{Bundle, EmissionCell, EmissionNumbers, LightSample, Needs};
+use super::{Bundle, EmissionCell, LightSample, Needs, PrimarySample};
 use crate::Spectrum;
 use crate::error::{Error, Result};
 use crate::faults::{Fault, planted};
@@ -58,13 +58,13 @@ impl Area {
 
     pub(super) fn needs(&self) -> Needs {
         let position = match self.shape {
-            Shape::Rectangle(_) | Shape::Sphere(_) | Shape::Mesh(_) | Shape::Lathe(_) => 2,
+            Shape::Rectangle(_) | Shape::Sphere(_) | Shape::Mesh(_) | Shape::Revolution(_) => 2,
             Shape::Cuboid(_) | Shape::Slab(_) => 3,
         };
         Needs { position, direction: 2 }
     }
 
-    pub(super) fn ray(&self, numbers: &EmissionNumbers) -> Ray {
+    pub(super) fn ray(&self, numbers: &PrimarySample) -> Ray {
         let (origin, normal, _) = self.shape.sample_boundary(Face::Top, 0.0, numbers.position);
         let local = if planted(Fault::EmissionUniform) {
             let dir = warp::square_to_sphere(numbers.direction);
@@ -76,7 +76,7 @@ impl Area {
     }
 
     /// The part of the shape that the ray of these numbers starts on.
-    pub(super) fn primitive(&self, numbers: &EmissionNumbers) -> u32 {
+    pub(super) fn primitive(&self, numbers: &PrimarySample) -> u32 {
         self.shape.sample_surface(numbers.position).2
     }
 
@@ -91,7 +91,7 @@ impl Area {
     }
 
     /// The photon of a sphere, direction first; none of other shapes.
-    pub(super) fn aimed_ray(&self, numbers: &EmissionNumbers) -> Option<Ray> {
+    pub(super) fn aimed_ray(&self, numbers: &PrimarySample) -> Option<Ray> {
         let Shape::Sphere(sphere) = &self.shape else { return None };
         let dir = warp::square_to_sphere(numbers.direction).normalize();
         let [a, b, _] = numbers.position;
@@ -137,7 +137,7 @@ impl Area {
                 let (point, normal) = c.sample_facing(p, u)?;
                 self.towards(p, point, normal)
             }
-            Shape::Mesh(_) | Shape::Lathe(_) => {
+            Shape::Mesh(_) | Shape::Revolution(_) => {
                 let (point, normal, _) = self.shape.sample_surface([u[0], u[1], 0.0]);
                 self.towards(p, point, normal)
             }
@@ -185,14 +185,14 @@ impl Area {
 
     pub(super) fn hit(&self, ray: &Ray, from: Option<u32>) -> Option<Hit> {
         // Light leaves a body outwards, so that a ray that starts on a convex one never meets it again.
-        let is_convex = !matches!(self.shape, Shape::Mesh(_) | Shape::Lathe(_));
+        let is_convex = !matches!(self.shape, Shape::Mesh(_) | Shape::Revolution(_));
         if from.is_some() && is_convex { None } else { self.shape.hit(ray, from) }
     }
 
     /// Of a convex body what faces a point hides nothing of itself. Of others what is nearer by more than a millionth
     /// stands in the way, which rounding is far below.
     pub(super) fn hides_itself(&self, ray: &Ray, end: f64) -> bool {
-        let is_convex = !matches!(self.shape, Shape::Mesh(_) | Shape::Lathe(_));
+        let is_convex = !matches!(self.shape, Shape::Mesh(_) | Shape::Revolution(_));
         !is_convex && self.shape.blocks(ray, None, end * (1.0 - 1e-6))
     }
 

@@ -2,7 +2,7 @@
 
 use super::bundle::patch;
 use super::emission::emissive;
-use super::{Bundle, EmissionCell, EmissionNumbers, LightSample, Stage};
+use super::{Bundle, EmissionCell, LightSample, PeriodicCell, PrimarySample};
 use crate::Spectrum;
 use crate::error::{Error, Result};
 use crate::geometry::{Face, Rectangle, Sphere};
@@ -74,9 +74,11 @@ impl Beam {
         if self.dir.z > 0.0 { Face::Top } else { Face::Bottom }
     }
 
-    pub(super) fn power(&self, stage: Option<&Stage>) -> Spectrum {
-        let area = match (self.section, stage) {
-            (Section::Unbounded, Some(stage)) => stage.side * stage.side * self.dir.z.abs(),
+    pub(super) fn power(&self, periodic_cell: Option<&PeriodicCell>) -> Spectrum {
+        let area = match (self.section, periodic_cell) {
+            (Section::Unbounded, Some(periodic_cell)) => {
+                periodic_cell.side * periodic_cell.side * self.dir.z.abs()
+            }
             (Section::Unbounded, None) => f64::INFINITY,
             (Section::Disc { radius, .. }, _) => PI * radius * radius,
             (Section::Rectangle(r), _) => r.area(),
@@ -84,11 +86,11 @@ impl Beam {
         self.irradiance * area
     }
 
-    pub(super) fn ray(&self, stage: Option<&Stage>, numbers: &EmissionNumbers) -> Ray {
+    pub(super) fn ray(&self, periodic_cell: Option<&PeriodicCell>, numbers: &PrimarySample) -> Ray {
         let u = [numbers.position[0], numbers.position[1]];
-        let origin = match (self.section, stage) {
-            (Section::Unbounded, stage) => {
-                let (side, z) = stage.map_or((0.0, 0.0), |s| (s.side, s.slab.face(self.entry())));
+        let origin = match (self.section, periodic_cell) {
+            (Section::Unbounded, periodic_cell) => {
+                let (side, z) = periodic_cell.map_or((0.0, 0.0), |s| (s.side, s.slab.face(self.entry())));
                 DVec3::new(u[0] * side, u[1] * side, z)
             }
             (Section::Disc { center, radius }, _) => {

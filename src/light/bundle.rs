@@ -1,6 +1,6 @@
 //! Where the photons of a part of a light's numbers go: bundles of rays, for emission towards chosen bodies.
 
-use super::EmissionNumbers;
+use super::PrimarySample;
 use crate::math::{Frame, atan2, warp};
 use crate::rng::Stream;
 use glam::DVec3;
@@ -10,16 +10,16 @@ use std::f64::consts::{FRAC_PI_2, PI};
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct EmissionCell {
     /// Its lower corner.
-    pub low: EmissionNumbers,
+    pub low: PrimarySample,
     /// Its upper corner; 1 for the numbers that the light does not need.
-    pub high: EmissionNumbers,
+    pub high: PrimarySample,
 }
 
 impl EmissionCell {
     /// All numbers.
     pub const WHOLE: EmissionCell = EmissionCell {
-        low: EmissionNumbers { position: [0.0; 3], direction: [0.0; 2] },
-        high: EmissionNumbers { position: [1.0; 3], direction: [1.0; 2] },
+        low: PrimarySample { position: [0.0; 3], direction: [0.0; 2] },
+        high: PrimarySample { position: [1.0; 3], direction: [1.0; 2] },
     };
 
     /// Its volume: the share of the light's power that it sends out.
@@ -30,8 +30,8 @@ impl EmissionCell {
     }
 
     /// Uniform numbers in the cell, as many as are needed of each kind.
-    pub fn numbers(&self, (position, direction): (usize, usize), stream: &mut Stream) -> EmissionNumbers {
-        let mut numbers = EmissionNumbers::default();
+    pub fn numbers(&self, (position, direction): (usize, usize), stream: &mut Stream) -> PrimarySample {
+        let mut numbers = PrimarySample::default();
         let mut between = |low: f64, high: f64| low + (high - low) * stream.unit();
         for i in 0..position {
             numbers.position[i] = between(self.low.position[i], self.high.position[i]);

@@ -8,17 +8,17 @@ use glam::DVec3;
 
 /// What unbounded lights need to start photons: the one slab of the scene and the side of its cell \[L\].
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Stage {
+pub struct PeriodicCell {
     /// The layer.
     pub slab: Slab,
     /// Side of the square cell [0, side) x [0, side) that stands for the whole layer \[L\].
     pub side: f64,
 }
 
-impl Stage {
+impl PeriodicCell {
     /// Side of the cell \[L\]; 0 where there is none.
-    pub fn side(stage: Option<&Stage>) -> f64 {
-        stage.map_or(0.0, |s| s.side)
+    pub fn side(periodic_cell: Option<&PeriodicCell>) -> f64 {
+        periodic_cell.map_or(0.0, |s| s.side)
     }
 }
 

@@ -1,7 +1,7 @@
 //! The same radiance from all directions into a shape.
 
 use super::emission::emissive;
-use super::{EmissionNumbers, Stage};
+use super::{PeriodicCell, PrimarySample};
 use crate::Spectrum;
 use crate::error::{Error, Result};
 use crate::geometry::{Face, Shape};
@@ -46,6 +46,11 @@ impl Isotropic {
         &self.shape
     }
 
+    /// The faces of a slab that are lit.
+    pub fn faces(&self) -> Faces {
+        self.faces
+    }
+
     /// Radiance [W/(L^2 sr)].
     pub fn radiance(&self) -> Spectrum {
         self.radiance
@@ -56,8 +61,8 @@ impl Isotropic {
         !matches!(self.shape, Shape::Slab(_)) || self.faces == Faces::Both || dir.z < 0.0
     }
 
-    pub(super) fn power(&self, stage: Option<&Stage>) -> Spectrum {
-        let (_, _, area) = self.shape.sample_boundary(Face::Top, Stage::side(stage), [0.0; 3]);
+    pub(super) fn power(&self, periodic_cell: Option<&PeriodicCell>) -> Spectrum {
+        let (_, _, area) = self.shape.sample_boundary(Face::Top, PeriodicCell::side(periodic_cell), [0.0; 3]);
         let faces = if self.has_two_faces() { 2.0 } else { 1.0 };
         self.radiance * (PI * area * faces)
     }
@@ -69,18 +74,19 @@ impl Isotropic {
     }
 
     /// The numbers of a photon, the choice of the face drawn first.
-    pub(super) fn numbers(&self, stream: &mut Stream) -> EmissionNumbers {
+    pub(super) fn numbers(&self, stream: &mut Stream) -> PrimarySample {
         let face = self.has_two_faces().then(|| stream.unit());
         let mut position = stream.triple();
         if let Some(face) = face {
             position[2] = face;
         }
-        EmissionNumbers { position, direction: stream.pair() }
+        PrimarySample { position, direction: stream.pair() }
     }
 
-    pub(super) fn ray(&self, stage: Option<&Stage>, numbers: &EmissionNumbers) -> Ray {
+    pub(super) fn ray(&self, periodic_cell: Option<&PeriodicCell>, numbers: &PrimarySample) -> Ray {
         let face = if self.has_two_faces() && numbers.position[2] < 0.5 { Face::Bottom } else { Face::Top };
-        let (origin, outward, _) = self.shape.sample_boundary(face, Stage::side(stage), numbers.position);
+        let (origin, outward, _) =
+            self.shape.sample_boundary(face, PeriodicCell::side(periodic_cell), numbers.position);
         let local = warp::square_to_cosine_hemisphere(numbers.direction);
         Ray::new(origin, Frame::new(-outward).to_world(local))
     }

@@ -4,8 +4,8 @@ mod area;
 mod beam;
 mod bundle;
 mod emission;
-mod glow;
 mod isotropic;
+mod medium_emission;
 mod numbers;
 mod point;
 mod portal;
@@ -16,10 +16,10 @@ mod volume_source;
 pub use area::Area;
 pub use beam::{Beam, Section};
 pub use bundle::{Bundle, EmissionCell};
-pub use emission::{Emission, LightSample, Stage};
-pub use glow::Glow;
+pub use emission::{Emission, LightSample, PeriodicCell};
 pub use isotropic::{Faces, Isotropic};
-pub use numbers::{EmissionNumbers, Needs};
+pub use medium_emission::MediumEmission;
+pub use numbers::{Needs, PrimarySample};
 pub use point::Point;
 pub use spot::Spot;
 pub use sun::Sun;
@@ -51,7 +51,7 @@ pub enum Light {
     /// Power emitted uniformly inside a shape, alike in all directions.
     VolumeSource(VolumeSource),
     /// What an emitting medium sends out: a scene makes it of its media, nobody else.
-    Glow(Glow),
+    MediumEmission(MediumEmission),
 }
 
 impl Light {
@@ -60,7 +60,7 @@ impl Light {
         match self {
             Light::Beam(_) | Light::Point(_) | Light::Spot(_) => true,
             Light::Sun(l) => l.is_delta(),
-            Light::Area(_) | Light::Isotropic(_) | Light::VolumeSource(_) | Light::Glow(_) => false,
+            Light::Area(_) | Light::Isotropic(_) | Light::VolumeSource(_) | Light::MediumEmission(_) => false,
         }
     }
 
@@ -105,7 +105,7 @@ impl Light {
     /// Whether next-event estimation can aim at it, from some points at least.
     pub fn has_direction(&self) -> bool {
         match self {
-            Light::Isotropic(_) | Light::Glow(_) => false,
+            Light::Isotropic(_) | Light::MediumEmission(_) => false,
             Light::VolumeSource(l) => l.ball().is_some(),
             Light::Beam(_) | Light::Area(_) | Light::Point(_) | Light::Spot(_) | Light::Sun(_) => true,
         }
@@ -129,38 +129,40 @@ impl Light {
             Light::Sun(l) => l.irradiance().is_grey(),
             Light::Isotropic(l) => l.radiance().is_grey(),
             Light::VolumeSource(l) => l.emission().is_grey(),
-            Light::Glow(l) => l.is_grey(),
+            Light::MediumEmission(l) => l.is_grey(),
         }
     }
 
     /// Whether photons start from the cell of an unbounded slab.
-    pub fn needs_stage(&self) -> bool {
+    pub fn needs_cell(&self) -> bool {
         match self {
             Light::Beam(l) => l.section() == Section::Unbounded,
             Light::Isotropic(l) => matches!(l.shape(), Shape::Slab(_)),
             Light::VolumeSource(l) => matches!(l.shape(), Shape::Slab(_)),
-            Light::Area(_) | Light::Point(_) | Light::Spot(_) | Light::Sun(_) | Light::Glow(_) => false,
+            Light::Area(_) | Light::Point(_) | Light::Spot(_) | Light::Sun(_) | Light::MediumEmission(_) => {
+                false
+            }
         }
     }
 
     /// Emitted power \[W\]; of an unbounded light the part that enters the cell, of the sun the part that can meet the
     /// scene; of a medium a quadrature.
-    pub fn power(&self, stage: Option<&Stage>) -> Spectrum {
+    pub fn power(&self, periodic_cell: Option<&PeriodicCell>) -> Spectrum {
         match self {
-            Light::Beam(l) => l.power(stage),
+            Light::Beam(l) => l.power(periodic_cell),
             Light::Area(l) => l.power(),
             Light::Point(l) => l.power(),
             Light::Spot(l) => l.power(),
             Light::Sun(l) => l.power(),
-            Light::Isotropic(l) => l.power(stage),
-            Light::VolumeSource(l) => l.power(stage),
-            Light::Glow(l) => l.power(),
+            Light::Isotropic(l) => l.power(periodic_cell),
+            Light::VolumeSource(l) => l.power(periodic_cell),
+            Light::MediumEmission(l) => l.power(),
         }
     }
 
     /// What photons carry together if none is refused ([`Emission::chance`]) \[W\]: the power, but for media at least that.
-    pub fn ceiling(&self, stage: Option<&Stage>) -> Spectrum {
-        if let Light::Glow(l) = self { l.ceiling() } else { self.power(stage) }
+    pub fn power_bound(&self, periodic_cell: Option<&PeriodicCell>) -> Spectrum {
+        if let Light::MediumEmission(l) = self { l.power_bound() } else { self.power(periodic_cell) }
     }
 
     /// How many numbers decide where a photon starts and where it goes.
@@ -170,50 +172,50 @@ impl Light {
             Light::Point(_) | Light::Spot(_) => Needs { position: 0, direction: 2 },
             Light::Area(l) => l.needs(),
             Light::Sun(l) => l.needs(),
-            Light::Isotropic(_) | Light::VolumeSource(_) | Light::Glow(_) => {
+            Light::Isotropic(_) | Light::VolumeSource(_) | Light::MediumEmission(_) => {
                 Needs { position: 3, direction: 2 }
             }
         }
     }
 
     /// The numbers of one photon.
-    pub fn numbers(&self, stream: &mut Stream) -> EmissionNumbers {
+    pub fn numbers(&self, stream: &mut Stream) -> PrimarySample {
         if let Light::Isotropic(l) = self {
             return l.numbers(stream);
         }
         let needs = self.needs();
-        let mut numbers = EmissionNumbers::default();
+        let mut numbers = PrimarySample::default();
         numbers.position[..needs.position].fill_with(|| stream.unit());
         numbers.direction[..needs.direction].fill_with(|| stream.unit());
         numbers
     }
 
     /// The photon of these numbers; it carries the light's whole power.
-    pub fn emit_at(&self, stage: Option<&Stage>, numbers: &EmissionNumbers) -> Emission {
+    pub fn emit_at(&self, periodic_cell: Option<&PeriodicCell>, numbers: &PrimarySample) -> Emission {
         let ray = match self {
-            Light::Beam(l) => l.ray(stage, numbers),
+            Light::Beam(l) => l.ray(periodic_cell, numbers),
             Light::Area(l) => l.ray(numbers),
             Light::Point(l) => l.ray(numbers),
             Light::Spot(l) => l.ray(numbers),
             Light::Sun(l) => l.ray(numbers),
-            Light::Isotropic(l) => l.ray(stage, numbers),
-            Light::VolumeSource(l) => l.ray(stage, numbers),
-            Light::Glow(l) => return l.emit_at(stage, numbers),
+            Light::Isotropic(l) => l.ray(periodic_cell, numbers),
+            Light::VolumeSource(l) => l.ray(periodic_cell, numbers),
+            Light::MediumEmission(l) => return l.emit_at(periodic_cell, numbers),
         };
         let primitive = if let Light::Area(l) = self { l.primitive(numbers) } else { 0 };
-        Emission { ray, primitive, power: self.power(stage), chance: 1.0 }
+        Emission { ray, primitive, power: self.power(periodic_cell), chance: 1.0 }
     }
 
     /// The photon of these numbers where directions are chosen by cells: [`Self::emit_at`], but from a sphere the
     /// direction comes first, uniform, and then the start, uniform on the disc that the sphere shows to it. Both ways
     /// photons have the same distribution, and the light spreads its power evenly over the numbers.
-    pub fn emit_aimed(&self, stage: Option<&Stage>, numbers: &EmissionNumbers) -> Emission {
+    pub fn emit_aimed(&self, periodic_cell: Option<&PeriodicCell>, numbers: &PrimarySample) -> Emission {
         if let Light::Area(l) = self
             && let Some(ray) = l.aimed_ray(numbers)
         {
             return Emission { ray, primitive: 0, power: l.power(), chance: 1.0 };
         }
-        self.emit_at(stage, numbers)
+        self.emit_at(periodic_cell, numbers)
     }
 
     /// Cuts the unit cube of the light's numbers into cells, about `count` of them, small ones where the light's photons
@@ -238,7 +240,7 @@ impl Light {
                 }
             }
             Light::Sun(_) => (along, aside) = (root(count, 0.5), 1),
-            Light::VolumeSource(_) | Light::Glow(_) => along = 1,
+            Light::VolumeSource(_) | Light::MediumEmission(_) => along = 1,
             _ => {}
         }
         let axes = |i: usize| if i < needs.position { uniform(along) } else { none() };
@@ -263,8 +265,8 @@ impl Light {
                     for d in &direction {
                         for e in &direction {
                             cells.push(EmissionCell {
-                                low: EmissionNumbers { position: [a.0, b.0, c.0], direction: [d.0, e.0] },
-                                high: EmissionNumbers { position: [a.1, b.1, c.1], direction: [d.1, e.1] },
+                                low: PrimarySample { position: [a.0, b.0, c.0], direction: [d.0, e.0] },
+                                high: PrimarySample { position: [a.1, b.1, c.1], direction: [d.1, e.1] },
                             });
                         }
                     }
@@ -303,9 +305,9 @@ impl Light {
             }
             Light::Spot(l) => Some(l.bundle(cell)),
             Light::Sun(l) => l.bundle(cell),
-            Light::VolumeSource(_) | Light::Glow(_) => {
+            Light::VolumeSource(_) | Light::MediumEmission(_) => {
                 let ball = match self {
-                    Light::Glow(l) => l.ball(),
+                    Light::MediumEmission(l) => l.ball(),
                     Light::VolumeSource(l) => l.shape().bounds(),
                     _ => None,
                 };
@@ -318,8 +320,8 @@ impl Light {
     }
 
     /// One photon that carries the light's whole power.
-    pub fn emit(&self, stage: Option<&Stage>, stream: &mut Stream) -> Emission {
-        self.emit_at(stage, &self.numbers(stream))
+    pub fn emit(&self, periodic_cell: Option<&PeriodicCell>, stream: &mut Stream) -> Emission {
+        self.emit_at(periodic_cell, &self.numbers(stream))
     }
 
     /// A direction from `p` towards the light; none if the light cannot be aimed at or sends nothing to `p`.
@@ -331,7 +333,7 @@ impl Light {
             Light::Spot(l) => l.sample(p),
             Light::Sun(l) => l.sample(p, u),
             Light::VolumeSource(l) => l.sample(p, u),
-            Light::Isotropic(_) | Light::Glow(_) => None,
+            Light::Isotropic(_) | Light::MediumEmission(_) => None,
         }
     }
 

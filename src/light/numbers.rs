@@ -6,7 +6,7 @@
 /// reweights emission does it here, where the density is known: photons of a part of the unit cube whose volume is v,
 /// with weight v, are what that part sends out.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct EmissionNumbers {
+pub struct PrimarySample {
     /// Where the photon starts.
     pub position: [f64; 3],
     /// Where it goes.

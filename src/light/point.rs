@@ -1,7 +1,7 @@
 //! A point light.
 
 use super::emission::emissive;
-use super::{EmissionNumbers, LightSample};
+use super::{LightSample, PrimarySample};
 use crate::Spectrum;
 use crate::error::{Error, Result};
 use crate::math::{FOUR_PI, Ray, warp};
@@ -37,7 +37,7 @@ impl Point {
         self.power
     }
 
-    pub(super) fn ray(&self, numbers: &EmissionNumbers) -> Ray {
+    pub(super) fn ray(&self, numbers: &PrimarySample) -> Ray {
         Ray::new(self.position, warp::square_to_sphere(numbers.direction).normalize())
     }
 

@@ -2,7 +2,7 @@
 
 use super::bundle::cone;
 use super::emission::emissive;
-use super::{Bundle, EmissionCell, EmissionNumbers, LightSample};
+use super::{Bundle, EmissionCell, LightSample, PrimarySample};
 use crate::Spectrum;
 use crate::error::{Error, Result};
 use crate::math::{Frame, Ray, cosine_pair, sin, warp};
@@ -107,7 +107,7 @@ impl Spot {
         self.edge - width * inverse_flux(1.0 - beyond)
     }
 
-    pub(super) fn ray(&self, numbers: &EmissionNumbers) -> Ray {
+    pub(super) fn ray(&self, numbers: &PrimarySample) -> Ray {
         let one_minus_mu = self.one_minus_mu(numbers.direction[0]);
         let local = warp::direction((one_minus_mu, 2.0 - one_minus_mu), numbers.direction[1]);
         Ray::new(self.position, self.frame.to_world(local).normalize())

@@ -4,7 +4,7 @@ use super::bundle::patch;
 use super::emission::emissive;
 use super::portal::Portal;
 use super::spot::one_minus_cos_degrees;
-use super::{Bundle, EmissionCell, EmissionNumbers, LightSample, Needs};
+use super::{Bundle, EmissionCell, LightSample, Needs, PrimarySample};
 use crate::Spectrum;
 use crate::error::{Error, Result};
 use crate::geometry::{Rectangle, Sphere};
@@ -128,7 +128,7 @@ impl Sun {
         center + self.frame.to_world(DVec3::new(p.x, p.y, 0.0))
     }
 
-    pub(super) fn ray(&self, numbers: &EmissionNumbers) -> Ray {
+    pub(super) fn ray(&self, numbers: &PrimarySample) -> Ray {
         let [u, v] = numbers.direction;
         let dir = if self.is_delta() {
             self.frame.z

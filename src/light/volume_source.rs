@@ -1,7 +1,7 @@
 //! A uniform isotropic source filling a shape.
 
 use super::emission::emissive;
-use super::{EmissionNumbers, LightSample, Stage};
+use super::{LightSample, PeriodicCell, PrimarySample};
 use crate::Spectrum;
 use crate::error::{Error, Result};
 use crate::geometry::{Shape, Sphere};
@@ -56,12 +56,12 @@ impl VolumeSource {
         Some(LightSample { dir, distance: inside.start, value, pdf_solid_angle: Some(pdf) })
     }
 
-    pub(super) fn power(&self, stage: Option<&Stage>) -> Spectrum {
-        self.density * self.shape.sample_inside(Stage::side(stage), [0.0; 3]).1
+    pub(super) fn power(&self, periodic_cell: Option<&PeriodicCell>) -> Spectrum {
+        self.density * self.shape.sample_inside(PeriodicCell::side(periodic_cell), [0.0; 3]).1
     }
 
-    pub(super) fn ray(&self, stage: Option<&Stage>, numbers: &EmissionNumbers) -> Ray {
-        let (origin, _) = self.shape.sample_inside(Stage::side(stage), numbers.position);
+    pub(super) fn ray(&self, periodic_cell: Option<&PeriodicCell>, numbers: &PrimarySample) -> Ray {
+        let (origin, _) = self.shape.sample_inside(PeriodicCell::side(periodic_cell), numbers.position);
         Ray::new(origin, warp::square_to_sphere(numbers.direction).normalize())
     }
 }

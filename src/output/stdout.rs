@@ -26,12 +26,14 @@ pub fn ignore_closed_pipe(result: io::Result<()>) -> io::Result<()> {
 }
 
 /// A text in one line that a terminal only shows: names and values from files and command lines may hold signs that it
-/// would obey. Line feeds become spaces, other control characters are spelt out.
+/// would obey. Line ends of every kind become spaces, other control characters and those that turn the direction of writing
+/// are spelt out.
 pub fn one_line(text: &str) -> String {
     let mut line = String::with_capacity(text.len());
     for c in text.chars() {
         match c {
-            '\n' | '\r' => line.push(' '),
+            '\n' | '\r' | '\u{2028}' | '\u{2029}' => line.push(' '),
+            '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}' => line.extend(c.escape_unicode()),
             c if c.is_control() => line.extend(c.escape_debug()),
             c => line.push(c),
         }
@@ -46,6 +48,7 @@ mod tests {
     #[test]
     fn text_from_elsewhere_is_one_line_without_control_characters() {
         assert_eq!(one_line("a\u{1b}[31m b\nc\u{9b}d\u{7}é"), "a\\u{1b}[31m b c\\u{9b}d\\u{7}é");
+        assert_eq!(one_line("a\u{2028}b\u{202e}c\u{2066}d"), "a b\\u{202e}c\\u{2066}d");
     }
 
     #[test]

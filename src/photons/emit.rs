@@ -56,7 +56,7 @@ struct Chosen {
 impl Emitter {
     /// All that the lights send out, in proportion to power.
     pub fn by_power(scene: &Scene) -> Self {
-        Emitter { power: scene.ceiling(), chosen: None, tested: 0 }
+        Emitter { power: scene.power_bound(), chosen: None, tested: 0 }
     }
 
     /// What can meet anything at all: cells of the lights' numbers whose rays can reach the sphere about a body or about a
@@ -108,7 +108,7 @@ impl Emitter {
         chances: Vec<f64>,
         tested: u64,
     ) -> Option<Self> {
-        let power = scene.ceiling();
+        let power = scene.power_bound();
         let total: f64 = chances.iter().sum();
         if total.is_nan() || total <= 0.0 {
             return None;
@@ -125,7 +125,7 @@ impl Emitter {
         }
         let kept = kept / power.sum();
         // Of media the power itself: their bounds are what photons are refused by.
-        let sent = |light: &Light| light.power(scene.stage()).sum();
+        let sent = |light: &Light| light.power(scene.periodic_cell()).sum();
         let used = |index: usize| {
             let own =
                 cells.iter().zip(&chances).filter(|((light, _), chance)| *light == index && **chance > 0.0);
@@ -159,7 +159,7 @@ impl Emitter {
 
     /// The same, and the number of the cell that it comes from; 0 where there are no cells.
     pub(super) fn emit_from(&self, scene: &Scene, stream: &mut Stream) -> (usize, Option<Walker>) {
-        let (lights, stage) = (scene.lights(), scene.stage());
+        let (lights, periodic_cell) = (scene.lights(), scene.periodic_cell());
         let Some(chosen) = &self.chosen else { return (0, by_power(scene, self.power, stream)) };
         let u = stream.unit();
         // The first cell whose sum exceeds u: one without probability is never it.
@@ -168,14 +168,14 @@ impl Emitter {
         let light = &lights[*index];
         let needs = light.needs();
         let numbers = cell.numbers((needs.position, needs.direction), stream);
-        let emission = light.emit_aimed(stage, &numbers);
+        let emission = light.emit_aimed(periodic_cell, &numbers);
         (i, start(scene, *index, &emission, emission.power * chosen.weights[i], stream))
     }
 }
 
 /// Power of a light's cell, summed over channels \[W\].
 fn share(scene: &Scene, light: usize, cell: &EmissionCell) -> f64 {
-    scene.lights()[light].ceiling(scene.stage()).sum() * cell.volume()
+    scene.lights()[light].power_bound(scene.periodic_cell()).sum() * cell.volume()
 }
 
 /// Whether a light's cells have bundles; those of a cuboid have them a face each, though the whole has none.
@@ -202,8 +202,8 @@ fn keep(
 /// Cells of the lights' numbers, about `count` a light, from which light can meet anything, and how many were tested; none
 /// where [`Emitter::towards_scene`] leaves nothing out.
 pub(super) fn cells_towards_scene(scene: &Scene, count: usize) -> Option<(Vec<(usize, EmissionCell)>, u64)> {
-    let (bounds, power) = (scene.bounds()?, scene.ceiling().sum());
-    if scene.plan().is_full || scene.stage().is_some() || fills_space(scene) {
+    let (bounds, power) = (scene.bounds()?, scene.power_bound().sum());
+    if scene.plan().is_full || scene.periodic_cell().is_some() || fills_space(scene) {
         return None;
     }
     let media = scene.regions().iter().filter(|r| r.medium.is_colliding()).map(|r| &r.shape);
@@ -250,7 +250,7 @@ fn fills_space(scene: &Scene) -> bool {
 /// A photon from one of the lights, chosen in proportion to power; it carries the power of all of them \[W\], in the
 /// colour of its own.
 fn by_power(scene: &Scene, power: Spectrum, stream: &mut Stream) -> Option<Walker> {
-    let (lights, stage) = (scene.lights(), scene.stage());
+    let (lights, periodic_cell) = (scene.lights(), scene.periodic_cell());
     let total = power.sum();
     let part = |power: Spectrum| {
         if planted(Fault::LightByLargestChannel) { power.max() } else { power.sum() }
@@ -258,20 +258,20 @@ fn by_power(scene: &Scene, power: Spectrum, stream: &mut Stream) -> Option<Walke
     let mut index = 0;
     if lights.len() > 1 {
         let mut target = stream.unit() * part(power);
-        while index + 1 < lights.len() && target >= part(lights[index].ceiling(stage)) {
-            target -= part(lights[index].ceiling(stage));
+        while index + 1 < lights.len() && target >= part(lights[index].power_bound(periodic_cell)) {
+            target -= part(lights[index].power_bound(periodic_cell));
             index += 1;
         }
     }
-    let emission = lights[index].emit(stage, stream);
-    let own = lights[index].ceiling(stage).sum();
+    let emission = lights[index].emit(periodic_cell, stream);
+    let own = lights[index].power_bound(periodic_cell).sum();
     let weight = if lights.len() > 1 { emission.power * (total / own) } else { emission.power };
     start(scene, index, &emission, weight, stream)
 }
 
 /// A photon from the light of this index, if one leaves it this time; it carries that light's power \[W\].
 pub(super) fn from_light(scene: &Scene, index: usize, stream: &mut Stream) -> Option<Walker> {
-    let emission = scene.lights()[index].emit(scene.stage(), stream);
+    let emission = scene.lights()[index].emit(scene.periodic_cell(), stream);
     start(scene, index, &emission, emission.power, stream)
 }
 
@@ -286,10 +286,10 @@ fn start(
     let weight = if planted(Fault::PowerRaised) { weight * (1.0 + size()) } else { weight };
     let light = &scene.lights()[index];
     let origin = emission.ray.origin;
-    if let Light::Glow(glow) = light {
-        let is_there = glow.is_certain() || scene.medium_number_at(origin) == Some(glow.number());
+    if let Light::MediumEmission(medium) = light {
+        let is_there = medium.is_certain() || scene.medium_number_at(origin) == Some(medium.number());
         let leaves = is_there && (emission.chance >= 1.0 || stream.unit() < emission.chance);
-        return leaves.then(|| Walker { within: glow.within(), ..Walker::new(emission.ray, weight) });
+        return leaves.then(|| Walker { within: medium.within(), ..Walker::new(emission.ray, weight) });
     }
     let from = light.body().map(|_| Start { target: Target::Light(index), primitive: emission.primitive });
     let within = scene.interior_of_light(index, origin);

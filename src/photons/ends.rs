@@ -8,7 +8,7 @@ use super::emit;
 use crate::Spectrum;
 use crate::error::{Error, Result};
 use crate::geometry::Sphere;
-use crate::light::Stage;
+use crate::light::PeriodicCell;
 use crate::math::{Frame, Ray, warp};
 use crate::medium::Medium;
 use crate::rng::{Purpose, Stream};
@@ -112,7 +112,7 @@ impl Source {
 
     /// A walker from here; none if nothing starts this time.
     fn start(self, scene: &Scene, stream: &mut Stream) -> Option<Walker> {
-        let side = Stage::side(scene.stage());
+        let side = PeriodicCell::side(scene.periodic_cell());
         let ray = match self {
             Source::Light(index) => return emit::from_light(scene, index, stream),
             Source::Camera => {

@@ -78,7 +78,7 @@ pub struct Ledger {
     /// Left the scene.
     pub escaped: f64,
     /// Followed no further, since nobody asked for higher orders.
-    pub abandoned: f64,
+    pub truncated: f64,
 }
 
 impl AddAssign for Ledger {
@@ -86,7 +86,7 @@ impl AddAssign for Ledger {
         self.emitted += other.emitted;
         self.absorbed += other.absorbed;
         self.escaped += other.escaped;
-        self.abandoned += other.abandoned;
+        self.truncated += other.truncated;
     }
 }
 
@@ -98,7 +98,7 @@ pub struct Ends {
     /// Out of the scene.
     pub escaped: u64,
     /// Where nobody asked for more.
-    pub abandoned: u64,
+    pub truncated: u64,
     /// Before they began: a medium was asked for a photon where it emits less than elsewhere, or is not.
     pub refused: u64,
 }
@@ -127,7 +127,7 @@ impl AddAssign for PassReport {
         self.emitted += other.emitted;
         self.ends.absorbed += other.ends.absorbed;
         self.ends.escaped += other.ends.escaped;
-        self.ends.abandoned += other.ends.abandoned;
+        self.ends.truncated += other.ends.truncated;
         self.ends.refused += other.ends.refused;
         self.ledger += other.ledger;
         self.collisions += other.collisions;
@@ -255,7 +255,7 @@ impl<'a> Run<'a> {
         let power = if self.sensors.is_empty() { Spectrum::ONE } else { self.scene.power() };
         let empty = || Pass {
             tallies: vec![Default::default(); self.sensors.len()],
-            period: self.scene.stage().map(|stage| stage.side),
+            period: self.scene.periodic_cell().map(|periodic_cell| periodic_cell.side),
             ..Pass::default()
         };
         let block = |range: Range<u64>| {
@@ -411,9 +411,9 @@ impl<S: Storage> Visitor for Block<'_, S> {
                 ends.escaped += 1;
                 ledger.escaped += weight.sum();
             }
-            Step::Abandoned(weight) => {
-                ends.abandoned += 1;
-                ledger.abandoned += weight.sum();
+            Step::Truncated(weight) => {
+                ends.truncated += 1;
+                ledger.truncated += weight.sum();
             }
             Step::Ahead(_) => {}
         }

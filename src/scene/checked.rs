@@ -7,7 +7,7 @@ use crate::Spectrum;
 use crate::error::{Error, Result};
 use crate::faults::{Fault, planted};
 use crate::geometry::Sphere;
-use crate::light::{Light, Stage};
+use crate::light::{Light, PeriodicCell};
 use crate::math::{Interval, Ray, exp};
 use crate::medium::Medium;
 use std::sync::OnceLock;
@@ -25,7 +25,7 @@ pub struct Scene {
     pub(super) light_within: Vec<Option<usize>>,
     pub(super) bodies: Bodies,
     pub(super) region_tree: Option<RegionTree>,
-    pub(super) stage: Option<Stage>,
+    pub(super) periodic_cell: Option<PeriodicCell>,
     pub(super) bounds: Option<Sphere>,
     pub(super) plan: Plan,
     pub(super) answers: Answers,
@@ -102,8 +102,8 @@ impl Scene {
     }
 
     /// The slab and its cell, where the scene has a cell.
-    pub fn stage(&self) -> Option<&Stage> {
-        self.stage.as_ref()
+    pub fn periodic_cell(&self) -> Option<&PeriodicCell> {
+        self.periodic_cell.as_ref()
     }
 
     /// A sphere about every medium, surface and body of a light; none where one of them has no end, or there is none.
@@ -116,9 +116,9 @@ impl Scene {
         bounds::of_bounded(&self.parts)
     }
 
-    /// What photons of all lights carry together if none is refused \[W\]: see [`Light::ceiling`].
-    pub fn ceiling(&self) -> Spectrum {
-        self.lights().iter().fold(Spectrum::ZERO, |sum, light| sum + light.ceiling(self.stage()))
+    /// What photons of all lights carry together if none is refused \[W\]: see [`Light::power_bound`].
+    pub fn power_bound(&self) -> Spectrum {
+        self.lights().iter().fold(Spectrum::ZERO, |sum, light| sum + light.power_bound(self.periodic_cell()))
     }
 
     /// The stretches of medium on the ray up to distance `end`, nearest first, in the interior of this number: the

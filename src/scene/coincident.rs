@@ -1,15 +1,20 @@
 //! Surfaces in one place: which of them light meets there would be a matter of rounding.
 
-use super::{Object, Parts};
+use super::{Object, Parts, Quantity};
 use crate::error::{Error, Result};
 use crate::geometry::{Face, Rectangle, Shape, Sphere};
-use crate::light::Light;
+use crate::light::{Faces, Light, Section};
+use crate::math::{Frame, sin_cos};
 use glam::DVec3;
 use std::collections::BTreeMap;
 
 /// Surfaces nearer than this part of their size, and of their distance from the origin, count as in one place: rounding is
 /// far below, and a gap that anybody means far above.
 const SAME: f64 = 1e-9;
+
+/// What helps where rounding decides.
+pub(super) const REMEDY: &str =
+    "move one of them, if only by a millionth of its size or of its distance from the origin";
 
 /// What light meets on a surface.
 #[derive(Clone, Copy, PartialEq, Eq)]
@@ -22,11 +27,12 @@ enum Kind {
     Clear,
 }
 
-/// A flat face: a rectangle, or a plane of constant z.
+/// A flat face: a rectangle, a plane of constant z, or a disc with a hole.
 #[derive(Clone, Copy)]
 enum Flat {
     Rectangle(Rectangle),
     Level(f64),
+    Disc { center: DVec3, normal: DVec3, inner: f64, outer: f64 },
 }
 
 /// A body: its name in the scene file, its shape, its flat faces.
@@ -64,7 +70,7 @@ pub(super) fn check(parts: &Parts) -> Result<()> {
 
 fn refuse(a: &Body, b: &Body) -> Result<()> {
     Err(Error::Scene(format!(
-        "{} and {} have surfaces in one place, where rounding decides which of them light meets; move one of them, if only by a millionth of its size",
+        "{} and {} have surfaces in one place, where rounding decides which of them light meets; {REMEDY}",
         a.name, b.name
     )))
 }
@@ -155,7 +161,16 @@ impl Body<'_> {
         }
         let flat = |face: &Flat| match face {
             Flat::Rectangle(r) => Some(r.corners().to_vec()),
-            Flat::Level(_) => None,
+            // As a polygon of nearly its area; a hole is left out.
+            Flat::Disc { center, normal, inner: 0.0, outer } => {
+                let frame = Frame::new(*normal);
+                let corner = |i: u32| {
+                    let (sin, cos) = sin_cos(f64::from(i) * std::f64::consts::TAU / 32.0);
+                    center + (frame.x * cos + frame.y * sin) * *outer
+                };
+                Some((0..32).map(corner).collect())
+            }
+            Flat::Disc { .. } | Flat::Level(_) => None,
         };
         self.faces.iter().filter_map(flat).collect()
     }
@@ -177,7 +192,16 @@ fn faces(shape: &Shape) -> Vec<Flat> {
         Shape::Rectangle(rectangle) => vec![Flat::Rectangle(*rectangle)],
         Shape::Cuboid(cuboid) => cuboid.faces().into_iter().map(Flat::Rectangle).collect(),
         Shape::Slab(slab) => [Face::Top, Face::Bottom].map(|face| Flat::Level(slab.face(face))).to_vec(),
-        Shape::Sphere(_) | Shape::Mesh(_) | Shape::Lathe(_) => Vec::new(),
+        Shape::Revolution(revolution) => {
+            let disc = |(center, normal, [inner, outer]): (DVec3, DVec3, [f64; 2])| Flat::Disc {
+                center,
+                normal,
+                inner,
+                outer,
+            };
+            revolution.discs().map(disc).collect()
+        }
+        Shape::Sphere(_) | Shape::Mesh(_) => Vec::new(),
     }
 }
 
@@ -185,7 +209,8 @@ fn faces(shape: &Shape) -> Vec<Flat> {
 fn matters(a: &Body, b: &Body) -> bool {
     match (a.shape, b.shape) {
         (Shape::Sphere(a), Shape::Sphere(b)) => are_one(a, b),
-        (Shape::Mesh(_) | Shape::Lathe(_), _) => a.shape == b.shape,
+        (Shape::Revolution(a), Shape::Revolution(b)) if a.nearly(b, SAME) => true,
+        (Shape::Mesh(_), _) => a.shape == b.shape,
         _ => a.faces.iter().any(|f| b.faces.iter().any(|g| is_seen((a, f), (b, g)) && share(f, g))),
     }
 }
@@ -218,6 +243,74 @@ fn is_seen((a, f): (&Body, &Flat), (b, g): (&Body, &Flat)) -> bool {
     }
 }
 
+/// A surface that light starts from or that is measured on, and that is no body.
+struct Mark<'a> {
+    name: String,
+    shape: Option<&'a Shape>,
+    faces: Vec<Flat>,
+}
+
+/// Refuses what starts or is measured on the very surface of a body: rounding would decide on which side.
+///
+/// # Errors
+/// `Error::Scene`, naming both.
+pub(super) fn check_marks(parts: &Parts) -> Result<()> {
+    let objects = parts.objects.iter().enumerate().map(|(i, object)| of_object(i, object));
+    let lamps = parts.lights.iter().enumerate().filter_map(|(i, light)| of_light(i, light));
+    let bodies: Vec<Body> = objects.chain(lamps).collect();
+    let of_face = |shape: &Shape, face: Option<Face>| match (shape, face) {
+        (Shape::Slab(slab), Some(face)) => vec![Flat::Level(slab.face(face))],
+        _ => faces(shape),
+    };
+    let mut marks = Vec::new();
+    for (index, light) in parts.lights.iter().enumerate() {
+        let name = format!("lights[{index}]");
+        match light {
+            Light::Isotropic(light) => {
+                let face = (light.faces() == Faces::Top).then_some(Face::Top);
+                let (shape, faces) = (Some(light.shape()), of_face(light.shape(), face));
+                marks.push(Mark { name, shape, faces });
+            }
+            Light::Beam(beam) => match beam.section() {
+                Section::Rectangle(section) => {
+                    marks.push(Mark { name, shape: None, faces: vec![Flat::Rectangle(section)] });
+                }
+                Section::Disc { center, radius } => {
+                    let disc = Flat::Disc { center, normal: beam.dir(), inner: 0.0, outer: radius };
+                    marks.push(Mark { name, shape: None, faces: vec![disc] });
+                }
+                Section::Unbounded => {}
+            },
+            _ => {}
+        }
+    }
+    for sensor in &parts.sensors {
+        if let Quantity::Outflow { shape, face } = &sensor.quantity {
+            let (name, faces) = (format!("sensor {}", sensor.name), of_face(shape, Some(*face)));
+            marks.push(Mark { name, shape: Some(shape), faces });
+        }
+    }
+    for mark in &marks {
+        let is_on = |body: &&Body| match (mark.shape, body.shape) {
+            (Some(Shape::Sphere(a)), Shape::Sphere(b)) => are_one(a, b),
+            (Some(Shape::Revolution(a)), Shape::Revolution(b)) if a.nearly(b, SAME) => true,
+            (Some(a @ Shape::Mesh(_)), b) => a == b,
+            _ => mark.faces.iter().any(|f| body.faces.iter().any(|g| share(f, g))),
+        };
+        if let Some(body) = bodies.iter().find(is_on) {
+            return refuse_mark(&mark.name, body);
+        }
+    }
+    Ok(())
+}
+
+fn refuse_mark(name: &str, body: &Body) -> Result<()> {
+    Err(Error::Scene(format!(
+        "{name} lies on the surface of {}, where rounding decides on which side it is; {REMEDY}",
+        body.name
+    )))
+}
+
 /// Whether two faces lie in one plane and share an area.
 fn share(f: &Flat, g: &Flat) -> bool {
     match (f, g) {
@@ -227,5 +320,26 @@ fn share(f: &Flat, g: &Flat) -> bool {
             r.corners().iter().all(|p| (p.z - z).abs() <= least)
         }
         (Flat::Rectangle(a), Flat::Rectangle(b)) => a.overlaps(b),
+        (&Flat::Disc { center, normal, inner, outer }, other)
+        | (other, &Flat::Disc { center, normal, inner, outer }) => {
+            let least = SAME * (outer + center.abs().max_element());
+            let is_one_plane =
+                |n: DVec3, p: DVec3| normal.cross(n).length() <= SAME && (center - p).dot(n).abs() <= least;
+            match other {
+                Flat::Level(z) => is_one_plane(DVec3::Z, DVec3::new(0.0, 0.0, *z)),
+                Flat::Rectangle(r) => {
+                    is_one_plane(r.normal(), r.corners()[0])
+                        && Shape::Rectangle(*r).distance(center, f64::INFINITY) < outer
+                        && r.corners().iter().any(|p| p.distance(center) > inner)
+                }
+                Flat::Disc { center: c, normal: n, inner: hole, outer: edge } => {
+                    let apart = center.distance(*c);
+                    is_one_plane(*n, *c)
+                        && apart < outer + edge
+                        && apart + edge > inner
+                        && apart + outer > *hole
+                }
+            }
+        }
     }
 }

@@ -6,6 +6,10 @@ use crate::geometry::Hit;
 use crate::math::Ray;
 use crate::surface::Surface;
 
+/// Bodies that a ray may pass without getting on. Where more seem to lie, surfaces coincide but for rounding, and each is behind
+/// the other without end: there nothing is let through.
+const IN_ONE_PLACE: u32 = 64;
+
 impl Scene {
     /// The nearest body ahead; `from` is the body that the ray starts on.
     pub fn hit(&self, ray: &Ray, from: Option<Start>) -> Option<SceneHit> {
@@ -98,6 +102,7 @@ impl Scene {
         towards: Option<Target>,
     ) -> Option<Spectrum> {
         let (mut ray, mut from, mut end, mut passed) = (*ray, from, end, Spectrum::ONE);
+        let mut here = 0;
         while let Some(found) = self.hit(&ray, from) {
             if Some(found.target) == towards || found.hit.t >= end {
                 break;
@@ -108,6 +113,10 @@ impl Scene {
                 return None;
             }
             let position = ray.at(found.hit.t);
+            here = if position == ray.origin { here + 1 } else { 0 };
+            if here > IN_ONE_PLACE {
+                return None;
+            }
             (ray, from, end) = (Ray::new(position, ray.dir), Some(found.start()), end - found.hit.t);
         }
         Some(passed)

@@ -62,7 +62,7 @@ fn side_seen(parts: &Parts, p: DVec3, dir: DVec3, is_outside: bool) -> Option<us
 /// body that could cross the boundary of an interior.
 pub(super) fn of_lights(scene: &Scene) -> Vec<Option<usize>> {
     let one = |light: &Light| {
-        if !scene.plan().has_dielectrics || light.needs_stage() {
+        if !scene.plan().has_dielectrics || light.needs_cell() {
             return Some(SURROUNDINGS);
         }
         let is_clear = |shape: &&Shape| {
@@ -82,7 +82,7 @@ pub(super) fn is_clear_of((center, radius): (DVec3, f64), shape: &Shape) -> bool
         // Outside a cuboid the room is minus at most the distance.
         Shape::Sphere(_) | Shape::Cuboid(_) | Shape::Slab(_) => shape.room(center).abs() > radius,
         Shape::Rectangle(r) => libm::hypot(r.height(center), r.inside(center).min(0.0)) > radius,
-        Shape::Mesh(_) | Shape::Lathe(_) => {
+        Shape::Mesh(_) | Shape::Revolution(_) => {
             shape.bounds().is_some_and(|(other, reach)| center.distance(other) > radius + reach)
         }
     }

@@ -6,9 +6,9 @@ mod builtin;
 mod camera;
 mod checked;
 mod coincident;
+mod emitting_media;
 mod file;
 mod full;
-mod glows;
 mod hit;
 mod interiors;
 mod parts;
@@ -45,7 +45,7 @@ impl Scene {
         }
         let bounds = bounds::of(&parts);
         parts.lights.iter_mut().try_for_each(|light| light.cover(bounds))?;
-        let stage = validate::check(&parts)?;
+        let periodic_cell = validate::check(&parts)?;
         interiors::match_indices(&mut parts);
         let plan = Plan::of(&parts);
         let (media, filling) = interiors::numbered(&parts.regions, &parts.interiors);
@@ -61,13 +61,13 @@ impl Scene {
             light_within: Vec::new(),
             bodies,
             region_tree,
-            stage,
+            periodic_cell,
             bounds,
             plan,
             answers: Answers::default(),
         };
-        let (glows, is_emission_bounded) = glows::of(&scene);
-        scene.lights.extend(glows);
+        let (emitting, is_emission_bounded) = emitting_media::of(&scene);
+        scene.lights.extend(emitting);
         scene.is_emission_bounded = is_emission_bounded;
         scene.light_within = interiors::of_lights(&scene);
         validate::check_power(&scene)?;

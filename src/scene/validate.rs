@@ -1,11 +1,12 @@
 //! Checks on the parts of a scene together. Each part has checked its own numbers when it was made.
 
+use super::coincident::REMEDY;
 use super::interiors::dielectrics;
 use super::{Camera, Parts, Quantity, Scene, coincident, interiors};
 use crate::Spectrum;
 use crate::error::{Error, Result};
 use crate::geometry::{Face, Shape, Slab};
-use crate::light::{Light, Section, Stage};
+use crate::light::{Light, PeriodicCell, Section};
 use crate::math::{Ray, cosine_pair};
 use crate::medium::{Density, Medium};
 use crate::phase::PhaseFunction;
@@ -28,7 +29,7 @@ fn refuse<T>(text: impl Into<String>) -> Result<T> {
 }
 
 /// The slab and its cell, if the scene has a cell; an error where parts do not fit together.
-pub(super) fn check(parts: &Parts) -> Result<Option<Stage>> {
+pub(super) fn check(parts: &Parts) -> Result<Option<PeriodicCell>> {
     if let Some(i) = parts.regions.iter().position(|r| !r.shape.is_solid()) {
         return refuse(format!(
             "regions[{i}] needs a convex shape with an inside: a sphere, a cuboid or a slab"
@@ -42,9 +43,9 @@ pub(super) fn check(parts: &Parts) -> Result<Option<Stage>> {
     }
     check_sizes(parts)?;
     interiors::check(parts)?;
-    let stage = stage(parts)?;
+    let periodic_cell = periodic_cell(parts)?;
     for light in &parts.lights {
-        if light.needs_stage() && stage.is_none() {
+        if light.needs_cell() && periodic_cell.is_none() {
             return refuse(
                 "an unbounded light needs a slab of medium and `cell`, the side of the cell that stands for it",
             );
@@ -56,9 +57,10 @@ pub(super) fn check(parts: &Parts) -> Result<Option<Stage>> {
             return refuse("an unbounded beam must not run along the faces of its slab");
         }
     }
-    check_fold(parts, stage.as_ref())?;
+    check_fold(parts, periodic_cell.as_ref())?;
     check_apart(parts)?;
     coincident::check(parts)?;
+    coincident::check_marks(parts)?;
     check_extents(parts)?;
     for sensor in &parts.sensors {
         let is_finite = match sensor.quantity {
@@ -73,7 +75,7 @@ pub(super) fn check(parts: &Parts) -> Result<Option<Stage>> {
             }
             Quantity::Radiance(ray) => ray.origin.is_finite() && ray.dir.is_finite(),
             Quantity::Outflow { ref shape, .. } => {
-                if matches!(shape, Shape::Slab(_)) && stage.is_none() {
+                if matches!(shape, Shape::Slab(_)) && periodic_cell.is_none() {
                     return refuse(format!("sensor {} is on a slab, so the scene needs `cell`", sensor.name));
                 }
                 true
@@ -95,7 +97,7 @@ pub(super) fn check(parts: &Parts) -> Result<Option<Stage>> {
             return refuse(format!("sensor {} has a position or direction that is not finite", sensor.name));
         }
     }
-    Ok(stage)
+    Ok(periodic_cell)
 }
 
 /// Whether flights are resolved wherever media are: in the regions, and in interiors as far as their boundaries reach.
@@ -228,7 +230,7 @@ fn check_sizes(parts: &Parts) -> Result<()> {
     parts.camera.iter().try_for_each(|camera| place("camera", camera.position()))
 }
 
-fn stage(parts: &Parts) -> Result<Option<Stage>> {
+fn periodic_cell(parts: &Parts) -> Result<Option<PeriodicCell>> {
     let Some(side) = parts.cell else { return Ok(None) };
     if !(side > 0.0 && side.is_finite()) {
         return Err(Error::out_of_range("cell", side, "finite and above 0"));
@@ -237,8 +239,8 @@ fn stage(parts: &Parts) -> Result<Option<Stage>> {
     let slabs: Vec<Slab> = parts.regions.iter().filter_map(|r| as_slab(&r.shape)).collect();
     let refracting: Vec<Slab> = dielectrics(&parts.objects).filter_map(|o| as_slab(&o.shape)).collect();
     match slabs[..] {
-        _ if !refracting.is_empty() => Ok(Some(Stage { slab: around(&slabs, &refracting)?, side })),
-        [slab] => Ok(Some(Stage { slab, side })),
+        _ if !refracting.is_empty() => Ok(Some(PeriodicCell { slab: around(&slabs, &refracting)?, side })),
+        [slab] => Ok(Some(PeriodicCell { slab, side })),
         _ => refuse(format!("`cell` stands for one slab of medium; this scene has {}", slabs.len())),
     }
 }
@@ -297,7 +299,7 @@ fn check_apart(parts: &Parts) -> Result<()> {
             .filter_map(|(i, light)| Some((format!("lights[{i}]"), light.body()?)));
         if let Some((body, _)) = objects.chain(lamps).find(|(_, shape)| is_on(shape)) {
             return refuse(format!(
-                "{name} is on the surface of {body}, where rounding decides on which side it is; move one of them, if only by a millionth of its size"
+                "{name} is on the surface of {body}, where rounding decides on which side it is; {REMEDY}"
             ));
         }
     }
@@ -388,7 +390,8 @@ pub(super) fn check_power(scene: &Scene) -> Result<()> {
     if scene.lights().is_empty() {
         return Ok(());
     }
-    let power = scene.lights().iter().fold(Spectrum::ZERO, |sum, light| sum + light.power(scene.stage()));
+    let power =
+        scene.lights().iter().fold(Spectrum::ZERO, |sum, light| sum + light.power(scene.periodic_cell()));
     let is_out = |p: &f64| !(1e-30..=1e30).contains(p) && (*p != 0.0 || power.is_black());
     match (0..3).map(|c| power[c]).find(is_out) {
         Some(bad) => {
@@ -399,12 +402,12 @@ pub(super) fn check_power(scene: &Scene) -> Result<()> {
 }
 
 /// Folding positions into a cell is exact only where every part looks the same after a step along x or y.
-fn check_fold(parts: &Parts, stage: Option<&Stage>) -> Result<()> {
-    let Some(stage) = stage else { return Ok(()) };
+fn check_fold(parts: &Parts, periodic_cell: Option<&PeriodicCell>) -> Result<()> {
+    let Some(periodic_cell) = periodic_cell else { return Ok(()) };
     let is_unbounded = |shape: &Shape| matches!(shape, Shape::Slab(_));
     let all_unbounded = parts.regions.iter().all(|r| is_unbounded(&r.shape))
         && parts.objects.iter().all(|o| is_unbounded(&o.shape))
-        && parts.lights.iter().all(Light::needs_stage);
+        && parts.lights.iter().all(Light::needs_cell);
     if !all_unbounded {
         return refuse("with `cell`, every medium, surface and light must be laterally unbounded");
     }
@@ -421,7 +424,7 @@ fn check_fold(parts: &Parts, stage: Option<&Stage>) -> Result<()> {
         };
         if let Some(shape) = shape
             && dielectrics(&parts.objects).next().is_none()
-            && *shape != Shape::Slab(stage.slab)
+            && *shape != Shape::Slab(periodic_cell.slab)
         {
             return refuse("an unbounded light's slab must be the slab of the medium");
         }
@@ -435,6 +438,6 @@ fn extent(shape: &Shape) -> f64 {
         Shape::Sphere(s) => s.center().abs().max_element() + s.radius(),
         Shape::Cuboid(c) => c.min().abs().max_element().max(c.max().abs().max_element()),
         Shape::Slab(s) => s.top().abs() + s.thickness(),
-        Shape::Rectangle(_) | Shape::Mesh(_) | Shape::Lathe(_) => 0.0,
+        Shape::Rectangle(_) | Shape::Mesh(_) | Shape::Revolution(_) => 0.0,
     }
 }

@@ -188,7 +188,9 @@ impl Pilot {
             ));
         }
         let widest = pilot.probes.iter().map(|p| p.reach).fold(0.0, f64::max);
-        let margin = scene.stage().map_or(Ok(0.0), |stage| margin(&chosen, stage.side, widest))?;
+        let margin = scene
+            .periodic_cell()
+            .map_or(Ok(0.0), |periodic_cell| margin(&chosen, periodic_cell.side, widest))?;
         Ok((pilot, chosen, margin))
     }
 
@@ -495,7 +497,7 @@ fn reach(scene: &Scene, sensor: &Sensor) -> f64 {
     let Some(region) = scene.medium_number_at(p).and_then(|number| scene.regions().get(number)) else {
         return 0.0;
     };
-    let half_cell = scene.stage().map_or(f64::INFINITY, |stage| 0.5 * stage.side);
+    let half_cell = scene.periodic_cell().map_or(f64::INFINITY, |periodic_cell| 0.5 * periodic_cell.side);
     let walls = scene.objects().iter().map(|o| o.shape.room(p).abs()).filter(|r| *r > 0.0);
     let others = scene.regions().iter().map(|r| r.shape.room(p).abs());
     let lights = scene.lights().iter().filter_map(|light| match light {

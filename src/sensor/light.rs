@@ -150,7 +150,7 @@ fn expose(
 fn check(scene: &Scene) -> Result<()> {
     let refuse =
         |what: &str| Err(Error::Unreachable(format!("light tracing cannot sample {what}: use paths")));
-    if scene.stage().is_some() {
+    if scene.periodic_cell().is_some() {
         return refuse("an unbounded slab");
     }
     scene.check_emission()

@@ -4,7 +4,7 @@ use super::{Reading, Source, readings};
 use crate::Spectrum;
 use crate::error::{Error, Result};
 use crate::integrators::{Rays, direct_flux, fluence, radiance};
-use crate::light::Stage;
+use crate::light::PeriodicCell;
 use crate::math::{Frame, Ray, warp};
 use crate::photons::check_end;
 use crate::rng::{Purpose, Stream};
@@ -110,7 +110,7 @@ pub fn sample_counted(
     orders: Orders,
     stream: &mut Stream,
 ) -> (Spectrum, Rays) {
-    let side = Stage::side(scene.stage());
+    let side = PeriodicCell::side(scene.periodic_cell());
     let mut sum = Spectrum::ZERO;
     let mut rays = Rays::default();
     match quantity {

@@ -206,7 +206,8 @@ pub(super) fn forecast_of(
     let one = start.elapsed().as_secs_f64() / count as f64;
     let a_history = |number: &AtomicU64| number.load(Ordering::Relaxed) as f64 / count as f64;
     // Copies beyond the edges of the cell.
-    let around = scene.stage().map_or(1.0, |stage| (1.0 + 2.0 * margin / stage.side).powi(2));
+    let around =
+        scene.periodic_cell().map_or(1.0, |periodic_cell| (1.0 + 2.0 * margin / periodic_cell.side).powi(2));
     let [met, copied] = [a_history(&met), a_history(&copied)].map(|n| n * photons as f64 * around);
     // Where several ranges of orders have a map each, the photons of all stay until the last one.
     let bytes = match ranges.len() {
@@ -227,9 +228,9 @@ fn prepared(scene: &Scene, settings: &PhotonSettings) -> Result<(Vec<Sensor>, f6
     for sensor in &sensors {
         check(scene, sensor)?;
     }
-    let margin = scene
-        .stage()
-        .map_or(Ok(0.0), |stage| margin(&sensors, stage.side, settings.estimator.gather.cap()))?;
+    let margin = scene.periodic_cell().map_or(Ok(0.0), |periodic_cell| {
+        margin(&sensors, periodic_cell.side, settings.estimator.gather.cap())
+    })?;
     Ok((sensors, margin))
 }
 
@@ -276,7 +277,7 @@ pub(super) fn maps(
             }
             false => blocks.iter().map(|block| block.iter().copied().filter(holds).collect()).collect(),
         };
-        let cell = scene.stage().map(|stage| (stage.side, margin));
+        let cell = scene.periodic_cell().map(|periodic_cell| (periodic_cell.side, margin));
         let map = PhotonMap::periodic(parts, histories.count, cell, &NoProgress)?;
         maps.push((range, map.of_run(histories.seed, histories.replicate)));
     }

@@ -46,7 +46,7 @@ pub fn check_camera(scene: &Scene, camera: &Camera) -> Result<()> {
     for light in scene.lights() {
         for i in 0..TRIALS {
             let mut stream = Stream::new(0, Purpose::Synthetic, 1, i);
-            if starts_inside(light.emit(scene.stage(), &mut stream).ray.origin) {
+            if starts_inside(light.emit(scene.periodic_cell(), &mut stream).ray.origin) {
                 return Ok(());
             }
         }

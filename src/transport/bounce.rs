@@ -11,7 +11,7 @@ use glam::DVec3;
 
 /// Total reflections without a chance to leave after which light counts as caught: a cube of glass keeps some of the light
 /// that starts inside for ever. Only a body that nothing fills can keep it so long, and it keeps it without loss, mirrors
-/// on it or in it too: what is abandoned would have come out of a round body never, and out of any other long before.
+/// on it or in it too: what is truncated would have come out of a round body never, and out of any other long before.
 const CAUGHT: u32 = 10_000;
 
 /// Whether a ray whose order may not grow is followed beyond a body.
@@ -131,7 +131,7 @@ fn cross<V: Visitor>(
     }
     let is_total = refraction.reflectance >= 1.0;
     if is_total && walker.total_reflections >= CAUGHT {
-        visitor.visit(walker, Step::Abandoned(walker.weight), stream);
+        visitor.visit(walker, Step::Truncated(walker.weight), stream);
         return None;
     }
     let next = Walker {

@@ -76,7 +76,7 @@ pub enum Step<'a> {
     /// The weight leaves the scene.
     Escaped(Spectrum),
     /// The weight is followed no further, since nobody asked for higher orders.
-    Abandoned(Spectrum),
+    Truncated(Spectrum),
 }
 
 /// Who watches a walk.

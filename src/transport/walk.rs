@@ -43,19 +43,19 @@ pub fn walk<V: Visitor>(
     loop {
         if !goes_on(&mut walker, stream) {
             // What survives carries this one's share.
-            visitor.visit(&walker, Step::Abandoned(Spectrum::ZERO), stream);
+            visitor.visit(&walker, Step::Truncated(Spectrum::ZERO), stream);
             return;
         }
         let hit = scene.hit(&walker.ray, walker.from);
         visitor.visit(&walker, Step::Ahead(hit.as_ref()), stream);
         if limit.is_some_and(|limit| walker.order >= limit) {
             let Some(through) = hit.filter(|found| V::LOOKS_AHEAD && is_looked_through(scene, found)) else {
-                visitor.visit(&walker, Step::Abandoned(walker.weight), stream);
+                visitor.visit(&walker, Step::Truncated(walker.weight), stream);
                 return;
             };
             let seen =
                 walker.weight * transmittance(scene, &walker.ray, through.hit.t, walker.within, stream);
-            visitor.visit(&walker, Step::Abandoned(walker.weight - seen), stream);
+            visitor.visit(&walker, Step::Truncated(walker.weight - seen), stream);
             walker.weight = seen;
             match bounce(scene, &walker, &through, roulette, stream, visitor) {
                 Some(next) => {

@@ -167,7 +167,7 @@ fn light_caught_in_a_cube_is_booked() {
     let cone = 0.5 * (1.0 - (1.0 - 1.0 / (index * index)).sqrt());
     verdict::agrees("out of the cube", &pass.tallies[0][0], (6.0 * cone, 1e-15), 0.08, 11);
     let ledger = &pass.report.ledger;
-    let booked = ledger.escaped + ledger.absorbed + ledger.abandoned;
+    let booked = ledger.escaped + ledger.absorbed + ledger.truncated;
     assert!((booked / ledger.emitted - 1.0).abs() < 1e-12 && ledger.absorbed == 0.0);
 }
 

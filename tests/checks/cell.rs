@@ -47,7 +47,7 @@ pub fn unfolded(scene: &Scene) -> Vec<DVec3> {
     let mut visitor = First(Vec::new());
     for history in 0..HISTORIES {
         let mut stream = Stream::new(2, Purpose::Photons, 0, history);
-        let emission = scene.lights()[0].emit(scene.stage(), &mut stream);
+        let emission = scene.lights()[0].emit(scene.periodic_cell(), &mut stream);
         let start = Walker::new(emission.ray, emission.power);
         walk(scene, start, Roulette::Analog, None, &mut stream, &mut visitor);
     }

@@ -357,6 +357,90 @@ fn rays_through_a_point_light_in_fog() {
     succeeds(&["check", text(&with(3.5))]);
 }
 
+/// Light that starts, or is measured, on the very surface of a body is refused in one line: paths took one side of it and
+/// photons the other. A millionth off it is a scene.
+#[test]
+fn light_and_sensors_on_a_body() {
+    let folder = Folder::new();
+    let fog = "[[regions]]\nshape = { sphere = { center = [0, 0, 0], radius = 2 } }\nsigma_t = 1\nalbedo = 0.5\ng = 0\n";
+    let lamp = "[[lights]]\npoint = { position = [0, 0, 1], power = 1 }\n";
+    let object = |shape: &str| {
+        format!("[[objects]]\nshape = {{ {shape} }}\nsurface = {{ lambertian = {{ reflectance = 0.5 }} }}\n")
+    };
+    let (ball, floor) = (
+        "sphere = { center = [0, 0, 0], radius = 2 }",
+        "rectangle = { corner = [-1, -1, -0.5], u = [2, 0, 0], v = [0, 2, 0] }",
+    );
+    let disc = "lathe = { base = [0, 0, -0.5], axis = [0, 0, 1], profile = [[0, 0], [1, 0], [1, -0.2]] }";
+    let isotropic = "[[lights]]\nisotropic = { shape = { sphere = { center = [0, 0, 0], radius = @2 } }, radiance = 1, faces = \"both\" }\n";
+    let beam = "[[lights]]\nbeam = { dir = [0, 0, 1], irradiance = 1, section = { disc = { center = [0, 0, @-0.5], radius = 0.4 } } }\n";
+    let square = "[[lights]]\nbeam = { dir = [0, 0, 1], irradiance = 1, section = { rectangle = { corner = [0, 0, @-0.5], u = [0.5, 0, 0], v = [0, 0.5, 0] } } }\n";
+    let outflow = "[[sensors]]\nname = \"s\"\nmeasure = { outflow = { shape = { sphere = { center = [0, 0, 0], radius = @2 } }, face = \"top\" } }\n";
+    for (part, body, name) in [
+        (isotropic, ball, "lights[1]"),
+        (beam, floor, "lights[1]"),
+        (square, floor, "lights[1]"),
+        (beam, disc, "lights[1]"),
+        (square, disc, "lights[1]"),
+        (outflow, ball, "sensor s"),
+    ] {
+        let on = folder.file("on.toml", &format!("{fog}{lamp}{}{}", object(body), part.replace('@', "")));
+        let words = [
+            "on.toml",
+            name,
+            " lies on the surface of objects[0], where rounding decides",
+            "; move one of them",
+        ];
+        refuses_naming(&["check", text(&on)], &words);
+        let apart = part.replace("@2", "2.00001").replace("@-0.5", "-0.49999");
+        let apart = folder.file("apart.toml", &format!("{fog}{lamp}{}{apart}", object(body)));
+        succeeds(&["check", text(&apart)]);
+    }
+}
+
+/// Surfaces of revolution in one place: two that differ by less than rounding, and flat ends on other faces, where rays
+/// went from one to the other without end (found by `fuzz`), or met one or the other.
+#[test]
+fn revolutions_in_one_place() {
+    let folder = Folder::new();
+    let clear = "surface = { filter = { transmittance = 0.5 } }";
+    let diffuse = "surface = { lambertian = { reflectance = 0.5 } }";
+    let lathe = |base: &str, least: &str| {
+        format!(
+            "shape = {{ lathe = {{ base = [0, 0, {base}], profile = [[0, 0], [0.8, {least}], [0.3, 0.6], [0, 0.7]] }} }}"
+        )
+    };
+    let rectangle =
+        "shape = { rectangle = { corner = [-1, -1, 0], u = [2, 0, 0], v = [0, 2, 0] } }".to_string();
+    let aside = "shape = { rectangle = { corner = [0.9, -1, 0], u = [2, 0, 0], v = [0, 2, 0] } }".to_string();
+    let within =
+        "shape = { rectangle = { corner = [-0.1, -0.1, 0], u = [0.2, 0, 0], v = [0, 0.2, 0] } }".to_string();
+    let ring = "shape = { lathe = { profile = [[0.5, 0], [0.8, 0]] } }".to_string();
+    let block = "shape = { cuboid = { min = [-1, -1, -1], max = [1, 1, 0] } }".to_string();
+    for (a, b, is_refused) in [
+        (lathe("0", "0.2"), lathe("1e-160", "0.2"), true),
+        (lathe("0", "0.2"), lathe("0", "0.20000000000000001"), true),
+        (lathe("0", "0.2"), lathe("0", "0.2001"), false),
+        (lathe("0", "0"), rectangle.clone(), true),
+        (lathe("0", "0"), aside, false),
+        (lathe("1e-5", "0"), rectangle.clone(), false),
+        (lathe("0", "0"), block, true),
+        (ring.clone(), rectangle, true),
+        (ring.clone(), within, false),
+        (lathe("0", "0"), ring, true),
+    ] {
+        let lamp = "[[lights]]\npoint = { position = [0, 0, 3], power = 1 }\n";
+        let scene = format!("{lamp}[[objects]]\n{a}\n{clear}\n[[objects]]\n{b}\n{diffuse}\n");
+        let file = folder.file("lathes.toml", &scene);
+        if is_refused {
+            let words = ["lathes.toml", "objects[0] and objects[1] have surfaces in one place"];
+            refuses_naming(&["check", text(&file)], &words);
+        } else {
+            succeeds(&["check", text(&file)]);
+        }
+    }
+}
+
 /// Two lamps in one place are refused in one line that says what to do.
 #[test]
 fn two_lamps_in_one_place() {

@@ -244,7 +244,7 @@ fn statistics_of_a_picture_tell_its_work() {
     for told in [
         "photons stored of 2000 emitted",
         "first pass of 2000: ",
-        " escaped, 0 abandoned",
+        " escaped, 0 truncated",
         " of final gatherings",
         "shadow rays    ",
         "march steps    ",

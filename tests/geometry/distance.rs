@@ -2,7 +2,7 @@
 
 use glam::{DVec2, DVec3};
 use std::sync::Arc;
-use turbid::geometry::{Cuboid, Ground, Lathe, Rectangle, Shape, Slab, Sphere, Up, height_field};
+use turbid::geometry::{Cuboid, Ground, Rectangle, Revolution, Shape, Slab, Sphere, Up, height_field};
 use turbid::math::{Ray, warp::square_to_sphere};
 use turbid::rng::{Purpose, Stream};
 
@@ -11,7 +11,7 @@ fn shapes() -> Vec<Shape> {
     let hills =
         height_field(&ground, Up::Z, None, |p| 0.2 * libm::sin(5.0 * p.x) * libm::cos(4.0 * p.y)).unwrap();
     let profile = [[0.0, -0.5], [0.4, -0.5], [0.6, 0.1], [0.2, 0.3], [0.3, 0.6], [0.0, 0.7]].map(DVec2::from);
-    let lathe = Lathe::new(DVec3::new(0.1, 0.2, 0.0), DVec3::new(1.0, 2.0, 3.0), &profile).unwrap();
+    let lathe = Revolution::new(DVec3::new(0.1, 0.2, 0.0), DVec3::new(1.0, 2.0, 3.0), &profile).unwrap();
     let tilted = Rectangle::new(
         DVec3::new(-0.3, 0.1, 0.2),
         DVec3::new(0.6, 0.8, 0.0),
@@ -22,7 +22,7 @@ fn shapes() -> Vec<Shape> {
         Shape::Rectangle(tilted.unwrap()),
         Shape::Cuboid(Cuboid::new(DVec3::new(-0.4, -0.6, -0.2), DVec3::new(0.5, 0.3, 0.7)).unwrap()),
         Shape::Mesh(Arc::new(hills)),
-        Shape::Lathe(Arc::new(lathe)),
+        Shape::Revolution(Arc::new(lathe)),
     ]
 }
 
@@ -77,7 +77,7 @@ fn ways_by_hits() {
                 assert!(on.iter().all(|p| front.height(*p - a) < 1e-12), "{shape:?} from {a}");
                 assert!(
                     shape.is_behind(a, &front, 1e-12)
-                        || matches!(shape, Shape::Sphere(_) | Shape::Lathe(_) | Shape::Mesh(_))
+                        || matches!(shape, Shape::Sphere(_) | Shape::Revolution(_) | Shape::Mesh(_))
                 );
             }
         }

@@ -52,7 +52,7 @@ fn shapes_are_read() {
     assert_eq!((shape(0).area(), shape(1).area()), (1.0, 4.0));
     assert_eq!(shape(1).bounds().unwrap().0, DVec3::ONE);
     assert!((shape(2).volume() - 2.0 * std::f64::consts::PI).abs() < 1e-14 && shape(2).is_closed());
-    let Shape::Lathe(pot) = shape(3) else { panic!() };
+    let Shape::Revolution(pot) = shape(3) else { panic!() };
     assert!(!pot.is_closed() && pot.bounds().0.distance(DVec3::Y * 2.0) < 1e-15);
     assert!((shape(4).volume() - 4.0).abs() < 1e-14 && shape(4).is_closed());
     assert!(!shape(5).is_closed() && shape(5).area() > 4.0);

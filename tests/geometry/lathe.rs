@@ -4,7 +4,7 @@ use crate::solids::{crossings, direction, point, stream};
 use crate::support::verdict;
 use glam::{DVec2, DVec3};
 use std::f64::consts::{PI, TAU};
-use turbid::geometry::{Lathe, Mesh, Shape, Sphere, smooth};
+use turbid::geometry::{Mesh, Revolution, Shape, Sphere, smooth};
 use turbid::math::{Frame, Ray, sin_cos};
 
 fn p(radius: f64, height: f64) -> DVec2 {
@@ -15,8 +15,8 @@ fn p(radius: f64, height: f64) -> DVec2 {
 const AXIS: DVec3 = DVec3::new(0.48, 0.6, 0.64);
 const BASE: DVec3 = DVec3::new(0.3, -0.7, 0.2);
 
-fn lathe(profile: &[DVec2]) -> Lathe {
-    Lathe::new(BASE, AXIS, profile).unwrap()
+fn lathe(profile: &[DVec2]) -> Revolution {
+    Revolution::new(BASE, AXIS, profile).unwrap()
 }
 
 /// A closed cylinder of radius 0.8 from height -0.5 to 1.
@@ -141,7 +141,7 @@ fn a_turned_ball_is_the_sphere() {
 #[test]
 fn a_lathe_is_its_mesh() {
     let rings = glass(3);
-    let turned = Lathe::new(DVec3::ZERO, DVec3::Z, &rings).unwrap();
+    let turned = Revolution::new(DVec3::ZERO, DVec3::Z, &rings).unwrap();
     let around = 720u32;
     let mut corners = Vec::new();
     for ring in &rings {
@@ -240,7 +240,7 @@ fn rays_that_start_on_a_lathe_stay_on_their_side() {
 #[test]
 fn points_are_uniform_over_a_lathe() {
     let profile = [p(0.0, 0.0), p(1.0, 0.2), p(0.5, 1.0), p(0.5, 2.0), p(0.0, 2.0)];
-    let solid = Lathe::new(DVec3::ZERO, DVec3::Z, &profile).unwrap();
+    let solid = Revolution::new(DVec3::ZERO, DVec3::Z, &profile).unwrap();
     let n = 40_000;
     let mut s = stream(16);
     let mut counts = vec![0.0; 4 * 2 * 3];
@@ -266,7 +266,7 @@ fn points_are_uniform_over_a_lathe() {
 
 #[test]
 fn bad_profiles_are_refused() {
-    let say = |profile: &[DVec2]| Lathe::new(DVec3::ZERO, DVec3::Z, profile).unwrap_err().to_string();
+    let say = |profile: &[DVec2]| Revolution::new(DVec3::ZERO, DVec3::Z, profile).unwrap_err().to_string();
     assert_eq!(
         say(&[p(0.1, 0.0), p(-0.1, 1.0)]),
         "radius of a profile is -0.1; allowed: finite and at least 0"
@@ -276,7 +276,7 @@ fn bad_profiles_are_refused() {
         assert_eq!(say(profile), "a profile needs two points that are not both on the axis");
     }
     assert!(
-        Lathe::new(DVec3::ZERO, DVec3::ZERO, &can()).is_err()
-            && Lathe::new(DVec3::NAN, DVec3::Z, &can()).is_err()
+        Revolution::new(DVec3::ZERO, DVec3::ZERO, &can()).is_err()
+            && Revolution::new(DVec3::NAN, DVec3::Z, &can()).is_err()
     );
 }

@@ -5,7 +5,7 @@ use crate::support::scenes::octahedron;
 use crate::support::verdict;
 use glam::{DVec2, DVec3};
 use std::f64::consts::{PI, TAU};
-use turbid::geometry::{Cuboid, Lathe, Mesh, Shape};
+use turbid::geometry::{Cuboid, Mesh, Revolution, Shape};
 use turbid::math::{Ray, sin_cos};
 
 /// Where meshes are put: a scale and an offset.
@@ -248,7 +248,7 @@ fn places_on_a_lattice_are_inside_or_outside() {
     let octahedron = Mesh::new(&corners, &faces, None).unwrap();
     assert!(octahedron.is_closed() && octahedron.volume() > 0.0);
     let profile = [DVec2::new(0.0, -1.0), DVec2::new(1.0, 0.0), DVec2::new(0.0, 1.0)];
-    let cones = Lathe::new(DVec3::ZERO, DVec3::Z, &profile).unwrap();
+    let cones = Revolution::new(DVec3::ZERO, DVec3::Z, &profile).unwrap();
     for parts in [16, 25, 26] {
         let at = |i: i32| (f64::from(i) + 0.5) / f64::from(parts) - 2.0;
         let side = 4 * parts;

@@ -14,8 +14,8 @@ use proptest::prelude::*;
 use std::f64::consts::PI;
 use std::sync::Arc;
 use turbid::Spectrum;
-use turbid::geometry::{Lathe, Mesh, Shape, Sphere};
-use turbid::light::{Area, Beam, EmissionNumbers, Faces, Light, Section, Spot, Sun};
+use turbid::geometry::{Mesh, Revolution, Shape, Sphere};
+use turbid::light::{Area, Beam, Faces, Light, PrimarySample, Section, Spot, Sun};
 use turbid::math::{FOUR_PI, Ray, warp};
 use turbid::scene::{Interior, Object, Orders, Parts, Quantity, Scene};
 use turbid::surface::{Black, Surface};
@@ -31,6 +31,11 @@ pub fn lights() -> Vec<(&'static str, Light)> {
     let ball = sphere(DVec3::new(0.2, -0.1, 0.3), 0.8);
     let block = cuboid(DVec3::splat(-0.5), DVec3::new(0.5, 0.25, 0.75));
     let r = rectangle(DVec3::new(-0.5, -0.4, 0.1), DVec3::X, DVec3::Y * 0.8);
+    // Off the lamps, so that all can stand in one scene.
+    let (beside, around) = (
+        rectangle(DVec3::new(-0.5, -0.4, 0.11), DVec3::X, DVec3::Y * 0.8),
+        cuboid(DVec3::splat(-0.51), DVec3::new(0.51, 0.26, 0.76)),
+    );
     let tilted = DVec3::new(0.6, 0.0, 0.8);
     let disc = Section::Disc { center: DVec3::new(0.1, 0.0, -0.3), radius: 0.6 };
     let glowing = |shape: Shape| Light::Area(Area::new(shape, color).unwrap());
@@ -42,9 +47,9 @@ pub fn lights() -> Vec<(&'static str, Light)> {
         ("emitting cuboid", glowing(block.clone())),
         ("spot", Light::Spot(spot)),
         ("disc beam", Light::Beam(Beam::new(tilted, color, disc).unwrap())),
-        ("rectangular beam", Light::Beam(Beam::new(DVec3::Z, color, Section::Rectangle(r)).unwrap())),
+        ("rectangular beam", Light::Beam(Beam::new(DVec3::Z, color, Section::Rectangle(beside)).unwrap())),
         ("isotropic, sphere", isotropic(ball.clone(), Faces::Both)),
-        ("isotropic, cuboid", isotropic(block.clone(), Faces::Both)),
+        ("isotropic, cuboid", isotropic(around, Faces::Both)),
         ("volume source, sphere", volume_source(ball)),
         ("volume source, cuboid", volume_source(block)),
     ]
@@ -257,7 +262,7 @@ fn a_spot_sends_what_it_shows() {
         assert!((power / 3.0 - 1.0).abs() < rounding, "{full} {edge}: {power}");
         let light = Light::Spot(spot);
         let at = |u: f64| {
-            let numbers = EmissionNumbers { position: [0.0; 3], direction: [u, 0.3] };
+            let numbers = PrimarySample { position: [0.0; 3], direction: [u, 0.3] };
             turbid::math::cosine_pair(light.emit_at(None, &numbers).ray.dir, axis).0
         };
         // The numbers are the distribution function of 1 - cos: its slope is the intensity's share.
@@ -435,7 +440,7 @@ fn lamps_hide_themselves() {
     let color = Spectrum::rgb(1.0, 2.0, 0.5);
     let profile = [(0.0, -0.9), (0.4, -0.6), (0.1, -0.2), (0.1, 0.2), (0.4, 0.6), (0.0, 0.9)];
     let profile = profile.map(|(radius, height)| DVec2::new(radius, height));
-    let dumbbell = Shape::Lathe(Arc::new(Lathe::new(DVec3::ZERO, DVec3::Z, &profile).unwrap()));
+    let dumbbell = Shape::Revolution(Arc::new(Revolution::new(DVec3::ZERO, DVec3::Z, &profile).unwrap()));
     let around = cuboid(DVec3::new(-0.7, -0.6, -0.2), DVec3::new(0.9, 0.5, 0.3));
     for (name, shape) in [("two plates", plates(&[0.1, -0.1])), ("dumbbell", dumbbell)] {
         let light = Light::Area(Area::new(shape, color).unwrap());

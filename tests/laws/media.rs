@@ -17,7 +17,7 @@ use proptest::prelude::*;
 use std::f64::consts::PI;
 use std::sync::{Arc, LazyLock};
 use turbid::Spectrum;
-use turbid::geometry::{Lathe, Mesh, Shape};
+use turbid::geometry::{Mesh, Revolution, Shape};
 use turbid::light::{Light, VolumeSource};
 use turbid::math::{FOUR_PI, Frame, Interval, Ray, exp, exp_m1, warp};
 use turbid::medium::{Density, Grid, Heterogeneous, Homogeneous, Medium};
@@ -219,7 +219,7 @@ fn photons_start_where_media_emit() {
             })))
         });
         // The power is known to a few ten-thousandths.
-        let share = scene.power().sum() / scene.ceiling().sum();
+        let share = scene.power().sum() / scene.power_bound().sum();
         verdict::agrees(&format!("sent, density {i}"), &sent, (share, 1e-3 * share), 0.2 * share, 46);
         let photons = tallies(&scene, &[(beside.clone(), Orders::ALL)], MANY / 2, 47);
         let paths = paths(&scene, beside.clone(), Orders::ALL, MANY / 2, 48);
@@ -330,8 +330,9 @@ fn bodies_turned_inside_out_part_the_same_places() {
     let mesh = |faces: &[[u32; 3]]| Shape::Mesh(Arc::new(Mesh::new(&corners, faces, None).unwrap()));
     let profile = [DVec2::new(0.0, -1.0), DVec2::new(1.0, 0.0), DVec2::new(0.0, 1.0)];
     let back = [profile[2], profile[1], profile[0]];
-    let lathe =
-        |profile: &[DVec2]| Shape::Lathe(Arc::new(Lathe::new(DVec3::ZERO, DVec3::Z, profile).unwrap()));
+    let lathe = |profile: &[DVec2]| {
+        Shape::Revolution(Arc::new(Revolution::new(DVec3::ZERO, DVec3::Z, profile).unwrap()))
+    };
     for (right, wrong) in [(mesh(&faces), mesh(&turned)), (lathe(&profile), lathe(&back))] {
         let scene = |shape: Shape, inside: usize| {
             let objects = vec![Object { shape, surface: dielectric(inside, 1 - inside) }];
@@ -366,7 +367,7 @@ fn filled_bodies_emit_by_their_volume() {
     for _ in 0..4 {
         let axis = warp::square_to_sphere(turned.pair());
         for profile in &profiles {
-            shapes.push(Shape::Lathe(Arc::new(Lathe::new(at, axis, profile).unwrap())));
+            shapes.push(Shape::Revolution(Arc::new(Revolution::new(at, axis, profile).unwrap())));
         }
         let frame = Frame::new(axis.normalize());
         let place = |x: f64, y: f64, z: f64| at + frame.to_world(DVec3::new(x, y, z));

@@ -340,7 +340,7 @@ fn what_is_left_out_has_escaped() {
     let (open, closed) = (report(false), report(true));
     for report in [open, closed] {
         let ledger = report.main.ledger;
-        let settled = ledger.absorbed + ledger.escaped + ledger.abandoned;
+        let settled = ledger.absorbed + ledger.escaped + ledger.truncated;
         assert!((settled / ledger.emitted - 1.0).abs() < 1e-10, "{ledger:?}");
         assert!((ledger.emitted / (3.0 * report.main.emitted as f64) - 1.0).abs() < 1e-10, "{ledger:?}");
     }

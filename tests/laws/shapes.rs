@@ -140,7 +140,7 @@ fn depth(shape: &Shape, p: DVec3) -> f64 {
         Shape::Sphere(s) => s.radius() - p.distance(s.center()),
         Shape::Cuboid(c) => (p - c.min()).min(c.max() - p).min_element(),
         Shape::Slab(s) => (p.z - s.top()).min(s.top() + s.thickness() - p.z),
-        Shape::Rectangle(_) | Shape::Mesh(_) | Shape::Lathe(_) => f64::NAN,
+        Shape::Rectangle(_) | Shape::Mesh(_) | Shape::Revolution(_) => f64::NAN,
     }
 }
 

@@ -9,7 +9,7 @@ use std::f64::consts::PI;
 use std::sync::Arc;
 use turbid::Spectrum;
 use turbid::estimators::{Gather, Kernel};
-use turbid::geometry::{Face, Ground, Lathe, Mesh, Shape, Slab, Up, Waves, height_field};
+use turbid::geometry::{Face, Ground, Mesh, Revolution, Shape, Slab, Up, Waves, height_field};
 use turbid::integrators::mapper::{Mapper, Settings};
 use turbid::integrators::path;
 use turbid::light::{Light, Spot};
@@ -50,7 +50,7 @@ fn outer(_: usize, _: DVec3, is_outer: bool) -> f64 {
 
 fn lathe(profile: &[[f64; 2]]) -> Shape {
     let profile: Vec<DVec2> = profile.iter().map(|p| DVec2::from_array(*p)).collect();
-    Shape::Lathe(Arc::new(Lathe::new(DVec3::ZERO, DVec3::Z, &profile).unwrap()))
+    Shape::Revolution(Arc::new(Revolution::new(DVec3::ZERO, DVec3::Z, &profile).unwrap()))
 }
 
 fn floor() -> Shape {

@@ -29,7 +29,7 @@ impl Case {
             regions: scene.regions().to_vec(),
             objects: scene.objects().to_vec(),
             lights: scene.lights().to_vec(),
-            cell: scene.stage().map(|stage| stage.side),
+            cell: scene.periodic_cell().map(|periodic_cell| periodic_cell.side),
             sensors,
             ..Parts::default()
         });

@@ -61,7 +61,7 @@ fn nearest_boundary(shape: &Shape, p: DVec3) -> (f64, DVec3) {
         Shape::Cuboid(c) => (0..3)
             .flat_map(|i| [(p[i] - c.min()[i], DVec3::AXES[i]), (c.max()[i] - p[i], -DVec3::AXES[i])])
             .collect(),
-        Shape::Rectangle(_) | Shape::Mesh(_) | Shape::Lathe(_) => Vec::new(),
+        Shape::Rectangle(_) | Shape::Mesh(_) | Shape::Revolution(_) => Vec::new(),
     };
     faces.into_iter().reduce(|a, b| if b.0 < a.0 { b } else { a }).unwrap()
 }
@@ -325,7 +325,7 @@ fn known_body(body: &Shape) -> referee::Body {
         Shape::Sphere(s) => referee::Body::Sphere { radius: s.radius() },
         Shape::Slab(s) => referee::Body::Slab { thickness: s.thickness() },
         Shape::Cuboid(c) => referee::Body::Cuboid { edges: c.max().to_array() },
-        Shape::Rectangle(_) | Shape::Mesh(_) | Shape::Lathe(_) => referee::Body::HalfSpace,
+        Shape::Rectangle(_) | Shape::Mesh(_) | Shape::Revolution(_) => referee::Body::HalfSpace,
     }
 }
 

@@ -7,7 +7,6 @@ use proptest::prelude::*;
 use rayon::prelude::*;
 use std::collections::BTreeSet;
 use std::f64::consts::PI;
-use std::ops::Range;
 use turbid::estimators::boundary::{Boundary, Rejection, Treatment};
 use turbid::estimators::{
     CosinePairs, Directional, Estimate, Estimator, Gather, Kernel, NeighborCount, ball_sum, count_within,
@@ -349,8 +348,18 @@ fn cube(scale: f64) -> Shape {
 }
 
 /// A place in the cube.
-fn place() -> [Range<f64>; 3] {
-    [0, 1, 2].map(|_| 0.0..1.0)
+fn place() -> [impl Strategy<Value = f64>; 3] {
+    // On faces, edges and corners of the cube, in its middle, and anywhere.
+    [0, 1, 2].map(|_| prop_oneof![Just(0.0), Just(0.5), Just(1.0), 0.0..1.0])
+}
+
+/// The size of the sums that an estimate is made of: its own, but for a fitted line, which cancels them and multiplies what is
+/// left, by up to some hundred in a corner.
+fn summed(estimator: &Estimator, own: Spectrum, ask: impl Fn(&Estimator) -> Spectrum) -> Spectrum {
+    match estimator.treatment {
+        Treatment::None | Treatment::Clipped | Treatment::Reflection => own,
+        Treatment::LocalLinear => ask(&estimator.treated(Treatment::Reflection)) * 100.0,
+    }
 }
 
 #[test]
@@ -395,15 +404,10 @@ proptest! {
         let (at, boundary) = (DVec3::from(at), Boundary::of(&medium).unwrap());
         for estimator in specimens(1.0).into_iter().filter(|e| e.gather.k().is_none()) {
             let ask = |map| estimator.collision_density(map, at, &boundary).value;
-            // Sums of at most 400 non-negative terms: each rounds within 32 x 2^-24; a fitted line cancels and multiplies them,
-            // by up to some hundred in a corner.
-            let size = match estimator.treatment {
-                Treatment::None | Treatment::Clipped | Treatment::Reflection => ask(&all),
-                Treatment::LocalLinear => {
-                    let mirrored = estimator.treated(Treatment::Reflection);
-                    mirrored.collision_density(&all, at, &boundary).value * 100.0
-                }
-            };
+            let size = summed(&estimator, ask(&all), |mirrored| {
+                mirrored.collision_density(&all, at, &boundary).value
+            });
+            // Sums of at most 400 non-negative terms: each rounds within 32 x 2^-24.
             let off = (ask(&a) + ask(&b) - ask(&all)).0.abs();
             prop_assert!(off.cmple(4e-6 * size.0).all(), "{}: {off} of {size:?}", estimator.name());
         }
@@ -453,7 +457,10 @@ proptest! {
             let found = estimator.in_scattered(&map, at, DVec3::Z, &Isotropic, sigma_t, &boundary);
             let fluence = estimator.fluence(&map, at, sigma_t, &boundary).value / FOUR_PI;
             let off = (found.value - fluence).0.abs();
-            prop_assert!(off.cmple(1e-6 * fluence.0.abs()).all(), "{}: {off}", estimator.name());
+            let size = summed(&estimator, fluence, |mirrored| {
+                mirrored.fluence(&map, at, sigma_t, &boundary).value / FOUR_PI
+            });
+            prop_assert!(off.cmple(1e-6 * size.0).all(), "{}: {off}", estimator.name());
             let nowhere = estimator.fluence(&map, DVec3::new(0.5, f64::NAN, 0.5), sigma_t, &boundary).value;
             prop_assert!(nowhere[0].is_nan(), "{}: {nowhere:?}", estimator.name());
         }

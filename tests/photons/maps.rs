@@ -87,13 +87,13 @@ fn power_is_accounted_for() {
     let report = filled(&room(mirror(), 0.5), settings(Indirect::Seen)).report;
     for pass in [report.main, report.caustic] {
         let (ends, ledger) = (pass.ends, pass.ledger);
-        assert_eq!(ends.absorbed + ends.escaped + ends.abandoned, pass.emitted);
-        let ended = ledger.absorbed + ledger.escaped + ledger.abandoned;
+        assert_eq!(ends.absorbed + ends.escaped + ends.truncated, pass.emitted);
+        let ended = ledger.absorbed + ledger.escaped + ledger.truncated;
         // Sums of 20,000 equal numbers.
         assert!((ended / ledger.emitted - 1.0).abs() < 1e-10, "{ledger:?}");
         assert_eq!(ends.escaped, 0);
     }
-    assert!(report.caustic.ends.abandoned > 0 && report.main.ends.abandoned == 0);
+    assert!(report.caustic.ends.truncated > 0 && report.main.ends.truncated == 0);
     assert!(report.bytes > 40 * 20_000);
 }
 

@@ -13,7 +13,7 @@ use std::sync::Arc;
 use turbid::Spectrum;
 use turbid::estimators::boundary::{Boundary, Treatment};
 use turbid::estimators::{Estimator, Gather, Kernel};
-use turbid::geometry::{Ground, Lathe, Mesh, Shape, Up, height_field};
+use turbid::geometry::{Ground, Mesh, Revolution, Shape, Up, height_field};
 use turbid::integrators::mapper::{Mapper, Settings, medium_extents};
 use turbid::integrators::path;
 use turbid::math::{Asymmetry, FOUR_PI, Ray};
@@ -102,7 +102,7 @@ fn mesh_ball(center: DVec3, radius: f64) -> Shape {
 
 fn lathe(profile: &[[f64; 2]]) -> Shape {
     let profile: Vec<DVec2> = profile.iter().map(|p| DVec2::from(*p)).collect();
-    Shape::Lathe(Arc::new(Lathe::new(DVec3::ZERO, DVec3::Z, &profile).unwrap()))
+    Shape::Revolution(Arc::new(Revolution::new(DVec3::ZERO, DVec3::Z, &profile).unwrap()))
 }
 
 /// Ground with hills, closed below: heights of a tenth about z = 0.

@@ -19,7 +19,7 @@ fn with_sensors(scene: &Scene, quantities: &[(Quantity, Orders)]) -> Scene {
     Scene::new(Parts {
         regions: scene.regions().to_vec(),
         lights: scene.named_lights().to_vec(),
-        cell: scene.stage().map(|stage| stage.side),
+        cell: scene.periodic_cell().map(|periodic_cell| periodic_cell.side),
         sensors: sensors.collect(),
         ..Parts::default()
     })

@@ -72,7 +72,7 @@ pub fn watched<const N: usize, W: Watcher<N>>(
         let mut moments = [Moments::new(); N];
         for history in range {
             let mut stream = Stream::new(seed, Purpose::Photons, 0, history);
-            let ray = scene.lights()[0].emit(scene.stage(), &mut stream).ray;
+            let ray = scene.lights()[0].emit(scene.periodic_cell(), &mut stream).ray;
             let from = scene.lights()[0].body().map(|_| Start { target: Target::Light(0), primitive: 0 });
             let start = Walker { from, ..Walker::new(ray, Spectrum::ONE) };
             let mut watching = Watching::<W, N>(watcher());

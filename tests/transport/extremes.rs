@@ -35,7 +35,7 @@ fn with_sensors(scene: &Scene, quantities: &[Quantity]) -> Scene {
         regions: scene.regions().to_vec(),
         objects: scene.objects().to_vec(),
         lights: scene.lights().to_vec(),
-        cell: scene.stage().map(|s| s.side),
+        cell: scene.periodic_cell().map(|s| s.side),
         sensors: quantities.iter().map(|q| crate::support::run::sensor(q.clone(), Orders::ALL)).collect(),
         ..Parts::default()
     })

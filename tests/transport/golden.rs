@@ -58,7 +58,7 @@ fn emission() {
     let found: Vec<String> = lights
         .iter()
         .map(|light| {
-            let ray = light.emit(scene.stage(), &mut Stream::new(1, Purpose::Photons, 0, 0)).ray;
+            let ray = light.emit(scene.periodic_cell(), &mut Stream::new(1, Purpose::Photons, 0, 0)).ray;
             format!(
                 "{:016x}",
                 digest(

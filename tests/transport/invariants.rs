@@ -76,7 +76,7 @@ fn all_scenes() -> Vec<(String, Scene)> {
     all
 }
 
-/// Emitted = absorbed + escaped (+ abandoned, where histories stop): to rounding, 1e-12 over 2^14 histories.
+/// Emitted = absorbed + escaped (+ truncated, where histories stop): to rounding, 1e-12 over 2^14 histories.
 #[test]
 fn energy_is_conserved() {
     for (name, scene) in all_scenes() {
@@ -84,13 +84,13 @@ fn energy_is_conserved() {
             let histories = Histories { count: 1 << 14, seed: 1, replicate: 0, max_order };
             let pass = shoot(&scene, histories, scene.sensors(), |_| false, &NoProgress).unwrap();
             let ledger = pass.report.ledger;
-            let settled = ledger.absorbed + ledger.escaped + ledger.abandoned;
+            let settled = ledger.absorbed + ledger.escaped + ledger.truncated;
             assert!((settled / ledger.emitted - 1.0).abs() < 1e-12, "{name}, {max_order:?}: {ledger:?}");
             assert!(
                 (ledger.emitted / (scene.power().sum() * pass.emitted() as f64) - 1.0).abs() < 1e-12,
                 "{name}"
             );
-            assert!(max_order.is_some() || ledger.abandoned == 0.0);
+            assert!(max_order.is_some() || ledger.truncated == 0.0);
         }
     }
 }

@@ -1,7 +1,7 @@
 //! How rows become the arguments of commands: columns are options, quantities are what the answers call them.
 
 use super::row::{COLUMNS, Row};
-use anyhow::{Result, bail};
+use anyhow::{Result, bail, ensure};
 
 /// One kind of question of a table.
 pub struct Geometry {
@@ -67,7 +67,7 @@ pub const GEOMETRIES: [Geometry; 9] = [
             (&["R_spherical"], "reflectance", &["--mu0=diffuse"], &[]),
             (&["A"], "absorptance", &[], &["mu0"]),
             (&["radiance_up"], "radiance", &[], &["mu0", "mu"]),
-            (&["radiance_up_mu0_1_unit_irradiance"], "radiance", &[], &["mu"]),
+            (&["radiance_up_mu0_1_unit_irradiance"], "radiance", &["--mu0=1"], &["mu"]),
             (&["fluence"], "fluence", &[], &["mu0", "t"]),
             (&["flux"], "flux", &[], &["mu0", "t"]),
             (&["extrapolation_length"], "extrapolation_length", &["--milne"], &[]),
@@ -249,7 +249,14 @@ impl Geometry {
     /// What a row asks of the command, or a note why it cannot.
     pub fn words(&self, row: &Row) -> Result<std::result::Result<Words, String>> {
         let (called, quantity) = (self.called, row.text("quantity"));
-        let ordered = row.extra("order").is_some() && self.columns.iter().any(|column| column.0 == "order");
+        if let Some(unknown) = row.extras().find(|name| !is_known(name)) {
+            return Ok(Err(format!("no question has '{unknown}' in extra")));
+        }
+        let knows_orders = self.columns.iter().any(|column| column.0 == "order");
+        let ordered = row.extra("order").is_some() && knows_orders;
+        if row.extra("order").is_some() && !knows_orders {
+            return Ok(Err(format!("{called} is not answered by order here")));
+        }
         let name = if ordered { format!("{quantity} by order") } else { quantity.to_string() };
         let found = self.quantities.iter().find(|(names, ..)| names.contains(&name.as_str()));
         let by_order = format!("quantity {quantity} is not answered by order");
@@ -262,7 +269,9 @@ impl Geometry {
             return Ok(Err("refracting faces are asked by geometry slab_fresnel".into()));
         }
         let mut words = vec!["exact".to_string(), self.command.to_string()];
-        words.extend(options.iter().map(|option| filled(option, row)));
+        for option in *options {
+            words.push(filled(option, row)?);
+        }
         match self.scattering {
             Scattering::Any => match phase(row) {
                 Ok(options) => words.extend(options),
@@ -280,12 +289,28 @@ impl Geometry {
             if cell.contains(',') {
                 bail!("{column} is '{cell}'; allowed: one value");
             }
-            let is_given = options.iter().any(|given| given.starts_with(&option));
-            if !is_given && (needed.contains(column) || !cell.is_empty()) {
+            let given = options.iter().find_map(|given| given.strip_prefix(&option));
+            if let ("kernel", Some(only), false) = (*column, given, cell.is_empty())
+                && !only.starts_with('{')
+                && only != cell
+            {
+                return Ok(Err(format!("quantity {quantity} is answered here with kernel={only} only")));
+            }
+            let is_asked = needed.contains(column) || !cell.is_empty() || ordered && *column == "order";
+            if given.is_none() && is_asked {
                 words.push(option + &plain(cell));
             }
         }
         Ok(Ok(Words { words, wanted, absent }))
+    }
+
+    /// What is allowed of a count.
+    pub fn counts(column: &str) -> &'static str {
+        match column {
+            "order in extra" => "a whole number, 0 to 1000",
+            "d in extra" => "1, 2 or 3",
+            _ => "a whole number",
+        }
     }
 
     /// The column that an option came from, or the name in `extra`.
@@ -297,13 +322,25 @@ impl Geometry {
 }
 
 /// An option with a cell in the place of its name.
-fn filled(option: &str, row: &Row) -> String {
+fn filled(option: &str, row: &Row) -> Result<String> {
     let Some((front, name)) = option.strip_suffix('}').and_then(|option| option.split_once('{')) else {
-        return option.to_string();
+        return Ok(option.to_string());
     };
     let (name, empty) = name.split_once('|').unwrap_or((name, ""));
     let cell = Some(row.text(name)).filter(|cell| !cell.is_empty()).unwrap_or(empty);
-    format!("{front}{}", plain(cell))
+    ensure!(!cell.is_empty(), "{name} is ''; allowed: a number");
+    Ok(format!("{front}{}", plain(cell)))
+}
+
+/// Names in `extra` of questions that have no command: see `closed`.
+const CLOSED: [&str; 5] = ["q2pi_nu_r", "D", "h", "T", "alpha"];
+
+/// Whether some question has a name in `extra`.
+fn is_known(name: &str) -> bool {
+    let columns = GEOMETRIES.iter().flat_map(|geometry| geometry.columns);
+    ["phase", "g2", "share"].contains(&name)
+        || CLOSED.contains(&name)
+        || columns.map(|column| column.0).any(|column| column == name)
 }
 
 /// The phase function of a row: Henyey-Greenstein by its column, others by name in `extra`.

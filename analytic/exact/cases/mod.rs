@@ -12,7 +12,7 @@ use crate::text::one_line;
 use crate::usage;
 use anyhow::{Context, Error, Result, anyhow, bail};
 use clap::{FromArgMatches, Subcommand};
-use geometry::GEOMETRIES;
+use geometry::{GEOMETRIES, Geometry};
 use row::{COLUMNS, Row};
 use serde::ser::{Serialize, SerializeMap, Serializer};
 use std::path::Path;
@@ -39,7 +39,7 @@ pub fn answer(path: &Path, format: Format, output: &mut Vec<u8>) -> Result<Optio
     for i in order {
         let row = &rows[i];
         answers[i] = Some(match reader.answer(row) {
-            Err(error) if error.is::<turbid_analytic::Error>() => {
+            Err(error) if error.is::<turbid_analytic::Error>() || error.is::<Unanswered>() => {
                 refused.push((row.line, format!("{error:#}")));
                 Err(format!("{error:#}"))
             }
@@ -61,6 +61,11 @@ pub fn answer(path: &Path, format: Format, output: &mut Vec<u8>) -> Result<Optio
     write(&answered, format, output)?;
     Ok(first)
 }
+
+/// A question that was understood and that has no answer: it costs its row alone.
+#[derive(Debug, thiserror::Error)]
+#[error("{0:#}")]
+struct Unanswered(Error);
 
 /// Rows become questions here, and what they solve serves the next.
 struct Reader {
@@ -92,9 +97,10 @@ impl Reader {
         };
         let command = self.parser.try_get_matches_from_mut(asked.words);
         let command = command.and_then(|matches| Command::from_arg_matches(&matches));
-        let command = command
-            .map_err(|error| anyhow!("{}", usage::of_cell(&error, |option| geometry.column(option))))?;
-        let answer = ask(command.question(), Some(asked.wanted), &self.solved)?;
+        let command = command.map_err(|error| {
+            anyhow!("{}", usage::of_cell(&error, |option| geometry.column(option), Geometry::counts))
+        })?;
+        let answer = ask(command.question(), Some(asked.wanted), &self.solved).map_err(Unanswered)?;
         let value = answer.rows.first().map(|row| row.value);
         Ok(value.ok_or(asked.absent))
     }

@@ -23,6 +23,11 @@ impl Row {
         }
     }
 
+    /// All names in the column `extra`.
+    pub fn extras(&self) -> impl Iterator<Item = &str> {
+        self.text("extra").split(';').filter_map(|pair| Some(pair.split_once('=')?.0.trim()))
+    }
+
     /// A `name=value` of the column `extra`.
     pub fn extra(&self, name: &str) -> Option<&str> {
         let pairs = self.text("extra").split(';').filter_map(|pair| pair.split_once('='));

@@ -48,6 +48,8 @@ pub(crate) fn compose(figure: &Figure) -> Result<Page, Error> {
     let mut places: Vec<Place> =
         figure.panels.iter().map(|p| if figure.shared_legend { Place::Hidden } else { p.legend }).collect();
     let mut layout = arrange(figure, &spans, &places, width, top, &fonts)?;
+    // Before anything is drawn: dashes and bars take memory in proportion to the height.
+    check_height(layout.bottom)?;
     for (i, panel) in figure.panels.iter().enumerate() {
         if places[i] == Place::Auto {
             let plot = Plot { rect: layout.rects[i], spans: spans[i] };
@@ -63,6 +65,7 @@ pub(crate) fn compose(figure: &Figure) -> Result<Page, Error> {
     }
     // Legends below change heights only, so that corners found free stay free.
     layout = arrange(figure, &spans, &places, width, top, &fonts)?;
+    check_height(layout.bottom)?;
 
     let mut marks = Vec::new();
     for (i, line) in title.iter().enumerate() {
@@ -85,12 +88,18 @@ pub(crate) fn compose(figure: &Figure) -> Result<Page, Error> {
             bottom += LEGEND_GAP + legend.height();
         }
     }
+    check_height(bottom)?;
+    let name = if figure.title.is_empty() { figure.panels[0].title.clone() } else { figure.title.clone() };
+    Ok(Page { width, height: bottom + BORDER, name, marks })
+}
+
+/// Refuses a page that is too tall, from the end of what is on it [pt].
+fn check_height(bottom: f64) -> Result<(), Error> {
     let millimetres = (bottom + BORDER) * 25.4 / 72.0;
     if millimetres.is_nan() || millimetres > TALLEST {
         return Err(Error::Tall { millimetres, allowed: TALLEST });
     }
-    let name = if figure.title.is_empty() { figure.panels[0].title.clone() } else { figure.title.clone() };
-    Ok(Page { width, height: bottom + BORDER, name, marks })
+    Ok(())
 }
 
 /// The legend of a panel outside its plot, and the room it takes there.

@@ -408,8 +408,8 @@ fn photons(scene: &Scene, camera: &Camera, indirect: Indirect, is_steered: bool)
 
 fn measured(scene: &Scene) -> turbid::Result<()> {
     let densest = scene.regions().iter().map(|r| r.medium.highest_sigma_t().max()).fold(0.0, f64::max);
-    let cap = match scene.stage() {
-        Some(stage) => 0.5 * stage.side,
+    let cap = match scene.periodic_cell() {
+        Some(periodic_cell) => 0.5 * periodic_cell.side,
         None if densest > 0.0 => 1.0 / densest,
         None => 1.0,
     };

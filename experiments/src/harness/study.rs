@@ -294,7 +294,11 @@ fn plan(experiment: &Experiment, settings: &Settings) -> anyhow::Result<Vec<(Cel
         for cell in group.cells() {
             let name = experiment.name;
             ensure!(cell.is_file_safe(), "{name}: the group {:?} is no name for a file", cell.group);
-            ensure!(seen.insert(cell.id()), "{name}: two cells are called {}", cell.id());
+            ensure!(
+                seen.insert(cell.id()),
+                "{name}: two cells are called {}: at this --photons two numbers of photons are one",
+                cell.id()
+            );
             cells.push((cell, group.measure.clone()));
         }
     }

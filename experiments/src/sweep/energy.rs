@@ -33,7 +33,7 @@ impl Visitor for Tally {
 
     fn visit(&mut self, _walker: &Walker, step: Step, _stream: &mut Stream) {
         match step {
-            Step::Absorbed(weight, _) | Step::Escaped(weight) | Step::Abandoned(weight) => {
+            Step::Absorbed(weight, _) | Step::Escaped(weight) | Step::Truncated(weight) => {
                 self.ended += weight
             }
             Step::Ahead(_) => self.steps += 1.0,

@@ -240,7 +240,7 @@ fn once(
     }
     let endless = cannot_emit(&scene);
     let endless = endless.as_deref();
-    let (has_paths, has_photons) = (scene.plan().unreachable.is_empty(), scene.stage().is_none());
+    let (has_paths, has_photons) = (scene.plan().unreachable.is_empty(), scene.periodic_cell().is_none());
     stage("energy");
     let balance = energy(&scene, seed, effort);
     let steps = balance.as_ref().map_or(1.0, |e| e.steps);

@@ -34,7 +34,7 @@ impl Source {
     }
 
     /// What messages call it.
-    fn name(&self) -> String {
+    pub fn name(&self) -> String {
         self.scene.display().to_string()
     }
 

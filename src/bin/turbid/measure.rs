@@ -8,7 +8,7 @@ use super::shared::{FormatName, kernels, note, on_threads, parse_count, tell_ahe
 use anyhow::{Context, bail};
 use clap::ValueEnum;
 use turbid::estimators::{Estimator, Gather, Kernel};
-use turbid::output::{print, write_rows};
+use turbid::output::{one_line, print, write_rows};
 use turbid::scene::{Orders, Scene};
 use turbid::sensor::{
     NoError, PathSettings, PhotonSettings, Reading, by_paths, by_photons_in_passes, forecast,
@@ -102,12 +102,17 @@ impl Measure {
     pub fn run(self) -> anyhow::Result<()> {
         let scene = self.source.load()?;
         if scene.sensors().is_empty() {
-            bail!("the scene has no sensors: nothing to measure");
+            bail!("{}: the scene has no sensors: nothing to measure", self.source.name());
         }
-        let (readings, mut notes) = on_threads(self.threads, || match self.with {
+        let (mut readings, mut notes) = on_threads(self.threads, || match self.with {
             With::Path => self.measure_by_paths(&scene),
             With::Photons => self.measure_by_photons(&scene),
         })?;
+        // Names come from files, and go to terminals.
+        for reading in &mut readings {
+            reading.sensor = one_line(&reading.sensor);
+            reading.quantity = one_line(&reading.quantity);
+        }
         notes.extend(without_error(&readings));
         let format = self.format.format();
         print(|out| write_rows(out, &readings, format)).context("standard output")?;
@@ -123,7 +128,7 @@ impl Measure {
         let bar = Bar::new(self.samples.saturating_mul(scene.sensors().len() as u64));
         let readings = by_paths(scene, &settings, &bar);
         bar.finish();
-        Ok((readings?, Vec::new()))
+        Ok((readings.with_context(|| self.source.name())?, Vec::new()))
     }
 
     fn measure_by_photons(&self, scene: &Scene) -> anyhow::Result<(Vec<Reading>, Vec<String>)> {
@@ -155,7 +160,7 @@ impl Measure {
                 settings.photons
             );
         }
-        let ahead = forecast(scene, &settings, self.passes)?;
+        let ahead = forecast(scene, &settings, self.passes).with_context(|| self.source.name())?;
         self.memory.check(&format!("a map of {:.2e} photons", ahead.stored), ahead.bytes, 0.0, |part| {
             let fewer = rounded_down(self.photons as f64 * part);
             let passes = passes_that_fit(self.passes, part);
@@ -169,14 +174,14 @@ impl Measure {
         let bar = Bar::new(settings.photons.saturating_mul(settings.maps));
         let result = by_photons_in_passes(scene, &settings, self.passes, &bar);
         bar.finish();
-        let result = result?;
+        let result = result.with_context(|| self.source.name())?;
         let ledger = &result.ledger;
-        let [absorbed, escaped, abandoned] =
-            [ledger.absorbed, ledger.escaped, ledger.abandoned].map(|power| power / ledger.emitted);
+        let [absorbed, escaped, truncated] =
+            [ledger.absorbed, ledger.escaped, ledger.truncated].map(|power| power / ledger.emitted);
         let mut notes = vec![format!(
-            "energy ledger: of the emitted power {absorbed:.6} was absorbed, {escaped:.6} escaped, {abandoned:.6} was \
+            "energy ledger: of the emitted power {absorbed:.6} was absorbed, {escaped:.6} escaped, {truncated:.6} was \
              followed no further; together {:.12}",
-            absorbed + escaped + abandoned
+            absorbed + escaped + truncated
         )];
         if result.beyond > 0 {
             notes.push(format!(
@@ -210,8 +215,8 @@ fn without_error(readings: &[Reading]) -> Vec<String> {
 /// Half the cell, or a mean free path of the densest medium.
 fn default_cap(scene: &Scene) -> f64 {
     let densest = scene.regions().iter().map(|r| r.medium.highest_sigma_t().max()).fold(0.0, f64::max);
-    match scene.stage() {
-        Some(stage) => 0.5 * stage.side,
+    match scene.periodic_cell() {
+        Some(periodic_cell) => 0.5 * periodic_cell.side,
         None if densest > 0.0 => 1.0 / densest,
         None => 1.0,
     }

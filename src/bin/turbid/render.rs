@@ -34,7 +34,7 @@ use turbid::sensor::{Film, LIGHT_BYTES, LIGHT_PIXEL_BYTES, Method, Streams};
 /// Light tracing (--with light) is unbiased too, and a second witness for caustics, which paths find badly or not at all:
 /// photons start from the lights and are connected to the camera at each scattering, so that --samples counts histories a
 /// pixel, wherever they are seen. It holds what scatters last on a diffuse surface or in a medium that the camera sees straight
-/// or through filters. The rest is black in it: lights and glowing media seen directly, the whole emission layer, and all that is
+/// or through filters. The rest is black in it: lights and emitting media seen directly, the whole emission layer, and all that is
 /// seen in mirrors and through glass.
 ///
 /// A first picture, without any file: `turbid render fogbox -o fog.exr --gather-rays 0`, in seconds; without the last
@@ -167,7 +167,7 @@ impl Render {
                 scene.plan().unreachable.join("; ")
             );
         }
-        if scene.stage().is_some() && self.with != With::Paths {
+        if scene.periodic_cell().is_some() && self.with != With::Paths {
             bail!(
                 "pictures of a scene with `cell`, which stands for an unbounded slab, are made by paths: --with paths"
             );

@@ -34,10 +34,10 @@ pub fn print_statistics(made: &Made, exposure: f64) -> anyhow::Result<()> {
         }
         for (name, pass) in [("first", &report.main), ("caustic", &report.caustic)] {
             if pass.emitted > 0 {
-                let (Ends { absorbed, escaped, abandoned, refused }, sent) = (pass.ends, pass.emitted);
+                let (Ends { absorbed, escaped, truncated, refused }, sent) = (pass.ends, pass.emitted);
                 write!(
                     text,
-                    "map {number:<3} {name} pass of {sent}: {absorbed} absorbed, {escaped} escaped, {abandoned} abandoned"
+                    "map {number:<3} {name} pass of {sent}: {absorbed} absorbed, {escaped} escaped, {truncated} truncated"
                 )?;
                 match refused {
                     0 => writeln!(text)?,

@@ -21,7 +21,7 @@ pub(super) fn images(body: &Shape, point: DVec3, radius: f64) -> Vec<DVec3> {
             let image = point - inward_normal(body, point) * (2.0 * room);
             return if room < radius { vec![image] } else { Vec::new() };
         }
-        Shape::Rectangle(_) | Shape::Mesh(_) | Shape::Lathe(_) => return Vec::new(),
+        Shape::Rectangle(_) | Shape::Mesh(_) | Shape::Revolution(_) => return Vec::new(),
     };
     // Each axis in turn mirrors what there is; the sum of squares is the squared distance of an image from the body.
     let mut found = vec![(point, 0.0)];

@@ -32,6 +32,6 @@ pub use surfaces::Boundary;
 pub use treatment::Treatment;
 
 pub(super) use accepted::accepted;
-pub(super) use rejection::Sieve;
+pub(super) use rejection::PhotonFilter;
 pub(super) use treatment::Gathered;
 pub(super) use visible::Surroundings;

@@ -26,7 +26,7 @@ pub fn body_moments(kernel: Kernel, body: &Shape, point: DVec3, radius: f64) -> 
     }
     let scaled = |distance: f64| distance.max(0.0) / radius;
     match body {
-        Shape::Rectangle(_) | Shape::Mesh(_) | Shape::Lathe(_) => [0.0; 3],
+        Shape::Rectangle(_) | Shape::Mesh(_) | Shape::Revolution(_) => [0.0; 3],
         Shape::Sphere(sphere) => in_sphere(kernel, sphere, point, radius),
         Shape::Slab(slab) => {
             let z = [point.z - slab.top(), slab.face(Face::Bottom) - point.z];
@@ -78,7 +78,7 @@ pub(super) fn inward_normal(body: &Shape, point: DVec3) -> DVec3 {
         }
         Shape::Rectangle(rectangle) => rectangle.normal(),
         // Not solid: no treatment of a boundary asks them.
-        Shape::Mesh(_) | Shape::Lathe(_) => DVec3::Z,
+        Shape::Mesh(_) | Shape::Revolution(_) => DVec3::Z,
     }
 }
 

@@ -55,15 +55,15 @@ struct Foot {
 }
 
 /// A rejection about one point.
-pub(in crate::estimators) struct Sieve<'a> {
+pub(in crate::estimators) struct PhotonFilter<'a> {
     rejection: Rejection,
     foot: Foot,
     walls: &'a [Shape],
     point: DVec3,
 }
 
-impl<'a> Sieve<'a> {
-    /// The sieve about a point, unless nothing is rejected there.
+impl<'a> PhotonFilter<'a> {
+    /// The filter about a point, unless nothing is rejected there.
     pub(in crate::estimators) fn new(
         rejection: Rejection,
         walls: &'a [Shape],
@@ -75,7 +75,7 @@ impl<'a> Sieve<'a> {
         }
         let feet = walls.iter().filter_map(|wall| foot(wall, point, rejection));
         let nearest = feet.reduce(|best, other| if other.distance < best.distance { other } else { best })?;
-        (nearest.distance < reach).then_some(Sieve { rejection, foot: nearest, walls, point })
+        (nearest.distance < reach).then_some(PhotonFilter { rejection, foot: nearest, walls, point })
     }
 
     /// Whether a photon is kept.
@@ -145,6 +145,6 @@ fn foot(wall: &Shape, p: DVec3, rejection: Rejection) -> Option<Foot> {
             }
             Some(from(place, outward))
         }
-        Shape::Mesh(_) | Shape::Lathe(_) => None,
+        Shape::Mesh(_) | Shape::Revolution(_) => None,
     }
 }

@@ -224,7 +224,7 @@ impl Place<'_> {
                 let Tangent { slope, turn, .. } = self.tangent;
                 sphere.radius() * (2.0 * slope).min(turn) * (1.0 + SAME)
             }
-            shape @ (Shape::Mesh(_) | Shape::Lathe(_)) => {
+            shape @ (Shape::Mesh(_) | Shape::Revolution(_)) => {
                 shape.bounds().map_or(f64::INFINITY, |(_, radius)| 2.0 * radius)
             }
             _ => f64::INFINITY,
@@ -440,7 +440,7 @@ fn faces(shape: &Shape) -> Vec<Option<Rectangle>> {
             };
             (0..6).map(face).collect()
         }
-        Shape::Sphere(_) | Shape::Slab(_) | Shape::Mesh(_) | Shape::Lathe(_) => Vec::new(),
+        Shape::Sphere(_) | Shape::Slab(_) | Shape::Mesh(_) | Shape::Revolution(_) => Vec::new(),
     }
 }
 

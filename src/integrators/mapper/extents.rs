@@ -76,7 +76,7 @@ fn enters(body: &Shape, solid: &Shape) -> bool {
             let far = f64::INFINITY;
             (DVec3::new(-far, -far, slab.top()), DVec3::new(far, far, slab.face(Face::Bottom)))
         }
-        Shape::Rectangle(_) | Shape::Mesh(_) | Shape::Lathe(_) => return true,
+        Shape::Rectangle(_) | Shape::Mesh(_) | Shape::Revolution(_) => return true,
     };
     let margin = ON_FACE * solid.shortest_extent();
     let (low, high) = (low + margin, high - margin);
@@ -105,7 +105,7 @@ fn enters(body: &Shape, solid: &Shape) -> bool {
             })
         }),
         Shape::Mesh(mesh) => (0..mesh.len()).any(|index| meets_points(&mesh.triangle(index as u32))),
-        Shape::Lathe(lathe) => {
+        Shape::Revolution(lathe) => {
             let (center, radius) = lathe.bounds();
             center.distance(center.clamp(low, high)) < radius
         }

@@ -164,7 +164,7 @@ pub(super) fn learn(
         cells_towards_scene(scene, CELLS).map_or_else(all, |(cells, _)| cells);
     let powers: Vec<f64> = cells
         .iter()
-        .map(|(light, cell)| scene.lights()[*light].ceiling(scene.stage()).sum() * cell.volume())
+        .map(|(light, cell)| scene.lights()[*light].power_bound(scene.periodic_cell()).sum() * cell.volume())
         .collect();
     let dark = || Error::Scene("no photon comes where the camera reads them; importance cannot help".into());
     let whole: f64 = powers.iter().sum();

@@ -53,7 +53,7 @@ impl<V: Visitor> Visitor for Flight<'_, V> {
     fn visit(&mut self, walker: &Walker, step: Step, stream: &mut Stream) {
         match step {
             Step::Ahead(_) if walker.order > self.order => return,
-            Step::Abandoned(_) if walker.order > self.order => {
+            Step::Truncated(_) if walker.order > self.order => {
                 self.next = Some(*walker);
                 return;
             }
@@ -93,7 +93,7 @@ impl Importance {
         let mut waiting = vec![(start, None)];
         while let Some((walker, event)) = waiting.pop() {
             if limit.is_some_and(|limit| walker.order >= limit) {
-                visitor.visit(&walker, Step::Abandoned(walker.weight), stream);
+                visitor.visit(&walker, Step::Truncated(walker.weight), stream);
                 continue;
             }
             visitor.enter(event);

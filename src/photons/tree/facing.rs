@@ -38,7 +38,7 @@ impl Tangent {
 }
 
 /// The plane as searches use it.
-struct Sieve {
+struct FacingFilter {
     normal: [f32x8; 3],
     slope2: f32x8,
     /// What rounding of stored coordinates can put a photon beside its plane, squared, in the tree's units.
@@ -47,7 +47,7 @@ struct Sieve {
     turn2: f32x8,
 }
 
-impl Sieve {
+impl FacingFilter {
     fn new(tangent: &Tangent) -> Self {
         let splat = |x: f64| f32x8::splat(x as f32);
         let normal = tangent.normal.to_array().map(splat);
@@ -55,7 +55,7 @@ impl Sieve {
         let rounding = 12.0 / f64::from(1u32 << 25);
         // Three coordinates of two unit normals, each off by 2^-25, and their differences.
         let turn = tangent.turn + rounding;
-        Sieve {
+        FacingFilter {
             normal,
             slope2: splat(tangent.slope * tangent.slope),
             rounding2: splat(rounding * rounding),
@@ -96,36 +96,45 @@ impl PhotonTree {
         }
         let cap = self.units.shrink(max_radius).min(4.0 * LIMIT);
         let cap2 = (cap * cap) as f32;
-        let sieve = Sieve::new(tangent);
-        with_scratch(|scratch| match scratch.find_facing(self, point.as_vec3().to_array(), &sieve, k, cap2) {
-            None => Nearest::Underfull,
-            Some(sphere) => {
-                let (radius, inverse_r2) = (f32x8::splat(sphere.squared), 1.0 / sphere.squared);
-                let share = share(&sphere, k, counted);
-                for (&row, &squared) in scratch.rows[..scratch.end].iter().zip(&scratch.squared) {
-                    let row = row as usize;
-                    let inside = squared.simd_lt(radius);
-                    if inside.any() {
-                        visitor.visit(Neighbors { tree: self, row, squared, inverse_r2, inside, share: 1.0 });
+        let filter = FacingFilter::new(tangent);
+        with_scratch(|scratch| {
+            match scratch.find_facing(self, point.as_vec3().to_array(), &filter, k, cap2) {
+                None => Nearest::Underfull,
+                Some(sphere) => {
+                    let (radius, inverse_r2) = (f32x8::splat(sphere.squared), 1.0 / sphere.squared);
+                    let share = share(&sphere, k, counted);
+                    for (&row, &squared) in scratch.rows[..scratch.end].iter().zip(&scratch.squared) {
+                        let row = row as usize;
+                        let inside = squared.simd_lt(radius);
+                        if inside.any() {
+                            visitor.visit(Neighbors {
+                                tree: self,
+                                row,
+                                squared,
+                                inverse_r2,
+                                inside,
+                                share: 1.0,
+                            });
+                        }
+                        let tied = squared.simd_eq(radius);
+                        if share > 0.0 && tied.any() {
+                            visitor.visit(Neighbors {
+                                tree: self,
+                                row,
+                                squared,
+                                inverse_r2,
+                                inside: tied,
+                                share,
+                            });
+                        }
                     }
-                    let tied = squared.simd_eq(radius);
-                    if share > 0.0 && tied.any() {
-                        visitor.visit(Neighbors {
-                            tree: self,
-                            row,
-                            squared,
-                            inverse_r2,
-                            inside: tied,
-                            share,
-                        });
-                    }
+                    Nearest::Found(Shell {
+                        radius: self.units.stretch(f64::from(sphere.squared).sqrt()),
+                        closer: sphere.closer,
+                        tied: sphere.tied,
+                        coincident: sphere.coincident,
+                    })
                 }
-                Nearest::Found(Shell {
-                    radius: self.units.stretch(f64::from(sphere.squared).sqrt()),
-                    closer: sphere.closer,
-                    tied: sphere.tied,
-                    coincident: sphere.coincident,
-                })
             }
         })
     }
@@ -139,9 +148,9 @@ impl PhotonTree {
         }
         let r = self.units.shrink(radius).min(4.0 * LIMIT);
         let r2 = ((r * r) as f32).max((1.0 / (LIMIT * LIMIT)) as f32);
-        let (probe, sieve) = (Probe::new(point.as_vec3().to_array()), Sieve::new(tangent));
+        let (probe, filter) = (Probe::new(point.as_vec3().to_array()), FacingFilter::new(tangent));
         with_scratch(|scratch| {
-            scratch.measure_facing(self, &probe, &sieve, r2);
+            scratch.measure_facing(self, &probe, &filter, r2);
             let inverse_r2 = 1.0 / r2;
             for (&row, &squared) in scratch.rows[..scratch.end].iter().zip(&scratch.squared) {
                 let (row, inside) = (row as usize, squared.simd_le(f32x8::splat(r2)));
@@ -154,7 +163,7 @@ impl PhotonTree {
 impl Scratch {
     /// Rows with accepted photons in the ball of squared radius `r2`, and their squared distances.
     #[inline(always)]
-    fn measure_facing(&mut self, tree: &PhotonTree, probe: &Probe, sieve: &Sieve, r2: f32) {
+    fn measure_facing(&mut self, tree: &PhotonTree, probe: &Probe, filter: &FacingFilter, r2: f32) {
         tree.touch(probe, r2, self);
         let most = self.touched.len() * 2 + 1;
         if self.rows.len() < most {
@@ -168,7 +177,7 @@ impl Scratch {
                 let row = 2 * block + half as u32;
                 let squared = probe.squared_distances(positions);
                 if squared.simd_le(bound).any() {
-                    let squared = sieve.squared(probe, positions, &tree.normals[row as usize], squared);
+                    let squared = filter.squared(probe, positions, &tree.normals[row as usize], squared);
                     self.rows[end] = row;
                     self.squared[end] = squared;
                     end += usize::from(squared.simd_le(bound).any());
@@ -179,8 +188,8 @@ impl Scratch {
     }
 
     /// Every squared distance of an accepted photon of at most `r2`.
-    fn collect_facing(&mut self, tree: &PhotonTree, probe: &Probe, sieve: &Sieve, r2: f32) {
-        self.measure_facing(tree, probe, sieve, r2);
+    fn collect_facing(&mut self, tree: &PhotonTree, probe: &Probe, filter: &FacingFilter, r2: f32) {
+        self.measure_facing(tree, probe, filter, r2);
         self.keep_near(r2);
     }
 
@@ -192,7 +201,7 @@ impl Scratch {
         &mut self,
         tree: &PhotonTree,
         point: [f32; 3],
-        sieve: &Sieve,
+        filter: &FacingFilter,
         k: usize,
         cap2: f32,
     ) -> Option<Sphere> {
@@ -201,7 +210,7 @@ impl Scratch {
         let mut trial = guess.unwrap_or_else(|| tree.bound(&probe, k, &mut self.near)).min(cap2);
         let resolved = (1.0 / (LIMIT * LIMIT)) as f32;
         let squared = loop {
-            self.collect_facing(tree, &probe, sieve, trial);
+            self.collect_facing(tree, &probe, filter, trial);
             if self.near.len() >= k {
                 let kth = f32::from_bits(*self.near.select_nth_unstable(k - 1).1);
                 // Where k coincide, the next distance out is the radius.

@@ -3,7 +3,7 @@
 use super::values::rectangle;
 use crate::error::{Error, Result};
 use crate::geometry::{
-    Cuboid, Ground, Lathe, Mesh, Shape, Slab, Sphere, Up, Waves, height_field, listed, smooth,
+    Cuboid, Ground, Mesh, Revolution, Shape, Slab, Sphere, Up, Waves, height_field, listed, smooth,
 };
 use crate::math::{NonNegative, Positive};
 use glam::{DVec2, DVec3};
@@ -45,6 +45,7 @@ pub enum ShapeFile {
         at: [f64; 3],
     },
     /// A profile of (radius, height), turned about the axis; `smooth` pieces between its points.
+    #[serde(alias = "surface-of-revolution")]
     Lathe {
         #[serde(default, skip_serializing_if = "is_zero")]
         base: [f64; 3],
@@ -134,7 +135,11 @@ impl ShapeFile {
                     ));
                 }
                 let points: Vec<DVec2> = profile.iter().map(|p| DVec2::from_array(*p)).collect();
-                Shape::Lathe(Arc::new(Lathe::new(base.into(), axis.into(), &smooth(&points, pieces))?))
+                Shape::Revolution(Arc::new(Revolution::new(
+                    base.into(),
+                    axis.into(),
+                    &smooth(&points, pieces),
+                )?))
             }
             ShapeFile::HeightField { corner, size, cells, up, level, ref heights, floor } => {
                 let ground = Ground { corner: corner.into(), size: size.into(), cells };

@@ -1,6 +1,6 @@
 //! The light that a medium sends out by itself: where the photons of an emitting medium start.
 
-use super::{Emission, EmissionNumbers, Stage};
+use super::{Emission, PeriodicCell, PrimarySample};
 use crate::Spectrum;
 use crate::faults::{Fault, planted};
 use crate::geometry::{Face, Shape, remainder};
@@ -18,12 +18,12 @@ const BOXES: usize = 16;
 /// emission there is of its bound, none where the medium is not: so all that leave have the same power, and what the
 /// bound has too much costs no more than a look-up. Photons are right whatever the power is taken to be.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Glow {
+pub struct MediumEmission {
     number: usize,
     within: usize,
     medium: Medium,
     places: Places,
-    ceiling: Spectrum,
+    power_bound: Spectrum,
     power: Spectrum,
     is_certain: bool,
 }
@@ -49,22 +49,22 @@ struct Boxes {
 }
 
 /// A box along the axes about a shape, of a slab over its cell; none for one without end.
-fn around(shape: &Shape, stage: Option<&Stage>) -> Option<(DVec3, DVec3)> {
+fn around(shape: &Shape, periodic_cell: Option<&PeriodicCell>) -> Option<(DVec3, DVec3)> {
     match shape {
         Shape::Cuboid(c) => Some((c.min(), c.max())),
         Shape::Mesh(m) => Some(m.bounds()),
         Shape::Slab(s) => {
-            let side = stage?.side;
+            let side = periodic_cell?.side;
             Some((DVec3::new(0.0, 0.0, s.top()), DVec3::new(side, side, s.face(Face::Bottom))))
         }
-        Shape::Sphere(_) | Shape::Rectangle(_) | Shape::Lathe(_) => {
+        Shape::Sphere(_) | Shape::Rectangle(_) | Shape::Revolution(_) => {
             let (center, radius) = shape.bounds()?;
             Some((center - DVec3::splat(radius), center + DVec3::splat(radius)))
         }
     }
 }
 
-impl Glow {
+impl MediumEmission {
     /// The light of the medium of this number, in the interior `within`, that lies inside `shapes`, or in some of it; none
     /// if they have no end and there is no cell.
     ///
@@ -74,38 +74,46 @@ impl Glow {
         (number, within): (usize, usize),
         medium: &Medium,
         shapes: &[&Shape],
-        stage: Option<&Stage>,
+        periodic_cell: Option<&PeriodicCell>,
         is_certain: bool,
     ) -> Option<Self> {
         let (low, high) = shapes
             .iter()
-            .map(|shape| around(shape, stage))
+            .map(|shape| around(shape, periodic_cell))
             .try_fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(low, high), shape| {
                 shape.map(|(a, b)| (low.min(a), high.max(b)))
             })?;
-        let (places, ceiling) = match (shapes, medium) {
+        let (places, power_bound) = match (shapes, medium) {
             ([shape], Medium::Homogeneous(medium)) if shape.is_solid() => {
-                let (_, volume) = shape.sample_inside(Stage::side(stage), [0.0; 3]);
+                let (_, volume) = shape.sample_inside(PeriodicCell::side(periodic_cell), [0.0; 3]);
                 (Places::Inside((*shape).clone()), medium.emission() * (FOUR_PI * volume))
             }
             _ => {
-                let (boxes, ceiling) = Boxes::new(medium, low, high);
-                (Places::Boxes(Arc::new(boxes)), ceiling)
+                let (boxes, power_bound) = Boxes::new(medium, low, high);
+                (Places::Boxes(Arc::new(boxes)), power_bound)
             }
         };
         let is_certain = is_certain && matches!(places, Places::Inside(_));
-        Some(Glow { number, within, medium: medium.clone(), places, ceiling, power: ceiling, is_certain })
+        Some(MediumEmission {
+            number,
+            within,
+            medium: medium.clone(),
+            places,
+            power_bound,
+            power: power_bound,
+            is_certain,
+        })
     }
 
     /// The same with this power \[W\].
     pub(crate) fn with_power(self, power: Spectrum) -> Self {
-        Glow { power, ..self }
+        MediumEmission { power, ..self }
     }
 
     /// The corners of a box that holds all starts.
-    pub(crate) fn extent(&self, stage: Option<&Stage>) -> Option<(DVec3, DVec3)> {
+    pub(crate) fn extent(&self, periodic_cell: Option<&PeriodicCell>) -> Option<(DVec3, DVec3)> {
         match &self.places {
-            Places::Inside(shape) => around(shape, stage),
+            Places::Inside(shape) => around(shape, periodic_cell),
             Places::Boxes(boxes) => {
                 Some((boxes.low, boxes.low + boxes.edge * DVec3::from_array(boxes.count.map(|n| n as f64))))
             }
@@ -131,12 +139,12 @@ impl Glow {
         self.power
     }
 
-    pub(super) fn ceiling(&self) -> Spectrum {
-        self.ceiling
+    pub(super) fn power_bound(&self) -> Spectrum {
+        self.power_bound
     }
 
     pub(super) fn is_grey(&self) -> bool {
-        self.ceiling.is_grey()
+        self.power_bound.is_grey()
     }
 
     /// A ball that holds all starts, as far as there is one.
@@ -150,20 +158,23 @@ impl Glow {
         }
     }
 
-    pub(super) fn emit_at(&self, stage: Option<&Stage>, numbers: &EmissionNumbers) -> Emission {
+    pub(super) fn emit_at(&self, periodic_cell: Option<&PeriodicCell>, numbers: &PrimarySample) -> Emission {
         let dir = warp::square_to_sphere(numbers.direction).normalize();
         let (origin, power, chance) = match &self.places {
             Places::Inside(shape) => {
-                let (origin, _) = shape.sample_inside(Stage::side(stage), numbers.position);
-                (origin, self.ceiling, 1.0)
+                let (origin, _) = shape.sample_inside(PeriodicCell::side(periodic_cell), numbers.position);
+                (origin, self.power_bound, 1.0)
             }
             Places::Boxes(boxes) => {
                 let (origin, high) = boxes.place(numbers.position);
                 let (here, bound) = (self.medium.emission(origin), emission_of(&self.medium, high));
                 let chance = (here.sum() / bound.sum()).min(1.0);
                 let color = if here.is_black() { Spectrum::ZERO } else { here / here.sum() };
-                let power =
-                    if planted(Fault::GlowColorOfAll) { self.ceiling } else { color * self.ceiling.sum() };
+                let power = if planted(Fault::GlowColorOfAll) {
+                    self.power_bound
+                } else {
+                    color * self.power_bound.sum()
+                };
                 (origin, power, chance)
             }
         };
@@ -186,19 +197,19 @@ impl Boxes {
         let count = [0, 1, 2].map(along);
         let edge = (high - low) / DVec3::from_array(count.map(|n| n as f64));
         let volume = FOUR_PI * edge.element_product();
-        let (mut bounds, mut cumulated, mut ceiling) = (Vec::new(), Vec::new(), Spectrum::ZERO);
+        let (mut bounds, mut cumulated, mut power_bound) = (Vec::new(), Vec::new(), Spectrum::ZERO);
         for z in 0..count[2] {
             for y in 0..count[1] {
                 for x in 0..count[0] {
                     let corner = low + edge * DVec3::new(x as f64, y as f64, z as f64);
                     let bound = medium.density().map_or(1.0, |d| d.high_in(corner, corner + edge));
                     bounds.push(bound);
-                    ceiling += emission_of(medium, bound) * volume;
-                    cumulated.push(ceiling.sum());
+                    power_bound += emission_of(medium, bound) * volume;
+                    cumulated.push(power_bound.sum());
                 }
             }
         }
-        (Boxes { low, edge, count, high: bounds, cumulated }, ceiling)
+        (Boxes { low, edge, count, high: bounds, cumulated }, power_bound)
     }
 
     /// A start, and the bound of the density in its box.

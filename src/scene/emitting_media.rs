@@ -4,7 +4,7 @@ use super::interiors::{dielectrics, is_clear_of};
 use super::{Parts, SURROUNDINGS, Scene};
 use crate::Spectrum;
 use crate::geometry::Shape;
-use crate::light::{Glow, Light};
+use crate::light::{Light, MediumEmission};
 use crate::math::FOUR_PI;
 use crate::rng::{Purpose, Stream};
 use crate::surface::Surface;
@@ -33,17 +33,17 @@ pub(super) fn of(scene: &Scene) -> (Vec<Light>, bool) {
         if !medium.is_emitting() {
             return;
         }
-        let stage = scene.stage();
-        let glow = match shapes {
+        let periodic_cell = scene.periodic_cell();
+        let emission = match shapes {
             [] => None,
-            _ => Glow::new((number, within), medium, shapes, stage, is_certain),
+            _ => MediumEmission::new((number, within), medium, shapes, periodic_cell, is_certain),
         };
-        match glow {
-            Some(glow) => {
+        match emission {
+            Some(emission) => {
                 // Thin shells may be missed.
-                let rough = measured(scene, &glow, ROUGH).0;
-                let power = if rough.is_black() { measured(scene, &glow, FINE).0 } else { rough };
-                lights.push(Light::Glow(glow.with_power(power)));
+                let rough = measured(scene, &emission, ROUGH).0;
+                let power = if rough.is_black() { measured(scene, &emission, FINE).0 } else { rough };
+                lights.push(Light::MediumEmission(emission.with_power(power)));
             }
             None => is_all = false,
         }
@@ -71,13 +71,13 @@ pub(super) fn of(scene: &Scene) -> (Vec<Light>, bool) {
 /// The power of a medium, and its standard error \[W\]: by cells of a box, halved along each axis where a boundary runs through
 /// them or the medium varies, down to `most` of them or so. In whole cells of an even medium the power is exact; in the others it is asked
 /// for at two random points.
-fn measured(scene: &Scene, glow: &Glow, most: usize) -> (Spectrum, Spectrum) {
-    let known = Light::Glow(glow.clone()).power(scene.stage());
-    let Some((low, high)) = glow.extent(scene.stage()).filter(|_| !glow.is_certain()) else {
+fn measured(scene: &Scene, emission: &MediumEmission, most: usize) -> (Spectrum, Spectrum) {
+    let known = Light::MediumEmission(emission.clone()).power(scene.periodic_cell());
+    let Some((low, high)) = emission.extent(scene.periodic_cell()).filter(|_| !emission.is_certain()) else {
         return (known, Spectrum::ZERO);
     };
-    let (number, medium) = (glow.number(), scene.medium(glow.number()));
-    let regions = if glow.within() == SURROUNDINGS { scene.regions() } else { &[] };
+    let (number, medium) = (emission.number(), scene.medium(emission.number()));
+    let regions = if emission.within() == SURROUNDINGS { scene.regions() } else { &[] };
     let bodies = dielectrics(scene.objects()).map(|o| &o.shape);
     let boundaries: Vec<&Shape> = bodies.chain(regions.iter().map(|region| &region.shape)).collect();
     // An open surface decides of places far from itself.
@@ -135,8 +135,8 @@ pub(super) fn power(scene: &Scene) -> (Spectrum, Spectrum) {
     let (mut sum, mut squares) = (Spectrum::ZERO, Spectrum::ZERO);
     for light in scene.lights() {
         let (power, error) = match light {
-            Light::Glow(glow) => measured(scene, glow, FINE),
-            light => (light.power(scene.stage()), Spectrum::ZERO),
+            Light::MediumEmission(emission) => measured(scene, emission, FINE),
+            light => (light.power(scene.periodic_cell()), Spectrum::ZERO),
         };
         sum += power;
         squares += error.map(|x| x * x);

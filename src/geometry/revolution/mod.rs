@@ -21,7 +21,7 @@ use tree::Tree;
 /// the height upwards: a profile that rises has its outer side away from the axis. A closed body starts on the axis below,
 /// runs outwards along the underside, up the outer wall and back to the axis, or ends where it began.
 #[derive(Debug, Clone)]
-pub struct Lathe {
+pub struct Revolution {
     base: DVec3,
     frame: Frame,
     rings: Vec<DVec2>,
@@ -32,8 +32,8 @@ pub struct Lathe {
     size: DVec3,
 }
 
-impl PartialEq for Lathe {
-    fn eq(&self, other: &Lathe) -> bool {
+impl PartialEq for Revolution {
+    fn eq(&self, other: &Revolution) -> bool {
         (self.base, self.frame, &self.rings) == (other.base, other.frame, &other.rings)
     }
 }
@@ -42,7 +42,7 @@ impl PartialEq for Lathe {
 const FAR: f64 = 1e150;
 
 impl Line {
-    fn new(lathe: &Lathe, ray: &Ray) -> Self {
+    fn new(lathe: &Revolution, ray: &Ray) -> Self {
         let (p, d) = (lathe.frame.to_local(ray.origin - lathe.base), lathe.frame.to_local(ray.dir));
         let shift = -(p - DVec3::Z * lathe.size.z).dot(d);
         let origin = p + d * shift;
@@ -70,7 +70,25 @@ impl Line {
 /// at the angle at which rounding hides it, 1e-8, crosses it within 1e-8 of the size.
 const NEAR: f64 = 1.0 / (1u64 << 20) as f64;
 
-impl Lathe {
+impl Revolution {
+    /// Whether two surfaces are one but for a part of their size and of their distance from the origin.
+    pub fn nearly(&self, other: &Revolution, part: f64) -> bool {
+        let least = part * (self.size.abs().max_element() + self.base.abs().max_element());
+        self.rings.len() == other.rings.len()
+            && (self.base - other.base).length() <= least
+            && (self.frame.z - other.frame.z).length() <= part
+            && self.rings.iter().zip(&other.rings).all(|(a, b)| a.distance(*b) <= least)
+    }
+
+    /// The flat parts: middle, normal, inner and outer radius \[L\].
+    pub fn discs(&self) -> impl Iterator<Item = (DVec3, DVec3, [f64; 2])> {
+        let flat = self.rings.windows(2).filter(|pair| pair[0].y == pair[1].y && pair[0].x != pair[1].x);
+        flat.map(|pair| {
+            let radii = [pair[0].x.min(pair[1].x), pair[0].x.max(pair[1].x)];
+            (self.base + self.frame.z * pair[0].y, self.frame.z, radii)
+        })
+    }
+
     /// A surface about the axis that starts at `base` \[L\] and runs along `axis`, of any length but 0, from points
     /// (radius, height) \[L\] in their order; points that repeat the one before are left out.
     ///
@@ -105,7 +123,7 @@ impl Lathe {
         let high = rings.iter().copied().reduce(DVec2::max).unwrap_or_default();
         let size = DVec3::new(high.x, 0.5 * (high.y - low.y), 0.5 * (high.y + low.y));
         let tree = Tree::new(&rings);
-        Ok(Lathe { base, frame: Frame::new(axis), rings, tree, areas, size })
+        Ok(Revolution { base, frame: Frame::new(axis), rings, tree, areas, size })
     }
 
     /// Every crossing of the line with frustum `k`: `found` gets its distance along the line.
