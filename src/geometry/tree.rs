@@ -239,7 +239,7 @@ mod tests {
     #[test]
     fn boxes_over_each_other_are_found() {
         let many = 30_000;
-        for apart in [1e-9, 1e-6, 1e-4] {
+        for apart in [1e-12, 1e-6, 1e-4] {
             let step = |i: u32| f64::from(i) * apart;
             let beside = |i| (DVec3::new(0.0, 0.0, step(i)), DVec3::new(1.0, 1.0, step(i) + 1e-3));
             let nested = |i| (DVec3::splat(-step(i)), DVec3::splat(1.0 + step(i)));
@@ -248,7 +248,7 @@ mod tests {
                 ("nested", (0..many).map(nested).collect()),
             ] {
                 let built = Tree::new("boxes", &boxes, 0.0);
-                if apart < 1e-8 {
+                if apart < 1e-9 {
                     assert!(built.is_err(), "{name}, {apart} apart");
                     continue;
                 }
