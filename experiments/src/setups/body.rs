@@ -5,7 +5,7 @@ use std::f64::consts::PI;
 use turbid::geometry::{Cuboid, Shape, Slab, Sphere};
 use turbid_analytic::boundary as referee;
 
-/// Side of the periodic cell that stands for a slab [mfp].
+/// Side of the periodic cell that stands for a slab \[mfp\].
 pub const CELL: f64 = 4.0;
 
 /// A body of medium; places in it are given by their depth below the surface (in a slab below the face at depth 0, in a

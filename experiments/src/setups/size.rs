@@ -5,7 +5,7 @@ use turbid::estimators::Gather;
 /// How large a gather is.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Size {
-    /// All photons within this radius [mfp].
+    /// All photons within this radius \[mfp\].
     Radius(f64),
     /// The k nearest photons; the k-th sets the radius and is not summed.
     Nearest(usize),
@@ -33,7 +33,7 @@ impl Size {
         matches!(self, Size::Nearest(_))
     }
 
-    /// The gather; the k nearest are sought within `cap` [mfp].
+    /// The gather; the k nearest are sought within `cap` \[mfp\].
     pub fn gather(self, cap: f64) -> turbid::Result<Gather> {
         match self {
             Size::Radius(r) => Gather::radius(r),
