@@ -4,7 +4,7 @@ use super::body::{Body, length};
 use super::nearest::{Counts, check_gather, mixture};
 use super::profile::Profile;
 use super::rule::settle;
-use super::shell::{Asked, Field, U0};
+use super::shell::{CheckedField, Field, U0};
 use super::treated::{METHOD, check_kernel};
 use crate::error::{Result, within};
 use crate::kernel::{Dimension, Kernel};
@@ -97,7 +97,7 @@ fn answer(question: &Question, gather: Option<(u32, f64)>) -> Result<Value> {
     within("outside", outside, 0.0, 1e50, "0 to 1e50")?;
     let (keep_inside, keep_outside) = if h < radius { rejection.kept() } else { (1.0, 1.0) };
     let place = Body::HalfSpace.place([0.0, 0.0, h], radius)?;
-    let asked = Asked::new(Field::Uniform, true);
+    let asked = CheckedField::new(Field::Uniform, true);
     settle(METHOD, |rule| {
         let sheet = Sheet {
             near: Profile::new(rule, &place.own, radius, &asked),

@@ -11,7 +11,7 @@
 
 use super::body::{Body, length};
 use super::rule::{Rule, pieces, settle};
-use super::shell::{Asked, F0, Field};
+use super::shell::{CheckedField, F0, Field};
 use super::treated::{Gather, METHOD, Treatment, check_kernel, check_symmetric, exact};
 use crate::error::{Result, within};
 use crate::kernel::Kernel;
@@ -135,7 +135,7 @@ fn answer(question: Question) -> Result<Value> {
     if exact(treatment, body, cap, &field) {
         return Ok(Value::new(1.0, 0.0, "exact"));
     }
-    let asked = Asked::new(field, false);
+    let asked = CheckedField::new(field, false);
     let plain = Gather::new(Rule::coarse(), Treatment::None, kernel, &place, cap, &asked);
     asked.verdict()?;
     let cap = useful_cap(k, cap, density, &plain);

@@ -1,7 +1,7 @@
 //! Shell integrals about one point as a table over the radius: asked once, every ball about the point follows.
 
 use super::rule::{Rule, tau_of};
-use super::shell::{Asked, F0, F1, Shells, Sums, U1, U2};
+use super::shell::{CheckedField, F0, F1, Shells, Sums, U1, U2};
 
 /// One piece of the table.
 struct Piece {
@@ -19,7 +19,7 @@ pub(super) struct Profile<'a> {
 
 impl<'a> Profile<'a> {
     /// Asks the field on all shells up to `end`.
-    pub(super) fn new(rule: &'a Rule, shells: &Shells, end: f64, asked: &Asked) -> Self {
+    pub(super) fn new(rule: &'a Rule, shells: &Shells, end: f64, asked: &CheckedField) -> Self {
         let pieces = shells
             .radii(end)
             .windows(2)

@@ -21,15 +21,15 @@ pub(super) enum Field<'a> {
 }
 
 /// A field, and the first number from it that cannot be used.
-pub(super) struct Asked<'a> {
+pub(super) struct CheckedField<'a> {
     pub(super) field: Field<'a>,
     pub(super) may_be_negative: bool,
     fault: Cell<Option<(f64, f64)>>,
 }
 
-impl<'a> Asked<'a> {
+impl<'a> CheckedField<'a> {
     pub(super) fn new(field: Field<'a>, may_be_negative: bool) -> Self {
-        Asked { field, may_be_negative, fault: Cell::new(None) }
+        CheckedField { field, may_be_negative, fault: Cell::new(None) }
     }
 
     fn pass(&self, value: f64, at: f64) -> f64 {
@@ -139,7 +139,7 @@ impl Shells {
     }
 
     /// The integrals over the part of the shell of radius s inside the body.
-    pub(super) fn sums(&self, s: f64, rule: &Rule, asked: &Asked) -> Sums {
+    pub(super) fn sums(&self, s: f64, rule: &Rule, asked: &CheckedField) -> Sums {
         let mut sums = [0.0; 5];
         let ends = match self.cosines(s) {
             Some(ends) => ends,
@@ -193,7 +193,7 @@ impl Shells {
     }
 
     /// The integral of the field over the ring's arcs inside the body, and their length in radians.
-    fn ring(&self, s: f64, c: f64, rule: &Rule, asked: &Asked) -> (f64, f64) {
+    fn ring(&self, s: f64, c: f64, rule: &Rule, asked: &CheckedField) -> (f64, f64) {
         let rho = s * ((1.0 - c) * (1.0 + c)).max(0.0).sqrt();
         let arcs = match self.region {
             Region::Ball { .. } => Arcs::whole(),

@@ -3,7 +3,7 @@
 use super::body::{Body, Place, length};
 use super::profile::Profile;
 use super::rule::{Rule, settle};
-use super::shell::{Asked, F0, F1, Field, Sums, U0, U1, U2};
+use super::shell::{CheckedField, F0, F1, Field, Sums, U0, U1, U2};
 use crate::error::{Error, Result, within};
 use crate::kernel::{Dimension, Kernel};
 use crate::value::Value;
@@ -49,7 +49,7 @@ impl<'a> Gather<'a> {
         kernel: Kernel,
         place: &Place,
         end: f64,
-        asked: &Asked,
+        asked: &CheckedField,
     ) -> Self {
         let own = Profile::new(rule, &place.own, end, asked);
         let images = match treatment {
@@ -115,7 +115,7 @@ pub(super) fn mean(
     if exact(treatment, body, radius, &field) {
         return Ok(Value::new(1.0, 0.0, "exact"));
     }
-    let asked = Asked::new(field, true);
+    let asked = CheckedField::new(field, true);
     settle(METHOD, |rule| {
         let gather = Gather::new(rule, treatment, kernel, &place, radius, &asked);
         asked.verdict()?;
@@ -148,7 +148,7 @@ pub fn body_moment(kernel: Kernel, body: Body, at: [f64; 3], radius: f64, j: u32
     length("radius", radius)?;
     within("j", f64::from(j), 0.0, 2.0, "0 to 2")?;
     let place = body.place(at, radius)?;
-    let asked = Asked::new(Field::Uniform, true);
+    let asked = CheckedField::new(Field::Uniform, true);
     let value = settle(METHOD, |rule| {
         let profile = Profile::new(rule, &place.own, radius, &asked);
         let sums = profile.ball(radius, |u| kernel.density(Dimension::Three, u) / (radius * radius * radius));

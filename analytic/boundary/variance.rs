@@ -6,7 +6,7 @@
 use super::body::{Body, Shape, length};
 use super::profile::Profile;
 use super::rule::{Rule, pieces, settle};
-use super::shell::{Asked, Ends, Field, U0, U1, U2};
+use super::shell::{CheckedField, Ends, Field, U0, U1, U2};
 use super::treated::{METHOD, Treatment, check_kernel, determinant};
 use crate::error::{Result, within};
 use crate::kernel::{Dimension, Kernel};
@@ -39,7 +39,7 @@ pub fn treated_variance(
     let place = body.place(at, radius)?;
     let roughness = kernel.roughness(Dimension::Three)?.value;
     let density = |u: f64| kernel.density(Dimension::Three, u);
-    let asked = Asked::new(Field::Uniform, true);
+    let asked = CheckedField::new(Field::Uniform, true);
     let cubed = radius * radius * radius;
     let square = |u: f64| density(u) * density(u) / (roughness * cubed);
     if treatment == Treatment::Reflection {

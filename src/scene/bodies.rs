@@ -1,6 +1,6 @@
 //! The bodies of a scene, sorted for rays: rectangles in one list, every other shape by itself.
 
-use super::{Parts, Target};
+use super::{SceneParts, Target};
 use crate::geometry::{Rectangles, Shape};
 
 /// What a ray is tried against. Of two bodies at the same distance the first one counts, objects before lights; of
@@ -18,7 +18,7 @@ pub(super) struct Bodies {
 }
 
 impl Bodies {
-    pub fn of(parts: &Parts) -> Self {
+    pub fn of(parts: &SceneParts) -> Self {
         let (mut list, mut targets, mut others) = (Vec::new(), Vec::new(), Vec::new());
         let mut sort = |target: Target, shape: Option<&Shape>| match shape {
             Some(Shape::Rectangle(rectangle)) => {

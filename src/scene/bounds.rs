@@ -1,20 +1,20 @@
 //! A sphere about all that a scene holds.
 
-use super::Parts;
+use super::SceneParts;
 use crate::geometry::{Shape, Sphere};
 use glam::DVec3;
 
 /// A sphere about every medium, surface and body of a light; none where one of them has no end, or there is none.
-pub(super) fn of(parts: &Parts) -> Option<Sphere> {
+pub(super) fn of(parts: &SceneParts) -> Option<Sphere> {
     about(&shapes(parts).map(Shape::bounds).collect::<Option<Vec<_>>>()?)
 }
 
 /// The same about those that have an end.
-pub(super) fn of_bounded(parts: &Parts) -> Option<Sphere> {
+pub(super) fn of_bounded(parts: &SceneParts) -> Option<Sphere> {
     about(&shapes(parts).filter_map(Shape::bounds).collect::<Vec<_>>())
 }
 
-fn shapes(parts: &Parts) -> impl Iterator<Item = &Shape> {
+fn shapes(parts: &SceneParts) -> impl Iterator<Item = &Shape> {
     let regions = parts.regions.iter().map(|r| &r.shape);
     let objects = parts.objects.iter().map(|o| &o.shape);
     regions.chain(objects).chain(parts.lights.iter().filter_map(|l| l.body()))

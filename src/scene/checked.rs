@@ -2,7 +2,7 @@
 
 use super::bodies::Bodies;
 use super::regions::RegionTree;
-use super::{Camera, Object, Parts, Plan, Region, SURROUNDINGS, Segment, Segments, Sensor, bounds};
+use super::{Camera, Object, Plan, Region, SURROUNDINGS, SceneParts, Segment, Segments, Sensor, bounds};
 use crate::Spectrum;
 use crate::error::{Error, Result};
 use crate::faults::{Fault, planted};
@@ -15,7 +15,7 @@ use std::sync::OnceLock;
 /// A scene whose parts have been checked together.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Scene {
-    pub(super) parts: Parts,
+    pub(super) parts: SceneParts,
     pub(super) media: Vec<Medium>,
     pub(super) filling: Vec<Option<usize>>,
     /// Those of the parts, then media that emit.

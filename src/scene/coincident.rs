@@ -1,6 +1,6 @@
 //! Surfaces in one place: which of them light meets there would be a matter of rounding.
 
-use super::{Object, Parts, Quantity};
+use super::{Object, Quantity, SceneParts};
 use crate::error::{Error, Result};
 use crate::geometry::{Face, Rectangle, Shape, Sphere};
 use crate::light::{Faces, Light, Section};
@@ -53,7 +53,7 @@ struct Body<'a> {
 ///
 /// # Errors
 /// `Error::Scene`, naming both bodies.
-pub(super) fn check(parts: &Parts) -> Result<()> {
+pub(super) fn check(parts: &SceneParts) -> Result<()> {
     let objects = parts.objects.iter().enumerate().map(|(i, object)| of_object(i, object));
     let lights = parts.lights.iter().enumerate().filter_map(|(i, light)| of_light(i, light));
     let bodies: Vec<Body> = objects.chain(lights).collect();
@@ -254,7 +254,7 @@ struct Mark<'a> {
 ///
 /// # Errors
 /// `Error::Scene`, naming both.
-pub(super) fn check_marks(parts: &Parts) -> Result<()> {
+pub(super) fn check_marks(parts: &SceneParts) -> Result<()> {
     let objects = parts.objects.iter().enumerate().map(|(i, object)| of_object(i, object));
     let lamps = parts.lights.iter().enumerate().filter_map(|(i, light)| of_light(i, light));
     let bodies: Vec<Body> = objects.chain(lamps).collect();

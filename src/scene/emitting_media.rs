@@ -1,7 +1,7 @@
 //! Media that emit, as lights: their photons start in them.
 
 use super::interiors::{dielectrics, is_clear_of};
-use super::{Parts, SURROUNDINGS, Scene};
+use super::{SURROUNDINGS, Scene, SceneParts};
 use crate::Spectrum;
 use crate::geometry::Shape;
 use crate::light::{Light, MediumEmission};
@@ -150,7 +150,7 @@ fn encloses(surface: &Surface, within: usize) -> bool {
 }
 
 /// The shapes that an interior lies in, if its boundary encloses it; it may lie in a part of them only.
-fn enclosing(parts: &Parts, within: usize) -> Option<Vec<&Shape>> {
+fn enclosing(parts: &SceneParts, within: usize) -> Option<Vec<&Shape>> {
     let bodies = parts.objects.iter().filter(|o| encloses(&o.surface, within));
     let shapes: Vec<&Shape> = bodies.map(|o| &o.shape).collect();
     (!shapes.is_empty() && shapes.iter().all(|shape| shape.is_closed())).then_some(shapes)

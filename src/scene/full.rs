@@ -1,6 +1,6 @@
 //! A scene with nothing left out: what its plan saves can be measured, and what it leaves out tested against the rest.
 
-use super::{Parts, Region, Scene};
+use super::{Region, Scene, SceneParts};
 use crate::Spectrum;
 use crate::error::Result;
 use crate::geometry::Shape;
@@ -49,7 +49,7 @@ fn uniform(density: f32) -> Result<Density> {
 }
 
 /// A medium of density 0 about everything, where a scene has no regions and is bounded.
-fn fill_vacuum(parts: &mut Parts, scene: &Scene) -> Result<()> {
+fn fill_vacuum(parts: &mut SceneParts, scene: &Scene) -> Result<()> {
     let Some(ball) = scene.bounds().filter(|_| parts.regions.is_empty()) else {
         return Ok(());
     };

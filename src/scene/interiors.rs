@@ -5,7 +5,7 @@
 //! one on its outer side. An interior has one index everywhere, and at most one medium, which fills it wherever it
 //! reaches; regions do not count inside it. Whoever travels carries the number of the interior that it is in.
 
-use super::{Interior, Object, Parts, Region, SURROUNDINGS, Scene};
+use super::{Interior, Object, Region, SURROUNDINGS, Scene, SceneParts};
 use crate::error::{Error, Result};
 use crate::geometry::{ASLANT, Face, Shape};
 use crate::light::Light;
@@ -26,7 +26,7 @@ pub(super) fn numbered(regions: &[Region], interiors: &[Interior]) -> (Vec<Mediu
 }
 
 /// Tells each dielectric surface whether the indices on its two sides are equal.
-pub(super) fn match_indices(parts: &mut Parts) {
+pub(super) fn match_indices(parts: &mut SceneParts) {
     for object in &mut parts.objects {
         if let Surface::Dielectric(boundary) = &mut object.surface {
             let index = |number: usize| parts.interiors[number].index;
@@ -44,7 +44,7 @@ pub(super) fn dielectrics(objects: &[Object]) -> impl Iterator<Item = &Object> {
 }
 
 /// The interior on the near side of the first dielectric surface in a direction from a point; `is_outside` of all closed ones.
-fn side_seen(parts: &Parts, p: DVec3, dir: DVec3, is_outside: bool) -> Option<usize> {
+fn side_seen(parts: &SceneParts, p: DVec3, dir: DVec3, is_outside: bool) -> Option<usize> {
     let ray = Ray::new(p, dir);
     let boundaries = parts.objects.iter().filter_map(|object| {
         let Surface::Dielectric(dielectric) = &object.surface else { return None };
@@ -89,7 +89,7 @@ pub(super) fn is_clear_of((center, radius): (DVec3, f64), shape: &Shape) -> bool
 }
 
 /// Whether interiors and the surfaces that name them fit together.
-pub(super) fn check(parts: &Parts) -> Result<()> {
+pub(super) fn check(parts: &SceneParts) -> Result<()> {
     for (number, interior) in parts.interiors.iter().enumerate() {
         let (name, index) = (&interior.name, interior.index);
         Index::new(&format!("index of refraction of interior {name}"), index)?;
@@ -121,7 +121,7 @@ const ASKED: u32 = 16;
 
 /// Whether a dielectric surface and its neighbours name the same interior for the space between them, where a ray along
 /// the normal meets a neighbour, at most points.
-fn check_sides(parts: &Parts, index: usize, dielectric: &Dielectric) -> Result<()> {
+fn check_sides(parts: &SceneParts, index: usize, dielectric: &Dielectric) -> Result<()> {
     let name = |number: usize| parts.interiors.get(number).map(|i| i.name.as_str());
     let (Some(inside), Some(outside)) = (name(dielectric.inside()), name(dielectric.outside())) else {
         return Err(Error::Scene(format!("object {index} names an interior that is not there")));

@@ -24,7 +24,7 @@ pub use builtin::{BUILTIN, Builtin};
 pub use camera::{Camera, Filter, MAX_PIXELS, MAX_SIDE, View};
 pub use checked::{Scene, decay};
 pub use file::SceneFile;
-pub use parts::{Interior, Object, Parts, Region, SURROUNDINGS};
+pub use parts::{Interior, Object, Region, SURROUNDINGS, SceneParts};
 pub use plan::Plan;
 pub use segment::Segment;
 pub use segments::Segments;
@@ -39,7 +39,7 @@ impl Scene {
     ///
     /// # Errors
     /// `Error::Scene` or `Error::OutOfRange`, naming the part, where parts do not fit together.
-    pub fn new(mut parts: Parts) -> Result<Self> {
+    pub fn new(mut parts: SceneParts) -> Result<Self> {
         if parts.interiors.is_empty() {
             parts.interiors.push(Interior::surroundings());
         }

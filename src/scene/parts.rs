@@ -27,7 +27,7 @@ pub struct Object {
 
 /// What a scene is made of, before it is checked.
 #[derive(Debug, Clone, PartialEq, Default)]
-pub struct Parts {
+pub struct SceneParts {
     /// Media; where shapes overlap, the later one counts.
     pub regions: Vec<Region>,
     /// What fills the space between dielectric surfaces; the first one is the surroundings. Empty stands for these alone.

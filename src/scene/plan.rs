@@ -1,6 +1,6 @@
 //! What a scene requires of the simulator: computed from the scene, printed by `turbid check`, and obeyed.
 
-use super::{Object, Parts};
+use super::{Object, SceneParts};
 use crate::faults::{Fault, planted};
 use crate::light::Light;
 use crate::medium::Medium;
@@ -49,7 +49,7 @@ pub struct Plan {
 const THIN: f64 = 0.1;
 
 impl Plan {
-    pub(super) fn of(parts: &Parts) -> Self {
+    pub(super) fn of(parts: &SceneParts) -> Self {
         let filled = parts.interiors.iter().filter_map(|i| i.medium.as_ref());
         let media: Vec<&Medium> = parts.regions.iter().map(|r| &r.medium).chain(filled).collect();
         let has_media = media.iter().any(|m| m.is_colliding());

@@ -106,7 +106,7 @@ mod tests {
     use crate::medium::Homogeneous;
     use crate::phase::Phase;
     use crate::rng::{Purpose, Stream};
-    use crate::scene::{Parts, SURROUNDINGS, Scene};
+    use crate::scene::{SURROUNDINGS, Scene, SceneParts};
 
     fn region(shape: Shape, sigma_t: f64) -> Region {
         let phase = Phase::with_asymmetry(Asymmetry::new("g", 0.0).unwrap());
@@ -116,7 +116,8 @@ mod tests {
 
     fn scene(regions: Vec<Region>) -> Scene {
         let light = Point::new(DVec3::splat(50.0), Spectrum::ONE).unwrap();
-        Scene::new(Parts { regions, lights: vec![Light::Point(light)], ..Parts::default() }).unwrap()
+        Scene::new(SceneParts { regions, lights: vec![Light::Point(light)], ..SceneParts::default() })
+            .unwrap()
     }
 
     fn place(stream: &mut Stream, side: f64) -> DVec3 {

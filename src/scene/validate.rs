@@ -2,7 +2,7 @@
 
 use super::coincident::REMEDY;
 use super::interiors::dielectrics;
-use super::{Camera, Parts, Quantity, Scene, coincident, interiors};
+use super::{Camera, Quantity, Scene, SceneParts, coincident, interiors};
 use crate::Spectrum;
 use crate::error::{Error, Result};
 use crate::geometry::{Face, Shape, Slab};
@@ -29,7 +29,7 @@ fn refuse<T>(text: impl Into<String>) -> Result<T> {
 }
 
 /// The slab and its cell, if the scene has a cell; an error where parts do not fit together.
-pub(super) fn check(parts: &Parts) -> Result<Option<PeriodicCell>> {
+pub(super) fn check(parts: &SceneParts) -> Result<Option<PeriodicCell>> {
     if let Some(i) = parts.regions.iter().position(|r| !r.shape.is_solid()) {
         return refuse(format!(
             "regions[{i}] needs a convex shape with an inside: a sphere, a cuboid or a slab"
@@ -101,7 +101,7 @@ pub(super) fn check(parts: &Parts) -> Result<Option<PeriodicCell>> {
 }
 
 /// Whether flights are resolved wherever media are: in the regions, and in interiors as far as their boundaries reach.
-fn check_extents(parts: &Parts) -> Result<()> {
+fn check_extents(parts: &SceneParts) -> Result<()> {
     let check = |name: &str, far: f64, medium: &Medium| {
         let sigma_t = medium.highest_sigma_t().max();
         if sigma_t > 0.0 && (far * sigma_t).total_cmp(&MAX_EXTENT_OVER_MFP).is_gt() {
@@ -154,7 +154,7 @@ fn check_tracking(name: &str, ball: Option<(DVec3, f64)>, medium: &Medium) -> Re
 }
 
 /// Whether every part is of a size that can be computed with.
-fn check_sizes(parts: &Parts) -> Result<()> {
+fn check_sizes(parts: &SceneParts) -> Result<()> {
     let is_out = |x: f64| !(x.abs() <= LARGEST && (x == 0.0 || x.abs() >= 1.0 / LARGEST));
     let number = |name: &str, what: &str, x: f64| {
         if is_out(x) {
@@ -230,7 +230,7 @@ fn check_sizes(parts: &Parts) -> Result<()> {
     parts.camera.iter().try_for_each(|camera| place("camera", camera.position()))
 }
 
-fn periodic_cell(parts: &Parts) -> Result<Option<PeriodicCell>> {
+fn periodic_cell(parts: &SceneParts) -> Result<Option<PeriodicCell>> {
     let Some(side) = parts.cell else { return Ok(None) };
     if !(side > 0.0 && side.is_finite()) {
         return Err(Error::out_of_range("cell", side, "finite and above 0"));
@@ -256,7 +256,7 @@ fn around(slabs: &[Slab], refracting: &[Slab]) -> Result<Slab> {
 }
 
 /// Light that starts or is measured on the very surface that it meets, or that refracts it, could be on either side.
-fn check_apart(parts: &Parts) -> Result<()> {
+fn check_apart(parts: &SceneParts) -> Result<()> {
     for light in &parts.lights {
         if let Light::Isotropic(isotropic) = light
             && let Some(same) = dielectrics(&parts.objects).find(|o| !is_around(isotropic.shape(), &o.shape))
@@ -402,7 +402,7 @@ pub(super) fn check_power(scene: &Scene) -> Result<()> {
 }
 
 /// Folding positions into a cell is exact only where every part looks the same after a step along x or y.
-fn check_fold(parts: &Parts, periodic_cell: Option<&PeriodicCell>) -> Result<()> {
+fn check_fold(parts: &SceneParts, periodic_cell: Option<&PeriodicCell>) -> Result<()> {
     let Some(periodic_cell) = periodic_cell else { return Ok(()) };
     let is_unbounded = |shape: &Shape| matches!(shape, Shape::Slab(_));
     let all_unbounded = parts.regions.iter().all(|r| is_unbounded(&r.shape))

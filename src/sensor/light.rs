@@ -195,7 +195,7 @@ impl<'a> Open<'a> {
 mod tests {
     use super::*;
     use crate::light::{Light, Point};
-    use crate::scene::{Filter, Object, Parts, View};
+    use crate::scene::{Filter, Object, SceneParts, View};
     use crate::surface::{Lambertian, Surface};
     use crate::transport::NoProgress;
     use glam::DVec3;
@@ -208,7 +208,7 @@ mod tests {
         let diffuse = Surface::Lambertian(Lambertian::new(Spectrum::grey(0.5)).unwrap());
         let light = Light::Point(Point::new(DVec3::ZERO, Spectrum::ONE).unwrap());
         let objects = vec![Object { shape: crate::geometry::Shape::Rectangle(floor), surface: diffuse }];
-        let scene = Scene::new(Parts { objects, lights: vec![light], ..Parts::default() }).unwrap();
+        let scene = Scene::new(SceneParts { objects, lights: vec![light], ..SceneParts::default() }).unwrap();
         let (position, look_at, up) = (DVec3::new(0.0, 0.0, 2.0), DVec3::ZERO, DVec3::Y);
         let view = View { position, look_at, up, fov: 40.0, width: 9, height: 7, filter: Filter::Tent };
         let camera = Camera::new(view).unwrap();

@@ -158,7 +158,7 @@ mod tests {
     use crate::light::{Beam, Light, Section};
     use crate::medium::Homogeneous;
     use crate::phase::Phase;
-    use crate::scene::{Parts, Region};
+    use crate::scene::{Region, SceneParts};
     use glam::DVec3;
 
     /// In a slab under a beam a path of order n has n + 1 segments and meets n collisions, each with a shadow ray;
@@ -170,11 +170,11 @@ mod tests {
         let medium = Homogeneous::new(Spectrum::ONE, Spectrum::ONE, phase).unwrap();
         let region = Region { shape: Shape::Slab(Slab::new(0.0, 1.0).unwrap()), medium: medium.into() };
         let beam = Beam::new(DVec3::Z, Spectrum::ONE, Section::Unbounded).unwrap();
-        let parts = Parts {
+        let parts = SceneParts {
             regions: vec![region],
             lights: vec![Light::Beam(beam)],
             cell: Some(4.0),
-            ..Parts::default()
+            ..SceneParts::default()
         };
         let scene = Scene::new(parts).unwrap();
         let fluence = Quantity::Fluence(DVec3::new(2.0, 2.0, 0.5));

@@ -122,7 +122,7 @@ mod tests {
     use super::*;
     use crate::geometry::{Rectangle, Shape, Sphere};
     use crate::light::{Light, Point};
-    use crate::scene::{Filter, Object, Parts, View};
+    use crate::scene::{Filter, Object, SceneParts, View};
     use crate::surface::{Lambertian, Surface};
     use crate::transport::Flags;
     use glam::Vec3;
@@ -137,7 +137,7 @@ mod tests {
         let surface = Surface::Lambertian(Lambertian::new(Spectrum::grey(0.5)).unwrap());
         let light = Light::Point(Point::new(light, Spectrum::ONE).unwrap());
         let objects = vec![Object { shape, surface }];
-        Scene::new(Parts { objects, lights: vec![light], ..Parts::default() }).unwrap()
+        Scene::new(SceneParts { objects, lights: vec![light], ..SceneParts::default() }).unwrap()
     }
 
     #[test]

@@ -14,7 +14,7 @@ use turbid::Spectrum;
 use turbid::geometry::Shape;
 use turbid::light::{Faces, Light};
 use turbid::math::Ray;
-use turbid::scene::{Interior, Object, Orders, Parts, Quantity, Scene};
+use turbid::scene::{Interior, Object, Orders, Quantity, Scene, SceneParts};
 use turbid::surface::{Filter, Surface};
 
 #[test]
@@ -55,7 +55,7 @@ fn paths_cross_a_refracting_slab() {
 fn nested_boundaries_have_each_their_brightness() {
     let fog = |sigma_t: f64| homogeneous(Spectrum::grey(sigma_t), Spectrum::ONE, 0.2);
     let (glass, cognac) = (1.5, 1.36);
-    let scene = Scene::new(Parts {
+    let scene = Scene::new(SceneParts {
         interiors: vec![
             Interior::surroundings(),
             filled("glass", glass, fog(0.4)),
@@ -66,7 +66,7 @@ fn nested_boundaries_have_each_their_brightness() {
             Object { shape: sphere(DVec3::new(0.1, 0.0, 0.2), 0.5), surface: dielectric(2, 1) },
         ],
         lights: vec![isotropic(sphere(DVec3::ZERO, 1.5), Faces::Both)],
-        ..Parts::default()
+        ..SceneParts::default()
     })
     .unwrap();
     for (p, number, index) in [
@@ -86,7 +86,7 @@ fn nested_boundaries_have_each_their_brightness() {
 /// reflected at the boundary on its way.
 #[test]
 fn a_region_does_not_count_inside() {
-    let scene = Scene::new(Parts {
+    let scene = Scene::new(SceneParts {
         regions: vec![region(sphere(DVec3::ZERO, 2.0), 1.0, 0.0, 0.0)],
         interiors: vec![
             Interior::surroundings(),
@@ -94,7 +94,7 @@ fn a_region_does_not_count_inside() {
         ],
         objects: vec![Object { shape: sphere(DVec3::ZERO, 1.0), surface: dielectric(1, 0) }],
         lights: vec![point_light(DVec3::ZERO, Spectrum::ONE)],
-        ..Parts::default()
+        ..SceneParts::default()
     })
     .unwrap();
     let sensors = [(outflow(sphere(DVec3::ZERO, 2.0)), Orders::ALL), (Quantity::Absorbed(0), Orders::ALL)];
@@ -152,14 +152,14 @@ fn a_filter_colors_and_is_no_event() {
 #[test]
 fn light_caught_in_a_cube_is_booked() {
     let index = 1.6f64;
-    let scene = Scene::new(Parts {
+    let scene = Scene::new(SceneParts {
         interiors: vec![Interior::surroundings(), Interior { name: "glass".into(), index, medium: None }],
         objects: vec![Object {
             shape: cuboid(DVec3::splat(-1.0), DVec3::splat(1.0)),
             surface: dielectric(1, 0),
         }],
         lights: vec![point_light(DVec3::new(0.1, 0.2, -0.3), Spectrum::ONE)],
-        ..Parts::default()
+        ..SceneParts::default()
     })
     .unwrap();
     let out = (outflow(sphere(DVec3::ZERO, 3.0)), Orders::ALL);
@@ -179,7 +179,7 @@ fn boundaries_that_do_not_fit_are_refused() {
     let refused = |interiors: Vec<Interior>, objects: Vec<(Shape, Surface)>, light: Light| {
         let objects = objects.into_iter().map(|(shape, surface)| Object { shape, surface }).collect();
         let interiors = [vec![Interior::surroundings()], interiors].concat();
-        let parts = Parts { interiors, objects, lights: vec![light], ..Parts::default() };
+        let parts = SceneParts { interiors, objects, lights: vec![light], ..SceneParts::default() };
         Scene::new(parts).map(|_| ()).unwrap_err().to_string()
     };
     let lamp = || point_light(DVec3::new(0.0, 0.0, 5.0), Spectrum::ONE);

@@ -22,7 +22,7 @@ use std::f64::consts::PI;
 use turbid::Spectrum;
 use turbid::estimators::{Estimator, Gather, Kernel};
 use turbid::math::{Ray, exp};
-use turbid::scene::{Orders, Parts, Quantity, Region, Scene};
+use turbid::scene::{Orders, Quantity, Region, Scene, SceneParts};
 use turbid::sensor::{PhotonSettings, by_photons};
 use turbid::stats::Moments;
 use turbid::transport::NoProgress;
@@ -123,12 +123,12 @@ fn viewed((tau, albedo, g): (f64, f64, f64), how: Incidence, views: &[View]) -> 
 }
 
 fn layered(region: Region, how: Incidence, views: impl Iterator<Item = Quantity>) -> Scene {
-    Scene::new(Parts {
+    Scene::new(SceneParts {
         lights: vec![incidence(region.shape.clone(), how)],
         regions: vec![region],
         sensors: views.map(|view| sensor(view, Orders::SCATTERED)).collect(),
         cell: Some(CELL),
-        ..Parts::default()
+        ..SceneParts::default()
     })
     .unwrap()
 }

@@ -14,7 +14,7 @@ use turbid::estimators::{Estimator, Gather, Kernel};
 use turbid::math::{Interval, Positive, Ray};
 use turbid::medium::{Density, Grid, HeightFog, Medium};
 use turbid::photons::{Histories, shoot};
-use turbid::scene::{Orders, Parts, Quantity, Region, Scene};
+use turbid::scene::{Orders, Quantity, Region, Scene, SceneParts};
 use turbid::sensor::{PhotonSettings, by_photons};
 use turbid::stats::Moments;
 use turbid::transport::NoProgress;
@@ -48,14 +48,14 @@ fn slab(density: Density, tau: f64, how: Incidence) -> Scene {
     let whole = Interval { start: 0.0, end: THICKNESS };
     let sigma_t = tau / density.integral(&down(), whole);
     let shape = layer(THICKNESS);
-    Scene::new(Parts {
+    Scene::new(SceneParts {
         regions: vec![Region {
             shape: shape.clone(),
             medium: varying(Spectrum::grey(sigma_t), ALBEDO, density),
         }],
         lights: vec![incidence(shape, how)],
         cell: Some(CELL),
-        ..Parts::default()
+        ..SceneParts::default()
     })
     .unwrap()
 }
@@ -152,14 +152,14 @@ fn ball(medium: Medium) -> Scene {
         outflow(shape.clone()),
         Quantity::Absorbed(0),
     ];
-    Scene::new(Parts {
+    Scene::new(SceneParts {
         regions: vec![Region { shape: shape.clone(), medium }],
         lights: vec![
             point_light(DVec3::new(-1.6, 0.1, 0.0), Spectrum::rgb(9.0, 18.0, 9.0)),
             isotropic(shape, turbid::light::Faces::Both),
         ],
         sensors: sensors.map(|quantity| sensor(quantity, Orders::ALL)).to_vec(),
-        ..Parts::default()
+        ..SceneParts::default()
     })
     .unwrap()
 }

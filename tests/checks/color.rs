@@ -17,7 +17,7 @@ use turbid::medium::{Density, Grid, Heterogeneous, Homogeneous, Medium};
 use turbid::phase::{Isotropic, Phase};
 use turbid::photons::Emitter;
 use turbid::rng::{Purpose, Stream};
-use turbid::scene::{Interior, Object, Orders, Parts, Quantity, Region, SURROUNDINGS, Scene};
+use turbid::scene::{Interior, Object, Orders, Quantity, Region, SURROUNDINGS, Scene, SceneParts};
 use turbid::sensor::{PathSettings, PhotonSettings, Reading, by_paths, by_photons};
 use turbid::stats::Moments;
 use turbid::transport::{Flight, NoProgress, free_flight};
@@ -35,11 +35,11 @@ fn lit(lights: Vec<Light>) -> Scene {
     let ball = sphere(DVec3::ZERO, 1.0);
     let sensors =
         [Quantity::Fluence(DVec3::new(0.2, 0.3, 0.0)), outflow(ball.clone()), Quantity::Absorbed(0)];
-    Scene::new(Parts {
+    Scene::new(SceneParts {
         regions: vec![Region { shape: ball, medium: homogeneous(Spectrum::ONE, Spectrum::grey(0.8), 0.3) }],
         lights,
         sensors: sensors.map(|quantity| sensor(quantity, Orders::ALL)).to_vec(),
-        ..Parts::default()
+        ..SceneParts::default()
     })
     .unwrap()
 }
@@ -132,12 +132,12 @@ pub fn a_colored_filling_passes_each_channel() {
     let (index, tau) = (1.5, Spectrum::rgb(0.2, 1.0, 2.5));
     let scene = |how| {
         let medium = homogeneous(tau, Spectrum::ZERO, 0.0);
-        Scene::new(Parts {
+        Scene::new(SceneParts {
             interiors: vec![Interior::surroundings(), filled("plate", index, medium)],
             objects: vec![Object { shape: layer(1.0), surface: dielectric(1, 0) }],
             lights: vec![incidence(around(1.0), how)],
             cell: Some(CELL),
-            ..Parts::default()
+            ..SceneParts::default()
         })
         .unwrap()
     };
@@ -217,12 +217,12 @@ fn emitter(sigma_t: f64, emission: Spectrum) -> Homogeneous {
 pub fn emission_is_reported_by_channel() {
     let (sigma_t, emission) = (0.8, Spectrum::rgb(1.0, 0.25, 3.0));
     let ray = Ray::new(DVec3::new(0.5, 0.5, -1.0), DVec3::Z);
-    let scene = Scene::new(Parts {
+    let scene = Scene::new(SceneParts {
         regions: vec![Region { shape: box_between(0.0, 2.0), medium: emitter(sigma_t, emission).into() }],
         sensors: [Quantity::Radiance(ray), Quantity::Absorbed(0)]
             .map(|quantity| sensor(quantity, Orders::ALL))
             .to_vec(),
-        ..Parts::default()
+        ..SceneParts::default()
     })
     .unwrap();
     let (seen, ended) = (read(&scene, "paths", 0), read(&scene, "photons", 0));
@@ -284,7 +284,7 @@ fn colorful(order: [usize; 3]) -> Scene {
         (Shape::Rectangle(up(2.0, -0.2)), lambertian(rgb([0.8, 0.3, 0.5]))),
         (sphere(DVec3::new(0.0, 0.7, 0.4), 0.4), dielectric(1, 0)),
     ];
-    Scene::new(Parts {
+    Scene::new(SceneParts {
         regions: vec![
             Region { shape: cuboid(DVec3::new(-0.9, -0.8, 0.1), DVec3::new(0.1, -0.1, 0.9)), medium: even },
             Region { shape: cuboid(corners.0, corners.1), medium: varying.into() },
@@ -292,7 +292,7 @@ fn colorful(order: [usize; 3]) -> Scene {
         interiors: vec![Interior::surroundings(), filled("glass", 1.4, filling)],
         objects: objects.into_iter().map(|(shape, surface)| Object { shape, surface }).collect(),
         lights: vec![lamp(-1.0, [9.0, 1.0, 2.0]), lamp(1.0, [1.0, 3.0, 2.5])],
-        ..Parts::default()
+        ..SceneParts::default()
     })
     .unwrap()
 }

@@ -15,7 +15,7 @@ use turbid::integrators::{Layer, Layers, StepRule, path};
 use turbid::math::{Positive, Ray};
 use turbid::photons::maps::{Amount, Indirect, MapSettings, fill};
 use turbid::rng::{Purpose, Stream};
-use turbid::scene::{Interior, Object, Parts, Region, Scene};
+use turbid::scene::{Interior, Object, Region, Scene, SceneParts};
 use turbid::stats::Moments;
 use turbid::surface::{Mirror, Surface};
 use turbid::transport::{NoProgress, run_blocks};
@@ -48,7 +48,7 @@ impl Room {
         Scene::new(self.parts()).unwrap()
     }
 
-    pub fn parts(&self) -> Parts {
+    pub fn parts(&self) -> SceneParts {
         let (x, y, z) = (DVec3::X * SIDE, DVec3::Y * SIDE, DVec3::Z * SIDE);
         let light = emitting_sphere(DVec3::new(1.0, 1.0, 1.5), 0.4);
         let wall = |corner, u, v, rgb: [f64; 3]| {
@@ -84,12 +84,12 @@ impl Room {
             let water = Interior { name: "water".into(), index: 1.33, medium: None };
             interiors = vec![Interior::surroundings(), water];
         }
-        Parts {
+        SceneParts {
             regions: if self.sigma_t.is_black() { Vec::new() } else { vec![fog] },
             objects: objects.into_iter().map(|(shape, surface)| Object { shape, surface }).collect(),
             interiors,
             lights: vec![light],
-            ..Parts::default()
+            ..SceneParts::default()
         }
     }
 }

@@ -14,7 +14,7 @@ use turbid::math::exp;
 use turbid::photons::importance::window;
 use turbid::photons::{Flags, Histories, Photon, PhotonMap, shoot};
 use turbid::rng::{Purpose, Stream};
-use turbid::scene::{Orders, Parts, Quantity, Scene};
+use turbid::scene::{Orders, Quantity, Scene, SceneParts};
 use turbid::sensor::{Pilot, PilotSettings};
 use turbid::stats::Moments;
 use turbid::transport::{NoProgress, Roulette};
@@ -130,11 +130,11 @@ pub fn advised_noise_is_that_of_maps() {
     let at = [0.0, 1.3, -1.3].map(|x| DVec3::new(x, 0.0, 0.0));
     let whole = || sphere(DVec3::ZERO, 2.0);
     let scene = scenes::ball(2.0, 1.0, 0.0, isotropic(whole(), Faces::Both));
-    let scene = Scene::new(Parts {
+    let scene = Scene::new(SceneParts {
         regions: scene.regions().to_vec(),
         lights: scene.lights().to_vec(),
         sensors: at.map(|p| sensor(Quantity::Fluence(p), Orders::ALL)).to_vec(),
-        ..Parts::default()
+        ..SceneParts::default()
     })
     .unwrap();
     let advised: Vec<_> = (0..64)

@@ -17,7 +17,7 @@ use turbid::Spectrum;
 use turbid::geometry::{Mesh, Revolution, Shape, Sphere};
 use turbid::light::{Area, Beam, Faces, Light, PrimarySample, Section, Spot, Sun};
 use turbid::math::{FOUR_PI, Ray, warp};
-use turbid::scene::{Interior, Object, Orders, Parts, Quantity, Scene};
+use turbid::scene::{Interior, Object, Orders, Quantity, Scene, SceneParts};
 use turbid::surface::{Black, Surface};
 
 const N: u64 = 1 << 17;
@@ -291,10 +291,10 @@ fn the_sun_covers_its_scene() {
         let by_paths = paths(&scene, quantity, Orders::SCATTERED, N, seed);
         verdict::agree(&format!("sun of {radius}"), &by_photons[0][0], &by_paths[0], 0.02, seed);
     }
-    let nothing = Parts { lights: suns().into_iter().map(|l| l.1).collect(), ..Parts::default() };
+    let nothing = SceneParts { lights: suns().into_iter().map(|l| l.1).collect(), ..SceneParts::default() };
     assert!(Scene::new(nothing).is_ok(), "these are told what to cover");
     let lost = Light::Sun(Sun::new(DVec3::X, Spectrum::ONE, 1.0).unwrap());
-    assert!(Scene::new(Parts { lights: vec![lost], ..Parts::default() }).is_err());
+    assert!(Scene::new(SceneParts { lights: vec![lost], ..SceneParts::default() }).is_err());
 }
 
 /// Irradiance at normal incidence is what the sun states: by directions towards it, and by rays that meet its disc.
@@ -452,11 +452,11 @@ fn lamps_hide_themselves() {
 #[test]
 fn light_leaves_glass() {
     let glass = Interior { name: "glass".into(), index: 1.5, medium: None };
-    let scene = Scene::new(Parts {
+    let scene = Scene::new(SceneParts {
         interiors: vec![Interior::surroundings(), glass],
         objects: vec![Object { shape: sphere(DVec3::ZERO, 0.6), surface: dielectric(1, 0) }],
         lights: vec![Light::Area(Area::new(sphere(DVec3::new(0.2, 0.0, 0.0), 0.2), Spectrum::ONE).unwrap())],
-        ..Parts::default()
+        ..SceneParts::default()
     })
     .unwrap();
     let beside = outflow(cuboid(DVec3::new(0.7, -1.0, -1.0), DVec3::new(1.2, 1.0, 1.0)));

@@ -24,7 +24,7 @@ use turbid::medium::{Density, Grid, Heterogeneous, Homogeneous, Medium};
 use turbid::phase::{Isotropic, Phase};
 use turbid::photons::{Emitter, Histories, shoot};
 use turbid::rng::{Purpose, Stream, Work};
-use turbid::scene::{Interior, Object, Orders, Parts, Quantity, Region, SURROUNDINGS, Scene};
+use turbid::scene::{Interior, Object, Orders, Quantity, Region, SURROUNDINGS, Scene, SceneParts};
 use turbid::stats::Moments;
 use turbid::transport::{Flight, NoProgress, free_flight, passed};
 
@@ -241,7 +241,7 @@ fn photons_of_unbounded_media_need_a_cell() {
     let medium = || -> Medium { matter(Spectrum::ONE, Spectrum::ONE).into() };
     let scene = |cell| {
         let regions = vec![Region { shape: layer(2.0), medium: medium() }];
-        Scene::new(Parts { regions, cell, ..Parts::default() }).unwrap()
+        Scene::new(SceneParts { regions, cell, ..SceneParts::default() }).unwrap()
     };
     let open = scene(None);
     let histories = Histories { count: 1, seed: 1, replicate: 0, max_order: None };
@@ -340,7 +340,7 @@ fn bodies_turned_inside_out_part_the_same_places() {
                 Interior::surroundings(),
                 filled("glass", 1.5, matter(Spectrum::ONE, Spectrum::ONE).into()),
             ];
-            Scene::new(Parts { interiors, objects, ..Parts::default() }).unwrap()
+            Scene::new(SceneParts { interiors, objects, ..SceneParts::default() }).unwrap()
         };
         let (one, other) = (scene(right, 1), scene(wrong, 0));
         let mut stream = Stream::new(14, Purpose::Synthetic, 0, 0);
@@ -384,10 +384,10 @@ fn filled_bodies_emit_by_their_volume() {
         let glow = matter(Spectrum::ONE, Spectrum::rgb(1.0, 2.0, 0.5));
         let glass = filled("glass", 1.5, glow.into());
         let expected = FOUR_PI * shape.volume();
-        let parts = Parts {
+        let parts = SceneParts {
             interiors: vec![Interior::surroundings(), glass],
             objects: vec![Object { shape, surface: dielectric(1, 0) }],
-            ..Parts::default()
+            ..SceneParts::default()
         };
         let scene = Scene::new(parts).unwrap();
         let emitter = Emitter::by_power(&scene);

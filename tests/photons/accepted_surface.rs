@@ -22,13 +22,13 @@ use turbid::stats::Moments;
 use turbid::transport::NoProgress;
 
 /// Irradiance of a body's side at a point: its number, the point, and whether it is the outer side.
-type Lit = Box<dyn Fn(usize, DVec3, bool) -> f64>;
+type IrradianceOf = Box<dyn Fn(usize, DVec3, bool) -> f64>;
 
 /// Bodies, and what falls on them.
 struct Specimen {
     name: &'static str,
     shapes: Vec<Shape>,
-    lit: Lit,
+    lit: IrradianceOf,
 }
 
 fn specimen(

@@ -10,7 +10,7 @@ use turbid::estimators::boundary::Boundary;
 use turbid::estimators::{Estimator, Gather, Kernel};
 use turbid::math::exp;
 use turbid::photons::{Histories, shoot};
-use turbid::scene::{Orders, Parts, Quantity, Scene};
+use turbid::scene::{Orders, Quantity, Scene, SceneParts};
 use turbid::sensor::{Advice, Pilot, PilotSettings};
 use turbid::stats::{ALPHA, Moments, wilson_interval};
 use turbid::transport::NoProgress;
@@ -25,13 +25,13 @@ struct Case {
 impl Case {
     fn new(scene: &Scene, probes: Vec<(Quantity, f64)>) -> Self {
         let sensors = probes.iter().map(|(quantity, _)| run::sensor(quantity.clone(), Orders::ALL)).collect();
-        let scene = Scene::new(Parts {
+        let scene = Scene::new(SceneParts {
             regions: scene.regions().to_vec(),
             objects: scene.objects().to_vec(),
             lights: scene.lights().to_vec(),
             cell: scene.periodic_cell().map(|periodic_cell| periodic_cell.side),
             sensors,
-            ..Parts::default()
+            ..SceneParts::default()
         });
         Case { scene: scene.unwrap(), exact: probes.into_iter().map(|(_, exact)| exact).collect() }
     }

@@ -16,7 +16,7 @@ use turbid::math::{FOUR_PI, Positive, Ray, exp, exp_m1};
 use turbid::medium::{Density, Grid, HeightFog, Heterogeneous, Medium};
 use turbid::photons::maps::{Indirect, MapReport, Maps};
 use turbid::rng::{Purpose, Stream};
-use turbid::scene::{Orders, Parts, Quantity, Region, Scene};
+use turbid::scene::{Orders, Quantity, Region, Scene, SceneParts};
 use turbid::sensor::{PhotonSettings, by_photons};
 use turbid::stats::Moments;
 use turbid::transport::NoProgress;
@@ -175,11 +175,11 @@ fn level_rays_in_varying_fog_without_end() {
     let read = |medium: Medium, seed: u64| {
         let shape = Shape::Slab(Slab::new(-1.0, 2.0).unwrap());
         let ray = Ray::new(DVec3::new(0.0, 0.3, 0.0), DVec3::X);
-        let parts = Parts {
+        let parts = SceneParts {
             regions: vec![Region { shape, medium }],
             lights: vec![point_light(DVec3::X, Spectrum::ONE)],
             sensors: vec![sensor(Quantity::Radiance(ray), Orders::ALL)],
-            ..Parts::default()
+            ..SceneParts::default()
         };
         let settings = PhotonSettings {
             photons: 1 << 14,

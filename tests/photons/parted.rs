@@ -22,7 +22,7 @@ use turbid::photons::PhotonMap;
 use turbid::photons::maps::{Indirect, fill};
 use turbid::photons::synthetic::{Number, Profile, Synthetic};
 use turbid::rng::{Purpose, Stream};
-use turbid::scene::{Interior, Object, Orders, Parts, Quantity, Region, Scene};
+use turbid::scene::{Interior, Object, Orders, Quantity, Region, Scene, SceneParts};
 use turbid::sensor::{PhotonSettings, by_photons};
 use turbid::stats::Moments;
 use turbid::surface::Surface;
@@ -63,7 +63,7 @@ fn foggy(objects: Vec<(Shape, Surface)>) -> Scene {
 
 /// A medium that fills interior 1, which these surfaces bound.
 fn interior(objects: Vec<(Shape, Surface)>, regions: Vec<Region>) -> Scene {
-    Scene::new(Parts {
+    Scene::new(SceneParts {
         regions,
         interiors: vec![
             Interior::surroundings(),
@@ -71,7 +71,7 @@ fn interior(objects: Vec<(Shape, Surface)>, regions: Vec<Region>) -> Scene {
         ],
         objects: objects.into_iter().map(|(shape, surface)| Object { shape, surface }).collect(),
         lights: vec![point_light(DVec3::new(0.91, 0.92, 0.93), Spectrum::ONE)],
-        ..Parts::default()
+        ..SceneParts::default()
     })
     .unwrap()
 }
@@ -399,7 +399,8 @@ fn fluence_beside_a_wall_with_fog_beyond() {
         let sensors = vec![run::sensor(at, orders)];
         let objects = room().into_iter().map(|(shape, surface)| Object { shape, surface }).collect();
         let lights = vec![emitting_sphere(DVec3::new(0.0, 0.0, 0.1), 0.1)];
-        Scene::new(Parts { regions: vec![fog()], objects, lights, sensors, ..Parts::default() }).unwrap()
+        Scene::new(SceneParts { regions: vec![fog()], objects, lights, sensors, ..SceneParts::default() })
+            .unwrap()
     };
     let by_maps = |treatment: Treatment| -> Moments {
         let one = |seed: u64| {

@@ -7,7 +7,7 @@ use turbid::Spectrum;
 use turbid::estimators::boundary::Treatment;
 use turbid::estimators::{Estimator, Gather, Kernel};
 use turbid::math::Ray;
-use turbid::scene::{Orders, Parts, Quantity, Region, Scene, Sensor};
+use turbid::scene::{Orders, Quantity, Region, Scene, SceneParts, Sensor};
 use turbid::sensor::{PhotonReadings, PhotonSettings, by_photons, by_photons_in_passes, forecast};
 use turbid::transport::NoProgress;
 
@@ -16,12 +16,12 @@ fn with_sensors(scene: &Scene, quantities: &[(Quantity, Orders)]) -> Scene {
         let (name, label) = (format!("sensor {i}"), format!("sensor {i}"));
         Sensor { name, label, quantity: quantity.clone(), orders: *orders }
     });
-    Scene::new(Parts {
+    Scene::new(SceneParts {
         regions: scene.regions().to_vec(),
         lights: scene.named_lights().to_vec(),
         cell: scene.periodic_cell().map(|periodic_cell| periodic_cell.side),
         sensors: sensors.collect(),
-        ..Parts::default()
+        ..SceneParts::default()
     })
     .unwrap()
 }

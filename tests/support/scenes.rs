@@ -8,7 +8,7 @@ use turbid::light::{Area, Beam, Faces, Isotropic, Light, Point, Section, VolumeS
 use turbid::math::{Asymmetry, FOUR_PI};
 use turbid::medium::{Homogeneous, Medium};
 use turbid::phase::Phase;
-use turbid::scene::{Interior, Object, Parts, Quantity, Region, Scene};
+use turbid::scene::{Interior, Object, Quantity, Region, Scene, SceneParts};
 use turbid::surface::{Dielectric, Lambertian, Surface};
 
 /// Side of the cells of unbounded slabs [L].
@@ -99,11 +99,11 @@ pub fn area_light(rectangle: Rectangle, radiance: Spectrum) -> Light {
 /// A slab of optical thickness tau, extinction 1, lit with irradiance 1 (on each lit face).
 pub fn slab(tau: f64, albedo: f64, g: f64, how: Incidence) -> Scene {
     let shape = layer(tau);
-    Scene::new(Parts {
+    Scene::new(SceneParts {
         regions: vec![region(shape.clone(), 1.0, albedo, g)],
         lights: vec![incidence(shape, how)],
         cell: Some(CELL),
-        ..Parts::default()
+        ..SceneParts::default()
     })
     .unwrap()
 }
@@ -111,13 +111,13 @@ pub fn slab(tau: f64, albedo: f64, g: f64, how: Incidence) -> Scene {
 /// A ball of extinction 1 about the origin with a light.
 pub fn ball(radius: f64, albedo: f64, g: f64, light: Light) -> Scene {
     let regions = vec![region(sphere(DVec3::ZERO, radius), 1.0, albedo, g)];
-    Scene::new(Parts { regions, lights: vec![light], ..Parts::default() }).unwrap()
+    Scene::new(SceneParts { regions, lights: vec![light], ..SceneParts::default() }).unwrap()
 }
 
 /// Lights, surfaces and media, bounded.
 pub fn bounded(regions: Vec<Region>, objects: Vec<(Shape, Surface)>, lights: Vec<Light>) -> Scene {
     let objects = objects.into_iter().map(|(shape, surface)| Object { shape, surface }).collect();
-    Scene::new(Parts { regions, objects, lights, ..Parts::default() }).unwrap()
+    Scene::new(SceneParts { regions, objects, lights, ..SceneParts::default() }).unwrap()
 }
 
 /// Fluence at a depth in the middle of the cell.
@@ -156,12 +156,12 @@ pub fn dielectric(inside: usize, outside: usize) -> Surface {
 /// (on each lit face); its medium has number 0.
 pub fn fresnel_slab(tau: f64, albedo: f64, g: f64, index: f64, how: Incidence) -> Scene {
     let medium = homogeneous(Spectrum::ONE, Spectrum::grey(albedo), g);
-    Scene::new(Parts {
+    Scene::new(SceneParts {
         interiors: vec![Interior::surroundings(), filled("slab", index, medium)],
         objects: vec![Object { shape: layer(tau), surface: dielectric(1, 0) }],
         lights: vec![incidence(around(tau), how)],
         cell: Some(CELL),
-        ..Parts::default()
+        ..SceneParts::default()
     })
     .unwrap()
 }
@@ -169,11 +169,11 @@ pub fn fresnel_slab(tau: f64, albedo: f64, g: f64, index: f64, how: Incidence) -
 /// A ball of radius 1 and index n under radiance 1/pi from all sides; extinction `sigma_t`, nothing absorbed.
 pub fn refracting_cavity(index: f64, sigma_t: f64, g: f64) -> Scene {
     let medium = homogeneous(Spectrum::grey(sigma_t), Spectrum::ONE, g);
-    Scene::new(Parts {
+    Scene::new(SceneParts {
         interiors: vec![Interior::surroundings(), filled("ball", index, medium)],
         objects: vec![Object { shape: sphere(DVec3::ZERO, 1.0), surface: dielectric(1, 0) }],
         lights: vec![isotropic(sphere(DVec3::ZERO, 1.5), Faces::Both)],
-        ..Parts::default()
+        ..SceneParts::default()
     })
     .unwrap()
 }

@@ -7,7 +7,7 @@ use crate::support::scenes::{cuboid, region};
 use glam::DVec3;
 use turbid::Spectrum;
 use turbid::light::{Light, VolumeSource};
-use turbid::scene::{Orders, Parts, Quantity, Scene, Sensor};
+use turbid::scene::{Orders, Quantity, Scene, SceneParts, Sensor};
 use turbid::sensor::{NoError, PathSettings, by_paths};
 use turbid::transport::NoProgress;
 
@@ -20,7 +20,7 @@ fn shield(at: f64) -> Scene {
     let box_of = |half: f64| cuboid(DVec3::splat(-half), DVec3::splat(half));
     let source = VolumeSource::new(box_of(10.0), Spectrum::ONE).unwrap();
     let quantity = Quantity::Fluence(DVec3::splat(at));
-    Scene::new(Parts {
+    Scene::new(SceneParts {
         regions: vec![
             region(box_of(100.0), 0.1, 0.5, 0.0),
             region(box_of(50.0), 1e-4, 0.5, 0.0),
@@ -28,7 +28,7 @@ fn shield(at: f64) -> Scene {
         ],
         lights: vec![Light::VolumeSource(source)],
         sensors: vec![Sensor { name: "deep".into(), label: "fluence".into(), quantity, orders: Orders::ALL }],
-        ..Parts::default()
+        ..SceneParts::default()
     })
     .unwrap()
 }

@@ -16,7 +16,9 @@ use turbid::photons::importance::{Importance, ImportanceSettings};
 use turbid::photons::maps::{Amount, Indirect, MapSettings, fill};
 use turbid::photons::{Histories, MOST_EVENTS, check_end, shoot};
 use turbid::rng::{Purpose, Stream};
-use turbid::scene::{Camera, Filter, Interior, Object, Orders, Parts, Quantity, Region, Scene, Sensor, View};
+use turbid::scene::{
+    Camera, Filter, Interior, Object, Orders, Quantity, Region, Scene, SceneParts, Sensor, View,
+};
 use turbid::sensor::{PathSettings, Streams, by_light, by_paths};
 use turbid::stats::Moments;
 use turbid::surface::{Dielectric, Mirror, Surface};
@@ -63,12 +65,12 @@ fn camera() -> Camera {
 }
 
 fn room(surface: impl Fn(usize) -> Surface) -> Scene {
-    let parts = Parts {
+    let parts = SceneParts {
         objects: objects(walls(surface)),
         lights: vec![lamp()],
         sensors: vec![probe()],
         camera: Some(camera()),
-        ..Parts::default()
+        ..SceneParts::default()
     };
     Scene::new(parts).unwrap()
 }
@@ -115,11 +117,11 @@ fn rooms_that_keep_light_are_refused_and_others_are_not() {
     // Light of a lamp outside comes to an end; what a sensor inside could measure does not.
     let outside = point_light(DVec3::X * 3.0, Spectrum::ONE);
     assert_eq!(check_end(&bounded(Vec::new(), walls(white), vec![outside.clone()])), Ok(()));
-    let parts = Parts {
+    let parts = SceneParts {
         objects: objects(walls(white)),
         lights: vec![outside],
         sensors: vec![probe()],
-        ..Parts::default()
+        ..SceneParts::default()
     };
     let told = text(&Scene::new(parts).unwrap());
     assert!(told.contains("sensor middle"), "{told}");
@@ -138,12 +140,12 @@ fn media_without_end_are_refused_where_light_does_not_end_in_them() {
         let milk = Interior { name: "milk".into(), index: 1.4, medium: Some(medium) };
         let interiors = vec![Interior::surroundings(), milk];
         let boundary = Surface::Dielectric(Dielectric::new(1, 0));
-        let parts = Parts {
+        let parts = SceneParts {
             interiors,
             objects: objects(vec![(body, boundary)]),
             lights: vec![lamp()],
             camera: Some(camera()),
-            ..Parts::default()
+            ..SceneParts::default()
         };
         check_end(&Scene::new(parts).unwrap()).map_or_else(|error| error.to_string(), |()| String::new())
     };
@@ -222,7 +224,7 @@ fn a_white_ball_in_a_medium_that_is_lit_from_outside_is_a_furnace() {
 fn light_caught_in_glass_with_a_mirror_in_it_is_given_up() {
     let glass = Interior { name: "glass".into(), index: 1.6, medium: None };
     let pane = rectangle(DVec3::new(-0.5, -0.5, 0.5), DVec3::X, DVec3::Y);
-    let parts = Parts {
+    let parts = SceneParts {
         interiors: vec![Interior::surroundings(), glass],
         objects: vec![
             Object {
@@ -232,7 +234,7 @@ fn light_caught_in_glass_with_a_mirror_in_it_is_given_up() {
             Object { shape: Shape::Rectangle(pane), surface: mirror(0) },
         ],
         lights: vec![lamp()],
-        ..Parts::default()
+        ..SceneParts::default()
     };
     let scene = Scene::new(parts).unwrap();
     let out = (outflow(sphere(DVec3::ZERO, 3.0)), Orders::ALL);

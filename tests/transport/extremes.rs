@@ -16,7 +16,7 @@ use turbid::light::Faces;
 use turbid::math::{Ray, exp};
 use turbid::photons::{Emitter, Histories, Photon, PhotonMap, shoot};
 use turbid::rng::{Purpose, Stream};
-use turbid::scene::{Orders, Parts, Quantity, SURROUNDINGS, Scene, decay};
+use turbid::scene::{Orders, Quantity, SURROUNDINGS, Scene, SceneParts, decay};
 use turbid::sensor::{PathSettings, PhotonSettings, by_paths, by_photons};
 use turbid::transport::{LONG, NoProgress, Roulette, Step, Visitor, Walker, walk};
 
@@ -31,13 +31,13 @@ fn photon_settings(photons: u64, gather: Gather) -> PhotonSettings {
 }
 
 fn with_sensors(scene: &Scene, quantities: &[Quantity]) -> Scene {
-    Scene::new(Parts {
+    Scene::new(SceneParts {
         regions: scene.regions().to_vec(),
         objects: scene.objects().to_vec(),
         lights: scene.lights().to_vec(),
         cell: scene.periodic_cell().map(|s| s.side),
         sensors: quantities.iter().map(|q| crate::support::run::sensor(q.clone(), Orders::ALL)).collect(),
-        ..Parts::default()
+        ..SceneParts::default()
     })
     .unwrap()
 }

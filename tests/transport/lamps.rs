@@ -16,7 +16,7 @@ use turbid::integrators::{Layer, path};
 use turbid::light::{Area, Beam, Light, Section};
 use turbid::math::{Frame, Ray, exp};
 use turbid::photons::maps::{Indirect, MapReport, Maps};
-use turbid::scene::{Interior, Object, Orders, Parts, Quantity, Scene};
+use turbid::scene::{Interior, Object, Orders, Quantity, Scene, SceneParts};
 use turbid::sensor::sample;
 use turbid::surface::{Filter, Mirror, Surface};
 
@@ -29,11 +29,11 @@ fn lamp(shape: Shape) -> Light {
 /// A ball of glass that absorbs and scatters, or a box of it, and a lamp.
 fn glass(shape: Shape, lamp: Light) -> Scene {
     let medium = homogeneous(Spectrum::grey(2.0), Spectrum::grey(0.3), 0.0);
-    Scene::new(Parts {
+    Scene::new(SceneParts {
         interiors: vec![Interior::surroundings(), filled("glass", 1.5, medium)],
         objects: vec![Object { shape, surface: dielectric(1, 0) }],
         lights: vec![lamp],
-        ..Parts::default()
+        ..SceneParts::default()
     })
     .unwrap()
 }
@@ -153,7 +153,7 @@ fn refused(objects: Vec<(Shape, Surface)>, lights: Vec<Light>) -> String {
         vec![Interior::surroundings(), Interior { name: "glass".into(), index: 1.5, medium: None }];
     let names_glass = |o: &Vec<Object>| o.iter().any(|o| matches!(o.surface, Surface::Dielectric(_)));
     let interiors = if names_glass(&objects) { interiors } else { Vec::new() };
-    match Scene::new(Parts { interiors, objects, lights, ..Parts::default() }) {
+    match Scene::new(SceneParts { interiors, objects, lights, ..SceneParts::default() }) {
         Ok(_) => String::new(),
         Err(error) => error.to_string(),
     }

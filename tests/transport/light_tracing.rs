@@ -8,7 +8,7 @@ use glam::DVec3;
 use turbid::Spectrum;
 use turbid::geometry::Shape;
 use turbid::integrators::Layer;
-use turbid::scene::{Camera, Filter, Interior, Object, Parts, Scene, View};
+use turbid::scene::{Camera, Filter, Interior, Object, Scene, SceneParts, View};
 use turbid::sensor::{Film, Method, Streams, by_light};
 use turbid::stats::Moments;
 use turbid::surface::Surface;
@@ -109,14 +109,14 @@ fn light_through_a_ball_of_glass() {
     let light = rectangle(DVec3::new(-0.7, 3.0, -0.7), DVec3::X * 1.4, DVec3::Z * 1.4);
     let glass = homogeneous(Spectrum::ZERO, Spectrum::ZERO, 0.0);
     let object = |shape: Shape, surface: Surface| Object { shape, surface };
-    let scene = Scene::new(Parts {
+    let scene = Scene::new(SceneParts {
         interiors: vec![Interior::surroundings(), filled("glass", 1.5, glass)],
         objects: vec![
             object(floor, lambertian(Spectrum::rgb(0.8, 0.6, 0.4))),
             object(ball, dielectric(1, 0)),
         ],
         lights: vec![area_light(light, Spectrum::grey(5.0))],
-        ..Parts::default()
+        ..SceneParts::default()
     })
     .unwrap();
     // From the side, below the ball's middle: the spot on the floor is seen below the ball.

@@ -15,7 +15,7 @@ use turbid::math::Ray;
 use turbid::medium::Medium;
 use turbid::photons::Emitter;
 use turbid::photons::maps::Indirect;
-use turbid::scene::{Camera, Filter, Interior, Object, Orders, Parts, Quantity, Region, Scene, View};
+use turbid::scene::{Camera, Filter, Interior, Object, Orders, Quantity, Region, Scene, SceneParts, View};
 use turbid::sensor::{Film, Streams, by_light};
 use turbid::stats::Moments;
 use turbid::transport::NoProgress;
@@ -38,15 +38,16 @@ fn floor() -> Object {
 fn both(lights: Vec<Light>) -> [Scene; 2] {
     let regions = balls().map(|(shape, medium)| Region { shape, medium }).to_vec();
     let objects = vec![floor()];
-    let as_regions = Parts { regions, objects: objects.clone(), lights: lights.clone(), ..Parts::default() };
+    let as_regions =
+        SceneParts { regions, objects: objects.clone(), lights: lights.clone(), ..SceneParts::default() };
     let [(outer, fog), (inner, core)] = balls();
     let walls = [(outer, dielectric(1, 0)), (inner, dielectric(2, 1))];
     let walls = walls.map(|(shape, surface)| Object { shape, surface });
-    let as_interiors = Parts {
+    let as_interiors = SceneParts {
         interiors: vec![Interior::surroundings(), filled("fog", 1.0, fog), filled("core", 1.0, core)],
         objects: objects.into_iter().chain(walls).collect(),
         lights,
-        ..Parts::default()
+        ..SceneParts::default()
     };
     [as_regions, as_interiors].map(|parts| Scene::new(parts).unwrap())
 }
@@ -78,11 +79,11 @@ fn nothing_is_specular() {
     let [(outer, _), (inner, core)] = balls();
     let glass = Interior { name: "glass".into(), index: 1.5, medium: None };
     let objects = [(outer, dielectric(1, 0)), (inner, dielectric(2, 1))];
-    let scene = Scene::new(Parts {
+    let scene = Scene::new(SceneParts {
         interiors: vec![Interior::surroundings(), glass, filled("tea", 1.5, core)],
         objects: objects.map(|(shape, surface)| Object { shape, surface }).to_vec(),
         lights: vec![emitting_sphere(DVec3::new(0.5, 0.3, 2.0), 0.3)],
-        ..Parts::default()
+        ..SceneParts::default()
     })
     .unwrap();
     assert!(scene.plan().has_specular && scene.plan().has_matched);

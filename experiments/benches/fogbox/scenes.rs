@@ -8,7 +8,7 @@ use turbid::Spectrum;
 use turbid::math::{Asymmetry, cos, sin};
 use turbid::medium::{Density, Grid, Heterogeneous, Homogeneous, Medium};
 use turbid::phase::Phase;
-use turbid::scene::{Camera, Filter, Parts, Region, Scene, SceneFile, View};
+use turbid::scene::{Camera, Filter, Region, Scene, SceneFile, SceneParts, View};
 
 /// Where scenes are.
 pub fn folder() -> PathBuf {
@@ -56,10 +56,10 @@ fn uneven() -> Result<Scene> {
     let matter = Homogeneous::new(Spectrum::ONE, Spectrum::grey(0.8), phase)?;
     let medium = Medium::Heterogeneous(Heterogeneous::new(matter, density).into());
     let regions = even.regions().iter().map(|r| Region { shape: r.shape.clone(), medium: medium.clone() });
-    Ok(Scene::new(Parts {
+    Ok(Scene::new(SceneParts {
         regions: regions.collect(),
         objects: even.objects().to_vec(),
         lights: even.lights().to_vec(),
-        ..Parts::default()
+        ..SceneParts::default()
     })?)
 }

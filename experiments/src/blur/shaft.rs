@@ -7,7 +7,7 @@ use turbid::geometry::{Cuboid, Rectangle, Shape};
 use turbid::light::{Beam, Light, Section};
 use turbid::medium::Homogeneous;
 use turbid::phase::{Isotropic, Phase};
-use turbid::scene::{Parts, Region, Scene};
+use turbid::scene::{Region, Scene, SceneParts};
 
 /// Depth of the probes [mfp].
 pub const DEPTH: f64 = 1.0;
@@ -49,5 +49,5 @@ pub fn scene() -> anyhow::Result<Scene> {
     let section = Rectangle::new(DVec3::new(0.0, 0.0, -0.5), DVec3::X * WIDTH, DVec3::Y * LENGTH)?;
     let beam = Beam::new(DVec3::Z, Spectrum::ONE, Section::Rectangle(section))?;
     let regions = vec![Region { shape: Shape::Cuboid(fog), medium: medium.into() }];
-    Ok(Scene::new(Parts { regions, lights: vec![Light::Beam(beam)], ..Parts::default() })?)
+    Ok(Scene::new(SceneParts { regions, lights: vec![Light::Beam(beam)], ..SceneParts::default() })?)
 }

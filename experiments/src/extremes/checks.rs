@@ -218,9 +218,14 @@ fn refusals(settings: &Settings, rows: &mut Vec<Checked>) {
 fn beam_without_edge() -> turbid::Result<()> {
     use turbid::Spectrum;
     use turbid::light::{Beam, Light, Section};
-    use turbid::scene::{Parts, Scene};
+    use turbid::scene::{Scene, SceneParts};
     let lit = slab(Fog { tau: 1.0, albedo: 0.5, g: 0.0 }, Incidence::Beam { mu0: 1.0 }, 1.0)?;
     let lights = vec![Light::Beam(Beam::new(DVec3::X, Spectrum::ONE, Section::Unbounded)?)];
-    Scene::new(Parts { regions: lit.regions().to_vec(), lights, cell: Some(4.0), ..Parts::default() })
-        .map(|_| ())
+    Scene::new(SceneParts {
+        regions: lit.regions().to_vec(),
+        lights,
+        cell: Some(4.0),
+        ..SceneParts::default()
+    })
+    .map(|_| ())
 }

@@ -20,7 +20,7 @@ use turbid_analytic::slab_single::single_fluence;
 use turbid_analytic::{AnisotropicSlab, Incidence, IsotropicSlab, Value};
 
 /// A computed number and the bound on its error.
-type Known = (f64, f64);
+type Bounded = (f64, f64);
 
 /// A normal beam.
 const NORMAL: Incidence = Incidence::Beam { mu0: 1.0 };
@@ -56,7 +56,7 @@ pub struct Sampled {
     /// Histories a batch, by preset.
     histories: (u64, u64),
     /// The exact value with its bound.
-    pub exact: Box<dyn Fn() -> anyhow::Result<Known> + Send + Sync>,
+    pub exact: Box<dyn Fn() -> anyhow::Result<Bounded> + Send + Sync>,
     /// Where the exact value comes from.
     pub source: &'static str,
     /// Runs a batch.
@@ -111,7 +111,7 @@ impl Rows {
         name: impl Into<String>,
         histories: (u64, u64),
         source: &'static str,
-        exact: impl Fn() -> anyhow::Result<Known> + Send + Sync + 'static,
+        exact: impl Fn() -> anyhow::Result<Bounded> + Send + Sync + 'static,
         run: impl Fn(&Batch) -> anyhow::Result<Brought> + Send + Sync + 'static,
     ) {
         let (exact, run) = (Box::new(exact), Box::new(run));
@@ -132,7 +132,7 @@ impl Rows {
         fluxes: &[Flux],
     ) {
         let source = if fog.g.abs() < ISOTROPIC { "isotropic slab" } else { "anisotropic slab" };
-        let solved: Arc<OnceLock<[Known; 3]>> = Arc::default();
+        let solved: Arc<OnceLock<[Bounded; 3]>> = Arc::default();
         for &flux in fluxes {
             let name = format!("{} {flux:?}", words(fog, incidence)).to_lowercase();
             let solved = solved.clone();
@@ -174,12 +174,12 @@ pub fn near_one(x: f64) -> String {
     }
 }
 
-fn known(value: Value) -> Known {
+fn known(value: Value) -> Bounded {
     (value.value, value.error)
 }
 
 /// Reflected, transmitted, absorbed, in the order of [`Flux`].
-fn exact_fluxes(fog: Fog, incidence: Incidence) -> anyhow::Result<[Known; 3]> {
+fn exact_fluxes(fog: Fog, incidence: Incidence) -> anyhow::Result<[Bounded; 3]> {
     let Fog { tau, albedo, g } = fog;
     Ok(if g.abs() < ISOTROPIC {
         let slab = IsotropicSlab::new(tau, albedo, incidence)?;
@@ -365,7 +365,7 @@ fn asymmetry(rows: &mut Rows) {
     }
 }
 
-fn furnace() -> anyhow::Result<Known> {
+fn furnace() -> anyhow::Result<Bounded> {
     Ok((4.0, 8.0 * f64::EPSILON))
 }
 

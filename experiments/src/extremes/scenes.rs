@@ -8,7 +8,7 @@ use turbid::light::{Beam, Faces, Isotropic, Light, Section};
 use turbid::math::Asymmetry;
 use turbid::medium::Homogeneous;
 use turbid::phase::Phase;
-use turbid::scene::{Orders, Parts, Quantity, Region, Scene, Sensor};
+use turbid::scene::{Orders, Quantity, Region, Scene, SceneParts, Sensor};
 use turbid_analytic::Incidence;
 
 /// Side of the cell that stands for a slab [mfp].
@@ -44,7 +44,7 @@ pub fn slab(fog: Fog, incidence: Incidence, unit: f64) -> turbid::Result<Scene> 
         }
     };
     let regions = vec![region(shape, 1.0 / unit, fog.albedo, fog.g)?];
-    Scene::new(Parts { regions, lights: vec![light], cell: Some(CELL * unit), ..Parts::default() })
+    Scene::new(SceneParts { regions, lights: vec![light], cell: Some(CELL * unit), ..SceneParts::default() })
 }
 
 /// The slab lit alike from both sides, which absorbs nothing: fluence 4 everywhere, at any asymmetry.
@@ -52,7 +52,7 @@ pub fn furnace_slab(tau: f64, g: f64) -> turbid::Result<Scene> {
     let shape = Shape::Slab(Slab::new(0.0, tau)?);
     let light = Light::Isotropic(Isotropic::new(shape.clone(), Faces::Both, Spectrum::grey(1.0 / PI))?);
     let regions = vec![region(shape, 1.0, 1.0, g)?];
-    Scene::new(Parts { regions, lights: vec![light], cell: Some(CELL), ..Parts::default() })
+    Scene::new(SceneParts { regions, lights: vec![light], cell: Some(CELL), ..SceneParts::default() })
 }
 
 /// A ball of fog of radius 1 lit alike from all sides, which absorbs nothing: fluence 4 everywhere and 4/3 collisions
@@ -60,7 +60,11 @@ pub fn furnace_slab(tau: f64, g: f64) -> turbid::Result<Scene> {
 pub fn furnace_ball(center: DVec3, g: f64) -> turbid::Result<Scene> {
     let shape = Shape::Sphere(Sphere::new(center, 1.0)?);
     let light = Light::Isotropic(Isotropic::new(shape.clone(), Faces::Both, Spectrum::grey(1.0 / PI))?);
-    Scene::new(Parts { regions: vec![region(shape, 1.0, 1.0, g)?], lights: vec![light], ..Parts::default() })
+    Scene::new(SceneParts {
+        regions: vec![region(shape, 1.0, 1.0, g)?],
+        lights: vec![light],
+        ..SceneParts::default()
+    })
 }
 
 /// A narrow beam along x at height `z` in a slab from 0 to 2.
@@ -68,10 +72,10 @@ pub fn beam_along(z: f64) -> turbid::Result<Scene> {
     let shape = Shape::Slab(Slab::new(0.0, 2.0)?);
     let section = Section::Disc { center: DVec3::new(0.0, 0.0, z), radius: 1e-3 };
     let light = Light::Beam(Beam::new(DVec3::X, Spectrum::ONE, section)?);
-    Scene::new(Parts {
+    Scene::new(SceneParts {
         regions: vec![region(shape, 1.0, 0.5, 0.0)?],
         lights: vec![light],
-        ..Parts::default()
+        ..SceneParts::default()
     })
 }
 

@@ -6,7 +6,7 @@
 
 use super::cache::Cache;
 use super::compare::{FEWEST, Replicate, compare, errors, rms_of_one, spread};
-use super::keep::Kept;
+use super::keep::CachedRender;
 use super::look::look;
 use super::predict::{Radii, Spreads, predicted, radius};
 use super::recipe::reading;
@@ -32,9 +32,9 @@ const PILOT: u64 = 8;
 const FIRST: (u64, u64) = (1000, 2000);
 
 /// What stands beside the photon mapper's picture.
-pub struct Others {
+pub struct RivalPictures {
     /// The path tracer's picture in the same time.
-    pub equal: Kept,
+    pub equal: CachedRender,
     /// The reference, its samples a pixel and its CPU seconds.
     pub reference: Replicate,
     /// Samples a pixel of the reference, and its CPU seconds.
@@ -53,7 +53,7 @@ pub struct Others {
 ///
 /// # Errors
 /// those of rendering and of files
-pub fn beside(large: &Cache, small: &Cache, ours: &Kept) -> anyhow::Result<Others> {
+pub fn beside(large: &Cache, small: &Cache, ours: &CachedRender) -> anyhow::Result<RivalPictures> {
     let picture = large.studio.picture;
     let equal = large.paths_in("equal", ours.facts.seconds)?;
     // Before anything that is compared is made.
@@ -75,7 +75,7 @@ pub fn beside(large: &Cache, small: &Cache, ours: &Kept) -> anyhow::Result<Other
     let found = errors(small.studio.grid(), &again, &reference.passes);
     let [rms, equal_rms] = reference.rms;
     seconds += reference.seconds + equal.facts.seconds;
-    Ok(Others {
+    Ok(RivalPictures {
         equal,
         reference: reference.shown,
         cost: (samples * COMPARED, reference.seconds),
@@ -108,7 +108,7 @@ struct Reference {
     seconds: f64,
 }
 
-fn reference(large: &Cache, samples: u64, pictures: [&Kept; 2]) -> anyhow::Result<Reference> {
+fn reference(large: &Cache, samples: u64, pictures: [&CachedRender; 2]) -> anyhow::Result<Reference> {
     let grid = large.studio.grid();
     let (mut passes, mut seconds) = (Vec::new(), 0.0);
     let mut shown = vec![Spectrum::ZERO; grid.pixels()];
@@ -124,7 +124,7 @@ fn reference(large: &Cache, samples: u64, pictures: [&Kept; 2]) -> anyhow::Resul
 }
 
 /// The relative error that blur and edges may cause, by pixel, and the CPU seconds of knowing it.
-fn predict(small: &Cache, ours: &Kept) -> anyhow::Result<(Vec<f64>, f64)> {
+fn predict(small: &Cache, ours: &CachedRender) -> anyhow::Result<(Vec<f64>, f64)> {
     let (studio, picture) = (small.studio, small.studio.picture);
     let emitted = ours.facts.emitted;
     let factor = (FINE.0 / emitted[0].max(emitted[1]).max(1)).clamp(2, FINE.1);

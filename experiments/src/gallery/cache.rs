@@ -1,6 +1,6 @@
 //! Cached renders of a picture, each kept in a file as soon as it is made: an interrupted run goes on where it stopped.
 
-use super::keep::Kept;
+use super::keep::CachedRender;
 use super::settings::Settings;
 use super::studio::Studio;
 use crate::harness::{duration, say};
@@ -26,11 +26,11 @@ impl Cache<'_> {
         file: &str,
         words: &str,
         work: u64,
-        make: impl FnOnce(&Bar) -> anyhow::Result<Kept>,
-    ) -> anyhow::Result<Kept> {
+        make: impl FnOnce(&Bar) -> anyhow::Result<CachedRender>,
+    ) -> anyhow::Result<CachedRender> {
         let path = self.folder.join(format!("{file}.picture"));
         if !self.settings.fresh
-            && let Ok(kept) = Kept::read(&path, self.studio.grid().pixels())
+            && let Ok(kept) = CachedRender::read(&path, self.studio.grid().pixels())
             && kept.facts.words == words
             && (self.settings.reuse || kept.facts.program == self.studio.program)
         {
@@ -43,21 +43,21 @@ impl Cache<'_> {
     }
 
     /// The path tracer's picture in so many CPU seconds.
-    pub fn paths_in(&self, file: &str, seconds: f64) -> anyhow::Result<Kept> {
+    pub fn paths_in(&self, file: &str, seconds: f64) -> anyhow::Result<CachedRender> {
         let s = self.studio;
         let words = format!("{} in {seconds} s", s.path_words(0, 0));
         self.get(file, &words, 0, |bar| Ok(s.paths_for(seconds, 0, bar)?.without_layers()))
     }
 
     /// A pass of the reference.
-    pub fn reference(&self, file: &str, samples: u64, replicate: u64) -> anyhow::Result<Kept> {
+    pub fn reference(&self, file: &str, samples: u64, replicate: u64) -> anyhow::Result<CachedRender> {
         let (s, work) = (self.studio, self.studio.work(samples));
         let words = s.reference_words(samples, replicate);
         self.get(file, &words, work, |bar| Ok(s.reference(samples, replicate, bar)?.without_layers()))
     }
 
     /// The photon mapper's picture.
-    pub fn photons(&self, file: &str, samples: u64, replicate: u64) -> anyhow::Result<Kept> {
+    pub fn photons(&self, file: &str, samples: u64, replicate: u64) -> anyhow::Result<CachedRender> {
         let (s, work) = (self.studio, self.studio.work(samples));
         let words = s.photon_words(samples, replicate, 1);
         self.get(file, &words, work, |bar| Ok(s.photons(samples, replicate, 1, bar)?.without_layers()))
@@ -70,7 +70,7 @@ impl Cache<'_> {
         samples: u64,
         replicate: u64,
         factor: u64,
-    ) -> anyhow::Result<Kept> {
+    ) -> anyhow::Result<CachedRender> {
         let (s, work) = (self.studio, self.studio.work(samples));
         let words = s.photon_words(samples, replicate, factor);
         self.get(file, &words, work, |bar| s.photons(samples, replicate, factor, bar))

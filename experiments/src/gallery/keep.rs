@@ -18,7 +18,7 @@ const MOST_BYTES: u64 = 1 << 32;
 /// What is known of a render beside its pixels.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct Facts {
+pub struct RenderRecord {
     /// What it is, in words: two renders of equal words and equal program are equal.
     pub words: String,
     /// Digest of the program that made it.
@@ -39,9 +39,9 @@ pub struct Facts {
 
 /// A picture by layers.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Kept {
+pub struct CachedRender {
     /// What is known of it.
-    pub facts: Facts,
+    pub facts: RenderRecord,
     /// Radiance, row by row from the top.
     pub total: Vec<Spectrum>,
     /// Radiance of what is seen straight, or through specular surfaces alone.
@@ -50,12 +50,12 @@ pub struct Kept {
     pub layers: Vec<Layers>,
 }
 
-impl Kept {
+impl CachedRender {
     /// A film with its facts.
-    pub fn new(facts: Facts, film: &Film) -> Self {
+    pub fn new(facts: RenderRecord, film: &Film) -> Self {
         let layers: Vec<Layers> = film.pixels().iter().map(|p| p.layers()).collect();
         let emission = layers.iter().map(|l| l.emission).collect();
-        Kept { facts, total: film.pixels().iter().map(|p| p.total()).collect(), emission, layers }
+        CachedRender { facts, total: film.pixels().iter().map(|p| p.total()).collect(), emission, layers }
     }
 
     /// The same without its classes: what is only compared needs none.
@@ -113,7 +113,8 @@ impl Kept {
     pub fn read(path: &Path, pixels: usize) -> anyhow::Result<Self> {
         let bytes = turbid::input::read(path, MOST_BYTES)
             .with_context(|| format!("cannot read {}", path.display()))?;
-        Kept::parse(&bytes, pixels).with_context(|| format!("{} is no complete picture", path.display()))
+        CachedRender::parse(&bytes, pixels)
+            .with_context(|| format!("{} is no complete picture", path.display()))
     }
 
     fn parse(bytes: &[u8], pixels: usize) -> anyhow::Result<Self> {
@@ -122,7 +123,7 @@ impl Kept {
         let (body, end) = bytes.split_at(body);
         ensure!(end == Digest::of(body).to_string().as_bytes(), "the digest does not fit");
         let first = body.iter().position(|&b| b == b'\n').context("the first line is missing")?;
-        let facts: Facts = serde_json::from_slice(&body[..first])?;
+        let facts: RenderRecord = serde_json::from_slice(&body[..first])?;
         let numbers = &body[first + 1..];
         let planes = numbers.len() / (12 * pixels).max(1);
         ensure!(
@@ -146,7 +147,7 @@ impl Kept {
         };
         let layers = if planes > 2 { (0..pixels).map(layered).collect() } else { Vec::new() };
         let plane = |number: usize| (0..pixels).map(|i| value(number, i)).collect();
-        Ok(Kept { facts, total: plane(0), emission: plane(1), layers })
+        Ok(CachedRender { facts, total: plane(0), emission: plane(1), layers })
     }
 }
 
@@ -154,8 +155,8 @@ impl Kept {
 mod tests {
     use super::*;
 
-    fn kept(has_layers: bool) -> Kept {
-        let facts = Facts {
+    fn kept(has_layers: bool) -> CachedRender {
+        let facts = RenderRecord {
             words: "box, paths".into(),
             program: "00".into(),
             seconds: 1.5,
@@ -170,7 +171,7 @@ mod tests {
         layers[1].multiple = Spectrum::rgb(0.0, 8.0, 0.125);
         let emission = vec![Spectrum::ZERO, Spectrum::grey(1.0)];
         let layers = if has_layers { layers } else { Vec::new() };
-        Kept { facts, total, emission, layers }
+        CachedRender { facts, total, emission, layers }
     }
 
     #[test]
@@ -179,8 +180,8 @@ mod tests {
         for has_layers in [false, true] {
             let path = folder.path().join("a.picture");
             kept(has_layers).write(&path).unwrap();
-            assert_eq!(Kept::read(&path, 2).unwrap(), kept(has_layers));
-            assert!(Kept::read(&path, 3).is_err());
+            assert_eq!(CachedRender::read(&path, 2).unwrap(), kept(has_layers));
+            assert!(CachedRender::read(&path, 3).is_err());
         }
     }
 
@@ -193,11 +194,11 @@ mod tests {
     #[test]
     fn every_cut_and_every_changed_byte_is_seen() {
         let bytes = kept(true).bytes().unwrap();
-        assert!((0..bytes.len()).all(|n| Kept::parse(&bytes[..n], 2).is_err()));
+        assert!((0..bytes.len()).all(|n| CachedRender::parse(&bytes[..n], 2).is_err()));
         for i in 0..bytes.len() {
             let mut bytes = bytes.clone();
             bytes[i] ^= 1;
-            assert!(Kept::parse(&bytes, 2).is_err(), "byte {i}");
+            assert!(CachedRender::parse(&bytes, 2).is_err(), "byte {i}");
         }
     }
 }

@@ -3,7 +3,7 @@
 use super::pictures::{ALL, Picture};
 use super::plates::SCALE;
 use super::settings::Settings;
-use super::shown::{Compared, Plate, Shown};
+use super::shown::{Compared, PageEntry, Plate};
 use super::speed;
 use crate::harness::duration;
 use maud::{DOCTYPE, Markup, PreEscaped, html};
@@ -33,7 +33,7 @@ pre { background: #f5f6f8; border: 1px solid var(--line); border-radius: 4px; pa
 ";
 
 /// The page of all pictures that are there.
-pub fn page(shown: &[Shown], settings: &Settings) -> Markup {
+pub fn page(shown: &[PageEntry], settings: &Settings) -> Markup {
     html! {
         (DOCTYPE)
         html lang="en" {
@@ -77,7 +77,7 @@ pub fn page(shown: &[Shown], settings: &Settings) -> Markup {
     }
 }
 
-fn section(picture: &Picture, shown: &Shown) -> Markup {
+fn section(picture: &Picture, shown: &PageEntry) -> Markup {
     html! {
         h2 id=(picture.name) { (picture.title) }
         p { (picture.see) }
@@ -117,7 +117,7 @@ fn scale() -> Markup {
     }
 }
 
-fn numbers(picture: &Picture, shown: &Shown) -> Markup {
+fn numbers(picture: &Picture, shown: &PageEntry) -> Markup {
     let ours = &shown.ours;
     let [global, caustic, volume] = ours.stored;
     let stored: Vec<String> = [("global", global), ("caustic", caustic), ("volume", volume)]

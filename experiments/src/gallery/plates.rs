@@ -1,10 +1,10 @@
 //! The PNG files of a picture.
 
-use super::beside::Others;
+use super::beside::RivalPictures;
 use super::compare::Replicate;
 use super::develop::{Print, SOFT, develop, error_print, mask_print, tone};
 use super::dots::dots;
-use super::keep::{Facts, Kept};
+use super::keep::{CachedRender, RenderRecord};
 use super::pictures::Beside;
 use super::shown::Plate;
 use super::studio::Studio;
@@ -27,8 +27,8 @@ const FEWEST: usize = 1000;
 pub fn plates(
     studio: &Studio,
     folder: &Path,
-    ours: &Kept,
-    others: Option<&Others>,
+    ours: &CachedRender,
+    others: Option<&RivalPictures>,
 ) -> anyhow::Result<Vec<Plate>> {
     let (picture, grid) = (studio.picture, studio.grid());
     let mut plates = Vec::new();
@@ -40,11 +40,11 @@ pub fn plates(
     };
     let exposure = tone(picture.exposure);
     let exposed = |radiance: &[Spectrum]| develop(grid, radiance, exposure);
-    let told = |method: &str, facts: &Facts| {
+    let told = |method: &str, facts: &RenderRecord| {
         format!("{method}, {} samples a pixel, {} of CPU time", facts.samples, duration(facts.seconds))
     };
     plate("photons", told("Photon maps", &ours.facts), &exposed(&ours.total))?;
-    if let Some(Others { equal, reference, cost, masked, .. }) = others {
+    if let Some(RivalPictures { equal, reference, cost, masked, .. }) = others {
         plate("paths", told("Paths in the same time", &equal.facts), &exposed(&equal.total))?;
         let by = picture.by_light.words();
         let caption =

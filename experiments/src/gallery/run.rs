@@ -6,7 +6,7 @@ use super::pictures::{ALL, Picture};
 use super::plates::plates;
 use super::recipe::command;
 use super::settings::Settings;
-use super::shown::Shown;
+use super::shown::PageEntry;
 use super::studio::Studio;
 use super::{assets, page};
 use crate::harness::{
@@ -89,7 +89,7 @@ fn run(settings: &Settings) -> anyhow::Result<()> {
 const MOST_BYTES: u64 = 1 << 26;
 
 /// What is there of all pictures, those of earlier runs too.
-fn all_shown(folder: &Path) -> anyhow::Result<Vec<Shown>> {
+fn all_shown(folder: &Path) -> anyhow::Result<Vec<PageEntry>> {
     let mut found = Vec::new();
     for picture in ALL {
         let path = folder.join(format!("{}.json", picture.name));
@@ -105,7 +105,7 @@ fn write(path: &Path, bytes: &[u8]) -> anyhow::Result<()> {
 }
 
 /// Everything of one picture.
-fn one(picture: &Picture, settings: &Settings, folder: &Path, program: &str) -> anyhow::Result<Shown> {
+fn one(picture: &Picture, settings: &Settings, folder: &Path, program: &str) -> anyhow::Result<PageEntry> {
     let studio = Studio::open(picture, &settings.scenes, settings.scale(), settings.seed, program)?;
     let half = studio.halved()?;
     let kept = settings.cache().join(picture.name);
@@ -116,7 +116,7 @@ fn one(picture: &Picture, settings: &Settings, folder: &Path, program: &str) -> 
     let plates = plates(&studio, folder, &ours, others.as_ref())?;
     let seconds = ours.facts.seconds + others.as_ref().map_or(0.0, |o| o.seconds);
     say(&format!("{}: {} of CPU time", picture.name, duration(seconds)));
-    Ok(Shown {
+    Ok(PageEntry {
         name: picture.name.to_string(),
         command: command(picture, settings.seed)?,
         size: (studio.grid().width, studio.grid().height),

@@ -1,7 +1,7 @@
 //! What the page tells of a picture; kept beside its PNG files, so that pictures can be made one at a time.
 
 use super::compare::{Agreement, Comparison, Errors};
-use super::keep::Facts;
+use super::keep::RenderRecord;
 use serde::{Deserialize, Serialize};
 use turbid::stats::Interval;
 
@@ -75,7 +75,7 @@ impl Compared {
 
 /// All that the page tells of a picture.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct Shown {
+pub struct PageEntry {
     /// Name of the picture.
     pub name: String,
     /// The command that renders it as EXR.
@@ -85,9 +85,9 @@ pub struct Shown {
     /// CPU seconds of everything of it.
     pub seconds: f64,
     /// The photon mapper's picture.
-    pub ours: Facts,
+    pub ours: RenderRecord,
     /// The path tracer's in the same time; none of a draft.
-    pub equal: Option<Facts>,
+    pub equal: Option<RenderRecord>,
     /// Samples a pixel and CPU seconds of the reference; none of a draft.
     pub reference: Option<(u64, f64)>,
     /// The comparison; none of a draft.

@@ -1,7 +1,7 @@
 //! Makes the pictures: photon maps and their reading, paths, each with the CPU time that it took.
 
 use super::Grid;
-use super::keep::{Facts, Kept};
+use super::keep::{CachedRender, RenderRecord};
 use super::light::ByLight;
 use super::pictures::Picture;
 use super::recipe;
@@ -117,7 +117,7 @@ impl<'a> Studio<'a> {
         replicate: u64,
         factor: u64,
         progress: &dyn Progress,
-    ) -> anyhow::Result<Kept> {
+    ) -> anyhow::Result<CachedRender> {
         let start = ProcessTime::now();
         let maps = self.maps(replicate, factor)?;
         let map_seconds = start.elapsed().as_secs_f64();
@@ -126,7 +126,7 @@ impl<'a> Studio<'a> {
         let mut film = Film::new(self.camera.width(), self.camera.height());
         let report = method.extend(&mut film, &self.camera, samples, self.streams(replicate), progress)?;
         let stored = |map: &Option<PhotonMap>| map.as_ref().map_or(0, |m| m.stored() as u64);
-        let facts = Facts {
+        let facts = RenderRecord {
             words: self.photon_words(samples, replicate, factor),
             program: self.program.clone(),
             seconds: start.elapsed().as_secs_f64(),
@@ -136,19 +136,29 @@ impl<'a> Studio<'a> {
             stored: [stored(&maps.global), stored(&maps.caustic), stored(&maps.volume)],
             radii: [report.global, report.caustic, report.volume].map(|g| g.mean_radius()),
         };
-        Ok(Kept::new(facts, &film))
+        Ok(CachedRender::new(facts, &film))
     }
 
     /// A picture by paths.
-    pub fn paths(&self, samples: u64, replicate: u64, progress: &dyn Progress) -> anyhow::Result<Kept> {
+    pub fn paths(
+        &self,
+        samples: u64,
+        replicate: u64,
+        progress: &dyn Progress,
+    ) -> anyhow::Result<CachedRender> {
         let start = ProcessTime::now();
         let mut film = Film::new(self.camera.width(), self.camera.height());
         self.trace(&mut film, samples, replicate, progress)?;
-        Ok(Kept::new(self.path_facts(start, samples, replicate), &film))
+        Ok(CachedRender::new(self.path_facts(start, samples, replicate), &film))
     }
 
     /// One pass of the reference, which knows no photons.
-    pub fn reference(&self, samples: u64, replicate: u64, progress: &dyn Progress) -> anyhow::Result<Kept> {
+    pub fn reference(
+        &self,
+        samples: u64,
+        replicate: u64,
+        progress: &dyn Progress,
+    ) -> anyhow::Result<CachedRender> {
         let by_light = self.picture.by_light;
         if by_light == ByLight::NOTHING {
             return self.paths(samples, replicate, progress);
@@ -163,12 +173,17 @@ impl<'a> Studio<'a> {
         })?;
         let found = by_light.trace(&self.scene, &self.camera, samples, streams)?;
         let facts = self.path_facts(start, samples, replicate);
-        Ok(Kept::new(facts, &film).with(&found))
+        Ok(CachedRender::new(facts, &film).with(&found))
     }
 
     /// A picture by paths that takes about so many CPU seconds: whole passes over all pixels, at least one. The number
     /// of samples depends on the clock; a render of that number repeats it bit by bit.
-    pub fn paths_for(&self, seconds: f64, replicate: u64, progress: &dyn Progress) -> anyhow::Result<Kept> {
+    pub fn paths_for(
+        &self,
+        seconds: f64,
+        replicate: u64,
+        progress: &dyn Progress,
+    ) -> anyhow::Result<CachedRender> {
         let start = ProcessTime::now();
         let mut film = Film::new(self.camera.width(), self.camera.height());
         self.trace(&mut film, 1, replicate, progress)?;
@@ -178,7 +193,7 @@ impl<'a> Studio<'a> {
             // Half of what is left, as long as that is more than a sample: late passes are timed best.
             let more = (0.5 * (seconds - spent) / each) as u64;
             if spent + 0.5 * each >= seconds {
-                return Ok(Kept::new(self.path_facts(start, done, replicate), &film));
+                return Ok(CachedRender::new(self.path_facts(start, done, replicate), &film));
             }
             self.trace(&mut film, more.max(1), replicate, progress)?;
         }
@@ -200,8 +215,8 @@ impl<'a> Studio<'a> {
         Ok(())
     }
 
-    fn path_facts(&self, start: ProcessTime, samples: u64, replicate: u64) -> Facts {
-        Facts {
+    fn path_facts(&self, start: ProcessTime, samples: u64, replicate: u64) -> RenderRecord {
+        RenderRecord {
             words: self.path_words(samples, replicate),
             program: self.program.clone(),
             seconds: start.elapsed().as_secs_f64(),

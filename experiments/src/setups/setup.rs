@@ -11,7 +11,7 @@ use turbid::light::{Beam, Faces, Isotropic, Light, Section, VolumeSource};
 use turbid::math::Asymmetry;
 use turbid::medium::Homogeneous;
 use turbid::phase::Phase;
-use turbid::scene::{Parts, Region, Scene};
+use turbid::scene::{Region, Scene, SceneParts};
 use turbid_analytic::{Incidence, SphereSource};
 
 /// What lights a body.
@@ -76,7 +76,7 @@ impl Setup {
         };
         let regions = vec![region(shape, 1.0, self.albedo, self.g)?];
         let cell = is_slab.then_some(CELL);
-        Ok(Scene::new(Parts { regions, lights: vec![light], cell, ..Parts::default() })?)
+        Ok(Scene::new(SceneParts { regions, lights: vec![light], cell, ..SceneParts::default() })?)
     }
 
     /// Emitted power, of a slab that of the cell.

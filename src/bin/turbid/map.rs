@@ -3,7 +3,7 @@
 use super::load::Source;
 use super::made::MapsMade;
 use super::memory::Memory;
-use super::picture::{Frame, Held, Photons, Shown};
+use super::picture::{Frame, Held, Photons, ToneArgs};
 use super::progress::Bar;
 use super::shared::{on_threads, print};
 use anyhow::{Context, bail};
@@ -37,7 +37,7 @@ pub struct Map {
     #[command(flatten)]
     frame: Frame,
     #[command(flatten)]
-    shown: Shown,
+    shown: ToneArgs,
     #[command(flatten)]
     photons: Photons,
     #[command(flatten)]

@@ -53,7 +53,7 @@ impl Frame {
 
 /// How a picture is shown.
 #[derive(clap::Args)]
-pub struct Shown {
+pub struct ToneArgs {
     /// Exposure of the PNG in stops: radiance times 2 to this power; pictures to be compared need the same
     /// [default: bright parts well exposed; the value taken is printed].
     #[arg(long)]
@@ -71,7 +71,7 @@ enum ToneName {
     Clip,
 }
 
-impl Shown {
+impl ToneArgs {
     /// The curve asked for.
     pub fn curve(&self) -> Curve {
         match self.tone {

@@ -4,7 +4,7 @@ use super::load::Source;
 use super::made::{Filled, Made, MapsMade, Stages};
 use super::memory::Memory;
 use super::notes::{tell_empty, tell_gathers, tell_step};
-use super::picture::{Frame, Held, Photons, Reading, Shown};
+use super::picture::{Frame, Held, Photons, Reading, ToneArgs};
 use super::progress::Bar;
 use super::shared::{note, on_threads, parse_count, print};
 use super::statistics::{MAPS, print_statistics};
@@ -71,7 +71,7 @@ pub struct Render {
     #[command(flatten)]
     frame: Frame,
     #[command(flatten)]
-    shown: Shown,
+    shown: ToneArgs,
     /// Seed: the same seed gives the same picture, on any number of threads.
     #[arg(long, default_value_t = 1)]
     seed: u64,

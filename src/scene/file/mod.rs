@@ -14,7 +14,7 @@ pub use values::Channels;
 
 use values::rectangle;
 
-use super::{Camera, Filter, Interior, Object, Orders, Parts, Quantity, Region, Scene, Sensor, View};
+use super::{Camera, Filter, Interior, Object, Orders, Quantity, Region, Scene, SceneParts, Sensor, View};
 use crate::error::{Error, Result};
 use crate::geometry::Face;
 use crate::light::{Area, Beam, Faces, Isotropic, Light, Point, Section, Spot, Sun, VolumeSource};
@@ -379,7 +379,7 @@ impl SceneFile {
             .iter()
             .enumerate()
             .map(|(i, o)| object(o).map_err(|e: Error| e.within(&format!("objects[{i}]"))));
-        Scene::new(Parts {
+        Scene::new(SceneParts {
             regions: regions.collect::<Result<_>>()?,
             interiors: interiors.clone(),
             objects: objects.collect::<Result<_>>()?,
