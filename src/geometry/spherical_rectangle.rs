@@ -73,7 +73,8 @@ impl SphericalRectangle {
         let sine = 2.0 * half * cosine_of_half;
         // b0^2 + b1^2 - 2 b0 b1 cos phi
         let norm = ((b1 - b0) * (b1 - b0) + 4.0 * b0 * b1 * half * half).max(0.0).sqrt();
-        let a = (sine / norm).clamp(-1.0, 1.0);
+        // Straight ahead both are 0 where sight grazes.
+        let a = if sine == 0.0 { 0.0 } else { (sine / norm).clamp(-1.0, 1.0) };
         // At grazing sight rounding may point past the edges: a = 1 is infinitely far.
         let x = (a * self.depth / (1.0 - a * a).sqrt()).clamp(self.x[0], self.x[1]);
         let d2 = h2 + x * x;

@@ -128,8 +128,11 @@ impl Area {
 
     /// A direction from `p`: uniform in the solid angle that a rectangle or a sphere fills, or to a uniform point of the
     /// surface, of the sides of a cuboid that face `p`.
+    ///
+    /// None where the surface is seen so edge-on, or from so near, that density or direction have no number: within 10^-150 of it
+    /// or of its plane.
     pub(super) fn sample(&self, p: DVec3, u: [f64; 2]) -> Option<LightSample> {
-        match &self.shape {
+        let sample = match &self.shape {
             Shape::Sphere(sphere) => self.sample_cone(sphere, p, u),
             Shape::Rectangle(r) if is_near(r, p) => self.sample_seen(&SphericalRectangle::new(r, p)?, u),
             Shape::Rectangle(r) => self.towards(p, r.sample(u), r.normal()),
@@ -142,7 +145,8 @@ impl Area {
                 self.towards(p, point, normal)
             }
             Shape::Slab(_) => None,
-        }
+        };
+        sample.filter(|s| s.dir.is_finite() && s.pdf_solid_angle.is_none_or(f64::is_finite))
     }
 
     /// The sample that aims at a point of the surface.

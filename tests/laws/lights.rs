@@ -144,6 +144,35 @@ fn the_area_light_fills_its_solid_angle() {
     verdict::rejects("without the cosine", &wrong, expected, 6);
 }
 
+/// A lamp above the plane of a point by less than any angle: a direction with numbers, or none (found by `fuzz`: a density that
+/// was infinite made the balance of two densities none).
+#[test]
+fn lamps_seen_edge_on_have_numbers_or_none() {
+    let mut sampled = 0;
+    for height in [1e-3, 1e-8, 1e-16, 1e-60, 1e-140, 1e-200, 1e-290, 5e-300, 1e-306, 1e-308, 5e-324] {
+        let corner = DVec3::new(15.0, 7.0, height);
+        let light = area_light(rectangle(corner, DVec3::Y * 2.0, DVec3::X * 2.0), Spectrum::ONE);
+        for p in
+            [DVec3::ZERO, DVec3::new(14.0, 8.0, 0.0), DVec3::new(16.0, 8.0, 0.0), DVec3::new(2e3, 0.0, 0.0)]
+        {
+            for u in [[0.1, 0.9], [0.5, 0.5], [0.99, 0.3]] {
+                let Some(sample) = light.sample(p, u) else {
+                    // Then nothing is expected of a ray that meets it by chance, either.
+                    let ray = Ray::new(p, (DVec3::new(16.0, 8.0, height) - p).normalize());
+                    let met = light.hit(&ray, None).map_or(0.0, |hit| light.emitted(&ray, &hit).1);
+                    assert!(height < 1e-150 || met == 0.0, "{height} above {p}: met with density {met}");
+                    continue;
+                };
+                let (pdf, size) = (sample.pdf_solid_angle.unwrap(), sample.dir.length());
+                let is_number = pdf.is_finite() && sample.value.is_finite() && sample.distance.is_finite();
+                assert!(is_number && (size - 1.0).abs() < 1e-15, "{height} above {p}: {sample:?}");
+                sampled += 1;
+            }
+        }
+    }
+    assert!(sampled > 20, "{sampled}");
+}
+
 proptest! {
     #![proptest_config(properties(5000))]
 
