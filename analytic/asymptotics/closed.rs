@@ -1,6 +1,6 @@
 //! Half-spaces of isotropic scattering: constants by H, faster light by the continuum of the resolvent.
 
-use super::{Entrance, METHOD};
+use super::entrance::{Entrance, METHOD};
 use crate::error::Result;
 use crate::half_space::HalfSpace;
 use crate::half_space::resolvent::convolved;

@@ -20,6 +20,7 @@
 //! Source: van de Hulst 1980, chapter 5; Sobolev 1975, chapter 3.
 
 mod closed;
+mod entrance;
 mod ordinates;
 #[cfg(test)]
 mod tests;
@@ -33,10 +34,10 @@ use crate::infinite::moments_of;
 use crate::phase::Phase;
 use crate::slab_anisotropic::AnisotropicMedium;
 use crate::value::Value;
+use entrance::{Entrance, METHOD};
 use libm::{exp, expm1};
 pub use thin::{ThinSlab, thin_slab};
 
-const METHOD: &str = "asymptotics of thick slabs, faster decays bounded";
 const PATTERN: &str = "recurrence of the slowest decay";
 
 /// The constants of thick layers of one medium.
@@ -57,17 +58,6 @@ pub struct Asymptotics {
 enum Faces {
     Closed(Box<HalfSpace>),
     Ordinates(ordinates::Ordinates),
-}
-
-/// What one incidence does to a half-space.
-#[derive(Clone, Copy)]
-struct Entrance {
-    /// K: a quarter of the fluence that decays slowest, at the face.
-    escape: Value,
-    /// R_inf.
-    reflected: Value,
-    /// 1 - R_inf.
-    absorbed: Value,
 }
 
 /// A slab by asymptotics.

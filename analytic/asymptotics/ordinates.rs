@@ -1,6 +1,6 @@
 //! Half-spaces of any phase function: constants and faster light by discrete ordinates.
 
-use super::{Entrance, METHOD};
+use super::entrance::{Entrance, METHOD};
 use crate::error::{Error, Result};
 use crate::incidence::Incidence;
 use crate::slab_anisotropic::AnisotropicMedium;

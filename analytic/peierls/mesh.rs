@@ -1,6 +1,6 @@
 //! Panels graded towards the face, their nodes, and polynomials on them.
 
-use super::Halves;
+use super::halves::Halves;
 use crate::panels::{Basis, edges};
 use crate::quadrature::GaussLegendre;
 

@@ -1,7 +1,7 @@
 //! Weights of the logarithmically singular kernel E_1 on one panel, seen from any point.
 
-use super::Row;
 use super::fast::e1;
+use super::halves::Row;
 use super::mesh::{Mesh, NODES};
 use crate::quadrature::GaussLegendre;
 

@@ -46,21 +46,39 @@ use crate::phase::Phase;
 use crate::value::Value;
 use libm::exp;
 pub use medium::AnisotropicMedium;
+use medium::METHOD;
 use radiance::{Orders, Query};
-use solution::{Solution, Sum};
+use solution::{Solution, Sum, rounding};
 use std::sync::OnceLock;
-
-const METHOD: &str = "discrete ordinates, two node counts";
-
-/// Roundings of the terms of a sum over n modes, over root n: columns count as orthogonal at root n roundings, about
-/// ten, and an eigenvector, an amplitude and an exponential have a few such each.
-const ULPS: f64 = 6.4;
 
 /// Below this thickness the fluxes are integrals over it.
 const THIN: f64 = 1e-3;
 
 /// Below this albedo the little that is scattered of diffuse light is.
 const WEAK: f64 = 0.01;
+
+impl AnisotropicMedium {
+    /// A slab of this medium.
+    ///
+    /// # Arguments
+    /// `tau` optical thickness \[1\], 1e-12 to 1e9; `incidence` of unit irradiance, a beam with a cosine of 1e-5 to 1
+    /// # Errors
+    /// `Error::OutOfRange` naming `tau` or `mu0`
+    pub fn slab(&self, tau: f64, incidence: Incidence) -> Result<AnisotropicSlab> {
+        within("tau", tau, 1e-12, 1e9, "1e-12 to 1e9 with anisotropic scattering")?;
+        AnisotropicSlab::of(self.clone(), tau, incidence)
+    }
+
+    /// All of space below the lit face: a slab whose `tau` is infinite and whose transmittance is 0.
+    ///
+    /// # Arguments
+    /// `incidence` of unit irradiance, a beam with a cosine of 1e-5 to 1
+    /// # Errors
+    /// `Error::OutOfRange` naming `mu0`
+    pub fn half_space(&self, incidence: Incidence) -> Result<AnisotropicSlab> {
+        AnisotropicSlab::of(self.clone(), f64::INFINITY, incidence)
+    }
+}
 
 /// A solved slab or half-space: reflectance, transmittance, absorptance and fluence in all orders of scattering.
 pub struct AnisotropicSlab {
@@ -289,11 +307,6 @@ impl AnisotropicSlab {
 /// Net flux of both solutions.
 fn net_fluxes(solutions: &[Solution; 2], t: f64) -> [Sum; 2] {
     solutions.each_ref().map(|solution| solution.flux(t * solution.modes.scattering.stretch))
-}
-
-/// Rounding of a sum over modes.
-fn rounding(sum: Sum, modes: usize) -> f64 {
-    ULPS * (modes.max(100) as f64).sqrt() * f64::EPSILON * sum.magnitude
 }
 
 /// R, diffuse T and A with their bounds: each the difference of the two solutions, plus the largest difference of the

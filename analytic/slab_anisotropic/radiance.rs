@@ -12,9 +12,8 @@
 
 use super::medium::{AnisotropicMedium, Azimuth, Twice};
 use super::ray::two_collisions;
-use super::rounding;
 use super::scattering::Scattering;
-use super::solution::{Solution, Sum};
+use super::solution::{Solution, Sum, rounding};
 use crate::error::Result;
 use crate::incidence::Incidence;
 use crate::phase::Phase;

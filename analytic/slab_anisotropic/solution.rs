@@ -11,6 +11,10 @@ use nalgebra::DVector;
 use std::f64::consts::PI;
 use std::sync::Arc;
 
+/// Roundings of the terms of a sum over n modes, over root n: columns count as orthogonal at root n roundings, about
+/// ten, and an eigenvector, an amplitude and an exponential have a few such each.
+const ULPS: f64 = 6.4;
+
 /// A solved slab or, with an infinite thickness, half-space. Lengths are mean free paths of `modes.scattering`.
 pub(crate) struct Solution {
     pub tau: f64,
@@ -338,4 +342,9 @@ pub(crate) fn by_halves(k: f64, tau: f64, t: f64, rest: f64) -> ([f64; 2], [f64;
 pub(crate) fn by_faces(k: f64, t: f64, rest: f64) -> ([f64; 2], [f64; 2]) {
     let (down, up) = (exp(-k * t), exp(-k * rest));
     ([down, up], [-k * down, k * up])
+}
+
+/// Rounding of a sum over modes.
+pub(super) fn rounding(sum: Sum, modes: usize) -> f64 {
+    ULPS * (modes.max(100) as f64).sqrt() * f64::EPSILON * sum.magnitude
 }

@@ -1,12 +1,11 @@
 //! Light that was never scattered: refracted, and thrown to and fro between the faces.
 
-use super::Face;
-use super::doubling::faded;
+use super::face::Face;
 use crate::error::Result;
 use crate::incidence::Incidence;
 use crate::quadrature::Adaptive;
 use crate::value::Value;
-use libm::{expm1, sqrt};
+use libm::{exp, expm1, sqrt};
 
 const METHOD: &str = "closed form";
 
@@ -150,4 +149,9 @@ impl Direct {
         breaks.sort_by(f64::total_cmp);
         Adaptive::new(1e-15).integrate(&breaks, "unscattered light", "quadrature", integrand)
     }
+}
+
+/// e^(-x/mu) and its like where x/mu overflows are 0.
+pub(super) fn faded(x: f64, mu: f64) -> f64 {
+    exp(-x / mu)
 }

@@ -2,11 +2,11 @@
 
 use super::direct::Direct;
 use super::face::Rule;
-use super::{Fluxes, Light};
+use super::fluxes::{Fluxes, Light};
 use crate::adding_doubling::Stack;
 use crate::error::{Error, Result};
 use crate::incidence::Incidence;
-use libm::{exp, expm1, sqrt};
+use libm::{expm1, sqrt};
 use nalgebra::{DMatrix, DVector};
 use std::f64::consts::PI;
 
@@ -145,9 +145,4 @@ fn passages(
     let up = twice.solve(&(&top + &across * &bottom))?;
     let down = &bottom + &across * &up;
     Some((up, down))
-}
-
-/// e^(-x/mu) and its like where x/mu overflows are 0.
-pub(super) fn faded(x: f64, mu: f64) -> f64 {
-    exp(-x / mu)
 }

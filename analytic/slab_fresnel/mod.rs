@@ -23,6 +23,7 @@
 mod direct;
 mod doubling;
 mod face;
+mod fluxes;
 mod ordinates;
 #[cfg(test)]
 mod tests;
@@ -36,6 +37,7 @@ use crate::value::Value;
 use direct::Direct;
 use doubling::Closed;
 use face::{Face, Rule};
+use fluxes::{Fluxes, Light};
 use ordinates::Matched;
 use std::sync::{Arc, OnceLock};
 
@@ -47,53 +49,9 @@ const THIN: f64 = 1e-3;
 const PEAKED: usize = 300;
 const THIN_PEAKED: f64 = 1e-5;
 
-/// Roundings of a term of the sums, in units of its magnitude.
-const ULPS: f64 = 16.0;
-
 /// Nodes towards the horizon, and the fewest of each panel above it.
 const LOWER: [usize; 2] = [56, 46];
 const UPPER: [usize; 2] = [36, 29];
-
-/// A sum, and the sum of the magnitudes of its terms: rounding is a few units of the last place of that.
-#[derive(Debug, Clone, Copy, Default)]
-struct Light {
-    value: f64,
-    magnitude: f64,
-}
-
-impl Light {
-    fn of(value: f64) -> Self {
-        Light { value, magnitude: value.abs() }
-    }
-
-    fn plus(self, other: Self) -> Self {
-        Light { value: self.value + other.value, magnitude: self.magnitude + other.magnitude }
-    }
-
-    fn scaled(self, factor: f64) -> Self {
-        Light { value: self.value * factor, magnitude: self.magnitude * factor.abs() }
-    }
-
-    fn rounding(self) -> f64 {
-        ULPS * f64::EPSILON * self.magnitude
-    }
-}
-
-/// Scattered light that leaves through the lit face and through the far one, and all that is absorbed.
-#[derive(Debug, Clone, Copy)]
-struct Fluxes {
-    reflected: Light,
-    transmitted: Light,
-    absorbed: Light,
-}
-
-impl Fluxes {
-    /// Whether rounding takes more than `share` of any.
-    fn loses(self, share: f64) -> bool {
-        let parts = [self.reflected, self.transmitted, self.absorbed];
-        parts.iter().any(|part| part.rounding() > share * part.value.abs())
-    }
-}
 
 enum Solution {
     Ordinates(Box<Matched>),

@@ -1,7 +1,7 @@
 //! Modes of discrete ordinates, matched at two faces that reflect.
 
 use super::direct::Direct;
-use super::{Fluxes, Light};
+use super::fluxes::{Fluxes, Light};
 use crate::error::{Error, Result};
 use crate::incidence::Incidence;
 use crate::slab_anisotropic::modes::Modes;

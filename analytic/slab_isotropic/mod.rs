@@ -11,6 +11,7 @@
 //!
 //! Source: Peierls 1939; Kourganoff 1952, section 7; Case and Zweifel 1967, section 2.6.
 
+mod equation;
 mod orders;
 mod ray;
 
@@ -19,16 +20,12 @@ use crate::error::{Error, Result};
 use crate::exponential_integral::e_n;
 use crate::incidence::{Incidence, check_albedo, check_depth, check_mu, check_tau};
 use crate::peierls::{Halves, NODES, Operator};
-use crate::slab_single::{beam_path, beam_through_e1, single_reflectance, single_transmittance};
+use crate::slab_single::{beam_path, single_reflectance, single_transmittance};
 use crate::value::Value;
+use equation::{Iterate, METHOD, ULPS, flux_of, residual, source};
 use libm::expm1;
 use std::f64::consts::PI;
 use std::sync::{Arc, Mutex};
-
-const METHOD: &str = "Peierls equation, residual bound";
-
-/// Roundings of the closed forms and sums in one answer.
-const ULPS: f64 = 16.0;
 
 /// A solved slab: reflectance, transmittance, fluence and radiance, in all orders of scattering or one by one.
 pub struct IsotropicSlab {
@@ -44,7 +41,7 @@ pub struct IsotropicSlab {
     /// What the polynomial leaves out of the two fluxes: light that a beam has scattered once.
     once_up: Value,
     once_down: Value,
-    iterates: Mutex<Vec<orders::Iterate>>,
+    iterates: Mutex<Vec<Iterate>>,
 }
 
 impl IsotropicSlab {
@@ -280,14 +277,6 @@ impl IsotropicSlab {
     }
 }
 
-/// The known part of the equation for the polynomial: once scattered light (beam), direct light (diffuse).
-fn source(albedo: f64, incidence: Incidence, t: f64, rest: f64) -> f64 {
-    match incidence {
-        Incidence::Beam { mu0 } => 0.5 * albedo * beam_through_e1(mu0, t, rest),
-        Incidence::Diffuse => direct_fluence(incidence, t),
-    }
-}
-
 /// Length of the first panel over min(tau/2, 1). In it t ln t is interpolated to about 1e-3 of the length, which
 /// its width multiplies once more: 1e-7 leaves 1e-17. A grazing beam needs panels below its depth mu0.
 fn first_panel(tau: f64, incidence: Incidence) -> f64 {
@@ -295,56 +284,4 @@ fn first_panel(tau: f64, incidence: Incidence) -> f64 {
         Incidence::Beam { mu0 } => (1e-5 * mu0 / (0.5 * tau).min(1.0)).clamp(1e-15, 1e-7),
         Incidence::Diffuse => 1e-7,
     }
-}
-
-/// Per panel: twice the largest defect met between the polynomial and what it stands for, plus rounding.
-fn residual(
-    operator: &Operator,
-    f: &Halves,
-    at_nodes: Option<&Halves>,
-    exact: impl Fn(usize) -> (f64, f64),
-) -> Halves {
-    let mesh = &operator.mesh;
-    let count = mesh.panels();
-    let probes: Vec<(f64, f64)> = (0..operator.probes.len()).map(&exact).collect();
-    let global = operator.row_defect * f.largest();
-    let side = |values: &[f64], defects: Option<&[f64]>, pick: fn(&(f64, f64)) -> f64| {
-        let mut out = Vec::with_capacity(values.len());
-        for p in 0..count {
-            let range = p * NODES..(p + 1) * NODES;
-            let largest = values[range.clone()].iter().fold(0.0, |a: f64, b| a.max(b.abs()));
-            let mut worst = 0.0_f64;
-            for (i, xi) in [(2 * p, 0.0), (2 * p + 1, 0.5), (2 * p + 2, 1.0)] {
-                worst = worst.max((pick(&probes[i]) - mesh.interpolate(values, p, xi)).abs());
-            }
-            if let Some(defects) = defects {
-                worst = defects[range].iter().fold(worst, |a, b| a.max(b.abs()));
-            }
-            let (start, length) = mesh.panel(p);
-            // A coordinate is off by a rounding of its distance from the face, seen on the scale of the panel.
-            let rounding = f64::EPSILON * (ULPS + 2.0 * (start + length) / length) * largest;
-            out.extend(std::iter::repeat_n(2.0 * worst + rounding + global, NODES));
-        }
-        out
-    };
-    Halves {
-        upper: side(&f.upper, at_nodes.map(|d| d.upper.as_slice()), |p| p.0),
-        lower: side(&f.lower, at_nodes.map(|d| d.lower.as_slice()), |p| p.1),
-    }
-}
-
-/// (albedo/2) int f kernel dt plus what is known apart.
-fn flux_of(
-    operator: &Operator,
-    albedo: f64,
-    f: &Halves,
-    bound: &Halves,
-    first: Value,
-    kernel: impl Fn(f64, f64) -> f64,
-) -> Value {
-    let half = 0.5 * albedo;
-    let value = half * operator.mesh.integrate(f, &kernel);
-    let error = half * operator.mesh.integrate(bound, &kernel);
-    let total = first.value + value;
-    Value::new(total, first.error + error + ULPS * f64::EPSILON * total + f64::MIN_POSITIVE, METHOD)
 }

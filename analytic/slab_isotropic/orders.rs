@@ -1,20 +1,13 @@
 //! The same slab order by order: phi_n = (albedo/2) K phi_(n-1), order 0 the direct light.
 
-use super::{IsotropicSlab, METHOD, ULPS, flux_of, residual, source};
+use super::IsotropicSlab;
+use super::equation::{Iterate, METHOD, ULPS, flux_of, residual, source};
 use crate::beer_lambert::uncollided_fluence;
 use crate::error::{Result, within};
 use crate::exponential_integral::e_n;
 use crate::incidence::{Incidence, check_depth};
-use crate::peierls::Halves;
 use crate::value::Value;
 use std::sync::PoisonError;
-
-/// The fluence of one order, as a polynomial, with its bound.
-#[derive(Debug, Clone)]
-pub(super) struct Iterate {
-    values: Halves,
-    bound: Halves,
-}
 
 impl IsotropicSlab {
     /// Fluence of light scattered exactly n times \[1\].

@@ -1,10 +1,10 @@
 //! Large spheres by discrete ordinates, with half as many directions beside them.
 
-use super::SphereSource;
 use super::chord;
 use super::first_flight::transmittance_and_loss;
 use super::ordinates::{Modes, Ordinates};
 use super::point::PointSource;
+use super::source::SphereSource;
 use crate::error::{Error, Result};
 use crate::value::Value;
 use libm::{exp, expm1, log2};

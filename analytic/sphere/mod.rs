@@ -32,6 +32,7 @@ mod orders;
 pub(crate) mod ordinates;
 mod point;
 mod shells;
+mod source;
 
 use crate::error::{Error, Result, within};
 use crate::incidence::check_albedo;
@@ -42,19 +43,9 @@ use libm::{exp, expm1};
 use operator::ShellOperator;
 use orders::CENTRE_ORDERS;
 use shells::Shells;
+pub use source::SphereSource;
 use std::f64::consts::PI;
 use std::sync::Arc;
-
-/// Where the light of a sphere comes from.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum SphereSource {
-    /// Isotropic emission of unit power, spread evenly over the volume.
-    Uniform,
-    /// An isotropic point source of unit power at the centre.
-    Centre,
-    /// Radiance 1/pi from outside on the whole surface: irradiance 1, power 4 pi a^2.
-    Incident,
-}
 
 /// A solved sphere.
 pub struct Sphere {

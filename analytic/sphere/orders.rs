@@ -4,10 +4,10 @@
 //! outside. In the infinite medium 4 pi r phi_n = w^n int_1^inf e^(-r x) Im (A + iB)^(n+1)/B dx, A = atanh(1/x)/x,
 //! B = pi/(2x): the whole's 1/|1 - w (A + iB)|^2 expanded in w.
 
-use super::SphereSource;
 use super::operator::Field;
 use super::point::PointSource;
-use super::shells::{METHOD, Outside, Shells, ULPS, missing, outside, through};
+use super::shells::{METHOD, Order, Shells, ULPS, missing, outside, through};
+use super::source::SphereSource;
 use crate::value::Value;
 use libm::exp;
 use nalgebra::DVector;
@@ -17,15 +17,6 @@ use std::sync::PoisonError;
 /// Highest order of a central source: the expansion of its infinite medium cancels like n!/2^n, beyond it to worse than
 /// 1e-10.
 pub(super) const CENTRE_ORDERS: u32 = 7;
-
-/// One order: its polynomial, and of a central source the infinite medium's part.
-pub(super) struct Order {
-    field: Field,
-    point: Option<PointSource>,
-    /// Shells outside that sent nothing back into this order, and the roundings of their sums.
-    outside: Vec<Outside>,
-    ulps: f64,
-}
 
 impl Shells {
     /// Fluence at r of light scattered n >= 1 times; r > 0 for the central source.

@@ -1,11 +1,10 @@
 //! The sphere by its integral equation.
 
-use super::SphereSource;
 use super::chord;
 use super::first_flight::{first_flight, mean_escape, shells, transmittance_and_loss};
 use super::operator::{Field, ShellOperator};
-use super::orders::Order;
 use super::point::{self, PointSource};
+use super::source::SphereSource;
 use crate::error::{Error, Result};
 use crate::quadrature::GAUSS_24;
 use crate::value::Value;
@@ -29,6 +28,15 @@ pub(super) struct Outside {
 struct Centre {
     point: PointSource,
     outside: Vec<Outside>,
+}
+
+/// One order: its polynomial, and of a central source the infinite medium's part.
+pub(super) struct Order {
+    pub field: Field,
+    pub point: Option<PointSource>,
+    /// Shells outside that sent nothing back into this order, and the roundings of their sums.
+    pub outside: Vec<Outside>,
+    pub ulps: f64,
 }
 
 pub(super) struct Shells {

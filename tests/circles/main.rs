@@ -4,11 +4,9 @@
 //! (a strongly connected component); it is cut by moving what both sides need to where both can import it.
 #![allow(clippy::unwrap_used, reason = "tests")]
 
-mod known;
 mod modules;
 mod tokens;
 
-use known::KNOWN;
 use modules::{Imports, Modules, Sources};
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
@@ -73,18 +71,11 @@ fn describe(circle: &BTreeSet<PathBuf>, imports: &Imports) -> String {
     text
 }
 
-/// The circles of a crate in words, but for those that are known; known ones that are found are taken off the list.
-fn unknown(modules: &Modules, known: &mut Vec<BTreeSet<PathBuf>>) -> Vec<String> {
+/// The circles of a crate in words.
+fn found(modules: &Modules) -> Vec<String> {
     let (imports, lost) = modules.imports();
     assert!(lost.is_empty(), "paths that lead nowhere: {lost:#?}");
-    let mut texts = Vec::new();
-    for circle in circles(&imports) {
-        match known.iter().position(|k| *k == circle) {
-            Some(at) => drop(known.swap_remove(at)),
-            None => texts.push(describe(&circle, &imports)),
-        }
-    }
-    texts
+    circles(&imports).iter().map(|circle| describe(circle, &imports)).collect()
 }
 
 #[test]
@@ -94,16 +85,13 @@ fn no_files_import_each_other() {
     for folder in ["src", "analytic", "experiments/src", "experiments/figure/src"] {
         read(&root.join(folder), root, &mut sources);
     }
-    let mut known: Vec<BTreeSet<PathBuf>> =
-        KNOWN.iter().map(|files| files.iter().map(PathBuf::from).collect()).collect();
-    let mut found = Vec::new();
+    let mut texts = Vec::new();
     for (crate_root, least) in CRATES {
         let modules = Modules::read(&sources, Path::new(crate_root));
         assert!(modules.files().len() >= least, "{crate_root} has only {} files", modules.files().len());
-        found.extend(unknown(&modules, &mut known));
+        texts.extend(found(&modules));
     }
-    assert!(found.is_empty(), "{} circles\n{}", found.len(), found.concat());
-    assert!(known.is_empty(), "no longer circles, take them off the list: {known:#?}");
+    assert!(texts.is_empty(), "{} circles\n{}", texts.len(), texts.concat());
 }
 
 /// The circles of a made-up crate, each as its files.

@@ -112,6 +112,22 @@ fn quotable(bytes: &[u8]) -> String {
     String::from_utf8_lossy(bytes).replace('\n', "")
 }
 
+/// What the escapes of JSON in a text stand for: keys are quoted as they are read.
+fn escapes(text: &str) -> String {
+    text.split('\\')
+        .skip(1)
+        .filter_map(|after| match after.chars().next()? {
+            'b' => Some('\u{8}'),
+            'f' => Some('\u{c}'),
+            'n' => Some('\n'),
+            'r' => Some('\r'),
+            't' => Some('\t'),
+            'u' => char::from_u32(u32::from_str_radix(after.get(1..5)?, 16).ok()?),
+            _ => None,
+        })
+        .collect()
+}
+
 /// The same of a scene: the keys and strings that are written in it.
 fn strings(text: &str) -> String {
     fn add(value: &toml::Value, all: &mut String) {
@@ -205,7 +221,10 @@ impl Workbench {
             }
             Kind::Cells => match read_cell(&path) {
                 Ok(_) => Verdict::Accepted,
-                Err(error) => said(&format!("{error:#}"), &quotable(bytes), Some(&name)),
+                Err(error) => {
+                    let text = quotable(bytes);
+                    said(&format!("{error:#}"), &(escapes(&text) + &text), Some(&name))
+                }
             },
             Kind::Figures => match try_redraw(&path) {
                 Ok(_) => Verdict::Accepted,
@@ -432,6 +451,10 @@ mod tests {
     fn messages_are_looked_at_as_they_are() {
         let failed = |verdict: Verdict| verdict.is_failure();
         assert!(failed(said("two\nlines", "", None)) && failed(said("red \u{1b}[31m", "x", None)));
+        let key = r#"{"non\finite\u000b":0}"#;
+        assert!(failed(said("a key 'non\u{c}inite'", &quotable(key.as_bytes()), None)));
+        assert!(!failed(said("a key 'non\u{c}inite\u{b}'", &escapes(key), None)));
+        assert!(failed(said("a key\twith a tab", &escapes(key), None)));
         assert!(failed(said("", "", None)) && failed(said("no file", "", Some("input.vol"))));
         assert_eq!(
             said("interior \u{1b}x", "a\u{1b}x", None),

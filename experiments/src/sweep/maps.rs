@@ -3,8 +3,9 @@
 use super::measure::{
     Clock, Effort, Failure, MOST_STRIDE, PILOT, Quarters, Seen, Spread, batch, cost, in_batches,
 };
+use std::cell::Cell;
 use turbid::estimators::Gather;
-use turbid::integrators::mapper::{Mapper, Report, Settings, scene_size};
+use turbid::integrators::mapper::{Gathers, Mapper, Report, Settings, scene_size};
 use turbid::integrators::{Layer, Layers};
 use turbid::math::{Positive, Ray};
 use turbid::medium::Medium;
@@ -33,8 +34,8 @@ pub struct ByMaps {
     pub small: Seen,
     /// With [`FACTOR`] times as many.
     pub large: Seen,
-    /// Layers whose map has so few photons that an estimate takes a good part of all of them, wherever they are: its radius
-    /// does not fall with their number as it does where they are many.
+    /// Layers whose radius does not fall with the number of photons as it does where they are many: an estimate takes a good
+    /// part of all of them, wherever they are, or is measured to keep its radius.
     pub scarce: Vec<Layer>,
 }
 
@@ -66,8 +67,12 @@ pub fn maps(
     let (clock, quarters) = (Clock::of(effort), Quarters::new(camera));
     let within = scene.interior_at(camera.position());
     let on = (scene, &quarters);
+    let look_ups = Cell::new(Report::default());
     let looked = |mapper: &Mapper, ray: Ray, stream: &mut Stream| {
         let (layers, report): (Layers, Report) = mapper.radiance(ray, None, within, stream);
+        let mut all = look_ups.take();
+        all += report;
+        look_ups.set(all);
         let looked = report.global.count + report.caustic.count + report.volume.count;
         (layers, report.rays.total() as f64 + cost(&stream.work) + LOOK_UP * looked as f64)
     };
@@ -86,6 +91,7 @@ pub fn maps(
     // A third each for photons and for reading the large maps, a sixth for reading the small ones.
     let third = effort.steps / 3.0;
     let histories = (third / (LARGE_MAPS as f64 * each.max(0.1))).clamp(1000.0, MOST_HISTORIES) as u64;
+    let mut of_large = Report::default();
     for (is_large, number) in [(true, LARGE_MAPS), (false, SMALL_MAPS)] {
         let count = if is_large { histories } else { (histories / FACTOR).max(1) };
         let settings = settings(scene, is_large)?;
@@ -116,7 +122,11 @@ pub fn maps(
             };
             batch(on, (seed, replicate), spread, &clock, &sample, seen)?;
         }
+        if is_large {
+            of_large = look_ups.take();
+        }
     }
+    made.scarce.extend(not_shrinking(&of_large, &look_ups.take()));
     Ok(made)
 }
 
@@ -129,6 +139,24 @@ fn scarce(maps: &Maps) -> Vec<Layer> {
     let layers =
         [(&maps.global, Layer::Indirect), (&maps.caustic, Layer::Caustic), (&maps.volume, Layer::Multiple)];
     layers.into_iter().filter(|(map, _)| is_scarce(map)).map(|(_, layer)| layer).collect()
+}
+
+/// Mean radii of large maps over those of small ones, relative to what the numbers of photons let expect, above which the law of
+/// [`shrinking`](super::compare::shrinking) says nothing: bodies that end, or darkness about the light, keep the radius.
+const KEPT: f64 = 1.5;
+
+/// The layers of maps whose radius hardly falls with the number of their photons.
+fn not_shrinking(large: &Report, small: &Report) -> Vec<Layer> {
+    let factor = FACTOR as f64;
+    let is_kept = |large: &Gathers, small: &Gathers, ratio: f64| {
+        large.mean_radius() > KEPT * ratio * small.mean_radius()
+    };
+    let layers = [
+        (&large.global, &small.global, 1.0 / libm::sqrt(factor), Layer::Indirect),
+        (&large.caustic, &small.caustic, 1.0 / libm::sqrt(factor), Layer::Caustic),
+        (&large.volume, &small.volume, 1.0 / libm::cbrt(factor), Layer::Multiple),
+    ];
+    layers.into_iter().filter(|(l, s, ratio, _)| is_kept(l, s, *ratio)).map(|(.., layer)| layer).collect()
 }
 
 /// How the command reads maps by default, with fewer gathering rays, and longer steps where they may be long.
