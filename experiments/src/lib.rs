@@ -7,9 +7,9 @@ pub mod bias;
 pub mod blur;
 pub mod boundary;
 pub mod budget;
-pub mod contest;
+pub mod claims_1998;
+pub mod cost_model;
 pub mod coverage;
-pub mod deck;
 pub mod extremes;
 pub mod fuzz;
 pub mod gallery;
@@ -35,5 +35,5 @@ pub const ALL: &[Experiment] = &[
     tradeoff::EXPERIMENT,
     extremes::EXPERIMENT,
     coverage::EXPERIMENT,
-    deck::EXPERIMENT,
+    claims_1998::EXPERIMENT,
 ];

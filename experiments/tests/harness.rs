@@ -300,8 +300,14 @@ fn cell_names_are_checked() {
     }
     let twice = Experiment { groups: |_| vec![one("a"), one("a")], ..fake::FAKE };
     let unsafe_name = Experiment { groups: |_| vec![one("../a")], ..fake::FAKE };
-    for (experiment, text) in [(twice, "two cells are called a-000000"), (unsafe_name, "no name for a file")]
-    {
+    let same_numbers =
+        Experiment { groups: |_| vec![one("a"), one("b").with_stream("a")], ..fake::FAKE };
+    let cases = [
+        (twice, "two cells are called a-000000"),
+        (same_numbers, "b-000000 draws the random numbers of another group, a"),
+        (unsafe_name, "no name for a file"),
+    ];
+    for (experiment, text) in cases {
         let study = Study { experiments: &[experiment], ..fake::study() };
         let outcome = run(&study, &settings(folder.path())).unwrap();
         assert!(failure(&outcome).is_some_and(|said| said.contains(text)), "{:?}", failure(&outcome));

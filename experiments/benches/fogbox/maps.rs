@@ -12,7 +12,7 @@ use turbid::rng::{Purpose, Stream};
 use turbid::scene::{Camera, Scene};
 use turbid::sensor::{Method, Streams};
 use turbid::transport::NoProgress;
-use turbid_experiments::contest::{self, Maps, Paths};
+use turbid_experiments::cost_model::{self, Maps, Paths};
 
 const ROUNDS: usize = 7;
 /// Photons on surfaces and in the volume, as multiples of those of the picture of 1998, photons an estimate, and samples a
@@ -199,7 +199,7 @@ pub fn compare(
         for error in ERRORS {
             let square = error * error * mean * mean;
             let gain = |maps: &[Maps], paths: &Paths| {
-                contest::cheapest(maps, PIXELS, square).map_or(0.0, |c| paths.cost(PIXELS, square) / c.1)
+                cost_model::cheapest(maps, PIXELS, square).map_or(0.0, |c| paths.cost(PIXELS, square) / c.1)
             };
             let ratios = |maps: fn(&[Maps]) -> &[Maps]| {
                 let found = resampled.iter().zip(&others).map(|(m, p)| gain(maps(m), p)).collect();
@@ -215,10 +215,10 @@ pub fn compare(
                 ratios(|all| &all[1..2])
             )?;
         }
-        let crossing = |maps: &[Maps], paths: &Paths| 100.0 * contest::crossing(maps, paths, PIXELS, mean);
+        let crossing = |maps: &[Maps], paths: &Paths| 100.0 * cost_model::crossing(maps, paths, PIXELS, mean);
         let [low, high] = interval(resampled.iter().zip(&others).map(|(m, p)| crossing(m, p)).collect());
         let at = crossing(&whole, &all);
-        if at > 100.0 * contest::RANGE.0 {
+        if at > 100.0 * cost_model::RANGE.0 {
             writeln!(out, "{name} is faster below an error of {at:.2} % ({low:.2} to {high:.2})")?;
         } else {
             // The floor of the largest maps was too small to be told from the noise of their samples.

@@ -192,6 +192,8 @@ mod tests {
 pub struct CellId {
     /// What is simulated: maps of one group differ in their random numbers only.
     pub group: String,
+    /// What names the group in random streams: the group, if it was never renamed.
+    pub stream: String,
     /// Number of the independent repetition, from 0; it goes into the random streams.
     pub replicate: u64,
     /// Work, in any unit that all cells of the study share, such as photons: for order and remaining time.
@@ -203,7 +205,8 @@ pub struct CellId {
 impl CellId {
     /// A cell that is known by its name alone.
     pub fn of(group: &str, replicate: u64) -> Self {
-        CellId { group: group.to_string(), replicate, cost: 0.0, held: 0 }
+        let name = group.to_string();
+        CellId { group: name.clone(), stream: name, replicate, cost: 0.0, held: 0 }
     }
 
     /// The unique file-safe name; names sort as replicates do.
@@ -212,9 +215,10 @@ impl CellId {
     }
 
     /// The number that random streams take as their replicate: different for every experiment and group, so that
-    /// cells of different groups share no histories.
+    /// cells of different groups share no histories. The experiment is named as when it was founded: names that are
+    /// shown change, random numbers do not.
     pub fn stream(&self, experiment: &str) -> u64 {
-        let name = Digest::of(format!("{experiment}/{}", self.group).as_bytes());
+        let name = Digest::of(format!("{experiment}/{}", self.stream).as_bytes());
         name.word() << 24 | self.replicate
     }
 

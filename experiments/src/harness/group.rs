@@ -11,6 +11,7 @@ pub(super) type Measure = Arc<dyn Fn(&Settings, &CellId) -> anyhow::Result<CellO
 #[derive(Clone)]
 pub struct Group {
     name: String,
+    stream: String,
     cells: u64,
     cost: f64,
     held: u64,
@@ -26,7 +27,14 @@ impl Group {
         cost: f64,
         measure: impl Fn(&Settings, &CellId) -> anyhow::Result<CellOutput> + Send + Sync + 'static,
     ) -> Self {
-        Group { name: name.into(), cells, cost, held: 0, measure: Arc::new(measure) }
+        let name = name.into();
+        Group { stream: name.clone(), name, cells, cost, held: 0, measure: Arc::new(measure) }
+    }
+
+    /// The same, whose random streams keep a name of their own: a group that is renamed draws the same numbers.
+    #[must_use]
+    pub fn with_stream(self, name: &str) -> Self {
+        Group { stream: name.to_string(), ..self }
     }
 
     /// The same, of maps of at least so many photons.
@@ -39,6 +47,7 @@ impl Group {
     pub fn cells(&self) -> impl Iterator<Item = CellId> {
         (0..self.cells).map(|replicate| CellId {
             group: self.name.clone(),
+            stream: self.stream.clone(),
             replicate,
             cost: self.cost,
             held: self.held,

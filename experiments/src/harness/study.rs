@@ -289,7 +289,7 @@ fn selected(all: &[Experiment], only: &[String]) -> anyhow::Result<Vec<Experimen
 /// The cells of an experiment, with names of their own.
 fn plan(experiment: &Experiment, settings: &Settings) -> anyhow::Result<Vec<(CellId, Measure)>> {
     let mut cells = Vec::new();
-    let mut seen = BTreeSet::new();
+    let (mut seen, mut streams) = (BTreeSet::new(), BTreeSet::new());
     for group in (experiment.groups)(settings) {
         for cell in group.cells() {
             let name = experiment.name;
@@ -298,6 +298,12 @@ fn plan(experiment: &Experiment, settings: &Settings) -> anyhow::Result<Vec<(Cel
                 seen.insert(cell.id()),
                 "{name}: two cells are called {}: at this --photons two numbers of photons are one",
                 cell.id()
+            );
+            ensure!(
+                streams.insert((cell.stream.clone(), cell.replicate)),
+                "{name}: {} draws the random numbers of another group, {}",
+                cell.id(),
+                cell.stream
             );
             cells.push((cell, group.measure.clone()));
         }

@@ -1,8 +1,8 @@
-//! The experiment `deck`, whole, on few photons.
+//! The experiment `claims-1998`, whole, on few photons.
 
 use super::run;
 
-const PROGRAM: &str = env!("CARGO_BIN_EXE_deck");
+const PROGRAM: &str = env!("CARGO_BIN_EXE_claims-1998");
 
 /// A fiftieth of the photons, twice: the results do not depend on the threads, nor on what was timed, and a lost cell
 /// comes back as it was.
@@ -11,16 +11,21 @@ fn a_fiftieth_of_the_photons() {
     let folder = tempfile::tempdir().unwrap();
     let one = run::same_on_threads(PROGRAM, "0.02", folder.path());
     assert_eq!(run::figures(&one), 3);
-    run::same_after_a_loss(PROGRAM, "0.02", &one, &["deck/walls-000000.csv", "deck/edge-000003.csv"]);
+    run::same_after_a_loss(
+        PROGRAM,
+        "0.02",
+        &one,
+        &["claims-1998/walls-000000.csv", "claims-1998/edge-000003.csv"],
+    );
     let claims = std::fs::read_to_string(one.join("claims.csv")).unwrap();
     let line = |claim: &str| claims.lines().find(|line| line.contains(&format!(",{claim},"))).unwrap();
     // What so few photons decide, and no clock: gathers do not know the walls, importance brings photons into view; and
     // nothing is rejected.
-    for claim in ["decoupled", "steered-photons"] {
+    for claim in ["decoupled", "importance-photons"] {
         assert!(line(claim).contains(",upheld,"), "{}", line(claim));
     }
     // Maps need less work than paths. A few maps carry the variance of that: there is no verdict, but an interval.
     let low: f64 = line("faster").split(',').nth(6).unwrap().parse().unwrap();
     assert!(low > 1.0, "{}", line("faster"));
-    assert!(claims.contains("steered-mean") && !claims.contains(",rejected,"), "{claims}");
+    assert!(claims.contains("importance-mean") && !claims.contains(",rejected,"), "{claims}");
 }

@@ -2,7 +2,7 @@
 
 use super::results::Picture;
 use super::{NEIGHBORS, SIDE, case, figure, group, map_case, path_case};
-use crate::deck::part::Part;
+use crate::claims_1998::part::Part;
 use crate::harness::{
     Cells, Claim, Estimate, Row, Section, Settings, Table, Unit, bar, number, signed, with_error,
 };

@@ -1,7 +1,7 @@
 //! What the cells measured, and errors and costs of any choice of them.
 
 use super::{GROUP, PATHS, PIXELS, Size, path_pixel, sizes};
-use crate::contest::{Maps, Paths};
+use crate::cost_model::{Maps, Paths};
 use crate::harness::{Cells, Settings};
 
 /// What work costs.
@@ -21,7 +21,7 @@ pub const LOOKED_AT: f64 = 0.1;
 
 /// A picture by maps of one size or by paths, in one cell.
 #[derive(Debug, Clone)]
-pub struct Seen {
+pub struct Picture {
     /// Radiance of each pixel.
     pub pixels: Vec<f64>,
     /// Variance of one sample, mean over the pixels.
@@ -38,9 +38,9 @@ pub struct Seen {
 #[derive(Debug, Clone)]
 pub struct Cell {
     /// By size of map.
-    pub maps: Vec<Seen>,
+    pub maps: Vec<Picture>,
     /// By paths.
-    pub paths: Seen,
+    pub paths: Picture,
 }
 
 /// Reads the cells.
@@ -48,11 +48,12 @@ pub fn read(settings: &Settings, cells: &Cells) -> anyhow::Result<Vec<Cell>> {
     let sizes = sizes(settings);
     let maps = sizes.iter().map(|&size| maps(size, cells)).collect::<anyhow::Result<Vec<_>>>()?;
     let paths = paths(cells)?;
-    let cell = |(i, paths): (usize, Seen)| Cell { maps: maps.iter().map(|m| m[i].clone()).collect(), paths };
+    let cell =
+        |(i, paths): (usize, Picture)| Cell { maps: maps.iter().map(|m| m[i].clone()).collect(), paths };
     Ok(paths.into_iter().enumerate().map(cell).collect())
 }
 
-fn maps(size: Size, cells: &Cells) -> anyhow::Result<Vec<Seen>> {
+fn maps(size: Size, cells: &Cells) -> anyhow::Result<Vec<Picture>> {
     let case = size.case();
     let list: Vec<String> = (0..PIXELS).map(|pixel| size.pixel(pixel)).collect();
     let pixels = cells.per_map(&list, "radiance")?;
@@ -62,30 +63,30 @@ fn maps(size: Size, cells: &Cells) -> anyhow::Result<Vec<Seen>> {
     let (fill, look) =
         (cells.seconds(GROUP, &format!("fill {case}")), cells.seconds(GROUP, &format!("look {case}")));
     let all = value("samples")?;
-    let seen = |(i, pixels): (usize, Vec<f64>)| Seen {
+    let picture = |(i, pixels): (usize, Vec<f64>)| Picture {
         pixels,
         noise: noise[i],
         fill: [rays[i] + STORED * stored[i], fill[i]],
         sample: [looks[i] + LOOKED_AT * found[i], look[i] / all[i]],
         samples: all[i] / PIXELS as f64,
     };
-    Ok(pixels.into_iter().enumerate().map(seen).collect())
+    Ok(pixels.into_iter().enumerate().map(picture).collect())
 }
 
-fn paths(cells: &Cells) -> anyhow::Result<Vec<Seen>> {
+fn paths(cells: &Cells) -> anyhow::Result<Vec<Picture>> {
     let list: Vec<String> = (0..PIXELS).map(path_pixel).collect();
     let pixels = cells.per_map(&list, "radiance")?;
     let value = |quantity: &str| cells.values(PATHS, quantity);
     let (noise, rays, samples) = (value("noise")?, value("rays a sample")?, value("samples")?);
     let seconds = cells.seconds(GROUP, "paths");
-    let seen = |(i, pixels): (usize, Vec<f64>)| Seen {
+    let picture = |(i, pixels): (usize, Vec<f64>)| Picture {
         pixels,
         noise: noise[i],
         fill: [0.0; 2],
         sample: [rays[i], seconds[i] / samples[i]],
         samples: samples[i] / PIXELS as f64,
     };
-    Ok(pixels.into_iter().enumerate().map(seen).collect())
+    Ok(pixels.into_iter().enumerate().map(picture).collect())
 }
 
 /// Errors and costs of some cells together.
@@ -148,7 +149,7 @@ mod tests {
     fn cells(count: usize, bias: f64) -> Vec<Cell> {
         let mut stream = Stream::new(9, Purpose::Synthetic, 0, 0);
         let mut even = |half: f64| 2.0 * half * (stream.unit() - 0.5);
-        let seen = |pixels: Vec<f64>, noise| Seen {
+        let picture = |pixels: Vec<f64>, noise| Picture {
             pixels,
             noise,
             fill: [10.0, 1.0],
@@ -163,7 +164,7 @@ mod tests {
                 1.0 + bias + spread + noise
             };
             let maps = (0..PIXELS).map(|_| pixel()).collect();
-            Cell { maps: vec![seen(maps, 1.0 / 3.0)], paths: seen(paths, 0.03 * 64.0) }
+            Cell { maps: vec![picture(maps, 1.0 / 3.0)], paths: picture(paths, 0.03 * 64.0) }
         };
         (0..count).map(one).collect()
     }

@@ -8,6 +8,7 @@ pub mod conclude;
 mod figure;
 mod results;
 
+use super::STREAM;
 use crate::harness::{CellId, CellOutput, Group, Settings, Unit};
 use crate::prediction::Prediction;
 use crate::setups::{CELL, Setup, Size};
@@ -73,7 +74,7 @@ fn measure(settings: &Settings, cell: &CellId) -> anyhow::Result<CellOutput> {
     let histories = Histories {
         count: photons(settings),
         seed: settings.seed,
-        replicate: cell.stream("deck"),
+        replicate: cell.stream(STREAM),
         max_order: None,
     };
     let pass = shoot(&SETUP.scene()?, histories, &[], is_in(Orders::ALL), &NoProgress)?;

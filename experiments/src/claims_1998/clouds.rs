@@ -4,6 +4,7 @@
 //! steps that halve where radiance changes: the light of many scatterings changes little, so that a look at the map makes
 //! those steps longer. Times are of this machine: they are in words, not in results and claims.
 
+use super::STREAM;
 use super::fogbox::grey;
 use super::maps::filled;
 use super::part::Part;
@@ -92,7 +93,7 @@ fn eye(steps: usize) -> anyhow::Result<mapper::Settings> {
 
 /// Measures one cell.
 fn measure(settings: &Settings, cell: &CellId) -> anyhow::Result<CellOutput> {
-    let (scene, replicate) = (scene()?, cell.stream("deck"));
+    let (scene, replicate) = (scene()?, cell.stream(STREAM));
     let camera = *scene.camera().context("the cloud has no camera")?;
     let mut output = CellOutput::new();
     let emitted = Emitted { volume: photons(settings), ..Emitted::default() };

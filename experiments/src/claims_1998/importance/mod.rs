@@ -1,10 +1,11 @@
 //! Importance: photons go where the camera looks, and no mean changes.
 //!
-//! The camera sees one corner of a long foggy hall that is lit at its other end. Maps of each kind are read by the same
+//! The camera sees one corner of a long foggy hall that is lit at its other end. Maps of each kind are asked by the same
 //! rays with the same random numbers: what differs between maps is the maps.
 
 pub mod conclude;
 
+use super::STREAM;
 use super::fogbox::grey;
 use super::maps::filled;
 use crate::harness::{CellId, CellOutput, Group, Settings};
@@ -21,7 +22,7 @@ use turbid::scene::{Scene, SceneFile};
 use turbid::transport::NoProgress;
 
 /// The group of all cells.
-pub const GROUP: &str = "steering";
+pub const GROUP: &str = "importance";
 /// Pixels of the picture that are looked at.
 const COLUMNS: usize = 8;
 const ROWS: usize = 6;
@@ -59,7 +60,7 @@ impl Way {
         format!("{} pixel {pixel}", self.case())
     }
 
-    /// Photons sent out; steered ones have more events.
+    /// Photons sent out; those by importance have more events.
     fn photons(self, settings: &Settings) -> u64 {
         match self {
             Way::Power => settings.photons(30_000, 120_000).max(2_000),
@@ -71,7 +72,7 @@ impl Way {
 /// All cells.
 pub fn group(settings: &Settings) -> Group {
     let photons: u64 = Way::ALL.iter().map(|way| way.photons(settings)).sum();
-    Group::new(GROUP, 64, 8.0 * photons as f64, measure)
+    Group::new(GROUP, 64, 8.0 * photons as f64, measure).with_stream("steering")
 }
 
 /// Importance: the same for all cells, which need not learn it each for itself.
@@ -98,7 +99,7 @@ fn learned(
 /// Measures one cell: a map of each kind.
 fn measure(settings: &Settings, cell: &CellId) -> anyhow::Result<CellOutput> {
     let file: SceneFile = toml::from_str(SCENE).map_err(|e| anyhow!("importance.toml: {e}"))?;
-    let (scene, replicate) = (file.scene(Path::new("."))?, cell.stream("deck"));
+    let (scene, replicate) = (file.scene(Path::new("."))?, cell.stream(STREAM));
     let mut output = CellOutput::new();
     let learning = ImportanceSettings {
         pilot: settings.photons(1 << 15, 1 << 16).max(1 << 13),
@@ -106,11 +107,11 @@ fn measure(settings: &Settings, cell: &CellId) -> anyhow::Result<CellOutput> {
         seed: settings.seed,
         ..Default::default()
     };
-    let importance = learned(&mut output, &scene, &learning)?;
+    let learned = learned(&mut output, &scene, &learning)?;
     for way in Way::ALL {
-        let steered = (way == Way::Importance).then_some(&*importance);
+        let importance = (way == Way::Importance).then_some(&*learned);
         let maps = output.time(way.case(), |_| {
-            maps(&scene, steered, way.photons(settings), settings.seed, replicate ^ (way as u64) << 20)
+            maps(&scene, importance, way.photons(settings), settings.seed, replicate ^ (way as u64) << 20)
         })?;
         let main = maps.report.main;
         output.push(way.case(), "events", (main.collisions + main.hits) as f64);
@@ -145,8 +146,8 @@ fn picture(scene: &Scene, maps: &Maps) -> anyhow::Result<Vec<f64>> {
     let gather = Gather::radius(RADIUS)?;
     let standard = mapper::Settings::for_size(10.0, 50)?;
     let volume = Estimator { gather, ..standard.volume };
-    let reading = mapper::Settings { global: (Kernel::Uniform, gather), volume, ..standard };
-    let mapper = Mapper::new(scene, maps, &reading);
+    let settings = mapper::Settings { global: (Kernel::Uniform, gather), volume, ..standard };
+    let mapper = Mapper::new(scene, maps, &settings);
     let (width, height) = (f64::from(camera.width()), f64::from(camera.height()));
     let pixel = |i: usize| {
         let mut stream = Stream::new(1, Purpose::Paths, 0, i as u64);

@@ -2,13 +2,13 @@
 
 use super::data::{Cell, Currency, Fit, read};
 use super::{SIDE, Size, sizes};
-use crate::contest::{RANGE, cheapest, crossing};
+use crate::cost_model::{RANGE, cheapest, crossing};
 use crate::harness::{Cells, Settings};
 use turbid::rng::{Purpose, Stream};
 use turbid::stats::Interval;
 
 /// Everything measured, with resamples of the cells.
-pub struct Race {
+pub struct Pictures {
     /// By cell.
     pub cells: Vec<Cell>,
     /// Sizes of maps.
@@ -17,14 +17,14 @@ pub struct Race {
     resamples: Vec<Vec<usize>>,
 }
 
-impl Race {
+impl Pictures {
     pub fn new(settings: &Settings, cells: &Cells) -> anyhow::Result<Self> {
         let cells = read(settings, cells)?;
         let draw = |i| {
             let mut stream = Stream::new(settings.seed, Purpose::Resampling, i, 0);
             (0..cells.len()).map(|_| stream.index(cells.len())).collect()
         };
-        Ok(Race { resamples: (0..RESAMPLES).map(draw).collect(), sizes: sizes(settings), cells })
+        Ok(Pictures { resamples: (0..RESAMPLES).map(draw).collect(), sizes: sizes(settings), cells })
     }
 
     /// Of all cells.
@@ -65,12 +65,12 @@ pub struct Crossing {
 
 impl Crossing {
     /// One a picture's side.
-    pub fn all(race: &Race, currency: Currency) -> Vec<Crossing> {
+    pub fn all(pictures: &Pictures, currency: Currency) -> Vec<Crossing> {
         let of = |fit: &Fit| {
             SIDES.map(|side| 100.0 * crossing(&fit.maps, &fit.paths, f64::from(side * side), fit.mean))
         };
-        let whole = of(&race.fit(currency));
-        let resampled: Vec<_> = race.resampled(currency).map(|fit| of(&fit)).collect();
+        let whole = of(&pictures.fit(currency));
+        let resampled: Vec<_> = pictures.resampled(currency).map(|fit| of(&fit)).collect();
         let one =
             |i: usize| Crossing { at: whole[i], interval: middle(resampled.iter().map(|r| r[i]).collect()) };
         (0..SIDES.len()).map(one).collect()
@@ -86,7 +86,7 @@ impl Crossing {
     }
 
     pub fn verdict(&self) -> String {
-        let asked = 100.0 * ASKED;
+        let asked = 100.0 * PREVIEW_ERROR;
         match self.interval {
             i if i.high < asked => format!("the whole interval is below {asked} %"),
             i if i.low > asked => format!("the whole interval is above {asked} %"),
@@ -96,7 +96,7 @@ impl Crossing {
 }
 
 /// The error that the claim and the words ask about, chosen before the first run: what a preview may have.
-pub const ASKED: f64 = 0.3;
+pub const PREVIEW_ERROR: f64 = 0.3;
 
 /// Resamples of the cells for intervals.
 pub const RESAMPLES: u64 = 500;

@@ -1,10 +1,10 @@
 //! What all maps say of "photon maps are faster than Monte Carlo".
 
 use super::data::{Cell, Currency, Fit, LOOKED_AT, STORED};
-use super::results::{ASKED, Crossing, PIXELS, Race, SIDES, gain};
+use super::results::{Crossing, PIXELS, PREVIEW_ERROR, Pictures, SIDES, gain};
 use super::{SIDE, figure};
-use crate::contest::cheapest;
-use crate::deck::part::Part;
+use crate::claims_1998::part::Part;
+use crate::cost_model::cheapest;
 use crate::harness::{Cells, Claim, Estimate, Row, Section, Settings, Table, Unit};
 use turbid::math::exp;
 use turbid::stats::{Jackknife, jackknife_log};
@@ -14,20 +14,22 @@ const NUMBER: f64 = 24.0;
 
 /// Concludes.
 pub fn conclude(settings: &Settings, cells: &Cells) -> anyhow::Result<Part> {
-    let race = Race::new(settings, cells)?;
+    let pictures = Pictures::new(settings, cells)?;
     // Not the crossing, which has an end where it may stick: what is constant but for a few cells has no jackknife. Where no
     // map is so good the gain is as good as 0, which has a logarithm.
-    let statistic =
-        |chosen: &[&Cell]| gain(&Fit::of(chosen, Currency::Rays), PIXELS, ASKED).unwrap_or(f64::MIN_POSITIVE);
-    let log = jackknife_log(&race.cells.iter().collect::<Vec<_>>(), statistic);
+    let statistic = |chosen: &[&Cell]| {
+        gain(&Fit::of(chosen, Currency::Rays), PIXELS, PREVIEW_ERROR).unwrap_or(f64::MIN_POSITIVE)
+    };
+    let log = jackknife_log(&pictures.cells.iter().collect::<Vec<_>>(), statistic);
     let value = exp(log.value);
     let in_rays = Estimate::jackknife(&Jackknife { value, std_error: value * log.std_error, ..log });
     let text = format!(
         "\"photon maps are faster than Monte Carlo\": work of paths over that of photon maps, for a picture of \
          {SIDE} x {SIDE} pixels with an error of {:.0} %",
-        100.0 * ASKED
+        100.0 * PREVIEW_ERROR
     );
-    let [rays, seconds] = [Currency::Rays, Currency::Seconds].map(|currency| Crossing::all(&race, currency));
+    let [rays, seconds] =
+        [Currency::Rays, Currency::Seconds].map(|currency| Crossing::all(&pictures, currency));
     let measured = SIDES.iter().position(|&side| side == SIDE).unwrap_or(0);
     let said = vec![[
         "photon maps are faster than Monte Carlo".to_string(),
@@ -37,38 +39,38 @@ pub fn conclude(settings: &Settings, cells: &Cells) -> anyhow::Result<Part> {
              long for {SIDE} x {SIDE} pixels",
             seconds[measured].words(),
             rays[measured].words(),
-            race.sizes.last().map_or(0, |size| size.photons),
+            pictures.sizes.last().map_or(0, |size| size.photons),
             seconds[measured].verdict(),
             seconds[SIDES.len() - 1].words(),
-            race.gain(0.2),
+            pictures.gain(0.2),
         ),
     ]];
     let section = Section {
         claims: vec![Claim::at_least("faster", &text, Unit::ONE, in_rays, 1.0)],
-        figures: vec![figure::race(&race, &seconds[measured], &rays[measured])?],
-        tables: vec![size_table(&race), crossing_table(&race, &rays, &seconds)],
+        figures: vec![figure::cost(&pictures, &seconds[measured], &rays[measured])?],
+        tables: vec![size_table(&pictures), crossing_table(&pictures, &rays, &seconds)],
         notes: vec![format!(
-            "The race: a look at a map takes direct light by shadow rays, and of light scattered into a ray one random \
+            "Equal-error cost: a ray by a map takes direct light by shadow rays, and of light scattered into a ray one random \
              place. Work is counted in rays; a photon put into a tree counts {STORED} rays and one in an estimate \
              {LOOKED_AT}, round numbers near this machine's times in a first run. Costs and errors of other numbers \
              of samples follow from those of one sample. The crossing is that of the sizes of maps in the table: \
              larger maps may go lower where a picture has more pixels to pay for them."
         )],
-        rows: rows(&race, &in_rays)?,
+        rows: rows(&pictures, &in_rays)?,
         ..Section::default()
     };
     Ok(Part { section, said })
 }
 
-fn rows(race: &Race, gain: &Estimate) -> anyhow::Result<Vec<Row>> {
+fn rows(pictures: &Pictures, gain: &Estimate) -> anyhow::Result<Vec<Row>> {
     let mut rows = vec![Row::estimated(
-        "fog box race",
-        &format!("work of paths over maps at {:.0} %", 100.0 * ASKED),
+        "fog box",
+        &format!("work of paths over maps at {:.0} %", 100.0 * PREVIEW_ERROR),
         Unit::ONE,
         gain,
     )?];
-    let cells: Vec<&Cell> = race.cells.iter().collect();
-    for (i, size) in race.sizes.iter().enumerate() {
+    let cells: Vec<&Cell> = pictures.cells.iter().collect();
+    for (i, size) in pictures.sizes.iter().enumerate() {
         let square = |chosen: &[&Cell]| {
             let fit = Fit::of(chosen, Currency::Rays);
             fit.maps[i].square(NUMBER)
@@ -88,10 +90,10 @@ fn percent(square: f64, mean: f64) -> String {
     format!("{:.2}", 100.0 * square.max(0.0).sqrt() / mean)
 }
 
-fn size_table(race: &Race) -> Table {
-    let [rays, seconds] = [Currency::Rays, Currency::Seconds].map(|currency| race.fit(currency));
+fn size_table(pictures: &Pictures) -> Table {
+    let [rays, seconds] = [Currency::Rays, Currency::Seconds].map(|currency| pictures.fit(currency));
     let mean = rays.mean;
-    let mut rows: Vec<Vec<String>> = race
+    let mut rows: Vec<Vec<String>> = pictures
         .sizes
         .iter()
         .enumerate()
@@ -143,13 +145,13 @@ fn size_table(race: &Race) -> Table {
     }
 }
 
-fn crossing_table(race: &Race, rays: &[Crossing], seconds: &[Crossing]) -> Table {
-    let fit = race.fit(Currency::Seconds);
+fn crossing_table(pictures: &Pictures, rays: &[Crossing], seconds: &[Crossing]) -> Table {
+    let fit = pictures.fit(Currency::Seconds);
     let row = |(i, side): (usize, &u32)| {
         let pixels = f64::from(side * side);
         let error = fit.mean * seconds[i].at / 100.0;
         let size = cheapest(&fit.maps, pixels, error * error * (1.0 + 1e-9))
-            .map_or(String::new(), |(size, _)| race.sizes[size].photons.to_string());
+            .map_or(String::new(), |(size, _)| pictures.sizes[size].photons.to_string());
         let mut row = vec![format!("{side} x {side}"), rays[i].words(), seconds[i].words(), size];
         for error in [0.3, 0.2, 0.1] {
             row.push(

@@ -1,8 +1,8 @@
-//! The figure of the race.
+//! The figure of the pictures.
 
 use super::SIDE;
 use super::data::{Currency, Fit};
-use super::results::{Crossing, Race, middle};
+use super::results::{Crossing, Pictures, middle};
 use crate::harness::FigureFiles;
 use turbid_figure::{Along, Axis, Figure, Line, Panel, Points, Rule, Width};
 
@@ -19,9 +19,9 @@ fn curve(error: impl Fn(f64) -> f64, cost: impl Fn(f64) -> f64) -> (Vec<f64>, Ve
     (0..=48).map(|i| libm::exp2(0.25 * f64::from(i))).map(|n| (cost(n), error(n))).unzip()
 }
 
-fn panel(race: &Race, currency: Currency, crossing: &Crossing) -> Panel {
-    let fit = race.fit(currency);
-    let resampled: Vec<Fit> = race.resampled(currency).collect();
+fn panel(pictures: &Pictures, currency: Currency, crossing: &Crossing) -> Panel {
+    let fit = pictures.fit(currency);
+    let resampled: Vec<Fit> = pictures.resampled(currency).collect();
     let unit = match currency {
         Currency::Rays => ("work", "rays"),
         Currency::Seconds => ("CPU time", "s"),
@@ -40,7 +40,7 @@ fn panel(race: &Race, currency: Currency, crossing: &Crossing) -> Panel {
     });
     let y = NUMBERS.map(|n| error(&fit, n)).to_vec();
     panel = panel.with(Points::new("paths", 0, x, y).with_y_interval(bars.to_vec()));
-    for (i, size) in race.sizes.iter().enumerate() {
+    for (i, size) in pictures.sizes.iter().enumerate() {
         let label = format!("map of {} photons, k = {}", size.photons, size.k);
         let maps = fit.maps[i];
         let error = |fit: &Fit, n: f64| percent(fit.maps[i].square(n), fit.mean);
@@ -59,8 +59,8 @@ fn panel(race: &Race, currency: Currency, crossing: &Crossing) -> Panel {
 }
 
 /// Error against cost, in CPU time and in work.
-pub fn race(race: &Race, seconds: &Crossing, rays: &Crossing) -> anyhow::Result<FigureFiles> {
-    let panels = vec![panel(race, Currency::Seconds, seconds), panel(race, Currency::Rays, rays)];
+pub fn cost(pictures: &Pictures, seconds: &Crossing, rays: &Crossing) -> anyhow::Result<FigureFiles> {
+    let panels = vec![panel(pictures, Currency::Seconds, seconds), panel(pictures, Currency::Rays, rays)];
     let figure = Figure { width: Width::Double, columns: 2, shared_legend: true, ..Figure::new(panels) };
     let caption = format!(
         "A picture of {SIDE} x {SIDE} pixels of a box of fog by photon maps of several sizes and by paths: root mean square \
@@ -69,5 +69,5 @@ pub fn race(race: &Race, seconds: &Crossing, rays: &Crossing) -> anyhow::Result<
          filled, then fall to the error that all samples of one map share. The rule is the error below which \
          paths are cheaper than every map."
     );
-    FigureFiles::draw("race", &caption, &figure)
+    FigureFiles::draw("equal-error", &caption, &figure)
 }

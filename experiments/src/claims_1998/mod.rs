@@ -9,21 +9,24 @@
 mod clouds;
 mod conclude;
 mod edge;
+mod equal_error;
 mod fogbox;
+mod importance;
 mod maps;
 mod part;
 mod pixels;
-mod race;
-mod steering;
 mod times;
 mod walls;
 
 use crate::harness::{Experiment, Group, Settings};
 use crate::prediction::Prediction;
 
+/// What the cells' random streams are named by: it stays when the experiment is renamed.
+const STREAM: &str = "deck";
+
 /// The experiment.
 pub const EXPERIMENT: Experiment = Experiment {
-    name: "deck",
+    name: "claims-1998",
     title: "Do the sentences of 1998 hold?",
     question: "The talk that introduced photon maps for fog says that 50 to 100 photons an estimate work well, that photon \
                maps are faster than Monte Carlo, that the estimate is too low at the edge of a medium, that looking at \
@@ -40,9 +43,9 @@ fn groups(settings: &Settings) -> Vec<Group> {
         pixels::group(settings),
         edge::group(settings),
         walls::group(settings),
-        race::group(settings),
+        equal_error::group(settings),
         clouds::group(settings),
-        steering::group(settings),
+        importance::group(settings),
     ]
 }
 

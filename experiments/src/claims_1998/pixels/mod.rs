@@ -8,6 +8,7 @@ pub mod conclude;
 mod figure;
 mod results;
 
+use super::STREAM;
 use super::fogbox::{ALBEDO, SIGMA_T, VOLUME, grey, scene};
 use super::maps::filled;
 use crate::harness::{CellId, CellOutput, Group, Settings, Unit};
@@ -101,7 +102,7 @@ fn by_paths(scene: &Scene, ray: Ray, count: u64, mut stream: impl FnMut(u64) -> 
 
 /// Measures one cell: a map, and paths.
 fn measure(settings: &Settings, cell: &CellId) -> anyhow::Result<CellOutput> {
-    let (scene, replicate) = (scene()?, cell.stream("deck"));
+    let (scene, replicate) = (scene()?, cell.stream(STREAM));
     let mut output = CellOutput::new();
     let emitted = photons(settings);
     let map = output.time("shooting", |_| volume_map(&scene, emitted, settings.seed, replicate))?;

@@ -3,6 +3,7 @@
 //! Rays are followed to the walls between gathers, as a renderer does, so that a large mesh may push photons out of the
 //! processor's memory. Times are of this machine: they are in words and tables, not in results and claims.
 
+use super::STREAM;
 use super::part::Part;
 use super::times::Times;
 use crate::harness::{CellId, CellOutput, Cells, Claim, Estimate, Group, Section, Settings, Unit, number};
@@ -96,7 +97,7 @@ fn map(settings: &Settings, replicate: u64) -> anyhow::Result<PhotonMap> {
 /// Measures the cell.
 fn measure(settings: &Settings, cell: &CellId) -> anyhow::Result<CellOutput> {
     let mut output = CellOutput::new();
-    let replicate = cell.stream("deck");
+    let replicate = cell.stream(STREAM);
     let map = output.time("map", |_| map(settings, replicate))?;
     let meshes = output.time("meshes", |_| anyhow::Ok([tessellated(FEW)?, tessellated(MANY)?]))?;
     let phase_function = Phase::Isotropic(Isotropic);

@@ -8,6 +8,7 @@ mod data;
 mod figure;
 mod results;
 
+use super::STREAM;
 use super::fogbox::{self, grey};
 use super::maps::filled;
 use crate::harness::{CellId, CellOutput, Group, Settings};
@@ -23,7 +24,7 @@ use turbid::scene::{Camera, Scene};
 use turbid::stats::Moments;
 
 /// The group of all cells.
-pub const GROUP: &str = "race";
+pub const GROUP: &str = "equal-error";
 /// Pixels along a side of the picture.
 pub const SIDE: u32 = 32;
 /// Pixels along a side of the blocks of which one pixel is looked at.
@@ -88,7 +89,7 @@ pub fn path_pixel(pixel: usize) -> String {
 pub fn group(settings: &Settings) -> Group {
     let photons: u64 = sizes(settings).iter().map(|size| size.photons).sum();
     let cost = 5.0 * photons as f64 + 10.0 * (paths(settings) * PIXELS as u64) as f64;
-    Group::new(GROUP, 64, cost, measure)
+    Group::new(GROUP, 64, cost, measure).with_stream("race")
 }
 
 /// Column and row of a pixel that is looked at: places within blocks go round.
@@ -100,17 +101,17 @@ fn place(pixel: usize) -> (u32, u32) {
 
 /// Measures one cell: all pixels by a map of each size in turn, and by paths.
 fn measure(settings: &Settings, cell: &CellId) -> anyhow::Result<CellOutput> {
-    let (scene, replicate) = (fogbox::scene()?, cell.stream("deck"));
+    let (scene, replicate) = (fogbox::scene()?, cell.stream(STREAM));
     let camera = scene.camera().context("the box has no camera")?.with_size(SIDE, SIDE)?;
     let mut output = CellOutput::new();
     for (index, size) in sizes(settings).into_iter().enumerate() {
         by_map(settings, &mut output, (&scene, &camera), (index, size), replicate)?;
     }
-    let (count, within) = (paths(settings), scene.interior_at(camera.position()));
+    let (count, interior) = (paths(settings), scene.interior_at(camera.position()));
     let mut rays = 0;
     let pixels = output.time("paths", |_| {
         look(&camera, settings.seed, replicate, count, |ray, stream| {
-            let (layers, work) = path::layers(&scene, ray, None, within, stream);
+            let (layers, work) = path::layers(&scene, ray, None, interior, stream);
             rays += work.total();
             layers
         })
@@ -176,12 +177,12 @@ fn by_map(
     let emitted = Emitted { global: size.photons, volume: size.photons, caustic: 0 };
     let case = size.case();
     let maps = output.time(&format!("fill {case}"), |_| filled(scene, emitted, None, seed, replicate))?;
-    let (reading, within) = (eye(size.k)?, scene.interior_at(camera.position()));
-    let eye = Mapper::new(scene, &maps, &reading);
+    let (settings, interior) = (eye(size.k)?, scene.interior_at(camera.position()));
+    let eye = Mapper::new(scene, &maps, &settings);
     let mut report = mapper::Report::default();
     let pixels = output.time(&format!("look {case}"), |_| {
         look(camera, seed, replicate, count, |ray, stream| {
-            let (layers, work) = eye.radiance(ray, None, within, stream);
+            let (layers, work) = eye.radiance(ray, None, interior, stream);
             report += work;
             layers
         })

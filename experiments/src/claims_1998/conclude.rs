@@ -1,7 +1,7 @@
 //! What the parts found, together.
 
 use super::part::Part;
-use super::{clouds, edge, pixels, race, steering, walls};
+use super::{clouds, edge, equal_error, importance, pixels, walls};
 use crate::harness::{Cells, Section, Settings, Table};
 use crate::prediction::{Prediction, Predictions};
 
@@ -10,11 +10,11 @@ pub fn conclude(settings: &Settings, predictions: &[Prediction], cells: &Cells) 
     let known = Predictions::new(predictions);
     let parts = [
         pixels::conclude::conclude(settings, &known, cells)?,
-        race::conclude::conclude(settings, cells)?,
+        equal_error::conclude::conclude(settings, cells)?,
         edge::conclude::conclude(settings, &known, cells)?,
         walls::conclude(cells),
         clouds::conclude(settings, cells)?,
-        steering::conclude::conclude(settings, cells)?,
+        importance::conclude::conclude(settings, cells)?,
     ];
     let (mut section, mut said) = (Section::default(), Vec::new());
     for Part { section: mut own, said: mut sentences } in parts {

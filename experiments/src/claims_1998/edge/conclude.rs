@@ -2,7 +2,7 @@
 
 use super::results::Edges;
 use super::{BEHIND, FIXED, NEAREST, SIZES, edge_case, figure, photons, wall_case};
-use crate::deck::part::Part;
+use crate::claims_1998::part::Part;
 use crate::harness::{Cells, Claim, Estimate, Row, Section, Settings, Table, Unit, number, with_error};
 use crate::prediction::Predictions;
 use turbid::estimators::boundary::Rejection;

@@ -1,24 +1,24 @@
 //! What all maps say of importance.
 
 use super::{GROUP, PIXELS, Way};
-use crate::deck::part::Part;
+use crate::claims_1998::part::Part;
 use crate::harness::{Cells, Claim, Estimate, Row, Section, Settings, Table, Unit, with_error};
 use turbid::math::exp;
 use turbid::stats::{Jackknife, Moments, jackknife, jackknife_log};
 
-/// How far the means may differ [%]: weights that are lost where photons are split or steered would make them differ by
+/// How far the means may differ [%]: weights that are lost where photons are split or aimed would make them differ by
 /// factors.
 const MARGIN: f64 = 20.0;
 
 /// Both kinds of map in one cell.
 #[derive(Debug, Clone, PartialEq)]
 struct Cell {
-    by: [Seen; 2],
+    by: [Filled; 2],
 }
 
 /// One map.
 #[derive(Debug, Clone, PartialEq)]
-struct Seen {
+struct Filled {
     pixels: Vec<f64>,
     events: f64,
     in_view: f64,
@@ -26,13 +26,14 @@ struct Seen {
 }
 
 fn read(cells: &Cells) -> anyhow::Result<Vec<Cell>> {
-    let of = |way: Way| -> anyhow::Result<Vec<Seen>> {
+    let of = |way: Way| -> anyhow::Result<Vec<Filled>> {
         let list: Vec<String> = (0..PIXELS).map(|pixel| way.pixel(pixel)).collect();
         let (pixels, seconds) = (cells.per_map(&list, "radiance")?, cells.seconds(GROUP, way.case()));
         let (events, in_view) =
             (cells.values(way.case(), "events")?, cells.values(way.case(), "stored in view")?);
-        let seen = |(i, pixels)| Seen { pixels, events: events[i], in_view: in_view[i], seconds: seconds[i] };
-        Ok(pixels.into_iter().enumerate().map(seen).collect())
+        let filled =
+            |(i, pixels)| Filled { pixels, events: events[i], in_view: in_view[i], seconds: seconds[i] };
+        Ok(pixels.into_iter().enumerate().map(filled).collect())
     };
     Ok(of(Way::Power)?.into_iter().zip(of(Way::Importance)?).map(|(a, b)| Cell { by: [a, b] }).collect())
 }
@@ -75,15 +76,15 @@ fn positive(cells: &[Cell], statistic: impl Fn(&[Cell]) -> f64) -> Estimate {
 }
 
 /// Everything said of some cells.
-struct Steered {
+struct Effect {
     photons: Estimate,
     by_events: Estimate,
     difference: Estimate,
 }
 
-impl Steered {
+impl Effect {
     fn of(cells: &[Cell]) -> Self {
-        Steered {
+        Effect {
             photons: positive(cells, photons),
             by_events: positive(cells, |c| gain(c, |c, way| c.by[way].events)),
             difference: Estimate::jackknife(&jackknife(cells, difference)),
@@ -96,9 +97,9 @@ impl Steered {
         let gain = "importance: variance of pixels without it over that with it, at equal events";
         let mean = "importance changes no mean: picture with it against the one without";
         vec![
-            Claim::at_least("steered-photons", photons, Unit::ONE, self.photons, 2.0),
-            Claim::at_least("steered-gain", gain, Unit::ONE, self.by_events, 1.0),
-            Claim::within("steered-mean", mean, Unit::PERCENT, self.difference, -MARGIN, MARGIN),
+            Claim::at_least("importance-photons", photons, Unit::ONE, self.photons, 2.0),
+            Claim::at_least("importance-gain", gain, Unit::ONE, self.by_events, 1.0),
+            Claim::within("importance-mean", mean, Unit::PERCENT, self.difference, -MARGIN, MARGIN),
         ]
     }
 }
@@ -114,7 +115,7 @@ pub fn conclude(_settings: &Settings, cells: &Cells) -> anyhow::Result<Part> {
     // Learned once by one cell, and again if a run was taken up.
     let learning: Moments = cells.seconds(GROUP, "learning").iter().collect();
     let cells = read(cells)?;
-    let steered = Steered::of(&cells);
+    let effect = Effect::of(&cells);
     let by_time = positive(&cells, |c| gain(c, |c, way| c.by[way].seconds));
     let said = vec![[
         "importance would send photons where they are needed".to_string(),
@@ -122,8 +123,8 @@ pub fn conclude(_settings: &Settings, cells: &Cells) -> anyhow::Result<Part> {
             "for the same number of events {} times as many are stored where the camera looks, and the variance of pixels \
              is {} times smaller; at equal CPU time it is {} times smaller, {:.2} s of learning not counted: {}. \
              The picture's mean differs by {} %",
-            words(&steered.photons),
-            words(&steered.by_events),
+            words(&effect.photons),
+            words(&effect.by_events),
             words(&by_time),
             learning.mean(),
             match by_time.interval(0.95) {
@@ -131,16 +132,16 @@ pub fn conclude(_settings: &Settings, cells: &Cells) -> anyhow::Result<Part> {
                 i if i.high < 1.0 => "in time it does not pay here",
                 _ => "whether it pays in time is undecided, in this run",
             },
-            with_error(steered.difference.value(), steered.difference.std_error()),
+            with_error(effect.difference.value(), effect.difference.std_error()),
         ),
     ]];
     let section = Section {
-        claims: steered.claims(),
+        claims: effect.claims(),
         tables: vec![table(&cells)],
         rows: vec![
-            Row::estimated("hall", "photons in view, ratio", Unit::ONE, &steered.photons)?,
-            Row::estimated("hall", "variance at equal events, ratio", Unit::ONE, &steered.by_events)?,
-            Row::estimated("hall", "difference of means", Unit::PERCENT, &steered.difference)?
+            Row::estimated("hall", "photons in view, ratio", Unit::ONE, &effect.photons)?,
+            Row::estimated("hall", "variance at equal events, ratio", Unit::ONE, &effect.by_events)?,
+            Row::estimated("hall", "difference of means", Unit::PERCENT, &effect.difference)?
                 .reference(0.0, 0.0),
         ],
         notes: vec![
@@ -156,7 +157,7 @@ pub fn conclude(_settings: &Settings, cells: &Cells) -> anyhow::Result<Part> {
 fn table(cells: &[Cell]) -> Table {
     let count = cells.len() as f64;
     let row = |way: usize| {
-        let mean = |value: &dyn Fn(&Seen) -> f64| total(cells, |c| value(&c.by[way])) / count;
+        let mean = |value: &dyn Fn(&Filled) -> f64| total(cells, |c| value(&c.by[way])) / count;
         let noise = positive(cells, |c| 100.0 * variance(c, way).sqrt());
         vec![
             Way::ALL[way].case().to_string(),
@@ -184,26 +185,26 @@ mod tests {
     use crate::harness::{Verdict, judge};
     use turbid::rng::{Purpose, Stream};
 
-    /// Cells whose steered maps have twice the events, eight times the photons in view and a sixteenth of the variance.
-    fn cells(steered_mean: f64) -> Vec<Cell> {
+    /// Cells whose maps by importance have twice the events, eight times the photons in view and a sixteenth of the variance.
+    fn cells(mean_by_importance: f64) -> Vec<Cell> {
         let mut stream = Stream::new(3, Purpose::Synthetic, 0, 0);
         let mut map = |mean: f64, half: f64, events: f64, in_view: f64| {
             let pixels = (0..PIXELS).map(|_| mean * (1.0 + 2.0 * half * (stream.unit() - 0.5))).collect();
-            Seen { pixels, events: events * (0.9 + 0.2 * stream.unit()), in_view, seconds: 1.0 }
+            Filled { pixels, events: events * (0.9 + 0.2 * stream.unit()), in_view, seconds: 1.0 }
         };
-        let one = |_| Cell { by: [map(1.0, 0.4, 100.0, 50.0), map(steered_mean, 0.1, 200.0, 400.0)] };
+        let one = |_| Cell { by: [map(1.0, 0.4, 100.0, 50.0), map(mean_by_importance, 0.1, 200.0, 400.0)] };
         (0..64).map(one).collect()
     }
 
     fn verdicts(cells: &[Cell]) -> Vec<Verdict> {
-        judge(Steered::of(cells).claims()).iter().map(|judged| judged.verdict).collect()
+        judge(Effect::of(cells).claims()).iter().map(|judged| judged.verdict).collect()
     }
 
     #[test]
     fn right_weights_are_upheld_and_lost_ones_are_seen() {
         let right = cells(1.0);
-        let steered = Steered::of(&right);
-        assert!((steered.photons.value() - 4.0).abs() < 0.2 && (steered.by_events.value() - 8.0).abs() < 1.0);
+        let effect = Effect::of(&right);
+        assert!((effect.photons.value() - 4.0).abs() < 0.2 && (effect.by_events.value() - 8.0).abs() < 1.0);
         assert_eq!(verdicts(&right), [Verdict::Upheld; 3]);
         // Split photons that keep their whole weight make the picture brighter.
         assert_eq!(verdicts(&cells(1.4))[2], Verdict::Rejected);
