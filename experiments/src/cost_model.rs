@@ -1,6 +1,6 @@
 //! Photon maps against paths: what a picture costs by each at a given error, and the error at which both cost the same.
 //!
-//! A picture from a map of one size has, after n samples a pixel, the mean squared error `floor + noise/n`: the noise of
+//! A picture from a map of one size has, after n samples per pixel, the mean squared error `floor + noise/n`: the noise of
 //! samples falls, the map's own error stays. It costs `fill + pixels x n x sample`. Paths have no floor and nothing to
 //! fill. At each error the cheapest size of map counts.
 
@@ -36,7 +36,7 @@ impl Maps {
         self.samples(square).map(|n| self.fill + pixels * n * self.sample)
     }
 
-    /// Mean squared error after n samples a pixel.
+    /// Mean squared error after n samples per pixel.
     pub fn square(&self, samples: f64) -> f64 {
         self.floor() + self.noise / samples
     }

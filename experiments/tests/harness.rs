@@ -300,8 +300,7 @@ fn cell_names_are_checked() {
     }
     let twice = Experiment { groups: |_| vec![one("a"), one("a")], ..fake::FAKE };
     let unsafe_name = Experiment { groups: |_| vec![one("../a")], ..fake::FAKE };
-    let same_numbers =
-        Experiment { groups: |_| vec![one("a"), one("b").with_stream("a")], ..fake::FAKE };
+    let same_numbers = Experiment { groups: |_| vec![one("a"), one("b").with_stream("a")], ..fake::FAKE };
     let cases = [
         (twice, "two cells are called a-000000"),
         (same_numbers, "b-000000 draws the random numbers of another group, a"),

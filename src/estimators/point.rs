@@ -77,7 +77,7 @@ pub fn ball_sum(map: &PhotonMap, point: DVec3, kernel: Kernel, gather: Gather) -
     weighted_sum(map, point, kernel, gather, |_| f32x8::ONE)
 }
 
-/// Number of photons at most `radius` \[L\] from a point; 0 where a folded cell has no copies that far ([`PhotonMap::place`]).
+/// Number of photons at most `radius` \[L\] from a point; 0 where a periodic cell has no copies that far ([`PhotonMap::place`]).
 pub fn count_within(map: &PhotonMap, point: DVec3, radius: f64) -> usize {
     let mut count = 0;
     map.tree().within(map.place(point, radius), radius, &mut |neighbors: Neighbors<'_>| {

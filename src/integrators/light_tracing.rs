@@ -92,7 +92,7 @@ impl<F: FnMut(Splat)> Tracer<'_, F> {
             return;
         }
         self.rays.shadow += 1;
-        let start = (&ray, event.from, walker.within);
+        let start = (&ray, event.from, walker.interior);
         let Some(passed) = connection(self.scene, start, distance, None, stream) else { return };
         let cosine = -ray.dir.dot(self.camera.forward());
         let solid_angle = self.camera.pixel_area() * cosine * cosine * cosine;
@@ -109,19 +109,19 @@ impl<F: FnMut(Splat)> Tracer<'_, F> {
             return;
         }
         let end = hit.map_or(f64::INFINITY, |h| h.hit.t);
-        let Some(span) = span(self.scene, &walker.ray, end, walker.within) else { return };
+        let Some(span) = span(self.scene, &walker.ray, end, walker.interior) else { return };
         let flight = EqualAngles::new(&walker.ray, self.camera.position(), span);
         let chosen = flight.sample(stream.unit());
         let density = |t| flight.pdf(t);
         if let Some(t) = chosen
             && let Some(segment) =
-                self.scene.segments(&walker.ray, end, walker.within).iter().find(|s| t <= s.interval.end)
+                self.scene.segments(&walker.ray, end, walker.interior).iter().find(|s| t <= s.interval.end)
             && t >= segment.interval.start
         {
             let medium = self.scene.medium(segment.medium);
             let position = walker.ray.at(t);
             let sigma_t = medium.sigma_t(position);
-            let passed = transmittance(self.scene, &walker.ray, t, walker.within, stream);
+            let passed = transmittance(self.scene, &walker.ray, t, walker.interior, stream);
             let weight = walker.weight * passed * sigma_t / (density(t) + sigma_t.mean());
             let event = Event { position, from: None, kind: Flags::MEDIUM };
             self.connect(walker, weight, event, stream, |towards| {

@@ -106,11 +106,11 @@ impl<'a, F: FnMut(u32, Layer, Spectrum)> PathVisitor<'a, F> {
             let seen_hit = Hit { t: found.hit.t + back, ..found.hit };
             let (radiance, pdf_light) = self.scene.lights()[index].emitted(&seen_along, &seen_hit);
             let share = walker.pdf_solid_angle.map_or(1.0, |pdf| pdf / (pdf + pdf_light));
-            let passed = transmittance(self.scene, &walker.ray, end, walker.within, stream);
+            let passed = transmittance(self.scene, &walker.ray, end, walker.interior, stream);
             let seen = radiance * passed * share;
             self.add(walker.order, layer, walker.weight * seen);
         }
-        let emitted = emission(self.scene, &walker.ray, end, walker.within, stream);
+        let emitted = emission(self.scene, &walker.ray, end, walker.interior, stream);
         self.add(walker.order, layer, walker.weight * emitted);
         for light in self.scene.lights() {
             let mut seen = uncollided(self.scene, light, walker, end, stream);
@@ -121,7 +121,8 @@ impl<'a, F: FnMut(u32, Layer, Spectrum)> PathVisitor<'a, F> {
                 && let Some((radiance, pdf_light)) = light.background(&walker.ray)
             {
                 let share = walker.pdf_solid_angle.map_or(1.0, |pdf| pdf / (pdf + pdf_light));
-                seen += radiance * transmittance(self.scene, &walker.ray, end, walker.within, stream) * share;
+                seen +=
+                    radiance * transmittance(self.scene, &walker.ray, end, walker.interior, stream) * share;
             }
             self.add(walker.order, layer, walker.weight * seen);
         }
@@ -144,7 +145,7 @@ impl<'a, F: FnMut(u32, Layer, Spectrum)> PathVisitor<'a, F> {
         for index in 0..self.scene.lights().len() {
             let light = &self.scene.lights()[index];
             let Some((sample, received)) =
-                next_event(self.scene, index, (position, from, walker.within), stream, &mut self.rays)
+                next_event(self.scene, index, (position, from, walker.interior), stream, &mut self.rays)
             else {
                 continue;
             };
@@ -173,24 +174,24 @@ impl<'a, F: FnMut(u32, Layer, Spectrum)> PathVisitor<'a, F> {
             return;
         }
         let end = hit.map_or(f64::INFINITY, |h| h.hit.t);
-        let Some(span) = span(scene, ray, end, walker.within) else { return };
+        let Some(span) = span(scene, ray, end, walker.interior) else { return };
         for &index in &plan.distance_lights {
             let Some(distances) = Distances::of(&scene.lights()[index], ray, span) else { continue };
             let Some(t) = distances.sample(stream.unit()) else { continue };
-            let segments = scene.segments(ray, end, walker.within);
+            let segments = scene.segments(ray, end, walker.interior);
             let Some(segment) = segments.iter().find(|s| t <= s.interval.end) else { continue };
             if t < segment.interval.start {
                 continue;
             }
             let medium = scene.medium(segment.medium);
             let position = ray.at(t);
-            let place = (position, None, walker.within);
+            let place = (position, None, walker.interior);
             let Some((sample, received)) = next_event(scene, index, place, stream, &mut self.rays) else {
                 continue;
             };
             let (one_minus_mu, one_plus_mu) = cosine_pair(ray.dir, sample.dir);
             let fraction = medium.albedo(position) * medium.phase().eval(one_minus_mu, one_plus_mu);
-            let density = transmittance(scene, ray, t, walker.within, stream) * medium.sigma_t(position);
+            let density = transmittance(scene, ray, t, walker.interior, stream) * medium.sigma_t(position);
             // Balance heuristic of the two densities; their sum divides, so neither can be small alone.
             let sum = distances.pdf(t) + flight_pdf(scene, walker, (t, medium), ray, end);
             let layer = self.layer_connected(walker, Flags::MEDIUM);
@@ -207,13 +208,13 @@ impl<'a, F: FnMut(u32, Layer, Spectrum)> PathVisitor<'a, F> {
 /// number that the place alone decides leaves the mean as it is.
 fn flight_pdf(scene: &Scene, walker: &Walker, (t, medium): (f64, &Medium), ray: &Ray, end: f64) -> f64 {
     let depth = scene
-        .segments(ray, t, walker.within)
+        .segments(ray, t, walker.interior)
         .iter()
         .fold(Spectrum::ZERO, |sum, s| sum + scene.medium(s.medium).depth_by_bounds(ray, s.interval));
     let density = decay(depth) * medium.sigma_t(ray.at(t));
     let forced = scene.plan().forces_first_collision && walker.order == 0 && end.is_infinite();
     if forced {
-        density.mean() / -crate::math::exp_m1(-scene.optical_depth(ray, end, walker.within).mean())
+        density.mean() / -crate::math::exp_m1(-scene.optical_depth(ray, end, walker.interior).mean())
     } else {
         density.mean()
     }
@@ -241,7 +242,7 @@ impl<F: FnMut(u32, Layer, Spectrum)> Visitor for PathVisitor<'_, F> {
                 let end = if planted(Fault::WallForgotten) { f64::INFINITY } else { self.end };
                 let delta_share = |light: &Light| {
                     let t = position.distance(walker.ray.origin);
-                    let Some(span) = span(scene, &walker.ray, end, walker.within) else { return 1.0 };
+                    let Some(span) = span(scene, &walker.ray, end, walker.interior) else { return 1.0 };
                     let pdf =
                         Distances::of(light, &walker.ray, span).map_or(0.0, |distances| distances.pdf(t));
                     // Where distances have no density the flight stands alone, be its own ever so small.
@@ -299,15 +300,15 @@ pub(in crate::integrators) fn seen_straight(
         let end = hit.map_or(f64::INFINITY, |found| found.hit.t);
         sum += walker.weight * seen(&walker, end, stream);
         let straight =
-            hit.and_then(|found| Some((found, scene.straight_on(&walker.ray, &found, walker.within)?)));
-        let Some((found, (fraction, within))) = straight else { return sum };
-        let passed = transmittance(scene, &walker.ray, end, walker.within, stream);
+            hit.and_then(|found| Some((found, scene.straight_on(&walker.ray, &found, walker.interior)?)));
+        let Some((found, (fraction, interior))) = straight else { return sum };
+        let passed = transmittance(scene, &walker.ray, end, walker.interior, stream);
         let weight = walker.weight * passed * fraction;
         if weight.is_black() {
             return sum;
         }
         let ray = Ray::new(walker.ray.at(end), walker.ray.dir);
-        walker = Walker { ray, weight, within, from: Some(found.start()), ..walker };
+        walker = Walker { ray, weight, interior, from: Some(found.start()), ..walker };
     }
 }
 
@@ -320,11 +321,11 @@ pub(in crate::integrators) fn uncollided(
     end: f64,
     stream: &mut Stream,
 ) -> Spectrum {
-    let (ray, within) = (&walker.ray, walker.within);
+    let (ray, interior) = (&walker.ray, walker.interior);
     match light {
         Light::Isotropic(light) if light.is_lit_against(ray.dir) => match light.shape().interval(ray) {
             Some(inside) if inside.end < end => {
-                light.radiance() * transmittance(scene, ray, inside.end, within, stream)
+                light.radiance() * transmittance(scene, ray, inside.end, interior, stream)
             }
             // A point on the boundary is inside: light comes in against a ray that leaves at once.
             None if light.shape().contains(ray.origin) => light.radiance(),
@@ -334,7 +335,7 @@ pub(in crate::integrators) fn uncollided(
             let inside =
                 light.shape().interval(ray).and_then(|i| i.intersection(Interval { start: 0.0, end }));
             inside.map_or(Spectrum::ZERO, |inside| {
-                collected(scene, ray, inside, within, light.emission(), stream)
+                collected(scene, ray, inside, interior, light.emission(), stream)
             })
         }
         _ => Spectrum::ZERO,
@@ -346,7 +347,7 @@ pub(in crate::integrators) fn uncollided(
 pub(in crate::integrators) fn next_event(
     scene: &Scene,
     index: usize,
-    (position, from, within): (DVec3, Option<Start>, usize),
+    (position, from, interior): (DVec3, Option<Start>, usize),
     stream: &mut Stream,
     rays: &mut Rays,
 ) -> Option<(LightSample, Spectrum)> {
@@ -357,7 +358,7 @@ pub(in crate::integrators) fn next_event(
     let sample = light.sample(position, stream.pair())?;
     let ray = Ray::new(position, sample.dir);
     if let (Light::VolumeSource(_), Some(pdf)) = (light, sample.pdf_solid_angle) {
-        let start = Walker { from, within, ..Walker::new(ray, Spectrum::ONE) };
+        let start = Walker { from, interior, ..Walker::new(ray, Spectrum::ONE) };
         let seen = seen_straight(scene, start, &mut rays.shadow, stream, |walker, end, stream| {
             uncollided(scene, light, walker, end, stream)
         });
@@ -365,7 +366,7 @@ pub(in crate::integrators) fn next_event(
     }
     rays.shadow += 1;
     let towards = Some(Target::Light(index));
-    let passed = connection(scene, (&ray, from, within), sample.distance, towards, stream)?;
+    let passed = connection(scene, (&ray, from, interior), sample.distance, towards, stream)?;
     Some((sample, sample.value * passed))
 }
 
@@ -378,11 +379,12 @@ pub fn direct_flux(
     stream: &mut Stream,
     rays: &mut Rays,
 ) -> Spectrum {
-    let within = scene.interior_at(position);
+    let interior = scene.interior_at(position);
     let mut sum = Spectrum::ZERO;
     for (index, light) in scene.lights().iter().enumerate() {
         if light.is_delta()
-            && let Some((sample, received)) = next_event(scene, index, (position, None, within), stream, rays)
+            && let Some((sample, received)) =
+                next_event(scene, index, (position, None, interior), stream, rays)
         {
             sum += received * (-sample.dir.dot(normal)).max(0.0);
         }
@@ -397,13 +399,13 @@ pub fn classes(
     scene: &Scene,
     ray: Ray,
     from: Option<Start>,
-    within: usize,
+    interior: usize,
     orders: Orders,
     stream: &mut Stream,
     collect: impl FnMut(u32, Layer, Spectrum),
 ) -> Rays {
     let mut visitor = PathVisitor::new(scene, orders, Rays::default(), collect);
-    let start = Walker { from, within, ..Walker::new(ray, Spectrum::ONE) };
+    let start = Walker { from, interior, ..Walker::new(ray, Spectrum::ONE) };
     walk(scene, start, Roulette::Below(ROULETTE), orders.max, stream, &mut visitor);
     visitor.rays
 }
@@ -413,12 +415,12 @@ pub fn layers(
     scene: &Scene,
     ray: Ray,
     from: Option<Start>,
-    within: usize,
+    interior: usize,
     stream: &mut Stream,
 ) -> (Layers, Rays) {
     let mut layers = Layers::ZERO;
     let rays =
-        classes(scene, ray, from, within, Orders::ALL, stream, |_, layer, value| layers[layer] += value);
+        classes(scene, ray, from, interior, Orders::ALL, stream, |_, layer, value| layers[layer] += value);
     (layers, rays)
 }
 
@@ -428,12 +430,12 @@ pub fn radiance(
     scene: &Scene,
     ray: Ray,
     from: Option<Start>,
-    within: usize,
+    interior: usize,
     orders: Orders,
     stream: &mut Stream,
     mut collect: impl FnMut(u32, Spectrum),
 ) -> Rays {
-    classes(scene, ray, from, within, orders, stream, |order, _, value| collect(order, value))
+    classes(scene, ray, from, interior, orders, stream, |order, _, value| collect(order, value))
 }
 
 /// One sample of the fluence at a point [W/L^2], by order.
@@ -448,11 +450,11 @@ pub fn fluence(
     mut collect: impl FnMut(u32, Spectrum),
 ) -> Rays {
     let mut rays = Rays::default();
-    let within = scene.interior_at(position);
+    let interior = scene.interior_at(position);
     if orders.contains(0) {
         for index in 0..scene.lights().len() {
             if let Some((sample, received)) =
-                next_event(scene, index, (position, None, within), stream, &mut rays)
+                next_event(scene, index, (position, None, interior), stream, &mut rays)
             {
                 let share = sample.pdf_solid_angle.map_or(1.0, |pdf| pdf / (pdf + warp::pdf_sphere()));
                 collect(0, received * share);
@@ -462,7 +464,7 @@ pub fn fluence(
     let dir = warp::square_to_sphere(stream.pair()).normalize();
     let mut visitor = PathVisitor::new(scene, orders, rays, |order, _, value| collect(order, value));
     let start = Walker {
-        within,
+        interior,
         pdf_solid_angle: Some(warp::pdf_sphere()),
         ..Walker::new(Ray::new(position, dir), Spectrum::grey(FOUR_PI))
     };

@@ -20,7 +20,7 @@ const BOXES: usize = 16;
 #[derive(Debug, Clone, PartialEq)]
 pub struct MediumEmission {
     number: usize,
-    within: usize,
+    interior: usize,
     medium: Medium,
     places: Places,
     power_bound: Spectrum,
@@ -71,7 +71,7 @@ impl MediumEmission {
     /// # Arguments
     /// `is_certain` whether the medium fills the one shape there is, so that nobody need be asked where it is
     pub(crate) fn new(
-        (number, within): (usize, usize),
+        (number, interior): (usize, usize),
         medium: &Medium,
         shapes: &[&Shape],
         periodic_cell: Option<&PeriodicCell>,
@@ -96,7 +96,7 @@ impl MediumEmission {
         let is_certain = is_certain && matches!(places, Places::Inside(_));
         Some(MediumEmission {
             number,
-            within,
+            interior,
             medium: medium.clone(),
             places,
             power_bound,
@@ -126,8 +126,8 @@ impl MediumEmission {
     }
 
     /// Number of the interior that it is in.
-    pub fn within(&self) -> usize {
-        self.within
+    pub fn interior(&self) -> usize {
+        self.interior
     }
 
     /// Whether every start is one, so that nobody need be asked whether the medium is there.
@@ -220,7 +220,7 @@ impl Boxes {
         let index = self.cumulated.partition_point(|sum| *sum <= target).min(self.high.len() - 1);
         let [nx, ny, _] = self.count;
         let corner = DVec3::new((index % nx) as f64, (index / nx % ny) as f64, (index / nx / ny) as f64);
-        let within = DVec3::new(remainder(&self.cumulated, index, target), u[1], u[2]);
-        (self.low + self.edge * (corner + within), self.high[index])
+        let interior = DVec3::new(remainder(&self.cumulated, index, target), u[1], u[2]);
+        (self.low + self.edge * (corner + interior), self.high[index])
     }
 }

@@ -289,9 +289,9 @@ fn start(
     if let Light::MediumEmission(medium) = light {
         let is_there = medium.is_certain() || scene.medium_number_at(origin) == Some(medium.number());
         let leaves = is_there && (emission.chance >= 1.0 || stream.unit() < emission.chance);
-        return leaves.then(|| Walker { within: medium.within(), ..Walker::new(emission.ray, weight) });
+        return leaves.then(|| Walker { interior: medium.interior(), ..Walker::new(emission.ray, weight) });
     }
     let from = light.body().map(|_| Start { target: Target::Light(index), primitive: emission.primitive });
-    let within = scene.interior_of_light(index, origin);
-    Some(Walker { from, within, ..Walker::new(emission.ray, weight) })
+    let interior = scene.interior_of_light(index, origin);
+    Some(Walker { from, interior, ..Walker::new(emission.ray, weight) })
 }

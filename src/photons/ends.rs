@@ -81,12 +81,12 @@ fn is_short(scene: &Scene) -> bool {
         .sum();
     thickness < THIN
         && surfaces.into_iter().all(is_lossy)
-        && fills.into_iter().all(|medium| !keeps_all(medium.matter().albedo()) && !glows_clear(medium))
+        && fills.into_iter().all(|medium| !keeps_all(medium.matter().albedo()) && !emits_clear(medium))
 }
 
 /// Whether rays through a medium gather emission that nothing absorbs, in some channel: without end where the medium has
 /// none. Light that escapes has passed a density that ends, but emission that does not follow the density does not end.
-fn glows_clear(medium: &Medium) -> bool {
+fn emits_clear(medium: &Medium) -> bool {
     let (sigma_t, everywhere) = (medium.matter().sigma_t(), medium.matter().emission());
     let (ends, emission) = match medium {
         Medium::Homogeneous(_) => (false, everywhere),
@@ -135,7 +135,7 @@ impl Source {
                 }
             },
         };
-        Some(Walker { within: scene.interior_at(ray.origin), ..Walker::new(ray, Spectrum::ONE) })
+        Some(Walker { interior: scene.interior_at(ray.origin), ..Walker::new(ray, Spectrum::ONE) })
     }
 
     fn name(self, scene: &Scene) -> String {
@@ -178,13 +178,13 @@ impl Visitor for Met<'_> {
                 let is_far = |ball: &Sphere| arrival.position.distance(ball.center()) > FAR * ball.radius();
                 let keeps = self.scene.media()[number].matter().albedo().max() >= 1.0;
                 if fills && keeps && self.scene.bounds().is_some_and(is_far) {
-                    self.endless = Some((walker.within, "absorbs nothing"));
+                    self.endless = Some((walker.interior, "absorbs nothing"));
                 }
             }
             Step::Escaped(_) => {
-                let filling = self.scene.filling(walker.within);
-                if filling.is_some_and(|number| glows_clear(&self.scene.media()[number])) {
-                    self.endless = Some((walker.within, "emits where nothing absorbs"));
+                let filling = self.scene.filling(walker.interior);
+                if filling.is_some_and(|number| emits_clear(&self.scene.media()[number])) {
+                    self.endless = Some((walker.interior, "emits where nothing absorbs"));
                 }
             }
             Step::Surface(_, found) => {
@@ -247,11 +247,11 @@ fn probe(scene: &Scene) -> Result<()> {
         }
     }
     for (source, (histories, met)) in sources.iter().zip(&met) {
-        if let Some((within, what)) = met.endless {
+        if let Some((interior, what)) = met.endless {
             return Err(Error::Scene(format!(
                 "{} does not end in interior {}, which no body encloses and whose medium {what}; allowed: a medium that absorbs, or bodies all around it",
                 source.name(scene),
-                scene.interiors()[within].name
+                scene.interiors()[interior].name
             )));
         }
         // One long history is no room that keeps light: in a thick medium without loss there are a few.

@@ -1,6 +1,6 @@
 //! A photon map: the photons that one pass stored, and how many that pass emitted.
 
-use super::{Photon, PhotonTree, fold};
+use super::{Photon, PhotonTree, periodic};
 use crate::error::{Error, Result};
 use crate::transport::{NoProgress, Progress};
 use glam::DVec3;
@@ -8,7 +8,7 @@ use glam::DVec3;
 /// Stored photons and the number **emitted** by the pass that stored them: estimates divide by that number,
 /// never by the number stored. It holds no estimator.
 ///
-/// That of a folded cell stands for an unbounded slab: whoever asks may ask at any place of it.
+/// That of a periodic cell stands for an unbounded slab: whoever asks may ask at any place of it.
 #[derive(Debug)]
 pub struct PhotonMap {
     tree: PhotonTree,
@@ -79,7 +79,7 @@ impl PhotonMap {
                 ));
             }
             if reach > 0.0 {
-                parts.iter_mut().for_each(|part| fold::surround(part, side, reach));
+                parts.iter_mut().for_each(|part| periodic::surround(part, side, reach));
             }
         }
         Ok(PhotonMap { period, ..Self::of_parts(parts, emitted, progress)? })
@@ -101,11 +101,11 @@ impl PhotonMap {
         PhotonMap { run: seed.rotate_left(32) ^ replicate, ..self }
     }
 
-    /// Where the tree is asked for the photons within a distance \[L\] of a place: in a folded cell, the place in it. Not a number
+    /// Where the tree is asked for the photons within a distance \[L\] of a place: in a periodic cell, the place in it. Not a number
     /// where the ball reaches beyond the copies about the cell, so that what is estimated there is not one either.
     pub fn place(&self, point: DVec3, distance: f64) -> DVec3 {
         let Some(Period { side, reach }) = self.period else { return point };
-        let place = fold::into_cell(point, side);
+        let place = periodic::wrap(point, side);
         // The reach may have been the difference of such numbers: rounding is no lack of copies.
         let least = place.x.min(place.y).min(side - place.x).min(side - place.y)
             + reach * (1.0 + 1e-9)
@@ -113,7 +113,7 @@ impl PhotonMap {
         if distance <= least { place } else { DVec3::NAN }
     }
 
-    /// The photons, with the copies of a folded cell.
+    /// The photons, with the copies of a periodic cell.
     pub fn tree(&self) -> &PhotonTree {
         &self.tree
     }

@@ -1,12 +1,12 @@
-//! Photons: the record, the pass that stores them, the folded cell, the tree over their positions, maps.
+//! Photons: the record, the pass that stores them, the periodic cell, the tree over their positions, maps.
 
 mod emit;
 mod ends;
-pub mod fold;
 pub mod importance;
 mod map;
 pub mod maps;
 mod pass;
+pub mod periodic;
 mod record;
 pub mod synthetic;
 pub mod tree;

@@ -1,7 +1,7 @@
 //! A pass of histories: emission, walk, photons stored where they collide or meet surfaces, powers tallied where they leave.
 
 use super::importance::{Branching, Importance};
-use super::{Emitter, Photon, PhotonMap, check_end, fold};
+use super::{Emitter, Photon, PhotonMap, check_end, periodic};
 use crate::Spectrum;
 use crate::error::{Error, Result};
 use crate::geometry::{Face, Shape};
@@ -152,7 +152,7 @@ pub struct Pass {
     pub report: PassReport,
     /// Contributions that were not finite; each fails the run.
     non_finite: u64,
-    /// Side of the folded cell, if the scene has one \[L\].
+    /// Side of the periodic cell, if the scene has one \[L\].
     period: Option<f64>,
 }
 
@@ -167,7 +167,7 @@ impl Pass {
         self.media.iter().flatten()
     }
 
-    /// The map of the photons that collided in media, for balls that reach so far beyond the folded cell \[L\], if there is one.
+    /// The map of the photons that collided in media, for balls that reach so far beyond the periodic cell \[L\], if there is one.
     ///
     /// # Errors
     /// those of [`PhotonMap::periodic`]
@@ -214,7 +214,7 @@ pub struct Run<'a> {
     pub scene: &'a Scene,
     /// How photons leave the lights.
     pub emitter: &'a Emitter,
-    /// What steers them, if anything does.
+    /// The importance that they follow, if any.
     pub importance: Option<&'a Importance>,
     /// What the random numbers are for.
     pub purpose: Purpose,
@@ -344,7 +344,7 @@ impl<S: Storage> Block<'_, S> {
         self.pass.non_finite += u64::from(!(walker.weight.is_finite() && position.is_finite()));
         let side = if walker.ray.dir.dot(outward) < 0.0 { outward } else { -outward };
         Photon {
-            position: self.pass.period.map_or(position, |side| fold::into_cell(position, side)),
+            position: self.pass.period.map_or(position, |side| periodic::wrap(position, side)),
             dir: walker.ray.dir.as_vec3(),
             normal: side.as_vec3(),
             power: (walker.weight * self.run.part.of as f64).0.as_vec3(),

@@ -123,19 +123,19 @@ impl Scene {
 
     /// The stretches of medium on the ray up to distance `end`, nearest first, in the interior of this number: the
     /// regions of the surroundings, or what fills another one, all the way.
-    pub fn segments(&self, ray: &Ray, end: f64, within: usize) -> Segments {
-        if within == SURROUNDINGS {
+    pub fn segments(&self, ray: &Ray, end: f64, interior: usize) -> Segments {
+        if interior == SURROUNDINGS {
             return Segments::new(self.regions(), self.region_tree.as_ref(), ray, end);
         }
         let interval = Interval { start: 0.0, end };
-        Segments::filled(self.filling(within).map(|medium| Segment { interval, medium }))
+        Segments::filled(self.filling(interior).map(|medium| Segment { interval, medium }))
     }
 
     /// Optical depth up to distance `end` \[1\]: exact but in clouds, where it is a quadrature. Estimates of light use
     /// `transport::transmittance`.
-    pub fn optical_depth(&self, ray: &Ray, end: f64, within: usize) -> Spectrum {
+    pub fn optical_depth(&self, ray: &Ray, end: f64, interior: usize) -> Spectrum {
         let mut depth = Spectrum::ZERO;
-        for segment in self.segments(ray, end, within).iter() {
+        for segment in self.segments(ray, end, interior).iter() {
             depth += self.medium(segment.medium).integrated_depth(ray, segment.interval);
         }
         depth
@@ -148,8 +148,8 @@ impl Scene {
 
     /// Emission collected along a ray from a source of emission coefficient `emission` [W/(L^3 sr)] that fills
     /// `part` of the ray: the integral of emission times transmittance, in closed form. All media are homogeneous.
-    pub fn collected(&self, ray: &Ray, part: Interval, within: usize, emission: Spectrum) -> Spectrum {
-        let segments = self.segments(ray, part.end, within);
+    pub fn collected(&self, ray: &Ray, part: Interval, interior: usize, emission: Spectrum) -> Spectrum {
+        let segments = self.segments(ray, part.end, interior);
         let (mut depth, mut cursor, mut sum) = (Spectrum::ZERO, part.start, Spectrum::ZERO);
         for segment in segments.iter() {
             let before = Interval { start: cursor, end: segment.interval.start.min(part.end) };

@@ -28,7 +28,7 @@ pub(super) fn of(scene: &Scene) -> (Vec<Light>, bool) {
     }
     let parts = &scene.parts;
     let ball = scene.bounds().map(|ball| Shape::Sphere(*ball));
-    let mut add = |number: usize, within: usize, shapes: &[&Shape], is_certain: bool| {
+    let mut add = |number: usize, interior: usize, shapes: &[&Shape], is_certain: bool| {
         let medium = scene.medium(number);
         if !medium.is_emitting() {
             return;
@@ -36,7 +36,7 @@ pub(super) fn of(scene: &Scene) -> (Vec<Light>, bool) {
         let periodic_cell = scene.periodic_cell();
         let emission = match shapes {
             [] => None,
-            _ => MediumEmission::new((number, within), medium, shapes, periodic_cell, is_certain),
+            _ => MediumEmission::new((number, interior), medium, shapes, periodic_cell, is_certain),
         };
         match emission {
             Some(emission) => {
@@ -52,17 +52,17 @@ pub(super) fn of(scene: &Scene) -> (Vec<Light>, bool) {
         let is_alone = number + 1 == parts.regions.len() && !scene.plan().has_dielectrics;
         add(number, SURROUNDINGS, &[&region.shape], is_alone);
     }
-    for within in 0..parts.interiors.len() {
-        if let Some(number) = scene.filling(within) {
-            let bodies = enclosing(parts, within);
-            let mut others = dielectrics(&parts.objects).filter(|o| !encloses(&o.surface, within));
+    for interior in 0..parts.interiors.len() {
+        if let Some(number) = scene.filling(interior) {
+            let bodies = enclosing(parts, interior);
+            let mut others = dielectrics(&parts.objects).filter(|o| !encloses(&o.surface, interior));
             let is_alone = match bodies.as_deref() {
                 Some([body]) if body.is_solid() => {
                     body.bounds().is_some_and(|ball| others.all(|o| is_clear_of(ball, &o.shape)))
                 }
                 _ => false,
             };
-            add(number, within, &bodies.unwrap_or(ball.iter().collect()), is_alone);
+            add(number, interior, &bodies.unwrap_or(ball.iter().collect()), is_alone);
         }
     }
     (lights, is_all)
@@ -77,7 +77,7 @@ fn measured(scene: &Scene, emission: &MediumEmission, most: usize) -> (Spectrum,
         return (known, Spectrum::ZERO);
     };
     let (number, medium) = (emission.number(), scene.medium(emission.number()));
-    let regions = if emission.within() == SURROUNDINGS { scene.regions() } else { &[] };
+    let regions = if emission.interior() == SURROUNDINGS { scene.regions() } else { &[] };
     let bodies = dielectrics(scene.objects()).map(|o| &o.shape);
     let boundaries: Vec<&Shape> = bodies.chain(regions.iter().map(|region| &region.shape)).collect();
     // An open surface decides of places far from itself.
@@ -145,13 +145,13 @@ pub(super) fn power(scene: &Scene) -> (Spectrum, Spectrum) {
 }
 
 /// Whether a surface has an interior on its inside.
-fn encloses(surface: &Surface, within: usize) -> bool {
-    matches!(surface, Surface::Dielectric(dielectric) if dielectric.inside() == within)
+fn encloses(surface: &Surface, interior: usize) -> bool {
+    matches!(surface, Surface::Dielectric(dielectric) if dielectric.inside() == interior)
 }
 
 /// The shapes that an interior lies in, if its boundary encloses it; it may lie in a part of them only.
-fn enclosing(parts: &SceneParts, within: usize) -> Option<Vec<&Shape>> {
-    let bodies = parts.objects.iter().filter(|o| encloses(&o.surface, within));
+fn enclosing(parts: &SceneParts, interior: usize) -> Option<Vec<&Shape>> {
+    let bodies = parts.objects.iter().filter(|o| encloses(&o.surface, interior));
     let shapes: Vec<&Shape> = bodies.map(|o| &o.shape).collect();
     (!shapes.is_empty() && shapes.iter().all(|shape| shape.is_closed())).then_some(shapes)
 }

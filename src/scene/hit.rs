@@ -80,11 +80,11 @@ impl Scene {
 
     /// What goes straight on behind a body that a ray meets in the interior `within`, and the interior there: through a
     /// filter, and through an index-matched boundary. None behind any other body.
-    pub fn straight_on(&self, ray: &Ray, found: &SceneHit, within: usize) -> Option<(Spectrum, usize)> {
+    pub fn straight_on(&self, ray: &Ray, found: &SceneHit, interior: usize) -> Option<(Spectrum, usize)> {
         let Target::Object(index) = found.target else { return None };
         match &self.objects()[index].surface {
             Surface::Filter(filter) => {
-                Some((filter.transmittance(ray.at(found.hit.t), found.hit.uv), within))
+                Some((filter.transmittance(ray.at(found.hit.t), found.hit.uv), interior))
             }
             Surface::Dielectric(boundary) if boundary.is_matched() => {
                 Some((Spectrum::ONE, boundary.sides(ray.dir, found.hit.normal).1))

@@ -177,8 +177,8 @@ impl Scene {
     }
 
     /// Number of the medium that fills an interior, if one does; none for the surroundings, of which regions say it.
-    pub fn filling(&self, within: usize) -> Option<usize> {
-        self.filling[within]
+    pub fn filling(&self, interior: usize) -> Option<usize> {
+        self.filling[interior]
     }
 
     /// Number of the interior that a point is in: the first dielectric surface on a ray from there says it. A point that
@@ -196,7 +196,7 @@ impl Scene {
     /// Number of the interior in which light starts from `origin` by the light of this index.
     pub fn interior_of_light(&self, index: usize, origin: DVec3) -> usize {
         match self.light_within[index] {
-            Some(within) => within,
+            Some(interior) => interior,
             None => self.interior_at(origin),
         }
     }
@@ -208,7 +208,7 @@ impl Scene {
                 Some(tree) => tree.last_at(self.regions(), p),
                 None => self.regions().iter().rposition(|r| r.shape.contains(p)),
             },
-            within => self.filling(within),
+            interior => self.filling(interior),
         }
     }
 

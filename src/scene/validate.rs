@@ -401,7 +401,7 @@ pub(super) fn check_power(scene: &Scene) -> Result<()> {
     }
 }
 
-/// Folding positions into a cell is exact only where every part looks the same after a step along x or y.
+/// Wrapping positions into a periodic cell is exact only where every part looks the same after a step along x or y.
 fn check_fold(parts: &SceneParts, periodic_cell: Option<&PeriodicCell>) -> Result<()> {
     let Some(periodic_cell) = periodic_cell else { return Ok(()) };
     let is_unbounded = |shape: &Shape| matches!(shape, Shape::Slab(_));

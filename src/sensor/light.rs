@@ -38,7 +38,7 @@ pub struct LightCount {
 /// What the camera sees of lights themselves and by specular surfaces is not in it.
 ///
 /// # Errors
-/// `Error::Unreachable` for media that emit and have no end, and for unbounded slabs, whose photons are folded into a cell;
+/// `Error::Unreachable` for media that emit and have no end, and for unbounded slabs, whose photons are wrapped into a periodic cell;
 /// `Error::NonFinite`; `Error::Cancelled`.
 pub fn by_light(
     scene: &Scene,
@@ -70,7 +70,7 @@ pub fn extend_by_light(
 ) -> Result<LightCount> {
     let all = film.samples() + samples;
     if all > MAX_SAMPLES {
-        return Err(Error::out_of_range("samples a pixel", all as f64, "at most 4294967295 in all"));
+        return Err(Error::out_of_range("samples per pixel", all as f64, "at most 4294967295 in all"));
     }
     let pixels = u64::from(film.width()) * u64::from(film.height());
     expose(film, scene, camera, (pixels, samples), streams, progress)

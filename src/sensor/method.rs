@@ -23,7 +23,7 @@ pub enum Method<'a> {
 }
 
 impl Method<'_> {
-    /// A picture with so many samples a pixel.
+    /// A picture with so many samples per pixel.
     ///
     /// # Errors
     /// those of [`Method::extend`]
@@ -55,9 +55,9 @@ impl Method<'_> {
     ) -> Result<Report> {
         match self {
             Method::Photons(mapper) => {
-                let within = mapper.scene().interior_at(camera.position());
+                let interior = mapper.scene().interior_at(camera.position());
                 extend(film, camera, samples, streams, progress, |ray, stream: &mut Stream, work| {
-                    let (layers, report) = mapper.radiance(ray, None, within, stream);
+                    let (layers, report) = mapper.radiance(ray, None, interior, stream);
                     *work += report;
                     *work += Report { work: stream.work, ..Report::default() };
                     let photons = report.global.found + report.caustic.found + report.volume.found;
@@ -65,9 +65,9 @@ impl Method<'_> {
                 })
             }
             Method::Paths(scene) => {
-                let within = scene.interior_at(camera.position());
+                let interior = scene.interior_at(camera.position());
                 extend(film, camera, samples, streams, progress, |ray, stream: &mut Stream, work| {
-                    let (layers, rays) = path::layers(scene, ray, None, within, stream);
+                    let (layers, rays) = path::layers(scene, ray, None, interior, stream);
                     *work += Report { rays, work: stream.work, ..Report::default() };
                     layers
                 })

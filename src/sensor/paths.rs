@@ -116,15 +116,15 @@ pub fn sample_counted(
     match quantity {
         Quantity::Fluence(p) => rays = fluence(scene, *p, orders, stream, |_, value| sum += value),
         Quantity::Radiance(ray) => {
-            let within = scene.interior_at(ray.origin);
-            rays = radiance(scene, *ray, None, within, orders, stream, |_, value| sum += value);
+            let interior = scene.interior_at(ray.origin);
+            rays = radiance(scene, *ray, None, interior, orders, stream, |_, value| sum += value);
         }
         Quantity::Outflow { shape, face } => {
             let (position, normal, area) = shape.sample_boundary(*face, side, stream.triple());
             let dir = Frame::new(-normal).to_world(warp::square_to_cosine_hemisphere(stream.pair()));
             let ray = Ray::new(position, dir);
-            let within = scene.interior_at(position);
-            rays = radiance(scene, ray, None, within, orders, stream, |_, value| sum += value);
+            let interior = scene.interior_at(position);
+            rays = radiance(scene, ray, None, interior, orders, stream, |_, value| sum += value);
             sum *= PI;
             if orders.contains(0) {
                 sum += direct_flux(scene, position, normal, stream, &mut rays);

@@ -10,7 +10,8 @@ use crate::integrators::{March, StepRule, along};
 use crate::math::{Interval, Positive, Ray};
 use crate::medium::Medium;
 use crate::photons::{
-    BUILD_SECONDS, Emitter, Histories, Ledger, PEAK_BYTES, Part, Pass, Photon, PhotonMap, Run, fold, shoot,
+    BUILD_SECONDS, Emitter, Histories, Ledger, PEAK_BYTES, Part, Pass, Photon, PhotonMap, Run, periodic,
+    shoot,
 };
 use crate::rng::{Purpose, Stream};
 use crate::scene::{Orders, Quantity, Scene, Sensor};
@@ -251,7 +252,7 @@ pub(super) fn max_order(sensors: &[Sensor]) -> Option<u32> {
 }
 
 /// One pass of a part of the histories and its maps, one for each range of orders that a sensor needs, continued `margin`
-/// beyond the folded cell. The pass's own photons have moved into the maps.
+/// beyond the periodic cell. The pass's own photons have moved into the maps.
 pub(super) fn maps(
     scene: &Scene,
     sensors: &[Sensor],
@@ -304,7 +305,7 @@ pub(super) fn map_orders(sensor: &Sensor) -> Option<Orders> {
 pub(super) fn margin(sensors: &[Sensor], side: f64, cap: f64) -> Result<f64> {
     let beyond = sensors.iter().map(|sensor| match sensor.quantity {
         Quantity::Fluence(p) => {
-            let p = fold::into_cell(p, side);
+            let p = periodic::wrap(p, side);
             cap - p.x.min(p.y).min(side - p.x).min(side - p.y)
         }
         Quantity::Radiance(_) => cap,
@@ -313,7 +314,7 @@ pub(super) fn margin(sensors: &[Sensor], side: f64, cap: f64) -> Result<f64> {
     let margin = beyond.fold(0.0, f64::max);
     if margin > side {
         return Err(Error::Scene(format!(
-            "a gather radius of {cap} L reaches {margin} L beyond the folded cell; allowed: at most its side, {side} L"
+            "a gather radius of {cap} L reaches {margin} L beyond the periodic cell; allowed: at most its side, {side} L"
         )));
     }
     Ok(margin)
@@ -374,12 +375,14 @@ fn radiance(
 ) -> Spectrum {
     let mut sum = Spectrum::ZERO;
     let end = scene.hit(ray, None).map_or(f64::INFINITY, |h| h.hit.t);
-    let (within, size) = (scene.interior_at(ray.origin), scene_size(scene));
+    let (interior, size) = (scene.interior_at(ray.origin), scene_size(scene));
     if orders.contains(0) {
         let only_direct = Orders::only(0);
-        crate::integrators::radiance(scene, *ray, None, within, only_direct, stream, |_, value| sum += value);
+        crate::integrators::radiance(scene, *ray, None, interior, only_direct, stream, |_, value| {
+            sum += value
+        });
     }
-    for segment in scene.segments(ray, end, within).iter() {
+    for segment in scene.segments(ray, end, interior).iter() {
         let medium = scene.medium(segment.medium);
         let mut source = |p: DVec3| {
             if medium.sigma_t(p).is_black() {
@@ -392,7 +395,7 @@ fn radiance(
             medium.albedo(p) * estimate.value
         };
         for (span, step) in stretches(medium, segment.interval) {
-            let before = transmittance(scene, ray, span.start, within, stream);
+            let before = transmittance(scene, ray, span.start, interior, stream);
             if !before.is_black() {
                 let march = March { is_jittered: true, ..March::equal(step, StepRule::Integrated) };
                 sum += before * along(medium, (ray, span), &march, size, stream, &mut source);

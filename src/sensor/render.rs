@@ -13,7 +13,7 @@ use std::ops::{AddAssign, Range};
 /// tile meet the same photons.
 const TILE: u32 = 16;
 
-/// Most samples a pixel: the sample's number takes the lower half of its history's number, the pixel's the upper one.
+/// Most samples per pixel: the sample's number takes the lower half of its history's number, the pixel's the upper one.
 pub const MAX_SAMPLES: u64 = u32::MAX as u64;
 
 /// Which random streams a picture uses.
@@ -43,7 +43,7 @@ pub fn extend<S: Into<Sample>, W: Default + AddAssign + Send>(
     let first = film.samples();
     if first + samples > MAX_SAMPLES {
         return Err(Error::out_of_range(
-            "samples a pixel",
+            "samples per pixel",
             (first + samples) as f64,
             "at most 4294967295 in all",
         ));

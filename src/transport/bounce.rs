@@ -43,8 +43,8 @@ pub(super) fn bounce<V: Visitor>(
     if let Surface::Dielectric(dielectric) = surface
         && dielectric.is_matched()
     {
-        let (_, within) = dielectric.sides(walker.ray.dir, found.hit.normal);
-        return Some(Walker { within, ..straight_on(walker, found, position) });
+        let (_, interior) = dielectric.sides(walker.ray.dir, found.hit.normal);
+        return Some(Walker { interior, ..straight_on(walker, found, position) });
     }
     visitor.visit(walker, Step::Surface(arrival, found), stream);
     if let Surface::Dielectric(dielectric) = surface {
@@ -60,7 +60,7 @@ pub(super) fn bounce<V: Visitor>(
         order: walker.order + u32::from(pdf.is_some()),
         flags: walker.flags.with(if pdf.is_some() { Flags::DIFFUSE } else { Flags::SPECULAR }),
         from: Some(found.start()),
-        within: walker.within,
+        interior: walker.interior,
         behind: 0.0,
         events: walker.events,
         // A mirror is no way out.
@@ -144,12 +144,12 @@ fn cross<V: Visitor>(
     };
     if is_total || stream.unit() < refraction.reflectance {
         let dir = (dir + normal * (2.0 * cosine)).normalize();
-        return Some(Walker { ray: Ray::new(position, dir), within: near, ..next });
+        return Some(Walker { ray: Ray::new(position, dir), interior: near, ..next });
     }
     let ratio = n_near / n_far;
     let is_scaled =
         (V::CARRIES_RADIANCE && !planted(Fault::RadianceUnscaled)) || planted(Fault::PhotonPowerScaled);
     let weight = if is_scaled { walker.weight * (ratio * ratio) } else { walker.weight };
     let dir = refract(dir, normal, ratio, (cosine, refraction.cos_far));
-    Some(Walker { ray: Ray::new(position, dir), weight, within: far, ..next })
+    Some(Walker { ray: Ray::new(position, dir), weight, interior: far, ..next })
 }

@@ -10,12 +10,12 @@ use crate::scene::{Scene, decay};
 
 /// Radiance that media themselves send towards the ray's origin [W/(L^2 sr)], from the stretch up to distance `end` in
 /// the interior of number `within`: in closed form where they are homogeneous, else an unbiased estimate.
-pub fn emission(scene: &Scene, ray: &Ray, end: f64, within: usize, stream: &mut Stream) -> Spectrum {
+pub fn emission(scene: &Scene, ray: &Ray, end: f64, interior: usize, stream: &mut Stream) -> Spectrum {
     if !scene.plan().has_emission {
         return Spectrum::ZERO;
     }
     let nowhere = Interval { start: end, end };
-    collect(scene, (ray, end, within), true, (nowhere, Spectrum::ZERO), stream)
+    collect(scene, (ray, end, interior), true, (nowhere, Spectrum::ZERO), stream)
 }
 
 /// Radiance towards the ray's origin [W/(L^2 sr)] from a source of emission coefficient `source` [W/(L^3 sr)] that fills
@@ -24,19 +24,19 @@ pub fn collected(
     scene: &Scene,
     ray: &Ray,
     part: Interval,
-    within: usize,
+    interior: usize,
     source: Spectrum,
     stream: &mut Stream,
 ) -> Spectrum {
     if !scene.plan().has_heterogeneous {
-        return scene.collected(ray, part, within, source);
+        return scene.collected(ray, part, interior, source);
     }
-    collect(scene, (ray, part.end, within), false, (part, source), stream)
+    collect(scene, (ray, part.end, interior), false, (part, source), stream)
 }
 
 fn collect(
     scene: &Scene,
-    (ray, end, within): (&Ray, f64, usize),
+    (ray, end, interior): (&Ray, f64, usize),
     own: bool,
     (part, source): (Interval, Spectrum),
     stream: &mut Stream,
@@ -44,7 +44,7 @@ fn collect(
     let (mut passed, mut sum, mut cursor) = (Spectrum::ONE, Spectrum::ZERO, 0.0);
     let gap =
         |from: f64, to: f64| Interval { start: from, end: to }.intersection(part).map_or(0.0, |i| i.length());
-    for segment in scene.segments(ray, end, within).iter() {
+    for segment in scene.segments(ray, end, interior).iter() {
         sum += passed * source * gap(cursor, segment.interval.start);
         cursor = segment.interval.end;
         let medium = scene.medium(segment.medium);

@@ -6,8 +6,8 @@ use crate::scene::Scene;
 use glam::DVec3;
 
 /// The stretch of a ray from the first medium to the last.
-pub fn span(scene: &Scene, ray: &Ray, end: f64, within: usize) -> Option<Interval> {
-    let segments = scene.segments(ray, end, within);
+pub fn span(scene: &Scene, ray: &Ray, end: f64, interior: usize) -> Option<Interval> {
+    let segments = scene.segments(ray, end, interior);
     let first = segments.iter().next()?;
     let last = segments.iter().last()?;
     Some(Interval { start: first.interval.start, end: last.interval.end })

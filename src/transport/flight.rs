@@ -35,7 +35,7 @@ pub fn free_flight(
     scene: &Scene,
     ray: &Ray,
     end: f64,
-    within: usize,
+    interior: usize,
     weight: Spectrum,
     forced: bool,
     stream: &mut Stream,
@@ -44,7 +44,7 @@ pub fn free_flight(
         return Flight::Passed(weight);
     }
     if scene.plan().has_heterogeneous {
-        return flight_by_stretch(scene, ray, end, within, weight, stream);
+        return flight_by_stretch(scene, ray, end, interior, weight, stream);
     }
     let is_grey = scene.plan().has_grey_extinction;
     stream.work.channel_flights += u64::from(!is_grey);
@@ -55,7 +55,7 @@ pub fn free_flight(
     }
     let mut weight = weight;
     if forced {
-        let depth = scene.optical_depth(ray, end, within)[channel];
+        let depth = scene.optical_depth(ray, end, interior)[channel];
         if depth == 0.0 {
             return Flight::Passed(weight);
         }
@@ -64,7 +64,7 @@ pub fn free_flight(
         target = -ln_1p(collides * exp_m1(-target)).min(depth);
         weight *= collides;
     }
-    let segments = scene.segments(ray, end, within);
+    let segments = scene.segments(ray, end, interior);
     let mut last = None;
     for segment in segments.iter() {
         let sigma_t = scene.medium(segment.medium).matter().sigma_t();
@@ -74,7 +74,7 @@ pub fn free_flight(
         let depth = sigma_t[channel] * segment.interval.length();
         if target < depth || (forced && target == depth) {
             let t = segment.interval.start + target / sigma_t[channel];
-            return collision(scene, ray, t, within, segment.medium, weight);
+            return collision(scene, ray, t, interior, segment.medium, weight);
         }
         if !planted(Fault::DepthForgotten) {
             target -= depth;
@@ -84,11 +84,11 @@ pub fn free_flight(
     match last {
         // A forced flight whose rounding carried it past the end collides at the end.
         Some(segment) if forced => {
-            collision(scene, ray, segment.interval.end, within, segment.medium, weight)
+            collision(scene, ray, segment.interval.end, interior, segment.medium, weight)
         }
         _ if is_grey => Flight::Passed(weight),
         _ => {
-            let passed = decay(scene.optical_depth(ray, end, within));
+            let passed = decay(scene.optical_depth(ray, end, interior));
             Flight::Passed(weight * passed * (weight.sum() / (weight * passed).sum()))
         }
     }
@@ -102,12 +102,12 @@ fn flight_by_stretch(
     scene: &Scene,
     ray: &Ray,
     end: f64,
-    within: usize,
+    interior: usize,
     weight: Spectrum,
     stream: &mut Stream,
 ) -> Flight {
     let mut weight = weight;
-    for segment in scene.segments(ray, end, within).iter() {
+    for segment in scene.segments(ray, end, interior).iter() {
         let stretch = match scene.medium(segment.medium) {
             Medium::Homogeneous(medium) => closed(medium, segment.interval, weight, stream),
             Medium::Heterogeneous(medium) => {
@@ -145,11 +145,11 @@ fn closed(medium: &Homogeneous, part: Interval, weight: Spectrum, stream: &mut S
     End::Collision(part.start + flown, after)
 }
 
-fn collision(scene: &Scene, ray: &Ray, t: f64, within: usize, medium: usize, weight: Spectrum) -> Flight {
+fn collision(scene: &Scene, ray: &Ray, t: f64, interior: usize, medium: usize, weight: Spectrum) -> Flight {
     if scene.plan().has_grey_extinction {
         return Flight::Collision { t, medium, weight };
     }
-    let density = decay(scene.optical_depth(ray, t, within)) * scene.medium(medium).matter().sigma_t();
+    let density = decay(scene.optical_depth(ray, t, interior)) * scene.medium(medium).matter().sigma_t();
     let weighted = weight * density;
     Flight::Collision { t, medium, weight: weighted * (weight.sum() / weighted.sum()) }
 }

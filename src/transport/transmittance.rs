@@ -9,12 +9,12 @@ use crate::scene::{Scene, Start, Target, decay};
 
 /// The fraction of light that passes up to distance `end` \[1\], in the interior of number `within`: exact where the
 /// optical depth has a closed form, else an unbiased estimate by ratio tracking.
-pub fn transmittance(scene: &Scene, ray: &Ray, end: f64, within: usize, stream: &mut Stream) -> Spectrum {
+pub fn transmittance(scene: &Scene, ray: &Ray, end: f64, interior: usize, stream: &mut Stream) -> Spectrum {
     if !scene.plan().has_heterogeneous {
-        return decay(scene.optical_depth(ray, end, within));
+        return decay(scene.optical_depth(ray, end, interior));
     }
     let (mut depth, mut tracked) = (Spectrum::ZERO, Spectrum::ONE);
-    for segment in scene.segments(ray, end, within).iter() {
+    for segment in scene.segments(ray, end, interior).iter() {
         let medium = scene.medium(segment.medium);
         match medium.optical_depth(ray, segment.interval) {
             Some(closed) => depth += closed,
@@ -29,7 +29,7 @@ pub fn transmittance(scene: &Scene, ray: &Ray, end: f64, within: usize, stream: 
 /// None if another body stands in the way, or nothing passes.
 pub fn connection(
     scene: &Scene,
-    (ray, from, within): (&Ray, Option<Start>, usize),
+    (ray, from, interior): (&Ray, Option<Start>, usize),
     end: f64,
     towards: Option<Target>,
     stream: &mut Stream,
@@ -39,8 +39,8 @@ pub fn connection(
         None => scene.sees(ray, from, end),
     }?;
     let passed = match scene.plan().has_matched {
-        true => across(scene, (ray, from, within), end, towards, stream),
-        false => transmittance(scene, ray, end, within, stream),
+        true => across(scene, (ray, from, interior), end, towards, stream),
+        false => transmittance(scene, ray, end, interior, stream),
     };
     Some(filtered * passed)
 }
@@ -48,21 +48,21 @@ pub fn connection(
 /// The transmittance of a way that nothing blocks, from interior to interior.
 fn across(
     scene: &Scene,
-    (ray, from, within): (&Ray, Option<Start>, usize),
+    (ray, from, interior): (&Ray, Option<Start>, usize),
     end: f64,
     towards: Option<Target>,
     stream: &mut Stream,
 ) -> Spectrum {
-    let (mut ray, mut from, mut within, mut end, mut passed) = (*ray, from, within, end, Spectrum::ONE);
+    let (mut ray, mut from, mut interior, mut end, mut passed) = (*ray, from, interior, end, Spectrum::ONE);
     loop {
         let ahead = scene.hit(&ray, from).filter(|f| f.hit.t < end && Some(f.target) != towards);
-        let straight = ahead.and_then(|found| Some((found, scene.straight_on(&ray, &found, within)?.1)));
+        let straight = ahead.and_then(|found| Some((found, scene.straight_on(&ray, &found, interior)?.1)));
         let Some((found, behind)) = straight else {
-            return passed * transmittance(scene, &ray, end, within, stream);
+            return passed * transmittance(scene, &ray, end, interior, stream);
         };
-        passed *= transmittance(scene, &ray, found.hit.t, within, stream);
+        passed *= transmittance(scene, &ray, found.hit.t, interior, stream);
         ray = Ray::new(ray.at(found.hit.t), ray.dir);
-        (from, within, end) = (Some(found.start()), behind, end - found.hit.t);
+        (from, interior, end) = (Some(found.start()), behind, end - found.hit.t);
     }
 }
 

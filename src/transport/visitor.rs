@@ -21,7 +21,7 @@ pub struct Walker {
     /// The body that the ray starts on.
     pub from: Option<Start>,
     /// Number of the interior that the ray is in.
-    pub within: usize,
+    pub interior: usize,
     /// How far behind the ray's origin its direction was chosen \[L\]: a ray starts again behind a filter or an
     /// index-matched boundary, on the same way.
     pub behind: f64,
@@ -42,7 +42,7 @@ impl Walker {
             order: 0,
             flags: Flags::NONE,
             from: None,
-            within: SURROUNDINGS,
+            interior: SURROUNDINGS,
             behind: 0.0,
             events: 0,
             total_reflections: 0,

@@ -54,7 +54,7 @@ pub fn walk<V: Visitor>(
                 return;
             };
             let seen =
-                walker.weight * transmittance(scene, &walker.ray, through.hit.t, walker.within, stream);
+                walker.weight * transmittance(scene, &walker.ray, through.hit.t, walker.interior, stream);
             visitor.visit(&walker, Step::Truncated(walker.weight - seen), stream);
             walker.weight = seen;
             match bounce(scene, &walker, &through, roulette, stream, visitor) {
@@ -69,7 +69,7 @@ pub fn walk<V: Visitor>(
         let end = hit.map_or(f64::INFINITY, |h| h.hit.t);
         let forced = scene.plan().forces_first_collision && walker.order == 0 && hit.is_none();
         let arrived = walker.weight;
-        match free_flight(scene, &walker.ray, end, walker.within, arrived, forced, stream) {
+        match free_flight(scene, &walker.ray, end, walker.interior, arrived, forced, stream) {
             Flight::Collision { t, medium: number, weight } => {
                 if forced {
                     let passed = arrived - weight;
@@ -104,7 +104,7 @@ pub fn walk<V: Visitor>(
                     order: walker.order + 1,
                     flags: walker.flags.with(Flags::MEDIUM),
                     from: None,
-                    within: walker.within,
+                    interior: walker.interior,
                     behind: 0.0,
                     events: walker.events,
                     total_reflections: 0,
@@ -132,7 +132,7 @@ pub fn walk<V: Visitor>(
 
 /// The game behind a boundary: the scale of radiance is no loss, and what is refracted out again gets it back.
 fn refracted(roulette: Roulette, before: &Walker, after: &Walker) -> Roulette {
-    if after.within == before.within {
+    if after.interior == before.interior {
         return roulette;
     }
     roulette.scaled(after.weight.max() / before.weight.max())

@@ -1,9 +1,9 @@
-//! Photons of an oblique beam in the folded cell.
+//! Photons of an oblique beam in the periodic cell.
 
 use crate::support::scenes::{CELL, Incidence, slab};
 use crate::support::verdict::{self, Fit};
 use glam::DVec3;
-use turbid::photons::fold;
+use turbid::photons::periodic;
 use turbid::rng::{Purpose, Stream};
 use turbid::scene::Scene;
 use turbid::transport::{Roulette, Step, Visitor, Walker, walk};
@@ -29,7 +29,7 @@ pub fn evenness(counts: &[f64]) -> Fit {
     verdict::counted(counts, &vec![even; counts.len()])
 }
 
-/// Where first collisions of an oblique beam are, without the fold.
+/// Where first collisions of an oblique beam are, unwrapped.
 struct First(Vec<DVec3>);
 
 impl Visitor for First {
@@ -43,7 +43,7 @@ impl Visitor for First {
 }
 
 /// The positions of the first photons that were scattered once, as they fly.
-pub fn unfolded(scene: &Scene) -> Vec<DVec3> {
+pub fn unwrapped(scene: &Scene) -> Vec<DVec3> {
     let mut visitor = First(Vec::new());
     for history in 0..HISTORIES {
         let mut stream = Stream::new(2, Purpose::Photons, 0, history);
@@ -54,20 +54,20 @@ pub fn unfolded(scene: &Scene) -> Vec<DVec3> {
     visitor.0
 }
 
-/// The folded position: modulo the cell's side.
-pub fn folded(p: DVec3) -> DVec3 {
-    fold::into_cell(p, CELL)
+/// The wrapped position: modulo the cell's side.
+pub fn wrapped(p: DVec3) -> DVec3 {
+    periodic::wrap(p, CELL)
 }
 
 /// The same position under four mirrors: reflected back and forth.
 pub fn mirrored(p: DVec3) -> DVec3 {
-    let twice = fold::into_cell(p, 2.0 * CELL);
+    let twice = periodic::wrap(p, 2.0 * CELL);
     let back = |x: f64| if x > CELL { 2.0 * CELL - x } else { x };
     DVec3::new(back(twice.x), back(twice.y), p.z)
 }
 
 /// Photons of an oblique beam lie evenly over the cell, however they are brought into it.
 pub fn an_oblique_beam_fills_the_cell_evenly(place: fn(DVec3) -> DVec3) {
-    let points = unfolded(&slab(2.0, 0.9, 0.75, Incidence::Beam(0.3)));
+    let points = unwrapped(&slab(2.0, 0.9, 0.75, Incidence::Beam(0.3)));
     verdict::fits("oblique beam", evenness(&counts(points.into_iter().map(place))), UNEVEN, 2);
 }

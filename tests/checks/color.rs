@@ -237,7 +237,7 @@ pub fn emission_is_reported_by_channel() {
 
 /// Photons of a medium that emits one colour everywhere and another where it is dense leave each part of it with the
 /// colour that this part sends: 4 pi (e + e' density), integrated.
-pub fn a_glow_has_the_color_of_its_place() {
+pub fn medium_emission_has_the_color_of_its_place() {
     let (even, dense) = (Spectrum::rgb(0.5, 0.1, 0.0), Spectrum::rgb(0.0, 0.3, 2.0));
     let density = layers((0.0, 2.0), 8, |z| 0.5 * z);
     let medium: Medium = Heterogeneous::new(emitter(0.4, even), density.clone())

@@ -203,11 +203,11 @@ const fn inside(fault: Fault) -> Row {
             "emission_is_reported_by_channel",
             |_| color::emission_is_reported_by_channel(),
         ),
-        Fault::GlowColorOfAll => {
-            ("photons of an emitting medium in its mean colour", "a_glow_has_the_color_of_its_place", |_| {
-                color::a_glow_has_the_color_of_its_place()
-            })
-        }
+        Fault::GlowColorOfAll => (
+            "photons of an emitting medium in its mean colour",
+            "medium_emission_has_the_color_of_its_place",
+            |_| color::medium_emission_has_the_color_of_its_place(),
+        ),
         Fault::GentleFogLevel => {
             ("height fog with a slope below 1e-3 taken for level", "gentle_slopes_have_their_depth", |_| {
                 fog::gentle_slopes_have_their_depth()
@@ -349,7 +349,7 @@ pub const ROWS: &[Row] = &[
         slab::counts_vary_as_poisson(if wrong { Orders::ALL } else { Orders::only(0) })
     }),
     outside("an oblique beam between mirrors", "an_oblique_beam_fills_the_cell_evenly", |wrong| {
-        cell::an_oblique_beam_fills_the_cell_evenly(if wrong { cell::mirrored } else { cell::folded })
+        cell::an_oblique_beam_fills_the_cell_evenly(if wrong { cell::mirrored } else { cell::wrapped })
     }),
     outside("next events to a point light from free flights alone", "intervals_cover", |wrong| {
         point_light::intervals_cover(if wrong { point_light::by_free_flight } else { point_light::by_both })

@@ -28,8 +28,8 @@ fn emission_is_reported_by_channel() {
 }
 
 #[test]
-fn a_glow_has_the_color_of_its_place() {
-    color::a_glow_has_the_color_of_its_place();
+fn medium_emission_has_the_color_of_its_place() {
+    color::medium_emission_has_the_color_of_its_place();
 }
 
 #[test]

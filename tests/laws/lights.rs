@@ -38,13 +38,13 @@ pub fn lights() -> Vec<(&'static str, Light)> {
     );
     let tilted = DVec3::new(0.6, 0.0, 0.8);
     let disc = Section::Disc { center: DVec3::new(0.1, 0.0, -0.3), radius: 0.6 };
-    let glowing = |shape: Shape| Light::Area(Area::new(shape, color).unwrap());
+    let emitting = |shape: Shape| Light::Area(Area::new(shape, color).unwrap());
     let spot = Spot::new(DVec3::new(0.3, 0.1, -0.2), tilted, (20.0, 40.0), color).unwrap();
     vec![
         ("point", point_light(DVec3::new(0.3, -0.2, 0.12), color)),
         ("area", area_light(r, color)),
-        ("emitting sphere", glowing(sphere(DVec3::new(0.0, 0.2, -0.1), 0.4))),
-        ("emitting cuboid", glowing(block.clone())),
+        ("emitting sphere", emitting(sphere(DVec3::new(0.0, 0.2, -0.1), 0.4))),
+        ("emitting cuboid", emitting(block.clone())),
         ("spot", Light::Spot(spot)),
         ("disc beam", Light::Beam(Beam::new(tilted, color, disc).unwrap())),
         ("rectangular beam", Light::Beam(Beam::new(DVec3::Z, color, Section::Rectangle(beside)).unwrap())),
@@ -440,7 +440,7 @@ fn faceted() -> Shape {
 /// the front one alone is seen. Fluence is the solid angle, from straight above and from the side.
 #[test]
 fn meshes_shine_as_what_they_are_made_like() {
-    let glowing = |shape: Shape| Light::Area(Area::new(shape, Spectrum::ONE).unwrap());
+    let emitting = |shape: Shape| Light::Area(Area::new(shape, Spectrum::ONE).unwrap());
     let square = rectangle(DVec3::new(-0.5, -0.5, 0.0), DVec3::X, DVec3::Y);
     let (above, beside) = (DVec3::new(0.0, 0.0, 0.8), DVec3::new(0.5, 0.5, 0.7));
     let ball = 2.0 * PI * (1.0 - (1.0 - 0.25 / beside.length_squared()).sqrt());
@@ -456,7 +456,7 @@ fn meshes_shine_as_what_they_are_made_like() {
     .into_iter()
     .enumerate()
     {
-        let scene = bounded(Vec::new(), Vec::new(), vec![glowing(shape)]);
+        let scene = bounded(Vec::new(), Vec::new(), vec![emitting(shape)]);
         let seed = 60 + i as u64;
         let found = paths(&scene, Quantity::Fluence(p), Orders::ALL, 1 << 15, seed)[0];
         verdict::agrees(name, &found, (expected, off * expected), 0.1 * expected, seed);

@@ -203,7 +203,7 @@ fn afar(lights: Vec<Light>, seed: u64) -> Scene {
 }
 
 /// An emitting medium about the origin.
-fn glowing(sigma_t: f64) -> Region {
+fn emitting(sigma_t: f64) -> Region {
     let medium = homogeneous(Spectrum::grey(sigma_t), Spectrum::grey(0.5), 0.0);
     let turbid::medium::Medium::Homogeneous(medium) = medium else { unreachable!() };
     let medium = medium.with_emission(Spectrum::rgb(0.5, 1.0, 2.0)).unwrap();
@@ -271,7 +271,7 @@ fn open_scenes_lose_nothing() {
 #[test]
 fn an_emitting_medium_is_aimed() {
     let far = || region(sphere(DVec3::new(5.0, 2.0, 1.0), 0.8), 1.0, 0.9, 0.0);
-    let scene = bounded(vec![far(), glowing(0.0)], Vec::new(), Vec::new());
+    let scene = bounded(vec![far(), emitting(0.0)], Vec::new(), Vec::new());
     let aimed = Emitter::towards_scene(&scene);
     let whole = scene.power().sum();
     assert!(aimed.kept() < 0.1 && ((aimed.kept() * whole + aimed.left_out()) / whole - 1.0).abs() < 1e-12);
@@ -281,7 +281,7 @@ fn an_emitting_medium_is_aimed() {
     }
     // Where light collides in itself every direction may be of use.
     assert_eq!(
-        Emitter::towards_scene(&bounded(vec![far(), glowing(0.1)], Vec::new(), Vec::new())).kept(),
+        Emitter::towards_scene(&bounded(vec![far(), emitting(0.1)], Vec::new(), Vec::new())).kept(),
         1.0
     );
 }

@@ -9,7 +9,7 @@ use turbid::estimators::{Estimator, Gather, Kernel};
 use turbid::integrators::mapper::{Mapper, Settings};
 use turbid::photons::importance::{Importance, ImportanceSettings};
 use turbid::photons::maps::{
-    Amount, Emitted, Indirect, MapSettings, Maps, fill_counted, fill_counted_steered,
+    Amount, Emitted, Indirect, MapSettings, Maps, fill_counted, fill_counted_by_importance,
 };
 use turbid::rng::{Purpose, Stream};
 use turbid::scene::{Scene, SceneFile};
@@ -35,7 +35,7 @@ fn maps(
     let emitted = Emitted { global: emitted, volume: emitted, caustic: 0 };
     match importance {
         None => fill_counted(scene, &settings, emitted, &NoProgress).unwrap(),
-        some => fill_counted_steered(scene, &settings, emitted, some, &NoProgress).unwrap(),
+        some => fill_counted_by_importance(scene, &settings, emitted, some, &NoProgress).unwrap(),
     }
 }
 
@@ -75,9 +75,9 @@ fn importance_moves_photons_and_changes_no_mean() {
         let mut counts = [[[0usize; 2]; 3]; 2];
         let mut ledgers = [[Moments::new(); 2]; 2];
         let mut events = [0u64; 2];
-        for (way, steered) in [None, Some(&importance)].into_iter().enumerate() {
+        for (way, by_importance) in [None, Some(&importance)].into_iter().enumerate() {
             for replicate in 0..MAPS {
-                let maps = maps(&scene, indirect, steered, 2000, replicate + 1000 * way as u64);
+                let maps = maps(&scene, indirect, by_importance, 2000, replicate + 1000 * way as u64);
                 for (place, (_, low, high)) in PLACES.iter().enumerate() {
                     for (kind, (power, count)) in stored(&maps, (*low, *high)).into_iter().enumerate() {
                         powers[way][place][kind].push(power);
@@ -111,8 +111,8 @@ fn importance_moves_photons_and_changes_no_mean() {
             }
         }
         // At an equal number of events too the corner gets more than twice the photons.
-        for (steered, plain) in counts[1][0].iter().zip(&counts[0][0]) {
-            let gain = *steered as f64 / *plain as f64;
+        for (by_importance, plain) in counts[1][0].iter().zip(&counts[0][0]) {
+            let gain = *by_importance as f64 / *plain as f64;
             assert!(
                 gain > 2.0 * events[1] as f64 / events[0] as f64,
                 "{indirect:?}: {gain} times the photons"
@@ -138,13 +138,13 @@ fn importance_makes_the_picture_better() {
     let mut errors = [0.0; 2];
     let mut cost = [0.0; 2];
     let mut means = [0.0; 2];
-    for (way, steered) in [None, Some(&importance)].into_iter().enumerate() {
+    for (way, by_importance) in [None, Some(&importance)].into_iter().enumerate() {
         const MAPS: u64 = 12;
         let (mut pixels, mut events) = (vec![Moments::new(); 48], 0);
         for replicate in 0..MAPS {
-            // Steered histories have more events.
+            // Histories by importance have more events.
             let emitted = if way == 0 { 40_000 } else { 16_000 };
-            let maps = maps(&scene, indirect, steered, emitted, replicate + 500);
+            let maps = maps(&scene, indirect, by_importance, emitted, replicate + 500);
             events += maps.report.main.collisions + maps.report.main.hits;
             let mapper = Mapper::new(&scene, &maps, &reading);
             for (i, pixel) in pixels.iter_mut().enumerate() {
@@ -161,7 +161,7 @@ fn importance_makes_the_picture_better() {
         means[way] = pixels.iter().map(Moments::mean).sum::<f64>() / pixels.len() as f64;
         verdict::println_line(&format!(
             "{}: relative error of a pixel {:.3}, mean {:.5}, events a map {}",
-            if way == 0 { "by power" } else { "steered" },
+            if way == 0 { "by power" } else { "by importance" },
             errors[way],
             means[way],
             events / MAPS

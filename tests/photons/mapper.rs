@@ -146,13 +146,13 @@ fn treated_radiance_of_one_photon() {
     }
 }
 
-/// Fog that glows: what is seen of it straight, and what it scatters of its own light once.
+/// Fog that emits: what is seen of it straight, and what it scatters of its own light once.
 #[test]
-fn glowing_fog() {
+fn emitting_fog() {
     let cube = cuboid(DVec3::ZERO, DVec3::splat(2.0));
     let matter = homogeneous(Spectrum::ONE, Spectrum::rgb(0.5, 0.7, 0.9), 0.3);
-    let glowing = matter.matter().clone().with_emission(Spectrum::rgb(1.0, 2.0, 3.0)).unwrap();
-    let region = Region { shape: cube, medium: glowing.into() };
+    let emitting = matter.matter().clone().with_emission(Spectrum::rgb(1.0, 2.0, 3.0)).unwrap();
+    let region = Region { shape: cube, medium: emitting.into() };
     let scene = bounded(vec![region], Vec::new(), vec![emitting_sphere(DVec3::new(1.0, 1.0, 0.5), 0.2)]);
     let maps = fill(&scene, &filling(100, Indirect::Seen, 1, 0), &NoProgress).unwrap();
     let settings = marching(0.7, StepRule::Integrated, true);

@@ -128,7 +128,7 @@ fn rooms_that_keep_light_are_refused_and_others_are_not() {
 }
 
 /// Behind a pane that encloses nothing a medium has no end: if it absorbs nothing, light does not come back, and if it
-/// glows, a ray gathers without end. What absorbs, and what bodies enclose, is right.
+/// emits, a ray gathers without end. What absorbs, and what bodies enclose, is right.
 #[test]
 fn media_without_end_are_refused_where_light_does_not_end_in_them() {
     let matter = |(sigma_t, albedo, emission): (f64, f64, f64)| {
@@ -157,8 +157,8 @@ fn media_without_end_are_refused_where_light_does_not_end_in_them() {
         lost.contains("milk, which no body encloses and whose medium absorbs nothing; allowed"),
         "{lost}"
     );
-    let glows = says((0.0, 0.5, 0.2), pane());
-    assert!(glows.contains("whose medium emits where nothing absorbs; allowed"), "{glows}");
+    let emits = says((0.0, 0.5, 0.2), pane());
+    assert!(emits.contains("whose medium emits where nothing absorbs; allowed"), "{emits}");
     for (medium, body) in [
         ((1.0, 0.999, 0.0), pane()),
         ((0.0, 0.5, 0.0), pane()),
@@ -175,8 +175,8 @@ fn media_without_end_are_refused_where_light_does_not_end_in_them() {
         let medium = Heterogeneous::new(matter(medium), density);
         filled(medium.with_emission_by_density(Spectrum::grey(by_density)).unwrap().into(), pane())
     };
-    let glows = fog((0.5, 0.5, 0.2), 0.0);
-    assert!(glows.contains("whose medium emits where nothing absorbs; allowed"), "{glows}");
+    let emits = fog((0.5, 0.5, 0.2), 0.0);
+    assert!(emits.contains("whose medium emits where nothing absorbs; allowed"), "{emits}");
     assert_eq!(fog((0.5, 0.5, 0.0), 0.2), "");
     let clear = fog((0.0, 0.5, 0.0), 0.2);
     assert!(clear.contains("whose medium emits where nothing absorbs; allowed"), "{clear}");
@@ -248,7 +248,7 @@ fn light_caught_in_glass_with_a_mirror_in_it_is_given_up() {
     for history in 0..64 {
         let mut stream = Stream::new(3, Purpose::Synthetic, 0, history);
         let dir = turbid::math::warp::square_to_sphere(stream.pair()).normalize();
-        let start = Walker { within: 1, ..Walker::new(Ray::new(DVec3::ZERO, dir), Spectrum::ONE) };
+        let start = Walker { interior: 1, ..Walker::new(Ray::new(DVec3::ZERO, dir), Spectrum::ONE) };
         let mut events = Events::default();
         walk(&scene, start, Roulette::Analog, None, &mut stream, &mut events);
         assert!(events.count < 40_000, "{}", events.count);

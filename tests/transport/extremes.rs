@@ -356,7 +356,7 @@ fn nothing_is_non_finite() {
     }
 }
 
-/// A gather that reaches beyond the copies around the folded cell would lose photons without a word: it is refused.
+/// A gather that reaches beyond the copies around the periodic cell would lose photons without a word: it is refused.
 #[test]
 fn a_gather_wider_than_the_cell() {
     let scene = with_sensors(&slab(2.0, 0.9, 0.0, Incidence::Diffuse), &[at_depth(1.0)]);

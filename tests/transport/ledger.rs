@@ -140,7 +140,7 @@ fn with_tiles_and_a_stained_pane() {
     layers_of_the_scene_are_those_of_paths(&scene, Indirect::Seen, &settings(1), 4000, 10);
 }
 
-/// Fog that glows where it is dense, more in one colour, and a ball of glowing glass in it: no light but theirs.
+/// Fog that emits where it is dense, more in one colour, and a ball of emitting glass in it: no light but theirs.
 #[test]
 fn lit_by_media_alone() {
     let mut parts = Room { has_glass: true, ..plain() }.parts();

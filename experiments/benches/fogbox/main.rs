@@ -58,7 +58,7 @@ fn main() -> Result<()> {
     }
     writeln!(
         out,
-        "{WIDTH} x {WIDTH} pixels, {SAMPLES} samples a pixel and round, {rounds_wanted} rounds in turn"
+        "{WIDTH} x {WIDTH} pixels, {SAMPLES} samples per pixel and round, {rounds_wanted} rounds in turn"
     )?;
     writeln!(
         out,

@@ -209,7 +209,7 @@ pub fn compare(
             let samples = whole[1].samples(square).map_or("-".into(), |n| format!("{n:.1}"));
             writeln!(
                 out,
-                "{:>5.0} %  {}   {}   {samples} samples a pixel",
+                "{:>5.0} %  {}   {}   {samples} samples per pixel",
                 100.0 * error,
                 ratios(|all| all),
                 ratios(|all| &all[1..2])

@@ -142,7 +142,7 @@ fn summarise(section: &mut Section, settings: &Settings, results: &[CaseResult])
     };
     if let (Some(deep), Some(surface)) = (in_glow(1.0, 0.8), in_glow(0.0, 0.8)) {
         section.summary.push(format!(
-            "In a sphere of radius 2 that glows, light bends in all directions and the surface is curved: photons gathered \
+            "In a sphere of radius 2 that emits, light bends in all directions and the surface is curved: photons gathered \
              within 0.8 mean free paths are {} % wrong halfway to its centre (predicted {} %) and {} % at its surface ({} %).",
             with_error(deep.error.mean(), deep.error.std_error()),
             signed(deep.predicted(), 2),

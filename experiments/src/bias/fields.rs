@@ -98,7 +98,7 @@ pub static BACKWARD: Field = Field {
 /// Glowing sphere, albedo 0.9.
 pub static EMITTING_SPHERE: Field = Field {
     name: "glow",
-    title: "glowing sphere, albedo 0.9",
+    title: "emitting sphere, albedo 0.9",
     setup: sphere(Lighting::Emission, 0.9),
     orders: Orders::ALL,
     depths: &[0.0, 0.25, 1.0, 1.5],

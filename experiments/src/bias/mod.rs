@@ -5,7 +5,7 @@
 //!
 //! Two kinds of field. *Uncollided* photons under a normal beam are independent, and their field e^-t is known in
 //! closed form: the place where the orders in radius, photons and k are tested. *All orders* of scattering, at several
-//! albedos and asymmetries, are tested against the exact slab, and in spheres that glow or are lit from all sides, whose
+//! albedos and asymmetries, are tested against the exact slab, and in spheres that emit or are lit from all sides, whose
 //! surface is curved and whose light bends in all directions, against the exact sphere.
 
 mod cases;

@@ -1,7 +1,7 @@
 //! Maps that are seen directly, from numbers of photons sent out.
 
 use turbid::photons::importance::Importance;
-use turbid::photons::maps::{Amount, Emitted, Indirect, MapSettings, Maps, fill_counted_steered};
+use turbid::photons::maps::{Amount, Emitted, Indirect, MapSettings, Maps, fill_counted_by_importance};
 use turbid::scene::Scene;
 use turbid::transport::NoProgress;
 
@@ -19,5 +19,5 @@ pub fn filled(
     // Only a count that is still to be found would be read here.
     let [global, caustic, volume] = [emitted.global, emitted.caustic, emitted.volume].map(Amount::Emitted);
     let settings = MapSettings { global, caustic, volume, indirect: Indirect::Seen, seed, replicate };
-    Ok(fill_counted_steered(scene, &settings, emitted, importance, &NoProgress)?)
+    Ok(fill_counted_by_importance(scene, &settings, emitted, importance, &NoProgress)?)
 }

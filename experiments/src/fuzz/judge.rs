@@ -16,7 +16,7 @@ use turbid::integrators::mapper;
 use turbid::output::one_line;
 use turbid::photons::check_end;
 use turbid::photons::importance::{Importance, ImportanceSettings};
-use turbid::photons::maps::{Amount, Indirect, MapSettings, fill_steered};
+use turbid::photons::maps::{Amount, Indirect, MapSettings, fill_by_importance};
 use turbid::scene::{Camera, Orders, Scene, SceneFile};
 use turbid::sensor::{
     Film, Method, PathSettings, PhotonSettings, Streams, by_light, by_paths, by_photons, check_camera,
@@ -285,7 +285,7 @@ impl Workbench {
                 note("photons", photons(&scene, camera, Indirect::Seen, false));
             }
             if asks(1) {
-                note("steered photons", photons(&scene, camera, Indirect::Gathered, true));
+                note("photons by importance", photons(&scene, camera, Indirect::Gathered, true));
             }
         }
         if !scene.sensors().is_empty() {
@@ -409,16 +409,19 @@ fn light(scene: &Scene, camera: &Camera) -> turbid::Result<()> {
     finite(&by_light(scene, camera, 16, 3, STREAMS, &NoProgress)?, "the film of light tracing")
 }
 
-fn photons(scene: &Scene, camera: &Camera, indirect: Indirect, is_steered: bool) -> turbid::Result<()> {
+fn photons(scene: &Scene, camera: &Camera, indirect: Indirect, is_by_importance: bool) -> turbid::Result<()> {
     let amount = Amount::Emitted(100);
     let maps =
         MapSettings { global: amount, caustic: amount, volume: amount, indirect, seed: SEED, replicate: 0 };
     let learned =
         ImportanceSettings { particles: 64, pilot: 32, rounds: 2, boxes: 4, seed: SEED, replicate: 0 };
-    // Only a part of the scenes can be steered; importance says why not.
-    let importance =
-        if is_steered { Some(Importance::of(scene, camera, indirect, &learned, &NoProgress)?) } else { None };
-    let maps = fill_steered(scene, &maps, importance.as_ref(), &NoProgress)?;
+    // Only a part of the scenes can be rendered so; importance says why not.
+    let importance = if is_by_importance {
+        Some(Importance::of(scene, camera, indirect, &learned, &NoProgress)?)
+    } else {
+        None
+    };
+    let maps = fill_by_importance(scene, &maps, importance.as_ref(), &NoProgress)?;
     let settings = mapper::Settings { gather_rays: 2, ..mapper::Settings::for_scene(scene, 20)? };
     let photons = Method::Photons(mapper::Mapper::new(scene, &maps, &settings));
     let film = photons.render(camera, 1, STREAMS, &NoProgress)?;

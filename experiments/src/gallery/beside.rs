@@ -35,7 +35,7 @@ const FIRST: (u64, u64) = (1000, 2000);
 pub struct RivalPictures {
     /// The path tracer's picture in the same time.
     pub equal: CachedRender,
-    /// The reference, its samples a pixel and its CPU seconds.
+    /// The reference, its samples per pixel and its CPU seconds.
     pub reference: Replicate,
     /// Samples a pixel of the reference, and its CPU seconds.
     pub cost: (u64, f64),
@@ -62,7 +62,7 @@ pub fn beside(large: &Cache, small: &Cache, ours: &CachedRender) -> anyhow::Resu
     let share = masked.iter().filter(|&&is_masked| is_masked).count() as f64 / masked.len() as f64;
     say(&format!("{}: blur and edges may matter in {:.1} % of the pixels", picture.name, 100.0 * share));
     let samples = chosen(large, &masked)?;
-    say(&format!("{}: {COMPARED} passes of {samples} samples a pixel for the reference", picture.name));
+    say(&format!("{}: {COMPARED} passes of {samples} samples per pixel for the reference", picture.name));
     let reference = reference(large, samples, [ours, &equal])?;
     let again = (0..COMPARED)
         .map(|n| {

@@ -34,7 +34,7 @@ impl Visitor for Eye<'_> {
         let Step::Ahead(hit) = step else { return };
         let end = hit.map_or(f64::INFINITY, |found| found.hit.t);
         let mut last = 0.0_f64;
-        for segment in self.scene.segments(&walker.ray, end, walker.within).iter() {
+        for segment in self.scene.segments(&walker.ray, end, walker.interior).iter() {
             let (start, stop) = (segment.interval.start, segment.interval.end);
             let (length, middle) = self.view.medium;
             let (more, at) = (stop - start, self.view.distance + 0.5 * (start + stop));
@@ -70,7 +70,7 @@ pub fn look(scene: &Scene, camera: &Camera) -> Vec<View> {
         let view = View { surface: None, cosine: 1.0, distance: 0.0, medium: (0.0, 0.0), is_at_face: false };
         let mut eye = Eye { scene, view };
         let mut stream = Stream::new(0, Purpose::Synthetic, 0, number);
-        let walker = Walker { within: scene.interior_at(ray.origin), ..Walker::new(ray, Spectrum::ONE) };
+        let walker = Walker { interior: scene.interior_at(ray.origin), ..Walker::new(ray, Spectrum::ONE) };
         walk(scene, walker, Roulette::Below(1e-6), Some(0), &mut stream, &mut eye);
         eye.view
     };

@@ -135,7 +135,7 @@ fn numbers(picture: &Picture, shown: &PageEntry) -> Markup {
                     (shown.size.0) " × " (shown.size.1) " pixels, " (ours.samples) " samples each"
                 } }
                 @if let Some((paths, seconds)) = shown.reference {
-                    tr { th { "reference" } td { (paths) " samples a pixel, " (duration(seconds)) " of CPU time" } }
+                    tr { th { "reference" } td { (paths) " samples per pixel, " (duration(seconds)) " of CPU time" } }
                 }
                 @if let Some(compared) = &shown.compared { (comparison(compared)) }
             }

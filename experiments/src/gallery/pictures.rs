@@ -43,7 +43,7 @@ pub struct Picture {
     pub exposure: f64,
     /// What stands beside it.
     pub beside: Beside,
-    /// The most samples a pixel of one of the 64 passes of the reference: a pilot says how many are needed.
+    /// The most samples per pixel of one of the 64 passes of the reference: a pilot says how many are needed.
     pub reference: u64,
     /// What of the reference is found by light tracing.
     pub by_light: ByLight,
@@ -60,7 +60,7 @@ pub const ALL: &[Picture] = &[
         see: "Light gathers behind the glass sphere in a caustic on the floor, and the mirror sphere throws a second one on \
               the wall. The maps beside it are what the picture was made from. The \
               number of photons and the samples are the original's; ours: their shares of the maps, 50 and 60 in an estimate.",
-        original: "171,880 photons, 25 samples a pixel: 444 s on a Pentium 4 of 3 GHz",
+        original: "171,880 photons, 25 samples per pixel: 444 s on a Pentium 4 of 3 GHz",
         photons: [Amount::Stored(121_880), Amount::Stored(50_000), NONE],
         nearest: [50, 60, 100],
         samples: 25,
@@ -78,7 +78,7 @@ pub const ALL: &[Picture] = &[
         title: "A glass of cognac",
         see: "The liquid is a lens: the lamp behind the glass becomes a bright cusp on the table, in the colour that the \
               cognac lets through. Numbers of photons and samples are the original's.",
-        original: "200,000 photons, 64 samples a pixel: 4 h on a Pentium of 90 MHz",
+        original: "200,000 photons, 64 samples per pixel: 4 h on a Pentium of 90 MHz",
         photons: [Amount::Stored(100_000), Amount::Stored(100_000), NONE],
         nearest: [100, 60, 100],
         samples: 64,

@@ -41,14 +41,14 @@ pub fn plates(
     let exposure = tone(picture.exposure);
     let exposed = |radiance: &[Spectrum]| develop(grid, radiance, exposure);
     let told = |method: &str, facts: &RenderRecord| {
-        format!("{method}, {} samples a pixel, {} of CPU time", facts.samples, duration(facts.seconds))
+        format!("{method}, {} samples per pixel, {} of CPU time", facts.samples, duration(facts.seconds))
     };
     plate("photons", told("Photon maps", &ours.facts), &exposed(&ours.total))?;
     if let Some(RivalPictures { equal, reference, cost, masked, .. }) = others {
         plate("paths", told("Paths in the same time", &equal.facts), &exposed(&equal.total))?;
         let by = picture.by_light.words();
         let caption =
-            format!("The reference, {by}: {} samples a pixel, {} of CPU time", cost.0, duration(cost.1));
+            format!("The reference, {by}: {} samples per pixel, {} of CPU time", cost.0, duration(cost.1));
         plate("reference", caption, &exposed(reference))?;
         let (half, ours, reference) = (grid.halved(), grid.reduced(&ours.total), grid.reduced(reference));
         let caption = format!(

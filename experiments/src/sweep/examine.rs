@@ -339,7 +339,7 @@ mod tests {
 
     /// A medium without end that emits: energy, light tracing and maps refuse it in words, and that is no alarm.
     #[test]
-    fn a_glow_without_end_is_refused_and_no_alarm() {
+    fn emission_without_end_is_refused_and_no_alarm() {
         let table = toml::from_str(
             r#"
             camera = { position = [0, 0, -4], look_at = [0, 0, 0], fov = 50, width = 16, height = 12 }

@@ -309,7 +309,7 @@ pub(super) struct Spread {
 pub(super) const MOST_STRIDE: u64 = 8;
 
 impl Spread {
-    /// About so many samples a pixel.
+    /// About so many samples per pixel.
     pub fn of(samples: f64) -> Self {
         let samples = samples.clamp(1.0 / MOST_STRIDE as f64, 4096.0);
         let stride = (1.0 / samples).floor().max(1.0) as u64;

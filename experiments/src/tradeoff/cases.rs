@@ -24,7 +24,7 @@ pub enum Worth {
     By4096,
 }
 
-/// One body of medium and its light: a slab under a normal beam of irradiance 1, or a sphere that glows with power 1 per
+/// One body of medium and its light: a slab under a normal beam of irradiance 1, or a sphere that emits with power 1 per
 /// volume; lengths are mean free paths.
 #[derive(Debug, PartialEq)]
 pub struct Field {
@@ -39,7 +39,7 @@ pub struct Field {
     /// Whether a map is to cost fewer operations than paths. An error e takes 1/e² gathered photons, more by clusters and
     /// blur, and V/e² samples of R rays. Where half of the light is uncollided and known in closed form, the relative
     /// variance V is near 0.3 and R below 4: about as many rays as photons, and clusters and blur decide against the
-    /// map. In the sphere every ray collects its own glow in closed form, V is 0.8 and R above 3: the map pays, late.
+    /// map. In the sphere every ray collects its own emission in closed form, V is 0.8 and R above 3: the map pays, late.
     /// This, and the sphere's bounds on regret and clipping, were set after a trial run with seed 1, which refused `Never`:
     /// seed 1 confirms none of them, another seed may.
     pub worth: Worth,
@@ -125,7 +125,7 @@ pub static THICK_FORWARD: Field = Field {
 /// Glowing sphere, radius 2.
 pub static SPHERE: Field = Field {
     name: "sphere",
-    title: "glowing sphere, radius 2",
+    title: "emitting sphere, radius 2",
     setup: Setup { body: Body::Sphere { radius: 2.0 }, lighting: Lighting::Emission, albedo: 0.9, g: 0.0 },
     least: 0.9,
     worth: Worth::Late,

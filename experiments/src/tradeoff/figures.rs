@@ -46,7 +46,7 @@ fn costs(data: &Data) -> anyhow::Result<FigureFiles> {
                    settings that no other setting beats in both, chosen on half of the maps and shown for the other \
                    (95 % intervals are smaller than most points), and the path tracer, whose error falls as one over \
                    the root of its cost and starts where each query has one sample. Left of the black line the map is the cheaper. In the thin isotropic \
-                   slab it is not; in the glowing sphere, where paths gather light all along their rays, the two cost nearly the same; \
+                   slab it is not; in the emitting sphere, where paths gather light all along their rays, the two cost nearly the same; \
                    in thick fog the map is the cheaper by far. Untreated estimates stop early at the faces' loss.";
     FigureFiles::draw("costs", caption, &figure)
 }
@@ -167,7 +167,7 @@ fn queries(data: &Data) -> anyhow::Result<FigureFiles> {
     let figure = Figure { width: Width::Double, columns: 2, shared_legend: true, ..Figure::new(panels) };
     let caption = "Operations against the number of queries, at the error of the most efficient clipped setting, by the \
                    photon map and by a path tracer of the same error. The map is paid for before the first query; from \
-                   the break-even Q* (95 % interval) it is the cheaper of the two. In the glowing sphere that takes thousands of queries. In the thin isotropic slab one path \
+                   the break-even Q* (95 % interval) it is the cheaper of the two. In the emitting sphere that takes thousands of queries. In the thin isotropic slab one path \
                    query takes fewer rays than the map gathers photons, and the map never pays in operations; in seconds, where a \
                    photon gathered is cheaper than a ray, it does.";
     FigureFiles::draw("queries", caption, &figure)

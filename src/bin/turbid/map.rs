@@ -11,7 +11,7 @@ use clap::ValueEnum;
 use std::path::PathBuf;
 use turbid::Spectrum;
 use turbid::output::{Tone, auto_exposure, check_writable, is_same_file, write_ply, write_png};
-use turbid::photons::maps::{Indirect, Maps, fill_counted_steered};
+use turbid::photons::maps::{Indirect, Maps, fill_counted_by_importance};
 use turbid::photons::{Photon, PhotonMap};
 use turbid::sensor::{colour, draw_photons};
 
@@ -103,7 +103,7 @@ impl Map {
             let emitted =
                 self.photons.ahead(&scene, &settings, importance.as_ref(), Held::ALL, &self.memory, fixed)?;
             let bar = Bar::stage("emission", emitted.histories());
-            let maps = fill_counted_steered(&scene, &settings, emitted, importance.as_ref(), &bar);
+            let maps = fill_counted_by_importance(&scene, &settings, emitted, importance.as_ref(), &bar);
             bar.finish();
             let maps = maps?;
             let mut made = MapsMade::default();

@@ -143,7 +143,7 @@ pub struct Photons {
     /// Let importance lead photons of the global and the volume map to where the camera reads them. For a camera that sees
     /// a small part of a large scene; the mean is the same, powers are no longer equal.
     #[arg(long = "importance")]
-    pub is_steered: bool,
+    pub is_by_importance: bool,
 }
 
 impl Photons {
@@ -163,7 +163,7 @@ impl Photons {
             bar.finish();
             learned
         };
-        self.is_steered.then(learn).transpose()
+        self.is_by_importance.then(learn).transpose()
     }
 
     /// How many histories the maps take, refused if they do not fit the memory; of the first repetition told, where they take

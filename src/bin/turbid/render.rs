@@ -398,7 +398,7 @@ impl Render {
             "width": made.film.width(),
             "height": made.film.height(),
             "seed": self.seed,
-            "importance": by_photons && self.photons.is_steered,
+            "importance": by_photons && self.photons.is_by_importance,
             "repetitions": self.maps,
             "passes": self.passes,
             "samples": made.samples,

@@ -197,7 +197,7 @@ fn numbers<'a>(words: impl Iterator<Item = &'a str>) -> std::result::Result<Vec<
     words
         .map(|word| match word.parse::<f64>() {
             Ok(number) if number.is_finite() => Ok(number),
-            _ => Err(format!("`{}` is no finite number", shown(word))),
+            _ => Err(format!("`{}` is not a finite number", shown(word))),
         })
         .collect()
 }
@@ -248,8 +248,8 @@ mod tests {
         let at = |line: usize, what: &str| Failure::At(line, what.to_string());
         let cases = [
             ("v 0 0\n".to_string(), at(1, "a vertex `v` of 2 numbers; allowed: x y z")),
-            ("v 0 0 nan\n".to_string(), at(1, "`nan` is no finite number")),
-            ("v 0 0 1e400\n".to_string(), at(1, "`1e400` is no finite number")),
+            ("v 0 0 nan\n".to_string(), at(1, "`nan` is not a finite number")),
+            ("v 0 0 1e400\n".to_string(), at(1, "`1e400` is not a finite number")),
             ("vt 0 -1e308\n".to_string(), at(1, "surface parameters `vt` of -1e308; allowed: -1e9 to 1e9")),
             ("f 1 2 3\n".to_string(), at(1, "a face names vertex 1; no vertex stands before this line")),
             (format!("{square}f 1 2 4\n"), at(4, "a face names vertex 4; allowed: 1 to 3, or -3 to -1")),

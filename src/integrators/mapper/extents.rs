@@ -42,15 +42,15 @@ pub fn medium_extents(scene: &Scene) -> Vec<MediumExtent> {
         let later = later.filter(|later| enters(later, &region.shape)).cloned().collect();
         extents.push(extent(Some(region.shape.clone()), later));
     }
-    for within in (0..scene.interiors().len()).filter(|within| scene.filling(*within).is_some()) {
-        extents.push(extent(enclosing(scene, within), Vec::new()));
+    for interior in (0..scene.interiors().len()).filter(|interior| scene.filling(*interior).is_some()) {
+        extents.push(extent(enclosing(scene, interior), Vec::new()));
     }
     extents
 }
 
 /// The shape that encloses an interior, where that is one solid.
-fn enclosing(scene: &Scene, within: usize) -> Option<Shape> {
-    let is_around = |d: &Dielectric| d.inside() == within;
+fn enclosing(scene: &Scene, interior: usize) -> Option<Shape> {
+    let is_around = |d: &Dielectric| d.inside() == interior;
     let mut around = scene
         .objects()
         .iter()

@@ -155,11 +155,11 @@ impl<'a> Mapper<'a> {
         &self,
         ray: Ray,
         from: Option<Start>,
-        within: usize,
+        interior: usize,
         stream: &mut Stream,
     ) -> (Layers, Report) {
         let mut eye = Eye { mapper: self, layers: Layers::ZERO, report: Report::default() };
-        let start = Walker { from, within, ..Walker::new(ray, Spectrum::ONE) };
+        let start = Walker { from, interior, ..Walker::new(ray, Spectrum::ONE) };
         walk(self.scene, start, Roulette::Below(ROULETTE), Some(0), stream, &mut eye);
         (eye.layers, eye.report)
     }
@@ -167,7 +167,7 @@ impl<'a> Mapper<'a> {
     /// What a ray meets by itself of media and lights that it runs through, but for lights that are aimed at from `aimed_from`.
     fn met(&self, walker: &Walker, end: f64, aimed_from: Option<DVec3>, stream: &mut Stream) -> Spectrum {
         let scene = self.scene;
-        let media = emission(scene, &walker.ray, end, walker.within, stream);
+        let media = emission(scene, &walker.ray, end, walker.interior, stream);
         let is_aimed = |light: &Light| aimed_from.is_some_and(|p| light.has_direction_from(p));
         let lights = scene.lights().iter().filter(|light| !is_aimed(light));
         lights.fold(media, |sum, light| sum + uncollided(scene, light, walker, end, stream))
@@ -184,10 +184,10 @@ impl<'a> Mapper<'a> {
         scattered: impl Fn(DVec3) -> f64,
         blind: impl FnOnce(&mut Stream) -> DVec3,
     ) -> Spectrum {
-        let (position, within) = (walker.ray.origin, walker.within);
+        let (position, interior) = (walker.ray.origin, walker.interior);
         let mut sum = Spectrum::ZERO;
         for index in 0..self.scene.lights().len() {
-            let place = (position, from, within);
+            let place = (position, from, interior);
             if let Some((sample, received)) = next_event(self.scene, index, place, stream, &mut report.rays) {
                 sum += received * scattered(sample.dir);
             }
@@ -196,7 +196,7 @@ impl<'a> Mapper<'a> {
         let is_missed = |light: &Light| !light.has_direction_from(position);
         if scene.plan().has_emission || scene.lights().iter().any(is_missed) {
             let ray = Ray::new(position, blind(stream));
-            let start = Walker { from, within, ..Walker::new(ray, Spectrum::ONE) };
+            let start = Walker { from, interior, ..Walker::new(ray, Spectrum::ONE) };
             sum += seen_straight(scene, start, &mut report.rays.segments, stream, |walker, end, stream| {
                 self.met(walker, end, Some(position), stream)
             });
@@ -230,7 +230,7 @@ impl Eye<'_, '_> {
         let Some(found) = hit else {
             for light in scene.lights() {
                 if let Some((radiance, _)) = light.background(ray) {
-                    let seen = walker.weight * transmittance(scene, ray, end, walker.within, stream);
+                    let seen = walker.weight * transmittance(scene, ray, end, walker.interior, stream);
                     self.layers.emission += seen * radiance;
                 }
             }
@@ -239,7 +239,7 @@ impl Eye<'_, '_> {
         match found.target {
             Target::Light(index) => {
                 let radiance = scene.lights()[index].emitted(ray, &found.hit).0;
-                let seen = walker.weight * transmittance(scene, ray, end, walker.within, stream);
+                let seen = walker.weight * transmittance(scene, ray, end, walker.interior, stream);
                 self.layers[Layer::Emission] += seen * radiance;
             }
             Target::Object(_) => self.surface(walker, found, stream),

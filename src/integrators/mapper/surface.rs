@@ -56,7 +56,7 @@ impl<'w> Diffuse<'w> {
     /// A ray that starts here, in the interior of the one that came.
     pub fn leaving(&self, dir: DVec3) -> Walker {
         let start = Walker::new(Ray::new(self.position, dir), Spectrum::ONE);
-        Walker { from: Some(self.found.start()), within: self.walker.within, ..start }
+        Walker { from: Some(self.found.start()), interior: self.walker.interior, ..start }
     }
 
     /// Irradiance from a map [W/L^2].
@@ -134,7 +134,7 @@ impl Eye<'_, '_> {
         if diffuse.reflectance.is_black() {
             return;
         }
-        let passed = transmittance(mapper.scene, &walker.ray, found.hit.t, walker.within, stream);
+        let passed = transmittance(mapper.scene, &walker.ray, found.hit.t, walker.interior, stream);
         let seen = walker.weight * passed * diffuse.reflectance / PI;
         self.layers.direct += seen * diffuse.direct(mapper, &mut self.report, stream);
         if let Some(map) = &maps.caustic {

@@ -76,7 +76,7 @@ impl Mapper<'_> {
             let Some(sample) = light.sample(position, [0.5; 2]) else { return sum };
             let ray = Ray::new(position, sample.dir);
             report.rays.shadow += 1;
-            let start = (&ray, None, walker.within);
+            let start = (&ray, None, walker.interior);
             let towards = Some(Target::Light(index));
             let Some(passed) = connection(scene, start, sample.distance, towards, stream) else {
                 return sum;
@@ -92,9 +92,9 @@ impl Eye<'_, '_> {
     /// Adds what media bring to the ray up to distance `end`.
     pub(super) fn march(&mut self, walker: &Walker, end: f64, stream: &mut Stream) {
         let scene = self.mapper.scene;
-        for segment in scene.segments(&walker.ray, end, walker.within).iter() {
+        for segment in scene.segments(&walker.ray, end, walker.interior).iter() {
             let seen = walker.weight
-                * transmittance(scene, &walker.ray, segment.interval.start, walker.within, stream);
+                * transmittance(scene, &walker.ray, segment.interval.start, walker.interior, stream);
             // Of media that vary it is an estimate of its own for each segment: what one of them says ends no other.
             if seen.max() < LEFT * walker.weight.max() {
                 continue;

@@ -1,9 +1,9 @@
 //! What photons are worth: a pilot of photons that score where they are read.
 
+use super::branching::Branching;
 use super::grid::{Aim, DIRECTIONS, Grid};
 use super::reading::Reading;
 use super::settings::{ImportanceSettings, Stage};
-use super::steer::Branching;
 use super::values::Importance;
 use crate::error::{Error, Result};
 use crate::light::EmissionCell;

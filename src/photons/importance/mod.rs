@@ -6,28 +6,28 @@
 //! 2. photons of a pilot score where they would be stored, as much as is read there, and every cube of a coarser grid
 //!    learns, by direction and for the cone towards most of what is read, what a photon that leaves it scores on average
 //!    from there on, over its weight: its *value* J. So does every cell of the lights' numbers. Each round of the pilot is
-//!    steered by what the rounds before it learned (`learn`);
+//!    directed by what the rounds before it learned (`learn`);
 //! 3. emission takes each cell in proportion to its power times its value; half of the photons that an event scatters go
 //!    where value times scattering is large, with the weight of both ways to choose a direction together; and the weight
 //!    that a photon should have where the value is J is R/J, R the score of all emission: one that leaves an event with a
 //!    weight r times as large goes on as r of them, each with its share, one with a weight r times as small goes on with
-//!    probability r, its weight over r (`steer`). These are the weight windows of neutron transport (Wagner and Haghighat
-//!    1998), learned, and steered directions (Vorba et al. 2014), by histogram.
+//!    probability r, its weight over r (`branching`). These are the weight windows of neutron transport (Wagner and Haghighat
+//!    1998), learned, and guided directions (Vorba et al. 2014), by histogram.
 //!
 //! Every estimate keeps its expectation, whatever was learned: a photon's chance times its weight is unchanged. What is
 //! lost is the equality of the photons' powers: where the picture reads, they are nearly equal still, and smaller by the
 //! factor by which more of them come; far from there they are few and large. The ledger of powers holds on average, not
 //! photon by photon.
 
+mod branching;
 mod grid;
 mod learn;
 mod reading;
 mod settings;
-mod steer;
 mod values;
 
+pub use branching::{Branching, window};
 pub use settings::ImportanceSettings;
-pub use steer::{Branching, window};
 pub use values::Importance;
 
 use super::check_end;

@@ -95,7 +95,7 @@ pub(super) fn extent(
 fn particle(scene: &Scene, camera: &Camera, stream: &mut Stream) -> Walker {
     let size = DVec2::new(f64::from(camera.width()), f64::from(camera.height()));
     let ray = camera.ray(size * DVec2::from(stream.pair()));
-    Walker { within: scene.interior_at(camera.position()), ..Walker::new(ray, Spectrum::ONE) }
+    Walker { interior: scene.interior_at(camera.position()), ..Walker::new(ray, Spectrum::ONE) }
 }
 
 /// Counts particles of one block.

@@ -43,14 +43,14 @@ impl Forecast {
 /// none of the pilot's photons stored: as many histories as photons were asked for, and a map that may stay empty; few of
 /// them: [`MOST_A_STORED`]
 pub fn counts(scene: &Scene, settings: &MapSettings) -> Result<Emitted> {
-    counts_steered(scene, settings, None)
+    counts_by_importance(scene, settings, None)
 }
 
-/// The same with photons steered by importance.
+/// The same with photons by importance.
 ///
 /// # Errors
 /// those of [`counts`]
-pub fn counts_steered(
+pub fn counts_by_importance(
     scene: &Scene,
     settings: &MapSettings,
     importance: Option<&Importance>,

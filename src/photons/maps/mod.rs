@@ -21,7 +21,7 @@ mod counts;
 mod settings;
 
 pub use classes::{is_caustic, is_global, is_volume};
-pub use counts::{Forecast, MOST_A_STORED, counts, counts_steered, forecast};
+pub use counts::{Forecast, MOST_A_STORED, counts, counts_by_importance, forecast};
 pub use settings::{Amount, Emitted, Indirect, MapSettings, PILOT};
 
 use super::importance::Importance;
@@ -89,24 +89,24 @@ pub struct Maps {
 /// # Errors
 /// those of [`counts`] and [`fill_counted`]
 pub fn fill(scene: &Scene, settings: &MapSettings, progress: &dyn Progress) -> Result<Maps> {
-    fill_steered(scene, settings, None, progress)
+    fill_by_importance(scene, settings, None, progress)
 }
 
-/// The same with the photons of the global and the volume map steered by importance; [`Importance::of`] must know where
+/// The same with the photons of the global and the volume map by importance; [`Importance::of`] must know where
 /// the global map will be read.
 ///
 /// # Errors
 /// those of [`fill`]
-pub fn fill_steered(
+pub fn fill_by_importance(
     scene: &Scene,
     settings: &MapSettings,
     importance: Option<&Importance>,
     progress: &dyn Progress,
 ) -> Result<Maps> {
     let start = Instant::now();
-    let emitted = counts_steered(scene, settings, importance)?;
+    let emitted = counts_by_importance(scene, settings, importance)?;
     let pilot = start.elapsed();
-    let mut maps = fill_counted_steered(scene, settings, emitted, importance, progress)?;
+    let mut maps = fill_counted_by_importance(scene, settings, emitted, importance, progress)?;
     maps.report.pilot = pilot;
     Ok(maps)
 }
@@ -124,14 +124,14 @@ pub fn fill_counted(
     emitted: Emitted,
     progress: &dyn Progress,
 ) -> Result<Maps> {
-    fill_counted_steered(scene, settings, emitted, None, progress)
+    fill_counted_by_importance(scene, settings, emitted, None, progress)
 }
 
-/// The same with photons steered by importance.
+/// The same with photons by importance.
 ///
 /// # Errors
 /// those of [`fill_counted`]
-pub fn fill_counted_steered(
+pub fn fill_counted_by_importance(
     scene: &Scene,
     settings: &MapSettings,
     emitted: Emitted,

@@ -64,7 +64,7 @@ pub fn cost(pictures: &Pictures, seconds: &Crossing, rays: &Crossing) -> anyhow:
     let figure = Figure { width: Width::Double, columns: 2, shared_legend: true, ..Figure::new(panels) };
     let caption = format!(
         "A picture of {SIDE} x {SIDE} pixels of a box of fog by photon maps of several sizes and by paths: root mean square \
-         error of a pixel against CPU time of this machine (left) and work (right), for 1, 8 and 64 samples a pixel \
+         error of a pixel against CPU time of this machine (left) and work (right), for 1, 8 and 64 samples per pixel \
          (points, with bootstrap intervals of 95 % over maps) and all between (lines). Maps start later, for they have to be \
          filled, then fall to the error that all samples of one map share. The rule is the error below which \
          paths are cheaper than every map."

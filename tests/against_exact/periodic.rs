@@ -1,7 +1,7 @@
-//! The folded cell: photons of an oblique beam lie evenly over it. Mirrors in its place would not do.
+//! The periodic cell: photons of an oblique beam lie evenly over it. Mirrors in its place would not do.
 
 use crate::checks::cell::{
-    HISTORIES, UNEVEN, an_oblique_beam_fills_the_cell_evenly, counts, evenness, folded, mirrored, unfolded,
+    HISTORIES, UNEVEN, an_oblique_beam_fills_the_cell_evenly, counts, evenness, mirrored, unwrapped, wrapped,
 };
 use crate::support::run::pass;
 use crate::support::scenes::{CELL, Incidence, layer, slab};
@@ -32,16 +32,16 @@ fn photons_of_an_oblique_beam_lie_evenly_over_the_cell() {
     }
 }
 
-/// Folded, the photons of an oblique beam are even; under four mirrors they are not.
+/// Wrapped, the photons of an oblique beam are even; under four mirrors they are not.
 #[test]
 fn four_mirrors_are_rejected() {
-    an_oblique_beam_fills_the_cell_evenly(folded);
-    let points = unfolded(&slab(2.0, 0.9, 0.75, Incidence::Beam(0.3)));
+    an_oblique_beam_fills_the_cell_evenly(wrapped);
+    let points = unwrapped(&slab(2.0, 0.9, 0.75, Incidence::Beam(0.3)));
     verdict::misfits("mirrored", evenness(&counts(points.into_iter().map(mirrored))), 2);
     // Directions that are as often left as right hide the mistake: that is why it is plausible.
-    let symmetric = unfolded(&slab(2.0, 0.9, 0.75, Incidence::Diffuse));
-    let even = evenness(&counts(symmetric.into_iter().map(folded)));
-    verdict::fits("diffuse, folded", even, UNEVEN, 2);
+    let symmetric = unwrapped(&slab(2.0, 0.9, 0.75, Incidence::Diffuse));
+    let even = evenness(&counts(symmetric.into_iter().map(wrapped)));
+    verdict::fits("diffuse, wrapped", even, UNEVEN, 2);
 }
 
 /// With copies around the cell every ball about a point of the cell meets what it would meet in the endless lattice,

@@ -81,7 +81,7 @@ fn density(scene: &Scene, event: Left, dir: DVec3) -> f64 {
 }
 
 impl Importance {
-    /// Follows one photon history to its end, steered; `limit` as for [`walk`].
+    /// Follows one photon history to its end, split and ended by importance; `limit` as for [`walk`].
     pub(in crate::photons) fn walk<V: Branching>(
         &self,
         scene: &Scene,

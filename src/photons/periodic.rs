@@ -1,4 +1,4 @@
-//! The folded cell: a square of an unbounded slab that stands for all of it.
+//! The periodic cell: a square of an unbounded slab that stands for all of it.
 //!
 //! Photons start uniformly on the cell [0, W) x [0, W) of the lit face, and their positions are taken modulo W;
 //! directions are untouched. By translation invariance this is exactly the slab under uniform irradiance.
@@ -7,13 +7,13 @@ use super::Photon;
 use glam::DVec3;
 
 /// The position modulo the cell's side in x and y, in [0, side).
-pub fn into_cell(p: DVec3, side: f64) -> DVec3 {
-    let fold = |x: f64| {
-        let folded = x - side * (x / side).floor();
+pub fn wrap(p: DVec3, side: f64) -> DVec3 {
+    let wrapped = |x: f64| {
+        let rest = x - side * (x / side).floor();
         // A tiny negative x rounds to the side itself.
-        if folded < side { folded } else { 0.0 }
+        if rest < side { rest } else { 0.0 }
     };
-    DVec3::new(fold(p.x), fold(p.y), p.z)
+    DVec3::new(wrapped(p.x), wrapped(p.y), p.z)
 }
 
 /// Appends copies of the photons within `margin` of the cell's edges on the other side, so that a ball of radius
