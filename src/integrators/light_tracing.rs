@@ -66,7 +66,7 @@ struct Tracer<'a, F: FnMut(Splat)> {
 /// A scattering as the camera sees it.
 struct Event {
     position: DVec3,
-    from: Option<Start>,
+    origin_surface: Option<Start>,
     kind: Flags,
 }
 
@@ -92,7 +92,7 @@ impl<F: FnMut(Splat)> Tracer<'_, F> {
             return;
         }
         self.rays.shadow += 1;
-        let start = (&ray, event.from, walker.interior);
+        let start = (&ray, event.origin_surface, walker.interior);
         let Some(passed) = connection(self.scene, start, distance, None, stream) else { return };
         let cosine = -ray.dir.dot(self.camera.forward());
         let solid_angle = self.camera.pixel_area() * cosine * cosine * cosine;
@@ -123,7 +123,7 @@ impl<F: FnMut(Splat)> Tracer<'_, F> {
             let sigma_t = medium.sigma_t(position);
             let passed = transmittance(self.scene, &walker.ray, t, walker.interior, stream);
             let weight = walker.weight * passed * sigma_t / (density(t) + sigma_t.mean());
-            let event = Event { position, from: None, kind: Flags::MEDIUM };
+            let event = Event { position, origin_surface: None, kind: Flags::MEDIUM };
             self.connect(walker, weight, event, stream, |towards| {
                 let (one_minus_mu, one_plus_mu) = cosine_pair(walker.ray.dir, towards);
                 medium.albedo(position) * medium.phase().eval(one_minus_mu, one_plus_mu)
@@ -148,7 +148,7 @@ impl<F: FnMut(Splat)> Visitor for Tracer<'_, F> {
                 let t = position.distance(walker.ray.origin);
                 let pdf = self.flight.as_ref().map_or(0.0, |flight| flight.pdf(t));
                 let weight = walker.weight * (sigma_t / (sigma_t + pdf));
-                let event = Event { position, from: None, kind: Flags::MEDIUM };
+                let event = Event { position, origin_surface: None, kind: Flags::MEDIUM };
                 self.connect(walker, weight, event, stream, |towards| {
                     let (one_minus_mu, one_plus_mu) = cosine_pair(walker.ray.dir, towards);
                     medium.albedo(position) * medium.phase().eval(one_minus_mu, one_plus_mu)
@@ -160,7 +160,7 @@ impl<F: FnMut(Splat)> Visitor for Tracer<'_, F> {
                 let outward = found.hit.normal;
                 let normal = if walker.ray.dir.dot(outward) < 0.0 { outward } else { -outward };
                 let reflection = surface.eval(position, found.hit.uv);
-                let event = Event { position, from: Some(found.start()), kind: Flags::DIFFUSE };
+                let event = Event { position, origin_surface: Some(found.start()), kind: Flags::DIFFUSE };
                 self.connect(walker, walker.weight, event, stream, |towards| {
                     reflection * towards.dot(normal).max(0.0)
                 });

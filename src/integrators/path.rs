@@ -101,7 +101,7 @@ impl<'a, F: FnMut(u32, Layer, Spectrum)> PathVisitor<'a, F> {
             && let Target::Light(index) = found.target
         {
             // Seen from where the direction was chosen, on the far side of filters.
-            let (back, dir) = (walker.behind, walker.ray.dir);
+            let (back, dir) = (walker.since_sampled, walker.ray.dir);
             let seen_along = Ray::new(walker.ray.at(-back), dir);
             let seen_hit = Hit { t: found.hit.t + back, ..found.hit };
             let (radiance, pdf_light) = self.scene.lights()[index].emitted(&seen_along, &seen_hit);
@@ -115,7 +115,7 @@ impl<'a, F: FnMut(u32, Layer, Spectrum)> PathVisitor<'a, F> {
         for light in self.scene.lights() {
             let mut seen = uncollided(self.scene, light, walker, end, stream);
             if let (Light::VolumeSource(source), Some(pdf)) = (light, walker.pdf_solid_angle) {
-                seen *= pdf / (pdf + source.pdf_solid_angle(walker.ray.at(-walker.behind)));
+                seen *= pdf / (pdf + source.pdf_solid_angle(walker.ray.at(-walker.since_sampled)));
             }
             if hit.is_none()
                 && let Some((radiance, pdf_light)) = light.background(&walker.ray)
@@ -133,7 +133,7 @@ impl<'a, F: FnMut(u32, Layer, Spectrum)> PathVisitor<'a, F> {
         &mut self,
         (walker, event): (&Walker, Flags),
         position: DVec3,
-        from: Option<Start>,
+        origin_surface: Option<Start>,
         stream: &mut Stream,
         scattered: impl Fn(DVec3) -> (Spectrum, f64),
         delta_share: impl Fn(&Light) -> f64,
@@ -144,9 +144,13 @@ impl<'a, F: FnMut(u32, Layer, Spectrum)> PathVisitor<'a, F> {
         let layer = self.layer_connected(walker, event);
         for index in 0..self.scene.lights().len() {
             let light = &self.scene.lights()[index];
-            let Some((sample, received)) =
-                next_event(self.scene, index, (position, from, walker.interior), stream, &mut self.rays)
-            else {
+            let Some((sample, received)) = next_event(
+                self.scene,
+                index,
+                (position, origin_surface, walker.interior),
+                stream,
+                &mut self.rays,
+            ) else {
                 continue;
             };
             let (fraction, pdf) = scattered(sample.dir);
@@ -296,7 +300,7 @@ pub(in crate::integrators) fn seen_straight(
     let mut sum = Spectrum::ZERO;
     loop {
         *rays += 1;
-        let hit = scene.hit(&walker.ray, walker.from);
+        let hit = scene.hit(&walker.ray, walker.origin_surface);
         let end = hit.map_or(f64::INFINITY, |found| found.hit.t);
         sum += walker.weight * seen(&walker, end, stream);
         let straight =
@@ -308,7 +312,7 @@ pub(in crate::integrators) fn seen_straight(
             return sum;
         }
         let ray = Ray::new(walker.ray.at(end), walker.ray.dir);
-        walker = Walker { ray, weight, interior, from: Some(found.start()), ..walker };
+        walker = Walker { ray, weight, interior, origin_surface: Some(found.start()), ..walker };
     }
 }
 
@@ -347,7 +351,7 @@ pub(in crate::integrators) fn uncollided(
 pub(in crate::integrators) fn next_event(
     scene: &Scene,
     index: usize,
-    (position, from, interior): (DVec3, Option<Start>, usize),
+    (position, origin_surface, interior): (DVec3, Option<Start>, usize),
     stream: &mut Stream,
     rays: &mut Rays,
 ) -> Option<(LightSample, Spectrum)> {
@@ -358,7 +362,7 @@ pub(in crate::integrators) fn next_event(
     let sample = light.sample(position, stream.pair())?;
     let ray = Ray::new(position, sample.dir);
     if let (Light::VolumeSource(_), Some(pdf)) = (light, sample.pdf_solid_angle) {
-        let start = Walker { from, interior, ..Walker::new(ray, Spectrum::ONE) };
+        let start = Walker { origin_surface, interior, ..Walker::new(ray, Spectrum::ONE) };
         let seen = seen_straight(scene, start, &mut rays.shadow, stream, |walker, end, stream| {
             uncollided(scene, light, walker, end, stream)
         });
@@ -366,7 +370,7 @@ pub(in crate::integrators) fn next_event(
     }
     rays.shadow += 1;
     let towards = Some(Target::Light(index));
-    let passed = connection(scene, (&ray, from, interior), sample.distance, towards, stream)?;
+    let passed = connection(scene, (&ray, origin_surface, interior), sample.distance, towards, stream)?;
     Some((sample, sample.value * passed))
 }
 
@@ -398,14 +402,14 @@ pub fn direct_flux(
 pub fn classes(
     scene: &Scene,
     ray: Ray,
-    from: Option<Start>,
+    origin_surface: Option<Start>,
     interior: usize,
     orders: Orders,
     stream: &mut Stream,
     collect: impl FnMut(u32, Layer, Spectrum),
 ) -> Rays {
     let mut visitor = PathVisitor::new(scene, orders, Rays::default(), collect);
-    let start = Walker { from, interior, ..Walker::new(ray, Spectrum::ONE) };
+    let start = Walker { origin_surface, interior, ..Walker::new(ray, Spectrum::ONE) };
     walk(scene, start, Roulette::Below(ROULETTE), orders.max, stream, &mut visitor);
     visitor.rays
 }
@@ -414,13 +418,14 @@ pub fn classes(
 pub fn layers(
     scene: &Scene,
     ray: Ray,
-    from: Option<Start>,
+    origin_surface: Option<Start>,
     interior: usize,
     stream: &mut Stream,
 ) -> (Layers, Rays) {
     let mut layers = Layers::ZERO;
-    let rays =
-        classes(scene, ray, from, interior, Orders::ALL, stream, |_, layer, value| layers[layer] += value);
+    let rays = classes(scene, ray, origin_surface, interior, Orders::ALL, stream, |_, layer, value| {
+        layers[layer] += value
+    });
     (layers, rays)
 }
 
@@ -429,13 +434,13 @@ pub fn layers(
 pub fn radiance(
     scene: &Scene,
     ray: Ray,
-    from: Option<Start>,
+    origin_surface: Option<Start>,
     interior: usize,
     orders: Orders,
     stream: &mut Stream,
     mut collect: impl FnMut(u32, Spectrum),
 ) -> Rays {
-    classes(scene, ray, from, interior, orders, stream, |order, _, value| collect(order, value))
+    classes(scene, ray, origin_surface, interior, orders, stream, |order, _, value| collect(order, value))
 }
 
 /// One sample of the fluence at a point [W/L^2], by order.

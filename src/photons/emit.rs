@@ -291,7 +291,8 @@ fn start(
         let leaves = is_there && (emission.chance >= 1.0 || stream.unit() < emission.chance);
         return leaves.then(|| Walker { interior: medium.interior(), ..Walker::new(emission.ray, weight) });
     }
-    let from = light.body().map(|_| Start { target: Target::Light(index), primitive: emission.primitive });
+    let origin_surface =
+        light.body().map(|_| Start { target: Target::Light(index), primitive: emission.primitive });
     let interior = scene.interior_of_light(index, origin);
-    Some(Walker { from, interior, ..Walker::new(emission.ray, weight) })
+    Some(Walker { origin_surface, interior, ..Walker::new(emission.ray, weight) })
 }

@@ -11,16 +11,16 @@ use crate::surface::Surface;
 const IN_ONE_PLACE: u32 = 64;
 
 impl Scene {
-    /// The nearest body ahead; `from` is the body that the ray starts on.
-    pub fn hit(&self, ray: &Ray, from: Option<Start>) -> Option<SceneHit> {
-        let start = from.and_then(|start| self.bodies.in_list(start.target));
+    /// The nearest body ahead; `origin_surface` is the one that the ray starts on.
+    pub fn hit(&self, ray: &Ray, origin_surface: Option<Start>) -> Option<SceneHit> {
+        let start = origin_surface.and_then(|start| self.bodies.in_list(start.target));
         let mut nearest = self
             .bodies
             .rectangles
             .nearest(ray, start)
             .map(|(index, hit)| SceneHit { target: self.bodies.targets[index], hit });
         for &target in &self.bodies.others {
-            if let Some(hit) = self.try_body(ray, from, target)
+            if let Some(hit) = self.try_body(ray, origin_surface, target)
                 && nearest.is_none_or(|n| hit.t < n.hit.t || hit.t == n.hit.t && target < n.target)
             {
                 nearest = Some(SceneHit { target, hit });
@@ -30,8 +30,8 @@ impl Scene {
     }
 
     /// Where a ray meets one body.
-    fn try_body(&self, ray: &Ray, from: Option<Start>, target: Target) -> Option<Hit> {
-        let start = Start::on(from, target);
+    fn try_body(&self, ray: &Ray, origin_surface: Option<Start>, target: Target) -> Option<Hit> {
+        let start = Start::on(origin_surface, target);
         match target {
             Target::Object(i) => self.objects()[i].shape.hit(ray, start),
             Target::Light(i) => self.lights()[i].hit(ray, start),
@@ -40,40 +40,48 @@ impl Scene {
 
     /// What filters let pass between the ray's origin and distance `end` \[1\], not counting the body at the far end;
     /// none if another body stands in the way, but for index-matched boundaries, or nothing passes. Media are not asked.
-    pub fn passes(&self, ray: &Ray, from: Option<Start>, end: f64, towards: Target) -> Option<Spectrum> {
+    pub fn passes(
+        &self,
+        ray: &Ray,
+        origin_surface: Option<Start>,
+        end: f64,
+        towards: Target,
+    ) -> Option<Spectrum> {
         if let Target::Light(index) = towards
             && self.lights()[index].hides_itself(ray, end)
         {
             return None;
         }
-        self.let_through(ray, from, end, Some(towards))
+        self.let_through(ray, origin_surface, end, Some(towards))
     }
 
     /// The same where no body is at the far end, but an eye.
-    pub fn sees(&self, ray: &Ray, from: Option<Start>, end: f64) -> Option<Spectrum> {
-        self.let_through(ray, from, end, None)
+    pub fn sees(&self, ray: &Ray, origin_surface: Option<Start>, end: f64) -> Option<Spectrum> {
+        self.let_through(ray, origin_surface, end, None)
     }
 
     fn let_through(
         &self,
         ray: &Ray,
-        from: Option<Start>,
+        origin_surface: Option<Start>,
         end: f64,
         towards: Option<Target>,
     ) -> Option<Spectrum> {
         if self.plan().has_filters || self.plan().has_matched {
-            return self.passes_straight(ray, from, end, towards);
+            return self.passes_straight(ray, origin_surface, end, towards);
         }
         let bodies = &self.bodies;
-        let except =
-            [from.and_then(|start| bodies.in_list(start.target)), towards.and_then(|t| bodies.in_list(t))];
+        let except = [
+            origin_surface.and_then(|start| bodies.in_list(start.target)),
+            towards.and_then(|t| bodies.in_list(t)),
+        ];
         if bodies.rectangles.block(ray, except, end) {
             return None;
         }
         let mut others = bodies.others.iter().filter(|target| Some(**target) != towards);
         let is_blocked = others.any(|&target| match target {
-            Target::Object(i) => self.objects()[i].shape.blocks(ray, Start::on(from, target), end),
-            Target::Light(_) => self.try_body(ray, from, target).is_some_and(|hit| hit.t < end),
+            Target::Object(i) => self.objects()[i].shape.blocks(ray, Start::on(origin_surface, target), end),
+            Target::Light(_) => self.try_body(ray, origin_surface, target).is_some_and(|hit| hit.t < end),
         });
         (!is_blocked).then_some(Spectrum::ONE)
     }
@@ -97,13 +105,13 @@ impl Scene {
     fn passes_straight(
         &self,
         ray: &Ray,
-        from: Option<Start>,
+        origin_surface: Option<Start>,
         end: f64,
         towards: Option<Target>,
     ) -> Option<Spectrum> {
-        let (mut ray, mut from, mut end, mut passed) = (*ray, from, end, Spectrum::ONE);
+        let (mut ray, mut origin_surface, mut end, mut passed) = (*ray, origin_surface, end, Spectrum::ONE);
         let mut here = 0;
-        while let Some(found) = self.hit(&ray, from) {
+        while let Some(found) = self.hit(&ray, origin_surface) {
             if Some(found.target) == towards || found.hit.t >= end {
                 break;
             }
@@ -117,7 +125,8 @@ impl Scene {
             if here > IN_ONE_PLACE {
                 return None;
             }
-            (ray, from, end) = (Ray::new(position, ray.dir), Some(found.start()), end - found.hit.t);
+            (ray, origin_surface, end) =
+                (Ray::new(position, ray.dir), Some(found.start()), end - found.hit.t);
         }
         Some(passed)
     }

@@ -59,9 +59,9 @@ pub(super) fn bounce<V: Visitor>(
         weight,
         order: walker.order + u32::from(pdf.is_some()),
         flags: walker.flags.with(if pdf.is_some() { Flags::DIFFUSE } else { Flags::SPECULAR }),
-        from: Some(found.start()),
+        origin_surface: Some(found.start()),
         interior: walker.interior,
-        behind: 0.0,
+        since_sampled: 0.0,
         events: walker.events,
         // A mirror is no way out.
         total_reflections: if pdf.is_some() { 0 } else { walker.total_reflections },
@@ -102,8 +102,8 @@ fn pass<V: Visitor>(
 fn straight_on(walker: &Walker, found: &SceneHit, position: DVec3) -> Walker {
     Walker {
         ray: Ray::new(position, walker.ray.dir),
-        from: Some(found.start()),
-        behind: walker.behind + found.hit.t,
+        origin_surface: Some(found.start()),
+        since_sampled: walker.since_sampled + found.hit.t,
         ..*walker
     }
 }
@@ -136,8 +136,8 @@ fn cross<V: Visitor>(
     }
     let next = Walker {
         flags: walker.flags.with(Flags::SPECULAR),
-        from: Some(found.start()),
-        behind: 0.0,
+        origin_surface: Some(found.start()),
+        since_sampled: 0.0,
         total_reflections: if is_total { walker.total_reflections + 1 } else { 0 },
         pdf_solid_angle: None,
         ..*walker

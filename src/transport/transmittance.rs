@@ -29,17 +29,17 @@ pub fn transmittance(scene: &Scene, ray: &Ray, end: f64, interior: usize, stream
 /// None if another body stands in the way, or nothing passes.
 pub fn connection(
     scene: &Scene,
-    (ray, from, interior): (&Ray, Option<Start>, usize),
+    (ray, origin_surface, interior): (&Ray, Option<Start>, usize),
     end: f64,
     towards: Option<Target>,
     stream: &mut Stream,
 ) -> Option<Spectrum> {
     let filtered = match towards {
-        Some(target) => scene.passes(ray, from, end, target),
-        None => scene.sees(ray, from, end),
+        Some(target) => scene.passes(ray, origin_surface, end, target),
+        None => scene.sees(ray, origin_surface, end),
     }?;
     let passed = match scene.plan().has_matched {
-        true => across(scene, (ray, from, interior), end, towards, stream),
+        true => across(scene, (ray, origin_surface, interior), end, towards, stream),
         false => transmittance(scene, ray, end, interior, stream),
     };
     Some(filtered * passed)
@@ -48,21 +48,22 @@ pub fn connection(
 /// The transmittance of a way that nothing blocks, from interior to interior.
 fn across(
     scene: &Scene,
-    (ray, from, interior): (&Ray, Option<Start>, usize),
+    (ray, origin_surface, interior): (&Ray, Option<Start>, usize),
     end: f64,
     towards: Option<Target>,
     stream: &mut Stream,
 ) -> Spectrum {
-    let (mut ray, mut from, mut interior, mut end, mut passed) = (*ray, from, interior, end, Spectrum::ONE);
+    let (mut ray, mut origin_surface, mut interior, mut end, mut passed) =
+        (*ray, origin_surface, interior, end, Spectrum::ONE);
     loop {
-        let ahead = scene.hit(&ray, from).filter(|f| f.hit.t < end && Some(f.target) != towards);
-        let straight = ahead.and_then(|found| Some((found, scene.straight_on(&ray, &found, interior)?.1)));
+        let next = scene.hit(&ray, origin_surface).filter(|f| f.hit.t < end && Some(f.target) != towards);
+        let straight = next.and_then(|found| Some((found, scene.straight_on(&ray, &found, interior)?.1)));
         let Some((found, behind)) = straight else {
             return passed * transmittance(scene, &ray, end, interior, stream);
         };
         passed *= transmittance(scene, &ray, found.hit.t, interior, stream);
         ray = Ray::new(ray.at(found.hit.t), ray.dir);
-        (from, interior, end) = (Some(found.start()), behind, end - found.hit.t);
+        (origin_surface, interior, end) = (Some(found.start()), behind, end - found.hit.t);
     }
 }
 

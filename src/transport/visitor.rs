@@ -19,12 +19,12 @@ pub struct Walker {
     /// What has been met.
     pub flags: Flags,
     /// The body that the ray starts on.
-    pub from: Option<Start>,
+    pub origin_surface: Option<Start>,
     /// Number of the interior that the ray is in.
     pub interior: usize,
-    /// How far behind the ray's origin its direction was chosen \[L\]: a ray starts again behind a filter or an
+    /// Distance since the direction was sampled, to the origin of the ray \[L\]: a ray starts again behind a filter or an
     /// index-matched boundary, on the same way.
-    pub behind: f64,
+    pub since_sampled: f64,
     /// Events and boundaries met so far.
     pub events: u32,
     /// Total reflections since it was last scattered, or could cross a boundary.
@@ -41,9 +41,9 @@ impl Walker {
             weight,
             order: 0,
             flags: Flags::NONE,
-            from: None,
+            origin_surface: None,
             interior: SURROUNDINGS,
-            behind: 0.0,
+            since_sampled: 0.0,
             events: 0,
             total_reflections: 0,
             pdf_solid_angle: None,

@@ -46,7 +46,7 @@ pub fn walk<V: Visitor>(
             visitor.visit(&walker, Step::Truncated(Spectrum::ZERO), stream);
             return;
         }
-        let hit = scene.hit(&walker.ray, walker.from);
+        let hit = scene.hit(&walker.ray, walker.origin_surface);
         visitor.visit(&walker, Step::Ahead(hit.as_ref()), stream);
         if limit.is_some_and(|limit| walker.order >= limit) {
             let Some(through) = hit.filter(|found| V::LOOKS_AHEAD && is_looked_through(scene, found)) else {
@@ -103,9 +103,9 @@ pub fn walk<V: Visitor>(
                     weight: kept,
                     order: walker.order + 1,
                     flags: walker.flags.with(Flags::MEDIUM),
-                    from: None,
+                    origin_surface: None,
                     interior: walker.interior,
-                    behind: 0.0,
+                    since_sampled: 0.0,
                     events: walker.events,
                     total_reflections: 0,
                     pdf_solid_angle: V::LOOKS_AHEAD.then(pdf),

@@ -73,8 +73,9 @@ pub fn watched<const N: usize, W: Watcher<N>>(
         for history in range {
             let mut stream = Stream::new(seed, Purpose::Photons, 0, history);
             let ray = scene.lights()[0].emit(scene.periodic_cell(), &mut stream).ray;
-            let from = scene.lights()[0].body().map(|_| Start { target: Target::Light(0), primitive: 0 });
-            let start = Walker { from, ..Walker::new(ray, Spectrum::ONE) };
+            let origin_surface =
+                scene.lights()[0].body().map(|_| Start { target: Target::Light(0), primitive: 0 });
+            let start = Walker { origin_surface, ..Walker::new(ray, Spectrum::ONE) };
             let mut watching = Watching::<W, N>(watcher());
             walk(scene, start, Roulette::Analog, None, &mut stream, &mut watching);
             for (m, number) in moments.iter_mut().zip(watching.0.numbers()) {

@@ -154,12 +154,12 @@ impl<'a> Mapper<'a> {
     pub fn radiance(
         &self,
         ray: Ray,
-        from: Option<Start>,
+        origin_surface: Option<Start>,
         interior: usize,
         stream: &mut Stream,
     ) -> (Layers, Report) {
         let mut eye = Eye { mapper: self, layers: Layers::ZERO, report: Report::default() };
-        let start = Walker { from, interior, ..Walker::new(ray, Spectrum::ONE) };
+        let start = Walker { origin_surface, interior, ..Walker::new(ray, Spectrum::ONE) };
         walk(self.scene, start, Roulette::Below(ROULETTE), Some(0), stream, &mut eye);
         (eye.layers, eye.report)
     }
@@ -178,7 +178,7 @@ impl<'a> Mapper<'a> {
     fn direct(
         &self,
         walker: &Walker,
-        from: Option<Start>,
+        origin_surface: Option<Start>,
         report: &mut Report,
         stream: &mut Stream,
         scattered: impl Fn(DVec3) -> f64,
@@ -187,7 +187,7 @@ impl<'a> Mapper<'a> {
         let (position, interior) = (walker.ray.origin, walker.interior);
         let mut sum = Spectrum::ZERO;
         for index in 0..self.scene.lights().len() {
-            let place = (position, from, interior);
+            let place = (position, origin_surface, interior);
             if let Some((sample, received)) = next_event(self.scene, index, place, stream, &mut report.rays) {
                 sum += received * scattered(sample.dir);
             }
@@ -196,7 +196,7 @@ impl<'a> Mapper<'a> {
         let is_missed = |light: &Light| !light.has_direction_from(position);
         if scene.plan().has_emission || scene.lights().iter().any(is_missed) {
             let ray = Ray::new(position, blind(stream));
-            let start = Walker { from, interior, ..Walker::new(ray, Spectrum::ONE) };
+            let start = Walker { origin_surface, interior, ..Walker::new(ray, Spectrum::ONE) };
             sum += seen_straight(scene, start, &mut report.rays.segments, stream, |walker, end, stream| {
                 self.met(walker, end, Some(position), stream)
             });

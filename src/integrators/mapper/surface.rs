@@ -56,7 +56,7 @@ impl<'w> Diffuse<'w> {
     /// A ray that starts here, in the interior of the one that came.
     pub fn leaving(&self, dir: DVec3) -> Walker {
         let start = Walker::new(Ray::new(self.position, dir), Spectrum::ONE);
-        Walker { from: Some(self.found.start()), interior: self.walker.interior, ..start }
+        Walker { origin_surface: Some(self.found.start()), interior: self.walker.interior, ..start }
     }
 
     /// Irradiance from a map [W/L^2].
@@ -119,7 +119,7 @@ impl<'w> Diffuse<'w> {
         let cosine = |towards: DVec3| towards.dot(self.normal).max(0.0);
         // Density cos/pi: the irradiance along a sampled direction is pi times the radiance.
         let mapped = |towards: DVec3| cosine(towards) / PI;
-        mapper.direct(&here, here.from, report, stream, mapped, |stream| {
+        mapper.direct(&here, here.origin_surface, report, stream, mapped, |stream| {
             Lambertian::scatter(self.normal, stream.pair()).0
         }) * PI
     }

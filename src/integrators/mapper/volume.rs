@@ -34,7 +34,7 @@ impl Mapper<'_> {
         let (scene, settings) = (self.scene, self.settings);
         let medium = scene.medium(number);
         let (phase, dir) = (medium.phase(), walker.ray.dir);
-        let here = Walker { ray: Ray::new(position, dir), from: None, ..*walker };
+        let here = Walker { ray: Ray::new(position, dir), origin_surface: None, ..*walker };
         let value = |towards: DVec3| {
             let (one_minus_mu, one_plus_mu) = cosine_pair(dir, towards);
             phase.eval(one_minus_mu, one_plus_mu)
