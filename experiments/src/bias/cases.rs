@@ -1,6 +1,7 @@
 //! The cases: at which depth, with which gather and kernel, each map is asked.
 
 use super::fields::Field;
+use crate::harness::Parameters;
 use crate::setups::{Body, CELL, Size, spiral};
 use glam::DVec3;
 use turbid::estimators::{Estimator, Gather, Kernel};
@@ -67,6 +68,17 @@ impl Case {
     /// The group of cells that answer it.
     pub fn group(field: &Field, photons: u64) -> String {
         format!("{}-n{photons}", field.name)
+    }
+
+    /// What it asks, as columns of the results.
+    pub fn parameters(&self) -> Parameters {
+        Parameters {
+            field: Some(self.field.name),
+            photons: Some(self.photons),
+            depth: Some(self.depth),
+            kernel: Some(self.kernel),
+            ..self.size.parameters()
+        }
     }
 
     /// The name in tables.

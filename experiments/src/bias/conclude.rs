@@ -6,7 +6,7 @@ use super::measure::{map_case, path_case};
 use super::predict::COLLISIONS;
 use super::results::{CaseResult, Mistake, exact_at, fano, largest, pick, predicted_fano};
 use super::{claims, figures, tables};
-use crate::harness::{Cells, Row, Section, Settings, Unit, signed, with_error};
+use crate::harness::{Cells, Parameters, Row, Section, Settings, Unit, signed, with_error};
 use crate::prediction::{Compared, PredictedError, Prediction, Predictions};
 use crate::setups::Size;
 use crate::theory::GATHER_TERMS;
@@ -72,19 +72,22 @@ fn rows(cells: &Cells, results: &[CaseResult], mistakes: &[Mistake]) -> anyhow::
     let mut rows = Vec::new();
     for result in results {
         let name = result.case.name();
-        let [fluence, error, left] = result.rows(&name, ("fluence", Unit::FLUENCE), cells)?;
+        let [fluence, error, left] =
+            result.rows(&name, ("fluence", Unit::FLUENCE), result.case.parameters(), cells)?;
         let maps = result.errors.len() as u64;
         rows.extend([fluence.cost(result.case.photons * maps, "photons emitted"), error, left]);
         if let Some(fano) = fano(cells, &result.case)? {
             rows.push(
                 Row::measured(&name, "Fano factor", Unit::ONE, &fano)?
-                    .predicted(1.0 + predicted_fano(&result.case)),
+                    .predicted(1.0 + predicted_fano(&result.case))
+                    .with(result.case.parameters()),
             );
         }
     }
     for mistake in mistakes {
         let name = format!("{} {}", mistake.case.name(), mistake.name);
-        rows.push(Row::measured(&name, "error", Unit::PERCENT, &mistake.error)?.predicted(mistake.wrong));
+        let row = Row::measured(&name, "error", Unit::PERCENT, &mistake.error)?.predicted(mistake.wrong);
+        rows.push(row.with(mistake.case.parameters()));
     }
     for field in FIELDS.into_iter().filter(|f| f.has_clusters()) {
         for &depth in field.depths {
@@ -92,7 +95,12 @@ fn rows(cells: &Cells, results: &[CaseResult], mistakes: &[Mistake]) -> anyhow::
             let (exact, error) = exact_at(results, field, depth);
             rows.push(
                 Row::measured(&name, "fluence", Unit::FLUENCE, &cells.moments(&name, "fluence")?)?
-                    .reference(exact, error),
+                    .reference(exact, error)
+                    .with(Parameters {
+                        field: Some(field.name),
+                        depth: Some(depth),
+                        ..Parameters::default()
+                    }),
             );
         }
     }

@@ -1,6 +1,7 @@
 //! The cases: with which gather and kernel the edges of each map are probed, and where.
 
 use super::shaft::{CAP, DEPTH, LENGTH, WIDTH, density};
+use crate::harness::Parameters;
 use crate::setups::Size;
 use glam::DVec3;
 use std::f64::consts::PI;
@@ -62,6 +63,17 @@ impl Case {
     /// The group of cells that answer it.
     pub fn group(photons: u64) -> String {
         format!("shaft-n{photons}")
+    }
+
+    /// What it asks, as columns of the results.
+    pub fn parameters(&self) -> Parameters {
+        Parameters {
+            field: Some("shaft"),
+            photons: Some(self.photons),
+            radius: matches!(self.size, Size::Radius(_)).then(|| self.scale()),
+            kernel: Some(self.kernel),
+            ..self.size.parameters()
+        }
     }
 
     /// The name in tables.

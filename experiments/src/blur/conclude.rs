@@ -6,7 +6,7 @@ use super::predict::{EQUIVALENT, RISE, Theory};
 use super::results::{CaseResult, Transfer, find};
 use super::shaft::CAP;
 use super::{claims, figures, shaft, tables, waves};
-use crate::harness::{Cells, Estimate, Row, Section, Settings, Unit};
+use crate::harness::{Cells, Estimate, Parameters, Row, Section, Settings, Unit};
 use crate::prediction::{Entry, Prediction, Predictions, Term};
 use crate::setups::Size;
 use rayon::prelude::*;
@@ -69,34 +69,41 @@ fn entries(result: &CaseResult) -> Vec<Entry> {
 fn rows(results: &[CaseResult], transfers: &[Transfer]) -> anyhow::Result<Vec<Row>> {
     let mut rows = Vec::new();
     for result in results {
-        let (name, theory) = (result.case.name(), &result.theory);
+        let (name, asked, theory) = (result.case.name(), result.case.parameters(), &result.theory);
         for (index, place) in result.case.places().into_iter().enumerate() {
             let mean = result.mean(index);
             // Where no map has found a photon there is nothing to say.
             if mean.variance() > 0.0 {
                 let (value, error) = theory.profile[index];
                 rows.push(
-                    Row::measured(&name, &Case::quantity(place), Unit::ONE, &mean)?.reference(value, error),
+                    Row::measured(&name, &Case::quantity(place), Unit::ONE, &mean)?
+                        .reference(value, error)
+                        .with(asked),
                 );
             }
         }
         rows.push(
             Row::estimated(&name, RISE, Unit::MFP, &result.rise)?
                 .reference(theory.rise_probed, 1e-9)
-                .cost(result.case.photons * result.single.n(), "photons emitted"),
+                .cost(result.case.photons * result.single.n(), "photons emitted")
+                .with(asked),
         );
         if let Some(equivalent) = &result.equivalent {
             rows.push(
                 Row::estimated(&name, EQUIVALENT, Unit::MFP, equivalent)?
-                    .reference(theory.equivalent_probed, 1e-9),
+                    .reference(theory.equivalent_probed, 1e-9)
+                    .with(asked),
             );
         }
-        rows.push(Row::measured(&name, "10-90 width of one map", Unit::MFP, &result.single)?);
+        rows.push(Row::measured(&name, "10-90 width of one map", Unit::MFP, &result.single)?.with(asked));
     }
     for t in transfers {
+        let asked = Parameters { kernel: Some(t.kernel), ..Size::Radius(t.radius).parameters() };
         let (name, contrast) = (waves::case(t.kernel, t.radius), t.maps.iter().collect::<Moments>());
         rows.push(
-            Row::measured(&name, waves::QUANTITY, Unit::ONE, &contrast)?.reference(t.predicted, t.error),
+            Row::measured(&name, waves::QUANTITY, Unit::ONE, &contrast)?
+                .reference(t.predicted, t.error)
+                .with(asked),
         );
     }
     Ok(rows)

@@ -1,7 +1,7 @@
 //! The cases asked of transported maps: where, with which gather, kernel and treatment.
 
 use super::fields::{CaseSet, Field};
-use crate::harness::Settings;
+use crate::harness::{Parameters, Settings};
 use crate::setups::{Body, CELL, FURNACE, Size, spiral};
 use glam::DVec3;
 use std::f64::consts::PI;
@@ -133,6 +133,17 @@ impl Case {
     /// The group of cells that answer it.
     pub fn group(field: &Field, photons: u64) -> String {
         format!("{}-n{photons}", field.name)
+    }
+
+    /// What it asks, as columns of the results.
+    pub fn parameters(&self) -> Parameters {
+        Parameters {
+            field: Some(self.field.name),
+            photons: Some(self.photons),
+            depth: Some(self.place.depth()),
+            kernel: Some(self.kernel),
+            ..self.size.parameters()
+        }
     }
 
     /// The name in tables.

@@ -6,8 +6,8 @@ use super::predict::TERMS;
 use super::results::{CaseResult, Found, SheetResult, SpreadResult, integrals, kept, rims};
 use super::sheet::Sheet;
 use super::spread::Spread;
-use super::{claims, figures, sheet, tables};
-use crate::harness::{Cells, Row, Section, Settings, Unit, with_error};
+use super::{claims, figures, sheet, spread, tables};
+use crate::harness::{Cells, Parameters, Row, Section, Settings, Unit, with_error};
 use crate::prediction::{Compared, Entry, PredictedError, Prediction, Predictions, Term};
 use crate::setups::Size;
 use anyhow::Context;
@@ -90,37 +90,45 @@ fn entries(found: &Found) -> Vec<Entry> {
 fn rows(settings: &Settings, cells: &Cells, found: &Found) -> anyhow::Result<Vec<Row>> {
     let mut rows = Vec::new();
     for r in &found.results {
-        let [fluence, error, left] = r.rows(&r.case.name(), ("fluence", Unit::FLUENCE), cells)?;
+        let [fluence, error, left] =
+            r.rows(&r.case.name(), ("fluence", Unit::FLUENCE), r.case.parameters(), cells)?;
         let maps = r.errors.len() as u64;
         rows.extend([fluence.cost(r.case.photons * maps, "photons emitted"), error, left]);
     }
     for s in &found.sheets {
         let (name, inside) = (s.sheet.name(), s.sheet.fields().0);
         let row = Row::measured(&name, "density", Unit::ONE, &cells.moments(&name, "density")?)?;
-        rows.push(row.reference(inside, 0.0));
+        let asked = Parameters { kernel: Some(s.sheet.kernel), ..s.sheet.size.parameters() };
+        rows.push(row.reference(inside, 0.0).with(asked));
         let left: Moments = s.errors.iter().map(|e| e - s.predicted).collect();
-        rows.push(Row::measured(&name, "error left over", Unit::PERCENT, &left)?.reference(0.0, s.bound));
+        let row = Row::measured(&name, "error left over", Unit::PERCENT, &left)?;
+        rows.push(row.reference(0.0, s.bound).with(asked));
     }
     for s in &found.spreads {
         let (name, factors) = (s.spread.name(), s.factors.iter().collect::<Moments>());
         let row = Row::measured(&name, "variance factor", Unit::ONE, &factors)?;
-        rows.push(row.reference(s.exact.0, s.exact.1));
+        let asked = Parameters { kernel: Some(s.spread.kernel), ..Size::Radius(spread::RADIUS).parameters() };
+        rows.push(row.reference(s.exact.0, s.exact.1).with(asked));
         let means: Moments = s.means.iter().collect();
-        rows.push(Row::measured(&name, "density", Unit::ONE, &means)?.reference(s.mean.0, s.mean.1));
+        let row = Row::measured(&name, "density", Unit::ONE, &means)?;
+        rows.push(row.reference(s.mean.0, s.mean.1).with(asked));
     }
     for rim in rims(settings, found) {
         for (quantity, measured, predicted) in
             [("rim width", rim.width, rim.predicted_width), ("lost fluence", rim.lost, rim.predicted_lost)]
         {
             let estimate = crate::harness::Estimate::jackknife(&measured);
-            rows.push(Row::estimated(&rim.name(), quantity, Unit::MFP, &estimate)?.predicted(predicted));
+            let row = Row::estimated(&rim.name(), quantity, Unit::MFP, &estimate)?.predicted(predicted);
+            let (field, photons) = (Some(rim.field.name), Some(rim.photons));
+            rows.push(row.with(Parameters { field, photons, ..rim.size.parameters() }));
         }
     }
     for one in integrals(settings, found) {
         if one.measured.std_error > 0.0 {
             let estimate = crate::harness::Estimate::jackknife(&one.measured);
             let row = Row::estimated(&one.name(), "size of the error over depth", Unit::MFP, &estimate)?;
-            rows.push(row.predicted(one.predicted));
+            let asked = Parameters { field: Some(one.field.name), ..one.size.parameters() };
+            rows.push(row.predicted(one.predicted).with(asked));
         }
     }
     Ok(rows)

@@ -18,7 +18,7 @@ pub const GROUP: &str = "spread";
 /// Photons expected in the unit box.
 const PHOTONS: u64 = 30_000;
 /// The radius [box].
-const RADIUS: f64 = 0.08;
+pub const RADIUS: f64 = 0.08;
 /// Depths over the radius.
 pub const DEPTHS: [f64; 5] = [0.0, 0.25, 0.5, 0.75, 1.0];
 /// Probes along a side; their balls do not meet.

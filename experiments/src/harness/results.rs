@@ -1,9 +1,10 @@
 //! Rows of the result table. A row without an error and a unit cannot be built.
 
-use super::{Estimate, Unit};
+use super::{Estimate, Parameters, Unit};
 use crate::prediction::Prediction;
 use anyhow::ensure;
 use serde::Serialize;
+use turbid::estimators::Kernel;
 use turbid::stats::{ALPHA, Moments, poisson_interval};
 
 /// One row: a case and a quantity, measured, beside what was predicted and what is exact.
@@ -11,6 +12,7 @@ use turbid::stats::{ALPHA, Moments, poisson_interval};
 pub struct Row {
     case: String,
     quantity: String,
+    parameters: Parameters,
     unit: Unit,
     n: u64,
     value: f64,
@@ -69,6 +71,7 @@ impl Row {
         Row {
             case: case.to_string(),
             quantity: quantity.to_string(),
+            parameters: Parameters::default(),
             unit,
             n,
             value,
@@ -91,6 +94,12 @@ impl Row {
     #[must_use]
     pub fn reference(self, value: f64, error: f64) -> Self {
         Row { reference: Some((value, error)), ..self }
+    }
+
+    /// What the case asks.
+    #[must_use]
+    pub fn with(self, parameters: Parameters) -> Self {
+        Row { parameters, ..self }
     }
 
     /// The work behind it: a count and what was counted.
@@ -165,6 +174,12 @@ pub(super) struct Record<'a> {
     experiment: &'a str,
     case: &'a str,
     quantity: &'a str,
+    field: Option<&'a str>,
+    photons: Option<u64>,
+    depth: Option<f64>,
+    radius: Option<f64>,
+    k: Option<usize>,
+    kernel: Option<&'a str>,
     unit: &'a str,
     n: u64,
     mean: f64,
@@ -183,10 +198,17 @@ pub(super) struct Record<'a> {
 impl<'a> Record<'a> {
     pub(super) fn new(experiment: &'a str, row: &'a Row) -> Self {
         let test = row.z_and_p();
+        let Parameters { field, photons, depth, radius, k, kernel } = row.parameters;
         Record {
             experiment,
             case: &row.case,
             quantity: &row.quantity,
+            field,
+            photons,
+            depth,
+            radius,
+            k,
+            kernel: kernel.map(Kernel::name),
             unit: row.unit.name(),
             n: row.n,
             mean: row.value,

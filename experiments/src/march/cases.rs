@@ -1,6 +1,6 @@
 //! The cases: which ray, which steps, which gather.
 
-use crate::harness::Settings;
+use crate::harness::{Parameters, Settings};
 use crate::setups::{CELL, Setup, Size};
 use glam::DVec3;
 use turbid::estimators::{Estimator, Kernel};
@@ -52,6 +52,11 @@ impl Case {
             }
         }
         cases
+    }
+
+    /// What it asks, as columns of the results.
+    pub fn parameters(&self) -> Parameters {
+        Parameters { kernel: Some(Kernel::Uniform), ..self.size.parameters() }
     }
 
     /// The name in tables.

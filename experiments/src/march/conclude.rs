@@ -82,7 +82,12 @@ fn claims(results: &[CaseResult]) -> Vec<Claim> {
 fn rows(cells: &Cells, results: &[CaseResult]) -> anyhow::Result<Vec<Row>> {
     let mut rows = Vec::new();
     for result in results {
-        rows.extend(result.rows(&result.case.name(), ("radiance", Unit::RADIANCE), cells)?);
+        rows.extend(result.rows(
+            &result.case.name(),
+            ("radiance", Unit::RADIANCE),
+            result.case.parameters(),
+            cells,
+        )?);
     }
     Ok(rows)
 }

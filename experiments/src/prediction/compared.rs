@@ -2,7 +2,7 @@
 
 use super::error::PredictedError;
 use super::term::Entry;
-use crate::harness::{Cells, Estimate, Row, Unit};
+use crate::harness::{Cells, Estimate, Parameters, Row, Unit};
 use turbid::stats::{Moments, amplitude_per_map};
 
 /// One case with everything that is known of it; errors in per cent of the exact value.
@@ -56,17 +56,19 @@ impl<C> Compared<C> {
         &self,
         name: &str,
         (quantity, unit): (&str, Unit),
+        parameters: Parameters,
         cells: &Cells,
     ) -> anyhow::Result<[Row; 3]> {
         let (exact, bound) = self.expected.exact;
         let values = cells.moments(name, quantity)?;
         let left: Moments = self.errors.iter().map(|e| e - self.predicted()).collect();
-        Ok([
+        let rows = [
             Row::measured(name, quantity, unit, &values)?.reference(exact, bound),
             Row::measured(name, "error", Unit::PERCENT, &self.error)?.predicted(self.predicted()),
             Row::measured(name, "error left over", Unit::PERCENT, &left)?
                 .reference(0.0, 100.0 * self.expected.error),
-        ])
+        ];
+        Ok(rows.map(|row| row.with(parameters)))
     }
 
     /// The case in the error budget of the study.

@@ -5,8 +5,11 @@ use super::figures;
 use super::fit::{exponent, exponent_of_means};
 use super::predict::Case;
 use super::results::{Curve, Point, ladder};
-use crate::harness::{Cells, Claim, Estimate, Row, Section, Settings, Table, Unit, signed, with_error};
+use crate::harness::{
+    Cells, Claim, Estimate, Parameters, Row, Section, Settings, Table, Unit, signed, with_error,
+};
 use crate::prediction::{Entry, Prediction, Term};
+use turbid::estimators::Kernel;
 use turbid::stats::Moments;
 
 /// Concludes.
@@ -156,13 +159,22 @@ fn rows(points: &[Point], curves: &[Curve]) -> anyhow::Result<Vec<Row>> {
     for point in points {
         let case = name(point.photons, point.depth, point.radius);
         let error: Moments = point.errors.iter().collect();
+        let asked = Parameters {
+            photons: Some(point.photons),
+            depth: Some(point.depth),
+            radius: Some(point.radius),
+            kernel: Some(Kernel::Uniform),
+            ..Parameters::default()
+        };
         rows.push(
             Row::measured(&case, "error", Unit::ONE, &error)?
-                .reference(point.theory.bias(), point.theory.error),
+                .reference(point.theory.bias(), point.theory.error)
+                .with(asked),
         );
         rows.push(
             Row::measured(&case, "squared error", Unit::ONE, &point.squared())?
-                .reference(point.theory.squared(), 1e-12),
+                .reference(point.theory.squared(), 1e-12)
+                .with(asked),
         );
     }
     for curve in curves {

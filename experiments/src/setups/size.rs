@@ -1,5 +1,6 @@
 //! How large a gather is.
 
+use crate::harness::Parameters;
 use turbid::estimators::Gather;
 
 /// How large a gather is.
@@ -25,6 +26,14 @@ impl Size {
         match self {
             Size::Radius(r) => format!("radius {r}"),
             Size::Nearest(k) => format!("{k} nearest"),
+        }
+    }
+
+    /// Radius or k as columns of the results.
+    pub fn parameters(self) -> Parameters {
+        match self {
+            Size::Radius(r) => Parameters { radius: Some(r), ..Parameters::default() },
+            Size::Nearest(k) => Parameters { k: Some(k), ..Parameters::default() },
         }
     }
 

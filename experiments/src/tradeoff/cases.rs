@@ -1,6 +1,6 @@
 //! The cases: six slabs and a sphere, how many photons light them, and how those are gathered.
 
-use crate::harness::Settings;
+use crate::harness::{Parameters, Settings};
 use crate::setups::{Body, CELL, Lighting, Setup, Size};
 use crate::theory::UNTREATED;
 use std::f64::consts::PI;
@@ -259,6 +259,16 @@ impl Setting {
     /// The group of cells that answer it, and the case of whole maps.
     pub fn group(field: &Field, photons: u64) -> String {
         format!("{}-n{photons}", field.name)
+    }
+
+    /// What it asks, as columns of the results.
+    pub fn parameters(&self) -> Parameters {
+        Parameters {
+            field: Some(self.field.name),
+            photons: Some(self.photons),
+            kernel: Some(Kernel::Uniform),
+            ..self.size.parameters()
+        }
     }
 
     /// The name in tables, whatever is done at the faces.

@@ -7,7 +7,7 @@ use super::measure::MAPS;
 use super::predict::{BIAS, NOISE, RMS};
 use super::split::{rms, rms_bias, rms_noise};
 use super::{claims, figures, tables, words};
-use crate::harness::{Cells, Estimate, Row, Section, Settings, Unit};
+use crate::harness::{Cells, Estimate, Parameters, Row, Section, Settings, Unit};
 use crate::prediction::{Entry, Prediction, Predictions, Term};
 use crate::setups::Size;
 use turbid::stats::Moments;
@@ -42,32 +42,38 @@ fn rows(data: &Data, known: &Predictions) -> anyhow::Result<Vec<Row>> {
             rows.push(
                 Row::estimated(&case, quantity, Unit::PERCENT, &value.times(100.0))?
                     .predicted(predicted)
-                    .cost(operations, "operations"),
+                    .cost(operations, "operations")
+                    .with(measured.setting.parameters()),
             );
         }
     }
     for size in &data.sizes {
         let group = Setting::group(size.field, size.photons);
+        let asked =
+            Parameters { field: Some(size.field.name), photons: Some(size.photons), ..Parameters::default() };
         let per_photon =
             |values: &[f64]| values.iter().map(|v| v / size.photons as f64).collect::<Vec<f64>>();
         let collisions: Moments = per_photon(&size.collisions).iter().collect();
         let (exact, bound) = known.get(size.field.name, "collisions per photon")?;
         rows.push(
-            Row::measured(&group, "collisions per photon", Unit::ONE, &collisions)?.reference(exact, bound),
+            Row::measured(&group, "collisions per photon", Unit::ONE, &collisions)?
+                .reference(exact, bound)
+                .with(asked),
         );
         let rays: Moments = per_photon(&size.rays).iter().collect();
-        rows.push(Row::measured(&group, "rays per photon", Unit::ONE, &rays)?);
+        rows.push(Row::measured(&group, "rays per photon", Unit::ONE, &rays)?.with(asked));
         let bytes: Moments = size.bytes.iter().collect();
-        rows.push(Row::measured(&group, "memory of the map", Unit::new("byte"), &bytes)?);
+        rows.push(Row::measured(&group, "memory of the map", Unit::new("byte"), &bytes)?.with(asked));
     }
     for paths in &data.paths {
         let case = format!("{} paths", paths.field.name);
+        let asked = Parameters { field: Some(paths.field.name), ..Parameters::default() };
         let error: Moments = paths.error.iter().map(|e| 100.0 * e).collect::<Vec<f64>>().iter().collect();
-        rows.push(Row::measured(&case, "error", Unit::PERCENT, &error)?.reference(0.0, 0.0));
+        rows.push(Row::measured(&case, "error", Unit::PERCENT, &error)?.reference(0.0, 0.0).with(asked));
         let variance: Moments = paths.variance.iter().collect();
-        rows.push(Row::measured(&case, "relative variance of a sample", Unit::ONE, &variance)?);
+        rows.push(Row::measured(&case, "relative variance of a sample", Unit::ONE, &variance)?.with(asked));
         let rays: Moments = paths.rays.iter().collect();
-        rows.push(Row::measured(&case, "rays of a sample", Unit::ONE, &rays)?);
+        rows.push(Row::measured(&case, "rays of a sample", Unit::ONE, &rays)?.with(asked));
     }
     for field in FIELDS {
         let Some(paths) = data.paths(field) else { continue };
@@ -83,7 +89,8 @@ fn rows(data: &Data, known: &Predictions) -> anyhow::Result<Vec<Row>> {
             for measured in &cases {
                 let value = regret(measured, &cases);
                 if let (Size::Nearest(50 | 100), true) = (measured.setting.size, has_spread(&value)) {
-                    rows.push(Row::estimated(&measured.case(), "regret", Unit::ONE, &value)?);
+                    let row = Row::estimated(&measured.case(), "regret", Unit::ONE, &value)?;
+                    rows.push(row.with(measured.setting.parameters()));
                 }
             }
         }

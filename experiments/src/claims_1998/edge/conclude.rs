@@ -3,7 +3,9 @@
 use super::results::Edges;
 use super::{BEHIND, FIXED, NEAREST, SIZES, edge_case, figure, photons, wall_case};
 use crate::claims_1998::part::Part;
-use crate::harness::{Cells, Claim, Estimate, Row, Section, Settings, Table, Unit, number, with_error};
+use crate::harness::{
+    Cells, Claim, Estimate, Parameters, Row, Section, Settings, Table, Unit, number, with_error,
+};
 use crate::prediction::Predictions;
 use turbid::estimators::boundary::Rejection;
 
@@ -78,14 +80,16 @@ fn claims(edges: &Edges) -> Vec<Claim> {
 fn rows(edges: &Edges) -> anyhow::Result<Vec<Row>> {
     let mut rows = Vec::new();
     for (size, depth, at) in &edges.edge {
-        rows.push(Row::measured(&edge_case(*size, *depth), "error", Unit::PERCENT, &at.measured)?);
+        let row = Row::measured(&edge_case(*size, *depth), "error", Unit::PERCENT, &at.measured)?;
+        rows.push(row.with(Parameters { depth: Some(*depth), ..size.parameters() }));
     }
     for (size, rejection, distance, leak) in &edges.wall {
         let name = wall_case(*size, *rejection, *distance);
-        rows.push(match leak.predicted {
+        let row = match leak.predicted {
             0.0 => Row::exact(&name, "leak", Unit::PERCENT, leak.measured.mean(), 0.0),
             _ => Row::measured(&name, "leak", Unit::PERCENT, &leak.measured)?,
-        });
+        };
+        rows.push(row.with(size.parameters()));
     }
     Ok(rows)
 }

@@ -80,7 +80,8 @@ fn rows(pictures: &Pictures, gain: &Estimate) -> anyhow::Result<Vec<Row>> {
         let log = jackknife_log(&cells, relative);
         let value = exp(log.value);
         let estimate = Estimate::jackknife(&Jackknife { value, std_error: value * log.std_error, ..log });
-        rows.push(Row::estimated(&size.case(), "error of 24 samples", Unit::PERCENT, &estimate)?);
+        let row = Row::estimated(&size.case(), "error of 24 samples", Unit::PERCENT, &estimate)?;
+        rows.push(row.with(size.parameters()));
     }
     Ok(rows)
 }

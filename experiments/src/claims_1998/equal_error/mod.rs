@@ -11,7 +11,7 @@ mod results;
 use super::STREAM;
 use super::fogbox::{self, grey};
 use super::maps::filled;
-use crate::harness::{CellId, CellOutput, Group, Settings};
+use crate::harness::{CellId, CellOutput, Group, Parameters, Settings};
 use anyhow::Context;
 use turbid::estimators::{Estimator, Gather, Kernel};
 use turbid::integrators::mapper::{self, Mapper};
@@ -50,6 +50,11 @@ impl Size {
     fn new(photons: u64) -> Self {
         let k = 100.0 * libm::pow(photons as f64 / 80_000.0, 4.0 / 7.0);
         Size { photons, k: (k.round() as usize).max(4) }
+    }
+
+    /// What its maps are asked, as columns of the results.
+    pub fn parameters(self) -> Parameters {
+        Parameters { photons: Some(self.photons), k: Some(self.k), ..Parameters::default() }
     }
 
     /// The case of the whole picture.

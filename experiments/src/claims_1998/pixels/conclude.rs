@@ -7,6 +7,7 @@ use crate::harness::{
     Cells, Claim, Estimate, Row, Section, Settings, Table, Unit, bar, number, signed, with_error,
 };
 use crate::prediction::Predictions;
+use crate::setups::Size;
 use turbid::math::exp;
 use turbid::stats::{Jackknife, Moments, jackknife, jackknife_log};
 
@@ -110,10 +111,12 @@ fn claims(pictures: &[Picture]) -> Vec<Claim> {
 fn rows(pictures: &[Picture]) -> anyhow::Result<Vec<Row>> {
     let mut rows = Vec::new();
     for p in pictures {
-        let name = case(p.k);
-        rows.push(Row::estimated(&name, "noise", Unit::PERCENT, &p.noise)?);
-        rows.push(Row::measured(&name, "mean error", Unit::PERCENT, &p.bias)?.reference(0.0, 0.0));
-        rows.push(Row::estimated(&name, "squared bias of pixels", Unit::new("%^2"), &p.square)?);
+        let (name, asked) = (case(p.k), Size::Nearest(p.k).parameters());
+        rows.push(Row::estimated(&name, "noise", Unit::PERCENT, &p.noise)?.with(asked));
+        rows.push(
+            Row::measured(&name, "mean error", Unit::PERCENT, &p.bias)?.reference(0.0, 0.0).with(asked),
+        );
+        rows.push(Row::estimated(&name, "squared bias of pixels", Unit::new("%^2"), &p.square)?.with(asked));
     }
     Ok(rows)
 }
