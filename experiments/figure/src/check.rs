@@ -4,6 +4,7 @@ use crate::axis::{Axis, Scale};
 use crate::error::Error;
 use crate::figure::{Figure, Panel};
 use crate::layer::{Along, At, Layer};
+use crate::scale::NARROWEST;
 use crate::text::Fonts;
 
 /// Checks every number, length and text of the figure.
@@ -76,7 +77,7 @@ fn axis(place: &str, name: &'static str, axis: &Axis, fonts: &Fonts) -> Result<(
     if let Some((low, high)) = axis.range {
         // Compared on the scale: limits that differ may still share a logarithm.
         let room = axis.scale.forward(high) - axis.scale.forward(low);
-        if !((high - low).is_finite() && room.is_finite() && room > 0.0) {
+        if !((high - low).is_finite() && room.is_finite() && room > NARROWEST) {
             return Err(Error::Range { place: place.to_owned(), axis: name, low, high });
         }
     }

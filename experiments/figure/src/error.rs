@@ -76,7 +76,7 @@ pub enum Error {
     },
     /// A range or a threshold that makes no axis.
     #[error(
-        "{place}: {axis} cannot run from {low} to {high}; give finite limits, low below high, positive on a logarithmic axis"
+        "{place}: {axis} cannot run from {low} to {high}; give finite limits, low below high by more than 1e-300, positive on a logarithmic axis"
     )]
     Range {
         /// Where.

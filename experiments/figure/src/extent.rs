@@ -5,7 +5,7 @@ use crate::error::Error;
 use crate::figure::Panel;
 use crate::layer::{Along, Heatmap, Layer};
 use crate::palette::Shading;
-use crate::scale::Span;
+use crate::scale::{NARROWEST, Span};
 
 /// The limits of the two axes.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -95,7 +95,7 @@ pub(crate) fn spans(number: usize, panel: &Panel) -> Result<Spans, Error> {
 /// Whether the limits differ on the scale, and not by rounding alone.
 fn apart(scale: Scale, (low, high): (f64, f64)) -> bool {
     let (low, high) = (scale.forward(low), scale.forward(high));
-    high - low > 1e-12 * low.abs().max(high.abs())
+    high - low > (1e-12 * low.abs().max(high.abs())).max(NARROWEST)
 }
 
 /// The limits of a colour bar: symmetric about zero where the colours are.

@@ -8,6 +8,10 @@ const BELOW: f64 = 1.0;
 /// Positions are held within this many axis lengths, so that arithmetic on them stays finite.
 const FAR: f64 = 1e9;
 
+/// Numbers closer than this on a linear axis stand in one place: its ticks are thousandths of their distance at least, and
+/// powers of ten end at 1e-308.
+pub(crate) const NARROWEST: f64 = 1e-300;
+
 /// Margin between the outermost datum and the border, as a fraction of the axis.
 const MARGIN: f64 = 0.045;
 
@@ -66,9 +70,10 @@ impl Span {
         let (low, high) = (scale.forward(low), scale.forward(high));
         let width = high - low;
         // One value alone stands in the middle of an axis of its own size, or of one decade.
-        let pad = if width > 1e-12 * low.abs().max(high.abs()) {
+        let size = low.abs().max(high.abs());
+        let pad = if width > (1e-12 * size).max(NARROWEST) {
             MARGIN * width
-        } else if scale == Scale::Linear && low != 0.0 {
+        } else if scale == Scale::Linear && low.abs() > NARROWEST {
             0.5 * low.abs()
         } else {
             0.5

@@ -281,7 +281,7 @@ fn bad_files_are_refused_by_line() {
         (
             "\"scale\":\"log\"",
             "\"scale\":\"log\",\"range\":[0,1]",
-            "4: panel 1: x cannot run from 0 to 1; give finite limits, low below high, positive on a logarithmic axis",
+            "4: panel 1: x cannot run from 0 to 1; give finite limits, low below high by more than 1e-300, positive on a logarithmic axis",
         ),
         (
             "# layer 1.2:",

@@ -269,6 +269,28 @@ fn extremes_are_drawn() {
     Figure::new(vec![sym]).svg().unwrap();
 }
 
+/// Every size of number that there is, down to the smallest and up to the largest, has an axis.
+#[test]
+fn numbers_of_any_size_are_drawn() {
+    let sizes = (-323..=308).map(|e| format!("1e{e}").parse().unwrap()).chain([f64::MAX, 5e-324]);
+    for size in sizes {
+        for y in [vec![0.0, size], vec![-size, size], vec![size, size]] {
+            let scales = [Scale::Linear, Scale::LogClipped, Scale::SymLog { threshold: 1.0 }];
+            for scale in scales {
+                let panel = Panel::new(Axis::linear("x", ""), Axis::new("y", "", scale));
+                let svg = Figure::new(vec![panel.with(points(y.clone()))]).svg().unwrap();
+                assert!(!svg.contains("NaN") && !svg.contains("inf"), "{scale:?} {y:?}");
+            }
+            Figure::new(vec![axes().with(map(y.clone()))]).svg().unwrap();
+        }
+    }
+    for narrow in [5e-324, 1e-308, 1e-300] {
+        let mut panel = axes().with(points(vec![0.0]));
+        panel.y = panel.y.with_range(0.0, narrow);
+        assert!(matches!(refusal(panel), Error::Range { .. }), "{narrow}");
+    }
+}
+
 /// Sizes of all texts in points of print, from the document's own millimetres.
 fn font_sizes(svg: &str) -> Vec<f64> {
     let (_, size) = svg.split_once("<svg width=\"").unwrap();
