@@ -4,10 +4,9 @@
 //! steps that halve where radiance changes: the light of many scatterings changes little, so that a look at the map makes
 //! those steps longer. Times are of this machine: they are in words, not in results and claims.
 
-use super::STREAM;
 use super::fogbox::grey;
 use super::maps::filled;
-use super::part::Part;
+use super::part::{Part, STREAM};
 use super::times::Times;
 use crate::harness::{CellId, CellOutput, Cells, Group, Row, Section, Settings, Unit, with_error};
 use anyhow::{Context, anyhow};

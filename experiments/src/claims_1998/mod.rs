@@ -21,9 +21,6 @@ mod walls;
 use crate::harness::{Experiment, Group, Settings};
 use crate::prediction::Prediction;
 
-/// What the cells' random streams are named by: it stays when the experiment is renamed.
-const STREAM: &str = "deck";
-
 /// The experiment.
 pub const EXPERIMENT: Experiment = Experiment {
     name: "claims-1998",

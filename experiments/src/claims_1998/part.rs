@@ -2,6 +2,9 @@
 
 use crate::harness::Section;
 
+/// What the cells' random streams are named by: it stays when the experiment is renamed.
+pub const STREAM: &str = "deck";
+
 /// What a part found.
 pub struct Part {
     /// Claims, figures, tables, notes and results; paragraphs of the summary other than the sentences themselves.

@@ -3,8 +3,7 @@
 //! Rays are followed to the walls between gathers, as a renderer does, so that a large mesh may push photons out of the
 //! processor's memory. Times are of this machine: they are in words and tables, not in results and claims.
 
-use super::STREAM;
-use super::part::Part;
+use super::part::{Part, STREAM};
 use super::times::Times;
 use crate::harness::{CellId, CellOutput, Cells, Claim, Estimate, Group, Section, Settings, Unit, number};
 use glam::DVec3;

@@ -8,7 +8,7 @@ pub mod conclude;
 mod figure;
 mod results;
 
-use super::STREAM;
+use super::part::STREAM;
 use crate::harness::{CellId, CellOutput, Group, Settings, Unit};
 use crate::prediction::Prediction;
 use crate::setups::{CELL, Setup, Size};

@@ -8,9 +8,9 @@ mod data;
 mod figure;
 mod results;
 
-use super::STREAM;
 use super::fogbox::{self, grey};
 use super::maps::filled;
+use super::part::STREAM;
 use crate::harness::{CellId, CellOutput, Group, Parameters, Settings};
 use anyhow::Context;
 use turbid::estimators::{Estimator, Gather, Kernel};

@@ -5,9 +5,9 @@
 
 pub mod conclude;
 
-use super::STREAM;
 use super::fogbox::grey;
 use super::maps::filled;
+use super::part::STREAM;
 use crate::harness::{CellId, CellOutput, Group, Settings};
 use anyhow::{Context, anyhow};
 use glam::{DVec2, DVec3};

@@ -8,9 +8,9 @@ pub mod conclude;
 mod figure;
 mod results;
 
-use super::STREAM;
 use super::fogbox::{ALBEDO, SIGMA_T, VOLUME, grey, scene};
 use super::maps::filled;
+use super::part::STREAM;
 use crate::harness::{CellId, CellOutput, Group, Settings, Unit};
 use crate::prediction::Prediction;
 use crate::theory::clustering;
