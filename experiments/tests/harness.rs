@@ -78,7 +78,7 @@ fn right_is_upheld_wrong_is_rejected_and_the_negative_control_is_detected() {
         assert!(folder.path().join(name).exists(), "{name}");
     }
     let table = String::from_utf8(read(folder.path(), "results.csv")).unwrap();
-    let header = "experiment,case,quantity,unit,n,mean,std_error,vov,predicted,reference,reference_error,z,p,verdict,cost,cost_unit";
+    let header = "experiment,case,quantity,field,photons,depth,radius,k,kernel,unit,n,mean,std_error,vov,predicted,reference,reference_error,z,p,verdict,cost,cost_unit";
     assert_eq!(table.lines().next().unwrap(), header);
     assert_eq!(table.lines().count(), 6);
     assert!(table.contains(",640000,photons"));

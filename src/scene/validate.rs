@@ -44,17 +44,19 @@ pub(super) fn check(parts: &SceneParts) -> Result<Option<PeriodicCell>> {
     check_sizes(parts)?;
     interiors::check(parts)?;
     let periodic_cell = periodic_cell(parts)?;
-    for light in &parts.lights {
+    for (i, light) in parts.lights.iter().enumerate() {
         if light.needs_cell() && periodic_cell.is_none() {
-            return refuse(
-                "an unbounded light needs a slab of medium and `cell`, the side of the cell that stands for it",
-            );
+            return refuse(format!(
+                "lights[{i}] is unbounded, which needs a slab of medium and `cell`, the side of the cell that stands for it"
+            ));
         }
         if let Light::Beam(beam) = light
             && beam.section() == Section::Unbounded
             && beam.dir().z == 0.0
         {
-            return refuse("an unbounded beam must not run along the faces of its slab");
+            return refuse(format!(
+                "lights[{i}] is an unbounded beam that runs along the faces of its slab; allowed: a `dir` with a part along z"
+            ));
         }
     }
     check_fold(parts, periodic_cell.as_ref())?;
@@ -257,12 +259,12 @@ fn around(slabs: &[Slab], refracting: &[Slab]) -> Result<Slab> {
 
 /// Light that starts or is measured on the very surface that it meets, or that refracts it, could be on either side.
 fn check_apart(parts: &SceneParts) -> Result<()> {
-    for light in &parts.lights {
+    for (i, light) in parts.lights.iter().enumerate() {
         if let Light::Isotropic(isotropic) = light
             && let Some(same) = dielectrics(&parts.objects).find(|o| !is_around(isotropic.shape(), &o.shape))
         {
             return refuse(format!(
-                "isotropic light starts on its shape, which must lie outside every dielectric surface: not so for {:?}",
+                "lights[{i}]: isotropic light starts on its shape, which must lie outside every dielectric surface: not so for {:?}",
                 same.shape
             ));
         }
@@ -416,7 +418,7 @@ fn check_fold(parts: &SceneParts, periodic_cell: Option<&PeriodicCell>) -> Resul
             "with `cell`, a density must depend on z alone: a grid of one sample along x and y, or height fog along z",
         );
     }
-    for light in &parts.lights {
+    for (i, light) in parts.lights.iter().enumerate() {
         let shape = match light {
             Light::Isotropic(l) => Some(l.shape()),
             Light::VolumeSource(l) => Some(l.shape()),
@@ -426,7 +428,9 @@ fn check_fold(parts: &SceneParts, periodic_cell: Option<&PeriodicCell>) -> Resul
             && dielectrics(&parts.objects).next().is_none()
             && *shape != Shape::Slab(periodic_cell.slab)
         {
-            return refuse("an unbounded light's slab must be the slab of the medium");
+            return refuse(format!(
+                "lights[{i}] is unbounded and starts on a slab that is not the slab of the medium"
+            ));
         }
     }
     Ok(())

@@ -299,6 +299,39 @@ fn wrong_shapes_textures_and_boundaries() {
     }
 }
 
+/// Lights without bounds need a cell, and are told by their number.
+#[test]
+fn unbounded_lights_are_named() {
+    let folder = Folder::new();
+    let slab =
+        "[[regions]]\nshape = { slab = { top = 0, thickness = 1 } }\nsigma_t = 1\nalbedo = 0.5\ng = 0\n";
+    let other = "{ slab = { top = 0, thickness = 2 } }";
+    for (index, (cell, light, words)) in [
+        (
+            "",
+            "beam = { section = \"unbounded\", dir = [0, 0, 1], irradiance = 1 }",
+            "lights[0] is unbounded, which needs a slab of medium and `cell`",
+        ),
+        (
+            "cell = 1\n",
+            "beam = { section = \"unbounded\", dir = [1, 0, 0], irradiance = 1 }",
+            "lights[0] is an unbounded beam that runs along the faces of its slab",
+        ),
+        (
+            "cell = 1\n",
+            &format!("isotropic = {{ shape = {other}, faces = \"both\", radiance = 1 }}"),
+            "lights[0] is unbounded and starts on a slab that is not the slab of the medium",
+        ),
+    ]
+    .into_iter()
+    .enumerate()
+    {
+        let name = format!("light{index}.toml");
+        let file = folder.file(&name, &format!("{cell}{slab}[[lights]]\n{light}\n"));
+        refuses_naming(&["check", text(&file)], &[&name, words]);
+    }
+}
+
 /// A PNG file's checksum (ISO 3309).
 fn checksum(bytes: &[u8]) -> u32 {
     !bytes.iter().fold(!0u32, |sum, byte| {

@@ -121,7 +121,7 @@ fn number_claim(settings: &Settings, results: &[CaseResult]) -> Option<Claim> {
     let difference = moments(few.errors.iter().zip(&many.errors).map(|(a, b)| a - b));
     let text =
         "uncollided photons, radius 0.8, depth 1: error with the fewest photons less error with the most";
-    Some(Claim::within("uncollided-number", text, Unit::PERCENT, Estimate::mean(&difference), -1.6, 1.6))
+    Some(Claim::within("uncollided-number", text, Unit::FRACTION, Estimate::mean(&difference), -0.016, 0.016))
 }
 
 /// At the lit face half of each ball is empty.
@@ -154,10 +154,10 @@ fn left_over_claim(results: &[CaseResult], field: &'static Field) -> Claim {
     Claim::within(
         &format!("{}-left-over", field.name),
         &format!("{}, below the {}: error left over by the prediction", field.title, below),
-        Unit::PERCENT,
+        Unit::FRACTION,
         Estimate::mean(&moments((0..maps).map(mean))),
-        -0.15 * field.slack,
-        0.15 * field.slack,
+        -0.0015 * field.slack,
+        0.0015 * field.slack,
     )
 }
 
@@ -202,7 +202,7 @@ fn cluster_claim(results: &[CaseResult]) -> Option<Claim> {
         r.case.field.has_clusters() && r.is_whole() && matches!(r.case.size, Size::Nearest(4 | 10))
     });
     let text = "k = 4 and 10 in whole balls, all fogs: error from clusters of photons of one history, measured over predicted";
-    amplitude(&chosen, |r| 100.0 * r.expected.of(Term::Clusters))
+    amplitude(&chosen, |r| r.expected.of(Term::Clusters))
         .map(|statistic| Claim::within("clusters", text, Unit::ONE, statistic, 0.3, 1.7))
 }
 
@@ -215,12 +215,12 @@ fn path_claim(
 ) -> anyhow::Result<Claim> {
     let (exact, _) = exact_at(results, field, depth);
     let values = cells.values(&path_case(field, depth), "fluence")?;
-    let errors = moments(values.iter().map(|value| 100.0 * (value / exact - 1.0)));
+    let errors = moments(values.iter().map(|value| value / exact - 1.0));
     // Behind a forward peak few paths turn towards the beam, and each connection counts for more.
-    let margin = if field.setup.g > 0.0 { 1.0 } else { 0.5 } * field.slack;
+    let margin = if field.setup.g > 0.0 { 0.01 } else { 0.005 } * field.slack;
     let text = format!("{}, depth {depth}: error of the path tracer", field.title);
     let id = format!("{}-paths-{depth}", field.name);
-    Ok(Claim::within(&id, &text, Unit::PERCENT, Estimate::mean(&errors), -margin, margin))
+    Ok(Claim::within(&id, &text, Unit::FRACTION, Estimate::mean(&errors), -margin, margin))
 }
 
 /// The wrong estimators are wrong: the rule that sums all k photons is seen to be, and those that divide by a wrong number,
@@ -237,10 +237,10 @@ fn mistake_claims(results: &[CaseResult], mistakes: &[Mistake]) -> Vec<Claim> {
             && c.size == Size::Nearest(10)
     });
     if let Some(result) = biased {
-        let right = 100.0 * (result.expected.total() - result.expected.of(Term::Nearest));
+        let right = result.expected.total() - result.expected.of(Term::Nearest);
         let text = "wrong on purpose, all k photons summed, k = 10: error";
         let statistic = Estimate::mean(&result.error);
-        claims.push(Claim::detected("biased-k", text, Unit::PERCENT, statistic, right, 5.0));
+        claims.push(Claim::detected("biased-k", text, Unit::FRACTION, statistic, right, 0.05));
     }
     for mistake in mistakes.iter().filter(|m| m.case.size == Size::Radius(0.4)) {
         let id = format!("{}-{}", mistake.case.field.name, mistake.name.replace(' ', "-"));
@@ -249,10 +249,10 @@ fn mistake_claims(results: &[CaseResult], mistakes: &[Mistake]) -> Vec<Claim> {
         claims.push(Claim::within(
             &id,
             &text,
-            Unit::PERCENT,
+            Unit::FRACTION,
             statistic,
-            mistake.wrong - mistake.case.field.slack,
-            mistake.wrong + mistake.case.field.slack,
+            mistake.wrong - 0.01 * mistake.case.field.slack,
+            mistake.wrong + 0.01 * mistake.case.field.slack,
         ));
     }
     claims

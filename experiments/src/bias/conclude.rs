@@ -6,7 +6,7 @@ use super::measure::{map_case, path_case};
 use super::predict::COLLISIONS;
 use super::results::{CaseResult, Mistake, exact_at, fano, largest, pick, predicted_fano};
 use super::{claims, figures, tables};
-use crate::harness::{Cells, Parameters, Row, Section, Settings, Unit, signed, with_error};
+use crate::harness::{Cells, Parameters, Row, Section, Settings, Unit, percent, percent_with_error, signed};
 use crate::prediction::{Compared, PredictedError, Prediction, Predictions};
 use crate::setups::Size;
 use crate::theory::GATHER_TERMS;
@@ -53,12 +53,12 @@ fn mistakes(known: &Predictions, cells: &Cells, results: &[CaseResult]) -> anyho
         }
         let stored = cells.values(&map_case(field, photons), "stored per emitted")?;
         let wrongly = |factor: &dyn Fn(usize) -> f64| {
-            let wrong = |(map, error): (usize, &f64)| 100.0 * ((1.0 + error / 100.0) * factor(map) - 1.0);
+            let wrong = |(map, error): (usize, &f64)| (1.0 + error) * factor(map) - 1.0;
             result.errors.iter().enumerate().map(wrong).collect::<Vec<f64>>().iter().collect::<Moments>()
         };
         let case = result.case;
         let predicted = result.predicted();
-        let over = |divisor: f64| 100.0 * ((1.0 + predicted / 100.0) / divisor - 1.0);
+        let over = |divisor: f64| (1.0 + predicted) / divisor - 1.0;
         let (error, wrong) = (wrongly(&|_| 1.0 / field.setup.albedo), over(field.setup.albedo));
         mistakes.push(Mistake { name: "divided by sigma_s", case, predicted, wrong, error });
         let (collisions, _) = known.get(field.name, COLLISIONS)?;
@@ -86,7 +86,7 @@ fn rows(cells: &Cells, results: &[CaseResult], mistakes: &[Mistake]) -> anyhow::
     }
     for mistake in mistakes {
         let name = format!("{} {}", mistake.case.name(), mistake.name);
-        let row = Row::measured(&name, "error", Unit::PERCENT, &mistake.error)?.predicted(mistake.wrong);
+        let row = Row::measured(&name, "error", Unit::FRACTION, &mistake.error)?.predicted(mistake.wrong);
         rows.push(row.with(mistake.case.parameters()));
     }
     for field in FIELDS.into_iter().filter(|f| f.has_clusters()) {
@@ -134,10 +134,10 @@ fn summarise(section: &mut Section, settings: &Settings, results: &[CaseResult])
         section.summary.push(format!(
             "In fog of albedo 0.9, photons gathered within 0.4 mean free paths read the fluence {} % wrong in the middle \
              of the slab and {} % wrong at its lit face; theory said {} % and {} % before the run.",
-            with_error(fixed.error.mean(), fixed.error.std_error()),
-            with_error(face.error.mean(), face.error.std_error()),
-            signed(fixed.predicted(), 2),
-            signed(face.predicted(), 2)
+            percent_with_error(&fixed.error),
+            percent_with_error(&face.error),
+            signed(percent(fixed.predicted()), 2),
+            signed(percent(face.predicted()), 2)
         ));
     }
     let glow = &EMITTING_SPHERE;
@@ -152,10 +152,10 @@ fn summarise(section: &mut Section, settings: &Settings, results: &[CaseResult])
         section.summary.push(format!(
             "In a sphere of radius 2 that emits, light bends in all directions and the surface is curved: photons gathered \
              within 0.8 mean free paths are {} % wrong halfway to its centre (predicted {} %) and {} % at its surface ({} %).",
-            with_error(deep.error.mean(), deep.error.std_error()),
-            signed(deep.predicted(), 2),
-            with_error(surface.error.mean(), surface.error.std_error()),
-            signed(surface.predicted(), 2)
+            percent_with_error(&deep.error),
+            signed(percent(deep.predicted()), 2),
+            percent_with_error(&surface.error),
+            signed(percent(surface.predicted()), 2)
         ));
     }
     section.summary.push(format!(

@@ -5,7 +5,7 @@ use super::fields::{FIELDS, Field, UNCOLLIDED};
 use super::measure::{is_fano_case, path_case};
 use super::predict::Theory;
 use super::results::{CaseResult, Mistake, exact_at, fano, largest, predicted_fano};
-use crate::harness::{Cells, FigureFiles, Settings, bar};
+use crate::harness::{Cells, FigureFiles, Settings, bar, percent, percent_bar};
 use crate::prediction::Term;
 use crate::setups::Size;
 use crate::theory::GATHER_TERMS;
@@ -35,9 +35,9 @@ fn budget(results: &[CaseResult], mistakes: &[Mistake]) -> anyhow::Result<Figure
         .with(Rule::new(Along::Diagonal).with_label("measured = predicted"));
     let blind: Vec<&CaseResult> =
         results.iter().filter(|r| !r.case.is_biased && !r.sees_prediction()).collect();
-    let x = blind.iter().map(|r| r.predicted()).collect();
-    let y = blind.iter().map(|r| r.error.mean()).collect();
-    let bars = blind.iter().map(|r| bar(&r.error)).collect();
+    let x = blind.iter().map(|r| percent(r.predicted())).collect();
+    let y = blind.iter().map(|r| percent(r.error.mean())).collect();
+    let bars = blind.iter().map(|r| percent_bar(&r.error)).collect();
     let label = "too noisy to see its prediction";
     let noisy = Points::new(label, 0, x, y).with_y_interval(bars);
     panel = panel.with(Points { color: Color::Grey, ..noisy });
@@ -51,22 +51,22 @@ fn budget(results: &[CaseResult], mistakes: &[Mistake]) -> anyhow::Result<Figure
             continue;
         }
         let label = format!("mostly {}", term.name());
-        let x = chosen.iter().map(|r| r.predicted()).collect();
-        let y = chosen.iter().map(|r| r.error.mean()).collect();
-        let bars = chosen.iter().map(|r| bar(&r.error)).collect();
+        let x = chosen.iter().map(|r| percent(r.predicted())).collect();
+        let y = chosen.iter().map(|r| percent(r.error.mean())).collect();
+        let bars = chosen.iter().map(|r| percent_bar(&r.error)).collect();
         panel = panel.with(Points::new(&label, class, x, y).with_y_interval(bars));
     }
     let biased: Vec<&CaseResult> = results.iter().filter(|r| r.case.is_biased && r.is_whole()).collect();
     let x: Vec<f64> =
-        biased.iter().map(|r| 100.0 * (r.expected.total() - r.expected.of(Term::Nearest))).collect();
-    let y: Vec<f64> = biased.iter().map(|r| r.error.mean()).collect();
-    let bars = biased.iter().map(|r| bar(&r.error)).collect();
+        biased.iter().map(|r| percent(r.expected.total() - r.expected.of(Term::Nearest))).collect();
+    let y: Vec<f64> = biased.iter().map(|r| percent(r.error.mean())).collect();
+    let bars = biased.iter().map(|r| percent_bar(&r.error)).collect();
     panel = panel.with(Points::new("wrong: k-th photon summed", 2, x, y).with_y_interval(bars));
     for (class, name) in [(5, "divided by sigma_s"), (6, "divided by stored photons")] {
         let chosen: Vec<&Mistake> = mistakes.iter().filter(|m| m.name == name).collect();
-        let x = chosen.iter().map(|m| m.predicted).collect();
-        let y = chosen.iter().map(|m| m.error.mean()).collect();
-        let bars = chosen.iter().map(|m| bar(&m.error)).collect();
+        let x = chosen.iter().map(|m| percent(m.predicted)).collect();
+        let y = chosen.iter().map(|m| percent(m.error.mean())).collect();
+        let bars = chosen.iter().map(|m| percent_bar(&m.error)).collect();
         panel = panel.with(Points::new(format!("wrong: {name}"), class, x, y).with_y_interval(bars));
     }
     let z: Vec<f64> = results.iter().filter(|r| !r.case.is_biased).map(CaseResult::z).collect();
@@ -112,7 +112,7 @@ fn orders(results: &[CaseResult]) -> anyhow::Result<FigureFiles> {
     let theory = |photons, depth, sizes: &[Size]| {
         let one = |&size: &Size| {
             let case = Case { field: free, photons, depth, size, is_biased: false, kernel: Kernel::Uniform };
-            known.error(&case).map(|error| 100.0 * error.total())
+            known.error(&case).map(|error| percent(error.total()))
         };
         sizes.iter().map(one).collect::<anyhow::Result<Vec<f64>>>()
     };
@@ -122,8 +122,8 @@ fn orders(results: &[CaseResult]) -> anyhow::Result<FigureFiles> {
     };
     let points = |chosen: &[&CaseResult], label: &str, class: usize| {
         let x: Vec<f64> = chosen.iter().map(|r| size(&r.case)).collect();
-        let bars = chosen.iter().map(|r| bar(&r.error)).collect();
-        let y = chosen.iter().map(|r| r.error.mean()).collect();
+        let bars = chosen.iter().map(|r| percent_bar(&r.error)).collect();
+        let y = chosen.iter().map(|r| percent(r.error.mean())).collect();
         Points::new(label, class, x, y).with_y_interval(bars)
     };
     let mut left = Panel::new(Axis::log("radius", "mfp"), Axis::new("error", "%", Scale::LogClipped))
@@ -178,7 +178,7 @@ fn depths(settings: &Settings, cells: &Cells, results: &[CaseResult]) -> anyhow:
             let grid: Vec<f64> = (0..=80).map(|i| field.setup.body.deepest() * f64::from(i) / 80.0).collect();
             let theory = grid.iter().map(|&depth| {
                 let case = Case { field, photons, depth, size, is_biased: false, kernel: Kernel::Uniform };
-                known.error(&case).map(|error| 100.0 * error.total())
+                known.error(&case).map(|error| percent(error.total()))
             });
             let theory = theory.collect::<anyhow::Result<Vec<f64>>>()?;
             let chosen: Vec<&CaseResult> = results
@@ -190,8 +190,8 @@ fn depths(settings: &Settings, cells: &Cells, results: &[CaseResult]) -> anyhow:
                 .collect();
             let label = format!("radius {radius}");
             let x = chosen.iter().map(|r| r.case.depth).collect();
-            let y = chosen.iter().map(|r| r.error.mean()).collect();
-            let bars = chosen.iter().map(|r| bar(&r.error)).collect();
+            let y = chosen.iter().map(|r| percent(r.error.mean())).collect();
+            let bars = chosen.iter().map(|r| percent_bar(&r.error)).collect();
             panel = panel.with(Line::new(&label, class, grid, theory));
             panel = panel.with(Points::new(&label, class, x, y).with_y_interval(bars));
         }
@@ -215,12 +215,11 @@ fn path_points(cells: &Cells, results: &[CaseResult], field: &Field) -> anyhow::
     for &depth in field.depths {
         let (exact, _) = exact_at(results, field, depth);
         let values = cells.values(&path_case(field, depth), "fluence")?;
-        let errors: Moments =
-            values.iter().map(|v| 100.0 * (v / exact - 1.0)).collect::<Vec<f64>>().iter().collect();
+        let errors: Moments = values.iter().map(|v| v / exact - 1.0).collect::<Vec<f64>>().iter().collect();
         // Beside the photon maps' points, not behind them.
         x.push(depth + 0.03);
-        y.push(errors.mean());
-        bars.push(bar(&errors));
+        y.push(percent(errors.mean()));
+        bars.push(percent_bar(&errors));
     }
     Ok((x, y, bars))
 }

@@ -9,7 +9,7 @@ use crate::setups::Size;
 use crate::theory::clustering;
 use turbid::stats::Moments;
 
-/// One case with everything that is known of it; errors in per cent of the exact fluence.
+/// One case with everything that is known of it; errors as fractions of the exact fluence.
 pub type CaseResult = Compared<Case>;
 
 impl CaseResult {
@@ -30,11 +30,11 @@ pub struct Mistake {
     pub name: &'static str,
     /// The case whose photons it uses.
     pub case: Case,
-    /// Error predicted for the right estimate [%].
+    /// Error predicted for the right estimate.
     pub predicted: f64,
-    /// Error predicted for the wrong one [%].
+    /// Error predicted for the wrong one.
     pub wrong: f64,
-    /// Signed error [%] over maps.
+    /// Signed error over maps.
     pub error: Moments,
 }
 

@@ -3,7 +3,7 @@
 use super::fields::FIELDS;
 use super::measure::path_case;
 use super::results::{CaseResult, exact_at, largest, pick};
-use crate::harness::{Cells, Table, signed, with_error};
+use crate::harness::{Cells, Table, percent, percent_with_error, signed, with_error};
 use crate::prediction::Term;
 use crate::setups::Size;
 use turbid::estimators::Kernel;
@@ -23,7 +23,7 @@ pub fn errors(results: &[CaseResult]) -> Table {
         "z",
         "",
     ];
-    let percent = |x: f64| if x.abs() < 5e-5 { "0".to_string() } else { signed(100.0 * x, 2) };
+    let part = |x: f64| if x.abs() < 5e-5 { "0".to_string() } else { signed(percent(x), 2) };
     let chosen = pick(results, |r| {
         let is_shown = matches!(r.case.size, Size::Radius(_) | Size::Nearest(50 | 500));
         is_shown && r.case.kernel == Kernel::Uniform && r.case.photons == largest(results, r.case.field)
@@ -34,11 +34,11 @@ pub fn errors(results: &[CaseResult]) -> Table {
             r.case.photons.to_string(),
             r.case.depth.to_string(),
             r.case.gather_name(),
-            with_error(r.error.mean(), r.error.std_error()),
-            percent(r.expected.total()),
-            percent(r.expected.of(Term::Edge)),
-            percent(r.expected.of(Term::Blur)),
-            percent(r.expected.of(Term::Clusters)),
+            percent_with_error(&r.error),
+            part(r.expected.total()),
+            part(r.expected.of(Term::Edge)),
+            part(r.expected.of(Term::Blur)),
+            part(r.expected.of(Term::Clusters)),
             signed(r.z(), 1),
             if r.sees_prediction() { "" } else { "cannot see its prediction" }.to_string(),
         ]
@@ -70,7 +70,7 @@ pub fn paths(cells: &Cells, results: &[CaseResult]) -> anyhow::Result<Table> {
                     && c.photons == largest(results, field)
             });
             let map = map.map_or_else(String::new, |r| {
-                with_error(exact * (1.0 + r.error.mean() / 100.0), exact * r.error.std_error() / 100.0)
+                with_error(exact * (1.0 + r.error.mean()), exact * r.error.std_error())
             });
             rows.push(vec![
                 field.name.to_string(),

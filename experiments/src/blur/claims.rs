@@ -140,17 +140,17 @@ fn left_over_claims(results: &[CaseResult]) -> Vec<Claim> {
             let one = |r: &&CaseResult| {
                 r.profile.iter().zip(&r.theory.profile).map(|(maps, t)| maps[m] - t.0).sum::<f64>()
             };
-            100.0 * chosen.iter().map(one).sum::<f64>() / places as f64
+            chosen.iter().map(one).sum::<f64>() / places as f64
         };
         let moments: Moments =
             (0..first.single.n() as usize).map(left).collect::<Vec<f64>>().iter().collect();
         claims.push(Claim::within(
             &format!("left-over-{}", name.replace(' ', "-")),
             &format!("{name}, all places of all profiles: what the prediction leaves, of the fluence inside"),
-            Unit::PERCENT,
+            Unit::FRACTION,
             Estimate::mean(&moments),
-            -0.5,
-            0.5,
+            -0.005,
+            0.005,
         ));
     }
     claims

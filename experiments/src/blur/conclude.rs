@@ -6,7 +6,7 @@ use super::predict::{EQUIVALENT, RISE, Theory};
 use super::results::{CaseResult, Transfer, find};
 use super::shaft::CAP;
 use super::{claims, figures, shaft, tables, waves};
-use crate::harness::{Cells, Estimate, Parameters, Row, Section, Settings, Unit};
+use crate::harness::{Cells, Estimate, Parameters, Row, Section, Settings, Unit, percent};
 use crate::prediction::{Entry, Prediction, Predictions, Term};
 use crate::setups::Size;
 use rayon::prelude::*;
@@ -152,7 +152,7 @@ fn summarise(section: &mut Section, results: &[CaseResult], transfers: &[Transfe
         "Widths are read off the mean profile of all maps through its probes, a tenth of a radius apart (k nearest: \
          three twentieths), by a monotone interpolant; the prediction is the same number read off the expected \
          profile. It differs from the exact width by {:.2} % at most.",
-        100.0 * results.iter().map(off).fold(0.0, f64::max)
+        percent(results.iter().map(off).fold(0.0, f64::max))
     ));
     section.notes.push(format!(
         "All gathers end at {CAP} mean free paths, so that no ball touches a face or another edge; under-full gathers are \

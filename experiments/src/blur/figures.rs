@@ -4,7 +4,7 @@ use super::cases::{Case, KERNELS_AT, NEIGHBORS, RADII};
 use super::predict::Exact;
 use super::results::{CaseResult, Transfer, find, find_at, find_deviation};
 use super::waves;
-use crate::harness::{FigureFiles, bar};
+use crate::harness::{FigureFiles, bar, percent};
 use crate::setups::Size;
 use crate::theory::{kernel_title, referee_kernel};
 use turbid::estimators::Kernel;
@@ -46,7 +46,7 @@ fn points(result: &CaseResult, label: &str, class: usize, unit: f64) -> Points {
 fn residuals(result: &CaseResult, label: &str, class: usize, shift: f64) -> Points {
     let plateau = result.theory.plateau;
     let x = result.case.places().iter().map(|p| p + shift).collect();
-    let over = |i: usize, v: f64| 100.0 * (v - result.theory.profile[i].0) / plateau;
+    let over = |i: usize, v: f64| percent((v - result.theory.profile[i].0) / plateau);
     let means: Vec<Moments> = (0..result.profile.len()).map(|i| result.mean(i)).collect();
     let y = means.iter().enumerate().map(|(i, m)| over(i, m.mean())).collect();
     let bars = means.iter().enumerate().map(|(i, m)| (over(i, bar(m).0), over(i, bar(m).1))).collect();

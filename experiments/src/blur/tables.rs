@@ -2,7 +2,7 @@
 
 use super::cases::NEIGHBORS;
 use super::results::CaseResult;
-use crate::harness::{Table, number, with_error};
+use crate::harness::{Table, number, percent, with_error};
 use crate::theory::kernel_title;
 use std::f64::consts::PI;
 use turbid_analytic::edge::{Edge, NearestEdge};
@@ -68,10 +68,10 @@ pub fn cost() -> anyhow::Result<Table> {
                 width.to_string(),
                 k.to_string(),
                 number(density),
-                format!("{:.1} %", 100.0 * noise),
+                format!("{:.1} %", percent(noise)),
                 format!("{:.4}", radius),
                 format!("{:.0}", density * in_ball),
-                format!("{:.1} %", 100.0 / (density * in_ball).sqrt()),
+                format!("{:.1} %", percent(1.0 / (density * in_ball).sqrt())),
                 number(1.0 / (noise * noise * in_ball)),
             ]);
         }

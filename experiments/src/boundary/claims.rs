@@ -72,7 +72,7 @@ fn furnaces(settings: &Settings, found: &Found) -> anyhow::Result<Vec<Claim>> {
             let is_exact = chosen.iter().all(|r| r.predicted().abs() < 1e-6);
             claims.push(if is_exact {
                 let text = format!("{where_}: mean error, {}", treatment_title(treatment));
-                Claim::within(&id, &text, Unit::PERCENT, mean_of(&chosen)?, -1.0, 1.0)
+                Claim::within(&id, &text, Unit::FRACTION, mean_of(&chosen)?, -0.01, 0.01)
             } else {
                 let text = format!("{where_}: measured over predicted error, {}", treatment_title(treatment));
                 let margin = if treatment == Treatment::None { 0.02 } else { 0.25 };
@@ -118,7 +118,14 @@ fn lit(found: &Found) -> anyhow::Result<Vec<Claim>> {
                     chosen.iter().map(|r| r.errors.iter().map(|e| e - r.predicted()).collect()).collect();
                 let lists: Vec<&[f64]> = left.iter().map(|l| &l[..]).collect();
                 let text = format!("{where_}: error left over by the prediction, {name}");
-                claims.push(Claim::within(&id, &text, Unit::PERCENT, mean_error(&lists)?, -margin, margin));
+                claims.push(Claim::within(
+                    &id,
+                    &text,
+                    Unit::FRACTION,
+                    mean_error(&lists)?,
+                    -0.01 * margin,
+                    0.01 * margin,
+                ));
             }
         }
     }
@@ -145,7 +152,7 @@ fn nearest(settings: &Settings, found: &Found) -> anyhow::Result<Vec<Claim>> {
         let text =
             format!("furnace slab, 200 nearest of {photons} emitted, by the face: mean error, clipped");
         let id = format!("nearest-clipped-n{photons}");
-        claims.push(Claim::within(&id, &text, Unit::PERCENT, clipped, -1.5, 1.5));
+        claims.push(Claim::within(&id, &text, Unit::FRACTION, clipped, -0.015, 0.015));
     }
     Ok(claims)
 }
@@ -179,14 +186,11 @@ fn variances(found: &Found) -> anyhow::Result<Vec<Claim>> {
 /// False photons.
 fn sheets(found: &Found) -> anyhow::Result<Vec<Claim>> {
     let mut claims = Vec::new();
-    let percent = |values: &[f64]| {
-        Estimate::mean(&values.iter().map(|v| 100.0 * v).collect::<Vec<f64>>().iter().collect())
-    };
     // Beside a flat sheet 'visible' keeps the very photons that 'behind plane' keeps: it has one claim, that it does.
     for (rejection, good, bad) in [
-        (Rejection::Facing, 50.0, 50.0),
-        (Rejection::FacingBehind, 100.0, 50.0),
-        (Rejection::BehindPlane, 100.0, 0.0),
+        (Rejection::Facing, 0.5, 0.5),
+        (Rejection::FacingBehind, 1.0, 0.5),
+        (Rejection::BehindPlane, 1.0, 0.0),
     ] {
         let name = rejection.name().replace(' ', "-");
         let [kept_good, kept_bad] = kept(found, rejection, 0.25, Size::Radius(0.1))?;
@@ -196,7 +200,8 @@ fn sheets(found: &Found) -> anyhow::Result<Vec<Claim>> {
                 rejection.name()
             );
             let id = format!("{name}-{what}");
-            claims.push(Claim::within(&id, &text, Unit::PERCENT, percent(values), share - 4.0, share + 4.0));
+            let statistic = Estimate::mean(&values.iter().collect());
+            claims.push(Claim::within(&id, &text, Unit::FRACTION, statistic, share - 0.04, share + 0.04));
         };
         add("good", &kept_good, good);
         // Exactly none has no spread, and needs no claim beside the one on the whole estimate.
@@ -220,7 +225,7 @@ fn sheets(found: &Found) -> anyhow::Result<Vec<Claim>> {
                 size.name()
             );
             let statistic = mean_error(&of(side, Rejection::BehindPlane, size, true))?;
-            claims.push(Claim::within(&id, &text, Unit::PERCENT, statistic, -3.0, 3.0));
+            claims.push(Claim::within(&id, &text, Unit::FRACTION, statistic, -0.03, 0.03));
         }
     }
     claims.push(visible(found)?);
@@ -252,7 +257,7 @@ fn sheets(found: &Found) -> anyhow::Result<Vec<Claim>> {
     for (id, side, rejection, is_clipped, words) in faults {
         let statistic = mean_error(&of(side, rejection, Size::Radius(0.1), is_clipped))?;
         let text = format!("beside a sheet, r=0.1: {words} is seen to be wrong (mean error)");
-        claims.push(Claim::detected(id, &text, Unit::PERCENT, statistic, 0.0, 20.0));
+        claims.push(Claim::detected(id, &text, Unit::FRACTION, statistic, 0.0, 0.2));
     }
     Ok(claims)
 }
@@ -267,7 +272,7 @@ fn visible(found: &Found) -> anyhow::Result<Claim> {
     }
     let text =
         "beside a flat sheet, every case and map: largest difference between 'visible' and 'behind plane'";
-    Ok(Claim::at_most("visible-is-behind-plane", text, Unit::PERCENT, Estimate::exact(largest, 1e-9), 1e-6))
+    Ok(Claim::at_most("visible-is-behind-plane", text, Unit::FRACTION, Estimate::exact(largest, 1e-11), 1e-8))
 }
 
 /// The place and size that tables and figures show.

@@ -7,7 +7,7 @@ use super::results::{CaseResult, Found, SheetResult, SpreadResult, integrals, ke
 use super::sheet::Sheet;
 use super::spread::Spread;
 use super::{claims, figures, sheet, spread, tables};
-use crate::harness::{Cells, Parameters, Row, Section, Settings, Unit, with_error};
+use crate::harness::{Cells, Parameters, Row, Section, Settings, Unit, percent_with_error};
 use crate::prediction::{Compared, Entry, PredictedError, Prediction, Predictions, Term};
 use crate::setups::Size;
 use anyhow::Context;
@@ -43,10 +43,10 @@ fn found(settings: &Settings, predictions: &[Prediction], cells: &Cells) -> anyh
     let mut sheets = Vec::new();
     for sheet in Sheet::all() {
         let ((value, bound), inside) = (known.get(&sheet.name(), "density")?, sheet.fields().0);
-        let percent = |v: f64| 100.0 * (v / inside - 1.0);
-        let errors: Vec<f64> = cells.values(&sheet.name(), "density")?.into_iter().map(percent).collect();
+        let error_of = |v: f64| v / inside - 1.0;
+        let errors: Vec<f64> = cells.values(&sheet.name(), "density")?.into_iter().map(error_of).collect();
         let error = errors.iter().collect();
-        let (predicted, bound) = (percent(value), 100.0 * bound / inside);
+        let (predicted, bound) = (error_of(value), bound / inside);
         sheets.push(SheetResult { sheet, predicted, bound, errors, error });
     }
     let mut spreads = Vec::new();
@@ -67,13 +67,12 @@ fn found(settings: &Settings, predictions: &[Prediction], cells: &Cells) -> anyh
 
 /// Every case whose mean is predicted, for the budget of the study: right and wrong estimators alike.
 fn entries(found: &Found) -> Vec<Entry> {
-    let fraction = |errors: &[f64]| errors.iter().map(|e| e / 100.0).collect::<Vec<f64>>();
     let of_field = |r: &CaseResult| {
         r.entry(format!("boundary/{}", Case::group(r.case.field, r.case.photons)), &r.case.name())
     };
     let of_sheet = |s: &SheetResult| {
-        let terms = [(Term::Edge, s.predicted / 100.0)];
-        Entry::new("boundary/sheet", s.sheet.name(), &terms, s.bound / 100.0, fraction(&s.errors))
+        let terms = [(Term::Edge, s.predicted)];
+        Entry::new("boundary/sheet", s.sheet.name(), &terms, s.bound, s.errors.clone())
     };
     let of_spread = |s: &SpreadResult| {
         let terms = [(Term::Edge, s.mean.0 - 1.0)];
@@ -101,7 +100,7 @@ fn rows(settings: &Settings, cells: &Cells, found: &Found) -> anyhow::Result<Vec
         let asked = Parameters { kernel: Some(s.sheet.kernel), ..s.sheet.size.parameters() };
         rows.push(row.reference(inside, 0.0).with(asked));
         let left: Moments = s.errors.iter().map(|e| e - s.predicted).collect();
-        let row = Row::measured(&name, "error left over", Unit::PERCENT, &left)?;
+        let row = Row::measured(&name, "error left over", Unit::FRACTION, &left)?;
         rows.push(row.reference(0.0, s.bound).with(asked));
     }
     for s in &found.spreads {
@@ -142,11 +141,10 @@ fn summarise(section: &mut Section, settings: &Settings, found: &Found) -> anyho
                 && (c.place, c.size, c.kernel) == (Place::Face(0.0), Size::Radius(0.4), Kernel::Uniform)
         })
     };
-    let text = |m: &Moments| with_error(m.mean(), m.std_error());
     let (none, clipped) = (face(Treatment::None)?, face(Treatment::Clipped)?);
     let kept_by = |rejection| -> anyhow::Result<[String; 2]> {
         let both = kept(found, rejection, 0.25, Size::Radius(0.1))?;
-        Ok(both.map(|values| text(&values.iter().map(|v| 100.0 * v).collect())))
+        Ok(both.map(|values| percent_with_error(&values.iter().collect())))
     };
     let facing = kept_by(Rejection::Facing)?;
     let behind = kept_by(Rejection::FacingBehind)?;
@@ -155,8 +153,8 @@ fn summarise(section: &mut Section, settings: &Settings, found: &Found) -> anyho
          thin wall and does nothing for the low density at an edge, which dividing by the volume inside takes from \
          ({}) % to ({}) %.",
         behind[1],
-        text(&none.error),
-        text(&clipped.error),
+        percent_with_error(&none.error),
+        percent_with_error(&clipped.error),
     ));
     section.summary.push(format!(
         "Taken literally, keeping only photons that fly towards the wall, the advice also throws away half of the good \
@@ -173,7 +171,7 @@ fn summarise(section: &mut Section, settings: &Settings, found: &Found) -> anyho
             (c.field, c.treatment, c.place) == (sphere, treatment, Place::Face(0.0))
                 && (c.size, c.kernel) == (Size::Radius(0.4), Kernel::Uniform)
         })?;
-        Ok(format!("({}) %", text(&r.error)))
+        Ok(format!("({}) %", percent_with_error(&r.error)))
     };
     section.summary.push(format!(
         "Dividing by the volume inside mends geometry alone. Where the light falls off below a curved surface, on a sphere of albedo {} lit from \

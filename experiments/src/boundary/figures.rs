@@ -7,7 +7,7 @@ use super::results::{CaseResult, Found, rims};
 use super::section::{self, ALONG, RADIUS, WIDTH, places};
 use super::sheet::{Sheet, Side};
 use super::spread::Spread;
-use crate::harness::{Cells, FigureFiles, Settings, bar};
+use crate::harness::{Cells, FigureFiles, Settings, bar, percent};
 use crate::setups::{FURNACE, Size};
 use crate::theory::{UNTREATED, treatment_title};
 use turbid::estimators::Kernel;
@@ -50,7 +50,7 @@ fn picture(cells: &Cells) -> anyhow::Result<FigureFiles> {
         let mut values = vec![0.0; 4 * ALONG * ALONG];
         for (column, row, _) in places() {
             let mean = cells.moments(&section::case(treatment, column, row), "fluence")?.mean();
-            let error = 100.0 * (mean / FURNACE - 1.0);
+            let error = percent(mean / FURNACE - 1.0);
             for x in [ALONG + column, ALONG - 1 - column] {
                 for y in [ALONG + row, ALONG - 1 - row] {
                     values[y * 2 * ALONG + x] = error;
@@ -87,12 +87,14 @@ fn picture(cells: &Cells) -> anyhow::Result<FigureFiles> {
 
 type Series = (Vec<f64>, Vec<f64>, Vec<(f64, f64)>);
 
-fn series<'a>(chosen: impl Iterator<Item = (f64, &'a Moments)>) -> Series {
+/// Means and intervals, each as `shown` makes them.
+fn series<'a>(shown: fn(f64) -> f64, chosen: impl Iterator<Item = (f64, &'a Moments)>) -> Series {
     let mut out = Series::default();
     for (x, moments) in chosen {
         out.0.push(x);
-        out.1.push(moments.mean());
-        out.2.push(bar(moments));
+        let (low, high) = bar(moments);
+        out.1.push(shown(moments.mean()));
+        out.2.push((shown(low), shown(high)));
     }
     out
 }
@@ -110,12 +112,15 @@ fn depths(settings: &Settings, found: &Found) -> anyhow::Result<FigureFiles> {
             .with_title(field.title);
         for (class, treatment) in Treatment::ALL.into_iter().enumerate() {
             let grid: Vec<f64> = (0..=52).map(|i| 0.025 * f64::from(i)).collect();
-            let theory: anyhow::Result<Vec<f64>> =
-                grid.iter().map(|x| line(field, treatment, radius, x * radius, &exact)).collect();
+            let theory: anyhow::Result<Vec<f64>> = grid
+                .iter()
+                .map(|x| line(field, treatment, radius, x * radius, &exact).map(percent))
+                .collect();
             panel = panel.with(Line::new(treatment_title(treatment), class, grid, theory?));
             let chosen = found.results.iter().filter(|r| is_on(r, settings, field, treatment));
             let shift = 0.008 * (class as f64 - 1.5);
-            let (x, y, bars) = series(chosen.map(|r| (r.case.place.depth() / radius + shift, &r.error)));
+            let (x, y, bars) =
+                series(percent, chosen.map(|r| (r.case.place.depth() / radius + shift, &r.error)));
             panel = panel.with(Points::new(treatment_title(treatment), class, x, y).with_y_interval(bars));
         }
         panels.push(panel);
@@ -206,7 +211,7 @@ fn sheet(settings: &Settings, found: &Found) -> anyhow::Result<FigureFiles> {
                 grid.insert(41, 1.0 + 1e-9);
                 let exact: anyhow::Result<Vec<f64>> = grid
                     .iter()
-                    .map(|&x| at(x).exact(settings).map(|(v, _)| 100.0 * (v / at(x).fields().0 - 1.0)))
+                    .map(|&x| at(x).exact(settings).map(|(v, _)| percent(v / at(x).fields().0 - 1.0)))
                     .collect();
                 let label = match rejection {
                     Rejection::BehindPlane => "behind plane, visible",
@@ -215,7 +220,7 @@ fn sheet(settings: &Settings, found: &Found) -> anyhow::Result<FigureFiles> {
                 panel = panel.with(Line::new(label, class, grid, exact?));
                 let chosen = super::sheet::DISTANCES.map(|x| found.sheet(&at(x)).map(|s| (x, &s.error)));
                 let chosen = chosen.into_iter().collect::<anyhow::Result<Vec<_>>>()?;
-                let (x, y, bars) = series(chosen.into_iter());
+                let (x, y, bars) = series(percent, chosen.into_iter());
                 panel = panel.with(Points::new(label, class, x, y).with_y_interval(bars));
             }
             panels.push(panel);
@@ -249,7 +254,7 @@ fn spread(found: &Found) -> anyhow::Result<FigureFiles> {
             .filter(|s| s.spread.kernel == Kernel::Uniform && s.spread.treatment == treatment);
         let moments: Vec<(f64, Moments)> =
             chosen.map(|s| (s.spread.depth, s.factors.iter().collect())).collect();
-        let (x, y, bars) = series(moments.iter().map(|(x, m)| (*x, m)));
+        let (x, y, bars) = series(|x| x, moments.iter().map(|(x, m)| (*x, m)));
         panel = panel.with(Points::new(treatment_title(treatment), class, x, y).with_y_interval(bars));
     }
     let panel = panel.with_legend(Legend::Right);

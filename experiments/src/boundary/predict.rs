@@ -122,7 +122,7 @@ pub fn predict(settings: &Settings) -> anyhow::Result<Vec<Prediction>> {
     Ok(predictions)
 }
 
-/// The error of a fixed radius at one depth of a field [%], for lines in figures.
+/// The error of a fixed radius at one depth of a field, for lines in figures.
 pub fn line(
     field: &'static Field,
     treatment: Treatment,
@@ -138,5 +138,5 @@ pub fn line(
         kernel: turbid::estimators::Kernel::Uniform,
         treatment,
     };
-    expected(&case, exact, None).map(|error| 100.0 * error.total())
+    expected(&case, exact, None).map(|error| error.total())
 }

@@ -13,15 +13,15 @@ use turbid::estimators::Kernel;
 use turbid::estimators::boundary::{Rejection, Treatment};
 use turbid::stats::{Jackknife, Moments, jackknife};
 
-/// One case of a transported field; errors in per cent of the exact fluence.
+/// One case of a transported field; errors as fractions of the exact fluence.
 pub type CaseResult = Compared<Case>;
 
 impl CaseResult {
-    /// The standard error to expect of the mean over maps [%], before any is measured: 1/(k-2) is the relative variance of
+    /// The standard error to expect of the mean over maps, before any is measured: 1/(k-2) is the relative variance of
     /// an estimate by k independent photons. Clusters and what probes share make the true one larger.
     fn expected_error(&self, k: usize) -> f64 {
         let estimates = self.case.probes().len() * self.errors.len();
-        100.0 / ((k as f64 - 2.0) * estimates as f64).sqrt()
+        1.0 / ((k as f64 - 2.0) * estimates as f64).sqrt()
     }
 
     /// Whether what is not known of the clusters is far below the standard error to expect: a tenth of their part inside,
@@ -29,11 +29,11 @@ impl CaseResult {
     pub fn is_predicted_well(&self) -> bool {
         let Size::Nearest(k) = self.case.size else { return true };
         let unsure = if self.case.place.depth() > 0.4 { 0.1 } else { 0.3 };
-        100.0 * unsure * self.expected.of(Term::Clusters).abs() <= 0.1 * self.expected_error(k)
+        unsure * self.expected.of(Term::Clusters).abs() <= 0.1 * self.expected_error(k)
     }
 }
 
-/// One case beside the sheet; errors in per cent of the field on the probe's side.
+/// One case beside the sheet; errors as fractions of the field on the probe's side.
 pub struct SheetResult {
     /// The case.
     pub sheet: Sheet,
@@ -110,8 +110,8 @@ pub struct Rim {
     pub predicted_lost: f64,
 }
 
-/// The error that is called a rim [%].
-pub const VISIBLE: f64 = 5.0;
+/// The error that is called a rim.
+pub const VISIBLE: f64 = 0.05;
 
 impl Rim {
     /// Its name in tables.
@@ -172,7 +172,7 @@ pub struct Integral {
     pub size: Size,
     /// Treatment.
     pub treatment: Treatment,
-    /// Integral of the size of the mean error over the depths asked, as a fraction [mfp].
+    /// Integral of the size of the mean error over the depths asked [mfp].
     pub measured: Jackknife,
     /// The same of the predicted error.
     pub predicted: f64,
@@ -233,9 +233,9 @@ pub fn integrals(settings: &Settings, found: &Found) -> Vec<Integral> {
     integrals
 }
 
-/// The integral of the size of errors [%], as a fraction, under straight lines between depths.
+/// The integral of the size of errors under straight lines between depths.
 fn size_over_depth(depths: &[f64], errors: &[f64]) -> f64 {
-    let strip = |i: usize| 0.005 * (errors[i].abs() + errors[i - 1].abs()) * (depths[i] - depths[i - 1]);
+    let strip = |i: usize| 0.5 * (errors[i].abs() + errors[i - 1].abs()) * (depths[i] - depths[i - 1]);
     (1..depths.len()).map(strip).sum()
 }
 
@@ -252,7 +252,7 @@ fn width(depths: &[f64], errors: &[f64]) -> f64 {
 
 /// The loss under straight lines between depths, the error having one sign.
 fn lost(depths: &[f64], errors: &[f64]) -> f64 {
-    let strip = |i: usize| -0.005 * (errors[i] + errors[i - 1]) * (depths[i] - depths[i - 1]);
+    let strip = |i: usize| -0.5 * (errors[i] + errors[i - 1]) * (depths[i] - depths[i - 1]);
     (1..depths.len()).map(strip).sum()
 }
 
@@ -267,10 +267,10 @@ pub fn kept(found: &Found, rejection: Rejection, distance: f64, size: Size) -> a
     };
     let (bright, dark) = (of(sheet::Side::Bright, rejection)?, of(sheet::Side::Dark, rejection)?);
     // The exact mass: what a perfect rejection of all false photons leaves on the bright side.
-    let mass = 1.0 + of(sheet::Side::Bright, Rejection::BehindPlane)?.predicted / 100.0;
+    let mass = 1.0 + of(sheet::Side::Bright, Rejection::BehindPlane)?.predicted;
     let f = sheet::DARK;
     let pairs = bright.errors.iter().zip(&dark.errors).map(|(b, d)| {
-        let (b, d) = (1.0 + b / 100.0, f * (1.0 + d / 100.0));
+        let (b, d) = (1.0 + b, f * (1.0 + d));
         ((b - f * d) / (mass * (1.0 - f * f)), (d - f * b) / ((1.0 - mass) * (1.0 - f * f)))
     });
     let (good, bad) = pairs.unzip();

@@ -5,7 +5,7 @@ use super::claims::is_main;
 use super::fields::FIELDS;
 use super::results::{Found, VISIBLE, integrals, kept, rims, signed};
 use super::sheet::{Sheet, Side};
-use crate::harness::{Settings, Table, with_error};
+use crate::harness::{Settings, Table, percent, percent_with_error, with_error};
 use crate::setups::Size;
 use turbid::estimators::Kernel;
 use turbid::estimators::boundary::{Rejection, Treatment};
@@ -40,15 +40,14 @@ fn verdict(found: &Found) -> anyhow::Result<Table> {
                     rejection,
                     is_clipped,
                 };
-                Ok(text(&found.sheet(&sheet)?.error))
+                Ok(percent_with_error(&found.sheet(&sheet)?.error))
             };
             let [good, bad] = kept(found, rejection, 0.25, Size::Radius(0.1))?;
-            let percent = |values: Vec<f64>| values.iter().map(|v| 100.0 * v).collect::<Moments>();
             rows.push(vec![
                 rejection.name().to_string(),
                 if is_clipped { "yes" } else { "no" }.to_string(),
-                text(&percent(good)),
-                text(&percent(bad)),
+                percent_with_error(&good.iter().collect()),
+                percent_with_error(&bad.iter().collect()),
                 error(Side::Bright)?,
                 error(Side::Dark)?,
             ]);
@@ -87,7 +86,11 @@ fn treatments(settings: &Settings, found: &Found) -> anyhow::Result<Table> {
                         && (is_main(c) || c.size == Size::Radius(0.4) && c.kernel == Kernel::Uniform)
                 });
                 if let Some(r) = one {
-                    row.push(format!("{} [{}]", text(&r.error), signed(r.predicted(), 2)));
+                    row.push(format!(
+                        "{} [{}]",
+                        percent_with_error(&r.error),
+                        signed(percent(r.predicted()), 2)
+                    ));
                 }
             }
             if row.len() == 5 {
@@ -142,10 +145,11 @@ fn rim(settings: &Settings, found: &Found) -> Table {
         .map(String::from);
     Table {
         caption: format!(
-            "The dark rim of the furnace slab without treatment: how deep the error is {VISIBLE} % or more, and the \
+            "The dark rim of the furnace slab without treatment: how deep the error is {} % or more, and the \
              integral of the loss over depth, the thickness of fluence that is lost at each face. At a fixed radius both are \
              proportional to the radius and ignore the number of photons; with the k nearest they fall with the cube root of \
-             photons over k."
+             photons over k.",
+            percent(VISIBLE)
         ),
         columns: columns.to_vec(),
         rows,
@@ -188,7 +192,11 @@ fn sheet(found: &Found) -> anyhow::Result<Table> {
                 for distance in [0.05, 0.5] {
                     let (size, kernel) = (Size::Nearest(30), Kernel::Uniform);
                     let s = found.sheet(&Sheet { side, distance, size, kernel, rejection, is_clipped })?;
-                    row.push(format!("{} [{}]", text(&s.error), signed(s.predicted, 1)));
+                    row.push(format!(
+                        "{} [{}]",
+                        percent_with_error(&s.error),
+                        signed(percent(s.predicted), 1)
+                    ));
                 }
             }
             rows.push(row);

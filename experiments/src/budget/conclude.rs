@@ -4,7 +4,7 @@ use super::common::{Common, Left};
 use super::figures;
 use super::largest::{Largest, Null};
 use super::sets::{Drawn, Group, MOST, carries, fit, groups};
-use crate::harness::{Claim, Digest, FIT_LEVEL, Section, SectionReport, Settings, Table, number};
+use crate::harness::{Claim, Digest, FIT_LEVEL, Section, SectionReport, Settings, Table, number, percent};
 use crate::prediction::{Entry, Term};
 use rayon::prelude::*;
 use turbid::rng::{Purpose, Stream};
@@ -213,7 +213,7 @@ fn summary(
             in_per_cent(common.all),
             p_text(common.p_all),
             p_text(common.p_groups),
-            number(rounded(100.0 * common.middle_error()))
+            number(rounded(percent(common.middle_error())))
         ),
         format!(
             "Each term was taken away in turn, and asked of the cases that carry it. Seen by both tests: {}; by the \
@@ -227,8 +227,8 @@ fn summary(
             "The smallest fault that is seen with a probability of {} %: by the map sets, a bias of {shift:.2} standard \
              errors of one set in all cases alike; by the sum of all cases, a bias of {} % in all alike; by the largest \
              distance, a bias of {:.1} standard errors, over all of its maps, in a single case.",
-            100.0 * POWER,
-            number(rounded(100.0 * common.all.error * (normal_critical(FIT_LEVEL) + deviation(POWER)))),
+            percent(POWER),
+            number(rounded(percent(common.all.error * (normal_critical(FIT_LEVEL) + deviation(POWER))))),
             null.bound(FIT_LEVEL) + deviation(POWER)
         ),
     ]
@@ -260,7 +260,7 @@ fn rounded(x: f64) -> f64 {
 /// In per cent with its standard error, both to the hundredth of a per cent or finer.
 fn in_per_cent(left: Left) -> String {
     let digits = if left.error < 1e-4 { 3 } else { 2 };
-    format!("{:.digits$} ± {:.digits$}", 100.0 * left.mean, 100.0 * left.error)
+    format!("{:.digits$} ± {:.digits$}", percent(left.mean), percent(left.error))
 }
 
 fn sizes(largest: &Largest) -> String {

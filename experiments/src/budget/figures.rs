@@ -1,7 +1,7 @@
 //! Measured against predicted error, and what is left.
 
 use super::sets::MOST;
-use crate::harness::{FigureFiles, bar};
+use crate::harness::{FigureFiles, percent, percent_bar};
 use crate::prediction::{Entry, Term};
 use turbid::stats::Moments;
 use turbid_figure::{Along, Axis, Color, Figure, Histogram, Legend, Line, Panel, Points, Rule, Scale, Width};
@@ -66,9 +66,9 @@ fn dominant(entry: &Entry) -> Term {
 }
 
 fn points(label: &str, class: usize, entries: &[&Entry]) -> Points {
-    let moments =
-        |e: &&Entry| e.maps.iter().map(|x| 100.0 * x).collect::<Vec<f64>>().iter().collect::<Moments>();
-    let x = entries.iter().map(|e| 100.0 * e.predicted()).collect();
-    let y = entries.iter().map(|e| moments(e).mean()).collect();
-    Points::new(label, class, x, y).with_y_interval(entries.iter().map(|e| bar(&moments(e))).collect())
+    let moments = |e: &&Entry| e.maps.iter().collect::<Moments>();
+    let x = entries.iter().map(|e| percent(e.predicted())).collect();
+    let y = entries.iter().map(|e| percent(moments(e).mean())).collect();
+    Points::new(label, class, x, y)
+        .with_y_interval(entries.iter().map(|e| percent_bar(&moments(e))).collect())
 }

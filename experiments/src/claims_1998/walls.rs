@@ -135,10 +135,10 @@ fn measure(settings: &Settings, cell: &CellId) -> anyhow::Result<CellOutput> {
     Ok(output)
 }
 
-/// Gathers whose bits do not depend on the walls [%].
+/// Gathers whose bits do not depend on the walls.
 fn same(cells: &Cells) -> f64 {
     let count = |name| cells.counter(name) as f64;
-    100.0 * count("gathers amid walls, the same bits") / count("gathers amid walls, asked twice")
+    count("gathers amid walls, the same bits") / count("gathers amid walls, asked twice")
 }
 
 /// Time amid many triangles over time amid few.
@@ -154,7 +154,7 @@ pub fn conclude(cells: &Cells) -> Part {
         TRIANGLES[1], TRIANGLES[0]
     );
     let exact = Estimate::exact(same(cells), 0.0);
-    let claims = vec![Claim::within("decoupled", &text, Unit::PERCENT, exact, 100.0, 100.0)];
+    let claims = vec![Claim::within("decoupled", &text, Unit::FRACTION, exact, 1.0, 1.0)];
     let mut said = Vec::new();
     if let (Some(gathers), Some(rays)) = (ratio(cells, "gathers"), ratio(cells, "rays")) {
         said.push([

@@ -6,24 +6,27 @@ use super::intervals::Kind;
 use super::measure::{GROUP, MAPS, SIZES, alarm_name, case, nearest_case, null_case, radius_case, repeats};
 use super::nulls::{LEVELS, Population, VALUES};
 use super::results::uniformity;
-use crate::harness::{Cells, Claim, Estimate, Row, Section, Settings, Table, Unit, number, with_error};
+use crate::harness::{
+    Cells, Claim, Estimate, Row, Section, Settings, Table, Unit, number, percent, percent_with_error,
+    with_error,
+};
 use crate::prediction::{Entry, Prediction, Term};
 use turbid::stats::{Moments, student_p};
 
 /// Margins of the shares of 2,000 repeats: three of their binomial standard errors, 0.49 and 0.22 per cent.
-const COVERAGE_MARGIN: f64 = 1.5;
-const ALARM_MARGIN: f64 = 0.67;
+const COVERAGE_MARGIN: f64 = 0.015;
+const ALARM_MARGIN: f64 = 0.0067;
 /// What Student's t with few degrees of freedom leaves of the normal quantile's 95 per cent is predicted, and must be at
-/// least this far from them to be seen [%].
-const NORMAL_SEEN: f64 = 2.0;
+/// least this far from them to be seen.
+const NORMAL_SEEN: f64 = 0.02;
 /// Kolmogorov's distance that right p-values exceed once in 10^5, times the root of their number.
 const KOLMOGOROV: f64 = 2.47;
 /// Numerical error of the predictions, relative: quadrature to 1e-12, tables to 1e-8.
 const NUMERICAL: f64 = 1e-7;
 
-/// Coverage of the normal quantile where the error is estimated from so many maps [%].
+/// Coverage of the normal quantile where the error is estimated from so many maps.
 fn normal_coverage(maps: usize) -> f64 {
-    100.0 * (1.0 - student_p(turbid::stats::normal_critical(0.05), maps as u64 - 1))
+    1.0 - student_p(turbid::stats::normal_critical(0.05), maps as u64 - 1)
 }
 
 /// What theory says.
@@ -35,15 +38,15 @@ pub fn predict(_settings: &Settings) -> anyhow::Result<Vec<Prediction>> {
     };
     for kind in Kind::ALL {
         for maps in SIZES {
-            add(case(kind, maps), "coverage", Unit::PERCENT, 95.0, 0.0, "the level");
-            add(case(kind, maps), "p below 0.01", Unit::PERCENT, 1.0, 0.0, "the level");
+            add(case(kind, maps), "coverage", Unit::FRACTION, 0.95, 0.0, "the level");
+            add(case(kind, maps), "p below 0.01", Unit::FRACTION, 0.01, 0.0, "the level");
         }
         add(case(kind, MAPS), "truth", Unit::ONE, kind.truth(&exact), NUMERICAL, "independent photons");
     }
     for maps in SIZES {
         let source = "Student's t at the normal quantile";
         let value = normal_coverage(maps);
-        add(case(Kind::Radius, maps), "coverage by normal", Unit::PERCENT, value, 1e-9, source);
+        add(case(Kind::Radius, maps), "coverage by normal", Unit::FRACTION, value, 1e-11, source);
     }
     for population in Population::ALL {
         for level in LEVELS {
@@ -81,7 +84,7 @@ fn rows(cells: &Cells) -> anyhow::Result<Vec<Row>> {
         for maps in SIZES {
             let name = case(kind, maps);
             for quantity in ["coverage", "p below 0.01", "coverage by normal"] {
-                rows.push(measured(&name, quantity, Unit::PERCENT, &cells.moments(&name, quantity)?)?);
+                rows.push(measured(&name, quantity, Unit::FRACTION, &cells.moments(&name, quantity)?)?);
             }
         }
         let (test, n) = uniformity(cells, kind);
@@ -107,13 +110,13 @@ fn claims(cells: &Cells) -> anyhow::Result<Vec<Claim>> {
         let name = case(kind, MAPS);
         let id = |what: &str| format!("{}-{what}", kind.name());
         let text = format!("{}, {MAPS} maps: how often its 95 % interval covers", kind.title());
-        let (low, high) = (95.0 - COVERAGE_MARGIN, 95.0 + COVERAGE_MARGIN);
+        let (low, high) = (0.95 - COVERAGE_MARGIN, 0.95 + COVERAGE_MARGIN);
         let statistic = cells.estimate(&name, "coverage")?;
-        claims.push(Claim::within(&id("coverage"), &text, Unit::PERCENT, statistic, low, high));
+        claims.push(Claim::within(&id("coverage"), &text, Unit::FRACTION, statistic, low, high));
         let text = format!("{}, {MAPS} maps: how often p is below 0.01", kind.title());
-        let (low, high) = (1.0 - ALARM_MARGIN, 1.0 + ALARM_MARGIN);
+        let (low, high) = (0.01 - ALARM_MARGIN, 0.01 + ALARM_MARGIN);
         let statistic = cells.estimate(&name, "p below 0.01")?;
-        claims.push(Claim::within(&id("alarms"), &text, Unit::PERCENT, statistic, low, high));
+        claims.push(Claim::within(&id("alarms"), &text, Unit::FRACTION, statistic, low, high));
         let (test, n) = uniformity(cells, kind);
         let text =
             format!("{}: distance of its p-values from uniform ones, times the root of n", kind.title());
@@ -126,7 +129,7 @@ fn claims(cells: &Cells) -> anyhow::Result<Vec<Claim>> {
         SIZES[0]
     );
     let statistic = cells.estimate(&few, "coverage by normal")?;
-    claims.push(Claim::detected("normal-quantile", &text, Unit::PERCENT, statistic, 95.0, NORMAL_SEEN));
+    claims.push(Claim::detected("normal-quantile", &text, Unit::FRACTION, statistic, 0.95, NORMAL_SEEN));
     let name = null_case(Population::Normal);
     for (level, margin) in [(1e-2, 0.05), (1e-3, 0.15), (1e-4, 0.5)] {
         let text = format!("means of {VALUES} normal numbers: alarms on right data at {level}, over {level}");
@@ -149,9 +152,8 @@ fn budget(cells: &Cells) -> anyhow::Result<Vec<Entry>> {
     Ok(entries)
 }
 
-fn percent(cells: &Cells, name: &str, quantity: &str) -> anyhow::Result<String> {
-    let moments = cells.moments(name, quantity)?;
-    Ok(with_error(moments.mean(), moments.std_error()))
+fn shown(cells: &Cells, name: &str, quantity: &str) -> anyhow::Result<String> {
+    Ok(percent_with_error(&cells.moments(name, quantity)?))
 }
 
 fn coverages(cells: &Cells) -> anyhow::Result<Table> {
@@ -162,16 +164,16 @@ fn coverages(cells: &Cells) -> anyhow::Result<Table> {
     for kind in Kind::ALL {
         let mut row = vec![kind.title().to_string()];
         for maps in SIZES {
-            row.push(percent(cells, &case(kind, maps), "coverage")?);
+            row.push(shown(cells, &case(kind, maps), "coverage")?);
         }
-        row.push(percent(cells, &case(kind, MAPS), "p below 0.01")?);
+        row.push(shown(cells, &case(kind, MAPS), "p below 0.01")?);
         let (test, n) = uniformity(cells, kind);
         row.push(format!("{} (p = {})", number(test.distance * (n as f64).sqrt()), number(test.p)));
         rows.push(row);
     }
     let mut row = vec!["fixed radius, normal quantile".to_string()];
     for maps in SIZES {
-        row.push(percent(cells, &case(Kind::Radius, maps), "coverage by normal")?);
+        row.push(shown(cells, &case(Kind::Radius, maps), "coverage by normal")?);
     }
     row.extend([String::new(), String::new()]);
     rows.push(row);
@@ -217,8 +219,8 @@ fn summarise(section: &mut Section, settings: &Settings, cells: &Cells) -> anyho
         "Over {} repeats of a study of {MAPS} maps, intervals that promise to contain the exact value 95 times in a \
          hundred contain it between {:.1} and {:.1} times, by the kind of statistic.",
         repeats(settings),
-        covered[0],
-        covered[covered.len() - 1]
+        percent(covered[0]),
+        percent(covered[covered.len() - 1])
     ));
     section.summary.push(format!(
         "Tests on right data raise {} times the alarms that they promise at 1 in 100, and {} times at 1 in 10,000; where \

@@ -4,7 +4,7 @@ use super::intervals::Kind;
 use super::measure::{SIZES, alarm_name, case, null_case};
 use super::nulls::{LEVELS, Population};
 use super::results::{p_values, uniformity};
-use crate::harness::{Cells, FigureFiles, bar};
+use crate::harness::{Cells, FigureFiles, bar, percent, percent_bar};
 use turbid_figure::{Along, Axis, Color, Figure, Legend, Line, Panel, Points, Rule, Scale, Width};
 
 /// All figures.
@@ -25,8 +25,8 @@ fn coverage(cells: &Cells) -> anyhow::Result<FigureFiles> {
             let moments = cells.moments(&case(kind, maps), quantity)?;
             // Beside each other, not on top.
             x.push(maps as f64 * (1.0 + 0.025 * (class as f64 - 3.0)));
-            y.push(moments.mean());
-            bars.push(bar(&moments));
+            y.push(percent(moments.mean()));
+            bars.push(percent_bar(&moments));
         }
         Ok(Points::new(name, class, x, y).with_y_interval(bars))
     };

@@ -138,9 +138,9 @@ fn measure_repeats(settings: &Settings, cell: &CellId) -> anyhow::Result<CellOut
     }
     for (kind, tallies) in Kind::ALL.into_iter().zip(&tallies) {
         for (maps, tally) in SIZES.into_iter().zip(tallies) {
-            output.push(case(kind, maps), "coverage", 100.0 * tally.covered.mean());
-            output.push(case(kind, maps), "p below 0.01", 100.0 * tally.alarms.mean());
-            output.push(case(kind, maps), "coverage by normal", 100.0 * tally.by_normal.mean());
+            output.push(case(kind, maps), "coverage", tally.covered.mean());
+            output.push(case(kind, maps), "p below 0.01", tally.alarms.mean());
+            output.push(case(kind, maps), "coverage by normal", tally.by_normal.mean());
         }
     }
     for (r, moments) in RADII.into_iter().zip(errors) {

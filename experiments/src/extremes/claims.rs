@@ -106,7 +106,7 @@ fn storage_claims(results: &Results) -> Vec<Claim> {
     if let Some(result) = find(results, Rule::Fixed, 21) {
         let text = "a map of 1.3e7 radii in single precision, wrong on purpose: mean difference from double precision";
         let statistic = Estimate::mean(&result.difference);
-        claims.push(Claim::detected("storage-too-long", text, Unit::PERCENT, statistic, 0.0, 3.0));
+        claims.push(Claim::detected("storage-too-long", text, Unit::FRACTION, statistic, 0.0, 0.03));
     }
     claims
 }

@@ -8,7 +8,7 @@ use super::results::{
 use super::storage::{self, Rule};
 use super::stretched::{self, Case};
 use super::{claims, figures, sampled, tables};
-use crate::harness::{Cells, Estimate, Row, Section, Settings, Unit, number, with_error};
+use crate::harness::{Cells, Estimate, Row, Section, Settings, Unit, number, percent, with_error};
 use crate::prediction::{Entry, Prediction, Predictions, Term};
 use anyhow::Context;
 use turbid::stats::{Moments, jackknife};
@@ -72,7 +72,6 @@ fn gather(settings: &Settings, predictions: &[Prediction], cells: &Cells) -> any
                 let worst = cells.values(&name, "rounding over resolution")?;
                 rounding = worst.into_iter().fold(rounding, f64::max);
             }
-            let difference: Vec<f64> = cells.values(&name, "difference")?.iter().map(|d| 100.0 * d).collect();
             let squared = cells.values(&name, "squared difference")?;
             let maps: Vec<[f64; 3]> = (0..squared.len()).map(|m| [squared[m], mean[m], square[m]]).collect();
             storage_results.push(StorageResult {
@@ -80,7 +79,7 @@ fn gather(settings: &Settings, predictions: &[Prediction], cells: &Cells) -> any
                 power,
                 predicted: find(&name, "difference")?,
                 predicted_rms: find(&name, "rms difference")?.0,
-                difference: moments(&difference),
+                difference: cells.moments(&name, "difference")?,
                 rms: Estimate::jackknife(&jackknife(&maps, ratio)),
                 moved: cells.values(&name, "photons moved")?.iter().sum(),
                 errors: cells.values(&name, "error")?,
@@ -89,9 +88,8 @@ fn gather(settings: &Settings, predictions: &[Prediction], cells: &Cells) -> any
     }
     let mut stretched_results = Vec::new();
     for case in stretched::POWERS.into_iter().flat_map(Case::all) {
-        let (value, error) = find(&case.name(), "error")?;
-        let errors = cells.values(&case.name(), "error")?;
-        stretched_results.push(StretchedResult { case, predicted: (value / 100.0, error / 100.0), errors });
+        let (predicted, errors) = (find(&case.name(), "error")?, cells.values(&case.name(), "error")?);
+        stretched_results.push(StretchedResult { case, predicted, errors });
     }
     Ok(Results {
         sampled: sampled_results,
@@ -133,13 +131,12 @@ fn rows(results: &Results) -> anyhow::Result<Vec<Row>> {
     for r in &results.storage {
         let name = storage::case(r.rule, r.power);
         if r.difference.std_error() > 0.0 && r.rms.std_error() > 0.0 {
-            rows.push(Row::measured(&name, "difference", Unit::PERCENT, &r.difference)?);
+            rows.push(Row::measured(&name, "difference", Unit::FRACTION, &r.difference)?);
             rows.push(Row::estimated(&name, "rms difference", STANDARD_ERRORS, &r.rms)?);
         }
     }
     for r in &results.stretched {
-        let percent: Vec<f64> = r.errors.iter().map(|e| 100.0 * e).collect();
-        rows.push(Row::measured(&r.case.name(), "error", Unit::PERCENT, &moments(&percent))?);
+        rows.push(Row::measured(&r.case.name(), "error", Unit::FRACTION, &moments(&r.errors))?);
     }
     Ok(rows)
 }
@@ -159,9 +156,9 @@ fn budget(results: &Results, predictions: &[Prediction]) -> anyhow::Result<Vec<E
         let name = storage::case(r.rule, r.power);
         let whole = predictions.iter().find(|p| p.case == name && p.quantity == "error");
         let whole = whole.with_context(|| format!("no prediction of the error of {name}"))?;
-        let (storage, clusters) = (r.predicted.0 / 100.0, (whole.value - r.predicted.0) / 100.0);
+        let (storage, clusters) = (r.predicted.0, whole.value - r.predicted.0);
         let terms = [(Term::Storage, storage), (Term::Clusters, clusters)];
-        entries.push(Entry::new("extremes-storage", name, &terms, whole.error / 100.0, r.errors.clone()));
+        entries.push(Entry::new("extremes-storage", name, &terms, whole.error, r.errors.clone()));
     }
     for r in &results.stretched {
         let group = format!("extremes-{}", stretched::group(r.case.power));
@@ -185,7 +182,7 @@ fn summarise(section: &mut Section, settings: &Settings, results: &Results) {
         .iter()
         .filter_map(SampledResult::smallest_bias)
         .chain(results.large.iter().map(LargeResult::smallest_bias))
-        .map(|bias| 100.0 * bias)
+        .map(percent)
         .collect();
     visible.sort_by(f64::total_cmp);
     let rms = (z.iter().map(|z| z * z).sum::<f64>() / z.len().max(1) as f64).sqrt();
@@ -201,7 +198,7 @@ fn summarise(section: &mut Section, settings: &Settings, results: &Results) {
             number(near.rms.value()),
             number(near.extent_in_radii()),
             number(far.extent_in_radii()),
-            far.difference.mean()
+            percent(far.difference.mean())
         ).replace('-', "−"));
     }
     section.summary.push(format!(

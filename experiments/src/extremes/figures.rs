@@ -4,7 +4,7 @@ use super::cases::Class;
 use super::lattice::kernel_on_lattice;
 use super::results::{Results, StretchedResult};
 use super::storage::{self, RADIUS, Rule};
-use crate::harness::{FigureFiles, bar};
+use crate::harness::{FigureFiles, percent, percent_bar};
 use crate::setups::Size;
 use crate::theory::kernel_title;
 use turbid::estimators::Kernel;
@@ -59,12 +59,16 @@ fn storage_figure(results: &Results) -> anyhow::Result<FigureFiles> {
             )
             .with_y_interval(bars.collect()),
         );
-        right =
-            right.with(Line::new(&label, class, x.clone(), chosen.iter().map(|r| r.predicted.0).collect()));
+        right = right.with(Line::new(
+            &label,
+            class,
+            x.clone(),
+            chosen.iter().map(|r| percent(r.predicted.0)).collect(),
+        ));
         // Beside each other, not on top of each other.
         let beside = x.iter().map(|x| x * (1.0 + 0.12 * class as f64)).collect();
-        let mean = chosen.iter().map(|r| r.difference.mean()).collect();
-        let bars = chosen.iter().map(|r| bar(&r.difference)).collect();
+        let mean = chosen.iter().map(|r| percent(r.difference.mean())).collect();
+        let bars = chosen.iter().map(|r| percent_bar(&r.difference)).collect();
         right = right.with(Points::new(&label, class, beside, mean).with_y_interval(bars));
     }
     let figure =
@@ -144,7 +148,7 @@ fn stretched(results: &Results) -> anyhow::Result<FigureFiles> {
     let grid: Vec<f64> = (0..=900).map(|i| 0.1 * libm::pow(40.0, f64::from(i) / 900.0)).collect();
     for (class, kernel) in Kernel::ALL.into_iter().enumerate() {
         let line: anyhow::Result<Vec<f64>> =
-            grid.iter().map(|&s| Ok(100.0 * (kernel_on_lattice(kernel, s)?.0 - 1.0))).collect();
+            grid.iter().map(|&s| Ok(percent(kernel_on_lattice(kernel, s)?.0 - 1.0))).collect();
         panel = panel.with(Line::new(kernel_title(kernel), class, grid.clone(), line?));
         let spacing = |r: &StretchedResult| match r.case.size {
             Size::Radius(radius) => r.case.spacing() / radius,
@@ -152,10 +156,10 @@ fn stretched(results: &Results) -> anyhow::Result<FigureFiles> {
         };
         let chosen: Vec<_> =
             results.stretched.iter().filter(|r| r.case.kernel == kernel && spacing(r) > 0.1).collect();
-        let percent = |r: &StretchedResult| r.errors.iter().map(|e| 100.0 * e).collect::<Moments>();
+        let error = |r: &StretchedResult| r.errors.iter().collect::<Moments>();
         let x = chosen.iter().map(|r| spacing(r)).collect();
-        let y = chosen.iter().map(|r| percent(r).mean()).collect();
-        let bars = chosen.iter().map(|r| bar(&percent(r))).collect();
+        let y = chosen.iter().map(|r| percent(error(r).mean())).collect();
+        let bars = chosen.iter().map(|r| percent_bar(&error(r))).collect();
         panel = panel.with(Points::new(kernel_title(kernel), class, x, y).with_y_interval(bars));
     }
     let figure = Figure {

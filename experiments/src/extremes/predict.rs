@@ -89,29 +89,15 @@ pub fn predict(settings: &Settings) -> anyhow::Result<Vec<Prediction>> {
             let Storage { mean, error, root_mean_square, noise, clusters } =
                 storage(settings, rule, storage::spacing(power))?;
             let case = storage::case(rule, power);
-            add(
-                case.clone(),
-                "difference",
-                Unit::PERCENT,
-                100.0 * mean,
-                100.0 * error,
-                "kernel on a lattice",
-            );
+            add(case.clone(), "difference", Unit::FRACTION, mean, error, "kernel on a lattice");
             let ratio = root_mean_square / noise;
             add(case.clone(), "rms difference", Unit::ONE, ratio, 0.0, "photons that change sides");
-            add(
-                case.clone(),
-                "error",
-                Unit::PERCENT,
-                100.0 * (mean + clusters),
-                100.0 * error,
-                "and clusters",
-            );
+            add(case.clone(), "error", Unit::FRACTION, mean + clusters, error, "and clusters");
         }
     }
     for case in stretched::POWERS.into_iter().flat_map(Case::all) {
         let (value, error) = case.predicted(settings)?;
-        add(case.name(), "error", Unit::PERCENT, 100.0 * value, 100.0 * error, "kernel on a lattice");
+        add(case.name(), "error", Unit::FRACTION, value, error, "kernel on a lattice");
     }
     Ok(predictions)
 }

@@ -106,11 +106,11 @@ pub struct StorageResult {
     pub rule: Rule,
     /// Power of two of the extent.
     pub power: i32,
-    /// Predicted mean difference and its bound [%].
+    /// Predicted mean difference and its bound.
     pub predicted: (f64, f64),
     /// Predicted root mean square difference [standard errors of one estimate].
     pub predicted_rms: f64,
-    /// Difference of each map [%].
+    /// Difference of each map.
     pub difference: Moments,
     /// Root mean square difference over the standard deviation of an estimate.
     pub rms: Estimate,

@@ -2,7 +2,7 @@
 
 use super::results::Results;
 use super::storage::{self};
-use crate::harness::{Table, number, signed, with_error};
+use crate::harness::{Table, number, percent, percent_with_error, signed, with_error};
 
 fn columns(names: &[&str]) -> Vec<String> {
     names.iter().map(|name| name.to_string()).collect()
@@ -22,9 +22,9 @@ pub fn sampled(results: &Results) -> Table {
                 r.name.clone(),
                 measured,
                 number(r.exact.0),
-                signed(100.0 * (mean / r.exact.0 - 1.0), 3),
+                signed(percent(mean / r.exact.0 - 1.0), 3),
                 signed(r.z(), 1),
-                r.smallest_bias().map_or("exact".to_string(), |bias| number(100.0 * bias)),
+                r.smallest_bias().map_or("exact".to_string(), |bias| number(percent(bias))),
                 word(r.z()),
             ]
         })
@@ -37,9 +37,9 @@ pub fn sampled(results: &Results) -> Table {
             r.name.clone(),
             with_error(count / emitted, error),
             number(p),
-            signed(100.0 * (count / emitted / p - 1.0), 3),
+            signed(percent(count / emitted / p - 1.0), 3),
             signed(r.z(), 1),
-            number(100.0 * r.smallest_bias()),
+            number(percent(r.smallest_bias())),
             word(r.z()),
         ]);
     }
@@ -95,8 +95,8 @@ pub fn storage(results: &Results) -> Table {
                 number(storage::spacing(r.power)),
                 with_error(r.rms.value(), r.rms.std_error()),
                 number(r.predicted_rms),
-                with_error(r.difference.mean(), r.difference.std_error()),
-                number(r.predicted.0),
+                percent_with_error(&r.difference),
+                number(percent(r.predicted.0)),
             ]
         })
         .collect();

@@ -85,13 +85,14 @@ impl Claim {
 
     /// What the claim demands, in words, with its unit.
     pub fn margin(&self) -> String {
-        let with_unit = |x: f64| self.unit.after(&number(x));
+        let shown = |x: f64| number(self.unit.shown(x));
+        let with_unit = |x: f64| self.unit.after(&shown(x));
         match self.kind {
             Kind::Within(m) if m.low == f64::NEG_INFINITY => format!("at most {}", with_unit(m.high)),
             Kind::Within(m) if m.high == f64::INFINITY => format!("at least {}", with_unit(m.low)),
-            Kind::Within(m) => format!("{} to {}", number(m.low), with_unit(m.high)),
+            Kind::Within(m) => format!("{} to {}", shown(m.low), with_unit(m.high)),
             Kind::Differs { from, by: 0.0 } => format!("not {}", with_unit(from)),
-            Kind::Differs { from, by } => format!("{} or more from {}", with_unit(by), number(from)),
+            Kind::Differs { from, by } => format!("{} or more from {}", with_unit(by), shown(from)),
             Kind::Fits => format!("p above {}", number(FIT_LEVEL)),
             Kind::Refused => format!("p below {} (Holm)", number(FAMILY_WISE)),
         }
@@ -164,16 +165,16 @@ pub struct Judged {
 impl Judged {
     /// Statistic, error and unit in one phrase.
     pub fn measured(&self) -> String {
-        let statistic = &self.claim.statistic;
+        let (statistic, unit) = (&self.claim.statistic, self.claim.unit);
         // The tails of a p-value are as good as the normal distribution is there: not at all.
         if matches!(self.claim.kind, Kind::Fits | Kind::Refused) && statistic.value() < 1e-12 {
             return "below 10⁻¹²".to_string();
         }
         let text = match statistic.maps() {
-            None => number(statistic.value()),
-            Some(_) => with_error(statistic.value(), statistic.std_error()),
+            None => number(unit.shown(statistic.value())),
+            Some(_) => with_error(unit.shown(statistic.value()), unit.shown(statistic.std_error())),
         };
-        self.claim.unit.after(&text)
+        unit.after(&text)
     }
 }
 

@@ -1,5 +1,6 @@
 //! A number with what is known of its error.
 
+use super::format::{percent, with_error};
 use turbid::stats::{Interval, Jackknife, Moments, student_critical, student_p};
 
 /// A statistic: its value, and either a standard error over independent maps or a bound on its error.
@@ -66,6 +67,11 @@ impl Estimate {
     /// Standard error, or the bound of a computed value.
     pub fn std_error(&self) -> f64 {
         self.std_error
+    }
+
+    /// A fraction in per cent, with its error.
+    pub fn in_percent(&self) -> String {
+        with_error(percent(self.value), percent(self.std_error))
     }
 
     /// Number of independent maps; `None` for a computed value.

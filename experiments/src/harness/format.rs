@@ -1,5 +1,7 @@
 //! Numbers for readers: as many digits as their error has, signs and powers as in print.
 
+use turbid::stats::Moments;
+
 /// A number to four significant digits, without trailing zeros: 0.05, 1.234, 2.5 x 10^-7.
 pub fn number(x: f64) -> String {
     if !x.is_finite() {
@@ -38,6 +40,16 @@ pub fn with_error(value: f64, error: f64) -> String {
     let digits = (1 - exponent(error, 1)).clamp(0, 15);
     let text = format!("{} ± {}", print(value, digits), print(error, digits));
     if power == 0 { text } else { format!("({text}){}", times_ten_to(power)) }
+}
+
+/// A fraction in per cent.
+pub fn percent(fraction: f64) -> f64 {
+    100.0 * fraction
+}
+
+/// A mean of fractions in per cent, with its error: -0.31 ± 0.04, without the sign.
+pub fn percent_with_error(fractions: &Moments) -> String {
+    with_error(percent(fractions.mean()), percent(fractions.std_error()))
 }
 
 /// The power of ten of the first digit, after rounding to so many digits behind it.

@@ -35,7 +35,7 @@ pub use claim::{Claim, FAMILY_WISE, FIT_LEVEL, Judged, Kind, MIN_MAPS, Verdict, 
 pub use digest::{Digest, program_digest};
 pub use estimate::Estimate;
 pub use experiment::Experiment;
-pub use format::{number, signed, with_error};
+pub use format::{number, percent, percent_with_error, signed, with_error};
 pub use group::Group;
 pub(crate) use outcome::cost_line;
 pub use outcome::{Outcome, SectionReport};
@@ -49,7 +49,7 @@ pub use replot::replot;
 pub(crate) use replot::try_redraw;
 pub use results::Row;
 pub(crate) use section::row_label;
-pub use section::{FigureFiles, OtherWidth, Section, Table, bar};
+pub use section::{FigureFiles, OtherWidth, Section, Table, bar, percent_bar};
 pub use settings::{Preset, Replot, Settings};
 pub(crate) use study::one_line;
 pub use study::{Closing, Study, main, main_with, run};

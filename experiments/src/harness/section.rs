@@ -1,7 +1,7 @@
 //! What an experiment says in the report.
 
-use super::format::{number, with_error};
-use super::{Claim, Row};
+use super::format::{number, percent, with_error};
+use super::{Claim, Row, Unit};
 use crate::prediction::Entry;
 use turbid::stats::{Moments, mean_interval};
 use turbid_figure::Figure;
@@ -72,6 +72,12 @@ pub fn bar(moments: &Moments) -> (f64, f64) {
     (interval.low, interval.high)
 }
 
+/// The same of a mean of fractions, in per cent.
+pub fn percent_bar(moments: &Moments) -> (f64, f64) {
+    let (low, high) = bar(moments);
+    (percent(low), percent(high))
+}
+
 /// A table of words and numbers for readers; the numbers behind it are in results.csv.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Table {
@@ -89,14 +95,15 @@ impl Table {
     pub fn of_rows(caption: &str, rows: &[Row]) -> Self {
         let optional = |value: Option<String>| value.unwrap_or_default();
         let cells = |row: &Row| {
-            let (value, error) = row.value();
             let (case, quantity) = row.key();
+            let shown =
+                |(value, error): (f64, f64)| with_error(row.unit().shown(value), row.unit().shown(error));
             vec![
                 case.to_string(),
-                row_label(quantity, row.unit().name()),
-                with_error(value, error),
-                optional(row.prediction().map(number)),
-                optional(row.exact_value().map(|(value, error)| with_error(value, error))),
+                row_label(quantity, row.unit()),
+                shown(row.value()),
+                optional(row.prediction().map(|value| number(row.unit().shown(value)))),
+                optional(row.exact_value().map(shown)),
                 optional(
                     row.z_and_p().map(|(z, _)| format!("{z:.1}").replace("-0.0", "0.0").replace('-', "−")),
                 ),
@@ -124,10 +131,10 @@ impl Table {
 }
 
 /// A quantity with its unit in brackets.
-pub(crate) fn row_label(quantity: &str, unit: &str) -> String {
-    match unit {
-        "1" => quantity.to_string(),
-        unit => format!("{quantity} [{}]", unit.replace("^2", "²").replace("^3", "³")),
+pub(crate) fn row_label(quantity: &str, unit: Unit) -> String {
+    match unit.title() {
+        none if none.is_empty() => quantity.to_string(),
+        unit => format!("{quantity} [{unit}]"),
     }
 }
 

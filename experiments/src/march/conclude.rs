@@ -5,7 +5,9 @@ use super::figures;
 use super::measure::GROUP;
 use super::predict::TERMS;
 use super::results::CaseResult;
-use crate::harness::{Cells, Claim, Estimate, Row, Section, Settings, Table, Unit, signed, with_error};
+use crate::harness::{
+    Cells, Claim, Estimate, Row, Section, Settings, Table, Unit, percent, percent_with_error, signed,
+};
 use crate::prediction::{Compared, PredictedError, Prediction, Predictions, Term, amplitude};
 use crate::setups::Size;
 use turbid::integrators::StepRule;
@@ -56,25 +58,25 @@ fn claims(results: &[CaseResult]) -> Vec<Claim> {
     }
     let nearest: Vec<&CaseResult> =
         results.iter().filter(|r| matches!(r.case.size, Size::Nearest(4 | 10))).collect();
-    if let Some(amplitude) = amplitude(&nearest, |r| 100.0 * r.expected.of(Term::Clusters)) {
+    if let Some(amplitude) = amplitude(&nearest, |r| r.expected.of(Term::Clusters)) {
         let text = "steps with the 4 or 10 nearest photons: error from clusters of photons of one history, measured \
                     over predicted";
         claims.push(Claim::within("clusters", text, Unit::ONE, amplitude, 0.0, 2.0));
     }
     if let Some(coarse) = find(results, 0.5, 1.0, StepRule::NearEnd) {
         let text = "the formula of 1998 in steps of one mean free path, along the ray of mu = 0.5: error";
-        claims.push(Claim::detected("1998", text, Unit::PERCENT, Estimate::mean(&coarse.error), 0.0, 5.0));
+        claims.push(Claim::detected("1998", text, Unit::FRACTION, Estimate::mean(&coarse.error), 0.0, 0.05));
     }
     // The same sum with each step attenuated through all of itself: every weight smaller by e^-dx.
     let step = 0.2;
     if let Some(near) = find(results, 1.0, step, StepRule::NearEnd) {
-        let wrong = |e: f64| (100.0 + e) * libm::exp(-step) - 100.0;
+        let wrong = |e: f64| (1.0 + e) * libm::exp(-step) - 1.0;
         let errors: Vec<f64> = near.errors.iter().map(|&e| wrong(e)).collect();
         let text = "wrong on purpose, steps of 0.2 that are attenuated through all of themselves: error";
         let statistic = Estimate::mean(&errors.iter().collect());
         // Wrong by what was predicted of it: 14 % below the right way of the same steps.
-        let (low, high) = (wrong(near.predicted()) - 1.0, wrong(near.predicted()) + 1.0);
-        claims.push(Claim::within("attenuated-twice", text, Unit::PERCENT, statistic, low, high));
+        let (low, high) = (wrong(near.predicted()) - 0.01, wrong(near.predicted()) + 0.01);
+        claims.push(Claim::within("attenuated-twice", text, Unit::FRACTION, statistic, low, high));
     }
     claims
 }
@@ -105,15 +107,15 @@ fn table(results: &[CaseResult]) -> Table {
         "blur",
         "clusters",
     ];
-    let part = |x: f64| if x.abs() < 5e-5 { "0".to_string() } else { signed(100.0 * x, 2) };
+    let part = |x: f64| if x.abs() < 5e-5 { "0".to_string() } else { signed(percent(x), 2) };
     let row = |r: &CaseResult| {
         let mut cells = vec![
             format!("mu {}", r.case.mu),
             r.case.step.to_string(),
             r.case.size.title(),
             rule_name(r.case.rule).to_string(),
-            with_error(r.error.mean(), r.error.std_error()),
-            part(r.predicted() / 100.0),
+            percent_with_error(&r.error),
+            part(r.predicted()),
         ];
         cells.extend(TERMS.map(|term| part(r.expected.of(term))));
         cells
@@ -132,11 +134,7 @@ fn table(results: &[CaseResult]) -> Table {
 fn summary(results: &[CaseResult]) -> Vec<String> {
     let mut summary = Vec::new();
     let words = |r: &CaseResult| {
-        format!(
-            "{} % (predicted {} %)",
-            with_error(r.error.mean(), r.error.std_error()),
-            signed(r.predicted(), 2)
-        )
+        format!("{} % (predicted {} %)", percent_with_error(&r.error), signed(percent(r.predicted()), 2))
     };
     let at = |step, rule| find(results, 1.0, step, rule);
     if let (Some(old), Some(new)) = (at(0.2, StepRule::NearEnd), at(0.2, StepRule::Integrated)) {
@@ -144,8 +142,8 @@ fn summary(results: &[CaseResult]) -> Vec<String> {
             "Fog of albedo 0.9, marched in steps of 0.2 mean free paths, reads {} % high by the formula of 1998 where the \
              light in it is exactly known, and {} % high with the exponential integrated over each step; through a \
              photon map the errors are {} and {}, since the map loses light at the face.",
-            signed(100.0 * old.expected.of(Term::Step), 1),
-            signed(100.0 * new.expected.of(Term::Step), 1),
+            signed(percent(old.expected.of(Term::Step)), 1),
+            signed(percent(new.expected.of(Term::Step)), 1),
             words(old),
             words(new)
         ));
@@ -154,8 +152,8 @@ fn summary(results: &[CaseResult]) -> Vec<String> {
              step, too much by half a step at first; but the first of these points stands on the face, where half of \
              each ball is empty ({} %), and a first value halved is the trapezoidal rule. Once the face is treated, \
              the excess of {} % is left.",
-            signed(100.0 * old.expected.of(Term::Edge), 1),
-            signed(100.0 * old.expected.of(Term::Step), 1)
+            signed(percent(old.expected.of(Term::Edge)), 1),
+            signed(percent(old.expected.of(Term::Step)), 1)
         ));
     }
     let worst = COSINES.iter().filter_map(|&mu| find(results, mu, 1.0, StepRule::NearEnd));

@@ -2,7 +2,7 @@
 
 use super::cases::{COSINES, RADIUS, rule_name};
 use super::results::CaseResult;
-use crate::harness::{FigureFiles, bar};
+use crate::harness::{FigureFiles, percent, percent_bar};
 use crate::prediction::Term;
 use crate::setups::Size;
 use turbid::integrators::StepRule;
@@ -25,14 +25,14 @@ pub fn steps(results: &[CaseResult]) -> anyhow::Result<FigureFiles> {
                 StepRule::NearEnd => "formula of 1998".to_string(),
                 rule => rule_name(rule).to_string(),
             };
-            let total = chosen.iter().map(|r| r.predicted()).collect();
+            let total = chosen.iter().map(|r| percent(r.predicted())).collect();
             panel = panel.with(Line::new(&label, class, x.clone(), total).with_dash(Dash::Solid));
-            let alone = chosen.iter().map(|r| 100.0 * r.expected.of(Term::Step)).collect();
+            let alone = chosen.iter().map(|r| percent(r.expected.of(Term::Step))).collect();
             let label_alone = format!("{label}, steps alone");
             let alone = Line::new(&label_alone, class, x.clone(), alone).with_dash(Dash::Dotted);
             panel = panel.with(alone);
-            let y = chosen.iter().map(|r| r.error.mean()).collect();
-            let bars = chosen.iter().map(|r| bar(&r.error)).collect();
+            let y = chosen.iter().map(|r| percent(r.error.mean())).collect();
+            let bars = chosen.iter().map(|r| percent_bar(&r.error)).collect();
             panel = panel.with(Points::new(&label, class, x, y).with_y_interval(bars));
         }
         panels.push(panel);

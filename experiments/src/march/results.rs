@@ -3,5 +3,5 @@
 use super::cases::Case;
 use crate::prediction::Compared;
 
-/// One case with everything that is known of it; errors in per cent of the exact radiance.
+/// One case with everything that is known of it; errors as fractions of the exact radiance.
 pub type CaseResult = Compared<Case>;

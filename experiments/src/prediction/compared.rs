@@ -5,7 +5,7 @@ use super::term::Entry;
 use crate::harness::{Cells, Estimate, Parameters, Row, Unit};
 use turbid::stats::{Moments, amplitude_per_map};
 
-/// One case with everything that is known of it; errors in per cent of the exact value.
+/// One case with everything that is known of it; errors as fractions of the exact value.
 pub struct Compared<C> {
     /// The case.
     pub case: C,
@@ -31,19 +31,19 @@ impl<C> Compared<C> {
     ) -> anyhow::Result<Self> {
         let exact = expected.exact.0;
         let values = cells.values(name, quantity)?;
-        let errors: Vec<f64> = values.iter().map(|v| 100.0 * (v / exact - 1.0)).collect();
+        let errors: Vec<f64> = values.iter().map(|v| v / exact - 1.0).collect();
         let error = errors.iter().collect();
         Ok(Compared { case, expected, errors, error })
     }
 
     /// Predicted error.
     pub fn predicted(&self) -> f64 {
-        100.0 * self.expected.total()
+        self.expected.total()
     }
 
     /// What is left of the measured error, in standard errors.
     pub fn z(&self) -> f64 {
-        let error = libm::hypot(self.error.std_error(), 100.0 * self.expected.error);
+        let error = libm::hypot(self.error.std_error(), self.expected.error);
         (self.error.mean() - self.predicted()) / error
     }
 
@@ -64,22 +64,21 @@ impl<C> Compared<C> {
         let left: Moments = self.errors.iter().map(|e| e - self.predicted()).collect();
         let rows = [
             Row::measured(name, quantity, unit, &values)?.reference(exact, bound),
-            Row::measured(name, "error", Unit::PERCENT, &self.error)?.predicted(self.predicted()),
-            Row::measured(name, "error left over", Unit::PERCENT, &left)?
-                .reference(0.0, 100.0 * self.expected.error),
+            Row::measured(name, "error", Unit::FRACTION, &self.error)?.predicted(self.predicted()),
+            Row::measured(name, "error left over", Unit::FRACTION, &left)?
+                .reference(0.0, self.expected.error),
         ];
         Ok(rows.map(|row| row.with(parameters)))
     }
 
     /// The case in the error budget of the study.
     pub fn entry(&self, group: impl Into<String>, name: &str) -> Entry {
-        let maps = self.errors.iter().map(|e| e / 100.0).collect();
-        Entry::new(group, name, &self.expected.terms, self.expected.error, maps)
+        Entry::new(group, name, &self.expected.terms, self.expected.error, self.errors.clone())
     }
 }
 
 /// Measured over predicted part of the error of some cases: one amplitude a map, weighted by what all maps say of the
-/// noise. `part` says which part of the prediction is tested [%]; the others are taken away first. None without a case,
+/// noise. `part` says which part of the prediction is tested; the others are taken away first. None without a case,
 /// or where nothing was predicted.
 pub fn amplitude<C>(results: &[&Compared<C>], part: impl Fn(&Compared<C>) -> f64) -> Option<Estimate> {
     // Cases of different numbers of photons come from different maps; joining them by number is a free choice.

@@ -48,14 +48,13 @@ impl PredictedError {
         source: impl Fn(Term) -> &'static str,
     ) -> Vec<Prediction> {
         let value = (self.exact.0 * (1.0 + self.total()), self.exact.0 * self.error);
-        let percent = |fraction: f64| (100.0 * fraction, 100.0 * self.error);
         let mut all = vec![
             Prediction::new(case, format!("exact {quantity}"), unit, self.exact, exact),
             Prediction::new(case, quantity, unit, value, expected),
-            Prediction::new(case, "error", Unit::PERCENT, percent(self.total()), "sum of the parts"),
+            Prediction::new(case, "error", Unit::FRACTION, (self.total(), self.error), "sum of the parts"),
         ];
         let of_term = |&(term, value): &(Term, f64)| {
-            Prediction::new(case, quantity_of(term), Unit::PERCENT, percent(value), source(term))
+            Prediction::new(case, quantity_of(term), Unit::FRACTION, (value, self.error), source(term))
         };
         all.extend(self.terms.iter().map(of_term));
         all
@@ -66,11 +65,11 @@ impl PredictedError {
     /// # Errors
     /// If something was not predicted.
     pub fn read(known: &Predictions, case: &str, quantity: &str, terms: &[Term]) -> anyhow::Result<Self> {
-        let one = |&term: &Term| Ok((term, known.get(case, &quantity_of(term))?.0 / 100.0));
+        let one = |&term: &Term| Ok((term, known.get(case, &quantity_of(term))?.0));
         Ok(PredictedError {
             exact: known.get(case, &format!("exact {quantity}"))?,
             terms: terms.iter().map(one).collect::<anyhow::Result<_>>()?,
-            error: known.get(case, "error")?.1 / 100.0,
+            error: known.get(case, "error")?.1,
         })
     }
 }
@@ -79,7 +78,7 @@ impl PredictedError {
 mod tests {
     use super::*;
 
-    /// What is written down is what is read again, within the rounding of a per cent and back.
+    /// What is written down is what is read again.
     #[test]
     fn written_and_read_again() {
         let terms = vec![(Term::Edge, -0.4), (Term::Blur, 0.01), (Term::Nearest, 0.0), (Term::Clusters, 0.4)];
@@ -90,12 +89,11 @@ mod tests {
         );
         let all = stated.predictions("a", ("fluence", Unit::FLUENCE), ["e", "f"], Term::name);
         assert_eq!((all.len(), all[1].quantity.as_str()), (7, "fluence"));
-        assert!((all[1].value - 2.02).abs() < 1e-15 && (all[2].value - 1.0).abs() < 1e-13);
+        assert!((all[1].value - 2.02).abs() < 1e-15 && (all[2].value - 0.01).abs() < 1e-15);
         let known = Predictions::new(&all);
         let terms = [Term::Edge, Term::Blur, Term::Nearest, Term::Clusters];
         let read = PredictedError::read(&known, "a", "fluence", &terms).unwrap();
-        assert!((read.total() - stated.total()).abs() < 1e-16 && read.exact == stated.exact);
-        assert!((read.error - stated.error).abs() < 1e-22);
+        assert_eq!(read, stated);
         assert!(PredictedError::read(&known, "a", "fluence", &[Term::Step]).is_err());
         assert!(PredictedError::read(&known, "b", "fluence", &terms).is_err());
     }

@@ -96,7 +96,8 @@ fn advice(judged: &Judged) -> Markup {
 }
 
 fn interval(judged: &Judged) -> String {
-    let (low, high) = (judged.interval.low, judged.interval.high);
+    let shown = |x: f64| judged.claim.unit.shown(x);
+    let (low, high) = (shown(judged.interval.low), shown(judged.interval.high));
     // A p-value has no interval, and neither has a computed number.
     if matches!(judged.claim.kind, Kind::Fits | Kind::Refused) || judged.claim.statistic.maps().is_none() {
         return String::new();

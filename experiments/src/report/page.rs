@@ -104,15 +104,15 @@ fn predictions(part: &SectionReport, numbers: &mut Numbers) -> Markup {
             .rows
             .iter()
             .find(own)
-            .map(|row| with_error(row.value().0, row.value().1))
+            .map(|row| with_error(p.unit.shown(row.value().0), p.unit.shown(row.value().1)))
             .unwrap_or_default()
     };
     let rows = part.predictions.iter().take(SHOWN);
     let rows = rows.map(|p| {
         vec![
             p.case.clone(),
-            row_label(&p.quantity, p.unit.name()),
-            number(p.value),
+            row_label(&p.quantity, p.unit),
+            number(p.unit.shown(p.value)),
             measured(p),
             p.source.clone(),
         ]

@@ -136,9 +136,8 @@ fn break_even_claim(data: &Data, field: &Field) -> Option<Claim> {
 
 /// The path tracer agrees with the exact solution.
 fn path_claim(data: &Data, field: &Field) -> Option<Claim> {
-    let errors: Vec<f64> = data.paths(field)?.error.iter().map(|e| 100.0 * e).collect();
-    let statistic = Estimate::mean(&errors.iter().collect::<Moments>());
+    let statistic = Estimate::mean(&data.paths(field)?.error.iter().collect::<Moments>());
     // Behind a forward peak few paths turn towards the beam, and long paths add up: 5 errors of the noisiest field.
     let text = format!("{}: error of the path tracer, averaged over depth", field.title);
-    Some(Claim::within(&format!("{}-paths", field.name), &text, Unit::PERCENT, statistic, -2.5, 2.5))
+    Some(Claim::within(&format!("{}-paths", field.name), &text, Unit::FRACTION, statistic, -0.025, 0.025))
 }

@@ -40,7 +40,7 @@ fn rows(data: &Data, known: &Predictions) -> anyhow::Result<Vec<Row>> {
         for (quantity, value) in values {
             let predicted = known.get(&case, quantity)?.0;
             rows.push(
-                Row::estimated(&case, quantity, Unit::PERCENT, &value.times(100.0))?
+                Row::estimated(&case, quantity, Unit::FRACTION, &value)?
                     .predicted(predicted)
                     .cost(operations, "operations")
                     .with(measured.setting.parameters()),
@@ -68,8 +68,8 @@ fn rows(data: &Data, known: &Predictions) -> anyhow::Result<Vec<Row>> {
     for paths in &data.paths {
         let case = format!("{} paths", paths.field.name);
         let asked = Parameters { field: Some(paths.field.name), ..Parameters::default() };
-        let error: Moments = paths.error.iter().map(|e| 100.0 * e).collect::<Vec<f64>>().iter().collect();
-        rows.push(Row::measured(&case, "error", Unit::PERCENT, &error)?.reference(0.0, 0.0).with(asked));
+        let error: Moments = paths.error.iter().collect();
+        rows.push(Row::measured(&case, "error", Unit::FRACTION, &error)?.reference(0.0, 0.0).with(asked));
         let variance: Moments = paths.variance.iter().collect();
         rows.push(Row::measured(&case, "relative variance of a sample", Unit::ONE, &variance)?.with(asked));
         let rays: Moments = paths.rays.iter().collect();

@@ -5,7 +5,7 @@ use super::choose::{Choice, Currency, break_even, frontier, most_efficient};
 use super::data::{Data, Measured, Paths, mean};
 use super::split::{rms, rms_bias, rms_noise};
 use super::theory::{Expected, Rms, Theory};
-use crate::harness::{Estimate, FigureFiles, Settings};
+use crate::harness::{Estimate, FigureFiles, Settings, percent};
 use crate::setups::Size;
 use turbid_figure::{Align, Along, At, Axis, Dash, Figure, Line, Note, Panel, Points, Rule, Scale, Width};
 
@@ -17,7 +17,7 @@ pub fn all(settings: &Settings, data: &Data) -> anyhow::Result<Vec<FigureFiles>>
 /// The 95 per cent interval of an estimate, kept above zero for logarithmic axes.
 fn interval(estimate: &Estimate) -> (f64, f64) {
     let interval = estimate.interval(0.95);
-    (100.0 * interval.low.max(0.0), 100.0 * interval.high)
+    (percent(interval.low.max(0.0)), percent(interval.high))
 }
 
 /// Error against cost.
@@ -34,7 +34,7 @@ fn costs(data: &Data) -> anyhow::Result<FigureFiles> {
             let label = format!("photon map, {}", treatment.title());
             let front = frontier(&data.of(field, treatment, None), 4096.0);
             let x: Vec<f64> = front.iter().map(|c| c.case.cost(4096.0)).collect();
-            let y: Vec<f64> = front.iter().map(|c| 100.0 * c.rms.value()).collect();
+            let y: Vec<f64> = front.iter().map(|c| percent(c.rms.value())).collect();
             let bars = front.iter().map(|c: &Choice| interval(&c.rms)).collect();
             panel = panel.with(Line::new(&label, class, x.clone(), y.clone()));
             panel = panel.with(Points::new(&label, class, x, y).with_y_interval(bars));
@@ -55,7 +55,7 @@ fn costs(data: &Data) -> anyhow::Result<FigureFiles> {
 fn path_line(paths: &Paths, queries: f64) -> (Vec<f64>, Vec<f64>) {
     let one = mean(&paths.variance).sqrt();
     let steps = (0..=40).map(|i| one * libm::exp(-0.15 * f64::from(i)));
-    steps.map(|error| (queries * paths.cost(error), 100.0 * error)).unzip()
+    steps.map(|error| (queries * paths.cost(error), percent(error))).unzip()
 }
 
 /// Error, bias and noise against gather size.
@@ -98,9 +98,9 @@ fn sizes(settings: &Settings, data: &Data) -> anyhow::Result<FigureFiles> {
             ];
             for (class, (label, predicted, measured)) in parts.into_iter().enumerate() {
                 let found: Vec<Estimate> = chosen.iter().map(|m| measured(&m.maps)).collect();
-                let line = lines.iter().map(|(_, r)| 100.0 * predicted(r)).collect();
+                let line = lines.iter().map(|(_, r)| percent(predicted(r))).collect();
                 panel = panel.with(Line::new(label, class, lines.iter().map(|l| l.0).collect(), line));
-                let y = found.iter().map(|e| 100.0 * e.value()).collect();
+                let y = found.iter().map(|e| percent(e.value())).collect();
                 let bars = found.iter().map(interval).collect();
                 let x = chosen.iter().map(|m| size(m)).collect();
                 panel = panel.with(Points::new(label, class, x, y).with_y_interval(bars));
@@ -149,7 +149,7 @@ fn queries(data: &Data) -> anyhow::Result<FigureFiles> {
             Axis::log("queries", "").with_range(1.0, 1e6),
             Axis::log("operations", "").with_range(10.0, 1e11),
         )
-        .with_title(format!("{}, to {:.1} %", field.title, 100.0 * chosen.rms.value()))
+        .with_title(format!("{}, to {:.1} %", field.title, percent(chosen.rms.value())))
         .with(Line::theory("path tracer", x.clone(), by_paths))
         .with(Line::new("photon map, clipped", 1, x, map));
         let text = match break_even(chosen.case, paths, Currency::Operations).queries {

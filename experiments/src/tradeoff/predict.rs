@@ -3,7 +3,7 @@
 
 use super::cases::{FIELDS, Field, LAYERS, PROBES, Setting, Treatment};
 use super::theory::{Expected, Rms, Theory};
-use crate::harness::{Settings, Unit};
+use crate::harness::{Settings, Unit, percent};
 use crate::prediction::{Prediction, Predictions};
 use rayon::prelude::*;
 
@@ -36,7 +36,7 @@ pub struct Optimum {
 
 /// The name of the search for a target.
 pub fn optimum_case(field: &Field, treatment: Treatment, target: f64) -> String {
-    format!("{} {} to reach {}%", field.name, treatment.name(), 100.0 * target)
+    format!("{} {} to reach {}%", field.name, treatment.name(), percent(target))
 }
 
 /// Operations per emitted photon before the first query: its rays (every collision is one, and the escape of those
@@ -105,11 +105,10 @@ pub fn predict(settings: &Settings) -> anyhow::Result<Vec<Prediction>> {
     };
     for (setting, treatment, layers) in &known {
         let (case, rms) = (setting.case(*treatment), Rms::of(layers));
-        let error = 100.0 * layers.iter().map(|e| e.error).fold(0.0, f64::max);
-        let percent = |fraction: f64| (100.0 * fraction, error);
-        add(&case, RMS, Unit::PERCENT, percent(rms.total()), "bias and noise of every layer");
-        add(&case, BIAS, Unit::PERCENT, percent(rms.bias), "exact field, kernel mean, k-nearest law");
-        add(&case, NOISE, Unit::PERCENT, percent(rms.noise), "Poisson's law and clusters");
+        let error = layers.iter().map(|e| e.error).fold(0.0, f64::max);
+        add(&case, RMS, Unit::FRACTION, (rms.total(), error), "bias and noise of every layer");
+        add(&case, BIAS, Unit::FRACTION, (rms.bias, error), "exact field, kernel mean, k-nearest law");
+        add(&case, NOISE, Unit::FRACTION, (rms.noise, error), "Poisson's law and clusters");
     }
     let searches: Vec<(&'static Field, Treatment, f64)> = FIELDS
         .into_iter()
@@ -146,8 +145,8 @@ pub fn predict(settings: &Settings) -> anyhow::Result<Vec<Prediction>> {
         let case = setting.case(*treatment);
         for (t, e) in setting.field.depths().into_iter().zip(layers) {
             for (name, part) in PARTS {
-                let value = (100.0 * part(e), 100.0 * e.error);
-                add(&case, &format!("{name} t={t}"), Unit::PERCENT, value, "theory of one layer");
+                let value = (part(e), e.error);
+                add(&case, &format!("{name} t={t}"), Unit::FRACTION, value, "theory of one layer");
             }
         }
     }
@@ -168,14 +167,14 @@ pub fn layers(known: &Predictions, setting: &Setting, treatment: Treatment) -> a
     let case = setting.case(treatment);
     let one = |t: f64| {
         let read = |(name, _): Part| known.get(&case, &format!("{name} t={t}"));
-        let fraction = |part: Part| read(part).map(|(value, _)| value / 100.0);
+        let fraction = |part: Part| read(part).map(|(value, _)| value);
         Ok(Expected {
             edge: fraction(EDGE)?,
             blur: fraction(BLUR)?,
             clusters: fraction(CLUSTERS)?,
             noise: fraction(SPREAD)?,
             noise_independent: fraction(INDEPENDENT)?,
-            error: read(EDGE)?.1 / 100.0,
+            error: read(EDGE)?.1,
         })
     };
     setting.field.depths().into_iter().map(one).collect()

@@ -5,7 +5,7 @@ use super::choose::{Currency, best, break_even, cheapest, is_last, most_efficien
 use super::data::{Data, Measured, mean};
 use super::predict::{TARGETS, known_optimum};
 use super::split::rms;
-use crate::harness::{Estimate, Table, number, with_error};
+use crate::harness::{Estimate, Table, number, percent, with_error};
 use crate::prediction::Predictions;
 use crate::setups::Size;
 
@@ -35,10 +35,6 @@ fn rough(x: f64) -> String {
     number(text.parse().unwrap_or(x))
 }
 
-fn percent(estimate: &Estimate) -> String {
-    with_error(100.0 * estimate.value(), 100.0 * estimate.std_error())
-}
-
 /// A setting without its field.
 pub fn short(setting: &Setting) -> String {
     format!("{} photons, {}", setting.photons, setting.size.name())
@@ -54,12 +50,15 @@ fn prices(data: &Data, known: &Predictions) -> anyhow::Result<Table> {
                 let theory = known_optimum(known, field, treatment, target)?;
                 let found = cheapest(&cases, target, 4096.0);
                 let (setting, error, cost) = match &found {
-                    Some(c) => (short(&c.case.setting), percent(&c.rms), rough(c.case.cost(4096.0))),
+                    Some(c) => (short(&c.case.setting), c.rms.in_percent(), rough(c.case.cost(4096.0))),
                     None => {
                         let tried = best(&cases).map_or(String::new(), |b| {
                             let theory = b.case.predicted();
-                            let (total, bias) = (100.0 * theory.total(), 100.0 * theory.bias);
-                            format!("best tried {} (predicted {total:.1}, bias {bias:.1})", percent(&b.rms))
+                            let (total, bias) = (percent(theory.total()), percent(theory.bias));
+                            format!(
+                                "best tried {} (predicted {total:.1}, bias {bias:.1})",
+                                b.rms.in_percent()
+                            )
                         });
                         ("none".to_string(), tried, String::new())
                     }
@@ -68,7 +67,7 @@ fn prices(data: &Data, known: &Predictions) -> anyhow::Result<Table> {
                 rows.push(vec![
                     field.title.to_string(),
                     treatment.title().to_string(),
-                    format!("{} %", number(100.0 * target)),
+                    format!("{} %", number(percent(target))),
                     setting,
                     error,
                     cost,
@@ -122,7 +121,7 @@ fn queries(data: &Data) -> Table {
                 field.title.to_string(),
                 treatment.title().to_string(),
                 short(&chosen.case.setting),
-                percent(&chosen.rms),
+                chosen.rms.in_percent(),
                 even(chosen.case, Currency::Operations),
                 even(chosen.case, Currency::Seconds),
                 tenth(Currency::Operations),
@@ -179,7 +178,7 @@ fn regrets(data: &Data) -> Table {
                 treatment.title().to_string(),
                 best.case.setting.photons.to_string(),
                 best.case.setting.size.name(),
-                if is_last { format!("at most {}", percent(&best.rms)) } else { percent(&best.rms) },
+                if is_last { format!("at most {}", best.rms.in_percent()) } else { best.rms.in_percent() },
                 regret_of(50),
                 regret_of(100),
             ]);
@@ -291,8 +290,8 @@ fn deviations(data: &Data) -> Table {
     let row = |(m, found, theory): (&Measured, Estimate, f64)| {
         vec![
             m.case(),
-            percent(&found),
-            format!("{:.2}", 100.0 * theory),
+            found.in_percent(),
+            format!("{:.2}", percent(theory)),
             format!("{:.3}", found.value() / theory),
             format!("{:.1}", (found.value() - theory) / found.std_error()),
         ]

@@ -4,13 +4,9 @@ use super::cases::{FIELDS, Field, MODERATE, SPHERE, THICK, THIN, Treatment};
 use super::choose::{Currency, best_over_best, break_even, cheapest, most_efficient};
 use super::data::{Data, mean};
 use super::tables::{best_error, off};
-use crate::harness::{Estimate, with_error};
+use crate::harness::{Estimate, percent, with_error};
 use crate::prediction::Entry;
 use turbid::stats::Moments;
-
-fn percent(estimate: &Estimate) -> String {
-    with_error(100.0 * estimate.value(), 100.0 * estimate.std_error())
-}
 
 fn even(data: &Data, field: &Field, currency: Currency) -> Option<Estimate> {
     let chosen = most_efficient(&data.of(field, Treatment::Clipped, None))?;
@@ -29,7 +25,7 @@ fn both(data: &Data, field: &Field) -> Option<String> {
         "{} in operations and {} in seconds of this machine, at an error of {:.0} %",
         text(Currency::Operations),
         text(Currency::Seconds),
-        100.0 * chosen.rms.value()
+        percent(chosen.rms.value())
     ))
 }
 
@@ -49,8 +45,8 @@ pub fn summary(data: &Data) -> Vec<String> {
              in thin, {in_thin}; in a emitting sphere, {in_sphere}, where an operation is a ray or a photon gathered, each as one. Near a face the plain \
              estimate is stuck: in the thin slab the best of the gathers tried errs by ({}) %, where dividing by the \
              part of the ball inside the fog leaves ({}) %.",
-            percent(&plain),
-            percent(&clipped)
+            plain.in_percent(),
+            clipped.in_percent()
         ));
     }
     let clipping: Vec<String> = [thin, &MODERATE, thick]

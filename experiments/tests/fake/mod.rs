@@ -101,8 +101,8 @@ fn conclude(_: &Settings, predictions: &[Prediction], cells: &Cells) -> anyhow::
         .ok_or_else(|| anyhow::anyhow!("no fit"))?;
     let amplitude = turbid_experiments::harness::Estimate::mean(&fit.moments);
     rows.push(Row::estimated("all radii", "measured over predicted", Unit::ONE, &amplitude)?.predicted(1.0));
-    let control = cells.estimate(&case(0.1), "control")?.minus(predicted(0.1)).times(100.0);
-    let small = cells.estimate(&case(0.8), "bias")?.minus(predicted(0.8)).times(100.0);
+    let control = cells.estimate(&case(0.1), "control")?.minus(predicted(0.1));
+    let small = cells.estimate(&case(0.8), "bias")?.minus(predicted(0.8));
     Ok(Section {
         summary: vec![
             "The measured bias follows r²/10 within a tenth, and a fault of 5 per cent is seen.".to_string(),
@@ -112,9 +112,9 @@ fn conclude(_: &Settings, predictions: &[Prediction], cells: &Cells) -> anyhow::
         ],
         claims: vec![
             Claim::within("amplitude", "Measured bias over predicted bias is 1 within 10 per cent.", Unit::ONE, amplitude, 0.9, 1.1),
-            Claim::within("residual", "No bias is left at r = 0.8 beside the predicted one, within 0.05 per cent.", Unit::PERCENT, small, -0.05, 0.05),
-            Claim::within("wrong", "The control has no bias beyond the predicted one, within 1 per cent.", Unit::PERCENT, control, -1.0, 1.0),
-            Claim::detected("control", "The planted fault of 5 per cent is seen.", Unit::PERCENT, control, 0.0, 2.5),
+            Claim::within("residual", "No bias is left at r = 0.8 beside the predicted one, within 0.05 per cent.", Unit::FRACTION, small, -0.0005, 0.0005),
+            Claim::within("wrong", "The control has no bias beyond the predicted one, within 1 per cent.", Unit::FRACTION, control, -0.01, 0.01),
+            Claim::detected("control", "The planted fault of 5 per cent is seen.", Unit::FRACTION, control, 0.0, 0.025),
         ],
         figures: vec![figure(cells)?],
         tables: vec![Table::of_rows("Bias at four gather sizes: the measured values scatter about the prediction by their errors.", &rows)],

@@ -4,7 +4,8 @@ use super::results::Edges;
 use super::{BEHIND, FIXED, NEAREST, SIZES, edge_case, figure, photons, wall_case};
 use crate::claims_1998::part::Part;
 use crate::harness::{
-    Cells, Claim, Estimate, Parameters, Row, Section, Settings, Table, Unit, number, with_error,
+    Cells, Claim, Estimate, Parameters, Row, Section, Settings, Table, Unit, number, percent,
+    percent_with_error,
 };
 use crate::prediction::Predictions;
 use turbid::estimators::boundary::Rejection;
@@ -40,7 +41,7 @@ fn claims(edges: &Edges) -> Vec<Claim> {
         let text =
             format!("\"the estimate is too low near the edge of a medium\": error on the edge, {title}");
         let low = Estimate::mean(&at.measured);
-        claims.push(Claim::within(id, &text, Unit::PERCENT, low, -60.0, -40.0));
+        claims.push(Claim::within(id, &text, Unit::FRACTION, low, -0.6, -0.4));
         let text = format!("the same over what the empty part of the ball predicts, {title}");
         claims.push(Claim::within(&format!("{id}-theory"), &text, Unit::ONE, at.ratio(), 0.95, 1.05));
     }
@@ -61,8 +62,8 @@ fn claims(edges: &Edges) -> Vec<Claim> {
     if let (Some(off), Some(facing)) = (off, facing) {
         let text = "\"looking at the incoming direction avoids false photons\": leak left, of what leaks without a look, \
                     radius 0.2";
-        let left = Estimate::mean(&facing.measured).times(100.0 / off.measured.mean());
-        claims.push(Claim::at_most("avoids", text, Unit::PERCENT, left, 50.0));
+        let left = Estimate::mean(&facing.measured).times(1.0 / off.measured.mean());
+        claims.push(Claim::at_most("avoids", text, Unit::FRACTION, left, 0.5));
     }
     for rejection in [Rejection::BehindPlane, Rejection::Visible] {
         let leaks = edges.wall.iter().filter(|w| w.1 == rejection);
@@ -72,7 +73,7 @@ fn claims(edges: &Edges) -> Vec<Claim> {
             rejection.name()
         );
         let id = rejection.name().replace(' ', "-");
-        claims.push(Claim::at_most(&id, &text, Unit::PERCENT, Estimate::exact(most, 0.0), 0.0));
+        claims.push(Claim::at_most(&id, &text, Unit::FRACTION, Estimate::exact(most, 0.0), 0.0));
     }
     claims
 }
@@ -80,14 +81,14 @@ fn claims(edges: &Edges) -> Vec<Claim> {
 fn rows(edges: &Edges) -> anyhow::Result<Vec<Row>> {
     let mut rows = Vec::new();
     for (size, depth, at) in &edges.edge {
-        let row = Row::measured(&edge_case(*size, *depth), "error", Unit::PERCENT, &at.measured)?;
+        let row = Row::measured(&edge_case(*size, *depth), "error", Unit::FRACTION, &at.measured)?;
         rows.push(row.with(Parameters { depth: Some(*depth), ..size.parameters() }));
     }
     for (size, rejection, distance, leak) in &edges.wall {
         let name = wall_case(*size, *rejection, *distance);
         let row = match leak.predicted {
-            0.0 => Row::exact(&name, "leak", Unit::PERCENT, leak.measured.mean(), 0.0),
-            _ => Row::measured(&name, "leak", Unit::PERCENT, &leak.measured)?,
+            0.0 => Row::exact(&name, "leak", Unit::FRACTION, leak.measured.mean(), 0.0),
+            _ => Row::measured(&name, "leak", Unit::FRACTION, &leak.measured)?,
         };
         rows.push(row.with(size.parameters()));
     }
@@ -102,11 +103,10 @@ fn wall_table(edges: &Edges) -> Table {
             for distance in BEHIND {
                 let cell = edges.leak(size, rejection, distance).map_or(String::new(), |leak| {
                     match leak.predicted {
-                        0.0 => number(leak.measured.mean()),
-                        predicted => format!(
-                            "{} | {predicted:.2}",
-                            with_error(leak.measured.mean(), leak.measured.std_error())
-                        ),
+                        0.0 => number(percent(leak.measured.mean())),
+                        predicted => {
+                            format!("{} | {:.2}", percent_with_error(&leak.measured), percent(predicted))
+                        }
                     }
                 });
                 row.push(cell);

@@ -2,7 +2,7 @@
 
 use super::results::Edges;
 use super::{BEHIND, DEPTHS, SIZES};
-use crate::harness::{FigureFiles, bar};
+use crate::harness::{FigureFiles, percent, percent_bar};
 use turbid::estimators::boundary::Rejection;
 use turbid_figure::{Axis, Dash, Figure, Line, Panel, Points, Scale, Width};
 
@@ -18,12 +18,22 @@ pub fn edges(edges: &Edges) -> anyhow::Result<FigureFiles> {
         let x = DEPTHS.to_vec();
         edge = edge
             .with(
-                Line::new(size.title(), class, x.clone(), own.iter().map(|e| e.2.predicted).collect())
-                    .with_dash(Dash::Solid),
+                Line::new(
+                    size.title(),
+                    class,
+                    x.clone(),
+                    own.iter().map(|e| percent(e.2.predicted)).collect(),
+                )
+                .with_dash(Dash::Solid),
             )
             .with(
-                Points::new(size.title(), class, x, own.iter().map(|e| e.2.measured.mean()).collect())
-                    .with_y_interval(own.iter().map(|e| bar(&e.2.measured)).collect()),
+                Points::new(
+                    size.title(),
+                    class,
+                    x,
+                    own.iter().map(|e| percent(e.2.measured.mean())).collect(),
+                )
+                .with_y_interval(own.iter().map(|e| percent_bar(&e.2.measured)).collect()),
             );
     }
     let mut wall = Panel::new(
@@ -39,10 +49,10 @@ pub fn edges(edges: &Edges) -> anyhow::Result<FigureFiles> {
                 _ => format!("{}, incoming direction looked at", size.title()),
             };
             let x = BEHIND.to_vec();
-            let predicted = own.iter().map(|w| w.3.predicted).collect();
+            let predicted = own.iter().map(|w| percent(w.3.predicted)).collect();
             wall = wall.with(Line::new(&label, class, x.clone(), predicted).with_dash(dash)).with(
-                Points::new(&label, class, x, own.iter().map(|w| w.3.measured.mean()).collect())
-                    .with_y_interval(own.iter().map(|w| bar(&w.3.measured)).collect()),
+                Points::new(&label, class, x, own.iter().map(|w| percent(w.3.measured.mean())).collect())
+                    .with_y_interval(own.iter().map(|w| percent_bar(&w.3.measured)).collect()),
             );
         }
     }

@@ -101,12 +101,12 @@ fn measure(settings: &Settings, cell: &CellId) -> anyhow::Result<CellOutput> {
         let gather = size.gather(REACH)?;
         for depth in DEPTHS {
             let exact = truth.fluence(depth)?.value;
-            let low = 100.0 * (mean(depth, gather, Rejection::Off) / exact - 1.0);
+            let low = mean(depth, gather, Rejection::Off) / exact - 1.0;
             output.push(edge_case(size, depth), "error", low);
         }
         for distance in BEHIND {
             for rejection in Rejection::ALL {
-                let leak = 100.0 * mean(ROOM + distance, gather, rejection) / at_wall;
+                let leak = mean(ROOM + distance, gather, rejection) / at_wall;
                 output.push(wall_case(size, rejection, distance), "leak", leak);
             }
         }
@@ -196,12 +196,12 @@ pub fn predict(settings: &Settings) -> anyhow::Result<Vec<Prediction>> {
     let mut predictions = Vec::new();
     let mut add = |case: String, quantity: &str, value: f64, source: &str| {
         // Linear pieces of a 400th of the room.
-        predictions.push(Prediction::new(case, quantity, Unit::PERCENT, (value, 0.02), source));
+        predictions.push(Prediction::new(case, quantity, Unit::FRACTION, (value, 2e-4), source));
     };
     for size in SIZES {
         for depth in DEPTHS {
             let exact = slab.fluence(depth)?.value;
-            let low = 100.0 * (all.expected(depth, size, density)? / exact - 1.0);
+            let low = all.expected(depth, size, density)? / exact - 1.0;
             add(edge_case(size, depth), "error", low, "exact fluence over the part of the ball inside");
         }
         for distance in BEHIND {
@@ -212,7 +212,7 @@ pub fn predict(settings: &Settings) -> anyhow::Result<Vec<Prediction>> {
                     Rejection::BehindPlane | Rejection::Visible => None,
                 };
                 let leak = match field {
-                    Some(field) => 100.0 * field.expected(ROOM + distance, size, density)? / at_wall,
+                    Some(field) => field.expected(ROOM + distance, size, density)? / at_wall,
                     None => 0.0,
                 };
                 add(

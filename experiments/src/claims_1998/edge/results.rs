@@ -1,13 +1,13 @@
 //! What the maps say of edges.
 
 use super::{BEHIND, DEPTHS, SIZES, edge_case, wall_case};
-use crate::harness::{Cells, Estimate, signed, with_error};
+use crate::harness::{Cells, Estimate, percent, percent_with_error, signed};
 use crate::prediction::Predictions;
 use crate::setups::Size;
 use turbid::estimators::boundary::Rejection;
 use turbid::stats::Moments;
 
-/// One measured number beside its prediction [%].
+/// One measured number beside its prediction.
 pub struct Beside {
     /// Over maps.
     pub measured: Moments,
@@ -27,8 +27,8 @@ impl Beside {
     pub fn words(&self) -> String {
         format!(
             "{} % (predicted {})",
-            with_error(self.measured.mean(), self.measured.std_error()),
-            signed(self.predicted, 1).replace('+', "")
+            percent_with_error(&self.measured),
+            signed(percent(self.predicted), 1).replace('+', "")
         )
     }
 }

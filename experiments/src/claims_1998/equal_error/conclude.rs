@@ -5,7 +5,7 @@ use super::results::{Crossing, PIXELS, PREVIEW_ERROR, Pictures, SIDES, gain};
 use super::{SIDE, figure};
 use crate::claims_1998::part::Part;
 use crate::cost_model::cheapest;
-use crate::harness::{Cells, Claim, Estimate, Row, Section, Settings, Table, Unit};
+use crate::harness::{Cells, Claim, Estimate, Row, Section, Settings, Table, Unit, percent};
 use turbid::math::exp;
 use turbid::stats::{Jackknife, jackknife_log};
 
@@ -26,7 +26,7 @@ pub fn conclude(settings: &Settings, cells: &Cells) -> anyhow::Result<Part> {
     let text = format!(
         "\"photon maps are faster than Monte Carlo\": work of paths over that of photon maps, for a picture of \
          {SIDE} x {SIDE} pixels with an error of {:.0} %",
-        100.0 * PREVIEW_ERROR
+        percent(PREVIEW_ERROR)
     );
     let [rays, seconds] =
         [Currency::Rays, Currency::Seconds].map(|currency| Crossing::all(&pictures, currency));
@@ -65,7 +65,7 @@ pub fn conclude(settings: &Settings, cells: &Cells) -> anyhow::Result<Part> {
 fn rows(pictures: &Pictures, gain: &Estimate) -> anyhow::Result<Vec<Row>> {
     let mut rows = vec![Row::estimated(
         "fog box",
-        &format!("work of paths over maps at {:.0} %", 100.0 * PREVIEW_ERROR),
+        &format!("work of paths over maps at {:.0} %", percent(PREVIEW_ERROR)),
         Unit::ONE,
         gain,
     )?];
@@ -75,20 +75,19 @@ fn rows(pictures: &Pictures, gain: &Estimate) -> anyhow::Result<Vec<Row>> {
             let fit = Fit::of(chosen, Currency::Rays);
             fit.maps[i].square(NUMBER)
         };
-        let relative =
-            |chosen: &[&Cell]| 100.0 * square(chosen).sqrt() / Fit::of(chosen, Currency::Rays).mean;
+        let relative = |chosen: &[&Cell]| square(chosen).sqrt() / Fit::of(chosen, Currency::Rays).mean;
         let log = jackknife_log(&cells, relative);
         let value = exp(log.value);
         let estimate = Estimate::jackknife(&Jackknife { value, std_error: value * log.std_error, ..log });
-        let row = Row::estimated(&size.case(), "error of 24 samples", Unit::PERCENT, &estimate)?;
+        let row = Row::estimated(&size.case(), "error of 24 samples", Unit::FRACTION, &estimate)?;
         rows.push(row.with(size.parameters()));
     }
     Ok(rows)
 }
 
-/// A root mean square over the mean [%].
-fn percent(square: f64, mean: f64) -> String {
-    format!("{:.2}", 100.0 * square.max(0.0).sqrt() / mean)
+/// A root mean square over the mean, in per cent.
+fn over(square: f64, mean: f64) -> String {
+    format!("{:.2}", percent(square.max(0.0).sqrt() / mean))
 }
 
 fn size_table(pictures: &Pictures) -> Table {
@@ -103,9 +102,9 @@ fn size_table(pictures: &Pictures) -> Table {
             vec![
                 format!("map of {}", size.photons),
                 size.k.to_string(),
-                percent(maps.noise, mean),
-                percent(maps.spread, mean),
-                percent(maps.bias, mean),
+                over(maps.noise, mean),
+                over(maps.spread, mean),
+                over(maps.bias, mean),
                 format!("{:.0}", maps.fill),
                 format!("{:.1}", maps.sample),
                 format!("{:.1}", 1e3 * timed.fill),
@@ -116,7 +115,7 @@ fn size_table(pictures: &Pictures) -> Table {
     rows.push(vec![
         "paths".to_string(),
         String::new(),
-        percent(rays.paths.noise, mean),
+        over(rays.paths.noise, mean),
         String::new(),
         String::new(),
         String::new(),
@@ -150,7 +149,7 @@ fn crossing_table(pictures: &Pictures, rays: &[Crossing], seconds: &[Crossing]) 
     let fit = pictures.fit(Currency::Seconds);
     let row = |(i, side): (usize, &u32)| {
         let pixels = f64::from(side * side);
-        let error = fit.mean * seconds[i].at / 100.0;
+        let error = fit.mean * seconds[i].at;
         let size = cheapest(&fit.maps, pixels, error * error * (1.0 + 1e-9))
             .map_or(String::new(), |(size, _)| pictures.sizes[size].photons.to_string());
         let mut row = vec![format!("{side} x {side}"), rays[i].words(), seconds[i].words(), size];

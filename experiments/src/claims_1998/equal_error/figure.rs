@@ -3,15 +3,16 @@
 use super::SIDE;
 use super::data::{Currency, Fit};
 use super::results::{Crossing, Pictures, middle};
-use crate::harness::FigureFiles;
+use crate::harness::{FigureFiles, percent};
 use turbid_figure::{Along, Axis, Figure, Line, Panel, Points, Rule, Width};
 
 /// Samples a pixel that have points.
 const NUMBERS: [f64; 3] = [1.0, 8.0, 64.0];
 const PIXELS: f64 = (SIDE * SIDE) as f64;
 
-fn percent(square: f64, mean: f64) -> f64 {
-    100.0 * square.sqrt() / mean
+/// A root mean square over the mean, in per cent.
+fn over(square: f64, mean: f64) -> f64 {
+    percent(square.sqrt() / mean)
 }
 
 /// A curve of the error [%] against cost, from one sample a pixel to 4096.
@@ -28,9 +29,9 @@ fn panel(pictures: &Pictures, currency: Currency, crossing: &Crossing) -> Panel 
     };
     let mut panel =
         Panel::new(Axis::log(unit.0, unit.1), Axis::log("error", "% of the mean").with_range(2.0, 250.0))
-            .with(Rule::new(Along::Horizontal(crossing.at)).with_label("paths are cheaper below"));
+            .with(Rule::new(Along::Horizontal(percent(crossing.at))).with_label("paths are cheaper below"));
     let paths = fit.paths;
-    let error = |fit: &Fit, n: f64| percent(fit.paths.noise / n, fit.mean);
+    let error = |fit: &Fit, n: f64| over(fit.paths.noise / n, fit.mean);
     let (x, y) = curve(|n| error(&fit, n), |n| PIXELS * n * paths.sample);
     panel = panel.with(Line::new("paths", 0, x, y));
     let x = NUMBERS.map(|n| PIXELS * n * paths.sample).to_vec();
@@ -43,7 +44,7 @@ fn panel(pictures: &Pictures, currency: Currency, crossing: &Crossing) -> Panel 
     for (i, size) in pictures.sizes.iter().enumerate() {
         let label = format!("map of {} photons, k = {}", size.photons, size.k);
         let maps = fit.maps[i];
-        let error = |fit: &Fit, n: f64| percent(fit.maps[i].square(n), fit.mean);
+        let error = |fit: &Fit, n: f64| over(fit.maps[i].square(n), fit.mean);
         let cost = |n: f64| maps.fill + PIXELS * n * maps.sample;
         let (x, y) = curve(|n| error(&fit, n), cost);
         let bars = NUMBERS.map(|n| {

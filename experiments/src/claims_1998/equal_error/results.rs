@@ -3,7 +3,7 @@
 use super::data::{Cell, Currency, Fit, read};
 use super::{SIDE, Size, sizes};
 use crate::cost_model::{RANGE, cheapest, crossing};
-use crate::harness::{Cells, Settings};
+use crate::harness::{Cells, Settings, percent};
 use turbid::rng::{Purpose, Stream};
 use turbid::stats::Interval;
 
@@ -55,20 +55,19 @@ pub fn middle(mut values: Vec<f64>) -> Interval {
     Interval::new(values[cut], values[last - cut])
 }
 
-/// Root mean square error [%] below which paths are cheaper, with its interval over cells.
+/// Root mean square error, over the mean, below which paths are cheaper, with its interval over cells.
 pub struct Crossing {
-    /// Of all cells [%].
+    /// Of all cells.
     pub at: f64,
-    /// Bootstrap interval of 95 % [%].
+    /// Bootstrap interval of 95 %.
     pub interval: Interval,
 }
 
 impl Crossing {
     /// One a picture's side.
     pub fn all(pictures: &Pictures, currency: Currency) -> Vec<Crossing> {
-        let of = |fit: &Fit| {
-            SIDES.map(|side| 100.0 * crossing(&fit.maps, &fit.paths, f64::from(side * side), fit.mean))
-        };
+        let of =
+            |fit: &Fit| SIDES.map(|side| crossing(&fit.maps, &fit.paths, f64::from(side * side), fit.mean));
         let whole = of(&pictures.fit(currency));
         let resampled: Vec<_> = pictures.resampled(currency).map(|fit| of(&fit)).collect();
         let one =
@@ -78,18 +77,18 @@ impl Crossing {
 
     /// No error below the range is looked at: where maps win at its lower end, they win down to that at least.
     pub fn words(&self) -> String {
-        let one = |error: f64| match error <= 100.0 * RANGE.0 {
-            true => format!("at most {error:.1}"),
-            false => format!("{error:.1}"),
+        let one = |error: f64| match error <= RANGE.0 {
+            true => format!("at most {:.1}", percent(error)),
+            false => format!("{:.1}", percent(error)),
         };
         format!("{} % ({} to {})", one(self.at), one(self.interval.low), one(self.interval.high))
     }
 
     pub fn verdict(&self) -> String {
-        let asked = 100.0 * PREVIEW_ERROR;
+        let asked = percent(PREVIEW_ERROR);
         match self.interval {
-            i if i.high < asked => format!("the whole interval is below {asked} %"),
-            i if i.low > asked => format!("the whole interval is above {asked} %"),
+            i if i.high < PREVIEW_ERROR => format!("the whole interval is below {asked} %"),
+            i if i.low > PREVIEW_ERROR => format!("the whole interval is above {asked} %"),
             _ => format!("undecided against {asked} % on this machine, in this run"),
         }
     }

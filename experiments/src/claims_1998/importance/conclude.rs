@@ -2,13 +2,13 @@
 
 use super::{GROUP, PIXELS, Way};
 use crate::claims_1998::part::Part;
-use crate::harness::{Cells, Claim, Estimate, Row, Section, Settings, Table, Unit, with_error};
+use crate::harness::{Cells, Claim, Estimate, Row, Section, Settings, Table, Unit, percent};
 use turbid::math::exp;
 use turbid::stats::{Jackknife, Moments, jackknife, jackknife_log};
 
-/// How far the means may differ [%]: weights that are lost where photons are split or aimed would make them differ by
+/// How far the means may differ: weights that are lost where photons are split or aimed would make them differ by
 /// factors.
-const MARGIN: f64 = 20.0;
+const MARGIN: f64 = 0.2;
 
 /// Both kinds of map in one cell.
 #[derive(Debug, Clone, PartialEq)]
@@ -63,10 +63,10 @@ fn gain(cells: &[Cell], cost: impl Fn(&Cell, usize) -> f64) -> f64 {
     price(0) / price(1)
 }
 
-/// Mean of the picture by importance over that by power, less 1 [%].
+/// Mean of the picture by importance over that by power, less 1.
 fn difference(cells: &[Cell]) -> f64 {
     let sum = |way: usize| total(cells, |c| c.by[way].pixels.iter().sum());
-    100.0 * (sum(1) / sum(0) - 1.0)
+    sum(1) / sum(0) - 1.0
 }
 
 fn positive(cells: &[Cell], statistic: impl Fn(&[Cell]) -> f64) -> Estimate {
@@ -99,7 +99,7 @@ impl Effect {
         vec![
             Claim::at_least("importance-photons", photons, Unit::ONE, self.photons, 2.0),
             Claim::at_least("importance-gain", gain, Unit::ONE, self.by_events, 1.0),
-            Claim::within("importance-mean", mean, Unit::PERCENT, self.difference, -MARGIN, MARGIN),
+            Claim::within("importance-mean", mean, Unit::FRACTION, self.difference, -MARGIN, MARGIN),
         ]
     }
 }
@@ -132,7 +132,7 @@ pub fn conclude(_settings: &Settings, cells: &Cells) -> anyhow::Result<Part> {
                 i if i.high < 1.0 => "in time it does not pay here",
                 _ => "whether it pays in time is undecided, in this run",
             },
-            with_error(effect.difference.value(), effect.difference.std_error()),
+            effect.difference.in_percent(),
         ),
     ]];
     let section = Section {
@@ -141,7 +141,7 @@ pub fn conclude(_settings: &Settings, cells: &Cells) -> anyhow::Result<Part> {
         rows: vec![
             Row::estimated("hall", "photons in view, ratio", Unit::ONE, &effect.photons)?,
             Row::estimated("hall", "variance at equal events, ratio", Unit::ONE, &effect.by_events)?,
-            Row::estimated("hall", "difference of means", Unit::PERCENT, &effect.difference)?
+            Row::estimated("hall", "difference of means", Unit::FRACTION, &effect.difference)?
                 .reference(0.0, 0.0),
         ],
         notes: vec![
@@ -158,7 +158,7 @@ fn table(cells: &[Cell]) -> Table {
     let count = cells.len() as f64;
     let row = |way: usize| {
         let mean = |value: &dyn Fn(&Filled) -> f64| total(cells, |c| value(&c.by[way])) / count;
-        let noise = positive(cells, |c| 100.0 * variance(c, way).sqrt());
+        let noise = positive(cells, |c| percent(variance(c, way).sqrt()));
         vec![
             Way::ALL[way].case().to_string(),
             format!("{:.0}", mean(&|s| s.events)),

@@ -4,7 +4,8 @@ use super::results::Picture;
 use super::{NEIGHBORS, SIDE, case, figure, group, map_case, path_case};
 use crate::claims_1998::part::Part;
 use crate::harness::{
-    Cells, Claim, Estimate, Row, Section, Settings, Table, Unit, bar, number, signed, with_error,
+    Cells, Claim, Estimate, Row, Section, Settings, Table, Unit, number, percent, percent_bar,
+    percent_with_error, signed,
 };
 use crate::prediction::Predictions;
 use crate::setups::Size;
@@ -25,13 +26,13 @@ fn pictures(cells: &Cells, known: &Predictions) -> anyhow::Result<Vec<Picture>> 
         // One map's pixels over the whole ones, and its errors against the paths of its own cell.
         let relative: Vec<Vec<f64>> = maps
             .iter()
-            .map(|map| map.iter().zip(&totals).map(|(value, total)| 100.0 * value / total).collect())
+            .map(|map| map.iter().zip(&totals).map(|(value, total)| value / total).collect())
             .collect();
         let errors: Vec<Vec<f64>> = maps
             .iter()
             .zip(&multiple)
             .map(|(map, paths)| {
-                map.iter().zip(paths).zip(&totals).map(|((a, b), total)| 100.0 * (a - b) / total).collect()
+                map.iter().zip(paths).zip(&totals).map(|((a, b), total)| (a - b) / total).collect()
             })
             .collect();
         let column = |maps: &[Vec<f64>], pixel: usize| maps.iter().map(|m| m[pixel]).collect::<Moments>();
@@ -52,7 +53,7 @@ fn pictures(cells: &Cells, known: &Predictions) -> anyhow::Result<Vec<Picture>> 
         let bias = maps
             .iter()
             .zip(&multiple)
-            .map(|(map, paths)| 100.0 * (map.iter().sum::<f64>() - paths.iter().sum::<f64>()) / whole)
+            .map(|(map, paths)| (map.iter().sum::<f64>() - paths.iter().sum::<f64>()) / whole)
             .collect();
         pictures.push(Picture {
             k,
@@ -87,11 +88,11 @@ fn picture(pictures: &[Picture], k: usize) -> Option<&Picture> {
 
 fn headline(pictures: &[Picture]) -> Vec<String> {
     let Some(few) = picture(pictures, 50) else { return Vec::new() };
-    let (low, high) = bar(&few.bias);
+    let (low, high) = percent_bar(&few.bias);
     vec![format!(
         "With 50 photons an estimate a marched pixel of a box of fog has a noise of {} % and the picture a mean error \
          of {low:.2} to {high:.2} %.",
-        with_error(few.noise.value(), few.noise.std_error()),
+        few.noise.in_percent(),
     )]
 }
 
@@ -100,10 +101,10 @@ fn claims(pictures: &[Picture]) -> Vec<Claim> {
     for k in [50, 100] {
         let Some(p) = picture(pictures, k) else { continue };
         let text = format!("\"50 to 100 photons an estimate work well\": noise of a marched pixel with {k}");
-        claims.push(Claim::at_most(&format!("noise-{k}"), &text, Unit::PERCENT, p.noise, 5.0));
+        claims.push(Claim::at_most(&format!("noise-{k}"), &text, Unit::FRACTION, p.noise, 0.05));
         let text = format!("\"50 to 100 photons an estimate work well\": mean error of the picture with {k}");
         let bias = Estimate::mean(&p.bias);
-        claims.push(Claim::within(&format!("bias-{k}"), &text, Unit::PERCENT, bias, -1.0, 1.0));
+        claims.push(Claim::within(&format!("bias-{k}"), &text, Unit::FRACTION, bias, -0.01, 0.01));
     }
     claims
 }
@@ -112,18 +113,18 @@ fn rows(pictures: &[Picture]) -> anyhow::Result<Vec<Row>> {
     let mut rows = Vec::new();
     for p in pictures {
         let (name, asked) = (case(p.k), Size::Nearest(p.k).parameters());
-        rows.push(Row::estimated(&name, "noise", Unit::PERCENT, &p.noise)?.with(asked));
+        rows.push(Row::estimated(&name, "noise", Unit::FRACTION, &p.noise)?.with(asked));
         rows.push(
-            Row::measured(&name, "mean error", Unit::PERCENT, &p.bias)?.reference(0.0, 0.0).with(asked),
+            Row::measured(&name, "mean error", Unit::FRACTION, &p.bias)?.reference(0.0, 0.0).with(asked),
         );
-        rows.push(Row::estimated(&name, "squared bias of pixels", Unit::new("%^2"), &p.square)?.with(asked));
+        rows.push(Row::estimated(&name, "squared bias of pixels", Unit::ONE, &p.square)?.with(asked));
     }
     Ok(rows)
 }
 
 /// The root of a mean square that may have come out below zero, as an upper end of 95 %.
 fn root_of(square: &Estimate) -> String {
-    let root = |x: f64| x.max(0.0).sqrt();
+    let root = |x: f64| percent(x.max(0.0).sqrt());
     let interval = square.interval(0.95);
     format!("{:.2} ({:.2} to {:.2})", root(square.value()), root(interval.low), root(interval.high))
 }
@@ -134,11 +135,11 @@ fn picture_table(pictures: &[Picture]) -> Table {
             p.by_pixel.iter().fold(0.0, |worst: f64, e| if e.abs() > worst.abs() { *e } else { worst });
         vec![
             p.k.to_string(),
-            with_error(p.noise.value(), p.noise.std_error()),
-            number(p.predicted),
-            with_error(p.bias.mean(), p.bias.std_error()),
+            p.noise.in_percent(),
+            number(percent(p.predicted)),
+            percent_with_error(&p.bias),
             root_of(&p.square),
-            signed(worst, 1),
+            signed(percent(worst), 1),
         ]
     };
     Table {
@@ -167,10 +168,10 @@ fn said(pictures: &[Picture]) -> Vec<[String; 2]> {
         "50 to 100 photons an estimate work well".to_string(),
         format!(
             "after marching a pixel has a noise of {} to {} % and a mean error of {} to {} %",
-            with_error(few.noise.value(), few.noise.std_error()),
-            with_error(many.noise.value(), many.noise.std_error()),
-            with_error(few.bias.mean(), few.bias.std_error()),
-            with_error(many.bias.mean(), many.bias.std_error()),
+            few.noise.in_percent(),
+            many.noise.in_percent(),
+            percent_with_error(&few.bias),
+            percent_with_error(&many.bias),
         ),
     ]]
 }

@@ -1,7 +1,7 @@
 //! The figure of the marched pixels.
 
 use super::results::Picture;
-use crate::harness::{FigureFiles, bar};
+use crate::harness::{FigureFiles, percent, percent_bar};
 use turbid_figure::{Along, Axis, Figure, Line, Panel, Points, Rule, Width};
 
 /// Noise and mean error of marched pixels against the number of photons an estimate.
@@ -10,21 +10,26 @@ pub fn pixels(pictures: &[Picture]) -> anyhow::Result<FigureFiles> {
     let k = || Axis::log("photons an estimate", "").with_range(8.0, 620.0);
     let interval = |p: &Picture| {
         let interval = p.noise.interval(0.95);
-        (interval.low, interval.high)
+        (percent(interval.low), percent(interval.high))
     };
     let noise = Panel::new(k(), Axis::log("noise of a pixel", "%").with_range(0.3, 10.0))
         .with(Rule::new(Along::Horizontal(5.0)).with_label("works well"))
-        .with(Line::new("predicted", 0, x.clone(), pictures.iter().map(|p| p.predicted).collect()))
+        .with(Line::new("predicted", 0, x.clone(), pictures.iter().map(|p| percent(p.predicted)).collect()))
         .with(
-            Points::new("measured", 0, x.clone(), pictures.iter().map(|p| p.noise.value()).collect())
-                .with_y_interval(pictures.iter().map(interval).collect()),
+            Points::new(
+                "measured",
+                0,
+                x.clone(),
+                pictures.iter().map(|p| percent(p.noise.value())).collect(),
+            )
+            .with_y_interval(pictures.iter().map(interval).collect()),
         );
     let bias = Panel::new(k(), Axis::linear("mean error of the picture", "%").with_range(-2.0, 2.0))
         .with(Rule::new(Along::Horizontal(1.0)))
         .with(Rule::new(Along::Horizontal(-1.0)).with_label("works well"))
         .with(
-            Points::new("measured", 0, x, pictures.iter().map(|p| p.bias.mean()).collect())
-                .with_y_interval(pictures.iter().map(|p| bar(&p.bias)).collect()),
+            Points::new("measured", 0, x, pictures.iter().map(|p| percent(p.bias.mean())).collect())
+                .with_y_interval(pictures.iter().map(|p| percent_bar(&p.bias)).collect()),
         );
     let figure =
         Figure { width: Width::Double, columns: 2, shared_legend: true, ..Figure::new(vec![noise, bias]) };

@@ -171,9 +171,9 @@ pub fn predict(settings: &Settings) -> anyhow::Result<Vec<Prediction>> {
         let square = |&(share, end): &(f64, f64)| share * share * one * shared(end, radius);
         let mean = shares.iter().map(square).sum::<f64>() / shares.len() as f64;
         // The bound is what 200 paths a pixel leave open.
-        let value = (100.0 * mean.sqrt(), 10.0 * mean.sqrt());
+        let value = (mean.sqrt(), 0.1 * mean.sqrt());
         let source = "overlap of the balls along a ray in even light, after a pilot";
-        predictions.push(Prediction::new(case(k), "noise", Unit::PERCENT, value, source));
+        predictions.push(Prediction::new(case(k), "noise", Unit::FRACTION, value, source));
     }
     Ok(predictions)
 }

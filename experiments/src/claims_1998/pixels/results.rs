@@ -3,7 +3,7 @@
 use crate::harness::Estimate;
 use turbid::stats::Moments;
 
-/// The picture at one number of neighbours; all in per cent of the pixel.
+/// The picture at one number of neighbours; all as fractions of the pixel.
 pub struct Picture {
     /// Number of neighbours.
     pub k: usize,
@@ -13,7 +13,7 @@ pub struct Picture {
     pub predicted: f64,
     /// Mean error of the whole picture, one a map.
     pub bias: Moments,
-    /// Mean square over the pixels of what no number of maps removes [%²].
+    /// Mean square over the pixels of what no number of maps removes.
     pub square: Estimate,
     /// Map against paths by pixel: mean error.
     pub by_pixel: Vec<f64>,
