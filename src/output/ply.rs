@@ -23,6 +23,9 @@ const PROPERTIES: [&str; 14] = [
     "uchar flags",
 ];
 
+/// The version of what a file holds.
+const FORMAT: u32 = 1;
+
 /// Writes photons: position \[L\], direction of travel, power \[W\] (as stored, divided by the emitted number), a colour for
 /// viewers, order, and flags (1 specular, 2 surface, 4 medium).
 ///
@@ -42,7 +45,7 @@ fn encode(
     colour: &dyn Fn(&Photon) -> [u8; 3],
 ) -> io::Result<()> {
     writeln!(out, "ply\nformat binary_little_endian 1.0")?;
-    writeln!(out, "comment turbid {}: stored photons", env!("CARGO_PKG_VERSION"))?;
+    writeln!(out, "comment turbid {}: stored photons, format {FORMAT}", env!("CARGO_PKG_VERSION"))?;
     writeln!(out, "element vertex {}", photons.len())?;
     for property in PROPERTIES {
         writeln!(out, "property {property}")?;
@@ -85,7 +88,7 @@ mod tests {
         let start = bytes.windows(end.len()).position(|w| w == end).unwrap() + end.len();
         let header = std::str::from_utf8(&bytes[..start]).unwrap();
         assert!(header.starts_with("ply\nformat binary_little_endian 1.0\n"));
-        assert!(header.contains("\nelement vertex 2\n"));
+        assert!(header.contains(": stored photons, format 1\n") && header.contains("\nelement vertex 2\n"));
         let size = |line: &str| match line.split(' ').nth(1) {
             Some("float") => 4,
             Some("ushort") => 2,

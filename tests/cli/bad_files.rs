@@ -299,6 +299,16 @@ fn wrong_shapes_textures_and_boundaries() {
     }
 }
 
+/// A file may say the version of its format, and another one is refused by name.
+#[test]
+fn formats_of_scenes() {
+    let (folder, _) = whole();
+    let file = folder.file("one.toml", &format!("format = 1\n{SCENE}"));
+    succeeds(&["check", text(&file)]);
+    let file = folder.file("two.toml", &format!("format = 2\n{SCENE}"));
+    refuses_naming(&["check", text(&file)], &["two.toml:1:", "format is 2; allowed: 1"]);
+}
+
 /// Lights without bounds need a cell, and are told by their number.
 #[test]
 fn unbounded_lights_are_named() {

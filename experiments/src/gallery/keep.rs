@@ -12,6 +12,9 @@ use turbid::integrators::{Layer, Layers};
 use turbid::output::write_atomically;
 use turbid::sensor::Film;
 
+/// The version of the files.
+pub const FORMAT: u32 = 1;
+
 /// Larger files are no pictures.
 const MOST_BYTES: u64 = 1 << 32;
 
@@ -19,6 +22,8 @@ const MOST_BYTES: u64 = 1 << 32;
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct RenderRecord {
+    /// [`FORMAT`] when it was made.
+    pub format: u32,
     /// What it is, in words: two renders of equal words and equal program are equal.
     pub words: String,
     /// Digest of the program that made it.
@@ -124,6 +129,7 @@ impl CachedRender {
         ensure!(end == Digest::of(body).to_string().as_bytes(), "the digest does not fit");
         let first = body.iter().position(|&b| b == b'\n').context("the first line is missing")?;
         let facts: RenderRecord = serde_json::from_slice(&body[..first])?;
+        ensure!(facts.format == FORMAT, "its format is {}, not {FORMAT}", facts.format);
         let numbers = &body[first + 1..];
         let planes = numbers.len() / (12 * pixels).max(1);
         ensure!(
@@ -157,6 +163,7 @@ mod tests {
 
     fn kept(has_layers: bool) -> CachedRender {
         let facts = RenderRecord {
+            format: FORMAT,
             words: "box, paths".into(),
             program: "00".into(),
             seconds: 1.5,

@@ -1,7 +1,7 @@
 //! Makes the pictures: photon maps and their reading, paths, each with the CPU time that it took.
 
 use super::Grid;
-use super::keep::{CachedRender, RenderRecord};
+use super::keep::{CachedRender, FORMAT, RenderRecord};
 use super::light::ByLight;
 use super::pictures::Picture;
 use super::recipe;
@@ -127,6 +127,7 @@ impl<'a> Studio<'a> {
         let report = method.extend(&mut film, &self.camera, samples, self.streams(replicate), progress)?;
         let stored = |map: &Option<PhotonMap>| map.as_ref().map_or(0, |m| m.stored() as u64);
         let facts = RenderRecord {
+            format: FORMAT,
             words: self.photon_words(samples, replicate, factor),
             program: self.program.clone(),
             seconds: start.elapsed().as_secs_f64(),
@@ -217,6 +218,7 @@ impl<'a> Studio<'a> {
 
     fn path_facts(&self, start: ProcessTime, samples: u64, replicate: u64) -> RenderRecord {
         RenderRecord {
+            format: FORMAT,
             words: self.path_words(samples, replicate),
             program: self.program.clone(),
             seconds: start.elapsed().as_secs_f64(),

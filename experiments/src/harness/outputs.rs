@@ -135,7 +135,10 @@ pub(super) fn keep_or_write(path: &Path, mut new: Provenance) -> anyhow::Result<
     let old =
         read_if_there(path, MOST_NOTES)?.and_then(|bytes| serde_json::from_slice::<Provenance>(&bytes).ok());
     if let Some(old) = old {
-        let is_same = old.command == new.command && old.program == new.program && old.cells == new.cells;
+        let is_same = old.format == new.format
+            && old.command == new.command
+            && old.program == new.program
+            && old.cells == new.cells;
         if is_same && new.measured == 0 && !new.late_predictions {
             return Ok(old);
         }

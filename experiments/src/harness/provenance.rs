@@ -6,9 +6,19 @@ use std::path::Path;
 use std::process::Command;
 use std::time::{SystemTime, UNIX_EPOCH};
 
+/// The version of the tables beside it: 2 since fractions are no longer in per cent, and parameters are columns.
+pub const FORMAT: u32 = 2;
+
+fn first_format() -> u32 {
+    1
+}
+
 /// The circumstances of a study.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Provenance {
+    /// Version of the tables; 1 where it is not stated.
+    #[serde(default = "first_format")]
+    pub format: u32,
     /// Name of the study.
     pub study: String,
     /// The command that repeats it.
@@ -55,6 +65,7 @@ impl Provenance {
     /// The circumstances of this run; the counts are for the caller to fill in.
     pub(super) fn now(study: &str, settings: &Settings, program: &str) -> Self {
         Provenance {
+            format: FORMAT,
             study: study.to_string(),
             command: settings.command(study),
             seed: settings.seed,

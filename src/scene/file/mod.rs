@@ -24,10 +24,41 @@ use glam::DVec3;
 use serde::{Deserialize, Serialize};
 use std::path::Path;
 
+/// The version of the format of scene files: 1, also of a file that does not say.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(try_from = "u32", into = "u32")]
+pub struct SceneFormat(u32);
+
+impl Default for SceneFormat {
+    fn default() -> Self {
+        SceneFormat(1)
+    }
+}
+
+impl TryFrom<u32> for SceneFormat {
+    type Error = Error;
+    fn try_from(version: u32) -> Result<Self> {
+        let known = SceneFormat::default();
+        if known.0 != version {
+            return Err(Error::out_of_range("the value", f64::from(version), "1"));
+        }
+        Ok(known)
+    }
+}
+
+impl From<SceneFormat> for u32 {
+    fn from(format: SceneFormat) -> u32 {
+        format.0
+    }
+}
+
 /// A whole scene file.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct SceneFile {
+    /// Version of the format.
+    #[serde(default)]
+    pub format: SceneFormat,
     /// Side of the cell that stands for an unbounded slab \[L\].
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub cell: Option<Positive>,
