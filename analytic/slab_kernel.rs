@@ -65,7 +65,7 @@ fn moment_between(kernel: Kernel, j: u32, low: f64, high: f64) -> Value {
         }
         from += 1.0;
     }
-    // A Gaussian is cut where e^(-42) of it is left; the faces are off by a rounding.
+    // A Gaussian is cut where e^(-42) of it is left; the faces differ by a rounding.
     let error = f64::EPSILON * (32.0 * absolute + 4.0) + if kernel == Kernel::Gaussian { 1e-17 } else { 0.0 };
     Value::new(value, error, "Gauss rule, exact for the polynomials")
 }

@@ -106,7 +106,7 @@ fn flat_place(ends: Ends, mut at: [f64; 3], reach: f64) -> Result<Place> {
     let (mut depth, mut axis, mut sign) = (f64::INFINITY, 2, 1.0);
     for i in 0..3 {
         let (low, high) = ends[i];
-        // A place on a face may be off by roundings.
+        // A place on a face may differ by roundings.
         let slack = 1e-12 * if high.is_finite() { high } else { 1.0 };
         if at[i] < low - slack || at[i] > high + slack {
             return Err(outside(at[i]));

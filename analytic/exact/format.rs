@@ -90,7 +90,7 @@ fn digits(value: Value) -> String {
     }
 }
 
-/// A value in the digits that it is known to, and a bound of what the value as printed is off by, its own rounding included.
+/// A value in the digits that it is known to, and a bound of the error of the value as printed, its own rounding included.
 pub fn printed(value: Value) -> (String, String) {
     let text = digits(value);
     let rounding = text.parse().map_or(0.0, |printed: f64| (printed - value.value).abs());

@@ -17,7 +17,7 @@ use turbid_figure::{Axis, Figure};
 ///
 /// The rule: r_k is the distance of the k-th nearest point, the kernel of radius r_k is summed over the k - 1 nearer
 /// ones. For the uniform kernel that is (k-1)/(N V(r_k)), unbiased where the density is uniform; k over the same ball
-/// reads k/(k-1) high. In the field e^(b.x) the mean is
+/// is high by k/(k-1). In the field e^(b.x) the mean is
 ///
 ///   E = int_0^inf p_(k-2)(s) M(r(s)) ds,   p_n(s) = e^(-s) s^n/n!,   s = points expected within r,
 ///

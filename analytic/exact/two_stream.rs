@@ -26,7 +26,7 @@ use turbid_figure::{Axis, Figure};
 ///   delta-Eddington: Eddington, a share g^2 of all scattering counted as straight on
 ///   diffusion: Eddington, with the field vanishing 0.7104/(1-wg) mean free paths outside
 ///
-/// tau in mean free paths. Each quantity comes exactly, then in every approximation, whose `error` is what it is off by (with
+/// tau in mean free paths. Each quantity comes exactly, then in every approximation, whose `error` is what it differs by (with
 /// the bound of the exact value), so that here too it covers the truth.
 /// Source: Eddington 1916; Joseph, Wiscombe and Weinman 1976; Meador and Weaver 1980.
 #[derive(Clone, clap::Args)]

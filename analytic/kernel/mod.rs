@@ -268,7 +268,7 @@ fn gaussian_radial(n: u32, a: f64, end: Option<f64>) -> f64 {
 /// Mean weight over the disc of the kernel of Jensen's 1996 photon maps,
 /// alpha \[1 - (1 - e^(-beta u^2/2))/(1 - e^(-beta))\] with alpha = 0.918, beta = 1.953.
 ///
-/// Not 1: an estimate that divides by the disc's area reads this factor low unless it divides by it too.
+/// Not 1: an estimate that divides by the disc's area is low by this factor unless it divides by it too.
 pub fn jensen_disc_mean_weight() -> Value {
     let (alpha, beta) = (0.918, 1.953);
     let inside = 1.0 + libm::expm1(-0.5 * beta) * 2.0 / beta;

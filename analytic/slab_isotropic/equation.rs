@@ -50,7 +50,7 @@ pub(super) fn residual(
                 worst = defects[range].iter().fold(worst, |a, b| a.max(b.abs()));
             }
             let (start, length) = mesh.panel(p);
-            // A coordinate is off by a rounding of its distance from the face, seen on the scale of the panel.
+            // A coordinate has an error of a rounding of its distance from the face, seen on the scale of the panel.
             let rounding = f64::EPSILON * (ULPS + 2.0 * (start + length) / length) * largest;
             out.extend(std::iter::repeat_n(2.0 * worst + rounding + global, NODES));
         }

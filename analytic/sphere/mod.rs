@@ -166,7 +166,7 @@ impl Sphere {
     pub fn fluence_direct(&self, r: f64) -> Result<Value> {
         self.check_r(r)?;
         let a = self.radius;
-        // Four exponential integrals, and a depth that may be off by a rounding of the radius.
+        // Four exponential integrals, and a depth that may differ by a rounding of the radius.
         let ulps = 48.0 + a.min(745.0);
         let (escape, collision) = first_flight::first_flight(a, r, a - r);
         let value = match self.source {

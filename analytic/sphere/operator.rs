@@ -219,7 +219,7 @@ impl ShellOperator {
             for (i, xi) in [(2 * p, 0.0), (2 * p + 1, 0.5), (2 * p + 2, 1.0)] {
                 worst = worst.max((probes[i] - self.mesh.interpolate(f.as_slice(), p, xi)).abs());
             }
-            // A depth is off by a rounding of itself, seen on the scale of the panel.
+            // A depth has an error of a rounding of itself, seen on the scale of the panel.
             let (start, length) = self.mesh.panel(p);
             let rounding = f64::EPSILON * (ulps + 2.0 * (start + length) / length) * size;
             out.rows_mut(p * NODES, NODES).fill(2.0 * worst + rounding + self.row_defect * rows);

@@ -8,7 +8,7 @@ use libm::{cosh, exp, expm1, log, log1p, sinh, tanh};
 use std::f64::consts::PI;
 
 /// Step in v = ln(x - 1). The integrand is analytic for |Im v| < pi/2 at least, where e^(-r x) still falls: the
-/// trapezoidal rule is off by e^(-pi^2/step) = 7e-18.
+/// trapezoidal rule has an error of e^(-pi^2/step) = 7e-18.
 const STEP: f64 = 0.25;
 
 /// Ends of v: below, e^v and above, the e^(-v) of (g - 1) e^v are under rounding.

@@ -161,7 +161,7 @@ fn beside_the_peer(out: &mut impl Write, phase: &Phase, slab: &AnisotropicSlab) 
     let truth: Vec<f64> = exact.iter().map(|v| v.value).collect();
     let bound = exact.iter().fold(0.0, |a: f64, v| a.max(v.error / v.value));
     writeln!(out, "\nR, T and ten fluences from scratch, beside PythonicDISORT of 32 streams")?;
-    writeln!(out, "{:34} {:>9}  {:>9} {:>9} {:>9}   speed", "", "ms", "R off by", "T", "fluence")?;
+    writeln!(out, "{:34} {:>9}  {:>9} {:>9} {:>9}   speed", "", "ms", "error of R", "T", "fluence")?;
     let theirs = peer.solve(32, 1)?.1;
     let with_streams = |n: usize| solve(AnisotropicMedium::with_streams(ALBEDO, phase, n));
     // The fewest streams that are no less accurate in any of the three.
@@ -204,7 +204,7 @@ fn beside_the_peer(out: &mut impl Write, phase: &Phase, slab: &AnisotropicSlab) 
     }
     writeln!(
         out,
-        "off by: relative to the referee's own answer, whose bounds are at most {bound:.1e} of it"
+        "errors: relative to the referee's own answer, whose bounds are at most {bound:.1e} of it"
     )?;
     Ok(())
 }

@@ -136,7 +136,7 @@ mod tests {
         assert!(crossing(&both, &PATHS, 100.0, 1.0) < crossing(&both[..1], &PATHS, 100.0, 1.0));
     }
 
-    /// Maps that read 40 % high are never as good as 30 %, and dear ones never worth it.
+    /// Maps with a bias of 40 % are never as good as 30 %, and dear ones never worth it.
     #[test]
     fn a_planted_error_is_seen() {
         let right = maps(10.0, 0.01);

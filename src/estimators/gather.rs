@@ -48,7 +48,7 @@ pub enum Gather {
         max_radius: Positive,
     },
     /// The rule as it is often written: the k-th photon sets the radius and is summed too. A kernel that does
-    /// not vanish at its edge then reads high, the uniform one by 1/(k-1).
+    /// not vanish at its edge is then biased high, the uniform one by 1/(k-1).
     NearestBiased {
         /// Which photon sets the radius.
         k: NeighborCount,

@@ -11,7 +11,7 @@ const WIDTH: usize = 8;
 /// One number of each rectangle of a block.
 type Column = [f64; WIDTH];
 
-/// Some rectangles; a place without one has a corner that is no number, so that nothing meets it.
+/// Some rectangles; a place without one has a corner that is not a number, so that nothing meets it.
 #[derive(Debug, Clone, Copy)]
 struct Block {
     corner: [Column; 3],

@@ -93,10 +93,10 @@ impl<F: FnMut(Splat)> Tracer<'_, F> {
         }
         self.rays.shadow += 1;
         let start = (&ray, event.origin_surface, walker.interior);
-        let Some(passed) = connection(self.scene, start, distance, None, stream) else { return };
+        let Some(transmitted) = connection(self.scene, start, distance, None, stream) else { return };
         let cosine = -ray.dir.dot(self.camera.forward());
         let solid_angle = self.camera.pixel_area() * cosine * cosine * cosine;
-        let value = weight * fraction * passed / (distance * distance * solid_angle);
+        let value = weight * fraction * transmitted / (distance * distance * solid_angle);
         let is_by_specular = walker.order == 0 && walker.flags.has(Flags::SPECULAR);
         let layer = Layer::of(walker.order + 1, event.kind, is_by_specular);
         (self.splat)(Splat { at, layer, value });
@@ -121,8 +121,8 @@ impl<F: FnMut(Splat)> Tracer<'_, F> {
             let medium = self.scene.medium(segment.medium);
             let position = walker.ray.at(t);
             let sigma_t = medium.sigma_t(position);
-            let passed = transmittance(self.scene, &walker.ray, t, walker.interior, stream);
-            let weight = walker.weight * passed * sigma_t / (density(t) + sigma_t.mean());
+            let transmitted = transmittance(self.scene, &walker.ray, t, walker.interior, stream);
+            let weight = walker.weight * transmitted * sigma_t / (density(t) + sigma_t.mean());
             let event = Event { position, origin_surface: None, kind: Flags::MEDIUM };
             self.connect(walker, weight, event, stream, |towards| {
                 let (one_minus_mu, one_plus_mu) = cosine_pair(walker.ray.dir, towards);
@@ -165,7 +165,7 @@ impl<F: FnMut(Splat)> Visitor for Tracer<'_, F> {
                     reflection * towards.dot(normal).max(0.0)
                 });
             }
-            Step::Passed(..) | Step::Absorbed(..) | Step::Escaped(_) | Step::Truncated(_) => {}
+            Step::Uncollided(..) | Step::Absorbed(..) | Step::Escaped(_) | Step::Truncated(_) => {}
         }
     }
 }

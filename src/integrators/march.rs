@@ -6,7 +6,7 @@ use crate::math::{Interval, Positive, Ray, exp, exp_m1, ln_1p};
 use crate::medium::Medium;
 use crate::rng::Stream;
 use crate::scene::decay;
-use crate::transport::passed;
+use crate::transport::segment_transmittance;
 use glam::DVec3;
 
 /// How much of a source one step of a march brings to the near end of the ray; step i runs from `t` to `t + dx`.
@@ -16,9 +16,9 @@ use glam::DVec3;
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum StepRule {
     /// The formula of 1998: the source at the near end of the step, times dx e^(-sigma_t t). What lies in the step is
-    /// not attenuated within it, so that a constant source reads high by x/(1-e^-x), x = sigma_t dx.
+    /// not attenuated within it, so that a constant source comes out high by x/(1-e^-x), x = sigma_t dx.
     NearEnd,
-    /// The source in the middle of the step, times dx e^(-sigma_t (t + dx/2)): a constant source reads low by
+    /// The source in the middle of the step, times dx e^(-sigma_t (t + dx/2)): a constant source comes out low by
     /// (x/2)/sinh(x/2), which is 1 - x^2/24 to second order.
     Middle,
     /// The source in the middle of the step, held constant over it and integrated: times
@@ -204,7 +204,7 @@ pub(super) fn march(
             Medium::Homogeneous(medium) => decay(medium.sigma_t() * dx),
             Medium::Heterogeneous(_) => {
                 let behind = Interval { start: t + step.place, end: t + dx };
-                step.reached * passed(medium, ray, behind, stream)
+                step.reached * segment_transmittance(medium, ray, behind, stream)
             }
         };
         t += dx;
@@ -271,9 +271,9 @@ impl Placed {
             }
             let rest = ((unit - below) / chances[channel]).clamp(0.0, 1.0 - f64::EPSILON);
             let place = place_reaching(sigma_t[channel], dx, rest);
-            let passed = sigma_t.map(|s| exp(-s * place));
-            let densities = passed / sigma_t.map(|s| reaching(s, dx));
-            let weight = passed / (chances * densities).0.element_sum();
+            let transmitted = sigma_t.map(|s| exp(-s * place));
+            let densities = transmitted / sigma_t.map(|s| reaching(s, dx));
+            let weight = transmitted / (chances * densities).0.element_sum();
             return Placed { place, weight, reached: Spectrum::ONE };
         }
         let weight = sigma_t.map(|c| rule.weight(c, 0.0, dx));
@@ -292,7 +292,7 @@ impl Placed {
     ) -> Self {
         let is_random = march.is_jittered && march.rule == StepRule::Integrated;
         let place = if is_random { stream.unit() * dx } else { march.rule.place(0.0, dx) };
-        let reached = passed(medium, ray, Interval { start: t, end: t + place }, stream);
+        let reached = segment_transmittance(medium, ray, Interval { start: t, end: t + place }, stream);
         let weight = match march.rule {
             StepRule::NearEnd => Spectrum::grey(dx),
             StepRule::Integrated if !is_random => {

@@ -79,7 +79,7 @@ impl<'a, F: FnMut(u32, Layer, Spectrum)> PathVisitor<'a, F> {
         }
     }
 
-    /// The class of light that the ray ahead meets by itself.
+    /// The class of light that the ray meets by itself.
     fn layer_ahead(&self, walker: &Walker) -> Layer {
         Layer::of(walker.order, self.first, self.specular_at == Some(walker.order))
     }
@@ -90,8 +90,8 @@ impl<'a, F: FnMut(u32, Layer, Spectrum)> PathVisitor<'a, F> {
         Layer::of(walker.order + 1, first, false)
     }
 
-    /// What the ray ahead meets by itself.
-    fn ahead(&mut self, walker: &Walker, hit: Option<&SceneHit>, stream: &mut Stream) {
+    /// What the ray meets by itself.
+    fn hit_emission(&mut self, walker: &Walker, hit: Option<&SceneHit>, stream: &mut Stream) {
         if !self.orders.contains(walker.order) {
             return;
         }
@@ -106,8 +106,8 @@ impl<'a, F: FnMut(u32, Layer, Spectrum)> PathVisitor<'a, F> {
             let seen_hit = Hit { t: found.hit.t + back, ..found.hit };
             let (radiance, pdf_light) = self.scene.lights()[index].emitted(&seen_along, &seen_hit);
             let share = walker.pdf_solid_angle.map_or(1.0, |pdf| pdf / (pdf + pdf_light));
-            let passed = transmittance(self.scene, &walker.ray, end, walker.interior, stream);
-            let seen = radiance * passed * share;
+            let transmitted = transmittance(self.scene, &walker.ray, end, walker.interior, stream);
+            let seen = radiance * transmitted * share;
             self.add(walker.order, layer, walker.weight * seen);
         }
         let emitted = emission(self.scene, &walker.ray, end, walker.interior, stream);
@@ -230,7 +230,7 @@ impl<F: FnMut(u32, Layer, Spectrum)> Visitor for PathVisitor<'_, F> {
             Step::Ahead(hit) => {
                 self.rays.segments += 1;
                 self.end = hit.map_or(f64::INFINITY, |h| h.hit.t);
-                self.ahead(walker, hit, stream);
+                self.hit_emission(walker, hit, stream);
                 self.connect_from_ray(walker, hit, stream);
             }
             Step::Collision(Arrival { position, .. }, number) => {
@@ -283,7 +283,7 @@ impl<F: FnMut(u32, Layer, Spectrum)> Visitor for PathVisitor<'_, F> {
                 );
                 self.scattered(walker, Flags::DIFFUSE);
             }
-            Step::Passed(..) | Step::Absorbed(..) | Step::Escaped(_) | Step::Truncated(_) => {}
+            Step::Uncollided(..) | Step::Absorbed(..) | Step::Escaped(_) | Step::Truncated(_) => {}
         }
     }
 }
@@ -306,8 +306,8 @@ pub(in crate::integrators) fn seen_straight(
         let straight =
             hit.and_then(|found| Some((found, scene.straight_on(&walker.ray, &found, walker.interior)?)));
         let Some((found, (fraction, interior))) = straight else { return sum };
-        let passed = transmittance(scene, &walker.ray, end, walker.interior, stream);
-        let weight = walker.weight * passed * fraction;
+        let transmitted = transmittance(scene, &walker.ray, end, walker.interior, stream);
+        let weight = walker.weight * transmitted * fraction;
         if weight.is_black() {
             return sum;
         }
@@ -370,8 +370,8 @@ pub(in crate::integrators) fn next_event(
     }
     rays.shadow += 1;
     let towards = Some(Target::Light(index));
-    let passed = connection(scene, (&ray, origin_surface, interior), sample.distance, towards, stream)?;
-    Some((sample, sample.value * passed))
+    let transmitted = connection(scene, (&ray, origin_surface, interior), sample.distance, towards, stream)?;
+    Some((sample, sample.value * transmitted))
 }
 
 /// Power that uncollided light of beams and point lights carries through a surface element along its normal

@@ -1,7 +1,7 @@
 //! Tables of measured quantities, as aligned text, CSV or JSON.
 
 use super::one_line;
-use crate::sensor::Reading;
+use crate::sensor::Measurement;
 use serde::Serialize;
 use std::io::{self, Write};
 
@@ -20,7 +20,7 @@ pub enum Format {
 ///
 /// # Errors
 /// Those of the writer.
-pub fn write_rows(out: &mut dyn Write, rows: &[Reading], format: Format) -> io::Result<()> {
+pub fn write_rows(out: &mut dyn Write, rows: &[Measurement], format: Format) -> io::Result<()> {
     match format {
         Format::Text => write_text(out, rows),
         Format::Csv if rows.is_empty() => writeln!(out, "{}", COLUMNS.join(",")),
@@ -31,7 +31,7 @@ pub fn write_rows(out: &mut dyn Write, rows: &[Reading], format: Format) -> io::
 
 const COLUMNS: [&str; 6] = ["sensor", "quantity", "unit", "mean", "std_error", "n"];
 
-fn write_text(out: &mut dyn Write, rows: &[Reading]) -> io::Result<()> {
+fn write_text(out: &mut dyn Write, rows: &[Measurement]) -> io::Result<()> {
     let mut lines = vec![COLUMNS.map(str::to_string)];
     for r in rows {
         let numbers =
@@ -49,7 +49,7 @@ fn write_text(out: &mut dyn Write, rows: &[Reading]) -> io::Result<()> {
 }
 
 /// What stands in the place of a standard error that is not known.
-fn word(r: &Reading) -> String {
+fn word(r: &Measurement) -> String {
     r.no_error.map_or_else(String::new, |why| why.word().into())
 }
 
@@ -110,8 +110,8 @@ pub fn write_json<T: Serialize + ?Sized>(out: &mut dyn Write, value: &T) -> io::
 mod tests {
     use super::*;
 
-    fn row(mean: f64, std_error: f64) -> Reading {
-        Reading {
+    fn row(mean: f64, std_error: f64) -> Measurement {
+        Measurement {
             sensor: "probe, centre".into(),
             quantity: "fluence".into(),
             unit: "W/L^2",
@@ -122,7 +122,7 @@ mod tests {
         }
     }
 
-    fn text(rows: &[Reading], format: Format) -> String {
+    fn text(rows: &[Measurement], format: Format) -> String {
         let mut out = Vec::new();
         write_rows(&mut out, rows, format).unwrap();
         String::from_utf8(out).unwrap()

@@ -370,7 +370,7 @@ impl<S: Storage> Visitor for Block<'_, S> {
     fn visit(&mut self, walker: &Walker, step: Step, _stream: &mut Stream) {
         let PassReport { ends, ledger, .. } = &mut self.pass.report;
         match step {
-            Step::Passed(t, weight) => self.score(walker.order, weight, |quantity| match quantity {
+            Step::Uncollided(t, weight) => self.score(walker.order, weight, |quantity| match quantity {
                 Quantity::Outflow { shape, face } => leaves(shape, *face, &walker.ray, t),
                 _ => false,
             }),

@@ -13,7 +13,7 @@ use glam::DVec3;
 /// Cells of the quadrature of a medium's power when a scene is made: good to some per cent, for choices between lights.
 const ROUGH: usize = 1 << 10;
 
-/// The same where readings are divided by the power: a tenth of a second or so.
+/// The same where measurements are divided by the power: a tenth of a second or so.
 const FINE: usize = 1 << 17;
 
 /// A part of the power below which its error does not matter.

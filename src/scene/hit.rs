@@ -109,15 +109,16 @@ impl Scene {
         end: f64,
         towards: Option<Target>,
     ) -> Option<Spectrum> {
-        let (mut ray, mut origin_surface, mut end, mut passed) = (*ray, origin_surface, end, Spectrum::ONE);
+        let (mut ray, mut origin_surface, mut end, mut transmitted) =
+            (*ray, origin_surface, end, Spectrum::ONE);
         let mut here = 0;
         while let Some(found) = self.hit(&ray, origin_surface) {
             if Some(found.target) == towards || found.hit.t >= end {
                 break;
             }
             // Which interior it is, filters need not know.
-            passed *= self.straight_on(&ray, &found, SURROUNDINGS)?.0;
-            if passed.is_black() {
+            transmitted *= self.straight_on(&ray, &found, SURROUNDINGS)?.0;
+            if transmitted.is_black() {
                 return None;
             }
             let position = ray.at(found.hit.t);
@@ -128,6 +129,6 @@ impl Scene {
             (ray, origin_surface, end) =
                 (Ray::new(position, ray.dir), Some(found.start()), end - found.hit.t);
         }
-        Some(passed)
+        Some(transmitted)
     }
 }

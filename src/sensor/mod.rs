@@ -28,7 +28,7 @@ use crate::stats::{Moments, Tail, poisson_interval};
 
 /// A measured number.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
-pub struct Reading {
+pub struct Measurement {
     /// Name of the sensor.
     pub sensor: String,
     /// Name of the quantity, with `.r`, `.g`, `.b` where channels differ.
@@ -47,7 +47,7 @@ pub struct Reading {
     pub no_error: Option<NoError>,
 }
 
-/// Why a reading has no standard error.
+/// Why a measurement has no standard error.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum NoError {
     /// There is one photon map, whose estimates share its photons.
@@ -134,15 +134,15 @@ fn std_error(m: &Moments, tail: Option<&Tail>, source: Source) -> Result<f64, No
     }
 }
 
-/// The readings of one sensor: one where the scene is grey, otherwise one a channel. Paths tell the tails of their
+/// The measurements of one sensor: one where the scene is grey, otherwise one a channel. Paths tell the tails of their
 /// contributions.
-fn readings(
+fn measurements(
     scene: &Scene,
     sensor: &Sensor,
     moments: &[Moments; 3],
     tails: Option<&[Tail; 3]>,
     source: Source,
-) -> Vec<Reading> {
+) -> Vec<Measurement> {
     // The power that parts of it are divided by may be known to an error of its own.
     let of_power = match sensor.quantity {
         Quantity::Outflow { .. } | Quantity::Absorbed(_) => scene.power_error(),
@@ -156,7 +156,7 @@ fn readings(
             let m = &moments[channel];
             let error = std_error(m, tails.map(|tails| &tails[channel]), source);
             let error = error.map(|error| libm::hypot(error, of_power[channel] * m.mean()));
-            Reading {
+            Measurement {
                 sensor: sensor.name.clone(),
                 quantity: format!("{}{suffix}", sensor.label),
                 unit: sensor.unit(),

@@ -1,6 +1,6 @@
 //! Sensors read by the path tracer.
 
-use super::{Reading, Source, readings};
+use super::{Measurement, Source, measurements};
 use crate::Spectrum;
 use crate::error::{Error, Result};
 use crate::integrators::{Rays, direct_flux, fluence, radiance};
@@ -31,12 +31,12 @@ pub struct PathSettings {
 /// # Errors
 /// `Error::Unreachable` if the scene has path classes that paths cannot sample; `Error::NonFinite`;
 /// `Error::Cancelled`.
-pub fn by_paths(scene: &Scene, settings: &PathSettings, progress: &dyn Progress) -> Result<Vec<Reading>> {
+pub fn by_paths(scene: &Scene, settings: &PathSettings, progress: &dyn Progress) -> Result<Vec<Measurement>> {
     check(scene)?;
     let mut all = Vec::new();
     for (index, sensor) in scene.sensors().iter().enumerate() {
         let (moments, tails) = read(scene, sensor, index as u64, settings, progress)?;
-        all.extend(readings(scene, sensor, &moments, Some(&tails), Source::Paths));
+        all.extend(measurements(scene, sensor, &moments, Some(&tails), Source::Paths));
     }
     Ok(all)
 }

@@ -1,6 +1,6 @@
 //! Sensors read by photons: powers tallied where photons leave or end, fluence and radiance from photon maps.
 
-use super::{Reading, Source, readings};
+use super::{Measurement, Source, measurements};
 use crate::Spectrum;
 use crate::error::{Error, Result};
 use crate::estimators::boundary::{Boundary, Treatment};
@@ -40,7 +40,7 @@ pub struct PhotonSettings {
 #[derive(Debug, Clone, PartialEq)]
 pub struct PhotonReadings {
     /// One a sensor and channel: tallies have n = histories, maps n = maps.
-    pub readings: Vec<Reading>,
+    pub measurements: Vec<Measurement>,
     /// Powers \[W\] by history.
     pub ledger: Ledger,
     /// Estimates that found fewer than k photons within the cap.
@@ -104,7 +104,7 @@ pub fn by_photons_in_passes(
     let (sensors, margin) = prepared(scene, settings)?;
     let mut moments = vec![[Moments::new(); 3]; sensors.len()];
     let mut result = PhotonReadings {
-        readings: Vec::new(),
+        measurements: Vec::new(),
         ledger: Ledger::default(),
         underfull: 0,
         beyond: 0,
@@ -153,7 +153,7 @@ pub fn by_photons_in_passes(
             return Err(Error::NonFinite { count: non_finite, place: "estimates from photon maps" });
         }
         let source = if map_orders(sensor).is_some() { Source::Maps } else { Source::Tally };
-        result.readings.extend(readings(scene, sensor, &moments, None, source));
+        result.measurements.extend(measurements(scene, sensor, &moments, None, source));
     }
     Ok(result)
 }

@@ -1,7 +1,7 @@
 //! Emission of media, and of sources that fill a part of a ray, collected along the ray.
 
 use super::track;
-use super::transmittance::passed as transmittance;
+use super::transmittance::segment_transmittance as transmittance;
 use crate::Spectrum;
 use crate::math::{Interval, Ray, exp_m1};
 use crate::medium::{Homogeneous, Medium};
@@ -41,11 +41,11 @@ fn collect(
     (part, source): (Interval, Spectrum),
     stream: &mut Stream,
 ) -> Spectrum {
-    let (mut passed, mut sum, mut cursor) = (Spectrum::ONE, Spectrum::ZERO, 0.0);
+    let (mut transmitted, mut sum, mut cursor) = (Spectrum::ONE, Spectrum::ZERO, 0.0);
     let gap =
         |from: f64, to: f64| Interval { start: from, end: to }.intersection(part).map_or(0.0, |i| i.length());
     for segment in scene.segments(ray, end, interior).iter() {
-        sum += passed * source * gap(cursor, segment.interval.start);
+        sum += transmitted * source * gap(cursor, segment.interval.start);
         cursor = segment.interval.end;
         let medium = scene.medium(segment.medium);
         for (stretch, is_source) in pieces(segment.interval, part) {
@@ -61,11 +61,11 @@ fn collect(
                 }
                 Medium::Heterogeneous(_) => (Spectrum::ZERO, transmittance(medium, ray, stretch, stream)),
             };
-            sum += passed * light;
-            passed *= behind;
+            sum += transmitted * light;
+            transmitted *= behind;
         }
     }
-    sum + passed * source * gap(cursor, end)
+    sum + transmitted * source * gap(cursor, end)
 }
 
 /// A stretch before, in and behind a part; whether the piece lies in it.

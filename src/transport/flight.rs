@@ -21,7 +21,7 @@ pub enum Flight {
         weight: Spectrum,
     },
     /// At the end of the ray, with this weight.
-    Passed(Spectrum),
+    Uncollided(Spectrum),
 }
 
 /// Samples the distance to the next collision on a ray, up to distance `end` \[L\], in the interior of number `within`.
@@ -41,7 +41,7 @@ pub fn free_flight(
     stream: &mut Stream,
 ) -> Flight {
     if !scene.plan().has_media {
-        return Flight::Passed(weight);
+        return Flight::Uncollided(weight);
     }
     if scene.plan().has_heterogeneous {
         return flight_by_stretch(scene, ray, end, interior, weight, stream);
@@ -57,7 +57,7 @@ pub fn free_flight(
     if forced {
         let depth = scene.optical_depth(ray, end, interior)[channel];
         if depth == 0.0 {
-            return Flight::Passed(weight);
+            return Flight::Uncollided(weight);
         }
         // exp(-target) is uniform in (0, 1]: stretched over [exp(-depth), 1].
         let collides = -exp_m1(-depth);
@@ -86,10 +86,10 @@ pub fn free_flight(
         Some(segment) if forced => {
             collision(scene, ray, segment.interval.end, interior, segment.medium, weight)
         }
-        _ if is_grey => Flight::Passed(weight),
+        _ if is_grey => Flight::Uncollided(weight),
         _ => {
-            let passed = decay(scene.optical_depth(ray, end, interior));
-            Flight::Passed(weight * passed * (weight.sum() / (weight * passed).sum()))
+            let transmitted = decay(scene.optical_depth(ray, end, interior));
+            Flight::Uncollided(weight * transmitted * (weight.sum() / (weight * transmitted).sum()))
         }
     }
 }
@@ -118,10 +118,10 @@ fn flight_by_stretch(
         };
         match stretch {
             End::Collision(t, weight) => return Flight::Collision { t, medium: segment.medium, weight },
-            End::Passed(passed) => weight = passed,
+            End::Uncollided(transmitted) => weight = transmitted,
         }
     }
-    Flight::Passed(weight)
+    Flight::Uncollided(weight)
 }
 
 /// One stretch of a homogeneous medium.
@@ -129,7 +129,7 @@ fn closed(medium: &Homogeneous, part: Interval, weight: Spectrum, stream: &mut S
     let sigma_t = medium.sigma_t();
     let is_grey = sigma_t.is_grey() || planted(Fault::StretchColorIgnored);
     if sigma_t.is_black() {
-        return End::Passed(weight);
+        return End::Uncollided(weight);
     }
     stream.work.channel_flights += u64::from(!is_grey);
     let channel = if is_grey { 0 } else { choose(weight, stream.unit()) };
@@ -138,8 +138,8 @@ fn closed(medium: &Homogeneous, part: Interval, weight: Spectrum, stream: &mut S
     let flown = if sigma_t[channel] == 0.0 { f64::INFINITY } else { target / sigma_t[channel] };
     let kept = |weighted: Spectrum| weighted * (weight.sum() / weighted.sum());
     if flown >= part.length() {
-        let passed = if is_grey { weight } else { kept(weight * decay(medium.depth(part.length()))) };
-        return End::Passed(passed);
+        let transmitted = if is_grey { weight } else { kept(weight * decay(medium.depth(part.length()))) };
+        return End::Uncollided(transmitted);
     }
     let after = if is_grey { weight } else { kept(weight * decay(medium.depth(flown)) * sigma_t) };
     End::Collision(part.start + flown, after)

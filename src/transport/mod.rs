@@ -18,6 +18,6 @@ pub use equal_angles::{Distances, EqualAngles, span};
 pub use flags::Flags;
 pub use flight::{Flight, free_flight};
 pub use roulette::Roulette;
-pub use transmittance::{connection, passed, transmittance};
+pub use transmittance::{connection, segment_transmittance, transmittance};
 pub use visitor::{Arrival, Step, Visitor, Walker};
 pub use walk::{LONG, walk};

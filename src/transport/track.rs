@@ -14,7 +14,7 @@ pub(super) enum End {
     /// With a collision at a distance along the ray \[L\], with this weight.
     Collision(f64, Spectrum),
     /// At the far end, with this weight.
-    Passed(Spectrum),
+    Uncollided(Spectrum),
 }
 
 /// What a stretch lets pass below which a game decides whether anything does. Tracking multiplies factors, and would go on
@@ -24,8 +24,8 @@ const FAINT: f64 = 1e-12;
 
 /// Russian roulette on what a stretch lets pass: the factor that what is faint counts with, in the mean 1; 0 if the game is
 /// lost.
-fn outlives(passed: f64, stream: &mut Stream) -> f64 {
-    let chance = passed / FAINT;
+fn outlives(transmitted: f64, stream: &mut Stream) -> f64 {
+    let chance = transmitted / FAINT;
     if chance >= 1.0 {
         1.0
     } else if chance > 0.0 && stream.unit() < chance {
@@ -93,7 +93,7 @@ pub(super) fn delta(
     let sigma_t = medium.matter().sigma_t();
     let scale = sigma_t.max();
     if scale == 0.0 {
-        return End::Passed(weight);
+        return End::Uncollided(weight);
     }
     let ratio = sigma_t / scale;
     let mut weight = weight;
@@ -116,7 +116,7 @@ pub(super) fn delta(
             None
         },
     );
-    collision.unwrap_or(End::Passed(weight))
+    collision.unwrap_or(End::Uncollided(weight))
 }
 
 /// The density at a distance: never above its bound, which rounding at a face between cells could break.
@@ -136,11 +136,11 @@ fn density_at(medium: &Heterogeneous, ray: &Ray, t: f64, high: f64, stream: &mut
 pub(super) fn ratio(medium: &Heterogeneous, ray: &Ray, part: Interval, stream: &mut Stream) -> Spectrum {
     let matter = medium.matter();
     let mut alive = matter.sigma_t();
-    let (mut passed, mut left) = (Spectrum::ONE, part);
+    let (mut transmitted, mut left) = (Spectrum::ONE, part);
     let (mut control, mut before) = (0.0, 0.0);
     loop {
         let scale = alive.max();
-        let Some(densest) = (0..3).find(|c| alive[*c] == scale && scale > 0.0) else { return passed };
+        let Some(densest) = (0..3).find(|c| alive[*c] == scale && scale > 0.0) else { return transmitted };
         let shares = alive / scale;
         let lost = tentative(
             (medium, ray, left),
@@ -155,14 +155,14 @@ pub(super) fn ratio(medium: &Heterogeneous, ray: &Ray, part: Interval, stream: &
             |t, bound, stream| {
                 let density = density_at(medium, ray, t, bound.high, stream).max(bound.low);
                 let q = (density - bound.low) / (bound.high - bound.low);
-                passed *= shares.map(|s| 1.0 - s * q);
-                let factor = outlives(passed[densest], stream);
-                passed *= shares.map(|s| if s == 1.0 { factor } else { 1.0 });
+                transmitted *= shares.map(|s| 1.0 - s * q);
+                let factor = outlives(transmitted[densest], stream);
+                transmitted *= shares.map(|s| if s == 1.0 { factor } else { 1.0 });
                 (factor == 0.0).then_some((t, bound.low * (t - bound.interval.start)))
             },
         );
         let Some((t, within)) = lost else {
-            return passed * crate::scene::decay(matter.depth(control));
+            return transmitted * crate::scene::decay(matter.depth(control));
         };
         alive = alive.map(|sigma_t| if sigma_t == scale { 0.0 } else { sigma_t });
         (left.start, control) = (t, before + within);
@@ -187,15 +187,15 @@ pub(super) fn emitted(
     let least = 1.0 / part.length();
     let least = if least.is_finite() { least } else { 0.0 };
     let rate = |bound: &Bound| (bound.high * sigma_t.max()).max(least);
-    let (mut passed, mut sum) = (Spectrum::ONE, Spectrum::ZERO);
+    let (mut transmitted, mut sum) = (Spectrum::ONE, Spectrum::ZERO);
     tentative((medium, ray, part), stream, rate, |t, bound, stream| {
         let rate = rate(bound);
         let density = density_at(medium, ray, t, bound.high, stream);
         let emission = if own { medium.emission_of(density) } else { Spectrum::ZERO };
-        sum += passed * (emission + uniform) / rate;
-        passed *= sigma_t.map(|s| 1.0 - s * density / rate);
-        passed *= outlives(passed.max(), stream);
-        passed.is_black().then_some(())
+        sum += transmitted * (emission + uniform) / rate;
+        transmitted *= sigma_t.map(|s| 1.0 - s * density / rate);
+        transmitted *= outlives(transmitted.max(), stream);
+        transmitted.is_black().then_some(())
     });
-    (sum, passed)
+    (sum, transmitted)
 }

@@ -18,7 +18,7 @@ pub fn transmittance(scene: &Scene, ray: &Ray, end: f64, interior: usize, stream
         let medium = scene.medium(segment.medium);
         match medium.optical_depth(ray, segment.interval) {
             Some(closed) => depth += closed,
-            None => tracked *= passed(medium, ray, segment.interval, stream),
+            None => tracked *= segment_transmittance(medium, ray, segment.interval, stream),
         }
     }
     decay(depth) * tracked
@@ -38,11 +38,11 @@ pub fn connection(
         Some(target) => scene.passes(ray, origin_surface, end, target),
         None => scene.sees(ray, origin_surface, end),
     }?;
-    let passed = match scene.plan().has_matched {
+    let transmitted = match scene.plan().has_matched {
         true => across(scene, (ray, origin_surface, interior), end, towards, stream),
         false => transmittance(scene, ray, end, interior, stream),
     };
-    Some(filtered * passed)
+    Some(filtered * transmitted)
 }
 
 /// The transmittance of a way that nothing blocks, from interior to interior.
@@ -53,22 +53,22 @@ fn across(
     towards: Option<Target>,
     stream: &mut Stream,
 ) -> Spectrum {
-    let (mut ray, mut origin_surface, mut interior, mut end, mut passed) =
+    let (mut ray, mut origin_surface, mut interior, mut end, mut transmitted) =
         (*ray, origin_surface, interior, end, Spectrum::ONE);
     loop {
         let next = scene.hit(&ray, origin_surface).filter(|f| f.hit.t < end && Some(f.target) != towards);
         let straight = next.and_then(|found| Some((found, scene.straight_on(&ray, &found, interior)?.1)));
         let Some((found, behind)) = straight else {
-            return passed * transmittance(scene, &ray, end, interior, stream);
+            return transmitted * transmittance(scene, &ray, end, interior, stream);
         };
-        passed *= transmittance(scene, &ray, found.hit.t, interior, stream);
+        transmitted *= transmittance(scene, &ray, found.hit.t, interior, stream);
         ray = Ray::new(ray.at(found.hit.t), ray.dir);
         (origin_surface, interior, end) = (Some(found.start()), behind, end - found.hit.t);
     }
 }
 
 /// The transmittance of a stretch of one medium.
-pub fn passed(medium: &Medium, ray: &Ray, part: Interval, stream: &mut Stream) -> Spectrum {
+pub fn segment_transmittance(medium: &Medium, ray: &Ray, part: Interval, stream: &mut Stream) -> Spectrum {
     match medium {
         Medium::Homogeneous(medium) => decay(medium.depth(part.length())),
         Medium::Heterogeneous(varying) => match varying.optical_depth(ray, part) {

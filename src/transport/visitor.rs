@@ -66,7 +66,7 @@ pub enum Step<'a> {
     /// A ray is about to be followed up to the body ahead, if there is one.
     Ahead(Option<&'a SceneHit>),
     /// Light went from the ray's origin to this distance without an event, with this weight.
-    Passed(f64, Spectrum),
+    Uncollided(f64, Spectrum),
     /// A collision in the medium of this number.
     Collision(Arrival<'a>, usize),
     /// An arrival at a body.

@@ -72,12 +72,12 @@ pub fn walk<V: Visitor>(
         match free_flight(scene, &walker.ray, end, walker.interior, arrived, forced, stream) {
             Flight::Collision { t, medium: number, weight } => {
                 if forced {
-                    let passed = arrived - weight;
-                    visitor.visit(&walker, Step::Passed(end, passed), stream);
-                    visitor.visit(&walker, Step::Escaped(passed), stream);
+                    let transmitted = arrived - weight;
+                    visitor.visit(&walker, Step::Uncollided(end, transmitted), stream);
+                    visitor.visit(&walker, Step::Escaped(transmitted), stream);
                     roulette = roulette.scaled(weight.max() / arrived.max());
                 }
-                visitor.visit(&walker, Step::Passed(t, weight), stream);
+                visitor.visit(&walker, Step::Uncollided(t, weight), stream);
                 walker.weight = weight;
                 let position = walker.ray.at(t);
                 visitor.visit(
@@ -111,8 +111,8 @@ pub fn walk<V: Visitor>(
                     pdf_solid_angle: V::LOOKS_AHEAD.then(pdf),
                 };
             }
-            Flight::Passed(weight) => {
-                visitor.visit(&walker, Step::Passed(end, weight), stream);
+            Flight::Uncollided(weight) => {
+                visitor.visit(&walker, Step::Uncollided(end, weight), stream);
                 walker.weight = weight;
                 let Some(found) = hit else {
                     visitor.visit(&walker, Step::Escaped(weight), stream);

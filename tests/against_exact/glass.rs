@@ -99,9 +99,9 @@ fn a_region_does_not_count_inside() {
     .unwrap();
     let sensors = [(outflow(sphere(DVec3::ZERO, 2.0)), Orders::ALL), (Quantity::Absorbed(0), Orders::ALL)];
     let tallies = tallies(&scene, &sensors, 1 << 16, 8);
-    let passed = turbid::math::exp(-1.0);
-    verdict::agrees("through the shell", &tallies[0][0], (passed, 1e-15), 0.02, 8);
-    verdict::agrees("in the shell", &tallies[1][0], (1.0 - passed, 1e-15), 0.02, 8);
+    let transmitted = turbid::math::exp(-1.0);
+    verdict::agrees("through the shell", &tallies[0][0], (transmitted, 1e-15), 0.02, 8);
+    verdict::agrees("in the shell", &tallies[1][0], (1.0 - transmitted, 1e-15), 0.02, 8);
 }
 
 /// A filter is no event: light of order 0 behind it is light of order 0, in the filter's colour. A lamp that is met by
@@ -117,9 +117,9 @@ fn a_filter_colors_and_is_no_event() {
         vec![point_light(DVec3::new(0.2, 0.0, -0.3), Spectrum::ONE)],
     );
     let out = (outflow(sphere(DVec3::ZERO, 1.5)), Orders::only(0));
-    let passed = &tallies(&scene, &[out], 1 << 16, 9)[0];
-    verdict::agrees("red", &passed[0], (0.3, 0.0), 0.03, 9);
-    assert!((passed[1].mean() - 1.0).abs() < 0.02 && (passed[2].mean() - 0.6).abs() < 0.02);
+    let transmitted = &tallies(&scene, &[out], 1 << 16, 9)[0];
+    verdict::agrees("red", &transmitted[0], (0.3, 0.0), 0.03, 9);
+    assert!((transmitted[1].mean() - 1.0).abs() < 0.02 && (transmitted[2].mean() - 0.6).abs() < 0.02);
     // A floor under a lamp of radiance 1, with and without filters between; the lamp is 2 x 2 at height 1.
     let lamp =
         || area_light(rectangle(DVec3::new(-1.0, 1.0, 1.0), DVec3::X * 2.0, -DVec3::Y * 2.0), Spectrum::ONE);

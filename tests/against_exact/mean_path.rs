@@ -40,7 +40,7 @@ impl<'a> Path<'a> {
 impl Watcher<3> for Path<'_> {
     fn see(&mut self, walker: &Walker, step: Step) {
         match step {
-            Step::Passed(t, weight) => {
+            Step::Uncollided(t, weight) => {
                 if let Some(inside) = self.body.interval(&walker.ray) {
                     self.length += weight[0] * (inside.end.min(t) - inside.start).max(0.0);
                 }

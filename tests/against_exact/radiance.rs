@@ -144,10 +144,10 @@ fn of_maps(scene: &Scene, photons: u64, seed: u64) -> Vec<Moments> {
             orders: Orders::ALL,
             estimator: Estimator::new(Kernel::Uniform, Gather::radius(RADIUS).unwrap()),
         };
-        let readings = by_photons(scene, &settings, &NoProgress).unwrap().readings;
-        views.resize(readings.len(), Moments::new());
-        for (view, reading) in views.iter_mut().zip(readings) {
-            view.push(reading.mean);
+        let measurements = by_photons(scene, &settings, &NoProgress).unwrap().measurements;
+        views.resize(measurements.len(), Moments::new());
+        for (view, measurement) in views.iter_mut().zip(measurements) {
+            view.push(measurement.mean);
         }
     }
     views

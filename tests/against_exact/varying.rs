@@ -191,13 +191,13 @@ fn a_constant_grid_is_the_homogeneous_medium() {
                 estimator: Estimator::new(Kernel::Uniform, gather),
             };
             let read = by_photons(scene, &settings, &NoProgress).unwrap();
-            assert_eq!(read.readings.len(), 12);
-            moments.iter_mut().zip(&read.readings).for_each(|(m, r)| m.push(r.mean));
+            assert_eq!(read.measurements.len(), 12);
+            moments.iter_mut().zip(&read.measurements).for_each(|(m, r)| m.push(r.mean));
         }
         moments
     };
     let (a, b) = (by_maps(&homogeneous, 1000), by_maps(&gridded, 2000));
     for (i, (a, b)) in a.iter().zip(&b).enumerate() {
-        verdict::agree(&format!("reading {i} by photons"), a, b, 0.7, 1000);
+        verdict::agree(&format!("measurement {i} by photons"), a, b, 0.7, 1000);
     }
 }

@@ -18,7 +18,7 @@ use turbid::phase::{Isotropic, Phase};
 use turbid::photons::Emitter;
 use turbid::rng::{Purpose, Stream};
 use turbid::scene::{Interior, Object, Orders, Quantity, Region, SURROUNDINGS, Scene, SceneParts};
-use turbid::sensor::{PathSettings, PhotonSettings, Reading, by_paths, by_photons};
+use turbid::sensor::{Measurement, PathSettings, PhotonSettings, by_paths, by_photons};
 use turbid::stats::Moments;
 use turbid::transport::{Flight, NoProgress, free_flight};
 
@@ -45,7 +45,7 @@ fn lit(lights: Vec<Light>) -> Scene {
 }
 
 /// What one map, or 2,048 paths, read of each sensor and channel.
-fn read(scene: &Scene, by: &str, replicate: u64) -> Vec<Reading> {
+fn read(scene: &Scene, by: &str, replicate: u64) -> Vec<Measurement> {
     if by == "paths" {
         let settings = PathSettings { samples: 1 << 11, seed: 61, replicate, orders: Orders::ALL };
         return by_paths(scene, &settings, &NoProgress).unwrap();
@@ -57,11 +57,11 @@ fn read(scene: &Scene, by: &str, replicate: u64) -> Vec<Reading> {
         orders: Orders::ALL,
         estimator: Estimator::new(Kernel::Uniform, Gather::radius(0.6).unwrap()),
     };
-    by_photons(scene, &settings, &NoProgress).unwrap().readings
+    by_photons(scene, &settings, &NoProgress).unwrap().measurements
 }
 
 /// Light is linear: in grey fog two coloured lights give each channel what the lights alone, of power 1, give times their
-/// powers in it. By the readings that a user is shown, all three channels of each sensor.
+/// powers in it. By the measurements that a user is shown, all three channels of each sensor.
 pub fn two_lights_keep_their_colors() {
     let all = lit(LIGHTS.map(|(at, power)| point_light(at, power)).to_vec());
     let alone = LIGHTS.map(|(at, _)| lit(vec![point_light(at, Spectrum::ONE)]));
@@ -71,7 +71,7 @@ pub fn two_lights_keep_their_colors() {
         for replicate in 0..MAPS {
             let together = read(&all, by, replicate);
             assert_eq!(together.len(), 9, "a coloured scene is reported by channel, {by}");
-            both.iter_mut().zip(&together).for_each(|(m, reading)| m.push(reading.mean));
+            both.iter_mut().zip(&together).for_each(|(m, measurement)| m.push(measurement.mean));
             // Random numbers of their own.
             let parts = [0, 1].map(|i: usize| read(&alone[i], by, (i as u64 + 1) * MAPS + replicate));
             assert_eq!(parts[0].len(), 3, "a grey scene is reported in one channel");
@@ -154,12 +154,12 @@ pub fn a_colored_filling_passes_each_channel() {
     let through = Ray::new(DVec3::new(1.0, 1.0, -0.2), DVec3::Z);
     let by_paths = paths(&scene(Incidence::Both), Quantity::Radiance(through), Orders::ALL, 1 << 16, 63);
     for c in 0..3 {
-        let (back, passed) = passes(c);
-        for (name, tally, expected) in [("back", 0, back), ("passed", 1, passed)] {
+        let (back, transmitted) = passes(c);
+        for (name, tally, expected) in [("back", 0, back), ("transmitted", 1, transmitted)] {
             let what = format!("{name} by photons, channel {c}");
             verdict::agrees(&what, &by_photons[tally][c], (expected, 1e-12), 0.03, 63);
         }
-        let seen = (back + passed) / PI;
+        let seen = (back + transmitted) / PI;
         verdict::agrees(&format!("seen by paths, channel {c}"), &by_paths[c], (seen, 1e-12), 0.05 * seen, 63);
     }
 }
@@ -193,7 +193,7 @@ pub fn colored_media_beside_a_varying_one() {
         let found = histories(1 << 16, 64, |stream| {
             match free_flight(&scene, &ray, f64::INFINITY, SURROUNDINGS, weight, false, stream) {
                 Flight::Collision { medium, weight, .. } if medium == end => weight,
-                Flight::Passed(weight) if end == 3 => weight,
+                Flight::Uncollided(weight) if end == 3 => weight,
                 _ => Spectrum::ZERO,
             }
         });

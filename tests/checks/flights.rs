@@ -58,7 +58,7 @@ fn flown(scene: &Scene, stream: &mut Stream) -> f64 {
     match free_flight(scene, &ray, f64::INFINITY, SURROUNDINGS, Spectrum::ONE, false, stream) {
         Flight::Collision { t, .. } => 2.0 * t,
         // 80 mean free paths, one flight in 1e34.
-        Flight::Passed(_) => f64::NAN,
+        Flight::Uncollided(_) => f64::NAN,
     }
 }
 

@@ -53,14 +53,14 @@ pub fn each_channel_passes_as_its_depth_says() {
     let weight = Spectrum::rgb(1.0, 0.5, 2.0);
     let flown = histories(N, 5, |stream| {
         match free_flight(&scene, &ray, f64::INFINITY, SURROUNDINGS, weight, false, stream) {
-            Flight::Passed(weight) => weight,
+            Flight::Uncollided(weight) => weight,
             Flight::Collision { .. } => Spectrum::ZERO,
         }
     });
     let tracked = histories(N, 6, |stream| transmittance(&scene, &ray, f64::INFINITY, SURROUNDINGS, stream));
     for c in 0..3 {
-        let passed = exp(-depth[c]);
-        verdict::agrees(&format!("flights, channel {c}"), &flown[c], (weight[c] * passed, 0.0), 0.05, 5);
-        verdict::agrees(&format!("ratio tracking, channel {c}"), &tracked[c], (passed, 0.0), 0.05, 6);
+        let transmitted = exp(-depth[c]);
+        verdict::agrees(&format!("flights, channel {c}"), &flown[c], (weight[c] * transmitted, 0.0), 0.05, 5);
+        verdict::agrees(&format!("ratio tracking, channel {c}"), &tracked[c], (transmitted, 0.0), 0.05, 6);
     }
 }

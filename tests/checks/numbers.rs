@@ -23,9 +23,13 @@ pub fn transmittance_keeps_its_digits() {
     for depth in [1e-12, 1e-3, 1.0, 16.0, 40.0, 88.0, 104.0, 300.0, 700.0] {
         let scene = slab(depth, 0.5, 0.0, Incidence::Beam(1.0));
         let Quantity::Fluence(top) = at_depth(0.0) else { unreachable!() };
-        let passed = decay(scene.optical_depth(&Ray::new(top, DVec3::Z), f64::INFINITY, SURROUNDINGS))[0];
-        let off = (passed / exp(-depth) - 1.0).abs();
-        assert!(off < 4.0 * f64::EPSILON * (1.0 + depth), "depth {depth}: {passed:e} is off by {off:e}");
+        let transmitted =
+            decay(scene.optical_depth(&Ray::new(top, DVec3::Z), f64::INFINITY, SURROUNDINGS))[0];
+        let off = (transmitted / exp(-depth) - 1.0).abs();
+        assert!(
+            off < 4.0 * f64::EPSILON * (1.0 + depth),
+            "depth {depth}: {transmitted:e} differs by {off:e}"
+        );
     }
 }
 

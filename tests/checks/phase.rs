@@ -30,7 +30,7 @@ fn over(phase: &Phase, (a, b): (f64, f64), f: impl Fn(f64, f64) -> f64) -> f64 {
     sum
 }
 
-/// How far a stated mean cosine may be off by its own rounding. That of Henyey-Greenstein is its parameter, that of
+/// How far a stated mean cosine may differ by its own rounding. That of Henyey-Greenstein is its parameter, that of
 /// Rayleigh 0; others are sums of a few terms near 1.
 fn rounding_of_g(phase: &Phase) -> f64 {
     match phase {

@@ -54,7 +54,7 @@ pub fn by_both(scene: &Scene, nearest: f64, stream: &mut Stream) -> f64 {
 /// The same from a free flight alone: its variance is infinite.
 pub fn by_free_flight(scene: &Scene, nearest: f64, stream: &mut Stream) -> f64 {
     match free_flight(scene, &ray(nearest), f64::INFINITY, SURROUNDINGS, Spectrum::ONE, false, stream) {
-        Flight::Passed(_) => 0.0,
+        Flight::Uncollided(_) => 0.0,
         Flight::Collision { t, .. } => {
             let r2 = ray(nearest).at(t).length_squared();
             let medium = scene.regions()[0].medium.matter();

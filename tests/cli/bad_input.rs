@@ -200,7 +200,7 @@ fn lights_that_cannot_be() {
             "sun = { dir = [0, 0, 1], irradiance = 1, angular_radius = 90 }".into(),
             "lights[0].angular_radius is 90; allowed: 0, or 1e-6 to 45 degrees",
         ),
-        // Its solid angle is no number.
+        // Its solid angle is not a number.
         (
             "sun = { dir = [0, 0, 1], irradiance = 1, angular_radius = 1e-160 }".into(),
             "allowed: 0, or 1e-6 to 45",

@@ -69,7 +69,7 @@ fn the_depth_flown_is_exponential_and_passes_with_the_transmittance() {
     let scene = overlapping();
     let ray = down();
     let depth = scene.optical_depth(&ray, f64::INFINITY, SURROUNDINGS)[0];
-    let (mut flown, mut passed) = (Vec::new(), 0);
+    let (mut flown, mut transmitted) = (Vec::new(), 0);
     for i in 0..N {
         match free_flight(
             &scene,
@@ -85,9 +85,9 @@ fn the_depth_flown_is_exponential_and_passes_with_the_transmittance() {
                 assert_eq!(*scene.medium(medium), *scene.medium_at(ray.at(t)).unwrap());
                 flown.push(scene.optical_depth(&ray, t, SURROUNDINGS)[0]);
             }
-            Flight::Passed(weight) => {
+            Flight::Uncollided(weight) => {
                 assert_eq!(weight, Spectrum::ONE);
-                passed += 1;
+                transmitted += 1;
             }
         }
     }
@@ -96,7 +96,7 @@ fn the_depth_flown_is_exponential_and_passes_with_the_transmittance() {
     // The negative control: extinction half a per cent off.
     let wrong: Vec<f64> = flown.iter().map(|tau| tau * 1.02).collect();
     verdict::misfits("extinction 2 % off", verdict::cumulated(&wrong, cdf), 2);
-    verdict::rate("passed", passed, N, exp(-depth), 1e-3, 2);
+    verdict::rate("transmitted", transmitted, N, exp(-depth), 1e-3, 2);
 }
 
 /// A forced flight collides for certain, with the probability as its weight, exponentially within what is there.
@@ -151,7 +151,7 @@ fn a_chromatic_flight_is_unbiased_by_channel() {
                         assert!(forced || (w.sum() / weight.sum() - 1.0).abs() < 8.0 * f64::EPSILON);
                         if low <= t && t < high { w } else { Spectrum::ZERO }
                     }
-                    Flight::Passed(w) => {
+                    Flight::Uncollided(w) => {
                         assert!((w.sum() / weight.sum() - 1.0).abs() < 8.0 * f64::EPSILON);
                         if high.is_infinite() { w } else { Spectrum::ZERO }
                     }

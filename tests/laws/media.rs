@@ -26,7 +26,7 @@ use turbid::photons::{Emitter, Histories, shoot};
 use turbid::rng::{Purpose, Stream, Work};
 use turbid::scene::{Interior, Object, Orders, Quantity, Region, SURROUNDINGS, Scene, SceneParts};
 use turbid::stats::Moments;
-use turbid::transport::{Flight, NoProgress, free_flight, passed};
+use turbid::transport::{Flight, NoProgress, free_flight, segment_transmittance};
 
 #[test]
 fn samples_lie_in_the_middles_of_cells() {
@@ -123,7 +123,7 @@ fn tracking_follows_the_exact_integral() {
         let cdf = |t: f64| -exp_m1(-depth(t)) / share;
         verdict::fits(&format!("distances, density {i}"), verdict::cumulated(&flown, cdf), 0.03, 31);
         let estimated = histories(N, 32, |stream| {
-            let value = passed(&medium, &ray, part, stream);
+            let value = segment_transmittance(&medium, &ray, part, stream);
             assert!((0.0..=1.0).contains(&value[0]));
             value
         });

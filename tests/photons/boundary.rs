@@ -346,7 +346,10 @@ fn moments_by_the_referee() {
                     referee::body_moment(known(kernel), known_body(&body), p.to_array(), r, j).unwrap();
                 let bound = if matches!(body, Shape::Cuboid(_)) { 1e-8 } else { 1e-13 };
                 let off = (found - exact.value).abs();
-                assert!(off <= bound + exact.error, "{body:?} at {p}, {kernel:?} M_{j}: off by {off:.1e}");
+                assert!(
+                    off <= bound + exact.error,
+                    "{body:?} at {p}, {kernel:?} M_{j}: differs by {off:.1e}"
+                );
             }
         }
     }

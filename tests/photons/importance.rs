@@ -129,7 +129,7 @@ fn importance_makes_the_picture_better() {
     let settings = ImportanceSettings { pilot: 1 << 13, ..Default::default() };
     let importance =
         Importance::of(&scene, scene.camera().unwrap(), indirect, &settings, &NoProgress).unwrap();
-    let reading = Settings {
+    let readout = Settings {
         global: (Kernel::Uniform, Gather::radius(0.5).unwrap()),
         volume: Estimator::new(Kernel::Uniform, Gather::radius(0.5).unwrap()).treated(Treatment::Clipped),
         ..Settings::for_size(10.0, 50).unwrap()
@@ -146,7 +146,7 @@ fn importance_makes_the_picture_better() {
             let emitted = if way == 0 { 40_000 } else { 16_000 };
             let maps = maps(&scene, indirect, by_importance, emitted, replicate + 500);
             events += maps.report.main.collisions + maps.report.main.hits;
-            let mapper = Mapper::new(&scene, &maps, &reading);
+            let mapper = Mapper::new(&scene, &maps, &readout);
             for (i, pixel) in pixels.iter_mut().enumerate() {
                 // The same rays for every map: what differs is the maps.
                 let mut stream = Stream::new(1, Purpose::Paths, 0, i as u64);

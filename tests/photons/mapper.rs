@@ -383,7 +383,7 @@ fn fog_cut_in_two_is_the_same_fog() {
 }
 
 /// A ball of milk in glass of its own, as bright all around as the isotropic light about it: balls are clipped at the
-/// glass. Where they are not, what is scattered more than once reads low by 3 r/16 of the surface over the volume, and more
+/// glass. Where they are not, what is scattered more than once is low by 3 r/16 of the surface over the volume, and more
 /// as seen from outside, where the near parts count most.
 #[test]
 fn balls_are_clipped_at_glass() {

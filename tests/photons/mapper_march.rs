@@ -188,8 +188,9 @@ fn level_rays_in_varying_fog_without_end() {
             orders: Orders::ALL,
             estimator: Estimator::new(Kernel::Uniform, Gather::nearest(50, 1.0).unwrap()),
         };
-        let readings = by_photons(&Scene::new(parts).unwrap(), &settings, &NoProgress).unwrap().readings;
-        (readings[0].mean, readings[0].std_error.unwrap())
+        let measurements =
+            by_photons(&Scene::new(parts).unwrap(), &settings, &NoProgress).unwrap().measurements;
+        (measurements[0].mean, measurements[0].std_error.unwrap())
     };
     let matter = homogeneous(Spectrum::grey(0.5), Spectrum::grey(0.9), 0.0);
     let fog =

@@ -414,7 +414,7 @@ fn fluence_beside_a_wall_with_fog_beyond() {
             };
             let result = by_photons(&scene, &settings, &NoProgress).unwrap();
             assert_eq!(result.beyond, 0);
-            result.readings[0].mean
+            result.measurements[0].mean
         };
         (0..64).map(one).collect()
     };

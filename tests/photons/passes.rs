@@ -70,8 +70,8 @@ fn passes_change_no_estimate() {
         let one = by_photons(&scene, &settings, &NoProgress).unwrap();
         for passes in [2, 7] {
             let many = in_passes(&scene, &settings, passes, 2);
-            assert_eq!(many.readings.len(), one.readings.len());
-            for (a, b) in one.readings.iter().zip(&many.readings) {
+            assert_eq!(many.measurements.len(), one.measurements.len());
+            for (a, b) in one.measurements.iter().zip(&many.measurements) {
                 assert!(a.mean > 0.0 && (b.mean / a.mean - 1.0).abs() < 1e-5, "{passes} passes: {a:?} {b:?}");
                 let (a, b) = (a.std_error.unwrap(), b.std_error.unwrap());
                 assert!((b / a - 1.0).abs() < 1e-3, "{passes} passes: error {a} {b}");

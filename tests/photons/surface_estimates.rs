@@ -160,7 +160,7 @@ fn beside_a_wall() {
 }
 
 /// N independent photons on a unit square: the k-1 rule is unbiased at finite N in the mean over maps, the biased one
-/// reads K(1) pi/(k-1) high; variances are those stated. The smallest bias seen is four per cent of the mean, half of the variance.
+/// is high by K(1) pi/(k-1); variances are those stated. The smallest bias seen is four per cent of the mean, half of the variance.
 #[test]
 fn a_uniform_plane() {
     const N: u64 = 2000;

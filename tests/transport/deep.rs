@@ -35,8 +35,8 @@ fn shield(at: f64) -> Scene {
 
 fn measured(at: f64, samples: u64, seed: u64) -> (f64, Result<f64, NoError>) {
     let settings = PathSettings { samples, seed, replicate: 0, orders: Orders::ALL };
-    let reading = by_paths(&shield(at), &settings, &NoProgress).unwrap().remove(0);
-    (reading.mean, reading.std_error.ok_or_else(|| reading.no_error.unwrap()))
+    let measurement = by_paths(&shield(at), &settings, &NoProgress).unwrap().remove(0);
+    (measurement.mean, measurement.std_error.ok_or_else(|| measurement.no_error.unwrap()))
 }
 
 /// Deep in the shield most of the light comes by rare paths, through the void, of large weight. Connections to the source

@@ -22,7 +22,9 @@ use turbid::scene::{
 use turbid::sensor::{PathSettings, Streams, by_light, by_paths};
 use turbid::stats::Moments;
 use turbid::surface::{Dielectric, Mirror, Surface};
-use turbid::transport::{LONG, NoProgress, Roulette, Step, Visitor, Walker, emission, passed, walk};
+use turbid::transport::{
+    LONG, NoProgress, Roulette, Step, Visitor, Walker, emission, segment_transmittance, walk,
+};
 
 /// The six walls of a box of side 2, as rectangles.
 fn walls(surface: impl Fn(usize) -> Surface) -> Vec<(Shape, Surface)> {
@@ -286,7 +288,7 @@ fn ratio_tracking_of_dense_layers_ends_soon() {
     let part = Interval { start: 0.0, end: 1.0 };
     for history in 0..64 {
         let mut stream = Stream::new(4, Purpose::Synthetic, 0, history);
-        let through = passed(&dense, &ray, part, &mut stream);
+        let through = segment_transmittance(&dense, &ray, part, &mut stream);
         assert!(stream.work.densities < 1000, "{}", stream.work.densities);
         assert!(through.max() <= 1e-12, "{through:?}");
     }
@@ -302,8 +304,9 @@ fn roulette_of_faint_transmittances_keeps_the_mean() {
     let ray = Ray::new(DVec3::new(0.0, 0.5, 0.3), DVec3::X);
     let part = Interval { start: 0.0, end: 1.0 };
     let exact = exp(-tau);
-    let through =
-        crate::support::run::numbers(1 << 16, 6, |stream| passed(&medium, &ray, part, stream)[0] / exact);
+    let through = crate::support::run::numbers(1 << 16, 6, |stream| {
+        segment_transmittance(&medium, &ray, part, stream)[0] / exact
+    });
     verdict::agrees("transmittance over the exact one", &through, (1.0, 1e-6), 0.3, 6);
 }
 
@@ -325,12 +328,12 @@ fn roulette_of_faint_transmittances_is_by_channel() {
         let mut through = [Moments::new(), Moments::new()];
         for history in 0..1 << 14 {
             let mut stream = Stream::new(6, Purpose::Synthetic, 1, history);
-            let passed = passed(&medium, &ray, part, &mut stream);
+            let transmitted = segment_transmittance(&medium, &ray, part, &mut stream);
             // The dense channel alone has 1e5.
             assert!(stream.work.densities < 10_000, "{}", stream.work.densities);
-            assert!(passed[1] <= 1e-12, "{passed:?}");
-            through[0].push(passed[0] / exp(-tau[0]));
-            through[1].push(passed[2] / exp(-tau[2]));
+            assert!(transmitted[1] <= 1e-12, "{transmitted:?}");
+            through[0].push(transmitted[0] / exp(-tau[0]));
+            through[1].push(transmitted[2] / exp(-tau[2]));
         }
         verdict::agrees(&format!("the thin channel, {i}"), &through[0], (1.0, 1e-6), 0.1, 6);
         verdict::agrees(&format!("the faint channel, {i}"), &through[1], (1.0, 1e-6), 0.9, 6);

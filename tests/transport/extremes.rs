@@ -113,16 +113,16 @@ fn an_optical_thickness_of_1e4() {
         &[reflectance(tau), transmittance(tau), at_depth(1.0), at_depth(5e3), at_depth(tau)],
     );
     let settings = PathSettings { samples: 4096, seed: 1, replicate: 0, orders: Orders::ALL };
-    let readings = by_paths(&scene, &settings, &NoProgress).unwrap();
+    let measurements = by_paths(&scene, &settings, &NoProgress).unwrap();
     // Paths that bring nothing know nothing of their error.
-    assert!(readings.iter().all(|r| r.mean.is_finite() && r.std_error.is_none_or(f64::is_finite)));
+    assert!(measurements.iter().all(|r| r.mean.is_finite() && r.std_error.is_none_or(f64::is_finite)));
     assert!(
-        readings[1].mean < 1e-300 && readings[3].mean < 1e-300 && readings[4].mean < 1e-300,
-        "{readings:?}"
+        measurements[1].mean < 1e-300 && measurements[3].mean < 1e-300 && measurements[4].mean < 1e-300,
+        "{measurements:?}"
     );
     let photons =
         by_photons(&scene, &photon_settings(4096, Gather::nearest(10, 1.0).unwrap()), &NoProgress).unwrap();
-    assert_eq!((photons.readings[1].mean, photons.readings[3].mean), (0.0, 0.0));
+    assert_eq!((photons.measurements[1].mean, photons.measurements[3].mean), (0.0, 0.0));
     let white = slab(tau, 1.0, 0.0, Incidence::Diffuse);
     // What is reflected or passes is all there is, exactly, but for histories that end by roulette.
     let emitter = Emitter::by_power(&white);
@@ -298,9 +298,9 @@ fn horizontal_rays_and_faces() {
     assert_eq!(decay(scene.optical_depth(&outside, f64::INFINITY, SURROUNDINGS))[0], 1.0);
     let mapped =
         with_sensors(&scene, &[at_depth(0.0), at_depth(2.0), Quantity::Fluence(DVec3::new(0.0, 0.0, 1.0))]);
-    let readings =
+    let measurements =
         by_photons(&mapped, &photon_settings(1 << 14, Gather::radius(0.3).unwrap()), &NoProgress).unwrap();
-    assert!(readings.readings.iter().all(|r| r.mean.is_finite() && r.mean > 0.0));
+    assert!(measurements.measurements.iter().all(|r| r.mean.is_finite() && r.mean > 0.0));
 }
 
 /// mu0 = 1e-3: the beam runs a thousand mean free paths to a depth of one. Power comes in, is scattered near the face,
@@ -346,9 +346,9 @@ fn nothing_is_non_finite() {
             for quantity in quantities {
                 let settings = PathSettings { samples: 4096, seed: 11, replicate: 0, orders: Orders::ALL };
                 let scene = with_sensors(&scene, std::slice::from_ref(&quantity));
-                let readings = by_paths(&scene, &settings, &NoProgress).unwrap();
+                let measurements = by_paths(&scene, &settings, &NoProgress).unwrap();
                 assert!(
-                    readings[0].mean.is_finite() && readings[0].std_error.is_none_or(f64::is_finite),
+                    measurements[0].mean.is_finite() && measurements[0].std_error.is_none_or(f64::is_finite),
                     "{quantity:?}"
                 );
             }

@@ -13,7 +13,7 @@ use turbid::estimators::{Estimator, Gather, Kernel};
 use turbid::light::Faces;
 use turbid::photons::{Histories, Photon, shoot};
 use turbid::scene::{BUILTIN, Orders, Region, Scene};
-use turbid::sensor::{PathSettings, PhotonSettings, Reading, by_paths, by_photons};
+use turbid::sensor::{Measurement, PathSettings, PhotonSettings, by_paths, by_photons};
 use turbid::stats::Moments;
 use turbid::surface::{Lambertian, Mirror, Surface};
 use turbid::transport::NoProgress;
@@ -147,8 +147,8 @@ fn photon_settings(seed: u64, gather: Gather) -> PhotonSettings {
     }
 }
 
-fn bits(readings: &[Reading]) -> Vec<(u64, Option<u64>, u64)> {
-    readings.iter().map(|r| (r.mean.to_bits(), r.std_error.map(f64::to_bits), r.n)).collect()
+fn bits(measurements: &[Measurement]) -> Vec<(u64, Option<u64>, u64)> {
+    measurements.iter().map(|r| (r.mean.to_bits(), r.std_error.map(f64::to_bits), r.n)).collect()
 }
 
 fn photon_bits(photons: &[Photon]) -> Vec<([u64; 3], [u32; 6], u16)> {
@@ -172,7 +172,7 @@ fn the_same_seed_gives_the_same_bits_on_any_number_of_threads() {
             in_pool(threads, || {
                 let paths = by_paths(&scene, &path_settings(seed), &NoProgress).unwrap();
                 let photons = by_photons(&scene, &photon_settings(seed, nearest()), &NoProgress).unwrap();
-                (bits(&paths), bits(&photons.readings), photons.ledger)
+                (bits(&paths), bits(&photons.measurements), photons.ledger)
             })
         };
         let one = all(1, 7);
@@ -199,19 +199,19 @@ fn moments_do_not_depend_on_the_threads() {
 #[test]
 fn scale_changes_no_bit() {
     let small = 1.0 / 1_048_576.0;
-    let readings = |scale: f64| {
+    let measurements = |scale: f64| {
         let scene = builtin("slab", &[("scale", &format!("{scale:e}")), ("mu0", "0.5"), ("g", "0.75")]);
         let gather = |r: f64| photon_settings(3, Gather::radius(r * scale).unwrap());
         let nearest = photon_settings(3, Gather::nearest(50, scale).unwrap());
         (
             bits(&by_paths(&scene, &path_settings(3), &NoProgress).unwrap()),
-            bits(&by_photons(&scene, &gather(0.25), &NoProgress).unwrap().readings),
-            bits(&by_photons(&scene, &nearest, &NoProgress).unwrap().readings),
+            bits(&by_photons(&scene, &gather(0.25), &NoProgress).unwrap().measurements),
+            bits(&by_photons(&scene, &nearest, &NoProgress).unwrap().measurements),
         )
     };
-    let one = readings(1.0);
+    let one = measurements(1.0);
     for scale in [small, 1.0 / small] {
-        let scaled = readings(scale);
+        let scaled = measurements(scale);
         assert!(scaled.0 == one.0, "paths at scale {scale}");
         assert!(scaled.1 == one.1, "photons, fixed radius, at scale {scale}");
         assert!(scaled.2 == one.2, "photons, k nearest, at scale {scale}");
@@ -231,11 +231,11 @@ fn the_number_of_histories_changes_no_mean() {
         let settings =
             PhotonSettings { photons, maps: 64, ..photon_settings(seed, Gather::radius(0.4).unwrap()) };
         let result = by_photons(&scene, &settings, &NoProgress).unwrap();
-        let reading = &result.readings[6];
-        assert_eq!((reading.quantity.as_str(), reading.n), ("fluence", 64));
+        let measurement = &result.measurements[6];
+        assert_eq!((measurement.quantity.as_str(), measurement.n), ("fluence", 64));
         // Mean and error of the maps, as two values that have them.
-        let half = reading.std_error.unwrap() * 63f64.sqrt();
-        (0..64).map(|i| reading.mean + half * if i % 2 == 0 { 1.0 } else { -1.0 }).collect()
+        let half = measurement.std_error.unwrap() * 63f64.sqrt();
+        (0..64).map(|i| measurement.mean + half * if i % 2 == 0 { 1.0 } else { -1.0 }).collect()
     };
     verdict::agree("fluence at 4,000 and 16,000 photons", &fluence(4_000, 6), &fluence(16_000, 7), 0.3, 6);
     let paths = |n| crate::support::run::paths(&scene, scenes::at_depth(1.0), Orders::ALL, n, 8)[0];

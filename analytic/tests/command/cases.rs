@@ -1,7 +1,7 @@
 //! Every row of every table of reference values, through the command `exact --cases`.
 //!
 //! The tables were made by other programs in higher precision; their column `method` says how. `digits` is the number of
-//! correct significant digits, so a value may be off by 10^-(digits-1) of itself, and the bound that comes with an answer
+//! correct significant digits, so a value may differ by 10^-(digits-1) of itself, and the bound that comes with an answer
 //! must cover the deviation but for the table's own last digits.
 
 use assert_cmd::Command;
@@ -18,7 +18,7 @@ fn rows(text: &[u8]) -> Vec<Row> {
 }
 
 fn number(text: &str) -> f64 {
-    text.parse().unwrap_or_else(|_| panic!("'{text}' is no number"))
+    text.parse().unwrap_or_else(|_| panic!("'{text}' is not a number"))
 }
 
 /// Answers of the command to a table.
@@ -43,11 +43,11 @@ fn whole_table(name: &str, count: usize, promised: f64) {
         let off = (got - want).abs();
         assert!(
             off <= libm::pow(10.0, 1.0 - digits) * want.abs(),
-            "{answer:?}\ntable {want:e} off by {off:e}"
+            "{answer:?}\ntable {want:e} differs by {off:e}"
         );
         // The table's own last digits; 14 printed digits of a kernel's value may be half a unit off.
         let last = 2.0 * libm::pow(10.0, -digits) * want.abs();
-        assert!(off <= error + last, "{answer:?}\ntable {want:e} off by {off:e}");
+        assert!(off <= error + last, "{answer:?}\ntable {want:e} differs by {off:e}");
         assert!(error < promised * want.abs().max(1.0), "{answer:?}");
     }
 }
@@ -215,7 +215,7 @@ fn bounds_hold_for_typed_decimals() {
     std::fs::write(&path, format!("{columns}{text}")).unwrap();
     for ((words, want), answer) in known.iter().zip(answers(path.to_str().unwrap())) {
         let (off, error) = ((number(&answer["value"]) - want).abs(), number(&answer["error"]));
-        assert!(off <= error && error < 1e-9 * want, "{words}: {answer:?} off by {off:e}");
+        assert!(off <= error && error < 1e-9 * want, "{words}: {answer:?} differs by {off:e}");
     }
 }
 

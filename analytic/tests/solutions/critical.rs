@@ -24,7 +24,7 @@ fn table() {
 
 /// Printed by Sood, Forster and Parsons (2003) after Kaper, Lindeman and Leaf (1974): sizes to the last digit printed,
 /// and the flux of the sphere at c = 1.30. Their flux of the slab, 0.9669506, 0.8686259, 0.7055218 and 0.4461912 at
-/// 0.25, 0.5, 0.75 and 1, is off by up to 4 in the last place, and is left out.
+/// 0.25, 0.5, 0.75 and 1, differs by up to 4 in the last place, and is left out.
 #[test]
 fn published_values() {
     let half = |c: f64| critical_half_thickness(c).unwrap().value;

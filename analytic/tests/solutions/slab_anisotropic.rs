@@ -42,7 +42,7 @@ fn at_g_zero_it_is_the_isotropic_slab() {
             let theirs = IsotropicSlab::new(tau, albedo, light).unwrap();
             let agree = |a: Value, b: Value| {
                 let off = (a.value - b.value).abs();
-                assert!(off <= a.error + b.error, "{tau} {albedo} {light:?}: {a:?} {b:?} off by {off:e}");
+                assert!(off <= a.error + b.error, "{tau} {albedo} {light:?}: {a:?} {b:?} differs by {off:e}");
             };
             agree(ours.reflectance(), theirs.reflectance());
             agree(ours.transmittance(), theirs.transmittance());

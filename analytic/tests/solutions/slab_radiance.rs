@@ -31,7 +31,7 @@ fn every_row_is_reproduced_within_its_digits_and_within_the_bound() {
 
 fn agree(a: Value, b: Value, what: &str) {
     let off = (a.value - b.value).abs();
-    assert!(off <= a.error + b.error, "{what}: {a:?} {b:?} off by {off:e}");
+    assert!(off <= a.error + b.error, "{what}: {a:?} {b:?} differs by {off:e}");
 }
 
 /// Light may be sent back: the beam and the eye change places, at either face.

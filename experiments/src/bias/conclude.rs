@@ -132,8 +132,8 @@ fn summarise(section: &mut Section, settings: &Settings, results: &[CaseResult])
             }),
     ) {
         section.summary.push(format!(
-            "In fog of albedo 0.9, photons gathered within 0.4 mean free paths read the fluence {} % wrong in the middle \
-             of the slab and {} % wrong at its lit face; theory said {} % and {} % before the run.",
+            "In fog of albedo 0.9, photons gathered within 0.4 mean free paths give the fluence with an error of {} % in the middle \
+             of the slab and {} % at its lit face; theory said {} % and {} % before the run.",
             percent_with_error(&fixed.error),
             percent_with_error(&face.error),
             signed(percent(fixed.predicted()), 2),
@@ -160,7 +160,7 @@ fn summarise(section: &mut Section, settings: &Settings, results: &[CaseResult])
     }
     section.summary.push(format!(
         "{} cases of the right estimators were measured. What is left of their errors after the prediction has a root \
-         mean square of {:.2} standard errors (1 if all is understood) and is at most {:.1}. {} of them cannot see \
+         mean square of {:.2} standard errors (expected: 1) and is at most {:.1}. {} of them cannot see \
          their own prediction, since their standard error is more than half of it; they test that nothing else is \
          there.",
         chosen.len(),

@@ -112,7 +112,7 @@ mod tests {
         }
     }
 
-    /// In a field of small slope the biased rule reads k/(k-1) high, and the right one does not.
+    /// In a field of small slope the biased rule is high by k/(k-1), and the right one does not.
     #[test]
     fn the_biased_rule_reads_high() {
         let field = &UNCOLLIDED;

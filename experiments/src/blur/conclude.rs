@@ -142,7 +142,7 @@ fn summarise(section: &mut Section, results: &[CaseResult], transfers: &[Transfe
     let squares: f64 = scored.iter().map(|z| z * z).sum();
     section.summary.push(format!(
         "{} places of profiles and contrasts were predicted and measured; what is left has a root mean square of {:.2} \
-         standard errors (1 if all is understood) and is at most {:.1}.",
+         standard errors (expected: 1) and is at most {:.1}.",
         scored.len(),
         (squares / scored.len().max(1) as f64).sqrt(),
         scored.iter().map(|z| z.abs()).fold(0.0, f64::max)

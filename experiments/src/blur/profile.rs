@@ -91,7 +91,7 @@ mod tests {
     fn the_widths_of_a_known_edge() {
         let x = grid();
         let y: Vec<f64> = x.iter().map(|&x| 3.0 * edge(x)).collect();
-        // With the step h = 0.1 slopes f' at the points are off by f''^2 h^2/(4f') + f''' h^2/6 = 0.007; a cubic feels at
+        // With the step h = 0.1 slopes f' at the points have errors of f''^2 h^2/(4f') + f''' h^2/6 = 0.007; a cubic feels at
         // most 4/27 h of that, which over f' = 0.47 is 2.2e-4 at each crossing.
         assert!((rise_width(&x, &y, 3.0) - 1.216_799_577_4).abs() < 4.4e-4);
         // A cubic's slope is met exactly.

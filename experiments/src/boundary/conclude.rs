@@ -187,7 +187,7 @@ fn summarise(section: &mut Section, settings: &Settings, found: &Found) -> anyho
     let used = found.results.iter().filter(|r| r.is_predicted_well()).count();
     section.summary.push(format!(
         "{} cases were measured and predicted before. What is left of the errors in transported fields after the \
-         prediction has a root mean square of {:.2} standard errors (1 if all is understood).",
+         prediction has a root mean square of {:.2} standard errors (expected: 1).",
         found.results.len() + found.sheets.len() + found.spreads.len(),
         (squares / used.max(1) as f64).sqrt(),
     ));

@@ -192,7 +192,7 @@ fn summarise(section: &mut Section, settings: &Settings, results: &Results) {
         section.summary.push(format!(
             "At the extremes of thickness, albedo, peak, length and number, {} finite and {right} of {} computed \
              checks are within their roundings; single precision in the tree moves an estimate by {} of its standard \
-             errors where the map is {} gather radii long; at {} radii it reads {:.1} % wrong.",
+             errors where the map is {} gather radii long; at {} radii it has an error of {:.1} %.",
             if results.lost() == 0.0 { "every number is".to_string() } else { format!("all but {} numbers are", number(results.lost())) },
             results.checked.len(),
             number(near.rms.value()),

@@ -12,7 +12,7 @@
 use crate::theory::referee_kernel;
 use turbid::estimators::Kernel;
 
-/// Spacing in radii below which the sum is taken for the integral. The rule of midpoints is off by at most (s^2/8)
+/// Spacing in radii below which the sum is taken for the integral. The rule of midpoints has an error of at most (s^2/8)
 /// int |m''|, 2 s^2 for the steepest of the kernels.
 const FINE: f64 = 1e-4;
 

@@ -24,7 +24,7 @@ fn estimate(map: &PhotonMap, point: DVec3, gather: Gather) -> Estimate {
 
 /// From 2 neighbours to all photons, against a plain search in double precision.
 ///
-/// A stored coordinate and one of the query point are off by at most the tree's resolution, so every distance by
+/// A stored coordinate and one of the query point differ by at most the tree's resolution, so every distance by
 /// 2 sqrt(3) of it and 4 x 2^-24 of itself; the k-th of the distances by no more than the worst of them; and the
 /// density by three times that.
 pub fn number_of_neighbors(settings: &Settings, rows: &mut Vec<Checked>) -> anyhow::Result<()> {

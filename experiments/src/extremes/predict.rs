@@ -36,7 +36,7 @@ pub struct Storage {
 /// The prediction for a spacing of stored coordinates [mfp].
 ///
 /// Fixed radius: the kernel on the lattice, and as many photons as change sides, each a history of its own, since the
-/// layer in which they do is thin. Nearest: the distance of the k-th is off by h / (sqrt 18) on average over
+/// layer in which they do is thin. Nearest: the distance of the k-th has an error of h / (sqrt 18) on average over
 /// directions, the photon's and the query point's roundings together, while that is small against the distance from
 /// one photon to the next; when it is not, as many change sides as at a fixed radius.
 pub fn storage(settings: &Settings, rule: Rule, spacing: f64) -> anyhow::Result<Storage> {

@@ -455,7 +455,7 @@ fn faces(rows: &mut Rows) {
     }
 }
 
-/// Nothing is extreme here but the number of histories: what flights, albedo, phase function, powers and kernels are off by
+/// Nothing is extreme here but the number of histories: what flights, albedo, phase function, powers and kernels miss
 /// shows from some tenths of a per cent on. Extremes and the error budget see whole per cents only.
 fn ordinary(rows: &mut Rows) {
     let class = Class::Ordinary;

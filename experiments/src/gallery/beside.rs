@@ -9,7 +9,7 @@ use super::compare::{FEWEST, Replicate, compare, errors, rms_of_one, spread};
 use super::keep::CachedRender;
 use super::look::look;
 use super::predict::{Radii, Spreads, predicted, radius};
-use super::recipe::reading;
+use super::recipe::readout;
 use super::shown::Compared;
 use crate::harness::say;
 use turbid::Spectrum;
@@ -150,6 +150,6 @@ fn predict(small: &Cache, ours: &CachedRender) -> anyhow::Result<(Vec<f64>, f64)
     let views = look(&studio.scene, &studio.camera);
     let pixel = studio.camera.pixel_area().sqrt();
     let seconds = one.facts.seconds + other.facts.seconds;
-    let spreads = Spreads::of(&reading(picture, 1)?);
+    let spreads = Spreads::of(&readout(picture, 1)?);
     Ok((predicted(studio.grid(), &views, [&one.layers, &other.layers], &radii, spreads, pixel), seconds))
 }

@@ -119,7 +119,7 @@ impl CachedRender {
         let bytes = turbid::input::read(path, MOST_BYTES)
             .with_context(|| format!("cannot read {}", path.display()))?;
         CachedRender::parse(&bytes, pixels)
-            .with_context(|| format!("{} is no complete picture", path.display()))
+            .with_context(|| format!("{} is not a complete picture", path.display()))
     }
 
     fn parse(bytes: &[u8], pixels: usize) -> anyhow::Result<Self> {

@@ -20,7 +20,7 @@ pub fn maps(picture: &Picture, factor: u64, seed: u64, replicate: u64) -> MapSet
 ///
 /// # Errors
 /// those of the settings
-pub fn reading(picture: &Picture, factor: u64) -> turbid::Result<mapper::Settings> {
+pub fn readout(picture: &Picture, factor: u64) -> turbid::Result<mapper::Settings> {
     let mut settings = mapper::Settings::for_size(picture.size, picture.nearest[0])?;
     let gathers = [&mut settings.global.1, &mut settings.caustic.1, &mut settings.volume.gather];
     for (gather, k) in gathers.into_iter().zip(picture.nearest) {
@@ -33,7 +33,7 @@ pub fn reading(picture: &Picture, factor: u64) -> turbid::Result<mapper::Setting
 
 /// The arguments of `turbid` that render a picture as EXR: the very numbers of the one that is shown.
 pub fn arguments(picture: &Picture, seed: u64) -> anyhow::Result<Vec<String>> {
-    let settings = reading(picture, 1)?;
+    let settings = readout(picture, 1)?;
     let [global, caustic, volume] = picture.photons.map(|amount| amount.to_string());
     let [k, caustic_k, volume_k] = picture.nearest.map(|k| k.to_string());
     let mut arguments: Vec<String> =

@@ -1,4 +1,4 @@
-//! Makes the pictures: photon maps and their reading, paths, each with the CPU time that it took.
+//! Makes the pictures: photon maps and their readout, paths, each with the CPU time that it took.
 
 use super::Grid;
 use super::keep::{CachedRender, FORMAT, RenderRecord};
@@ -121,7 +121,7 @@ impl<'a> Studio<'a> {
         let start = ProcessTime::now();
         let maps = self.maps(replicate, factor)?;
         let map_seconds = start.elapsed().as_secs_f64();
-        let settings = recipe::reading(self.picture, factor)?;
+        let settings = recipe::readout(self.picture, factor)?;
         let method = Method::Photons(mapper::Mapper::new(&self.scene, &maps, &settings));
         let mut film = Film::new(self.camera.width(), self.camera.height());
         let report = method.extend(&mut film, &self.camera, samples, self.streams(replicate), progress)?;

@@ -100,7 +100,7 @@ const MOST_BYTES: u64 = 1 << 28;
 pub(crate) fn read(path: &Path) -> anyhow::Result<(Header, Vec<CellRow>)> {
     let text = turbid::input::read_text(path, MOST_BYTES)
         .with_context(|| format!("cannot read {}", path.display()))?;
-    parse(&text).with_context(|| format!("{} is no complete cell", path.display()))
+    parse(&text).with_context(|| format!("{} is not a complete cell", path.display()))
 }
 
 fn parse(text: &str) -> anyhow::Result<(Header, Vec<CellRow>)> {

@@ -139,7 +139,7 @@ fn summary(results: &[CaseResult]) -> Vec<String> {
     let at = |step, rule| find(results, 1.0, step, rule);
     if let (Some(old), Some(new)) = (at(0.2, StepRule::NearEnd), at(0.2, StepRule::Integrated)) {
         summary.push(format!(
-            "Fog of albedo 0.9, marched in steps of 0.2 mean free paths, reads {} % high by the formula of 1998 where the \
+            "Fog of albedo 0.9, marched in steps of 0.2 mean free paths, is {} % too bright by the formula of 1998 where the \
              light in it is exactly known, and {} % high with the exponential integrated over each step; through a \
              photon map the errors are {} and {}, since the map loses light at the face.",
             signed(percent(old.expected.of(Term::Step)), 1),
@@ -158,7 +158,7 @@ fn summary(results: &[CaseResult]) -> Vec<String> {
     }
     let worst = COSINES.iter().filter_map(|&mu| find(results, mu, 1.0, StepRule::NearEnd));
     let list: Vec<String> = worst.map(|r| format!("{} at mu = {}", words(r), r.case.mu)).collect();
-    summary.push(format!("In steps of one mean free path the formula of 1998 reads {}.", list.join(", ")));
+    summary.push(format!("In steps of one mean free path the formula of 1998 errs by {}.", list.join(", ")));
     summary
 }
 

@@ -426,7 +426,7 @@ mod tests {
     }
 
     /// Right pairs, 100 of 90 numbers: at 10^-4 one is measured again in the mean, six or more are in one of a thousand such
-    /// sets. One number of one is off by what the comparison says it sees.
+    /// sets. One number of one deviates by what the comparison says it sees.
     #[test]
     fn two_means_differ_where_they_do() {
         let alarms = |check: &Check| check.tests.iter().filter(|t| t.is_suspicious()).count();

@@ -37,7 +37,7 @@ impl Visitor for Tally {
                 self.ended += weight
             }
             Step::Ahead(_) => self.steps += 1.0,
-            Step::Passed(..) | Step::Collision(..) | Step::Surface(..) => {}
+            Step::Uncollided(..) | Step::Collision(..) | Step::Surface(..) => {}
         }
     }
 }

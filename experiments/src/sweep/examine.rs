@@ -19,7 +19,7 @@ pub const SHARP: f64 = 0.2;
 pub struct Alarm {
     /// Which comparison or method.
     pub check: String,
-    /// What went wrong where it is no number: an error, a panic, no end.
+    /// What went wrong where it is not a number: an error, a panic, no end.
     pub failure: Option<String>,
     /// The test that called for a confirmation.
     pub first: Option<Test>,

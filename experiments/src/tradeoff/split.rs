@@ -126,7 +126,7 @@ mod tests {
             let moments: turbid::stats::Moments = values.iter().collect();
             (moments.mean() - bias * bias) / moments.std_error()
         };
-        // Two-sided 1e-6 is 4.9; the naive split is off by 1/128 with an error of 7e-5.
+        // Two-sided 1e-6 is 4.9; the naive split has a bias of 1/128 with an error of 7e-5.
         assert!(z(&right).abs() < 4.9, "{}", z(&right));
         assert!(z(&naive) > 50.0, "{}", z(&naive));
     }

@@ -12,7 +12,7 @@ use turbid_figure::{Axis, Figure, Line, Panel, Points};
 /// The gather sizes.
 pub const RADII: [f64; 4] = [0.1, 0.2, 0.4, 0.8];
 
-/// The right estimator reads 1 + r^2/10, as predicted; the control reads 5 per cent more.
+/// The right estimator gives 1 + r^2/10, as predicted; the control 5 per cent more.
 pub fn predicted(r: f64) -> f64 {
     0.1 * r * r
 }

@@ -86,10 +86,10 @@ impl Advise {
 
     fn advise(&self, scene: &Scene) -> anyhow::Result<(Vec<AdviceRow>, Vec<String>)> {
         let settings = PilotSettings { photons: self.pilot.div_ceil(MAPS), maps: MAPS, seed: self.seed };
-        let ahead = Pilot::forecast(scene, &settings)?;
+        let forecast = Pilot::forecast(scene, &settings)?;
         self.memory.check(
-            &format!("a pilot map of {:.2e} photons", ahead.stored),
-            ahead.bytes,
+            &format!("a pilot map of {:.2e} photons", forecast.stored),
+            forecast.bytes,
             0.0,
             |part| format!("--pilot {}", rounded_down(self.pilot as f64 * part)),
         )?;

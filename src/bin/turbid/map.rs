@@ -100,8 +100,14 @@ impl Map {
             let importance = self.photons.importance(&scene, &camera, &settings)?;
             let pixels = f64::from(camera.width()) * f64::from(camera.height());
             let fixed = (PICTURE_BYTES * pixels, LIST_BYTES);
-            let emitted =
-                self.photons.ahead(&scene, &settings, importance.as_ref(), Held::ALL, &self.memory, fixed)?;
+            let emitted = self.photons.forecast(
+                &scene,
+                &settings,
+                importance.as_ref(),
+                Held::ALL,
+                &self.memory,
+                fixed,
+            )?;
             let bar = Bar::stage("emission", emitted.histories());
             let maps = fill_counted_by_importance(&scene, &settings, emitted, importance.as_ref(), &bar);
             bar.finish();

@@ -11,7 +11,7 @@ use turbid::estimators::{Estimator, Gather, Kernel};
 use turbid::output::{one_line, print, write_rows};
 use turbid::scene::{Orders, Scene};
 use turbid::sensor::{
-    NoError, PathSettings, PhotonSettings, Reading, by_paths, by_photons_in_passes, forecast,
+    Measurement, NoError, PathSettings, PhotonSettings, by_paths, by_photons_in_passes, forecast,
 };
 
 /// Measure the sensors of a scene by paths or by photons.
@@ -104,34 +104,34 @@ impl Measure {
         if scene.sensors().is_empty() {
             bail!("{}: the scene has no sensors: nothing to measure", self.source.name());
         }
-        let (mut readings, mut notes) = on_threads(self.threads, || match self.with {
+        let (mut measurements, mut notes) = on_threads(self.threads, || match self.with {
             With::Path => self.measure_by_paths(&scene),
             With::Photons => self.measure_by_photons(&scene),
         })?;
         // Names come from files, and go to terminals.
-        for reading in &mut readings {
-            reading.sensor = one_line(&reading.sensor);
-            reading.quantity = one_line(&reading.quantity);
+        for measurement in &mut measurements {
+            measurement.sensor = one_line(&measurement.sensor);
+            measurement.quantity = one_line(&measurement.quantity);
         }
-        notes.extend(without_error(&readings));
+        notes.extend(without_error(&measurements));
         let format = self.format.format();
-        print(|out| write_rows(out, &readings, format)).context("standard output")?;
+        print(|out| write_rows(out, &measurements, format)).context("standard output")?;
         for text in notes {
             note(&text)?;
         }
         Ok(())
     }
 
-    fn measure_by_paths(&self, scene: &Scene) -> anyhow::Result<(Vec<Reading>, Vec<String>)> {
+    fn measure_by_paths(&self, scene: &Scene) -> anyhow::Result<(Vec<Measurement>, Vec<String>)> {
         let settings =
             PathSettings { samples: self.samples, seed: self.seed, replicate: 0, orders: self.orders };
         let bar = Bar::new(self.samples.saturating_mul(scene.sensors().len() as u64));
-        let readings = by_paths(scene, &settings, &bar);
+        let measurements = by_paths(scene, &settings, &bar);
         bar.finish();
-        Ok((readings.with_context(|| self.source.name())?, Vec::new()))
+        Ok((measurements.with_context(|| self.source.name())?, Vec::new()))
     }
 
-    fn measure_by_photons(&self, scene: &Scene) -> anyhow::Result<(Vec<Reading>, Vec<String>)> {
+    fn measure_by_photons(&self, scene: &Scene) -> anyhow::Result<(Vec<Measurement>, Vec<String>)> {
         let gather = match self.radius {
             Some(radius) => Gather::radius(radius).context("--radius")?,
             None => {
@@ -160,17 +160,22 @@ impl Measure {
                 settings.photons
             );
         }
-        let ahead = forecast(scene, &settings, self.passes).with_context(|| self.source.name())?;
-        self.memory.check(&format!("a map of {:.2e} photons", ahead.stored), ahead.bytes, 0.0, |part| {
-            let fewer = rounded_down(self.photons as f64 * part);
-            let passes = passes_that_fit(self.passes, part);
-            match self.radius {
-                Some(_) => format!("--photons {fewer}, or --passes {passes}"),
-                None => format!("--photons {fewer}, or a fixed --radius with --passes {passes}"),
-            }
-        })?;
-        let photons = ahead.stored * self.maps as f64;
-        tell_ahead(&format!("{photons:.2e} photons to store in all"), ahead.seconds, ahead.bytes)?;
+        let forecast = forecast(scene, &settings, self.passes).with_context(|| self.source.name())?;
+        self.memory.check(
+            &format!("a map of {:.2e} photons", forecast.stored),
+            forecast.bytes,
+            0.0,
+            |part| {
+                let fewer = rounded_down(self.photons as f64 * part);
+                let passes = passes_that_fit(self.passes, part);
+                match self.radius {
+                    Some(_) => format!("--photons {fewer}, or --passes {passes}"),
+                    None => format!("--photons {fewer}, or a fixed --radius with --passes {passes}"),
+                }
+            },
+        )?;
+        let photons = forecast.stored * self.maps as f64;
+        tell_ahead(&format!("{photons:.2e} photons to store in all"), forecast.seconds, forecast.bytes)?;
         let bar = Bar::new(settings.photons.saturating_mul(settings.maps));
         let result = by_photons_in_passes(scene, &settings, self.passes, &bar);
         bar.finish();
@@ -185,7 +190,7 @@ impl Measure {
         )];
         if result.beyond > 0 {
             notes.push(format!(
-                "{} of {} balls reach beyond their medium, where no photons are: those estimates read low",
+                "{} of {} balls reach beyond their medium, where no photons are: those estimates are biased low",
                 result.beyond, result.gathers
             ));
         }
@@ -197,14 +202,14 @@ impl Measure {
                 gather.cap()
             ));
         }
-        Ok((result.readings, notes))
+        Ok((result.measurements, notes))
     }
 }
 
-/// Names the readings without a standard error, a line for each reason; that there is one map, the table says.
-fn without_error(readings: &[Reading]) -> Vec<String> {
+/// Names the measurements without a standard error, a line for each reason; that there is one map, the table says.
+fn without_error(measurements: &[Measurement]) -> Vec<String> {
     let why = |why: NoError| {
-        let without = readings.iter().filter(|r| r.no_error == Some(why));
+        let without = measurements.iter().filter(|r| r.no_error == Some(why));
         let names: Vec<String> = without.map(|r| format!("{} {}", r.sensor, r.quantity)).collect();
         (!names.is_empty())
             .then(|| format!("no standard error, {}: {}: {}", why.word(), why.reason(), names.join(", ")))

@@ -171,7 +171,7 @@ impl Photons {
     ///
     /// # Arguments
     /// `fixed` bytes that the rest takes, and `beside` those that each photon takes beside its map
-    pub fn ahead(
+    pub fn forecast(
         &self,
         scene: &Scene,
         maps: &MapSettings,
@@ -180,10 +180,10 @@ impl Photons {
         memory: &Memory,
         (fixed, beside): (f64, f64),
     ) -> anyhow::Result<Emitted> {
-        let ahead = forecast(scene, maps, importance)?;
-        let Forecast { emitted, stored, seconds } = ahead;
+        let forecast = forecast(scene, maps, importance)?;
+        let Forecast { emitted, stored, seconds } = forecast;
         let total: f64 = stored.iter().sum();
-        let bytes = fixed + (ahead.bytes() + beside * total) / held.passes as f64;
+        let bytes = fixed + (forecast.bytes() + beside * total) / held.passes as f64;
         memory.check(&format!("{total:.2e} photons in maps"), bytes, fixed, |part| {
             let asked =
                 [("global", maps.global, 0), ("volume", maps.volume, 1), ("caustic", maps.caustic, 2)];
@@ -250,7 +250,7 @@ impl Held {
 
 /// How the maps are read.
 #[derive(clap::Args)]
-pub struct Reading {
+pub struct Readout {
     /// Photons an estimate takes, the k nearest [default: 100; of more than 70,000 in a global map that the eye sees, 50,000 in
     /// the caustic and 20,000 in the volume map what balances noise and blur, in proportion to their number to the power 2/3,
     /// in the volume 4/7, up to 1000; by the first of several maps].
@@ -362,7 +362,7 @@ enum RejectName {
     Visible,
 }
 
-impl Reading {
+impl Readout {
     /// Where the global map is read.
     pub fn indirect(&self) -> Indirect {
         if self.gather_rays == 0 { Indirect::Seen } else { Indirect::Gathered }
@@ -383,7 +383,7 @@ impl Reading {
         [self.k, self.caustic_k.or(self.k), self.volume_k.or(self.k)]
     }
 
-    /// Settings that suit the photons that the global, the caustic and the volume map hold, from those of [`Reading::settings`].
+    /// Settings that suit the photons that the global, the caustic and the volume map hold, from those of [`Readout::settings`].
     pub fn suited(&self, settings: &Settings, stored: [usize; 3]) -> anyhow::Result<Settings> {
         let mut settings = *settings;
         let maps = [&mut settings.global.1, &mut settings.caustic.1, &mut settings.volume.gather];

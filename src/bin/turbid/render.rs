@@ -4,7 +4,7 @@ use super::load::Source;
 use super::made::{Filled, Made, MapsMade, Stages};
 use super::memory::Memory;
 use super::notes::{tell_empty, tell_gathers, tell_step};
-use super::picture::{Frame, Held, Photons, Reading, ToneArgs};
+use super::picture::{Frame, Held, Photons, Readout, ToneArgs};
 use super::progress::Bar;
 use super::shared::{note, on_threads, parse_count, print};
 use super::statistics::{MAPS, print_statistics};
@@ -83,7 +83,7 @@ pub struct Render {
     #[command(flatten, next_help_heading = "Photon maps (only --with photons)")]
     photons: Photons,
     #[command(flatten, next_help_heading = "Photon maps (only --with photons)")]
-    reading: Reading,
+    readout: Readout,
 }
 
 #[derive(Clone, Copy, PartialEq, ValueEnum)]
@@ -179,7 +179,7 @@ impl Render {
         if is_same_file(&self.output, &png)? {
             bail!("--output {} and {} lead to one file", self.output.display(), png.display());
         }
-        let usual = self.reading.settings(&scene)?;
+        let usual = self.readout.settings(&scene)?;
         if self.with == With::Light {
             note(&format!("the picture holds {}", self.with.holds()))?;
         }
@@ -204,14 +204,14 @@ impl Render {
             }),
             With::Photons => self.repeat(&camera, |streams, stages, left, film| {
                 let settings_of_maps =
-                    self.photons.settings(self.reading.indirect(), streams.seed, streams.replicate);
+                    self.photons.settings(self.readout.indirect(), streams.seed, streams.replicate);
                 let importance =
                     stages.time("pilot", || self.photons.importance(&scene, &camera, &settings_of_maps))?;
                 let importance = importance.as_ref();
                 let fixed = (self.film_bytes(&camera), 0.0);
                 let emitted = stages.time("pilot", || {
-                    let held = Held { passes: self.passes, has_radius: self.reading.has_radius() };
-                    self.photons.ahead(&scene, &settings_of_maps, importance, held, &self.memory, fixed)
+                    let held = Held { passes: self.passes, has_radius: self.readout.has_radius() };
+                    self.photons.forecast(&scene, &settings_of_maps, importance, held, &self.memory, fixed)
                 })?;
                 let (mut work, mut made) = (Report::default(), MapsMade::default());
                 for number in 0..self.passes {
@@ -225,7 +225,7 @@ impl Render {
                     let stored = stored.map(|map| map.as_ref().map_or(0, PhotonMap::stored));
                     let settings = match read {
                         Some(settings) => settings,
-                        None => *read.insert(self.reading.suited(&usual, stored)?),
+                        None => *read.insert(self.readout.suited(&usual, stored)?),
                     };
                     made.settings = Some(settings);
                     let method = Method::Photons(Mapper::new(&scene, &maps, &settings));
@@ -292,10 +292,10 @@ impl Render {
         let refuse = |why: &str| bail!("--passes is {}, {why}", self.passes);
         match () {
             () if self.with != With::Photons => refuse("which is for photon maps; allowed: 1"),
-            () if !self.reading.has_radius() => refuse(
+            () if !self.readout.has_radius() => refuse(
                 "which needs --radius: the k nearest photons are not known before the last pass; allowed without it: 1",
             ),
-            () if self.reading.is_adaptive() => refuse(
+            () if self.readout.is_adaptive() => refuse(
                 "which needs --adapt 0: steps that depend on what the maps say would differ from pass to pass; allowed \
                  otherwise: 1",
             ),
@@ -388,7 +388,7 @@ impl Render {
     fn provenance(&self, scene_text: &str, made: &Made, exposure: f64) -> anyhow::Result<serde_json::Value> {
         let by_photons = self.with == With::Photons;
         let settings = made.maps.first().and_then(|made| made.settings);
-        let maps = self.photons.settings(self.reading.indirect(), self.seed, 0);
+        let maps = self.photons.settings(self.readout.indirect(), self.seed, 0);
         let filled: Vec<[Option<Filled>; 3]> = made.maps.iter().map(|made| made.filled).collect();
         Ok(serde_json::json!({
             "program": format!("turbid {}", env!("CARGO_PKG_VERSION")),

@@ -188,7 +188,7 @@ impl Mesh {
             }
             let corners = &self.corners[index];
             let Some(meeting) = shear.meet(corners) else { return end };
-            let Some(t) = self.ahead(ray, meeting.t, corners, from) else { return end };
+            let Some(t) = self.next_distance(ray, meeting.t, corners, from) else { return end };
             // At an edge that several share, the one of the lowest number: whatever order the tree looks in.
             if best.is_none_or(|(other, nearest, _)| t < nearest || (t == nearest && index < other)) {
                 best = Some((index, t, meeting.weights));
@@ -215,7 +215,7 @@ impl Mesh {
             let corners = &self.corners[index];
             is_blocked = shear
                 .meet(corners)
-                .and_then(|meeting| self.ahead(ray, meeting.t, corners, from))
+                .and_then(|meeting| self.next_distance(ray, meeting.t, corners, from))
                 .is_some_and(|t| t < end);
             // One is enough: nothing is nearer than this.
             if is_blocked { f64::NEG_INFINITY } else { end }
@@ -229,7 +229,7 @@ impl Mesh {
     /// There the shape decides: the neighbour is ahead if the start's triangle rises on the side of it from which the
     /// ray comes, as in a hollow, and is not on a ridge or in a plane; and a ray that is outside can only enter.
     #[inline]
-    fn ahead(&self, ray: &Ray, t: f64, corners: &[DVec3; 3], from: Option<u32>) -> Option<f64> {
+    fn next_distance(&self, ray: &Ray, t: f64, corners: &[DVec3; 3], from: Option<u32>) -> Option<f64> {
         let extent = (self.bounds.1 - self.bounds.0).max_element();
         let Some(from) = from.filter(|_| t.abs() <= NEAR * extent) else { return (t > 0.0).then_some(t) };
         let normal = unit_normal(corners)?;

@@ -134,8 +134,8 @@ impl Eye<'_, '_> {
         if diffuse.reflectance.is_black() {
             return;
         }
-        let passed = transmittance(mapper.scene, &walker.ray, found.hit.t, walker.interior, stream);
-        let seen = walker.weight * passed * diffuse.reflectance / PI;
+        let transmitted = transmittance(mapper.scene, &walker.ray, found.hit.t, walker.interior, stream);
+        let seen = walker.weight * transmitted * diffuse.reflectance / PI;
         self.layers.direct += seen * diffuse.direct(mapper, &mut self.report, stream);
         if let Some(map) = &maps.caustic {
             self.layers.caustic +=

@@ -78,11 +78,11 @@ impl Mapper<'_> {
             report.rays.shadow += 1;
             let start = (&ray, None, walker.interior);
             let towards = Some(Target::Light(index));
-            let Some(passed) = connection(scene, start, sample.distance, towards, stream) else {
+            let Some(transmitted) = connection(scene, start, sample.distance, towards, stream) else {
                 return sum;
             };
             let (one_minus_mu, one_plus_mu) = cosine_pair(dir, sample.dir);
-            sum + sample.value * passed * medium.phase().eval(one_minus_mu, one_plus_mu)
+            sum + sample.value * transmitted * medium.phase().eval(one_minus_mu, one_plus_mu)
         });
         medium.albedo(position) * sum
     }

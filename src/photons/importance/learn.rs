@@ -2,7 +2,7 @@
 
 use super::branching::Branching;
 use super::grid::{Aim, DIRECTIONS, Grid};
-use super::reading::Reading;
+use super::readout::Readout;
 use super::settings::{ImportanceSettings, Stage};
 use super::values::Importance;
 use crate::error::{Error, Result};
@@ -76,7 +76,7 @@ struct Learner<'a> {
     indirect: Indirect,
     grid: &'a Grid,
     aim: Aim,
-    reading: &'a Reading,
+    readout: &'a Readout,
     parent: Option<u32>,
     events: Vec<Event>,
 }
@@ -113,7 +113,7 @@ impl Visitor for Learner<'_> {
         match step {
             Step::Collision(arrival, _) => {
                 let walker = arrival.walker;
-                let read = if is_volume(walker.flags) { self.reading.medium(arrival.position) } else { 0.0 };
+                let read = if is_volume(walker.flags) { self.readout.medium(arrival.position) } else { 0.0 };
                 self.event(walker.weight.sum() * read);
             }
             Step::Surface(arrival, found) => {
@@ -122,7 +122,7 @@ impl Visitor for Learner<'_> {
                 {
                     let walker = arrival.walker;
                     let is_stored = is_global(walker.flags, self.indirect);
-                    let read = if is_stored { self.reading.surface(arrival.position) } else { 0.0 };
+                    let read = if is_stored { self.readout.surface(arrival.position) } else { 0.0 };
                     self.event(walker.weight.sum() * read);
                 }
             }
@@ -152,7 +152,7 @@ pub(super) fn learn(
     scene: &Scene,
     indirect: Indirect,
     grid: Grid,
-    reading: &Reading,
+    readout: &Readout,
     settings: &ImportanceSettings,
     progress: &dyn Progress,
 ) -> Result<Importance> {
@@ -172,7 +172,7 @@ pub(super) fn learn(
     let mut importance = Importance {
         values: vec![1.0; grid.len() * DIRECTIONS],
         response: whole,
-        aim: reading.aim(),
+        aim: readout.aim(),
         emitter: Emitter::chosen(scene, cells.clone(), powers.clone(), 0).ok_or_else(dark)?,
         grid,
     };
@@ -185,7 +185,7 @@ pub(super) fn learn(
                 indirect,
                 grid: &importance.grid,
                 aim: importance.aim,
-                reading,
+                readout,
                 parent: None,
                 events: Vec::new(),
             };

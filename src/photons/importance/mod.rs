@@ -1,7 +1,7 @@
 //! Importance: photons go where the picture needs them.
 //!
 //! Importance is to the eye what power is to the lights. Three steps make a map of it:
-//! 1. particles leave the camera and are counted, in the boxes of a grid, where a picture reads photons (`reading`): at
+//! 1. particles leave the camera and are counted, in the boxes of a grid, where a picture reads photons (`readout`): at
 //!    the first event on their way, and, where rays of a final gathering read the maps, at the second;
 //! 2. photons of a pilot score where they would be stored, as much as is read there, and every cube of a coarser grid
 //!    learns, by direction and for the cone towards most of what is read, what a photon that leaves it scores on average
@@ -22,7 +22,7 @@
 mod branching;
 mod grid;
 mod learn;
-mod reading;
+mod readout;
 mod settings;
 mod values;
 
@@ -54,9 +54,9 @@ impl Importance {
             return Err(Error::Scene("importance needs a scene with bounds, without unbounded slab".into()));
         }
         check_end(scene)?;
-        let (low, high) = reading::extent(scene, camera, settings, progress)?;
+        let (low, high) = readout::extent(scene, camera, settings, progress)?;
         let fine = Grid::new(low, high, 2 * settings.boxes);
-        let reading = reading::read(scene, camera, indirect, fine, settings, progress)?;
-        learn::learn(scene, indirect, Grid::new(low, high, settings.boxes), &reading, settings, progress)
+        let readout = readout::read(scene, camera, indirect, fine, settings, progress)?;
+        learn::learn(scene, indirect, Grid::new(low, high, settings.boxes), &readout, settings, progress)
     }
 }

@@ -23,7 +23,7 @@ impl ImportanceSettings {
     /// The random numbers of one history of a stage; there are fewer than 65,535 rounds.
     pub(super) fn stream(&self, stage: Stage, history: u64) -> Stream {
         let stage = match stage {
-            Stage::Reading => 0,
+            Stage::Readout => 0,
             Stage::Round(number) => 1 + number,
             Stage::Extent => u64::MAX,
         };
@@ -37,7 +37,7 @@ pub(super) enum Stage {
     /// Where the camera looks.
     Extent,
     /// Where the picture reads photons.
-    Reading,
+    Readout,
     /// A round of the pilot.
     Round(u64),
 }

@@ -30,7 +30,7 @@ pub use within::{Neighbors, Visit};
 /// Photons, ordered so that neighbours in space are neighbours in memory; the only copy of them.
 ///
 /// Positions are held in single precision relative to the centre of the map's box, in a power-of-two unit u
-/// with u/2 < half the longest edge <= u: a stored coordinate is off by at most 2^-25 u, see
+/// with u/2 < half the longest edge <= u: a stored coordinate differs by at most 2^-25 u, see
 /// [`PhotonTree::resolution`], and a query point by as much. Distances are computed in single precision, with
 /// a relative error below 4 x 2^-24 beyond that. Directions and powers are held as they came.
 ///

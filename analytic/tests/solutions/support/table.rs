@@ -34,6 +34,6 @@ pub fn check_to(row: &Row, got: Value, units: f64) {
     let (value, digits) = (number(row, "value"), number(row, "digits").min(16.0));
     let unit = libm::pow(10.0, -digits) * value.abs();
     let off = (got.value - value).abs();
-    assert!(off <= 10.0 * unit, "{row:?}: {got:?} off by {off:e}");
-    assert!(off <= got.error + units * unit, "{row:?}: {got:?} off by {off:e}");
+    assert!(off <= 10.0 * unit, "{row:?}: {got:?} differs by {off:e}");
+    assert!(off <= got.error + units * unit, "{row:?}: {got:?} differs by {off:e}");
 }

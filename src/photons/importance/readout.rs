@@ -14,7 +14,7 @@ use glam::{DVec2, DVec3};
 
 /// What is read in each box, 0 to 1, on surfaces and in media.
 #[derive(Debug, Clone)]
-pub(super) struct Reading {
+pub(super) struct Readout {
     grid: Grid,
     counts: Counts,
 }
@@ -25,7 +25,7 @@ struct Counts {
     medium: Vec<f64>,
 }
 
-impl Reading {
+impl Readout {
     /// A ball about most of what is read: about the mean place, wide by the standard deviation of places and half a
     /// cube's diagonal.
     pub fn aim(&self) -> Aim {
@@ -140,13 +140,13 @@ pub(super) fn read(
     grid: Grid,
     settings: &ImportanceSettings,
     progress: &dyn Progress,
-) -> Result<Reading> {
+) -> Result<Readout> {
     let limit = if indirect == Indirect::Gathered { 2 } else { 1 };
     let block = |range: std::ops::Range<u64>| {
         let found = Counts { surface: vec![0.0; grid.len()], medium: vec![0.0; grid.len()] };
         let mut counter = Counter { scene, grid: &grid, indirect, found };
         for history in range {
-            let mut stream = settings.stream(Stage::Reading, history);
+            let mut stream = settings.stream(Stage::Readout, history);
             let start = particle(scene, camera, &mut stream);
             walk(scene, start, Roulette::Analog, Some(limit), &mut stream, &mut counter);
         }
@@ -163,7 +163,7 @@ pub(super) fn read(
     if counts.surface.iter().chain(&counts.medium).all(|share| *share == 0.0) {
         return Err(Error::Scene("the camera sees no surface or medium where photons are read".into()));
     }
-    Ok(Reading { grid, counts })
+    Ok(Readout { grid, counts })
 }
 
 fn bounded(counts: Vec<f64>) -> Vec<f64> {
