@@ -13,8 +13,8 @@
 //! psi = e^-s + int_0^s w phi(r(s'))/4 e^-s' ds' along the way s to the surface, phi the fluence under isotropic
 //! incidence: phi/4 is the chance to escape after a scattering, by reciprocity.
 
+use super::sphere::{at, body, referee};
 use crate::checks::slab::exact;
-use crate::sphere::{at, body, referee};
 use crate::support::quadrature::integrate;
 use crate::support::run::{Watcher, numbers, paths, tallies, watched};
 use crate::support::scenes::{ball, bounded, emitting_sphere, outflow};

@@ -3,8 +3,8 @@
 //! A ball of radius 60 mean free paths stands for the unbounded medium: of albedo 0.9, light decays with at least 0.3 in
 //! a mean free path, so that what the rest would send back is below 1e-12 everywhere.
 
+use super::sphere_fields::{in_shells, shell_mean};
 use crate::checks::slab::exact;
-use crate::sphere_fields::{in_shells, shell_mean};
 use crate::support::scenes::{ball, point_light};
 use crate::support::verdict;
 use glam::DVec3;

@@ -4,8 +4,8 @@
 //!
 //! Paths are measured twice: as the length that photons fly inside, and as their collisions over the extinction.
 
+use super::henyey_greenstein::{medium, referee};
 use crate::checks::slab::exact;
-use crate::henyey_greenstein::{medium, referee};
 use crate::support::run::{Watcher, watched};
 use crate::support::scenes::{Incidence, ball, bounded, cuboid, isotropic, layer, region, slab, sphere};
 use crate::support::verdict;

@@ -11,8 +11,8 @@
 //! I the exact radiance, continued behind the face where light leaves by e^(-distance/|mu|) and behind the far face by 0.
 //! So the loss at faces and the blur within are both predicted, exactly.
 
+use super::henyey_greenstein::{MEDIA, medium, referee};
 use crate::checks::slab::exact;
-use crate::henyey_greenstein::{MEDIA, medium, referee};
 use crate::support::quadrature::integrate;
 use crate::support::run::{paths, sensor};
 use crate::support::scenes::{CELL, Incidence, homogeneous, incidence, layer, region, slab};

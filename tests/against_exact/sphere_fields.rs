@@ -1,8 +1,8 @@
 //! Fields of the sphere: fluence against radius from photons in shells, and the radiance that leaves against its angle,
 //! by photons as they leave and by paths.
 
+use super::sphere::{SOURCES, body, light_of, referee};
 use crate::checks::slab::exact;
-use crate::sphere::{SOURCES, body, light_of, referee};
 use crate::support::quadrature::integrate;
 use crate::support::run::{Watcher, paths, watched};
 use crate::support::scenes::ball;

@@ -1,6 +1,6 @@
 //! Checks that several suites run: each asserts by itself in the suite that it belongs to, and on trial, with a fault
 //! planted, in the suite of faults.
-#![allow(dead_code, reason = "each test binary uses a part")]
+#![allow(dead_code, reason = "the faults use a part")]
 
 pub mod cell;
 pub mod color;

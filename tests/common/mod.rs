@@ -1,5 +1,5 @@
 //! What the integration tests share.
-#![allow(dead_code, reason = "each test file uses its own part of this")]
+#![allow(dead_code, reason = "the faults use a part")]
 
 use proptest::test_runner::{Config, RngAlgorithm, RngSeed};
 

@@ -1,6 +1,6 @@
 //! Height fields: against planes and the field itself; closed bodies; waves.
 
-use crate::solids::{crossings, direction, point, stream};
+use super::solids::{crossings, direction, point, stream};
 use glam::{DVec2, DVec3};
 use turbid::geometry::{Ground, Mesh, Up, Waves, height_field, listed};
 use turbid::math::Ray;

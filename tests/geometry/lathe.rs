@@ -1,6 +1,6 @@
 //! Lathes: against spheres, cylinders and cones, against a fine mesh, without gaps.
 
-use crate::solids::{crossings, direction, point, stream};
+use super::solids::{crossings, direction, point, stream};
 use crate::support::verdict;
 use glam::{DVec2, DVec3};
 use std::f64::consts::{PI, TAU};

@@ -1,6 +1,6 @@
 //! Meshes: against exact shapes and brute force, without gaps, at all sizes.
 
-use crate::solids::{crossings, cube, direction, icosphere, mesh, point, stream};
+use super::solids::{crossings, cube, direction, icosphere, mesh, point, stream};
 use crate::support::scenes::octahedron;
 use crate::support::verdict;
 use glam::{DVec2, DVec3};

@@ -52,7 +52,7 @@ impl Verdict {
         let z = (mean - reference) / std_error;
         format!(
             "{what}: {mean:.5} +- {std_error:.5}, reference {reference:.5}, z {z:.2}, p {p:.1e}, seed {SEED}, \
-             detectable {detectable:.5}; cargo test --release -p turbid --test photons statistics"
+             detectable {detectable:.5}; cargo test --release -p turbid --test physics photons::statistics"
         )
     }
 

@@ -1,5 +1,5 @@
 //! What the tests share: verdicts on means, scenes, double-double numbers, a quadrature rule.
-#![allow(dead_code, reason = "each test binary uses a part")]
+#![allow(dead_code, reason = "the faults use a part")]
 
 pub mod double;
 pub mod quadrature;

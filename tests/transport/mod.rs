@@ -1,10 +1,4 @@
 //! Walks of light: bits that stay, invariants, extremes, and classes of paths by every method.
-#![allow(clippy::unwrap_used, reason = "tests")]
-
-#[path = "../checks/mod.rs"]
-mod checks;
-#[path = "../support/mod.rs"]
-mod support;
 
 mod deep;
 mod ends;

@@ -1,10 +1,4 @@
 //! The player against the referee: path tracer and photons against exact values, order by order and in all.
-#![allow(clippy::unwrap_used, reason = "tests")]
-
-#[path = "../checks/mod.rs"]
-mod checks;
-#[path = "../support/mod.rs"]
-mod support;
 
 mod cavity;
 mod emitting_sphere;

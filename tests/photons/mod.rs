@@ -1,12 +1,4 @@
 //! Photons: their tree, their estimates, the maps and what reads them.
-#![allow(clippy::unwrap_used, reason = "tests")]
-
-#[path = "../checks/mod.rs"]
-mod checks;
-#[path = "../common/mod.rs"]
-mod common;
-#[path = "../support/mod.rs"]
-mod support;
 
 mod accepted_surface;
 mod advise;
