@@ -15,6 +15,10 @@ use turbid::sensor::Film;
 /// The version of the files.
 pub const FORMAT: u32 = 1;
 
+fn first_format() -> u32 {
+    1
+}
+
 /// Larger files are no pictures.
 const MOST_BYTES: u64 = 1 << 32;
 
@@ -22,7 +26,8 @@ const MOST_BYTES: u64 = 1 << 32;
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct RenderRecord {
-    /// [`FORMAT`] when it was made.
+    /// [`FORMAT`] when it was made; 1 where it is not stated.
+    #[serde(default = "first_format")]
     pub format: u32,
     /// What it is, in words: two renders of equal words and equal program are equal.
     pub words: String,
