@@ -9,11 +9,23 @@ use std::path::Path;
 /// The lock's file; it stays when the study ends, and says nothing by itself.
 const FILE: &str = ".lock";
 
+/// A folder that is held.
+pub(super) struct Held(File);
+
+impl Drop for Held {
+    /// A process that is being started has a copy of the file until it runs, which would hold the folder on: closing is
+    /// not enough.
+    fn drop(&mut self) {
+        // What cannot be unlocked was not locked.
+        let _unlocked = self.0.unlock();
+    }
+}
+
 /// Holds a folder, which is made if it is not there, until the value is dropped or the process ends in whatever way.
 ///
 /// # Errors
 /// If another study holds it, or the folder cannot be written to
-pub(super) fn hold(folder: &Path) -> anyhow::Result<File> {
+pub(super) fn hold(folder: &Path) -> anyhow::Result<Held> {
     std::fs::create_dir_all(folder).with_context(|| format!("cannot create {}", folder.display()))?;
     let path = folder.join(FILE);
     check_plain(&path)?;
@@ -32,5 +44,21 @@ pub(super) fn hold(folder: &Path) -> anyhow::Result<File> {
             folder.display()
         )),
     }
-    Ok(file)
+    Ok(Held(file))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// As a process that another thread starts just then has one.
+    #[test]
+    fn a_copy_of_the_file_holds_nothing() {
+        let folder = tempfile::tempdir().unwrap();
+        let held = hold(folder.path()).unwrap();
+        assert!(hold(folder.path()).is_err());
+        let _copy = held.0.try_clone().unwrap();
+        drop(held);
+        assert!(hold(folder.path()).is_ok());
+    }
 }
