@@ -247,7 +247,7 @@ impl<'a> Run<'a> {
     ///
     /// # Errors
     /// `Error::Cancelled`, or `Error::NonFinite` if a contribution was not finite; those of [`check_end`].
-    pub fn pass(&self, store: &impl Storage, progress: &dyn Progress) -> Result<Pass> {
+    pub fn pass(&self, store: &dyn Storage, progress: &dyn Progress) -> Result<Pass> {
         self.scene.check_emission()?;
         check_end(self.scene)?;
         let start = Instant::now();
@@ -293,9 +293,9 @@ impl<'a> Run<'a> {
 }
 
 /// Follows the histories of one block.
-struct Block<'a, S> {
+struct Block<'a> {
     run: &'a Run<'a>,
-    store: &'a S,
+    store: &'a dyn Storage,
     power: Spectrum,
     history: u64,
     /// What the present history brought each sensor \[W\].
@@ -305,7 +305,7 @@ struct Block<'a, S> {
     pass: Pass,
 }
 
-impl<S: Storage> Block<'_, S> {
+impl Block<'_> {
     fn follow(&mut self, history: u64) {
         let Run { scene, emitter, importance, purpose, histories, .. } = *self.run;
         let mut stream = Stream::new(histories.seed, purpose, histories.replicate, history);
@@ -362,9 +362,9 @@ impl<S: Storage> Block<'_, S> {
     }
 }
 
-impl<S: Storage> Branching for Block<'_, S> {}
+impl Branching for Block<'_> {}
 
-impl<S: Storage> Visitor for Block<'_, S> {
+impl Visitor for Block<'_> {
     const LOOKS_AHEAD: bool = false;
 
     fn visit(&mut self, walker: &Walker, step: Step, _stream: &mut Stream) {

@@ -4,6 +4,7 @@ use crate::error::{Error, Result};
 use crate::faults::{Fault, planted};
 use rayon::prelude::*;
 use std::ops::Range;
+use std::sync::Mutex;
 
 /// Histories a block, whatever the total and the threads.
 pub const BLOCK: u64 = 4096;
@@ -68,8 +69,9 @@ pub fn run_blocks_of<T: Send>(
         progress.advance(count);
         Ok(result)
     };
-    let mut results: Vec<T> =
-        (0..histories.div_ceil(size)).into_par_iter().map(one).collect::<Result<_>>()?;
+    let mut results = in_parallel(histories.div_ceil(size) as usize, |index| one(index as u64))
+        .into_iter()
+        .collect::<Result<Vec<T>>>()?;
     while results.len() > 1 {
         let mut pairs = results.into_iter();
         let mut merged = Vec::with_capacity(pairs.len().div_ceil(2));
@@ -82,4 +84,21 @@ pub fn run_blocks_of<T: Send>(
         results = merged;
     }
     Ok(results.pop())
+}
+
+/// What each of `tasks` tasks gives, in their order, whoever was first. The threads are asked in one place, which is compiled
+/// once, not for every kind of task.
+pub fn in_parallel<T: Send>(tasks: usize, task: impl Fn(usize) -> T + Sync) -> Vec<T> {
+    let places: Vec<Mutex<Option<T>>> = (0..tasks).map(|_| Mutex::new(None)).collect();
+    spread(tasks, &|index| {
+        let result = task(index);
+        if let Ok(mut place) = places[index].lock() {
+            *place = Some(result);
+        }
+    });
+    places.into_iter().filter_map(|place| place.into_inner().ok().flatten()).collect()
+}
+
+fn spread(tasks: usize, task: &(dyn Fn(usize) + Sync)) {
+    (0..tasks).into_par_iter().for_each(task);
 }

@@ -54,7 +54,7 @@ fn placed(folder: &std::path::Path, keys: &str) -> Density {
          density = {{ grid = {{ file = \"a.vol\"{keys} }} }}\n\
          [[lights]]\npoint = {{ position = [9.5, 0.0, 0.0], power = 1.0 }}\n"
     );
-    let scene = toml::from_str::<SceneFile>(&text).unwrap().scene(folder).unwrap();
+    let scene = SceneFile::from_toml(&text).unwrap().scene(folder).unwrap();
     scene.regions()[0].medium.density().unwrap().clone()
 }
 

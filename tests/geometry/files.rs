@@ -10,9 +10,9 @@ use turbid::surface::Surface;
 const LIGHT: &str = "[[lights]]\npoint = { position = [9.0, 9.0, 9.0], power = 1.0 }\n";
 
 fn scene(folder: &Path, objects: &str) -> Result<Scene, String> {
-    let file: SceneFile = toml::from_str(&format!("{LIGHT}{objects}")).map_err(|e| e.to_string())?;
+    let file = SceneFile::from_toml(&format!("{LIGHT}{objects}")).map_err(|e| e.to_string())?;
     // What is written reads back as what was read.
-    let again: SceneFile = toml::from_str(&toml::to_string(&file).unwrap()).unwrap();
+    let again = SceneFile::from_toml(&file.to_toml().unwrap()).unwrap();
     assert_eq!(again, file);
     file.scene(folder).map_err(|e| e.to_string())
 }

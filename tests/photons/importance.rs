@@ -19,7 +19,7 @@ use turbid::transport::NoProgress;
 fn hall() -> Scene {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("experiments/scenes");
     let text = std::fs::read_to_string(folder.join("importance.toml")).unwrap();
-    toml::from_str::<SceneFile>(&text).unwrap().scene(&folder).unwrap()
+    SceneFile::from_toml(&text).unwrap().scene(&folder).unwrap()
 }
 
 fn maps(

@@ -6,7 +6,7 @@ use crate::harness::{Settings, Unit};
 use crate::prediction::{PredictedError, Prediction, Term};
 use crate::setups::{CELL, Size};
 use crate::theory::{Gathers, NearestGather};
-use rayon::prelude::*;
+use turbid::transport::in_parallel;
 
 /// What is predicted of each field whose photons are all stored: collisions of a history, on average.
 pub const COLLISIONS: &str = "collisions per photon";
@@ -48,10 +48,9 @@ pub fn budget(settings: &Settings) -> anyhow::Result<Vec<(Case, PredictedError)>
         let theory = Theory::new(field)?;
         let cases: Vec<Case> =
             field.photons(settings).into_iter().flat_map(|n| Case::all(field, n)).collect();
-        let predicted: Vec<anyhow::Result<(Case, PredictedError)>> =
-            cases.into_par_iter().map(|case| theory.error(&case).map(|error| (case, error))).collect();
-        for item in predicted {
-            all.push(item?);
+        let predicted = in_parallel(cases.len(), |i| theory.error(&cases[i]));
+        for (case, error) in cases.into_iter().zip(predicted) {
+            all.push((case, error?));
         }
     }
     Ok(all)

@@ -9,17 +9,16 @@ use super::{claims, figures, shaft, tables, waves};
 use crate::harness::{Cells, Estimate, Parameters, Row, Section, Settings, Unit, percent};
 use crate::prediction::{Entry, Prediction, Predictions, Term};
 use crate::setups::Size;
-use rayon::prelude::*;
 use turbid::estimators::Kernel;
 use turbid::stats::Moments;
+use turbid::transport::in_parallel;
 
 /// Concludes.
 pub fn conclude(settings: &Settings, predictions: &[Prediction], cells: &Cells) -> anyhow::Result<Section> {
     let known = Predictions::new(predictions);
-    let results: Vec<anyhow::Result<CaseResult>> = all_cases(settings)
-        .into_par_iter()
-        .map(|case| CaseResult::new(case, Theory::recall(&known, &case)?, cells))
-        .collect();
+    let cases = all_cases(settings);
+    let results =
+        in_parallel(cases.len(), |i| CaseResult::new(cases[i], Theory::recall(&known, &cases[i])?, cells));
     let results = results.into_iter().collect::<anyhow::Result<Vec<_>>>()?;
     let mut transfers = Vec::new();
     for kernel in Kernel::ALL {

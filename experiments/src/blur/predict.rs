@@ -10,7 +10,7 @@ use crate::prediction::{Prediction, Predictions};
 use crate::setups::Size;
 use crate::theory::referee_kernel;
 use anyhow::Context;
-use rayon::prelude::*;
+use turbid::transport::in_parallel;
 use turbid_analytic::Value;
 use turbid_analytic::edge::{Edge, NearestEdge};
 
@@ -128,11 +128,11 @@ const EQUIVALENT_EXACT: &str = "equivalent width, exact";
 
 /// The predictions, as they are written down before the measurement.
 pub fn predict(settings: &Settings) -> anyhow::Result<Vec<Prediction>> {
-    let theories: Vec<anyhow::Result<(Case, Theory)>> =
-        all_cases(settings).into_par_iter().map(|case| Theory::new(&case).map(|t| (case, t))).collect();
+    let cases = all_cases(settings);
+    let theories = in_parallel(cases.len(), |i| Theory::new(&cases[i]));
     let mut predictions = Vec::new();
-    for theory in theories {
-        let (case, theory) = theory?;
+    for (case, theory) in cases.into_iter().zip(theories) {
+        let theory = theory?;
         let name = case.name();
         let mut add = |quantity: &str, unit, value: (f64, f64), source: &str| {
             predictions.push(Prediction::new(&name, quantity, unit, value, source));

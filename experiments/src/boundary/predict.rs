@@ -9,9 +9,9 @@ use crate::prediction::{PredictedError, Prediction, Term};
 use crate::setups::Size;
 use crate::theory::{Exact, nearest_clustering, referee_kernel};
 use anyhow::Context;
-use rayon::prelude::*;
 use std::collections::HashMap;
 use turbid::estimators::boundary::Treatment;
+use turbid::transport::in_parallel;
 use turbid_analytic::boundary::{
     self as referee, Body, nearest_treated_mean_symmetric, nearest_treated_mean_uniform,
     treated_mean_symmetric, treated_mean_uniform,
@@ -81,22 +81,21 @@ fn budget(settings: &Settings) -> anyhow::Result<Vec<(Case, PredictedError)>> {
         let cases: Vec<Case> =
             field.sizes(settings).into_iter().flat_map(|(n, _)| Case::all(settings, field, n)).collect();
         let ask = |case: &Case, untreated| expected(case, &exact, untreated).with_context(|| case.name());
-        let untreated: HashMap<String, PredictedError> = cases
-            .par_iter()
-            .filter(|case| case.treatment == Treatment::None)
-            .map(|case| Ok((case.name(), ask(case, None)?)))
-            .collect::<anyhow::Result<_>>()?;
-        let predicted: Vec<(Case, PredictedError)> = cases
-            .into_par_iter()
-            .map(|case| {
-                let same = untreated.get(&Case { treatment: Treatment::None, ..case }.name());
-                match same {
-                    Some(error) if case.treatment == Treatment::None => Ok((case, error.clone())),
-                    _ => Ok((case, ask(&case, same)?)),
-                }
-            })
-            .collect::<anyhow::Result<_>>()?;
-        all.extend(predicted);
+        let plain: Vec<&Case> = cases.iter().filter(|case| case.treatment == Treatment::None).collect();
+        let untreated = in_parallel(plain.len(), |i| Ok((plain[i].name(), ask(plain[i], None)?)))
+            .into_iter()
+            .collect::<anyhow::Result<HashMap<String, PredictedError>>>()?;
+        let predicted = in_parallel(cases.len(), |i| -> anyhow::Result<(Case, PredictedError)> {
+            let case = cases[i];
+            let same = untreated.get(&Case { treatment: Treatment::None, ..case }.name());
+            match same {
+                Some(error) if case.treatment == Treatment::None => Ok((case, error.clone())),
+                _ => Ok((case, ask(&case, same)?)),
+            }
+        });
+        for item in predicted {
+            all.push(item?);
+        }
     }
     Ok(all)
 }

@@ -6,9 +6,9 @@ use super::largest::{Largest, Null};
 use super::sets::{Drawn, Group, MOST, carries, fit, groups};
 use crate::harness::{Claim, Digest, FIT_LEVEL, Section, SectionReport, Settings, Table, number, percent};
 use crate::prediction::{Entry, Term};
-use rayon::prelude::*;
 use turbid::rng::{Purpose, Stream};
 use turbid::stats::{KolmogorovSmirnov, Moments, kolmogorov_smirnov_test, normal_critical, normal_p};
+use turbid::transport::in_parallel;
 
 /// Fewest cases for a verdict.
 const FEWEST_CASES: usize = 1000;
@@ -18,7 +18,7 @@ const FEWEST_SETS: usize = 200;
 const RESAMPLES: usize = 5000;
 
 /// Made-up studies by which the smallest shift is found that the test of map sets sees.
-const SHIFTED: u64 = 400;
+const SHIFTED: usize = 400;
 /// How sure a shift must be seen to count as seen.
 const POWER: f64 = 0.99;
 
@@ -110,8 +110,9 @@ fn deviation(share: f64) -> f64 {
 /// The shift of all distances, in standard errors of one set, with which the test of map sets refuses in 99 of 100
 /// studies: normal numbers of as many sets, shifted.
 fn smallest_shift(sets: usize, seed: u64) -> f64 {
-    let one = |study: u64| {
-        let mut stream = Stream::new(seed, Purpose::Resampling, Digest::of(b"budget/shift").word(), study);
+    let one = |study: usize| {
+        let word = Digest::of(b"budget/shift").word();
+        let mut stream = Stream::new(seed, Purpose::Resampling, word, study as u64);
         let z: Vec<f64> = (0..sets).map(|_| deviation(stream.open_unit())).collect();
         let p = |shift: f64| kolmogorov_smirnov_test(&z, |z| below(z + shift)).p;
         // The least shift that this study refuses, to 1e-3: beyond 4 it always does with as many sets as are asked for.
@@ -126,7 +127,7 @@ fn smallest_shift(sets: usize, seed: u64) -> f64 {
         }
         high
     };
-    let mut shifts: Vec<f64> = (0..SHIFTED).into_par_iter().map(one).collect();
+    let mut shifts = in_parallel(SHIFTED, one);
     shifts.sort_by(f64::total_cmp);
     shifts[((POWER * SHIFTED as f64) as usize).min(shifts.len() - 1)]
 }

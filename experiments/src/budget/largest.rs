@@ -11,9 +11,9 @@
 use super::sets::{Group, distance, predicted};
 use crate::harness::Digest;
 use crate::prediction::Term;
-use rayon::prelude::*;
 use turbid::rng::{Purpose, Stream};
 use turbid::stats::{Moments, normal_critical, student_p};
+use turbid::transport::in_parallel;
 
 /// The case farthest from its prediction.
 #[derive(Debug, Clone, PartialEq)]
@@ -49,7 +49,7 @@ impl Null {
             let mut stream = Stream::new(seed, Purpose::Resampling, name, resample as u64);
             tables.iter().map(|table| table.resampled(&mut stream)).fold(1.0, f64::min)
         };
-        let mut smallest: Vec<f64> = (0..resamples).into_par_iter().map(one).collect();
+        let mut smallest = in_parallel(resamples, one);
         smallest.sort_by(f64::total_cmp);
         Null { smallest, entries: groups.iter().map(|g| g.entries.len()).sum() }
     }

@@ -76,7 +76,7 @@ fn scene() -> anyhow::Result<&'static Scene> {
     if let Some(scene) = MADE.get() {
         return Ok(scene);
     }
-    let file: SceneFile = toml::from_str(SCENE).map_err(|e| anyhow!("the cloud: {e}"))?;
+    let file = SceneFile::from_toml(SCENE).map_err(|e| anyhow!("the cloud: {e}"))?;
     let scene = file.scene(Path::new("."))?;
     Ok(MADE.get_or_init(|| scene))
 }

@@ -15,7 +15,7 @@ pub const VOLUME: f64 = 8.0;
 
 /// The box.
 pub fn scene() -> anyhow::Result<Scene> {
-    let file: SceneFile = toml::from_str(SCENE).map_err(|e| anyhow!("fogbox-iso.toml: {e}"))?;
+    let file = SceneFile::from_toml(SCENE).map_err(|e| anyhow!("fogbox-iso.toml: {e}"))?;
     Ok(file.scene(Path::new("."))?)
 }
 

@@ -9,9 +9,9 @@ use super::{sampled, stretched};
 use crate::harness::{Settings, Unit};
 use crate::prediction::Prediction;
 use crate::theory::{clustering, nearest_clustering};
-use rayon::prelude::*;
 use std::f64::consts::PI;
 use turbid::estimators::Kernel;
+use turbid::transport::in_parallel;
 
 /// Stored photons per volume in the furnace: fluence over the power of a photon, 4 pi over those emitted.
 fn density(settings: &Settings) -> f64 {
@@ -73,11 +73,13 @@ pub fn storage(settings: &Settings, rule: Rule, spacing: f64) -> anyhow::Result<
 
 /// The predictions, as they are written down before the measurement.
 pub fn predict(settings: &Settings) -> anyhow::Result<Vec<Prediction>> {
-    let one = |row: sampled::Sampled| {
+    let rows = sampled::all();
+    let one = |row: &sampled::Sampled| {
         let (exact, unit) = ((row.exact)()?, row.unit());
-        Ok(Prediction::new(row.name, "value", unit, exact, row.source))
+        Ok(Prediction::new(row.name.clone(), "value", unit, exact, row.source))
     };
-    let mut predictions = sampled::all().into_par_iter().map(one).collect::<anyhow::Result<Vec<_>>>()?;
+    let mut predictions =
+        in_parallel(rows.len(), |i| one(&rows[i])).into_iter().collect::<anyhow::Result<Vec<_>>>()?;
     let mut add = |case: String, quantity: &str, unit, value, error, source: &str| {
         predictions.push(Prediction::new(case, quantity, unit, (value, error), source));
     };

@@ -247,7 +247,7 @@ impl Workbench {
 
     /// A scene, and all that can be asked of it; what its file is refused for names `file`, and may quote something.
     fn scene_of(&self, text: &str, quotable: &str, file: Option<&str>) -> Verdict {
-        let parsed: SceneFile = match toml::from_str(text) {
+        let parsed = match SceneFile::from_toml(text) {
             Ok(parsed) => parsed,
             // The program makes one line of these.
             Err(error) => return checked(one_line(error.message()), None),

@@ -22,7 +22,7 @@ fn whole() -> &'static [Table] {
     WHOLE.get_or_init(|| {
         let built_in = BUILTIN.iter().filter_map(|builtin| {
             let file = (builtin.resolve)(builtin.defaults).ok()?.ok()?;
-            toml::from_str(&toml::to_string(&file).ok()?).ok()
+            toml::from_str(&file.to_toml().ok()?).ok()
         });
         let mut files: Vec<PathBuf> = std::fs::read_dir(gallery())
             .map(|folder| folder.flatten().map(|entry| entry.path()).collect())

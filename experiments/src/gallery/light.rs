@@ -214,7 +214,7 @@ mod tests {
     /// is seen and by paths where the ball is, of what paths alone find, and with all that scatters by light.
     #[test]
     fn no_light_is_lost_or_counted_twice() {
-        let file: SceneFile = toml::from_str(BALL).unwrap();
+        let file = SceneFile::from_toml(BALL).unwrap();
         let scene = file.scene(std::path::Path::new(".")).unwrap();
         let camera = scene.camera().unwrap();
         let within = scene.interior_at(camera.position());

@@ -5,7 +5,7 @@ use turbid::Spectrum;
 use turbid::geometry::Shape;
 use turbid::rng::{Purpose, Stream};
 use turbid::scene::{Camera, Region, Scene, Target};
-use turbid::transport::{Roulette, Step, Visitor, Walker, walk};
+use turbid::transport::{Roulette, Step, Visitor, Walker, in_parallel, walk};
 
 /// What a pixel's middle sees.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -63,7 +63,8 @@ impl Visitor for Eye<'_> {
 
 /// What every pixel's middle sees, row by row from the top. At dielectrics one of both ways is followed, at random.
 pub fn look(scene: &Scene, camera: &Camera) -> Vec<View> {
-    let one = |number: u64| {
+    let one = |number: usize| {
+        let number = number as u64;
         let (x, y) =
             ((number % u64::from(camera.width())) as u32, (number / u64::from(camera.width())) as u32);
         let ray = camera.ray(glam::DVec2::new(f64::from(x) + 0.5, f64::from(y) + 0.5));
@@ -74,7 +75,5 @@ pub fn look(scene: &Scene, camera: &Camera) -> Vec<View> {
         walk(scene, walker, Roulette::Below(1e-6), Some(0), &mut stream, &mut eye);
         eye.view
     };
-    use rayon::prelude::*;
-    let count = u64::from(camera.width()) * u64::from(camera.height());
-    (0..count).into_par_iter().map(one).collect()
+    in_parallel(camera.width() as usize * camera.height() as usize, one)
 }

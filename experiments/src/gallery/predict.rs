@@ -22,6 +22,7 @@ use super::Grid;
 use super::look::View;
 use glam::DVec3;
 use turbid::integrators::{Layer, Layers, mapper};
+use turbid::transport::in_parallel;
 
 /// Largest reach of a footprint \[pixels\]; a larger one is taken as this.
 const REACH: f64 = 40.0;
@@ -73,20 +74,18 @@ pub fn predicted(
     spreads: Spreads,
     pixel: f64,
 ) -> Vec<f64> {
-    use rayon::prelude::*;
     let of = |i: usize, layer: Layer| 0.5 * (halves[0][i][layer].sum() + halves[1][i][layer].sum());
     let total = |i: usize| 0.5 * (halves[0][i].total().sum() + halves[1][i].total().sum());
     let floor = 0.01 * (0..grid.pixels()).map(total).sum::<f64>() / grid.pixels() as f64;
-    let all = || (0..grid.pixels()).into_par_iter();
-    let mut errors: Vec<f64> = all().map(|i| missing(&views[i], radii[i], |layer| of(i, layer))).collect();
+    let all = |f: &(dyn Fn(usize) -> f64 + Sync)| in_parallel(grid.pixels(), f);
+    let mut errors = all(&|i| missing(&views[i], radii[i], |layer| of(i, layer)));
     for layer in [Layer::Indirect, Layer::Caustic, Layer::Multiple] {
         let [one, other] = halves.map(|half| {
-            let blurs: Vec<f64> =
-                all().map(|i| blurred(grid, i, layer, views, half, (radii[i], spreads), pixel)).collect();
-            all().map(|i| smoothed(grid, i, SMOOTH.0, &blurs)).collect::<Vec<f64>>()
+            let blurs = all(&|i| blurred(grid, i, layer, views, half, (radii[i], spreads), pixel));
+            all(&|i| smoothed(grid, i, SMOOTH.0, &blurs))
         });
         let products: Vec<f64> = one.iter().zip(&other).map(|(a, b)| a * b).collect();
-        let squares: Vec<f64> = all().map(|i| smoothed(grid, i, SMOOTH.1, &products)).collect();
+        let squares = all(&|i| smoothed(grid, i, SMOOTH.1, &products));
         errors.iter_mut().zip(squares).for_each(|(error, square)| *error += square.max(0.0).sqrt());
     }
     errors

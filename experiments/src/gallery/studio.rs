@@ -46,7 +46,7 @@ impl<'a> Studio<'a> {
         let path = folder.join(format!("{}.toml", picture.name));
         let text = turbid::input::read_text(&path, 1 << 26)
             .with_context(|| format!("cannot read {}", path.display()))?;
-        let file: SceneFile = toml::from_str(&text).map_err(|e| anyhow!("{}: {e}", path.display()))?;
+        let file = SceneFile::from_toml(&text).map_err(|e| anyhow!("{}: {e}", path.display()))?;
         let scene = file.scene(folder).with_context(|| path.display().to_string())?;
         let text = Digest::of(text.as_bytes()).to_string();
         let camera = scene.camera().with_context(|| format!("{} has no camera", path.display()))?;

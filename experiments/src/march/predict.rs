@@ -5,9 +5,9 @@ use crate::harness::{Settings, Unit};
 use crate::prediction::{PredictedError, Prediction, Term};
 use crate::setups::Size;
 use crate::theory::{Exact, Table, nearest_clustering};
-use rayon::prelude::*;
 use std::f64::consts::PI;
 use turbid::integrators::StepRule;
+use turbid::transport::in_parallel;
 use turbid_analytic::kernel::Kernel;
 use turbid_analytic::nearest::nearest_expectation;
 use turbid_analytic::slab_kernel::{edge_loss, slab_moment};
@@ -111,12 +111,13 @@ impl Theory {
 /// The predictions, as they are written down before the measurement.
 pub fn predict(settings: &Settings) -> anyhow::Result<Vec<Prediction>> {
     let theory = Theory::new(photons(settings))?;
-    let one = |case: Case| {
+    let cases = Case::all();
+    let one = |case: &Case| {
         let sources = ["exact solution of the slab", "sum over steps of exact kernel means"];
         let source = |_| "weights of the rule times the part of each step";
-        Ok(theory.error(&case)?.predictions(&case.name(), ("radiance", Unit::RADIANCE), sources, source))
+        Ok(theory.error(case)?.predictions(&case.name(), ("radiance", Unit::RADIANCE), sources, source))
     };
-    let all: Vec<Vec<Prediction>> = Case::all().into_par_iter().map(one).collect::<anyhow::Result<_>>()?;
+    let all = in_parallel(cases.len(), |i| one(&cases[i])).into_iter().collect::<anyhow::Result<Vec<_>>>()?;
     Ok(all.into_iter().flatten().collect())
 }
 

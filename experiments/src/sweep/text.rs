@@ -63,7 +63,7 @@ impl SceneText {
     /// # Errors
     /// what the scene is refused for
     pub fn scene(&self) -> anyhow::Result<Scene> {
-        let file: SceneFile = self.table.clone().try_into()?;
+        let file = SceneFile::from_toml(&self.toml())?;
         if self.files.is_empty() {
             return Ok(file.scene(Path::new("."))?);
         }

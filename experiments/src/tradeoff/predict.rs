@@ -5,7 +5,7 @@ use super::cases::{FIELDS, Field, LAYERS, PROBES, Setting, Treatment};
 use super::theory::{Expected, Rms, Theory};
 use crate::harness::{Settings, Unit, percent};
 use crate::prediction::{Prediction, Predictions};
-use rayon::prelude::*;
+use turbid::transport::in_parallel;
 
 /// Root mean square errors that somebody may want.
 pub const TARGETS: [f64; 3] = [0.1, 0.03, 0.01];
@@ -91,14 +91,13 @@ pub fn predict(settings: &Settings) -> anyhow::Result<Vec<Prediction>> {
     };
     let asked: Vec<(Setting, Treatment)> =
         every.iter().flat_map(|&s| Treatment::ALL.map(|treatment| (s, treatment))).collect();
-    let known: Vec<(Setting, Treatment, Vec<Expected>)> = asked
-        .into_par_iter()
-        .map(|(setting, treatment)| {
-            let one = |t| theory(setting.field).expected(&setting, treatment, t);
-            let layers: anyhow::Result<_> = setting.field.depths().into_iter().map(one).collect();
-            Ok((setting, treatment, layers?))
-        })
-        .collect::<anyhow::Result<_>>()?;
+    let expected = |i: usize| -> anyhow::Result<(Setting, Treatment, Vec<Expected>)> {
+        let (setting, treatment) = asked[i];
+        let one = |t| theory(setting.field).expected(&setting, treatment, t);
+        let layers: anyhow::Result<_> = setting.field.depths().into_iter().map(one).collect();
+        Ok((setting, treatment, layers?))
+    };
+    let known = in_parallel(asked.len(), expected).into_iter().collect::<anyhow::Result<Vec<_>>>()?;
     let mut all = Vec::new();
     let mut add = |case: &str, quantity: &str, unit, value: (f64, f64), source: &str| {
         all.push(Prediction::new(case, quantity, unit, value, source));
@@ -115,10 +114,11 @@ pub fn predict(settings: &Settings) -> anyhow::Result<Vec<Prediction>> {
         .flat_map(|field| Treatment::ALL.map(|treatment| (field, treatment)))
         .flat_map(|(field, treatment)| TARGETS.map(|target| (field, treatment, target)))
         .collect();
-    let found: Vec<Optimum> = searches
-        .par_iter()
-        .map(|&(field, treatment, target)| optimum(theory(field), field, treatment, target))
-        .collect::<anyhow::Result<_>>()?;
+    let best = |i: usize| {
+        let (field, treatment, target) = searches[i];
+        optimum(theory(field), field, treatment, target)
+    };
+    let found = in_parallel(searches.len(), best).into_iter().collect::<anyhow::Result<Vec<_>>>()?;
     for ((field, treatment, target), best) in searches.into_iter().zip(found) {
         let case = optimum_case(field, treatment, target);
         let source = "cheapest fixed radius, by bias and noise of every layer";

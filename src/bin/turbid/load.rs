@@ -43,7 +43,7 @@ impl Source {
         let file = self.resolve()?;
         if self.confined {
             let folder = self.folder();
-            check_confined(&toml::Value::try_from(&file)?, &folder).with_context(|| self.name())?;
+            check_confined(&value(&file)?, &folder).with_context(|| self.name())?;
         }
         let scene = file.scene(&self.folder()).with_context(|| self.name())?;
         check_end(&scene).with_context(|| self.name())?;
@@ -95,8 +95,7 @@ impl Source {
             .with_context(|| format!("cannot read {}", self.name()))?;
         let what = || format!("a scene file of {} bytes", text.len());
         turbid::memory::check(what, IN_MEMORY * text.len() as f64).with_context(|| self.name())?;
-        let mut file: SceneFile =
-            toml::from_str(&text).map_err(|e| anyhow!(located(&self.name(), &text, &e)))?;
+        let mut file = SceneFile::from_toml(&text).map_err(|e| anyhow!(located(&self.name(), &text, &e)))?;
         let mut root = toml::Value::Table(toml::from_str(&text)?);
         check_lengths(&root, &file).with_context(|| self.name())?;
         if self.sets.is_empty() {
@@ -106,11 +105,17 @@ impl Source {
             let (key, value) = split(set)?;
             *slot(&mut root, key).with_context(|| format!("--set {set}"))? = value;
             let changed = toml::to_string(&root)?;
-            file = toml::from_str(&changed).map_err(|e| anyhow!("--set {set}: {}", say(&changed, &e)))?;
+            file =
+                SceneFile::from_toml(&changed).map_err(|e| anyhow!("--set {set}: {}", say(&changed, &e)))?;
             check_lengths(&root, &file).with_context(|| format!("--set {set}"))?;
         }
         Ok(file)
     }
+}
+
+/// A scene file as keys and values.
+fn value(file: &SceneFile) -> anyhow::Result<toml::Value> {
+    Ok(toml::Value::Table(toml::from_str(&file.to_toml()?)?))
 }
 
 /// Refuses names of files, the values of all keys `file`, that lead out of a folder.
@@ -142,7 +147,7 @@ fn check_inside(name: &str, folder: &Path) -> anyhow::Result<()> {
 
 /// Refuses lists of numbers of which only the first ones were read, as `position = [0, 0, 0, 1]`.
 fn check_lengths(given: &toml::Value, file: &SceneFile) -> anyhow::Result<()> {
-    read_whole(given, toml::Value::try_from(file).ok().as_ref(), "")
+    read_whole(given, value(file).ok().as_ref(), "")
 }
 
 /// Whether a value was read to its end; what was read is none where it is a default.

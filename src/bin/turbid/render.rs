@@ -248,7 +248,7 @@ impl Render {
         let exposure =
             exposure.unwrap_or_else(|| auto_exposure(made.film.pixels().iter().map(|p| p.total())));
         let tone = Tone { exposure, curve: self.shown.curve() };
-        let provenance = self.provenance(&toml::to_string(&file)?, &made, exposure)?;
+        let provenance = self.provenance(&file.to_toml()?, &made, exposure)?;
         write_exr(&self.output, &made.film, &provenance)?;
         let png = self.output.with_extension("png");
         let pixels: Vec<[u8; 3]> = made.film.pixels().iter().map(|p| tone.pixel(p.total())).collect();

@@ -28,7 +28,7 @@ impl Scenes {
             Some(builtin) if !self.resolved => {
                 print(&format!("# {}: {}\n{}", builtin.name, builtin.about, builtin.defaults))
             }
-            _ => print(&toml::to_string(&Source::with_sets(&name, self.sets).resolve()?)?),
+            _ => print(&Source::with_sets(&name, self.sets).resolve()?.to_toml()?),
         }
     }
 }

@@ -127,7 +127,7 @@ mod tests {
     use crate::scene::SceneFile;
 
     fn extents(file: &str) -> Vec<MediumExtent> {
-        let file: SceneFile = toml::from_str(file).unwrap();
+        let file = SceneFile::from_toml(file).unwrap();
         medium_extents(&file.scene(std::path::Path::new(".")).unwrap())
     }
 

@@ -21,7 +21,27 @@ pub struct Builtin {
     /// Defaults and meanings of the parameters, as TOML.
     pub defaults: &'static str,
     /// The scene file that follows from parameters.
-    pub resolve: fn(&str) -> std::result::Result<Result<SceneFile>, toml::de::Error>,
+    pub resolve: fn(&str) -> Resolved,
+}
+
+/// Parameters that are not TOML or not allowed, else the scene file, or why the parameters do not fit each other.
+pub type Resolved = std::result::Result<Result<SceneFile>, toml::de::Error>;
+
+// Functions with names, so that only this crate compiles the reading of parameters.
+fn resolve_slab(text: &str) -> Resolved {
+    toml::from_str(text).map(slab)
+}
+
+fn resolve_sphere(text: &str) -> Resolved {
+    toml::from_str(text).map(sphere)
+}
+
+fn resolve_shaft(text: &str) -> Resolved {
+    toml::from_str(text).map(shaft)
+}
+
+fn resolve_fogbox(text: &str) -> Resolved {
+    toml::from_str(text).map(fogbox::file)
 }
 
 /// Every built-in scene.
@@ -38,7 +58,7 @@ cell = 4.0          # side of the cell that stands for the layer, in mean free p
 scale = 1.0         # length of a mean free path in scene units
 probes = [0.1, 0.25, 0.5, 0.75, 0.9]  # depths of the fluence probes, in parts of the thickness
 ",
-        resolve: |text| toml::from_str(text).map(slab),
+        resolve: resolve_slab,
     },
     Builtin {
         name: "sphere",
@@ -50,7 +70,7 @@ g = 0.0             # asymmetry of the Henyey-Greenstein phase function, above -
 source = \"volume\"   # volume (uniform), point (at the centre), or incidence (isotropic, radiance 1/pi)
 probes = [0.0, 0.25, 0.5, 0.75, 0.9]  # distances of the fluence probes from the centre, in parts of the radius
 ",
-        resolve: |text| toml::from_str(text).map(sphere),
+        resolve: resolve_sphere,
     },
     Builtin {
         name: "shaft",
@@ -63,13 +83,13 @@ width = 8.0         # side of the beam, which fills 0 < x < width, -width/2 < y 
 depth = 2.0         # depth of the fluence probes, in mean free paths
 probes = [-1.0, -0.5, -0.25, 0.0, 0.25, 0.5, 1.0]  # x of the fluence probes, in mean free paths
 ",
-        resolve: |text| toml::from_str(text).map(shaft),
+        resolve: resolve_shaft,
     },
     Builtin {
         name: "fogbox",
         about: "a closed box of coloured walls with two blocks and a lamp, full of fog, with a camera: for render and map",
         defaults: fogbox::DEFAULTS,
-        resolve: |text| toml::from_str(text).map(fogbox::file),
+        resolve: resolve_fogbox,
     },
 ];
 

@@ -389,6 +389,22 @@ impl SensorFile {
 }
 
 impl SceneFile {
+    /// A scene file from its text. Reading and writing stand here, since serde compiles both anew for every crate that asks.
+    ///
+    /// # Errors
+    /// what is no TOML, or a key or value that is not allowed, with its place
+    pub fn from_toml(text: &str) -> std::result::Result<Self, toml::de::Error> {
+        toml::from_str(text)
+    }
+
+    /// The file as text, which reads back as the same.
+    ///
+    /// # Errors
+    /// those of serde; none is known
+    pub fn to_toml(&self) -> std::result::Result<String, toml::ser::Error> {
+        toml::to_string(self)
+    }
+
     /// The validated scene; names of other files are relative to `folder`.
     pub fn scene(&self, folder: &Path) -> Result<Scene> {
         let regions = self

@@ -98,7 +98,7 @@ fn learned(
 
 /// Measures one cell: a map of each kind.
 fn measure(settings: &Settings, cell: &CellId) -> anyhow::Result<CellOutput> {
-    let file: SceneFile = toml::from_str(SCENE).map_err(|e| anyhow!("importance.toml: {e}"))?;
+    let file = SceneFile::from_toml(SCENE).map_err(|e| anyhow!("importance.toml: {e}"))?;
     let (scene, replicate) = (file.scene(Path::new("."))?, cell.stream(STREAM));
     let mut output = CellOutput::new();
     let learning = ImportanceSettings {
