@@ -1,6 +1,7 @@
 //! The shaft: a rectangular beam into a box of fog that only absorbs.
 
 use crate::harness::Settings;
+use crate::setups::asked;
 use glam::DVec3;
 use turbid::Spectrum;
 use turbid::geometry::{Cuboid, Rectangle, Shape};
@@ -49,5 +50,5 @@ pub fn scene() -> anyhow::Result<Scene> {
     let section = Rectangle::new(DVec3::new(0.0, 0.0, -0.5), DVec3::X * WIDTH, DVec3::Y * LENGTH)?;
     let beam = Beam::new(DVec3::Z, Spectrum::ONE, Section::Rectangle(section))?;
     let regions = vec![Region { shape: Shape::Cuboid(fog), medium: medium.into() }];
-    Ok(Scene::new(SceneParts { regions, lights: vec![Light::Beam(beam)], ..SceneParts::default() })?)
+    Ok(asked(Scene::new(SceneParts { regions, lights: vec![Light::Beam(beam)], ..SceneParts::default() })?))
 }

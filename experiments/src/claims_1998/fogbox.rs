@@ -1,5 +1,6 @@
 //! The closed box of fog with two blocks, extinction 0.5 and albedo 0.8.
 
+use crate::setups::asked;
 use anyhow::anyhow;
 use std::path::Path;
 use turbid::Spectrum;
@@ -16,7 +17,7 @@ pub const VOLUME: f64 = 8.0;
 /// The box.
 pub fn scene() -> anyhow::Result<Scene> {
     let file = SceneFile::from_toml(SCENE).map_err(|e| anyhow!("fogbox-iso.toml: {e}"))?;
-    Ok(file.scene(Path::new("."))?)
+    Ok(asked(file.scene(Path::new("."))?))
 }
 
 /// What is seen, as one number.

@@ -1,14 +1,12 @@
 //! Scenes from plain numbers; extinction is 1 per unit of length unless a unit is given.
 
+use crate::setups::{asked, region};
 use glam::DVec3;
 use std::f64::consts::PI;
 use turbid::Spectrum;
 use turbid::geometry::{Face, Shape, Slab, Sphere};
 use turbid::light::{Beam, Faces, Isotropic, Light, Section};
-use turbid::math::Asymmetry;
-use turbid::medium::Homogeneous;
-use turbid::phase::Phase;
-use turbid::scene::{Orders, Quantity, Region, Scene, SceneParts, Sensor};
+use turbid::scene::{Orders, Quantity, Scene, SceneParts, Sensor};
 use turbid_analytic::Incidence;
 
 /// Side of the cell that stands for a slab [mfp].
@@ -25,12 +23,6 @@ pub struct Fog {
     pub g: f64,
 }
 
-fn region(shape: Shape, sigma_t: f64, albedo: f64, g: f64) -> turbid::Result<Region> {
-    let phase = Phase::with_asymmetry(Asymmetry::new("g", g)?);
-    let medium = Homogeneous::new(Spectrum::grey(sigma_t), Spectrum::grey(albedo), phase)?;
-    Ok(Region { shape, medium: medium.into() })
-}
-
 /// The slab under unit irradiance, one mean free path being `unit` scene lengths.
 pub fn slab(fog: Fog, incidence: Incidence, unit: f64) -> turbid::Result<Scene> {
     let shape = Shape::Slab(Slab::new(0.0, fog.tau * unit)?);
@@ -44,7 +36,12 @@ pub fn slab(fog: Fog, incidence: Incidence, unit: f64) -> turbid::Result<Scene> 
         }
     };
     let regions = vec![region(shape, 1.0 / unit, fog.albedo, fog.g)?];
-    Scene::new(SceneParts { regions, lights: vec![light], cell: Some(CELL * unit), ..SceneParts::default() })
+    Ok(asked(Scene::new(SceneParts {
+        regions,
+        lights: vec![light],
+        cell: Some(CELL * unit),
+        ..SceneParts::default()
+    })?))
 }
 
 /// The slab lit alike from both sides, which absorbs nothing: fluence 4 everywhere, at any asymmetry.
@@ -52,7 +49,12 @@ pub fn furnace_slab(tau: f64, g: f64) -> turbid::Result<Scene> {
     let shape = Shape::Slab(Slab::new(0.0, tau)?);
     let light = Light::Isotropic(Isotropic::new(shape.clone(), Faces::Both, Spectrum::grey(1.0 / PI))?);
     let regions = vec![region(shape, 1.0, 1.0, g)?];
-    Scene::new(SceneParts { regions, lights: vec![light], cell: Some(CELL), ..SceneParts::default() })
+    Ok(asked(Scene::new(SceneParts {
+        regions,
+        lights: vec![light],
+        cell: Some(CELL),
+        ..SceneParts::default()
+    })?))
 }
 
 /// A ball of fog of radius 1 lit alike from all sides, which absorbs nothing: fluence 4 everywhere and 4/3 collisions
@@ -60,11 +62,11 @@ pub fn furnace_slab(tau: f64, g: f64) -> turbid::Result<Scene> {
 pub fn furnace_ball(center: DVec3, g: f64) -> turbid::Result<Scene> {
     let shape = Shape::Sphere(Sphere::new(center, 1.0)?);
     let light = Light::Isotropic(Isotropic::new(shape.clone(), Faces::Both, Spectrum::grey(1.0 / PI))?);
-    Scene::new(SceneParts {
+    Ok(asked(Scene::new(SceneParts {
         regions: vec![region(shape, 1.0, 1.0, g)?],
         lights: vec![light],
         ..SceneParts::default()
-    })
+    })?))
 }
 
 /// A narrow beam along x at height `z` in a slab from 0 to 2.
@@ -72,11 +74,11 @@ pub fn beam_along(z: f64) -> turbid::Result<Scene> {
     let shape = Shape::Slab(Slab::new(0.0, 2.0)?);
     let section = Section::Disc { center: DVec3::new(0.0, 0.0, z), radius: 1e-3 };
     let light = Light::Beam(Beam::new(DVec3::X, Spectrum::ONE, section)?);
-    Scene::new(SceneParts {
+    Ok(asked(Scene::new(SceneParts {
         regions: vec![region(shape, 1.0, 0.5, 0.0)?],
         lights: vec![light],
         ..SceneParts::default()
-    })
+    })?))
 }
 
 /// The power that leaves through a face of the scene's slab, or is absorbed in it.

@@ -1,9 +1,11 @@
 //! Setups: a body of medium with its light, its power, its exact fluence where one is known, and places to ask.
 
+mod asked;
 mod body;
 mod setup;
 mod size;
 
+pub use asked::asked;
 pub use body::{Body, CELL, spiral};
 pub use setup::{FURNACE, Lighting, Setup, region};
 pub use size::Size;

@@ -1,5 +1,6 @@
 //! A body of medium with its light.
 
+use super::asked::asked;
 use super::body::{Body, CELL};
 use crate::theory::{Exact, slab_fluence, sphere_fluence};
 use anyhow::bail;
@@ -76,7 +77,7 @@ impl Setup {
         };
         let regions = vec![region(shape, 1.0, self.albedo, self.g)?];
         let cell = is_slab.then_some(CELL);
-        Ok(Scene::new(SceneParts { regions, lights: vec![light], cell, ..SceneParts::default() })?)
+        Ok(asked(Scene::new(SceneParts { regions, lights: vec![light], cell, ..SceneParts::default() })?))
     }
 
     /// Emitted power, of a slab that of the cell.
