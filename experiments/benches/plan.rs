@@ -1,9 +1,7 @@
 //! What a scene does not require costs nothing: the plan of a scene against everything forced on, in turn, in one run on
 //! one thread, by paths and by photons: maps filled and a picture made.
 //!
-//! `cargo bench -p turbid-experiments --bench plan`
-
-mod paired;
+//! `cargo bench -p turbid-benches --bench plan`
 
 use anyhow::{Context, Result};
 use paired::compare;
@@ -47,7 +45,7 @@ fn main() -> Result<()> {
 
 /// The box of fog, and the same box in clear air.
 fn scenes() -> Result<[(&'static str, Scene); 2]> {
-    let folder = PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/scenes"));
+    let folder = PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/../scenes"));
     let path = folder.join("fogbox-iso.toml");
     let load = |text: &str| -> Result<Scene> {
         let file: SceneFile = toml::from_str(text).with_context(|| path.display().to_string())?;

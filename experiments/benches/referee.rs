@@ -1,12 +1,10 @@
 //! How long an exact answer takes, and PythonicDISORT beside it, in one run on one thread.
 //!
-//! `cargo bench -p turbid-experiments --bench referee -- slab` runs the rows whose name contains the word.
+//! `cargo bench -p turbid-benches --bench referee -- slab` runs the rows whose name contains the word.
 //!
 //! The peer solves the same slab in the same session, in turn with the referee, if there is a Python that knows it:
 //! `python3 -m venv VENV && VENV/bin/pip install PythonicDISORT`, then `TURBID_PYTHON=VENV/bin/python` before the
 //! command. Both sides count the seconds of their own processor clock, one thread each.
-
-mod paired;
 
 use anyhow::{Context, Result, bail};
 use cpu_time::ThreadTime;
@@ -149,10 +147,7 @@ fn beside_the_peer(out: &mut impl Write, phase: &Phase, slab: &AnisotropicSlab) 
         Err(why) => {
             writeln!(out, "\nPythonicDISORT is not beside it: {why:#}.")?;
             writeln!(out, "  python3 -m venv VENV && VENV/bin/pip install PythonicDISORT")?;
-            writeln!(
-                out,
-                "  TURBID_PYTHON=VENV/bin/python cargo bench -p turbid-experiments --bench referee"
-            )?;
+            writeln!(out, "  TURBID_PYTHON=VENV/bin/python cargo bench -p turbid-benches --bench referee")?;
             return Ok(());
         }
     };
@@ -254,7 +249,7 @@ struct Peer {
 impl Peer {
     fn start() -> Result<Self> {
         let python = std::env::var("TURBID_PYTHON").unwrap_or_else(|_| "python3".into());
-        let script = concat!(env!("CARGO_MANIFEST_DIR"), "/benches/referee_peer.py");
+        let script = concat!(env!("CARGO_MANIFEST_DIR"), "/referee_peer.py");
         let known = Command::new(&python)
             .args(["-c", "import PythonicDISORT"])
             .stderr(Stdio::null())

@@ -1,12 +1,10 @@
 //! The photon tree against kiddo 6, in one run on one thread: 10^6 photons, uniform and in a light shaft,
 //! queries in the order of a ray march, power x phase function summed on both sides.
 //!
-//! `cargo bench --bench tree -- build` runs the rows whose name contains the word.
+//! `cargo bench -p turbid-benches --bench tree -- build` runs the rows whose name contains the word.
 //!
 //! kiddo is used at its best for this: an immutable tree of f32, its payload in the order of its leaves as
 //! one record a photon, unsorted results, a visitor for the fixed radius and reused scratch memory.
-
-mod paired;
 
 use glam::{DVec3, Vec3};
 use kiddo::{ImmutableKdTree, SquaredEuclidean};

@@ -1,6 +1,6 @@
 //! The path tracer on a box of fog, beside Mitsuba 3's volumetric path tracer, in turn, in one run on one thread each.
 //!
-//! `cargo bench -p turbid-experiments --bench fogbox -- iso` runs the fogs whose name contains a word; a number among the
+//! `cargo bench -p turbid-benches --bench fogbox -- iso` runs the fogs whose name contains a word; a number among the
 //! words is that of the rounds.
 //!
 //! Efficiency is 1/(mean squared error x processor seconds), over pixels and channels. Of path tracers the error is the

@@ -26,7 +26,7 @@ impl Peer {
             bail!("{python} has no modules mitsuba and numpy");
         }
         let mut process = Command::new(&python)
-            .arg(concat!(env!("CARGO_MANIFEST_DIR"), "/benches/fogbox/peer.py"))
+            .arg(concat!(env!("CARGO_MANIFEST_DIR"), "/fogbox/peer.py"))
             .arg(variant)
             .arg(folder)
             .stdin(Stdio::piped())

@@ -12,7 +12,7 @@ use turbid::scene::{Camera, Filter, Region, Scene, SceneFile, SceneParts, View};
 
 /// Where scenes are.
 pub fn folder() -> PathBuf {
-    PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/scenes"))
+    PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/../scenes"))
 }
 
 /// The box with the fog of this name.

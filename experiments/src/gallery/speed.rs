@@ -24,28 +24,28 @@ pub const ROWS: &[Row] = &[
         ratio: 3.31,
         low: 3.23,
         high: 3.38,
-        command: "cargo bench -p turbid-experiments --bench fogbox -- iso",
+        command: "cargo bench -p turbid-benches --bench fogbox -- iso",
     },
     Row {
         label: "The same in fog that scatters forwards",
         ratio: 2.29,
         low: 2.20,
         high: 2.40,
-        command: "cargo bench -p turbid-experiments --bench fogbox -- hg",
+        command: "cargo bench -p turbid-benches --bench fogbox -- hg",
     },
     Row {
         label: "The same in uneven fog",
         ratio: 2.51,
         low: 2.42,
         high: 2.60,
-        command: "cargo bench -p turbid-experiments --bench fogbox -- het",
+        command: "cargo bench -p turbid-benches --bench fogbox -- het",
     },
     Row {
         label: "Photon maps of 1998's size, seen directly, in a box of even fog, over Mitsuba's volpath at an error of 20 %",
         ratio: 10.61,
         low: 10.12,
         high: 11.05,
-        command: "cargo bench -p turbid-experiments --bench fogbox -- maps 8",
+        command: "cargo bench -p turbid-benches --bench fogbox -- maps 8",
     },
 ];
 
