@@ -6,7 +6,7 @@ use std::path::Path;
 /// The bytes of a file of at most `most` bytes.
 ///
 /// # Errors
-/// What the system says of a file that cannot be read; one line about what is no file, or too large
+/// What the system says of a file that cannot be read; one line about what is not a file, or too large
 pub fn read(path: &Path, most: u64) -> Result<Vec<u8>> {
     let refuse = |what: String| Err(Error::new(ErrorKind::InvalidInput, what));
     // Asked first: to open a pipe that nobody writes to would wait for ever.

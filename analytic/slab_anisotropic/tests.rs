@@ -93,7 +93,7 @@ fn the_slowest_decay_obeys_the_continued_fraction() {
         // Newton's step from our k is its error.
         let h = 1e-6 * k;
         let step = defect(k) * 2.0 * h / (defect(k + h) - defect(k - h));
-        assert!((step / k).abs() < 1e-13, "{albedo} {g}: k {k} off by {step:e}");
+        assert!((step / k).abs() < 1e-13, "{albedo} {g}: k {k} differs by {step:e}");
     }
 }
 

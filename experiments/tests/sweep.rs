@@ -73,17 +73,17 @@ fn fixed_scenes_agree() {
         .map(|((seed, alarm), _)| format!("seed {seed}: {}", alarm.lines().join("; ")))
         .collect();
     assert!(wrong.is_empty(), "{wrong:#?}\nrepeat: cargo run --release --bin sweep -- --seed SEED");
-    // In half of the scenes the loss of the light, or its double, would have been seen.
+    // In half of the scenes the loss of the light, or its double, would have been detected.
     let mut sharp: Vec<f64> = examined.iter().map(|(_, _, e)| e.smallest.unwrap_or(f64::INFINITY)).collect();
     sharp.sort_by(f64::total_cmp);
-    println!("smallest deviations seen: {sharp:.2?}");
+    println!("smallest detectable deviations: {sharp:.2?}");
     assert!(sharp[16] < 0.8, "{sharp:?}");
 }
 
 /// Seeds of the scenes above: in order, none left out.
 const SEEDS: std::ops::Range<u64> = 1000..1032;
 
-/// The negative control: a lamp that is a tenth brighter in what should be the same scene is seen, and confirmed.
+/// The negative control: a lamp that is a tenth brighter in what should be the same scene is detected, and confirmed.
 #[test]
 fn a_wrong_pair_is_seen() {
     use turbid_experiments::sweep::compare::unbiased;

@@ -159,7 +159,7 @@ mod tests {
         assert!((jackknife(&values, |v| mean(v) * mean(v)).value - exact).abs() < 1e-12);
     }
 
-    /// The pseudo-values of a mean are the values themselves: one map that carries the variance of 64 is seen, and
+    /// The pseudo-values of a mean are the values themselves: one map that carries the variance of 64 is detected, and
     /// seen in a root mean square; a normal sample is not taken for such.
     #[test]
     fn a_map_that_carries_the_variance_is_seen() {

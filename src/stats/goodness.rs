@@ -180,7 +180,7 @@ mod tests {
         }
     }
 
-    /// Right data: the rate at 5 % within its interval. Wrong data (u^1.02, off by at most 0.7 %): 1e5 values see it.
+    /// Right data: the rate at 5 % within its interval. Wrong data (u^1.02, wrong by at most 0.7 %): 1e5 values detect it.
     #[test]
     fn kolmogorov_smirnov_false_alarms_and_power() {
         let alarms = (0..4000).filter(|&s| kolmogorov_smirnov_test(&uniform(s, 50), |x| x).p < 0.05).count();
@@ -214,7 +214,7 @@ mod tests {
         assert_eq!(chi_squared_test(&[1.0, 1.0], &[1.0, 1.0], 0).p, 1.0);
     }
 
-    /// Data as far off as stated are seen at least 98 times in 100. Negative control: a third of it is hardly ever seen.
+    /// Data as far off as stated are detected at least 98 times in 100. Negative control: a third of it is hardly ever detected.
     #[test]
     fn the_smallest_deviations_are_seen() {
         let (n, sets) = (2000u64, 400u64);

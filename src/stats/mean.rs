@@ -1,8 +1,8 @@
-//! Tests of a mean, and what they can see.
+//! Tests of a mean, and what they can detect.
 
 use super::{ALPHA, Moments, normal_p, student_critical, student_p};
 
-/// The normal quantile of 99 per cent power, 2.33, rounded up: a bias of (t_alpha + 2.4) standard errors is seen 99
+/// The normal quantile of 99 per cent power, 2.33, rounded up: a bias of (t_alpha + 2.4) standard errors is detected 99
 /// times in 100 with many maps, 98.5 times with 64 (the estimated error adds to the spread; measured in the tests).
 pub const POWER_QUANTILE: f64 = 2.4;
 
@@ -115,7 +115,7 @@ pub(super) mod tests {
     }
 
     /// False alarms at 1 % over 20,000 right sets of 8 maps: the rate lies in its own interval. The normal
-    /// threshold on the same data is the negative control: it must be seen to be wrong.
+    /// threshold on the same data is the negative control: it must be detected to be wrong.
     #[test]
     fn false_alarm_rate_on_right_data() {
         let (mut by_t, mut by_normal) = (0, 0);

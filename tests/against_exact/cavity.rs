@@ -118,7 +118,7 @@ fn fluence_at_the_centre() {
     }
 }
 
-/// A wall that reflects half a per cent more is seen.
+/// A wall that reflects half a per cent more is detected.
 #[test]
 fn a_wall_half_a_per_cent_off() {
     for filling in [None, Some((0.9, 0.0))] {

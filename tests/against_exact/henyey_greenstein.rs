@@ -110,7 +110,7 @@ fn fluxes_to_a_part_in_a_thousand() {
     negative_controls(&scene, &exact_slab);
 }
 
-/// g or the albedo off by half a per cent must be seen: the reference is the right one, the medium is not.
+/// g or the albedo wrong by half a per cent must be detected: the reference is the right one, the medium is not.
 fn negative_controls(right: &Scene, exact_slab: &AnisotropicSlab) {
     let wrong = slab(2.0, 0.9, 0.75 * 1.005, Incidence::Beam(1.0));
     assert_ne!(right.regions(), wrong.regions());

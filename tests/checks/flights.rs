@@ -75,7 +75,7 @@ pub fn flights_are_the_exact_inverse() {
     }
 }
 
-/// The mean depth of so many flights each way; bias promised to be seen.
+/// The mean depth of so many flights each way; bias promised to be detected.
 ///
 /// A mean of n exponential numbers is known to 1/sqrt n: 5.4e7 see 0.1 per cent at the level of the suite, 1e7 0.25.
 pub fn flights_are_a_mean_free_path_long() {

@@ -31,7 +31,7 @@ pub fn exact(value: Value) -> (f64, f64) {
     (value.value, value.error + 16.0 * f64::EPSILON * value.value.abs())
 }
 
-/// Single scattering has a closed form of its own; with a second albedo or none it must be seen to be wrong.
+/// Single scattering has a closed form of its own; with a second albedo or none it must be detected to be wrong.
 pub fn single_scattering_is_the_closed_form() {
     let (tau, albedo) = (1.0, 0.5);
     let scene = slab(tau, albedo, 0.0, Incidence::Beam(0.5));

@@ -103,7 +103,7 @@ fn made_up(files: &[(&str, &str)]) -> Vec<Vec<String>> {
     circles(&imports).iter().map(names).collect()
 }
 
-/// The test of the test: circles of every form are seen.
+/// The test of the test: circles of every form are found.
 #[test]
 fn circles_would_be_seen() {
     let pair = [vec!["a.rs", "b.rs"]];

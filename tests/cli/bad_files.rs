@@ -352,7 +352,7 @@ fn checksum(bytes: &[u8]) -> u32 {
     })
 }
 
-/// What says that it is large is refused before it is read, and what has no end is no file.
+/// What says that it is large is refused before it is read, and what has no end is not a file.
 #[test]
 fn large_and_endless_files_are_refused() {
     let (folder, scene) = whole();

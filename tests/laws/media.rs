@@ -97,7 +97,7 @@ fn cumulated_depth(medium: &Medium, ray: &Ray, part: Interval) -> impl Fn(f64) -
 }
 
 /// Distances of collisions have the exact distribution, and ratio tracking the exact mean, for every density. The
-/// quadrature of clouds is good to 1e-4 of their extent, far below what is seen.
+/// quadrature of clouds is good to 1e-4 of their extent, far below what is detectable.
 #[test]
 fn tracking_follows_the_exact_integral() {
     const N: u64 = 1 << 15;

@@ -124,7 +124,7 @@ proptest! {
 }
 
 /// Stream, sampler and density together: the cumulated density of the samples is uniform. The negative control is drawn
-/// with g off by 0.005.
+/// with g wrong by 0.005.
 #[test]
 fn samples_of_a_stream_follow_the_density() {
     const N: u64 = 1 << 20;

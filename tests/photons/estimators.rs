@@ -99,7 +99,7 @@ fn profiles_of_eight_are_those_of_one() {
             let u2: [f32; 8] = std::array::from_fn(|lane| (step * 8 + lane) as f32 / 15_999.0);
             for (found, u2) in kernel.profiles(f32x8::new(u2)).to_array().into_iter().zip(u2) {
                 let error = (f64::from(found) - kernel.profile(f64::from(u2))).abs();
-                assert!(error < 1e-6, "{} at u2 = {u2}: off by {error}", kernel.name());
+                assert!(error < 1e-6, "{} at u2 = {u2}: differs by {error}", kernel.name());
             }
         }
     }

@@ -103,7 +103,7 @@ fn steps_divide_the_stretch() {
 /// A uniform map of isotropic photons: any phase function scatters density/(4 pi) x albedo into every direction, and
 /// each rule makes of that what it makes of a constant source. 128 maps; sees one per cent, and so the factor 1.27 of
 /// the rule of 1998 at steps of half a mean free path. Behind a forward peak photons weigh unequally, (1+g^2)/(1-g^2)^2 is
-/// 8 times the variance: it sees three per cent.
+/// 8 times the variance: it detects three per cent.
 #[test]
 fn a_uniform_map() {
     let photons = Synthetic::new(Profile::Constant, DVec3::ZERO, DVec3::new(4.0, 2.0, 2.0)).unwrap();

@@ -62,7 +62,7 @@ fn in_passes(scene: &Scene, settings: &PhotonSettings, passes: u64, threads: usi
 }
 
 /// Sums of the same single-precision numbers in another order, and balls of photons whose places are rounded relative to
-/// another box: 1e-5 is far above the first, and a photon that changes sides of a ball, one in 1e6, would be seen.
+/// another box: 1e-5 is far above the first, and a photon that changes sides of a ball, one in 1e6, would be detected.
 #[test]
 fn passes_change_no_estimate() {
     for scene in scenes() {

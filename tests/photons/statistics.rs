@@ -31,7 +31,7 @@ struct Verdict {
     reference: f64,
     std_error: f64,
     p: f64,
-    /// The smallest bias that is seen with 99 % power.
+    /// The smallest detectable bias with 99 % power.
     detectable: f64,
 }
 
@@ -56,7 +56,7 @@ impl Verdict {
         )
     }
 
-    /// The mean is the reference, and a bias of `promised` would have been seen.
+    /// The mean is the reference, and a bias of `promised` would have been detected.
     fn accept(&self, what: &str, promised: f64) {
         assert!(self.p >= ALPHA, "{}", self.describe(what));
         assert!(self.detectable <= promised, "promised {promised}: {}", self.describe(what));

@@ -108,7 +108,7 @@ fn against_every_photon() {
 }
 
 /// A floor lit from above; below it, a hair's breadth apart, a ceiling lit three times as much from below; above it, a
-/// shelf. None of the others is seen, in the value or in the radius.
+/// shelf. None of the others is detected, in the value or in the radius.
 #[test]
 fn thin_walls_are_told_apart() {
     let mut stream = Stream::new(5, Purpose::Synthetic, 0, 0);
@@ -160,7 +160,7 @@ fn beside_a_wall() {
 }
 
 /// N independent photons on a unit square: the k-1 rule is unbiased at finite N in the mean over maps, the biased one
-/// is high by K(1) pi/(k-1); variances are those stated. The smallest bias seen is four per cent of the mean, half of the variance.
+/// is high by K(1) pi/(k-1); variances are those stated. The smallest detectable bias is four per cent of the mean, half of the variance.
 #[test]
 fn a_uniform_plane() {
     const N: u64 = 2000;

@@ -1,5 +1,5 @@
 //! Verdicts: a failure says everything needed to judge it and to repeat it. Every one states the smallest deviation that
-//! it can see, and fails where that is larger than its test promises.
+//! it can detect, and fails where that is larger than its test promises.
 
 use std::cell::RefCell;
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -83,7 +83,7 @@ fn repeat() -> String {
 fn describe(what: &str, mean: f64, reference: f64, test: &MeanTest, n: u64, seed: u64) -> String {
     format!(
         "{what}: estimate {mean:.9e}, error {:.2e}, reference {reference:.9e}, z {:+.2}, p {:.1e}, n {n}, seed {seed}, \
-         smallest bias seen {:.2e}; repeat: {}",
+         smallest detectable bias {:.2e}; repeat: {}",
         test.std_error,
         test.z,
         test.p,
@@ -145,7 +145,7 @@ pub fn agree(what: &str, a: &Moments, b: &Moments, promise: f64, seed: u64) {
     assert!(test.smallest_bias <= promise, "too weak for the promised {promise:.2e}; {line}");
 }
 
-/// Two independent means that must be seen to differ.
+/// Two independent means that must be detected to differ.
 pub fn differ(what: &str, a: &Moments, b: &Moments, seed: u64) {
     let test = two(a, b);
     let line = describe(what, a.mean(), b.mean(), &test, a.n().min(b.n()), seed);
@@ -212,10 +212,10 @@ pub const BEYOND_P: f64 = 37.0;
 
 fn describe_fit(what: &str, fit: &Fit, seed: u64) -> String {
     let Fit { p, smallest } = fit;
-    format!("{what}: p {p:.1e}, seed {seed}, smallest deviation seen {smallest:.2e}; repeat: {}", repeat())
+    format!("{what}: p {p:.1e}, seed {seed}, smallest detectable deviation {smallest:.2e}; repeat: {}", repeat())
 }
 
-/// A whole distribution must be right, and a deviation of `promise` must be seen.
+/// A whole distribution must be right, and a deviation of `promise` must be detected.
 pub fn fits(what: &str, fit: Fit, promise: f64, seed: u64) {
     let line = describe_fit(what, &fit, seed);
     println_line(&line);

@@ -128,7 +128,7 @@ const PUBLISHED: [(&str, &str, usize); 14] = [
     ("PPUB14", "critical_sphere,,,1.3,0,,,,1,,,,flux_ratio", 8),
 ];
 
-/// Misprinted in their last place: off by 0.57, 0.81, 3.59 and 0.60 units of it. Two independent methods of ours agree with
+/// Misprinted in their last place: wrong by 0.57, 0.81, 3.59 and 0.60 units of it. Two independent methods of ours agree with
 /// each other and with other programs there.
 const MISPRINTED: [&str; 4] = ["PPUB05", "PPUB09", "PPUB10", "PPUB12"];
 

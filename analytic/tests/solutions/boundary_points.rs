@@ -1,7 +1,7 @@
 //! Photon estimates at boundaries against simulated points: the treatments done to photons, one by one.
 //!
 //! Fixed seeds; the threshold of 4.9 standard errors of the normal has a false alarm of 1e-6 a comparison, and a fault of
-//! 7.3 standard errors is seen with 99 per cent power. Each test promises what that is of the mean.
+//! 7.3 standard errors is detected with 99 per cent power. Each test promises what that is of the mean.
 
 use turbid_analytic::boundary::{
     Body, Rejection, Treatment, body_moment, false_photon_mean, nearest_false_photon_mean,
@@ -119,7 +119,7 @@ impl Scene {
     }
 }
 
-/// The moments of a kernel in a scene, on 200 radii with straight lines between: off by some 1e-5.
+/// The moments of a kernel in a scene, on 200 radii with straight lines between: wrong by some 1e-5.
 struct Moments {
     cap: f64,
     values: Vec<[f64; 3]>,

@@ -1,6 +1,6 @@
 //! The claims. Each is judged on one number a map. A margin is what the quick preset can decide: at least five of
 //! the standard errors that trial runs of it had shown for the noisiest claim of its kind, so that quieter ones of the
-//! same kind have more room than they need. Margins are those of the quick preset, and a full run, which sees more, is
+//! same kind have more room than they need. Margins are those of the quick preset, and a full run, which detects more, is
 //! judged by the same.
 
 use super::fields::{FIELDS, Field, UNCOLLIDED};
@@ -84,7 +84,7 @@ fn radius_claims(results: &[CaseResult]) -> Vec<Claim> {
     claims
 }
 
-/// The orders in k and in the number of photons, where the predicted error is large enough to be seen.
+/// The orders in k and in the number of photons, where the predicted error is large enough to be detected.
 fn nearest_claims(settings: &Settings, results: &[CaseResult]) -> Vec<Claim> {
     let counts = UNCOLLIDED.photons(settings);
     let mut claims = Vec::new();
@@ -223,7 +223,7 @@ fn path_claim(
     Ok(Claim::within(&id, &text, Unit::FRACTION, Estimate::mean(&errors), -margin, margin))
 }
 
-/// The wrong estimators are wrong: the rule that sums all k photons is seen to be, and those that divide by a wrong number,
+/// The wrong estimators are wrong: the rule that sums all k photons is detected to be, and those that divide by a wrong number,
 /// which no estimate could hide, are wrong by what was predicted of them.
 fn mistake_claims(results: &[CaseResult], mistakes: &[Mistake]) -> Vec<Claim> {
     let mut claims = Vec::new();

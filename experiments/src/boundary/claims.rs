@@ -256,7 +256,7 @@ fn sheets(found: &Found) -> anyhow::Result<Vec<Claim>> {
     ];
     for (id, side, rejection, is_clipped, words) in faults {
         let statistic = mean_error(&of(side, rejection, Size::Radius(0.1), is_clipped))?;
-        let text = format!("beside a sheet, r=0.1: {words} is seen to be wrong (mean error)");
+        let text = format!("beside a sheet, r=0.1: {words} is detected to be wrong (mean error)");
         claims.push(Claim::detected(id, &text, Unit::FRACTION, statistic, 0.0, 0.2));
     }
     Ok(claims)

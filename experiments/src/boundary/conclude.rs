@@ -193,14 +193,14 @@ fn summarise(section: &mut Section, settings: &Settings, found: &Found) -> anyho
     ));
     section.notes.push(format!(
         "With the k nearest, photons of one history cluster and draw the k-th nearer, by a part in a few hundred. The first \
-         order of that is in the prediction; beside a face it is rough. {} cases in which it might be off by more than a \
+         order of that is in the prediction; beside a face it is rough. {} cases in which it might differ by more than a \
          tenth of the standard error that their k, probes and maps let expect are left out of the study's budget.",
         found.results.len() - used
     ));
     section.notes.push(
         "Photons that were rejected after they had set the radius leave the mean of a clipped k-nearest estimate right, since \
          the k-1 nearer photons are a fair sample of their ball; they shrink the ball and so raise the variance. A fault that \
-         no comparison of means can see."
+         no comparison of means can detect."
             .to_string(),
     );
     section.notes.push(

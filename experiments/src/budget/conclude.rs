@@ -17,9 +17,9 @@ const FEWEST_SETS: usize = 200;
 /// Resamples of all maps: the bound that one in a thousand exceeds stands between five of them.
 const RESAMPLES: usize = 5000;
 
-/// Made-up studies by which the smallest shift is found that the test of map sets sees.
+/// Made-up studies by which the smallest shift is found that the test of map sets detects.
 const SHIFTED: usize = 400;
-/// How sure a shift must be seen to count as seen.
+/// How sure a shift must be detected to count as detected.
 const POWER: f64 = 0.99;
 
 /// The two tests, with one term taken away or none.
@@ -225,7 +225,7 @@ fn summary(
             seen("neither")
         ),
         format!(
-            "The smallest fault that is seen with a probability of {} %: by the map sets, a bias of {shift:.2} standard \
+            "The smallest fault that is detected with a probability of {} %: by the map sets, a bias of {shift:.2} standard \
              errors of one set in all cases alike; by the sum of all cases, a bias of {} % in all alike; by the largest \
              distance, a bias of {:.1} standard errors, over all of its maps, in a single case.",
             percent(POWER),

@@ -219,7 +219,7 @@ pub mod tests {
         assert_ne!(fit(&drawn, None), fit(&Drawn::all(&groups, 2, None), None));
     }
 
-    /// A term's own draw has nothing but entries with it, and so sees it at once.
+    /// A term's own draw has nothing but entries with it, and so detects it at once.
     #[test]
     fn a_term_is_asked_of_its_own_entries() {
         let entries = made_up(3, &[(640, 4), (320, 1)], 0.0);

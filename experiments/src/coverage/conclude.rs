@@ -17,7 +17,7 @@ use turbid::stats::{Moments, student_p};
 const COVERAGE_MARGIN: f64 = 0.015;
 const ALARM_MARGIN: f64 = 0.0067;
 /// What Student's t with few degrees of freedom leaves of the normal quantile's 95 per cent is predicted, and must be at
-/// least this far from them to be seen.
+/// least this far from them to be detected.
 const NORMAL_SEEN: f64 = 0.02;
 /// Kolmogorov's distance that right p-values exceed once in 10^5, times the root of their number.
 const KOLMOGOROV: f64 = 2.47;

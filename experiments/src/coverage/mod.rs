@@ -1,7 +1,7 @@
 //! Claim: the laboratory's 95 per cent intervals cover what they should, 95 ± 1.5 times in a hundred, and its p-values
 //! are below 1 per cent once in a hundred.
 //! Referee: the exact expectations of estimates from independent photons, which theory knows to many more digits than a
-//! small study can see. Shown beside it: how coverage falls with fewer maps, the normal quantile in the place of
+//! small study can detect. Shown beside it: how coverage falls with fewer maps, the normal quantile in the place of
 //! Student's, and how often tests on right data raise an alarm.
 //!
 //! A small study is repeated 2,000 times. Each repeat is a few maps of uncollided photons and makes every interval that

@@ -33,7 +33,7 @@ pub struct Block {
     pub std_error: f64,
     /// Part of the difference that was predicted: the bound that blur and edges set for this block.
     pub allowed: f64,
-    /// The smallest deviation that is seen with a power of 99 per cent, before Holm.
+    /// The smallest detectable deviation with a power of 99 per cent, before Holm.
     pub smallest: f64,
     /// p-value of the difference beyond what is allowed.
     pub p: f64,
@@ -74,7 +74,7 @@ impl Comparison {
         }
     }
 
-    /// The median over blocks of the smallest relative deviation seen.
+    /// The median over blocks of the smallest detectable relative deviation.
     pub fn typical_smallest(&self) -> f64 {
         let bright = self.blocks.iter().filter(|b| b.reference > 0.0);
         let mut all: Vec<f64> = bright.map(|b| b.smallest / b.reference).collect();

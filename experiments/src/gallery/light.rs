@@ -250,7 +250,7 @@ mod tests {
                 let std_error = (a.std_error() * a.std_error() + b.std_error() * b.std_error()).sqrt();
                 let p = student_p((a.mean() - b.mean()).abs() / std_error, 63);
                 assert!(p > 1e-6, "{layer:?}: {} against {}, error {std_error}", b.mean(), a.mean());
-                // Half of a layer, lost or counted twice, is seen with a power of 99 per cent: (5.42 + 2.4) x 6 %. What is seen
+                // Half of a layer, lost or counted twice, is detected with a power of 99 per cent: (5.42 + 2.4) x 6 %. What is seen
                 // of the lamp comes by paths on both sides, from few pixels: there the whole is, (5.42 + 2.4) x 12 %.
                 let promised = if layer == Layer::Emission { 0.12 } else { 0.06 };
                 assert!(std_error < promised * a.mean(), "{layer:?}: error {std_error} of {}", a.mean());

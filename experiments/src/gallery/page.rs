@@ -164,7 +164,7 @@ fn comparison(c: &Compared) -> Markup {
         tr { th { "verdict" } td {
             span.verdict { (c.verdict) } ": " (c.blocks.1) " of " (c.blocks.0) " block means differ; masked " (percent(c.masked))
             " of the picture, heavy-tailed " (percent(c.heavy)) "; in a typical block a deviation of "
-            (percent(c.smallest)) " beyond what was predicted is seen"
+            (percent(c.smallest)) " beyond what was predicted is detectable"
         } }
     }
 }

@@ -37,7 +37,7 @@ pub struct Compared {
     pub masked: f64,
     /// Share of the picture without a verdict for its heavy tails.
     pub heavy: f64,
-    /// Median of the smallest relative deviations that are seen.
+    /// Median of the smallest detectable relative deviations.
     pub smallest: f64,
 }
 

@@ -16,7 +16,7 @@ pub const MIN_MAPS: u64 = 64;
 pub enum Kind {
     /// The truth lies within the margin; an end may be infinite.
     Within(Interval),
-    /// The truth differs from `from` by at least `by`: a planted fault is seen.
+    /// The truth differs from `from` by at least `by`: a planted fault is detected.
     Differs {
         /// The value of the right method.
         from: f64,
@@ -24,7 +24,7 @@ pub enum Kind {
         by: f64,
     },
     /// The statistic is the p-value of a test of fit, and the test does not refuse at [`FIT_LEVEL`]. To uphold it is
-    /// to say no more than that: what the test can see, claims of the next kind say.
+    /// to say no more than that: what the test can detect, claims of the next kind say.
     Fits,
     /// The statistic is the p-value of a test of fit that something wrong is put to, and the test refuses.
     Refused,
@@ -65,7 +65,7 @@ impl Claim {
         Claim::within(id, text, unit, statistic, bound, f64::INFINITY)
     }
 
-    /// A planted fault is seen: the truth differs from `from` by `by` or more, as the whole interval says; an interval
+    /// A planted fault is detected: the truth differs from `from` by `by` or more, as the whole interval says; an interval
     /// that excludes such a difference on both sides rejects the claim.
     pub fn detected(id: &str, text: &str, unit: Unit, statistic: Estimate, from: f64, by: f64) -> Self {
         let kind = Kind::Differs { from, by: by.abs() };
@@ -126,7 +126,7 @@ impl Claim {
 /// What the measurement says of a claim.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Verdict {
-    /// The whole interval lies within the margin; the fault is seen.
+    /// The whole interval lies within the margin; the fault is detected.
     Upheld,
     /// Significantly outside the margin; a fault as large as stated is excluded.
     Rejected,

@@ -141,7 +141,7 @@ fn methods(sections: &[SectionReport], numbers: &mut Numbers) -> Markup {
         p {
             "A claim is " b { "upheld" } " if the whole interval lies within the margin that it states; " b { "rejected" }
             " if the measurement lies outside significantly, after Holm’s correction over all " (claims) " claims of the study; "
-            b { "undecided" } " if neither holds. A planted fault is upheld if it is seen with the same significance. "
+            b { "undecided" } " if neither holds. A planted fault is upheld if it is detected with the same significance. "
             "A test of fit has no margin: it is upheld while its p is above " (number(FIT_LEVEL)) ", which shows that nothing large is overlooked, not that nothing is. "
             "The probability of any wrong rejection or detection in the whole study is at most " (number(FAMILY_WISE))
             ", and so is that of anything with a margin upheld wrongly, as far as means over maps are normal; the coverage of the "

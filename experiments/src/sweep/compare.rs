@@ -1,4 +1,4 @@
-//! Tests of what two methods made: cell by cell, layer by layer, and what they could have seen.
+//! Tests of what two methods made: cell by cell, layer by layer, and what they could have detected.
 
 use super::energy::Energy;
 use super::maps::{ByMaps, FACTOR};
@@ -9,7 +9,7 @@ use turbid::Spectrum;
 use turbid::integrators::Layer;
 use turbid::stats::{POWER_QUANTILE, student_critical, student_p};
 
-/// Level at which a number is measured again: what is no matter of chance must be seen then too, so that it may be larger than
+/// Level at which a number is measured again: what is no matter of chance must be detected then too, so that it may be larger than
 /// that of tests which decide.
 const ALPHA: f64 = 1e-4;
 
@@ -33,7 +33,7 @@ pub struct Test {
     pub allowed: f64,
     /// p-value of the rest.
     pub p: f64,
-    /// The smallest deviation that would have been seen, over what is expected; none where the tail is heavy.
+    /// The smallest detectable deviation, over what is expected; none where the tail is heavy.
     pub smallest: Option<f64>,
     /// Light of the cell, as a weight.
     pub weight: f64,
@@ -69,12 +69,12 @@ pub struct Check {
     pub name: String,
     /// Its tests.
     pub tests: Vec<Test>,
-    /// Half of the light is in cells where a deviation of this much, relative, would have been seen; none if half of it is in
+    /// Half of the light is in cells where a deviation of this much, relative, is detectable; none if half of it is in
     /// cells of heavy tails.
     pub smallest: Option<f64>,
 }
 
-/// The deviation that would have been seen in half of all light; none if half of it is in cells of heavy tails.
+/// The detectable deviation in half of all light; none if half of it is in cells of heavy tails.
 fn median(mut all: Vec<(f64, f64)>) -> Option<f64> {
     all.sort_by(|a, b| a.0.total_cmp(&b.0));
     let half = 0.5 * all.iter().map(|(_, weight)| weight).sum::<f64>();
@@ -91,7 +91,7 @@ fn has_map(layer: &str) -> bool {
     [Layer::Caustic, Layer::Indirect, Layer::Multiple].iter().any(|l| l.name() == layer)
 }
 
-/// What a scene would have shown: the deviation that would have been seen in half of its light, layer by layer and channel by
+/// What a scene would have shown: the detectable deviation in half of its light, layer by layer and channel by
 /// channel. In a layer it is that of the sharpest comparison of unbiased pictures or, where that of photon maps is less
 /// sharp and the layer is made by them, of that one. 0 where all is black.
 pub fn sharpness(checks: &[&Check]) -> Option<f64> {
@@ -137,7 +137,7 @@ impl Check {
         self.tests.iter().map(|t| (smallest(t).min(whole(&t.cell)), t.weight / all)).collect()
     }
 
-    /// Each layer and channel: what would have been seen in the whole picture, or in half of the light of its quarters, and
+    /// Each layer and channel: what would have been detected in the whole picture, or in half of the light of its quarters, and
     /// how much light there is.
     fn layers(&self) -> impl Iterator<Item = (&str, f64, f64)> {
         let wholes = self.tests.iter().filter(|t| !t.cell.contains(' '));
@@ -258,7 +258,7 @@ pub fn conserved(energy: &Energy) -> Check {
             let p = if heavy || is_rounding { 1.0 } else { student_p(z, moments.n() - 1) };
             tests.push(Test {
                 cell: format!("{name}.{channel}"),
-                // About 1, so that what can be seen is relative to the power.
+                // About 1, so that what can be detected is relative to the power.
                 value: 1.0 + moments.mean(),
                 expected: 1.0,
                 std_error,
@@ -426,7 +426,7 @@ mod tests {
     }
 
     /// Right pairs, 100 of 90 numbers: at 10^-4 one is measured again in the mean, six or more are in one of a thousand such
-    /// sets. One number of one deviates by what the comparison says it sees.
+    /// sets. One number of one deviates by what the comparison says it detects.
     #[test]
     fn two_means_differ_where_they_do() {
         let alarms = |check: &Check| check.tests.iter().filter(|t| t.is_suspicious()).count();
@@ -548,7 +548,7 @@ mod tests {
     }
 
     /// Tails without a variance, against numbers without a tail and against their like: false alarms are rare, and a change by
-    /// the smallest deviation that is said to be seen, darker or brighter, is seen. Shapes of 0.5 to 0.7, 200 sets of 64
+    /// the smallest deviation that is said to be detectable, darker or brighter, is detected. Shapes of 0.5 to 0.7, 200 sets of 64
     /// batches of 300 for each: at most one false alarm (0.02 are expected where tails are light), one miss in twenty.
     #[test]
     fn deviations_are_seen_under_heavy_tails() {

@@ -84,7 +84,7 @@ pub struct Summary {
 pub struct Examined {
     /// Comparisons.
     pub checks: Vec<Summary>,
-    /// The smallest deviation that would have been seen in half of the light, over all comparisons of pictures.
+    /// The smallest detectable deviation in half of the light, over all comparisons of pictures.
     pub smallest: Option<f64>,
     /// Methods that rightly said they cannot, and why: what is allowed is in the module's text.
     pub refused: Vec<String>,
@@ -123,7 +123,7 @@ impl Examined {
         self.checks = checks.iter().map(summary).collect();
     }
 
-    /// Why nothing can be said, if so: too little was seen, or nothing.
+    /// Why nothing can be said, if so: too little was detectable, or nothing.
     pub fn undecided(&self) -> Option<String> {
         if let Some(late) = self.late.first() {
             return Some(format!("{late} took too long"));
@@ -133,7 +133,7 @@ impl Examined {
         }
         match self.smallest {
             Some(smallest) if smallest <= SHARP => None,
-            Some(smallest) => Some(format!("a deviation of {:.0} % would not be seen", 100.0 * smallest)),
+            Some(smallest) => Some(format!("a deviation of {:.0} % would not be detected", 100.0 * smallest)),
             None => Some("heavy tails".into()),
         }
     }

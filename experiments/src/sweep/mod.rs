@@ -41,7 +41,7 @@
 //! *Sharpness.* Every number says the smallest deviation that it would have shown with 99 per cent power,
 //! (t + 2.4) standard errors at 10^-4, and what the radius explains besides. In a layer and channel that is the number of the
 //! sharpest comparison of unbiased pictures; where the layer is made by photon maps, the larger of this and that of the maps.
-//! A scene's number is the median over light: half of it is where so much would have been seen. Above 20 per cent
+//! A scene's number is the median over light: half of it is where so much would have been detected. Above 20 per cent
 //! the scene counts as undecided; a run in which more than a tenth is so does not pass.
 //!
 //! # Cost

@@ -270,7 +270,7 @@ fn one(settings: &Settings) -> anyhow::Result<u8> {
             let smallest = check.smallest.map_or(none.into(), |s| format!("{:.1} %", 100.0 * s));
             writeln!(
                 out,
-                "{:44} {:3} numbers, smallest deviation seen {smallest}",
+                "{:44} {:3} numbers, smallest detectable deviation {smallest}",
                 check.check, check.tests
             )?;
             if let Some(worst) = &check.worst {
@@ -284,7 +284,7 @@ fn one(settings: &Settings) -> anyhow::Result<u8> {
         let (word, seconds) = (verdict.word(), record.seconds);
         writeln!(
             out,
-            "{word}; smallest deviation seen in half of the light: {smallest}; {seconds:.1} s of CPU time"
+            "{word}; smallest detectable deviation in half of the light: {smallest}; {seconds:.1} s of CPU time"
         )
     })?;
     if let Some(path) = &record.smallest {

@@ -131,7 +131,7 @@ mod tests {
             let test = turbid::stats::t_test(&found, clustering(0.9, g, radius), 1e-4);
             assert!(test.p > turbid::stats::ALPHA, "g {g}: {test:?}");
         }
-        // The isotropic sum without those that leave and come back, 0.575, would be seen; so would the first order
+        // The isotropic sum without those that leave and come back, 0.575, would be detected; so would the first order
         // alone behind the forward peak.
         assert!(turbid::stats::t_test(&counted(0.9, 0.0, 0.4), 0.575, 0.0).p < turbid::stats::ALPHA);
         assert!(turbid::stats::t_test(&counted(0.9, 0.75, 0.8), 1.08, 0.0).p < turbid::stats::ALPHA);

@@ -105,7 +105,7 @@ fn conclude(_: &Settings, predictions: &[Prediction], cells: &Cells) -> anyhow::
     let small = cells.estimate(&case(0.8), "bias")?.minus(predicted(0.8));
     Ok(Section {
         summary: vec![
-            "The measured bias follows r²/10 within a tenth, and a fault of 5 per cent is seen.".to_string(),
+            "The measured bias follows r²/10 within a tenth, and a fault of 5 per cent is detected.".to_string(),
             "Every map is estimated at four gather sizes, so the four share their noise; the factor between measured and \
              predicted bias is fitted to each map by itself, and its error is the spread over maps."
                 .to_string(),
@@ -114,7 +114,7 @@ fn conclude(_: &Settings, predictions: &[Prediction], cells: &Cells) -> anyhow::
             Claim::within("amplitude", "Measured bias over predicted bias is 1 within 10 per cent.", Unit::ONE, amplitude, 0.9, 1.1),
             Claim::within("residual", "No bias is left at r = 0.8 beside the predicted one, within 0.05 per cent.", Unit::FRACTION, small, -0.0005, 0.0005),
             Claim::within("wrong", "The control has no bias beyond the predicted one, within 1 per cent.", Unit::FRACTION, control, -0.01, 0.01),
-            Claim::detected("control", "The planted fault of 5 per cent is seen.", Unit::FRACTION, control, 0.0, 0.025),
+            Claim::detected("control", "The planted fault of 5 per cent is detected.", Unit::FRACTION, control, 0.0, 0.025),
         ],
         figures: vec![figure(cells)?],
         tables: vec![Table::of_rows("Bias at four gather sizes: the measured values scatter about the prediction by their errors.", &rows)],

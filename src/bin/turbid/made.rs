@@ -1,4 +1,4 @@
-//! What making a picture took.
+//! What a picture took.
 
 use cpu_time::ProcessTime;
 use std::time::{Duration, Instant};
@@ -6,7 +6,7 @@ use turbid::integrators::mapper::{Report, Settings};
 use turbid::photons::maps::{MapReport, Maps};
 use turbid::sensor::Film;
 
-/// What making a picture took.
+/// What a picture took.
 pub struct Made {
     /// The picture.
     pub film: Film,

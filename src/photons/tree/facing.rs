@@ -51,9 +51,9 @@ impl FacingFilter {
     fn new(tangent: &Tangent) -> Self {
         let splat = |x: f64| f32x8::splat(x as f32);
         let normal = tangent.normal.to_array().map(splat);
-        // Three coordinates of two points, each off by 2^-25 and by as much again in the products.
+        // Three coordinates of two points, each wrong by 2^-25 and by as much again in the products.
         let rounding = 12.0 / f64::from(1u32 << 25);
-        // Three coordinates of two unit normals, each off by 2^-25, and their differences.
+        // Three coordinates of two unit normals, each wrong by 2^-25, and their differences.
         let turn = tangent.turn + rounding;
         FacingFilter {
             normal,
