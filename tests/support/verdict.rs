@@ -212,7 +212,10 @@ pub const BEYOND_P: f64 = 37.0;
 
 fn describe_fit(what: &str, fit: &Fit, seed: u64) -> String {
     let Fit { p, smallest } = fit;
-    format!("{what}: p {p:.1e}, seed {seed}, smallest detectable deviation {smallest:.2e}; repeat: {}", repeat())
+    format!(
+        "{what}: p {p:.1e}, seed {seed}, smallest detectable deviation {smallest:.2e}; repeat: {}",
+        repeat()
+    )
 }
 
 /// A whole distribution must be right, and a deviation of `promise` must be detected.
