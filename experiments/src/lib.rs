@@ -3,6 +3,7 @@
 //! Each experiment is a module with a constant `EXPERIMENT`, listed in [`ALL`]; [`harness`] runs them, [`theory`] has
 //! what their predictions share, and [`report`] writes what they found.
 
+pub mod answer;
 pub mod bias;
 pub mod blur;
 pub mod boundary;
@@ -23,7 +24,7 @@ pub mod sweep;
 pub mod theory;
 pub mod tradeoff;
 
-use harness::Experiment;
+use harness::{Closing, Experiment};
 
 /// All experiments, in the order of the report.
 pub const ALL: &[Experiment] = &[
@@ -37,3 +38,6 @@ pub const ALL: &[Experiment] = &[
     coverage::EXPERIMENT,
     claims_1998::EXPERIMENT,
 ];
+
+/// What is made of all of them together: what opens the report, in this order.
+pub const CLOSINGS: &[Closing] = &[answer::CLOSING, budget::CLOSING];

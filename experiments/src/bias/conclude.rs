@@ -31,7 +31,7 @@ pub fn conclude(settings: &Settings, predictions: &[Prediction], cells: &Cells) 
     // The wrong rule is there too: what it adds is predicted like the rest.
     let group = |case: &Case| Case::group(case.field, case.photons);
     section.budget = results.iter().map(|r| r.entry(group(&r.case), &r.case.name())).collect();
-    section.claims = claims::all(settings, cells, &results, &mistakes)?;
+    section.claims = claims::all(cells, &results, &mistakes)?;
     section.figures = figures::all(settings, cells, &results, &mistakes)?;
     section.tables.push(tables::errors(&results));
     section.tables.push(tables::paths(cells, &results)?);
@@ -60,10 +60,10 @@ fn mistakes(known: &Predictions, cells: &Cells, results: &[CaseResult]) -> anyho
         let predicted = result.predicted();
         let over = |divisor: f64| (1.0 + predicted) / divisor - 1.0;
         let (error, wrong) = (wrongly(&|_| 1.0 / field.setup.albedo), over(field.setup.albedo));
-        mistakes.push(Mistake { name: "divided by sigma_s", case, predicted, wrong, error });
+        mistakes.push(Mistake { name: Mistake::NAMES[0], case, predicted, wrong, error });
         let (collisions, _) = known.get(field.name, COLLISIONS)?;
         let (error, wrong) = (wrongly(&|map| 1.0 / stored[map]), over(collisions));
-        mistakes.push(Mistake { name: "divided by stored photons", case, predicted, wrong, error });
+        mistakes.push(Mistake { name: Mistake::NAMES[1], case, predicted, wrong, error });
     }
     Ok(mistakes)
 }

@@ -38,6 +38,11 @@ pub struct Mistake {
     pub error: Moments,
 }
 
+impl Mistake {
+    /// What can be done wrong.
+    pub const NAMES: [&'static str; 2] = ["divided by sigma_s", "divided by stored photons"];
+}
+
 /// The largest number of photons a map of a field.
 pub fn largest(results: &[CaseResult], field: &Field) -> u64 {
     results.iter().filter(|r| r.case.field == field).map(|r| r.case.photons).max().unwrap_or(0)

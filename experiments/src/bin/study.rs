@@ -3,6 +3,6 @@
 use std::process::ExitCode;
 
 fn main() -> ExitCode {
-    use turbid_experiments::{ALL, budget, harness};
-    harness::main_with("study", ALL, Some(budget::CLOSING))
+    use turbid_experiments::{ALL, CLOSINGS, harness};
+    harness::main_with("study", ALL, CLOSINGS)
 }

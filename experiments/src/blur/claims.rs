@@ -1,9 +1,9 @@
-//! The claims. Widths are of the mean profile, jackknifed over maps; a margin has room for at least five of the standard
-//! errors that trial runs of the quick preset had shown.
+//! The claims. Widths are of the mean profile, jackknifed over maps. Equivalent widths, and kernels at equal standard
+//! deviation, say the same again with more noise: they are in the tables and results, without a verdict.
 
 use super::cases::{KERNELS_AT, KERNELS_K, NEIGHBORS};
-use super::results::{CaseResult, Transfer, find, find_at, find_deviation, largest};
-use crate::harness::{Claim, Estimate, Unit, number};
+use super::results::{CaseResult, Transfer, find, find_at, largest};
+use crate::harness::{Claim, Estimate, GEOMETRIC, LEFT_OVER, PREDICTED, Unit, number};
 use crate::setups::Size;
 use turbid::estimators::Kernel;
 use turbid::stats::{Moments, amplitude_per_map};
@@ -25,59 +25,51 @@ pub fn all(results: &[CaseResult], transfers: &[Transfer]) -> anyhow::Result<Vec
 }
 
 /// Measured over predicted 10-90 width.
-fn rise_claim(id: &str, text: &str, result: Option<&CaseResult>, margin: f64) -> Option<Claim> {
+fn rise_claim(id: &str, text: &str, result: Option<&CaseResult>) -> Option<Claim> {
     let result = result?;
     let ratio = result.rise.times(1.0 / result.theory.rise_probed);
     let text = format!("10-90 width, {text}: measured over predicted");
-    Some(Claim::within(id, &text, Unit::ONE, ratio, 1.0 - margin, 1.0 + margin))
-}
-
-/// Measured over predicted equivalent width.
-fn equivalent_claim(id: &str, text: &str, result: Option<&CaseResult>, margin: f64) -> Option<Claim> {
-    let result = result?;
-    let ratio = result.equivalent?.times(1.0 / result.theory.equivalent_probed);
-    let text = format!("equivalent width, {text}: measured over predicted");
-    Some(Claim::within(id, &text, Unit::ONE, ratio, 1.0 - margin, 1.0 + margin))
+    Some(Claim::about(id, &text, Unit::ONE, ratio, 1.0, GEOMETRIC))
 }
 
 fn radius_claims(results: &[CaseResult]) -> Vec<Claim> {
-    let mut claims = Vec::new();
-    for (radius, rise, equivalent) in [(0.1, 0.05, 0.1), (0.2, 0.03, 0.05), (0.4, 0.02, 0.03)] {
+    let one = |radius: f64| {
         let result = find(results, Size::Radius(radius), Kernel::Uniform);
-        let text = format!("uniform kernel, fixed radius {radius}");
-        claims.extend(rise_claim(&format!("rise-radius-{radius}"), &text, result, rise));
-        claims.extend(equivalent_claim(&format!("equivalent-radius-{radius}"), &text, result, equivalent));
-    }
-    claims
+        rise_claim(
+            &format!("rise-radius-{radius}"),
+            &format!("uniform kernel, fixed radius {radius}"),
+            result,
+        )
+    };
+    [0.2, 0.4].into_iter().filter_map(one).collect()
 }
 
-/// The other kernels, at equal radius and at equal standard deviation.
+/// Other kernels, at the same radius and the same k; the Gaussian one's mass is narrow, and its width noisy.
 fn kernel_claims(results: &[CaseResult]) -> Vec<Claim> {
     let mut claims = Vec::new();
-    for kernel in Kernel::ALL.into_iter().filter(|&k| k != Kernel::Uniform) {
+    for kernel in Kernel::ALL.into_iter().filter(|k| !matches!(k, Kernel::Uniform | Kernel::Gaussian)) {
         let name = kernel.name();
-        let result = find(results, Size::Radius(KERNELS_AT), kernel);
-        let text = format!("{name} kernel, fixed radius {KERNELS_AT}");
-        claims.extend(rise_claim(&format!("rise-{name}-radius"), &text, result, 0.04));
-        let result = find_deviation(results, KERNELS_AT, kernel);
-        let text = format!("{name} kernel of the uniform one's standard deviation at radius {KERNELS_AT}");
-        claims.extend(rise_claim(&format!("rise-{name}-deviation"), &text, result, 0.04));
-        let result = find(results, Size::Nearest(KERNELS_K), kernel);
-        let text = format!("{name} kernel, {KERNELS_K} nearest");
-        claims.extend(rise_claim(&format!("rise-{name}-nearest"), &text, result, 0.04));
+        for (size, how, text) in [
+            (Size::Radius(KERNELS_AT), "radius", format!("fixed radius {KERNELS_AT}")),
+            (Size::Nearest(KERNELS_K), "nearest", format!("{KERNELS_K} nearest")),
+        ] {
+            let result = find(results, size, kernel);
+            claims.extend(rise_claim(
+                &format!("rise-{name}-{how}"),
+                &format!("{name} kernel, {text}"),
+                result,
+            ));
+        }
     }
     claims
 }
 
 fn nearest_claims(results: &[CaseResult]) -> Vec<Claim> {
-    let mut claims = Vec::new();
-    for k in NEIGHBORS {
+    let one = |k: usize| {
         let result = find(results, Size::Nearest(k), Kernel::Uniform);
-        let text = format!("uniform kernel, {k} nearest");
-        claims.extend(rise_claim(&format!("rise-k-{k}"), &text, result, 0.03));
-        claims.extend(equivalent_claim(&format!("equivalent-k-{k}"), &text, result, 0.06));
-    }
-    claims
+        rise_claim(&format!("rise-k-{k}"), &format!("uniform kernel, {k} nearest"), result)
+    };
+    NEIGHBORS.into_iter().filter_map(one).collect()
 }
 
 /// At fixed k the edge narrows as the root of third degree of the photons; at a fixed radius it stays.
@@ -85,9 +77,7 @@ fn number_claims(results: &[CaseResult]) -> Vec<Claim> {
     let most = largest(results);
     let fewest = results.iter().map(|r| r.case.photons).min().unwrap_or(0);
     let mut claims = Vec::new();
-    for (size, name, margin) in
-        [(Size::Nearest(20), "20 nearest", 0.05), (Size::Radius(0.4), "fixed radius 0.4", 0.05)]
-    {
+    for (size, name) in [(Size::Nearest(20), "20 nearest"), (Size::Radius(0.4), "fixed radius 0.4")] {
         let find = |photons| find_at(results, photons, size, Kernel::Uniform);
         let (Some(few), Some(many)) = (find(fewest), find(most)) else { continue };
         let predicted = few.theory.rise_probed / many.theory.rise_probed;
@@ -99,7 +89,7 @@ fn number_claims(results: &[CaseResult]) -> Vec<Claim> {
             number(predicted)
         );
         let id = format!("number-{}", name.replace(' ', "-"));
-        claims.push(Claim::within(&id, &text, Unit::ONE, ratio, 1.0 - margin, 1.0 + margin));
+        claims.push(Claim::about(&id, &text, Unit::ONE, ratio, 1.0, PREDICTED));
     }
     claims
 }
@@ -144,13 +134,13 @@ fn left_over_claims(results: &[CaseResult]) -> Vec<Claim> {
         };
         let moments: Moments =
             (0..first.single.n() as usize).map(left).collect::<Vec<f64>>().iter().collect();
-        claims.push(Claim::within(
+        claims.push(Claim::about(
             &format!("left-over-{}", name.replace(' ', "-")),
             &format!("{name}, all places of all profiles: what the prediction leaves, of the fluence inside"),
             Unit::FRACTION,
             Estimate::mean(&moments),
-            -0.005,
-            0.005,
+            0.0,
+            LEFT_OVER,
         ));
     }
     claims
@@ -169,8 +159,8 @@ fn mistaken_law_claim(results: &[CaseResult]) -> anyhow::Result<Option<Claim>> {
 
 /// A wrong statistic: the mean width of single maps' profiles.
 ///
-/// The gather and the margin were chosen after a trial run (seed 1), in which radius 0.2 was 5 per cent off but too noisy
-/// for a margin of 3; seeds 3 to 6, looked at after the choice, uphold it too.
+/// Gather and margin were chosen after a trial run (seed 1), in which radius 0.2 differed by 5 per cent but was too noisy for
+/// a margin of 3; seeds 3 to 6, looked at after the choice, uphold it too.
 fn mistaken_width_claim(results: &[CaseResult]) -> Option<Claim> {
     let fewest = results.iter().map(|r| r.case.photons).min()?;
     let result = find_at(results, fewest, Size::Nearest(20), Kernel::Uniform)?;
@@ -178,7 +168,8 @@ fn mistaken_width_claim(results: &[CaseResult]) -> Option<Claim> {
         "wrong on purpose, the width of each map's own profile, {fewest} photons, 20 nearest: mean over predicted"
     );
     let ratio = Estimate::mean(&result.single).times(1.0 / result.theory.rise_probed);
-    Some(Claim::detected("width-of-single-maps", &text, Unit::ONE, ratio, 1.0, 0.01))
+    let claim = Claim::detected("width-of-single-maps", &text, Unit::ONE, ratio, 1.0, 0.01);
+    Some(claim.chosen_after("case and difference", &[1, 3, 4, 5, 6]))
 }
 
 /// Contrasts of a sinusoid.
@@ -197,7 +188,7 @@ fn wave_claims(transfers: &[Transfer]) -> Vec<Claim> {
         );
         claims.extend(amplitude_per_map(&predicted, &per_map, &weights).map(|a| {
             let id = format!("contrast-{}", kernel.name());
-            Claim::within(&id, &text, Unit::ONE, Estimate::mean(&a.moments), 0.98, 1.02)
+            Claim::about(&id, &text, Unit::ONE, Estimate::mean(&a.moments), 1.0, GEOMETRIC)
         }));
     }
     let reversed = transfers.iter().find(|t| t.kernel == Kernel::Uniform && t.radius == 0.9);

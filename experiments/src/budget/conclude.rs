@@ -383,7 +383,7 @@ mod tests {
         let entries = made_up(4, &shape(), bias);
         let section = conclude(&Settings::new("unused"), &[report(entries)]).unwrap();
         assert!(matches!(section.claims[0].kind, Kind::Fits) && section.figures.len() == 1);
-        judge(section.claims).into_iter().map(|j| (j.claim.id, j.verdict)).collect()
+        judge(section.claims, 100).into_iter().map(|j| (j.claim.id, j.verdict)).collect()
     }
 
     /// Nothing left over is upheld, with each term that is there needed; 1 % left over is rejected.

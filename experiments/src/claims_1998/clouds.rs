@@ -168,7 +168,7 @@ pub fn conclude(settings: &Settings, cells: &Cells) -> anyhow::Result<Part> {
         said.push([
             "multiple against single scattering in clouds costs about 100 : 61".to_string(),
             format!(
-                "that is {TALK:.2}; ours is {} (95 %) with equal steps, map included: {}. With steps that halve where \
+                "that is {TALK:.2}; ours is {} (95 %) with equal steps, which were added after a first run with seed 1, map included: {}. With steps that halve where \
                  radiance changes it is {}, for the map's even light makes them longer. What is seen beyond single \
                  scattering is {} times as bright",
                 equal.words(),

@@ -12,7 +12,7 @@ pub fn conclude(settings: &Settings, predictions: &[Prediction], cells: &Cells) 
         pixels::conclude::conclude(settings, &known, cells)?,
         equal_error::conclude::conclude(settings, cells)?,
         edge::conclude::conclude(settings, &known, cells)?,
-        walls::conclude(cells),
+        walls::conclude(cells)?,
         clouds::conclude(settings, cells)?,
         importance::conclude::conclude(settings, cells)?,
     ];
@@ -24,6 +24,7 @@ pub fn conclude(settings: &Settings, predictions: &[Prediction], cells: &Cells) 
         section.tables.append(&mut own.tables);
         section.notes.append(&mut own.notes);
         section.rows.append(&mut own.rows);
+        section.answers.append(&mut own.answers);
         said.append(&mut sentences);
     }
     section.summary.extend(said.iter().map(|[sentence, found]| format!("\"{sentence}\": {found}.")));

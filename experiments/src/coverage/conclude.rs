@@ -13,9 +13,10 @@ use crate::harness::{
 use crate::prediction::{Entry, Prediction, Term};
 use turbid::stats::{Moments, student_p};
 
-/// Margins of the shares of 2,000 repeats: three of their binomial standard errors, 0.49 and 0.22 per cent.
-const COVERAGE_MARGIN: f64 = 0.015;
-const ALARM_MARGIN: f64 = 0.0067;
+/// How far coverage at 95 per cent and alarms at 1 per cent may lie from what they promise, on the mean over statistics: in
+/// a study of a hundred claims one more or fewer.
+const COVERAGE_MARGIN: f64 = 0.01;
+const ALARM_MARGIN: f64 = 0.005;
 /// What Student's t with few degrees of freedom leaves of the normal quantile's 95 per cent is predicted, and must be at
 /// least this far from them to be detected.
 const NORMAL_SEEN: f64 = 0.02;
@@ -106,23 +107,27 @@ fn rows(cells: &Cells) -> anyhow::Result<Vec<Row>> {
 
 fn claims(cells: &Cells) -> anyhow::Result<Vec<Claim>> {
     let mut claims = Vec::new();
-    for kind in Kind::MADE {
-        let name = case(kind, MAPS);
-        let id = |what: &str| format!("{}-{what}", kind.name());
-        let text = format!("{}, {MAPS} maps: how often its 95 % interval covers", kind.title());
-        let (low, high) = (0.95 - COVERAGE_MARGIN, 0.95 + COVERAGE_MARGIN);
-        let statistic = cells.estimate(&name, "coverage")?;
-        claims.push(Claim::within(&id("coverage"), &text, Unit::FRACTION, statistic, low, high));
-        let text = format!("{}, {MAPS} maps: how often p is below 0.01", kind.title());
-        let (low, high) = (0.01 - ALARM_MARGIN, 0.01 + ALARM_MARGIN);
-        let statistic = cells.estimate(&name, "p below 0.01")?;
-        claims.push(Claim::within(&id("alarms"), &text, Unit::FRACTION, statistic, low, high));
+    // The statistics share repeats: the mean over them of each batch is one number.
+    let of_all = |quantity: &str| -> anyhow::Result<Estimate> {
+        let lists = Kind::MADE.map(|kind| cells.values(&case(kind, MAPS), quantity));
+        let lists = lists.into_iter().collect::<anyhow::Result<Vec<Vec<f64>>>>()?;
+        let batches = lists.iter().map(Vec::len).min().unwrap_or(0);
+        let mean = |i: usize| lists.iter().map(|values| values[i]).sum::<f64>() / lists.len() as f64;
+        Ok(Estimate::mean(&(0..batches).map(mean).collect::<Vec<f64>>().iter().collect()))
+    };
+    let text = format!("{MAPS} maps, all statistics: how often 95 % intervals cover");
+    let statistic = of_all("coverage")?;
+    claims.push(Claim::about("coverage", &text, Unit::FRACTION, statistic, 0.95, COVERAGE_MARGIN));
+    let text = format!("{MAPS} maps, all statistics: how often p is below 0.01");
+    let statistic = of_all("p below 0.01")?;
+    claims.push(Claim::about("alarms", &text, Unit::FRACTION, statistic, 0.01, ALARM_MARGIN));
+    let scaled = Kind::MADE.map(|kind| {
         let (test, n) = uniformity(cells, kind);
-        let text =
-            format!("{}: distance of its p-values from uniform ones, times the root of n", kind.title());
-        let statistic = Estimate::exact(test.distance * (n as f64).sqrt(), 0.0);
-        claims.push(Claim::at_most(&id("uniform"), &text, Unit::ONE, statistic, KOLMOGOROV));
-    }
+        test.distance * (n as f64).sqrt()
+    });
+    let text = "all statistics: largest distance of their p-values from uniform ones, times the root of n";
+    let statistic = Estimate::exact(scaled.into_iter().fold(0.0, f64::max), 0.0);
+    claims.push(Claim::at_most("uniform", text, Unit::ONE, statistic, KOLMOGOROV));
     let few = case(Kind::Radius, SIZES[0]);
     let text = format!(
         "wrong on purpose, {} maps and the normal quantile in the place of Student's: coverage at a fixed radius",
@@ -131,11 +136,11 @@ fn claims(cells: &Cells) -> anyhow::Result<Vec<Claim>> {
     let statistic = cells.estimate(&few, "coverage by normal")?;
     claims.push(Claim::detected("normal-quantile", &text, Unit::FRACTION, statistic, 0.95, NORMAL_SEEN));
     let name = null_case(Population::Normal);
-    for (level, margin) in [(1e-2, 0.05), (1e-3, 0.15), (1e-4, 0.5)] {
+    for (level, margin) in [(1e-2, 0.05), (1e-3, 0.15)] {
         let text = format!("means of {VALUES} normal numbers: alarms on right data at {level}, over {level}");
         let statistic = cells.estimate(&name, &alarm_name(level))?.times(1.0 / level);
         let id = format!("false-alarms-{level}");
-        claims.push(Claim::within(&id, &text, Unit::ONE, statistic, 1.0 - margin, 1.0 + margin));
+        claims.push(Claim::about(&id, &text, Unit::ONE, statistic, 1.0, margin));
     }
     Ok(claims)
 }

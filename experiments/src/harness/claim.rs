@@ -33,6 +33,41 @@ pub enum Kind {
 /// The p-value at which a test of fit refuses.
 pub const FIT_LEVEL: f64 = FAMILY_WISE;
 
+/// How far a predicted error may lie from the measured one and still guide a choice of settings: a twentieth.
+///
+/// Claims ask what somebody who chooses settings would act on, alike for all of a kind. Which of them the default preset
+/// can decide (a half-margin of seven standard errors or more) was read from the standard errors of its run with seed 1,
+/// version 0.1.0; what it cannot is a reported number without a verdict.
+pub const PREDICTED: f64 = 0.05;
+/// The same of widths, losses at faces and contrasts, which geometry alone sets.
+pub const GEOMETRIC: f64 = 0.02;
+/// How large an error that nothing predicted, or an unbiased method's, may be, as a fraction of the exact value: a sixth of
+/// the smallest error that the study prices at its default size, 3 per cent.
+pub const LEFT_OVER: f64 = 0.005;
+
+/// When what a claim demands was fixed.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Basis {
+    /// Before its statistic was looked at.
+    Stated,
+    /// Its margin, statistic or range was chosen after a look at its outcome with these seeds, which cannot judge it.
+    ChosenAfter {
+        /// What was chosen.
+        what: &'static str,
+        /// The seeds.
+        seeds: &'static [u64],
+    },
+}
+
+impl Basis {
+    /// What was chosen after which seeds; empty of what was stated before.
+    pub fn words(self) -> String {
+        let Basis::ChosenAfter { what, seeds } = self else { return String::new() };
+        let list: Vec<String> = seeds.iter().map(u64::to_string).collect();
+        format!("{what} chosen after seed{} {}", if seeds.len() > 1 { "s" } else { "" }, list.join(", "))
+    }
+}
+
 /// One statement that a study can uphold or reject.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Claim {
@@ -46,13 +81,29 @@ pub struct Claim {
     pub statistic: Estimate,
     /// What it says.
     pub kind: Kind,
+    /// When that was fixed.
+    pub basis: Basis,
 }
 
 impl Claim {
     /// The truth lies from `low` to `high`.
     pub fn within(id: &str, text: &str, unit: Unit, statistic: Estimate, low: f64, high: f64) -> Self {
-        let kind = Kind::Within(Interval::new(low, high));
-        Claim { id: id.to_string(), text: text.to_string(), unit, statistic, kind }
+        Claim::new(id, text, unit, statistic, Kind::Within(Interval::new(low, high)))
+    }
+
+    fn new(id: &str, text: &str, unit: Unit, statistic: Estimate, kind: Kind) -> Self {
+        Claim { id: id.to_string(), text: text.to_string(), unit, statistic, kind, basis: Basis::Stated }
+    }
+
+    /// The truth lies within `margin` of `centre`.
+    pub fn about(id: &str, text: &str, unit: Unit, statistic: Estimate, centre: f64, margin: f64) -> Self {
+        Claim::within(id, text, unit, statistic, centre - margin, centre + margin)
+    }
+
+    /// The same claim, of which `what` was chosen after a look at its outcome with these seeds.
+    #[must_use]
+    pub fn chosen_after(self, what: &'static str, seeds: &'static [u64]) -> Self {
+        Claim { basis: Basis::ChosenAfter { what, seeds }, ..self }
     }
 
     /// The truth is at most `bound`.
@@ -68,14 +119,12 @@ impl Claim {
     /// A planted fault is detected: the truth differs from `from` by `by` or more, as the whole interval says; an interval
     /// that excludes such a difference on both sides rejects the claim.
     pub fn detected(id: &str, text: &str, unit: Unit, statistic: Estimate, from: f64, by: f64) -> Self {
-        let kind = Kind::Differs { from, by: by.abs() };
-        Claim { id: id.to_string(), text: text.to_string(), unit, statistic, kind }
+        Claim::new(id, text, unit, statistic, Kind::Differs { from, by: by.abs() })
     }
 
     /// A test of fit, of which `p` is the p-value, does not refuse.
     pub fn fits(id: &str, text: &str, p: f64) -> Self {
-        let statistic = Estimate::exact(p, 0.0);
-        Claim { id: id.to_string(), text: text.to_string(), unit: Unit::ONE, statistic, kind: Kind::Fits }
+        Claim::new(id, text, Unit::ONE, Estimate::exact(p, 0.0), Kind::Fits)
     }
 
     /// The same test refuses what is wrong on purpose, significantly after Holm.
@@ -96,6 +145,13 @@ impl Claim {
             Kind::Fits => format!("p above {}", number(FIT_LEVEL)),
             Kind::Refused => format!("p below {} (Holm)", number(FAMILY_WISE)),
         }
+    }
+
+    /// Half the width of a margin with two ends, in standard errors: how sharp the claim is. None of other claims.
+    pub fn sharpness(&self) -> Option<f64> {
+        let Kind::Within(margin) = self.kind else { return None };
+        let errors = 0.5 * (margin.high - margin.low) / self.statistic.std_error();
+        (self.statistic.maps().is_some() && errors.is_finite()).then_some(errors)
     }
 
     /// The p-value that decides: for a margin, of the truth lying on its nearest end although the estimate is beyond
@@ -182,16 +238,16 @@ impl Judged {
 ///
 /// Rejections (and detections) are significant after Holm at [`FAMILY_WISE`]; intervals have the level 1 -
 /// `FAMILY_WISE` / number of claims, so that all hold at once with that probability. A statistic of fewer than
-/// [`MIN_MAPS`] maps, or with a heavy tail, decides nothing.
-pub fn judge(claims: Vec<Claim>) -> Vec<Judged> {
+/// [`MIN_MAPS`] maps, or with a heavy tail, decides nothing; nor does a seed that was looked at when the claim was chosen.
+pub fn judge(claims: Vec<Claim>, seed: u64) -> Vec<Judged> {
     let share = FAMILY_WISE / claims.len().max(1) as f64;
     // A claim that cannot be decided must not borrow significance from the others.
     let p_values: Vec<f64> =
-        claims.iter().map(|c| if obstacle(&c.statistic).is_some() { 1.0 } else { c.p() }).collect();
+        claims.iter().map(|c| if obstacle(c, seed).is_some() { 1.0 } else { c.p() }).collect();
     let adjusted = holm(&p_values);
     let judge_one = |((claim, p), adjusted): ((Claim, f64), f64)| {
         let interval = claim.statistic.interval(1.0 - share);
-        let (verdict, advice) = match obstacle(&claim.statistic) {
+        let (verdict, advice) = match obstacle(&claim, seed) {
             Some(advice) => (Verdict::Undecided, advice),
             None => match decide(&claim, &interval, adjusted <= FAMILY_WISE) {
                 Verdict::Undecided => (Verdict::Undecided, advice(&claim, share)),
@@ -203,9 +259,13 @@ pub fn judge(claims: Vec<Claim>) -> Vec<Judged> {
     claims.into_iter().zip(p_values).zip(adjusted).map(judge_one).collect()
 }
 
-/// Why a statistic decides nothing, if so.
-fn obstacle(statistic: &Estimate) -> Option<String> {
+/// Why a claim's statistic decides nothing, if so.
+fn obstacle(claim: &Claim, seed: u64) -> Option<String> {
+    let statistic = &claim.statistic;
     match statistic.maps() {
+        _ if matches!(claim.basis, Basis::ChosenAfter { seeds, .. } if seeds.contains(&seed)) => {
+            Some(format!("seed {seed} was looked at when this was chosen: another seed can judge it"))
+        }
         Some(maps) if maps < MIN_MAPS => Some(format!("{maps} maps; a verdict needs {MIN_MAPS}")),
         _ if statistic.is_heavy_tailed() => Some("heavy-tailed: a few maps carry the variance".to_string()),
         _ => None,
@@ -261,6 +321,8 @@ mod tests {
     use turbid::rng::{Purpose, Stream};
     use turbid::stats::Moments;
 
+    const SEED: u64 = 100;
+
     fn estimate(set: u64, maps: u64, mean: f64, deviation: f64) -> Estimate {
         let mut stream = Stream::new(23, Purpose::Synthetic, set, 0);
         let normal =
@@ -273,7 +335,7 @@ mod tests {
     }
 
     fn verdict(claim: Claim) -> Verdict {
-        judge(vec![claim])[0].verdict
+        judge(vec![claim], SEED)[0].verdict
     }
 
     #[test]
@@ -294,7 +356,7 @@ mod tests {
         // The t of 63 degrees that is exceeded with 1e-3 and 5e-4.
         for (claims, critical) in [(1, student_critical(1e-3, 63)), (2, student_critical(5e-4, 63))] {
             let end = critical * error;
-            let first = |claim: Claim| judge(vec![claim; claims])[0].verdict;
+            let first = |claim: Claim| judge(vec![claim; claims], SEED)[0].verdict;
             for (part, within, beyond) in [
                 (1.0 + 1e-6, Verdict::Upheld, Verdict::Rejected),
                 (1.0 - 1e-6, Verdict::Undecided, Verdict::Undecided),
@@ -321,11 +383,30 @@ mod tests {
 
     #[test]
     fn few_maps_and_heavy_tails_decide_nothing() {
-        let few = judge(vec![within(estimate(0, 63, 2.0, 0.01))]);
+        let few = judge(vec![within(estimate(0, 63, 2.0, 0.01))], SEED);
         assert_eq!(few[0].verdict, Verdict::Undecided);
         assert!(few[0].advice.contains("63 maps"));
         let heavy: Moments = (0..1000).map(|i| if i == 0 { 1000.0 } else { 0.999 }).collect();
-        assert!(judge(vec![within(Estimate::mean(&heavy))])[0].advice.contains("heavy-tailed"));
+        assert!(judge(vec![within(Estimate::mean(&heavy))], SEED)[0].advice.contains("heavy-tailed"));
+    }
+
+    /// What was chosen after a look at seeds 1 and 2 is judged by any other, and takes no part in the family with them.
+    #[test]
+    fn a_seed_that_was_looked_at_decides_nothing() {
+        let claim = || within(estimate(0, 64, 1.2, 0.05)).chosen_after("margin", &[1, 2]);
+        assert_eq!(judge(vec![claim()], 3)[0].verdict, Verdict::Rejected);
+        let same = judge(vec![claim()], 2);
+        assert_eq!((same[0].verdict, same[0].p), (Verdict::Undecided, 1.0));
+        assert!(same[0].advice.contains("seed 2 was looked at"), "{}", same[0].advice);
+    }
+
+    #[test]
+    fn sharpness_is_half_the_margin_in_errors() {
+        let sampled = within(estimate(0, 64, 1.0, 0.05));
+        let expected = 0.05 / sampled.statistic.std_error();
+        assert!((sampled.sharpness().unwrap() - expected).abs() < 1e-9 * expected);
+        assert_eq!(within(Estimate::exact(1.0, 1e-9)).sharpness(), None);
+        assert_eq!(Claim::at_most("a", "a", Unit::ONE, estimate(0, 64, 1.0, 0.05), 2.0).sharpness(), None);
     }
 
     #[test]
@@ -347,7 +428,7 @@ mod tests {
             assert_eq!(verdict(Claim::refused("a", "a", p)), refused, "{p}");
         }
         // Among ten claims 5e-4 is neither a fit nor, after Holm, a misfit.
-        let many = |claim: Claim| judge(std::iter::repeat_n(claim, 10).collect())[0].verdict;
+        let many = |claim: Claim| judge(std::iter::repeat_n(claim, 10).collect(), SEED)[0].verdict;
         assert_eq!(many(Claim::fits("a", "a", 5e-4)), Verdict::Undecided);
         assert_eq!(many(Claim::refused("a", "a", 5e-4)), Verdict::Undecided);
         assert_eq!(many(Claim::refused("a", "a", 5e-5)), Verdict::Upheld);
@@ -367,7 +448,7 @@ mod tests {
     /// The advice is kept: with as many maps as it asks for, the claim is decided in most of 100 studies.
     #[test]
     fn the_advised_number_of_maps_decides() {
-        let judged = judge(vec![within(estimate(1, 64, 1.0, 0.2))]);
+        let judged = judge(vec![within(estimate(1, 64, 1.0, 0.2))], SEED);
         assert_eq!(judged[0].verdict, Verdict::Undecided);
         let distance = judged[0].claim.distance();
         let maps: u64 = judged[0].advice.split(' ').nth(1).unwrap().parse().unwrap();

@@ -59,6 +59,34 @@ impl Estimate {
         Estimate { std_error: libm::hypot(self.std_error, error), ..self }
     }
 
+    /// One over the statistic, with the same relative error.
+    #[must_use]
+    pub fn inverse(self) -> Self {
+        let value = 1.0 / self.value;
+        Estimate { value, std_error: self.std_error * value * value, ..self }
+    }
+
+    /// The root of a mean square, 0 where that came out below 0; its error follows from the mean square's, and where that
+    /// is within its own error of 0, from the root of that.
+    #[must_use]
+    pub fn root(self) -> Self {
+        let value = self.value.max(0.0).sqrt();
+        let slope = 0.5 / if self.value > self.std_error { value } else { self.std_error.sqrt() };
+        Estimate { value, std_error: self.std_error * slope, ..self }
+    }
+
+    /// The mean of independent statistics, with as many maps as the one of the fewest; none of none.
+    pub fn average(estimates: &[Estimate]) -> Option<Self> {
+        let count = estimates.len() as f64;
+        let square: f64 = estimates.iter().map(|e| e.std_error * e.std_error).sum();
+        (!estimates.is_empty()).then(|| Estimate {
+            value: estimates.iter().map(|e| e.value).sum::<f64>() / count,
+            std_error: square.sqrt() / count,
+            maps: estimates.iter().filter_map(|e| e.maps).min(),
+            is_heavy_tailed: estimates.iter().any(|e| e.is_heavy_tailed),
+        })
+    }
+
     /// The value.
     pub fn value(&self) -> f64 {
         self.value
@@ -115,6 +143,32 @@ mod tests {
 
     fn five() -> Estimate {
         Estimate::mean(&[1.0, 2.0, 3.0, 4.0, 5.0].iter().collect())
+    }
+
+    /// The inverse of 3 has the error of 3 over 9, and its inverse is 3 again.
+    #[test]
+    fn an_inverse_keeps_the_relative_error() {
+        let inverse = five().inverse();
+        assert!((inverse.std_error() - 0.5f64.sqrt() / 9.0).abs() < 1e-15);
+        assert!((inverse.inverse().std_error() - 0.5f64.sqrt()).abs() < 1e-15);
+    }
+
+    /// The root of 9 ± e is 3 ± e/6; of a square of nothing, 0 with half the root of its error.
+    #[test]
+    fn a_root_has_half_the_relative_error() {
+        let nine = five().times(3.0);
+        assert!((nine.root().std_error() - nine.std_error() / 6.0).abs() < 1e-15);
+        let nothing = five().minus(3.5);
+        let expected = 0.5 * nothing.std_error().sqrt();
+        assert!(nothing.root().value() == 0.0 && (nothing.root().std_error() - expected).abs() < 1e-15);
+    }
+
+    /// Two means of error sqrt(1/2): their mean has the error 1/2.
+    #[test]
+    fn independent_means_average() {
+        let both = Estimate::average(&[five(), five().minus(2.0)]).unwrap();
+        assert!((both.value() - 2.0).abs() < 1e-15 && (both.std_error() - 0.5).abs() < 1e-15);
+        assert_eq!((both.maps(), Estimate::average(&[])), (Some(5), None));
     }
 
     /// Mean 3, error sqrt(1/2), t(0.975; 4) = 2.776; against 2, t = sqrt 2: p = 0.2302.

@@ -26,6 +26,15 @@ pub fn number(x: f64) -> String {
 
 /// A value with its error, both to the error's second digit: 1.0031 ± 0.0042, (2.50 ± 0.11) x 10^-7.
 pub fn with_error(value: f64, error: f64) -> String {
+    to_digits_of_error(value, error, 2)
+}
+
+/// The same to the error's first digit, for headlines: 1.003 ± 0.004.
+pub fn with_rough_error(value: f64, error: f64) -> String {
+    to_digits_of_error(value, error, 1)
+}
+
+fn to_digits_of_error(value: f64, error: f64, of_error: i32) -> String {
     if !value.is_finite() || !error.is_finite() || error <= 0.0 {
         return match error {
             0.0 => number(value),
@@ -37,7 +46,7 @@ pub fn with_error(value: f64, error: f64) -> String {
     let power = if (-3..7).contains(&largest) { 0 } else { largest };
     let (value, error) = (value / ten_to(power), error / ten_to(power));
     // Digits that f64 or a reader cannot use are not printed.
-    let digits = (1 - exponent(error, 1)).clamp(0, 15);
+    let digits = (of_error - 1 - exponent(error, (of_error - 1) as usize)).clamp(0, 15);
     let text = format!("{} ± {}", print(value, digits), print(error, digits));
     if power == 0 { text } else { format!("({text}){}", times_ten_to(power)) }
 }
@@ -119,6 +128,13 @@ mod tests {
         for (x, text) in cases {
             assert_eq!(number(x), text);
         }
+    }
+
+    #[test]
+    fn one_digit_of_the_error_for_headlines() {
+        assert_eq!(with_rough_error(1.003_12, 0.004_21), "1.003 ± 0.004");
+        assert_eq!(with_rough_error(75.84, 1.44), "76 ± 1");
+        assert_eq!(with_rough_error(0.5, 0.097), "0.5 ± 0.1");
     }
 
     #[test]

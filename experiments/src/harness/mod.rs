@@ -4,6 +4,7 @@
 //! settings, each one map; they run in parallel, are kept in files, and are merged in sorted order, so that results
 //! are the same bits on any number of threads and after any interruption.
 
+mod answer;
 mod cell;
 mod cells;
 mod claim;
@@ -28,14 +29,18 @@ mod settings;
 mod study;
 mod unit;
 
+pub use answer::{Answer, Curves, Point, Reached, TARGETS, Untreated};
 pub(crate) use cell::read as read_cell;
 pub use cell::{CellId, CellOutput, CellRow};
 pub use cells::Cells;
-pub use claim::{Claim, FAMILY_WISE, FIT_LEVEL, Judged, Kind, MIN_MAPS, Verdict, judge};
+pub use claim::{
+    Basis, Claim, FAMILY_WISE, FIT_LEVEL, GEOMETRIC, Judged, Kind, LEFT_OVER, MIN_MAPS, PREDICTED, Verdict,
+    judge,
+};
 pub use digest::{Digest, program_digest};
 pub use estimate::Estimate;
 pub use experiment::Experiment;
-pub use format::{number, percent, percent_with_error, signed, with_error};
+pub use format::{number, percent, percent_with_error, signed, with_error, with_rough_error};
 pub use group::Group;
 pub(crate) use outcome::cost_line;
 pub use outcome::{Outcome, SectionReport};

@@ -1,7 +1,7 @@
 //! What an experiment says in the report.
 
 use super::format::{number, percent, with_error};
-use super::{Claim, Row, Unit};
+use super::{Answer, Claim, Row, Unit};
 use crate::prediction::Entry;
 use turbid::stats::{Moments, mean_interval};
 use turbid_figure::Figure;
@@ -155,6 +155,8 @@ pub struct Section {
     pub rows: Vec<Row>,
     /// The cases whose mean error is predicted term by term, for the budget of the whole study.
     pub budget: Vec<Entry>,
+    /// What photon maps cost beside paths, scene by scene, for the answer that opens the report.
+    pub answers: Vec<Answer>,
     /// How many predicted cases a rule of the experiment's own keeps out of `budget`.
     pub left_out: usize,
 }

@@ -5,6 +5,10 @@ use std::ffi::OsString;
 use std::path::PathBuf;
 use turbid_figure::Width;
 
+/// The seed of a study that names none: fixed before any run with it. Those below were looked at while the laboratory was
+/// built, and some claims were chosen then.
+pub const SEED: u64 = 100;
+
 /// How much is measured.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Preset {
@@ -65,7 +69,7 @@ struct Flags {
     #[arg(long)]
     full: bool,
     /// Seed of all random numbers
-    #[arg(long, default_value_t = 1)]
+    #[arg(long, default_value_t = SEED)]
     seed: u64,
     /// Factor on every number of photons
     #[arg(long, value_name = "SCALE", default_value_t = 1.0, value_parser = scale)]
@@ -115,11 +119,11 @@ fn scale(text: &str) -> Result<f64, String> {
 }
 
 impl Settings {
-    /// Quick settings with seed 1 on all cores, written to `out`.
+    /// Quick settings with the default seed on all cores, written to `out`.
     pub fn new(out: impl Into<PathBuf>) -> Self {
         Settings {
             preset: Preset::Quick,
-            seed: 1,
+            seed: SEED,
             photon_scale: 1.0,
             threads: cores(),
             out: out.into(),
@@ -144,7 +148,7 @@ impl Settings {
         if flags.full {
             folder.push_str("-full");
         }
-        if flags.seed != 1 {
+        if flags.seed != SEED {
             folder.push_str(&format!("-seed{}", flags.seed));
         }
         if flags.photons != 1.0 {

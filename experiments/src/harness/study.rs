@@ -30,8 +30,8 @@ pub struct Study<'a> {
     pub name: &'a str,
     /// Its experiments, in the order of the report.
     pub experiments: &'a [Experiment],
-    /// What is said of all of them together.
-    pub closing: Option<Closing>,
+    /// What is said of all of them together, in the order of the report.
+    pub closings: &'a [Closing],
     /// Digest of the program: cells of another are not reused.
     pub program: String,
 }
@@ -45,8 +45,8 @@ pub struct Closing {
     pub title: &'static str,
     /// What is asked, one or two sentences.
     pub question: &'static str,
-    /// What the sections together say, a function of its arguments alone. Its claims are judged with all others;
-    /// a section without claims stands last in the report, one with claims first.
+    /// What the sections together say, a function of its arguments alone. Its claims are judged with all others. It stands
+    /// before the experiments in the report, or last if it has neither claims nor figures.
     pub conclude: fn(&Settings, &[SectionReport]) -> anyhow::Result<Section>,
 }
 
@@ -83,15 +83,15 @@ impl Closing {
 
 /// The main function of an experiment's binary: arguments, study, summary, exit code.
 pub fn main(name: &'static str, experiments: &[Experiment]) -> ExitCode {
-    main_with(name, experiments, None)
+    main_with(name, experiments, &[])
 }
 
-/// The same with a closing section.
-pub fn main_with(name: &'static str, experiments: &[Experiment], closing: Option<Closing>) -> ExitCode {
-    guarded(name, || unguarded(name, experiments, closing))
+/// The same with closing sections.
+pub fn main_with(name: &'static str, experiments: &[Experiment], closings: &[Closing]) -> ExitCode {
+    guarded(name, || unguarded(name, experiments, closings))
 }
 
-fn unguarded(name: &'static str, experiments: &[Experiment], closing: Option<Closing>) -> ExitCode {
+fn unguarded(name: &'static str, experiments: &[Experiment], closings: &[Closing]) -> ExitCode {
     let settings = match Settings::parse(name, std::env::args_os()) {
         Ok(settings) => settings,
         Err(error) if !error.use_stderr() => {
@@ -115,7 +115,7 @@ fn unguarded(name: &'static str, experiments: &[Experiment], closing: Option<Clo
     }
     let finished = program_digest()
         .and_then(|program| {
-            run(&Study { name, experiments, closing, program: program.to_string() }, &settings)
+            run(&Study { name, experiments, closings, program: program.to_string() }, &settings)
         })
         .and_then(|outcome| {
             print(|out| out.write_all(report::summary(&outcome).as_bytes()))?;
@@ -245,12 +245,11 @@ pub fn run(study: &Study, settings: &Settings) -> anyhow::Result<Outcome> {
             failure,
         });
     }
-    if let Some(closing) = &study.closing {
-        let own = closing.report(settings, &sections);
-        let place = if own.section.claims.is_empty() { sections.len() } else { 0 };
-        sections.insert(place, own);
-    }
-    judge_all(&mut sections);
+    let closed = study.closings.iter().map(|closing| closing.report(settings, &sections));
+    let (first, last): (Vec<_>, Vec<_>) =
+        closed.partition(|own| !own.section.claims.is_empty() || !own.section.figures.is_empty());
+    let mut sections: Vec<SectionReport> = first.into_iter().chain(sections).chain(last).collect();
+    judge_all(&mut sections, settings.seed);
 
     let mut provenance = Provenance::now(study.name, settings, &study.program);
     provenance.cells = total;
@@ -360,7 +359,7 @@ fn with_claims_apart(section: Section) -> anyhow::Result<Section> {
 }
 
 /// Judges the claims of all sections together and gives each section its own back.
-fn judge_all(sections: &mut [SectionReport]) {
+fn judge_all(sections: &mut [SectionReport], seed: u64) {
     let mut all: Vec<Claim> = Vec::new();
     let mut counts = Vec::new();
     for part in sections.iter_mut() {
@@ -368,7 +367,7 @@ fn judge_all(sections: &mut [SectionReport]) {
         counts.push(claims.len());
         all.extend(claims);
     }
-    let mut judged = judge(all).into_iter();
+    let mut judged = judge(all, seed).into_iter();
     for (part, count) in sections.iter_mut().zip(counts) {
         part.judged = judged.by_ref().take(count).collect();
     }

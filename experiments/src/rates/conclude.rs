@@ -6,7 +6,7 @@ use super::fit::{exponent, exponent_of_means};
 use super::predict::Case;
 use super::results::{Curve, Point, ladder};
 use crate::harness::{
-    Cells, Claim, Estimate, Parameters, Row, Section, Settings, Table, Unit, signed, with_error,
+    Cells, Claim, Estimate, PREDICTED, Parameters, Row, Section, Settings, Table, Unit, signed, with_error,
 };
 use crate::prediction::{Entry, Prediction, Term};
 use turbid::estimators::Kernel;
@@ -41,7 +41,7 @@ pub fn conclude(settings: &Settings, _: &[Prediction], cells: &Cells) -> anyhow:
         notes: notes(),
         rows,
         budget: points.iter().map(entry).collect(),
-        left_out: 0,
+        ..Section::default()
     })
 }
 
@@ -126,15 +126,8 @@ fn claims(points: &[Point], curves: &[Curve], sizes: &[u64]) -> Vec<Claim> {
     let mut claims = Vec::new();
     for (curve, margin) in curves.iter().zip([0.05, 0.05, 0.02]) {
         let text = format!("{}: exponent of the mean squared error in the number of photons", curve.title);
-        let (low, high) = (curve.theory - margin, curve.theory + margin);
-        claims.push(Claim::within(
-            &format!("exponent-{}", curve.name),
-            &text,
-            Unit::ONE,
-            curve.exponent,
-            low,
-            high,
-        ));
+        let id = format!("exponent-{}", curve.name);
+        claims.push(Claim::about(&id, &text, Unit::ONE, curve.exponent, curve.theory, margin));
     }
     if let Some(&most) = sizes.last() {
         let point = ladder(points, most, INSIDE)[BLURRED];
@@ -145,7 +138,7 @@ fn claims(points: &[Point], curves: &[Curve], sizes: &[u64]) -> Vec<Claim> {
              its blur sets",
             point.radius
         );
-        claims.push(Claim::within("floor", &text, Unit::ONE, Estimate::mean(&ratios), 0.95, 1.05));
+        claims.push(Claim::about("floor", &text, Unit::ONE, Estimate::mean(&ratios), 1.0, PREDICTED));
     }
     // The mistake to which noise invites: a rate read off at a face would be taken for that of the inside.
     let face = &curves[2];

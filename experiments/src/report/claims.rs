@@ -1,6 +1,6 @@
 //! Claims and verdicts in the page.
 
-use super::tables::{self, Numbers, Row};
+use super::tables::{self, Numbers};
 use crate::harness::{Judged, Kind, SectionReport, Verdict, number, with_error};
 use maud::{Markup, html};
 
@@ -19,49 +19,86 @@ fn anchor(experiment: &str, judged: &Judged) -> String {
     format!("claim-{experiment}-{}", judged.claim.id.chars().map(safe).collect::<String>())
 }
 
-/// All claims of the study, under a line to open if they are many; what is not upheld stands open above.
-pub(super) fn overview(sections: &[SectionReport], numbers: &mut Numbers) -> Markup {
-    let all: usize = sections.iter().map(|s| s.judged.len()).sum();
-    let is_upheld = |j: &Judged| j.verdict == Verdict::Upheld;
-    let open: usize = sections.iter().flat_map(|s| &s.judged).filter(|j| !is_upheld(j)).count();
-    let caption =
-        "All claims with their verdicts. Measured values carry one standard error over independent maps.";
+/// The verdicts of one section in a line, which leads to its claims.
+pub(super) fn line(part: &SectionReport) -> Markup {
     html! {
-        @if open > 0 {
-            (list(sections, "Claims that are rejected or undecided.", &|j| !is_upheld(j), numbers))
-        }
-        @if all > open {
-            details.all {
-                summary { "All " (all) " claims in one table" }
-                (list(sections, caption, &|_| true, numbers))
+        @if let Some(first) = part.judged.first() {
+            p.verdicts {
+                a href=(format!("#{}", anchor(part.experiment.name, first))) {
+                    (part.judged.len()) @if part.judged.len() == 1 { " claim" } @else { " claims" }
+                }
+                ": " (verdicts(&part.judged))
             }
         }
     }
 }
 
-/// The chosen claims of all sections.
+/// "12 upheld, 1 undecided", each with its badge.
+pub(super) fn verdicts(judged: &[Judged]) -> Markup {
+    html! {
+        @for verdict in [Verdict::Upheld, Verdict::Rejected, Verdict::Undecided] {
+            @let n = count(judged, verdict);
+            @if n > 0 { b { (n) } " " (badge(verdict)) " " }
+        }
+    }
+}
+
+/// The appendix: what is not upheld, then every claim of the study in one table that can be searched.
+pub(super) fn appendix(sections: &[SectionReport], numbers: &mut Numbers) -> Markup {
+    let all: usize = sections.iter().map(|s| s.judged.len()).sum();
+    let is_upheld = |j: &Judged| j.verdict == Verdict::Upheld;
+    let open: usize = sections.iter().flat_map(|s| &s.judged).filter(|j| !is_upheld(j)).count();
+    let caption = "Every claim of the study. Measured values carry one standard error over independent maps. The interval is the \
+                   one that decides: it holds for all claims of the study at once. p is the probability of a measurement so far \
+                   outside the claim if it were true, after Holm’s correction (of a planted fault or a missing term: if it were \
+                   not there). Also in claims.csv, with half of each margin in standard errors.";
+    html! {
+        @if open > 0 {
+            (list(sections, "Claims that are rejected or undecided.", &|j| !is_upheld(j), false, numbers))
+        }
+        @if all > 0 {
+            details.all open[sections.len() == 1] {
+                summary { "All " (all) " claims in one table" }
+                @if all > FEW {
+                    p.find { label { "Show claims with the words " input id="find" type="search" placeholder="undecided sphere"; } }
+                }
+                (list(sections, caption, &|_| true, true, numbers))
+            }
+        }
+    }
+}
+
+/// Fewer claims than this are found by looking.
+const FEW: usize = 12;
+
+/// The chosen claims of all sections; `has_anchors` in the table that links lead to.
 fn list(
     sections: &[SectionReport],
     caption: &str,
     choose: &dyn Fn(&Judged) -> bool,
+    has_anchors: bool,
     numbers: &mut Numbers,
 ) -> Markup {
-    let maps =
-        |j: &Judged| j.claim.statistic.maps().map_or_else(|| "computed".to_string(), |m| m.to_string());
+    let is_one = sections.len() == 1;
     let content = html! {
-        thead { tr { th { "claim" } th.n { "measured" } th.n { "claimed" } th.n { "maps" } th { "verdict" } } }
-        tbody {
-            @for part in sections.iter().filter(|part| part.judged.iter().any(choose)) {
-                tr.group { td colspan="5" { a href=(format!("#{}", part.experiment.name)) { (part.experiment.title) } } }
+        thead {
+            tr {
+                @if !is_one { th { "experiment" } }
+                th { "claim" } th.n { "measured" } th.n { "interval" } th.n { "claimed" } th.n { "p against it" } th { "verdict" }
+            }
+        }
+        tbody id=[has_anchors.then_some("all-claims")] {
+            @for part in sections {
                 @for judged in part.judged.iter().filter(|j| choose(j)) {
                     tr {
-                        td.claim {
-                            a href=(format!("#{}", anchor(part.experiment.name, judged))) { (judged.claim.text) }
-                            (advice(judged))
+                        @if !is_one { td { a href=(format!("#{}", part.experiment.name)) { (part.experiment.name) } } }
+                        td.claim id=[has_anchors.then(|| anchor(part.experiment.name, judged))] {
+                            (judged.claim.text) (basis(judged)) (advice(judged))
                         }
                         td.n { (judged.measured()) }
+                        td.n { (interval(judged)) }
                         td.n { (judged.claim.margin()) }
-                        td.n { (maps(judged)) }
+                        td.n { (p_value(judged.adjusted)) }
                         td { (badge(judged.verdict)) }
                     }
                 }
@@ -71,24 +108,10 @@ fn list(
     tables::frame(numbers, caption, content)
 }
 
-/// The claims of one section.
-pub(super) fn own(part: &SectionReport, numbers: &mut Numbers) -> Markup {
-    let caption = "What is claimed here. The interval is the one that decides: it holds for all claims of the study at once. p is the probability of a measurement so far outside the claim if it were true, after Holm's correction (of a planted fault or a missing term: if it were not there).";
-    let head = html! {
-        tr { th { "claim" } th.n { "measured" } th.n { "interval" } th.n { "claimed" } th.n { "p against it" } th { "verdict" } }
-    };
-    let row = |judged: &Judged| Row {
-        cells: html! {
-            td.claim id=(anchor(part.experiment.name, judged)) { (judged.claim.text) (advice(judged)) }
-            td.n { (judged.measured()) }
-            td.n { (interval(judged)) }
-            td.n { (judged.claim.margin()) }
-            td.n { (p_value(judged.adjusted)) }
-            td { (badge(judged.verdict)) }
-        },
-        is_kept: judged.verdict != Verdict::Upheld,
-    };
-    tables::table(numbers, caption, head, part.judged.iter().map(row).collect())
+/// What was chosen after which runs.
+fn basis(judged: &Judged) -> Markup {
+    let words = judged.claim.basis.words();
+    html! { @if !words.is_empty() { div.advice { "† " (words) } } }
 }
 
 fn advice(judged: &Judged) -> Markup {

@@ -1,8 +1,8 @@
-//! The list of contents: each experiment with its verdicts, its headline and its figures.
+//! The list of contents: each experiment with its verdicts and its figures.
 
-use super::claims::{badge, count};
+use super::claims;
 use super::figures::anchor;
-use crate::harness::{SectionReport, Verdict};
+use crate::harness::SectionReport;
 use maud::{Markup, html};
 
 /// The list, for a study of more than one experiment.
@@ -14,29 +14,19 @@ pub(super) fn contents(sections: &[SectionReport]) -> Markup {
             ol {
                 @for part in sections {
                     li {
-                        div.line {
-                            a.title href=(format!("#{}", part.experiment.name)) { (part.experiment.title) }
-                            span.verdicts {
-                                @for verdict in [Verdict::Upheld, Verdict::Rejected, Verdict::Undecided] {
-                                    @let n = count(&part.judged, verdict);
-                                    @if n > 0 { b { (n) } " " (badge(verdict)) }
-                                }
+                        a.title href=(format!("#{}", part.experiment.name)) { (part.experiment.title) }
+                        span.places {
+                            @for figure in &part.section.figures {
+                                @let stem = format!("{}-{}", part.experiment.name, figure.name);
+                                " " a href=(format!("#{}", anchor(&stem))) title=(figure.name) { "Fig. " (increased(&mut next)) }
                             }
                         }
-                        @if let Some(headline) = part.section.summary.first() { p.headline { (headline) } }
-                        @if !part.section.figures.is_empty() {
-                            p.places {
-                                "Figures"
-                                @for figure in &part.section.figures {
-                                    @let stem = format!("{}-{}", part.experiment.name, figure.name);
-                                    " " a href=(format!("#{}", anchor(&stem))) title=(figure.name) { (increased(&mut next)) }
-                                }
-                            }
-                        }
+                        span.verdicts { (claims::verdicts(&part.judged)) }
                     }
                 }
-                li { div.line { a.title href="#methods" { "How verdicts are reached" } } }
-                li { div.line { a.title href="#origin" { "Where this comes from, and how to repeat it" } } }
+                li { a.title href="#claims" { "All claims" } }
+                li { a.title href="#methods" { "How verdicts are reached, and five words" } }
+                li { a.title href="#origin" { "Where this comes from, and how to repeat it" } }
             }
         }
     }

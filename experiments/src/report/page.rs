@@ -5,12 +5,16 @@ use super::contents::contents;
 use super::figures;
 use super::style::CSS;
 use super::tables::{self, Numbers};
+use crate::answer;
 use crate::harness::{
-    FAMILY_WISE, FIT_LEVEL, FigureFiles, MIN_MAPS, Provenance, Row, SectionReport, Settings, Table, Verdict,
-    number, row_label, with_error,
+    FAMILY_WISE, FIT_LEVEL, FigureFiles, GEOMETRIC, LEFT_OVER, MIN_MAPS, PREDICTED, Provenance, Row,
+    SectionReport, Settings, Table, number, percent, row_label, with_error,
 };
 use crate::prediction::Prediction;
 use maud::{DOCTYPE, Markup, PreEscaped, html};
+
+/// The section that opens the report.
+const ANSWER: &str = answer::CLOSING.name;
 
 /// Predictions shown in a section; the rest is in predictions.csv.
 const SHOWN: usize = 30;
@@ -37,58 +41,116 @@ pub fn page(study: &str, settings: &Settings, sections: &[SectionReport], proven
                     h1 { (title) }
                     div.byline { (provenance.date) " · " (provenance.settings) " · version " (provenance.version) ", revision " (provenance.revision) }
                 }
-                (overview(sections, &mut numbers))
-                @for part in sections { (section(part, sections.len() > 1, &mut numbers)) }
+                @if let [only] = sections {
+                    (section(only, false, &mut numbers))
+                } @else {
+                    (whole_study(sections, &mut numbers))
+                }
+                section.behind[sections.len() > 1] id="claims" {
+                    @if sections.len() > 1 { h2.flow { "All claims" } } @else { h3 { "Claims" } }
+                    (claims::appendix(sections, &mut numbers))
+                }
                 (methods(sections, &mut numbers))
                 (circumstances(study, settings, provenance, &mut numbers))
+                script { (PreEscaped(SCRIPT)) }
             }
         }
     };
     page.into_string()
 }
 
-fn overview(sections: &[SectionReport], numbers: &mut Numbers) -> Markup {
-    let count = |verdict| claims::count(sections.iter().flat_map(|s| &s.judged), verdict);
+/// Filters the claims by words, and opens what a link or a printer asks for.
+const SCRIPT: &str = "
+const find = document.getElementById('find');
+if (find) find.addEventListener('input', () => {
+  const words = find.value.toLowerCase().split(/\\s+/);
+  for (const row of document.querySelectorAll('#all-claims tr')) {
+    const text = row.textContent.toLowerCase();
+    row.hidden = !words.every(word => text.includes(word));
+  }
+});
+function show() {
+  const target = document.getElementById(decodeURIComponent(location.hash.slice(1)));
+  for (let element = target; element; element = element.parentElement)
+    if (element.tagName === 'DETAILS') element.open = true;
+  if (target) target.scrollIntoView();
+}
+addEventListener('hashchange', show);
+show();
+";
+
+/// The answer first, then the list of contents, then everything else.
+fn whole_study(sections: &[SectionReport], numbers: &mut Numbers) -> Markup {
+    let (first, others) = match sections {
+        [first, others @ ..] if first.experiment.name == ANSWER => (Some(first), others),
+        _ => (None, sections),
+    };
+    let judged: Vec<_> = sections.iter().flat_map(|s| s.judged.iter().cloned()).collect();
     html! {
-        @if sections.len() > 1 {
-            p {
-                "A photon map estimates light in fog, water or smoke from stored photons: fast, and biased by design. "
-                "This study measures that bias. Each experiment predicts a number from theory, writes it down, measures it on "
-                "independent photon maps, and compares it with a prediction or an exact solution. "
-                "Every claim states its margin before the measurement."
-            }
+        @if let Some(answer) = first { (section(answer, false, numbers)) }
+        p {
+            "A photon map estimates light in fog, water or smoke from stored photons: fast, and biased by design. This study \
+             predicts its errors from theory, writes them down, measures them on independent photon maps, and compares them \
+             with exact solutions."
         }
-        div.counts {
-            @for verdict in [Verdict::Upheld, Verdict::Rejected, Verdict::Undecided] {
-                span { b { (count(verdict)) } (verdict.word()) }
-            }
+        p.verdicts { a href="#claims" { (judged.len()) " claims" } ": " (claims::verdicts(&judged)) }
+        (contents(sections))
+        @for part in others { (section(part, true, numbers)) }
+    }
+}
+
+/// A section on one screen: question, headline, first figure; the rest behind a line to open, where there are others.
+fn section(part: &SectionReport, is_one_of_many: bool, numbers: &mut Numbers) -> Markup {
+    let own = &part.section;
+    // The answer is its sentences, its figure and its table.
+    let is_whole = !is_one_of_many;
+    let first = if is_whole { own.summary.len() } else { 1 };
+    let rest = html! {
+        @for paragraph in own.summary.iter().skip(first) { p { (paragraph) } }
+        @for figure in own.figures.iter().skip(1) { (draw(part, figure, numbers)) }
+        @for table in &own.tables { (tables::plain(table, numbers)) }
+        @if !part.predictions.is_empty() { (predictions(part, numbers)) }
+        @if !own.notes.is_empty() {
+            h3 { "Notes" }
+            @for note in &own.notes { p.note { (note) } }
         }
-        @if sections.len() > 1 {
-            (contents(sections))
-            (claims::overview(sections, numbers))
+    };
+    html! {
+        section id=(part.experiment.name) {
+            @if is_one_of_many {
+                h2 { (part.experiment.title) " " a.up href="#contents" title="to the contents" { "↑" } }
+            }
+            @if part.experiment.name != ANSWER { p.question { (part.experiment.question) } }
+            @for paragraph in own.summary.iter().take(first) { p { (paragraph) } }
+            @for figure in own.figures.iter().take(1) { (draw(part, figure, numbers)) }
+            @if is_one_of_many { (claims::line(part)) }
+            @if is_whole { (rest) } @else if has_more(part) { details.rest { summary { (more(part)) } (rest) } }
         }
     }
 }
 
-fn section(part: &SectionReport, has_heading: bool, numbers: &mut Numbers) -> Markup {
-    html! {
-        section id=(part.experiment.name) {
-            @if has_heading {
-                h2 { (part.experiment.title) " " a.up href="#contents" title="to the contents" { "↑" } }
-            }
-            p.question { (part.experiment.question) }
-            @for paragraph in &part.section.summary { p { (paragraph) } }
-            @for figure in part.section.figures.iter().take(1) { (draw(part, figure, numbers)) }
-            @if !part.judged.is_empty() { (claims::own(part, numbers)) }
-            @for figure in part.section.figures.iter().skip(1) { (draw(part, figure, numbers)) }
-            @for table in &part.section.tables { (tables::plain(table, numbers)) }
-            @if !part.predictions.is_empty() { (predictions(part, numbers)) }
-            @if !part.section.notes.is_empty() {
-                h3 { "Notes" }
-                @for note in &part.section.notes { p.note { (note) } }
-            }
-        }
-    }
+/// Whether there is anything behind the first figure.
+fn has_more(part: &SectionReport) -> bool {
+    let own = &part.section;
+    own.summary.len() > 1 || own.figures.len() > 1 || !own.tables.is_empty() || !own.notes.is_empty()
+}
+
+/// What there is.
+fn more(part: &SectionReport) -> String {
+    let own = &part.section;
+    let some = |n: usize, one: &str| match n {
+        0 => None,
+        1 => Some(format!("1 {one}")),
+        n => Some(format!("{n} {one}s")),
+    };
+    let parts = [
+        some(own.figures.len().saturating_sub(1), "more figure"),
+        some(own.tables.len(), "table"),
+        some(part.predictions.len(), "prediction"),
+        some(own.notes.len(), "note"),
+    ];
+    let parts: Vec<String> = parts.into_iter().flatten().collect();
+    if parts.is_empty() { "More".to_string() } else { format!("More: {}", parts.join(", ")) }
 }
 
 fn draw(part: &SectionReport, figure: &FigureFiles, numbers: &mut Numbers) -> Markup {
@@ -147,8 +209,19 @@ fn methods(sections: &[SectionReport], numbers: &mut Numbers) -> Markup {
             ", and so is that of anything with a margin upheld wrongly, as far as means over maps are normal; the coverage of the "
             "intervals is an experiment of its own. ± is one standard error. Intervals of 95 per cent are drawn in figures and decide nothing."
         }
+        p {
+            "A claim asks what somebody who chooses settings would act on: a predicted error within " (number(percent(PREDICTED))) " %, a width or a "
+            "loss at a face within " (number(percent(GEOMETRIC))) " %, an unexplained error within " (number(percent(LEFT_OVER))) " % of the exact value, alike for all of a kind. "
+            "Which of them the default study can decide was read from the standard errors of its run with seed 1 (version 0.1.0); the rest are "
+            "reported numbers without a verdict. Claims marked † had their margin, statistic or range chosen after their outcome "
+            "with the seeds named there had been seen: those seeds cannot judge them."
+        }
+        h3 { "Five words of this project" }
+        dl.words {
+            @for (word, meaning) in WORDS { dt { (word) } dd { (meaning) } }
+        }
         @if !sections.is_empty() {
-            (tables::frame(numbers, "Work done. Counts are results and repeat exactly; seconds belong to this machine.", html! {
+            div.behind { (tables::frame(numbers, "Work done. Counts are results and repeat exactly; seconds belong to this machine.", html! {
                 thead { tr { th { "experiment" } th.n { "cells" } th { "counts" } th.n { "CPU time" } } }
                 tbody {
                     @for part in sections {
@@ -160,10 +233,28 @@ fn methods(sections: &[SectionReport], numbers: &mut Numbers) -> Markup {
                         }
                     }
                 }
-            }))
+            })) }
         }
     }
 }
+
+/// What a reader meets here and in no textbook.
+const WORDS: [(&str, &str); 5] = [
+    (
+        "referee",
+        "the library of exact solutions, written without knowledge of the simulator, that every estimate is compared with",
+    ),
+    (
+        "error budget",
+        "the predicted terms of a mean error (k nearest, clusters, blur, edge, step, storage), and the test that their sum is what was measured",
+    ),
+    ("probe", "a place, or a place and a direction, at which every photon map of a group is asked"),
+    (
+        "cell",
+        "the smallest piece of a study: one independent photon map or batch of paths with random numbers of its own, kept on disk",
+    ),
+    ("left over", "a measured error less the predicted one, in per cent of the exact value"),
+];
 
 fn counters(part: &SectionReport) -> String {
     let texts: Vec<String> =
@@ -212,12 +303,14 @@ fn circumstances(study: &str, settings: &Settings, provenance: &Provenance, numb
         @if p.late_predictions {
             p.warning { "Predictions changed after some cells had been measured." }
         }
-        (tables::frame(numbers, "Circumstances of the measurement.", html! {
-            tbody { @for (name, value) in facts { tr { td { (name) } td { (value) } } } }
-        }))
+        div.behind {
+            (tables::frame(numbers, "Circumstances of the measurement.", html! {
+                tbody { @for (name, value) in facts { tr { td { (name) } td { (value) } } } }
+            }))
+        }
         h3 { "To repeat it" }
         pre { (settings.command(study)) }
-        p {
+        p.behind {
             "The same settings and seed give the same bits in " code { "results.csv" } " on any number of threads. Beside this page: "
             code { "results.csv" } " (every quantity), " code { "claims.csv" } " (the verdicts), " code { "predictions.csv" } ", "
             code { "timing.csv" } ", " code { "provenance.json" } ", " code { "figures/" } " (SVG and PNG for one and for two columns of print, and a table of each figure) and " code { "cells/" } " (every map). "

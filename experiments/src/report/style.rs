@@ -14,12 +14,14 @@ p { margin: 0 0 14px; max-width: 44em; }
 .kicker { letter-spacing: .08em; text-transform: uppercase; font-size: 13px; color: var(--soft); }
 .byline { font-size: 14px; color: var(--soft); margin-bottom: 28px; }
 .question { font-style: italic; font-size: 18px; }
-.counts { display: flex; gap: 12px; margin: 20px 0 24px; max-width: none; flex-wrap: wrap; }
-.counts span { font-family: system-ui, Arial, 'DejaVu Sans', sans-serif; border: 1px solid var(--line); border-radius: 4px; padding: 8px 16px; font-size: 15px; }
-.counts b { font-size: 22px; margin-right: 6px; font-weight: 600; }
+.verdicts { font-family: system-ui, Arial, 'DejaVu Sans', sans-serif; font-size: 14px; font-variant-numeric: tabular-nums; }
+.verdicts b { font-weight: 600; margin-left: 8px; }
+.find input { font: inherit; font-size: 15px; padding: 4px 8px; border: 1px solid var(--line); border-radius: 4px; }
+dl.words { display: grid; grid-template-columns: max-content 1fr; gap: 4px 16px; font-size: 15px; max-width: 60em; } dl.words dt { font-weight: 600; } dl.words dd { margin: 0; }
+.lead { font-weight: 600; } td > div:not(.advice) { white-space: nowrap; }
 ul { padding-left: 1.2em; margin: 0 0 14px; } li { margin-bottom: 6px; }
 a { color: #1a4f8b; text-decoration: none; } a:hover { text-decoration: underline; }
-.scroll { overflow-x: auto; margin: 18px 0 28px; }
+.scroll { overflow-x: auto; margin: 18px 0 28px; background: linear-gradient(90deg, #fff 40%, #fff0) 0 0 / 48px 100% local, linear-gradient(270deg, #fff 40%, #fff0) 100% 0 / 48px 100% local, linear-gradient(90deg, #0003, #0000) 0 0 / 16px 100% scroll, linear-gradient(270deg, #0003, #0000) 100% 0 / 16px 100% scroll; background-repeat: no-repeat; }
 table { border-collapse: collapse; width: 100%; font-size: 14px; line-height: 1.4; font-variant-numeric: tabular-nums; }
 caption, figcaption { text-align: left; font-size: 14px; line-height: 1.45; color: var(--ink); padding-bottom: 8px; caption-side: top; }
 .scroll caption { position: sticky; left: 0; max-width: 1024px; }
@@ -38,13 +40,9 @@ figure.narrow { max-width: 620px; }
 figure svg { display: block; width: 100%; height: auto; margin-bottom: 10px; }
 nav.contents { border-top: 1.5px solid var(--ink); border-bottom: 1.5px solid var(--ink); margin: 8px 0 26px; padding: 4px 0 8px; }
 nav.contents ol { margin: 0; padding-left: 1.8em; font-size: 15px; line-height: 1.45; }
-nav.contents li { margin: 12px 0 0; }
-nav.contents .line { display: flex; gap: 16px; justify-content: space-between; align-items: baseline; flex-wrap: wrap; }
+nav.contents li { margin: 5px 0 0; }
 nav.contents .title { font-weight: 600; }
-nav.contents .verdicts { white-space: nowrap; font-variant-numeric: tabular-nums; }
-nav.contents .verdicts b { font-weight: 600; margin-left: 12px; }
-nav.contents p { margin: 2px 0 0; max-width: 60em; }
-nav.contents .places { color: var(--soft); font-size: 13.5px; } nav.contents .places a { margin-left: 4px; }
+nav.contents .places { color: var(--soft); font-size: 13.5px; margin-left: 8px; } nav.contents .places a { margin-left: 4px; }
 h2 .up { font-size: 17px; color: var(--soft); margin-left: 6px; }
 summary { cursor: pointer; color: #1a4f8b; font-size: 14px; padding: 4px 0; }
 .fold { margin-bottom: 28px; } .fold .scroll { margin-bottom: 4px; }
@@ -55,14 +53,18 @@ tr:has(td:target), figure:target { background: #fff6d8; }
 .warning { border-left: 3px solid var(--bad); padding: 6px 0 6px 14px; }
 pre { background: var(--wash); border: 1px solid var(--line); border-radius: 4px; padding: 12px 14px; font-family: ui-monospace, Menlo, Consolas, 'DejaVu Sans Mono', monospace; font-size: 13.5px; white-space: pre-wrap; }
 code { font-family: ui-monospace, Menlo, Consolas, 'DejaVu Sans Mono', monospace; font-size: .86em; }
+details.rest > summary { margin-bottom: 12px; }
+@media (max-width: 600px) { body { padding: 24px 14px 48px; font-size: 16px; } h1 { font-size: 27px; } h2 { font-size: 21px; margin-top: 44px; } dl.words { grid-template-columns: 1fr; } dl.words dd { margin-bottom: 8px; } figure { overflow-x: auto; } figure svg { min-width: 560px; } figure.narrow svg { min-width: 0; } }
 @media print {
-  body { max-width: none; padding: 0; font-size: 10.5pt; }
-  h2 { break-before: page; } h2.flow { break-before: auto; }
-  figure, tr, .note { break-inside: avoid; } h3, caption { break-after: avoid; } thead { display: table-header-group; }
+  @page { size: A4; margin: 13mm 15mm; }
+  body { max-width: none; padding: 0; font-size: 9pt; line-height: 1.35; }
+  h1 { font-size: 19pt; } h2 { font-size: 13pt; margin: 4mm 0 1mm; padding-top: 1.5mm; break-after: avoid; } h1 + .byline { margin-bottom: 3mm; } .verdicts { font-size: 8pt; } .question { font-size: 10pt; }
+  p { margin-bottom: 2mm; max-width: none; } figure { margin: 2mm 0; } figure svg { max-height: 43mm; width: auto; max-width: 100%; margin-bottom: 2mm; }
+  figure, tr, .note, section > p { break-inside: avoid; } h3, caption { break-after: avoid; } thead { display: table-header-group; }
   .fold:not(:has(details[open])) tr.more:not(:has(td:target)) { display: table-row; }
-  .fold details, .all, h2 .up { display: none; }
-  nav.contents { break-inside: avoid; } .scroll { overflow: visible; } table { font-size: 8pt; line-height: 1.3; }
-  th, td { padding: 3px 8px 3px 0; } td.claim { min-width: 0; width: 44%; } .advice, .badge { font-size: 7pt; } .badge { padding: 0 4px; } figure.narrow { max-width: 110mm; }
+  details:not([open]), .fold details, .find, h2 .up, nav.contents, .behind, section > .question { display: none; }
+  .scroll { overflow: visible; background: none; margin: 3mm 0; } table { font-size: 7pt; line-height: 1.25; } figcaption, caption { font-size: 8pt; line-height: 1.35; }
+  th, td { padding: 2px 6px 2px 0; overflow-wrap: break-word; } th.n, td.n { white-space: normal; } td.claim { min-width: 0; width: 44%; } .advice, .badge { font-size: 7pt; } .badge { padding: 0 4px; } figure.narrow svg { max-height: 43mm; } #answer figure svg { max-height: 82mm; }
   .badge, .rejected { print-color-adjust: exact; -webkit-print-color-adjust: exact; }
   a { color: inherit; }
 }

@@ -62,11 +62,20 @@ pub(super) fn plain(table: &Table, numbers: &mut Numbers) -> Markup {
     let classes: Vec<Option<&str>> = (0..table.columns.len()).map(class).collect();
     let row = |row: &Vec<String>| Row {
         cells: html! {
-            @for (i, cell) in row.iter().enumerate() { td class=[classes.get(i).copied().flatten()] { (cell) } }
+            @for (i, cell) in row.iter().enumerate() { td class=[classes.get(i).copied().flatten()] { (lines(cell)) } }
         },
         is_kept: false,
     };
     self::table(numbers, &table.caption, head, table.rows.iter().map(row).collect())
+}
+
+/// The lines of a cell, the first of several in bold.
+fn lines(cell: &str) -> Markup {
+    html! {
+        @if cell.contains('\n') {
+            @for (i, line) in cell.lines().enumerate() { div.lead[i == 0] { (line) } }
+        } @else { (cell) }
+    }
 }
 
 /// Columns whose filled cells all look like numbers are set flush right.
@@ -74,7 +83,9 @@ fn is_numeric(table: &Table, column: usize) -> bool {
     let mut cells =
         table.rows.iter().filter_map(|row| row.get(column)).filter(|cell| !cell.is_empty()).peekable();
     cells.peek().is_some()
-        && cells.all(|cell| cell.starts_with(|c: char| c.is_ascii_digit() || "−-(∞<>".contains(c)))
+        && cells.all(|cell| {
+            !cell.contains('\n') && cell.starts_with(|c: char| c.is_ascii_digit() || "−-(∞<>".contains(c))
+        })
 }
 
 #[cfg(test)]

@@ -165,9 +165,9 @@ pub fn is_last(case: &Measured, cases: &[&Measured]) -> bool {
 }
 
 /// The cases that no other beats in both cost and error, judged by the choosing half, the cheapest first.
-pub fn frontier<'a>(cases: &[&'a Measured], queries: f64) -> Vec<Choice<'a>> {
+pub fn frontier<'a>(cases: &[&'a Measured], cost: impl Fn(&Measured) -> f64) -> Vec<Choice<'a>> {
     let mut sorted: Vec<(f64, f64, &Measured)> =
-        cases.iter().map(|&m| (m.cost(queries), Split::of(&halves(&m.maps).0).total, m)).collect();
+        cases.iter().map(|&m| (cost(m), Split::of(&halves(&m.maps).0).total, m)).collect();
     sorted.sort_by(|a, b| a.0.total_cmp(&b.0));
     let mut least = f64::INFINITY;
     let mut front = Vec::new();

@@ -6,7 +6,7 @@ use super::data::{Data, Measured};
 use super::measure::MAPS;
 use super::predict::{BIAS, NOISE, RMS};
 use super::split::{rms, rms_bias, rms_noise};
-use super::{claims, figures, tables, words};
+use super::{answers, claims, figures, tables, words};
 use crate::harness::{Cells, Estimate, Parameters, Row, Section, Settings, Unit};
 use crate::prediction::{Entry, Prediction, Predictions, Term};
 use crate::setups::Size;
@@ -19,6 +19,7 @@ pub fn conclude(settings: &Settings, predictions: &[Prediction], cells: &Cells) 
     let mut section = Section { rows: rows(&data, &known)?, ..Section::default() };
     section.budget = data.measured.iter().flat_map(entries).collect();
     section.left_out = data.measured.iter().map(|m| m.expected.len()).sum::<usize>() - section.budget.len();
+    section.answers = answers::all(&data);
     section.claims = claims::all(&data);
     section.figures = figures::all(settings, &data)?;
     section.tables = tables::all(&data, &known)?;

@@ -43,6 +43,25 @@ impl Measured {
     pub fn cost(&self, queries: f64) -> f64 {
         mean(&self.prepare) + queries * mean(&self.found)
     }
+
+    /// CPU seconds for so many queries on this machine, by the mean over maps.
+    pub fn seconds(&self, queries: f64) -> f64 {
+        mean(&self.prepare_seconds) + queries * mean(&self.query_seconds)
+    }
+
+    /// The largest part of the predicted error.
+    pub fn limit(&self) -> &'static str {
+        let square =
+            |part: fn(&Expected) -> f64| self.expected.iter().map(|e| part(e) * part(e)).sum::<f64>();
+        let parts: [(&str, fn(&Expected) -> f64); 4] = [
+            ("noise", |e| e.noise),
+            ("blur", |e| e.blur),
+            ("faces", |e| e.edge),
+            ("clusters", |e| e.clusters),
+        ];
+        let largest = parts.into_iter().max_by(|a, b| square(a.1).total_cmp(&square(b.1)));
+        largest.map_or("", |(name, _)| name)
+    }
 }
 
 /// The path tracer in one field.

@@ -32,7 +32,7 @@ fn costs(data: &Data) -> anyhow::Result<FigureFiles> {
         panel = panel.with(Line::theory("path tracer", x, y));
         for (class, treatment) in Treatment::ALL.into_iter().enumerate() {
             let label = format!("photon map, {}", treatment.title());
-            let front = frontier(&data.of(field, treatment, None), 4096.0);
+            let front = frontier(&data.of(field, treatment, None), |m| m.cost(4096.0));
             let x: Vec<f64> = front.iter().map(|c| c.case.cost(4096.0)).collect();
             let y: Vec<f64> = front.iter().map(|c| percent(c.rms.value())).collect();
             let bars = front.iter().map(|c: &Choice| interval(&c.rms)).collect();

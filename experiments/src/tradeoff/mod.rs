@@ -6,6 +6,7 @@
 //! One query is the fluence at a point. Costs are counted in operations: a ray followed by a photon or a path, a
 //! shadow ray, a photon put into the tree, a photon gathered, each as one; seconds stand beside them.
 
+mod answers;
 mod cases;
 mod choose;
 mod claims;

@@ -64,14 +64,9 @@ pub fn rms(maps: &[MapError]) -> Estimate {
     positive(&squares, mean)
 }
 
-/// Root mean squared bias, with its error over maps. The jackknife stands on the mean square, which is smooth; the
-/// root's error follows from it, and is that of the mean square at a bias of nothing.
+/// Root mean squared bias, with its error over maps. The jackknife stands on the mean square, which is smooth.
 pub fn rms_bias(maps: &[MapError]) -> Estimate {
-    let squared = Estimate::jackknife(&jackknife(maps, |m| Split::of(m).bias));
-    let value = root(squared.value());
-    let slope =
-        if value * value > squared.std_error() { 0.5 / value } else { 0.5 / root(squared.std_error()) };
-    squared.minus(squared.value()).times(slope).minus(-value)
+    Estimate::jackknife(&jackknife(maps, |m| Split::of(m).bias)).root()
 }
 
 /// Root mean variance of one estimate, with its error over maps.

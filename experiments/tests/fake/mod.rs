@@ -33,7 +33,7 @@ pub const FAKE: Experiment = Experiment {
 
 /// A study of it.
 pub fn study() -> Study<'static> {
-    Study { name: "fake", experiments: &[FAKE], closing: None, program: "program-1".to_string() }
+    Study { name: "fake", experiments: &[FAKE], closings: &[], program: "program-1".to_string() }
 }
 
 fn groups(settings: &Settings) -> Vec<Group> {

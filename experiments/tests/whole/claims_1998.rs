@@ -19,8 +19,8 @@ fn a_fiftieth_of_the_photons() {
     );
     let claims = std::fs::read_to_string(one.join("claims.csv")).unwrap();
     let line = |claim: &str| claims.lines().find(|line| line.contains(&format!(",{claim},"))).unwrap();
-    // What so few photons decide, and no clock: gathers do not know the walls, importance brings photons into view; and
-    // nothing is rejected.
+    // What so few photons decide, and no clock: estimates do not depend on how walls are cut into triangles, importance
+    // brings photons into view; and nothing is rejected.
     for claim in ["decoupled", "importance-photons"] {
         assert!(line(claim).contains(",upheld,"), "{}", line(claim));
     }

@@ -3,7 +3,7 @@
 use super::SIDE;
 use super::data::{Currency, Fit};
 use super::results::{Crossing, Pictures, middle};
-use crate::harness::{FigureFiles, percent};
+use crate::harness::{Curves, FigureFiles, Point, percent};
 use turbid_figure::{Along, Axis, Figure, Line, Panel, Points, Rule, Width};
 
 /// Samples a pixel that have points.
@@ -71,4 +71,29 @@ pub fn cost(pictures: &Pictures, seconds: &Crossing, rays: &Crossing) -> anyhow:
          paths are cheaper than every map."
     );
     FigureFiles::draw("equal-error", &caption, &figure)
+}
+
+/// Error against CPU time of maps that no other beats in both, and of paths.
+pub fn curves(pictures: &Pictures) -> Curves {
+    let fit = pictures.fit(Currency::Seconds);
+    let resampled: Vec<Fit> = pictures.resampled(Currency::Seconds).collect();
+    let mut maps: Vec<Point> = Vec::new();
+    for (i, of_size) in fit.maps.iter().enumerate() {
+        for n in NUMBERS {
+            let error = |fit: &Fit| fit.maps[i].square(n).sqrt() / fit.mean;
+            let interval = middle(resampled.iter().map(error).collect());
+            let seconds = of_size.fill + PIXELS * n * of_size.sample;
+            maps.push(Point { seconds, error: error(&fit), interval: (interval.low, interval.high) });
+        }
+    }
+    maps.sort_by(|a, b| a.seconds.total_cmp(&b.seconds));
+    let mut least = f64::INFINITY;
+    maps.retain(|point| {
+        let is_better = point.error < least;
+        least = least.min(point.error);
+        is_better
+    });
+    let (seconds, errors) =
+        curve(|n| (fit.paths.noise / n).sqrt() / fit.mean, |n| PIXELS * n * fit.paths.sample);
+    Curves { maps, untreated: Vec::new(), paths: seconds.into_iter().zip(errors).collect() }
 }

@@ -99,7 +99,8 @@ impl Effect {
         vec![
             Claim::at_least("importance-photons", photons, Unit::ONE, self.photons, 2.0),
             Claim::at_least("importance-gain", gain, Unit::ONE, self.by_events, 1.0),
-            Claim::within("importance-mean", mean, Unit::FRACTION, self.difference, -MARGIN, MARGIN),
+            Claim::about("importance-mean", mean, Unit::FRACTION, self.difference, 0.0, MARGIN)
+                .chosen_after("margin and number of photons", &[1]),
         ]
     }
 }
@@ -197,7 +198,7 @@ mod tests {
     }
 
     fn verdicts(cells: &[Cell]) -> Vec<Verdict> {
-        judge(Effect::of(cells).claims()).iter().map(|judged| judged.verdict).collect()
+        judge(Effect::of(cells).claims(), 100).iter().map(|judged| judged.verdict).collect()
     }
 
     #[test]

@@ -1,0 +1,63 @@
+//! What photon maps cost beside paths in one scene: the answer to the study's question, as an experiment gives it.
+
+use super::Estimate;
+
+/// Root mean square errors that are asked about, relative to the exact value.
+pub const TARGETS: [f64; 4] = [0.2, 0.1, 0.05, 0.03];
+
+/// One scene: a row of the report's first table and, if drawn, a panel of its first figure.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Answer {
+    /// The scene, for readers.
+    pub scene: String,
+    /// For each of [`TARGETS`] the cheapest map that reaches it, if one of those tried does.
+    pub reached: [Option<Reached>; 4],
+    /// The best of all maps tried with the estimate of 1998, which leaves faces untreated, if that is told apart.
+    pub untreated: Option<Untreated>,
+    /// Error and CPU time of photon maps and paths.
+    pub curves: Option<Curves>,
+}
+
+/// The cheapest map that reaches an error.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Reached {
+    /// Work of a path tracer of the same error over that of the map, by counts that are the same on every machine.
+    pub work: Estimate,
+    /// The same in CPU time of this machine.
+    pub time: Estimate,
+    /// Root mean square of the map's systematic error.
+    pub bias: Estimate,
+    /// The largest part of its error.
+    pub limit: &'static str,
+}
+
+/// The smallest error of the estimate of 1998.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Untreated {
+    /// Root mean square error.
+    pub error: Estimate,
+    /// The largest part of it.
+    pub limit: &'static str,
+}
+
+/// A point of a curve.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Point {
+    /// CPU time \[s\].
+    pub seconds: f64,
+    /// Root mean square error, relative.
+    pub error: f64,
+    /// Its 95 per cent interval.
+    pub interval: (f64, f64),
+}
+
+/// Error against CPU time.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Curves {
+    /// Maps with faces treated that no other map beats in both, the cheapest first.
+    pub maps: Vec<Point>,
+    /// The same of the estimate of 1998; empty where it is not told apart.
+    pub untreated: Vec<Point>,
+    /// The path tracer: CPU time \[s\] and error, from one sample on.
+    pub paths: Vec<(f64, f64)>,
+}
