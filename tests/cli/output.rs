@@ -43,14 +43,15 @@ fn tables_csv_and_json_say_the_same() {
     }
 }
 
-/// Every command of README.md that asks the simulator, with fewer histories.
+/// Every command of README.md and RENDERING.md that asks the simulator, with fewer histories.
 #[test]
-fn the_examples_of_the_readme_work() {
-    let readme = std::fs::read_to_string(concat!(env!("CARGO_MANIFEST_DIR"), "/README.md")).unwrap();
-    let prefix = "cargo run --release -p turbid -- ";
+fn the_examples_of_the_pages_work() {
+    let page = |name| std::fs::read_to_string(format!("{}/{name}", env!("CARGO_MANIFEST_DIR"))).unwrap();
+    let pages = page("README.md") + &page("RENDERING.md");
     let folder = Folder::new();
     let mut seen = 0;
-    for line in readme.lines().filter_map(|line| line.strip_prefix(prefix)) {
+    let asked = ["cargo run --release -p turbid -- ", "turbid "];
+    for line in pages.lines().filter_map(|line| asked.iter().find_map(|start| line.strip_prefix(start))) {
         let mut words: Vec<&str> = line.split('#').next().unwrap().split_whitespace().collect();
         // Pictures become tiny, and go elsewhere.
         let is_picture = ["render", "map"].contains(&words[0]);

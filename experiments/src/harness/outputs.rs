@@ -2,7 +2,7 @@
 
 use super::cells::CellSeconds;
 use super::results::Record;
-use super::{Experiment, Judged, Provenance, SectionReport, Unit};
+use super::{Answer, Estimate, Experiment, Judged, Provenance, Reached, SectionReport, TARGETS, Unit};
 use crate::prediction::Prediction;
 use anyhow::{Context, anyhow, ensure};
 use serde::Serialize;
@@ -28,6 +28,43 @@ impl<'a> Seconds<'a> {
         let row = |phase: &'a str, cpu_seconds| Seconds { experiment, cell: &cell.cell, phase, cpu_seconds };
         let phases = cell.phases.iter().map(|(phase, &seconds)| row(phase, seconds));
         std::iter::once(row(WHOLE, cell.total)).chain(phases).collect()
+    }
+}
+
+/// A row of answers.csv: the cheapest map that reaches an error in a scene, if there is one. CPU time is of this machine.
+#[derive(Serialize)]
+pub(super) struct AnswerRecord<'a> {
+    scene: &'a str,
+    target_error: f64,
+    speed_in_operations: Option<f64>,
+    error_in_operations: Option<f64>,
+    speed_in_time: Option<f64>,
+    error_in_time: Option<f64>,
+    bias: Option<f64>,
+    error_of_bias: Option<f64>,
+    limit: &'a str,
+}
+
+impl<'a> AnswerRecord<'a> {
+    /// The rows of one scene.
+    pub(super) fn of_answer(answer: &'a Answer) -> Vec<Self> {
+        let row = |(target, reached): (f64, &'a Option<Reached>)| {
+            let reached = reached.as_ref();
+            let value = |of: fn(&Reached) -> &Estimate| reached.map(|r| of(r).value());
+            let error = |of: fn(&Reached) -> &Estimate| reached.map(|r| of(r).std_error());
+            AnswerRecord {
+                scene: &answer.scene,
+                target_error: target,
+                speed_in_operations: value(|r| &r.work),
+                error_in_operations: error(|r| &r.work),
+                speed_in_time: value(|r| &r.time),
+                error_in_time: error(|r| &r.time),
+                bias: value(|r| &r.bias),
+                error_of_bias: error(|r| &r.bias),
+                limit: reached.map_or("", |r| r.limit),
+            }
+        };
+        TARGETS.into_iter().zip(&answer.reached).map(row).collect()
     }
 }
 

@@ -5,7 +5,7 @@ use super::lock;
 use super::manifest::Manifest;
 use super::measure::{Task, cell_path, measure};
 use super::outputs::{
-    Seconds, check_folder, keep_or_write, prediction_table, write_if_changed, write_results,
+    AnswerRecord, Seconds, check_folder, keep_or_write, prediction_table, write_if_changed, write_results,
 };
 use super::panics::{caught, guarded};
 use super::progress::say;
@@ -264,6 +264,9 @@ pub fn run(study: &Study, settings: &Settings) -> anyhow::Result<Outcome> {
     let timing: Vec<Seconds> =
         seconds.iter().flat_map(|(experiment, cell)| Seconds::of_cell(experiment, cell)).collect();
     write_atomically(settings.out.join("timing.csv"), |out| write_csv(out, &timing))?;
+    let answers: Vec<AnswerRecord> =
+        sections.iter().flat_map(|s| &s.section.answers).flat_map(AnswerRecord::of_answer).collect();
+    write_atomically(settings.out.join("answers.csv"), |out| write_csv(out, &answers))?;
     let page = report::page(study.name, settings, &sections, &provenance);
     let path = settings.out.join("report.html");
     write_atomically(&path, |out| out.write_all(page.as_bytes()))?;

@@ -42,7 +42,7 @@ pub fn summary(data: &Data) -> Vec<String> {
     ) {
         paragraphs.push(format!(
             "Against a path tracer of the same error a photon map pays for itself, in thick isotropic fog, {in_thick}; \
-             in thin, {in_thin}; in a emitting sphere, {in_sphere}, where an operation is a ray or a photon gathered, each as one. Near a face the plain \
+             in thin, {in_thin}; in an emitting sphere, {in_sphere}, where an operation is a ray or a photon gathered, each as one. Near a face the plain \
              estimate is stuck: in the thin slab the best of the gathers tried errs by ({}) %, where dividing by the \
              part of the ball inside the fog leaves ({}) %.",
             plain.in_percent(),

@@ -10,5 +10,6 @@ mod claims_1998;
 mod coverage;
 mod extremes;
 mod march;
+mod pages;
 mod rates;
 mod tradeoff;
