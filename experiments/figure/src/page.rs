@@ -57,6 +57,11 @@ pub(crate) struct Laid {
 }
 
 impl Laid {
+    /// The legend of a panel that stands there, outside its plot.
+    pub(crate) fn outside<'a>(&self, panel: &'a Panel, place: Place, fonts: &Fonts) -> Option<Legend<'a>> {
+        outside(panel, place, self.column, fonts)
+    }
+
     /// The legend of all panels, if they have one, and its top left corner.
     pub(crate) fn shared<'a>(&self, figure: &'a Figure, fonts: &Fonts) -> Option<(Legend<'a>, Point)> {
         let legend = shared(figure, self.width, fonts)?;

@@ -2,7 +2,7 @@
 #![allow(clippy::unwrap_used, reason = "tests")]
 
 use turbid_figure::{
-    Along, Axis, Band, Error, Figure, Heatmap, Histogram, Legend, Line, Panel, Points, Rule,
+    Align, Along, At, Axis, Band, Error, Figure, Heatmap, Histogram, Legend, Line, Note, Panel, Points, Rule,
     Scale, Shading, Width,
 };
 
@@ -410,4 +410,65 @@ fn what_has_no_room_is_refused() {
     assert!(matches!(error, Error::Tall { .. } | Error::Narrow { .. }), "{error}");
     let error = Figure { width: Width::Millimetres(1e6), ..Figure::new(vec![panel()]) }.png().unwrap_err();
     assert!(error.to_string().ends_with("allowed: up to 500 mm"), "{error}");
+}
+
+/// LaTeX of every kind of layer and scale: braces balance, nothing is left that pdflatex cannot read, every layer has its
+/// rows and every label its entry.
+#[test]
+fn every_kind_of_figure_is_latex() {
+    let sym = Scale::SymLog { threshold: 0.5 };
+    let awkward = "5 % of a_b & {τ} ≤ 10⁻² m² − x, \\end #1";
+    for (x, y) in
+        [(Scale::Linear, Scale::Linear), (Scale::Log, Scale::LogClipped), (sym, sym), (Scale::Log, sym)]
+    {
+        let at = vec![0.5, 1.0, 2.0];
+        let interval = vec![(0.4, 2.5), (0.4, 2.5), (0.4, 2.5)];
+        let points = Points::new(awkward, 0, at.clone(), at.clone())
+            .with_x_interval(interval.clone())
+            .with_y_interval(interval.clone());
+        let mut panel = Panel::new(Axis::new(awkward, "m²", x), Axis::new("y_1", "%", y))
+            .with_title(awkward)
+            .with(points)
+            .with(Line::theory("line_", at.clone(), at.clone()))
+            .with(Band::new("band", 1, at.clone(), interval))
+            .with(Rule::new(Along::Diagonal).with_label("same"))
+            .with(Rule::new(Along::Horizontal(1.0)))
+            .with(Histogram::new("even", 2, vec![0.5, 1.0, 1.5], vec![1.0, 2.0]))
+            .with(Histogram::new("odd", 3, vec![0.5, 1.0, 2.5], vec![1.0, 2.0]))
+            .with(Note { text: awkward.to_owned(), at: At::Fraction(0.1, 0.1), align: Align::Start });
+        if y == Scale::Linear {
+            let mut map = map(vec![1.0, 2.0, 3.0]);
+            (map.x_edges, map.y_edges) = (vec![0.5, 1.0, 1.5, 2.0], vec![0.5, 1.0]);
+            panel = panel.with(map);
+        }
+        for shared_legend in [false, true] {
+            let title = awkward.to_owned();
+            let figure = Figure { title, shared_legend, ..Figure::new(vec![panel.clone(); 2]) };
+            let (tex, csv) = (figure.tex("f.csv").unwrap(), figure.csv("").unwrap());
+            assert!(tex.is_ascii(), "{tex}");
+            let mut depth = 0_i32;
+            let mut escaped = false;
+            for c in tex.chars() {
+                match c {
+                    '{' if !escaped => depth += 1,
+                    '}' if !escaped => depth -= 1,
+                    _ => {}
+                }
+                escaped = c == '\\' && !escaped;
+                assert!(depth >= 0);
+            }
+            assert_eq!(depth, 0);
+            assert!(tex.contains(
+                r"5 \% of a\_b \& \{\ensuremath{\tau}\} \ensuremath{\le} 10\ensuremath{^-}\ensuremath{^2}"
+            ));
+            let names: Vec<&str> = csv.lines().find(|l| !l.starts_with('#')).unwrap().split(',').collect();
+            for used in tex.split("\\thisrow{").skip(1).map(|rest| rest.split_once('}').unwrap().0) {
+                assert!(names.contains(&used), "{used}");
+            }
+            // Points, line, two edges of a band, two histograms, in either panel.
+            assert_eq!(tex.matches("\n\\turbidplot{").count(), 2 * 6);
+            assert_eq!(tex.matches("\\addlegendentry").count(), if shared_legend { 6 } else { 12 });
+            assert_eq!(tex.contains("% Nor the heat map of panel 1, 2:"), y == Scale::Linear);
+        }
+    }
 }

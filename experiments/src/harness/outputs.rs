@@ -169,6 +169,8 @@ pub(super) fn write_results(out: &Path, sections: &[SectionReport]) -> anyhow::R
                 write_if_changed(&folder.join(name), bytes)?;
             }
             write_if_changed(&folder.join(format!("{stem}.csv")), figure.csv.as_bytes())?;
+            let (name, text) = figure.latex(&stem)?;
+            write_if_changed(&folder.join(name), text.as_bytes())?;
         }
     }
     Ok(())
