@@ -56,3 +56,4 @@ pub use error::Error;
 pub use figure::{Corner, Figure, Legend, Panel, Width};
 pub use layer::{Align, Along, At, Band, Heatmap, Histogram, Layer, Line, Note, Points, Rule};
 pub use palette::{Color, Dash, Marker, Shading};
+pub use tex::latex;

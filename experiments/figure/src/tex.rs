@@ -379,7 +379,7 @@ fn bp(points: f64) -> String {
 }
 
 /// A text for LaTeX: what it would take for a command is escaped, what pdflatex has no glyph for is named in mathematics.
-fn latex(text: &str) -> String {
+pub fn latex(text: &str) -> String {
     let mut out = String::new();
     for c in text.chars() {
         match c {

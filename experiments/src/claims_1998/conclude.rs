@@ -24,6 +24,7 @@ pub fn conclude(settings: &Settings, predictions: &[Prediction], cells: &Cells) 
         section.tables.append(&mut own.tables);
         section.notes.append(&mut own.notes);
         section.rows.append(&mut own.rows);
+        section.headlines.append(&mut own.headlines);
         said.append(&mut sentences);
     }
     section.summary.extend(said.iter().map(|[sentence, found]| format!("\"{sentence}\": {found}.")));

@@ -1,6 +1,7 @@
 //! The files that a study leaves beside its report.
 
 use super::cells::CellSeconds;
+use super::headline;
 use super::results::Record;
 use super::{Experiment, Judged, Provenance, SectionReport, Unit};
 use crate::prediction::Prediction;
@@ -148,7 +149,7 @@ pub(super) fn keep_or_write(path: &Path, mut new: Provenance) -> anyhow::Result<
     Ok(new)
 }
 
-/// results.csv, claims.csv and the figures: functions of settings and seed alone.
+/// results.csv, claims.csv, the headline numbers and the figures: functions of settings and seed alone.
 pub(super) fn write_results(out: &Path, sections: &[SectionReport]) -> anyhow::Result<()> {
     let rows: Vec<Record> = sections
         .iter()
@@ -160,6 +161,10 @@ pub(super) fn write_results(out: &Path, sections: &[SectionReport]) -> anyhow::R
         .flat_map(|s| s.judged.iter().map(|judged| ClaimRecord::new(s.experiment.name, judged)))
         .collect();
     write_atomically(out.join("claims.csv"), |file| write_csv(file, &claims))?;
+    let headlines = headline::all(sections);
+    write_atomically(out.join("headlines.csv"), |file| write_csv(file, &headline::records(&headlines)))?;
+    let commands = headline::commands(&headlines);
+    write_atomically(out.join("numbers.tex"), |file| file.write_all(commands.as_bytes()))?;
     let folder = out.join("figures");
     std::fs::create_dir_all(&folder).with_context(|| format!("cannot create {}", folder.display()))?;
     for part in sections {

@@ -1,7 +1,7 @@
 //! What an experiment says in the report.
 
 use super::format::{number, percent, with_error};
-use super::{Claim, Row, Unit};
+use super::{Claim, Headline, Row, Unit};
 use crate::prediction::Entry;
 use turbid::stats::{Moments, mean_interval};
 use turbid_figure::Figure;
@@ -151,6 +151,8 @@ pub(crate) fn row_label(quantity: &str, unit: Unit) -> String {
 pub struct Section {
     /// Paragraphs; the first is the headline, one sentence that stands alone.
     pub summary: Vec<String>,
+    /// The numbers that a paper would quote.
+    pub headlines: Vec<Headline>,
     /// Claims, judged together with those of the whole study.
     pub claims: Vec<Claim>,
     /// Figures, in order.

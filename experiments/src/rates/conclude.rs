@@ -41,6 +41,7 @@ pub fn conclude(settings: &Settings, _: &[Prediction], cells: &Cells) -> anyhow:
         notes: notes(),
         rows,
         budget: points.iter().map(entry).collect(),
+        headlines: Vec::new(),
         left_out: 0,
     })
 }

@@ -5,7 +5,7 @@ use super::results::{Crossing, PIXELS, PREVIEW_ERROR, Pictures, SIDES, gain};
 use super::{SIDE, figure};
 use crate::claims_1998::part::Part;
 use crate::cost_model::cheapest;
-use crate::harness::{Cells, Claim, Estimate, Row, Section, Settings, Table, Unit, percent};
+use crate::harness::{Cells, Claim, Estimate, Headline, Row, Section, Settings, Table, Unit, percent};
 use turbid::math::exp;
 use turbid::stats::{Jackknife, jackknife_log};
 
@@ -57,6 +57,7 @@ pub fn conclude(settings: &Settings, cells: &Cells) -> anyhow::Result<Part> {
              larger maps may go lower where a picture has more pixels to pay for them."
         )],
         rows: rows(&pictures, &in_rays)?,
+        headlines: vec![Headline::new("Faster", &text, Unit::ONE, in_rays)],
         ..Section::default()
     };
     Ok(Part { section, said })
