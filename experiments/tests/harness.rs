@@ -22,10 +22,11 @@ fn read(folder: &Path, name: &str) -> Vec<u8> {
 
 /// All results that must be functions of settings and seed: name and content.
 fn results(out: &Path) -> BTreeMap<String, Vec<u8>> {
-    let mut files: BTreeMap<String, Vec<u8>> = ["results.csv", "claims.csv", "predictions.csv"]
-        .iter()
-        .map(|name| (name.to_string(), read(out, name)))
-        .collect();
+    let mut files: BTreeMap<String, Vec<u8>> =
+        ["results.csv", "claims.csv", "predictions.csv", "headlines.csv", "numbers.tex"]
+            .iter()
+            .map(|name| (name.to_string(), read(out, name)))
+            .collect();
     for entry in fs::read_dir(out.join("figures")).unwrap() {
         let path = entry.unwrap().path();
         files.insert(path.file_name().unwrap().to_str().unwrap().to_string(), fs::read(path).unwrap());
@@ -375,6 +376,7 @@ fn what_does_not_fit_is_refused_before_the_work() {
 fn outputs_are_tried_before_the_work() {
     for (name, said) in [
         ("report.html", "cannot write {}: a folder, a device or a pipe; allowed: a file"),
+        ("numbers.tex", "cannot write {}: a folder, a device or a pipe; allowed: a file"),
         ("results.csv", "cannot write {}: a folder, a device or a pipe; allowed: a file"),
         ("figures", "cannot create {}: File exists (os error 17)"),
         ("cells/manifest.json", "cannot read {}: a folder, a device or a pipe; allowed: a file"),
@@ -613,4 +615,23 @@ fn verdicts_of_many_studies() {
     assert_eq!(count("control", "upheld"), 12);
     assert_eq!(count("amplitude", "rejected") + count("residual", "rejected"), 0);
     assert_eq!(count("amplitude", "upheld"), 12);
+}
+
+#[test]
+fn headline_numbers_are_commands_and_a_table() {
+    let folder = tempfile::tempdir().unwrap();
+    let outcome = run(&fake::study(), &settings(folder.path())).unwrap();
+    let text = |name: &str| String::from_utf8(read(folder.path(), name)).unwrap();
+    let known = &outcome.sections[0].section.headlines[0];
+    let (value, error) = (known.estimate.value(), known.estimate.std_error());
+    let table = text("headlines.csv");
+    let rows: Vec<&str> = table.lines().collect();
+    assert_eq!(rows[0], "experiment,name,value,error,unit,text");
+    let start = format!("fake,FakeFactor,{value},{error},1,");
+    assert!(rows.len() == 2 && rows[1].starts_with(&start), "{start} in {table}");
+    let numbers = text("numbers.tex");
+    assert!(
+        numbers.contains("\\newcommand{\\turbidFakeFactor}{") && numbers.contains("\\ensuremath{\\pm}"),
+        "{numbers}"
+    );
 }

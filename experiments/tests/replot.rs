@@ -51,14 +51,20 @@ fn a_study_leaves_each_figure_in_both_widths_and_as_a_table() {
     let (folder, _) = finished();
     let found = files(folder.path());
     let names: Vec<&str> = found.keys().filter_map(|name| name.strip_prefix("figures/")).collect();
-    let expected =
-        ["fake-bias-double.png", "fake-bias-double.svg", "fake-bias.csv", "fake-bias.png", "fake-bias.svg"];
+    let expected = [
+        "fake-bias-double.png",
+        "fake-bias-double.svg",
+        "fake-bias.csv",
+        "fake-bias.png",
+        "fake-bias.svg",
+        "fake-bias.tex",
+    ];
     assert_eq!(names, expected);
     let svg = |name: &str| String::from_utf8(found[name].clone()).unwrap();
     assert!(svg("figures/fake-bias.svg").starts_with("<svg width=\"85.00mm\""));
     assert!(svg("figures/fake-bias-double.svg").starts_with("<svg width=\"175.00mm\""));
     let table = svg("figures/fake-bias.csv");
-    assert!(table.contains("the dots lie on the line") && table.contains("1,2,points,measured,0.1,"));
+    assert!(table.contains("the dots lie on the line") && table.contains("1,2,points,0.1,"));
 }
 
 #[test]
@@ -66,7 +72,7 @@ fn what_is_redrawn_unchanged_is_the_same_bytes() {
     let (folder, settings) = finished();
     let before = files(folder.path());
     let said = replot(&settings, &Replot::default()).unwrap();
-    assert!(said.starts_with("1 figures redrawn: 4 files, 0 of them changed"), "{said}");
+    assert!(said.starts_with("1 figures redrawn: 5 files, 0 of them changed"), "{said}");
     assert_eq!(changed(&before, &files(folder.path())), Vec::<String>::new());
     // What is lost comes back.
     fs::remove_file(folder.path().join("figures/fake-bias.png")).unwrap();
@@ -89,6 +95,7 @@ fn an_edited_table_changes_the_drawings_and_the_report_and_nothing_else() {
         "figures/fake-bias.csv",
         "figures/fake-bias.png",
         "figures/fake-bias.svg",
+        "figures/fake-bias.tex",
         "report.html",
     ];
     assert_eq!(changed(&before, &after), expected);
@@ -105,14 +112,16 @@ fn one_width_alone() {
     let (folder, settings) = finished();
     let before = files(folder.path());
     edit(folder.path(), "\"gather radius\"", "\"radius of the ball\"");
-    for (width, stem) in [(Width::Double, "fake-bias-double"), (Width::Single, "fake-bias")] {
+    let double = &["fake-bias-double.png", "fake-bias-double.svg"][..];
+    let own = &["fake-bias.png", "fake-bias.svg", "fake-bias.tex"][..];
+    for (width, expected) in [(Width::Double, double), (Width::Single, own)] {
         let start = files(folder.path());
         replot(&settings, &Replot { width: Some(width), files: vec![] }).unwrap();
         let figures = changed(&start, &files(folder.path()));
         let figures: Vec<&str> = figures.iter().filter_map(|name| name.strip_prefix("figures/")).collect();
-        assert_eq!(figures, [format!("{stem}.png"), format!("{stem}.svg")]);
+        assert_eq!(figures, expected);
     }
-    assert_eq!(changed(&before, &files(folder.path())).len(), 6);
+    assert_eq!(changed(&before, &files(folder.path())).len(), 7);
 }
 
 #[test]
@@ -121,7 +130,7 @@ fn a_bad_table_changes_nothing() {
     // Another figure, good and edited, comes first in the alphabet.
     let (good, bad) = (folder.path().join("figures/a-good.csv"), folder.path().join("figures/fake-bias.csv"));
     fs::copy(&bad, &good).unwrap();
-    edit(folder.path(), "1,2,points,measured,0.4,", "1,2,points,measured,wide,");
+    edit(folder.path(), "1,2,points,0.4,", "1,2,points,wide,");
     let before = files(folder.path());
     let error = format!("{:#}", replot(&settings, &Replot::default()).unwrap_err());
     let line = 1 + fs::read_to_string(&bad).unwrap().lines().position(|l| l.contains("wide")).unwrap();
@@ -140,7 +149,7 @@ fn the_command_redraws_folders_and_single_tables() {
     let (folder, _) = finished();
     let run = study().args(["--replot", "--out"]).arg(folder.path()).assert().success().stderr("");
     let text = String::from_utf8(run.get_output().stdout.clone()).unwrap();
-    assert!(text.contains("4 files, 0 of them changed"), "{text}");
+    assert!(text.contains("5 files, 0 of them changed"), "{text}");
     // A table anywhere is drawn beside itself.
     let alone = tempfile::tempdir().unwrap();
     let table = alone.path().join("mine.csv");
@@ -170,5 +179,30 @@ fn what_cannot_be_redrawn_is_said_in_one_line() {
         let said = String::from_utf8(run.get_output().stderr.clone()).unwrap();
         assert!(said.starts_with("error: ") && said.trim_end().lines().count() == 1, "{said}");
         assert!(said.contains(text), "{said}");
+    }
+}
+
+/// Names in `\\thisrow{...}`.
+fn columns(tex: &str) -> Vec<&str> {
+    let rows = tex.split("\\thisrow{").skip(1).map(|rest| rest.split_once('}').unwrap().0);
+    rows.filter(|name| *name != "#1").collect()
+}
+
+#[test]
+fn every_figure_is_latex_that_reads_its_table() {
+    let (folder, _) = finished();
+    let found = files(folder.path());
+    let text = |name: &str| String::from_utf8(found[name].clone()).unwrap();
+    let tables: Vec<&String> =
+        found.keys().filter(|name| name.starts_with("figures/") && name.ends_with(".csv")).collect();
+    assert!(!tables.is_empty());
+    for name in tables {
+        let (tex, table) = (text(&name.replace(".csv", ".tex")), text(name));
+        let known: Vec<&str> = table.lines().find(|l| !l.starts_with('#')).unwrap().split(',').collect();
+        assert!(tex.contains(&format!("\\def\\turbidtable{{{}}}", name.replace("figures/", ""))));
+        let used = columns(&tex);
+        assert!(used.contains(&"y_low") && used.iter().all(|c| known.contains(c)), "{used:?} of {known:?}");
+        // Words behind the numbers: a comma in a label moves none.
+        assert_eq!(known.last(), Some(&"label"));
     }
 }

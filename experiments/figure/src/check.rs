@@ -7,6 +7,9 @@ use crate::layer::{Along, At, Layer};
 use crate::scale::NARROWEST;
 use crate::text::Fonts;
 
+/// Greatest width of a page \[mm\]: a poster's column.
+const WIDEST: f64 = 500.0;
+
 /// Checks every number, length and text of the figure.
 pub(crate) fn figure(figure: &Figure, fonts: &Fonts) -> Result<(), Error> {
     if figure.panels.is_empty() || figure.columns == 0 {
@@ -20,7 +23,11 @@ pub(crate) fn figure(figure: &Figure, fonts: &Fonts) -> Result<(), Error> {
             Err(Error::Size { place: place(), what, value })
         }
     };
-    positive("width", figure.width.millimetres())?;
+    let millimetres = figure.width.millimetres();
+    positive("width", millimetres)?;
+    if millimetres > WIDEST {
+        return Err(Error::Wide { millimetres, allowed: WIDEST });
+    }
     for &h in &figure.heights {
         positive("height of a row", h)?;
     }

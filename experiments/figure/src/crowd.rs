@@ -11,13 +11,13 @@ pub(crate) struct Look {
     /// White rim that keeps neighbours apart.
     rim: f64,
     /// Opacity of markers, so that many at one place look darker than one.
-    alpha: f64,
+    pub(crate) alpha: f64,
     /// Width of bars.
     pub(crate) bar: f64,
     /// Half the length of their caps; none for 0.
     pub(crate) cap: f64,
     /// Lightness of bars, 1 for the full colour: bars hide each other, points hide bars.
-    tint: f64,
+    pub(crate) tint: f64,
     /// Layers draw their points in so many turns, so that no layer hides another.
     pub(crate) turns: usize,
 }

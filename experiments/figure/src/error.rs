@@ -116,14 +116,22 @@ pub enum Error {
         /// What is left for each plot, in points.
         left: f64,
     },
-    /// A page that is too high: its drawing would take memory in proportion.
+    /// A page that is too high, even with the lowest plots: its panels are those of several figures.
     #[error(
-        "the page is {millimetres:.0} mm high; allowed: up to {allowed:.0} mm: fewer rows of panels, or lower ones"
+        "the page is {millimetres:.0} mm high; allowed: up to {allowed:.0} mm: fewer panels, or a wider figure"
     )]
     Tall {
         /// Its height.
         millimetres: f64,
         /// The greatest height.
+        allowed: f64,
+    },
+    /// A page that is too wide: its drawing would take memory in proportion.
+    #[error("the page is {millimetres:.0} mm wide; allowed: up to {allowed:.0} mm")]
+    Wide {
+        /// Its width.
+        millimetres: f64,
+        /// The greatest width.
         allowed: f64,
     },
     /// A CSV file that says no figure.

@@ -29,9 +29,9 @@ const GRID: Paint = Paint::solid((228, 228, 228));
 
 /// One axis with its ticks and the lines of its label.
 pub(crate) struct AxisFrame {
-    span: Span,
-    ticks: Ticks,
-    label: Vec<String>,
+    pub(crate) span: Span,
+    pub(crate) ticks: Ticks,
+    pub(crate) label: Vec<String>,
     /// Width of the widest tick label.
     widest: f64,
 }
@@ -120,8 +120,8 @@ fn heading(axis: &Axis, exponent: i32) -> String {
 
 /// Everything around one plot.
 pub(crate) struct Frame {
-    x: AxisFrame,
-    y: AxisFrame,
+    pub(crate) x: AxisFrame,
+    pub(crate) y: AxisFrame,
     bar: Option<AxisFrame>,
     title: Vec<String>,
     /// Room on each side [pt], legends apart.

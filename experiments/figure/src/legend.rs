@@ -65,6 +65,10 @@ impl<'a> Legend<'a> {
         (!entries.is_empty()).then_some(Self { entries, columns, column, rows })
     }
 
+    pub(crate) fn columns(&self) -> usize {
+        self.columns
+    }
+
     pub(crate) fn width(&self) -> f64 {
         self.columns as f64 * (self.column + BETWEEN_COLUMNS) - BETWEEN_COLUMNS + 2.0 * PADDING
     }

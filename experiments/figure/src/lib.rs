@@ -1,4 +1,4 @@
-//! Figures for print: plain numbers in, SVG and PNG out, with an embedded font (DejaVu Sans).
+//! Figures for print: plain numbers in, SVG, PNG and LaTeX out, with an embedded font (DejaVu Sans).
 //!
 //! A [`Figure`] is a grid of [`Panel`]s; a panel has two [`Axis`] and a list of [`Layer`]s. Nothing is lost without a
 //! word: numbers that are not finite are refused, points beyond a given range become arrows at the border, values
@@ -45,6 +45,7 @@ mod shape;
 mod style;
 mod svg;
 mod table;
+mod tex;
 mod text;
 mod ticks;
 #[cfg(test)]
@@ -55,3 +56,4 @@ pub use error::Error;
 pub use figure::{Corner, Figure, Legend, Panel, Width};
 pub use layer::{Align, Along, At, Band, Heatmap, Histogram, Layer, Line, Note, Points, Rule};
 pub use palette::{Color, Dash, Marker, Shading};
+pub use tex::latex;

@@ -49,8 +49,7 @@ impl Figure {
             (ratio * factor.sqrt()).min(ratio.max(1.0))
         };
         let rows = self.panels.len().div_ceil(columns);
-        let members = |row: usize| row * columns..((row + 1) * columns).min(self.panels.len());
-        let tall: Vec<f64> = (0..rows).map(|row| members(row).map(height).fold(0.0, f64::max)).collect();
+        let tall = self.rows_of(columns, height);
         // What stands on one page of print stays on one page, unless plots would become strips.
         let room = PAGE - rows as f64 * AROUND;
         let flatter = (room / (tall.iter().sum::<f64>() * to / columns as f64)).min(1.0);
@@ -65,6 +64,19 @@ impl Figure {
             };
         }
         Self { width, columns, heights, panels, ..self.clone() }
+    }
+
+    /// The same figure with so many panels in a row, the ratios of their sides as before.
+    pub(crate) fn in_columns(&self, columns: usize) -> Self {
+        let old = self.columns.max(1);
+        let height = |panel: usize| self.heights.get(panel / old).copied().unwrap_or(HEIGHT);
+        Self { columns, heights: self.rows_of(columns, height), ..self.clone() }
+    }
+
+    /// The greatest of the panels' numbers in each row of so many.
+    fn rows_of(&self, columns: usize, number: impl Fn(usize) -> f64) -> Vec<f64> {
+        let panels: Vec<f64> = (0..self.panels.len()).map(number).collect();
+        panels.chunks(columns).map(|row| row.iter().copied().fold(0.0, f64::max)).collect()
     }
 }
 

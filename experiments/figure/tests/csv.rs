@@ -179,11 +179,11 @@ const GOOD: &str = r##"# turbid figure: 1
 # panel 1: {"title":"","x":{"label":"radius","unit":"mfp","scale":"log"},"y":{"label":"error","unit":"%","scale":{"sym_log":{"threshold":1.0}}},"legend":"auto"}
 # layer 1.1: {"color":{"class":0},"marker":"circle"}
 # layer 1.2: {"color":"black","dash":"solid"}
-panel,layer,kind,label,x,y,y_low,y_high
-1,1,points,measured,0.1,-3.0,-4.0,-2.0
-1,1,points,measured,0.2,-12.5,-13.5,-11.5
-1,2,line,exact,0.1,-3.25,,
-1,2,line,exact,0.2,-12.0,,
+panel,layer,kind,x,y,y_low,y_high,label
+1,1,points,0.1,-3.0,-4.0,-2.0,measured
+1,1,points,0.2,-12.5,-13.5,-11.5,measured
+1,2,line,0.1,-3.25,,,exact
+1,2,line,0.2,-12.0,,,exact
 "##;
 
 #[test]
@@ -231,39 +231,35 @@ fn bad_files_are_refused_by_line() {
             "8: panel 1, points \"measured\": y_interval[0] runs from -4 down to -5; give (low, high)",
         ),
         (
-            "exact,0.2",
-            "exact,-0.2",
+            "line,0.2",
+            "line,-0.2",
             "11: panel 1, line \"exact\": x[1] is -0.2, on a logarithmic axis; use Scale::LogClipped to mark it at the border, or Scale::SymLog",
         ),
         (
-            "1,2,line,exact,0.2",
-            "1,2,line,other,0.2",
+            "1,2,line,0.2,-12.0,,,exact",
+            "1,2,line,0.2,-12.0,,,other",
             "11: column label is \"other\"; allowed: \"exact\", as in line 10 of the same layer",
         ),
         (
-            "1,2,line,exact,0.2",
-            "1,2,points,exact,0.2",
+            "1,2,line,0.2",
+            "1,2,points,0.2",
             "11: column kind is \"points\"; allowed: \"line\", as in line 10 of the same layer",
         ),
         (
-            "1,2,line,exact,0.2",
-            "1,3,line,exact,0.2",
+            "1,2,line,0.2",
+            "1,3,line,0.2",
             "11: there is no layer 1.3; allowed: those with a line # layer 1.3: ...",
         ),
+        ("1,2,line,0.2", "0,2,line,0.2", "11: column panel is \"0\"; allowed: a whole number from 1"),
+        ("1,2,line,0.2", "1,line,0.2", "11: the row has 7 cells; allowed: 8"),
         (
-            "1,2,line,exact,0.2",
-            "0,2,line,exact,0.2",
-            "11: column panel is \"0\"; allowed: a whole number from 1",
-        ),
-        ("1,2,line,exact,0.2", "1,line,exact,0.2", "11: the row has 7 cells; allowed: 8"),
-        (
-            "kind,label,x,",
-            "kind,label,x,x,",
+            "kind,x,",
+            "kind,x,x,",
             "7: there is no column \"x\"; allowed, once each: panel, layer, kind, label, x, y, x_low, x_high, y_low, y_high, value",
         ),
         (
-            "panel,layer,kind,label",
-            "panel,layer,label",
+            "panel,layer,kind,x",
+            "panel,layer,x",
             "7: column kind is missing; allowed: panel, layer, kind, label and numbers",
         ),
         ("\"black\"", "\"blakc\"", "6:29: unknown variant `blakc`, expected one of `class`, `black`, `grey`"),
@@ -296,7 +292,7 @@ fn bad_files_are_refused_by_line() {
         ("# turbid figure: 1", "# turbid figure: 2", "1: the format is 2; allowed: 1"),
         ("# turbid figure: 1\n", "", "1: the file is no figure; its first line would be # turbid figure: 1"),
         (
-            "1,2,line,exact,0.1,-3.25,,\n1,2,line,exact,0.2,-12.0,,\n",
+            "1,2,line,0.1,-3.25,,,exact\n1,2,line,0.2,-12.0,,,exact\n",
             "",
             "6: no row has panel 1 and layer 2; allowed: one or more",
         ),
@@ -311,7 +307,7 @@ fn bad_files_are_refused_by_line() {
         ("# turbid figure: 1\n", "1: the header ends without a line # figure: ..."),
         (
             GOOD.split_once("panel,").unwrap().0,
-            "7: the table is missing; allowed: a row of names, panel, layer, kind, label first",
+            "7: the table is missing; allowed: a row of names, panel, layer, kind, label among them",
         ),
     ] {
         assert_eq!(Figure::from_csv(text).unwrap_err().to_string(), message, "{text}");
@@ -330,22 +326,18 @@ fn cells_of_a_map_and_bins_must_follow_each_other() {
     let bars = Histogram::new("h", 0, vec![0.0, 1.0, 2.0], vec![1.0, 2.0]);
     let text = Figure::new(vec![axes().with(map).with(bars)]).csv("").unwrap();
     for (from, to, message) in [
-        ("1,1,heatmap,,,1.0,2.0,1.0,2.0,4.0\n", "", "the last row of cells has 1; allowed: 2"),
+        ("1,1,heatmap,,1.0,2.0,1.0,2.0,4.0,\n", "", "the last row of cells has 1; allowed: 2"),
         (
-            "heatmap,,,1.0,2.0,0.0,1.0,2.0",
-            "heatmap,,,1.5,2.0,0.0,1.0,2.0",
+            "heatmap,,1.0,2.0,0.0,1.0,2.0",
+            "heatmap,,1.5,2.0,0.0,1.0,2.0",
             "x_low is 1.5; allowed: 1, where the row before ends",
         ),
         (
-            "heatmap,,,1.0,2.0,1.0,2.0",
-            "heatmap,,,1.0,3.0,1.0,2.0",
+            "heatmap,,1.0,2.0,1.0,2.0",
+            "heatmap,,1.0,3.0,1.0,2.0",
             "a cell at x from 1 to 3, y from 1 to 2; allowed: x from 1 to 2, y from 1 to 2",
         ),
-        (
-            "histogram,h,2.0,1.0,2.0",
-            "histogram,h,2.0,1.0,1.0",
-            "a bin from 1 to 1; allowed: x_low below x_high",
-        ),
+        ("histogram,2.0,1.0,2.0", "histogram,2.0,1.0,1.0", "a bin from 1 to 1; allowed: x_low below x_high"),
     ] {
         assert!(text.contains(from), "{from} in {text}");
         let error = Figure::from_csv(&text.replacen(from, to, 1)).unwrap_err().to_string();

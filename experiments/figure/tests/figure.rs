@@ -2,8 +2,8 @@
 #![allow(clippy::unwrap_used, reason = "tests")]
 
 use turbid_figure::{
-    Along, Axis, Band, Error, Figure, Heatmap, Histogram, Legend, Line, Panel, Points, Rule, Scale, Shading,
-    Width,
+    Align, Along, At, Axis, Band, Error, Figure, Heatmap, Histogram, Legend, Line, Note, Panel, Points, Rule,
+    Scale, Shading, Width,
 };
 
 fn axes() -> Panel {
@@ -329,16 +329,146 @@ fn every_label_is_still_there_in_the_other_width() {
     }
 }
 
-/// A page that would take gigabytes is refused before it is drawn, by its height.
+/// Width and height of the page [mm].
+fn page(svg: &str) -> (f64, f64) {
+    let head = svg.lines().next().unwrap();
+    let size = |name: &str| {
+        let (_, rest) = head.split_once(&format!("{name}=\"")).unwrap();
+        rest.split_once("mm").unwrap().0.parse::<f64>().unwrap()
+    };
+    (size("width"), size("height"))
+}
+
+/// Whatever is asked for, a page is that of print: 240 mm.
 #[test]
-fn pages_too_high_are_refused() {
-    // Bars and dashes are made as long as the panel is high: before the height is known to be allowed, that is endless.
-    let bars = || points(vec![1.0, 2.0]).with_y_interval(vec![(0.5, 1.5), (1.0, 3.0)]);
-    let rule = || Rule::new(Along::Diagonal);
-    let panel = || axes().with(bars()).with(rule());
-    for heights in [vec![20.0], vec![1e6], vec![1e30], vec![1e308]] {
-        let figure = Figure { width: Width::Double, heights, ..Figure::new(vec![panel()]) };
-        let error = figure.png().unwrap_err();
-        assert!(matches!(error, Error::Tall { .. }) && error.to_string().contains("up to 500 mm"), "{error}");
+fn no_page_is_higher_than_one_of_print() {
+    let kinds: [fn(Panel) -> Panel; 6] = [
+        |p| p.with(points(vec![1.0, 2.0])).with_legend(Legend::Below),
+        |p| p.with(points(vec![1.0, 2.0]).with_y_interval(vec![(0.5, 1.5), (1.0, 3.0)])),
+        |p| {
+            p.with(Rule::new(Along::Diagonal).with_label("measured = predicted")).with(points(vec![1.0, 2.0]))
+        },
+        |p| p.with(map(vec![0.3, -0.7, 2.0])),
+        |p| p.with(Histogram::new("bars", 0, vec![0.0, 1.0, 2.0], vec![1.0, 3.0])),
+        |p| p.with(Band::new("band", 1, vec![0.0, 1.0], vec![(0.5, 1.5), (1.0, 3.0)])),
+    ];
+    for kind in kinds {
+        for (count, width, columns) in [
+            (1_usize, Width::Single, 1_usize),
+            (5, Width::Single, 1),
+            (9, Width::Single, 1),
+            (1, Width::Double, 1),
+            (6, Width::Double, 1),
+            (9, Width::Double, 2),
+            (12, Width::Double, 3),
+        ] {
+            for heights in [vec![], vec![1.5; count.div_ceil(columns)], vec![1e308; count.div_ceil(columns)]]
+            {
+                for shared_legend in [false, true] {
+                    let panel = kind(axes().with_title("a title"));
+                    let panels = vec![panel; count];
+                    let figure = Figure {
+                        width,
+                        columns,
+                        heights: heights.clone(),
+                        shared_legend,
+                        ..Figure::new(panels)
+                    };
+                    for figure in [figure.in_width(width.other()), figure] {
+                        let svg = figure.svg().unwrap();
+                        let (wide, high) = page(&svg);
+                        assert!(
+                            (wide - figure.width.millimetres()).abs() < 0.01 && high <= 240.0,
+                            "{count}: {high} mm"
+                        );
+                        assert_eq!(svg.matches(">a title</text>").count(), count);
+                    }
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn a_page_that_fits_keeps_its_heights_and_tall_rows_give_way_first() {
+    let panel = || axes().with(points(vec![1.0, 2.0]));
+    let plots = |heights: Vec<f64>| {
+        let svg =
+            Figure { heights: heights.clone(), ..Figure::new(vec![panel(); heights.len()]) }.svg().unwrap();
+        page(&svg).1
+    };
+    // One row more adds its plot: 0.5 of the same width.
+    let (one, two) = (plots(vec![0.5]), plots(vec![0.5, 0.5]));
+    assert!(two < 240.0 && two > 1.9 * one);
+    assert!((plots(vec![0.5, 9.0]) - 240.0).abs() < 0.01);
+}
+
+#[test]
+fn what_has_no_room_is_refused() {
+    let panel = || axes().with(points(vec![1.0, 2.0]));
+    let error = Figure::new(vec![panel(); 60]).png().unwrap_err();
+    assert!(matches!(error, Error::Tall { .. } | Error::Narrow { .. }), "{error}");
+    let error = Figure { width: Width::Millimetres(1e6), ..Figure::new(vec![panel()]) }.png().unwrap_err();
+    assert!(error.to_string().ends_with("allowed: up to 500 mm"), "{error}");
+}
+
+/// LaTeX of every kind of layer and scale: braces balance, nothing is left that pdflatex cannot read, every layer has its
+/// rows and every label its entry.
+#[test]
+fn every_kind_of_figure_is_latex() {
+    let sym = Scale::SymLog { threshold: 0.5 };
+    let awkward = "5 % of a_b & {τ} ≤ 10⁻² m² − x, \\end #1";
+    for (x, y) in
+        [(Scale::Linear, Scale::Linear), (Scale::Log, Scale::LogClipped), (sym, sym), (Scale::Log, sym)]
+    {
+        let at = vec![0.5, 1.0, 2.0];
+        let interval = vec![(0.4, 2.5), (0.4, 2.5), (0.4, 2.5)];
+        let points = Points::new(awkward, 0, at.clone(), at.clone())
+            .with_x_interval(interval.clone())
+            .with_y_interval(interval.clone());
+        let mut panel = Panel::new(Axis::new(awkward, "m²", x), Axis::new("y_1", "%", y))
+            .with_title(awkward)
+            .with(points)
+            .with(Line::theory("line_", at.clone(), at.clone()))
+            .with(Band::new("band", 1, at.clone(), interval))
+            .with(Rule::new(Along::Diagonal).with_label("same"))
+            .with(Rule::new(Along::Horizontal(1.0)))
+            .with(Histogram::new("even", 2, vec![0.5, 1.0, 1.5], vec![1.0, 2.0]))
+            .with(Histogram::new("odd", 3, vec![0.5, 1.0, 2.5], vec![1.0, 2.0]))
+            .with(Note { text: awkward.to_owned(), at: At::Fraction(0.1, 0.1), align: Align::Start });
+        if y == Scale::Linear {
+            let mut map = map(vec![1.0, 2.0, 3.0]);
+            (map.x_edges, map.y_edges) = (vec![0.5, 1.0, 1.5, 2.0], vec![0.5, 1.0]);
+            panel = panel.with(map);
+        }
+        for shared_legend in [false, true] {
+            let title = awkward.to_owned();
+            let figure = Figure { title, shared_legend, ..Figure::new(vec![panel.clone(); 2]) };
+            let (tex, csv) = (figure.tex("f.csv").unwrap(), figure.csv("").unwrap());
+            assert!(tex.is_ascii(), "{tex}");
+            let mut depth = 0_i32;
+            let mut escaped = false;
+            for c in tex.chars() {
+                match c {
+                    '{' if !escaped => depth += 1,
+                    '}' if !escaped => depth -= 1,
+                    _ => {}
+                }
+                escaped = c == '\\' && !escaped;
+                assert!(depth >= 0);
+            }
+            assert_eq!(depth, 0);
+            assert!(tex.contains(
+                r"5 \% of a\_b \& \{\ensuremath{\tau}\} \ensuremath{\le} 10\ensuremath{^-}\ensuremath{^2}"
+            ));
+            let names: Vec<&str> = csv.lines().find(|l| !l.starts_with('#')).unwrap().split(',').collect();
+            for used in tex.split("\\thisrow{").skip(1).map(|rest| rest.split_once('}').unwrap().0) {
+                assert!(names.contains(&used), "{used}");
+            }
+            // Points, line, two edges of a band, two histograms, in either panel.
+            assert_eq!(tex.matches("\n\\turbidplot{").count(), 2 * 6);
+            assert_eq!(tex.matches("\\addlegendentry").count(), if shared_legend { 6 } else { 12 });
+            assert_eq!(tex.contains("% Nor the heat map of panel 1, 2:"), y == Scale::Linear);
+        }
     }
 }

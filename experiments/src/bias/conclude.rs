@@ -6,7 +6,9 @@ use super::measure::{map_case, path_case};
 use super::predict::COLLISIONS;
 use super::results::{CaseResult, Mistake, exact_at, fano, largest, pick, predicted_fano};
 use super::{claims, figures, tables};
-use crate::harness::{Cells, Parameters, Row, Section, Settings, Unit, percent, percent_with_error, signed};
+use crate::harness::{
+    Cells, Estimate, Headline, Parameters, Row, Section, Settings, Unit, percent, percent_with_error, signed,
+};
 use crate::prediction::{Compared, PredictedError, Prediction, Predictions};
 use crate::setups::Size;
 use crate::theory::GATHER_TERMS;
@@ -36,6 +38,7 @@ pub fn conclude(settings: &Settings, predictions: &[Prediction], cells: &Cells) 
     section.tables.push(tables::errors(&results));
     section.tables.push(tables::paths(cells, &results)?);
     summarise(&mut section, settings, &results);
+    section.headlines = headlines(&results);
     Ok(section)
 }
 
@@ -178,4 +181,23 @@ fn summarise(section: &mut Section, settings: &Settings, results: &[CaseResult])
          the ball's own part, an estimate that no claim relies on."
             .to_string(),
     );
+}
+
+/// Photons gathered within 0.4 mean free paths, in the middle of the slab of high albedo and at its lit face.
+fn headlines(results: &[CaseResult]) -> Vec<Headline> {
+    let most = largest(results, &HIGH_ALBEDO);
+    let of = |(name, depth, where_): (&str, f64, &str)| {
+        let fits = |r: &&CaseResult| {
+            let c = &r.case;
+            (c.field, c.photons, c.depth) == (&HIGH_ALBEDO, most, depth)
+                && (c.size, c.kernel) == (Size::Radius(0.4), Kernel::Uniform)
+        };
+        let found = results.iter().find(fits)?;
+        let text = format!(
+            "error of the fluence in a slab of albedo 0.9, gathered within 0.4 mean free paths {where_}"
+        );
+        Some(Headline::new(name, &text, Unit::FRACTION, Estimate::mean(&found.error)))
+    };
+    let places = [("Middle", 1.0, "in the middle"), ("Face", 0.0, "at the lit face")];
+    places.into_iter().filter_map(of).collect()
 }

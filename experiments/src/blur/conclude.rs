@@ -6,7 +6,7 @@ use super::predict::{EQUIVALENT, RISE, Theory};
 use super::results::{CaseResult, Transfer, find};
 use super::shaft::CAP;
 use super::{claims, figures, shaft, tables, waves};
-use crate::harness::{Cells, Estimate, Parameters, Row, Section, Settings, Unit, percent};
+use crate::harness::{Cells, Estimate, Headline, Parameters, Row, Section, Settings, Unit, percent};
 use crate::prediction::{Entry, Prediction, Predictions, Term};
 use crate::setups::Size;
 use turbid::estimators::Kernel;
@@ -40,6 +40,7 @@ pub fn conclude(settings: &Settings, predictions: &[Prediction], cells: &Cells) 
     section.figures = figures::all(&results, &transfers)?;
     section.tables = vec![tables::widths(&results), tables::cost()?];
     summarise(&mut section, &results, &transfers);
+    section.headlines = headlines(&results);
     Ok(section)
 }
 
@@ -171,4 +172,17 @@ fn summarise(section: &mut Section, results: &[CaseResult], transfers: &[Transfe
         shaft::WIDTH,
         shaft::LENGTH
     ));
+}
+
+fn headlines(results: &[CaseResult]) -> Vec<Headline> {
+    let of = |(name, size, over): (&str, Size, &str)| {
+        let found = find(results, size, Kernel::Uniform)?;
+        let text = format!("10-90 width of the edge of a shaft over the {over}");
+        Some(Headline::new(name, &text, Unit::ONE, found.rise.times(1.0 / found.case.scale())))
+    };
+    let sizes = [
+        ("Radius", Size::Radius(0.2), "radius of the gather"),
+        ("Nearest", Size::Nearest(100), "radius that holds 100 photons in full light, 100 nearest"),
+    ];
+    sizes.into_iter().filter_map(of).collect()
 }

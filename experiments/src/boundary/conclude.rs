@@ -7,7 +7,9 @@ use super::results::{CaseResult, Found, SheetResult, SpreadResult, integrals, ke
 use super::sheet::Sheet;
 use super::spread::Spread;
 use super::{claims, figures, sheet, spread, tables};
-use crate::harness::{Cells, Parameters, Row, Section, Settings, Unit, percent_with_error};
+use crate::harness::{
+    Cells, Estimate, Headline, Parameters, Row, Section, Settings, Unit, percent_with_error,
+};
 use crate::prediction::{Compared, Entry, PredictedError, Prediction, Predictions, Term};
 use crate::setups::Size;
 use anyhow::Context;
@@ -25,6 +27,7 @@ pub fn conclude(settings: &Settings, predictions: &[Prediction], cells: &Cells) 
     section.figures = figures::all(settings, cells, &found)?;
     section.tables = tables::all(settings, &found)?;
     summarise(&mut section, settings, &found)?;
+    section.headlines = headlines(&found)?;
     Ok(section)
 }
 
@@ -209,4 +212,17 @@ fn summarise(section: &mut Section, settings: &Settings, found: &Found) -> anyho
             .to_string(),
     );
     Ok(())
+}
+
+fn headlines(found: &Found) -> anyhow::Result<Vec<Headline>> {
+    let [_, wrong] = kept(found, Rejection::FacingBehind, 0.25, Size::Radius(0.1))?;
+    let text = "false photons behind a thin wall that are left by looking at incoming directions";
+    let share = Headline::new("False", text, Unit::FRACTION, Estimate::mean(&wrong.iter().collect()));
+    let sphere = found.one(|c| {
+        (c.field, c.treatment, c.place) == (&LIT_SPHERE, Treatment::Clipped, Place::Face(0.0))
+            && (c.size, c.kernel) == (Size::Radius(0.4), Kernel::Uniform)
+    })?;
+    let text = "error at the surface of a lit sphere, gathered within 0.4 mean free paths and clipped";
+    let clipped = Headline::new("Sphere", text, Unit::FRACTION, Estimate::mean(&sphere.error));
+    Ok(vec![share, clipped])
 }

@@ -4,7 +4,10 @@ use super::common::{Common, Left};
 use super::figures;
 use super::largest::{Largest, Null};
 use super::sets::{Drawn, Group, MOST, carries, fit, groups};
-use crate::harness::{Claim, Digest, FIT_LEVEL, Section, SectionReport, Settings, Table, number, percent};
+use crate::harness::{
+    Claim, Digest, Estimate, FIT_LEVEL, Headline, Section, SectionReport, Settings, Table, Unit, number,
+    percent, with_error,
+};
 use crate::prediction::{Entry, Term};
 use turbid::rng::{Purpose, Stream};
 use turbid::stats::{KolmogorovSmirnov, Moments, kolmogorov_smirnov_test, normal_critical, normal_p};
@@ -96,6 +99,12 @@ pub fn conclude(settings: &Settings, sections: &[SectionReport]) -> anyhow::Resu
         figures: vec![figures::sum(&kept, groups.len(), &z)?],
         tables: vec![table(groups.len(), &whole, &parts, &null), group_table(&common)],
         notes: notes(&kept, dropped, sections),
+        headlines: vec![Headline::new(
+            "Cases",
+            "cases whose error is predicted term by term",
+            Unit::ONE,
+            Estimate::exact(kept.len() as f64, 0.0),
+        )],
         ..Section::default()
     })
 }
@@ -258,10 +267,9 @@ fn rounded(x: f64) -> f64 {
     format!("{x:.1e}").parse().unwrap_or(x)
 }
 
-/// In per cent with its standard error, both to the hundredth of a per cent or finer.
+/// In per cent with its standard error.
 fn in_per_cent(left: Left) -> String {
-    let digits = if left.error < 1e-4 { 3 } else { 2 };
-    format!("{:.digits$} ± {:.digits$}", percent(left.mean), percent(left.error))
+    with_error(percent(left.mean), percent(left.error))
 }
 
 fn sizes(largest: &Largest) -> String {

@@ -25,6 +25,7 @@ pub fn conclude(settings: &Settings, predictions: &[Prediction], cells: &Cells) 
         section.notes.append(&mut own.notes);
         section.rows.append(&mut own.rows);
         section.answers.append(&mut own.answers);
+        section.headlines.append(&mut own.headlines);
         said.append(&mut sentences);
     }
     section.summary.extend(said.iter().map(|[sentence, found]| format!("\"{sentence}\": {found}.")));

@@ -24,7 +24,7 @@ pub fn number(x: f64) -> String {
     format!("{mantissa}{}", times_ten_to(power))
 }
 
-/// A value with its error, both to the error's second digit: 1.0031 ± 0.0042, (2.50 ± 0.11) x 10^-7.
+/// A value with its error, both to the error's second digit: 1.0031 ± 0.0042, 123460 ± 790, (2.50 ± 0.11) x 10^-7.
 pub fn with_error(value: f64, error: f64) -> String {
     to_digits_of_error(value, error, 2)
 }
@@ -38,7 +38,7 @@ fn to_digits_of_error(value: f64, error: f64, of_error: i32) -> String {
     if !value.is_finite() || !error.is_finite() || error <= 0.0 {
         return match error {
             0.0 => number(value),
-            e if e.is_finite() => format!("{} ± {}", number(value), number(error)),
+            e if e.is_finite() => format!("{} ± {}", number(value), number(to_power(e, exponent(e, 1) - 1))),
             _ => format!("{} ± unknown", number(value)),
         };
     }
@@ -46,7 +46,8 @@ fn to_digits_of_error(value: f64, error: f64, of_error: i32) -> String {
     let power = if (-3..7).contains(&largest) { 0 } else { largest };
     let (value, error) = (value / ten_to(power), error / ten_to(power));
     // Digits that f64 or a reader cannot use are not printed.
-    let digits = (of_error - 1 - exponent(error, (of_error - 1) as usize)).clamp(0, 15);
+    let digits = (of_error - 1 - exponent(error, (of_error - 1) as usize)).clamp(-15, 15);
+    let (value, error) = (to_power(value, -digits), to_power(error, -digits));
     let text = format!("{} ± {}", print(value, digits), print(error, digits));
     if power == 0 { text } else { format!("({text}){}", times_ten_to(power)) }
 }
@@ -70,6 +71,11 @@ fn exponent(x: f64, digits: usize) -> i32 {
 fn ten_to(power: i32) -> f64 {
     // Parsed, not multiplied up: the nearest f64 to the power.
     format!("1e{power}").parse().unwrap_or(1.0)
+}
+
+/// The number to this power of ten where that is above 1; finer digits are left to printing.
+fn to_power(x: f64, power: i32) -> f64 {
+    if power <= 0 { x } else { (x / ten_to(power)).round() * ten_to(power) }
 }
 
 fn print(x: f64, digits: i32) -> String {
@@ -145,7 +151,9 @@ mod tests {
             (-12.34, 5.6, "−12.3 ± 5.6"),
             (1e-9, 0.5, "0.00 ± 0.50"),
             (-1e-9, 0.5, "0.00 ± 0.50"),
-            (123_456.0, 789.0, "123456 ± 789"),
+            (123_456.0, 789.0, "123460 ± 790"),
+            (123_456.0, 99_600.0, "120000 ± 100000"),
+            (-5.0, 123.4, "−10 ± 120"),
             (1.0, 0.0, "1"),
             (1.0, f64::INFINITY, "1 ± unknown"),
             (3.0e12, 2.0e10, "(3.000 ± 0.020) × 10¹²"),
@@ -153,6 +161,22 @@ mod tests {
         ];
         for (value, error, text) in cases {
             assert_eq!(with_error(value, error), text);
+        }
+    }
+
+    /// Of errors of every size beside values of every size.
+    #[test]
+    fn errors_have_two_digits_at_most() {
+        for i in -400..=400 {
+            for j in -40..=40 {
+                let (error, value) =
+                    (libm::exp10(0.037 * f64::from(i)), 1.234_567 * libm::exp10(0.37 * f64::from(j)));
+                let text = with_error(value, error);
+                let (_, error) = text.split_once(" ± ").unwrap();
+                let error = error.split([')', ' ']).next().unwrap().replace('.', "");
+                let digits = error.trim_start_matches('0').trim_end_matches('0');
+                assert!(digits.len() <= 2, "{text}");
+            }
         }
     }
 }

@@ -1,6 +1,7 @@
 //! The files that a study leaves beside its report.
 
 use super::cells::CellSeconds;
+use super::headline;
 use super::results::Record;
 use super::{Answer, Estimate, Experiment, Judged, Provenance, Reached, SectionReport, TARGETS, Unit};
 use crate::prediction::Prediction;
@@ -185,7 +186,7 @@ pub(super) fn keep_or_write(path: &Path, mut new: Provenance) -> anyhow::Result<
     Ok(new)
 }
 
-/// results.csv, claims.csv and the figures: functions of settings and seed alone.
+/// results.csv, claims.csv, the headline numbers and the figures: functions of settings and seed alone.
 pub(super) fn write_results(out: &Path, sections: &[SectionReport]) -> anyhow::Result<()> {
     let rows: Vec<Record> = sections
         .iter()
@@ -197,6 +198,10 @@ pub(super) fn write_results(out: &Path, sections: &[SectionReport]) -> anyhow::R
         .flat_map(|s| s.judged.iter().map(|judged| ClaimRecord::new(s.experiment.name, judged)))
         .collect();
     write_atomically(out.join("claims.csv"), |file| write_csv(file, &claims))?;
+    let headlines = headline::all(sections);
+    write_atomically(out.join("headlines.csv"), |file| write_csv(file, &headline::records(&headlines)))?;
+    let commands = headline::commands(&headlines);
+    write_atomically(out.join("numbers.tex"), |file| file.write_all(commands.as_bytes()))?;
     let folder = out.join("figures");
     std::fs::create_dir_all(&folder).with_context(|| format!("cannot create {}", folder.display()))?;
     for part in sections {
@@ -206,6 +211,8 @@ pub(super) fn write_results(out: &Path, sections: &[SectionReport]) -> anyhow::R
                 write_if_changed(&folder.join(name), bytes)?;
             }
             write_if_changed(&folder.join(format!("{stem}.csv")), figure.csv.as_bytes())?;
+            let (name, text) = figure.latex(&stem)?;
+            write_if_changed(&folder.join(name), text.as_bytes())?;
         }
     }
     Ok(())

@@ -15,6 +15,8 @@ struct Redrawn {
     /// The table's name without its ending.
     stem: String,
     files: FigureFiles,
+    /// Name and text of the figure as LaTeX, in the figure's own width.
+    latex: (String, String),
 }
 
 /// Redraws the figures of a finished study and puts them into its report, or redraws single figures beside their
@@ -45,12 +47,13 @@ pub fn replot(settings: &Settings, what: &Replot) -> anyhow::Result<String> {
     };
 
     let (mut written, mut changed) = (0, 0);
-    for Redrawn { table, stem, files } in &redrawn {
+    for Redrawn { table, stem, files, latex } in &redrawn {
         let [svg, png, other_svg, other_png] = files.drawings(stem);
+        let tex = (latex.0.clone(), latex.1.as_bytes());
         let is_other = |width: &str| files.other.name == width;
         let chosen = match what.width.map(|width| is_other(width.name())) {
-            None => vec![svg, png, other_svg, other_png],
-            Some(false) => vec![svg, png],
+            None => vec![svg, png, other_svg, other_png, tex],
+            Some(false) => vec![svg, png, tex],
             Some(true) => vec![other_svg, other_png],
         };
         for (name, bytes) in chosen {
@@ -101,7 +104,8 @@ const MOST_BYTES: u64 = 1 << 26;
 /// Redraws a figure from its table and says how many bytes the drawings have; writes nothing.
 pub(crate) fn try_redraw(table: &Path) -> anyhow::Result<usize> {
     let redrawn = redraw(table.to_path_buf())?;
-    Ok(redrawn.files.drawings(&redrawn.stem).iter().map(|(_, bytes)| bytes.len()).sum())
+    let drawings: usize = redrawn.files.drawings(&redrawn.stem).iter().map(|(_, bytes)| bytes.len()).sum();
+    Ok(drawings + redrawn.latex.1.len())
 }
 
 fn redraw(table: PathBuf) -> anyhow::Result<Redrawn> {
@@ -114,5 +118,6 @@ fn redraw(table: PathBuf) -> anyhow::Result<Redrawn> {
         other => anyhow::anyhow!("{place}: {other}"),
     })?;
     let files = FigureFiles::draw(&stem, &caption, &figure).with_context(|| place.to_string())?;
-    Ok(Redrawn { table, stem, files })
+    let latex = files.latex(&stem).with_context(|| place.to_string())?;
+    Ok(Redrawn { stem, files, latex, table: table.clone() })
 }

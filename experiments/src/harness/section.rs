@@ -1,7 +1,7 @@
 //! What an experiment says in the report.
 
 use super::format::{number, percent, with_error};
-use super::{Answer, Claim, Row, Unit};
+use super::{Answer, Claim, Headline, Row, Unit};
 use crate::prediction::Entry;
 use turbid::stats::{Moments, mean_interval};
 use turbid_figure::Figure;
@@ -21,6 +21,8 @@ pub struct FigureFiles {
     pub csv: String,
     /// The figure in the other width.
     pub other: OtherWidth,
+    /// What is drawn.
+    pub figure: Figure,
 }
 
 /// A figure laid out for one column of print where it is drawn for two, or for two where it is drawn for one.
@@ -50,7 +52,13 @@ impl FigureFiles {
             png: png?,
             csv,
             other: OtherWidth { name: other.width.name(), svg: other.svg()?, png: other_png? },
+            figure: figure.clone(),
         })
+    }
+
+    /// The figure as LaTeX with its file's name, beside the table of the same stem.
+    pub(super) fn latex(&self, stem: &str) -> anyhow::Result<(String, String)> {
+        Ok((format!("{stem}.tex"), self.figure.tex(&format!("{stem}.csv"))?))
     }
 
     /// The drawings with their files' names, for an experiment's figures or for any name: those of the figure's own
@@ -143,6 +151,8 @@ pub(crate) fn row_label(quantity: &str, unit: Unit) -> String {
 pub struct Section {
     /// Paragraphs; the first is the headline, one sentence that stands alone.
     pub summary: Vec<String>,
+    /// The numbers that a paper would quote.
+    pub headlines: Vec<Headline>,
     /// Claims, judged together with those of the whole study.
     pub claims: Vec<Claim>,
     /// Figures, in order.

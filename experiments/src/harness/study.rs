@@ -163,7 +163,16 @@ pub fn run(study: &Study, settings: &Settings) -> anyhow::Result<Outcome> {
     check_memory(planned.iter().flatten().flatten().map(|(cell, _)| cell.held).max().unwrap_or(0), settings)?;
     check_folder(
         &settings.out,
-        &["report.html", "results.csv", "claims.csv", "timing.csv", "provenance.json"],
+        &[
+            "report.html",
+            "results.csv",
+            "claims.csv",
+            "answers.csv",
+            "headlines.csv",
+            "numbers.tex",
+            "timing.csv",
+            "provenance.json",
+        ],
     )?;
     check_folder(&settings.out.join("figures"), &["figure.svg"])?;
     let cells_folder = settings.out.join("cells");
@@ -352,11 +361,17 @@ fn opening(study: &str, settings: &Settings, total: usize, missing: usize, predi
     }
 }
 
-/// A section whose claims have names of their own.
+/// A section whose claims and headline numbers have names of their own.
 fn with_claims_apart(section: Section) -> anyhow::Result<Section> {
     let mut seen = BTreeSet::new();
     for claim in &section.claims {
         ensure!(seen.insert(claim.id.as_str()), "two claims have the same name, {}", claim.id);
+    }
+    let mut seen = BTreeSet::new();
+    for headline in &section.headlines {
+        let name = &headline.name;
+        ensure!(headline.has_a_name(), "the headline number {name:?} is not called by letters alone");
+        ensure!(seen.insert(name), "two headline numbers have the same name, {name}");
     }
     Ok(section)
 }

@@ -6,7 +6,7 @@ use super::measure::GROUP;
 use super::predict::TERMS;
 use super::results::CaseResult;
 use crate::harness::{
-    Cells, Claim, Estimate, LEFT_OVER, PREDICTED, Row, Section, Settings, Table, Unit, percent,
+    Cells, Claim, Estimate, Headline, LEFT_OVER, PREDICTED, Row, Section, Settings, Table, Unit, percent,
     percent_with_error, signed,
 };
 use crate::prediction::{Compared, PredictedError, Prediction, Predictions, Term, amplitude};
@@ -30,6 +30,7 @@ pub fn conclude(settings: &Settings, predictions: &[Prediction], cells: &Cells) 
         notes: notes(settings),
         rows: rows(cells, &results)?,
         budget: results.iter().map(|r| r.entry(format!("march-{GROUP}"), &r.case.name())).collect(),
+        headlines: headlines(&results),
         ..Section::default()
     })
 }
@@ -171,4 +172,17 @@ fn notes(settings: &Settings) -> Vec<String> {
          nearest photons at a face, neighbours are taken to be missing like the ball's own part."
             .to_string(),
     ]
+}
+
+fn headlines(results: &[CaseResult]) -> Vec<Headline> {
+    let of = |(name, rule, how): (&str, StepRule, &str)| {
+        let found = find(results, 0.5, 1.0, rule)?;
+        let text = format!("error of radiance marched in steps of one mean free path at mu = 0.5, {how}");
+        Some(Headline::new(name, &text, Unit::FRACTION, Estimate::mean(&found.error)))
+    };
+    let rules = [
+        ("Formula", StepRule::NearEnd, "by the formula of 1998"),
+        ("Integrated", StepRule::Integrated, "the exponential integrated over each step"),
+    ];
+    rules.into_iter().filter_map(of).collect()
 }

@@ -1,13 +1,13 @@
 //! What all maps together say: rows, claims, tables, the error budget of the study.
 
-use super::cases::{FIELDS, PROBES, Setting, Treatment};
+use super::cases::{FIELDS, PROBES, Setting, THICK, THIN, Treatment};
 use super::choose::{BreakEven, Currency, best_over_best, break_even, most_efficient, regret};
 use super::data::{Data, Measured};
 use super::measure::MAPS;
 use super::predict::{BIAS, NOISE, RMS};
 use super::split::{rms, rms_bias, rms_noise};
 use super::{answers, claims, figures, tables, words};
-use crate::harness::{Cells, Estimate, Parameters, Row, Section, Settings, Unit};
+use crate::harness::{Cells, Estimate, Headline, Parameters, Row, Section, Settings, Unit};
 use crate::prediction::{Entry, Prediction, Predictions, Term};
 use crate::setups::Size;
 use turbid::stats::Moments;
@@ -25,6 +25,7 @@ pub fn conclude(settings: &Settings, predictions: &[Prediction], cells: &Cells) 
     section.tables = tables::all(&data, &known)?;
     section.summary = words::summary(&data);
     section.notes = words::notes(&section.budget, &data);
+    section.headlines = headlines(&data);
     Ok(section)
 }
 
@@ -164,4 +165,20 @@ fn expected_error(setting: &Setting, depth: f64, noise: f64, radius: f64) -> f64
     let probes = setting.lateral() as f64;
     let shared = 0.8 * std::f64::consts::PI * radius * radius / setting.field.setup.body.area(depth);
     noise * ((1.0 / probes + shared).min(1.0) / MAPS as f64).sqrt()
+}
+
+fn headlines(data: &Data) -> Vec<Headline> {
+    let of = |treatment| data.of(&THIN, treatment, Some(data.largest(&THIN)));
+    let clipping = best_over_best(&of(Treatment::Clipped), &of(Treatment::Plain));
+    let text =
+        "RMS error of the best clipped setting over that of the best untreated one, thin isotropic slab";
+    let mut headlines = vec![Headline::new("Clipping", text, Unit::ONE, clipping)];
+    let chosen = most_efficient(&data.of(&THICK, Treatment::Clipped, None)).zip(data.paths(&THICK));
+    let even = chosen.and_then(|(best, paths)| break_even(best.case, paths, Currency::Operations).queries);
+    if let Some(queries) = even {
+        let text =
+            "queries from which on a photon map costs fewer operations than paths, thick isotropic slab";
+        headlines.push(Headline::new("BreakEven", text, Unit::ONE, queries));
+    }
+    headlines
 }

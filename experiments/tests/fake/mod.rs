@@ -3,8 +3,8 @@
 use turbid::math::{ln, sin_cos};
 use turbid::rng::{Purpose, Stream};
 use turbid_experiments::harness::{
-    CellId, CellOutput, Cells, Claim, Experiment, FigureFiles, Group, Row, Section, Settings, Study, Table,
-    Unit, bar,
+    CellId, CellOutput, Cells, Claim, Experiment, FigureFiles, Group, Headline, Row, Section, Settings,
+    Study, Table, Unit, bar,
 };
 use turbid_experiments::prediction::Prediction;
 use turbid_figure::{Axis, Figure, Line, Panel, Points};
@@ -116,6 +116,7 @@ fn conclude(_: &Settings, predictions: &[Prediction], cells: &Cells) -> anyhow::
             Claim::within("wrong", "The control has no bias beyond the predicted one, within 1 per cent.", Unit::FRACTION, control, -0.01, 0.01),
             Claim::detected("control", "The planted fault of 5 per cent is detected.", Unit::FRACTION, control, 0.0, 0.025),
         ],
+        headlines: vec![Headline::new("Factor", "measured bias over predicted bias", Unit::ONE, amplitude)],
         figures: vec![figure(cells)?],
         tables: vec![Table::of_rows("Bias at four gather sizes: the measured values scatter about the prediction by their errors.", &rows)],
         notes: vec!["All four sizes are read from the same maps: their errors move together.".to_string()],

@@ -17,7 +17,7 @@ pub fn same_on_threads(program: &str, photons: &str, folder: &Path) -> PathBuf {
     let printed = run(program, photons, "1", &one);
     assert!(printed.contains("claims:") && printed.contains("report.html"), "{printed}");
     run(program, photons, "2", &two);
-    for file in ["results.csv", "predictions.csv", "claims.csv"] {
+    for file in ["results.csv", "predictions.csv", "claims.csv", "headlines.csv", "numbers.tex"] {
         let read = |folder: &Path| std::fs::read(folder.join(file)).unwrap();
         assert!(read(&one) == read(&two), "{file} depends on the threads");
     }

@@ -2,9 +2,10 @@
 //!
 //! The file starts with lines of the form `# key: value`, each value one line of JSON: the version of the format, a
 //! description in words, the layout of the figure, the heading and axes of each panel, the look of each layer. Then
-//! come tidy rows, one a point (bin, cell, rule, note), with the columns `panel`, `layer`, `kind`, `label` and those
-//! that the figure fills of `x`, `y`, `x_low`, `x_high`, `y_low`, `y_high`, `value`. A reader that skips lines with
-//! `#`, such as `pandas.read_csv(file, comment="#")`, sees a plain table.
+//! come tidy rows, one a point (bin, cell, rule, note), with the columns `panel`, `layer`, `kind`, those that the figure
+//! fills of `x`, `y`, `x_low`, `x_high`, `y_low`, `y_high`, `value`, and `label`. A reader that skips lines with `#`, such
+//! as `pandas.read_csv(file, comment="#")`, sees a plain table. The label stands last since a label may have a comma:
+//! pgfplots knows no quotes, and takes what follows the comma for one more column, which it leaves out.
 
 mod header;
 mod layers;
@@ -47,7 +48,7 @@ impl Column {
     }
 }
 
-/// The columns before them.
+/// The columns of words and whole numbers: the last stands behind the numbers, the others before them.
 const KEYS: [&str; 4] = ["panel", "layer", "kind", "label"];
 
 /// The numbers of a row, by column.

@@ -131,7 +131,7 @@ fn table(text: &str, header: &Header<'_>) -> Result<BTreeMap<(usize, usize), Row
         None => Err(Error::Csv {
             line: header.lines + 1,
             column: None,
-            problem: format!("the table is missing; allowed: a row of names, {} first", KEYS.join(", ")),
+            problem: format!("the table is missing; allowed: a row of names, {} among them", KEYS.join(", ")),
         }),
     }
 }

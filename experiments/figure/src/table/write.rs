@@ -23,16 +23,17 @@ pub(crate) fn write(figure: &Figure, description: &str) -> Result<String, Error>
 
     let failed = |e: csv::Error| Error::Backend(e.to_string());
     let mut table = csv::Writer::from_writer(Vec::new());
-    let names = KEYS.into_iter().chain(columns.iter().map(|c| c.name()));
+    let [before @ .., last] = KEYS;
+    let names = before.into_iter().chain(columns.iter().map(|c| c.name())).chain([last]);
     table.write_record(names).map_err(failed)?;
     for (panel, number, layer) in layers() {
         let label = if let Layer::Note(note) = layer { &note.text } else { layer.label() };
         for row in rows(layer) {
-            let keys = [panel.to_string(), number.to_string(), layer.kind().to_owned(), label.to_owned()];
+            let keys = [panel.to_string(), number.to_string(), layer.kind().to_owned()];
             // Debug is the shortest text that reads back to the same bits, with an exponent where that is shorter.
             let cells =
                 columns.iter().map(|c| row[*c as usize].map_or_else(String::new, |v| format!("{v:?}")));
-            table.write_record(keys.into_iter().chain(cells)).map_err(failed)?;
+            table.write_record(keys.into_iter().chain(cells).chain([label.to_owned()])).map_err(failed)?;
         }
     }
     let bytes = table.into_inner().map_err(|e| Error::Backend(e.to_string()))?;

@@ -6,7 +6,7 @@ use super::{SIDE, figure};
 use crate::claims_1998::part::Part;
 use crate::cost_model::cheapest;
 use crate::harness::{
-    Answer, Cells, Claim, Estimate, Reached, Row, Section, Settings, TARGETS, Table, Unit, percent,
+    Answer, Cells, Claim, Estimate, Headline, Reached, Row, Section, Settings, TARGETS, Table, Unit, percent,
 };
 use turbid::math::exp;
 use turbid::stats::{Jackknife, jackknife, jackknife_log};
@@ -56,6 +56,7 @@ pub fn conclude(settings: &Settings, cells: &Cells) -> anyhow::Result<Part> {
         )],
         rows: rows(&pictures, &in_rays)?,
         answers: vec![answer(&pictures)],
+        headlines: vec![Headline::new("Faster", &text, Unit::ONE, in_rays)],
         ..Section::default()
     };
     Ok(Part { section, said })
