@@ -1,8 +1,8 @@
 //! All scenes together: figure, table, sentences.
 
 use crate::harness::{
-    Answer, Estimate, FigureFiles, Point, Reached, Section, SectionReport, Settings, TARGETS, Table, number,
-    percent, with_rough_error,
+    Answer, Estimate, FigureFiles, Headline, Point, Reached, Section, SectionReport, Settings, TARGETS,
+    Table, Unit, number, percent, with_rough_error,
 };
 use turbid_figure::{Axis, Figure, Line, Panel, Points, Width};
 
@@ -23,6 +23,7 @@ pub fn conclude(_settings: &Settings, sections: &[SectionReport]) -> anyhow::Res
         summary: summary(&answers),
         figures: vec![figure(&answers)?],
         tables: vec![table(&answers)],
+        headlines: headlines(&answers),
         ..Section::default()
     })
 }
@@ -84,6 +85,27 @@ fn summary(answers: &[&Answer]) -> Vec<String> {
         scenes(LAST, Option::is_none),
     ));
     summary
+}
+
+/// The numbers of the sentences.
+fn headlines(answers: &[&Answer]) -> Vec<Headline> {
+    let reached = || answers.iter().filter_map(|a| a.reached[MIDDLE].as_ref());
+    let untreated = range(answers.iter().filter_map(|a| a.untreated.as_ref().map(|u| &u.error)));
+    let text = "the cheapest photon map with an error of 10 %, over scenes";
+    let mut headlines = Vec::new();
+    for (names, what, unit, found) in [
+        (["SpeedLeast", "SpeedMost"], "times as fast as paths", Unit::ONE, range(reached().map(|r| &r.time))),
+        (["BiasLeast", "BiasMost"], "its bias", Unit::FRACTION, range(reached().map(|r| &r.bias))),
+        (["UntreatedLeast", "UntreatedMost"], "best error, faces untreated", Unit::FRACTION, untreated),
+    ] {
+        for (name, (end, estimate)) in names
+            .into_iter()
+            .zip(found.into_iter().flat_map(|(least, most)| [("least", least), ("most", most)]))
+        {
+            headlines.push(Headline::new(name, &format!("{text}: {what}, {end}"), unit, *estimate));
+        }
+    }
+    headlines
 }
 
 /// The smallest and the largest.
