@@ -1,5 +1,6 @@
 //! The page: every picture with its reference, its error, its maps and its numbers. It needs nothing from elsewhere.
 
+use super::keep::{MapEstimates, RenderRecord};
 use super::pictures::{ALL, Picture};
 use super::plates::SCALE;
 use super::settings::Settings;
@@ -134,6 +135,7 @@ fn numbers(picture: &Picture, shown: &PageEntry) -> Markup {
                     (duration(ours.seconds - ours.map_seconds)) " of CPU time for "
                     (shown.size.0) " × " (shown.size.1) " pixels, " (ours.samples) " samples each"
                 } }
+                tr { th { "photons in an estimate" } td { (estimates(ours)) } }
                 @if let Some((paths, seconds)) = shown.reference {
                     tr { th { "reference" } td { (paths) " samples per pixel, " (duration(seconds)) " of CPU time" } }
                 }
@@ -141,6 +143,21 @@ fn numbers(picture: &Picture, shown: &PageEntry) -> Markup {
             }
         }
     }
+}
+
+/// Photons asked for and found, map by map.
+fn estimates(ours: &RenderRecord) -> String {
+    let Some(maps) = &ours.estimates else { return "found: not measured when this picture was made".to_string() };
+    let one = |(name, map): (&str, &MapEstimates)| {
+        format!(
+            "{name} map: {} asked for, {:.0} found on average, {} of the estimates under-full",
+            map.asked,
+            map.found,
+            percent(map.underfull)
+        )
+    };
+    let read = ["global", "caustic", "volume"].into_iter().zip(maps).filter(|(_, map)| map.count > 0);
+    read.map(one).collect::<Vec<_>>().join("; ")
 }
 
 fn percent(x: f64) -> String {

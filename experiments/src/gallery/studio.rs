@@ -1,7 +1,7 @@
 //! Makes the pictures: photon maps and their readout, paths, each with the CPU time that it took.
 
 use super::Grid;
-use super::keep::{CachedRender, FORMAT, RenderRecord};
+use super::keep::{CachedRender, FORMAT, MapEstimates, RenderRecord};
 use super::light::ByLight;
 use super::pictures::Picture;
 use super::recipe;
@@ -125,6 +125,8 @@ impl<'a> Studio<'a> {
         let method = Method::Photons(mapper::Mapper::new(&self.scene, &maps, &settings));
         let mut film = Film::new(self.camera.width(), self.camera.height());
         let report = method.extend(&mut film, &self.camera, samples, self.streams(replicate), progress)?;
+        let gathers = [report.global, report.caustic, report.volume];
+        let asked = settings.nearest();
         let stored = |map: &Option<PhotonMap>| map.as_ref().map_or(0, |m| m.stored() as u64);
         let facts = RenderRecord {
             format: FORMAT,
@@ -135,7 +137,8 @@ impl<'a> Studio<'a> {
             samples,
             emitted: [maps.report.main.emitted, maps.report.caustic.emitted],
             stored: [stored(&maps.global), stored(&maps.caustic), stored(&maps.volume)],
-            radii: [report.global, report.caustic, report.volume].map(|g| g.mean_radius()),
+            radii: gathers.map(|g| g.mean_radius()),
+            estimates: Some([0, 1, 2].map(|map| MapEstimates::new(asked[map], &gathers[map]))),
         };
         Ok(CachedRender::new(facts, &film))
     }
@@ -227,6 +230,7 @@ impl<'a> Studio<'a> {
             emitted: [0; 2],
             stored: [0; 3],
             radii: [0.0; 3],
+            estimates: None,
         }
     }
 }
