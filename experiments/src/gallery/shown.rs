@@ -33,9 +33,9 @@ pub struct Compared {
     pub verdict: String,
     /// Blocks and channels compared, and how many differ.
     pub blocks: (usize, usize),
-    /// Share of the picture that was masked beforehand.
+    /// Share that was masked beforehand, of the pixels that scatter light.
     pub masked: f64,
-    /// Share of the picture without a verdict for its heavy tails.
+    /// Share without a verdict for its heavy tails, of the same.
     pub heavy: f64,
     /// Median of the smallest detectable relative deviations.
     pub smallest: f64,
@@ -54,9 +54,9 @@ impl Compared {
         let agreement = comparison.agreement();
         let differ = if let Agreement::Differ(n) = agreement { n } else { 0 };
         let verdict = match agreement {
-            Agreement::Agree => "agrees with its reference",
-            Agreement::Differ(_) => "differs from its reference",
-            Agreement::Undecided => "undecided: too little of the picture can be judged",
+            Agreement::Agree => "agrees with its reference".to_string(),
+            Agreement::Differ(_) => "differs from its reference".to_string(),
+            Agreement::Undecided(why) => format!("undecided: {why}"),
         };
         Compared {
             replicates,
@@ -64,7 +64,7 @@ impl Compared {
             systematic: pair(errors.systematic),
             bias: pair(errors.bias),
             equal_rms: pair(equal_rms),
-            verdict: verdict.to_string(),
+            verdict,
             blocks: (comparison.blocks.len(), differ),
             masked: comparison.masked,
             heavy: comparison.heavy,
