@@ -458,7 +458,8 @@ mod tests {
         let comparison = compare(GRID, &a, &b, &nothing(), 0.02);
         assert!(comparison.blocks.len() == 12 && comparison.blocks.iter().all(|block| block.place.0 > 0));
         assert_eq!((comparison.masked, comparison.agreement()), (0.0, Agreement::Agree));
-        let left: Vec<f64> = (0..GRID.pixels()).map(|i| if i % GRID.width < 12 { 0.5 } else { 0.0 }).collect();
+        let left: Vec<f64> =
+            (0..GRID.pixels()).map(|i| if i % GRID.width < 12 { 0.5 } else { 0.0 }).collect();
         assert!((compare(GRID, &a, &b, &left, 0.02).masked - 0.25).abs() < 1e-15);
         let glowing = replicates(64, 3, 400, |i| if is_sky(i) { 0.01 } else { 1.0 });
         assert_eq!(compare(GRID, &glowing, &b, &nothing(), 0.02).agreement(), Agreement::Differ(6));

@@ -11,7 +11,6 @@ use turbid::Spectrum;
 use turbid::integrators::mapper::Gathers;
 use turbid::integrators::{Layer, Layers};
 use turbid::output::write_atomically;
-use turbid::sensor::Film;
 
 /// The version of the files.
 pub const FORMAT: u32 = 2;
@@ -88,25 +87,16 @@ pub struct CachedRender {
 }
 
 impl CachedRender {
-    /// A film with its facts.
-    pub fn new(facts: RenderRecord, film: &Film) -> Self {
-        let layers: Vec<Layers> = film.pixels().iter().map(|p| p.layers()).collect();
+    /// Radiance by class and pixel, with its facts.
+    pub fn new(facts: RenderRecord, layers: Vec<Layers>) -> Self {
+        let total = layers.iter().map(|l| l.total()).collect();
         let emission = layers.iter().map(|l| l.emission).collect();
-        CachedRender { facts, total: film.pixels().iter().map(|p| p.total()).collect(), emission, layers }
+        CachedRender { facts, total, emission, layers }
     }
 
     /// The same without its classes: what is only compared needs none.
     pub fn without_layers(mut self) -> Self {
         self.layers = Vec::new();
-        self
-    }
-
-    /// With more light in each pixel.
-    pub fn with(mut self, more: &[Layers]) -> Self {
-        for (i, more) in more.iter().enumerate() {
-            self.layers[i] += *more;
-            self.total[i] += more.total();
-        }
         self
     }
 

@@ -147,7 +147,9 @@ fn numbers(picture: &Picture, shown: &PageEntry) -> Markup {
 
 /// Photons asked for and found, map by map.
 fn estimates(ours: &RenderRecord) -> String {
-    let Some(maps) = &ours.estimates else { return "found: not measured when this picture was made".to_string() };
+    let Some(maps) = &ours.estimates else {
+        return "found: not measured when this picture was made".to_string();
+    };
     let one = |(name, map): (&str, &MapEstimates)| {
         format!(
             "{name} map: {} asked for, {:.0} found on average, {} of the estimates under-full",

@@ -43,7 +43,8 @@ pub struct Picture {
     pub exposure: f64,
     /// What stands beside it.
     pub beside: Beside,
-    /// The most samples per pixel of one of the 64 passes of the reference: a pilot says how many are needed.
+    /// The most samples per pixel of one of the 64 passes of the reference: a pilot says how many are needed, and together they must
+    /// be more than any picture beside the reference has.
     pub reference: u64,
     /// What of the reference is found by light tracing.
     pub by_light: ByLight,
@@ -70,7 +71,7 @@ pub const ALL: &[Picture] = &[
         reach: 0.2,
         exposure: 1.3,
         beside: Beside::Maps,
-        reference: 6,
+        reference: 10,
         by_light: ByLight::NOTHING,
     },
     Picture {
@@ -88,7 +89,7 @@ pub const ALL: &[Picture] = &[
         reach: 1.0,
         exposure: 0.85,
         beside: Beside::Maps,
-        reference: 5,
+        reference: 10,
         by_light: ByLight { layers: &[Layer::Caustic, Layer::Indirect], permille: 1000 },
     },
     Picture {
@@ -106,7 +107,7 @@ pub const ALL: &[Picture] = &[
         reach: 0.1,
         exposure: 0.8,
         beside: Beside::Single,
-        reference: 4,
+        reference: 12,
         by_light: ByLight::NOTHING,
     },
     Picture {
@@ -127,7 +128,7 @@ pub const ALL: &[Picture] = &[
         reach: 0.3,
         exposure: 1.8,
         beside: Beside::Maps,
-        reference: 6,
+        reference: 12,
         by_light: ByLight::NOTHING,
     },
     Picture {
@@ -148,7 +149,7 @@ pub const ALL: &[Picture] = &[
         reach: 0.3,
         exposure: 1.8,
         beside: Beside::Maps,
-        reference: 6,
+        reference: 24,
         by_light: ByLight::NOTHING,
     },
     Picture {
@@ -169,7 +170,7 @@ pub const ALL: &[Picture] = &[
         reach: 0.3,
         exposure: 1.8,
         beside: Beside::Maps,
-        reference: 4,
+        reference: 12,
         by_light: ByLight::NOTHING,
     },
     Picture {
@@ -187,7 +188,7 @@ pub const ALL: &[Picture] = &[
         reach: 0.4,
         exposure: 2.2,
         beside: Beside::Maps,
-        reference: 4,
+        reference: 48,
         by_light: ByLight::NOTHING,
     },
     Picture {
@@ -205,7 +206,7 @@ pub const ALL: &[Picture] = &[
         reach: 0.035,
         exposure: 1.3,
         beside: Beside::Maps,
-        reference: 8,
+        reference: 10,
         by_light: ByLight {
             layers: &[Layer::Direct, Layer::Caustic, Layer::Indirect, Layer::Single, Layer::Multiple],
             permille: 500,

@@ -122,7 +122,7 @@ fn one(picture: &Picture, settings: &Settings, folder: &Path, program: &str) -> 
         size: (studio.grid().width, studio.grid().height),
         seconds,
         ours: ours.facts,
-        equal: others.as_ref().map(|o| o.equal.facts.clone()),
+        equal: others.as_ref().map(|o| o.equal.1.facts.clone()),
         reference: others.as_ref().map(|o| o.cost),
         compared: others.map(|o| o.compared),
         plates,
