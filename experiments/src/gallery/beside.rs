@@ -17,6 +17,7 @@ use crate::harness::say;
 use anyhow::ensure;
 use turbid::Spectrum;
 use turbid::integrators::Layer;
+use turbid::photons::Emitter;
 use turbid::stats::Interval;
 
 /// Predicted relative error above which a pixel is masked.
@@ -101,11 +102,13 @@ pub fn beside(large: &Cache, small: &Cache, ours: &CachedRender) -> anyhow::Resu
     })
 }
 
-/// The methods without photon maps that race against a picture by photons: paths, all by light tracing where the scene permits it, and
-/// what the reference is made with.
+/// The methods without photon maps that race against a picture by photons: paths, what the reference is made with, light
+/// tracing of caustics where there may be some, and of all that scatters where the scene permits it.
 fn rivals(studio: &Studio) -> Vec<ByLight> {
     let mut methods: Vec<ByLight> = Vec::new();
-    for method in [ByLight::NOTHING, studio.picture.by_light, ByLight::ALL] {
+    let has_caustics = Emitter::towards_specular(&studio.scene).is_some();
+    let caustics = if has_caustics { ByLight::CAUSTICS } else { ByLight::NOTHING };
+    for method in [ByLight::NOTHING, studio.picture.by_light, caustics, ByLight::ALL] {
         let is_new = methods.iter().all(|other| other.layers != method.layers);
         if is_new && method.check(&studio.scene, &studio.camera).is_ok() {
             methods.push(method);

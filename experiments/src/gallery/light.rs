@@ -33,6 +33,9 @@ impl ByLight {
     /// Nothing: all by paths.
     pub const NOTHING: ByLight = ByLight { layers: &[], permille: 0 };
 
+    /// What arrives by specular surfaces alone.
+    pub const CAUSTICS: ByLight = ByLight { layers: &[Layer::Caustic], permille: 1000 };
+
     /// All that scatters.
     pub const ALL: ByLight = ByLight {
         layers: &[Layer::Direct, Layer::Caustic, Layer::Indirect, Layer::Single, Layer::Multiple],
@@ -305,9 +308,8 @@ mod tests {
             }
             all
         };
-        let caustic = ByLight { layers: &[Layer::Caustic], permille: 1000 };
         let paths = moments(ByLight::NOTHING, 0);
-        for (by_light, first) in [(caustic, 1000), (ByLight::ALL, 2000)] {
+        for (by_light, first) in [(ByLight::CAUSTICS, 1000), (ByLight::ALL, 2000)] {
             let both = moments(by_light, first);
             for ((layer, a), b) in Layer::ALL.into_iter().zip(&paths).zip(&both).take(4) {
                 let std_error = (a.std_error() * a.std_error() + b.std_error() * b.std_error()).sqrt();
