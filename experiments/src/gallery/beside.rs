@@ -1,4 +1,4 @@
-//! What stands beside the photon mapper's picture: paths in the same time, the reference, and the comparison with it.
+//! What stands beside the photon mapper's picture: the best picture without photon maps in the same time, the reference, and the comparison with it.
 //!
 //! The reference and what is shown are of full size. For the comparison the photon mapper makes the picture again with 64
 //! sets of maps on half the width and height, a sample a pixel: means over blocks need no small pixels, and their error
@@ -7,13 +7,17 @@
 use super::cache::Cache;
 use super::compare::{FEWEST, Replicate, compare, errors, rms_of_one, spread};
 use super::keep::CachedRender;
+use super::light::ByLight;
 use super::look::look;
 use super::predict::{Radii, Spreads, predicted, radius};
 use super::recipe::readout;
 use super::shown::Compared;
+use super::studio::Studio;
 use crate::harness::say;
+use anyhow::ensure;
 use turbid::Spectrum;
 use turbid::integrators::Layer;
+use turbid::photons::Emitter;
 use turbid::stats::Interval;
 
 /// Predicted relative error above which a pixel is masked.
@@ -33,8 +37,8 @@ const FIRST: (u64, u64) = (1000, 2000);
 
 /// What stands beside the photon mapper's picture.
 pub struct RivalPictures {
-    /// The path tracer's picture in the same time.
-    pub equal: CachedRender,
+    /// The picture without photon maps in the same time that has the smaller error, and how it was made.
+    pub equal: (ByLight, CachedRender),
     /// The reference, its samples per pixel and its CPU seconds.
     pub reference: Replicate,
     /// Samples a pixel of the reference, and its CPU seconds.
@@ -55,15 +59,22 @@ pub struct RivalPictures {
 /// those of rendering and of files
 pub fn beside(large: &Cache, small: &Cache, ours: &CachedRender) -> anyhow::Result<RivalPictures> {
     let picture = large.studio.picture;
-    let equal = large.paths_in("equal", ours.facts.seconds)?;
+    let raced = rivals(large.studio)
+        .into_iter()
+        .enumerate()
+        .map(|(n, method)| Ok((method, large.rival(&format!("equal-{n}"), method, ours.facts.seconds)?)))
+        .collect::<anyhow::Result<Vec<(ByLight, CachedRender)>>>()?;
     // Before anything that is compared is made.
     let (prediction, mut seconds) = predict(small, ours)?;
     let masked: Vec<bool> = prediction.iter().map(|&e| e > LIMIT).collect();
     let share = masked.iter().filter(|&&is_masked| is_masked).count() as f64 / masked.len() as f64;
     say(&format!("{}: blur and edges may matter in {:.1} % of the pixels", picture.name, 100.0 * share));
-    let samples = chosen(large, &masked)?;
+    let shown: Vec<&CachedRender> =
+        [ours].into_iter().chain(raced.iter().map(|(_, render)| render)).collect();
+    let most = shown.iter().map(|render| render.facts.samples).max().unwrap_or(0);
+    let samples = enough(chosen(large, &masked)?, most, picture.reference)?;
     say(&format!("{}: {COMPARED} passes of {samples} samples per pixel for the reference", picture.name));
-    let reference = reference(large, samples, [ours, &equal])?;
+    let reference = reference(large, samples, &shown)?;
     let again = (0..COMPARED)
         .map(|n| {
             let kept = small.photons(&format!("maps-{n:03}"), 1, 1 + n)?;
@@ -73,20 +84,57 @@ pub fn beside(large: &Cache, small: &Cache, ours: &CachedRender) -> anyhow::Resu
         .collect::<anyhow::Result<Vec<Replicate>>>()?;
     let comparison = compare(small.studio.grid(), &again, &reference.passes, &prediction, LIMIT);
     let found = errors(small.studio.grid(), &again, &reference.passes);
-    let [rms, equal_rms] = reference.rms;
-    seconds += reference.seconds + equal.facts.seconds;
+    seconds += reference.seconds + raced.iter().map(|(_, render)| render.facts.seconds).sum::<f64>();
+    let rms = reference.rms[0];
+    let mut raced: Vec<_> = raced.into_iter().zip(&reference.rms[1..]).collect();
+    raced.sort_by(|(_, a), (_, b)| (a.low + a.high).total_cmp(&(b.low + b.high)));
+    let errors: Vec<(&str, Interval)> =
+        raced.iter().map(|((method, _), rms)| (method.name(), **rms)).collect();
+    let compared = Compared::new(&comparison, &found, again.len(), rms, &errors);
+    let (equal, _) = raced.swap_remove(0);
     Ok(RivalPictures {
         equal,
         reference: reference.shown,
         cost: (samples * COMPARED, reference.seconds),
         masked,
-        compared: Compared::new(&comparison, &found, again.len(), rms, equal_rms),
+        compared,
         seconds,
     })
 }
 
-/// Samples a pixel of a pass of the reference: nine in ten of the blocks that are not masked are to have the standard error that
-/// is wanted, within the picture's budget.
+/// The methods without photon maps that race against a picture by photons: paths, what the reference is made with, light
+/// tracing of caustics where there may be some, and of all that scatters where the scene permits it.
+fn rivals(studio: &Studio) -> Vec<ByLight> {
+    let mut methods: Vec<ByLight> = Vec::new();
+    let has_caustics = Emitter::towards_specular(&studio.scene).is_some();
+    let caustics = if has_caustics { ByLight::CAUSTICS } else { ByLight::NOTHING };
+    for method in [ByLight::NOTHING, studio.picture.by_light, caustics, ByLight::ALL] {
+        let is_new = methods.iter().all(|other| other.layers != method.layers);
+        if is_new && method.check(&studio.scene, &studio.camera).is_ok() {
+            methods.push(method);
+        }
+    }
+    methods
+}
+
+/// Samples a pixel of a pass of the reference: those wanted, within the budget of the recipe, but in all passes together more than
+/// any picture beside it has.
+///
+/// # Errors
+/// where the budget is too small for that
+fn enough(wanted: u64, shown: u64, budget: u64) -> anyhow::Result<u64> {
+    let least = shown / COMPARED + 1;
+    ensure!(
+        least <= budget,
+        "a picture beside the reference has {shown} samples per pixel, but the reference at most {}: \
+         its recipe needs `reference` of at least {least}",
+        budget * COMPARED
+    );
+    Ok(wanted.clamp(least, budget))
+}
+
+/// Samples a pixel of a pass of the reference that the comparison needs: nine in ten of the blocks that are not masked are to have the
+/// standard error that is wanted.
 fn chosen(large: &Cache, masked: &[bool]) -> anyhow::Result<u64> {
     let grid = large.studio.grid();
     let passes = (0..PILOT)
@@ -94,7 +142,7 @@ fn chosen(large: &Cache, masked: &[bool]) -> anyhow::Result<u64> {
         .collect::<anyhow::Result<Vec<Replicate>>>()?;
     let one = spread(grid.halved(), &passes, masked);
     let samples = (one / WANTED) * (one / WANTED) / COMPARED as f64;
-    Ok((samples.ceil() as u64).clamp(1, large.studio.picture.reference))
+    Ok(samples.ceil() as u64)
 }
 
 /// The passes of the reference.
@@ -103,12 +151,12 @@ struct Reference {
     passes: Vec<Replicate>,
     /// The picture with that light, in the size that is shown.
     shown: Replicate,
-    /// Errors of the two pictures that are shown.
-    rms: [Interval; 2],
+    /// Errors of the pictures beside it.
+    rms: Vec<Interval>,
     seconds: f64,
 }
 
-fn reference(large: &Cache, samples: u64, pictures: [&CachedRender; 2]) -> anyhow::Result<Reference> {
+fn reference(large: &Cache, samples: u64, pictures: &[&CachedRender]) -> anyhow::Result<Reference> {
     let grid = large.studio.grid();
     let (mut passes, mut seconds) = (Vec::new(), 0.0);
     let mut shown = vec![Spectrum::ZERO; grid.pixels()];
@@ -118,7 +166,7 @@ fn reference(large: &Cache, samples: u64, pictures: [&CachedRender; 2]) -> anyho
         shown.iter_mut().zip(&kept.total).for_each(|(sum, x)| *sum += *x * (1.0 / COMPARED as f64));
         passes.push(kept.scattered());
     }
-    let rms = pictures.map(|picture| rms_of_one(&picture.scattered(), &passes));
+    let rms = pictures.iter().map(|picture| rms_of_one(&picture.scattered(), &passes)).collect();
     let passes = passes.iter().map(|pass| grid.reduced(pass)).collect();
     Ok(Reference { passes, shown, rms, seconds })
 }
@@ -152,4 +200,33 @@ fn predict(small: &Cache, ours: &CachedRender) -> anyhow::Result<(Vec<f64>, f64)
     let seconds = one.facts.seconds + other.facts.seconds;
     let spreads = Spreads::of(&readout(picture, 1)?);
     Ok((predicted(studio.grid(), &views, [&one.layers, &other.layers], &radii, spreads, pixel), seconds))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// 64 passes of 5 are 320 samples: enough for 319, not for 320.
+    #[test]
+    fn the_reference_has_more_samples_than_what_stands_beside_it() {
+        assert_eq!(
+            (enough(2, 319, 5).unwrap(), enough(4, 100, 5).unwrap(), enough(9, 100, 5).unwrap()),
+            (5, 4, 5)
+        );
+        let error = enough(2, 320, 5).unwrap_err().to_string();
+        assert!(error.contains("320 samples") && error.contains("at least 6"), "{error}");
+    }
+
+    /// Light is traced where no specular surface is seen through a medium, and no method races twice.
+    #[test]
+    fn every_method_that_the_scene_permits_races() {
+        let scenes = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes");
+        for picture in super::super::pictures::ALL {
+            let studio = Studio::open(picture, &scenes, 0.1, 1, "").unwrap();
+            let names: Vec<&str> = rivals(&studio).iter().map(ByLight::name).collect();
+            assert!(names.len() > 1 && names[0] == "paths", "{}: {names:?}", picture.name);
+            let own = names.iter().filter(|name| **name == picture.by_light.name()).count();
+            assert_eq!(own, 1, "{}: {names:?}", picture.name);
+        }
+    }
 }

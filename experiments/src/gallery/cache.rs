@@ -1,6 +1,7 @@
 //! Cached renders of a picture, each kept in a file as soon as it is made: an interrupted run goes on where it stopped.
 
 use super::keep::CachedRender;
+use super::light::ByLight;
 use super::settings::Settings;
 use super::studio::Studio;
 use crate::harness::{duration, say};
@@ -42,18 +43,21 @@ impl Cache<'_> {
         Ok(kept)
     }
 
-    /// The path tracer's picture in so many CPU seconds.
-    pub fn paths_in(&self, file: &str, seconds: f64) -> anyhow::Result<CachedRender> {
+    /// The picture of a method without photon maps in so many CPU seconds.
+    pub fn rival(&self, file: &str, by_light: ByLight, seconds: f64) -> anyhow::Result<CachedRender> {
         let s = self.studio;
-        let words = format!("{} in {seconds} s", s.path_words(0, 0));
-        self.get(file, &words, 0, |bar| Ok(s.paths_for(seconds, 0, bar)?.without_layers()))
+        let words = format!("{} in {seconds} s", s.unbiased_words(by_light, 0, 0));
+        self.get(file, &words, 0, |bar| Ok(s.unbiased_for(by_light, seconds, 0, bar)?.without_layers()))
     }
 
     /// A pass of the reference.
     pub fn reference(&self, file: &str, samples: u64, replicate: u64) -> anyhow::Result<CachedRender> {
         let (s, work) = (self.studio, self.studio.work(samples));
-        let words = s.reference_words(samples, replicate);
-        self.get(file, &words, work, |bar| Ok(s.reference(samples, replicate, bar)?.without_layers()))
+        let by_light = s.picture.by_light;
+        let words = s.unbiased_words(by_light, samples, replicate);
+        self.get(file, &words, work, |bar| {
+            Ok(s.unbiased(by_light, samples, replicate, bar)?.without_layers())
+        })
     }
 
     /// The photon mapper's picture.

@@ -11,6 +11,8 @@ use turbid::stats::{Interval, Moments, holm, mean_interval, smallest_detectable_
 pub const LEVEL: f64 = 1e-3;
 /// The largest part of a picture that may stay without a verdict.
 pub const LARGEST_MASK: f64 = 0.2;
+/// The largest relative deviation that may stay undetected in a typical block of a picture that is said to agree.
+pub const BLUNT: f64 = 0.1;
 /// The fewest replicates of either side. The variance of variance of n normal values is 2/n, give or take sqrt(24/n)/n: with 32
 /// one block in ten crosses the bound of heavy tails by chance, with 64 none does.
 pub const FEWEST: usize = 64;
@@ -48,18 +50,18 @@ pub enum Agreement {
     Agree,
     /// So many blocks differ.
     Differ(usize),
-    /// Too much of the picture is masked or heavy-tailed.
-    Undecided,
+    /// No block differs, but it could not be known: why.
+    Undecided(&'static str),
 }
 
 /// A comparison block by block.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Comparison {
-    /// Every block that was compared, by channel.
+    /// Every block that was compared, by channel; those without light are not.
     pub blocks: Vec<Block>,
-    /// Share of all pixels that the prediction masked, or that were left in blocks with too few others.
+    /// Of the pixels that scatter light, the share that the prediction masked, or that were left in blocks with too few others.
     pub masked: f64,
-    /// Share of all pixels in blocks whose values are heavy-tailed: no interval, hence no verdict.
+    /// Of the pixels that scatter light, the share in blocks whose values are heavy-tailed: no interval, hence no verdict.
     pub heavy: f64,
 }
 
@@ -68,8 +70,11 @@ impl Comparison {
     pub fn agreement(&self) -> Agreement {
         let differ = self.blocks.iter().filter(|b| b.adjusted <= LEVEL).count();
         match differ {
-            0 if self.masked + self.heavy >= LARGEST_MASK => Agreement::Undecided,
-            0 => Agreement::Agree,
+            0 if self.masked + self.heavy >= LARGEST_MASK => {
+                Agreement::Undecided("too little of the picture can be judged")
+            }
+            0 if self.typical_smallest() <= BLUNT => Agreement::Agree,
+            0 => Agreement::Undecided("a deviation of 10 per cent would not be detected"),
             n => Agreement::Differ(n),
         }
     }
@@ -91,7 +96,8 @@ impl Comparison {
 /// Compares two pictures block by block.
 ///
 /// A pixel is left out where the relative error predicted for it is above `limit`; what was predicted for the pixels
-/// that stay is allowed for, as the mean of its absolute values over the block, times the reference's radiance.
+/// that stay is allowed for, as the mean of its absolute values over the block, times the reference's radiance. Blocks and channels to
+/// which neither side ever brought light, such as an empty sky, say nothing and are left out.
 ///
 /// # Arguments
 /// `predicted` is the relative error by pixel, made from neither `ours` nor `reference`: pixels chosen for their noise would
@@ -104,17 +110,23 @@ pub fn compare(
     limit: f64,
 ) -> Comparison {
     let keep: Vec<bool> = predicted.iter().map(|&e| e <= limit).collect();
+    let both = || ours.iter().chain(reference);
+    let has_light = |i: usize, channel: usize| both().any(|picture| picture[i][channel] != 0.0);
+    let lit: Vec<bool> = (0..grid.pixels()).map(|i| (0..3).any(|channel| has_light(i, channel))).collect();
     let (mut blocks, mut kept, mut heavy) = (Vec::new(), 0, 0);
     for place in grid.blocks() {
         let pixels = grid.kept(place, &keep);
         if pixels.len() < grid.fewest() {
             continue;
         }
-        kept += pixels.len();
-        let channels: Vec<Option<Block>> =
-            (0..3).map(|channel| one(place, channel, &pixels, ours, reference, predicted)).collect();
+        let lit = pixels.iter().filter(|&&i| lit[i]).count();
+        kept += lit;
+        let channels: Vec<Option<Block>> = (0..3)
+            .filter(|&channel| pixels.iter().any(|&i| has_light(i, channel)))
+            .map(|channel| one(place, channel, &pixels, ours, reference, predicted))
+            .collect();
         if channels.iter().any(Option::is_none) {
-            heavy += pixels.len();
+            heavy += lit;
         }
         blocks.extend(channels.into_iter().flatten());
     }
@@ -122,8 +134,9 @@ pub fn compare(
     for (block, adjusted) in blocks.iter_mut().zip(adjusted) {
         block.adjusted = adjusted;
     }
-    let all = grid.pixels() as f64;
-    Comparison { blocks, masked: 1.0 - kept as f64 / all, heavy: heavy as f64 / all }
+    let all = lit.iter().filter(|&&is_lit| is_lit).count();
+    let share = |n: usize| n as f64 / all.max(1) as f64;
+    Comparison { blocks, masked: share(all - kept), heavy: share(heavy) }
 }
 
 /// One channel of one block; `None` if either side is heavy-tailed.
@@ -428,10 +441,57 @@ mod tests {
         assert!((comparison.masked - 1.0 / 6.0).abs() < 1e-15);
         assert_eq!(comparison.agreement(), Agreement::Agree);
         assert!(matches!(compare(GRID, &a, &b, &masked(3), 0.02).agreement(), Agreement::Differ(_)));
-        assert_eq!(compare(GRID, &a, &b, &masked(8), 0.02).agreement(), Agreement::Undecided);
+        let undecided = compare(GRID, &a, &b, &masked(8), 0.02).agreement();
+        assert!(matches!(undecided, Agreement::Undecided(_)), "{undecided:?}");
         // Seven of eight columns masked leave an eighth of a block; the eighth leaves nothing.
         let share = |columns| compare(GRID, &a, &b, &masked(columns), 0.02).masked;
         assert!((share(7) - 7.0 / 24.0).abs() < 1e-15 && (share(8) - 8.0 / 24.0).abs() < 1e-15);
+    }
+
+    /// A third of the picture, two blocks, is an empty sky: it is not compared, and the mask's share is of the rest. A sky that one side
+    /// lights is compared, and differs; a channel without light is left out alone.
+    #[test]
+    fn blocks_without_light_are_left_out() {
+        let is_sky = |i: usize| i % GRID.width < 8;
+        let with_sky = |set: u64| replicates(64, set, 400, |i| if is_sky(i) { 0.0 } else { 1.0 });
+        let (a, b) = (with_sky(1), with_sky(2));
+        let comparison = compare(GRID, &a, &b, &nothing(), 0.02);
+        assert!(comparison.blocks.len() == 12 && comparison.blocks.iter().all(|block| block.place.0 > 0));
+        assert_eq!((comparison.masked, comparison.agreement()), (0.0, Agreement::Agree));
+        let left: Vec<f64> =
+            (0..GRID.pixels()).map(|i| if i % GRID.width < 12 { 0.5 } else { 0.0 }).collect();
+        assert!((compare(GRID, &a, &b, &left, 0.02).masked - 0.25).abs() < 1e-15);
+        let glowing = replicates(64, 3, 400, |i| if is_sky(i) { 0.01 } else { 1.0 });
+        assert_eq!(compare(GRID, &glowing, &b, &nothing(), 0.02).agreement(), Agreement::Differ(6));
+        let red = |mut set: Vec<Replicate>| {
+            set.iter_mut().flatten().for_each(|s| *s *= Spectrum::rgb(1.0, 0.0, 0.0));
+            set
+        };
+        assert_eq!(compare(GRID, &red(a), &red(b), &nothing(), 0.02).blocks.len(), 4);
+        let dark = vec![vec![Spectrum::ZERO; GRID.pixels()]; 64];
+        let comparison = compare(GRID, &dark, &dark, &nothing(), 0.02);
+        assert!(comparison.blocks.is_empty() && comparison.agreement() != Agreement::Agree);
+    }
+
+    /// Noise of 5 per cent a block and replicate: a difference of two means of 64 has an error of 0.9 per cent, and (5.1 + 2.4) of them are
+    /// 7 per cent: equal pictures agree. Three times the noise leaves them undecided, as 20 per cent would not be detected; a
+    /// difference that is found all the same is one.
+    #[test]
+    fn what_could_not_have_been_detected_is_undecided() {
+        let noisier = |set: u64, by: f64, change: f64| {
+            let mut replicates = replicates(64, set, 4, |_| 1.0);
+            for x in replicates.iter_mut().flat_map(|picture| picture.iter_mut().enumerate()) {
+                *x.1 = (truth(x.0) + (*x.1 - truth(x.0)) * by) * change;
+            }
+            replicates
+        };
+        let with =
+            |by, change| compare(GRID, &noisier(1, by, change), &noisier(2, by, 1.0), &nothing(), 0.02);
+        let (sharp, blunt) = (with(1.0, 1.0), with(3.0, 1.0));
+        assert!(sharp.typical_smallest() < BLUNT && blunt.typical_smallest() > BLUNT);
+        assert_eq!(sharp.agreement(), Agreement::Agree);
+        assert!(matches!(blunt.agreement(), Agreement::Undecided(_)), "{:?}", blunt.agreement());
+        assert!(matches!(with(3.0, 0.5).agreement(), Agreement::Differ(_)));
     }
 
     /// A pixel with a tail of index 1.1, of infinite variance: its block gets no interval instead of a false one.

@@ -8,12 +8,12 @@ use anyhow::{Context, ensure};
 use serde::{Deserialize, Serialize};
 use std::path::Path;
 use turbid::Spectrum;
+use turbid::integrators::mapper::Gathers;
 use turbid::integrators::{Layer, Layers};
 use turbid::output::write_atomically;
-use turbid::sensor::Film;
 
 /// The version of the files.
-pub const FORMAT: u32 = 1;
+pub const FORMAT: u32 = 2;
 
 fn first_format() -> u32 {
     1
@@ -21,6 +21,29 @@ fn first_format() -> u32 {
 
 /// Larger files are no pictures.
 const MOST_BYTES: u64 = 1 << 32;
+
+/// The estimates of a picture from one map.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct MapEstimates {
+    /// Photons asked for.
+    pub asked: u64,
+    /// How many estimates were made.
+    pub count: u64,
+    /// Mean number of photons found within the largest radius; 0 of no estimates.
+    pub found: f64,
+    /// Share of the estimates that are under-full: they found fewer than were asked for.
+    pub underfull: f64,
+}
+
+impl MapEstimates {
+    /// From the counts of a render.
+    pub fn new(asked: Option<usize>, gathers: &Gathers) -> Self {
+        let of_all = |n: u64| n as f64 / gathers.count.max(1) as f64;
+        let (found, underfull) = (of_all(gathers.found), of_all(gathers.underfull));
+        MapEstimates { asked: asked.unwrap_or(0) as u64, count: gathers.count, found, underfull }
+    }
+}
 
 /// What is known of a render beside its pixels.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -45,6 +68,9 @@ pub struct RenderRecord {
     pub stored: [u64; 3],
     /// Mean radius of gathers: global, caustic, volume \[L\].
     pub radii: [f64; 3],
+    /// Estimates from the global, caustic and volume map; none of paths, and of renders of format 1.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub estimates: Option<[MapEstimates; 3]>,
 }
 
 /// A picture by layers.
@@ -61,25 +87,16 @@ pub struct CachedRender {
 }
 
 impl CachedRender {
-    /// A film with its facts.
-    pub fn new(facts: RenderRecord, film: &Film) -> Self {
-        let layers: Vec<Layers> = film.pixels().iter().map(|p| p.layers()).collect();
+    /// Radiance by class and pixel, with its facts.
+    pub fn new(facts: RenderRecord, layers: Vec<Layers>) -> Self {
+        let total = layers.iter().map(|l| l.total()).collect();
         let emission = layers.iter().map(|l| l.emission).collect();
-        CachedRender { facts, total: film.pixels().iter().map(|p| p.total()).collect(), emission, layers }
+        CachedRender { facts, total, emission, layers }
     }
 
     /// The same without its classes: what is only compared needs none.
     pub fn without_layers(mut self) -> Self {
         self.layers = Vec::new();
-        self
-    }
-
-    /// With more light in each pixel.
-    pub fn with(mut self, more: &[Layers]) -> Self {
-        for (i, more) in more.iter().enumerate() {
-            self.layers[i] += *more;
-            self.total[i] += more.total();
-        }
         self
     }
 
@@ -177,6 +194,7 @@ mod tests {
             emitted: [10, 20],
             stored: [1, 2, 3],
             radii: [0.5, 0.25, 0.125],
+            estimates: has_layers.then(|| [MapEstimates::new(Some(7), &Gathers::default()); 3]),
         };
         let total = vec![Spectrum::rgb(1.0, 0.5, -0.25), Spectrum::grey(3.0)];
         let mut layers = vec![Layers::ZERO; 2];
@@ -195,6 +213,15 @@ mod tests {
             assert_eq!(CachedRender::read(&path, 2).unwrap(), kept(has_layers));
             assert!(CachedRender::read(&path, 3).is_err());
         }
+    }
+
+    /// Eight estimates of 50 photons, of which three found 10 and the others 50.
+    #[test]
+    fn what_is_found_is_counted_by_estimate() {
+        let gathers = Gathers { count: 8, underfull: 3, found: 280, ..Gathers::default() };
+        let expected = MapEstimates { asked: 50, count: 8, found: 35.0, underfull: 0.375 };
+        assert_eq!(MapEstimates::new(Some(50), &gathers), expected);
+        assert_eq!(MapEstimates::new(None, &Gathers::default()).found, 0.0);
     }
 
     #[test]

@@ -1,4 +1,4 @@
-//! References by light tracing: the photons' own walk, connected to the camera, finds what lights throw through glass and
+//! Pictures without photon maps, by paths and by light tracing: the photons' own walk, connected to the camera, finds what lights throw through glass and
 //! water, where paths from the eye would have to meet a small light by chance.
 //!
 //! It knows only what the eye sees straight: an event X between which and the camera nothing specular stands. Paths give
@@ -13,14 +13,14 @@ use turbid::math::Ray;
 use turbid::photons::Emitter;
 use turbid::rng::{Purpose, Stream};
 use turbid::scene::{Camera, Orders, Scene};
-use turbid::sensor::Streams;
-use turbid::transport::{NoProgress, run_blocks};
+use turbid::sensor::{Film, Streams, extend};
+use turbid::transport::{NoProgress, Progress, run_blocks};
 
 /// Histories whose light is kept at once, before it is added to the picture: what they send to the camera fills some
 /// hundred bytes each.
 const AT_ONCE: u64 = 1 << 18;
 
-/// Which layers of a reference are found by light tracing.
+/// Which layers of a picture without photon maps are found by light tracing.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct ByLight {
     /// These; none of them is emission.
@@ -33,20 +33,27 @@ impl ByLight {
     /// Nothing: all by paths.
     pub const NOTHING: ByLight = ByLight { layers: &[], permille: 0 };
 
+    /// What arrives by specular surfaces alone.
+    pub const CAUSTICS: ByLight = ByLight { layers: &[Layer::Caustic], permille: 1000 };
+
+    /// All that scatters.
+    pub const ALL: ByLight = ByLight {
+        layers: &[Layer::Direct, Layer::Caustic, Layer::Indirect, Layer::Single, Layer::Multiple],
+        permille: 1000,
+    };
+
     /// Whether a layer is found by light.
     fn has(&self, layer: Layer) -> bool {
         self.layers.contains(&layer)
     }
 
-    /// Who made the reference, in words.
-    pub fn words(&self) -> &'static str {
+    /// The method's name.
+    pub fn name(&self) -> &'static str {
         match self.layers {
-            [] => "by paths",
-            [Layer::Caustic] => "by paths, caustics that are seen straight by light tracing",
-            [Layer::Caustic, Layer::Indirect] => {
-                "by paths; caustic and indirect light that is seen straight by light tracing"
-            }
-            _ => "by light tracing",
+            [] => "paths",
+            [Layer::Caustic] => "paths with caustics by light tracing",
+            [Layer::Caustic, Layer::Indirect] => "paths with caustics and indirect light by light tracing",
+            _ => "light tracing",
         }
     }
 
@@ -57,7 +64,7 @@ impl ByLight {
 
     /// One sample of what paths have to find: all layers where a specular surface is seen, else those that light tracing
     /// leaves out.
-    pub fn rest(&self, scene: &Scene, ray: Ray, within: usize, stream: &mut Stream) -> Layers {
+    fn rest(&self, scene: &Scene, ray: Ray, within: usize, stream: &mut Stream) -> Layers {
         if self.layers.is_empty() || is_specular_ahead(scene, &ray) {
             return path::layers(scene, ray, None, within, stream).0;
         }
@@ -72,47 +79,45 @@ impl ByLight {
         layers
     }
 
-    /// The layers that light tracing finds, by pixel.
-    ///
-    /// # Errors
-    /// where a specular surface is seen through a medium whose light is asked for: paths and light would both count it
-    pub fn trace(
+    /// Photons that are sent out with so many samples a pixel.
+    fn histories(&self, samples: u64, pixels: usize) -> u64 {
+        samples * self.permille * pixels as u64 / 1000
+    }
+
+    /// Adds the layers that light tracing finds with the samples of these numbers, by pixel, times the number of photons.
+    fn trace(
         &self,
         scene: &Scene,
         camera: &Camera,
-        samples: u64,
+        samples: Range<u64>,
         streams: Streams,
-    ) -> anyhow::Result<Vec<Layers>> {
-        let mut film = vec![Layers::ZERO; camera.width() as usize * camera.height() as usize];
-        let histories = samples * self.permille * film.len() as u64 / 1000;
-        if self.layers.is_empty() || histories == 0 {
-            return Ok(film);
+        film: &mut [Layers],
+    ) -> anyhow::Result<()> {
+        let [first, last] = [samples.start, samples.end].map(|n| self.histories(n, film.len()));
+        if self.layers.is_empty() || first == last {
+            return Ok(());
         }
-        self.check(scene, camera)?;
         // What arrives by specular surfaces alone was sent towards them; the rest may have been sent anywhere.
-        match Emitter::towards_specular(scene).filter(|_| self.has(Layer::Caustic)) {
-            Some(by_glass) => {
-                send((scene, camera), &by_glass, 0..histories, streams, |l| l == Layer::Caustic, &mut film)?;
-                if self.layers != [Layer::Caustic] {
-                    let others = |layer| layer != Layer::Caustic && self.has(layer);
-                    let next = histories..2 * histories;
-                    send((scene, camera), &Emitter::by_power(scene), next, streams, others, &mut film)?;
-                }
-            }
-            None => {
-                let all = |layer| self.has(layer);
-                send((scene, camera), &Emitter::by_power(scene), 0..histories, streams, all, &mut film)?;
-            }
+        let by_glass = Emitter::towards_specular(scene).filter(|_| self.has(Layer::Caustic));
+        let is_by_glass = |layer| by_glass.is_some() && layer == Layer::Caustic;
+        if let Some(by_glass) = &by_glass {
+            send((scene, camera), (by_glass, 0), first..last, streams, is_by_glass, film)?;
         }
-        let share = Spectrum::grey(1.0 / histories as f64);
-        film.iter_mut().for_each(|layers| *layers *= share);
-        Ok(film)
+        if by_glass.is_none() || self.layers != [Layer::Caustic] {
+            let others = |layer| self.has(layer) && !is_by_glass(layer);
+            send((scene, camera), (&Emitter::by_power(scene), 1), first..last, streams, others, film)?;
+        }
+        Ok(())
     }
 
     /// Light of a medium before a specular surface belongs to light tracing, behind it to paths: a sample would have to be
-    /// parted. No picture needs that.
-    fn check(&self, scene: &Scene, camera: &Camera) -> anyhow::Result<()> {
-        if !(self.has(Layer::Single) || self.has(Layer::Multiple)) {
+    /// parted.
+    ///
+    /// # Errors
+    /// where a specular surface is seen through a medium whose light is asked for
+    pub fn check(&self, scene: &Scene, camera: &Camera) -> anyhow::Result<()> {
+        let scatters = scene.media().iter().any(|medium| medium.matter().albedo().max() > 0.0);
+        if !scatters || !(self.has(Layer::Single) || self.has(Layer::Multiple)) {
             return Ok(());
         }
         let pixels = (0..camera.height()).flat_map(|y| (0..camera.width()).map(move |x| (x, y)));
@@ -122,16 +127,83 @@ impl ByLight {
         });
         ensure!(
             seen.count() == 0,
-            "a specular surface is seen through a medium: its reference cannot be by light"
+            "a specular surface is seen through a medium: its light cannot be traced from the lamps"
         );
         Ok(())
     }
 }
 
-/// Sends out the histories of these numbers, and adds what they bring to the layers that are wanted.
+/// A picture without photon maps that grows sample by sample.
+pub struct Unbiased<'a> {
+    /// Which method.
+    pub by_light: ByLight,
+    /// Of which scene.
+    pub scene: &'a Scene,
+    /// From where.
+    pub camera: &'a Camera,
+    /// Random numbers.
+    pub streams: Streams,
+    /// What paths have found.
+    film: Film,
+    /// What light tracing has found, times the number of photons.
+    found: Vec<Layers>,
+}
+
+impl<'a> Unbiased<'a> {
+    /// A picture without any sample.
+    ///
+    /// # Errors
+    /// those of [`ByLight::check`]
+    pub fn new(
+        by_light: ByLight,
+        scene: &'a Scene,
+        camera: &'a Camera,
+        streams: Streams,
+    ) -> anyhow::Result<Self> {
+        by_light.check(scene, camera)?;
+        let film = Film::new(camera.width(), camera.height());
+        let found = vec![Layers::ZERO; film.pixels().len()];
+        Ok(Unbiased { by_light, scene, camera, streams, film, found })
+    }
+
+    /// Samples a pixel so far.
+    pub fn samples(&self) -> u64 {
+        self.film.samples()
+    }
+
+    /// Adds so many samples to each pixel.
+    ///
+    /// # Errors
+    /// those of rendering
+    pub fn extend(&mut self, samples: u64, progress: &dyn Progress) -> anyhow::Result<()> {
+        let Unbiased { by_light, scene, camera, streams, .. } = *self;
+        let (first, interior) = (self.samples(), scene.interior_at(camera.position()));
+        extend(&mut self.film, camera, samples, streams, progress, |ray, stream, n: &mut u64| {
+            *n += 1;
+            by_light.rest(scene, ray, interior, stream)
+        })?;
+        by_light.trace(scene, camera, first..first + samples, streams, &mut self.found)
+    }
+
+    /// Radiance of each pixel by layer.
+    pub fn layers(&self) -> Vec<Layers> {
+        let histories = self.by_light.histories(self.samples(), self.found.len());
+        let share = Spectrum::grey(1.0 / histories.max(1) as f64);
+        let sum = |(pixel, found): (&turbid::sensor::Pixel, &Layers)| {
+            let (mut layers, mut found) = (pixel.layers(), *found);
+            found *= share;
+            layers += found;
+            layers
+        };
+        self.film.pixels().iter().zip(&self.found).map(sum).collect()
+    }
+}
+
+/// Sends out the histories of these numbers, and adds what they bring to the layers that are wanted; two emitters, 0 and 1, of one
+/// picture share no random numbers.
 fn send(
     (scene, camera): (&Scene, &Camera),
-    emitter: &Emitter,
+    (emitter, number): (&Emitter, u64),
     histories: Range<u64>,
     streams: Streams,
     is_wanted: impl Fn(Layer) -> bool + Sync,
@@ -141,8 +213,8 @@ fn send(
         let block = |range: Range<u64>| {
             let mut splats: Vec<Splat> = Vec::new();
             for i in range {
-                let mut stream =
-                    Stream::new(streams.seed, Purpose::LightTracing, streams.replicate, first + i);
+                let history = 2 * (first + i) + number;
+                let mut stream = Stream::new(streams.seed, Purpose::LightTracing, streams.replicate, history);
                 light_tracing(scene, camera, emitter, &mut stream, |splat| {
                     if is_wanted(splat.layer) {
                         splats.push(splat);
@@ -217,21 +289,15 @@ mod tests {
         let file = SceneFile::from_toml(BALL).unwrap();
         let scene = file.scene(std::path::Path::new(".")).unwrap();
         let camera = scene.camera().unwrap();
-        let within = scene.interior_at(camera.position());
-        let pixels = u64::from(camera.width() * camera.height());
-        let all = ByLight { layers: &[Layer::Direct, Layer::Caustic, Layer::Indirect], permille: 1000 };
         let one = |by_light: ByLight, replicate: u64| {
-            const SAMPLES: u64 = 120;
             let streams = Streams { seed: 5, replicate };
-            let mut sum = Layers::ZERO;
-            for i in 0..SAMPLES * pixels {
-                let mut stream = Stream::new(streams.seed, Purpose::Synthetic, replicate, i);
-                let (x, y) = (i % pixels % 6, i % pixels / 6);
-                let [u, v] = [x as f64 + stream.unit(), y as f64 + stream.unit()];
-                sum += by_light.rest(&scene, camera.ray(glam::DVec2::new(u, v)), within, &mut stream);
+            let mut picture = Unbiased::new(by_light, &scene, camera, streams).unwrap();
+            // In two parts: no history is sent out twice.
+            for samples in [50, 70] {
+                picture.extend(samples, &NoProgress).unwrap();
             }
-            sum *= 1.0 / SAMPLES as f64;
-            by_light.trace(&scene, camera, SAMPLES, streams).unwrap().into_iter().for_each(|l| sum += l);
+            let mut sum = Layers::ZERO;
+            picture.layers().into_iter().for_each(|layers| sum += layers);
             sum
         };
         let moments = |by_light: ByLight, first: u64| {
@@ -242,9 +308,8 @@ mod tests {
             }
             all
         };
-        let caustic = ByLight { layers: &[Layer::Caustic], permille: 1000 };
         let paths = moments(ByLight::NOTHING, 0);
-        for (by_light, first) in [(caustic, 1000), (all, 2000)] {
+        for (by_light, first) in [(ByLight::CAUSTICS, 1000), (ByLight::ALL, 2000)] {
             let both = moments(by_light, first);
             for ((layer, a), b) in Layer::ALL.into_iter().zip(&paths).zip(&both).take(4) {
                 let std_error = (a.std_error() * a.std_error() + b.std_error() * b.std_error()).sqrt();

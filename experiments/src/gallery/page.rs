@@ -1,5 +1,7 @@
-//! The page: every picture with its reference, its error, its maps and its numbers. It needs nothing from elsewhere.
+//! The page: every picture beside its rival and its reference, with its error, its maps and its numbers. It needs nothing from
+//! elsewhere.
 
+use super::keep::{MapEstimates, RenderRecord};
 use super::pictures::{ALL, Picture};
 use super::plates::SCALE;
 use super::settings::Settings;
@@ -16,24 +18,81 @@ body { max-width: 1120px; margin: 0 auto; padding: 40px 24px 80px; color: var(--
 h1 { font-size: 34px; line-height: 1.2; margin: 0 0 10px; font-weight: 600; }
 h2 { font-size: 25px; margin: 56px 0 6px; padding-top: 16px; border-top: 2px solid var(--ink); font-weight: 600; }
 p { max-width: 46em; margin: 0 0 12px; }
-.plates { display: grid; grid-template-columns: repeat(auto-fill, minmax(300px, 1fr)); gap: 16px; margin: 16px 0; }
 figure { margin: 0; }
-img { display: block; width: 100%; height: auto; image-rendering: auto; background: #000; }
-figcaption, table, pre, .soft { font-family: system-ui, 'Segoe UI', Arial, 'DejaVu Sans', sans-serif; }
+img { display: block; width: 100%; height: auto; background: #000; }
+figcaption, table, pre, button, .soft, .index { font-family: system-ui, 'Segoe UI', Arial, 'DejaVu Sans', sans-serif; }
 figcaption { font-size: 13.5px; line-height: 1.35; padding-top: 6px; }
+.index { display: grid; grid-template-columns: repeat(auto-fill, minmax(158px, 1fr)); gap: 16px; margin: 20px 0 32px; padding: 0; list-style: none; font-size: 14px; line-height: 1.35; }
+.index a { display: block; color: inherit; text-decoration: none; }
+.index a:hover strong, .index a:focus strong { text-decoration: underline; }
+.index img { aspect-ratio: 4 / 3; object-fit: cover; margin-bottom: 6px; }
+.index strong { display: block; }
+.compare { display: grid; grid-template-columns: repeat(auto-fit, minmax(260px, 1fr)); gap: 16px; margin: 16px 0; }
+.plates { display: grid; grid-template-columns: repeat(auto-fill, minmax(220px, 1fr)); gap: 16px; margin: 16px 0; }
+button { font-size: 15px; padding: 8px 14px; border: 1px solid var(--ink); border-right-width: 0; background: #fff; color: inherit; cursor: pointer; }
+button:last-child { border-right-width: 1px; }
+button[aria-pressed=true] { background: var(--ink); color: #fff; }
 .scale { display: flex; justify-content: space-between; height: 20px; margin-top: 4px; padding: 0 4px; border: 1px solid var(--line); font-size: 12.5px; line-height: 18px; }
 .sharp { image-rendering: pixelated; }
-.verdict { font-weight: 600; }
+.outcome { font-weight: 600; }
 code { font-size: 13px; overflow-wrap: anywhere; }
 .soft { color: var(--soft); font-size: 14.5px; }
 table { border-collapse: collapse; font-size: 14px; font-variant-numeric: tabular-nums; margin: 8px 0 16px; }
-th { text-align: left; border-bottom: 1.5px solid var(--ink); padding: 4px 16px 4px 0; }
+th { text-align: left; vertical-align: top; border-bottom: 1px solid var(--line); padding: 4px 16px 4px 0; }
 td { border-bottom: 1px solid var(--line); padding: 4px 16px 4px 0; vertical-align: top; }
-pre { background: #f5f6f8; border: 1px solid var(--line); border-radius: 4px; padding: 10px 12px; font-size: 13px; white-space: pre-wrap; }
+pre { background: #f5f6f8; border: 1px solid var(--line); border-radius: 4px; padding: 10px 12px; font-size: 13px; white-space: pre-wrap; overflow-wrap: anywhere; }
+@media screen {
+  .compare.one { display: block; max-width: var(--width); }
+  .compare.one figure:not(.on) { display: none; }
+}
+@media (max-width: 560px) {
+  body { padding: 20px 14px 48px; font-size: 16px; }
+  h1 { font-size: 26px; }
+  .index { grid-template-columns: 1fr 1fr; gap: 12px; }
+  .toggle { display: flex; }
+  .toggle[hidden] { display: none; }
+  button { flex: 1; padding: 8px 4px; font-size: 14px; }
+  .rows tr, .rows th, .rows td { display: block; }
+  .rows th { border-bottom: 0; padding: 6px 0 0; }
+  .rows td { padding: 0 0 6px; }
+}
+@media print {
+  body { max-width: none; padding: 0; font-size: 11pt; }
+  .toggle { display: none; }
+  h2 { break-after: avoid; }
+  figure, tr { break-inside: avoid; }
+  .compare { grid-template-columns: repeat(3, 1fr); }
+}
 ";
+
+/// Shows one of a picture's three renders at a time, larger; without it all three are shown.
+const SCRIPT: &str = "
+for (const box of document.querySelectorAll('.compare')) {
+  const bar = box.previousElementSibling, buttons = [...bar.children], figures = [...box.children];
+  const show = n => {
+    figures.forEach((figure, i) => figure.classList.toggle('on', i === n));
+    buttons.forEach((button, i) => button.setAttribute('aria-pressed', i === n));
+  };
+  buttons.forEach((button, i) => button.addEventListener('click', () => show(i)));
+  bar.hidden = figures.length < 2;
+  box.classList.add('one');
+  show(0);
+}
+";
+
+/// Longer side of the large picture, at most \[CSS pixels\].
+const LARGE: f64 = 720.0;
+
+/// The renders of a picture that are compared by eye: what a plate may be called, and its button.
+const RENDERS: [(&[&str], &str); 3] =
+    [(&["photons"], "Photon map"), (&["rival", "paths"], "Rival, equal time"), (&["reference"], "Reference")];
 
 /// The page of all pictures that are there.
 pub fn page(shown: &[PageEntry], settings: &Settings) -> Markup {
+    let entries: Vec<(&Picture, &PageEntry)> = ALL
+        .iter()
+        .filter_map(|picture| Some((picture, shown.iter().find(|s| s.name == picture.name)?)))
+        .collect();
     html! {
         (DOCTYPE)
         html lang="en" {
@@ -44,57 +103,97 @@ pub fn page(shown: &[PageEntry], settings: &Settings) -> Markup {
                 style { (PreEscaped(CSS)) }
             }
             body {
-                h1 { "The pictures of photon mapping in fog, and what they are worth" }
-                p {
-                    "Each picture was made as in 1998: photons are stored in maps, and the maps are read along the rays of a "
-                    "camera. Beside it stands what a path tracer makes of the same scene in the same CPU time; a reference of many more "
-                    "samples that knows no photons; and the difference. Where a row says " em { "the original" } ", photons, "
-                    "samples and times are those of the lectures or the paper; everything else is measured here."
-                }
-                p.soft {
-                    "How the verdict is found: what blur and edges do to each pixel is predicted from two other replicates, with up to 8 times as "
-                    "many photons, before anything is compared; pixels where they may cost more than 2 per cent are masked, and what was "
-                    "predicted for the others is allowed. Outside the mask the means of blocks of 16 by 16 pixels of 64 replicates with maps "
-                    "of their own are compared with those of 64 passes of the reference, channel by channel (Holm, family-wise 0.001). Both "
-                    "sides of that are computed on half the width and height, where a block is 8 by 8. Blocks of which one side is "
-                    "heavy-tailed have no interval, hence no verdict; they are counted. A picture of which a fifth or more "
-                    "has no verdict is undecided. Settings that are ours were chosen on runs with other seeds, or for "
-                    "a small mask before anything was compared, but where a picture says otherwise."
-                }
-                p.soft {
-                    "Errors are relative to the mean of the picture, lamps that are seen directly left out, which both count alike; "
-                    "intervals are of 95 per cent. A small bias remains by the method: the k nearest photons reach farther where there "
-                    "are few, so that dark places take light from bright ones beside them and give none back, and discs that are cut "
-                    "off at an edge read what lies on the near side of it. It shrinks with k."
-                }
-                pre { (settings.command()) }
-                @for picture in ALL {
-                    @if let Some(shown) = shown.iter().find(|s| s.name == picture.name) { (section(picture, shown)) }
-                }
+                h1 { "The pictures of photon mapping in participating media, and what they are worth" }
+                ul.index { @for (picture, shown) in &entries { li { (thumbnail(picture, shown)) } } }
+                (method(settings))
+                @for (picture, shown) in &entries { (section(picture, shown)) }
                 (speed::section(speed::ROWS))
+                script { (PreEscaped(SCRIPT)) }
             }
         }
     }
 }
 
+fn thumbnail(picture: &Picture, shown: &PageEntry) -> Markup {
+    html! {
+        a href=(format!("#{}", picture.name)) {
+            @if let Some(plate) = shown.plates.iter().find(|plate| plate.kind == "photons") {
+                img src=(plate.file) alt="" loading="lazy";
+            }
+            strong { (picture.title) }
+            @if let Some(c) = &shown.compared { (winner(c)) }
+        }
+    }
+}
+
+fn method(settings: &Settings) -> Markup {
+    html! {
+        p {
+            "Each picture was made as in 1998: photons are stored in maps, and the maps are read along the rays of a "
+            "camera, in steps that shorten where the light changes. Beside it stand its rival, the best that a method without photon maps makes "
+            "of the same scene in the same CPU time; a reference of many more samples without photon maps; and the difference. Where a row "
+            "says " em { "the original" } ", photons, samples and times are those of the lectures or the paper; everything else is "
+            "measured here."
+        }
+        p {
+            "Paths from the eye and light tracing, photons connected to the camera from where they scatter, race for "
+            "the place of the rival wherever the scene permits both; the one with the smaller error is shown. In light tracing too, paths find lamps "
+            "and what is seen by mirrors and through glass."
+        }
+        p.soft {
+            "How the verdict is found: what blur and edges do to each pixel is predicted from two other replicates, with up to 8 times as "
+            "many photons, before anything is compared; pixels where they may cost more than 2 per cent are masked, and what was "
+            "predicted for the others is allowed. Outside the mask the means of blocks of 16 by 16 pixels of 64 replicates with maps "
+            "of their own are compared with those of 64 passes of the reference, channel by channel (Holm, family-wise 0.001). Both "
+            "sides of that are computed on half the width and height, where a block is 8 by 8. Blocks without light are left out, and shares are "
+            "of the pixels that scatter light. Blocks of which one side is "
+            "heavy-tailed have no interval, hence no verdict; they are counted. A picture of which a fifth or more "
+            "has no verdict, or in which a deviation of 10 per cent would not be detected in a typical block, is undecided. Settings that are ours were chosen for a small mask, for the number of "
+            "photons found, or on runs with other seeds, before anything was compared."
+        }
+        p.soft {
+            "Errors are root mean squares over pixels, relative to the mean of the picture, lamps that are seen directly left out, which "
+            "all methods count alike; intervals are of 95 per cent. A small bias remains by the method: the k nearest photons reach farther where there "
+            "are few, so that dark places take light from bright ones beside them and give none back, and discs that are cut "
+            "off at an edge read what lies on the near side of it. It shrinks with k. An estimate is under-full where it finds fewer photons than "
+            "it asks for within its largest radius."
+        }
+        pre { (settings.command()) }
+    }
+}
+
 fn section(picture: &Picture, shown: &PageEntry) -> Markup {
+    let of = |kinds: &[&str]| shown.plates.iter().find(|plate| kinds.contains(&plate.kind.as_str()));
+    let renders: Vec<(&Plate, &str)> =
+        RENDERS.iter().filter_map(|(kinds, button)| Some((of(kinds)?, *button))).collect();
+    let others = shown.plates.iter().filter(|plate| renders.iter().all(|(render, _)| render != plate));
+    let (width, height) = shown.size;
+    let large = LARGE * (width as f64 / height.max(1) as f64).min(1.0);
     html! {
         h2 id=(picture.name) { (picture.title) }
         p { (picture.see) }
-        div.plates {
-            @for plate in &shown.plates { (figure(plate, shown.size.0)) }
+        @if shown.ours.estimates.is_none() {
+            p.soft { "This picture was made by an earlier recipe; its text is that of the next one." }
         }
+        div.toggle hidden role="group" aria-label="Which picture" {
+            @for (_, button) in &renders { button type="button" { (button) } }
+        }
+        div.compare style=(format!("--width: {large:.0}px")) {
+            @for (plate, _) in &renders { (figure(plate, shown.size)) }
+        }
+        @if let Some(compared) = &shown.compared { p.outcome { (winner(compared)) } }
         (numbers(picture, shown))
+        div.plates { @for plate in others { (figure(plate, shown.size)) } }
         p.soft { "The same picture as EXR, by layers:" }
         pre { (shown.command) }
     }
 }
 
-fn figure(plate: &Plate, width: usize) -> Markup {
+fn figure(plate: &Plate, (width, height): (usize, usize)) -> Markup {
     let is_sharp = ["error", "mask"].contains(&plate.kind.as_str());
     html! {
         figure {
-            img class=[is_sharp.then_some("sharp")] src=(plate.file) alt=(plate.caption) width=(width);
+            img class=[is_sharp.then_some("sharp")] src=(plate.file) alt=(plate.caption) width=(width) height=(height);
             @if plate.kind == "error" { (scale()) }
             figcaption { (plate.caption) "." }
         }
@@ -126,44 +225,101 @@ fn numbers(picture: &Picture, shown: &PageEntry) -> Markup {
         .map(|(name, n)| format!("{n} {name}"))
         .collect();
     html! {
-        table {
+        table.rows {
             tbody {
+                @if let Some(c) = &shown.compared { (errors(c)) }
+                tr { th { "photons in an estimate" } td { (estimates(ours)) } }
+                @if let Some(c) = &shown.compared { (verdict(c)) }
                 tr { th { "the original" } td { (picture.original) } }
                 tr { th { "here" } td {
                     (stored.join(", ")) " photons stored; maps " (duration(ours.map_seconds)) ", picture "
                     (duration(ours.seconds - ours.map_seconds)) " of CPU time for "
                     (shown.size.0) " × " (shown.size.1) " pixels, " (ours.samples) " samples each"
                 } }
-                @if let Some((paths, seconds)) = shown.reference {
-                    tr { th { "reference" } td { (paths) " samples per pixel, " (duration(seconds)) " of CPU time" } }
+                @if let Some((samples, seconds)) = shown.reference {
+                    tr { th { "reference" } td { (samples) " samples per pixel, " (duration(seconds)) " of CPU time" } }
                 }
-                @if let Some(compared) = &shown.compared { (comparison(compared)) }
             }
         }
     }
 }
 
+/// Photons asked for and found, map by map.
+fn estimates(ours: &RenderRecord) -> String {
+    let Some(maps) = &ours.estimates else {
+        return "found: not measured when this picture was made".to_string();
+    };
+    let one = |(name, map): (&str, &MapEstimates)| {
+        let (asked, found, underfull) = (map.asked, map.found, percent(map.underfull));
+        format!(
+            "{name} map: {asked} asked for, {found:.1} found on average, {underfull} of the estimates under-full"
+        )
+    };
+    let read = ["global", "caustic", "volume"].into_iter().zip(maps).filter(|(_, map)| map.count > 0);
+    read.map(one).collect::<Vec<_>>().join("; ")
+}
+
+/// Two significant digits.
+fn two_digits(x: f64) -> String {
+    let text = format!("{x:.1e}");
+    let exponent = text.split_once('e').and_then(|(_, e)| e.parse::<i32>().ok()).unwrap_or(0);
+    let decimals = if x == 0.0 { 0 } else { (1 - exponent).max(0) as usize };
+    format!("{:.decimals$}", text.parse().unwrap_or(x))
+}
+
 fn percent(x: f64) -> String {
-    let digits = if x.abs() < 0.01 { 2 } else { 1 };
-    format!("{:.digits$} %", 100.0 * x)
+    format!("{}\u{a0}%", two_digits(100.0 * x))
 }
 
 fn between([low, high]: [f64; 2]) -> String {
     format!("{} to {}", percent(low), percent(high))
 }
 
-fn comparison(c: &Compared) -> Markup {
+fn middle([low, high]: [f64; 2]) -> f64 {
+    0.5 * (low + high)
+}
+
+/// Who has the smaller error at equal time, in a sentence.
+fn winner(c: &Compared) -> String {
+    let (ours, theirs) = (middle(c.rms), middle(c.equal_rms));
+    let errors = format!("{} against {} at equal time", percent(ours), percent(theirs));
+    if c.rms[0] <= c.equal_rms[1] && c.equal_rms[0] <= c.rms[1] {
+        return format!("The photon map and {} are level: an error of {errors}.", c.rival);
+    }
+    let factor = two_digits((theirs / ours).max(ours / theirs));
+    if ours < theirs {
+        return format!(
+            "The photon map wins by a factor of {factor} over {}: an error of {errors}.",
+            c.rival
+        );
+    }
+    let (first, rest) = c.rival.split_at(1);
+    let wins = if c.rival.starts_with("paths") { "win" } else { "wins" };
+    format!(
+        "{}{rest} {wins} by a factor of {factor}: the photon map has an error of {errors}.",
+        first.to_uppercase()
+    )
+}
+
+fn errors(c: &Compared) -> Markup {
     html! {
-        tr { th { "RMS error of a pixel" } td {
-            "photon maps " (between(c.rms)) "; paths in the same time " (between(c.equal_rms))
+        tr { th { "RMS error of a pixel" } td { "photon map " (between(c.rms)) } }
+        tr { th { "at equal time" } td {
+            (c.rival) " " (between(c.equal_rms))
+            @for (name, rms) in &c.beaten { "; beaten: " (name) " " (between(*rms)) }
         } }
         tr { th { "bias" } td {
             "of the picture's mean " (between(c.bias)) "; of a block of 16 by 16, root mean square, what remains with any number of maps: "
             (between(c.systematic)) " (" (c.replicates) " sets of maps)"
         } }
+    }
+}
+
+fn verdict(c: &Compared) -> Markup {
+    html! {
         tr { th { "verdict" } td {
-            span.verdict { (c.verdict) } ": " (c.blocks.1) " of " (c.blocks.0) " block means differ; masked " (percent(c.masked))
-            " of the picture, heavy-tailed " (percent(c.heavy)) "; in a typical block a deviation of "
+            span.outcome { (c.verdict) } ": " (c.blocks.1) " of " (c.blocks.0) " block means differ; masked " (percent(c.masked))
+            " of what scatters light, heavy-tailed " (percent(c.heavy)) "; in a typical block a deviation of "
             (percent(c.smallest)) " beyond what was predicted is detectable"
         } }
     }
@@ -174,14 +330,43 @@ mod tests {
     use super::*;
 
     #[test]
-    fn percents_have_the_digits_that_matter() {
-        assert_eq!([0.1234, 0.00456, -0.02].map(percent), ["12.3 %", "0.46 %", "-2.0 %"]);
-        assert_eq!(between([0.01, 0.02]), "1.0 % to 2.0 %");
+    fn numbers_have_two_digits() {
+        let texts = [0.1234, 0.00456, -0.02, 0.0996, 25.8, 0.0].map(|x| percent(x).replace('\u{a0}', " "));
+        assert_eq!(texts, ["12 %", "0.46 %", "-2.0 %", "10 %", "2600 %", "0 %"]);
+        assert_eq!(between([0.01, 0.02]), "1.0\u{a0}% to 2.0\u{a0}%");
     }
 
     #[test]
     fn the_scale_ends_where_errors_do() {
         let text = scale().into_string();
         assert!(text.contains("−20 %") && text.contains("+20 %") && text.matches("rgb(").count() == 17);
+    }
+
+    fn compared(rms: [f64; 2], equal_rms: [f64; 2], rival: &str) -> Compared {
+        let text = serde_json::json!({
+            "replicates": 64, "rms": rms, "systematic": [0.0, 0.1], "bias": [0.0, 0.1], "equal_rms": equal_rms,
+            "rival": rival, "verdict": "agrees with its reference", "blocks": [9, 0], "masked": 0.1, "heavy": 0.0,
+            "smallest": 0.05
+        });
+        serde_json::from_value(text).unwrap()
+    }
+
+    /// The winner is named with the factor; intervals that overlap have none.
+    #[test]
+    fn the_sentence_names_who_wins() {
+        let winner = |c: &Compared| winner(c).replace('\u{a0}', " ");
+        let wins = winner(&compared([0.09, 0.11], [0.19, 0.21], "light tracing"));
+        assert_eq!(
+            wins,
+            "The photon map wins by a factor of 2.0 over light tracing: an error of 10 % against 20 % at equal time."
+        );
+        let loses = winner(&compared([0.29, 0.31], [0.19, 0.21], "paths"));
+        assert_eq!(
+            loses,
+            "Paths win by a factor of 1.5: the photon map has an error of 30 % against 20 % at equal time."
+        );
+        let level = winner(&compared([0.09, 0.11], [0.10, 0.12], "paths"));
+        assert!(level.starts_with("The photon map and paths are level"), "{level}");
+        assert_eq!(compared([0.1; 2], [0.1; 2], "paths").beaten, []);
     }
 }

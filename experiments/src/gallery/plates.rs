@@ -45,10 +45,12 @@ pub fn plates(
     };
     plate("photons", told("Photon maps", &ours.facts), &exposed(&ours.total))?;
     if let Some(RivalPictures { equal, reference, cost, masked, .. }) = others {
-        plate("paths", told("Paths in the same time", &equal.facts), &exposed(&equal.total))?;
-        let by = picture.by_light.words();
+        let (method, equal) = equal;
+        let caption = told(&format!("The rival in the same time, {}", method.name()), &equal.facts);
+        plate("rival", caption, &exposed(&equal.total))?;
+        let by = picture.by_light.name();
         let caption =
-            format!("The reference, {by}: {} samples per pixel, {} of CPU time", cost.0, duration(cost.1));
+            format!("The reference, by {by}: {} samples per pixel, {} of CPU time", cost.0, duration(cost.1));
         plate("reference", caption, &exposed(reference))?;
         let (half, ours, reference) = (grid.halved(), grid.reduced(&ours.total), grid.reduced(reference));
         let caption = format!(

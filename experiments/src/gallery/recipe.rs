@@ -61,3 +61,18 @@ pub fn arguments(picture: &Picture, seed: u64) -> anyhow::Result<Vec<String>> {
 pub fn command(picture: &Picture, seed: u64) -> anyhow::Result<String> {
     Ok(format!("cargo run --release --bin turbid -- {}", arguments(picture, seed)?.join(" ")))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::gallery::pictures::ALL;
+
+    /// As in 1998: steps shorten where the light changes.
+    #[test]
+    fn every_picture_marches_adaptively() {
+        for picture in ALL {
+            let adaptive = readout(picture, 1).unwrap().march.adaptive;
+            assert!(adaptive.is_some_and(|a| a.tolerance == 0.5), "{}", picture.name);
+        }
+    }
+}

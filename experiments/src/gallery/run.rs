@@ -62,6 +62,9 @@ fn run(settings: &Settings) -> anyhow::Result<()> {
         return Ok(assets::window().write(&settings.scenes.join("window.png"))?);
     }
     let folder = settings.folder();
+    if settings.page {
+        return write_page(&folder, settings);
+    }
     let program = program_digest()?.to_string();
     let chosen = |p: &&Picture| settings.only.is_empty() || settings.only.iter().any(|n| n == p.name);
     check_folder(&folder, &["index.html"])?;
@@ -78,11 +81,15 @@ fn run(settings: &Settings) -> anyhow::Result<()> {
     for picture in ALL.iter().filter(chosen) {
         let shown = one(picture, settings, &folder, &program).with_context(|| picture.name.to_string())?;
         write(&folder.join(format!("{}.json", picture.name)), &serde_json::to_vec_pretty(&shown)?)?;
-        let page = page::page(&all_shown(&folder)?, settings).into_string();
-        write(&folder.join("index.html"), page.as_bytes())?;
+        write_page(&folder, settings)?;
     }
     say(&format!("the page is {}", folder.join("index.html").display()));
     Ok(())
+}
+
+fn write_page(folder: &Path, settings: &Settings) -> anyhow::Result<()> {
+    let page = page::page(&all_shown(folder)?, settings).into_string();
+    write(&folder.join("index.html"), page.as_bytes())
 }
 
 /// Larger files about a picture are none.
@@ -122,7 +129,7 @@ fn one(picture: &Picture, settings: &Settings, folder: &Path, program: &str) -> 
         size: (studio.grid().width, studio.grid().height),
         seconds,
         ours: ours.facts,
-        equal: others.as_ref().map(|o| o.equal.facts.clone()),
+        equal: others.as_ref().map(|o| o.equal.1.facts.clone()),
         reference: others.as_ref().map(|o| o.cost),
         compared: others.map(|o| o.compared),
         plates,

@@ -35,6 +35,9 @@ pub struct Settings {
     /// Take what another build of the program made
     #[arg(long, conflicts_with = "fresh")]
     pub reuse: bool,
+    /// Only write the page anew, from the numbers and pictures that are in its folder
+    #[arg(long)]
+    pub page: bool,
     /// Only write the scenes' data files anew, into the folder of the scenes
     #[arg(long)]
     pub assets: bool,

@@ -27,44 +27,59 @@ pub struct Compared {
     pub systematic: [f64; 2],
     /// Error of the picture's mean, 95 per cent.
     pub bias: [f64; 2],
-    /// Root mean square error of the path tracer's picture in the same time, 95 per cent.
+    /// Root mean square error of the rival's picture in the same time, 95 per cent.
     pub equal_rms: [f64; 2],
+    /// The rival: of the methods without photon maps that raced the one with the smallest error.
+    #[serde(default = "paths")]
+    pub rival: String,
+    /// The others, with their errors, 95 per cent.
+    #[serde(default)]
+    pub beaten: Vec<(String, [f64; 2])>,
     /// The verdict in words.
     pub verdict: String,
     /// Blocks and channels compared, and how many differ.
     pub blocks: (usize, usize),
-    /// Share of the picture that was masked beforehand.
+    /// Share that was masked beforehand, of the pixels that scatter light.
     pub masked: f64,
-    /// Share of the picture without a verdict for its heavy tails.
+    /// Share without a verdict for its heavy tails, of the same.
     pub heavy: f64,
     /// Median of the smallest detectable relative deviations.
     pub smallest: f64,
 }
 
+/// The one rival of results that name none.
+fn paths() -> String {
+    "paths".to_string()
+}
+
 impl Compared {
     /// The numbers of a comparison.
+    ///
+    /// # Arguments   `raced` methods without photon maps and their errors, the smallest first; at least one
     pub fn new(
         comparison: &Comparison,
         errors: &Errors,
         replicates: usize,
         rms: Interval,
-        equal_rms: Interval,
+        raced: &[(&str, Interval)],
     ) -> Self {
         let pair = |i: Interval| [i.low, i.high];
         let agreement = comparison.agreement();
         let differ = if let Agreement::Differ(n) = agreement { n } else { 0 };
         let verdict = match agreement {
-            Agreement::Agree => "agrees with its reference",
-            Agreement::Differ(_) => "differs from its reference",
-            Agreement::Undecided => "undecided: too little of the picture can be judged",
+            Agreement::Agree => "agrees with its reference".to_string(),
+            Agreement::Differ(_) => "differs from its reference".to_string(),
+            Agreement::Undecided(why) => format!("undecided: {why}"),
         };
         Compared {
             replicates,
             rms: pair(rms),
             systematic: pair(errors.systematic),
             bias: pair(errors.bias),
-            equal_rms: pair(equal_rms),
-            verdict: verdict.to_string(),
+            equal_rms: pair(raced[0].1),
+            rival: raced[0].0.to_string(),
+            beaten: raced[1..].iter().map(|(name, rms)| (name.to_string(), pair(*rms))).collect(),
+            verdict,
             blocks: (comparison.blocks.len(), differ),
             masked: comparison.masked,
             heavy: comparison.heavy,
@@ -86,7 +101,7 @@ pub struct PageEntry {
     pub seconds: f64,
     /// The photon mapper's picture.
     pub ours: RenderRecord,
-    /// The path tracer's in the same time; none of a draft.
+    /// The rival's in the same time; none of a draft.
     pub equal: Option<RenderRecord>,
     /// Samples a pixel and CPU seconds of the reference; none of a draft.
     pub reference: Option<(u64, f64)>,

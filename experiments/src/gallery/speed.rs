@@ -56,8 +56,8 @@ pub fn section(rows: &[Row]) -> Markup {
             h2 id="speed" { "Speed" }
             p {
                 "Efficiency is 1/(mean square error × CPU seconds), measured in turn on one machine; a ratio above 1 says that "
-                "turbid reaches the same error in less time. Intervals are of 95 per cent. A photon map wins down to an error "
-                "of a few per cent, where its blur remains; the experiment " code { "claims-1998" } " measures where paths overtake it."
+                "turbid reaches the same error in less time. Intervals are of 95 per cent. The experiment " code { "claims-1998" }
+                " measures the error at which paths overtake a photon map."
             }
             table {
                 thead { tr { th { "what" } th { "ratio" } th { "interval" } th { "measured by" } } }

@@ -1,8 +1,8 @@
-//! Makes the pictures: photon maps and their readout, paths, each with the CPU time that it took.
+//! Makes the pictures: photon maps and their readout, and pictures without them, each with the CPU time that it took.
 
 use super::Grid;
-use super::keep::{CachedRender, FORMAT, RenderRecord};
-use super::light::ByLight;
+use super::keep::{CachedRender, FORMAT, MapEstimates, RenderRecord};
+use super::light::{ByLight, Unbiased};
 use super::pictures::Picture;
 use super::recipe;
 use crate::harness::Digest;
@@ -13,7 +13,7 @@ use turbid::integrators::mapper;
 use turbid::photons::PhotonMap;
 use turbid::photons::maps::{self, Maps};
 use turbid::scene::{Camera, Scene, SceneFile};
-use turbid::sensor::{Film, Method, Streams, extend};
+use turbid::sensor::{Film, Method, Streams};
 use turbid::transport::Progress;
 
 /// One picture's scene and camera, ready to be rendered.
@@ -91,17 +91,9 @@ impl<'a> Studio<'a> {
         self.words(&counts, samples, replicate)
     }
 
-    /// What a render by paths will be called.
-    pub fn path_words(&self, samples: u64, replicate: u64) -> String {
-        self.words("paths", samples, replicate)
-    }
-
-    /// What a pass of the reference will be called.
-    pub fn reference_words(&self, samples: u64, replicate: u64) -> String {
-        match self.picture.by_light {
-            ByLight::NOTHING => self.path_words(samples, replicate),
-            by_light => self.words(&format!("paths and {by_light:?}"), samples, replicate),
-        }
+    /// What a render without photon maps will be called.
+    pub fn unbiased_words(&self, by_light: ByLight, samples: u64, replicate: u64) -> String {
+        self.words(&format!("{} {}", by_light.name(), by_light.permille), samples, replicate)
     }
 
     /// Fills the maps of a replicate, with `factor` times the photons of the original.
@@ -125,6 +117,8 @@ impl<'a> Studio<'a> {
         let method = Method::Photons(mapper::Mapper::new(&self.scene, &maps, &settings));
         let mut film = Film::new(self.camera.width(), self.camera.height());
         let report = method.extend(&mut film, &self.camera, samples, self.streams(replicate), progress)?;
+        let gathers = [report.global, report.caustic, report.volume];
+        let asked = settings.nearest();
         let stored = |map: &Option<PhotonMap>| map.as_ref().map_or(0, |m| m.stored() as u64);
         let facts = RenderRecord {
             format: FORMAT,
@@ -135,68 +129,47 @@ impl<'a> Studio<'a> {
             samples,
             emitted: [maps.report.main.emitted, maps.report.caustic.emitted],
             stored: [stored(&maps.global), stored(&maps.caustic), stored(&maps.volume)],
-            radii: [report.global, report.caustic, report.volume].map(|g| g.mean_radius()),
+            radii: gathers.map(|g| g.mean_radius()),
+            estimates: Some([0, 1, 2].map(|map| MapEstimates::new(asked[map], &gathers[map]))),
         };
-        Ok(CachedRender::new(facts, &film))
+        Ok(CachedRender::new(facts, film.pixels().iter().map(|p| p.layers()).collect()))
     }
 
-    /// A picture by paths.
-    pub fn paths(
+    /// A picture without photon maps.
+    pub fn unbiased(
         &self,
+        by_light: ByLight,
         samples: u64,
         replicate: u64,
         progress: &dyn Progress,
     ) -> anyhow::Result<CachedRender> {
         let start = ProcessTime::now();
-        let mut film = Film::new(self.camera.width(), self.camera.height());
-        self.trace(&mut film, samples, replicate, progress)?;
-        Ok(CachedRender::new(self.path_facts(start, samples, replicate), &film))
+        let mut picture = Unbiased::new(by_light, &self.scene, &self.camera, self.streams(replicate))?;
+        picture.extend(samples, progress)?;
+        Ok(self.render_of(&picture, start))
     }
 
-    /// One pass of the reference, which knows no photons.
-    pub fn reference(
+    /// A picture without photon maps that takes about so many CPU seconds: whole passes over all pixels, at least one. The number
+    /// of samples depends on the clock; a render of that number repeats it but for rounding.
+    pub fn unbiased_for(
         &self,
-        samples: u64,
-        replicate: u64,
-        progress: &dyn Progress,
-    ) -> anyhow::Result<CachedRender> {
-        let by_light = self.picture.by_light;
-        if by_light == ByLight::NOTHING {
-            return self.paths(samples, replicate, progress);
-        }
-        let start = ProcessTime::now();
-        let within = self.scene.interior_at(self.camera.position());
-        let mut film = Film::new(self.camera.width(), self.camera.height());
-        let streams = self.streams(replicate);
-        extend(&mut film, &self.camera, samples, streams, progress, |ray, stream, n: &mut u64| {
-            *n += 1;
-            by_light.rest(&self.scene, ray, within, stream)
-        })?;
-        let found = by_light.trace(&self.scene, &self.camera, samples, streams)?;
-        let facts = self.path_facts(start, samples, replicate);
-        Ok(CachedRender::new(facts, &film).with(&found))
-    }
-
-    /// A picture by paths that takes about so many CPU seconds: whole passes over all pixels, at least one. The number
-    /// of samples depends on the clock; a render of that number repeats it bit by bit.
-    pub fn paths_for(
-        &self,
+        by_light: ByLight,
         seconds: f64,
         replicate: u64,
         progress: &dyn Progress,
     ) -> anyhow::Result<CachedRender> {
         let start = ProcessTime::now();
-        let mut film = Film::new(self.camera.width(), self.camera.height());
-        self.trace(&mut film, 1, replicate, progress)?;
+        let mut picture = Unbiased::new(by_light, &self.scene, &self.camera, self.streams(replicate))?;
+        picture.extend(1, progress)?;
         loop {
-            let (spent, done) = (start.elapsed().as_secs_f64(), film.samples());
-            let each = spent / done as f64;
+            let spent = start.elapsed().as_secs_f64();
+            let each = spent / picture.samples() as f64;
             // Half of what is left, as long as that is more than a sample: late passes are timed best.
             let more = (0.5 * (seconds - spent) / each) as u64;
             if spent + 0.5 * each >= seconds {
-                return Ok(CachedRender::new(self.path_facts(start, done, replicate), &film));
+                return Ok(self.render_of(&picture, start));
             }
-            self.trace(&mut film, more.max(1), replicate, progress)?;
+            picture.extend(more.max(1), progress)?;
         }
     }
 
@@ -204,22 +177,11 @@ impl<'a> Studio<'a> {
         Streams { seed: self.seed, replicate }
     }
 
-    fn trace(
-        &self,
-        film: &mut Film,
-        samples: u64,
-        replicate: u64,
-        progress: &dyn Progress,
-    ) -> anyhow::Result<()> {
-        let method = Method::Paths(&self.scene);
-        method.extend(film, &self.camera, samples, self.streams(replicate), progress)?;
-        Ok(())
-    }
-
-    fn path_facts(&self, start: ProcessTime, samples: u64, replicate: u64) -> RenderRecord {
-        RenderRecord {
+    fn render_of(&self, picture: &Unbiased, start: ProcessTime) -> CachedRender {
+        let samples = picture.samples();
+        let facts = RenderRecord {
             format: FORMAT,
-            words: self.path_words(samples, replicate),
+            words: self.unbiased_words(picture.by_light, samples, picture.streams.replicate),
             program: self.program.clone(),
             seconds: start.elapsed().as_secs_f64(),
             map_seconds: 0.0,
@@ -227,6 +189,8 @@ impl<'a> Studio<'a> {
             emitted: [0; 2],
             stored: [0; 3],
             radii: [0.0; 3],
-        }
+            estimates: None,
+        };
+        CachedRender::new(facts, picture.layers())
     }
 }
