@@ -38,7 +38,7 @@ fn budget(results: &[CaseResult], mistakes: &[Mistake]) -> anyhow::Result<Figure
     let x = blind.iter().map(|r| percent(r.predicted())).collect();
     let y = blind.iter().map(|r| percent(r.error.mean())).collect();
     let bars = blind.iter().map(|r| percent_bar(&r.error)).collect();
-    let label = "too noisy to see its prediction";
+    let label = "too noisy to detect its prediction";
     let noisy = Points::new(label, 0, x, y).with_y_interval(bars);
     panel = panel.with(Points { color: Color::Grey, ..noisy });
     for (class, term) in GATHER_TERMS.into_iter().enumerate() {

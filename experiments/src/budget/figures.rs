@@ -12,7 +12,7 @@ pub fn sum(entries: &[&Entry], groups: usize, z: &[f64]) -> anyhow::Result<Figur
     let mut above = Panel::new(axis("predicted error"), axis("measured error"))
         .with(Rule::new(Along::Diagonal).with_label("measured = predicted"));
     let noisy = chosen(entries, |e| !sees_prediction(e));
-    let layer = points("too noisy to see its prediction", 0, &noisy);
+    let layer = points("too noisy to detect its prediction", 0, &noisy);
     if !noisy.is_empty() {
         above = above.with(Points { color: Color::Grey, ..layer });
     }
@@ -40,7 +40,7 @@ pub fn sum(entries: &[&Entry], groups: usize, z: &[f64]) -> anyhow::Result<Figur
     let caption = format!(
         "Measured against predicted error of the {} cases of the budget, in per cent of the exact value (outside an \
          edge, of the value inside), with 95 % intervals over maps, coloured by the largest of the predicted terms; \
-         linear within ±1 %. They lie on the line within their errors, grey ones being too noisy to see their prediction: \
+         linear within ±1 %. They lie on the line within their errors, grey ones being too noisy to detect their prediction: \
          the sum of the terms is what was measured, wrong estimators included, whose fault is one of the terms. Below: what the prediction leaves over in one case of each of {} \
          independent sets of at most {MOST} maps, into which the maps of {groups} groups are cut, by Student's t in normal deviations, beside the density that it follows if nothing \
          was overlooked.",

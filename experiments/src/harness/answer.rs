@@ -2,6 +2,9 @@
 
 use super::Estimate;
 
+/// Name of the section that all answers together become, which opens the report.
+pub const ANSWER: &str = "answer";
+
 /// Root mean square errors that are asked about, relative to the exact value.
 pub const TARGETS: [f64; 4] = [0.2, 0.1, 0.05, 0.03];
 

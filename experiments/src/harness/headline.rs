@@ -1,7 +1,7 @@
 //! The numbers of a study that a paper would quote, as LaTeX commands and as a table.
 
 use super::format::with_error;
-use super::{Estimate, SectionReport, Unit};
+use super::{Estimate, Unit};
 use serde::Serialize;
 use turbid_figure::latex;
 
@@ -48,13 +48,8 @@ pub(super) struct HeadlineRecord<'a> {
     text: &'a str,
 }
 
-/// All headline numbers of a study, each with its experiment and its name in the study: Bias and Face make BiasFace.
-pub(super) fn all(sections: &[SectionReport]) -> Vec<(&'static str, String, &Headline)> {
-    let one = |experiment: &'static str, headline| (experiment, whole_name(experiment, headline), headline);
-    sections.iter().flat_map(|s| s.section.headlines.iter().map(|h| one(s.experiment.name, h))).collect()
-}
-
-fn whole_name(experiment: &str, headline: &Headline) -> String {
+/// The name of a number in the study: Bias and Face make BiasFace.
+pub(super) fn whole_name(experiment: &str, headline: &Headline) -> String {
     let letters: String = experiment.chars().filter(char::is_ascii_alphabetic).collect();
     let (first, rest) = letters.split_at(letters.len().min(1));
     format!("{}{rest}{}", first.to_ascii_uppercase(), headline.name)

@@ -3,7 +3,9 @@
 use super::cells::CellSeconds;
 use super::headline;
 use super::results::Record;
-use super::{Answer, Estimate, Experiment, Judged, Provenance, Reached, SectionReport, TARGETS, Unit};
+use super::{
+    Answer, Estimate, Experiment, Headline, Judged, Provenance, Reached, SectionReport, TARGETS, Unit,
+};
 use crate::prediction::Prediction;
 use anyhow::{Context, anyhow, ensure};
 use serde::Serialize;
@@ -198,7 +200,7 @@ pub(super) fn write_results(out: &Path, sections: &[SectionReport]) -> anyhow::R
         .flat_map(|s| s.judged.iter().map(|judged| ClaimRecord::new(s.experiment.name, judged)))
         .collect();
     write_atomically(out.join("claims.csv"), |file| write_csv(file, &claims))?;
-    let headlines = headline::all(sections);
+    let headlines: Vec<_> = sections.iter().flat_map(headlines).collect();
     write_atomically(out.join("headlines.csv"), |file| write_csv(file, &headline::records(&headlines)))?;
     let commands = headline::commands(&headlines);
     write_atomically(out.join("numbers.tex"), |file| file.write_all(commands.as_bytes()))?;
@@ -216,6 +218,12 @@ pub(super) fn write_results(out: &Path, sections: &[SectionReport]) -> anyhow::R
         }
     }
     Ok(())
+}
+
+/// The headline numbers of a section, each with its experiment and its name in the study.
+fn headlines(part: &SectionReport) -> impl Iterator<Item = (&'static str, String, &Headline)> {
+    let experiment = part.experiment.name;
+    part.section.headlines.iter().map(move |h| (experiment, headline::whole_name(experiment, h), h))
 }
 
 /// A row of claims.csv.

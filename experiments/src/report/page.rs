@@ -5,16 +5,12 @@ use super::contents::contents;
 use super::figures;
 use super::style::CSS;
 use super::tables::{self, Numbers};
-use crate::answer;
 use crate::harness::{
-    FAMILY_WISE, FIT_LEVEL, FigureFiles, GEOMETRIC, LEFT_OVER, MIN_MAPS, PREDICTED, Provenance, Row,
+    ANSWER, FAMILY_WISE, FIT_LEVEL, FigureFiles, GEOMETRIC, LEFT_OVER, MIN_MAPS, PREDICTED, Provenance, Row,
     SectionReport, Settings, Table, number, percent, row_label, with_error,
 };
 use crate::prediction::Prediction;
 use maud::{DOCTYPE, Markup, PreEscaped, html};
-
-/// The section that opens the report.
-const ANSWER: &str = answer::CLOSING.name;
 
 /// Predictions shown in a section; the rest is in predictions.csv.
 const SHOWN: usize = 30;
@@ -105,6 +101,8 @@ fn section(part: &SectionReport, is_one_of_many: bool, numbers: &mut Numbers) ->
     // The answer is its sentences, its figure and its table.
     let is_whole = !is_one_of_many;
     let first = if is_whole { own.summary.len() } else { 1 };
+    // Drawn in the order of the page, which numbers them.
+    let figure = own.figures.first().map(|figure| draw(part, figure, numbers));
     let rest = html! {
         @for paragraph in own.summary.iter().skip(first) { p { (paragraph) } }
         @for figure in own.figures.iter().skip(1) { (draw(part, figure, numbers)) }
@@ -122,7 +120,7 @@ fn section(part: &SectionReport, is_one_of_many: bool, numbers: &mut Numbers) ->
             }
             @if part.experiment.name != ANSWER { p.question { (part.experiment.question) } }
             @for paragraph in own.summary.iter().take(first) { p { (paragraph) } }
-            @for figure in own.figures.iter().take(1) { (draw(part, figure, numbers)) }
+            @if let Some(figure) = figure { (figure) }
             @if is_one_of_many { (claims::line(part)) }
             @if is_whole { (rest) } @else if has_more(part) { details.rest { summary { (more(part)) } (rest) } }
         }
@@ -312,8 +310,8 @@ fn circumstances(study: &str, settings: &Settings, provenance: &Provenance, numb
         pre { (settings.command(study)) }
         p.behind {
             "The same settings and seed give the same bits in " code { "results.csv" } " on any number of threads. Beside this page: "
-            code { "results.csv" } " (every quantity), " code { "claims.csv" } " (the verdicts), " code { "predictions.csv" } ", "
-            code { "timing.csv" } ", " code { "provenance.json" } ", " code { "figures/" } " (SVG and PNG for one and for two columns of print, and a table of each figure) and " code { "cells/" } " (every map). "
+            code { "results.csv" } " (every quantity), " code { "claims.csv" } " (the verdicts), " code { "answers.csv" } " (the first table), " code { "headlines.csv" } " and " code { "numbers.tex" } " (headline numbers, the latter as LaTeX commands), " code { "predictions.csv" } ", "
+            code { "timing.csv" } ", " code { "provenance.json" } ", " code { "figures/" } " (SVG and PNG for one and for two columns of print, LaTeX, and a table of each figure) and " code { "cells/" } " (every map). "
             "A figure whose table in " code { "figures/" } " was edited is drawn again, here too, by the same command with " code { "--replot" } ": nothing is measured."
         }
     }
