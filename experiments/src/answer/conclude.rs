@@ -68,22 +68,21 @@ fn summary(answers: &[&Answer]) -> Vec<String> {
         let found: Vec<&str> =
             answers.iter().filter(|a| test(&a.reached[index])).map(|a| a.scene.as_str()).collect();
         match found.len() {
-            0 => "no scene".to_string(),
-            n if n == answers.len() => "every scene".to_string(),
-            n if n > 3 => format!("{n} of {} scenes", answers.len()),
-            _ => found.join(", "),
+            0 => "in none".to_string(),
+            n if n > 3 => format!("in {n}"),
+            n => format!("in {n} ({})", found.join("; ")),
         }
     };
     let is_slower = |r: &Option<Reached>| r.as_ref().is_some_and(|r| r.work.value() < 1.0);
-    summary.push(format!(
-        "Where maps lose: at {} % paths take less work in {}, and no map tried gets there in {}; at {} % in {} and {}.",
-        per_cent(MIDDLE),
-        scenes(MIDDLE, is_slower),
-        scenes(MIDDLE, Option::is_none),
-        per_cent(LAST),
-        scenes(LAST, is_slower),
-        scenes(LAST, Option::is_none),
-    ));
+    let lost = |index: usize| {
+        format!(
+            "at {} % paths take less work {}, and no map tried gets there {}",
+            per_cent(index),
+            scenes(index, is_slower),
+            scenes(index, Option::is_none)
+        )
+    };
+    summary.push(format!("Where maps lose, of {} scenes: {}; {}.", answers.len(), lost(MIDDLE), lost(LAST)));
     summary
 }
 

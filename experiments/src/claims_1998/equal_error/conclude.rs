@@ -93,7 +93,7 @@ fn answer(pictures: &Pictures) -> Answer {
             time: speed(pictures, Currency::Seconds, target),
             bias: Estimate::jackknife(&jackknife(&cells, |chosen: &[&Cell]| {
                 let fit = Fit::of(chosen, Currency::Seconds);
-                fit.maps[size].bias / (fit.mean * fit.mean)
+                fit.squared_biases[size] / (fit.mean * fit.mean)
             }))
             .root(),
             limit: largest.map_or("", |(name, _)| name),

@@ -95,6 +95,8 @@ pub struct Fit {
     pub maps: Vec<Maps>,
     /// The path tracer.
     pub paths: Paths,
+    /// Squared bias by size of map as it came out, below zero where there is none.
+    pub squared_biases: Vec<f64>,
     /// Mean radiance of the picture, by paths.
     pub mean: f64,
 }
@@ -117,6 +119,7 @@ impl Fit {
         let of_paths: Vec<(f64, f64)> =
             (0..PIXELS).map(|p| moments(cells.iter().map(|c| c.paths.pixels[p]), count)).collect();
         let average = |value: &dyn Fn(&Cell) -> f64| cells.iter().map(|c| value(c)).sum::<f64>() / count;
+        let mut squared_biases = Vec::new();
         let maps = (0..cells[0].maps.len())
             .map(|size| {
                 let (mut between, mut bias) = (0.0, 0.0);
@@ -125,6 +128,7 @@ impl Fit {
                     between += own.1 / pixels;
                     bias += ((own.0 - mean) * (own.0 - mean) - (own.1 + variance) / count) / pixels;
                 }
+                squared_biases.push(bias);
                 let (noise, samples) = (average(&|c| c.maps[size].noise), cells[0].maps[size].samples);
                 Maps {
                     fill: average(&|c| c.maps[size].fill[which]),
@@ -136,7 +140,7 @@ impl Fit {
             })
             .collect();
         let paths = Paths { sample: average(&|c| c.paths.sample[which]), noise: average(&|c| c.paths.noise) };
-        Fit { maps, paths, mean: of_paths.iter().map(|m| m.0).sum::<f64>() / pixels }
+        Fit { maps, paths, squared_biases, mean: of_paths.iter().map(|m| m.0).sum::<f64>() / pixels }
     }
 }
 
