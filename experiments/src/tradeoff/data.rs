@@ -53,13 +53,13 @@ impl Measured {
     pub fn limit(&self) -> &'static str {
         let square =
             |part: fn(&Expected) -> f64| self.expected.iter().map(|e| part(e) * part(e)).sum::<f64>();
-        let parts: [(&str, fn(&Expected) -> f64); 4] = [
-            ("noise", |e| e.noise),
-            ("blur", |e| e.blur),
-            ("faces", |e| e.edge),
-            ("clusters", |e| e.clusters),
+        let parts = [
+            ("noise", square(|e| e.noise)),
+            ("blur", square(|e| e.blur)),
+            ("faces", square(|e| e.edge)),
+            ("clusters", square(|e| e.clusters)),
         ];
-        let largest = parts.into_iter().max_by(|a, b| square(a.1).total_cmp(&square(b.1)));
+        let largest = parts.into_iter().max_by(|a, b| a.1.total_cmp(&b.1));
         largest.map_or("", |(name, _)| name)
     }
 }
