@@ -1,4 +1,4 @@
-//! The data files of the scenes that a program has made: the stained-glass window, and the grid of the fog box.
+//! The data files of the scenes that a program has made: the stained-glass window, the tiles of the pool, and the grid of the fog box.
 
 use super::{Grid, develop};
 use glam::DVec3;
@@ -90,6 +90,45 @@ pub fn window() -> develop::Print {
     develop::plain(WINDOW, &pixels)
 }
 
+/// Side of a tile of the pool, with its joint \[pixels\].
+const TILE: usize = 10;
+
+/// Two glazes, between which tiles differ, the mortar of the joints, and the dark tiles of the borders.
+const GLAZES: [Spectrum; 2] = [Spectrum::rgb(0.42, 0.64, 0.72), Spectrum::rgb(0.30, 0.54, 0.66)];
+const JOINT: Spectrum = Spectrum::rgb(0.70, 0.72, 0.70);
+const BORDER: Spectrum = Spectrum::rgb(0.05, 0.16, 0.34);
+
+/// Tiles of uneven blue, dark where there is a border.
+fn tiles(columns: usize, rows: usize, is_border: impl Fn(usize, usize) -> bool) -> develop::Print {
+    let grid = Grid { width: columns * TILE, height: rows * TILE };
+    let at = |i: usize| {
+        let (x, y) = (i % grid.width, i / grid.width);
+        let (column, row) = (x / TILE, y / TILE);
+        if x % TILE == 0 || y % TILE == 0 {
+            return JOINT;
+        }
+        if is_border(column, row) {
+            return BORDER;
+        }
+        // The fraction of a product with an irrational number looks like chance.
+        let part = ((column * 37 + row * 101 + column * row * 11) as f64 * 0.618_033_988_749_894_8).fract();
+        GLAZES[0] * part + GLAZES[1] * (1.0 - part)
+    };
+    let pixels: Vec<Spectrum> = (0..grid.pixels()).map(at).collect();
+    develop::plain(grid, &pixels)
+}
+
+/// The tiles of the scene `pool`: the names of their files in the folder of the scenes, and the pictures.
+pub fn pool() -> [(&'static str, develop::Print); 3] {
+    let ring = |column: usize, row: usize| column.min(23 - column).min(row).min(19 - row) == 2;
+    let top = |_: usize, row: usize| row == 1;
+    [
+        ("pool/bottom.png", tiles(24, 20, ring)),
+        ("pool/end.png", tiles(24, 5, top)),
+        ("pool/side.png", tiles(20, 5, top)),
+    ]
+}
+
 /// The density of the scene `fogbox-het`, `fogbox/het.vol`: 32 samples along each axis of the box, their mean 1.
 ///
 /// # Errors
@@ -115,6 +154,10 @@ mod tests {
         let scenes = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes");
         let kept = image::open(scenes.join("window.png")).unwrap().to_rgb8();
         assert!(kept.as_raw()[..] == *super::window().pixels.as_flattened());
+        for (file, print) in super::pool() {
+            let kept = image::open(scenes.join(file)).unwrap().to_rgb8();
+            assert!(kept.as_raw()[..] == *print.pixels.as_flattened(), "{file}");
+        }
         assert!(std::fs::read(scenes.join("fogbox/het.vol")).unwrap() == super::fogbox_het().unwrap());
     }
 }

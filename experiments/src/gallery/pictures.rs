@@ -135,7 +135,7 @@ pub const ALL: &[Picture] = &[
         name: "cornell-anisotropic",
         title: "The same in fog that scatters forwards",
         see: "Light keeps its direction: the lamp has a bright halo, and the air before the walls hides less of their colour. \
-              Numbers of photons are the original's, and so are the 100 that an estimate finds; ours: the mean cosine of 0.8, the \
+              Numbers of photons are the original's, and so are the 100 that an estimate finds; ours: the mean cosine of 0.6, the \
               samples, and the reach of 30 cm.",
         original: "200,000 photons, of them 65,000 in the volume map, 100 in an estimate: 4 s for the maps and 4 min 3 s \
                    for the picture",
@@ -197,13 +197,13 @@ pub const ALL: &[Picture] = &[
         see: "Waves on the water in the roof's opening gather the sun into shafts, seen from the side by what the silt scatters, \
               and draw a net of light on the bottom. Numbers of photons and samples are ours.",
         original: "from the same lectures, without numbers",
-        photons: [Amount::Stored(30_000), Amount::Stored(60_000), Amount::Stored(1_200_000)],
-        nearest: [60, 20, 16],
+        photons: [Amount::Stored(200_000), Amount::Stored(60_000), Amount::Stored(3_000_000)],
+        nearest: [20, 20, 16],
         samples: 16,
         gather: 0,
         near: 0.0,
         size: 4.0,
-        reach: 0.035,
+        reach: 0.08,
         exposure: 1.3,
         beside: Beside::Maps,
         reference: 10,
@@ -215,11 +215,11 @@ pub const ALL: &[Picture] = &[
     Picture {
         name: "pool",
         title: "A pool",
-        see: "Under an opening in the roof, the net of light on the tiles is drawn by the same waves through which it is \
-              seen. Numbers of photons and samples are ours.",
+        see: "The net of light on the tiles is drawn by the same waves through which it is seen, bent as they bend the dark border; \
+              the ball casts its shadow through them. Numbers of photons and samples are ours.",
         original: "the closing picture of the lectures, without numbers",
-        photons: [Amount::Stored(60_000), Amount::Stored(400_000), NONE],
-        nearest: [100, 16, 60],
+        photons: [Amount::Stored(200_000), Amount::Stored(400_000), NONE],
+        nearest: [80, 16, 60],
         samples: 16,
         gather: 2,
         near: 0.0,
@@ -227,7 +227,7 @@ pub const ALL: &[Picture] = &[
         reach: 0.4,
         exposure: 0.95,
         beside: Beside::Maps,
-        reference: 10,
+        reference: 20,
         by_light: ByLight::NOTHING,
     },
 ];

@@ -58,7 +58,11 @@ fn unguarded() -> ExitCode {
 fn run(settings: &Settings) -> anyhow::Result<()> {
     if settings.assets {
         check_later(&settings.scenes.join("fogbox"))?;
+        check_later(&settings.scenes.join("pool"))?;
         write(&settings.scenes.join("fogbox/het.vol"), &assets::fogbox_het()?)?;
+        for (file, print) in assets::pool() {
+            print.write(&settings.scenes.join(file))?;
+        }
         return Ok(assets::window().write(&settings.scenes.join("window.png"))?);
     }
     let folder = settings.folder();
