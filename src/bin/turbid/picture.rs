@@ -288,9 +288,9 @@ pub struct Readout {
     #[arg(long, value_enum, default_value = "integrated")]
     step_rule: RuleName,
     /// Relative change of direct light from one end of a step to the other above which it is halved, to a quarter at
-    /// most, as in 1998; 0 for equal steps.
-    #[arg(long, default_value_t = 0.0)]
-    adapt: f64,
+    /// most, as in 1998; 0 for equal steps [default: 0.5; 0 with several passes].
+    #[arg(long)]
+    adapt: Option<f64>,
     /// March on places that are not random: no noise, but bands.
     #[arg(long)]
     no_jitter: bool,
@@ -362,6 +362,9 @@ enum RejectName {
     Visible,
 }
 
+/// Change of direct light above which a step of the march is halved.
+const TOLERANCE: f64 = 0.5;
+
 impl Readout {
     /// Where the global map is read.
     pub fn indirect(&self) -> Indirect {
@@ -373,9 +376,9 @@ impl Readout {
         self.radius.is_some()
     }
 
-    /// Whether steps depend on what is read.
+    /// Whether steps that depend on what is read are asked for.
     pub fn is_adaptive(&self) -> bool {
-        self.adapt > 0.0
+        self.adapt.is_some_and(|tolerance| tolerance > 0.0)
     }
 
     /// Photons of an estimate from the global, the caustic and the volume map, if asked for.
@@ -398,8 +401,8 @@ impl Readout {
         Ok(settings)
     }
 
-    /// Settings of the mapper for a scene whose maps are not known.
-    pub fn settings(&self, scene: &Scene) -> anyhow::Result<Settings> {
+    /// Settings of the mapper for a scene whose maps are not known, read in so many passes: steps are to be the same in all.
+    pub fn settings(&self, scene: &Scene, passes: u64) -> anyhow::Result<Settings> {
         let size = scene_size(scene);
         let gather = |k: Option<usize>| match self.radius {
             Some(radius) => Gather::radius(radius).context("--radius"),
@@ -413,8 +416,9 @@ impl Readout {
         if !(self.near >= 0.0 && self.near.is_finite()) {
             return Err(anyhow!("--near is {}; allowed: finite and at least 0", self.near));
         }
-        if !(self.adapt >= 0.0 && self.adapt.is_finite()) {
-            return Err(anyhow!("--adapt is {}; allowed: finite and at least 0", self.adapt));
+        let tolerance = self.adapt.unwrap_or(if passes == 1 { TOLERANCE } else { 0.0 });
+        if !(tolerance >= 0.0 && tolerance.is_finite()) {
+            return Err(anyhow!("--adapt is {tolerance}; allowed: finite and at least 0"));
         }
         let mut settings = Settings::for_scene(scene, LEAST_K)?;
         settings.global = (self.kernel, surface);
@@ -447,7 +451,7 @@ impl Readout {
         };
         settings.march.is_jittered = !self.no_jitter;
         let shortest = Positive::new("the shortest step", 0.25 * settings.march.step.get())?;
-        settings.march.adaptive = (self.adapt > 0.0).then_some(Adaptive { tolerance: self.adapt, shortest });
+        settings.march.adaptive = (tolerance > 0.0).then_some(Adaptive { tolerance, shortest });
         Ok(settings)
     }
 }

@@ -64,8 +64,8 @@ pub struct Render {
     /// Independent repetitions, with maps of their own if it is by photons; the picture is their mean.
     #[arg(long, value_parser = parse_count, default_value = "1")]
     maps: u64,
-    /// Parts of each map's photons, one in memory at a time, where the radius is fixed: the same picture in less memory, as
-    /// many times the work of rays. Its variance is that between maps, of which there must be several.
+    /// Parts of each map's photons, one in memory at a time, where the radius is fixed: the picture with --adapt 0 in less memory,
+    /// as many times the work of rays. Its variance is that between maps, of which there must be several.
     #[arg(long, value_parser = parse_count, default_value = "1")]
     passes: u64,
     #[command(flatten)]
@@ -179,7 +179,7 @@ impl Render {
         if is_same_file(&self.output, &png)? {
             bail!("--output {} and {} lead to one file", self.output.display(), png.display());
         }
-        let usual = self.readout.settings(&scene)?;
+        let usual = self.readout.settings(&scene, self.passes)?;
         if self.with == With::Light {
             note(&format!("the picture holds {}", self.with.holds()))?;
         }
