@@ -1,10 +1,12 @@
-//! The commands on the gallery's page make the pictures beside them.
+//! The commands on the gallery's page make the pictures beside them, and the kept page is of the kept numbers.
 #![allow(clippy::unwrap_used, reason = "tests")]
 
 mod program;
 
+use assert_cmd::Command;
 use exr::prelude::{FlatSamples, read_first_flat_layer_from_file};
 use program::{root, turbid};
+use std::collections::BTreeSet;
 use std::path::Path;
 use turbid::Spectrum;
 use turbid::photons::maps::Amount;
@@ -69,4 +71,28 @@ fn the_commands_are_for_a_shell() {
         let said = String::from_utf8(run.get_output().stderr.clone()).unwrap();
         assert!(said.contains("ends in .exr"), "{}: {said}", picture.name);
     }
+}
+
+/// The kept page is what the program writes from the kept numbers, and every file that it shows is there.
+#[test]
+fn the_kept_page_shows_the_kept_numbers() {
+    let kept = root().join("results/gallery");
+    let folder = tempfile::tempdir().unwrap();
+    for picture in ALL {
+        let file = format!("{}.json", picture.name);
+        std::fs::copy(kept.join(&file), folder.path().join(&file)).unwrap();
+    }
+    let mut gallery = Command::new(env!("CARGO_BIN_EXE_gallery"));
+    gallery.args(["--page", "--out"]).arg(folder.path()).assert().success();
+    let page = std::fs::read_to_string(folder.path().join("index.html")).unwrap();
+    assert!(
+        page == std::fs::read_to_string(kept.join("index.html")).unwrap(),
+        "gallery --page writes another"
+    );
+    let shown: BTreeSet<&str> =
+        page.split("src=\"").skip(1).map(|rest| rest.split('"').next().unwrap()).collect();
+    let files =
+        std::fs::read_dir(&kept).unwrap().map(|file| file.unwrap().file_name().into_string().unwrap());
+    let files: BTreeSet<String> = files.filter(|file| file.ends_with(".png")).collect();
+    assert_eq!(shown, files.iter().map(String::as_str).collect());
 }

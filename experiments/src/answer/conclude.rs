@@ -64,23 +64,25 @@ fn summary(answers: &[&Answer]) -> Vec<String> {
             in_percent(most)
         ));
     }
-    let scenes = |index: usize, test: fn(&Option<Reached>) -> bool| {
-        let found: Vec<&str> =
-            answers.iter().filter(|a| test(&a.reached[index])).map(|a| a.scene.as_str()).collect();
+    let is_slower = |r: &Reached| r.time.value() < 1.0;
+    let scenes = |index: usize, what: &str, test: &dyn Fn(Option<&Reached>) -> bool| {
+        let chosen = answers.iter().filter(|a| test(a.reached[index].as_ref()));
+        let found: Vec<&str> = chosen.map(|a| a.scene.as_str()).collect();
         match found.len() {
-            0 => "in none".to_string(),
-            n if n > 3 => format!("in {n}"),
-            n => format!("in {n} ({})", found.join("; ")),
+            0 => None,
+            n if n > 3 => Some(format!("{what} in {n}")),
+            n => Some(format!("{what} in {n} ({})", found.join("; "))),
         }
     };
-    let is_slower = |r: &Option<Reached>| r.as_ref().is_some_and(|r| r.work.value() < 1.0);
     let lost = |index: usize| {
-        format!(
-            "at {} % paths take less work {}, and no map tried gets there {}",
-            per_cent(index),
-            scenes(index, is_slower),
-            scenes(index, Option::is_none)
-        )
+        let faster = scenes(index, "paths are faster", &|r| r.is_some_and(is_slower));
+        let less_work = scenes(index, "paths take fewer operations, though more time,", &|r| {
+            r.is_some_and(|r| r.work.value() < 1.0 && !is_slower(r))
+        });
+        let never = scenes(index, "no map tried gets there", &|r| r.is_none());
+        let all: Vec<String> = faster.into_iter().chain(less_work).chain(never).collect();
+        let all = if all.is_empty() { "nowhere".to_string() } else { all.join(", and ") };
+        format!("at {} % {all}", per_cent(index))
     };
     summary.push(format!("Where maps lose, of {} scenes: {}; {}.", answers.len(), lost(MIDDLE), lost(LAST)));
     summary
@@ -121,7 +123,7 @@ fn table(answers: &[&Answer]) -> Table {
     let cell = |reached: &Option<Reached>| match reached {
         None => "none".to_string(),
         Some(r) => format!(
-            "{} ×\nwork {} ×\nbias {}; {}",
+            "{} ×\nwork {} ×\nbias {}\n{}",
             times(&r.time),
             times(&r.work),
             in_percent(&r.bias),
