@@ -43,8 +43,8 @@ pub struct Picture {
     pub exposure: f64,
     /// What stands beside it.
     pub beside: Beside,
-    /// The most samples per pixel of one of the 64 passes of the reference: a pilot says how many are needed, and together they must
-    /// be more than any picture beside the reference has.
+    /// The most samples per pixel of one of the 64 passes of the reference: a pilot says how many are needed. More are taken only
+    /// where a picture beside the reference has more than all passes together.
     pub reference: u64,
     /// What of the reference is found by light tracing.
     pub by_light: ByLight,
