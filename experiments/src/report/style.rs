@@ -24,7 +24,7 @@ a { color: #1a4f8b; text-decoration: none; } a:hover { text-decoration: underlin
 .scroll { overflow-x: auto; margin: 18px 0 28px; background: linear-gradient(90deg, #fff 40%, #fff0) 0 0 / 48px 100% local, linear-gradient(270deg, #fff 40%, #fff0) 100% 0 / 48px 100% local, linear-gradient(90deg, #0003, #0000) 0 0 / 16px 100% scroll, linear-gradient(270deg, #0003, #0000) 100% 0 / 16px 100% scroll; background-repeat: no-repeat; }
 table { border-collapse: collapse; width: 100%; font-size: 14px; line-height: 1.4; font-variant-numeric: tabular-nums; }
 caption, figcaption { text-align: left; font-size: 14px; line-height: 1.45; color: var(--ink); padding-bottom: 8px; caption-side: top; }
-.scroll caption { position: sticky; left: 0; max-width: 1024px; }
+.scroll caption { position: sticky; left: 0; max-width: min(1024px, 100vw - 28px); }
 caption b, figcaption b { margin-right: 4px; }
 th { text-align: left; font-weight: 600; border-bottom: 1.5px solid var(--ink); border-top: 1.5px solid var(--ink); padding: 6px 14px 6px 0; vertical-align: bottom; }
 td { border-bottom: 1px solid var(--line); padding: 5px 12px 5px 0; vertical-align: top; }
@@ -63,7 +63,7 @@ details.rest > summary { margin-bottom: 12px; }
   figure, tr, .note, section > p { break-inside: avoid; } h3, caption { break-after: avoid; } thead { display: table-header-group; }
   .fold:not(:has(details[open])) tr.more:not(:has(td:target)) { display: table-row; }
   details:not([open]), .fold details, .find, h2 .up, nav.contents, .behind, section > .question { display: none; }
-  .scroll { overflow: visible; background: none; margin: 3mm 0; } table { font-size: 7pt; line-height: 1.25; } figcaption, caption { font-size: 8pt; line-height: 1.35; }
+  .scroll { overflow: visible; background: none; margin: 3mm 0; } .scroll caption { max-width: none; } table { font-size: 7pt; line-height: 1.25; } figcaption, caption { font-size: 8pt; line-height: 1.35; }
   th, td { padding: 2px 6px 2px 0; overflow-wrap: break-word; } th.n, td.n { white-space: normal; } td.claim { min-width: 0; width: 44%; } #answer td:first-child { min-width: 22mm; } .advice, .badge { font-size: 7pt; } .badge { padding: 0 4px; } figure.narrow svg { max-height: 48mm; } #answer figure svg { max-height: 82mm; }
   .badge, .rejected { print-color-adjust: exact; -webkit-print-color-adjust: exact; }
   a { color: inherit; }
