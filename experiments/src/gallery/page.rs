@@ -255,7 +255,8 @@ fn estimates(ours: &RenderRecord) -> String {
             "{name} map: {asked} asked for, {found:.1} found on average, {underfull} of the estimates under-full"
         )
     };
-    let read = ["global", "caustic", "volume"].into_iter().zip(maps).filter(|(_, map)| map.count > 0);
+    let all = ["global", "caustic", "volume"].into_iter().zip(maps).zip(ours.stored);
+    let read = all.filter(|((_, map), stored)| map.count > 0 && *stored > 1).map(|(map, _)| map);
     read.map(one).collect::<Vec<_>>().join("; ")
 }
 

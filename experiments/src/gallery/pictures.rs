@@ -90,7 +90,7 @@ pub const ALL: &[Picture] = &[
         exposure: 0.85,
         beside: Beside::Maps,
         reference: 10,
-        by_light: ByLight { layers: &[Layer::Caustic, Layer::Indirect], permille: 1000 },
+        by_light: ByLight::CAUSTICS,
     },
     Picture {
         name: "cloud",
