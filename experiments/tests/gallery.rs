@@ -96,3 +96,15 @@ fn the_kept_page_shows_the_kept_numbers() {
     let files: BTreeSet<String> = files.filter(|file| file.ends_with(".png")).collect();
     assert_eq!(shown, files.iter().map(String::as_str).collect());
 }
+
+/// Pictures for print show what the page has compared; without a page there is nothing to show.
+#[test]
+fn prints_need_the_page() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut gallery = Command::new(env!("CARGO_BIN_EXE_gallery"));
+    gallery.current_dir(folder.path()).args(["--print", "--only", "pool", "--scenes"]);
+    let run = gallery.arg(root().join("experiments/scenes")).assert().code(2);
+    let said = String::from_utf8(run.get_output().stderr.clone()).unwrap();
+    assert!(said.contains("pool is not in results/gallery"), "{said}");
+    assert!(!folder.path().join("results/print/pool.json").exists());
+}

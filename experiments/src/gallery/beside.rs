@@ -32,7 +32,7 @@ const COMPARED: u64 = FEWEST as u64;
 /// Passes of a sample a pixel by which the reference's samples are chosen.
 const PILOT: u64 = 8;
 /// Numbers of the first repetition of the reference's passes, and of the pilot's: no random numbers are used twice.
-const FIRST: (u64, u64) = (1000, 2000);
+pub(super) const FIRST: (u64, u64) = (1000, 2000);
 
 /// What stands beside the photon mapper's picture.
 pub struct RivalPictures {
@@ -103,7 +103,7 @@ pub fn beside(large: &Cache, small: &Cache, ours: &CachedRender) -> anyhow::Resu
 
 /// The methods without photon maps that race against a picture by photons: paths, what the reference is made with, light
 /// tracing of caustics where there may be some, and of all that scatters where the scene permits it.
-fn rivals(studio: &Studio) -> Vec<ByLight> {
+pub(super) fn rivals(studio: &Studio) -> Vec<ByLight> {
     let mut methods: Vec<ByLight> = Vec::new();
     let has_caustics = Emitter::towards_specular(&studio.scene).is_some();
     let caustics = if has_caustics { ByLight::CAUSTICS } else { ByLight::NOTHING };

@@ -17,6 +17,7 @@ mod page;
 pub mod pictures;
 mod plates;
 pub mod predict;
+mod print;
 pub mod recipe;
 mod run;
 mod settings;

@@ -4,8 +4,9 @@ use super::beside::beside;
 use super::cache::Cache;
 use super::pictures::{ALL, Picture};
 use super::plates::plates;
+use super::print::print;
 use super::recipe::command;
-use super::settings::Settings;
+use super::settings::{PAGE, Settings};
 use super::shown::PageEntry;
 use super::studio::Studio;
 use super::{assets, page};
@@ -70,7 +71,10 @@ fn run(settings: &Settings) -> anyhow::Result<()> {
         return write_page(&folder, settings);
     }
     let program = program_digest()?.to_string();
-    let chosen = |p: &&Picture| settings.only.is_empty() || settings.only.iter().any(|n| n == p.name);
+    let chosen = |p: &&Picture| settings.has(p);
+    if settings.print {
+        return print_all(&folder, settings, &program);
+    }
     check_folder(&folder, &["index.html"])?;
     for picture in ALL.iter().filter(chosen) {
         check_folder(&folder, &[&format!("{}.json", picture.name)])?;
@@ -88,6 +92,24 @@ fn run(settings: &Settings) -> anyhow::Result<()> {
         write_page(&folder, settings)?;
     }
     say(&format!("the page is {}", folder.join("index.html").display()));
+    Ok(())
+}
+
+/// The pictures at the size of print, of those that the kept page has compared.
+fn print_all(folder: &Path, settings: &Settings, program: &str) -> anyhow::Result<()> {
+    let shown = all_shown(Path::new(PAGE))?;
+    let chosen: Vec<&Picture> = ALL.iter().filter(|p| settings.has(p)).collect();
+    for picture in &chosen {
+        check_folder(folder, &[&format!("{}.json", picture.name)])?;
+        check_folder(&settings.cache().join(picture.name), &["photons.picture"])?;
+    }
+    for picture in chosen {
+        let page = shown.iter().find(|shown| shown.name == picture.name);
+        let page = page.with_context(|| format!("{} is not in {PAGE}: make its page first", picture.name))?;
+        let printed = print(picture, page, settings, folder, program).context(picture.name)?;
+        write(&folder.join(format!("{}.json", picture.name)), &serde_json::to_vec_pretty(&printed)?)?;
+    }
+    say(&format!("the pictures are in {}", folder.display()));
     Ok(())
 }
 

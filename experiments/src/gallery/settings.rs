@@ -1,10 +1,10 @@
 //! What the user chooses.
 
-use super::pictures;
+use super::pictures::{self, Picture};
 use clap::Parser;
 use std::path::PathBuf;
 
-/// Renders the gallery: each picture by photons, by paths in the same time, and beside a converged reference.
+/// Renders the gallery: each picture by photons, by its best rival in the same time, and beside a converged reference.
 #[derive(Debug, Clone, Parser)]
 #[command(name = "gallery", version)]
 pub struct Settings {
@@ -20,7 +20,8 @@ pub struct Settings {
     /// Seed of all random numbers
     #[arg(long, default_value_t = 1)]
     pub seed: u64,
-    /// Folder of the page [default: results/gallery, with --quick or --draft results/local/gallery]
+    /// Folder of the page [default: results/gallery, with --quick or --draft results/local/gallery]; with --print of its pictures
+    /// [default: results/print]
     #[arg(long)]
     pub out: Option<PathBuf>,
     /// Folder of the scenes
@@ -35,6 +36,9 @@ pub struct Settings {
     /// Take what another build of the program made
     #[arg(long, conflicts_with = "fresh")]
     pub reuse: bool,
+    /// 960 pixels wide, of what the page has compared: photon map, its rival and the reference alone
+    #[arg(long, conflicts_with_all = ["quick", "draft", "page"])]
+    pub print: bool,
     /// Only write the page anew, from the numbers and pictures that are in its folder
     #[arg(long)]
     pub page: bool,
@@ -51,10 +55,17 @@ fn name(text: &str) -> Result<String, String> {
     Err(format!("allowed: {}", names.join(", ")))
 }
 
+/// Folder of the kept page.
+pub const PAGE: &str = "results/gallery";
+
 impl Settings {
     /// Folder of the page.
     pub fn folder(&self) -> PathBuf {
-        let default = if self.quick || self.draft { "results/local/gallery" } else { "results/gallery" };
+        let default = match (self.quick || self.draft, self.print) {
+            (true, _) => "results/local/gallery",
+            (_, true) => "results/print",
+            _ => PAGE,
+        };
         self.out.clone().unwrap_or_else(|| PathBuf::from(default))
     }
 
@@ -63,8 +74,14 @@ impl Settings {
         match &self.out {
             Some(out) => out.join("cache"),
             None if self.quick || self.draft => self.folder().join("cache"),
+            None if self.print => PathBuf::from("results/local/print/cache"),
             None => PathBuf::from("results/local/gallery-full/cache"),
         }
+    }
+
+    /// Whether a picture is wanted.
+    pub fn has(&self, picture: &Picture) -> bool {
+        self.only.is_empty() || self.only.iter().any(|name| name == picture.name)
     }
 
     /// Size of the pictures over that of the scenes' own cameras.
@@ -98,8 +115,11 @@ mod tests {
         let quick = parse(&["--quick", "--seed", "3"]).unwrap();
         assert_eq!(quick.command(), "cargo run --release --bin gallery -- --quick --seed 3");
         assert_eq!(quick.folder(), PathBuf::from("results/local/gallery"));
+        assert_eq!(parse(&["--print"]).unwrap().folder(), PathBuf::from("results/print"));
         assert_eq!(parse(&[]).unwrap().command(), "cargo run --release --bin gallery");
-        for bad in [&["--only", "ponds"][..], &["--fresh", "--reuse"], &["--threads", "0"]] {
+        for bad in
+            [&["--only", "ponds"][..], &["--print", "--quick"], &["--fresh", "--reuse"], &["--threads", "0"]]
+        {
             assert!(parse(bad).is_err(), "{bad:?}");
         }
     }
