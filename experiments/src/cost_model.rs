@@ -4,6 +4,12 @@
 //! samples falls, the map's own error stays. It costs `fill + pixels x n x sample`. Paths have no floor and nothing to
 //! fill. At each error the cheapest size of map counts.
 
+/// A photon put into a tree takes the time of so many rays, and one looked at in an estimate: round numbers near what the
+/// first runs took. Work that is the same on every machine is counted in them.
+pub const STORED: f64 = 0.5;
+/// See [`STORED`].
+pub const LOOKED_AT: f64 = 0.1;
+
 /// A size of map and how its picture is taken.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Maps {

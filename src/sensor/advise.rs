@@ -61,8 +61,8 @@ pub struct Pilot {
     probes: Vec<Probe>,
     /// Seconds a photon takes to be shot and built into a map.
     pub preparation_seconds: f64,
-    /// Seconds an estimate takes, mean over the balls.
-    pub query_seconds: f64,
+    /// Seconds that estimates took, and photons that they found, by ball, means over probes and maps.
+    queries: [(f64, f64); BALLS],
     /// Probes that no ball can be put about: on the boundary of their medium or on the edge of a beam.
     pub on_boundary: Vec<String>,
 }
@@ -160,7 +160,7 @@ impl Pilot {
             photons,
             probes: Vec::new(),
             preparation_seconds: 0.0,
-            query_seconds: 0.0,
+            queries: [(0.0, 0.0); BALLS],
             on_boundary: Vec::new(),
         };
         let mut chosen: Vec<Sensor> = Vec::new();
@@ -209,7 +209,7 @@ impl Pilot {
         let start = Instant::now();
         let (_, maps) = maps(scene, chosen, histories, Part::WHOLE, margin, progress)?;
         self.preparation_seconds += start.elapsed().as_secs_f64() / (settings.photons * settings.maps) as f64;
-        let start = Instant::now();
+        let queries = chosen.len() as f64 * settings.maps as f64;
         for (sensor, probe) in chosen.iter().zip(&mut self.probes) {
             let Some((_, map)) = maps.iter().find(|(range, _)| map_orders(sensor) == Some(*range)) else {
                 continue;
@@ -220,7 +220,11 @@ impl Pilot {
             for (ball, value) in values.iter_mut().enumerate() {
                 let gather = Gather::radius(radius(probe.reach, ball))?;
                 let uniform = Estimator::new(Kernel::Uniform, gather);
+                let start = Instant::now();
                 let estimate = uniform.fluence(map, p, sigma_t, &Boundary::UNKNOWN);
+                let (seconds, found) = &mut self.queries[ball];
+                *seconds += start.elapsed().as_secs_f64() / queries;
+                *found += estimate.found as f64 / queries;
                 *value = estimate.value.mean();
                 if ball == 0 {
                     probe.found += estimate.found as f64 / settings.maps as f64;
@@ -230,9 +234,15 @@ impl Pilot {
             probe.bends.push(values.iter().zip(weights).map(|(x, w)| w * x).sum());
             probe.values.push(values);
         }
-        let queries = (chosen.len() * BALLS) as f64 * settings.maps as f64;
-        self.query_seconds += start.elapsed().as_secs_f64() / queries;
         Ok(())
+    }
+
+    /// Seconds that an estimate from so many photons takes: those of the smallest ball, and those that the largest takes more for
+    /// each photon more. In maps much larger than the pilot's, which do not fit the caches, it takes longer.
+    pub fn estimate_seconds(&self, photons: f64) -> f64 {
+        let ((most, many), (least, few)) = (self.queries[0], self.queries[BALLS - 1]);
+        let each = if many > few { ((most - least) / (many - few)).max(0.0) } else { 0.0 };
+        least + each * (photons - few).max(0.0)
     }
 
     /// The radius and the number of photons that bring the root mean square relative error over the probes to `target`.

@@ -13,28 +13,31 @@ pub const TARGETS: [f64; 4] = [0.2, 0.1, 0.05, 0.03];
 pub struct Answer {
     /// The scene, for readers.
     pub scene: String,
-    /// For each of [`TARGETS`] the cheapest map that reaches it, if one of those tried does.
+    /// For each of [`TARGETS`] what the cheapest map that reaches it saves, if one of those tried does.
     pub reached: [Option<Reached>; 4],
-    /// The best of all maps tried with the estimate of 1998, which leaves faces untreated, if that is told apart.
+    /// The best of all maps tried with the faces of the medium untreated, if that is told apart.
     pub untreated: Option<Untreated>,
     /// Error and CPU time of photon maps and paths.
     pub curves: Option<Curves>,
 }
 
-/// The cheapest map that reaches an error.
+/// The maps that reach an error at the least cost.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Reached {
-    /// Work of a path tracer of the same error over that of the map, by counts that are the same on every machine.
-    pub work: Estimate,
-    /// The same in CPU time of this machine.
+    /// CPU time that the path tracer takes to the error, over that of the fastest map, on this machine.
     pub time: Estimate,
-    /// Root mean square of the map's systematic error.
+    /// Queries of one map from which that map is the faster, where queries are asked one by one, and paths are clearly slower.
+    pub pays_from: Option<Estimate>,
+    /// Work of the path tracer over that of the map of the least work, counted in rays as in
+    /// [`cost_model`](crate::cost_model): the same on every machine.
+    pub work: Estimate,
+    /// Root mean square of the fastest map's systematic error.
     pub bias: Estimate,
     /// The largest part of its error.
     pub limit: &'static str,
 }
 
-/// The smallest error of the estimate of 1998.
+/// The smallest error with faces untreated.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Untreated {
     /// Root mean square error.
@@ -59,7 +62,7 @@ pub struct Point {
 pub struct Curves {
     /// Maps with faces treated that no other map beats in both, the cheapest first.
     pub maps: Vec<Point>,
-    /// The same of the estimate of 1998; empty where it is not told apart.
+    /// The same with faces untreated; empty where that is not told apart.
     pub untreated: Vec<Point>,
     /// The path tracer: CPU time \[s\] and error, from one sample on.
     pub paths: Vec<(f64, f64)>,

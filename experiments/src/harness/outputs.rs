@@ -39,10 +39,12 @@ impl<'a> Seconds<'a> {
 pub(super) struct AnswerRecord<'a> {
     scene: &'a str,
     target_error: f64,
-    speed_in_operations: Option<f64>,
-    error_in_operations: Option<f64>,
     speed_in_time: Option<f64>,
     error_in_time: Option<f64>,
+    speed_in_work: Option<f64>,
+    error_in_work: Option<f64>,
+    pays_from_queries: Option<f64>,
+    error_of_queries: Option<f64>,
     bias: Option<f64>,
     error_of_bias: Option<f64>,
     limit: &'a str,
@@ -55,13 +57,16 @@ impl<'a> AnswerRecord<'a> {
             let reached = reached.as_ref();
             let value = |of: fn(&Reached) -> &Estimate| reached.map(|r| of(r).value());
             let error = |of: fn(&Reached) -> &Estimate| reached.map(|r| of(r).std_error());
+            let queries = reached.and_then(|r| r.pays_from.as_ref());
             AnswerRecord {
                 scene: &answer.scene,
                 target_error: target,
-                speed_in_operations: value(|r| &r.work),
-                error_in_operations: error(|r| &r.work),
                 speed_in_time: value(|r| &r.time),
                 error_in_time: error(|r| &r.time),
+                speed_in_work: value(|r| &r.work),
+                error_in_work: error(|r| &r.work),
+                pays_from_queries: queries.map(Estimate::value),
+                error_of_queries: queries.map(Estimate::std_error),
                 bias: value(|r| &r.bias),
                 error_of_bias: error(|r| &r.bias),
                 limit: reached.map_or("", |r| r.limit),

@@ -20,9 +20,13 @@ fn choice(case: &Measured) -> Choice<'_> {
 }
 
 /// The cheapest case that reaches a root mean square error, judged by the choosing half.
-pub fn cheapest<'a>(cases: &[&'a Measured], target: f64, queries: f64) -> Option<Choice<'a>> {
+pub fn cheapest<'a>(
+    cases: &[&'a Measured],
+    target: f64,
+    cost: impl Fn(&Measured) -> f64,
+) -> Option<Choice<'a>> {
     let reaches = |m: &&&Measured| Split::of(&halves(&m.maps).0).total <= target * target;
-    let found = cases.iter().filter(reaches).min_by(|a, b| a.cost(queries).total_cmp(&b.cost(queries)));
+    let found = cases.iter().filter(reaches).min_by(|a, b| cost(a).total_cmp(&cost(b)));
     found.map(|case| choice(case))
 }
 

@@ -5,6 +5,7 @@ use super::measure::layer_quantity;
 use super::predict::layers;
 use super::split::MapError;
 use super::theory::{Expected, Rms};
+use crate::cost_model::{LOOKED_AT, STORED};
 use crate::harness::{Cells, Settings};
 use crate::prediction::Predictions;
 
@@ -82,6 +83,21 @@ impl Paths {
     /// Operations a query to reach a root mean square error: as many samples as its variance asks for, at least one.
     pub fn cost(&self, rms: f64) -> f64 {
         mean(&self.rays) * (mean(&self.variance) / (rms * rms)).max(1.0)
+    }
+}
+
+/// What each map takes, counted in rays: as many on every machine.
+pub struct Work {
+    /// Before its first query.
+    pub prepare: Vec<f64>,
+    /// A query.
+    pub query: Vec<f64>,
+}
+
+impl Work {
+    /// Of so many queries, by the mean over maps.
+    pub fn of(&self, queries: f64) -> f64 {
+        mean(&self.prepare) + queries * mean(&self.query)
     }
 }
 
@@ -179,6 +195,18 @@ impl Data {
     /// The path tracer in one field.
     pub fn paths(&self, field: &Field) -> Option<&Paths> {
         self.paths.iter().find(|p| p.field == field)
+    }
+
+    /// What a case takes, map by map, counted in rays.
+    pub fn work(&self, case: &Measured) -> Work {
+        let is_of = |s: &&MapSize| (s.field, s.photons) == (case.setting.field, case.setting.photons);
+        let size = self.sizes.iter().find(is_of);
+        let prepare =
+            |s: &MapSize| s.rays.iter().zip(&s.stored).map(|(rays, stored)| rays + STORED * stored).collect();
+        Work {
+            prepare: size.map(prepare).unwrap_or_default(),
+            query: case.found.iter().map(|found| LOOKED_AT * found).collect(),
+        }
     }
 
     /// The largest maps of a field.

@@ -48,7 +48,7 @@ fn prices(data: &Data, known: &Predictions) -> anyhow::Result<Table> {
             let cases = data.of(field, treatment, None);
             for target in TARGETS {
                 let theory = known_optimum(known, field, treatment, target)?;
-                let found = cheapest(&cases, target, 4096.0);
+                let found = cheapest(&cases, target, |m| m.cost(4096.0));
                 let (setting, error, cost) = match &found {
                     Some(c) => (short(&c.case.setting), c.rms.in_percent(), rough(c.case.cost(4096.0))),
                     None => {
@@ -115,7 +115,8 @@ fn queries(data: &Data) -> Table {
                 queries.map_or("never".to_string(), |q| with_error(q.value(), q.std_error()))
             };
             let tenth = |currency| {
-                cheapest(&cases, TARGETS[0], 4096.0).map_or("none".to_string(), |c| even(c.case, currency))
+                cheapest(&cases, TARGETS[0], |m| m.cost(4096.0))
+                    .map_or("none".to_string(), |c| even(c.case, currency))
             };
             let mut row = vec![
                 field.title.to_string(),

@@ -58,7 +58,9 @@ pub fn summary(data: &Data) -> Vec<String> {
         })
         .collect();
     let reaches = |field: &Field, target: f64| {
-        Treatment::ALL.iter().any(|&t| cheapest(&data.of(field, t, None), target, 4096.0).is_some())
+        Treatment::ALL
+            .iter()
+            .any(|&t| cheapest(&data.of(field, t, None), target, |m| m.cost(4096.0)).is_some())
     };
     let reached = |target| FIELDS.into_iter().filter(|field| reaches(field, target)).count();
     paragraphs.push(format!(

@@ -149,7 +149,7 @@ fn photon_rows(pilot: &Pilot, advice: &Advice) -> Vec<AdviceRow> {
             "s",
             pilot.preparation_seconds * advice.photons as f64,
         ),
-        plain("photon map: an estimate, at the pilot's rate", "us", 1e6 * pilot.query_seconds),
+        plain("photon map: an estimate, at the pilot's rate", "us", 1e6 * pilot.estimate_seconds(median)),
     ]
 }
 

@@ -1,10 +1,10 @@
 //! What all maps say of "photon maps are faster than Monte Carlo".
 
-use super::data::{Cell, Currency, Fit, LOOKED_AT, STORED};
+use super::data::{Cell, Currency, Fit};
 use super::results::{Crossing, PIXELS, PREVIEW_ERROR, Pictures, SIDES, gain};
 use super::{SIDE, figure};
 use crate::claims_1998::part::Part;
-use crate::cost_model::cheapest;
+use crate::cost_model::{LOOKED_AT, STORED, cheapest};
 use crate::harness::{
     Answer, Cells, Claim, Estimate, Headline, Reached, Row, Section, Settings, TARGETS, Table, Unit, percent,
 };
@@ -89,8 +89,9 @@ fn answer(pictures: &Pictures) -> Answer {
         ];
         let largest = parts.into_iter().max_by(|a, b| a.1.total_cmp(&b.1));
         Some(Reached {
-            work: speed(pictures, Currency::Rays, target),
-            time: speed(pictures, Currency::Seconds, target),
+            time: pictures.gained(Currency::Seconds, target)?,
+            pays_from: None,
+            work: pictures.gained(Currency::Rays, target)?,
             bias: Estimate::jackknife(&jackknife(&cells, |chosen: &[&Cell]| {
                 let fit = Fit::of(chosen, Currency::Seconds);
                 fit.squared_biases[size] / (fit.mean * fit.mean)

@@ -1,7 +1,7 @@
 //! What the cells measured, and errors and costs of any choice of them.
 
 use super::{GROUP, PATHS, PIXELS, Size, path_pixel, sizes};
-use crate::cost_model::{Maps, Paths};
+use crate::cost_model::{LOOKED_AT, Maps, Paths, STORED};
 use crate::harness::{Cells, Settings};
 
 /// What work costs.
@@ -12,12 +12,6 @@ pub enum Currency {
     /// CPU seconds of this machine.
     Seconds,
 }
-
-/// A photon put into a tree takes the time of so many rays, and one looked at in an estimate: round numbers near what the
-/// first runs took.
-pub const STORED: f64 = 0.5;
-/// See [`STORED`].
-pub const LOOKED_AT: f64 = 0.1;
 
 /// A picture by maps of one size or by paths, in one cell.
 #[derive(Debug, Clone)]
