@@ -136,7 +136,7 @@ fn wrong_sets() {
 
 #[test]
 fn wrong_options() {
-    let cases: [(&[&str], &[&str]); 25] = [
+    let cases: [(&[&str], &[&str]); 26] = [
         (&["--k", "1"], &["--k", "k is 1; allowed: at least 2"]),
         (&["--k", "0"], &["--k", "allowed: at least 2"]),
         (&["--k", "many"], &["--k", "many"]),
@@ -157,7 +157,8 @@ fn wrong_options() {
         (&["--kernel", "box"], &["--kernel", "allowed: uniform"]),
         (&["--orders", "3..1"], &["--orders", "allowed: an order such as 1"]),
         (&["--orders", "-1"], &["--orders", "allowed: an order such as 1"]),
-        (&["--threads", "0"], &["--threads", "0 is not in 1..=1024"]),
+        (&["--threads", "0"], &["--threads", "allowed: whole numbers from 1 to 1024"]),
+        (&["--photons", "3"], &["--photons is 3; allowed: at least one for each of the 16 maps"]),
         (&["--seed", "-1"], &["--seed"]),
         (&["--radios", "1"], &["--radios", "--radius"]),
         (&["extra"], &["extra"]),

@@ -366,7 +366,7 @@ fn wrong_options_of_pictures() {
     refuse(&["--radius", "0"], &["--radius", "0; allowed"]);
     refuse(&["--step", "-1"], &["--step"]);
     refuse(&["--adapt", "nan"], &["--adapt is NaN"]);
-    refuse(&["--width", "0"], &["--width", "0; allowed: 1 to 16384"]);
+    refuse(&["--width", "0"], &["--width", "allowed: whole numbers from 1 to 16384"]);
     refuse(&["--seconds", "0"], &["--seconds is 0; allowed"]);
     refuse(&["--seconds", "1", "--samples", "2"], &["--samples", "--seconds"]);
     refuse(&["--exposure", "nan"], &["--exposure is NaN"]);

@@ -3,7 +3,7 @@
 use super::load::Source;
 use super::memory::{Memory, rounded_down};
 use super::progress::Bar;
-use super::shared::{FormatName, note, on_threads, parse_count};
+use super::shared::{FormatName, note, on_threads, parse_count, whole};
 use anyhow::Context;
 use serde::Serialize;
 use std::time::Instant;
@@ -33,10 +33,10 @@ pub struct Advise {
     #[arg(long, value_parser = parse_count, default_value = "20000")]
     samples: u64,
     /// Seed: the same seed gives the same advice, on any number of threads.
-    #[arg(long, default_value_t = 1)]
+    #[arg(long, value_parser = whole::<u64>(0..=u64::MAX), allow_hyphen_values = true, default_value_t = 1)]
     seed: u64,
     /// Threads [default: all cores].
-    #[arg(long, value_parser = clap::value_parser!(u16).range(1..=1024))]
+    #[arg(long, value_parser = whole::<u16>(1..=1024))]
     threads: Option<u16>,
     #[command(flatten)]
     memory: Memory,

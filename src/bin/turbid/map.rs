@@ -5,7 +5,7 @@ use super::made::MapsMade;
 use super::memory::Memory;
 use super::picture::{Frame, Held, Photons, ToneArgs};
 use super::progress::Bar;
-use super::shared::{on_threads, print};
+use super::shared::{on_threads, print, whole};
 use anyhow::{Context, bail};
 use clap::ValueEnum;
 use std::path::PathBuf;
@@ -43,10 +43,10 @@ pub struct Map {
     #[command(flatten)]
     memory: Memory,
     /// Seed: the same seed gives the same photons, on any number of threads.
-    #[arg(long, default_value_t = 1)]
+    #[arg(long, value_parser = whole::<u64>(0..=u64::MAX), allow_hyphen_values = true, default_value_t = 1)]
     seed: u64,
     /// Threads [default: all cores].
-    #[arg(long, value_parser = clap::value_parser!(u16).range(1..=1024))]
+    #[arg(long, value_parser = whole::<u16>(1..=1024))]
     threads: Option<u16>,
 }
 

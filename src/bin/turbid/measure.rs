@@ -4,7 +4,7 @@ use super::load::Source;
 use super::memory::{Memory, passes_that_fit, rounded_down};
 use super::picture::BoundaryName;
 use super::progress::Bar;
-use super::shared::{FormatName, kernels, note, on_threads, parse_count, tell_ahead};
+use super::shared::{FormatName, kernels, note, on_threads, parse_count, tell_ahead, whole};
 use anyhow::{Context, bail};
 use clap::ValueEnum;
 use turbid::estimators::{Estimator, Gather, Kernel};
@@ -62,10 +62,10 @@ pub struct Measure {
     #[arg(long, value_parser = parse_orders, default_value = "0..")]
     orders: Orders,
     /// Seed: the same seed gives the same numbers, on any number of threads.
-    #[arg(long, default_value_t = 1)]
+    #[arg(long, value_parser = whole::<u64>(0..=u64::MAX), allow_hyphen_values = true, default_value_t = 1)]
     seed: u64,
     /// Threads [default: all cores].
-    #[arg(long, value_parser = clap::value_parser!(u16).range(1..=1024))]
+    #[arg(long, value_parser = whole::<u16>(1..=1024))]
     threads: Option<u16>,
     /// Form of the output.
     #[arg(long, value_enum, default_value = "table")]
@@ -132,6 +132,9 @@ impl Measure {
     }
 
     fn measure_by_photons(&self, scene: &Scene) -> anyhow::Result<(Vec<Measurement>, Vec<String>)> {
+        if self.photons < self.maps {
+            bail!("--photons is {}; allowed: at least one for each of the {} maps", self.photons, self.maps);
+        }
         let gather = match self.radius {
             Some(radius) => Gather::radius(radius).context("--radius")?,
             None => {

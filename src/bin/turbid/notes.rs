@@ -95,7 +95,7 @@ pub fn tell_gathers(
             // Curved bodies end sooner.
             let (within, or) = match reach < 0.9 * cap {
                 true => (reach, ""),
-                false => (cap, ", or a larger --max-radius"),
+                false => (cap, ", or, with less noise and more blur, a larger --max-radius"),
             };
             note(&format!(
                 "{part:.0} % of the look-ups in the {name} map found fewer photons than asked for within {within:.2e} L: \

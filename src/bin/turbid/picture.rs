@@ -3,7 +3,7 @@
 use super::made::Filled;
 use super::memory::{Memory, passes_that_fit, rounded_down};
 use super::progress::Bar;
-use super::shared::{kernels, note, parse_count, tell_ahead};
+use super::shared::{kernels, note, parse_count, tell_ahead, whole};
 use anyhow::{Context, anyhow};
 use clap::ValueEnum;
 use turbid::estimators::boundary::{Rejection, Treatment};
@@ -21,10 +21,10 @@ use turbid::transport::BLOCK;
 #[derive(clap::Args)]
 pub struct Frame {
     /// Pixels across, instead of the scene's; the height follows unless it is given.
-    #[arg(long)]
+    #[arg(long, value_parser = whole::<u32>(1..=16_384))]
     width: Option<u32>,
     /// Pixels down, instead of the scene's; the width follows unless it is given.
-    #[arg(long)]
+    #[arg(long, value_parser = whole::<u32>(1..=16_384))]
     height: Option<u32>,
 }
 
@@ -275,7 +275,7 @@ pub struct Readout {
     #[arg(long, value_parser = kernels(), default_value = "cone")]
     caustic_kernel: Kernel,
     /// Rays of a final gathering at each surface that is seen; 0 reads the global map there itself: fast, and blotchy.
-    #[arg(long, default_value_t = 64, value_parser = clap::value_parser!(u32).range(0..=1_000_000))]
+    #[arg(long, default_value_t = 64, value_parser = whole::<u32>(0..=1_000_000))]
     gather_rays: u32,
     /// Rays of a final gathering that are shorter than this are traced on: the map's blur shows in corners [L].
     #[arg(long, default_value_t = 0.0)]

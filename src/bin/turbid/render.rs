@@ -6,7 +6,7 @@ use super::memory::Memory;
 use super::notes::{tell_empty, tell_gathers, tell_step};
 use super::picture::{Frame, Held, Photons, Readout, ToneArgs};
 use super::progress::Bar;
-use super::shared::{note, on_threads, parse_count, print};
+use super::shared::{note, on_threads, parse_count, print, whole};
 use super::statistics::{MAPS, print_statistics};
 use anyhow::{Context, bail};
 use clap::ValueEnum;
@@ -73,10 +73,10 @@ pub struct Render {
     #[command(flatten)]
     shown: ToneArgs,
     /// Seed: the same seed gives the same picture, on any number of threads.
-    #[arg(long, default_value_t = 1)]
+    #[arg(long, value_parser = whole::<u64>(0..=u64::MAX), allow_hyphen_values = true, default_value_t = 1)]
     seed: u64,
     /// Threads [default: all cores].
-    #[arg(long, value_parser = clap::value_parser!(u16).range(1..=1024))]
+    #[arg(long, value_parser = whole::<u16>(1..=1024))]
     threads: Option<u16>,
     #[command(flatten)]
     memory: Memory,

@@ -5,6 +5,7 @@ use anyhow::Context;
 use clap::ValueEnum;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use std::io::Write;
+use std::ops::RangeInclusive;
 use turbid::estimators::Kernel;
 use turbid::output::{Format, one_line};
 
@@ -66,16 +67,28 @@ pub fn tell_ahead(what: &str, seconds: f64, bytes: f64) -> std::io::Result<()> {
     note(&format!("{what}: about {time} and {memory} of memory, by a pilot"))
 }
 
-/// A count on the command line: 1000000, 1_000_000 or 1e6; at least 1.
-pub fn parse_count(text: &str) -> Result<u64, String> {
+/// Whole numbers on the command line: 1000000, 1_000_000 or 1e6.
+fn parse_whole(text: &str) -> Option<u64> {
     let plain = text.replace('_', "");
-    let count = plain.parse::<u64>().ok().filter(|&n| n <= 9_000_000_000_000_000).or_else(|| {
+    plain.parse::<u64>().ok().or_else(|| {
         let x = plain.parse::<f64>().ok()?;
         // Above 2^53 not every whole number is an f64; no run is that long.
         (x.fract() == 0.0 && (0.0..=9e15).contains(&x)).then_some(x as u64)
-    });
-    match count {
-        Some(n) if n >= 1 => Ok(n),
-        _ => Err("allowed: whole numbers from 1 to 9e15, such as 1000000 or 1e6".to_string()),
+    })
+}
+
+/// A count on the command line, at least 1.
+pub fn parse_count(text: &str) -> Result<u64, String> {
+    let count = parse_whole(text).filter(|n| (1..=9_000_000_000_000_000).contains(n));
+    count.ok_or_else(|| "allowed: whole numbers from 1 to 9e15, such as 1000000 or 1e6".to_string())
+}
+
+/// A whole number of a range on the command line.
+pub fn whole<T: TryFrom<u64> + Clone + Send + Sync + 'static>(
+    range: RangeInclusive<u64>,
+) -> impl Fn(&str) -> Result<T, String> + Clone {
+    move |text| {
+        let number = parse_whole(text).filter(|n| range.contains(n)).and_then(|n| T::try_from(n).ok());
+        number.ok_or_else(|| format!("allowed: whole numbers from {} to {}", range.start(), range.end()))
     }
 }
