@@ -41,16 +41,22 @@ impl Added {
     /// # Arguments
     /// `set` 0 for the finer nodes; `cosines` further directions, for [`Self::radiance`]
     pub fn new(problem: Arc<Problem>, set: usize, cosines: &[f64]) -> Result<Self> {
+        let mut degree = Vec::with_capacity(problem.layers.len());
+        for layer in &problem.layers {
+            degree.push(degrees(&layer.phase)?[set]);
+        }
+        let nodes = Nodes::open(upper(set, degree.iter().copied().fold(0, usize::max)), LOWER[set]);
+        Self::on(problem, nodes, cosines, &degree)
+    }
+
+    /// The same on any nodes, with the moments of each layer up to its degree.
+    pub fn on(problem: Arc<Problem>, nodes: Nodes, cosines: &[f64], degree: &[usize]) -> Result<Self> {
         let mut users = match problem.incidence {
             Some(Incidence::Beam { mu0 }) => vec![mu0],
             _ => Vec::new(),
         };
         users.extend(cosines);
-        let mut degree = 0;
-        for layer in &problem.layers {
-            degree = degree.max(degrees(&layer.phase)?[set]);
-        }
-        let nodes = Nodes::open(upper(set, degree), LOWER[set]).with(&users);
+        let nodes = nodes.with(&users);
         let mut slices: Vec<Arc<Slice>> = Vec::with_capacity(problem.layers.len());
         for (i, layer) in problem.layers.iter().enumerate() {
             let like = problem.layers[..i].iter().position(|other| {
@@ -59,8 +65,7 @@ impl Added {
             slices.push(match like {
                 Some(i) => slices[i].clone(),
                 None => {
-                    let degree = degrees(&layer.phase)?[set];
-                    let moments: Vec<f64> = (0..=degree).map(|l| layer.phase.moment(l)).collect();
+                    let moments: Vec<f64> = (0..=degree[i]).map(|l| layer.phase.moment(l)).collect();
                     let whole = Stack::new(layer.tau, layer.albedo, &moments, 0, nodes.clone())?.into_whole();
                     let (tau, albedo) = (layer.tau, layer.albedo);
                     Arc::new(Slice { tau, albedo, moments, whole, inside: OnceLock::new() })
@@ -143,6 +148,11 @@ impl Added {
         let doublings = self.problem.layers.iter().map(|layer| 4.0 + libm::log2(layer.tau * 1e9).max(0.0));
         let most = doublings.fold(0.0, f64::max) + 2.0 * self.slices.len() as f64;
         [ULPS * f64::EPSILON * most * (1.0 + 2.0 * self.problem.tau()), 0.0]
+    }
+
+    /// Sum over the nodes of weight times `f`(mu).
+    pub fn sum(&self, f: impl Fn(f64) -> f64) -> f64 {
+        self.nodes.sum(f)
     }
 
     /// Power per area that leaves through the upper face, the beam in a mirror left out, and that arrives at the

@@ -27,6 +27,8 @@ mod adding;
 mod ordinates;
 mod problem;
 mod stratified;
+#[cfg(test)]
+mod tests;
 mod varying;
 
 pub use problem::{Ground, Layer};

@@ -238,6 +238,11 @@ impl Matched {
         [2.0 * PI * modes.root.dot(&p), power(&p - &q), power(p + q)]
     }
 
+    /// Sum over the nodes of weight times `f`(mu).
+    pub fn sum(&self, f: impl Fn(f64) -> f64) -> f64 {
+        self.nodes().sum(f)
+    }
+
     /// Power per area that leaves through the upper face, the beam in a mirror left out, and that arrives at the
     /// lower one, direct light left out.
     pub fn leaving(&self) -> [f64; 2] {

@@ -6,8 +6,10 @@ use super::problem::{Ground, Layer, Problem};
 use crate::adding_doubling::depths;
 use crate::beer_lambert::direct_transmittance;
 use crate::error::{Result, within};
+use crate::exponential_integral::e_n;
 use crate::incidence::{Incidence, check_depth};
 use crate::value::Value;
+use libm::{exp, log};
 use std::sync::{Arc, OnceLock};
 
 const ADDING: &str = "adding of layers, two node counts";
@@ -55,6 +57,19 @@ impl Solution {
             Solution::Adding(solution) => solution.light(i, x),
             Solution::Ordinates(solution) => solution.light(i, x),
         }
+    }
+
+    /// What the nodes make wrong of the fluence of light from behind a plane, of unit irradiance, at distance `d`: it
+    /// swings with ln d, so that distances around it count.
+    fn unresolved(&self, d: f64) -> f64 {
+        let steps = (0..9).map(|i| d * f64::from(1 << i) / 16.0).map(|d| {
+            let sum = match self {
+                Solution::Adding(solution) => solution.sum(|mu| exp(-d / mu)),
+                Solution::Ordinates(solution) => solution.sum(|mu| exp(-d / mu)),
+            };
+            2.0 * (sum - e_n(2, d)).abs()
+        });
+        steps.fold(0.0, f64::max)
     }
 
     fn rounding(&self) -> [f64; 2] {
@@ -156,7 +171,7 @@ impl StratifiedSlab {
     /// Power that leaves through the lit face \[1\], that of the sources included.
     pub fn reflectance(&self) -> Value {
         let beam = self.problem.beam(self.problem.back(0.0));
-        let ulps = 4.0 + (-libm::log(beam)).min(800.0);
+        let ulps = 4.0 + (-log(beam)).min(800.0);
         self.leaving[0].plus(Value::rounded(beam, ulps, self.method), self.method)
     }
 
@@ -256,11 +271,39 @@ impl StratifiedSlab {
         let at = ladder.partition_point(|&(depth, _)| depth < x);
         let near = &ladder[at.saturating_sub(2)..(at + 2).min(ladder.len())];
         let [rounded, absolute] = self.solutions[0].rounding();
+        let horizons = self.horizons(t, fine[0]);
         Ok(std::array::from_fn(|which| {
             let shared = near.iter().fold(0.0, |a: f64, (_, d)| a.max(d[which])) + rounded;
-            let error = (fine[which] - coarse[which]).abs() + shared * fine[which].abs() + absolute;
+            let difference = (fine[which] - coarse[which]).abs() + horizons[which];
+            let error = difference + shared * fine[which].abs() + absolute;
             Value::new(fine[which], error + f64::MIN_POSITIVE, self.method)
         }))
+    }
+
+    /// What the nodes leave open of fluence and fluxes by the light that comes from behind interfaces close by, almost
+    /// level. Its radiance changes there by what is emitted and scattered, no more than four times its mean; fluxes are made
+    /// of it on their way, as far as it is of one size.
+    fn horizons(&self, t: f64, fluence: f64) -> [f64; 3] {
+        let Problem { layers, ground, depths, .. } = self.problem.as_ref();
+        let mut sum = [0.0; 3];
+        for (k, depth) in depths.iter().enumerate() {
+            let d = (t - depth).abs();
+            // Farther off it is below rounding.
+            if d > 0.0 && d < 0.1 {
+                let beside = &layers[k.saturating_sub(1)..(k + 1).min(layers.len())];
+                let source = |layer: &Layer| layer.emission + layer.albedo * fluence;
+                let mut step = beside.iter().map(source).fold(0.0, f64::max);
+                // A mirror is no step.
+                if k == layers.len() && !ground.mirror {
+                    step += ground.exitance + ground.reflectance * fluence;
+                }
+                let open = self.solutions[0].unresolved(d) * step;
+                sum[0] += open;
+                sum[1] += open * t.min(16.0 * d);
+                sum[2] += open * (self.tau() - t).min(16.0 * d);
+            }
+        }
+        sum
     }
 
     fn pair(&self, i: usize, x: f64) -> Result<[[f64; 3]; 2]> {

@@ -8,82 +8,105 @@ use crate::phase::Phase;
 use crate::quadrature::GaussLegendre;
 use crate::value::Value;
 
-const METHOD: &str = "layers of the mean albedo, extrapolated from two layerings";
+const METHOD: &str = "layers of the mean albedo, extrapolated from three layerings";
 
-/// A slab whose albedo is a smooth function of depth, between two layerings of it.
+/// A slab whose albedo is a function of depth, between three layerings of it.
 ///
-/// Layers of equal thickness h with the mean albedo of each are wrong by c h^2 and less: of n and of 2n layers,
-/// (4 f_2n - f_n)/3 is right to the next order, and the difference of that from f_2n is the bound, with those of both.
+/// Layers with the mean albedo of each are wrong by c h^2 and less, h their thickness, so that of n and of 2n layers
+/// (4 f_2n - f_n)/3 is closer. The answer is that of 2n and 4n layers; its difference from that of n and 2n is the
+/// bound, with those of the layerings. c is another one within a layer, so that fields are known where all three have
+/// an interface.
 pub struct VaryingAlbedo {
-    coarse: StratifiedSlab,
-    fine: StratifiedSlab,
+    /// The finest first.
+    layerings: [StratifiedSlab; 3],
 }
 
 impl VaryingAlbedo {
+    /// Solves the slab in three layerings.
+    ///
     /// # Arguments
-    /// `tau` optical thickness \[1\], 1e-6 to 400; `albedo` as a function of depth in mean free paths, 0 to 1 and smooth: a
-    /// step belongs between layers; `layers` of the coarser layering, 2 to 200; the rest as for [`StratifiedSlab::new`]
+    /// `breaks` depths in mean free paths, from 0 to that of the ground in rising order, 1e-6 or more apart: where fields are
+    /// wanted, and where the albedo has steps or bends; `albedo` as a function of depth, 0 to 1, smooth between breaks;
+    /// `layers` between two breaks in the coarsest layering, 1 to 100; the rest as for [`StratifiedSlab::new`]
     /// # Returns
-    /// answers that are wrong by 1/`layers`^4 of themselves, if the albedo varies over the whole depth; every layer takes
-    /// a tenth of a second
+    /// answers whose bounds fall about as 1/`layers`^2; every layer takes a tenth of a second
     /// # Errors
-    /// `Error::NotFinite` naming `albedo`; `Error::OutOfRange` naming `tau`, `albedo`, `layers`, `mu0` or the first
+    /// `Error::NotFinite` naming `albedo`; `Error::OutOfRange` naming `breaks`, `albedo`, `layers`, `tau`, `mu0` or the first
     /// Legendre moment left out
     pub fn new(
-        tau: f64,
+        breaks: &[f64],
         albedo: impl Fn(f64) -> f64,
         phase: &Phase,
         ground: Ground,
         incidence: Option<Incidence>,
         layers: usize,
     ) -> Result<Self> {
-        within("tau", tau, 1e-6, 400.0, "1e-6 to 400")?;
-        within("layers", layers as f64, 2.0, 200.0, "2 to 200")?;
+        within("breaks", breaks.len() as f64, 2.0, 100.0, "2 to 100 depths")?;
+        within("breaks", breaks[0], 0.0, 0.0, "0 first")?;
+        within("layers", layers as f64, 1.0, 100.0, "1 to 100 in the coarsest of three layerings")?;
+        for pair in breaks.windows(2) {
+            within(
+                "breaks",
+                pair[1],
+                pair[0] + 1e-6,
+                400.0,
+                "in rising order, 1e-6 or more apart, up to 400",
+            )?;
+        }
         let rule = GaussLegendre::rule(3);
-        let solve = |count: usize| {
-            let thickness = tau / count as f64;
-            let layer = |i: usize| {
-                let mut mean = 0.0;
-                for (x, weight) in rule.nodes.iter().zip(&rule.weights) {
-                    let at = (i as f64 + x) * thickness;
-                    let value = albedo(at);
-                    if !value.is_finite() {
-                        return Err(Error::NotFinite { name: "albedo", value, at });
-                    }
-                    mean += weight * within("albedo", value, 0.0, 1.0, "0 to 1 at every depth")?;
+        let layer = |low: f64, high: f64| {
+            let mut mean = 0.0;
+            for (x, weight) in rule.nodes.iter().zip(&rule.weights) {
+                let at = low + (high - low) * x;
+                let value = albedo(at);
+                if !value.is_finite() {
+                    return Err(Error::NotFinite { name: "albedo", value, at });
                 }
-                Layer::new(thickness, mean.min(1.0), phase)
-            };
-            let layers = (0..count).map(layer).collect::<Result<Vec<Layer>>>()?;
-            StratifiedSlab::new(&layers, ground, incidence)
+                mean += weight * within("albedo", value, 0.0, 1.0, "0 to 1 at every depth")?;
+            }
+            Layer::new(high - low, mean.min(1.0), phase)
         };
-        Ok(VaryingAlbedo { coarse: solve(layers)?, fine: solve(2 * layers)? })
+        let solve = |count: usize| {
+            let mut stack = Vec::new();
+            for pair in breaks.windows(2) {
+                let at = |i: usize| pair[0] + (pair[1] - pair[0]) * (i as f64 / count as f64);
+                for i in 0..count {
+                    stack.push(layer(at(i), at(i + 1))?);
+                }
+            }
+            StratifiedSlab::new(&stack, ground, incidence)
+        };
+        Ok(VaryingAlbedo { layerings: [solve(4 * layers)?, solve(2 * layers)?, solve(layers)?] })
     }
 
-    /// The two layerings, the finer first.
-    pub fn layerings(&self) -> [&StratifiedSlab; 2] {
-        [&self.fine, &self.coarse]
+    /// The three layerings, the finest first.
+    pub fn layerings(&self) -> &[StratifiedSlab; 3] {
+        &self.layerings
+    }
+
+    /// Depths in mean free paths at which fields are known: the interfaces of the coarsest layering.
+    pub fn depths(&self) -> &[f64] {
+        self.layerings[2].depths()
     }
 
     /// Power that leaves through the lit face \[1\].
     pub fn reflectance(&self) -> Value {
-        extrapolated(self.fine.reflectance(), self.coarse.reflectance())
+        extrapolated(self.layerings.each_ref().map(StratifiedSlab::reflectance))
     }
 
     /// Power that arrives at the ground, direct light included \[1\].
-    ///
-    /// # Errors
-    /// none for a slab that was solved
     pub fn transmittance(&self) -> Result<Value> {
-        Ok(extrapolated(self.fine.transmittance()?, self.coarse.transmittance()?))
+        self.at(0.0, |slab, _| slab.transmittance())
     }
 
     /// Fluence at depth t, direct light included \[1\].
     ///
+    /// # Arguments
+    /// `t` one of [`Self::depths`], to 1e-9 of itself
     /// # Errors
     /// `Error::OutOfRange` naming `t`
     pub fn fluence(&self, t: f64) -> Result<Value> {
-        Ok(extrapolated(self.fine.fluence(t)?, self.coarse.fluence(t)?))
+        self.at(t, StratifiedSlab::fluence)
     }
 
     /// Net flux downwards at depth t, direct light included \[1\].
@@ -91,7 +114,7 @@ impl VaryingAlbedo {
     /// # Errors
     /// `Error::OutOfRange` naming `t`
     pub fn flux(&self, t: f64) -> Result<Value> {
-        Ok(extrapolated(self.fine.flux(t)?, self.coarse.flux(t)?))
+        self.at(t, StratifiedSlab::flux)
     }
 
     /// Mean over azimuth of the radiance, as [`StratifiedSlab::radiance`].
@@ -99,14 +122,29 @@ impl VaryingAlbedo {
     /// # Errors
     /// `Error::OutOfRange` naming `t`, `mu` or `cosines`
     pub fn radiance(&self, t: f64, cosines: &[f64]) -> Result<Vec<Value>> {
-        let (fine, coarse) = (self.fine.radiance(t, cosines)?, self.coarse.radiance(t, cosines)?);
-        Ok(fine.into_iter().zip(coarse).map(|(fine, coarse)| extrapolated(fine, coarse)).collect())
+        let [a, b, c] = self.all(t, |slab, t| slab.radiance(t, cosines))?;
+        Ok((0..cosines.len()).map(|i| extrapolated([a[i], b[i], c[i]])).collect())
+    }
+
+    fn at(&self, t: f64, answer: impl Fn(&StratifiedSlab, f64) -> Result<Value>) -> Result<Value> {
+        Ok(extrapolated(self.all(t, answer)?))
+    }
+
+    /// What the layerings answer at an interface that is common to all, whose depths differ by rounding.
+    fn all<T>(&self, t: f64, answer: impl Fn(&StratifiedSlab, f64) -> Result<T>) -> Result<[T; 3]> {
+        let found = self.depths().iter().position(|depth| (depth - t).abs() <= 1e-9 * depth);
+        let (name, allowed) = ("t", "an interface of the coarsest layering, such as a break");
+        let i = found.ok_or(Error::OutOfRange { name, value: t, allowed })?;
+        let one = |slab: &StratifiedSlab, times: usize| answer(slab, slab.depths()[times * i]);
+        let [a, b, c] = &self.layerings;
+        Ok([one(a, 4)?, one(b, 2)?, one(c, 1)?])
     }
 }
 
-/// Both layerings taken together.
-fn extrapolated(fine: Value, coarse: Value) -> Value {
-    let step = (fine.value - coarse.value) / 3.0;
-    let error = step.abs() + (4.0 * fine.error + coarse.error) / 3.0;
-    Value::new(fine.value + step, error, METHOD)
+/// The layerings taken together, the finest first.
+fn extrapolated([fine, middle, coarse]: [Value; 3]) -> Value {
+    let of = |fine: Value, coarse: Value| fine.value + (fine.value - coarse.value) / 3.0;
+    let (best, other) = (of(fine, middle), of(middle, coarse));
+    let layers = (4.0 * fine.error + 5.0 * middle.error + coarse.error) / 3.0;
+    Value::new(best, (best - other).abs() + layers, METHOD)
 }

@@ -5,7 +5,9 @@ use crate::support::kernels::agree;
 use crate::support::{NORMAL, beam, close};
 use proptest::prelude::*;
 use std::f64::consts::PI;
-use turbid_analytic::{Error, Ground, Incidence, Layer, Phase, Slab, SlabMedium, StratifiedSlab, Value};
+use turbid_analytic::{
+    Error, Ground, Incidence, Layer, Phase, Slab, SlabMedium, StratifiedSlab, Value, VaryingAlbedo,
+};
 
 fn layer(tau: f64, albedo: f64, g: f64) -> Layer {
     Layer::new(tau, albedo, &Phase::henyey_greenstein(g).unwrap()).unwrap()
@@ -321,4 +323,39 @@ fn what_is_out_of_range_is_refused_by_name() {
     assert_eq!(name(slab.radiance(0.5, &[0.0]).unwrap_err()), "mu");
     assert_eq!(name(slab.radiance(0.5, &[]).unwrap_err()), "cosines");
     assert_eq!(name(slab.absorptance(1).unwrap_err()), "layer");
+}
+
+/// An albedo that falls with depth: the bound covers finer layerings, a step may stand at a break, and a constant is the slab.
+#[test]
+fn a_varying_albedo_is_extrapolated() {
+    let phase = Phase::henyey_greenstein(0.5).unwrap();
+    let solve = |breaks: &[f64], albedo: fn(f64) -> f64, layers: usize| {
+        VaryingAlbedo::new(breaks, albedo, &phase, Ground::black(), Some(beam(0.6)), layers).unwrap()
+    };
+    let both = |slab: &VaryingAlbedo| {
+        let mut all = vec![slab.reflectance(), slab.transmittance().unwrap()];
+        for t in [0.0, 0.5, 2.0, 5.0] {
+            all.push(slab.fluence(t).unwrap());
+            all.push(slab.flux(t).unwrap());
+        }
+        all.extend(slab.radiance(0.0, &[0.3, 1.0]).unwrap());
+        all
+    };
+    let stepped = |t: f64| if t < 2.0 { libm::exp(-t / 10.0) } else { 0.3 + 0.1 * t };
+    let [coarse, fine] = [1, 4].map(|layers| both(&solve(&[0.0, 0.5, 2.0, 5.0], stepped, layers)));
+    for (coarse, fine) in coarse.into_iter().zip(fine) {
+        assert!(agree(coarse, fine), "{coarse:?} {fine:?}");
+    }
+    let slab = Slab::solve(5.0, &SlabMedium::new(0.9, &phase).unwrap(), beam(0.6)).unwrap();
+    let constant = solve(&[0.0, 1.0, 5.0], |_| 0.9, 1);
+    close("R", constant.reflectance(), slab.reflectance(), 1e-11);
+    close("phi", constant.fluence(1.0).unwrap(), slab.fluence(1.0).unwrap(), 1e-9);
+    assert!(constant.fluence(2.0).unwrap_err().to_string().starts_with("t is 2; allowed: an interface"));
+    let refuse = |breaks: &[f64], albedo: fn(f64) -> f64| {
+        let slab = VaryingAlbedo::new(breaks, albedo, &phase, Ground::black(), None, 4);
+        slab.err().unwrap().to_string()
+    };
+    assert!(refuse(&[0.0, 1.0], |t| 1.0 + t).contains("albedo is"));
+    assert!(refuse(&[0.0, 1.0], |_| f64::NAN).contains("albedo returned NaN"));
+    assert!(refuse(&[0.0, 1.0, 0.5], |_| 0.5).contains("breaks is 0.5"));
 }
