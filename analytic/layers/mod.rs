@@ -13,7 +13,7 @@
 //! Two methods know it: adding, whose layers are those of [`crate::AddingDoubling`], and the modes of discrete ordinates
 //! of every layer, matched at all interfaces by one linear system. Either is computed on two sets of nodes; the error is
 //! a small part of the difference, which is the bound, together with the differences of its neighbours (the other
-//! fluxes; other depths of the layer) and roundings.
+//! fluxes; other depths of the layer), what nodes leave open of light from behind an interface close by, and roundings.
 //!
 //! All powers are per area, over the irradiance on the lit face; in the dark, in whatever unit the sources have.
 //!

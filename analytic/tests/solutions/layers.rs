@@ -1,6 +1,6 @@
 //! The stratified slab: by two methods, and by the laws that layers obey.
 
-use crate::support::any_input::cases;
+use crate::support::any_input::{cases, number, sound};
 use crate::support::kernels::agree;
 use crate::support::{NORMAL, beam, close};
 use proptest::prelude::*;
@@ -210,6 +210,41 @@ proptest! {
             for (value, mu) in slab.radiance(t, &[0.7, -0.3]).unwrap().into_iter().zip([0.7, -0.3_f64]) {
                 let direct = if mu < 0.0 { libm::exp(t / mu) } else { 0.0 };
                 prop_assert!(value.covers((1.0 - direct) / PI), "{value:?} {mu}");
+            }
+        }
+    }
+}
+
+proptest! {
+    #![proptest_config(cases(64, 20_270_103))]
+
+    /// Numbers of any bits are answered or refused.
+    #[test]
+    fn any_layers_are_answered_or_refused(
+        tau in prop_oneof![number(), 0.0..2.0_f64],
+        albedo in prop_oneof![number(), 0.0..=1.0_f64],
+        emission in prop_oneof![number(), Just(0.0)],
+        reflectance in prop_oneof![number(), 0.0..=1.0_f64],
+        mu0 in prop_oneof![number(), 0.0..=1.0_f64],
+        t in number(),
+        mu in number(),
+    ) {
+        let solve = || -> turbid_analytic::Result<StratifiedSlab> {
+            let first = Layer::new(tau, albedo, &Phase::rayleigh())?.emitting(emission)?;
+            let second = layer(0.5, 0.9, 0.0);
+            StratifiedSlab::new(&[first, second], Ground::lambertian(reflectance)?, Some(beam(mu0)))
+        };
+        match solve() {
+            Err(error) => sound(Err(error))?,
+            Ok(slab) => {
+                sound(Ok(slab.reflectance()))?;
+                sound(slab.transmittance())?;
+                sound(slab.mean_fluence(0))?;
+                for t in [t, 0.5 * slab.tau()] {
+                    sound(slab.fluence(t))?;
+                    sound(slab.flux(t))?;
+                    sound(slab.radiance(t, &[mu]).map(|all| all[0]))?;
+                }
             }
         }
     }
