@@ -10,7 +10,7 @@
 //! * Special functions and rules: [`exponential_integral`], [`quadrature`]; phase functions: [`phase`]
 //! * Slab: [`slab`], by the best of [`slab_isotropic`], [`slab_anisotropic`] and [`adding_doubling`]; [`beer_lambert`],
 //!   [`slab_single`]; between refracting faces [`slab_fresnel`]; by order of scattering [`orders`];
-//!   thick [`asymptotics`]; approximations [`two_stream`]
+//!   of layers [`layers`]; thick [`asymptotics`]; approximations [`two_stream`]
 //! * Half-space: [`half_space`]; infinite medium: [`infinite`]; X and Y functions: [`xy`]
 //! * Sphere: [`sphere`], [`cavity`]; critical bodies: [`critical`]; path lengths: [`mean_path`]
 //! * Kernel density estimation: [`kernel`], [`ball_mean`], [`blur`], [`edge`], [`volumes`], [`slab_kernel`],
@@ -32,6 +32,7 @@ pub mod half_space;
 pub mod incidence;
 pub mod infinite;
 pub mod kernel;
+pub mod layers;
 pub mod mean_path;
 pub mod nearest;
 pub mod orders;
@@ -63,6 +64,7 @@ pub use half_space::HalfSpace;
 pub use incidence::Incidence;
 pub use infinite::InfiniteMedium;
 pub use kernel::{Dimension, Kernel};
+pub use layers::{Ground, Layer, StratifiedSlab, VaryingAlbedo};
 pub use orders::ScatteringOrders;
 pub use phase::Phase;
 pub use slab::{Slab, SlabMedium, SlabOrders};

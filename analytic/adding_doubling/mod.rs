@@ -27,7 +27,7 @@ mod stack;
 mod tests;
 
 pub(crate) use nodes::{Nodes, Panels};
-pub(crate) use stack::Stack;
+pub(crate) use stack::{Layer, Stack, bounces};
 
 use crate::beer_lambert::{direct_fluence, direct_transmittance};
 use crate::error::{Result, within};
@@ -42,7 +42,7 @@ use std::sync::OnceLock;
 const METHOD: &str = "adding and doubling, two node counts";
 
 /// Roundings of one doubling: a chain of three products of matrices, all of whose terms are positive.
-const ULPS: f64 = 8.0;
+pub(crate) const ULPS: f64 = 8.0;
 
 /// What the Legendre moments left out may be on the finer and on the coarser nodes; and where that takes too many.
 const CUT: [f64; 2] = [1e-13, 1e-10];
@@ -55,7 +55,7 @@ const MOST: usize = 450;
 const CUT_TWICE: [f64; 2] = [1e-11, 1e-9];
 
 /// Nodes towards the horizon, and the fewest above it.
-const LOWER: [usize; 2] = [56, 44];
+pub(crate) const LOWER: [usize; 2] = [56, 44];
 const UPPER: [usize; 2] = [28, 22];
 
 /// A slab solved by adding and doubling.
@@ -243,12 +243,12 @@ pub(crate) fn degrees(phase: &Phase) -> Result<[usize; 2]> {
 }
 
 /// Nodes above the horizon that follow moments up to `degree`.
-fn upper(set: usize, degree: usize) -> usize {
+pub(crate) fn upper(set: usize, degree: usize) -> usize {
     UPPER[set].max(5 + degree / 2)
 }
 
 /// The vector of the light that enters: a beam in the first user's direction, or radiance 1/pi.
-fn entering(nodes: &Nodes, incidence: Incidence) -> DVector<f64> {
+pub(crate) fn entering(nodes: &Nodes, incidence: Incidence) -> DVector<f64> {
     let root = |i: usize| sqrt(nodes.mu[i] * nodes.weight[i]);
     DVector::from_fn(nodes.len(), |i, _| match incidence {
         Incidence::Beam { .. } if i == nodes.count => 1.0 / (2.0 * PI * root(i)),

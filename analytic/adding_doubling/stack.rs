@@ -6,12 +6,14 @@
 //! R' = R + (e+T) R S (e+T),  T' = e T + T e + T T + (e+T) K (e+T),  S = 1 + K = (1 - R R)^-1
 //!
 //! where nothing is subtracted: each number is good to a few roundings a doubling, however thin the first layer.
-//! The share absorbed is doubled likewise, and e is an exponential at every level.
+//! The length that light spends in the layer, its fluence over depth, is doubled likewise, and e is an exponential at
+//! every level. By reciprocity that length is also what leaves the layer of light that starts evenly within it.
 
 use super::nodes::{Nodes, legendre};
 use crate::error::{Error, Result};
 use libm::{exp, expm1, sqrt};
 use nalgebra::{Cholesky, DMatrix, DVector};
+use std::f64::consts::PI;
 
 /// Thickness x below which the first layer lies. A collision there is followed by another with a chance c of some
 /// 25 x, most of them of light that runs level. Single scattering is exact; of double scattering a share x/mu is left
@@ -81,6 +83,13 @@ impl<'a> Thin<'a> {
         Thin { scattering, direct, reflected, scattered, between, share }
     }
 
+    /// Integral over depth of the fluence that a vector u brings, over 2 pi.
+    fn dwelt(&self, nodes: &Nodes, x: f64) -> DVector<f64> {
+        let weight = DVector::from_fn(nodes.len(), |i, _| sqrt(nodes.weight[i] / nodes.mu[i]));
+        let once = weight.component_mul(&self.share) * x;
+        once + self.scattering.same.tr_mul(&weight.component_mul(&self.between))
+    }
+
     /// What becomes of light u from outside: what passes, direct light included, and what returns.
     fn pass(&self, u: &DVector<f64>) -> [DVector<f64>; 2] {
         let reached = u.component_mul(&self.share);
@@ -95,21 +104,26 @@ impl<'a> Thin<'a> {
 }
 
 /// A layer's answer to light from outside.
-struct Layer {
+pub(crate) struct Layer {
     thickness: f64,
     /// e^(-thickness/mu).
-    direct: DVector<f64>,
-    reflected: DMatrix<f64>,
-    scattered: DMatrix<f64>,
-    /// Share absorbed of a vector u, over 2 pi.
-    absorbed: DVector<f64>,
+    pub direct: DVector<f64>,
+    /// R, and T of light scattered at least once.
+    pub reflected: DMatrix<f64>,
+    pub scattered: DMatrix<f64>,
+    /// Integral over depth of the fluence that a vector u brings, over 2 pi; over 4 pi it is the vector that leaves
+    /// through either face of light that starts evenly within the layer, one per area and mean free path.
+    pub dwelt: DVector<f64>,
+    /// Integral over depth of the fluence of that light.
+    pub own: f64,
 }
 
 impl Layer {
     /// A layer so thin that light is scattered twice at most.
     fn thin(nodes: &Nodes, albedo: f64, scattering: &Scattering, x: f64) -> Self {
-        let Thin { direct, mut reflected, mut scattered, between, share, .. } =
-            Thin::new(nodes, scattering, x);
+        let thin = Thin::new(nodes, scattering, x);
+        let dwelt = thin.dwelt(nodes, x);
+        let Thin { direct, mut reflected, mut scattered, between, share, .. } = thin;
         let n = nodes.len();
         let twice = |a: &DMatrix<f64>| {
             let mut left = a.clone();
@@ -127,25 +141,31 @@ impl Layer {
                 scattered[(i, j)] += (a + b) * shares;
             }
         }
-        let weight = DVector::from_fn(n, |i, _| sqrt(nodes.weight[i] / nodes.mu[i]));
-        let once = weight.component_mul(&share) * x;
-        let absorbed = (once + same.tr_mul(&weight.component_mul(&between))) * (1.0 - albedo);
-        Layer { thickness: x, direct, reflected, scattered, absorbed }
+        // Half the light starts up; a share of it collides, and starts again.
+        let once: f64 = (0..nodes.count).map(|i| 0.5 * nodes.weight[i] / nodes.mu[i] * between[i]).sum();
+        let own = once + albedo * once * once / x;
+        Layer { thickness: x, direct, reflected, scattered, dwelt, own }
     }
 
     /// (e + T) u.
-    fn transmit(&self, u: &DVector<f64>) -> DVector<f64> {
+    pub fn transmit(&self, u: &DVector<f64>) -> DVector<f64> {
         &self.scattered * u + self.direct.component_mul(u)
+    }
+
+    /// e + T.
+    pub fn through(&self) -> DMatrix<f64> {
+        let mut through = self.scattered.clone();
+        for (i, e) in self.direct.iter().enumerate() {
+            through[(i, i)] += e;
+        }
+        through
     }
 
     /// The layer twice as thick, and K.
     fn doubled(&self, nodes: &Nodes) -> Result<(Layer, DMatrix<f64>)> {
         let (r, t) = (&self.reflected, &self.scattered);
-        let bounced = bounces(r * r)?;
-        let mut through = t.clone();
-        for (i, e) in self.direct.iter().enumerate() {
-            through[(i, i)] += e;
-        }
+        let bounced = bounces(r * r, true)?;
+        let through = self.through();
         let up = r + r * &bounced;
         let mut scattered = &through * (&bounced * &through) + t * t;
         for (j, ej) in self.direct.iter().enumerate() {
@@ -154,18 +174,20 @@ impl Layer {
             }
         }
         let reflected = r + &through * (up * &through);
-        // What the upper layer takes at once, and both take of the light between them.
-        let between = &self.absorbed + r.tr_mul(&self.absorbed);
+        // In the upper layer at once, and in both of the light between them.
+        let between = &self.dwelt + r.tr_mul(&self.dwelt);
         let between = &between + bounced.tr_mul(&between);
-        let absorbed = &self.absorbed + through.tr_mul(&between);
+        let dwelt = &self.dwelt + through.tr_mul(&between);
+        // What starts in one half goes to and fro as well: a vector dwelt/(4 pi) leaves it.
+        let own = 2.0 * self.own + self.dwelt.dot(&between);
         let thickness = 2.0 * self.thickness;
         let direct = DVector::from_fn(nodes.len(), |i, _| exp(-thickness / nodes.mu[i]));
-        Ok((Layer { thickness, direct, reflected, scattered, absorbed }, bounced))
+        Ok((Layer { thickness, direct, reflected, scattered, dwelt, own }, bounced))
     }
 }
 
-/// Q + Q^2 + Q^3 + ... for a symmetric Q of eigenvalues in \[0, 1).
-fn bounces(q: DMatrix<f64>) -> Result<DMatrix<f64>> {
+/// Q + Q^2 + Q^3 + ... for a Q of eigenvalues in \[0, 1).
+pub(crate) fn bounces(q: DMatrix<f64>, symmetric: bool) -> Result<DMatrix<f64>> {
     let size = q.norm();
     if size < 0.03 {
         let (mut sum, mut power, mut left) = (q.clone(), q, size);
@@ -179,8 +201,9 @@ fn bounces(q: DMatrix<f64>) -> Result<DMatrix<f64>> {
         return Ok(sum);
     }
     let n = q.nrows();
-    let rest = Cholesky::new(DMatrix::identity(n, n) - &q);
-    Ok(rest.ok_or(Error::Infinite("light between two layers does not die away in f64"))?.solve(&q))
+    let rest = DMatrix::identity(n, n) - &q;
+    let sum = if symmetric { Cholesky::new(rest).map(|rest| rest.solve(&q)) } else { rest.lu().solve(&q) };
+    sum.ok_or(Error::Infinite("light between two layers does not die away in f64"))
 }
 
 /// int_0^x e^(-rate y) dy.
@@ -191,6 +214,7 @@ fn decayed(rate: f64, x: f64) -> f64 {
 /// A slab of 2^n thin layers, with all the layers on the way.
 pub(crate) struct Stack {
     pub nodes: Nodes,
+    albedo: f64,
     scattering: Scattering,
     layers: Vec<Layer>,
     bounced: Vec<DMatrix<f64>>,
@@ -213,7 +237,7 @@ impl Stack {
             layers.push(layer);
             bounced.push(between);
         }
-        Ok(Stack { nodes, scattering, layers, bounced })
+        Ok(Stack { nodes, albedo, scattering, layers, bounced })
     }
 
     /// How often the first layer was doubled.
@@ -240,18 +264,41 @@ impl Stack {
         &self.whole().direct
     }
 
+    /// The slab without the layers on the way.
+    pub fn into_whole(mut self) -> Layer {
+        self.layers.swap_remove(self.bounced.len())
+    }
+
     /// Share absorbed of a vector u, over 2 pi.
-    pub fn absorbed(&self) -> &DVector<f64> {
-        &self.whole().absorbed
+    pub fn absorbed(&self) -> DVector<f64> {
+        &self.whole().dwelt * (1.0 - self.albedo)
     }
 
     /// Light downwards and upwards at depth t, direct light included, when `top` comes in through the upper face and
     /// `bottom` through the lower one.
     pub fn field(&self, t: f64, top: DVector<f64>, bottom: DVector<f64>) -> (DVector<f64>, DVector<f64>) {
+        self.field_of(t, top, bottom, 0.0)
+    }
+
+    /// [`Self::field`] when `started` per area and mean free path starts within the slab, evenly and in all directions.
+    pub fn field_of(
+        &self,
+        t: f64,
+        top: DVector<f64>,
+        bottom: DVector<f64>,
+        started: f64,
+    ) -> (DVector<f64>, DVector<f64>) {
         let (mut x, mut top, mut bottom) = (t, top, bottom);
+        let started = started / (4.0 * PI);
+        let begin = |mut u: DVector<f64>, dwelt: &DVector<f64>| {
+            if started > 0.0 {
+                u.axpy(started, dwelt, 1.0);
+            }
+            u
+        };
         for (layer, bounced) in self.layers.iter().zip(&self.bounced).rev() {
-            let below = layer.transmit(&bottom);
-            let once = layer.transmit(&top) + &layer.reflected * &below;
+            let below = begin(layer.transmit(&bottom), &layer.dwelt);
+            let once = begin(layer.transmit(&top) + &layer.reflected * &below, &layer.dwelt);
             let down = &once + bounced * &once;
             if x < layer.thickness {
                 bottom = below + &layer.reflected * &down;
@@ -264,6 +311,8 @@ impl Stack {
         let rest = (self.layers[0].thickness - x).max(0.0);
         let [above, below] = [x, rest].map(|x| Thin::new(&self.nodes, &self.scattering, x));
         let ([falling, _], [rising, _]) = (above.pass(&top), below.pass(&bottom));
+        let falling = begin(falling, &above.dwelt(&self.nodes, x));
+        let rising = begin(rising, &below.dwelt(&self.nodes, rest));
         let mut down = falling.clone();
         let mut up = rising.clone();
         // To and fro between layers that return less than 1e-6: the third time is below rounding.

@@ -3,8 +3,8 @@
 use crate::format::Format;
 use crate::question::Question;
 use crate::{
-    beams, boundary, cavity, critical, half_space, infinite, kernel, nearest, path, progressive, slab,
-    sphere, thick, two_stream, xy,
+    beams, boundary, cavity, critical, half_space, infinite, kernel, layers, nearest, path, progressive,
+    slab, sphere, thick, two_stream, xy,
 };
 use clap::{Parser, Subcommand};
 use std::path::PathBuf;
@@ -45,6 +45,7 @@ pub struct Cli {
 #[derive(Subcommand)]
 pub enum Command {
     Slab(slab::Args),
+    Layers(layers::Args),
     HalfSpace(half_space::Args),
     Thick(thick::Args),
     TwoStream(two_stream::Args),
@@ -66,6 +67,7 @@ impl Command {
     pub fn question(&self) -> &dyn Question {
         match self {
             Command::Slab(question) => question,
+            Command::Layers(question) => question,
             Command::HalfSpace(question) => question,
             Command::Thick(question) => question,
             Command::TwoStream(question) => question,

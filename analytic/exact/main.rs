@@ -13,6 +13,7 @@ mod half_space;
 mod infinite;
 mod input;
 mod kernel;
+mod layers;
 mod method;
 mod nearest;
 mod output;

@@ -145,7 +145,8 @@ fn file_name(path: &Path) -> String {
     one_line(&path.file_name().unwrap_or_default().to_string_lossy())
 }
 
-fn from_file(path: &Path) -> Result<Named> {
+/// Legendre moments from a file.
+pub fn from_file(path: &Path) -> Result<Named> {
     let shown = path.display();
     let text = read_text(path)?;
     let mut moments = Vec::new();

@@ -46,7 +46,7 @@ struct Step {
 }
 
 /// Whether the number differs from the shortest decimal that reads as it.
-fn is_rounded(number: f64) -> bool {
+pub fn is_rounded(number: f64) -> bool {
     let digits = format!("{number:.1100}");
     digits.trim_end_matches('0').trim_end_matches('.') != format!("{number}")
 }

@@ -48,7 +48,7 @@ pub(crate) struct Beam {
 }
 
 /// Below this k a particular solution is a multiple of e^(-beta t), beta >= 1.
-pub(super) const SLOW: f64 = 0.5;
+pub(crate) const SLOW: f64 = 0.5;
 
 /// A sum over modes, with the sum of the magnitudes of its terms, each times 1 + its exponent, which carries the
 /// rounding of k: rounding is a few units of the last place of that.

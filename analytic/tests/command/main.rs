@@ -5,3 +5,4 @@ mod cases;
 mod cli;
 mod files;
 mod handbook;
+mod layers;

@@ -13,6 +13,8 @@ mod boundary_points;
 mod bounds;
 mod critical;
 mod half_space_reference;
+mod layers;
+mod layers_tables;
 mod slab_anisotropic;
 mod slab_fresnel;
 mod slab_laws;

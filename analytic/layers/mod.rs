@@ -1,0 +1,36 @@
+//! The stratified slab: homogeneous layers on top of each other over a ground, each with its own thickness, albedo,
+//! phase function and source.
+//!
+//! In layer i the radiance I, mu > 0 upwards, obeys
+//!
+//! mu dI/dt = I - (w_i/2) int sum_l (2l+1) chi_il P_l(mu) P_l(mu') I(t, mu') dmu' - beam - q_i/(4 pi)
+//!
+//! with q_i the power that starts per area and mean free path, and I is the same on both sides of an interface: all
+//! layers have one index of refraction. The ground returns nothing, rho/pi of the power that arrives in all directions,
+//! or everything as a mirror, and may shine. Layers between refracting faces are not answered here; one layer between
+//! two such faces is, by [`crate::FresnelSlab`].
+//!
+//! Two methods know it: adding, whose layers are those of [`crate::AddingDoubling`], and the modes of discrete ordinates
+//! of every layer, matched at all interfaces by one linear system. Either is computed on two sets of nodes; the error is
+//! a small part of the difference, which is the bound, together with the differences of its neighbours (the other
+//! fluxes; other depths of the layer), what nodes leave open of light from behind an interface close by, and roundings.
+//!
+//! All powers are per area, over the irradiance on the lit face; in the dark, in whatever unit the sources have.
+//!
+//! Limits: one layer over a black ground is [`crate::Slab`]; two layers alike are one; all albedos 1: nothing is
+//! absorbed; a closed enclosure of one temperature has the fluence 4 pi B everywhere.
+//!
+//! Source: van de Hulst 1963; Hansen and Travis 1974, section 3; Stamnes, Tsay, Wiscombe and Jayaweera 1988; de Haan,
+//! Bosma and Hovenier 1987.
+
+mod adding;
+mod ordinates;
+mod problem;
+mod stratified;
+#[cfg(test)]
+mod tests;
+mod varying;
+
+pub use problem::{Ground, Layer};
+pub use stratified::StratifiedSlab;
+pub use varying::VaryingAlbedo;
