@@ -127,14 +127,26 @@ fn pictures_in_passes_are_those_of_one() {
             assert!(!wanted.contains(&name.as_str()) || largest > 0.0, "{name} is black");
         }
     }
-    // Without passes, steps follow the light.
-    let adaptive = means(&render("adaptive.exr", &[]));
-    let half = means(&render("half.exr", &["--adapt", "0.5"]));
-    assert!(adaptive == half && adaptive != whole);
     let read = |name: &str, threads: &str| {
         std::fs::read(render(name, &["--passes", "3", "--threads", threads])).unwrap()
     };
     assert!(read("one.exr", "1") == read("two.exr", "2"));
+}
+
+/// Steps follow the light, but for media whose density varies: there they would follow the noise of transmittances.
+#[test]
+fn steps_follow_the_light_in_homogeneous_media() {
+    let folder = Folder::new();
+    for (scene, adapt) in [(ROOM.to_string(), "0.5"), (CROWDED.to_string() + ROOM.trim_start(), "0")] {
+        let scene = folder.file("room.toml", &scene);
+        let render = |more: &[&str]| {
+            let path = folder.0.path().join("room.exr");
+            succeeds(&[&["render", text(&scene), "-o", text(&path)], &QUICK[..], more].concat());
+            means(&path)
+        };
+        let [usual, adaptive, equal] = [&[][..], &["--adapt", "0.5"], &["--adapt", "0"]].map(render);
+        assert!(adaptive != equal && usual == if adapt == "0" { equal } else { adaptive }, "{adapt}");
+    }
 }
 
 /// What a picture in passes needs is said.

@@ -85,9 +85,8 @@ fn summary(answers: &[&Answer]) -> Vec<String> {
     {
         let by_faces = untreated.iter().filter(|u| u.limit == "faces").count();
         summary.push(format!(
-            "Accuracy: the bias of those maps is {} to {}. With the faces of the medium untreated, the best of all maps tried \
-             keeps an error of {} to {}, most of it from the faces, where half of each ball is empty, in {by_faces} of {} \
-             scenes.",
+            "Accuracy: the bias of those maps is {} to {}. With the faces of the medium untreated, the best map tried keeps an \
+             error of {} to {}, mostly from the faces, where half of each ball is empty, in {by_faces} of {} scenes.",
             in_percent(low),
             in_percent(high),
             in_percent(least),

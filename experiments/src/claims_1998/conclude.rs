@@ -31,7 +31,7 @@ pub fn conclude(settings: &Settings, predictions: &[Prediction], cells: &Cells) 
     section.summary.extend(said.iter().map(|[sentence, found]| format!("\"{sentence}\": {found}.")));
     section.tables.push(Table {
         caption: "The talk's sentences and what was found. Times are CPU seconds of this machine, side by side in one \
-                  run; no claim rests on them."
+                  run; no claim rests on them. Verdicts are on the numbers that the claims state, not on the sentences."
             .to_string(),
         columns: ["the talk", "found"].map(String::from).to_vec(),
         rows: said.into_iter().map(Vec::from).collect(),

@@ -107,7 +107,7 @@ pub fn page(shown: &[PageEntry], settings: &Settings) -> Markup {
                 ul.index { @for (picture, shown) in &entries { li { (thumbnail(picture, shown)) } } }
                 (method(settings))
                 @for (picture, shown) in &entries { (section(picture, shown)) }
-                (speed::section(speed::ROWS))
+                (speed::section(&speed::rows()))
                 script { (PreEscaped(SCRIPT)) }
             }
         }
@@ -130,7 +130,7 @@ fn method(settings: &Settings) -> Markup {
     html! {
         p {
             "Each picture was made as in 1998: photons are stored in maps, and the maps are read along the rays of a "
-            "camera, in steps that shorten where the light changes. Beside it stand its rival, the best that a method without photon maps makes "
+            "camera, in steps that shorten where the light changes (in the cloud they are equal). Beside it stand its rival, the best that a method without photon maps makes "
             "of the same scene in the same CPU time; a reference of many more samples without photon maps; and the difference. Where a row "
             "says " em { "the original" } ", photons, samples and times are those of the lectures or the paper; everything else is "
             "measured here."

@@ -85,8 +85,14 @@ impl<'a> Studio<'a> {
     pub fn photon_words(&self, samples: u64, replicate: u64, factor: u64) -> String {
         let p = self.picture;
         let counts = format!(
-            "photons {:?} x {factor}, nearest {:?} within {}, gather {} from {}, size {}",
-            p.photons, p.nearest, p.reach, p.gather, p.near, p.size
+            "photons {:?} x {factor}, nearest {:?} within {}, gather {} from {}, size {}{}",
+            p.photons,
+            p.nearest,
+            p.reach,
+            p.gather,
+            p.near,
+            p.size,
+            if p.is_adaptive { "" } else { ", equal steps" }
         );
         self.words(&counts, samples, replicate)
     }

@@ -288,7 +288,7 @@ pub struct Readout {
     #[arg(long, value_enum, default_value = "integrated")]
     step_rule: RuleName,
     /// Relative change of direct light from one end of a step to the other above which it is halved, to a quarter at
-    /// most, as in 1998; 0 for equal steps [default: 0.5; 0 with several passes].
+    /// most, as in 1998; 0 for equal steps [default: 0.5; 0 with several passes, or where the density of a medium varies].
     #[arg(long)]
     adapt: Option<f64>,
     /// March on places that are not random: no noise, but bands.
@@ -416,7 +416,9 @@ impl Readout {
         if !(self.near >= 0.0 && self.near.is_finite()) {
             return Err(anyhow!("--near is {}; allowed: finite and at least 0", self.near));
         }
-        let tolerance = self.adapt.unwrap_or(if passes == 1 { TOLERANCE } else { 0.0 });
+        // Where the density varies, direct light is probed by transmittances that are estimates: their noise would halve every step.
+        let is_probed = passes == 1 && scene.plan().densities.is_empty();
+        let tolerance = self.adapt.unwrap_or(if is_probed { TOLERANCE } else { 0.0 });
         if !(tolerance >= 0.0 && tolerance.is_finite()) {
             return Err(anyhow!("--adapt is {tolerance}; allowed: finite and at least 0"));
         }

@@ -128,7 +128,7 @@ fn said(edges: &Edges) -> Vec<[String; 2]> {
         add(
             "looking at the incoming direction avoids false photons",
             format!(
-                "most of them: {NEAR} mean free paths behind a wall {} of the light in front leaks, with the look {}; \
+                "in part: {NEAR} mean free paths behind a wall {} of the light in front leaks, with the look {}; \
                  looking on which side of the wall they lie avoids all",
                 off.words(),
                 facing.words()

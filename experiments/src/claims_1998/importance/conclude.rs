@@ -129,8 +129,8 @@ pub fn conclude(_settings: &Settings, cells: &Cells) -> anyhow::Result<Part> {
             words(&by_time),
             learning.mean(),
             match by_time.interval(0.95) {
-                i if i.low > 1.0 => "in time it pays",
-                i if i.high < 1.0 => "in time it does not pay here",
+                i if i.low > 1.0 => "once learned, it pays in time",
+                i if i.high < 1.0 => "even once learned, it does not pay in time here",
                 _ => "whether it pays in time is undecided, in this run",
             },
             effect.difference.in_percent(),
