@@ -85,7 +85,7 @@ fn parts_that_do_not_fit_together() {
         refuses_naming(&["check", text(&path)], &[name, words]);
     }
     let none = folder.file("none.toml", &right[..right.find("[[sensors]]").unwrap()]);
-    refuses_naming(&["measure", text(&none), "--with", "path"], &["no sensors"]);
+    refuses_naming(&["measure", text(&none), "--with", "paths"], &["no sensors"]);
 }
 
 #[test]

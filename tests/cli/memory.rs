@@ -72,7 +72,7 @@ fn memory_is_as_said() {
         "dark.toml",
         "[camera]\nposition = [0, 0, 3]\nlook_at = [0, 0, 0]\nfov = 30\nwidth = 480\nheight = 480\n[[objects]]\nshape = { sphere = { center = [0, 0, 0], radius = 0.001 } }\nsurface = { lambertian = { reflectance = 0.5 } }\n[[lights]]\npoint = { position = [0, 1, 1], power = 1 }\n",
     );
-    let large = ["render", text(&dark), "-o", &exr, "--with", "paths", "--samples", "2"];
+    let large = ["render", text(&dark), "-o", &exr, "--with", "path", "--samples", "2"];
     for (name, arguments) in
         [("measure", &slab[..]), ("render", &fogbox), ("map", &drawn), ("large picture", &large)]
     {

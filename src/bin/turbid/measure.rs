@@ -75,6 +75,7 @@ pub struct Measure {
 #[derive(Clone, Copy, ValueEnum)]
 enum With {
     /// The unbiased path tracer.
+    #[value(alias = "paths")]
     Path,
     /// Photons: tallies and photon maps.
     Photons,

@@ -99,6 +99,7 @@ enum With {
     /// The photon mapper.
     Photons,
     /// The unbiased path tracer.
+    #[value(alias = "path")]
     Paths,
     /// The unbiased light tracer: without lights seen directly, without what is seen in mirrors and through glass.
     Light,
