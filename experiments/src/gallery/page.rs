@@ -280,14 +280,18 @@ fn middle([low, high]: [f64; 2]) -> f64 {
     0.5 * (low + high)
 }
 
+/// Errors that differ by less are called level: by so much two runs differ in their times.
+const LEVEL: f64 = 1.05;
+
 /// Who has the smaller error at equal time, in a sentence.
 fn winner(c: &Compared) -> String {
     let (ours, theirs) = (middle(c.rms), middle(c.equal_rms));
     let errors = format!("{} against {} at equal time", percent(ours), percent(theirs));
-    if c.rms[0] <= c.equal_rms[1] && c.equal_rms[0] <= c.rms[1] {
+    let factor = (theirs / ours).max(ours / theirs);
+    if c.rms[0] <= c.equal_rms[1] && c.equal_rms[0] <= c.rms[1] || factor < LEVEL {
         return format!("The photon map and {} are level: an error of {errors}.", c.rival);
     }
-    let factor = two_digits((theirs / ours).max(ours / theirs));
+    let factor = two_digits(factor);
     if ours < theirs {
         return format!(
             "The photon map wins by a factor of {factor} over {}: an error of {errors}.",
