@@ -11,9 +11,9 @@
 //!
 //! - Exact, in double precision, each value with its bound: slabs of any phase function, thickness 1e-12 to 1e9, g from -0.95 to 0.99,
 //!   with radiance at any depth and azimuth, by order of scattering, and between refracting faces (fluxes and fluence only);
-//!   layers of different media over a ground; half-spaces; spheres, cavities and critical bodies of isotropic scattering; point sources in unbounded media; kernel theory:
-//!   moments, blur, edges, sinusoids, beams, the k nearest rule, progressive passes, treatments of the boundary of slabs, spheres
-//!   and cuboids, false photons.
+//!   layers of different media over a ground; half-spaces; spheres, cavities and critical bodies of isotropic scattering; point
+//!   sources in unbounded media; kernel theory: moments, blur, edges, sinusoids, beams, the k nearest rule, progressive passes,
+//!   treatments of the boundary of slabs, spheres and cuboids, false photons.
 //! - Simulated: media in slabs, spheres and cuboids, homogeneous, on grids (`.vol` files), as clouds and thinning out with
 //!   height, that absorb, scatter and emit, also within glass and in one another; phase functions of one and two
 //!   Henyey-Greenstein terms, Schlick, Rayleigh, tables; diffuse surfaces with textures, mirrors, smooth dielectrics, coloured filters;
@@ -25,10 +25,10 @@
 //!   each compared with an unbiased reference block by block: the page says which agree, which differ, and where too little can be judged.
 //! - Measured: the nine experiments above, on fluences in slabs, spheres, cuboids and shafts, on radiances along marched rays, and
 //!   on pixels of boxes of fog.
-//! - Not here: exact spheres of anisotropic scattering, exact radiance between refracting faces, layers of different index, polarisation. Rough
-//!   glass and glossy surfaces, spectra of more than three channels, motion. Progressive photon maps, beams, connections between
-//!   paths from the eye and from the lights: caustics seen in mirrors and through glass, by lights small or without extent, have
-//!   no unbiased reference. Regions and lights' volumes are spheres, cuboids and slabs.
+//! - Not here: exact spheres of anisotropic scattering, exact radiance between refracting faces, layers of different index,
+//!   polarisation. Rough glass and glossy surfaces, spectra of more than three channels, motion. Progressive photon maps,
+//!   beams, connections between paths from the eye and from the lights: caustics seen in mirrors and through glass, by lights
+//!   small or without extent, have no unbiased reference. Regions and lights' volumes are spheres, cuboids and slabs.
 
 pub mod error;
 pub mod estimators;

@@ -281,8 +281,9 @@ impl StratifiedSlab {
     }
 
     /// What the nodes leave open of fluence and fluxes by the light that comes from behind interfaces close by, almost
-    /// level. Its radiance changes there by what is emitted and scattered, no more than four times its mean; fluxes are made
-    /// of it on their way, as far as it is of one size.
+    /// level. Its radiance changes there by what is emitted and scattered, which is taken to be at most four times its mean
+    /// over directions: tried against a third set of nodes, not proved. Fluxes are made of it on their way, as far as it is of
+    /// one size.
     fn horizons(&self, t: f64, fluence: f64) -> [f64; 3] {
         let Problem { layers, ground, depths, .. } = self.problem.as_ref();
         let mut sum = [0.0; 3];

@@ -571,6 +571,21 @@ mod tests {
         assert!((found - 0.37).abs() < 1e-12, "{found}");
     }
 
+    /// Estimates that take 1 us and 10 ns a photon, in a pilot whose balls hold a tenth of the photons asked for or fewer.
+    #[test]
+    fn an_estimate_takes_as_long_as_its_photons() {
+        let queries = std::array::from_fn(|ball| {
+            let found = 300.0 * radius(1.0, ball).powi(3);
+            (1e-6 + 1e-8 * found, found)
+        });
+        let (probes, on_boundary) = (Vec::new(), Vec::new());
+        let pilot = Pilot { seed: 1, photons: 1, probes, preparation_seconds: 0.0, queries, on_boundary };
+        assert!((pilot.estimate_seconds(3000.0) - 3.1e-5).abs() < 1e-12);
+        // A pilot that finds no more in larger balls tells its own time.
+        let same = Pilot { queries: [(2e-6, 5.0); BALLS], ..pilot };
+        assert_eq!(same.estimate_seconds(3000.0), 2e-6);
+    }
+
     #[test]
     fn numbers_are_rounded_up_to_two_digits() {
         for (x, rounded) in

@@ -2,8 +2,8 @@
 
 use crate::cost_model::{LOOKED_AT, STORED};
 use crate::harness::{
-    Answer, Estimate, FigureFiles, Headline, Point, Reached, Section, SectionReport, Settings, TARGETS,
-    Table, Unit, Untreated, number, percent, with_rough_error,
+    Answer, Estimate, FigureFiles, Headline, Point, QUERIES, Reached, Section, SectionReport, Settings,
+    TARGETS, Table, Unit, Untreated, number, percent, with_rough_error,
 };
 use std::cmp::Ordering;
 use turbid_figure::{Axis, Figure, Line, Panel, Points, Width};
@@ -11,8 +11,6 @@ use turbid_figure::{Axis, Figure, Line, Panel, Points, Width};
 /// The targets that the sentences are about.
 const MIDDLE: usize = 1;
 const LAST: usize = TARGETS.len() - 1;
-/// Queries of one map that the fields' answers are for.
-const QUERIES: &str = "4096";
 /// Panels of the figure in a row.
 const COLUMNS: usize = 3;
 
@@ -178,8 +176,8 @@ fn table(answers: &[&Answer]) -> Table {
              rays, where a photon stored counts {STORED} and one in an estimate {LOOKED_AT}: the same on every machine; the bias of \
              the fastest map, and the largest part of its error. None: no map of the sizes tried reaches the error. Last, the \
              smallest error with the faces of the medium untreated. The map holds all light, that which comes straight from the \
-             source too; the albedo is 0.99 in the slabs of τ = 8 and 0.9 in the others. Settings are chosen on one half of the maps and judged \
-             on the other."
+             source too; the albedo is 0.99 in the slabs of τ = 8 and 0.9 in the others. Settings are chosen by the errors of one half of \
+             the maps, and untreated ones judged by the other."
         ),
         columns,
         rows: answers.iter().map(row).collect(),

@@ -83,9 +83,9 @@ for (const box of document.querySelectorAll('.compare')) {
 /// Longer side of the large picture, at most \[CSS pixels\].
 const LARGE: f64 = 720.0;
 
-/// The renders of a picture that are compared by eye: what a plate may be called, and its button.
-const RENDERS: [(&[&str], &str); 3] =
-    [(&["photons"], "Photon map"), (&["rival", "paths"], "Rival, equal time"), (&["reference"], "Reference")];
+/// The renders of a picture that are compared by eye: the kind of its plate, and its button.
+const RENDERS: [(&str, &str); 3] =
+    [("photons", "Photon map"), ("rival", "Rival, equal time"), ("reference", "Reference")];
 
 /// The page of all pictures that are there.
 pub fn page(shown: &[PageEntry], settings: &Settings) -> Markup {
@@ -163,18 +163,15 @@ fn method(settings: &Settings) -> Markup {
 }
 
 fn section(picture: &Picture, shown: &PageEntry) -> Markup {
-    let of = |kinds: &[&str]| shown.plates.iter().find(|plate| kinds.contains(&plate.kind.as_str()));
+    let of = |kind: &str| shown.plates.iter().find(|plate| plate.kind == kind);
     let renders: Vec<(&Plate, &str)> =
-        RENDERS.iter().filter_map(|(kinds, button)| Some((of(kinds)?, *button))).collect();
+        RENDERS.iter().filter_map(|(kind, button)| Some((of(kind)?, *button))).collect();
     let others = shown.plates.iter().filter(|plate| renders.iter().all(|(render, _)| render != plate));
     let (width, height) = shown.size;
     let large = LARGE * (width as f64 / height.max(1) as f64).min(1.0);
     html! {
         h2 id=(picture.name) { (picture.title) }
         p { (picture.see) }
-        @if shown.ours.estimates.is_none() {
-            p.soft { "This picture was made by an earlier recipe; its text is that of the next one." }
-        }
         div.toggle hidden role="group" aria-label="Which picture" {
             @for (_, button) in &renders { button type="button" { (button) } }
         }
@@ -246,16 +243,14 @@ fn numbers(picture: &Picture, shown: &PageEntry) -> Markup {
 
 /// Photons asked for and found, map by map.
 fn estimates(ours: &RenderRecord) -> String {
-    let Some(maps) = &ours.estimates else {
-        return "found: not measured when this picture was made".to_string();
-    };
     let one = |(name, map): (&str, &MapEstimates)| {
         let (asked, found, underfull) = (map.asked, map.found, percent(map.underfull));
         format!(
             "{name} map: {asked} asked for, {found:.1} found on average, {underfull} of the estimates under-full"
         )
     };
-    let all = ["global", "caustic", "volume"].into_iter().zip(maps).zip(ours.stored);
+    let all =
+        ["global", "caustic", "volume"].into_iter().zip(ours.estimates.iter().flatten()).zip(ours.stored);
     let read = all.filter(|((_, map), stored)| map.count > 0 && *stored > 1).map(|(map, _)| map);
     read.map(one).collect::<Vec<_>>().join("; ")
 }

@@ -37,7 +37,8 @@ pub struct Picture {
     pub near: f64,
     /// Extent of what is seen \[L\]: steps of the march are twentieths of it.
     pub size: f64,
-    /// Whether steps shorten where the light changes, as in 1998: not where noise of transmittances would shorten all.
+    /// Whether steps shorten where the light changes, as in 1998: not in the cloud, where the probes of the light cost more than
+    /// shorter steps bring.
     pub is_adaptive: bool,
     /// The farthest that gathers reach \[L\].
     pub reach: f64,

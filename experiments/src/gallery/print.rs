@@ -10,7 +10,7 @@ use super::shown::PageEntry;
 use super::studio::Studio;
 use crate::harness::{duration, say};
 use anyhow::{Context, anyhow};
-use serde::{Deserialize, Serialize};
+use serde::Serialize;
 use std::path::Path;
 use turbid::Spectrum;
 
@@ -20,7 +20,7 @@ const WIDTH: f64 = 960.0;
 const PASSES: u64 = 16;
 
 /// How three pictures were made.
-#[derive(Debug, Clone, Serialize, Deserialize)]
+#[derive(Debug, Clone, Serialize)]
 pub struct Printed {
     /// Columns and rows of pixels.
     size: (usize, usize),
@@ -30,7 +30,7 @@ pub struct Printed {
     rival: String,
     /// Its picture in the same time.
     equal: RenderRecord,
-    /// Samples a pixel and CPU seconds of the reference.
+    /// Samples per pixel and CPU seconds of the reference.
     reference: (u64, f64),
 }
 
@@ -59,7 +59,7 @@ pub fn print(
         .ok_or_else(|| anyhow!("the page's rival, {}, is none that the scene permits", compared.rival))?;
     let ours = cache.photons("photons", picture.samples, 0)?;
     let equal = cache.rival("equal", rival, ours.facts.seconds)?;
-    // As many samples a pixel as the page's reference has, and never fewer than what stands beside it.
+    // As many samples per pixel as the page's reference has, and never fewer than what stands beside it.
     let wanted = page.reference.map_or(0, |(samples, _)| samples).max(equal.facts.samples + 1);
     let samples = wanted.div_ceil(PASSES);
     let mut reference = vec![Spectrum::ZERO; studio.grid().pixels()];

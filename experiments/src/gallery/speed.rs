@@ -106,6 +106,12 @@ mod tests {
             let said = format!("{:.2} ({:5.2} to {:5.2})", row.ratio, row.low, row.high);
             assert!(KEPT.iter().any(|kept| kept.contains(&said)), "{said}");
         }
+        // The maps of 1998 are the second and the third of their line.
+        let title = "Time of Mitsuba scalar_rgb over that of the cheapest map, of the map of 1998, and of that with 200,000 on surfaces";
+        let line = KEPT[1].split_once(title).unwrap().1.lines().find(|line| line.contains("20 %")).unwrap();
+        let starts: Vec<usize> = line.match_indices(" (").map(|(at, _)| at).collect();
+        let at = |row: &Row| line.find(&format!("{:.2} ({:5.2} to", row.ratio, row.low)).unwrap();
+        assert!(starts[0] < at(&rows[3]) && at(&rows[3]) < starts[1] && starts[1] < at(&rows[4]));
     }
 
     #[test]

@@ -5,6 +5,9 @@ use super::Estimate;
 /// Name of the section that all answers together become, which opens the report.
 pub const ANSWER: &str = "answer";
 
+/// Queries of one map that answers are for; a picture's are its pixels' samples.
+pub const QUERIES: u64 = 4096;
+
 /// Root mean square errors that are asked about, relative to the exact value.
 pub const TARGETS: [f64; 4] = [0.2, 0.1, 0.05, 0.03];
 

@@ -64,6 +64,13 @@ impl Estimate {
         Estimate { std_error: libm::hypot(self.std_error, error), ..self }
     }
 
+    /// One over the statistic, with the same relative error.
+    #[must_use]
+    pub fn inverse(self) -> Self {
+        let value = 1.0 / self.value;
+        Estimate { value, std_error: self.std_error * value * value, ..self }
+    }
+
     /// The root of a mean square, 0 where that came out below 0; its error follows from the mean square's, and where that
     /// is within its own error of 0, from the root of that.
     #[must_use]
@@ -141,6 +148,14 @@ mod tests {
 
     fn five() -> Estimate {
         Estimate::mean(&[1.0, 2.0, 3.0, 4.0, 5.0].iter().collect())
+    }
+
+    /// The inverse of 3 has the error of 3 over 9, and its inverse is 3 again.
+    #[test]
+    fn an_inverse_keeps_the_relative_error() {
+        let inverse = five().inverse();
+        assert!((inverse.std_error() - 0.5f64.sqrt() / 9.0).abs() < 1e-15);
+        assert!((inverse.inverse().std_error() - 0.5f64.sqrt()).abs() < 1e-15);
     }
 
     /// The root of 9 ± e is 3 ± e/6; of a square of nothing, 0 with half the root of its error.

@@ -30,7 +30,7 @@ mod settings;
 mod study;
 mod unit;
 
-pub use answer::{ANSWER, Answer, Curves, Point, Reached, TARGETS, Untreated};
+pub use answer::{ANSWER, Answer, Curves, Point, QUERIES, Reached, TARGETS, Untreated};
 pub(crate) use cell::read as read_cell;
 pub use cell::{CellId, CellOutput, CellRow};
 pub use cells::Cells;

@@ -95,11 +95,13 @@ fn gain(above: impl Iterator<Item = f64>, below: impl Iterator<Item = f64>) -> E
 pub enum Currency {
     /// Rays, records and gathered photons, each as one.
     Operations,
+    /// The same with records and gathered photons as parts of a ray, as in [`cost_model`](crate::cost_model).
+    Rays,
     /// CPU seconds of this machine.
     Seconds,
 }
 
-/// What a map costs against a path tracer of the same error.
+/// What a map costs against a path tracer.
 pub struct BreakEven {
     /// A query by the path tracer, over one from the map.
     pub ratio: Estimate,
@@ -110,11 +112,17 @@ pub struct BreakEven {
     pub queries: Option<Estimate>,
 }
 
-/// A setting against a path tracer of the same error. A map is prepared once and asked often; the path tracer pays for
-/// each query alike.
+/// A setting against a path tracer of the same error.
 pub fn break_even(case: &Measured, paths: &Paths, currency: Currency) -> BreakEven {
+    break_even_at(case, paths, currency, None)
+}
+
+/// A setting against a path tracer of an error, that of the setting itself if none is given. A map is prepared once and asked
+/// often; the path tracer pays for each query alike.
+pub fn break_even_at(case: &Measured, paths: &Paths, currency: Currency, error: Option<f64>) -> BreakEven {
     let (prepare, found, sample) = match currency {
         Currency::Operations => (&case.prepare, &case.found, &paths.rays),
+        Currency::Rays => (&case.prepare_rays, &case.query_rays, &paths.rays),
         Currency::Seconds => (&case.prepare_seconds, &case.query_seconds, &paths.seconds),
     };
     // Joining maps and batches of paths by number is a free choice: they share nothing.
@@ -122,7 +130,7 @@ pub fn break_even(case: &Measured, paths: &Paths, currency: Currency) -> BreakEv
     let joined: Vec<[f64; 5]> = maps
         .zip(paths.variance.iter().zip(sample))
         .map(|(((map, &prepare), &found), (&variance, &sample))| {
-            [map.square, prepare, found, variance, sample]
+            [error.map_or(map.square, |error| error * error), prepare, found, variance, sample]
         })
         .collect();
     let means = |maps: &[[f64; 5]]| {

@@ -23,6 +23,10 @@ pub struct Measured {
     pub prepare: Vec<f64>,
     /// Records that each map gathers for a query.
     pub found: Vec<f64>,
+    /// What each map takes before its first query, counted in rays.
+    pub prepare_rays: Vec<f64>,
+    /// A query of each map, counted in rays.
+    pub query_rays: Vec<f64>,
     /// CPU seconds of each map before its first query, on this machine.
     pub prepare_seconds: Vec<f64>,
     /// CPU seconds of a query of each map; those of a clipped one include the volume of the part inside.
@@ -48,6 +52,11 @@ impl Measured {
     /// CPU seconds for so many queries on this machine, by the mean over maps.
     pub fn seconds(&self, queries: f64) -> f64 {
         mean(&self.prepare_seconds) + queries * mean(&self.query_seconds)
+    }
+
+    /// Rays, and what takes as long, for so many queries, by the mean over maps.
+    pub fn rays(&self, queries: f64) -> f64 {
+        mean(&self.prepare_rays) + queries * mean(&self.query_rays)
     }
 
     /// The largest part of the predicted error.
@@ -83,21 +92,6 @@ impl Paths {
     /// Operations a query to reach a root mean square error: as many samples as its variance asks for, at least one.
     pub fn cost(&self, rms: f64) -> f64 {
         mean(&self.rays) * (mean(&self.variance) / (rms * rms)).max(1.0)
-    }
-}
-
-/// What each map takes, counted in rays: as many on every machine.
-pub struct Work {
-    /// Before its first query.
-    pub prepare: Vec<f64>,
-    /// A query.
-    pub query: Vec<f64>,
-}
-
-impl Work {
-    /// Of so many queries, by the mean over maps.
-    pub fn of(&self, queries: f64) -> f64 {
-        mean(&self.prepare) + queries * mean(&self.query)
     }
 }
 
@@ -150,6 +144,8 @@ impl Data {
                 let [shooting, building] = &size.seconds;
                 let prepare_seconds: Vec<f64> = shooting.iter().zip(building).map(|(a, b)| a + b).collect();
                 let prepare: Vec<f64> = size.rays.iter().zip(&size.stored).map(records).collect();
+                let parts = |(rays, stored): (&f64, &f64)| rays + STORED * stored;
+                let prepare_rays: Vec<f64> = size.rays.iter().zip(&size.stored).map(parts).collect();
                 for setting in Setting::all(field, photons) {
                     let asked = (setting.lateral() * LAYERS) as f64;
                     let timed = |what: &str| {
@@ -160,13 +156,16 @@ impl Data {
                     let clipped: Vec<f64> =
                         plain.iter().zip(timed("clipping")).map(|(p, s)| p + s / asked).collect();
                     for treatment in Treatment::ALL {
+                        let found = cells.values(&setting.name(), "found")?;
                         data.measured.push(Measured {
                             setting,
                             treatment,
                             expected: layers(known, &setting, treatment)?,
                             maps: map_errors(&setting, treatment, &exact, cells)?,
                             prepare: prepare.clone(),
-                            found: cells.values(&setting.name(), "found")?,
+                            prepare_rays: prepare_rays.clone(),
+                            query_rays: found.iter().map(|found| LOOKED_AT * found).collect(),
+                            found,
                             prepare_seconds: prepare_seconds.clone(),
                             query_seconds: match treatment {
                                 Treatment::Plain => plain.clone(),
@@ -195,18 +194,6 @@ impl Data {
     /// The path tracer in one field.
     pub fn paths(&self, field: &Field) -> Option<&Paths> {
         self.paths.iter().find(|p| p.field == field)
-    }
-
-    /// What a case takes, map by map, counted in rays.
-    pub fn work(&self, case: &Measured) -> Work {
-        let is_of = |s: &&MapSize| (s.field, s.photons) == (case.setting.field, case.setting.photons);
-        let size = self.sizes.iter().find(is_of);
-        let prepare =
-            |s: &MapSize| s.rays.iter().zip(&s.stored).map(|(rays, stored)| rays + STORED * stored).collect();
-        Work {
-            prepare: size.map(prepare).unwrap_or_default(),
-            query: case.found.iter().map(|found| LOOKED_AT * found).collect(),
-        }
     }
 
     /// The largest maps of a field.

@@ -72,6 +72,18 @@ fn every_number_of_the_readme_is_kept() {
     }
 }
 
+/// The strip's pictures are those of the kept record, at the width of print, and its rival had the map's time.
+#[test]
+fn the_strip_is_what_was_printed() {
+    let record: serde_json::Value = serde_json::from_str(&read("results/print/cornell-fog.json")).unwrap();
+    assert_eq!(record["size"], serde_json::json!([960, 960]));
+    let rival = record["rival"].as_str().unwrap();
+    assert!(read("README.md").contains(&format!("| photon maps | {rival}, equal time | reference |")));
+    let seconds = |of: &str| record[of]["seconds"].as_f64().unwrap();
+    assert!((seconds("equal") / seconds("ours") - 1.0).abs() < 0.01);
+    assert!(record["reference"][0].as_u64() > record["equal"]["samples"].as_u64());
+}
+
 /// What the kept report says of claims and of photon maps beside paths is in the kept tables.
 #[test]
 fn the_kept_report_says_what_its_tables_say() {

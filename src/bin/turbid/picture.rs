@@ -416,7 +416,8 @@ impl Readout {
         if !(self.near >= 0.0 && self.near.is_finite()) {
             return Err(anyhow!("--near is {}; allowed: finite and at least 0", self.near));
         }
-        // Where the density varies, direct light is probed by transmittances that are estimates: their noise would halve every step.
+        // Where the density varies, probes of direct light cost more than shorter steps bring: each tracks a shadow ray through the
+        // density, empty places included (tests/cli/pictures.rs has the count).
         let is_probed = passes == 1 && scene.plan().densities.is_empty();
         let tolerance = self.adapt.unwrap_or(if is_probed { TOLERANCE } else { 0.0 });
         if !(tolerance >= 0.0 && tolerance.is_finite()) {

@@ -78,7 +78,10 @@ fn speed(pictures: &Pictures, currency: Currency, error: f64) -> Estimate {
 fn answer(pictures: &Pictures) -> Answer {
     let fit = pictures.fit(Currency::Seconds);
     let cells: Vec<&Cell> = pictures.cells.iter().collect();
-    let reached = |target: f64| {
+    let [times, works] =
+        [Currency::Seconds, Currency::Rays].map(|currency| pictures.gains(currency, TARGETS));
+    let reached = |index: usize| {
+        let target = TARGETS[index];
         let square = (target * fit.mean) * (target * fit.mean);
         let (size, _) = cheapest(&fit.maps, PIXELS, square)?;
         let maps = &fit.maps[size];
@@ -89,9 +92,9 @@ fn answer(pictures: &Pictures) -> Answer {
         ];
         let largest = parts.into_iter().max_by(|a, b| a.1.total_cmp(&b.1));
         Some(Reached {
-            time: pictures.gained(Currency::Seconds, target)?,
+            time: times[index]?,
             pays_from: None,
-            work: pictures.gained(Currency::Rays, target)?,
+            work: works[index]?,
             bias: Estimate::jackknife(&jackknife(&cells, |chosen: &[&Cell]| {
                 let fit = Fit::of(chosen, Currency::Seconds);
                 fit.squared_biases[size] / (fit.mean * fit.mean)
@@ -102,7 +105,7 @@ fn answer(pictures: &Pictures) -> Answer {
     };
     Answer {
         scene: format!("box of fog, picture of {SIDE} x {SIDE}"),
-        reached: TARGETS.map(reached),
+        reached: std::array::from_fn(reached),
         untreated: None,
         curves: Some(figure::curves(pictures)),
     }

@@ -39,14 +39,18 @@ impl Pictures {
         format!("{:.1} ({:.1} to {:.1})", of(&self.fit(Currency::Seconds)), interval.low, interval.high)
     }
 
-    /// Cost of paths over that of the cheapest map at an error over the mean, with half its interval over resampled cells as two
-    /// standard errors: the cheapest of several sizes has no jackknife. None below what every map has left.
-    pub fn gained(&self, currency: Currency, error: f64) -> Option<Estimate> {
-        let value = gain(&self.fit(currency), PIXELS, error)?;
-        let resampled = self.resampled(currency).map(|fit| gain(&fit, PIXELS, error).unwrap_or(0.0));
-        let interval = middle(resampled.collect());
-        let std_error = (interval.high - interval.low) / (2.0 * NORMAL_95);
-        Some(Estimate::resampled(value, std_error, self.cells.len() as u64))
+    /// Cost of paths over that of the cheapest map at errors over the mean, with half their intervals over resampled cells as
+    /// two standard errors: the cheapest of several sizes has no jackknife. None below what every map has left.
+    pub fn gains<const N: usize>(&self, currency: Currency, errors: [f64; N]) -> [Option<Estimate>; N] {
+        let fit = self.fit(currency);
+        let resampled: Vec<Fit> = self.resampled(currency).collect();
+        errors.map(|error| {
+            let value = gain(&fit, PIXELS, error)?;
+            let of = |fit: &Fit| gain(fit, PIXELS, error).unwrap_or(0.0);
+            let interval = middle(resampled.iter().map(of).collect());
+            let std_error = (interval.high - interval.low) / (2.0 * NORMAL_95);
+            Some(Estimate::resampled(value, std_error, self.cells.len() as u64))
+        })
     }
 
     /// Of the resampled cells.
