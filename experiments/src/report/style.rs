@@ -59,12 +59,12 @@ details.rest > summary { margin-bottom: 12px; }
   @page { size: A4; margin: 13mm 15mm; }
   body { max-width: none; padding: 0; font-size: 9pt; line-height: 1.35; }
   h1 { font-size: 19pt; } h2 { font-size: 13pt; margin: 4mm 0 1mm; padding-top: 1.5mm; break-after: avoid; } h1 + .byline { margin-bottom: 3mm; } .verdicts { font-size: 8pt; } .question { font-size: 10pt; }
-  p { margin-bottom: 2mm; max-width: none; } figure { margin: 2mm 0; } figure svg { max-height: 48mm; width: auto; max-width: 100%; margin-bottom: 2mm; }
+  p { margin-bottom: 2mm; max-width: none; } figure { margin: 2mm 0; } figure svg { max-height: 45mm; width: auto; max-width: 100%; margin-bottom: 2mm; }
   figure, tr, .note, section > p { break-inside: avoid; } h3, caption { break-after: avoid; } thead { display: table-header-group; }
   .fold:not(:has(details[open])) tr.more:not(:has(td:target)) { display: table-row; }
   details:not([open]), .fold details, .find, h2 .up, nav.contents, .behind, section > .question { display: none; }
   .scroll { overflow: visible; background: none; margin: 3mm 0; } .scroll caption { max-width: none; } table { font-size: 7pt; line-height: 1.25; } figcaption, caption { font-size: 8pt; line-height: 1.35; }
-  th, td { padding: 2px 6px 2px 0; overflow-wrap: break-word; } th.n, td.n { white-space: normal; } td.claim { min-width: 0; width: 44%; } #answer td:first-child { min-width: 22mm; } #answer td > div:not(.lead) { display: inline; white-space: normal; } #answer td > div:not(.lead):not(:last-child)::after { content: '; '; } .advice, .badge { font-size: 7pt; } .badge { padding: 0 4px; } figure.narrow svg { max-height: 48mm; } #answer figure svg { max-height: 68mm; } #answer table { font-size: 6.3pt; } #answer caption { font-size: 7pt; } #answer td { padding: 1px 5px 1px 0; }
+  th, td { padding: 2px 6px 2px 0; overflow-wrap: break-word; } th.n, td.n { white-space: normal; } td.claim { min-width: 0; width: 44%; } #answer td:first-child { min-width: 22mm; } #answer td > div:not(.lead) { display: inline; white-space: normal; } #answer td > div:not(.lead):not(:last-child)::after { content: '; '; } .advice, .badge { font-size: 7pt; } .badge { padding: 0 4px; } figure.narrow svg { max-height: 45mm; } #answer figure svg { max-height: 68mm; } #answer table { font-size: 6.3pt; } #answer caption { font-size: 7pt; } #answer td { padding: 1px 5px 1px 0; }
   .badge, .rejected { print-color-adjust: exact; -webkit-print-color-adjust: exact; }
   a { color: inherit; } dl.words, pre { font-size: 8pt; } h3 { font-size: 10pt; margin: 3mm 0 1mm; }
 }
