@@ -4,6 +4,7 @@
 //! what their predictions share, and [`report`] writes what they found.
 
 pub mod answer;
+pub mod benchmarks;
 pub mod bias;
 pub mod blur;
 pub mod boundary;

@@ -1,0 +1,113 @@
+//! What a set asks the simulator with: scenes that are kept beside the page, and how many histories.
+
+use super::comparison::{Comparison, Row};
+use super::settings::Settings;
+use anyhow::Context;
+use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicU64, Ordering};
+use std::time::Instant;
+use turbid::scene::{Orders, Scene, SceneFile};
+use turbid::sensor::{Measurement, PathSettings, PhotonSettings, by_paths, by_photons};
+use turbid::transport::NoProgress;
+use turbid_analytic::Value;
+
+/// A run of the benchmarks, as a set sees it.
+pub struct Bench<'a> {
+    settings: &'a Settings,
+    scenes: PathBuf,
+    /// Questions asked: each has random numbers of its own.
+    asked: AtomicU64,
+}
+
+impl<'a> Bench<'a> {
+    /// A run whose scenes are kept in a folder of the page.
+    pub(super) fn new(settings: &'a Settings) -> Self {
+        Bench { settings, scenes: settings.folder().join("scenes"), asked: AtomicU64::new(0) }
+    }
+
+    /// One of two numbers: that of a quick run, or that of a full one.
+    pub fn pick<T>(&self, quick: T, full: T) -> T {
+        if self.settings.quick { quick } else { full }
+    }
+
+    /// Numbers of another code for a set, if the user has a file of them.
+    ///
+    /// # Errors
+    /// If it cannot be read
+    pub fn theirs(&self, set: &str) -> anyhow::Result<Option<(String, String)>> {
+        let Some(path) = self.settings.theirs(set) else { return Ok(None) };
+        let text = std::fs::read_to_string(path).with_context(|| path.display().to_string())?;
+        Ok(Some((path.display().to_string(), text)))
+    }
+
+    /// Keeps a file that a scene reads.
+    ///
+    /// # Errors
+    /// If it cannot be written
+    pub fn file(&self, name: &str, text: &str) -> anyhow::Result<()> {
+        keep(&self.scenes, name, text)
+    }
+
+    /// Keeps a scene as a file, and reads it.
+    ///
+    /// # Errors
+    /// If it cannot be written, or is none
+    pub fn scene(&self, name: &str, text: &str) -> anyhow::Result<Scene> {
+        let file = format!("{name}.toml");
+        keep(&self.scenes, &file, text)?;
+        let read = SceneFile::from_toml(text).with_context(|| file.clone())?;
+        read.scene(&self.scenes).context(file)
+    }
+
+    fn replicate(&self) -> u64 {
+        self.asked.fetch_add(1, Ordering::Relaxed)
+    }
+
+    /// Every sensor of a scene by paths.
+    ///
+    /// # Errors
+    /// Those of the path tracer
+    pub fn paths(&self, scene: &Scene, samples: u64) -> anyhow::Result<Vec<Measurement>> {
+        let settings = PathSettings {
+            samples,
+            seed: self.settings.seed,
+            replicate: self.replicate(),
+            orders: Orders::ALL,
+        };
+        Ok(by_paths(scene, &settings, &NoProgress)?)
+    }
+
+    /// Every sensor of a scene by photons, tallies and maps.
+    ///
+    /// # Errors
+    /// Those of the photon pass
+    pub fn photons(&self, scene: &Scene, mut settings: PhotonSettings) -> anyhow::Result<Vec<Measurement>> {
+        settings.seed = self.settings.seed.wrapping_add(self.replicate() << 32);
+        Ok(by_photons(scene, &settings, &NoProgress)?.measurements)
+    }
+}
+
+fn keep(folder: &Path, name: &str, text: &str) -> anyhow::Result<()> {
+    std::fs::create_dir_all(folder).with_context(|| folder.display().to_string())?;
+    Ok(turbid::output::write_atomically(&folder.join(name), |out| out.write_all(text.as_bytes()))?)
+}
+
+/// An exact value as ours of a row.
+pub fn exact(value: Value) -> (f64, Option<f64>) {
+    (value.value, Some(value.error))
+}
+
+/// A measured value as ours of a row.
+pub fn measured(m: &Measurement) -> (f64, Option<f64>) {
+    (m.mean, m.std_error)
+}
+
+/// A comparison with the time that it took.
+///
+/// # Errors
+/// Those of the rows
+pub fn timed(by: &str, rows: impl FnOnce() -> anyhow::Result<Vec<Row>>) -> anyhow::Result<Comparison> {
+    let start = Instant::now();
+    let rows = rows()?;
+    Ok(Comparison { by: by.to_string(), rows, seconds: start.elapsed().as_secs_f64() })
+}

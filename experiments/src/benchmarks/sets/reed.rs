@@ -1,0 +1,78 @@
+//! Reed's slab.
+
+use super::{Plot, Set};
+use crate::benchmarks::comparison::{Comparison, Row};
+use crate::benchmarks::published::{Entry, Published};
+use crate::benchmarks::scene::{Bench, exact, timed};
+use turbid_analytic::{Ground, Layer, Phase, StratifiedSlab};
+
+pub(super) const SET: Set = Set {
+    name: "reed",
+    title: "Reed's slab",
+    source: "W. H. Reed, Nucl. Sci. Eng. 46 (1971); cell averages by a Monte Carlo code with 3e10 histories",
+    about: "Fluence, on average over cells of 0.1, in five materials from the mirror at x = 0 to the vacuum at x = 8: a source of 50 in a black \
+            medium of extinction 50, a black medium of extinction 5, a void, a source of 1 in a scattering medium (extinction 1, albedo 0.9), the \
+            same without source.",
+    trust: "Six digits and noise, which is not stated: in the scattering media neighbouring cells differ by 1e-4 at random and all of them \
+            are uncertain by 6e-5 together, since one history in a hundred starts there; 2e-5 is taken in the black source and 1.2e-4 elsewhere.",
+    explained: &[],
+    open: false,
+    plot: Plot::Curves { x: ("x", ""), y: ("Fluence", ""), is_log: false },
+    seconds: [2.0, 40.0],
+    run,
+};
+
+/// Extinction, albedo and source of the medium at x; nothing is in the void.
+fn medium(x: f64) -> Option<[f64; 3]> {
+    match x {
+        x if x < 2.0 => Some([50.0, 0.0, 50.0]),
+        x if x < 3.0 => Some([5.0, 0.0, 0.0]),
+        x if x < 5.0 => None,
+        x if x < 6.0 => Some([1.0, 0.9, 1.0]),
+        _ => Some([1.0, 0.9, 0.0]),
+    }
+}
+
+fn run(_: &Bench) -> anyhow::Result<Vec<Comparison>> {
+    let table = Published::read(
+        "reed_openmc.csv",
+        include_str!("../tables/reed_openmc.csv"),
+        &["x_cell_middle", "cell_width", "scalar_flux"],
+    )?;
+    // From the vacuum down to the mirror.
+    let mut entries: Vec<Entry> = table.entries().collect();
+    entries.reverse();
+    let referee = timed("exact", || {
+        let mut layers = Vec::new();
+        for e in &entries {
+            if let Some([extinction, albedo, source]) = medium(e.number("x_cell_middle")?) {
+                let tau = extinction * e.number("cell_width")?;
+                let layer = Layer::new(tau, albedo, &Phase::isotropic())?;
+                layers.push(layer.emitting(source / extinction)?);
+            }
+        }
+        let slab = StratifiedSlab::new(&layers, Ground::mirror(), None)?;
+        let mut layer = 0;
+        let mut rows = Vec::new();
+        for e in &entries {
+            let x = e.number("x_cell_middle")?;
+            let ours = if medium(x).is_some() {
+                layer += 1;
+                slab.mean_fluence(layer - 1)?
+            } else {
+                // Nothing happens in the void: it has the fluence of its faces, at depth 3.
+                slab.fluence(3.0)?
+            };
+            rows.push(row(e, exact(ours))?);
+        }
+        Ok(rows)
+    })?;
+    Ok(vec![referee])
+}
+
+fn row(e: &Entry, ours: (f64, Option<f64>)) -> anyhow::Result<Row> {
+    let x = e.number("x_cell_middle")?;
+    let (theirs, rounding) = e.rounded("scalar_flux")?;
+    let noise = if x < 2.0 { 2e-5 } else { 1.2e-4 };
+    Ok(Row::new("Reed", "fluence", x, (theirs, libm::hypot(rounding, noise * theirs)), ours))
+}
