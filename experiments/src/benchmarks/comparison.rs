@@ -1,7 +1,7 @@
 //! One comparison: rows of theirs and ours, the sum of squares over combined errors, and what it says.
 
 use serde::{Deserialize, Serialize};
-use turbid::stats::chi_squared_p;
+use turbid::stats::{chi_squared_p, normal_p};
 
 /// Below this p a comparison differs. With 50 comparisons on the page a false alarm happens on one page in 200.
 pub const LEVEL: f64 = 1e-4;
@@ -106,11 +106,18 @@ impl Comparison {
         (n > 0).then(|| chi_squared_p(sum, n))
     }
 
+    /// Probability that the largest of as many differences is as large by chance, at most: one row that is wrong may hide in
+    /// the sum over many that are known better than they need be.
+    pub fn p_of_worst(&self) -> f64 {
+        let z = self.worst().and_then(Row::z).unwrap_or(0.0);
+        (normal_p(z) * self.chi_squared().1 as f64).min(1.0)
+    }
+
     /// What it says.
     pub fn verdict(&self) -> Verdict {
         match self.p() {
             None => Verdict::Open,
-            Some(p) if p < LEVEL => Verdict::Differs,
+            Some(p) if p < LEVEL || self.p_of_worst() < LEVEL => Verdict::Differs,
             Some(_) => Verdict::Agrees,
         }
     }
@@ -157,6 +164,15 @@ mod tests {
         assert!((bias - 6.3 * 0.005 / libm::sqrt(40.0)).abs() < 1e-12);
         assert_eq!(comparison(1.2 * bias).verdict(), Verdict::Differs);
         assert_eq!(comparison(0.2 * bias).verdict(), Verdict::Agrees);
+    }
+
+    #[test]
+    fn one_wrong_row_is_found() {
+        let mut c = comparison(0.0);
+        // Errors that are far too wide hide 7 of them in the sum.
+        c.rows.iter_mut().for_each(|row| row.ours = 1.0);
+        c.rows[5].ours = 1.035;
+        assert!(c.p().unwrap() > 0.1 && c.verdict() == Verdict::Differs);
     }
 
     #[test]

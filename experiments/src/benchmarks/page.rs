@@ -57,8 +57,8 @@ pub fn page(answered: &[Answered], settings: &Settings) -> Markup {
                 p.soft {
                     "Each value of ours is held against theirs over the combined error: the standard error of both, or the proven bound of an exact "
                     "value, and the rounding of a printed number (a unit of its last digit over the root of 12). The squares of these add up to "
-                    "chi-squared, with as many degrees of freedom as there are values; an answer differs where chance would give a larger sum with a "
-                    "probability below " (number(LEVEL)) ". Values whose error cannot be trusted are shown, and not counted. The bias detected is one common "
+                    "chi-squared, with as many degrees of freedom as there are values; an answer differs where chance would give a larger sum, or one "
+                    "difference as large, with a probability below " (number(LEVEL)) ". Values whose error cannot be trusted are shown, and not counted. The bias detected is one common "
                     "to all values that would be found with a probability of 99 per cent."
                 }
                 div.scroll { table {

@@ -20,8 +20,12 @@ pub fn figure(set: &Set, comparisons: &[Comparison]) -> Figure {
         Plot::Curves { x, .. } => Axis::linear(x.0, x.1),
         Plot::Rows => Axis::linear("Row of the table", ""),
     };
-    let panels = vec![values.with_legend(Legend::Right), scores(comparisons, x).with_legend(Legend::Right)];
-    Figure { width: Width::Double, heights: vec![0.42, 0.22], ..Figure::new(panels) }
+    let mut panels = vec![values.with_legend(Legend::Right)];
+    if comparisons.iter().any(|c| c.chi_squared().1 > 0) {
+        panels.push(scores(comparisons, x).with_legend(Legend::Right));
+    }
+    let heights = [0.42, 0.22][..panels.len()].to_vec();
+    Figure { width: Width::Double, heights, ..Figure::new(panels) }
 }
 
 /// Cases in their order.

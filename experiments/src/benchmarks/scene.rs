@@ -30,6 +30,11 @@ impl<'a> Bench<'a> {
         if self.settings.quick { quick } else { full }
     }
 
+    /// Seed of all random numbers.
+    pub fn seed(&self) -> u64 {
+        self.settings.seed
+    }
+
     /// Numbers of another code for a set, if the user has a file of them.
     ///
     /// # Errors

@@ -2,6 +2,8 @@
 
 mod disort;
 mod garcia_siewert;
+mod kobayashi;
+mod markov;
 mod reed;
 mod van_de_hulst;
 
@@ -56,4 +58,8 @@ pub const ALL: &[&Set] = &[
     &garcia_siewert::LAYERS,
     &disort::SET,
     &reed::SET,
+    &markov::SET,
+    &kobayashi::ONE,
+    &kobayashi::TWO,
+    &kobayashi::THREE,
 ];
