@@ -18,10 +18,8 @@ pub struct Row {
 }
 
 /// What `cargo bench -p turbid-benches --bench fogbox -- iso hg het` printed last, and the same with `-- maps 8`.
-const KEPT: [&str; 2] = [
-    include_str!("../../../results/benchmarks/fogbox.txt"),
-    include_str!("../../../results/benchmarks/maps.txt"),
-];
+const KEPT: [&str; 2] =
+    [include_str!("../../../results/speed/fogbox.txt"), include_str!("../../../results/speed/maps.txt")];
 
 /// The numbers of a line, signs of an interval apart.
 fn numbers(line: &str) -> Vec<f64> {

@@ -138,7 +138,7 @@ fn every_link_of_the_pages_leads_somewhere() {
 #[test]
 fn the_benchmarks_are_kept_outputs() {
     let kept: String = ["tree", "fogbox", "maps", "plan", "memory", "referee"]
-        .map(|name| read(&format!("results/benchmarks/{name}.txt")))
+        .map(|name| read(&format!("results/speed/{name}.txt")))
         .concat();
     let page = read("BENCHMARKS.md");
     let blocks: Vec<&str> =

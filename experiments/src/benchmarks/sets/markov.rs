@@ -46,7 +46,7 @@ fn run(bench: &Bench) -> anyhow::Result<Vec<Comparison>> {
         ],
     )?;
     let entries: Vec<Entry> = table.entries().collect();
-    let realisations = bench.pick(200, 20_000);
+    let realisations = bench.pick(25, 400);
     let exact = timed("exact, ensemble", || {
         let mut rows = Vec::new();
         for (index, pair) in entries.chunks(2).enumerate() {

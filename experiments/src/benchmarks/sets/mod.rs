@@ -1,6 +1,7 @@
 //! The sets: one file each.
 
 mod disort;
+mod duct;
 mod garcia_siewert;
 mod kobayashi;
 mod markov;
@@ -58,6 +59,7 @@ pub const ALL: &[&Set] = &[
     &garcia_siewert::LAYERS,
     &disort::SET,
     &reed::SET,
+    &duct::SET,
     &markov::SET,
     &kobayashi::ONE,
     &kobayashi::TWO,
