@@ -5,6 +5,7 @@ mod duct;
 mod garcia_siewert;
 mod kobayashi;
 mod markov;
+mod mcml;
 mod reed;
 mod van_de_hulst;
 
@@ -59,6 +60,7 @@ pub const ALL: &[&Set] = &[
     &garcia_siewert::LAYERS,
     &disort::SET,
     &reed::SET,
+    &mcml::SET,
     &duct::SET,
     &markov::SET,
     &kobayashi::ONE,
