@@ -167,7 +167,7 @@ impl<'a> Tallies<'a> {
                         tallies.add(first + bin, *weight * part.length());
                     });
                 }
-                (Binned::Fluence { space, .. }, Step::Collision(arrival, medium)) if counts => {
+                (Binned::Fluence { space, scoring: Scoring::Collision }, Step::Collision(arrival, medium)) if counts => {
                     let Some(bin) = self.bin_at(space, arrival.position) else { continue };
                     let sigma_t = self.scene.medium(*medium).sigma_t(arrival.position);
                     self.add(first + bin, arrival.walker.weight.over(sigma_t));

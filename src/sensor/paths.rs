@@ -165,7 +165,7 @@ pub fn sample_counted(
 }
 
 /// One sample of the mean over a bin, and the rays it took: the field at a uniform point of the bin.
-fn sample_bin(
+pub fn sample_bin(
     scene: &Scene,
     (binned, bin): (&Binned, usize),
     orders: Orders,
