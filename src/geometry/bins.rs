@@ -113,7 +113,8 @@ impl Axis {
 
     /// Place of the plane at the lower end of a stretch.
     fn plane(&self, index: i64) -> f64 {
-        let place = |part: i64| if part == self.count { self.max } else { self.min + part as f64 * self.step };
+        let place =
+            |part: i64| if part == self.count { self.max } else { self.min + part as f64 * self.step };
         match self.period {
             None => place(index),
             Some(period) => {
@@ -169,9 +170,8 @@ impl Voxels {
         if !(p.cmpge(min).all() && p.cmplt(max).all()) {
             return None;
         }
-        let part = |axis: usize| {
-            (((p[axis] - min[axis]) / self.step[axis]) as usize).min(self.count[axis] - 1)
-        };
+        let part =
+            |axis: usize| (((p[axis] - min[axis]) / self.step[axis]) as usize).min(self.count[axis] - 1);
         Some(part(0) + self.count[0] * (part(1) + self.count[1] * part(2)))
     }
 

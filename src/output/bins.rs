@@ -17,9 +17,8 @@ use crate::sensor::Measurement;
 pub fn npy(rows: &[Measurement], count: [usize; 3]) -> Vec<u8> {
     let [ni, nj, nk] = count;
     let channels = rows.len() / (ni * nj * nk);
-    let text = format!(
-        "{{'descr': '<f8', 'fortran_order': False, 'shape': ({ni}, {nj}, {nk}, {channels}, 2), }}"
-    );
+    let text =
+        format!("{{'descr': '<f8', 'fortran_order': False, 'shape': ({ni}, {nj}, {nk}, {channels}, 2), }}");
     // Ten bytes before it and a newline behind it, a multiple of 64 in all.
     let length = (10 + text.len() + 1).next_multiple_of(64) - 10;
     let mut bytes = Vec::with_capacity(10 + length + 16 * rows.len());

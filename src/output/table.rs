@@ -203,7 +203,10 @@ mod tests {
         let csv = text(Format::Csv);
         let lines: Vec<&str> = csv.lines().collect();
         assert_eq!(lines[0], BIN_COLUMNS.join(","));
-        assert_eq!(lines[1], "\"probe, centre\",fluence,W/L^2,1,2,0,0.1,-2.0,1e-300,0.3333333333333333,0.1,64");
+        assert_eq!(
+            lines[1],
+            "\"probe, centre\",fluence,W/L^2,1,2,0,0.1,-2.0,1e-300,0.3333333333333333,0.1,64"
+        );
         assert_eq!(lines[2], "\"probe, centre\",fluence,W/L^2,0,0,0,,,,0.3333333333333333,0.1,64");
         assert_eq!(lines[3], "\"probe, centre\",fluence,W/L^2,,,,,,,2.0,,64");
         let json: serde_json::Value = serde_json::from_str(&text(Format::Json)).unwrap();

@@ -137,7 +137,10 @@ impl Source {
                     let bin = stream.index(binned.bins());
                     let position = binned.point(bin, scene.periodic_cell(), stream.triple());
                     let anywhere = warp::square_to_sphere(stream.pair()).normalize();
-                    Ray::new(position, if let Binned::Radiance { dir, .. } = binned { *dir } else { anywhere })
+                    Ray::new(
+                        position,
+                        if let Binned::Radiance { dir, .. } = binned { *dir } else { anywhere },
+                    )
                 }
             },
         };

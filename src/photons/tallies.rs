@@ -151,28 +151,40 @@ impl<'a> Tallies<'a> {
                     }
                 }
                 (Binned::Radiance { bins, dir }, _) if sensor.orders.contains(walker.order + 1) => {
-                    let Some((position, start, scattered)) = self.scattering(walker, step, -*dir) else { continue };
+                    let Some((position, start, scattered)) = self.scattering(walker, step, -*dir) else {
+                        continue;
+                    };
                     let ray = Ray::new(position, -*dir);
                     let Some(distance) = bins.distance(&ray) else { continue };
                     let Some(bin) = bins.bin_at(wrapped(self.scene, ray.at(distance))) else { continue };
                     let place = (&ray, start, walker.interior);
-                    let Some(passed) = connection(self.scene, place, distance, None, stream) else { continue };
+                    let Some(passed) = connection(self.scene, place, distance, None, stream) else {
+                        continue;
+                    };
                     // A bin's area across the line.
                     let cosine = dir.dot(bins.rectangle().normal()).abs();
                     self.add(first + bin, walker.weight * scattered * passed / cosine);
                 }
-                (Binned::Fluence { space, scoring: Scoring::TrackLength }, Step::Uncollided(t, weight)) if counts => {
+                (Binned::Fluence { space, scoring: Scoring::TrackLength }, Step::Uncollided(t, weight))
+                    if counts =>
+                {
                     let flight = Interval { start: 0.0, end: *t };
                     self.along(space, &walker.ray, flight, |tallies, bin, part| {
                         tallies.add(first + bin, *weight * part.length());
                     });
                 }
-                (Binned::Fluence { space, scoring: Scoring::Collision }, Step::Collision(arrival, medium)) if counts => {
+                (
+                    Binned::Fluence { space, scoring: Scoring::Collision },
+                    Step::Collision(arrival, medium),
+                ) if counts => {
                     let Some(bin) = self.bin_at(space, arrival.position) else { continue };
                     let sigma_t = self.scene.medium(*medium).sigma_t(arrival.position);
                     self.add(first + bin, arrival.walker.weight.over(sigma_t));
                 }
-                (Binned::Absorption { space, scoring: Scoring::TrackLength }, Step::Uncollided(t, weight)) if counts => {
+                (
+                    Binned::Absorption { space, scoring: Scoring::TrackLength },
+                    Step::Uncollided(t, weight),
+                ) if counts => {
                     let scene = self.scene;
                     for segment in scene.segments(&walker.ray, *t, walker.interior).iter() {
                         let medium = scene.medium(segment.medium);
@@ -187,14 +199,17 @@ impl<'a> Tallies<'a> {
                         });
                     }
                 }
-                (Binned::Absorption { space, scoring: Scoring::Collision }, Step::Collision(arrival, medium))
-                    if counts =>
-                {
+                (
+                    Binned::Absorption { space, scoring: Scoring::Collision },
+                    Step::Collision(arrival, medium),
+                ) if counts => {
                     let Some(bin) = self.bin_at(space, arrival.position) else { continue };
                     let albedo = self.scene.medium(*medium).albedo(arrival.position);
                     self.add(first + bin, arrival.walker.weight * (Spectrum::ONE - albedo));
                 }
-                (Binned::Absorption { space, scoring: Scoring::Analog }, Step::Absorbed(weight, Some(_))) if counts => {
+                (Binned::Absorption { space, scoring: Scoring::Analog }, Step::Absorbed(weight, Some(_)))
+                    if counts =>
+                {
                     let Some(bin) = self.bin_at(space, self.collision) else { continue };
                     self.add(first + bin, *weight);
                 }

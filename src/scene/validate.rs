@@ -270,7 +270,8 @@ fn check_sizes(parts: &SceneParts) -> Result<()> {
             Quantity::Binned(Binned::Flux { bins, .. } | Binned::Radiance { bins, .. }) => {
                 shape(&name, &Shape::Rectangle(*bins.rectangle()))?;
             }
-            Quantity::Binned(Binned::Fluence { space, .. } | Binned::Absorption { space, .. }) => match space {
+            Quantity::Binned(Binned::Fluence { space, .. } | Binned::Absorption { space, .. }) => match space
+            {
                 Space::Voxels(voxels) => shape(&name, &Shape::Cuboid(*voxels.cuboid()))?,
                 Space::Shape(around) => shape(&name, around)?,
             },

@@ -65,9 +65,8 @@ impl Bin {
     fn of(binned: &Binned, number: usize) -> Self {
         let [ni, nj, _] = binned.count();
         let middle = match binned {
-            Binned::Fluence { space: Space::Shape(_), .. } | Binned::Absorption { space: Space::Shape(_), .. } => {
-                None
-            }
+            Binned::Fluence { space: Space::Shape(_), .. }
+            | Binned::Absorption { space: Space::Shape(_), .. } => None,
             _ => Some(binned.point(number, None, [0.5; 3]).to_array()),
         };
         Bin { index: [number % ni, number / ni % nj, number / (ni * nj)], middle }
@@ -157,7 +156,9 @@ fn std_error(m: &Moments, tail: Option<&Tail>, source: Source) -> Result<f64, No
         Source::Scores if m.n() < 2 => Err(NoError::TooFew),
         Source::Scores if m.mean() == 0.0 && m.variance() == 0.0 => Err(NoError::Nothing),
         // All alike, as a beam's photons on their first flight: another one among them would have been rarer than 3 of all.
-        Source::Scores if m.variance() == 0.0 => Ok(m.mean().abs() * poisson_interval(0, 0.95).high / m.n() as f64),
+        Source::Scores if m.variance() == 0.0 => {
+            Ok(m.mean().abs() * poisson_interval(0, 0.95).high / m.n() as f64)
+        }
         // The variance of variance of k equal contributions among many histories is 1/k.
         Source::Scores if effective_number(m) < 1.0 / HEAVY_TAIL => Err(NoError::TooFew),
         Source::Scores if m.is_heavy_tailed() => Err(NoError::HeavyTail),

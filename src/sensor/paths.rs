@@ -179,7 +179,9 @@ pub fn sample_bin(
             let mut rays = Rays::default();
             for (along, sign) in [(normal, 1.0), (-normal, -1.0)] {
                 match (crossing, sign > 0.0) {
-                    (Crossing::Net, _) => sum += flux(scene, (position, along), orders, stream, &mut rays) * sign,
+                    (Crossing::Net, _) => {
+                        sum += flux(scene, (position, along), orders, stream, &mut rays) * sign
+                    }
                     (Crossing::Along, true) | (Crossing::Against, false) => {
                         sum += flux(scene, (position, along), orders, stream, &mut rays);
                     }

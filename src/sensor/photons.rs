@@ -383,10 +383,12 @@ pub(super) fn check(scene: &Scene, sensor: &Sensor) -> Result<()> {
         Quantity::Fluence(p) if scene.medium_at(p).is_none_or(|m| m.sigma_t(p).min() == 0.0) => {
             Err(outside(sensor, p))
         }
-        Quantity::Radiance(_) | Quantity::Binned(Binned::Radiance { .. }) if scene.plan().has_surfaces => Err(Error::Scene(format!(
-            "sensor {}: the volume map alone does not know what surfaces reflect: use paths",
-            sensor.name
-        ))),
+        Quantity::Radiance(_) | Quantity::Binned(Binned::Radiance { .. }) if scene.plan().has_surfaces => {
+            Err(Error::Scene(format!(
+                "sensor {}: the volume map alone does not know what surfaces reflect: use paths",
+                sensor.name
+            )))
+        }
         _ => Ok(()),
     }
 }
@@ -413,7 +415,9 @@ fn read(
             for _ in 0..POINTS {
                 let p = binned.point(bin, scene.periodic_cell(), stream.triple());
                 sum += match binned {
-                    Binned::Fluence { .. } if scene.medium_at(p).is_none_or(|m| m.sigma_t(p).min() == 0.0) => {
+                    Binned::Fluence { .. }
+                        if scene.medium_at(p).is_none_or(|m| m.sigma_t(p).min() == 0.0) =>
+                    {
                         return Err(outside(sensor, p));
                     }
                     Binned::Fluence { .. } => fluence_at(around, map, p, settings, result),

@@ -61,8 +61,12 @@ pub fn by_tallies(scene: &Scene, settings: &TallySettings, progress: &dyn Progre
     let sensors: Vec<Sensor> = scene.sensors().iter().map(narrowed).collect();
     sensors.iter().try_for_each(|sensor| check(scene, sensor))?;
     let emitter = Emitter::by_power(scene);
-    let histories =
-        Histories { count: settings.photons, seed: settings.seed, replicate: 0, max_order: max_order(&sensors) };
+    let histories = Histories {
+        count: settings.photons,
+        seed: settings.seed,
+        replicate: 0,
+        max_order: max_order(&sensors),
+    };
     let run = Run { sensors: &sensors, scored: &sensors, ..Run::new(scene, &emitter, histories) };
     let (mut ledger, mut scores) = (Ledger::default(), Scores::default());
     let mut tallies = vec![[Moments::new(); 3]; sensors.len()];
@@ -95,7 +99,8 @@ const ASKED: u64 = 4096;
 
 /// Whether photons meet what a sensor measures.
 fn check(scene: &Scene, sensor: &Sensor) -> Result<()> {
-    let refuse = |text: &str| Err(Error::Unreachable(format!("sensor {}: light tracing {text}", sensor.name)));
+    let refuse =
+        |text: &str| Err(Error::Unreachable(format!("sensor {}: light tracing {text}", sensor.name)));
     match &sensor.quantity {
         Quantity::Binned(Binned::Radiance { .. }) => {
             if scene.objects().iter().any(|o| o.surface.is_specular()) {
@@ -125,6 +130,8 @@ fn check(scene: &Scene, sensor: &Sensor) -> Result<()> {
         }
         Quantity::Binned(_) => Ok(()),
         _ if is_tallied(sensor) => Ok(()),
-        _ => refuse("measures means over bins, not a fluence or a radiance in one point: use paths or photons"),
+        _ => {
+            refuse("measures means over bins, not a fluence or a radiance in one point: use paths or photons")
+        }
     }
 }

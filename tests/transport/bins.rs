@@ -20,8 +20,6 @@ fn measured(name: &str, measure: &str) -> String {
 
 /// A diffuse floor, a mirror, a ball of glass, coloured fog and a void, under a lamp that paths find behind the glass too.
 const ROOM: &str = r#"
-interiors = [{ name = "glass", index = 1.5 }]
-
 [[regions]]
 shape = { cuboid = { min = [-1, -1, 0], max = [0.2, 1, 1] } }
 sigma_t = [1.0, 2.0, 0.5]
@@ -68,12 +66,22 @@ fn every_way_to_a_volume_beside_glass_and_a_mirror() {
     let sensors = measured("flights in fog", &format!("mean-fluence = {{ {fog} }}"))
         + &measured("collisions in fog", &format!("mean-fluence = {{ {fog}, scoring = \"collision\" }}"))
         + &measured("flights in the void", &format!("mean-fluence = {{ {void} }}"))
-        + &measured("absorbed on flights", &format!("mean-absorption = {{ {fog}, scoring = \"track-length\" }}"))
+        + &measured(
+            "absorbed on flights",
+            &format!("mean-absorption = {{ {fog}, scoring = \"track-length\" }}"),
+        )
         + &measured("absorbed at collisions", &format!("mean-absorption = {{ {fog} }}"))
         + &measured("absorbed at ends", &format!("mean-absorption = {{ {fog}, scoring = \"analog\" }}"))
-        + &measured("up", "flux = { corner = [-1, -1, 1.2], u = [2, 0, 0], v = [0, 2, 0], bins = [2, 1], crossing = \"against\" }")
-        + &measured("net", "flux = { corner = [-1, -1, -0.05], u = [2, 0, 0], v = [0, 2, 0], bins = [1, 1], crossing = \"net\" }");
-    let scene = written(&format!("{ROOM}{SPECULAR}{sensors}"));
+        + &measured(
+            "up",
+            "flux = { corner = [-1, -1, 1.2], u = [2, 0, 0], v = [0, 2, 0], bins = [2, 1], crossing = \"against\" }",
+        )
+        + &measured(
+            "down",
+            "flux = { corner = [-1, -1, -0.05], u = [0, 2, 0], v = [2, 0, 0], bins = [1, 2] }",
+        );
+    let glass = "interiors = [{ name = \"glass\", index = 1.5 }]\n";
+    let scene = written(&format!("{glass}{ROOM}{SPECULAR}{sensors}"));
     let scored = scores(&scene, PHOTONS, 1);
     agree(&scene, &scored, 2, 0.4);
     // A fluence is not what is absorbed.
@@ -109,7 +117,8 @@ fn nothing_is_lost_between_voxels() {
         ("[-1, -1, -1]", "[2, 0, 0]", "[0, 0, 2]"),
         ("[-1, 1, -1]", "[0, 0, 2]", "[2, 0, 0]"),
     ] {
-        sensors += &measured("left", &format!("flux = {{ corner = {corner}, u = {u}, v = {v}, bins = [2, 3] }}"));
+        sensors +=
+            &measured("left", &format!("flux = {{ corner = {corner}, u = {u}, v = {v}, bins = [2, 3] }}"));
     }
     let scene = written(&format!("{fog}{sensors}"));
     let n = 1 << 14;
@@ -175,7 +184,12 @@ fn scores_do_not_depend_on_threads() {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
         let settings = TallySettings { photons: 20_000, seed: 7, orders: Orders::ALL };
         let paths = PathSettings { samples: 100, seed: 7, replicate: 0, orders: Orders::ALL };
-        pool.install(|| (by_tallies(&scene, &settings, &NoProgress).unwrap(), by_paths(&scene, &paths, &NoProgress).unwrap()))
+        pool.install(|| {
+            (
+                by_tallies(&scene, &settings, &NoProgress).unwrap(),
+                by_paths(&scene, &paths, &NoProgress).unwrap(),
+            )
+        })
     };
     let one = on(1);
     assert_eq!(one, on(3));

@@ -314,8 +314,9 @@ fn without_error(measurements: &[Measurement]) -> Vec<String> {
             }
         }
         let bins = if bins > 0 { format!(" ({bins} bins)") } else { String::new() };
-        (!names.is_empty())
-            .then(|| format!("no standard error, {}: {}: {}{bins}", why.word(), why.reason(), names.join(", ")))
+        (!names.is_empty()).then(|| {
+            format!("no standard error, {}: {}: {}{bins}", why.word(), why.reason(), names.join(", "))
+        })
     };
     [NoError::Nothing, NoError::TooFew, NoError::HeavyTail].into_iter().filter_map(why).collect()
 }

@@ -15,8 +15,8 @@ pub use values::Channels;
 use values::rectangle;
 
 use super::{
-    Binned, Camera, Crossing, Filter, Interior, Object, Orders, Quantity, Region, Scene, SceneParts, Scoring, Sensor,
-    Space, View,
+    Binned, Camera, Crossing, Filter, Interior, Object, Orders, Quantity, Region, Scene, SceneParts, Scoring,
+    Sensor, Space, View,
 };
 use crate::error::{Error, Result};
 use crate::geometry::{Cuboid, Face, FaceBins, Voxels};
@@ -273,10 +273,20 @@ pub struct SensorFile {
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 #[allow(missing_docs, reason = "the names are those of `scene::Quantity`, which says their meaning")]
 pub enum QuantityFile {
-    Fluence { at: [f64; 3] },
-    Radiance { origin: [f64; 3], dir: [f64; 3] },
-    Outflow { shape: ShapeFile, face: Face },
-    Absorbed { region: usize },
+    Fluence {
+        at: [f64; 3],
+    },
+    Radiance {
+        origin: [f64; 3],
+        dir: [f64; 3],
+    },
+    Outflow {
+        shape: ShapeFile,
+        face: Face,
+    },
+    Absorbed {
+        region: usize,
+    },
     Flux {
         corner: [f64; 3],
         u: [f64; 3],
@@ -332,7 +342,9 @@ impl SpaceFile {
                 None if regions.is_empty() => {
                     Err(Error::Scene(format!("`region` is {number}; the scene has none")))
                 }
-                None => Err(Error::Scene(format!("`region` is {number}; allowed: 0 to {}", regions.len() - 1))),
+                None => {
+                    Err(Error::Scene(format!("`region` is {number}; allowed: 0 to {}", regions.len() - 1)))
+                }
             },
             _ => Err(Error::Scene("allowed: `min`, `max` and `cells` of voxels, or a `region`".into())),
         }
