@@ -31,6 +31,8 @@ pub enum Purpose {
     Ends,
     /// Points that find out how much a medium emits.
     Emission,
+    /// What photon histories score in bins, beside their walk.
+    Scores,
 }
 
 /// Work that a scene may or may not require, counted where it is done.

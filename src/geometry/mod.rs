@@ -3,6 +3,7 @@
 //! A ray that starts on a shape says so, and the hit it starts from is excluded, by algebra or by the primitive that it
 //! starts on, so that no shape needs an epsilon.
 
+mod bins;
 mod cuboid;
 mod height_field;
 mod hit;
@@ -16,6 +17,7 @@ mod spherical_rectangle;
 mod sums;
 mod tree;
 
+pub use bins::{FaceBins, MAX_BINS, Voxels};
 pub use cuboid::Cuboid;
 pub use height_field::{Ground, Up, Waves, height_field, listed};
 pub(crate) use hit::ASLANT;

@@ -1,6 +1,7 @@
 //! Files that appear whole or not at all: tables that keep every bit, pictures, point clouds.
 
 mod atomic;
+mod bins;
 mod exr;
 mod panic;
 mod ply;
@@ -10,6 +11,7 @@ mod table;
 mod tone;
 
 pub use atomic::{WriteError, check_writable, is_same_file, write_atomically};
+pub use bins::{npy, voxel_grid};
 pub use exr::{PROVENANCE, encode_exr, write_exr};
 pub use panic::without_panic;
 pub use ply::write_ply;

@@ -16,11 +16,14 @@ pub enum Format {
     Json,
 }
 
-/// Writes rows in the given form.
+/// Writes rows in the given form; where sensors have bins, with the numbers of the bin along each axis and its middle.
 ///
 /// # Errors
 /// Those of the writer.
 pub fn write_rows(out: &mut dyn Write, rows: &[Measurement], format: Format) -> io::Result<()> {
+    if rows.iter().any(|row| row.bin.is_some()) {
+        return write_bins(out, rows, format);
+    }
     match format {
         Format::Text => write_text(out, rows),
         Format::Csv if rows.is_empty() => writeln!(out, "{}", COLUMNS.join(",")),
@@ -46,6 +49,71 @@ fn write_text(out: &mut dyn Write, rows: &[Measurement]) -> io::Result<()> {
         ]);
     }
     write_aligned(out, &lines, 3)
+}
+
+/// A row with its bin; what has none has no numbers there.
+#[derive(Serialize)]
+struct BinRow<'a> {
+    sensor: &'a str,
+    quantity: &'a str,
+    unit: &'static str,
+    i: Option<usize>,
+    j: Option<usize>,
+    k: Option<usize>,
+    x: Option<f64>,
+    y: Option<f64>,
+    z: Option<f64>,
+    mean: f64,
+    std_error: Option<f64>,
+    n: u64,
+}
+
+const BIN_COLUMNS: [&str; 12] =
+    ["sensor", "quantity", "unit", "i", "j", "k", "x", "y", "z", "mean", "std_error", "n"];
+
+fn write_bins(out: &mut dyn Write, rows: &[Measurement], format: Format) -> io::Result<()> {
+    let index = |r: &Measurement, axis: usize| r.bin.map(|bin| bin.index[axis]);
+    let middle = |r: &Measurement, axis: usize| r.bin.and_then(|bin| bin.middle).map(|p| p[axis]);
+    let whole = rows.iter().map(|r| BinRow {
+        sensor: &r.sensor,
+        quantity: &r.quantity,
+        unit: r.unit,
+        i: index(r, 0),
+        j: index(r, 1),
+        k: index(r, 2),
+        x: middle(r, 0),
+        y: middle(r, 1),
+        z: middle(r, 2),
+        mean: r.mean,
+        std_error: r.std_error,
+        n: r.n,
+    });
+    match format {
+        Format::Csv => write_csv(out, &whole.collect::<Vec<_>>()),
+        Format::Json => write_json(out, &whole.collect::<Vec<_>>()),
+        Format::Text => {
+            let mut lines = vec![BIN_COLUMNS.map(str::to_string)];
+            for (r, row) in rows.iter().zip(whole) {
+                let number = |n: Option<usize>| n.map_or_else(String::new, |n| n.to_string());
+                let place = |x: Option<f64>| x.map_or_else(String::new, |x| format!("{x:.4}"));
+                lines.push([
+                    r.sensor.clone(),
+                    r.quantity.clone(),
+                    r.unit.to_string(),
+                    number(row.i),
+                    number(row.j),
+                    number(row.k),
+                    place(row.x),
+                    place(row.y),
+                    place(row.z),
+                    format!("{:.6e}", r.mean),
+                    r.std_error.map_or_else(|| word(r), |e| format!("{e:.1e}")),
+                    r.n.to_string(),
+                ]);
+            }
+            write_aligned(out, &lines, 3)
+        }
+    }
 }
 
 /// What stands in the place of a standard error that is not known.
@@ -109,6 +177,7 @@ pub fn write_json<T: Serialize + ?Sized>(out: &mut dyn Write, value: &T) -> io::
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::sensor::Bin;
 
     fn row(mean: f64, std_error: f64) -> Measurement {
         Measurement {
@@ -119,7 +188,33 @@ mod tests {
             std_error: (std_error > 0.0).then_some(std_error),
             n: 64,
             no_error: None,
+            bin: None,
         }
+    }
+
+    fn in_bins() -> [Measurement; 3] {
+        let bin = |index, middle| Measurement { bin: Some(Bin { index, middle }), ..row(1.0 / 3.0, 0.1) };
+        [bin([1, 2, 0], Some([0.1, -2.0, 1e-300])), bin([0, 0, 0], None), row(2.0, 0.0)]
+    }
+
+    #[test]
+    fn bins_have_columns_of_their_own() {
+        let text = |format| text(&in_bins(), format);
+        let csv = text(Format::Csv);
+        let lines: Vec<&str> = csv.lines().collect();
+        assert_eq!(lines[0], BIN_COLUMNS.join(","));
+        assert_eq!(
+            lines[1],
+            "\"probe, centre\",fluence,W/L^2,1,2,0,0.1,-2.0,1e-300,0.3333333333333333,0.1,64"
+        );
+        assert_eq!(lines[2], "\"probe, centre\",fluence,W/L^2,0,0,0,,,,0.3333333333333333,0.1,64");
+        assert_eq!(lines[3], "\"probe, centre\",fluence,W/L^2,,,,,,,2.0,,64");
+        let json: serde_json::Value = serde_json::from_str(&text(Format::Json)).unwrap();
+        assert_eq!((json[0]["j"].as_u64(), json[0]["z"].as_f64()), (Some(2), Some(1e-300)));
+        assert!(json[1]["x"].is_null() && json[2]["i"].is_null());
+        let table = text(Format::Text);
+        assert!(table.lines().next().unwrap().contains(" i  j  k "), "{table}");
+        assert_eq!(table.lines().count(), 4);
     }
 
     fn text(rows: &[Measurement], format: Format) -> String {

@@ -12,7 +12,7 @@ use crate::light::PeriodicCell;
 use crate::math::{Frame, Ray, warp};
 use crate::medium::Medium;
 use crate::rng::{Purpose, Stream};
-use crate::scene::{Quantity, Scene, Target};
+use crate::scene::{Binned, Quantity, Scene, Target};
 use crate::surface::Surface;
 use crate::transport::{LONG, Roulette, Step, Visitor, Walker, walk};
 
@@ -132,6 +132,15 @@ impl Source {
                     let shape = &scene.regions().get(*number)?.shape;
                     let (position, _) = shape.sample_inside(side, stream.triple());
                     Ray::new(position, warp::square_to_sphere(stream.pair()).normalize())
+                }
+                Quantity::Binned(binned) => {
+                    let bin = stream.index(binned.bins());
+                    let position = binned.point(bin, scene.periodic_cell(), stream.triple());
+                    let anywhere = warp::square_to_sphere(stream.pair()).normalize();
+                    Ray::new(
+                        position,
+                        if let Binned::Radiance { dir, .. } = binned { *dir } else { anywhere },
+                    )
                 }
             },
         };

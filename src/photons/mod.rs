@@ -9,6 +9,7 @@ mod pass;
 pub mod periodic;
 mod record;
 pub mod synthetic;
+mod tallies;
 pub mod tree;
 
 pub use crate::transport::Flags;
@@ -17,6 +18,8 @@ pub use ends::{MOST_EVENTS, check_end};
 pub use map::PhotonMap;
 pub use pass::{Ends, Histories, Ledger, Part, Pass, PassReport, Run, Storage, is_in, is_indirect, shoot};
 pub use record::Photon;
+pub use tallies::Scores;
+pub(crate) use tallies::score_bytes;
 pub use tree::PhotonTree;
 
 /// Most memory that a stored photon takes on its way into a map \[bytes\]: 64 as a record until the tree is complete, beside

@@ -1,6 +1,7 @@
 //! A pass of histories: emission, walk, photons stored where they collide or meet surfaces, powers tallied where they leave.
 
 use super::importance::{Branching, Importance};
+use super::tallies::{Scores, Tallies};
 use super::{Emitter, Photon, PhotonMap, check_end, periodic};
 use crate::Spectrum;
 use crate::error::{Error, Result};
@@ -148,6 +149,8 @@ pub struct Pass {
     pub met: [u64; 2],
     /// One a sensor and channel, over histories; 0 for sensors that photons in a map answer.
     pub tallies: Vec<[Moments; 3]>,
+    /// Those of the sensors that have bins and are scored.
+    pub scores: Scores,
     /// What it did.
     pub report: PassReport,
     /// Contributions that were not finite; each fails the run.
@@ -187,6 +190,7 @@ impl Pass {
         for (mine, others) in self.tallies.iter_mut().flatten().zip(other.tallies.iter().flatten()) {
             mine.merge(others);
         }
+        self.scores.merge(other.scores);
         self.report += other.report;
         self.non_finite += other.non_finite;
         self
@@ -224,6 +228,8 @@ pub struct Run<'a> {
     pub part: Part,
     /// What is tallied.
     pub sensors: &'a [Sensor],
+    /// Sensors with bins that are scored.
+    pub scored: &'a [Sensor],
     /// Whether photons are counted and not kept.
     pub is_pilot: bool,
 }
@@ -239,6 +245,7 @@ impl<'a> Run<'a> {
             histories,
             part: Part::WHOLE,
             sensors: &[],
+            scored: &[],
             is_pilot: false,
         }
     }
@@ -267,12 +274,15 @@ impl<'a> Run<'a> {
                 scores: vec![Spectrum::ZERO; self.sensors.len()],
                 surface: Vec::new(),
                 medium: Vec::new(),
+                bins: Tallies::new(self.scene, self.scored),
+                scoring: Stream::new(0, Purpose::Scores, 0, 0),
                 pass: empty(),
             };
             for history in range {
                 block.follow(part.start + history);
             }
-            let Block { mut surface, mut medium, mut pass, .. } = block;
+            let Block { mut surface, mut medium, bins, mut pass, .. } = block;
+            pass.scores = bins.into_scores();
             surface.shrink_to_fit();
             medium.shrink_to_fit();
             pass.surfaces.push(surface);
@@ -302,6 +312,9 @@ struct Block<'a> {
     scores: Vec<Spectrum>,
     surface: Vec<Photon>,
     medium: Vec<Photon>,
+    bins: Tallies<'a>,
+    /// Random numbers of scores: what is scored does not change the walk.
+    scoring: Stream,
     pass: Pass,
 }
 
@@ -311,6 +324,9 @@ impl Block<'_> {
         let mut stream = Stream::new(histories.seed, purpose, histories.replicate, history);
         self.history = history;
         self.scores.fill(Spectrum::ZERO);
+        if !self.run.scored.is_empty() {
+            self.scoring = Stream::new(histories.seed, Purpose::Scores, histories.replicate, history);
+        }
         self.pass.report.emitted += 1;
         match emitter.emit(scene, &mut stream) {
             Some(first) => {
@@ -325,6 +341,7 @@ impl Block<'_> {
             None => self.pass.report.ends.refused += 1,
         }
         self.pass.report.work += stream.work;
+        self.pass.non_finite += self.bins.end_history();
         let channels = if scene.plan().is_grey { 1 } else { 3 };
         for (sensor, score) in self.scores.iter().enumerate() {
             if !is_tallied(&self.run.sensors[sensor]) {
@@ -368,6 +385,9 @@ impl Visitor for Block<'_> {
     const LOOKS_AHEAD: bool = false;
 
     fn visit(&mut self, walker: &Walker, step: Step, _stream: &mut Stream) {
+        if !self.run.scored.is_empty() {
+            self.bins.visit(walker, &step, &mut self.scoring);
+        }
         let PassReport { ends, ledger, .. } = &mut self.pass.report;
         match step {
             Step::Uncollided(t, weight) => self.score(walker.order, weight, |quantity| match quantity {

@@ -1,6 +1,6 @@
 //! Surfaces in one place: which of them light meets there would be a matter of rounding.
 
-use super::{Object, Quantity, SceneParts};
+use super::{Binned, Object, Quantity, SceneParts};
 use crate::error::{Error, Result};
 use crate::geometry::{Face, Rectangle, Shape, Sphere};
 use crate::light::{Faces, Light, Section};
@@ -288,6 +288,10 @@ pub(super) fn check_marks(parts: &SceneParts) -> Result<()> {
         if let Quantity::Outflow { shape, face } = &sensor.quantity {
             let (name, faces) = (format!("sensor {}", sensor.name), of_face(shape, Some(*face)));
             marks.push(Mark { name, shape: Some(shape), faces });
+        }
+        if let Some(Binned::Flux { bins, .. } | Binned::Radiance { bins, .. }) = sensor.binned() {
+            let (name, faces) = (format!("sensor {}", sensor.name), vec![Flat::Rectangle(*bins.rectangle())]);
+            marks.push(Mark { name, shape: None, faces });
         }
     }
     for mark in &marks {

@@ -28,7 +28,7 @@ pub use parts::{Interior, Object, Region, SURROUNDINGS, SceneParts};
 pub use plan::Plan;
 pub use segment::Segment;
 pub use segments::Segments;
-pub use sensor::{Orders, Quantity, Sensor};
+pub use sensor::{Binned, Crossing, Orders, Quantity, Scoring, Sensor, Space};
 pub use target::{SceneHit, Start, Target};
 
 use crate::error::Result;

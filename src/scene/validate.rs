@@ -2,10 +2,10 @@
 
 use super::coincident::REMEDY;
 use super::interiors::dielectrics;
-use super::{Camera, Quantity, Scene, SceneParts, coincident, interiors};
+use super::{Binned, Camera, Quantity, Scene, SceneParts, Sensor, Space, coincident, interiors};
 use crate::Spectrum;
 use crate::error::{Error, Result};
-use crate::geometry::{Face, Shape, Slab};
+use crate::geometry::{Face, MAX_BINS, Shape, Slab};
 use crate::light::{Light, PeriodicCell, Section};
 use crate::math::{Ray, cosine_pair};
 use crate::medium::{Density, Medium};
@@ -94,12 +94,52 @@ pub(super) fn check(parts: &SceneParts) -> Result<Option<PeriodicCell>> {
                 }
                 true
             }
+            Quantity::Binned(ref binned) => {
+                check_bins(&sensor.name, binned, periodic_cell.as_ref())?;
+                true
+            }
         };
         if !is_finite {
             return refuse(format!("sensor {} has a position or direction that is not finite", sensor.name));
         }
     }
+    let bins: usize = parts.sensors.iter().filter_map(Sensor::binned).map(Binned::bins).sum();
+    if bins > MAX_BINS {
+        return Err(Error::out_of_range("the number of bins of all sensors", bins as f64, "at most 4194304"));
+    }
     Ok(periodic_cell)
+}
+
+/// Bins in a scene with a cell lie in the cell: those of a face across z.
+fn check_bins(name: &str, binned: &Binned, periodic_cell: Option<&PeriodicCell>) -> Result<()> {
+    let is_slab = |space: &Space| matches!(space, Space::Shape(Shape::Slab(_)));
+    let (is_level, corners) = match binned {
+        Binned::Flux { bins, .. } | Binned::Radiance { bins, .. } => {
+            let normal = bins.rectangle().normal();
+            (normal.x == 0.0 && normal.y == 0.0, bins.rectangle().corners().to_vec())
+        }
+        Binned::Fluence { space, .. } | Binned::Absorption { space, .. } => match space {
+            Space::Voxels(voxels) => (true, vec![voxels.cuboid().min(), voxels.cuboid().max()]),
+            Space::Shape(_) if is_slab(space) && periodic_cell.is_none() => {
+                return refuse(format!("sensor {name} is on a slab, so the scene needs `cell`"));
+            }
+            Space::Shape(_) => (true, Vec::new()),
+        },
+    };
+    let Some(periodic_cell) = periodic_cell else { return Ok(()) };
+    if !is_level {
+        return refuse(format!("sensor {name}: with `cell`, its rectangle lies across z"));
+    }
+    // A cell and a corner plus an edge may round apart.
+    let side = periodic_cell.side * (1.0 + 1e-12);
+    let is_in = |p: &DVec3| [p.x, p.y].iter().all(|x| (-1e-12 * side..=side).contains(x));
+    match corners.iter().find(|p| !is_in(p)) {
+        Some(p) => refuse(format!(
+            "sensor {name} reaches ({}, {}) along x and y; allowed: within the cell, 0 to {}",
+            p.x, p.y, periodic_cell.side
+        )),
+        None => Ok(()),
+    }
 }
 
 /// Whether flights are resolved wherever media are: in the regions, and in interiors as far as their boundaries reach.
@@ -227,6 +267,14 @@ fn check_sizes(parts: &SceneParts) -> Result<()> {
             Quantity::Radiance(ray) => place(&name, ray.origin)?,
             Quantity::Outflow { shape: around, .. } => shape(&name, around)?,
             Quantity::Absorbed(_) => {}
+            Quantity::Binned(Binned::Flux { bins, .. } | Binned::Radiance { bins, .. }) => {
+                shape(&name, &Shape::Rectangle(*bins.rectangle()))?;
+            }
+            Quantity::Binned(Binned::Fluence { space, .. } | Binned::Absorption { space, .. }) => match space
+            {
+                Space::Voxels(voxels) => shape(&name, &Shape::Cuboid(*voxels.cuboid()))?,
+                Space::Shape(around) => shape(&name, around)?,
+            },
         }
     }
     parts.camera.iter().try_for_each(|camera| place("camera", camera.position()))
@@ -282,7 +330,7 @@ fn check_apart(parts: &SceneParts) -> Result<()> {
     let sensors = parts.sensors.iter().filter_map(|sensor| match sensor.quantity {
         Quantity::Fluence(p) => Some((format!("sensor {}", sensor.name), p)),
         Quantity::Radiance(ray) => Some((format!("sensor {}", sensor.name), ray.origin)),
-        Quantity::Outflow { .. } | Quantity::Absorbed(_) => None,
+        Quantity::Outflow { .. } | Quantity::Absorbed(_) | Quantity::Binned(_) => None,
     });
     let lights = parts.lights.iter().enumerate();
     let apexes = lights.filter_map(|(i, light)| Some((format!("lights[{i}]"), light.apex()?)));

@@ -8,6 +8,7 @@ mod method;
 mod paths;
 mod photons;
 mod render;
+mod tallies;
 mod view;
 
 pub use crate::scene::{Camera, Filter, View};
@@ -15,16 +16,17 @@ pub use advise::{Advice, MIN_MAPS, PathAdvice, Pilot, PilotSettings, path_advice
 pub use film::{Film, Pixel, Sample};
 pub use light::{LIGHT_BYTES, LIGHT_PIXEL_BYTES, LightCount, by_light, extend_by_light};
 pub use method::Method;
-pub use paths::{PathSettings, by_paths, sample, sample_counted};
+pub use paths::{PathSettings, by_paths, sample, sample_bin, sample_counted};
 pub use photons::{
     PhotonForecast, PhotonReadings, PhotonSettings, by_photons, by_photons_in_passes, forecast,
 };
 pub use render::{MAX_SAMPLES, Streams, extend};
+pub use tallies::{TallyReadings, TallySettings, by_tallies, tally_bytes};
 pub use view::{check_camera, colour, draw_photons};
 
 use crate::Spectrum;
-use crate::scene::{Quantity, Scene, Sensor};
-use crate::stats::{Moments, Tail, poisson_interval};
+use crate::scene::{Binned, Quantity, Scene, Sensor, Space};
+use crate::stats::{HEAVY_TAIL, Moments, Tail, poisson_interval};
 
 /// A measured number.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
@@ -45,6 +47,30 @@ pub struct Measurement {
     /// Why it has no standard error, if it has none.
     #[serde(skip)]
     pub no_error: Option<NoError>,
+    /// Which bin of the sensor it is of, if the sensor has bins.
+    #[serde(skip)]
+    pub bin: Option<Bin>,
+}
+
+/// Which of a sensor's bins.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Bin {
+    /// Its number along each axis, from 0.
+    pub index: [usize; 3],
+    /// Its middle \[L\]; none of a region.
+    pub middle: Option<[f64; 3]>,
+}
+
+impl Bin {
+    fn of(binned: &Binned, number: usize) -> Self {
+        let [ni, nj, _] = binned.count();
+        let middle = match binned {
+            Binned::Fluence { space: Space::Shape(_), .. }
+            | Binned::Absorption { space: Space::Shape(_), .. } => None,
+            _ => Some(binned.point(number, None, [0.5; 3]).to_array()),
+        };
+        Bin { index: [number % ni, number / ni % nj, number / (ni * nj)], middle }
+    }
 }
 
 /// Why a measurement has no standard error.
@@ -54,7 +80,8 @@ pub enum NoError {
     OneMap,
     /// Nothing was found: no path brought anything, no map has a photon there.
     Nothing,
-    /// Fewer than [`FEWEST_PATHS`] paths brought something, one map alone, or there is one history.
+    /// Fewer than [`FEWEST_PATHS`] paths brought something, fewer than 10 photon histories something to a bin, one map
+    /// alone, or there is one history.
     TooFew,
     /// The variance is too uncertain: its own relative variance is above 0.1, or the largest contributions have the tail of
     /// a distribution whose mean they have not settled ([`Tail::shape`] above 1/2).
@@ -78,7 +105,7 @@ impl NoError {
             NoError::OneMap => "the estimates of one map share its photons: ask for several".into(),
             NoError::Nothing => "nothing was found, so that the value could be any small one".into(),
             NoError::TooFew => {
-                format!("fewer than {FEWEST_PATHS} paths contribute, or one map or history alone")
+                format!("fewer than {FEWEST_PATHS} paths or 10 photons contribute, or one map or history alone")
             }
             NoError::HeavyTail => {
                 "rare large contributions carry the mean, and too few of them were drawn to trust the mean itself".into()
@@ -94,6 +121,8 @@ enum Source {
     Paths,
     /// Photon histories, each of which brings its power or none of it.
     Tally,
+    /// Photon histories, each of which brings anything to a bin, most of them nothing.
+    Scores,
     /// Photon maps.
     Maps,
 }
@@ -124,6 +153,16 @@ fn std_error(m: &Moments, tail: Option<&Tail>, source: Source) -> Result<f64, No
         // All alike: each history brings its power or none of it.
         Source::Tally if m.variance() == 0.0 => Ok(poisson_interval(0, 0.95).high / m.n() as f64),
         Source::Tally => Ok(m.std_error()),
+        Source::Scores if m.n() < 2 => Err(NoError::TooFew),
+        Source::Scores if m.mean() == 0.0 && m.variance() == 0.0 => Err(NoError::Nothing),
+        // All alike, as a beam's photons on their first flight: another one among them would have been rarer than 3 of all.
+        Source::Scores if m.variance() == 0.0 => {
+            Ok(m.mean().abs() * poisson_interval(0, 0.95).high / m.n() as f64)
+        }
+        // The variance of variance of k equal contributions among many histories is 1/k.
+        Source::Scores if effective_number(m) < 1.0 / HEAVY_TAIL => Err(NoError::TooFew),
+        Source::Scores if m.is_heavy_tailed() => Err(NoError::HeavyTail),
+        Source::Scores => Ok(m.std_error()),
         Source::Paths | Source::Maps if brought_nothing => Err(NoError::Nothing),
         Source::Maps if m.n() < 2 => Err(NoError::OneMap),
         // Between that of one map, 1, and that of two, 2.
@@ -142,12 +181,14 @@ fn measurements(
     moments: &[Moments; 3],
     tails: Option<&[Tail; 3]>,
     source: Source,
+    bin: Option<usize>,
 ) -> Vec<Measurement> {
     // The power that parts of it are divided by may be known to an error of its own.
     let of_power = match sensor.quantity {
         Quantity::Outflow { .. } | Quantity::Absorbed(_) => scene.power_error(),
-        Quantity::Fluence(_) | Quantity::Radiance(_) => Spectrum::ZERO,
+        Quantity::Fluence(_) | Quantity::Radiance(_) | Quantity::Binned(_) => Spectrum::ZERO,
     };
+    let bin = sensor.binned().zip(bin).map(|(binned, number)| Bin::of(binned, number));
     let suffixes: &[&str] = if scene.plan().is_grey { &[""] } else { &[".r", ".g", ".b"] };
     suffixes
         .iter()
@@ -164,6 +205,7 @@ fn measurements(
                 std_error: error.ok(),
                 n: m.n(),
                 no_error: error.err(),
+                bin,
             }
         })
         .collect()

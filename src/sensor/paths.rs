@@ -8,9 +8,10 @@ use crate::light::PeriodicCell;
 use crate::math::{Frame, Ray, warp};
 use crate::photons::check_end;
 use crate::rng::{Purpose, Stream};
-use crate::scene::{Orders, Quantity, Scene, Sensor};
+use crate::scene::{Binned, Crossing, Orders, Quantity, Scene, Sensor};
 use crate::stats::{Moments, Tail};
 use crate::transport::{Progress, run_blocks};
+use glam::DVec3;
 use std::f64::consts::PI;
 
 /// How many paths, and which.
@@ -33,10 +34,20 @@ pub struct PathSettings {
 /// `Error::Cancelled`.
 pub fn by_paths(scene: &Scene, settings: &PathSettings, progress: &dyn Progress) -> Result<Vec<Measurement>> {
     check(scene)?;
-    let mut all = Vec::new();
-    for (index, sensor) in scene.sensors().iter().enumerate() {
-        let (moments, tails) = read(scene, sensor, index as u64, settings, progress)?;
-        all.extend(measurements(scene, sensor, &moments, Some(&tails), Source::Paths));
+    let (mut all, mut index) = (Vec::new(), 0);
+    for sensor in scene.sensors() {
+        for bin in 0..sensor.binned().map_or(1, Binned::bins) {
+            let (moments, tails) = match sensor.binned() {
+                None => read(scene, sensor, index, settings, progress)?,
+                Some(binned) => {
+                    let orders = sensor.orders.and(&settings.orders);
+                    let draw = |stream: &mut Stream| sample_bin(scene, (binned, bin), orders, stream).0;
+                    moments_of(index, settings, progress, draw)?
+                }
+            };
+            all.extend(measurements(scene, sensor, &moments, Some(&tails), Source::Paths, Some(bin)));
+            index += 1;
+        }
     }
     Ok(all)
 }
@@ -69,17 +80,28 @@ pub(super) fn read(
     progress: &dyn Progress,
 ) -> Result<([Moments; 3], [Tail; 3])> {
     let orders = sensor.orders.and(&settings.orders);
+    moments_of(index, settings, progress, |stream| sample(scene, &sensor.quantity, orders, stream))
+}
+
+/// Moments and tails by channel of what `draw` makes of each stream.
+fn moments_of(
+    index: u64,
+    settings: &PathSettings,
+    progress: &dyn Progress,
+    draw: impl Fn(&mut Stream) -> Spectrum + Sync,
+) -> Result<([Moments; 3], [Tail; 3])> {
     let block = |range: std::ops::Range<u64>| {
         let (mut moments, mut tails, mut non_finite) = <([Moments; 3], [Tail; 3], u64)>::default();
         for history in range {
-            // The sensor takes the upper bits of the history: no run has 2^40 of them.
+            // The sensor, or its bin, takes the upper bits of the history: no run has 2^40 of them.
             let mut stream =
                 Stream::new(settings.seed, Purpose::Paths, settings.replicate, index << 40 | history);
-            let value = sample(scene, &sensor.quantity, orders, &mut stream);
+            let value = draw(&mut stream);
             non_finite += u64::from(!value.is_finite());
             for (channel, (m, tail)) in moments.iter_mut().zip(&mut tails).enumerate() {
                 m.push(value[channel]);
-                tail.push(value[channel]);
+                // What a net flux loses has a tail too.
+                tail.push(value[channel].abs());
             }
         }
         (moments, tails, non_finite)
@@ -121,14 +143,7 @@ pub fn sample_counted(
         }
         Quantity::Outflow { shape, face } => {
             let (position, normal, area) = shape.sample_boundary(*face, side, stream.triple());
-            let dir = Frame::new(-normal).to_world(warp::square_to_cosine_hemisphere(stream.pair()));
-            let ray = Ray::new(position, dir);
-            let interior = scene.interior_at(position);
-            rays = radiance(scene, ray, None, interior, orders, stream, |_, value| sum += value);
-            sum *= PI;
-            if orders.contains(0) {
-                sum += direct_flux(scene, position, normal, stream, &mut rays);
-            }
+            sum = flux(scene, (position, normal), orders, stream, &mut rays);
             sum = per_power(sum * area, scene.power());
         }
         Quantity::Absorbed(region) => {
@@ -141,8 +156,74 @@ pub fn sample_counted(
             sum = sum * scene.regions()[region].medium.sigma_a(position) * volume;
             sum = per_power(sum, scene.power());
         }
+        Quantity::Binned(binned) => {
+            let bin = stream.index(binned.bins());
+            (sum, rays) = sample_bin(scene, (binned, bin), orders, stream);
+        }
     }
     (sum, rays)
+}
+
+/// One sample of the mean over a bin, and the rays it took: the field at a uniform point of the bin.
+pub fn sample_bin(
+    scene: &Scene,
+    (binned, bin): (&Binned, usize),
+    orders: Orders,
+    stream: &mut Stream,
+) -> (Spectrum, Rays) {
+    let position = binned.point(bin, scene.periodic_cell(), stream.triple());
+    let mut sum = Spectrum::ZERO;
+    let rays = match binned {
+        Binned::Flux { bins, crossing } => {
+            let normal = bins.rectangle().normal();
+            let mut rays = Rays::default();
+            for (along, sign) in [(normal, 1.0), (-normal, -1.0)] {
+                match (crossing, sign > 0.0) {
+                    (Crossing::Net, _) => {
+                        sum += flux(scene, (position, along), orders, stream, &mut rays) * sign
+                    }
+                    (Crossing::Along, true) | (Crossing::Against, false) => {
+                        sum += flux(scene, (position, along), orders, stream, &mut rays);
+                    }
+                    _ => {}
+                }
+            }
+            rays
+        }
+        Binned::Radiance { dir, .. } => {
+            let interior = scene.interior_at(position);
+            radiance(scene, Ray::new(position, *dir), None, interior, orders, stream, |_, value| sum += value)
+        }
+        Binned::Fluence { .. } => fluence(scene, position, orders, stream, |_, value| sum += value),
+        Binned::Absorption { .. } => {
+            let sigma_a = scene.medium_at(position).map_or(Spectrum::ZERO, |m| m.sigma_a(position));
+            match sigma_a.is_black() {
+                true => Rays::default(),
+                false => fluence(scene, position, orders, stream, |_, value| sum += value * sigma_a),
+            }
+        }
+    };
+    (sum, rays)
+}
+
+/// One sample of the power by area that crosses a plane at a point, along its normal [W/L^2].
+fn flux(
+    scene: &Scene,
+    (position, normal): (DVec3, DVec3),
+    orders: Orders,
+    stream: &mut Stream,
+    rays: &mut Rays,
+) -> Spectrum {
+    let dir = Frame::new(-normal).to_world(warp::square_to_cosine_hemisphere(stream.pair()));
+    let (ray, interior) = (Ray::new(position, dir), scene.interior_at(position));
+    let mut sum = Spectrum::ZERO;
+    let work = radiance(scene, ray, None, interior, orders, stream, |_, value| sum += value);
+    *rays = Rays { segments: rays.segments + work.segments, shadow: rays.shadow + work.shadow };
+    sum *= PI;
+    if orders.contains(0) {
+        sum += direct_flux(scene, position, normal, stream, rays);
+    }
+    sum
 }
 
 /// By channel, 0 where nothing is emitted.

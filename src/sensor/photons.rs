@@ -10,13 +10,13 @@ use crate::integrators::{March, StepRule, along};
 use crate::math::{Interval, Positive, Ray};
 use crate::medium::Medium;
 use crate::photons::{
-    BUILD_SECONDS, Emitter, Histories, Ledger, PEAK_BYTES, Part, Pass, Photon, PhotonMap, Run, periodic,
-    shoot,
+    BUILD_SECONDS, Emitter, Histories, Ledger, PEAK_BYTES, Part, Pass, Photon, PhotonMap, Run, Scores,
+    periodic, score_bytes, shoot,
 };
 use crate::rng::{Purpose, Stream};
-use crate::scene::{Orders, Quantity, Scene, Sensor};
+use crate::scene::{Binned, Orders, Quantity, Scene, Sensor};
 use crate::stats::Moments;
-use crate::transport::{NoProgress, Progress, transmittance};
+use crate::transport::{BLOCK, NoProgress, Progress, in_parallel, transmittance};
 use glam::DVec3;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::Instant;
@@ -52,6 +52,17 @@ pub struct PhotonReadings {
 }
 
 impl PhotonReadings {
+    /// Nothing yet.
+    fn new() -> Self {
+        PhotonReadings {
+            measurements: Vec::new(),
+            ledger: Ledger::default(),
+            underfull: 0,
+            beyond: 0,
+            gathers: 0,
+        }
+    }
+
     /// Counts an estimate at a point.
     fn book(&mut self, scene: &Scene, p: DVec3, estimate: &Estimate, treatment: Treatment) {
         self.gathers += 1;
@@ -102,37 +113,46 @@ pub fn by_photons_in_passes(
         ));
     }
     let (sensors, margin) = prepared(scene, settings)?;
-    let mut moments = vec![[Moments::new(); 3]; sensors.len()];
-    let mut result = PhotonReadings {
-        measurements: Vec::new(),
-        ledger: Ledger::default(),
-        underfull: 0,
-        beyond: 0,
-        gathers: 0,
-    };
+    let bins = |sensor: &Sensor| sensor.binned().map_or(1, Binned::bins);
+    let mut moments: Vec<_> = sensors.iter().map(|s| vec![[Moments::new(); 3]; bins(s)]).collect();
+    let mut scores = Scores::default();
+    let mut result = PhotonReadings::new();
     let max_order = max_order(&sensors);
     let extents = medium_extents(scene);
     for replicate in 0..settings.maps {
         let histories = Histories { count: settings.photons, seed: settings.seed, replicate, max_order };
-        let mut estimates = vec![Spectrum::ZERO; sensors.len()];
+        let mut estimates: Vec<_> = sensors.iter().map(|s| vec![Spectrum::ZERO; bins(s)]).collect();
         for number in 0..passes {
             let booked = (result.gathers, result.underfull, result.beyond);
             let part = Part { number, of: passes };
             let (pass, maps) = maps(scene, &sensors, histories, part, margin, progress)?;
             result.ledger += pass.report.ledger;
             let tallied = sensors.iter().zip(moments.iter_mut()).zip(&pass.tallies);
-            for ((_, mine), tally) in tallied.filter(|((s, _), _)| map_orders(s).is_none()) {
-                for (m, t) in mine.iter_mut().zip(tally) {
+            for ((_, mine), tally) in tallied.filter(|((s, _), _)| is_tallied(s)) {
+                for (m, t) in mine[0].iter_mut().zip(tally) {
                     m.merge(t);
                 }
             }
+            scores.merge(pass.scores);
             for (range, map) in &maps {
                 let here = sensors.iter().zip(&mut estimates).filter(|(s, _)| map_orders(s) == Some(*range));
-                for (index, (sensor, sum)) in here.enumerate() {
+                for (index, (sensor, sums)) in here.enumerate() {
                     // Every pass asks at the same places.
-                    let mut stream = Stream::new(settings.seed, Purpose::Resampling, replicate, index as u64);
-                    *sum += read((scene, &extents), map, sensor, settings, &mut stream, &mut result)
-                        / passes as f64;
+                    let one = |bin: usize| {
+                        let number = (bin as u64) << 32 | index as u64;
+                        let mut stream = Stream::new(settings.seed, Purpose::Resampling, replicate, number);
+                        let mut booked = PhotonReadings::new();
+                        let place = (sensor, bin);
+                        let value = read((scene, &extents), map, place, settings, &mut stream, &mut booked);
+                        value.map(|value| (value, booked))
+                    };
+                    for (sum, read) in sums.iter_mut().zip(in_parallel(bins(sensor), one)) {
+                        let (value, booked) = read?;
+                        *sum += value / passes as f64;
+                        result.gathers += booked.gathers;
+                        result.underfull += booked.underfull;
+                        result.beyond += booked.beyond;
+                    }
                 }
             }
             if number > 0 {
@@ -141,19 +161,29 @@ pub fn by_photons_in_passes(
             }
         }
         let read = sensors.iter().zip(&mut moments).zip(estimates);
-        for ((_, moments), value) in read.filter(|((s, _), _)| map_orders(s).is_some()) {
-            for (channel, m) in moments.iter_mut().enumerate() {
-                m.push(value[channel]);
+        for ((_, moments), values) in read.filter(|((s, _), _)| map_orders(s).is_some()) {
+            for (moments, value) in moments.iter_mut().zip(values) {
+                for (channel, m) in moments.iter_mut().enumerate() {
+                    m.push(value[channel]);
+                }
             }
         }
     }
+    let mut scored = scores.moments(scene, settings.photons * settings.maps).into_iter();
     for (sensor, moments) in sensors.iter().zip(moments) {
-        let non_finite = moments.iter().filter(|m| !m.mean().is_finite()).count() as u64;
-        if non_finite > 0 {
-            return Err(Error::NonFinite { count: non_finite, place: "estimates from photon maps" });
+        let source = match map_orders(sensor) {
+            Some(_) => Source::Maps,
+            None if is_tallied(sensor) => Source::Tally,
+            None => Source::Scores,
+        };
+        for (bin, moments) in moments.into_iter().enumerate() {
+            let moments = if source == Source::Scores { scored.next().unwrap_or(moments) } else { moments };
+            let non_finite = moments.iter().filter(|m| !m.mean().is_finite()).count() as u64;
+            if non_finite > 0 {
+                return Err(Error::NonFinite { count: non_finite, place: "estimates from photon maps" });
+            }
+            result.measurements.extend(measurements(scene, sensor, &moments, None, source, Some(bin)));
         }
-        let source = if map_orders(sensor).is_some() { Source::Maps } else { Source::Tally };
-        result.measurements.extend(measurements(scene, sensor, &moments, None, source));
     }
     Ok(result)
 }
@@ -216,6 +246,9 @@ pub(super) fn forecast_of(
         _ => size_of::<Photon>() as f64 * met + PEAK_BYTES * copied,
     };
     let seconds = (one * photons as f64 + BUILD_SECONDS * copied) * maps as f64 / threads;
+    // The scores of all blocks of a pass, those that they are added to, and what the threads' histories add up.
+    let (scores, history) = score_bytes(scene, &scored(sensors));
+    let bytes = bytes + scores * (photons.div_ceil(BLOCK) + 1) as f64 + history * threads;
     Ok(PhotonForecast { stored: copied, bytes, seconds })
 }
 
@@ -264,7 +297,8 @@ pub(super) fn maps(
     let ranges = ranges(sensors);
     let is_needed = |photon: &Photon| ranges.iter().any(|r| r.contains(u32::from(photon.order)));
     let emitter = Emitter::by_power(scene);
-    let run = Run { part, sensors, ..Run::new(scene, &emitter, histories) };
+    let scored = scored(sensors);
+    let run = Run { part, sensors, scored: &scored, ..Run::new(scene, &emitter, histories) };
     let mut pass = run.pass(&is_needed, progress)?;
     let mut blocks = std::mem::take(&mut pass.media);
     let mut maps = Vec::with_capacity(ranges.len());
@@ -290,11 +324,26 @@ pub(super) fn maps(
 pub(super) fn map_orders(sensor: &Sensor) -> Option<Orders> {
     let Orders { min, max } = sensor.orders;
     match sensor.quantity {
-        Quantity::Fluence(_) => Some(sensor.orders),
-        Quantity::Radiance(_) if max == Some(0) => Some(Orders { min: 1, max: Some(0) }),
-        Quantity::Radiance(_) => Some(Orders { min: min.saturating_sub(1), max: max.map(|m| m - 1) }),
-        Quantity::Outflow { .. } | Quantity::Absorbed(_) => None,
+        Quantity::Fluence(_) | Quantity::Binned(Binned::Fluence { .. }) => Some(sensor.orders),
+        Quantity::Radiance(_) | Quantity::Binned(Binned::Radiance { .. }) if max == Some(0) => {
+            Some(Orders { min: 1, max: Some(0) })
+        }
+        Quantity::Radiance(_) | Quantity::Binned(Binned::Radiance { .. }) => {
+            Some(Orders { min: min.saturating_sub(1), max: max.map(|m| m - 1) })
+        }
+        Quantity::Outflow { .. } | Quantity::Absorbed(_) | Quantity::Binned(_) => None,
     }
+}
+
+/// Whether photons answer a sensor with one number as they pass, without a map.
+pub(super) fn is_tallied(sensor: &Sensor) -> bool {
+    matches!(sensor.quantity, Quantity::Outflow { .. } | Quantity::Absorbed(_))
+}
+
+/// The sensors with bins that photons score as they pass, beside maps.
+fn scored(sensors: &[Sensor]) -> Vec<Sensor> {
+    let is_scored = |s: &&Sensor| s.binned().is_some() && map_orders(s).is_none();
+    sensors.iter().filter(is_scored).cloned().collect()
 }
 
 /// How far beyond the cell's edges the sensors' balls of radius `cap` may reach \[L\]; rays may pass any point.
@@ -308,8 +357,8 @@ pub(super) fn margin(sensors: &[Sensor], side: f64, cap: f64) -> Result<f64> {
             let p = periodic::wrap(p, side);
             cap - p.x.min(p.y).min(side - p.x).min(side - p.y)
         }
-        Quantity::Radiance(_) => cap,
-        Quantity::Outflow { .. } | Quantity::Absorbed(_) => 0.0,
+        Quantity::Radiance(_) | Quantity::Binned(Binned::Radiance { .. } | Binned::Fluence { .. }) => cap,
+        Quantity::Outflow { .. } | Quantity::Absorbed(_) | Quantity::Binned(_) => 0.0,
     });
     let margin = beyond.fold(0.0, f64::max);
     if margin > side {
@@ -320,46 +369,84 @@ pub(super) fn margin(sensors: &[Sensor], side: f64, cap: f64) -> Result<f64> {
     Ok(margin)
 }
 
+/// That a fluence is asked for where a map has none.
+fn outside(sensor: &Sensor, p: DVec3) -> Error {
+    Error::Scene(format!(
+        "sensor {}: a photon map knows the fluence inside a medium only, and ({}, {}, {}) is outside: use paths",
+        sensor.name, p.x, p.y, p.z
+    ))
+}
+
 /// Whether a volume map can answer a sensor.
 pub(super) fn check(scene: &Scene, sensor: &Sensor) -> Result<()> {
     match sensor.quantity {
         Quantity::Fluence(p) if scene.medium_at(p).is_none_or(|m| m.sigma_t(p).min() == 0.0) => {
+            Err(outside(sensor, p))
+        }
+        Quantity::Radiance(_) | Quantity::Binned(Binned::Radiance { .. }) if scene.plan().has_surfaces => {
             Err(Error::Scene(format!(
-                "sensor {}: a photon map knows the fluence inside a medium only, and ({}, {}, {}) is outside: use paths",
-                sensor.name, p.x, p.y, p.z
+                "sensor {}: the volume map alone does not know what surfaces reflect: use paths",
+                sensor.name
             )))
         }
-        Quantity::Radiance(_) if scene.plan().has_surfaces => Err(Error::Scene(format!(
-            "sensor {}: the volume map alone does not know what surfaces reflect: use paths",
-            sensor.name
-        ))),
         _ => Ok(()),
     }
 }
 
-/// One estimate from a map.
+/// Points of a bin that a map is asked at: other ones each time, so that few do.
+const POINTS: usize = 4;
+
+/// One estimate from a map: of a bin, the mean over some of its points.
 fn read(
-    (scene, extents): (&Scene, &[MediumExtent]),
+    around: (&Scene, &[MediumExtent]),
     map: &PhotonMap,
-    sensor: &Sensor,
+    (sensor, bin): (&Sensor, usize),
     settings: &PhotonSettings,
     stream: &mut Stream,
     result: &mut PhotonReadings,
-) -> Spectrum {
-    match sensor.quantity {
-        Quantity::Fluence(p) => {
-            let number = scene.medium_number_at(p);
-            let sigma_t = number.map_or(Spectrum::ONE, |number| scene.medium(number).sigma_t(p));
-            let boundary = number.map_or(Boundary::UNKNOWN, |number| extents[number].boundary());
-            let estimate = settings.estimator.fluence(map, p, sigma_t, &boundary);
-            result.book(scene, p, &estimate, settings.estimator.treatment);
-            estimate.value
+) -> Result<Spectrum> {
+    let scene = around.0;
+    match &sensor.quantity {
+        Quantity::Fluence(p) => Ok(fluence_at(around, map, *p, settings, result)),
+        Quantity::Radiance(ray) => Ok(radiance(around, map, ray, sensor.orders, settings, stream, result)),
+        Quantity::Outflow { .. } | Quantity::Absorbed(_) => Ok(Spectrum::ZERO),
+        Quantity::Binned(binned) => {
+            let mut sum = Spectrum::ZERO;
+            for _ in 0..POINTS {
+                let p = binned.point(bin, scene.periodic_cell(), stream.triple());
+                sum += match binned {
+                    Binned::Fluence { .. }
+                        if scene.medium_at(p).is_none_or(|m| m.sigma_t(p).min() == 0.0) =>
+                    {
+                        return Err(outside(sensor, p));
+                    }
+                    Binned::Fluence { .. } => fluence_at(around, map, p, settings, result),
+                    Binned::Radiance { dir, .. } => {
+                        let ray = Ray::new(p, *dir);
+                        radiance(around, map, &ray, sensor.orders, settings, stream, result)
+                    }
+                    Binned::Flux { .. } | Binned::Absorption { .. } => Spectrum::ZERO,
+                };
+            }
+            Ok(sum / POINTS as f64)
         }
-        Quantity::Radiance(ray) => {
-            radiance((scene, extents), map, &ray, sensor.orders, settings, stream, result)
-        }
-        Quantity::Outflow { .. } | Quantity::Absorbed(_) => Spectrum::ZERO,
     }
+}
+
+/// Fluence at a point in a medium.
+fn fluence_at(
+    (scene, extents): (&Scene, &[MediumExtent]),
+    map: &PhotonMap,
+    p: DVec3,
+    settings: &PhotonSettings,
+    result: &mut PhotonReadings,
+) -> Spectrum {
+    let number = scene.medium_number_at(p);
+    let sigma_t = number.map_or(Spectrum::ONE, |number| scene.medium(number).sigma_t(p));
+    let boundary = number.map_or(Boundary::UNKNOWN, |number| extents[number].boundary());
+    let estimate = settings.estimator.fluence(map, p, sigma_t, &boundary);
+    result.book(scene, p, &estimate, settings.estimator.treatment);
+    estimate.value
 }
 
 /// Radiance along a ray: uncollided light in closed form, and what media scatter, marched in random steps, so that the integral

@@ -74,6 +74,11 @@ impl Moments {
         self.n += other.n;
     }
 
+    /// So many values of 0.
+    pub fn zeros(n: u64) -> Self {
+        Moments { n, ..Moments::default() }
+    }
+
     /// Number of values.
     pub fn n(&self) -> u64 {
         self.n

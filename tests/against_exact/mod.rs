@@ -1,5 +1,6 @@
 //! The player against the referee: path tracer and photons against exact values, order by order and in all.
 
+mod bins;
 mod cavity;
 mod emitting_sphere;
 mod equiangular;

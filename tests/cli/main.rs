@@ -4,6 +4,7 @@
 mod bad_files;
 mod bad_input;
 mod bad_pictures;
+mod bins;
 mod media;
 mod memory;
 mod output;

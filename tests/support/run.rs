@@ -1,7 +1,7 @@
 //! Runs: moments by histories of paths and photons.
 
 use turbid::Spectrum;
-use turbid::photons::{Histories, Pass, Photon, shoot};
+use turbid::photons::{Emitter, Histories, Pass, Photon, Run, shoot};
 use turbid::rng::{Purpose, Stream};
 use turbid::scene::{Orders, Quantity, Scene, Sensor, Start, Target};
 use turbid::stats::Moments;
@@ -57,6 +57,27 @@ pub fn pass(
 /// Photons: tallies of outflows and absorptances.
 pub fn tallies(scene: &Scene, sensors: &[(Quantity, Orders)], n: u64, seed: u64) -> Vec<[Moments; 3]> {
     pass(scene, sensors, n, seed, |_| false).tallies
+}
+
+/// Photons: one pass that stores nothing and scores the sensors of the scene that have bins.
+pub fn scoring_pass(scene: &Scene, n: u64, seed: u64) -> Pass {
+    let histories = Histories { count: n, seed, replicate: 0, max_order: None };
+    let emitter = Emitter::by_power(scene);
+    let run = Run { scored: scene.sensors(), ..Run::new(scene, &emitter, histories) };
+    run.pass(&|_: &Photon| false, &NoProgress).unwrap()
+}
+
+/// The same: moments by sensor, bin and channel.
+pub fn scores(scene: &Scene, n: u64, seed: u64) -> Vec<Vec<[Moments; 3]>> {
+    let mut all = scoring_pass(scene, n, seed).scores.moments(scene, n).into_iter();
+    let binned = scene.sensors().iter().filter_map(Sensor::binned);
+    binned.map(|binned| all.by_ref().take(binned.bins()).collect()).collect()
+}
+
+/// Paths: moments by channel of one bin of a sensor.
+pub fn bin_paths(scene: &Scene, sensor: &Sensor, bin: usize, n: u64, seed: u64) -> [Moments; 3] {
+    let binned = sensor.binned().unwrap();
+    histories(n, seed, |stream| turbid::sensor::sample_bin(scene, (binned, bin), sensor.orders, stream).0)
 }
 
 /// Photon histories watched step by step: moments of numbers that a watcher made of each. One light; its power is 1

@@ -8,8 +8,13 @@ use turbid::light::{Area, Beam, Faces, Isotropic, Light, Point, Section, VolumeS
 use turbid::math::{Asymmetry, FOUR_PI};
 use turbid::medium::{Homogeneous, Medium};
 use turbid::phase::Phase;
-use turbid::scene::{Interior, Object, Quantity, Region, Scene, SceneParts};
+use turbid::scene::{Interior, Object, Quantity, Region, Scene, SceneFile, SceneParts};
 use turbid::surface::{Dielectric, Lambertian, Surface};
+
+/// A scene from the text of a file.
+pub fn written(text: &str) -> Scene {
+    SceneFile::from_toml(text).unwrap().scene(std::path::Path::new("")).unwrap()
+}
 
 /// Side of the cells of unbounded slabs [L].
 pub const CELL: f64 = 4.0;

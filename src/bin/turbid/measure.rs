@@ -1,4 +1,4 @@
-//! `turbid measure`: the sensors of a scene, by paths or by photons.
+//! `turbid measure`: the sensors of a scene, by paths, photons or light tracing.
 
 use super::load::Source;
 use super::memory::{Memory, passes_that_fit, rounded_down};
@@ -7,19 +7,29 @@ use super::progress::Bar;
 use super::shared::{FormatName, kernels, note, on_threads, parse_count, tell_ahead, whole};
 use anyhow::{Context, bail};
 use clap::ValueEnum;
+use std::path::PathBuf;
 use turbid::estimators::{Estimator, Gather, Kernel};
-use turbid::output::{one_line, print, write_rows};
-use turbid::scene::{Orders, Scene};
+use turbid::geometry::Voxels;
+use turbid::output::{
+    check_writable, is_same_file, npy, one_line, print, voxel_grid, write_atomically, write_rows,
+};
+use turbid::photons::Ledger;
+use turbid::scene::{Binned, Orders, Scene, Sensor, Space};
 use turbid::sensor::{
-    Measurement, NoError, PathSettings, PhotonSettings, by_paths, by_photons_in_passes, forecast,
+    Measurement, NoError, PathSettings, PhotonSettings, TallySettings, by_paths, by_photons_in_passes,
+    by_tallies, forecast, tally_bytes,
 };
 
-/// Measure the sensors of a scene by paths or by photons.
+/// Measure the sensors of a scene by paths, photons or light tracing.
 ///
 /// Prints the columns sensor, quantity, unit, mean, std_error, n. Paths and tallies have n = histories; estimates
 /// from photon maps have n = maps: the standard error is that between independent maps, and one map has none, since all its
 /// estimates share its photons. Where no error can be trusted a word says why: one-map, nothing-found, too-few (fewer than
-/// 1,000 paths contribute), heavy-tail.
+/// 1,000 paths contribute, or 10 photons), heavy-tail.
+///
+/// A sensor with bins has a row for each: columns i, j, k number it along each axis, x, y, z are its middle. Flux and
+/// absorption are scored by photons as they pass; fluence and radiance by `photons` are estimates from maps at 4 random
+/// points of the bin, by `light` scores too: of flights or collisions, and of what each scattering sends to the bin.
 #[derive(clap::Args)]
 #[command(allow_negative_numbers = true)]
 pub struct Measure {
@@ -28,10 +38,10 @@ pub struct Measure {
     /// Who measures.
     #[arg(long = "with", value_enum)]
     with: With,
-    /// Paths a sensor, such as 1e6.
+    /// Paths a sensor, or a bin of one, such as 1e6.
     #[arg(long, value_parser = parse_count, default_value = "100000")]
     samples: u64,
-    /// Photons emitted for all maps together, such as 1e7.
+    /// Photons emitted, for all maps together, such as 1e7.
     #[arg(long, value_parser = parse_count, default_value = "1000000")]
     photons: u64,
     /// Independent photon maps, each of an equal part of the photons.
@@ -70,6 +80,13 @@ pub struct Measure {
     /// Form of the output.
     #[arg(long, value_enum, default_value = "table")]
     format: FormatName,
+    /// Write the sensor with bins as a NumPy array of doubles (i, j, k, channel, 2): means, then standard errors, not a
+    /// number where there is none. The scene has one such sensor.
+    #[arg(long, value_name = "FILE")]
+    npy: Option<PathBuf>,
+    /// Write the means of the sensor with voxels as a Mitsuba grid, version 3. The scene has one sensor with bins.
+    #[arg(long, value_name = "FILE")]
+    vol: Option<PathBuf>,
 }
 
 #[derive(Clone, Copy, ValueEnum)]
@@ -79,6 +96,8 @@ enum With {
     Path,
     /// Photons: tallies and photon maps.
     Photons,
+    /// Light tracing: photons that are scored as they pass, none stored.
+    Light,
 }
 
 /// Orders on the command line.
@@ -105,9 +124,11 @@ impl Measure {
         if scene.sensors().is_empty() {
             bail!("{}: the scene has no sensors: nothing to measure", self.source.name());
         }
+        let array = self.array(&scene)?;
         let (mut measurements, mut notes) = on_threads(self.threads, || match self.with {
             With::Path => self.measure_by_paths(&scene),
             With::Photons => self.measure_by_photons(&scene),
+            With::Light => self.measure_by_light(&scene),
         })?;
         // Names come from files, and go to terminals.
         for measurement in &mut measurements {
@@ -115,6 +136,9 @@ impl Measure {
             measurement.quantity = one_line(&measurement.quantity);
         }
         notes.extend(without_error(&measurements));
+        if let Some(binned) = array {
+            self.write_files(&measurements, binned)?;
+        }
         let format = self.format.format();
         print(|out| write_rows(out, &measurements, format)).context("standard output")?;
         for text in notes {
@@ -123,10 +147,63 @@ impl Measure {
         Ok(())
     }
 
+    /// The sensor that goes to files, if one does; files that could not be written are refused before any work.
+    fn array<'a>(&self, scene: &'a Scene) -> anyhow::Result<Option<&'a Binned>> {
+        let files = [("--npy", &self.npy), ("--vol", &self.vol)];
+        let Some((option, _)) = files.iter().find(|(_, file)| file.is_some()) else { return Ok(None) };
+        let binned: Vec<&Binned> = scene.sensors().iter().filter_map(Sensor::binned).collect();
+        let [one] = binned[..] else {
+            bail!("{option} writes one sensor with bins; this scene has {}", binned.len());
+        };
+        if self.vol.is_some() && voxels(one).is_none() {
+            bail!("--vol writes voxels; the sensor with bins of this scene has none: use --npy");
+        }
+        for file in files.iter().filter_map(|(_, file)| file.as_ref()) {
+            check_writable(file)?;
+        }
+        if let (Some(npy), Some(vol)) = (&self.npy, &self.vol)
+            && is_same_file(npy, vol).unwrap_or(false)
+        {
+            bail!("--npy and --vol name one file, {}", npy.display());
+        }
+        Ok(Some(one))
+    }
+
+    fn write_files(&self, measurements: &[Measurement], binned: &Binned) -> anyhow::Result<()> {
+        let rows: Vec<Measurement> = measurements.iter().filter(|row| row.bin.is_some()).cloned().collect();
+        if let Some(file) = &self.npy {
+            write_atomically(file, |out| out.write_all(&npy(&rows, binned.count())))?;
+        }
+        if let (Some(file), Some(voxels)) = (&self.vol, voxels(binned)) {
+            let bytes = voxel_grid(&rows, voxels).context("--vol")?.to_bytes();
+            write_atomically(file, |out| out.write_all(&bytes))?;
+        }
+        Ok(())
+    }
+
+    fn measure_by_light(&self, scene: &Scene) -> anyhow::Result<(Vec<Measurement>, Vec<String>)> {
+        let settings = TallySettings { photons: self.photons, seed: self.seed, orders: self.orders };
+        self.check_bins(scene, tally_bytes(scene, &settings))?;
+        let bar = Bar::new(self.photons);
+        let result = by_tallies(scene, &settings, &bar);
+        bar.finish();
+        let result = result.with_context(|| self.source.name())?;
+        Ok((result.measurements, vec![ledger_note(&result.ledger)]))
+    }
+
+    /// Refuses bins that take more memory than there is.
+    fn check_bins(&self, scene: &Scene, bytes: f64) -> anyhow::Result<()> {
+        let bins: usize = scene.sensors().iter().filter_map(Sensor::binned).map(Binned::bins).sum();
+        self.memory.check(&format!("{bins} bins"), bytes, 0.0, |part| {
+            format!("{} bins", rounded_down(bins as f64 * part))
+        })
+    }
+
     fn measure_by_paths(&self, scene: &Scene) -> anyhow::Result<(Vec<Measurement>, Vec<String>)> {
         let settings =
             PathSettings { samples: self.samples, seed: self.seed, replicate: 0, orders: self.orders };
-        let bar = Bar::new(self.samples.saturating_mul(scene.sensors().len() as u64));
+        let bins: u64 = scene.sensors().iter().map(|s| s.binned().map_or(1, Binned::bins) as u64).sum();
+        let bar = Bar::new(self.samples.saturating_mul(bins));
         let measurements = by_paths(scene, &settings, &bar);
         bar.finish();
         Ok((measurements.with_context(|| self.source.name())?, Vec::new()))
@@ -184,14 +261,7 @@ impl Measure {
         let result = by_photons_in_passes(scene, &settings, self.passes, &bar);
         bar.finish();
         let result = result.with_context(|| self.source.name())?;
-        let ledger = &result.ledger;
-        let [absorbed, escaped, truncated] =
-            [ledger.absorbed, ledger.escaped, ledger.truncated].map(|power| power / ledger.emitted);
-        let mut notes = vec![format!(
-            "energy ledger: of the emitted power {absorbed:.6} was absorbed, {escaped:.6} escaped, {truncated:.6} was \
-             followed no further; together {:.12}",
-            absorbed + escaped + truncated
-        )];
+        let mut notes = vec![ledger_note(&result.ledger)];
         if result.beyond > 0 {
             notes.push(format!(
                 "{} of {} balls reach beyond their medium, where no photons are: those estimates are biased low",
@@ -210,13 +280,43 @@ impl Measure {
     }
 }
 
+/// Where the power went.
+fn ledger_note(ledger: &Ledger) -> String {
+    let [absorbed, escaped, truncated] =
+        [ledger.absorbed, ledger.escaped, ledger.truncated].map(|power| power / ledger.emitted);
+    format!(
+        "energy ledger: of the emitted power {absorbed:.6} was absorbed, {escaped:.6} escaped, {truncated:.6} was \
+         followed no further; together {:.12}",
+        absorbed + escaped + truncated
+    )
+}
+
+/// The voxels of a sensor, if it has some.
+fn voxels(binned: &Binned) -> Option<&Voxels> {
+    match binned {
+        Binned::Fluence { space: Space::Voxels(voxels), .. }
+        | Binned::Absorption { space: Space::Voxels(voxels), .. } => Some(voxels),
+        _ => None,
+    }
+}
+
 /// Names the measurements without a standard error, a line for each reason; that there is one map, the table says.
 fn without_error(measurements: &[Measurement]) -> Vec<String> {
     let why = |why: NoError| {
         let without = measurements.iter().filter(|r| r.no_error == Some(why));
-        let names: Vec<String> = without.map(|r| format!("{} {}", r.sensor, r.quantity)).collect();
-        (!names.is_empty())
-            .then(|| format!("no standard error, {}: {}: {}", why.word(), why.reason(), names.join(", ")))
+        let mut names: Vec<String> = Vec::new();
+        let mut bins = 0;
+        for r in without {
+            let name = format!("{} {}", r.sensor, r.quantity);
+            bins += usize::from(r.bin.is_some());
+            if !names.contains(&name) {
+                names.push(name);
+            }
+        }
+        let bins = if bins > 0 { format!(" ({bins} bins)") } else { String::new() };
+        (!names.is_empty()).then(|| {
+            format!("no standard error, {}: {}: {}{bins}", why.word(), why.reason(), names.join(", "))
+        })
     };
     [NoError::Nothing, NoError::TooFew, NoError::HeavyTail].into_iter().filter_map(why).collect()
 }

@@ -14,9 +14,12 @@ pub use values::Channels;
 
 use values::rectangle;
 
-use super::{Camera, Filter, Interior, Object, Orders, Quantity, Region, Scene, SceneParts, Sensor, View};
+use super::{
+    Binned, Camera, Crossing, Filter, Interior, Object, Orders, Quantity, Region, Scene, SceneParts, Scoring,
+    Sensor, Space, View,
+};
 use crate::error::{Error, Result};
-use crate::geometry::Face;
+use crate::geometry::{Cuboid, Face, FaceBins, Voxels};
 use crate::light::{Area, Beam, Faces, Isotropic, Light, Point, Section, Spot, Sun, VolumeSource};
 use crate::math::{Albedo, Asymmetry, NonNegative, Positive, Ray};
 use crate::surface::{self, Black, Lambertian, Mirror, Surface};
@@ -270,10 +273,82 @@ pub struct SensorFile {
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 #[allow(missing_docs, reason = "the names are those of `scene::Quantity`, which says their meaning")]
 pub enum QuantityFile {
-    Fluence { at: [f64; 3] },
-    Radiance { origin: [f64; 3], dir: [f64; 3] },
-    Outflow { shape: ShapeFile, face: Face },
-    Absorbed { region: usize },
+    Fluence {
+        at: [f64; 3],
+    },
+    Radiance {
+        origin: [f64; 3],
+        dir: [f64; 3],
+    },
+    Outflow {
+        shape: ShapeFile,
+        face: Face,
+    },
+    Absorbed {
+        region: usize,
+    },
+    Flux {
+        corner: [f64; 3],
+        u: [f64; 3],
+        v: [f64; 3],
+        bins: [usize; 2],
+        #[serde(default, skip_serializing_if = "is_along")]
+        crossing: Crossing,
+    },
+    MeanRadiance {
+        corner: [f64; 3],
+        u: [f64; 3],
+        v: [f64; 3],
+        bins: [usize; 2],
+        dir: [f64; 3],
+    },
+    MeanFluence(SpaceFile),
+    MeanAbsorption(SpaceFile),
+}
+
+fn is_along(crossing: &Crossing) -> bool {
+    *crossing == Crossing::Along
+}
+
+/// Where a field is averaged: over voxels, or over the shape of a region.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct SpaceFile {
+    /// Lower corner \[L\].
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub min: Option<[f64; 3]>,
+    /// Upper corner \[L\].
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub max: Option<[f64; 3]>,
+    /// Voxels along x, y and z.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub cells: Option<[usize; 3]>,
+    /// A region, in place of the three.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub region: Option<usize>,
+    /// How photons estimate it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub scoring: Option<Scoring>,
+}
+
+impl SpaceFile {
+    fn space(&self, regions: &[Region]) -> Result<Space> {
+        match (self.min, self.max, self.cells, self.region) {
+            (Some(min), Some(max), Some(cells), None) => {
+                Ok(Space::Voxels(Voxels::new(Cuboid::new(min.into(), max.into())?, cells)?))
+            }
+            (None, None, None, Some(number)) => match regions.get(number) {
+                Some(region) => Ok(Space::Shape(region.shape.clone())),
+                None if regions.is_empty() => {
+                    Err(Error::Scene(format!("`region` is {number}; the scene has none")))
+                }
+                None => {
+                    Err(Error::Scene(format!("`region` is {number}; allowed: 0 to {}", regions.len() - 1)))
+                }
+            },
+            _ => Err(Error::Scene("allowed: `min`, `max` and `cells` of voxels, or a `region`".into())),
+        }
+    }
 }
 
 impl RegionFile {
@@ -356,7 +431,9 @@ impl LightFile {
 }
 
 impl SensorFile {
-    fn sensor(&self, folder: &Path) -> Result<Sensor> {
+    fn sensor(&self, folder: &Path, regions: &[Region]) -> Result<Sensor> {
+        let within = |e: Error| e.within(&format!("sensor {}", self.name));
+        let face = |corner, u, v, bins| FaceBins::new(rectangle(corner, u, v)?, bins);
         let (kind, quantity) = match self.measure {
             QuantityFile::Fluence { at } => ("fluence", Quantity::Fluence(at.into())),
             QuantityFile::Radiance { origin, dir } => {
@@ -373,6 +450,31 @@ impl SensorFile {
                 ("outflow", Quantity::Outflow { shape, face })
             }
             QuantityFile::Absorbed { region } => ("absorptance", Quantity::Absorbed(region)),
+            QuantityFile::Flux { corner, u, v, bins, crossing } => {
+                let bins = face(corner, u, v, bins).map_err(within)?;
+                ("flux", Quantity::Binned(Binned::Flux { bins, crossing }))
+            }
+            QuantityFile::MeanRadiance { corner, u, v, bins, dir } => {
+                let bins = face(corner, u, v, bins).map_err(within)?;
+                let Some(dir) = DVec3::from(dir).try_normalize() else {
+                    return Err(within(Error::Scene("needs a finite direction other than 0 0 0".into())));
+                };
+                ("radiance", Quantity::Binned(Binned::Radiance { bins, dir }))
+            }
+            QuantityFile::MeanFluence(place) => {
+                let scoring = place.scoring.unwrap_or(Scoring::TrackLength);
+                if scoring == Scoring::Analog {
+                    let text = "`scoring` is analog, which no fluence is; allowed: track-length, collision";
+                    return Err(within(Error::Scene(text.into())));
+                }
+                let space = place.space(regions).map_err(within)?;
+                ("fluence", Quantity::Binned(Binned::Fluence { space, scoring }))
+            }
+            QuantityFile::MeanAbsorption(place) => {
+                let scoring = place.scoring.unwrap_or(Scoring::Collision);
+                let space = place.space(regions).map_err(within)?;
+                ("absorption", Quantity::Binned(Binned::Absorption { space, scoring }))
+            }
         };
         let label = self.label.clone().unwrap_or_else(|| kind.to_string());
         if let (Some(min), Some(max)) = (self.min_order, self.max_order)
@@ -426,8 +528,10 @@ impl SceneFile {
             .iter()
             .enumerate()
             .map(|(i, o)| object(o).map_err(|e: Error| e.within(&format!("objects[{i}]"))));
+        let regions: Vec<Region> = regions.collect::<Result<_>>()?;
         Scene::new(SceneParts {
-            regions: regions.collect::<Result<_>>()?,
+            sensors: self.sensors.iter().map(|s| s.sensor(folder, &regions)).collect::<Result<_>>()?,
+            regions,
             interiors: interiors.clone(),
             objects: objects.collect::<Result<_>>()?,
             lights: self
@@ -437,7 +541,6 @@ impl SceneFile {
                 .map(|(i, l)| l.light(folder).map_err(|e| e.within(&format!("lights[{i}]"))))
                 .collect::<Result<_>>()?,
             cell: self.cell.map(Positive::get),
-            sensors: self.sensors.iter().map(|s| s.sensor(folder)).collect::<Result<_>>()?,
             camera: self.camera.as_ref().map(CameraFile::camera).transpose()?,
         })
     }
