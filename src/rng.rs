@@ -31,6 +31,8 @@ pub enum Purpose {
     Ends,
     /// Points that find out how much a medium emits.
     Emission,
+    /// Realisations of random media.
+    Mixture,
 }
 
 /// Work that a scene may or may not require, counted where it is done.
