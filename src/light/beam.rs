@@ -90,7 +90,8 @@ impl Beam {
         let u = [numbers.position[0], numbers.position[1]];
         let origin = match (self.section, periodic_cell) {
             (Section::Unbounded, periodic_cell) => {
-                let (side, z) = periodic_cell.map_or((DVec2::ZERO, 0.0), |s| (s.side, s.slab.face(self.entry())));
+                let (side, z) =
+                    periodic_cell.map_or((DVec2::ZERO, 0.0), |s| (s.side, s.slab.face(self.entry())));
                 DVec3::new(u[0] * side.x, u[1] * side.y, z)
             }
             (Section::Disc { center, radius }, _) => {

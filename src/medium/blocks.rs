@@ -334,9 +334,9 @@ impl Iterator for Through<'_> {
                 let (low, high) = match values {
                     _ if !is_inside => (0.0, 0.0),
                     [one] => (*one, *one),
-                    more => more.iter().fold((f64::INFINITY, 0.0), |(low, high): (f64, f64), v| {
-                        (low.min(*v), high.max(*v))
-                    }),
+                    more => more
+                        .iter()
+                        .fold((f64::INFINITY, 0.0), |(low, high): (f64, f64), v| (low.min(*v), high.max(*v))),
                 };
                 return Some(Bound { interval: Interval { start, end }, low, high });
             }

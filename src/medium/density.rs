@@ -1,6 +1,8 @@
 //! How much of a medium is where: the densities at hand.
 
-use super::{Along, AlongPeriods, Blocks, Bound, Cloud, CloudShape, Grid, HeightFog, Layers, Repeated, Through};
+use super::{
+    Along, AlongPeriods, Blocks, Bound, Cloud, CloudShape, Grid, HeightFog, Layers, Repeated, Through,
+};
 use crate::error::{Error, Result};
 use crate::math::{Interval, Positive, Ray};
 use glam::{DVec2, DVec3};

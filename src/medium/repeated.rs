@@ -71,7 +71,8 @@ impl Period {
     /// The parts of a part of a ray, period by period: the ray as it would pass the first one.
     fn pieces(&self, ray: &Ray, part: Interval) -> Pieces {
         let start = ray.at(part.start);
-        let number = |axis: usize| self.0[axis].map_or(0.0, |(low, side)| ((start[axis] - low) / side).floor());
+        let number =
+            |axis: usize| self.0[axis].map_or(0.0, |(low, side)| ((start[axis] - low) / side).floor());
         let mut pieces = Pieces {
             period: *self,
             ray: *ray,
@@ -293,7 +294,9 @@ impl Density {
             }
             Density::Repeated(repeated) if repeated.period.fits(cell) => return Ok(self.clone()),
             Density::Repeated(_) => {
-                return refuse("a density that repeats itself with periods that are no part of the cell".into());
+                return refuse(
+                    "a density that repeats itself with periods that are no part of the cell".into(),
+                );
             }
         };
         Ok(Density::Repeated(Arc::new(Repeated { density, period })))

@@ -59,7 +59,9 @@ fn copies_around_the_cell_are_those_of_the_lattice() {
     };
     let photons: Vec<Photon> =
         (0..500).map(|_| photon(DVec3::from_array(stream.triple()) * DVec3::new(CELL, CELL, 1.0))).collect();
-    let map = |reach: f64| PhotonMap::periodic(vec![photons.clone()], 1, Some((glam::DVec2::splat(CELL), reach)), &NoProgress);
+    let map = |reach: f64| {
+        PhotonMap::periodic(vec![photons.clone()], 1, Some((glam::DVec2::splat(CELL), reach)), &NoProgress)
+    };
     assert!(map(1.01 * CELL).is_err() && map(-0.1).is_err());
     for margin in [0.3, 0.5 * CELL, 0.8 * CELL, CELL] {
         let (around, alone) = (map(margin).unwrap(), map(0.0).unwrap());

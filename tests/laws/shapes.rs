@@ -220,10 +220,13 @@ fn points_inside_are_uniform() {
     let low = DVec3::new(-1.0, 0.0, 3.0);
     let block = cuboid(low, low + DVec3::new(1.0, 2.0, 3.0));
     for axis in 0..3 {
-        let mean = numbers(1 << 16, 16, |s| (block.sample_inside(glam::DVec2::ZERO, s.triple()).0 - low)[axis]);
+        let mean =
+            numbers(1 << 16, 16, |s| (block.sample_inside(glam::DVec2::ZERO, s.triple()).0 - low)[axis]);
         let edge = (axis + 1) as f64;
         verdict::agrees(&format!("axis {axis} of a box"), &mean, (0.5 * edge, 0.0), 0.01 * edge, 16);
-        let square = numbers(1 << 16, 17, |s| (block.sample_inside(glam::DVec2::ZERO, s.triple()).0 - low)[axis].powi(2));
+        let square = numbers(1 << 16, 17, |s| {
+            (block.sample_inside(glam::DVec2::ZERO, s.triple()).0 - low)[axis].powi(2)
+        });
         verdict::agrees(
             &format!("axis {axis} squared"),
             &square,

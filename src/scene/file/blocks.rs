@@ -253,7 +253,9 @@ impl ColumnsFile {
                 let text = crate::input::read_text(&path, MOST_BYTES);
                 let text = text.map_err(|cause| within(Error::Scene(cause.to_string())))?;
                 if self.extinction.is_some() || self.optical_depth.is_some() || self.count.is_some() {
-                    return refuse("columns with file and extinction, optical_depth or count; allowed: file alone");
+                    return refuse(
+                        "columns with file and extinction, optical_depth or count; allowed: file alone",
+                    );
                 }
                 let numbers = table(&text).map_err(within)?;
                 self.placed(numbers).map_err(within)
@@ -286,10 +288,13 @@ impl ColumnsFile {
             (None, Some(Heights::Each(each))) => {
                 refuse(format!("{name} has {} values; allowed: {n}, one a column", each.len()))
             }
-            (Some(_), _) => refuse(format!("{name} in the table and in the scene file; allowed: one of the two")),
+            (Some(_), _) => {
+                refuse(format!("{name} in the table and in the scene file; allowed: one of the two"))
+            }
             (None, None) => refuse(format!("no {name}; allowed: in the table, or a key beside it")),
         };
-        let (bases, tops) = (heights("base", numbers.base, &self.base)?, heights("top", numbers.top, &self.top)?);
+        let (bases, tops) =
+            (heights("base", numbers.base, &self.base)?, heights("top", numbers.top, &self.top)?);
         let scale = self.scale.map_or(1.0, Positive::get);
         for (column, value) in values.iter_mut().enumerate() {
             let (base, top) = (bases[column], tops[column]);
@@ -319,9 +324,12 @@ impl ColumnsFile {
         let planes = |from: f64, step: f64, count: usize| -> Vec<f64> {
             (0..=count).map(|i| from + step * i as f64).collect()
         };
-        let spans = bases.iter().zip(&tops).map(|(base, top)| (self.ground - top, self.ground - base)).collect();
+        let spans =
+            bases.iter().zip(&tops).map(|(base, top)| (self.ground - top, self.ground - base)).collect();
         if n != nx.saturating_mul(ny) || n == 0 {
-            return refuse(format!("{nx} x {ny} columns have {n} values; allowed: one a column, at least one"));
+            return refuse(format!(
+                "{nx} x {ny} columns have {n} values; allowed: one a column, at least one"
+            ));
         }
         Blocks::columns(planes(x0, dx, nx), planes(y0, dy, ny), values, spans)
     }

@@ -5,7 +5,9 @@ use super::values::Channels;
 use crate::error::{Error, Result};
 use crate::faults::{Fault, planted};
 use crate::math::{Albedo, Asymmetry, NonNegative, Positive};
-use crate::medium::{Blocks, Body, Cloud, CloudShape, Density, Grid, HeightFog, Heterogeneous, Homogeneous, Medium};
+use crate::medium::{
+    Blocks, Body, Cloud, CloudShape, Density, Grid, HeightFog, Heterogeneous, Homogeneous, Medium,
+};
 use crate::phase::{Phase, Rayleigh, Schlick, Tabulated, TwoTerm};
 use serde::{Deserialize, Serialize};
 use std::path::Path;
@@ -153,7 +155,9 @@ impl Keys<'_> {
         let (density, own_albedo) = density.density(folder)?;
         let mut medium = Heterogeneous::new(matter, density);
         match (own_albedo, albedo_grid) {
-            (Some(_), Some(_)) => return refuse("albedo_grid and layers with an albedo; allowed: one of the two"),
+            (Some(_), Some(_)) => {
+                return refuse("albedo_grid and layers with an albedo; allowed: one of the two");
+            }
             (Some(blocks), None) => medium = medium.with_albedo_blocks(blocks)?,
             (None, Some(grid)) => {
                 medium = match grid.sampled(folder).map_err(|e| e.within("albedo_grid"))? {
