@@ -47,7 +47,7 @@ impl Blocks {
                 let what = format!("planes of blocks across {name}");
                 return Err(Error::out_of_range(what, planes.len() as f64, "2 or more"));
             }
-            if let Some(bad) = planes.iter().find(|p| !(p.abs() <= 1e100)) {
+            if let Some(bad) = planes.iter().find(|p| p.abs().total_cmp(&1e100).is_gt()) {
                 let what = format!("a plane of blocks across {name}");
                 return Err(Error::out_of_range(what, *bad, "up to 1e100 in size"));
             }

@@ -26,8 +26,8 @@ pub fn markov(
     }
     let chords = mean_chords.map(Positive::get);
     let layers = 2.0 * (to - from) / (chords[0] + chords[1]);
-    // The comparison is not true of a quotient that is not a number.
-    if !(layers <= MOST) {
+    // A quotient that is not a number is above all.
+    if layers.total_cmp(&MOST).is_gt() {
         return Err(Error::out_of_range("layers of a Markov mixture in the mean", layers, "at most 1e6"));
     }
     let mut stream = Stream::new(seed, Purpose::Mixture, 0, 0);

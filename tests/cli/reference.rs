@@ -86,7 +86,7 @@ fn every_example_is_a_scene() {
         let mut scene = example.to_string();
         if !example.contains("[[lights]]") {
             scene.push_str(lamp);
-        } else {
+        } else if !example.contains("[[regions]]") {
             scene.push_str(ball);
         }
         let file = folder.file(&format!("example{number}.toml"), &scene);
