@@ -33,6 +33,8 @@ pub enum Purpose {
     Emission,
     /// What photon histories score in bins, beside their walk.
     Scores,
+    /// Realisations of random media.
+    Mixture,
 }
 
 /// Work that a scene may or may not require, counted where it is done.

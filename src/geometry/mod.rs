@@ -33,7 +33,7 @@ pub(crate) use sums::remainder;
 pub(crate) use tree::Tree;
 
 use crate::math::{Interval, Ray};
-use glam::DVec3;
+use glam::{DVec2, DVec3};
 use std::sync::Arc;
 
 /// The shapes at hand. Heavy ones share their data: a clone costs little.
@@ -245,8 +245,8 @@ impl Shape {
     }
 
     /// A uniform point on the boundary from three numbers in [0, 1), the outward normal there, and the boundary's
-    /// area [L^2]. Of a slab: one face, over the square cell [0, side) x [0, side).
-    pub fn sample_boundary(&self, face: Face, side: f64, u: [f64; 3]) -> (DVec3, DVec3, f64) {
+    /// area [L^2]. Of a slab: one face, over the cell [0, side.x) x [0, side.y).
+    pub fn sample_boundary(&self, face: Face, side: DVec2, u: [f64; 3]) -> (DVec3, DVec3, f64) {
         match self {
             Shape::Sphere(s) => {
                 let (p, normal) = s.sample_surface([u[0], u[1]]);
@@ -254,7 +254,7 @@ impl Shape {
             }
             Shape::Rectangle(r) => (r.sample([u[0], u[1]]), r.normal(), r.area()),
             Shape::Slab(s) => {
-                (DVec3::new(u[0] * side, u[1] * side, s.face(face)), face.normal(), side * side)
+                (DVec3::new(u[0] * side.x, u[1] * side.y, s.face(face)), face.normal(), side.x * side.y)
             }
             Shape::Cuboid(c) => {
                 let (p, normal) = c.sample_surface(u);
@@ -274,21 +274,21 @@ impl Shape {
             Shape::Mesh(s) => s.sample_surface([u[0], u[1]]),
             Shape::Revolution(s) => s.sample_surface([u[0], u[1]]),
             Shape::Sphere(_) | Shape::Rectangle(_) | Shape::Slab(_) | Shape::Cuboid(_) => {
-                let (p, normal, _) = self.sample_boundary(Face::Top, 0.0, u);
+                let (p, normal, _) = self.sample_boundary(Face::Top, DVec2::ZERO, u);
                 (p, normal, 0)
             }
         }
     }
 
     /// A uniform point inside from three numbers in [0, 1), and the volume [L^3]; of a slab, the part under the
-    /// square cell [0, side) x [0, side); of a shape that is not solid, a point of its surface and 0.
-    pub fn sample_inside(&self, side: f64, u: [f64; 3]) -> (DVec3, f64) {
+    /// cell [0, side.x) x [0, side.y); of a shape that is not solid, a point of its surface and 0.
+    pub fn sample_inside(&self, side: DVec2, u: [f64; 3]) -> (DVec3, f64) {
         match self {
             Shape::Sphere(s) => (s.sample_inside(u), s.volume()),
             Shape::Rectangle(r) => (r.sample([u[0], u[1]]), 0.0),
             Shape::Slab(s) => {
-                let p = DVec3::new(u[0] * side, u[1] * side, s.top() + u[2] * s.thickness());
-                (p, side * side * s.thickness())
+                let p = DVec3::new(u[0] * side.x, u[1] * side.y, s.top() + u[2] * s.thickness());
+                (p, side.x * side.y * s.thickness())
             }
             Shape::Cuboid(c) => (c.sample_inside(u), c.volume()),
             Shape::Mesh(_) | Shape::Revolution(_) => (self.sample_surface(u).0, 0.0),

@@ -8,7 +8,7 @@ use crate::error::{Error, Result};
 use crate::faults::{Fault, planted};
 use crate::geometry::{Face, Hit, Rectangle, Shape, Sphere, SphericalRectangle};
 use crate::math::{Frame, Ray, warp};
-use glam::DVec3;
+use glam::{DVec2, DVec3};
 use std::f64::consts::PI;
 
 /// A rectangle whose middle is farther than so many diagonals is aimed at by area. Near it samples by area have no bounded
@@ -65,7 +65,7 @@ impl Area {
     }
 
     pub(super) fn ray(&self, numbers: &PrimarySample) -> Ray {
-        let (origin, normal, _) = self.shape.sample_boundary(Face::Top, 0.0, numbers.position);
+        let (origin, normal, _) = self.shape.sample_boundary(Face::Top, DVec2::ZERO, numbers.position);
         let local = if planted(Fault::EmissionUniform) {
             let dir = warp::square_to_sphere(numbers.direction);
             dir.with_z(dir.z.abs())
@@ -103,8 +103,8 @@ impl Area {
     pub(super) fn bundle(&self, cell: &EmissionCell) -> Option<Bundle> {
         let u = cell.position_middle()[0];
         let on_face = |low: [f64; 3], high: [f64; 3]| {
-            let (a, normal, _) = self.shape.sample_boundary(Face::Top, 0.0, low);
-            let (b, _, _) = self.shape.sample_boundary(Face::Top, 0.0, high);
+            let (a, normal, _) = self.shape.sample_boundary(Face::Top, DVec2::ZERO, low);
+            let (b, _, _) = self.shape.sample_boundary(Face::Top, DVec2::ZERO, high);
             let (axis, angle) = cone(cell, &Frame::new(normal), by_number::cosine_hemisphere);
             Bundle { center: 0.5 * (a + b), radius: 0.5 * a.distance(b), axis, angle }
         };

@@ -7,7 +7,7 @@ use crate::Spectrum;
 use crate::error::{Error, Result};
 use crate::geometry::{Face, Rectangle, Sphere};
 use crate::math::{Frame, Interval, Ray, warp};
-use glam::DVec3;
+use glam::{DVec2, DVec3};
 use std::f64::consts::PI;
 
 /// The cross-section of a beam, perpendicular to its direction.
@@ -77,7 +77,7 @@ impl Beam {
     pub(super) fn power(&self, periodic_cell: Option<&PeriodicCell>) -> Spectrum {
         let area = match (self.section, periodic_cell) {
             (Section::Unbounded, Some(periodic_cell)) => {
-                periodic_cell.side * periodic_cell.side * self.dir.z.abs()
+                periodic_cell.side.x * periodic_cell.side.y * self.dir.z.abs()
             }
             (Section::Unbounded, None) => f64::INFINITY,
             (Section::Disc { radius, .. }, _) => PI * radius * radius,
@@ -90,8 +90,9 @@ impl Beam {
         let u = [numbers.position[0], numbers.position[1]];
         let origin = match (self.section, periodic_cell) {
             (Section::Unbounded, periodic_cell) => {
-                let (side, z) = periodic_cell.map_or((0.0, 0.0), |s| (s.side, s.slab.face(self.entry())));
-                DVec3::new(u[0] * side, u[1] * side, z)
+                let (side, z) =
+                    periodic_cell.map_or((DVec2::ZERO, 0.0), |s| (s.side, s.slab.face(self.entry())));
+                DVec3::new(u[0] * side.x, u[1] * side.y, z)
             }
             (Section::Disc { center, radius }, _) => {
                 let p = warp::square_to_disc(u) * radius;

@@ -4,21 +4,21 @@ use crate::Spectrum;
 use crate::error::{Error, Result};
 use crate::geometry::Slab;
 use crate::math::Ray;
-use glam::DVec3;
+use glam::{DVec2, DVec3};
 
-/// What unbounded lights need to start photons: the one slab of the scene and the side of its cell \[L\].
+/// What unbounded lights need to start photons: the one slab of the scene and the sides of its cell \[L\].
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PeriodicCell {
     /// The layer.
     pub slab: Slab,
-    /// Side of the square cell [0, side) x [0, side) that stands for the whole layer \[L\].
-    pub side: f64,
+    /// Sides of the cell [0, side.x) x [0, side.y) that stands for the whole layer \[L\].
+    pub side: DVec2,
 }
 
 impl PeriodicCell {
-    /// Side of the cell \[L\]; 0 where there is none.
-    pub fn side(periodic_cell: Option<&PeriodicCell>) -> f64 {
-        periodic_cell.map_or(0.0, |s| s.side)
+    /// Sides of the cell \[L\]; 0 where there is none.
+    pub fn side(periodic_cell: Option<&PeriodicCell>) -> DVec2 {
+        periodic_cell.map_or(DVec2::ZERO, |s| s.side)
     }
 }
 

@@ -55,7 +55,7 @@ fn around(shape: &Shape, periodic_cell: Option<&PeriodicCell>) -> Option<(DVec3,
         Shape::Mesh(m) => Some(m.bounds()),
         Shape::Slab(s) => {
             let side = periodic_cell?.side;
-            Some((DVec3::new(0.0, 0.0, s.top()), DVec3::new(side, side, s.face(Face::Bottom))))
+            Some((DVec3::new(0.0, 0.0, s.top()), DVec3::new(side.x, side.y, s.face(Face::Bottom))))
         }
         Shape::Sphere(_) | Shape::Rectangle(_) | Shape::Revolution(_) => {
             let (center, radius) = shape.bounds()?;

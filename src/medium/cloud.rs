@@ -111,6 +111,11 @@ impl Cloud {
         &self.shape
     }
 
+    /// How far from its centre nothing is left of it, along each axis \[L\].
+    pub fn reach(&self) -> DVec3 {
+        self.shape.radii * (1.0 + self.shape.roughness).sqrt()
+    }
+
     /// Density at a point \[1\], 0 to 1.
     pub fn at(&self, p: DVec3) -> f64 {
         let CloudShape { roughness, sharpness, .. } = self.shape;

@@ -1,9 +1,11 @@
 //! How much of a medium is where: the densities at hand.
 
-use super::{Along, Bound, Cloud, CloudShape, Grid, HeightFog, Layers};
+use super::{
+    Along, AlongPeriods, Blocks, Bound, Cloud, CloudShape, Grid, HeightFog, Layers, Repeated, Through,
+};
 use crate::error::{Error, Result};
 use crate::math::{Interval, Positive, Ray};
-use glam::DVec3;
+use glam::{DVec2, DVec3};
 use std::sync::Arc;
 
 /// A density, 0 or more at every point \[1\]; extinction is this times that at density 1.
@@ -15,6 +17,10 @@ pub enum Density {
     Cloud(Arc<Cloud>),
     /// Exponential in height.
     HeightFog(HeightFog),
+    /// Constant in blocks.
+    Blocks(Arc<Blocks>),
+    /// Another one, again and again.
+    Repeated(Arc<Repeated>),
 }
 
 /// Stretches of a ray with the bounds of a density, nearest first.
@@ -24,6 +30,10 @@ pub enum Bounds<'a> {
     Cells(Along<'a>),
     /// By height.
     Layers(Layers),
+    /// By block.
+    Blocks(Through<'a>),
+    /// By period.
+    Repeated(Box<AlongPeriods<'a>>),
 }
 
 impl Iterator for Bounds<'_> {
@@ -34,6 +44,8 @@ impl Iterator for Bounds<'_> {
         match self {
             Bounds::Cells(cells) => cells.next(),
             Bounds::Layers(layers) => layers.next(),
+            Bounds::Blocks(blocks) => blocks.next(),
+            Bounds::Repeated(periods) => periods.next(),
         }
     }
 }
@@ -50,11 +62,22 @@ impl Density {
         }
     }
 
+    /// Blocks of one channel.
+    ///
+    /// # Errors
+    /// `Error::OutOfRange` for blocks of more
+    pub fn blocks(blocks: Blocks) -> Result<Self> {
+        match blocks.channels() {
+            1 => Ok(Density::Blocks(Arc::new(blocks))),
+            more => Err(Error::out_of_range("channels of a density", more as f64, "1")),
+        }
+    }
+
     /// The same density, bounded as suits light that collides `sigma_t` times a length where it is 1.
     pub(super) fn bounded_for(self, sigma_t: f64) -> Self {
         match self {
             Density::Grid(grid) => Density::Grid(Arc::new(Arc::unwrap_or_clone(grid).bounded_for(sigma_t))),
-            Density::Cloud(_) | Density::HeightFog(_) => self,
+            Density::Cloud(_) | Density::HeightFog(_) | Density::Blocks(_) | Density::Repeated(_) => self,
         }
     }
 
@@ -65,6 +88,8 @@ impl Density {
             Density::Grid(grid) => grid.at(p),
             Density::Cloud(cloud) => cloud.at(p),
             Density::HeightFog(fog) => fog.at(p),
+            Density::Blocks(blocks) => blocks.at(p),
+            Density::Repeated(repeated) => repeated.at(p),
         }
     }
 
@@ -75,6 +100,8 @@ impl Density {
             Density::Grid(grid) => Bounds::Cells(grid.along(ray, part)),
             Density::Cloud(cloud) => Bounds::Cells(cloud.along(ray, part)),
             Density::HeightFog(fog) => Bounds::Layers(fog.along(ray, part)),
+            Density::Blocks(blocks) => Bounds::Blocks(blocks.along(ray, part)),
+            Density::Repeated(repeated) => Bounds::Repeated(Box::new(repeated.along(ray, part))),
         }
     }
 
@@ -83,17 +110,18 @@ impl Density {
     pub fn closed_integral(&self, ray: &Ray, part: Interval) -> Option<f64> {
         match self {
             Density::HeightFog(fog) => Some(fog.integral(ray, part)),
-            Density::Grid(_) | Density::Cloud(_) => None,
+            Density::Grid(_) | Density::Cloud(_) | Density::Blocks(_) | Density::Repeated(_) => None,
         }
     }
 
-    /// The integral along a part of a ray \[L\]: exact for height fog and, sample by sample, for grids; of a cloud by
+    /// The integral along a part of a ray \[L\]: exact for height fog and blocks and, sample by sample, for grids; of a cloud by
     /// quadrature, to some 1e-4 of its extent.
     pub fn integral(&self, ray: &Ray, part: Interval) -> f64 {
         let kinks = match self {
             Density::HeightFog(fog) => return fog.integral(ray, part),
+            Density::Repeated(repeated) => return repeated.integral(ray, part),
             Density::Grid(grid) => grid.kinks(ray, part),
-            Density::Cloud(_) => Vec::new(),
+            Density::Cloud(_) | Density::Blocks(_) => Vec::new(),
         };
         let mut sum = 0.0;
         for bound in self.along(ray, part) {
@@ -107,7 +135,7 @@ impl Density {
             let even = (1..steps).map(|i| start + (end - start) * f64::from(i) / f64::from(steps));
             let mut ends: Vec<f64> = match self {
                 Density::Grid(_) => inside.collect(),
-                Density::Cloud(_) | Density::HeightFog(_) => even.collect(),
+                _ => even.collect(),
             };
             ends.push(end);
             let mut low = start;
@@ -137,6 +165,8 @@ impl Density {
         match self {
             Density::Grid(grid) => grid.high(),
             Density::Cloud(_) | Density::HeightFog(_) => 1.0,
+            Density::Blocks(blocks) => blocks.high(),
+            Density::Repeated(repeated) => repeated.density().high(),
         }
     }
 
@@ -146,6 +176,8 @@ impl Density {
             Density::Grid(grid) => grid.cells().high_in(min, max),
             Density::Cloud(cloud) => cloud.bounds(min, max).1,
             Density::HeightFog(fog) => fog.high_in(min, max),
+            Density::Blocks(blocks) => blocks.high_in(min, max),
+            Density::Repeated(repeated) => repeated.high_in(min, max),
         }
     }
 
@@ -154,7 +186,8 @@ impl Density {
         match self {
             Density::Grid(grid) => grid.is_layered(),
             Density::HeightFog(fog) => fog.is_layered(),
-            Density::Cloud(_) => false,
+            Density::Blocks(blocks) => blocks.is_layered(),
+            Density::Cloud(_) | Density::Repeated(_) => false,
         }
     }
 
@@ -170,6 +203,14 @@ impl Density {
                 format!("cloud of {octaves} octaves, majorants in {} cells", cloud.cells().len())
             }
             Density::HeightFog(_) => "height fog: transmittance in closed form, majorants by height".into(),
+            Density::Blocks(blocks) => {
+                let [x, y, z] = blocks.count();
+                match blocks.is_columns() {
+                    true => format!("{x} x {y} columns, constant in each"),
+                    false => format!("{x} x {y} x {z} blocks, constant in each"),
+                }
+            }
+            Density::Repeated(repeated) => format!("{}; periodic", repeated.density().describe()),
         }
     }
 
@@ -187,6 +228,17 @@ impl Density {
         let fog = |up: DVec3, base: f64, scale: f64| {
             HeightFog::new(up, base, Positive::new("scale height", scale).ok()?).ok().map(Density::HeightFog)
         };
+        let blocks = |count: [usize; 3], f: &dyn Fn(usize) -> f64| {
+            let values = (0..count.iter().product()).map(f).collect();
+            Blocks::uniform(cube(1.5), count, 1, values).and_then(Density::blocks).ok()
+        };
+        let columns = || {
+            let edges = |n: u32| (0..=n).map(|i| -1.5 + 3.0 * f64::from(i * i) / f64::from(n * n)).collect();
+            let spans = (0..12).map(|i| (-0.1 * f64::from(i), 0.2 * f64::from(i % 5))).collect();
+            let values = (0..12).map(|i| f64::from(i % 4)).collect();
+            Blocks::columns(edges(4), edges(3), values, spans).and_then(Density::blocks).ok()
+        };
+        let again = |density: Option<Density>, x: f64, y: f64| density?.repeated(DVec2::new(x, y), 2.0).ok();
         let named = |density: Density| match density {
             Density::Grid(_) => vec![
                 grid([1, 1, 1], &|_| 0.7),
@@ -206,11 +258,26 @@ impl Density {
                     fog(DVec3::Z, -9.0, 40.0),
                 ]
             }
+            Density::Blocks(_) => vec![
+                blocks([1, 1, 1], &|_| 0.7),
+                blocks([3, 1, 5], &|i| (i % 4) as f64),
+                blocks([4, 5, 3], &|i| (i * i % 7) as f64),
+                columns(),
+            ],
+            Density::Repeated(_) => vec![
+                again(grid([5, 4, 3], &|p| (p.x + p.y * p.z).abs()), 3.0, 6.0),
+                again(grid([9, 1, 3], &|p| p.x * p.x), 3.0, 1.0),
+                again(blocks([4, 5, 3], &|i| (i * i % 7) as f64), 6.0, 3.0),
+                again(columns(), 3.0, 3.0),
+                again(cloud([0.4, 0.3, 0.8], 1.0, super::Body::Ellipsoid, 3), 1.3, 0.9),
+            ],
         };
         let first = [
             grid([1, 1, 1], &|_| 1.0),
             cloud([1.0; 3], 1.0, super::Body::Ellipsoid, 1),
             fog(DVec3::Z, 0.0, 1.0),
+            blocks([1, 1, 1], &|_| 1.0),
+            again(blocks([2, 1, 1], &|i| i as f64), 3.0, 3.0),
         ];
         first.into_iter().flatten().flat_map(named).flatten().collect()
     }

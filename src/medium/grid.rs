@@ -128,6 +128,32 @@ impl Grid {
         Grid::new(corners, self.count, self.channels, values)
     }
 
+    /// The same samples over another box, with one more on either side along some of x and y, taken from the other side.
+    ///
+    /// # Errors
+    /// As [`Grid::new`]
+    pub(super) fn wrapped(&self, (mut min, mut max): (DVec3, DVec3), around: [bool; 2]) -> Result<Self> {
+        let [nx, ny, nz] = self.count;
+        let more = [0, 1].map(|axis: usize| usize::from(around[axis]));
+        for (axis, more) in more.iter().enumerate() {
+            let step = (max[axis] - min[axis]) / self.count[axis] as f64;
+            min[axis] -= step * *more as f64;
+            max[axis] += step * *more as f64;
+        }
+        let count = [nx + 2 * more[0], ny + 2 * more[1], nz];
+        let mut values = Vec::with_capacity(count.iter().product::<usize>() * self.channels);
+        for z in 0..nz {
+            for y in 0..count[1] {
+                for x in 0..count[0] {
+                    let (x, y) = ((x + nx - more[0]) % nx, (y + ny - more[1]) % ny);
+                    let first = self.channels * ((z * ny + y) * nx + x);
+                    values.extend(&self.values[first..first + self.channels]);
+                }
+            }
+        }
+        Grid::new((min, max), count, self.channels, values)
+    }
+
     /// Samples an axis.
     pub fn count(&self) -> [usize; 3] {
         self.count

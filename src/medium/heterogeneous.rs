@@ -1,19 +1,20 @@
 //! A medium whose density varies.
 
-use super::{Density, Grid, Homogeneous};
+use super::repeated::Albedo;
+use super::{Blocks, Density, Grid, Homogeneous};
 use crate::Spectrum;
 use crate::error::{Error, Result};
 use crate::math::{Interval, Ray};
-use glam::DVec3;
+use glam::{DVec2, DVec3};
 use std::sync::Arc;
 
-/// Extinction proportional to a density; albedo the same everywhere or of a grid; one phase function.
+/// Extinction proportional to a density; albedo the same everywhere, of a grid or of blocks; one phase function.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Heterogeneous {
     /// What it is where the density is 1; the emission that does not follow the density.
     matter: Homogeneous,
     density: Density,
-    albedo: Option<Arc<Grid>>,
+    albedo: Option<Albedo>,
     /// Emission that follows the density, at density 1 [W/(L^3 sr)].
     emission: Spectrum,
 }
@@ -35,7 +36,27 @@ impl Heterogeneous {
         if highest > 1.0 {
             return Err(Error::out_of_range("albedo of a grid", f64::from(highest), "0 to 1"));
         }
-        Ok(Heterogeneous { albedo: Some(Arc::new(grid)), ..self })
+        Ok(Heterogeneous { albedo: Some(Albedo::Grid(Arc::new(grid), None)), ..self })
+    }
+
+    /// The same with an albedo that is constant in blocks.
+    ///
+    /// # Errors
+    /// `Error::OutOfRange` for a value above 1
+    pub fn with_albedo_blocks(self, blocks: Blocks) -> Result<Self> {
+        if blocks.high() > 1.0 {
+            return Err(Error::out_of_range("albedo of a block", blocks.high(), "0 to 1"));
+        }
+        Ok(Heterogeneous { albedo: Some(Albedo::Blocks(Arc::new(blocks), None)), ..self })
+    }
+
+    /// The same in every period of a world with these periods.
+    pub(super) fn repeated(&self, cell: DVec2) -> Result<Self> {
+        Ok(Heterogeneous {
+            density: self.density.repeated(cell, self.matter.sigma_t().max())?,
+            albedo: self.albedo.as_ref().map(|albedo| albedo.repeated(cell)).transpose()?,
+            ..self.clone()
+        })
     }
 
     /// With an emission that follows the density: [W/(L^3 sr)] where it is 1.
@@ -60,7 +81,7 @@ impl Heterogeneous {
     /// Albedo at a point \[1\].
     pub fn albedo(&self, p: DVec3) -> Spectrum {
         let albedo = self.matter.albedo();
-        self.albedo.as_ref().map_or(albedo, |grid| albedo * grid.color_at(p))
+        self.albedo.as_ref().map_or(albedo, |varying| albedo * varying.at(p))
     }
 
     /// Emission where the density is known [W/(L^3 sr)].
@@ -70,7 +91,7 @@ impl Heterogeneous {
 
     /// Whether it depends on z alone.
     pub fn is_layered(&self) -> bool {
-        self.density.is_layered() && self.albedo.as_ref().is_none_or(|grid| grid.is_layered())
+        self.density.is_layered() && self.albedo.as_ref().is_none_or(Albedo::is_layered)
     }
 
     /// Whether it emits anywhere.
@@ -80,7 +101,7 @@ impl Heterogeneous {
 
     /// Whether every number is the same in all channels.
     pub fn is_grey(&self) -> bool {
-        self.albedo.as_ref().is_none_or(|grid| grid.channels() == 1)
+        self.albedo.as_ref().is_none_or(Albedo::is_grey)
             && self.matter.albedo().is_grey()
             && self.matter.sigma_t().is_grey()
             && self.matter.emission().is_grey()

@@ -3,6 +3,7 @@
 //!
 //! A medium that emits is a light: rays that look through it see its emission, and photons start in it.
 
+mod blocks;
 mod cells;
 mod cloud;
 mod density;
@@ -10,9 +11,12 @@ mod grid;
 mod height_fog;
 mod heterogeneous;
 mod homogeneous;
+mod markov;
 mod noise;
+mod repeated;
 mod vol;
 
+pub use blocks::{Blocks, Through};
 pub use cells::{Along, Bound, Cells};
 pub use cloud::{Body, Cloud, CloudShape};
 pub use density::{Bounds, Density};
@@ -20,13 +24,15 @@ pub use grid::Grid;
 pub use height_fog::{HeightFog, Layers};
 pub use heterogeneous::Heterogeneous;
 pub use homogeneous::Homogeneous;
+pub use markov::markov;
 pub use noise::Noise;
+pub use repeated::{AlongPeriods, Repeated};
 
 use crate::Spectrum;
 use crate::faults::{Fault, planted};
 use crate::math::{Interval, Ray};
 use crate::phase::Phase;
-use glam::DVec3;
+use glam::{DVec2, DVec3};
 use std::sync::Arc;
 
 /// The media at hand.
@@ -145,6 +151,17 @@ impl Medium {
     /// Whether it is the same everywhere.
     pub fn is_homogeneous(&self) -> bool {
         matches!(self, Medium::Homogeneous(_))
+    }
+
+    /// The same in every period of a world with these periods along x and y \[L\]; itself where it depends on z alone.
+    ///
+    /// # Errors
+    /// `Error::Scene` for a density or an albedo that does not fit into such a world
+    pub fn repeated(&self, cell: DVec2) -> crate::error::Result<Medium> {
+        match self {
+            Medium::Heterogeneous(medium) if !medium.is_layered() => Ok(medium.repeated(cell)?.into()),
+            Medium::Homogeneous(_) | Medium::Heterogeneous(_) => Ok(self.clone()),
+        }
     }
 
     /// Whether it depends on z alone.

@@ -3,7 +3,7 @@
 use super::{Photon, PhotonTree, periodic};
 use crate::error::{Error, Result};
 use crate::transport::{NoProgress, Progress};
-use glam::DVec3;
+use glam::{DVec2, DVec3};
 
 /// Stored photons and the number **emitted** by the pass that stored them: estimates divide by that number,
 /// never by the number stored. It holds no estimator.
@@ -20,7 +20,7 @@ pub struct PhotonMap {
 /// A world that repeats itself in x and y.
 #[derive(Debug, Clone, Copy)]
 struct Period {
-    side: f64,
+    side: DVec2,
     /// How far beyond the cell's edges the map holds copies.
     reach: f64,
 }
@@ -58,24 +58,24 @@ impl PhotonMap {
         Self::of(PhotonTree::of_parts(parts, progress), emitted)
     }
 
-    /// The map of a cell [0, side) x [0, side), if a side is given, with copies for balls that reach so far beyond its edges, at
-    /// most its side \[L\].
+    /// The map of a cell [0, side.x) x [0, side.y), if sides are given, with copies for balls that reach so far beyond its edges,
+    /// at most its shorter side \[L\].
     ///
     /// # Errors
-    /// As [`PhotonMap::new`]; [`Error::OutOfRange`] for a reach beyond the side.
+    /// As [`PhotonMap::new`]; [`Error::OutOfRange`] for a reach beyond the shorter side.
     pub fn periodic(
         mut parts: Vec<Vec<Photon>>,
         emitted: u64,
-        cell: Option<(f64, f64)>,
+        cell: Option<(DVec2, f64)>,
         progress: &dyn Progress,
     ) -> Result<Self> {
         let period = cell.map(|(side, reach)| Period { side, reach });
         if let Some(Period { side, reach }) = period {
-            if !(0.0..=side).contains(&reach) {
+            if !(0.0..=side.min_element()).contains(&reach) {
                 return Err(Error::out_of_range(
                     "the reach beyond the cell",
                     reach,
-                    "from 0 to the side of the cell",
+                    "from 0 to the shorter side of the cell",
                 ));
             }
             if reach > 0.0 {
@@ -107,9 +107,9 @@ impl PhotonMap {
         let Some(Period { side, reach }) = self.period else { return point };
         let place = periodic::wrap(point, side);
         // The reach may have been the difference of such numbers: rounding is no lack of copies.
-        let least = place.x.min(place.y).min(side - place.x).min(side - place.y)
+        let least = place.x.min(place.y).min(side.x - place.x).min(side.y - place.y)
             + reach * (1.0 + 1e-9)
-            + 1e-12 * side;
+            + 1e-12 * side.min_element();
         if distance <= least { place } else { DVec3::NAN }
     }
 

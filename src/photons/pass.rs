@@ -12,7 +12,7 @@ use crate::scene::{Orders, Quantity, Scene, Sensor, Target};
 use crate::stats::Moments;
 use crate::surface::Surface;
 use crate::transport::{NoProgress, Progress, Roulette, Step, Visitor, Walker, run_blocks, walk};
-use glam::DVec3;
+use glam::{DVec2, DVec3};
 use std::ops::{AddAssign, Range};
 use std::time::{Duration, Instant};
 
@@ -155,8 +155,8 @@ pub struct Pass {
     pub report: PassReport,
     /// Contributions that were not finite; each fails the run.
     non_finite: u64,
-    /// Side of the periodic cell, if the scene has one \[L\].
-    period: Option<f64>,
+    /// Sides of the periodic cell, if the scene has one \[L\].
+    period: Option<DVec2>,
 }
 
 impl Pass {

@@ -18,7 +18,7 @@ fn wrapped(scene: &Scene, p: DVec3) -> DVec3 {
 
 /// The period of a scene along x and y \[L\].
 fn period(scene: &Scene) -> Option<DVec2> {
-    scene.periodic_cell().map(|periodic_cell| DVec2::splat(periodic_cell.side))
+    scene.periodic_cell().map(|periodic_cell| periodic_cell.side)
 }
 
 /// Channels that are told apart.

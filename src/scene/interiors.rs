@@ -12,7 +12,7 @@ use crate::light::Light;
 use crate::math::{Index, Ray};
 use crate::medium::Medium;
 use crate::surface::{Dielectric, Surface};
-use glam::DVec3;
+use glam::{DVec2, DVec3};
 
 /// Media by number, regions first, then interiors that are filled; and for each interior the number of its medium.
 pub(super) fn numbered(regions: &[Region], interiors: &[Interior]) -> (Vec<Medium>, Vec<Option<usize>>) {
@@ -69,7 +69,7 @@ pub(super) fn of_lights(scene: &Scene) -> Vec<Option<usize>> {
             let mut boundaries = dielectrics(scene.objects());
             shape.bounds().is_some_and(|ball| boundaries.all(|o| is_clear_of(ball, &o.shape)))
         };
-        let on_body = |shape: &Shape| shape.sample_boundary(Face::Top, 0.0, [0.5; 3]).0;
+        let on_body = |shape: &Shape| shape.sample_boundary(Face::Top, DVec2::ZERO, [0.5; 3]).0;
         let place = light.apex().or_else(|| light.body().filter(is_clear).map(on_body));
         place.map(|p| scene.interior_at(p))
     };
@@ -138,7 +138,7 @@ fn check_sides(parts: &SceneParts, index: usize, dielectric: &Dielectric) -> Res
     for i in 0..ASKED {
         // A rank-1 lattice by the plastic number: points that share no line.
         let u = [0.754_877_666, 0.569_840_291, 0.430_159_709].map(|a| (f64::from(i) * a + 0.5).fract());
-        let (p, normal, _) = shape.sample_boundary(Face::Top, 1.0, u);
+        let (p, normal, _) = shape.sample_boundary(Face::Top, DVec2::ONE, u);
         for (dir, named) in [(normal, dielectric.outside()), (-normal, dielectric.inside())] {
             if let Some(seen) = side_seen(parts, p + dir * step, dir, false) {
                 asked += 1;

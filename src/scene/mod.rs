@@ -33,6 +33,20 @@ pub use target::{SceneHit, Start, Target};
 
 use crate::error::Result;
 use checked::Answers;
+use glam::DVec2;
+
+/// Media that vary along x or y are the same in every period of a cell of these sides \[L\].
+fn repeat_media(parts: &mut SceneParts, cell: DVec2) -> Result<()> {
+    for (i, region) in parts.regions.iter_mut().enumerate() {
+        region.medium = region.medium.repeated(cell).map_err(|e| e.within(&format!("regions[{i}]")))?;
+    }
+    for Interior { name, medium, .. } in &mut parts.interiors {
+        if let Some(medium) = medium {
+            *medium = medium.repeated(cell).map_err(|e| e.within(&format!("interior {name}")))?;
+        }
+    }
+    Ok(())
+}
 
 impl Scene {
     /// A scene from its parts.
@@ -46,6 +60,9 @@ impl Scene {
         let bounds = bounds::of(&parts);
         parts.lights.iter_mut().try_for_each(|light| light.cover(bounds))?;
         let periodic_cell = validate::check(&parts)?;
+        if let Some(cell) = &periodic_cell {
+            repeat_media(&mut parts, cell.side)?;
+        }
         interiors::match_indices(&mut parts);
         let plan = Plan::of(&parts);
         let (media, filling) = interiors::numbered(&parts.regions, &parts.interiors);

@@ -6,6 +6,7 @@ use crate::geometry::Shape;
 use crate::light::Light;
 use crate::medium::Medium;
 use crate::surface::Surface;
+use glam::DVec2;
 
 /// A medium and the shape it fills; its boundary is index-matched and no event.
 #[derive(Debug, Clone, PartialEq)]
@@ -36,8 +37,8 @@ pub struct SceneParts {
     pub objects: Vec<Object>,
     /// Lights.
     pub lights: Vec<Light>,
-    /// Side of the square cell that stands for an unbounded slab \[L\].
-    pub cell: Option<f64>,
+    /// Sides along x and y of the cell that stands for an unbounded slab, the periods of all that is in it \[L\].
+    pub cell: Option<DVec2>,
     /// What is measured.
     pub sensors: Vec<Sensor>,
     /// Who looks, if anybody does.

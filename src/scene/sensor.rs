@@ -3,7 +3,7 @@
 use crate::geometry::{Face, FaceBins, Shape, Voxels};
 use crate::light::PeriodicCell;
 use crate::math::Ray;
-use glam::DVec3;
+use glam::{DVec2, DVec3};
 
 /// A range of orders of scattering, both ends included; without upper end where `max` is none.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -128,8 +128,8 @@ pub enum Space {
 }
 
 impl Space {
-    /// Volume of a bin \[L^3\], in a scene whose cell has this side.
-    pub fn volume(&self, side: f64) -> f64 {
+    /// Volume of a bin \[L^3\], in a scene whose cell has these sides.
+    pub fn volume(&self, side: DVec2) -> f64 {
         match self {
             Space::Voxels(voxels) => voxels.volume(),
             Space::Shape(shape) => shape.sample_inside(side, [0.5; 3]).1,

@@ -132,11 +132,13 @@ fn check_bins(name: &str, binned: &Binned, periodic_cell: Option<&PeriodicCell>)
     }
     // A cell and a corner plus an edge may round apart.
     let side = periodic_cell.side * (1.0 + 1e-12);
-    let is_in = |p: &DVec3| [p.x, p.y].iter().all(|x| (-1e-12 * side..=side).contains(x));
+    let is_in = |p: &DVec3| {
+        [(p.x, side.x), (p.y, side.y)].iter().all(|&(x, side)| (-1e-12 * side..=side).contains(&x))
+    };
     match corners.iter().find(|p| !is_in(p)) {
         Some(p) => refuse(format!(
-            "sensor {name} reaches ({}, {}) along x and y; allowed: within the cell, 0 to {}",
-            p.x, p.y, periodic_cell.side
+            "sensor {name} reaches ({}, {}) along x and y; allowed: within the cell, 0 to {} and {}",
+            p.x, p.y, periodic_cell.side.x, periodic_cell.side.y
         )),
         None => Ok(()),
     }
@@ -184,7 +186,7 @@ fn check_tracking(name: &str, ball: Option<(DVec3, f64)>, medium: &Medium) -> Re
         Density::Cloud(cloud) => {
             Some(cloud.shape().radii.max_element() * (1.0 + cloud.shape().roughness).sqrt())
         }
-        Density::Grid(_) | Density::HeightFog(_) => None,
+        Density::Grid(_) | Density::HeightFog(_) | Density::Blocks(_) | Density::Repeated(_) => None,
     };
     let radius = [ball.map(|(_, radius)| radius), reach].into_iter().flatten().reduce(f64::min);
     let depth = 2.0 * radius.unwrap_or(0.0) * medium.highest_sigma_t().max();
@@ -282,8 +284,8 @@ fn check_sizes(parts: &SceneParts) -> Result<()> {
 
 fn periodic_cell(parts: &SceneParts) -> Result<Option<PeriodicCell>> {
     let Some(side) = parts.cell else { return Ok(None) };
-    if !(side > 0.0 && side.is_finite()) {
-        return Err(Error::out_of_range("cell", side, "finite and above 0"));
+    if let Some(bad) = side.to_array().into_iter().find(|side| !(*side > 0.0 && side.is_finite())) {
+        return Err(Error::out_of_range("cell", bad, "finite and above 0"));
     }
     let as_slab = |shape: &Shape| if let Shape::Slab(slab) = shape { Some(*slab) } else { None };
     let slabs: Vec<Slab> = parts.regions.iter().filter_map(|r| as_slab(&r.shape)).collect();
@@ -451,7 +453,11 @@ pub(super) fn check_power(scene: &Scene) -> Result<()> {
     }
 }
 
-/// Wrapping positions into a periodic cell is exact only where every part looks the same after a step along x or y.
+/// Periods that a diagonal ray crosses in a slab: some milliseconds.
+const MOST_PERIODS: f64 = 1e5;
+
+/// Wrapping positions into a periodic cell is exact only where every part looks the same after a step along x or y by a side
+/// of the cell: media, which are repeated, shapes without lateral end, and light that enters everywhere alike.
 fn check_fold(parts: &SceneParts, periodic_cell: Option<&PeriodicCell>) -> Result<()> {
     let Some(periodic_cell) = periodic_cell else { return Ok(()) };
     let is_unbounded = |shape: &Shape| matches!(shape, Shape::Slab(_));
@@ -461,10 +467,12 @@ fn check_fold(parts: &SceneParts, periodic_cell: Option<&PeriodicCell>) -> Resul
     if !all_unbounded {
         return refuse("with `cell`, every medium, surface and light must be laterally unbounded");
     }
-    if !parts.regions.iter().all(|r| r.medium.is_layered()) {
-        return refuse(
-            "with `cell`, a density must depend on z alone: a grid of one sample along x and y, or height fog along z",
-        );
+    let filled = parts.interiors.iter().filter_map(|interior| interior.medium.as_ref());
+    let varying = filled.chain(parts.regions.iter().map(|r| &r.medium)).any(|medium| !medium.is_layered());
+    let crossed = periodic_cell.slab.thickness() / periodic_cell.side.min_element();
+    if varying && crossed > MOST_PERIODS {
+        let what = "thickness of the slab over the side of the cell, of a density that varies along x or y";
+        return Err(Error::out_of_range(what, crossed, "at most 1e5"));
     }
     for (i, light) in parts.lights.iter().enumerate() {
         let shape = match light {

@@ -507,7 +507,8 @@ fn reach(scene: &Scene, sensor: &Sensor) -> f64 {
     let Some(region) = scene.medium_number_at(p).and_then(|number| scene.regions().get(number)) else {
         return 0.0;
     };
-    let half_cell = scene.periodic_cell().map_or(f64::INFINITY, |periodic_cell| 0.5 * periodic_cell.side);
+    let half_cell =
+        scene.periodic_cell().map_or(f64::INFINITY, |periodic_cell| 0.5 * periodic_cell.side.min_element());
     let walls = scene.objects().iter().map(|o| o.shape.room(p).abs()).filter(|r| *r > 0.0);
     let others = scene.regions().iter().map(|r| r.shape.room(p).abs());
     let lights = scene.lights().iter().filter_map(|light| match light {

@@ -254,7 +254,7 @@ mod tests {
         let parts = SceneParts {
             regions: vec![region],
             lights: vec![Light::Beam(beam)],
-            cell: Some(4.0),
+            cell: Some(glam::DVec2::splat(4.0)),
             ..SceneParts::default()
         };
         let scene = Scene::new(parts).unwrap();

@@ -17,7 +17,7 @@ use crate::rng::{Purpose, Stream};
 use crate::scene::{Binned, Orders, Quantity, Scene, Sensor};
 use crate::stats::Moments;
 use crate::transport::{BLOCK, NoProgress, Progress, in_parallel, transmittance};
-use glam::DVec3;
+use glam::{DVec2, DVec3};
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::Instant;
 
@@ -238,7 +238,7 @@ pub(super) fn forecast_of(
     let a_history = |number: &AtomicU64| number.load(Ordering::Relaxed) as f64 / count as f64;
     // Copies beyond the edges of the cell.
     let around =
-        scene.periodic_cell().map_or(1.0, |periodic_cell| (1.0 + 2.0 * margin / periodic_cell.side).powi(2));
+        scene.periodic_cell().map_or(1.0, |cell| (DVec2::ONE + 2.0 * margin / cell.side).element_product());
     let [met, copied] = [a_history(&met), a_history(&copied)].map(|n| n * photons as f64 * around);
     // Where several ranges of orders have a map each, the photons of all stay until the last one.
     let bytes = match ranges.len() {
@@ -351,19 +351,20 @@ fn scored(sensors: &[Sensor]) -> Vec<Sensor> {
 /// # Errors
 /// `Error::Scene` beyond the side of the cell: copies are made once, and a ball that reaches past them would miss
 /// photons.
-pub(super) fn margin(sensors: &[Sensor], side: f64, cap: f64) -> Result<f64> {
+pub(super) fn margin(sensors: &[Sensor], side: DVec2, cap: f64) -> Result<f64> {
     let beyond = sensors.iter().map(|sensor| match sensor.quantity {
         Quantity::Fluence(p) => {
             let p = periodic::wrap(p, side);
-            cap - p.x.min(p.y).min(side - p.x).min(side - p.y)
+            cap - p.x.min(p.y).min(side.x - p.x).min(side.y - p.y)
         }
         Quantity::Radiance(_) | Quantity::Binned(Binned::Radiance { .. } | Binned::Fluence { .. }) => cap,
         Quantity::Outflow { .. } | Quantity::Absorbed(_) | Quantity::Binned(_) => 0.0,
     });
     let margin = beyond.fold(0.0, f64::max);
-    if margin > side {
+    let shorter = side.min_element();
+    if margin > shorter {
         return Err(Error::Scene(format!(
-            "a gather radius of {cap} L reaches {margin} L beyond the periodic cell; allowed: at most its side, {side} L"
+            "a gather radius of {cap} L reaches {margin} L beyond the periodic cell; allowed: at most its shorter side, {shorter} L"
         )));
     }
     Ok(margin)

@@ -22,6 +22,9 @@ pub(super) enum End {
 /// as this: their variance, below its square, is out of sight of a mean of fewer than 1e24 samples of size 1.
 const FAINT: f64 = 1e-12;
 
+/// An optical depth whose exponential is 0: that of 745.2 is the last one above.
+const OPAQUE: f64 = 746.0;
+
 /// Russian roulette on what a stretch lets pass: the factor that what is faint counts with, in the mean 1; 0 if the game is
 /// lost.
 fn outlives(transmitted: f64, stream: &mut Stream) -> f64 {
@@ -41,7 +44,7 @@ fn exponential(stream: &mut Stream) -> f64 {
 }
 
 /// Tentative collisions on a part of a ray, in the order in which it meets them: a process of the rate [1/L] that `rate`
-/// gives each stretch of bounds. Ends with what `meet` makes of one of them, or with none.
+/// gives each stretch of bounds. Ends with what `meet` makes of one of them, or with none; an infinite rate ends it at once.
 #[inline(always)]
 fn tentative<T>(
     (medium, ray, part): (&Heterogeneous, &Ray, Interval),
@@ -55,6 +58,9 @@ fn tentative<T>(
         let rate = rate(&bound);
         if rate == 0.0 {
             continue;
+        }
+        if rate == f64::INFINITY {
+            return None;
         }
         let mut at = bound.interval.start;
         loop {
@@ -138,6 +144,7 @@ pub(super) fn ratio(medium: &Heterogeneous, ray: &Ray, part: Interval, stream: &
     let mut alive = matter.sigma_t();
     let (mut transmitted, mut left) = (Spectrum::ONE, part);
     let (mut control, mut before) = (0.0, 0.0);
+    let thinnest = matter.sigma_t().min();
     loop {
         let scale = alive.max();
         let Some(densest) = (0..3).find(|c| alive[*c] == scale && scale > 0.0) else { return transmitted };
@@ -150,7 +157,8 @@ pub(super) fn ratio(medium: &Heterogeneous, ray: &Ray, part: Interval, stream: &
                 if bound.low > 0.0 {
                     control += bound.low * bound.interval.length();
                 }
-                (bound.high - bound.low) * scale
+                // Nothing passes that has a number: what lies behind is not asked for.
+                if control * thinnest > OPAQUE { f64::INFINITY } else { (bound.high - bound.low) * scale }
             },
             |t, bound, stream| {
                 let density = density_at(medium, ray, t, bound.high, stream).max(bound.low);

@@ -15,5 +15,6 @@ mod radiance;
 mod slab;
 mod sphere;
 mod sphere_fields;
+mod structure;
 mod surfaces;
 mod varying;

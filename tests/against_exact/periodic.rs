@@ -6,7 +6,7 @@ use crate::checks::cell::{
 use crate::support::run::pass;
 use crate::support::scenes::{CELL, Incidence, layer, slab};
 use crate::support::verdict;
-use glam::DVec3;
+use glam::{DVec2, DVec3};
 use turbid::estimators::boundary::{Boundary, Treatment};
 use turbid::estimators::{Estimator, Gather, Kernel, count_within};
 use turbid::photons::{Photon, PhotonMap};
@@ -45,9 +45,15 @@ fn four_mirrors_are_rejected() {
 }
 
 /// With copies around the cell every ball about a point of the cell meets what it would meet in the endless lattice,
-/// each photon once; without copies it does not.
+/// each photon once; without copies it does not. Square cells, and others.
 #[test]
 fn copies_around_the_cell_are_those_of_the_lattice() {
+    for side in [DVec2::splat(CELL), DVec2::new(CELL, 1.7 * CELL), DVec2::new(1.2 * CELL, CELL)] {
+        copies_are_those_of_the_lattice(side);
+    }
+}
+
+fn copies_are_those_of_the_lattice(side: DVec2) {
     let mut stream = Stream::new(3, Purpose::Synthetic, 0, 0);
     let photon = |position: DVec3| Photon {
         position,
@@ -58,8 +64,8 @@ fn copies_around_the_cell_are_those_of_the_lattice() {
         flags: turbid::photons::Flags::NONE,
     };
     let photons: Vec<Photon> =
-        (0..500).map(|_| photon(DVec3::from_array(stream.triple()) * DVec3::new(CELL, CELL, 1.0))).collect();
-    let map = |reach: f64| PhotonMap::periodic(vec![photons.clone()], 1, Some((CELL, reach)), &NoProgress);
+        (0..500).map(|_| photon(DVec3::from_array(stream.triple()) * side.extend(1.0))).collect();
+    let map = |reach: f64| PhotonMap::periodic(vec![photons.clone()], 1, Some((side, reach)), &NoProgress);
     assert!(map(1.01 * CELL).is_err() && map(-0.1).is_err());
     for margin in [0.3, 0.5 * CELL, 0.8 * CELL, CELL] {
         let (around, alone) = (map(margin).unwrap(), map(0.0).unwrap());
@@ -68,9 +74,10 @@ fn copies_around_the_cell_are_those_of_the_lattice() {
         let boundary = Boundary::of(&medium).unwrap();
         let mut missed_without_copies = 0;
         for number in 0..200 {
-            let probe = DVec3::from_array(stream.triple()) * DVec3::new(CELL, CELL, 1.0);
-            let shifts = (-2..=2)
-                .flat_map(|i| (-2..=2).map(move |j| DVec3::new(f64::from(i), f64::from(j), 0.0) * CELL));
+            let probe = DVec3::from_array(stream.triple()) * side.extend(1.0);
+            let shifts = (-2..=2).flat_map(|i| {
+                (-2..=2).map(move |j| DVec3::new(f64::from(i), f64::from(j), 0.0) * side.extend(0.0))
+            });
             // The tree holds positions to a part in 2^24 of its box.
             let [least, most] = [-1e-6, 1e-6].map(|rounding| {
                 let is_near = |p: DVec3| p.distance(probe) <= margin + rounding;
@@ -78,11 +85,12 @@ fn copies_around_the_cell_are_those_of_the_lattice() {
                 shifts.clone().map(near).sum::<usize>()
             });
             // Asked anywhere in the lattice.
-            let there = probe + DVec3::new(f64::from(number % 7 - 3), f64::from(number % 5 - 2), 0.0) * CELL;
+            let there = probe
+                + DVec3::new(f64::from(number % 7 - 3), f64::from(number % 5 - 2), 0.0) * side.extend(0.0);
             let found = count_within(&around, there, margin);
             assert!((least..=most).contains(&found), "margin {margin}, {probe}: {found}, {least} to {most}");
             // Without copies only balls within the cell have an estimate.
-            let is_inside = [probe.x, probe.y].iter().all(|x| (margin..=CELL - margin).contains(x));
+            let is_inside = (0..2).all(|axis| (margin..=side[axis] - margin).contains(&probe[axis]));
             for treatment in Treatment::ALL {
                 let estimator = Estimator::new(Kernel::Uniform, gather).treated(treatment);
                 let value = estimator.collision_density(&alone, there, &boundary).value[0];

@@ -127,7 +127,7 @@ fn layered(region: Region, how: Incidence, views: impl Iterator<Item = Quantity>
         lights: vec![incidence(region.shape.clone(), how)],
         regions: vec![region],
         sensors: views.map(|view| sensor(view, Orders::SCATTERED)).collect(),
-        cell: Some(CELL),
+        cell: Some(glam::DVec2::splat(CELL)),
         ..SceneParts::default()
     })
     .unwrap()

@@ -54,7 +54,7 @@ fn slab(density: Density, tau: f64, how: Incidence) -> Scene {
             medium: varying(Spectrum::grey(sigma_t), ALBEDO, density),
         }],
         lights: vec![incidence(shape, how)],
-        cell: Some(CELL),
+        cell: Some(glam::DVec2::splat(CELL)),
         ..SceneParts::default()
     })
     .unwrap()

@@ -136,7 +136,7 @@ pub fn a_colored_filling_passes_each_channel() {
             interiors: vec![Interior::surroundings(), filled("plate", index, medium)],
             objects: vec![Object { shape: layer(1.0), surface: dielectric(1, 0) }],
             lights: vec![incidence(around(1.0), how)],
-            cell: Some(CELL),
+            cell: Some(glam::DVec2::splat(CELL)),
             ..SceneParts::default()
         })
         .unwrap()

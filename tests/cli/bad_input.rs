@@ -144,7 +144,7 @@ fn wrong_options() {
         (&["--radius", "-1"], &["--radius", "is -1; allowed: finite and above 0"]),
         (&["--radius", "nan"], &["--radius", "is NaN"]),
         (&["--radius", "inf"], &["--radius", "is inf"]),
-        (&["--radius", "100"], &["100 L", "periodic cell", "allowed: at most its side, 4 L"]),
+        (&["--radius", "100"], &["100 L", "periodic cell", "allowed: at most its shorter side, 4 L"]),
         (&["--max-radius", "0"], &["--max-radius", "is 0; allowed: finite and above 0"]),
         (&["--k", "5", "--radius", "1"], &["--k", "--radius", "cannot be used with"]),
         (&["--radius", "1", "--max-radius", "1"], &["--radius", "--max-radius", "cannot be used with"]),

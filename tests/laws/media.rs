@@ -61,7 +61,12 @@ proptest! {
         for bound in density.along(&ray, part) {
             prop_assert_eq!(bound.interval.start, at);
             at = bound.interval.end;
-            for part in [0.0, u, 0.5, 1.0] {
+            // At a jump the point belongs to one side.
+            let inside = [0.0, u, 0.5, 1.0].map(|part| if has_jumps(density) { 0.01 + 0.98 * part } else { part });
+            for part in inside {
+                if has_jumps(density) && bound.interval.length() < 1e-9 {
+                    continue;
+                }
                 let t = bound.interval.start + part * bound.interval.length();
                 let value = density.at(ray.at(t));
                 // At a face between cells a point may round into the next cell: by an ulp of its coordinates, over which
@@ -71,6 +76,15 @@ proptest! {
             }
         }
         prop_assert_eq!(at, part.end);
+    }
+}
+
+/// Whether a density is constant in blocks, and jumps between them.
+fn has_jumps(density: &Density) -> bool {
+    match density {
+        Density::Blocks(_) => true,
+        Density::Repeated(repeated) => has_jumps(repeated.density()),
+        _ => false,
     }
 }
 
@@ -248,7 +262,7 @@ fn photons_of_unbounded_media_need_a_cell() {
     let refused = shoot(&open, histories, &[], |_| true, &NoProgress).unwrap_err().to_string();
     assert!(refused.contains("no end"), "{refused}");
     // Power 4 pi in each volume, of which each face lets 2 pi (1/2 - E3(2)) E out, E the emission: E3(2) = 0.030133.
-    let closed = scene(Some(CELL));
+    let closed = scene(Some(DVec2::splat(CELL)));
     let power = FOUR_PI * 2.0 * CELL * CELL;
     assert!((closed.power()[0] / power - 1.0).abs() < 1e-12);
     let out = tallies(&closed, &[(transmittance(2.0), Orders::ALL)], MANY, 49);

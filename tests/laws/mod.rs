@@ -1,5 +1,6 @@
 //! The laws: what every phase function, warp, light, shape, flight and roulette obeys, over its whole domain.
 
+mod blocks;
 mod color;
 mod flight;
 mod fresnel;

@@ -95,7 +95,7 @@ proptest! {
     #[test]
     fn a_ray_from_here_meets_the_far_side_only(shape in solid(), u in prop::array::uniform3(0.0..1.0f64), cosine in 0.001..1.0f64, azimuth in 0.0..6.3f64, inwards: bool, is_top: bool) {
         let face = if is_top { Face::Top } else { Face::Bottom };
-        let (p, outward, _) = shape.sample_boundary(face, 4.0, u);
+        let (p, outward, _) = shape.sample_boundary(face, glam::DVec2::splat(4.0), u);
         let cosine = if inwards { -cosine } else { cosine };
         let dir = Frame::new(outward).to_world(unit_vector(cosine, azimuth)).normalize();
         let found = shape.hit(&Ray::new(p, dir), Some(0));
@@ -183,7 +183,7 @@ fn mean_chord_is_four_volumes_over_surface() {
     for shape in shapes {
         let chord = |is_lambertian: bool, seed: u64| {
             numbers(1 << 18, seed, |s| {
-                let (p, outward, _) = shape.sample_boundary(Face::Top, 0.0, s.triple());
+                let (p, outward, _) = shape.sample_boundary(Face::Top, glam::DVec2::ZERO, s.triple());
                 let u = s.pair();
                 let local = if is_lambertian {
                     warp::square_to_cosine_hemisphere(u)
@@ -201,7 +201,7 @@ fn mean_chord_is_four_volumes_over_surface() {
     // Of a sphere also the second moment: chords have density L / (2 a^2), so that <L^2> = 2 a^2.
     let ball = sphere(DVec3::ZERO, 0.7);
     let square = numbers(1 << 18, 14, |s| {
-        let (p, outward, _) = ball.sample_boundary(Face::Top, 0.0, s.triple());
+        let (p, outward, _) = ball.sample_boundary(Face::Top, glam::DVec2::ZERO, s.triple());
         let dir = Frame::new(-outward).to_world(warp::square_to_cosine_hemisphere(s.pair()));
         ball.hit(&Ray::new(p, dir), Some(0)).map_or(0.0, |h| h.t * h.t)
     });
@@ -214,16 +214,19 @@ fn mean_chord_is_four_volumes_over_surface() {
 fn points_inside_are_uniform() {
     let ball = sphere(DVec3::new(1.0, -2.0, 0.5), 2.0);
     let second = numbers(1 << 16, 15, |s| {
-        ball.sample_inside(0.0, s.triple()).0.distance_squared(DVec3::new(1.0, -2.0, 0.5))
+        ball.sample_inside(glam::DVec2::ZERO, s.triple()).0.distance_squared(DVec3::new(1.0, -2.0, 0.5))
     });
     verdict::agrees("<r^2> in a ball", &second, (2.4, 0.0), 0.05, 15);
     let low = DVec3::new(-1.0, 0.0, 3.0);
     let block = cuboid(low, low + DVec3::new(1.0, 2.0, 3.0));
     for axis in 0..3 {
-        let mean = numbers(1 << 16, 16, |s| (block.sample_inside(0.0, s.triple()).0 - low)[axis]);
+        let mean =
+            numbers(1 << 16, 16, |s| (block.sample_inside(glam::DVec2::ZERO, s.triple()).0 - low)[axis]);
         let edge = (axis + 1) as f64;
         verdict::agrees(&format!("axis {axis} of a box"), &mean, (0.5 * edge, 0.0), 0.01 * edge, 16);
-        let square = numbers(1 << 16, 17, |s| (block.sample_inside(0.0, s.triple()).0 - low)[axis].powi(2));
+        let square = numbers(1 << 16, 17, |s| {
+            (block.sample_inside(glam::DVec2::ZERO, s.triple()).0 - low)[axis].powi(2)
+        });
         verdict::agrees(
             &format!("axis {axis} squared"),
             &square,

@@ -179,7 +179,7 @@ fn together() -> Vec<Specimen> {
 /// A point of a body's surface, uniform, and its outward normal; of a slab on either face, over a cell of side 2.
 fn on_surface(shape: &Shape, stream: &mut Stream) -> (DVec3, DVec3) {
     let face = if stream.unit() < 0.5 { Face::Top } else { Face::Bottom };
-    let (point, normal, _) = shape.sample_boundary(face, 2.0, stream.triple());
+    let (point, normal, _) = shape.sample_boundary(face, glam::DVec2::splat(2.0), stream.triple());
     (point, normal)
 }
 

@@ -107,7 +107,7 @@ pub fn slab(tau: f64, albedo: f64, g: f64, how: Incidence) -> Scene {
     Scene::new(SceneParts {
         regions: vec![region(shape.clone(), 1.0, albedo, g)],
         lights: vec![incidence(shape, how)],
-        cell: Some(CELL),
+        cell: Some(glam::DVec2::splat(CELL)),
         ..SceneParts::default()
     })
     .unwrap()
@@ -165,7 +165,7 @@ pub fn fresnel_slab(tau: f64, albedo: f64, g: f64, index: f64, how: Incidence) -
         interiors: vec![Interior::surroundings(), filled("slab", index, medium)],
         objects: vec![Object { shape: layer(tau), surface: dielectric(1, 0) }],
         lights: vec![incidence(around(tau), how)],
-        cell: Some(CELL),
+        cell: Some(glam::DVec2::splat(CELL)),
         ..SceneParts::default()
     })
     .unwrap()

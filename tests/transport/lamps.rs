@@ -61,7 +61,7 @@ fn a_lamp_across_a_boundary_lights_both_sides() {
         verdict::agree(&format!("{what}, leaves"), &tallies[0][0], &out, 0.1, 1);
         let power = scene.power()[0];
         let absorbed = histories(N, 3, |stream| {
-            let (p, volume) = shape.sample_inside(0.0, stream.triple());
+            let (p, volume) = shape.sample_inside(glam::DVec2::ZERO, stream.triple());
             let fluence = sample(&scene, &Quantity::Fluence(p), Orders::ALL, stream);
             fluence * (2.0 * (1.0 - 0.3) * volume / power)
         })[0];

@@ -224,7 +224,7 @@ fn beam_without_edge() -> turbid::Result<()> {
     Scene::new(SceneParts {
         regions: lit.regions().to_vec(),
         lights,
-        cell: Some(4.0),
+        cell: Some(glam::DVec2::splat(4.0)),
         ..SceneParts::default()
     })
     .map(|_| ())

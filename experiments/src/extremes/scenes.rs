@@ -39,7 +39,7 @@ pub fn slab(fog: Fog, incidence: Incidence, unit: f64) -> turbid::Result<Scene> 
     Ok(asked(Scene::new(SceneParts {
         regions,
         lights: vec![light],
-        cell: Some(CELL * unit),
+        cell: Some(glam::DVec2::splat(CELL * unit)),
         ..SceneParts::default()
     })?))
 }
@@ -52,7 +52,7 @@ pub fn furnace_slab(tau: f64, g: f64) -> turbid::Result<Scene> {
     Ok(asked(Scene::new(SceneParts {
         regions,
         lights: vec![light],
-        cell: Some(CELL),
+        cell: Some(glam::DVec2::splat(CELL)),
         ..SceneParts::default()
     })?))
 }

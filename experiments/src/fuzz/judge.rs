@@ -431,7 +431,7 @@ fn photons(scene: &Scene, camera: &Camera, indirect: Indirect, is_by_importance:
 fn measured(scene: &Scene) -> turbid::Result<()> {
     let densest = scene.regions().iter().map(|r| r.medium.highest_sigma_t().max()).fold(0.0, f64::max);
     let cap = match scene.periodic_cell() {
-        Some(periodic_cell) => 0.5 * periodic_cell.side,
+        Some(periodic_cell) => 0.5 * periodic_cell.side.min_element(),
         None if densest > 0.0 => 1.0 / densest,
         None => 1.0,
     };

@@ -77,7 +77,12 @@ impl Setup {
         };
         let regions = vec![region(shape, 1.0, self.albedo, self.g)?];
         let cell = is_slab.then_some(CELL);
-        Ok(asked(Scene::new(SceneParts { regions, lights: vec![light], cell, ..SceneParts::default() })?))
+        Ok(asked(Scene::new(SceneParts {
+            regions,
+            lights: vec![light],
+            cell: cell.map(glam::DVec2::splat),
+            ..SceneParts::default()
+        })?))
     }
 
     /// Emitted power, of a slab that of the cell.

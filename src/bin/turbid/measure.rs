@@ -325,7 +325,7 @@ fn without_error(measurements: &[Measurement]) -> Vec<String> {
 fn default_cap(scene: &Scene) -> f64 {
     let densest = scene.regions().iter().map(|r| r.medium.highest_sigma_t().max()).fold(0.0, f64::max);
     match scene.periodic_cell() {
-        Some(periodic_cell) => 0.5 * periodic_cell.side,
+        Some(periodic_cell) => 0.5 * periodic_cell.side.min_element(),
         None if densest > 0.0 => 1.0 / densest,
         None => 1.0,
     }

@@ -3,7 +3,9 @@
 mod fogbox;
 mod region;
 
-use super::file::{Channels, LightFile, QuantityFile, SceneFile, SectionFile, SensorFile, ShapeFile};
+use super::file::{
+    CellFile, Channels, LightFile, QuantityFile, SceneFile, SectionFile, SensorFile, ShapeFile,
+};
 use crate::error::{Error, Result};
 use crate::geometry::Face;
 use crate::light::Faces;
@@ -221,7 +223,13 @@ fn slab(p: SlabParameters) -> Result<SceneFile> {
         ));
     }
     let regions = vec![region(shape, 1.0 / scale, p.albedo, p.g)?];
-    Ok(SceneFile { cell: Some(side), regions, lights: vec![light], sensors, ..SceneFile::default() })
+    Ok(SceneFile {
+        cell: Some(CellFile([side; 2])),
+        regions,
+        lights: vec![light],
+        sensors,
+        ..SceneFile::default()
+    })
 }
 
 fn sphere(p: SphereParameters) -> Result<SceneFile> {

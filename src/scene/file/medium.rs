@@ -1,10 +1,13 @@
 //! Media in the scene file: the keys that regions and interiors share.
 
+use super::blocks::{ColumnsFile, LayersFile, MarkovFile};
 use super::values::Channels;
 use crate::error::{Error, Result};
 use crate::faults::{Fault, planted};
 use crate::math::{Albedo, Asymmetry, NonNegative, Positive};
-use crate::medium::{Body, Cloud, CloudShape, Density, Grid, HeightFog, Heterogeneous, Homogeneous, Medium};
+use crate::medium::{
+    Blocks, Body, Cloud, CloudShape, Density, Grid, HeightFog, Heterogeneous, Homogeneous, Medium,
+};
 use crate::phase::{Phase, Rayleigh, Schlick, Tabulated, TwoTerm};
 use serde::{Deserialize, Serialize};
 use std::path::Path;
@@ -36,14 +39,38 @@ pub enum DensityFile {
     Grid(GridFile),
     Cloud(CloudFile),
     HeightFog { base: f64, scale_height: Positive, up: [f64; 3] },
+    Columns(ColumnsFile),
+    Layers(LayersFile),
+    Markov(MarkovFile),
 }
 
-/// A `.vol` file.
+/// What the values of a grid are in between.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Interpolation {
+    /// Linear between the middles of cells.
+    #[default]
+    Linear,
+    /// Each that of its whole cell.
+    Blocks,
+}
+
+/// A `.vol` file, or values in the scene file itself.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct GridFile {
     /// Its name.
-    pub file: String,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub file: Option<String>,
+    /// In place of a file: the values, x fastest, then y and z.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub values: Option<Vec<NonNegative>>,
+    /// How many values along x, y and z.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub count: Option<[usize; 3]>,
+    /// What they are in between; linear if absent.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub interpolation: Option<Interpolation>,
     /// What its values are multiplied by; 1 if absent.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub scale: Option<Positive>,
@@ -125,9 +152,20 @@ impl Keys<'_> {
             }
             return Ok(Some(matter.into()));
         };
-        let mut medium = Heterogeneous::new(matter, density.density(folder)?);
-        if let Some(grid) = albedo_grid {
-            medium = medium.with_albedo(grid.grid(folder)?)?;
+        let (density, own_albedo) = density.density(folder)?;
+        let mut medium = Heterogeneous::new(matter, density);
+        match (own_albedo, albedo_grid) {
+            (Some(_), Some(_)) => {
+                return refuse("albedo_grid and layers with an albedo; allowed: one of the two");
+            }
+            (Some(blocks), None) => medium = medium.with_albedo_blocks(blocks)?,
+            (None, Some(grid)) => {
+                medium = match grid.sampled(folder).map_err(|e| e.within("albedo_grid"))? {
+                    Sampled::Grid(grid) => medium.with_albedo(grid)?,
+                    Sampled::Blocks(blocks) => medium.with_albedo_blocks(blocks)?,
+                }
+            }
+            (None, None) => {}
         }
         if let Some(emission) = emission_by_density {
             medium = medium.with_emission_by_density(emission.spectrum())?;
@@ -148,10 +186,26 @@ impl PhaseFile {
 }
 
 impl DensityFile {
-    fn density(&self, folder: &Path) -> Result<Density> {
-        match self {
-            DensityFile::Grid(grid) => Density::grid(grid.grid(folder)?)
-                .map_err(|e| e.within(&format!("grid {}", folder.join(&grid.file).display()))),
+    /// The density, and the albedo that comes with it, if one does.
+    fn density(&self, folder: &Path) -> Result<(Density, Option<Blocks>)> {
+        let density = match self {
+            DensityFile::Columns(columns) => Density::blocks(columns.blocks(folder)?),
+            DensityFile::Layers(layers) => {
+                let (blocks, albedo) = layers.blocks()?;
+                return Ok((Density::blocks(blocks)?, albedo));
+            }
+            DensityFile::Markov(mixture) => {
+                let (blocks, albedo) = mixture.blocks()?;
+                return Ok((Density::blocks(blocks)?, albedo));
+            }
+            DensityFile::Grid(grid) => match grid.sampled(folder)? {
+                Sampled::Grid(grid) => Density::grid(grid),
+                Sampled::Blocks(blocks) => Density::blocks(blocks),
+            }
+            .map_err(|e| match &grid.file {
+                Some(file) => e.within(&format!("grid {}", folder.join(file).display())),
+                None => e,
+            }),
             DensityFile::Cloud(cloud) => {
                 let plain = CloudShape::plain(cloud.center.into(), cloud.radii.into());
                 let look = CloudShape {
@@ -169,13 +223,45 @@ impl DensityFile {
             DensityFile::HeightFog { base, scale_height, up } => {
                 Ok(Density::HeightFog(HeightFog::new((*up).into(), *base, *scale_height)?))
             }
-        }
+        };
+        Ok((density?, None))
     }
 }
 
+/// Samples with what they are in between.
+enum Sampled {
+    Grid(Grid),
+    Blocks(Blocks),
+}
+
 impl GridFile {
-    fn grid(&self, folder: &Path) -> Result<Grid> {
-        let grid = Grid::read(&folder.join(&self.file))?;
+    fn sampled(&self, folder: &Path) -> Result<Sampled> {
+        let is_blocks = self.interpolation == Some(Interpolation::Blocks);
+        match (&self.file, &self.values, self.count) {
+            (Some(file), None, None) => {
+                let grid = self.placed(Grid::read(&folder.join(file))?)?;
+                Ok(if is_blocks { Sampled::Blocks(Blocks::of_grid(&grid)?) } else { Sampled::Grid(grid) })
+            }
+            (None, Some(values), Some(count)) => {
+                let (Some(min), Some(max)) = (self.min, self.max) else {
+                    return refuse("values of a grid without min and max; allowed: both");
+                };
+                let corners = (min.into(), max.into());
+                let scale = self.scale.map_or(1.0, Positive::get);
+                let values = values.iter().map(|value| value.get() * scale);
+                Ok(match is_blocks {
+                    true => Sampled::Blocks(Blocks::uniform(corners, count, 1, values.collect())?),
+                    false => {
+                        let single = values.map(|value| value as f32).collect();
+                        Sampled::Grid(Grid::new(corners, count, 1, single)?)
+                    }
+                })
+            }
+            _ => refuse("a grid needs `file`, or `values` and `count` in its place; allowed: one of the two"),
+        }
+    }
+
+    fn placed(&self, grid: Grid) -> Result<Grid> {
         let (min, max) = grid.corners();
         match (self.min, self.max, self.scale) {
             (None, None, None) => Ok(grid),

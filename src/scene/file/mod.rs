@@ -1,5 +1,6 @@
 //! The scene file: TOML, strict. Every error names the line, the column and the key, and says what is allowed.
 
+mod blocks;
 mod interior;
 mod medium;
 mod shape;
@@ -10,7 +11,7 @@ pub use interior::{DielectricFile, InteriorFile};
 pub use medium::{DensityFile, GridFile, PhaseFile};
 pub use shape::ShapeFile;
 pub use texture::TextureFile;
-pub use values::Channels;
+pub use values::{CellFile, Channels};
 
 use values::rectangle;
 
@@ -23,7 +24,7 @@ use crate::geometry::{Cuboid, Face, FaceBins, Voxels};
 use crate::light::{Area, Beam, Faces, Isotropic, Light, Point, Section, Spot, Sun, VolumeSource};
 use crate::math::{Albedo, Asymmetry, NonNegative, Positive, Ray};
 use crate::surface::{self, Black, Lambertian, Mirror, Surface};
-use glam::DVec3;
+use glam::{DVec2, DVec3};
 use serde::{Deserialize, Serialize};
 use std::path::Path;
 
@@ -62,9 +63,9 @@ pub struct SceneFile {
     /// Version of the format.
     #[serde(default)]
     pub format: SceneFormat,
-    /// Side of the cell that stands for an unbounded slab \[L\].
+    /// Side of the cell that stands for an unbounded slab, or its sides along x and y \[L\].
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub cell: Option<Positive>,
+    pub cell: Option<CellFile>,
     /// Media.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub regions: Vec<RegionFile>,
@@ -540,7 +541,7 @@ impl SceneFile {
                 .enumerate()
                 .map(|(i, l)| l.light(folder).map_err(|e| e.within(&format!("lights[{i}]"))))
                 .collect::<Result<_>>()?,
-            cell: self.cell.map(Positive::get),
+            cell: self.cell.map(|CellFile([x, y])| DVec2::new(x.get(), y.get())),
             camera: self.camera.as_ref().map(CameraFile::camera).transpose()?,
         })
     }

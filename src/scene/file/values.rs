@@ -3,6 +3,7 @@
 use crate::Spectrum;
 use crate::error::Result;
 use crate::geometry::Rectangle;
+use crate::math::Positive;
 use serde::de::{IntoDeserializer, SeqAccess, Visitor};
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
@@ -43,6 +44,39 @@ impl<T: Serialize + PartialEq> Serialize for Channels<T> {
     fn serialize<S: Serializer>(&self, serializer: S) -> std::result::Result<S::Ok, S::Error> {
         let [r, g, b] = &self.0;
         if r == g && g == b { r.serialize(serializer) } else { self.0.serialize(serializer) }
+    }
+}
+
+/// The sides of a cell along x and y: a number for both, or two.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct CellFile(pub [Positive; 2]);
+
+impl<'de> Deserialize<'de> for CellFile {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> std::result::Result<Self, D::Error> {
+        struct Either;
+        impl<'de> Visitor<'de> for Either {
+            type Value = CellFile;
+            fn expecting(&self, f: &mut std::fmt::Formatter) -> std::fmt::Result {
+                f.write_str("a number, or two numbers for the sides along x and y")
+            }
+            fn visit_f64<E: serde::de::Error>(self, v: f64) -> std::result::Result<Self::Value, E> {
+                Positive::deserialize(v.into_deserializer()).map(|side| CellFile([side; 2]))
+            }
+            fn visit_i64<E: serde::de::Error>(self, v: i64) -> std::result::Result<Self::Value, E> {
+                self.visit_f64(v as f64)
+            }
+            fn visit_seq<A: SeqAccess<'de>>(self, seq: A) -> std::result::Result<Self::Value, A::Error> {
+                <[Positive; 2]>::deserialize(serde::de::value::SeqAccessDeserializer::new(seq)).map(CellFile)
+            }
+        }
+        deserializer.deserialize_any(Either)
+    }
+}
+
+impl Serialize for CellFile {
+    fn serialize<S: Serializer>(&self, serializer: S) -> std::result::Result<S::Ok, S::Error> {
+        let [x, y] = &self.0;
+        if x == y { x.serialize(serializer) } else { self.0.serialize(serializer) }
     }
 }
 
