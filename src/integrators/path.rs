@@ -1,14 +1,16 @@
 //! The unbiased path tracer.
 //!
-//! Each ray collects in closed form what it would meet by itself (lights' bodies, incidence, volume sources), times
-//! the transmittance; each event connects to every light that can be aimed at, to a volume source from outside of its
-//! ball along one whole ray. Where both can find the same light, the balance heuristic shares it between them. Towards a
+//! Each ray collects what it would meet by itself (lights' bodies, incidence, volume sources, media that emit), in closed form
+//! where there is one, times the transmittance; each event connects to every light that can be aimed at. Volume sources
+//! and media that emit fill space: towards a place in them a direction is chosen, and the whole ray along it collects their light,
+//! so that nothing is divided by the square of a distance. Where both can find the same light, the balance heuristic shares it between
+//! them, by the densities of the direction. Towards a
 //! point light a second point on the ray is sampled with equal angles, in multiple importance with the free flight:
 //! connections from free flights alone would have an infinite variance, and equal angles alone miss the rays that run
 //! through the light itself. For a beam the second point is sampled evenly where the beam crosses the ray: free flights
 //! hardly ever end in a narrow one.
 
-use super::{Layer, Layers};
+use super::{Layer, Layers, emitters};
 use crate::Spectrum;
 use crate::faults::{Fault, planted};
 use crate::geometry::Hit;
@@ -100,22 +102,23 @@ impl<'a, F: FnMut(u32, Layer, Spectrum)> PathVisitor<'a, F> {
         if let Some(found) = hit
             && let Target::Light(index) = found.target
         {
-            // Seen from where the direction was chosen, on the far side of filters.
-            let (back, dir) = (walker.since_sampled, walker.ray.dir);
-            let seen_along = Ray::new(walker.ray.at(-back), dir);
-            let seen_hit = Hit { t: found.hit.t + back, ..found.hit };
+            let seen_along = sampled_along(walker);
+            let seen_hit = Hit { t: found.hit.t + walker.since_sampled, ..found.hit };
             let (radiance, pdf_light) = self.scene.lights()[index].emitted(&seen_along, &seen_hit);
             let share = walker.pdf_solid_angle.map_or(1.0, |pdf| pdf / (pdf + pdf_light));
             let transmitted = transmittance(self.scene, &walker.ray, end, walker.interior, stream);
             let seen = radiance * transmitted * share;
             self.add(walker.order, layer, walker.weight * seen);
         }
-        let emitted = emission(self.scene, &walker.ray, end, walker.interior, stream);
+        let mut emitted = emission(self.scene, &walker.ray, end, walker.interior, stream);
+        if let Some(pdf) = walker.pdf_solid_angle.filter(|_| !emitted.is_black()) {
+            emitted *= pdf / (pdf + emitters::pdf_solid_angle(self.scene, &sampled_along(walker)));
+        }
         self.add(walker.order, layer, walker.weight * emitted);
         for light in self.scene.lights() {
             let mut seen = uncollided(self.scene, light, walker, end, stream);
             if let (Light::VolumeSource(source), Some(pdf)) = (light, walker.pdf_solid_angle) {
-                seen *= pdf / (pdf + source.pdf_solid_angle(walker.ray.at(-walker.since_sampled)));
+                seen *= pdf / (pdf + source.pdf_solid_angle(&sampled_along(walker)));
             }
             if hit.is_none()
                 && let Some((radiance, pdf_light)) = light.background(&walker.ray)
@@ -138,21 +141,15 @@ impl<'a, F: FnMut(u32, Layer, Spectrum)> PathVisitor<'a, F> {
         scattered: impl Fn(DVec3) -> (Spectrum, f64),
         delta_share: impl Fn(&Light) -> f64,
     ) {
-        if !self.orders.contains(walker.order + 1) || !self.scene.plan().has_next_event {
+        if !self.orders.contains(walker.order + 1) || !has_next_event(self.scene) {
             return;
         }
         let layer = self.layer_connected(walker, event);
         for index in 0..self.scene.lights().len() {
             let light = &self.scene.lights()[index];
-            let Some((sample, received)) = next_event(
-                self.scene,
-                index,
-                (position, origin_surface, walker.interior),
-                stream,
-                &mut self.rays,
-            ) else {
-                continue;
-            };
+            let place = (position, origin_surface, walker.interior);
+            let found = towards(self.scene, index, place, stream, &mut self.rays);
+            let Some((sample, received)) = found else { continue };
             let (fraction, pdf) = scattered(sample.dir);
             let share = match sample.pdf_solid_angle {
                 Some(pdf_light) => pdf_light / (pdf_light + pdf),
@@ -160,6 +157,14 @@ impl<'a, F: FnMut(u32, Layer, Spectrum)> PathVisitor<'a, F> {
             };
             let order = if planted(Fault::OrderOffByOne) { walker.order } else { walker.order + 1 };
             self.add(order, layer, walker.weight * fraction * received * share);
+        }
+        if let Some((dir, pdf_light)) = emitters::sample(self.scene, position, stream) {
+            let (fraction, pdf) = scattered(dir);
+            if !fraction.is_black() {
+                let place = (Ray::new(position, dir), origin_surface, walker.interior);
+                let seen = emitted_along(self.scene, place, stream, &mut self.rays);
+                self.add(walker.order + 1, layer, walker.weight * fraction * seen / (pdf_light + pdf));
+            }
         }
     }
 
@@ -190,7 +195,7 @@ impl<'a, F: FnMut(u32, Layer, Spectrum)> PathVisitor<'a, F> {
             let medium = scene.medium(segment.medium);
             let position = ray.at(t);
             let place = (position, None, walker.interior);
-            let Some((sample, received)) = next_event(scene, index, place, stream, &mut self.rays) else {
+            let Some((sample, received)) = towards(scene, index, place, stream, &mut self.rays) else {
                 continue;
             };
             let (one_minus_mu, one_plus_mu) = cosine_pair(ray.dir, sample.dir);
@@ -346,9 +351,33 @@ pub(in crate::integrators) fn uncollided(
     }
 }
 
+/// The way on which a walker's direction was chosen: on the far side of filters and index-matched boundaries.
+fn sampled_along(walker: &Walker) -> Ray {
+    Ray::new(walker.ray.at(-walker.since_sampled), walker.ray.dir)
+}
+
+/// Whether any light has directions to choose.
+fn has_next_event(scene: &Scene) -> bool {
+    scene.plan().has_next_event || emitters::has_direction(scene)
+}
+
 /// Light that arrives at a place (point, body, interior) straight from the light of this index, along one sampled direction: radiance
-/// over density, or the irradiance of a delta light [W/L^2].
+/// over density, or the irradiance of a delta light [W/L^2]. None where it is better [met by chance](Light::has_direction_from).
 pub(in crate::integrators) fn next_event(
+    scene: &Scene,
+    index: usize,
+    place: (DVec3, Option<Start>, usize),
+    stream: &mut Stream,
+    rays: &mut Rays,
+) -> Option<(LightSample, Spectrum)> {
+    if !scene.lights()[index].has_direction_from(place.0) {
+        return None;
+    }
+    towards(scene, index, place, stream, rays)
+}
+
+/// The same from everywhere: from inside of a volume source only good for a share of its light.
+fn towards(
     scene: &Scene,
     index: usize,
     (position, origin_surface, interior): (DVec3, Option<Start>, usize),
@@ -356,22 +385,37 @@ pub(in crate::integrators) fn next_event(
     rays: &mut Rays,
 ) -> Option<(LightSample, Spectrum)> {
     let light = &scene.lights()[index];
-    if !light.has_direction_from(position) {
-        return None;
-    }
-    let sample = light.sample(position, stream.pair())?;
-    let ray = Ray::new(position, sample.dir);
-    if let (Light::VolumeSource(_), Some(pdf)) = (light, sample.pdf_solid_angle) {
+    if let Light::VolumeSource(source) = light {
+        let sample = source.sample(position, stream.triple())?;
+        let ray = Ray::new(position, sample.dir);
         let start = Walker { origin_surface, interior, ..Walker::new(ray, Spectrum::ONE) };
         let seen = seen_straight(scene, start, &mut rays.shadow, stream, |walker, end, stream| {
             uncollided(scene, light, walker, end, stream)
         });
-        return Some((sample, seen / pdf));
+        return Some((sample, seen / sample.pdf_solid_angle?));
     }
+    if !light.has_direction() {
+        return None;
+    }
+    let sample = light.sample(position, stream.pair())?;
+    let ray = Ray::new(position, sample.dir);
     rays.shadow += 1;
     let towards = Some(Target::Light(index));
     let transmitted = connection(scene, (&ray, origin_surface, interior), sample.distance, towards, stream)?;
     Some((sample, sample.value * transmitted))
+}
+
+/// Radiance that arrives along a ray straight from media that emit [W/(L^2 sr)].
+fn emitted_along(
+    scene: &Scene,
+    (ray, origin_surface, interior): (Ray, Option<Start>, usize),
+    stream: &mut Stream,
+    rays: &mut Rays,
+) -> Spectrum {
+    let start = Walker { origin_surface, interior, ..Walker::new(ray, Spectrum::ONE) };
+    seen_straight(scene, start, &mut rays.shadow, stream, |walker, end, stream| {
+        emission(scene, &walker.ray, end, walker.interior, stream)
+    })
 }
 
 /// Power that uncollided light of beams and point lights carries through a surface element along its normal
@@ -459,11 +503,15 @@ pub fn fluence(
     if orders.contains(0) {
         for index in 0..scene.lights().len() {
             if let Some((sample, received)) =
-                next_event(scene, index, (position, None, interior), stream, &mut rays)
+                towards(scene, index, (position, None, interior), stream, &mut rays)
             {
                 let share = sample.pdf_solid_angle.map_or(1.0, |pdf| pdf / (pdf + warp::pdf_sphere()));
                 collect(0, received * share);
             }
+        }
+        if let Some((dir, pdf)) = emitters::sample(scene, position, stream) {
+            let seen = emitted_along(scene, (Ray::new(position, dir), None, interior), stream, &mut rays);
+            collect(0, seen / (pdf + warp::pdf_sphere()));
         }
     }
     let dir = warp::square_to_sphere(stream.pair()).normalize();
