@@ -22,8 +22,8 @@ use crate::rng::Stream;
 use crate::scene::{Orders, Scene, SceneHit, Start, Target, decay};
 use crate::surface::Surface;
 use crate::transport::{
-    Arrival, Distances, Flags, Roulette, Step, Visitor, Walker, collected, connection, emission, span,
-    transmittance, walk,
+    Arrival, Distances, Flags, Guide, Guided, Roulette, Step, Visitor, Walker, collected, connection,
+    emission, span, transmittance, walk,
 };
 use glam::DVec3;
 
@@ -60,6 +60,8 @@ struct PathVisitor<'a, F: FnMut(u32, Layer, Spectrum)> {
     specular_at: Option<u32>,
     /// Distance to the body ahead of the present ray \[L\].
     end: f64,
+    /// The games by which it is split and ended.
+    guided: Option<Guided<'a>>,
 }
 
 impl<'a, F: FnMut(u32, Layer, Spectrum)> PathVisitor<'a, F> {
@@ -72,6 +74,7 @@ impl<'a, F: FnMut(u32, Layer, Spectrum)> PathVisitor<'a, F> {
             first: Flags::NONE,
             specular_at: None,
             end: f64::INFINITY,
+            guided: None,
         }
     }
 
@@ -103,7 +106,8 @@ impl<'a, F: FnMut(u32, Layer, Spectrum)> PathVisitor<'a, F> {
             && let Target::Light(index) = found.target
         {
             let seen_along = sampled_along(walker);
-            let seen_hit = Hit { t: found.hit.t + walker.since_sampled, ..found.hit };
+            let seen_hit =
+                Hit { t: found.hit.t + walker.sampled_at.distance(walker.ray.origin), ..found.hit };
             let (radiance, pdf_light) = self.scene.lights()[index].emitted(&seen_along, &seen_hit);
             let share = walker.pdf_solid_angle.map_or(1.0, |pdf| pdf / (pdf + pdf_light));
             let transmitted = transmittance(self.scene, &walker.ray, end, walker.interior, stream);
@@ -111,13 +115,14 @@ impl<'a, F: FnMut(u32, Layer, Spectrum)> PathVisitor<'a, F> {
             self.add(walker.order, layer, walker.weight * seen);
         }
         let mut emitted = emission(self.scene, &walker.ray, end, walker.interior, stream);
-        if let Some(pdf) = walker.pdf_solid_angle.filter(|_| !emitted.is_black()) {
+        let shared = walker.pdf_solid_angle.filter(|_| !planted(Fault::EmitterShareForgotten));
+        if let Some(pdf) = shared.filter(|_| !emitted.is_black()) {
             emitted *= pdf / (pdf + emitters::pdf_solid_angle(self.scene, &sampled_along(walker)));
         }
         self.add(walker.order, layer, walker.weight * emitted);
         for light in self.scene.lights() {
             let mut seen = uncollided(self.scene, light, walker, end, stream);
-            if let (Light::VolumeSource(source), Some(pdf)) = (light, walker.pdf_solid_angle) {
+            if let (Light::VolumeSource(source), Some(pdf)) = (light, shared) {
                 seen *= pdf / (pdf + source.pdf_solid_angle(&sampled_along(walker)));
             }
             if hit.is_none()
@@ -148,7 +153,7 @@ impl<'a, F: FnMut(u32, Layer, Spectrum)> PathVisitor<'a, F> {
         for index in 0..self.scene.lights().len() {
             let light = &self.scene.lights()[index];
             let place = (position, origin_surface, walker.interior);
-            let found = towards(self.scene, index, place, stream, &mut self.rays);
+            let found = next_event(self.scene, index, place, stream, &mut self.rays);
             let Some((sample, received)) = found else { continue };
             let (fraction, pdf) = scattered(sample.dir);
             let share = match sample.pdf_solid_angle {
@@ -195,7 +200,7 @@ impl<'a, F: FnMut(u32, Layer, Spectrum)> PathVisitor<'a, F> {
             let medium = scene.medium(segment.medium);
             let position = ray.at(t);
             let place = (position, None, walker.interior);
-            let Some((sample, received)) = towards(scene, index, place, stream, &mut self.rays) else {
+            let Some((sample, received)) = next_event(scene, index, place, stream, &mut self.rays) else {
                 continue;
             };
             let (one_minus_mu, one_plus_mu) = cosine_pair(ray.dir, sample.dir);
@@ -230,6 +235,15 @@ fn flight_pdf(scene: &Scene, walker: &Walker, (t, medium): (f64, &Medium), ray: 
 }
 
 impl<F: FnMut(u32, Layer, Spectrum)> Visitor for PathVisitor<'_, F> {
+    fn guided(&self) -> Option<Guided<'_>> {
+        self.guided
+    }
+
+    /// Classes of paths that are split are not told apart: only what they bring in all is asked for.
+    fn resume(&mut self, hit: Option<&SceneHit>) {
+        self.end = hit.map_or(f64::INFINITY, |h| h.hit.t);
+    }
+
     fn visit(&mut self, walker: &Walker, step: Step, stream: &mut Stream) {
         match step {
             Step::Ahead(hit) => {
@@ -351,9 +365,9 @@ pub(in crate::integrators) fn uncollided(
     }
 }
 
-/// The way on which a walker's direction was chosen: on the far side of filters and index-matched boundaries.
+/// The way along which a walker's direction was sampled: it begins on the far side of filters and index-matched boundaries.
 fn sampled_along(walker: &Walker) -> Ray {
-    Ray::new(walker.ray.at(-walker.since_sampled), walker.ray.dir)
+    Ray::new(walker.sampled_at, walker.ray.dir)
 }
 
 /// Whether any light has directions to choose.
@@ -362,22 +376,8 @@ fn has_next_event(scene: &Scene) -> bool {
 }
 
 /// Light that arrives at a place (point, body, interior) straight from the light of this index, along one sampled direction: radiance
-/// over density, or the irradiance of a delta light [W/L^2]. None where it is better [met by chance](Light::has_direction_from).
+/// over density, or the irradiance of a delta light [W/L^2].
 pub(in crate::integrators) fn next_event(
-    scene: &Scene,
-    index: usize,
-    place: (DVec3, Option<Start>, usize),
-    stream: &mut Stream,
-    rays: &mut Rays,
-) -> Option<(LightSample, Spectrum)> {
-    if !scene.lights()[index].has_direction_from(place.0) {
-        return None;
-    }
-    towards(scene, index, place, stream, rays)
-}
-
-/// The same from everywhere: from inside of a volume source only good for a share of its light.
-fn towards(
     scene: &Scene,
     index: usize,
     (position, origin_surface, interior): (DVec3, Option<Start>, usize),
@@ -385,6 +385,9 @@ fn towards(
     rays: &mut Rays,
 ) -> Option<(LightSample, Spectrum)> {
     let light = &scene.lights()[index];
+    if !light.has_direction_from(position) {
+        return None;
+    }
     if let Light::VolumeSource(source) = light {
         let sample = source.sample(position, stream.triple())?;
         let ray = Ray::new(position, sample.dir);
@@ -393,9 +396,6 @@ fn towards(
             uncollided(scene, light, walker, end, stream)
         });
         return Some((sample, seen / sample.pdf_solid_angle?));
-    }
-    if !light.has_direction() {
-        return None;
     }
     let sample = light.sample(position, stream.pair())?;
     let ray = Ray::new(position, sample.dir);
@@ -452,9 +452,24 @@ pub fn classes(
     stream: &mut Stream,
     collect: impl FnMut(u32, Layer, Spectrum),
 ) -> Rays {
-    let mut visitor = PathVisitor::new(scene, orders, Rays::default(), collect);
+    let visitor = PathVisitor::new(scene, orders, Rays::default(), collect);
     let start = Walker { origin_surface, interior, ..Walker::new(ray, Spectrum::ONE) };
-    walk(scene, start, Roulette::Below(ROULETTE), orders.max, stream, &mut visitor);
+    follow(visitor, start, None, stream)
+}
+
+/// Follows a path, and all that is split off it if there is a guide. Returns the work.
+fn follow<'a, F: FnMut(u32, Layer, Spectrum)>(
+    mut visitor: PathVisitor<'a, F>,
+    start: Walker,
+    guide: Option<&'a Guide>,
+    stream: &mut Stream,
+) -> Rays {
+    let (scene, limit) = (visitor.scene, visitor.orders.max);
+    // Roulette compares with the weight that a walk started with; windows take its place.
+    let roulette = Roulette::Below(if guide.is_some() { 0.0 } else { ROULETTE * start.weight.max() });
+    let place = (start.ray.origin, start.interior);
+    visitor.guided = guide.map(|guide| Guided::new(guide, scene, place, start.weight));
+    walk(scene, start, roulette, limit, stream, &mut visitor);
     visitor.rays
 }
 
@@ -474,20 +489,22 @@ pub fn layers(
 }
 
 /// One sample of the radiance that arrives at the origin of `ray` from ahead [W/(L^2 sr)], by order: `collect` is
-/// called with the order and the contribution. The ray starts in the interior of number `within`. Returns the work.
+/// called with the order and the contribution. The ray starts in the interior of number `within`; paths are split and ended by the guide, if
+/// there is one. Returns the work.
 pub fn radiance(
     scene: &Scene,
-    ray: Ray,
-    origin_surface: Option<Start>,
-    interior: usize,
+    (ray, interior): (Ray, usize),
     orders: Orders,
+    guide: Option<&Guide>,
     stream: &mut Stream,
     mut collect: impl FnMut(u32, Spectrum),
 ) -> Rays {
-    classes(scene, ray, origin_surface, interior, orders, stream, |order, _, value| collect(order, value))
+    let visitor = PathVisitor::new(scene, orders, Rays::default(), |order, _, value| collect(order, value));
+    let start = Walker { interior, ..Walker::new(ray, Spectrum::ONE) };
+    follow(visitor, start, guide, stream)
 }
 
-/// One sample of the fluence at a point [W/L^2], by order.
+/// One sample of the fluence at a point [W/L^2], by order; paths are split and ended by the guide, if there is one.
 ///
 /// Uncollided light from lights that can be aimed at comes by next-event estimation, in multiple importance with
 /// the uniform direction that everything else comes by. Returns the work.
@@ -495,6 +512,7 @@ pub fn fluence(
     scene: &Scene,
     position: DVec3,
     orders: Orders,
+    guide: Option<&Guide>,
     stream: &mut Stream,
     mut collect: impl FnMut(u32, Spectrum),
 ) -> Rays {
@@ -503,7 +521,7 @@ pub fn fluence(
     if orders.contains(0) {
         for index in 0..scene.lights().len() {
             if let Some((sample, received)) =
-                towards(scene, index, (position, None, interior), stream, &mut rays)
+                next_event(scene, index, (position, None, interior), stream, &mut rays)
             {
                 let share = sample.pdf_solid_angle.map_or(1.0, |pdf| pdf / (pdf + warp::pdf_sphere()));
                 collect(0, received * share);
@@ -515,13 +533,11 @@ pub fn fluence(
         }
     }
     let dir = warp::square_to_sphere(stream.pair()).normalize();
-    let mut visitor = PathVisitor::new(scene, orders, rays, |order, _, value| collect(order, value));
+    let visitor = PathVisitor::new(scene, orders, rays, |order, _, value| collect(order, value));
     let start = Walker {
         interior,
         pdf_solid_angle: Some(warp::pdf_sphere()),
         ..Walker::new(Ray::new(position, dir), Spectrum::grey(FOUR_PI))
     };
-    // The walk's weight starts at 4 pi; roulette compares with what it started with.
-    walk(scene, start, Roulette::Below(ROULETTE * FOUR_PI), orders.max, stream, &mut visitor);
-    visitor.rays
+    follow(visitor, start, guide, stream)
 }

@@ -117,9 +117,7 @@ impl MediumEmission {
     pub(crate) fn extent(&self, periodic_cell: Option<&PeriodicCell>) -> Option<(DVec3, DVec3)> {
         match &self.places {
             Places::Inside(shape) => around(shape, periodic_cell),
-            Places::Boxes(boxes) => {
-                Some((boxes.low, boxes.low + boxes.edge * DVec3::from_array(boxes.count.map(|n| n as f64))))
-            }
+            Places::Boxes(boxes) => Some((boxes.low, boxes.high_corner())),
         }
     }
 
@@ -151,7 +149,7 @@ impl MediumEmission {
     }
 
     /// A ball that holds all starts, as far as there is one.
-    pub(super) fn ball(&self) -> Option<(DVec3, f64)> {
+    pub fn ball(&self) -> Option<(DVec3, f64)> {
         match &self.places {
             Places::Inside(shape) => shape.bounds(),
             Places::Boxes(boxes) => {
@@ -169,11 +167,15 @@ impl MediumEmission {
         }
     }
 
-    /// About the irradiance that it may bring to `p` where nothing absorbs it [W/L^2]: power over the squared distance, at
-    /// least that of the ball about it. 0 if directions cannot be chosen towards it.
+    /// About the irradiance that it may bring to `p` where nothing absorbs it [W/L^2]: power over the squared distance. 0 if
+    /// directions cannot be chosen towards it, and inside, where every direction meets it: there a second ray costs more than it brings.
     pub fn brightness_at(&self, p: DVec3) -> f64 {
-        match self.ball().filter(|_| self.has_direction()) {
-            Some((center, radius)) => self.power_bound.sum() / p.distance_squared(center).max(radius * radius),
+        let is_inside = match &self.places {
+            Places::Inside(shape) => shape.contains(p),
+            Places::Boxes(boxes) => (p.cmpge(boxes.low) & p.cmple(boxes.high_corner())).all(),
+        };
+        match self.ball().filter(|_| !is_inside && self.has_direction()) {
+            Some((center, _)) => self.power_bound.sum() / p.distance_squared(center),
             None => 0.0,
         }
     }
@@ -249,6 +251,10 @@ impl Boxes {
         (Boxes { low, edge, count, is_endless, high: bounds, cumulated }, power_bound)
     }
 
+    fn high_corner(&self) -> DVec3 {
+        self.low + self.edge * DVec3::from_array(self.count.map(|n| n as f64))
+    }
+
     /// A start, and the bound of the density in its box.
     fn place(&self, u: [f64; 3]) -> (DVec3, f64) {
         let total = self.cumulated.last().copied().unwrap_or(0.0);
@@ -263,8 +269,9 @@ impl Boxes {
     /// Density of the direction to a start [1/sr]: over each box that the ray crosses, int t^2 dt times the density of starts.
     fn pdf_solid_angle(&self, ray: &Ray) -> f64 {
         let total = self.cumulated.last().copied().unwrap_or(0.0);
-        let corner = self.low + self.edge * DVec3::from_array(self.count.map(|n| n as f64));
-        let Some(inside) = Cuboid::new(self.low, corner).ok().and_then(|c| Shape::Cuboid(c).interval(ray)) else {
+        let Some(inside) =
+            Cuboid::new(self.low, self.high_corner()).ok().and_then(|c| Shape::Cuboid(c).interval(ray))
+        else {
             return 0.0;
         };
         let entry = (ray.at(inside.start) - self.low) / self.edge;

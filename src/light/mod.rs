@@ -111,11 +111,10 @@ impl Light {
         }
     }
 
-    /// The same from the point `p`, where nothing else helps to find it: from inside of the ball about it, a volume source is
-    /// better met by chance.
+    /// The same from the point `p`: a volume source is met by chance from inside.
     pub fn has_direction_from(&self, p: DVec3) -> bool {
         match self {
-            Light::VolumeSource(l) => l.is_seen_whole_from(p),
+            Light::VolumeSource(l) => l.has_direction_from(p),
             _ => self.has_direction(),
         }
     }

@@ -36,25 +36,24 @@ impl VolumeSource {
         self.density / FOUR_PI
     }
 
-    /// Whether `p` is outside of the ball about the shape, from where a direction towards the shape alone, whatever else may
-    /// find its light, has a small variance; nothing bounds a slab.
-    pub(super) fn is_seen_whole_from(&self, p: DVec3) -> bool {
-        self.shape.bounds().is_some_and(|(center, radius)| p.distance(center) > radius)
+    /// Whether directions are chosen towards it from `p`: not from inside, where every direction meets it, and a second ray costs more than it brings;
+    /// and not towards a slab, which has no uniform points.
+    pub(super) fn has_direction_from(&self, p: DVec3) -> bool {
+        self.shape.bounds().is_some() && !self.shape.contains(p)
     }
 
-    /// Density with which [`VolumeSource::sample`] chooses the direction of a ray [1/sr]: that of a uniform point inside; 0 for a
-    /// slab, which has none.
+    /// Density with which [`VolumeSource::sample`] chooses the direction of a ray [1/sr].
     pub fn pdf_solid_angle(&self, ray: &Ray) -> f64 {
-        self.shape.pdf_towards_inside(ray)
+        if self.has_direction_from(ray.origin) { self.shape.pdf_towards_inside(ray) } else { 0.0 }
     }
 
-    /// The direction from `p` to a uniform point of the shape, and what comes along it, from the whole of the source, where
-    /// nothing stands or absorbs on the way; none for a slab.
+    /// The direction from `p` to a uniform point of the shape, and what comes along it, from all of the source, where nothing stands
+    /// or absorbs on the way.
     ///
-    /// From far away the density is in proportion to the length inside, and so is the light of a source that absorbs little: all samples are
-    /// alike. From inside the value has an infinite variance by itself, and needs another way to find directions beside it.
+    /// From far away the density is in proportion to the length inside, and so is the light of a source that absorbs little: all
+    /// samples are alike.
     pub fn sample(&self, p: DVec3, u: [f64; 3]) -> Option<LightSample> {
-        if matches!(self.shape, Shape::Slab(_)) {
+        if !self.has_direction_from(p) {
             return None;
         }
         let (inside, _) = self.shape.sample_inside(0.0, u);
@@ -62,12 +61,8 @@ impl VolumeSource {
         let part = self.shape.interval(&ray)?;
         let pdf = self.pdf_solid_angle(&ray);
         let value = self.emission() * part.length() / pdf;
-        (pdf > 0.0).then_some(LightSample {
-            dir: ray.dir,
-            distance: part.start,
-            value,
-            pdf_solid_angle: Some(pdf),
-        })
+        let (dir, distance) = (ray.dir, part.start);
+        (pdf > 0.0).then_some(LightSample { dir, distance, value, pdf_solid_angle: Some(pdf) })
     }
 
     pub(super) fn power(&self, periodic_cell: Option<&PeriodicCell>) -> Spectrum {

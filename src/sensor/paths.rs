@@ -10,7 +10,7 @@ use crate::photons::check_end;
 use crate::rng::{Purpose, Stream};
 use crate::scene::{Orders, Quantity, Scene, Sensor};
 use crate::stats::{Moments, Tail};
-use crate::transport::{Progress, run_blocks};
+use crate::transport::{Guide, Progress, run_blocks};
 use std::f64::consts::PI;
 
 /// How many paths, and which.
@@ -32,10 +32,35 @@ pub struct PathSettings {
 /// `Error::Unreachable` if the scene has path classes that paths cannot sample; `Error::NonFinite`;
 /// `Error::Cancelled`.
 pub fn by_paths(scene: &Scene, settings: &PathSettings, progress: &dyn Progress) -> Result<Vec<Measurement>> {
+    measured(scene, settings, None, progress)
+}
+
+/// The same by paths that weight windows split on their way to the lights, and end elsewhere: where light is found through many mean
+/// free paths. A path takes longer, and varies less.
+///
+/// # Errors
+/// those of [`by_paths`]; `Error::Scene` if no light is in a place or a direction
+pub fn by_guided_paths(
+    scene: &Scene,
+    settings: &PathSettings,
+    progress: &dyn Progress,
+) -> Result<Vec<Measurement>> {
+    let guide = Guide::new(scene).ok_or_else(|| {
+        Error::Scene("weight windows need a light in a place or from a direction: other than isotropic light into a body".into())
+    })?;
+    measured(scene, settings, Some(&guide), progress)
+}
+
+fn measured(
+    scene: &Scene,
+    settings: &PathSettings,
+    guide: Option<&Guide>,
+    progress: &dyn Progress,
+) -> Result<Vec<Measurement>> {
     check(scene)?;
     let mut all = Vec::new();
     for (index, sensor) in scene.sensors().iter().enumerate() {
-        let (moments, tails) = read(scene, sensor, index as u64, settings, progress)?;
+        let (moments, tails) = read(scene, sensor, index as u64, settings, guide, progress)?;
         all.extend(measurements(scene, sensor, &moments, Some(&tails), Source::Paths));
     }
     Ok(all)
@@ -66,6 +91,7 @@ pub(super) fn read(
     sensor: &Sensor,
     index: u64,
     settings: &PathSettings,
+    guide: Option<&Guide>,
     progress: &dyn Progress,
 ) -> Result<([Moments; 3], [Tail; 3])> {
     let orders = sensor.orders.and(&settings.orders);
@@ -75,7 +101,7 @@ pub(super) fn read(
             // The sensor takes the upper bits of the history: no run has 2^40 of them.
             let mut stream =
                 Stream::new(settings.seed, Purpose::Paths, settings.replicate, index << 40 | history);
-            let value = sample(scene, &sensor.quantity, orders, &mut stream);
+            let value = sample_guided(scene, &sensor.quantity, orders, guide, &mut stream).0;
             non_finite += u64::from(!value.is_finite());
             for (channel, (m, tail)) in moments.iter_mut().zip(&mut tails).enumerate() {
                 m.push(value[channel]);
@@ -110,21 +136,32 @@ pub fn sample_counted(
     orders: Orders,
     stream: &mut Stream,
 ) -> (Spectrum, Rays) {
+    sample_guided(scene, quantity, orders, None, stream)
+}
+
+/// The same by paths that are split and ended by a guide, if there is one.
+pub fn sample_guided(
+    scene: &Scene,
+    quantity: &Quantity,
+    orders: Orders,
+    guide: Option<&Guide>,
+    stream: &mut Stream,
+) -> (Spectrum, Rays) {
     let side = PeriodicCell::side(scene.periodic_cell());
     let mut sum = Spectrum::ZERO;
     let mut rays = Rays::default();
     match quantity {
-        Quantity::Fluence(p) => rays = fluence(scene, *p, orders, stream, |_, value| sum += value),
+        Quantity::Fluence(p) => rays = fluence(scene, *p, orders, guide, stream, |_, value| sum += value),
         Quantity::Radiance(ray) => {
             let interior = scene.interior_at(ray.origin);
-            rays = radiance(scene, *ray, None, interior, orders, stream, |_, value| sum += value);
+            rays = radiance(scene, (*ray, interior), orders, guide, stream, |_, value| sum += value);
         }
         Quantity::Outflow { shape, face } => {
             let (position, normal, area) = shape.sample_boundary(*face, side, stream.triple());
             let dir = Frame::new(-normal).to_world(warp::square_to_cosine_hemisphere(stream.pair()));
             let ray = Ray::new(position, dir);
             let interior = scene.interior_at(position);
-            rays = radiance(scene, ray, None, interior, orders, stream, |_, value| sum += value);
+            rays = radiance(scene, (ray, interior), orders, guide, stream, |_, value| sum += value);
             sum *= PI;
             if orders.contains(0) {
                 sum += direct_flux(scene, position, normal, stream, &mut rays);
@@ -136,7 +173,7 @@ pub fn sample_counted(
             let (position, volume) = scene.regions()[region].shape.sample_inside(side, stream.triple());
             // Where a later region covers this one nothing of it is left to absorb.
             if scene.medium_number_at(position) == Some(region) {
-                rays = fluence(scene, position, orders, stream, |_, value| sum += value);
+                rays = fluence(scene, position, orders, guide, stream, |_, value| sum += value);
             }
             sum = sum * scene.regions()[region].medium.sigma_a(position) * volume;
             sum = per_power(sum, scene.power());

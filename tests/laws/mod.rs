@@ -1,6 +1,7 @@
 //! The laws: what every phase function, warp, light, shape, flight and roulette obeys, over its whole domain.
 
 mod color;
+mod emitters;
 mod flight;
 mod fresnel;
 mod lights;

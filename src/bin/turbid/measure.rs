@@ -11,7 +11,8 @@ use turbid::estimators::{Estimator, Gather, Kernel};
 use turbid::output::{one_line, print, write_rows};
 use turbid::scene::{Orders, Scene};
 use turbid::sensor::{
-    Measurement, NoError, PathSettings, PhotonSettings, by_paths, by_photons_in_passes, forecast,
+    Measurement, NoError, PathSettings, PhotonSettings, by_guided_paths, by_paths, by_photons_in_passes,
+    forecast,
 };
 
 /// Measure the sensors of a scene by paths or by photons.
@@ -28,6 +29,10 @@ pub struct Measure {
     /// Who measures.
     #[arg(long = "with", value_enum)]
     with: With,
+    /// Split paths on their way to the lights, and end them elsewhere: for light that comes through many mean free paths. Only with
+    /// paths.
+    #[arg(long)]
+    weight_windows: bool,
     /// Paths a sensor, such as 1e6.
     #[arg(long, value_parser = parse_count, default_value = "100000")]
     samples: u64,
@@ -127,12 +132,16 @@ impl Measure {
         let settings =
             PathSettings { samples: self.samples, seed: self.seed, replicate: 0, orders: self.orders };
         let bar = Bar::new(self.samples.saturating_mul(scene.sensors().len() as u64));
-        let measurements = by_paths(scene, &settings, &bar);
+        let read = if self.weight_windows { by_guided_paths } else { by_paths };
+        let measurements = read(scene, &settings, &bar);
         bar.finish();
         Ok((measurements.with_context(|| self.source.name())?, Vec::new()))
     }
 
     fn measure_by_photons(&self, scene: &Scene) -> anyhow::Result<(Vec<Measurement>, Vec<String>)> {
+        if self.weight_windows {
+            bail!("--weight-windows splits paths; allowed: with --with path");
+        }
         if self.photons < self.maps {
             bail!("--photons is {}; allowed: at least one for each of the {} maps", self.photons, self.maps);
         }
