@@ -110,11 +110,13 @@ pub enum Fault {
     PhaseTurned,
     /// Kernels weigh a little too much.
     KernelRaised,
+    /// Light of volumes that a ray meets by chance counts in full beside what is aimed at.
+    EmitterShareForgotten,
 }
 
 impl Fault {
     /// Every fault, in the order of their definition.
-    pub const ALL: [Fault; 51] = [
+    pub const ALL: [Fault; 52] = [
         Fault::AlbedoTwice,
         Fault::AlbedoNever,
         Fault::CosineTwice,
@@ -166,6 +168,7 @@ impl Fault {
         Fault::PowerRaised,
         Fault::PhaseTurned,
         Fault::KernelRaised,
+        Fault::EmitterShareForgotten,
     ];
 }
 
@@ -256,7 +259,7 @@ mod tests {
     #[test]
     fn all_are_named_in_order() {
         assert!(Fault::ALL.iter().enumerate().all(|(i, fault)| *fault as usize == i));
-        assert_eq!(Fault::ALL.len(), Fault::KernelRaised as usize + 1);
+        assert_eq!(Fault::ALL.len(), Fault::EmitterShareForgotten as usize + 1);
         assert!(Fault::ALL.iter().all(|fault| !planted(*fault)));
     }
 }

@@ -191,6 +191,16 @@ impl Shape {
         }
     }
 
+    /// Density of a ray's direction if it is that from its origin to a uniform point inside [1/sr]: int t^2 dt over the part
+    /// inside, over the volume. 0 for a shape that is not solid, or has no end.
+    pub fn pdf_towards_inside(&self, ray: &Ray) -> f64 {
+        let volume = self.volume();
+        match self.interval(ray) {
+            Some(inside) if volume.is_finite() => inside.squared_distances() / volume,
+            _ => 0.0,
+        }
+    }
+
     /// Whether the point is inside; on the surface too, of a solid.
     pub fn contains(&self, p: DVec3) -> bool {
         match self {

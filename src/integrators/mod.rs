@@ -1,5 +1,6 @@
 //! Integrators: the path tracer, the photon mapper, light tracing, and the march of a ray through media.
 
+mod emitters;
 mod layers;
 mod light_tracing;
 pub mod mapper;

@@ -1,14 +1,16 @@
 //! The unbiased path tracer.
 //!
-//! Each ray collects in closed form what it would meet by itself (lights' bodies, incidence, volume sources), times
-//! the transmittance; each event connects to every light that can be aimed at, to a volume source from outside of its
-//! ball along one whole ray. Where both can find the same light, the balance heuristic shares it between them. Towards a
+//! Each ray collects what it would meet by itself (lights' bodies, incidence, volume sources, media that emit), in closed form
+//! where there is one, times the transmittance; each event connects to every light that can be aimed at. Volume sources
+//! and media that emit fill space: towards a place in them a direction is chosen, and the whole ray along it collects their light,
+//! so that nothing is divided by the square of a distance. Where both can find the same light, the balance heuristic shares it between
+//! them, by the densities of the direction. Towards a
 //! point light a second point on the ray is sampled with equal angles, in multiple importance with the free flight:
 //! connections from free flights alone would have an infinite variance, and equal angles alone miss the rays that run
 //! through the light itself. For a beam the second point is sampled evenly where the beam crosses the ray: free flights
 //! hardly ever end in a narrow one.
 
-use super::{Layer, Layers};
+use super::{Layer, Layers, emitters};
 use crate::Spectrum;
 use crate::faults::{Fault, planted};
 use crate::geometry::Hit;
@@ -20,8 +22,8 @@ use crate::rng::Stream;
 use crate::scene::{Orders, Scene, SceneHit, Start, Target, decay};
 use crate::surface::Surface;
 use crate::transport::{
-    Arrival, Distances, Flags, Roulette, Step, Visitor, Walker, collected, connection, emission, span,
-    transmittance, walk,
+    Arrival, Distances, Flags, Guide, Guided, Roulette, Step, Visitor, Walker, collected, connection,
+    emission, span, transmittance, walk,
 };
 use glam::DVec3;
 
@@ -58,6 +60,8 @@ struct PathVisitor<'a, F: FnMut(u32, Layer, Spectrum)> {
     specular_at: Option<u32>,
     /// Distance to the body ahead of the present ray \[L\].
     end: f64,
+    /// The games by which it is split and ended.
+    guided: Option<Guided<'a>>,
 }
 
 impl<'a, F: FnMut(u32, Layer, Spectrum)> PathVisitor<'a, F> {
@@ -70,6 +74,7 @@ impl<'a, F: FnMut(u32, Layer, Spectrum)> PathVisitor<'a, F> {
             first: Flags::NONE,
             specular_at: None,
             end: f64::INFINITY,
+            guided: None,
         }
     }
 
@@ -100,22 +105,25 @@ impl<'a, F: FnMut(u32, Layer, Spectrum)> PathVisitor<'a, F> {
         if let Some(found) = hit
             && let Target::Light(index) = found.target
         {
-            // Seen from where the direction was chosen, on the far side of filters.
-            let (back, dir) = (walker.since_sampled, walker.ray.dir);
-            let seen_along = Ray::new(walker.ray.at(-back), dir);
-            let seen_hit = Hit { t: found.hit.t + back, ..found.hit };
+            let seen_along = sampled_along(walker);
+            let seen_hit =
+                Hit { t: found.hit.t + walker.sampled_at.distance(walker.ray.origin), ..found.hit };
             let (radiance, pdf_light) = self.scene.lights()[index].emitted(&seen_along, &seen_hit);
             let share = walker.pdf_solid_angle.map_or(1.0, |pdf| pdf / (pdf + pdf_light));
             let transmitted = transmittance(self.scene, &walker.ray, end, walker.interior, stream);
             let seen = radiance * transmitted * share;
             self.add(walker.order, layer, walker.weight * seen);
         }
-        let emitted = emission(self.scene, &walker.ray, end, walker.interior, stream);
+        let mut emitted = emission(self.scene, &walker.ray, end, walker.interior, stream);
+        let shared = walker.pdf_solid_angle.filter(|_| !planted(Fault::EmitterShareForgotten));
+        if let Some(pdf) = shared.filter(|_| !emitted.is_black()) {
+            emitted *= pdf / (pdf + emitters::pdf_solid_angle(self.scene, &sampled_along(walker)));
+        }
         self.add(walker.order, layer, walker.weight * emitted);
         for light in self.scene.lights() {
             let mut seen = uncollided(self.scene, light, walker, end, stream);
-            if let (Light::VolumeSource(source), Some(pdf)) = (light, walker.pdf_solid_angle) {
-                seen *= pdf / (pdf + source.pdf_solid_angle(walker.ray.at(-walker.since_sampled)));
+            if let (Light::VolumeSource(source), Some(pdf)) = (light, shared) {
+                seen *= pdf / (pdf + source.pdf_solid_angle(&sampled_along(walker)));
             }
             if hit.is_none()
                 && let Some((radiance, pdf_light)) = light.background(&walker.ray)
@@ -138,21 +146,15 @@ impl<'a, F: FnMut(u32, Layer, Spectrum)> PathVisitor<'a, F> {
         scattered: impl Fn(DVec3) -> (Spectrum, f64),
         delta_share: impl Fn(&Light) -> f64,
     ) {
-        if !self.orders.contains(walker.order + 1) || !self.scene.plan().has_next_event {
+        if !self.orders.contains(walker.order + 1) || !has_next_event(self.scene) {
             return;
         }
         let layer = self.layer_connected(walker, event);
         for index in 0..self.scene.lights().len() {
             let light = &self.scene.lights()[index];
-            let Some((sample, received)) = next_event(
-                self.scene,
-                index,
-                (position, origin_surface, walker.interior),
-                stream,
-                &mut self.rays,
-            ) else {
-                continue;
-            };
+            let place = (position, origin_surface, walker.interior);
+            let found = next_event(self.scene, index, place, stream, &mut self.rays);
+            let Some((sample, received)) = found else { continue };
             let (fraction, pdf) = scattered(sample.dir);
             let share = match sample.pdf_solid_angle {
                 Some(pdf_light) => pdf_light / (pdf_light + pdf),
@@ -160,6 +162,14 @@ impl<'a, F: FnMut(u32, Layer, Spectrum)> PathVisitor<'a, F> {
             };
             let order = if planted(Fault::OrderOffByOne) { walker.order } else { walker.order + 1 };
             self.add(order, layer, walker.weight * fraction * received * share);
+        }
+        if let Some((dir, pdf_light)) = emitters::sample(self.scene, position, stream) {
+            let (fraction, pdf) = scattered(dir);
+            if !fraction.is_black() {
+                let place = (Ray::new(position, dir), origin_surface, walker.interior);
+                let seen = emitted_along(self.scene, place, stream, &mut self.rays);
+                self.add(walker.order + 1, layer, walker.weight * fraction * seen / (pdf_light + pdf));
+            }
         }
     }
 
@@ -225,6 +235,15 @@ fn flight_pdf(scene: &Scene, walker: &Walker, (t, medium): (f64, &Medium), ray: 
 }
 
 impl<F: FnMut(u32, Layer, Spectrum)> Visitor for PathVisitor<'_, F> {
+    fn guided(&self) -> Option<Guided<'_>> {
+        self.guided
+    }
+
+    /// Classes of paths that are split are not told apart: only what they bring in all is asked for.
+    fn resume(&mut self, hit: Option<&SceneHit>) {
+        self.end = hit.map_or(f64::INFINITY, |h| h.hit.t);
+    }
+
     fn visit(&mut self, walker: &Walker, step: Step, stream: &mut Stream) {
         match step {
             Step::Ahead(hit) => {
@@ -346,6 +365,16 @@ pub(in crate::integrators) fn uncollided(
     }
 }
 
+/// The way along which a walker's direction was sampled: it begins on the far side of filters and index-matched boundaries.
+fn sampled_along(walker: &Walker) -> Ray {
+    Ray::new(walker.sampled_at, walker.ray.dir)
+}
+
+/// Whether any light has directions to choose.
+fn has_next_event(scene: &Scene) -> bool {
+    scene.plan().has_next_event || emitters::has_direction(scene)
+}
+
 /// Light that arrives at a place (point, body, interior) straight from the light of this index, along one sampled direction: radiance
 /// over density, or the irradiance of a delta light [W/L^2].
 pub(in crate::integrators) fn next_event(
@@ -359,19 +388,34 @@ pub(in crate::integrators) fn next_event(
     if !light.has_direction_from(position) {
         return None;
     }
-    let sample = light.sample(position, stream.pair())?;
-    let ray = Ray::new(position, sample.dir);
-    if let (Light::VolumeSource(_), Some(pdf)) = (light, sample.pdf_solid_angle) {
+    if let Light::VolumeSource(source) = light {
+        let sample = source.sample(position, stream.triple())?;
+        let ray = Ray::new(position, sample.dir);
         let start = Walker { origin_surface, interior, ..Walker::new(ray, Spectrum::ONE) };
         let seen = seen_straight(scene, start, &mut rays.shadow, stream, |walker, end, stream| {
             uncollided(scene, light, walker, end, stream)
         });
-        return Some((sample, seen / pdf));
+        return Some((sample, seen / sample.pdf_solid_angle?));
     }
+    let sample = light.sample(position, stream.pair())?;
+    let ray = Ray::new(position, sample.dir);
     rays.shadow += 1;
     let towards = Some(Target::Light(index));
     let transmitted = connection(scene, (&ray, origin_surface, interior), sample.distance, towards, stream)?;
     Some((sample, sample.value * transmitted))
+}
+
+/// Radiance that arrives along a ray straight from media that emit [W/(L^2 sr)].
+fn emitted_along(
+    scene: &Scene,
+    (ray, origin_surface, interior): (Ray, Option<Start>, usize),
+    stream: &mut Stream,
+    rays: &mut Rays,
+) -> Spectrum {
+    let start = Walker { origin_surface, interior, ..Walker::new(ray, Spectrum::ONE) };
+    seen_straight(scene, start, &mut rays.shadow, stream, |walker, end, stream| {
+        emission(scene, &walker.ray, end, walker.interior, stream)
+    })
 }
 
 /// Power that uncollided light of beams and point lights carries through a surface element along its normal
@@ -408,9 +452,24 @@ pub fn classes(
     stream: &mut Stream,
     collect: impl FnMut(u32, Layer, Spectrum),
 ) -> Rays {
-    let mut visitor = PathVisitor::new(scene, orders, Rays::default(), collect);
+    let visitor = PathVisitor::new(scene, orders, Rays::default(), collect);
     let start = Walker { origin_surface, interior, ..Walker::new(ray, Spectrum::ONE) };
-    walk(scene, start, Roulette::Below(ROULETTE), orders.max, stream, &mut visitor);
+    follow(visitor, start, None, stream)
+}
+
+/// Follows a path, and all that is split off it if there is a guide. Returns the work.
+fn follow<'a, F: FnMut(u32, Layer, Spectrum)>(
+    mut visitor: PathVisitor<'a, F>,
+    start: Walker,
+    guide: Option<&'a Guide>,
+    stream: &mut Stream,
+) -> Rays {
+    let (scene, limit) = (visitor.scene, visitor.orders.max);
+    // Roulette compares with the weight that a walk started with; windows take its place.
+    let roulette = Roulette::Below(if guide.is_some() { 0.0 } else { ROULETTE * start.weight.max() });
+    let place = (start.ray.origin, start.interior);
+    visitor.guided = guide.map(|guide| Guided::new(guide, scene, place, start.weight));
+    walk(scene, start, roulette, limit, stream, &mut visitor);
     visitor.rays
 }
 
@@ -430,20 +489,22 @@ pub fn layers(
 }
 
 /// One sample of the radiance that arrives at the origin of `ray` from ahead [W/(L^2 sr)], by order: `collect` is
-/// called with the order and the contribution. The ray starts in the interior of number `within`. Returns the work.
+/// called with the order and the contribution. The ray starts in the interior of number `within`; paths are split and ended by the guide, if
+/// there is one. Returns the work.
 pub fn radiance(
     scene: &Scene,
-    ray: Ray,
-    origin_surface: Option<Start>,
-    interior: usize,
+    (ray, interior): (Ray, usize),
     orders: Orders,
+    guide: Option<&Guide>,
     stream: &mut Stream,
     mut collect: impl FnMut(u32, Spectrum),
 ) -> Rays {
-    classes(scene, ray, origin_surface, interior, orders, stream, |order, _, value| collect(order, value))
+    let visitor = PathVisitor::new(scene, orders, Rays::default(), |order, _, value| collect(order, value));
+    let start = Walker { interior, ..Walker::new(ray, Spectrum::ONE) };
+    follow(visitor, start, guide, stream)
 }
 
-/// One sample of the fluence at a point [W/L^2], by order.
+/// One sample of the fluence at a point [W/L^2], by order; paths are split and ended by the guide, if there is one.
 ///
 /// Uncollided light from lights that can be aimed at comes by next-event estimation, in multiple importance with
 /// the uniform direction that everything else comes by. Returns the work.
@@ -451,6 +512,7 @@ pub fn fluence(
     scene: &Scene,
     position: DVec3,
     orders: Orders,
+    guide: Option<&Guide>,
     stream: &mut Stream,
     mut collect: impl FnMut(u32, Spectrum),
 ) -> Rays {
@@ -465,15 +527,17 @@ pub fn fluence(
                 collect(0, received * share);
             }
         }
+        if let Some((dir, pdf)) = emitters::sample(scene, position, stream) {
+            let seen = emitted_along(scene, (Ray::new(position, dir), None, interior), stream, &mut rays);
+            collect(0, seen / (pdf + warp::pdf_sphere()));
+        }
     }
     let dir = warp::square_to_sphere(stream.pair()).normalize();
-    let mut visitor = PathVisitor::new(scene, orders, rays, |order, _, value| collect(order, value));
+    let visitor = PathVisitor::new(scene, orders, rays, |order, _, value| collect(order, value));
     let start = Walker {
         interior,
         pdf_solid_angle: Some(warp::pdf_sphere()),
         ..Walker::new(Ray::new(position, dir), Spectrum::grey(FOUR_PI))
     };
-    // The walk's weight starts at 4 pi; roulette compares with what it started with.
-    walk(scene, start, Roulette::Below(ROULETTE * FOUR_PI), orders.max, stream, &mut visitor);
-    visitor.rays
+    follow(visitor, start, guide, stream)
 }

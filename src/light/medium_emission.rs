@@ -3,10 +3,10 @@
 use super::{Emission, PeriodicCell, PrimarySample};
 use crate::Spectrum;
 use crate::faults::{Fault, planted};
-use crate::geometry::{Face, Shape, remainder};
-use crate::math::{FOUR_PI, Ray, warp};
+use crate::geometry::{Cuboid, Face, Shape, remainder};
+use crate::math::{FOUR_PI, Interval, Ray, warp};
 use crate::medium::Medium;
-use glam::DVec3;
+use glam::{DVec2, DVec3};
 use std::sync::Arc;
 
 /// Boxes along an axis that starts are chosen from, where emission varies or the medium is only part of its box.
@@ -42,6 +42,8 @@ struct Boxes {
     low: DVec3,
     edge: DVec3,
     count: [usize; 3],
+    /// Whether they are the part over the cell of a medium without end.
+    is_endless: bool,
     /// Bound of the density in each box \[1\], x fastest.
     high: Vec<f64>,
     /// Sums over boxes of bounds of the emitted power.
@@ -89,7 +91,8 @@ impl MediumEmission {
                 (Places::Inside((*shape).clone()), medium.emission() * (FOUR_PI * volume))
             }
             _ => {
-                let (boxes, power_bound) = Boxes::new(medium, low, high);
+                let is_endless = shapes.iter().any(|shape| matches!(shape, Shape::Slab(_)));
+                let (boxes, power_bound) = Boxes::new(medium, (low, high), is_endless);
                 (Places::Boxes(Arc::new(boxes)), power_bound)
             }
         };
@@ -114,9 +117,7 @@ impl MediumEmission {
     pub(crate) fn extent(&self, periodic_cell: Option<&PeriodicCell>) -> Option<(DVec3, DVec3)> {
         match &self.places {
             Places::Inside(shape) => around(shape, periodic_cell),
-            Places::Boxes(boxes) => {
-                Some((boxes.low, boxes.low + boxes.edge * DVec3::from_array(boxes.count.map(|n| n as f64))))
-            }
+            Places::Boxes(boxes) => Some((boxes.low, boxes.high_corner())),
         }
     }
 
@@ -148,13 +149,51 @@ impl MediumEmission {
     }
 
     /// A ball that holds all starts, as far as there is one.
-    pub(super) fn ball(&self) -> Option<(DVec3, f64)> {
+    pub fn ball(&self) -> Option<(DVec3, f64)> {
         match &self.places {
             Places::Inside(shape) => shape.bounds(),
             Places::Boxes(boxes) => {
                 let half = 0.5 * boxes.edge * DVec3::from_array(boxes.count.map(|n| n as f64));
                 Some((boxes.low + half, half.length()))
             }
+        }
+    }
+
+    /// Whether directions can be chosen towards it: not where it fills a slab, which has no end.
+    pub fn has_direction(&self) -> bool {
+        match &self.places {
+            Places::Inside(shape) => shape.bounds().is_some(),
+            Places::Boxes(boxes) => !boxes.is_endless && boxes.cumulated.last().is_some_and(|sum| *sum > 0.0),
+        }
+    }
+
+    /// About the irradiance that it may bring to `p` where nothing absorbs it [W/L^2]: power over the squared distance. 0 if
+    /// directions cannot be chosen towards it, and inside, where every direction meets it: there a second ray costs more than it brings.
+    pub fn brightness_at(&self, p: DVec3) -> f64 {
+        let is_inside = match &self.places {
+            Places::Inside(shape) => shape.contains(p),
+            Places::Boxes(boxes) => (p.cmpge(boxes.low) & p.cmple(boxes.high_corner())).all(),
+        };
+        match self.ball().filter(|_| !is_inside && self.has_direction()) {
+            Some((center, _)) => self.power_bound.sum() / p.distance_squared(center),
+            None => 0.0,
+        }
+    }
+
+    /// A direction from `p` towards a place where a photon could start; only if it [has one](MediumEmission::has_direction).
+    pub fn sample(&self, p: DVec3, u: [f64; 3]) -> Option<DVec3> {
+        let start = match &self.places {
+            Places::Inside(shape) => shape.sample_inside(DVec2::ZERO, u).0,
+            Places::Boxes(boxes) => boxes.place(u).0,
+        };
+        (start - p).try_normalize()
+    }
+
+    /// Density with which [`MediumEmission::sample`] chooses the direction of a ray [1/sr].
+    pub fn pdf_solid_angle(&self, ray: &Ray) -> f64 {
+        match &self.places {
+            Places::Inside(shape) => shape.pdf_towards_inside(ray),
+            Places::Boxes(boxes) => boxes.pdf_solid_angle(ray),
         }
     }
 
@@ -192,7 +231,7 @@ fn emission_of(medium: &Medium, density: f64) -> Spectrum {
 
 impl Boxes {
     /// Boxes between two corners, and the bound of the power that they send out \[W\].
-    fn new(medium: &Medium, low: DVec3, high: DVec3) -> (Self, Spectrum) {
+    fn new(medium: &Medium, (low, high): (DVec3, DVec3), is_endless: bool) -> (Self, Spectrum) {
         let along = |axis| if medium.is_layered() && axis < 2 { 1 } else { BOXES };
         let count = [0, 1, 2].map(along);
         let edge = (high - low) / DVec3::from_array(count.map(|n| n as f64));
@@ -209,7 +248,11 @@ impl Boxes {
                 }
             }
         }
-        (Boxes { low, edge, count, high: bounds, cumulated }, power_bound)
+        (Boxes { low, edge, count, is_endless, high: bounds, cumulated }, power_bound)
+    }
+
+    fn high_corner(&self) -> DVec3 {
+        self.low + self.edge * DVec3::from_array(self.count.map(|n| n as f64))
     }
 
     /// A start, and the bound of the density in its box.
@@ -222,5 +265,37 @@ impl Boxes {
         let corner = DVec3::new((index % nx) as f64, (index / nx % ny) as f64, (index / nx / ny) as f64);
         let interior = DVec3::new(remainder(&self.cumulated, index, target), u[1], u[2]);
         (self.low + self.edge * (corner + interior), self.high[index])
+    }
+    /// Density of the direction to a start [1/sr]: over each box that the ray crosses, int t^2 dt times the density of starts.
+    fn pdf_solid_angle(&self, ray: &Ray) -> f64 {
+        let total = self.cumulated.last().copied().unwrap_or(0.0);
+        let Some(inside) =
+            Cuboid::new(self.low, self.high_corner()).ok().and_then(|c| Shape::Cuboid(c).interval(ray))
+        else {
+            return 0.0;
+        };
+        let entry = (ray.at(inside.start) - self.low) / self.edge;
+        let mut at = [0, 1, 2].map(|i| (entry[i] as usize).min(self.count[i] - 1));
+        // Where the ray leaves its box along an axis.
+        let leaves = |at: [usize; 3], i: usize| match ray.dir[i] {
+            d if d > 0.0 => (self.low[i] + self.edge[i] * (at[i] + 1) as f64 - ray.origin[i]) / d,
+            d if d < 0.0 => (self.low[i] + self.edge[i] * at[i] as f64 - ray.origin[i]) / d,
+            _ => f64::INFINITY,
+        };
+        let (mut sum, mut start) = (0.0, inside.start);
+        loop {
+            let ends = DVec3::from_array([0, 1, 2].map(|i| leaves(at, i)));
+            let axis = ends.min_position();
+            let end = ends[axis].clamp(start, inside.end);
+            let index = (at[2] * self.count[1] + at[1]) * self.count[0] + at[0];
+            let before = if index > 0 { self.cumulated[index - 1] } else { 0.0 };
+            sum += (self.cumulated[index] - before) * Interval { start, end }.squared_distances();
+            let is_last = if ray.dir[axis] > 0.0 { at[axis] + 1 == self.count[axis] } else { at[axis] == 0 };
+            if is_last || end >= inside.end {
+                return sum / (total * self.edge.element_product());
+            }
+            at[axis] = if ray.dir[axis] > 0.0 { at[axis] + 1 } else { at[axis] - 1 };
+            start = end;
+        }
     }
 }

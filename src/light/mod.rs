@@ -106,15 +106,15 @@ impl Light {
     pub fn has_direction(&self) -> bool {
         match self {
             Light::Isotropic(_) | Light::MediumEmission(_) => false,
-            Light::VolumeSource(l) => l.ball().is_some(),
+            Light::VolumeSource(l) => l.shape().bounds().is_some(),
             Light::Beam(_) | Light::Area(_) | Light::Point(_) | Light::Spot(_) | Light::Sun(_) => true,
         }
     }
 
-    /// The same from the point `p`: a volume source is met by chance from inside of the ball about it.
+    /// The same from the point `p`: a volume source is met by chance from inside.
     pub fn has_direction_from(&self, p: DVec3) -> bool {
         match self {
-            Light::VolumeSource(l) => l.pdf_solid_angle(p) > 0.0,
+            Light::VolumeSource(l) => l.has_direction_from(p),
             _ => self.has_direction(),
         }
     }
@@ -324,7 +324,8 @@ impl Light {
         self.emit_at(periodic_cell, &self.numbers(stream))
     }
 
-    /// A direction from `p` towards the light; none if the light cannot be aimed at or sends nothing to `p`.
+    /// A direction from `p` towards the light; none if the light cannot be aimed at or sends nothing to `p`, and for what fills
+    /// volumes ([`VolumeSource::sample`], [`MediumEmission::sample`]).
     pub fn sample(&self, p: DVec3, u: [f64; 2]) -> Option<LightSample> {
         match self {
             Light::Beam(l) => l.sample(p),
@@ -332,8 +333,7 @@ impl Light {
             Light::Point(l) => l.sample(p),
             Light::Spot(l) => l.sample(p),
             Light::Sun(l) => l.sample(p, u),
-            Light::VolumeSource(l) => l.sample(p, u),
-            Light::Isotropic(_) | Light::MediumEmission(_) => None,
+            Light::Isotropic(_) | Light::VolumeSource(_) | Light::MediumEmission(_) => None,
         }
     }
 

@@ -4,9 +4,9 @@ use super::emission::emissive;
 use super::{LightSample, PeriodicCell, PrimarySample};
 use crate::Spectrum;
 use crate::error::{Error, Result};
-use crate::geometry::{Shape, Sphere};
+use crate::geometry::Shape;
 use crate::math::{FOUR_PI, Ray, warp};
-use glam::DVec3;
+use glam::{DVec2, DVec3};
 
 /// Every volume element of a shape emits the same power, alike in all directions.
 #[derive(Debug, Clone, PartialEq)]
@@ -36,24 +36,33 @@ impl VolumeSource {
         self.density / FOUR_PI
     }
 
-    /// The ball about the shape, which is what directions are aimed at; nothing bounds a slab.
-    pub(super) fn ball(&self) -> Option<Sphere> {
-        let (center, radius) = self.shape.bounds()?;
-        Sphere::new(center, radius).ok()
+    /// Whether directions are chosen towards it from `p`: not from inside, where every direction meets it, and a second ray costs more than it brings;
+    /// and not towards a slab, which has no uniform points.
+    pub(super) fn has_direction_from(&self, p: DVec3) -> bool {
+        self.shape.bounds().is_some() && !self.shape.contains(p)
     }
 
-    /// Density with which [`super::Light::sample`] aims from `p` at any point of the shape [1/sr]: uniform in the cone about
-    /// its ball, and 0 from inside of the ball, where every direction may meet the shape.
-    pub fn pdf_solid_angle(&self, p: DVec3) -> f64 {
-        self.ball().map_or(0.0, |ball| ball.pdf_cone(p))
+    /// Density with which [`VolumeSource::sample`] chooses the direction of a ray [1/sr].
+    pub fn pdf_solid_angle(&self, ray: &Ray) -> f64 {
+        if self.has_direction_from(ray.origin) { self.shape.pdf_towards_inside(ray) } else { 0.0 }
     }
 
-    /// A direction from `p`, and what comes along it where nothing stands or absorbs on the way.
-    pub(super) fn sample(&self, p: DVec3, u: [f64; 2]) -> Option<LightSample> {
-        let (dir, pdf) = self.ball()?.sample_cone(p, u)?;
-        let inside = self.shape.interval(&Ray::new(p, dir))?;
-        let value = self.emission() * inside.length() / pdf;
-        Some(LightSample { dir, distance: inside.start, value, pdf_solid_angle: Some(pdf) })
+    /// The direction from `p` to a uniform point of the shape, and what comes along it, from all of the source, where nothing stands
+    /// or absorbs on the way.
+    ///
+    /// From far away the density is in proportion to the length inside, and so is the light of a source that absorbs little: all
+    /// samples are alike.
+    pub fn sample(&self, p: DVec3, u: [f64; 3]) -> Option<LightSample> {
+        if !self.has_direction_from(p) {
+            return None;
+        }
+        let (inside, _) = self.shape.sample_inside(DVec2::ZERO, u);
+        let ray = Ray::new(p, (inside - p).try_normalize()?);
+        let part = self.shape.interval(&ray)?;
+        let pdf = self.pdf_solid_angle(&ray);
+        let value = self.emission() * part.length() / pdf;
+        let (dir, distance) = (ray.dir, part.start);
+        (pdf > 0.0).then_some(LightSample { dir, distance, value, pdf_solid_angle: Some(pdf) })
     }
 
     pub(super) fn power(&self, periodic_cell: Option<&PeriodicCell>) -> Spectrum {

@@ -50,6 +50,12 @@ impl Interval {
         (self.end - self.start).max(0.0)
     }
 
+    /// The integral of t^2 over it [L^3]: the volume of a cone of directions over their solid angle.
+    pub fn squared_distances(&self) -> f64 {
+        let (a, b) = (self.start, self.end);
+        self.length() * (a * a + a * b + b * b) / 3.0
+    }
+
     /// The common part of two intervals, if it has a length.
     pub fn intersection(self, other: Interval) -> Option<Interval> {
         let start = self.start.max(other.start);

@@ -547,7 +547,7 @@ pub fn path_advice(
     let sensors = probes(scene);
     let (mut variance, mut is_heavy_tailed) = (0.0, false);
     for (index, sensor) in sensors.iter().enumerate() {
-        let (channels, tails) = paths::read(scene, sensor, index as u64, &settings, progress)?;
+        let (channels, tails) = paths::read(scene, sensor, index as u64, &settings, None, progress)?;
         let mean = channels.iter().map(Moments::mean).sum::<f64>() / 3.0;
         if mean == 0.0 {
             return Err(Error::Scene(format!("{samples} paths from {} found no light", sensor.name)));

@@ -16,7 +16,7 @@ pub use advise::{Advice, MIN_MAPS, PathAdvice, Pilot, PilotSettings, path_advice
 pub use film::{Film, Pixel, Sample};
 pub use light::{LIGHT_BYTES, LIGHT_PIXEL_BYTES, LightCount, by_light, extend_by_light};
 pub use method::Method;
-pub use paths::{PathSettings, by_paths, sample, sample_bin, sample_counted};
+pub use paths::{PathSettings, by_guided_paths, by_paths, sample, sample_bin, sample_counted, sample_guided};
 pub use photons::{
     PhotonForecast, PhotonReadings, PhotonSettings, by_photons, by_photons_in_passes, forecast,
 };

@@ -10,7 +10,7 @@ use crate::photons::check_end;
 use crate::rng::{Purpose, Stream};
 use crate::scene::{Binned, Crossing, Orders, Quantity, Scene, Sensor};
 use crate::stats::{Moments, Tail};
-use crate::transport::{Progress, run_blocks};
+use crate::transport::{Guide, Progress, run_blocks};
 use glam::DVec3;
 use std::f64::consts::PI;
 
@@ -33,15 +33,41 @@ pub struct PathSettings {
 /// `Error::Unreachable` if the scene has path classes that paths cannot sample; `Error::NonFinite`;
 /// `Error::Cancelled`.
 pub fn by_paths(scene: &Scene, settings: &PathSettings, progress: &dyn Progress) -> Result<Vec<Measurement>> {
+    measured(scene, settings, None, progress)
+}
+
+/// The same by paths that weight windows split on their way to the lights, and end elsewhere: where light is found through many mean
+/// free paths. A path takes longer, and varies less.
+///
+/// # Errors
+/// those of [`by_paths`]; `Error::Scene` if no light is in a place or a direction
+pub fn by_guided_paths(
+    scene: &Scene,
+    settings: &PathSettings,
+    progress: &dyn Progress,
+) -> Result<Vec<Measurement>> {
+    let guide = Guide::new(scene).ok_or_else(|| {
+        Error::Scene("weight windows need a light in a place or from a direction: other than isotropic light into a body".into())
+    })?;
+    measured(scene, settings, Some(&guide), progress)
+}
+
+fn measured(
+    scene: &Scene,
+    settings: &PathSettings,
+    guide: Option<&Guide>,
+    progress: &dyn Progress,
+) -> Result<Vec<Measurement>> {
     check(scene)?;
     let (mut all, mut index) = (Vec::new(), 0);
     for sensor in scene.sensors() {
         for bin in 0..sensor.binned().map_or(1, Binned::bins) {
             let (moments, tails) = match sensor.binned() {
-                None => read(scene, sensor, index, settings, progress)?,
+                None => read(scene, sensor, index, settings, guide, progress)?,
                 Some(binned) => {
                     let orders = sensor.orders.and(&settings.orders);
-                    let draw = |stream: &mut Stream| sample_bin(scene, (binned, bin), orders, stream).0;
+                    let draw =
+                        |stream: &mut Stream| sample_bin(scene, (binned, bin), orders, guide, stream).0;
                     moments_of(index, settings, progress, draw)?
                 }
             };
@@ -77,10 +103,13 @@ pub(super) fn read(
     sensor: &Sensor,
     index: u64,
     settings: &PathSettings,
+    guide: Option<&Guide>,
     progress: &dyn Progress,
 ) -> Result<([Moments; 3], [Tail; 3])> {
     let orders = sensor.orders.and(&settings.orders);
-    moments_of(index, settings, progress, |stream| sample(scene, &sensor.quantity, orders, stream))
+    moments_of(index, settings, progress, |stream| {
+        sample_guided(scene, &sensor.quantity, orders, guide, stream).0
+    })
 }
 
 /// Moments and tails by channel of what `draw` makes of each stream.
@@ -132,18 +161,29 @@ pub fn sample_counted(
     orders: Orders,
     stream: &mut Stream,
 ) -> (Spectrum, Rays) {
+    sample_guided(scene, quantity, orders, None, stream)
+}
+
+/// The same by paths that are split and ended by a guide, if there is one.
+pub fn sample_guided(
+    scene: &Scene,
+    quantity: &Quantity,
+    orders: Orders,
+    guide: Option<&Guide>,
+    stream: &mut Stream,
+) -> (Spectrum, Rays) {
     let side = PeriodicCell::side(scene.periodic_cell());
     let mut sum = Spectrum::ZERO;
     let mut rays = Rays::default();
     match quantity {
-        Quantity::Fluence(p) => rays = fluence(scene, *p, orders, stream, |_, value| sum += value),
+        Quantity::Fluence(p) => rays = fluence(scene, *p, orders, guide, stream, |_, value| sum += value),
         Quantity::Radiance(ray) => {
             let interior = scene.interior_at(ray.origin);
-            rays = radiance(scene, *ray, None, interior, orders, stream, |_, value| sum += value);
+            rays = radiance(scene, (*ray, interior), orders, guide, stream, |_, value| sum += value);
         }
         Quantity::Outflow { shape, face } => {
             let (position, normal, area) = shape.sample_boundary(*face, side, stream.triple());
-            sum = flux(scene, (position, normal), orders, stream, &mut rays);
+            sum = flux(scene, (position, normal), orders, guide, stream, &mut rays);
             sum = per_power(sum * area, scene.power());
         }
         Quantity::Absorbed(region) => {
@@ -151,14 +191,14 @@ pub fn sample_counted(
             let (position, volume) = scene.regions()[region].shape.sample_inside(side, stream.triple());
             // Where a later region covers this one nothing of it is left to absorb.
             if scene.medium_number_at(position) == Some(region) {
-                rays = fluence(scene, position, orders, stream, |_, value| sum += value);
+                rays = fluence(scene, position, orders, guide, stream, |_, value| sum += value);
             }
             sum = sum * scene.regions()[region].medium.sigma_a(position) * volume;
             sum = per_power(sum, scene.power());
         }
         Quantity::Binned(binned) => {
             let bin = stream.index(binned.bins());
-            (sum, rays) = sample_bin(scene, (binned, bin), orders, stream);
+            (sum, rays) = sample_bin(scene, (binned, bin), orders, guide, stream);
         }
     }
     (sum, rays)
@@ -169,6 +209,7 @@ pub fn sample_bin(
     scene: &Scene,
     (binned, bin): (&Binned, usize),
     orders: Orders,
+    guide: Option<&Guide>,
     stream: &mut Stream,
 ) -> (Spectrum, Rays) {
     let position = binned.point(bin, scene.periodic_cell(), stream.triple());
@@ -180,10 +221,10 @@ pub fn sample_bin(
             for (along, sign) in [(normal, 1.0), (-normal, -1.0)] {
                 match (crossing, sign > 0.0) {
                     (Crossing::Net, _) => {
-                        sum += flux(scene, (position, along), orders, stream, &mut rays) * sign
+                        sum += flux(scene, (position, along), orders, guide, stream, &mut rays) * sign
                     }
                     (Crossing::Along, true) | (Crossing::Against, false) => {
-                        sum += flux(scene, (position, along), orders, stream, &mut rays);
+                        sum += flux(scene, (position, along), orders, guide, stream, &mut rays);
                     }
                     _ => {}
                 }
@@ -192,14 +233,16 @@ pub fn sample_bin(
         }
         Binned::Radiance { dir, .. } => {
             let interior = scene.interior_at(position);
-            radiance(scene, Ray::new(position, *dir), None, interior, orders, stream, |_, value| sum += value)
+            radiance(scene, (Ray::new(position, *dir), interior), orders, guide, stream, |_, value| {
+                sum += value
+            })
         }
-        Binned::Fluence { .. } => fluence(scene, position, orders, stream, |_, value| sum += value),
+        Binned::Fluence { .. } => fluence(scene, position, orders, guide, stream, |_, value| sum += value),
         Binned::Absorption { .. } => {
             let sigma_a = scene.medium_at(position).map_or(Spectrum::ZERO, |m| m.sigma_a(position));
             match sigma_a.is_black() {
                 true => Rays::default(),
-                false => fluence(scene, position, orders, stream, |_, value| sum += value * sigma_a),
+                false => fluence(scene, position, orders, guide, stream, |_, value| sum += value * sigma_a),
             }
         }
     };
@@ -211,13 +254,14 @@ fn flux(
     scene: &Scene,
     (position, normal): (DVec3, DVec3),
     orders: Orders,
+    guide: Option<&Guide>,
     stream: &mut Stream,
     rays: &mut Rays,
 ) -> Spectrum {
     let dir = Frame::new(-normal).to_world(warp::square_to_cosine_hemisphere(stream.pair()));
     let (ray, interior) = (Ray::new(position, dir), scene.interior_at(position));
     let mut sum = Spectrum::ZERO;
-    let work = radiance(scene, ray, None, interior, orders, stream, |_, value| sum += value);
+    let work = radiance(scene, (ray, interior), orders, guide, stream, |_, value| sum += value);
     *rays = Rays { segments: rays.segments + work.segments, shadow: rays.shadow + work.shadow };
     sum *= PI;
     if orders.contains(0) {

@@ -466,7 +466,7 @@ fn radiance(
     let (interior, size) = (scene.interior_at(ray.origin), scene_size(scene));
     if orders.contains(0) {
         let only_direct = Orders::only(0);
-        crate::integrators::radiance(scene, *ray, None, interior, only_direct, stream, |_, value| {
+        crate::integrators::radiance(scene, (*ray, interior), only_direct, None, stream, |_, value| {
             sum += value
         });
     }

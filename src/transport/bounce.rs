@@ -61,7 +61,7 @@ pub(super) fn bounce<V: Visitor>(
         flags: walker.flags.with(if pdf.is_some() { Flags::DIFFUSE } else { Flags::SPECULAR }),
         origin_surface: Some(found.start()),
         interior: walker.interior,
-        since_sampled: 0.0,
+        sampled_at: position,
         events: walker.events,
         // A mirror is no way out.
         total_reflections: if pdf.is_some() { 0 } else { walker.total_reflections },
@@ -100,12 +100,7 @@ fn pass<V: Visitor>(
 
 /// The walker behind a body that is no event, on the same way.
 fn straight_on(walker: &Walker, found: &SceneHit, position: DVec3) -> Walker {
-    Walker {
-        ray: Ray::new(position, walker.ray.dir),
-        origin_surface: Some(found.start()),
-        since_sampled: walker.since_sampled + found.hit.t,
-        ..*walker
-    }
+    Walker { ray: Ray::new(position, walker.ray.dir), origin_surface: Some(found.start()), ..*walker }
 }
 
 /// Reflected or refracted, in proportion: the weight stays, but for the scale of radiance behind a refraction.
@@ -137,7 +132,7 @@ fn cross<V: Visitor>(
     let next = Walker {
         flags: walker.flags.with(Flags::SPECULAR),
         origin_surface: Some(found.start()),
-        since_sampled: 0.0,
+        sampled_at: position,
         total_reflections: if is_total { walker.total_reflections + 1 } else { 0 },
         pdf_solid_angle: None,
         ..*walker

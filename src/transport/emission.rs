@@ -79,7 +79,12 @@ fn pieces(stretch: Interval, part: Interval) -> impl Iterator<Item = (Interval, 
 
 /// int_0^s e^(-sigma_t t) dt times the emission, and e^(-sigma_t s).
 fn closed(medium: &Homogeneous, length: f64, emission: Spectrum) -> (Spectrum, Spectrum) {
-    let reach = medium.sigma_t().map(|s| if s == 0.0 { length } else { -exp_m1(-s * length) / s });
-    let light = if emission.is_black() { Spectrum::ZERO } else { emission * reach };
+    let sigma_t = medium.sigma_t();
+    let along = |s: f64| if s == 0.0 { length } else { -exp_m1(-s * length) / s };
+    let light = match (emission.is_black(), sigma_t.is_grey()) {
+        (true, _) => Spectrum::ZERO,
+        (_, true) => emission * along(sigma_t[0]),
+        _ => emission * sigma_t.map(along),
+    };
     (light, decay(medium.depth(length)))
 }

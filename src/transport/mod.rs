@@ -1,4 +1,4 @@
-//! Free flight, roulette, the one random walk that paths and photons share, and blocks of histories.
+//! Free flight, roulette, weight windows, the one random walk that paths and photons share, and blocks of histories.
 
 mod blocks;
 mod bounce;
@@ -6,6 +6,7 @@ mod emission;
 mod equal_angles;
 mod flags;
 mod flight;
+mod guide;
 mod roulette;
 mod track;
 mod transmittance;
@@ -17,6 +18,7 @@ pub use emission::{collected, emission};
 pub use equal_angles::{Distances, EqualAngles, span};
 pub use flags::Flags;
 pub use flight::{Flight, free_flight};
+pub use guide::{Guide, Guided, window};
 pub use roulette::Roulette;
 pub use transmittance::{connection, segment_transmittance, transmittance};
 pub use visitor::{Arrival, Step, Visitor, Walker};

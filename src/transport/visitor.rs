@@ -1,6 +1,6 @@
 //! Who watches a walk, and what it is told.
 
-use super::Flags;
+use super::{Flags, Guided};
 use crate::Spectrum;
 use crate::math::Ray;
 use crate::rng::Stream;
@@ -22,9 +22,8 @@ pub struct Walker {
     pub origin_surface: Option<Start>,
     /// Number of the interior that the ray is in.
     pub interior: usize,
-    /// Distance since the direction was sampled, to the origin of the ray \[L\]: a ray starts again behind a filter or an
-    /// index-matched boundary, on the same way.
-    pub since_sampled: f64,
+    /// Where the direction was sampled \[L\]: a ray starts again behind a filter or an index-matched boundary, on the same way.
+    pub sampled_at: DVec3,
     /// Events and boundaries met so far.
     pub events: u32,
     /// Total reflections since it was last scattered, or could cross a boundary.
@@ -43,7 +42,7 @@ impl Walker {
             flags: Flags::NONE,
             origin_surface: None,
             interior: SURROUNDINGS,
-            since_sampled: 0.0,
+            sampled_at: ray.origin,
             events: 0,
             total_reflections: 0,
             pdf_solid_angle: None,
@@ -88,6 +87,15 @@ pub trait Visitor {
     /// Whether weights are those of radiance, which scales with the squared index of refraction where a photon's power
     /// does not.
     const CARRIES_RADIANCE: bool = Self::LOOKS_AHEAD;
+
+    /// The games by which histories are split and ended on their way, beside roulette; none for most.
+    #[inline(always)]
+    fn guided(&self) -> Option<Guided<'_>> {
+        None
+    }
+
+    /// A part of a history that was split off is about to fly on along a ray that was looked along before.
+    fn resume(&mut self, _hit: Option<&SceneHit>) {}
 
     /// One step of the walk.
     fn visit(&mut self, walker: &Walker, step: Step, stream: &mut Stream);

@@ -7,7 +7,7 @@ use crate::Spectrum;
 use crate::math::Ray;
 use crate::phase::PhaseFunction;
 use crate::rng::Stream;
-use crate::scene::Scene;
+use crate::scene::{Scene, SceneHit};
 
 /// Events after which a history plays for its life at each one, whatever it keeps: a history of so many would take longer
 /// than thousands of others, and without this one that nothing ends would never come to an end.
@@ -27,7 +27,16 @@ fn goes_on(walker: &mut Walker, stream: &mut Stream) -> bool {
     stream.unit() < chance
 }
 
-/// Follows one history to its end.
+/// A part of a history that was split off on a flight.
+struct Waiting {
+    walker: Walker,
+    roulette: Roulette,
+    /// What is ahead of its ray, and how far it has flown.
+    hit: Option<SceneHit>,
+    flown: f64,
+}
+
+/// Follows one history to its end, and all that is split off it.
 ///
 /// It ends by absorption, by escape, by a game of chance behind [`LONG`] events, or with a ray of order `limit`, which is
 /// looked along, through mirrors, glass and filters too since they raise no order, but not flown.
@@ -39,15 +48,33 @@ pub fn walk<V: Visitor>(
     stream: &mut Stream,
     visitor: &mut V,
 ) {
+    let mut waiting = Vec::new();
+    follow(scene, (start, roulette), None, limit, &mut waiting, stream, visitor);
+    while let Some(Waiting { walker, roulette, hit, flown }) = waiting.pop() {
+        visitor.resume(hit.as_ref());
+        follow(scene, (walker, roulette), Some((hit, flown)), limit, &mut waiting, stream, visitor);
+    }
+}
+
+/// Follows one part of a history; `resumed` if it is already on its flight.
+fn follow<V: Visitor>(
+    scene: &Scene,
+    (start, roulette): (Walker, Roulette),
+    mut resumed: Option<(Option<SceneHit>, f64)>,
+    limit: Option<u32>,
+    waiting: &mut Vec<Waiting>,
+    stream: &mut Stream,
+    visitor: &mut V,
+) {
     let (mut walker, mut roulette) = (start, roulette);
     loop {
-        if !goes_on(&mut walker, stream) {
-            // What survives carries this one's share.
-            visitor.visit(&walker, Step::Truncated(Spectrum::ZERO), stream);
-            return;
-        }
-        let hit = scene.hit(&walker.ray, walker.origin_surface);
-        visitor.visit(&walker, Step::Ahead(hit.as_ref()), stream);
+        let (hit, flown) = match resumed.take() {
+            Some(flight) => flight,
+            None => {
+                let Some(hit) = look_ahead(scene, &mut walker, stream, visitor) else { return };
+                (hit, 0.0)
+            }
+        };
         if limit.is_some_and(|limit| walker.order >= limit) {
             let Some(through) = hit.filter(|found| V::LOOKS_AHEAD && is_looked_through(scene, found)) else {
                 visitor.visit(&walker, Step::Truncated(walker.weight), stream);
@@ -68,8 +95,10 @@ pub fn walk<V: Visitor>(
         }
         let end = hit.map_or(f64::INFINITY, |h| h.hit.t);
         let forced = scene.plan().forces_first_collision && walker.order == 0 && hit.is_none();
+        let flight = fly(scene, (&mut walker, roulette), (hit, flown, end), forced, waiting, stream, visitor);
+        let Some(flight) = flight else { return };
         let arrived = walker.weight;
-        match free_flight(scene, &walker.ray, end, walker.interior, arrived, forced, stream) {
+        match flight {
             Flight::Collision { t, medium: number, weight } => {
                 if forced {
                     let transmitted = arrived - weight;
@@ -105,7 +134,7 @@ pub fn walk<V: Visitor>(
                     flags: walker.flags.with(Flags::MEDIUM),
                     origin_surface: None,
                     interior: walker.interior,
-                    since_sampled: 0.0,
+                    sampled_at: position,
                     events: walker.events,
                     total_reflections: 0,
                     pdf_solid_angle: V::LOOKS_AHEAD.then(pdf),
@@ -126,6 +155,61 @@ pub fn walk<V: Visitor>(
                     None => return,
                 }
             }
+        }
+    }
+}
+
+/// What is ahead, told to the visitor; none where a long history ends.
+fn look_ahead<V: Visitor>(
+    scene: &Scene,
+    walker: &mut Walker,
+    stream: &mut Stream,
+    visitor: &mut V,
+) -> Option<Option<SceneHit>> {
+    if !goes_on(walker, stream) {
+        // What survives carries this one's share.
+        visitor.visit(walker, Step::Truncated(Spectrum::ZERO), stream);
+        return None;
+    }
+    let hit = scene.hit(&walker.ray, walker.origin_surface);
+    visitor.visit(walker, Step::Ahead(hit.as_ref()), stream);
+    Some(hit)
+}
+
+/// A flight to a collision or to the end of the ray; with games on the way, if the visitor is guided: then none where they are lost.
+///
+/// A flight forgets how far it came: at each stop what goes on flies on from there, each for itself. All of the ray was
+/// looked along before.
+fn fly<V: Visitor>(
+    scene: &Scene,
+    (walker, roulette): (&mut Walker, Roulette),
+    (hit, mut flown, end): (Option<SceneHit>, f64, f64),
+    forced: bool,
+    waiting: &mut Vec<Waiting>,
+    stream: &mut Stream,
+    visitor: &V,
+) -> Option<Flight> {
+    let Some(guided) = visitor.guided() else {
+        return Some(free_flight(scene, &walker.ray, end, walker.interior, walker.weight, forced, stream));
+    };
+    loop {
+        let (ray, interior) = (walker.ray, walker.interior);
+        let (copies, factor) = guided.copies(&ray, flown, interior, walker.weight, || stream.unit());
+        walker.weight = walker.weight * factor;
+        for _ in 1..copies {
+            waiting.push(Waiting { walker: *walker, roulette, hit, flown });
+        }
+        if copies == 0 {
+            return None;
+        }
+        let stop = guided.stop(&ray, (flown, end), interior);
+        let onward = Ray::new(ray.at(flown), ray.dir);
+        match free_flight(scene, &onward, stop - flown, interior, walker.weight, false, stream) {
+            Flight::Collision { t, medium, weight } => {
+                return Some(Flight::Collision { t: flown + t, medium, weight });
+            }
+            Flight::Uncollided(weight) if stop >= end => return Some(Flight::Uncollided(weight)),
+            Flight::Uncollided(weight) => (walker.weight, flown) = (weight, stop),
         }
     }
 }

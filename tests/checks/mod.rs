@@ -4,6 +4,7 @@
 
 pub mod cell;
 pub mod color;
+pub mod emitters;
 pub mod flights;
 pub mod fog;
 pub mod glass;

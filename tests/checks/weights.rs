@@ -11,12 +11,12 @@ use turbid::estimators::boundary::Boundary;
 use turbid::estimators::{Estimator, Gather, Kernel};
 use turbid::light::Faces;
 use turbid::math::exp;
-use turbid::photons::importance::window;
 use turbid::photons::{Flags, Histories, Photon, PhotonMap, shoot};
 use turbid::rng::{Purpose, Stream};
 use turbid::scene::{Orders, Quantity, Scene, SceneParts};
 use turbid::sensor::{Pilot, PilotSettings};
 use turbid::stats::Moments;
+use turbid::transport::window;
 use turbid::transport::{NoProgress, Roulette};
 
 /// How many photons go on, in the mean over evenly spaced random numbers, times the factor on their weight: 1, to the last

@@ -1,8 +1,8 @@
 //! One row a fault: where it was seen, what it is here, and which check catches it.
 
 use crate::checks::{
-    cell, color, flights, fog, glass, ledger, light, media, numbers, outputs, phase, point_light, points,
-    slab, threads, walls, weights,
+    cell, color, emitters, flights, fog, glass, ledger, light, media, numbers, outputs, phase, point_light,
+    points, slab, threads, walls, weights,
 };
 use crate::support::scenes::{area_light, cuboid, rectangle};
 use glam::DVec3;
@@ -218,6 +218,11 @@ const fn inside(fault: Fault) -> Row {
                 fog::a_grid_is_scaled_and_placed()
             })
         }
+        Fault::EmitterShareForgotten => {
+            ("volumes of light counted aimed at and by chance", "a_furnace_is_as_bright_everywhere", |_| {
+                emitters::a_furnace_is_as_bright_everywhere()
+            })
+        }
         Fault::WallForgotten => {
             ("the share of equal angles ignores the wall behind", "a_wall_ends_the_angles", |_| {
                 fog::a_wall_ends_the_angles()
@@ -379,6 +384,7 @@ pub const BY_HAND: &[Row] = &[
     inside(Fault::PowerRaised),
     inside(Fault::PhaseTurned),
     inside(Fault::KernelRaised),
+    inside(Fault::EmitterShareForgotten),
 ];
 
 fn single_scattering() {

@@ -2,6 +2,7 @@
 
 mod blocks;
 mod color;
+mod emitters;
 mod flight;
 mod fresnel;
 mod lights;

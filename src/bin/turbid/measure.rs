@@ -16,8 +16,8 @@ use turbid::output::{
 use turbid::photons::Ledger;
 use turbid::scene::{Binned, Orders, Scene, Sensor, Space};
 use turbid::sensor::{
-    Measurement, NoError, PathSettings, PhotonSettings, TallySettings, by_paths, by_photons_in_passes,
-    by_tallies, forecast, tally_bytes,
+    Measurement, NoError, PathSettings, PhotonSettings, TallySettings, by_guided_paths, by_paths,
+    by_photons_in_passes, by_tallies, forecast, tally_bytes,
 };
 
 /// Measure the sensors of a scene by paths, photons or light tracing.
@@ -38,6 +38,10 @@ pub struct Measure {
     /// Who measures.
     #[arg(long = "with", value_enum)]
     with: With,
+    /// Split paths on their way to the lights, and end them elsewhere: for light that comes through many mean free paths. Only with
+    /// paths.
+    #[arg(long)]
+    weight_windows: bool,
     /// Paths a sensor, or a bin of one, such as 1e6.
     #[arg(long, value_parser = parse_count, default_value = "100000")]
     samples: u64,
@@ -204,12 +208,16 @@ impl Measure {
             PathSettings { samples: self.samples, seed: self.seed, replicate: 0, orders: self.orders };
         let bins: u64 = scene.sensors().iter().map(|s| s.binned().map_or(1, Binned::bins) as u64).sum();
         let bar = Bar::new(self.samples.saturating_mul(bins));
-        let measurements = by_paths(scene, &settings, &bar);
+        let read = if self.weight_windows { by_guided_paths } else { by_paths };
+        let measurements = read(scene, &settings, &bar);
         bar.finish();
         Ok((measurements.with_context(|| self.source.name())?, Vec::new()))
     }
 
     fn measure_by_photons(&self, scene: &Scene) -> anyhow::Result<(Vec<Measurement>, Vec<String>)> {
+        if self.weight_windows {
+            bail!("--weight-windows splits paths; allowed: with --with path");
+        }
         if self.photons < self.maps {
             bail!("--photons is {}; allowed: at least one for each of the {} maps", self.photons, self.maps);
         }

@@ -2,22 +2,15 @@
 
 use super::grid::DIRECTIONS;
 use super::values::Importance;
-use crate::faults::{Fault, planted};
 use crate::math::{FOUR_PI, cosine_pair, warp};
 use crate::phase::PhaseFunction;
 use crate::rng::Stream;
 use crate::scene::Scene;
-use crate::transport::{Roulette, Step, Visitor, Walker, walk};
+use crate::transport::{Roulette, Step, Visitor, Walker, walk, window};
 use glam::DVec3;
 
 /// How often a direction is chosen by value: weights grow by 1/(1 - this) at most.
 const TURNED: f64 = 0.5;
-/// Weights between these parts of what they should be are left alone: a game for less costs more than it saves.
-const WINDOW: (f64, f64) = (0.5, 2.0);
-/// A photon ends with nine tenths at most, and is split into eight at most, so that a value learned wrongly does little.
-const LEAST: f64 = 0.1;
-const MOST: f64 = 8.0;
-
 /// A visitor of a walk that may branch.
 pub trait Branching: Visitor {
     /// A photon is about to fly on from an event, whose number is what [`Self::left`] gave for it; none for a photon from
@@ -146,25 +139,5 @@ impl Importance {
         let Walker { ray, .. } = walker;
         let value = self.values_at(ray.origin)[self.aim.directions(ray.origin).index(ray.dir)];
         window(walker.weight.sum() * value / self.response, || stream.unit())
-    }
-}
-
-/// How many photons go on for one whose weight is `ratio` times as large as it should be, and the factor on the weight of
-/// each: their expected product is 1, whatever the ratio.
-///
-/// # Arguments
-/// `unit` gives a number in [0, 1), asked for at most once
-/// # Source
-/// Wagner and Haghighat 1998: weight windows
-pub fn window(ratio: f64, unit: impl FnOnce() -> f64) -> (usize, f64) {
-    if ratio < WINDOW.0 {
-        let chance = ratio.max(LEAST);
-        (usize::from(unit() < chance), 1.0 / chance)
-    } else if ratio > WINDOW.1 {
-        let split = ratio.min(MOST);
-        let shared = if planted(Fault::WindowUnfair) { split.round() } else { split };
-        ((split + unit()) as usize, 1.0 / shared)
-    } else {
-        (1, 1.0)
     }
 }

@@ -26,7 +26,7 @@ mod readout;
 mod settings;
 mod values;
 
-pub use branching::{Branching, window};
+pub use branching::Branching;
 pub use settings::ImportanceSettings;
 pub use values::Importance;
 
