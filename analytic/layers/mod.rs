@@ -24,7 +24,9 @@
 //! Bosma and Hovenier 1987.
 
 mod adding;
+mod grid;
 mod ordinates;
+mod pile;
 mod problem;
 mod stratified;
 #[cfg(test)]
