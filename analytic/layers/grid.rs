@@ -10,7 +10,7 @@
 //! mirror is the last region.
 
 use super::pile::{Passed, Pile, cosine};
-use super::problem::Problem;
+use super::problem::{Layer, Problem};
 use crate::adding_doubling::{Nodes, Panels};
 use crate::incidence::Incidence;
 use libm::{exp, expm1, sqrt};
@@ -87,6 +87,10 @@ impl Anchored {
                 (0, _) => least.max(16 + (0.6 * turns) as usize),
                 _ => least.max(16 + (0.6 * top * turns) as usize),
             };
+            // Where no light is lost along this horizon, reflectances change beyond it with the cosine, and no logarithm does
+            // unless light goes to and fro for long.
+            let lossy = |layer: &Layer| layer.tau > 0.0 && (layer.index == n || layer.tau < 0.1);
+            let lower = if problem.layers.iter().any(lossy) { lower } else { lower / 2 };
             let edge = top * open / (upper as f64 + 2.0);
             let mut panels = Panels::default();
             panels.power(0.0, edge, power, lower);
