@@ -199,8 +199,10 @@ proptest! {
         let (a, b) = (by_adding(&layers, ground, light), by_adding(&split, ground, light));
         prop_assert!(agree(a.reflectance(), b.reflectance()));
         prop_assert!(agree(a.transmittance().unwrap(), b.transmittance().unwrap()));
-        let t = b.depths()[i + 1].min(a.tau());
-        prop_assert!(agree(a.fluence(t).unwrap(), b.fluence(t).unwrap()));
+        let [whole, above, below] =
+            [(&a, i), (&b, i), (&b, i + 2)].map(|(slab, i)| slab.absorptance(i).unwrap());
+        let off = (whole.value - above.value - below.value).abs();
+        prop_assert!(off <= whole.error + above.error + below.error, "{whole:?} {above:?} {below:?}");
     }
 }
 
@@ -287,10 +289,10 @@ fn clear_plates_have_closed_forms() {
 /// of its sample input.
 ///
 /// Residuals over the stated errors, R, A, T: air -3.6, -0.9, 6.5; tissue -4.0, -0.9, 7.8; glass -3.7, -0.3, 6.7; three
-/// layers 1.8, -2.0, 0.5. So chi-squared of three numbers is 56, 78, 59 and 7.3. Absorbed and ballistic shares are as
-/// they should be; from reflection to transmission go 6e-4 to 8e-4 of all photons in the three runs of one program, with
-/// faces or without: neither thickness, albedo nor g of another value makes that, and no face does. The table is known to 1 per cent
-/// there, and to its errors elsewhere.
+/// layers 1.8, -2.2, 0.5. So chi-squared of three numbers is 56, 78, 58 and 8.1. Absorbed and ballistic shares are as
+/// they should be; in the three runs of one program 6e-4 to 8e-4 of all photons are transmitted instead of reflected, with
+/// faces or without, so that no face does it, nor does any one other value of thickness, albedo or g. R and T are
+/// known to 1 per cent there, the rest to the errors.
 #[test]
 fn mcml() {
     let tissue = |n: f64| layer(10.0, 0.99, 0.0, n);
