@@ -21,24 +21,29 @@ use turbid_figure::{Axis, Figure};
 ///
 ///   mu dI/dt = I - (w/2) int sum_l (2l+1) chi_l P_l(mu) P_l(mu') I(t, mu') dmu' - beam - q/(4 pi)
 ///
-/// and is continuous: all layers have one index of refraction. The ground is Lambertian (0: black) or a mirror. Powers are
+/// and is continuous where the index of refraction is. Elsewhere is a smooth face: Fresnel's laws for unpolarised light,
+/// powers of its reflections add. Above the layers the index is 1. The ground is Lambertian (0: black) or a mirror. Powers are
 /// per incident power, q is power that starts per area and mean free path over the irradiance; in the dark (--mu0 none) all
 /// is in the unit of the sources. T is what arrives at the ground, R + sum A + A_ground = 1 + sum q tau.
 ///
 /// Adding of layers that are doubled each, or discrete ordinates matched at all interfaces, on two sets of nodes. Layers
-/// 1e-12 to 100 thick, 400 together. Layers between refracting faces are not answered.
-/// Source: van de Hulst 1963; Hansen and Travis 1974; Stamnes, Tsay, Wiscombe and Jayaweera 1988.
+/// 1e-12 to 100 thick, 400 together; tau=0,albedo=0,index=1.5 is a clear plate of glass.
+/// Source: van de Hulst 1963; Hansen and Travis 1974; Stamnes, Tsay, Wiscombe and Jayaweera 1988; Prahl, van Gemert and
+/// Welch 1993.
 #[derive(Debug, Clone, clap::Args)]
 #[command(verbatim_doc_comment)]
 pub struct Args {
     /// A layer, from the lit face down, as name=value separated by commas: tau (1e-12 to 100), albedo (0 to 1); g
-    /// (Henyey-Greenstein, 0 if not given), phase=rayleigh or moments=FILE; emission (0 or more, in a layer of 1e-6 or more).
-    /// Once for each layer
+    /// (Henyey-Greenstein, 0 if not given), phase=rayleigh or moments=FILE; emission (0 or more, in a layer of 1e-6 or more);
+    /// index (of refraction, over that above the layers, 0.25 to 4, 1 if not given). Once for each layer
     #[arg(verbatim_doc_comment, long, required = true, value_parser = layer, value_name = "tau=T,albedo=W,g=G")]
     layer: Vec<Given>,
-    /// Reflectance of the ground, 0 to 1, or the word mirror.
+    /// Reflectance of the ground, 0 to 1, or the word mirror, or mirror=R of reflectance R.
     #[arg(long, default_value = "0", value_parser = ground, allow_negative_numbers = true)]
     ground: Surface,
+    /// Index of refraction of what lies between the last layer and the ground, 0.25 to 4; that of the layer: no gap.
+    #[arg(long, default_value_t = 1.0, allow_negative_numbers = true)]
+    ground_index: f64,
     /// Power per area that the ground sends out by itself, over the irradiance.
     #[arg(long, default_value_t = 0.0, allow_negative_numbers = true)]
     exitance: f64,
@@ -72,6 +77,7 @@ struct Given {
     tau: f64,
     albedo: f64,
     emission: f64,
+    index: f64,
     scattering: Scattering,
 }
 
@@ -90,14 +96,14 @@ struct Light(Option<Incidence>);
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Surface {
     Lambertian(f64),
-    Mirror,
+    Mirror(f64),
 }
 
-const LAYER: &str = "tau=T,albedo=W and any of g=G, phase=rayleigh, moments=FILE, emission=Q";
+const LAYER: &str = "tau=T,albedo=W and any of g=G, phase=rayleigh, moments=FILE, emission=Q, index=N";
 
 fn layer(text: &str) -> Result<Given, String> {
     let wrong = |what: &str| format!("layer is '{text}': {what}; allowed: {LAYER}");
-    let (mut tau, mut albedo, mut emission, mut scattering) = (None, None, None, None);
+    let (mut tau, mut albedo, mut emission, mut index, mut scattering) = (None, None, None, None, None);
     for pair in text.split(',') {
         let (name, value) = pair.split_once('=').ok_or_else(|| wrong(&format!("'{pair}'")))?;
         let number = || value.trim().parse::<f64>().map_err(|_| wrong(&format!("{name} is '{value}'")));
@@ -105,6 +111,7 @@ fn layer(text: &str) -> Result<Given, String> {
             "tau" => tau.replace(number()?).is_some(),
             "albedo" => albedo.replace(number()?).is_some(),
             "emission" => emission.replace(number()?).is_some(),
+            "index" => index.replace(number()?).is_some(),
             "g" => scattering.replace(Scattering::HenyeyGreenstein(number()?)).is_some(),
             "phase" if value == "rayleigh" => scattering.replace(Scattering::Rayleigh).is_some(),
             "moments" => scattering.replace(Scattering::Moments(value.into())).is_some(),
@@ -118,6 +125,7 @@ fn layer(text: &str) -> Result<Given, String> {
         tau: tau.ok_or_else(|| wrong("no tau"))?,
         albedo: albedo.ok_or_else(|| wrong("no albedo"))?,
         emission: emission.unwrap_or(0.0),
+        index: index.unwrap_or(1.0),
         scattering: scattering.unwrap_or(Scattering::HenyeyGreenstein(0.0)),
     })
 }
@@ -131,13 +139,13 @@ fn light(text: &str) -> Result<Light, String> {
 }
 
 fn ground(text: &str) -> Result<Surface, String> {
-    match text {
-        "mirror" => Ok(Surface::Mirror),
-        _ => text
-            .parse()
-            .map(Surface::Lambertian)
-            .map_err(|_| format!("ground is '{text}'; allowed: a number from 0 to 1, or mirror")),
-    }
+    let number = |text: &str| text.parse::<f64>().ok();
+    let found = match text.strip_prefix("mirror") {
+        Some("") => Some(Surface::Mirror(1.0)),
+        Some(rest) => rest.strip_prefix('=').and_then(number).map(Surface::Mirror),
+        None => number(text).map(Surface::Lambertian),
+    };
+    found.ok_or_else(|| format!("ground is '{text}'; allowed: a number from 0 to 1, mirror, or mirror=R"))
 }
 
 impl Given {
@@ -152,28 +160,34 @@ impl Given {
     }
 
     fn layer(&self) -> Result<Layer> {
-        Ok(Layer::new(self.tau, self.albedo, &self.named()?.phase)?.emitting(self.emission)?)
+        let layer = Layer::new(self.tau, self.albedo, &self.named()?.phase)?;
+        Ok(layer.emitting(self.emission)?.refracting(self.index)?)
     }
 
     fn words(&self) -> Result<String> {
         let emission =
             if self.emission > 0.0 { format!(" emission {}", self.emission) } else { String::new() };
-        Ok(format!("tau {} albedo {} {}{emission}", self.tau, self.albedo, self.named()?.name))
+        let index = if self.index != 1.0 { format!(" index {}", self.index) } else { String::new() };
+        if self.tau == 0.0 {
+            return Ok(format!("clear plate{index}"));
+        }
+        Ok(format!("tau {} albedo {} {}{emission}{index}", self.tau, self.albedo, self.named()?.name))
     }
 }
 
 impl Args {
     fn slab(&self, solved: &Solved) -> Result<Rc<StratifiedSlab>> {
-        solved.once((&self.layer, self.ground, self.exitance, self.mu0, self.method), || {
+        solved.once((&self.layer, self.ground, self.ground_index, self.exitance, self.mu0, self.method), || {
             let numbered =
                 |(i, given): (usize, &Given)| given.layer().with_context(|| format!("layer {}", i + 1));
             let layers = self.layer.iter().enumerate().map(numbered).collect::<Result<Vec<_>>>()?;
             let ground = match self.ground {
                 Surface::Lambertian(reflectance) => Ground::lambertian(reflectance)?,
-                Surface::Mirror if self.exitance == 0.0 => Ground::mirror(),
-                Surface::Mirror => bail!("--exitance is {}; allowed with --ground mirror: 0", self.exitance),
+                Surface::Mirror(reflectance) if self.exitance == 0.0 => Ground::specular(reflectance)?,
+                Surface::Mirror(_) => bail!("--exitance is {}; allowed with --ground mirror: 0", self.exitance),
             };
-            let ground = ground.emitting(self.exitance)?;
+            let below = |ground: Ground| ground.within(self.ground_index).context("--ground-index");
+            let ground = below(ground.emitting(self.exitance)?)?;
             Ok(match self.method {
                 Method::Adding => StratifiedSlab::new(&layers, ground, self.mu0.0)?,
                 Method::Ordinates => StratifiedSlab::by_ordinates(&layers, ground, self.mu0.0)?,
@@ -214,8 +228,12 @@ impl Question for Args {
         answer.of("layers").with("layers", words.join(" | "));
         match self.ground {
             Surface::Lambertian(reflectance) => answer.with("ground", reflectance),
-            Surface::Mirror => answer.with("ground", "mirror"),
+            Surface::Mirror(1.0) => answer.with("ground", "mirror"),
+            Surface::Mirror(reflectance) => answer.with("ground", format!("mirror {reflectance}")),
         };
+        if self.ground_index != 1.0 {
+            answer.with("ground_index", self.ground_index);
+        }
         if self.exitance > 0.0 {
             answer.with("exitance", self.exitance);
         }
@@ -225,6 +243,11 @@ impl Question for Args {
         };
         let power = Unit::IncidentPower;
         answer.add("reflectance", power, &[], slab.reflectance());
+        if self.ground_index != 1.0 || self.layer.iter().any(|layer| layer.index != 1.0) {
+            answer.add("specular", power, &[], slab.specular()?);
+            answer.add("reflectance_direct", power, &[], slab.reflectance_direct());
+            answer.add("reflectance_diffuse", power, &[], slab.reflectance_diffuse());
+        }
         answer.add("transmittance", power, &[], slab.transmittance()?);
         answer.add("transmittance_direct", power, &[], slab.transmittance_direct()?);
         answer.add("transmittance_diffuse", power, &[], slab.transmittance_diffuse());
@@ -256,7 +279,8 @@ impl Question for Args {
         let light = self.mu0.0.map_or("no light from outside".into(), incidence_title);
         let ground = match self.ground {
             Surface::Lambertian(reflectance) => format!("ground {reflectance}"),
-            Surface::Mirror => "a mirror below".into(),
+            Surface::Mirror(1.0) => "a mirror below".into(),
+            Surface::Mirror(reflectance) => format!("a mirror of {reflectance} below"),
         };
         let count = match self.layer.len() {
             1 => "One layer".into(),

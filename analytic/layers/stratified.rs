@@ -4,12 +4,10 @@ use super::adding::Added;
 use super::ordinates::Matched;
 use super::problem::{Ground, Layer, Problem};
 use crate::adding_doubling::depths;
-use crate::beer_lambert::direct_transmittance;
 use crate::error::{Result, within};
 use crate::exponential_integral::e_n;
 use crate::incidence::{Incidence, check_depth};
 use crate::value::Value;
-use libm::{exp, log};
 use std::sync::{Arc, OnceLock};
 
 const ADDING: &str = "adding of layers, two node counts";
@@ -23,8 +21,11 @@ pub struct StratifiedSlab {
     problem: Arc<Problem>,
     method: &'static str,
     solutions: [Solution; 2],
+    /// Scattered light that leaves through the lit face, and that arrives at the ground.
     leaving: [Value; 2],
     dwelt: Vec<Value>,
+    /// Unscattered light that leaves through the lit face.
+    reflected: Value,
     /// Of each layer: depths within it in rising order, and the relative differences of the two solutions there.
     ladders: Vec<OnceLock<Result<Ladder>>>,
 }
@@ -59,15 +60,15 @@ impl Solution {
         }
     }
 
-    /// What the nodes make wrong of the fluence of light from behind a plane, of unit irradiance, at distance `d`: it
-    /// swings with ln d, so that distances around it count.
-    fn unresolved(&self, d: f64) -> f64 {
+    /// What the nodes of a layer make wrong of the fluence of light from behind a plane, of unit irradiance, at distance
+    /// `d`: it swings with ln d, so that distances around it count.
+    fn unresolved(&self, layer: usize, d: f64) -> f64 {
         let steps = (0..9).map(|i| d * f64::from(1 << i) / 16.0).map(|d| {
             let sum = match self {
-                Solution::Adding(solution) => solution.sum(|mu| exp(-d / mu)),
-                Solution::Ordinates(solution) => solution.sum(|mu| exp(-d / mu)),
+                Solution::Adding(solution) => solution.transmission(layer, d),
+                Solution::Ordinates(solution) => solution.transmission(layer, d),
             };
-            2.0 * (sum - e_n(2, d)).abs()
+            sum.map_or(0.0, |sum| 2.0 * (sum - e_n(2, d)).abs())
         });
         steps.fold(0.0, f64::max)
     }
@@ -95,7 +96,7 @@ impl StratifiedSlab {
     /// one layer over a black ground: [`crate::AddingDoubling`]
     pub fn new(layers: &[Layer], ground: Ground, incidence: Option<Incidence>) -> Result<Self> {
         let problem = Arc::new(Problem::new(layers, ground, incidence)?);
-        let solve = |set| Ok(Solution::Adding(Box::new(Added::new(problem.clone(), set, &[])?)));
+        let solve = |set| Ok(Solution::Adding(Box::new(Added::new(problem.clone(), set, 1.0, &[])?)));
         Self::of(problem.clone(), ADDING, [solve(0)?, solve(1)?])
     }
 
@@ -123,14 +124,14 @@ impl StratifiedSlab {
             fluxes
         });
         // A layer's share is compared with the others by its fluence.
-        let scale = |i: usize| if i < 2 { 1.0 } else { problem.layers[i - 2].tau };
+        let scale = |i: usize| if i < 2 { 1.0 } else { problem.layers[i - 2].tau.max(f64::MIN_POSITIVE) };
         let difference = |i: usize| (sets[0][i] - sets[1][i]).abs();
         let largest = (0..count + 2).fold(0.0, |a: f64, i| a.max(difference(i) / scale(i)));
         let relative = (0..count + 2)
             .filter(|&i| sets[0][i] != 0.0)
             .fold(0.0, |a: f64, i| a.max(difference(i) / sets[0][i].abs()));
         let [rounded, absolute] = solutions[0].rounding();
-        let values: Vec<Value> = (0..count + 2)
+        let mut values: Vec<Value> = (0..count + 2)
             .map(|i| {
                 let fine = sets[0][i];
                 let shared = (largest * scale(i)).min(relative * fine.abs());
@@ -138,9 +139,19 @@ impl StratifiedSlab {
                 Value::new(fine, difference(i) + shared + rounding, method)
             })
             .collect();
-        let ladders = (0..count).map(|_| OnceLock::new()).collect();
-        let leaving = [values[0], values[1]];
-        Ok(StratifiedSlab { problem, method, solutions, leaving, dwelt: values[2..].to_vec(), ladders })
+        let plates = (0..count).filter(|i| !problem.scattering().contains(i));
+        for i in plates {
+            values[i + 2] = values[i + 2].plus(problem.dwelt(i)?, method);
+        }
+        Ok(StratifiedSlab {
+            reflected: problem.reflected()?,
+            ladders: (0..count).map(|_| OnceLock::new()).collect(),
+            leaving: [values[0], values[1]],
+            dwelt: values[2..].to_vec(),
+            problem,
+            method,
+            solutions,
+        })
     }
 
     /// The layers, from the lit face down.
@@ -170,27 +181,38 @@ impl StratifiedSlab {
 
     /// Power that leaves through the lit face \[1\], that of the sources included.
     pub fn reflectance(&self) -> Value {
-        let beam = self.problem.beam(self.problem.back(0.0));
-        let ulps = 4.0 + (-log(beam)).min(800.0);
-        self.leaving[0].plus(Value::rounded(beam, ulps, self.method), self.method)
+        self.leaving[0].plus(self.reflected, self.method)
+    }
+
+    /// Power that the lit face returns before any light enters \[1\].
+    pub fn specular(&self) -> Result<Value> {
+        self.problem.specular()
+    }
+
+    /// Power that leaves through the lit face without a collision \[1\]: by all faces, a mirror included.
+    pub fn reflectance_direct(&self) -> Value {
+        self.reflected
+    }
+
+    /// Power that leaves through the lit face after a scattering, a reflection by a Lambertian ground or from a source \[1\].
+    pub fn reflectance_diffuse(&self) -> Value {
+        self.leaving[0]
     }
 
     /// Power that arrives at the ground \[1\], direct light and that of the sources included.
     ///
-    /// Over a black ground it is what leaves the slab; else the ground returns some of it.
+    /// Over a black ground it is what leaves the slab; else the ground returns some of it, and faces over it return light
+    /// once more.
     pub fn transmittance(&self) -> Result<Value> {
         Ok(self.transmittance_direct()?.plus(self.leaving[1], self.method))
     }
 
     /// Power that arrives at the ground without a collision on its way from the lit face \[1\].
     pub fn transmittance_direct(&self) -> Result<Value> {
-        match self.problem.incidence {
-            Some(incidence) => direct_transmittance(incidence, self.tau()),
-            None => Ok(Value::rounded(0.0, 0.0, self.method)),
-        }
+        self.problem.arrived()
     }
 
-    /// Power that arrives at the ground after a scattering, a reflection or from a source \[1\].
+    /// Power that arrives at the ground after a scattering, a reflection by the ground or from a source \[1\].
     pub fn transmittance_diffuse(&self) -> Value {
         self.leaving[1]
     }
@@ -217,7 +239,11 @@ impl StratifiedSlab {
     /// `Error::OutOfRange` naming `layer`
     pub fn mean_fluence(&self, layer: usize) -> Result<Value> {
         let i = self.check_layer(layer)?;
-        Ok(self.dwelt[i].scaled(1.0 / self.problem.layers[i].tau))
+        let tau = self.problem.layers[i].tau;
+        if tau == 0.0 {
+            return Ok(self.light_in(i, 0.0)?[0]);
+        }
+        Ok(self.dwelt[i].scaled(1.0 / tau))
     }
 
     fn check_layer(&self, layer: usize) -> Result<usize> {
@@ -265,18 +291,26 @@ impl StratifiedSlab {
     fn light(&self, t: f64) -> Result<[Value; 3]> {
         check_depth(t, self.tau())?;
         let (i, x) = self.problem.place(t);
+        self.light_in(i, x)
+    }
+
+    fn light_in(&self, i: usize, x: f64) -> Result<[Value; 3]> {
+        let direct = self.problem.direct(i, x)?;
         let [fine, coarse] = self.pair(i, x)?;
         let ladder = self.ladders[i].get_or_init(|| self.ladder(i)).as_ref().map_err(Clone::clone)?;
         // As in AddingDoubling: the difference swings with ln x, with a period of about a step of the ladder.
         let at = ladder.partition_point(|&(depth, _)| depth < x);
         let near = &ladder[at.saturating_sub(2)..(at + 2).min(ladder.len())];
         let [rounded, absolute] = self.solutions[0].rounding();
-        let horizons = self.horizons(t, fine[0]);
+        let horizons = self.horizons(i, self.problem.depths[i] + x, fine[0] + direct[0].value);
         Ok(std::array::from_fn(|which| {
-            let shared = near.iter().fold(0.0, |a: f64, (_, d)| a.max(d[which])) + rounded;
+            let shared = near.iter().fold(0.0, |a: f64, (_, d)| a.max(d[which]));
             let difference = (fine[which] - coarse[which]).abs() + horizons[which];
-            let error = difference + shared * fine[which].abs() + absolute;
-            Value::new(fine[which], error + f64::MIN_POSITIVE, self.method)
+            // Direct light has been taken out.
+            let rounding = rounded * (fine[which].abs() + direct[which].value) + absolute;
+            let error = difference + shared * fine[which].abs() + rounding;
+            let scattered = Value::new(fine[which], error + f64::MIN_POSITIVE, self.method);
+            direct[which].plus(scattered, self.method)
         }))
     }
 
@@ -284,7 +318,7 @@ impl StratifiedSlab {
     /// level. Its radiance changes there by what is emitted and scattered, which is taken to be at most four times its mean
     /// over directions: tried against a third set of nodes, not proved. Fluxes are made of it on their way, as far as it is of
     /// one size.
-    fn horizons(&self, t: f64, fluence: f64) -> [f64; 3] {
+    fn horizons(&self, layer: usize, t: f64, fluence: f64) -> [f64; 3] {
         let Problem { layers, ground, depths, .. } = self.problem.as_ref();
         let mut sum = [0.0; 3];
         for (k, depth) in depths.iter().enumerate() {
@@ -298,7 +332,7 @@ impl StratifiedSlab {
                 if k == layers.len() && !ground.mirror {
                     step += ground.exitance + ground.reflectance * fluence;
                 }
-                let open = self.solutions[0].unresolved(d) * step;
+                let open = self.solutions[0].unresolved(layer, d) * step;
                 sum[0] += open;
                 sum[1] += open * t.min(16.0 * d);
                 sum[2] += open * (self.tau() - t).min(16.0 * d);
@@ -312,7 +346,9 @@ impl StratifiedSlab {
     }
 
     fn ladder(&self, i: usize) -> Result<Ladder> {
-        let steps = depths(self.problem.layers[i].tau).into_iter().map(|x| {
+        let tau = self.problem.layers[i].tau;
+        let places = if tau > 0.0 { depths(tau) } else { vec![0.0] };
+        let steps = places.into_iter().map(|x| {
             let [fine, coarse] = self.pair(i, x)?;
             let relative = |which: usize| {
                 let difference: f64 = fine[which] - coarse[which];
@@ -343,8 +379,9 @@ impl StratifiedSlab {
         }
         let heights: Vec<f64> = cosines.iter().map(|mu| mu.abs()).collect();
         let (i, x) = self.problem.place(t);
-        let sets =
-            [Added::new(self.problem.clone(), 0, &heights)?, Added::new(self.problem.clone(), 1, &heights)?];
+        let index = self.problem.index(i);
+        let solve = |set| Added::new(self.problem.clone(), set, index, &heights);
+        let sets = [solve(0)?, solve(1)?];
         let rounding = sets[0].rounding()[0];
         let of = |(user, &mu): (usize, &f64)| {
             let of =

@@ -22,7 +22,7 @@
 
 mod direct;
 mod doubling;
-mod face;
+pub(crate) mod face;
 mod fluxes;
 mod ordinates;
 #[cfg(test)]
@@ -318,7 +318,7 @@ fn bounded(fluxes: [[Light; 2]; 3], method: &'static str) -> [Value; 3] {
     })
 }
 
-fn check_index(index: f64) -> Result<f64> {
+pub(crate) fn check_index(index: f64) -> Result<f64> {
     within("index", index, 0.25, 4.0, "0.25 to 4, inside over outside")
 }
 

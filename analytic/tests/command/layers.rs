@@ -34,6 +34,23 @@ fn layers_are_answered_in_fluxes_fluence_and_radiance() {
 }
 
 #[test]
+fn plates_are_answered_with_their_specular_parts() {
+    let glass = ["--layer", "tau=0,albedo=0,index=1.5"];
+    let tissue = ["--layer", "tau=2,albedo=0.9,index=1.4"];
+    let text = stdout(exact().arg("layers").args(glass).args(tissue).args(glass).args(["--format", "csv"]));
+    for part in ["specular,,0.0400000", "reflectance_direct", "reflectance_diffuse", "clear plate index 1.5"] {
+        assert!(text.contains(part), "{text} lacks {part}");
+    }
+    // Paint without a gap of air under glass, and a mirror that keeps half of the light.
+    let ground = ["--ground", "0.8", "--ground-index", "1.5"];
+    let text = stdout(exact().arg("layers").args(glass).args(ground).args(["--mu0", "diffuse"]));
+    // Saunderson's correction of 0.8: 0.0918 + 0.9082 0.4037 0.8/(1 - 0.5963 0.8).
+    assert!(text.contains("0.6526"), "{text}");
+    let text = stdout(exact().arg("layers").args(glass).args(["--ground", "mirror=0.5"]));
+    assert!(text.contains("ground = mirror 0.5"), "{text}");
+}
+
+#[test]
 fn mistakes_name_layer_and_parameter() {
     let layer = ["layers", "--layer", "tau=1,albedo=0.5"];
     for (more, parts) in [
@@ -47,6 +64,11 @@ fn mistakes_name_layer_and_parameter() {
         (&["--ground", "1.5"], &["ground is 1.5; allowed: 0 to 1"]),
         (&["--ground", "snow"], &["ground is 'snow'", "mirror"]),
         (&["--ground", "mirror", "--exitance", "1"], &["--exitance is 1"]),
+        (&["--ground", "mirror=2"], &["mirror is 2; allowed: 0 to 1"]),
+        (&["--ground", "mirrors"], &["ground is 'mirrors'"]),
+        (&["--ground-index", "9"], &["--ground-index: index is 9; allowed: 0.25 to 4"]),
+        (&["--layer", "tau=1,albedo=1,index=0"], &["layer 2: index is 0"]),
+        (&["--layer", "tau=0,albedo=0.5,index=1.5"], &["layer 2: tau is 0", "clear plate"]),
         (&["--mu0", "0"], &["mu0 is 0"]),
         (&["--mu0", "up"], &["mu0 is 'up'", "none"]),
         (&["--depth", "1.5"], &["t is 1.5"]),

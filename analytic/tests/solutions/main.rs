@@ -15,6 +15,7 @@ mod critical;
 mod half_space_reference;
 mod layers;
 mod layers_tables;
+mod plates;
 mod slab_anisotropic;
 mod slab_fresnel;
 mod slab_laws;
