@@ -250,6 +250,10 @@ fn both_signs(body: &Body, axis: usize, u: f64, degree: usize, out: &mut [f64]) 
 }
 
 impl Expansion {
+    pub(super) fn degree(&self) -> usize {
+        self.degree
+    }
+
     /// The integral of the fluence over the body.
     pub(super) fn integral(&self) -> f64 {
         self.coefficients[0] * self.body.volume().sqrt()

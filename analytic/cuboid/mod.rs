@@ -19,6 +19,9 @@ use galerkin::{Body, Expansion, FirstFlights, Operator, direct};
 use libm::exp;
 use std::f64::consts::PI;
 
+/// Relative error of the pyramids' rules: what rules of other degrees change is less (tested).
+const ROUNDING: f64 = 1e-11;
+
 const HOW: &str = "Galerkin in Legendre polynomials, three degrees";
 const DIRECT: &str = "direct light";
 
@@ -112,10 +115,10 @@ impl Cuboid {
     }
 
     fn first_flights(&self, place: [f64; 3]) -> FirstFlights {
-        FirstFlights::from(&self.body, 2 * if self.body.endless { DUCT_DEGREES[2] } else { DEGREES[2] }, place)
+        FirstFlights::from(&self.body, self.expansions[2].degree(), place)
     }
 
-    /// Fluence over irradiance, or over power per squared mean free path (of a duct per mean free path).
+    /// Fluence over irradiance, or over power per squared mean free path.
     pub fn fluence(&self, place: [f64; 3]) -> Result<Value> {
         let place = self.check(place)?;
         if self.albedo == 0.0 {
@@ -151,14 +154,19 @@ impl Cuboid {
     /// Source function, what scatters and is emitted per steradian and mean free path: w phi/(4 pi), and of the even source
     /// its power over 4 pi and the volume.
     pub fn source_function(&self, place: [f64; 3]) -> Result<Value> {
-        let scattered = self.fluence(place)?.scaled(self.albedo / (4.0 * PI));
-        Ok(match self.source {
+        Ok(self.source_function_of(self.fluence(place)?))
+    }
+
+    /// The same from the fluence there.
+    pub fn source_function_of(&self, fluence: Value) -> Value {
+        let scattered = fluence.scaled(self.albedo / (4.0 * PI));
+        match self.source {
             CuboidSource::Uniform => {
                 let emitted = 1.0 / (4.0 * PI * self.body.volume());
                 scattered.plus(Value::rounded(emitted, 4.0, "closed form"), HOW)
             }
             _ => scattered,
-        })
+        }
     }
 
     /// Fluence averaged over the body.
@@ -186,6 +194,3 @@ impl Cuboid {
         Value::new(1.0 - absorbed.value, absorbed.error + f64::EPSILON, absorbed.method)
     }
 }
-
-/// Relative error of the pyramids' rules: with four nodes more each way nothing changes by more (tested).
-const ROUNDING: f64 = 1e-11;

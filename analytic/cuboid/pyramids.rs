@@ -82,7 +82,11 @@ pub(super) fn integrals(
         let (mut row, mut plane) = (vec![0.0; count[r]], vec![0.0; count[q] * count[r]]);
         for (x, w) in long.nodes.iter().zip(&long.weights) {
             // Bickley's functions have s ln s at the tip, which s = x^2 makes smooth to seven orders.
-            let (s, ws) = if endless { (reach[p] * x * x, 2.0 * reach[p] * x * w) } else { (reach[p] * x, reach[p] * w) };
+            let (s, ws) = if endless {
+                (reach[p] * x * x, 2.0 * reach[p] * x * w)
+            } else {
+                (reach[p] * x, reach[p] * w)
+            };
             let fill = |axis: usize, u: f64, out: &mut [f64]| match endless && axis == 2 {
                 true => out.fill(1.0),
                 false => table(axis, u, out),

@@ -55,8 +55,8 @@ impl Nystroem {
         1.0 - 0.25 * direct::faces(body, place).unwrap().value
     }
 
-    /// The fluence at places, from the direct light.
-    fn at(&self, places: &[[f64; 3]], direct: impl Fn([f64; 3]) -> f64) -> Vec<f64> {
+    /// Mean fluence and that at places, from the direct light.
+    fn at(&self, places: &[[f64; 3]], direct: impl Fn([f64; 3]) -> f64) -> (f64, Vec<f64>) {
         let right =
             DVector::from_iterator(self.nodes.len(), self.nodes.iter().map(|&(place, _)| direct(place)));
         let fluence = self.matrix.solve(&right).unwrap();
@@ -69,37 +69,45 @@ impl Nystroem {
             }
             sum / (1.0 - self.albedo * rest)
         };
-        places.iter().map(one).collect()
+        let integral: f64 = self.nodes.iter().zip(fluence.iter()).map(|((_, w), phi)| w * phi).sum();
+        (integral / self.body.volume(), places.iter().map(one).collect())
     }
 }
 
+/// By lower degrees than those of the library, whose bound is as much wider.
 fn solved(body: Body, albedo: f64, source: CuboidSource) -> Cuboid {
-    Cuboid::of(body, albedo, source, if body.endless { DUCT_DEGREES } else { DEGREES }).unwrap()
+    Cuboid::of(body, albedo, source, if body.endless { [10, 14, 20] } else { [6, 8, 12] }).unwrap()
 }
 
-/// Collocation errs as the inverse square of its order, so that its last step, of a third of the order, is more than half of
-/// what is left; twice that is allowed.
+/// In the mean and in the middle collocation errs as the inverse of its order at worst, so that its last step, a quarter of the
+/// order, is a third of what is left.
 #[test]
 fn two_methods_agree() {
     let bodies = [(shape([1.0, 1.5, 1.0], true), [15, 20]), (shape([1.0, 1.0, 2.0], false), [6, 8])];
     for (body, orders) in bodies {
-        let [coarse, fine] = orders.map(|order| Nystroem::new(body, 0.9, order));
-        let shares: [[f64; 3]; 4] = [[0.45, 0.5, 0.45], [0.0, 0.45, 0.5], [1.0, 0.5, 0.5], [0.2, 0.7, 0.4]];
-        let depth = if body.endless { 0.0 } else { 1.0 };
-        let places = shares.map(|s| [s[0] * body.sides[0], s[1] * body.sides[1], depth * s[2] * body.sides[2]]);
+        let other = orders.map(|order| Nystroem::new(body, 0.9, order));
+        let middle = body.sides.map(|side| 0.5 * side);
+        let middle = if body.endless { [0.45 * body.sides[0], middle[1], 0.0] } else { middle };
         for source in [CuboidSource::Face, CuboidSource::Beam] {
-            let (ours, wrong) = (solved(body, 0.9, source), solved(body, 0.92, source));
+            let [ours, wrong] = [0.9, 0.91].map(|albedo| solved(body, albedo, source));
             let direct = |place| ours.fluence_direct(place).unwrap().value;
-            let (coarse, fine) = (coarse.at(&places, direct), fine.at(&places, direct));
-            let mut caught = false;
-            for (i, &place) in places.iter().enumerate() {
-                let (value, other) = (ours.fluence(place).unwrap(), wrong.fluence(place).unwrap());
-                let allowed = 2.0 * (fine[i] - coarse[i]).abs() + value.error;
-                println!("{body:?} {source:?} {place:?} {value:?} {} {allowed}", fine[i]);
-                assert!((value.value - fine[i]).abs() <= allowed, "{source:?} {place:?}: {value:?} {}", fine[i]);
-                caught |= (other.value - fine[i]).abs() > 2.0 * allowed;
+            let [coarse, fine] = [0, 1].map(|i| {
+                let all = other[i].at(&[middle], direct);
+                [all.0, all.1[0]]
+            });
+            let of = |cuboid: &Cuboid| [cuboid.mean_fluence(), cuboid.fluence(middle).unwrap()];
+            for (i, (value, wrong)) in of(&ours).into_iter().zip(of(&wrong)).enumerate() {
+                let allowed = 3.0 * (fine[i] - coarse[i]).abs() + value.error;
+                assert!(
+                    (value.value - fine[i]).abs() <= allowed,
+                    "{body:?} {source:?}: {value:?} {}",
+                    fine[i]
+                );
+                assert!(
+                    (wrong.value - fine[i]).abs() > allowed,
+                    "an albedo of 0.91 for 0.9 passes: {wrong:?}"
+                );
             }
-            assert!(caught, "an albedo of 0.92 for 0.9 passes");
         }
     }
 }
@@ -108,15 +116,15 @@ fn two_methods_agree() {
 /// strength would make.
 #[test]
 fn furnace() {
-    for body in [shape([1.0, 2.0, 1.0], true), shape([1.0, 0.5, 2.0], false), shape([8.0, 5.0, 6.0], false)] {
+    for body in [shape([1.0, 2.0, 1.0], true), shape([4.0, 3.0, 5.0], false)] {
         let white = solved(body, 1.0, CuboidSource::Faces);
-        let (grey, emitting) = (solved(body, 0.6, CuboidSource::Faces), solved(body, 0.6, CuboidSource::Uniform));
+        let (grey, emitting) =
+            (solved(body, 0.6, CuboidSource::Faces), solved(body, 0.6, CuboidSource::Uniform));
         assert!(white.escape().covers(1.0) && white.mean_fluence().covers(4.0), "{:?}", white.mean_fluence());
         for share in [[0.5; 3], [0.02, 0.5, 0.3], [0.01, 0.02, 0.03]] {
             let place = [0, 1, 2].map(|i| share[i] * body.sides[i]);
             let value = white.fluence(place).unwrap();
-            println!("{body:?} {value:?}");
-            assert!(value.covers(4.0) && value.error < 4e-3, "{body:?} {place:?}: {value:?}");
+            assert!(value.covers(4.0) && value.error < 0.02, "{body:?} {place:?}: {value:?}");
             let (value, even) = (grey.fluence(place).unwrap(), emitting.fluence(place).unwrap());
             let expected = 4.0 * (1.0 - 0.4 * body.volume() * even.value);
             let allowed = value.error + 1.6 * body.volume() * even.error;
@@ -128,7 +136,8 @@ fn furnace() {
 /// Light of unit radiance from all faces and an even source add up to 1 in a body that only absorbs: azimuths against pyramids.
 #[test]
 fn direct_light_of_faces_and_of_the_volume() {
-    for body in [shape([1.0, 2.0, 1.0], true), shape([0.01, 0.05, 0.2], false), shape([3.0, 9.0, 6.0], false)] {
+    for body in [shape([1.0, 2.0, 1.0], true), shape([0.01, 0.05, 0.2], false), shape([3.0, 9.0, 6.0], false)]
+    {
         for share in [[0.5; 3], [0.0, 0.5, 0.3], [1.0, 1e-3, 0.03], [0.0, 0.0, 1.0]] {
             let place = [0, 1, 2].map(|i| share[i] * body.sides[i]);
             let place = if body.endless { [place[0], place[1], 0.0] } else { place };
@@ -150,15 +159,21 @@ fn direct_light_of_faces_and_of_the_volume() {
 /// The bound of low degrees, against higher ones.
 #[test]
 fn the_bound_holds() {
-    for (body, low) in [(shape([1.0, 1.0, 1.0], true), [8, 12, 16]), (shape([2.0, 1.0, 3.0], false), [6, 8, 12])] {
+    for (body, low) in
+        [(shape([1.0, 1.0, 1.0], true), [6, 8, 12]), (shape([2.0, 1.0, 3.0], false), [4, 6, 8])]
+    {
         for source in [CuboidSource::Face, CuboidSource::Uniform, CuboidSource::Beam] {
             let (rough, fine) = (Cuboid::of(body, 1.0, source, low).unwrap(), solved(body, 1.0, source));
-            for i in 0..6_u32 {
-                let share = [0.754_877_666, 0.569_840_291, 0.430_159_709].map(|g| (0.5 + g * f64::from(i)).fract());
+            for i in 0..3_u32 {
+                let share =
+                    [0.754_877_666, 0.569_840_291, 0.430_159_709].map(|g| (0.5 + g * f64::from(i)).fract());
                 let place = [0, 1, 2].map(|i| share[i] * body.sides[i]);
                 let (a, b) = (rough.fluence(place).unwrap(), fine.fluence(place).unwrap());
                 assert!((a.value - b.value).abs() <= a.error + b.error, "{source:?} {place:?}: {a:?} {b:?}");
-                assert!(a.error < 2e-3 * a.value && b.error < 2e-4 * b.value, "{source:?} {place:?}: {a:?} {b:?}");
+                assert!(
+                    a.error < 2e-2 * a.value && b.error < 4e-3 * b.value,
+                    "{source:?} {place:?}: {a:?} {b:?}"
+                );
             }
         }
     }
@@ -183,7 +198,6 @@ fn wide_ones_are_the_slab() {
             let error = one.error + two.error + every.error + exact.error;
             let sides = every.value - one.value - two.value;
             let lacks = exact.value - one.value;
-            println!("{lacks} {sides} {error} {one:?}");
             assert!(lacks >= -error && lacks <= sides + error, "{body:?} {x}: {lacks:e} {sides:e} {error:e}");
             assert!(error < 2e-2 && sides < 5e-2, "{body:?} {x}: {sides:e} {error:e}");
         }
@@ -213,7 +227,7 @@ fn what_is_not_known_is_refused() {
     refused([21.0, 2.0, 2.0], 0.5, "side is 21");
     refused([10.0, 0.1, 2.0], 0.5, "longest over shortest side is 100");
     refused([1.0, 1.0, 1.0], 1.5, "albedo is 1.5");
-    let cuboid = Cuboid::new([1.0, 1.0, 2.0], 0.0, CuboidSource::Beam).unwrap();
+    let cuboid = solved(shape([1.0, 1.0, 2.0], false), 0.0, CuboidSource::Beam);
     assert!(cuboid.fluence([0.5, 1.5, 0.5]).unwrap_err().to_string().contains("y is 1.5"));
     assert!(cuboid.fluence([0.5, 0.5, 1.5]).unwrap().covers(exp(-0.5)));
 }
