@@ -3,8 +3,8 @@
 use crate::format::Format;
 use crate::question::Question;
 use crate::{
-    beams, boundary, cavity, critical, half_space, infinite, kernel, layers, nearest, path, progressive,
-    slab, sphere, thick, two_stream, xy,
+    beams, boundary, cavity, critical, cuboid, emitting_cube, half_space, infinite, kernel, layers, nearest,
+    nested, path, progressive, slab, sphere, thick, two_stream, xy,
 };
 use clap::{Parser, Subcommand};
 use std::path::PathBuf;
@@ -51,6 +51,9 @@ pub enum Command {
     TwoStream(two_stream::Args),
     Xy(xy::Args),
     Sphere(sphere::Args),
+    Cuboid(cuboid::Args),
+    EmittingCube(emitting_cube::Args),
+    Nested(nested::Args),
     Cavity(cavity::Args),
     Critical(critical::Args),
     Path(path::Args),
@@ -73,6 +76,9 @@ impl Command {
             Command::TwoStream(question) => question,
             Command::Xy(question) => question,
             Command::Sphere(question) => question,
+            Command::Cuboid(question) => question,
+            Command::EmittingCube(question) => question,
+            Command::Nested(question) => question,
             Command::Cavity(question) => question,
             Command::Critical(question) => question,
             Command::Path(question) => question,

@@ -13,6 +13,15 @@ pub fn incidence(text: &str) -> Result<Incidence, String> {
     }
 }
 
+/// Reads the coordinates of a place, as many as there are.
+pub fn place(text: &str) -> Result<Vec<f64>, String> {
+    let number = |part: &str| part.trim().parse();
+    text.split(',')
+        .map(number)
+        .collect::<Result<_, _>>()
+        .map_err(|_| format!("at is '{text}'; allowed: numbers separated by commas, as 0.5,0.5,1"))
+}
+
 /// Reads a kernel's name.
 pub fn kernel(text: &str) -> Result<Kernel, String> {
     match text {

@@ -38,6 +38,12 @@ pub enum Unit {
     PowerPerMfp2,
     /// The same per steradian.
     PowerPerMfp2Sr,
+    /// Power of the source per volume, times a length.
+    SourcePerVolumeLength,
+    /// What a black wall of the temperature of the medium sends out, sigma T^4.
+    BlackExitance,
+    /// The same per side of the cube.
+    BlackExitancePerSide,
     /// Power of the source, per squared length.
     PowerPerLength2,
     /// The unit of `--first`.
@@ -83,6 +89,9 @@ impl fmt::Display for Unit {
             Unit::PowerMfp => "power mfp",
             Unit::PowerPerMfp2 => "power/mfp^2",
             Unit::PowerPerMfp2Sr => "power/(mfp^2 sr)",
+            Unit::SourcePerVolumeLength => "length power/volume",
+            Unit::BlackExitance => "sigma T^4",
+            Unit::BlackExitancePerSide => "sigma T^4/side",
             Unit::PowerPerLength2 => "power/length^2",
             Unit::First => "unit of first",
             Unit::Middle => "middle",

@@ -12,6 +12,7 @@ mod boundary_nearest;
 mod boundary_points;
 mod bounds;
 mod critical;
+mod cuboid;
 mod half_space_reference;
 mod layers;
 mod layers_tables;
