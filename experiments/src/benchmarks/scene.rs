@@ -7,7 +7,9 @@ use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::Instant;
 use turbid::scene::{Orders, Scene, SceneFile};
-use turbid::sensor::{Measurement, PathSettings, PhotonSettings, by_paths, by_photons};
+use turbid::sensor::{
+    Measurement, PathSettings, PhotonSettings, TallySettings, by_paths, by_photons, by_tallies,
+};
 use turbid::transport::NoProgress;
 use turbid_analytic::Value;
 
@@ -68,6 +70,14 @@ impl<'a> Bench<'a> {
         self.asked.fetch_add(1, Ordering::Relaxed)
     }
 
+    /// A scene that is not kept.
+    ///
+    /// # Errors
+    /// If it is none
+    pub fn parsed(&self, text: &str) -> anyhow::Result<Scene> {
+        Ok(SceneFile::from_toml(text)?.scene(&self.scenes)?)
+    }
+
     /// Every sensor of a scene by paths.
     ///
     /// # Errors
@@ -89,6 +99,16 @@ impl<'a> Bench<'a> {
     pub fn photons(&self, scene: &Scene, mut settings: PhotonSettings) -> anyhow::Result<Vec<Measurement>> {
         settings.seed = self.settings.seed.wrapping_add(self.replicate() << 32);
         Ok(by_photons(scene, &settings, &NoProgress)?.measurements)
+    }
+
+    /// Every sensor of a scene by light tracing.
+    ///
+    /// # Errors
+    /// Those of the photon pass
+    pub fn light(&self, scene: &Scene, photons: u64) -> anyhow::Result<Vec<Measurement>> {
+        let seed = self.settings.seed.wrapping_add(self.replicate() << 32);
+        let settings = TallySettings { photons, seed, orders: Orders::ALL };
+        Ok(by_tallies(scene, &settings, &NoProgress)?.measurements)
     }
 }
 

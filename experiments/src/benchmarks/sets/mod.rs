@@ -3,9 +3,11 @@
 mod disort;
 mod duct;
 mod garcia_siewert;
+mod i3rc;
 mod kobayashi;
 mod markov;
 mod mcml;
+mod prahl;
 mod reed;
 mod van_de_hulst;
 
@@ -60,6 +62,8 @@ pub const ALL: &[&Set] = &[
     &garcia_siewert::LAYERS,
     &disort::SET,
     &reed::SET,
+    &prahl::SET,
+    &i3rc::SET,
     &mcml::SET,
     &duct::SET,
     &markov::SET,

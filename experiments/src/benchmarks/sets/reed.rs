@@ -3,7 +3,8 @@
 use super::{Plot, Set};
 use crate::benchmarks::comparison::{Comparison, Row};
 use crate::benchmarks::published::{Entry, Published};
-use crate::benchmarks::scene::{Bench, exact, timed};
+use crate::benchmarks::scene::{Bench, exact, measured, timed};
+use anyhow::Context;
 use turbid_analytic::{Ground, Layer, Phase, StratifiedSlab};
 
 pub(super) const SET: Set = Set {
@@ -33,7 +34,7 @@ fn medium(x: f64) -> Option<[f64; 3]> {
     }
 }
 
-fn run(_: &Bench) -> anyhow::Result<Vec<Comparison>> {
+fn run(bench: &Bench) -> anyhow::Result<Vec<Comparison>> {
     let table = Published::read(
         "reed_openmc.csv",
         include_str!("../tables/reed_openmc.csv"),
@@ -67,7 +68,51 @@ fn run(_: &Bench) -> anyhow::Result<Vec<Comparison>> {
         }
         Ok(rows)
     })?;
-    Ok(vec![referee])
+    let light = timed("light tracing", || {
+        let found = bench.light(&bench.scene("reed", &scene())?, bench.pick(100_000, 10_000_000))?;
+        let answer = |e: &Entry| {
+            let bin = (e.number("x_cell_middle")? / e.number("cell_width")?) as usize;
+            let m = found.iter().find(|m| m.bin.is_some_and(|b| b.index[2] == bin));
+            row(e, measured(m.context("Reed's slab has 80 cells")?))
+        };
+        entries.iter().map(answer).collect()
+    })?;
+    Ok(vec![referee, light])
+}
+
+/// A column of the slab between mirrors.
+fn scene() -> String {
+    const MEDIA: [[f64; 5]; 4] = [
+        [0.0, 2.0, 50.0, 0.0, 50.0],
+        [2.0, 3.0, 5.0, 0.0, 0.0],
+        [5.0, 6.0, 1.0, 0.9, 1.0],
+        [6.0, 8.0, 1.0, 0.9, 0.0],
+    ];
+    let mut text = String::new();
+    for [from, to, extinction, albedo, _] in MEDIA {
+        text += &format!(
+            "[[regions]]\nshape = {{ cuboid = {{ min = [-0.5, -0.5, {from:?}], max = [1.5, 1.5, {to:?}] }} }}\nsigma_t = {extinction:?}\nalbedo = \
+             {albedo:?}\ng = 0.0\n\n"
+        );
+    }
+    let mirrors = [
+        ("[0, 0, 0]", "[1, 0, 0]", "[0, 1, 0]"),
+        ("[0, 0, 0]", "[0, 1, 0]", "[0, 0, 9]"),
+        ("[1, 0, 0]", "[0, 1, 0]", "[0, 0, 9]"),
+        ("[0, 0, 0]", "[1, 0, 0]", "[0, 0, 9]"),
+        ("[0, 1, 0]", "[1, 0, 0]", "[0, 0, 9]"),
+    ];
+    for (corner, u, v) in mirrors {
+        text += &format!(
+            "[[objects]]\nshape = {{ rectangle = {{ corner = {corner}, u = {u}, v = {v} }} }}\nsurface = {{ mirror = {{ reflectance = 1.0 }} }}\n\n"
+        );
+    }
+    for [from, to, _, _, source] in MEDIA.into_iter().filter(|medium| medium[4] > 0.0) {
+        text += &format!(
+            "[[lights]]\nvolume-source = {{ shape = {{ cuboid = {{ min = [0.0, 0.0, {from:?}], max = [1.0, 1.0, {to:?}] }} }}, density = {source:?} }}\n\n"
+        );
+    }
+    text + "[[sensors]]\nname = \"cell\"\nmeasure = { mean-fluence = { min = [0, 0, 0], max = [1, 1, 8], cells = [1, 1, 80] } }\n"
 }
 
 fn row(e: &Entry, ours: (f64, Option<f64>)) -> anyhow::Result<Row> {
