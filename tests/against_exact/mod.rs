@@ -1,6 +1,7 @@
 //! The player against the referee: path tracer and photons against exact values, order by order and in all.
 
 mod cavity;
+mod cuboid;
 mod emitting_sphere;
 mod equiangular;
 mod furnace;
