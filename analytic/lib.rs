@@ -12,7 +12,7 @@
 //!   [`slab_single`]; between refracting faces [`slab_fresnel`]; by order of scattering [`orders`];
 //!   of layers [`layers`]; thick [`asymptotics`]; approximations [`two_stream`]
 //! * Half-space: [`half_space`]; infinite medium: [`infinite`]; X and Y functions: [`xy`]
-//! * Sphere: [`sphere`], [`cavity`]; critical bodies: [`critical`]; path lengths: [`mean_path`]
+//! * Sphere: [`sphere`], [`cavity`]; cuboid and duct: [`cuboid`], [`emitting_cube`], [`nested`]; critical bodies: [`critical`]; path lengths: [`mean_path`]
 //! * Kernel density estimation: [`kernel`], [`ball_mean`], [`blur`], [`edge`], [`volumes`], [`slab_kernel`],
 //!   [`nearest`], [`progressive`], [`beams`]; where the medium ends: [`boundary`]
 

@@ -185,7 +185,8 @@ impl Cuboid {
 
     /// Fraction of that power which is absorbed.
     pub fn absorptance(&self) -> Value {
-        self.mean_fluence().scaled((1.0 - self.albedo) * self.body.volume() / self.power())
+        let absorbed = self.mean_fluence().scaled((1.0 - self.albedo) * self.body.volume() / self.power());
+        Value { error: absorbed.error + f64::MIN_POSITIVE, ..absorbed }
     }
 
     /// Fraction of that power which leaves through all faces, uncollided light included.

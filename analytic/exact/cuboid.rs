@@ -6,7 +6,7 @@ use crate::question::{Question, Solved};
 use crate::read::place;
 use crate::typed::Typed;
 use crate::unit::Unit;
-use anyhow::{Result, bail, ensure};
+use anyhow::{Result, ensure};
 use clap::ValueEnum;
 use std::rc::Rc;
 use turbid_analytic::{Cuboid, CuboidSource};
@@ -28,7 +28,7 @@ use turbid_figure::{Axis, Figure};
 #[command(verbatim_doc_comment)]
 pub struct Args {
     /// Sides a, b, c of a cuboid or a, b of a duct, in mean free paths, 1e-3 to 20, none more than 20 times another.
-    #[arg(long, required = true, num_args = 2..=3, value_delimiter = ',', value_name = "SIDE", allow_negative_numbers = true)]
+    #[arg(long, required = true, num_args = 1.., value_delimiter = ',', value_name = "SIDE", allow_negative_numbers = true)]
     sides: Vec<f64>,
     /// Single-scattering albedo, 0 to 1.
     #[arg(long, allow_negative_numbers = true)]
@@ -70,9 +70,8 @@ impl Args {
         let (source, name, _) = self.source.known();
         solved.once((&self.sides, self.albedo, name), || {
             Ok(match self.sides[..] {
-                [a, b] => Cuboid::duct([a, b], self.albedo, source)?,
                 [a, b, c] => Cuboid::new([a, b, c], self.albedo, source)?,
-                _ => bail!("--sides has {}; allowed: 3 of a cuboid, 2 of a duct", self.sides.len()),
+                _ => Cuboid::duct([self.sides[0], self.sides[1]], self.albedo, source)?,
             })
         })
     }
@@ -80,6 +79,11 @@ impl Args {
 
 impl Question for Args {
     fn answer(&self, answer: &mut Answer, solved: &Solved) -> Result<()> {
+        ensure!(
+            matches!(self.sides.len(), 2 | 3),
+            "--sides has {}; allowed: 3 of a cuboid, 2 of a duct",
+            self.sides.len()
+        );
         for at in &self.at {
             ensure!(
                 at.len() == self.sides.len(),

@@ -2,6 +2,7 @@
 
 mod bins;
 mod cavity;
+mod cuboid;
 mod emitting_sphere;
 mod equiangular;
 mod furnace;
