@@ -6,6 +6,9 @@ use turbid::stats::{chi_squared_p, normal_p};
 /// Below this p a comparison differs. With 50 comparisons on the page a false alarm happens on one page in 200.
 pub const LEVEL: f64 = 1e-4;
 
+/// What stands between a method and the one of ours that it is held against, in [`Comparison::by`].
+pub const AGAINST: &str = " against ";
+
 /// A published number beside ours.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Row {
@@ -94,6 +97,11 @@ impl Verdict {
 }
 
 impl Comparison {
+    /// Whether it holds a method of ours against another one of ours: nobody published a number.
+    pub fn is_among_ours(&self) -> bool {
+        self.by.contains(AGAINST)
+    }
+
     /// The sum of squares and how many there are.
     pub fn chi_squared(&self) -> (f64, u64) {
         let squares = self.rows.iter().filter_map(Row::z).map(|z| z * z);

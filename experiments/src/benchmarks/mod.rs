@@ -14,5 +14,5 @@ mod settings;
 
 pub use comparison::{Comparison, Row, Verdict};
 pub use published::Published;
-pub use run::main;
+pub use run::{Answered, main};
 pub use scene::Bench;

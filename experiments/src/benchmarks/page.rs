@@ -37,7 +37,7 @@ pub fn page(answered: &[Answered], settings: &Settings) -> Markup {
         ALL.iter().filter_map(|set| Some((*set, answered.iter().find(|a| a.set == set.name)?))).collect();
     let comparisons = || found.iter().flat_map(|(_, a)| &a.comparisons);
     let count = |verdict: Verdict| comparisons().filter(|c| c.verdict() == verdict).count();
-    let values: u64 = comparisons().map(|c| c.chi_squared().1).sum();
+    let values: u64 = comparisons().filter(|c| !c.is_among_ours()).map(|c| c.chi_squared().1).sum();
     html! {
         (DOCTYPE)
         html lang="en" {
@@ -50,8 +50,8 @@ pub fn page(answered: &[Answered], settings: &Settings) -> Markup {
             body {
                 h1 { "Numbers that others published, beside turbid's" }
                 p {
-                    (values) " comparisons with published numbers in " (found.len()) " sets, by exact solutions, paths and photons: "
-                    (count(Verdict::Agrees)) " answers agree, " (count(Verdict::Differs)) " differ, " (count(Verdict::Open))
+                    (found.len()) " sets, " (values) " comparisons with published numbers, by exact solutions, paths, light tracing and photon maps, and where "
+                    "nobody published any, of our own methods with each other: " (count(Verdict::Agrees)) " answers agree, " (count(Verdict::Differs)) " differ, " (count(Verdict::Open))
                     " are open. Every difference is explained in its section, or named as unexplained."
                 }
                 p.soft {

@@ -8,7 +8,8 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::Instant;
 use turbid::scene::{Orders, Scene, SceneFile};
 use turbid::sensor::{
-    Measurement, PathSettings, PhotonSettings, TallySettings, by_paths, by_photons, by_tallies,
+    Measurement, PathSettings, PhotonSettings, TallySettings, by_guided_paths, by_paths, by_photons,
+    by_tallies,
 };
 use turbid::transport::NoProgress;
 use turbid_analytic::Value;
@@ -92,6 +93,20 @@ impl<'a> Bench<'a> {
         Ok(by_paths(scene, &settings, &NoProgress)?)
     }
 
+    /// The same by paths that weight windows lead to the lights.
+    ///
+    /// # Errors
+    /// Those of the path tracer
+    pub fn guided_paths(&self, scene: &Scene, samples: u64) -> anyhow::Result<Vec<Measurement>> {
+        let settings = PathSettings {
+            samples,
+            seed: self.settings.seed,
+            replicate: self.replicate(),
+            orders: Orders::ALL,
+        };
+        Ok(by_guided_paths(scene, &settings, &NoProgress)?)
+    }
+
     /// Every sensor of a scene by photons, tallies and maps.
     ///
     /// # Errors
@@ -106,7 +121,15 @@ impl<'a> Bench<'a> {
     /// # Errors
     /// Those of the photon pass
     pub fn light(&self, scene: &Scene, photons: u64) -> anyhow::Result<Vec<Measurement>> {
-        let seed = self.settings.seed.wrapping_add(self.replicate() << 32);
+        self.light_of(scene, photons, self.replicate() << 32)
+    }
+
+    /// The same for one of many scenes, which each have a number.
+    ///
+    /// # Errors
+    /// Those of the photon pass
+    pub fn light_of(&self, scene: &Scene, photons: u64, number: u64) -> anyhow::Result<Vec<Measurement>> {
+        let seed = self.settings.seed.wrapping_add(number);
         let settings = TallySettings { photons, seed, orders: Orders::ALL };
         Ok(by_tallies(scene, &settings, &NoProgress)?.measurements)
     }

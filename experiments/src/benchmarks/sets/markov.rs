@@ -49,7 +49,7 @@ fn run(bench: &Bench) -> anyhow::Result<Vec<Comparison>> {
         ],
     )?;
     let entries: Vec<Entry> = table.entries().collect();
-    let realisations = bench.pick(25, 400);
+    let realisations = bench.pick(25, 1_000);
     let exact = timed("exact, ensemble", || {
         let mut rows = Vec::new();
         for (index, pair) in entries.chunks(2).enumerate() {
@@ -66,15 +66,18 @@ fn run(bench: &Bench) -> anyhow::Result<Vec<Comparison>> {
             let materials = [material(&pair[0], 1)?, material(&pair[0], 2)?];
             let thickness = pair[0].number("thickness")?;
             let mut found = [Moments::new(), Moments::new()];
-            for seed in 0..bench.pick(100, 5_000) {
-                let text = scene(&materials, thickness, seed);
-                let scene = if seed == 0 {
-                    bench.scene(&format!("markov-{}", rows.len() / 2), &text)?
-                } else {
-                    bench.parsed(&text)?
-                };
-                let measured = bench.light(&scene, 200)?;
-                found.iter_mut().zip(&measured).for_each(|(moments, m)| moments.push(m.mean));
+            bench.scene(&format!("markov-{}", rows.len() / 2), &scene(&materials, thickness, 0))?;
+            let realisation = |seed: u64| {
+                let measured =
+                    bench.light_of(&bench.parsed(&scene(&materials, thickness, seed))?, 200, seed)?;
+                Ok([measured[0].mean, measured[1].mean])
+            };
+            let answers: Vec<[f64; 2]> = (0..bench.pick(100, 10_000))
+                .into_par_iter()
+                .map(realisation)
+                .collect::<anyhow::Result<_>>()?;
+            for answer in answers {
+                found.iter_mut().zip(answer).for_each(|(m, x)| m.push(x));
             }
             rows.extend(compared(pair, &found, rows.len())?);
         }

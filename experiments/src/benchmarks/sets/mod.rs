@@ -2,6 +2,7 @@
 
 mod disort;
 mod duct;
+mod emitting_cube;
 mod garcia_siewert;
 mod i3rc;
 mod kobayashi;
@@ -66,6 +67,7 @@ pub const ALL: &[&Set] = &[
     &i3rc::SET,
     &mcml::SET,
     &duct::SET,
+    &emitting_cube::SET,
     &markov::SET,
     &kobayashi::ONE,
     &kobayashi::TWO,

@@ -69,7 +69,7 @@ fn run(bench: &Bench) -> anyhow::Result<Vec<Comparison>> {
         Ok(rows)
     })?;
     let light = timed("light tracing", || {
-        let found = bench.light(&bench.scene("reed", &scene())?, bench.pick(100_000, 10_000_000))?;
+        let found = bench.light(&bench.scene("reed", &scene())?, bench.pick(100_000, 40_000_000))?;
         let answer = |e: &Entry| {
             let bin = (e.number("x_cell_middle")? / e.number("cell_width")?) as usize;
             let m = found.iter().find(|m| m.bin.is_some_and(|b| b.index[2] == bin));

@@ -1,0 +1,124 @@
+//! Benchmarks of other communities: quick sets say what they must, and the kept page is of the kept answers.
+#![allow(clippy::unwrap_used, reason = "tests")]
+
+mod program;
+
+use assert_cmd::Command;
+use program::root;
+use std::path::Path;
+use turbid_experiments::benchmarks::{Answered, Comparison, Verdict, sets};
+
+fn benchmarks(args: &[&str], out: &Path) -> Command {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_benchmarks"));
+    command.args(args).arg("--out").arg(out);
+    command
+}
+
+fn answered(folder: &Path, set: &str) -> Answered {
+    let text = std::fs::read_to_string(folder.join(format!("{set}.json"))).unwrap();
+    serde_json::from_str(&text).unwrap()
+}
+
+fn by<'a>(answered: &'a Answered, who: &str) -> &'a Comparison {
+    answered.comparisons.iter().find(|c| c.by == who).unwrap()
+}
+
+/// Sets that take a second or two. Those whose numbers are not what they are said to be differ, and the page says why.
+#[test]
+fn quick_sets() {
+    let folder = tempfile::tempdir().unwrap();
+    let quick = [
+        ("van-de-hulst", [("exact", Verdict::Agrees), ("photons", Verdict::Agrees)]),
+        ("reed", [("exact", Verdict::Agrees), ("light tracing", Verdict::Agrees)]),
+        ("prahl", [("exact", Verdict::Differs), ("light tracing", Verdict::Agrees)]),
+        ("emitting-cube", [("exact", Verdict::Open), ("paths against exact", Verdict::Agrees)]),
+        ("kobayashi-1", [("exact, case i", Verdict::Agrees), ("paths, case i", Verdict::Agrees)]),
+    ];
+    let names: Vec<&str> = quick.iter().map(|(name, _)| *name).collect();
+    benchmarks(&["--quick", "--only", &names.join(",")], folder.path()).assert().success();
+    let page = std::fs::read_to_string(folder.path().join("index.html")).unwrap();
+    for (name, verdicts) in quick {
+        let answered = answered(folder.path(), name);
+        for (who, verdict) in verdicts {
+            let comparison = by(&answered, who);
+            assert_eq!(comparison.verdict(), verdict, "{name} by {who}: p {:?}", comparison.p());
+            // What agrees would not if ours were off by what it says it detects, with a margin: the test can fail.
+            if verdict == Verdict::Agrees {
+                let mut off = comparison.clone();
+                let bias = 1.0 + 1.5 * comparison.detects().unwrap();
+                off.rows.iter_mut().for_each(|row| row.ours *= bias);
+                assert_eq!(off.verdict(), Verdict::Differs, "{name} by {who}");
+            }
+        }
+        assert!(
+            page.contains(&format!("id=\"{name}\"")) && folder.path().join(format!("{name}.png")).exists()
+        );
+    }
+    assert!(!page.contains("It is not explained"));
+    // Answered already, it takes what is there.
+    let again = benchmarks(&["--quick", "--only", "prahl"], folder.path()).assert().success();
+    assert!(String::from_utf8_lossy(&again.get_output().stderr).contains("prahl: answered already"));
+}
+
+/// Numbers of another code: right ones agree, wrong ones differ, and hostile tables get one line.
+#[test]
+fn numbers_of_another_code() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("theirs.csv");
+    let out = folder.path().join("out");
+    let run = |text: &str| {
+        std::fs::write(&file, text).unwrap();
+        let theirs = format!("emitting-cube={}", file.display());
+        benchmarks(&["--quick", "--only", "emitting-cube", "--theirs", &theirs], &out).assert()
+    };
+    let head = "x,divergence,std_error\n";
+    let exact =
+        |x: f64| turbid_analytic::EmittingCube::BURNS_CHRISTON.divergence([x, 0.5, 0.5]).unwrap().value;
+    for (factor, verdict) in [(1.0, Verdict::Agrees), (1.01, Verdict::Differs)] {
+        let row = |x: f64| format!("{x},{:.8},0.001\n", factor * exact(x));
+        run(&format!("{head}{}{}", row(0.5), row(0.25))).success();
+        assert_eq!(by(&answered(&out, "emitting-cube"), "exact").verdict(), verdict);
+    }
+    for (text, words) in [
+        (String::new(), "no column x"),
+        ("x,divergence\n0.5,2\n".into(), "no column std_error"),
+        (format!("{head}0.5,NaN,0\n"), "line 2: divergence is NaN"),
+        (format!("{head}0.5,2,0\n0.5,2\n"), "line 3: 2 fields; needed: 3"),
+        (format!("{head}{}", "0.5,2,0\n".repeat(200_000)), "more than 100000 rows"),
+        (format!("{head}7,2,0\n"), "x is 7"),
+    ] {
+        let said = String::from_utf8(run(&text).code(2).get_output().stderr.clone()).unwrap();
+        let errors: Vec<&str> = said.lines().filter(|line| line.contains("error")).collect();
+        assert!(errors.len() == 1 && errors[0].contains(words), "{said}");
+    }
+}
+
+/// The kept page is what the program writes from the kept answers; every difference on it has its reason.
+#[test]
+fn the_kept_page_shows_the_kept_answers() {
+    let kept = root().join("results/benchmarks");
+    let folder = tempfile::tempdir().unwrap();
+    for set in sets::ALL {
+        let file = format!("{}.json", set.name);
+        std::fs::copy(kept.join(&file), folder.path().join(&file)).unwrap();
+        assert!(
+            kept.join(format!("{}.png", set.name)).exists()
+                && kept.join(format!("{}.csv", set.name)).exists()
+        );
+        for comparison in answered(&kept, set.name).comparisons {
+            let is_explained = set.explained.iter().any(|(by, _)| *by == comparison.by);
+            assert!(
+                comparison.verdict() != Verdict::Differs || is_explained,
+                "{} by {}",
+                set.name,
+                comparison.by
+            );
+        }
+    }
+    benchmarks(&["--page"], folder.path()).assert().success();
+    let page = std::fs::read_to_string(folder.path().join("index.html")).unwrap();
+    assert!(
+        page == std::fs::read_to_string(kept.join("index.html")).unwrap(),
+        "benchmarks --page writes another"
+    );
+}
