@@ -1,12 +1,14 @@
 //! Benchmarks of other communities: quick sets say what they must, and the kept page is of the kept answers.
 #![allow(clippy::unwrap_used, reason = "tests")]
 
-mod program;
-
 use assert_cmd::Command;
-use program::root;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use turbid_experiments::benchmarks::{Answered, Comparison, Verdict, sets};
+
+/// The folder of the workspace.
+fn root() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).parent().unwrap().to_path_buf()
+}
 
 fn benchmarks(args: &[&str], out: &Path) -> Command {
     let mut command = Command::new(env!("CARGO_BIN_EXE_benchmarks"));
