@@ -287,7 +287,7 @@ fn every_command_explains_itself() {
         assert!(length, "{command}: no unit of length");
         count += 1;
     }
-    assert_eq!(count, 16, "{help}");
+    assert_eq!(count, 19, "{help}");
 }
 
 #[test]

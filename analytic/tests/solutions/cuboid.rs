@@ -3,8 +3,9 @@
 use crate::support::table::{number, rows};
 use turbid_analytic::{Cuboid, CuboidSource, NestedCuboids};
 
-/// Rows in which the last digit of the table is not that of the integral equation: next to the lit side and on the dark one, by up
-/// to two units. There collocation with the singularity taken away, tested in the module, has our number too.
+/// Rows in which the last digit of the table is not that of the integral equation: next to the lit side and on both, by up to two units.
+/// Collocation with the singularity taken away, on 10 to 20 nodes a side that crowd at the sides and extrapolated, has 0.6295 and
+/// 0.0862 on the sides, where the table has 0.6293 and 0.0863.
 const OFF: [f64; 4] = [0.0, 0.00611, 0.04251, 1.0];
 
 /// Crosbie and Schrenker 1984: square duct of optical side 1, radiance 1 on one side, albedo 1; source function phi/(4 pi) along the
