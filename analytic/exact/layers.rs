@@ -177,22 +177,27 @@ impl Given {
 
 impl Args {
     fn slab(&self, solved: &Solved) -> Result<Rc<StratifiedSlab>> {
-        solved.once((&self.layer, self.ground, self.ground_index, self.exitance, self.mu0, self.method), || {
-            let numbered =
-                |(i, given): (usize, &Given)| given.layer().with_context(|| format!("layer {}", i + 1));
-            let layers = self.layer.iter().enumerate().map(numbered).collect::<Result<Vec<_>>>()?;
-            let ground = match self.ground {
-                Surface::Lambertian(reflectance) => Ground::lambertian(reflectance)?,
-                Surface::Mirror(reflectance) if self.exitance == 0.0 => Ground::specular(reflectance)?,
-                Surface::Mirror(_) => bail!("--exitance is {}; allowed with --ground mirror: 0", self.exitance),
-            };
-            let below = |ground: Ground| ground.within(self.ground_index).context("--ground-index");
-            let ground = below(ground.emitting(self.exitance)?)?;
-            Ok(match self.method {
-                Method::Adding => StratifiedSlab::new(&layers, ground, self.mu0.0)?,
-                Method::Ordinates => StratifiedSlab::by_ordinates(&layers, ground, self.mu0.0)?,
-            })
-        })
+        solved.once(
+            (&self.layer, self.ground, self.ground_index, self.exitance, self.mu0, self.method),
+            || {
+                let numbered =
+                    |(i, given): (usize, &Given)| given.layer().with_context(|| format!("layer {}", i + 1));
+                let layers = self.layer.iter().enumerate().map(numbered).collect::<Result<Vec<_>>>()?;
+                let ground = match self.ground {
+                    Surface::Lambertian(reflectance) => Ground::lambertian(reflectance)?,
+                    Surface::Mirror(reflectance) if self.exitance == 0.0 => Ground::specular(reflectance)?,
+                    Surface::Mirror(_) => {
+                        bail!("--exitance is {}; allowed with --ground mirror: 0", self.exitance)
+                    }
+                };
+                let below = |ground: Ground| ground.within(self.ground_index).context("--ground-index");
+                let ground = below(ground.emitting(self.exitance)?)?;
+                Ok(match self.method {
+                    Method::Adding => StratifiedSlab::new(&layers, ground, self.mu0.0)?,
+                    Method::Ordinates => StratifiedSlab::by_ordinates(&layers, ground, self.mu0.0)?,
+                })
+            },
+        )
     }
 
     fn tau(&self) -> f64 {

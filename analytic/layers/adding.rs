@@ -110,15 +110,8 @@ impl Added {
         }
         let root = |nodes: &Nodes| DVector::from_fn(nodes.len(), |i, _| sqrt(nodes.mu[i] * nodes.weight[i]));
         let roots = grid.regions.iter().map(|region| root(&region.nodes)).collect();
-        let mut added = Added {
-            grid,
-            slices,
-            roots,
-            down: Vec::new(),
-            up: Vec::new(),
-            ends: Vec::new(),
-            trapped: 0.0,
-        };
+        let mut added =
+            Added { grid, slices, roots, down: Vec::new(), up: Vec::new(), ends: Vec::new(), trapped: 0.0 };
         added.follow()?;
         Ok(added)
     }
@@ -126,7 +119,8 @@ impl Added {
     /// Direct light on the upper and lower face of a region, as its nodes have it.
     fn direct(&self, region: usize) -> [DVector<f64>; 2] {
         let power = &self.grid.regions[region].direct;
-        [0, 1].map(|face| self.roots[region].map_with_location(|i, _, root| power[face][i] / (2.0 * PI * root)))
+        [0, 1]
+            .map(|face| self.roots[region].map_with_location(|i, _, root| power[face][i] / (2.0 * PI * root)))
     }
 
     /// What leaves a region through its upper and lower face of its own light and after scattering direct light.
@@ -198,16 +192,14 @@ impl Added {
         Ok(())
     }
 
-    fn powers(
-        &self,
-        region: usize,
-        top: [&DVector<f64>; 2],
-        bottom: Option<[&DVector<f64>; 2]>,
-    ) -> Ends {
+    fn powers(&self, region: usize, top: [&DVector<f64>; 2], bottom: Option<[&DVector<f64>; 2]>) -> Ends {
         let power = |u: &DVector<f64>| -> Vec<f64> {
             u.iter().zip(&self.roots[region]).map(|(u, root)| 2.0 * PI * root * u).collect()
         };
-        Ends { top: top.map(power), bottom: bottom.map_or([Vec::new(), Vec::new()], |bottom| bottom.map(power)) }
+        Ends {
+            top: top.map(power),
+            bottom: bottom.map_or([Vec::new(), Vec::new()], |bottom| bottom.map(power)),
+        }
     }
 
     /// Light of the region above as that below has it, and the other way round: t, and the unit of light.

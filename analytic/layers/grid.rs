@@ -109,7 +109,11 @@ impl Anchored {
             for (&there, w) in nodes.mu.iter().zip(&nodes.weight) {
                 let here = cosine(n, *from, there).unwrap_or(there);
                 mu.push(here);
-                weight.push(if n == *from { top * w } else { top * w * from * from * there / (n * n * here) });
+                weight.push(if n == *from {
+                    top * w
+                } else {
+                    top * w * from * from * there / (n * n * here)
+                });
             }
         }
         let sum: f64 = weight.iter().sum();

@@ -185,10 +185,12 @@ impl Matched {
         let passing = |passed: &[Passed], from: &DVector<f64>, to: &DVector<f64>| {
             let common = from.len().min(to.len());
             let (from_start, to_start) = (from.len() - common, to.len() - common);
-            (0..common).map(move |j| {
-                let (i, k) = (from_start + j, to_start + j);
-                (i, k, passed[i].arrived * from[i] / to[k])
-            }).collect::<Vec<_>>()
+            (0..common)
+                .map(move |j| {
+                    let (i, k) = (from_start + j, to_start + j);
+                    (i, k, passed[i].arrived * from[i] / to[k])
+                })
+                .collect::<Vec<_>>()
         };
         for i in 0..count {
             let (n, start) = (self.modes[i].k.len(), self.starts[i]);
@@ -222,7 +224,9 @@ impl Matched {
                 let (light, own) = (p + q * sign, own_p + own_q * sign);
                 for (from, to, t) in passing(passed, &slants[other], &slants[i]) {
                     let width = light.ncols();
-                    matrix.view_mut((row + to, self.starts[other]), (1, width)).copy_from(&(light.row(from) * -t));
+                    matrix
+                        .view_mut((row + to, self.starts[other]), (1, width))
+                        .copy_from(&(light.row(from) * -t));
                     right[row + to] += t * own[from];
                 }
             }
@@ -296,7 +300,8 @@ impl Matched {
             let rising: Vec<f64> = (0..last.nodes.count)
                 .map(|k| 2.0 * PI * last.nodes.mu[k] * last.nodes.weight[k] * shining)
                 .collect();
-            let mut falling: Vec<f64> = rising.iter().zip(up).map(|(power, passed)| power * passed.reflected).collect();
+            let mut falling: Vec<f64> =
+                rising.iter().zip(up).map(|(power, passed)| power * passed.reflected).collect();
             if let Some(above) = self.ends.last() {
                 let power = &above.bottom[0];
                 let common = power.len().min(falling.len());

@@ -74,11 +74,8 @@ impl Pile {
             }
             let ((r, t), [back, gone]) = (faces[i], under[i]);
             let open = t + r * gone;
-            with[i] = if t > 0.0 && open > 0.0 {
-                [r + t * (t / open) * back, t * gone / open]
-            } else {
-                [r, t]
-            };
+            with[i] =
+                if t > 0.0 && open > 0.0 { [r + t * (t / open) * back, t * gone / open] } else { [r, t] };
         }
         let mut power = if cosines[0].is_some() { 1.0 } else { 0.0 };
         let (specular, reflected) = (power * faces[0].0, power * with[0][0]);

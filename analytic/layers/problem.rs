@@ -1,5 +1,6 @@
 //! What a stratified slab is made of, and the light in it that has not met the medium.
 
+use super::pile::{Passed, Pile, cosine};
 use crate::adding_doubling::degrees;
 use crate::beer_lambert::{direct_fluence, direct_transmittance};
 use crate::error::{Result, within};
@@ -8,7 +9,6 @@ use crate::phase::Phase;
 use crate::quadrature::Adaptive;
 use crate::slab_fresnel::check_index;
 use crate::value::Value;
-use super::pile::{Passed, Pile, cosine};
 use libm::{exp, expm1};
 
 /// Thickness of a layer, and the most of all layers together.
@@ -316,20 +316,19 @@ impl Problem {
     ///
     /// # Arguments
     /// `passages` of the slab in the longest way that counts, of which exponentials take their roundings
-    fn mean(
-        &self,
-        passages: f64,
-        f: impl Fn(&Passed, &dyn Fn(f64) -> Option<f64>) -> f64,
-    ) -> Result<Value> {
+    fn mean(&self, passages: f64, f: impl Fn(&Passed, &dyn Fn(f64) -> Option<f64>) -> f64) -> Result<Value> {
         let pile = self.pile();
         let value = |from: f64, mu: f64| {
             let of = |n: f64| cosine(n, from, mu);
             f(&pile.passed(of), &of)
         };
         // n^2 - 1 of the quotient of two indices is good to a few roundings of the quotient.
-        let faces: f64 = pile.indices.windows(2).filter(|pair| pair[0] != pair[1]).map(|pair| {
-            8.0 + 8.0 * pair[0].max(pair[1]) / (pair[0] - pair[1]).abs()
-        }).sum();
+        let faces: f64 = pile
+            .indices
+            .windows(2)
+            .filter(|pair| pair[0] != pair[1])
+            .map(|pair| 8.0 + 8.0 * pair[0].max(pair[1]) / (pair[0] - pair[1]).abs())
+            .sum();
         let mut all = match self.incidence {
             None => return Ok(Value::rounded(0.0, 0.0, FACES)),
             Some(Incidence::Beam { mu0 }) => {
@@ -347,7 +346,8 @@ impl Problem {
                     breaks.reverse();
                     let integrand =
                         |mu: f64| Ok(if mu > 0.0 { 2.0 * n * n * mu * value(n, mu) } else { 0.0 });
-                    let part = Adaptive::new(1e-15).integrate(&breaks, "unscattered light", FACES, integrand)?;
+                    let part =
+                        Adaptive::new(1e-15).integrate(&breaks, "unscattered light", FACES, integrand)?;
                     sum = sum.plus(part, FACES);
                 }
                 sum

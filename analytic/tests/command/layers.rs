@@ -38,7 +38,8 @@ fn plates_are_answered_with_their_specular_parts() {
     let glass = ["--layer", "tau=0,albedo=0,index=1.5"];
     let tissue = ["--layer", "tau=2,albedo=0.9,index=1.4"];
     let text = stdout(exact().arg("layers").args(glass).args(tissue).args(glass).args(["--format", "csv"]));
-    for part in ["specular,,0.0400000", "reflectance_direct", "reflectance_diffuse", "clear plate index 1.5"] {
+    for part in ["specular,,0.0400000", "reflectance_direct", "reflectance_diffuse", "clear plate index 1.5"]
+    {
         assert!(text.contains(part), "{text} lacks {part}");
     }
     // Paint without a gap of air under glass, and a mirror that keeps half of the light.

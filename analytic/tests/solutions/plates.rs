@@ -221,7 +221,8 @@ fn one_layer_is_the_slab_between_faces() {
         let phase = Phase::henyey_greenstein(g).unwrap();
         let one = FresnelSlab::with_phase(tau, albedo, &phase, index, light).unwrap();
         let slab = by_adding(&[layer(tau, albedo, g, index)], Ground::black(), light);
-        let near = |name: &str, a: Value, b: Value| close(&format!("{name} {tau} {albedo} {g} {index}"), a, b, 1e-8);
+        let near =
+            |name: &str, a: Value, b: Value| close(&format!("{name} {tau} {albedo} {g} {index}"), a, b, 1e-8);
         near("specular", slab.specular().unwrap(), one.specular());
         near("R", slab.reflectance(), one.reflectance());
         near("diffuse R", slab.reflectance_diffuse(), one.reflectance_diffuse());
@@ -270,13 +271,19 @@ fn clear_plates_have_closed_forms() {
         covers(slab.absorptance_ground().unwrap(), (1.0 - reflectance) * (1.0 - r) * e / open);
     }
     // Lambertian light on one face, and on a Lambertian ground under it (Saunderson 1942).
-    let (outside, inside) =
-        (hemispherical_reflectance(1.5, true).unwrap().value, hemispherical_reflectance(1.5, false).unwrap().value);
+    let (outside, inside) = (
+        hemispherical_reflectance(1.5, true).unwrap().value,
+        hemispherical_reflectance(1.5, false).unwrap().value,
+    );
     let rho = 0.8;
     let paint = Ground::lambertian(rho).unwrap().within(1.5).unwrap();
     let slab = by_adding(&[plate(1.5)], paint, Incidence::Diffuse);
     let saunderson = outside + (1.0 - outside) * (1.0 - inside) * rho / (1.0 - inside * rho);
-    assert!(slab.reflectance().covers(saunderson) && slab.reflectance().error < 1e-10, "{:?}", slab.reflectance());
+    assert!(
+        slab.reflectance().covers(saunderson) && slab.reflectance().error < 1e-10,
+        "{:?}",
+        slab.reflectance()
+    );
     covers(slab.specular().unwrap(), outside);
     // Light beyond the critical angle does not pass a gap of air, and a beam that grazes does not enter a thinner medium.
     let gap = by_adding(&[plate(0.8)], Ground::black(), beam(0.5));
@@ -331,7 +338,9 @@ fn mcml() {
     // Without the glass it is another slab.
     let bare = by_adding(&[tissue(1.4)], Ground::black(), NORMAL);
     let glass = rows.iter().find(|row| row["run"] == "glass" && row["quantity"] == "Rd").unwrap();
-    assert!((bare.reflectance_diffuse().value - number(glass, "value")).abs() > 0.02 * number(glass, "value"));
+    assert!(
+        (bare.reflectance_diffuse().value - number(glass, "value")).abs() > 0.02 * number(glass, "value")
+    );
 }
 
 #[test]
