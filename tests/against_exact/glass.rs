@@ -64,7 +64,7 @@ fn photons_cross_plates_of_another_index() {
         let medium = |(sigma_t, albedo, g): (f64, f64, f64)| {
             homogeneous(Spectrum::grey(sigma_t), Spectrum::grey(albedo), g)
         };
-        let inner = Shape::Slab(Slab::new(outer.depth, outer.depth + tau).unwrap());
+        let inner = Shape::Slab(Slab::new(outer.depth, tau).unwrap());
         let scene = Scene::new(SceneParts {
             interiors: vec![
                 Interior::surroundings(),
