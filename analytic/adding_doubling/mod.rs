@@ -27,6 +27,7 @@ mod stack;
 mod tests;
 
 pub(crate) use nodes::{Nodes, Panels};
+pub(crate) use radiance::{LAST, deflection, single_mode};
 pub(crate) use stack::{Layer, Stack, bounces};
 
 use crate::beer_lambert::{direct_fluence, direct_transmittance};
@@ -49,10 +50,10 @@ const CUT: [f64; 2] = [1e-13, 1e-10];
 const CUT_PEAKED: [f64; 2] = [1e-9, 1e-7];
 
 /// The last moment of all.
-const MOST: usize = 450;
+pub(crate) const MOST: usize = 450;
 
 /// The cut for light scattered twice or more, where the moments enter as products.
-const CUT_TWICE: [f64; 2] = [1e-11, 1e-9];
+pub(crate) const CUT_TWICE: [f64; 2] = [1e-11, 1e-9];
 
 /// Nodes towards the horizon, and the fewest above it.
 pub(crate) const LOWER: [usize; 2] = [56, 44];

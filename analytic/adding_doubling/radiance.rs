@@ -8,6 +8,7 @@ use super::nodes::{Nodes, legendre};
 use super::{AddingDoubling, CUT_TWICE, LOWER, METHOD, MOST, Stack, degrees, entering, upper};
 use crate::error::{Result, within};
 use crate::incidence::{Incidence, check_depth};
+use crate::phase::Phase;
 use crate::slab_single::beam_path;
 use crate::value::Value;
 use libm::{cos, sin, sqrt};
@@ -15,7 +16,7 @@ use nalgebra::DVector;
 use std::f64::consts::PI;
 
 /// A mode below this share of the sum, twice in a row, is the last one.
-const LAST: f64 = 1e-11;
+pub(crate) const LAST: f64 = 1e-11;
 
 impl AddingDoubling {
     /// Radiance of scattered light at depth t in the direction of signed cosine mu, per unit irradiance.
@@ -47,7 +48,8 @@ impl AddingDoubling {
         for m in 0..=degrees[0] {
             let weight = if m == 0 { 1.0 } else { 2.0 };
             let several = |i: usize| -> Result<f64> {
-                Ok(self.mode(i, degrees[i], m, t, mu)? - path * self.single_mode(degrees[i], m, mu0, mu))
+                Ok(self.mode(i, degrees[i], m, t, mu)?
+                    - path * single_mode(&self.phase, degrees[i], m, mu0, mu))
             };
             let [fine, coarse] = [several(0)?, several(1)?];
             sum += weight * fine * cos(m as f64 * dphi);
@@ -84,20 +86,20 @@ impl AddingDoubling {
         let u = if mu > 0.0 { up[last] } else { down[last] };
         Ok(u / sqrt(stack.nodes.mu[last] * stack.nodes.weight[last]))
     }
+}
 
-    /// Mode m of the phase function up to `degree`, between the beam and mu.
-    fn single_mode(&self, degree: usize, m: usize, mu0: f64, mu: f64) -> f64 {
-        if m > degree {
-            return 0.0;
-        }
-        let (a, b) = (legendre(m, degree, mu0), legendre(m, degree, mu.abs()));
-        let terms = (m..=degree).map(|l| {
-            // The beam goes down: up it turns P_l^m by (-1)^(l+m).
-            let sign = if mu > 0.0 && (l + m) % 2 == 1 { -1.0 } else { 1.0 };
-            sign * (2.0 * l as f64 + 1.0) * self.phase.moment(l) * a[l - m] * b[l - m]
-        });
-        terms.sum::<f64>() / (4.0 * PI)
+/// Mode m of a phase function up to `degree`, between the beam and mu.
+pub(crate) fn single_mode(phase: &Phase, degree: usize, m: usize, mu0: f64, mu: f64) -> f64 {
+    if m > degree {
+        return 0.0;
     }
+    let (a, b) = (legendre(m, degree, mu0), legendre(m, degree, mu.abs()));
+    let terms = (m..=degree).map(|l| {
+        // The beam goes down: up it turns P_l^m by (-1)^(l+m).
+        let sign = if mu > 0.0 && (l + m) % 2 == 1 { -1.0 } else { 1.0 };
+        sign * (2.0 * l as f64 + 1.0) * phase.moment(l) * a[l - m] * b[l - m]
+    });
+    terms.sum::<f64>() / (4.0 * PI)
 }
 
 fn sine(mu: f64) -> f64 {
@@ -105,7 +107,7 @@ fn sine(mu: f64) -> f64 {
 }
 
 /// One minus and one plus the cosine of the deflection from the beam, each as half a squared distance.
-fn deflection(mu0: f64, mu: f64, dphi: f64) -> [f64; 2] {
+pub(crate) fn deflection(mu0: f64, mu: f64, dphi: f64) -> [f64; 2] {
     let (s0, s) = (sine(mu0), sine(mu));
     let lateral = if s0 + s > 0.0 { (mu - mu0) * (mu + mu0) / (s0 + s) } else { 0.0 };
     let of =

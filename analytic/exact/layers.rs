@@ -35,8 +35,8 @@ use turbid_figure::{Axis, Figure};
 pub struct Args {
     /// A layer, from the lit face down, as name=value separated by commas: tau (1e-12 to 100), albedo (0 to 1); g
     /// (Henyey-Greenstein, 0 if not given), phase=rayleigh or moments=FILE; emission (0 or more, in a layer of 1e-6 or more);
-    /// index (of refraction, over that above the layers, 0.25 to 4, 1 if not given). Once for each layer
-    #[arg(verbatim_doc_comment, long, required = true, value_parser = layer, value_name = "tau=T,albedo=W,g=G")]
+    /// index (of refraction, over that above the layers, 0.25 to 4, 1 if not given). Once for each layer, or with | between them
+    #[arg(verbatim_doc_comment, long, required = true, value_parser = layer, value_delimiter = '|', value_name = "tau=T,albedo=W,g=G")]
     layer: Vec<Given>,
     /// Reflectance of the ground, 0 to 1, or the word mirror, or mirror=R of reflectance R.
     #[arg(long, default_value = "0", value_parser = ground, allow_negative_numbers = true)]

@@ -13,7 +13,7 @@
 //! positive. s is light of the layer's own and what it scatters of direct light, which is known without nodes and is kept
 //! apart. r and t are numbers of each direction: a node is a direction in all regions, and its power passes from one to the other.
 
-use super::grid::{Between, Ends, Grid, Region, Rule};
+use super::grid::{Between, Ends, Grid, Rule};
 use super::pile::Passed;
 use super::problem::Problem;
 use crate::adding_doubling::{LOWER, Layer, Nodes, Stack, ULPS, bounces, degrees, upper};
@@ -34,9 +34,11 @@ struct Slice {
     inside: OnceLock<Result<Stack>>,
 }
 
-/// The azimuthal mean on one set of nodes.
+/// The azimuthal mean, or another mode, on one set of nodes.
 pub(super) struct Added {
     grid: Grid,
+    /// The part that goes with cos(m dphi).
+    order: usize,
     /// Of all regions but the ground.
     slices: Vec<Arc<Slice>>,
     /// root(mu weight) of all regions: times the radiance the light in a direction, times light the power.
@@ -70,17 +72,22 @@ impl Added {
             degree.push(degrees(&layer.phase)?[set]);
         }
         let most = degree.iter().copied().fold(0, usize::max);
-        let rule = Rule { upper: upper(set, 0), lower: LOWER[set], power: 5, open: 3.0, degree: most };
-        Self::on(problem, rule, index, cosines, &degree)
+        Self::on(problem, Self::rule(set, most), index, cosines, &degree, 0)
     }
 
-    /// The same on any nodes, with the moments of each layer up to its degree.
+    /// The nodes that follow moments up to `degree`.
+    pub fn rule(set: usize, degree: usize) -> Rule {
+        Rule { upper: upper(set, 0), lower: LOWER[set], power: 5, open: 3.0, degree }
+    }
+
+    /// Mode `order` on any nodes, with the moments of each layer up to its degree.
     pub fn on(
         problem: Arc<Problem>,
         rule: Rule,
         index: f64,
         cosines: &[f64],
         degree: &[usize],
+        order: usize,
     ) -> Result<Self> {
         let mut users = match problem.incidence {
             Some(Incidence::Beam { mu0 }) => vec![(1.0, mu0)],
@@ -102,7 +109,7 @@ impl Added {
                 None => {
                     let moments: Vec<f64> = (0..=degree[i]).map(|l| layer.phase.moment(l)).collect();
                     let nodes = grid.regions[at].nodes.clone();
-                    let whole = Stack::new(layer.tau, layer.albedo, &moments, 0, nodes)?.into_whole();
+                    let whole = Stack::new(layer.tau, layer.albedo, &moments, order, nodes)?.into_whole();
                     let (tau, albedo) = (layer.tau, layer.albedo);
                     Arc::new(Slice { tau, albedo, moments, whole, inside: OnceLock::new() })
                 }
@@ -110,8 +117,16 @@ impl Added {
         }
         let root = |nodes: &Nodes| DVector::from_fn(nodes.len(), |i, _| sqrt(nodes.mu[i] * nodes.weight[i]));
         let roots = grid.regions.iter().map(|region| root(&region.nodes)).collect();
-        let mut added =
-            Added { grid, slices, roots, down: Vec::new(), up: Vec::new(), ends: Vec::new(), trapped: 0.0 };
+        let mut added = Added {
+            grid,
+            order,
+            slices,
+            roots,
+            down: Vec::new(),
+            up: Vec::new(),
+            ends: Vec::new(),
+            trapped: 0.0,
+        };
         added.follow()?;
         Ok(added)
     }
@@ -123,11 +138,17 @@ impl Added {
             .map(|face| self.roots[region].map_with_location(|i, _, root| power[face][i] / (2.0 * PI * root)))
     }
 
+    /// What starts in a region, in all directions alike.
+    fn emission(&self, region: usize) -> f64 {
+        let alike = if self.order == 0 { 1.0 } else { 0.0 };
+        alike * self.grid.problem.layers[self.grid.regions[region].layer].emission
+    }
+
     /// What leaves a region through its upper and lower face of its own light and after scattering direct light.
     fn started(&self, region: usize) -> [DVector<f64>; 2] {
         let [top, bottom] = self.direct(region);
         let slice = &self.slices[region].whole;
-        let emission = self.grid.problem.layers[self.grid.regions[region].layer].emission;
+        let emission = self.emission(region);
         let own = &slice.dwelt * (emission / (4.0 * PI));
         [
             &slice.reflected * &top + &slice.scattered * &bottom + &own,
@@ -144,9 +165,11 @@ impl Added {
             None => {
                 let root = &self.roots[regions - 1];
                 let arrived = self.grid.problem.arrived()?.value;
+                // A Lambertian ground keeps nothing of an azimuth.
+                let alike = if self.order == 0 { 1.0 } else { 0.0 };
                 Below {
-                    returned: root * root.transpose() * (2.0 * ground.reflectance),
-                    emerging: root * ((ground.exitance + ground.reflectance * arrived) / PI),
+                    returned: root * root.transpose() * (2.0 * alike * ground.reflectance),
+                    emerging: root * (alike * (ground.exitance + ground.reflectance * arrived) / PI),
                 }
             }
         };
@@ -289,7 +312,7 @@ impl Added {
         let [top, bottom] = self.direct(region);
         let light = top + bottom + &self.down[region] + &self.up[region];
         let whole = &self.slices[region].whole;
-        2.0 * PI * whole.dwelt.dot(&light) + self.grid.problem.layers[i].emission * whole.own
+        2.0 * PI * whole.dwelt.dot(&light) + self.emission(region) * whole.own
     }
 
     /// Power of scattered light at every node, downwards and upwards, at depth `x` of a region.
@@ -301,11 +324,11 @@ impl Added {
         if x == slice.tau {
             return Ok(ends.bottom.clone());
         }
-        let Region { layer, nodes, .. } = &self.grid.regions[region];
-        let solve = || Stack::new(slice.tau, slice.albedo, &slice.moments, 0, nodes.clone());
+        let nodes = &self.grid.regions[region].nodes;
+        let solve = || Stack::new(slice.tau, slice.albedo, &slice.moments, self.order, nodes.clone());
         let stack = slice.inside.get_or_init(solve).as_ref().map_err(Clone::clone)?;
         let [top, bottom] = self.direct(region);
-        let emission = self.grid.problem.layers[*layer].emission;
+        let emission = self.emission(region);
         let (down, up) = stack.field_of(x, top + &self.down[region], bottom + &self.up[region], emission);
         let mut power = self.powers(region, [&down, &up], None).top;
         let rest = slice.tau - x;

@@ -27,6 +27,7 @@
 //! Bosma and Hovenier 1987; plates and faces: Stokes 1862; Prahl, van Gemert and Welch 1993; Jin and Stamnes 1994.
 
 mod adding;
+mod azimuth;
 mod grid;
 mod ordinates;
 mod pile;

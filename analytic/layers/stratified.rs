@@ -10,15 +10,15 @@ use crate::incidence::{Incidence, check_depth};
 use crate::value::Value;
 use std::sync::{Arc, OnceLock};
 
-const ADDING: &str = "adding of layers, two node counts";
+pub(super) const ADDING: &str = "adding of layers, two node counts";
 const ORDINATES: &str = "discrete ordinates in layers, two node counts";
 
-/// The most cosines of one question.
-const COSINES: f64 = 64.0;
+/// The most cosines or azimuths of one question.
+pub(super) const COSINES: f64 = 64.0;
 
 /// A solved stratified slab.
 pub struct StratifiedSlab {
-    problem: Arc<Problem>,
+    pub(super) problem: Arc<Problem>,
     method: &'static str,
     solutions: [Solution; 2],
     /// Scattered light that leaves through the lit face, and that arrives at the ground.

@@ -34,7 +34,7 @@ fn check_bounds(
     let cosines = [1.0, 0.3, 0.01];
     let rule = Rule { upper: 40, lower: 80, power: 5, open: 3.0, degree: most + 6 };
     let last = layers.len() - 1;
-    let finer = Added::on(problem.clone(), rule, layers[last].index(), &cosines, &degree).unwrap();
+    let finer = Added::on(problem.clone(), rule, layers[last].index(), &cosines, &degree, 0).unwrap();
     let check = |name: &str, got: Value, truth: f64| {
         prop_assert!(got.covers(truth), "{name}: {got:?}, finer {truth:e}");
         let relative = if name == "phi" { relative[1] } else { relative[0] };

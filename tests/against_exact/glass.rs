@@ -4,18 +4,19 @@ use crate::checks::glass;
 use crate::checks::glass::{faces, referee};
 use crate::support::run::{pass, paths, tallies};
 use crate::support::scenes::{
-    Incidence, area_light, bounded, cuboid, dielectric, filled, fresnel_slab, homogeneous, isotropic,
-    lambertian, outflow, point_light, rectangle, region, sphere,
+    CELL, Incidence, area_light, around, bounded, cuboid, dielectric, filled, fresnel_slab, homogeneous,
+    incidence, isotropic, lambertian, layer, outflow, point_light, rectangle, region, sphere,
 };
 use crate::support::verdict;
 use glam::DVec3;
 use std::f64::consts::PI;
 use turbid::Spectrum;
-use turbid::geometry::Shape;
+use turbid::geometry::{Shape, Slab};
 use turbid::light::{Faces, Light};
 use turbid::math::Ray;
 use turbid::scene::{Interior, Object, Orders, Quantity, Scene, SceneParts};
 use turbid::surface::{Filter, Surface};
+use turbid_analytic::{Ground, Layer, Phase, StratifiedSlab};
 
 #[test]
 fn a_cavity_is_brighter_by_the_squared_index() {
@@ -47,6 +48,72 @@ fn paths_cross_a_refracting_slab() {
             verdict::agrees(&format!("{name}, {what}"), &moments, (value.value, value.error), 0.02, 4);
         }
     }
+}
+
+/// A slab between two layers of another index: clear plates of glass, and a scattering layer on either side; photons against
+/// the adding of layers. As a slab of one index it is another one.
+#[test]
+fn photons_cross_plates_of_another_index() {
+    let plates = Layers { depth: 0.1, index: 1.5, medium: None };
+    let skin = Layers { depth: 0.3, index: 1.33, medium: Some((1.0, 0.9, 0.5)) };
+    for (outer, index, (tau, albedo, g), how) in [
+        (plates, 1.2, (1.0, 0.9, 0.5), Incidence::Beam(0.4)),
+        (skin, 1.7, (1.0, 0.5, 0.0), Incidence::Diffuse),
+    ] {
+        let whole = 2.0 * outer.depth + tau;
+        let medium = |(sigma_t, albedo, g): (f64, f64, f64)| {
+            homogeneous(Spectrum::grey(sigma_t), Spectrum::grey(albedo), g)
+        };
+        let inner = Shape::Slab(Slab::new(outer.depth, tau).unwrap());
+        let scene = Scene::new(SceneParts {
+            interiors: vec![
+                Interior::surroundings(),
+                Interior { name: "outer".into(), index: outer.index, medium: outer.medium.map(medium) },
+                filled("inner", index, medium((1.0, albedo, g))),
+            ],
+            objects: vec![
+                Object { shape: layer(whole), surface: dielectric(1, 0) },
+                Object { shape: inner, surface: dielectric(2, 1) },
+            ],
+            lights: vec![incidence(around(whole), how)],
+            cell: Some(CELL),
+            ..SceneParts::default()
+        })
+        .unwrap();
+        let exact = |outer_index: f64| {
+            let of = |tau: f64, albedo: f64, g: f64, index: f64| {
+                let phase = Phase::henyey_greenstein(g).unwrap();
+                Layer::new(tau, albedo, &phase).unwrap().refracting(index).unwrap()
+            };
+            let beside = match outer.medium {
+                Some((sigma_t, albedo, g)) => of(sigma_t * outer.depth, albedo, g, outer_index),
+                None => Layer::plate(outer_index).unwrap(),
+            };
+            let layers = [beside.clone(), of(tau, albedo, g, index), beside];
+            let light = match how {
+                Incidence::Beam(mu0) => turbid_analytic::Incidence::Beam { mu0 },
+                _ => turbid_analytic::Incidence::Diffuse,
+            };
+            let slab = StratifiedSlab::new(&layers, Ground::black(), Some(light)).unwrap();
+            [slab.reflectance(), slab.transmittance().unwrap(), slab.absorptance(1).unwrap()]
+        };
+        let number = usize::from(outer.medium.is_some());
+        let [r, t] = faces(whole).map(|quantity| (quantity, Orders::ALL));
+        let measured = tallies(&scene, &[r, t, (Quantity::Absorbed(number), Orders::ALL)], 1 << 17, 12);
+        let (right, wrong) = (exact(outer.index), exact(index));
+        for (i, name) in ["R", "T", "A"].into_iter().enumerate() {
+            let what = format!("{name} between layers of index {}", outer.index);
+            verdict::agrees(&what, &measured[i][0], (right[i].value, right[i].error), 0.015, 12);
+        }
+        verdict::rejects("R of one index", &measured[0][0], wrong[0].value, 12);
+    }
+}
+
+/// What lies on either side of a slab: extinction, albedo and g of its medium, if it has one.
+struct Layers {
+    depth: f64,
+    index: f64,
+    medium: Option<(f64, f64, f64)>,
 }
 
 /// A ball in a ball, cognac in glass: each has the brightness of its own index, whatever lies around it; and a point

@@ -32,7 +32,7 @@ enum Scattering {
 type Quantity = (&'static [&'static str], &'static str, &'static [&'static str], &'static [&'static str]);
 
 /// All that can be asked.
-pub const GEOMETRIES: [Geometry; 9] = [
+pub const GEOMETRIES: [Geometry; 10] = [
     Geometry { name: "slab", ..SLAB },
     Geometry { name: "slabXY", ..SLAB },
     Geometry {
@@ -53,6 +53,35 @@ pub const GEOMETRIES: [Geometry; 9] = [
             (&["Ts"], "transmittance", &[FACES, "--mu0=diffuse"], &[]),
             (&["A"], "absorptance", &[FACES], &["mu0"]),
             (&["fluence"], "fluence", &[FACES], &["mu0", "t"]),
+        ],
+    },
+    Geometry {
+        name: "layers",
+        called: "a stratified slab",
+        command: "layers",
+        columns: &[
+            ("layers", "layer"),
+            ("ground", "ground"),
+            ("ground_index", "ground-index"),
+            ("mu0", "mu0"),
+            ("t", "depth"),
+            ("mu", "mu"),
+        ],
+        scattering: Scattering::None,
+        quantities: &[
+            (&["R", "Rtot"], "reflectance", &[], &["layers", "mu0"]),
+            (&["Rspec"], "specular", &[], &["layers", "mu0"]),
+            (&["R_direct"], "reflectance_direct", &[], &["layers", "mu0"]),
+            (&["Rdiff"], "reflectance_diffuse", &[], &["layers", "mu0"]),
+            (&["T_total", "Ttot"], "transmittance", &[], &["layers", "mu0"]),
+            (&["T_direct", "Tcoll"], "transmittance_direct", &[], &["layers", "mu0"]),
+            (&["T_diffuse", "Tdiff"], "transmittance_diffuse", &[], &["layers", "mu0"]),
+            (&["A_ground"], "absorptance_ground", &[], &["layers", "mu0"]),
+            (&["fluence"], "fluence", &[], &["layers", "mu0", "t"]),
+            (&["flux"], "flux", &[], &["layers", "mu0", "t"]),
+            (&["flux_down"], "flux_down", &[], &["layers", "mu0", "t"]),
+            (&["flux_up"], "flux_up", &[], &["layers", "mu0", "t"]),
+            (&["radiance"], "radiance", &[], &["layers", "mu0", "t", "mu"]),
         ],
     },
     Geometry {
@@ -286,7 +315,12 @@ impl Geometry {
         }
         for (column, option) in self.columns {
             let (cell, option) = (row.text(column), format!("--{option}="));
-            if cell.contains(',') {
+            if *column == "layers" {
+                ensure!(
+                    cell.contains("tau="),
+                    "{column} in extra is '{cell}'; allowed: tau=T,albedo=W and so on, | between layers"
+                );
+            } else if cell.contains(',') {
                 bail!("{column} is '{cell}'; allowed: one value");
             }
             let given = options.iter().find_map(|given| given.strip_prefix(&option));

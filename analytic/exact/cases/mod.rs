@@ -248,6 +248,9 @@ mod tests {
             ("b_r", "0.1"),
             ("x_over_r", "0.1"),
             ("s", "1"),
+            ("layers", "tau=1,albedo=0.9,index=1.4|tau=0,albedo=0,index=1.5"),
+            ("ground", "0.5"),
+            ("ground_index", "1.5"),
         ];
         for &(name, text) in other {
             cells.retain(|cell| cell.0 != name);
@@ -278,7 +281,7 @@ mod tests {
                 count += 1;
             }
         }
-        assert_eq!(count, 103);
+        assert_eq!(count, 120);
     }
 
     /// Of every column that a geometry takes: a word in place of a number, two values, and a word that is an option.

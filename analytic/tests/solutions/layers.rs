@@ -6,7 +6,8 @@ use crate::support::{NORMAL, beam, close};
 use proptest::prelude::*;
 use std::f64::consts::PI;
 use turbid_analytic::{
-    Error, Ground, Incidence, Layer, Phase, Slab, SlabMedium, StratifiedSlab, Value, VaryingAlbedo,
+    AddingDoubling, Error, Ground, Incidence, Layer, Phase, Slab, SlabMedium, StratifiedSlab, Value,
+    VaryingAlbedo,
 };
 
 fn layer(tau: f64, albedo: f64, g: f64) -> Layer {
@@ -279,6 +280,40 @@ fn one_layer_is_a_slab() {
             }
         }
     }
+}
+
+/// Radiance by azimuth under a beam: of one layer, cut in two, that of the slab; its mean over azimuth; and light finds its way back
+/// through layers that differ.
+#[test]
+fn radiance_has_an_azimuth() {
+    let light = beam(0.6);
+    let slab = AddingDoubling::new(1.5, 0.9, 0.3, light).unwrap();
+    let two = by_adding(&[layer(0.5, 0.9, 0.3), layer(1.0, 0.9, 0.3)], Ground::black(), Some(light));
+    for (t, mu) in [(0.0, 0.4), (0.7, -0.6)] {
+        let all = two.radiance_towards(t, mu, &[0.3, 2.0]).unwrap();
+        close("L", all[0], slab.radiance(t, mu, 0.3).unwrap(), 1e-8);
+        // Another azimuth is another radiance.
+        assert!((all[0].value - all[1].value).abs() > 1e-2 * all[0].value, "{t} {mu} {all:?}");
+    }
+    let layers = [layer(0.4, 0.9, 0.3).emitting(0.3).unwrap(), layer(0.8, 0.7, -0.2)];
+    let ground = Ground::lambertian(0.3).unwrap();
+    let one = by_adding(&layers, ground, Some(light));
+    // Sixteen azimuths have the mean but for modes 16, 32, ..., which g to that power makes small.
+    let azimuths: Vec<f64> = (0..16).map(|k| PI * f64::from(k) / 8.0).collect();
+    let mean: f64 =
+        one.radiance_towards(0.3, 0.5, &azimuths).unwrap().iter().map(|value| value.value / 16.0).sum();
+    let exact = one.radiance(0.3, &[0.5]).unwrap()[0];
+    assert!((mean - exact.value).abs() < 1e-7 * exact.value, "{mean} {exact:?}");
+    let dark: Vec<Layer> = layers.iter().map(|one| one.clone().emitting(0.0).unwrap()).collect();
+    let back = [(0.6, 0.3), (0.3, 0.6)].map(|(from, to)| {
+        by_adding(&dark, ground, Some(beam(from))).radiance_towards(0.0, to, &[1.0]).unwrap()[0]
+    });
+    assert!(agree(back[0], back[1]), "{back:?}");
+    let refused = by_adding(&[layer(1.0, 0.5, 0.0).refracting(1.5).unwrap()], ground, Some(light));
+    assert!(matches!(
+        refused.radiance_towards(0.0, 0.5, &[0.0]),
+        Err(Error::OutOfRange { name: "index", .. })
+    ));
 }
 
 /// Twice the thickness and symmetric light are a slab over a mirror.
