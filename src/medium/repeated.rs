@@ -242,18 +242,24 @@ fn repeat_grid(grid: &Arc<Grid>, cell: DVec2) -> Result<(Grid, Period)> {
     for (axis, side) in period.0.iter().enumerate() {
         max[axis] = side.map_or(max[axis], |(low, side)| low + side);
     }
+    let bytes = 4.0 * grid.values().len() as f64;
+    crate::memory::check(|| format!("a grid of {bytes} bytes, once more"), 1.2 * bytes)?;
     Ok((grid.wrapped((min, max), varies)?, period))
 }
 
-fn repeat_blocks(blocks: &Arc<Blocks>, cell: DVec2) -> Result<(Blocks, Period)> {
+fn repeat_blocks(blocks: &Arc<Blocks>, cell: DVec2) -> Result<(Arc<Blocks>, Period)> {
     let [x, y, _] = blocks.count();
     let what = if blocks.is_columns() { "a lattice of columns" } else { "a box of blocks" };
     let period = Period::of(what, blocks.corners(), [x > 1, y > 1], cell)?;
-    let ends = period.0.iter().enumerate();
-    let blocks = ends.fold(Blocks::clone(blocks), |blocks, (axis, side)| {
-        side.map_or(blocks.clone(), |(low, side)| blocks.ending_at(axis, low + side))
-    });
-    Ok((blocks, period))
+    let mut repeated = blocks.clone();
+    for (axis, side) in period.0.iter().enumerate() {
+        if let Some((low, side)) = side
+            && blocks.corners().1[axis] != low + side
+        {
+            Arc::make_mut(&mut repeated).end_at(axis, low + side);
+        }
+    }
+    Ok((repeated, period))
 }
 
 impl Density {
@@ -273,7 +279,7 @@ impl Density {
             }
             Density::Blocks(blocks) => {
                 let (blocks, period) = repeat_blocks(blocks, cell)?;
-                (Density::Blocks(Arc::new(blocks)), period)
+                (Density::Blocks(blocks), period)
             }
             Density::Cloud(cloud) => {
                 let reach = cloud.reach();
@@ -347,7 +353,7 @@ impl Albedo {
             }
             Albedo::Blocks(blocks, None) if !blocks.is_layered() => {
                 let (blocks, period) = repeat_blocks(blocks, cell)?;
-                Ok(Albedo::Blocks(Arc::new(blocks), Some(period)))
+                Ok(Albedo::Blocks(blocks, Some(period)))
             }
             Albedo::Grid(_, Some(period)) | Albedo::Blocks(_, Some(period)) if !period.fits(cell) => {
                 refuse("an albedo that repeats itself with periods that are no part of the cell".into())
