@@ -257,18 +257,11 @@ impl Density {
                     fog(DVec3::Z, -9.0, 40.0),
                 ]
             }
-            Density::Blocks(_) => vec![
-                blocks([1, 1, 1], &|_| 0.7),
-                blocks([3, 1, 5], &|i| (i % 4) as f64),
-                blocks([4, 5, 3], &|i| (i * i % 7) as f64),
-                columns(),
-            ],
+            Density::Blocks(_) => vec![blocks([3, 1, 5], &|i| (i % 4) as f64), columns()],
             Density::Repeated(_) => vec![
                 again(grid([5, 4, 3], &|p| (p.x + p.y * p.z).abs()), 3.0, 6.0),
-                again(grid([9, 1, 3], &|p| p.x * p.x), 3.0, 1.0),
-                again(blocks([4, 5, 3], &|i| (i * i % 7) as f64), 6.0, 3.0),
                 again(columns(), 3.0, 3.0),
-                again(cloud([0.4, 0.3, 0.8], 1.0, super::Body::Ellipsoid, 3), 1.3, 0.9),
+                again(cloud([0.7, 0.5, 0.9], 0.5, super::Body::Cuboid, 3), 1.8, 1.3),
             ],
         };
         let first = [
