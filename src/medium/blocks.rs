@@ -173,12 +173,11 @@ impl Blocks {
         )
     }
 
-    /// The same with its last plane across an axis moved by a rounding.
-    pub(super) fn ending_at(mut self, axis: usize, end: f64) -> Self {
+    /// Moves its last plane across an axis by a rounding.
+    pub(super) fn end_at(&mut self, axis: usize, end: f64) {
         if let Some(last) = self.planes[axis].last_mut() {
             *last = end;
         }
-        self
     }
 
     /// The block along one axis; beyond the outer planes the outermost.

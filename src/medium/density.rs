@@ -1,8 +1,7 @@
 //! How much of a medium is where: the densities at hand.
 
-use super::{
-    Along, AlongPeriods, Blocks, Bound, Cloud, CloudShape, Grid, HeightFog, Layers, Repeated, Through,
-};
+use super::period::{Period, Pieces, repeat_blocks, repeat_grid};
+use super::{Along, Blocks, Bound, Cloud, CloudShape, Grid, HeightFog, Layers, Through};
 use crate::error::{Error, Result};
 use crate::math::{Interval, Positive, Ray};
 use glam::{DVec2, DVec3};
@@ -258,18 +257,11 @@ impl Density {
                     fog(DVec3::Z, -9.0, 40.0),
                 ]
             }
-            Density::Blocks(_) => vec![
-                blocks([1, 1, 1], &|_| 0.7),
-                blocks([3, 1, 5], &|i| (i % 4) as f64),
-                blocks([4, 5, 3], &|i| (i * i % 7) as f64),
-                columns(),
-            ],
+            Density::Blocks(_) => vec![blocks([3, 1, 5], &|i| (i % 4) as f64), columns()],
             Density::Repeated(_) => vec![
                 again(grid([5, 4, 3], &|p| (p.x + p.y * p.z).abs()), 3.0, 6.0),
-                again(grid([9, 1, 3], &|p| p.x * p.x), 3.0, 1.0),
-                again(blocks([4, 5, 3], &|i| (i * i % 7) as f64), 6.0, 3.0),
                 again(columns(), 3.0, 3.0),
-                again(cloud([0.4, 0.3, 0.8], 1.0, super::Body::Ellipsoid, 3), 1.3, 0.9),
+                again(cloud([0.7, 0.5, 0.9], 0.5, super::Body::Cuboid, 3), 1.8, 1.3),
             ],
         };
         let first = [
@@ -280,5 +272,131 @@ impl Density {
             again(blocks([2, 1, 1], &|i| i as f64), 3.0, 3.0),
         ];
         first.into_iter().flatten().flat_map(named).flatten().collect()
+    }
+}
+
+/// After so many periods without anything in them, what is left of a ray is asked at once.
+const EMPTY: u64 = 1 << 10;
+
+/// A ray along the faces of its slab has no end: it is followed over so many periods, and what lies behind counts as empty. A
+/// direction at random is never one.
+const FOREVER: u64 = 1 << 20;
+
+/// A density that repeats itself.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Repeated {
+    /// One period.
+    density: Density,
+    period: Period,
+}
+
+impl Repeated {
+    /// One period.
+    pub fn density(&self) -> &Density {
+        &self.density
+    }
+
+    /// The density at a point \[1\].
+    pub fn at(&self, p: DVec3) -> f64 {
+        self.density.at(self.period.fold(p))
+    }
+
+    /// Bounds along a part of a ray of any length, in no more memory than those of one period.
+    pub fn along(&self, ray: &Ray, part: Interval) -> AlongPeriods<'_> {
+        let pieces = self.period.pieces(ray, part);
+        AlongPeriods { repeated: self, pieces, inner: None, is_empty: false, crossed: 0, empty: 0 }
+    }
+
+    /// The integral along a part of a ray \[L\].
+    pub fn integral(&self, ray: &Ray, part: Interval) -> f64 {
+        self.period.pieces(ray, part).map(|(ray, part)| self.density.integral(&ray, part)).sum()
+    }
+
+    /// No point of a box has more than this.
+    pub fn high_in(&self, min: DVec3, max: DVec3) -> f64 {
+        let (min, max) = self.period.fold_box(min, max);
+        self.density.high_in(min, max)
+    }
+
+    /// Whether nothing is left on the rest of a ray.
+    fn is_empty_beyond(&self, ray: &Ray, part: Interval) -> bool {
+        let height = |t: f64| if ray.dir.z == 0.0 { ray.origin.z } else { ray.at(t).z };
+        let (min, max) = self.period.whole(height(part.start), height(part.end));
+        self.density.high_in(min, max) == 0.0
+    }
+}
+
+/// Bounds of a density along a ray, period by period.
+#[derive(Debug, Clone)]
+pub struct AlongPeriods<'a> {
+    repeated: &'a Repeated,
+    pieces: Pieces,
+    inner: Option<Bounds<'a>>,
+    /// Whether nothing was in this period so far.
+    is_empty: bool,
+    crossed: u64,
+    /// The last periods that had nothing in them.
+    empty: u64,
+}
+
+impl Iterator for AlongPeriods<'_> {
+    type Item = Bound;
+
+    fn next(&mut self) -> Option<Bound> {
+        loop {
+            if let Some(bound) = self.inner.as_mut().and_then(Iterator::next) {
+                self.is_empty &= bound.high == 0.0;
+                return Some(bound);
+            }
+            self.empty = if self.is_empty { self.empty + 1 } else { 0 };
+            let rest = self.pieces.rest();
+            let is_endless = self.crossed >= FOREVER && rest.end == f64::INFINITY;
+            let is_asked = self.empty > 0 && self.empty.is_multiple_of(EMPTY);
+            if is_endless || (is_asked && self.repeated.is_empty_beyond(self.pieces.ray(), rest)) {
+                self.pieces.skip_rest();
+                self.inner = None;
+                return (rest.end > rest.start).then_some(Bound { interval: rest, low: 0.0, high: 0.0 });
+            }
+            let (ray, part) = self.pieces.next()?;
+            self.crossed += 1;
+            self.is_empty = true;
+            self.inner = Some(self.repeated.density.along(&ray, part));
+        }
+    }
+}
+
+impl Density {
+    /// The same density in every period of a cell; itself where it depends on z alone.
+    ///
+    /// # Errors
+    /// `Error::Scene` for boxes that are no whole part of the cell, clouds that do not fit into it, and fog that thins out
+    /// along x or y
+    pub(super) fn repeated(&self, cell: DVec2, sigma_t: f64) -> Result<Density> {
+        if self.is_layered() {
+            return Ok(self.clone());
+        }
+        let (density, period) = match self {
+            Density::Grid(grid) => {
+                let (grid, period) = repeat_grid(grid, cell)?;
+                (Density::Grid(Arc::new(grid.bounded_for(sigma_t))), period)
+            }
+            Density::Blocks(blocks) => {
+                let (blocks, period) = repeat_blocks(blocks, cell)?;
+                (Density::Blocks(blocks), period)
+            }
+            Density::Cloud(cloud) => (self.clone(), Period::about_cloud(cloud, cell)?),
+            Density::HeightFog(_) => {
+                return Err(Error::Scene(
+                    "height fog does not repeat itself; allowed with `cell`: `up` along z".into(),
+                ));
+            }
+            Density::Repeated(repeated) if repeated.period.fits(cell) => return Ok(self.clone()),
+            Density::Repeated(_) => {
+                return Err(Error::Scene(
+                    "a density that repeats itself with periods that are no part of the cell".into(),
+                ));
+            }
+        };
+        Ok(Density::Repeated(Arc::new(Repeated { density, period })))
     }
 }

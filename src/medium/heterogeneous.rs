@@ -1,6 +1,6 @@
 //! A medium whose density varies.
 
-use super::repeated::Albedo;
+use super::period::Albedo;
 use super::{Blocks, Density, Grid, Homogeneous};
 use crate::Spectrum;
 use crate::error::{Error, Result};

@@ -13,20 +13,19 @@ mod heterogeneous;
 mod homogeneous;
 mod markov;
 mod noise;
-mod repeated;
+mod period;
 mod vol;
 
 pub use blocks::{Blocks, Through};
 pub use cells::{Along, Bound, Cells};
 pub use cloud::{Body, Cloud, CloudShape};
-pub use density::{Bounds, Density};
+pub use density::{AlongPeriods, Bounds, Density, Repeated};
 pub use grid::Grid;
 pub use height_fog::{HeightFog, Layers};
 pub use heterogeneous::Heterogeneous;
 pub use homogeneous::Homogeneous;
 pub use markov::markov;
 pub use noise::Noise;
-pub use repeated::{AlongPeriods, Repeated};
 
 use crate::Spectrum;
 use crate::faults::{Fault, planted};

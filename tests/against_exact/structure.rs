@@ -2,18 +2,20 @@
 //! photons against paths, the same world said otherwise, and ensembles of binary Markov mixtures.
 
 use crate::support::run::{paths, sensor, tallies};
-use crate::support::scenes::{Incidence, incidence, isotropic, layer, reflectance, transmittance};
+use crate::support::scenes::{
+    Incidence, around, dielectric, filled, incidence, isotropic, layer, reflectance, transmittance,
+};
 use crate::support::verdict;
 use glam::{DVec2, DVec3};
 use std::f64::consts::PI;
 use turbid::Spectrum;
 use turbid::estimators::{Estimator, Gather, Kernel};
-use turbid::geometry::{Shape, Slab};
+use turbid::geometry::{Face, Shape, Slab};
 use turbid::light::{Beam, Faces, Isotropic as IsotropicLight, Light, Section};
 use turbid::math::{Asymmetry, Positive, Ray};
 use turbid::medium::{Blocks, Density, Grid, Heterogeneous, Homogeneous, Medium, markov};
 use turbid::phase::Phase;
-use turbid::scene::{Orders, Quantity, Region, Scene, SceneParts};
+use turbid::scene::{Interior, Object, Orders, Quantity, Region, Scene, SceneParts};
 use turbid::sensor::{PhotonSettings, by_photons};
 use turbid::stats::Moments;
 use turbid::transport::NoProgress;
@@ -123,6 +125,24 @@ fn one_world_said_in_many_ways_is_one() {
             verdict::agree(&format!("{name}, flux {i}"), &first[i], &other[i], 0.03, 72 + number as u64);
         }
     }
+    let full = step_cloud(cell, steps(0.0), sun()).with_full_plan().unwrap();
+    // The medium in an interior of index 1, whose light starts and leaves outside of it.
+    let outer = around(0.25);
+    let filled = Scene::new(SceneParts {
+        interiors: vec![Interior::surroundings(), filled("cloud", 1.0, medium(1.0, 0.85, steps(0.0)))],
+        objects: vec![Object { shape: layer(0.25), surface: dielectric(1, 0) }],
+        lights: vec![sun()],
+        cell: Some(cell),
+        ..SceneParts::default()
+    })
+    .unwrap();
+    let face = |face| (Quantity::Outflow { shape: outer.clone(), face }, Orders::ALL);
+    let inside = tallies(&filled, &[face(Face::Top), face(Face::Bottom)], PHOTONS, 83);
+    let full = of(full, 82);
+    for i in 0..2 {
+        verdict::agree(&format!("nothing left out, flux {i}"), &first[i], &full[i], 0.03, 82);
+        verdict::agree(&format!("in an interior, flux {i}"), &first[i], &inside[i][0], 0.03, 83);
+    }
     let fine = blocks((DVec3::ZERO, DVec3::new(0.005, 1.0, 1.0)), [2, 1, 1], vec![8.0, 72.0]);
     let other = of(step_cloud(cell, fine, sun()), 80);
     verdict::differ("a hundred periods to the cell", &first[0], &other[0], 80);
@@ -145,10 +165,11 @@ fn photons_and_paths_agree_in_a_world_of_two_periods() {
     };
     for (which, density) in [blocks(corners, [2, 3, 2], values.clone()), grid()].into_iter().enumerate() {
         let scene = world(2.0, cell, of(density.clone()), lights());
-        let by_photons_fluxes = fluxes(&scene, 2.0, PHOTONS, 91);
-        for (i, quantity) in [reflectance(2.0), transmittance(2.0)].into_iter().enumerate() {
+        let asked = [reflectance(2.0), transmittance(2.0), Quantity::Absorbed(0)];
+        let tallied = tallies(&scene, &asked.clone().map(|quantity| (quantity, Orders::ALL)), PHOTONS, 91);
+        for (i, quantity) in asked.into_iter().enumerate() {
             let by_paths = paths(&scene, quantity, Orders::ALL, 1 << 16, 92)[0];
-            verdict::agree(&format!("{which}, flux {i}"), &by_photons_fluxes[i], &by_paths, 0.06, 92);
+            verdict::agree(&format!("{which}, flux {i}"), &tallied[i][0], &by_paths, 0.06, 92);
         }
         let probes = [DVec3::new(1.0, 1.0, 0.5), DVec3::new(3.0, 5.0, 1.5)];
         let shifts = [DVec3::new(-12.0, 18.0, 0.0), DVec3::new(8.0, -6.0, 0.0)];
@@ -158,7 +179,7 @@ fn photons_and_paths_agree_in_a_world_of_two_periods() {
         let parts =
             SceneParts { regions, lights: lights(), sensors, cell: Some(cell), ..SceneParts::default() };
         let asked = Scene::new(parts).unwrap();
-        let mut moments = vec![Moments::new(); 4];
+        let mut moments = [Moments::new(); 4];
         for map in 0..64 {
             let settings = PhotonSettings {
                 photons: 8192,
@@ -271,7 +292,7 @@ fn a_furnace_of_columns_is_even() {
         let dimmed = paths(&dim, asked.quantity.clone(), Orders::ALL, 1 << 14, 51)[0];
         verdict::rejects(&format!("sensor {i} by paths, dim"), &dimmed, references[i], 51);
     }
-    let mut moments = vec![Moments::new(); 4];
+    let mut moments = [Moments::new(); 4];
     for map in 0..128 {
         let settings = PhotonSettings {
             photons: 1 << 12,
@@ -396,7 +417,7 @@ fn a_lattice_knows_where_its_slab_is() {
         ..SceneParts::default()
     })
     .unwrap();
-    let face = turbid::geometry::Face::Bottom;
+    let face = Face::Bottom;
     let found = tallies(&scene, &[(Quantity::Outflow { shape, face }, Orders::ALL)], PHOTONS, 5)[0][0];
     // Two columns of depth 2.
     verdict::agrees("both of depth 2", &found, (turbid::math::exp(-2.0), 1e-15), 0.01, 5);

@@ -1,9 +1,9 @@
-//! Media of a world that repeats itself in x and y.
+//! Periods of a world that repeats itself in x and y.
 //!
 //! The world has the periods of the cell that photons are wrapped into; a density may have a whole part of them as its own.
 //! Positions are folded, and a ray goes from period to period, moved back in each: the bounds of one period hold in all.
 
-use super::{Blocks, Bound, Bounds, Density, Grid};
+use super::{Blocks, Cloud, Grid};
 use crate::Spectrum;
 use crate::error::{Error, Result};
 use crate::math::{Interval, Ray};
@@ -13,16 +13,9 @@ use std::sync::Arc;
 /// A box may differ from a whole part of the cell by this part of itself, single precision in its file; it is made to fit.
 const FIT: f64 = 1e-6;
 
-/// After so many periods without anything in them, what is left of a ray is asked at once.
-const EMPTY: u64 = 1 << 10;
-
-/// A ray along the faces of its slab has no end: it is followed over so many periods, and what lies behind counts as empty. A
-/// direction at random is never one.
-const FOREVER: u64 = 1 << 20;
-
 /// Where a period begins, and its length, along x and y; none where nothing varies \[L\].
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Period([Option<(f64, f64)>; 2]);
+pub(super) struct Period([Option<(f64, f64)>; 2]);
 
 fn refuse<T>(text: String) -> Result<T> {
     Err(Error::Scene(text))
@@ -58,8 +51,40 @@ impl Period {
         p
     }
 
+    /// That of a cloud: the whole cell about it.
+    pub(super) fn about_cloud(cloud: &Cloud, cell: DVec2) -> Result<Self> {
+        let (center, reach) = (cloud.shape().center, cloud.reach());
+        if let Some(axis) = (0..2).find(|axis| 2.0 * reach[*axis] > cell[*axis]) {
+            return refuse(format!(
+                "a cloud is {} wide along {}, with its shreds; allowed: up to the side of the cell there, {}",
+                2.0 * reach[axis],
+                ["x", "y"][axis],
+                cell[axis]
+            ));
+        }
+        let along = |axis: usize| Some((center[axis] - 0.5 * cell[axis], cell[axis]));
+        Ok(Period([along(0), along(1)]))
+    }
+
+    /// A box of the first period that a box stands for: all of the period where it goes across the seam.
+    pub(super) fn fold_box(&self, mut min: DVec3, mut max: DVec3) -> (DVec3, DVec3) {
+        for (axis, period) in self.0.iter().enumerate() {
+            let Some((low, side)) = *period else { continue };
+            let shift = side * ((min[axis] - low) / side).floor();
+            let (a, b) = (min[axis] - shift, max[axis] - shift);
+            (min[axis], max[axis]) = if b <= low + side { (a, b) } else { (low, low + side) };
+        }
+        (min, max)
+    }
+
+    /// All of the first period between two z, either one the lower.
+    pub(super) fn whole(&self, a: f64, b: f64) -> (DVec3, DVec3) {
+        let [x, y] = self.0.map(|period| period.map_or((0.0, 0.0), |(low, side)| (low, low + side)));
+        (DVec3::new(x.0, y.0, a.min(b)), DVec3::new(x.1, y.1, a.max(b)))
+    }
+
     /// Whether a cell holds a whole number of these periods.
-    fn fits(&self, cell: DVec2) -> bool {
+    pub(super) fn fits(&self, cell: DVec2) -> bool {
         self.0.iter().enumerate().all(|(axis, period)| {
             period.is_none_or(|(_, side)| {
                 let many = cell[axis] / side;
@@ -69,7 +94,7 @@ impl Period {
     }
 
     /// The parts of a part of a ray, period by period: the ray as it would pass the first one.
-    fn pieces(&self, ray: &Ray, part: Interval) -> Pieces {
+    pub(super) fn pieces(&self, ray: &Ray, part: Interval) -> Pieces {
         let start = ray.at(part.start);
         let number =
             |axis: usize| self.0[axis].map_or(0.0, |(low, side)| ((start[axis] - low) / side).floor());
@@ -88,7 +113,7 @@ impl Period {
 
 /// A ray, period by period.
 #[derive(Debug, Clone)]
-struct Pieces {
+pub(super) struct Pieces {
     period: Period,
     ray: Ray,
     /// Whole numbers: that of the period.
@@ -100,6 +125,21 @@ struct Pieces {
 }
 
 impl Pieces {
+    /// The ray as it is.
+    pub(super) fn ray(&self) -> &Ray {
+        &self.ray
+    }
+
+    /// What is left of its part.
+    pub(super) fn rest(&self) -> Interval {
+        Interval { start: self.at, end: self.end }
+    }
+
+    /// Leaves out what is left.
+    pub(super) fn skip_rest(&mut self) {
+        self.at = self.end;
+    }
+
     /// Finds the next plane along an axis: each by its number, so that roundings do not add up.
     fn look_ahead(&mut self, axis: usize) {
         let slope = self.ray.dir[axis];
@@ -141,100 +181,9 @@ impl Iterator for Pieces {
     }
 }
 
-/// A density that repeats itself.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Repeated {
-    /// One period.
-    density: Density,
-    period: Period,
-}
-
-impl Repeated {
-    /// One period.
-    pub fn density(&self) -> &Density {
-        &self.density
-    }
-
-    /// The density at a point \[1\].
-    pub fn at(&self, p: DVec3) -> f64 {
-        self.density.at(self.period.fold(p))
-    }
-
-    /// Bounds along a part of a ray of any length, in no more memory than those of one period.
-    pub fn along(&self, ray: &Ray, part: Interval) -> AlongPeriods<'_> {
-        let pieces = self.period.pieces(ray, part);
-        AlongPeriods { repeated: self, pieces, inner: None, is_empty: false, crossed: 0, empty: 0 }
-    }
-
-    /// The integral along a part of a ray \[L\].
-    pub fn integral(&self, ray: &Ray, part: Interval) -> f64 {
-        self.period.pieces(ray, part).map(|(ray, part)| self.density.integral(&ray, part)).sum()
-    }
-
-    /// No point of a box has more than this.
-    pub fn high_in(&self, mut min: DVec3, mut max: DVec3) -> f64 {
-        for (axis, period) in self.period.0.iter().enumerate() {
-            let Some((low, side)) = *period else { continue };
-            let shift = side * ((min[axis] - low) / side).floor();
-            let (a, b) = (min[axis] - shift, max[axis] - shift);
-            // Across the seam, all of it; so where numbers are not.
-            (min[axis], max[axis]) = if b <= low + side { (a, b) } else { (low, low + side) };
-        }
-        self.density.high_in(min, max)
-    }
-
-    /// Whether nothing is left on the rest of a ray.
-    fn is_empty_beyond(&self, ray: &Ray, part: Interval) -> bool {
-        let height = |t: f64| if ray.dir.z == 0.0 { ray.origin.z } else { ray.at(t).z };
-        let (a, b) = (height(part.start), height(part.end));
-        let all = |axis: usize| self.period.0[axis].map_or((0.0, 0.0), |(low, side)| (low, low + side));
-        let ((x0, x1), (y0, y1)) = (all(0), all(1));
-        self.density.high_in(DVec3::new(x0, y0, a.min(b)), DVec3::new(x1, y1, a.max(b))) == 0.0
-    }
-}
-
-/// Bounds of a density along a ray, period by period.
-#[derive(Debug, Clone)]
-pub struct AlongPeriods<'a> {
-    repeated: &'a Repeated,
-    pieces: Pieces,
-    inner: Option<Bounds<'a>>,
-    /// Whether nothing was in this period so far.
-    is_empty: bool,
-    crossed: u64,
-    /// The last periods that had nothing in them.
-    empty: u64,
-}
-
-impl Iterator for AlongPeriods<'_> {
-    type Item = Bound;
-
-    fn next(&mut self) -> Option<Bound> {
-        loop {
-            if let Some(bound) = self.inner.as_mut().and_then(Iterator::next) {
-                self.is_empty &= bound.high == 0.0;
-                return Some(bound);
-            }
-            self.empty = if self.is_empty { self.empty + 1 } else { 0 };
-            let rest = Interval { start: self.pieces.at, end: self.pieces.end };
-            let is_endless = self.crossed >= FOREVER && rest.end == f64::INFINITY;
-            let is_asked = self.empty > 0 && self.empty.is_multiple_of(EMPTY);
-            if is_endless || (is_asked && self.repeated.is_empty_beyond(&self.pieces.ray, rest)) {
-                self.pieces.at = rest.end;
-                self.inner = None;
-                return (rest.end > rest.start).then_some(Bound { interval: rest, low: 0.0, high: 0.0 });
-            }
-            let (ray, part) = self.pieces.next()?;
-            self.crossed += 1;
-            self.is_empty = true;
-            self.inner = Some(self.repeated.density.along(&ray, part));
-        }
-    }
-}
-
 /// What a box of samples repeats: with one more of them on either side, taken from the other, so that it is smooth across the
 /// seam.
-fn repeat_grid(grid: &Arc<Grid>, cell: DVec2) -> Result<(Grid, Period)> {
+pub(super) fn repeat_grid(grid: &Arc<Grid>, cell: DVec2) -> Result<(Grid, Period)> {
     let [x, y, _] = grid.count();
     let varies = [x > 1, y > 1];
     let period = Period::of("a grid", grid.corners(), varies, cell)?;
@@ -242,65 +191,24 @@ fn repeat_grid(grid: &Arc<Grid>, cell: DVec2) -> Result<(Grid, Period)> {
     for (axis, side) in period.0.iter().enumerate() {
         max[axis] = side.map_or(max[axis], |(low, side)| low + side);
     }
+    let bytes = 4.0 * grid.values().len() as f64;
+    crate::memory::check(|| format!("a grid of {bytes} bytes, once more"), 1.2 * bytes)?;
     Ok((grid.wrapped((min, max), varies)?, period))
 }
 
-fn repeat_blocks(blocks: &Arc<Blocks>, cell: DVec2) -> Result<(Blocks, Period)> {
+pub(super) fn repeat_blocks(blocks: &Arc<Blocks>, cell: DVec2) -> Result<(Arc<Blocks>, Period)> {
     let [x, y, _] = blocks.count();
     let what = if blocks.is_columns() { "a lattice of columns" } else { "a box of blocks" };
     let period = Period::of(what, blocks.corners(), [x > 1, y > 1], cell)?;
-    let ends = period.0.iter().enumerate();
-    let blocks = ends.fold(Blocks::clone(blocks), |blocks, (axis, side)| {
-        side.map_or(blocks.clone(), |(low, side)| blocks.ending_at(axis, low + side))
-    });
-    Ok((blocks, period))
-}
-
-impl Density {
-    /// The same density in every period of a cell; itself where it depends on z alone.
-    ///
-    /// # Errors
-    /// `Error::Scene` for boxes that are no whole part of the cell, clouds that do not fit into it, and fog that thins out
-    /// along x or y
-    pub(super) fn repeated(&self, cell: DVec2, sigma_t: f64) -> Result<Density> {
-        if self.is_layered() {
-            return Ok(self.clone());
+    let mut repeated = blocks.clone();
+    for (axis, side) in period.0.iter().enumerate() {
+        if let Some((low, side)) = side
+            && blocks.corners().1[axis] != low + side
+        {
+            Arc::make_mut(&mut repeated).end_at(axis, low + side);
         }
-        let (density, period) = match self {
-            Density::Grid(grid) => {
-                let (grid, period) = repeat_grid(grid, cell)?;
-                (Density::Grid(Arc::new(grid.bounded_for(sigma_t))), period)
-            }
-            Density::Blocks(blocks) => {
-                let (blocks, period) = repeat_blocks(blocks, cell)?;
-                (Density::Blocks(Arc::new(blocks)), period)
-            }
-            Density::Cloud(cloud) => {
-                let reach = cloud.reach();
-                let center = cloud.shape().center;
-                if let Some(axis) = (0..2).find(|axis| 2.0 * reach[*axis] > cell[*axis]) {
-                    return refuse(format!(
-                        "a cloud is {} wide along {}, with its shreds; allowed: up to the side of the cell there, {}",
-                        2.0 * reach[axis],
-                        ["x", "y"][axis],
-                        cell[axis]
-                    ));
-                }
-                let along = |axis: usize| Some((center[axis] - 0.5 * cell[axis], cell[axis]));
-                (self.clone(), Period([along(0), along(1)]))
-            }
-            Density::HeightFog(_) => {
-                return refuse("height fog does not repeat itself; allowed with `cell`: `up` along z".into());
-            }
-            Density::Repeated(repeated) if repeated.period.fits(cell) => return Ok(self.clone()),
-            Density::Repeated(_) => {
-                return refuse(
-                    "a density that repeats itself with periods that are no part of the cell".into(),
-                );
-            }
-        };
-        Ok(Density::Repeated(Arc::new(Repeated { density, period })))
     }
+    Ok((repeated, period))
 }
 
 /// An albedo from place to place.
@@ -347,7 +255,7 @@ impl Albedo {
             }
             Albedo::Blocks(blocks, None) if !blocks.is_layered() => {
                 let (blocks, period) = repeat_blocks(blocks, cell)?;
-                Ok(Albedo::Blocks(Arc::new(blocks), Some(period)))
+                Ok(Albedo::Blocks(blocks, Some(period)))
             }
             Albedo::Grid(_, Some(period)) | Albedo::Blocks(_, Some(period)) if !period.fits(cell) => {
                 refuse("an albedo that repeats itself with periods that are no part of the cell".into())
