@@ -76,7 +76,7 @@ impl FaceBins {
     pub fn distance(&self, ray: &Ray) -> Option<f64> {
         let t = (self.rectangle.corner() - ray.origin).dot(self.rectangle.normal())
             / ray.dir.dot(self.rectangle.normal());
-        (t >= 0.0 && t < f64::INFINITY).then_some(t)
+        (0.0..f64::INFINITY).contains(&t).then_some(t)
     }
 }
 

@@ -73,6 +73,20 @@ impl Bin {
     }
 }
 
+/// Memory of the measurements of all bins \[bytes\]: each with its two names, and what the allocator adds to them.
+pub fn row_bytes(scene: &Scene) -> f64 {
+    let bins: usize = scene.sensors().iter().filter_map(Sensor::binned).map(Binned::bins).sum();
+    let channels = if scene.plan().is_grey { 1 } else { 3 };
+    (bins * channels * (size_of::<Measurement>() + 2 * 32)) as f64
+}
+
+/// Room for the measurements of all sensors: a vector that grows would be there twice.
+fn room(scene: &Scene) -> Vec<Measurement> {
+    let bins = scene.sensors().iter().map(|s| s.binned().map_or(1, Binned::bins));
+    let channels = if scene.plan().is_grey { 1 } else { 3 };
+    Vec::with_capacity(channels * bins.sum::<usize>())
+}
+
 /// Why a measurement has no standard error.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum NoError {
