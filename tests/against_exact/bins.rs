@@ -233,7 +233,7 @@ fn a_void_in_a_source() {
 }
 
 /// Light from all sides, a mirror, a diffuse ball and fog that varies, none of which absorbs: radiance 1, and so a fluence of
-/// 4 pi, everywhere; behind a refraction as much more as the square of the index. Maps read it from fog alone.
+/// 4 pi, everywhere; in the middle of glass as much more as the square of the index. Maps read it from fog alone.
 #[test]
 fn a_furnace() {
     let fog = "sigma_t = 1.5\nalbedo = 1\ng = 0.4\ndensity = { height-fog = { base = -1, scale_height = 1, up = [0, 0, 1] } }";
@@ -244,7 +244,8 @@ fn a_furnace() {
     let region =
         format!("[[regions]]\nshape = {{ sphere = {{ center = [0, 0, 0], radius = 1.9 }} }}\n{fog}\n");
     let air = "min = [-0.5, -0.5, 0.2], max = [0.5, 0.5, 0.6], cells = [2, 1, 1]";
-    let glass = "min = [0.7, -0.2, -0.2], max = [1.1, 0.2, 0.2], cells = [1, 1, 2]";
+    // Within radius over index: farther out rays that are caught by total reflection are dark.
+    let glass = "min = [0.75, -0.15, -0.15], max = [1.05, 0.15, 0.15], cells = [1, 1, 2]";
     let radiance = "mean-radiance = { corner = [-0.5, -0.5, 0.7], u = [1, 0, 0], v = [0, 1, 0], bins = [1, 2], dir = [0, 0.6, -0.8] }";
     let measured = [
         format!("mean-fluence = {{ {air} }}"),
@@ -258,7 +259,7 @@ fn a_furnace() {
     let references = [4.0 * PI, 2.25 * 4.0 * PI, 1.0];
     for (number, reference) in references.into_iter().enumerate() {
         for bin in 0..2 {
-            let by_paths = bin_paths(&scene, &scene.sensors()[number], bin, PATHS / 2, 12)[0];
+            let by_paths = bin_paths(&scene, &scene.sensors()[number], bin, PATHS, 12)[0];
             let what = format!("sensor {number}, bin {bin}");
             verdict::agrees(&format!("{what}, paths"), &by_paths, (reference, 1e-12), 0.1 * reference, 12);
         }
@@ -268,7 +269,7 @@ fn a_furnace() {
         [(0, references[0]), (1, references[1])].into_iter().flat_map(|(s, r)| [((s, 0), r), ((s, 1), r)])
     {
         let moments = &scored[bin.0][bin.1][0];
-        verdict::agrees(&format!("{bin:?}, scored"), moments, (reference, 1e-12), 0.15 * reference, 13);
+        verdict::agrees(&format!("{bin:?}, scored"), moments, (reference, 1e-12), 0.2 * reference, 13);
     }
     verdict::rejects("glass as air", &scored[1][0][0], references[0], 13);
 
