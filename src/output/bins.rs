@@ -14,7 +14,7 @@ use crate::sensor::Measurement;
 ///
 /// # Source
 /// NEP 1, A Simple File Format for NumPy Arrays
-pub fn npy(rows: &[Measurement], count: [usize; 3]) -> Vec<u8> {
+pub fn npy(rows: &[&Measurement], count: [usize; 3]) -> Vec<u8> {
     let [ni, nj, nk] = count;
     let channels = rows.len() / (ni * nj * nk);
     let text =
@@ -43,7 +43,7 @@ pub fn npy(rows: &[Measurement], count: [usize; 3]) -> Vec<u8> {
 ///
 /// # Errors
 /// `Error::OutOfRange` for a mean that single precision cannot hold
-pub fn voxel_grid(rows: &[Measurement], voxels: &Voxels) -> Result<Grid> {
+pub fn voxel_grid(rows: &[&Measurement], voxels: &Voxels) -> Result<Grid> {
     let channels = rows.len() / voxels.count().iter().product::<usize>();
     let values: Vec<f32> = rows.iter().map(|row| row.mean as f32).collect();
     if let Some(row) = rows.iter().find(|row| row.mean.abs() > f64::from(f32::MAX)) {
@@ -75,7 +75,7 @@ mod tests {
     #[test]
     fn an_array_as_numpy_writes_it() {
         let rows = [row(1.0, Some(0.5)), row(2.0, None), row(3.0, Some(0.25)), row(4.0, Some(0.0))];
-        let bytes = npy(&rows, [2, 1, 2]);
+        let bytes = npy(&rows.each_ref(), [2, 1, 2]);
         let mut expected = b"\x93NUMPY\x01\x00\x76\x00".to_vec();
         expected.extend(b"{'descr': '<f8', 'fortran_order': False, 'shape': (2, 1, 2, 1, 2), }");
         expected.resize(127, b' ');
@@ -91,10 +91,12 @@ mod tests {
         let cuboid = Cuboid::new(DVec3::ZERO, DVec3::new(2.0, 1.0, 1.0)).unwrap();
         let voxels = Voxels::new(cuboid, [2, 1, 1]).unwrap();
         let channels: Vec<Measurement> = (0..6).map(|i| row(f64::from(i), None)).collect();
-        let grid = Grid::from_bytes(&voxel_grid(&channels, &voxels).unwrap().to_bytes()).unwrap();
+        let grid =
+            Grid::from_bytes(&voxel_grid(&channels.iter().collect::<Vec<_>>(), &voxels).unwrap().to_bytes())
+                .unwrap();
         assert_eq!((grid.count(), grid.channels()), ([2, 1, 1], 3));
         assert_eq!(grid.values(), [0.0, 1.0, 2.0, 3.0, 4.0, 5.0]);
         assert_eq!(grid.corners(), (DVec3::ZERO, DVec3::new(2.0, 1.0, 1.0)));
-        assert!(voxel_grid(&[row(1e39, None), row(1.0, None)], &voxels).is_err());
+        assert!(voxel_grid(&[&row(1e39, None), &row(1.0, None)], &voxels).is_err());
     }
 }

@@ -71,10 +71,10 @@ struct BinRow<'a> {
 const BIN_COLUMNS: [&str; 12] =
     ["sensor", "quantity", "unit", "i", "j", "k", "x", "y", "z", "mean", "std_error", "n"];
 
-fn write_bins(out: &mut dyn Write, rows: &[Measurement], format: Format) -> io::Result<()> {
+fn write_bins<'a>(out: &mut dyn Write, rows: &'a [Measurement], format: Format) -> io::Result<()> {
     let index = |r: &Measurement, axis: usize| r.bin.map(|bin| bin.index[axis]);
     let middle = |r: &Measurement, axis: usize| r.bin.and_then(|bin| bin.middle).map(|p| p[axis]);
-    let whole = rows.iter().map(|r| BinRow {
+    let whole = |r: &'a Measurement| BinRow {
         sensor: &r.sensor,
         quantity: &r.quantity,
         unit: r.unit,
@@ -87,31 +87,33 @@ fn write_bins(out: &mut dyn Write, rows: &[Measurement], format: Format) -> io::
         mean: r.mean,
         std_error: r.std_error,
         n: r.n,
-    });
+    };
     match format {
-        Format::Csv => write_csv(out, &whole.collect::<Vec<_>>()),
-        Format::Json => write_json(out, &whole.collect::<Vec<_>>()),
+        Format::Csv => write_csv(out, rows.iter().map(whole)),
+        Format::Json => write_json(out, &rows.iter().map(whole).collect::<Vec<_>>()),
         Format::Text => {
-            let mut lines = vec![BIN_COLUMNS.map(str::to_string)];
-            for (r, row) in rows.iter().zip(whole) {
-                let number = |n: Option<usize>| n.map_or_else(String::new, |n| n.to_string());
-                let place = |x: Option<f64>| x.map_or_else(String::new, |x| format!("{x:.4}"));
-                lines.push([
+            let number = |n: Option<usize>| n.map_or_else(String::new, |n| n.to_string());
+            let place = |x: Option<f64>| x.map_or_else(String::new, |x| format!("{x:.4}"));
+            let line = |row: usize| {
+                let Some(r) = row.checked_sub(1).map(|row| &rows[row]) else {
+                    return BIN_COLUMNS.map(str::to_string);
+                };
+                [
                     r.sensor.clone(),
                     r.quantity.clone(),
                     r.unit.to_string(),
-                    number(row.i),
-                    number(row.j),
-                    number(row.k),
-                    place(row.x),
-                    place(row.y),
-                    place(row.z),
+                    number(index(r, 0)),
+                    number(index(r, 1)),
+                    number(index(r, 2)),
+                    place(middle(r, 0)),
+                    place(middle(r, 1)),
+                    place(middle(r, 2)),
                     format!("{:.6e}", r.mean),
                     r.std_error.map_or_else(|| word(r), |e| format!("{e:.1e}")),
                     r.n.to_string(),
-                ]);
-            }
-            write_aligned(out, &lines, 3)
+                ]
+            };
+            write_aligned_lines(out, rows.len() + 1, line, 3)
         }
     }
 }
@@ -130,13 +132,25 @@ pub fn write_aligned<const N: usize>(
     lines: &[[String; N]],
     words: usize,
 ) -> io::Result<()> {
-    let lines: Vec<[String; N]> =
-        lines.iter().map(|line| line.each_ref().map(|cell| one_line(cell))).collect();
-    let width = |column: usize| lines.iter().map(|l| l[column].chars().count()).max().unwrap_or(0);
-    let widths: Vec<usize> = (0..N).map(width).collect();
-    for line in &lines {
+    write_aligned_lines(out, lines.len(), |line| lines[line].clone(), words)
+}
+
+/// The same of lines that are made when they are asked for, twice, so that many of them take no memory.
+fn write_aligned_lines<const N: usize>(
+    out: &mut dyn Write,
+    lines: usize,
+    line: impl Fn(usize) -> [String; N],
+    words: usize,
+) -> io::Result<()> {
+    let line = |number: usize| line(number).map(|cell| one_line(&cell));
+    let mut widths = [0; N];
+    for number in 0..lines {
+        let cells = line(number);
+        widths.iter_mut().zip(&cells).for_each(|(width, cell)| *width = cell.chars().count().max(*width));
+    }
+    for number in 0..lines {
         let mut text = String::new();
-        for (column, (cell, &width)) in line.iter().zip(&widths).enumerate() {
+        for (column, (cell, width)) in line(number).iter().zip(widths).enumerate() {
             let cell = if column < words { format!("{cell:<width$}  ") } else { format!("{cell:>width$}  ") };
             text.push_str(&cell);
         }
@@ -149,7 +163,7 @@ pub fn write_aligned<const N: usize>(
 ///
 /// # Errors
 /// Those of the writer, and rows that are not flat.
-pub fn write_csv<T: Serialize>(out: &mut dyn Write, rows: &[T]) -> io::Result<()> {
+pub fn write_csv<T: Serialize>(out: &mut dyn Write, rows: impl IntoIterator<Item = T>) -> io::Result<()> {
     let mut csv = csv::Writer::from_writer(out);
     for row in rows {
         csv.serialize(row).map_err(into_io)?;

@@ -49,16 +49,15 @@ impl Scores {
     }
 
     /// The moments over so many histories, by channel, of all bins in the order of sensors.
-    pub fn moments(&self, scene: &Scene, histories: u64) -> Vec<[Moments; 3]> {
-        let whole = |m: &Moments| {
-            let mut m = *m;
-            m.merge(&Moments::zeros(histories - m.n()));
-            m
-        };
-        match channels(scene) {
-            1 => self.0.iter().map(|m| [whole(m); 3]).collect(),
-            _ => self.0.chunks_exact(3).map(|c| [whole(&c[0]), whole(&c[1]), whole(&c[2])]).collect(),
-        }
+    pub fn moments(&self, scene: &Scene, histories: u64) -> impl Iterator<Item = [Moments; 3]> {
+        let channels = channels(scene);
+        self.0.chunks_exact(channels).map(move |bin| {
+            [0, 1, 2].map(|channel| {
+                let mut m = bin[channel.min(channels - 1)];
+                m.merge(&Moments::zeros(histories - m.n()));
+                m
+            })
+        })
     }
 }
 

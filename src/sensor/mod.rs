@@ -73,6 +73,20 @@ impl Bin {
     }
 }
 
+/// Memory of the measurements of all bins \[bytes\]: each with its two names, and what the allocator adds to them.
+pub fn row_bytes(scene: &Scene) -> f64 {
+    let bins: usize = scene.sensors().iter().filter_map(Sensor::binned).map(Binned::bins).sum();
+    let channels = if scene.plan().is_grey { 1 } else { 3 };
+    (bins * channels * (size_of::<Measurement>() + 2 * 32)) as f64
+}
+
+/// Room for the measurements of all sensors: a vector that grows would be there twice.
+fn room(scene: &Scene) -> Vec<Measurement> {
+    let bins = scene.sensors().iter().map(|s| s.binned().map_or(1, Binned::bins));
+    let channels = if scene.plan().is_grey { 1 } else { 3 };
+    Vec::with_capacity(channels * bins.sum::<usize>())
+}
+
 /// Why a measurement has no standard error.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum NoError {
@@ -160,7 +174,9 @@ fn std_error(m: &Moments, tail: Option<&Tail>, source: Source) -> Result<f64, No
             Ok(m.mean().abs() * poisson_interval(0, 0.95).high / m.n() as f64)
         }
         // The variance of variance of k equal contributions among many histories is 1/k.
-        Source::Scores if effective_number(m) < 1.0 / HEAVY_TAIL => Err(NoError::TooFew),
+        Source::Scores if m.is_heavy_tailed() && effective_number(m) < 1.0 / HEAVY_TAIL => {
+            Err(NoError::TooFew)
+        }
         Source::Scores if m.is_heavy_tailed() => Err(NoError::HeavyTail),
         Source::Scores => Ok(m.std_error()),
         Source::Paths | Source::Maps if brought_nothing => Err(NoError::Nothing),
@@ -240,6 +256,23 @@ mod tests {
             assert!((error - 0.003).abs() < 1e-5, "{error}");
             assert_eq!(of(&[value], Source::Tally), Err(NoError::TooFew));
         }
+    }
+
+    #[test]
+    fn scores_of_few_photons_have_no_error() {
+        let some = |values: &[f64]| {
+            let zeros = std::iter::repeat_n(0.0, 10_000 - values.len());
+            of(&values.iter().copied().chain(zeros).collect::<Vec<_>>(), Source::Scores)
+        };
+        assert_eq!((some(&[]), some(&[2.0; 9])), (Err(NoError::Nothing), Err(NoError::TooFew)));
+        assert!(some(&[2.0; 11]).is_ok());
+        let rare: Vec<f64> = (0..200).map(|i| if i < 3 { 50.0 } else { 1.0 }).collect();
+        assert_eq!(some(&rare), Err(NoError::HeavyTail));
+        // A net flux of nothing is known as well as the parts that it is made of.
+        let both: Vec<f64> = (0..200).map(|i| if i % 2 == 0 { 1.0 } else { -1.0 }).collect();
+        assert!((some(&both).unwrap() - (200.0f64).sqrt() / 10_000.0).abs() < 1e-6);
+        let alike = of(&[4.0; 1000], Source::Scores).unwrap();
+        assert!((alike - 0.012).abs() < 4e-5, "{alike}");
     }
 
     #[test]

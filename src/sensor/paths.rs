@@ -1,6 +1,6 @@
 //! Sensors read by the path tracer.
 
-use super::{Measurement, Source, measurements};
+use super::{Measurement, Source, measurements, room};
 use crate::Spectrum;
 use crate::error::{Error, Result};
 use crate::integrators::{Rays, direct_flux, fluence, radiance};
@@ -59,7 +59,7 @@ fn measured(
     progress: &dyn Progress,
 ) -> Result<Vec<Measurement>> {
     check(scene)?;
-    let (mut all, mut index) = (Vec::new(), 0);
+    let (mut all, mut index) = (room(scene), 0);
     for sensor in scene.sensors() {
         for bin in 0..sensor.binned().map_or(1, Binned::bins) {
             let (moments, tails) = match sensor.binned() {

@@ -1,6 +1,6 @@
 //! Sensors read by photons: powers tallied where photons leave or end, fluence and radiance from photon maps.
 
-use super::{Measurement, Source, measurements};
+use super::{Measurement, Source, measurements, room, row_bytes};
 use crate::Spectrum;
 use crate::error::{Error, Result};
 use crate::estimators::boundary::{Boundary, Treatment};
@@ -169,7 +169,8 @@ pub fn by_photons_in_passes(
             }
         }
     }
-    let mut scored = scores.moments(scene, settings.photons * settings.maps).into_iter();
+    result.measurements = room(scene);
+    let mut scored = scores.moments(scene, settings.photons * settings.maps);
     for (sensor, moments) in sensors.iter().zip(moments) {
         let source = match map_orders(sensor) {
             Some(_) => Source::Maps,
@@ -248,7 +249,8 @@ pub(super) fn forecast_of(
     let seconds = (one * photons as f64 + BUILD_SECONDS * copied) * maps as f64 / threads;
     // The scores of all blocks of a pass, those that they are added to, and what the threads' histories add up.
     let (scores, history) = score_bytes(scene, &scored(sensors));
-    let bytes = bytes + scores * (photons.div_ceil(BLOCK) + 1) as f64 + history * threads;
+    let scores = scores * (photons.div_ceil(BLOCK) + 1) as f64 + history * threads;
+    let bytes = bytes + scores + row_bytes(scene);
     Ok(PhotonForecast { stored: copied, bytes, seconds })
 }
 

@@ -1,7 +1,7 @@
 //! Sensors read by light tracing: photons are followed and scored as they pass, and none is stored.
 
 use super::photons::{is_tallied, max_order};
-use super::{Measurement, Source, measurements};
+use super::{Measurement, Source, measurements, room, row_bytes};
 use crate::error::{Error, Result};
 use crate::light::Light;
 use crate::photons::{Emitter, Histories, Ledger, Part, Photon, Run, Scores, score_bytes};
@@ -47,7 +47,9 @@ fn blocks_at_a_time(scene: &Scene, sensors: &[Sensor]) -> u64 {
 pub fn tally_bytes(scene: &Scene, settings: &TallySettings) -> f64 {
     let (block, history) = score_bytes(scene, scene.sensors());
     let blocks = blocks_at_a_time(scene, scene.sensors()).min(settings.photons.div_ceil(BLOCK));
-    block * (blocks + 2) as f64 + history * rayon::current_num_threads() as f64
+    let scores = block * (blocks + 2) as f64 + history * rayon::current_num_threads() as f64;
+    // Measurements are made when the last block is merged.
+    scores.max(block + row_bytes(scene))
 }
 
 /// Reads every sensor of the scene by light tracing.
@@ -79,8 +81,8 @@ pub fn by_tallies(scene: &Scene, settings: &TallySettings, progress: &dyn Progre
             mine.merge(others);
         }
     }
-    let mut scored = scores.moments(scene, settings.photons).into_iter();
-    let mut all = Vec::new();
+    let mut scored = scores.moments(scene, settings.photons);
+    let mut all = room(scene);
     for (sensor, tally) in sensors.iter().zip(&tallies) {
         match sensor.binned() {
             None => all.extend(measurements(scene, sensor, tally, None, Source::Tally, None)),

@@ -86,9 +86,9 @@ fn fluxes_through_planes_of_a_slab() {
                 })
             };
             let what = format!("{way} at {t}, {how:?}");
-            for bin in 0..2 {
+            for (bin, moments) in scored[number].iter().enumerate() {
                 let by_paths = bin_paths(&scene, sensor, bin, PATHS, 2)[0];
-                verdict::agrees(&format!("{what}, scored"), &scored[number][bin][0], flux(way), 0.05, 1);
+                verdict::agrees(&format!("{what}, scored"), &moments[0], flux(way), 0.05, 1);
                 verdict::agrees(&format!("{what}, paths"), &by_paths, flux(way), 0.15, 2);
             }
             if way != "net" && t == 0.8 {
@@ -115,12 +115,13 @@ fn layers_of_a_slab() {
         let exact_slab = layers(how);
         let scene = slab(how, &sensors);
         let scored = scores(&scene, PHOTONS, 3);
-        for layer in 0..LAYERS {
+        for (layer, collided) in scored[1].iter().enumerate() {
             // A layer is 1/4 thick.
             let absorbed = exact_slab.absorptance(layer).unwrap();
             let (top, bottom) = (0.5 * layer as f64, 0.5 * (layer + 1) as f64);
-            let kept = exact_slab.flux(top).unwrap().value - exact_slab.flux(bottom).unwrap().value;
-            assert!((kept - absorbed.value).abs() < 1e-8);
+            let [top, bottom] = [top, bottom].map(|t| exact_slab.flux(t).unwrap());
+            let error = top.error + bottom.error + absorbed.error + 4.0 * f64::EPSILON;
+            assert!((top.value - bottom.value - absorbed.value).abs() <= error);
             let fluence = exact(exact_slab.mean_fluence(layer).unwrap());
             let absorption = (4.0 * absorbed.value, 4.0 * absorbed.error + 1e-15);
             let what = format!("layer {layer}, {how:?}");
@@ -136,8 +137,8 @@ fn layers_of_a_slab() {
                     verdict::agrees(&format!("{name}, paths"), &by_paths, reference, 0.3, 4);
                 }
             }
-            // Collisions not divided by the extinction, 2, and the layer's fluence for that in its middle.
-            verdict::rejects(&format!("{what}, undivided"), &scored[1][layer][0], 2.0 * fluence.0, 3);
+            // Collisions not divided by the extinction.
+            verdict::rejects(&format!("{what}, undivided"), &collided[0], 2.0 * fluence.0, 3);
         }
     }
 }
@@ -153,11 +154,12 @@ fn columns_of_a_cell_are_alike() {
     let exact_slab = layers(how);
     let scored = scores(&slab(how, &sensors), PHOTONS, 5);
     let absorbed = exact_slab.absorptance(1).unwrap();
-    for bin in 0..6 {
+    assert_eq!((scored[0].len(), scored[1].len()), (6, 6));
+    for (bin, (flown, kept)) in scored[0].iter().zip(&scored[1]).enumerate() {
         let fluence = exact(exact_slab.mean_fluence(1).unwrap());
-        verdict::agrees(&format!("column {bin}"), &scored[0][bin][0], fluence, 0.15, 5);
+        verdict::agrees(&format!("column {bin}"), &flown[0], fluence, 0.15, 5);
         let absorption = (4.0 * absorbed.value, 4.0 * absorbed.error);
-        verdict::agrees(&format!("column {bin}, absorption"), &scored[1][bin][0], absorption, 0.15, 5);
+        verdict::agrees(&format!("column {bin}, absorption"), &kept[0], absorption, 0.15, 5);
     }
     let all = (0..LAYERS).map(|i| exact_slab.mean_fluence(i).unwrap());
     let mean = all.fold((0.0, 0.0), |(v, e), x| (v + 0.25 * x.value, e + 0.25 * x.error));
@@ -186,9 +188,9 @@ fn radiance_through_planes_of_a_slab() {
             let reference = exact(exact_slab.radiance(part * TAU, mu, dphi).unwrap());
             let value = reference.0;
             let what = format!("depth {part}, mu {mu}, {how:?}");
-            for bin in 0..2 {
+            for (bin, moments) in scored[number].iter().enumerate() {
                 let by_paths = bin_paths(&scene, &scene.sensors()[number], bin, PATHS, 7)[0];
-                let moments = &scored[number][bin][0];
+                let moments = &moments[0];
                 verdict::agrees(&format!("{what}, scored"), moments, reference, 0.1 * value, 6);
                 verdict::agrees(&format!("{what}, paths"), &by_paths, reference, 0.2 * value, 7);
                 verdict::rejects(&format!("{what}, area not across"), moments, reference.0 * mu.abs(), 6);
@@ -205,12 +207,12 @@ fn a_void_about_a_point_light() {
         sensor("mean-fluence = { min = [0.5, -0.25, 0.5], max = [1.5, 0.75, 1.5], cells = [2, 1, 2] }")
     ));
     let scored = scores(&scene, PHOTONS, 8);
-    for bin in 0..4 {
+    for (bin, moments) in scored[0].iter().enumerate() {
         let (x0, z0) = (0.5 + 0.5 * (bin % 2) as f64, 0.5 + 0.5 * (bin / 2) as f64);
         let over_x = |y: f64, z: f64| integrate(x0, x0 + 0.5, 1, |x| 1.0 / (x * x + y * y + z * z));
         let over_xy = |z: f64| integrate(-0.25, 0.75, 1, |y| over_x(y, z));
         let mean = integrate(z0, z0 + 0.5, 1, over_xy) / (4.0 * PI * 0.25);
-        verdict::agrees(&format!("voxel {bin}"), &scored[0][bin][0], (mean, 1e-12), 0.25 * mean, 8);
+        verdict::agrees(&format!("voxel {bin}"), &moments[0], (mean, 1e-12), 0.25 * mean, 8);
         let by_paths = bin_paths(&scene, &scene.sensors()[0], bin, PATHS, 9)[0];
         verdict::agrees(&format!("voxel {bin}, paths"), &by_paths, (mean, 1e-12), 0.1 * mean, 9);
     }
@@ -233,7 +235,7 @@ fn a_void_in_a_source() {
 }
 
 /// Light from all sides, a mirror, a diffuse ball and fog that varies, none of which absorbs: radiance 1, and so a fluence of
-/// 4 pi, everywhere; behind a refraction as much more as the square of the index. Maps read it from fog alone.
+/// 4 pi, everywhere; in the middle of glass as much more as the square of the index. Maps read it from fog alone.
 #[test]
 fn a_furnace() {
     let fog = "sigma_t = 1.5\nalbedo = 1\ng = 0.4\ndensity = { height-fog = { base = -1, scale_height = 1, up = [0, 0, 1] } }";
@@ -244,7 +246,8 @@ fn a_furnace() {
     let region =
         format!("[[regions]]\nshape = {{ sphere = {{ center = [0, 0, 0], radius = 1.9 }} }}\n{fog}\n");
     let air = "min = [-0.5, -0.5, 0.2], max = [0.5, 0.5, 0.6], cells = [2, 1, 1]";
-    let glass = "min = [0.7, -0.2, -0.2], max = [1.1, 0.2, 0.2], cells = [1, 1, 2]";
+    // Within radius over index: farther out rays that are caught by total reflection are dark.
+    let glass = "min = [0.75, -0.15, -0.15], max = [1.05, 0.15, 0.15], cells = [1, 1, 2]";
     let radiance = "mean-radiance = { corner = [-0.5, -0.5, 0.7], u = [1, 0, 0], v = [0, 1, 0], bins = [1, 2], dir = [0, 0.6, -0.8] }";
     let measured = [
         format!("mean-fluence = {{ {air} }}"),
@@ -258,7 +261,7 @@ fn a_furnace() {
     let references = [4.0 * PI, 2.25 * 4.0 * PI, 1.0];
     for (number, reference) in references.into_iter().enumerate() {
         for bin in 0..2 {
-            let by_paths = bin_paths(&scene, &scene.sensors()[number], bin, PATHS / 2, 12)[0];
+            let by_paths = bin_paths(&scene, &scene.sensors()[number], bin, PATHS, 12)[0];
             let what = format!("sensor {number}, bin {bin}");
             verdict::agrees(&format!("{what}, paths"), &by_paths, (reference, 1e-12), 0.1 * reference, 12);
         }
@@ -268,7 +271,7 @@ fn a_furnace() {
         [(0, references[0]), (1, references[1])].into_iter().flat_map(|(s, r)| [((s, 0), r), ((s, 1), r)])
     {
         let moments = &scored[bin.0][bin.1][0];
-        verdict::agrees(&format!("{bin:?}, scored"), moments, (reference, 1e-12), 0.15 * reference, 13);
+        verdict::agrees(&format!("{bin:?}, scored"), moments, (reference, 1e-12), 0.2 * reference, 13);
     }
     verdict::rejects("glass as air", &scored[1][0][0], references[0], 13);
 

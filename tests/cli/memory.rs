@@ -73,9 +73,18 @@ fn memory_is_as_said() {
         "[camera]\nposition = [0, 0, 3]\nlook_at = [0, 0, 0]\nfov = 30\nwidth = 480\nheight = 480\n[[objects]]\nshape = { sphere = { center = [0, 0, 0], radius = 0.001 } }\nsurface = { lambertian = { reflectance = 0.5 } }\n[[lights]]\npoint = { position = [0, 1, 1], power = 1 }\n",
     );
     let large = ["render", text(&dark), "-o", &exr, "--with", "path", "--samples", "2"];
-    for (name, arguments) in
-        [("measure", &slab[..]), ("render", &fogbox), ("map", &drawn), ("large picture", &large)]
-    {
+    let many = folder.file(
+        "many.toml",
+        "[[regions]]\nshape = { sphere = { center = [0, 0, 0], radius = 1 } }\nsigma_t = 1\nalbedo = 0.5\ng = 0\n[[lights]]\npoint = { position = [0, 0, 0.1], power = 1 }\n[[sensors]]\nname = \"s\"\nmeasure = { mean-fluence = { min = [-1, -1, -1], max = [1, 1, 1], cells = [60, 60, 60] } }\n",
+    );
+    let bins = ["measure", text(&many), "--with", "light", "--photons", "4e4", "--threads", "2"];
+    for (name, arguments) in [
+        ("measure", &slab[..]),
+        ("render", &fogbox),
+        ("map", &drawn),
+        ("large picture", &large),
+        ("bins", &bins),
+    ] {
         let (said, taken) = (said(arguments), peak(arguments));
         assert!(taken > 50e6, "{name}: {taken}");
         assert!((0.75..1.12).contains(&(taken / said)), "{name}: {said} said, {taken} taken");

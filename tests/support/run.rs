@@ -69,7 +69,8 @@ pub fn scoring_pass(scene: &Scene, n: u64, seed: u64) -> Pass {
 
 /// The same: moments by sensor, bin and channel.
 pub fn scores(scene: &Scene, n: u64, seed: u64) -> Vec<Vec<[Moments; 3]>> {
-    let mut all = scoring_pass(scene, n, seed).scores.moments(scene, n).into_iter();
+    let pass = scoring_pass(scene, n, seed);
+    let mut all = pass.scores.moments(scene, n);
     let binned = scene.sensors().iter().filter_map(Sensor::binned);
     binned.map(|binned| all.by_ref().take(binned.bins()).collect()).collect()
 }

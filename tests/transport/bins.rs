@@ -4,10 +4,11 @@
 use crate::support::run::{bin_paths, scores, scoring_pass, sensor};
 use crate::support::scenes::written;
 use crate::support::verdict;
+use turbid::estimators::{Estimator, Gather, Kernel};
 use turbid::geometry::{Face, Shape};
 use turbid::photons::{Emitter, Histories, Photon, Run};
 use turbid::scene::{Binned, Orders, Quantity, Scene};
-use turbid::sensor::{PathSettings, TallySettings, by_paths, by_tallies};
+use turbid::sensor::{PathSettings, PhotonSettings, TallySettings, by_paths, by_photons, by_tallies};
 use turbid::stats::Moments;
 use turbid::transport::NoProgress;
 
@@ -124,7 +125,7 @@ fn nothing_is_lost_between_voxels() {
     let n = 1 << 14;
     let pass = scoring_pass(&scene, n, 5);
     let ledger = pass.report.ledger;
-    let mut moments = pass.scores.moments(&scene, n).into_iter();
+    let mut moments = pass.scores.moments(&scene, n);
     let [mut kept, mut left] = [0.0; 2];
     for sensor in scene.sensors() {
         let binned = sensor.binned().unwrap();
@@ -159,7 +160,7 @@ fn bins_add_up() {
     let histories = Histories { count: n, seed: 6, replicate: 0, max_order: None };
     let run = Run { sensors: &outflow, scored: scene.sensors(), ..Run::new(&scene, &emitter, histories) };
     let pass = run.pass(&|_: &Photon| false, &NoProgress).unwrap();
-    let moments = pass.scores.moments(&scene, n);
+    let moments: Vec<[Moments; 3]> = pass.scores.moments(&scene, n).collect();
     let mean = |range: std::ops::Range<usize>| {
         moments[range.clone()].iter().map(|m| m[0].mean()).sum::<f64>() / range.len() as f64
     };
@@ -168,6 +169,27 @@ fn bins_add_up() {
     assert!((mean(15..75) / mean(75..76) - 1.0).abs() < 1e-11, "{} {}", mean(15..75), mean(75..76));
     // Every photon of the beam but those that collide passes one bin at most, and those that do pass any.
     assert!(moments[..15].iter().all(|m| m[0].mean() > 0.0));
+}
+
+/// Beside a map fluxes and absorption are scored by the histories that fill it: those that light tracing follows.
+#[test]
+fn scores_beside_a_map_are_those_of_light_tracing() {
+    let sensors =
+        measured("flux", "flux = { corner = [-1, -1, 1.2], u = [2, 0, 0], v = [0, 2, 0], bins = [2, 2] }")
+            + &measured("absorbed", "mean-absorption = { region = 0 }")
+            + "max_order = 3\n";
+    let scene = written(&format!("{ROOM}{sensors}"));
+    let light = TallySettings { photons: 9000, seed: 8, orders: Orders::ALL };
+    let scored = by_tallies(&scene, &light, &NoProgress).unwrap();
+    let estimator = Estimator::new(Kernel::Uniform, Gather::radius(0.1).unwrap());
+    let settings = PhotonSettings { photons: 9000, maps: 1, seed: 8, orders: Orders::ALL, estimator };
+    let beside = by_photons(&scene, &settings, &NoProgress).unwrap();
+    assert_eq!((scored.measurements.len(), &scored.measurements), (15, &beside.measurements));
+    assert_eq!(scored.ledger, beside.ledger);
+    // Several maps are other histories, as many in all.
+    let settings = PhotonSettings { photons: 3000, maps: 3, ..settings };
+    let maps = by_photons(&scene, &settings, &NoProgress).unwrap().measurements;
+    assert!(maps.iter().zip(&scored.measurements).all(|(a, b)| a.n == b.n && a.mean != b.mean));
 }
 
 /// The same bits on any number of threads, and a walk that does not know what is scored.

@@ -206,7 +206,7 @@ pub(super) fn write_results(out: &Path, sections: &[SectionReport]) -> anyhow::R
         .collect();
     write_atomically(out.join("claims.csv"), |file| write_csv(file, &claims))?;
     let headlines: Vec<_> = sections.iter().flat_map(headlines).collect();
-    write_atomically(out.join("headlines.csv"), |file| write_csv(file, &headline::records(&headlines)))?;
+    write_atomically(out.join("headlines.csv"), |file| write_csv(file, headline::records(&headlines)))?;
     let commands = headline::commands(&headlines);
     write_atomically(out.join("numbers.tex"), |file| file.write_all(commands.as_bytes()))?;
     let folder = out.join("figures");

@@ -17,7 +17,7 @@ use turbid::photons::Ledger;
 use turbid::scene::{Binned, Orders, Scene, Sensor, Space};
 use turbid::sensor::{
     Measurement, NoError, PathSettings, PhotonSettings, TallySettings, by_guided_paths, by_paths,
-    by_photons_in_passes, by_tallies, forecast, tally_bytes,
+    by_photons_in_passes, by_tallies, forecast, row_bytes, tally_bytes,
 };
 
 /// Measure the sensors of a scene by paths, photons or light tracing.
@@ -174,7 +174,7 @@ impl Measure {
     }
 
     fn write_files(&self, measurements: &[Measurement], binned: &Binned) -> anyhow::Result<()> {
-        let rows: Vec<Measurement> = measurements.iter().filter(|row| row.bin.is_some()).cloned().collect();
+        let rows: Vec<&Measurement> = measurements.iter().filter(|row| row.bin.is_some()).collect();
         if let Some(file) = &self.npy {
             write_atomically(file, |out| out.write_all(&npy(&rows, binned.count())))?;
         }
@@ -206,6 +206,7 @@ impl Measure {
     fn measure_by_paths(&self, scene: &Scene) -> anyhow::Result<(Vec<Measurement>, Vec<String>)> {
         let settings =
             PathSettings { samples: self.samples, seed: self.seed, replicate: 0, orders: self.orders };
+        self.check_bins(scene, row_bytes(scene))?;
         let bins: u64 = scene.sensors().iter().map(|s| s.binned().map_or(1, Binned::bins) as u64).sum();
         let bar = Bar::new(self.samples.saturating_mul(bins));
         let read = if self.weight_windows { by_guided_paths } else { by_paths };
