@@ -80,6 +80,10 @@ impl Guide {
             Light::Area(area) => about(area.shape().bounds()),
             Light::VolumeSource(source) => about(source.shape().bounds()),
             Light::MediumEmission(emission) => about(emission.ball()),
+            // What has scattered comes into a slab the short way, however aslant the light itself does.
+            Light::Beam(beam) if scene.periodic_cell().is_some() => {
+                from(DVec3::NEG_Z * beam.dir().z.signum(), beam.irradiance())
+            }
             Light::Beam(beam) => from(-beam.dir(), beam.irradiance()),
             Light::Sun(sun) => from(-sun.dir(), sun.irradiance()),
             // From the top of a slab.

@@ -27,6 +27,16 @@ fn goes_on(walker: &mut Walker, stream: &mut Stream) -> bool {
     stream.unit() < chance
 }
 
+/// Parts split off one history after which it is split no more: a guess that grows faster than light would split for ever.
+const MOST_SPLIT: usize = 10_000;
+
+/// What is left of a history to follow, and how much was split off it so far.
+#[derive(Default)]
+struct Split {
+    waiting: Vec<Waiting>,
+    count: usize,
+}
+
 /// A part of a history that was split off on a flight.
 struct Waiting {
     walker: Walker,
@@ -48,11 +58,11 @@ pub fn walk<V: Visitor>(
     stream: &mut Stream,
     visitor: &mut V,
 ) {
-    let mut waiting = Vec::new();
-    follow(scene, (start, roulette), None, limit, &mut waiting, stream, visitor);
-    while let Some(Waiting { walker, roulette, hit, flown }) = waiting.pop() {
+    let mut split = Split::default();
+    follow(scene, (start, roulette), None, limit, &mut split, stream, visitor);
+    while let Some(Waiting { walker, roulette, hit, flown }) = split.waiting.pop() {
         visitor.resume(hit.as_ref());
-        follow(scene, (walker, roulette), Some((hit, flown)), limit, &mut waiting, stream, visitor);
+        follow(scene, (walker, roulette), Some((hit, flown)), limit, &mut split, stream, visitor);
     }
 }
 
@@ -62,7 +72,7 @@ fn follow<V: Visitor>(
     (start, roulette): (Walker, Roulette),
     mut resumed: Option<(Option<SceneHit>, f64)>,
     limit: Option<u32>,
-    waiting: &mut Vec<Waiting>,
+    split: &mut Split,
     stream: &mut Stream,
     visitor: &mut V,
 ) {
@@ -95,7 +105,7 @@ fn follow<V: Visitor>(
         }
         let end = hit.map_or(f64::INFINITY, |h| h.hit.t);
         let forced = scene.plan().forces_first_collision && walker.order == 0 && hit.is_none();
-        let flight = fly(scene, (&mut walker, roulette), (hit, flown, end), forced, waiting, stream, visitor);
+        let flight = fly(scene, (&mut walker, roulette), (hit, flown, end), forced, split, stream, visitor);
         let Some(flight) = flight else { return };
         let arrived = walker.weight;
         match flight {
@@ -185,7 +195,7 @@ fn fly<V: Visitor>(
     (walker, roulette): (&mut Walker, Roulette),
     (hit, mut flown, end): (Option<SceneHit>, f64, f64),
     forced: bool,
-    waiting: &mut Vec<Waiting>,
+    split: &mut Split,
     stream: &mut Stream,
     visitor: &V,
 ) -> Option<Flight> {
@@ -195,9 +205,12 @@ fn fly<V: Visitor>(
     loop {
         let (ray, interior) = (walker.ray, walker.interior);
         let (copies, factor) = guided.copies(&ray, flown, interior, walker.weight, || stream.unit());
+        let (copies, factor) =
+            if split.count < MOST_SPLIT { (copies, factor) } else { (copies.min(1), factor.max(1.0)) };
         walker.weight = walker.weight * factor;
+        split.count += copies.saturating_sub(1);
         for _ in 1..copies {
-            waiting.push(Waiting { walker: *walker, roulette, hit, flown });
+            split.waiting.push(Waiting { walker: *walker, roulette, hit, flown });
         }
         if copies == 0 {
             return None;
