@@ -6,6 +6,8 @@
 mod problems;
 mod question;
 mod readme;
+#[cfg(test)]
+mod tests;
 
 use super::comparison::{Comparison, Row};
 use super::published::Published;
@@ -22,8 +24,8 @@ const VERSION: u32 = 1;
 
 /// Programs whose answers are kept: name of the file, name of the program, script that answers.
 const PROGRAMS: [(&str, &str, &str); 2] = [
-    ("mitsuba", "Mitsuba 3.9", include_str!("mitsuba.py")),
-    ("pythonicdisort", "PythonicDISORT 1.8", include_str!("pythonicdisort.py")),
+    ("mitsuba", "Mitsuba 3.9", include_str!("ask_mitsuba.py")),
+    ("pythonicdisort", "PythonicDISORT 1.8", include_str!("ask_pythonicdisort.py")),
 ];
 
 #[derive(Serialize)]
@@ -34,12 +36,18 @@ struct Pack<'a> {
     questions: &'a [Question],
 }
 
+/// What a program answered, and what was found of it in words.
+struct Outcome {
+    comparison: Comparison,
+    found: String,
+}
+
 /// Writes the pack.
 ///
 /// # Errors
 /// Those of the referee and of the disk, and answers in `outcome` that are not read
 pub fn write(folder: &Path) -> anyhow::Result<()> {
-    let files = files(folder)?;
+    let files = files(&problems::problems()?, folder)?;
     for (name, bytes) in &files {
         let path = folder.join(name);
         let parent = path.parent().unwrap_or(folder);
@@ -51,24 +59,29 @@ pub fn write(folder: &Path) -> anyhow::Result<()> {
 }
 
 /// The files of the pack, by name; answers of other programs are read from the folder.
-fn files(folder: &Path) -> anyhow::Result<BTreeMap<String, Vec<u8>>> {
-    let problems = problems::problems()?;
+fn files(problems: &[Problem], folder: &Path) -> anyhow::Result<BTreeMap<String, Vec<u8>>> {
     let questions: Vec<Question> = problems.iter().flat_map(Problem::questions).collect();
     let mut files = BTreeMap::new();
-    for problem in &problems {
+    for problem in problems {
         files.insert(problem.file(), problem.toml().into_bytes());
     }
     let (mut csv, mut json) = (Vec::new(), Vec::new());
     write_csv(&mut csv, &questions)?;
-    let pack = Pack { name: "turbid benchmark pack", version: VERSION, license: "MIT OR Apache-2.0", questions: &questions };
+    let pack = Pack {
+        name: "turbid benchmark pack",
+        version: VERSION,
+        license: "MIT OR Apache-2.0",
+        questions: &questions,
+    };
     write_json(&mut json, &pack)?;
     let mut outcomes = Vec::new();
     for (name, program, script) in PROGRAMS {
-        files.insert(format!("outcome/{name}.py"), script.into());
-        let path = folder.join(format!("outcome/{name}.csv"));
-        if let Some(text) = read_if_there(&path, 1 << 20)? {
-            let text = String::from_utf8(text).with_context(|| path.display().to_string())?;
-            outcomes.push((name, compare(program, &path.display().to_string(), &text, &questions)?));
+        files.insert(format!("outcome/ask_{name}.py"), script.into());
+        if let Some(answers) = text_if_there(&folder.join(format!("outcome/{name}.csv")))? {
+            let file = format!("outcome/{name}.csv");
+            let comparison = compare(program, &file, &answers, &questions)?;
+            let found = text_if_there(&folder.join(format!("outcome/{name}.md")))?.unwrap_or_default();
+            outcomes.push(Outcome { comparison, found });
         }
     }
     files.insert("README.md".into(), readme::text(&questions, &outcomes).into_bytes());
@@ -76,6 +89,11 @@ fn files(folder: &Path) -> anyhow::Result<BTreeMap<String, Vec<u8>>> {
     files.insert("questions.json".into(), json);
     files.insert("check.py".into(), include_str!("check.py").into());
     Ok(files)
+}
+
+fn text_if_there(path: &Path) -> anyhow::Result<Option<String>> {
+    let text = read_if_there(path, 1 << 20)?;
+    text.map(|text| String::from_utf8(text).with_context(|| path.display().to_string())).transpose()
 }
 
 /// Answers beside the exact values: the rule of the checker.
@@ -88,11 +106,18 @@ fn compare(by: &str, name: &str, text: &str, questions: &[Question]) -> anyhow::
     for e in table.entries() {
         let id = e.text("id")?;
         let question = questions.iter().find(|q| q.id == id);
-        let question = question.with_context(|| format!("{name}: there is no question {}", turbid::output::one_line(id)))?;
+        let question = question
+            .with_context(|| format!("{name}: there is no question {}", turbid::output::one_line(id)))?;
         ensure!(rows.iter().all(|row| row.case != id), "{name}: {id} is answered twice; allowed: once");
         let (theirs, error) = (e.number("value")?, e.number("std_error")?);
         ensure!(error >= 0.0, "{name}: the std_error of {id} is {error}; allowed: at least 0");
-        rows.push(Row::new(id, question.quantity, 0.0, (theirs, error), (question.value, Some(question.bound))));
+        rows.push(Row::new(
+            id,
+            question.quantity,
+            0.0,
+            (theirs, error),
+            (question.value, Some(question.bound)),
+        ));
     }
     Ok(Comparison { by: by.into(), rows, seconds: 0.0 })
 }
