@@ -316,14 +316,12 @@ fn over_ground(
     layers: &[(f64, f64, Scattering)],
     reflectance: f64,
     mu0: f64,
-    depth: f64,
+    depth: Option<f64>,
 ) -> anyhow::Result<Problem> {
     let mut made = Vec::new();
     let mut scene = String::new();
     let mut words = Vec::new();
     let mut top = 0.0;
-    let mut place = 0.0;
-    let mut above = 0.0;
     for (i, &(tau, albedo, scattering)) in layers.iter().enumerate() {
         made.push(Layer::new(tau, albedo, &scattering.phase()?)?);
         let shape = slab_shape(top, tau);
@@ -334,10 +332,6 @@ fn over_ground(
             scattering.toml()
         );
         words.push(format!("optical thickness {tau}, albedo {albedo}, {}", scattering.words()));
-        if above <= depth {
-            place = top + depth - above;
-        }
-        above += tau;
         top += tau + GAP;
     }
     let slab = StratifiedSlab::new(&made, Ground::lambertian(reflectance)?, Some(beam(mu0)))?;
@@ -357,26 +351,18 @@ fn over_ground(
             slab.transmittance_diffuse(),
             outflow(&whole, "bottom") + "\nmin_order = 1",
         ),
-        ask(
+    ];
+    // Photons tally what layers absorb, paths measure fluences and radiances: a scene is answered by one of them.
+    if let Some(depth) = depth {
+        let gaps = slab.depths().iter().filter(|&&interface| interface > 0.0 && interface < depth).count();
+        asked.push(ask(
             &format!("fluence-{depth}"),
             &format!("what is the fluence at the depth of {depth} mean free paths, direct light included?"),
             "fluence",
             IRRADIANCE,
             slab.fluence(depth)?,
-            fluence_at(place),
-        ),
-    ];
-    for layer in 0..layers.len() {
-        asked.push(ask(
-            &format!("absorptance-{}", layer + 1),
-            &format!("what fraction of the incident power does layer {} absorb?", layer + 1),
-            "absorptance",
-            FRACTION,
-            slab.absorptance(layer)?,
-            absorbed(layer),
+            fluence_at(depth + GAP * gaps as f64),
         ));
-    }
-    if mu0 == 1.0 {
         let radiance = slab.radiance(0.0, &[0.5])?[0];
         asked.push(ask(
             "radiance-up-0.5",
@@ -386,6 +372,17 @@ fn over_ground(
             radiance,
             radiance_at(-0.5 * GAP, 0.5, 0.0),
         ));
+    } else {
+        for layer in 0..layers.len() {
+            asked.push(ask(
+                &format!("absorptance-{}", layer + 1),
+                &format!("what fraction of the incident power does layer {} absorb?", layer + 1),
+                "absorptance",
+                FRACTION,
+                slab.absorptance(layer)?,
+                absorbed(layer),
+            ));
+        }
     }
     Ok(Problem {
         name: format!("layers-{name}"),
@@ -401,7 +398,7 @@ fn over_ground(
 
 fn layered() -> anyhow::Result<Vec<Problem>> {
     Ok(vec![
-        over_ground("haze", &[(1.0, 0.9, HenyeyGreenstein(0.75)), (0.5, 0.5, Isotropic)], 0.3, 0.5, 0.7)?,
+        over_ground("haze", &[(1.0, 0.9, HenyeyGreenstein(0.75)), (0.5, 0.5, Isotropic)], 0.3, 0.5, None)?,
         over_ground(
             "cloud",
             &[
@@ -411,7 +408,7 @@ fn layered() -> anyhow::Result<Vec<Problem>> {
             ],
             0.8,
             1.0,
-            5.1,
+            Some(5.1),
         )?,
     ])
 }
