@@ -4,6 +4,7 @@
 //! referee, the simulator or both; every comparison has a sum of squares, its p and a verdict.
 
 mod comparison;
+mod pack;
 mod page;
 mod plot;
 mod published;

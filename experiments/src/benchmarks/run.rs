@@ -4,7 +4,7 @@ use super::comparison::Comparison;
 use super::scene::Bench;
 use super::sets::{ALL, Set};
 use super::settings::Settings;
-use super::{page, plot};
+use super::{pack, page, plot};
 use crate::harness::{check_folder, duration, guarded, one_line, program_digest, read_if_there, say};
 use anyhow::Context;
 use clap::Parser;
@@ -81,6 +81,9 @@ fn unguarded() -> ExitCode {
 
 fn run(settings: &Settings) -> anyhow::Result<()> {
     let folder = settings.folder();
+    if settings.pack {
+        return pack::write(&folder);
+    }
     if !settings.page {
         answer(settings, &folder)?;
     }

@@ -17,7 +17,7 @@ pub struct Settings {
     /// Seed of all random numbers
     #[arg(long, default_value_t = 1)]
     pub seed: u64,
-    /// Folder of the page [default: results/benchmarks, with --quick results/local/benchmarks]
+    /// Folder of the page [default: results/benchmarks, with --quick results/local/benchmarks, with --pack results/pack]
     #[arg(long)]
     pub out: Option<PathBuf>,
     /// Numbers of another code, where a set has none of its own: NAME=FILE, such as kobayashi-2=flux.csv
@@ -32,6 +32,9 @@ pub struct Settings {
     /// Only write the page anew, from the answers that are in its folder
     #[arg(long)]
     pub page: bool,
+    /// Only write the pack of questions with exact values, for other codes to answer
+    #[arg(long, conflicts_with_all = ["quick", "only", "seed", "theirs", "fresh", "page"])]
+    pub pack: bool,
 }
 
 fn set_name(text: &str) -> Result<String, String> {
@@ -54,7 +57,11 @@ fn theirs(text: &str) -> Result<(String, PathBuf), String> {
 impl Settings {
     /// Folder of the page.
     pub fn folder(&self) -> PathBuf {
-        let default = if self.quick { "results/local/benchmarks" } else { "results/benchmarks" };
+        let default = match (self.pack, self.quick) {
+            (true, _) => "results/pack",
+            (_, true) => "results/local/benchmarks",
+            _ => "results/benchmarks",
+        };
         self.out.clone().unwrap_or_else(|| PathBuf::from(default))
     }
 
@@ -83,11 +90,13 @@ mod tests {
         let parse = |args: &[&str]| Settings::try_parse_from([&["benchmarks"], args].concat());
         assert!(parse(&["--only", "reed,disort"]).is_ok_and(|s| s.has("reed") && !s.has("van-de-hulst")));
         assert_eq!(parse(&["--quick"]).unwrap().folder(), PathBuf::from("results/local/benchmarks"));
+        assert_eq!(parse(&["--pack"]).unwrap().folder(), PathBuf::from("results/pack"));
         for bad in [
             &["--only", "reeds"][..],
             &["--theirs", "reed"],
             &["--theirs", "reed=x.csv"],
             &["--threads", "0"],
+            &["--pack", "--only", "reed"],
         ] {
             assert!(parse(bad).is_err(), "{bad:?}");
         }
