@@ -8,7 +8,7 @@ use crate::support::scenes::{
     incidence, isotropic, lambertian, layer, outflow, point_light, rectangle, region, sphere,
 };
 use crate::support::verdict;
-use glam::DVec3;
+use glam::{DVec2, DVec3};
 use std::f64::consts::PI;
 use turbid::Spectrum;
 use turbid::geometry::{Shape, Slab};
@@ -76,7 +76,7 @@ fn photons_cross_plates_of_another_index() {
                 Object { shape: inner, surface: dielectric(2, 1) },
             ],
             lights: vec![incidence(around(whole), how)],
-            cell: Some(CELL),
+            cell: Some(DVec2::splat(CELL)),
             ..SceneParts::default()
         })
         .unwrap();
