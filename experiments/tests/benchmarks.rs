@@ -31,6 +31,8 @@ fn quick_sets() {
     let folder = tempfile::tempdir().unwrap();
     let quick = [
         ("van-de-hulst", [("exact", Verdict::Agrees), ("photons", Verdict::Agrees)]),
+        ("mie", [("exact", Verdict::Agrees), ("paths", Verdict::Agrees)]),
+        ("haze-l", [("exact", Verdict::Agrees), ("paths", Verdict::Agrees)]),
         ("reed", [("exact", Verdict::Agrees), ("light tracing", Verdict::Agrees)]),
         ("prahl", [("exact", Verdict::Differs), ("light tracing", Verdict::Agrees)]),
         ("emitting-cube", [("exact", Verdict::Open), ("paths against exact", Verdict::Agrees)]),

@@ -148,6 +148,19 @@ impl Comparison {
     }
 }
 
+/// What a set was answered with.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Answered {
+    /// Name of the set.
+    pub set: String,
+    /// What the answer depends on.
+    pub settings: String,
+    /// Digest of the program that answered.
+    pub program: String,
+    /// Its comparisons.
+    pub comparisons: Vec<Comparison>,
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -13,7 +13,7 @@ mod scene;
 pub mod sets;
 mod settings;
 
-pub use comparison::{Comparison, Row, Verdict};
+pub use comparison::{Answered, Comparison, Row, Verdict};
 pub use published::Published;
-pub use run::{Answered, main};
+pub use run::main;
 pub use scene::Bench;

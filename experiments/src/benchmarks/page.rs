@@ -1,7 +1,6 @@
 //! The page: a section a set, with its picture, its table, its sums of squares and verdicts.
 
-use super::comparison::{Comparison, LEVEL, Row, Verdict};
-use super::run::Answered;
+use super::comparison::{Answered, Comparison, LEVEL, Row, Verdict};
 use super::sets::{ALL, Set};
 use super::settings::Settings;
 use crate::harness::{duration, number};

@@ -1,6 +1,6 @@
 //! The whole run: sets one after another, each kept as it is answered; then the page.
 
-use super::comparison::Comparison;
+use super::comparison::{Answered, Comparison};
 use super::scene::Bench;
 use super::sets::{ALL, Set};
 use super::settings::Settings;
@@ -8,7 +8,7 @@ use super::{pack, page, plot};
 use crate::harness::{check_folder, duration, guarded, one_line, program_digest, read_if_there, say};
 use anyhow::Context;
 use clap::Parser;
-use serde::{Deserialize, Serialize};
+use serde::Serialize;
 use std::path::Path;
 use std::process::ExitCode;
 use std::time::Instant;
@@ -16,19 +16,6 @@ use turbid::output::{end_on_signal, write_atomically, write_csv};
 
 /// Larger answers are none.
 const MOST_BYTES: u64 = 1 << 26;
-
-/// What a set was answered with.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct Answered {
-    /// Name of the set.
-    pub set: String,
-    /// What the answer depends on.
-    pub settings: String,
-    /// Digest of the program that answered.
-    pub program: String,
-    /// Its comparisons.
-    pub comparisons: Vec<Comparison>,
-}
 
 /// A row of a set's table.
 #[derive(Serialize)]
