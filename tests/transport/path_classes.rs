@@ -263,9 +263,10 @@ fn layers_add_up_to_the_radiance() {
         let stream = || Stream::new(5, Purpose::Paths, 0, history);
         let (layers, rays) = path::layers(&scene, ray, None, SURROUNDINGS, &mut stream());
         let mut sum = Spectrum::ZERO;
-        let same = path::radiance(&scene, ray, None, SURROUNDINGS, Orders::ALL, &mut stream(), |_, value| {
-            sum += value
-        });
+        let same =
+            path::radiance(&scene, (ray, SURROUNDINGS), Orders::ALL, None, &mut stream(), |_, value| {
+                sum += value
+            });
         assert_eq!(rays, same);
         // A dozen terms, all positive, in another order.
         let difference = (layers.total() - sum).max().abs();
