@@ -207,7 +207,7 @@ fn fly<V: Visitor>(
         let (copies, factor) = guided.copies(&ray, flown, interior, walker.weight, || stream.unit());
         let (copies, factor) =
             if split.count < MOST_SPLIT { (copies, factor) } else { (copies.min(1), factor.max(1.0)) };
-        walker.weight = walker.weight * factor;
+        walker.weight *= factor;
         split.count += copies.saturating_sub(1);
         for _ in 1..copies {
             split.waiting.push(Waiting { walker: *walker, roulette, hit, flown });
