@@ -13,7 +13,7 @@ fn kept() -> PathBuf {
 }
 
 fn scene(toml: &str) -> Scene {
-    SceneFile::from_toml(toml).and_then(|file| file.scene(Path::new("."))).unwrap()
+    SceneFile::from_toml(toml).unwrap().scene(Path::new(".")).unwrap()
 }
 
 /// What the simulator found as a file of answers.
