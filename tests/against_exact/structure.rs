@@ -348,9 +348,12 @@ fn realisations_of_markov_mixtures_are_exact_layers() {
             .into_iter()
             .enumerate()
     {
-        let seed = seed as u64;
         let means = chords.map(|l| Positive::try_from(l).unwrap());
-        let (edges, materials) = markov((0.0, 1.0), means, seed).unwrap();
+        // The first realisation from here on that has both materials: one alone does not know the other's albedo.
+        let (seed, (edges, materials)) = (seed as u64..)
+            .map(|seed| (seed, markov((0.0, 1.0), means, seed).unwrap()))
+            .find(|(_, (_, materials))| materials.len() > 2)
+            .unwrap();
         let layers: Vec<Layer> = (0..materials.len())
             .map(|i| {
                 let material = materials[i];

@@ -127,17 +127,6 @@ fn wrong_tables_of_a_phase_function() {
     }
 }
 
-/// A cell stands for an unbounded slab only if nothing changes along x and y.
-#[test]
-fn densities_that_no_cell_can_stand_for() {
-    let folder = Folder::new();
-    let cloud = "density = { cloud = { center = [0, 0, 1], radii = [1, 1, 1] } }\n";
-    let slab =
-        succeeds(&["scenes", "slab", "--resolved"]).replacen("g = 0.0\n", &format!("g = 0.0\n{cloud}"), 1);
-    let file = folder.file("slab.toml", &slab);
-    refuses_naming(&["check", text(&file)], &["a density must depend on z alone"]);
-}
-
 /// Tracking through what varies takes tentative collisions by the depth of its upper bound, which is limited; a cloud is no
 /// larger than itself, whatever the region.
 #[test]
