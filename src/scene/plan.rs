@@ -162,7 +162,7 @@ impl Plan {
         if self.has_filters {
             lines.push("filters: shadow rays pass them, body after body".to_string());
         }
-        if !self.has_next_event {
+        if !self.has_next_event && !self.has_emission {
             lines.push("no light to aim at: no next-event estimation".to_string());
         }
         if !self.distance_lights.is_empty() {
