@@ -142,7 +142,7 @@ fn difference(set: &Set, c: &Comparison) -> Markup {
         p {
             strong { "Differs, by " (c.by) ". " }
             @if let Some(row) = c.worst() {
-                "The largest difference is " (row.z().map_or(String::new(), |z| two_digits(z))) " errors, "
+                "The largest difference is " (row.z().map_or(String::new(), two_digits)) " errors, "
                 (percent(row.relative())) " (" (row.case) ", " (row.quantity) "). "
             }
             @match why { Some(why) => (why), None => "It is not explained." }

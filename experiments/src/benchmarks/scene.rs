@@ -137,7 +137,7 @@ impl<'a> Bench<'a> {
 
 fn keep(folder: &Path, name: &str, text: &str) -> anyhow::Result<()> {
     std::fs::create_dir_all(folder).with_context(|| folder.display().to_string())?;
-    Ok(turbid::output::write_atomically(&folder.join(name), |out| out.write_all(text.as_bytes()))?)
+    Ok(turbid::output::write_atomically(folder.join(name), |out| out.write_all(text.as_bytes()))?)
 }
 
 /// An exact value as ours of a row.

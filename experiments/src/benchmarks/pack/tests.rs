@@ -111,7 +111,7 @@ fn hostile_answers() {
         (format!("id,value,std_error\n{id},1,1\n{id},1,1\n"), "is answered twice"),
         (format!("id,value,std_error\n{}", format!("{id},1,1\n").repeat(1_000_000)), "more than 100000 rows"),
     ] {
-        let error = compare("x", "answers.csv", &text, &[question.clone()]).unwrap_err();
+        let error = compare("x", "answers.csv", &text, std::slice::from_ref(&question)).unwrap_err();
         let error = format!("{error:#}");
         assert!(
             error.starts_with("answers.csv") && error.contains(words) && !error.contains('\n'),

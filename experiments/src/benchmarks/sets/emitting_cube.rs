@@ -29,7 +29,7 @@ pub(super) const SET: Set = Set {
         };
         let is_ours = points.iter().all(|p| p.1.is_none());
         let referee = timed("exact", || {
-            let answer = |p: &(f64, Option<(f64, f64)>)| {
+            let answer = |p: &Point| {
                 Ok(row(p.0, p.1, exact(EmittingCube::BURNS_CHRISTON.divergence([p.0, 0.5, 0.5])?)))
             };
             points.iter().map(answer).collect()
@@ -37,7 +37,7 @@ pub(super) const SET: Set = Set {
         let paths = timed(if is_ours { "paths against exact" } else { "paths" }, || {
             let scene = bench.scene("emitting-cube", &scene(&points))?;
             let found = bench.paths(&scene, bench.pick(10_000, 1_000_000))?;
-            let answer = |((p, m), exact): ((&(f64, Option<(f64, f64)>), &Measurement), &Row)| {
+            let answer = |((p, m), exact): ((&Point, &Measurement), &Row)| {
                 let kappa = absorption(p.0);
                 let theirs = p.1.or(Some((exact.ours, exact.our_error?)));
                 Some(row(p.0, theirs, (kappa * (4.0 - m.mean), m.std_error.map(|error| kappa * error))))
@@ -48,8 +48,11 @@ pub(super) const SET: Set = Set {
     },
 };
 
+/// An abscissa, and the value of another code with its error.
+type Point = (f64, Option<(f64, f64)>);
+
 /// Abscissae, with values of another code where the user has some.
-fn points(bench: &Bench) -> anyhow::Result<Vec<(f64, Option<(f64, f64)>)>> {
+fn points(bench: &Bench) -> anyhow::Result<Vec<Point>> {
     let Some((name, text)) = bench.theirs(SET.name)? else {
         return Ok((0..=20).map(|i| (f64::from(i) / 20.0, None)).collect());
     };
@@ -62,7 +65,7 @@ fn points(bench: &Bench) -> anyhow::Result<Vec<(f64, Option<(f64, f64)>)>> {
 }
 
 /// Products of tents are trilinear between the walls, where the density is 0.1, and the middle.
-fn scene(points: &[(f64, Option<(f64, f64)>)]) -> String {
+fn scene(points: &[Point]) -> String {
     let values: Vec<&str> = (0..27).map(|i| if i == 13 { "1.0" } else { "0.1" }).collect();
     let mut text = format!(
         "[[regions]]\nshape = {{ cuboid = {{ min = [0.0, 0.0, 0.0], max = [1.0, 1.0, 1.0] }} }}\nsigma_t = 1.0\nalbedo = 0.0\ng = 0.0\nemission_by_density = \

@@ -132,7 +132,7 @@ fn azimuthal(bench: &Bench, set: &Set, phase: &str, case: Case) -> anyhow::Resul
                 if azimuths == 1 {
                     1.0
                 } else {
-                    f64::from(1 + u8::from(i % (each - 1) != 0)) / azimuths as f64
+                    f64::from(1 + u8::from(!i.is_multiple_of(each - 1))) / azimuths as f64
                 }
             };
             let mean = found.iter().enumerate().map(|(i, m)| weight(i) * m.mean).fold(0.0, |a, b| a + b);
