@@ -1,7 +1,7 @@
 //! Direct light of a face that sends out radiance 1/pi.
 
 use super::bickley::ki;
-use super::galerkin::Body;
+use super::body::Body;
 use crate::error::Result;
 use crate::exponential_integral::e_n;
 use crate::quadrature::Adaptive;

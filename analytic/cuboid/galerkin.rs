@@ -1,38 +1,10 @@
 //! Galerkin's method in products of Legendre polynomials.
 
-use super::CuboidSource;
+use super::body::{Body, CuboidSource};
 use super::pyramids::{Flight, Orders, integrals};
 use crate::quadrature::GaussLegendre;
 use libm::exp;
 use nalgebra::{Cholesky, DMatrix, DVector};
-
-/// A box, or a duct whose third axis is endless.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Body {
-    /// Sides in mean free paths; an endless one counts as 1.
-    pub(super) sides: [f64; 3],
-    pub(super) endless: bool,
-}
-
-impl Body {
-    pub(super) fn axes(&self) -> usize {
-        if self.endless { 2 } else { 3 }
-    }
-
-    pub(super) fn volume(&self) -> f64 {
-        self.sides.iter().product()
-    }
-
-    /// Area of the face with this normal.
-    pub(super) fn face(&self, axis: usize) -> f64 {
-        self.volume() / self.sides[axis]
-    }
-
-    /// Area of all faces.
-    pub(super) fn surface(&self) -> f64 {
-        (0..self.axes()).map(|axis| 2.0 * self.face(axis)).sum()
-    }
-}
 
 /// Legendre polynomials of one degree after another, orthonormal on \[0, 1\].
 pub(super) fn legendre(xi: f64, out: &mut [f64]) {

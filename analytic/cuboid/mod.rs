@@ -7,6 +7,7 @@
 //! cheap; then light flies once more, phi = phi_0 + w K phi_N, which smoothes what polynomials leave open at edges.
 
 mod bickley;
+mod body;
 mod direct;
 mod galerkin;
 mod pyramids;
@@ -15,7 +16,9 @@ mod tests;
 
 use crate::error::{Result, within};
 use crate::value::Value;
-use galerkin::{Body, Expansion, FirstFlights, Operator, direct};
+use body::Body;
+pub use body::CuboidSource;
+use galerkin::{Expansion, FirstFlights, Operator, direct};
 use libm::exp;
 use std::f64::consts::PI;
 
@@ -24,19 +27,6 @@ const ROUNDING: f64 = 1e-11;
 
 const HOW: &str = "Galerkin in Legendre polynomials, three degrees";
 const DIRECT: &str = "direct light";
-
-/// Where the light of a cuboid or a duct comes from.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum CuboidSource {
-    /// Isotropic light of irradiance 1 (radiance 1/pi) on the face x = 0.
-    Face,
-    /// The same on every face.
-    Faces,
-    /// Isotropic emission of unit power (of a duct: per mean free path of its length), spread evenly.
-    Uniform,
-    /// A beam along x of irradiance 1 on the face x = 0.
-    Beam,
-}
 
 /// A cuboid 0 <= x <= a, 0 <= y <= b, 0 <= z <= c of isotropic scattering, or a duct that is endless along z.
 #[derive(Debug, Clone)]

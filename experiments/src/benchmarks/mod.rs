@@ -10,6 +10,7 @@ mod plot;
 mod published;
 mod run;
 mod scene;
+mod set;
 pub mod sets;
 mod settings;
 
@@ -17,3 +18,4 @@ pub use comparison::{Answered, Comparison, Row, Verdict};
 pub use published::Published;
 pub use run::main;
 pub use scene::Bench;
+pub use set::{Plot, Set};

@@ -1,7 +1,8 @@
 //! The page: a section a set, with its picture, its table, its sums of squares and verdicts.
 
 use super::comparison::{Answered, Comparison, LEVEL, Row, Verdict};
-use super::sets::{ALL, Set};
+use super::set::Set;
+use super::sets::ALL;
 use super::settings::Settings;
 use crate::harness::{duration, number};
 use maud::{DOCTYPE, Markup, PreEscaped, html};
@@ -131,8 +132,8 @@ fn section(set: &Set, a: &Answered) -> Markup {
 
 fn above(set: &Set) -> &'static str {
     match set.plot {
-        super::sets::Plot::Curves { .. } => "lines are ours, markers theirs.",
-        super::sets::Plot::Rows => "relative differences, with intervals of 95 per cent.",
+        super::set::Plot::Curves { .. } => "lines are ours, markers theirs.",
+        super::set::Plot::Rows => "relative differences, with intervals of 95 per cent.",
     }
 }
 

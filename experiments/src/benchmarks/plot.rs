@@ -1,7 +1,7 @@
 //! The picture of a set: values of both, and differences over combined errors.
 
 use super::comparison::{Comparison, Row};
-use super::sets::{Plot, Set};
+use super::set::{Plot, Set};
 use turbid_figure::{Along, Axis, Figure, Legend, Line, Panel, Points, Rule, Scale, Width};
 
 /// Differences beyond so many errors are drawn at the border.

@@ -2,7 +2,8 @@
 
 use super::comparison::{Answered, Comparison};
 use super::scene::Bench;
-use super::sets::{ALL, Set};
+use super::set::Set;
+use super::sets::ALL;
 use super::settings::Settings;
 use super::{pack, page, plot};
 use crate::harness::{check_folder, duration, guarded, one_line, program_digest, read_if_there, say};
@@ -99,8 +100,9 @@ fn answer(settings: &Settings, folder: &Path) -> anyhow::Result<()> {
         } else {
             say(&format!("{about}: about {} left of all", duration(left)));
             let start = Instant::now();
-            // Whatever other sets asked before: a set's numbers are its own.
-            let comparisons = (set.run)(&Bench::new(settings)).with_context(|| set.name.to_string())?;
+            let theirs = settings.theirs(set.name).map(Path::to_path_buf);
+            let bench = Bench::new(folder.join("scenes"), settings.quick, settings.seed, theirs);
+            let comparisons = (set.run)(&bench).with_context(|| set.name.to_string())?;
             say(&format!("  {} took {}", set.name, duration(start.elapsed().as_secs_f64())));
             keep(folder, set, settings.words(), program.clone(), comparisons)?;
         }

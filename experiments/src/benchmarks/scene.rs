@@ -1,7 +1,6 @@
 //! What a set asks the simulator with: scenes that are kept beside the page, and how many histories.
 
 use super::comparison::{Comparison, Row};
-use super::settings::Settings;
 use anyhow::Context;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -14,38 +13,46 @@ use turbid::sensor::{
 use turbid::transport::NoProgress;
 use turbid_analytic::Value;
 
+/// Larger tables are none.
+const MOST_BYTES: u64 = 1 << 26;
+
 /// A run of the benchmarks, as a set sees it.
-pub struct Bench<'a> {
-    settings: &'a Settings,
+pub struct Bench {
+    /// Folder of the scenes.
     scenes: PathBuf,
+    is_quick: bool,
+    seed: u64,
+    /// A file with numbers of another code.
+    theirs: Option<PathBuf>,
     /// Questions asked: each has random numbers of its own.
     asked: AtomicU64,
 }
 
-impl<'a> Bench<'a> {
-    /// A run whose scenes are kept in a folder of the page.
-    pub(super) fn new(settings: &'a Settings) -> Self {
-        Bench { settings, scenes: settings.folder().join("scenes"), asked: AtomicU64::new(0) }
+impl Bench {
+    /// A run of one set, whose scenes are kept in a folder.
+    pub(super) fn new(scenes: PathBuf, is_quick: bool, seed: u64, theirs: Option<PathBuf>) -> Self {
+        Bench { scenes, is_quick, seed, theirs, asked: AtomicU64::new(0) }
     }
 
     /// One of two numbers: that of a quick run, or that of a full one.
     pub fn pick<T>(&self, quick: T, full: T) -> T {
-        if self.settings.quick { quick } else { full }
+        if self.is_quick { quick } else { full }
     }
 
     /// Seed of all random numbers.
     pub fn seed(&self) -> u64 {
-        self.settings.seed
+        self.seed
     }
 
-    /// Numbers of another code for a set, if the user has a file of them.
+    /// Numbers of another code, if the user has a file of them: its name and its text.
     ///
     /// # Errors
     /// If it cannot be read
-    pub fn theirs(&self, set: &str) -> anyhow::Result<Option<(String, String)>> {
-        let Some(path) = self.settings.theirs(set) else { return Ok(None) };
-        let text = std::fs::read_to_string(path).with_context(|| path.display().to_string())?;
-        Ok(Some((path.display().to_string(), text)))
+    pub fn theirs(&self) -> anyhow::Result<Option<(String, String)>> {
+        let Some(path) = &self.theirs else { return Ok(None) };
+        let name = path.display().to_string();
+        let text = turbid::input::read(path, MOST_BYTES).with_context(|| name.clone())?;
+        Ok(Some((name.clone(), String::from_utf8(text).with_context(|| format!("{name}: not UTF-8"))?)))
     }
 
     /// Keeps a file that a scene reads.
@@ -84,12 +91,8 @@ impl<'a> Bench<'a> {
     /// # Errors
     /// Those of the path tracer
     pub fn paths(&self, scene: &Scene, samples: u64) -> anyhow::Result<Vec<Measurement>> {
-        let settings = PathSettings {
-            samples,
-            seed: self.settings.seed,
-            replicate: self.replicate(),
-            orders: Orders::ALL,
-        };
+        let settings =
+            PathSettings { samples, seed: self.seed, replicate: self.replicate(), orders: Orders::ALL };
         Ok(by_paths(scene, &settings, &NoProgress)?)
     }
 
@@ -98,12 +101,8 @@ impl<'a> Bench<'a> {
     /// # Errors
     /// Those of the path tracer
     pub fn guided_paths(&self, scene: &Scene, samples: u64) -> anyhow::Result<Vec<Measurement>> {
-        let settings = PathSettings {
-            samples,
-            seed: self.settings.seed,
-            replicate: self.replicate(),
-            orders: Orders::ALL,
-        };
+        let settings =
+            PathSettings { samples, seed: self.seed, replicate: self.replicate(), orders: Orders::ALL };
         Ok(by_guided_paths(scene, &settings, &NoProgress)?)
     }
 
@@ -112,7 +111,7 @@ impl<'a> Bench<'a> {
     /// # Errors
     /// Those of the photon pass
     pub fn photons(&self, scene: &Scene, mut settings: PhotonSettings) -> anyhow::Result<Vec<Measurement>> {
-        settings.seed = self.settings.seed.wrapping_add(self.replicate() << 32);
+        settings.seed = self.seed.wrapping_add(self.replicate() << 32);
         Ok(by_photons(scene, &settings, &NoProgress)?.measurements)
     }
 
@@ -129,7 +128,7 @@ impl<'a> Bench<'a> {
     /// # Errors
     /// Those of the photon pass
     pub fn light_of(&self, scene: &Scene, photons: u64, number: u64) -> anyhow::Result<Vec<Measurement>> {
-        let seed = self.settings.seed.wrapping_add(number);
+        let seed = self.seed.wrapping_add(number);
         let settings = TallySettings { photons, seed, orders: Orders::ALL };
         Ok(by_tallies(scene, &settings, &NoProgress)?.measurements)
     }

@@ -14,13 +14,11 @@ use super::published::Published;
 use crate::harness::{read_if_there, say};
 use anyhow::{Context, ensure};
 use question::{Problem, Question};
+use readme::{Outcome, VERSION};
 use serde::Serialize;
 use std::collections::BTreeMap;
 use std::path::Path;
 use turbid::output::{write_atomically, write_csv, write_json};
-
-/// A changed value, id or unit is another version.
-const VERSION: u32 = 1;
 
 /// Programs whose answers are kept: name of the file, name of the program, script that answers.
 const PROGRAMS: [(&str, &str, &str); 2] = [
@@ -34,12 +32,6 @@ struct Pack<'a> {
     version: u32,
     license: &'static str,
     questions: &'a [Question],
-}
-
-/// What a program answered, and what was found of it in words.
-struct Outcome {
-    comparison: Comparison,
-    found: String,
 }
 
 /// Writes the pack.

@@ -1,11 +1,20 @@
 //! The page of explanation.
 
+use super::super::comparison::Comparison;
 use super::question::Question;
-use super::{Outcome, VERSION};
 use std::collections::BTreeSet;
 use std::fmt::Write;
 
 const HOW: &str = include_str!("how.md");
+
+/// A changed value, id or unit is another version.
+pub(super) const VERSION: u32 = 1;
+
+/// What a program answered, and what was found of it in words.
+pub(super) struct Outcome {
+    pub(super) comparison: Comparison,
+    pub(super) found: String,
+}
 
 /// The page.
 pub(super) fn text(questions: &[Question], outcomes: &[Outcome]) -> String {

@@ -1,10 +1,10 @@
 //! The test problems of DISORT.
 
 use super::garcia_siewert::moments;
-use super::{Plot, Set};
 use crate::benchmarks::comparison::{Comparison, Row};
 use crate::benchmarks::published::{Entry, Published};
 use crate::benchmarks::scene::{Bench, timed};
+use crate::benchmarks::set::{Plot, Set};
 use anyhow::ensure;
 use std::f64::consts::PI;
 use turbid_analytic::beer_lambert::uncollided_fluence;

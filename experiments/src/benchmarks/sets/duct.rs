@@ -1,9 +1,9 @@
 //! The square duct of Crosbie and Schrenker.
 
-use super::{Plot, Set};
 use crate::benchmarks::comparison::{Comparison, Row};
 use crate::benchmarks::published::{Entry, Published};
 use crate::benchmarks::scene::{Bench, exact, timed};
+use crate::benchmarks::set::{Plot, Set};
 use std::f64::consts::PI;
 use turbid_analytic::{Cuboid, CuboidSource};
 

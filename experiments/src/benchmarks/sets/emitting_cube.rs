@@ -1,9 +1,9 @@
 //! The emitting, absorbing unit cube of Burns and Christon.
 
-use super::{Plot, Set};
 use crate::benchmarks::comparison::Row;
 use crate::benchmarks::published::{Entry, Published};
 use crate::benchmarks::scene::{Bench, exact, timed};
+use crate::benchmarks::set::{Plot, Set};
 use std::f64::consts::FRAC_1_PI;
 use turbid::sensor::Measurement;
 use turbid_analytic::EmittingCube;
@@ -53,7 +53,7 @@ type Point = (f64, Option<(f64, f64)>);
 
 /// Abscissae, with values of another code where the user has some.
 fn points(bench: &Bench) -> anyhow::Result<Vec<Point>> {
-    let Some((name, text)) = bench.theirs(SET.name)? else {
+    let Some((name, text)) = bench.theirs()? else {
         return Ok((0..=20).map(|i| (f64::from(i) / 20.0, None)).collect());
     };
     let table = Published::read(&name, &text, &["x", "divergence", "std_error"])?;

@@ -1,9 +1,9 @@
 //! Garcia and Siewert: Mie and haze slabs, and the slab whose albedo falls with depth.
 
-use super::{Plot, Set};
 use crate::benchmarks::comparison::{Comparison, Row};
 use crate::benchmarks::published::{Entry, Published};
 use crate::benchmarks::scene::{Bench, exact, timed};
+use crate::benchmarks::set::{Plot, Set};
 use std::f64::consts::PI;
 use turbid::sensor::Measurement;
 use turbid_analytic::{Ground, Incidence, Layer, Phase, StratifiedSlab};

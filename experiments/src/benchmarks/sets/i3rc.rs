@@ -1,9 +1,9 @@
 //! The step cloud of I3RC, the intercomparison of three-dimensional radiation codes.
 
-use super::{Plot, Set};
 use crate::benchmarks::comparison::Row;
 use crate::benchmarks::published::{Entry, Published};
 use crate::benchmarks::scene::{Bench, measured, timed};
+use crate::benchmarks::set::{Plot, Set};
 use std::f64::consts::PI;
 
 pub(super) const SET: Set = Set {

@@ -1,9 +1,9 @@
 //! The void problems of Kobayashi, Sugimura and Nagaya.
 
-use super::{Plot, Set};
 use crate::benchmarks::comparison::{AGAINST, Comparison, Row};
 use crate::benchmarks::published::Published;
 use crate::benchmarks::scene::{Bench, exact, measured, timed};
+use crate::benchmarks::set::{Plot, Set};
 use rayon::prelude::*;
 use turbid::estimators::{Estimator, Gather, Kernel};
 use turbid::scene::Orders;
@@ -139,7 +139,7 @@ fn three_points() -> Vec<Point> {
 
 /// Numbers of the user's, or none.
 fn open(bench: &Bench, set: &Set, bodies: &[Body], own: &[Point]) -> anyhow::Result<Vec<Comparison>> {
-    let Some((name, text)) = bench.theirs(set.name)? else { return run(bench, set, bodies, own) };
+    let Some((name, text)) = bench.theirs()? else { return run(bench, set, bodies, own) };
     let needed = ["case", "set", "x_cm", "y_cm", "z_cm", "flux", "rel_std_error"];
     run(bench, set, bodies, &points(&Published::read(&name, &text, &needed)?)?)
 }
@@ -257,7 +257,7 @@ fn run(bench: &Bench, set: &Set, bodies: &[Body], points: &[Point]) -> anyhow::R
                 // Deep in a shield few paths find the source by themselves where light is scattered.
                 let found = match case {
                     "i" => bench.paths(&scene, bench.pick(10_000, 1_000_000))?,
-                    _ => bench.guided_paths(&scene, bench.pick(2_000, 100_000))?,
+                    _ => bench.guided_paths(&scene, bench.pick(2_000, 500_000))?,
                 };
                 Ok(asked
                     .iter()

@@ -1,9 +1,9 @@
 //! Binary Markov mixtures of Adams, Larsen and Pomraning.
 
-use super::{Plot, Set};
 use crate::benchmarks::comparison::{Comparison, Row};
 use crate::benchmarks::published::{Entry, Published};
 use crate::benchmarks::scene::{Bench, timed};
+use crate::benchmarks::set::{Plot, Set};
 use rayon::prelude::*;
 use turbid::rng::{Purpose, Stream};
 use turbid::stats::Moments;

@@ -1,9 +1,9 @@
 //! Runs of MCML, the Monte Carlo code of tissue optics.
 
-use super::{Plot, Set};
 use crate::benchmarks::comparison::{Comparison, Row};
 use crate::benchmarks::published::Published;
 use crate::benchmarks::scene::{Bench, exact, measured, timed};
+use crate::benchmarks::set::{Plot, Set};
 use std::f64::consts::PI;
 use turbid::sensor::Measurement;
 use turbid_analytic::{Ground, Incidence, Layer, Phase, StratifiedSlab, Value};

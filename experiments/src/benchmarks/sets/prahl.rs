@@ -1,9 +1,9 @@
 //! Slabs of Prahl's adding and doubling.
 
-use super::{Plot, Set};
 use crate::benchmarks::comparison::Row;
 use crate::benchmarks::published::{Entry, Published};
 use crate::benchmarks::scene::{exact, measured, timed};
+use crate::benchmarks::set::{Plot, Set};
 use anyhow::bail;
 use turbid_analytic::{Incidence, Phase, Slab, SlabMedium};
 

@@ -1,9 +1,9 @@
 //! Reed's slab.
 
-use super::{Plot, Set};
 use crate::benchmarks::comparison::{Comparison, Row};
 use crate::benchmarks::published::{Entry, Published};
 use crate::benchmarks::scene::{Bench, exact, measured, timed};
+use crate::benchmarks::set::{Plot, Set};
 use anyhow::Context;
 use turbid_analytic::{Ground, Layer, Phase, StratifiedSlab};
 

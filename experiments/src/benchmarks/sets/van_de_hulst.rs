@@ -1,9 +1,9 @@
 //! van de Hulst's tables of homogeneous slabs.
 
-use super::{Plot, Set};
 use crate::benchmarks::comparison::{Comparison, Row};
 use crate::benchmarks::published::{Entry, Published};
 use crate::benchmarks::scene::{Bench, exact, measured, timed};
+use crate::benchmarks::set::{Plot, Set};
 use turbid::estimators::{Estimator, Gather, Kernel};
 use turbid::scene::Orders;
 use turbid::sensor::PhotonSettings;
