@@ -308,7 +308,7 @@ pub fn channels_in_another_order_change_nothing_else() {
         let scene = colorful(order);
         let mut found: Vec<[Moments; 3]> = asked
             .iter()
-            .map(|quantity| paths(&scene, quantity.clone(), Orders::ALL, 1 << 13, seed))
+            .map(|quantity| paths(&scene, quantity.clone(), Orders::ALL, 1 << 17, seed))
             .collect();
         found.extend(tallies(&scene, &tallied.clone().map(|q| (q, Orders::ALL)), 1 << 17, seed));
         found

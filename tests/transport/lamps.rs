@@ -93,7 +93,10 @@ fn small_volume_sources_are_aimed_at() {
         let scene = bounded(Vec::new(), objects, vec![volume_source(shape)]);
         let radiance = passed / (4.0 * PI * PI * distance * distance);
         let by_paths = numbers(N, 4, |stream| path::layers(&scene, ray, None, 0, stream).0[Layer::Direct][0]);
-        verdict::agrees(&format!("{what}, paths"), &by_paths, (radiance, 0.0), 0.04 * radiance, 4);
+        // Rays to points of the source bring nearly the same: the mean is as good as its distance is many radii, squared.
+        let off = (by_paths.mean() - radiance).abs().max(by_paths.std_error());
+        let allowed = 4.0 * (radius / distance) * (radius / distance) * radiance;
+        assert!(off < allowed, "{what}, paths: {} for {radiance}, {off:e} off", by_paths.mean());
         let maps = Maps {
             global: None,
             caustic: None,
