@@ -42,7 +42,8 @@ pub(super) const TWO: Set = Set {
     title: "Kobayashi's problem 2: a straight duct",
     source: SOURCE,
     about: "The same source at the end of a straight empty duct of 10 by 10 cm (20 by 20 with its mirror images) through a shield of 60 by 100 by 60 cm. \
-            Flux along the duct (2A) and across its mouth (2B).",
+            Flux along the duct (2A) and across its mouth (2B). A photon map counts collisions, of which the void has few: 400 of them (5 per cent) in a \
+            ball of 2 cm at (5, 95, 5), where the uncollided flux is 0.032, take 400 x 8000/(0.032 x 1e-4 x 33.5), or 3e10 photons; paths take a million.",
     trust: "No numbers are here: `--theirs kobayashi-2=FILE` takes a CSV with the columns case (i or ii), set, x_cm, y_cm, z_cm, flux, \
             rel_std_error.",
     explained: &[],
@@ -57,7 +58,8 @@ pub(super) const THREE: Set = Set {
     title: "Kobayashi's problem 3: a dog-leg duct",
     source: SOURCE,
     about: "The same source at the end of a duct of 10 by 10 cm with three right angles, through the shield of problem 2. Flux along its first leg \
-            (3A), its second (3B) and where its last one leaves (3C).",
+            (3A), its second (3B) and where its last one leaves (3C). By the same count a photon map takes 3e13 photons for 5 per cent at (35, 95, 35), where \
+            the uncollided flux is 3.4e-5; what a map finds here it finds beside the source.",
     trust: "No numbers are here: `--theirs kobayashi-3=FILE` takes a CSV with the columns of problem 2.",
     explained: &[],
     open: true,
