@@ -15,6 +15,9 @@ const HOW: &str = "uncollided along rays, directions between edges by two rules"
 /// Nodes of a panel in one round after another, until two agree.
 const ORDERS: [usize; 5] = [4, 6, 9, 14, 21];
 
+/// Rules that differ by more of the value than this have not begun to converge, and their difference bounds nothing.
+const WORST: f64 = 1e-2;
+
 /// Cuboids of a medium, and the one that emits.
 #[derive(Debug, Clone)]
 pub struct NestedCuboids {
@@ -155,7 +158,11 @@ impl NestedCuboids {
                 break;
             }
         }
-        Ok(Value::new(rough, error + 64.0 * f64::EPSILON * rough, HOW))
+        if error > WORST * rough {
+            let allowed = "at most 1e-2: the source is too thin for a place so close to it";
+            return Err(Error::OutOfRange { name: "relative bound", value: error / rough, allowed });
+        }
+        Ok(Value::new(rough, 2.0 * error + 64.0 * f64::EPSILON * rough, HOW))
     }
 
     /// int q e^(-tau) ds along a ray, in steps of this length.

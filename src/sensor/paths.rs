@@ -40,14 +40,14 @@ pub fn by_paths(scene: &Scene, settings: &PathSettings, progress: &dyn Progress)
 /// free paths. A path takes longer, and varies less.
 ///
 /// # Errors
-/// those of [`by_paths`]; `Error::Scene` if no light is in a place or a direction
+/// those of [`by_paths`]; `Error::Scene` if a light is in no place and no direction
 pub fn by_guided_paths(
     scene: &Scene,
     settings: &PathSettings,
     progress: &dyn Progress,
 ) -> Result<Vec<Measurement>> {
     let guide = Guide::new(scene).ok_or_else(|| {
-        Error::Scene("weight windows need a light in a place or from a direction: other than isotropic light into a body".into())
+        Error::Scene("weight windows need lights in a place or from a direction: isotropic light into a body, and sources in a slab without end, are on all sides".into())
     })?;
     measured(scene, settings, Some(&guide), progress)
 }

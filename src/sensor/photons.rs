@@ -1,5 +1,6 @@
 //! Sensors read by photons: powers tallied where photons leave or end, fluence and radiance from photon maps.
 
+use super::tallies::check_reach;
 use super::{Measurement, Source, measurements, room, row_bytes};
 use crate::Spectrum;
 use crate::error::{Error, Result};
@@ -263,6 +264,10 @@ fn prepared(scene: &Scene, settings: &PhotonSettings) -> Result<(Vec<Sensor>, f6
         .collect();
     for sensor in &sensors {
         check(scene, sensor)?;
+        // Estimates from maps are of media, where photons are; scores are of all that they cross.
+        if sensor.binned().is_some() && map_orders(sensor).is_none() {
+            check_reach(scene, sensor)?;
+        }
     }
     let margin = scene.periodic_cell().map_or(Ok(0.0), |periodic_cell| {
         margin(&sensors, periodic_cell.side, settings.estimator.gather.cap())

@@ -55,7 +55,7 @@ enum Aim {
 }
 
 impl Guide {
-    /// The guess for a scene; none if none of its lights is in a place or a direction.
+    /// The guess for a scene; none if one of its lights is in no place and no direction: its paths would be ended for others.
     pub fn new(scene: &Scene) -> Option<Self> {
         let rate = |number: usize| {
             let medium = scene.medium(number);
@@ -64,9 +64,9 @@ impl Guide {
         };
         let rates: Vec<f64> = (0..scene.media().len()).map(rate).collect();
         let shortest = 1.0 / rates.iter().copied().fold(f64::MIN_POSITIVE, f64::max);
-        let lights: Vec<(Aim, f64)> =
-            scene.lights().iter().filter_map(|light| Self::aim(scene, light, shortest)).collect();
-        (!lights.is_empty()).then_some(Guide { lights, rates })
+        let aim = |light| Self::aim(scene, light, shortest);
+        let lights: Vec<(Aim, f64)> = scene.lights().iter().map(aim).collect::<Option<_>>()?;
+        Some(Guide { lights, rates })
     }
 
     /// Where a light is, and the fluence that it brings to a distance of 1, or to everywhere.
@@ -78,6 +78,8 @@ impl Guide {
         match light {
             Light::Point(_) | Light::Spot(_) => light.apex().map(|p| (Aim::Place(p, shortest), power)),
             Light::Area(area) => about(area.shape().bounds()),
+            // Those of a slab without end are on all sides.
+            Light::VolumeSource(_) | Light::MediumEmission(_) if scene.periodic_cell().is_some() => None,
             Light::VolumeSource(source) => about(source.shape().bounds()),
             Light::MediumEmission(emission) => about(emission.ball()),
             // What has scattered comes into a slab the short way, however aslant the light itself does.

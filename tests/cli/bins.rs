@@ -1,6 +1,6 @@
 //! Sensors with bins: tables, arrays, grids, and what is refused.
 
-use crate::{Folder, refuses_naming, text, turbid};
+use crate::{Folder, refuses_naming, succeeds, text, turbid};
 use turbid::medium::Grid;
 
 const SLAB: &str = "cell = 2.0\n[[regions]]\nshape = { slab = { top = 0.0, thickness = 1.0 } }\nsigma_t = [1, 2, 3]\nalbedo = 0.5\ng = 0\n\
@@ -169,4 +169,73 @@ fn bins_that_cannot_be_are_refused() {
         &["1000000 bins takes about", "allowed: ", " bins"],
     );
     assert!(!array.exists());
+}
+
+/// Photons of lights from outside start on the slab, and those of a sun cover what is in the scene: bins elsewhere would miss light
+/// that goes straight, and are refused unless they leave it out.
+#[test]
+fn bins_where_light_from_outside_has_not_been() {
+    let folder = Folder::new();
+    let slab = "cell = 2.0\n[[regions]]\nshape = { slab = { top = 0, thickness = 1 } }\nsigma_t = 1\nalbedo = 0.5\ng = 0\n";
+    let ball = "[[regions]]\nshape = { sphere = { center = [0, 0, 0], radius = 1 } }\nsigma_t = 1\nalbedo = 0.5\ng = 0\n";
+    let beam = "[[lights]]\nbeam = { dir = [0, 0, 1], irradiance = 1, section = \"unbounded\" }\n";
+    let diffuse = "[[lights]]\nisotropic = { shape = { slab = { top = 0, thickness = 1 } }, faces = \"top\", radiance = 1 }\n";
+    let sun = "[[lights]]\nsun = { dir = [0, 0, 1], irradiance = 1, angular_radius = 0 }\n";
+    let voxels = |from: f64, to: f64| {
+        format!("mean-fluence = {{ min = [0, 0, {from:?}], max = [1, 1, {to:?}], cells = [1, 1, 1] }}")
+    };
+    let flux = |z: f64, crossing: &str| {
+        format!(
+            "flux = {{ corner = [0, 0, {z:?}], u = [1, 0, 0], v = [0, 1, 0], bins = [1, 1], crossing = \"{crossing}\" }}"
+        )
+    };
+    for (world, light, measure, orders, is_refused) in [
+        (slab, beam, voxels(-0.5, 0.5), "", true),
+        (slab, beam, voxels(-0.5, 0.5), "min_order = 1\n", false),
+        (slab, beam, voxels(0.0, 1.5), "", false),
+        (slab, beam, flux(-0.5, "net"), "", true),
+        (slab, beam, flux(-0.5, "along"), "", true),
+        (slab, beam, flux(-0.5, "against"), "", false),
+        (slab, diffuse, voxels(-0.5, 0.5), "", true),
+        (slab, diffuse, voxels(0.5, 1.5), "", false),
+        (ball, sun, voxels(1.5, 2.0), "", true),
+        (ball, sun, voxels(0.0, 0.5), "", false),
+    ] {
+        let text_of =
+            format!("{world}{light}[[sensors]]\nname = \"here\"\nmeasure = {{ {measure} }}\n{orders}");
+        let file = folder.file("scene.toml", &text_of);
+        for with in ["light", "photons"] {
+            // Photon maps estimate fluences by themselves, in media.
+            if with == "photons" && measure.starts_with("mean-fluence") {
+                continue;
+            }
+            let arguments = ["measure", text(&file), "--with", with, "--photons", "2000", "--maps", "2"];
+            if is_refused {
+                refuses_naming(&arguments, &["sensor here: its bins reach", "give it `min_order = 1`"]);
+            } else {
+                succeeds(&arguments);
+            }
+        }
+    }
+    let scene = format!("{slab}{beam}[[sensors]]\nname = \"here\"\nmeasure = {{ {} }}\n", voxels(0.0, 1.0));
+    let file = folder.file("scene.toml", &scene);
+    let onto = ["measure", text(&file), "--with", "light", "--photons", "100", "--npy", text(&file)];
+    refuses_naming(&onto, &["--npy names the scene's own file"]);
+    assert_eq!(std::fs::read_to_string(&file).unwrap(), scene);
+}
+
+/// Weight windows would end paths to light that comes from all sides.
+#[test]
+fn weight_windows_without_a_direction() {
+    let folder = Folder::new();
+    let scene = "cell = 2.0\n[[regions]]\nshape = { slab = { top = 0, thickness = 1 } }\nsigma_t = 1\nalbedo = 0.5\ng = 0\n\
+                 [[lights]]\nvolume-source = { shape = { slab = { top = 0, thickness = 1 } }, density = 1 }\n\
+                 [[sensors]]\nname = \"here\"\nmeasure = { fluence = { at = [1, 1, 0.5] } }\n";
+    let file = folder.file("scene.toml", scene);
+    let arguments = ["measure", text(&file), "--with", "path", "--samples", "2000"];
+    succeeds(&arguments);
+    refuses_naming(
+        &[&arguments[..], &["--weight-windows"]].concat(),
+        &["sources in a slab without end, are on all sides"],
+    );
 }

@@ -356,6 +356,10 @@ fn every_command_names_the_parameter_that_is_wrong() {
         ("emitting-cube --peak 11 --at 0.5,0.5,0.5", ["peak is 11", "0 to 10"]),
         ("emitting-cube --at 0.5,0.5", ["--at has 2", "allowed: 3"]),
         ("nested --source x=0:1,y=0:1,z=0:1 --at 1,1", ["--at has 2", "allowed: 3"]),
+        (
+            "nested --source x=0:1e-9,y=0:1,z=0:1 --at 0,0.5,0.5",
+            ["relative bound is", "too thin for a place so close"],
+        ),
         ("nested --source x=0:1,y=0:1 --at 1,1,1", ["an extent is missing", "z=A:B"]),
         ("nested --source x=0:1,y=0:1,z=1:1 --at 1,1,1", ["no volume", "extents that rise"]),
         ("nested --source x=0:1,y=0:1,z=0:1,extinction=1 --at 1,1,1", ["extinction is that of", "allowed"]),

@@ -47,16 +47,17 @@ fn half(error: Option<f64>) -> f64 {
 fn curves(comparisons: &[Comparison], x: (&str, &str), y: (&str, &str), is_log: bool) -> Panel {
     let scale = if is_log { Scale::LogClipped } else { Scale::Linear };
     let mut panel = Panel::new(Axis::linear(x.0, x.1), Axis::new(y.0, y.1, scale));
-    // The first comparison has the most rows or the smallest errors: it is the line.
-    let Some((first, others)) = comparisons.split_first() else { return panel };
-    let count = cases(comparisons).len();
-    for (class, case) in cases(comparisons).into_iter().enumerate() {
-        let of = |c: &'_ Comparison| -> Vec<Row> {
+    let cases = cases(comparisons);
+    let count = cases.len();
+    for (class, case) in cases.into_iter().enumerate() {
+        let of = |c: &Comparison| -> Vec<Row> {
             let mut rows: Vec<Row> = c.rows.iter().filter(|row| row.case == case).cloned().collect();
             rows.sort_by(|a, b| a.at.total_cmp(&b.at));
             rows
         };
-        let line = of(first);
+        // The first comparison that has the case has the most rows or the smallest errors: it is the line.
+        let mut answers = comparisons.iter().map(|c| (&c.by, of(c))).filter(|(_, rows)| !rows.is_empty());
+        let Some((_, line)) = answers.next() else { continue };
         // A line that jumps between quantities of one abscissa would be no curve.
         for quantity in line.chunk_by(|a, b| a.quantity == b.quantity && b.at > a.at) {
             let at = quantity.iter().map(|row| row.at).collect();
@@ -64,37 +65,40 @@ fn curves(comparisons: &[Comparison], x: (&str, &str), y: (&str, &str), is_log: 
         }
         let theirs: Vec<(f64, f64)> = line.iter().filter_map(|row| Some((row.at, row.theirs?))).collect();
         if !theirs.is_empty() {
-            let (x, y) = theirs.into_iter().unzip();
             // Lines are ours, markers theirs: one entry for both.
+            let (x, y) = theirs.into_iter().unzip();
             panel = panel.with(Points::new("", class, x, y));
         }
         // With more curves than these nobody could tell them apart; differences are below in any case.
-        for other in others.iter().filter(|_| count <= 2) {
-            let rows = of(other);
+        for (by, rows) in answers.filter(|_| count <= 2) {
             let (x, y) = rows.iter().map(|row| (row.at, row.ours)).unzip();
             let bars =
                 rows.iter().map(|row| (row.ours - half(row.our_error), row.ours + half(row.our_error)));
-            if !rows.is_empty() {
-                let label = format!("{case}, {}", other.by);
-                panel = panel.with(Points::new(label, class + 3, x, y).with_y_interval(bars.collect()));
-            }
+            let label = format!("{case}, {by}");
+            panel = panel.with(Points::new(label, class + 3, x, y).with_y_interval(bars.collect()));
         }
     }
     panel
 }
 
+/// Above this ratio of sizes relative differences are drawn on a logarithmic axis.
+const MANY_DECADES: f64 = 300.0;
+
+/// Abscissa, relative difference and half its interval \[%\].
+fn relative(c: &Comparison) -> Vec<(f64, f64, f64)> {
+    let of = |row: &Row| Some((row.at, 100.0 * row.relative()?, 196.0 * row.combined()? / row.theirs?.abs()));
+    c.rows.iter().filter_map(of).collect()
+}
+
 fn rows(comparisons: &[Comparison]) -> Panel {
-    let axis = Axis::new("Ours over theirs, less 1", "%", Scale::SymLog { threshold: NEAR });
+    let found: Vec<Vec<(f64, f64, f64)>> = comparisons.iter().map(relative).collect();
+    let sizes = || found.iter().flatten().map(|(_, y, bar)| y.abs() + bar);
+    let (least, most) = (sizes().fold(f64::INFINITY, f64::min), sizes().fold(0.0, f64::max));
+    let is_log = most > MANY_DECADES * least;
+    let scale = if is_log { Scale::SymLog { threshold: NEAR } } else { Scale::Linear };
+    let axis = Axis::new("Ours over theirs, less 1", "%", scale);
     let mut panel = Panel::new(Axis::linear("Row of the table", ""), axis);
-    for (class, c) in comparisons.iter().enumerate() {
-        let found: Vec<(f64, f64, f64)> = c
-            .rows
-            .iter()
-            .filter_map(|row| {
-                let relative = 100.0 * row.relative()?;
-                Some((row.at, relative, 100.0 * 1.96 * row.combined()? / row.theirs?.abs()))
-            })
-            .collect();
+    for (class, (c, found)) in comparisons.iter().zip(&found).enumerate() {
         let x = found.iter().map(|f| f.0).collect();
         let y = found.iter().map(|f| f.1).collect();
         let bars = found.iter().map(|f| (f.1 - f.2, f.1 + f.2)).collect();

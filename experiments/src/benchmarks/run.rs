@@ -75,7 +75,15 @@ fn run(settings: &Settings) -> anyhow::Result<()> {
     if !settings.page {
         answer(settings, &folder)?;
     }
-    let page = page::page(&all_answered(&folder)?, settings).into_string();
+    let answered = all_answered(&folder)?;
+    if settings.page {
+        for set in ALL {
+            if let Some(answered) = answered.iter().find(|a| a.set == set.name) {
+                draw(&folder, set, answered)?;
+            }
+        }
+    }
+    let page = page::page(&answered, settings).into_string();
     write(&folder.join("index.html"), page.as_bytes())?;
     say(&format!("the page is {}", folder.join("index.html").display()));
     Ok(())
@@ -118,16 +126,21 @@ fn keep(
     program: String,
     comparisons: Vec<Comparison>,
 ) -> anyhow::Result<()> {
-    let figure = plot::figure(set, &comparisons);
-    let png = figure.png().with_context(|| format!("the picture of {}", set.name))?;
-    let mut table = Vec::new();
-    let records: Vec<Record> = comparisons.iter().flat_map(|c| records(set, c)).collect();
-    write_csv(&mut table, &records)?;
     let answered = Answered { set: set.name.to_string(), settings, program, comparisons };
-    write(&folder.join(format!("{}.png", set.name)), &png)?;
-    write(&folder.join(format!("{}.csv", set.name)), &table)?;
+    draw(folder, set, &answered)?;
     // Last: what has it is complete.
     write(&folder.join(format!("{}.json", set.name)), &serde_json::to_vec(&answered)?)
+}
+
+/// The picture and the table of a set.
+fn draw(folder: &Path, set: &Set, answered: &Answered) -> anyhow::Result<()> {
+    let figure = plot::figure(set, &answered.comparisons);
+    let png = figure.png().with_context(|| format!("the picture of {}", set.name))?;
+    let mut table = Vec::new();
+    let records: Vec<Record> = answered.comparisons.iter().flat_map(|c| records(set, c)).collect();
+    write_csv(&mut table, &records)?;
+    write(&folder.join(format!("{}.png", set.name)), &png)?;
+    write(&folder.join(format!("{}.csv", set.name)), &table)
 }
 
 fn records<'a>(set: &'a Set, c: &'a Comparison) -> impl Iterator<Item = Record<'a>> {

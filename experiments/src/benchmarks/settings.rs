@@ -29,7 +29,7 @@ pub struct Settings {
     /// Forget what earlier runs answered
     #[arg(long)]
     pub fresh: bool,
-    /// Only write the page anew, from the answers that are in its folder
+    /// Only write the page, its pictures and tables anew, from the answers that are in its folder
     #[arg(long)]
     pub page: bool,
     /// Only write the pack of questions with exact values, for other codes to answer

@@ -38,6 +38,11 @@ impl Source {
         self.scene.display().to_string()
     }
 
+    /// The scene's file, or the name of a built-in one.
+    pub fn file(&self) -> &Path {
+        &self.scene
+    }
+
     /// The validated scene, in which light comes to an end.
     pub fn load(&self) -> anyhow::Result<Scene> {
         let file = self.resolve()?;

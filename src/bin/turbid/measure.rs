@@ -162,7 +162,10 @@ impl Measure {
         if self.vol.is_some() && voxels(one).is_none() {
             bail!("--vol writes voxels; the sensor with bins of this scene has none: use --npy");
         }
-        for file in files.iter().filter_map(|(_, file)| file.as_ref()) {
+        for (option, file) in files.iter().filter_map(|(option, file)| Some((option, file.as_ref()?))) {
+            if is_same_file(file, self.source.file()).unwrap_or(false) {
+                bail!("{option} names the scene's own file, {}", file.display());
+            }
             check_writable(file)?;
         }
         if let (Some(npy), Some(vol)) = (&self.npy, &self.vol)

@@ -14,7 +14,8 @@ use turbid_analytic::quadrature::GaussLegendre;
 const SOURCE: &str = "K. Kobayashi, N. Sugimura and Y. Nagaya, 3-D radiation transport benchmark problems and results for simple geometries with \
                       void regions, OECD/NEA 2000";
 
-const PLOT: Plot = Plot::Curves { x: ("Largest coordinate", "cm"), y: ("Flux", "1/(cm² s)"), is_log: true };
+const PLOT: Plot =
+    Plot::Curves { x: ("Coordinate along the line", "cm"), y: ("Flux", "1/(cm² s)"), is_log: true };
 
 pub(super) const ONE: Set = Set {
     name: "kobayashi-1",
@@ -99,7 +100,8 @@ struct Point {
 
 impl Point {
     fn abscissa(&self) -> f64 {
-        self.at.into_iter().fold(0.0, f64::max)
+        // Lines A lead along y, all others along x.
+        self.at[usize::from(self.line.ends_with('A'))]
     }
 }
 
