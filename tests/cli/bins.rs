@@ -199,7 +199,13 @@ fn bins_where_light_from_outside_has_not_been() {
         (slab, diffuse, voxels(-0.5, 0.5), "", true),
         (slab, diffuse, voxels(0.5, 1.5), "", false),
         (ball, sun, voxels(1.5, 2.0), "", true),
-        (ball, sun, voxels(0.0, 0.5), "", false),
+        (
+            ball,
+            sun,
+            "mean-fluence = { min = [0, 0, 0], max = [0.5, 0.5, 0.5], cells = [1, 1, 1] }".into(),
+            "",
+            false,
+        ),
     ] {
         let text_of =
             format!("{world}{light}[[sensors]]\nname = \"here\"\nmeasure = {{ {measure} }}\n{orders}");
