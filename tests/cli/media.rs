@@ -362,8 +362,11 @@ fn wrong_tables_of_columns() {
     let density = "columns = { file = \"a.csv\", width = [0.25, 0.25], ground = 0.25 }";
     let scene = folder.file("scene.toml", &slab("[0.5, 0.25]", density));
     let good = "i,j,extinction,base,top\n0,0,1,0,0.25\n1,0,2,0,0.25\n";
-    folder.file("a.csv", good);
-    succeeds(&["check", text(&scene)]);
+    // Of a spreadsheet, too, which begins it with a byte-order mark.
+    for table in [good.to_string(), format!("\u{feff}{good}")] {
+        folder.file("a.csv", &table);
+        succeeds(&["check", text(&scene)]);
+    }
     let many: String = (0..1_000_000).map(|i| format!("{i},0,1,0,0.25\n")).collect();
     let half = format!("i,j,extinction,base,top\n{many}");
     for (table, words) in [

@@ -145,6 +145,8 @@ const NAMES: [&str; 6] = ["i", "j", "extinction", "optical_depth", "base", "top"
 /// # Errors
 /// those of its lines, by number and name
 fn table(text: &str) -> Result<Numbers> {
+    // Spreadsheets begin a file with a byte-order mark.
+    let text = text.strip_prefix('\u{feff}').unwrap_or(text);
     let mut lines = text.lines().enumerate().map(|(i, line)| (i + 1, line.trim()));
     let Some((_, head)) = lines.next().filter(|(_, head)| !head.is_empty()) else {
         return refuse(format!("line 1: no names of columns; allowed: some of {}", NAMES.join(",")));
