@@ -1,9 +1,7 @@
 """Compares answers with the exact values of the pack: python3 check.py ANSWERS.csv, columns id, value, std_error.
 z is the difference over the root of the summed squares of the answer's standard error and the value's bound. Answers disagree, exit
-code 1, where chance gives a larger sum of squares, or one z as large, with a probability below 1e-4. Wrong files: one line, exit code 2.
-"""
+code 1, where chance gives a larger sum of squares, or one z as large, with a probability below 1e-4. Wrong files: one line, exit code 2."""
 import contextlib, csv, math, os, sys
-
 LEVEL, MOST_LINES = 1e-4, 10_000
 
 def fail(message):
@@ -37,7 +35,6 @@ def chi_squared_p(x, n):  # Q(n/2, x/2), by its recurrence in steps of 1
     while y > 0 and a < n / 2:
         p, a = p + math.exp(a * math.log(y) - y - math.lgamma(a + 1)), a + 1
     return min(p, 1.0) if y > 0 else 1.0
-
 def main(path):
     questions = {q["id"]: q for _, q in read(os.path.join(os.path.dirname(os.path.abspath(__file__)), "questions.csv"), ["id"])}
     zs, lines = {}, []
@@ -52,9 +49,12 @@ def main(path):
     zs or fail(f"{path}: no answers; needed: at least one")
     x, worst = sum(z * z for z in zs.values()), max(zs, key=lambda name: abs(zs[name]))
     p, one = chi_squared_p(x, len(zs)), min(1.0, len(zs) * math.erfc(abs(zs[worst]) / math.sqrt(2)))
-    print("\n".join(lines))
-    print(f"{len(zs)} of {len(questions)} questions, chi-squared {x:.4g}, p {p:.2g}; largest z {zs[worst]:.2f} ({worst}), p {one:.2g}")
-    print("disagrees" if min(p, one) < LEVEL else "agrees")
+    lines.append(f"{len(zs)} of {len(questions)} questions, chi-squared {x:.4g}, p {p:.2g}; largest z {zs[worst]:.2f} ({worst}), p {one:.2g}")
+    lines.append("disagrees" if min(p, one) < LEVEL else "agrees")
+    try:
+        print("\n".join(lines), flush=True)
+    except OSError as error:
+        os._exit(print(f"error: standard output: {error.strerror}", file=sys.stderr) or 2)
     sys.exit(min(p, one) < LEVEL)
 
 main(sys.argv[1]) if len(sys.argv) == 2 else fail("needed: check.py ANSWERS.csv")

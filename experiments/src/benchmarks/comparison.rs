@@ -131,7 +131,7 @@ impl Comparison {
     }
 
     /// The bias, common to all rows and relative, that the comparison would find in 99 of 100 cases: (3.9 + 2.4) standard errors of the
-    /// mean ratio, weighted by its errors, where 3.9 is the two-sided normal quantile of [`LEVEL`].
+    /// mean ratio, weighted by its errors, where 3.9 is the two-sided normal quantile of 1e-4.
     pub fn detects(&self) -> Option<f64> {
         let precision = self
             .rows
