@@ -7,6 +7,7 @@ mod light;
 mod method;
 mod paths;
 mod photons;
+mod reach;
 mod render;
 mod tallies;
 mod view;

@@ -1,6 +1,6 @@
 //! Sensors read by photons: powers tallied where photons leave or end, fluence and radiance from photon maps.
 
-use super::tallies::check_reach;
+use super::reach::check_reach;
 use super::{Measurement, Source, measurements, room, row_bytes};
 use crate::Spectrum;
 use crate::error::{Error, Result};
