@@ -58,7 +58,7 @@ pub fn page(answered: &[Answered], settings: &Settings) -> Markup {
                     "Each value of ours is held against theirs over the combined error: the standard error of both, or the proven bound of an exact "
                     "value, and the rounding of a printed number (a unit of its last digit over the root of 12). The squares of these add up to "
                     "chi-squared, with as many degrees of freedom as there are values; an answer differs where chance would give a larger sum, or one "
-                    "difference as large, with a probability below " (number(LEVEL)) ". Values whose error cannot be trusted are shown, and not counted. The bias detected is one common "
+                    "difference as large, with a probability below " (number(LEVEL)) ". Values whose error cannot be trusted are shown, and not counted. Bins of one run share its photons: neighbours vary together, and their sum is the rougher for it. The bias detected is one common "
                     "to all values that would be found with a probability of 99 per cent."
                 }
                 div.scroll { table {

@@ -70,12 +70,12 @@ fn curves(comparisons: &[Comparison], x: (&str, &str), y: (&str, &str), is_log: 
             panel = panel.with(Points::new("", class, x, y));
         }
         // With more curves than these nobody could tell them apart; differences are below in any case.
-        for (by, rows) in answers.filter(|_| count <= 2) {
+        for (i, (by, rows)) in answers.filter(|_| count <= 2).enumerate() {
             let (x, y) = rows.iter().map(|row| (row.at, row.ours)).unzip();
             let bars =
                 rows.iter().map(|row| (row.ours - half(row.our_error), row.ours + half(row.our_error)));
             let label = format!("{case}, {by}");
-            panel = panel.with(Points::new(label, class + 3, x, y).with_y_interval(bars.collect()));
+            panel = panel.with(Points::new(label, class + 3 + i, x, y).with_y_interval(bars.collect()));
         }
     }
     panel
