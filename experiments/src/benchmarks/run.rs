@@ -6,14 +6,14 @@ use super::set::Set;
 use super::sets::ALL;
 use super::settings::Settings;
 use super::{pack, page, plot};
-use crate::harness::{check_folder, duration, guarded, one_line, program_digest, read_if_there, say};
+use crate::harness::{check_folder, duration, on_threads, program, program_digest, read_if_there, say};
 use anyhow::Context;
 use clap::Parser;
 use serde::Serialize;
 use std::path::Path;
 use std::process::ExitCode;
 use std::time::Instant;
-use turbid::output::{end_on_signal, write_atomically, write_csv};
+use turbid::output::{write_atomically, write_csv};
 
 /// Larger answers are none.
 const MOST_BYTES: u64 = 1 << 26;
@@ -35,36 +35,13 @@ struct Record<'a> {
 
 /// Runs the benchmarks as a program.
 pub fn main() -> ExitCode {
-    guarded("benchmarks", unguarded)
-}
-
-fn unguarded() -> ExitCode {
-    let settings = match Settings::try_parse() {
-        Ok(settings) => settings,
-        Err(error) if !error.use_stderr() => {
-            let written = turbid::output::print(|out| write!(out, "{error}"));
-            return ExitCode::from(if written.is_ok() { 0 } else { 2 });
-        }
-        Err(error) => {
-            say(&one_line(&error.to_string()));
-            return ExitCode::from(2);
-        }
+    let kept = |settings: &Settings| {
+        let folder = settings.folder();
+        format!("answered sets are kept in {}, and the same command goes on from there", folder.display())
     };
-    let folder = settings.folder().display().to_string();
-    end_on_signal(move || {
-        format!(
-            "benchmarks: stopped by a signal; answered sets are kept in {folder}, and the same command goes on from there"
-        )
-    });
-    let threads = settings.threads.map_or(0, usize::from);
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().context("cannot start threads");
-    match pool.and_then(|pool| pool.install(|| run(&settings))) {
-        Ok(()) => ExitCode::SUCCESS,
-        Err(error) => {
-            say(&format!("error: {error:#}"));
-            ExitCode::from(2)
-        }
-    }
+    program("benchmarks", Settings::try_parse, kept, |settings| {
+        on_threads(settings.threads, || run(settings)).map(|()| 0)
+    })
 }
 
 fn run(settings: &Settings) -> anyhow::Result<()> {
@@ -99,9 +76,11 @@ fn answer(settings: &Settings, folder: &Path) -> anyhow::Result<()> {
     let seconds = |set: &Set| set.seconds[usize::from(!settings.quick)];
     let mut left: f64 = chosen.iter().map(|set| seconds(set)).sum();
     for (index, set) in chosen.iter().enumerate() {
+        // A file of the user's is read anew each time.
         let is_known = !settings.fresh
             && settings.theirs(set.name).is_none()
-            && kept(folder, set)?.is_some_and(|a| a.settings == settings.words() && a.program == program);
+            && kept(folder, set)?
+                .is_some_and(|a| a.settings == settings.words(set.name) && a.program == program);
         let about = format!("set {} of {}, {}", index + 1, chosen.len(), set.name);
         if is_known {
             say(&format!("{about}: answered already"));
@@ -112,7 +91,7 @@ fn answer(settings: &Settings, folder: &Path) -> anyhow::Result<()> {
             let bench = Bench::new(folder.join("scenes"), settings.quick, settings.seed, theirs);
             let comparisons = (set.run)(&bench).with_context(|| set.name.to_string())?;
             say(&format!("  {} took {}", set.name, duration(start.elapsed().as_secs_f64())));
-            keep(folder, set, settings.words(), program.clone(), comparisons)?;
+            keep(folder, set, settings.words(set.name), program.clone(), comparisons)?;
         }
         left -= seconds(set);
     }

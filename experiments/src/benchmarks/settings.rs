@@ -75,9 +75,11 @@ impl Settings {
         self.theirs.iter().find(|(set, _)| set == name).map(|(_, file)| file.as_path())
     }
 
-    /// What the answers depend on.
-    pub fn words(&self) -> String {
-        format!("{}, seed {}", if self.quick { "quick" } else { "full" }, self.seed)
+    /// What the answer of a set depends on.
+    pub fn words(&self, set: &str) -> String {
+        let theirs =
+            self.theirs(set).map_or(String::new(), |file| format!(", numbers of {}", file.display()));
+        format!("{}, seed {}{theirs}", if self.quick { "quick" } else { "full" }, self.seed)
     }
 }
 

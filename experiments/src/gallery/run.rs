@@ -11,49 +11,26 @@ use super::shown::PageEntry;
 use super::studio::Studio;
 use super::{assets, page};
 use crate::harness::{
-    check_folder, check_later, duration, guarded, one_line, program_digest, read_if_there, say,
+    check_folder, check_later, duration, on_threads, program, program_digest, read_if_there, say,
 };
 use anyhow::Context;
 use clap::Parser;
 use std::path::Path;
 use std::process::ExitCode;
-use turbid::output::{end_on_signal, write_atomically};
+use turbid::output::write_atomically;
 
 /// CPU seconds of a picture: mean of those that are kept.
 const EXPECTED: f64 = 900.0;
 
 /// Runs the gallery as a program.
 pub fn main() -> ExitCode {
-    guarded("gallery", unguarded)
-}
-
-fn unguarded() -> ExitCode {
-    let settings = match Settings::try_parse() {
-        Ok(settings) => settings,
-        Err(error) if !error.use_stderr() => {
-            let written = turbid::output::print(|out| write!(out, "{error}"));
-            return ExitCode::from(if written.is_ok() { 0 } else { 2 });
-        }
-        Err(error) => {
-            say(&one_line(&error.to_string()));
-            return ExitCode::from(2);
-        }
+    let kept = |settings: &Settings| {
+        let cache = settings.cache();
+        format!("finished renders are kept in {}, and the same command goes on from there", cache.display())
     };
-    let cache = settings.cache().display().to_string();
-    end_on_signal(move || {
-        format!(
-            "gallery: stopped by a signal; finished renders are kept in {cache}, and the same command goes on from there"
-        )
-    });
-    let threads = settings.threads.map_or(0, usize::from);
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().context("cannot start threads");
-    match pool.and_then(|pool| pool.install(|| run(&settings))) {
-        Ok(()) => ExitCode::SUCCESS,
-        Err(error) => {
-            say(&format!("error: {error:#}"));
-            ExitCode::from(2)
-        }
-    }
+    program("gallery", Settings::try_parse, kept, |settings| {
+        on_threads(settings.threads, || run(settings)).map(|()| 0)
+    })
 }
 
 fn run(settings: &Settings) -> anyhow::Result<()> {

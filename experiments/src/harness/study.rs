@@ -7,7 +7,8 @@ use super::measure::{Task, cell_path, measure};
 use super::outputs::{
     AnswerRecord, Seconds, check_folder, keep_or_write, prediction_table, write_if_changed, write_results,
 };
-use super::panics::{caught, guarded};
+use super::panics::caught;
+use super::program::program;
 use super::progress::say;
 use super::{
     CellId, Cells, Claim, Experiment, Outcome, Provenance, Section, SectionReport, Settings, judge, number,
@@ -20,7 +21,7 @@ use std::collections::BTreeSet;
 use std::process::ExitCode;
 use std::time::Instant;
 use turbid::memory::{free, in_words};
-use turbid::output::{end_on_signal, print, write_atomically, write_csv};
+use turbid::output::{print, write_atomically, write_csv};
 use turbid::photons::Photon;
 
 /// What is studied, by which program.
@@ -88,65 +89,26 @@ pub fn main(name: &'static str, experiments: &[Experiment]) -> ExitCode {
 
 /// The same with closing sections.
 pub fn main_with(name: &'static str, experiments: &[Experiment], closings: &[Closing]) -> ExitCode {
-    guarded(name, || unguarded(name, experiments, closings))
-}
-
-fn unguarded(name: &'static str, experiments: &[Experiment], closings: &[Closing]) -> ExitCode {
-    let settings = match Settings::parse(name, std::env::args_os()) {
-        Ok(settings) => settings,
-        Err(error) if !error.use_stderr() => {
-            let written = print(|out| write!(out, "{error}"));
-            return ExitCode::from(if written.is_ok() { 0 } else { 2 });
-        }
-        Err(error) => {
-            say(&one_line(&error.to_string()));
-            return ExitCode::from(2);
-        }
+    let kept = |settings: &Settings| {
+        let cells = settings.out.join("cells");
+        format!("finished cells are kept in {}, and the same command goes on from there", cells.display())
     };
-    let cells = settings.out.join("cells").display().to_string();
-    end_on_signal(move || {
-        format!(
-            "{name}: stopped by a signal; finished cells are kept in {cells}, and the same command goes on from there"
-        )
-    });
-    if let Some(what) = &settings.replot {
-        let done = replot(&settings, what).and_then(|said| Ok(print(|out| writeln!(out, "{said}"))?));
-        return ended(done.map(|()| 0));
-    }
-    let finished = program_digest()
-        .and_then(|program| {
-            run(&Study { name, experiments, closings, program: program.to_string() }, &settings)
-        })
-        .and_then(|outcome| {
+    program(
+        name,
+        || Settings::parse(name, std::env::args_os()),
+        kept,
+        |settings| {
+            if let Some(what) = &settings.replot {
+                let said = replot(settings, what)?;
+                print(|out| writeln!(out, "{said}"))?;
+                return Ok(0);
+            }
+            let program = program_digest()?.to_string();
+            let outcome = run(&Study { name, experiments, closings, program }, settings)?;
             print(|out| out.write_all(report::summary(&outcome).as_bytes()))?;
             Ok(if settings.strict { outcome.strict_code() } else { 0 })
-        });
-    ended(finished)
-}
-
-/// The exit code, after one line about what stopped the program.
-fn ended(finished: anyhow::Result<u8>) -> ExitCode {
-    match finished {
-        Ok(code) => ExitCode::from(code),
-        Err(error) => {
-            say(&format!("error: {error:#}"));
-            ExitCode::from(2)
-        }
-    }
-}
-
-/// A message of the parser in one line, without usage and hints where to look.
-pub(crate) fn one_line(text: &str) -> String {
-    let parts = text.lines().map(str::trim).filter(|part| !part.is_empty());
-    let parts: Vec<&str> = parts
-        .take_while(|part| !part.starts_with("Usage:") && !part.starts_with("For more information"))
-        .collect();
-    let line = parts.join("; ").replace(":; ", ": ");
-    // A bare word is taken for a file to redraw: it is more likely an experiment.
-    if line.contains("--replot") && !line.contains("cannot be used") {
-        return format!("{line} (one experiment alone: --only NAME; FILE.csv goes with --replot)");
-    }
-    line
+        },
+    )
 }
 
 /// Runs a study, or what is left of it, and writes its report. An experiment that fails anywhere says so in its section;

@@ -5,7 +5,7 @@ use super::examine::{Alarm, Examined, examine};
 use super::settings::Settings;
 use super::shrink::shrunk;
 use super::text::SceneText;
-use crate::harness::{caught, check_folder, check_later, duration, guarded, one_line, program_digest, say};
+use crate::harness::{caught, check_folder, check_later, duration, on_threads, program, program_digest, say};
 use anyhow::{Context, bail};
 use clap::Parser;
 use cpu_time::ProcessTime;
@@ -17,7 +17,7 @@ use std::process::{Command, ExitCode, Stdio};
 use std::sync::{Arc, Mutex};
 use std::time::{Duration, Instant};
 use turbid::input::read_text;
-use turbid::output::{end_on_signal, print, write_atomically};
+use turbid::output::{print, write_atomically};
 use turbid::stats::holm;
 
 /// Family-wise level of a run.
@@ -54,7 +54,7 @@ pub struct Record {
 
 /// Records of scenes are no larger.
 const MOST_OF_A_RECORD: u64 = 1 << 26;
-/// Exit code of a scene's process that was ended by a signal: [`end_on_signal`].
+/// Exit code of a scene's process that was ended by a signal: [`turbid::output::end_on_signal`].
 const INTERRUPTED: i32 = 130;
 
 impl Record {
@@ -67,37 +67,14 @@ impl Record {
 
 /// Runs the sweep as a program.
 pub fn main() -> ExitCode {
-    guarded("sweep", unguarded)
-}
-
-fn unguarded() -> ExitCode {
-    let settings = match Settings::try_parse() {
-        Ok(settings) => settings,
-        Err(error) if !error.use_stderr() => {
-            return ExitCode::from(if print(|out| write!(out, "{error}")).is_ok() { 0 } else { 2 });
-        }
-        Err(error) => {
-            say(&one_line(&error.to_string()));
-            return ExitCode::from(2);
-        }
-    };
-    let kept = match settings.seed.is_some() || settings.scene.is_some() {
+    let kept = |settings: &Settings| match settings.seed.is_some() || settings.scene.is_some() {
         true => "nothing is kept".to_string(),
         false => {
-            format!(
-                "finished scenes are kept in {}, and the same command goes on from there",
-                settings.out.display()
-            )
+            let out = settings.out.display();
+            format!("finished scenes are kept in {out}, and the same command goes on from there")
         }
     };
-    end_on_signal(move || format!("sweep: stopped by a signal; {kept}"));
-    match run(&settings) {
-        Ok(code) => ExitCode::from(code),
-        Err(error) => {
-            say(&format!("error: {error:#}"));
-            ExitCode::from(2)
-        }
-    }
+    program("sweep", Settings::try_parse, kept, run)
 }
 
 fn run(settings: &Settings) -> anyhow::Result<u8> {
@@ -377,11 +354,8 @@ fn many(settings: &Settings) -> anyhow::Result<u8> {
         }
         Ok(record)
     };
-    let threads = settings.threads.map_or(0, usize::from);
-    let pool =
-        rayon::ThreadPoolBuilder::new().num_threads(threads).build().context("cannot start threads")?;
     let records: Vec<Record> =
-        pool.install(|| seeds.par_iter().with_max_len(1).map(examine).collect::<anyhow::Result<_>>())?;
+        on_threads(settings.threads, || seeds.par_iter().with_max_len(1).map(examine).collect())?;
     summary(&records)
 }
 
