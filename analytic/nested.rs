@@ -339,9 +339,9 @@ mod tests {
     fn mirrors_are_images() {
         let (inner, outer) = ([[1.0, 2.0], [0.0, 1.0], [0.0, 1.0]], [[0.0, 3.0]; 3]);
         let half = NestedCuboids::new(&[(outer, 0.5), (inner, 2.0)], inner, [true, false, false]).unwrap();
-        let twin = [[-2.0, -1.0], [0.0, 1.0], [0.0, 1.0]];
-        let medium = [([[-3.0, 3.0], [0.0, 3.0], [0.0, 3.0]], 0.5), (inner, 2.0), (twin, 2.0)];
-        let parts = [inner, twin].map(|source| NestedCuboids::new(&medium, source, [false; 3]).unwrap());
+        let image = [[-2.0, -1.0], [0.0, 1.0], [0.0, 1.0]];
+        let medium = [([[-3.0, 3.0], [0.0, 3.0], [0.0, 3.0]], 0.5), (inner, 2.0), (image, 2.0)];
+        let parts = [inner, image].map(|source| NestedCuboids::new(&medium, source, [false; 3]).unwrap());
         let place = [0.3, 2.0, 0.7];
         let (one, two) = (half.fluence(place).unwrap(), parts.map(|part| part.fluence(place).unwrap()));
         let error = one.error + two[0].error + two[1].error;

@@ -128,17 +128,23 @@ pub fn smallest_detectable_distance(n: usize) -> f64 {
 /// The smallest deviation of probabilities, the root mean square of (p - q)/q over cells weighted with q, that a
 /// chi-squared test of `total` counts with `freedom` degrees of freedom at [`ALPHA`] hardly ever misses.
 ///
-/// The statistic is then noncentral, with mean k + L and variance 2(k + 2L), L = `total` times the squared deviation:
-/// solved for the L whose mean is [`POWER_QUANTILE`] standard deviations above the critical value. Its lower tail is
-/// lighter than the normal one, so that this is cautious.
+/// The statistic is then noncentral, with L = `total` times the squared deviation.
 pub fn smallest_detectable_deviation(total: f64, freedom: u64) -> f64 {
+    (smallest_detectable_noncentrality(freedom, ALPHA) / total).sqrt()
+}
+
+/// The smallest noncentrality L, the sum of squared deviations over their errors, that a chi-squared test with `freedom` degrees of
+/// freedom at the level `alpha` hardly ever misses.
+///
+/// The statistic has the mean k + L and the variance 2(k + 2L): solved for the L whose mean is [`POWER_QUANTILE`] standard
+/// deviations above the critical value. Its lower tail is lighter than the normal one, so that this is cautious.
+pub fn smallest_detectable_noncentrality(freedom: u64, alpha: f64) -> f64 {
     let k = freedom as f64;
-    let critical = root_of_falling(ALPHA, |x| chi_squared_p(x, freedom));
+    let critical = root_of_falling(alpha, |x| chi_squared_p(x, freedom));
     // L + k - critical = q sqrt(2k + 4L), squared; the larger root.
     let (above, q2) = (critical - k, POWER_QUANTILE * POWER_QUANTILE);
     let half = above + 2.0 * q2;
-    let noncentrality = half + (half * half - above * above + 2.0 * q2 * k).sqrt();
-    (noncentrality / total).sqrt()
+    half + (half * half - above * above + 2.0 * q2 * k).sqrt()
 }
 
 #[cfg(test)]

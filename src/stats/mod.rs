@@ -21,7 +21,7 @@ pub use distribution::{
 pub use fit::{Amplitude, Line, amplitude_per_map, fit_line};
 pub use goodness::{
     ChiSquared, KolmogorovSmirnov, chi_squared_test, kolmogorov_smirnov_test, smallest_detectable_deviation,
-    smallest_detectable_distance,
+    smallest_detectable_distance, smallest_detectable_noncentrality,
 };
 pub use interval::{Interval, mean_interval, poisson_interval, wilson_interval};
 pub use mean::{MeanTest, POWER_QUANTILE, smallest_detectable_bias, t_test, z_test};

@@ -1,9 +1,10 @@
 //! One comparison: rows of theirs and ours, the sum of squares over combined errors, and what it says.
 
 use serde::{Deserialize, Serialize};
-use turbid::stats::{chi_squared_p, normal_p};
+use turbid::stats::{chi_squared_p, normal_p, smallest_detectable_noncentrality};
 
-/// Below this p a comparison differs. With 50 comparisons on the page a false alarm happens on one page in 200.
+/// Below this p a comparison differs, by the sum of squares or by the largest difference: of 50 comparisons on the page a false alarm happens on
+/// one page in 100.
 pub const LEVEL: f64 = 1e-4;
 
 /// What stands between a method and the one of ours that it is held against, in [`Comparison::by`].
@@ -130,15 +131,15 @@ impl Comparison {
         }
     }
 
-    /// The bias, common to all rows and relative, that the comparison would find in 99 of 100 cases: (3.9 + 2.4) standard errors of the
-    /// mean ratio, weighted by its errors, where 3.9 is the two-sided normal quantile of 1e-4.
+    /// The bias, common to all rows and relative, that the sum of squares would find in 99 of 100 cases.
     pub fn detects(&self) -> Option<f64> {
         let precision = self
             .rows
             .iter()
             .filter_map(|row| Some(row.theirs?.abs() / row.combined()?))
             .fold(0.0, |sum, ratio| sum + ratio * ratio);
-        (precision > 0.0).then(|| 6.3 / libm::sqrt(precision))
+        let (_, n) = self.chi_squared();
+        (precision > 0.0).then(|| libm::sqrt(smallest_detectable_noncentrality(n, LEVEL) / precision))
     }
 
     /// The row of the largest difference over its error.
@@ -164,6 +165,8 @@ pub struct Answered {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use std::f64::consts::PI;
+    use turbid::rng::{Purpose, Stream};
 
     fn comparison(shift: f64) -> Comparison {
         // Half the rows one error above, half one below: a sum of squares that is expected.
@@ -182,9 +185,41 @@ mod tests {
         assert!((sum - 40.0).abs() < 1e-9 && n == 40);
         // The bias that it says it detects it does detect.
         let bias = fair.detects().unwrap();
-        assert!((bias - 6.3 * 0.005 / libm::sqrt(40.0)).abs() < 1e-12);
         assert_eq!(comparison(1.2 * bias).verdict(), Verdict::Differs);
         assert_eq!(comparison(0.2 * bias).verdict(), Verdict::Agrees);
+    }
+
+    /// Normal differences: without a bias 2 comparisons in 10,000 differ, so that 5 or more of 1,000 have a chance of 3e-6; with the bias
+    /// that is said to be detected at least 99 in 100, less 4.9 standard deviations of 1,000.
+    #[test]
+    fn the_bias_that_it_detects() {
+        for n in [1, 11, 256] {
+            let differ = |shift: f64| {
+                (0..1000)
+                    .filter(|set| {
+                        let mut stream = Stream::new(7, Purpose::Synthetic, n, *set);
+                        let row = |i: u64| {
+                            // Box and Muller.
+                            let [u, v] = stream.pair();
+                            let normal = libm::sqrt(-2.0 * libm::log1p(-u)) * libm::cos(2.0 * PI * v);
+                            Row::new(
+                                "c",
+                                "q",
+                                i as f64,
+                                (1.0, 0.03),
+                                (1.0 + shift + 0.05 * normal, Some(0.04)),
+                            )
+                        };
+                        let rows = (0..n).map(row).collect();
+                        Comparison { by: "us".into(), rows, seconds: 0.0 }.verdict() == Verdict::Differs
+                    })
+                    .count()
+            };
+            let rows = (0..n).map(|i| Row::new("c", "q", i as f64, (1.0, 0.03), (1.0, Some(0.04)))).collect();
+            let bias = Comparison { by: "us".into(), rows, seconds: 0.0 }.detects().unwrap();
+            let (alarms, found, half) = (differ(0.0), differ(bias), differ(0.5 * bias));
+            assert!(alarms < 5 && found >= 975 && half < 900, "n {n}: {alarms}, {found}, {half}");
+        }
     }
 
     #[test]

@@ -93,15 +93,28 @@ impl<'a> Entry<'a> {
     /// # Errors
     /// One line that names table, line and column, unless it is a finite number
     pub fn number(&self, column: &str) -> anyhow::Result<f64> {
-        let text = self.text(column)?;
-        text.parse::<f64>().ok().filter(|x| x.is_finite()).with_context(|| {
-            format!(
-                "{}, line {}: {column} is {}; allowed: a finite number",
-                self.table.name,
-                self.line,
-                turbid::output::one_line(if text.is_empty() { "empty" } else { text })
-            )
-        })
+        let number = self.text(column)?.parse::<f64>().ok().filter(|x| x.is_finite());
+        number.with_context(|| self.refused(column, "a finite number"))
+    }
+
+    /// The number of a column that is an error.
+    ///
+    /// # Errors
+    /// As [`Entry::number`], unless it is at least 0
+    pub fn not_negative(&self, column: &str) -> anyhow::Result<f64> {
+        let number = Some(self.number(column)?).filter(|&x| x >= 0.0);
+        number.with_context(|| self.refused(column, "at least 0"))
+    }
+
+    /// A line that says where and what a column is, and what is allowed.
+    pub fn refused(&self, column: &str, allowed: &str) -> String {
+        let text = self.text(column).unwrap_or_default();
+        format!(
+            "{}, line {}: {column} is {}; allowed: {allowed}",
+            self.table.name,
+            self.line,
+            turbid::output::one_line(if text.is_empty() { "empty" } else { text })
+        )
     }
 
     /// A fraction such as 10/99, or a number.

@@ -1,10 +1,11 @@
 //! What a set asks the simulator with: scenes that are kept beside the page, and how many histories.
 
 use super::comparison::{Comparison, Row};
-use anyhow::Context;
+use anyhow::{Context, bail};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::Instant;
+use turbid::estimators::{Estimator, Gather, Kernel};
 use turbid::scene::{Orders, Scene, SceneFile};
 use turbid::sensor::{
     Measurement, PathSettings, PhotonSettings, TallySettings, by_guided_paths, by_paths, by_photons,
@@ -106,12 +107,18 @@ impl Bench {
         Ok(by_guided_paths(scene, &settings, &NoProgress)?)
     }
 
-    /// Every sensor of a scene by photons, tallies and maps.
+    /// Every sensor of a scene by 64 photon maps of so many photons, counted evenly in balls of this radius.
     ///
     /// # Errors
     /// Those of the photon pass
-    pub fn photons(&self, scene: &Scene, mut settings: PhotonSettings) -> anyhow::Result<Vec<Measurement>> {
-        settings.seed = self.seed.wrapping_add(self.replicate() << 32);
+    pub fn maps(&self, scene: &Scene, photons: u64, radius: f64) -> anyhow::Result<Vec<Measurement>> {
+        let settings = PhotonSettings {
+            photons,
+            maps: 64,
+            seed: self.seed.wrapping_add(self.replicate() << 32),
+            orders: Orders::ALL,
+            estimator: Estimator::new(Kernel::Uniform, Gather::radius(radius)?),
+        };
         Ok(by_photons(scene, &settings, &NoProgress)?.measurements)
     }
 
@@ -156,5 +163,11 @@ pub fn measured(m: &Measurement) -> (f64, Option<f64>) {
 pub fn timed(by: &str, rows: impl FnOnce() -> anyhow::Result<Vec<Row>>) -> anyhow::Result<Comparison> {
     let start = Instant::now();
     let rows = rows()?;
+    let wrong = rows
+        .iter()
+        .find(|row| !row.ours.is_finite() || row.our_error.is_some_and(|error| !error.is_finite()));
+    if let Some(row) = wrong {
+        bail!("{by}, {}, {}: {} is not a finite number", row.case, row.quantity, row.ours);
+    }
     Ok(Comparison { by: by.to_string(), rows, seconds: start.elapsed().as_secs_f64() })
 }

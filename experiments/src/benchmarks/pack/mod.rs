@@ -101,8 +101,7 @@ fn compare(by: &str, name: &str, text: &str, questions: &[Question]) -> anyhow::
         let question = question
             .with_context(|| format!("{name}: there is no question {}", turbid::output::one_line(id)))?;
         ensure!(rows.iter().all(|row| row.case != id), "{name}: {id} is answered twice; allowed: once");
-        let (theirs, error) = (e.number("value")?, e.number("std_error")?);
-        ensure!(error >= 0.0, "{name}: the std_error of {id} is {error}; allowed: at least 0");
+        let (theirs, error) = (e.number("value")?, e.not_negative("std_error")?);
         rows.push(Row::new(
             id,
             question.quantity,

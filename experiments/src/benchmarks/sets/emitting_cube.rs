@@ -59,7 +59,7 @@ fn points(bench: &Bench) -> anyhow::Result<Vec<Point>> {
     let table = Published::read(&name, &text, &["x", "divergence", "std_error"])?;
     let point = |e: Entry| {
         let (value, rounding) = e.rounded("divergence")?;
-        Ok((e.number("x")?, Some((value, libm::hypot(rounding, e.number("std_error")?)))))
+        Ok((e.number("x")?, Some((value, libm::hypot(rounding, e.not_negative("std_error")?)))))
     };
     table.entries().map(point).collect()
 }

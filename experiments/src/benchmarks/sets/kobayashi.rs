@@ -4,10 +4,9 @@ use crate::benchmarks::comparison::{AGAINST, Comparison, Row};
 use crate::benchmarks::published::Published;
 use crate::benchmarks::scene::{Bench, exact, measured, timed};
 use crate::benchmarks::set::{Plot, Set};
+use anyhow::Context;
 use rayon::prelude::*;
-use turbid::estimators::{Estimator, Gather, Kernel};
-use turbid::scene::Orders;
-use turbid::sensor::{Measurement, PhotonSettings};
+use turbid::sensor::Measurement;
 use turbid_analytic::NestedCuboids;
 use turbid_analytic::quadrature::GaussLegendre;
 
@@ -109,9 +108,11 @@ const CASES: [(&str, f64); 2] = [("i", 0.0), ("ii", 0.5)];
 
 fn points(table: &Published) -> anyhow::Result<Vec<Point>> {
     let point = |e: crate::benchmarks::published::Entry| {
-        let case = if e.text("case")?.split(' ').next() == Some("ii") { "ii" } else { "i" };
+        let case = e.text("case")?.split(' ').next();
+        let case = CASES.iter().find(|(known, _)| Some(*known) == case);
+        let case = case.with_context(|| e.refused("case", "i or ii"))?.0;
         let (flux, rounding) = e.rounded("flux")?;
-        let error = libm::hypot(rounding, flux * e.number("rel_std_error")?);
+        let error = libm::hypot(rounding, flux * e.not_negative("rel_std_error")?);
         let at = [e.number("x_cm")?, e.number("y_cm")?, e.number("z_cm")?];
         Ok(Point { case, line: e.text("set")?.to_string(), at, flux: Some((flux, error)) })
     };
@@ -277,17 +278,11 @@ fn run(bench: &Bench, set: &Set, bodies: &[Body], points: &[Point]) -> anyhow::R
         comparisons.push(paths);
         let reference = against(if case == "i" { "exact" } else { "paths" });
         comparisons.push(timed(&format!("photon map, case {case}{reference}"), || {
-            let settings = PhotonSettings {
-                photons: bench.pick(5_000, 250_000),
-                maps: 64,
-                seed: 0,
-                orders: Orders::ALL,
-                estimator: Estimator::new(Kernel::Uniform, Gather::radius(RADIUS)?),
-            };
-            let found = bench.photons(&scene, settings)?;
+            let found = bench.maps(&scene, bench.pick(5_000, 250_000), RADIUS)?;
             let answer = |((p, m), &theirs): ((&&Point, &Measurement), &Option<(f64, f64)>)| {
                 let (mean, error) = measured(m);
-                // What the ball makes of the field: known where nothing scatters, and at most that much where light is scattered.
+                // What the ball makes of the field: known where nothing scatters, and taken for an error as large where light is scattered,
+                // which is smoother there.
                 // It takes long, and nobody asks where the map found too little.
                 let blur = if error.is_some() { blurred(&referee, p.at)? } else { 1.0 };
                 let ours = match case {

@@ -16,7 +16,7 @@ pub(super) const SET: Set = Set {
     about: "Reflectance and transmittance of a slab of two materials in layers of exponentially distributed thickness, in the mean over \
             realisations; isotropic scattering, isotropic light on one face.",
     trust: "Seven digits of the recomputation, whose standard error is taken as 1e-4 of the root of the value, that of 1e8 histories which each leave or \
-            do not. The numbers of 1989, with four digits, are off by up to 1 per cent.",
+            do not. The numbers of 1989, with four digits, differ from them by up to 2 per cent.",
     explained: &[("exact, ensemble", BEYOND), ("light tracing, ensemble", BEYOND)],
     open: false,
     plot: Plot::Rows,

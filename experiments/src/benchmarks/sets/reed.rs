@@ -5,9 +5,6 @@ use crate::benchmarks::published::{Entry, Published};
 use crate::benchmarks::scene::{Bench, exact, measured, timed};
 use crate::benchmarks::set::{Plot, Set};
 use anyhow::Context;
-use turbid::estimators::{Estimator, Gather, Kernel};
-use turbid::scene::Orders;
-use turbid::sensor::PhotonSettings;
 use turbid_analytic::quadrature::GaussLegendre;
 use turbid_analytic::{Ground, Layer, Phase, StratifiedSlab};
 
@@ -102,14 +99,7 @@ fn by_map(bench: &Bench, entries: &[Entry]) -> anyhow::Result<Vec<Row>> {
             to - from
         );
     }
-    let settings = PhotonSettings {
-        photons: bench.pick(5_000, 250_000),
-        maps: 64,
-        seed: 0,
-        orders: Orders::ALL,
-        estimator: Estimator::new(Kernel::Uniform, Gather::radius(RADIUS)?),
-    };
-    let found = bench.photons(&bench.scene("reed-map", &text)?, settings)?;
+    let found = bench.maps(&bench.scene("reed-map", &text)?, bench.pick(5_000, 250_000), RADIUS)?;
     let layers = [[2.0, 0.9, 0.0], [1.0, 0.9, 1.0], [5.0, 0.0, 0.0], [100.0, 0.0, 1.0]]
         .map(|[tau, albedo, source]| Layer::new(tau, albedo, &Phase::isotropic())?.emitting(source));
     let layers = layers.into_iter().collect::<Result<Vec<_>, _>>()?;

@@ -4,9 +4,6 @@ use crate::benchmarks::comparison::{Comparison, Row};
 use crate::benchmarks::published::{Entry, Published};
 use crate::benchmarks::scene::{Bench, exact, measured, timed};
 use crate::benchmarks::set::{Plot, Set};
-use turbid::estimators::{Estimator, Gather, Kernel};
-use turbid::scene::Orders;
-use turbid::sensor::PhotonSettings;
 use turbid_analytic::{Incidence, Phase, Slab, SlabMedium};
 
 pub(super) const SET: Set = Set {
@@ -48,23 +45,15 @@ fn run(bench: &Bench) -> anyhow::Result<Vec<Comparison>> {
         };
         entries.iter().enumerate().map(answer).collect()
     })?;
-    let settings = PhotonSettings {
-        photons: bench.pick(20_000, 2_000_000),
-        maps: 1,
-        seed: 0,
-        orders: Orders::ALL,
-        // No sensor of these scenes reads a map.
-        estimator: Estimator::new(Kernel::Uniform, Gather::radius(1.0)?),
-    };
-    let photons = timed("photons", || {
+    let light = timed("light tracing", || {
         let answer = |(i, e): (usize, &Entry)| {
             let name = format!("van-de-hulst-{i}");
             let scene = bench.scene(&name, &scene(parameters(e)?, e.text("quantity")? == "R"))?;
-            row(i, e, measured(&bench.photons(&scene, settings)?[0]))
+            row(i, e, measured(&bench.light(&scene, bench.pick(20_000, 2_000_000))?[0]))
         };
         entries.iter().enumerate().map(answer).collect()
     })?;
-    Ok(vec![referee, photons])
+    Ok(vec![referee, light])
 }
 
 fn parameters(e: &Entry) -> anyhow::Result<[f64; 4]> {
