@@ -70,10 +70,16 @@ fn numbers_of_another_code() {
     let folder = tempfile::tempdir().unwrap();
     let file = folder.path().join("theirs.csv");
     let out = folder.path().join("out");
-    let run = |text: &str| {
+    let of = |set: &str, text: &str| {
         std::fs::write(&file, text).unwrap();
-        let theirs = format!("emitting-cube={}", file.display());
-        benchmarks(&["--quick", "--only", "emitting-cube", "--theirs", &theirs], &out).assert()
+        let theirs = format!("{set}={}", file.display());
+        benchmarks(&["--quick", "--only", set, "--theirs", &theirs], &out).assert()
+    };
+    let run = |text: &str| of("emitting-cube", text);
+    let refused = |run: assert_cmd::assert::Assert, words: &str| {
+        let said = String::from_utf8(run.code(2).get_output().stderr.clone()).unwrap();
+        let errors: Vec<&str> = said.lines().filter(|line| line.contains("error:")).collect();
+        assert!(errors.len() == 1 && errors[0].contains(words), "{said}");
     };
     let head = "x,divergence,std_error\n";
     let exact =
@@ -90,11 +96,18 @@ fn numbers_of_another_code() {
         (format!("{head}0.5,2,0\n0.5,2\n"), "line 3: 2 fields; needed: 3"),
         (format!("{head}{}", "0.5,2,0\n".repeat(200_000)), "more than 100000 rows"),
         (format!("{head}7,2,0\n"), "x is 7"),
+        (format!("{head}0.5,2,-0.1\n"), "line 2: std_error is -0.1; allowed: at least 0"),
     ] {
-        let said = String::from_utf8(run(&text).code(2).get_output().stderr.clone()).unwrap();
-        let errors: Vec<&str> = said.lines().filter(|line| line.contains("error")).collect();
-        assert!(errors.len() == 1 && errors[0].contains(words), "{said}");
+        refused(run(&text), words);
     }
+    let flux = "case,set,x_cm,y_cm,z_cm,flux,rel_std_error\niii,2A,5,5,5,1,0\n";
+    refused(of("kobayashi-2", flux), "line 2: case is iii; allowed: i or ii");
+    // What was compared with numbers of the user's is not taken for an answer without them.
+    let row = |x: f64| format!("{x},{:.8},0.001\n", exact(x));
+    run(&format!("{head}{}", row(0.5))).success();
+    let again = benchmarks(&["--quick", "--only", "emitting-cube"], &out).assert().success();
+    assert!(!String::from_utf8_lossy(&again.get_output().stderr).contains("answered already"));
+    assert_eq!(by(&answered(&out, "emitting-cube"), "exact").verdict(), Verdict::Open);
 }
 
 /// The kept page is what the program writes from the kept answers; every difference on it has its reason.

@@ -134,9 +134,12 @@ fn radiance_at(t: f64, mu: f64, azimuth: f64) -> String {
     let (sin, cos) = if azimuth == 180.0 { (0.0, -1.0) } else { libm::sincos(azimuth.to_radians()) };
     // No negative zeros in a file that people read.
     let (x, y) = (0.0 - sine * cos, 0.0 - sine * sin);
-    format!(
-        "measure = {{ radiance = {{ origin = [0.5, 0.5, {t:?}], dir = [{x:?}, {y:?}, {mu:?}] }} }}\nmin_order = 1"
-    )
+    format!("measure = {{ radiance = {{ origin = [0.5, 0.5, {t:?}], dir = [{x:?}, {y:?}, {mu:?}] }} }}")
+}
+
+/// The same without light that was not scattered.
+fn scattered(sensor: String) -> String {
+    sensor + "\nmin_order = 1"
 }
 
 fn ask(
@@ -166,19 +169,19 @@ enum Of {
 
 use Of::{Absorptance, Diffuse, Down, Fluence, Reflectance, Transmittance, Up};
 
-const R: Asked0 = ("reflectance", "what fraction of the incident power leaves through the lit face?");
-const T: Asked0 = (
+const R: Ends = ("reflectance", "what fraction of the incident power leaves through the lit face?");
+const T: Ends = (
     "transmittance",
     "what fraction of the incident power leaves through the far face, direct light included?",
 );
-const D: Asked0 = (
+const D: Ends = (
     "transmittance-diffuse",
     "what fraction of the incident power leaves through the far face after one or more scatterings?",
 );
-const A: Asked0 = ("absorptance", "what fraction of the incident power is absorbed?");
+const A: Ends = ("absorptance", "what fraction of the incident power is absorbed?");
 
 /// End of a name, end of a question.
-type Asked0 = (&'static str, &'static str);
+type Ends = (&'static str, &'static str);
 
 fn slab(
     scattering: Scattering,
@@ -203,7 +206,7 @@ fn slab(
                 ask(T.0, T.1, "transmittance", FRACTION, slab.transmittance(), outflow(&shape, "bottom"))
             }
             Diffuse => {
-                let sensor = outflow(&shape, "bottom") + "\nmin_order = 1";
+                let sensor = scattered(outflow(&shape, "bottom"));
                 ask(D.0, D.1, "transmittance_diffuse", FRACTION, slab.transmittance_diffuse(), sensor)
             }
             Absorptance => ask(A.0, A.1, "absorptance", FRACTION, slab.absorptance(), absorbed(0)),
@@ -221,7 +224,7 @@ fn slab(
                 "radiance",
                 RADIANCE,
                 slab.radiance(0.0, mu, azimuth.to_radians())?,
-                radiance_at(0.0, mu, azimuth),
+                scattered(radiance_at(0.0, mu, azimuth)),
             ),
             Down(mu, azimuth) => ask(
                 &format!("radiance-down-{mu}{}", turned(azimuth).0),
@@ -232,7 +235,7 @@ fn slab(
                 "radiance",
                 RADIANCE,
                 slab.radiance(tau, -mu, azimuth.to_radians())?,
-                radiance_at(tau, -mu, azimuth),
+                scattered(radiance_at(tau, -mu, azimuth)),
             ),
         })
     });
@@ -349,7 +352,7 @@ fn over_ground(
             "transmittance_diffuse",
             FRACTION,
             slab.transmittance_diffuse(),
-            outflow(&whole, "bottom") + "\nmin_order = 1",
+            scattered(outflow(&whole, "bottom")),
         ),
     ];
     // Photons tally what layers absorb, paths measure fluences and radiances: a scene is answered by one of them.
@@ -370,7 +373,7 @@ fn over_ground(
             "radiance",
             RADIANCE,
             radiance,
-            radiance_at(-0.5 * GAP, 0.5, 0.0),
+            scattered(radiance_at(-0.5 * GAP, 0.5, 0.0)),
         ));
     } else {
         for layer in 0..layers.len() {
@@ -422,7 +425,6 @@ fn thermal() -> anyhow::Result<Vec<Problem>> {
     let slab = StratifiedSlab::new(&[layer], Ground::black(), None)?;
     let radiances = slab.radiance(0.0, &[1.0, 0.1])?;
     let shape = slab_shape(0.0, tau);
-    let looks = |mu: f64| radiance_at(0.0, mu, 0.0).replace("\nmin_order = 1", "");
     let radiance = |mu: f64, value: Value| {
         ask(
             &format!("radiance-up-{mu}"),
@@ -432,7 +434,7 @@ fn thermal() -> anyhow::Result<Vec<Problem>> {
             "radiance",
             "black-body radiance",
             value,
-            looks(mu),
+            radiance_at(0.0, mu, 0.0),
         )
     };
     Ok(vec![Problem {
@@ -480,14 +482,22 @@ fn refracting_slab(
     let scattering = if g == 0.0 { Isotropic } else { HenyeyGreenstein(g) };
     // Light starts from around the faces, and is counted there.
     let around = slab_shape(-0.5 * tau, 2.0 * tau);
-    let mut asked = vec![
+    let asked = vec![
+        ask(
+            R.0,
+            "what fraction of the incident power leaves on the lit side, mirrored light included?",
+            "reflectance",
+            FRACTION,
+            slab.reflectance(),
+            outflow(&around, "top"),
+        ),
         ask(
             "reflectance-diffuse",
             "what fraction of the incident power leaves on the lit side after one or more scatterings?",
             "reflectance_diffuse",
             FRACTION,
             slab.reflectance_diffuse(),
-            outflow(&around, "top") + "\nmin_order = 1",
+            scattered(outflow(&around, "top")),
         ),
         ask(
             T.0,
@@ -499,17 +509,6 @@ fn refracting_slab(
         ),
         ask(A.0, A.1, "absorptance", FRACTION, slab.absorptance(), absorbed(0)),
     ];
-    asked.insert(
-        0,
-        ask(
-            R.0,
-            "what fraction of the incident power leaves on the lit side, mirrored light included?",
-            "reflectance",
-            FRACTION,
-            slab.reflectance(),
-            outflow(&around, "top"),
-        ),
-    );
     Ok(Problem {
         name: format!("glass-{}-n{index}-t{tau}-w{albedo}-{}", scattering.name(), light_name(incidence)),
         words: format!(
@@ -536,7 +535,7 @@ fn refracting() -> anyhow::Result<Vec<Problem>> {
     ])
 }
 
-const ESCAPE: Asked0 = ("escape", "what fraction of the power leaves the sphere?");
+const ESCAPE: Ends = ("escape", "what fraction of the power leaves the sphere?");
 
 fn ball(
     radius: f64,
@@ -697,7 +696,7 @@ fn furnaces() -> anyhow::Result<Vec<Problem>> {
                 "radiance",
                 RADIANCE,
                 radiance,
-                radiance_at(0.0, 0.3, 0.0).replace("\nmin_order = 1", ""),
+                radiance_at(0.0, 0.3, 0.0),
             ),
         ],
     };
