@@ -17,6 +17,7 @@ mod regions;
 mod segment;
 mod segments;
 mod sensor;
+mod source;
 mod target;
 mod validate;
 
@@ -29,6 +30,7 @@ pub use plan::Plan;
 pub use segment::Segment;
 pub use segments::Segments;
 pub use sensor::{Binned, Crossing, Orders, Quantity, Scoring, Sensor, Space};
+pub use source::SceneSource;
 pub use target::{SceneHit, Start, Target};
 
 use crate::error::Result;

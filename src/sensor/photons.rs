@@ -54,7 +54,7 @@ pub struct PhotonReadings {
 
 impl PhotonReadings {
     /// Nothing yet.
-    fn new() -> Self {
+    pub(super) fn new() -> Self {
         PhotonReadings {
             measurements: Vec::new(),
             ledger: Ledger::default(),
@@ -139,20 +139,11 @@ pub fn by_photons_in_passes(
                 let here = sensors.iter().zip(&mut estimates).filter(|(s, _)| map_orders(s) == Some(*range));
                 for (index, (sensor, sums)) in here.enumerate() {
                     // Every pass asks at the same places.
-                    let one = |bin: usize| {
-                        let number = (bin as u64) << 32 | index as u64;
-                        let mut stream = Stream::new(settings.seed, Purpose::Resampling, replicate, number);
-                        let mut booked = PhotonReadings::new();
-                        let place = (sensor, bin);
-                        let value = read((scene, &extents), map, place, settings, &mut stream, &mut booked);
-                        value.map(|value| (value, booked))
-                    };
-                    for (sum, read) in sums.iter_mut().zip(in_parallel(bins(sensor), one)) {
-                        let (value, booked) = read?;
+                    let of = (settings.seed, replicate, index);
+                    let values =
+                        read_bins((scene, &extents), map, sensor, &settings.estimator, of, &mut result)?;
+                    for (sum, value) in sums.iter_mut().zip(values) {
                         *sum += value / passes as f64;
-                        result.gathers += booked.gathers;
-                        result.underfull += booked.underfull;
-                        result.beyond += booked.beyond;
                     }
                 }
             }
@@ -269,9 +260,7 @@ fn prepared(scene: &Scene, settings: &PhotonSettings) -> Result<(Vec<Sensor>, f6
             check_reach(scene, sensor)?;
         }
     }
-    let margin = scene.periodic_cell().map_or(Ok(0.0), |periodic_cell| {
-        margin(&sensors, periodic_cell.side, settings.estimator.gather.cap())
-    })?;
+    let margin = margin_of(scene, &sensors, settings.estimator.gather.cap())?;
     Ok((sensors, margin))
 }
 
@@ -353,6 +342,14 @@ fn scored(sensors: &[Sensor]) -> Vec<Sensor> {
     sensors.iter().filter(is_scored).cloned().collect()
 }
 
+/// How far beyond the edges of the scene's cell, if it has one, the sensors' balls of radius `cap` may reach \[L\].
+///
+/// # Errors
+/// As [`margin`]
+pub(super) fn margin_of(scene: &Scene, sensors: &[Sensor], cap: f64) -> Result<f64> {
+    scene.periodic_cell().map_or(Ok(0.0), |cell| margin(sensors, cell.side, cap))
+}
+
 /// How far beyond the cell's edges the sensors' balls of radius `cap` may reach \[L\]; rays may pass any point.
 ///
 /// # Errors
@@ -401,6 +398,34 @@ pub(super) fn check(scene: &Scene, sensor: &Sensor) -> Result<()> {
     }
 }
 
+/// What a map answers for every bin of a sensor; seed, replicate and number of the sensor say where in the bins it is asked.
+pub(super) fn read_bins(
+    around: (&Scene, &[MediumExtent]),
+    map: &PhotonMap,
+    sensor: &Sensor,
+    estimator: &Estimator,
+    (seed, replicate, number): (u64, u64, usize),
+    result: &mut PhotonReadings,
+) -> Result<Vec<Spectrum>> {
+    let one = |bin: usize| {
+        let number = (bin as u64) << 32 | number as u64;
+        let mut stream = Stream::new(seed, Purpose::Resampling, replicate, number);
+        let mut booked = PhotonReadings::new();
+        let value = read(around, map, (sensor, bin), estimator, &mut stream, &mut booked);
+        value.map(|value| (value, booked))
+    };
+    let bins = sensor.binned().map_or(1, Binned::bins);
+    let mut values = Vec::with_capacity(bins);
+    for read in in_parallel(bins, one) {
+        let (value, booked) = read?;
+        values.push(value);
+        result.gathers += booked.gathers;
+        result.underfull += booked.underfull;
+        result.beyond += booked.beyond;
+    }
+    Ok(values)
+}
+
 /// Points of a bin that a map is asked at: other ones each time, so that few do.
 const POINTS: usize = 4;
 
@@ -409,14 +434,14 @@ fn read(
     around: (&Scene, &[MediumExtent]),
     map: &PhotonMap,
     (sensor, bin): (&Sensor, usize),
-    settings: &PhotonSettings,
+    estimator: &Estimator,
     stream: &mut Stream,
     result: &mut PhotonReadings,
 ) -> Result<Spectrum> {
     let scene = around.0;
     match &sensor.quantity {
-        Quantity::Fluence(p) => Ok(fluence_at(around, map, *p, settings, result)),
-        Quantity::Radiance(ray) => Ok(radiance(around, map, ray, sensor.orders, settings, stream, result)),
+        Quantity::Fluence(p) => Ok(fluence_at(around, map, *p, estimator, result)),
+        Quantity::Radiance(ray) => Ok(radiance(around, map, ray, sensor.orders, estimator, stream, result)),
         Quantity::Outflow { .. } | Quantity::Absorbed(_) => Ok(Spectrum::ZERO),
         Quantity::Binned(binned) => {
             let mut sum = Spectrum::ZERO;
@@ -428,10 +453,10 @@ fn read(
                     {
                         return Err(outside(sensor, p));
                     }
-                    Binned::Fluence { .. } => fluence_at(around, map, p, settings, result),
+                    Binned::Fluence { .. } => fluence_at(around, map, p, estimator, result),
                     Binned::Radiance { dir, .. } => {
                         let ray = Ray::new(p, *dir);
-                        radiance(around, map, &ray, sensor.orders, settings, stream, result)
+                        radiance(around, map, &ray, sensor.orders, estimator, stream, result)
                     }
                     Binned::Flux { .. } | Binned::Absorption { .. } => Spectrum::ZERO,
                 };
@@ -446,14 +471,14 @@ fn fluence_at(
     (scene, extents): (&Scene, &[MediumExtent]),
     map: &PhotonMap,
     p: DVec3,
-    settings: &PhotonSettings,
+    estimator: &Estimator,
     result: &mut PhotonReadings,
 ) -> Spectrum {
     let number = scene.medium_number_at(p);
     let sigma_t = number.map_or(Spectrum::ONE, |number| scene.medium(number).sigma_t(p));
     let boundary = number.map_or(Boundary::UNKNOWN, |number| extents[number].boundary());
-    let estimate = settings.estimator.fluence(map, p, sigma_t, &boundary);
-    result.book(scene, p, &estimate, settings.estimator.treatment);
+    let estimate = estimator.fluence(map, p, sigma_t, &boundary);
+    result.book(scene, p, &estimate, estimator.treatment);
     estimate.value
 }
 
@@ -464,7 +489,7 @@ fn radiance(
     map: &PhotonMap,
     ray: &Ray,
     orders: Orders,
-    settings: &PhotonSettings,
+    estimator: &Estimator,
     stream: &mut Stream,
     result: &mut PhotonReadings,
 ) -> Spectrum {
@@ -485,8 +510,8 @@ fn radiance(
             }
             let (wo, phase) = (-ray.dir, medium.phase());
             let boundary = extents[segment.medium].boundary();
-            let estimate = settings.estimator.in_scattered(map, p, wo, phase, Spectrum::ONE, &boundary);
-            result.book(scene, p, &estimate, settings.estimator.treatment);
+            let estimate = estimator.in_scattered(map, p, wo, phase, Spectrum::ONE, &boundary);
+            result.book(scene, p, &estimate, estimator.treatment);
             medium.albedo(p) * estimate.value
         };
         for (span, step) in stretches(medium, segment.interval) {
