@@ -17,6 +17,7 @@ pub mod fuzz;
 pub mod gallery;
 pub mod harness;
 pub mod march;
+pub mod own_study;
 pub mod prediction;
 pub mod rates;
 pub mod report;

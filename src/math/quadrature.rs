@@ -13,9 +13,15 @@ fn legendre_pair(n: u32, x: f64) -> (f64, f64) {
     (p, before)
 }
 
-/// The Legendre polynomial of degree `l` at x.
-pub fn legendre(l: u32, x: f64) -> f64 {
-    if l == 0 { 1.0 } else { legendre_pair(l, x).0 }
+/// Legendre polynomials at x, of degree 0 and on.
+pub fn legendre_series(x: f64) -> impl Iterator<Item = f64> {
+    let (mut before, mut p, mut degree) = (0.0, 1.0, 0.0);
+    std::iter::from_fn(move || {
+        let own = p;
+        (before, p) = (p, ((2.0 * degree + 1.0) * x * p - degree * before) / (degree + 1.0));
+        degree += 1.0;
+        Some(own)
+    })
 }
 
 /// Nodes and weights on [-1, 1] of the rule of `n` nodes, exact for polynomials of degree 2n - 1.
@@ -50,6 +56,7 @@ mod tests {
                 assert!((sum - exact).abs() < 1e-14, "{n} {degree}: {sum}");
             }
         }
-        assert!((legendre(3, 0.5) + 0.4375).abs() < 1e-15 && legendre(0, 0.3) == 1.0);
+        let series: Vec<f64> = legendre_series(0.5).take(5).collect();
+        assert_eq!(series, [1.0, 0.5, -0.125, -0.4375, -0.2890625]);
     }
 }

@@ -154,6 +154,11 @@ impl Blocks {
         self.high
     }
 
+    /// Planes between blocks across an axis, rising \[L\].
+    pub fn planes(&self, axis: usize) -> &[f64] {
+        &self.planes[axis]
+    }
+
     /// Whether it depends on z alone.
     pub fn is_layered(&self) -> bool {
         self.planes[0].len() == 2 && self.planes[1].len() == 2

@@ -94,6 +94,21 @@ impl Heterogeneous {
         self.density.is_layered() && self.albedo.as_ref().is_none_or(Albedo::is_layered)
     }
 
+    /// Planes across z between which it is the same everywhere \[L\]; none where it varies otherwise.
+    pub fn layer_planes(&self) -> Option<Vec<f64>> {
+        let Density::Blocks(density) = &self.density else { return None };
+        if !self.is_layered() || density.is_columns() {
+            return None;
+        }
+        let mut planes = density.planes(2).to_vec();
+        match &self.albedo {
+            None => {}
+            Some(Albedo::Blocks(blocks, _)) => planes.extend_from_slice(blocks.planes(2)),
+            Some(Albedo::Grid(..)) => return None,
+        }
+        Some(planes)
+    }
+
     /// Whether it emits anywhere.
     pub fn is_emitting(&self) -> bool {
         !self.matter.emission().is_black() || !self.emission.is_black()

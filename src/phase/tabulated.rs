@@ -2,7 +2,7 @@
 
 use super::PhaseFunction;
 use crate::error::{Error, Result};
-use crate::math::quadrature::{gauss_legendre, legendre};
+use crate::math::quadrature::{gauss_legendre, legendre_series};
 use crate::math::sin_cos;
 use std::f64::consts::PI;
 use std::path::Path;
@@ -173,8 +173,8 @@ impl Tabulated {
                 let part = 0.5 * (1.0 + x);
                 let value = pair[0].value + part * (pair[1].value - pair[0].value);
                 let mu = (pair[0].plus + part * width) - 1.0;
-                for (l, sum) in sums.iter_mut().enumerate() {
-                    *sum += 0.5 * width * w * value * legendre(l as u32, mu);
+                for (sum, p) in sums.iter_mut().zip(legendre_series(mu)) {
+                    *sum += 0.5 * width * w * value * p;
                 }
             }
         }

@@ -24,7 +24,7 @@ mod validate;
 pub use builtin::{BUILTIN, Builtin};
 pub use camera::{Camera, Filter, MAX_PIXELS, MAX_SIDE, View};
 pub use checked::{Scene, decay};
-pub use file::SceneFile;
+pub use file::{QuantityFile, SceneFile, SensorFile};
 pub use parts::{Interior, Object, Region, SURROUNDINGS, SceneParts};
 pub use plan::Plan;
 pub use segment::Segment;

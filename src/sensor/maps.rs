@@ -7,7 +7,7 @@ use crate::error::{Error, Result};
 use crate::estimators::Estimator;
 use crate::integrators::mapper::{MediumExtent, medium_extents};
 use crate::photons::{Histories, Ledger, Part, PhotonMap};
-use crate::scene::{Orders, Scene, Sensor};
+use crate::scene::{Orders, Quantity, Scene};
 use crate::transport::Progress;
 
 /// Which photons the maps of a pass are of.
@@ -21,6 +21,9 @@ pub struct MapSettings {
     pub replicate: u64,
     /// The farthest that any estimator will reach \[L\].
     pub reach: f64,
+    /// Marches along each ray, and sets of points in each bin, that a reading is the mean of: at least 1. A fluence at a point is
+    /// read once, since nothing in it is random.
+    pub readings: usize,
 }
 
 /// The maps that answer the sensors of a scene, of one pass.
@@ -44,14 +47,20 @@ pub struct MapReading {
     pub gathers: u64,
 }
 
-/// Whether a map answers a sensor: a fluence or a radiance, at a point, along a ray or over bins.
-pub fn is_of_maps(sensor: &Sensor) -> bool {
-    map_orders(sensor).is_some()
+/// How far the k nearest photons are sought where nobody says \[L\]: half the cell, or a mean free path of the densest medium.
+pub fn usual_reach(scene: &Scene) -> f64 {
+    let densest = scene.media().iter().map(|medium| medium.highest_sigma_t().max()).fold(0.0, f64::max);
+    match scene.periodic_cell() {
+        Some(periodic_cell) => 0.5 * periodic_cell.side.min_element(),
+        None if densest > 0.0 => 1.0 / densest,
+        None => 1.0,
+    }
 }
 
+/// How far beyond the edges of the cell the maps have to go on, if they can answer.
 fn checked(scene: &Scene, reach: f64) -> Result<f64> {
     for sensor in scene.sensors() {
-        if !is_of_maps(sensor) {
+        if map_orders(sensor).is_none() {
             return Err(Error::Scene(format!(
                 "sensor {}: no map answers it; allowed: fluence and radiance, at points or over bins",
                 sensor.name
@@ -74,6 +83,14 @@ impl<'a> SensorMaps<'a> {
         let histories = Histories { count: photons, seed, replicate, max_order: max_order(sensors) };
         let (pass, maps) = maps(scene, sensors, histories, Part { number: 0, of: 1 }, margin, progress)?;
         Ok(SensorMaps { scene, extents: medium_extents(scene), maps, settings, ledger: pass.report.ledger })
+    }
+
+    /// Whether maps can answer every sensor of a scene by estimators of this reach \[L\].
+    ///
+    /// # Errors
+    /// `Error::Scene` that names the sensor, or the cell that is too small
+    pub fn check(scene: &Scene, reach: f64) -> Result<()> {
+        checked(scene, reach).map(|_| ())
     }
 
     /// What filling maps of so many photons will take, by a pilot.
@@ -101,13 +118,23 @@ impl<'a> SensorMaps<'a> {
             return Err(Error::out_of_range("the reach of an estimator", cap, "at most that of the maps"));
         }
         let (sensors, mut booked) = (self.scene.sensors(), PhotonReadings::new());
-        let mut values = Vec::with_capacity(sensors.len());
+        let mut values: Vec<Vec<Spectrum>> = Vec::with_capacity(sensors.len());
         for (number, sensor) in sensors.iter().enumerate() {
             let own = map_orders(sensor).and_then(|range| self.maps.iter().find(|(held, _)| *held == range));
             let Some((_, map)) = own else { continue };
-            let of = (self.settings.seed, self.settings.replicate, number);
             let around = (self.scene, self.extents.as_slice());
-            values.push(read_bins(around, map, sensor, estimator, of, &mut booked)?);
+            let is_random = !matches!(sensor.quantity, Quantity::Fluence(_));
+            let readings = if is_random { self.settings.readings.max(1) } else { 1 };
+            let mut sums: Vec<Spectrum> = Vec::new();
+            for reading in 0..readings {
+                let of = (self.settings.seed, self.settings.replicate, number + reading * sensors.len());
+                let read = read_bins(around, map, sensor, estimator, of, &mut booked)?;
+                match reading {
+                    0 => sums = read,
+                    _ => sums.iter_mut().zip(read).for_each(|(sum, value)| *sum += value),
+                }
+            }
+            values.push(sums.into_iter().map(|sum| sum / readings as f64).collect());
         }
         let count = values.iter().flatten().filter(|value| !value.is_finite()).count() as u64;
         if count > 0 {

@@ -17,7 +17,7 @@ pub use crate::scene::{Camera, Filter, View};
 pub use advise::{Advice, MIN_MAPS, PathAdvice, Pilot, PilotSettings, path_advice};
 pub use film::{Film, Pixel, Sample};
 pub use light::{LIGHT_BYTES, LIGHT_PIXEL_BYTES, LightCount, by_light, extend_by_light};
-pub use maps::{MapReading, MapSettings, SensorMaps, is_of_maps};
+pub use maps::{MapReading, MapSettings, SensorMaps, usual_reach};
 pub use method::Method;
 pub use paths::{PathSettings, by_guided_paths, by_paths, sample, sample_bin, sample_counted, sample_guided};
 pub use photons::{

@@ -1,5 +1,6 @@
 //! One study at a time in a folder.
 
+use super::Share;
 use super::outputs::check_plain;
 use super::progress::say;
 use anyhow::{Context, bail};
@@ -8,6 +9,11 @@ use std::path::Path;
 
 /// The lock's file; it stays when the study ends, and says nothing by itself.
 const FILE: &str = ".lock";
+
+/// The file of the lock of a part: parts work in one folder at once, each of them once.
+fn file(part: Option<Share>) -> String {
+    part.map_or_else(|| FILE.to_string(), |part| format!("{FILE}-{}-of-{}", part.number, part.of))
+}
 
 /// A folder that is held.
 pub(super) struct Held(File);
@@ -25,9 +31,9 @@ impl Drop for Held {
 ///
 /// # Errors
 /// If another study holds it, or the folder cannot be written to
-pub(super) fn hold(folder: &Path) -> anyhow::Result<Held> {
+pub(super) fn hold(folder: &Path, part: Option<Share>) -> anyhow::Result<Held> {
     std::fs::create_dir_all(folder).with_context(|| format!("cannot create {}", folder.display()))?;
-    let path = folder.join(FILE);
+    let path = folder.join(file(part));
     check_plain(&path)?;
     let file = File::create(&path).with_context(|| format!("cannot write {}", path.display()))?;
     match file.try_lock() {
@@ -55,10 +61,10 @@ mod tests {
     #[test]
     fn a_copy_of_the_file_holds_nothing() {
         let folder = tempfile::tempdir().unwrap();
-        let held = hold(folder.path()).unwrap();
-        assert!(hold(folder.path()).is_err());
+        let held = hold(folder.path(), None).unwrap();
+        assert!(hold(folder.path(), None).is_err());
         let _copy = held.0.try_clone().unwrap();
         drop(held);
-        assert!(hold(folder.path()).is_ok());
+        assert!(hold(folder.path(), None).is_ok());
     }
 }

@@ -200,6 +200,9 @@ pub(super) fn write_results(out: &Path, sections: &[SectionReport]) -> anyhow::R
         .flat_map(|s| s.section.rows.iter().map(|row| Record::new(s.experiment.name, row)))
         .collect();
     write_atomically(out.join("results.csv"), |file| write_csv(file, &rows))?;
+    for (name, text) in sections.iter().flat_map(|s| &s.section.files) {
+        write_atomically(out.join(name), |file| file.write_all(text.as_bytes()))?;
+    }
     let claims: Vec<ClaimRecord> = sections
         .iter()
         .flat_map(|s| s.judged.iter().map(|judged| ClaimRecord::new(s.experiment.name, judged)))

@@ -30,7 +30,7 @@ pub fn replot(settings: &Settings, what: &Replot) -> anyhow::Result<String> {
     let folder = settings.out.join("figures");
     // A table alone is drawn beside itself, wherever that is; a study's figures and report are that study's while it runs.
     let _held =
-        if what.files.is_empty() && folder.is_dir() { Some(lock::hold(&settings.out)?) } else { None };
+        if what.files.is_empty() && folder.is_dir() { Some(lock::hold(&settings.out, None)?) } else { None };
     let tables = if what.files.is_empty() { tables(&folder, &settings.only)? } else { what.files.clone() };
     let redrawn: Vec<Redrawn> = tables.into_par_iter().map(redraw).collect::<anyhow::Result<_>>()?;
     let own_report = settings.out.join("report.html");

@@ -167,6 +167,8 @@ pub struct Section {
     pub budget: Vec<Entry>,
     /// What photon maps cost beside paths, scene by scene, for the answer that opens the report.
     pub answers: Vec<Answer>,
+    /// Tables beside the page, by the names of their files; one called results.csv stands in the place of `rows`.
+    pub files: Vec<(String, String)>,
     /// How many predicted cases a rule of the experiment's own keeps out of `budget`.
     pub left_out: usize,
 }

@@ -1,8 +1,12 @@
 //! What the user chooses: the flags shared by all experiments.
 
+use super::question::stem;
+use super::{Question, Share};
+use clap::error::ErrorKind;
 use clap::{CommandFactory, FromArgMatches, Parser};
 use std::ffi::OsString;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
 use turbid_figure::Width;
 
 /// The seed of a study that names none: fixed before any run with it. Those below were looked at while the laboratory was
@@ -42,6 +46,16 @@ pub struct Settings {
     pub only: Vec<String>,
     /// Redraw figures from their tables instead of running anything.
     pub replot: Option<Replot>,
+    /// A study of the user's own in the place of the experiments: its file, which is read after the command line.
+    pub question_file: Option<PathBuf>,
+    /// The same, read.
+    pub question: Option<Arc<Question>>,
+    /// Say what a study of the user's own will take, and measure nothing.
+    pub dry_run: bool,
+    /// Measure a part of the cells, and conclude nothing.
+    pub part: Option<Share>,
+    /// Measure nothing, and conclude from the cells of these folders.
+    pub merge: Vec<PathBuf>,
 }
 
 /// What is redrawn.
@@ -98,9 +112,40 @@ struct Flags {
     /// Redraw in this width of print alone: single (85 mm) or double (175 mm)
     #[arg(long, requires = "replot", value_parser = width)]
     width: Option<Width>,
-    /// Redraw these figures alone, each beside its table
-    #[arg(value_name = "FILE.csv", requires = "replot", conflicts_with_all = ["out", "only", "full", "quick"])]
+    /// Say how many cells a study of your own has, and about how much time and memory they take, and measure nothing
+    #[arg(long, conflicts_with_all = ["replot", "fresh", "reuse_cells", "strict"])]
+    dry_run: bool,
+    /// Measure one part of the cells, such as 3/16, and conclude nothing: parts may run at once, in one folder or in several
+    #[arg(long, value_name = "I/N", conflicts_with_all = ["replot", "merge", "fresh", "strict", "dry_run"])]
+    part: Option<Share>,
+    /// Conclude from the cells of these folders of parts, and measure nothing
+    #[arg(long, value_name = "DIR", num_args = 1.., conflicts_with_all = ["replot", "fresh", "dry_run"])]
+    merge: Vec<PathBuf>,
+    /// A study of your own, STUDY.toml (SCENES.md says what it holds); with --replot tables of figures, FILE.csv, each of which is
+    /// drawn alone
+    #[arg(value_name = "FILE", conflicts_with_all = ["only", "full", "quick", "strict"])]
     files: Vec<PathBuf>,
+}
+
+/// What is wrong with the files of a command line, if anything is.
+fn wrong_files(flags: &Flags) -> Option<String> {
+    let is = |file: &Path, end: &str| file.extension().is_some_and(|e| e.eq_ignore_ascii_case(end));
+    match flags.files.as_slice() {
+        [] if flags.dry_run => Some("--dry-run needs a study of your own: STUDY.toml".into()),
+        [_, ..] if flags.replot && flags.out.is_some() => {
+            Some("--replot FILE.csv writes beside its table: --out cannot be used".into())
+        }
+        files if flags.replot => files
+            .iter()
+            .find(|file| !is(file, "csv"))
+            .map(|file| format!("{}: --replot redraws tables of figures; allowed: FILE.csv", file.display())),
+        [] => None,
+        [study] if is(study, "toml") => None,
+        [first, ..] => Some(format!(
+            "{}: allowed: one STUDY.toml, or FILE.csv with --replot (one experiment alone: --only NAME)",
+            first.display()
+        )),
+    }
 }
 
 fn width(text: &str) -> Result<Width, String> {
@@ -132,6 +177,11 @@ impl Settings {
             strict: false,
             only: Vec::new(),
             replot: None,
+            question_file: None,
+            question: None,
+            dry_run: false,
+            part: None,
+            merge: Vec::new(),
         }
     }
 
@@ -140,11 +190,19 @@ impl Settings {
     /// # Errors
     /// clap's error, whose kind tells help and version from mistakes.
     pub fn parse(study: &'static str, args: impl IntoIterator<Item = OsString>) -> Result<Self, clap::Error> {
-        let matches = Flags::command().name(study).try_get_matches_from(args)?;
+        let mut command = Flags::command().name(study);
+        let matches = command.try_get_matches_from_mut(args)?;
         let flags = Flags::from_arg_matches(&matches)?;
+        if let Some(wrong) = wrong_files(&flags) {
+            return Err(command.error(ErrorKind::ArgumentConflict, wrong));
+        }
+        let question_file = if flags.replot { None } else { flags.files.first().cloned() };
         let preset = if flags.full { Preset::Full } else { Preset::Quick };
         // A quick look must not write over a night's work, nor one seed over another.
         let mut folder = study.to_string();
+        if let Some(file) = &question_file {
+            folder.push_str(&format!("-{}", stem(file)));
+        }
         if flags.full {
             folder.push_str("-full");
         }
@@ -159,12 +217,20 @@ impl Settings {
             seed: flags.seed,
             photon_scale: flags.photons,
             threads: flags.threads.map_or_else(cores, usize::from),
-            out: flags.out.unwrap_or_else(|| PathBuf::from("results/local").join(folder)),
+            out: flags.out.unwrap_or_else(|| match flags.merge.as_slice() {
+                [one] => one.clone(),
+                _ => PathBuf::from("results/local").join(folder),
+            }),
             fresh: flags.fresh,
             reuse_cells: flags.reuse_cells,
             strict: flags.strict,
             only: flags.only,
             replot: flags.replot.then_some(Replot { width: flags.width, files: flags.files }),
+            question_file,
+            question: None,
+            dry_run: flags.dry_run,
+            part: flags.part,
+            merge: flags.merge,
         })
     }
 
@@ -189,7 +255,10 @@ impl Settings {
 
     /// What a cell depends on, in words: two cells of equal words and equal program are equal.
     pub fn words(&self) -> String {
-        let preset = self.pick("quick", "full");
+        let preset = match &self.question {
+            Some(question) => format!("{} of digest {}", question.stem(), question.digest),
+            None => self.pick("quick", "full").to_string(),
+        };
         let scale = if self.photon_scale == 1.0 {
             String::new()
         } else {
@@ -200,10 +269,14 @@ impl Settings {
 
     /// The command that repeats the study's results; the folder is left out where it is absolute.
     pub fn command(&self, study: &str) -> String {
-        let mut text = format!(
-            "cargo run --release -p turbid-experiments --bin {study} -- --{}",
-            self.pick("quick", "full")
-        );
+        let what = match &self.question_file {
+            Some(file) if file.is_absolute() => {
+                file.file_name().unwrap_or_default().to_string_lossy().to_string()
+            }
+            Some(file) => file.display().to_string(),
+            None => format!("--{}", self.pick("quick", "full")),
+        };
+        let mut text = format!("cargo run --release -p turbid-experiments --bin {study} -- {what}");
         text.push_str(&format!(" --seed {}", self.seed));
         if self.photon_scale != 1.0 {
             text.push_str(&format!(" --photons {}", self.photon_scale));

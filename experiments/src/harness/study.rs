@@ -4,21 +4,23 @@ use super::group::Measure;
 use super::lock;
 use super::manifest::Manifest;
 use super::measure::{Task, cell_path, measure};
+use super::merge::{Expected, collect};
 use super::outputs::{
     AnswerRecord, Seconds, check_folder, keep_or_write, prediction_table, write_if_changed, write_results,
 };
 use super::panics::caught;
-use super::program::program;
+use super::program::{on_threads, program};
 use super::progress::say;
 use super::{
-    CellId, Cells, Claim, Experiment, Outcome, Provenance, Section, SectionReport, Settings, judge, number,
-    program_digest, replot,
+    CellId, Cells, Claim, Experiment, Outcome, Provenance, Question, Section, SectionReport, Settings, judge,
+    number, program_digest, replot,
 };
 use crate::prediction::Prediction;
 use crate::report;
 use anyhow::{Context, bail, ensure};
 use std::collections::BTreeSet;
 use std::process::ExitCode;
+use std::sync::Arc;
 use std::time::Instant;
 use turbid::memory::{free, in_words};
 use turbid::output::{print, write_atomically, write_csv};
@@ -82,13 +84,29 @@ impl Closing {
     }
 }
 
-/// The main function of an experiment's binary: arguments, study, summary, exit code.
-pub fn main(name: &'static str, experiments: &[Experiment]) -> ExitCode {
-    main_with(name, experiments, &[])
+/// The experiment that a file of the user's is put to.
+#[derive(Clone, Copy)]
+pub struct Asked {
+    /// The experiment.
+    pub experiment: Experiment,
+    /// Refuses a file that cannot be studied, in one line.
+    pub check: fn(&Settings) -> anyhow::Result<()>,
+    /// What the study will take, in words.
+    pub dry_run: fn(&Settings) -> anyhow::Result<String>,
 }
 
-/// The same with closing sections.
-pub fn main_with(name: &'static str, experiments: &[Experiment], closings: &[Closing]) -> ExitCode {
+/// The main function of an experiment's binary: arguments, study, summary, exit code.
+pub fn main(name: &'static str, experiments: &[Experiment]) -> ExitCode {
+    main_with(name, experiments, &[], None)
+}
+
+/// The same with closing sections, and with an experiment that files of the user's are put to.
+pub fn main_with(
+    name: &'static str,
+    experiments: &[Experiment],
+    closings: &[Closing],
+    asked: Option<Asked>,
+) -> ExitCode {
     let kept = |settings: &Settings| {
         let cells = settings.out.join("cells");
         format!("finished cells are kept in {}, and the same command goes on from there", cells.display())
@@ -104,7 +122,43 @@ pub fn main_with(name: &'static str, experiments: &[Experiment], closings: &[Clo
                 return Ok(0);
             }
             let program = program_digest()?.to_string();
-            let outcome = run(&Study { name, experiments, closings, program }, settings)?;
+            let outcome = match &settings.question_file {
+                None => run(&Study { name, experiments, closings, program }, settings)?,
+                Some(file) => {
+                    let asked = asked.with_context(|| {
+                        format!(
+                            "{}: {name} is one experiment; allowed: study {}",
+                            file.display(),
+                            file.display()
+                        )
+                    })?;
+                    let question = Some(Arc::new(Question::read(file)?));
+                    let settings = &Settings { question, ..settings.clone() };
+                    on_threads(None, || (asked.check)(settings))?;
+                    if settings.dry_run {
+                        let text = on_threads(None, || (asked.dry_run)(settings))?;
+                        print(|out| out.write_all(text.as_bytes()))?;
+                        return Ok(0);
+                    }
+                    let study = Study { name, experiments: &[asked.experiment], closings: &[], program };
+                    let outcome = run(&study, settings)?;
+                    if let Some(failure) = outcome.sections.iter().find_map(|s| s.failure.as_ref()) {
+                        bail!("{}: {failure}", file.display());
+                    }
+                    outcome
+                }
+            };
+            if let Some(part) = settings.part {
+                let (measured, folder) = (outcome.measured, settings.out.display());
+                print(|out| {
+                    writeln!(
+                        out,
+                        "part {}: {measured} cells measured; --merge {folder} concludes",
+                        part.words()
+                    )
+                })?;
+                return Ok(0);
+            }
             print(|out| out.write_all(report::summary(&outcome).as_bytes()))?;
             Ok(if settings.strict { outcome.strict_code() } else { 0 })
         },
@@ -119,7 +173,7 @@ pub fn main_with(name: &'static str, experiments: &[Experiment], closings: &[Clo
 /// run goes on from there.
 pub fn run(study: &Study, settings: &Settings) -> anyhow::Result<Outcome> {
     let experiments = selected(study.experiments, &settings.only)?;
-    let _held = lock::hold(&settings.out)?;
+    let _held = lock::hold(&settings.out, settings.part)?;
     let planned: Vec<anyhow::Result<Vec<(CellId, Measure)>>> =
         experiments.iter().map(|experiment| whole(|| plan(experiment, settings))).collect();
     check_memory(planned.iter().flatten().flatten().map(|(cell, _)| cell.held).max().unwrap_or(0), settings)?;
@@ -141,8 +195,20 @@ pub fn run(study: &Study, settings: &Settings) -> anyhow::Result<Outcome> {
     let manifest = Manifest::new(settings, &study.program);
     manifest.prepare(&cells_folder, settings)?;
 
+    if !settings.merge.is_empty() {
+        let planned = experiments.iter().zip(&planned);
+        let expected: Vec<Expected> = planned
+            .filter_map(|(experiment, cells)| {
+                let cells = cells.as_ref().ok()?.iter().map(|(cell, _)| cell).collect();
+                Some(Expected { experiment, cells })
+            })
+            .collect();
+        collect(&settings.merge, &cells_folder, &expected, &manifest, settings)?;
+    }
     let mut sets: Vec<Vec<CellId>> = Vec::new();
     let mut tasks = Vec::new();
+    // Cells are dealt out to parts by their place among all.
+    let mut place = 0;
     let mut predictions = Vec::new();
     let mut failures = Vec::new();
     let mut late_predictions = false;
@@ -158,7 +224,9 @@ pub fn run(study: &Study, settings: &Settings) -> anyhow::Result<Outcome> {
         let before = tasks.len();
         for (cell, measure) in &cells {
             let path = cell_path(&cells_folder, experiment, cell);
-            if !manifest.accepts(&path, experiment.name, &cell.id(), settings) {
+            let is_own = settings.part.is_none_or(|part| part.has(place));
+            place += 1;
+            if is_own && !manifest.accepts(&path, experiment.name, &cell.id(), settings) {
                 tasks.push(Task { experiment, cell: cell.clone(), measure: measure.clone(), path });
             }
         }
@@ -173,9 +241,23 @@ pub fn run(study: &Study, settings: &Settings) -> anyhow::Result<Outcome> {
     write_if_changed(&settings.out.join("predictions.csv"), &prediction_table(&experiments, &predictions)?)?;
     say(&opening(study.name, settings, total, missing, predictions.iter().map(Vec::len).sum()));
 
+    if !settings.merge.is_empty() && missing > 0 {
+        let names: Vec<String> =
+            tasks.iter().take(3).map(|t| format!("{}/{}", t.experiment.name, t.cell.id())).collect();
+        bail!(
+            "{missing} of {total} cells are in none of the merged folders, such as {}; allowed: the folders of all parts",
+            names.join(", ")
+        );
+    }
     let start = Instant::now();
     let done = measure(tasks, &manifest, settings)?;
     let wall_seconds = start.elapsed().as_secs_f64();
+    if settings.part.is_some() {
+        if let Some((experiment, failure)) = done.failures.iter().next() {
+            bail!("{experiment}: {failure}");
+        }
+        return Ok(Outcome { report: settings.out.clone(), sections: Vec::new(), measured: done.measured });
+    }
 
     let mut sections = Vec::new();
     let mut seconds = Vec::new();

@@ -2,13 +2,13 @@
 
 use super::cases::{BLURRED, DEPTHS, FACE, INSIDE, NOISY, Size, name, radii};
 use super::figures;
-use super::fit::{exponent, exponent_of_means};
 use super::predict::Case;
 use super::results::{Curve, Point, ladder};
 use crate::harness::{
     Cells, Claim, Estimate, PREDICTED, Parameters, Row, Section, Settings, Table, Unit, signed, with_error,
 };
 use crate::prediction::{Entry, Prediction, Term};
+use crate::theory::{exponent, exponent_of_means};
 use turbid::estimators::Kernel;
 use turbid::stats::Moments;
 

@@ -8,7 +8,7 @@
 mod cases;
 mod conclude;
 mod figures;
-mod fit;
+
 mod measure;
 mod predict;
 mod results;

@@ -17,10 +17,18 @@ const SHOWN: usize = 30;
 
 /// The whole page, self-contained.
 pub fn page(study: &str, settings: &Settings, sections: &[SectionReport], provenance: &Provenance) -> String {
-    let title = match sections {
-        [only] => only.experiment.title,
+    let title = match (settings.question.as_deref().and_then(|q| q.title.as_deref()), sections) {
+        (Some(asked), _) => asked,
+        (None, [only]) => only.experiment.title,
         _ => "What does photon mapping’s speed cost in accuracy?",
     };
+    let kicker = match (&settings.question, study) {
+        (Some(question), _) => format!("study {}", question.stem()),
+        (None, "study") => "the whole study".to_string(),
+        (None, experiment) => format!("experiment {experiment}"),
+    };
+    // A study of the user's own claims nothing.
+    let is_judged = settings.question.is_none();
     let mut numbers = Numbers::default();
     let page = html! {
         (DOCTYPE)
@@ -33,7 +41,7 @@ pub fn page(study: &str, settings: &Settings, sections: &[SectionReport], proven
             }
             body {
                 header {
-                    div.kicker { "turbid · " @if study == "study" { "the whole study" } @else { "experiment " (study) } }
+                    div.kicker { "turbid · " (kicker) }
                     h1 { (title) }
                     div.byline { (provenance.date) " · " (provenance.settings) " · version " (provenance.version) ", revision " (provenance.revision) }
                 }
@@ -42,11 +50,13 @@ pub fn page(study: &str, settings: &Settings, sections: &[SectionReport], proven
                 } @else {
                     (whole_study(sections, &mut numbers))
                 }
-                section.behind[sections.len() > 1] id="claims" {
-                    @if sections.len() > 1 { h2.flow { "All claims" } } @else { h3 { "Claims" } }
-                    (claims::appendix(sections, &mut numbers))
+                @if is_judged {
+                    section.behind[sections.len() > 1] id="claims" {
+                        @if sections.len() > 1 { h2.flow { "All claims" } } @else { h3 { "Claims" } }
+                        (claims::appendix(sections, &mut numbers))
+                    }
+                    (methods(sections, &mut numbers))
                 }
-                (methods(sections, &mut numbers))
                 (circumstances(study, settings, provenance, &mut numbers))
                 script { (PreEscaped(SCRIPT)) }
             }
@@ -107,7 +117,7 @@ fn section(part: &SectionReport, is_one_of_many: bool, numbers: &mut Numbers) ->
         @for paragraph in own.summary.iter().skip(first) { p { (paragraph) } }
         @for figure in own.figures.iter().skip(1) { (draw(part, figure, numbers)) }
         @for table in &own.tables { (tables::plain(table, numbers)) }
-        @if !part.predictions.is_empty() { (predictions(part, numbers)) }
+        @if !part.predictions.is_empty() && !own.rows.is_empty() { (predictions(part, numbers)) }
         @if !own.notes.is_empty() {
             h3 { "Notes" }
             @for note in &own.notes { p.note { (note) } }

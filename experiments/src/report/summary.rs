@@ -6,8 +6,13 @@ use crate::harness::{Outcome, Verdict};
 pub fn summary(outcome: &Outcome) -> String {
     let mut text = format!("\n{}\n\n", counts(outcome));
     for part in &outcome.sections {
-        if let Some(headline) = part.section.summary.first() {
-            text.push_str(&format!("{}\n  {headline}\n", part.experiment.title));
+        // A study of one question answers in all of its sentences.
+        let shown = if part.judged.is_empty() && outcome.sections.len() == 1 { usize::MAX } else { 1 };
+        if !part.section.summary.is_empty() {
+            text.push_str(&format!("{}\n", part.experiment.title));
+        }
+        for sentence in part.section.summary.iter().take(shown) {
+            text.push_str(&format!("  {sentence}\n"));
         }
         for judged in part.judged.iter().filter(|j| j.verdict != Verdict::Upheld) {
             let claim = &judged.claim;
@@ -25,13 +30,16 @@ pub fn summary(outcome: &Outcome) -> String {
     text
 }
 
-/// "12 claims: 9 upheld, 1 rejected, 2 undecided."
+/// "12 claims: 9 upheld, 1 rejected, 2 undecided.", or the cost alone where nothing is claimed.
 fn counts(outcome: &Outcome) -> String {
     let [upheld, rejected, undecided] =
         [Verdict::Upheld, Verdict::Rejected, Verdict::Undecided].map(|verdict| outcome.count(verdict));
     let total = upheld + rejected + undecided;
     let noun = if total == 1 { "claim" } else { "claims" };
     let cost = crate::harness::cost_line(&outcome.sections);
+    if total == 0 && outcome.sections.len() == 1 {
+        return format!("{cost}.");
+    }
     let without = match outcome.sections.iter().filter(|s| s.failure.is_some()).count() {
         0 => String::new(),
         1 => ", 1 section without a conclusion".to_string(),

@@ -1,6 +1,7 @@
 //! What theory says, shared by the experiments: exact fields, kernels as the referee knows them, clusters of photons.
 
 mod clusters;
+mod fit;
 mod gathers;
 mod means;
 mod returns;
@@ -10,6 +11,7 @@ mod table;
 mod words;
 
 pub use clusters::{clustering, nearest_clustering};
+pub use fit::{exponent, exponent_of_means};
 pub use gathers::{GATHER_TERMS, Gathers, NearestGather};
 pub use slab::slab_fluence;
 pub use sphere::sphere_fluence;

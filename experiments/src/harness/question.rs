@@ -1,0 +1,108 @@
+//! A file in which a user asks a study of their own.
+
+use super::Digest;
+use anyhow::{Context, ensure};
+use std::collections::BTreeSet;
+use std::path::{Path, PathBuf};
+
+/// A study file, as text; what it means is for the experiment that it is put to.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Question {
+    /// The file.
+    pub path: PathBuf,
+    /// What it holds.
+    pub text: String,
+    /// Digest of it and of the files that it and its scene name: cells of others are not reused.
+    pub digest: String,
+    /// Heading of the report, if the file has one.
+    pub title: Option<String>,
+}
+
+/// Larger study files, and larger files that scenes name, are none.
+const MOST_BYTES: u64 = 1 << 20;
+const MOST_NAMED: u64 = 1 << 34;
+
+impl Question {
+    /// Reads a study file.
+    ///
+    /// # Errors
+    /// What cannot be read, and why
+    pub fn read(path: &Path) -> anyhow::Result<Self> {
+        let read = |path: &Path, most| {
+            turbid::input::read(path, most).with_context(|| format!("cannot read {}", path.display()))
+        };
+        let bytes = read(path, MOST_BYTES)?;
+        let text = turbid::input::text(bytes).with_context(|| path.display().to_string())?;
+        let table: toml::Table = toml::from_str(&text).unwrap_or_default();
+        let folder = path.parent().unwrap_or(Path::new(""));
+        let mut parts = vec![text.as_bytes().to_vec()];
+        let mut named = BTreeSet::new();
+        files_in(&toml::Value::Table(table.clone()), folder, &mut named);
+        let scenes: Vec<PathBuf> =
+            named.iter().filter(|p| p.extension().is_some_and(|e| e == "toml")).cloned().collect();
+        for scene in scenes {
+            let text = String::from_utf8(read(&scene, MOST_NAMED)?).unwrap_or_default();
+            let folder = scene.parent().unwrap_or(Path::new(""));
+            if let Ok(table) = toml::from_str::<toml::Table>(&text) {
+                files_in(&toml::Value::Table(table), folder, &mut named);
+            }
+        }
+        for file in &named {
+            ensure!(file.as_path() != path, "{} names itself", path.display());
+            parts.push(Digest::of(&read(file, MOST_NAMED)?).to_string().into_bytes());
+        }
+        let digest = Digest::of(&parts.join(&b"\n"[..])).to_string();
+        let title = table.get("title").and_then(|title| title.as_str()).map(String::from);
+        Ok(Question { path: path.to_path_buf(), text, digest, title })
+    }
+
+    /// The name of the file without its ending, in characters that any folder may have.
+    pub fn stem(&self) -> String {
+        stem(&self.path)
+    }
+}
+
+/// The name of a file without its ending, in characters that any folder may have.
+pub(super) fn stem(path: &Path) -> String {
+    let stem = path.file_stem().map(|stem| stem.to_string_lossy().to_lowercase()).unwrap_or_default();
+    stem.chars().map(|c| if c.is_alphanumeric() || "._-".contains(c) { c } else { '-' }).collect()
+}
+
+/// The files that words of a table name, relative to a folder.
+fn files_in(value: &toml::Value, folder: &Path, found: &mut BTreeSet<PathBuf>) {
+    match value {
+        toml::Value::String(word) => {
+            let path = folder.join(word);
+            if !word.is_empty() && path.is_file() {
+                found.insert(path);
+            }
+        }
+        toml::Value::Array(values) => values.iter().for_each(|value| files_in(value, folder, found)),
+        toml::Value::Table(table) => table.values().for_each(|value| files_in(value, folder, found)),
+        _ => {}
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_digest_is_of_all_files() {
+        let folder = tempfile::tempdir().unwrap();
+        let write = |name: &str, text: &str| std::fs::write(folder.path().join(name), text).unwrap();
+        write("scene.toml", "[[regions]]\nshape = { mesh = { file = 'a.ply' } }\n");
+        write("a.ply", "ply");
+        write("study.toml", "title = 'T'\nscene = 'scene.toml'\n");
+        let read = || Question::read(&folder.path().join("study.toml")).unwrap();
+        let first = read();
+        assert_eq!((first.title.as_deref(), first.stem().as_str()), (Some("T"), "study"));
+        assert_eq!(read(), first);
+        write("a.ply", "ply2");
+        let second = read();
+        assert_ne!(second.digest, first.digest);
+        write("scene.toml", "[[regions]]\nshape = { mesh = { file = 'a.ply' } } # same\n");
+        assert_ne!(read().digest, second.digest);
+        assert!(Question::read(&folder.path().join("none.toml")).is_err());
+    }
+}

@@ -1,0 +1,411 @@
+//! The file in which a user asks: TOML, strict.
+
+use anyhow::{Context, anyhow, bail, ensure};
+use serde::Deserialize;
+use std::collections::BTreeMap;
+use turbid::estimators::boundary::{Rejection, Treatment};
+use turbid::estimators::{Estimator, Gather, Kernel};
+
+/// A study as its file says it.
+#[derive(Debug, Clone, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct StudyFile {
+    /// Heading of the report, which the report reads.
+    #[serde(default, rename = "title")]
+    _title: Option<String>,
+    /// A scene file, relative to the study's, or a built-in scene.
+    pub scene: String,
+    /// Keys of the scene with the values that each takes; every combination is studied.
+    #[serde(default)]
+    pub axes: BTreeMap<String, Vec<toml::Value>>,
+    /// What is measured; all sensors of the scene that maps answer if absent.
+    #[serde(default = "everything")]
+    pub measure: MeasureFile,
+    /// How maps are read; a ladder of k if absent.
+    #[serde(default)]
+    pub estimators: Vec<EstimatorFile>,
+    /// Photons emitted, a set of maps each.
+    pub photons: Vec<Count>,
+    /// Independent maps of each number of photons.
+    #[serde(default = "sixteen")]
+    pub maps: Count,
+    /// Root mean square error that is asked for, relative to the reference \[1\].
+    #[serde(default = "tenth")]
+    pub target: f64,
+    /// What the maps are compared with.
+    #[serde(default)]
+    pub reference: ReferenceFile,
+}
+
+fn everything() -> MeasureFile {
+    MeasureFile {
+        sensors: None,
+        probes: Vec::new(),
+        lattice: None,
+        rays: Vec::new(),
+        picture: None,
+        readings: sixteen(),
+        min_order: None,
+        max_order: None,
+    }
+}
+
+/// Most readings of a ray or a bin.
+const MOST_READINGS: u64 = 10_000;
+
+fn sixteen() -> Count {
+    Count(16)
+}
+
+fn tenth() -> f64 {
+    0.1
+}
+
+/// A whole number, also as 1e5.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
+#[serde(try_from = "f64")]
+pub struct Count(pub u64);
+
+impl TryFrom<f64> for Count {
+    type Error = String;
+    fn try_from(x: f64) -> Result<Self, String> {
+        if x.fract() == 0.0 && (1.0..=1e12).contains(&x) {
+            Ok(Count(x as u64))
+        } else {
+            Err(format!("{x} is not a count; allowed: whole numbers from 1 to 1e12, such as 1e5"))
+        }
+    }
+}
+
+/// What is measured beside the sensors of the scene.
+#[derive(Debug, Clone, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct MeasureFile {
+    /// Sensors of the scene by their names.
+    #[serde(default)]
+    pub sensors: Option<Vec<String>>,
+    /// Points at which fluence is measured \[L\].
+    #[serde(default)]
+    pub probes: Vec<[f64; 3]>,
+    /// The same on a lattice.
+    #[serde(default)]
+    pub lattice: Option<Lattice>,
+    /// Rays along which radiance is measured.
+    #[serde(default)]
+    pub rays: Vec<RayFile>,
+    /// The camera's picture, in the place of all sensors.
+    #[serde(default)]
+    pub picture: Option<PictureFile>,
+    /// Marches along each ray, and sets of points in each bin, that one reading of a map is the mean of.
+    #[serde(default = "sixteen")]
+    pub readings: Count,
+    /// Smallest order of scattering that counts for probes and rays.
+    #[serde(default)]
+    pub min_order: Option<u32>,
+    /// Largest order of scattering that counts for probes and rays.
+    #[serde(default)]
+    pub max_order: Option<u32>,
+}
+
+impl MeasureFile {
+    /// Whether points or rays are named.
+    pub fn is_of_points(&self) -> bool {
+        !self.probes.is_empty() || self.lattice.is_some() || !self.rays.is_empty()
+    }
+}
+
+/// The camera's picture, in blocks of pixels, by layer.
+#[derive(Debug, Clone, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct PictureFile {
+    /// Pixels across; at most 48 if absent.
+    #[serde(default)]
+    pub width: Option<Count>,
+    /// Pixels down; as the camera's sides are to each other if absent.
+    #[serde(default)]
+    pub height: Option<Count>,
+    /// Samples a pixel of pictures from maps.
+    #[serde(default = "four")]
+    pub samples: Count,
+    /// Blocks across and down, whose means are measured.
+    #[serde(default = "blocks")]
+    pub blocks: [u32; 2],
+    /// Rays of a final gathering; 0 reads the global map where the eye looks.
+    #[serde(default)]
+    pub gather_rays: u32,
+}
+
+fn four() -> Count {
+    Count(4)
+}
+
+fn blocks() -> [u32; 2] {
+    [6, 4]
+}
+
+/// Points of equal distances.
+#[derive(Debug, Clone, Copy, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Lattice {
+    /// First point \[L\].
+    pub from: [f64; 3],
+    /// Last point \[L\].
+    pub to: [f64; 3],
+    /// Points along each axis.
+    pub count: [usize; 3],
+}
+
+/// A ray.
+#[derive(Debug, Clone, Copy, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct RayFile {
+    /// Where it starts \[L\].
+    pub origin: [f64; 3],
+    /// Where it looks.
+    pub dir: [f64; 3],
+}
+
+/// One or several values of a key.
+#[derive(Debug, Clone, Deserialize)]
+#[serde(untagged)]
+pub enum OneOrMore<T> {
+    /// One.
+    One(T),
+    /// Several.
+    More(Vec<T>),
+}
+
+impl<T: Clone> OneOrMore<T> {
+    fn list(&self) -> Vec<T> {
+        match self {
+            OneOrMore::One(one) => vec![one.clone()],
+            OneOrMore::More(list) => list.clone(),
+        }
+    }
+}
+
+/// Estimators: every combination of the values of their keys.
+#[derive(Debug, Clone, Default, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct EstimatorFile {
+    /// Kernels by name; uniform if absent.
+    #[serde(default)]
+    kernel: Option<OneOrMore<String>>,
+    /// Fixed radii \[L\].
+    #[serde(default)]
+    radius: Option<OneOrMore<f64>>,
+    /// Numbers of nearest photons.
+    #[serde(default)]
+    k: Option<OneOrMore<Count>>,
+    /// The farthest that the k nearest are sought \[L\].
+    #[serde(default)]
+    max_radius: Option<f64>,
+    /// Treatments of boundaries by name; clipped if absent.
+    #[serde(default)]
+    treatment: Option<OneOrMore<String>>,
+    /// Rejections of false photons by name; off if absent.
+    #[serde(default)]
+    rejection: Option<OneOrMore<String>>,
+}
+
+/// What the maps are compared with.
+#[derive(Debug, Clone, Copy, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct ReferenceFile {
+    /// Who says it.
+    pub with: ReferenceBy,
+    /// Relative standard error that sampled references are to have \[1\], root mean square over places.
+    pub error: f64,
+    /// Most paths a place, or photons of light tracing.
+    pub most: Count,
+}
+
+impl Default for ReferenceFile {
+    fn default() -> Self {
+        ReferenceFile { with: ReferenceBy::Auto, error: 0.01, most: Count(1 << 20) }
+    }
+}
+
+/// Who says the reference.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum ReferenceBy {
+    /// Exact values where the scene is a solved problem, else whoever of paths and light tracing is better known.
+    Auto,
+    /// The path tracer.
+    Paths,
+    /// Light tracing: sensors with bins alone.
+    Light,
+}
+
+/// Most estimators of a study.
+const MOST_ESTIMATORS: usize = 1000;
+
+/// A name of a list, or what is allowed.
+fn named<T: Copy>(what: &str, word: &str, all: &[T], name: impl Fn(T) -> &'static str) -> anyhow::Result<T> {
+    all.iter().copied().find(|x| name(*x) == word).with_context(|| {
+        let names: Vec<&str> = all.iter().map(|x| name(*x)).collect();
+        format!("{what} is {word:?}; allowed: {}", names.join(", "))
+    })
+}
+
+impl EstimatorFile {
+    /// The estimators; the k nearest are sought within `cap` where the file does not say.
+    fn all(&self, cap: f64) -> anyhow::Result<Vec<Estimator>> {
+        let words = |given: &Option<OneOrMore<String>>, usual: &str| {
+            given.as_ref().map_or_else(|| vec![usual.to_string()], OneOrMore::list)
+        };
+        let mut gathers = Vec::new();
+        for radius in self.radius.iter().flat_map(OneOrMore::list) {
+            gathers.push(Gather::radius(radius)?);
+        }
+        for k in self.k.iter().flat_map(OneOrMore::list) {
+            gathers.push(Gather::nearest(k.0 as usize, self.max_radius.unwrap_or(cap))?);
+        }
+        ensure!(!gathers.is_empty(), "neither radius nor k; allowed: a list of either, or of both");
+        ensure!(
+            self.max_radius.is_none() || self.k.is_some(),
+            "max_radius goes with k; a fixed radius is its own"
+        );
+        let mut all = Vec::new();
+        for kernel in words(&self.kernel, Kernel::Uniform.name()) {
+            let kernel = named("kernel", &kernel, &Kernel::ALL, Kernel::name)?;
+            for treatment in words(&self.treatment, Treatment::Clipped.name()) {
+                let treatment = named("treatment", &treatment, &Treatment::ALL, |t| t.name())?;
+                for rejection in words(&self.rejection, Rejection::Off.name()) {
+                    let rejection = named("rejection", &rejection, &Rejection::ALL, |r| r.name())?;
+                    for gather in &gathers {
+                        all.push(Estimator::new(kernel, *gather).treated(treatment).rejecting(rejection));
+                    }
+                }
+            }
+        }
+        Ok(all)
+    }
+}
+
+/// The ladder of k of a file that names no estimator.
+const LADDER: [u64; 4] = [25, 50, 100, 200];
+
+impl StudyFile {
+    /// Reads a file.
+    ///
+    /// # Errors
+    /// File, line, column and key of what is wrong, and what is allowed
+    pub fn read(name: &str, text: &str) -> anyhow::Result<Self> {
+        let file: StudyFile = toml::from_str(text).map_err(|error| {
+            let start = error.span().map_or(0, |span| span.start).min(text.len());
+            let before = &text[..start];
+            let line = before.matches('\n').count() + 1;
+            let column = before.rsplit('\n').next().map_or(0, |tail| tail.chars().count()) + 1;
+            anyhow!("{name}:{line}:{column}: {}", error.message().replace('\n', " "))
+        })?;
+        file.check().with_context(|| name.to_string())?;
+        Ok(file)
+    }
+
+    fn check(&self) -> anyhow::Result<()> {
+        if self.photons.is_empty() {
+            bail!("photons is empty; allowed: a list such as [1e4, 1e5]");
+        }
+        ensure!(
+            self.maps.0 >= 4,
+            "maps is {}; allowed: at least 4, half of which choose the best estimator and half tell its error",
+            self.maps.0
+        );
+        ensure!(
+            self.target > 0.0 && self.target <= 1.0,
+            "target is {}; allowed: a relative error above 0, to 1",
+            self.target
+        );
+        let error = self.reference.error;
+        ensure!(
+            (1e-5..=0.5).contains(&error),
+            "reference.error is {error}; allowed: a relative error from 1e-5 to 0.5"
+        );
+        ensure!(
+            self.measure.readings.0 <= MOST_READINGS,
+            "measure.readings is {}; allowed: 1 to {MOST_READINGS}",
+            self.measure.readings.0
+        );
+        if let Some(empty) = self.axes.iter().find(|(_, values)| values.is_empty()) {
+            bail!("axes.{} is empty; allowed: a list of values", empty.0);
+        }
+        Ok(())
+    }
+
+    /// The estimators; the k nearest are sought within `cap` where the file does not say.
+    ///
+    /// # Errors
+    /// Which entry is wrong, and what is allowed
+    pub fn estimators(&self, cap: f64) -> anyhow::Result<Vec<Estimator>> {
+        let ladder = EstimatorFile {
+            k: Some(OneOrMore::More(LADDER.map(Count).to_vec())),
+            ..EstimatorFile::default()
+        };
+        let given = if self.estimators.is_empty() { &[ladder][..] } else { &self.estimators };
+        let mut all: Vec<Estimator> = Vec::new();
+        for (number, entry) in given.iter().enumerate() {
+            let own = entry.all(cap).with_context(|| format!("estimators[{number}]"))?;
+            for estimator in own {
+                ensure!(
+                    !all.contains(&estimator),
+                    "estimators[{number}]: {} is asked twice",
+                    estimator.name()
+                );
+                all.push(estimator);
+            }
+            ensure!(
+                all.len() <= MOST_ESTIMATORS,
+                "estimators are more than {MOST_ESTIMATORS}; allowed: that many"
+            );
+        }
+        Ok(all)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn refused(text: &str) -> String {
+        format!("{:#}", StudyFile::read("a.toml", text).unwrap_err())
+    }
+
+    #[test]
+    fn every_combination_is_an_estimator() {
+        let text = "scene = 'slab'\nphotons = [1e4]\n[[estimators]]\nkernel = ['uniform', 'cone']\nradius = [0.1, 0.2]\nk = 50\n\
+                    treatment = ['none', 'clipped']\n";
+        let file = StudyFile::read("a.toml", text).unwrap();
+        let all = file.estimators(1.0).unwrap();
+        assert_eq!(all.len(), 2 * 2 * 3);
+        let names: std::collections::BTreeSet<String> = all.iter().map(Estimator::name).collect();
+        assert_eq!(names.len(), all.len());
+        let plain = StudyFile::read("a.toml", "scene = 'slab'\nphotons = [1e4]\n").unwrap();
+        assert_eq!(plain.estimators(0.5).unwrap().len(), LADDER.len());
+        assert!(plain.estimators(0.5).unwrap().iter().all(|e| e.gather.cap() == 0.5));
+    }
+
+    #[test]
+    fn what_is_wrong_is_named_with_its_place() {
+        assert!(
+            refused("scene = 'slab'\nphotons = [1e4]\nphoton = 3\n")
+                .starts_with("a.toml:3:1: unknown field `photon`")
+        );
+        assert!(refused("scene = 'slab'\nphotons = [0.5]\n").contains("a.toml:2"));
+        assert!(refused("scene = 'slab'\nphotons = []\n").contains("photons is empty"));
+        assert!(refused("scene = 'slab'\nphotons = [1e4]\nmaps = 2\n").contains("maps is 2"));
+        assert!(refused("scene = 'slab'\nphotons = [1e4]\ntarget = nan\n").contains("target is NaN"));
+        assert!(refused("scene = 'slab'\nphotons = [1e4]\n[axes]\ng = []\n").contains("axes.g is empty"));
+        let wrong = |entry: &str| {
+            let text = format!("scene = 'slab'\nphotons = [1e4]\n[[estimators]]\n{entry}\n");
+            format!("{:#}", StudyFile::read("a.toml", &text).unwrap().estimators(1.0).unwrap_err())
+        };
+        assert!(wrong("k = 1").starts_with("estimators[0]: k is 1; allowed"));
+        assert!(wrong("radius = -1").contains("allowed"));
+        assert!(wrong("kernel = 'boxy'\nk = 5").contains("kernel is \"boxy\"; allowed: uniform"));
+        assert!(wrong("kernel = 'cone'").contains("neither radius nor k"));
+        assert!(wrong("k = [5, 5]").contains("asked twice"));
+        assert!(wrong("radius = 1\nmax_radius = 2").contains("max_radius goes with k"));
+    }
+}

@@ -1,0 +1,138 @@
+//! The cells: the maps of one replicate, read by every estimator; one batch of the reference.
+
+use super::picture::Picture;
+use super::points::{Point, reach};
+use super::reference::{BATCHES, Sampler, batch};
+use super::{EXPERIMENT, OwnStudy, asked, words};
+use crate::harness::{CellId, CellOutput, Group, Settings};
+use std::sync::Arc;
+use turbid::photons::PhotonMap;
+use turbid::sensor::{MapSettings, SensorMaps};
+use turbid::transport::NoProgress;
+
+/// Name of the group of maps of a scene.
+pub fn maps_group(point: usize, photons: u64) -> String {
+    format!("scene{point:03}-n{photons}")
+}
+
+/// Name of the group of batches of a scene's reference.
+pub fn reference_group(point: usize) -> String {
+    format!("scene{point:03}-reference")
+}
+
+/// Estimates of a pixel, about.
+const PIXEL: f64 = 50.0;
+
+/// Work of one estimate beside that of a photon emitted, about.
+const GATHER: f64 = 10.0;
+
+/// The groups; none of a file that cannot be studied, which [`super::check`] refuses before.
+pub fn groups(settings: &Settings) -> Vec<Group> {
+    let Ok(study) = asked(settings) else { return Vec::new() };
+    let mut groups = Vec::new();
+    for (number, point) in study.points.iter().enumerate() {
+        for &photons in &study.photons {
+            let own = study.clone();
+            let asked =
+                point.picture.as_ref().map_or(point.places.len() as f64, |p| PIXEL * p.pixels() as f64);
+            let reads = asked * point.estimators.len() as f64;
+            let cost = photons as f64 + GATHER * reads;
+            let measure = move |settings: &Settings, id: &CellId| maps(&own, number, photons, settings, id);
+            groups.push(Group::new(maps_group(number, photons), study.maps, cost, measure).holding(photons));
+        }
+        let (own, reference) = (study.clone(), &study.references[number]);
+        let each = match (&point.picture, reference.sampler) {
+            (Some(picture), _) => picture.pixels() as f64,
+            (None, Sampler::Paths) => point.places.len() as f64,
+            (None, Sampler::Light) => 1.0,
+        };
+        let measure = move |settings: &Settings, id: &CellId| sampled(&own, number, settings, id);
+        groups.push(Group::new(reference_group(number), BATCHES, each * reference.samples as f64, measure));
+    }
+    groups
+}
+
+fn maps(
+    study: &Arc<OwnStudy>,
+    number: usize,
+    photons: u64,
+    settings: &Settings,
+    id: &CellId,
+) -> anyhow::Result<CellOutput> {
+    let point: &Point = &study.points[number];
+    let mut out = CellOutput::new();
+    if let Some(picture) = &point.picture {
+        return pictures(point, picture, photons, settings, id);
+    }
+    let of = MapSettings {
+        photons,
+        seed: settings.seed,
+        replicate: id.stream(EXPERIMENT.name),
+        reach: reach(&point.estimators),
+        readings: study.file.measure.readings.0 as usize,
+    };
+    let maps = out.time(words::FILLING, |_| SensorMaps::fill(&point.scene, of, &NoProgress))?;
+    out.count("photons emitted", photons);
+    out.count("photons stored", maps.stored() as u64);
+    out.push(words::maps(point, photons), "photons stored", maps.stored() as f64);
+    for (index, estimator) in point.estimators.iter().enumerate() {
+        let reading = out.time(&words::reading(index), |_| maps.read(estimator))?;
+        let case = words::case(point, photons, estimator);
+        for place in &point.places {
+            out.push(
+                case.as_str(),
+                place.name.as_str(),
+                reading.values[place.sensor][place.bin][place.channel],
+            );
+        }
+        out.push(case.as_str(), "under-full share", reading.underfull as f64 / reading.gathers.max(1) as f64);
+        out.count("estimates", reading.gathers);
+    }
+    Ok(out)
+}
+
+/// The picture from the maps of one replicate, by every estimator.
+fn pictures(
+    point: &Point,
+    picture: &Picture,
+    photons: u64,
+    settings: &Settings,
+    id: &CellId,
+) -> anyhow::Result<CellOutput> {
+    let mut out = CellOutput::new();
+    let of = (settings.seed, id.stream(EXPERIMENT.name));
+    let maps = out.time(words::FILLING, |_| picture.maps(&point.scene, photons, of))?;
+    let held = [&maps.global, &maps.caustic, &maps.volume].into_iter().flatten();
+    let stored: usize = held.map(PhotonMap::stored).sum();
+    out.count("photons emitted", photons);
+    out.count("photons stored", stored as u64);
+    out.push(words::maps(point, photons), "photons stored", stored as f64);
+    for (index, estimator) in point.estimators.iter().enumerate() {
+        let read = |_: &mut CellOutput| picture.by_maps(&point.scene, &maps, estimator, of);
+        let (values, underfull) = out.time(&words::reading(index), read)?;
+        let case = words::case(point, photons, estimator);
+        for (place, value) in point.places.iter().zip(values) {
+            out.push(case.as_str(), place.name.as_str(), value);
+        }
+        out.push(case.as_str(), "under-full share", underfull);
+    }
+    Ok(out)
+}
+
+fn sampled(
+    study: &Arc<OwnStudy>,
+    number: usize,
+    settings: &Settings,
+    id: &CellId,
+) -> anyhow::Result<CellOutput> {
+    let (point, reference) = (&study.points[number], &study.references[number]);
+    let mut out = CellOutput::new();
+    let of = (settings.seed, id.stream(EXPERIMENT.name));
+    let measured = out.time(words::SAMPLING, |_| batch(point, reference.sampler, reference.samples, of))?;
+    let case = words::reference(point);
+    for (place, (mean, _)) in point.places.iter().zip(&measured) {
+        out.push(case.as_str(), place.name.as_str(), *mean);
+    }
+    out.count("samples of references", reference.samples);
+    Ok(out)
+}

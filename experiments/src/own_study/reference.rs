@@ -1,0 +1,167 @@
+//! What maps are compared with: exact values, or batches of paths or of light tracing, which are the rival in time as well.
+
+use super::EXPERIMENT;
+use super::file::{ReferenceBy, StudyFile};
+use super::points::{Place, Point};
+use super::solved::{Solved, solve};
+use crate::harness::{CellId, Settings};
+use anyhow::{Context, ensure};
+use turbid::scene::Orders;
+use turbid::sensor::{Measurement, PathSettings, TallySettings, by_paths, by_tallies};
+use turbid::transport::NoProgress;
+
+/// Batches of a sampled reference.
+pub const BATCHES: u64 = 16;
+
+/// Who samples a reference.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Sampler {
+    /// The path tracer, so many paths a place.
+    Paths,
+    /// Light tracing, so many photons in all.
+    Light,
+}
+
+impl Sampler {
+    /// Its name.
+    pub fn name(self) -> &'static str {
+        match self {
+            Sampler::Paths => "paths",
+            Sampler::Light => "light tracing",
+        }
+    }
+}
+
+/// What one scene's maps are compared with.
+pub struct Reference {
+    /// The scene as a solved problem.
+    pub solved: Option<Solved>,
+    /// Exact value and bound of each place, where they are known.
+    pub exact: Vec<Option<(f64, f64)>>,
+    /// Who samples the others, and all of them as a rival.
+    pub sampler: Sampler,
+    /// Paths a place, or photons, of a batch.
+    pub samples: u64,
+    /// Whether the most that is allowed was not enough for the error that is asked for.
+    pub is_cut: bool,
+}
+
+/// Paths of a pilot over all places, and fewest and most a place.
+const PILOT: u64 = 1 << 18;
+const PILOT_OF_PLACE: (u64, u64) = (1 << 8, 1 << 13);
+
+/// Fewest of a batch, and fewest of a pixel: an error needs two.
+const FEWEST: u64 = 64;
+const FEWEST_OF_PIXEL: u64 = 2;
+
+/// One batch: the mean of each place and its standard error, where it has one.
+///
+/// # Errors
+/// Those of the sampler
+pub fn batch(
+    point: &Point,
+    sampler: Sampler,
+    samples: u64,
+    (seed, replicate): (u64, u64),
+) -> anyhow::Result<Vec<(f64, Option<f64>)>> {
+    let scene = &point.scene;
+    if let Some(picture) = &point.picture {
+        return Ok(picture.by_paths(scene, samples, (seed, replicate))?);
+    }
+    let measured: Vec<Measurement> = match sampler {
+        Sampler::Paths => {
+            let settings = PathSettings { samples, seed, replicate, orders: Orders::ALL };
+            by_paths(scene, &settings, &NoProgress)?
+        }
+        Sampler::Light => {
+            let seed = seed.wrapping_add(replicate);
+            let settings = TallySettings { photons: samples, seed, orders: Orders::ALL };
+            by_tallies(scene, &settings, &NoProgress)?.measurements
+        }
+    };
+    Ok(measured.iter().map(|m| (m.mean, m.std_error)).collect())
+}
+
+/// Root mean square of the relative errors of the first group of places; none while one is not known.
+fn relative_error(point: &Point, measured: &[(f64, Option<f64>)]) -> Option<f64> {
+    let (mut sum, mut count) = (0.0, 0.0);
+    for ((mean, error), _) in measured.iter().zip(&point.places).filter(|(_, place)| point.is_main(place)) {
+        sum += ((*error)? / mean).powi(2);
+        count += 1.0;
+    }
+    f64::is_finite(sum).then(|| (sum / count).sqrt())
+}
+
+impl Reference {
+    /// Looks for exact values, and asks a pilot how much the rest takes.
+    ///
+    /// # Errors
+    /// Those of the samplers; light tracing of sensors without bins
+    pub fn plan(
+        study: &StudyFile,
+        point: &Point,
+        number: usize,
+        settings: &Settings,
+    ) -> anyhow::Result<Self> {
+        let by = study.reference.with;
+        let solved =
+            if by == ReferenceBy::Auto && point.picture.is_none() { solve(&point.scene) } else { None };
+        let value = |place: &Place| solved.as_ref().and_then(|solved| solved.value(&point.scene, place));
+        let exact: Vec<Option<(f64, f64)>> = point.places.iter().map(value).collect();
+        // A rival alone need not be known as well as a reference.
+        let is_needed = exact.iter().any(Option::is_none);
+        let wanted =
+            if is_needed { study.reference.error } else { study.reference.error.max(0.2 * study.target) };
+        let scene = &point.scene;
+        let has_bins =
+            point.picture.is_none() && scene.sensors().iter().all(|sensor| sensor.binned().is_some());
+        ensure!(
+            has_bins || by != ReferenceBy::Light,
+            "reference.with is \"light\": light tracing answers sensors with bins alone; allowed here: auto, paths"
+        );
+        let places = scene.sensors().iter().map(|s| s.binned().map_or(1, turbid::scene::Binned::bins) as u64);
+        let places = places.sum::<u64>().max(1);
+        // Of a picture places are blocks of pixels, and samples are those of a pixel.
+        let (places, shared) = match &point.picture {
+            Some(picture) => (picture.pixels(), picture.block_pixels().max(1)),
+            None => (places, 1),
+        };
+        let pilot_samples = match point.picture {
+            Some(_) => (PILOT / places).clamp(FEWEST_OF_PIXEL, PILOT_OF_PLACE.1),
+            None => (PILOT / places).clamp(PILOT_OF_PLACE.0, PILOT_OF_PLACE.1),
+        };
+        let fewest = if point.picture.is_some() { FEWEST_OF_PIXEL } else { FEWEST };
+        let most = study.reference.most.0.div_ceil(shared);
+        let pilot = |sampler: Sampler, samples: u64| -> anyhow::Result<Option<f64>> {
+            let id = CellId::of(&format!("pilot-{number:03}-{}", sampler.name()), 0);
+            let of = (settings.seed, id.stream(EXPERIMENT.name));
+            let measured = batch(point, sampler, samples, of).context("reference")?;
+            // Samples that bring the error.
+            Ok(relative_error(point, &measured)
+                .map(|error| samples as f64 * (error / wanted) * (error / wanted)))
+        };
+        let by_paths = match by {
+            ReferenceBy::Light => None,
+            _ => Some((Sampler::Paths, pilot(Sampler::Paths, pilot_samples)?, places)),
+        };
+        let by_light = match by {
+            ReferenceBy::Paths => None,
+            _ if !has_bins => None,
+            ReferenceBy::Auto | ReferenceBy::Light => {
+                let samples = pilot_samples * places;
+                Some((Sampler::Light, pilot(Sampler::Light, samples)?, 1))
+            }
+        };
+        // Histories in all say which is the cheaper: the same on every machine.
+        let cost = |of: &(Sampler, Option<f64>, u64)| of.1.map_or(f64::INFINITY, |n| n * of.2 as f64);
+        let chosen = [by_paths, by_light].into_iter().flatten();
+        let chosen = chosen.min_by(|a, b| cost(a).total_cmp(&cost(b)));
+        let (sampler, needed, _) = chosen.context("reference: nobody samples it")?;
+        let most = if sampler == Sampler::Light { most.saturating_mul(places) } else { most };
+        let is_cut = needed.is_none_or(|needed| needed > most as f64);
+        // An error of few paths is too small as often as not: half as much again.
+        let all = needed.map_or(most as f64, |needed| (1.5 * needed).min(most as f64));
+        let samples = ((all / BATCHES as f64).ceil() as u64).max(fewest);
+        Ok(Reference { solved, exact, sampler, samples, is_cut })
+    }
+}

@@ -1,0 +1,64 @@
+//! Names of cases, as cells, predictions and results share them.
+
+use super::points::Point;
+use turbid::estimators::{Estimator, Gather};
+
+/// What precedes a case of a scene.
+fn scene(point: &Point) -> String {
+    if point.label.is_empty() { String::new() } else { format!("{}, ", point.label) }
+}
+
+/// Maps of so many photons.
+pub fn maps(point: &Point, photons: u64) -> String {
+    format!("{}{photons} photons", scene(point))
+}
+
+/// One estimator that reads them.
+pub fn case(point: &Point, photons: u64, estimator: &Estimator) -> String {
+    format!("{}, {}", maps(point, photons), estimator.name())
+}
+
+/// The sampled reference.
+pub fn reference(point: &Point) -> String {
+    format!("{}reference", scene(point))
+}
+
+/// The phase of the work that an estimator's reading is.
+pub fn reading(estimator: usize) -> String {
+    format!("reading {estimator}")
+}
+
+/// The phase of the work that emission and building are.
+pub const FILLING: &str = "filling";
+
+/// The phase of the work that sampling the reference is.
+pub const SAMPLING: &str = "sampling";
+
+/// What estimators that differ in the size of their gather share.
+pub fn family(estimator: &Estimator) -> String {
+    let Estimator { kernel, gather, treatment, rejection } = estimator;
+    let size = match gather {
+        Gather::Radius(_) => "fixed radius",
+        Gather::Nearest { .. } => "k nearest",
+        Gather::NearestBiased { .. } => "k nearest, biased",
+    };
+    let mut name = format!("{size}, {}", kernel.name());
+    name += &format!(", {}", treatment.name());
+    if *rejection != turbid::estimators::boundary::Rejection::Off {
+        name += &format!(", {}", rejection.name());
+    }
+    name
+}
+
+/// The size of a gather: its radius \[L\], or its k.
+pub fn size(estimator: &Estimator) -> f64 {
+    match estimator.gather {
+        Gather::Radius(radius) => radius.get(),
+        Gather::Nearest { k, .. } | Gather::NearestBiased { k, .. } => k.get() as f64,
+    }
+}
+
+/// Whether the gather's radius is fixed.
+pub fn is_fixed(estimator: &Estimator) -> bool {
+    matches!(estimator.gather, Gather::Radius(_))
+}

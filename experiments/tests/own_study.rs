@@ -1,0 +1,191 @@
+//! Studies of users' own: files in, tables out, the same bits by any number of threads, parts and folders.
+#![allow(clippy::unwrap_used, reason = "tests")]
+
+use assert_cmd::Command;
+use std::collections::HashMap;
+use std::path::{Path, PathBuf};
+use turbid::stats::{ALPHA, student_critical};
+
+const SLAB: &str = "\
+title = 'Two slabs'
+scene = 'slab'
+photons = [500, 2e3]
+maps = 64
+target = 0.2
+[axes]
+albedo = [0.5, 0.9]
+[measure]
+probes = [[2.0, 2.0, 0.1], [2.0, 2.0, 1.0]]
+[[estimators]]
+radius = [0.2, 0.4]
+treatment = ['none', 'clipped']
+[[estimators]]
+k = 20
+";
+
+fn study(folder: &Path, args: &[&str]) -> Command {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_study"));
+    command.current_dir(folder).args(args);
+    command
+}
+
+fn written(text: &str) -> (tempfile::TempDir, PathBuf) {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("mine.toml");
+    std::fs::write(&file, text).unwrap();
+    (folder, file)
+}
+
+fn refused(folder: &Path, args: &[&str]) -> String {
+    let run = study(folder, args).assert().code(2).stdout("");
+    let text = String::from_utf8(run.get_output().stderr.clone()).unwrap();
+    let lines: Vec<&str> = text.lines().filter(|line| line.contains("error: ")).collect();
+    assert!(lines.len() == 1, "{args:?}: {text}");
+    lines[0].to_string()
+}
+
+fn rows(path: &Path) -> Vec<HashMap<String, String>> {
+    csv::Reader::from_path(path).unwrap().deserialize().map(Result::unwrap).collect()
+}
+
+fn results(folder: &Path, out: &str) -> Vec<u8> {
+    std::fs::read(folder.join(out).join("results.csv")).unwrap()
+}
+
+/// One thread or two, in one run or in parts, in one folder or in several, some of them twice: the same bits.
+#[test]
+fn threads_and_parts_change_nothing() {
+    let (folder, _file) = written(SLAB);
+    let at = folder.path();
+    let run = study(at, &["mine.toml", "--out", "one", "--threads", "1"]).assert().success();
+    let said = String::from_utf8(run.get_output().stdout.clone()).unwrap();
+    assert!(said.contains("albedo=0.5") && said.contains("albedo=0.9") && said.contains("20 %"), "{said}");
+    study(at, &["mine.toml", "--out", "two", "--threads", "2"]).assert().success();
+    let one = results(at, "one");
+    assert!(one == results(at, "two"));
+    // Two scenes, two sizes, five estimators, two places and all of them; every file there.
+    assert_eq!(rows(&at.join("one/results.csv")).len(), 2 * 2 * 5 * 3);
+    for file in ["report.html", "costs.csv", "predictions.csv", "figures/own-costs-scene001.png"] {
+        assert!(at.join("one").join(file).is_file(), "{file}");
+    }
+    for (part, out) in [("1/3", "a"), ("2/3", "b"), ("3/3", "a"), ("2/3", "a")] {
+        study(at, &["mine.toml", "--out", out, "--part", part]).assert().success();
+    }
+    assert!(!at.join("a/results.csv").exists());
+    study(at, &["mine.toml", "--out", "merged", "--merge", "a", "b"]).assert().success();
+    assert!(results(at, "merged") == one);
+    study(at, &["mine.toml", "--merge", "a"]).assert().success();
+    assert!(results(at, "a") == one);
+    // A part that is lost is named; one of another seed, or that differs, is refused.
+    let lost = refused(at, &["mine.toml", "--out", "lost", "--merge", "b"]);
+    assert!(lost.contains("are in none of the merged folders, such as own/scene"), "{lost}");
+    study(at, &["mine.toml", "--out", "c", "--part", "1/3", "--seed", "7"]).assert().success();
+    let other = refused(at, &["mine.toml", "--out", "mixed", "--merge", "b", "c"]);
+    assert!(other.contains("of other settings") && other.contains("seed 7"), "{other}");
+    let other = refused(at, &["mine.toml", "--out", "none", "--merge", "nowhere"]);
+    assert!(other.contains("has no cells"), "{other}");
+}
+
+/// The predicted blur of fixed radii is what maps measure, with and without a treatment of the face; and the prediction of the one is
+/// not that of the other.
+#[test]
+fn predictions_are_what_maps_measure() {
+    let (folder, _file) = written(SLAB);
+    let at = folder.path();
+    study(at, &["mine.toml", "--out", "out"]).assert().success();
+    let rows = rows(&at.join("out/results.csv"));
+    let number = |row: &HashMap<String, String>, key: &str| row[key].parse::<f64>().unwrap();
+    let z = |row: &HashMap<String, String>, of: f64| (number(row, "mean") - of) / number(row, "std_error");
+    let limit = student_critical(ALPHA, 63);
+    let predicted: Vec<_> = rows.iter().filter(|row| !row["predicted"].is_empty()).collect();
+    assert_eq!(predicted.len(), 2 * 2 * 4 * 2);
+    for row in &predicted {
+        assert!(z(row, number(row, "predicted")).abs() < limit, "{row:?}");
+    }
+    let mut told_apart = 0;
+    for row in predicted.iter().filter(|row| row["treatment"] == "none" && row["place"] == "probe 0") {
+        let same = |other: &&&HashMap<String, String>| {
+            other["treatment"] == "clipped"
+                && ["albedo", "photons", "radius", "place"].iter().all(|key| other[*key] == row[*key])
+        };
+        let clipped = predicted.iter().find(same).unwrap();
+        told_apart += usize::from(z(row, number(clipped, "predicted")).abs() > limit);
+    }
+    assert!(told_apart >= 4, "{told_apart} of 8");
+    assert!(rows.iter().all(|row| row["place"] == "all" || row["reference_by"] == "exact"));
+}
+
+/// Nothing is written of what is refused, and one line says what is wrong.
+#[test]
+fn what_cannot_be_studied_is_refused_in_one_line() {
+    let (folder, file) = written(SLAB);
+    let at = folder.path();
+    let changed = |from: &str, to: &str| {
+        assert!(SLAB.contains(from));
+        std::fs::write(&file, SLAB.replace(from, to)).unwrap();
+        let text = refused(at, &["mine.toml", "--out", "out"]);
+        assert!(!at.join("out").exists(), "{text}");
+        text
+    };
+    let list = |n: usize| format!("[{}]", (0..n).map(|i| format!("0.{i:04}")).collect::<Vec<_>>().join(", "));
+    for (from, to, words) in [
+        ("photons = [500, 2e3]", "photon = [500]", "unknown field `photon`"),
+        ("photons = [500, 2e3]", "photons = [0]", "allowed: whole numbers from 1"),
+        ("photons = [500, 2e3]", "photons = [500, 500]", "photons names one number twice"),
+        ("maps = 64", "maps = 2", "maps is 2; allowed: at least 4"),
+        ("scene = 'slab'", "scene = 'none.toml'", "cannot read"),
+        ("scene = 'slab'", "scene = 'mine.toml'", "names itself"),
+        ("albedo = [0.5, 0.9]", "albedo = [1.5]", "albedo"),
+        ("albedo = [0.5, 0.9]", "albedoo = [0.5]", "unknown key `albedoo`"),
+        ("[2.0, 2.0, 0.1]", "[2.0, 2.0, -0.1]", "probe 0"),
+        ("[2.0, 2.0, 0.1]", "[2.0, 2.0]", "mine.toml:9"),
+        ("probes = [[2.0, 2.0, 0.1], [2.0, 2.0, 1.0]]", "sensors = ['nothing']", "no sensor \"nothing\""),
+        ("probes = [[2.0, 2.0, 0.1], [2.0, 2.0, 1.0]]", "picture = {}", "no [camera]"),
+        ("radius = [0.2, 0.4]", "radius = [9.0]", "beyond the periodic cell"),
+        ("treatment = ['none', 'clipped']", "treatment = 'clip'", "treatment is \"clip\"; allowed: none"),
+        ("target = 0.2", "target = -1", "target is -1"),
+        ("title = 'Two slabs'", "title = 'Two slabs", "mine.toml:1"),
+    ] {
+        let text = changed(from, to);
+        assert!(text.contains(words), "{to}: {text}");
+    }
+    let many = format!("albedo = {}\ng = {}\ntau = {}", list(300), list(300), list(300));
+    let text = changed("albedo = [0.5, 0.9]", &many);
+    assert!(text.contains("runs; allowed: up to 100000"), "{text}");
+    std::fs::write(&file, SLAB).unwrap();
+    assert!(refused(at, &["mine.toml", "--full"]).contains("--full"));
+    assert!(refused(at, &["mine.toml", "--part", "4/3"]).contains("3/16"));
+    assert!(refused(at, &["none.toml"]).contains("cannot read none.toml"));
+    assert!(refused(at, &["mine.csv"]).contains("STUDY.toml"));
+    let run = Command::new(env!("CARGO_BIN_EXE_bias")).current_dir(at).arg("mine.toml").assert().code(2);
+    let text = String::from_utf8(run.get_output().stderr.clone()).unwrap();
+    assert!(text.contains("bias is one experiment; allowed: study mine.toml"), "{text}");
+}
+
+#[test]
+fn a_dry_run_tells_and_writes_nothing() {
+    let (folder, _file) = written(SLAB);
+    let run = study(folder.path(), &["mine.toml", "--out", "out", "--dry-run"]).assert().success();
+    let text = String::from_utf8(run.get_output().stdout.clone()).unwrap();
+    assert!(text.contains("scene001-n2000") && text.contains("in all 288 cells"), "{text}");
+    assert!(!folder.path().join("out").exists());
+}
+
+/// A picture is compared block by block and layer by layer; light that maps and paths both find agrees.
+#[test]
+fn a_picture_by_layer() {
+    let text = "scene = 'fogbox'\nphotons = [2e4]\nmaps = 8\n[measure]\npicture = { width = 12, height = 9, blocks = [2, 2] }\n\
+                [[estimators]]\nk = 50\n[reference]\nerror = 0.05\n";
+    let (folder, _file) = written(text);
+    let at = folder.path();
+    study(at, &["mine.toml", "--out", "out"]).assert().success();
+    let rows = rows(&at.join("out/results.csv"));
+    let of = |group: &str| rows.iter().filter(|row| row["place"].starts_with(group)).count();
+    assert_eq!((of("total"), of("single"), of("multiple"), of("direct"), of("all single")), (4, 4, 4, 4, 1));
+    for row in rows.iter().filter(|row| row["place"].starts_with("direct")) {
+        let number = |key: &str| row[key].parse::<f64>().unwrap();
+        let error = (number("std_error").powi(2) + number("reference_error").powi(2)).sqrt();
+        let z = (number("mean") - number("reference")) / error;
+        assert!(z.abs() < student_critical(ALPHA, 7), "{row:?}");
+    }
+}
