@@ -22,7 +22,7 @@ use crate::light::Light;
 use crate::photons::{Histories, Part};
 use crate::rng::{Purpose, Stream};
 use crate::scene::{Orders, Quantity, Scene, Sensor};
-use crate::stats::{Interval, Moments, Tail};
+use crate::stats::{Interval, Moments};
 use crate::transport::Progress;
 use std::time::Instant;
 
@@ -555,7 +555,8 @@ pub fn path_advice(
         // The mean of the channels varies at most as much as the channels do on average.
         let own = channels.iter().map(Moments::variance).sum::<f64>() / 3.0;
         variance += own / (mean * mean) / sensors.len() as f64;
-        is_heavy_tailed |= channels.iter().any(super::is_heavy_tailed) || tails.iter().any(Tail::is_heavy);
+        is_heavy_tailed |=
+            channels.iter().zip(&tails).any(|(m, tail)| super::is_heavy_tailed(m) || tail.is_heavy(m));
     }
     Ok(PathAdvice { samples: (variance / (target * target)).max(1.0), is_heavy_tailed })
 }

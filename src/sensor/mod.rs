@@ -100,8 +100,8 @@ pub enum NoError {
     /// Fewer than [`FEWEST_PATHS`] paths brought something, fewer than 10 photon histories something to a bin, one map
     /// alone, or there is one history.
     TooFew,
-    /// The variance is too uncertain: its own relative variance is above 0.1, or the largest contributions have the tail of
-    /// a distribution whose mean they have not settled ([`Tail::shape`] above 1/2).
+    /// The variance is too uncertain: its own relative variance is above 0.1, or the largest contributions carry it and have the
+    /// tail of a distribution whose mean they have not settled ([`Tail::is_heavy`]).
     HeavyTail,
 }
 
@@ -187,7 +187,7 @@ fn std_error(m: &Moments, tail: Option<&Tail>, source: Source) -> Result<f64, No
         // Between that of one map, 1, and that of two, 2.
         Source::Maps if effective_number(m) < 1.5 => Err(NoError::TooFew),
         Source::Paths if tail.is_some_and(|tail| tail.contributing() < FEWEST_PATHS) => Err(NoError::TooFew),
-        _ if is_heavy_tailed(m) || tail.is_some_and(Tail::is_heavy) => Err(NoError::HeavyTail),
+        _ if is_heavy_tailed(m) || tail.is_some_and(|tail| tail.is_heavy(m)) => Err(NoError::HeavyTail),
         _ => Ok(m.std_error()),
     }
 }

@@ -13,6 +13,7 @@ mod scene;
 mod set;
 pub mod sets;
 mod settings;
+mod slab_map;
 
 pub use comparison::{Answered, Comparison, Row, Verdict};
 pub use published::Published;

@@ -2,6 +2,7 @@
 
 use super::comparison::{Comparison, Row};
 use anyhow::{Context, bail};
+use rayon::prelude::*;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::Instant;
@@ -120,6 +121,23 @@ impl Bench {
             estimator: Estimator::new(Kernel::Uniform, Gather::radius(radius)?),
         };
         Ok(by_photons(scene, &settings, &NoProgress)?.measurements)
+    }
+
+    /// Every sensor of a scene by each of 64 independent photon maps of so many photons, counted evenly in balls of this radius,
+    /// photons beyond faces being none: for means over sensors that share photons.
+    ///
+    /// # Errors
+    /// Those of the photon pass
+    pub fn each_map(&self, scene: &Scene, photons: u64, radius: f64) -> anyhow::Result<Vec<Vec<f64>>> {
+        let seed = self.seed.wrapping_add(self.replicate() << 32);
+        let estimator = Estimator::new(Kernel::Uniform, Gather::radius(radius)?);
+        let of = |map: u64| {
+            let seed = seed.wrapping_add(map);
+            let settings = PhotonSettings { photons, maps: 1, seed, orders: Orders::ALL, estimator };
+            let found = by_photons(scene, &settings, &NoProgress)?.measurements;
+            Ok(found.iter().map(|m| m.mean).collect())
+        };
+        (0..64).into_par_iter().map(of).collect()
     }
 
     /// Every sensor of a scene by light tracing.

@@ -27,6 +27,10 @@ use turbid::sensor::{
 /// estimates share its photons. Where no error can be trusted a word says why: one-map, nothing-found, too-few (fewer than
 /// 1,000 paths contribute, or 10 photons), heavy-tail.
 ///
+/// An error knows what was drawn. Where few of the paths carry the mean, as those that find a void through many mean free paths
+/// of a shield, a run may draw none of them, and nothing in it says so: its error is then many times too small. Take
+/// --weight-windows there, and do not believe plain paths unless these agree.
+///
 /// A sensor with bins has a row for each: columns i, j, k number it along each axis, x, y, z are its middle. Flux and
 /// absorption are scored by photons as they pass; fluence and radiance by `photons` are estimates from maps at 4 random
 /// points of the bin, by `light` scores too: of flights or collisions, and of what each scattering sends to the bin.
