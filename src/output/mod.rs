@@ -3,6 +3,7 @@
 mod atomic;
 mod bins;
 mod exr;
+mod npy;
 mod panic;
 mod ply;
 mod signal;
@@ -13,6 +14,7 @@ mod tone;
 pub use atomic::{WriteError, check_writable, is_same_file, write_atomically};
 pub use bins::{npy, voxel_grid};
 pub use exr::{PROVENANCE, encode_exr, write_exr};
+pub use npy::write_photons_npy;
 pub use panic::without_panic;
 pub use ply::write_ply;
 pub use signal::end_on_signal;

@@ -19,7 +19,8 @@ pub use light::{LIGHT_BYTES, LIGHT_PIXEL_BYTES, LightCount, by_light, extend_by_
 pub use method::Method;
 pub use paths::{PathSettings, by_guided_paths, by_paths, sample, sample_bin, sample_counted, sample_guided};
 pub use photons::{
-    PhotonForecast, PhotonReadings, PhotonSettings, by_photons, by_photons_in_passes, forecast,
+    PhotonForecast, PhotonReadings, PhotonSettings, by_given_photons, by_photons, by_photons_in_passes,
+    forecast, given_bytes, is_answered_by_map,
 };
 pub use render::{MAX_SAMPLES, Streams, extend};
 pub use tallies::{TallyReadings, TallySettings, by_tallies, tally_bytes};
