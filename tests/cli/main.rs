@@ -7,7 +7,9 @@ mod bad_pictures;
 mod bins;
 mod media;
 mod memory;
+mod options;
 mod output;
+mod photons;
 mod pictures;
 mod reference;
 

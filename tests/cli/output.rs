@@ -5,7 +5,7 @@ use std::io::Read;
 use std::process::{Command, Stdio};
 
 const COLUMNS: [&str; 6] = ["sensor", "quantity", "unit", "mean", "std_error", "n"];
-const PATH: [&str; 6] = ["measure", "slab", "--with", "path", "--samples", "5000"];
+const PATH: [&str; 6] = ["measure", "slab", "--with", "paths", "--samples", "5000"];
 const PHOTONS: [&str; 8] = ["measure", "slab", "--with", "photons", "--photons", "2e4", "--maps", "2"];
 
 fn with<'a>(arguments: &[&'a str], more: &[&'a str]) -> Vec<&'a str> {
@@ -58,7 +58,7 @@ fn the_examples_of_the_pages_work() {
         let files: Vec<_> = words.iter().map(|word| folder.0.path().join(word)).collect();
         for i in 1..words.len() {
             match words[i - 1] {
-                "-o" | "--ply" => words[i] = text(&files[i]),
+                "-o" | "--ply" | "--npy" | "--photons-from" => words[i] = text(&files[i]),
                 "--maps" => words[i] = "2",
                 "--samples" if is_picture => words[i] = "1",
                 "--photons" | "--samples" => words[i] = "1000",
@@ -66,7 +66,10 @@ fn the_examples_of_the_pages_work() {
             }
         }
         if is_picture {
-            words.extend(["--width", "4", "--global", "1000", "--volume", "1000"]);
+            words.extend(["--width", "4"]);
+        }
+        if is_picture && !words.contains(&"paths") {
+            words.extend(["--global", "1000", "--volume", "1000"]);
         }
         if words[0] == "render" && !words.contains(&"--samples") {
             words.extend(["--samples", "1"]);
@@ -155,7 +158,7 @@ fn scenes_are_listed_printed_and_resolved() {
         let folder = Folder::new();
         let file = folder.file("scene.toml", &succeeds(&["scenes", name, "--resolved"]));
         let measure = |scene: &str| {
-            succeeds(&["measure", scene, "--with", "path", "--samples", "100", "--format", "csv"])
+            succeeds(&["measure", scene, "--with", "paths", "--samples", "100", "--format", "csv"])
         };
         assert_eq!(measure(text(&file)), measure(name));
     }
@@ -396,7 +399,7 @@ fn a_mean_without_an_error_says_why() {
         notes.contains("no standard error, nothing-found:") && notes.contains("depth 10 fluence"),
         "{notes}"
     );
-    let few = |samples| run(&["measure", "slab", "--with", "path", "--samples", samples]);
+    let few = |samples| run(&["measure", "slab", "--with", "paths", "--samples", samples]);
     for samples in ["1", "2", "900"] {
         let (table, notes) = few(samples);
         let without = table.matches("too-few").count() + table.matches("nothing-found").count();

@@ -4,6 +4,7 @@ use anyhow::{Context, anyhow, bail};
 use std::ops::Range;
 use std::path::{Component, Path, PathBuf};
 use turbid::input::{read_stream, text};
+use turbid::output::is_same_file;
 use turbid::photons::check_end;
 use turbid::scene::{BUILTIN, Builtin, Scene, SceneFile};
 
@@ -38,9 +39,9 @@ impl Source {
         self.scene.display().to_string()
     }
 
-    /// The scene's file, or the name of a built-in one.
-    pub fn file(&self) -> &Path {
-        &self.scene
+    /// Whether a file is the scene's own.
+    pub fn is_file(&self, file: &Path) -> bool {
+        is_same_file(file, &self.scene).unwrap_or(false)
     }
 
     /// The validated scene, in which light comes to an end.

@@ -3,12 +3,14 @@
 mod advise;
 mod check;
 mod command;
+mod given;
 mod load;
 mod made;
 mod map;
 mod measure;
 mod memory;
 mod notes;
+mod options;
 mod picture;
 mod progress;
 mod render;
@@ -17,7 +19,7 @@ mod shared;
 mod statistics;
 mod usage;
 
-use clap::Parser;
+use clap::{ArgMatches, CommandFactory, FromArgMatches, Parser};
 use std::process::ExitCode;
 use turbid::output::{end_on_signal, without_panic};
 
@@ -40,11 +42,19 @@ struct Arguments {
     command: command::Command,
 }
 
+/// The command line, and what of it was given and is no default.
+fn parse() -> Result<(Arguments, ArgMatches), clap::Error> {
+    let mut command = Arguments::command();
+    let given = command.try_get_matches_from_mut(std::env::args_os())?;
+    let arguments = Arguments::from_arg_matches(&given).map_err(|error| error.format(&mut command))?;
+    Ok((arguments, given))
+}
+
 fn main() -> ExitCode {
     end_on_signal(|| "turbid: stopped by a signal; files appear whole or not at all".to_string());
     without_panic("turbid", || {
-        let outcome = match Arguments::try_parse() {
-            Ok(arguments) => arguments.command.run(),
+        let outcome = match parse() {
+            Ok((arguments, given)) => arguments.command.run(&given),
             Err(error) => usage::explain(&error),
         };
         command::exit_code("turbid", outcome)

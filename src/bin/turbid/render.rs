@@ -4,12 +4,13 @@ use super::load::Source;
 use super::made::{Filled, Made, MapsMade, Stages};
 use super::memory::Memory;
 use super::notes::{tell_empty, tell_gathers, tell_step};
+use super::options;
 use super::picture::{Frame, Held, Photons, Readout, ToneArgs};
 use super::progress::Bar;
 use super::shared::{note, on_threads, parse_count, print, whole};
 use super::statistics::{MAPS, print_statistics};
 use anyhow::{Context, bail};
-use clap::ValueEnum;
+use clap::{ArgMatches, ValueEnum};
 use cpu_time::ProcessTime;
 use std::ops::AddAssign;
 use std::path::PathBuf;
@@ -139,7 +140,8 @@ const SAMPLES: u64 = 16;
 
 impl Render {
     /// Draws and writes.
-    pub fn run(self) -> anyhow::Result<()> {
+    pub fn run(self, given: &ArgMatches) -> anyhow::Result<()> {
+        options::check(given, options::RENDER, &[&format!("--with {}", self.with.name())])?;
         let extension = self.output.extension().and_then(|e| e.to_str()).unwrap_or_default();
         if !extension.eq_ignore_ascii_case("exr") {
             bail!("--output is {}; allowed: a file name that ends in .exr", self.output.display());
@@ -292,7 +294,6 @@ impl Render {
         }
         let refuse = |why: &str| bail!("--passes is {}, {why}", self.passes);
         match () {
-            () if self.with != With::Photons => refuse("which is for photon maps; allowed: 1"),
             () if !self.readout.has_radius() => refuse(
                 "which needs --radius: the k nearest photons are not known before the last pass; allowed without it: 1",
             ),
