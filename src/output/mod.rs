@@ -19,5 +19,5 @@ pub use panic::without_panic;
 pub use ply::write_ply;
 pub use signal::end_on_signal;
 pub use stdout::{ignore_closed_pipe, one_line, print};
-pub use table::{Format, write_aligned, write_csv, write_json, write_rows};
+pub use table::{Format, RunInfo, write_aligned, write_csv, write_json, write_rows};
 pub use tone::{Curve, Tone, auto_exposure, to_srgb, write_png};

@@ -11,6 +11,7 @@ mod options;
 mod output;
 mod photons;
 mod pictures;
+mod provenance;
 mod reference;
 
 use assert_cmd::Command;

@@ -1,6 +1,6 @@
 //! The commands, one file each, and their exit code.
 
-use crate::{advise, check, map, measure, render, scenes};
+use crate::{advise, check, completions, man, map, measure, render, scenes};
 use clap::{ArgMatches, Subcommand};
 use std::io::{ErrorKind, Write};
 use std::process::ExitCode;
@@ -16,14 +16,16 @@ pub enum Command {
     Map(Box<map::Map>),
     Check(check::Check),
     Scenes(scenes::Scenes),
+    Completions(completions::Completions),
+    Man(man::Man),
 }
 
 impl Command {
     /// Answers; what it prints goes to stdout.
     ///
     /// # Arguments
-    /// `given` what was parsed, which knows the defaults
-    pub fn run(self, given: &ArgMatches) -> anyhow::Result<()> {
+    /// `given` what was parsed, which knows the defaults; `program` all that may be asked
+    pub fn run(self, given: &ArgMatches, program: clap::Command) -> anyhow::Result<()> {
         let given = given.subcommand().map_or(given, |(_, given)| given);
         match self {
             Command::Measure(command) => command.run(given),
@@ -32,6 +34,8 @@ impl Command {
             Command::Map(command) => command.run(given),
             Command::Check(command) => command.run(),
             Command::Scenes(command) => command.run(),
+            Command::Completions(command) => command.run(program),
+            Command::Man(command) => command.run(program),
         }
     }
 }

@@ -3,7 +3,7 @@
 use anyhow::{Context, anyhow, bail};
 use std::ops::Range;
 use std::path::{Component, Path, PathBuf};
-use turbid::input::{read_stream, text};
+use turbid::input::{read_all, read_stream, text};
 use turbid::output::is_same_file;
 use turbid::photons::check_end;
 use turbid::scene::{BUILTIN, Builtin, Scene, SceneFile};
@@ -11,7 +11,7 @@ use turbid::scene::{BUILTIN, Builtin, Scene, SceneFile};
 /// Which scene, and what to change in it.
 #[derive(clap::Args)]
 pub struct Source {
-    /// A built-in scene (see `turbid scenes`) or a scene file.
+    /// A built-in scene (see `turbid scenes`), a scene file, or - for one on standard input.
     scene: PathBuf,
     /// Change a value before the scene is made: `albedo=0.5` of a built-in scene, `regions.0.albedo=0.5` of a file.
     #[arg(long = "set", value_name = "KEY=VALUE")]
@@ -36,20 +36,28 @@ impl Source {
 
     /// What messages call it.
     pub fn name(&self) -> String {
-        self.scene.display().to_string()
+        if self.is_standard_input() { "standard input".to_string() } else { self.scene.display().to_string() }
+    }
+
+    fn is_standard_input(&self) -> bool {
+        self.scene.as_os_str() == "-"
     }
 
     /// Whether a file is the scene's own.
     pub fn is_file(&self, file: &Path) -> bool {
-        is_same_file(file, &self.scene).unwrap_or(false)
+        !self.is_standard_input() && is_same_file(file, &self.scene).unwrap_or(false)
     }
 
     /// The validated scene, in which light comes to an end.
     pub fn load(&self) -> anyhow::Result<Scene> {
-        let file = self.resolve()?;
+        self.scene_of(&self.resolve()?)
+    }
+
+    /// The same of its file, which may be read only once.
+    pub fn scene_of(&self, file: &SceneFile) -> anyhow::Result<Scene> {
         if self.confined {
             let folder = self.folder();
-            check_confined(&value(&file)?, &folder).with_context(|| self.name())?;
+            check_confined(&value(file)?, &folder).with_context(|| self.name())?;
         }
         let scene = file.scene(&self.folder()).with_context(|| self.name())?;
         check_end(&scene).with_context(|| self.name())?;
@@ -91,14 +99,16 @@ impl Source {
 
     fn resolve_file(&self) -> anyhow::Result<SceneFile> {
         let path = &self.scene;
-        let is_bare_name = !path.exists() && path.extension().is_none();
+        let is_bare_name = !self.is_standard_input() && !path.exists() && path.extension().is_none();
         if is_bare_name {
             bail!("no such scene: {}", unknown_scene(&self.name()));
         }
         // A scene may come through a pipe.
-        let text = read_stream(path, MOST_BYTES)
-            .and_then(text)
-            .with_context(|| format!("cannot read {}", self.name()))?;
+        let read = match self.is_standard_input() {
+            true => read_all(std::io::stdin().lock(), MOST_BYTES),
+            false => read_stream(path, MOST_BYTES),
+        };
+        let text = read.and_then(text).with_context(|| format!("cannot read {}", self.name()))?;
         let what = || format!("a scene file of {} bytes", text.len());
         turbid::memory::check(what, IN_MEMORY * text.len() as f64).with_context(|| self.name())?;
         let mut file = SceneFile::from_toml(&text).map_err(|e| anyhow!(located(&self.name(), &text, &e)))?;

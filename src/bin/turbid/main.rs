@@ -3,9 +3,11 @@
 mod advise;
 mod check;
 mod command;
+mod completions;
 mod given;
 mod load;
 mod made;
+mod man;
 mod map;
 mod measure;
 mod memory;
@@ -13,7 +15,10 @@ mod notes;
 mod options;
 mod picture;
 mod progress;
+mod provenance;
+mod quiet;
 mod render;
+mod revision;
 mod scenes;
 mod shared;
 mod statistics;
@@ -36,8 +41,11 @@ To begin with, no file is needed:
 ///
 /// Lengths are in scene units (L), powers in watts. Figures use the DejaVu fonts (Bitstream Vera licence).
 #[derive(Parser)]
-#[command(name = "turbid", version, arg_required_else_help = true, after_help = EXAMPLES)]
+#[command(name = "turbid", version = revision::version(), arg_required_else_help = true, after_help = EXAMPLES)]
 struct Arguments {
+    /// Tell neither notes nor progress on standard error; errors still.
+    #[arg(long, global = true)]
+    quiet: bool,
     #[command(subcommand)]
     command: command::Command,
 }
@@ -54,7 +62,12 @@ fn main() -> ExitCode {
     end_on_signal(|| "turbid: stopped by a signal; files appear whole or not at all".to_string());
     without_panic("turbid", || {
         let outcome = match parse() {
-            Ok((arguments, given)) => arguments.command.run(&given),
+            Ok((arguments, given)) => {
+                if arguments.quiet {
+                    quiet::be_quiet();
+                }
+                arguments.command.run(&given, Arguments::command())
+            }
             Err(error) => usage::explain(&error),
         };
         command::exit_code("turbid", outcome)

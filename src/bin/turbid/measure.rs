@@ -6,6 +6,7 @@ use super::memory::{Memory, passes_that_fit, rounded_down};
 use super::options;
 use super::picture::{BoundaryName, RejectName};
 use super::progress::Bar;
+use super::revision::revision;
 use super::shared::{FormatName, kernels, note, on_threads, parse_count, tell_ahead, whole};
 use anyhow::{Context, bail};
 use clap::{ArgMatches, ValueEnum};
@@ -13,7 +14,7 @@ use std::path::PathBuf;
 use turbid::estimators::{Estimator, Gather, Kernel};
 use turbid::geometry::Voxels;
 use turbid::output::{
-    check_writable, is_same_file, npy, one_line, print, voxel_grid, write_atomically, write_rows,
+    RunInfo, check_writable, is_same_file, npy, one_line, print, voxel_grid, write_atomically, write_rows,
 };
 use turbid::photons::{Ledger, Photon};
 use turbid::scene::{Binned, Orders, Quantity, Scene, Sensor, Space};
@@ -99,7 +100,7 @@ pub struct Measure {
     /// Threads [default: all cores].
     #[arg(long, value_parser = whole::<u16>(1..=1024))]
     threads: Option<u16>,
-    /// Form of the output.
+    /// Form of the output; CSV and JSON say too what the numbers were made with: seed, settings, version, revision.
     #[arg(long, value_enum, default_value = "table")]
     format: FormatName,
     /// Write the table to a file, in its format, and nothing to standard output.
@@ -167,10 +168,10 @@ impl Measure {
         if let Some(binned) = array {
             self.write_files(&measurements, binned)?;
         }
-        let format = self.format.format();
+        let (run, format) = (self.run_info(&scene)?, self.format.format());
         match &self.out {
-            Some(file) => write_atomically(file, |out| write_rows(out, &measurements, format))?,
-            None => print(|out| write_rows(out, &measurements, format)).context("standard output")?,
+            Some(file) => write_atomically(file, |out| write_rows(out, &measurements, &run, format))?,
+            None => print(|out| write_rows(out, &measurements, &run, format)).context("standard output")?,
         }
         for text in notes {
             note(&text)?;
@@ -186,6 +187,40 @@ impl Measure {
             With::Photons => "--with photons",
             With::Light => "--with light",
         }
+    }
+
+    /// What the numbers are made with.
+    fn run_info(&self, scene: &Scene) -> anyhow::Result<RunInfo> {
+        let by = |methods: &[&str]| methods.contains(&self.method());
+        let orders = match self.orders {
+            Orders { min, max: None } => format!("{min}.."),
+            Orders { min, max: Some(max) } if min == max => min.to_string(),
+            Orders { min, max: Some(max) } => format!("{min}..{max}"),
+        };
+        let mut run = RunInfo {
+            with: self.method().trim_start_matches("--").trim_start_matches("with ").to_string(),
+            seed: self.seed,
+            orders,
+            samples: by(&["--with paths"]).then_some(self.samples),
+            photons: by(&["--with photons", "--with light"]).then_some(self.photons),
+            version: env!("CARGO_PKG_VERSION").to_string(),
+            revision: revision().map(str::to_string),
+            ..RunInfo::default()
+        };
+        if by(&["--with photons", "--photons-from"]) {
+            let maps = if self.photons_from.is_empty() { self.maps } else { self.photons_from.len() as u64 };
+            let Estimator { kernel, gather, treatment, rejection, .. } =
+                self.settings(scene, 1, 1)?.estimator;
+            run.maps = Some(maps);
+            match gather {
+                Gather::Radius(radius) => run.radius = Some(radius.get()),
+                _ => (run.k, run.max_radius) = (gather.k(), Some(gather.cap())),
+            }
+            run.kernel = Some(kernel.name().to_string());
+            run.boundary = Some(treatment.name().replace(' ', "-"));
+            run.reject = Some(rejection.name().replace(' ', "-"));
+        }
+        Ok(run)
     }
 
     /// The sensor that goes to files, if one does.

@@ -7,6 +7,8 @@ use super::notes::{tell_empty, tell_gathers, tell_step};
 use super::options;
 use super::picture::{Frame, Held, Photons, Readout, ToneArgs};
 use super::progress::Bar;
+use super::provenance::{map_settings, mapper_settings};
+use super::revision::revision;
 use super::shared::{note, on_threads, parse_count, print, whole};
 use super::statistics::{MAPS, print_statistics};
 use anyhow::{Context, bail};
@@ -155,7 +157,7 @@ impl Render {
         self.check_passes()?;
         let exposure = self.shown.checked()?;
         let file = self.source.resolve()?;
-        let scene = match (self.source.load()?, self.plan) {
+        let scene = match (self.source.scene_of(&file)?, self.plan) {
             (scene, PlanName::Auto) => scene,
             (_, PlanName::Full) if self.with == With::Light => bail!(
                 "--plan full is for pictures by photons and paths: light tracing reads no map and looks for nothing that \
@@ -394,6 +396,7 @@ impl Render {
         let filled: Vec<[Option<Filled>; 3]> = made.maps.iter().map(|made| made.filled).collect();
         Ok(serde_json::json!({
             "program": format!("turbid {}", env!("CARGO_PKG_VERSION")),
+            "revision": revision(),
             "with": self.with.name(),
             "holds": self.with.holds(),
             "plan": if self.plan == PlanName::Full { "full" } else { "auto" },
@@ -406,8 +409,8 @@ impl Render {
             "samples": made.samples,
             "variance": if self.maps == 1 { "between samples" } else { "between repetitions" },
             "exposure": exposure,
-            "map_settings": if by_photons { format!("{maps:?}") } else { String::new() },
-            "mapper_settings": settings.map_or(String::new(), |settings| format!("{settings:?}")),
+            "map_settings": by_photons.then(|| map_settings(&maps)),
+            "mapper_settings": settings.as_ref().map(mapper_settings),
             "maps_global_caustic_volume": filled,
             "scene": scene_text,
         }))

@@ -1,6 +1,6 @@
 //! Where the numbers of a photon stand in a record, and what they may be.
 
-use super::{MOST_EMITTED, ON_SURFACE};
+use super::class::{MOST_EMITTED, ON_SURFACE};
 use crate::photons::{Flags, Photon};
 use glam::{DVec3, Vec3};
 

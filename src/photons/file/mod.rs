@@ -13,6 +13,7 @@
 //!
 //! Vectors are of single or double precision, the others of any type of number. Other columns are passed over.
 
+mod class;
 mod header;
 mod layout;
 mod literal;
@@ -20,25 +21,15 @@ mod npy;
 mod ply;
 mod rows;
 
+pub use class::{MOST_EMITTED, ON_SURFACE, class};
+
 use super::Photon;
 use crate::error::{Error, Result};
-use glam::Vec3;
 use header::Header;
 use rows::{Rows, check_end};
 use std::fs::{File, Metadata};
 use std::io::{BufReader, Read};
 use std::path::{Path, PathBuf};
-
-/// Added to the class of a photon that lies on a surface.
-pub const ON_SURFACE: u8 = 8;
-
-/// Photons that were sent out, at most: above, not every whole number is an f64.
-pub const MOST_EMITTED: f64 = 9e15;
-
-/// The column `class` of a photon.
-pub fn class(photon: &Photon) -> u8 {
-    photon.flags.bits() + if photon.normal == Vec3::ZERO { 0 } else { ON_SURFACE }
-}
 
 /// A file of photons whose header has been read and fits its size.
 #[derive(Debug)]
