@@ -25,8 +25,16 @@ pub fn read(path: &Path, most: u64) -> Result<Vec<u8>> {
 /// # Errors
 /// As [`read`]
 pub fn read_stream(path: &Path, most: u64) -> Result<Vec<u8>> {
+    read_all(std::fs::File::open(path)?, most)
+}
+
+/// The bytes of what is open, at most `most` of them.
+///
+/// # Errors
+/// As [`read`]
+pub fn read_all(input: impl Read, most: u64) -> Result<Vec<u8>> {
     let mut bytes = Vec::new();
-    std::fs::File::open(path)?.take(most.saturating_add(1)).read_to_end(&mut bytes)?;
+    input.take(most.saturating_add(1)).read_to_end(&mut bytes)?;
     if bytes.len() as u64 > most {
         return Err(Error::new(
             ErrorKind::InvalidInput,

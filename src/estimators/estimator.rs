@@ -62,6 +62,15 @@ impl Estimator {
         all
     }
 
+    /// Whether it follows a rule of the literature about walls, which it is then to be told of by [`Boundary::with_walls`].
+    pub fn needs_walls(&self) -> bool {
+        match self.rejection {
+            Rejection::Off => false,
+            Rejection::Visible => self.treatment == Treatment::None,
+            Rejection::Facing | Rejection::FacingBehind | Rejection::BehindPlane => true,
+        }
+    }
+
     /// Its name, such as "cone, k=50, clipped".
     pub fn name(&self) -> String {
         let Estimator { kernel, gather, treatment, rejection } = self;

@@ -1,5 +1,6 @@
 //! A sensor's bins as arrays: `.npy` files, and grids for `.vol` files.
 
+use super::npy::npy_header;
 use crate::error::{Error, Result};
 use crate::geometry::Voxels;
 use crate::medium::Grid;
@@ -17,14 +18,8 @@ use crate::sensor::Measurement;
 pub fn npy(rows: &[&Measurement], count: [usize; 3]) -> Vec<u8> {
     let [ni, nj, nk] = count;
     let channels = rows.len() / (ni * nj * nk);
-    let text =
-        format!("{{'descr': '<f8', 'fortran_order': False, 'shape': ({ni}, {nj}, {nk}, {channels}, 2), }}");
-    // Ten bytes before it and a newline behind it, a multiple of 64 in all.
-    let length = (10 + text.len() + 1).next_multiple_of(64) - 10;
-    let mut bytes = Vec::with_capacity(10 + length + 16 * rows.len());
-    bytes.extend(b"\x93NUMPY\x01\x00");
-    bytes.extend((length as u16).to_le_bytes());
-    bytes.extend(format!("{text:<width$}\n", width = length - 1).into_bytes());
+    let mut bytes = npy_header("'<f8'", &format!("({ni}, {nj}, {nk}, {channels}, 2)"));
+    bytes.reserve(16 * rows.len());
     for i in 0..ni {
         for j in 0..nj {
             for k in 0..nk {

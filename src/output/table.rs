@@ -12,27 +12,97 @@ pub enum Format {
     Text,
     /// Comma-separated values with a header; every bit is kept.
     Csv,
-    /// A list of objects; every bit is kept.
+    /// An object with the version of its form, the run, and a list of objects, the rows; every bit is kept.
     Json,
 }
 
-/// Writes rows in the given form; where sensors have bins, with the numbers of the bin along each axis and its middle.
+/// The version of a table as JSON: 1 was the rows alone.
+const FORMAT: u32 = 2;
+
+/// What the numbers of a table were made with, the same in all rows: columns behind theirs as CSV, an object beside them as JSON.
+/// None of what the method does not ask.
+#[derive(Debug, Clone, Default, PartialEq, Serialize)]
+pub struct RunInfo {
+    /// The method.
+    pub with: String,
+    /// Seed of all random numbers.
+    pub seed: u64,
+    /// Orders that count, beside each sensor's own.
+    pub orders: String,
+    /// Paths a sensor or bin.
+    pub samples: Option<u64>,
+    /// Photons emitted, for all maps together.
+    pub photons: Option<u64>,
+    /// Independent maps.
+    pub maps: Option<u64>,
+    /// Radius of an estimate \[L\].
+    pub radius: Option<f64>,
+    /// Photons of an estimate.
+    pub k: Option<usize>,
+    /// The farthest that they are sought \[L\].
+    pub max_radius: Option<f64>,
+    /// How an estimate weights its photons.
+    pub kernel: Option<String>,
+    /// What it does where a medium ends.
+    pub boundary: Option<String>,
+    /// Which photons behind walls it leaves out.
+    pub reject: Option<String>,
+    /// Version of the program.
+    pub version: String,
+    /// Revision of its sources, where it is known.
+    pub revision: Option<String>,
+}
+
+/// Writes rows in the given form; where sensors have bins, with the numbers of the bin along each axis and its middle. CSV and JSON
+/// tell of their run.
 ///
 /// # Errors
 /// Those of the writer.
-pub fn write_rows(out: &mut dyn Write, rows: &[Measurement], format: Format) -> io::Result<()> {
+pub fn write_rows(
+    out: &mut dyn Write,
+    rows: &[Measurement],
+    run: &RunInfo,
+    format: Format,
+) -> io::Result<()> {
     if rows.iter().any(|row| row.bin.is_some()) {
-        return write_bins(out, rows, format);
+        return write_bins(out, rows, run, format);
     }
     match format {
         Format::Text => write_text(out, rows),
-        Format::Csv if rows.is_empty() => writeln!(out, "{}", COLUMNS.join(",")),
-        Format::Csv => write_csv(out, rows),
-        Format::Json => write_json(out, rows),
+        Format::Csv if rows.is_empty() => {
+            writeln!(out, "{},{}", COLUMNS.join(","), RUN_COLUMNS.join(","))
+        }
+        Format::Csv => write_csv(out, rows.iter().map(|row| (row, run))),
+        Format::Json => write_json(out, &Document { format: FORMAT, run, rows }),
     }
 }
 
+/// A table as JSON.
+#[derive(Serialize)]
+struct Document<'a, T> {
+    format: u32,
+    run: &'a RunInfo,
+    rows: T,
+}
+
 const COLUMNS: [&str; 6] = ["sensor", "quantity", "unit", "mean", "std_error", "n"];
+
+const RUN_COLUMNS: [&str; 14] = [
+    "with",
+    "seed",
+    "orders",
+    "samples",
+    "photons",
+    "maps",
+    "radius",
+    "k",
+    "max_radius",
+    "kernel",
+    "boundary",
+    "reject",
+    "version",
+    "revision",
+];
 
 fn write_text(out: &mut dyn Write, rows: &[Measurement]) -> io::Result<()> {
     let mut lines = vec![COLUMNS.map(str::to_string)];
@@ -71,7 +141,12 @@ struct BinRow<'a> {
 const BIN_COLUMNS: [&str; 12] =
     ["sensor", "quantity", "unit", "i", "j", "k", "x", "y", "z", "mean", "std_error", "n"];
 
-fn write_bins<'a>(out: &mut dyn Write, rows: &'a [Measurement], format: Format) -> io::Result<()> {
+fn write_bins<'a>(
+    out: &mut dyn Write,
+    rows: &'a [Measurement],
+    run: &RunInfo,
+    format: Format,
+) -> io::Result<()> {
     let index = |r: &Measurement, axis: usize| r.bin.map(|bin| bin.index[axis]);
     let middle = |r: &Measurement, axis: usize| r.bin.and_then(|bin| bin.middle).map(|p| p[axis]);
     let whole = |r: &'a Measurement| BinRow {
@@ -89,8 +164,11 @@ fn write_bins<'a>(out: &mut dyn Write, rows: &'a [Measurement], format: Format) 
         n: r.n,
     };
     match format {
-        Format::Csv => write_csv(out, rows.iter().map(whole)),
-        Format::Json => write_json(out, &rows.iter().map(whole).collect::<Vec<_>>()),
+        Format::Csv => write_csv(out, rows.iter().map(|row| (whole(row), run))),
+        Format::Json => write_json(
+            out,
+            &Document { format: FORMAT, run, rows: rows.iter().map(whole).collect::<Vec<_>>() },
+        ),
         Format::Text => {
             let number = |n: Option<usize>| n.map_or_else(String::new, |n| n.to_string());
             let place = |x: Option<f64>| x.map_or_else(String::new, |x| format!("{x:.4}"));
@@ -216,14 +294,21 @@ mod tests {
         let text = |format| text(&in_bins(), format);
         let csv = text(Format::Csv);
         let lines: Vec<&str> = csv.lines().collect();
-        assert_eq!(lines[0], BIN_COLUMNS.join(","));
+        assert_eq!(lines[0], [BIN_COLUMNS.join(","), RUN_COLUMNS.join(",")].join(","));
+        let run = ",light,7,0..,,1000,,,50,,cone,,,0.1.0,";
         assert_eq!(
             lines[1],
-            "\"probe, centre\",fluence,W/L^2,1,2,0,0.1,-2.0,1e-300,0.3333333333333333,0.1,64"
+            format!("\"probe, centre\",fluence,W/L^2,1,2,0,0.1,-2.0,1e-300,0.3333333333333333,0.1,64{run}")
         );
-        assert_eq!(lines[2], "\"probe, centre\",fluence,W/L^2,0,0,0,,,,0.3333333333333333,0.1,64");
-        assert_eq!(lines[3], "\"probe, centre\",fluence,W/L^2,,,,,,,2.0,,64");
+        assert_eq!(
+            lines[2],
+            format!("\"probe, centre\",fluence,W/L^2,0,0,0,,,,0.3333333333333333,0.1,64{run}")
+        );
+        assert_eq!(lines[3], format!("\"probe, centre\",fluence,W/L^2,,,,,,,2.0,,64{run}"));
         let json: serde_json::Value = serde_json::from_str(&text(Format::Json)).unwrap();
+        assert_eq!((json["format"].as_u64(), json["run"]["seed"].as_u64()), (Some(2), Some(7)));
+        assert!(json["run"]["radius"].is_null() && json["run"]["kernel"] == "cone");
+        let json = &json["rows"];
         assert_eq!((json[0]["j"].as_u64(), json[0]["z"].as_f64()), (Some(2), Some(1e-300)));
         assert!(json[1]["x"].is_null() && json[2]["i"].is_null());
         let table = text(Format::Text);
@@ -231,9 +316,22 @@ mod tests {
         assert_eq!(table.lines().count(), 4);
     }
 
+    fn run() -> RunInfo {
+        RunInfo {
+            with: "light".into(),
+            seed: 7,
+            orders: "0..".into(),
+            photons: Some(1000),
+            k: Some(50),
+            kernel: Some("cone".into()),
+            version: "0.1.0".into(),
+            ..RunInfo::default()
+        }
+    }
+
     fn text(rows: &[Measurement], format: Format) -> String {
         let mut out = Vec::new();
-        write_rows(&mut out, rows, format).unwrap();
+        write_rows(&mut out, rows, &run(), format).unwrap();
         String::from_utf8(out).unwrap()
     }
 
@@ -245,7 +343,7 @@ mod tests {
         for x in AWKWARD.into_iter().chain([f64::INFINITY, f64::NAN]) {
             let text = text(&[row(x, 1.0)], Format::Csv);
             let mut reader = csv::Reader::from_reader(text.as_bytes());
-            assert_eq!(reader.headers().unwrap(), COLUMNS.as_slice());
+            assert_eq!(reader.headers().unwrap(), [&COLUMNS[..], &RUN_COLUMNS].concat());
             let record = reader.records().next().unwrap().unwrap();
             assert_eq!(&record[0], "probe, centre");
             let back: f64 = record[3].parse().unwrap();
@@ -257,7 +355,7 @@ mod tests {
     fn json_keeps_every_bit_and_knows_no_error_from_an_error_of_zero() {
         for x in AWKWARD {
             let value: serde_json::Value = serde_json::from_str(&text(&[row(x, 1.0)], Format::Json)).unwrap();
-            assert_eq!(value[0]["mean"].as_f64().unwrap().to_bits(), x.to_bits());
+            assert_eq!(value["rows"][0]["mean"].as_f64().unwrap().to_bits(), x.to_bits());
         }
         assert!(text(&[row(1.0, 0.0)], Format::Json).contains("\"std_error\": null"));
     }
@@ -273,8 +371,9 @@ mod tests {
 
     #[test]
     fn no_rows_are_still_a_table() {
-        assert_eq!(text(&[], Format::Csv), "sensor,quantity,unit,mean,std_error,n\n");
-        assert_eq!(text(&[], Format::Json), "[]\n");
+        let columns = [COLUMNS.join(","), RUN_COLUMNS.join(",")].join(",");
+        assert_eq!(text(&[], Format::Csv), format!("{columns}\n"));
+        assert!(text(&[], Format::Json).contains("\"rows\": []"));
     }
 
     #[test]
@@ -289,7 +388,7 @@ mod tests {
             }
         }
         for format in [Format::Text, Format::Csv, Format::Json] {
-            let error = write_rows(&mut Closed, &[row(1.0, 1.0)], format).unwrap_err();
+            let error = write_rows(&mut Closed, &[row(1.0, 1.0)], &run(), format).unwrap_err();
             assert_eq!(error.kind(), io::ErrorKind::BrokenPipe, "{format:?}");
         }
     }

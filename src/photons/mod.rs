@@ -1,7 +1,8 @@
-//! Photons: the record, the pass that stores them, the periodic cell, the tree over their positions, maps.
+//! Photons: the record, the pass that stores them, the periodic cell, the tree over their positions, maps, and files of them.
 
 mod emit;
 mod ends;
+pub mod file;
 pub mod importance;
 mod map;
 pub mod maps;

@@ -3,7 +3,7 @@
 use super::builtin::{BUILTIN, Builtin};
 use super::{Scene, SceneFile};
 use crate::error::{Error, Result};
-use crate::input::{read_stream, text};
+use crate::input::{read_all, read_stream, text};
 use std::fmt::Display;
 use std::ops::Range;
 use std::path::{Component, Path, PathBuf};
@@ -31,7 +31,7 @@ fn met_in(what: impl Display, error: impl Display) -> Error {
 }
 
 impl SceneSource {
-    /// A built-in scene by its name, or the path of a scene file.
+    /// A built-in scene by its name, the path of a scene file, or `-` for one on standard input.
     pub fn new(scene: impl Into<PathBuf>) -> Self {
         SceneSource { scene: scene.into(), sets: Vec::new() }
     }
@@ -54,7 +54,12 @@ impl SceneSource {
 
     /// What messages call it.
     pub fn name(&self) -> String {
-        self.scene.display().to_string()
+        if self.is_standard_input() { "standard input".to_string() } else { self.scene.display().to_string() }
+    }
+
+    /// Whether the scene is on standard input, which can be read only once.
+    pub fn is_standard_input(&self) -> bool {
+        self.scene.as_os_str() == "-"
     }
 
     /// The scene's file, or the name of a built-in one.
@@ -123,14 +128,17 @@ impl SceneSource {
 
     fn resolve_file(&self) -> Result<SceneFile> {
         let path = &self.scene;
-        let is_bare_name = !path.exists() && path.extension().is_none();
+        let is_bare_name = !self.is_standard_input() && !path.exists() && path.extension().is_none();
         if is_bare_name {
             return Err(refused(format!("no such scene: {}", unknown_scene(&self.name()))));
         }
         // A scene may come through a pipe.
-        let text = read_stream(path, MOST_BYTES)
-            .and_then(text)
-            .map_err(|error| met_in(format!("cannot read {}", self.name()), error))?;
+        let read = match self.is_standard_input() {
+            true => read_all(std::io::stdin().lock(), MOST_BYTES),
+            false => read_stream(path, MOST_BYTES),
+        };
+        let text =
+            read.and_then(text).map_err(|error| met_in(format!("cannot read {}", self.name()), error))?;
         let what = || format!("a scene file of {} bytes", text.len());
         crate::memory::check(what, IN_MEMORY * text.len() as f64)
             .map_err(|error| met_in(self.name(), error))?;

@@ -1,11 +1,12 @@
 //! Maps of one pass, read by any number of estimators.
 
 use super::PhotonForecast;
-use super::photons::{PhotonReadings, check, forecast_of, map_orders, maps, margin_of, max_order, read_bins};
+use super::photons::{
+    PhotonReadings, Surroundings, check, forecast_of, map_orders, maps, margin_of, max_order, read_bins,
+};
 use crate::Spectrum;
 use crate::error::{Error, Result};
 use crate::estimators::Estimator;
-use crate::integrators::mapper::{MediumExtent, medium_extents};
 use crate::photons::{Histories, Ledger, Part, PhotonMap};
 use crate::scene::{Orders, Quantity, Scene};
 use crate::transport::Progress;
@@ -29,7 +30,6 @@ pub struct MapSettings {
 /// The maps that answer the sensors of a scene, of one pass.
 pub struct SensorMaps<'a> {
     scene: &'a Scene,
-    extents: Vec<MediumExtent>,
     maps: Vec<(Orders, PhotonMap)>,
     settings: MapSettings,
     /// Powers \[W\] by history.
@@ -82,7 +82,7 @@ impl<'a> SensorMaps<'a> {
         let sensors = scene.sensors();
         let histories = Histories { count: photons, seed, replicate, max_order: max_order(sensors) };
         let (pass, maps) = maps(scene, sensors, histories, Part { number: 0, of: 1 }, margin, progress)?;
-        Ok(SensorMaps { scene, extents: medium_extents(scene), maps, settings, ledger: pass.report.ledger })
+        Ok(SensorMaps { scene, maps, settings, ledger: pass.report.ledger })
     }
 
     /// Whether maps can answer every sensor of a scene by estimators of this reach \[L\].
@@ -118,17 +118,17 @@ impl<'a> SensorMaps<'a> {
             return Err(Error::out_of_range("the reach of an estimator", cap, "at most that of the maps"));
         }
         let (sensors, mut booked) = (self.scene.sensors(), PhotonReadings::new());
+        let around = Surroundings::of(self.scene, estimator);
         let mut values: Vec<Vec<Spectrum>> = Vec::with_capacity(sensors.len());
         for (number, sensor) in sensors.iter().enumerate() {
             let own = map_orders(sensor).and_then(|range| self.maps.iter().find(|(held, _)| *held == range));
             let Some((_, map)) = own else { continue };
-            let around = (self.scene, self.extents.as_slice());
             let is_random = !matches!(sensor.quantity, Quantity::Fluence(_));
             let readings = if is_random { self.settings.readings.max(1) } else { 1 };
             let mut sums: Vec<Spectrum> = Vec::new();
             for reading in 0..readings {
                 let of = (self.settings.seed, self.settings.replicate, number + reading * sensors.len());
-                let read = read_bins(around, map, sensor, estimator, of, &mut booked)?;
+                let read = read_bins(&around, map, sensor, estimator, of, &mut booked)?;
                 match reading {
                     0 => sums = read,
                     _ => sums.iter_mut().zip(read).for_each(|(sum, value)| *sum += value),

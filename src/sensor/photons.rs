@@ -6,6 +6,7 @@ use crate::Spectrum;
 use crate::error::{Error, Result};
 use crate::estimators::boundary::{Boundary, Treatment};
 use crate::estimators::{Estimate, Estimator, Gather};
+use crate::geometry::Shape;
 use crate::integrators::mapper::{MediumExtent, medium_extents, scene_size};
 use crate::integrators::{March, StepRule, along};
 use crate::math::{Interval, Positive, Ray};
@@ -114,12 +115,11 @@ pub fn by_photons_in_passes(
         ));
     }
     let (sensors, margin) = prepared(scene, settings)?;
-    let bins = |sensor: &Sensor| sensor.binned().map_or(1, Binned::bins);
     let mut moments: Vec<_> = sensors.iter().map(|s| vec![[Moments::new(); 3]; bins(s)]).collect();
     let mut scores = Scores::default();
     let mut result = PhotonReadings::new();
     let max_order = max_order(&sensors);
-    let extents = medium_extents(scene);
+    let surroundings = Surroundings::of(scene, &settings.estimator);
     for replicate in 0..settings.maps {
         let histories = Histories { count: settings.photons, seed: settings.seed, replicate, max_order };
         let mut estimates: Vec<_> = sensors.iter().map(|s| vec![Spectrum::ZERO; bins(s)]).collect();
@@ -135,34 +135,111 @@ pub fn by_photons_in_passes(
                 }
             }
             scores.merge(pass.scores);
-            for (range, map) in &maps {
-                let here = sensors.iter().zip(&mut estimates).filter(|(s, _)| map_orders(s) == Some(*range));
-                for (index, (sensor, sums)) in here.enumerate() {
-                    // Every pass asks at the same places.
-                    let of = (settings.seed, replicate, index);
-                    let values =
-                        read_bins((scene, &extents), map, sensor, &settings.estimator, of, &mut result)?;
-                    for (sum, value) in sums.iter_mut().zip(values) {
-                        *sum += value / passes as f64;
-                    }
-                }
-            }
+            let asked = Asked { surroundings: &surroundings, sensors: &sensors, settings };
+            asked.read(&maps, replicate, passes, &mut estimates, &mut result)?;
             if number > 0 {
                 // The same places as those of the first pass, asked again.
                 (result.gathers, result.underfull, result.beyond) = booked;
             }
         }
-        let read = sensors.iter().zip(&mut moments).zip(estimates);
-        for ((_, moments), values) in read.filter(|((s, _), _)| map_orders(s).is_some()) {
-            for (moments, value) in moments.iter_mut().zip(values) {
-                for (channel, m) in moments.iter_mut().enumerate() {
-                    m.push(value[channel]);
-                }
+        push(&sensors, &mut moments, estimates);
+    }
+    let mut scored = scores.moments(scene, settings.photons * settings.maps);
+    result.measurements = rows(scene, &sensors, moments, || scored.next())?;
+    Ok(result)
+}
+
+/// Whether photons in a map answer a sensor, so that those of a file do.
+pub fn is_answered_by_map(sensor: &Sensor) -> bool {
+    map_orders(sensor).is_some()
+}
+
+/// Reads the sensors that maps answer, see [`is_answered_by_map`], from photons of media that others have sent out: those of one
+/// map each time, and their number emitted. Of `settings`, `photons` and `maps` do not count; `seed` is that of the places that
+/// bins and rays are asked at.
+///
+/// # Errors
+/// those of [`by_photons`] and of `given`; `Error::Scene` where maps answer no sensor
+pub fn by_given_photons(
+    scene: &Scene,
+    settings: &PhotonSettings,
+    given: impl IntoIterator<Item = Result<(Vec<Photon>, u64)>>,
+) -> Result<PhotonReadings> {
+    let (sensors, margin) = prepared_for_maps(scene, settings)?;
+    let mut moments: Vec<_> = sensors.iter().map(|s| vec![[Moments::new(); 3]; bins(s)]).collect();
+    let mut result = PhotonReadings::new();
+    let surroundings = Surroundings::of(scene, &settings.estimator);
+    for (replicate, photons) in (0..).zip(given) {
+        let (mut photons, emitted) = photons?;
+        if let Some(cell) = scene.periodic_cell() {
+            photons
+                .iter_mut()
+                .for_each(|photon| photon.position = periodic::wrap(photon.position, cell.side));
+        }
+        let maps = maps_of(scene, &sensors, vec![photons], emitted, margin, (settings.seed, replicate))?;
+        let mut estimates: Vec<_> = sensors.iter().map(|s| vec![Spectrum::ZERO; bins(s)]).collect();
+        let asked = Asked { surroundings: &surroundings, sensors: &sensors, settings };
+        asked.read(&maps, replicate, 1, &mut estimates, &mut result)?;
+        push(&sensors, &mut moments, estimates);
+    }
+    result.measurements = rows(scene, &sensors, moments, || None)?;
+    Ok(result)
+}
+
+/// Most memory that [`by_given_photons`] takes for a map of so many photons \[bytes\].
+///
+/// # Errors
+/// those of [`by_given_photons`]
+pub fn given_bytes(scene: &Scene, settings: &PhotonSettings, count: u64) -> Result<f64> {
+    let (sensors, margin) = prepared_for_maps(scene, settings)?;
+    let all = count as f64 * around(scene, margin);
+    let bytes = match ranges(&sensors).len() {
+        0 | 1 => PEAK_BYTES * all,
+        // All of them may be in each range.
+        maps => (size_of::<Photon>() as f64 + PEAK_BYTES * maps as f64) * all,
+    };
+    Ok(bytes + row_bytes(scene))
+}
+
+/// The sensors that maps answer, as [`prepared`].
+fn prepared_for_maps(scene: &Scene, settings: &PhotonSettings) -> Result<(Vec<Sensor>, f64)> {
+    let sensors: Vec<&Sensor> = scene.sensors().iter().filter(|s| is_answered_by_map(s)).collect();
+    if sensors.is_empty() {
+        let names: Vec<String> = scene.sensors().iter().map(|s| format!("{} {}", s.name, s.label)).collect();
+        return Err(Error::Scene(format!(
+            "photons of a file answer none of the sensors ({}): those count photons on their way; allowed: fluence, radiance, \
+             mean-fluence, mean-radiance",
+            names.join(", ")
+        )));
+    }
+    prepared_of(scene, sensors, settings)
+}
+
+/// Numbers that a sensor gives.
+fn bins(sensor: &Sensor) -> usize {
+    sensor.binned().map_or(1, Binned::bins)
+}
+
+/// Counts the estimates from a map.
+fn push(sensors: &[Sensor], moments: &mut [Vec<[Moments; 3]>], estimates: Vec<Vec<Spectrum>>) {
+    let read = sensors.iter().zip(moments).zip(estimates);
+    for ((_, moments), values) in read.filter(|((s, _), _)| map_orders(s).is_some()) {
+        for (moments, value) in moments.iter_mut().zip(values) {
+            for (channel, m) in moments.iter_mut().enumerate() {
+                m.push(value[channel]);
             }
         }
     }
-    result.measurements = room(scene);
-    let mut scored = scores.moments(scene, settings.photons * settings.maps);
+}
+
+/// The measurements of all sensors; those of scores come from `scored`.
+fn rows(
+    scene: &Scene,
+    sensors: &[Sensor],
+    moments: Vec<Vec<[Moments; 3]>>,
+    mut scored: impl FnMut() -> Option<[Moments; 3]>,
+) -> Result<Vec<Measurement>> {
+    let mut rows = room(scene);
     for (sensor, moments) in sensors.iter().zip(moments) {
         let source = match map_orders(sensor) {
             Some(_) => Source::Maps,
@@ -170,15 +247,73 @@ pub fn by_photons_in_passes(
             None => Source::Scores,
         };
         for (bin, moments) in moments.into_iter().enumerate() {
-            let moments = if source == Source::Scores { scored.next().unwrap_or(moments) } else { moments };
+            let moments = if source == Source::Scores { scored().unwrap_or(moments) } else { moments };
             let non_finite = moments.iter().filter(|m| !m.mean().is_finite()).count() as u64;
             if non_finite > 0 {
                 return Err(Error::NonFinite { count: non_finite, place: "estimates from photon maps" });
             }
-            result.measurements.extend(measurements(scene, sensor, &moments, None, source, Some(bin)));
+            rows.extend(measurements(scene, sensor, &moments, None, source, Some(bin)));
         }
     }
-    Ok(result)
+    Ok(rows)
+}
+
+/// What is about the points that maps are asked at.
+pub(super) struct Surroundings<'a> {
+    scene: &'a Scene,
+    extents: Vec<MediumExtent>,
+    /// Bodies that part photons from a point, where a rule of the literature asks for them.
+    walls: Option<Vec<Shape>>,
+}
+
+impl<'a> Surroundings<'a> {
+    pub(super) fn of(scene: &'a Scene, estimator: &Estimator) -> Self {
+        let walls = || scene.objects().iter().map(|object| object.shape.clone()).collect();
+        let walls = estimator.needs_walls().then(walls);
+        Surroundings { scene, extents: medium_extents(scene), walls }
+    }
+
+    /// The boundary of a medium.
+    fn boundary(&self, number: usize) -> Boundary<'_> {
+        let boundary = self.extents[number].boundary();
+        match &self.walls {
+            Some(walls) => boundary.about(&[]).with_walls(walls),
+            None => boundary,
+        }
+    }
+}
+
+/// What maps are asked.
+struct Asked<'a> {
+    surroundings: &'a Surroundings<'a>,
+    sensors: &'a [Sensor],
+    settings: &'a PhotonSettings,
+}
+
+impl Asked<'_> {
+    /// Adds the estimates of every sensor that maps answer from the maps of one of so many passes of a run.
+    fn read(
+        &self,
+        maps: &[(Orders, PhotonMap)],
+        replicate: u64,
+        passes: u64,
+        estimates: &mut [Vec<Spectrum>],
+        result: &mut PhotonReadings,
+    ) -> Result<()> {
+        let Asked { surroundings, sensors, settings } = *self;
+        for (range, map) in maps {
+            let here = sensors.iter().zip(&mut *estimates).filter(|(s, _)| map_orders(s) == Some(*range));
+            for (index, (sensor, sums)) in here.enumerate() {
+                // Every pass asks at the same places.
+                let of = (settings.seed, replicate, index);
+                let values = read_bins(surroundings, map, sensor, &settings.estimator, of, result)?;
+                for (sum, value) in sums.iter_mut().zip(values) {
+                    *sum += value / passes as f64;
+                }
+            }
+        }
+        Ok(())
+    }
 }
 
 /// What a measurement by photons will take, by a pilot.
@@ -229,10 +364,8 @@ pub(super) fn forecast_of(
     let threads = rayon::current_num_threads() as f64;
     let one = start.elapsed().as_secs_f64() / count as f64;
     let a_history = |number: &AtomicU64| number.load(Ordering::Relaxed) as f64 / count as f64;
-    // Copies beyond the edges of the cell.
-    let around =
-        scene.periodic_cell().map_or(1.0, |cell| (DVec2::ONE + 2.0 * margin / cell.side).element_product());
-    let [met, copied] = [a_history(&met), a_history(&copied)].map(|n| n * photons as f64 * around);
+    let [met, copied] =
+        [a_history(&met), a_history(&copied)].map(|n| n * photons as f64 * around(scene, margin));
     // Where several ranges of orders have a map each, the photons of all stay until the last one.
     let bytes = match ranges.len() {
         1 => PEAK_BYTES * met,
@@ -246,13 +379,24 @@ pub(super) fn forecast_of(
     Ok(PhotonForecast { stored: copied, bytes, seconds })
 }
 
+/// How many times the photons of a cell a map holds that is continued beyond its edges.
+fn around(scene: &Scene, margin: f64) -> f64 {
+    scene.periodic_cell().map_or(1.0, |cell| (DVec2::ONE + 2.0 * margin / cell.side).element_product())
+}
+
 /// The sensors with the orders that count, and how far beyond the cell's edges they read \[L\].
 fn prepared(scene: &Scene, settings: &PhotonSettings) -> Result<(Vec<Sensor>, f64)> {
-    let sensors: Vec<Sensor> = scene
-        .sensors()
-        .iter()
-        .map(|s| Sensor { orders: s.orders.and(&settings.orders), ..s.clone() })
-        .collect();
+    prepared_of(scene, scene.sensors(), settings)
+}
+
+/// The same of some of the sensors.
+fn prepared_of<'a>(
+    scene: &Scene,
+    sensors: impl IntoIterator<Item = &'a Sensor>,
+    settings: &PhotonSettings,
+) -> Result<(Vec<Sensor>, f64)> {
+    let sensors: Vec<Sensor> =
+        sensors.into_iter().map(|s| Sensor { orders: s.orders.and(&settings.orders), ..s.clone() }).collect();
     for sensor in &sensors {
         check(scene, sensor)?;
         // Estimates from maps are of media, where photons are; scores are of all that they cross.
@@ -296,7 +440,23 @@ pub(super) fn maps(
     let scored = scored(sensors);
     let run = Run { part, sensors, scored: &scored, ..Run::new(scene, &emitter, histories) };
     let mut pass = run.pass(&is_needed, progress)?;
-    let mut blocks = std::mem::take(&mut pass.media);
+    let blocks = std::mem::take(&mut pass.media);
+    let run = (histories.seed, histories.replicate);
+    let maps = maps_of(scene, sensors, blocks, histories.count, margin, run)?;
+    Ok((pass, maps))
+}
+
+/// The maps of photons in media, one for each range of orders that a sensor needs, continued `margin` beyond the periodic cell, as
+/// those of a run of a seed and replicate.
+fn maps_of(
+    scene: &Scene,
+    sensors: &[Sensor],
+    mut blocks: Vec<Vec<Photon>>,
+    emitted: u64,
+    margin: f64,
+    (seed, replicate): (u64, u64),
+) -> Result<Vec<(Orders, PhotonMap)>> {
+    let ranges = ranges(sensors);
     let mut maps = Vec::with_capacity(ranges.len());
     for (number, &range) in ranges.iter().enumerate() {
         let holds = |photon: &Photon| range.contains(u32::from(photon.order));
@@ -309,10 +469,10 @@ pub(super) fn maps(
             false => blocks.iter().map(|block| block.iter().copied().filter(holds).collect()).collect(),
         };
         let cell = scene.periodic_cell().map(|periodic_cell| (periodic_cell.side, margin));
-        let map = PhotonMap::periodic(parts, histories.count, cell, &NoProgress)?;
-        maps.push((range, map.of_run(histories.seed, histories.replicate)));
+        let map = PhotonMap::periodic(parts, emitted, cell, &NoProgress)?;
+        maps.push((range, map.of_run(seed, replicate)));
     }
-    Ok((pass, maps))
+    Ok(maps)
 }
 
 /// The orders of the photons that answer a sensor; none where tallies do. Photons of order n are the fluence of
@@ -400,7 +560,7 @@ pub(super) fn check(scene: &Scene, sensor: &Sensor) -> Result<()> {
 
 /// What a map answers for every bin of a sensor; seed, replicate and number of the sensor say where in the bins it is asked.
 pub(super) fn read_bins(
-    around: (&Scene, &[MediumExtent]),
+    around: &Surroundings<'_>,
     map: &PhotonMap,
     sensor: &Sensor,
     estimator: &Estimator,
@@ -431,14 +591,14 @@ const POINTS: usize = 4;
 
 /// One estimate from a map: of a bin, the mean over some of its points.
 fn read(
-    around: (&Scene, &[MediumExtent]),
+    around: &Surroundings<'_>,
     map: &PhotonMap,
     (sensor, bin): (&Sensor, usize),
     estimator: &Estimator,
     stream: &mut Stream,
     result: &mut PhotonReadings,
 ) -> Result<Spectrum> {
-    let scene = around.0;
+    let scene = around.scene;
     match &sensor.quantity {
         Quantity::Fluence(p) => Ok(fluence_at(around, map, *p, estimator, result)),
         Quantity::Radiance(ray) => Ok(radiance(around, map, ray, sensor.orders, estimator, stream, result)),
@@ -468,15 +628,16 @@ fn read(
 
 /// Fluence at a point in a medium.
 fn fluence_at(
-    (scene, extents): (&Scene, &[MediumExtent]),
+    around: &Surroundings<'_>,
     map: &PhotonMap,
     p: DVec3,
     estimator: &Estimator,
     result: &mut PhotonReadings,
 ) -> Spectrum {
+    let scene = around.scene;
     let number = scene.medium_number_at(p);
     let sigma_t = number.map_or(Spectrum::ONE, |number| scene.medium(number).sigma_t(p));
-    let boundary = number.map_or(Boundary::UNKNOWN, |number| extents[number].boundary());
+    let boundary = number.map_or(Boundary::UNKNOWN, |number| around.boundary(number));
     let estimate = estimator.fluence(map, p, sigma_t, &boundary);
     result.book(scene, p, &estimate, estimator.treatment);
     estimate.value
@@ -485,7 +646,7 @@ fn fluence_at(
 /// Radiance along a ray: uncollided light in closed form, and what media scatter, marched in random steps, so that the integral
 /// along the ray has no step bias.
 fn radiance(
-    (scene, extents): (&Scene, &[MediumExtent]),
+    around: &Surroundings<'_>,
     map: &PhotonMap,
     ray: &Ray,
     orders: Orders,
@@ -493,7 +654,7 @@ fn radiance(
     stream: &mut Stream,
     result: &mut PhotonReadings,
 ) -> Spectrum {
-    let mut sum = Spectrum::ZERO;
+    let (scene, mut sum) = (around.scene, Spectrum::ZERO);
     let end = scene.hit(ray, None).map_or(f64::INFINITY, |h| h.hit.t);
     let (interior, size) = (scene.interior_at(ray.origin), scene_size(scene));
     if orders.contains(0) {
@@ -509,7 +670,7 @@ fn radiance(
                 return Spectrum::ZERO;
             }
             let (wo, phase) = (-ray.dir, medium.phase());
-            let boundary = extents[segment.medium].boundary();
+            let boundary = around.boundary(segment.medium);
             let estimate = estimator.in_scattered(map, p, wo, phase, Spectrum::ONE, &boundary);
             result.book(scene, p, &estimate, estimator.treatment);
             medium.albedo(p) * estimate.value

@@ -19,6 +19,11 @@ impl Flags {
         self.0
     }
 
+    /// The flags of these bits; none of others.
+    pub fn of_bits(bits: u8) -> Option<Flags> {
+        (bits < 8).then_some(Flags(bits))
+    }
+
     /// Both sets of flags.
     pub fn with(self, other: Flags) -> Flags {
         Flags(self.0 | other.0)

@@ -10,8 +10,9 @@ const TINY: [&str; 10] =
 fn the_built_in_box_needs_no_file() {
     let folder = Folder::new();
     let out = folder.0.path().join("fog.exr");
-    for with in ["photons", "paths"] {
-        let said = succeeds(&[&["render", "fogbox", "-o", text(&out), "--with", with][..], &TINY].concat());
+    for (with, settings) in [("photons", &TINY[..]), ("paths", &TINY[..4])] {
+        let said =
+            succeeds(&[&["render", "fogbox", "-o", text(&out), "--with", with][..], settings].concat());
         assert!(said.contains("fog.exr") && said.contains("fog.png"), "{said}");
     }
     let png = folder.0.path().join("map.png");
@@ -82,7 +83,7 @@ fn sizes_and_numbers_out_of_range() {
     let map = |options: &[&str], words: &[&str]| {
         refuses_naming(&[&["map", "fogbox", "-o", text(&png)], options].concat(), words);
     };
-    map(&["--which", "direct"], &["--which", "allowed: global, caustic, volume, all"]);
+    map(&["--which", "direct"], &["--which", "allowed: global, caustic, volume, all, medium"]);
     map(&["--ply", "cloud.obj"], &["--ply is cloud.obj; allowed: a file name that ends in .ply"]);
     map(&["--which", "caustic"], &["the map is empty"]);
     map(&["--width", "0"], &["--width"]);

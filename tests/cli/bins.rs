@@ -18,7 +18,7 @@ fn rows(arguments: &[&str]) -> Vec<csv::StringRecord> {
     let output = turbid(arguments).output().unwrap();
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
     let mut reader = csv::Reader::from_reader(output.stdout.as_slice());
-    assert_eq!(reader.headers().unwrap().len(), 12);
+    assert_eq!(reader.headers().unwrap().len(), 12 + 14);
     reader.records().collect::<Result<_, _>>().unwrap()
 }
 
@@ -30,24 +30,13 @@ fn a_table_an_array_and_a_grid_hold_the_same() {
     let scene = folder.file("slab.toml", &format!("{SLAB}{}", sensor(voxels)));
     let (array, grid) = (folder.0.path().join("a.npy"), folder.0.path().join("a.vol"));
     for with in ["light", "path", "photons"] {
-        let rows = rows(&[
-            "measure",
-            text(&scene),
-            "--with",
-            with,
-            "--samples",
-            "2e3",
-            "--photons",
-            "2e4",
-            "--maps",
-            "4",
-            "--format",
-            "csv",
-            "--npy",
-            text(&array),
-            "--vol",
-            text(&grid),
-        ]);
+        let count: &[&str] = match with {
+            "path" => &["--samples", "2e3"],
+            "light" => &["--photons", "2e4"],
+            _ => &["--photons", "2e4", "--maps", "4"],
+        };
+        let files = ["--format", "csv", "--npy", text(&array), "--vol", text(&grid)];
+        let rows = rows(&[&["measure", text(&scene), "--with", with][..], count, &files].concat());
         assert_eq!(rows.len(), 18);
         assert_eq!((&rows[0][1], &rows[17][1]), ("fluence.r", "fluence.b"));
         assert_eq!((&rows[3][3], &rows[3][4], &rows[3][5]), ("1", "0", "0"));
@@ -215,7 +204,9 @@ fn bins_where_light_from_outside_has_not_been() {
             if with == "photons" && measure.starts_with("mean-fluence") {
                 continue;
             }
-            let arguments = ["measure", text(&file), "--with", with, "--photons", "2000", "--maps", "2"];
+            let maps: &[&str] = if with == "photons" { &["--maps", "2"] } else { &[] };
+            let arguments =
+                [&["measure", text(&file), "--with", with, "--photons", "2000"][..], maps].concat();
             if is_refused {
                 refuses_naming(&arguments, &["sensor here: its bins reach", "give it `min_order = 1`"]);
             } else {

@@ -7,8 +7,11 @@ mod bad_pictures;
 mod bins;
 mod media;
 mod memory;
+mod options;
 mod output;
+mod photons;
 mod pictures;
+mod provenance;
 mod reference;
 
 use assert_cmd::Command;

@@ -410,14 +410,20 @@ pub fn arguments(stream: &mut Stream) -> Vec<u8> {
     };
     match command {
         "measure" => {
-            words.extend(["--with", pick(stream, &["path", "photons", "light"])].map(String::from));
-            words.extend(["--samples", "20", "--photons", "500"].map(String::from));
+            // What the method would ignore is refused.
+            let with = pick(stream, &["path", "photons", "light"]);
+            words.extend(["--with", with].map(String::from));
+            let count = if with == "path" { ["--samples", "20"] } else { ["--photons", "500"] };
+            words.extend(count.map(String::from));
         }
         "advise" => words.extend(["--target", "50%", "--pilot", "2000", "--samples", "20"].map(String::from)),
         "render" => {
             words.extend(["-o", "out.exr", "--width", "4", "--samples", "1"].map(String::from));
-            words.extend(["--global", "500", "--caustic", "100", "--volume", "300"].map(String::from));
-            words.extend(["--with", pick(stream, &["photons", "paths", "light"])].map(String::from));
+            let with = pick(stream, &["photons", "paths", "light"]);
+            words.extend(["--with", with].map(String::from));
+            if with == "photons" {
+                words.extend(["--global", "500", "--caustic", "100", "--volume", "300"].map(String::from));
+            }
         }
         "map" => words.extend(
             ["-o", "out.png", "--width", "8", "--global", "500", "--volume", "300"].map(String::from),

@@ -1,7 +1,7 @@
 //! The commands, one file each, and their exit code.
 
-use crate::{advise, check, map, measure, render, scenes};
-use clap::Subcommand;
+use crate::{advise, check, completions, man, map, measure, render, scenes};
+use clap::{ArgMatches, Subcommand};
 use std::io::{ErrorKind, Write};
 use std::process::ExitCode;
 use turbid::output::{WriteError, one_line};
@@ -10,24 +10,32 @@ use turbid::output::{WriteError, one_line};
 #[derive(Subcommand)]
 #[allow(missing_docs, reason = "a comment on a variant would hide the long help of its command")]
 pub enum Command {
-    Measure(measure::Measure),
+    Measure(Box<measure::Measure>),
     Advise(advise::Advise),
     Render(Box<render::Render>),
     Map(Box<map::Map>),
     Check(check::Check),
     Scenes(scenes::Scenes),
+    Completions(completions::Completions),
+    Man(man::Man),
 }
 
 impl Command {
     /// Answers; what it prints goes to stdout.
-    pub fn run(self) -> anyhow::Result<()> {
+    ///
+    /// # Arguments
+    /// `given` what was parsed, which knows the defaults; `program` all that may be asked
+    pub fn run(self, given: &ArgMatches, program: clap::Command) -> anyhow::Result<()> {
+        let given = given.subcommand().map_or(given, |(_, given)| given);
         match self {
-            Command::Measure(command) => command.run(),
+            Command::Measure(command) => command.run(given),
             Command::Advise(command) => command.run(),
-            Command::Render(command) => command.run(),
-            Command::Map(command) => command.run(),
+            Command::Render(command) => command.run(given),
+            Command::Map(command) => command.run(given),
             Command::Check(command) => command.run(),
             Command::Scenes(command) => command.run(),
+            Command::Completions(command) => command.run(program),
+            Command::Man(command) => command.run(program),
         }
     }
 }

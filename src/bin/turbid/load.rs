@@ -2,13 +2,14 @@
 
 use anyhow::Context;
 use std::path::{Path, PathBuf};
+use turbid::output::is_same_file;
 use turbid::photons::check_end;
 use turbid::scene::{Scene, SceneFile, SceneSource};
 
 /// Which scene, and what to change in it.
 #[derive(clap::Args)]
 pub struct Source {
-    /// A built-in scene (see `turbid scenes`) or a scene file.
+    /// A built-in scene (see `turbid scenes`), a scene file, or - for one on standard input.
     scene: PathBuf,
     /// Change a value before the scene is made: `albedo=0.5` of a built-in scene, `regions.0.albedo=0.5` of a file.
     #[arg(long = "set", value_name = "KEY=VALUE")]
@@ -27,20 +28,24 @@ impl Source {
 
     /// What messages call it.
     pub fn name(&self) -> String {
-        self.scene.display().to_string()
+        SceneSource::new(&self.scene).name()
     }
 
-    /// The scene's file, or the name of a built-in one.
-    pub fn file(&self) -> &Path {
-        &self.scene
+    /// Whether a file is the scene's own.
+    pub fn is_file(&self, file: &Path) -> bool {
+        !SceneSource::new(&self.scene).is_standard_input() && is_same_file(file, &self.scene).unwrap_or(false)
     }
 
     /// The validated scene, in which light comes to an end.
     pub fn load(&self) -> anyhow::Result<Scene> {
-        let source = self.source()?;
-        let file = source.resolve()?;
+        self.scene_of(&self.resolve()?)
+    }
+
+    /// The same of its file, which may be read only once.
+    pub fn scene_of(&self, file: &SceneFile) -> anyhow::Result<Scene> {
+        let source = SceneSource::new(&self.scene);
         if self.confined {
-            source.check_confined(&file)?;
+            source.check_confined(file)?;
         }
         let scene = file.scene(&source.folder()).with_context(|| self.name())?;
         check_end(&scene).with_context(|| self.name())?;
@@ -49,10 +54,7 @@ impl Source {
 
     /// The scene file with every change made.
     pub fn resolve(&self) -> anyhow::Result<SceneFile> {
-        Ok(self.source()?.resolve()?)
-    }
-
-    fn source(&self) -> turbid::Result<SceneSource> {
-        self.sets.iter().try_fold(SceneSource::new(&self.scene), |source, set| source.with_set(set))
+        let source = SceneSource::new(&self.scene);
+        Ok(self.sets.iter().try_fold(source, |source, set| source.with_set(set))?.resolve()?)
     }
 }

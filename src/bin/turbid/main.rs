@@ -3,21 +3,28 @@
 mod advise;
 mod check;
 mod command;
+mod completions;
+mod given;
 mod load;
 mod made;
+mod man;
 mod map;
 mod measure;
 mod memory;
 mod notes;
+mod options;
 mod picture;
 mod progress;
+mod provenance;
+mod quiet;
 mod render;
+mod revision;
 mod scenes;
 mod shared;
 mod statistics;
 mod usage;
 
-use clap::Parser;
+use clap::{ArgMatches, CommandFactory, FromArgMatches, Parser};
 use std::process::ExitCode;
 use turbid::output::{end_on_signal, without_panic};
 
@@ -34,17 +41,33 @@ To begin with, no file is needed:
 ///
 /// Lengths are in scene units (L), powers in watts. Figures use the DejaVu fonts (Bitstream Vera licence).
 #[derive(Parser)]
-#[command(name = "turbid", version, arg_required_else_help = true, after_help = EXAMPLES)]
+#[command(name = "turbid", version = revision::version(), arg_required_else_help = true, after_help = EXAMPLES)]
 struct Arguments {
+    /// Tell neither notes nor progress on standard error; errors still.
+    #[arg(long, global = true)]
+    quiet: bool,
     #[command(subcommand)]
     command: command::Command,
+}
+
+/// The command line, and what of it was given and is no default.
+fn parse() -> Result<(Arguments, ArgMatches), clap::Error> {
+    let mut command = Arguments::command();
+    let given = command.try_get_matches_from_mut(std::env::args_os())?;
+    let arguments = Arguments::from_arg_matches(&given).map_err(|error| error.format(&mut command))?;
+    Ok((arguments, given))
 }
 
 fn main() -> ExitCode {
     end_on_signal(|| "turbid: stopped by a signal; files appear whole or not at all".to_string());
     without_panic("turbid", || {
-        let outcome = match Arguments::try_parse() {
-            Ok(arguments) => arguments.command.run(),
+        let outcome = match parse() {
+            Ok((arguments, given)) => {
+                if arguments.quiet {
+                    quiet::be_quiet();
+                }
+                arguments.command.run(&given, Arguments::command())
+            }
             Err(error) => usage::explain(&error),
         };
         command::exit_code("turbid", outcome)

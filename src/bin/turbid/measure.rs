@@ -1,23 +1,27 @@
 //! `turbid measure`: the sensors of a scene, by paths, photons or light tracing.
 
+use super::given::{Given, notes as notes_of_given};
 use super::load::Source;
 use super::memory::{Memory, passes_that_fit, rounded_down};
-use super::picture::BoundaryName;
+use super::options;
+use super::picture::{BoundaryName, RejectName};
 use super::progress::Bar;
+use super::revision::revision;
 use super::shared::{FormatName, kernels, note, on_threads, parse_count, tell_ahead, whole};
 use anyhow::{Context, bail};
-use clap::ValueEnum;
+use clap::{ArgMatches, ValueEnum};
 use std::path::PathBuf;
 use turbid::estimators::{Estimator, Gather, Kernel};
 use turbid::geometry::Voxels;
 use turbid::output::{
-    check_writable, is_same_file, npy, one_line, print, voxel_grid, write_atomically, write_rows,
+    RunInfo, check_writable, is_same_file, npy, one_line, print, voxel_grid, write_atomically, write_rows,
 };
-use turbid::photons::Ledger;
-use turbid::scene::{Binned, Orders, Scene, Sensor, Space};
+use turbid::photons::{Ledger, Photon};
+use turbid::scene::{Binned, Orders, Quantity, Scene, Sensor, Space};
 use turbid::sensor::{
-    Measurement, NoError, PathSettings, PhotonSettings, TallySettings, by_guided_paths, by_paths,
-    by_photons_in_passes, by_tallies, forecast, row_bytes, tally_bytes,
+    Measurement, NoError, PathSettings, PhotonReadings, PhotonSettings, TallySettings, by_given_photons,
+    by_guided_paths, by_paths, by_photons_in_passes, by_tallies, forecast, given_bytes, row_bytes,
+    tally_bytes, usual_reach,
 };
 
 /// Measure the sensors of a scene by paths, photons or light tracing.
@@ -34,6 +38,8 @@ use turbid::sensor::{
 /// A sensor with bins has a row for each: columns i, j, k number it along each axis, x, y, z are its middle. Flux and
 /// absorption are scored by photons as they pass; fluence and radiance by `photons` are estimates from maps at 4 random
 /// points of the bin, by `light` scores too: of flights or collisions, and of what each scattering sends to the bin.
+///
+/// An option that the chosen method would ignore is refused.
 #[derive(clap::Args)]
 #[command(allow_negative_numbers = true)]
 pub struct Measure {
@@ -59,6 +65,16 @@ pub struct Measure {
     /// of the memory. Only with --radius: the k nearest are not known before the last pass.
     #[arg(long, value_parser = parse_count, default_value = "1")]
     passes: u64,
+    /// Read photons of media from a file, PLY or NumPy, in place of sending them out; several times for several independent maps. Only with
+    /// photons. Columns, in NumPy fields of a record: position, direction, power (3 floats each), order, and, if they are there, class
+    /// and emitted; in PLY x y z, dir_x dir_y dir_z, power_r power_g power_b, order, class, emitted. Powers [W] are those of photons that
+    /// are the only ones emitted, and are divided by the number emitted. `turbid map --which medium` writes such files. Sensors that count
+    /// photons on their way are left out.
+    #[arg(long, value_name = "FILE")]
+    photons_from: Vec<PathBuf>,
+    /// Photons emitted into each map of --photons-from, where the files do not say it.
+    #[arg(long, value_name = "N", value_parser = parse_count)]
+    emitted: Option<u64>,
     #[command(flatten)]
     memory: Memory,
     /// Photons an estimate takes: the k nearest [default: 50].
@@ -76,6 +92,9 @@ pub struct Measure {
     /// What an estimate does where a medium ends or a body stands in its ball.
     #[arg(long, value_enum, default_value = "clipped")]
     boundary: BoundaryName,
+    /// A rule of the literature about photons behind walls, instead of what --boundary does about them; for the laboratory.
+    #[arg(long, value_enum, default_value = "off")]
+    reject: RejectName,
     /// Orders of scattering that count: `1`, `0..3` (both ends included), `1..`.
     #[arg(long, value_parser = parse_orders, default_value = "0..")]
     orders: Orders,
@@ -85,9 +104,12 @@ pub struct Measure {
     /// Threads [default: all cores].
     #[arg(long, value_parser = whole::<u16>(1..=1024))]
     threads: Option<u16>,
-    /// Form of the output.
+    /// Form of the output; CSV and JSON say too what the numbers were made with: seed, settings, version, revision.
     #[arg(long, value_enum, default_value = "table")]
     format: FormatName,
+    /// Write the table to a file, in its format, and nothing to standard output.
+    #[arg(long, value_name = "FILE")]
+    out: Option<PathBuf>,
     /// Write the sensor with bins as a NumPy array of doubles (i, j, k, channel, 2): means, then standard errors, not a
     /// number where there is none. The scene has one such sensor.
     #[arg(long, value_name = "FILE")]
@@ -100,8 +122,8 @@ pub struct Measure {
 #[derive(Clone, Copy, ValueEnum)]
 enum With {
     /// The unbiased path tracer.
-    #[value(alias = "paths")]
-    Path,
+    #[value(alias = "path")]
+    Paths,
     /// Photons: tallies and photon maps.
     Photons,
     /// Light tracing: photons that are scored as they pass, none stored.
@@ -127,14 +149,17 @@ fn parse_orders(text: &str) -> Result<Orders, String> {
 
 impl Measure {
     /// Measures and prints.
-    pub fn run(self) -> anyhow::Result<()> {
+    pub fn run(self, given: &ArgMatches) -> anyhow::Result<()> {
+        options::check(given, options::MEASURE, &[self.method()])?;
         let scene = self.source.load()?;
         if scene.sensors().is_empty() {
             bail!("{}: the scene has no sensors: nothing to measure", self.source.name());
         }
         let array = self.array(&scene)?;
+        self.check_files()?;
         let (mut measurements, mut notes) = on_threads(self.threads, || match self.with {
-            With::Path => self.measure_by_paths(&scene),
+            With::Paths => self.measure_by_paths(&scene),
+            With::Photons if !self.photons_from.is_empty() => self.measure_by_given(&scene),
             With::Photons => self.measure_by_photons(&scene),
             With::Light => self.measure_by_light(&scene),
         })?;
@@ -147,15 +172,62 @@ impl Measure {
         if let Some(binned) = array {
             self.write_files(&measurements, binned)?;
         }
-        let format = self.format.format();
-        print(|out| write_rows(out, &measurements, format)).context("standard output")?;
+        let (run, format) = (self.run_info(&scene)?, self.format.format());
+        match &self.out {
+            Some(file) => write_atomically(file, |out| write_rows(out, &measurements, &run, format))?,
+            None => print(|out| write_rows(out, &measurements, &run, format)).context("standard output")?,
+        }
         for text in notes {
             note(&text)?;
         }
         Ok(())
     }
 
-    /// The sensor that goes to files, if one does; files that could not be written are refused before any work.
+    /// Who measures, as it is asked for.
+    fn method(&self) -> &'static str {
+        match self.with {
+            With::Paths => "--with paths",
+            With::Photons if !self.photons_from.is_empty() => "--photons-from",
+            With::Photons => "--with photons",
+            With::Light => "--with light",
+        }
+    }
+
+    /// What the numbers are made with.
+    fn run_info(&self, scene: &Scene) -> anyhow::Result<RunInfo> {
+        let by = |methods: &[&str]| methods.contains(&self.method());
+        let orders = match self.orders {
+            Orders { min, max: None } => format!("{min}.."),
+            Orders { min, max: Some(max) } if min == max => min.to_string(),
+            Orders { min, max: Some(max) } => format!("{min}..{max}"),
+        };
+        let mut run = RunInfo {
+            with: self.method().trim_start_matches("--").trim_start_matches("with ").to_string(),
+            seed: self.seed,
+            orders,
+            samples: by(&["--with paths"]).then_some(self.samples),
+            photons: by(&["--with photons", "--with light"]).then_some(self.photons),
+            version: env!("CARGO_PKG_VERSION").to_string(),
+            revision: revision().map(str::to_string),
+            ..RunInfo::default()
+        };
+        if by(&["--with photons", "--photons-from"]) {
+            let maps = if self.photons_from.is_empty() { self.maps } else { self.photons_from.len() as u64 };
+            let Estimator { kernel, gather, treatment, rejection, .. } =
+                self.settings(scene, 1, 1)?.estimator;
+            run.maps = Some(maps);
+            match gather {
+                Gather::Radius(radius) => run.radius = Some(radius.get()),
+                _ => (run.k, run.max_radius) = (gather.k(), Some(gather.cap())),
+            }
+            run.kernel = Some(kernel.name().to_string());
+            run.boundary = Some(treatment.name().replace(' ', "-"));
+            run.reject = Some(rejection.name().replace(' ', "-"));
+        }
+        Ok(run)
+    }
+
+    /// The sensor that goes to files, if one does.
     fn array<'a>(&self, scene: &'a Scene) -> anyhow::Result<Option<&'a Binned>> {
         let files = [("--npy", &self.npy), ("--vol", &self.vol)];
         let Some((option, _)) = files.iter().find(|(_, file)| file.is_some()) else { return Ok(None) };
@@ -166,18 +238,28 @@ impl Measure {
         if self.vol.is_some() && voxels(one).is_none() {
             bail!("--vol writes voxels; the sensor with bins of this scene has none: use --npy");
         }
-        for (option, file) in files.iter().filter_map(|(option, file)| Some((option, file.as_ref()?))) {
-            if is_same_file(file, self.source.file()).unwrap_or(false) {
+        Ok(Some(one))
+    }
+
+    /// Refuses files that could not be written, or would be written over, before any work.
+    fn check_files(&self) -> anyhow::Result<()> {
+        let files = [("--npy", &self.npy), ("--vol", &self.vol), ("--out", &self.out)];
+        let files: Vec<_> =
+            files.iter().filter_map(|(option, file)| Some((option, file.as_ref()?))).collect();
+        let is_same = |a: &PathBuf, b: &PathBuf| is_same_file(a, b).unwrap_or(false);
+        for (number, (option, file)) in files.iter().enumerate() {
+            if self.source.is_file(file) {
                 bail!("{option} names the scene's own file, {}", file.display());
+            }
+            if self.photons_from.iter().any(|photons| is_same(file, photons)) {
+                bail!("{option} and --photons-from name one file, {}", file.display());
+            }
+            if let Some((other, _)) = files[..number].iter().find(|(_, other)| is_same(file, other)) {
+                bail!("{other} and {option} name one file, {}", file.display());
             }
             check_writable(file)?;
         }
-        if let (Some(npy), Some(vol)) = (&self.npy, &self.vol)
-            && is_same_file(npy, vol).unwrap_or(false)
-        {
-            bail!("--npy and --vol name one file, {}", npy.display());
-        }
-        Ok(Some(one))
+        Ok(())
     }
 
     fn write_files(&self, measurements: &[Measurement], binned: &Binned) -> anyhow::Result<()> {
@@ -222,27 +304,46 @@ impl Measure {
         Ok((measurements.with_context(|| self.source.name())?, Vec::new()))
     }
 
-    fn measure_by_photons(&self, scene: &Scene) -> anyhow::Result<(Vec<Measurement>, Vec<String>)> {
-        if self.weight_windows {
-            bail!("--weight-windows splits paths; allowed: with --with path");
-        }
-        if self.photons < self.maps {
-            bail!("--photons is {}; allowed: at least one for each of the {} maps", self.photons, self.maps);
-        }
+    /// How maps are read, each of so many photons.
+    fn settings(&self, scene: &Scene, photons: u64, maps: u64) -> anyhow::Result<PhotonSettings> {
         let gather = match self.radius {
             Some(radius) => Gather::radius(radius).context("--radius")?,
             None => {
-                let cap = self.max_radius.unwrap_or_else(|| default_cap(scene));
+                let cap = self.max_radius.unwrap_or_else(|| usual_reach(scene));
                 Gather::nearest(self.k.unwrap_or(50), cap).context("--k, --max-radius")?
             }
         };
-        let settings = PhotonSettings {
-            photons: self.photons.div_ceil(self.maps),
-            maps: self.maps,
-            seed: self.seed,
-            orders: self.orders,
-            estimator: Estimator::new(self.kernel, gather).treated(self.boundary.treatment()),
+        let estimator = Estimator::new(self.kernel, gather).treated(self.boundary.treatment());
+        let estimator = estimator.rejecting(self.reject.rejection());
+        Ok(PhotonSettings { photons, maps, seed: self.seed, orders: self.orders, estimator })
+    }
+
+    fn measure_by_given(&self, scene: &Scene) -> anyhow::Result<(Vec<Measurement>, Vec<String>)> {
+        let settings = self.settings(scene, 1, self.photons_from.len() as u64)?;
+        let given = Given::open(&self.photons_from, self.emitted)?;
+        let most = given.most();
+        let bytes = given_bytes(scene, &settings, most).with_context(|| self.source.name())?;
+        self.memory.check(&format!("a map of {most} photons"), bytes, 0.0, |part| {
+            format!("files of at most {} photons", rounded_down(most as f64 * part))
+        })?;
+        let mut has_uncollided = false;
+        let see = |photons: &[Photon]| has_uncollided |= photons.iter().any(|photon| photon.order == 0);
+        let readings = by_given_photons(scene, &settings, given.photons(see))?;
+        let is_fluence = |quantity: &Quantity| {
+            matches!(quantity, Quantity::Fluence(_) | Quantity::Binned(Binned::Fluence { .. }))
         };
+        let counts_uncollided =
+            scene.sensors().iter().any(|s| is_fluence(&s.quantity) && s.orders.and(&self.orders).contains(0));
+        let mut notes = notes_of_given(scene, has_uncollided, counts_uncollided);
+        notes.extend(notes_of_gathers(&readings, settings.estimator.gather));
+        Ok((readings.measurements, notes))
+    }
+
+    fn measure_by_photons(&self, scene: &Scene) -> anyhow::Result<(Vec<Measurement>, Vec<String>)> {
+        if self.photons < self.maps {
+            bail!("--photons is {}; allowed: at least one for each of the {} maps", self.photons, self.maps);
+        }
+        let settings = self.settings(scene, self.photons.div_ceil(self.maps), self.maps)?;
         if self.passes > 1 && self.radius.is_none() {
             bail!(
                 "--passes is {}, which needs --radius: the k nearest photons are not known before the last pass; allowed \
@@ -278,22 +379,27 @@ impl Measure {
         bar.finish();
         let result = result.with_context(|| self.source.name())?;
         let mut notes = vec![ledger_note(&result.ledger)];
-        if result.beyond > 0 {
-            notes.push(format!(
-                "{} of {} balls reach beyond their medium, where no photons are: those estimates are biased low",
-                result.beyond, result.gathers
-            ));
-        }
-        if result.underfull > 0 {
-            notes.push(format!(
-                "{} of {} estimates found fewer than k photons within the cap of {} L, and used those",
-                result.underfull,
-                result.gathers,
-                gather.cap()
-            ));
-        }
+        notes.extend(notes_of_gathers(&result, settings.estimator.gather));
         Ok((result.measurements, notes))
     }
+}
+
+/// What estimates from maps lack.
+fn notes_of_gathers(readings: &PhotonReadings, gather: Gather) -> Vec<String> {
+    let PhotonReadings { beyond, underfull, gathers, .. } = readings;
+    let mut notes = Vec::new();
+    if *beyond > 0 {
+        notes.push(format!(
+            "{beyond} of {gathers} balls reach beyond their medium, where no photons are: those estimates are biased low"
+        ));
+    }
+    if *underfull > 0 {
+        notes.push(format!(
+            "{underfull} of {gathers} estimates found fewer than k photons within the cap of {} L, and used those",
+            gather.cap()
+        ));
+    }
+    notes
 }
 
 /// Where the power went.
@@ -335,14 +441,4 @@ fn without_error(measurements: &[Measurement]) -> Vec<String> {
         })
     };
     [NoError::Nothing, NoError::TooFew, NoError::HeavyTail].into_iter().filter_map(why).collect()
-}
-
-/// Half the cell, or a mean free path of the densest medium.
-fn default_cap(scene: &Scene) -> f64 {
-    let densest = scene.regions().iter().map(|r| r.medium.highest_sigma_t().max()).fold(0.0, f64::max);
-    match scene.periodic_cell() {
-        Some(periodic_cell) => 0.5 * periodic_cell.side.min_element(),
-        None if densest > 0.0 => 1.0 / densest,
-        None => 1.0,
-    }
 }

@@ -142,7 +142,7 @@ pub struct Photons {
     volume: Amount,
     /// Let importance lead photons of the global and the volume map to where the camera reads them. For a camera that sees
     /// a small part of a large scene; the mean is the same, powers are no longer equal.
-    #[arg(long = "importance")]
+    #[arg(long = "importance", id = "importance")]
     pub is_by_importance: bool,
 }
 
@@ -349,7 +349,7 @@ enum EdgesName {
 }
 
 #[derive(Clone, Copy, ValueEnum)]
-enum RejectName {
+pub enum RejectName {
     /// None: photons that a body hides from the point do not count where --boundary is not none.
     Off,
     /// Those that do not travel towards the wall: half of the good ones go too.
@@ -360,6 +360,19 @@ enum RejectName {
     BehindPlane,
     /// Those that a body hides from the point, also where --boundary is none.
     Visible,
+}
+
+impl RejectName {
+    /// The rejection of this name.
+    pub fn rejection(self) -> Rejection {
+        match self {
+            RejectName::Off => Rejection::Off,
+            RejectName::Facing => Rejection::Facing,
+            RejectName::FacingBehind => Rejection::FacingBehind,
+            RejectName::BehindPlane => Rejection::BehindPlane,
+            RejectName::Visible => Rejection::Visible,
+        }
+    }
 }
 
 /// Change of direct light above which a step of the march is halved.
@@ -426,15 +439,8 @@ impl Readout {
         let mut settings = Settings::for_scene(scene, LEAST_K)?;
         settings.global = (self.kernel, surface);
         settings.caustic = (self.caustic_kernel, caustic);
-        let rejection = match self.reject {
-            RejectName::Off => Rejection::Off,
-            RejectName::Facing => Rejection::Facing,
-            RejectName::FacingBehind => Rejection::FacingBehind,
-            RejectName::BehindPlane => Rejection::BehindPlane,
-            RejectName::Visible => Rejection::Visible,
-        };
         let volume = Estimator::new(self.kernel, volume);
-        settings.volume = volume.treated(self.boundary.treatment()).rejecting(rejection);
+        settings.volume = volume.treated(self.boundary.treatment()).rejecting(self.reject.rejection());
         settings.gather_rays = self.gather_rays.max(1);
         settings.near = self.near;
         settings.clips_discs = self.edges == EdgesName::Clipped;

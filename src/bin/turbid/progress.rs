@@ -1,5 +1,6 @@
 //! Progress and remaining time on stderr: a bar on a terminal, else a line every ten seconds.
 
+use super::quiet::is_quiet;
 use indicatif::{ProgressBar, ProgressStyle};
 use std::io::{IsTerminal, Write};
 use std::sync::{Mutex, MutexGuard};
@@ -81,14 +82,15 @@ impl Bar {
     }
 
     fn styled(name: &'static str, steps: u64, template: &str) -> Self {
-        let bar = ProgressBar::new(steps);
+        let bar = if is_quiet() { ProgressBar::hidden() } else { ProgressBar::new(steps) };
+        bar.set_length(steps);
         let bar = match ProgressStyle::with_template(template) {
             Ok(style) => bar.with_style(style).with_message(name),
             Err(_) => bar,
         };
-        let is_terminal = std::io::stderr().is_terminal();
+        let has_lines = !is_quiet() && !std::io::stderr().is_terminal();
         is_due(&mut locked(&TOLD), Instant::now());
-        Bar { bar, lines: (!is_terminal).then(|| Mutex::new(Stage::new(name, steps))) }
+        Bar { bar, lines: has_lines.then(|| Mutex::new(Stage::new(name, steps))) }
     }
 
     /// Takes the bar away.

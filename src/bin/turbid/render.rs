@@ -4,12 +4,15 @@ use super::load::Source;
 use super::made::{Filled, Made, MapsMade, Stages};
 use super::memory::Memory;
 use super::notes::{tell_empty, tell_gathers, tell_step};
+use super::options;
 use super::picture::{Frame, Held, Photons, Readout, ToneArgs};
 use super::progress::Bar;
+use super::provenance::{map_settings, mapper_settings};
+use super::revision::revision;
 use super::shared::{note, on_threads, parse_count, print, whole};
 use super::statistics::{MAPS, print_statistics};
 use anyhow::{Context, bail};
-use clap::ValueEnum;
+use clap::{ArgMatches, ValueEnum};
 use cpu_time::ProcessTime;
 use std::ops::AddAssign;
 use std::path::PathBuf;
@@ -139,7 +142,8 @@ const SAMPLES: u64 = 16;
 
 impl Render {
     /// Draws and writes.
-    pub fn run(self) -> anyhow::Result<()> {
+    pub fn run(self, given: &ArgMatches) -> anyhow::Result<()> {
+        options::check(given, options::RENDER, &[&format!("--with {}", self.with.name())])?;
         let extension = self.output.extension().and_then(|e| e.to_str()).unwrap_or_default();
         if !extension.eq_ignore_ascii_case("exr") {
             bail!("--output is {}; allowed: a file name that ends in .exr", self.output.display());
@@ -153,7 +157,7 @@ impl Render {
         self.check_passes()?;
         let exposure = self.shown.checked()?;
         let file = self.source.resolve()?;
-        let scene = match (self.source.load()?, self.plan) {
+        let scene = match (self.source.scene_of(&file)?, self.plan) {
             (scene, PlanName::Auto) => scene,
             (_, PlanName::Full) if self.with == With::Light => bail!(
                 "--plan full is for pictures by photons and paths: light tracing reads no map and looks for nothing that \
@@ -292,7 +296,6 @@ impl Render {
         }
         let refuse = |why: &str| bail!("--passes is {}, {why}", self.passes);
         match () {
-            () if self.with != With::Photons => refuse("which is for photon maps; allowed: 1"),
             () if !self.readout.has_radius() => refuse(
                 "which needs --radius: the k nearest photons are not known before the last pass; allowed without it: 1",
             ),
@@ -393,6 +396,7 @@ impl Render {
         let filled: Vec<[Option<Filled>; 3]> = made.maps.iter().map(|made| made.filled).collect();
         Ok(serde_json::json!({
             "program": format!("turbid {}", env!("CARGO_PKG_VERSION")),
+            "revision": revision(),
             "with": self.with.name(),
             "holds": self.with.holds(),
             "plan": if self.plan == PlanName::Full { "full" } else { "auto" },
@@ -405,8 +409,8 @@ impl Render {
             "samples": made.samples,
             "variance": if self.maps == 1 { "between samples" } else { "between repetitions" },
             "exposure": exposure,
-            "map_settings": if by_photons { format!("{maps:?}") } else { String::new() },
-            "mapper_settings": settings.map_or(String::new(), |settings| format!("{settings:?}")),
+            "map_settings": by_photons.then(|| map_settings(&maps)),
+            "mapper_settings": settings.as_ref().map(mapper_settings),
             "maps_global_caustic_volume": filled,
             "scene": scene_text,
         }))

@@ -1,6 +1,7 @@
 //! What the commands share: what they print, names and counts on the command line, threads.
 
 use super::progress;
+use super::quiet::is_quiet;
 use anyhow::Context;
 use clap::ValueEnum;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
@@ -52,6 +53,9 @@ pub fn on_threads<T: Send>(
 
 /// Tells something beside the table.
 pub fn note(text: &str) -> std::io::Result<()> {
+    if is_quiet() {
+        return Ok(());
+    }
     writeln!(std::io::stderr().lock(), "turbid: note: {}", one_line(text))
 }
 

@@ -1,7 +1,7 @@
 //! How the maps are read.
 
 use crate::error::Result;
-use crate::estimators::boundary::{Rejection, Treatment};
+use crate::estimators::boundary::Treatment;
 use crate::estimators::{Estimator, Gather, Kernel};
 use crate::integrators::{Adaptive, March, StepRule};
 use crate::math::Positive;
@@ -99,10 +99,6 @@ impl Settings {
 
     /// Whether volume estimates follow a rule of the laboratory about walls.
     pub(super) fn needs_walls(&self) -> bool {
-        match self.volume.rejection {
-            Rejection::Off => false,
-            Rejection::Visible => self.volume.treatment == Treatment::None,
-            Rejection::Facing | Rejection::FacingBehind | Rejection::BehindPlane => true,
-        }
+        self.volume.needs_walls()
     }
 }

@@ -1,0 +1,61 @@
+//! Settings of photon maps as JSON, for the headers of pictures.
+
+use serde_json::{Value, json};
+use turbid::estimators::{Gather, Kernel};
+use turbid::integrators::mapper::Settings;
+use turbid::integrators::{March, StepRule};
+use turbid::photons::maps::{Amount, Indirect, MapSettings};
+
+/// What maps are filled with.
+pub fn map_settings(settings: &MapSettings) -> Value {
+    let MapSettings { global, caustic, volume, indirect, seed, replicate: _ } = settings;
+    let amount = |amount: &Amount| match amount {
+        Amount::Stored(count) => json!({ "stored": count }),
+        Amount::Emitted(count) => json!({ "emitted": count }),
+    };
+    json!({
+        "global": amount(global),
+        "caustic": amount(caustic),
+        "volume": amount(volume),
+        "global_is_read": match indirect {
+            Indirect::Gathered => "by final gathering",
+            Indirect::Seen => "where the eye looks",
+        },
+        "seed": seed,
+    })
+}
+
+/// How maps are read.
+pub fn mapper_settings(settings: &Settings) -> Value {
+    let Settings { global, caustic, volume, slope, clips_discs, gather_rays, near, march } = settings;
+    let March { step, rule, is_jittered, adaptive } = march;
+    let mut of_volume = read((volume.kernel, volume.gather));
+    of_volume["boundary"] = json!(volume.treatment.name().replace(' ', "-"));
+    of_volume["reject"] = json!(volume.rejection.name().replace(' ', "-"));
+    json!({
+        "global": read(*global),
+        "caustic": read(*caustic),
+        "volume": of_volume,
+        "slope": slope,
+        "edges": if *clips_discs { "clipped" } else { "none" },
+        "gather_rays": gather_rays,
+        "near": near,
+        "step": step.get(),
+        "step_rule": match rule {
+            StepRule::NearEnd => "near-end",
+            StepRule::Middle => "middle",
+            StepRule::Integrated => "integrated",
+        },
+        "jitter": is_jittered,
+        "adapt": adaptive.map_or(0.0, |adaptive| adaptive.tolerance),
+        "shortest_step": adaptive.map(|adaptive| adaptive.shortest.get()),
+    })
+}
+
+/// Kernel and gather of an estimate.
+fn read((kernel, gather): (Kernel, Gather)) -> Value {
+    match gather {
+        Gather::Radius(radius) => json!({ "kernel": kernel.name(), "radius": radius.get() }),
+        _ => json!({ "kernel": kernel.name(), "k": gather.k(), "max_radius": gather.cap() }),
+    }
+}

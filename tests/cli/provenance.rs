@@ -1,0 +1,198 @@
+//! What results say of their run, what is told beside them, and what shells and manuals know of the program.
+
+use crate::{Folder, refuses_naming, succeeds, text, turbid};
+
+/// The run of a table as JSON.
+fn run_of(arguments: &[&str]) -> serde_json::Value {
+    let output = turbid(&[arguments, &["--format", "json"]].concat()).output().unwrap();
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    serde_json::from_slice::<serde_json::Value>(&output.stdout).unwrap()["run"].clone()
+}
+
+/// Of each method what it asks, and nothing of what it does not.
+#[test]
+fn tables_say_what_they_were_made_with() {
+    let revision = succeeds(&["--version"]);
+    let revision = revision.split(['(', ')']).nth(1);
+    let of = |with: &str, more: serde_json::Value| {
+        let mut run = serde_json::json!({
+            "with": with, "seed": 3, "orders": "0..", "samples": null, "photons": null, "maps": null, "radius": null, "k": null,
+            "max_radius": null, "kernel": null, "boundary": null, "reject": null, "version": env!("CARGO_PKG_VERSION"),
+            "revision": revision,
+        });
+        more.as_object().unwrap().iter().for_each(|(key, value)| run[key] = value.clone());
+        run
+    };
+    let measure = |with: &'static str| ["measure", "slab", "--seed", "3", "--with", with];
+    let paths = [&measure("path")[..], &["--samples", "1200", "--orders", "0..2"]].concat();
+    assert_eq!(run_of(&paths), of("paths", serde_json::json!({ "samples": 1200, "orders": "0..2" })));
+    let light = [&measure("light")[..], &["--photons", "500", "--set", "probes=[]"]].concat();
+    assert_eq!(run_of(&light), of("light", serde_json::json!({ "photons": 500 })));
+    let nearest = serde_json::json!({
+        "photons": 800, "maps": 2, "k": 50, "max_radius": 2.0, "kernel": "uniform", "boundary": "clipped", "reject": "off"
+    });
+    let photons = [&measure("photons")[..], &["--photons", "800", "--maps", "2"]].concat();
+    assert_eq!(run_of(&photons), of("photons", nearest));
+    let folder = Folder::new();
+    let npy = folder.0.path().join("a.npy");
+    succeeds(&["map", "slab", "--photons", "500", "--npy", text(&npy)]);
+    let read = [
+        "--radius",
+        "0.25",
+        "--kernel",
+        "cone",
+        "--boundary",
+        "local-linear",
+        "--orders",
+        "1",
+        "--reject",
+        "behind-plane",
+    ];
+    let given = [&measure("photons")[..], &["--photons-from", text(&npy)], &read].concat();
+    let within = serde_json::json!({
+        "orders": "1", "maps": 1, "radius": 0.25, "kernel": "cone", "boundary": "local-linear", "reject": "behind-plane"
+    });
+    assert_eq!(run_of(&given), of("photons-from", within));
+}
+
+/// What a picture's header says, as JSON.
+#[test]
+fn pictures_say_their_settings_in_json() {
+    use exr::prelude::{AttributeValue, ReadChannels, ReadLayers, Text, read};
+    let folder = Folder::new();
+    let exr = folder.0.path().join("a.exr");
+    let header = |more: &[&str]| -> serde_json::Value {
+        let render = ["render", "fogbox", "-o", text(&exr), "--width", "4", "--samples", "1"];
+        let output = turbid(&[&render[..], more].concat()).output().unwrap();
+        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+        let image =
+            read().no_deep_data().largest_resolution_level().all_channels().all_layers().all_attributes();
+        let image = image.from_file(&exr).unwrap();
+        let name = Text::from(turbid::output::PROVENANCE);
+        let Some(AttributeValue::Text(text)) = image.layer_data[0].attributes.other.get(&name) else {
+            panic!("no provenance")
+        };
+        serde_json::from_str(&text.to_string()).unwrap()
+    };
+    let maps =
+        ["--global", "emit:500", "--volume", "400", "--gather-rays", "2", "--step", "0.25", "--adapt", "0"];
+    let read_as = ["--volume-k", "20", "--kernel", "biweight", "--boundary", "reflection", "--seed", "5"];
+    let said = header(&[&maps[..], &read_as].concat());
+    let (filled, read) = (&said["map_settings"], &said["mapper_settings"]);
+    assert_eq!((&filled["global"]["emitted"], &filled["volume"]["stored"]), (&500.into(), &400.into()));
+    assert_eq!((&filled["seed"], &filled["global_is_read"]), (&5.into(), &"by final gathering".into()));
+    let volume = serde_json::json!({ "kernel": "biweight", "k": 20, "max_radius": read["volume"]["max_radius"], "boundary": "reflection", "reject": "off" });
+    assert!(read["volume"] == volume && read["volume"]["max_radius"].as_f64().unwrap() > 0.0, "{read}");
+    assert_eq!((&read["caustic"]["kernel"], &read["gather_rays"]), (&"cone".into(), &2.into()));
+    assert_eq!(
+        (&read["step"], &read["step_rule"], &read["adapt"]),
+        (&0.25.into(), &"integrated".into(), &0.0.into())
+    );
+    assert!(
+        read["jitter"] == true
+            && read["shortest_step"].is_null()
+            && said["scene"].as_str().unwrap().contains("[camera]")
+    );
+    let by_radius = header(&[&maps[..], &["--radius", "0.2"]].concat());
+    assert_eq!(
+        by_radius["mapper_settings"]["global"],
+        serde_json::json!({ "kernel": "uniform", "radius": 0.2 })
+    );
+    let by_paths = header(&["--with", "paths"]);
+    assert!(by_paths["map_settings"].is_null() && by_paths["mapper_settings"].is_null(), "{by_paths}");
+}
+
+/// Quiet: numbers alone, and errors.
+#[test]
+fn quiet_runs_tell_nothing_beside_their_numbers() {
+    let noisy = ["measure", "slab", "--with", "photons", "--photons", "1000", "--maps", "2"];
+    let run = |arguments: &[&str]| {
+        let output = turbid(arguments).output().unwrap();
+        assert!(output.status.success());
+        [output.stdout, output.stderr].map(|bytes| String::from_utf8(bytes).unwrap())
+    };
+    let [table, notes] = run(&noisy);
+    assert!(notes.contains("energy ledger"), "{notes}");
+    for quiet in [[&noisy[..], &["--quiet"]].concat(), [&["--quiet"][..], &noisy].concat()] {
+        assert_eq!(run(&quiet), [table.clone(), String::new()]);
+    }
+    refuses_naming(
+        &["measure", "slab", "--with", "photons", "--k", "1", "--quiet"],
+        &["k is 1; allowed: at least 2"],
+    );
+}
+
+/// A scene on standard input is that of a file, relative names start at the folder of the run, and what is wrong names the line.
+#[test]
+fn scenes_on_standard_input() {
+    let folder = Folder::new();
+    let scene = succeeds(&["scenes", "slab", "--resolved"]);
+    let file = folder.file("slab.toml", &scene);
+    let piped = |arguments: &[&str], scene: &str| {
+        turbid(arguments).current_dir(folder.0.path()).write_stdin(scene).output().unwrap()
+    };
+    for arguments in [
+        &["check", "SCENE"][..],
+        &["measure", "SCENE", "--with", "paths", "--samples", "1000", "--format", "csv"],
+        &["measure", "SCENE", "--with", "paths", "--samples", "1000", "--set", "regions.0.albedo=0.5"],
+        &["map", "SCENE", "--npy", "a.npy", "--photons", "100"],
+    ] {
+        let of = |name: &'static str, given: &str| -> Vec<u8> {
+            let words: Vec<&str> =
+                arguments.iter().map(|word| if *word == "SCENE" { name } else { *word }).collect();
+            let words: Vec<&str> =
+                words.iter().map(|w| if *w == "FILE" { text(&file) } else { *w }).collect();
+            let output = piped(&words, given);
+            assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+            output.stdout
+        };
+        assert_eq!(of("-", &scene), of("FILE", ""), "{arguments:?}");
+    }
+    let fogbox = succeeds(&["scenes", "fogbox", "--resolved"]);
+    let render = ["render", "-", "-o", "a.exr", "--with", "paths", "--width", "4", "--samples", "1"];
+    assert!(piped(&render, &fogbox).status.success());
+    folder.file("part.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+    let mesh = "[[objects]]\nshape = { mesh = { file = \"part.obj\" } }\nsurface = \"black\"\n[[lights]]\npoint = { position = [0, 0, 3], power = 1 }\n";
+    assert!(piped(&["check", "-"], mesh).status.success());
+    assert!(piped(&["check", "-", "--confined"], mesh).status.success());
+    for (scene, words) in [
+        (scene.replacen("albedo = 0.9", "albedo = 2", 1).as_str(), "albedo is 2; allowed: 0 to 1"),
+        ("", "standard input: a scene needs at least one light"),
+        ("cell = [", "standard input:1:"),
+    ] {
+        let output = piped(&["check", "-"], scene);
+        let told = String::from_utf8(output.stderr).unwrap();
+        assert!(
+            output.status.code() == Some(2) && told.contains(words) && told.lines().count() == 1,
+            "{told}"
+        );
+        assert!(told.contains("standard input"), "{told}");
+    }
+}
+
+/// The scripts name every command and option of the program, the pages too.
+#[test]
+fn shells_and_manuals_know_the_program() {
+    let folder = Folder::new();
+    for shell in ["bash", "zsh", "fish", "elvish", "powershell"] {
+        let script = succeeds(&["completions", shell]);
+        for word in ["turbid", "measure", "photons-from", "gather-rays", "completions"] {
+            assert!(script.contains(word), "{shell}: no {word}");
+        }
+    }
+    refuses_naming(&["completions", "csh"], &["csh", "allowed: bash"]);
+    let pages = folder.0.path().join("share").join("man1");
+    assert!(succeeds(&["man", text(&pages)]).contains("written        9 pages"));
+    let page = |name: &str| std::fs::read_to_string(pages.join(name)).unwrap();
+    assert!(page("turbid.1").starts_with(".ie") || page("turbid.1").contains(".TH turbid"));
+    for (name, words) in [
+        ("turbid-measure.1", ["photons\\-from", "independent maps", "quiet"]),
+        ("turbid-map.1", ["npy", "\\-\\-which", "camera"]),
+        ("turbid-render.1", ["gather\\-rays", "OpenEXR", "\\-\\-with"]),
+    ] {
+        words.iter().for_each(|word| assert!(page(name).contains(word), "{name}: no {word}"));
+    }
+    let names = std::fs::read_dir(&pages).unwrap().map(|e| e.unwrap().file_name().into_string().unwrap());
+    assert!(names.into_iter().all(|name| name.starts_with("turbid") && name.ends_with(".1")));
+    refuses_naming(&["man", "/dev/null/pages"], &["cannot make the folder"]);
+}
