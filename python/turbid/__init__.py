@@ -77,16 +77,19 @@ def _orders(value: Orders) -> tuple[int, Optional[int]]:
         return 0, None
     if isinstance(value, str):
         parts = value.split("..")
-        value = [int(part) if part.strip().isdigit() else None for part in parts]
+        # A range may be open above; what is no number is no order.
+        value = [int(p) if p.strip().isdecimal() else None if i and not p.strip() else -1 for i, p in enumerate(parts)]
         value = value * 2 if len(value) == 1 else value
     elif not isinstance(value, Sequence):
         value = [value, value]
-    is_order = lambda n: isinstance(n, (int, np.integer)) and not isinstance(n, bool) and 0 <= n < 65535
-    if len(value) != 2 or not is_order(value[0]) or not (value[1] is None or is_order(value[1])):
+
+    def is_order(n: Any) -> bool:
+        return isinstance(n, (int, np.integer)) and not isinstance(n, bool) and 0 <= n < 65535
+
+    is_pair = len(value) == 2 and is_order(value[0]) and (value[1] is None or is_order(value[1]))
+    if not is_pair or (value[1] is not None and value[1] < value[0]):
         raise Error(f"orders is {given!r}; allowed: {allowed}")
     least, most = value
-    if most is not None and most < least:
-        raise Error(f"orders is {given!r}; allowed: {allowed}")
     return int(least), None if most is None else int(most)
 
 

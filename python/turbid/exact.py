@@ -16,6 +16,7 @@ from __future__ import annotations
 
 import inspect
 import os
+import re
 import textwrap
 from collections.abc import Mapping
 from typing import Any, Callable, Iterator, NamedTuple, Optional
@@ -277,13 +278,18 @@ def _signature(problem: dict) -> inspect.Signature:
     return inspect.Signature(parameters, return_annotation=Answer)
 
 
+def _named(text: str) -> str:
+    """Options by the names of the arguments that they are here."""
+    return re.sub(r"--([a-z][a-z0-9-]*)", lambda found: f"`{found[1].replace('-', '_')}`", text)
+
+
 def _documentation(problem: dict) -> str:
-    lines = [problem["about"].rstrip(), "", "Parameters", "----------"]
+    lines = [_named(problem["about"].rstrip()), "", "Parameters", "----------"]
     for argument in problem["arguments"]:
         lines.append(f"{argument['name']} : {_TAKES[argument['takes']]}")
         allowed = f" Allowed: {', '.join(argument['allowed'])}." if argument["allowed"] else ""
-        text = " ".join(argument["help"].split())
-        text += ("" if text.endswith((".", ")")) else ".") + allowed
+        text = _named(" ".join(argument["help"].split()))
+        text += ("" if text.endswith(".") else ".") + allowed
         lines += textwrap.wrap(text, 116, initial_indent="    ", subsequent_indent="    ")
     return "\n".join(lines) + "\n"
 
