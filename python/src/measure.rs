@@ -82,6 +82,7 @@ impl Request {
         let settings = PathSettings { samples, seed, replicate: 0, orders: self.orders() };
         let bins = bins(scene);
         memory::check(|| format!("{bins} bins"), row_bytes(scene))?;
+        memory::check(|| format!("{samples} samples"), work::blocks(samples, work::PATHS_BYTES))?;
         watch.stage("paths", samples.saturating_mul(bins));
         let read = if weight_windows { by_guided_paths } else { by_paths };
         Ok(Readings { measurements: read(scene, &settings, watch)?, ledger: None, estimates: None })
@@ -117,7 +118,8 @@ impl Request {
         };
         // Refuses what passes cannot do before anything is counted.
         let forecast = forecast(scene, &settings, passes)?;
-        memory::check(|| format!("a map of {:.2e} photons", forecast.stored), forecast.bytes)?;
+        let bytes = forecast.bytes + work::blocks(settings.photons / passes, work::PASS_BYTES);
+        memory::check(|| format!("a map of {:.2e} photons", forecast.stored), bytes)?;
         watch.stage("photons", settings.photons.saturating_mul(maps));
         let result = by_photons_in_passes(scene, &settings, passes, watch)?;
         Ok(Readings {

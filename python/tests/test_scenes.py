@@ -12,6 +12,7 @@ FOG = """\
 shape = { sphere = { center = [0, 0, 0], radius = 1.0 } }
 sigma_t = 1.0
 albedo = 0.9
+g = 0.0
 
 [[lights]]
 volume-source = { shape = { sphere = { center = [0, 0, 0], radius = 1.0 } }, density = 0.238732414637843 }
@@ -27,7 +28,7 @@ measure = { fluence = { at = [0, 0, 0] } }
 
 BALL = {"sphere": {"center": np.zeros(3), "radius": np.float64(1)}}
 AS_DICT = {
-    "regions": [{"shape": BALL, "sigma_t": 1, "albedo": 0.9}],
+    "regions": [{"shape": BALL, "sigma_t": 1, "albedo": 0.9, "g": 0}],
     "lights": ({"volume-source": {"shape": BALL, "density": 0.238732414637843}},),
     "sensors": [
         {"name": "ball", "measure": {"outflow": {"shape": BALL, "face": "top"}}},
@@ -51,7 +52,7 @@ def test_every_form_gives_the_same_numbers(tmp_path):
 
 
 def test_files_of_a_scene_are_found(tmp_path, monkeypatch):
-    values = "\n".join(["[[regions]]", 'shape = { cuboid = { min = [0, 0, 0], max = [1, 1, 1] } }', "sigma_t = 1.0", "albedo = 0.5",
+    values = "\n".join(["[[regions]]", 'shape = { cuboid = { min = [0, 0, 0], max = [1, 1, 1] } }', "sigma_t = 1.0", "albedo = 0.5", "g = 0.0",
                         'density = { grid = { file = "fog.vol" } }', "[[lights]]", "point = { position = [2, 2, 2], power = 1.0 }",
                         "[[sensors]]", 'name = "box"', "measure = { absorbed = { region = 0 } }"])
     grid = np.ones((2, 2, 2), "<f4")
@@ -79,7 +80,7 @@ def test_files_of_a_scene_are_found(tmp_path, monkeypatch):
         ("sigma_t = 1.0", 'sigma_t = "thick"'),
         ("[[lights]]", "[[lamps]]"),
         ("density = 0.238732414637843", "density = 0.0"),
-        ("albedo = 0.9", "albedo = 0.9\ng = 2"),
+        ("g = 0.0", "g = 2"),
         ("albedo = 0.9", "albedo = 0.9\nalbedo = 0.8"),
     ],
 )
