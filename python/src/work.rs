@@ -76,7 +76,7 @@ impl Watch {
 
 /// Does something with Python free for others, on so many threads, all cores if none are given.
 ///
-/// `progress` is called five times a second with the name of the stage and the part of it that is done. An interrupt, or an
+/// `progress` is called five times a second, and at the end, with the name of the stage and the part of it that is done. An interrupt, or an
 /// exception of `progress`, ends the wait at once and the work at its next look.
 ///
 /// # Errors
@@ -112,7 +112,10 @@ pub fn run<T: Send + 'static>(
     let wait = || receive.lock().unwrap_or_else(PoisonError::into_inner).recv_timeout(LOOK);
     loop {
         match py.detach(wait) {
-            Ok(Ok(Ok(done))) => return Ok(done),
+            Ok(Ok(Ok(done))) => {
+                progress.map_or(Ok(()), |progress| watch.tell(py, progress))?;
+                return Ok(done);
+            }
             Ok(Ok(Err(error))) => return Err(refused(&error)),
             Ok(Err(_)) | Err(RecvTimeoutError::Disconnected) => {
                 return Err(refuse(&*PANICKED.lock().unwrap_or_else(PoisonError::into_inner)));

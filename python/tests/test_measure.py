@@ -179,6 +179,10 @@ def test_progress_is_told_and_may_stop_the_work(capfd):
         turbid.measure("slab", samples=1e8, progress=stop)
     assert time.monotonic() - start < 30
     assert capfd.readouterr() == ("", "")
+    turbid.measure("slab", samples=1000, progress=True)
+    exact.ask("slab", tau=1, albedo=[0.1, 0.2], progress=True)
+    said = capfd.readouterr()
+    assert said.out == "" and "turbid: paths 100 %" in said.err and "turbid: questions 100 %" in said.err
 
 
 def test_others_run_meanwhile():

@@ -13,12 +13,12 @@ runs beside Python: Ctrl-C ends it, and the same seed gives the same numbers on 
 from __future__ import annotations
 
 import os
-import sys
-from typing import Any, Callable, Mapping, NamedTuple, Optional, Sequence, Union
+from typing import Any, Mapping, NamedTuple, Optional, Sequence, Union
 
 import numpy as np
 
 from . import _turbid, exact
+from ._progress import Progress, told
 from ._turbid import Error, __version__
 
 __all__ = [
@@ -39,7 +39,6 @@ __all__ = [
 
 Scene = Union[Mapping[str, Any], str, "os.PathLike[str]"]
 Orders = Union[None, int, str, Sequence[Optional[int]]]
-Progress = Union[bool, Callable[[str, float], object]]
 
 
 def _count(name: str, value: Any, least: int = 1, most: int = 9_000_000_000_000_000) -> int:
@@ -69,39 +68,27 @@ def _optional_real(name: str, value: Any) -> Optional[float]:
     return None if value is None else _real(name, value)
 
 
-def _orders(value: Orders) -> tuple[int, Optional[int]]:
+def _orders(given: Orders) -> tuple[int, Optional[int]]:
     """Orders of scattering as a pair: the least, and the most if there is one."""
-    allowed = "an order such as 1, or a range such as '0..3', '1..', (0, 3) or (1, None) (both ends included), up to 65534"
-    given = value
-    if value is None:
-        return 0, None
-    if isinstance(value, str):
-        parts = value.split("..")
-        # A range may be open above; what is no number is no order.
-        value = [int(p) if p.strip().isdecimal() else None if i and not p.strip() else -1 for i, p in enumerate(parts)]
-        value = value * 2 if len(value) == 1 else value
-    elif not isinstance(value, Sequence):
-        value = [value, value]
 
     def is_order(n: Any) -> bool:
-        return isinstance(n, (int, np.integer)) and not isinstance(n, bool) and 0 <= n < 65535
+        return isinstance(n, (int, np.integer)) and not isinstance(n, bool) and bool(0 <= n < 65535)
 
-    is_pair = len(value) == 2 and is_order(value[0]) and (value[1] is None or is_order(value[1]))
-    if not is_pair or (value[1] is not None and value[1] < value[0]):
-        raise Error(f"orders is {given!r}; allowed: {allowed}")
-    least, most = value
-    return int(least), None if most is None else int(most)
-
-
-def _report(stage: str, part: float) -> None:
-    end = "\n" if part >= 1.0 else ""
-    print(f"\rturbid: {stage} {100.0 * part:3.0f} %", end=end, file=sys.stderr, flush=True)
-
-
-def _progress(progress: Progress) -> Optional[Callable[[str, float], object]]:
-    if callable(progress):
-        return progress
-    return _report if progress else None
+    pair: Any = (0, None) if given is None else given
+    if isinstance(given, str):
+        parts = given.split("..")
+        # A range may be open above; what is no number is no order.
+        pair = [int(p) if p.strip().isdecimal() else None if i and not p.strip() else -1 for i, p in enumerate(parts)]
+        pair = pair * 2 if len(pair) == 1 else pair
+    elif not isinstance(pair, Sequence):
+        pair = (pair, pair)
+    is_range = len(pair) == 2 and is_order(pair[0]) and (pair[1] is None or is_order(pair[1]))
+    if not is_range or (pair[1] is not None and pair[1] < pair[0]):
+        raise Error(
+            f"orders is {given!r}; allowed: an order such as 1, or a range such as '0..3', '1..', (0, 3) or (1, None) "
+            "(both ends included), up to 65534"
+        )
+    return int(pair[0]), None if pair[1] is None else int(pair[1])
 
 
 def _threads(threads: Any) -> Optional[int]:
@@ -267,7 +254,7 @@ def measure(
         threads=_threads(threads),
     )
     given = None if parameters is None else dict(parameters)
-    raw = _turbid.measure(_scene(scene), given, _folder(folder), with_, options, _progress(progress))
+    raw = _turbid.measure(_scene(scene), given, _folder(folder), with_, options, told(progress))
     estimates = raw["estimates"]
     if estimates is not None:
         estimates = dict(zip(("made", "underfull", "beyond"), estimates))
@@ -379,7 +366,7 @@ def render(
         _seed(seed),
         _threads(threads),
         readout,
-        _progress(progress),
+        told(progress),
     )
     shape = (raw["height"], raw["width"])
 
@@ -456,7 +443,7 @@ def photons(
         _orders(orders),
         _seed(seed),
         _threads(threads),
-        _progress(progress),
+        told(progress),
     )
     return Photons(np.frombuffer(raw, PHOTON), count)
 

@@ -10,16 +10,19 @@ from . import exact
 _HEAD = '''"""Exact values of light transport, each with an absolute bound on its error. Made by `python -m turbid._stubs`."""
 
 import os
-from collections.abc import Iterator, Mapping
-from typing import Any, Callable, NamedTuple, Optional, Union
+from collections.abc import Iterator, Mapping, Sequence
+from typing import Any, NamedTuple, Optional, Union
 
 import numpy as np
 from numpy.typing import ArrayLike
 
+from ._progress import Progress
+
 __all__: list[str]
+_PROBLEMS: dict[str, dict[str, Any]]
 
 _Words = Union[ArrayLike, os.PathLike[str]]
-_Descriptions = Union[ArrayLike, str, Mapping[str, Any], list[Union[str, Mapping[str, Any]]]]
+_Descriptions = Union[ArrayLike, Mapping[str, Any], Sequence[Any]]
 
 class Value(NamedTuple):
     """A quantity: its values, how well they are known, and where they are."""
@@ -44,9 +47,7 @@ class Answer(Mapping[str, Value]):
     def __iter__(self) -> Iterator[str]: ...
     def __len__(self) -> int: ...
 
-def ask(
-    problem: str, /, *, progress: Optional[Callable[[str, float], object]] = None, **arguments: Any
-) -> Answer: ...
+def ask(problem: str, /, *, progress: Progress = False, **arguments: Any) -> Answer: ...
 '''
 
 _TYPES = {

@@ -24,6 +24,7 @@ from typing import Any, Callable, Iterator, NamedTuple, Optional
 import numpy as np
 
 from . import _turbid
+from ._progress import Progress, told
 from ._turbid import Error
 
 _PROBLEMS: dict[str, dict] = {problem["name"]: problem for problem in _turbid.problems()}
@@ -225,10 +226,10 @@ def _value(questions: _Questions, rows: list[tuple]) -> Value:
     return Value(shaped(value), shaped(bound), rows[0][5], at, methods)
 
 
-def ask(problem: str, /, *, progress: Optional[Callable[[str, float], object]] = None, **arguments: Any) -> Answer:
+def ask(problem: str, /, *, progress: Progress = False, **arguments: Any) -> Answer:
     """Asks a problem by name; its arguments are those of the function of that name.
 
-    ``progress`` is called with a name and the part of the questions that is answered.
+    ``progress`` is True for a line on stderr, or a function of a name and the part of the questions that is answered.
     """
     if problem not in _PROBLEMS:
         raise Error(f"problem is '{problem}'; allowed: {', '.join(_PROBLEMS)}")
@@ -237,7 +238,7 @@ def ask(problem: str, /, *, progress: Optional[Callable[[str, float], object]] =
         if name not in known:
             raise Error(f"{problem} has no argument '{name}'; allowed: {', '.join(known)}")
     questions = _Questions(_PROBLEMS[problem], arguments)
-    answers = _turbid.ask(problem, questions.questions, progress)
+    answers = _turbid.ask(problem, questions.questions, told(progress))
     return Answer(problem, _collect(questions, answers))
 
 
