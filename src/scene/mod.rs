@@ -13,6 +13,7 @@ mod hit;
 mod interiors;
 mod parts;
 mod plan;
+mod read;
 mod regions;
 mod segment;
 mod segments;

@@ -17,7 +17,7 @@ const CRATES: [(&str, usize); 6] = [
     ("src/lib.rs", 150),
     ("src/bin/turbid/main.rs", 10),
     ("analytic/lib.rs", 50),
-    ("analytic/exact/main.rs", 25),
+    ("analytic/exact/lib.rs", 25),
     ("experiments/src/lib.rs", 150),
     ("experiments/figure/src/lib.rs", 25),
 ];

@@ -5,13 +5,11 @@ mod geometry;
 mod row;
 
 use crate::answer::shortest;
-use crate::command::Command;
+use crate::asker::Asker;
 use crate::format::{Format, aligned, printed};
-use crate::question::{Solved, ask};
 use crate::text::one_line;
 use crate::usage;
 use anyhow::{Context, Error, Result, anyhow, bail};
-use clap::{FromArgMatches, Subcommand};
 use geometry::{GEOMETRIES, Geometry};
 use row::{COLUMNS, Row};
 use serde::ser::{Serialize, SerializeMap, Serializer};
@@ -68,16 +66,9 @@ pub fn answer(path: &Path, format: Format, output: &mut Vec<u8>) -> Result<Optio
 struct Unanswered(Error);
 
 /// Rows become questions here, and what they solve serves the next.
+#[derive(Default)]
 struct Reader {
-    parser: clap::Command,
-    solved: Solved,
-}
-
-impl Default for Reader {
-    fn default() -> Self {
-        let parser = Command::augment_subcommands(clap::Command::new("exact"));
-        Reader { parser, solved: Solved::default() }
-    }
+    asker: Asker,
 }
 
 impl Reader {
@@ -95,12 +86,10 @@ impl Reader {
             Ok(asked) => asked,
             Err(note) => return Ok(Err(note)),
         };
-        let command = self.parser.try_get_matches_from_mut(asked.words);
-        let command = command.and_then(|matches| Command::from_arg_matches(&matches));
-        let command = command.map_err(|error| {
-            anyhow!("{}", usage::of_cell(&error, |option| geometry.column(option), Geometry::counts))
-        })?;
-        let answer = ask(command.question(), Some(asked.wanted), &self.solved).map_err(Unanswered)?;
+        let said =
+            |error: &clap::Error| usage::of_cell(error, |option| geometry.column(option), Geometry::counts);
+        let command = self.asker.command(asked.words, said)?;
+        let answer = self.asker.answer(&command, Some(asked.wanted)).map_err(Unanswered)?;
         let value = answer.rows.first().map(|row| row.value);
         Ok(value.ok_or(asked.absent))
     }

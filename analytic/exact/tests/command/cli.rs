@@ -10,7 +10,7 @@ pub fn exact() -> Command {
 }
 
 fn reference(name: &str) -> String {
-    format!("{}/tests/reference/{name}", env!("CARGO_MANIFEST_DIR"))
+    format!("{}/../tests/reference/{name}", env!("CARGO_MANIFEST_DIR"))
 }
 
 pub fn rows(text: &[u8]) -> Vec<HashMap<String, String>> {

@@ -1,6 +1,6 @@
 //! The handbook shows what the command answers: examples and figures are made again and compared with those kept.
 //!
-//! After a change that is meant: `TURBID_BLESS=1 cargo test --release -p turbid-analytic --test command handbook` writes them anew.
+//! After a change that is meant: `TURBID_BLESS=1 cargo test --release -p turbid-exact --test command handbook` writes them anew.
 //! Look at what it changed. Last digits may differ between processors, since products of matrices use their instructions:
 //! numbers are compared to 1e-8, bounds within a factor of 30, places in figures within two units of the canvas.
 
@@ -9,7 +9,7 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 
 fn folder() -> PathBuf {
-    PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("handbook")
+    PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../handbook")
 }
 
 fn exact(args: &[&str], at: &Path) -> std::process::Output {

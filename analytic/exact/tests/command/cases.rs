@@ -10,7 +10,7 @@ use std::collections::HashMap;
 type Row = HashMap<String, String>;
 
 fn reference(name: &str) -> String {
-    format!("{}/tests/reference/{name}", env!("CARGO_MANIFEST_DIR"))
+    format!("{}/../tests/reference/{name}", env!("CARGO_MANIFEST_DIR"))
 }
 
 fn rows(text: &[u8]) -> Vec<Row> {

@@ -1,0 +1,50 @@
+//! Words that choose among a few, as the programs have them.
+
+use crate::error::refuse;
+use pyo3::PyResult;
+use turbid::estimators::Kernel;
+use turbid::estimators::boundary::Treatment;
+use turbid::integrators::StepRule;
+
+/// The choice of this name.
+///
+/// # Errors
+/// Names the argument and all that it may be
+pub fn chosen<T: Copy>(argument: &str, word: &str, choices: &[(&str, T)]) -> PyResult<T> {
+    choices.iter().find(|(name, _)| *name == word).map(|(_, choice)| *choice).ok_or_else(|| {
+        let names: Vec<&str> = choices.iter().map(|(name, _)| *name).collect();
+        refuse(format!("{argument} is '{word}'; allowed: {}", names.join(", ")))
+    })
+}
+
+/// A kernel by its name.
+///
+/// # Errors
+/// As [`chosen`]
+pub fn kernel(argument: &str, word: &str) -> PyResult<Kernel> {
+    chosen(argument, word, &Kernel::ALL.map(|kernel| (kernel.name(), kernel)))
+}
+
+/// What estimates do where a medium ends.
+///
+/// # Errors
+/// As [`chosen`]
+pub fn treatment(word: &str) -> PyResult<Treatment> {
+    let all = [
+        ("none", Treatment::None),
+        ("clipped", Treatment::Clipped),
+        ("reflection", Treatment::Reflection),
+        ("local-linear", Treatment::LocalLinear),
+    ];
+    chosen("boundary", word, &all)
+}
+
+/// How much of a step's light reaches its near end.
+///
+/// # Errors
+/// As [`chosen`]
+pub fn step_rule(word: &str) -> PyResult<StepRule> {
+    let all =
+        [("near-end", StepRule::NearEnd), ("middle", StepRule::Middle), ("integrated", StepRule::Integrated)];
+    chosen("step_rule", word, &all)
+}

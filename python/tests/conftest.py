@@ -1,0 +1,43 @@
+"""What the tests share: the programs that numbers are compared with."""
+
+import json
+import os
+import pathlib
+import subprocess
+
+import pytest
+
+FOLDER = pathlib.Path(os.environ.get("TURBID_PROGRAMS", pathlib.Path(__file__).parents[2] / "target" / "release"))
+
+
+class Program:
+    """A program of the main workspace."""
+
+    def __init__(self, name):
+        self.path = FOLDER / name
+        assert self.path.exists(), f"{self.path} is not there: python/check builds it"
+
+    def run(self, *words, cwd=None):
+        words = [str(word) for word in words]
+        return subprocess.run([str(self.path), *words], capture_output=True, text=True, cwd=cwd)
+
+    def json(self, *words, cwd=None):
+        done = self.run(*words, "--format", "json", cwd=cwd)
+        assert done.returncode == 0, done.stderr
+        return json.loads(done.stdout)
+
+    def error(self, *words, cwd=None):
+        """The text of its error, without its name."""
+        done = self.run(*words, cwd=cwd)
+        assert done.returncode == 2, (done.stdout, done.stderr)
+        return done.stderr.strip().split(": error: ", 1)[1]
+
+
+@pytest.fixture(scope="session")
+def exact_program():
+    return Program("exact")
+
+
+@pytest.fixture(scope="session")
+def turbid_program():
+    return Program("turbid")

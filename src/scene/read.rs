@@ -1,0 +1,168 @@
+//! Scenes from text, or by the name of a built-in one: what is wrong with them is said in one line.
+
+use super::builtin::{BUILTIN, Builtin};
+use super::file::SceneFile;
+use crate::error::{Error, Result};
+use std::ops::Range;
+
+impl SceneFile {
+    /// A scene file from its text. What serde passes over is refused too: lists of numbers of which only the first ones are read.
+    ///
+    /// # Arguments
+    /// `name` what messages call the text, before line and column; none for text that nobody wrote by hand
+    ///
+    /// # Errors
+    /// `Error::Scene`: what is no TOML, or a key, a value or a length that is not allowed, with its place
+    pub fn read(text: &str, name: Option<&str>) -> Result<Self> {
+        let told = |error: &toml::de::Error| match name {
+            Some(name) => located(name, text, error),
+            None => say(text, error),
+        };
+        let file = SceneFile::from_toml(text).map_err(|error| Error::Scene(told(&error)))?;
+        let given: toml::Table = toml::from_str(text).map_err(|error| Error::Scene(told(&error)))?;
+        let read = file.to_toml().ok().and_then(|text| toml::from_str::<toml::Table>(&text).ok());
+        let read = read.map(toml::Value::Table);
+        read_whole(&toml::Value::Table(given), read.as_ref(), "").map_err(|text| match name {
+            Some(name) => Error::Scene(format!("{name}: {text}")),
+            None => Error::Scene(text),
+        })?;
+        Ok(file)
+    }
+}
+
+impl Builtin {
+    /// The built-in scene of this name.
+    pub fn named(name: &str) -> Option<Builtin> {
+        BUILTIN.into_iter().find(|builtin| builtin.name == name)
+    }
+
+    /// The scene file that follows from the defaults with these changes, all made before any is checked.
+    ///
+    /// # Errors
+    /// `Error::Scene` for a parameter that there is not, or a value that it cannot have; those of the scene
+    pub fn changed(&self, changes: &toml::Table) -> Result<SceneFile> {
+        let told = |text: &str, error: &toml::de::Error| Error::Scene(say(text, error));
+        let mut table: toml::Table =
+            toml::from_str(self.defaults).map_err(|error| told(self.defaults, &error))?;
+        for (key, value) in changes {
+            if !table.contains_key(key) {
+                let known: Vec<&str> = table.keys().map(String::as_str).collect();
+                return Err(Error::Scene(unknown("key", key, &known)));
+            }
+            table.insert(key.clone(), value.clone());
+        }
+        let text = toml::to_string(&table).map_err(|error| Error::Scene(error.to_string()))?;
+        (self.resolve)(&text).map_err(|error| told(&text, &error))?
+    }
+}
+
+/// Whether a value was read to its end; what was read is none where it is a default.
+fn read_whole(given: &toml::Value, read: Option<&toml::Value>, key: &str) -> std::result::Result<(), String> {
+    let inner = |part: &str| if key.is_empty() { part.to_string() } else { format!("{key}.{part}") };
+    match given {
+        toml::Value::Table(table) => table
+            .iter()
+            .try_for_each(|(part, value)| read_whole(value, read.and_then(|r| r.get(part)), &inner(part))),
+        toml::Value::Array(list) => {
+            // Three equal channels are written as one number, and what is a default is not written: points, spectra.
+            let most = read.and_then(toml::Value::as_array).map_or(3, Vec::len);
+            if list.len() > most {
+                return Err(format!("{key} has {} entries; allowed: {most}", list.len()));
+            }
+            let entry = |i: usize| read.and_then(toml::Value::as_array).and_then(|r| r.get(i));
+            list.iter()
+                .enumerate()
+                .try_for_each(|(i, value)| read_whole(value, entry(i), &inner(&i.to_string())))
+        }
+        _ => Ok(()),
+    }
+}
+
+/// An unknown key or value, and the nearest known one.
+fn unknown(what: &str, key: &str, known: &[&str]) -> String {
+    let nearest =
+        known.iter().max_by(|a, b| strsim::jaro_winkler(a, key).total_cmp(&strsim::jaro_winkler(b, key)));
+    let list = known.join(", ");
+    match nearest {
+        Some(name) => format!("unknown {what} `{key}`; nearest: `{name}`; allowed: {list}"),
+        None => format!("unknown {what} `{key}`"),
+    }
+}
+
+/// The error in one line with file, line and column.
+fn located(file: &str, text: &str, error: &toml::de::Error) -> String {
+    let start = error.span().map_or(0, |span| span.start).min(text.len());
+    let before = &text[..start];
+    let line = before.matches('\n').count() + 1;
+    let column = before.rsplit('\n').next().map_or(0, |tail| tail.chars().count()) + 1;
+    format!("{file}:{line}:{column}: {}", say(text, error))
+}
+
+/// The error's message in one line, with the key in the place of "the value", and the nearest known key.
+fn say(text: &str, error: &toml::de::Error) -> String {
+    let message = error.message().replace('\n', " ");
+    for (prefix, what) in [("unknown field `", "key"), ("unknown variant `", "value")] {
+        if let Some(rest) = message.strip_prefix(prefix) {
+            let word = rest.split('`').next().unwrap_or_default();
+            let known: Vec<&str> = rest.split('`').skip(2).step_by(2).collect();
+            return unknown(what, word, &known);
+        }
+    }
+    if let Some(rest) = message.strip_prefix("unexpected keys in table: ")
+        && let Some((words, known)) = rest.split_once(", available keys: ")
+    {
+        let first = words.split(", ").next().unwrap_or_default();
+        return unknown("key", first, &known.split(", ").collect::<Vec<_>>());
+    }
+    match error.span().and_then(|span| key_before(text, span)) {
+        Some(key) => match message.strip_prefix("the value") {
+            Some(rest) => format!("{key}{rest}"),
+            None => format!("{key}: {message}"),
+        },
+        None => message,
+    }
+}
+
+/// The key whose value stands at a place of the text: the last `key =` before it, on its line.
+fn key_before(text: &str, span: Range<usize>) -> Option<&str> {
+    let line = text.get(..span.start)?.rsplit('\n').next()?;
+    let before = line.rsplit_once('=')?.0.trim_end();
+    let start = before.rfind(|c: char| !(c.is_alphanumeric() || "_-.".contains(c))).map_or(0, |i| i + 1);
+    (start < before.len()).then(|| &before[start..])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const FOG: &str = "[[regions]]\nshape = { sphere = { center = [0, 0, 0], radius = 1.0 } }\nsigma_t = 1.0\n\
+                       albedo = 0.5\n[[lights]]\npoint = { position = [0, 0, 0], power = 1.0 }\n";
+
+    fn told(text: &str, name: Option<&str>) -> String {
+        SceneFile::read(text, name).unwrap_err().to_string()
+    }
+
+    #[test]
+    fn mistakes_have_a_place() {
+        assert!(SceneFile::read(FOG, None).is_ok());
+        let wrong = FOG.replace("albedo = 0.5", "albedo = 1.5");
+        assert!(told(&wrong, Some("fog.toml")).starts_with("fog.toml:4:10: albedo is 1.5; allowed: "));
+        assert!(told(&wrong, None).starts_with("albedo is 1.5; allowed: "));
+        let wrong = told(&FOG.replace("sigma_t", "sigma_s"), Some("fog.toml"));
+        assert!(wrong.contains("fog.toml:3:1: unknown key `sigma_s`; nearest: `sigma_t`"), "{wrong}");
+        let wrong = told(&FOG.replace("[0, 0, 0], radius", "[0, 0, 0, 1], radius"), Some("fog.toml"));
+        assert_eq!(wrong, "fog.toml: regions.0.shape.sphere.center has 4 entries; allowed: 3");
+    }
+
+    #[test]
+    fn parameters_of_built_in_scenes_are_checked_together() {
+        let slab = Builtin::named("slab").unwrap();
+        let changed = |text: &str| slab.changed(&toml::from_str(text).unwrap());
+        assert_eq!(changed(""), Ok((slab.resolve)(slab.defaults).unwrap().unwrap()));
+        assert_ne!(changed("tau = 1"), changed(""));
+        let told = |text: &str| changed(text).unwrap_err().to_string();
+        assert!(told("albedo = 2").starts_with("albedo is 2"));
+        assert!(told("tua = 2").starts_with("unknown key `tua`; nearest: `tau`; allowed: albedo, "));
+        assert!(Builtin::named("slap").is_none());
+    }
+}
