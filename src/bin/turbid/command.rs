@@ -1,6 +1,6 @@
 //! The commands, one file each, and their exit code.
 
-use crate::{advise, check, map, measure, render, scenes};
+use crate::{advise, check, export, map, measure, render, scenes};
 use clap::Subcommand;
 use std::io::{ErrorKind, Write};
 use std::process::ExitCode;
@@ -16,6 +16,7 @@ pub enum Command {
     Map(Box<map::Map>),
     Check(check::Check),
     Scenes(scenes::Scenes),
+    Export(export::Export),
 }
 
 impl Command {
@@ -28,6 +29,7 @@ impl Command {
             Command::Map(command) => command.run(),
             Command::Check(command) => command.run(),
             Command::Scenes(command) => command.run(),
+            Command::Export(command) => command.run(),
         }
     }
 }

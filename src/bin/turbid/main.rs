@@ -3,6 +3,7 @@
 mod advise;
 mod check;
 mod command;
+mod export;
 mod load;
 mod made;
 mod map;
