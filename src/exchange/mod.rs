@@ -3,9 +3,11 @@
 //! What the other side cannot say is refused by name, in one line; nothing is left out in silence.
 
 mod export;
+mod import;
 mod xml;
 
-pub use export::{Exported, mitsuba};
+pub use export::{Exported, to_mitsuba};
+pub use import::{Imported, from_mitsuba};
 
 /// A file that stands beside another one.
 #[derive(Debug, Clone, PartialEq)]

@@ -1,6 +1,6 @@
 //! The commands, one file each, and their exit code.
 
-use crate::{advise, check, export, map, measure, render, scenes};
+use crate::{advise, check, export, import, map, measure, render, scenes};
 use clap::Subcommand;
 use std::io::{ErrorKind, Write};
 use std::process::ExitCode;
@@ -17,6 +17,7 @@ pub enum Command {
     Check(check::Check),
     Scenes(scenes::Scenes),
     Export(export::Export),
+    Import(import::Import),
 }
 
 impl Command {
@@ -30,6 +31,7 @@ impl Command {
             Command::Check(command) => command.run(),
             Command::Scenes(command) => command.run(),
             Command::Export(command) => command.run(),
+            Command::Import(command) => command.run(),
         }
     }
 }

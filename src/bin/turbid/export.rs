@@ -1,12 +1,11 @@
 //! `turbid export`: a scene as one of another program.
 
+use super::beside::{folder_and_stem, write_beside};
 use super::load::Source;
-use super::shared::{note, print};
-use anyhow::{Context, bail};
-use std::fmt::Write;
-use std::path::{Path, PathBuf};
-use turbid::exchange::{Beside, mitsuba};
-use turbid::output::{check_writable, write_atomically};
+use super::shared::note;
+use anyhow::Context;
+use std::path::PathBuf;
+use turbid::exchange::to_mitsuba;
 
 /// Write a scene as a scene of Mitsuba 3, which renders to the same values.
 ///
@@ -21,39 +20,12 @@ pub struct Export {
     mitsuba: PathBuf,
 }
 
-/// Folder and stem of a file that others are to stand beside, where its name ends in one of these.
-pub fn folder_and_stem<'a>(
-    flag: &str,
-    path: &'a Path,
-    extension: &str,
-) -> anyhow::Result<(PathBuf, &'a str)> {
-    let ends = path.extension().is_some_and(|e| e.eq_ignore_ascii_case(extension));
-    match path.file_stem().and_then(|stem| stem.to_str()) {
-        Some(stem) if ends => Ok((path.parent().map(Path::to_path_buf).unwrap_or_default(), stem)),
-        _ => bail!("{flag} is {}; allowed: a file name that ends in .{extension}", path.display()),
-    }
-}
-
-/// Writes a file and those beside it, which it names, before it; says what was written.
-pub fn write_beside(folder: &Path, files: &[Beside], path: &Path, text: &str) -> anyhow::Result<()> {
-    let mut written = String::new();
-    let paths: Vec<PathBuf> = files.iter().map(|file| folder.join(&file.name)).collect();
-    paths.iter().map(PathBuf::as_path).chain([path]).try_for_each(check_writable)?;
-    for (file, beside) in files.iter().zip(&paths) {
-        write_atomically(beside, |out| out.write_all(&file.bytes))?;
-        writeln!(written, "wrote {}", beside.display())?;
-    }
-    write_atomically(path, |out| out.write_all(text.as_bytes()))?;
-    writeln!(written, "wrote {}", path.display())?;
-    print(&written)
-}
-
 impl Export {
     /// Writes the files.
     pub fn run(self) -> anyhow::Result<()> {
         let (folder, stem) = folder_and_stem("--mitsuba", &self.mitsuba, "xml")?;
         let scene = self.source.load()?;
-        let exported = mitsuba(&scene, stem).with_context(|| self.source.name())?;
+        let exported = to_mitsuba(&scene, stem).with_context(|| self.source.name())?;
         exported.notes.iter().try_for_each(|text| note(text))?;
         write_beside(&folder, &exported.files, &self.mitsuba, &exported.text)
     }

@@ -1,9 +1,12 @@
 //! Scenes from a file or by name, with `--set` on top.
 
+use super::beside::in_folder;
+use super::shared::note;
 use anyhow::{Context, anyhow, bail};
 use std::ops::Range;
-use std::path::{Component, Path, PathBuf};
-use turbid::input::{read_stream, text};
+use std::path::{Path, PathBuf};
+use turbid::exchange::from_mitsuba;
+use turbid::input::{is_inside, read_stream, text};
 use turbid::photons::check_end;
 use turbid::scene::{BUILTIN, Builtin, Scene, SceneFile};
 
@@ -45,12 +48,29 @@ impl Source {
 
     /// The validated scene, in which light comes to an end.
     pub fn load(&self) -> anyhow::Result<Scene> {
+        if self.scene.extension().is_some_and(|e| e.eq_ignore_ascii_case("xml")) {
+            return self.load_imported();
+        }
         let file = self.resolve()?;
         if self.confined {
             let folder = self.folder();
             check_confined(&value(&file)?, &folder).with_context(|| self.name())?;
         }
         let scene = file.scene(&self.folder()).with_context(|| self.name())?;
+        check_end(&scene).with_context(|| self.name())?;
+        Ok(scene)
+    }
+
+    /// A scene of Mitsuba, with every change made to the scene file that it becomes.
+    fn load_imported(&self) -> anyhow::Result<Scene> {
+        let imported = from_mitsuba(&self.scene, "scene", &[], self.confined)?;
+        imported.notes.iter().try_for_each(|text| note(text))?;
+        let folder = in_folder(&imported)?;
+        let file = self.changed(&imported.scene.to_toml()?)?;
+        if self.confined {
+            check_confined(&value(&file)?, folder.path()).with_context(|| self.name())?;
+        }
+        let scene = file.scene(folder.path()).with_context(|| self.name())?;
         check_end(&scene).with_context(|| self.name())?;
         Ok(scene)
     }
@@ -100,8 +120,13 @@ impl Source {
             .with_context(|| format!("cannot read {}", self.name()))?;
         let what = || format!("a scene file of {} bytes", text.len());
         turbid::memory::check(what, IN_MEMORY * text.len() as f64).with_context(|| self.name())?;
-        let mut file = SceneFile::from_toml(&text).map_err(|e| anyhow!(located(&self.name(), &text, &e)))?;
-        let mut root = toml::Value::Table(toml::from_str(&text)?);
+        self.changed(&text)
+    }
+
+    /// The scene file of a text, with every change made.
+    fn changed(&self, text: &str) -> anyhow::Result<SceneFile> {
+        let mut file = SceneFile::from_toml(text).map_err(|e| anyhow!(located(&self.name(), text, &e)))?;
+        let mut root = toml::Value::Table(toml::from_str(text)?);
         check_lengths(&root, &file).with_context(|| self.name())?;
         if self.sets.is_empty() {
             return Ok(file);
@@ -136,15 +161,7 @@ fn check_confined(value: &toml::Value, folder: &Path) -> anyhow::Result<()> {
 }
 
 fn check_inside(name: &str, folder: &Path) -> anyhow::Result<()> {
-    let folder = if folder.as_os_str().is_empty() { Path::new(".") } else { folder };
-    let is_plain =
-        Path::new(name).components().all(|c| matches!(c, Component::Normal(_) | Component::CurDir));
-    // What is not there is refused by who reads it.
-    let leads_inside = match (folder.canonicalize(), folder.join(name).canonicalize()) {
-        (Ok(folder), Ok(file)) => file.starts_with(folder),
-        _ => true,
-    };
-    if !(is_plain && leads_inside) {
+    if !is_inside(name, folder) {
         bail!("file {name:?} is outside of the scene's folder; allowed with --confined: files in it");
     }
     Ok(())

@@ -1,9 +1,11 @@
 //! The command `turbid`: parses, calls the file of the command, reports errors in one line.
 
 mod advise;
+mod beside;
 mod check;
 mod command;
 mod export;
+mod import;
 mod load;
 mod made;
 mod map;

@@ -229,7 +229,9 @@ impl Writer<'_> {
                 return refuse("density of a cloud, which Mitsuba has not; allowed: grids and even blocks");
             }
             Density::HeightFog(_) => {
-                return refuse("density of height fog, which Mitsuba has not; allowed: grids and even blocks");
+                return refuse(
+                    "density of height fog, which Mitsuba has not; allowed: grids and even blocks",
+                );
             }
             Density::Repeated(_) => {
                 return refuse("density that repeats itself; allowed: grids and even blocks");

@@ -51,7 +51,7 @@ const APART: f64 = 2.0 * 1500.0 / (1u64 << 24) as f64;
 ///
 /// # Errors
 /// `Error::Scene` that names what Mitsuba cannot say
-pub fn mitsuba(scene: &Scene, stem: &str) -> Result<Exported> {
+pub fn to_mitsuba(scene: &Scene, stem: &str) -> Result<Exported> {
     let Some(camera) = scene.camera() else {
         return refuse("the scene has no camera; allowed: one with [camera]");
     };

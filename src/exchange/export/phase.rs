@@ -34,7 +34,7 @@ pub(super) fn said(phase: &Phase) -> Result<(Said, f64)> {
             let [(_, first), (share, second)] = p.terms();
             (Said::Blend([first, second].map(|term: HenyeyGreenstein| term.g()), share), 0.0)
         }
-        Phase::Schlick(_) | Phase::Tabulated(_) => table(phase)?,
+        Phase::Schlick(_) | Phase::Tabulated(_) | Phase::Legendre(_) => table(phase)?,
     })
 }
 
