@@ -13,6 +13,8 @@ pub(super) struct Xml {
 
 /// A number with every digit, without rows of zeros.
 pub(super) fn number(x: f64) -> String {
+    // Adding 0 makes -0 the same as 0.
+    let x = x + 0.0;
     if x == 0.0 || (1e-4..1e9).contains(&x.abs()) { format!("{x}") } else { format!("{x:e}") }
 }
 

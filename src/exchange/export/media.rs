@@ -176,8 +176,9 @@ impl Writer<'_> {
                 "{name}: the phase function is written as a table, {off:.1e} of the light goes elsewhere"
             ));
         }
-        // Colours of Mitsuba are at most 1.
-        let high = matter.sigma_t().max();
+        // Colours of Mitsuba are at most 1. A power of two changes no digit of them.
+        let (part, exponent) = libm::frexp(matter.sigma_t().max());
+        let high = libm::ldexp(1.0, if part == 0.5 { exponent - 1 } else { exponent });
         let hue = matter.sigma_t() / high;
         match medium {
             Medium::Homogeneous(matter) => {

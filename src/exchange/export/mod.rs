@@ -81,6 +81,7 @@ pub fn to_mitsuba(scene: &Scene, stem: &str) -> Result<Exported> {
         notes: places.notes().to_vec(),
         nearest,
     };
+    writer.notes.extend(places::near_glass(scene, nearest));
     if !scene.sensors().is_empty() {
         writer.notes.push(format!(
             "{} sensors are left out: only the camera's picture is written",

@@ -97,6 +97,42 @@ fn relation(solid: &Shape, body: &Shape, gap: f64) -> Relation {
     Relation::Crossing
 }
 
+/// Points of a body that are held against others, at most.
+const MOST_POINTS: usize = 1 << 14;
+
+/// Whether the surfaces of two bodies come nearer to each other than a gap somewhere without crossing, as far as corners and
+/// middles of balls tell.
+fn is_near(a: &Shape, b: &Shape, gap: f64) -> bool {
+    let comes_near = |a: &Shape, b: &Shape| match b {
+        Shape::Sphere(ball) => {
+            (a.distance(ball.center(), 2.0 * ball.radius() + gap) - ball.radius()).abs() < gap
+        }
+        Shape::Rectangle(_) | Shape::Cuboid(_) | Shape::Mesh(_) => {
+            let points = hull(b);
+            points.len() <= MOST_POINTS && points.iter().any(|p| a.distance(*p, 2.0 * gap) < gap)
+        }
+        Shape::Slab(_) | Shape::Revolution(_) => false,
+    };
+    comes_near(a, b) || comes_near(b, a)
+}
+
+/// Notes of dielectric surfaces that lie so near to other bodies that Mitsuba's rays pass between.
+pub(super) fn near_glass(scene: &Scene, gap: f64) -> Vec<String> {
+    let objects = scene.objects();
+    let is_glass = |i: usize| matches!(&objects[i].surface, Surface::Dielectric(_));
+    let mut notes = Vec::new();
+    for i in 0..objects.len() {
+        let near = (0..i)
+            .find(|j| (is_glass(i) || is_glass(*j)) && is_near(&objects[i].shape, &objects[*j].shape, gap));
+        if let Some(j) = near {
+            notes.push(format!(
+                "objects[{j}] and objects[{i}] touch or nearly do: rays of Mitsuba, which leave surfaces by up to {gap:.1e}, may miss one of them there"
+            ));
+        }
+    }
+    notes
+}
+
 /// The flat parts of opaque bodies and lamps, by their corners.
 fn facets(scene: &Scene) -> Vec<Vec<DVec3>> {
     let lamps = scene.named_lights().iter().filter_map(Light::body);
@@ -283,6 +319,28 @@ mod tests {
 
     fn ball(x: f64, radius: f64) -> Shape {
         Shape::Sphere(Sphere::new(DVec3::new(x, 0.0, 0.0), radius).unwrap())
+    }
+
+    #[test]
+    fn surfaces_touch_or_not() {
+        let table = Shape::Rectangle(
+            crate::geometry::Rectangle::new(DVec3::new(-3.0, -1.0, 3.0), 6.0 * DVec3::X, -6.0 * DVec3::Z)
+                .unwrap(),
+        );
+        let cases = [
+            (table.clone(), ball(0.0, 1.0), true),
+            (table.clone(), ball(0.0, 0.9), false),
+            (table.clone(), ball(0.0, 1.1), false),
+            (table.clone(), cuboid(-1.0, 1.0), true),
+            (table.clone(), cuboid(-0.99, 1.0), false),
+            (ball(0.0, 1.0), ball(2.0, 1.0), true),
+            (ball(0.0, 1.0), ball(0.5, 0.5), true),
+            (ball(0.0, 1.0), ball(0.4, 0.5), false),
+        ];
+        for (a, b, expected) in cases {
+            assert_eq!(is_near(&a, &b, 1e-4), expected, "{a:?} {b:?}");
+            assert_eq!(is_near(&b, &a, 1e-4), expected, "{b:?} {a:?}");
+        }
     }
 
     #[test]

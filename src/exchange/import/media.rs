@@ -58,8 +58,9 @@ impl<'a> Importer<'a> {
                 (Volume::Constant(a + s), Volume::Constant(s.over(a + s)))
             }
             _ => {
-                return part
-                    .refuse("sigma_a and sigma_s; allowed: both, the same everywhere, or sigma_t and albedo");
+                return part.refuse(
+                    "sigma_a and sigma_s; allowed: both, the same everywhere, or sigma_t and albedo",
+                );
             }
         };
         let (g, phase) = match part.part("phase")? {
