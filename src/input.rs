@@ -1,7 +1,7 @@
 //! Files that are read whole: of a bounded size, and no devices or pipes, which may have no end.
 
 use std::io::{Error, ErrorKind, Read, Result};
-use std::path::Path;
+use std::path::{Component, Path};
 
 /// The bytes of a file of at most `most` bytes.
 ///
@@ -50,6 +50,19 @@ pub fn read_all(input: impl Read, most: u64) -> Result<Vec<u8>> {
 /// As [`read`], and for what is not UTF-8
 pub fn read_text(path: &Path, most: u64) -> Result<String> {
     text(read(path, most)?)
+}
+
+/// Whether a name of a file leads into a folder: not by being absolute, by `..`, or through a link. What is not there counts as
+/// inside; who reads it refuses it.
+pub fn is_inside(name: &str, folder: &Path) -> bool {
+    let folder = if folder.as_os_str().is_empty() { Path::new(".") } else { folder };
+    let is_plain =
+        Path::new(name).components().all(|c| matches!(c, Component::Normal(_) | Component::CurDir));
+    let leads_inside = match (folder.canonicalize(), folder.join(name).canonicalize()) {
+        (Ok(folder), Ok(file)) => file.starts_with(folder),
+        _ => true,
+    };
+    is_plain && leads_inside
 }
 
 /// Bytes as text.

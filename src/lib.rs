@@ -32,6 +32,7 @@
 
 pub mod error;
 pub mod estimators;
+pub mod exchange;
 pub mod faults;
 pub mod geometry;
 pub mod input;

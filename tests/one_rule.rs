@@ -5,7 +5,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// The rooms of src/ from the bottom up; those in one row may know each other. A new room is named here, in its place.
-const ORDER: [&[&str]; 15] = [
+const ORDER: [&[&str]; 16] = [
     &["faults"],
     &["error"],
     &["input", "memory"],
@@ -15,6 +15,7 @@ const ORDER: [&[&str]; 15] = [
     &["stats"],
     &["phase", "medium", "surface", "light", "geometry"],
     &["scene"],
+    &["exchange"],
     &["transport"],
     &["photons"],
     &["estimators"],

@@ -2,7 +2,7 @@
 
 use crate::math::FOUR_PI;
 use crate::phase::{
-    HenyeyGreenstein, Isotropic, Phase, PhaseFunction, Rayleigh, Schlick, Tabulated, TwoTerm,
+    HenyeyGreenstein, Isotropic, Legendre, Phase, PhaseFunction, Rayleigh, Schlick, Tabulated, TwoTerm,
 };
 use crate::photons::tree::bits;
 use wide::f32x8;
@@ -136,6 +136,12 @@ impl Directional for Tabulated {
     }
 }
 
+impl Directional for Legendre {
+    fn value(&self, one_minus_mu: f64, one_plus_mu: f64) -> f64 {
+        self.eval(one_minus_mu, one_plus_mu)
+    }
+}
+
 impl Directional for Phase {
     fn value(&self, one_minus_mu: f64, one_plus_mu: f64) -> f64 {
         self.eval(one_minus_mu, one_plus_mu)
@@ -150,6 +156,7 @@ impl Directional for Phase {
             Phase::Schlick(phase) => phase.values(pairs),
             Phase::Rayleigh(phase) => phase.values(pairs),
             Phase::Tabulated(phase) => phase.values(pairs),
+            Phase::Legendre(phase) => phase.values(pairs),
         }
     }
 }

@@ -19,6 +19,8 @@ pub struct Spot {
     position: DVec3,
     frame: Frame,
     power: Spectrum,
+    /// Angles up to which intensity is full, and from which on it is dark \[degrees\].
+    angles: [f64; 2],
     /// 1 - cos of the angle up to which intensity is full.
     full: f64,
     /// 1 - cos of the angle from which on it is dark.
@@ -59,6 +61,7 @@ impl Spot {
             position,
             frame: Frame::new(dir),
             power: emissive("power", power)?,
+            angles: [full_angle, edge_angle],
             full: one_minus_cos_degrees(full_angle),
             edge: one_minus_cos_degrees(edge_angle),
         })
@@ -72,6 +75,11 @@ impl Spot {
     /// Unit direction of its axis.
     pub fn dir(&self) -> DVec3 {
         self.frame.z
+    }
+
+    /// Angles from the axis up to which intensity is full, and from which on it is dark \[degrees\].
+    pub fn angles(&self) -> [f64; 2] {
+        self.angles
     }
 
     /// Share of the full intensity at 1 - cos of an angle to the axis.

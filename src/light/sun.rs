@@ -80,6 +80,11 @@ impl Sun {
         self.irradiance
     }
 
+    /// Whether its light comes through a rectangle alone.
+    pub fn has_portal(&self) -> bool {
+        self.portal.is_some()
+    }
+
     /// Whether the disc has no extent.
     pub fn is_delta(&self) -> bool {
         self.one_minus_mu_max == 0.0

@@ -139,6 +139,11 @@ impl Blocks {
         Ok(Blocks { spans, ..Blocks::new([x, y, vec![0.0, 1.0]], 1, values)? })
     }
 
+    /// Planes between blocks across an axis, 0 to 2 \[L\].
+    pub fn planes(&self, axis: usize) -> &[f64] {
+        &self.planes[axis]
+    }
+
     /// Blocks along each axis.
     pub fn count(&self) -> [usize; 3] {
         [0, 1, 2].map(|axis: usize| self.planes[axis].len() - 1)
@@ -152,11 +157,6 @@ impl Blocks {
     /// The largest value.
     pub fn high(&self) -> f64 {
         self.high
-    }
-
-    /// Planes between blocks across an axis, rising \[L\].
-    pub fn planes(&self, axis: usize) -> &[f64] {
-        &self.planes[axis]
     }
 
     /// Whether it depends on z alone.

@@ -84,6 +84,21 @@ impl Heterogeneous {
         self.albedo.as_ref().map_or(albedo, |varying| albedo * varying.at(p))
     }
 
+    /// The grid that the albedo is multiplied by, where there is one.
+    pub fn albedo_grid(&self) -> Option<&Grid> {
+        if let Some(Albedo::Grid(grid, None)) = &self.albedo { Some(grid) } else { None }
+    }
+
+    /// The blocks that the albedo is multiplied by, where there are any.
+    pub fn albedo_blocks(&self) -> Option<&Blocks> {
+        if let Some(Albedo::Blocks(blocks, None)) = &self.albedo { Some(blocks) } else { None }
+    }
+
+    /// Whether the albedo varies.
+    pub fn has_varying_albedo(&self) -> bool {
+        self.albedo.is_some()
+    }
+
     /// Emission where the density is known [W/(L^3 sr)].
     pub fn emission_of(&self, density: f64) -> Spectrum {
         self.matter.emission() + self.emission * density

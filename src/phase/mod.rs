@@ -6,6 +6,7 @@
 mod function;
 mod henyey_greenstein;
 mod isotropic;
+mod legendre;
 mod rayleigh;
 mod schlick;
 mod tabulated;
@@ -14,6 +15,7 @@ mod two_term;
 pub use function::PhaseFunction;
 pub use henyey_greenstein::HenyeyGreenstein;
 pub use isotropic::Isotropic;
+pub use legendre::Legendre;
 pub use rayleigh::Rayleigh;
 pub use schlick::Schlick;
 pub use tabulated::Tabulated;
@@ -38,6 +40,8 @@ pub enum Phase {
     Rayleigh(Rayleigh),
     /// Given by a table.
     Tabulated(Arc<Tabulated>),
+    /// Given by its Legendre moments.
+    Legendre(Arc<Legendre>),
 }
 
 macro_rules! each {
@@ -49,6 +53,7 @@ macro_rules! each {
             Phase::Schlick($inner) => $body,
             Phase::Rayleigh($inner) => $body,
             Phase::Tabulated($inner) => $body,
+            Phase::Legendre($inner) => $body,
         }
     };
 }
@@ -90,7 +95,8 @@ impl Phase {
             | Phase::HenyeyGreenstein(_)
             | Phase::TwoTerm(_)
             | Phase::Schlick(_)
-            | Phase::Rayleigh(_) => Vec::new(),
+            | Phase::Rayleigh(_)
+            | Phase::Legendre(_) => Vec::new(),
         }
     }
 
@@ -136,6 +142,14 @@ impl Phase {
                     Phase::Schlick(Schlick::new(k))
                 })
             }
+            Phase::Legendre(_) => {
+                // Even; a line backwards; brighter to both ends; and a dozen moments of Henyey and Greenstein, g = 0.4.
+                let peak: Vec<f64> =
+                    (0..12).scan(1.0, |power, _| Some(std::mem::replace(power, *power * 0.4))).collect();
+                let all: [&[f64]; 4] = [&[1.0], &[1.0, -0.3], &[1.0, 0.1, 0.25], &peak];
+                let all = all.into_iter().filter_map(|moments| Legendre::new(moments).ok());
+                all.map(|p| Phase::Legendre(Arc::new(p))).collect()
+            }
             Phase::Tabulated(_) => {
                 // Even; with a step; and a droplet's: a narrow forward peak, a flat side and a glory.
                 let droplet = [
@@ -161,6 +175,7 @@ impl Phase {
             }
         };
         let half = Asymmetry::try_from(0.5);
+        let even = Legendre::new(&[1.0]).ok().map(|p| Phase::Legendre(Arc::new(p)));
         let first = [
             Some(Phase::Isotropic(Isotropic)),
             half.clone().ok().map(Phase::with_asymmetry),
@@ -171,6 +186,7 @@ impl Phase {
             half.ok().map(|k| Phase::Schlick(Schlick::new(k))),
             Some(Phase::Rayleigh(Rayleigh)),
             Tabulated::new(&[(0.0, 1.0), (180.0, 1.0)]).ok().map(|table| Phase::Tabulated(Arc::new(table))),
+            even,
         ];
         first.into_iter().flatten().flat_map(named).collect()
     }

@@ -3,7 +3,7 @@
 use super::PhaseFunction;
 use crate::error::{Error, Result};
 use crate::math::quadrature::{gauss_legendre, legendre_series};
-use crate::math::sin_cos;
+use crate::math::{atan2, sin_cos};
 use std::f64::consts::PI;
 use std::path::Path;
 
@@ -53,7 +53,8 @@ impl Tabulated {
         Tabulated::checked("phase table", "row", &lines)
     }
 
-    /// Reads a table: a line with an angle in degrees and a value, between spaces, tabs or a comma; `#` starts a comment.
+    /// Reads a table: a line with an angle in degrees, rising from 0 to 180, and a value, between spaces, tabs or a comma; or with
+    /// a cosine, rising from -1 to 1, in its place. `#` starts a comment.
     ///
     /// # Errors
     /// `Error::Scene` that names the file and the line
@@ -87,7 +88,29 @@ impl Tabulated {
                 }
             }
         }
+        // No angle is negative: the first number tells.
+        if lines.first().is_some_and(|(_, first, _)| *first == -1.0) {
+            return Tabulated::of_cosines(&file, &lines);
+        }
         Tabulated::checked(&file, "line", &lines)
+    }
+
+    /// The table of these cosines, as angles.
+    fn of_cosines(file: &str, lines: &[(usize, f64, f64)]) -> Result<Self> {
+        for pair in lines.windows(2) {
+            let ((_, before, _), (line, cosine, _)) = (pair[0], pair[1]);
+            if !(cosine > before && cosine <= 1.0) {
+                return refuse(
+                    file,
+                    format!("line {line}: cosine {cosine} after {before}; allowed: rising, to 1"),
+                );
+            }
+        }
+        let angle = |cosine: f64| atan2(((1.0 - cosine) * (1.0 + cosine)).sqrt(), cosine).to_degrees();
+        let ends = |cosine: f64| if cosine == -1.0 { 180.0 } else { angle(cosine) };
+        let rows: Vec<(usize, f64, f64)> =
+            lines.iter().rev().map(|(line, cosine, value)| (*line, ends(*cosine), *value)).collect();
+        Tabulated::checked(file, "line", &rows)
     }
 
     fn checked(file: &str, row: &str, lines: &[(usize, f64, f64)]) -> Result<Self> {

@@ -3,7 +3,9 @@
 use super::builtin::{BUILTIN, Builtin};
 use super::file::SceneFile;
 use crate::error::{Error, Result};
+use crate::input::is_inside;
 use std::ops::Range;
+use std::path::Path;
 
 impl SceneFile {
     /// A scene file from its text. What serde passes over is refused too: lists of numbers of which only the first ones are read.
@@ -27,6 +29,32 @@ impl SceneFile {
             None => Error::Scene(text),
         })?;
         Ok(file)
+    }
+
+    /// Refuses a scene that names files, the values of all keys `file`, outside of a folder: by an absolute name, by `..`, or through
+    /// a link.
+    ///
+    /// # Errors
+    /// `Error::Scene` that names the file
+    pub fn check_confined(&self, folder: &Path) -> Result<()> {
+        let text = self.to_toml().map_err(|error| Error::Scene(error.to_string()))?;
+        let table: toml::Table = toml::from_str(&text).map_err(|error| Error::Scene(error.to_string()))?;
+        check_confined(&toml::Value::Table(table), folder)
+    }
+}
+
+fn check_confined(value: &toml::Value, folder: &Path) -> Result<()> {
+    match value {
+        toml::Value::Table(table) => table.iter().try_for_each(|(key, value)| match value {
+            toml::Value::String(name) if key == "file" && !is_inside(name, folder) => {
+                Err(Error::Scene(format!(
+                    "file {name:?} is outside of the scene's folder; allowed with --confined: files in it"
+                )))
+            }
+            other => check_confined(other, folder),
+        }),
+        toml::Value::Array(values) => values.iter().try_for_each(|value| check_confined(value, folder)),
+        _ => Ok(()),
     }
 }
 
@@ -79,7 +107,7 @@ fn read_whole(given: &toml::Value, read: Option<&toml::Value>, key: &str) -> std
 }
 
 /// An unknown key or value, and the nearest known one.
-fn unknown(what: &str, key: &str, known: &[&str]) -> String {
+pub(super) fn unknown(what: &str, key: &str, known: &[&str]) -> String {
     let nearest =
         known.iter().max_by(|a, b| strsim::jaro_winkler(a, key).total_cmp(&strsim::jaro_winkler(b, key)));
     let list = known.join(", ");
@@ -99,7 +127,7 @@ fn located(file: &str, text: &str, error: &toml::de::Error) -> String {
 }
 
 /// The error's message in one line, with the key in the place of "the value", and the nearest known key.
-fn say(text: &str, error: &toml::de::Error) -> String {
+pub(super) fn say(text: &str, error: &toml::de::Error) -> String {
     let message = error.message().replace('\n', " ");
     for (prefix, what) in [("unknown field `", "key"), ("unknown variant `", "value")] {
         if let Some(rest) = message.strip_prefix(prefix) {

@@ -35,7 +35,9 @@ fn over(phase: &Phase, (a, b): (f64, f64), f: impl Fn(f64, f64) -> f64) -> f64 {
 fn rounding_of_g(phase: &Phase) -> f64 {
     match phase {
         Phase::Isotropic(_) | Phase::HenyeyGreenstein(_) | Phase::Rayleigh(_) => 0.0,
-        Phase::TwoTerm(_) | Phase::Schlick(_) | Phase::Tabulated(_) => 32.0 * f64::EPSILON,
+        Phase::TwoTerm(_) | Phase::Schlick(_) | Phase::Tabulated(_) | Phase::Legendre(_) => {
+            32.0 * f64::EPSILON
+        }
     }
 }
 

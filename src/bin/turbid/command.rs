@@ -1,6 +1,6 @@
 //! The commands, one file each, and their exit code.
 
-use crate::{advise, check, completions, man, map, measure, render, scenes};
+use crate::{advise, check, completions, export, import, man, map, measure, render, scenes};
 use clap::{ArgMatches, Subcommand};
 use std::io::{ErrorKind, Write};
 use std::process::ExitCode;
@@ -18,6 +18,8 @@ pub enum Command {
     Scenes(scenes::Scenes),
     Completions(completions::Completions),
     Man(man::Man),
+    Export(export::Export),
+    Import(import::Import),
 }
 
 impl Command {
@@ -36,6 +38,8 @@ impl Command {
             Command::Scenes(command) => command.run(),
             Command::Completions(command) => command.run(program),
             Command::Man(command) => command.run(program),
+            Command::Export(command) => command.run(),
+            Command::Import(command) => command.run(),
         }
     }
 }

@@ -1,7 +1,10 @@
 //! Scenes from a file or by name, with `--set` on top.
 
+use super::beside::in_folder;
+use super::shared::note;
 use anyhow::Context;
 use std::path::{Path, PathBuf};
+use turbid::exchange::from_mitsuba;
 use turbid::output::is_same_file;
 use turbid::photons::check_end;
 use turbid::scene::{Scene, SceneFile, SceneSource};
@@ -38,23 +41,37 @@ impl Source {
 
     /// The validated scene, in which light comes to an end.
     pub fn load(&self) -> anyhow::Result<Scene> {
-        self.scene_of(&self.resolve()?)
+        Ok(self.read()?.1)
     }
 
-    /// The same of its file, which may be read only once.
-    pub fn scene_of(&self, file: &SceneFile) -> anyhow::Result<Scene> {
-        let source = SceneSource::new(&self.scene);
-        if self.confined {
-            source.check_confined(file)?;
+    /// The same with the file that it follows from, every change made.
+    pub fn read(&self) -> anyhow::Result<(SceneFile, Scene)> {
+        if self.scene.extension().is_some_and(|e| e.eq_ignore_ascii_case("xml")) {
+            let imported = from_mitsuba(&self.scene, "scene", &[], self.confined)?;
+            imported.notes.iter().try_for_each(|text| note(text))?;
+            let folder = in_folder(&imported)?;
+            let file = self.source()?.changed(&imported.scene.to_toml()?)?;
+            return self.scene_in(file, folder.path());
         }
-        let scene = file.scene(&source.folder()).with_context(|| self.name())?;
-        check_end(&scene).with_context(|| self.name())?;
-        Ok(scene)
+        let source = self.source()?;
+        self.scene_in(source.resolve()?, &source.folder())
     }
 
     /// The scene file with every change made.
     pub fn resolve(&self) -> anyhow::Result<SceneFile> {
-        let source = SceneSource::new(&self.scene);
-        Ok(self.sets.iter().try_fold(source, |source, set| source.with_set(set))?.resolve()?)
+        Ok(self.source()?.resolve()?)
+    }
+
+    fn source(&self) -> turbid::Result<SceneSource> {
+        self.sets.iter().try_fold(SceneSource::new(&self.scene), |source, set| source.with_set(set))
+    }
+
+    fn scene_in(&self, file: SceneFile, folder: &Path) -> anyhow::Result<(SceneFile, Scene)> {
+        if self.confined {
+            file.check_confined(folder).with_context(|| self.name())?;
+        }
+        let scene = file.scene(folder).with_context(|| self.name())?;
+        check_end(&scene).with_context(|| self.name())?;
+        Ok((file, scene))
     }
 }

@@ -1,10 +1,13 @@
 //! The command `turbid`: parses, calls the file of the command, reports errors in one line.
 
 mod advise;
+mod beside;
 mod check;
 mod command;
 mod completions;
+mod export;
 mod given;
+mod import;
 mod load;
 mod made;
 mod man;

@@ -156,8 +156,8 @@ impl Render {
         }
         self.check_passes()?;
         let exposure = self.shown.checked()?;
-        let file = self.source.resolve()?;
-        let scene = match (self.source.scene_of(&file)?, self.plan) {
+        let (file, scene) = self.source.read()?;
+        let scene = match (scene, self.plan) {
             (scene, PlanName::Auto) => scene,
             (_, PlanName::Full) if self.with == With::Light => bail!(
                 "--plan full is for pictures by photons and paths: light tracing reads no map and looks for nothing that \

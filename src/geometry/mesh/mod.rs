@@ -1,6 +1,9 @@
 //! A surface of triangles.
 
+mod file;
 mod obj;
+mod ply;
+mod polygon;
 mod triangle;
 
 use super::{ASLANT, Hit, Tree, remainder};

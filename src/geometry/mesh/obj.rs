@@ -3,9 +3,9 @@
 //! Read here and not by a crate, since the crates' errors do not say in which line a file is wrong.
 
 use super::Mesh;
+use super::polygon::cut;
 use crate::error::{Error, Result};
 use glam::{DVec2, DVec3};
-use std::path::Path;
 
 /// Statements that say nothing about the triangles.
 const PASSED_OVER: [&str; 16] = [
@@ -40,39 +40,21 @@ struct Obj {
 /// Surface parameters beyond have lost the place within a picture that repeats.
 const MOST_UV: f64 = 1e9;
 
-/// Larger files are refused: some 10 million triangles.
-const MOST_BYTES: u64 = 1 << 30;
-
-/// Memory of a mesh over the size of its file, while it is made.
-const IN_MEMORY: f64 = 10.0;
-
-impl Mesh {
-    /// A mesh from a Wavefront OBJ file, each position where `place` puts it: `v`, `vt` and `f` are read, polygons are cut
-    /// into triangles, the rest is passed over.
-    ///
-    /// # Errors     `Error::Scene` with file and line for what cannot be read
-    pub fn read(path: &Path, place: impl Fn(DVec3) -> DVec3) -> Result<Self> {
-        read(path, place)
-    }
-}
-
-fn read(path: &Path, place: impl Fn(DVec3) -> DVec3) -> Result<Mesh> {
-    let name = path.display();
-    let refuse = |what: String| Error::Scene(format!("{name}: {what}"));
-    let bytes = crate::input::read(path, MOST_BYTES).map_err(|e| refuse(e.to_string()))?;
-    let what = || format!("a mesh of {} bytes", bytes.len());
-    crate::memory::check(what, IN_MEMORY * bytes.len() as f64).map_err(|e| refuse(e.to_string()))?;
-    parse(&String::from_utf8_lossy(&bytes), place).map_err(|e| match e {
-        Failure::At(line, what) => Error::Scene(format!("{name}:{line}: {what}")),
-        Failure::Whole(what) => Error::Scene(format!("{name}: {what}")),
-    })
-}
-
 /// What is wrong, and in which line if in one.
 #[derive(Debug, PartialEq)]
 enum Failure {
     At(usize, String),
     Whole(String),
+}
+
+/// A mesh from the text of a Wavefront OBJ file: `v`, `vt` and `f` are read, the rest is passed over.
+///
+/// # Errors     `Error::Scene` with name and line for what cannot be read
+pub(super) fn read(name: &str, text: &str, place: impl Fn(DVec3) -> DVec3) -> Result<Mesh> {
+    parse(text, place).map_err(|e| match e {
+        Failure::At(line, what) => Error::Scene(format!("{name}:{line}: {what}")),
+        Failure::Whole(what) => Error::Scene(format!("{name}: {what}")),
+    })
 }
 
 fn parse(text: &str, place: impl Fn(DVec3) -> DVec3) -> std::result::Result<Mesh, Failure> {
@@ -126,22 +108,14 @@ impl Obj {
         }
     }
 
-    /// A convex polygon. Every second corner is cut off, and again what is left: a fan about one corner would be hundreds of
-    /// triangles that lie over each other seen from everywhere but in front, and no tree would part them.
+    /// A convex polygon.
     fn face<'a>(&mut self, words: impl Iterator<Item = &'a str>) -> std::result::Result<(), String> {
         let corners: Vec<(u32, Option<DVec2>)> =
             words.map(|word| self.corner(word)).collect::<std::result::Result<_, _>>()?;
         if corners.len() < 3 {
             return Err(format!("a face of {} corners; allowed: 3 or more", corners.len()));
         }
-        let mut ring = corners;
-        while ring.len() > 2 {
-            ring.windows(3).step_by(2).for_each(|cut| self.triangle([cut[0], cut[1], cut[2]]));
-            if let ([first, .., before, last], true) = (&ring[..], ring.len().is_multiple_of(2)) {
-                self.triangle([*first, *before, *last]);
-            }
-            ring = ring.into_iter().step_by(2).collect();
-        }
+        cut(corners, |triangle| self.triangle(triangle));
         Ok(())
     }
 

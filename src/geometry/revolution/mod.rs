@@ -80,6 +80,21 @@ impl Revolution {
             && self.rings.iter().zip(&other.rings).all(|(a, b)| a.distance(*b) <= least)
     }
 
+    /// Where its axis begins \[L\].
+    pub fn base(&self) -> DVec3 {
+        self.base
+    }
+
+    /// Unit directions: two across the axis, and that of the axis.
+    pub fn frame(&self) -> &Frame {
+        &self.frame
+    }
+
+    /// The profile: points (radius, height) \[L\].
+    pub fn profile(&self) -> &[DVec2] {
+        &self.rings
+    }
+
     /// The flat parts: middle, normal, inner and outer radius \[L\].
     pub fn discs(&self) -> impl Iterator<Item = (DVec3, DVec3, [f64; 2])> {
         let flat = self.rings.windows(2).filter(|pair| pair[0].y == pair[1].y && pair[0].x != pair[1].x);

@@ -7,8 +7,10 @@ use crate::scene::file::{Channels, RegionFile, ShapeFile};
 pub(super) fn region(shape: ShapeFile, sigma_t: f64, albedo: Albedo, g: Asymmetry) -> Result<RegionFile> {
     Ok(RegionFile {
         shape,
-        sigma_t: grey(NonNegative::new("sigma_t", sigma_t)?),
-        albedo: grey(albedo),
+        sigma_t: Some(grey(NonNegative::new("sigma_t", sigma_t)?)),
+        albedo: Some(grey(albedo)),
+        sigma_a: None,
+        sigma_s: None,
         albedo_grid: None,
         g: Some(g),
         phase: None,

@@ -24,6 +24,12 @@ pub struct InteriorFile {
     /// Single-scattering albedo.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub albedo: Option<Channels<Albedo>>,
+    /// Absorption, with `sigma_s` in place of the two [1/L].
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub sigma_a: Option<Channels<NonNegative>>,
+    /// Scattering [1/L].
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub sigma_s: Option<Channels<NonNegative>>,
     /// Albedo from place to place, times `albedo`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub albedo_grid: Option<GridFile>,
@@ -49,6 +55,8 @@ impl InteriorFile {
         let keys = Keys {
             sigma_t: self.sigma_t,
             albedo: self.albedo,
+            sigma_a: self.sigma_a,
+            sigma_s: self.sigma_s,
             albedo_grid: self.albedo_grid.as_ref(),
             g: self.g,
             phase: self.phase.as_ref(),

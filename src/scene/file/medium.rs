@@ -2,13 +2,14 @@
 
 use super::blocks::{ColumnsFile, LayersFile, MarkovFile};
 use super::values::Channels;
+use crate::Spectrum;
 use crate::error::{Error, Result};
 use crate::faults::{Fault, planted};
 use crate::math::{Albedo, Asymmetry, NonNegative, Positive};
 use crate::medium::{
     Blocks, Body, Cloud, CloudShape, Density, Grid, HeightFog, Heterogeneous, Homogeneous, Medium,
 };
-use crate::phase::{Phase, Rayleigh, Schlick, Tabulated, TwoTerm};
+use crate::phase::{Legendre, Phase, Rayleigh, Schlick, Tabulated, TwoTerm};
 use serde::{Deserialize, Serialize};
 use std::path::Path;
 use std::sync::Arc;
@@ -21,10 +22,20 @@ use std::sync::Arc;
     reason = "the names are those of the phase functions' own constructors, which say their meaning"
 )]
 pub enum PhaseFile {
-    TwoTerm { g1: Asymmetry, g2: Asymmetry, share: Albedo },
-    Schlick { k: Asymmetry },
+    TwoTerm {
+        g1: Asymmetry,
+        g2: Asymmetry,
+        share: Albedo,
+    },
+    Schlick {
+        k: Asymmetry,
+    },
     Rayleigh {},
-    Table { file: String },
+    Table {
+        file: String,
+    },
+    /// Moments of degree 0, which is 1, and on.
+    Legendre(Vec<f64>),
 }
 
 /// How much of a medium is where.
@@ -110,6 +121,8 @@ pub struct CloudFile {
 pub(super) struct Keys<'a> {
     pub sigma_t: Option<Channels<NonNegative>>,
     pub albedo: Option<Channels<Albedo>>,
+    pub sigma_a: Option<Channels<NonNegative>>,
+    pub sigma_s: Option<Channels<NonNegative>>,
     pub albedo_grid: Option<&'a GridFile>,
     pub g: Option<Asymmetry>,
     pub phase: Option<&'a PhaseFile>,
@@ -123,17 +136,43 @@ fn refuse<T>(text: &str) -> Result<T> {
 }
 
 impl Keys<'_> {
+    /// Extinction and albedo, by whichever pair of keys says them.
+    fn coefficients(&self) -> Result<Option<(Spectrum, Spectrum)>> {
+        match (self.sigma_t, self.albedo, self.sigma_a, self.sigma_s) {
+            (Some(sigma_t), Some(albedo), None, None) => Ok(Some((sigma_t.spectrum(), albedo.spectrum()))),
+            (None, None, Some(sigma_a), Some(sigma_s)) => {
+                let sigma_t = sigma_a.spectrum() + sigma_s.spectrum();
+                Ok(Some((sigma_t, sigma_s.spectrum().over(sigma_t))))
+            }
+            (None, None, None, None) => Ok(None),
+            (sigma_t, albedo, sigma_a, sigma_s) => {
+                let keys = [
+                    ("sigma_t", sigma_t.is_some()),
+                    ("albedo", albedo.is_some()),
+                    ("sigma_a", sigma_a.is_some()),
+                    ("sigma_s", sigma_s.is_some()),
+                ];
+                let given: Vec<&str> =
+                    keys.iter().filter(|(_, is_there)| *is_there).map(|(key, _)| *key).collect();
+                refuse(&format!(
+                    "a medium with {}; allowed: sigma_t and albedo, or sigma_a and sigma_s",
+                    given.join(", ")
+                ))
+            }
+        }
+    }
+
     /// The medium, or none if no key is there.
     pub(super) fn medium(&self, folder: &Path) -> Result<Option<Medium>> {
         let Keys { albedo_grid, g, phase, emission, emission_by_density, density, .. } = *self;
-        let (sigma_t, albedo) = match (self.sigma_t, self.albedo) {
-            (Some(sigma_t), Some(albedo)) if g.is_some() || phase.is_some() => (sigma_t, albedo),
-            (None, None) if g.is_none() && phase.is_none() && density.is_none() && emission.is_none() => {
+        let (sigma_t, albedo) = match self.coefficients()? {
+            Some(coefficients) if g.is_some() || phase.is_some() => coefficients,
+            None if g.is_none() && phase.is_none() && density.is_none() && emission.is_none() => {
                 return Ok(None);
             }
             _ => {
                 return refuse(
-                    "a part of a medium; allowed: sigma_t, albedo and g (or phase), or none of them",
+                    "a part of a medium; allowed: sigma_t, albedo (or sigma_a, sigma_s) and g (or phase), or none of them",
                 );
             }
         };
@@ -142,7 +181,7 @@ impl Keys<'_> {
             (None, Some(phase)) => phase.phase(folder)?,
             _ => return refuse("g and phase; allowed: one of the two"),
         };
-        let mut matter = Homogeneous::new(sigma_t.spectrum(), albedo.spectrum(), phase)?;
+        let mut matter = Homogeneous::new(sigma_t, albedo, phase)?;
         if let Some(emission) = emission {
             matter = matter.with_emission(emission.spectrum())?;
         }
@@ -180,6 +219,7 @@ impl PhaseFile {
             PhaseFile::TwoTerm { g1, g2, share } => Phase::TwoTerm(TwoTerm::new(*g1, *g2, *share)),
             PhaseFile::Schlick { k } => Phase::Schlick(Schlick::new(*k)),
             PhaseFile::Rayleigh {} => Phase::Rayleigh(Rayleigh),
+            PhaseFile::Legendre(moments) => Phase::Legendre(Arc::new(Legendre::new(moments)?)),
             PhaseFile::Table { file } => Phase::Tabulated(Arc::new(Tabulated::read(&folder.join(file))?)),
         })
     }

@@ -8,8 +8,8 @@ mod texture;
 mod values;
 
 pub use interior::{DielectricFile, InteriorFile};
-pub use medium::{DensityFile, GridFile, PhaseFile};
-pub use shape::ShapeFile;
+pub use medium::{DensityFile, GridFile, Interpolation, PhaseFile};
+pub use shape::{RotateFile, ShapeFile};
 pub use texture::TextureFile;
 pub use values::{CellFile, Channels};
 
@@ -138,9 +138,17 @@ pub struct RegionFile {
     /// Where.
     pub shape: ShapeFile,
     /// Extinction [1/L].
-    pub sigma_t: Channels<NonNegative>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub sigma_t: Option<Channels<NonNegative>>,
     /// Single-scattering albedo.
-    pub albedo: Channels<Albedo>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub albedo: Option<Channels<Albedo>>,
+    /// Absorption, with `sigma_s` in place of the two [1/L].
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub sigma_a: Option<Channels<NonNegative>>,
+    /// Scattering [1/L].
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub sigma_s: Option<Channels<NonNegative>>,
     /// Albedo from place to place, times `albedo`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub albedo_grid: Option<GridFile>,
@@ -355,8 +363,10 @@ impl SpaceFile {
 impl RegionFile {
     fn region(&self, folder: &Path) -> Result<Region> {
         let keys = medium::Keys {
-            sigma_t: Some(self.sigma_t),
-            albedo: Some(self.albedo),
+            sigma_t: self.sigma_t,
+            albedo: self.albedo,
+            sigma_a: self.sigma_a,
+            sigma_s: self.sigma_s,
             albedo_grid: self.albedo_grid.as_ref(),
             g: self.g,
             phase: self.phase.as_ref(),
@@ -365,7 +375,9 @@ impl RegionFile {
             density: self.density.as_ref(),
         };
         let Some(medium) = keys.medium(folder)? else {
-            return Err(Error::Scene("a region without medium".into()));
+            return Err(Error::Scene(
+                "a region without medium; allowed: sigma_t, albedo and g (or phase)".into(),
+            ));
         };
         Ok(Region { shape: self.shape.shape(folder)?, medium })
     }

@@ -5,8 +5,8 @@ use crate::error::{Error, Result};
 use crate::geometry::{
     Cuboid, Ground, Mesh, Revolution, Shape, Slab, Sphere, Up, Waves, height_field, listed, smooth,
 };
-use crate::math::{NonNegative, Positive};
-use glam::{DVec2, DVec3};
+use crate::math::{NonNegative, Positive, sin_cos};
+use glam::{DMat3, DVec2, DVec3};
 use serde::{Deserialize, Serialize};
 use std::path::Path;
 use std::sync::Arc;
@@ -36,12 +36,14 @@ pub enum ShapeFile {
         min: [f64; 3],
         max: [f64; 3],
     },
-    /// Triangles from an OBJ file, scaled, then moved.
+    /// Triangles from an OBJ or PLY file, scaled, turned about the origin, then moved.
     Mesh {
         file: String,
         #[serde(default = "one", skip_serializing_if = "is_one")]
         scale: Positive,
-        #[serde(default, skip_serializing_if = "is_zero")]
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        rotate: Option<RotateFile>,
+        #[serde(default, skip_serializing_if = "is_zero", alias = "translate")]
         at: [f64; 3],
     },
     /// A profile of (radius, height), turned about the axis; `smooth` pieces between its points.
@@ -68,6 +70,33 @@ pub enum ShapeFile {
         #[serde(default, skip_serializing_if = "Option::is_none")]
         floor: Option<f64>,
     },
+}
+
+/// A turn about an axis through the origin, counterclockwise seen against it.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct RotateFile {
+    /// The axis, of any length but 0.
+    pub axis: [f64; 3],
+    /// The angle \[degrees\].
+    pub degrees: f64,
+}
+
+impl RotateFile {
+    /// The columns of the matrix: R p = cos p + sin (a x p) + (1 - cos) a (a . p).
+    fn matrix(&self) -> Result<DMat3> {
+        let Some(a) = DVec3::from(self.axis).try_normalize() else {
+            return Err(Error::Scene("rotate: axis needs a finite direction other than 0 0 0".into()));
+        };
+        if !(self.degrees.abs() <= 1e6) {
+            return Err(Error::out_of_range("rotate.degrees", self.degrees, "-1e6 to 1e6"));
+        }
+        let (sin, cos) = sin_cos(self.degrees.to_radians());
+        // 1 - cos of the half angle, which keeps the digits of small angles.
+        let half = sin_cos(0.5 * self.degrees.to_radians()).0;
+        let column = |e: DVec3| cos * e + sin * a.cross(e) + 2.0 * half * half * a.dot(e) * a;
+        Ok(DMat3::from_cols(column(DVec3::X), column(DVec3::Y), column(DVec3::Z)))
+    }
 }
 
 /// Where the heights of a field come from.
@@ -118,9 +147,14 @@ impl ShapeFile {
             ShapeFile::Rectangle { corner, u, v } => Shape::Rectangle(rectangle(corner, u, v)?),
             ShapeFile::Slab { top, thickness } => Shape::Slab(Slab::new(top, thickness.get())?),
             ShapeFile::Cuboid { min, max } => Shape::Cuboid(Cuboid::new(min.into(), max.into())?),
-            ShapeFile::Mesh { ref file, scale, at } => {
+            ShapeFile::Mesh { ref file, scale, rotate, at } => {
                 let at = DVec3::from(at);
-                Shape::Mesh(Arc::new(Mesh::read(&folder.join(file), |p| p * scale.get() + at)?))
+                let turn = rotate.map(|rotate| rotate.matrix()).transpose()?;
+                let place = |p: DVec3| {
+                    let p = p * scale.get();
+                    turn.map_or(p, |turn| turn * p) + at
+                };
+                Shape::Mesh(Arc::new(Mesh::read(&folder.join(file), place)?))
             }
             ShapeFile::Lathe { base, axis, ref profile, smooth: pieces } => {
                 if !(1..=1000).contains(&pieces) {

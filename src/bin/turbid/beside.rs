@@ -1,0 +1,44 @@
+//! Files that belong together: a scene, and what stands beside it.
+
+use super::shared::print;
+use anyhow::{Context, bail};
+use std::fmt::Write;
+use std::path::{Path, PathBuf};
+use turbid::exchange::{Beside, Imported};
+use turbid::output::{check_writable, write_atomically};
+
+/// Folder and stem of a file that others are to stand beside, where its name ends in one of these.
+pub fn folder_and_stem<'a>(
+    flag: &str,
+    path: &'a Path,
+    extension: &str,
+) -> anyhow::Result<(PathBuf, &'a str)> {
+    let ends = path.extension().is_some_and(|e| e.eq_ignore_ascii_case(extension));
+    match path.file_stem().and_then(|stem| stem.to_str()) {
+        Some(stem) if ends => Ok((path.parent().map(Path::to_path_buf).unwrap_or_default(), stem)),
+        _ => bail!("{flag} is {}; allowed: a file name that ends in .{extension}", path.display()),
+    }
+}
+
+/// Writes a file and those beside it, which it names, before it; says what was written.
+pub fn write_beside(folder: &Path, files: &[Beside], path: &Path, text: &str) -> anyhow::Result<()> {
+    let mut written = String::new();
+    let paths: Vec<PathBuf> = files.iter().map(|file| folder.join(&file.name)).collect();
+    paths.iter().map(PathBuf::as_path).chain([path]).try_for_each(check_writable)?;
+    for (file, beside) in files.iter().zip(&paths) {
+        write_atomically(beside, |out| out.write_all(&file.bytes))?;
+        writeln!(written, "wrote {}", beside.display())?;
+    }
+    write_atomically(path, |out| out.write_all(text.as_bytes()))?;
+    writeln!(written, "wrote {}", path.display())?;
+    print(&written)
+}
+
+/// Writes the files beside a scene to a folder of their own, in which the scene can be read.
+pub fn in_folder(imported: &Imported) -> anyhow::Result<tempfile::TempDir> {
+    let folder = tempfile::tempdir().context("a folder for the parts of the scene")?;
+    for file in &imported.files {
+        write_atomically(folder.path().join(&file.name), |out| out.write_all(&file.bytes))?;
+    }
+    Ok(folder)
+}

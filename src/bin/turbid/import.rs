@@ -1,0 +1,57 @@
+//! `turbid import`: a scene of another program as a scene file.
+
+use super::beside::{folder_and_stem, in_folder, write_beside};
+use super::shared::note;
+use anyhow::{Context, bail};
+use std::path::{Path, PathBuf};
+use turbid::exchange::from_mitsuba;
+use turbid::photons::check_end;
+
+/// Read a scene of Mitsuba 3 (XML) and write it as a scene file.
+///
+/// Meshes, grids and phase functions are written beside the file, with names that begin as its own. What turbid cannot say is
+/// refused by name, with its line; what is not quite the same is told. Commands that take a scene read `FILE.xml` too.
+#[derive(clap::Args)]
+pub struct Import {
+    /// The XML file.
+    file: PathBuf,
+    /// The scene file to write.
+    #[arg(short, long, value_name = "SCENE.toml")]
+    output: PathBuf,
+    /// A value of a parameter of the file, `$NAME`.
+    #[arg(short = 'D', value_name = "NAME=VALUE")]
+    define: Vec<String>,
+    /// Refuse a scene that names files outside of its own folder: by an absolute name, by `..`, or through a link. For scenes
+    /// of strangers.
+    #[arg(long)]
+    confined: bool,
+}
+
+/// Refuses files that would be written over one that is read.
+fn check_other(path: &Path, name: &str) -> anyhow::Result<()> {
+    if turbid::output::is_same_file(path, Path::new(name)).unwrap_or(false) {
+        bail!("--output {name} is the file that is read; allowed: another one");
+    }
+    Ok(())
+}
+
+impl Import {
+    /// Reads, checks, writes.
+    pub fn run(self) -> anyhow::Result<()> {
+        let (folder, stem) = folder_and_stem("--output", &self.output, "toml")?;
+        check_other(&self.file, &self.output.display().to_string())?;
+        let mut given = Vec::new();
+        for define in &self.define {
+            let Some((name, value)) = define.split_once('=') else {
+                bail!("-D {define}; allowed: NAME=VALUE")
+            };
+            given.push((name.to_string(), value.to_string()));
+        }
+        let imported = from_mitsuba(&self.file, stem, &given, self.confined)?;
+        let parts = in_folder(&imported)?;
+        let scene = imported.scene.scene(parts.path()).with_context(|| self.file.display().to_string())?;
+        check_end(&scene).with_context(|| self.file.display().to_string())?;
+        imported.notes.iter().try_for_each(|text| note(text))?;
+        write_beside(&folder, &imported.files, &self.output, &imported.scene.to_toml()?)
+    }
+}
