@@ -189,3 +189,18 @@ fn a_picture_by_layer() {
         assert!(z.abs() < student_critical(ALPHA, 7), "{row:?}");
     }
 }
+
+/// The script that deals parts out to GNU parallel, or to xargs where there is none.
+#[cfg(unix)]
+#[test]
+fn parts_by_gnu_parallel() {
+    let text = SLAB.replace("maps = 64", "maps = 4").replace("[500, 2e3]", "[500]");
+    let (folder, _file) = written(&text);
+    let at = folder.path();
+    study(at, &["mine.toml", "--out", "one"]).assert().success();
+    let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("studies/cluster/in-parts.sh");
+    let mut command = Command::new(script);
+    command.current_dir(at).env("TURBID_STUDY", env!("CARGO_BIN_EXE_study"));
+    command.args(["mine.toml", "parts", "3"]).assert().success();
+    assert!(results(at, "one") == results(at, "parts"));
+}
