@@ -197,7 +197,7 @@ fn photons_of_others_are_estimates_by_hand() {
     let without = [
         write(&folder, "d.npy", &npy(&GIVEN, None)),
         write(&folder, "e.ply", &ply_text(&GIVEN, "")),
-        write(&folder, "f.ply", &ply_binary(&GIVEN, "").iter().copied().collect::<Vec<u8>>()),
+        write(&folder, "f.ply", &ply_binary(&GIVEN, "")),
     ];
     let lines_of_two =
         String::from_utf8(ply_text(&GIVEN, "comment emitted 4\n")).unwrap().replace('\n', "\r\n");
