@@ -64,15 +64,15 @@ pub fn to_mitsuba(scene: &Scene, stem: &str) -> Result<Exported> {
         .bounds_of_bounded()
         .map_or((camera.position(), 0.0), |sphere| (sphere.center(), sphere.radius()));
     let size = radius + center.distance(camera.position());
+    let far = center.abs().max_element() + radius;
+    let nearest = APART * (1.0 + far);
+    let places = Places::of(scene, nearest)?;
     if size < SMALLEST {
         return refuse(format!(
             "the scene is {} in size, and rays of Mitsuba leave surfaces by 9e-5; allowed: {SMALLEST} or more, as in another unit of length",
             number(size)
         ));
     }
-    let far = center.abs().max_element() + radius;
-    let nearest = APART * (1.0 + far);
-    let places = Places::of(scene, nearest)?;
     let mut writer = Writer {
         scene,
         stem,

@@ -212,13 +212,13 @@ impl Places {
     /// Finds the region about each, and leaves out those that later ones cover.
     fn nest(&mut self) -> Result<()> {
         let count = self.shapes.len();
-        let mut inside = vec![Vec::new(); count];
-        for later in 0..count {
+        let mut inside: Vec<Vec<usize>> = vec![Vec::new(); count];
+        for (later, around) in inside.iter_mut().enumerate() {
             for earlier in 0..later {
                 let (Some(a), Some(b)) = (&self.shapes[earlier], &self.shapes[later]) else { continue };
                 match relation(a, b, self.nearest) {
                     Relation::Apart => {}
-                    Relation::Inside => inside[later].push(earlier),
+                    Relation::Inside => around.push(earlier),
                     Relation::Around => self.shapes[earlier] = None,
                     Relation::Crossing if a == b => self.shapes[earlier] = None,
                     Relation::Crossing => {

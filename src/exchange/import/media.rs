@@ -26,7 +26,7 @@ pub(super) struct MediumKeys {
 /// A volume: the same everywhere, or a grid in a box.
 enum Volume {
     Constant(Spectrum),
-    Grid { grid: Grid, corners: (DVec3, DVec3), is_blocks: bool },
+    Grid { grid: Box<Grid>, corners: (DVec3, DVec3), is_blocks: bool },
 }
 
 pub(super) fn channels<T: Copy>(value: Spectrum, make: impl Fn(f64) -> Result<T>) -> Result<Channels<T>> {
@@ -160,7 +160,11 @@ impl<'a> Importer<'a> {
                     Some(true) => grid.corners(),
                     _ => (DVec3::ZERO, DVec3::ONE),
                 };
-                Volume::Grid { grid, corners: (min * scale + at, max * scale + at), is_blocks }
+                Volume::Grid {
+                    grid: Box::new(grid),
+                    corners: (min * scale + at, max * scale + at),
+                    is_blocks,
+                }
             }
             other => {
                 return volume.refuse(format!(

@@ -357,7 +357,8 @@ impl Transform {
         let linear = all.linear();
         let size = linear.x_axis.length() * linear.y_axis.length() * linear.z_axis.length();
         // Beyond, the axes lie in one plane but for rounding.
-        if !(linear.determinant() > 1e-12 * size) {
+        let determinant = linear.determinant();
+        if determinant.is_nan() || determinant <= 1e-12 * size {
             return element.refuse(
                 "a transform that mirrors, or makes flat; allowed: one that keeps right hands right",
             );

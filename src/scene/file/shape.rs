@@ -88,7 +88,7 @@ impl RotateFile {
         let Some(a) = DVec3::from(self.axis).try_normalize() else {
             return Err(Error::Scene("rotate: axis needs a finite direction other than 0 0 0".into()));
         };
-        if !(self.degrees.abs() <= 1e6) {
+        if self.degrees.is_nan() || self.degrees.abs() > 1e6 {
             return Err(Error::out_of_range("rotate.degrees", self.degrees, "-1e6 to 1e6"));
         }
         let (sin, cos) = sin_cos(self.degrees.to_radians());
