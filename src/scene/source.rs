@@ -180,11 +180,7 @@ fn split(set: &str) -> Result<(&str, toml::Value)> {
         None if is_number_like => match value.parse::<f64>() {
             // TOML wants digits on both sides of the point, and no more range than f64 has.
             Ok(number) if number.is_finite() => Ok((key, toml::Value::Float(number))),
-            _ => {
-                return Err(refused(format!(
-                    "--set {set}: {key} is {value}; allowed: a number that fits 64 bits"
-                )));
-            }
+            _ => Err(refused(format!("--set {set}: {key} is {value}; allowed: a number that fits 64 bits"))),
         },
         None => Ok((key, toml::Value::String(value.to_string()))),
     }
@@ -196,10 +192,8 @@ fn slot<'a>(place: &'a mut toml::Value, key: &str) -> Result<&'a mut toml::Value
     let inner = match place {
         toml::Value::Table(table) => {
             if rest.is_some() && !table.contains_key(part) {
-                return Err(refused(format!(
-                    "{}",
-                    unknown("key", part, &table.keys().map(String::as_str).collect::<Vec<_>>())
-                )));
+                let known = table.keys().map(String::as_str).collect::<Vec<_>>();
+                return Err(refused(unknown("key", part, &known)));
             }
             // A new key gets its value at once, from the caller.
             table.entry(part).or_insert(toml::Value::Boolean(false))

@@ -291,7 +291,8 @@ fn files_of_photons_that_cannot_be_read() {
         photons
     };
     // Photons.
-    let cases: [(&dyn Fn(&mut Given), &str); 11] = [
+    type Case<'a> = (&'a dyn Fn(&mut Given), &'a str);
+    let cases: [Case; 11] = [
         (&|g| g.0[2] = f64::NAN, "photon 1: position is (0, -0.25, NaN); allowed: finite"),
         (&|g| g.0[0] = f64::INFINITY, "photon 1: position is (inf"),
         (&|g| g.2[1] = -1.0, "photon 1: power is (0, -1, 2); allowed: at least 0"),

@@ -64,7 +64,8 @@ pub fn solve(scene: &Scene) -> Option<Solved> {
     if !scene.objects().is_empty() || scene.regions().is_empty() || !is_empty_space {
         return None;
     }
-    let kinds: [(&'static str, fn(&Scene, usize) -> Option<Field>); 4] = [
+    type Kind = (&'static str, fn(&Scene, usize) -> Option<Field>);
+    let kinds: [Kind; 4] = [
         ("the furnace: nothing is absorbed, and light comes in from all sides alike", furnace),
         ("the exact solution of layers", layers),
         ("the exact solution of the sphere", ball),
