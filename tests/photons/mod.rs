@@ -12,6 +12,7 @@ mod march;
 mod metrics;
 mod parted;
 mod passes;
+mod sensor_maps;
 mod statistics;
 mod surface_estimates;
 mod synthetic;
