@@ -1,7 +1,7 @@
 //! Lights.
 
 use super::places::hull;
-use super::{Writer, refuse};
+use super::writer::{Writer, refuse};
 use crate::error::Result;
 use crate::exchange::xml::triple;
 use crate::geometry::{Rectangle, Shape};

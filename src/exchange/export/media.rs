@@ -2,7 +2,7 @@
 
 use super::phase::{Said, said};
 use super::places::Places;
-use super::{Writer, refuse};
+use super::writer::{Writer, refuse};
 use crate::Spectrum;
 use crate::error::Result;
 use crate::exchange::xml::{Xml, triple};
@@ -12,11 +12,6 @@ use glam::DVec3;
 
 /// Most values of a lattice that is written: half a gigabyte.
 const MOST_VALUES: usize = 1 << 27;
-
-/// Whether it collides with anything.
-pub(super) fn is_there(medium: &Medium) -> bool {
-    !medium.highest_sigma_t().is_black()
-}
 
 /// Whether its free flights are the same in every channel.
 pub(super) fn is_grey(medium: &Medium) -> bool {

@@ -5,13 +5,15 @@ mod media;
 mod phase;
 mod places;
 mod shapes;
+mod writer;
 
 use super::Beside;
 use super::xml::{Xml, number, triple};
-use crate::error::{Error, Result};
+use crate::error::Result;
 use crate::scene::{Camera, Filter, Object, Scene};
 use crate::surface::{Surface, Texture};
-use places::Places;
+use places::{Places, is_there};
+use writer::{Writer, refuse};
 
 /// A scene of Mitsuba.
 #[derive(Debug, Clone, PartialEq)]
@@ -22,22 +24,6 @@ pub struct Exported {
     pub files: Vec<Beside>,
     /// What is not quite the same.
     pub notes: Vec<String>,
-}
-
-/// What has been written so far.
-struct Writer<'a> {
-    scene: &'a Scene,
-    /// What names of files begin with.
-    stem: &'a str,
-    xml: Xml,
-    files: Vec<Beside>,
-    notes: Vec<String>,
-    /// Places nearer to each other than this are one to Mitsuba's rays \[L\].
-    nearest: f64,
-}
-
-fn refuse<T>(text: impl Into<String>) -> Result<T> {
-    Err(Error::Scene(text.into()))
 }
 
 /// A scene that is smaller is less than 500 times as large as the step by which Mitsuba's rays leave surfaces \[L\].
@@ -94,12 +80,6 @@ pub fn to_mitsuba(scene: &Scene, stem: &str) -> Result<Exported> {
 }
 
 impl Writer<'_> {
-    fn beside(&mut self, what: &str, extension: &str, bytes: Vec<u8>) -> String {
-        let name = format!("{}-{what}.{extension}", self.stem);
-        self.files.push(Beside { name: name.clone(), bytes });
-        name
-    }
-
     fn scene_element(&mut self, camera: &Camera, places: &Places, size: f64) -> Result<()> {
         // Elements within elements, but with errors: their text is made apart.
         let mut outer = std::mem::take(&mut self.xml);
@@ -134,17 +114,6 @@ impl Writer<'_> {
             self.object(index, object, places).map_err(|e| e.within(&format!("objects[{index}]")))?;
         }
         self.lights()
-    }
-
-    /// The name of a medium.
-    fn medium_name(&self, number: usize) -> String {
-        let regions = self.scene.regions().len();
-        if number < regions {
-            return format!("region-{number}");
-        }
-        let filled = |interior: &usize| self.scene.filling(*interior) == Some(number);
-        let interior = (0..self.scene.interiors().len()).find(filled).unwrap_or_default();
-        format!("interior-{}", interior.saturating_sub(1))
     }
 
     fn camera(&mut self, camera: &Camera, places: &Places, size: f64) {
@@ -192,7 +161,7 @@ impl Writer<'_> {
                 let about = places.region_about(&object.shape, inside == 0 || outside == 0)?;
                 let medium = |interior: usize| match interior {
                     0 => about,
-                    filled => scene.filling(filled).filter(|number| media::is_there(scene.medium(*number))),
+                    filled => scene.filling(filled).filter(|number| is_there(scene.medium(*number))),
                 };
                 let sides = [medium(inside), medium(outside)];
                 let index = [inside, outside].map(|interior| scene.interiors()[interior].index);

@@ -1,6 +1,6 @@
 //! Phase functions.
 
-use super::refuse;
+use super::writer::refuse;
 use crate::error::Result;
 use crate::exchange::xml::{Xml, number};
 use crate::phase::{HenyeyGreenstein, Phase, PhaseFunction};

@@ -1,13 +1,18 @@
 //! Which medium lies on either side of a boundary: Mitsuba asks it of every one, where a scene says it by the order of regions.
 
-use super::media::is_there;
-use super::refuse;
+use super::writer::refuse;
 use crate::error::Result;
 use crate::geometry::{Cuboid, Shape};
 use crate::light::Light;
+use crate::medium::Medium;
 use crate::scene::Scene;
 use crate::surface::Surface;
 use glam::{DVec2, DVec3};
+
+/// Whether it collides with anything.
+pub(super) fn is_there(medium: &Medium) -> bool {
+    !medium.highest_sigma_t().is_black()
+}
 
 /// Where a body lies, as seen from a convex shape.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -1,7 +1,7 @@
 //! Shapes, each with the media on its two sides.
 
 use super::places::Places;
-use super::{Writer, refuse};
+use super::writer::{Writer, refuse};
 use crate::error::Result;
 use crate::exchange::xml::{Xml, number, triple};
 use crate::geometry::{Mesh, Revolution, Shape};

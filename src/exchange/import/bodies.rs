@@ -1,10 +1,8 @@
 //! Shapes with what they are made of.
 
 use super::document::Element;
-use super::lights::light_channels;
-use super::media::channels;
+use super::importer::{Boundary, Importer, Sides, channels, light_channels, refuse_negative};
 use super::part::{Part, Transform};
-use super::{Importer, refuse_negative};
 use crate::Spectrum;
 use crate::error::Result;
 use crate::geometry::Rectangle;
@@ -13,19 +11,6 @@ use crate::math::{Albedo, Positive};
 use crate::scene::{LightFile, ObjectFile, ShapeFile, SurfaceFile, TextureFile};
 use glam::{DVec2, DVec3};
 use std::sync::Arc;
-
-/// What lies on the two sides of a surface: media, by their elements.
-pub(super) type Sides<'a> = [Option<&'a Element>; 2];
-
-/// A boundary that light crosses, whose sides are to be named once all of them are known.
-pub(super) struct Boundary<'a> {
-    pub element: &'a Element,
-    pub file: ShapeFile,
-    pub shape: Shape,
-    /// Inside and outside; none where light passes straight on.
-    pub indices: Option<[f64; 2]>,
-    pub media: Sides<'a>,
-}
 
 /// How a shape scatters.
 enum Material {

@@ -1,24 +1,14 @@
 //! Emitters and the camera.
 
-use super::Importer;
 use super::document::Element;
-use super::media::channels;
+use super::importer::{Importer, light_channels};
 use super::part::Part;
 use crate::Spectrum;
 use crate::error::Result;
-use crate::math::{FOUR_PI, NonNegative, cos};
+use crate::math::{FOUR_PI, cos};
 use crate::scene::{CameraFile, Filter, LightFile};
 use glam::DVec3;
 use std::f64::consts::PI;
-
-/// A light by channel.
-pub(super) fn light_channels(
-    element: &Element,
-    name: &str,
-    value: Spectrum,
-) -> Result<crate::scene::Channels<NonNegative>> {
-    channels(value, |x| NonNegative::new(name, x)).map_err(|e| element.error(e))
-}
 
 impl<'a> Importer<'a> {
     /// A light without a body.

@@ -1,8 +1,8 @@
 //! Media and phase functions.
 
 use super::document::Element;
+use super::importer::{Importer, channels, refuse_negative};
 use super::part::{Part, numbers};
-use super::{Importer, refuse_negative};
 use crate::Spectrum;
 use crate::error::Result;
 use crate::math::{Albedo, Asymmetry, NonNegative};
@@ -27,10 +27,6 @@ pub(super) struct MediumKeys {
 enum Volume {
     Constant(Spectrum),
     Grid { grid: Box<Grid>, corners: (DVec3, DVec3), is_blocks: bool },
-}
-
-pub(super) fn channels<T: Copy>(value: Spectrum, make: impl Fn(f64) -> Result<T>) -> Result<Channels<T>> {
-    Ok(Channels([make(value[0])?, make(value[1])?, make(value[2])?]))
 }
 
 impl<'a> Importer<'a> {

@@ -2,26 +2,26 @@
 
 mod bodies;
 mod document;
+mod importer;
 mod lights;
 mod media;
 mod part;
 
 use super::Beside;
-use crate::Spectrum;
 use crate::error::Result;
 use crate::geometry::Shape;
 use crate::light::Faces;
 use crate::math::{Albedo, Asymmetry, Index, NonNegative, Positive};
 use crate::scene::{
-    CameraFile, Channels, DielectricFile, InteriorFile, LightFile, ObjectFile, RegionFile, SceneFile,
-    ShapeFile, SurfaceFile,
+    Channels, DielectricFile, InteriorFile, LightFile, ObjectFile, RegionFile, SceneFile, ShapeFile,
+    SurfaceFile,
 };
-use bodies::Boundary;
-use document::{Element, check_inside, shown};
+use document::{Element, shown};
 use glam::DVec3;
+use importer::{Boundary, Filled, Importer, Inner};
 use media::MediumKeys;
 use part::{Ids, Part};
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 /// A scene file made of a scene of Mitsuba.
 #[derive(Debug, Clone, PartialEq)]
@@ -32,46 +32,6 @@ pub struct Imported {
     pub files: Vec<Beside>,
     /// What is not quite the same.
     pub notes: Vec<String>,
-}
-
-/// What fills the space inside of a boundary.
-struct Filled<'a> {
-    name: String,
-    index: f64,
-    medium: Option<&'a Element>,
-}
-
-/// A boundary whose inner side has a name.
-struct Inner {
-    shape: Shape,
-    filled: usize,
-}
-
-/// What has been read so far.
-struct Importer<'a> {
-    ids: &'a Ids<'a>,
-    folder: &'a Path,
-    stem: &'a str,
-    is_confined: bool,
-    files: Vec<Beside>,
-    notes: Vec<String>,
-    camera: Option<CameraFile>,
-    camera_place: Option<&'a Element>,
-    camera_medium: Option<&'a Element>,
-    lights: Vec<LightFile>,
-    /// Light from all around.
-    around: Option<(&'a Element, Channels<NonNegative>)>,
-    objects: Vec<ObjectFile>,
-    /// Bodies that no light crosses, with the medium that each says is outside.
-    opaque: Vec<(&'a Element, Shape, Option<&'a Element>)>,
-    boundaries: Vec<Boundary<'a>>,
-    is_two_sided: bool,
-    /// Diffuse surfaces that are black behind.
-    one_sided: usize,
-    /// Regions, the larger first.
-    regions: Vec<(Shape, ShapeFile, Option<&'a Element>)>,
-    inner: Vec<Inner>,
-    filled: Vec<Filled<'a>>,
 }
 
 fn is_same(a: Option<&Element>, b: Option<&Element>) -> bool {
@@ -87,13 +47,6 @@ fn called(medium: Option<&Element>) -> String {
     medium.map_or("no medium".into(), |m| {
         format!("medium `{}`", shown(m.attribute("id").unwrap_or("without id")))
     })
-}
-
-fn refuse_negative(element: &Element, name: &str, value: Spectrum) -> Result<()> {
-    if value.min() < 0.0 {
-        return element.refuse(format!("{name} is {}; allowed: at least 0", value.min()));
-    }
-    Ok(())
 }
 
 fn collect_ids<'a>(element: &'a Element, ids: &mut Ids<'a>) -> Result<()> {
@@ -171,26 +124,6 @@ impl<'a> Importer<'a> {
                 element.name()
             )),
         }
-    }
-
-    fn beside(&mut self, what: &str, extension: &str, bytes: Vec<u8>) -> String {
-        let name = format!("{}-{what}-{}.{extension}", self.stem, self.files.len());
-        self.files.push(Beside { name: name.clone(), bytes });
-        name
-    }
-
-    /// Where a file is that an element names.
-    fn path(&self, element: &Element, name: &str) -> Result<PathBuf> {
-        check_inside(self.is_confined, element, name, self.folder)?;
-        Ok(self.folder.join(name))
-    }
-
-    fn light_from_around(&mut self, element: &'a Element, radiance: Channels<NonNegative>) -> Result<()> {
-        if self.around.is_some() {
-            return element.refuse("a second constant emitter; allowed: one");
-        }
-        self.around = Some((element, radiance));
-        Ok(())
     }
 
     /// The medium at a point, as boundaries say it.

@@ -379,7 +379,7 @@ mod tests {
             (with("element vertex 4", "element vertex -4"), "line 4: `-4` is not a number of elements"),
             (
                 with("element vertex 4", "element vertex 999999999999"),
-                "ends, or has no number, in vertex 8 of 999999999999",
+                "ends, or has no number, in vertex 5 of 999999999999",
             ),
             (with("float z", "float w"), "its vertices have no x, y and z; allowed: all three"),
             (with("vertex_index", "corners"), "its faces have no list vertex_indices; allowed: one"),
