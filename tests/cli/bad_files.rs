@@ -198,7 +198,7 @@ fn wrong_shapes_textures_and_boundaries() {
         (
             shape,
             "mesh = { path = \"part.obj\" }".into(),
-            "unknown key `path`; nearest: `at`; allowed: file, scale, at",
+            "unknown key `path`; nearest: `at`; allowed: file, scale, rotate, at, translate",
         ),
         (shape, "mesh = {}".into(), "missing field `file`"),
         (shape, "cone = { radius = 1 }".into(), "unknown value `cone`"),

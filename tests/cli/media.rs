@@ -46,7 +46,7 @@ fn media_are_described() {
 fn wrong_keys_of_a_medium() {
     let folder = Folder::new();
     for (keys, words) in [
-        ("", "allowed: sigma_t, albedo and g (or phase)"),
+        ("", "allowed: sigma_t, albedo (or sigma_a, sigma_s) and g (or phase)"),
         ("g = 0\nphase = { rayleigh = {} }", "regions[0]: g and phase"),
         ("phase = { raileigh = {} }", "nearest: `rayleigh`"),
         ("phase = { schlick = { k = 1 } }", "allowed: above -1 and below 1"),

@@ -182,7 +182,7 @@ fn shells_and_manuals_know_the_program() {
     }
     refuses_naming(&["completions", "csh"], &["csh", "allowed: bash"]);
     let pages = folder.0.path().join("share").join("man1");
-    assert!(succeeds(&["man", text(&pages)]).contains("written        9 pages"));
+    assert!(succeeds(&["man", text(&pages)]).contains("written        11 pages"));
     let page = |name: &str| std::fs::read_to_string(pages.join(name)).unwrap();
     assert!(page("turbid.1").starts_with(".ie") || page("turbid.1").contains(".TH turbid"));
     for (name, words) in [

@@ -1,7 +1,8 @@
 //! What all cells together say.
 
+use super::asked::{OwnStudy, asked};
 use super::data::{self, Data, Half, Setting};
-use super::{OwnStudy, asked, figures, tables, words};
+use super::{figures, tables, words};
 use crate::harness::{
     Cells, Estimate, Headline, Section, Settings, Table, Unit, number, percent, signed, with_error,
 };

@@ -1,9 +1,10 @@
 //! What the cells say: errors of every setting, what they take in time, and the rival.
 
+use super::asked::OwnStudy;
 use super::measure::{maps_group, reference_group};
 use super::points::Point;
 use super::reference::{BATCHES, Reference};
-use super::{OwnStudy, words};
+use super::words;
 use crate::harness::{Cells, Estimate};
 use anyhow::Context;
 use turbid::estimators::Estimator;

@@ -1,10 +1,11 @@
 //! What a study will take, before it runs.
 
+use super::asked::asked;
 use super::measure::{maps_group, reference_group};
 use super::points::{Point, reach};
 use super::reference::{BATCHES, batch};
+use super::words;
 use super::words::is_fixed;
-use super::{EXPERIMENT, asked};
 use crate::harness::{CellId, Settings, duration};
 use std::time::Instant;
 use turbid::memory::in_words;
@@ -40,7 +41,7 @@ pub fn dry_run(settings: &Settings) -> anyhow::Result<String> {
         let samples = reference.samples.min(SAMPLES);
         let id = CellId::of(&format!("dry-run-{number:03}"), 0);
         let start = Instant::now();
-        batch(point, reference.sampler, samples, (settings.seed, id.stream(EXPERIMENT.name)))?;
+        batch(point, reference.sampler, samples, (settings.seed, id.stream(words::NAME)))?;
         let one = start.elapsed().as_secs_f64() * rayon::current_num_threads() as f64 / samples as f64;
         let seconds = one * reference.samples as f64;
         lines.push(Line { group: reference_group(number), cells: BATCHES, seconds, bytes: 0.0 });
@@ -69,7 +70,7 @@ fn maps(point: &Point, photons: u64, readings: usize, settings: &Settings) -> an
     let threads = rayon::current_num_threads() as f64;
     let few = photons.min(PHOTONS);
     if let Some(picture) = &point.picture {
-        let of = (settings.seed, CellId::of("dry-run", 0).stream(EXPERIMENT.name));
+        let of = (settings.seed, CellId::of("dry-run", 0).stream(words::NAME));
         let start = Instant::now();
         let maps = picture.maps(&point.scene, few, of)?;
         let filling = start.elapsed().as_secs_f64() * photons as f64 / few as f64;
@@ -85,7 +86,7 @@ fn maps(point: &Point, photons: u64, readings: usize, settings: &Settings) -> an
         return Ok((threads * (filling + reading), PEAK_BYTES * stored));
     }
     let reach = reach(&point.estimators);
-    let replicate = CellId::of("dry-run", 0).stream(EXPERIMENT.name);
+    let replicate = CellId::of("dry-run", 0).stream(words::NAME);
     let of = |photons: u64| MapSettings { photons, seed: settings.seed, replicate, reach, readings };
     let forecast = SensorMaps::forecast(&point.scene, &of(photons))?;
     let maps = SensorMaps::fill(&point.scene, of(few), &NoProgress)?;

@@ -1,9 +1,10 @@
 //! The cells: the maps of one replicate, read by every estimator; one batch of the reference.
 
+use super::asked::{OwnStudy, asked};
 use super::picture::Picture;
 use super::points::{Point, reach};
 use super::reference::{BATCHES, Sampler, batch};
-use super::{EXPERIMENT, OwnStudy, asked, words};
+use super::words;
 use crate::harness::{CellId, CellOutput, Group, Settings};
 use std::sync::Arc;
 use turbid::photons::PhotonMap;
@@ -67,7 +68,7 @@ fn maps(
     let of = MapSettings {
         photons,
         seed: settings.seed,
-        replicate: id.stream(EXPERIMENT.name),
+        replicate: id.stream(words::NAME),
         reach: reach(&point.estimators),
         readings: study.file.measure.readings.0 as usize,
     };
@@ -100,7 +101,7 @@ fn pictures(
     id: &CellId,
 ) -> anyhow::Result<CellOutput> {
     let mut out = CellOutput::new();
-    let of = (settings.seed, id.stream(EXPERIMENT.name));
+    let of = (settings.seed, id.stream(words::NAME));
     let maps = out.time(words::FILLING, |_| picture.maps(&point.scene, photons, of))?;
     let held = [&maps.global, &maps.caustic, &maps.volume].into_iter().flatten();
     let stored: usize = held.map(PhotonMap::stored).sum();
@@ -127,7 +128,7 @@ fn sampled(
 ) -> anyhow::Result<CellOutput> {
     let (point, reference) = (&study.points[number], &study.references[number]);
     let mut out = CellOutput::new();
-    let of = (settings.seed, id.stream(EXPERIMENT.name));
+    let of = (settings.seed, id.stream(words::NAME));
     let measured = out.time(words::SAMPLING, |_| batch(point, reference.sampler, reference.samples, of))?;
     let case = words::reference(point);
     for (place, (mean, _)) in point.places.iter().zip(&measured) {

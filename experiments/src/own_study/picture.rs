@@ -1,7 +1,7 @@
 //! The camera's picture as what is measured: means over blocks of pixels, by layer.
 
 use super::file::PictureFile;
-use super::points::Place;
+use super::place::Place;
 use crate::harness::Unit;
 use anyhow::{bail, ensure};
 use turbid::estimators::boundary::Treatment;

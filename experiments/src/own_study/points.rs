@@ -2,6 +2,7 @@
 
 use super::file::{MeasureFile, StudyFile};
 use super::picture::Picture;
+use super::place::Place;
 use crate::harness::Unit;
 use crate::setups::asked;
 use anyhow::{Context, bail, ensure};
@@ -29,25 +30,6 @@ pub struct Point {
     pub estimators: Vec<Estimator>,
     /// Sensors of the scene that maps do not answer.
     pub left_out: Vec<String>,
-}
-
-/// One measured number: a sensor, a bin of it, a channel.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Place {
-    /// Its name, unique in the scene.
-    pub name: String,
-    /// What it is one of: the layer of a picture; nothing of a sensor. Errors are told of the first group.
-    pub group: &'static str,
-    /// Number of the sensor.
-    pub sensor: usize,
-    /// Number of the bin.
-    pub bin: usize,
-    /// Channel.
-    pub channel: usize,
-    /// Unit of the number.
-    pub unit: Unit,
-    /// A point that it belongs to: the probe, the origin of the ray, the middle of the bin \[L\]; the block of a picture.
-    pub at: [f64; 3],
 }
 
 /// Most scenes, and most numbers measured in one.

@@ -1,9 +1,11 @@
 //! What theory says: the exact mean of the field over the treated ball of each fixed radius, in one slab or ball.
 
-use super::points::{Place, Point};
+use super::asked::{OwnStudy, asked};
+use super::place::Place;
+use super::points::Point;
 use super::reference::Reference;
 use super::solved::Solved;
-use super::{OwnStudy, asked, words};
+use super::words;
 use crate::harness::Settings;
 use crate::prediction::Prediction;
 use crate::setups::Body;

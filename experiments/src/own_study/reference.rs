@@ -1,9 +1,10 @@
 //! What maps are compared with: exact values, or batches of paths or of light tracing, which are the rival in time as well.
 
-use super::EXPERIMENT;
 use super::file::{ReferenceBy, StudyFile};
-use super::points::{Place, Point};
+use super::place::Place;
+use super::points::Point;
 use super::solved::{Solved, solve};
+use super::words;
 use crate::harness::{CellId, Settings};
 use anyhow::{Context, ensure};
 use turbid::scene::Orders;
@@ -134,7 +135,7 @@ impl Reference {
         let most = study.reference.most.0.div_ceil(shared);
         let pilot = |sampler: Sampler, samples: u64| -> anyhow::Result<Option<f64>> {
             let id = CellId::of(&format!("pilot-{number:03}-{}", sampler.name()), 0);
-            let of = (settings.seed, id.stream(EXPERIMENT.name));
+            let of = (settings.seed, id.stream(words::NAME));
             let measured = batch(point, sampler, samples, of).context("reference")?;
             // Samples that bring the error.
             Ok(relative_error(point, &measured)

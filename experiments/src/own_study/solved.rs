@@ -3,7 +3,8 @@
 //! A scene is recognised by its parts alone. What is not recognised for certain is not solved: a sampled reference costs time, a
 //! wrong one the study.
 
-use super::points::{Place, Point};
+use super::place::Place;
+use super::points::Point;
 use crate::setups::Body;
 use crate::theory::{Exact as FieldOfDepth, slab_fluence};
 use glam::DVec3;

@@ -3,6 +3,9 @@
 use super::points::Point;
 use turbid::estimators::{Estimator, Gather};
 
+/// Name of the experiment, in files and in random streams.
+pub const NAME: &str = "own";
+
 /// What precedes a case of a scene.
 fn scene(point: &Point) -> String {
     if point.label.is_empty() { String::new() } else { format!("{}, ", point.label) }
