@@ -105,7 +105,7 @@ fn what_cannot_be_read_is_refused() {
         (object("mesh = { file = \"cut.obj\", scale = 0 }", DIFFUSE), &["0; allowed: finite and above 0"]),
         (
             object("mesh = { name = \"cut.obj\" }", DIFFUSE),
-            &["unexpected keys in table: name, available keys: file, scale, at"],
+            &["unexpected keys in table: name, available keys: file, scale, rotate"],
         ),
         (object("lathe = { profile = [[-1, 0], [1, 1]] }", DIFFUSE), &["radius of a profile is -1; allowed"]),
         (object("lathe = { profile = [] }", DIFFUSE), &["a profile needs two points"]),
