@@ -21,7 +21,7 @@ use crate::photons::maps::{Amount, Indirect, MapReport, MapSettings, fill};
 use crate::rng::Stream;
 use crate::scene::{Camera, Scene};
 use crate::stats::{Interval, fit_line, student_critical};
-use crate::transport::Progress;
+use crate::transport::{NoProgress, Progress};
 use std::time::Instant;
 
 /// Photons of an estimate that pilots are read with: of the larger maps, and of the smaller ones. They overlap in k/N.
@@ -262,7 +262,7 @@ impl PicturePilot {
                     seed: pilot.seed,
                     replicate,
                 };
-                let maps = fill(scene, &settings, progress)?;
+                let maps = fill(scene, &settings, &NoProgress)?;
                 let held = [&maps.global, &maps.caustic, &maps.volume];
                 let counts = held.map(|map| map.as_ref().map_or(0.0, |m| m.stored() as f64));
                 if size == 0 {
