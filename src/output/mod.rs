@@ -2,6 +2,7 @@
 
 mod atomic;
 mod bins;
+mod error_picture;
 mod exr;
 mod npy;
 mod panic;
@@ -13,6 +14,7 @@ mod tone;
 
 pub use atomic::{WriteError, check_writable, is_same_file, write_atomically};
 pub use bins::{npy, voxel_grid};
+pub use error_picture::{error_scale, write_error_picture};
 pub use exr::{PROVENANCE, encode_exr, write_exr};
 pub use npy::write_photons_npy;
 pub use panic::without_panic;

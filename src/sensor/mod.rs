@@ -2,12 +2,14 @@
 //! with its variance a pixel and layer.
 
 mod advise;
+mod compare;
 mod film;
 mod light;
 mod maps;
 mod method;
 mod paths;
 mod photons;
+mod picture_advice;
 mod reach;
 mod render;
 mod tallies;
@@ -15,6 +17,9 @@ mod view;
 
 pub use crate::scene::{Camera, Filter, View};
 pub use advise::{Advice, MIN_MAPS, PathAdvice, Pilot, PilotSettings, path_advice};
+pub use compare::{
+    BlockMean, BlockTest, Blocks, Comparison, LEVEL, PictureError, VALUES, compare, luminance_errors,
+};
 pub use film::{Film, Pixel, Sample};
 pub use light::{LIGHT_BYTES, LIGHT_PIXEL_BYTES, LightCount, by_light, extend_by_light};
 pub use maps::{MapReading, MapSettings, SensorMaps, usual_reach};
@@ -24,6 +29,7 @@ pub use photons::{
     PhotonForecast, PhotonReadings, PhotonSettings, by_given_photons, by_photons, by_photons_in_passes,
     forecast, given_bytes, is_answered_by_map,
 };
+pub use picture_advice::{PictureAdvice, PicturePilot, PicturePilotSettings};
 pub use render::{MAX_SAMPLES, Streams, extend};
 pub use tallies::{TallyReadings, TallySettings, by_tallies, tally_bytes};
 pub use view::{check_camera, colour, draw_photons};

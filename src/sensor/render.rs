@@ -40,6 +40,24 @@ pub fn extend<S: Into<Sample>, W: Default + AddAssign + Send>(
     progress: &dyn Progress,
     sample: impl Fn(Ray, &mut Stream, &mut W) -> S + Sync,
 ) -> Result<W> {
+    extend_at(film, (camera, |x, y| (x, y)), samples, streams, progress, sample)
+}
+
+/// The same for a film whose pixels are some of the camera's.
+///
+/// # Arguments
+/// `place` of each pixel of the film in the camera's picture
+///
+/// # Errors
+/// those of [`extend`]
+pub(super) fn extend_at<S: Into<Sample>, W: Default + AddAssign + Send>(
+    film: &mut Film,
+    (camera, place): (&Camera, impl Fn(u32, u32) -> (u32, u32) + Sync),
+    samples: u64,
+    streams: Streams,
+    progress: &dyn Progress,
+    sample: impl Fn(Ray, &mut Stream, &mut W) -> S + Sync,
+) -> Result<W> {
     let first = film.samples();
     if first + samples > MAX_SAMPLES {
         return Err(Error::out_of_range(
@@ -60,7 +78,8 @@ pub fn extend<S: Into<Sample>, W: Default + AddAssign + Send>(
             for i in first..first + samples {
                 let mut stream =
                     Stream::new(streams.seed, Purpose::Paths, streams.replicate, number << 32 | i);
-                let ray = camera.sample(x, y, stream.pair());
+                let (column, row) = place(x, y);
+                let ray = camera.sample(column, row, stream.pair());
                 let value: Sample = sample(ray, &mut stream, &mut done.count).into();
                 done.non_finite += u64::from(!value.layers.is_finite());
                 pixel.push(&value);

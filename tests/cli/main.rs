@@ -5,6 +5,7 @@ mod bad_files;
 mod bad_input;
 mod bad_pictures;
 mod bins;
+mod compare;
 mod exchange;
 mod media;
 mod memory;

@@ -1,19 +1,29 @@
-//! `turbid advise`: how many photons, which radius.
+//! `turbid advise`: how many photons, which radius, how many samples.
 
+use super::advise_picture::Wanted;
 use super::load::Source;
 use super::memory::{Memory, rounded_down};
+use super::options;
+use super::picture::Frame;
 use super::progress::Bar;
 use super::shared::{FormatName, note, on_threads, parse_count, whole};
 use anyhow::Context;
+use clap::{ArgMatches, ValueEnum};
 use serde::Serialize;
 use std::time::Instant;
 use turbid::output::{Format, print, write_aligned, write_csv, write_json};
-use turbid::scene::Scene;
+use turbid::scene::{Quantity, Scene};
 use turbid::sensor::{Advice, PathAdvice, Pilot, PilotSettings, path_advice};
 
-/// Say which radius and how many photons reach a wanted error, and what the path tracer would need.
+/// Say how many photons reach a wanted error, of a picture or of fluence probes, and the time that it takes.
 ///
-/// Small pilot maps measure two laws about each fluence probe: the bias, which grows as the square of the radius where
+/// Of a picture (a scene with a camera): pilots look at a lattice of its pixels, 32 across, with eight independent maps of two sizes and
+/// several k, and at the same pixels by paths. The squared error of each layer is fitted as blur, which grows with k over
+/// photons, noise of the map, which falls with the photons, and noise of the samples. Printed are the photons, k and samples that bring the
+/// root mean square error of the pixels, over the picture's mean, to the target in the least time; the error of each layer;
+/// and the command line. The interval is of one picture, 95 per cent. `turbid render --compare paths` measures what was predicted.
+///
+/// Of fluence probes: small pilot maps measure two laws about each fluence probe: the bias, which grows as the square of the radius where
 /// the field bends, by comparing balls of several radii; and the noise, which falls with the photons in the ball, by
 /// its spread over maps. Printed are the radius and the number of photons that bring the root mean square relative
 /// error over all probes to the target with the fewest photons, for the plain estimate with the uniform kernel; k is
@@ -23,7 +33,10 @@ use turbid::sensor::{Advice, PathAdvice, Pilot, PilotSettings, path_advice};
 pub struct Advise {
     #[command(flatten)]
     source: Source,
-    /// Wanted root mean square relative error over the fluence probes, such as 1% or 0.01.
+    /// What is to reach the target [default: the picture, if the scene has a camera and no fluence probe].
+    #[arg(long = "for", id = "for", value_enum)]
+    subject: Option<Subject>,
+    /// Wanted root mean square relative error over the fluence probes, or over the pixels of the picture, such as 1% or 0.01.
     #[arg(long, value_parser = parse_target, allow_hyphen_values = true)]
     target: f64,
     /// Photons emitted into all pilot maps together.
@@ -32,6 +45,11 @@ pub struct Advise {
     /// Paths a probe that tell what the path tracer needs.
     #[arg(long, value_parser = parse_count, default_value = "20000")]
     samples: u64,
+    #[command(flatten)]
+    frame: Frame,
+    /// Rays of a final gathering at each surface that is seen, as of `render`.
+    #[arg(long, default_value_t = 64, value_parser = whole::<u32>(0..=1_000_000))]
+    gather_rays: u32,
     /// Seed: the same seed gives the same advice, on any number of threads.
     #[arg(long, value_parser = whole::<u64>(0..=u64::MAX), allow_hyphen_values = true, default_value_t = 1)]
     seed: u64,
@@ -43,6 +61,15 @@ pub struct Advise {
     /// Form of the output.
     #[arg(long, value_enum, default_value = "table")]
     format: FormatName,
+}
+
+/// What is to reach a target.
+#[derive(Clone, Copy, PartialEq, ValueEnum)]
+enum Subject {
+    /// The picture that the camera sees.
+    Picture,
+    /// The fluence probes.
+    Probes,
 }
 
 /// Pilot maps: enough for the variance of each ball to be known to a tenth at a single probe.
@@ -59,25 +86,49 @@ fn parse_target(text: &str) -> Result<f64, String> {
 
 /// A line of the answer.
 #[derive(Serialize)]
-struct AdviceRow {
-    quantity: &'static str,
-    unit: &'static str,
-    value: f64,
-    low: Option<f64>,
-    high: Option<f64>,
+pub struct AdviceRow {
+    pub quantity: String,
+    pub unit: &'static str,
+    pub value: f64,
+    pub low: Option<f64>,
+    pub high: Option<f64>,
 }
 
 impl Advise {
     /// Advises and prints.
-    pub fn run(self) -> anyhow::Result<()> {
+    pub fn run(self, given: &ArgMatches) -> anyhow::Result<()> {
         let scene = self.source.load()?;
-        let (rows, notes) = on_threads(self.threads, || self.advise(&scene))?;
+        let has_probe = scene.sensors().iter().any(|sensor| matches!(sensor.quantity, Quantity::Fluence(_)));
+        let is_picture = scene.camera().is_some() && !has_probe;
+        let subject = self.subject.unwrap_or(if is_picture { Subject::Picture } else { Subject::Probes });
+        let (name, is_picture) = match subject {
+            Subject::Picture => ("--for picture", true),
+            Subject::Probes => ("--for probes", false),
+        };
+        options::check(given, options::ADVISE, &[name])?;
+        let mut command = None;
+        let (rows, notes) = if is_picture {
+            let Advise { source, frame, target, gather_rays, seed, .. } = &self;
+            let wanted = Wanted { source, frame, target: *target, gather_rays: *gather_rays, seed: *seed };
+            let (rows, line) = on_threads(self.threads, || wanted.answer(&scene))?;
+            command = Some(line);
+            (rows, Vec::new())
+        } else {
+            on_threads(self.threads, || self.advise(&scene))?
+        };
         print(|out| match self.format.format() {
             Format::Text => write_aligned(out, &lines(&rows), 1),
             Format::Csv => write_csv(out, &rows),
             Format::Json => write_json(out, &rows),
         })
         .context("standard output")?;
+        match (command, self.format) {
+            (Some(line), FormatName::Table) => {
+                print(|out| writeln!(out, "{line}")).context("standard output")?
+            }
+            (Some(line), _) => note(&line)?,
+            (None, _) => (),
+        }
         for text in notes {
             note(&text)?;
         }
@@ -109,7 +160,13 @@ impl Advise {
         bar.finish();
         match paths {
             Ok(PathAdvice { samples, is_heavy_tailed }) => {
-                let row = |quantity, unit, value| AdviceRow { quantity, unit, value, low: None, high: None };
+                let row = |quantity: &str, unit, value| AdviceRow {
+                    quantity: quantity.into(),
+                    unit,
+                    value,
+                    low: None,
+                    high: None,
+                };
                 rows.push(row("path tracer: paths a probe", "1", samples.ceil()));
                 rows.push(row("path tracer: time", "s", samples * path_seconds));
                 if is_heavy_tailed {
@@ -127,7 +184,13 @@ impl Advise {
 }
 
 fn photon_rows(pilot: &Pilot, advice: &Advice) -> Vec<AdviceRow> {
-    let plain = |quantity, unit, value| AdviceRow { quantity, unit, value, low: None, high: None };
+    let plain = |quantity: &str, unit, value| AdviceRow {
+        quantity: quantity.into(),
+        unit,
+        value,
+        low: None,
+        high: None,
+    };
     let [least, median, most] = advice.gathered;
     vec![
         plain("radius", "L", advice.radius),
@@ -178,7 +241,7 @@ fn lines(rows: &[AdviceRow]) -> Vec<[String; 5]> {
     let mut lines = vec![["quantity", "unit", "value", "low", "high"].map(str::to_string)];
     for row in rows {
         let end = |x: Option<f64>| x.map_or_else(String::new, number);
-        let (quantity, unit) = (row.quantity.to_string(), row.unit.to_string());
+        let (quantity, unit) = (row.quantity.clone(), row.unit.to_string());
         lines.push([quantity, unit, number(row.value), end(row.low), end(row.high)]);
     }
     lines

@@ -11,7 +11,7 @@ use turbid::output::{WriteError, one_line};
 #[allow(missing_docs, reason = "a comment on a variant would hide the long help of its command")]
 pub enum Command {
     Measure(Box<measure::Measure>),
-    Advise(advise::Advise),
+    Advise(Box<advise::Advise>),
     Render(Box<render::Render>),
     Map(Box<map::Map>),
     Check(check::Check),
@@ -31,7 +31,7 @@ impl Command {
         let given = given.subcommand().map_or(given, |(_, given)| given);
         match self {
             Command::Measure(command) => command.run(given),
-            Command::Advise(command) => command.run(),
+            Command::Advise(command) => command.run(given),
             Command::Render(command) => command.run(given),
             Command::Map(command) => command.run(given),
             Command::Check(command) => command.run(),

@@ -34,6 +34,21 @@ impl Source {
         SceneSource::new(&self.scene).name()
     }
 
+    /// The words that name it on a command line, for a shell.
+    pub fn words(&self) -> String {
+        let quoted = |word: &str| {
+            let is_plain = |c: char| c.is_ascii_alphanumeric() || "-_./=+:,".contains(c);
+            match !word.is_empty() && word.chars().all(is_plain) {
+                true => word.to_string(),
+                false => format!("'{}'", word.replace('\'', "'\\''")),
+            }
+        };
+        let mut words = vec![quoted(&self.scene.display().to_string())];
+        words.extend(self.sets.iter().map(|set| format!("--set {}", quoted(set))));
+        words.extend(self.confined.then(|| "--confined".to_string()));
+        words.join(" ")
+    }
+
     /// Whether a file is the scene's own.
     pub fn is_file(&self, file: &Path) -> bool {
         !SceneSource::new(&self.scene).is_standard_input() && is_same_file(file, &self.scene).unwrap_or(false)

@@ -4,7 +4,7 @@ use cpu_time::ProcessTime;
 use std::time::{Duration, Instant};
 use turbid::integrators::mapper::{Report, Settings};
 use turbid::photons::maps::{MapReport, Maps};
-use turbid::sensor::Film;
+use turbid::sensor::{BlockMean, Film};
 
 /// What a picture took.
 pub struct Made {
@@ -18,6 +18,8 @@ pub struct Made {
     pub maps: Vec<MapsMade>,
     /// Times.
     pub stages: Stages,
+    /// Block means of each repetition, if it is to be compared.
+    pub block_means: Vec<Vec<BlockMean>>,
     /// Whether it was made by light tracing.
     pub is_by_light: bool,
 }

@@ -1,9 +1,11 @@
 //! The command `turbid`: parses, calls the file of the command, reports errors in one line.
 
 mod advise;
+mod advise_picture;
 mod beside;
 mod check;
 mod command;
+mod compare;
 mod completions;
 mod export;
 mod given;

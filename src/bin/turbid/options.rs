@@ -12,6 +12,7 @@ const ALL: &[&str] = &[];
 const PATHS: &[&str] = &["--with paths"];
 const PHOTONS: &[&str] = &["--with photons"];
 const SHOT: &[&str] = &["--with photons", "--with light"];
+const WHOLE: &[&str] = &["--with photons", "--with paths"];
 const READ: &[&str] = &["--with photons", "--photons-from"];
 
 /// Those of `measure`.
@@ -43,6 +44,27 @@ pub const MEASURE: Table = &[
     ("vol", ALL),
 ];
 
+const PROBES: &[&str] = &["--for probes"];
+const OF_PICTURE: &[&str] = &["--for picture"];
+
+/// Those of `advise`.
+pub const ADVISE: Table = &[
+    ("scene", ALL),
+    ("sets", ALL),
+    ("confined", ALL),
+    ("for", ALL),
+    ("target", ALL),
+    ("pilot", PROBES),
+    ("samples", PROBES),
+    ("width", OF_PICTURE),
+    ("height", OF_PICTURE),
+    ("gather_rays", OF_PICTURE),
+    ("seed", ALL),
+    ("threads", ALL),
+    ("memory", PROBES),
+    ("format", ALL),
+];
+
 /// Those of `render`.
 pub const RENDER: Table = &[
     ("scene", ALL),
@@ -56,6 +78,9 @@ pub const RENDER: Table = &[
     ("seconds", ALL),
     ("maps", ALL),
     ("passes", PHOTONS),
+    // Light tracing leaves out what paths hold.
+    ("compare", WHOLE),
+    ("compare_samples", WHOLE),
     ("width", ALL),
     ("height", ALL),
     ("exposure", ALL),
@@ -143,7 +168,15 @@ mod tests {
 
     /// The commands with their tables, what can be asked for of each, and words that ask for it.
     type Asked = (&'static str, &'static [&'static str]);
-    const COMMANDS: [(&str, Table, &[Asked]); 3] = [
+    const COMMANDS: [(&str, Table, &[Asked]); 4] = [
+        (
+            "advise",
+            ADVISE,
+            &[
+                ("--for probes", &["--target", "5%", "--for", "probes"]),
+                ("--for picture", &["--target", "5%", "--for", "picture"]),
+            ],
+        ),
         (
             "measure",
             MEASURE,

@@ -29,6 +29,13 @@ pub struct Frame {
 }
 
 impl Frame {
+    /// The options that were given.
+    pub fn words(&self) -> Option<String> {
+        let words = [("width", self.width), ("height", self.height)];
+        let given = words.iter().filter_map(|(name, n)| n.map(|n| format!("--{name} {n}")));
+        Some(given.collect::<Vec<_>>().join(" ")).filter(|words| !words.is_empty())
+    }
+
     /// The scene's camera, in the size asked for, and able to see light.
     pub fn camera(&self, scene: &Scene) -> anyhow::Result<Camera> {
         let camera = scene.camera().ok_or_else(|| {

@@ -1,5 +1,6 @@
 //! `turbid render`: a picture of a scene, by photons, by paths or by light tracing.
 
+use super::compare::Compared;
 use super::load::Source;
 use super::made::{Filled, Made, MapsMade, Stages};
 use super::memory::Memory;
@@ -20,8 +21,8 @@ use turbid::integrators::mapper::{Mapper, Report};
 use turbid::output::{Tone, auto_exposure, check_writable, is_same_file, one_line, write_exr, write_png};
 use turbid::photons::maps::fill_part;
 use turbid::photons::{Part, PhotonMap};
-use turbid::scene::Camera;
-use turbid::sensor::{Film, LIGHT_BYTES, LIGHT_PIXEL_BYTES, Method, Streams};
+use turbid::scene::{Camera, Scene};
+use turbid::sensor::{Blocks, Film, LIGHT_BYTES, LIGHT_PIXEL_BYTES, Method, PictureError, Streams};
 
 /// Draw the picture that a scene's camera sees, by photon maps, by paths or by light tracing.
 ///
@@ -71,6 +72,8 @@ pub struct Render {
     /// as many times the work of rays. Its variance is that between maps, of which there must be several.
     #[arg(long, value_parser = parse_count, default_value = "1")]
     passes: u64,
+    #[command(flatten)]
+    compared: Compared,
     #[command(flatten)]
     frame: Frame,
     #[command(flatten)]
@@ -134,7 +137,7 @@ impl With {
 const PIXEL_BYTES: f64 = 545.0;
 /// The same where the picture is the mean of several: two films.
 const MEAN_BYTES: f64 = 715.0;
-/// One film more, where each is made in passes.
+/// One film more: where each is made in passes, and where there is a reference.
 const FILM_BYTES: f64 = 352.0;
 
 /// Samples a pixel where neither their number nor a time is given.
@@ -177,10 +180,13 @@ impl Render {
                 "pictures of a scene with `cell`, which stands for an unbounded slab, are made by paths: --with paths"
             );
         }
+        self.compared.check(&scene)?;
         // Before the work, not after it.
         let png = self.output.with_extension("png");
-        check_writable(&self.output)?;
-        check_writable(&png)?;
+        let errors = self.compared.files(&self.output);
+        for file in [&self.output, &png].into_iter().chain(&errors) {
+            check_writable(file)?;
+        }
         if is_same_file(&self.output, &png)? {
             bail!("--output {} and {} lead to one file", self.output.display(), png.display());
         }
@@ -275,14 +281,32 @@ impl Render {
                 stored,
             )?;
         }
-        Ok(())
+        self.compare(&scene, &camera, &made)
+    }
+
+    /// Compares the picture with its reference, if asked to.
+    fn compare(&self, scene: &Scene, camera: &Camera, made: &Made) -> anyhow::Result<()> {
+        if !self.compared.is_asked_for() {
+            return Ok(());
+        }
+        // The repetition that the picture does not have.
+        let streams = Streams { seed: self.seed, replicate: self.maps };
+        let reference =
+            on_threads(self.threads, || self.compared.reference(scene, camera, &made.film, streams))?;
+        let error = match self.with {
+            With::Paths if made.film.samples() >= 2 => PictureError::ByPixel,
+            _ if self.maps >= 2 => PictureError::ByMap(&made.block_means),
+            _ => PictureError::Unknown,
+        };
+        self.compared.tell(&self.output, scene, (&made.film, &reference), error)
     }
 
     /// Memory that the picture takes beside its maps \[bytes\].
     fn film_bytes(&self, camera: &Camera) -> f64 {
         let pixels = f64::from(camera.width()) * f64::from(camera.height());
         let films = if self.maps == 1 { PIXEL_BYTES } else { MEAN_BYTES };
-        let films = pixels * (films + if self.passes == 1 { 0.0 } else { FILM_BYTES });
+        let more = u8::from(self.passes > 1) + u8::from(self.compared.is_asked_for());
+        let films = pixels * (films + f64::from(more) * FILM_BYTES);
         match self.with {
             With::Photons | With::Paths => films,
             With::Light => films + pixels * LIGHT_PIXEL_BYTES + LIGHT_BYTES,
@@ -332,6 +356,7 @@ impl Render {
             work: Report::default(),
             maps: Vec::new(),
             stages: Stages::default(),
+            block_means: Vec::new(),
             is_by_light: self.with == With::Light,
         };
         for replicate in 0..self.maps {
@@ -350,6 +375,9 @@ impl Render {
             if self.maps == 1 {
                 made.film = film;
             } else {
+                if self.compared.is_asked_for() {
+                    made.block_means.push(Blocks::of(film.width(), film.height()).means(&film));
+                }
                 made.film.push_film(&film);
             }
         }
