@@ -137,6 +137,8 @@ fn what_cannot_be_studied_is_refused_in_one_line() {
         ("scene = 'slab'", "scene = 'mine.toml'", "names itself"),
         ("albedo = [0.5, 0.9]", "albedo = [1.5]", "albedo"),
         ("albedo = [0.5, 0.9]", "albedoo = [0.5]", "unknown key `albedoo`"),
+        ("albedo = [0.5, 0.9]", "tau = [1, 2.0, 1.0]", "axes.tau has 1.0 twice"),
+        ("scene = 'slab'", "scene = 'room.xml'", "turbid import"),
         ("[2.0, 2.0, 0.1]", "[2.0, 2.0, -0.1]", "probe 0"),
         ("[2.0, 2.0, 0.1]", "[2.0, 2.0]", "mine.toml:9"),
         ("probes = [[2.0, 2.0, 0.1], [2.0, 2.0, 1.0]]", "sensors = ['nothing']", "no sensor \"nothing\""),
@@ -156,7 +158,7 @@ fn what_cannot_be_studied_is_refused_in_one_line() {
     assert!(refused(at, &["mine.toml", "--full"]).contains("--full"));
     assert!(refused(at, &["mine.toml", "--part", "4/3"]).contains("3/16"));
     assert!(refused(at, &["none.toml"]).contains("cannot read none.toml"));
-    assert!(refused(at, &["mine.csv"]).contains("STUDY.toml"));
+    assert!(refused(at, &["mine.csv"]).contains("ends in .toml"));
     let run = Command::new(env!("CARGO_BIN_EXE_bias")).current_dir(at).arg("mine.toml").assert().code(2);
     let text = String::from_utf8(run.get_output().stderr.clone()).unwrap();
     assert!(text.contains("bias is one experiment; allowed: study mine.toml"), "{text}");

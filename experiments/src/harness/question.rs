@@ -52,7 +52,7 @@ impl Question {
             parts.push(Digest::of(&read(file, MOST_NAMED)?).to_string().into_bytes());
         }
         let digest = Digest::of(&parts.join(&b"\n"[..])).to_string();
-        let title = table.get("title").and_then(|title| title.as_str()).map(String::from);
+        let title = table.get("title").and_then(|title| title.as_str()).map(turbid::output::one_line);
         Ok(Question { path: path.to_path_buf(), text, digest, title })
     }
 

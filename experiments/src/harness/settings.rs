@@ -121,7 +121,7 @@ struct Flags {
     /// Conclude from the cells of these folders of parts, and measure nothing
     #[arg(long, value_name = "DIR", num_args = 1.., conflicts_with_all = ["replot", "fresh", "dry_run"])]
     merge: Vec<PathBuf>,
-    /// A study of your own, STUDY.toml (SCENES.md says what it holds); with --replot tables of figures, FILE.csv, each of which is
+    /// A study of your own, STUDY.toml (experiments/studies/README.md says what it holds); with --replot tables of figures, FILE.csv, each of which is
     /// drawn alone
     #[arg(value_name = "FILE", conflicts_with_all = ["only", "full", "quick", "strict"])]
     files: Vec<PathBuf>,
@@ -142,7 +142,7 @@ fn wrong_files(flags: &Flags) -> Option<String> {
         [] => None,
         [study] if is(study, "toml") => None,
         [first, ..] => Some(format!(
-            "{}: allowed: one STUDY.toml, or FILE.csv with --replot (one experiment alone: --only NAME)",
+            "{}: allowed: one study, whose name ends in .toml, or FILE.csv with --replot",
             first.display()
         )),
     }

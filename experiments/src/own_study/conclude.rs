@@ -59,7 +59,7 @@ fn summary(study: &OwnStudy, all: &[Data]) -> Vec<String> {
     for data in all.iter().take(figures::MOST_SCENES) {
         if data.usable() == 0 {
             paragraphs.push(format!(
-                "{} no place has a reference known to a fifth of itself: nothing is said of errors.",
+                "{} the reference of every place is 0, or has an error of more than a fifth of it: nothing is said of relative errors.",
                 here(data)
             ));
             continue;
@@ -80,7 +80,7 @@ fn summary(study: &OwnStudy, all: &[Data]) -> Vec<String> {
                     _ => String::new(),
                 };
                 format!(
-                    "{}, the cheapest of {} settings to an error of {} % is {}: {} in {} s{beside}.",
+                    "{}, the cheapest of {} settings that reach an error of {} % by half of the maps is {}: {} by the other half, in {} s{beside}.",
                     here(data),
                     data.settings.len(),
                     number(percent(target)),
@@ -169,14 +169,14 @@ fn answers(study: &OwnStudy, all: &[Data]) -> Table {
         "bias",
         "noise",
         "CPU time [s]",
-        "rival's time [s]",
+        "the reference's time [s]",
         "photons to the target",
     ];
     Table {
         caption: format!(
             "The setting that reaches {} % the cheapest, and the best size of each kind of gather at the most photons, chosen by \
              half of the maps and told by the other; bias and noise by all. CPU time is that of one map and all places, on this machine; \
-             the rival's that to the same error. Photons to the target: of fixed radii, whose variance falls as one over them.",
+             the reference's is that of its method to the same error. A bias of 0 is one whose square came out below 0. Photons to the target: of fixed radii, whose variance falls as one over them.",
             number(percent(target))
         ),
         columns: columns.map(String::from).to_vec(),
@@ -272,7 +272,8 @@ fn references(all: &[Data]) -> Option<Table> {
     let mut rows = Vec::new();
     for data in all {
         let exact = data.known.iter().filter(|k| k.is_exact).count();
-        let sampled: Vec<_> = data.known.iter().filter(|k| !k.is_exact && k.value != 0.0).collect();
+        let main = data.point.places.iter().zip(&data.known).filter(|(place, _)| data.point.is_main(place));
+        let sampled: Vec<_> = main.map(|(_, known)| known).filter(|k| !k.is_exact && k.is_usable()).collect();
         let root = |values: Vec<f64>| {
             let n = values.len() as f64;
             (values.iter().map(|x| x * x).sum::<f64>() / n).sqrt()
@@ -301,7 +302,7 @@ fn references(all: &[Data]) -> Option<Table> {
     let columns =
         ["scene", "solved by", "exact places", "samples", "of", "their error", "against exact, z: RMS"];
     Some(Table {
-        caption: "What the maps are compared with. Where values are exact the samples are the rival alone, and their distance from the exact \
+        caption: "What the maps are compared with. Samples are those a place, a pixel of a picture, or photons of light tracing; where values are exact they are for comparison alone, and their distance from the exact \
                   values, in their standard errors, is expected to be about 1."
             .to_string(),
         columns: columns.map(String::from).to_vec(),
@@ -332,7 +333,7 @@ fn notes(study: &OwnStudy, all: &[Data]) -> Vec<String> {
             let shown = unusable.iter().take(10).copied().collect::<Vec<_>>().join(", ");
             let more = if unusable.len() > 10 { " and others" } else { "" };
             notes.push(format!(
-                "{scene}: {} of {} places have a reference that is 0 or not known to a fifth of itself, and are not among the errors: \
+                "{scene}: the reference of {} of {} places is 0, or has an error of more than a fifth of it: they are not among the errors: \
                  {shown}{more}.",
                 unusable.len(),
                 data.known.len()

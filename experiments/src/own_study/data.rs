@@ -131,11 +131,17 @@ impl Setting<'_> {
         self.noise_of_references.0
     }
 
-    /// Root mean square error over places, of one map.
+    /// Root mean square error over places, of one map: never less than its noise, where the references' errors would leave less.
     pub fn rmse(&self, half: Half) -> Estimate {
         let (floor, error) = self.noise_of_references;
-        let squares: Moments = self.squares(half).iter().collect();
-        Estimate::mean(&squares).minus(floor).with_reference_error(error).root()
+        let maps = half.of(&self.errors);
+        let square = if parts(&maps).0 > floor {
+            let squares: Moments = self.squares(half).iter().collect();
+            Estimate::mean(&squares).minus(floor)
+        } else {
+            Estimate::jackknife(&jackknife(&maps, |maps| parts(maps).1))
+        };
+        square.with_reference_error(error).root()
     }
 
     /// Root mean square over places of the mean error.
@@ -204,11 +210,7 @@ impl<'a> Data<'a> {
                 let case = words::case(point, photons, estimator);
                 let values = point.places.iter().map(|place| cells.values(&case, &place.name));
                 let values = values.collect::<anyhow::Result<Vec<_>>>()?;
-                let maps = values.first().map_or(0, Vec::len);
-                let error = |map: usize, place: usize| values[place][map] / known[place].value - 1.0;
-                let errors: Vec<Vec<f64>> =
-                    (0..maps).map(|map| usable.iter().map(|&place| error(map, place)).collect()).collect();
-                let noise_of_references = noise(&errors, &known, &usable);
+                let (errors, noise_of_references) = errors(&values, &known, &usable);
                 let underfull = cells.moments(&case, "under-full share")?.mean();
                 settings.push(Setting {
                     photons,
@@ -242,6 +244,21 @@ impl<'a> Data<'a> {
         sizes.into_iter().filter_map(least).collect()
     }
 
+    /// A setting's errors at the places of another group, if the reference of any is usable.
+    pub fn of_group(&self, setting: &Setting<'a>, group: &str) -> Option<Setting<'a>> {
+        let is_own =
+            |&place: &usize| self.point.places[place].group == group && self.known[place].is_usable();
+        let usable: Vec<usize> = (0..self.known.len()).filter(is_own).collect();
+        let (errors, noise_of_references) = errors(&setting.values, &self.known, &usable);
+        (!usable.is_empty()).then(|| Setting {
+            errors,
+            noise_of_references,
+            values: Vec::new(),
+            seconds: setting.seconds,
+            ..*setting
+        })
+    }
+
     /// The families, in the order of the file.
     pub fn families(&self) -> Vec<String> {
         let mut all: Vec<String> = Vec::new();
@@ -255,7 +272,9 @@ impl<'a> Data<'a> {
 
     /// The setting that reaches an error in the least time, by the choosing half.
     pub fn cheapest(&self, target: f64) -> Option<&Setting<'a>> {
-        let reaching = self.settings.iter().filter(|s| s.rmse(Half::Choosing).value() <= target);
+        // References that are not known to the target cannot tell that it is reached.
+        let known = self.settings.iter().filter(|s| s.floor() < target * target);
+        let reaching = known.filter(|s| s.rmse(Half::Choosing).value() <= target);
         reaching.min_by(|a, b| a.time().total_cmp(&b.time()))
     }
 
@@ -282,6 +301,16 @@ impl<'a> Data<'a> {
         });
         all
     }
+}
+
+/// Errors relative to the reference at some places, a list a map, and what the references' own errors add to them.
+fn errors(values: &[Vec<f64>], known: &[Known], usable: &[usize]) -> (Vec<Vec<f64>>, (f64, f64)) {
+    let maps = values.first().map_or(0, Vec::len);
+    let error = |map: usize, place: usize| values[place][map] / known[place].value - 1.0;
+    let errors: Vec<Vec<f64>> =
+        (0..maps).map(|map| usable.iter().map(|&place| error(map, place)).collect()).collect();
+    let noise = noise(&errors, known, usable);
+    (errors, noise)
 }
 
 /// Mean square of the references' relative errors, and the standard error that they leave of a mean squared error: they are the
@@ -327,4 +356,48 @@ pub fn all<'a>(study: &'a OwnStudy, cells: &Cells) -> anyhow::Result<Vec<Data<'a
     (0..study.points.len())
         .map(|number| Data::new(study, number, cells).with_context(|| study.points[number].label.clone()))
         .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use turbid::estimators::{Gather, Kernel};
+    use turbid::rng::{Purpose, Stream};
+
+    /// Maps of known bias and noise against references that are off by their own error: the root mean square error is never below the
+    /// noise, and not above both by more than its own error allows.
+    #[test]
+    fn errors_are_not_less_than_their_noise() {
+        let estimator = Estimator::new(Kernel::Uniform, Gather::radius(1.0).unwrap());
+        let (bias, noise, places, reference) = (0.02, 0.05, 5, 0.06);
+        let mut normal = {
+            let mut stream = Stream::new(23, Purpose::Synthetic, 0, 0);
+            // The sum of twelve numbers in [0, 1) has the variance 1.
+            move || (0..12).map(|_| stream.unit()).sum::<f64>() - 6.0
+        };
+        let mut within = 0;
+        for _ in 0..200 {
+            let off: Vec<f64> = (0..places).map(|_| reference * normal()).collect();
+            let errors: Vec<Vec<f64>> =
+                (0..16).map(|_| off.iter().map(|off| bias + noise * normal() - off).collect()).collect();
+            let known: Vec<Known> = (0..places)
+                .map(|_| Known { value: 1.0, error: reference, is_exact: false, sampled: (1.0, reference) })
+                .collect();
+            let noise_of_references = super::noise(&errors, &known, &(0..places).collect::<Vec<_>>());
+            let setting = Setting {
+                photons: 1,
+                estimator: &estimator,
+                values: Vec::new(),
+                errors,
+                noise_of_references,
+                seconds: [Moments::new(); 2],
+                underfull: 0.0,
+            };
+            let (rmse, own) = (setting.rmse(Half::Both), setting.noise());
+            assert!(rmse.value() >= 0.95 * own.value(), "{} below {}", rmse.value(), own.value());
+            let truth = (bias * bias + noise * noise).sqrt();
+            within += usize::from((rmse.value() - truth).abs() < 2.0 * rmse.std_error());
+        }
+        assert!(within >= 170, "{within} of 200");
+    }
 }

@@ -7,8 +7,8 @@ use super::reference::{BATCHES, batch};
 use super::words;
 use super::words::is_fixed;
 use crate::harness::{CellId, Settings, duration};
-use std::time::Instant;
-use turbid::memory::in_words;
+use cpu_time::ProcessTime;
+use turbid::memory::{free, in_words};
 use turbid::photons::{PEAK_BYTES, PhotonMap};
 use turbid::sensor::{MapSettings, SensorMaps};
 use turbid::transport::NoProgress;
@@ -40,9 +40,9 @@ pub fn dry_run(settings: &Settings) -> anyhow::Result<String> {
         let reference = &study.references[number];
         let samples = reference.samples.min(SAMPLES);
         let id = CellId::of(&format!("dry-run-{number:03}"), 0);
-        let start = Instant::now();
+        let start = ProcessTime::now();
         batch(point, reference.sampler, samples, (settings.seed, id.stream(words::NAME)))?;
-        let one = start.elapsed().as_secs_f64() * rayon::current_num_threads() as f64 / samples as f64;
+        let one = start.elapsed().as_secs_f64() / samples as f64;
         let seconds = one * reference.samples as f64;
         lines.push(Line { group: reference_group(number), cells: BATCHES, seconds, bytes: 0.0 });
     }
@@ -55,6 +55,12 @@ pub fn dry_run(settings: &Settings) -> anyhow::Result<String> {
     let cells: u64 = lines.iter().map(|line| line.cells).sum();
     let seconds: f64 = lines.iter().map(|line| line.seconds * line.cells as f64).sum();
     let most = lines.iter().map(|line| line.bytes).fold(0.0, f64::max) * settings.threads as f64;
+    if let Some(free) = free().filter(|free| *free < most) {
+        text += &format!(
+            "more memory than the {} that are free: fewer photons, or fewer --threads\n",
+            in_words(free)
+        );
+    }
     text += &format!(
         "in all {cells} cells, {} of CPU time, about {} on {} threads, {} of memory at most\n",
         duration(seconds),
@@ -67,36 +73,37 @@ pub fn dry_run(settings: &Settings) -> anyhow::Result<String> {
 
 /// CPU seconds and memory of one cell of maps.
 fn maps(point: &Point, photons: u64, readings: usize, settings: &Settings) -> anyhow::Result<(f64, f64)> {
-    let threads = rayon::current_num_threads() as f64;
     let few = photons.min(PHOTONS);
     if let Some(picture) = &point.picture {
         let of = (settings.seed, CellId::of("dry-run", 0).stream(words::NAME));
-        let start = Instant::now();
+        let start = ProcessTime::now();
         let maps = picture.maps(&point.scene, few, of)?;
         let filling = start.elapsed().as_secs_f64() * photons as f64 / few as f64;
         let held = [&maps.global, &maps.caustic, &maps.volume].into_iter().flatten();
         let stored = held.map(PhotonMap::stored).sum::<usize>() as f64 * photons as f64 / few as f64;
         let mut reading = 0.0;
         for estimator in &point.estimators {
-            let start = Instant::now();
+            let start = ProcessTime::now();
             picture.by_maps(&point.scene, &maps, estimator, of)?;
             let more = if is_fixed(estimator) { photons as f64 / few as f64 } else { 1.0 };
             reading += start.elapsed().as_secs_f64() * more;
         }
-        return Ok((threads * (filling + reading), PEAK_BYTES * stored));
+        return Ok((filling + reading, PEAK_BYTES * stored));
     }
     let reach = reach(&point.estimators);
     let replicate = CellId::of("dry-run", 0).stream(words::NAME);
     let of = |photons: u64| MapSettings { photons, seed: settings.seed, replicate, reach, readings };
     let forecast = SensorMaps::forecast(&point.scene, &of(photons))?;
+    let start = ProcessTime::now();
     let maps = SensorMaps::fill(&point.scene, of(few), &NoProgress)?;
+    let filling = start.elapsed().as_secs_f64() * photons as f64 / few as f64;
     let mut reading = 0.0;
     for estimator in &point.estimators {
-        let start = Instant::now();
+        let start = ProcessTime::now();
         maps.read(estimator)?;
         // Fixed radii find more photons in larger maps.
         let more = if is_fixed(estimator) { photons as f64 / few as f64 } else { 1.0 };
-        reading += start.elapsed().as_secs_f64() * threads * more;
+        reading += start.elapsed().as_secs_f64() * more;
     }
-    Ok((forecast.seconds * threads + reading, forecast.bytes))
+    Ok((filling + reading, forecast.bytes))
 }

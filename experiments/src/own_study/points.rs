@@ -6,9 +6,11 @@ use super::place::Place;
 use crate::harness::Unit;
 use crate::setups::asked;
 use anyhow::{Context, bail, ensure};
+use std::collections::BTreeSet;
 use std::path::Path;
 use turbid::estimators::Estimator;
 use turbid::integrators::mapper::scene_size;
+use turbid::output::one_line;
 use turbid::photons::check_end;
 use turbid::scene::{BUILTIN, Binned, Quantity, QuantityFile, Scene, SceneSource, SensorFile};
 use turbid::sensor::{SensorMaps, usual_reach};
@@ -46,10 +48,33 @@ pub fn points(study: &StudyFile, folder: &Path) -> anyhow::Result<Vec<Point>> {
         let sizes: Vec<String> = study.axes.values().map(|values| values.len().to_string()).collect();
         bail!("axes: {} scenes; allowed: up to {MOST_POINTS}", sizes.join(" x "));
     };
-    (0..count).map(|number| point(study, folder, number)).collect()
+    for (key, values) in &study.axes {
+        let same = |a: &toml::Value, b: &toml::Value| match (number(a), number(b)) {
+            (Some(a), Some(b)) => a == b,
+            _ => word(a) == word(b),
+        };
+        let twice = values.iter().enumerate().find(|(i, value)| values[..*i].iter().any(|v| same(v, value)));
+        if let Some((_, value)) = twice {
+            bail!("axes.{key} has {} twice; allowed: each value once", word(value));
+        }
+    }
+    let points = (0..count).map(|number| point(study, folder, number)).collect::<anyhow::Result<Vec<_>>>()?;
+    let labels: BTreeSet<&str> = points.iter().map(|point| point.label.as_str()).collect();
+    ensure!(labels.len() == points.len(), "axes: two scenes are called the same; allowed: other values");
+    Ok(points)
+}
+
+/// A value as a number, if it is one.
+fn number(value: &toml::Value) -> Option<f64> {
+    value.as_float().or_else(|| value.as_integer().map(|whole| whole as f64))
 }
 
 fn point(study: &StudyFile, folder: &Path, number: usize) -> anyhow::Result<Point> {
+    ensure!(
+        !study.scene.to_lowercase().ends_with(".xml"),
+        "scene is {:?}; allowed: a scene file, which `turbid import` makes of a scene of Mitsuba",
+        study.scene
+    );
     let is_builtin = BUILTIN.iter().any(|builtin| builtin.name == study.scene);
     let path = if is_builtin { study.scene.clone().into() } else { folder.join(&study.scene) };
     let (mut source, mut left, mut values) = (SceneSource::new(path), number, Vec::new());
@@ -113,8 +138,8 @@ pub fn reach(estimators: &[Estimator]) -> f64 {
 /// A value as a word.
 fn word(value: &toml::Value) -> String {
     match value {
-        toml::Value::String(word) => word.clone(),
-        other => other.to_string(),
+        toml::Value::String(word) => one_line(word),
+        other => one_line(&other.to_string()),
     }
 }
 
@@ -186,6 +211,9 @@ fn extra(measure: &MeasureFile) -> anyhow::Result<Vec<SensorFile>> {
     Ok(all)
 }
 
+/// Names that rows of cells and results have.
+const RESERVED: [&str; 3] = ["all", "under-full share", "photons stored"];
+
 /// Every number that is measured.
 pub(super) fn places(scene: &Scene) -> anyhow::Result<Vec<Place>> {
     let suffixes: &[&str] = if scene.plan().is_grey { &[""] } else { &[".r", ".g", ".b"] };
@@ -210,7 +238,11 @@ pub(super) fn places(scene: &Scene) -> anyhow::Result<Vec<Place>> {
                 _ => bail!("no map answers {}", sensor.name),
             };
             for (channel, suffix) in suffixes.iter().enumerate() {
-                let name = format!("{name}{suffix}");
+                let name = one_line(&format!("{name}{suffix}"));
+                ensure!(
+                    !RESERVED.contains(&name.as_str()),
+                    "a sensor is called {name}, which means something else in the results; allowed: another name"
+                );
                 ensure!(
                     places.iter().all(|place| place.name != name),
                     "two sensors are called {}; allowed: names of their own",

@@ -274,6 +274,11 @@ impl Layers {
 
     /// Radiance that arrives from ahead of a ray; none along a beam, whose radiance is no number, and where it depends on the azimuth.
     fn radiance(&self, z: f64, dir: DVec3) -> Exact {
+        // Light of the faces starts on them: beyond, there is none of it.
+        let (top, bottom) = (self.sheets.first()?.0, self.sheets.last()?.1);
+        if (z < top && dir.z <= 0.0) || (z > bottom && dir.z >= 0.0) {
+            return None;
+        }
         // Light travels against the ray: its cosine to the way up, which is -z, is that of the ray to the way down.
         self.sum(z, |part, t| {
             let up = if part.is_from_below { -dir.z } else { dir.z };
@@ -627,5 +632,36 @@ mod tests {
             )
         };
         assert!(ball(0.0, &source(1.0)) && !ball(0.0, &source(0.9)));
+    }
+
+    /// Diffuse light starts on the faces: rays from beyond them that look away have none of it, those that look through the slab have
+    /// what paths find.
+    #[test]
+    fn rays_from_beyond_the_faces() {
+        let ray = |z: f64, up: f64| {
+            let text = format!(
+                "cell = 4.0\n[[regions]]\nshape = {{ slab = {{ top = 0.0, thickness = 2.0 }} }}\nsigma_t = 0.7\nalbedo = 0.6\ng = 0.3\n\
+                 [[lights]]\nisotropic = {{ shape = {{ slab = {{ top = 0.0, thickness = 2.0 }} }}, faces = 'both', radiance = 1.0 }}\n\
+                 [[sensors]]\nname = 'ray'\nmeasure = {{ radiance = {{ origin = [1, 1, {z}], dir = [0.1, 0, {up}] }} }}\n"
+            );
+            let scene = scene(&text);
+            let exact = solve(&scene).unwrap().value(&scene, &places(&scene).unwrap()[0]);
+            let settings = PathSettings { samples: 1 << 13, seed: 5, replicate: 0, orders: Orders::ALL };
+            (exact, by_paths(&scene, &settings, &NoProgress).unwrap().pop().unwrap())
+        };
+        for (z, up) in [(-0.5, -1.0), (2.5, 1.0)] {
+            let (exact, paths) = ray(z, up);
+            assert!(exact.is_none() && paths.mean == 0.0, "{exact:?}, {}", paths.mean);
+        }
+        for (z, up) in [(-0.5, 1.0), (2.5, -1.0), (0.4, 1.0), (0.4, -1.0)] {
+            let (exact, paths) = ray(z, up);
+            let ((value, _), error) = (exact.unwrap(), paths.std_error.unwrap());
+            assert!(
+                (paths.mean - value).abs() < normal_critical(ALPHA) * error,
+                "{value}, {} +- {error}",
+                paths.mean
+            );
+            assert!(error < 0.02 * value);
+        }
     }
 }

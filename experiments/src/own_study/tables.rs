@@ -2,6 +2,7 @@
 
 use super::data::{Data, Half, Known, Setting};
 use super::words;
+use crate::harness::Estimate;
 use crate::prediction::Prediction;
 use std::collections::HashMap;
 use turbid::estimators::Gather;
@@ -56,8 +57,9 @@ fn errors(values: &[f64], known: &Known) -> [f64; 6] {
     // Of a root, half the relative error of the square.
     let deviation_error = 0.5 * deviation * errors.vov().sqrt();
     let n = errors.n() as f64;
-    let square = errors.mean() * errors.mean() + errors.variance() * (n - 1.0) / n - relative * relative;
-    let rmse = square.max(0.0).sqrt();
+    // What noise and the reference's own error add to the square of the mean is taken off it, as far as it goes.
+    let bias = errors.mean() * errors.mean() - errors.variance() / n - relative * relative;
+    let rmse = (bias.max(0.0) + errors.variance()).sqrt();
     let of_square = libm::hypot(
         2.0 * errors.mean() * bias_error,
         libm::hypot(errors.variance() * errors.vov().sqrt(), 2f64.sqrt() * relative * relative),
@@ -121,7 +123,12 @@ pub fn results(data: &[Data], predictions: &[Prediction]) -> anyhow::Result<Stri
                 let mut row = own.clone();
                 row.extend([&format!("all {group}"), "", "", "", "1", &maps].map(String::from));
                 row.extend(std::iter::repeat_n(String::new(), 6));
-                row.extend(of_group(data, setting, group).map(cell));
+                let own = data.of_group(setting, group);
+                let estimates = own.map(|own| [own.bias(), own.noise(), own.rmse(Half::Both)]);
+                for estimate in estimates.map_or([None; 3], |all| all.map(Some)) {
+                    let number = |of: fn(&Estimate) -> f64| estimate.as_ref().map_or(f64::NAN, of);
+                    row.extend([number(Estimate::value), number(Estimate::std_error)].map(cell));
+                }
                 row.extend([cell(stored), cell(setting.underfull)]);
                 rows.push(row);
             }
@@ -150,30 +157,6 @@ fn other_groups(data: &Data) -> Vec<&'static str> {
         .collect();
     groups.dedup();
     groups
-}
-
-/// Root mean squares over the places of a group, of its bias, its standard deviation and its error, each with a standard error as if
-/// places were independent: a lower bound, since they share their photons.
-fn of_group(data: &Data, setting: &Setting, group: &str) -> [f64; 6] {
-    let places = data.point.places.iter().zip(&setting.values).zip(&data.known);
-    let own: Vec<[f64; 6]> = places
-        .filter(|((place, _), known)| place.group == group && known.is_usable())
-        .map(|((_, values), known)| errors(values, known))
-        .collect();
-    let mut all = [f64::NAN; 6];
-    for part in 0..3 {
-        let (mut square, mut variance) = (0.0, 0.0);
-        for errors in &own {
-            let (value, error) = (errors[2 * part], errors[2 * part + 1]);
-            square += value * value;
-            variance += 4.0 * value * value * error * error;
-        }
-        let count = own.len() as f64;
-        let root = (square / count).sqrt();
-        all[2 * part] = root;
-        all[2 * part + 1] = 0.5 * variance.sqrt() / count / root;
-    }
-    all
 }
 
 /// Who says a reference.
