@@ -7,9 +7,10 @@ use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
+use std::sync::atomic::{AtomicUsize, Ordering};
 use turbid_experiments::harness::{
     CellId, CellOutput, Claim, Closing, Estimate, Experiment, Group, Outcome, Preset, Replot, Section,
-    SectionReport, Settings, Study, Unit, Verdict, replot, run,
+    SectionReport, Settings, Study, Unit, Verdict, Watch, replot, run, run_watched,
 };
 
 fn settings(out: &Path) -> Settings {
@@ -51,6 +52,39 @@ fn undisturbed() -> BTreeMap<String, Vec<u8>> {
     let folder = tempfile::tempdir().unwrap();
     run(&fake::study(), &Settings { threads: 1, ..settings(folder.path()) }).unwrap();
     results(folder.path())
+}
+
+/// Ends a study after so many cells.
+struct After(usize, AtomicUsize);
+
+impl Watch for After {
+    fn say(&self, _: &str) {}
+    fn begin(&self, cells: usize) {
+        assert_eq!(cells, 64);
+    }
+    fn advance(&self, part: f64) {
+        assert!((part - 1.0 / 64.0).abs() < 1e-15);
+        self.1.fetch_add(1, Ordering::SeqCst);
+    }
+    fn finish(&self) {}
+    fn is_cancelled(&self) -> bool {
+        self.1.load(Ordering::SeqCst) >= self.0
+    }
+}
+
+/// A study that is ended between cells keeps them, concludes nothing, and goes on from there.
+#[test]
+fn whoever_watches_may_end_it() {
+    let folder = tempfile::tempdir().unwrap();
+    let watch = After(10, AtomicUsize::new(0));
+    let error = run_watched(&fake::study(), &settings(folder.path()), &watch).unwrap_err();
+    assert_eq!(error.downcast_ref(), Some(&turbid::Error::Cancelled));
+    let kept = cell_files(folder.path()).len();
+    // Each of two threads may have had one in work.
+    assert!((10..=11).contains(&kept), "{kept}");
+    assert!(!folder.path().join("report.html").exists() && !folder.path().join("results.csv").exists());
+    assert_eq!(run(&fake::study(), &settings(folder.path())).unwrap().measured, 64 - kept);
+    assert_eq!(results(folder.path()), undisturbed());
 }
 
 #[test]

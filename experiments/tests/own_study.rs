@@ -173,6 +173,35 @@ fn a_dry_run_tells_and_writes_nothing() {
     assert!(!folder.path().join("out").exists());
 }
 
+/// A scene in the study's own file is the scene of a file beside it; an axis that is called as a column is told apart from it.
+#[test]
+fn a_scene_within_the_file() {
+    let scene = "cell = 2.0\n[[regions]]\nshape = { slab = { top = 0.0, thickness = 1.0 } }\nsigma_t = 1.0\nalbedo = 0.5\n\
+                 [[lights]]\nbeam = { dir = [0, 0, 1], irradiance = 1.0, section = 'unbounded' }\n";
+    let study_of = |scene: &str| {
+        format!(
+            "scene = {scene}\nphotons = [500]\nmaps = 4\naxes = {{ 'regions.0.albedo' = [0.5, 0.9] }}\n\
+             measure = {{ probes = [[1, 1, 0.5]] }}\n"
+        )
+    };
+    let within = "{ cell = 2.0, regions = [{ shape = { slab = { top = 0.0, thickness = 1.0 } }, sigma_t = 1.0, albedo = 0.5 }], \
+                  lights = [{ beam = { dir = [0, 0, 1], irradiance = 1.0, section = 'unbounded' } }] }";
+    let (folder, file) = written(&study_of("'scene.toml'"));
+    let at = folder.path();
+    std::fs::write(at.join("scene.toml"), scene).unwrap();
+    study(at, &["mine.toml", "--out", "beside"]).assert().success();
+    std::fs::write(&file, study_of(within)).unwrap();
+    study(at, &["mine.toml", "--out", "within"]).assert().success();
+    assert!(results(at, "within") == results(at, "beside"));
+    std::fs::write(&file, study_of(&within.replace("albedo = 0.5", "albedo = 1.5"))).unwrap();
+    assert!(refused(at, &["mine.toml"]).ends_with("mine.toml: scene: albedo is 1.5; allowed: 0 to 1"));
+    std::fs::write(&file, "scene = 'sphere'\nphotons = [500]\nmaps = 4\naxes = { radius = [1.0] }\n")
+        .unwrap();
+    study(at, &["mine.toml", "--out", "ball"]).assert().success();
+    let rows = rows(&at.join("ball/results.csv"));
+    assert!(rows.iter().all(|row| row["scene.radius"] == "1.0" && row["radius"].is_empty()));
+}
+
 /// A picture is compared block by block and layer by layer; light that maps and paths both find agrees.
 #[test]
 fn a_picture_by_layer() {

@@ -10,6 +10,7 @@ mod photons;
 mod readout;
 mod render;
 mod scene;
+mod study;
 mod work;
 
 use pyo3::prelude::*;
@@ -27,5 +28,6 @@ fn _turbid(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_function(wrap_pyfunction!(measure::measure, module)?)?;
     module.add_function(wrap_pyfunction!(render::render, module)?)?;
     module.add_function(wrap_pyfunction!(photons::photons, module)?)?;
+    module.add_function(wrap_pyfunction!(study::study, module)?)?;
     Ok(())
 }

@@ -1,20 +1,12 @@
 //! Scenes from Python: a dict, TOML text, a file, or the name of a built-in one.
 
 use crate::error::{refuse, refused};
-use anyhow::{Context, anyhow};
 use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
 use pyo3::types::{PyBool, PyDict, PyFloat, PyInt, PyList, PyString, PyTuple};
 use std::path::{Path, PathBuf};
-use turbid::input::{read_stream, text};
 use turbid::photons::check_end;
-use turbid::scene::{BUILTIN, Builtin, Scene, SceneFile};
-
-/// Larger scene files are refused.
-const MOST_BYTES: u64 = 1 << 26;
-
-/// Memory that a scene file takes over its size while it is read, at most: each number of a long list is a value.
-const IN_MEMORY: f64 = 80.0;
+use turbid::scene::{BUILTIN, Scene, SceneFile, SceneSource};
 
 /// Dicts and lists in each other, at most: one that holds itself has no end.
 const DEEPEST: u32 = 32;
@@ -34,35 +26,38 @@ impl Given {
         changes: Option<&Bound<'_, PyDict>>,
         folder: Option<PathBuf>,
     ) -> PyResult<Self> {
-        let changes = changes.filter(|changes| !changes.is_empty());
-        let folder_or = |other: PathBuf| folder.clone().unwrap_or(other);
-        let named = |error: turbid::Error| refuse(error.to_string());
+        let changes = changes.map_or(Ok(toml::Table::new()), |changes| table(changes, 0))?;
+        let with = |source: PathBuf| {
+            let with =
+                |source: SceneSource, (key, value): (&String, &toml::Value)| source.with(key, value.clone());
+            changes.iter().fold(SceneSource::new(source), with)
+        };
+        let told = |error: turbid::Error| refuse(error.to_string());
         if let Ok(dict) = scene.cast::<PyDict>() {
-            unchanged(changes)?;
             let text = toml::to_string(&table(dict, 0)?).map_err(|error| refuse(error.to_string()))?;
-            let file = SceneFile::read(&text, None).map_err(named)?;
-            return Ok(Given { file, folder: folder_or(PathBuf::new()), name: None });
+            // Lines of a text that nobody wrote by hand say nothing.
+            SceneFile::read(&text, None).map_err(told)?;
+            let file = with(PathBuf::from("scene")).changed(&text).map_err(told)?;
+            return Ok(Given { file, folder: folder.unwrap_or_default(), name: None });
         }
         let word = scene.cast::<PyString>().ok().map(|word| word.to_string());
-        if let Some(text) = word.as_ref().filter(|word| word.contains(['\n', '='])) {
-            unchanged(changes)?;
-            let file = SceneFile::read(text, Some("scene")).map_err(named)?;
-            return Ok(Given { file, folder: folder_or(PathBuf::new()), name: None });
+        if let Some(text) = word.filter(|word| is_text(word)) {
+            let file = with(PathBuf::from("scene")).changed(&text).map_err(told)?;
+            return Ok(Given { file, folder: folder.unwrap_or_default(), name: None });
         }
-        if let Some(builtin) = word.as_ref().and_then(|name| Builtin::named(name)) {
-            let changes = changes.map_or(Ok(toml::Table::new()), |changes| table(changes, 0))?;
-            let file = builtin.changed(&changes).map_err(named)?;
-            return Ok(Given { file, folder: folder_or(PathBuf::new()), name: word });
-        }
-        unchanged(changes)?;
-        let path: PathBuf = scene.extract().map_err(|_| {
+        let mut path: PathBuf = scene.extract().map_err(|_| {
             PyTypeError::new_err(
                 "a scene is a dict, TOML text, the path of a scene file, or a built-in scene's name",
             )
         })?;
-        let file = from_file(&path).map_err(|error| refused(&error))?;
-        let own = path.parent().map(Path::to_path_buf).unwrap_or_default();
-        Ok(Given { file, folder: folder_or(own), name: Some(path.display().to_string()) })
+        if SceneSource::new(&path).is_standard_input() {
+            // Python's own standard input is not for us to read.
+            path = Path::new(".").join(path);
+        }
+        let source = with(path);
+        let file = source.resolve().map_err(told)?;
+        let folder = folder.unwrap_or_else(|| source.folder());
+        Ok(Given { file, folder, name: Some(source.name()) })
     }
 
     /// The validated scene, in which light comes to an end.
@@ -80,30 +75,13 @@ impl Given {
     }
 }
 
-fn unchanged(changes: Option<&Bound<'_, PyDict>>) -> PyResult<()> {
-    match changes {
-        Some(_) => Err(refuse("parameters are those of built-in scenes; allowed with other scenes: none")),
-        None => Ok(()),
-    }
-}
-
-fn from_file(path: &Path) -> anyhow::Result<SceneFile> {
-    let name = path.display().to_string();
-    if !path.exists() && path.extension().is_none() {
-        let list = BUILTIN.iter().map(|b| b.name).collect::<Vec<_>>().join(", ");
-        return Err(anyhow!(
-            "no such scene: `{name}` is neither a file nor built in; allowed: {list}, or the path of a scene file"
-        ));
-    }
-    let text = read_stream(path, MOST_BYTES).and_then(text);
-    let text = text.with_context(|| format!("cannot read {name}"))?;
-    let what = || format!("a scene file of {} bytes", text.len());
-    turbid::memory::check(what, IN_MEMORY * text.len() as f64).with_context(|| name.clone())?;
-    Ok(SceneFile::read(&text, Some(&name))?)
+/// Whether a word is TOML text, not a name.
+pub fn is_text(word: &str) -> bool {
+    word.contains(['\n', '='])
 }
 
 /// A dict as a table of TOML.
-fn table(dict: &Bound<'_, PyDict>, depth: u32) -> PyResult<toml::Table> {
+pub fn table(dict: &Bound<'_, PyDict>, depth: u32) -> PyResult<toml::Table> {
     let mut table = toml::Table::new();
     for (key, value) in dict {
         let Ok(key) = key.cast::<PyString>().map(|key| key.to_string()) else {

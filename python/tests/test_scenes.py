@@ -49,6 +49,10 @@ def test_every_form_gives_the_same_numbers(tmp_path):
     named = numbers("slab", parameters=dict(tau=1, albedo=0.5))
     assert named == numbers(turbid.scene("slab", tau=1, albedo=0.5)) != numbers("slab")
     assert named[0] != expected[0]
+    # Keys of a scene change as parameters do.
+    changed = {"regions.0.albedo": 0.5}
+    expected = numbers(FOG.replace("albedo = 0.9", "albedo = 0.5"))
+    assert expected == numbers(FOG, parameters=changed) == numbers(AS_DICT, parameters=changed) == numbers(file, parameters=changed)
 
 
 def test_files_of_a_scene_are_found(tmp_path, monkeypatch):
@@ -117,9 +121,10 @@ def test_wrong_dicts():
     assert "fits 64 bits" in told({"cell": 2**70})
     wrong = {**AS_DICT, "sensors": [{"name": "centre", "measure": {"fluence": {"at": [0, 0, 0, 0]}}}]}
     assert told(wrong) == "sensors.0.measure.fluence.at has 4 entries; allowed: 3"
-    assert told("slab", parameters=dict(tua=1)).startswith("unknown key `tua`; nearest: `tau`; allowed: albedo, ")
-    assert told("slab", parameters=dict(albedo=2)).startswith("albedo is 2; allowed: ")
-    assert told(AS_DICT, parameters=dict(tau=1)).startswith("parameters are those of built-in scenes")
+    assert told("slab", parameters=dict(tua=1)).startswith("tua=1: unknown key `tua`; nearest: `tau`; allowed: albedo, ")
+    assert told("slab", parameters=dict(albedo=2)).startswith("albedo=2: albedo is 2; allowed: ")
+    assert told(AS_DICT, parameters=dict(tau=1)).startswith("tau=1: unknown key `tau`; nearest: ")
+    assert told("-").startswith("no such scene: `./-` is neither a file nor built in")
     for wrong in (3, None, b"slab", ["slab"]):
         with pytest.raises(TypeError, match="a scene is a dict, TOML text, "):
             turbid.measure(wrong)

@@ -8,6 +8,7 @@ runs beside Python: Ctrl-C ends it, and the same seed gives the same numbers on 
 * :func:`measure`: the sensors of a scene, by paths, photons or light tracing, each number with its standard error
 * :func:`render`: a picture with its layers and variances
 * :func:`photons`: the photons themselves
+* :func:`study`: what error photon maps make in a scene, and which settings reach a target the cheapest
 """
 
 from __future__ import annotations
@@ -18,7 +19,16 @@ from typing import Any, Mapping, NamedTuple, Optional, Sequence, Union
 import numpy as np
 
 from . import _turbid, exact
+from ._arguments import (
+    count as _count,
+    optional_count as _optional_count,
+    optional_real as _optional_real,
+    real as _real,
+    seed as _seed,
+    threads as _threads,
+)
 from ._progress import Progress, told
+from ._study import Study, study
 from ._turbid import Error, __version__
 
 __all__ = [
@@ -29,43 +39,18 @@ __all__ = [
     "Picture",
     "PHOTON",
     "PHOTON_CLASSES",
+    "Study",
     "builtin",
     "exact",
     "measure",
     "photons",
     "render",
     "scene",
+    "study",
 ]
 
 Scene = Union[Mapping[str, Any], str, "os.PathLike[str]"]
 Orders = Union[None, int, str, Sequence[Optional[int]]]
-
-
-def _count(name: str, value: Any, least: int = 1, most: int = 9_000_000_000_000_000) -> int:
-    """A whole number, also written 1e6."""
-    try:
-        count = int(value)
-        is_whole = count == value and not isinstance(value, bool)
-    except (TypeError, ValueError, OverflowError):
-        is_whole = False
-    if not is_whole or not least <= count <= most:
-        raise Error(f"{name} is {value!r}; allowed: whole numbers from {least} to {most}")
-    return count
-
-
-def _optional_count(name: str, value: Any, least: int, most: int) -> Optional[int]:
-    return None if value is None else _count(name, value, least, most)
-
-
-def _real(name: str, value: Any) -> float:
-    try:
-        return float(value)
-    except (TypeError, ValueError, OverflowError):
-        raise Error(f"{name} is {value!r}; allowed: a number") from None
-
-
-def _optional_real(name: str, value: Any) -> Optional[float]:
-    return None if value is None else _real(name, value)
 
 
 def _orders(given: Orders) -> tuple[int, Optional[int]]:
@@ -89,14 +74,6 @@ def _orders(given: Orders) -> tuple[int, Optional[int]]:
             "(both ends included), up to 65534"
         )
     return int(pair[0]), None if pair[1] is None else int(pair[1])
-
-
-def _threads(threads: Any) -> Optional[int]:
-    return _optional_count("threads", threads, 1, 1024)
-
-
-def _seed(seed: Any) -> int:
-    return _count("seed", seed, 0, 2**64 - 1)
 
 
 def _folder(folder: Optional[Union[str, "os.PathLike[str]"]]) -> Optional[str]:
@@ -211,7 +188,8 @@ def measure(
     ----------
     scene : a dict, TOML text, the path of a scene file, or the name of a built-in scene
     with_ : "paths" (unbiased), "photons" (tallies and photon maps) or "light" (photons scored as they pass)
-    parameters : parameters of a built-in scene, such as ``dict(tau=1, albedo=0.9)``; see :func:`builtin`
+    parameters : parameters of a built-in scene, such as ``dict(tau=1, albedo=0.9)`` (see :func:`builtin`), or keys of another
+        scene with values in their place, such as ``{"regions.0.albedo": 0.5}``
     folder : where files that the scene names are; that of the scene file, or the current one
     samples : paths a sensor, or a bin of one
     photons : photons emitted, for all maps together

@@ -3,6 +3,7 @@
 from typing import Any, Callable, Optional
 
 __version__: str
+__file__: str
 
 class Error(ValueError):
     """A request that was refused: what is wrong, and what is allowed."""
@@ -49,3 +50,4 @@ def photons(
     threads: Optional[int],
     progress: _Progress,
 ) -> bytearray: ...
+def study(study: Any, options: dict[str, Any], progress: _Progress) -> tuple[Optional[str], list[str], int]: ...

@@ -1,6 +1,5 @@
-//! Scenes from text, or by the name of a built-in one: what is wrong with them is said in one line.
+//! Scenes from text: what is wrong with them is said in one line.
 
-use super::builtin::{BUILTIN, Builtin};
 use super::file::SceneFile;
 use crate::error::{Error, Result};
 use crate::input::is_inside;
@@ -55,32 +54,6 @@ fn check_confined(value: &toml::Value, folder: &Path) -> Result<()> {
         }),
         toml::Value::Array(values) => values.iter().try_for_each(|value| check_confined(value, folder)),
         _ => Ok(()),
-    }
-}
-
-impl Builtin {
-    /// The built-in scene of this name.
-    pub fn named(name: &str) -> Option<Builtin> {
-        BUILTIN.into_iter().find(|builtin| builtin.name == name)
-    }
-
-    /// The scene file that follows from the defaults with these changes, all made before any is checked.
-    ///
-    /// # Errors
-    /// `Error::Scene` for a parameter that there is not, or a value that it cannot have; those of the scene
-    pub fn changed(&self, changes: &toml::Table) -> Result<SceneFile> {
-        let told = |text: &str, error: &toml::de::Error| Error::Scene(say(text, error));
-        let mut table: toml::Table =
-            toml::from_str(self.defaults).map_err(|error| told(self.defaults, &error))?;
-        for (key, value) in changes {
-            if !table.contains_key(key) {
-                let known: Vec<&str> = table.keys().map(String::as_str).collect();
-                return Err(Error::Scene(unknown("key", key, &known)));
-            }
-            table.insert(key.clone(), value.clone());
-        }
-        let text = toml::to_string(&table).map_err(|error| Error::Scene(error.to_string()))?;
-        (self.resolve)(&text).map_err(|error| told(&text, &error))?
     }
 }
 
@@ -180,17 +153,5 @@ mod tests {
         assert!(wrong.contains("fog.toml:3:1: unknown key `sigma_z`; nearest: `sigma_"), "{wrong}");
         let wrong = told(&FOG.replace("[0, 0, 0], radius", "[0, 0, 0, 1], radius"), Some("fog.toml"));
         assert_eq!(wrong, "fog.toml: regions.0.shape.sphere.center has 4 entries; allowed: 3");
-    }
-
-    #[test]
-    fn parameters_of_built_in_scenes_are_checked_together() {
-        let slab = Builtin::named("slab").unwrap();
-        let changed = |text: &str| slab.changed(&toml::from_str(text).unwrap());
-        assert_eq!(changed(""), Ok((slab.resolve)(slab.defaults).unwrap().unwrap()));
-        assert_ne!(changed("tau = 1"), changed(""));
-        let told = |text: &str| changed(text).unwrap_err().to_string();
-        assert!(told("albedo = 2").starts_with("albedo is 2"));
-        assert!(told("tua = 2").starts_with("unknown key `tua`; nearest: `tau`; allowed: albedo, "));
-        assert!(Builtin::named("slap").is_none());
     }
 }

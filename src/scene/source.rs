@@ -5,14 +5,33 @@ use super::read::{say, unknown};
 use super::{Scene, SceneFile};
 use crate::error::{Error, Result};
 use crate::input::{read_all, read_stream, text};
-use std::fmt::Display;
+use std::fmt::{self, Display};
 use std::path::{Path, PathBuf};
 
 /// A scene by its file or by its name, and what to change in it.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SceneSource {
     scene: PathBuf,
-    sets: Vec<(String, toml::Value)>,
+    changes: Vec<Change>,
+}
+
+/// A value that is changed.
+#[derive(Debug, Clone, PartialEq)]
+struct Change {
+    key: String,
+    value: toml::Value,
+    /// Whether the command line said so.
+    is_set: bool,
+}
+
+impl fmt::Display for Change {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let option = if self.is_set { "--set " } else { "" };
+        match &self.value {
+            toml::Value::String(word) => write!(f, "{option}{}={word}", self.key),
+            other => write!(f, "{option}{}={other}", self.key),
+        }
+    }
 }
 
 /// Larger scene files are refused.
@@ -33,13 +52,13 @@ fn met_in(what: impl Display, error: impl Display) -> Error {
 impl SceneSource {
     /// A built-in scene by its name, the path of a scene file, or `-` for one on standard input.
     pub fn new(scene: impl Into<PathBuf>) -> Self {
-        SceneSource { scene: scene.into(), sets: Vec::new() }
+        SceneSource { scene: scene.into(), changes: Vec::new() }
     }
 
     /// The same with a value changed: `albedo` of a built-in scene, `regions.0.albedo` of a file.
     #[must_use]
     pub fn with(mut self, key: impl Into<String>, value: toml::Value) -> Self {
-        self.sets.push((key.into(), value));
+        self.changes.push(Change { key: key.into(), value, is_set: false });
         self
     }
 
@@ -47,9 +66,10 @@ impl SceneSource {
     ///
     /// # Errors
     /// `Error::Scene` for what is no `KEY=VALUE`
-    pub fn with_set(self, set: &str) -> Result<Self> {
+    pub fn with_set(mut self, set: &str) -> Result<Self> {
         let (key, value) = split(set)?;
-        Ok(self.with(key, value))
+        self.changes.push(Change { key: key.to_string(), value, is_set: true });
+        Ok(self)
     }
 
     /// What messages call it.
@@ -101,21 +121,13 @@ impl SceneSource {
     }
 
     fn resolve_builtin(&self, builtin: &Builtin) -> Result<SceneFile> {
-        let mut text = builtin.defaults.to_string();
-        let defaults = |error: toml::de::Error| met_in("built-in defaults", say(&text, &error));
-        let mut table: toml::Table = toml::from_str(&text).map_err(defaults)?;
-        for (key, value) in &self.sets {
-            let set = || shown(key, value);
-            if !table.contains_key(key) {
-                let known = table.keys().map(String::as_str).collect::<Vec<_>>();
-                return Err(met_in(set(), unknown("key", key, &known)));
-            }
-            table.insert(key.clone(), value.clone());
-            text = written(&table)?;
-            let checked = (builtin.resolve)(&text).map_err(|e| met_in(set(), say(&text, &e)))?;
-            checked.map_err(|e| met_in(set(), e))?;
-        }
-        (builtin.resolve)(&text).map_err(|e| refused(say(&text, &e)))?
+        let defaults = |error| met_in("built-in defaults", say(builtin.defaults, &error));
+        let table: toml::Table = toml::from_str(builtin.defaults).map_err(defaults)?;
+        let read = |root: &toml::Value| {
+            let text = written(root)?;
+            (builtin.resolve)(&text).map_err(|error| refused(say(&text, &error)))?
+        };
+        self.made_in(&toml::Value::Table(table), false, read)
     }
 
     fn resolve_file(&self) -> Result<SceneFile> {
@@ -142,23 +154,39 @@ impl SceneSource {
     /// # Errors
     /// As [`SceneSource::scene`]
     pub fn changed(&self, text: &str) -> Result<SceneFile> {
-        let mut file = SceneFile::read(text, Some(&self.name()))?;
-        let table = toml::from_str(text).map_err(|error| met_in(self.name(), error))?;
-        let mut root = toml::Value::Table(table);
-        for (key, value) in &self.sets {
-            let set = || shown(key, value);
-            *slot(&mut root, key).map_err(|error| met_in(set(), error))? = value.clone();
-            file = SceneFile::read(&written(&root)?, None).map_err(|error| met_in(set(), error))?;
+        let file = SceneFile::read(text, Some(&self.name()))?;
+        if self.changes.is_empty() {
+            return Ok(file);
         }
-        Ok(file)
+        let root = toml::from_str(text).map_err(|error| met_in(self.name(), error))?;
+        self.made_in(&toml::Value::Table(root), true, |root| SceneFile::read(&written(root)?, None))
     }
-}
 
-/// A change as the command line writes it.
-fn shown(key: &str, value: &toml::Value) -> String {
-    match value {
-        toml::Value::String(word) => format!("--set {key}={word}"),
-        other => format!("--set {key}={other}"),
+    /// The scene file with every change made before any is checked: some are allowed together alone. What is wrong is told of the
+    /// first change with which it is.
+    fn made_in(
+        &self,
+        start: &toml::Value,
+        may_be_new: bool,
+        read: impl Fn(&toml::Value) -> Result<SceneFile>,
+    ) -> Result<SceneFile> {
+        let mut root = start.clone();
+        for change in &self.changes {
+            let place = slot(&mut root, &change.key, may_be_new).map_err(|error| met_in(change, error))?;
+            *place = change.value.clone();
+        }
+        read(&root).map_err(|whole| {
+            let mut root = start.clone();
+            for change in &self.changes {
+                if let Ok(place) = slot(&mut root, &change.key, may_be_new) {
+                    *place = change.value.clone();
+                }
+                if let Err(error) = read(&root) {
+                    return met_in(change, error);
+                }
+            }
+            whole
+        })
     }
 }
 
@@ -186,12 +214,12 @@ fn split(set: &str) -> Result<(&str, toml::Value)> {
     }
 }
 
-/// The place of a dotted key, where numbers count list entries from 0. Only the last part may be new.
-fn slot<'a>(place: &'a mut toml::Value, key: &str) -> Result<&'a mut toml::Value> {
+/// The place of a dotted key, where numbers count list entries from 0. Only the last part may be new, if any.
+fn slot<'a>(place: &'a mut toml::Value, key: &str, may_be_new: bool) -> Result<&'a mut toml::Value> {
     let (part, rest) = key.split_once('.').map_or((key, None), |(part, rest)| (part, Some(rest)));
     let inner = match place {
         toml::Value::Table(table) => {
-            if rest.is_some() && !table.contains_key(part) {
+            if (rest.is_some() || !may_be_new) && !table.contains_key(part) {
                 let known = table.keys().map(String::as_str).collect::<Vec<_>>();
                 return Err(refused(unknown("key", part, &known)));
             }
@@ -208,7 +236,7 @@ fn slot<'a>(place: &'a mut toml::Value, key: &str) -> Result<&'a mut toml::Value
         other => return Err(refused(format!("`{part}` is inside `{other}`, which has no parts"))),
     };
     match rest {
-        Some(rest) => slot(inner, rest),
+        Some(rest) => slot(inner, rest, may_be_new),
         None => Ok(inner),
     }
 }
@@ -216,4 +244,52 @@ fn slot<'a>(place: &'a mut toml::Value, key: &str) -> Result<&'a mut toml::Value
 fn unknown_scene(name: &str) -> String {
     let list = BUILTIN.iter().map(|b| b.name).collect::<Vec<_>>().join(", ");
     format!("`{name}` is neither a file nor built in; allowed: {list}, or the path of a scene file")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn parameters_of_built_in_scenes_are_checked_together() {
+        let slab = BUILTIN.iter().find(|builtin| builtin.name == "slab").unwrap();
+        let changed = |changes: &[(&str, f64)]| {
+            let with = |source: SceneSource, (key, value): &(&str, f64)| source.with(*key, (*value).into());
+            changes.iter().fold(SceneSource::new("slab"), with).resolve()
+        };
+        assert_eq!(changed(&[]), (slab.resolve)(slab.defaults).unwrap());
+        assert_ne!(changed(&[("tau", 1.0)]), changed(&[]));
+        let told = |changes: &[(&str, f64)]| changed(changes).unwrap_err().to_string();
+        assert!(told(&[("albedo", 2.0)]).starts_with("albedo=2.0: albedo is 2"));
+        assert!(told(&[("tau", 1.0), ("albedo", 2.0), ("g", 0.0)]).starts_with("albedo=2.0: albedo is 2"));
+        let wrong = told(&[("tua", 2.0)]);
+        assert!(
+            wrong.starts_with("tua=2.0: unknown key `tua`; nearest: `tau`; allowed: albedo, "),
+            "{wrong}"
+        );
+        // The depth of a probe is at most tau, whichever of the two is named first.
+        let deep = SceneSource::new("shaft").with("depth", 9.0.into());
+        assert!(
+            deep.resolve()
+                .unwrap_err()
+                .to_string()
+                .starts_with("depth=9.0: depth is 9; allowed: at most tau")
+        );
+        assert!(deep.with("tau", 10.0.into()).resolve().is_ok());
+        let set = SceneSource::new("slab").with_set("albedo=2").unwrap().resolve().unwrap_err().to_string();
+        assert!(set.starts_with("--set albedo=2: albedo is 2"), "{set}");
+    }
+
+    #[test]
+    fn changes_of_a_file_are_checked_together() {
+        let text = "[[regions]]\nshape = { sphere = { center = [0, 0, 0], radius = 1.0 } }\nsigma_t = 1.0\nalbedo = 0.5\n\
+                    [[lights]]\npoint = { position = [0, 0, 0], power = 1.0 }\n";
+        let wrong = SceneSource::new("fog.toml").with("regions.0.albedo", 2.into());
+        let told = |source: &SceneSource| source.changed(text).unwrap_err().to_string();
+        assert!(told(&wrong).starts_with("regions.0.albedo=2: albedo is 2"), "{}", told(&wrong));
+        let later = wrong.clone().with("regions.0.g", 0.5.into());
+        assert!(told(&later).starts_with("regions.0.albedo=2: albedo is 2"), "{}", told(&later));
+        assert!(told(&later.with("regions.7.g", 0.5.into())).starts_with("regions.7.g=0.5: `7` is no entry"));
+        assert!(wrong.with("regions.0.albedo", 0.25.into()).changed(text).is_ok());
+    }
 }

@@ -3,6 +3,7 @@
 use anyhow::Context;
 use std::fmt;
 use std::io::Read;
+use std::path::Path;
 
 /// FNV-1a of 128 bits.
 ///
@@ -29,6 +30,23 @@ impl Digest {
         Digest::EMPTY.with(bytes)
     }
 
+    /// The digest of a file's bytes.
+    ///
+    /// # Errors
+    /// If it cannot be read.
+    pub fn of_file(path: &Path) -> std::io::Result<Self> {
+        let mut file = std::fs::File::open(path)?;
+        let mut digest = Digest::EMPTY;
+        let mut buffer = vec![0; 1 << 16];
+        loop {
+            let count = file.read(&mut buffer)?;
+            if count == 0 {
+                return Ok(digest);
+            }
+            digest = digest.with(&buffer[..count]);
+        }
+    }
+
     /// Its low 64 bits.
     pub fn word(self) -> u64 {
         self.0 as u64
@@ -47,16 +65,7 @@ impl fmt::Display for Digest {
 /// If the system does not say where the program is, or it cannot be read.
 pub fn program_digest() -> anyhow::Result<Digest> {
     let path = std::env::current_exe().context("cannot find the running program")?;
-    let mut file = std::fs::File::open(&path).context("cannot read the running program")?;
-    let mut digest = Digest::EMPTY;
-    let mut buffer = vec![0; 1 << 16];
-    loop {
-        let count = file.read(&mut buffer).context("cannot read the running program")?;
-        if count == 0 {
-            return Ok(digest);
-        }
-        digest = digest.with(&buffer[..count]);
-    }
+    Digest::of_file(&path).context("cannot read the running program")
 }
 
 #[cfg(test)]

@@ -1,8 +1,7 @@
 //! One study at a time in a folder.
 
-use super::Share;
 use super::outputs::check_plain;
-use super::progress::say;
+use super::{Share, Watch};
 use anyhow::{Context, bail};
 use std::fs::{File, TryLockError};
 use std::path::Path;
@@ -31,7 +30,7 @@ impl Drop for Held {
 ///
 /// # Errors
 /// If another study holds it, or the folder cannot be written to
-pub(super) fn hold(folder: &Path, part: Option<Share>) -> anyhow::Result<Held> {
+pub(super) fn hold(folder: &Path, part: Option<Share>, watch: &dyn Watch) -> anyhow::Result<Held> {
     std::fs::create_dir_all(folder).with_context(|| format!("cannot create {}", folder.display()))?;
     let path = folder.join(file(part));
     check_plain(&path)?;
@@ -45,7 +44,7 @@ pub(super) fn hold(folder: &Path, part: Option<Share>) -> anyhow::Result<Held> {
             )
         }
         // Some network drives have no locks.
-        Err(TryLockError::Error(error)) => say(&format!(
+        Err(TryLockError::Error(error)) => watch.say(&format!(
             "{} cannot be locked ({error}): start no second study there before this one ends.",
             folder.display()
         )),
@@ -56,15 +55,17 @@ pub(super) fn hold(folder: &Path, part: Option<Share>) -> anyhow::Result<Held> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::harness::Terminal;
 
     /// As a process that another thread starts just then has one.
     #[test]
     fn a_copy_of_the_file_holds_nothing() {
         let folder = tempfile::tempdir().unwrap();
-        let held = hold(folder.path(), None).unwrap();
-        assert!(hold(folder.path(), None).is_err());
+        let hold = |folder: &Path| hold(folder, None, &Terminal::default());
+        let held = hold(folder.path()).unwrap();
+        assert!(hold(folder.path()).is_err());
         let _copy = held.0.try_clone().unwrap();
         drop(held);
-        assert!(hold(folder.path(), None).is_ok());
+        assert!(hold(folder.path()).is_ok());
     }
 }

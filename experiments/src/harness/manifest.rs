@@ -1,9 +1,8 @@
 //! What the cells of a folder belong to.
 
-use super::Settings;
 use super::cell::{self, FORMAT};
 use super::outputs::{MOST_NOTES, read_if_there};
-use super::progress::say;
+use super::{Settings, Watch};
 use anyhow::Context;
 use serde::{Deserialize, Serialize};
 use std::path::Path;
@@ -31,7 +30,12 @@ impl Manifest {
     }
 
     /// Prepares the folder: forgets its cells if asked to, says which cells are not reused, writes the manifest.
-    pub(super) fn prepare(&self, folder: &Path, settings: &Settings) -> anyhow::Result<()> {
+    pub(super) fn prepare(
+        &self,
+        folder: &Path,
+        settings: &Settings,
+        watch: &dyn Watch,
+    ) -> anyhow::Result<()> {
         let path = folder.join(FILE);
         let earlier =
             read_if_there(&path, MOST_NOTES)?.map(|bytes| serde_json::from_slice::<Manifest>(&bytes).ok());
@@ -44,7 +48,7 @@ impl Manifest {
                 std::fs::remove_dir_all(&own).with_context(|| format!("cannot empty {}", own.display()))?;
             }
         } else if let Some(reason) = earlier.flatten().and_then(|earlier| self.refusal(&earlier, settings)) {
-            say(&reason);
+            watch.say(&reason);
         }
         std::fs::create_dir_all(folder).with_context(|| format!("cannot create {}", folder.display()))?;
         write_atomically(&path, |out| write_json(out, self))?;

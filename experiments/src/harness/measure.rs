@@ -4,8 +4,7 @@ use super::cell::{self, CellOutput, FORMAT, Header};
 use super::group::Measure;
 use super::manifest::Manifest;
 use super::panics::caught;
-use super::progress::Progress;
-use super::{CellId, Experiment, Settings};
+use super::{CellId, Experiment, Settings, Watch};
 use anyhow::{Context, anyhow};
 use cpu_time::ThreadTime;
 use std::collections::BTreeMap;
@@ -47,11 +46,12 @@ enum Failure {
 /// is begun; cells in work are finished and kept.
 ///
 /// # Errors
-/// If a cell cannot be written
+/// If a cell cannot be written; `turbid::Error::Cancelled` if the watch says so
 pub(super) fn measure(
     mut tasks: Vec<Task>,
     manifest: &Manifest,
     settings: &Settings,
+    watch: &dyn Watch,
 ) -> anyhow::Result<Done> {
     if tasks.is_empty() {
         return Ok(Done::default());
@@ -61,19 +61,26 @@ pub(super) fn measure(
         .num_threads(settings.threads)
         .build()
         .context("cannot start threads")?;
-    let progress = Progress::new(tasks.len(), tasks.iter().map(|t| t.cell.cost).sum());
+    let total: f64 = tasks.iter().map(|t| t.cell.cost).sum();
+    let advance = |task: &Task| watch.advance(if total > 0.0 { task.cell.cost / total } else { 0.0 });
+    watch.begin(tasks.len());
     let next = AtomicUsize::new(0);
     let done = Mutex::new((Done::default(), None));
     let lost = || anyhow!("a thread that measures failed");
     pool.broadcast(|_| {
         while let Some(task) = tasks.get(next.fetch_add(1, Ordering::Relaxed)) {
+            if watch.is_cancelled() {
+                let Ok(mut done) = done.lock() else { return };
+                done.1.get_or_insert_with(|| turbid::Error::Cancelled.into());
+                return;
+            }
             let name = task.experiment.name;
             if done.lock().is_ok_and(|done| done.0.failures.contains_key(name)) {
-                progress.advance(task.cell.cost);
+                advance(task);
                 continue;
             }
             let outcome = measure_one(task, manifest, settings);
-            progress.advance(task.cell.cost);
+            advance(task);
             let Ok(mut done) = done.lock() else { return };
             match outcome {
                 Ok(()) => done.0.measured += 1,
@@ -87,7 +94,7 @@ pub(super) fn measure(
             }
         }
     });
-    progress.finish();
+    watch.finish();
     match done.into_inner().map_err(|_| lost())? {
         (_, Some(error)) => Err(error),
         (done, None) => Ok(done),

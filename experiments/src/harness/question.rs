@@ -28,11 +28,22 @@ impl Question {
     /// # Errors
     /// What cannot be read, and why
     pub fn read(path: &Path) -> anyhow::Result<Self> {
-        let read = |path: &Path, most| {
-            turbid::input::read(path, most).with_context(|| format!("cannot read {}", path.display()))
-        };
-        let bytes = read(path, MOST_BYTES)?;
-        let text = turbid::input::text(bytes).with_context(|| path.display().to_string())?;
+        let text =
+            turbid::input::text(read(path, MOST_BYTES)?).with_context(|| path.display().to_string())?;
+        Question::of(path, text)
+    }
+
+    /// The text of a study file, which need not be there: its folder is where the files are that it names.
+    ///
+    /// # Errors
+    /// A text that is too long, and files that cannot be read
+    pub fn of(path: &Path, text: String) -> anyhow::Result<Self> {
+        ensure!(
+            text.len() as u64 <= MOST_BYTES,
+            "{} has {} bytes; allowed: up to {MOST_BYTES}",
+            path.display(),
+            text.len()
+        );
         let table: toml::Table = toml::from_str(&text).unwrap_or_default();
         let folder = path.parent().unwrap_or(Path::new(""));
         let mut parts = vec![text.as_bytes().to_vec()];
@@ -60,6 +71,10 @@ impl Question {
     pub fn stem(&self) -> String {
         stem(&self.path)
     }
+}
+
+fn read(path: &Path, most: u64) -> anyhow::Result<Vec<u8>> {
+    turbid::input::read(path, most).with_context(|| format!("cannot read {}", path.display()))
 }
 
 /// The name of a file without its ending, in characters that any folder may have.
@@ -98,6 +113,10 @@ mod tests {
         let first = read();
         assert_eq!((first.title.as_deref(), first.stem().as_str()), (Some("T"), "study"));
         assert_eq!(read(), first);
+        let path = folder.path().join("study.toml");
+        assert_eq!(Question::of(&path, std::fs::read_to_string(&path).unwrap()).unwrap(), first);
+        let long = Question::of(&path, " ".repeat(MOST_BYTES as usize + 1)).unwrap_err();
+        assert!(long.to_string().ends_with("allowed: up to 1048576"), "{long}");
         write("a.ply", "ply2");
         let second = read();
         assert_ne!(second.digest, first.digest);

@@ -2,7 +2,7 @@
 
 use super::lock;
 use super::outputs::write_if_changed;
-use super::{FigureFiles, Replot, Settings};
+use super::{FigureFiles, Replot, Settings, Terminal};
 use crate::report;
 use anyhow::{Context, bail};
 use rayon::prelude::*;
@@ -29,8 +29,11 @@ struct Redrawn {
 pub fn replot(settings: &Settings, what: &Replot) -> anyhow::Result<String> {
     let folder = settings.out.join("figures");
     // A table alone is drawn beside itself, wherever that is; a study's figures and report are that study's while it runs.
-    let _held =
-        if what.files.is_empty() && folder.is_dir() { Some(lock::hold(&settings.out, None)?) } else { None };
+    let _held = if what.files.is_empty() && folder.is_dir() {
+        Some(lock::hold(&settings.out, None, &Terminal::default())?)
+    } else {
+        None
+    };
     let tables = if what.files.is_empty() { tables(&folder, &settings.only)? } else { what.files.clone() };
     let redrawn: Vec<Redrawn> = tables.into_par_iter().map(redraw).collect::<anyhow::Result<_>>()?;
     let own_report = settings.out.join("report.html");

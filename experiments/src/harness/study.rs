@@ -10,10 +10,9 @@ use super::outputs::{
 };
 use super::panics::caught;
 use super::program::{on_threads, program};
-use super::progress::say;
 use super::{
-    CellId, Cells, Claim, Experiment, Outcome, Provenance, Question, Section, SectionReport, Settings, judge,
-    number, program_digest, replot,
+    CellId, Cells, Claim, Experiment, Outcome, Provenance, Question, Section, SectionReport, Settings,
+    Terminal, Watch, judge, number, program_digest, replot,
 };
 use crate::prediction::Prediction;
 use crate::report;
@@ -95,6 +94,49 @@ pub struct Asked {
     pub dry_run: fn(&Settings) -> anyhow::Result<String>,
 }
 
+/// What a file of the user's comes to.
+pub enum Findings {
+    /// What the study will take, in words: a dry run.
+    Forecast(String),
+    /// What was measured, and what follows unless it was a part.
+    Outcome(Outcome),
+}
+
+impl Asked {
+    /// Puts the experiment to a file of the user's.
+    ///
+    /// # Arguments
+    /// `name` of the study; `program` digest of the program: cells of another are not reused
+    ///
+    /// # Errors
+    /// A file that cannot be studied, before anything is written; those of [`run`]; an experiment without a conclusion
+    pub fn study(
+        &self,
+        name: &str,
+        question: Question,
+        settings: &Settings,
+        program: String,
+        watch: &dyn Watch,
+    ) -> anyhow::Result<Findings> {
+        let path = question.path.clone();
+        let settings = &Settings {
+            question_file: Some(path.clone()),
+            question: Some(Arc::new(question)),
+            ..settings.clone()
+        };
+        on_threads(None, || (self.check)(settings))?;
+        if settings.dry_run {
+            return on_threads(None, || (self.dry_run)(settings)).map(Findings::Forecast);
+        }
+        let study = Study { name, experiments: &[self.experiment], closings: &[], program };
+        let outcome = run_watched(&study, settings, watch)?;
+        match outcome.sections.iter().find_map(|section| section.failure.as_ref()) {
+            Some(failure) => bail!("{}: {failure}", path.display()),
+            None => Ok(Findings::Outcome(outcome)),
+        }
+    }
+}
+
 /// The main function of an experiment's binary: arguments, study, summary, exit code.
 pub fn main(name: &'static str, experiments: &[Experiment]) -> ExitCode {
     main_with(name, experiments, &[], None)
@@ -132,20 +174,14 @@ pub fn main_with(
                             file.display()
                         )
                     })?;
-                    let question = Some(Arc::new(Question::read(file)?));
-                    let settings = &Settings { question, ..settings.clone() };
-                    on_threads(None, || (asked.check)(settings))?;
-                    if settings.dry_run {
-                        let text = on_threads(None, || (asked.dry_run)(settings))?;
-                        print(|out| out.write_all(text.as_bytes()))?;
-                        return Ok(0);
+                    let question = Question::read(file)?;
+                    match asked.study(name, question, settings, program, &Terminal::default())? {
+                        Findings::Forecast(text) => {
+                            print(|out| out.write_all(text.as_bytes()))?;
+                            return Ok(0);
+                        }
+                        Findings::Outcome(outcome) => outcome,
                     }
-                    let study = Study { name, experiments: &[asked.experiment], closings: &[], program };
-                    let outcome = run(&study, settings)?;
-                    if let Some(failure) = outcome.sections.iter().find_map(|s| s.failure.as_ref()) {
-                        bail!("{}: {failure}", file.display());
-                    }
-                    outcome
                 }
             };
             if let Some(part) = settings.part {
@@ -172,8 +208,16 @@ pub fn main_with(
 /// A folder that is another study's or cannot be written, an experiment that is not there; finished cells stay, and the next
 /// run goes on from there.
 pub fn run(study: &Study, settings: &Settings) -> anyhow::Result<Outcome> {
+    run_watched(study, settings, &Terminal::default())
+}
+
+/// The same under the eyes of someone who may end it.
+///
+/// # Errors
+/// Those of [`run`]; `turbid::Error::Cancelled` if it was ended
+pub fn run_watched(study: &Study, settings: &Settings, watch: &dyn Watch) -> anyhow::Result<Outcome> {
     let experiments = selected(study.experiments, &settings.only)?;
-    let _held = lock::hold(&settings.out, settings.part)?;
+    let _held = lock::hold(&settings.out, settings.part, watch)?;
     let planned: Vec<anyhow::Result<Vec<(CellId, Measure)>>> =
         experiments.iter().map(|experiment| whole(|| plan(experiment, settings))).collect();
     check_memory(planned.iter().flatten().flatten().map(|(cell, _)| cell.held).max().unwrap_or(0), settings)?;
@@ -193,7 +237,7 @@ pub fn run(study: &Study, settings: &Settings) -> anyhow::Result<Outcome> {
     check_folder(&settings.out.join("figures"), &["figure.svg"])?;
     let cells_folder = settings.out.join("cells");
     let manifest = Manifest::new(settings, &study.program);
-    manifest.prepare(&cells_folder, settings)?;
+    manifest.prepare(&cells_folder, settings, watch)?;
 
     if !settings.merge.is_empty() {
         let planned = experiments.iter().zip(&planned);
@@ -239,7 +283,7 @@ pub fn run(study: &Study, settings: &Settings) -> anyhow::Result<Outcome> {
     }
     let (total, missing) = (sets.iter().map(Vec::len).sum(), tasks.len());
     write_if_changed(&settings.out.join("predictions.csv"), &prediction_table(&experiments, &predictions)?)?;
-    say(&opening(study.name, settings, total, missing, predictions.iter().map(Vec::len).sum()));
+    watch.say(&opening(study.name, settings, total, missing, predictions.iter().map(Vec::len).sum()));
 
     if !settings.merge.is_empty() && missing > 0 {
         let names: Vec<String> =
@@ -250,7 +294,7 @@ pub fn run(study: &Study, settings: &Settings) -> anyhow::Result<Outcome> {
         );
     }
     let start = Instant::now();
-    let done = measure(tasks, &manifest, settings)?;
+    let done = measure(tasks, &manifest, settings, watch)?;
     let wall_seconds = start.elapsed().as_secs_f64();
     if settings.part.is_some() {
         if let Some((experiment, failure)) = done.failures.iter().next() {

@@ -13,8 +13,8 @@ pub struct StudyFile {
     /// Heading of the report, which the report reads.
     #[serde(default, rename = "title")]
     _title: Option<String>,
-    /// A scene file, relative to the study's, or a built-in scene.
-    pub scene: String,
+    /// The scene.
+    pub scene: StudyScene,
     /// Keys of the scene with the values that each takes; every combination is studied.
     #[serde(default)]
     pub axes: BTreeMap<String, Vec<toml::Value>>,
@@ -35,6 +35,30 @@ pub struct StudyFile {
     /// What the maps are compared with.
     #[serde(default)]
     pub reference: ReferenceFile,
+}
+
+/// The scene of a study.
+#[derive(Debug, Clone, PartialEq, Deserialize)]
+#[serde(try_from = "toml::Value")]
+pub enum StudyScene {
+    /// A scene file, relative to the study's, or a built-in scene.
+    Name(String),
+    /// What a scene file would hold.
+    Table(toml::Table),
+}
+
+impl TryFrom<toml::Value> for StudyScene {
+    type Error = String;
+    fn try_from(value: toml::Value) -> Result<Self, String> {
+        match value {
+            // Standard input is no file of the study's, and is read only once.
+            toml::Value::String(name) if name != "-" => Ok(StudyScene::Name(name)),
+            toml::Value::Table(table) => Ok(StudyScene::Table(table)),
+            other => Err(format!(
+                "scene is {other}; allowed: a scene file, a built-in scene, or the scene itself as a table"
+            )),
+        }
+    }
 }
 
 fn everything() -> MeasureFile {
@@ -393,6 +417,13 @@ mod tests {
                 .starts_with("a.toml:3:1: unknown field `photon`")
         );
         assert!(refused("scene = 'slab'\nphotons = [0.5]\n").contains("a.toml:2"));
+        for scene in ["'-'", "3", "[]"] {
+            let text = refused(&format!("scene = {scene}\nphotons = [1e4]\n"));
+            assert!(
+                text.starts_with("a.toml:1:9: scene is ") && text.contains("; allowed: a scene file"),
+                "{text}"
+            );
+        }
         assert!(refused("scene = 'slab'\nphotons = []\n").contains("photons is empty"));
         assert!(refused("scene = 'slab'\nphotons = [1e4]\nmaps = 2\n").contains("maps is 2"));
         assert!(refused("scene = 'slab'\nphotons = [1e4]\ntarget = nan\n").contains("target is NaN"));

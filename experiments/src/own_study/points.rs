@@ -1,6 +1,6 @@
 //! The scenes of a study: one a combination of the values of its axes, each with what is measured in it.
 
-use super::file::{MeasureFile, StudyFile};
+use super::file::{MeasureFile, StudyFile, StudyScene};
 use super::picture::Picture;
 use super::place::Place;
 use crate::harness::Unit;
@@ -12,7 +12,7 @@ use turbid::estimators::Estimator;
 use turbid::integrators::mapper::scene_size;
 use turbid::output::one_line;
 use turbid::photons::check_end;
-use turbid::scene::{BUILTIN, Binned, Quantity, QuantityFile, Scene, SceneSource, SensorFile};
+use turbid::scene::{BUILTIN, Binned, Quantity, QuantityFile, Scene, SceneFile, SceneSource, SensorFile};
 use turbid::sensor::{SensorMaps, usual_reach};
 
 /// One scene of a study.
@@ -70,13 +70,17 @@ fn number(value: &toml::Value) -> Option<f64> {
 }
 
 fn point(study: &StudyFile, folder: &Path, number: usize) -> anyhow::Result<Point> {
-    ensure!(
-        !study.scene.to_lowercase().ends_with(".xml"),
-        "scene is {:?}; allowed: a scene file, which `turbid import` makes of a scene of Mitsuba",
-        study.scene
-    );
-    let is_builtin = BUILTIN.iter().any(|builtin| builtin.name == study.scene);
-    let path = if is_builtin { study.scene.clone().into() } else { folder.join(&study.scene) };
+    if let StudyScene::Name(name) = &study.scene {
+        ensure!(
+            !name.to_lowercase().ends_with(".xml"),
+            "scene is {name:?}; allowed: a scene file, which `turbid import` makes of a scene of Mitsuba"
+        );
+    }
+    let path = match &study.scene {
+        StudyScene::Name(name) if BUILTIN.iter().any(|builtin| builtin.name == name) => name.into(),
+        StudyScene::Name(name) => folder.join(name),
+        StudyScene::Table(_) => folder.join("scene"),
+    };
     let (mut source, mut left, mut values) = (SceneSource::new(path), number, Vec::new());
     for (key, list) in &study.axes {
         let value = &list[left % list.len()];
@@ -84,7 +88,15 @@ fn point(study: &StudyFile, folder: &Path, number: usize) -> anyhow::Result<Poin
         source = source.with(key.as_str(), value.clone());
         values.push((key.clone(), word(value)));
     }
-    let mut file = source.resolve().context("scene")?;
+    let mut file = match &study.scene {
+        StudyScene::Name(_) => source.resolve(),
+        StudyScene::Table(table) => {
+            let text = toml::to_string(table)?;
+            // Its lines are not those of the study's file.
+            SceneFile::read(&text, None).and_then(|_| source.changed(&text))
+        }
+    }
+    .context("scene")?;
     let measure = &study.measure;
     let left_out = choose(measure, &mut file.sensors).context("measure.sensors")?;
     file.sensors.extend(extra(measure).context("measure")?);

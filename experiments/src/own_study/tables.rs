@@ -33,10 +33,17 @@ fn parameters(data: &Data, setting: &Setting) -> Vec<String> {
     all
 }
 
-fn parameter_names(data: &[Data]) -> Vec<String> {
-    let axes = data.first().map(|data| data.point.values.iter().map(|(key, _)| key.clone()));
-    let fixed = ["photons", "kernel", "radius", "k", "max_radius", "treatment", "rejection"];
-    axes.into_iter().flatten().chain(fixed.map(String::from)).collect()
+const ESTIMATOR: [&str; 7] = ["photons", "kernel", "radius", "k", "max_radius", "treatment", "rejection"];
+
+/// The names of the columns: axes, settings, and those of the table. An axis that is called as one of the others is `scene.NAME`.
+fn columns(data: &[Data], own: &[&str]) -> Vec<String> {
+    let others: Vec<&str> = ESTIMATOR.iter().chain(own).copied().collect();
+    let axes = data.first().map(|data| data.point.values.iter().map(|(key, _)| key.as_str()));
+    let named = |key: &str| match others.contains(&key) {
+        true => format!("scene.{key}"),
+        false => key.to_string(),
+    };
+    axes.into_iter().flatten().map(named).chain(others.iter().map(|name| name.to_string())).collect()
 }
 
 /// A number, nothing where there is none.
@@ -70,8 +77,7 @@ fn errors(values: &[f64], known: &Known) -> [f64; 6] {
 
 /// results.csv: a row a setting and place, and one over all places of a setting (`all`); the same bits on any number of threads.
 pub fn results(data: &[Data], predictions: &[Prediction]) -> anyhow::Result<String> {
-    let mut header = parameter_names(data);
-    let fixed = [
+    let own = [
         "place",
         "x",
         "y",
@@ -93,7 +99,7 @@ pub fn results(data: &[Data], predictions: &[Prediction]) -> anyhow::Result<Stri
         "photons_stored",
         "under_full_share",
     ];
-    header.extend(fixed.map(String::from));
+    let header = columns(data, &own);
     let predicted: HashMap<(&str, &str), f64> =
         predictions.iter().map(|p| ((p.case.as_str(), p.quantity.as_str()), p.value)).collect();
     let mut rows = Vec::new();
@@ -169,9 +175,8 @@ const STORED_BYTES: f64 = turbid::photons::PEAK_BYTES;
 
 /// costs.csv: CPU seconds and memory of every setting, and of the rival, on this machine.
 pub fn costs(data: &[Data]) -> anyhow::Result<String> {
-    let mut header = parameter_names(data);
-    let fixed = ["method", "filling_seconds", "reading_seconds", "peak_bytes", "samples"];
-    header.extend(fixed.map(String::from));
+    let own = ["method", "filling_seconds", "reading_seconds", "peak_bytes", "samples"];
+    let header = columns(data, &own);
     let mut rows = Vec::new();
     for data in data {
         for setting in &data.settings {
@@ -185,7 +190,7 @@ pub fn costs(data: &[Data]) -> anyhow::Result<String> {
         }
         if let Some(rival) = &data.rival {
             let mut row: Vec<String> = data.point.values.iter().map(|(_, value)| value.clone()).collect();
-            row.resize(header.len() - fixed.len(), String::new());
+            row.resize(header.len() - own.len(), String::new());
             row.push(data.reference.sampler.name().to_string());
             row.extend([String::new(), cell(rival.seconds * data.reference.samples as f64)]);
             row.extend([String::new(), data.reference.samples.to_string()]);
