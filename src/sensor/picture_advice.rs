@@ -117,6 +117,8 @@ struct Laws {
     /// The total's square over the sum of the layers': errors of layers are correlated.
     together: f64,
     together_samples: f64,
+    /// The largest k over photons of each map that the laws were fitted to: beyond it they are not known.
+    widest: [f64; 3],
 }
 
 /// Photons, k and samples.
@@ -153,7 +155,11 @@ impl Laws {
             let part = i as f64 / steps as f64;
             (NEAREST.0 * exp(part * ln(NEAREST.1 / NEAREST.0))).round()
         };
-        (0..=steps).map(k).min_by(|a, b| of_map(*a).total_cmp(&of_map(*b))).unwrap_or(NEAREST.0)
+        (0..=steps)
+            .map(k)
+            .filter(|k| *k <= (photons * self.widest[map]).max(NEAREST.0))
+            .min_by(|a, b| of_map(*a).total_cmp(&of_map(*b)))
+            .unwrap_or(NEAREST.0)
     }
 }
 
@@ -390,6 +396,10 @@ impl PicturePilot {
         let whole: f64 = total.iter().map(|p| p.bias + p.variance).sum();
         Laws {
             layers,
+            widest: [0, 1, 2].map(|map| {
+                let x = self.runs.iter().map(|run| run.k / run.stored[map].max(1.0));
+                x.fold(0.0, f64::max)
+            }),
             together: ratio(whole, sums.iter().map(|p| p.bias).sum()),
             together_samples: ratio(total[TYPICAL].sample, sums[TYPICAL].sample),
         }
@@ -604,7 +614,7 @@ mod tests {
             assert!((found / expected - 1.0).abs() < 1e-9, "{found} for {expected}");
         }
         let law = Law { layer: Layer::Multiple, map: Some(2), bias: (b, p), variance: (v, s), sample: 0.0 };
-        let laws = Laws { layers: vec![law], together: 1.0, together_samples: 1.0 };
+        let laws = Laws { layers: vec![law], together: 1.0, together_samples: 1.0, widest: [1.0; 3] };
         let photons = 1e6;
         let best = photons * libm::pow(s * v / (p * b * photons), 1.0 / (p + s));
         // Steps of the search are 8 per cent of k.
