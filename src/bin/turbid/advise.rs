@@ -1,5 +1,6 @@
 //! `turbid advise`: how many photons, which radius, how many samples.
 
+use super::advice_row::AdviceRow;
 use super::advise_picture::Wanted;
 use super::load::Source;
 use super::memory::{Memory, rounded_down};
@@ -9,7 +10,6 @@ use super::progress::Bar;
 use super::shared::{FormatName, note, on_threads, parse_count, whole};
 use anyhow::Context;
 use clap::{ArgMatches, ValueEnum};
-use serde::Serialize;
 use std::time::Instant;
 use turbid::output::{Format, print, write_aligned, write_csv, write_json};
 use turbid::scene::{Quantity, Scene};
@@ -82,16 +82,6 @@ fn parse_target(text: &str) -> Result<f64, String> {
         Ok(x) if x > 0.0 && x <= 1.0 => Ok(x),
         _ => Err("allowed: a relative error above 0, up to 100%, such as 1% or 0.01".to_string()),
     }
-}
-
-/// A line of the answer.
-#[derive(Serialize)]
-pub struct AdviceRow {
-    pub quantity: String,
-    pub unit: &'static str,
-    pub value: f64,
-    pub low: Option<f64>,
-    pub high: Option<f64>,
 }
 
 impl Advise {

@@ -1,6 +1,6 @@
 //! `turbid advise` for a picture: photons, k and samples by pilots against paths, and the command line that takes them.
 
-use super::advise::AdviceRow;
+use super::advice_row::AdviceRow;
 use super::load::Source;
 use super::picture::{Frame, Readout};
 use super::progress::Bar;

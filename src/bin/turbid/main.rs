@@ -1,5 +1,6 @@
 //! The command `turbid`: parses, calls the file of the command, reports errors in one line.
 
+mod advice_row;
 mod advise;
 mod advise_picture;
 mod beside;
