@@ -176,7 +176,7 @@ fn a_dry_run_tells_and_writes_nothing() {
 /// A scene in the study's own file is the scene of a file beside it; an axis that is called as a column is told apart from it.
 #[test]
 fn a_scene_within_the_file() {
-    let scene = "cell = 2.0\n[[regions]]\nshape = { slab = { top = 0.0, thickness = 1.0 } }\nsigma_t = 1.0\nalbedo = 0.5\n\
+    let scene = "cell = 2.0\n[[regions]]\nshape = { slab = { top = 0.0, thickness = 1.0 } }\nsigma_t = 1.0\nalbedo = 0.5\ng = 0.0\n\
                  [[lights]]\nbeam = { dir = [0, 0, 1], irradiance = 1.0, section = 'unbounded' }\n";
     let study_of = |scene: &str| {
         format!(
@@ -184,7 +184,7 @@ fn a_scene_within_the_file() {
              measure = {{ probes = [[1, 1, 0.5]] }}\n"
         )
     };
-    let within = "{ cell = 2.0, regions = [{ shape = { slab = { top = 0.0, thickness = 1.0 } }, sigma_t = 1.0, albedo = 0.5 }], \
+    let within = "{ cell = 2.0, regions = [{ shape = { slab = { top = 0.0, thickness = 1.0 } }, sigma_t = 1.0, albedo = 0.5, g = 0.0 }], \
                   lights = [{ beam = { dir = [0, 0, 1], irradiance = 1.0, section = 'unbounded' } }] }";
     let (folder, file) = written(&study_of("'scene.toml'"));
     let at = folder.path();

@@ -30,7 +30,7 @@ class Program:
         """The text of its error, without its name."""
         done = self.run(*words, cwd=cwd)
         assert done.returncode == 2, (done.stdout, done.stderr)
-        return done.stderr.strip().split(": error: ", 1)[1]
+        return done.stderr.strip().split("error: ", 1)[1]
 
 
 @pytest.fixture(scope="session")

@@ -282,7 +282,7 @@ mod tests {
 
     #[test]
     fn changes_of_a_file_are_checked_together() {
-        let text = "[[regions]]\nshape = { sphere = { center = [0, 0, 0], radius = 1.0 } }\nsigma_t = 1.0\nalbedo = 0.5\n\
+        let text = "[[regions]]\nshape = { sphere = { center = [0, 0, 0], radius = 1.0 } }\nsigma_t = 1.0\nalbedo = 0.5\ng = 0.0\n\
                     [[lights]]\npoint = { position = [0, 0, 0], power = 1.0 }\n";
         let wrong = SceneSource::new("fog.toml").with("regions.0.albedo", 2.into());
         let told = |source: &SceneSource| source.changed(text).unwrap_err().to_string();
