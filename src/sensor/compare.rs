@@ -356,7 +356,8 @@ fn one(
         reference: of_reference.mean,
         std_error,
         rmse: root(square),
-        rmse_error: 0.5 * (root(square + deviation) - root(square - deviation)),
+        // Of a root; where the square is within its own error of 0, that of the error's own root.
+        rmse_error: 0.5 * deviation / root(square.max(deviation)).max(f64::MIN_POSITIVE),
         test,
     };
     Some((comparison, tests))
