@@ -135,10 +135,7 @@ fn wrong_files(flags: &Flags) -> Option<String> {
         [_, ..] if flags.replot && flags.out.is_some() => {
             Some("--replot FILE.csv writes beside its table: --out cannot be used".into())
         }
-        files if flags.replot => files
-            .iter()
-            .find(|file| !is(file, "csv"))
-            .map(|file| format!("{}: --replot redraws tables of figures; allowed: FILE.csv", file.display())),
+        _ if flags.replot => None,
         [] => None,
         [study] if is(study, "toml") => None,
         [first, ..] => Some(format!(
