@@ -1,6 +1,6 @@
 //! A study of any scene, asked by a file: what a map costs in accuracy there, and which settings reach a target the cheapest.
 //!
-//! Referee: an exact solution where the scene is a solved problem ([`solved`]), else paths or light tracing to a stated error, whose
+//! Referee: an exact solution where the scene is a solved problem (`solved`), else paths or light tracing to a stated error, whose
 //! batches are the rival in time as well. The maps of a replicate are filled once and read by all estimators. What is exact and
 //! of one slab or ball predicts the bias of fixed radii.
 
