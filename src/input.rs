@@ -65,6 +65,13 @@ pub fn is_inside(name: &str, folder: &Path) -> bool {
     is_plain && leads_inside
 }
 
+/// Line and column of a place in a text, given in bytes: both from 1, columns in characters.
+pub fn line_and_column(text: &str, at: usize) -> (usize, usize) {
+    let before = text.get(..at).unwrap_or(text);
+    let column = before.rsplit('\n').next().map_or(0, |tail| tail.chars().count()) + 1;
+    (before.matches('\n').count() + 1, column)
+}
+
 /// Bytes as text.
 ///
 /// # Errors

@@ -7,19 +7,11 @@ use anyhow::{Context, Result, anyhow};
 use pyo3::prelude::*;
 use turbid::estimators::boundary::Treatment;
 use turbid::estimators::{Estimator, Gather, Kernel};
-use turbid::integrators::mapper::{Settings, scene_size};
+use turbid::integrators::mapper::{LEAST_K, Settings, scene_size};
 use turbid::integrators::{Adaptive, StepRule};
 use turbid::math::Positive;
 use turbid::photons::maps::{Amount, Indirect};
 use turbid::scene::Scene;
-
-/// Photons of an estimate where nothing is asked for: the fewest, and the most.
-const LEAST_K: usize = 100;
-const MOST_K: f64 = 1000.0;
-
-/// Photons of a map from which on more than [`LEAST_K`] an estimate are better, and of what dimension their neighbourhoods
-/// are: the global map where the eye looks, the caustic and the volume map.
-const BALANCED: [(f64, f64); 3] = [(70_000.0, 2.0), (50_000.0, 2.0), (20_000.0, 3.0)];
 
 /// Change of direct light above which a step of the march is halved.
 const TOLERANCE: f64 = 0.5;
@@ -81,12 +73,6 @@ fn amount(name: &str, text: &str) -> PyResult<Amount> {
     Ok(if is_emitted { Amount::Emitted(count) } else { Amount::Stored(count) })
 }
 
-/// Photons of an estimate that balance noise and blur in a map of so many.
-fn balanced(stored: f64, (from, d): (f64, f64)) -> usize {
-    let k = LEAST_K as f64 * libm::pow(stored / from, 4.0 / (4.0 + d));
-    k.round().clamp(LEAST_K as f64, MOST_K) as usize
-}
-
 impl Options {
     /// Understands the words.
     pub fn understood(self) -> PyResult<Readout> {
@@ -131,17 +117,8 @@ impl Readout {
     /// Settings that suit the photons that the global, the caustic and the volume map hold, from those of
     /// [`Readout::settings`].
     pub fn suited(&self, settings: &Settings, stored: [usize; 3]) -> Result<Settings> {
-        let mut settings = *settings;
-        let maps = [&mut settings.global.1, &mut settings.caustic.1, &mut settings.volume.gather];
-        for (index, (gather, stored)) in maps.into_iter().zip(stored).enumerate() {
-            let is_asked_for = self.options.radius.is_some() || self.nearest()[index].is_some();
-            // A final gathering is the mean over many places.
-            let is_gathered = index == 0 && self.indirect() == Indirect::Gathered;
-            if !is_asked_for && !is_gathered {
-                *gather = Gather::nearest(balanced(stored as f64, BALANCED[index]), gather.cap())?;
-            }
-        }
-        Ok(settings)
+        let is_asked_for = self.nearest().map(|k| self.options.radius.is_some() || k.is_some());
+        Ok(settings.balanced(stored, is_asked_for, self.indirect())?)
     }
 
     /// Settings of the mapper for a scene whose maps are not known.

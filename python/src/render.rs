@@ -50,16 +50,7 @@ impl Request {
                 "the scene has no [camera]: add one with position, look_at, fov, width and height, or take a scene that has one, such as the built-in fogbox"
             )
         })?;
-        let follow = |given: u32, over: u32, under: u32| {
-            ((f64::from(given) * f64::from(over) / f64::from(under)).round() as u32).max(1)
-        };
-        let (width, height) = match (self.width, self.height) {
-            (None, None) => (camera.width(), camera.height()),
-            (Some(w), Some(h)) => (w, h),
-            (Some(w), None) => (w, follow(w, camera.height(), camera.width())),
-            (None, Some(h)) => (follow(h, camera.width(), camera.height()), h),
-        };
-        let camera = camera.with_size(width, height).context("width, height")?;
+        let camera = camera.sized(self.width, self.height).context("width, height")?;
         check_camera(scene, &camera)?;
         Ok(camera)
     }

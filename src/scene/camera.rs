@@ -126,6 +126,23 @@ impl Camera {
         Camera::new(View { width, height, ..self.view })
     }
 
+    /// The same camera with another picture size: of sides that are not given, one follows the other, and both are as they are.
+    ///
+    /// # Errors
+    /// Those of [`Camera::new`].
+    pub fn sized(&self, width: Option<u32>, height: Option<u32>) -> Result<Self> {
+        let follow = |given: u32, over: u32, under: u32| {
+            ((f64::from(given) * f64::from(over) / f64::from(under)).round() as u32).max(1)
+        };
+        let (width, height) = match (width, height) {
+            (None, None) => (self.width(), self.height()),
+            (Some(w), Some(h)) => (w, h),
+            (Some(w), None) => (w, follow(w, self.height(), self.width())),
+            (None, Some(h)) => (follow(h, self.width(), self.height()), h),
+        };
+        self.with_size(width, height)
+    }
+
     /// What it was made of.
     pub fn view(&self) -> &View {
         &self.view

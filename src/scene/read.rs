@@ -2,7 +2,7 @@
 
 use super::file::SceneFile;
 use crate::error::{Error, Result};
-use crate::input::is_inside;
+use crate::input::{is_inside, line_and_column};
 use std::ops::Range;
 use std::path::Path;
 
@@ -93,9 +93,7 @@ pub(super) fn unknown(what: &str, key: &str, known: &[&str]) -> String {
 /// The error in one line with file, line and column.
 fn located(file: &str, text: &str, error: &toml::de::Error) -> String {
     let start = error.span().map_or(0, |span| span.start).min(text.len());
-    let before = &text[..start];
-    let line = before.matches('\n').count() + 1;
-    let column = before.rsplit('\n').next().map_or(0, |tail| tail.chars().count()) + 1;
+    let (line, column) = line_and_column(text, start);
     format!("{file}:{line}:{column}: {}", say(text, error))
 }
 

@@ -5,6 +5,7 @@ use serde::Deserialize;
 use std::collections::BTreeMap;
 use turbid::estimators::boundary::{Rejection, Treatment};
 use turbid::estimators::{Estimator, Gather, Kernel};
+use turbid::input::line_and_column;
 
 /// A study as its file says it.
 #[derive(Debug, Clone, Deserialize)]
@@ -51,7 +52,7 @@ impl TryFrom<toml::Value> for StudyScene {
     type Error = String;
     fn try_from(value: toml::Value) -> Result<Self, String> {
         match value {
-            // Standard input is no file of the study's, and is read only once.
+            // Standard input is not a file that a later run can read again.
             toml::Value::String(name) if name != "-" => Ok(StudyScene::Name(name)),
             toml::Value::Table(table) => Ok(StudyScene::Table(table)),
             other => Err(format!(
@@ -319,9 +320,7 @@ impl StudyFile {
     pub fn read(name: &str, text: &str) -> anyhow::Result<Self> {
         let file: StudyFile = toml::from_str(text).map_err(|error| {
             let start = error.span().map_or(0, |span| span.start).min(text.len());
-            let before = &text[..start];
-            let line = before.matches('\n').count() + 1;
-            let column = before.rsplit('\n').next().map_or(0, |tail| tail.chars().count()) + 1;
+            let (line, column) = line_and_column(text, start);
             anyhow!("{name}:{line}:{column}: {}", error.message().replace('\n', " "))
         })?;
         file.check().with_context(|| name.to_string())?;

@@ -3,10 +3,10 @@
 use super::file::PictureFile;
 use super::place::Place;
 use crate::harness::Unit;
-use anyhow::{bail, ensure};
+use anyhow::{Context, bail, ensure};
 use turbid::estimators::boundary::Treatment;
 use turbid::estimators::{Estimator, Kernel};
-use turbid::integrators::mapper::{Mapper, Settings};
+use turbid::integrators::mapper::{LEAST_K, Mapper, Settings};
 use turbid::integrators::{Layer, Layers};
 use turbid::photons::maps::{Amount, Indirect, MapSettings, Maps, fill};
 use turbid::scene::{Camera, Scene};
@@ -53,12 +53,13 @@ impl Picture {
             unreachable.join("; ")
         );
         let width = file.width.map_or(WIDTH.min(u64::from(camera.width())), |width| width.0);
-        let usual = (width as f64 * f64::from(camera.height()) / f64::from(camera.width())).round().max(1.0);
-        let height = file.height.map_or(usual as u64, |height| height.0);
-        let (Ok(width), Ok(height)) = (u32::try_from(width), u32::try_from(height)) else {
-            bail!("picture: {width} x {height} pixels; allowed: up to 16384 each way");
+        let side = |pixels: u64| {
+            u32::try_from(pixels)
+                .with_context(|| format!("picture: a side of {pixels} pixels; allowed: up to 16384"))
         };
-        let camera = camera.with_size(width, height)?;
+        let height = file.height.map(|height| side(height.0)).transpose()?;
+        let camera = camera.sized(Some(side(width)?), height)?;
+        let (width, height) = (camera.width(), camera.height());
         let [across, down] = file.blocks;
         ensure!(
             (1..=width).contains(&across) && (1..=height).contains(&down),
@@ -152,7 +153,7 @@ impl Picture {
         estimator: &Estimator,
         (seed, replicate): (u64, u64),
     ) -> turbid::Result<(Vec<f64>, f64)> {
-        let mut settings = Settings::for_scene(scene, 100)?;
+        let mut settings = Settings::for_scene(scene, LEAST_K)?;
         settings.volume = *estimator;
         settings.global = (estimator.kernel, estimator.gather);
         settings.caustic = (Kernel::Cone, estimator.gather);

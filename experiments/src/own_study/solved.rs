@@ -272,7 +272,7 @@ impl Layers {
         self.sum(z, |part, t| part.slab.fluence(t).ok())
     }
 
-    /// Radiance that arrives from ahead of a ray; none along a beam, whose radiance is no number, and where it depends on the azimuth.
+    /// Radiance that arrives from ahead of a ray; none along a beam, whose radiance is not a finite number, and where it depends on the azimuth.
     fn radiance(&self, z: f64, dir: DVec3) -> Exact {
         // Light of the faces starts on them: beyond, there is none of it.
         let (top, bottom) = (self.sheets.first()?.0, self.sheets.last()?.1);

@@ -8,7 +8,7 @@ use anyhow::{Context, anyhow};
 use clap::ValueEnum;
 use turbid::estimators::boundary::{Rejection, Treatment};
 use turbid::estimators::{Estimator, Gather, Kernel};
-use turbid::integrators::mapper::{Settings, scene_size};
+use turbid::integrators::mapper::{LEAST_K, Settings, scene_size};
 use turbid::integrators::{Adaptive, StepRule};
 use turbid::math::Positive;
 use turbid::output::Curve;
@@ -43,16 +43,7 @@ impl Frame {
                 "the scene has no [camera]: add one with position, look_at, fov, width and height, or take a scene that has one, such as the built-in fogbox"
             )
         })?;
-        let follow = |given: u32, over: u32, under: u32| {
-            ((f64::from(given) * f64::from(over) / f64::from(under)).round() as u32).max(1)
-        };
-        let (width, height) = match (self.width, self.height) {
-            (None, None) => (camera.width(), camera.height()),
-            (Some(w), Some(h)) => (w, h),
-            (Some(w), None) => (w, follow(w, camera.height(), camera.width())),
-            (None, Some(h)) => (follow(h, camera.width(), camera.height()), h),
-        };
-        let camera = camera.with_size(width, height).context("--width, --height")?;
+        let camera = camera.sized(self.width, self.height).context("--width, --height")?;
         turbid::sensor::check_camera(scene, &camera)?;
         Ok(camera)
     }
@@ -115,25 +106,6 @@ fn parse_k(text: &str) -> Result<usize, String> {
 
 /// Photons of the global, the caustic and the volume map where nothing is asked for.
 const USUAL: [u64; 3] = [200_000, 50_000, 65_000];
-
-/// Photons of an estimate where nothing is asked for: the fewest, and the most.
-const LEAST_K: usize = 100;
-const MOST_K: f64 = 1000.0;
-
-/// Photons of a map from which on more than [`LEAST_K`] an estimate are better, and of what dimension their neighbourhoods are:
-/// the global map where the eye looks, the caustic and the volume map. Chosen by pictures against paths, at `--k` 10 to 800: in
-/// the smooth fogbox errors are least with two to four times as many as this gives, in a room with a spot light, a checker and
-/// blocks, where blur counts more, with one to two times as many.
-const BALANCED: [(f64, f64); 3] = [(70_000.0, 2.0), (50_000.0, 2.0), (20_000.0, 3.0)];
-
-/// Photons of an estimate that balance noise and blur in a map of so many.
-///
-/// With n photons in d dimensions, r^d ~ k/n: noise 1/k and the square of a blur ~ r^2 fall at one pace, so that their sum is
-/// least, where k ~ n^(4/(4 + d)).
-fn balanced(stored: f64, (from, d): (f64, f64)) -> usize {
-    let k = LEAST_K as f64 * libm::pow(stored / from, 4.0 / (4.0 + d));
-    k.round().clamp(LEAST_K as f64, MOST_K) as usize
-}
 
 /// How many photons the maps get.
 #[derive(clap::Args)]
@@ -408,17 +380,8 @@ impl Readout {
 
     /// Settings that suit the photons that the global, the caustic and the volume map hold, from those of [`Readout::settings`].
     pub fn suited(&self, settings: &Settings, stored: [usize; 3]) -> anyhow::Result<Settings> {
-        let mut settings = *settings;
-        let maps = [&mut settings.global.1, &mut settings.caustic.1, &mut settings.volume.gather];
-        for (index, (gather, stored)) in maps.into_iter().zip(stored).enumerate() {
-            let is_asked_for = self.radius.is_some() || self.nearest()[index].is_some();
-            // A final gathering is the mean over many places.
-            let is_gathered = index == 0 && self.indirect() == Indirect::Gathered;
-            if !is_asked_for && !is_gathered {
-                *gather = Gather::nearest(balanced(stored as f64, BALANCED[index]), gather.cap())?;
-            }
-        }
-        Ok(settings)
+        let is_asked_for = self.nearest().map(|k| self.radius.is_some() || k.is_some());
+        Ok(settings.balanced(stored, is_asked_for, self.indirect())?)
     }
 
     /// Settings of the mapper for a scene whose maps are not known, read in so many passes: steps are to be the same in all.

@@ -19,7 +19,7 @@ mod surface;
 mod volume;
 
 pub use extents::{MediumExtent, medium_extents};
-pub use settings::{Settings, scene_size};
+pub use settings::{LEAST_K, Settings, scene_size};
 
 use crate::Spectrum;
 use crate::estimators::Estimate;
