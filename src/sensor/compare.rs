@@ -86,22 +86,16 @@ impl Blocks {
         let sizes = self.sizes();
         for (block, pixel) in self.pixels(film) {
             for (mean, layer) in means[block].iter_mut().zip(VALUES) {
-                *mean += value(pixel, layer) / sizes[block];
+                *mean += pixel.mean_of(layer) / sizes[block];
             }
         }
         means
     }
 }
 
-/// Mean radiance of a pixel, of a layer or in total.
-pub(super) fn value(pixel: &Pixel, layer: Option<Layer>) -> Spectrum {
-    layer.map_or_else(|| pixel.total(), |layer| pixel.layers()[layer])
-}
-
-/// Variance of it; 0 where there is none.
+/// Variance of the mean of a pixel, of a layer or in total; 0 where there is none.
 pub(super) fn variance(pixel: &Pixel, layer: Option<Layer>) -> Spectrum {
-    let variance = layer.map_or_else(|| pixel.variance(), |layer| pixel.layer_variance(layer));
-    variance.unwrap_or(Spectrum::ZERO)
+    pixel.variance_of(layer).unwrap_or(Spectrum::ZERO)
 }
 
 /// What is known of the error of the picture itself.
@@ -273,7 +267,7 @@ fn one(
     let (mut all_ours, mut all_theirs) = (Sums::default(), Sums::default());
     let n = reference.samples() as f64;
     for ((block, mine), other) in blocks.pixels(picture).zip(reference.pixels()) {
-        let (x, y) = (value(mine, layer), value(other, layer));
+        let (x, y) = (mine.mean_of(layer), other.mean_of(layer));
         let (vx, vy) = (variance(mine, layer), variance(other, layer));
         let (mut of_pixel, mut noise) = (0.0, 0.0);
         for c in 0..3 {

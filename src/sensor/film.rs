@@ -75,6 +75,16 @@ impl Pixel {
         self.variance_at(layer as usize)
     }
 
+    /// Mean radiance of a class, or of all [W/(L^2 sr)].
+    pub fn mean_of(&self, layer: Option<Layer>) -> Spectrum {
+        self.mean[layer.map_or(TOTAL, |layer| layer as usize)]
+    }
+
+    /// Variance of it; none with fewer than two samples.
+    pub fn variance_of(&self, layer: Option<Layer>) -> Option<Spectrum> {
+        self.variance_at(layer.map_or(TOTAL, |layer| layer as usize))
+    }
+
     fn variance_at(&self, index: usize) -> Option<Spectrum> {
         let n = self.n as f64;
         (self.n >= 2).then(|| self.squares[index] / (n * (n - 1.0)))

@@ -7,7 +7,7 @@
 //! sizes that are read with several k. **Samples** add their own noise, as 1/samples. What the other layers are wrong by is
 //! a constant of the march. Pilots look at a lattice of the picture's own pixels, each with its true footprint.
 
-use super::compare::{VALUES, value, variance};
+use super::compare::{VALUES, variance};
 use super::film::{Film, Sample};
 use super::render::{Streams, extend_at};
 use crate::Spectrum;
@@ -335,7 +335,7 @@ impl PicturePilot {
     /// Mean of the reference.
     fn mean(&self, layer: Option<Layer>) -> f64 {
         let pixels = self.reference.pixels();
-        pixels.iter().map(|pixel| value(pixel, layer).mean()).sum::<f64>() / pixels.len() as f64
+        pixels.iter().map(|pixel| pixel.mean_of(layer).mean()).sum::<f64>() / pixels.len() as f64
     }
 
     /// What the maps that `counts` says of a layer, of a run.
@@ -347,12 +347,12 @@ impl PicturePilot {
         let over = 1.0 / (pixels as f64 * mean * mean);
         let mut parts = Parts::default();
         for (i, truth) in self.reference.pixels().iter().enumerate() {
-            let values = || films.iter().map(|film| value(&film.pixels()[i], layer));
+            let values = || films.iter().map(|film| film.pixels()[i].mean_of(layer));
             let x = values().fold(Spectrum::ZERO, |sum, x| sum + x) / n;
             let between = values().fold(Spectrum::ZERO, |sum, v| sum + (v - x) * (v - x)) / (n - 1.0);
             let within =
                 films.iter().fold(Spectrum::ZERO, |sum, film| sum + variance(&film.pixels()[i], layer)) / n;
-            let d = x - value(truth, layer);
+            let d = x - truth.mean_of(layer);
             parts.bias += over * (d * d - between / n - variance(truth, layer)).mean();
             parts.variance += over * (between - within).mean();
             parts.sample += over * self.samples * within.mean();
@@ -526,7 +526,7 @@ impl PicturePilot {
         };
         let truth = self.reference.pixels();
         let square = |film: &Film, i: usize| {
-            let d = value(&film.pixels()[i], None) - value(&truth[i], None);
+            let d = film.pixels()[i].mean_of(None) - truth[i].mean_of(None);
             (d * d - variance(&truth[i], None)).mean()
         };
         let relative = |values: Vec<f64>| {

@@ -1,9 +1,9 @@
 //! What the cells of a folder belong to.
 
-use super::cell::{self, FORMAT};
+use super::cell::{self, FORMAT, Header};
 use super::outputs::{MOST_NOTES, read_if_there};
 use super::{Settings, Watch};
-use anyhow::Context;
+use anyhow::{Context, ensure};
 use serde::{Deserialize, Serialize};
 use std::path::Path;
 use turbid::output::{write_atomically, write_json};
@@ -76,10 +76,33 @@ impl Manifest {
 
     /// Whether a file holds a cell that this study can take.
     pub(super) fn accepts(&self, path: &Path, experiment: &str, id: &str, settings: &Settings) -> bool {
-        let Ok((header, _)) = cell::read(path) else { return false };
-        header.experiment == experiment
-            && header.id == id
-            && header.settings == self.settings
-            && (header.program == self.program || settings.reuse_cells)
+        cell::read(path).is_ok_and(|(header, _)| self.check(&header, experiment, id, settings).is_ok())
+    }
+
+    /// Whether a cell is one of this study.
+    ///
+    /// # Errors
+    /// Why it is not
+    pub(super) fn check(
+        &self,
+        header: &Header,
+        experiment: &str,
+        id: &str,
+        settings: &Settings,
+    ) -> anyhow::Result<()> {
+        ensure!(header.experiment == experiment && header.id == id, "it is another cell's file");
+        ensure!(
+            header.settings == self.settings,
+            "it is of other settings ({}, not {})",
+            header.settings,
+            self.settings
+        );
+        ensure!(
+            header.program == self.program || settings.reuse_cells,
+            "it is of another build of the program ({}, not {}); allowed: parts of one build, or --reuse-cells",
+            header.program,
+            self.program
+        );
+        Ok(())
     }
 }

@@ -1,7 +1,7 @@
 //! Cells of other folders, brought together.
 
 use super::Settings;
-use super::cell::{self, CellRow, Header};
+use super::cell::{self, CellRow};
 use super::manifest::Manifest;
 use super::measure::cell_path;
 use super::{CellId, Experiment};
@@ -74,7 +74,9 @@ fn take(
     settings: &Settings,
 ) -> anyhow::Result<()> {
     let (header, rows) = cell::read(source)?;
-    check(source, &header, experiment, id, manifest, settings)?;
+    manifest
+        .check(&header, experiment.name, &id.id(), settings)
+        .with_context(|| source.display().to_string())?;
     match cell::read(to) {
         Ok((_, there)) if is_equal(&there, &rows) => Ok(()),
         Ok(_) => bail!(
@@ -92,29 +94,4 @@ fn is_equal(a: &[CellRow], b: &[CellRow]) -> bool {
         a.case == b.case && a.quantity == b.quantity && a.value.to_bits() == b.value.to_bits()
     };
     a.len() == b.len() && a.iter().zip(b).all(same)
-}
-
-fn check(
-    source: &Path,
-    header: &Header,
-    experiment: &Experiment,
-    id: &CellId,
-    manifest: &Manifest,
-    settings: &Settings,
-) -> anyhow::Result<()> {
-    let name = source.display();
-    ensure!(header.experiment == experiment.name && header.id == id.id(), "{name} is another cell's file");
-    ensure!(
-        header.settings == manifest.settings,
-        "{name} is of other settings ({}, not {})",
-        header.settings,
-        manifest.settings
-    );
-    ensure!(
-        header.program == manifest.program || settings.reuse_cells,
-        "{name} is of another build of the program ({}, not {}); allowed: parts of one build, or --reuse-cells",
-        header.program,
-        manifest.program
-    );
-    Ok(())
 }

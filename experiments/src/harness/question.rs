@@ -18,9 +18,9 @@ pub struct Question {
     pub title: Option<String>,
 }
 
-/// Larger study files, and larger files that scenes name, are none.
+/// Larger study files, and larger scenes that they name, are none.
 const MOST_BYTES: u64 = 1 << 20;
-const MOST_NAMED: u64 = 1 << 34;
+const MOST_SCENE: u64 = 1 << 26;
 
 impl Question {
     /// Reads a study file.
@@ -52,7 +52,7 @@ impl Question {
         let scenes: Vec<PathBuf> =
             named.iter().filter(|p| p.extension().is_some_and(|e| e == "toml")).cloned().collect();
         for scene in scenes {
-            let text = String::from_utf8(read(&scene, MOST_NAMED)?).unwrap_or_default();
+            let text = String::from_utf8(read(&scene, MOST_SCENE)?).unwrap_or_default();
             let folder = scene.parent().unwrap_or(Path::new(""));
             if let Ok(table) = toml::from_str::<toml::Table>(&text) {
                 files_in(&toml::Value::Table(table), folder, &mut named);
@@ -60,7 +60,8 @@ impl Question {
         }
         for file in &named {
             ensure!(file.as_path() != path, "{} names itself", path.display());
-            parts.push(Digest::of(&read(file, MOST_NAMED)?).to_string().into_bytes());
+            let digest = Digest::of_file(file).with_context(|| format!("cannot read {}", file.display()))?;
+            parts.push(digest.to_string().into_bytes());
         }
         let digest = Digest::of(&parts.join(&b"\n"[..])).to_string();
         let title = table.get("title").and_then(|title| title.as_str()).map(turbid::output::one_line);

@@ -6,8 +6,8 @@ use crate::harness::Unit;
 use anyhow::{Context, bail, ensure};
 use turbid::estimators::boundary::Treatment;
 use turbid::estimators::{Estimator, Kernel};
+use turbid::integrators::Layer;
 use turbid::integrators::mapper::{LEAST_K, Mapper, Settings};
-use turbid::integrators::{Layer, Layers};
 use turbid::photons::maps::{Amount, Indirect, MapSettings, Maps, fill};
 use turbid::scene::{Camera, Scene};
 use turbid::sensor::{Film, Method, Streams};
@@ -113,14 +113,9 @@ impl Picture {
                 for y in j * height / down..(j + 1) * height / down {
                     for x in i * width / across..(i + 1) * width / across {
                         let pixel = &film.pixels()[(y * width + x) as usize];
-                        let value = |layers: &Layers| layer.map_or(layers.total(), |layer| layers[layer]);
-                        let variance = match layer {
-                            None => pixel.variance(),
-                            Some(layer) => pixel.layer_variance(*layer),
-                        };
-                        sum += value(&pixel.layers()).mean();
+                        sum += pixel.mean_of(*layer).mean();
                         // Channels of one path rise and fall together, at most.
-                        square = square.zip(variance).map(|(sum, v)| sum + v.mean());
+                        square = square.zip(pixel.variance_of(*layer)).map(|(sum, v)| sum + v.mean());
                         count += 1.0;
                     }
                 }

@@ -50,7 +50,8 @@ pub struct Advise {
     /// Rays of a final gathering at each surface that is seen, as of `render`.
     #[arg(long, default_value_t = 64, value_parser = whole::<u32>(0..=1_000_000))]
     gather_rays: u32,
-    /// Seed: the same seed gives the same advice, on any number of threads.
+    /// Seed: the same seed gives the same pilots, on any number of threads, and the same advice for probes; what is advised for a
+    /// picture follows measured times too.
     #[arg(long, value_parser = whole::<u64>(0..=u64::MAX), allow_hyphen_values = true, default_value_t = 1)]
     seed: u64,
     /// Threads [default: all cores].
