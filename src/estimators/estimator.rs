@@ -2,7 +2,7 @@
 
 use super::boundary::{Boundary, Gathered, PhotonFilter, Rejection, Surroundings, Treatment, accepted};
 use super::point::{ball_sum, for_each_photon, in_scattered_sum};
-use super::{BallSum, Directional, Estimate, Gather, Kernel, NeighborCount};
+use super::{BallSum, Directional, Estimate, Gather, Kernel, NeighborCount, RayEstimator};
 use crate::Spectrum;
 use crate::math::{Positive, cosine_pair};
 use crate::photons::{Photon, PhotonMap};
@@ -19,6 +19,9 @@ pub struct Estimator {
     pub treatment: Treatment,
     /// Which photons that walls part from the point are rejected.
     pub rejection: Rejection,
+    /// How near to a ray photons are that whole stretches of it are read from at once ([`RayEstimator`]); none where rays are read
+    /// point by point.
+    pub ray_radius: Option<Positive>,
 }
 
 /// Bodies and photons are looked for a little beyond a ball, so that rounding leaves none in it out.
@@ -30,7 +33,7 @@ const AHEAD: f64 = 1e-9;
 impl Estimator {
     /// Of all photons that a gather finds, wherever they are.
     pub fn new(kernel: Kernel, gather: Gather) -> Self {
-        Estimator { kernel, gather, treatment: Treatment::None, rejection: Rejection::Off }
+        Estimator { kernel, gather, treatment: Treatment::None, rejection: Rejection::Off, ray_radius: None }
     }
 
     /// The same with a treatment of boundaries.
@@ -41,6 +44,21 @@ impl Estimator {
     /// The same with photons behind walls rejected.
     pub fn rejecting(self, rejection: Rejection) -> Self {
         Estimator { rejection, ..self }
+    }
+
+    /// The same with whole stretches of rays read at once, from photons as near as this \[L\].
+    pub fn along_rays(self, radius: Positive) -> Self {
+        Estimator { ray_radius: Some(radius), ..self }
+    }
+
+    /// What reads whole stretches of rays; none where they are read point by point.
+    pub fn of_rays(&self) -> Option<RayEstimator> {
+        self.ray_radius.map(|radius| RayEstimator { kernel: self.kernel, radius })
+    }
+
+    /// The farthest that photons are looked for, of a point or a ray \[L\].
+    pub fn reach(&self) -> f64 {
+        self.gather.cap().max(self.ray_radius.map_or(0.0, Positive::get))
     }
 
     /// Every kernel with every gather and every treatment, at this radius \[L\], or this k as far as that.
@@ -73,13 +91,16 @@ impl Estimator {
 
     /// Its name, such as "cone, k=50, clipped".
     pub fn name(&self) -> String {
-        let Estimator { kernel, gather, treatment, rejection } = self;
+        let Estimator { kernel, gather, treatment, rejection, ray_radius } = self;
         let mut name = format!("{}, {gather}", kernel.name());
         if *treatment != Treatment::None {
             name += &format!(", {}", treatment.name());
         }
         if *rejection != Rejection::Off {
             name += &format!(", {}", rejection.name());
+        }
+        if let Some(radius) = ray_radius {
+            name += &format!(", along rays r={}", radius.get());
         }
         name
     }
@@ -179,7 +200,7 @@ impl Estimator {
         plain: impl FnOnce() -> BallSum,
         value: &dyn Fn(&Photon) -> f64,
     ) -> Estimate {
-        let Estimator { kernel, gather, treatment, rejection } = *self;
+        let Estimator { kernel, gather, treatment, rejection, .. } = *self;
         let filter = PhotonFilter::new(rejection, boundary.walls, point, gather.cap());
         let alone;
         let boundary = match treatment {

@@ -18,6 +18,7 @@ mod estimator;
 mod gather;
 mod kernel;
 mod point;
+mod ray;
 mod surface;
 
 pub use directional::{CosinePairs, Directional};
@@ -26,4 +27,5 @@ pub use estimator::Estimator;
 pub use gather::{Gather, NeighborCount};
 pub use kernel::Kernel;
 pub use point::{Ball, BallSum, Estimate, ball_sum, count_within, for_each_photon};
+pub use ray::{RayEstimate, RayEstimator};
 pub use surface::{irradiance, irradiance_seen};

@@ -2,6 +2,7 @@
 
 use super::{Photon, PhotonTree, periodic};
 use crate::error::{Error, Result};
+use crate::math::{Interval, Ray};
 use crate::transport::{NoProgress, Progress};
 use glam::{DVec2, DVec3};
 
@@ -111,6 +112,32 @@ impl PhotonMap {
             + reach * (1.0 + 1e-9)
             + 1e-12 * side.min_element();
         if distance <= least { place } else { DVec3::NAN }
+    }
+
+    /// Visits every photon at most `radius` \[L\] from a ray whose foot on it lies in `span`, with the distance of the foot along
+    /// the ray \[L\] and its squared distance from it [L^2]; in a periodic cell, those of the world that it stands for, moved into
+    /// the cell. False where such a map cannot tell: it has no copies as far as that, or the stretch no end.
+    pub fn along(
+        &self,
+        ray: &Ray,
+        span: Interval,
+        radius: f64,
+        mut visit: impl FnMut(Photon, f64, f64),
+    ) -> bool {
+        let mut part = |ray: &Ray, span: Interval| {
+            let each = |place: usize, foot: f64, squared: f64| visit(self.tree.photon(place), foot, squared);
+            self.tree.along(ray, span, radius, each);
+        };
+        match self.period {
+            None => part(ray, span),
+            Some(Period { side, reach }) => {
+                if !(radius <= reach * (1.0 + 1e-9) && span.end < f64::INFINITY) {
+                    return false;
+                }
+                periodic::in_cells(ray, span, side).for_each(|(ray, span)| part(&ray, span));
+            }
+        }
+        true
     }
 
     /// The photons, with the copies of a periodic cell.

@@ -5,6 +5,7 @@
 //! slab under uniform irradiance.
 
 use super::Photon;
+use crate::math::{Interval, Ray};
 use glam::{DVec2, DVec3};
 
 /// The position modulo the cell's sides in x and y, in [0, side).
@@ -15,6 +16,30 @@ pub fn wrap(p: DVec3, side: DVec2) -> DVec3 {
         if rest < side { rest } else { 0.0 }
     };
     DVec3::new(wrapped(p.x, side.x), wrapped(p.y, side.y), p.z)
+}
+
+/// The stretches of a ray in the cells that it runs through, the ray moved into the first cell each time. `span` has an end.
+pub fn in_cells(ray: &Ray, span: Interval, side: DVec2) -> impl Iterator<Item = (Ray, Interval)> {
+    let (ray, start) = (*ray, ray.at(span.start));
+    let mut cell = [0, 1].map(|axis| (start[axis] / side[axis]).floor());
+    let mut t = span.start;
+    std::iter::from_fn(move || {
+        if t >= span.end {
+            return None;
+        }
+        let leaves = [0, 1].map(|axis| {
+            let (cell, d) = (cell[axis], ray.dir[axis]);
+            let face = (if d > 0.0 { cell + 1.0 } else { cell }) * side[axis];
+            if d == 0.0 { f64::INFINITY } else { (face - ray.origin[axis]) / d }
+        });
+        let axis = usize::from(leaves[1] < leaves[0]);
+        let moved = DVec3::new(cell[0] * side.x, cell[1] * side.y, 0.0);
+        let end = leaves[axis].min(span.end).max(t);
+        let stretch = Interval { start: t, end };
+        t = end;
+        cell[axis] += ray.dir[axis].signum();
+        Some((Ray::new(ray.origin - moved, ray.dir), stretch))
+    })
 }
 
 /// Appends copies of the photons within `margin` of the cell's edges on the other side, so that a ball of radius

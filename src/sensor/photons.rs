@@ -18,7 +18,7 @@ use crate::photons::{
 use crate::rng::{Purpose, Stream};
 use crate::scene::{Binned, Orders, Quantity, Scene, Sensor};
 use crate::stats::Moments;
-use crate::transport::{BLOCK, NoProgress, Progress, in_parallel, transmittance};
+use crate::transport::{BLOCK, NoProgress, Passage, Progress, in_parallel, transmittance};
 use glam::{DVec2, DVec3};
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::Instant;
@@ -404,7 +404,7 @@ fn prepared_of<'a>(
             check_reach(scene, sensor)?;
         }
     }
-    let margin = margin_of(scene, &sensors, settings.estimator.gather.cap())?;
+    let margin = margin_of(scene, &sensors, settings.estimator.reach())?;
     Ok((sensors, margin))
 }
 
@@ -675,6 +675,16 @@ fn radiance(
             result.book(scene, p, &estimate, estimator.treatment);
             medium.albedo(p) * estimate.value
         };
+        if let Some(of_rays) = estimator.of_rays() {
+            let before = transmittance(scene, ray, segment.interval.start, interior, stream);
+            let span = seen(medium, segment.interval);
+            let passage = Passage::new(medium, ray, span, stream);
+            let boundary = around.boundary(segment.medium);
+            let estimate = of_rays.radiance(map, (ray, span), medium, &boundary, |t| passage.to(t));
+            result.gathers += 1;
+            sum += before * estimate.value;
+            continue;
+        }
         for (span, step) in stretches(medium, segment.interval) {
             let before = transmittance(scene, ray, span.start, interior, stream);
             if !before.is_black() {
@@ -684,6 +694,14 @@ fn radiance(
         }
     }
     sum
+}
+
+/// The part of a span that is seen: as far as the thinnest channel reaches, where that is known.
+fn seen(medium: &Medium, span: Interval) -> Interval {
+    let colliding = medium.highest_sigma_t().0.to_array().into_iter().filter(|s| *s > 0.0);
+    let reach = colliding.map(|s| DEPTH / s).fold(0.0, f64::max);
+    let end = if medium.is_homogeneous() { span.end.min(span.start + reach) } else { span.end };
+    Interval { end, ..span }
 }
 
 /// How a span of a medium is marched through: parts of it with their steps \[L\], one as far as each channel reaches, so that

@@ -20,6 +20,6 @@ pub use flags::Flags;
 pub use flight::{Flight, free_flight};
 pub use guide::{Guide, Guided, window};
 pub use roulette::Roulette;
-pub use transmittance::{connection, segment_transmittance, transmittance};
+pub use transmittance::{Passage, connection, segment_transmittance, transmittance};
 pub use visitor::{Arrival, Step, Visitor, Walker};
 pub use walk::{LONG, walk};

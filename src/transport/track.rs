@@ -177,6 +177,29 @@ pub(super) fn ratio(medium: &Heterogeneous, ray: &Ray, part: Interval, stream: &
     }
 }
 
+/// What passes from the near end of a stretch to each place of it: a step function, unbiased at every place. Its steps are where
+/// they begin \[L\], and what passes from there on.
+pub(super) fn steps(
+    medium: &Heterogeneous,
+    ray: &Ray,
+    part: Interval,
+    stream: &mut Stream,
+) -> Vec<(f64, Spectrum)> {
+    let sigma_t = medium.matter().sigma_t();
+    let scale = sigma_t.max();
+    let shares = sigma_t / scale;
+    let (mut steps, mut passed) = (Vec::new(), Spectrum::ONE);
+    let rate = |bound: &Bound| if scale > 0.0 { bound.high * scale } else { 0.0 };
+    tentative((medium, ray, part), stream, rate, |t, bound, stream| {
+        let q = density_at(medium, ray, t, bound.high, stream) / bound.high;
+        passed *= shares.map(|s| 1.0 - s * q);
+        passed *= outlives(passed.max(), stream);
+        steps.push((t, passed));
+        passed.is_black().then_some(())
+    });
+    steps
+}
+
 /// What a stretch emits towards the near end of the ray [W/(L^2 sr)], and its transmittance: both unbiased.
 ///
 /// `uniform` [W/(L^3 sr)] is emitted beside what the medium emits itself, which counts if `own`. At a tentative collision

@@ -67,6 +67,45 @@ fn across(
     }
 }
 
+/// What passes through a stretch of one medium from its near end to any place of it.
+#[derive(Debug)]
+pub struct Passage<'a> {
+    way: (&'a Medium, &'a Ray, f64),
+    /// None where the optical depth has a closed form.
+    steps: Option<Vec<(f64, Spectrum)>>,
+}
+
+impl<'a> Passage<'a> {
+    /// The passage through a stretch: exact where the optical depth has a closed form, else unbiased at every place, by one tracking of
+    /// the stretch.
+    pub fn new(medium: &'a Medium, ray: &'a Ray, part: Interval, stream: &mut Stream) -> Self {
+        let steps = match medium {
+            Medium::Homogeneous(_) => None,
+            Medium::Heterogeneous(varying) => match varying.optical_depth(ray, part) {
+                Some(_) => None,
+                None => {
+                    stream.work.transmittances += 1;
+                    Some(track::steps(varying, ray, part, stream))
+                }
+            },
+        };
+        Passage { way: (medium, ray, part.start), steps }
+    }
+
+    /// The fraction of light that passes from the near end to a distance `t` along the ray \[1\].
+    pub fn to(&self, t: f64) -> Spectrum {
+        let (medium, ray, start) = self.way;
+        match &self.steps {
+            Some(steps) => {
+                let behind = steps.partition_point(|(from, _)| *from < t);
+                behind.checked_sub(1).map_or(Spectrum::ONE, |last| steps[last].1)
+            }
+            // A closed form of the whole is one of each part.
+            None => decay(medium.integrated_depth(ray, Interval { start, end: t })),
+        }
+    }
+}
+
 /// The transmittance of a stretch of one medium.
 pub fn segment_transmittance(medium: &Medium, ray: &Ray, part: Interval, stream: &mut Stream) -> Spectrum {
     match medium {

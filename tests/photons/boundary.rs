@@ -301,7 +301,7 @@ fn by_definition(
 }
 
 /// A kernel, a treatment and a body as the referee knows them; bodies have their lower corner, or centre, at the origin.
-fn known(kernel: Kernel) -> turbid_analytic::Kernel {
+pub(super) fn known(kernel: Kernel) -> turbid_analytic::Kernel {
     match kernel {
         Kernel::Uniform => turbid_analytic::Kernel::Uniform,
         Kernel::Epanechnikov => turbid_analytic::Kernel::Epanechnikov,

@@ -2,6 +2,7 @@
 
 mod accepted_surface;
 mod advise;
+mod along_rays;
 mod boundary;
 mod estimators;
 mod importance;

@@ -6,6 +6,7 @@ use std::collections::BTreeMap;
 use turbid::estimators::boundary::{Rejection, Treatment};
 use turbid::estimators::{Estimator, Gather, Kernel};
 use turbid::input::line_and_column;
+use turbid::math::Positive;
 
 /// A study as its file says it.
 #[derive(Debug, Clone, Deserialize)]
@@ -219,6 +220,9 @@ pub struct EstimatorFile {
     /// Fixed radii \[L\].
     #[serde(default)]
     radius: Option<OneOrMore<f64>>,
+    /// Radii about whole rays, which are then read at once \[L\]; at points balls of the same radius.
+    #[serde(default)]
+    ray_radius: Option<OneOrMore<f64>>,
     /// Numbers of nearest photons.
     #[serde(default)]
     k: Option<OneOrMore<Count>>,
@@ -287,7 +291,14 @@ impl EstimatorFile {
         for k in self.k.iter().flat_map(OneOrMore::list) {
             gathers.push(Gather::nearest(k.0 as usize, self.max_radius.unwrap_or(cap))?);
         }
-        ensure!(!gathers.is_empty(), "neither radius nor k; allowed: a list of either, or of both");
+        let mut about_rays = Vec::new();
+        for radius in self.ray_radius.iter().flat_map(OneOrMore::list) {
+            about_rays.push(Positive::new("ray_radius", radius)?);
+        }
+        ensure!(
+            !(gathers.is_empty() && about_rays.is_empty()),
+            "neither radius, ray_radius nor k; allowed: a list of any of them"
+        );
         ensure!(
             self.max_radius.is_none() || self.k.is_some(),
             "max_radius goes with k; a fixed radius is its own"
@@ -295,6 +306,10 @@ impl EstimatorFile {
         let mut all = Vec::new();
         for kernel in words(&self.kernel, Kernel::Uniform.name()) {
             let kernel = named("kernel", &kernel, &Kernel::ALL, Kernel::name)?;
+            for &radius in &about_rays {
+                let of_points = Estimator::new(kernel, Gather::Radius(radius)).treated(Treatment::Clipped);
+                all.push(of_points.along_rays(radius));
+            }
             for treatment in words(&self.treatment, Treatment::Clipped.name()) {
                 let treatment = named("treatment", &treatment, &Treatment::ALL, |t| t.name())?;
                 for rejection in words(&self.rejection, Rejection::Off.name()) {
@@ -434,7 +449,7 @@ mod tests {
         assert!(wrong("k = 1").starts_with("estimators[0]: k is 1; allowed"));
         assert!(wrong("radius = -1").contains("allowed"));
         assert!(wrong("kernel = 'boxy'\nk = 5").contains("kernel is \"boxy\"; allowed: uniform"));
-        assert!(wrong("kernel = 'cone'").contains("neither radius nor k"));
+        assert!(wrong("kernel = 'cone'").contains("neither radius, ray_radius nor k"));
         assert!(wrong("k = [5, 5]").contains("asked twice"));
         assert!(wrong("radius = 1\nmax_radius = 2").contains("max_radius goes with k"));
     }

@@ -39,13 +39,16 @@ pub const SAMPLING: &str = "sampling";
 
 /// What estimators that differ in the size of their gather share.
 pub fn family(estimator: &Estimator) -> String {
-    let Estimator { kernel, gather, treatment, rejection } = estimator;
+    let Estimator { kernel, gather, treatment, rejection, ray_radius } = estimator;
     let size = match gather {
         Gather::Radius(_) => "fixed radius",
         Gather::Nearest { .. } => "k nearest",
         Gather::NearestBiased { .. } => "k nearest, biased",
     };
     let mut name = format!("{size}, {}", kernel.name());
+    if ray_radius.is_some() {
+        return name + ", along rays";
+    }
     name += &format!(", {}", treatment.name());
     if *rejection != turbid::estimators::boundary::Rejection::Off {
         name += &format!(", {}", rejection.name());

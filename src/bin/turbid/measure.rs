@@ -4,7 +4,7 @@ use super::given::{Given, notes as notes_of_given};
 use super::load::Source;
 use super::memory::{Memory, passes_that_fit, rounded_down};
 use super::options;
-use super::picture::{BoundaryName, RejectName};
+use super::picture::{BoundaryName, RejectName, ray_radius};
 use super::progress::Bar;
 use super::revision::revision;
 use super::shared::{FormatName, kernels, note, on_threads, parse_count, tell_ahead, whole};
@@ -89,6 +89,10 @@ pub struct Measure {
     /// How an estimate weights its photons.
     #[arg(long, value_parser = kernels(), default_value = "uniform")]
     kernel: Kernel,
+    /// Read rays from all photons within this distance of the ray, in place of from balls at steps along it: the beam radiance
+    /// estimate, for sensors of radiance [L].
+    #[arg(long, conflicts_with = "reject")]
+    ray_radius: Option<f64>,
     /// What an estimate does where a medium ends or a body stands in its ball.
     #[arg(long, value_enum, default_value = "clipped")]
     boundary: BoundaryName,
@@ -315,6 +319,7 @@ impl Measure {
         };
         let estimator = Estimator::new(self.kernel, gather).treated(self.boundary.treatment());
         let estimator = estimator.rejecting(self.reject.rejection());
+        let estimator = Estimator { ray_radius: ray_radius(self.ray_radius)?, ..estimator };
         Ok(PhotonSettings { photons, maps, seed: self.seed, orders: self.orders, estimator })
     }
 

@@ -253,6 +253,10 @@ pub struct Readout {
     /// The same for the caustic map.
     #[arg(long, value_parser = kernels(), default_value = "cone")]
     caustic_kernel: Kernel,
+    /// Read the volume map along whole rays, from all photons within this distance of the ray, weighted by --kernel, in place of at
+    /// each step of the march: the beam radiance estimate [L].
+    #[arg(long, conflicts_with = "reject")]
+    ray_radius: Option<f64>,
     /// Rays of a final gathering at each surface that is seen; 0 reads the global map there itself: fast, and blotchy.
     #[arg(long, default_value_t = 64, value_parser = whole::<u32>(0..=1_000_000))]
     gather_rays: u32,
@@ -354,6 +358,11 @@ impl RejectName {
     }
 }
 
+/// The radius of --ray-radius, checked.
+pub fn ray_radius(given: Option<f64>) -> anyhow::Result<Option<Positive>> {
+    Ok(given.map(|radius| Positive::new("--ray-radius", radius)).transpose()?)
+}
+
 /// Change of direct light above which a step of the march is halved.
 const TOLERANCE: f64 = 0.5;
 
@@ -411,6 +420,7 @@ impl Readout {
         settings.caustic = (self.caustic_kernel, caustic);
         let volume = Estimator::new(self.kernel, volume);
         settings.volume = volume.treated(self.boundary.treatment()).rejecting(self.reject.rejection());
+        settings.volume.ray_radius = ray_radius(self.ray_radius)?;
         settings.gather_rays = self.gather_rays.max(1);
         settings.near = self.near;
         settings.clips_discs = self.edges == EdgesName::Clipped;

@@ -32,6 +32,9 @@ pub fn mapper_settings(settings: &Settings) -> Value {
     let mut of_volume = read((volume.kernel, volume.gather));
     of_volume["boundary"] = json!(volume.treatment.name().replace(' ', "-"));
     of_volume["reject"] = json!(volume.rejection.name().replace(' ', "-"));
+    if let Some(radius) = volume.ray_radius {
+        of_volume["ray_radius"] = json!(radius.get());
+    }
     json!({
         "global": read(*global),
         "caustic": read(*caustic),

@@ -51,6 +51,11 @@ impl<'a> Boundary<'a> {
         Boundary { bodies, ..self }
     }
 
+    /// Whether every photon is of the medium and seen, whoever asks.
+    pub(in crate::estimators) fn is_clear(&self) -> bool {
+        self.is_only && self.later.is_empty() && self.bodies.is_empty()
+    }
+
     /// The medium's own faces and the walls alone.
     pub(in crate::estimators) fn alone(self) -> Self {
         Boundary { later: &[], bodies: &[], is_only: true, ..self }

@@ -22,7 +22,7 @@ pub use extents::{MediumExtent, medium_extents};
 pub use settings::{LEAST_K, Settings, scene_size};
 
 use crate::Spectrum;
-use crate::estimators::Estimate;
+use crate::estimators::{Estimate, RayEstimate, RayEstimator};
 use crate::geometry::Shape;
 use crate::integrators::path::{Rays, next_event, seen_straight, uncollided};
 use crate::integrators::{Layer, Layers};
@@ -62,6 +62,12 @@ impl Gathers {
         self.underfull += u64::from(estimate.underfull);
         self.radii += estimate.radius;
         self.underfull_radii += if estimate.underfull { estimate.radius } else { 0.0 };
+        self.found += estimate.found as u64;
+    }
+
+    fn add_along(&mut self, along: &RayEstimator, estimate: &RayEstimate) {
+        self.count += 1;
+        self.radii += along.radius.get();
         self.found += estimate.found as u64;
     }
 

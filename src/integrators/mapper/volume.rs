@@ -2,12 +2,13 @@
 
 use super::{Eye, Mapper, Report};
 use crate::Spectrum;
+use crate::estimators::boundary::Boundary;
 use crate::integrators::march::{self, LEFT, Source};
 use crate::math::{Interval, Ray, cosine_pair};
 use crate::phase::PhaseFunction;
 use crate::rng::Stream;
 use crate::scene::Target;
-use crate::transport::{Walker, connection, transmittance};
+use crate::transport::{Passage, Walker, connection, transmittance};
 use glam::DVec3;
 
 /// Radiance that collisions scatter into a direction, over the collisions: times sigma_t it is the source of the
@@ -42,12 +43,8 @@ impl Mapper<'_> {
         let blind = |stream: &mut Stream| phase.scatter(dir, stream.pair());
         let single = self.direct(&here, None, report, stream, value, blind);
         let mut multiple = Spectrum::ZERO;
-        if let Some(map) = &self.maps.volume {
-            let boundary = self.extents[number].boundary();
-            let boundary = match settings.needs_walls() {
-                true => boundary.about(&[]).with_walls(&self.walls),
-                false => boundary,
-            };
+        if let Some(map) = self.maps.volume.as_ref().filter(|_| settings.volume.ray_radius.is_none()) {
+            let boundary = self.boundary(number);
             let estimate = settings.volume.in_scattered(map, position, -dir, phase, Spectrum::ONE, &boundary);
             report.volume.add(&estimate);
             let sigma_t = medium.sigma_t(position);
@@ -55,6 +52,15 @@ impl Mapper<'_> {
         }
         let albedo = medium.albedo(position);
         Scattered { single: albedo * single, multiple: albedo * multiple }
+    }
+
+    /// What estimates are told of what is about a medium.
+    fn boundary(&self, number: usize) -> Boundary<'_> {
+        let boundary = self.extents[number].boundary();
+        match self.settings.needs_walls() {
+            true => boundary.about(&[]).with_walls(&self.walls),
+            false => boundary,
+        }
     }
 }
 
@@ -117,6 +123,14 @@ impl Eye<'_, '_> {
         let is_full = mapper.scene.plan().is_full;
         if !medium.is_colliding() && (!is_full || span.end == f64::INFINITY) {
             return;
+        }
+        if let (Some(along), Some(map)) = (mapper.settings.volume.of_rays(), &mapper.maps.volume) {
+            let passage = Passage::new(medium, &walker.ray, span, stream);
+            let boundary = mapper.extents[number].boundary();
+            let way = (&walker.ray, span);
+            let estimate = along.radiance(map, way, medium, &boundary, |t| passage.to(t));
+            self.report.volume.add_along(&along, &estimate);
+            self.layers.multiple += seen * estimate.value;
         }
         let march = &mapper.settings.march;
         let mut source = Fog { eye: self, walker, number };

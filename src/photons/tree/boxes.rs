@@ -6,7 +6,7 @@ use wide::f32x8;
 /// Sixteen boxes as arrays, in two rows of eight. Places without a box hold one that is infinitely far away.
 #[derive(Debug, Clone)]
 pub(super) struct Boxes {
-    rows: [[Row; 2]; 2],
+    pub(super) rows: [[Row; 2]; 2],
 }
 
 /// A query point in the tree's units.

@@ -1,5 +1,6 @@
 //! The tree over photon positions: blocks of sixteen in kd order, boxes sixteen wide above them.
 
+mod along;
 mod block;
 mod boxes;
 mod facing;

@@ -3,7 +3,7 @@
 
 use super::PhotonTree;
 use super::block::{ROW, Row};
-use super::boxes::Probe;
+use super::boxes::{Boxes, Probe};
 use super::scratch::{Scratch, with_scratch};
 use super::units::LIMIT;
 use glam::DVec3;
@@ -162,6 +162,12 @@ impl PhotonTree {
 
     /// Lists the blocks whose boxes touch the ball of squared radius `r2`, in the tree's order.
     pub(super) fn touch(&self, probe: &Probe, r2: f32, scratch: &mut Scratch) {
+        self.descend(|boxes| probe.touched(boxes, r2), scratch);
+    }
+
+    /// Lists the blocks whose boxes are accepted, a bit each, in the tree's order.
+    #[inline(always)]
+    pub(super) fn descend(&self, accepted: impl Fn(&Boxes) -> u32, scratch: &mut Scratch) {
         let Scratch { touched, parents, .. } = scratch;
         touched.clear();
         touched.extend((!self.levels.is_empty()).then_some(0));
@@ -173,7 +179,7 @@ impl PhotonTree {
             touched.resize(parents.len() * 16 + 4, 0);
             let mut end = 0;
             for &node in parents.iter() {
-                let mask = probe.touched(&level[node as usize], r2) as usize;
+                let mask = accepted(&level[node as usize]) as usize;
                 for first in [0, 4, 8, 12] {
                     let (set, count) = SET_BITS[mask >> first & 15];
                     for (child, bit) in touched[end..end + 4].iter_mut().zip(set) {

@@ -1,0 +1,265 @@
+//! Points along a ray: sums by hand, copies of a periodic cell, what passes to each place, blur across the ray, walls, and paths.
+
+use super::boundary::known;
+use crate::checks::media::{layered, varying};
+use crate::support::run::{paths, sensor};
+use crate::support::scenes::{bounded, cuboid, homogeneous, point_light};
+use crate::support::verdict;
+use glam::{DVec2, DVec3, Vec3};
+use turbid::Spectrum;
+use turbid::estimators::boundary::Boundary;
+use turbid::estimators::{Estimator, Gather, Kernel, RayEstimator};
+use turbid::geometry::{Rectangle, Shape};
+use turbid::math::{FOUR_PI, Interval, Positive, Ray, exp, warp};
+use turbid::medium::Medium;
+use turbid::photons::synthetic::{Number, Profile, Synthetic};
+use turbid::photons::{Flags, Photon, PhotonMap};
+use turbid::rng::{Purpose, Stream};
+use turbid::scene::{Orders, Quantity, Region, Scene, SceneParts};
+use turbid::sensor::{PhotonSettings, by_photons};
+use turbid::stats::Moments;
+use turbid::transport::{NoProgress, Passage};
+use turbid_analytic::beams::Pairing;
+
+fn photon(position: DVec3, dir: Vec3) -> Photon {
+    Photon { position, dir, normal: Vec3::ZERO, power: Vec3::ONE, order: 0, flags: Flags::NONE }
+}
+
+fn reading(kernel: Kernel, radius: f64) -> RayEstimator {
+    RayEstimator { kernel, radius: Positive::new("the radius", radius).unwrap() }
+}
+
+/// One photon beside a ray, in a homogeneous medium and in one that grows denser along it: products of five factors.
+#[test]
+fn one_photon_by_hand() {
+    let ray = Ray::new(DVec3::new(-2.0, 0.03, 0.7), DVec3::X);
+    let span = Interval { start: 0.0, end: 4.0 };
+    let map = PhotonMap::new(vec![photon(DVec3::new(0.5, 0.06, 0.74), Vec3::Z)], 1).unwrap();
+    let even = homogeneous(Spectrum::ONE, Spectrum::grey(0.5), 0.5);
+    let beer = |t: f64| Spectrum::grey(exp(-t));
+    for (kernel, expected) in
+        [(Kernel::Uniform, 0.05579179), (Kernel::Epanechnikov, 0.08368769), (Kernel::Biweight, 0.09414865)]
+    {
+        let estimate = reading(kernel, 0.1).radiance(&map, (&ray, span), &even, &Boundary::UNKNOWN, beer);
+        assert_eq!((estimate.found, estimate.rejected), (1, 0));
+        assert!((estimate.value[0] / expected - 1.0).abs() < 3e-7, "{kernel:?}: {}", estimate.value[0]);
+        // Beyond the radius, and behind the end.
+        let thin = reading(kernel, 0.0499).radiance(&map, (&ray, span), &even, &Boundary::UNKNOWN, beer);
+        assert_eq!(thin.found, 0);
+        let short = Interval { end: 2.49, ..span };
+        let short = reading(kernel, 0.1).radiance(&map, (&ray, short), &even, &Boundary::UNKNOWN, beer);
+        assert_eq!(short.found, 0);
+    }
+    // Extinction .4 + .2 s along the ray: what passes has a depth of 1.625.
+    let passed = |t: f64| Spectrum::grey(exp(-(0.4 * t + 0.1 * t * t)));
+    let estimate =
+        reading(Kernel::Uniform, 0.1).radiance(&map, (&ray, span), &even, &Boundary::UNKNOWN, passed);
+    assert!((estimate.value[0] / 0.13383755 - 1.0).abs() < 3e-7);
+}
+
+/// Rays that run through many copies of a cell, either way, level and steep, from far outside it: found is what all copies, asked
+/// one by one, say; and a radius beyond the copies, or a stretch without end, is not known.
+#[test]
+fn rays_run_through_the_copies_of_a_cell() {
+    let (side, reach) = (DVec2::new(2.0, 3.0), 0.4);
+    let mut stream = Stream::new(8, Purpose::Synthetic, 0, 0);
+    let photons: Vec<Photon> =
+        (0..500).map(|_| photon(DVec3::from(stream.triple()) * side.extend(1.0), Vec3::Z)).collect();
+    let map = PhotonMap::periodic(vec![photons.clone()], 1, Some((side, reach)), &NoProgress).unwrap();
+    let mut found = 0;
+    for trial in 0..60 {
+        let dir = match trial % 6 {
+            0 => DVec3::X,
+            1 => DVec3::NEG_Y,
+            2 => DVec3::new(-1.0, 1e-3, 1e-4).normalize(),
+            _ => warp::square_to_sphere(stream.pair()),
+        };
+        let through = (DVec3::from(stream.triple()) - 0.5) * DVec3::new(8.0, 9.0, 1.0) + 0.5 * DVec3::Z;
+        let ray = Ray::new(through - dir * 5.0, dir);
+        let span = Interval { start: 4.0 * stream.unit(), end: 6.0 + 6.0 * stream.unit() };
+        let radius = [0.05, 0.2, 0.4][trial % 3];
+        let mut sum = [0.0; 3];
+        let is_known = map.along(&ray, span, radius, |_, foot, squared| {
+            sum = [sum[0] + 1.0, sum[1] + foot, sum[2] + squared];
+        });
+        assert!(is_known);
+        let mut expected = [0.0; 3];
+        for (i, j) in (-12..=12).flat_map(|i| (-8..=8).map(move |j| (i, j))) {
+            let shift = DVec3::new(f64::from(i) * side.x, f64::from(j) * side.y, 0.0);
+            for photon in &photons {
+                let way = photon.position + shift - ray.origin;
+                let foot = way.dot(dir);
+                let squared = (way - dir * foot).length_squared();
+                if span.start <= foot && foot < span.end && squared <= radius * radius {
+                    expected = [expected[0] + 1.0, expected[1] + foot, expected[2] + squared];
+                }
+            }
+        }
+        // Positions are stored in single precision: a photon on the edge may be seen on either side of it.
+        assert!((sum[0] - expected[0]).abs() <= 1.0, "{trial}: {sum:?} {expected:?}");
+        if sum[0] == expected[0] {
+            assert!((sum[1] - expected[1]).abs() < 1e-5 * expected[1].max(1.0), "{trial}");
+            assert!((sum[2] - expected[2]).abs() < 1e-5 * expected[2].max(0.1), "{trial}");
+        }
+        found += expected[0] as u64;
+    }
+    assert!(found > 2000, "{found}");
+    let ray = Ray::new(DVec3::ZERO, DVec3::X);
+    assert!(!map.along(&ray, Interval { start: 0.0, end: 1.0 }, 0.41, |_, _, _| ()));
+    assert!(!map.along(&ray, Interval { start: 0.0, end: f64::INFINITY }, 0.1, |_, _, _| ()));
+}
+
+/// What passes to each place of a stretch is right in the mean, in channels of different extinction too, and exact where it has a
+/// closed form.
+#[test]
+fn what_passes_is_unbiased_at_every_place() {
+    let corners = (DVec3::ZERO, DVec3::new(1.0, 1.0, 4.0));
+    let density = layered(corners, 9, |z| 0.2 + (z - 1.7) * (z - 1.7));
+    let medium = varying(Spectrum::rgb(0.3, 1.0, 2.0), 0.8, density);
+    let even = homogeneous(Spectrum::rgb(0.3, 1.0, 2.0), Spectrum::grey(0.5), 0.0);
+    let ray = Ray::new(DVec3::new(0.5, 0.5, -1.0), DVec3::Z);
+    let part = Interval { start: 1.25, end: 5.0 };
+    let places = [1.25, 1.5, 2.2, 3.7, 5.0];
+    let mut moments = [[Moments::new(); 3]; 5];
+    for history in 0..100_000 {
+        let mut stream = Stream::new(4, Purpose::Paths, 0, history);
+        let passage = Passage::new(&medium, &ray, part, &mut stream);
+        for (t, moments) in places.iter().zip(&mut moments) {
+            let passed = passage.to(*t);
+            (0..3).for_each(|channel| moments[channel].push(passed[channel]));
+        }
+    }
+    for (t, moments) in places.iter().zip(&moments) {
+        let depth = medium.integrated_depth(&ray, Interval { end: *t, ..part });
+        let exact = Passage::new(&even, &ray, part, &mut Stream::new(4, Purpose::Paths, 0, 0)).to(*t);
+        for channel in 0..3 {
+            let expected = exp(-depth[channel]);
+            if *t > part.start {
+                let what = format!("to {t}, channel {channel}");
+                verdict::agrees(&what, &moments[channel], (expected, 1e-9), 0.05 * expected.max(0.05), 4);
+            } else {
+                assert_eq!((moments[channel].mean(), moments[channel].std_error()), (1.0, 0.0));
+            }
+            let rate = [0.3, 1.0, 2.0][channel];
+            assert!((exact[channel] / exp(-rate * (t - part.start)) - 1.0).abs() < 1e-14);
+        }
+    }
+}
+
+/// In an exponential field, across it and aslant: blurred by the kernel's disc, as the referee says, and by nothing else.
+#[test]
+fn fields_are_blurred_across_the_ray() {
+    let (rate, radius) = (3.0, 0.2);
+    let synthetic = Synthetic::new(Profile::Exponential { rate }, DVec3::ZERO, DVec3::ONE).unwrap();
+    let even = homogeneous(Spectrum::ONE, Spectrum::ONE, 0.0);
+    let level = Ray::new(DVec3::new(0.5, 0.5, -1.0), DVec3::Z);
+    let aslant = Ray::new(DVec3::new(-0.2, 0.5, -0.3), DVec3::new(0.6, 0.0, 0.8));
+    // From the box's face to face, and from x = .25 to .625, where no kernel reaches beyond it.
+    let ways = [
+        ("level", level, Interval { start: 1.0, end: 2.0 }),
+        ("aslant", aslant, Interval { start: 0.75, end: 1.375 }),
+    ];
+    let mut moments = [[Moments::new(); 5]; 2];
+    for replicate in 0..400 {
+        let map = synthetic.map(Number::Expected(20_000), 11, replicate).unwrap();
+        for ((_, ray, span), moments) in ways.iter().zip(&mut moments) {
+            for (kernel, moments) in Kernel::ALL.into_iter().zip(moments) {
+                let reading = reading(kernel, radius);
+                let all = |_| Spectrum::ONE;
+                let estimate = reading.radiance(&map, (ray, *span), &even, &Boundary::UNKNOWN, all);
+                moments.push(estimate.value[0]);
+            }
+        }
+    }
+    for ((name, ray, span), moments) in ways.iter().zip(&moments) {
+        let along = |t: f64| synthetic.density(ray.at(t));
+        let sharp = crate::support::quadrature::integrate(span.start, span.end, 8, along) / FOUR_PI;
+        let across = rate * (1.0 - ray.dir.x * ray.dir.x).sqrt();
+        for (kernel, moments) in Kernel::ALL.into_iter().zip(moments) {
+            let blur = Pairing::RayPoints.exponential_mean(known(kernel), across * radius).unwrap();
+            let expected = sharp * blur.value;
+            let what = format!("{name}, {kernel:?}");
+            verdict::agrees(&what, moments, (expected, 1e-6 * expected), 0.02 * expected, 11);
+            if kernel == Kernel::Uniform {
+                verdict::rejects(&format!("not blurred, {what}"), moments, sharp, 11);
+            }
+        }
+    }
+}
+
+/// A wall beside the ray hides the photons beyond it; those of another medium do not count.
+#[test]
+fn photons_behind_walls_do_not_count() {
+    let even = homogeneous(Spectrum::ONE, Spectrum::ONE, 0.0);
+    let mut stream = Stream::new(9, Purpose::Synthetic, 0, 0);
+    let photons: Vec<Photon> = (0..2000).map(|_| photon(DVec3::from(stream.triple()), Vec3::Z)).collect();
+    let map = PhotonMap::new(photons.clone(), 1).unwrap();
+    let ray = Ray::new(DVec3::new(0.5, 0.5, 0.0), DVec3::Z);
+    let span = Interval { start: 0.0, end: 1.0 };
+    // The wall ends half way up.
+    let wall = Rectangle::new(DVec3::new(0.6, -1.0, -1.0), DVec3::Y * 3.0, DVec3::Z * 1.5).unwrap();
+    let walls = [Shape::Rectangle(wall)];
+    let whole = cuboid(DVec3::ZERO, DVec3::ONE);
+    let other = [cuboid(DVec3::new(0.0, 0.6, 0.0), DVec3::ONE)];
+    let known = Boundary::of(&whole).unwrap();
+    let reading = reading(Kernel::Uniform, 0.3);
+    for (boundary, is_lost) in [
+        (known.about(&walls), (|p: DVec3| p.x > 0.6 && p.z < 0.5) as fn(DVec3) -> bool),
+        (known.among(&other), |p: DVec3| p.y > 0.6),
+    ] {
+        let estimate = reading.radiance(&map, (&ray, span), &even, &boundary, |_| Spectrum::ONE);
+        let near = |p: &&Photon| (p.position - DVec3::new(0.5, 0.5, p.position.z)).length() < 0.3;
+        let lost = photons.iter().filter(near).filter(|p| is_lost(p.position)).count();
+        let all = photons.iter().filter(near).count();
+        assert_eq!((estimate.rejected, estimate.found), (lost, all - lost));
+        assert!(lost > 50);
+    }
+}
+
+/// Light that is scattered twice and more, along rays through a box of even and of varying density: as by paths.
+#[test]
+fn radiance_along_rays_is_that_of_paths() {
+    let corners = (DVec3::splat(-1.0), DVec3::ONE);
+    let even = homogeneous(Spectrum::rgb(1.0, 2.0, 0.5), Spectrum::rgb(0.9, 0.5, 0.8), 0.4);
+    let density = layered(corners, 7, |z| 1.0 + 0.7 * z);
+    let media: [(&str, Medium); 2] = [("even", even), ("varying", varying(Spectrum::ONE, 0.9, density))];
+    let orders = Orders { min: 2, max: None };
+    let views = [
+        Ray::new(DVec3::new(0.1, 0.2, -3.0), DVec3::Z),
+        Ray::new(DVec3::new(-0.2, 0.3, 0.1), DVec3::new(0.48, 0.6, 0.64)),
+    ];
+    for (name, medium) in media {
+        let region = Region { shape: cuboid(corners.0, corners.1), medium };
+        let light = point_light(DVec3::new(0.5, -0.4, 0.6), Spectrum::ONE);
+        let plain = bounded(vec![region.clone()], Vec::new(), vec![light.clone()]);
+        let scene = Scene::new(SceneParts {
+            regions: vec![region],
+            lights: plain.named_lights().to_vec(),
+            sensors: views.iter().map(|ray| sensor(Quantity::Radiance(*ray), orders)).collect(),
+            ..SceneParts::default()
+        })
+        .unwrap();
+        let radius = Positive::new("the radius", 0.1).unwrap();
+        let points = Estimator::new(Kernel::Epanechnikov, Gather::Radius(radius));
+        let settings = PhotonSettings {
+            photons: 10_000,
+            maps: 256,
+            seed: 6,
+            orders: Orders::ALL,
+            estimator: points.along_rays(radius),
+        };
+        let read = by_photons(&scene, &settings, &NoProgress).unwrap().measurements;
+        let channels = read.len() / views.len();
+        for (view, ray) in views.iter().enumerate() {
+            let reference = paths(&plain, Quantity::Radiance(*ray), orders, 1 << 17, 3);
+            for channel in 0..channels {
+                let found = &read[view * channels + channel];
+                let (x, y) = (found.mean, reference[channel].mean());
+                let error = libm::hypot(found.std_error.unwrap(), reference[channel].std_error());
+                assert!(error < 0.05 * y, "{name} {view} {channel}: {found:?} {reference:?}");
+                // The blur is m2 r^2/4 = 1/1200 of the Laplacian across the ray, which is a few times the field.
+                assert!((x - y).abs() < 4.0 * error + 0.005 * y, "{name} {view} {channel}: {x} {y} {error}");
+            }
+        }
+    }
+}
