@@ -482,7 +482,7 @@ fn files_of_photons_that_cannot_be_read() {
     refuse("ends.npy", b"\x93NUMPY\x01\x00\xff\xff{", &["ends after 11 bytes, within its header of 65535"]);
     refuse("stub.npy", b"\x93NUM", &["ends after 4 bytes, within its header"]);
     refuse("deep.npy", &npy_of(&"[".repeat(1000), "(2,)", vec![]), &["too deep"]);
-    refuse("other.npy", b"\x93NUXY\x01\x00\x00\x00", &["neither PLY nor a NumPy array"]);
+    refuse("other.npy", b"\x93NUMXY\x01\x00\x00\x00", &["does not begin as a NumPy array"]);
     for bytes in [&b""[..], b"p", b"plywood\n", b"PK\x03\x04zip"] {
         refuse("other", bytes, &["is neither PLY nor a NumPy array; allowed: photons as .ply or .npy"]);
     }
