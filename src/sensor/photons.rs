@@ -18,7 +18,7 @@ use crate::photons::{
 use crate::rng::{Purpose, Stream};
 use crate::scene::{Binned, Orders, Quantity, Scene, Sensor};
 use crate::stats::Moments;
-use crate::transport::{BLOCK, NoProgress, Progress, in_parallel, transmittance};
+use crate::transport::{BLOCK, NoProgress, Progress, blocks_at_once, in_parallel, transmittance};
 use glam::{DVec2, DVec3};
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::Instant;
@@ -376,9 +376,9 @@ pub(super) fn forecast_of(
         _ => size_of::<Photon>() as f64 * met + PEAK_BYTES * copied,
     };
     let seconds = (one * photons as f64 + BUILD_SECONDS * copied) * maps as f64 / threads;
-    // The scores of all blocks of a pass, those that they are added to, and what the threads' histories add up.
+    // The scores of the blocks that are there at a time, those that they are added to, and what the threads' histories add up.
     let (scores, history) = score_bytes(scene, &scored(sensors));
-    let scores = scores * (photons.div_ceil(BLOCK) + 1) as f64 + history * threads;
+    let scores = scores * (blocks_at_once(photons.div_ceil(BLOCK)) + 1.0) + history * threads;
     let bytes = bytes + scores + row_bytes(scene);
     Ok(PhotonForecast { stored: copied, bytes, seconds })
 }
