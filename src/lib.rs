@@ -14,7 +14,7 @@
 //!   layers of different media over a ground; half-spaces; spheres, cavities and critical bodies of isotropic scattering; point
 //!   sources in unbounded media; kernel theory: moments, blur, edges, sinusoids, beams, the k nearest rule, progressive passes,
 //!   treatments of the boundary of slabs, spheres and cuboids, false photons.
-//! - Simulated: media in slabs, spheres and cuboids, homogeneous, on grids (`.vol` files), as clouds and thinning out with
+//! - Simulated: media in slabs, spheres and cuboids, homogeneous, on grids (`.vol` and `.npy` files), as clouds and thinning out with
 //!   height, that absorb, scatter and emit, also within glass and in one another; phase functions of one and two
 //!   Henyey-Greenstein terms, Schlick, Rayleigh, tables; diffuse surfaces with textures, mirrors, smooth dielectrics, coloured filters;
 //!   meshes, lathes, height fields; point, spot, area and beam lights, the sun (also through a window), isotropic incidence, volume

@@ -56,6 +56,11 @@ impl Estimator {
         self.ray_radius.map(|radius| RayEstimator { kernel: self.kernel, radius })
     }
 
+    /// The smallest of the radii that it names, of a point or a ray \[L\].
+    pub fn least_named_radius(&self) -> f64 {
+        self.gather.cap().min(self.ray_radius.map_or(f64::INFINITY, Positive::get))
+    }
+
     /// The farthest that photons are looked for, of a point or a ray \[L\].
     pub fn reach(&self) -> f64 {
         self.gather.cap().max(self.ray_radius.map_or(0.0, Positive::get))

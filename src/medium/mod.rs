@@ -13,6 +13,7 @@ mod heterogeneous;
 mod homogeneous;
 mod markov;
 mod noise;
+mod npy;
 mod period;
 mod vol;
 

@@ -26,6 +26,12 @@ struct Period {
     reach: f64,
 }
 
+/// The extent of a map over a radius of a gather, at most. A stored coordinate is rounded to the 24 bits of single precision, by up
+/// to 2^-25 of a unit of at most twice the extent, and so is that of the point that asks: each by 2^-24 of the extent, here by
+/// 2^-24 x 10^6 = 6 % of the radius. Such errors differ from photon to photon and blur the ball's edge: 200,000 photons evenly about
+/// a place at 0.7 of the extent give an estimate that is 0.3 % wrong here, 7 % at 10^7, and 12 times too large at 10^8.
+const MOST_EXTENT: f64 = 1e6;
+
 impl PhotonMap {
     /// The map of one pass, its tree built by the calling thread.
     ///
@@ -138,6 +144,23 @@ impl PhotonMap {
             }
         }
         true
+    }
+
+    /// Checks that positions are told apart finely enough for balls of a radius \[L\]: at least 10^-6 of
+    /// [`PhotonTree::extent`].
+    ///
+    /// # Errors
+    /// `Error::Scene` that says how far the photons reach, and which radius is allowed
+    pub fn check_radius(&self, radius: f64) -> Result<()> {
+        let extent = self.tree.extent();
+        if extent <= MOST_EXTENT * radius {
+            return Ok(());
+        }
+        Err(Error::Scene(format!(
+            "a gather radius of {radius:e} L in a map whose photons reach {extent:.3e} L from its middle, at positions in single \
+             precision; allowed: at least {:.3e} L, 10^-6 of that",
+            extent / MOST_EXTENT
+        )))
     }
 
     /// The photons, with the copies of a periodic cell.

@@ -219,6 +219,7 @@ impl Pilot {
             let mut values = [0.0; BALLS];
             for (ball, value) in values.iter_mut().enumerate() {
                 let gather = Gather::radius(radius(probe.reach, ball))?;
+                map.check_radius(gather.cap())?;
                 let uniform = Estimator::new(Kernel::Uniform, gather);
                 let start = Instant::now();
                 let estimate = uniform.fluence(map, p, sigma_t, &Boundary::UNKNOWN);

@@ -44,7 +44,7 @@ impl Method<'_> {
     /// A film of n samples has the same bits however many calls brought them, and on any number of threads.
     ///
     /// # Errors
-    /// those of [`extend`] and of [`extend_by_light`]
+    /// those of [`extend`], of [`extend_by_light`] and of [`Mapper::check_radii`]
     pub fn extend(
         &self,
         film: &mut Film,
@@ -55,6 +55,7 @@ impl Method<'_> {
     ) -> Result<Report> {
         match self {
             Method::Photons(mapper) => {
+                mapper.check_radii()?;
                 let interior = mapper.scene().interior_at(camera.position());
                 extend(film, camera, samples, streams, progress, |ray, stream: &mut Stream, work| {
                     let (layers, report) = mapper.radiance(ray, None, interior, stream);

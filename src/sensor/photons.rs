@@ -18,7 +18,7 @@ use crate::photons::{
 use crate::rng::{Purpose, Stream};
 use crate::scene::{Binned, Orders, Quantity, Scene, Sensor};
 use crate::stats::Moments;
-use crate::transport::{BLOCK, NoProgress, Passage, Progress, in_parallel, transmittance};
+use crate::transport::{BLOCK, NoProgress, Passage, Progress, blocks_at_once, in_parallel, transmittance};
 use glam::{DVec2, DVec3};
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::Instant;
@@ -51,6 +51,8 @@ pub struct PhotonReadings {
     pub beyond: u64,
     /// Estimates made.
     pub gathers: u64,
+    /// Radius of the smallest ball \[L\]; infinite of none.
+    pub least_radius: f64,
 }
 
 impl PhotonReadings {
@@ -62,12 +64,14 @@ impl PhotonReadings {
             underfull: 0,
             beyond: 0,
             gathers: 0,
+            least_radius: f64::INFINITY,
         }
     }
 
     /// Counts an estimate at a point.
     fn book(&mut self, scene: &Scene, p: DVec3, estimate: &Estimate, treatment: Treatment) {
         self.gathers += 1;
+        self.least_radius = self.least_radius.min(estimate.radius);
         self.underfull += u64::from(estimate.underfull);
         self.beyond += u64::from(treatment == Treatment::None && estimate.radius > scene.room(p));
     }
@@ -372,9 +376,9 @@ pub(super) fn forecast_of(
         _ => size_of::<Photon>() as f64 * met + PEAK_BYTES * copied,
     };
     let seconds = (one * photons as f64 + BUILD_SECONDS * copied) * maps as f64 / threads;
-    // The scores of all blocks of a pass, those that they are added to, and what the threads' histories add up.
+    // The scores of the blocks that are there at a time, those that they are added to, and what the threads' histories add up.
     let (scores, history) = score_bytes(scene, &scored(sensors));
-    let scores = scores * (photons.div_ceil(BLOCK) + 1) as f64 + history * threads;
+    let scores = scores * (blocks_at_once(photons.div_ceil(BLOCK)) + 1.0) + history * threads;
     let bytes = bytes + scores + row_bytes(scene);
     Ok(PhotonForecast { stored: copied, bytes, seconds })
 }
@@ -559,6 +563,9 @@ pub(super) fn check(scene: &Scene, sensor: &Sensor) -> Result<()> {
 }
 
 /// What a map answers for every bin of a sensor; seed, replicate and number of the sensor say where in the bins it is asked.
+///
+/// # Errors
+/// `Error::Scene` for a bin that reaches outside of all media, and for a ball that is too small beside the map
 pub(super) fn read_bins(
     around: &Surroundings<'_>,
     map: &PhotonMap,
@@ -567,6 +574,7 @@ pub(super) fn read_bins(
     (seed, replicate, number): (u64, u64, usize),
     result: &mut PhotonReadings,
 ) -> Result<Vec<Spectrum>> {
+    map.check_radius(estimator.least_named_radius())?;
     let one = |bin: usize| {
         let number = (bin as u64) << 32 | number as u64;
         let mut stream = Stream::new(seed, Purpose::Resampling, replicate, number);
@@ -578,10 +586,13 @@ pub(super) fn read_bins(
     let mut values = Vec::with_capacity(bins);
     for read in in_parallel(bins, one) {
         let (value, booked) = read?;
+        // Where the k nearest photons lie close together, the ball is known only now.
+        map.check_radius(booked.least_radius)?;
         values.push(value);
         result.gathers += booked.gathers;
         result.underfull += booked.underfull;
         result.beyond += booked.beyond;
+        result.least_radius = result.least_radius.min(booked.least_radius);
     }
     Ok(values)
 }

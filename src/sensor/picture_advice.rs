@@ -285,6 +285,7 @@ impl PicturePilot {
                         *gather = Gather::nearest(*k, gather.cap())?;
                     }
                     let mapper = Mapper::new(scene, &maps, &read);
+                    mapper.check_radii()?;
                     let mut film = Film::new(width, height);
                     let streams = Streams { seed: pilot.seed, replicate };
                     let start = Instant::now();

@@ -9,7 +9,7 @@ use crate::photons::{Emitter, Histories, Ledger, Part, Photon, Run, Scores, scor
 use crate::rng::{Purpose, Stream};
 use crate::scene::{Binned, Orders, Quantity, Scene, Scoring, Sensor};
 use crate::stats::Moments;
-use crate::transport::{BLOCK, Progress};
+use crate::transport::{BLOCK, Progress, blocks_at_once};
 
 /// How many photons, and which.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -31,13 +31,13 @@ pub struct TallyReadings {
     pub ledger: Ledger,
 }
 
-/// Memory of the scores of the blocks that are followed at a time \[bytes\], unless [`FEWEST`] blocks take more.
+/// Memory that the scores of the blocks of a pass would take, all at a time \[bytes\], unless [`FEWEST`] blocks take more.
 const SCORES: f64 = 2.7e8;
 /// Blocks at a time, at least and at most: enough for the threads of a large machine, where bins are few.
 const FEWEST: u64 = 8;
 const MOST: u64 = 512;
 
-/// Blocks of histories whose scores are in memory at a time. They depend on the scene alone, not on the machine, and so
+/// Blocks of histories of a pass. They depend on the scene alone, not on the machine, and so
 /// does the order in which scores are added up.
 fn blocks_at_a_time(scene: &Scene, sensors: &[Sensor]) -> u64 {
     let (block, _) = score_bytes(scene, sensors);
@@ -48,7 +48,7 @@ fn blocks_at_a_time(scene: &Scene, sensors: &[Sensor]) -> u64 {
 pub fn tally_bytes(scene: &Scene, settings: &TallySettings) -> f64 {
     let (block, history) = score_bytes(scene, scene.sensors());
     let blocks = blocks_at_a_time(scene, scene.sensors()).min(settings.photons.div_ceil(BLOCK));
-    let scores = block * (blocks + 2) as f64 + history * rayon::current_num_threads() as f64;
+    let scores = block * (blocks_at_once(blocks) + 2.0) + history * rayon::current_num_threads() as f64;
     // Measurements are made when the last block is merged.
     scores.max(block + row_bytes(scene))
 }

@@ -13,7 +13,7 @@ mod transmittance;
 mod visitor;
 mod walk;
 
-pub use blocks::{BLOCK, NoProgress, Progress, in_parallel, run_blocks, run_blocks_of};
+pub use blocks::{BLOCK, NoProgress, Progress, blocks_at_once, in_parallel, run_blocks, run_blocks_of};
 pub use emission::{collected, emission};
 pub use equal_angles::{Distances, EqualAngles, span};
 pub use flags::Flags;

@@ -442,6 +442,12 @@ fn files_beyond_the_free_memory_are_refused() {
     let fog = folder.file("fog.toml", &fog.replace("part.obj", "whole.obj"));
     std::fs::write(path("whole.obj"), "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n").unwrap();
     refused(&fog, "fog.vol", "a grid of 200000000 bytes takes about 240 MB");
+    let head = "{'descr': '<f4', 'fortran_order': True, 'shape': (1000, 1000, 50)}";
+    hollow("fog.npy", &[b"\x93NUMPY\x01\x00B\x00", head.as_bytes()].concat(), 200_000_076);
+    let array = std::fs::read_to_string(&fog).unwrap();
+    let array = array.replace("\"fog.vol\"", "\"fog.npy\", min = [0, 0, 0], max = [1, 1, 1]");
+    let array = folder.file("array.toml", &array);
+    refused(&array, "fog.npy", "a grid of 50000000 samples takes about 500 MB");
     let waves = "height-field = { corner = [0, 0], size = [1, 1], cells = [1024, 1000], heights = { waves = { seed = 1, count = 1, wavelength = 1, rms = 0.1 } } }";
     let waves = folder.file("waves.toml", &SCENE.replace("mesh = { file = \"part.obj\" }", waves));
     refused(&waves, "objects[0]", "a height field of 1024 x 1000 cells takes about 1.0 GB");

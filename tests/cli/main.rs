@@ -1,6 +1,7 @@
 //! The command `turbid`: what it prints, and how it refuses: exit code 2, one line on stderr, nothing on stdout.
 #![allow(clippy::unwrap_used, reason = "tests")]
 
+mod arrays;
 mod bad_files;
 mod bad_input;
 mod bad_pictures;

@@ -250,6 +250,54 @@ fn photons_of_others_are_estimates_by_hand() {
     assert!(found == [0.0; 3], "{table}");
 }
 
+/// Photons as far apart as this, and some about the middle: positions in single precision tell balls of 10^-6 of the extent apart,
+/// smaller ones are refused, given or found, whoever sends the photons.
+#[test]
+fn balls_far_smaller_than_the_map_are_refused() {
+    let folder = Folder::new();
+    let cube = folder.file("cube.toml", CUBE);
+    let placed = |x: f64| -> Given { ([x, 0.0, 0.0], GIVEN[0].1, GIVEN[0].2, 0, 0) };
+    let file = |name: &str, near: f64| {
+        write(&folder, name, &npy(&[placed(-1.0), placed(near), placed(-1.25 * near), placed(1.0)], Some(4)))
+    };
+    let (apart, close) = (file("apart.npy", 4e-6), file("close.npy", 4e-7));
+    let measure = ["measure", text(&cube), "--with", "photons", "--format", "csv", "--photons-from"];
+    let words = "in a map whose photons reach 1.000e0 L from its middle, at positions in single precision; allowed: at least \
+                 1.000e-6 L, 10^-6 of that";
+    let refused = |file: &Path, how: &[&str], radius: &str| {
+        let radius = format!("a gather radius of {radius}");
+        refuses_naming(&[&measure[..], &[text(file)], how].concat(), &[&radius, words]);
+    };
+    for (radius, is_fine) in [("0.5", true), ("1.01e-6", true), ("9.9e-7", false), ("1e-12", false)] {
+        match is_fine {
+            true => drop(run(&[&measure[..], &[text(&apart), "--radius", radius]].concat())),
+            false => refused(&apart, &["--radius", radius], &format!("{radius} L")),
+        }
+        match is_fine {
+            true => drop(run(&[&measure[..], &[text(&apart), "--k", "2", "--max-radius", radius]].concat())),
+            false => refused(&apart, &["--k", "2", "--max-radius", radius], &format!("{radius} L")),
+        }
+    }
+    // The second nearest lies at 5e-6, which is far enough, or at 5e-7.
+    run(&[&measure[..], &[text(&apart), "--k", "2", "--max-radius", "0.5"]].concat());
+    refused(&close, &["--k", "2", "--max-radius", "0.5"], "");
+    // The same photons alone are told apart.
+    let alone = write(&folder, "alone.npy", &npy(&[placed(4e-7), placed(-5e-7)], Some(4)));
+    run(&[&measure[..], &[text(&alone), "--k", "2", "--max-radius", "0.5"]].concat());
+    // Our own photons, in numbers and in a picture.
+    let ball = folder.file("ball.toml", BALL);
+    let own = ["measure", text(&ball), "--with", "photons", "--photons", "1000", "--radius", "1e-7"];
+    refuses_naming(&own, &["a gather radius of 1e-7 L in a map whose photons reach", "10^-6 of that"]);
+    let picture = at(&folder, "picture.exr");
+    let sizes = ["--width", "2", "--height", "2", "--samples", "1", "--global", "1000", "--volume", "1000"];
+    let render = ["render", "fogbox", "-o", text(&picture), "--radius", "1e-9"];
+    refuses_naming(
+        &[&render[..], &sizes].concat(),
+        &["map: a gather radius of 1e-9 L in a map whose photons"],
+    );
+    assert!(!picture.exists());
+}
+
 /// In a periodic cell photons anywhere are those of the cell, as our own are.
 #[test]
 fn positions_wrap_in_a_periodic_cell() {
@@ -482,7 +530,7 @@ fn files_of_photons_that_cannot_be_read() {
     refuse("ends.npy", b"\x93NUMPY\x01\x00\xff\xff{", &["ends after 11 bytes, within its header of 65535"]);
     refuse("stub.npy", b"\x93NUM", &["ends after 4 bytes, within its header"]);
     refuse("deep.npy", &npy_of(&"[".repeat(1000), "(2,)", vec![]), &["too deep"]);
-    refuse("other.npy", b"\x93NUXY\x01\x00\x00\x00", &["neither PLY nor a NumPy array"]);
+    refuse("other.npy", b"\x93NUMXY\x01\x00\x00\x00", &["does not begin as a NumPy array"]);
     for bytes in [&b""[..], b"p", b"plywood\n", b"PK\x03\x04zip"] {
         refuse("other", bytes, &["is neither PLY nor a NumPy array; allowed: photons as .ply or .npy"]);
     }

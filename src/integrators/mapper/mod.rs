@@ -22,6 +22,7 @@ pub use extents::{MediumExtent, medium_extents};
 pub use settings::{LEAST_K, Settings, scene_size};
 
 use crate::Spectrum;
+use crate::error::Result;
 use crate::estimators::{Estimate, RayEstimate, RayEstimator};
 use crate::geometry::Shape;
 use crate::integrators::path::{Rays, next_event, seen_straight, uncollided};
@@ -146,6 +147,25 @@ impl<'a> Mapper<'a> {
         let bodies = settings.clips_discs.then(|| Bodies::new(scene));
         let extents = medium_extents(scene);
         Mapper { scene, maps, settings, walls, bodies, extents, size: scene_size(scene) }
+    }
+
+    /// Checks that the maps tell positions apart finely enough for their gathers' radii. Where the k nearest photons lie closer
+    /// together than that, as in a focus, a picture goes on: their own errors only spread the light over that distance, far less
+    /// than a pixel sees of a scene 10^6 times as large.
+    ///
+    /// # Errors
+    /// `Error::Scene` that says which map, and which radius is allowed
+    pub fn check_radii(&self) -> Result<()> {
+        let Maps { global, caustic, volume, .. } = self.maps;
+        let Settings { global: of_global, caustic: of_caustic, volume: of_volume, .. } = self.settings;
+        let radii = [of_global.1.cap(), of_caustic.1.cap(), of_volume.least_named_radius()];
+        let maps = [("global", global), ("caustic", caustic), ("volume", volume)];
+        for ((name, map), radius) in maps.into_iter().zip(radii) {
+            if let Some(map) = map {
+                map.check_radius(radius).map_err(|e| e.within(&format!("the {name} map")))?;
+            }
+        }
+        Ok(())
     }
 
     /// What it looks at.

@@ -16,7 +16,6 @@
 mod class;
 mod header;
 mod layout;
-mod literal;
 mod npy;
 mod ply;
 mod rows;
@@ -66,7 +65,7 @@ impl PhotonFile {
         let begun = (&mut input).take(4).read(&mut magic).map_err(read)?;
         let header = match &magic[..begun] {
             b"ply\n" | b"ply\r" => ply::header(&mut input, length)?,
-            b"\x93NUM" => npy::header(&mut input, length)?,
+            b"\x93NUM" => npy::header(&mut magic.chain(&mut input), length)?,
             _ => return Err("is neither PLY nor a NumPy array; allowed: photons as .ply or .npy".into()),
         };
         Ok(PhotonFile { path: path.to_path_buf(), input, header })

@@ -1,12 +1,13 @@
-//! Headers of NumPy arrays.
+//! Photons as records of a NumPy array.
 
 use super::header::{Body, Header, check_size};
 use super::layout::{Layout, Number, Place};
-use super::literal::Literal;
+use crate::input::literal::Literal;
+use crate::input::npy::NpyHeader;
 use std::io::Read;
 
-/// Larger headers are refused; NumPy itself refuses those of more than 10,000 characters.
-const MOST_HEADER: u64 = 1 << 20;
+/// Larger records are refused.
+const MOST_RECORD: u64 = 1 << 20;
 
 /// A field of a record: where it begins, of what type, how many of them.
 struct Field<'a> {
@@ -18,61 +19,26 @@ struct Field<'a> {
     is_vector: bool,
 }
 
-/// What the header of a file of so many bytes says; its first four bytes have been read.
+/// What the header of a file of so many bytes says, from its first one on.
 ///
 /// # Errors
 /// What is wrong with it, and what is allowed
-///
-/// # Source
-/// NEP 1, A Simple File Format for NumPy Arrays
 pub(super) fn header(input: &mut impl Read, length: u64) -> Result<Header, String> {
-    let ends_early = |_| format!("ends after {length} bytes, within its header");
-    let mut start = [0; 4];
-    input.read_exact(&mut start).map_err(ends_early)?;
-    let [p, y, major, minor] = start;
-    if [p, y] != *b"PY" {
-        return Err("is neither PLY nor a NumPy array; allowed: photons as .ply or .npy".into());
+    let NpyHeader { descr, is_fortran, shape, rest } = NpyHeader::read(input, length)?;
+    if is_fortran {
+        return Err("is in Fortran order; allowed: 'fortran_order': False".into());
     }
-    let mut size = [0; 4];
-    let digits = match major {
-        1 => 2,
-        2 | 3 => 4,
-        _ => return Err(format!("is a NumPy array of version {major}.{minor}; allowed: 1, 2 and 3")),
+    let [count] = shape[..] else {
+        return Err(format!("has {} axes; allowed: one", shape.len()));
     };
-    input.read_exact(&mut size[..digits]).map_err(ends_early)?;
-    let (size, before) = (u64::from(u32::from_le_bytes(size)), 8 + digits as u64);
-    if size > MOST_HEADER {
-        return Err(format!("has a header of {size} bytes; allowed: up to {MOST_HEADER}"));
-    }
-    if before + size > length {
-        return Err(format!("ends after {length} bytes, within its header of {size}"));
-    }
-    let mut text = vec![0; size as usize];
-    input.read_exact(&mut text).map_err(ends_early)?;
-    let text = String::from_utf8(text).map_err(|_| "its header is not text".to_string())?;
-    let dict = Literal::parse(&text)?;
-    match dict.get("fortran_order") {
-        Some(Literal::Truth(false)) => {}
-        Some(Literal::Truth(true)) => {
-            return Err("is in Fortran order; allowed: 'fortran_order': False".into());
-        }
-        _ => return Err("its header has no truth `fortran_order`".into()),
-    }
-    let count = match dict.get("shape") {
-        Some(Literal::List(shape)) => match shape[..] {
-            [Literal::Number(count)] => count,
-            _ => return Err(format!("has {} axes; allowed: one", shape.len())),
-        },
-        _ => return Err("its header has no tuple `shape`".into()),
-    };
-    let layout = match dict.get("descr") {
-        Some(Literal::List(fields)) => layout(&fields_of(fields)?)?,
-        Some(Literal::Text(kind)) => {
+    let layout = match &descr {
+        Literal::List(fields) => layout(&fields_of(fields)?)?,
+        Literal::Text(kind) => {
             return Err(format!("has numbers of type '{kind}'; allowed: records with the fields {FIELDS}"));
         }
         _ => return Err("its header has no type `descr`".into()),
     };
-    check_size(count, layout.size, length - before - size, true)?;
+    check_size(count, layout.size, rest, true)?;
     Ok(Header { count, body: Body::Binary(layout), is_alone: true, emitted: None })
 }
 
@@ -110,7 +76,7 @@ fn fields_of(fields: &[Literal]) -> Result<Vec<Field<'_>>, String> {
             size_of_kind(kind).ok_or_else(|| format!("the field {name} is of the unknown type '{kind}'"))?;
         found.push(Field { name, kind, offset, count, is_vector: shape.is_some() });
         let size = usize::try_from(count).ok().and_then(|count| count.checked_mul(size));
-        let end = size.and_then(|size| size.checked_add(offset)).filter(|end| *end as u64 <= MOST_HEADER);
+        let end = size.and_then(|size| size.checked_add(offset)).filter(|end| *end as u64 <= MOST_RECORD);
         offset = end.ok_or_else(|| format!("the field {name} is too large"))?;
     }
     // One without a name says where the record ends.

@@ -175,6 +175,11 @@ impl PhotonTree {
         self.units.stretch(1.0 / f64::from(1u32 << 25))
     }
 
+    /// The farthest that a photon's coordinate lies from that of the box's centre \[L\].
+    pub fn extent(&self) -> f64 {
+        self.units.extent()
+    }
+
     /// Memory that the photons and the boxes above them occupy \[bytes\].
     pub fn bytes(&self) -> usize {
         let boxes: usize = self.levels.iter().map(Vec::len).sum();

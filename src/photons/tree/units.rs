@@ -15,6 +15,7 @@ pub(super) const LIMIT: f64 = (1u64 << 60) as f64;
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Units {
     origin: DVec3,
+    extent: f64,
     exponent: i32,
     scale: f64,
 }
@@ -46,7 +47,12 @@ impl Units {
         // A box without extent has no length of its own; its distance from zero serves.
         let size = if half > 0.0 { half } else { lower.abs().max_element() };
         let exponent = libm::frexp(size).1.max(-1022);
-        Units { origin, exponent, scale: libm::ldexp(1.0, -exponent) }
+        Units { origin, extent: half, exponent, scale: libm::ldexp(1.0, -exponent) }
+    }
+
+    /// Half the longest edge of the box \[L\]; 0 of a single place.
+    pub(super) fn extent(&self) -> f64 {
+        self.extent
     }
 
     /// A point relative to the centre of the box, in units.

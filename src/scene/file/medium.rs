@@ -66,7 +66,7 @@ pub enum Interpolation {
     Blocks,
 }
 
-/// A `.vol` file, or values in the scene file itself.
+/// A `.vol` or `.npy` file, or values in the scene file itself.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct GridFile {
@@ -85,7 +85,7 @@ pub struct GridFile {
     /// What its values are multiplied by; 1 if absent.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub scale: Option<Positive>,
-    /// Lower corner of the box that it fills \[L\], with `max` in place of the file's own.
+    /// Lower corner of the box that it fills \[L\], with `max` in place of the file's own, which `.npy` files have not.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub min: Option<[f64; 3]>,
     /// Upper corner of the box \[L\].
@@ -279,7 +279,7 @@ impl GridFile {
         let is_blocks = self.interpolation == Some(Interpolation::Blocks);
         match (&self.file, &self.values, self.count) {
             (Some(file), None, None) => {
-                let grid = self.placed(Grid::read(&folder.join(file))?)?;
+                let grid = self.placed(self.read(file, folder)?)?;
                 Ok(if is_blocks { Sampled::Blocks(Blocks::of_grid(&grid)?) } else { Sampled::Grid(grid) })
             }
             (None, Some(values), Some(count)) => {
@@ -298,6 +298,21 @@ impl GridFile {
                 })
             }
             _ => refuse("a grid needs `file`, or `values` and `count` in its place; allowed: one of the two"),
+        }
+    }
+
+    /// The file's grid; a NumPy array states no box of its own.
+    fn read(&self, file: &str, folder: &Path) -> Result<Grid> {
+        let path = folder.join(file);
+        if !path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("npy")) {
+            return Grid::read(&path);
+        }
+        match (self.min, self.max) {
+            (Some(min), Some(max)) => Grid::read_npy(&path, (min.into(), max.into())),
+            _ => Err(Error::Scene(format!(
+                "grid {} without min and max, which a NumPy array does not state; allowed: both",
+                path.display()
+            ))),
         }
     }
 

@@ -5,7 +5,7 @@ use std::str::Chars;
 
 /// A literal.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) enum Literal {
+pub(crate) enum Literal {
     Text(String),
     Number(u64),
     Truth(bool),
@@ -81,7 +81,13 @@ impl Reader<'_> {
         loop {
             match self.rest.next() {
                 Some(c) if c == quote => return Ok(Literal::Text(text)),
-                Some('\\') => text.extend(self.rest.next()),
+                Some('\\') if self.rest.peek().is_some_and(|c| !c.is_control()) => {
+                    text.extend(self.rest.next())
+                }
+                // It would break the line of a refusal.
+                Some(c) if c.is_control() => {
+                    return Err("a name in the header's dictionary has control characters".into());
+                }
                 Some(c) => text.push(c),
                 None => return Err("a name in the header's dictionary has no end".into()),
             }
@@ -165,6 +171,8 @@ mod tests {
             "{'a': 1",
             "[1 2]",
             "'a",
+            "'a\n'",
+            "'a\\\n'",
             "None",
             "-1",
             "1.5",

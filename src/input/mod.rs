@@ -1,5 +1,8 @@
 //! Files that are read whole: of a bounded size, and no devices or pipes, which may have no end.
 
+pub(crate) mod literal;
+pub(crate) mod npy;
+
 use std::io::{Error, ErrorKind, Read, Result};
 use std::path::{Component, Path};
 
