@@ -11,6 +11,7 @@ use pyo3::types::{PyDict, PyList};
 use std::path::PathBuf;
 use turbid::estimators::boundary::Treatment;
 use turbid::estimators::{Estimator, Gather, Kernel};
+use turbid::math::Positive;
 use turbid::memory;
 use turbid::photons::Ledger;
 use turbid::scene::{Binned, Orders, Scene, Space};
@@ -39,6 +40,7 @@ struct Options {
     k: Option<usize>,
     radius: Option<f64>,
     max_radius: Option<f64>,
+    ray_radius: Option<f64>,
     kernel: String,
     boundary: String,
     orders: (u32, Option<u32>),
@@ -82,7 +84,6 @@ impl Request {
         let settings = PathSettings { samples, seed, replicate: 0, orders: self.orders() };
         let bins = bins(scene);
         memory::check(|| format!("{bins} bins"), row_bytes(scene))?;
-        memory::check(|| format!("{samples} samples"), work::blocks(samples, work::PATHS_BYTES))?;
         watch.stage("paths", samples.saturating_mul(bins));
         let read = if weight_windows { by_guided_paths } else { by_paths };
         Ok(Readings { measurements: read(scene, &settings, watch)?, ledger: None, estimates: None })
@@ -98,7 +99,7 @@ impl Request {
     }
 
     fn by_photons(&self, scene: &Scene, watch: &Watch) -> anyhow::Result<Readings> {
-        let Options { photons, maps, passes, k, radius, max_radius, seed, .. } = self.options;
+        let Options { photons, maps, passes, k, radius, max_radius, ray_radius, seed, .. } = self.options;
         if photons < maps {
             return Err(anyhow!("photons is {photons}; allowed: at least one for each of the {maps} maps"));
         }
@@ -109,17 +110,18 @@ impl Request {
                 Gather::nearest(k.unwrap_or(50), cap).context("k, max_radius")?
             }
         };
+        let ray_radius = ray_radius.map(|radius| Positive::new("ray_radius", radius)).transpose()?;
+        let estimator = Estimator::new(self.kernel, gather).treated(self.treatment);
         let settings = PhotonSettings {
             photons: photons.div_ceil(maps),
             maps,
             seed,
             orders: self.orders(),
-            estimator: Estimator::new(self.kernel, gather).treated(self.treatment),
+            estimator: Estimator { ray_radius, ..estimator },
         };
         // Refuses what passes cannot do before anything is counted.
         let forecast = forecast(scene, &settings, passes)?;
-        let bytes = forecast.bytes + work::blocks(settings.photons / passes, work::PASS_BYTES);
-        memory::check(|| format!("a map of {:.2e} photons", forecast.stored), bytes)?;
+        memory::check(|| format!("a map of {:.2e} photons", forecast.stored), forecast.bytes)?;
         watch.stage("photons", settings.photons.saturating_mul(maps));
         let result = by_photons_in_passes(scene, &settings, passes, watch)?;
         Ok(Readings {

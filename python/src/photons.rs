@@ -93,7 +93,6 @@ fn shoot(
     let expected = pilot.kept.into_inner() as f64 * emitted as f64 / first as f64;
     // As they are kept, and as Python gets them.
     let bytes = expected * (size_of::<Photon>() + RECORD) as f64;
-    let bytes = bytes + work::blocks(emitted, work::PASS_BYTES);
     memory::check(|| format!("{expected:.2e} photons of {emitted} histories"), bytes)?;
     watch.stage("photons", emitted);
     let pass = Run::new(scene, &emitter, histories(emitted)).pass(&keep(), watch)?;

@@ -31,6 +31,7 @@ pub struct Options {
     volume_k: Option<usize>,
     radius: Option<f64>,
     max_radius: Option<f64>,
+    ray_radius: Option<f64>,
     kernel: String,
     caustic_kernel: String,
     gather_rays: u32,
@@ -146,6 +147,9 @@ impl Readout {
         settings.global = (self.kernels[0], surface);
         settings.caustic = (self.kernels[1], caustic);
         settings.volume = Estimator::new(self.kernels[0], volume).treated(self.treatment);
+        let ray_radius = self.options.ray_radius;
+        settings.volume.ray_radius =
+            ray_radius.map(|radius| Positive::new("ray_radius", radius)).transpose()?;
         settings.gather_rays = gather_rays.max(1);
         settings.near = near;
         settings.clips_discs = self.clips_discs;

@@ -8,23 +8,13 @@ use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::mpsc::{RecvTimeoutError, channel};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Duration;
-use turbid::transport::{BLOCK, Progress};
+use turbid::transport::Progress;
 
 /// How often Python looks whether it was interrupted: soon for who waits, and nothing beside the work.
 const LOOK: Duration = Duration::from_millis(200);
 
 /// Stack of the thread that works \[bytes\]: as a main thread has it.
 const STACK: usize = 8 << 20;
-
-/// Memory that a block of histories takes beside its photons until all are merged, at most \[bytes\]: the tails of a block of paths,
-/// 400 doubles a channel, or what a pass tells of a block of photons.
-pub const PATHS_BYTES: f64 = 10e3;
-pub const PASS_BYTES: f64 = 1e3;
-
-/// Memory of the blocks of so many histories, each of which takes so much \[bytes\].
-pub fn blocks(histories: u64, bytes: f64) -> f64 {
-    histories.div_ceil(BLOCK) as f64 * bytes
-}
 
 /// What the last panic said, for the exception that it becomes.
 static PANICKED: Mutex<String> = Mutex::new(String::new());

@@ -153,13 +153,14 @@ def test_wrong_settings():
     assert told(with_="photons", kernel="round").startswith("kernel is 'round'; allowed: uniform, ")
     assert told(with_="photons", boundary="soft").startswith("boundary is 'soft'; allowed: none, clipped, ")
     assert told(with_="photons", radius=-1).startswith("slab: radius: ")
+    assert told(with_="photons", ray_radius=0).startswith("slab: ray_radius is 0; allowed: ")
     assert told(with_="photons", radius=1, k=3).startswith("radius takes all photons")
     assert told(with_="photons", k=1).startswith("slab: k, max_radius: ")
     assert told(with_="photons", passes=2).startswith("slab: the k nearest photons of a map cannot be found in passes")
     assert told(with_="photons", photons=3).endswith("at least one for each of the 16 maps")
     assert told(with_="photons", weight_windows=True).startswith("weight_windows splits paths")
     assert told(with_="light").startswith("slab: sensor depth 0.2: light tracing measures means over bins")
-    for bomb in (dict(samples=9e15), dict(with_="photons", photons=1e14), dict(with_="photons", photons=9e15, radius=1e-9)):
+    for bomb in (dict(with_="photons", photons=1e14), dict(with_="photons", photons=9e15, radius=1e-3)):
         assert "of memory; allowed: what is free" in told(**bomb)
     for wrong in ("x", -1, (3, 1), 65535, (1, 2, 3), 1.5, "1..x"):
         assert told(orders=wrong).startswith(f"orders is {wrong!r}; allowed: ")

@@ -174,6 +174,7 @@ def measure(
     k: Optional[int] = None,
     radius: Optional[float] = None,
     max_radius: Optional[float] = None,
+    ray_radius: Optional[float] = None,
     kernel: str = "uniform",
     boundary: str = "clipped",
     orders: Orders = None,
@@ -198,6 +199,7 @@ def measure(
     k : photons that an estimate takes, the nearest; 50
     radius : radius within which an estimate takes all photons [L], in place of ``k``
     max_radius : the farthest that the k nearest photons are sought [L]; half the cell, or a mean free path
+    ray_radius : radius about a whole ray, which is then read at once, for sensors of radiance: the beam radiance estimate [L]
     kernel : uniform, epanechnikov, biweight, cone or gaussian, as ``turbid measure --help`` lists them
     boundary : what estimates do where a medium ends: none, clipped, reflection, local-linear
     orders : orders of scattering that count: 1, "0..3", (1, None)
@@ -224,6 +226,7 @@ def measure(
         k=_optional_count("k", k, 0, 10**9),
         radius=_optional_real("radius", radius),
         max_radius=_optional_real("max_radius", max_radius),
+        ray_radius=_optional_real("ray_radius", ray_radius),
         kernel=kernel,
         boundary=boundary,
         orders=_orders(orders),
@@ -277,6 +280,7 @@ def render(
     volume_k: Optional[int] = None,
     radius: Optional[float] = None,
     max_radius: Optional[float] = None,
+    ray_radius: Optional[float] = None,
     kernel: str = "uniform",
     caustic_kernel: str = "cone",
     gather_rays: int = 64,
@@ -306,6 +310,7 @@ def render(
     k, caustic_k, volume_k : photons that an estimate takes; what balances noise and blur, 100 to 1000
     radius : radius within which an estimate takes all photons [L], in place of ``k``
     max_radius : the farthest that photons are sought [L]; a tenth of the scene
+    ray_radius : radius about a whole ray through media, which is then read at once, in place of a march: the beam radiance estimate [L]
     gather_rays : rays of a final gathering; 0 reads the global map where the eye looks: fast, and blotchy
     near : rays of a final gathering shorter than this are traced on [L]
     step, step_rule, adapt, jitter : the march through media; the longest step is in [L]
@@ -320,6 +325,7 @@ def render(
         volume_k=_optional_count("volume_k", volume_k, 1, 10**9),
         radius=_optional_real("radius", radius),
         max_radius=_optional_real("max_radius", max_radius),
+        ray_radius=_optional_real("ray_radius", ray_radius),
         kernel=kernel,
         caustic_kernel=caustic_kernel,
         gather_rays=_count("gather_rays", gather_rays, 0, 1_000_000),
