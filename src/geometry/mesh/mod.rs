@@ -170,7 +170,10 @@ impl Mesh {
         let uvs = uvs.map(|uvs| order.iter().map(|&i| uvs[kept[i as usize]]).collect());
         let normals = normals.map(|normals| {
             let given = order.iter().map(|&i| normals[kept[i as usize]]);
-            corners.iter().zip(given).map(|(corners, given)| shading::at_corners(corners, given)).collect()
+            let at_corners = |(corners, given)| {
+                unit_normal(corners).map_or(shading::FLAT, |own| shading::at_corners(own, given))
+            };
+            corners.iter().zip(given).map(at_corners).collect()
         });
         let mut sum = 0.0;
         let areas = corners

@@ -1,6 +1,5 @@
 //! Normals at the corners of a triangle, and between them.
 
-use super::unit_normal;
 use glam::DVec3;
 
 /// What becomes of a normal of a file, whose length does not matter.
@@ -9,10 +8,9 @@ pub(super) type Turn<'a> = &'a dyn Fn(DVec3) -> DVec3;
 /// The normals of a triangle that is flat.
 pub(super) const FLAT: [DVec3; 3] = [DVec3::ZERO; 3];
 
-/// Unit normals at the corners of a triangle, all less than a right angle from its own, from those given; [`FLAT`] where
+/// Unit normals at the corners of a triangle, all less than a right angle from its `own`, from those given; [`FLAT`] where
 /// that cannot be.
-pub(super) fn at_corners(corners: &[DVec3; 3], given: [DVec3; 3]) -> [DVec3; 3] {
-    let Some(own) = unit_normal(corners) else { return FLAT };
+pub(super) fn at_corners(own: DVec3, given: [DVec3; 3]) -> [DVec3; 3] {
     let units = given.map(unit);
     let sides = units.map(|normal| normal.map_or(0.0, |normal| normal.dot(own)));
     // Of a mesh whose corners and normals disagree about the outer side the corners are right.
