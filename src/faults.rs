@@ -112,11 +112,13 @@ pub enum Fault {
     KernelRaised,
     /// Light of volumes that a ray meets by chance counts in full beside what is aimed at.
     EmitterShareForgotten,
+    /// Photons are scattered on smooth meshes as paths are, without the factor of the two normals.
+    ShadingFactorForgotten,
 }
 
 impl Fault {
     /// Every fault, in the order of their definition.
-    pub const ALL: [Fault; 52] = [
+    pub const ALL: [Fault; 53] = [
         Fault::AlbedoTwice,
         Fault::AlbedoNever,
         Fault::CosineTwice,
@@ -169,6 +171,7 @@ impl Fault {
         Fault::PhaseTurned,
         Fault::KernelRaised,
         Fault::EmitterShareForgotten,
+        Fault::ShadingFactorForgotten,
     ];
 }
 
@@ -259,7 +262,7 @@ mod tests {
     #[test]
     fn all_are_named_in_order() {
         assert!(Fault::ALL.iter().enumerate().all(|(i, fault)| *fault as usize == i));
-        assert_eq!(Fault::ALL.len(), Fault::EmitterShareForgotten as usize + 1);
+        assert_eq!(Fault::ALL.len(), Fault::ShadingFactorForgotten as usize + 1);
         assert!(Fault::ALL.iter().all(|fault| !planted(*fault)));
     }
 }

@@ -15,7 +15,7 @@ pub struct Cuboid {
 
 /// A hit of a face.
 fn face(t: f64, normal: DVec3) -> Hit {
-    Hit { t, normal, uv: DVec2::ZERO, primitive: 0 }
+    Hit { t, normal, shading: normal, uv: DVec2::ZERO, primitive: 0 }
 }
 
 /// The unit vector along an axis.

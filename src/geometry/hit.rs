@@ -15,6 +15,9 @@ pub struct Hit {
     pub t: f64,
     /// Unit geometric normal: outwards for closed shapes, the front for a rectangle.
     pub normal: DVec3,
+    /// Unit normal that light scatters about: the one interpolated between the corners of a smooth mesh, on the outer side
+    /// too, and the geometric normal of all else.
+    pub shading: DVec3,
     /// Where on the surface: along u and v of a rectangle, around and along a lathe, as the file of a mesh says; 0 on the
     /// other shapes.
     pub uv: DVec2,

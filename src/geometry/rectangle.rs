@@ -61,7 +61,7 @@ impl Rectangle {
 
     /// The hit of a ray that meets the rectangle at this distance \[L\].
     pub(super) fn hit_at(&self, ray: &Ray, t: f64) -> Hit {
-        Hit { t, normal: self.normal, uv: self.coordinates(ray.at(t)), primitive: 0 }
+        Hit { t, normal: self.normal, shading: self.normal, uv: self.coordinates(ray.at(t)), primitive: 0 }
     }
 
     /// The distance at which a ray meets the rectangle, or `end` where that is nearer \[L\].

@@ -34,7 +34,7 @@ impl Face {
 
 /// A hit of a plane.
 fn plane(t: f64, normal: DVec3) -> Hit {
-    Hit { t, normal, uv: DVec2::ZERO, primitive: 0 }
+    Hit { t, normal, shading: normal, uv: DVec2::ZERO, primitive: 0 }
 }
 
 impl Slab {

@@ -73,7 +73,7 @@ impl Sphere {
 
     fn hit_at(&self, ray: &Ray, t: f64) -> Hit {
         let normal = ((ray.at(t) - self.center) / self.radius).normalize();
-        Hit { t, normal, uv: DVec2::ZERO, primitive: 0 }
+        Hit { t, normal, shading: normal, uv: DVec2::ZERO, primitive: 0 }
     }
 
     pub(super) fn hit(&self, ray: &Ray, from_here: bool) -> Option<Hit> {

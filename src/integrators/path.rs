@@ -284,11 +284,10 @@ impl<F: FnMut(u32, Layer, Spectrum)> Visitor for PathVisitor<'_, F> {
                     self.specular_at = Some(walker.order);
                 }
                 let Surface::Lambertian(surface) = &self.scene.objects()[index].surface else { return };
-                let outward = found.hit.normal;
-                let normal = if walker.ray.dir.dot(outward) < 0.0 { outward } else { -outward };
+                let normals = found.hit.normals(walker.ray.dir);
                 let fraction = surface.eval(position, found.hit.uv);
                 let scattered = |towards: DVec3| {
-                    let cosine = towards.dot(normal).max(0.0);
+                    let cosine = normals.cosine(towards);
                     let again = if planted(Fault::CosineTwice) { cosine } else { 1.0 };
                     (fraction * cosine * again, warp::pdf_cosine_hemisphere(cosine))
                 };

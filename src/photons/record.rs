@@ -10,10 +10,11 @@ pub struct Photon {
     pub position: DVec3,
     /// Unit direction of travel.
     pub dir: Vec3,
-    /// Unit normal of the surface where it arrived, on the side of its arrival; 0 in a medium.
+    /// Unit geometric normal of the surface where it arrived, on the side of its arrival; 0 in a medium.
     pub normal: Vec3,
     /// Power it arrives with \[W\], as though its history were the only one emitted: estimates divide by the
-    /// number emitted.
+    /// number emitted. On a smooth mesh, times what it counts about the shading normal
+    /// ([`Normals::arriving`](crate::geometry::Normals::arriving)).
     pub power: Vec3,
     /// Number of scatterings so far, by media and non-specular surfaces.
     pub order: u16,

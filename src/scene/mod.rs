@@ -27,8 +27,8 @@ pub use camera::{Camera, Filter, MAX_PIXELS, MAX_SIDE, View};
 pub use checked::{Scene, decay};
 pub use file::{
     CameraFile, Channels, DensityFile, DielectricFile, GridFile, InteriorFile, Interpolation, LightFile,
-    ObjectFile, PhaseFile, QuantityFile, RegionFile, RotateFile, SceneFile, SensorFile, ShapeFile,
-    SurfaceFile, TextureFile,
+    NormalsFile, ObjectFile, PhaseFile, QuantityFile, RegionFile, RotateFile, SceneFile, SensorFile,
+    ShapeFile, SurfaceFile, TextureFile,
 };
 pub use parts::{Interior, Object, Region, SURROUNDINGS, SceneParts};
 pub use plan::Plan;

@@ -3,6 +3,7 @@
 use super::visitor::{Arrival, Step, Visitor, Walker};
 use super::{Flags, Roulette};
 use crate::faults::{Fault, planted};
+use crate::geometry::Normals;
 use crate::math::Ray;
 use crate::rng::Stream;
 use crate::scene::{Scene, SceneHit, Target};
@@ -46,15 +47,30 @@ pub(super) fn bounce<V: Visitor>(
         let (_, interior) = dielectric.sides(walker.ray.dir, found.hit.normal);
         return Some(Walker { interior, ..straight_on(walker, found, position) });
     }
-    visitor.visit(walker, Step::Surface(arrival, found), stream);
+    let dir = walker.ray.dir;
+    let normals = found.hit.normals(dir);
+    let is_diffuse = matches!(surface, Surface::Lambertian(_));
+    let factor = if is_diffuse && !V::CARRIES_RADIANCE { normals.arriving(dir) } else { 1.0 };
+    if factor == 1.0 {
+        visitor.visit(walker, Step::Surface(arrival, found), stream);
+    } else {
+        // Irradiance about the shading normal is what the photon counts for whoever keeps it.
+        let counted = Walker { weight: walker.weight * factor, ..*walker };
+        let arrival = Arrival { walker: &counted, position };
+        visitor.visit(&counted, Step::Surface(arrival, found), stream);
+    }
     if let Surface::Dielectric(dielectric) = surface {
         return cross(scene, (walker, position), found, dielectric, stream, visitor);
     }
-    let dir = walker.ray.dir;
-    let normal = facing(dir, found.hit.normal);
-    let reflectance = surface.reflectance(position, found.hit.uv);
+    let about = if is_diffuse && !V::CARRIES_RADIANCE { normals.geometric } else { normals.shading };
+    let reflectance = surface.reflectance(position, found.hit.uv) * factor;
     let survivor = roulette.survive(walker.weight, reflectance, stream);
-    let next = survivor.zip(surface.scatter(dir, normal, stream.pair())).map(|(weight, (dir, pdf))| Walker {
+    let scattered = survivor.zip(surface.scatter(dir, about, stream.pair()));
+    let leaving = scattered.and_then(|(weight, (after, pdf))| match pdf {
+        Some(_) => normals.leaves(after).then_some((weight, after, pdf)),
+        None => Some((weight * specular::<V>(&normals, (dir, after), true)?, after, pdf)),
+    });
+    let next = leaving.map(|(weight, dir, pdf)| Walker {
         ray: Ray::new(position, dir),
         weight,
         order: walker.order + u32::from(pdf.is_some()),
@@ -74,9 +90,18 @@ pub(super) fn bounce<V: Visitor>(
     next
 }
 
-/// The normal on the side that a ray comes from.
-fn facing(dir: DVec3, outward: DVec3) -> DVec3 {
-    if dir.dot(outward) < 0.0 { outward } else { -outward }
+/// What a weight is multiplied by where light is turned from one direction to another by a specular surface; none where that
+/// is not on the side of the geometric normal that it is on by the other.
+fn specular<V: Visitor>(
+    normals: &Normals,
+    (before, after): (DVec3, DVec3),
+    is_reflected: bool,
+) -> Option<f64> {
+    if !normals.differ() {
+        return Some(1.0);
+    }
+    let agrees = normals.is_on_side(-before, true) && normals.is_on_side(after, is_reflected);
+    agrees.then(|| if V::CARRIES_RADIANCE { 1.0 } else { normals.turned(before, after) })
 }
 
 /// Straight on behind a filter: no event, so that order, flags and density stay.
@@ -116,7 +141,8 @@ fn cross<V: Visitor>(
     visitor: &mut V,
 ) -> Option<Walker> {
     let dir = walker.ray.dir;
-    let normal = facing(dir, found.hit.normal);
+    let normals = found.hit.normals(dir);
+    let normal = normals.shading;
     let (near, far) = dielectric.sides(dir, found.hit.normal);
     let (n_near, n_far) = (scene.interiors()[near].index, scene.interiors()[far].index);
     let cosine = (-dir.dot(normal)).clamp(0.0, 1.0);
@@ -138,13 +164,22 @@ fn cross<V: Visitor>(
         ..*walker
     };
     if is_total || stream.unit() < refraction.reflectance {
-        let dir = (dir + normal * (2.0 * cosine)).normalize();
-        return Some(Walker { ray: Ray::new(position, dir), interior: near, ..next });
+        let after = (dir + normal * (2.0 * cosine)).normalize();
+        let Some(factor) = specular::<V>(&normals, (dir, after), true) else {
+            visitor.visit(walker, Step::Absorbed(walker.weight, None), stream);
+            return None;
+        };
+        let weight = walker.weight * factor;
+        return Some(Walker { ray: Ray::new(position, after), weight, interior: near, ..next });
     }
     let ratio = n_near / n_far;
     let is_scaled =
         (V::CARRIES_RADIANCE && !planted(Fault::RadianceUnscaled)) || planted(Fault::PhotonPowerScaled);
     let weight = if is_scaled { walker.weight * (ratio * ratio) } else { walker.weight };
-    let dir = refract(dir, normal, ratio, (cosine, refraction.cos_far));
-    Some(Walker { ray: Ray::new(position, dir), weight, interior: far, ..next })
+    let after = refract(dir, normal, ratio, (cosine, refraction.cos_far));
+    let Some(factor) = specular::<V>(&normals, (dir, after), false) else {
+        visitor.visit(walker, Step::Absorbed(walker.weight, None), stream);
+        return None;
+    };
+    Some(Walker { ray: Ray::new(position, after), weight: weight * factor, interior: far, ..next })
 }

@@ -25,7 +25,7 @@ impl Roulette {
     /// The weight after an event that keeps `albedo` of each channel, or none if the history ends there.
     ///
     /// Analog: survival with q = sum(a_c P_c) / sum(P_c), then P_c a_c / q: the summed power is unchanged, exactly
-    /// so for a grey albedo; each channel holds in expectation.
+    /// so for a grey albedo; each channel holds in expectation. Where q is above 1, as on smooth meshes, it survives with P_c a_c.
     pub fn survive(self, weight: Spectrum, albedo: Spectrum, stream: &mut Stream) -> Option<Spectrum> {
         let albedo = if planted(Fault::AlbedoTwice) { albedo * albedo } else { albedo };
         let albedo = if planted(Fault::AlbedoNever) { Spectrum::ONE } else { albedo };
@@ -33,10 +33,12 @@ impl Roulette {
         let kept = weight * albedo;
         match self {
             Roulette::Analog if planted(Fault::NoRoulette) => Some(kept),
-            Roulette::Analog if albedo.is_grey() => (stream.unit() < albedo[0]).then_some(weight),
+            Roulette::Analog if albedo.is_grey() && albedo[0] <= 1.0 => {
+                (stream.unit() < albedo[0]).then_some(weight)
+            }
             Roulette::Analog => {
                 let q = kept.sum() / weight.sum();
-                (stream.unit() < q).then(|| kept / q)
+                (stream.unit() < q).then(|| kept / q.min(1.0))
             }
             Roulette::Below(threshold) => {
                 let largest = kept.max();

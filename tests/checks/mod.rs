@@ -16,6 +16,7 @@ pub mod outputs;
 pub mod phase;
 pub mod point_light;
 pub mod points;
+pub mod shading;
 pub mod slab;
 pub mod threads;
 pub mod walls;

@@ -22,7 +22,7 @@ const CAMERA: &str =
     "camera = { position = [0.0, 0.5, 4.0], look_at = [0.0, 0.0, 0.0], fov = 40.0, width = 8, height = 6 }\n";
 const LAMP: &str = "[[lights]]\npoint = { position = [0, 3, 0], power = 4 }\n";
 
-/// Text that Mitsuba 3.9 has rendered to turbid's values: `tests/mitsuba/compare.py` does so with eight scenes.
+/// Text that Mitsuba 3.9 has rendered to turbid's values: `tests/mitsuba/compare.py` does so with nine scenes.
 #[test]
 fn the_text_for_mitsuba() {
     let folder = Folder::new();
@@ -54,7 +54,7 @@ fn the_text_for_mitsuba() {
     }
 }
 
-/// The eight scenes that are compared with Mitsuba go out, come back, and go out again as the same text. Text that is the same in
+/// The nine scenes that are compared with Mitsuba go out, come back, and go out again as the same text. Text that is the same in
 /// every digit says the same scene.
 #[test]
 fn scenes_come_back() {
@@ -87,7 +87,7 @@ fn scenes_come_back() {
         }
         assert_eq!(plain(&first).len(), plain(&second).len(), "{stem}");
     }
-    assert_eq!(count, 8);
+    assert_eq!(count, 9);
 }
 
 fn number_words(line: &str) -> Vec<String> {
@@ -102,6 +102,51 @@ fn is_nearly(a: &str, b: &str) -> bool {
             (Ok(a), Ok(b)) => (a - b).abs() <= 5e-3 * a.abs().max(1.0),
             _ => a == b,
         })
+}
+
+/// Normals at corners go with a smooth mesh, out and back, turned as normals are where the body is stretched; a file without any is
+/// flat, which is told.
+#[test]
+fn normals_come_back() {
+    let folder = Folder::new();
+    let path = |name: &str| folder.0.path().join(name);
+    let obj = "v 0 0 0\nv 1 0 0\nv 0 1 0\nvn 0 3 4\nf 1//1 2//1 3//1\n";
+    folder.file("part.obj", obj);
+    let scene = |normals: &str| {
+        format!(
+            "{CAMERA}{LAMP}[[objects]]\nshape = {{ mesh = {{ file = \"part.obj\"{normals} }} }}\nsurface = {{ lambertian = {{ reflectance = 0.5 }} }}\n"
+        )
+    };
+    let (smooth, _) = exported(&folder, "smooth", &scene(", normals = \"smooth\""));
+    assert!(smooth.contains("<boolean name=\"face_normals\" value=\"false\"/>"), "{smooth}");
+    let (flat, _) = exported(&folder, "flat", &scene(""));
+    assert!(flat.contains("<boolean name=\"face_normals\" value=\"true\"/>"), "{flat}");
+    runs(&["import", text(&path("smooth.xml")), "-o", text(&path("back.toml"))]);
+    assert!(std::fs::read_to_string(path("back.toml")).unwrap().contains("smooth"));
+    let xml = |file: &str, more: &str| {
+        scene_of(&format!(
+            "<shape type=\"obj\"><string name=\"filename\" value=\"{file}\"/>{more}</shape>{EMITTER}"
+        ))
+    };
+    let stretched = "<transform name=\"to_world\"><scale x=\"1\" y=\"1\" z=\"2\"/></transform>";
+    let file = folder.file("stretched.xml", &xml("part.obj", stretched));
+    runs(&["import", text(&file), "-o", text(&path("stretched.toml"))]);
+    let files = std::fs::read_dir(folder.0.path()).unwrap().map(|entry| entry.unwrap().path());
+    let ply = files.into_iter().find(|p| {
+        let name = p.file_name().unwrap().to_str().unwrap();
+        name.starts_with("stretched") && name.ends_with(".ply")
+    });
+    let bytes = std::fs::read(ply.unwrap()).unwrap();
+    let start = bytes.windows(11).position(|w| w == b"end_header\n").unwrap() + 11;
+    let number = |i: usize| f64::from_le_bytes(bytes[start + 8 * i..][..8].try_into().unwrap());
+    // (0, 3, 4) by the inverse of the scales is (0, 3, 2).
+    let length = 13f64.sqrt();
+    assert!((number(4) - 3.0 / length).abs() < 1e-15 && (number(5) - 2.0 / length).abs() < 1e-15);
+    folder.file("plain.obj", &obj.replace("//1", ""));
+    let file = folder.file("plain.xml", &xml("plain.obj", ""));
+    let notes = runs(&["import", text(&file), "-o", text(&path("plain.toml"))]);
+    assert!(notes.contains("Mitsuba makes normals of its own"), "{notes}");
+    assert!(!std::fs::read_to_string(path("plain.toml")).unwrap().contains("smooth"));
 }
 
 /// Every number of a scene without walls comes back to the last bit.

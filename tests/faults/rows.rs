@@ -2,7 +2,7 @@
 
 use crate::checks::{
     cell, color, emitters, flights, fog, glass, ledger, light, media, numbers, outputs, phase, point_light,
-    points, slab, threads, walls, weights,
+    points, shading, slab, threads, walls, weights,
 };
 use crate::support::scenes::{area_light, cuboid, rectangle};
 use glam::DVec3;
@@ -284,6 +284,11 @@ const fn inside(fault: Fault) -> Row {
                 weights::one_photon_is_one_over_its_ball()
             })
         }
+        Fault::ShadingFactorForgotten => {
+            ("photons on smooth meshes as on flat ones", "smooth_meshes_scatter_photons_as_radiance", |_| {
+                shading::smooth_meshes_scatter_photons_as_radiance()
+            })
+        }
     };
     Row { fault: Planted::Inside(fault), title, check_name, check }
 }
@@ -385,6 +390,7 @@ pub const BY_HAND: &[Row] = &[
     inside(Fault::PhaseTurned),
     inside(Fault::KernelRaised),
     inside(Fault::EmitterShareForgotten),
+    inside(Fault::ShadingFactorForgotten),
 ];
 
 fn single_scattering() {

@@ -5,4 +5,5 @@ mod files;
 mod height_field;
 mod lathe;
 mod meshes;
+mod shading;
 mod solids;

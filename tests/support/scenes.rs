@@ -2,8 +2,9 @@
 
 use glam::DVec3;
 use std::f64::consts::PI;
+use std::sync::Arc;
 use turbid::Spectrum;
-use turbid::geometry::{Cuboid, Face, Rectangle, Shape, Slab, Sphere};
+use turbid::geometry::{Cuboid, Face, Mesh, Rectangle, Shape, Slab, Sphere};
 use turbid::light::{Area, Beam, Faces, Isotropic, Light, Point, Section, VolumeSource};
 use turbid::math::{Asymmetry, FOUR_PI};
 use turbid::medium::{Homogeneous, Medium};
@@ -48,6 +49,26 @@ pub fn octahedron() -> ([DVec3; 6], [[u32; 3]; 8]) {
     let corners = [DVec3::Y, DVec3::NEG_Y, DVec3::Z, DVec3::NEG_Z, DVec3::X, DVec3::NEG_X];
     let faces = [[0, 2, 4], [2, 1, 4], [1, 3, 4], [3, 0, 4], [2, 0, 5], [1, 2, 5], [3, 1, 5], [0, 3, 5]];
     (corners, faces)
+}
+
+/// A ball of 8 4^`times` triangles with its corners on the sphere, light scattered about the sphere's normals there or the triangles' own.
+pub fn faceted_ball(center: DVec3, radius: f64, times: u32, is_smooth: bool) -> Shape {
+    let (corners, faces) = octahedron();
+    let mut triangles: Vec<[DVec3; 3]> = faces.map(|face| face.map(|i| corners[i as usize])).to_vec();
+    for _ in 0..times {
+        let parts = |[a, b, c]: [DVec3; 3]| {
+            let [ab, bc, ca] = [a + b, b + c, c + a].map(DVec3::normalize);
+            [[a, ab, ca], [b, bc, ab], [c, ca, bc], [ab, bc, ca]]
+        };
+        triangles = triangles.into_iter().flat_map(parts).collect();
+    }
+    let positions: Vec<DVec3> = triangles.iter().flatten().map(|n| center + radius * *n).collect();
+    let numbers: Vec<[u32; 3]> = (0..triangles.len() as u32).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect();
+    let mesh = match is_smooth {
+        true => Mesh::smooth(&positions, &numbers, None, &triangles),
+        false => Mesh::new(&positions, &numbers, None),
+    };
+    Shape::Mesh(Arc::new(mesh.unwrap()))
 }
 
 pub fn cuboid(min: DVec3, max: DVec3) -> Shape {

@@ -35,7 +35,7 @@ fn room() -> Scene {
     bounded(vec![fog], objects, vec![area_light(light, Spectrum::rgb(3.0, 2.0, 1.0))])
 }
 
-fn camera(position: DVec3, look_at: DVec3, fov: f64, filter: Filter) -> Camera {
+pub(super) fn camera(position: DVec3, look_at: DVec3, fov: f64, filter: Filter) -> Camera {
     let up = DVec3::new(0.1, 1.0, 0.0);
     Camera::new(View { position, look_at, up, fov, width: SIDE, height: SIDE, filter }).unwrap()
 }
@@ -55,7 +55,7 @@ fn mean(films: &[Film], layer: Layer, channel: usize, quarter: Option<u32>) -> M
 }
 
 /// The same light in both, in each quarter of the picture and more closely in the whole.
-fn compare(what: &str, paths: &[Film], photons: &[Film], layer: Layer, channel: usize) {
+pub(super) fn compare(what: &str, paths: &[Film], photons: &[Film], layer: Layer, channel: usize) {
     for (part, promise) in [(None, 0.2), (Some(0), 0.4), (Some(1), 0.4), (Some(2), 0.4), (Some(3), 0.4)] {
         let what = format!("{what} {} {part:?} {channel}", layer.name());
         let (a, b) = (mean(paths, layer, channel, part), mean(photons, layer, channel, part));
@@ -63,13 +63,13 @@ fn compare(what: &str, paths: &[Film], photons: &[Film], layer: Layer, channel: 
     }
 }
 
-fn by_paths(scene: &Scene, camera: &Camera, samples: u64) -> Vec<Film> {
+pub(super) fn by_paths(scene: &Scene, camera: &Camera, samples: u64) -> Vec<Film> {
     let film =
         |replicate| Method::Paths(scene).render(camera, samples, Streams { seed: 1, replicate }, &NoProgress);
     (0..FILMS).map(|replicate| film(replicate).unwrap()).collect()
 }
 
-fn by_photons(scene: &Scene, camera: &Camera, histories: u64) -> Vec<Film> {
+pub(super) fn by_photons(scene: &Scene, camera: &Camera, histories: u64) -> Vec<Film> {
     let film = |replicate| by_light(scene, camera, histories, 1, Streams { seed: 1, replicate }, &NoProgress);
     (0..FILMS).map(|replicate| film(replicate).unwrap()).collect()
 }

@@ -12,3 +12,4 @@ mod light_tracing;
 mod matched;
 mod path_classes;
 mod plan;
+mod shading;

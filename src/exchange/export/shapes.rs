@@ -67,7 +67,8 @@ impl Writer<'_> {
                 }
                 Shape::Mesh(_) | Shape::Revolution(_) | Shape::Slab(_) => {
                     xml.value("string", "filename", file.as_deref().unwrap_or_default());
-                    xml.value("boolean", "face_normals", "true");
+                    let is_smooth = matches!(shape, Shape::Mesh(mesh) if mesh.is_smooth());
+                    xml.value("boolean", "face_normals", if is_smooth { "false" } else { "true" });
                 }
             }
             for (side, medium) in ["interior", "exterior"].iter().zip(&media) {

@@ -2,13 +2,13 @@
 
 use super::document::Element;
 use super::importer::{Boundary, Importer, Sides, channels, light_channels, refuse_negative};
-use super::part::{Part, Transform};
+use super::part::Part;
 use crate::Spectrum;
 use crate::error::Result;
 use crate::geometry::Rectangle;
 use crate::geometry::{Cuboid, Mesh, Revolution, Shape, Sphere};
 use crate::math::{Albedo, Positive};
-use crate::scene::{LightFile, ObjectFile, ShapeFile, SurfaceFile, TextureFile};
+use crate::scene::{LightFile, NormalsFile, ObjectFile, ShapeFile, SurfaceFile, TextureFile};
 use glam::{DVec2, DVec3};
 use std::sync::Arc;
 
@@ -253,18 +253,22 @@ impl<'a> Importer<'a> {
                     return part.refuse("a mesh without filename; allowed: one");
                 };
                 part.pass_over(&["flip_tex_coords"]);
-                if part.flag("face_normals")? != Some(true) {
-                    self.notes
-                        .push(format!("{}: facets are flat, without normals between them", element.place()));
-                }
+                let is_flat = part.flag("face_normals")? == Some(true);
                 let path = self.path(element, file)?;
                 let is_ply = path.extension().is_some_and(|e| e.eq_ignore_ascii_case("ply"));
                 if is_ply != (part.kind() == "ply") {
                     return part
                         .refuse(format!("a shape of type `{}` of a file of another kind", part.kind()));
                 }
-                let place = |transform: Transform| move |p: DVec3| transform.point(p);
-                let mesh = Mesh::read(&path, place(transform)).map_err(at)?;
+                let turn = |normal: DVec3| transform.normal(normal);
+                let turn = (!is_flat).then_some(&turn as &dyn Fn(DVec3) -> DVec3);
+                let mesh = Mesh::read(&path, |p| transform.point(p), turn).map_err(at)?;
+                if !is_flat && !mesh.is_smooth() {
+                    self.notes.push(format!(
+                        "{}: its file has no normals, and facets are flat; Mitsuba makes normals of its own",
+                        element.place()
+                    ));
+                }
                 Ok(self.written(mesh))
             }
             other => part.refuse(format!(
@@ -286,8 +290,9 @@ impl<'a> Importer<'a> {
     /// A mesh in a file of its own.
     fn written(&mut self, mesh: Mesh) -> (ShapeFile, Shape) {
         let file = self.beside("mesh", "ply", mesh.to_ply());
+        let normals = if mesh.is_smooth() { NormalsFile::Smooth } else { NormalsFile::Flat };
         (
-            ShapeFile::Mesh { file, scale: Positive::ONE, rotate: None, at: [0.0; 3] },
+            ShapeFile::Mesh { file, scale: Positive::ONE, rotate: None, at: [0.0; 3], normals },
             Shape::Mesh(Arc::new(mesh)),
         )
     }

@@ -382,6 +382,11 @@ impl Transform {
         self.linear() * v
     }
 
+    /// The direction of a normal, by the transpose of the inverse, which stays perpendicular to what it was.
+    pub fn normal(&self, n: DVec3) -> DVec3 {
+        self.linear().inverse().transpose() * n
+    }
+
     /// By how much it scales, if it scales alike along all axes and keeps them perpendicular.
     pub fn even_scale(&self) -> Option<f64> {
         let linear = self.linear();

@@ -4,6 +4,7 @@ mod file;
 mod obj;
 mod ply;
 mod polygon;
+mod shading;
 mod triangle;
 
 use super::{ASLANT, Hit, Tree, remainder};
@@ -25,6 +26,8 @@ pub struct Mesh {
     corners: Vec<[DVec3; 3]>,
     /// Surface parameters at the corners, where the mesh has any.
     uvs: Option<Vec<[DVec2; 3]>>,
+    /// Unit normals at the corners of a smooth mesh, on the outer side of their triangle; all 0 of a triangle that is flat.
+    normals: Option<Vec<[DVec3; 3]>>,
     tree: Tree,
     bounds: (DVec3, DVec3),
     /// Sum of the areas up to and with each triangle [L^2].
@@ -40,7 +43,7 @@ pub struct Mesh {
 
 impl PartialEq for Mesh {
     fn eq(&self, other: &Mesh) -> bool {
-        self.corners == other.corners && self.uvs == other.uvs
+        self.corners == other.corners && self.uvs == other.uvs && self.normals == other.normals
     }
 }
 
@@ -81,6 +84,8 @@ fn repeated(triangles: &[[DVec3; 3]]) -> Vec<bool> {
 
 /// Memory that a triangle takes while its mesh is made \[bytes\], its tree included.
 pub(super) const TRIANGLE_BYTES: f64 = 500.0;
+/// What normals add to it \[bytes\]: those given and those kept.
+const NORMALS_BYTES: f64 = 150.0;
 
 impl Mesh {
     /// A mesh from corner positions \[L\], three places among them for each triangle, and surface parameters by
@@ -92,6 +97,30 @@ impl Mesh {
     /// # Errors     `Error::Scene` for positions that are not finite, places outside the list, nothing left,
     /// or more than the memory that is free
     pub fn new(positions: &[DVec3], triangles: &[[u32; 3]], uvs: Option<&[[DVec2; 3]]>) -> Result<Self> {
+        Mesh::build(positions, triangles, uvs, None)
+    }
+
+    /// A mesh that scatters light about normals interpolated between those at its corners, given by triangle, of any length.
+    ///
+    /// Where one of them is 0 or not finite the triangle stays flat. Three that lie behind it are turned, since its corners
+    /// say which side is the outer one; where some do and some do not, or lie in its plane, the triangle stays flat too.
+    ///
+    /// # Errors     those of [`Mesh::new`]
+    pub fn smooth(
+        positions: &[DVec3],
+        triangles: &[[u32; 3]],
+        uvs: Option<&[[DVec2; 3]]>,
+        normals: &[[DVec3; 3]],
+    ) -> Result<Self> {
+        Mesh::build(positions, triangles, uvs, Some(normals))
+    }
+
+    fn build(
+        positions: &[DVec3],
+        triangles: &[[u32; 3]],
+        uvs: Option<&[[DVec2; 3]]>,
+        normals: Option<&[[DVec3; 3]]>,
+    ) -> Result<Self> {
         if let Some(bad) = positions.iter().position(|p| !p.is_finite()) {
             return Err(Error::Scene(format!("corner {} of a mesh is not finite", bad + 1)));
         }
@@ -99,8 +128,12 @@ impl Mesh {
         {
             return Err(Error::Scene("a mesh needs finite surface parameters for every triangle".into()));
         }
+        if normals.is_some_and(|normals| normals.len() != triangles.len()) {
+            return Err(Error::Scene("a smooth mesh needs three normals for every triangle".into()));
+        }
         let what = || format!("a mesh of {} triangles", triangles.len());
-        crate::memory::check(what, TRIANGLE_BYTES * triangles.len() as f64)?;
+        let bytes = TRIANGLE_BYTES + if normals.is_some() { NORMALS_BYTES } else { 0.0 };
+        crate::memory::check(what, bytes * triangles.len() as f64)?;
         let corner = |place: u32| {
             positions.get(place as usize).copied().ok_or_else(|| {
                 Error::Scene(format!(
@@ -135,6 +168,13 @@ impl Mesh {
         let (tree, order) = Tree::new("triangles", &boxes, rounding)?;
         let corners: Vec<[DVec3; 3]> = order.iter().map(|&i| corners[i as usize]).collect();
         let uvs = uvs.map(|uvs| order.iter().map(|&i| uvs[kept[i as usize]]).collect());
+        let normals = normals.map(|normals| {
+            let given = order.iter().map(|&i| normals[kept[i as usize]]);
+            let at_corners = |(corners, given)| {
+                unit_normal(corners).map_or(shading::FLAT, |own| shading::at_corners(own, given))
+            };
+            corners.iter().zip(given).map(at_corners).collect()
+        });
         let mut sum = 0.0;
         let areas = corners
             .iter()
@@ -146,6 +186,7 @@ impl Mesh {
         Ok(Mesh {
             corners,
             uvs,
+            normals,
             tree,
             bounds,
             areas,
@@ -169,6 +210,19 @@ impl Mesh {
     /// Corners of a triangle \[L\], by its number in [`Hit::primitive`].
     pub fn triangle(&self, primitive: u32) -> [DVec3; 3] {
         self.corners[primitive as usize]
+    }
+
+    /// Whether light scatters about normals that are interpolated between corners.
+    pub fn is_smooth(&self) -> bool {
+        self.normals.is_some()
+    }
+
+    /// Unit normals at the corners of a triangle: those that are interpolated, or its own.
+    pub fn normals(&self, primitive: u32) -> [DVec3; 3] {
+        let index = primitive as usize;
+        let own = || [unit_normal(&self.corners[index]).unwrap_or(DVec3::Z); 3];
+        let given = self.normals.as_ref().map(|normals| normals[index]);
+        given.filter(|normals| *normals != shading::FLAT).unwrap_or_else(own)
     }
 
     /// Number of triangles without area, or with the corners of an earlier one, that were left out.
@@ -204,7 +258,11 @@ impl Mesh {
             Some(uvs) => (0..3).fold(DVec2::ZERO, |sum, i| sum + uvs[index][i] * weights[i]),
             None => DVec2::new(weights[1], weights[2]),
         };
-        Some(Hit { t, normal, uv, primitive: index as u32 })
+        let shading = match &self.normals {
+            Some(normals) => shading::interpolated(&normals[index], weights, normal),
+            None => normal,
+        };
+        Some(Hit { t, normal, shading, uv, primitive: index as u32 })
     }
 
     /// Whether a triangle stands before distance `end` \[L\]; `from` is the triangle that the ray starts on.

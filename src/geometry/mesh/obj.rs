@@ -4,12 +4,12 @@
 
 use super::Mesh;
 use super::polygon::cut;
+use super::shading::Turn;
 use crate::error::{Error, Result};
 use glam::{DVec2, DVec3};
 
 /// Statements that say nothing about the triangles.
-const PASSED_OVER: [&str; 16] = [
-    "vn",
+const PASSED_OVER: [&str; 15] = [
     "vp",
     "g",
     "o",
@@ -29,12 +29,18 @@ const PASSED_OVER: [&str; 16] = [
 
 /// What has been read so far.
 #[derive(Default)]
-struct Obj {
+struct Obj<'a> {
     positions: Vec<DVec3>,
     parameters: Vec<DVec2>,
     triangles: Vec<[u32; 3]>,
     uvs: Vec<[DVec2; 3]>,
     has_uvs: bool,
+    /// What is to become of normals, if they are read.
+    turn: Option<Turn<'a>>,
+    normals: Vec<DVec3>,
+    /// Those of the triangles' corners, 0 where there is none.
+    shading: Vec<[DVec3; 3]>,
+    has_normals: bool,
 }
 
 /// Surface parameters beyond have lost the place within a picture that repeats.
@@ -47,18 +53,30 @@ enum Failure {
     Whole(String),
 }
 
-/// A mesh from the text of a Wavefront OBJ file: `v`, `vt` and `f` are read, the rest is passed over.
+/// What the file says of a corner: position, surface parameters, normal.
+type Corner = (u32, Option<DVec2>, Option<DVec3>);
+
+/// A mesh from the text of a Wavefront OBJ file: `v`, `vt` and `f` are read, `vn` if normals have a `turn`, the rest is passed over.
 ///
 /// # Errors     `Error::Scene` with name and line for what cannot be read
-pub(super) fn read(name: &str, text: &str, place: impl Fn(DVec3) -> DVec3) -> Result<Mesh> {
-    parse(text, place).map_err(|e| match e {
+pub(super) fn read(
+    name: &str,
+    text: &str,
+    place: impl Fn(DVec3) -> DVec3,
+    turn: Option<Turn<'_>>,
+) -> Result<Mesh> {
+    parse(text, place, turn).map_err(|e| match e {
         Failure::At(line, what) => Error::Scene(format!("{name}:{line}: {what}")),
         Failure::Whole(what) => Error::Scene(format!("{name}: {what}")),
     })
 }
 
-fn parse(text: &str, place: impl Fn(DVec3) -> DVec3) -> std::result::Result<Mesh, Failure> {
-    let mut obj = Obj::default();
+fn parse(
+    text: &str,
+    place: impl Fn(DVec3) -> DVec3,
+    turn: Option<Turn<'_>>,
+) -> std::result::Result<Mesh, Failure> {
+    let mut obj = Obj { turn, ..Obj::default() };
     for (i, line) in text.lines().enumerate() {
         let line = line.split('#').next().unwrap_or_default();
         obj.statement(line).map_err(|what| Failure::At(i + 1, what))?;
@@ -68,10 +86,14 @@ fn parse(text: &str, place: impl Fn(DVec3) -> DVec3) -> std::result::Result<Mesh
     }
     let positions: Vec<DVec3> = obj.positions.into_iter().map(place).collect();
     let uvs = obj.has_uvs.then_some(&obj.uvs[..]);
-    Mesh::new(&positions, &obj.triangles, uvs).map_err(|e| Failure::Whole(e.to_string()))
+    match obj.has_normals {
+        true => Mesh::smooth(&positions, &obj.triangles, uvs, &obj.shading),
+        false => Mesh::new(&positions, &obj.triangles, uvs),
+    }
+    .map_err(|e| Failure::Whole(e.to_string()))
 }
 
-impl Obj {
+impl Obj<'_> {
     fn statement(&mut self, line: &str) -> std::result::Result<(), String> {
         let mut words = line.split_whitespace();
         match words.next() {
@@ -99,6 +121,15 @@ impl Obj {
                 self.parameters.push(DVec2::new(u, v));
                 Ok(())
             }
+            Some("vn") => {
+                let Some(turn) = self.turn else { return Ok(()) };
+                let numbers = numbers(words)?;
+                let [x, y, z] = numbers[..] else {
+                    return Err(format!("a normal `vn` of {} numbers; allowed: x y z", numbers.len()));
+                };
+                self.normals.push(turn(DVec3::new(x, y, z)));
+                Ok(())
+            }
             Some("f") => self.face(words),
             Some(word) if PASSED_OVER.contains(&word) => Ok(()),
             Some(word) => Err(format!(
@@ -110,7 +141,7 @@ impl Obj {
 
     /// A convex polygon.
     fn face<'a>(&mut self, words: impl Iterator<Item = &'a str>) -> std::result::Result<(), String> {
-        let corners: Vec<(u32, Option<DVec2>)> =
+        let corners: Vec<Corner> =
             words.map(|word| self.corner(word)).collect::<std::result::Result<_, _>>()?;
         if corners.len() < 3 {
             return Err(format!("a face of {} corners; allowed: 3 or more", corners.len()));
@@ -119,9 +150,13 @@ impl Obj {
         Ok(())
     }
 
-    fn triangle(&mut self, corners: [(u32, Option<DVec2>); 3]) {
-        self.triangles.push(corners.map(|(place, _)| place));
-        if let [Some(a), Some(b), Some(c)] = corners.map(|(_, uv)| uv) {
+    fn triangle(&mut self, corners: [Corner; 3]) {
+        self.triangles.push(corners.map(|(place, ..)| place));
+        if self.turn.is_some() {
+            self.has_normals |= corners.iter().any(|(.., normal)| normal.is_some());
+            self.shading.push(corners.map(|(.., normal)| normal.unwrap_or_default()));
+        }
+        if let [Some(a), Some(b), Some(c)] = corners.map(|(_, uv, _)| uv) {
             self.has_uvs = true;
             self.uvs.push([a, b, c]);
         } else {
@@ -130,7 +165,7 @@ impl Obj {
     }
 
     /// `position`, `position/parameters`, `position//normal` or `position/parameters/normal`.
-    fn corner(&self, word: &str) -> std::result::Result<(u32, Option<DVec2>), String> {
+    fn corner(&self, word: &str) -> std::result::Result<Corner, String> {
         let mut parts = word.split('/');
         let first = parts.next().unwrap_or_default();
         let position = place(first, self.positions.len(), "vertex")?;
@@ -138,7 +173,13 @@ impl Obj {
             None | Some("") => None,
             Some(part) => Some(self.parameters[place(part, self.parameters.len(), "vt")?]),
         };
-        Ok((position as u32, uv))
+        let normal = match parts.next() {
+            Some(part) if self.turn.is_some() && !part.is_empty() => {
+                Some(self.normals[place(part, self.normals.len(), "vn")?])
+            }
+            _ => None,
+        };
+        Ok((position as u32, uv, normal))
     }
 }
 
@@ -185,7 +226,7 @@ mod tests {
     fn polygons_and_places() {
         let text = "# square\nv 0 0 0\nv 1 0 0 # right\nv 1 1 0\r\nv 0 1 0 1.0\n\nvt 0 0\nvt 1 1 0\nvn 0 0 1\n\
                     usemtl x\nf -4/1/1 2/2 3/-1/1 4/1\nf 1//1 2//1 4\n";
-        let mesh = parse(text, |p| p).unwrap();
+        let mesh = parse(text, |p| p, None).unwrap();
         assert_eq!((mesh.len(), mesh.area()), (3, 1.5));
     }
 
@@ -209,7 +250,7 @@ mod tests {
                 assert!((b - a).cross(c - a).z > 0.0);
                 assert_eq!(*uvs, [a, b, c].map(|p| 3.0 * p.truncate()));
             }
-            let mesh = parse(&text, |p| p).unwrap();
+            let mesh = parse(&text, |p| p, None).unwrap();
             let area = 0.5 * f64::from(n) * crate::math::sin_cos(angle(1)).0;
             assert!((mesh.area() / area - 1.0).abs() < 1e-12, "{n}");
         }
@@ -246,7 +287,7 @@ mod tests {
             ),
         ];
         for (text, expected) in cases {
-            assert_eq!(parse(&text, |p| p).err(), Some(expected), "{text}");
+            assert_eq!(parse(&text, |p| p, None).err(), Some(expected), "{text}");
         }
     }
 }

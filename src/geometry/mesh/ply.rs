@@ -2,6 +2,7 @@
 
 use super::Mesh;
 use super::polygon::cut;
+use super::shading::Turn;
 use crate::error::{Error, Result};
 use glam::{DVec2, DVec3};
 
@@ -200,19 +201,27 @@ impl Numbers<'_> {
 }
 
 /// A mesh from the bytes of a PLY file, each position where `place` puts it: `x y z` of each `vertex` and the
-/// `vertex_indices` of each `face` are read, `u v` or `s t` where they are there, the rest is passed over.
+/// `vertex_indices` of each `face` are read, `u v` or `s t` where they are there, `nx ny nz` too if normals have a `turn`, the
+/// rest is passed over.
 ///
 /// # Errors     `Error::Scene` that says what cannot be read, and where
-pub(super) fn parse(bytes: &[u8], place: impl Fn(DVec3) -> DVec3) -> Result<Mesh> {
+pub(super) fn parse(bytes: &[u8], place: impl Fn(DVec3) -> DVec3, turn: Option<Turn<'_>>) -> Result<Mesh> {
     let (form, elements, start) = header(bytes)?;
     let mut numbers = Numbers { form, bytes: &bytes[start..] };
     let (mut positions, mut parameters, mut faces) = (Vec::new(), Vec::new(), Vec::new());
     let mut has_parameters = false;
+    // One a vertex, 0 where there is none, if they are asked for.
+    let (mut normals, mut has_normals) = (Vec::new(), false);
     for element in &elements {
         let find = |names: &[&str]| element.properties.iter().position(|p| names.contains(&p.name.as_str()));
         let (is_vertex, is_face) = (element.name == "vertex", element.name == "face");
-        let xyz =
-            ["x", "y", "z"].map(|name| find(&[name]).filter(|i| element.properties[*i].count.is_none()));
+        let number = |name| find(&[name]).filter(|i| element.properties[*i].count.is_none());
+        let xyz = ["x", "y", "z"].map(number);
+        let normal = match ["nx", "ny", "nz"].map(number) {
+            [Some(x), Some(y), Some(z)] => Some([x, y, z]),
+            _ => None,
+        };
+        has_normals |= is_vertex && turn.is_some() && normal.is_some();
         let uv = [find(&["u", "s", "texture_u"]), find(&["v", "t", "texture_v"])];
         let corners = find(&["vertex_indices", "vertex_index"]);
         if is_vertex && xyz.contains(&None) {
@@ -259,6 +268,13 @@ pub(super) fn parse(bytes: &[u8], place: impl Fn(DVec3) -> DVec3) -> Result<Mesh
                     return refuse(format!("vertex {index} is not finite"));
                 }
                 positions.push(place(p));
+                if let Some(turn) = turn {
+                    let normal = normal.map_or(DVec3::ZERO, |places| DVec3::from(places.map(|i| row[i])));
+                    if !normal.is_finite() {
+                        return refuse(format!("the normal of vertex {index} is not finite"));
+                    }
+                    normals.push(turn(normal));
+                }
                 let [u, v] = uv.map(|i| i.map_or(0.0, |i| row[i]));
                 parameters.push(DVec2::new(u, v));
             } else if is_face {
@@ -279,34 +295,45 @@ pub(super) fn parse(bytes: &[u8], place: impl Fn(DVec3) -> DVec3) -> Result<Mesh
     let triangles: Vec<[u32; 3]> = faces.iter().map(|face| face.map(|corner| corner as u32)).collect();
     let uvs: Option<Vec<[DVec2; 3]>> = has_parameters
         .then(|| triangles.iter().map(|corners| corners.map(|i| parameters[i as usize])).collect());
-    Mesh::new(&positions, &triangles, uvs.as_deref())
+    if !has_normals {
+        return Mesh::new(&positions, &triangles, uvs.as_deref());
+    }
+    let normals: Vec<[DVec3; 3]> =
+        triangles.iter().map(|corners| corners.map(|i| normals[i as usize])).collect();
+    Mesh::smooth(&positions, &triangles, uvs.as_deref(), &normals)
 }
 
 impl Mesh {
-    /// The bytes of a PLY file: binary, in double precision, corners that triangles share once.
+    /// The bytes of a PLY file: binary, in double precision, corners that triangles share once; with the normals of a smooth
+    /// mesh.
     pub fn to_ply(&self) -> Vec<u8> {
         let mut places = std::collections::HashMap::new();
-        let (mut positions, mut faces) = (Vec::new(), Vec::new());
+        let (mut vertices, mut faces) = (Vec::new(), Vec::new());
         for number in 0..self.len() as u32 {
-            let corners = self.triangle(number).map(|p| {
+            let normals = if self.is_smooth() { self.normals(number) } else { [DVec3::ZERO; 3] };
+            let corners = self.triangle(number);
+            faces.push([0, 1, 2].map(|i| {
+                let (p, normal) = (corners[i], normals[i]);
                 // Adding 0 makes -0 the same as 0.
-                let key = (p + DVec3::ZERO).to_array().map(f64::to_bits);
+                let key = [p, normal].map(|v| (v + DVec3::ZERO).to_array().map(f64::to_bits));
                 *places.entry(key).or_insert_with(|| {
-                    positions.push(p);
-                    positions.len() as u32 - 1
+                    vertices.push((p, normal));
+                    vertices.len() as u32 - 1
                 })
-            });
-            faces.push(corners);
+            }));
         }
+        let names = if self.is_smooth() { &["x", "y", "z", "nx", "ny", "nz"][..] } else { &["x", "y", "z"] };
+        let properties: String = names.iter().map(|name| format!("property double {name}\n")).collect();
         let mut bytes = format!(
-            "ply\nformat binary_little_endian 1.0\nelement vertex {}\nproperty double x\nproperty double y\nproperty double z\n\
+            "ply\nformat binary_little_endian 1.0\nelement vertex {}\n{properties}\
              element face {}\nproperty list uchar uint vertex_indices\nend_header\n",
-            positions.len(),
+            vertices.len(),
             faces.len()
         )
         .into_bytes();
-        for p in positions {
-            p.to_array().into_iter().for_each(|x| bytes.extend(x.to_le_bytes()));
+        for (p, normal) in vertices {
+            let numbers = p.to_array().into_iter().chain(normal.to_array());
+            numbers.take(names.len()).for_each(|x| bytes.extend(x.to_le_bytes()));
         }
         for corners in faces {
             bytes.push(3);
@@ -326,7 +353,7 @@ mod tests {
 
     #[test]
     fn text_and_both_orders_of_bytes_are_one_mesh() {
-        let square = parse(SQUARE.as_bytes(), |p| p).unwrap();
+        let square = parse(SQUARE.as_bytes(), |p| p, None).unwrap();
         assert_eq!((square.len(), square.area()), (2, 6.0));
         for (name, is_big) in [("binary_little_endian", false), ("binary_big_endian", true)] {
             let mut bytes = SQUARE.split("0 0 0 1").next().unwrap().replace("ascii", name).into_bytes();
@@ -342,9 +369,9 @@ mod tests {
             }
             put(&[4]);
             (0i32..4).for_each(|i| put(&i.to_le_bytes()));
-            assert_eq!(parse(&bytes, |p| p).unwrap(), square);
+            assert_eq!(parse(&bytes, |p| p, None).unwrap(), square);
             bytes.pop();
-            let short = parse(&bytes, |p| p).unwrap_err().to_string();
+            let short = parse(&bytes, |p| p, None).unwrap_err().to_string();
             assert_eq!(short, "ends, or has no number, in face 0 of 1");
         }
     }
@@ -355,7 +382,7 @@ mod tests {
         let positions =
             [[0.1, 0.2, 0.3], [1.0 / 3.0, 0.0, 1e-20], [0.0, 7.0, -1.0], [5.0, 5.0, 5.0]].map(DVec3::from);
         let mesh = Mesh::new(&positions, &[[0, 1, 2], [2, 1, 3], [0, 2, 3]], None).unwrap();
-        let again = parse(&mesh.to_ply(), |p| p).unwrap();
+        let again = parse(&mesh.to_ply(), |p| p, None).unwrap();
         let corners = |mesh: &Mesh| {
             let mut all: Vec<_> = (0..mesh.len() as u32)
                 .map(|i| mesh.triangle(i).map(|p| p.to_array().map(f64::to_bits)))
@@ -397,7 +424,7 @@ mod tests {
             (with("element face 1", "element nothing 99999999999999\nelement face 1"), ""),
         ];
         for (text, expected) in cases {
-            let said = parse(text.as_bytes(), |p| p).err().map_or(String::new(), |e| e.to_string());
+            let said = parse(text.as_bytes(), |p| p, None).err().map_or(String::new(), |e| e.to_string());
             assert_eq!(said, expected, "{text}");
         }
     }

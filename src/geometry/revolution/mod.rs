@@ -232,7 +232,8 @@ impl Revolution {
             ((DVec2::new(p.truncate().length(), p.z) - from).dot(along) / from.distance(to)).clamp(0.0, 1.0);
         let turn = 0.5 + atan2(-p.y, -p.x) / (2.0 * PI);
         let uv = DVec2::new(turn.clamp(0.0, 1.0), (k as f64 + part) / (self.rings.len() - 1) as f64);
-        Hit { t, normal: self.normal(p.truncate(), k), uv, primitive: k as u32 }
+        let normal = self.normal(p.truncate(), k);
+        Hit { t, normal, shading: normal, uv, primitive: k as u32 }
     }
 
     /// Outward normal of frustum `k` above a point across the axis.

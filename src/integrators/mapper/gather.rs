@@ -23,7 +23,7 @@ impl Mapper<'_> {
         report: &mut Report,
         stream: &mut Stream,
     ) -> Spectrum {
-        let frame = Frame::new(diffuse.normal);
+        let frame = Frame::new(diffuse.normals.shading);
         let [rows, columns] = cells(count);
         let mut sum = Spectrum::ZERO;
         for cell in 0..rows * columns {
@@ -31,7 +31,7 @@ impl Mapper<'_> {
             let u = (f64::from(cell / columns) + u) / f64::from(rows);
             let v = (f64::from(cell % columns) + v) / f64::from(columns);
             let dir = frame.to_world(warp::square_to_cosine_hemisphere([u, v])).normalize();
-            let mut onwards = Some((diffuse.leaving(dir), Spectrum::ONE));
+            let mut onwards = diffuse.normals.leaves(dir).then(|| (diffuse.leaving(dir), Spectrum::ONE));
             // In a bright corner there may be thousands, one behind the other.
             while let Some((start, weight)) = onwards {
                 report.gathering += 1;
@@ -90,8 +90,8 @@ impl GatherRay<'_, '_, '_> {
                     diffuse.irradiance(self.mapper, map, settings.caustic, &mut self.report.caustic, stream);
             }
             let dir = warp::square_to_cosine_hemisphere(stream.pair());
-            let dir = Frame::new(diffuse.normal).to_world(dir).normalize();
-            self.onwards = Some((diffuse.leaving(dir), reflected * PI));
+            let dir = Frame::new(diffuse.normals.shading).to_world(dir).normalize();
+            self.onwards = diffuse.normals.leaves(dir).then(|| (diffuse.leaving(dir), reflected * PI));
             sum
         } else {
             diffuse.irradiance(self.mapper, global, settings.global, &mut self.report.global, stream)

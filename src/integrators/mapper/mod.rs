@@ -200,7 +200,7 @@ impl<'a> Mapper<'a> {
     }
 
     /// Light that arrives at a place straight from all lights, each direction weighted by `scattered`; `walker` says in
-    /// which interior. Of lights without direction: what the ray `blind` meets.
+    /// which interior. Of lights without direction: what the ray `blind` meets, nothing where there is none.
     fn direct(
         &self,
         walker: &Walker,
@@ -208,7 +208,7 @@ impl<'a> Mapper<'a> {
         report: &mut Report,
         stream: &mut Stream,
         scattered: impl Fn(DVec3) -> f64,
-        blind: impl FnOnce(&mut Stream) -> DVec3,
+        blind: impl FnOnce(&mut Stream) -> Option<DVec3>,
     ) -> Spectrum {
         let (position, interior) = (walker.ray.origin, walker.interior);
         let mut sum = Spectrum::ZERO;
@@ -220,8 +220,10 @@ impl<'a> Mapper<'a> {
         }
         let scene = self.scene;
         let is_missed = |light: &Light| !light.has_direction_from(position);
-        if scene.plan().has_emission || scene.lights().iter().any(is_missed) {
-            let ray = Ray::new(position, blind(stream));
+        if (scene.plan().has_emission || scene.lights().iter().any(is_missed))
+            && let Some(dir) = blind(stream)
+        {
+            let ray = Ray::new(position, dir);
             let start = Walker { origin_surface, interior, ..Walker::new(ray, Spectrum::ONE) };
             sum += seen_straight(scene, start, &mut report.rays.segments, stream, |walker, end, stream| {
                 self.met(walker, end, Some(position), stream)

@@ -3,6 +3,7 @@
 use super::{Eye, Gathers, Mapper};
 use crate::Spectrum;
 use crate::estimators::{Estimate, Gather, Kernel, irradiance, irradiance_seen};
+use crate::geometry::Normals;
 use crate::math::Ray;
 use crate::photons::PhotonMap;
 use crate::photons::maps::Indirect;
@@ -31,8 +32,8 @@ pub(super) struct Diffuse<'w> {
     pub found: &'w SceneHit,
     /// Where \[L\].
     pub position: DVec3,
-    /// Unit normal on the side of the walker.
-    pub normal: DVec3,
+    /// Unit normals on the side of the walker: the photons' disc lies across the geometric one.
+    pub normals: Normals,
     /// Fraction of the irradiance that is reflected, on all directions together.
     pub reflectance: Spectrum,
 }
@@ -42,13 +43,12 @@ impl<'w> Diffuse<'w> {
     pub fn met(mapper: &Mapper, walker: &'w Walker, found: &'w SceneHit) -> Option<Self> {
         let Target::Object(index) = found.target else { return None };
         let Surface::Lambertian(surface) = &mapper.scene.objects()[index].surface else { return None };
-        let (position, outward) = (walker.ray.at(found.hit.t), found.hit.normal);
-        let normal = if walker.ray.dir.dot(outward) < 0.0 { outward } else { -outward };
+        let position = walker.ray.at(found.hit.t);
         Some(Diffuse {
             walker,
             found,
             position,
-            normal,
+            normals: found.hit.normals(walker.ray.dir),
             reflectance: surface.reflectance(position, found.hit.uv),
         })
     }
@@ -70,8 +70,10 @@ impl<'w> Diffuse<'w> {
     ) -> Spectrum {
         let slope = mapper.settings.slope;
         let place = mapper.bodies.as_ref();
-        let Some(place) = place.and_then(|b| b.place(self.found, self.position, self.normal, slope)) else {
-            let tangent = Tangent { normal: self.normal, slope, turn: 2.0 * slope };
+        let Some(place) =
+            place.and_then(|b| b.place(self.found, self.position, self.normals.geometric, slope))
+        else {
+            let tangent = Tangent { normal: self.normals.geometric, slope, turn: 2.0 * slope };
             let estimate = irradiance(map, self.position, &tangent, kernel, gather);
             count.add(&estimate);
             return estimate.value;
@@ -115,12 +117,12 @@ impl<'w> Diffuse<'w> {
 
     /// Irradiance straight from lights [W/L^2].
     pub fn direct(&self, mapper: &Mapper, report: &mut super::Report, stream: &mut Stream) -> Spectrum {
-        let here = self.leaving(self.normal);
-        let cosine = |towards: DVec3| towards.dot(self.normal).max(0.0);
+        let here = self.leaving(self.normals.geometric);
         // Density cos/pi: the irradiance along a sampled direction is pi times the radiance.
-        let mapped = |towards: DVec3| cosine(towards) / PI;
+        let mapped = |towards: DVec3| self.normals.cosine(towards) / PI;
         mapper.direct(&here, here.origin_surface, report, stream, mapped, |stream| {
-            Lambertian::scatter(self.normal, stream.pair()).0
+            let dir = Lambertian::scatter(self.normals.shading, stream.pair()).0;
+            self.normals.leaves(dir).then_some(dir)
         }) * PI
     }
 }

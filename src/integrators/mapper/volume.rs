@@ -40,7 +40,7 @@ impl Mapper<'_> {
             let (one_minus_mu, one_plus_mu) = cosine_pair(dir, towards);
             phase.eval(one_minus_mu, one_plus_mu)
         };
-        let blind = |stream: &mut Stream| phase.scatter(dir, stream.pair());
+        let blind = |stream: &mut Stream| Some(phase.scatter(dir, stream.pair()));
         let single = self.direct(&here, None, report, stream, value, blind);
         let mut multiple = Spectrum::ZERO;
         if let Some(map) = self.maps.volume.as_ref().filter(|_| settings.volume.ray_radius.is_none()) {

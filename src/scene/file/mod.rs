@@ -9,7 +9,7 @@ mod values;
 
 pub use interior::{DielectricFile, InteriorFile};
 pub use medium::{DensityFile, GridFile, Interpolation, PhaseFile};
-pub use shape::{RotateFile, ShapeFile};
+pub use shape::{NormalsFile, RotateFile, ShapeFile};
 pub use texture::TextureFile;
 pub use values::{CellFile, Channels};
 

@@ -45,6 +45,8 @@ pub enum ShapeFile {
         rotate: Option<RotateFile>,
         #[serde(default, skip_serializing_if = "is_zero", alias = "translate")]
         at: [f64; 3],
+        #[serde(default, skip_serializing_if = "NormalsFile::is_flat")]
+        normals: NormalsFile,
     },
     /// A profile of (radius, height), turned about the axis; `smooth` pieces between its points.
     #[serde(alias = "surface-of-revolution")]
@@ -70,6 +72,23 @@ pub enum ShapeFile {
         #[serde(default, skip_serializing_if = "Option::is_none")]
         floor: Option<f64>,
     },
+}
+
+/// Which normals light scatters about on a mesh.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum NormalsFile {
+    /// Those of the triangles.
+    #[default]
+    Flat,
+    /// Those of the file, interpolated.
+    Smooth,
+}
+
+impl NormalsFile {
+    fn is_flat(&self) -> bool {
+        *self == NormalsFile::Flat
+    }
 }
 
 /// A turn about an axis through the origin, counterclockwise seen against it.
@@ -147,14 +166,25 @@ impl ShapeFile {
             ShapeFile::Rectangle { corner, u, v } => Shape::Rectangle(rectangle(corner, u, v)?),
             ShapeFile::Slab { top, thickness } => Shape::Slab(Slab::new(top, thickness.get())?),
             ShapeFile::Cuboid { min, max } => Shape::Cuboid(Cuboid::new(min.into(), max.into())?),
-            ShapeFile::Mesh { ref file, scale, rotate, at } => {
+            ShapeFile::Mesh { ref file, scale, rotate, at, normals } => {
                 let at = DVec3::from(at);
                 let turn = rotate.map(|rotate| rotate.matrix()).transpose()?;
                 let place = |p: DVec3| {
                     let p = p * scale.get();
                     turn.map_or(p, |turn| turn * p) + at
                 };
-                Shape::Mesh(Arc::new(Mesh::read(&folder.join(file), place)?))
+                // Scaled alike along all axes, normals turn as the body does.
+                let turned = |normal: DVec3| turn.map_or(normal, |turn| turn * normal);
+                let is_smooth = normals == NormalsFile::Smooth;
+                let path = folder.join(file);
+                let mesh = Mesh::read(&path, place, is_smooth.then_some(&turned as _))?;
+                if is_smooth && !mesh.is_smooth() {
+                    return Err(Error::Scene(format!(
+                        "normals: {} has none at its corners, which \"smooth\" needs; allowed: \"flat\"",
+                        path.display()
+                    )));
+                }
+                Shape::Mesh(Arc::new(mesh))
             }
             ShapeFile::Lathe { base, axis, ref profile, smooth: pieces } => {
                 if !(1..=1000).contains(&pieces) {
