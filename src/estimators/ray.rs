@@ -54,7 +54,8 @@ impl RayEstimator {
     ///
     /// # Limits
     /// the stretch is cut square at its ends: at a face that the ray meets aslant the light of a length of up to
-    /// (2/(3 pi)) r tan(theta) is missing (uniform kernel)
+    /// (2/(3 pi)) r tan(theta) is missing (uniform kernel). Nor is the sum divided by the part of the disc that a body beside the ray
+    /// leaves, as balls are: what it hides is missing
     pub fn radiance(
         &self,
         map: &PhotonMap,
