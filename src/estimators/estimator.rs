@@ -53,7 +53,12 @@ impl Estimator {
 
     /// What reads whole stretches of rays; none where they are read point by point.
     pub fn of_rays(&self) -> Option<RayEstimator> {
-        self.ray_radius.map(|radius| RayEstimator { kernel: self.kernel, radius })
+        let Estimator { kernel, treatment, .. } = *self;
+        self.ray_radius.map(|radius| RayEstimator {
+            kernel,
+            radius,
+            is_clipped: treatment != Treatment::None,
+        })
     }
 
     /// The smallest of the radii that it names, of a point or a ray \[L\].

@@ -42,7 +42,9 @@ struct Closed {
     across: fn(f64) -> f64,
     /// int_0^sqrt(w) s profile(s^2) ds over w.
     wedge: fn(f64) -> f64,
-    /// The inverse of the part of the disc's kernel within a distance.
+    /// int_0^u 2 pi s K ds on the disc.
+    within_disc: fn(f64) -> f64,
+    /// Its inverse.
     sample_disc: fn(f64) -> f64,
 }
 
@@ -58,6 +60,7 @@ const UNIFORM: Closed = Closed {
     within: |u| u * (u * u),
     across: |u| 1.5 * rest(u),
     wedge: |_| 0.5,
+    within_disc: |u| u * u,
     sample_disc: f64::sqrt,
 };
 
@@ -68,7 +71,7 @@ const EPANECHNIKOV: Closed = Closed {
     within: |u| 0.5 * (u * (u * u)) * (5.0 - 3.0 * (u * u)),
     across: |u| 1.875 * rest(u) * rest(u),
     wedge: |w| 0.5 - 0.25 * w,
-    // 2 u^2 - u^4.
+    within_disc: |u| u * u * (2.0 - u * u),
     sample_disc: |part| (1.0 - (1.0 - part).sqrt()).sqrt(),
 };
 
@@ -79,7 +82,7 @@ const CONE: Closed = Closed {
     within: |u| u * (u * u) * (4.0 - 3.0 * u),
     across: |u| 2.0 * (1.0 - u) * (1.0 - u) * (1.0 + 2.0 * u),
     wedge: |w| 0.5 - w.sqrt() / 3.0,
-    // 3 u^2 - 2 u^3.
+    within_disc: |u| u * u * (3.0 - 2.0 * u),
     sample_disc: |part| 0.5 - sin(asin(1.0 - 2.0 * part) / 3.0),
 };
 
@@ -90,7 +93,7 @@ const BIWEIGHT: Closed = Closed {
     within: |u| 0.125 * (u * (u * u)) * (35.0 - 42.0 * (u * u) + 15.0 * (u * u) * (u * u)),
     across: |u| 2.1875 * rest(u) * rest(u) * rest(u),
     wedge: |w| 0.5 - w * (0.5 - w / 6.0),
-    // 1 - (1 - u^2)^3.
+    within_disc: |u| 1.0 - rest(u) * rest(u) * rest(u),
     sample_disc: |part| (1.0 - cbrt(1.0 - part)).sqrt(),
 };
 
@@ -115,7 +118,7 @@ const GAUSSIAN: Closed = Closed {
     },
     across: |u| -4.0 / 9.0 * PI * GAUSSIAN.ball[0] * exp(-A * u * u) * exp_m1(-A * rest(u)),
     wedge: |w| if w == 0.0 { 0.5 } else { -exp_m1(-A * w) / (9.0 * w) },
-    // (1 - e^(-a u^2))/(1 - e^-a).
+    within_disc: |u| exp_m1(-A * u * u) / exp_m1(-A),
     sample_disc: |part| (-ln_1p(part * exp_m1(-A)) / A).sqrt(),
 };
 
@@ -220,6 +223,11 @@ impl Kernel {
     /// The integral of the disc's K over a wedge of one radian out to sqrt(w), over w.
     pub(super) fn wedge(self, w: f64) -> f64 {
         self.disc_peak() * (self.closed().wedge)(w)
+    }
+
+    /// Part of the disc's kernel within u, in [0, 1], of its centre: int_0^u 2 pi s K ds.
+    pub fn within_disc(self, u: f64) -> f64 {
+        (self.closed().within_disc)(u)
     }
 
     /// Distance from the middle, over the radius, of a point of the disc of density K, from a number in [0, 1).

@@ -15,7 +15,9 @@ use glam::DVec3;
 /// L = sum albedo power p T(s) K_r(rho) / N,
 ///
 /// K_r the kernel on the disc across the ray. Its mean is the integral of T over the source blurred across the ray, so that no step
-/// is left to choose; the variance falls with r^2 in place of the r^3 of balls.
+/// is left to choose; the variance falls with r^2 in place of the r^3 of balls. Photons of other media, and those that a body hides from
+/// their foot, do not count. Where it is clipped, what is left of the disc makes up for them, and for what lies beyond the medium's faces:
+/// a uniform source comes out right, whatever the radius.
 ///
 /// # Source
 /// Jarosz, Zwicker and Jensen 2008, "The beam radiance estimate for volumetric photon mapping", with a fixed radius
@@ -25,6 +27,8 @@ pub struct RayEstimator {
     pub kernel: Kernel,
     /// Photons farther from the ray than this do not count \[L\].
     pub radius: Positive,
+    /// Whether what a photon brings is divided by the part of the disc about its foot that is in the medium and seen from there.
+    pub is_clipped: bool,
 }
 
 /// An estimate along a ray, and what it rests on.
@@ -53,9 +57,8 @@ impl RayEstimator {
     /// not a number in a periodic cell that holds no copies as far as the radius, or of a stretch without end there
     ///
     /// # Limits
-    /// the stretch is cut square at its ends: at a face that the ray meets aslant the light of a length of up to
-    /// (2/(3 pi)) r tan(theta) is missing (uniform kernel). Nor is the sum divided by the part of the disc that a body beside the ray
-    /// leaves, as balls are: what it hides is missing
+    /// the stretch is cut square at its ends: if it is not clipped the light of a length of (2/(3 pi)) r tan(theta) is missing at a
+    /// face that the ray meets aslant (uniform kernel), and what bodies beside the ray hide
     pub fn radiance(
         &self,
         map: &PhotonMap,
@@ -67,28 +70,45 @@ impl RayEstimator {
         let (radius, phase) = (self.radius.get(), medium.phase());
         let (mut sum, mut found, mut rejected) = (Spectrum::ZERO, 0, 0);
         let is_known = map.along(ray, span, radius, |photon, foot, squared| {
-            if !is_kept(boundary, photon.position, (ray, foot), squared) {
+            let Some(share) = self.share(map, boundary, photon.position, (ray, foot), squared) else {
                 rejected += 1;
                 return;
-            }
+            };
             found += 1;
             let (one_minus_mu, one_plus_mu) = cosine_pair(photon.dir.as_dvec3(), -ray.dir);
             let weight = phase.value(one_minus_mu, one_plus_mu)
                 * self.kernel.profile((squared / (radius * radius)).min(1.0));
             let albedo = medium.albedo(photon.position);
-            sum += Spectrum(photon.power.as_dvec3()) * albedo * passed(foot) * weight;
+            sum += Spectrum(photon.power.as_dvec3()) * albedo * passed(foot) * (weight / share);
         });
         let scale = self.kernel.disc_peak() / (radius * radius) / map.emitted() as f64;
         let value = if is_known { sum * scale } else { Spectrum::grey(f64::NAN) };
         RayEstimate { value, found, rejected }
     }
-}
 
-/// Whether a photon is of the medium, and seen from its foot on the ray.
-fn is_kept(boundary: &Boundary<'_>, photon: DVec3, (ray, foot): (&Ray, f64), squared: f64) -> bool {
-    if boundary.is_clear() {
-        return true;
+    /// What a photon is divided by; none if it is of another medium, or a body hides it from its foot on the ray.
+    fn share(
+        &self,
+        map: &PhotonMap,
+        boundary: &Boundary<'_>,
+        photon: DVec3,
+        (ray, foot): (&Ray, f64),
+        squared: f64,
+    ) -> Option<f64> {
+        let radius = self.radius.get();
+        let foot = ray.at(foot);
+        let is_whole = boundary.medium.is_none_or(|medium| medium.room(foot) >= radius);
+        if boundary.is_clear() && (is_whole || !self.is_clipped) {
+            return Some(1.0);
+        }
+        let reach = if self.is_clipped { radius } else { squared.sqrt() };
+        let about = Surroundings::new(boundary, foot, foot, BEYOND * reach);
+        if !about.keeps(photon) {
+            return None;
+        }
+        if !self.is_clipped || (about.is_clear(radius) && is_whole) {
+            return Some(1.0);
+        }
+        Some(about.disc_share(self.kernel, ray.dir, radius, map.run()))
     }
-    let foot = ray.at(foot);
-    Surroundings::new(boundary, foot, foot, BEYOND * squared.sqrt()).keeps(photon)
 }

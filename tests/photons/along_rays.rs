@@ -26,7 +26,7 @@ fn photon(position: DVec3, dir: Vec3) -> Photon {
 }
 
 fn reading(kernel: Kernel, radius: f64) -> RayEstimator {
-    RayEstimator { kernel, radius: Positive::new("the radius", radius).unwrap() }
+    RayEstimator { kernel, radius: Positive::new("the radius", radius).unwrap(), is_clipped: false }
 }
 
 /// One photon beside a ray, in a homogeneous medium and in one that grows denser along it: products of five factors.
@@ -213,6 +213,40 @@ fn photons_behind_walls_do_not_count() {
         let all = photons.iter().filter(near).count();
         assert_eq!((estimate.rejected, estimate.found), (lost, all - lost));
         assert!(lost > 50);
+    }
+}
+
+/// A uniform source in a box, along a ray that enters and leaves it aslant near edges, alone and beside a wall that ends half way: clipped
+/// it comes out right with every kernel, unclipped it does not.
+#[test]
+fn a_uniform_source_comes_out_right_beside_walls() {
+    let synthetic = Synthetic::new(Profile::Constant, DVec3::ZERO, DVec3::ONE).unwrap();
+    let even = homogeneous(Spectrum::ONE, Spectrum::ONE, 0.0);
+    let whole = cuboid(DVec3::ZERO, DVec3::ONE);
+    let ray = Ray::new(DVec3::new(-0.3, 0.85, 0.1), DVec3::new(0.8, -0.1, 0.59).normalize());
+    let span = whole.interval(&ray).unwrap();
+    let wall = Rectangle::new(DVec3::new(0.3, 0.0, 0.3), DVec3::Y, DVec3::new(0.4, 0.0, 0.25)).unwrap();
+    let walls = [Shape::Rectangle(wall)];
+    let known = Boundary::of(&whole).unwrap();
+    for (name, boundary) in [("alone", known), ("beside a wall", known.about(&walls))] {
+        let mut moments = [[Moments::new(); 5]; 2];
+        for replicate in 0..150 {
+            let map = synthetic.map(Number::Expected(10_000), 12, replicate).unwrap();
+            for (is_clipped, moments) in [true, false].into_iter().zip(&mut moments) {
+                for (kernel, moments) in Kernel::ALL.into_iter().zip(moments) {
+                    let reading = RayEstimator { is_clipped, ..reading(kernel, 0.2) };
+                    let estimate = reading.radiance(&map, (&ray, span), &even, &boundary, |_| Spectrum::ONE);
+                    moments.push(estimate.value[0]);
+                }
+            }
+        }
+        let expected = span.length() / FOUR_PI;
+        for (kernel, moments) in Kernel::ALL.into_iter().zip(&moments[0]) {
+            let what = format!("{name}, {kernel:?}");
+            // Of 32 directions across the ray.
+            verdict::agrees(&what, moments, (expected, 0.002 * expected), 0.035 * expected, 12);
+        }
+        verdict::rejects(&format!("not clipped, {name}"), &moments[1][0], expected, 12);
     }
 }
 

@@ -20,6 +20,8 @@ const DIRECTIONS: u32 = 64;
 /// Sets are added until the parts on their directions sum to this: an estimate divides by the part, and the mean of 1/part
 /// is 1 plus the part's relative variance.
 const ENOUGH: f64 = 24.0;
+/// Directions across a ray: at a flat wall the part is then within about a hundredth of the true one.
+const ACROSS: u32 = 32;
 /// No more directions than this; nor is a part less than one of them.
 const MOST: u32 = 16 * DIRECTIONS;
 /// Bodies lie in or behind a plane if they reach no farther out of it than this part of the point's distance: what rounding
@@ -139,8 +141,8 @@ impl<'a> Surroundings<'a> {
         distance < 0.999 * self.clear || !self.bodies.iter().any(hides)
     }
 
-    /// The part of the kernel on a ray that is in the medium and seen.
-    fn along(&self, kernel: Kernel, dir: DVec3, radius: f64) -> f64 {
+    /// The part of a kernel on a ray that is in the medium and seen; `within` is the part within a distance over the radius.
+    fn along(&self, within: &impl Fn(f64) -> f64, dir: DVec3, radius: f64) -> f64 {
         let ray = Ray::new(self.eye, dir);
         let mut end = radius;
         for body in &self.bodies {
@@ -155,7 +157,7 @@ impl<'a> Surroundings<'a> {
         let inside = |(_, shape): &(f64, &Shape)| shape.interval(&ray)?.intersection(whole);
         let mut others: Vec<Interval> = self.later.iter().filter_map(inside).collect();
         others.sort_by(|a, b| a.start.total_cmp(&b.start));
-        let up_to = |t: f64| kernel.within(t / radius);
+        let up_to = |t: f64| within(t / radius);
         let (mut sum, mut from) = (0.0, 0.0f64);
         for other in others {
             if other.start > from {
@@ -182,11 +184,25 @@ impl<'a> Surroundings<'a> {
             let (across, beside) = (axes.x * cos + axes.y * sin, axes.y * cos - axes.x * sin);
             for dir in SPIRAL.iter() {
                 let dir = across * dir.x + beside * dir.y + axes.z * dir.z;
-                sum += self.along(kernel, dir.normalize(), radius);
+                sum += self.along(&|u| kernel.within(u), dir.normalize(), radius);
             }
             count += DIRECTIONS;
         }
         (sum / f64::from(count)).max(1.0 / f64::from(MOST))
+    }
+
+    /// The part of the disc's kernel across an axis in which photons are kept, as [`Surroundings::share`] of the ball's: by rays in
+    /// directions at equal angles, turned at random by the place and `salt`.
+    pub fn disc_share(&self, kernel: Kernel, axis: DVec3, radius: f64, salt: u64) -> f64 {
+        let [x, y, z] = self.eye.to_array().map(f64::to_bits);
+        let mut stream = Stream::new(x, Purpose::Resampling, y, z ^ salt.rotate_left(32));
+        let axes = Frame::new(axis);
+        let turn = stream.unit();
+        let one = |n: u32| {
+            let (sin, cos) = sin_cos(TAU * (f64::from(n) + turn) / f64::from(ACROSS));
+            self.along(&|u| kernel.within_disc(u), (axes.x * cos + axes.y * sin).normalize(), radius)
+        };
+        ((0..ACROSS).map(one).sum::<f64>() / f64::from(ACROSS)).max(1.0 / f64::from(ACROSS * ACROSS))
     }
 }
 
