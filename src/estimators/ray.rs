@@ -109,6 +109,6 @@ impl RayEstimator {
         if !self.is_clipped || (about.is_clear(radius) && is_whole) {
             return Some(1.0);
         }
-        Some(about.disc_share(self.kernel, ray.dir, radius, map.run()))
+        Some(about.disc_share(self.kernel, ray.dir, radius, map.run(), squared.sqrt()))
     }
 }

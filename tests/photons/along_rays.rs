@@ -228,6 +228,13 @@ fn a_uniform_source_comes_out_right_beside_walls() {
     let wall = Rectangle::new(DVec3::new(0.3, 0.0, 0.3), DVec3::Y, DVec3::new(0.4, 0.0, 0.25)).unwrap();
     let walls = [Shape::Rectangle(wall)];
     let known = Boundary::of(&whole).unwrap();
+    // However large the disc, what is in the box counts: all photons along the ray.
+    let map = synthetic.map(Number::Exact(10_000), 12, 999).unwrap();
+    for radius in [3.0, 1e3, 1e6] {
+        let reading = RayEstimator { is_clipped: true, ..reading(Kernel::Uniform, radius) };
+        let found = reading.radiance(&map, (&ray, span), &even, &known, |_| Spectrum::ONE).value[0];
+        assert!((found * FOUR_PI / span.length() - 1.0).abs() < 0.1, "{radius}: {found}");
+    }
     for (name, boundary) in [("alone", known), ("beside a wall", known.about(&walls))] {
         let mut moments = [[Moments::new(); 5]; 2];
         for replicate in 0..150 {

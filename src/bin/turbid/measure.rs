@@ -90,7 +90,7 @@ pub struct Measure {
     #[arg(long, value_parser = kernels(), default_value = "uniform")]
     kernel: Kernel,
     /// Read rays from all photons within this distance of the ray, in place of from balls at steps along it: the beam radiance
-    /// estimate, for sensors of radiance. With --boundary none what lies beyond faces and behind bodies
+    /// estimate. Sensors of fluence take the balls of --k or --radius. With --boundary none what lies beyond faces and behind bodies
     /// beside the ray is missing [L].
     #[arg(long, conflicts_with = "reject")]
     ray_radius: Option<f64>,

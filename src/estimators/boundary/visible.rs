@@ -192,8 +192,9 @@ impl<'a> Surroundings<'a> {
     }
 
     /// The part of the disc's kernel across an axis in which photons are kept, as [`Surroundings::share`] of the ball's: by rays in
-    /// directions at equal angles, turned at random by the place and `salt`.
-    pub fn disc_share(&self, kernel: Kernel, axis: DVec3, radius: f64, salt: u64) -> f64 {
+    /// directions at equal angles, turned at random by the place and `salt`. At least what one direction brings that sees as far as
+    /// `seen` \[L\], where there is a photon.
+    pub fn disc_share(&self, kernel: Kernel, axis: DVec3, radius: f64, salt: u64, seen: f64) -> f64 {
         let [x, y, z] = self.eye.to_array().map(f64::to_bits);
         let mut stream = Stream::new(x, Purpose::Resampling, y, z ^ salt.rotate_left(32));
         let axes = Frame::new(axis);
@@ -202,7 +203,8 @@ impl<'a> Surroundings<'a> {
             let (sin, cos) = sin_cos(TAU * (f64::from(n) + turn) / f64::from(ACROSS));
             self.along(&|u| kernel.within_disc(u), (axes.x * cos + axes.y * sin).normalize(), radius)
         };
-        ((0..ACROSS).map(one).sum::<f64>() / f64::from(ACROSS)).max(1.0 / f64::from(ACROSS * ACROSS))
+        let sum: f64 = (0..ACROSS).map(one).sum();
+        (sum.max(kernel.within_disc(seen / radius)) / f64::from(ACROSS)).max(f64::MIN_POSITIVE)
     }
 }
 
