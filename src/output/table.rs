@@ -41,6 +41,8 @@ pub struct RunInfo {
     pub k: Option<usize>,
     /// The farthest that they are sought \[L\].
     pub max_radius: Option<f64>,
+    /// Radius about whole rays that are read at once \[L\].
+    pub ray_radius: Option<f64>,
     /// How an estimate weights its photons.
     pub kernel: Option<String>,
     /// What it does where a medium ends.
@@ -87,7 +89,7 @@ struct Document<'a, T> {
 
 const COLUMNS: [&str; 6] = ["sensor", "quantity", "unit", "mean", "std_error", "n"];
 
-const RUN_COLUMNS: [&str; 14] = [
+const RUN_COLUMNS: [&str; 15] = [
     "with",
     "seed",
     "orders",
@@ -97,6 +99,7 @@ const RUN_COLUMNS: [&str; 14] = [
     "radius",
     "k",
     "max_radius",
+    "ray_radius",
     "kernel",
     "boundary",
     "reject",
@@ -295,7 +298,7 @@ mod tests {
         let csv = text(Format::Csv);
         let lines: Vec<&str> = csv.lines().collect();
         assert_eq!(lines[0], [BIN_COLUMNS.join(","), RUN_COLUMNS.join(",")].join(","));
-        let run = ",light,7,0..,,1000,,,50,,cone,,,0.1.0,";
+        let run = ",light,7,0..,,1000,,,50,,,cone,,,0.1.0,";
         assert_eq!(
             lines[1],
             format!("\"probe, centre\",fluence,W/L^2,1,2,0,0.1,-2.0,1e-300,0.3333333333333333,0.1,64{run}")

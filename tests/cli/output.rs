@@ -6,7 +6,7 @@ use std::process::{Command, Stdio};
 
 const COLUMNS: [&str; 6] = ["sensor", "quantity", "unit", "mean", "std_error", "n"];
 /// What follows them as CSV: what the numbers were made with.
-const RUN: [&str; 14] = [
+const RUN: [&str; 15] = [
     "with",
     "seed",
     "orders",
@@ -16,6 +16,7 @@ const RUN: [&str; 14] = [
     "radius",
     "k",
     "max_radius",
+    "ray_radius",
     "kernel",
     "boundary",
     "reject",

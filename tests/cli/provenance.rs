@@ -17,7 +17,7 @@ fn tables_say_what_they_were_made_with() {
     let of = |with: &str, more: serde_json::Value| {
         let mut run = serde_json::json!({
             "with": with, "seed": 3, "orders": "0..", "samples": null, "photons": null, "maps": null, "radius": null, "k": null,
-            "max_radius": null, "kernel": null, "boundary": null, "reject": null, "version": env!("CARGO_PKG_VERSION"),
+            "max_radius": null, "ray_radius": null, "kernel": null, "boundary": null, "reject": null, "version": env!("CARGO_PKG_VERSION"),
             "revision": revision,
         });
         more.as_object().unwrap().iter().for_each(|(key, value)| run[key] = value.clone());
@@ -33,6 +33,12 @@ fn tables_say_what_they_were_made_with() {
     });
     let photons = [&measure("photons")[..], &["--photons", "800", "--maps", "2"]].concat();
     assert_eq!(run_of(&photons), of("photons", nearest));
+    let along = [&photons[..], &["--ray-radius", "0.5"]].concat();
+    assert_eq!(run_of(&along)["ray_radius"], 0.5);
+    refuses_naming(
+        &[&photons[..], &["--ray-radius", "0"]].concat(),
+        &["--ray-radius is 0; allowed: finite and above 0"],
+    );
     let folder = Folder::new();
     let npy = folder.0.path().join("a.npy");
     succeeds(&["map", "slab", "--photons", "500", "--npy", text(&npy)]);

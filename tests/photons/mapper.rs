@@ -33,6 +33,12 @@ fn marching(step: f64, rule: StepRule, is_jittered: bool) -> Settings {
     Settings { march: March { step, rule, is_jittered, adaptive: None }, ..settings(1) }
 }
 
+/// The same, with the volume map read along whole rays; places lie nearer to the faces than the radius.
+fn along_rays(settings: Settings, radius: f64) -> Settings {
+    let radius = Positive::new("the radius", radius).unwrap();
+    Settings { volume: settings.volume.along_rays(radius), ..settings }
+}
+
 /// Fog of albedo 1 with the same radiance from all sides is as bright everywhere, at any anisotropy: what is lost on the
 /// way is scattered in. Single scattering alone is not even: places lie farther from the faces than a ball reaches. A constant source of steps of x mean free paths is read as each rule reads it, also where the medium is one that could vary.
 #[test]
@@ -60,6 +66,7 @@ fn a_furnace_of_fog() {
             (marching(0.7, StepRule::Integrated, true), 1.0),
             (marching(x, StepRule::Integrated, false), 1.0),
             (marching(x, StepRule::NearEnd, false), x / -exp_m1(-x)),
+            (along_rays(marching(0.7, StepRule::Integrated, true), 0.3), 1.0),
             (marching(0.5 * x, StepRule::NearEnd, false), 0.5 * x / -exp_m1(-0.5 * x)),
             (marching(x, StepRule::Middle, false), 0.5 * x / libm::sinh(0.5 * x)),
         ] {

@@ -426,14 +426,17 @@ fn fluence_beside_a_wall_with_fog_beyond() {
 #[test]
 fn kernels_within_a_radius() {
     for kernel in Kernel::ALL {
-        let (n, mut sum) = (20_000, 0.0);
+        let (n, mut sum, mut on_disc) = (20_000, 0.0, 0.0);
         for i in 0..n {
             let u = (f64::from(i) + 0.5) / f64::from(n);
             sum += 4.0 * PI * u * u * kernel.peak() * kernel.profile(u * u) / f64::from(n);
+            on_disc += 2.0 * PI * u * kernel.disc_peak() * kernel.profile(u * u) / f64::from(n);
             let end = f64::from(i + 1) / f64::from(n);
             // Midpoints err by h^2/24 times the slope of the integrand, which stays below 100.
             assert!((kernel.within(end) - sum).abs() < 2e-8, "{kernel:?} within {end}: {sum}");
+            assert!((kernel.within_disc(end) - on_disc).abs() < 2e-8, "{kernel:?} on disc {end}: {on_disc}");
         }
         assert!((kernel.within(1.0) - 1.0).abs() < 1e-14, "{kernel:?}");
+        assert!((kernel.within_disc(1.0) - 1.0).abs() < 1e-14, "{kernel:?}");
     }
 }

@@ -13,6 +13,7 @@ use clap::{ArgMatches, ValueEnum};
 use std::path::PathBuf;
 use turbid::estimators::{Estimator, Gather, Kernel};
 use turbid::geometry::Voxels;
+use turbid::math::Positive;
 use turbid::output::{
     RunInfo, check_writable, is_same_file, npy, one_line, print, voxel_grid, write_atomically, write_rows,
 };
@@ -218,13 +219,14 @@ impl Measure {
         };
         if by(&["--with photons", "--photons-from"]) {
             let maps = if self.photons_from.is_empty() { self.maps } else { self.photons_from.len() as u64 };
-            let Estimator { kernel, gather, treatment, rejection, .. } =
+            let Estimator { kernel, gather, treatment, rejection, ray_radius } =
                 self.settings(scene, 1, 1)?.estimator;
             run.maps = Some(maps);
             match gather {
                 Gather::Radius(radius) => run.radius = Some(radius.get()),
                 _ => (run.k, run.max_radius) = (gather.k(), Some(gather.cap())),
             }
+            run.ray_radius = ray_radius.map(Positive::get);
             run.kernel = Some(kernel.name().to_string());
             run.boundary = Some(treatment.name().replace(' ', "-"));
             run.reject = Some(rejection.name().replace(' ', "-"));

@@ -254,8 +254,8 @@ pub struct Readout {
     #[arg(long, value_parser = kernels(), default_value = "cone")]
     caustic_kernel: Kernel,
     /// Read the volume map along whole rays, from all photons within this distance of the ray, weighted by --kernel, in place of at
-    /// each step of the march: the beam radiance estimate. With --boundary none what lies
-    /// beyond faces and behind bodies beside the ray is missing [L].
+    /// each step of the march: the beam radiance estimate. With --boundary none what lies beyond faces and behind bodies beside the ray
+    /// is missing [L].
     #[arg(long, conflicts_with = "reject")]
     ray_radius: Option<f64>,
     /// Rays of a final gathering at each surface that is seen; 0 reads the global map there itself: fast, and blotchy.

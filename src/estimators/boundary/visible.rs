@@ -175,8 +175,7 @@ impl<'a> Surroundings<'a> {
         if let Some(screen) = self.screen.filter(|_| self.room >= radius && self.later.is_empty()) {
             return 1.0 - kernel.beyond_plane(screen.distance / radius);
         }
-        let [x, y, z] = self.eye.to_array().map(f64::to_bits);
-        let mut stream = Stream::new(x, Purpose::Resampling, y, z ^ salt.rotate_left(32));
+        let mut stream = self.stream(salt);
         let (mut sum, mut count) = (0.0, 0);
         while sum < ENOUGH && count < MOST {
             let axes = Frame::new(warp::square_to_sphere(stream.pair()));
@@ -191,14 +190,17 @@ impl<'a> Surroundings<'a> {
         (sum / f64::from(count)).max(1.0 / f64::from(MOST))
     }
 
+    /// Random numbers of the place and `salt`.
+    fn stream(&self, salt: u64) -> Stream {
+        let [x, y, z] = self.eye.to_array().map(f64::to_bits);
+        Stream::new(x, Purpose::Resampling, y, z ^ salt.rotate_left(32))
+    }
+
     /// The part of the disc's kernel across an axis in which photons are kept, as [`Surroundings::share`] of the ball's: by rays in
     /// directions at equal angles, turned at random by the place and `salt`. At least what one direction brings that sees as far as
     /// `seen` \[L\], where there is a photon.
     pub fn disc_share(&self, kernel: Kernel, axis: DVec3, radius: f64, salt: u64, seen: f64) -> f64 {
-        let [x, y, z] = self.eye.to_array().map(f64::to_bits);
-        let mut stream = Stream::new(x, Purpose::Resampling, y, z ^ salt.rotate_left(32));
-        let axes = Frame::new(axis);
-        let turn = stream.unit();
+        let (axes, turn) = (Frame::new(axis), self.stream(salt).unit());
         let one = |n: u32| {
             let (sin, cos) = sin_cos(TAU * (f64::from(n) + turn) / f64::from(ACROSS));
             self.along(&|u| kernel.within_disc(u), (axes.x * cos + axes.y * sin).normalize(), radius)
