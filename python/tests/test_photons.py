@@ -1,5 +1,8 @@
 """Photons: how many collide, what they carry, and the same ones as the program exports."""
 
+import pathlib
+import re
+
 import numpy as np
 import pytest
 
@@ -72,3 +75,21 @@ def test_the_same_photons_as_the_program_exports(turbid_program, tmp_path):
     assert np.array_equal(photons["power"], kept["power"][nearest])
     assert np.array_equal(photons["order"], kept["order"][nearest])
     assert np.array_equal(photons["flags"], kept["class"][nearest])
+
+
+def test_the_documented_tracer_feeds_the_estimators(turbid_program, tmp_path, monkeypatch):
+    """The tracer in NumPy that RENDERING.md shows, 16 times: the exact fluences of its slab, by Student's t at 1e-6."""
+    text = (pathlib.Path(__file__).parents[2] / "RENDERING.md").read_text()
+    code = re.search("```python\n(.*?)```", text, re.S).group(1)
+    monkeypatch.chdir(tmp_path)
+    files = []
+    for seed in range(16):
+        exec(code.replace("default_rng(1)", f"default_rng({seed})"), {})
+        files += ["--photons-from", pathlib.Path("photons.npy").rename(f"{seed}.npy")]
+    rows = turbid_program.json("measure", "slab", "--with", "photons", *files, "--radius", 0.2, cwd=tmp_path)
+    depths = np.array([0.1, 0.25, 0.5, 0.75, 0.9]) * 2
+    assert len(rows) >= 5
+    for row, exact_value in zip(rows[-5:], exact.slab(2, 0.9, depth=depths).fluence.value):
+        # A radius of 0.2 blurs by r^2/10 times the curvature, less than two curvatures of the field's own size.
+        assert abs(row["mean"] - exact_value) < 7.7 * row["std_error"] + 8e-3 * exact_value, (row, exact_value)
+        assert row["std_error"] < 0.03 * exact_value

@@ -99,18 +99,23 @@ impl Estimator {
         }
     }
 
-    /// Its name, such as "cone, k=50, clipped".
+    /// Its name, such as "cone, k=50, clipped"; one radius for points and rays is said once.
     pub fn name(&self) -> String {
         let Estimator { kernel, gather, treatment, rejection, ray_radius } = self;
-        let mut name = format!("{}, {gather}", kernel.name());
+        let along = ray_radius.map(|radius| format!("along rays r={}", radius.get()));
+        let of_rays_alone = ray_radius.is_some_and(|radius| *gather == Gather::Radius(radius));
+        let mut name = match &along {
+            Some(along) if of_rays_alone => format!("{}, {along}", kernel.name()),
+            _ => format!("{}, {gather}", kernel.name()),
+        };
         if *treatment != Treatment::None {
             name += &format!(", {}", treatment.name());
         }
         if *rejection != Rejection::Off {
             name += &format!(", {}", rejection.name());
         }
-        if let Some(radius) = ray_radius {
-            name += &format!(", along rays r={}", radius.get());
+        if let Some(along) = along.filter(|_| !of_rays_alone) {
+            name += &format!(", {along}");
         }
         name
     }

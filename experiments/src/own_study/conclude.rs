@@ -75,17 +75,23 @@ fn summary(study: &OwnStudy, all: &[Data]) -> Vec<String> {
                             false => (speed.inverse(), "more CPU time than"),
                         };
                         let factor = with_error(faster.value(), faster.std_error());
-                        format!(", ({factor}) times {than} {}", data.reference.sampler.name())
+                        format!(", in ({factor}) times {than} {}", data.reference.sampler.name())
                     }
                     _ => String::new(),
                 };
+                let told = match error.value() > 0.0 && error.std_error().is_finite() {
+                    true => {
+                        let error = in_percent(&error);
+                        format!("Its error by the other half, which did not choose it, is {error}{beside}")
+                    }
+                    false => "The other half is too few maps to tell its error".to_string(),
+                };
                 format!(
-                    "{}, the cheapest of {} settings that reach an error of {} % by half of the maps is {}: {} by the other half, in {} s{beside}.",
+                    "{}, the cheapest of {} settings that reach an error of {} % by half of the maps is {}, in {} s. {told}.",
                     here(data),
                     data.settings.len(),
                     number(percent(target)),
                     named(setting),
-                    in_percent(&error),
                     number(setting.time()),
                 )
             }
