@@ -12,6 +12,7 @@ pub mod budget;
 pub mod claims_1998;
 pub mod cost_model;
 pub mod coverage;
+pub mod dimension;
 pub mod extremes;
 pub mod fuzz;
 pub mod gallery;
@@ -35,6 +36,7 @@ pub const ALL: &[Experiment] = &[
     boundary::EXPERIMENT,
     march::EXPERIMENT,
     rates::EXPERIMENT,
+    dimension::EXPERIMENT,
     tradeoff::EXPERIMENT,
     extremes::EXPERIMENT,
     coverage::EXPERIMENT,

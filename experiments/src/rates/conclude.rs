@@ -3,12 +3,12 @@
 use super::cases::{BLURRED, DEPTHS, FACE, INSIDE, NOISY, Size, name, radii};
 use super::figures;
 use super::predict::Case;
-use super::results::{Curve, Point, ladder};
+use super::results::{Point, ladder};
 use crate::harness::{
     Cells, Claim, Estimate, PREDICTED, Parameters, Row, Section, Settings, Table, Unit, signed, with_error,
 };
 use crate::prediction::{Entry, Prediction, Term};
-use crate::theory::{exponent, exponent_of_means};
+use crate::theory::{Curve, best_by_halves, exponent};
 use turbid::estimators::Kernel;
 use turbid::stats::Moments;
 
@@ -56,70 +56,36 @@ fn entry(point: &Point) -> Entry {
     )
 }
 
-/// The best radius of each size: chosen on the even cells, its error reported by the odd ones, so that luck in choosing
-/// is not taken for accuracy.
+/// The best radius of each size.
 fn best(points: &[Point], sizes: &[u64], depth: f64) -> Curve {
-    let half = |point: &Point, from: usize| -> Vec<f64> {
-        point.squares.iter().skip(from).step_by(2).copied().collect()
-    };
-    let mean = |values: &[f64]| values.iter().sum::<f64>() / values.len().max(1) as f64;
-    let smallest = |values: Vec<f64>| {
-        (0..values.len()).fold(0, |best, i| if values[i] < values[best] { i } else { best })
-    };
-    let (mut chosen, mut reported, mut predicted) = (Vec::new(), Vec::new(), Vec::new());
-    for &photons in sizes {
-        let ladder = ladder(points, photons, depth);
-        let place = smallest(ladder.iter().map(|p| mean(&half(p, 0))).collect());
-        chosen.push(place);
-        reported.push(half(ladder[place], 1));
-        predicted.push(ladder.iter().map(|p| p.theory.squared()).fold(f64::INFINITY, f64::min));
-    }
+    let ladders: Vec<Vec<&Point>> = sizes.iter().map(|&photons| ladder(points, photons, depth)).collect();
+    let squares: Vec<Vec<&[f64]>> =
+        ladders.iter().map(|ladder| ladder.iter().map(|p| p.squares.as_slice()).collect()).collect();
+    let (chosen, reported) = best_by_halves(&squares);
+    let least =
+        |ladder: &Vec<&Point>| ladder.iter().map(|p| p.theory.squared()).fold(f64::INFINITY, f64::min);
+    let predicted = ladders.iter().map(least).collect();
     let (name, title, limit) = if depth == INSIDE {
         ("best", "best radius, depth 1".to_string(), (-4.0 / 7.0, "−4/7"))
     } else {
         ("face", "best radius, at the lit face".to_string(), (0.0, "0"))
     };
     let floors = vec![0.0; sizes.len()];
-    curve((name, title, limit), sizes, chosen, reported, predicted, floors)
+    Curve::new((name, title, limit), sizes, chosen, &reported, predicted, floors)
 }
 
 /// One radius for all sizes, at which noise rules; its blur is subtracted.
 fn fixed(points: &[Point], sizes: &[u64]) -> Curve {
     let chosen: Vec<&Point> = sizes.iter().map(|&n| ladder(points, n, INSIDE)[NOISY]).collect();
     let title = format!("radius {:.2}, depth 1, less its floor", radii()[NOISY]);
-    curve(
+    Curve::new(
         ("fixed", title, (-1.0, "−1")),
         sizes,
         vec![NOISY; sizes.len()],
-        chosen.iter().map(|p| p.squares.clone()).collect(),
+        &chosen.iter().map(|p| p.squares.clone()).collect::<Vec<_>>(),
         chosen.iter().map(|p| p.theory.squared()).collect(),
         chosen.iter().map(|p| p.theory.bias() * p.theory.bias()).collect(),
     )
-}
-
-fn curve(
-    (name, title, limit): (&'static str, String, (f64, &'static str)),
-    sizes: &[u64],
-    chosen: Vec<usize>,
-    reported: Vec<Vec<f64>>,
-    predicted: Vec<f64>,
-    floors: Vec<f64>,
-) -> Curve {
-    let x: Vec<f64> = sizes.iter().map(|&n| n as f64).collect();
-    let cells = reported.iter().map(Vec::len).min().unwrap_or(0);
-    let joined: Vec<Vec<f64>> = (0..cells).map(|c| reported.iter().map(|r| r[c]).collect()).collect();
-    let above: Vec<f64> = predicted.iter().zip(&floors).map(|(p, f)| p - f).collect();
-    Curve {
-        name,
-        title,
-        limit,
-        chosen,
-        measured: reported.iter().map(|r| r.iter().collect()).collect(),
-        exponent: exponent_of_means(&x, &joined, &floors),
-        theory: exponent(&x, &above),
-        predicted,
-        floors,
-    }
 }
 
 fn claims(points: &[Point], curves: &[Curve], sizes: &[u64]) -> Vec<Claim> {

@@ -1,8 +1,9 @@
 //! The figure: mean squared error against photons, and against the radius.
 
 use super::cases::{BLURRED, INSIDE, radii};
-use super::results::{Curve, Point, ladder};
+use super::results::{Point, ladder};
 use crate::harness::{FigureFiles, bar};
+use crate::theory::Curve;
 use turbid::stats::Moments;
 use turbid_figure::{Axis, Dash, Figure, Legend, Line, Panel, Points, Scale, Width};
 

@@ -1,7 +1,6 @@
-//! What the maps say: points, and curves through them.
+//! What the maps say.
 
 use super::predict::Case;
-use crate::harness::Estimate;
 use turbid::stats::Moments;
 
 /// One size, depth and radius with what was measured.
@@ -25,28 +24,6 @@ impl Point {
     pub fn squared(&self) -> Moments {
         self.squares.iter().collect()
     }
-}
-
-/// Squared error against the number of photons along one rule for the radius.
-pub struct Curve {
-    /// Name in cases and claims.
-    pub name: &'static str,
-    /// What it is, for readers.
-    pub title: String,
-    /// Place of the radius of each size in the ladder.
-    pub chosen: Vec<usize>,
-    /// Mean squared error of each size, over the cells that report it.
-    pub measured: Vec<Moments>,
-    /// What was predicted for these radii; for the best, at the radius that is best in theory.
-    pub predicted: Vec<f64>,
-    /// What no number of photons takes away; subtracted before the fit.
-    pub floors: Vec<f64>,
-    /// The exponent.
-    pub exponent: Estimate,
-    /// The one that the same fit finds in the predictions.
-    pub theory: f64,
-    /// What it tends to.
-    pub limit: (f64, &'static str),
 }
 
 /// The points of one size and depth, in the order of radii.

@@ -1,6 +1,7 @@
 //! What theory says, shared by the experiments: exact fields, kernels as the referee knows them, clusters of photons.
 
 mod clusters;
+mod curve;
 mod fit;
 mod gathers;
 mod means;
@@ -11,6 +12,7 @@ mod table;
 mod words;
 
 pub use clusters::{clustering, nearest_clustering};
+pub use curve::{Curve, best_by_halves};
 pub use fit::{exponent, exponent_of_means};
 pub use gathers::{GATHER_TERMS, Gathers, NearestGather};
 pub use slab::slab_fluence;
