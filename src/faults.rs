@@ -114,11 +114,19 @@ pub enum Fault {
     EmitterShareForgotten,
     /// Photons are scattered on smooth meshes as paths are, without the factor of the two normals.
     ShadingFactorForgotten,
+    /// Beams nearly parallel to a ray, of a squared sine below 1e-5, are dropped.
+    NearParallelDropped,
+    /// The sine between beam and ray is no less than 0.01.
+    SineClamped,
+    /// Beams have the power with which their flights end.
+    BeamsArrive,
+    /// The kernel of beams is that of half the line.
+    LineHalved,
 }
 
 impl Fault {
     /// Every fault, in the order of their definition.
-    pub const ALL: [Fault; 53] = [
+    pub const ALL: [Fault; 57] = [
         Fault::AlbedoTwice,
         Fault::AlbedoNever,
         Fault::CosineTwice,
@@ -172,6 +180,10 @@ impl Fault {
         Fault::KernelRaised,
         Fault::EmitterShareForgotten,
         Fault::ShadingFactorForgotten,
+        Fault::NearParallelDropped,
+        Fault::SineClamped,
+        Fault::BeamsArrive,
+        Fault::LineHalved,
     ];
 }
 
@@ -262,7 +274,7 @@ mod tests {
     #[test]
     fn all_are_named_in_order() {
         assert!(Fault::ALL.iter().enumerate().all(|(i, fault)| *fault as usize == i));
-        assert_eq!(Fault::ALL.len(), Fault::ShadingFactorForgotten as usize + 1);
+        assert_eq!(Fault::ALL.len(), Fault::LineHalved as usize + 1);
         assert!(Fault::ALL.iter().all(|fault| !planted(*fault)));
     }
 }

@@ -1,4 +1,4 @@
-//! Kernels: how the photons of a ball, or of a disc, are weighted by their distance from its centre.
+//! Kernels: how the photons of a ball, of a disc, or the beams along a line, are weighted by their distance from its centre.
 
 use crate::math::{exp, exp_m1, ln_1p, sin};
 use libm::{asin, cbrt, erf};
@@ -12,7 +12,7 @@ pub const UNIT_BALL: f64 = 4.0 / 3.0 * PI;
 /// A radial weight K(u), u the distance over the radius; zero beyond u = 1.
 ///
 /// K integrates to one over the unit ball of three dimensions, so the kernel of radius r is K(u)/r^3; the same profile,
-/// normalised over the disc of two, is that of estimates on surfaces, K(u)/r^2. The moments are m_j = int u^j K dV and the
+/// normalised over the disc of two, is that of estimates on surfaces, K(u)/r^2, and over the line of one that of beams across a ray, K(u)/r. The moments are m_j = int u^j K dV and the
 /// roughness is int K^2 dV. Kernels are compared at equal standard deviation a coordinate, r sqrt(m2/3).
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
@@ -46,6 +46,10 @@ struct Closed {
     within_disc: fn(f64) -> f64,
     /// Its inverse.
     sample_disc: fn(f64) -> f64,
+    /// K at the centre of the line.
+    line_peak: f64,
+    /// int_-u^u K ds on the line.
+    within_line: fn(f64) -> f64,
 }
 
 /// (1 - u) (1 + u).
@@ -62,6 +66,8 @@ const UNIFORM: Closed = Closed {
     wedge: |_| 0.5,
     within_disc: |u| u * u,
     sample_disc: f64::sqrt,
+    line_peak: 0.5,
+    within_line: |u| u,
 };
 
 const EPANECHNIKOV: Closed = Closed {
@@ -73,6 +79,8 @@ const EPANECHNIKOV: Closed = Closed {
     wedge: |w| 0.5 - 0.25 * w,
     within_disc: |u| u * u * (2.0 - u * u),
     sample_disc: |part| (1.0 - (1.0 - part).sqrt()).sqrt(),
+    line_peak: 0.75,
+    within_line: |u| 0.5 * u * (3.0 - u * u),
 };
 
 const CONE: Closed = Closed {
@@ -84,6 +92,8 @@ const CONE: Closed = Closed {
     wedge: |w| 0.5 - w.sqrt() / 3.0,
     within_disc: |u| u * u * (3.0 - 2.0 * u),
     sample_disc: |part| 0.5 - sin(asin(1.0 - 2.0 * part) / 3.0),
+    line_peak: 1.0,
+    within_line: |u| u * (2.0 - u),
 };
 
 const BIWEIGHT: Closed = Closed {
@@ -95,6 +105,8 @@ const BIWEIGHT: Closed = Closed {
     wedge: |w| 0.5 - w * (0.5 - w / 6.0),
     within_disc: |u| 1.0 - rest(u) * rest(u) * rest(u),
     sample_disc: |part| (1.0 - cbrt(1.0 - part)).sqrt(),
+    line_peak: 15.0 / 16.0,
+    within_line: |u| 0.125 * u * (15.0 - u * u * (10.0 - 3.0 * u * u)),
 };
 
 /// The Gaussian's exponent at the edge: exp(-a u^2) with a = 1/(2 s^2), s = 1/3.
@@ -102,7 +114,8 @@ const A: f64 = 4.5;
 
 /// In the ball K is 1/(4 pi I2) at the centre, I2 = int_0^1 u^2 exp(-a u^2) du = sqrt(pi) erf(sqrt a)/(4 a^(3/2)) -
 /// exp(-a)/(2 a); its moments follow by parts from the same integral. On the disc it is a/(pi (1 - e^-a)), the second moment
-/// 1/a - e^-a/(1 - e^-a) and the roughness (a/2) (1 + e^-a)/(1 - e^-a).
+/// 1/a - e^-a/(1 - e^-a) and the roughness (a/2) (1 + e^-a)/(1 - e^-a); on the line K is
+/// sqrt(a/pi)/erf(sqrt a) at the centre.
 const GAUSSIAN: Closed = Closed {
     name: "gaussian",
     ball: [
@@ -120,6 +133,8 @@ const GAUSSIAN: Closed = Closed {
     wedge: |w| if w == 0.0 { 0.5 } else { -exp_m1(-A * w) / (9.0 * w) },
     within_disc: |u| exp_m1(-A * u * u) / exp_m1(-A),
     sample_disc: |part| (-ln_1p(part * exp_m1(-A)) / A).sqrt(),
+    line_peak: 1.200_066_776_763_854_4,
+    within_line: |u| erf(A.sqrt() * u) / erf(A.sqrt()),
 };
 
 impl Kernel {
@@ -228,6 +243,16 @@ impl Kernel {
     /// Part of the disc's kernel within u, in [0, 1], of its centre: int_0^u 2 pi s K ds.
     pub fn within_disc(self, u: f64) -> f64 {
         (self.closed().within_disc)(u)
+    }
+
+    /// K at the centre of the line, on which it integrates to one from -1 to 1.
+    pub fn line_peak(self) -> f64 {
+        self.closed().line_peak
+    }
+
+    /// Part of the line's kernel within u, in [0, 1], of its centre: int_-u^u K ds.
+    pub fn within_line(self, u: f64) -> f64 {
+        (self.closed().within_line)(u)
     }
 
     /// Distance from the middle, over the radius, of a point of the disc of density K, from a number in [0, 1).

@@ -11,6 +11,7 @@
 //! An [`Estimator`] is a [`Kernel`], which weights the photons of the ball, a [`Gather`], which chooses the ball, and what it
 //! does near the surface of a medium, or a wall ([`boundary`]); it states the bias and variance that it expects.
 
+mod beam;
 pub mod boundary;
 mod directional;
 mod disc_share;
@@ -21,6 +22,7 @@ mod point;
 mod ray;
 mod surface;
 
+pub use beam::BeamEstimator;
 pub use directional::{CosinePairs, Directional};
 pub use disc_share::{cap_share, disc_share};
 pub use estimator::Estimator;

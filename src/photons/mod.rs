@@ -1,5 +1,6 @@
 //! Photons: the record, the pass that stores them, the periodic cell, the tree over their positions, maps, and files of them.
 
+pub mod beams;
 mod emit;
 mod ends;
 pub mod file;

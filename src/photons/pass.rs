@@ -1,17 +1,19 @@
 //! A pass of histories: emission, walk, photons stored where they collide or meet surfaces, powers tallied where they leave.
 
+use super::beams::{Beam, BeamMap, FlightBeams, MOST_CELLS, check_beams};
 use super::importance::{Branching, Importance};
 use super::tallies::{Scores, Tallies};
 use super::{Emitter, Photon, PhotonMap, check_end, periodic};
 use crate::Spectrum;
 use crate::error::{Error, Result};
+use crate::faults::{Fault, planted};
 use crate::geometry::{Face, Shape};
 use crate::math::Ray;
 use crate::rng::{Purpose, Stream, Work};
 use crate::scene::{Orders, Quantity, Scene, Sensor, Target};
 use crate::stats::Moments;
 use crate::surface::Surface;
-use crate::transport::{NoProgress, Progress, Roulette, Step, Visitor, Walker, run_blocks, walk};
+use crate::transport::{Flags, NoProgress, Progress, Roulette, Step, Visitor, Walker, run_blocks, walk};
 use glam::{DVec2, DVec3};
 use std::ops::{AddAssign, Range};
 use std::time::{Duration, Instant};
@@ -58,6 +60,16 @@ pub trait Storage: Sync {
 
     /// Whether a photon that meets a diffuse surface is stored.
     fn on_surface(&self, _history: u64, _photon: &Photon) -> bool {
+        false
+    }
+
+    /// Whether any flights are stored as beams.
+    fn has_beams(&self) -> bool {
+        false
+    }
+
+    /// Whether the flight of a photon of this order, which has met this before, is stored as beams in the media that it crosses.
+    fn on_flight(&self, _history: u64, _order: u32, _flags: Flags) -> bool {
         false
     }
 }
@@ -145,6 +157,10 @@ pub struct Pass {
     pub surfaces: Vec<Vec<Photon>>,
     /// Photons that collided in media.
     pub media: Vec<Vec<Photon>>,
+    /// Flights through media, where they are stored.
+    pub beams: Vec<Vec<Beam>>,
+    /// Beams that are to be stored; those of a pilot are counted only.
+    pub met_beams: u64,
     /// Photons that met surfaces and media and are to be stored; those of a pilot are counted only.
     pub met: [u64; 2],
     /// One a sensor and channel, over histories; 0 for sensors that photons in a map answer.
@@ -155,6 +171,8 @@ pub struct Pass {
     pub report: PassReport,
     /// Contributions that were not finite; each fails the run.
     non_finite: u64,
+    /// Flights that are too long for beams; each fails the run.
+    overlong: u64,
     /// Sides of the periodic cell, if the scene has one \[L\].
     period: Option<DVec2>,
 }
@@ -183,9 +201,20 @@ impl Pass {
         )
     }
 
+    /// The map of the beams.
+    ///
+    /// # Errors
+    /// those of [`BeamMap::new`]
+    pub fn into_beams(self) -> Result<BeamMap> {
+        BeamMap::new(self.beams, self.report.emitted, self.period)
+    }
+
     fn merged(mut self, other: Pass) -> Pass {
         self.surfaces.extend(other.surfaces);
         self.media.extend(other.media);
+        self.beams.extend(other.beams);
+        self.met_beams += other.met_beams;
+        self.overlong += other.overlong;
         self.met = [0, 1].map(|i| self.met[i] + other.met[i]);
         for (mine, others) in self.tallies.iter_mut().flatten().zip(other.tallies.iter().flatten()) {
             mine.merge(others);
@@ -253,10 +282,14 @@ impl<'a> Run<'a> {
     /// Runs its part of the histories: the same bits on any number of threads, and those of all parts are those of the whole.
     ///
     /// # Errors
-    /// `Error::Cancelled`, or `Error::NonFinite` if a contribution was not finite; those of [`check_end`].
+    /// `Error::Cancelled`, or `Error::NonFinite` if a contribution was not finite; those of [`check_end`]; where beams are stored,
+    /// those of [`check_beams`], and `Error::Scene` for a flight that has no end, or crosses too many periodic cells.
     pub fn pass(&self, store: &dyn Storage, progress: &dyn Progress) -> Result<Pass> {
         self.scene.check_emission()?;
         check_end(self.scene)?;
+        if store.has_beams() {
+            check_beams(self.scene)?;
+        }
         let start = Instant::now();
         let part = self.part.histories(self.histories.count);
         let power = if self.sensors.is_empty() { Spectrum::ONE } else { self.scene.power() };
@@ -274,6 +307,9 @@ impl<'a> Run<'a> {
                 scores: vec![Spectrum::ZERO; self.sensors.len()],
                 surface: Vec::new(),
                 medium: Vec::new(),
+                beams: Vec::new(),
+                has_beams: store.has_beams(),
+                is_open: false,
                 bins: Tallies::new(self.scene, self.scored),
                 scoring: Stream::new(0, Purpose::Scores, 0, 0),
                 pass: empty(),
@@ -281,10 +317,12 @@ impl<'a> Run<'a> {
             for history in range {
                 block.follow(part.start + history);
             }
-            let Block { mut surface, mut medium, bins, mut pass, .. } = block;
+            let Block { mut surface, mut medium, mut beams, bins, mut pass, .. } = block;
             pass.scores = bins.into_scores();
             surface.shrink_to_fit();
             medium.shrink_to_fit();
+            beams.shrink_to_fit();
+            pass.beams.push(beams);
             pass.surfaces.push(surface);
             pass.media.push(medium);
             pass
@@ -295,6 +333,13 @@ impl<'a> Run<'a> {
             pass.tallies.iter_mut().for_each(|tally| *tally = [tally[0]; 3]);
         }
         pass.report.time = start.elapsed();
+        if pass.overlong > 0 {
+            return Err(Error::Scene(format!(
+                "{} photons fly on without end, or across more than {MOST_CELLS} periodic cells, and cannot be stored as beams; \
+                 allowed: points along rays (a ray radius), a larger cell",
+                pass.overlong
+            )));
+        }
         match pass.non_finite {
             0 => Ok(pass),
             count => Err(Error::NonFinite { count, place: "photon histories" }),
@@ -312,6 +357,10 @@ struct Block<'a> {
     scores: Vec<Spectrum>,
     surface: Vec<Photon>,
     medium: Vec<Photon>,
+    beams: Vec<Beam>,
+    has_beams: bool,
+    /// Whether nothing is ahead of the present flight.
+    is_open: bool,
     bins: Tallies<'a>,
     /// Random numbers of scores: what is scored does not change the walk.
     scoring: Stream,
@@ -370,6 +419,28 @@ impl Block<'_> {
         }
     }
 
+    /// Stores a flight that is over, `arrives` its power there.
+    fn store_flight(&mut self, walker: &Walker, end: f64, arrives: Spectrum) {
+        let Run { scene, part, is_pilot, .. } = *self.run;
+        let is_forced = scene.plan().forces_first_collision && walker.order == 0 && self.is_open;
+        // A forced flight is told of twice, as what passes and as what collides. One beam to the end is both.
+        let is_told = is_forced && end < f64::INFINITY;
+        if is_told || !self.store.on_flight(self.history, walker.order, walker.flags) {
+            return;
+        }
+        let weight = if planted(Fault::BeamsArrive) { arrives } else { walker.weight };
+        let walker = Walker { weight, ..*walker };
+        let flight = FlightBeams { scene, walker: &walker, end, is_forced, parts: part.of as f64 };
+        let (beams, met) = (&mut self.beams, &mut self.pass.met_beams);
+        let is_short = flight.each(|beam| {
+            *met += 1;
+            if !is_pilot {
+                beams.push(beam);
+            }
+        });
+        self.pass.overlong += u64::from(!is_short);
+    }
+
     fn score(&mut self, order: u32, weight: Spectrum, is_met: impl Fn(&Quantity) -> bool) {
         for (sensor, score) in self.run.sensors.iter().zip(&mut self.scores) {
             if sensor.orders.contains(order) && is_met(&sensor.quantity) {
@@ -387,6 +458,13 @@ impl Visitor for Block<'_> {
     fn visit(&mut self, walker: &Walker, step: Step, _stream: &mut Stream) {
         if !self.run.scored.is_empty() {
             self.bins.visit(walker, &step, &mut self.scoring);
+        }
+        if self.has_beams {
+            match step {
+                Step::Ahead(hit) => self.is_open = hit.is_none(),
+                Step::Uncollided(end, arrives) => self.store_flight(walker, end, arrives),
+                _ => {}
+            }
         }
         let PassReport { ends, ledger, .. } = &mut self.pass.report;
         match step {

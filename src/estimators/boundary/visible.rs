@@ -125,7 +125,8 @@ impl<'a> Surroundings<'a> {
             && !self.later.iter().any(|(_, shape)| shape.contains(place))
     }
 
-    fn sees(&self, place: DVec3) -> bool {
+    /// Whether no body hides a place.
+    pub fn sees(&self, place: DVec3) -> bool {
         let away = place - self.eye;
         let is_before = |front: &Front| front.height(away) >= 0.0;
         if let Some(screen) = &self.screen {
@@ -207,6 +208,14 @@ impl<'a> Surroundings<'a> {
         };
         let sum: f64 = (0..ACROSS).map(one).sum();
         (sum.max(kernel.within_disc(seen / radius)) / f64::from(ACROSS)).max(f64::MIN_POSITIVE)
+    }
+
+    /// The part of the line's kernel along a unit vector, both ways, in which beams are kept: exact. At least as far as `seen` \[L\] to
+    /// one side, where there is a beam.
+    pub fn line_share(&self, kernel: Kernel, across: DVec3, radius: f64, seen: f64) -> f64 {
+        let half = |u: f64| 0.5 * kernel.within_line(u);
+        let sum = self.along(&half, across, radius) + self.along(&half, -across, radius);
+        sum.max(half(seen / radius)).max(f64::MIN_POSITIVE)
     }
 }
 

@@ -1,61 +1,11 @@
 //! Every photon within a distance of a stretch of a ray: boxes that come so near, then their photons one by one.
 
 use super::PhotonTree;
-use super::block::{ROW, Row};
-use super::boxes::Boxes;
+use super::block::ROW;
+use super::cylinder::Cylinder;
 use super::scratch::with_scratch;
 use super::within::bits;
 use crate::math::{Interval, Ray};
-use wide::f32x8;
-
-/// Boxes and blocks are looked through in single precision, and let in if they come nearer than the radius and this many units:
-/// some roundings of numbers up to [`FAR`].
-const MARGIN: f64 = 1e-5;
-
-/// How far from the middle of the map a ray, or how large a radius, may be for that \[units\].
-const FAR: f64 = 16.0;
-
-/// Directions of rays have no smaller part: a box is then left at a finite distance.
-const LEAST: f64 = 1e-12;
-
-/// A stretch of a ray with a radius about it, in the tree's units.
-struct Cylinder {
-    /// The ray's point nearest the middle of the map, from which distances along it count.
-    origin: [f32; 3],
-    dir: [f32; 3],
-    inverse: [f32; 3],
-    span: [f32; 2],
-    radius: f32,
-}
-
-impl Cylinder {
-    /// The boxes that the ray meets if they are widened by the radius on all sides, a bit each.
-    fn touched(&self, boxes: &Boxes) -> u32 {
-        let row = |[lower, upper]: &[Row; 2]| {
-            let mut start = f32x8::splat(self.span[0]);
-            let mut end = f32x8::splat(self.span[1]);
-            for axis in 0..3 {
-                let at = f32x8::splat(self.origin[axis]);
-                let radius = f32x8::splat(self.radius);
-                let inverse = f32x8::splat(self.inverse[axis]);
-                let low = (lower[axis] - radius - at) * inverse;
-                let high = (upper[axis] + radius - at) * inverse;
-                start = start.fast_max(low.fast_min(high));
-                end = end.fast_min(low.fast_max(high));
-            }
-            start.simd_le(end).to_bitmask()
-        };
-        row(&boxes.rows[0]) | row(&boxes.rows[1]) << 8
-    }
-
-    /// Squared distances of eight positions from the ray.
-    fn squared_distances(&self, positions: &Row) -> f32x8 {
-        let way = [0, 1, 2].map(|axis| positions[axis] - f32x8::splat(self.origin[axis]));
-        let dir = self.dir.map(f32x8::splat);
-        let [x, y, z] = [(1, 2), (2, 0), (0, 1)].map(|(a, b)| way[a] * dir[b] - way[b] * dir[a]);
-        x * x + y * y + z * z
-    }
-}
 
 impl PhotonTree {
     /// Visits every photon at most `radius` \[L\] from a ray whose foot on it lies in `span`, its start included and its end not:
@@ -70,11 +20,11 @@ impl PhotonTree {
                 visit(place, foot, squared);
             }
         };
-        let Some(cylinder) = self.cylinder(ray, span, radius) else {
+        let Some(cylinder) = Cylinder::new(&self.units, ray, span, radius) else {
             (0..self.stored).for_each(ask);
             return;
         };
-        let within = f32x8::splat(cylinder.radius * cylinder.radius);
+        let within = cylinder.squared_radius();
         with_scratch(|scratch| {
             self.descend(|boxes| cylinder.touched(boxes), scratch);
             for &block in &scratch.touched {
@@ -85,27 +35,6 @@ impl PhotonTree {
                 }
             }
         });
-    }
-
-    /// The stretch as boxes are asked about it; none where single precision does not tell.
-    fn cylinder(&self, ray: &Ray, span: Interval, radius: f64) -> Option<Cylinder> {
-        let origin = self.units.relative(ray.origin);
-        let middle = -origin.dot(ray.dir);
-        let nearest = origin + ray.dir * middle;
-        let radius = self.units.shrink(radius);
-        if !(nearest.length() <= FAR && radius <= FAR) {
-            return None;
-        }
-        // Feet lie no farther from the nearest point than the corners of the map do from its middle.
-        let along = |t: f64| (self.units.shrink(t) - middle).clamp(-2.0, 2.0);
-        let dir = ray.dir.to_array().map(|d| if d.abs() < LEAST { LEAST.copysign(d) } else { d });
-        Some(Cylinder {
-            origin: nearest.as_vec3().to_array(),
-            dir: ray.dir.as_vec3().to_array(),
-            inverse: dir.map(|d| (1.0 / d) as f32),
-            span: [(along(span.start) - MARGIN) as f32, (along(span.end) + MARGIN) as f32],
-            radius: (radius + MARGIN) as f32,
-        })
     }
 }
 

@@ -5,7 +5,7 @@ use wide::f32x8;
 
 /// Sixteen boxes as arrays, in two rows of eight. Places without a box hold one that is infinitely far away.
 #[derive(Debug, Clone)]
-pub(super) struct Boxes {
+pub(in crate::photons) struct Boxes {
     pub(super) rows: [[Row; 2]; 2],
 }
 
@@ -67,9 +67,9 @@ impl Probe {
 
 /// A box while it is being filled.
 #[derive(Clone, Copy)]
-struct Extent {
-    lower: [f32; 3],
-    upper: [f32; 3],
+pub(in crate::photons) struct Extent {
+    pub(in crate::photons) lower: [f32; 3],
+    pub(in crate::photons) upper: [f32; 3],
 }
 
 impl Extent {
@@ -102,11 +102,12 @@ impl Extent {
 
 /// The levels over the blocks, finest first: level 0 holds the boxes of blocks, the last level is one node.
 pub(super) fn levels(blocks: &[[Row; 2]], stored: usize) -> Vec<Vec<Boxes>> {
-    let mut extents: Vec<Extent> = blocks
-        .iter()
-        .enumerate()
-        .map(|(block, rows)| Extent::of_block(rows, (stored - block * BLOCK).min(BLOCK)))
-        .collect();
+    let extent = |(block, rows): (usize, &[Row; 2])| Extent::of_block(rows, (stored - block * BLOCK).min(BLOCK));
+    levels_of(blocks.iter().enumerate().map(extent).collect())
+}
+
+/// The levels over boxes, finest first: level 0 holds those boxes, the last level is one node.
+pub(in crate::photons) fn levels_of(mut extents: Vec<Extent>) -> Vec<Vec<Boxes>> {
     let mut levels = Vec::new();
     while !extents.is_empty() {
         levels.push(extents.chunks(16).map(pack).collect::<Vec<_>>());

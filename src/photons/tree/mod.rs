@@ -3,6 +3,7 @@
 mod along;
 mod block;
 mod boxes;
+mod cylinder;
 mod facing;
 mod nearest;
 mod order;
@@ -15,16 +16,17 @@ use super::{Flags, Photon};
 use crate::error::{Error, Result};
 use crate::transport::{NoProgress, Progress};
 use block::{BLOCK, Row};
-use boxes::Boxes;
 use glam::{DVec3, Vec3};
 use order::Entry;
 use records::Records;
-use units::Units;
 use wide::f32x8;
 
 pub use block::ROW;
+pub(in crate::photons) use boxes::{Boxes, Extent, levels_of};
+pub(in crate::photons) use cylinder::Cylinder;
 pub use facing::Tangent;
 pub use nearest::{Counted, Nearest, Shell};
+pub(in crate::photons) use units::Units;
 pub(crate) use within::bits;
 pub use within::{Neighbors, Visit};
 

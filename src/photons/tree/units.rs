@@ -13,7 +13,7 @@ pub(super) const LIMIT: f64 = (1u64 << 60) as f64;
 /// The unit is a power of two, so a map scaled by a power of two has the same relative positions, bit for
 /// bit.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Units {
+pub(in crate::photons) struct Units {
     origin: DVec3,
     extent: f64,
     exponent: i32,
@@ -40,7 +40,7 @@ impl Units {
     }
 
     /// The units of the box from `lower` to `upper`.
-    fn new(lower: DVec3, upper: DVec3) -> Self {
+    pub(in crate::photons) fn new(lower: DVec3, upper: DVec3) -> Self {
         // Halved before they are added or subtracted: the largest finite box does not overflow.
         let origin = lower * 0.5 + upper * 0.5;
         let half = (upper * 0.5 - lower * 0.5).max_element();
@@ -56,7 +56,7 @@ impl Units {
     }
 
     /// A point relative to the centre of the box, in units.
-    pub(super) fn relative(&self, point: DVec3) -> DVec3 {
+    pub(in crate::photons) fn relative(&self, point: DVec3) -> DVec3 {
         (point - self.origin) * self.scale
     }
 

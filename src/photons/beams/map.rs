@@ -1,0 +1,77 @@
+//! A map of beams: those that one pass stored, and how many photons that pass emitted.
+
+use super::{Beam, BeamTree, Crossing};
+use crate::error::{Error, Result};
+use crate::math::{Interval, Ray};
+use crate::photons::periodic;
+use glam::{DVec2, DVec3};
+
+/// Stored beams and the number of photons **emitted** by the pass that stored them, which estimates divide by.
+///
+/// That of a periodic cell stands for an unbounded slab: whoever asks may ask along any ray of it.
+#[derive(Debug)]
+pub struct BeamMap {
+    tree: BeamTree,
+    emitted: u64,
+    /// Sides of the periodic cell that the beams are in, if there is one \[L\].
+    side: Option<DVec2>,
+}
+
+impl BeamMap {
+    /// The map of one pass, of beams in parts; `side` of the periodic cell [0, side.x) x [0, side.y) that each of them is in.
+    ///
+    /// # Errors
+    /// [`Error::OutOfRange`] if `emitted` is zero, and those of [`BeamTree::new`].
+    pub fn new(parts: Vec<Vec<Beam>>, emitted: u64, side: Option<DVec2>) -> Result<Self> {
+        if emitted == 0 {
+            return Err(Error::out_of_range("the number of emitted photons", 0.0, "at least 1"));
+        }
+        Ok(BeamMap { tree: BeamTree::new(parts)?, emitted, side })
+    }
+
+    /// Visits every beam that comes near to a ray, as [`BeamTree::near`] has it; in a periodic cell, those of the world that it
+    /// stands for. False where such a map cannot tell: the radius is larger than the cell, or the stretch has no end.
+    pub fn near(
+        &self,
+        ray: &Ray,
+        span: Interval,
+        radius: f64,
+        mut visit: impl FnMut(&Beam, &Crossing),
+    ) -> bool {
+        let Some(side) = self.side else {
+            self.tree.near(ray, span, radius, visit);
+            return true;
+        };
+        if !(radius <= side.min_element() && span.end < f64::INFINITY) {
+            return false;
+        }
+        for (ray, span) in periodic::in_cells(ray, span, side) {
+            let ends = [ray.at(span.start), ray.at(span.end)];
+            // The cells that points within the radius are in.
+            let cells = |axis: usize| {
+                let (low, high) = (ends[0][axis].min(ends[1][axis]), ends[0][axis].max(ends[1][axis]));
+                ((low - radius) / side[axis]).floor() as i64..=((high + radius) / side[axis]).floor() as i64
+            };
+            for (i, j) in cells(0).flat_map(|i| cells(1).map(move |j| (i, j))) {
+                let shift = DVec3::new(i as f64 * side.x, j as f64 * side.y, 0.0);
+                self.tree.near(&Ray::new(ray.origin - shift, ray.dir), span, radius, &mut visit);
+            }
+        }
+        true
+    }
+
+    /// The beams.
+    pub fn tree(&self) -> &BeamTree {
+        &self.tree
+    }
+
+    /// Number of photons that the pass sent out.
+    pub fn emitted(&self) -> u64 {
+        self.emitted
+    }
+
+    /// Number of beams that the pass stored.
+    pub fn stored(&self) -> usize {
+        self.tree.len()
+    }
+}

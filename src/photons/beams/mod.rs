@@ -1,0 +1,19 @@
+//! Beams: the flights of photons through media, the tree over them, and maps of them.
+
+mod beam;
+mod crossing;
+mod flight;
+mod map;
+mod order;
+mod tree;
+
+pub use beam::{Beam, BeamKind};
+pub use crossing::Crossing;
+pub use flight::check_beams;
+pub(in crate::photons) use flight::{FlightBeams, MOST_CELLS};
+pub use map::BeamMap;
+pub use tree::BeamTree;
+
+/// Most memory that a beam takes on its way into a map \[bytes\]: 80 as a record, twice while records are brought together, and, of
+/// three pieces at most, 8 each, 24 of a box, as much packed, 16 of what sorts them and 8 in order.
+pub const PEAK_BYTES: f64 = 400.0;

@@ -1,0 +1,82 @@
+//! A stretch of a ray with a radius about it, as boxes are asked about it.
+
+use super::block::Row;
+use super::boxes::Boxes;
+use super::units::Units;
+use crate::math::{Interval, Ray};
+use wide::f32x8;
+
+/// Boxes and blocks are looked through in single precision, and let in if they come nearer than the radius and this many units:
+/// some roundings of numbers up to [`FAR`].
+const MARGIN: f64 = 1e-5;
+
+/// How far from the middle of the map a ray, or how large a radius, may be for that \[units\].
+const FAR: f64 = 16.0;
+
+/// Directions of rays have no smaller part: a box is then left at a finite distance.
+const LEAST: f64 = 1e-12;
+
+/// A stretch of a ray with a radius about it, in the tree's units.
+pub(in crate::photons) struct Cylinder {
+    /// The ray's point nearest the middle of the map, from which distances along it count.
+    origin: [f32; 3],
+    dir: [f32; 3],
+    inverse: [f32; 3],
+    span: [f32; 2],
+    radius: f32,
+}
+
+impl Cylinder {
+    /// The stretch as boxes are asked about it; none where single precision does not tell.
+    pub(in crate::photons) fn new(units: &Units, ray: &Ray, span: Interval, radius: f64) -> Option<Self> {
+        let origin = units.relative(ray.origin);
+        let middle = -origin.dot(ray.dir);
+        let nearest = origin + ray.dir * middle;
+        let radius = units.shrink(radius);
+        if !(nearest.length() <= FAR && radius <= FAR) {
+            return None;
+        }
+        // Feet lie no farther from the nearest point than the corners of the map do from its middle.
+        let along = |t: f64| (units.shrink(t) - middle).clamp(-2.0, 2.0);
+        let dir = ray.dir.to_array().map(|d| if d.abs() < LEAST { LEAST.copysign(d) } else { d });
+        Some(Cylinder {
+            origin: nearest.as_vec3().to_array(),
+            dir: ray.dir.as_vec3().to_array(),
+            inverse: dir.map(|d| (1.0 / d) as f32),
+            span: [(along(span.start) - MARGIN) as f32, (along(span.end) + MARGIN) as f32],
+            radius: (radius + MARGIN) as f32,
+        })
+    }
+
+    /// The square of the radius \[units^2\], in all lanes.
+    pub(super) fn squared_radius(&self) -> f32x8 {
+        f32x8::splat(self.radius * self.radius)
+    }
+
+    /// The boxes that the ray meets if they are widened by the radius on all sides, a bit each.
+    pub(in crate::photons) fn touched(&self, boxes: &Boxes) -> u32 {
+        let row = |[lower, upper]: &[Row; 2]| {
+            let mut start = f32x8::splat(self.span[0]);
+            let mut end = f32x8::splat(self.span[1]);
+            for axis in 0..3 {
+                let at = f32x8::splat(self.origin[axis]);
+                let radius = f32x8::splat(self.radius);
+                let inverse = f32x8::splat(self.inverse[axis]);
+                let low = (lower[axis] - radius - at) * inverse;
+                let high = (upper[axis] + radius - at) * inverse;
+                start = start.fast_max(low.fast_min(high));
+                end = end.fast_min(low.fast_max(high));
+            }
+            start.simd_le(end).to_bitmask()
+        };
+        row(&boxes.rows[0]) | row(&boxes.rows[1]) << 8
+    }
+
+    /// Squared distances of eight positions from the ray.
+    pub(super) fn squared_distances(&self, positions: &Row) -> f32x8 {
+        let way = [0, 1, 2].map(|axis| positions[axis] - f32x8::splat(self.origin[axis]));
+        let dir = self.dir.map(f32x8::splat);
+        let [x, y, z] = [(1, 2), (2, 0), (0, 1)].map(|(a, b)| way[a] * dir[b] - way[b] * dir[a]);
+        x * x + y * y + z * z
+    }
+}
