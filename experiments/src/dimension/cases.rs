@@ -13,6 +13,8 @@ use turbid_analytic::beams::Pairing;
 const TAU: f64 = 4.0;
 /// Depth of the places and rays [mfp]: the largest radius ends short of the lit face.
 pub const DEPTH: f64 = 1.0;
+/// Albedo; light is scattered alike into all directions.
+pub const ALBEDO: f64 = 0.9;
 /// Cosine of the beam's angle with the normal.
 pub const MU0: f64 = 0.6;
 /// Its sine. The beam runs across the rays.
@@ -21,7 +23,7 @@ pub const SINE: f64 = 0.8;
 /// there is, which is worth 2 % of the error.
 const RADII: usize = 13;
 /// Rays of one map.
-const RAYS: usize = 6;
+const RAYS: usize = 4;
 /// Places along one side of the lattice.
 const SIDE: usize = 5;
 /// Balls along a marched ray: the least radius is two steps.
@@ -36,11 +38,13 @@ pub enum Query {
     Marched,
     /// A ray, points about the whole of it.
     Rays,
+    /// A ray, the flights that pass it.
+    Beams,
 }
 
 impl Query {
     /// All, the most dispersed first.
-    pub const ALL: [Query; 3] = [Query::Places, Query::Marched, Query::Rays];
+    pub const ALL: [Query; 4] = [Query::Places, Query::Marched, Query::Rays, Query::Beams];
 
     /// Its name in cases.
     pub fn name(self) -> &'static str {
@@ -48,6 +52,7 @@ impl Query {
             Query::Places => "places",
             Query::Marched => "marched",
             Query::Rays => "rays",
+            Query::Beams => "beams",
         }
     }
 
@@ -57,6 +62,7 @@ impl Query {
             Query::Places => "points at a place",
             Query::Marched => "points in balls along a ray",
             Query::Rays => "points along a ray",
+            Query::Beams => "beams along a ray",
         }
     }
 
@@ -65,6 +71,16 @@ impl Query {
         match self {
             Query::Places | Query::Marched => Pairing::PointPoints,
             Query::Rays => Pairing::RayPoints,
+            Query::Beams => Pairing::RayBeams { sine: 1.0 },
+        }
+    }
+
+    /// How fast the field falls, as an exponential, where the blur is [1/mfp]: along its gradient, or, of beams, along the normal of
+    /// beams and ray, which leans on it.
+    pub fn slope(self) -> f64 {
+        match self {
+            Query::Places | Query::Marched | Query::Rays => 1.0 / MU0,
+            Query::Beams => SINE / MU0,
         }
     }
 
@@ -73,6 +89,7 @@ impl Query {
         match self {
             Query::Places => 3.0,
             Query::Marched | Query::Rays => 2.0,
+            Query::Beams => 1.0,
         }
     }
 
@@ -108,7 +125,7 @@ impl Size {
 
 /// Cells a size.
 pub fn cells(settings: &Settings) -> u64 {
-    settings.pick(128, 384)
+    settings.pick(48, 128)
 }
 
 /// The slab under a beam aslant, of which the collisions of uncollided light are asked. Its cell is closed along the rays.
@@ -116,7 +133,7 @@ pub fn scene() -> anyhow::Result<Scene> {
     let shape = Body::Slab { thickness: TAU }.shape()?;
     let beam = Beam::new(DVec3::new(SINE, 0.0, MU0), Spectrum::ONE, Section::Unbounded)?;
     Ok(asked(Scene::new(SceneParts {
-        regions: vec![region(shape, 1.0, 0.9, 0.0)?],
+        regions: vec![region(shape, 1.0, ALBEDO, 0.0)?],
         lights: vec![Light::Beam(beam)],
         cell: Some(DVec2::splat(CELL)),
         ..SceneParts::default()
@@ -138,8 +155,12 @@ pub fn reading(query: Query, radius: f64) -> String {
     format!("{} r={radius:.4}", query.name())
 }
 
-/// The phase of the work that filling a map is.
-pub const FILLING: &str = "filling";
+/// The phases of the work before a question: photons shot, a tree made of points, and one of beams.
+pub const SHOOTING: &str = "shooting";
+/// See [`SHOOTING`].
+pub const POINTS: &str = "tree of points";
+/// See [`SHOOTING`].
+pub const BEAMS: &str = "tree of beams";
 
 /// The places at the depth.
 pub fn places() -> Vec<DVec3> {

@@ -7,12 +7,7 @@ use turbid::stats::Moments;
 use turbid_figure::{Axis, Dash, Figure, Legend, Line, Panel, Points, Scale, Width};
 
 /// Left: at the best radius, against photons. Middle: against the radius, at the most photons. Right: against time.
-pub fn dimension(
-    points: &[Point],
-    answers: &[Answer],
-    sizes: &[u64],
-    filling: &[Moments],
-) -> anyhow::Result<FigureFiles> {
+pub fn dimension(points: &[Point], answers: &[Answer], sizes: &[u64]) -> anyhow::Result<FigureFiles> {
     let error = || Axis::new("mean squared error", "", Scale::Log);
     let x: Vec<f64> = sizes.iter().map(|&n| n as f64).collect();
     let mut photons = Panel::new(Axis::log("photons emitted", ""), error())
@@ -31,7 +26,7 @@ pub fn dimension(
             .with(Line::new(title, class, x.clone(), curve.predicted.clone()).with_dash(Dash::Solid))
             .with(marks(x.clone()));
         if answer.query.is_ray() {
-            let seconds = answer.picture(filling);
+            let seconds = answer.picture();
             time = time
                 .with(Line::new(title, class, seconds.clone(), y.clone()).with_dash(Dash::Solid))
                 .with(marks(seconds));
@@ -56,8 +51,8 @@ pub fn dimension(
     let caption = format!(
         "Mean squared error, over the square of the exact value, of light that has not been scattered, in a field that falls as an \
          exponential across the rays: measured (points, 95 % intervals over cells) and predicted before the run (lines). Left: at the \
-         best radius; with ever more photons the slopes are {}. Middle: noise falls with the radius as its powers −3 (a place) and −2 \
-         (a ray) and the blur grows with its fourth. Right: what the same errors take in time, where a ray asks (lines join the \
+         best radius; with ever more photons the slopes are {}. Middle: noise falls with the radius as its powers −3 (a place), −2 (a ray \
+         among points) and −1 (among beams), and the blur grows with its fourth. Right: what the same errors take in time, where a ray asks (lines join the \
          points).",
         slopes.join(", ")
     );

@@ -22,8 +22,8 @@ pub struct Case {
 impl Case {
     /// Exact mean and variance, uniform kernel, for so many independent photons in all.
     pub fn new(query: Query, photons: u64, radius: f64) -> anyhow::Result<Self> {
-        let mean = query.blurs_as().exponential_mean(Kernel::Uniform, radius / MU0)?;
-        // Collisions in a volume, where they are asked; the beam brings MU0 on each square of the face.
+        let mean = query.blurs_as().exponential_mean(Kernel::Uniform, radius * query.slope())?;
+        // Collisions in a volume, or the length of flights, where they are asked; the beam brings MU0 on each square of the face.
         let density = photons as f64 * libm::exp(-DEPTH / MU0) / (MU0 * CELL * CELL);
         let second = second_moment(query, density, radius)?;
         // One estimate is a sum over independent photons, each of which is one of so many.
@@ -40,10 +40,10 @@ impl Case {
 /// Mean of the sum of the squares of what photons bring, over the square of the exact value.
 fn second_moment(query: Query, density: f64, radius: f64) -> anyhow::Result<f64> {
     let ray = Ray { length: SPAN.length(), extinction: 0.0 };
-    let x = radius / MU0;
+    let x = radius * query.slope();
     Ok(match query {
         // The square of the uniform kernel is a uniform one.
-        Query::Places | Query::Rays => {
+        Query::Places | Query::Rays | Query::Beams => {
             let even = query.blurs_as().relative_variance(Kernel::Uniform, radius, density, ray)?;
             even.value * query.blurs_as().exponential_mean(Kernel::Uniform, x)?.value
         }

@@ -38,15 +38,17 @@ pub struct Answer {
     pub curve: Curve,
     /// CPU seconds of one question at the best radius of each size.
     pub seconds: Vec<Moments>,
+    /// CPU seconds of a map of each size.
+    pub filling: Vec<f64>,
 }
 
 /// Rays of a small picture, over which a map's own time is shared.
 pub const PICTURE: f64 = 10_000.0;
 
 impl Answer {
-    /// CPU seconds of a map and the rays of a small picture, for each size; `filling` is that of each map alone.
-    pub fn picture(&self, filling: &[Moments]) -> Vec<f64> {
-        self.seconds.iter().zip(filling).map(|(ray, map)| map.mean() + PICTURE * ray.mean()).collect()
+    /// CPU seconds of a map and the rays of a small picture, for each size.
+    pub fn picture(&self) -> Vec<f64> {
+        self.seconds.iter().zip(&self.filling).map(|(ray, map)| map + PICTURE * ray.mean()).collect()
     }
 }
 

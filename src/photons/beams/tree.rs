@@ -23,7 +23,9 @@ struct Piece {
 impl Piece {
     /// From where to where on its beam \[L\]: the end of one is the start of the next, bit by bit.
     fn span(self, length: f64) -> (f64, f64) {
-        let cut = |part: u16| if part == self.of { length } else { length * (f64::from(part) / f64::from(self.of)) };
+        let cut = |part: u16| {
+            if part == self.of { length } else { length * (f64::from(part) / f64::from(self.of)) }
+        };
         (cut(self.part), cut(self.part + 1))
     }
 }
@@ -55,7 +57,10 @@ impl BeamTree {
         let mut beams = Vec::with_capacity(count);
         parts.into_iter().for_each(|part| beams.extend(part));
         let is_finite = |beam: &Beam| {
-            beam.start.is_finite() && beam.dir.is_finite() && beam.length.is_finite() && beam.power.is_finite()
+            beam.start.is_finite()
+                && beam.dir.is_finite()
+                && beam.length.is_finite()
+                && beam.power.is_finite()
         };
         let non_finite = beams.iter().filter(|beam| !is_finite(beam)).count() as u64;
         if non_finite > 0 {
@@ -67,7 +72,8 @@ impl BeamTree {
             lower = lower.min(beam.start.min(end));
             upper = upper.max(beam.start.max(end));
         }
-        let units = if beams.is_empty() { Units::new(DVec3::ZERO, DVec3::ZERO) } else { Units::new(lower, upper) };
+        let units =
+            if beams.is_empty() { Units::new(DVec3::ZERO, DVec3::ZERO) } else { Units::new(lower, upper) };
         let pieces = cut(&beams);
         let mut entries: Vec<Entry> = pieces
             .iter()
