@@ -50,6 +50,12 @@ impl Given {
                 "a scene is a dict, TOML text, the path of a scene file, or a built-in scene's name",
             )
         })?;
+        if path.extension().is_some_and(|end| end.eq_ignore_ascii_case("xml")) {
+            let name = path.display();
+            return Err(refuse(format!(
+                "{name} is a scene of Mitsuba; allowed: the scene file that `turbid import {name} -o FILE.toml` makes of it"
+            )));
+        }
         if SceneSource::new(&path).is_standard_input() {
             // Python's own standard input is not for us to read.
             path = Path::new(".").join(path);

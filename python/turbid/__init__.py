@@ -256,6 +256,11 @@ class Picture(NamedTuple):
     photons: np.ndarray
     """Photons that a sample's estimates took, (height, width)."""
 
+    def __repr__(self) -> str:
+        height, width, _ = self.radiance.shape
+        mean = ", ".join(f"{channel:.6g}" for channel in self.radiance.mean((0, 1)))
+        return f"picture of {width} x {height} pixels, mean radiance [{mean}], layers {', '.join(self.layers)}"
+
 
 def _amount(name: str, value: Any) -> str:
     return value if isinstance(value, str) else str(_count(name, value, 1, 10**9))

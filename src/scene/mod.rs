@@ -32,6 +32,7 @@ pub use file::{
 };
 pub use parts::{Interior, Object, Region, SURROUNDINGS, SceneParts};
 pub use plan::Plan;
+pub use read::toml_message;
 pub use segment::Segment;
 pub use segments::Segments;
 pub use sensor::{Binned, Crossing, Orders, Quantity, Scoring, Sensor, Space};

@@ -17,7 +17,7 @@ impl SceneFile {
     pub fn read(text: &str, name: Option<&str>) -> Result<Self> {
         let told = |error: &toml::de::Error| match name {
             Some(name) => located(name, text, error),
-            None => say(text, error),
+            None => toml_message(text, error),
         };
         let file = SceneFile::from_toml(text).map_err(|error| Error::Scene(told(&error)))?;
         let given: toml::Table = toml::from_str(text).map_err(|error| Error::Scene(told(&error)))?;
@@ -94,11 +94,11 @@ pub(super) fn unknown(what: &str, key: &str, known: &[&str]) -> String {
 fn located(file: &str, text: &str, error: &toml::de::Error) -> String {
     let start = error.span().map_or(0, |span| span.start).min(text.len());
     let (line, column) = line_and_column(text, start);
-    format!("{file}:{line}:{column}: {}", say(text, error))
+    format!("{file}:{line}:{column}: {}", toml_message(text, error))
 }
 
-/// The error's message in one line, with the key in the place of "the value", and the nearest known key.
-pub(super) fn say(text: &str, error: &toml::de::Error) -> String {
+/// The message of an error of TOML in one line, with the key in the place of "the value", and the nearest known key.
+pub fn toml_message(text: &str, error: &toml::de::Error) -> String {
     let message = error.message().replace('\n', " ");
     for (prefix, what) in [("unknown field `", "key"), ("unknown variant `", "value")] {
         if let Some(rest) = message.strip_prefix(prefix) {

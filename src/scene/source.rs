@@ -1,7 +1,7 @@
 //! Scenes from a file or by name, with values changed on top.
 
 use super::builtin::{BUILTIN, Builtin};
-use super::read::{say, unknown};
+use super::read::{toml_message, unknown};
 use super::{Scene, SceneFile};
 use crate::error::{Error, Result};
 use crate::input::{read_all, read_stream, text};
@@ -121,11 +121,11 @@ impl SceneSource {
     }
 
     fn resolve_builtin(&self, builtin: &Builtin) -> Result<SceneFile> {
-        let defaults = |error| met_in("built-in defaults", say(builtin.defaults, &error));
+        let defaults = |error| met_in("built-in defaults", toml_message(builtin.defaults, &error));
         let table: toml::Table = toml::from_str(builtin.defaults).map_err(defaults)?;
         let read = |root: &toml::Value| {
             let text = written(root)?;
-            (builtin.resolve)(&text).map_err(|error| refused(say(&text, &error)))?
+            (builtin.resolve)(&text).map_err(|error| refused(toml_message(&text, &error)))?
         };
         self.made_in(&toml::Value::Table(table), false, read)
     }

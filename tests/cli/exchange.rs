@@ -311,7 +311,8 @@ fn files_of_mitsuba_are_read() {
         "all",
         "<default name=\"bright\" value=\"1\"/><default name=\"r\" value=\"9\"/>
          <include filename=\"lights.xml\"/>
-         <integrator type=\"path\"><integer name=\"max_depth\" value=\"7\"/></integrator>
+         <integrator type=\"path\"><integer name=\"max_depth\" value=\"7\"/>
+           <boolean name=\"hide_emitters\" value=\"true\"/></integrator>
          <shape type=\"rectangle\"><transform name=\"to_world\"><scale x=\"2\" y=\"3\"/><rotate x=\"1\" angle=\"-90\"/><translate y=\"-1\"/></transform>
            <ref id=\"paint\"/></shape>
          <bsdf type=\"diffuse\" id=\"paint\"><rgb name=\"reflectance\" value=\"0.1 0.2 0.3\"/></bsdf>
@@ -333,9 +334,13 @@ fn files_of_mitsuba_are_read() {
         plain("corner = [-2.0, -1.0, 3.0]") && plain("u = [4.0, 0.0, 0.0]") && plain("v = [0.0, 0.0, -6.0]"),
         "{toml}"
     );
-    for word in
-        ["max_depth is left out", "filter `gaussian` is read as box", "1 diffuse surfaces without twosided"]
-    {
+    for word in [
+        "max_depth is left out",
+        "hide_emitters is left out",
+        "the integrator `path` is left out",
+        "filter `gaussian` is read as box",
+        "1 diffuse surfaces without twosided",
+    ] {
         assert!(notes.contains(word), "{word}: {notes}");
     }
 }
@@ -462,6 +467,9 @@ fn what_is_not_imported_is_refused_by_line() {
     refuses_naming(&["check", text(&outside), "--confined"], &["bad.xml:2", "outside of the scene's folder"]);
     refuses_naming(&["import", text(&outside), "-o", "x.txt"], &["--output", ".toml"]);
     refuses_naming(&["import", text(&outside), "-o", text(&toml), "-D", "x"], &["-D x", "NAME=VALUE"]);
+    let unused = folder.file("unused.xml", &scene_of("<default name=\"spp\" value=\"4\"/>"));
+    let words = ["import", text(&unused), "-o", text(&toml), "-D", "spq=3"];
+    refuses_naming(&words, &["-D spq=3", "nothing names this parameter", "$spp"]);
 }
 
 /// Files that include others twice, each of which does the same, end by their number of bytes or their depth.

@@ -65,6 +65,12 @@ fn summary(study: &OwnStudy, all: &[Data]) -> Vec<String> {
             continue;
         }
         let named = |s: &Setting| format!("{} photons read by {}", s.photons, s.estimator.name());
+        let is_known = |error: &Estimate| error.value() > 0.0 && error.std_error().is_finite();
+        let half = "the other half is too few maps to tell its error";
+        let settings = match data.settings.len() {
+            1 => "1 setting".to_string(),
+            count => format!("{count} settings"),
+        };
         let text = match data.cheapest(target) {
             Some(setting) => {
                 let error = setting.rmse(Half::Telling);
@@ -79,31 +85,35 @@ fn summary(study: &OwnStudy, all: &[Data]) -> Vec<String> {
                     }
                     _ => String::new(),
                 };
-                let told = match error.value() > 0.0 && error.std_error().is_finite() {
+                let told = match is_known(&error) {
                     true => {
                         let error = in_percent(&error);
                         format!("Its error by the other half, which did not choose it, is {error}{beside}")
                     }
-                    false => "The other half is too few maps to tell its error".to_string(),
+                    false => format!("But {half}"),
                 };
                 format!(
-                    "{}, the cheapest of {} settings that reach an error of {} % by half of the maps is {}, in {} s. {told}.",
+                    "{}, the cheapest of {settings} that reach an error of {} % by half of the maps is {}, in {} s. {told}.",
                     here(data),
-                    data.settings.len(),
                     number(percent(target)),
                     named(setting),
                     number(setting.time()),
                 )
             }
             None => match data.most_accurate() {
-                Some(setting) => format!(
-                    "{}, none of the {} settings reaches an error of {} %; the best, {}, makes {}.",
-                    here(data),
-                    data.settings.len(),
-                    number(percent(target)),
-                    named(setting),
-                    in_percent(&setting.rmse(Half::Telling)),
-                ),
+                Some(setting) => {
+                    let error = setting.rmse(Half::Telling);
+                    let told = match is_known(&error) {
+                        true => format!("its error by the other half is {}", in_percent(&error)),
+                        false => half.to_string(),
+                    };
+                    format!(
+                        "{}, of {settings} none reaches an error of {} % by half of the maps; the best is {}, and {told}.",
+                        here(data),
+                        number(percent(target)),
+                        named(setting),
+                    )
+                }
                 None => format!("{} no setting was measured.", here(data)),
             },
         };

@@ -138,6 +138,9 @@ impl Setting<'_> {
         let square = if parts(&maps).0 > floor {
             let squares: Moments = self.squares(half).iter().collect();
             Estimate::mean(&squares).minus(floor)
+        } else if maps.len() < 3 {
+            // A variance of two maps has an error that no map tells.
+            Estimate::resampled(parts(&maps).1, f64::INFINITY, maps.len() as u64)
         } else {
             Estimate::jackknife(&jackknife(&maps, |maps| parts(maps).1))
         };

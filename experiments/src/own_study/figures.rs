@@ -18,9 +18,14 @@ fn interval(estimate: &Estimate) -> (f64, f64) {
     (percent(low), percent(interval.high))
 }
 
+/// Whether an error goes on logarithmic axes, with an interval.
+fn is_drawn((x, error): &(f64, Estimate)) -> bool {
+    *x > 0.0 && error.value() > 0.0 && error.std_error().is_finite()
+}
+
 /// Points and a line of errors.
 fn with_errors(panel: Panel, label: &str, class: usize, at: Vec<(f64, Estimate)>) -> Panel {
-    let at: Vec<_> = at.into_iter().filter(|(x, e)| *x > 0.0 && e.value() > 0.0).collect();
+    let at: Vec<_> = at.into_iter().filter(is_drawn).collect();
     if at.is_empty() {
         return panel;
     }
@@ -40,9 +45,7 @@ fn title(data: &Data) -> String {
 /// # Errors
 /// If one cannot be drawn
 pub fn of_scene(data: &Data, number: usize, target: f64) -> anyhow::Result<Vec<FigureFiles>> {
-    let mut figures = vec![costs(data, number, target)?];
-    figures.extend(sizes(data, number)?);
-    Ok(figures)
+    Ok(costs(data, number, target)?.into_iter().chain(sizes(data, number)?).collect())
 }
 
 /// Error against the size of the gather, at the most photons.
@@ -54,7 +57,7 @@ fn sizes(data: &Data, number: usize) -> anyhow::Result<Option<FigureFiles>> {
         let mut panel = Panel::new(Axis::log(label, unit), Axis::log("RMS error", "%"))
             .with_title(if is_fixed { "fixed radius" } else { "k nearest" })
             .with_legend(Legend::Below);
-        let mut is_drawn = false;
+        let mut has_points = false;
         for (class, family) in families.iter().enumerate() {
             let own: Vec<&Setting> = data
                 .settings
@@ -66,9 +69,9 @@ fn sizes(data: &Data, number: usize) -> anyhow::Result<Option<FigureFiles>> {
             if own.len() < 2 {
                 continue;
             }
-            is_drawn = true;
             let mut at: Vec<(f64, Estimate)> =
                 own.iter().map(|s| (words::size(s.estimator), s.rmse(Half::Both))).collect();
+            has_points |= at.iter().any(is_drawn);
             at.sort_by(|a, b| a.0.total_cmp(&b.0));
             let short = family.split_once(", ").map_or(family.as_str(), |(_, rest)| rest);
             panel = with_errors(panel, short, class, at);
@@ -77,7 +80,7 @@ fn sizes(data: &Data, number: usize) -> anyhow::Result<Option<FigureFiles>> {
                 panel = with_errors(panel, "best of each", MOST_FAMILIES, at);
             }
         }
-        if is_drawn {
+        if has_points {
             panels.push(panel);
         }
     }
@@ -95,18 +98,23 @@ fn sizes(data: &Data, number: usize) -> anyhow::Result<Option<FigureFiles>> {
     FigureFiles::draw(&format!("sizes-scene{number:03}"), &caption, &figure).map(Some)
 }
 
-/// Error against photons and against CPU time.
-fn costs(data: &Data, number: usize, target: f64) -> anyhow::Result<FigureFiles> {
+/// Error against photons and against CPU time; none where the maps are too few to tell any error.
+fn costs(data: &Data, number: usize, target: f64) -> anyhow::Result<Option<FigureFiles>> {
     let mut panels = Vec::new();
     if data.stored.len() > 1 {
         let mut panel = Panel::new(Axis::log("photons emitted", ""), Axis::log("RMS error", "%"))
             .with_title("best gather of each kind")
             .with_legend(Legend::Below);
+        let mut has_points = false;
         for (class, family) in data.families().iter().take(MOST_FAMILIES).enumerate() {
-            let at = data.best(family).iter().map(|s| (s.photons as f64, s.rmse(Half::Telling))).collect();
+            let at: Vec<(f64, Estimate)> =
+                data.best(family).iter().map(|s| (s.photons as f64, s.rmse(Half::Telling))).collect();
+            has_points |= at.iter().any(is_drawn);
             panel = with_errors(panel, family, class, at);
         }
-        panels.push(panel);
+        if has_points {
+            panels.push(panel);
+        }
     }
     let mut panel = Panel::new(Axis::log("CPU time", "s"), Axis::log("RMS error", "%"))
         .with_title("of all places together")
@@ -115,6 +123,7 @@ fn costs(data: &Data, number: usize, target: f64) -> anyhow::Result<FigureFiles>
     let at: Vec<(f64, Estimate)> = front.iter().map(|s| (s.time(), s.rmse(Half::Telling))).collect();
     let (least, most) =
         at.iter().fold((f64::INFINITY, 0.0f64), |(low, high), (x, _)| (low.min(*x), high.max(*x)));
+    let has_points = at.iter().any(is_drawn);
     panel = with_errors(panel, "photon maps", 0, at);
     if let Some(rival) = data.rival.as_ref().filter(|r| r.variance.value() > 0.0 && least > 0.0) {
         // A decade on either side of the maps.
@@ -125,7 +134,12 @@ fn costs(data: &Data, number: usize, target: f64) -> anyhow::Result<FigureFiles>
         let line = vec![percent(target); x.len()];
         panel = panel.with(Line::theory("target", x, line).with_dash(Dash::Dotted));
     }
-    panels.push(panel);
+    if has_points {
+        panels.push(panel);
+    }
+    if panels.is_empty() {
+        return Ok(None);
+    }
     let width = if panels.len() > 1 { Width::Double } else { Width::Single };
     let figure = Figure { width, columns: panels.len(), ..Figure::new(panels) };
     let caption = format!(
@@ -136,5 +150,5 @@ fn costs(data: &Data, number: usize, target: f64) -> anyhow::Result<FigureFiles>
         data.usable(),
         data.reference.sampler.name()
     );
-    FigureFiles::draw(&format!("costs-scene{number:03}"), &caption, &figure)
+    FigureFiles::draw(&format!("costs-scene{number:03}"), &caption, &figure).map(Some)
 }

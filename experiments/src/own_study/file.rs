@@ -1,12 +1,14 @@
 //! The file in which a user asks: TOML, strict.
 
 use anyhow::{Context, anyhow, bail, ensure};
-use serde::Deserialize;
+use serde::de::Error as _;
+use serde::{Deserialize, Deserializer};
 use std::collections::BTreeMap;
 use turbid::estimators::boundary::{Rejection, Treatment};
 use turbid::estimators::{Estimator, Gather, Kernel};
 use turbid::input::line_and_column;
 use turbid::math::Positive;
+use turbid::scene::toml_message;
 
 /// A study as its file says it.
 #[derive(Debug, Clone, Deserialize)]
@@ -27,6 +29,7 @@ pub struct StudyFile {
     #[serde(default)]
     pub estimators: Vec<EstimatorFile>,
     /// Photons emitted, a set of maps each.
+    #[serde(deserialize_with = "one_or_more")]
     pub photons: Vec<Count>,
     /// Independent maps of each number of photons.
     #[serde(default = "sixteen")]
@@ -192,22 +195,29 @@ pub struct RayFile {
 }
 
 /// One or several values of a key.
-#[derive(Debug, Clone, Deserialize)]
-#[serde(untagged)]
-pub enum OneOrMore<T> {
-    /// One.
-    One(T),
-    /// Several.
-    More(Vec<T>),
-}
+#[derive(Debug, Clone)]
+pub struct OneOrMore<T>(Vec<T>);
 
 impl<T: Clone> OneOrMore<T> {
     fn list(&self) -> Vec<T> {
-        match self {
-            OneOrMore::One(one) => vec![one.clone()],
-            OneOrMore::More(list) => list.clone(),
-        }
+        self.0.clone()
     }
+}
+
+impl<'de, T: Deserialize<'de>> Deserialize<'de> for OneOrMore<T> {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        // As a value first, so that what is wrong with one value is said, and not that it is neither one nor several.
+        let several = match toml::Value::deserialize(deserializer)? {
+            toml::Value::Array(list) => list,
+            one => vec![one],
+        };
+        let read = |value: toml::Value| T::deserialize(value).map_err(|e| D::Error::custom(e.message()));
+        several.into_iter().map(read).collect::<Result<_, _>>().map(OneOrMore)
+    }
+}
+
+fn one_or_more<'de, D: Deserializer<'de>, T: Deserialize<'de>>(deserializer: D) -> Result<Vec<T>, D::Error> {
+    OneOrMore::deserialize(deserializer).map(|given| given.0)
 }
 
 /// Estimators: every combination of the values of their keys.
@@ -336,7 +346,7 @@ impl StudyFile {
         let file: StudyFile = toml::from_str(text).map_err(|error| {
             let start = error.span().map_or(0, |span| span.start).min(text.len());
             let (line, column) = line_and_column(text, start);
-            anyhow!("{name}:{line}:{column}: {}", error.message().replace('\n', " "))
+            anyhow!("{name}:{line}:{column}: {}", toml_message(text, &error))
         })?;
         file.check().with_context(|| name.to_string())?;
         Ok(file)
@@ -377,10 +387,8 @@ impl StudyFile {
     /// # Errors
     /// Which entry is wrong, and what is allowed
     pub fn estimators(&self, cap: f64) -> anyhow::Result<Vec<Estimator>> {
-        let ladder = EstimatorFile {
-            k: Some(OneOrMore::More(LADDER.map(Count).to_vec())),
-            ..EstimatorFile::default()
-        };
+        let ladder =
+            EstimatorFile { k: Some(OneOrMore(LADDER.map(Count).to_vec())), ..EstimatorFile::default() };
         let given = if self.estimators.is_empty() { &[ladder][..] } else { &self.estimators };
         let mut all: Vec<Estimator> = Vec::new();
         for (number, entry) in given.iter().enumerate() {
@@ -428,7 +436,7 @@ mod tests {
     fn what_is_wrong_is_named_with_its_place() {
         assert!(
             refused("scene = 'slab'\nphotons = [1e4]\nphoton = 3\n")
-                .starts_with("a.toml:3:1: unknown field `photon`")
+                .starts_with("a.toml:3:1: unknown key `photon`; nearest: `photons`")
         );
         assert!(refused("scene = 'slab'\nphotons = [0.5]\n").contains("a.toml:2"));
         for scene in ["'-'", "3", "[]"] {
@@ -439,6 +447,12 @@ mod tests {
             );
         }
         assert!(refused("scene = 'slab'\nphotons = []\n").contains("photons is empty"));
+        let one = StudyFile::read("a.toml", "scene = 'slab'\nphotons = 1e4\n").unwrap();
+        assert_eq!(one.photons, [Count(10_000)]);
+        let half = refused("scene = 'slab'\nphotons = 1e4\n[[estimators]]\nk = [30.5]\n");
+        assert!(half.contains("a.toml:4:") && half.contains("k: 30.5 is not a count"), "{half}");
+        let near = refused("scene = 'slab'\nphotons = 1e4\n[[estimators]]\nraduis = 1\n");
+        assert!(near.contains("unknown key `raduis`; nearest: `radius`"), "{near}");
         assert!(refused("scene = 'slab'\nphotons = [1e4]\nmaps = 2\n").contains("maps is 2"));
         assert!(refused("scene = 'slab'\nphotons = [1e4]\ntarget = nan\n").contains("target is NaN"));
         assert!(refused("scene = 'slab'\nphotons = [1e4]\n[axes]\ng = []\n").contains("axes.g is empty"));

@@ -2,7 +2,8 @@
 
 use crate::error::{Error, Result};
 use crate::input::{is_inside, read_text};
-use std::collections::BTreeMap;
+use std::cell::RefCell;
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 use std::rc::Rc;
 
@@ -69,6 +70,8 @@ struct Reader<'a> {
     /// Parameters by name; those of the user keep their values.
     parameters: BTreeMap<String, String>,
     given: &'a [(String, String)],
+    /// Parameters that a value named.
+    named: RefCell<BTreeSet<String>>,
     bytes: usize,
     /// The files that include the present one, and itself.
     open: Vec<PathBuf>,
@@ -81,8 +84,31 @@ struct Reader<'a> {
 pub(super) fn read(path: &Path, given: &[(String, String)], is_confined: bool) -> Result<Element> {
     let folder = path.parent().map(Path::to_path_buf).unwrap_or_default();
     let parameters = given.iter().cloned().collect();
-    let mut reader = Reader { folder: &folder, is_confined, parameters, given, bytes: 0, open: Vec::new() };
+    let mut reader = Reader {
+        folder: &folder,
+        is_confined,
+        parameters,
+        given,
+        named: RefCell::default(),
+        bytes: 0,
+        open: Vec::new(),
+    };
     let root = reader.file(path)?;
+    if let Some((name, value)) = given.iter().find(|(name, _)| !reader.named.borrow().contains(name)) {
+        let known: Vec<String> = reader
+            .parameters
+            .keys()
+            .filter(|key| *key != name)
+            .map(|key| format!("${}", shown(key)))
+            .collect();
+        let allowed =
+            if known.is_empty() { "none, it has no parameters".to_string() } else { known.join(", ") };
+        return root.refuse(format!(
+            "-D {}={}: nothing names this parameter; allowed: {allowed}",
+            shown(name),
+            shown(value)
+        ));
+    }
     if root.tag != "scene" {
         return root.refuse(format!("{}; allowed: <scene>", root.name()));
     }
@@ -207,6 +233,7 @@ impl Reader<'_> {
                     shown(name)
                 ));
             };
+            self.named.borrow_mut().insert(name.to_string());
             text.push_str(value);
             text.push_str(rest);
         }

@@ -59,6 +59,9 @@ fn collect_ids<'a>(element: &'a Element, ids: &mut Ids<'a>) -> Result<()> {
     element.children.iter().try_for_each(|child| collect_ids(child, ids))
 }
 
+/// Integrators that follow all light through media.
+const WHOLE: [&str; 2] = ["volpath", "volpathmis"];
+
 /// Index of air, as Mitsuba has it.
 const AIR: f64 = 1.000277;
 
@@ -116,6 +119,18 @@ impl<'a> Importer<'a> {
                 let part = Part::new(element, self.ids)?;
                 if part.float("max_depth")?.is_some_and(|depth| depth >= 0.0) {
                     self.notes.push(format!("{}: max_depth is left out, paths have no end here", element.place()));
+                }
+                if part.flag("hide_emitters")? == Some(true) {
+                    self.notes.push(format!("{}: hide_emitters is left out, the camera sees lamps here", element.place()));
+                }
+                let kind = element.attribute("type").unwrap_or_default();
+                if !WHOLE.contains(&kind) {
+                    self.notes.push(format!(
+                        "{}: the integrator `{}` is left out; scenes are rendered with all light and media, as {} do",
+                        element.place(),
+                        shown(kind),
+                        WHOLE.join(" and ")
+                    ));
                 }
                 Ok(())
             }
