@@ -85,7 +85,7 @@ impl Request {
         let [global, caustic, volume] = self.readout.amounts;
         let Streams { seed, replicate } = streams;
         let indirect = self.readout.indirect();
-        let settings = MapSettings { global, caustic, volume, indirect, seed, replicate };
+        let settings = MapSettings { global, caustic, volume, has_beams: false, indirect, seed, replicate };
         let learned = ImportanceSettings { seed, replicate, ..Default::default() };
         let learn = || Importance::of(scene, camera, indirect, &learned, watch);
         let importance = self.readout.is_by_importance().then(learn).transpose()?;

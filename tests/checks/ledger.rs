@@ -136,7 +136,15 @@ pub fn settings(gather_rays: u32) -> Settings {
 
 pub fn filling(emitted: u64, indirect: Indirect, seed: u64, replicate: u64) -> MapSettings {
     let amount = Amount::Emitted(emitted);
-    MapSettings { global: amount, caustic: amount, volume: amount, indirect, seed, replicate }
+    MapSettings {
+        global: amount,
+        caustic: amount,
+        volume: amount,
+        has_beams: false,
+        indirect,
+        seed,
+        replicate,
+    }
 }
 
 /// Moments a layer, channels summed; last the sum of the layers.

@@ -17,6 +17,7 @@ const RUN: [&str; 15] = [
     "k",
     "max_radius",
     "ray_radius",
+    "beam_radius",
     "kernel",
     "boundary",
     "reject",

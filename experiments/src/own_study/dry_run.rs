@@ -10,7 +10,7 @@ use crate::harness::{CellId, Settings, duration};
 use cpu_time::ProcessTime;
 use turbid::memory::{free, in_words};
 use turbid::photons::{PEAK_BYTES, PhotonMap};
-use turbid::sensor::{MapSettings, SensorMaps};
+use turbid::sensor::{MapSettings, RadianceMaps, SensorMaps};
 use turbid::transport::NoProgress;
 
 /// Photons of the map that is read to time estimates, and samples of the batch that is timed, at most.
@@ -92,7 +92,8 @@ fn maps(point: &Point, photons: u64, readings: usize, settings: &Settings) -> an
     }
     let reach = reach(&point.estimators);
     let replicate = CellId::of("dry-run", 0).stream(words::NAME);
-    let of = |photons: u64| MapSettings { photons, seed: settings.seed, replicate, reach, readings };
+    let radiance = RadianceMaps::of(&point.estimators);
+    let of = |photons: u64| MapSettings { photons, seed: settings.seed, replicate, reach, readings, radiance };
     let forecast = SensorMaps::forecast(&point.scene, &of(photons))?;
     let start = ProcessTime::now();
     let maps = SensorMaps::fill(&point.scene, of(few), &NoProgress)?;

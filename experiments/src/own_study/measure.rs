@@ -8,7 +8,7 @@ use super::words;
 use crate::harness::{CellId, CellOutput, Group, Settings};
 use std::sync::Arc;
 use turbid::photons::PhotonMap;
-use turbid::sensor::{MapSettings, SensorMaps};
+use turbid::sensor::{MapSettings, RadianceMaps, SensorMaps};
 use turbid::transport::NoProgress;
 
 /// Name of the group of maps of a scene.
@@ -71,6 +71,7 @@ fn maps(
         replicate: id.stream(words::NAME),
         reach: reach(&point.estimators),
         readings: study.file.measure.readings.0 as usize,
+        radiance: RadianceMaps::of(&point.estimators),
     };
     let maps = out.time(words::FILLING, |_| SensorMaps::fill(&point.scene, of, &NoProgress))?;
     out.count("photons emitted", photons);

@@ -133,7 +133,7 @@ impl Picture {
         let amount = Amount::Emitted(photons);
         let indirect = if self.gather_rays == 0 { Indirect::Seen } else { Indirect::Gathered };
         let settings =
-            MapSettings { global: amount, caustic: amount, volume: amount, indirect, seed, replicate };
+            MapSettings { global: amount, caustic: amount, volume: amount, has_beams: false, indirect, seed, replicate };
         fill(scene, &settings, &NoProgress)
     }
 

@@ -60,7 +60,12 @@ mod tests {
         for (crossing, s, t, sine) in [
             (square, 2.0, 0.7, 1.0),
             (Crossing::new(&aslant, beam).unwrap(), 2.0, 3.0f64.sqrt() - 0.5, 0.5),
-            (Crossing::new(&thin, beam).unwrap(), angle / sin(angle), cos(angle) * angle / sin(angle), sin(angle)),
+            (
+                Crossing::new(&thin, beam).unwrap(),
+                angle / sin(angle),
+                cos(angle) * angle / sin(angle),
+                sin(angle),
+            ),
         ] {
             assert!((crossing.along_ray - s).abs() < 1e-12, "{crossing:?}");
             assert!((crossing.along_beam - t).abs() < 1e-12, "{crossing:?}");

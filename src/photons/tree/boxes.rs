@@ -102,7 +102,8 @@ impl Extent {
 
 /// The levels over the blocks, finest first: level 0 holds the boxes of blocks, the last level is one node.
 pub(super) fn levels(blocks: &[[Row; 2]], stored: usize) -> Vec<Vec<Boxes>> {
-    let extent = |(block, rows): (usize, &[Row; 2])| Extent::of_block(rows, (stored - block * BLOCK).min(BLOCK));
+    let extent =
+        |(block, rows): (usize, &[Row; 2])| Extent::of_block(rows, (stored - block * BLOCK).min(BLOCK));
     levels_of(blocks.iter().enumerate().map(extent).collect())
 }
 
