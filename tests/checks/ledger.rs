@@ -183,7 +183,9 @@ pub fn layers_of_maps(
 ) -> Sheet {
     let mut sheet = Sheet::default();
     for replicate in 0..MAPS {
-        let maps = fill(scene, &filling(emitted, indirect, seed, replicate), &NoProgress).unwrap();
+        let has_beams = settings.volume.beam_radius.is_some();
+        let filled = MapSettings { has_beams, ..filling(emitted, indirect, seed, replicate) };
+        let maps = fill(scene, &filled, &NoProgress).unwrap();
         let mapper = Mapper::new(scene, &maps, settings);
         let mut picture = Layers::ZERO;
         for history in 0..RAYS {

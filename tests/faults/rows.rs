@@ -1,8 +1,8 @@
 //! One row a fault: where it was seen, what it is here, and which check catches it.
 
 use crate::checks::{
-    cell, color, emitters, flights, fog, glass, ledger, light, media, numbers, outputs, phase, point_light,
-    points, shading, slab, threads, walls, weights,
+    beams, cell, color, emitters, flights, fog, glass, ledger, light, media, numbers, outputs, phase,
+    point_light, points, shading, slab, threads, walls, weights,
 };
 use crate::support::scenes::{area_light, cuboid, rectangle};
 use glam::DVec3;
@@ -391,6 +391,10 @@ pub const BY_HAND: &[Row] = &[
     inside(Fault::KernelRaised),
     inside(Fault::EmitterShareForgotten),
     inside(Fault::ShadingFactorForgotten),
+    inside(Fault::NearParallelDropped),
+    inside(Fault::SineClamped),
+    inside(Fault::BeamsArrive),
+    inside(Fault::LineHalved),
 ];
 
 fn single_scattering() {
