@@ -114,25 +114,47 @@ pub fn across(kernel: Kernel, radius: f64) -> Estimator {
     balls.along_beams(Positive::new("the radius", radius).unwrap())
 }
 
-/// Moments of every sensor and channel by every estimator, over maps.
-pub fn by_maps(
+/// What every sensor says by every estimator, told map by map.
+fn every_map(
     scene: &Scene,
     (photons, maps): (u64, u64),
     seed: u64,
     estimators: &[Estimator],
-) -> Vec<Vec<[Moments; 3]>> {
+    mut tell: impl FnMut(usize, &[Vec<Spectrum>]),
+) {
     let reach = estimators.iter().map(Estimator::reach).fold(0.0, f64::max);
-    let mut all = vec![vec![[Moments::new(); 3]; scene.sensors().len()]; estimators.len()];
+    let radiance = RadianceMaps::of(estimators);
     for replicate in 0..maps {
-        let radiance = RadianceMaps::of(estimators);
         let settings = MapSettings { photons, seed, replicate, reach, readings: 1, radiance };
         let maps = SensorMaps::fill(scene, settings, &NoProgress).unwrap();
-        for (estimator, all) in estimators.iter().zip(&mut all) {
-            for (values, moments) in maps.read(estimator).unwrap().values.iter().zip(all) {
-                (0..3).for_each(|channel| moments[channel].push(values[0][channel]));
-            }
+        for (index, estimator) in estimators.iter().enumerate() {
+            tell(index, &maps.read(estimator).unwrap().values);
         }
     }
+}
+
+/// Moments of every sensor and channel by every estimator, over maps.
+pub fn by_maps(
+    scene: &Scene,
+    counts: (u64, u64),
+    seed: u64,
+    estimators: &[Estimator],
+) -> Vec<Vec<[Moments; 3]>> {
+    let mut all = vec![vec![[Moments::new(); 3]; scene.sensors().len()]; estimators.len()];
+    every_map(scene, counts, seed, estimators, |index, values| {
+        for (values, moments) in values.iter().zip(&mut all[index]) {
+            (0..3).for_each(|channel| moments[channel].push(values[0][channel]));
+        }
+    });
+    all
+}
+
+/// Moments of the mean of all sensors by every estimator, over maps.
+pub fn means_by_maps(scene: &Scene, counts: (u64, u64), seed: u64, estimators: &[Estimator]) -> Vec<Moments> {
+    let mut all = vec![Moments::new(); estimators.len()];
+    every_map(scene, counts, seed, estimators, |index, values| {
+        all[index].push(values.iter().map(|values| values[0][0]).sum::<f64>() / values.len() as f64);
+    });
     all
 }
 
@@ -156,7 +178,7 @@ pub fn light_scattered_once_in_three_channels() {
     })
     .unwrap();
     let estimators = [across(Kernel::Uniform, 0.2), across(Kernel::Biweight, 0.8)];
-    let measured = by_maps(&scene, (500, 200), 3, &estimators);
+    let measured = by_maps(&scene, (1500, 300), 3, &estimators);
     for (estimator, measured) in estimators.iter().zip(&measured) {
         for (mu, moments) in mus.iter().zip(measured) {
             for channel in 0..3 {

@@ -39,6 +39,14 @@ fn tables_say_what_they_were_made_with() {
         &[&photons[..], &["--ray-radius", "0"]].concat(),
         &["--ray-radius is 0; allowed: finite and above 0"],
     );
+    let across = [&photons[..], &["--beam-radius", "0.5"]].concat();
+    assert_eq!(run_of(&across)["beam_radius"], 0.5);
+    refuses_naming(
+        &[&photons[..], &["--beam-radius", "inf"]].concat(),
+        &["--beam-radius is inf; allowed: finite and above 0"],
+    );
+    refuses_naming(&[&across[..], &["--ray-radius", "0.5"]].concat(), &["--beam-radius", "--ray-radius"]);
+    refuses_naming(&[&photons[..], &["--beam-radius", "1e3"]].concat(), &["beyond the periodic cell"]);
     let folder = Folder::new();
     let npy = folder.0.path().join("a.npy");
     succeeds(&["map", "slab", "--photons", "500", "--npy", text(&npy)]);

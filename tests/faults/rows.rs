@@ -289,6 +289,24 @@ const fn inside(fault: Fault) -> Row {
                 shading::smooth_meshes_scatter_photons_as_radiance()
             })
         }
+        Fault::NearParallelDropped => {
+            ("beams nearly parallel to a ray dropped", "a_laser_end_on_counts_in_full", |_| {
+                beams::a_laser_end_on_counts_in_full()
+            })
+        }
+        Fault::SineClamped => {
+            ("the sine between beam and ray no less than 0.01", "a_laser_end_on_counts_in_full", |_| {
+                beams::a_laser_end_on_counts_in_full()
+            })
+        }
+        Fault::BeamsArrive => (
+            "beams with the power with which their flights end",
+            "light_scattered_once_in_three_channels",
+            |_| beams::light_scattered_once_in_three_channels(),
+        ),
+        Fault::LineHalved => {
+            ("the kernel of beams over half the line", "one_beam_by_hand", |_| beams::one_beam_by_hand())
+        }
     };
     Row { fault: Planted::Inside(fault), title, check_name, check }
 }

@@ -4,17 +4,17 @@
 use super::boundary::known;
 use crate::checks::beams::{
     a_laser_end_on_counts_in_full, a_line_counts_once, across, beam, by_maps,
-    light_scattered_once_in_three_channels, map, one_beam_by_hand, reading,
+    light_scattered_once_in_three_channels, map, means_by_maps, one_beam_by_hand, reading,
 };
 use crate::checks::ledger::{Room, layers_are_those_of_paths, mirror, settings};
 use crate::checks::media::{layered, varying};
 use crate::support::run::{paths, sensor};
 use crate::support::scenes::{
-    CELL, Incidence, bounded, cuboid, homogeneous, incidence, lambertian, layer, point_light, region,
+    CELL, Incidence, bounded, cuboid, homogeneous, incidence, layer, point_light, region,
 };
 use crate::support::verdict;
 use glam::{DVec2, DVec3};
-use std::f64::consts::PI;
+use std::f64::consts::{FRAC_PI_2, FRAC_PI_3, FRAC_PI_4, PI};
 use turbid::Spectrum;
 use turbid::estimators::boundary::{Boundary, Treatment};
 use turbid::estimators::{BeamEstimator, Estimator, Gather, Kernel};
@@ -142,7 +142,7 @@ fn flights_are_cut_at_media() {
 fn forced_flights_are_stored_to_their_ends() {
     let medium = homogeneous(Spectrum::rgb(0.01, 0.03, 0.002), Spectrum::rgb(0.9, 0.5, 1.0), 0.3);
     let shape = cuboid(DVec3::ZERO, DVec3::ONE);
-    let light = point_light(DVec3::new(0.4, 0.5, 1.6), Spectrum::rgb(1.0, 2.0, 0.5));
+    let light = point_light(DVec3::new(0.4, 0.5, 0.6), Spectrum::rgb(1.0, 2.0, 0.5));
     let regions = vec![Region { shape, medium }];
     let plain = bounded(regions.clone(), vec![], vec![light.clone()]);
     assert!(plain.plan().forces_first_collision);
@@ -151,7 +151,7 @@ fn forced_flights_are_stored_to_their_ends() {
         Ray::new(DVec3::new(-0.5, 0.3, 0.2), DVec3::new(0.8, 0.0, 0.6)),
     ];
     let (first, second) = (Orders::only(1), Orders::only(2));
-    for (orders, promise, seed) in [(first, 0.06, 1), (second, 0.4, 2)] {
+    for (orders, promise, seed) in [(first, 0.08, 1), (second, 0.2, 2)] {
         let scene = Scene::new(SceneParts {
             regions: regions.clone(),
             lights: vec![light.clone()],
@@ -159,13 +159,13 @@ fn forced_flights_are_stored_to_their_ends() {
             ..SceneParts::default()
         })
         .unwrap();
-        let estimator = across(Kernel::Epanechnikov, 0.05);
-        let measured = by_maps(&scene, (4000, 100), seed, &[estimator]).remove(0);
+        let estimator = across(Kernel::Epanechnikov, 0.03);
+        let measured = by_maps(&scene, (8000, 200), seed, &[estimator]).remove(0);
         for (view, (ray, moments)) in views.iter().zip(&measured).enumerate() {
             let reference = paths(&plain, Quantity::Radiance(*ray), orders, 1 << 16, seed);
             for channel in 0..3 {
                 let expected = reference[channel].mean();
-                // The blur is r^2/20 of a second derivative across, a few times the field.
+                // The blur of a point light at seven times the radius is below 1 part in 500.
                 let error = libm::hypot(reference[channel].std_error(), 0.002 * expected);
                 let what = format!("orders {orders:?}, view {view}, channel {channel}");
                 verdict::agrees(&what, &moments[channel], (expected, error), promise * expected, seed);
@@ -174,16 +174,18 @@ fn forced_flights_are_stored_to_their_ends() {
     }
 }
 
-fn looking(mu: f64) -> Quantity {
-    let travel = DVec3::new(((1.0 - mu) * (1.0 + mu)).sqrt(), 0.0, -mu);
-    Quantity::Radiance(Ray::new(DVec3::new(0.5 * CELL, 0.5 * CELL, 0.0), -travel))
-}
-
+/// A slab of one mean free path, looked into under a cosine of 0.5 along eight azimuths, from places of its own each.
 fn slab_of(albedo: f64, how: Incidence, orders: Orders) -> Scene {
+    let looking = |n: u32| {
+        let (sin, cos) = turbid::math::sin_cos(PI / 4.0 * f64::from(n));
+        let dir = DVec3::new(cos * 0.75f64.sqrt(), sin * 0.75f64.sqrt(), 0.5);
+        let place = DVec3::new(f64::from(n % 4), f64::from(n / 4) * 2.0, 0.0) * CELL / 4.0;
+        sensor(Quantity::Radiance(Ray::new(place, dir.normalize())), orders)
+    };
     Scene::new(SceneParts {
         lights: vec![incidence(layer(1.0), how)],
         regions: vec![region(layer(1.0), 1.0, albedo, 0.0)],
-        sensors: vec![sensor(looking(0.5), orders)],
+        sensors: (0..8).map(looking).collect(),
         cell: Some(DVec2::splat(CELL)),
         ..SceneParts::default()
     })
@@ -195,12 +197,12 @@ fn slab_of(albedo: f64, how: Incidence, orders: Orders) -> Scene {
 fn radiance_of_a_slab() {
     let scene = slab_of(0.9, Incidence::Beam(1.0), Orders::SCATTERED);
     let estimators = [0.1, 0.2].map(|radius| across(Kernel::Uniform, radius));
-    let measured = by_maps(&scene, (2000, 400), 5, &estimators);
-    for ((estimator, measured), expected) in estimators.iter().zip(&measured).zip([0.093_460_6, 0.091_948_3])
-    {
-        let moments = &measured[0][0];
-        verdict::agrees(&estimator.name(), moments, (expected, 1e-7), 0.04 * expected, 5);
+    let measured = means_by_maps(&scene, (3000, 300), 5, &estimators);
+    for ((estimator, moments), expected) in estimators.iter().zip(&measured).zip([0.093_460_6, 0.091_948_3]) {
+        verdict::agrees(&estimator.name(), moments, (expected, 1e-7), 0.035 * expected, 5);
     }
+    // A mean over the whole picture that is blurred, but loses nothing.
+    verdict::rejects("not cut", &measured[1], 0.094_904_494, 5);
 }
 
 /// A furnace: a slab of albedo 1 with the same light from all sides. Clipped, beams come out right at any radius; cut square, they
@@ -213,15 +215,14 @@ fn a_furnace_of_one_mean_free_path() {
     let clipped = clipped.map(|(kernel, radius)| across(kernel, radius).treated(Treatment::Clipped));
     let estimators: Vec<Estimator> = square.into_iter().chain(clipped).collect();
     let exact = 0.864_664_717;
-    let measured = by_maps(&scene, (2000, 400), 6, &estimators);
-    for ((estimator, measured), expected) in
+    let measured = means_by_maps(&scene, (1000, 200), 6, &estimators);
+    for ((estimator, moments), expected) in
         estimators.iter().zip(&measured).zip([0.834_397_403, 0.805_994_594, exact, exact, exact])
     {
-        let moments = &measured[0][0];
         let expected = expected / PI;
-        verdict::agrees(&estimator.name(), moments, (expected, 1e-8), 0.04 * expected, 6);
+        verdict::agrees(&estimator.name(), moments, (expected, 1e-8), 0.06 * expected, 6);
     }
-    verdict::rejects("square", &measured[1][0][0], exact / PI, 6);
+    verdict::rejects("square", &measured[1], exact / PI, 6);
 }
 
 /// Beams of random lines through a ball, the same everywhere and from all sides: their mean is the field, their variance is the
@@ -279,10 +280,10 @@ fn a_point_light_beside_a_ray() {
     let span = Interval { start: 0.0, end: 2.0 * half };
     let cases = [
         (Kernel::Uniform, 0.25, 1.010_721_021),
-        (Kernel::Uniform, 0.5, 1.047_197_551),
+        (Kernel::Uniform, 0.5, FRAC_PI_3),
         (Kernel::Epanechnikov, 0.5, 1.027_279_885),
-        (Kernel::Uniform, 1.0, 1.570_796_327),
-        (Kernel::Uniform, 2.0, 0.785_398_163),
+        (Kernel::Uniform, 1.0, FRAC_PI_2),
+        (Kernel::Uniform, 2.0, FRAC_PI_4),
     ];
     let mut moments = [Moments::new(); 5];
     let count = 20_000;
@@ -380,21 +381,17 @@ fn radiance_across_beams_is_that_of_paths() {
             ..SceneParts::default()
         })
         .unwrap();
-        let radius = 0.06;
-        let estimators = [
-            across(Kernel::Epanechnikov, radius),
-            across(Kernel::Epanechnikov, radius).treated(Treatment::Clipped),
-        ];
-        let measured = by_maps(&scene, (5000, 200), 6, &estimators);
+        let estimators = [across(Kernel::Epanechnikov, 0.15).treated(Treatment::Clipped)];
+        let measured = by_maps(&scene, (8000, 200), 6, &estimators);
         for (view, ray) in views.iter().enumerate() {
             let reference = paths(&plain, Quantity::Radiance(*ray), orders, 1 << 17, 3);
             for (estimator, measured) in estimators.iter().zip(&measured) {
                 for channel in 0..3 {
                     let (found, expected) = (&measured[view][channel], &reference[channel]);
-                    // The blur is r^2/20 of the second derivative across, and what the square faces of the core hold is 1 part in 200.
-                    let error = libm::hypot(expected.std_error(), 0.002 * expected.mean());
+                    // The blur is r^2/20 = 1/900 of the second derivatives across, which are a few times the field.
+                    let error = libm::hypot(expected.std_error(), 0.004 * expected.mean());
                     let what = format!("{name}, {}, view {view}, channel {channel}", estimator.name());
-                    verdict::agrees(&what, found, (expected.mean(), error), 0.12 * expected.mean(), 6);
+                    verdict::agrees(&what, found, (expected.mean(), error), 0.25 * expected.mean(), 6);
                 }
             }
         }
@@ -411,7 +408,7 @@ fn of_beams(settings: Settings, radius: f64) -> Settings {
 #[test]
 fn a_room_with_glass_keeps_its_ledger() {
     let room = Room {
-        floor: lambertian(Spectrum::grey(0.5)),
+        floor: mirror(),
         sigma_t: Spectrum::rgb(0.4, 0.5, 0.6),
         albedo: Spectrum::rgb(0.8, 0.9, 0.7),
         g: 0.3,
@@ -420,8 +417,6 @@ fn a_room_with_glass_keeps_its_ledger() {
         has_water: false,
     };
     layers_are_those_of_paths(&room, Indirect::Seen, &of_beams(settings(1), 0.05), 4000, 21);
-    let mirrored = Room { floor: mirror(), has_glass: false, ..room };
-    layers_are_those_of_paths(&mirrored, Indirect::Seen, &of_beams(settings(1), 0.05), 4000, 22);
 }
 
 /// Fog of albedo 1 with the same radiance from all sides is as bright everywhere, near its faces too.

@@ -159,7 +159,9 @@ impl<'a> Mapper<'a> {
     pub fn check_radii(&self) -> Result<()> {
         let Maps { global, caustic, volume, beams, .. } = self.maps;
         let is_of_beams = self.settings.volume.beam_radius.is_some();
-        if (is_of_beams && volume.is_some()) || (!is_of_beams && beams.is_some()) {
+        if (is_of_beams && beams.is_none() && volume.is_some())
+            || (!is_of_beams && volume.is_none() && beams.is_some())
+        {
             return Err(Error::Scene(
                 "the volume map holds photons and is asked for beams, or the other way round".into(),
             ));
