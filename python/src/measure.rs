@@ -41,6 +41,7 @@ struct Options {
     radius: Option<f64>,
     max_radius: Option<f64>,
     ray_radius: Option<f64>,
+    beam_radius: Option<f64>,
     kernel: String,
     boundary: String,
     orders: (u32, Option<u32>),
@@ -99,7 +100,7 @@ impl Request {
     }
 
     fn by_photons(&self, scene: &Scene, watch: &Watch) -> anyhow::Result<Readings> {
-        let Options { photons, maps, passes, k, radius, max_radius, ray_radius, seed, .. } = self.options;
+        let Options { photons, maps, passes, k, radius, max_radius, ray_radius, beam_radius, seed, .. } = self.options;
         if photons < maps {
             return Err(anyhow!("photons is {photons}; allowed: at least one for each of the {maps} maps"));
         }
@@ -111,13 +112,17 @@ impl Request {
             }
         };
         let ray_radius = ray_radius.map(|radius| Positive::new("ray_radius", radius)).transpose()?;
+        let beam_radius = beam_radius.map(|radius| Positive::new("beam_radius", radius)).transpose()?;
+        if ray_radius.is_some() && beam_radius.is_some() {
+            return Err(anyhow!("ray_radius reads points and beam_radius beams; allowed: one of them"));
+        }
         let estimator = Estimator::new(self.kernel, gather).treated(self.treatment);
         let settings = PhotonSettings {
             photons: photons.div_ceil(maps),
             maps,
             seed,
             orders: self.orders(),
-            estimator: Estimator { ray_radius, ..estimator },
+            estimator: Estimator { ray_radius, beam_radius, ..estimator },
         };
         // Refuses what passes cannot do before anything is counted.
         let forecast = forecast(scene, &settings, passes)?;

@@ -32,6 +32,7 @@ pub struct Options {
     radius: Option<f64>,
     max_radius: Option<f64>,
     ray_radius: Option<f64>,
+    beam_radius: Option<f64>,
     kernel: String,
     caustic_kernel: String,
     gather_rays: u32,
@@ -99,6 +100,11 @@ impl Options {
 }
 
 impl Readout {
+    /// Whether the volume map is of beams.
+    pub fn has_beams(&self) -> bool {
+        self.options.beam_radius.is_some()
+    }
+
     /// Whether importance leads photons.
     pub fn is_by_importance(&self) -> bool {
         self.options.importance
@@ -150,6 +156,12 @@ impl Readout {
         let ray_radius = self.options.ray_radius;
         settings.volume.ray_radius =
             ray_radius.map(|radius| Positive::new("ray_radius", radius)).transpose()?;
+        let beam_radius = self.options.beam_radius;
+        settings.volume.beam_radius =
+            beam_radius.map(|radius| Positive::new("beam_radius", radius)).transpose()?;
+        if ray_radius.is_some() && beam_radius.is_some() {
+            return Err(anyhow!("ray_radius reads points and beam_radius beams; allowed: one of them"));
+        }
         settings.gather_rays = gather_rays.max(1);
         settings.near = near;
         settings.clips_discs = self.clips_discs;

@@ -13,6 +13,7 @@ use turbid::Spectrum;
 use turbid::integrators::Layer;
 use turbid::integrators::mapper::Mapper;
 use turbid::memory;
+use turbid::photons::beams::BeamMap;
 use turbid::photons::PhotonMap;
 use turbid::photons::importance::{Importance, ImportanceSettings};
 use turbid::photons::maps::{MapSettings, Maps, fill_counted_by_importance, forecast};
@@ -85,7 +86,8 @@ impl Request {
         let [global, caustic, volume] = self.readout.amounts;
         let Streams { seed, replicate } = streams;
         let indirect = self.readout.indirect();
-        let settings = MapSettings { global, caustic, volume, indirect, seed, replicate };
+        let has_beams = self.readout.has_beams();
+        let settings = MapSettings { global, caustic, volume, has_beams, indirect, seed, replicate };
         let learned = ImportanceSettings { seed, replicate, ..Default::default() };
         let learn = || Importance::of(scene, camera, indirect, &learned, watch);
         let importance = self.readout.is_by_importance().then(learn).transpose()?;
@@ -118,7 +120,8 @@ impl Request {
                 With::Photons => {
                     let maps = self.maps(scene, camera, streams, watch)?;
                     let stored = [&maps.global, &maps.caustic, &maps.volume];
-                    let stored = stored.map(|map| map.as_ref().map_or(0, PhotonMap::stored));
+                    let mut stored = stored.map(|map| map.as_ref().map_or(0, PhotonMap::stored));
+                    stored[2] += maps.beams.as_ref().map_or(0, BeamMap::stored);
                     let settings = match read {
                         Some(settings) => settings,
                         None => *read.insert(self.readout.suited(&settings, stored)?),

@@ -155,6 +155,8 @@ def test_wrong_settings():
     assert told(with_="photons", boundary="soft").startswith("boundary is 'soft'; allowed: none, clipped, ")
     assert told(with_="photons", radius=-1).startswith("slab: radius: ")
     assert told(with_="photons", ray_radius=0).startswith("slab: ray_radius is 0; allowed: ")
+    assert told(with_="photons", beam_radius=0).startswith("slab: beam_radius is 0; allowed: ")
+    assert told(with_="photons", beam_radius=1, ray_radius=1).endswith("allowed: one of them")
     assert told(with_="photons", radius=1, k=3).startswith("radius takes all photons")
     assert told(with_="photons", k=1).startswith("slab: k, max_radius: ")
     assert told(with_="photons", passes=2).startswith("slab: the k nearest photons of a map cannot be found in passes")

@@ -175,6 +175,7 @@ def measure(
     radius: Optional[float] = None,
     max_radius: Optional[float] = None,
     ray_radius: Optional[float] = None,
+    beam_radius: Optional[float] = None,
     kernel: str = "uniform",
     boundary: str = "clipped",
     orders: Orders = None,
@@ -200,6 +201,7 @@ def measure(
     radius : radius within which an estimate takes all photons [L], in place of ``k``
     max_radius : the farthest that the k nearest photons are sought [L]; half the cell, or a mean free path
     ray_radius : radius about a whole ray, which is then read at once, for sensors of radiance: the beam radiance estimate [L]
+    beam_radius : the same from photons' flights, stored as beams; in place of ``ray_radius`` [L]
     kernel : uniform, epanechnikov, biweight, cone or gaussian, as ``turbid measure --help`` lists them
     boundary : what estimates do where a medium ends: none, clipped, reflection, local-linear
     orders : orders of scattering that count: 1, "0..3", (1, None)
@@ -227,6 +229,7 @@ def measure(
         radius=_optional_real("radius", radius),
         max_radius=_optional_real("max_radius", max_radius),
         ray_radius=_optional_real("ray_radius", ray_radius),
+        beam_radius=_optional_real("beam_radius", beam_radius),
         kernel=kernel,
         boundary=boundary,
         orders=_orders(orders),
@@ -286,6 +289,7 @@ def render(
     radius: Optional[float] = None,
     max_radius: Optional[float] = None,
     ray_radius: Optional[float] = None,
+    beam_radius: Optional[float] = None,
     kernel: str = "uniform",
     caustic_kernel: str = "cone",
     gather_rays: int = 64,
@@ -316,6 +320,7 @@ def render(
     radius : radius within which an estimate takes all photons [L], in place of ``k``
     max_radius : the farthest that photons are sought [L]; a tenth of the scene
     ray_radius : radius about a whole ray through media, which is then read at once, in place of a march: the beam radiance estimate [L]
+    beam_radius : the same from photons' flights, stored as beams, which ``volume`` then counts; in place of ``ray_radius`` [L]
     gather_rays : rays of a final gathering; 0 reads the global map where the eye looks: fast, and blotchy
     near : rays of a final gathering shorter than this are traced on [L]
     step, step_rule, adapt, jitter : the march through media; the longest step is in [L]
@@ -331,6 +336,7 @@ def render(
         radius=_optional_real("radius", radius),
         max_radius=_optional_real("max_radius", max_radius),
         ray_radius=_optional_real("ray_radius", ray_radius),
+        beam_radius=_optional_real("beam_radius", beam_radius),
         kernel=kernel,
         caustic_kernel=caustic_kernel,
         gather_rays=_count("gather_rays", gather_rays, 0, 1_000_000),

@@ -2,7 +2,7 @@
 
 use super::boundary::{Boundary, Gathered, PhotonFilter, Rejection, Surroundings, Treatment, accepted};
 use super::point::{ball_sum, for_each_photon, in_scattered_sum};
-use super::{BallSum, Directional, Estimate, Gather, Kernel, NeighborCount, RayEstimator};
+use super::{BallSum, BeamEstimator, Directional, Estimate, Gather, Kernel, NeighborCount, RayEstimator};
 use crate::Spectrum;
 use crate::math::{Positive, cosine_pair};
 use crate::photons::{Photon, PhotonMap};
@@ -22,6 +22,9 @@ pub struct Estimator {
     /// How near to a ray photons are that whole stretches of it are read from at once ([`RayEstimator`]); none where rays are read
     /// point by point.
     pub ray_radius: Option<Positive>,
+    /// How near to a ray photons' flights pass that whole stretches of it are read from at once ([`BeamEstimator`]), in place of
+    /// photons; none where there are no beams.
+    pub beam_radius: Option<Positive>,
 }
 
 /// Bodies and photons are looked for a little beyond a ball, so that rounding leaves none in it out.
@@ -33,7 +36,14 @@ const AHEAD: f64 = 1e-9;
 impl Estimator {
     /// Of all photons that a gather finds, wherever they are.
     pub fn new(kernel: Kernel, gather: Gather) -> Self {
-        Estimator { kernel, gather, treatment: Treatment::None, rejection: Rejection::Off, ray_radius: None }
+        Estimator {
+            kernel,
+            gather,
+            treatment: Treatment::None,
+            rejection: Rejection::Off,
+            ray_radius: None,
+            beam_radius: None,
+        }
     }
 
     /// The same with a treatment of boundaries.
@@ -48,7 +58,24 @@ impl Estimator {
 
     /// The same with whole stretches of rays read at once, from photons as near as this \[L\].
     pub fn along_rays(self, radius: Positive) -> Self {
-        Estimator { ray_radius: Some(radius), ..self }
+        Estimator { ray_radius: Some(radius), beam_radius: None, ..self }
+    }
+
+    /// The same with whole stretches of rays read at once, from flights of photons that pass as near as this \[L\].
+    pub fn along_beams(self, radius: Positive) -> Self {
+        Estimator { beam_radius: Some(radius), ray_radius: None, ..self }
+    }
+
+    /// What reads whole stretches of rays from beams; none where photons are points.
+    pub fn of_beams(&self) -> Option<BeamEstimator> {
+        let Estimator { kernel, treatment, .. } = *self;
+        let is_clipped = treatment != Treatment::None;
+        self.beam_radius.map(|radius| BeamEstimator { kernel, radius, is_clipped })
+    }
+
+    /// Whether rays are read as a whole, and not point by point.
+    pub fn reads_rays(&self) -> bool {
+        self.ray_radius.is_some() || self.beam_radius.is_some()
     }
 
     /// What reads whole stretches of rays; none where they are read point by point.
@@ -61,14 +88,15 @@ impl Estimator {
         })
     }
 
-    /// The smallest of the radii that it names, of a point or a ray \[L\].
+    /// The smallest of the radii that it names, of a point or a ray \[L\]; those about beams are no matter of single precision.
     pub fn least_named_radius(&self) -> f64 {
         self.gather.cap().min(self.ray_radius.map_or(f64::INFINITY, Positive::get))
     }
 
-    /// The farthest that photons are looked for, of a point or a ray \[L\].
+    /// The farthest that photons or beams are looked for, of a point or a ray \[L\].
     pub fn reach(&self) -> f64 {
-        self.gather.cap().max(self.ray_radius.map_or(0.0, Positive::get))
+        let radii = [self.ray_radius, self.beam_radius].map(|radius| radius.map_or(0.0, Positive::get));
+        radii.into_iter().fold(self.gather.cap(), f64::max)
     }
 
     /// Every kernel with every gather and every treatment, at this radius \[L\], or this k as far as that.
@@ -101,12 +129,17 @@ impl Estimator {
 
     /// Its name, such as "cone, k=50, clipped"; one radius for points and rays is said once.
     pub fn name(&self) -> String {
-        let Estimator { kernel, gather, treatment, rejection, ray_radius } = self;
-        let along = ray_radius.map(|radius| format!("along rays r={}", radius.get()));
-        let of_rays_alone = ray_radius.is_some_and(|radius| *gather == Gather::Radius(radius));
-        let mut name = match &along {
-            Some(along) if of_rays_alone => format!("{}, {along}", kernel.name()),
-            _ => format!("{}, {gather}", kernel.name()),
+        let Estimator { kernel, gather, treatment, rejection, ray_radius, beam_radius } = self;
+        let of_rays = match (ray_radius, beam_radius) {
+            (Some(radius), _) => Some((radius, format!("along rays r={}", radius.get()))),
+            (_, Some(radius)) => Some((radius, format!("beams r={}", radius.get()))),
+            (None, None) => None,
+        };
+        // One radius for points and rays.
+        let alone = of_rays.as_ref().filter(|(radius, _)| *gather == Gather::Radius(**radius));
+        let mut name = match alone {
+            Some((_, along)) => format!("{}, {along}", kernel.name()),
+            None => format!("{}, {gather}", kernel.name()),
         };
         if *treatment != Treatment::None {
             name += &format!(", {}", treatment.name());
@@ -114,7 +147,7 @@ impl Estimator {
         if *rejection != Rejection::Off {
             name += &format!(", {}", rejection.name());
         }
-        if let Some(along) = along.filter(|_| !of_rays_alone) {
+        if let (Some((_, along)), None) = (&of_rays, alone) {
             name += &format!(", {along}");
         }
         name

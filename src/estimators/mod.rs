@@ -8,6 +8,9 @@
 //! - in-scattered radiance = sum p phase(dir -> wo) K_r / (N sigma_t) [W/(L^2 sr)];
 //! - on a surface, with K_r of unit integral over the disc: irradiance = sum p K_r / N [W/L^2].
 //!
+//! Along whole rays [`RayEstimator`] reads the photons about a ray and [`BeamEstimator`] the flights that pass it, which are stored
+//! with the power they leave with.
+//!
 //! An [`Estimator`] is a [`Kernel`], which weights the photons of the ball, a [`Gather`], which chooses the ball, and what it
 //! does near the surface of a medium, or a wall ([`boundary`]); it states the bias and variance that it expects.
 

@@ -43,6 +43,8 @@ pub struct RunInfo {
     pub max_radius: Option<f64>,
     /// Radius about whole rays that are read at once \[L\].
     pub ray_radius: Option<f64>,
+    /// The same about rays across which flights pass, as beams \[L\].
+    pub beam_radius: Option<f64>,
     /// How an estimate weights its photons.
     pub kernel: Option<String>,
     /// What it does where a medium ends.
@@ -89,7 +91,7 @@ struct Document<'a, T> {
 
 const COLUMNS: [&str; 6] = ["sensor", "quantity", "unit", "mean", "std_error", "n"];
 
-const RUN_COLUMNS: [&str; 15] = [
+const RUN_COLUMNS: [&str; 16] = [
     "with",
     "seed",
     "orders",
@@ -100,6 +102,7 @@ const RUN_COLUMNS: [&str; 15] = [
     "k",
     "max_radius",
     "ray_radius",
+    "beam_radius",
     "kernel",
     "boundary",
     "reject",

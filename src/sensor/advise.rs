@@ -13,7 +13,7 @@
 //! prior distribution of that standard deviation, and the prediction carries what remains uncertain.
 
 use super::paths::{self, PathSettings};
-use super::photons::{PhotonForecast, check, forecast_of, map_orders, maps, margin, max_order};
+use super::photons::{PhotonForecast, RadianceMaps, check, forecast_of, maps, margin, max_order};
 use crate::error::{Error, Result};
 use crate::estimators::boundary::Boundary;
 use crate::estimators::{Estimator, Gather, Kernel};
@@ -25,6 +25,9 @@ use crate::scene::{Orders, Quantity, Scene, Sensor};
 use crate::stats::{Interval, Moments};
 use crate::transport::Progress;
 use std::time::Instant;
+
+/// It asks points.
+const OF_POINTS: RadianceMaps = RadianceMaps { points: true, beams: false };
 
 /// Balls about each probe.
 const BALLS: usize = 8;
@@ -145,7 +148,7 @@ impl Pilot {
     /// those of [`Pilot::run`] before its first map
     pub fn forecast(scene: &Scene, settings: &PilotSettings) -> Result<PhotonForecast> {
         let (_, chosen, margin) = Self::prepared(scene, settings)?;
-        forecast_of(scene, &chosen, margin, (settings.photons, settings.maps, settings.seed))
+        forecast_of(scene, (&chosen, OF_POINTS), margin, (settings.photons, settings.maps, settings.seed))
     }
 
     /// A pilot without maps, the probes that can be asked, and how far beyond the cell's edges they read \[L\].
@@ -207,11 +210,11 @@ impl Pilot {
         let max_order = max_order(chosen);
         let histories = Histories { count: settings.photons, seed: settings.seed, replicate, max_order };
         let start = Instant::now();
-        let (_, maps) = maps(scene, chosen, histories, Part::WHOLE, margin, progress)?;
+        let (_, maps) = maps(scene, (chosen, OF_POINTS), histories, Part::WHOLE, margin, progress)?;
         self.preparation_seconds += start.elapsed().as_secs_f64() / (settings.photons * settings.maps) as f64;
         let queries = chosen.len() as f64 * settings.maps as f64;
         for (sensor, probe) in chosen.iter().zip(&mut self.probes) {
-            let Some((_, map)) = maps.iter().find(|(range, _)| map_orders(sensor) == Some(*range)) else {
+            let Some(map) = maps.points_of(sensor) else {
                 continue;
             };
             let Quantity::Fluence(p) = sensor.quantity else { continue };

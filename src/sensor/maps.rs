@@ -2,13 +2,15 @@
 
 use super::PhotonForecast;
 use super::photons::{
-    PhotonReadings, Surroundings, check, forecast_of, map_orders, maps, margin_of, max_order, read_bins,
+    OrderMaps, PhotonReadings, RadianceMaps, Surroundings, check, forecast_of, map_orders, maps, margin_of,
+    max_order, read_bins,
 };
 use crate::Spectrum;
 use crate::error::{Error, Result};
 use crate::estimators::Estimator;
-use crate::photons::{Histories, Ledger, Part, PhotonMap};
-use crate::scene::{Orders, Quantity, Scene};
+use crate::photons::beams::check_beams;
+use crate::photons::{Histories, Ledger, Part};
+use crate::scene::{Quantity, Scene};
 use crate::transport::Progress;
 
 /// Which photons the maps of a pass are of.
@@ -25,12 +27,14 @@ pub struct MapSettings {
     /// Marches along each ray, and sets of points in each bin, that a reading is the mean of: at least 1. A fluence at a point is
     /// read once, since nothing in it is random.
     pub readings: usize,
+    /// What any estimator will read radiance from.
+    pub radiance: RadianceMaps,
 }
 
 /// The maps that answer the sensors of a scene, of one pass.
 pub struct SensorMaps<'a> {
     scene: &'a Scene,
-    maps: Vec<(Orders, PhotonMap)>,
+    maps: OrderMaps,
     settings: MapSettings,
     /// Powers \[W\] by history.
     pub ledger: Ledger,
@@ -58,7 +62,7 @@ pub fn usual_reach(scene: &Scene) -> f64 {
 }
 
 /// How far beyond the edges of the cell the maps have to go on, if they can answer.
-fn checked(scene: &Scene, reach: f64) -> Result<f64> {
+fn checked(scene: &Scene, reach: f64, radiance: RadianceMaps) -> Result<f64> {
     for sensor in scene.sensors() {
         if map_orders(sensor).is_none() {
             return Err(Error::Scene(format!(
@@ -67,6 +71,9 @@ fn checked(scene: &Scene, reach: f64) -> Result<f64> {
             )));
         }
         check(scene, sensor)?;
+    }
+    if radiance.beams {
+        check_beams(scene)?;
     }
     margin_of(scene, scene.sensors(), reach)
 }
@@ -77,20 +84,21 @@ impl<'a> SensorMaps<'a> {
     /// # Errors
     /// `Error::Scene` for a sensor that maps cannot answer, or a reach beyond the periodic cell; those of the photon pass
     pub fn fill(scene: &'a Scene, settings: MapSettings, progress: &dyn Progress) -> Result<Self> {
-        let margin = checked(scene, settings.reach)?;
-        let MapSettings { photons, seed, replicate, .. } = settings;
+        let margin = checked(scene, settings.reach, settings.radiance)?;
+        let MapSettings { photons, seed, replicate, radiance, .. } = settings;
         let sensors = scene.sensors();
         let histories = Histories { count: photons, seed, replicate, max_order: max_order(sensors) };
-        let (pass, maps) = maps(scene, sensors, histories, Part { number: 0, of: 1 }, margin, progress)?;
+        let part = Part { number: 0, of: 1 };
+        let (pass, maps) = maps(scene, (sensors, radiance), histories, part, margin, progress)?;
         Ok(SensorMaps { scene, maps, settings, ledger: pass.report.ledger })
     }
 
     /// Whether maps can answer every sensor of a scene by estimators of this reach \[L\].
     ///
     /// # Errors
-    /// `Error::Scene` that names the sensor, or the cell that is too small
-    pub fn check(scene: &Scene, reach: f64) -> Result<()> {
-        checked(scene, reach).map(|_| ())
+    /// `Error::Scene` that names the sensor, or the cell that is too small; those of [`check_beams`]
+    pub fn check(scene: &Scene, reach: f64, radiance: RadianceMaps) -> Result<()> {
+        checked(scene, reach, radiance).map(|_| ())
     }
 
     /// What filling maps of so many photons will take, by a pilot.
@@ -98,13 +106,14 @@ impl<'a> SensorMaps<'a> {
     /// # Errors
     /// As [`SensorMaps::fill`]
     pub fn forecast(scene: &Scene, settings: &MapSettings) -> Result<PhotonForecast> {
-        let margin = checked(scene, settings.reach)?;
-        forecast_of(scene, scene.sensors(), margin, (settings.photons, 1, settings.seed))
+        let margin = checked(scene, settings.reach, settings.radiance)?;
+        let sensors = (scene.sensors(), settings.radiance);
+        forecast_of(scene, sensors, margin, (settings.photons, 1, settings.seed))
     }
 
-    /// Photons that the maps hold, those beyond the edges of a periodic cell too.
+    /// Photons that the maps hold, those beyond the edges of a periodic cell too, and beams.
     pub fn stored(&self) -> usize {
-        self.maps.iter().map(|(_, map)| map.stored()).sum()
+        self.maps.stored()
     }
 
     /// Every sensor by one estimator. All estimators ask at the same places.
@@ -113,7 +122,7 @@ impl<'a> SensorMaps<'a> {
     /// `Error::OutOfRange` for one that reaches farther than the maps were filled for; `Error::Scene` for a bin that
     /// reaches outside of all media; `Error::NonFinite`
     pub fn read(&self, estimator: &Estimator) -> Result<MapReading> {
-        let cap = estimator.gather.cap();
+        let cap = estimator.reach();
         if cap > self.settings.reach {
             return Err(Error::out_of_range("the reach of an estimator", cap, "at most that of the maps"));
         }
@@ -121,8 +130,13 @@ impl<'a> SensorMaps<'a> {
         let around = Surroundings::of(self.scene, estimator);
         let mut values: Vec<Vec<Spectrum>> = Vec::with_capacity(sensors.len());
         for (number, sensor) in sensors.iter().enumerate() {
-            let own = map_orders(sensor).and_then(|range| self.maps.iter().find(|(held, _)| *held == range));
-            let Some((_, map)) = own else { continue };
+            let Some(map) = self.maps.of(sensor, estimator) else {
+                return Err(Error::Scene(format!(
+                    "sensor {}: the maps were not filled for {}",
+                    sensor.name,
+                    estimator.name()
+                )));
+            };
             let is_random = !matches!(sensor.quantity, Quantity::Fluence(_));
             let readings = if is_random { self.settings.readings.max(1) } else { 1 };
             let mut sums: Vec<Spectrum> = Vec::new();

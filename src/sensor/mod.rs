@@ -26,8 +26,8 @@ pub use maps::{MapReading, MapSettings, SensorMaps, usual_reach};
 pub use method::Method;
 pub use paths::{PathSettings, by_guided_paths, by_paths, sample, sample_bin, sample_counted, sample_guided};
 pub use photons::{
-    PhotonForecast, PhotonReadings, PhotonSettings, by_given_photons, by_photons, by_photons_in_passes,
-    forecast, given_bytes, is_answered_by_map,
+    PhotonForecast, PhotonReadings, PhotonSettings, RadianceMaps, by_given_photons, by_photons,
+    by_photons_in_passes, forecast, given_bytes, is_answered_by_map,
 };
 pub use picture_advice::{PictureAdvice, PicturePilot, PicturePilotSettings};
 pub use render::{MAX_SAMPLES, Streams, extend};

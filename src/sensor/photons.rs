@@ -11,9 +11,10 @@ use crate::integrators::mapper::{MediumExtent, medium_extents, scene_size};
 use crate::integrators::{March, StepRule, along};
 use crate::math::{Interval, Positive, Ray};
 use crate::medium::Medium;
+use crate::photons::beams::{self, Beam, BeamMap, check_beams};
 use crate::photons::{
-    BUILD_SECONDS, Emitter, Histories, Ledger, PEAK_BYTES, Part, Pass, Photon, PhotonMap, Run, Scores,
-    periodic, score_bytes, shoot,
+    BUILD_SECONDS, Emitter, Flags, Histories, Ledger, PEAK_BYTES, Part, Pass, Photon, PhotonMap, Run, Scores,
+    Storage, periodic, score_bytes,
 };
 use crate::rng::{Purpose, Stream};
 use crate::scene::{Binned, Orders, Quantity, Scene, Sensor};
@@ -130,7 +131,8 @@ pub fn by_photons_in_passes(
         for number in 0..passes {
             let booked = (result.gathers, result.underfull, result.beyond);
             let part = Part { number, of: passes };
-            let (pass, maps) = maps(scene, &sensors, histories, part, margin, progress)?;
+            let wanted = RadianceMaps::of([&settings.estimator]);
+            let (pass, maps) = maps(scene, (&sensors, wanted), histories, part, margin, progress)?;
             result.ledger += pass.report.ledger;
             let tallied = sensors.iter().zip(moments.iter_mut()).zip(&pass.tallies);
             for ((_, mine), tally) in tallied.filter(|((s, _), _)| is_tallied(s)) {
@@ -170,6 +172,7 @@ pub fn by_given_photons(
     given: impl IntoIterator<Item = Result<(Vec<Photon>, u64)>>,
 ) -> Result<PhotonReadings> {
     let (sensors, margin) = prepared_for_maps(scene, settings)?;
+    let wanted = RadianceMaps::of([&settings.estimator]);
     let mut moments: Vec<_> = sensors.iter().map(|s| vec![[Moments::new(); 3]; bins(s)]).collect();
     let mut result = PhotonReadings::new();
     let surroundings = Surroundings::of(scene, &settings.estimator);
@@ -180,7 +183,8 @@ pub fn by_given_photons(
                 .iter_mut()
                 .for_each(|photon| photon.position = periodic::wrap(photon.position, cell.side));
         }
-        let maps = maps_of(scene, &sensors, vec![photons], emitted, margin, (settings.seed, replicate))?;
+        let stored = Stored { photons: vec![photons], beams: Vec::new(), emitted };
+        let maps = maps_of(scene, (&sensors, wanted), stored, margin, (settings.seed, replicate))?;
         let mut estimates: Vec<_> = sensors.iter().map(|s| vec![Spectrum::ZERO; bins(s)]).collect();
         let asked = Asked { surroundings: &surroundings, sensors: &sensors, settings };
         asked.read(&maps, replicate, 1, &mut estimates, &mut result)?;
@@ -197,7 +201,7 @@ pub fn by_given_photons(
 pub fn given_bytes(scene: &Scene, settings: &PhotonSettings, count: u64) -> Result<f64> {
     let (sensors, margin) = prepared_for_maps(scene, settings)?;
     let all = count as f64 * around(scene, margin);
-    let bytes = match ranges(&sensors).len() {
+    let bytes = match RadianceMaps::of([&settings.estimator]).ranges(&sensors).0.len() {
         0 | 1 => PEAK_BYTES * all,
         // All of them may be in each range.
         maps => (size_of::<Photon>() as f64 + PEAK_BYTES * maps as f64) * all,
@@ -215,6 +219,11 @@ fn prepared_for_maps(scene: &Scene, settings: &PhotonSettings) -> Result<(Vec<Se
              mean-fluence, mean-radiance",
             names.join(", ")
         )));
+    }
+    if settings.estimator.beam_radius.is_some() {
+        return Err(Error::Scene(
+            "photons of a file are points, and no beams; allowed: a radius about points or rays, k nearest photons".into(),
+        ));
     }
     prepared_of(scene, sensors, settings)
 }
@@ -298,22 +307,21 @@ impl Asked<'_> {
     /// Adds the estimates of every sensor that maps answer from the maps of one of so many passes of a run.
     fn read(
         &self,
-        maps: &[(Orders, PhotonMap)],
+        maps: &OrderMaps,
         replicate: u64,
         passes: u64,
         estimates: &mut [Vec<Spectrum>],
         result: &mut PhotonReadings,
     ) -> Result<()> {
         let Asked { surroundings, sensors, settings } = *self;
-        for (range, map) in maps {
-            let here = sensors.iter().zip(&mut *estimates).filter(|(s, _)| map_orders(s) == Some(*range));
-            for (index, (sensor, sums)) in here.enumerate() {
-                // Every pass asks at the same places.
-                let of = (settings.seed, replicate, index);
-                let values = read_bins(surroundings, map, sensor, &settings.estimator, of, result)?;
-                for (sum, value) in sums.iter_mut().zip(values) {
-                    *sum += value / passes as f64;
-                }
+        for (number, (sensor, sums)) in sensors.iter().zip(&mut *estimates).enumerate() {
+            let Some(map) = maps.of(sensor, &settings.estimator) else { continue };
+            // Every pass asks at the same places.
+            let index = sensors[..number].iter().filter(|s| map_orders(s) == map_orders(sensor)).count();
+            let of = (settings.seed, replicate, index);
+            let values = read_bins(surroundings, map, sensor, &settings.estimator, of, result)?;
+            for (sum, value) in sums.iter_mut().zip(values) {
+                *sum += value / passes as f64;
             }
         }
         Ok(())
@@ -341,46 +349,169 @@ const FORECAST: u64 = 1024;
 pub fn forecast(scene: &Scene, settings: &PhotonSettings, passes: u64) -> Result<PhotonForecast> {
     let (sensors, margin) = prepared(scene, settings)?;
     let PhotonSettings { photons, maps, seed, .. } = *settings;
-    let whole = forecast_of(scene, &sensors, margin, (photons, maps, seed))?;
+    let wanted = RadianceMaps::of([&settings.estimator]);
+    let whole = forecast_of(scene, (&sensors, wanted), margin, (photons, maps, seed))?;
     Ok(PhotonForecast { bytes: whole.bytes / passes as f64, ..whole })
 }
 
 /// The same for sensors that are checked, `margin` beyond the cell: so many photons a map, so many maps, and the seed.
 pub(super) fn forecast_of(
     scene: &Scene,
-    sensors: &[Sensor],
+    (sensors, wanted): (&[Sensor], RadianceMaps),
     margin: f64,
     (photons, maps, seed): (u64, u64, u64),
 ) -> Result<PhotonForecast> {
-    let ranges = ranges(sensors);
+    let (ranges, of_beams) = wanted.ranges(sensors);
     let count = photons.div_ceil(64).min(FORECAST);
     let histories = Histories { count, seed, replicate: 0, max_order: max_order(sensors) };
-    let (met, copied) = (AtomicU64::new(0), AtomicU64::new(0));
-    let keep = |photon: &Photon| {
-        let holding = ranges.iter().filter(|r| r.contains(u32::from(photon.order))).count() as u64;
-        met.fetch_add(u64::from(holding > 0), Ordering::Relaxed);
-        copied.fetch_add(holding, Ordering::Relaxed);
-        false
-    };
+    let kept = Kept { points: &ranges, beams: &of_beams, copied: Default::default() };
+    let emitter = Emitter::by_power(scene);
+    let run = Run { is_pilot: true, ..Run::new(scene, &emitter, histories) };
     let start = Instant::now();
-    shoot(scene, histories, &[], keep, &NoProgress)?;
+    let pass = run.pass(&kept, &NoProgress)?;
     // The pilot is one block of histories and runs on one thread.
     let threads = rayon::current_num_threads() as f64;
     let one = start.elapsed().as_secs_f64() / count as f64;
-    let a_history = |number: &AtomicU64| number.load(Ordering::Relaxed) as f64 / count as f64;
-    let [met, copied] =
-        [a_history(&met), a_history(&copied)].map(|n| n * photons as f64 * around(scene, margin));
+    let [copied, copied_beams] = kept.copied.map(AtomicU64::into_inner);
+    let a_history = |number: u64| number as f64 / count as f64 * photons as f64;
+    let [met, copied] = [pass.met[1], copied].map(|n| a_history(n) * around(scene, margin));
+    // A flight that crosses cells has several beams.
+    let [met_beams, flights] = [pass.met_beams, copied_beams].map(a_history);
     // Where several ranges of orders have a map each, the photons of all stay until the last one.
-    let bytes = match ranges.len() {
-        1 => PEAK_BYTES * met,
+    let of_points = match ranges.len() {
+        0 | 1 => PEAK_BYTES * met,
         _ => size_of::<Photon>() as f64 * met + PEAK_BYTES * copied,
     };
+    let copies = if pass.met_beams > 0 && of_beams.len() > 1 { of_beams.len() as f64 } else { 1.0 };
+    let bytes = of_points + beams::PEAK_BYTES * met_beams * copies;
+    let copied = copied + flights.max(met_beams * copies);
     let seconds = (one * photons as f64 + BUILD_SECONDS * copied) * maps as f64 / threads;
     // The scores of the blocks that are there at a time, those that they are added to, and what the threads' histories add up.
     let (scores, history) = score_bytes(scene, &scored(sensors));
     let scores = scores * (blocks_at_once(photons.div_ceil(BLOCK)) + 1.0) + history * threads;
     let bytes = bytes + scores + row_bytes(scene);
     Ok(PhotonForecast { stored: copied, bytes, seconds })
+}
+
+/// What radiance is read from.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct RadianceMaps {
+    /// Photons, in balls or about rays.
+    pub points: bool,
+    /// Their flights.
+    pub beams: bool,
+}
+
+impl RadianceMaps {
+    /// What these estimators ask.
+    pub fn of<'a>(estimators: impl IntoIterator<Item = &'a Estimator>) -> Self {
+        let mut wanted = RadianceMaps { points: false, beams: false };
+        for estimator in estimators {
+            wanted.points |= estimator.beam_radius.is_none();
+            wanted.beams |= estimator.beam_radius.is_some();
+        }
+        wanted
+    }
+
+    /// The ranges of orders that need a map of points each, and those that need one of beams.
+    fn ranges(self, sensors: &[Sensor]) -> (Vec<Orders>, Vec<Orders>) {
+        let (mut points, mut beams) = (Vec::new(), Vec::new());
+        for sensor in sensors {
+            let Some(range) = map_orders(sensor) else { continue };
+            let is_radiance = is_radiance(sensor);
+            for (is_needed, ranges) in
+                [(self.points || !is_radiance, &mut points), (self.beams && is_radiance, &mut beams)]
+            {
+                if is_needed && !ranges.contains(&range) {
+                    ranges.push(range);
+                }
+            }
+        }
+        (points, beams)
+    }
+}
+
+/// Whether a sensor is read along rays.
+fn is_radiance(sensor: &Sensor) -> bool {
+    matches!(sensor.quantity, Quantity::Radiance(_) | Quantity::Binned(Binned::Radiance { .. }))
+}
+
+/// What a pass keeps: what maps of any range hold.
+struct Kept<'a> {
+    points: &'a [Orders],
+    beams: &'a [Orders],
+    /// Photons and flights that were kept, once a range.
+    copied: [AtomicU64; 2],
+}
+
+impl Kept<'_> {
+    fn holds(&self, which: usize, order: u32) -> bool {
+        let ranges = [self.points, self.beams][which];
+        let holding = ranges.iter().filter(|range| range.contains(order)).count() as u64;
+        self.copied[which].fetch_add(holding, Ordering::Relaxed);
+        holding > 0
+    }
+}
+
+impl Storage for Kept<'_> {
+    fn in_medium(&self, _history: u64, photon: &Photon) -> bool {
+        self.holds(0, u32::from(photon.order))
+    }
+
+    fn has_beams(&self) -> bool {
+        !self.beams.is_empty()
+    }
+
+    fn on_flight(&self, _history: u64, order: u32, _flags: Flags) -> bool {
+        self.holds(1, order)
+    }
+}
+
+/// The maps of one pass, one for each range of orders that is asked for.
+pub(super) struct OrderMaps {
+    points: Vec<(Orders, PhotonMap)>,
+    beams: Vec<(Orders, BeamMap)>,
+}
+
+/// The map that a sensor asks.
+#[derive(Clone, Copy)]
+pub(super) enum AskedMap<'a> {
+    Points(&'a PhotonMap),
+    Beams(&'a BeamMap),
+}
+
+impl AskedMap<'_> {
+    /// Checks that positions are told apart finely enough for a radius \[L\]: those of beams always are.
+    fn check_radius(self, radius: f64) -> Result<()> {
+        match self {
+            AskedMap::Points(map) => map.check_radius(radius),
+            AskedMap::Beams(_) => Ok(()),
+        }
+    }
+}
+
+impl OrderMaps {
+    /// The map that answers a sensor by an estimator.
+    pub(super) fn of(&self, sensor: &Sensor, estimator: &Estimator) -> Option<AskedMap<'_>> {
+        let range = map_orders(sensor)?;
+        if estimator.beam_radius.is_some() && is_radiance(sensor) {
+            let own = self.beams.iter().find(|(held, _)| *held == range);
+            return own.map(|(_, map)| AskedMap::Beams(map));
+        }
+        self.points_of(sensor).map(AskedMap::Points)
+    }
+
+    /// The map of photons that answers a sensor.
+    pub(super) fn points_of(&self, sensor: &Sensor) -> Option<&PhotonMap> {
+        let own = self.points.iter().find(|(held, _)| map_orders(sensor) == Some(*held));
+        own.map(|(_, map)| map)
+    }
+
+    /// Photons that they hold, those beyond the edges of a periodic cell too, and beams.
+    pub(super) fn stored(&self) -> usize {
+        let points: usize = self.points.iter().map(|(_, map)| map.stored()).sum();
+        points + self.beams.iter().map(|(_, map)| map.stored()).sum::<usize>()
+    }
 }
 
 /// How many times the photons of a cell a map holds that is continued beyond its edges.
@@ -408,19 +539,11 @@ fn prepared_of<'a>(
             check_reach(scene, sensor)?;
         }
     }
+    if settings.estimator.beam_radius.is_some() && sensors.iter().any(is_radiance) {
+        check_beams(scene)?;
+    }
     let margin = margin_of(scene, &sensors, settings.estimator.reach())?;
     Ok((sensors, margin))
-}
-
-/// The ranges of orders that need a map each.
-fn ranges(sensors: &[Sensor]) -> Vec<Orders> {
-    let mut ranges: Vec<Orders> = Vec::new();
-    for range in sensors.iter().filter_map(map_orders) {
-        if !ranges.contains(&range) {
-            ranges.push(range);
-        }
-    }
-    ranges
 }
 
 /// The largest order of a collision that any sensor asks for, if there is one.
@@ -432,39 +555,68 @@ pub(super) fn max_order(sensors: &[Sensor]) -> Option<u32> {
 /// beyond the periodic cell. The pass's own photons have moved into the maps.
 pub(super) fn maps(
     scene: &Scene,
-    sensors: &[Sensor],
+    (sensors, wanted): (&[Sensor], RadianceMaps),
     histories: Histories,
     part: Part,
     margin: f64,
     progress: &dyn Progress,
-) -> Result<(Pass, Vec<(Orders, PhotonMap)>)> {
-    let ranges = ranges(sensors);
-    let is_needed = |photon: &Photon| ranges.iter().any(|r| r.contains(u32::from(photon.order)));
+) -> Result<(Pass, OrderMaps)> {
+    let (points, beams) = wanted.ranges(sensors);
+    let kept = Kept { points: &points, beams: &beams, copied: Default::default() };
     let emitter = Emitter::by_power(scene);
     let scored = scored(sensors);
     let run = Run { part, sensors, scored: &scored, ..Run::new(scene, &emitter, histories) };
-    let mut pass = run.pass(&is_needed, progress)?;
-    let blocks = std::mem::take(&mut pass.media);
+    let mut pass = run.pass(&kept, progress)?;
+    let stored = Stored {
+        photons: std::mem::take(&mut pass.media),
+        beams: std::mem::take(&mut pass.beams),
+        emitted: histories.count,
+    };
     let run = (histories.seed, histories.replicate);
-    let maps = maps_of(scene, sensors, blocks, histories.count, margin, run)?;
+    let maps = maps_of(scene, (sensors, wanted), stored, margin, run)?;
     Ok((pass, maps))
+}
+
+/// What a pass stored.
+struct Stored {
+    photons: Vec<Vec<Photon>>,
+    beams: Vec<Vec<Beam>>,
+    emitted: u64,
 }
 
 /// The maps of photons in media, one for each range of orders that a sensor needs, continued `margin` beyond the periodic cell, as
 /// those of a run of a seed and replicate.
 fn maps_of(
     scene: &Scene,
-    sensors: &[Sensor],
-    mut blocks: Vec<Vec<Photon>>,
-    emitted: u64,
+    (sensors, wanted): (&[Sensor], RadianceMaps),
+    stored: Stored,
     margin: f64,
     (seed, replicate): (u64, u64),
-) -> Result<Vec<(Orders, PhotonMap)>> {
-    let ranges = ranges(sensors);
-    let mut maps = Vec::with_capacity(ranges.len());
-    for (number, &range) in ranges.iter().enumerate() {
-        let holds = |photon: &Photon| range.contains(u32::from(photon.order));
-        let parts = match number + 1 == ranges.len() {
+) -> Result<OrderMaps> {
+    let Stored { photons, beams, emitted } = stored;
+    let (of_points, of_beams) = wanted.ranges(sensors);
+    let mut maps = OrderMaps { points: Vec::new(), beams: Vec::new() };
+    let cell = scene.periodic_cell().map(|periodic_cell| periodic_cell.side);
+    for (range, parts) in by_ranges(of_points, photons, |photon: &Photon| photon.order) {
+        let map = PhotonMap::periodic(parts, emitted, cell.map(|side| (side, margin)), &NoProgress)?;
+        maps.points.push((range, map.of_run(seed, replicate)));
+    }
+    for (range, parts) in by_ranges(of_beams, beams, |beam: &Beam| beam.order) {
+        maps.beams.push((range, BeamMap::new(parts, emitted, cell)?));
+    }
+    Ok(maps)
+}
+
+/// What is stored by ranges of orders; the last range takes what there is, and copies nothing.
+fn by_ranges<T: Copy>(
+    ranges: Vec<Orders>,
+    mut blocks: Vec<Vec<T>>,
+    order: impl Fn(&T) -> u16 + Copy,
+) -> impl Iterator<Item = (Orders, Vec<Vec<T>>)> {
+    let last = ranges.len().saturating_sub(1);
+    ranges.into_iter().enumerate().map(move |(number, range)| {
+        let holds = |stored: &T| range.contains(u32::from(order(stored)));
+        let parts = match number == last {
             true => {
                 let mut last = std::mem::take(&mut blocks);
                 last.iter_mut().for_each(|block| block.retain(holds));
@@ -472,11 +624,8 @@ fn maps_of(
             }
             false => blocks.iter().map(|block| block.iter().copied().filter(holds).collect()).collect(),
         };
-        let cell = scene.periodic_cell().map(|periodic_cell| (periodic_cell.side, margin));
-        let map = PhotonMap::periodic(parts, emitted, cell, &NoProgress)?;
-        maps.push((range, map.of_run(seed, replicate)));
-    }
-    Ok(maps)
+        (range, parts)
+    })
 }
 
 /// The orders of the photons that answer a sensor; none where tallies do. Photons of order n are the fluence of
@@ -568,7 +717,7 @@ pub(super) fn check(scene: &Scene, sensor: &Sensor) -> Result<()> {
 /// `Error::Scene` for a bin that reaches outside of all media, and for a ball that is too small beside the map
 pub(super) fn read_bins(
     around: &Surroundings<'_>,
-    map: &PhotonMap,
+    map: AskedMap<'_>,
     sensor: &Sensor,
     estimator: &Estimator,
     (seed, replicate, number): (u64, u64, usize),
@@ -603,7 +752,7 @@ const POINTS: usize = 4;
 /// One estimate from a map: of a bin, the mean over some of its points.
 fn read(
     around: &Surroundings<'_>,
-    map: &PhotonMap,
+    map: AskedMap<'_>,
     (sensor, bin): (&Sensor, usize),
     estimator: &Estimator,
     stream: &mut Stream,
@@ -640,12 +789,14 @@ fn read(
 /// Fluence at a point in a medium.
 fn fluence_at(
     around: &Surroundings<'_>,
-    map: &PhotonMap,
+    map: AskedMap<'_>,
     p: DVec3,
     estimator: &Estimator,
     result: &mut PhotonReadings,
 ) -> Spectrum {
     let scene = around.scene;
+    // Beams answer radiance alone: no sensor of fluence is given any.
+    let AskedMap::Points(map) = map else { return Spectrum::grey(f64::NAN) };
     let number = scene.medium_number_at(p);
     let sigma_t = number.map_or(Spectrum::ONE, |number| scene.medium(number).sigma_t(p));
     let boundary = number.map_or(Boundary::UNKNOWN, |number| around.boundary(number));
@@ -658,7 +809,7 @@ fn fluence_at(
 /// along the ray has no step bias.
 fn radiance(
     around: &Surroundings<'_>,
-    map: &PhotonMap,
+    map: AskedMap<'_>,
     ray: &Ray,
     orders: Orders,
     estimator: &Estimator,
@@ -676,26 +827,35 @@ fn radiance(
     }
     for segment in scene.segments(ray, end, interior).iter() {
         let medium = scene.medium(segment.medium);
+        let boundary = around.boundary(segment.medium);
+        if estimator.reads_rays() {
+            let before = transmittance(scene, ray, segment.interval.start, interior, stream);
+            let span = seen(medium, segment.interval);
+            let passage = Passage::new(medium, ray, span, stream);
+            let (way, passed) = ((ray, span), |t: f64| passage.to(t));
+            let estimate = match (map, estimator.of_rays(), estimator.of_beams()) {
+                (AskedMap::Points(map), Some(of_rays), _) => {
+                    of_rays.radiance(map, way, medium, &boundary, passed)
+                }
+                (AskedMap::Beams(map), _, Some(of_beams)) => {
+                    of_beams.radiance(map, way, (segment.medium, medium), &boundary, passed)
+                }
+                _ => continue,
+            };
+            result.gathers += 1;
+            sum += before * estimate.value;
+            continue;
+        }
+        let AskedMap::Points(map) = map else { continue };
         let mut source = |p: DVec3| {
             if medium.sigma_t(p).is_black() {
                 return Spectrum::ZERO;
             }
             let (wo, phase) = (-ray.dir, medium.phase());
-            let boundary = around.boundary(segment.medium);
             let estimate = estimator.in_scattered(map, p, wo, phase, Spectrum::ONE, &boundary);
             result.book(scene, p, &estimate, estimator.treatment);
             medium.albedo(p) * estimate.value
         };
-        if let Some(of_rays) = estimator.of_rays() {
-            let before = transmittance(scene, ray, segment.interval.start, interior, stream);
-            let span = seen(medium, segment.interval);
-            let passage = Passage::new(medium, ray, span, stream);
-            let boundary = around.boundary(segment.medium);
-            let estimate = of_rays.radiance(map, (ray, span), medium, &boundary, |t| passage.to(t));
-            result.gathers += 1;
-            sum += before * estimate.value;
-            continue;
-        }
         for (span, step) in stretches(medium, segment.interval) {
             let before = transmittance(scene, ray, span.start, interior, stream);
             if !before.is_black() {

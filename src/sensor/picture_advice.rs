@@ -264,6 +264,7 @@ impl PicturePilot {
                     global,
                     caustic,
                     volume,
+                    has_beams: false,
                     indirect: pilot.indirect,
                     seed: pilot.seed,
                     replicate,

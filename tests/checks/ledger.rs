@@ -136,7 +136,15 @@ pub fn settings(gather_rays: u32) -> Settings {
 
 pub fn filling(emitted: u64, indirect: Indirect, seed: u64, replicate: u64) -> MapSettings {
     let amount = Amount::Emitted(emitted);
-    MapSettings { global: amount, caustic: amount, volume: amount, indirect, seed, replicate }
+    MapSettings {
+        global: amount,
+        caustic: amount,
+        volume: amount,
+        has_beams: false,
+        indirect,
+        seed,
+        replicate,
+    }
 }
 
 /// Moments a layer, channels summed; last the sum of the layers.
@@ -175,7 +183,9 @@ pub fn layers_of_maps(
 ) -> Sheet {
     let mut sheet = Sheet::default();
     for replicate in 0..MAPS {
-        let maps = fill(scene, &filling(emitted, indirect, seed, replicate), &NoProgress).unwrap();
+        let has_beams = settings.volume.beam_radius.is_some();
+        let filled = MapSettings { has_beams, ..filling(emitted, indirect, seed, replicate) };
+        let maps = fill(scene, &filled, &NoProgress).unwrap();
         let mapper = Mapper::new(scene, &maps, settings);
         let mut picture = Layers::ZERO;
         for history in 0..RAYS {

@@ -6,7 +6,7 @@ use std::process::{Command, Stdio};
 
 const COLUMNS: [&str; 6] = ["sensor", "quantity", "unit", "mean", "std_error", "n"];
 /// What follows them as CSV: what the numbers were made with.
-const RUN: [&str; 15] = [
+const RUN: [&str; 16] = [
     "with",
     "seed",
     "orders",
@@ -17,6 +17,7 @@ const RUN: [&str; 15] = [
     "k",
     "max_radius",
     "ray_radius",
+    "beam_radius",
     "kernel",
     "boundary",
     "reject",

@@ -17,7 +17,7 @@ fn tables_say_what_they_were_made_with() {
     let of = |with: &str, more: serde_json::Value| {
         let mut run = serde_json::json!({
             "with": with, "seed": 3, "orders": "0..", "samples": null, "photons": null, "maps": null, "radius": null, "k": null,
-            "max_radius": null, "ray_radius": null, "kernel": null, "boundary": null, "reject": null, "version": env!("CARGO_PKG_VERSION"),
+            "max_radius": null, "ray_radius": null, "beam_radius": null, "kernel": null, "boundary": null, "reject": null, "version": env!("CARGO_PKG_VERSION"),
             "revision": revision,
         });
         more.as_object().unwrap().iter().for_each(|(key, value)| run[key] = value.clone());
@@ -39,6 +39,14 @@ fn tables_say_what_they_were_made_with() {
         &[&photons[..], &["--ray-radius", "0"]].concat(),
         &["--ray-radius is 0; allowed: finite and above 0"],
     );
+    let across = [&photons[..], &["--beam-radius", "0.5"]].concat();
+    assert_eq!(run_of(&across)["beam_radius"], 0.5);
+    refuses_naming(
+        &[&photons[..], &["--beam-radius", "inf"]].concat(),
+        &["--beam-radius is inf; allowed: finite and above 0"],
+    );
+    refuses_naming(&[&across[..], &["--ray-radius", "0.5"]].concat(), &["--beam-radius", "--ray-radius"]);
+    refuses_naming(&[&photons[..], &["--beam-radius", "1e3"]].concat(), &["beyond the periodic cell"]);
     let folder = Folder::new();
     let npy = folder.0.path().join("a.npy");
     succeeds(&["map", "slab", "--photons", "500", "--npy", text(&npy)]);

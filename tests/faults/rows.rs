@@ -1,8 +1,8 @@
 //! One row a fault: where it was seen, what it is here, and which check catches it.
 
 use crate::checks::{
-    cell, color, emitters, flights, fog, glass, ledger, light, media, numbers, outputs, phase, point_light,
-    points, shading, slab, threads, walls, weights,
+    beams, cell, color, emitters, flights, fog, glass, ledger, light, media, numbers, outputs, phase,
+    point_light, points, shading, slab, threads, walls, weights,
 };
 use crate::support::scenes::{area_light, cuboid, rectangle};
 use glam::DVec3;
@@ -289,6 +289,24 @@ const fn inside(fault: Fault) -> Row {
                 shading::smooth_meshes_scatter_photons_as_radiance()
             })
         }
+        Fault::NearParallelDropped => {
+            ("beams nearly parallel to a ray dropped", "a_laser_end_on_counts_in_full", |_| {
+                beams::a_laser_end_on_counts_in_full()
+            })
+        }
+        Fault::SineClamped => {
+            ("the sine between beam and ray no less than 0.01", "a_laser_end_on_counts_in_full", |_| {
+                beams::a_laser_end_on_counts_in_full()
+            })
+        }
+        Fault::BeamsArrive => (
+            "beams with the power with which their flights end",
+            "light_scattered_once_in_three_channels",
+            |_| beams::light_scattered_once_in_three_channels(),
+        ),
+        Fault::LineHalved => {
+            ("the kernel of beams over half the line", "one_beam_by_hand", |_| beams::one_beam_by_hand())
+        }
     };
     Row { fault: Planted::Inside(fault), title, check_name, check }
 }
@@ -391,6 +409,10 @@ pub const BY_HAND: &[Row] = &[
     inside(Fault::KernelRaised),
     inside(Fault::EmitterShareForgotten),
     inside(Fault::ShadingFactorForgotten),
+    inside(Fault::NearParallelDropped),
+    inside(Fault::SineClamped),
+    inside(Fault::BeamsArrive),
+    inside(Fault::LineHalved),
 ];
 
 fn single_scattering() {

@@ -329,8 +329,15 @@ fn report(has_room: bool) -> MapReport {
     let scene = bounded(Vec::new(), objects, vec![point_light(DVec3::new(1.0, -1.0, 3.0), Spectrum::ONE)]);
     let amount = Amount::Emitted(1 << 14);
     let (global, caustic, volume) = (amount, amount, amount);
-    let settings =
-        MapSettings { global, caustic, volume, indirect: Indirect::Gathered, seed: 1, replicate: 0 };
+    let settings = MapSettings {
+        global,
+        caustic,
+        volume,
+        has_beams: false,
+        indirect: Indirect::Gathered,
+        seed: 1,
+        replicate: 0,
+    };
     fill(&scene, &settings, &NoProgress).unwrap().report
 }
 

@@ -245,6 +245,7 @@ fn global_map(photons: Vec<Photon>) -> Maps {
         global: Some(PhotonMap::new(photons, 1000).unwrap()),
         caustic: None,
         volume: None,
+        beams: None,
         indirect: Indirect::Seen,
         report: MapReport::default(),
     }

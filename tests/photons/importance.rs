@@ -30,8 +30,15 @@ fn maps(
     replicate: u64,
 ) -> Maps {
     let amount = Amount::Emitted(emitted);
-    let settings =
-        MapSettings { global: amount, caustic: amount, volume: amount, indirect, seed: 5, replicate };
+    let settings = MapSettings {
+        global: amount,
+        caustic: amount,
+        volume: amount,
+        has_beams: false,
+        indirect,
+        seed: 5,
+        replicate,
+    };
     let emitted = Emitted { global: emitted, volume: emitted, caustic: 0 };
     match importance {
         None => fill_counted(scene, &settings, emitted, &NoProgress).unwrap(),

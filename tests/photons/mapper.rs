@@ -191,6 +191,7 @@ fn chosen_steps_keep_the_mean() {
         global: None,
         caustic: None,
         volume: None,
+        beams: None,
         indirect: Indirect::Seen,
         report: MapReport::default(),
     };
@@ -253,6 +254,7 @@ fn flat_surfaces_are_even_up_to_their_edges() {
                 global: Some(global),
                 caustic: None,
                 volume: None,
+                beams: None,
                 indirect: Indirect::Seen,
                 report: MapReport::default(),
             };

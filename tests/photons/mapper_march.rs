@@ -23,7 +23,14 @@ use turbid::transport::NoProgress;
 
 /// Maps for what needs none.
 fn nothing() -> Maps {
-    Maps { global: None, caustic: None, volume: None, indirect: Indirect::Seen, report: MapReport::default() }
+    Maps {
+        global: None,
+        caustic: None,
+        volume: None,
+        beams: None,
+        indirect: Indirect::Seen,
+        report: MapReport::default(),
+    }
 }
 
 fn marching(scene: &Scene, march: March) -> Settings {

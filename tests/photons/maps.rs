@@ -37,7 +37,15 @@ fn mirror() -> Surface {
 
 fn settings(indirect: Indirect) -> MapSettings {
     let amount = Amount::Emitted(20_000);
-    MapSettings { global: amount, caustic: amount, volume: amount, indirect, seed: 1, replicate: 0 }
+    MapSettings {
+        global: amount,
+        caustic: amount,
+        volume: amount,
+        has_beams: false,
+        indirect,
+        seed: 1,
+        replicate: 0,
+    }
 }
 
 fn photons(map: &Option<PhotonMap>) -> Vec<Photon> {

@@ -3,6 +3,7 @@
 mod accepted_surface;
 mod advise;
 mod along_rays;
+mod beams;
 mod boundary;
 mod estimators;
 mod importance;

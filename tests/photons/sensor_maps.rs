@@ -3,7 +3,7 @@
 use turbid::estimators::boundary::Treatment;
 use turbid::estimators::{Estimator, Gather, Kernel};
 use turbid::scene::{Orders, SceneSource};
-use turbid::sensor::{MapSettings, PhotonSettings, SensorMaps, by_photons};
+use turbid::sensor::{MapSettings, PhotonSettings, RadianceMaps, SensorMaps, by_photons};
 use turbid::transport::NoProgress;
 
 fn estimators() -> Vec<Estimator> {
@@ -22,7 +22,14 @@ fn every_estimator_reads_as_if_alone() {
     file.sensors.retain(|sensor| matches!(sensor.measure, turbid::scene::QuantityFile::Fluence { .. }));
     assert!(file.sensors.len() > 2);
     let scene = file.scene(std::path::Path::new("")).unwrap();
-    let settings = MapSettings { photons: 5000, seed: 3, replicate: 0, reach: 0.5, readings: 4 };
+    let settings = MapSettings {
+        photons: 5000,
+        seed: 3,
+        replicate: 0,
+        reach: 0.5,
+        readings: 4,
+        radiance: RadianceMaps { points: true, beams: false },
+    };
     let maps = SensorMaps::fill(&scene, settings, &NoProgress).unwrap();
     for estimator in estimators() {
         let one = PhotonSettings { photons: 5000, maps: 1, seed: 3, orders: Orders::ALL, estimator };
@@ -60,7 +67,14 @@ measure = { radiance = { origin = [-2, 0, 0], dir = [1, 0, 0] } }
     let moments = |readings: usize| -> turbid::stats::Moments {
         let one = |replicate: u64| {
             // The same photons each time: what differs between maps is the same for both.
-            let settings = MapSettings { photons: 2000, seed: 5, replicate, reach: 0.3, readings };
+            let settings = MapSettings {
+                photons: 2000,
+                seed: 5,
+                replicate,
+                reach: 0.3,
+                readings,
+                radiance: RadianceMaps { points: true, beams: false },
+            };
             let maps = SensorMaps::fill(&scene, settings, &NoProgress).unwrap();
             maps.read(&estimator).unwrap().values[0][0][0]
         };

@@ -196,8 +196,15 @@ fn every_method_refuses_a_room_that_keeps_light() {
     told(shoot(&scene, histories, &[], |_| true, &NoProgress).map(|_| ()));
     let amount = Amount::Stored(10);
     let indirect = Indirect::Seen;
-    let maps =
-        MapSettings { global: amount, caustic: amount, volume: amount, indirect, seed: 1, replicate: 0 };
+    let maps = MapSettings {
+        global: amount,
+        caustic: amount,
+        volume: amount,
+        has_beams: false,
+        indirect,
+        seed: 1,
+        replicate: 0,
+    };
     told(fill(&scene, &maps, &NoProgress).map(|_| ()));
     let streams = Streams { seed: 1, replicate: 0 };
     told(by_light(&scene, &camera(), 10, 1, streams, &NoProgress).map(|_| ()));

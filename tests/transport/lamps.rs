@@ -101,6 +101,7 @@ fn small_volume_sources_are_aimed_at() {
             global: None,
             caustic: None,
             volume: None,
+            beams: None,
             indirect: Indirect::Gathered,
             report: MapReport::default(),
         };

@@ -18,6 +18,7 @@ pub fn filled(
 ) -> anyhow::Result<Maps> {
     // Only a count that is still to be found would be read here.
     let [global, caustic, volume] = [emitted.global, emitted.caustic, emitted.volume].map(Amount::Emitted);
-    let settings = MapSettings { global, caustic, volume, indirect: Indirect::Seen, seed, replicate };
+    let settings =
+        MapSettings { global, caustic, volume, has_beams: false, indirect: Indirect::Seen, seed, replicate };
     Ok(fill_counted_by_importance(scene, &settings, emitted, importance, &NoProgress)?)
 }

@@ -411,8 +411,15 @@ fn light(scene: &Scene, camera: &Camera) -> turbid::Result<()> {
 
 fn photons(scene: &Scene, camera: &Camera, indirect: Indirect, is_by_importance: bool) -> turbid::Result<()> {
     let amount = Amount::Emitted(100);
-    let maps =
-        MapSettings { global: amount, caustic: amount, volume: amount, indirect, seed: SEED, replicate: 0 };
+    let maps = MapSettings {
+        global: amount,
+        caustic: amount,
+        volume: amount,
+        has_beams: false,
+        indirect,
+        seed: SEED,
+        replicate: 0,
+    };
     let learned =
         ImportanceSettings { particles: 64, pilot: 32, rounds: 2, boxes: 4, seed: SEED, replicate: 0 };
     // Only a part of the scenes can be rendered so; importance says why not.

@@ -9,8 +9,9 @@ use super::words::is_fixed;
 use crate::harness::{CellId, Settings, duration};
 use cpu_time::ProcessTime;
 use turbid::memory::{free, in_words};
+use turbid::photons::beams::{self, BeamMap};
 use turbid::photons::{PEAK_BYTES, PhotonMap};
-use turbid::sensor::{MapSettings, SensorMaps};
+use turbid::sensor::{MapSettings, RadianceMaps, SensorMaps};
 use turbid::transport::NoProgress;
 
 /// Photons of the map that is read to time estimates, and samples of the batch that is timed, at most.
@@ -77,10 +78,12 @@ fn maps(point: &Point, photons: u64, readings: usize, settings: &Settings) -> an
     if let Some(picture) = &point.picture {
         let of = (settings.seed, CellId::of("dry-run", 0).stream(words::NAME));
         let start = ProcessTime::now();
-        let maps = picture.maps(&point.scene, few, of)?;
+        let maps = picture.maps(&point.scene, few, &point.estimators, of)?;
         let filling = start.elapsed().as_secs_f64() * photons as f64 / few as f64;
         let held = [&maps.global, &maps.caustic, &maps.volume].into_iter().flatten();
-        let stored = held.map(PhotonMap::stored).sum::<usize>() as f64 * photons as f64 / few as f64;
+        let more = photons as f64 / few as f64;
+        let stored = held.map(PhotonMap::stored).sum::<usize>() as f64 * more;
+        let beams = maps.beams.as_ref().map_or(0, BeamMap::stored) as f64 * more;
         let mut reading = 0.0;
         for estimator in &point.estimators {
             let start = ProcessTime::now();
@@ -88,11 +91,13 @@ fn maps(point: &Point, photons: u64, readings: usize, settings: &Settings) -> an
             let more = if is_fixed(estimator) { photons as f64 / few as f64 } else { 1.0 };
             reading += start.elapsed().as_secs_f64() * more;
         }
-        return Ok((filling + reading, PEAK_BYTES * stored));
+        return Ok((filling + reading, PEAK_BYTES * stored + beams::PEAK_BYTES * beams));
     }
     let reach = reach(&point.estimators);
     let replicate = CellId::of("dry-run", 0).stream(words::NAME);
-    let of = |photons: u64| MapSettings { photons, seed: settings.seed, replicate, reach, readings };
+    let radiance = RadianceMaps::of(&point.estimators);
+    let of =
+        |photons: u64| MapSettings { photons, seed: settings.seed, replicate, reach, readings, radiance };
     let forecast = SensorMaps::forecast(&point.scene, &of(photons))?;
     let start = ProcessTime::now();
     let maps = SensorMaps::fill(&point.scene, of(few), &NoProgress)?;

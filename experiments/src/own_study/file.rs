@@ -233,6 +233,9 @@ pub struct EstimatorFile {
     /// Radii about whole rays, which are then read at once \[L\]; at points balls of the same radius.
     #[serde(default)]
     ray_radius: Option<OneOrMore<f64>>,
+    /// The same from flights as beams \[L\].
+    #[serde(default)]
+    beam_radius: Option<OneOrMore<f64>>,
     /// Numbers of nearest photons.
     #[serde(default)]
     k: Option<OneOrMore<Count>>,
@@ -305,9 +308,13 @@ impl EstimatorFile {
         for radius in self.ray_radius.iter().flat_map(OneOrMore::list) {
             about_rays.push(Positive::new("ray_radius", radius)?);
         }
+        let mut across_beams = Vec::new();
+        for radius in self.beam_radius.iter().flat_map(OneOrMore::list) {
+            across_beams.push(Positive::new("beam_radius", radius)?);
+        }
         ensure!(
-            !(gathers.is_empty() && about_rays.is_empty()),
-            "neither radius, ray_radius nor k; allowed: a list of any of them"
+            !(gathers.is_empty() && about_rays.is_empty() && across_beams.is_empty()),
+            "neither radius, ray_radius, beam_radius nor k; allowed: a list of any of them"
         );
         ensure!(
             self.max_radius.is_none() || self.k.is_some(),
@@ -319,6 +326,10 @@ impl EstimatorFile {
             for &radius in &about_rays {
                 let of_points = Estimator::new(kernel, Gather::Radius(radius)).treated(Treatment::Clipped);
                 all.push(of_points.along_rays(radius));
+            }
+            for &radius in &across_beams {
+                let of_points = Estimator::new(kernel, Gather::Radius(radius)).treated(Treatment::Clipped);
+                all.push(of_points.along_beams(radius));
             }
             for treatment in words(&self.treatment, Treatment::Clipped.name()) {
                 let treatment = named("treatment", &treatment, &Treatment::ALL, |t| t.name())?;
@@ -463,7 +474,7 @@ mod tests {
         assert!(wrong("k = 1").starts_with("estimators[0]: k is 1; allowed"));
         assert!(wrong("radius = -1").contains("allowed"));
         assert!(wrong("kernel = 'boxy'\nk = 5").contains("kernel is \"boxy\"; allowed: uniform"));
-        assert!(wrong("kernel = 'cone'").contains("neither radius, ray_radius nor k"));
+        assert!(wrong("kernel = 'cone'").contains("neither radius, ray_radius, beam_radius nor k"));
         assert!(wrong("k = [5, 5]").contains("asked twice"));
         assert!(wrong("radius = 1\nmax_radius = 2").contains("max_radius goes with k"));
     }

@@ -8,7 +8,8 @@ use super::words;
 use crate::harness::{CellId, CellOutput, Group, Settings};
 use std::sync::Arc;
 use turbid::photons::PhotonMap;
-use turbid::sensor::{MapSettings, SensorMaps};
+use turbid::photons::beams::BeamMap;
+use turbid::sensor::{MapSettings, RadianceMaps, SensorMaps};
 use turbid::transport::NoProgress;
 
 /// Name of the group of maps of a scene.
@@ -71,6 +72,7 @@ fn maps(
         replicate: id.stream(words::NAME),
         reach: reach(&point.estimators),
         readings: study.file.measure.readings.0 as usize,
+        radiance: RadianceMaps::of(&point.estimators),
     };
     let maps = out.time(words::FILLING, |_| SensorMaps::fill(&point.scene, of, &NoProgress))?;
     out.count("photons emitted", photons);
@@ -102,9 +104,9 @@ fn pictures(
 ) -> anyhow::Result<CellOutput> {
     let mut out = CellOutput::new();
     let of = (settings.seed, id.stream(words::NAME));
-    let maps = out.time(words::FILLING, |_| picture.maps(&point.scene, photons, of))?;
+    let maps = out.time(words::FILLING, |_| picture.maps(&point.scene, photons, &point.estimators, of))?;
     let held = [&maps.global, &maps.caustic, &maps.volume].into_iter().flatten();
-    let stored: usize = held.map(PhotonMap::stored).sum();
+    let stored = held.map(PhotonMap::stored).sum::<usize>() + maps.beams.as_ref().map_or(0, BeamMap::stored);
     out.count("photons emitted", photons);
     out.count("photons stored", stored as u64);
     out.push(words::maps(point, photons), "photons stored", stored as f64);

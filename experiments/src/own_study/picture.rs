@@ -10,7 +10,7 @@ use turbid::integrators::Layer;
 use turbid::integrators::mapper::{LEAST_K, Mapper, Settings};
 use turbid::photons::maps::{Amount, Indirect, MapSettings, Maps, fill};
 use turbid::scene::{Camera, Scene};
-use turbid::sensor::{Film, Method, Streams};
+use turbid::sensor::{Film, Method, RadianceMaps, Streams};
 use turbid::transport::NoProgress;
 
 /// How the picture is made.
@@ -125,16 +125,30 @@ impl Picture {
         all
     }
 
-    /// The maps of one replicate, of so many photons emitted each.
+    /// The maps of one replicate, of so many photons emitted each: of points in media, of beams, or of both, by the same histories.
     ///
     /// # Errors
     /// Those of the photon pass
-    pub fn maps(&self, scene: &Scene, photons: u64, (seed, replicate): (u64, u64)) -> turbid::Result<Maps> {
+    pub fn maps(
+        &self,
+        scene: &Scene,
+        photons: u64,
+        estimators: &[Estimator],
+        (seed, replicate): (u64, u64),
+    ) -> turbid::Result<Maps> {
         let amount = Amount::Emitted(photons);
         let indirect = if self.gather_rays == 0 { Indirect::Seen } else { Indirect::Gathered };
-        let settings =
-            MapSettings { global: amount, caustic: amount, volume: amount, indirect, seed, replicate };
-        fill(scene, &settings, &NoProgress)
+        let filled = |has_beams: bool| {
+            let (global, caustic, volume) = (amount, amount, amount);
+            let settings = MapSettings { global, caustic, volume, has_beams, indirect, seed, replicate };
+            fill(scene, &settings, &NoProgress)
+        };
+        match RadianceMaps::of(estimators) {
+            RadianceMaps { points: true, beams: true } => {
+                Ok(Maps { beams: filled(true)?.beams, ..filled(false)? })
+            }
+            RadianceMaps { beams, .. } => filled(beams),
+        }
     }
 
     /// The picture from maps, by one estimator in media and its kernel and gather on surfaces.

@@ -13,7 +13,7 @@ use turbid::integrators::mapper::scene_size;
 use turbid::output::one_line;
 use turbid::photons::check_end;
 use turbid::scene::{BUILTIN, Binned, Quantity, QuantityFile, Scene, SceneFile, SceneSource, SensorFile};
-use turbid::sensor::{SensorMaps, usual_reach};
+use turbid::sensor::{RadianceMaps, SensorMaps, usual_reach};
 
 /// One scene of a study.
 #[derive(Clone)]
@@ -126,7 +126,8 @@ fn point(study: &StudyFile, folder: &Path, number: usize) -> anyhow::Result<Poin
     check_end(&scene).with_context(|| source.name())?;
     let places = places(&scene).context("measure")?;
     let estimators = study.estimators(usual_reach(&scene))?;
-    SensorMaps::check(&scene, reach(&estimators)).with_context(|| source.name())?;
+    let radiance = RadianceMaps::of(&estimators);
+    SensorMaps::check(&scene, reach(&estimators), radiance).with_context(|| source.name())?;
     Ok(Point { label: label(&values), values, scene, picture: None, places, estimators, left_out })
 }
 
@@ -144,7 +145,7 @@ impl Point {
 
 /// The farthest that any estimator reaches \[L\].
 pub fn reach(estimators: &[Estimator]) -> f64 {
-    estimators.iter().map(|estimator| estimator.gather.cap()).fold(0.0, f64::max)
+    estimators.iter().map(Estimator::reach).fold(0.0, f64::max)
 }
 
 /// A value as a word.

@@ -22,21 +22,23 @@ fn csv_text(header: &[String], rows: impl Iterator<Item = Vec<String>>) -> anyho
 fn parameters(data: &Data, setting: &Setting) -> Vec<String> {
     let estimator = setting.estimator;
     let (radius, k, cap) = match estimator.gather {
-        _ if estimator.ray_radius.is_some() => Default::default(),
+        _ if estimator.reads_rays() => Default::default(),
         Gather::Radius(radius) => (radius.get().to_string(), String::new(), String::new()),
         Gather::Nearest { k, max_radius } | Gather::NearestBiased { k, max_radius } => {
             (String::new(), k.get().to_string(), max_radius.get().to_string())
         }
     };
     let mut all: Vec<String> = data.point.values.iter().map(|(_, value)| value.clone()).collect();
-    let of_rays = estimator.ray_radius.map_or_else(String::new, |radius| radius.get().to_string());
-    all.extend([setting.photons.to_string(), estimator.kernel.name().to_string(), radius, of_rays, k, cap]);
+    let [of_rays, of_beams] = [estimator.ray_radius, estimator.beam_radius]
+        .map(|radius| radius.map_or_else(String::new, |radius| radius.get().to_string()));
+    all.extend([setting.photons.to_string(), estimator.kernel.name().to_string(), radius]);
+    all.extend([of_rays, of_beams, k, cap]);
     all.extend([estimator.treatment.name().to_string(), estimator.rejection.name().to_string()]);
     all
 }
 
-const ESTIMATOR: [&str; 8] =
-    ["photons", "kernel", "radius", "ray_radius", "k", "max_radius", "treatment", "rejection"];
+const ESTIMATOR: [&str; 9] =
+    ["photons", "kernel", "radius", "ray_radius", "beam_radius", "k", "max_radius", "treatment", "rejection"];
 
 /// The names of the columns: axes, settings, and those of the table. An axis that is called as one of the others is `scene.NAME`.
 fn columns(data: &[Data], own: &[&str]) -> Vec<String> {

@@ -39,7 +39,7 @@ pub const SAMPLING: &str = "sampling";
 
 /// What estimators that differ in the size of their gather share.
 pub fn family(estimator: &Estimator) -> String {
-    let Estimator { kernel, gather, treatment, rejection, ray_radius } = estimator;
+    let Estimator { kernel, gather, treatment, rejection, ray_radius, beam_radius } = estimator;
     let size = match gather {
         Gather::Radius(_) => "fixed radius",
         Gather::Nearest { .. } => "k nearest",
@@ -48,6 +48,9 @@ pub fn family(estimator: &Estimator) -> String {
     let mut name = format!("{size}, {}", kernel.name());
     if ray_radius.is_some() {
         return name + ", along rays";
+    }
+    if beam_radius.is_some() {
+        return name + ", beams";
     }
     name += &format!(", {}", treatment.name());
     if *rejection != turbid::estimators::boundary::Rejection::Off {

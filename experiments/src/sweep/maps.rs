@@ -81,6 +81,7 @@ pub fn maps(
         global: None,
         caustic: None,
         volume: None,
+        beams: None,
         indirect: Indirect::Gathered,
         report: MapReport::default(),
     };
@@ -99,8 +100,15 @@ pub fn maps(
         let first = if is_large { 2 * MAPS } else { MAPS };
         let amount = Amount::Emitted(count);
         let (indirect, mut spread) = (Indirect::Gathered, None);
-        let of_maps =
-            MapSettings { global: amount, caustic: amount, volume: amount, indirect, seed, replicate: first };
+        let of_maps = MapSettings {
+            global: amount,
+            caustic: amount,
+            volume: amount,
+            has_beams: false,
+            indirect,
+            seed,
+            replicate: first,
+        };
         let emitted: Emitted = counts(scene, &of_maps)?;
         for replicate in first..first + number as u64 {
             let of_map = MapSettings { replicate, ..of_maps };

@@ -39,9 +39,13 @@ impl MapsMade {
     /// Counts a part of the photons.
     pub fn add(&mut self, maps: &Maps) {
         self.report.add_part(&maps.report);
+        let beams = self.filled[2].map_or(0, |filled| filled.stored);
         for (mine, map) in self.filled.iter_mut().zip([&maps.global, &maps.caustic, &maps.volume]) {
             let before = mine.map_or(0, |filled| filled.stored);
             *mine = map.as_ref().map(|m| Filled { stored: before + m.stored(), emitted: m.emitted() });
+        }
+        if let Some(map) = &maps.beams {
+            self.filled[2] = Some(Filled { stored: beams + map.stored(), emitted: map.emitted() });
         }
     }
 }

@@ -160,7 +160,7 @@ impl Photons {
         (fixed, beside): (f64, f64),
     ) -> anyhow::Result<Emitted> {
         let forecast = forecast(scene, maps, importance)?;
-        let Forecast { emitted, stored, seconds } = forecast;
+        let Forecast { emitted, stored, seconds, .. } = forecast;
         let total: f64 = stored.iter().sum();
         let bytes = fixed + (forecast.bytes() + beside * total) / held.passes as f64;
         memory.check(&format!("{total:.2e} photons in maps"), bytes, fixed, |part| {
@@ -207,9 +207,9 @@ impl Photons {
     }
 
     /// Settings of the maps of one repetition.
-    pub fn settings(&self, indirect: Indirect, seed: u64, replicate: u64) -> MapSettings {
+    pub fn settings(&self, indirect: Indirect, has_beams: bool, seed: u64, replicate: u64) -> MapSettings {
         let Photons { global, caustic, volume, .. } = *self;
-        MapSettings { global, caustic, volume, indirect, seed, replicate }
+        MapSettings { global, caustic, volume, has_beams, indirect, seed, replicate }
     }
 }
 
@@ -258,6 +258,11 @@ pub struct Readout {
     /// is missing [L].
     #[arg(long, conflicts_with = "reject")]
     ray_radius: Option<f64>,
+    /// Store photons' flights through media as beams in place of photons, and read them along whole rays, from all beams that pass
+    /// within this distance of the ray, weighted by --kernel: less noise than points where it is below 0.4 mean free paths. --volume
+    /// counts beams. Not for media that vary and whose extinction differs by channel [L].
+    #[arg(long, conflicts_with_all = ["reject", "ray_radius"])]
+    beam_radius: Option<f64>,
     /// Rays of a final gathering at each surface that is seen; 0 reads the global map there itself: fast, and blotchy.
     #[arg(long, default_value_t = 64, value_parser = whole::<u32>(0..=1_000_000))]
     gather_rays: u32,
@@ -364,6 +369,11 @@ pub fn ray_radius(given: Option<f64>) -> anyhow::Result<Option<Positive>> {
     Ok(given.map(|radius| Positive::new("--ray-radius", radius)).transpose()?)
 }
 
+/// The radius of --beam-radius, checked.
+pub fn beam_radius(given: Option<f64>) -> anyhow::Result<Option<Positive>> {
+    Ok(given.map(|radius| Positive::new("--beam-radius", radius)).transpose()?)
+}
+
 /// Change of direct light above which a step of the march is halved.
 const TOLERANCE: f64 = 0.5;
 
@@ -376,6 +386,11 @@ impl Readout {
     /// Whether an estimate takes all photons within a radius.
     pub fn has_radius(&self) -> bool {
         self.radius.is_some()
+    }
+
+    /// Whether the volume map is of beams.
+    pub fn has_beams(&self) -> bool {
+        self.beam_radius.is_some()
     }
 
     /// Whether steps that depend on what is read are asked for.
@@ -422,6 +437,7 @@ impl Readout {
         let volume = Estimator::new(self.kernel, volume);
         settings.volume = volume.treated(self.boundary.treatment()).rejecting(self.reject.rejection());
         settings.volume.ray_radius = ray_radius(self.ray_radius)?;
+        settings.volume.beam_radius = beam_radius(self.beam_radius)?;
         settings.gather_rays = self.gather_rays.max(1);
         settings.near = self.near;
         settings.clips_discs = self.edges == EdgesName::Clipped;

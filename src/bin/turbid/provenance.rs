@@ -8,7 +8,7 @@ use turbid::photons::maps::{Amount, Indirect, MapSettings};
 
 /// What maps are filled with.
 pub fn map_settings(settings: &MapSettings) -> Value {
-    let MapSettings { global, caustic, volume, indirect, seed, replicate: _ } = settings;
+    let MapSettings { global, caustic, volume, has_beams: _, indirect, seed, replicate: _ } = settings;
     let amount = |amount: &Amount| match amount {
         Amount::Stored(count) => json!({ "stored": count }),
         Amount::Emitted(count) => json!({ "emitted": count }),
@@ -34,6 +34,9 @@ pub fn mapper_settings(settings: &Settings) -> Value {
     of_volume["reject"] = json!(volume.rejection.name().replace(' ', "-"));
     if let Some(radius) = volume.ray_radius {
         of_volume["ray_radius"] = json!(radius.get());
+    }
+    if let Some(radius) = volume.beam_radius {
+        of_volume["beam_radius"] = json!(radius.get());
     }
     json!({
         "global": read(*global),

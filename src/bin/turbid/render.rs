@@ -19,6 +19,7 @@ use std::ops::AddAssign;
 use std::path::PathBuf;
 use turbid::integrators::mapper::{Mapper, Report};
 use turbid::output::{Tone, auto_exposure, check_writable, is_same_file, one_line, write_exr, write_png};
+use turbid::photons::beams::BeamMap;
 use turbid::photons::maps::fill_part;
 use turbid::photons::{Part, PhotonMap};
 use turbid::scene::{Camera, Scene};
@@ -214,8 +215,9 @@ impl Render {
                 Ok((self.fill(film, stages, left, &Method::Light(&scene), (&camera, streams))?, None))
             }),
             With::Photons => self.repeat(&camera, |streams, stages, left, film| {
+                let (indirect, has_beams) = (self.readout.indirect(), self.readout.has_beams());
                 let settings_of_maps =
-                    self.photons.settings(self.readout.indirect(), streams.seed, streams.replicate);
+                    self.photons.settings(indirect, has_beams, streams.seed, streams.replicate);
                 let importance =
                     stages.time("pilot", || self.photons.importance(&scene, &camera, &settings_of_maps))?;
                 let importance = importance.as_ref();
@@ -233,7 +235,8 @@ impl Render {
                     bar.finish();
                     let maps = maps?;
                     let stored = [&maps.global, &maps.caustic, &maps.volume];
-                    let stored = stored.map(|map| map.as_ref().map_or(0, PhotonMap::stored));
+                    let mut stored = stored.map(|map| map.as_ref().map_or(0, PhotonMap::stored));
+                    stored[2] += maps.beams.as_ref().map_or(0, BeamMap::stored);
                     let settings = match read {
                         Some(settings) => settings,
                         None => *read.insert(self.readout.suited(&usual, stored)?),
@@ -420,7 +423,7 @@ impl Render {
     fn provenance(&self, scene_text: &str, made: &Made, exposure: f64) -> anyhow::Result<serde_json::Value> {
         let by_photons = self.with == With::Photons;
         let settings = made.maps.first().and_then(|made| made.settings);
-        let maps = self.photons.settings(self.readout.indirect(), self.seed, 0);
+        let maps = self.photons.settings(self.readout.indirect(), self.readout.has_beams(), self.seed, 0);
         let filled: Vec<[Option<Filled>; 3]> = made.maps.iter().map(|made| made.filled).collect();
         Ok(serde_json::json!({
             "program": format!("turbid {}", env!("CARGO_PKG_VERSION")),

@@ -22,13 +22,13 @@ pub use extents::{MediumExtent, medium_extents};
 pub use settings::{LEAST_K, Settings, scene_size};
 
 use crate::Spectrum;
-use crate::error::Result;
-use crate::estimators::{Estimate, RayEstimate, RayEstimator};
+use crate::error::{Error, Result};
+use crate::estimators::{Estimate, RayEstimate};
 use crate::geometry::Shape;
 use crate::integrators::path::{Rays, next_event, seen_straight, uncollided};
 use crate::integrators::{Layer, Layers};
 use crate::light::Light;
-use crate::math::Ray;
+use crate::math::{Positive, Ray};
 use crate::photons::maps::Maps;
 use crate::rng::{Stream, Work};
 use crate::scene::{Scene, SceneHit, Start, Target};
@@ -66,9 +66,9 @@ impl Gathers {
         self.found += estimate.found as u64;
     }
 
-    fn add_along(&mut self, along: &RayEstimator, estimate: &RayEstimate) {
+    fn add_along(&mut self, radius: Positive, estimate: &RayEstimate) {
         self.count += 1;
-        self.radii += along.radius.get();
+        self.radii += radius.get();
         self.found += estimate.found as u64;
     }
 
@@ -154,9 +154,18 @@ impl<'a> Mapper<'a> {
     /// than a pixel sees of a scene 10^6 times as large.
     ///
     /// # Errors
-    /// `Error::Scene` that says which map, and which radius is allowed
+    /// `Error::Scene` that says which map, and which radius is allowed; where the volume map holds photons and beams are asked for, or the
+    /// other way round
     pub fn check_radii(&self) -> Result<()> {
-        let Maps { global, caustic, volume, .. } = self.maps;
+        let Maps { global, caustic, volume, beams, .. } = self.maps;
+        let is_of_beams = self.settings.volume.beam_radius.is_some();
+        if (is_of_beams && beams.is_none() && volume.is_some())
+            || (!is_of_beams && volume.is_none() && beams.is_some())
+        {
+            return Err(Error::Scene(
+                "the volume map holds photons and is asked for beams, or the other way round".into(),
+            ));
+        }
         let Settings { global: of_global, caustic: of_caustic, volume: of_volume, .. } = self.settings;
         let radii = [of_global.1.cap(), of_caustic.1.cap(), of_volume.least_named_radius()];
         let maps = [("global", global), ("caustic", caustic), ("volume", volume)];

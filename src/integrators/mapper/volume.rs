@@ -43,7 +43,7 @@ impl Mapper<'_> {
         let blind = |stream: &mut Stream| Some(phase.scatter(dir, stream.pair()));
         let single = self.direct(&here, None, report, stream, value, blind);
         let mut multiple = Spectrum::ZERO;
-        if let Some(map) = self.maps.volume.as_ref().filter(|_| settings.volume.ray_radius.is_none()) {
+        if let Some(map) = self.maps.volume.as_ref().filter(|_| !settings.volume.reads_rays()) {
             let boundary = self.boundary(number);
             let estimate = settings.volume.in_scattered(map, position, -dir, phase, Spectrum::ONE, &boundary);
             report.volume.add(&estimate);
@@ -129,7 +129,15 @@ impl Eye<'_, '_> {
             let boundary = mapper.extents[number].boundary();
             let way = (&walker.ray, span);
             let estimate = along.radiance(map, way, medium, &boundary, |t| passage.to(t));
-            self.report.volume.add_along(&along, &estimate);
+            self.report.volume.add_along(along.radius, &estimate);
+            self.layers.multiple += seen * estimate.value;
+        }
+        if let (Some(across), Some(map)) = (mapper.settings.volume.of_beams(), &mapper.maps.beams) {
+            let passage = Passage::new(medium, &walker.ray, span, stream);
+            let boundary = mapper.extents[number].boundary();
+            let (way, of) = ((&walker.ray, span), (number, medium));
+            let estimate = across.radiance(map, way, of, &boundary, |t| passage.to(t));
+            self.report.volume.add_along(across.radius, &estimate);
             self.layers.multiple += seen * estimate.value;
         }
         let march = &mapper.settings.march;

@@ -166,3 +166,133 @@ fn cut(beams: &[Beam]) -> Vec<Piece> {
     }
     pieces
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::math::warp;
+    use crate::photons::Flags;
+    use crate::photons::beams::BeamKind;
+    use crate::rng::{Purpose, Stream};
+    use glam::Vec3;
+
+    fn beam(start: DVec3, dir: DVec3, length: f64) -> Beam {
+        let (power, kind, flags) = (Vec3::ONE, BeamKind::Sampled, Flags::NONE);
+        Beam { start, dir, length, power, medium: 0, order: 0, flags, kind }
+    }
+
+    /// Random beams, in large and small maps and far off, some parallel to the ray, nearly so and end-on, some without length and some
+    /// very long: found is what all beams, asked one by one by formulas of their own, say, each once.
+    #[test]
+    fn beams_near_a_ray_are_those_found_one_by_one() {
+        let mut stream = Stream::new(6, Purpose::Synthetic, 0, 0);
+        let (mut found, mut thin) = (0, 0);
+        for trial in 0..120 {
+            let size = libm::exp10(8.0 * stream.unit() - 4.0);
+            let far = DVec3::from(stream.triple()) * [0.0, 3.0 * size, 1e3 * size][trial % 3];
+            let count = [0, 1, 5, 16, 17, 300, 3000][trial % 7];
+            let position = |stream: &mut Stream| {
+                far + (DVec3::from(stream.triple()) - 0.5) * DVec3::new(size, 0.3 * size, 0.1 * size)
+            };
+            let axis = warp::square_to_sphere(stream.pair());
+            let beams: Vec<Beam> = (0..count)
+                .map(|which| {
+                    let about = warp::square_to_sphere(stream.pair());
+                    let dir = match which % 8 {
+                        0 => axis,
+                        1 => -axis,
+                        2 | 4 => (axis + about * 0.02).normalize(),
+                        3 => (about * 1e-7 - axis).normalize(),
+                        _ => about,
+                    };
+                    let length = match which % 5 {
+                        0 => 0.0,
+                        1 | 2 => 100.0 * size * stream.unit(),
+                        _ => size * stream.unit() * stream.unit(),
+                    };
+                    beam(position(&mut stream), dir, length)
+                })
+                .collect();
+            // In two parts, the first of them empty now and then.
+            let cut = beams.len() / 3;
+            let tree = BeamTree::new(vec![beams[..cut].to_vec(), beams[cut..].to_vec()]).unwrap();
+            assert_eq!((tree.len(), tree.beams()), (count, &beams[..]));
+            for which in 0..8 {
+                let dir = match which {
+                    0..=2 => axis,
+                    3 => DVec3::X,
+                    _ => warp::square_to_sphere(stream.pair()),
+                };
+                let away = [0.2, 2.0, 100.0][which % 3] * size;
+                let ray = Ray::new(position(&mut stream) - dir * away, dir);
+                let end = if which == 5 { f64::INFINITY } else { 2.0 * away * stream.unit() };
+                let span = Interval { start: end.min(away) * 0.3 * stream.unit(), end };
+                let radius = size * [1e-3, 0.02, 0.2, 30.0][which % 4];
+                let mut seen = Vec::new();
+                tree.near(&ray, span, radius, |beam, crossing| {
+                    let place = ray.at(crossing.along_ray) + crossing.normal * crossing.offset;
+                    let off = (place - beam.at(crossing.along_beam)).length();
+                    let long = 1e-12 * (place.length() + beam.length + away + radius) / crossing.sine;
+                    assert!(off < long, "{trial} {which}: {off} {long}");
+                    thin += u32::from(crossing.sine < 0.03);
+                    seen.push(beam.start.to_array().map(f64::to_bits));
+                });
+                // The lines' nearest points by the formulas of textbooks; those that these do not decide may be either.
+                let sure = |beam: &Beam, by: f64| {
+                    let (v, c) = (ray.origin - beam.start, dir.dot(beam.dir));
+                    let squared = dir.cross(beam.dir).length_squared();
+                    let error = 1e-14 * (v.length() + beam.length) / squared + 1e-12 * size;
+                    let s = (c * v.dot(beam.dir) - v.dot(dir)) / squared;
+                    let t = (v.dot(beam.dir) - c * v.dot(dir)) / squared;
+                    let apart = (v + dir * s - beam.dir * t).length();
+                    let most = |x: f64, from: f64, to: f64| x >= from - by * error && x < to + by * error;
+                    squared > 0.0
+                        && most(s, span.start, span.end)
+                        && most(t, 0.0, beam.length)
+                        && apart <= radius + by * error
+                };
+                let key = |beam: &Beam| beam.start.to_array().map(f64::to_bits);
+                let mut once = seen.clone();
+                once.sort_unstable();
+                once.dedup();
+                assert_eq!(once.len(), seen.len(), "{trial} {which}: twice");
+                for beam in &beams {
+                    let is_found = once.binary_search(&key(beam)).is_ok();
+                    assert!(is_found || !sure(beam, -1.0), "{trial} {which}: {beam:?} is missed");
+                    assert!(!is_found || sure(beam, 1.0), "{trial} {which}: {beam:?} is not near");
+                }
+                found += seen.len();
+            }
+        }
+        assert!(found > 10_000 && thin > 100, "{found} {thin}");
+    }
+
+    /// The same tree on one thread and on many.
+    #[test]
+    fn trees_do_not_depend_on_the_threads() {
+        let mut stream = Stream::new(7, Purpose::Synthetic, 0, 0);
+        let one =
+            |_| beam(DVec3::from(stream.triple()), warp::square_to_sphere(stream.pair()), stream.unit());
+        let beams: Vec<Beam> = (0..40_000).map(one).collect();
+        let order = |threads: usize| {
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+            let tree = pool.install(|| BeamTree::new(vec![beams.clone()]).unwrap());
+            tree.pieces.iter().map(|piece| (piece.beam, piece.part)).collect::<Vec<_>>()
+        };
+        let alone = order(1);
+        assert!(alone.len() > beams.len());
+        assert_eq!(alone, order(7));
+    }
+
+    /// A beam that is not finite is an error, and no panic.
+    #[test]
+    fn beams_are_finite() {
+        for wrong in [
+            beam(DVec3::NAN, DVec3::X, 1.0),
+            beam(DVec3::ZERO, DVec3::X, f64::INFINITY),
+            Beam { power: Vec3::NAN, ..beam(DVec3::ZERO, DVec3::X, 1.0) },
+        ] {
+            assert!(BeamTree::new(vec![vec![wrong]]).is_err());
+        }
+    }
+}

@@ -58,11 +58,13 @@ pub(super) struct Classes {
     pub(super) global: u64,
     /// Histories that store volume photons.
     pub(super) volume: u64,
+    /// Whether they store their flights instead.
+    pub(super) has_beams: bool,
 }
 
 impl Storage for Classes {
     fn in_medium(&self, history: u64, photon: &Photon) -> bool {
-        self.class != Class::Caustic && history < self.volume && is_volume(photon.flags)
+        !self.has_beams && self.is_volume(history, photon.flags)
     }
 
     fn on_surface(&self, history: u64, photon: &Photon) -> bool {
@@ -71,6 +73,20 @@ impl Storage for Classes {
             Class::Caustic => is_caustic(photon.flags),
         };
         history < self.global && is_stored
+    }
+
+    fn has_beams(&self) -> bool {
+        self.has_beams && self.class != Class::Caustic && self.volume > 0
+    }
+
+    fn on_flight(&self, history: u64, _order: u32, flags: Flags) -> bool {
+        self.has_beams && self.is_volume(history, flags)
+    }
+}
+
+impl Classes {
+    fn is_volume(&self, history: u64, flags: Flags) -> bool {
+        self.class != Class::Caustic && history < self.volume && is_volume(flags)
     }
 }
 

@@ -3,10 +3,10 @@
 use super::classes::{Class, Classes, Emitters};
 use super::settings::{Amount, Emitted, MapSettings, PILOT};
 use crate::error::{Error, Result};
-use crate::photons::PEAK_BYTES;
 use crate::photons::importance::Importance;
 use crate::photons::pass::is_diffuse;
 use crate::photons::{BUILD_SECONDS, Pass, Run, check_end};
+use crate::photons::{PEAK_BYTES, beams};
 use crate::rng::Purpose;
 use crate::scene::Scene;
 use crate::transport::{BLOCK, NoProgress};
@@ -23,6 +23,8 @@ pub struct Forecast {
     pub emitted: Emitted,
     /// Photons that the global, the volume and the caustic map will hold, about.
     pub stored: [f64; 3],
+    /// Whether those of the volume map are beams.
+    pub has_beams: bool,
     /// Time of emission, at the pilot's rate, and of building the trees, about \[s\].
     pub seconds: f64,
 }
@@ -30,7 +32,8 @@ pub struct Forecast {
 impl Forecast {
     /// Most memory that filling the maps takes, about \[bytes\].
     pub fn bytes(&self) -> f64 {
-        PEAK_BYTES * self.stored.iter().sum::<f64>()
+        let [global, volume, caustic] = self.stored;
+        PEAK_BYTES * (global + caustic) + if self.has_beams { beams::PEAK_BYTES } else { PEAK_BYTES } * volume
     }
 }
 
@@ -104,7 +107,7 @@ fn piloted(
     };
     let pilot = |class: Class, histories: u64| {
         let run = class.run(scene, &emitters, importance, settings, histories);
-        let store = Classes { class, global: histories, volume: histories };
+        let store = Classes { class, global: histories, volume: histories, has_beams: settings.has_beams };
         Run { purpose: Purpose::Pilot, is_pilot: true, ..run }.pass(&store, &NoProgress)
     };
     // Where there are more threads than blocks of the pilot, some of them wait.
@@ -118,7 +121,8 @@ fn piloted(
     let lengths = [length(&[0, 1]), length(&[2])];
     if lengths[0] > 0 {
         let pass = pilot(Class::Main(settings.indirect), lengths[0])?;
-        (rates[0], rates[1]) = (pass.met[0] as f64, pass.met[1] as f64);
+        let met = if settings.has_beams { pass.met_beams } else { pass.met[1] };
+        (rates[0], rates[1]) = (pass.met[0] as f64, met as f64);
         seconds[0] = a_history(&pass, lengths[0]);
     }
     if lengths[1] > 0 {
@@ -148,7 +152,7 @@ fn piloted(
     let threads = rayon::current_num_threads() as f64;
     let built = BUILD_SECONDS * stored.iter().sum::<f64>() / threads;
     let seconds = seconds[0] * main + seconds[1] * emitted.caustic as f64 + built;
-    Ok(Forecast { emitted, stored, seconds })
+    Ok(Forecast { emitted, stored, has_beams: settings.has_beams, seconds })
 }
 
 /// Which maps a scene needs.

@@ -6,7 +6,7 @@
 //! | map | holds | read |
 //! |---|---|---|
 //! | caustic | L S+ D | where the eye looks at a diffuse surface |
-//! | volume | L (S, D, M)+ M: every collision that is not direct | along rays through media |
+//! | volume | L (S, D, M)+ M: every collision that is not direct, or the flight to it | along rays through media |
 //! | global, seen | L ... D with a D or M on the way | where the eye looks at a diffuse surface |
 //! | global, gathered | every L ... D | where a ray that left that surface meets the next one |
 //!
@@ -24,6 +24,7 @@ pub use classes::{is_caustic, is_global, is_volume};
 pub use counts::{Forecast, MOST_A_STORED, counts, counts_by_importance, forecast};
 pub use settings::{Amount, Emitted, Indirect, MapSettings, PILOT};
 
+use super::beams::BeamMap;
 use super::importance::Importance;
 use super::{Part, Pass, PassReport, Photon, PhotonMap, Run};
 use crate::error::Result;
@@ -78,6 +79,8 @@ pub struct Maps {
     pub caustic: Option<PhotonMap>,
     /// Photons in media that do not come straight from a light.
     pub volume: Option<PhotonMap>,
+    /// Their flights, in place of them.
+    pub beams: Option<BeamMap>,
     /// Where the global map is to be read: this decided what it holds.
     pub indirect: Indirect,
     /// What filling them took.
@@ -168,7 +171,8 @@ pub fn fill_part(
         map
     };
     let shot = |purpose: Purpose, class: Class, [global, volume]: [u64; 2]| -> Result<Pass> {
-        let (count, store) = (global.max(volume), Classes { class, global, volume });
+        let (count, has_beams) = (global.max(volume), settings.has_beams);
+        let store = Classes { class, global, volume, has_beams };
         let histories = part.histories(count);
         progress.stage("emission", histories.end - histories.start);
         let run = Run { purpose, part, ..class.run(scene, &emitters, importance, settings, count) };
@@ -182,7 +186,8 @@ pub fn fill_part(
         Ok(pass)
     };
     let main = shot(Purpose::Photons, Class::Main(settings.indirect), [global, volume])?;
-    let (surfaces, media) = (build(main.surfaces, global)?, build(main.media, volume)?);
+    let surfaces = build(main.surfaces, global)?;
+    let media = if settings.has_beams { None } else { build(main.media, volume)? };
     // Caustic photons of histories that the first pass has run too would be the same photons.
     let pass = shot(Purpose::Caustics, Class::Caustic, [caustic, 0])?;
     let focused = build(pass.surfaces, caustic)?;
@@ -193,6 +198,17 @@ pub fn fill_part(
         report.projection_cells += emitter.projection_cells();
         report.projected = emitter.kept();
     }
+    let beams = match settings.has_beams && volume > 0 {
+        true => {
+            let start = Instant::now();
+            let side = scene.periodic_cell().map(|cell| cell.side);
+            let map = BeamMap::new(main.beams, volume, side)?;
+            report.build += start.elapsed();
+            Some(map)
+        }
+        false => None,
+    };
     report.bytes = [&surfaces, &media, &focused].into_iter().flatten().map(|map| map.tree().bytes()).sum();
-    Ok(Maps { global: surfaces, caustic: focused, volume: media, indirect: settings.indirect, report })
+    report.bytes += beams.as_ref().map_or(0, |map| map.tree().bytes());
+    Ok(Maps { global: surfaces, caustic: focused, volume: media, beams, indirect: settings.indirect, report })
 }

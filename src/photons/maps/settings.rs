@@ -41,6 +41,8 @@ pub struct MapSettings {
     pub caustic: Amount,
     /// Photons of the volume map, used where the scene has media.
     pub volume: Amount,
+    /// Whether flights, as beams, take the place of photons in the volume map, and are counted there.
+    pub has_beams: bool,
     /// Where the global map will be read.
     pub indirect: Indirect,
     /// Seed of the whole computation.
