@@ -25,6 +25,7 @@ pub mod setups;
 pub mod sweep;
 pub mod theory;
 pub mod tradeoff;
+pub mod transmittance;
 
 use harness::{Closing, Experiment};
 
@@ -34,6 +35,7 @@ pub const ALL: &[Experiment] = &[
     blur::EXPERIMENT,
     boundary::EXPERIMENT,
     march::EXPERIMENT,
+    transmittance::EXPERIMENT,
     rates::EXPERIMENT,
     tradeoff::EXPERIMENT,
     extremes::EXPERIMENT,

@@ -13,3 +13,4 @@ mod march;
 mod pages;
 mod rates;
 mod tradeoff;
+mod transmittance;
