@@ -23,7 +23,7 @@ pub enum Method {
     Series,
     /// Unbiased ray marching: combs over the length, with a look-up for each tentative collision of ratio tracking.
     Combs,
-    /// Combs spread as the local bounds are, with a look-up for each tentative collision of the renderer's tracking.
+    /// Combs spread as the local bounds are, of two places more than the renderer's tracking has tentative collisions.
     LocalCombs,
     /// One comb of as many places, biased.
     Marched,
@@ -117,7 +117,7 @@ impl Method {
             Method::Combs => Method::combs(line, teeth(high * length, combs)),
             Method::LocalCombs => {
                 let places = line.by_bounds();
-                let teeth = teeth(places.total(), combs);
+                let teeth = places.total().ceil() as u32 + 2;
                 Estimator::Comb { orders: Orders::Seldom, places, teeth }
             }
             Method::Marched => Estimator::Marched(line.even(), teeth(high * length, 1.0)),
@@ -187,5 +187,5 @@ pub fn cells(settings: &Settings) -> u64 {
 
 /// Estimates of each case in a cell.
 pub fn estimates(settings: &Settings) -> u64 {
-    settings.photons(500, 1500)
+    settings.photons(200, 400)
 }

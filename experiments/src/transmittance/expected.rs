@@ -29,8 +29,8 @@ impl Expected {
     }
 }
 
-/// Highest order of a series whose chance counts: 1e-13 to come here, and the terms fall by factorials.
-const ORDERS: usize = 16;
+/// Highest order of a series that counts: the chance to come here is 1e-6, and terms fall by factorials.
+const ORDERS: usize = 12;
 
 /// What theory says of an estimator.
 pub fn expected(line: &Line, estimator: &Estimator) -> Expected {
@@ -189,7 +189,7 @@ impl Nodes {
         let mut edges: Vec<f64> = line.edges_in(places).iter().map(|v| (v * teeth).fract()).collect();
         edges.sort_by(f64::total_cmp);
         edges.dedup_by(|a, b| *a - *b < 1e-9);
-        const MOST: usize = 100;
+        const MOST: usize = 64;
         if edges.len() > MOST {
             edges.clear();
         }
@@ -279,6 +279,7 @@ fn combs(line: &Line, depth: f64, orders: Orders, places: &Places, teeth: u32) -
             }
         }
     }
-    // Combs that all say the same leave a rounding.
-    Expected::unbiased((total - 1.0).max(0.0), look_ups)
+    // Higher orders count as if they were exact; combs that all say the same leave a rounding.
+    let counted = 1.0 - orders.reaches(ORDERS + 1);
+    Expected::unbiased((total - counted).max(0.0), look_ups)
 }

@@ -8,8 +8,11 @@ use crate::harness::{Cells, Estimate};
 use crate::prediction::{Compared, PredictedError, Predictions};
 use turbid::stats::{Interval, Moments, jackknife, positive_interval};
 
-/// Predicted relative variance above which a case takes no part in claims on variances: values far above T carry it.
+/// Predicted relative variance above which a case takes no part in claims on variances, and the largest optical depth: beyond
+/// them values far above T carry the variance.
 pub const LIGHT: f64 = 10.0;
+/// See [`LIGHT`].
+pub const THICK: f64 = 2.0;
 /// The same for claims on means and for the budget: batches of some hundred estimates are nearly normal below.
 pub const NORMAL: f64 = 1.0;
 /// Below this nothing varies but roundings.
@@ -63,6 +66,11 @@ impl CaseResult {
     /// Whether batches of its estimates are nearly normal.
     pub fn is_normal(&self) -> bool {
         NOTHING < self.expected.squared && self.expected.squared <= NORMAL
+    }
+
+    /// Whether its measured variance is worth a point in a figure.
+    pub fn is_shown(&self) -> bool {
+        self.is_light() || (self.is_normal() && self.case().method.has_known_spread())
     }
 
     /// Mean squared error over T^2, over the predicted one.

@@ -151,7 +151,7 @@ fn nothing_stops_where_there_is_nothing() {
         for method in UNBIASED.into_iter().chain([Method::Marched, Method::March(8), Method::Jackknife(8)]) {
             let estimator = method.on(&line);
             let e = expected(&line, &estimator);
-            assert!(e.bias == 0.0 && e.squared.abs() < 1e-14, "{method:?}: {e:?}");
+            assert!(e.bias == 0.0 && e.squared < 1e-12, "{method:?}: {e:?}");
             let found = estimator.estimate(&line, &mut stream(1, 0));
             assert!((found.value - 1.0).abs() < 1e-14, "{method:?}: {found:?}");
             assert!(found.look_ups <= 64, "{method:?}");
