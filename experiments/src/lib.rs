@@ -26,6 +26,7 @@ pub mod setups;
 pub mod sweep;
 pub mod theory;
 pub mod tradeoff;
+pub mod transmittance;
 
 use harness::{Closing, Experiment};
 
@@ -35,6 +36,7 @@ pub const ALL: &[Experiment] = &[
     blur::EXPERIMENT,
     boundary::EXPERIMENT,
     march::EXPERIMENT,
+    transmittance::EXPERIMENT,
     rates::EXPERIMENT,
     dimension::EXPERIMENT,
     tradeoff::EXPERIMENT,

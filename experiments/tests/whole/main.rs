@@ -14,3 +14,4 @@ mod march;
 mod pages;
 mod rates;
 mod tradeoff;
+mod transmittance;
