@@ -221,6 +221,31 @@ fn a_picture_by_layer() {
     }
 }
 
+/// Halves of two maps, whose spread the reference's own error hides, tell no error: that is said, nothing else is missing.
+#[test]
+fn too_few_maps_for_an_error_are_said_to_be_too_few() {
+    let (folder, _file) = written(
+        "\
+photons = [1e3, 2e3]
+maps = 4
+estimators = [{ k = 30 }]
+measure = { probes = [[0, 0.6, 0]] }
+[[scene.lights]]
+area = { shape = { sphere = { center = [-1.5, 2.5, 0], radius = 0.3 } }, radiance = 10 }
+[[scene.regions]]
+shape = { cuboid = { min = [-1, -1, -1], max = [1, 1, 1] } }
+sigma_t = 2.0
+albedo = 0.95
+g = 0.8
+",
+    );
+    let run = study(folder.path(), &["mine.toml", "--out", "out"]).assert().success();
+    let said = String::from_utf8(run.get_output().stdout.clone()).unwrap();
+    assert!(said.contains("too few maps to tell its error") && !said.contains("unknown"), "{said}");
+    let all = rows(&folder.path().join("out/results.csv"));
+    assert!(all.iter().any(|row| row["place"] == "all") && folder.path().join("out/costs.csv").exists());
+}
+
 /// The script that deals parts out to GNU parallel, or to xargs where there is none.
 #[cfg(unix)]
 #[test]

@@ -102,15 +102,19 @@ pub fn tell_gathers(
                  --{name} for more of them{or}"
             ))?;
         }
+        let advice = match (name, settings.volume.ray_radius, settings.volume.beam_radius) {
+            ("volume", Some(_), _) => "a smaller --ray-radius".to_string(),
+            ("volume", _, Some(_)) => "a smaller --beam-radius".to_string(),
+            _ => format!("--{name} for more photons, or a smaller --max-radius"),
+        };
         if 2.0 * radius > extent {
             note(&format!(
-                "look-ups in the {name} map reach {radius:.2e} L in the mean, and {what} is {extent:.2e} L across: --{name} \
-                 for more photons, or a smaller --max-radius"
+                "look-ups in the {name} map reach {radius:.2e} L in the mean, and {what} is {extent:.2e} L across: {advice}"
             ))?;
         } else if radius > path {
             note(&format!(
                 "look-ups in the {name} map reach {radius:.2e} L in the mean, farther than a mean free path, {path:.2e} L: \
-                 --{name} for more photons, or a smaller --max-radius"
+                 {advice}"
             ))?;
         }
     }
