@@ -58,9 +58,9 @@ impl CaseResult {
 
     /// Whether cells tell its variance.
     pub fn is_light(&self) -> bool {
-        NOTHING < self.expected.squared
-            && self.expected.squared <= LIGHT
-            && self.case().method.has_known_spread()
+        let Case { way, method } = self.case();
+        let squared = self.expected.squared;
+        NOTHING < squared && squared <= LIGHT && way.depth <= THICK && method.has_known_spread()
     }
 
     /// Whether batches of its estimates are nearly normal.
