@@ -8,10 +8,13 @@ use crate::harness::{Cells, Estimate};
 use crate::prediction::{Compared, PredictedError, Predictions};
 use turbid::stats::{Interval, Moments, jackknife, positive_interval};
 
-/// Predicted relative variance above which a case takes no part in claims on variances, and the largest optical depth: beyond
-/// them values far above T carry the variance.
-pub const LIGHT: f64 = 10.0;
-/// See [`LIGHT`].
+/// Predicted relative variance above which a case takes no part in claims on variances; none does beyond an optical depth of
+/// [`THICK`]. Values far above T carry the variance there, and sooner where the factors of a residual pass more than all.
+pub fn light(method: Method) -> f64 {
+    if method == Method::ResidualMean { NORMAL } else { 10.0 }
+}
+
+/// See [`light`].
 pub const THICK: f64 = 2.0;
 /// The same for claims on means and for the budget: batches of some hundred estimates are nearly normal below.
 pub const NORMAL: f64 = 1.0;
@@ -60,7 +63,7 @@ impl CaseResult {
     pub fn is_light(&self) -> bool {
         let Case { way, method } = self.case();
         let squared = self.expected.squared;
-        NOTHING < squared && squared <= LIGHT && way.depth <= THICK && method.has_known_spread()
+        NOTHING < squared && squared <= light(method) && way.depth <= THICK && method.has_known_spread()
     }
 
     /// Whether batches of its estimates are nearly normal.
