@@ -21,6 +21,9 @@ pub const NORMAL: f64 = 1.0;
 /// Below this nothing varies but roundings.
 const NOTHING: f64 = 1e-9;
 
+/// Squared error and look-ups of a cell.
+type Pair = (f64, f64);
+
 /// One case with everything that is known of it.
 pub struct CaseResult {
     /// Its mean, measured and predicted.
@@ -82,8 +85,8 @@ impl CaseResult {
         Estimate::mean(&ratios)
     }
 
-    /// Pairs of squared error and look-ups, one a cell.
-    pub fn pairs(&self) -> Vec<(f64, f64)> {
+    /// Squared error and look-ups of each cell.
+    fn pairs(&self) -> Vec<Pair> {
         self.squared.iter().copied().zip(self.look_ups.iter().copied()).collect()
     }
 
@@ -99,9 +102,9 @@ impl CaseResult {
 }
 
 /// Squared error times look-ups of some cells.
-fn work(pairs: &[(f64, f64)]) -> f64 {
+fn work(pairs: &[Pair]) -> f64 {
     let n = pairs.len() as f64;
-    let sum = |f: fn(&(f64, f64)) -> f64| pairs.iter().map(f).sum::<f64>() / n;
+    let sum = |f: fn(&Pair) -> f64| pairs.iter().map(f).sum::<f64>() / n;
     sum(|p| p.0) * sum(|p| p.1)
 }
 
@@ -113,9 +116,9 @@ pub fn find(results: &[CaseResult], way: Way, method: Method) -> Option<&CaseRes
 /// Work of one method over that of another on the same ray, refitted without each cell in turn; and as predicted.
 pub fn gain(results: &[CaseResult], way: Way, of: Method, over: Method) -> Option<(Estimate, f64)> {
     let (a, b) = (find(results, way, of)?, find(results, way, over)?);
-    let pairs: Vec<((f64, f64), (f64, f64))> = a.pairs().into_iter().zip(b.pairs()).collect();
-    let ratio = |pairs: &[((f64, f64), (f64, f64))]| {
-        let (first, second): (Vec<_>, Vec<_>) = pairs.iter().copied().unzip();
+    let pairs: Vec<_> = a.pairs().into_iter().zip(b.pairs()).collect();
+    let ratio = |pairs: &[(Pair, Pair)]| {
+        let (first, second): (Vec<Pair>, Vec<Pair>) = pairs.iter().copied().unzip();
         work(&first) / work(&second)
     };
     let predicted = a.expected.work() / b.expected.work();
