@@ -2,7 +2,7 @@
 
 use super::cases::{Case, LEVELS, Method, PLACES, RAMP, UNBIASED, level_name};
 use super::rays::{Profile, Way};
-use super::results::{CaseResult, LIGHT, NORMAL, THICK, find, gain};
+use super::results::{CaseResult, NORMAL, THICK, find, gain, light};
 use crate::harness::{Cells, Claim, Estimate, PREDICTED, Unit};
 use crate::prediction::{Compared, Predictions, amplitude};
 use crate::theory::{exponent, exponent_of_means};
@@ -43,9 +43,9 @@ fn variances(results: &[CaseResult]) -> Vec<Claim> {
     let of = |method: Method| {
         let chosen = of_method(results, method, CaseResult::is_light);
         let statistic = over_rays(&chosen, CaseResult::over_predicted)?;
-        let title = method.title();
+        let (title, most) = (method.title(), light(method));
         let text = format!(
-            "{title}, rays of relative variance up to {LIGHT} and depth up to {THICK}: measured over predicted variance"
+            "{title}, rays of relative variance up to {most} and depth up to {THICK}: measured over predicted variance"
         );
         let id = format!("variance-{}", method.name());
         Some(Claim::about(&id, &text, Unit::ONE, statistic, 1.0, PREDICTED))
@@ -68,15 +68,16 @@ fn means(results: &[CaseResult]) -> Vec<Claim> {
 fn marches(results: &[CaseResult]) -> Vec<Claim> {
     let mut claims = Vec::new();
     let (march, left) = (Method::March(PLACES), Method::Jackknife(PLACES));
-    let light = of_method(results, march, CaseResult::is_light);
-    let of_marches: Vec<&Compared<Case>> = light.iter().map(|r| &r.mean).collect();
+    let chosen = of_method(results, march, CaseResult::is_light);
+    let of_marches: Vec<&Compared<Case>> = chosen.iter().map(|r| &r.mean).collect();
     if let Some(amplitude) = amplitude(&of_marches, Compared::predicted) {
+        let most = light(march);
         let text = format!(
-            "marches of {PLACES} places at random, rays of squared error up to {LIGHT} and depth up to {THICK}: measured over predicted bias"
+            "marches of {PLACES} places at random, rays of squared error up to {most} and depth up to {THICK}: measured over predicted bias"
         );
         claims.push(Claim::about("march", &text, Unit::ONE, amplitude, 1.0, PREDICTED));
     }
-    let thick = light.into_iter().filter(|r| r.case().way.depth == THICK);
+    let thick = chosen.into_iter().filter(|r| r.case().way.depth == THICK);
     if let Some(faintest) = thick.min_by(|a, b| a.expected.bias.total_cmp(&b.expected.bias)) {
         let text =
             format!("marches are bright: bias on the ray of depth {THICK} where it is predicted to be least");

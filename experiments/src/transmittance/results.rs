@@ -8,15 +8,21 @@ use crate::harness::{Cells, Estimate};
 use crate::prediction::{Compared, PredictedError, Predictions};
 use turbid::stats::{Interval, Moments, jackknife, positive_interval};
 
-/// Predicted relative variance above which a case takes no part in claims on variances, and the largest optical depth: beyond
-/// them values far above T carry the variance.
-pub const LIGHT: f64 = 10.0;
-/// See [`LIGHT`].
+/// Predicted relative variance above which a case takes no part in claims on variances; none does beyond an optical depth of
+/// [`THICK`]. Values far above T carry the variance there, and sooner where the factors of a residual pass more than all.
+pub fn light(method: Method) -> f64 {
+    if method == Method::ResidualMean { NORMAL } else { 10.0 }
+}
+
+/// See [`light`].
 pub const THICK: f64 = 2.0;
 /// The same for claims on means and for the budget: batches of some hundred estimates are nearly normal below.
 pub const NORMAL: f64 = 1.0;
 /// Below this nothing varies but roundings.
 const NOTHING: f64 = 1e-9;
+
+/// Squared error and look-ups of a cell.
+type Pair = (f64, f64);
 
 /// One case with everything that is known of it.
 pub struct CaseResult {
@@ -58,9 +64,9 @@ impl CaseResult {
 
     /// Whether cells tell its variance.
     pub fn is_light(&self) -> bool {
-        NOTHING < self.expected.squared
-            && self.expected.squared <= LIGHT
-            && self.case().method.has_known_spread()
+        let Case { way, method } = self.case();
+        let squared = self.expected.squared;
+        NOTHING < squared && squared <= light(method) && way.depth <= THICK && method.has_known_spread()
     }
 
     /// Whether batches of its estimates are nearly normal.
@@ -79,8 +85,8 @@ impl CaseResult {
         Estimate::mean(&ratios)
     }
 
-    /// Pairs of squared error and look-ups, one a cell.
-    pub fn pairs(&self) -> Vec<(f64, f64)> {
+    /// Squared error and look-ups of each cell.
+    fn pairs(&self) -> Vec<Pair> {
         self.squared.iter().copied().zip(self.look_ups.iter().copied()).collect()
     }
 
@@ -96,9 +102,9 @@ impl CaseResult {
 }
 
 /// Squared error times look-ups of some cells.
-fn work(pairs: &[(f64, f64)]) -> f64 {
+fn work(pairs: &[Pair]) -> f64 {
     let n = pairs.len() as f64;
-    let sum = |f: fn(&(f64, f64)) -> f64| pairs.iter().map(f).sum::<f64>() / n;
+    let sum = |f: fn(&Pair) -> f64| pairs.iter().map(f).sum::<f64>() / n;
     sum(|p| p.0) * sum(|p| p.1)
 }
 
@@ -110,9 +116,9 @@ pub fn find(results: &[CaseResult], way: Way, method: Method) -> Option<&CaseRes
 /// Work of one method over that of another on the same ray, refitted without each cell in turn; and as predicted.
 pub fn gain(results: &[CaseResult], way: Way, of: Method, over: Method) -> Option<(Estimate, f64)> {
     let (a, b) = (find(results, way, of)?, find(results, way, over)?);
-    let pairs: Vec<((f64, f64), (f64, f64))> = a.pairs().into_iter().zip(b.pairs()).collect();
-    let ratio = |pairs: &[((f64, f64), (f64, f64))]| {
-        let (first, second): (Vec<_>, Vec<_>) = pairs.iter().copied().unzip();
+    let pairs: Vec<_> = a.pairs().into_iter().zip(b.pairs()).collect();
+    let ratio = |pairs: &[(Pair, Pair)]| {
+        let (first, second): (Vec<Pair>, Vec<Pair>) = pairs.iter().copied().unzip();
         work(&first) / work(&second)
     };
     let predicted = a.expected.work() / b.expected.work();
