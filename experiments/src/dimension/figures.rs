@@ -37,7 +37,7 @@ pub fn dimension(points: &[Point], answers: &[Answer], sizes: &[u64]) -> anyhow:
             let moments: Vec<Moments> = own.iter().map(|p| p.squared()).collect();
             let y = moments.iter().map(Moments::mean).collect();
             radius = radius
-                .with_title(&format!("{most} photons"))
+                .with_title(format!("{most} photons"))
                 .with(Line::new(title, class, radii(), line).with_dash(Dash::Solid))
                 .with(
                     Points::new(title, class, radii(), y)
