@@ -381,6 +381,8 @@ fn radiance_across_beams_is_that_of_paths() {
             ..SceneParts::default()
         })
         .unwrap();
+        // What passes through a density is tracked once a map: a random product, which one map in two hundred hardly averages.
+        let promise = if name == "even" { 0.3 } else { 0.5 };
         let estimators = [across(Kernel::Epanechnikov, 0.15).treated(Treatment::Clipped)];
         let measured = by_maps(&scene, (4000, 200), 6, &estimators);
         for (view, ray) in views.iter().enumerate() {
@@ -391,7 +393,7 @@ fn radiance_across_beams_is_that_of_paths() {
                     // The blur is r^2/20 = 1/900 of the second derivatives across, which are a few times the field.
                     let error = libm::hypot(expected.std_error(), 0.004 * expected.mean());
                     let what = format!("{name}, {}, view {view}, channel {channel}", estimator.name());
-                    verdict::agrees(&what, found, (expected.mean(), error), 0.3 * expected.mean(), 6);
+                    verdict::agrees(&what, found, (expected.mean(), error), promise * expected.mean(), 6);
                 }
             }
         }
