@@ -112,7 +112,7 @@ impl Size {
     /// The ladder, from few photons to many.
     pub fn all(settings: &Settings) -> Vec<Size> {
         // Below a thousand, sizes would no longer differ.
-        let total = settings.photons(100_000, 400_000).max(1000);
+        let total = settings.photons(32_000, 400_000).max(1000);
         let batches = settings.pick(&[32, 10, 3, 1][..], &[128, 40, 12, 4, 1]);
         batches.iter().map(|&batch| Size { photons: (total / batch).max(1), batch }).collect()
     }
@@ -123,10 +123,8 @@ impl Size {
     }
 }
 
-/// Cells a size.
-pub fn cells(settings: &Settings) -> u64 {
-    settings.pick(48, 128)
-}
+/// Cells a size: half of them tell the error of the best radius, and a verdict takes 64.
+pub const CELLS: u64 = 128;
 
 /// The slab under a beam aslant, of which the collisions of uncollided light are asked. Its cell is closed along the rays.
 pub fn scene() -> anyhow::Result<Scene> {

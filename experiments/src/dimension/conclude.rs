@@ -94,7 +94,7 @@ fn claims(points: &[Point], answers: &[Answer], sizes: &[u64]) -> Vec<Claim> {
     for Answer { query, curve, .. } in answers {
         let text = format!("{}: exponent of the mean squared error in the number of photons", curve.title);
         let id = format!("exponent-{}", curve.name);
-        claims.push(Claim::about(&id, &text, Unit::ONE, curve.exponent, curve.theory, 0.1));
+        claims.push(Claim::about(&id, &text, Unit::ONE, curve.exponent, curve.theory, 0.15));
         let over = over_theory(points, *query, *query, sizes);
         let text = format!(
             "{}, the radius that is best in theory: mean squared error over the predicted one, mean of all sizes",

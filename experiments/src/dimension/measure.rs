@@ -1,8 +1,8 @@
 //! Measuring one batch of maps.
 
 use super::cases::{
-    self, ALBEDO, BEAMS, DEPTH, MU0, POINTS, Query, SHOOTING, SPAN, Size, middles, name, places, radii, rays,
-    reading, scene,
+    ALBEDO, BEAMS, CELLS, DEPTH, MU0, POINTS, Query, SHOOTING, SPAN, Size, middles, name, places, radii,
+    rays, reading, scene,
 };
 use crate::harness::{CellId, CellOutput, Group, Settings};
 use turbid::Spectrum;
@@ -20,7 +20,7 @@ pub fn groups(settings: &Settings) -> Vec<Group> {
     let group = |size: Size| {
         let cost = 3.0 * (size.photons * size.batch) as f64;
         let measure = move |settings: &Settings, cell: &CellId| measure(settings, cell, size);
-        Group::new(size.group(), cases::cells(settings), cost, measure).holding(size.photons)
+        Group::new(size.group(), CELLS, cost, measure).holding(size.photons)
     };
     Size::all(settings).into_iter().map(group).collect()
 }
