@@ -129,7 +129,7 @@ fn what_cannot_be_studied_is_refused_in_one_line() {
     };
     let list = |n: usize| format!("[{}]", (0..n).map(|i| format!("0.{i:04}")).collect::<Vec<_>>().join(", "));
     for (from, to, words) in [
-        ("photons = [500, 2e3]", "photon = [500]", "unknown field `photon`"),
+        ("photons = [500, 2e3]", "photon = [500]", "unknown key `photon`; nearest: `photons`"),
         ("photons = [500, 2e3]", "photons = [0]", "allowed: whole numbers from 1"),
         ("photons = [500, 2e3]", "photons = [500, 500]", "photons names one number twice"),
         ("maps = 64", "maps = 2", "maps is 2; allowed: at least 4"),

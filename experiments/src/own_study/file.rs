@@ -60,7 +60,7 @@ impl TryFrom<toml::Value> for StudyScene {
             toml::Value::String(name) if name != "-" => Ok(StudyScene::Name(name)),
             toml::Value::Table(table) => Ok(StudyScene::Table(table)),
             other => Err(format!(
-                "scene is {other}; allowed: a scene file, a built-in scene, or the scene itself as a table"
+                "the value is {other}; allowed: a scene file, a built-in scene, or the scene itself as a table"
             )),
         }
     }
