@@ -3,6 +3,7 @@
 import json
 import os
 import pathlib
+import signal
 import subprocess
 
 import pytest
@@ -43,3 +44,22 @@ def exact_program():
 @pytest.fixture(scope="session")
 def turbid_program():
     return Program("turbid")
+
+
+@pytest.fixture
+def interruptible():
+    """Starts programs that Ctrl-C reaches, also where a shell in the background has it ignored; none outlives the test."""
+    children = []
+
+    def start(words):
+        def heed():
+            signal.signal(signal.SIGINT, signal.SIG_DFL)
+
+        child = subprocess.Popen(words, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, preexec_fn=heed)
+        children.append(child)
+        return child
+
+    yield start
+    for child in children:
+        child.kill()
+        child.wait()

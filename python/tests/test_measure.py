@@ -1,7 +1,6 @@
 """Measurements: against exact values, against the program bit by bit, and as guests of Python."""
 
 import signal
-import subprocess
 import sys
 import textwrap
 import threading
@@ -221,9 +220,9 @@ def test_others_run_meanwhile():
         "turbid.exact.slab(numpy.linspace(1, 300, 10**5), 0.9, g=0.9)",
     ],
 )
-def test_ctrl_c_ends_the_work(call):
+def test_ctrl_c_ends_the_work(call, interruptible):
     code = f"import numpy, turbid, sys; print('begun', flush=True); {call}"
-    child = subprocess.Popen([sys.executable, "-c", code], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+    child = interruptible([sys.executable, "-c", code])
     assert child.stdout.readline() == "begun\n"
     time.sleep(1)
     start = time.monotonic()

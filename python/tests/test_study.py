@@ -2,7 +2,6 @@
 
 import gc
 import signal
-import subprocess
 import sys
 import time
 
@@ -242,12 +241,12 @@ def test_progress_tells_of_cells(tmp_path):
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="signals of Unix")
-def test_ctrl_c_keeps_what_is_measured(tmp_path):
+def test_ctrl_c_keeps_what_is_measured(tmp_path, interruptible):
     """The call returns at once, and cells that were finished stay."""
     long = STUDY.replace("maps = 4", "maps = 2000")
     code = "import turbid, sys; turbid.study(sys.argv[1], out=sys.argv[2], progress=lambda *told: print(*told, flush=True))"
     words = [sys.executable, "-c", code, long, str(tmp_path / "out")]
-    child = subprocess.Popen(words, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+    child = interruptible(words)
     line = ["", "0"]
     while not (line[0] == "cells" and float(line[1]) > 0):
         line = child.stdout.readline().split()
