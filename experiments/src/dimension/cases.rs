@@ -1,7 +1,7 @@
 //! The cases: who asks, how many photons, within which radius.
 
 use crate::harness::Settings;
-use crate::setups::{Body, CELL, asked, region};
+use crate::setups::{Body, CELL, Maps, asked, region};
 use glam::{DVec2, DVec3};
 use turbid::Spectrum;
 use turbid::light::{Beam, Light, Section};
@@ -99,28 +99,9 @@ impl Query {
     }
 }
 
-/// One number of photons.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Size {
-    /// Photons emitted into a map.
-    pub photons: u64,
-    /// Maps of one cell: a batch, so that cells of all sizes cost alike.
-    pub batch: u64,
-}
-
-impl Size {
-    /// The ladder, from few photons to many.
-    pub fn all(settings: &Settings) -> Vec<Size> {
-        // Below a thousand, sizes would no longer differ.
-        let total = settings.photons(32_000, 400_000).max(1000);
-        let batches = settings.pick(&[32, 10, 3, 1][..], &[128, 40, 12, 4, 1]);
-        batches.iter().map(|&batch| Size { photons: (total / batch).max(1), batch }).collect()
-    }
-
-    /// The group of cells.
-    pub fn group(&self) -> String {
-        format!("n{}", self.photons)
-    }
+/// The ladder, from few photons to many.
+pub fn sizes(settings: &Settings) -> Vec<Maps> {
+    Maps::ladder(settings, 32_000, 400_000)
 }
 
 /// Cells a size: half of them tell the error of the best radius, and a verdict takes 64.

@@ -1,6 +1,6 @@
 //! What all cells together say.
 
-use super::cases::{BEAMS, POINTS, Query, SHOOTING, Size, name, questions, radii, reading};
+use super::cases::{BEAMS, POINTS, Query, SHOOTING, name, questions, radii, reading, sizes};
 use super::figures;
 use super::predict::Case;
 use super::results::{Answer, PICTURE, Point, ladder};
@@ -14,7 +14,7 @@ use turbid::stats::Moments;
 
 /// Concludes.
 pub fn conclude(settings: &Settings, _: &[Prediction], cells: &Cells) -> anyhow::Result<Section> {
-    let all = Size::all(settings);
+    let all = sizes(settings);
     let sizes: Vec<u64> = all.iter().map(|s| s.photons).collect();
     let (mut points, mut filling) = (Vec::new(), Vec::new());
     for size in &all {
@@ -214,7 +214,7 @@ fn notes() -> Vec<String> {
             .to_string(),
         "A ray that is marched in balls, with steps of half the least radius or less, counts a photon by the chord of their centres: it \
          blurs in three dimensions, and its variance is that of a kernel on the disc, 9/8 that of points along the ray of the same \
-         radius. Its best error is 0.97 of theirs, so that rays win by time alone."
+         radius. Its best error is 0.97 of theirs, so that rays can win by time alone."
             .to_string(),
         "The best radius is chosen on one half of the cells and its error reported by the other half. Small maps are measured in \
          batches, so that a cell of any size costs alike."

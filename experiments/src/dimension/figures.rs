@@ -2,7 +2,7 @@
 
 use super::cases::{Query, radii};
 use super::results::{Answer, Point, ladder};
-use crate::harness::{FigureFiles, bar};
+use crate::harness::{FigureFiles, positive_bar};
 use turbid::stats::Moments;
 use turbid_figure::{Axis, Dash, Figure, Legend, Line, Panel, Points, Scale, Width};
 
@@ -57,10 +57,4 @@ pub fn dimension(points: &[Point], answers: &[Answer], sizes: &[u64]) -> anyhow:
         slopes.join(", ")
     );
     FigureFiles::draw("dimension", &caption, &figure)
-}
-
-/// The interval on a logarithmic axis: squares are positive, but an interval of few cells may reach below.
-fn positive_bar(moments: &Moments) -> (f64, f64) {
-    let (low, high) = bar(moments);
-    (low.max(0.01 * moments.mean()), high)
 }

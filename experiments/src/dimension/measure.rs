@@ -1,10 +1,11 @@
 //! Measuring one batch of maps.
 
 use super::cases::{
-    ALBEDO, BEAMS, CELLS, DEPTH, MU0, POINTS, Query, SHOOTING, SPAN, Size, middles, name, places, radii,
-    rays, reading, scene,
+    ALBEDO, BEAMS, CELLS, DEPTH, MU0, POINTS, Query, SHOOTING, SPAN, middles, name, places, radii, rays,
+    reading, scene, sizes,
 };
 use crate::harness::{CellId, CellOutput, Group, Settings};
+use crate::setups::Maps;
 use turbid::Spectrum;
 use turbid::estimators::boundary::Boundary;
 use turbid::estimators::{BeamEstimator, Estimator, Gather, Kernel, RayEstimator};
@@ -17,16 +18,16 @@ use turbid::transport::{Flags, NoProgress};
 
 /// All cells.
 pub fn groups(settings: &Settings) -> Vec<Group> {
-    let group = |size: Size| {
+    let group = |size: Maps| {
         let cost = 3.0 * (size.photons * size.batch) as f64;
         let measure = move |settings: &Settings, cell: &CellId| measure(settings, cell, size);
         Group::new(size.group(), CELLS, cost, measure).holding(size.photons)
     };
-    Size::all(settings).into_iter().map(group).collect()
+    sizes(settings).into_iter().map(group).collect()
 }
 
 /// Measures one cell: error and squared error, relative to the exact value, over the questions to all maps of the batch.
-fn measure(settings: &Settings, cell: &CellId, size: Size) -> anyhow::Result<CellOutput> {
+fn measure(settings: &Settings, cell: &CellId, size: Maps) -> anyhow::Result<CellOutput> {
     let scene = scene()?;
     let emitter = Emitter::by_power(&scene);
     let radii = radii();

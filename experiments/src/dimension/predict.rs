@@ -1,6 +1,6 @@
 //! What theory says of every case, before anything is measured.
 
-use super::cases::{DEPTH, MU0, Query, SPAN, Size, name, radii};
+use super::cases::{DEPTH, MU0, Query, SPAN, name, radii, sizes};
 use crate::harness::{Settings, Unit};
 use crate::prediction::Prediction;
 use crate::setups::CELL;
@@ -59,7 +59,7 @@ fn second_moment(query: Query, density: f64, radius: f64) -> anyhow::Result<f64>
 /// The predictions, as they are written down before the measurement.
 pub fn predict(settings: &Settings) -> anyhow::Result<Vec<Prediction>> {
     let mut predictions = Vec::new();
-    for size in Size::all(settings) {
+    for size in sizes(settings) {
         for query in Query::ALL {
             for radius in radii() {
                 let case = Case::new(query, size.photons, radius)?;

@@ -63,7 +63,7 @@ pub use replot::replot;
 pub(crate) use replot::try_redraw;
 pub use results::Row;
 pub(crate) use section::row_label;
-pub use section::{FigureFiles, OtherWidth, Section, Table, bar, percent_bar};
+pub use section::{FigureFiles, OtherWidth, Section, Table, bar, percent_bar, positive_bar};
 pub use settings::{Preset, Replot, Settings};
 pub use study::{Asked, Closing, Findings, Study, main, main_with, run, run_watched};
 pub use unit::Unit;

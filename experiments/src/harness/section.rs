@@ -80,7 +80,13 @@ pub fn bar(moments: &Moments) -> (f64, f64) {
     (interval.low, interval.high)
 }
 
-/// The same of a mean of fractions, in per cent.
+/// The same on a logarithmic axis: squares are positive, but an interval of few cells may reach below.
+pub fn positive_bar(moments: &Moments) -> (f64, f64) {
+    let (low, high) = bar(moments);
+    (low.max(0.01 * moments.mean()), high)
+}
+
+/// The interval of a mean of fractions, in per cent.
 pub fn percent_bar(moments: &Moments) -> (f64, f64) {
     let (low, high) = bar(moments);
     (percent(low), percent(high))

@@ -1,7 +1,7 @@
 //! The cases: how many photons, at which depth, within which radius.
 
 use crate::harness::Settings;
-use crate::setups::{CELL, Setup};
+use crate::setups::{CELL, Maps, Setup};
 use glam::DVec3;
 
 /// Optical thickness of the slab, which only absorbs.
@@ -24,28 +24,9 @@ pub const BLURRED: usize = RADII - 1;
 /// Probes along one side of the lattice.
 const SIDE: usize = 5;
 
-/// One number of photons.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Size {
-    /// Photons emitted into a map.
-    pub photons: u64,
-    /// Maps of one cell: a batch, so that cells of all sizes cost alike.
-    pub batch: u64,
-}
-
-impl Size {
-    /// The ladder, from few photons to many.
-    pub fn all(settings: &Settings) -> Vec<Size> {
-        // Below a thousand, sizes would no longer differ.
-        let total = settings.photons(100_000, 400_000).max(1000);
-        let batches = settings.pick(&[32, 10, 3, 1][..], &[128, 40, 12, 4, 1]);
-        batches.iter().map(|&batch| Size { photons: (total / batch).max(1), batch }).collect()
-    }
-
-    /// The group of cells.
-    pub fn group(&self) -> String {
-        format!("n{}", self.photons)
-    }
+/// The ladder, from few photons to many.
+pub fn sizes(settings: &Settings) -> Vec<Maps> {
+    Maps::ladder(settings, 100_000, 400_000)
 }
 
 /// Cells a size.
@@ -84,7 +65,7 @@ mod tests {
 
     #[test]
     fn the_ladder_spans_a_decade_and_a_half() {
-        let sizes = Size::all(&Settings::new("unused"));
+        let sizes = sizes(&Settings::new("unused"));
         let ends = (sizes[0].photons as f64, sizes[sizes.len() - 1].photons as f64);
         assert!(libm::log10(ends.1 / ends.0) > 1.5);
     }

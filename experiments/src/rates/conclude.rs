@@ -1,6 +1,6 @@
 //! What all cells together say.
 
-use super::cases::{BLURRED, DEPTHS, FACE, INSIDE, NOISY, Size, name, radii};
+use super::cases::{BLURRED, DEPTHS, FACE, INSIDE, NOISY, name, radii, sizes};
 use super::figures;
 use super::predict::Case;
 use super::results::{Point, ladder};
@@ -14,7 +14,7 @@ use turbid::stats::Moments;
 
 /// Concludes.
 pub fn conclude(settings: &Settings, _: &[Prediction], cells: &Cells) -> anyhow::Result<Section> {
-    let sizes: Vec<u64> = Size::all(settings).iter().map(|s| s.photons).collect();
+    let sizes: Vec<u64> = sizes(settings).iter().map(|s| s.photons).collect();
     let mut points = Vec::new();
     for &photons in &sizes {
         for depth in DEPTHS {

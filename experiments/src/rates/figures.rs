@@ -2,7 +2,7 @@
 
 use super::cases::{BLURRED, INSIDE, radii};
 use super::results::{Point, ladder};
-use crate::harness::{FigureFiles, bar};
+use crate::harness::{FigureFiles, positive_bar};
 use crate::theory::Curve;
 use turbid::stats::Moments;
 use turbid_figure::{Axis, Dash, Figure, Legend, Line, Panel, Points, Scale, Width};
@@ -56,10 +56,4 @@ pub fn rates(points: &[Point], curves: &[Curve], sizes: &[u64]) -> anyhow::Resul
                    Right: noise falls with the radius and blur grows with it; the best radius shrinks as photons \
                    are added.";
     FigureFiles::draw("rates", caption, &figure)
-}
-
-/// The interval on a logarithmic axis: squares are positive, but an interval of few cells may reach below.
-fn positive_bar(moments: &Moments) -> (f64, f64) {
-    let (low, high) = bar(moments);
-    (low.max(0.01 * moments.mean()), high)
 }

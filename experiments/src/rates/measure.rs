@@ -1,7 +1,8 @@
 //! Measuring one batch of maps.
 
-use super::cases::{self, DEPTHS, SETUP, Size, name, probes, radii};
+use super::cases::{self, DEPTHS, SETUP, name, probes, radii, sizes};
 use crate::harness::{CellId, CellOutput, Group, Settings};
+use crate::setups::Maps;
 use turbid::Spectrum;
 use turbid::estimators::boundary::Boundary;
 use turbid::estimators::{Estimator, Gather, Kernel};
@@ -12,16 +13,16 @@ use turbid::transport::NoProgress;
 
 /// All cells.
 pub fn groups(settings: &Settings) -> Vec<Group> {
-    let group = |size: Size| {
+    let group = |size: Maps| {
         let cost = 1.5 * (size.photons * size.batch) as f64;
         let measure = move |settings: &Settings, cell: &CellId| measure(settings, cell, size);
         Group::new(size.group(), cases::cells(settings), cost, measure).holding(size.photons)
     };
-    Size::all(settings).into_iter().map(group).collect()
+    sizes(settings).into_iter().map(group).collect()
 }
 
 /// Measures one cell: error and squared error, relative to e^-t, over the probes of all maps of the batch.
-fn measure(settings: &Settings, cell: &CellId, size: Size) -> anyhow::Result<CellOutput> {
+fn measure(settings: &Settings, cell: &CellId, size: Maps) -> anyhow::Result<CellOutput> {
     let scene = SETUP.scene()?;
     let radii = radii();
     let mut output = CellOutput::new();

@@ -1,6 +1,6 @@
 //! What theory says of every case, before anything is measured.
 
-use super::cases::{DEPTHS, Size, TAU, name, radii};
+use super::cases::{DEPTHS, TAU, name, radii, sizes};
 use crate::harness::{Settings, Unit};
 use crate::prediction::Prediction;
 use crate::setups::CELL;
@@ -53,7 +53,7 @@ impl Case {
 /// The predictions, as they are written down before the measurement.
 pub fn predict(settings: &Settings) -> anyhow::Result<Vec<Prediction>> {
     let mut predictions = Vec::new();
-    for size in Size::all(settings) {
+    for size in sizes(settings) {
         for depth in DEPTHS {
             for radius in radii() {
                 let case = Case::new(size.photons, depth, radius)?;

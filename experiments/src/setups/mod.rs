@@ -2,10 +2,12 @@
 
 mod asked;
 mod body;
+mod maps;
 mod setup;
 mod size;
 
 pub use asked::asked;
 pub use body::{Body, CELL, spiral};
+pub use maps::Maps;
 pub use setup::{FURNACE, Lighting, Setup, region};
 pub use size::Size;

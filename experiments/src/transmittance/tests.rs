@@ -187,7 +187,7 @@ fn thin_and_thick() {
     }
 }
 
-/// What is no number, or below 0, never becomes a line.
+/// NaN, or what is below 0, never becomes a line.
 #[test]
 fn no_numbers_are_refused() {
     let phase = || Phase::Isotropic(Isotropic);
