@@ -122,11 +122,13 @@ pub enum Fault {
     BeamsArrive,
     /// The kernel of beams is that of half the line.
     LineHalved,
+    /// The radii of all progressive sequences shrink as those of balls do.
+    ScheduleOfSpace,
 }
 
 impl Fault {
     /// Every fault, in the order of their definition.
-    pub const ALL: [Fault; 57] = [
+    pub const ALL: [Fault; 58] = [
         Fault::AlbedoTwice,
         Fault::AlbedoNever,
         Fault::CosineTwice,
@@ -184,6 +186,7 @@ impl Fault {
         Fault::SineClamped,
         Fault::BeamsArrive,
         Fault::LineHalved,
+        Fault::ScheduleOfSpace,
     ];
 }
 

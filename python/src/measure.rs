@@ -42,6 +42,7 @@ struct Options {
     max_radius: Option<f64>,
     ray_radius: Option<f64>,
     beam_radius: Option<f64>,
+    progressive: bool,
     kernel: String,
     boundary: String,
     orders: (u32, Option<u32>),
@@ -100,7 +101,7 @@ impl Request {
     }
 
     fn by_photons(&self, scene: &Scene, watch: &Watch) -> anyhow::Result<Readings> {
-        let Options { photons, maps, passes, k, radius, max_radius, ray_radius, beam_radius, seed, .. } =
+        let Options { photons, maps, passes, k, radius, max_radius, ray_radius, beam_radius, progressive, seed, .. } =
             self.options;
         if photons < maps {
             return Err(anyhow!("photons is {photons}; allowed: at least one for each of the {maps} maps"));
@@ -117,13 +118,18 @@ impl Request {
         if ray_radius.is_some() && beam_radius.is_some() {
             return Err(anyhow!("ray_radius reads points and beam_radius beams; allowed: one of them"));
         }
+        if progressive && radius.is_none() && ray_radius.is_none() && beam_radius.is_none() {
+            return Err(anyhow!(
+                "progressive shrinks radii, and takes the k nearest photons as they are; allowed: with radius, ray_radius or beam_radius"
+            ));
+        }
         let estimator = Estimator::new(self.kernel, gather).treated(self.treatment);
         let settings = PhotonSettings {
             photons: photons.div_ceil(maps),
             maps,
             seed,
             orders: self.orders(),
-            estimator: Estimator { ray_radius, beam_radius, ..estimator },
+            estimator: Estimator { ray_radius, beam_radius, is_progressive: progressive, ..estimator },
         };
         // Refuses what passes cannot do before anything is counted.
         let forecast = forecast(scene, &settings, passes)?;

@@ -176,6 +176,7 @@ def measure(
     max_radius: Optional[float] = None,
     ray_radius: Optional[float] = None,
     beam_radius: Optional[float] = None,
+    progressive: bool = False,
     kernel: str = "uniform",
     boundary: str = "clipped",
     orders: Orders = None,
@@ -202,6 +203,7 @@ def measure(
     max_radius : the farthest that the k nearest photons are sought [L]; half the cell, or a mean free path
     ray_radius : radius about a whole ray, which is then read at once, for sensors of radiance: the beam radiance estimate [L]
     beam_radius : the same from photons' flights, stored as beams; in place of ``ray_radius`` [L]
+    progressive : shrink these radii, those of the first map, from map to map, so that the mean over maps converges to the light itself
     kernel : uniform, epanechnikov, biweight, cone or gaussian, as ``turbid measure --help`` lists them
     boundary : what estimates do where a medium ends: none, clipped, reflection, local-linear
     orders : orders of scattering that count: 1, "0..3", (1, None)
@@ -230,6 +232,7 @@ def measure(
         max_radius=_optional_real("max_radius", max_radius),
         ray_radius=_optional_real("ray_radius", ray_radius),
         beam_radius=_optional_real("beam_radius", beam_radius),
+        progressive=bool(progressive),
         kernel=kernel,
         boundary=boundary,
         orders=_orders(orders),

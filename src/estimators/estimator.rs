@@ -2,7 +2,7 @@
 
 use super::boundary::{Boundary, Gathered, PhotonFilter, Rejection, Surroundings, Treatment, accepted};
 use super::point::{ball_sum, for_each_photon, in_scattered_sum};
-use super::{BallSum, BeamEstimator, Directional, Estimate, Gather, Kernel, NeighborCount, RayEstimator};
+use super::{BallSum, BeamEstimator, Codimension, Directional, Estimate, Gather, Kernel, NeighborCount, RayEstimator};
 use crate::Spectrum;
 use crate::math::{Positive, cosine_pair};
 use crate::photons::{Photon, PhotonMap};
@@ -25,6 +25,8 @@ pub struct Estimator {
     /// How near to a ray photons' flights pass that whole stretches of it are read from at once ([`BeamEstimator`]), in place of
     /// photons; none where there are no beams.
     pub beam_radius: Option<Positive>,
+    /// Whether fixed radii are those of the first of several maps and shrink from map to map ([`Estimator::in_map`]).
+    pub is_progressive: bool,
 }
 
 /// Bodies and photons are looked for a little beyond a ball, so that rounding leaves none in it out.
@@ -43,6 +45,7 @@ impl Estimator {
             rejection: Rejection::Off,
             ray_radius: None,
             beam_radius: None,
+            is_progressive: false,
         }
     }
 
@@ -64,6 +67,25 @@ impl Estimator {
     /// The same with whole stretches of rays read at once, from flights of photons that pass as near as this \[L\].
     pub fn along_beams(self, radius: Positive) -> Self {
         Estimator { beam_radius: Some(radius), ray_radius: None, ..self }
+    }
+
+    /// The same with fixed radii that shrink from map to map, so that the mean over maps converges to the light itself.
+    pub fn progressive(self) -> Self {
+        Estimator { is_progressive: true, ..self }
+    }
+
+    /// What reads the map of this number, the first being 0: where it is progressive with the radii that are due there
+    /// ([`Codimension::shrinkage`]), by the codimension of balls, of rays and of beams; the k nearest photons as in the first.
+    pub fn in_map(self, map: u64) -> Self {
+        if !self.is_progressive {
+            return self;
+        }
+        Estimator {
+            gather: self.gather.in_map(map, Codimension::Three),
+            ray_radius: self.ray_radius.map(|radius| Codimension::Two.radius(radius, map)),
+            beam_radius: self.beam_radius.map(|radius| Codimension::One.radius(radius, map)),
+            ..self
+        }
     }
 
     /// What reads whole stretches of rays from beams; none where photons are points.
@@ -129,7 +151,7 @@ impl Estimator {
 
     /// Its name, such as "cone, k=50, clipped"; one radius for points and rays is said once.
     pub fn name(&self) -> String {
-        let Estimator { kernel, gather, treatment, rejection, ray_radius, beam_radius } = self;
+        let Estimator { kernel, gather, treatment, rejection, ray_radius, beam_radius, is_progressive } = self;
         let of_rays = match (ray_radius, beam_radius) {
             (Some(radius), _) => Some((radius, format!("along rays r={}", radius.get()))),
             (_, Some(radius)) => Some((radius, format!("beams r={}", radius.get()))),
@@ -149,6 +171,9 @@ impl Estimator {
         }
         if let (Some((_, along)), None) = (&of_rays, alone) {
             name += &format!(", {along}");
+        }
+        if *is_progressive {
+            name += ", progressive";
         }
         name
     }

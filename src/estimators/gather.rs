@@ -1,5 +1,6 @@
 //! Gathers: which photons an estimate uses, and the bias and variance expected of it.
 
+use super::schedule::Codimension;
 use super::Kernel;
 use super::kernel::UNIT_BALL;
 use crate::error::{Error, Result};
@@ -104,6 +105,14 @@ impl Gather {
             Gather::NearestBiased { k, max_radius } => {
                 Gather::NearestBiased { k, max_radius: limited(max_radius) }
             }
+        }
+    }
+
+    /// The same gather in the map of this number, with its radius shrunk as the codimension asks; the k nearest photons as they are.
+    pub fn in_map(self, map: u64, codimension: Codimension) -> Self {
+        match self {
+            Gather::Radius(radius) => Gather::Radius(codimension.radius(radius, map)),
+            Gather::Nearest { .. } | Gather::NearestBiased { .. } => self,
         }
     }
 

@@ -23,6 +23,7 @@ mod gather;
 mod kernel;
 mod point;
 mod ray;
+mod schedule;
 mod surface;
 
 pub use beam::BeamEstimator;
@@ -33,4 +34,5 @@ pub use gather::{Gather, NeighborCount};
 pub use kernel::Kernel;
 pub use point::{Ball, BallSum, Estimate, ball_sum, count_within, for_each_photon};
 pub use ray::{RayEstimate, RayEstimator};
+pub use schedule::Codimension;
 pub use surface::{irradiance, irradiance_seen};

@@ -45,6 +45,8 @@ pub struct RunInfo {
     pub ray_radius: Option<f64>,
     /// The same about rays across which flights pass, as beams \[L\].
     pub beam_radius: Option<f64>,
+    /// Whether these radii are those of the first map, and shrink from map to map.
+    pub progressive: Option<bool>,
     /// How an estimate weights its photons.
     pub kernel: Option<String>,
     /// What it does where a medium ends.
@@ -91,7 +93,7 @@ struct Document<'a, T> {
 
 const COLUMNS: [&str; 6] = ["sensor", "quantity", "unit", "mean", "std_error", "n"];
 
-const RUN_COLUMNS: [&str; 16] = [
+const RUN_COLUMNS: [&str; 17] = [
     "with",
     "seed",
     "orders",
@@ -103,6 +105,7 @@ const RUN_COLUMNS: [&str; 16] = [
     "max_radius",
     "ray_radius",
     "beam_radius",
+    "progressive",
     "kernel",
     "boundary",
     "reject",

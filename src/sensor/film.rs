@@ -6,6 +6,8 @@ use crate::integrators::{Layer, Layers};
 /// Layers, and their total behind them.
 const VALUES: usize = Layer::ALL.len() + 1;
 const TOTAL: usize = Layer::ALL.len();
+/// Bytes of a pixel: samples, photons, means and squared deviations by channel.
+const PIXEL_BYTES: usize = 8 * (2 + 2 * 3 * VALUES);
 
 /// What one sample of a pixel brings.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -179,6 +181,39 @@ impl Film {
             // Each part found its own.
             mine.photons += others.photons;
         }
+    }
+
+    /// Every number of the film, eight bytes each from the lowest: what goes on from them has the same bits.
+    pub fn to_bytes(&self) -> Vec<u8> {
+        let spectra = |pixel: &Pixel| pixel.mean.into_iter().chain(pixel.squares).collect::<Vec<_>>();
+        let mut bytes = Vec::with_capacity(self.pixels.len() * PIXEL_BYTES);
+        for pixel in &self.pixels {
+            bytes.extend(pixel.n.to_le_bytes());
+            bytes.extend(pixel.photons.to_le_bytes());
+            for spectrum in spectra(pixel) {
+                (0..3).for_each(|channel| bytes.extend(spectrum[channel].to_le_bytes()));
+            }
+        }
+        bytes
+    }
+
+    /// The film of these bytes; none unless they are as many as its pixels take, every number finite, and all pixels of as many samples.
+    pub fn from_bytes(width: u32, height: u32, bytes: &[u8]) -> Option<Film> {
+        let mut film = Film::new(width, height);
+        if bytes.len() != film.pixels.len() * PIXEL_BYTES {
+            return None;
+        }
+        for (pixel, bytes) in film.pixels.iter_mut().zip(bytes.chunks_exact(PIXEL_BYTES)) {
+            let mut words = bytes.chunks_exact(8).filter_map(|word| Some(u64::from_le_bytes(word.try_into().ok()?)));
+            pixel.n = words.next()?;
+            let mut number = || words.next().map(f64::from_bits).filter(|x| x.is_finite());
+            pixel.photons = number()?;
+            for spectrum in pixel.mean.iter_mut().chain(&mut pixel.squares) {
+                *spectrum = Spectrum::rgb(number()?, number()?, number()?);
+            }
+        }
+        let samples = film.samples();
+        film.pixels.iter().all(|pixel| pixel.n == samples).then_some(film)
     }
 
     /// Independent films of one size as one: means over films, variances between them.

@@ -314,12 +314,13 @@ impl Asked<'_> {
         result: &mut PhotonReadings,
     ) -> Result<()> {
         let Asked { surroundings, sensors, settings } = *self;
+        let estimator = settings.estimator.in_map(replicate);
         for (number, (sensor, sums)) in sensors.iter().zip(&mut *estimates).enumerate() {
-            let Some(map) = maps.of(sensor, &settings.estimator) else { continue };
+            let Some(map) = maps.of(sensor, &estimator) else { continue };
             // Every pass asks at the same places.
             let index = sensors[..number].iter().filter(|s| map_orders(s) == map_orders(sensor)).count();
             let of = (settings.seed, replicate, index);
-            let values = read_bins(surroundings, map, sensor, &settings.estimator, of, result)?;
+            let values = read_bins(surroundings, map, sensor, &estimator, of, result)?;
             for (sum, value) in sums.iter_mut().zip(values) {
                 *sum += value / passes as f64;
             }

@@ -18,6 +18,7 @@ const RUN: [&str; 16] = [
     "max_radius",
     "ray_radius",
     "beam_radius",
+    "progressive",
     "kernel",
     "boundary",
     "reject",

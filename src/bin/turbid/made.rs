@@ -10,11 +10,16 @@ use turbid::sensor::{BlockMean, Film};
 pub struct Made {
     /// The picture.
     pub film: Film,
-    /// Samples a pixel of each repetition.
+    /// Repetitions.
+    pub repetitions: u64,
+    /// Samples a pixel of each repetition, or one number for all.
     pub samples: Vec<u64>,
+    /// How the first map is read, if there are maps.
+    pub first_read: Option<Settings>,
     /// Rays and look-ups.
     pub work: Report,
-    /// What filling each repetition's maps took, and how full the global, caustic and volume map are.
+    /// What filling each repetition's maps took, and how full the global, caustic and volume map are; of a progressive picture the
+    /// first and the last of this run.
     pub maps: Vec<MapsMade>,
     /// Times.
     pub stages: Stages,
@@ -27,6 +32,8 @@ pub struct Made {
 /// The maps of one repetition.
 #[derive(Default)]
 pub struct MapsMade {
+    /// Which one it is.
+    pub number: u64,
     /// What filling them took.
     pub report: MapReport,
     /// How full the global, caustic and volume map are; none where the scene needs none.

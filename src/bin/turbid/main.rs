@@ -21,12 +21,14 @@ mod notes;
 mod options;
 mod picture;
 mod progress;
+mod progressive;
 mod provenance;
 mod quiet;
 mod render;
 mod revision;
 mod scenes;
 mod shared;
+mod state;
 mod statistics;
 mod usage;
 

@@ -100,6 +100,10 @@ pub struct Measure {
     /// for media that vary and whose extinction differs by channel [L].
     #[arg(long, conflicts_with_all = ["reject", "ray_radius", "photons_from"])]
     beam_radius: Option<f64>,
+    /// Shrink radii from map to map, so that the mean over --maps converges to the light itself: as the number of maps to the power
+    /// -1/7 of --radius, -1/6 of --ray-radius, -1/5 of --beam-radius, which are those of the first map. The error is that between maps.
+    #[arg(long)]
+    progressive: bool,
     /// What an estimate does where a medium ends or a body stands in its ball.
     #[arg(long, value_enum, default_value = "clipped")]
     boundary: BoundaryName,
@@ -224,13 +228,14 @@ impl Measure {
         };
         if by(&["--with photons", "--photons-from"]) {
             let maps = if self.photons_from.is_empty() { self.maps } else { self.photons_from.len() as u64 };
-            let Estimator { kernel, gather, treatment, rejection, ray_radius, beam_radius } =
+            let Estimator { kernel, gather, treatment, rejection, ray_radius, beam_radius, is_progressive } =
                 self.settings(scene, 1, 1)?.estimator;
             run.maps = Some(maps);
             match gather {
                 Gather::Radius(radius) => run.radius = Some(radius.get()),
                 _ => (run.k, run.max_radius) = (gather.k(), Some(gather.cap())),
             }
+            run.progressive = Some(is_progressive);
             run.ray_radius = ray_radius.map(Positive::get);
             run.beam_radius = beam_radius.map(Positive::get);
             run.kernel = Some(kernel.name().to_string());
@@ -329,7 +334,11 @@ impl Measure {
         let estimator = Estimator::new(self.kernel, gather).treated(self.boundary.treatment());
         let estimator = estimator.rejecting(self.reject.rejection());
         let (ray_radius, beam_radius) = (ray_radius(self.ray_radius)?, beam_radius(self.beam_radius)?);
-        let estimator = Estimator { ray_radius, beam_radius, ..estimator };
+        let has_radius = self.radius.is_some() || ray_radius.is_some() || beam_radius.is_some();
+        if self.progressive && !has_radius {
+            bail!("--progressive shrinks radii, and takes the k nearest photons as they are; allowed: with --radius, --ray-radius or --beam-radius");
+        }
+        let estimator = Estimator { ray_radius, beam_radius, is_progressive: self.progressive, ..estimator };
         Ok(PhotonSettings { photons, maps, seed: self.seed, orders: self.orders, estimator })
     }
 

@@ -35,6 +35,7 @@ pub const MEASURE: Table = &[
     ("kernel", READ),
     ("ray_radius", READ),
     ("beam_radius", READ),
+    ("progressive", READ),
     ("boundary", READ),
     ("reject", READ),
     ("orders", ALL),
@@ -80,6 +81,8 @@ pub const RENDER: Table = &[
     ("seconds", ALL),
     ("maps", ALL),
     ("passes", PHOTONS),
+    ("progressive", PHOTONS),
+    ("state", PHOTONS),
     // Light tracing leaves out what paths hold.
     ("compare", WHOLE),
     ("compare_samples", WHOLE),

@@ -8,6 +8,7 @@ use super::notes::{tell_empty, tell_gathers, tell_step};
 use super::options;
 use super::picture::{Frame, Held, Photons, Readout, ToneArgs};
 use super::progress::Bar;
+use super::progressive::{Progressive, Sequence, Until};
 use super::provenance::{map_settings, mapper_settings};
 use super::revision::revision;
 use super::shared::{note, on_threads, parse_count, print, whole};
@@ -17,7 +18,7 @@ use clap::{ArgMatches, ValueEnum};
 use cpu_time::ProcessTime;
 use std::ops::AddAssign;
 use std::path::PathBuf;
-use turbid::integrators::mapper::{Mapper, Report};
+use turbid::integrators::mapper::{Mapper, Report, Settings};
 use turbid::output::{Tone, auto_exposure, check_writable, is_same_file, one_line, write_exr, write_png};
 use turbid::photons::beams::BeamMap;
 use turbid::photons::maps::fill_part;
@@ -59,16 +60,18 @@ pub struct Render {
     /// What is done of all that some scenes require.
     #[arg(long, value_enum, default_value = "auto")]
     plan: PlanName,
-    /// Samples a pixel, of each map; of light tracing histories a pixel [default: 16].
+    /// Samples a pixel, of each map; of light tracing histories a pixel [default: 16; of each map of a progressive picture 1].
     #[arg(long, value_parser = parse_count)]
     samples: Option<u64>,
     /// As many samples as this many seconds of processor time allow, maps included. The clock decides: the number taken
     /// is printed, and --samples with it repeats the picture bit by bit.
-    #[arg(long, conflicts_with = "samples")]
+    #[arg(long)]
     seconds: Option<f64>,
-    /// Independent repetitions, with maps of their own if it is by photons; the picture is their mean.
-    #[arg(long, value_parser = parse_count, default_value = "1")]
-    maps: u64,
+    /// Independent repetitions, with maps of their own if it is by photons; the picture is their mean [default: 1].
+    #[arg(long, value_parser = parse_count)]
+    maps: Option<u64>,
+    #[command(flatten)]
+    progressive: Progressive,
     /// Parts of each map's photons, one in memory at a time, where the radius is fixed: the picture with --adapt 0 in less memory,
     /// as many times the work of rays. Its variance is that between maps, of which there must be several.
     #[arg(long, value_parser = parse_count, default_value = "1")]
@@ -159,6 +162,7 @@ impl Render {
             bail!("--samples is {samples}; allowed: 1 to 4294967295");
         }
         self.check_passes()?;
+        self.check_progressive()?;
         let exposure = self.shown.checked()?;
         let (file, scene) = self.source.read()?;
         let scene = match (scene, self.plan) {
@@ -185,11 +189,18 @@ impl Render {
         // Before the work, not after it.
         let png = self.output.with_extension("png");
         let errors = self.compared.files(&self.output);
-        for file in [&self.output, &png].into_iter().chain(&errors) {
+        for file in [&self.output, &png].into_iter().chain(&errors).chain(&self.progressive.state) {
             check_writable(file)?;
         }
         if is_same_file(&self.output, &png)? {
             bail!("--output {} and {} lead to one file", self.output.display(), png.display());
+        }
+        if let Some(state) = &self.progressive.state {
+            for file in [&self.output, &png] {
+                if is_same_file(state, file)? {
+                    bail!("--state {} and {} lead to one file", state.display(), file.display());
+                }
+            }
         }
         let usual = self.readout.settings(&scene, self.passes)?;
         if self.with == With::Light {
@@ -205,9 +216,11 @@ impl Render {
         if self.with == With::Photons && scene.plan().has_media {
             tell_step(&scene, &usual)?;
         }
+        let scene_text = file.to_toml()?;
         // Every map is read as the first is.
         let mut read = None;
         let made = on_threads(self.threads, || match self.with {
+            With::Photons if self.progressive.is_asked_for => self.sequence(&scene, &scene_text, &camera, usual),
             With::Paths => self.repeat(&camera, |streams, stages, left, film| {
                 Ok((self.fill(film, stages, left, &Method::Paths(&scene), (&camera, streams))?, None))
             }),
@@ -226,7 +239,8 @@ impl Render {
                     let held = Held { passes: self.passes, has_radius: self.readout.has_radius() };
                     self.photons.forecast(&scene, &settings_of_maps, importance, held, &self.memory, fixed)
                 })?;
-                let (mut work, mut made) = (Report::default(), MapsMade::default());
+                let mut work = Report::default();
+                let mut made = MapsMade { number: streams.replicate, ..MapsMade::default() };
                 for number in 0..self.passes {
                     let part = Part { number, of: self.passes };
                     let bar = Bar::stage("emission", emitted.histories() / self.passes);
@@ -262,7 +276,7 @@ impl Render {
         let exposure =
             exposure.unwrap_or_else(|| auto_exposure(made.film.pixels().iter().map(|p| p.total())));
         let tone = Tone { exposure, curve: self.shown.curve() };
-        let provenance = self.provenance(&file.to_toml()?, &made, exposure)?;
+        let provenance = self.provenance(&scene_text, &made, exposure)?;
         write_exr(&self.output, &made.film, &provenance)?;
         let png = self.output.with_extension("png");
         let pixels: Vec<[u8; 3]> = made.film.pixels().iter().map(|p| tone.pixel(p.total())).collect();
@@ -279,7 +293,7 @@ impl Render {
             let stored = first.map_or([None; 3], |made| made.filled.map(|map| Some(map?.stored)));
             tell_gathers(
                 &scene,
-                first.and_then(|made| made.settings.as_ref()).unwrap_or(&usual),
+                made.first_read.as_ref().unwrap_or(&usual),
                 &made.work,
                 stored,
             )?;
@@ -293,12 +307,12 @@ impl Render {
             return Ok(());
         }
         // The repetition that the picture does not have.
-        let streams = Streams { seed: self.seed, replicate: self.maps };
+        let streams = Streams { seed: self.seed, replicate: made.repetitions };
         let reference =
             on_threads(self.threads, || self.compared.reference(scene, camera, &made.film, streams))?;
         let error = match self.with {
             With::Paths if made.film.samples() >= 2 => PictureError::ByPixel,
-            _ if self.maps >= 2 => PictureError::ByMap(&made.block_means),
+            _ if made.repetitions >= 2 => PictureError::ByMap(&made.block_means),
             _ => PictureError::Unknown,
         };
         self.compared.tell(&self.output, scene, (&made.film, &reference), error)
@@ -307,13 +321,83 @@ impl Render {
     /// Memory that the picture takes beside its maps \[bytes\].
     fn film_bytes(&self, camera: &Camera) -> f64 {
         let pixels = f64::from(camera.width()) * f64::from(camera.height());
-        let films = if self.maps == 1 { PIXEL_BYTES } else { MEAN_BYTES };
-        let more = u8::from(self.passes > 1) + u8::from(self.compared.is_asked_for());
+        let films = if self.maps() == 1 { PIXEL_BYTES } else { MEAN_BYTES };
+        let more = [self.passes > 1, self.compared.is_asked_for(), self.progressive.state.is_some()];
+        let more: u8 = more.into_iter().map(u8::from).sum();
         let films = pixels * (films + f64::from(more) * FILM_BYTES);
         match self.with {
             With::Photons | With::Paths => films,
             With::Light => films + pixels * LIGHT_PIXEL_BYTES + LIGHT_BYTES,
         }
+    }
+
+    /// Repetitions.
+    fn maps(&self) -> u64 {
+        match self.maps {
+            Some(maps) => maps,
+            // Some more than one.
+            None if self.progressive.is_asked_for => 2,
+            None => 1,
+        }
+    }
+
+    /// A progressive picture.
+    fn sequence(
+        &self,
+        scene: &Scene,
+        scene_text: &str,
+        camera: &Camera,
+        usual: Settings,
+    ) -> anyhow::Result<Made> {
+        let sequence = Sequence {
+            scene,
+            camera,
+            photons: &self.photons,
+            readout: &self.readout,
+            memory: &self.memory,
+            usual,
+            fixed: self.film_bytes(camera),
+            seed: self.seed,
+            samples: self.samples,
+            until: Until::asked(self.maps, self.seconds)?,
+            state: self.progressive.state.as_deref(),
+            is_compared: self.compared.is_asked_for(),
+        };
+        sequence.make(&self.made_from(scene_text, camera, &sequence))
+    }
+
+    /// Refuses what a progressive picture cannot be made with.
+    fn check_progressive(&self) -> anyhow::Result<()> {
+        if !self.progressive.is_asked_for {
+            if self.seconds.is_some() && self.samples.is_some() {
+                bail!("--samples and --seconds both say how many samples are taken; allowed: one of them, or --progressive");
+            }
+            return Ok(());
+        }
+        if self.passes > 1 {
+            bail!("--passes is {}; allowed with --progressive: 1, with fewer photons a map in place of it", self.passes);
+        }
+        if self.progressive.state.is_some() && self.compared.is_asked_for() {
+            bail!("--compare needs every map's picture, and --state keeps their mean; allowed: one of them");
+        }
+        Until::asked(self.maps, self.seconds).map(|_| ())
+    }
+
+    /// What a progressive picture is made from, but for the number of maps.
+    fn made_from(&self, scene_text: &str, camera: &Camera, sequence: &Sequence<'_>) -> serde_json::Value {
+        let maps = self.photons.settings(self.readout.indirect(), self.readout.has_beams(), self.seed, 0);
+        serde_json::json!({
+            "program": format!("turbid {}", env!("CARGO_PKG_VERSION")),
+            "plan": if self.plan == PlanName::Full { "full" } else { "auto" },
+            "size": [camera.width(), camera.height()],
+            "seed": self.seed,
+            "importance": self.photons.is_by_importance,
+            "samples": sequence.samples(),
+            "map settings": map_settings(&maps),
+            "mapper settings": mapper_settings(&sequence.usual),
+            "radius": self.readout.has_radius(),
+            "scene": scene_text,
+        })
     }
 
     /// Refuses what cannot be made in passes.
@@ -333,7 +417,7 @@ impl Render {
             () if self.seconds.is_some() => {
                 refuse("which needs --samples in place of --seconds; allowed otherwise: 1")
             }
-            () if self.maps == 1 => refuse(
+            () if self.maps() == 1 => refuse(
                 "which needs several --maps: the variance of a picture made in passes is that between maps; allowed with one \
                  map: 1",
             ),
@@ -354,28 +438,31 @@ impl Render {
     ) -> anyhow::Result<Made> {
         let blank = || Film::new(camera.width(), camera.height());
         let mut made = Made {
-            film: if self.maps == 1 { Film::new(0, 0) } else { blank() },
+            film: if self.maps() == 1 { Film::new(0, 0) } else { blank() },
+            repetitions: self.maps(),
             samples: Vec::new(),
+            first_read: None,
             work: Report::default(),
             maps: Vec::new(),
             stages: Stages::default(),
             block_means: Vec::new(),
             is_by_light: self.with == With::Light,
         };
-        for replicate in 0..self.maps {
+        for replicate in 0..self.maps() {
             let streams = Streams { seed: self.seed, replicate };
             // Each repetition has an equal part of the time that is left.
             let start = ProcessTime::now();
-            let until = self.seconds.map(|s| s / self.maps as f64);
+            let until = self.seconds.map(|s| s / self.maps() as f64);
             let mut film = blank();
             let left = until.map(|s| s + start.as_duration().as_secs_f64());
             let (work, maps) = one(streams, &mut made.stages, left, &mut film)?;
             made.work += work;
+            made.first_read = made.first_read.or(maps.as_ref().and_then(|maps: &MapsMade| maps.settings));
             made.maps.extend(maps);
             // A film of passes holds their mean alone.
             let taken = if self.passes == 1 { film.samples() } else { self.samples.unwrap_or(SAMPLES) };
             made.samples.push(taken);
-            if self.maps == 1 {
+            if self.maps() == 1 {
                 made.film = film;
             } else {
                 if self.compared.is_asked_for() {
@@ -422,9 +509,10 @@ impl Render {
     /// All that the picture was made from: no path, no time.
     fn provenance(&self, scene_text: &str, made: &Made, exposure: f64) -> anyhow::Result<serde_json::Value> {
         let by_photons = self.with == With::Photons;
-        let settings = made.maps.first().and_then(|made| made.settings);
         let maps = self.photons.settings(self.readout.indirect(), self.readout.has_beams(), self.seed, 0);
-        let filled: Vec<[Option<Filled>; 3]> = made.maps.iter().map(|made| made.filled).collect();
+        // Of a progressive picture a run may know some of the maps alone.
+        let filled = (!self.progressive.is_asked_for)
+            .then(|| made.maps.iter().map(|made| made.filled).collect::<Vec<[Option<Filled>; 3]>>());
         Ok(serde_json::json!({
             "program": format!("turbid {}", env!("CARGO_PKG_VERSION")),
             "revision": revision(),
@@ -435,13 +523,14 @@ impl Render {
             "height": made.film.height(),
             "seed": self.seed,
             "importance": by_photons && self.photons.is_by_importance,
-            "repetitions": self.maps,
+            "repetitions": made.repetitions,
+            "progressive": self.progressive.is_asked_for,
             "passes": self.passes,
             "samples": made.samples,
-            "variance": if self.maps == 1 { "between samples" } else { "between repetitions" },
+            "variance": if made.repetitions == 1 { "between samples" } else { "between repetitions" },
             "exposure": exposure,
             "map_settings": by_photons.then(|| map_settings(&maps)),
-            "mapper_settings": settings.as_ref().map(mapper_settings),
+            "mapper_settings": made.first_read.as_ref().map(mapper_settings),
             "maps_global_caustic_volume": filled,
             "scene": scene_text,
         }))

@@ -18,9 +18,9 @@ pub fn print_statistics(made: &Made, exposure: f64) -> anyhow::Result<()> {
     let (least, most) = (made.samples.iter().min().unwrap_or(&0), made.samples.iter().max().unwrap_or(&0));
     let taken = if least == most { format!("{least}") } else { format!("{least} to {most}") };
     writeln!(text, "pixels         {} x {}", made.film.width(), made.film.height())?;
-    writeln!(text, "samples        {taken} a pixel, {} repetitions", made.samples.len())?;
+    writeln!(text, "samples        {taken} a pixel, {} repetitions", made.repetitions)?;
     writeln!(text, "exposure       {exposure} stops")?;
-    for (number, MapsMade { report, filled, settings }) in made.maps.iter().enumerate() {
+    for MapsMade { number, report, filled, settings } in &made.maps {
         let names = ["global", "caustic", "volume"];
         let nearest = settings.map_or([None; 3], |settings| settings.nearest());
         for ((name, filled), k) in names.into_iter().zip(filled).zip(nearest) {
@@ -55,7 +55,8 @@ pub fn print_statistics(made: &Made, exposure: f64) -> anyhow::Result<()> {
         writeln!(text, "map {number:<3} memory   {:.1} MB", report.bytes as f64 / 1e6)?;
     }
     let work = &made.work;
-    let total = made.samples.iter().sum::<u64>() * pixels;
+    let each = if made.samples.len() == 1 { made.repetitions } else { 1 };
+    let total = made.samples.iter().sum::<u64>() * each * pixels;
     if made.is_by_light {
         writeln!(text, "histories      {total} photons, {} flights", work.rays.segments)?;
         writeln!(text, "connections    {} to the camera", work.rays.shadow)?;

@@ -2,7 +2,7 @@
 
 use crate::error::Result;
 use crate::estimators::boundary::Treatment;
-use crate::estimators::{Estimator, Gather, Kernel};
+use crate::estimators::{Codimension, Estimator, Gather, Kernel};
 use crate::integrators::{Adaptive, March, StepRule};
 use crate::math::Positive;
 use crate::photons::maps::Indirect;
@@ -127,6 +127,18 @@ impl Settings {
             }
         }
         Ok(settings)
+    }
+
+    /// How the map of this number is read, the first being 0: where the volume's estimator is progressive, with all fixed radii
+    /// shrunk as [`Codimension::shrinkage`] says.
+    pub fn in_map(&self, map: u64) -> Self {
+        let mut settings = *self;
+        if self.volume.is_progressive {
+            settings.global.1 = self.global.1.in_map(map, Codimension::Two);
+            settings.caustic.1 = self.caustic.1.in_map(map, Codimension::Two);
+            settings.volume = self.volume.in_map(map);
+        }
+        settings
     }
 
     /// Photons of an estimate from the global, the caustic and the volume map; none for a fixed radius.
