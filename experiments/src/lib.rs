@@ -20,6 +20,7 @@ pub mod harness;
 pub mod march;
 pub mod own_study;
 pub mod prediction;
+pub mod progressive;
 pub mod rates;
 pub mod report;
 pub mod setups;
@@ -39,6 +40,7 @@ pub const ALL: &[Experiment] = &[
     transmittance::EXPERIMENT,
     rates::EXPERIMENT,
     dimension::EXPERIMENT,
+    progressive::EXPERIMENT,
     tradeoff::EXPERIMENT,
     extremes::EXPERIMENT,
     coverage::EXPERIMENT,

@@ -2,7 +2,9 @@
 
 use super::boundary::{Boundary, Gathered, PhotonFilter, Rejection, Surroundings, Treatment, accepted};
 use super::point::{ball_sum, for_each_photon, in_scattered_sum};
-use super::{BallSum, BeamEstimator, Codimension, Directional, Estimate, Gather, Kernel, NeighborCount, RayEstimator};
+use super::{
+    BallSum, BeamEstimator, Codimension, Directional, Estimate, Gather, Kernel, NeighborCount, RayEstimator,
+};
 use crate::Spectrum;
 use crate::math::{Positive, cosine_pair};
 use crate::photons::{Photon, PhotonMap};
@@ -151,7 +153,8 @@ impl Estimator {
 
     /// Its name, such as "cone, k=50, clipped"; one radius for points and rays is said once.
     pub fn name(&self) -> String {
-        let Estimator { kernel, gather, treatment, rejection, ray_radius, beam_radius, is_progressive } = self;
+        let Estimator { kernel, gather, treatment, rejection, ray_radius, beam_radius, is_progressive } =
+            self;
         let of_rays = match (ray_radius, beam_radius) {
             (Some(radius), _) => Some((radius, format!("along rays r={}", radius.get()))),
             (_, Some(radius)) => Some((radius, format!("beams r={}", radius.get()))),

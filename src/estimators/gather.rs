@@ -1,8 +1,8 @@
 //! Gathers: which photons an estimate uses, and the bias and variance expected of it.
 
-use super::schedule::Codimension;
 use super::Kernel;
 use super::kernel::UNIT_BALL;
+use super::schedule::Codimension;
 use crate::error::{Error, Result};
 use crate::faults::{Fault, planted};
 use crate::math::{Positive, exp};

@@ -73,7 +73,9 @@ mod tests {
         for codimension in [Codimension::One, Codimension::Two, Codimension::Three] {
             assert!((codimension.shrinkage(0) - 1.0).abs() < 1e-15);
             let radii: Vec<f64> = (0..64).map(|power| codimension.shrinkage((1u64 << power) - 1)).collect();
-            assert!(radii.windows(2).take(40).all(|pair| pair[1] < pair[0]) && radii.iter().all(|r| *r > 0.0));
+            assert!(
+                radii.windows(2).take(40).all(|pair| pair[1] < pair[0]) && radii.iter().all(|r| *r > 0.0)
+            );
         }
     }
 }

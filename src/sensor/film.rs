@@ -204,7 +204,8 @@ impl Film {
             return None;
         }
         for (pixel, bytes) in film.pixels.iter_mut().zip(bytes.chunks_exact(PIXEL_BYTES)) {
-            let mut words = bytes.chunks_exact(8).filter_map(|word| Some(u64::from_le_bytes(word.try_into().ok()?)));
+            let mut words =
+                bytes.chunks_exact(8).filter_map(|word| Some(u64::from_le_bytes(word.try_into().ok()?)));
             pixel.n = words.next()?;
             let mut number = || words.next().map(f64::from_bits).filter(|x| x.is_finite());
             pixel.photons = number()?;

@@ -17,6 +17,7 @@ pub mod outputs;
 pub mod phase;
 pub mod point_light;
 pub mod points;
+pub mod progressive;
 pub mod shading;
 pub mod slab;
 pub mod threads;

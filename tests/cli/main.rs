@@ -14,6 +14,7 @@ mod options;
 mod output;
 mod photons;
 mod pictures;
+mod progressive;
 mod provenance;
 mod reference;
 

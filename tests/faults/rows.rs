@@ -2,7 +2,7 @@
 
 use crate::checks::{
     beams, cell, color, emitters, flights, fog, glass, ledger, light, media, numbers, outputs, phase,
-    point_light, points, shading, slab, threads, walls, weights,
+    point_light, points, progressive, shading, slab, threads, walls, weights,
 };
 use crate::support::scenes::{area_light, cuboid, rectangle};
 use glam::DVec3;
@@ -307,6 +307,11 @@ const fn inside(fault: Fault) -> Row {
         Fault::LineHalved => {
             ("the kernel of beams over half the line", "one_beam_by_hand", |_| beams::one_beam_by_hand())
         }
+        Fault::ScheduleOfSpace => (
+            "progressive tubes and strips that shrink as balls do",
+            "each_map_is_read_within_the_radius_that_is_due",
+            |_| progressive::each_map_is_read_within_the_radius_that_is_due(),
+        ),
     };
     Row { fault: Planted::Inside(fault), title, check_name, check }
 }
@@ -382,6 +387,7 @@ pub const ROWS: &[Row] = &[
     outside("next events to a point light from free flights alone", "intervals_cover", |wrong| {
         point_light::intervals_cover(if wrong { point_light::by_free_flight } else { point_light::by_both })
     }),
+    inside(Fault::ScheduleOfSpace),
 ];
 
 /// Changes by hand that no test had noticed, in the order of their own document.

@@ -14,6 +14,7 @@ mod march;
 mod metrics;
 mod parted;
 mod passes;
+mod progressive;
 mod sensor_maps;
 mod statistics;
 mod surface_estimates;

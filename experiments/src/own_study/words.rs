@@ -39,7 +39,8 @@ pub const SAMPLING: &str = "sampling";
 
 /// What estimators that differ in the size of their gather share.
 pub fn family(estimator: &Estimator) -> String {
-    let Estimator { kernel, gather, treatment, rejection, ray_radius, beam_radius } = estimator;
+    let Estimator { kernel, gather, treatment, rejection, ray_radius, beam_radius, is_progressive: _ } =
+        estimator;
     let size = match gather {
         Gather::Radius(_) => "fixed radius",
         Gather::Nearest { .. } => "k nearest",

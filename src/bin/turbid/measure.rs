@@ -235,7 +235,7 @@ impl Measure {
                 Gather::Radius(radius) => run.radius = Some(radius.get()),
                 _ => (run.k, run.max_radius) = (gather.k(), Some(gather.cap())),
             }
-            run.progressive = Some(is_progressive);
+            run.progressive = is_progressive.then_some(true);
             run.ray_radius = ray_radius.map(Positive::get);
             run.beam_radius = beam_radius.map(Positive::get);
             run.kernel = Some(kernel.name().to_string());
@@ -336,7 +336,9 @@ impl Measure {
         let (ray_radius, beam_radius) = (ray_radius(self.ray_radius)?, beam_radius(self.beam_radius)?);
         let has_radius = self.radius.is_some() || ray_radius.is_some() || beam_radius.is_some();
         if self.progressive && !has_radius {
-            bail!("--progressive shrinks radii, and takes the k nearest photons as they are; allowed: with --radius, --ray-radius or --beam-radius");
+            bail!(
+                "--progressive shrinks radii, and takes the k nearest photons as they are; allowed: with --radius, --ray-radius or --beam-radius"
+            );
         }
         let estimator = Estimator { ray_radius, beam_radius, is_progressive: self.progressive, ..estimator };
         Ok(PhotonSettings { photons, maps, seed: self.seed, orders: self.orders, estimator })

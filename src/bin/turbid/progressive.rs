@@ -14,11 +14,11 @@ use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 use turbid::estimators::Gather;
 use turbid::integrators::mapper::{Gathers, Mapper, Report, Settings};
+use turbid::photons::Part;
 use turbid::photons::PhotonMap;
 use turbid::photons::beams::BeamMap;
 use turbid::photons::importance::Importance;
 use turbid::photons::maps::{Emitted, MapSettings, Maps, fill_part};
-use turbid::photons::Part;
 use turbid::scene::{Camera, Scene};
 use turbid::sensor::{Blocks, Film, Method, Streams};
 use turbid::transport::{NoProgress, Progress};
@@ -83,7 +83,9 @@ impl Until {
     pub fn asked(maps: Option<u64>, seconds: Option<f64>) -> anyhow::Result<Self> {
         match (maps, seconds) {
             (Some(_), Some(_)) => bail!("--progressive has both --maps and --seconds; allowed: one of them"),
-            (None, None) => bail!("--progressive needs an end; allowed: --seconds, such as 60, or --maps, at least 2"),
+            (None, None) => {
+                bail!("--progressive needs an end; allowed: --seconds, such as 60, or --maps, at least 2")
+            }
             (Some(maps), None) if !(2..=u64::from(u32::MAX)).contains(&maps) => bail!(
                 "--maps is {maps}; allowed with --progressive: 2 to 4294967295, since its error is that between maps"
             ),
@@ -177,7 +179,11 @@ impl Sequence<'_> {
         if let Some(file) = self.state {
             state.write(file, made_from)?;
             if before > 0 {
-                note(&format!("{} held {before} maps, and now holds {}", file.display(), state.film.samples()))?;
+                note(&format!(
+                    "{} held {before} maps, and now holds {}",
+                    file.display(),
+                    state.film.samples()
+                ))?;
             }
         }
         made.samples = vec![self.samples()];
@@ -252,12 +258,14 @@ impl Sequence<'_> {
 
     /// Look-ups in a global, a caustic and a volume map by the k nearest photons.
     fn piloted(&self, shared: &Shared, stages: &mut Stages) -> anyhow::Result<[Gathers; 3]> {
-        let part = (PILOT_PIXELS / (f64::from(self.camera.width()) * f64::from(self.camera.height()))).min(1.0);
+        let part =
+            (PILOT_PIXELS / (f64::from(self.camera.width()) * f64::from(self.camera.height()))).min(1.0);
         let side = |pixels: u32| ((f64::from(pixels) * part.sqrt()) as u32).max(1);
         let (width, height) = (side(self.camera.width()), side(self.camera.height()));
         let camera = self.camera.sized(Some(width), Some(height))?;
         let maps = self.filled(shared, PILOT, stages)?;
-        let stored = [&maps.global, &maps.caustic, &maps.volume].map(|map| map.as_ref().map_or(0, PhotonMap::stored));
+        let stored =
+            [&maps.global, &maps.caustic, &maps.volume].map(|map| map.as_ref().map_or(0, PhotonMap::stored));
         let [global, caustic, volume] = stored;
         let beams = maps.beams.as_ref().map_or(0, BeamMap::stored);
         let mut settings = self.readout.suited(&self.usual, [global, caustic, volume + beams])?;

@@ -220,7 +220,9 @@ impl Render {
         // Every map is read as the first is.
         let mut read = None;
         let made = on_threads(self.threads, || match self.with {
-            With::Photons if self.progressive.is_asked_for => self.sequence(&scene, &scene_text, &camera, usual),
+            With::Photons if self.progressive.is_asked_for => {
+                self.sequence(&scene, &scene_text, &camera, usual)
+            }
             With::Paths => self.repeat(&camera, |streams, stages, left, film| {
                 Ok((self.fill(film, stages, left, &Method::Paths(&scene), (&camera, streams))?, None))
             }),
@@ -291,12 +293,7 @@ impl Render {
         if self.with == With::Photons && !scene.plan().is_full {
             let first = made.maps.first();
             let stored = first.map_or([None; 3], |made| made.filled.map(|map| Some(map?.stored)));
-            tell_gathers(
-                &scene,
-                made.first_read.as_ref().unwrap_or(&usual),
-                &made.work,
-                stored,
-            )?;
+            tell_gathers(&scene, made.first_read.as_ref().unwrap_or(&usual), &made.work, stored)?;
         }
         self.compare(&scene, &camera, &made)
     }
@@ -370,12 +367,17 @@ impl Render {
     fn check_progressive(&self) -> anyhow::Result<()> {
         if !self.progressive.is_asked_for {
             if self.seconds.is_some() && self.samples.is_some() {
-                bail!("--samples and --seconds both say how many samples are taken; allowed: one of them, or --progressive");
+                bail!(
+                    "--samples and --seconds both say how many samples are taken; allowed: one of them, or --progressive"
+                );
             }
             return Ok(());
         }
         if self.passes > 1 {
-            bail!("--passes is {}; allowed with --progressive: 1, with fewer photons a map in place of it", self.passes);
+            bail!(
+                "--passes is {}; allowed with --progressive: 1, with fewer photons a map in place of it",
+                self.passes
+            );
         }
         if self.progressive.state.is_some() && self.compared.is_asked_for() {
             bail!("--compare needs every map's picture, and --state keeps their mean; allowed: one of them");

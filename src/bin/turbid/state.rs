@@ -33,10 +33,14 @@ impl State {
         let mut parts = bytes.splitn(3, |byte| *byte == b'\n');
         let (magic, header, numbers) = (parts.next(), parts.next(), parts.next());
         let (Some(header), Some(numbers), true) = (header, numbers, magic == Some(MAGIC.as_bytes())) else {
-            bail!("{}: not a state that --progressive has written; allowed: another name, or such a file", named());
+            bail!(
+                "{}: not a state that --progressive has written; allowed: another name, or such a file",
+                named()
+            );
         };
-        let header: serde_json::Value = serde_json::from_slice(header)
-            .map_err(|_| anyhow::anyhow!("{}: line 2 is not JSON: the file is damaged; begin anew", named()))?;
+        let header: serde_json::Value = serde_json::from_slice(header).map_err(|_| {
+            anyhow::anyhow!("{}: line 2 is not JSON: the file is damaged; begin anew", named())
+        })?;
         if let Some(key) = differing(&header, made_from) {
             bail!(
                 "{}: was made from another {key}; allowed: the same scene, size and settings as before, or another name",
@@ -45,7 +49,10 @@ impl State {
         }
         let film = Film::from_bytes(width, height, numbers);
         let Some(film) = film else {
-            bail!("{}: its numbers are not those of {width} x {height} pixels: the file is damaged; begin anew", named());
+            bail!(
+                "{}: its numbers are not those of {width} x {height} pixels: the file is damaged; begin anew",
+                named()
+            );
         };
         Ok(State { film })
     }

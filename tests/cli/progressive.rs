@@ -1,0 +1,113 @@
+//! `turbid render --progressive`: stopped and gone on with, and what it refuses.
+
+use crate::{Folder, refuses_naming, succeeds, text};
+use std::path::Path;
+
+/// A small picture of the built-in fogbox.
+const SMALL: [&str; 12] = [
+    "--progressive",
+    "--width",
+    "8",
+    "--global",
+    "emit:2000",
+    "--volume",
+    "emit:2000",
+    "--gather-rays",
+    "0",
+    "--seed",
+    "3",
+    "--quiet",
+];
+
+fn arguments<'a>(out: &'a Path, more: &[&'a str]) -> Vec<&'a str> {
+    [&["render", "fogbox", "-o", text(out)], &SMALL[..], more].concat()
+}
+
+/// Stopped twice and gone on with, on other numbers of threads: the picture of a run that was not.
+#[test]
+fn a_picture_gone_on_with_is_that_of_one_run() {
+    let folder = Folder::new();
+    let path = |name: &str| folder.0.path().join(name);
+    let (parted, whole, state) = (path("parted.exr"), path("whole.exr"), path("fog.state"));
+    for (maps, threads) in [("3", "1"), ("5", "2"), ("5", "2"), ("8", "1")] {
+        let more = ["--maps", maps, "--state", text(&state), "--threads", threads];
+        let said = succeeds(&arguments(&parted, &more));
+        assert!(said.contains(&format!("1 a pixel, {maps} repetitions")), "{said}");
+    }
+    succeeds(&arguments(&whole, &["--maps", "8"]));
+    assert!(std::fs::read(&parted).unwrap() == std::fs::read(&whole).unwrap());
+    let header = String::from_utf8_lossy(&std::fs::read(&whole).unwrap()).to_string();
+    assert!(header.contains("\"progressive\":true") && header.contains("\"repetitions\":8"));
+    // Not the mean of maps that are all read alike.
+    let fixed = path("fixed.exr");
+    succeeds(
+        &arguments(&fixed, &["--maps", "8"])
+            .into_iter()
+            .map(|word| if word == "--progressive" { "--no-jitter" } else { word })
+            .collect::<Vec<_>>(),
+    );
+    assert!(std::fs::read(&fixed).unwrap() != std::fs::read(&whole).unwrap());
+}
+
+/// A limited time makes at least two maps, and goes on from a state.
+#[test]
+fn a_time_is_kept() {
+    let folder = Folder::new();
+    let (out, state) = (folder.0.path().join("a.exr"), folder.0.path().join("a.state"));
+    let more = ["--seconds", "0.001", "--state", text(&state), "--samples", "2"];
+    assert!(succeeds(&arguments(&out, &more)).contains("2 a pixel, 2 repetitions"));
+    assert!(succeeds(&arguments(&out, &more)).contains("2 a pixel, 3 repetitions"));
+}
+
+#[test]
+fn what_cannot_be_gone_on_with_is_refused_and_left_as_it_is() {
+    let folder = Folder::new();
+    let (out, state) = (folder.0.path().join("a.exr"), folder.0.path().join("a.state"));
+    succeeds(&arguments(&out, &["--maps", "2", "--state", text(&state)]));
+    let kept = std::fs::read(&state).unwrap();
+    let (picture, named) = (std::fs::read(&out).unwrap(), text(&state));
+    for (more, word) in [
+        (&["--kernel", "cone"][..], "mapper settings"),
+        (&["--samples", "3"], "samples"),
+        (&["--height", "9"], "size"),
+        (&["--radius", "0.2"], "mapper settings"),
+        (&["--volume", "emit:3000"], "map settings"),
+        (&["--set", "albedo=0.5"], "scene"),
+    ] {
+        let mut all = arguments(&out, &["--maps", "4", "--state", named]);
+        if let Some(at) = all.iter().position(|known| *known == more[0]) {
+            all.drain(at..at + 2);
+        }
+        refuses_naming(&[&all[..], more].concat(), &["a.state", &format!("another {word}")]);
+    }
+    for damaged in [kept[..kept.len() - 8].to_vec(), kept[..30].to_vec(), Vec::new(), b"no\n{}\n".to_vec()] {
+        std::fs::write(&state, &damaged).unwrap();
+        refuses_naming(&arguments(&out, &["--maps", "4", "--state", named]), &["a.state"]);
+        assert!(std::fs::read(&state).unwrap() == damaged);
+    }
+    assert!(std::fs::read(&out).unwrap() == picture, "a refused run wrote a picture");
+}
+
+#[test]
+fn what_has_no_end_or_no_error_is_refused() {
+    let folder = Folder::new();
+    let out = folder.0.path().join("a.exr");
+    let other = folder.0.path().join("a.png");
+    for (more, words) in [
+        (&["--maps", "1"][..], &["--maps is 1", "2 to 4294967295"][..]),
+        (&[], &["--seconds", "--maps"]),
+        (&["--maps", "3", "--seconds", "3"], &["one of them"]),
+        (&["--maps", "3", "--passes", "2", "--radius", "0.2", "--adapt", "0"], &["--passes is 2"]),
+        (&["--maps", "3", "--state", text(&other)], &["lead to one file"]),
+        (&["--maps", "3", "--state", text(&folder.0.path().join("no/a"))], &["no/a"]),
+        (&["--maps", "3", "--with", "paths"], &["--progressive", "--with photons"]),
+    ] {
+        refuses_naming(&arguments(&out, more), words);
+    }
+    refuses_naming(
+        &["render", "fogbox", "-o", text(&out), "--samples", "2", "--seconds", "2"],
+        &["one of them"],
+    );
+    refuses_naming(&["measure", "slab", "--with", "photons", "--progressive"], &["--radius"]);
+    refuses_naming(&["measure", "slab", "--with", "paths", "--progressive"], &["--progressive"]);
+}
