@@ -12,6 +12,7 @@ mod dimension;
 mod extremes;
 mod march;
 mod pages;
+mod progressive;
 mod rates;
 mod tradeoff;
 mod transmittance;
