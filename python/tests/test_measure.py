@@ -81,6 +81,10 @@ def test_bins_of_light_tracing_are_exact():
             ["--with", "photons", "--photons", "3e4", "--radius", "0.3", "--passes", "3", "--boundary", "none"],
             dict(with_="photons", photons=3e4, radius=0.3, passes=3, boundary="none"),
         ),
+        (
+            ["--with", "photons", "--photons", "3e4", "--maps", "3", "--radius", "0.3", "--progressive"],
+            dict(with_="photons", photons=3e4, maps=3, radius=0.3, progressive=True),
+        ),
     ],
 )
 def test_the_same_bits_as_the_program(words, more, turbid_program):
@@ -156,6 +160,7 @@ def test_wrong_settings():
     assert told(with_="photons", ray_radius=0).startswith("slab: ray_radius is 0; allowed: ")
     assert told(with_="photons", beam_radius=0).startswith("slab: beam_radius is 0; allowed: ")
     assert told(with_="photons", beam_radius=1, ray_radius=1).endswith("allowed: one of them")
+    assert "with radius, ray_radius or beam_radius" in told(with_="photons", progressive=True)
     assert told(with_="photons", radius=1, k=3).startswith("radius takes all photons")
     assert told(with_="photons", k=1).startswith("slab: k, max_radius: ")
     assert told(with_="photons", passes=2).startswith("slab: the k nearest photons of a map cannot be found in passes")
