@@ -43,6 +43,8 @@ pub enum Pairing {
     PointPoints,
     /// A ray asks photons stored as points: the beam radiance estimate.
     RayPoints,
+    /// A point asks photons stored as beams, all of one direction.
+    PointBeams,
     /// A ray asks photons stored as beams, all of which have the same common normal with it and cross it under the
     /// angle of this sine.
     RayBeams {
@@ -54,11 +56,11 @@ pub enum Pairing {
 }
 
 impl Pairing {
-    /// Dimensions in which the kernel lives: 3, 2, 1, 1.
+    /// Dimensions in which the kernel lives: 3, 2, 2, 1, 1.
     pub fn dimension(self) -> Dimension {
         match self {
             Pairing::PointPoints => Dimension::Three,
-            Pairing::RayPoints => Dimension::Two,
+            Pairing::RayPoints | Pairing::PointBeams => Dimension::Two,
             Pairing::RayBeams { .. } | Pairing::RayIsotropicBeams => Dimension::One,
         }
     }
@@ -71,9 +73,9 @@ impl Pairing {
     }
 
     /// Bias over r^2 and the field's Laplacian: in space (points at a point), across the ray (points along a ray, isotropic
-    /// beams), or the second derivative along the common normal.
+    /// beams) or the beams (beams at a point), or the second derivative along the common normal.
     ///
-    /// m2/(2d); half the one-dimensional one for isotropic beams. Uniform kernel: 1/10, 1/8, 1/6, 1/12.
+    /// m2/(2d); half the one-dimensional one for isotropic beams. Uniform kernel: 1/10, 1/8, 1/8, 1/6, 1/12.
     /// # Errors
     /// `Error::OutOfRange` naming `kappa` or `sine`
     pub fn bias_coefficient(self, kernel: Kernel) -> Result<Value> {
@@ -87,7 +89,7 @@ impl Pairing {
     /// `Error::OutOfRange` naming `sine`
     pub fn inverse_sine(self) -> Result<Value> {
         let value = match self.check()? {
-            Pairing::PointPoints | Pairing::RayPoints => 1.0,
+            Pairing::PointPoints | Pairing::RayPoints | Pairing::PointBeams => 1.0,
             Pairing::RayBeams { sine } => 1.0 / sine,
             Pairing::RayIsotropicBeams => FRAC_PI_2,
         };
@@ -98,7 +100,7 @@ impl Pairing {
     ///
     /// # Arguments
     /// `x` = |b| r, b the part of the gradient along which the kernel blurs: all of it (points at a point), across the ray
-    /// (points along a ray, isotropic beams), along the common normal (other beams); |x| up to 500, Gaussian 35
+    /// (points along a ray, isotropic beams) or the beams (beams at a point), along the common normal (other beams); |x| up to 500, Gaussian 35
     /// # Returns
     /// \[1\], at least 1
     /// # Errors
@@ -147,7 +149,8 @@ impl Pairing {
         let d = self.check()?.dimension();
         within("radius", radius, 1e-60, 1e60, "1e-60 to 1e60")?;
         within("density", density, 1e-60, 1e60, "1e-60 to 1e60")?;
-        let sampled = if self == Pairing::PointPoints { 1.0 } else { ray.sampled()? };
+        let is_of_point = matches!(self, Pairing::PointPoints | Pairing::PointBeams);
+        let sampled = if is_of_point { 1.0 } else { ray.sampled()? };
         let factor = self.inverse_sine()?.value / (density * d.power(radius) * sampled);
         let value = kernel.roughness(d)?.scaled(factor);
         Ok(Value::new(value.value, value.error + 32.0 * f64::EPSILON * value.value, value.method))

@@ -6,6 +6,41 @@ use libm::{exp, log, sqrt};
 const PAIRINGS: [Pairing; 4] =
     [Pairing::PointPoints, Pairing::RayPoints, Pairing::RayBeams { sine: 0.5 }, Pairing::RayIsotropicBeams];
 
+/// Beams at a point are thrown through a disc across them: the mean and the variance of a Poisson number of places, and the field on
+/// the disc, as of points along a ray.
+#[test]
+fn beams_at_a_point_are_places_on_a_disc() {
+    let any = Ray { length: 7.0, extinction: 3.0 };
+    let mut random = Random(3);
+    let (density, r, trials) = (400.0, 0.2, 20_000);
+    let (mut sum, mut square) = (0.0, 0.0);
+    for _ in 0..trials {
+        // A Poisson number in a square of side 0.4 about the disc, by exponential gaps.
+        let (mut arrived, mut estimate) = (0.0, 0.0);
+        loop {
+            arrived -= log(1.0 - random.unit()) / (density * 0.16);
+            if arrived > 1.0 {
+                break;
+            }
+            let [x, y] = [0.0; 2].map(|_: f64| 0.4 * (random.unit() - 0.5));
+            estimate += if x * x + y * y <= r * r { 1.0 / (PI * r * r) } else { 0.0 };
+        }
+        sum += estimate;
+        square += estimate * estimate;
+    }
+    let n = f64::from(trials);
+    let (mean, variance) = (sum / n, square / n - (sum / n) * (sum / n));
+    let relative = Pairing::PointBeams.relative_variance(Kernel::Uniform, r, density, any).unwrap().value;
+    assert!((mean / density - 1.0).abs() < 5.0 * sqrt(relative / n), "{mean}");
+    // The variance of a nearly normal number is known to sqrt(2/n).
+    assert!((variance / (relative * density * density) - 1.0).abs() < 5.0 * sqrt(2.1 / n), "{variance}");
+    for x in [0.3, 2.0] {
+        let [mine, theirs] = [Pairing::PointBeams, Pairing::RayPoints]
+            .map(|pairing| pairing.exponential_mean(Kernel::Biweight, x).unwrap().value);
+        assert!(mine == theirs && mine > 1.0);
+    }
+}
+
 #[test]
 fn the_mean_is_the_field_under_the_kernel() {
     for kernel in [Kernel::Uniform, Kernel::Epanechnikov, Kernel::Cone { kappa: 1.0 }] {

@@ -14,6 +14,7 @@ use turbid_figure::{Axis, Figure};
 ///
 ///   point asks points           blur in 3 dimensions, variance ~ 1/r^3
 ///   ray asks points             blur across the ray,  variance ~ 1/r^2       (the beam radiance estimate)
+///   point asks beams            blur across the beams, variance ~ 1/r^2      (parallel beams)
 ///   ray asks beams              blur along the common normal, variance ~ E[1/sin theta]/r
 ///
 /// bias = coefficient r^2 times the Laplacian in the directions of blur; relative variance in a uniform field
@@ -62,13 +63,18 @@ impl Args {
         Ray { length: self.length, extinction: self.extinction }
     }
 
-    /// The three ways, by name.
-    fn pairings(&self) -> [(Pairing, &'static str); 3] {
+    /// The four ways, by name.
+    fn pairings(&self) -> [(Pairing, &'static str); 4] {
         let beams = match self.sine {
             Some(sine) => (Pairing::RayBeams { sine }, "ray, beams"),
             None => (Pairing::RayIsotropicBeams, "ray, isotropic beams"),
         };
-        [(Pairing::PointPoints, "point, points"), (Pairing::RayPoints, "ray, points"), beams]
+        [
+            (Pairing::PointPoints, "point, points"),
+            (Pairing::RayPoints, "ray, points"),
+            (Pairing::PointBeams, "point, beams"),
+            beams,
+        ]
     }
 }
 

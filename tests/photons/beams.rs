@@ -535,3 +535,170 @@ fn what_beams_cannot_do_is_refused() {
     let balls = Estimator::new(Kernel::Uniform, Gather::radius(0.1).unwrap());
     assert!(balls.along_beams(Positive::ONE).along_rays(Positive::ONE).beam_radius.is_none());
 }
+
+/// One beam past a place, by hand: beside it, at the edge of the disc, before its start and behind its end; long ones by what passes.
+#[test]
+fn a_beam_past_a_place_by_hand() {
+    let even = homogeneous(Spectrum::ONE, Spectrum::grey(0.5), 0.5);
+    let read = |kernel: Kernel, kind: BeamKind, length: f64, place: DVec3| {
+        let map = map(vec![beam(DVec3::ZERO, DVec3::Z, length, kind)]);
+        let estimate = reading(kernel, 0.1).fluence(&map, place, (0, &even), &Boundary::UNKNOWN);
+        (estimate.value[0], estimate.found)
+    };
+    let place = DVec3::new(0.06, 0.0, 0.7);
+    for (kernel, kind, expected) in [
+        (Kernel::Uniform, BeamKind::Expected, 15.806_801),
+        (Kernel::Epanechnikov, BeamKind::Expected, 20.232_705),
+        (Kernel::Uniform, BeamKind::Sampled, 100.0 / PI),
+    ] {
+        let (found, count) = read(kernel, kind, 4.0, place);
+        assert!((found / expected - 1.0).abs() < 5e-8 && count == 1, "{kernel:?} {kind:?}: {found}");
+    }
+    for (length, place) in [
+        (0.69, place),
+        (4.0, DVec3::new(0.06, 0.0, -1e-9)),
+        (4.0, DVec3::new(0.0, 0.100_000_1, 0.7)),
+        (0.7, place),
+    ] {
+        assert_eq!(read(Kernel::Uniform, BeamKind::Sampled, length, place), (0.0, 0), "{length} {place}");
+    }
+    // Of another medium.
+    let other = map(vec![Beam { medium: 1, ..beam(DVec3::ZERO, DVec3::Z, 4.0, BeamKind::Sampled) }]);
+    let estimate = reading(Kernel::Uniform, 0.1).fluence(&other, place, (0, &even), &Boundary::UNKNOWN);
+    assert_eq!((estimate.value, estimate.found, estimate.rejected), (Spectrum::ZERO, 0, 1));
+}
+
+/// Random beams, whole and cut, of any length: found about a place are those that a formula of its own finds one by one, each once.
+#[test]
+fn beams_about_a_place_are_those_found_one_by_one() {
+    let mut stream = Stream::new(21, Purpose::Synthetic, 0, 0);
+    let mut found = 0;
+    for trial in 0..60 {
+        let size = libm::exp10(8.0 * stream.unit() - 4.0);
+        let far = DVec3::from(stream.triple()) * [0.0, 3.0 * size, 1e3 * size][trial % 3];
+        let count = [0, 1, 16, 17, 300, 2000][trial % 6];
+        let beams: Vec<Beam> = (0..count)
+            .map(|which| {
+                let start = far + (DVec3::from(stream.triple()) - 0.5) * size;
+                let length = size * [0.0, 0.1, 1.0, 30.0][which % 4] * stream.unit();
+                beam(start, warp::square_to_sphere(stream.pair()), length, BeamKind::Sampled)
+            })
+            .collect();
+        let map = map(beams.clone());
+        for which in 0..8 {
+            let place = far + (DVec3::from(stream.triple()) - 0.5) * 1.2 * size;
+            let radius = size * [1e-3, 0.03, 0.3, 20.0][which % 4];
+            let mut seen = Vec::new();
+            let is_known = map.about(place, radius, |beam, along, squared| {
+                let off = place.distance(beam.at(along));
+                assert!((off * off - squared).abs() <= 1e-9 * (squared + size * size), "{off} {squared}");
+                seen.push(beam.start.to_array().map(f64::to_bits));
+            });
+            assert!(is_known);
+            found += seen.len();
+            let mut expected = Vec::new();
+            let mut undecided = 0;
+            for beam in &beams {
+                let (a, b) = (beam.start, beam.at(beam.length));
+                let whole = (b - a).length_squared();
+                let t = (place - a).dot(b - a) / whole;
+                let off = (place - a).cross(b - a).length() / whole.sqrt();
+                // What rounding decides may be either.
+                let error = 1e-11 * (1.0 + far.length() / size) * (1.0 + size / beam.length);
+                let is_sure = (t.abs() > error)
+                    && ((t - 1.0).abs() > error)
+                    && (off / radius - 1.0).abs() > error * size / radius;
+                undecided += usize::from(!is_sure);
+                if is_sure && (0.0..1.0).contains(&t) && off <= radius {
+                    expected.push(beam.start.to_array().map(f64::to_bits));
+                }
+            }
+            seen.sort_unstable();
+            let all = seen.len();
+            seen.dedup();
+            assert_eq!(seen.len(), all, "twice");
+            assert!(expected.iter().all(|key| seen.binary_search(key).is_ok()), "{trial} {which}: missed");
+            assert!(seen.len() <= expected.len() + undecided, "{trial} {which}: too many");
+        }
+    }
+    assert!(found > 5000, "{found}");
+}
+
+/// The same lines in a box, whole or beside a wall: the fluence at places in the middle, at a face, in an edge and behind the wall's
+/// rim comes out right for every kernel; without clipping it does not.
+#[test]
+fn a_uniform_fluence_comes_out_right_beside_walls() {
+    let even = homogeneous(Spectrum::ONE, Spectrum::ONE, 0.0);
+    let whole = cuboid(DVec3::ZERO, DVec3::ONE);
+    let wall = Rectangle::new(DVec3::new(0.3, 0.0, 0.3), DVec3::Y, DVec3::new(0.4, 0.0, 0.25)).unwrap();
+    let walls = [Shape::Rectangle(wall)];
+    let known = Boundary::of(&whole).unwrap();
+    let places = [[0.5, 0.5, 0.5], [0.05, 0.4, 0.6], [0.9, 0.95, 0.1], [0.6, 0.5, 0.4]].map(DVec3::from);
+    let (count, size) = (2000, 0.9);
+    let mut moments = [[[Moments::new(); 5]; 2]; 2];
+    for replicate in 0..600 {
+        let mut stream = Stream::new(9, Purpose::Synthetic, replicate, 0);
+        let mut beams: Vec<Beam> = Vec::new();
+        for _ in 0..count {
+            let frame = turbid::math::Frame::new(warp::square_to_sphere(stream.pair()));
+            let [x, y] = [stream.unit(), stream.unit()].map(|u| size * (2.0 * u - 1.0));
+            let line = Ray::new(DVec3::splat(0.5) + frame.x * x + frame.y * y - frame.z * 2.0, frame.z);
+            if let Some(inside) = whole.interval(&line) {
+                beams.push(beam(line.at(inside.start), line.dir, inside.length(), BeamKind::Sampled));
+            }
+        }
+        let map = map(beams);
+        for (boundary, moments) in [known, known.about(&walls)].iter().zip(&mut moments) {
+            for (is_clipped, moments) in [true, false].into_iter().zip(moments) {
+                for (kernel, moments) in Kernel::ALL.into_iter().zip(moments) {
+                    let reading = BeamEstimator { is_clipped, ..reading(kernel, 0.2) };
+                    let of = |place: &DVec3| reading.fluence(&map, *place, (0, &even), boundary).value[0];
+                    moments.push(places.iter().map(of).sum::<f64>() / places.len() as f64);
+                }
+            }
+        }
+    }
+    let expected = f64::from(count) / (4.0 * size * size);
+    for (name, moments) in ["alone", "beside a wall"].iter().zip(&moments) {
+        for (kernel, moments) in Kernel::ALL.into_iter().zip(&moments[0]) {
+            let what = format!("fluence {name}, {kernel:?}");
+            verdict::agrees(&what, moments, (expected, 0.0), 0.03 * expected, 12);
+        }
+        verdict::rejects(&format!("fluence, not clipped, {name}"), &moments[1][0], expected, 12);
+    }
+}
+
+/// Beams about a place in a periodic cell are those of the world that it stands for; a radius beyond the cell is not a number.
+#[test]
+fn places_find_the_copies_of_a_cell() {
+    let even = homogeneous(Spectrum::ONE, Spectrum::ONE, 0.0);
+    let mut stream = Stream::new(10, Purpose::Synthetic, 0, 0);
+    let side = DVec2::new(1.0, 1.5);
+    let beams: Vec<Beam> = (0..400)
+        .map(|_| {
+            let start = DVec3::from(stream.triple()) * DVec3::new(1.0, 1.5, 2.0);
+            let dir = warp::square_to_sphere(stream.pair());
+            // Cut at the cell, as a pass stores them.
+            let inside =
+                cuboid(DVec3::ZERO, DVec3::new(1.0, 1.5, 2.0)).interval(&Ray::new(start, dir)).unwrap();
+            beam(start, dir, inside.end * 0.9, BeamKind::Sampled)
+        })
+        .collect();
+    let world: Vec<Beam> = (-2..=2)
+        .flat_map(|i| (-2..=2).map(move |j| DVec3::new(f64::from(i), 1.5 * f64::from(j), 0.0)))
+        .flat_map(|shift| beams.iter().map(move |beam| Beam { start: beam.start + shift, ..*beam }))
+        .collect();
+    let (cell, world) = (BeamMap::new(vec![beams], 1, Some(side)).unwrap(), map(world));
+    for _ in 0..100 {
+        let place = DVec3::from(stream.triple()) * DVec3::new(1.0, 1.5, 2.0);
+        let read = |map: &BeamMap, place: DVec3, radius: f64| {
+            reading(Kernel::Cone, radius).fluence(map, place, (0, &even), &Boundary::UNKNOWN).value[0]
+        };
+        let expected = read(&world, place, 0.4);
+        let elsewhere = place + DVec3::new(3.0, -6.0, 0.0);
+        for found in [read(&cell, place, 0.4), read(&cell, elsewhere, 0.4)] {
+            assert!((found - expected).abs() <= 1e-9 * expected, "{found} {expected}");
+        }
+        assert!(read(&cell, place, 1.1).is_nan());
+    }
+}

@@ -34,6 +34,8 @@ const STEPS: usize = 80;
 pub enum Query {
     /// A place, points: balls.
     Places,
+    /// A place, the flights that pass it.
+    BeamsAtPlaces,
     /// A ray, points, in balls step by step.
     Marched,
     /// A ray, points about the whole of it.
@@ -44,12 +46,14 @@ pub enum Query {
 
 impl Query {
     /// All, the most dispersed first.
-    pub const ALL: [Query; 4] = [Query::Places, Query::Marched, Query::Rays, Query::Beams];
+    pub const ALL: [Query; 5] =
+        [Query::Places, Query::BeamsAtPlaces, Query::Marched, Query::Rays, Query::Beams];
 
     /// Its name in cases.
     pub fn name(self) -> &'static str {
         match self {
             Query::Places => "places",
+            Query::BeamsAtPlaces => "beams-at-places",
             Query::Marched => "marched",
             Query::Rays => "rays",
             Query::Beams => "beams",
@@ -60,6 +64,7 @@ impl Query {
     pub fn title(self) -> &'static str {
         match self {
             Query::Places => "points at a place",
+            Query::BeamsAtPlaces => "beams at a place",
             Query::Marched => "points in balls along a ray",
             Query::Rays => "points along a ray",
             Query::Beams => "beams along a ray",
@@ -71,16 +76,17 @@ impl Query {
         match self {
             Query::Places | Query::Marched => Pairing::PointPoints,
             Query::Rays => Pairing::RayPoints,
+            Query::BeamsAtPlaces => Pairing::PointBeams,
             Query::Beams => Pairing::RayBeams { sine: 1.0 },
         }
     }
 
-    /// How fast the field falls, as an exponential, where the blur is [1/mfp]: along its gradient, or, of beams, along the normal of
-    /// beams and ray, which leans on it.
+    /// How fast the field falls, as an exponential, where the blur is [1/mfp]: along its gradient, or, of beams, across them, where it
+    /// leans on it.
     pub fn slope(self) -> f64 {
         match self {
             Query::Places | Query::Marched | Query::Rays => 1.0 / MU0,
-            Query::Beams => SINE / MU0,
+            Query::BeamsAtPlaces | Query::Beams => SINE / MU0,
         }
     }
 
@@ -88,14 +94,19 @@ impl Query {
     pub fn codimension(self) -> f64 {
         match self {
             Query::Places => 3.0,
-            Query::Marched | Query::Rays => 2.0,
+            Query::BeamsAtPlaces | Query::Marched | Query::Rays => 2.0,
             Query::Beams => 1.0,
         }
     }
 
     /// Whether a ray asks.
     pub fn is_ray(self) -> bool {
-        self != Query::Places
+        !matches!(self, Query::Places | Query::BeamsAtPlaces)
+    }
+
+    /// Whether flights are asked.
+    pub fn is_of_beams(self) -> bool {
+        matches!(self, Query::BeamsAtPlaces | Query::Beams)
     }
 }
 

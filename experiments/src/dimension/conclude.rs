@@ -80,7 +80,7 @@ fn best(points: &[Point], (sizes, filling): (&[u64], &[[f64; 3]]), query: Query)
     let words = (query.name(), query.title().to_string(), (-4.0 / (query.codimension() + 4.0), words));
     let predicted = ladders.iter().map(least).collect();
     let tree =
-        |[shooting, points, beams]: &[f64; 3]| shooting + if query == Query::Beams { beams } else { points };
+        |[shooting, points, beams]: &[f64; 3]| shooting + if query.is_of_beams() { beams } else { points };
     Answer {
         query,
         curve: Curve::new(words, sizes, chosen, &reported, predicted, vec![0.0; sizes.len()]),

@@ -3,7 +3,7 @@
 use super::cases::{
     BEAMS, CELLS, POINTS, Query, SHOOTING, middles, name, places, radii, rays, reading, scene, sizes,
 };
-use super::read::{Uncollided, along_beams, along_points, at_place};
+use super::read::{Uncollided, along_beams, along_points, at_place, beams_at_place};
 use crate::harness::{CellId, CellOutput, Group, Settings};
 use crate::setups::Maps;
 use turbid::photons::beams::BeamMap;
@@ -78,6 +78,9 @@ fn asked(query: Query, scene: &Scene, stored: &Stored, radius: f64) -> anyhow::R
     let Stored { points, beams } = stored;
     match query {
         Query::Places => places().into_iter().map(|place| at_place(points, place, radius)).collect(),
+        Query::BeamsAtPlaces => {
+            places().into_iter().map(|place| beams_at_place(beams, scene, place, radius)).collect()
+        }
         Query::Marched => rays()
             .map(|ray| {
                 let along = middles().map(|t| at_place(points, ray.at(t), radius));

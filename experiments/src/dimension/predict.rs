@@ -43,7 +43,7 @@ fn second_moment(query: Query, density: f64, radius: f64) -> anyhow::Result<f64>
     let x = radius * query.slope();
     Ok(match query {
         // The square of the uniform kernel is a uniform one.
-        Query::Places | Query::Rays | Query::Beams => {
+        Query::Places | Query::BeamsAtPlaces | Query::Rays | Query::Beams => {
             let even = query.blurs_as().relative_variance(Kernel::Uniform, radius, density, ray)?;
             even.value * query.blurs_as().exponential_mean(Kernel::Uniform, x)?.value
         }

@@ -50,6 +50,14 @@ pub fn at_place(points: &PhotonMap, place: DVec3, radius: f64) -> anyhow::Result
     Ok(ball.fluence(points, place, Spectrum::ONE, &Boundary::UNKNOWN).value[0] / exact() - 1.0)
 }
 
+/// Relative error of the fluence at a place, from beams.
+pub fn beams_at_place(beams: &BeamMap, scene: &Scene, place: DVec3, radius: f64) -> anyhow::Result<f64> {
+    let radius = Positive::new("the radius", radius)?;
+    let discs = BeamEstimator { kernel: Kernel::Uniform, radius, is_clipped: false };
+    let medium = (0, &scene.regions()[0].medium);
+    Ok(discs.fluence(beams, place, medium, &Boundary::UNKNOWN).value[0] / exact() - 1.0)
+}
+
 /// Relative error of what a ray collects, from points.
 pub fn along_points(points: &PhotonMap, scene: &Scene, ray: &Ray, radius: f64) -> anyhow::Result<f64> {
     let radius = Positive::new("the radius", radius)?;

@@ -2,7 +2,7 @@
 
 use super::cases::{CELLS, QUERIES, Schedule, best, maps, name, photons, radii, rays, schedules, stops};
 use crate::dimension::cases::{Query, places, scene};
-use crate::dimension::read::{Uncollided, along_beams, along_points, at_place};
+use crate::dimension::read::{Uncollided, along_beams, along_points, at_place, beams_at_place};
 use crate::harness::{CellId, CellOutput, Group, Settings};
 use turbid::photons::beams::BeamMap;
 use turbid::photons::{Emitter, Histories, PhotonMap, Run};
@@ -74,6 +74,9 @@ fn read(
     radius: f64,
 ) -> anyhow::Result<Vec<f64>> {
     match query {
+        Query::BeamsAtPlaces => {
+            places().into_iter().map(|place| beams_at_place(beams, scene, place, radius)).collect()
+        }
         Query::Places | Query::Marched => {
             places().into_iter().map(|place| at_place(points, place, radius)).collect()
         }

@@ -60,6 +60,29 @@ impl BeamMap {
         true
     }
 
+    /// Visits every beam that passes a place, as [`BeamTree::about`] has it; in a periodic cell, those of the world that it stands for.
+    /// False where such a map cannot tell: the radius is larger than the cell.
+    pub fn about(&self, place: DVec3, radius: f64, mut visit: impl FnMut(&Beam, f64, f64)) -> bool {
+        let Some(side) = self.side else {
+            self.tree.about(place, radius, visit);
+            return true;
+        };
+        if radius.is_nan() || radius > side.min_element() {
+            return false;
+        }
+        let place = periodic::wrap(place, side);
+        // The cells that points within the radius are in.
+        let cells = |axis: usize| {
+            let (low, high) = (place[axis] - radius, place[axis] + radius);
+            (low / side[axis]).floor() as i64..=(high / side[axis]).floor() as i64
+        };
+        for (i, j) in cells(0).flat_map(|i| cells(1).map(move |j| (i, j))) {
+            let shift = DVec3::new(i as f64 * side.x, j as f64 * side.y, 0.0);
+            self.tree.about(place - shift, radius, &mut visit);
+        }
+        true
+    }
+
     /// The beams.
     pub fn tree(&self) -> &BeamTree {
         &self.tree

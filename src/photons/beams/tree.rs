@@ -109,6 +109,29 @@ impl BeamTree {
                 visit(beam, &crossing);
             }
         };
+        self.each_piece(ray, span, radius, &mut ask);
+    }
+
+    /// Visits every beam whose point nearest to a place lies on it, its start included and its end not, and within `radius` \[L\] of the
+    /// place, with the distance along the beam \[L\] and the square of that between both \[L^2\].
+    pub fn about(&self, place: DVec3, radius: f64, mut visit: impl FnMut(&Beam, f64, f64)) {
+        let mut ask = |piece: &Piece| {
+            let beam = &self.beams[piece.beam as usize];
+            let way = place - beam.start;
+            let along = way.dot(beam.dir);
+            let (from, to) = piece.span(beam.length);
+            let squared = (way - beam.dir * along).length_squared();
+            if from <= along && along < to && squared <= radius * radius {
+                visit(beam, along, squared);
+            }
+        };
+        // The ball about the place lies in it.
+        let span = Interval { start: -radius, end: radius };
+        self.each_piece(&Ray::new(place, DVec3::Z), span, radius, &mut ask);
+    }
+
+    /// Asks every piece whose box comes within `radius` of a stretch of a ray.
+    fn each_piece(&self, ray: &Ray, span: Interval, radius: f64, ask: &mut impl FnMut(&Piece)) {
         let Some(cylinder) = Cylinder::new(&self.units, ray, span, radius) else {
             self.pieces.iter().for_each(ask);
             return;
