@@ -12,6 +12,7 @@ pub mod budget;
 pub mod claims_1998;
 pub mod cost_model;
 pub mod coverage;
+pub mod debiasing;
 pub mod dimension;
 pub mod extremes;
 pub mod fuzz;
@@ -39,6 +40,7 @@ pub const ALL: &[Experiment] = &[
     transmittance::EXPERIMENT,
     rates::EXPERIMENT,
     dimension::EXPERIMENT,
+    debiasing::EXPERIMENT,
     tradeoff::EXPERIMENT,
     extremes::EXPERIMENT,
     coverage::EXPERIMENT,

@@ -1,20 +1,16 @@
 //! Measuring one batch of maps.
 
 use super::cases::{
-    ALBEDO, BEAMS, CELLS, DEPTH, MU0, POINTS, Query, SHOOTING, SPAN, middles, name, places, radii, rays,
-    reading, scene, sizes,
+    BEAMS, CELLS, POINTS, Query, SHOOTING, middles, name, places, radii, rays, reading, scene, sizes,
 };
+use super::read::{Uncollided, along_beams, along_points, at_place};
 use crate::harness::{CellId, CellOutput, Group, Settings};
 use crate::setups::Maps;
-use turbid::Spectrum;
-use turbid::estimators::boundary::Boundary;
-use turbid::estimators::{BeamEstimator, Estimator, Gather, Kernel, RayEstimator};
-use turbid::math::{FOUR_PI, Positive, Ray};
 use turbid::photons::beams::BeamMap;
-use turbid::photons::{Emitter, Histories, Photon, PhotonMap, Run, Storage};
+use turbid::photons::{Emitter, Histories, PhotonMap, Run};
 use turbid::scene::Scene;
 use turbid::stats::Moments;
-use turbid::transport::{Flags, NoProgress};
+use turbid::transport::NoProgress;
 
 /// All cells.
 pub fn groups(settings: &Settings) -> Vec<Group> {
@@ -39,7 +35,8 @@ fn measure(settings: &Settings, cell: &CellId, size: Maps) -> anyhow::Result<Cel
         let replicate = cell.stream("dimension") ^ map << 16;
         let histories = Histories { count: size.photons, seed: settings.seed, replicate, max_order: Some(0) };
         let run = Run::new(&scene, &emitter, histories);
-        let mut pass = output.time(SHOOTING, |_| run.pass(&Uncollided, &NoProgress))?;
+        let store = Uncollided { points: true, beams: true };
+        let mut pass = output.time(SHOOTING, |_| run.pass(&store, &NoProgress))?;
         output.count("photons emitted", pass.emitted());
         let beams = std::mem::take(&mut pass.beams);
         let side = scene.periodic_cell().map(|cell| cell.side);
@@ -70,23 +67,6 @@ fn measure(settings: &Settings, cell: &CellId, size: Maps) -> anyhow::Result<Cel
     Ok(output)
 }
 
-/// Photons on their way to the first event: where they collide, and how they get there.
-struct Uncollided;
-
-impl Storage for Uncollided {
-    fn in_medium(&self, _: u64, photon: &Photon) -> bool {
-        photon.order == 0
-    }
-
-    fn has_beams(&self) -> bool {
-        true
-    }
-
-    fn on_flight(&self, _: u64, order: u32, _: Flags) -> bool {
-        order == 0
-    }
-}
-
 /// One pass as points and as beams.
 struct Stored {
     points: PhotonMap,
@@ -95,34 +75,16 @@ struct Stored {
 
 /// The relative errors of all questions of a kind to a map: of the fluence at places, or of its integral along rays.
 fn asked(query: Query, scene: &Scene, stored: &Stored, radius: f64) -> anyhow::Result<Vec<f64>> {
-    let exact = libm::exp(-DEPTH / MU0);
-    let kernel = Kernel::Uniform;
-    let length = Positive::new("the radius", radius)?;
-    let balls = Estimator::new(kernel, Gather::radius(radius)?);
-    let fluence = |place| balls.fluence(&stored.points, place, Spectrum::ONE, &Boundary::UNKNOWN).value[0];
-    let medium = &scene.regions()[0].medium;
-    // All of it passes, so that a ray is the same all along.
-    let passed = |_: f64| Spectrum::ONE;
-    let whole = exact * ALBEDO * SPAN.length() / FOUR_PI;
-    Ok(match query {
-        Query::Places => places().into_iter().map(|place| fluence(place) / exact - 1.0).collect(),
-        Query::Marched => {
-            let along = |ray: Ray| middles().map(|t| fluence(ray.at(t))).collect::<Moments>();
-            rays().map(|ray| along(ray).mean() / exact - 1.0).collect()
-        }
-        Query::Rays => {
-            let points = RayEstimator { kernel, radius: length, is_clipped: false };
-            let read = |ray: Ray| {
-                points.radiance(&stored.points, (&ray, SPAN), medium, &Boundary::UNKNOWN, passed).value[0]
-            };
-            rays().map(|ray| read(ray) / whole - 1.0).collect()
-        }
-        Query::Beams => {
-            let beams = BeamEstimator { kernel, radius: length, is_clipped: false };
-            let read = |ray: Ray| {
-                beams.radiance(&stored.beams, (&ray, SPAN), (0, medium), &Boundary::UNKNOWN, passed).value[0]
-            };
-            rays().map(|ray| read(ray) / whole - 1.0).collect()
-        }
-    })
+    let Stored { points, beams } = stored;
+    match query {
+        Query::Places => places().into_iter().map(|place| at_place(points, place, radius)).collect(),
+        Query::Marched => rays()
+            .map(|ray| {
+                let along = middles().map(|t| at_place(points, ray.at(t), radius));
+                Ok(along.collect::<anyhow::Result<Vec<f64>>>()?.iter().collect::<Moments>().mean())
+            })
+            .collect(),
+        Query::Rays => rays().map(|ray| along_points(points, scene, &ray, radius)).collect(),
+        Query::Beams => rays().map(|ray| along_beams(beams, scene, &ray, radius)).collect(),
+    }
 }

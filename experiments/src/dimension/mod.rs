@@ -5,11 +5,12 @@
 //!
 //! The kernel's own dimension sets the blur alone: what is stored and what asks set how the variance falls with the radius.
 
-mod cases;
+pub(crate) mod cases;
 mod conclude;
 mod figures;
 mod measure;
-mod predict;
+pub(crate) mod predict;
+pub(crate) mod read;
 mod results;
 
 use crate::harness::Experiment;

@@ -8,6 +8,7 @@ mod blur;
 mod boundary;
 mod claims_1998;
 mod coverage;
+mod debiasing;
 mod dimension;
 mod extremes;
 mod march;
