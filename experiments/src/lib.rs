@@ -23,6 +23,7 @@ pub mod own_study;
 pub mod prediction;
 pub mod rates;
 pub mod report;
+pub mod selection;
 pub mod setups;
 pub mod sweep;
 pub mod theory;
@@ -41,6 +42,7 @@ pub const ALL: &[Experiment] = &[
     rates::EXPERIMENT,
     dimension::EXPERIMENT,
     debiasing::EXPERIMENT,
+    selection::EXPERIMENT,
     tradeoff::EXPERIMENT,
     extremes::EXPERIMENT,
     coverage::EXPERIMENT,

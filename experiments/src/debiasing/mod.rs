@@ -11,7 +11,7 @@ mod cases;
 mod conclude;
 mod figures;
 mod measure;
-mod predict;
+pub(crate) mod predict;
 mod results;
 
 use crate::harness::Experiment;

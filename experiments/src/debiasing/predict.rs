@@ -16,7 +16,7 @@ pub struct Ball {
     /// The chance that a photon of the pass counts.
     chance: f64,
     /// What a photon that counts brings to an estimate of one photon, over the exact value.
-    weight: f64,
+    pub weight: f64,
 }
 
 impl Ball {
@@ -25,7 +25,12 @@ impl Ball {
         let one = Case::new(query, 1, radius)?;
         let mean = 1.0 + one.blur;
         let weight = (one.variance + mean * mean) / mean;
-        Ok(Ball { mean, chance: mean / weight, weight })
+        Ok(Ball::of(mean, weight))
+    }
+
+    /// The same from its mean and what a photon that counts brings.
+    pub fn of(mean: f64, weight: f64) -> Self {
+        Ball { mean, chance: mean / weight, weight }
     }
 
     /// Variance of an estimate of one photon.

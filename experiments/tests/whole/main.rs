@@ -14,5 +14,6 @@ mod extremes;
 mod march;
 mod pages;
 mod rates;
+mod selection;
 mod tradeoff;
 mod transmittance;
