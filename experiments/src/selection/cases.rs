@@ -80,8 +80,9 @@ pub fn sizes(settings: &Settings) -> Vec<(u64, u64)> {
         &[(1_000, 10), (10_000, 4), (100_000, 1)][..],
         &[(1_000, 20), (10_000, 8), (100_000, 2), (1_000_000, 1)],
     );
-    let scaled = |n: u64| ((n as f64 * settings.photon_scale) as u64).max(100);
-    all.iter().map(|&(photons, batch)| (scaled(photons), batch)).collect()
+    // Sizes stay different.
+    let scaled = |n: u64, least: u64| ((n as f64 * settings.photon_scale) as u64).max(least);
+    all.iter().zip(1..).map(|(&(photons, batch), place)| (scaled(photons, 100 * place), batch)).collect()
 }
 
 /// Whether a question is put to maps of so many photons: beams take too long about rays that many pass.

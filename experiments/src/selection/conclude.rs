@@ -145,7 +145,7 @@ fn rows(choices: &[Choice], advice: &[Advised]) -> anyhow::Result<Vec<Row>> {
         let error = Row::measured(&name, "error", Unit::ONE, &choice.errors.iter().collect())?;
         rows.push(error.with(asked));
         rows.push(Row::estimated(&name, "regret", Unit::ONE, &choice.regret())?.with(asked));
-        if choice.octaves.std_error() > 0.0 {
+        if choice.octaves.n() > 0 && choice.octaves.std_error() > 0.0 {
             let octaves = Row::measured(&name, "octaves from the best radius", Unit::ONE, &choice.octaves)?;
             rows.push(octaves.with(asked));
         }

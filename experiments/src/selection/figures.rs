@@ -42,7 +42,7 @@ pub fn selection(choices: &[Choice]) -> anyhow::Result<FigureFiles> {
     }
     let figure = Figure { width: Width::Double, columns: 3, shared_legend: true, ..Figure::new(panels) };
     let caption = "Root mean square error of an estimate whose radius is chosen from its own photons, over that of the best radius (dotted), against the \
-                   number of photons (points with 95 % intervals over cells; lines join them). In smooth fields (top) both adaptive rules stay next to \
+                   number of photons (points with 95 % intervals over cells; lines join them). In smooth fields (top) adaptive rules stay next to \
                    the best; where a dip, a face or a point light breaks the assumption of a plain bend (bottom), the interval test stays nearer to it \
                    than what trusts its first radius. Rules of thumb are right at one number of photons and wrong at others.";
     FigureFiles::draw("selection", caption, &figure)
