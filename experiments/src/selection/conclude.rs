@@ -296,10 +296,10 @@ fn notes() -> Vec<String> {
         format!(
             "The exponential is the uncollided light of \"dimension\", from real passes, and so are the face, 0.1 mean free paths below which half \
              of a large ball holds no medium, and the point light, about which the field has no bend of second order that holds as far as a ball \
-             reaches; the dip is a trough of a wave of amplitude 0.8 and length 1 mean free path among independent points. No history brings two \
+             reaches; the dip is a trough of a wave of amplitude 0.8 and length 2/3 mean free paths among independent points. No history brings two \
              photons here; where it does, all variances that a selector uses must be multiplied by one plus the clustering. All selectors look at \
              radii up to {LARGEST} mean free paths, with the uniform kernel, one question at a time, and know the number of photons and what one \
-             brings. Regret is the root mean square error of what they then read from the same photons, over that of the best fixed radius."
+             brings. Regret is the root mean square error of what they then read from the same photons, over that of the best fixed radius; it may be below 1, since a radius that follows the photons is another one at every question."
         ),
         "Plug-in: the bend is the difference of two estimates, of radii in the ratio of the root of 2, not taken for less than its own noise, put into the \
          formula of the best radius; as Kaplanyan and Dachsbacher 2013 (\"Adaptive progressive photon mapping\") set radii from the data so far. Iterated: \

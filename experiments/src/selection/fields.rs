@@ -251,7 +251,7 @@ mod tests {
             assert!((wave().unwrap().density(place) * CELL * CELL * CELL - 0.2).abs() < 1e-12);
         }
         assert!(Field::Light.places().iter().all(|p| (p.length() - DISTANCE).abs() < 1e-12));
-        assert!(DISTANCE + LARGEST < MEDIUM);
+        assert!(Field::Light.places().iter().all(|p| p.length() + LARGEST < MEDIUM));
     }
 
     /// A field of 1 has the mean 1, and s^2 that of the distance and the ball's own: b^2 + 3/5 r^2; the light within and without.
@@ -271,7 +271,7 @@ mod tests {
         let (b, r) = (DISTANCE, 0.01);
         // Of e^-s/s^2: f'' + 2 f'/s over f is 1 + 2/s + 2/s^2.
         let about_light = 1.0 + 2.0 / b + 2.0 / (b * b);
-        let dip = 4.0 * PI * PI * AMPLITUDE / (1.0 - AMPLITUDE);
+        let dip = 4.0 * PI * PI / (WAVE * WAVE) * AMPLITUDE / (1.0 - AMPLITUDE);
         for (field, bend) in [
             (Field::Places, 1.0 / (MU0 * MU0)),
             (Field::Face, 1.0 / (MU0 * MU0)),

@@ -44,6 +44,7 @@ pub fn selection(choices: &[Choice]) -> anyhow::Result<FigureFiles> {
     let caption = "Root mean square error of an estimate whose radius is chosen from its own photons, over that of the best radius (dotted), against the \
                    number of photons (points with 95 % intervals over cells; lines join them). In smooth fields (top) adaptive rules stay next to \
                    the best; where a dip, a face or a point light breaks the assumption of a plain bend (bottom), the interval test stays nearer to it \
-                   than what trusts its first radius. Rules of thumb are right at one number of photons and wrong at others.";
+                   than what trusts its first radius (in the dip both plug-in rules are caught by it, and lie upon each other). Rules of \
+                   thumb are right at one number of photons and wrong at others.";
     FigureFiles::draw("selection", caption, &figure)
 }
