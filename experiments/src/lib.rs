@@ -12,6 +12,7 @@ pub mod budget;
 pub mod claims_1998;
 pub mod cost_model;
 pub mod coverage;
+pub mod debiasing;
 pub mod dimension;
 pub mod extremes;
 pub mod fuzz;
@@ -23,6 +24,7 @@ pub mod prediction;
 pub mod progressive;
 pub mod rates;
 pub mod report;
+pub mod selection;
 pub mod setups;
 pub mod sweep;
 pub mod theory;
@@ -41,6 +43,8 @@ pub const ALL: &[Experiment] = &[
     rates::EXPERIMENT,
     dimension::EXPERIMENT,
     progressive::EXPERIMENT,
+    debiasing::EXPERIMENT,
+    selection::EXPERIMENT,
     tradeoff::EXPERIMENT,
     extremes::EXPERIMENT,
     coverage::EXPERIMENT,

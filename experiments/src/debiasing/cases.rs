@@ -1,0 +1,213 @@
+//! The cases: who asks, and which radii, levels and numbers of photons the sums have.
+
+use crate::dimension::cases::{DEPTH, Query};
+use crate::harness::Settings;
+use crate::setups::CELL;
+use glam::DVec3;
+use turbid::math::Ray;
+
+/// Who asks: c = 3, 2, 1.
+pub const QUERIES: [Query; 3] = [Query::Places, Query::Rays, Query::Beams];
+/// The first radius of all sums [mfp]. Each level halves it.
+pub const FIRST: f64 = 0.8;
+/// The most levels of a sum that is stopped.
+pub const STOPS: u32 = 4;
+/// Levels of the sum whose mean is judged.
+pub const MEAN_LEVELS: u32 = 2;
+/// Cells a group.
+pub const CELLS: u64 = 128;
+/// Places along one side of the lattice: two radii of the smallest balls of a stopped sum apart, and more.
+const SIDE: usize = 20;
+/// Rays, by the same rule.
+const RAYS: usize = 20;
+
+/// The radius behind so many levels.
+pub fn radius(levels: u32) -> f64 {
+    FIRST * libm::exp2(-f64::from(levels))
+}
+
+/// Photons of a plain estimate, and of a sum that is stopped.
+pub fn photons(settings: &Settings) -> u64 {
+    settings.photons(2_000, 8_000)
+}
+
+/// Plain estimates and sums of one cell.
+pub const BATCH: u64 = 4;
+
+/// Photons of a sum that is drawn at random, on average, and of the plain estimate beside it.
+pub fn work(settings: &Settings) -> u64 {
+    settings.photons(16_000, 64_000)
+}
+
+/// Differences of one number of photons: how many levels, and how many photons. The last balls, discs and strips hold a photon seldom.
+pub fn constant(query: Query) -> (u32, u64) {
+    match query {
+        Query::Places | Query::BeamsAtPlaces | Query::Marched => (5, 1000),
+        Query::Rays => (6, 100),
+        Query::Beams => (8, 100),
+    }
+}
+
+/// Passes of such a number in one cell: more photons where fewer of them count.
+pub fn passes(settings: &Settings, query: Query) -> u64 {
+    let quick = match query {
+        Query::Places | Query::BeamsAtPlaces | Query::Marched => 32_000,
+        Query::Rays => 16_000,
+        Query::Beams => 8_000,
+    };
+    (settings.photons(quick, 4 * quick) / constant(query).1).max(1)
+}
+
+/// A schedule of levels drawn at random.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Schedule {
+    /// Photons of the first estimate, and of the difference of level 0.
+    pub first: u64,
+    /// Photons grow by this a level, a power of two.
+    pub growth: u64,
+    /// The chance falls by this a level; less than photons grow, to have finite work.
+    pub fall: f64,
+    /// The last level that is drawn: it has the chances of all behind it, and the bias of the radius behind it is left.
+    pub last: u32,
+}
+
+impl Schedule {
+    /// N_k = N_0 2^(k (c + 4)), p_k ~ 2^(-k (c + 4.5)): finite work, and the lightest tail that such a schedule can have.
+    pub fn of(query: Query) -> Self {
+        let c = query.codimension();
+        Schedule { first: 50, growth: 1 << (c as u32 + 4), fall: libm::exp2(-(c + 4.5)), last: 2 }
+    }
+
+    /// The chance of a level.
+    pub fn chance(&self, level: u32) -> f64 {
+        let from = libm::pow(self.fall, f64::from(level));
+        if level < self.last { from * (1.0 - self.fall) } else { from }
+    }
+
+    /// The photons of a level.
+    pub fn photons(&self, level: u32) -> u64 {
+        self.first * self.growth.pow(level)
+    }
+
+    /// Photons of one replicate, on average.
+    pub fn mean_photons(&self) -> f64 {
+        let levels = (0..=self.last).map(|level| self.chance(level) * self.photons(level) as f64);
+        self.first as f64 + levels.sum::<f64>()
+    }
+
+    /// Replicates whose mean is one answer of so much work on average.
+    pub fn replicates(&self, work: u64) -> u64 {
+        ((work as f64 / self.mean_photons()).round() as u64).max(1)
+    }
+
+    /// The level of a number that is uniform from 0 to 1.
+    pub fn level(&self, u: f64) -> u32 {
+        let (mut level, mut tail) = (0, self.fall);
+        while level < self.last && u < tail {
+            level += 1;
+            tail *= self.fall;
+        }
+        level
+    }
+}
+
+/// How far off an answer is, in units of the plain estimate's root mean square error at its best radius.
+pub fn thresholds() -> Vec<f64> {
+    (-6..=10).map(|i| libm::exp2(0.5 * f64::from(i))).collect()
+}
+
+/// The threshold 1.
+pub const ONE: usize = 6;
+
+/// The quantity that is the part of the answers beyond a threshold.
+pub fn beyond(threshold: f64) -> String {
+    format!("beyond {threshold:.4}")
+}
+
+/// Which estimate.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Estimator {
+    /// One radius, behind so many levels.
+    Plain(u32),
+    /// The radius that theory finds best.
+    Best,
+    /// The sum of so many levels, photons shared out between them.
+    Stopped(u32),
+    /// The first radius of a sum alone: its levels are switched off.
+    Off,
+    /// Levels drawn at random.
+    Drawn,
+    /// The best radius for as much work.
+    Equal,
+}
+
+impl Estimator {
+    /// Those of one number of photons.
+    pub fn of_photons() -> Vec<Estimator> {
+        let plain = (0..=STOPS).map(Estimator::Plain);
+        let stopped = (1..=STOPS).map(Estimator::Stopped);
+        plain.chain([Estimator::Best]).chain(stopped).chain([Estimator::Off]).collect()
+    }
+
+    /// The name of a case in tables.
+    pub fn name(self, query: Query) -> String {
+        let asked = query.name();
+        match self {
+            Estimator::Plain(levels) => format!("{asked} plain r={}", radius(levels)),
+            Estimator::Best => format!("{asked} plain best"),
+            Estimator::Stopped(levels) => format!("{asked} stopped levels={levels}"),
+            Estimator::Off => format!("{asked} levels off"),
+            Estimator::Drawn => format!("{asked} drawn"),
+            Estimator::Equal => format!("{asked} plain best, equal work"),
+        }
+    }
+}
+
+/// The name of the case of a difference.
+pub fn difference(query: Query, level: u32) -> String {
+    format!("{} difference level={level}", query.name())
+}
+
+/// The places at the depth.
+pub fn places() -> impl Iterator<Item = DVec3> {
+    let step = CELL / SIDE as f64;
+    (0..SIDE * SIDE).map(move |i| {
+        DVec3::new((i % SIDE) as f64 + 0.5, (i / SIDE) as f64 + 0.5, 0.0) * step + DVec3::Z * DEPTH
+    })
+}
+
+/// The rays at the depth, once round the cell.
+pub fn rays() -> impl Iterator<Item = Ray> {
+    (0..RAYS).map(|i| Ray::new(DVec3::new((i as f64 + 0.5) * CELL / RAYS as f64, 0.0, DEPTH), DVec3::Y))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use turbid::rng::{Purpose, Stream};
+    use turbid::stats::{ALPHA, wilson_interval};
+
+    #[test]
+    fn places_and_rays_lie_at_the_depth() {
+        assert!(places().all(|p| p.z == DEPTH && p.x > 0.0 && p.x < CELL && p.y > 0.0 && p.y < CELL));
+        assert!(rays().all(|ray| ray.origin.z == DEPTH));
+        assert!(2.0 * radius(STOPS) < CELL / SIDE as f64 && thresholds()[ONE] == 1.0);
+    }
+
+    /// Chances add up to one, levels come as often, and each level costs less than the one before.
+    #[test]
+    fn schedules_are_chances_of_finite_work() {
+        for query in QUERIES {
+            let schedule = Schedule::of(query);
+            let chances: Vec<f64> = (0..=schedule.last).map(|level| schedule.chance(level)).collect();
+            assert!((chances.iter().sum::<f64>() - 1.0).abs() < 1e-15);
+            let mut stream = Stream::new(1, Purpose::Synthetic, 0, 0);
+            let drawn = (0..200_000).filter(|_| schedule.level(stream.unit()) > 0).count();
+            let interval = wilson_interval(drawn as u64, 200_000, 1.0 - ALPHA);
+            assert!(interval.contains(schedule.fall), "{query:?}: {interval:?}");
+            let cost =
+                |level: u32| libm::pow(schedule.fall, f64::from(level)) * schedule.photons(level) as f64;
+            assert!((cost(1) / cost(0) - 0.5f64.sqrt()).abs() < 1e-12);
+        }
+    }
+}

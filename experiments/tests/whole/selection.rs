@@ -1,0 +1,14 @@
+//! The experiment `selection`, whole, on few photons.
+
+use super::run;
+
+/// A twentieth of the photons, some seconds: every radius is chosen, judged and drawn.
+#[test]
+fn the_experiment_runs_and_finds_no_contradiction() {
+    run::finds_no_contradiction(env!("CARGO_BIN_EXE_selection"), "0.05");
+}
+
+#[test]
+fn the_fewest_photons_end_with_a_report() {
+    run::ends_with_the_fewest_photons(env!("CARGO_BIN_EXE_selection"));
+}
