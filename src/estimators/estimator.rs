@@ -3,8 +3,8 @@
 use super::boundary::{Boundary, Gathered, PhotonFilter, Rejection, Surroundings, Treatment, accepted};
 use super::point::{ball_sum, for_each_photon, in_scattered_sum};
 use super::{
-    BallSum, BeamEstimator, Codimension, Directional, Estimate, Gather, Kernel, NeighborCount, PlaneEstimator,
-    RayEstimator,
+    BallSum, BeamEstimator, Codimension, Directional, Estimate, Gather, Kernel, NeighborCount,
+    PlaneEstimator, RayEstimator,
 };
 use crate::Spectrum;
 use crate::math::{Positive, cosine_pair};

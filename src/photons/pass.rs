@@ -2,8 +2,8 @@
 
 use super::beams::{Beam, BeamMap, FlightBeams, MOST_CELLS, check_beams};
 use super::importance::{Branching, Importance};
-use super::tallies::{Scores, Tallies};
 use super::planes::{Plane, PlaneMap, check_planes, second_leg};
+use super::tallies::{Scores, Tallies};
 use super::{Emitter, Photon, PhotonMap, check_end, periodic};
 use crate::Spectrum;
 use crate::error::{Error, Result};

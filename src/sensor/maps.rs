@@ -2,8 +2,8 @@
 
 use super::PhotonForecast;
 use super::photons::{
-    OrderMaps, PhotonReadings, RadianceMaps, Surroundings, check, check_orders, forecast_of, map_orders, maps, margin_of,
-    max_order, read_bins,
+    OrderMaps, PhotonReadings, RadianceMaps, Surroundings, check, check_orders, forecast_of, map_orders,
+    maps, margin_of, max_order, read_bins,
 };
 use crate::Spectrum;
 use crate::error::{Error, Result};

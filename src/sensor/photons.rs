@@ -549,7 +549,8 @@ impl OrderMaps {
             let direct = self.beams.iter().find(|(held, _)| range.contains(0) && *held == DIRECT);
             let direct = direct.filter(|_| estimator.beam_radius.is_some());
             let is_filled = planes.is_some() == of_planes.is_some() && direct.is_some() == range.contains(0);
-            return is_filled.then(|| AskedMap::Planes(planes.map(|(_, map)| map), direct.map(|(_, map)| map)));
+            return is_filled
+                .then(|| AskedMap::Planes(planes.map(|(_, map)| map), direct.map(|(_, map)| map)));
         }
         if estimator.beam_radius.is_some() && is_radiance(sensor) {
             let own = self.beams.iter().find(|(held, _)| *held == range);
@@ -927,7 +928,8 @@ fn radiance(
                     .map(|of_rays| of_rays.radiance(map, way, medium, &boundary, passed).value),
                 AskedMap::Beams(map) => across(map),
                 AskedMap::Planes(planes, direct) => {
-                    let of_planes = |map| PlaneEstimator.radiance(map, way, (scene, segment.medium), passed).value;
+                    let of_planes =
+                        |map| PlaneEstimator.radiance(map, way, (scene, segment.medium), passed).value;
                     let once = direct.and_then(across);
                     Some(planes.map_or(Spectrum::ZERO, of_planes) + once.unwrap_or(Spectrum::ZERO))
                 }

@@ -22,8 +22,7 @@ impl Piece {
     /// From where to where along a side \[L\]: the end of one is the start of the next, bit by bit.
     fn span(self, side: usize, length: f64) -> (f64, f64) {
         let of = self.of[side];
-        let cut =
-            |part: u16| if part == of { length } else { length * (f64::from(part) / f64::from(of)) };
+        let cut = |part: u16| if part == of { length } else { length * (f64::from(part) / f64::from(of)) };
         (cut(self.part[side]), cut(self.part[side] + 1))
     }
 
@@ -161,7 +160,8 @@ impl PlaneTree {
 
 /// Pieces of about the mean sides.
 fn cut(planes: &[Plane]) -> Vec<Piece> {
-    let mean = |side: usize| planes.iter().map(|plane| plane.sides()[side]).sum::<f64>() / planes.len() as f64;
+    let mean =
+        |side: usize| planes.iter().map(|plane| plane.sides()[side]).sum::<f64>() / planes.len() as f64;
     let means = [mean(0), mean(1)];
     let of = |plane: &Plane| {
         [0, 1].map(|side| {
@@ -172,9 +172,9 @@ fn cut(planes: &[Plane]) -> Vec<Piece> {
     let mut pieces = Vec::with_capacity(planes.len());
     for (index, plane) in (0u32..).zip(planes) {
         let of = of(plane);
-        pieces.extend((0..of[0]).flat_map(|i| {
-            (0..of[1]).map(move |j| Piece { plane: index, part: [i, j], of })
-        }));
+        pieces.extend(
+            (0..of[0]).flat_map(|i| (0..of[1]).map(move |j| Piece { plane: index, part: [i, j], of })),
+        );
     }
     pieces
 }
@@ -258,9 +258,12 @@ mod tests {
                     }
                     let v = ray.origin - plane.leg.start;
                     let [t0, t1, s] = (matrix.inverse() * v).to_array();
-                    let error = by * (1e-13 * (v.length() + plane.reach + size) / matrix.determinant().powi(2).min(1.0));
+                    let error = by
+                        * (1e-13 * (v.length() + plane.reach + size) / matrix.determinant().powi(2).min(1.0));
                     let most = |x: f64, from: f64, to: f64| x >= from - error && x < to + error;
-                    most(t0, 0.0, plane.leg.length) && most(t1, 0.0, plane.reach) && most(s, span.start, span.end)
+                    most(t0, 0.0, plane.leg.length)
+                        && most(t1, 0.0, plane.reach)
+                        && most(s, span.start, span.end)
                 };
                 for plane in &planes {
                     let is_found = seen.binary_search(&key(plane)).is_ok();
