@@ -124,11 +124,17 @@ pub enum Fault {
     LineHalved,
     /// The radii of all progressive sequences shrink as those of balls do.
     ScheduleOfSpace,
+    /// Planes stand on flights that collided only.
+    PlanesCollided,
+    /// Nothing stands in the way from a plane's first leg to the ray, and no medium is too deep.
+    PlanesUnseen,
+    /// The determinant of plane and ray is no less than 0.01.
+    DeterminantClamped,
 }
 
 impl Fault {
     /// Every fault, in the order of their definition.
-    pub const ALL: [Fault; 58] = [
+    pub const ALL: [Fault; 61] = [
         Fault::AlbedoTwice,
         Fault::AlbedoNever,
         Fault::CosineTwice,
@@ -187,6 +193,9 @@ impl Fault {
         Fault::BeamsArrive,
         Fault::LineHalved,
         Fault::ScheduleOfSpace,
+        Fault::PlanesCollided,
+        Fault::PlanesUnseen,
+        Fault::DeterminantClamped,
     ];
 }
 
@@ -277,7 +286,7 @@ mod tests {
     #[test]
     fn all_are_named_in_order() {
         assert!(Fault::ALL.iter().enumerate().all(|(i, fault)| *fault as usize == i));
-        assert_eq!(Fault::ALL.len(), Fault::LineHalved as usize + 1);
+        assert_eq!(Fault::ALL.len(), Fault::DeterminantClamped as usize + 1);
         assert!(Fault::ALL.iter().all(|fault| !planted(*fault)));
     }
 }

@@ -35,6 +35,8 @@ pub enum Purpose {
     Scores,
     /// Realisations of random media.
     Mixture,
+    /// Second legs of photons' planes, beside their walk.
+    Planes,
 }
 
 /// Work that a scene may or may not require, counted where it is done.

@@ -3,7 +3,8 @@
 use super::boundary::{Boundary, Gathered, PhotonFilter, Rejection, Surroundings, Treatment, accepted};
 use super::point::{ball_sum, for_each_photon, in_scattered_sum};
 use super::{
-    BallSum, BeamEstimator, Codimension, Directional, Estimate, Gather, Kernel, NeighborCount, RayEstimator,
+    BallSum, BeamEstimator, Codimension, Directional, Estimate, Gather, Kernel, NeighborCount,
+    PlaneEstimator, RayEstimator,
 };
 use crate::Spectrum;
 use crate::math::{Positive, cosine_pair};
@@ -27,6 +28,9 @@ pub struct Estimator {
     /// How near to a ray photons' flights pass that whole stretches of it are read from at once ([`BeamEstimator`]), in place of
     /// photons; none where there are no beams.
     pub beam_radius: Option<Positive>,
+    /// Whether light that media scatter twice and more is read from planes of photons' flights ([`PlaneEstimator`]), and from beams only
+    /// what is scattered once.
+    pub has_planes: bool,
     /// Whether fixed radii are those of the first of several maps and shrink from map to map ([`Estimator::in_map`]).
     pub is_progressive: bool,
 }
@@ -47,6 +51,7 @@ impl Estimator {
             rejection: Rejection::Off,
             ray_radius: None,
             beam_radius: None,
+            has_planes: false,
             is_progressive: false,
         }
     }
@@ -63,12 +68,18 @@ impl Estimator {
 
     /// The same with whole stretches of rays read at once, from photons as near as this \[L\].
     pub fn along_rays(self, radius: Positive) -> Self {
-        Estimator { ray_radius: Some(radius), beam_radius: None, ..self }
+        Estimator { ray_radius: Some(radius), beam_radius: None, has_planes: false, ..self }
     }
 
     /// The same with whole stretches of rays read at once, from flights of photons that pass as near as this \[L\].
     pub fn along_beams(self, radius: Positive) -> Self {
         Estimator { beam_radius: Some(radius), ray_radius: None, ..self }
+    }
+
+    /// The same with light that media scatter twice and more read from planes of photons' flights. Light that is scattered once takes
+    /// [`Estimator::along_beams`] beside it, or is not asked for.
+    pub fn in_planes(self) -> Self {
+        Estimator { has_planes: true, ray_radius: None, ..self }
     }
 
     /// The same with fixed radii that shrink from map to map, so that the mean over maps converges to the light itself.
@@ -99,7 +110,12 @@ impl Estimator {
 
     /// Whether rays are read as a whole, and not point by point.
     pub fn reads_rays(&self) -> bool {
-        self.ray_radius.is_some() || self.beam_radius.is_some()
+        self.ray_radius.is_some() || self.beam_radius.is_some() || self.has_planes
+    }
+
+    /// What reads light that is scattered twice and more from planes; none where there are none.
+    pub fn of_planes(&self) -> Option<PlaneEstimator> {
+        self.has_planes.then_some(PlaneEstimator)
     }
 
     /// What reads whole stretches of rays; none where they are read point by point.
@@ -153,8 +169,16 @@ impl Estimator {
 
     /// Its name, such as "cone, k=50, clipped"; one radius for points and rays is said once.
     pub fn name(&self) -> String {
-        let Estimator { kernel, gather, treatment, rejection, ray_radius, beam_radius, is_progressive } =
-            self;
+        let Estimator {
+            kernel,
+            gather,
+            treatment,
+            rejection,
+            ray_radius,
+            beam_radius,
+            has_planes,
+            is_progressive,
+        } = self;
         let of_rays = match (ray_radius, beam_radius) {
             (Some(radius), _) => Some((radius, format!("along rays r={}", radius.get()))),
             (_, Some(radius)) => Some((radius, format!("beams r={}", radius.get()))),
@@ -174,6 +198,9 @@ impl Estimator {
         }
         if let (Some((_, along)), None) = (&of_rays, alone) {
             name += &format!(", {along}");
+        }
+        if *has_planes {
+            name += ", planes";
         }
         if *is_progressive {
             name += ", progressive";

@@ -9,7 +9,7 @@
 //! - on a surface, with K_r of unit integral over the disc: irradiance = sum p K_r / N [W/L^2].
 //!
 //! Along whole rays [`RayEstimator`] reads the photons about a ray and [`BeamEstimator`] the flights that pass it, which are stored
-//! with the power they leave with.
+//! with the power they leave with. [`PlaneEstimator`] reads planes, a flight and a scattering on it together, without any kernel.
 //!
 //! An [`Estimator`] is a [`Kernel`], which weights the photons of the ball, a [`Gather`], which chooses the ball, and what it
 //! does near the surface of a medium, or a wall ([`boundary`]); it states the bias and variance that it expects.
@@ -21,6 +21,7 @@ mod disc_share;
 mod estimator;
 mod gather;
 mod kernel;
+mod plane;
 mod point;
 mod ray;
 mod schedule;
@@ -32,6 +33,7 @@ pub use disc_share::{cap_share, disc_share};
 pub use estimator::Estimator;
 pub use gather::{Gather, NeighborCount};
 pub use kernel::Kernel;
+pub use plane::PlaneEstimator;
 pub use point::{Ball, BallSum, Estimate, ball_sum, count_within, for_each_photon};
 pub use ray::{RayEstimate, RayEstimator};
 pub use schedule::Codimension;

@@ -45,6 +45,8 @@ pub struct RunInfo {
     pub ray_radius: Option<f64>,
     /// The same about rays across which flights pass, as beams \[L\].
     pub beam_radius: Option<f64>,
+    /// Whether light scattered twice and more is read from planes of flights.
+    pub planes: Option<bool>,
     /// Whether these radii are those of the first map, and shrink from map to map.
     pub progressive: Option<bool>,
     /// How an estimate weights its photons.
@@ -93,7 +95,7 @@ struct Document<'a, T> {
 
 const COLUMNS: [&str; 6] = ["sensor", "quantity", "unit", "mean", "std_error", "n"];
 
-const RUN_COLUMNS: [&str; 17] = [
+const RUN_COLUMNS: [&str; 18] = [
     "with",
     "seed",
     "orders",
@@ -105,6 +107,7 @@ const RUN_COLUMNS: [&str; 17] = [
     "max_radius",
     "ray_radius",
     "beam_radius",
+    "planes",
     "progressive",
     "kernel",
     "boundary",

@@ -9,6 +9,7 @@ mod map;
 pub mod maps;
 mod pass;
 pub mod periodic;
+pub mod planes;
 mod record;
 pub mod synthetic;
 mod tallies;

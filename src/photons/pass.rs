@@ -2,6 +2,7 @@
 
 use super::beams::{Beam, BeamMap, FlightBeams, MOST_CELLS, check_beams};
 use super::importance::{Branching, Importance};
+use super::planes::{Plane, PlaneMap, check_planes, second_leg};
 use super::tallies::{Scores, Tallies};
 use super::{Emitter, Photon, PhotonMap, check_end, periodic};
 use crate::Spectrum;
@@ -70,6 +71,16 @@ pub trait Storage: Sync {
 
     /// Whether the flight of a photon of this order, which has met this before, is stored as beams in the media that it crosses.
     fn on_flight(&self, _history: u64, _order: u32, _flags: Flags) -> bool {
+        false
+    }
+
+    /// Whether planes of any flights are stored.
+    fn has_planes(&self) -> bool {
+        false
+    }
+
+    /// Whether a plane of the flight of a photon of this order, which has met this before, is stored in each medium that it crosses.
+    fn on_plane(&self, _history: u64, _order: u32, _flags: Flags) -> bool {
         false
     }
 }
@@ -161,6 +172,10 @@ pub struct Pass {
     pub beams: Vec<Vec<Beam>>,
     /// Beams that are to be stored; those of a pilot are counted only.
     pub met_beams: u64,
+    /// Planes of flights, where they are stored.
+    pub planes: Vec<Vec<Plane>>,
+    /// Planes that are to be stored; those of a pilot are counted only.
+    pub met_planes: u64,
     /// Photons that met surfaces and media and are to be stored; those of a pilot are counted only.
     pub met: [u64; 2],
     /// One a sensor and channel, over histories; 0 for sensors that photons in a map answer.
@@ -209,11 +224,21 @@ impl Pass {
         BeamMap::new(self.beams, self.report.emitted, self.period)
     }
 
+    /// The map of the planes.
+    ///
+    /// # Errors
+    /// those of [`PlaneMap::new`]
+    pub fn into_planes(self) -> Result<PlaneMap> {
+        PlaneMap::new(self.planes, self.report.emitted, self.period)
+    }
+
     fn merged(mut self, other: Pass) -> Pass {
         self.surfaces.extend(other.surfaces);
         self.media.extend(other.media);
         self.beams.extend(other.beams);
         self.met_beams += other.met_beams;
+        self.planes.extend(other.planes);
+        self.met_planes += other.met_planes;
         self.overlong += other.overlong;
         self.met = [0, 1].map(|i| self.met[i] + other.met[i]);
         for (mine, others) in self.tallies.iter_mut().flatten().zip(other.tallies.iter().flatten()) {
@@ -283,12 +308,15 @@ impl<'a> Run<'a> {
     ///
     /// # Errors
     /// `Error::Cancelled`, or `Error::NonFinite` if a contribution was not finite; those of [`check_end`]; where beams are stored,
-    /// those of [`check_beams`], and `Error::Scene` for a flight that has no end, or crosses too many periodic cells.
+    /// those of [`check_beams`], where planes are, those of [`check_planes`], and `Error::Scene` for a flight that has no end, or crosses too many periodic cells.
     pub fn pass(&self, store: &dyn Storage, progress: &dyn Progress) -> Result<Pass> {
         self.scene.check_emission()?;
         check_end(self.scene)?;
         if store.has_beams() {
             check_beams(self.scene)?;
+        }
+        if store.has_planes() {
+            check_planes(self.scene)?;
         }
         let start = Instant::now();
         let part = self.part.histories(self.histories.count);
@@ -308,21 +336,26 @@ impl<'a> Run<'a> {
                 surface: Vec::new(),
                 medium: Vec::new(),
                 beams: Vec::new(),
+                planes: Vec::new(),
                 has_beams: store.has_beams(),
+                has_planes: store.has_planes(),
                 is_open: false,
                 bins: Tallies::new(self.scene, self.scored),
                 scoring: Stream::new(0, Purpose::Scores, 0, 0),
+                turning: Stream::new(0, Purpose::Planes, 0, 0),
                 pass: empty(),
             };
             for history in range {
                 block.follow(part.start + history);
             }
-            let Block { mut surface, mut medium, mut beams, bins, mut pass, .. } = block;
+            let Block { mut surface, mut medium, mut beams, mut planes, bins, mut pass, .. } = block;
             pass.scores = bins.into_scores();
             surface.shrink_to_fit();
             medium.shrink_to_fit();
             beams.shrink_to_fit();
+            planes.shrink_to_fit();
             pass.beams.push(beams);
+            pass.planes.push(planes);
             pass.surfaces.push(surface);
             pass.media.push(medium);
             pass
@@ -335,7 +368,7 @@ impl<'a> Run<'a> {
         pass.report.time = start.elapsed();
         if pass.overlong > 0 {
             return Err(Error::Scene(format!(
-                "{} photons fly on without end, or across more than {MOST_CELLS} periodic cells, and cannot be stored as beams; \
+                "{} photons fly on without end, or across more than {MOST_CELLS} periodic cells, and cannot be stored as beams or planes; \
                  allowed: points along rays (a ray radius), a larger cell",
                 pass.overlong
             )));
@@ -358,12 +391,16 @@ struct Block<'a> {
     surface: Vec<Photon>,
     medium: Vec<Photon>,
     beams: Vec<Beam>,
+    planes: Vec<Plane>,
     has_beams: bool,
+    has_planes: bool,
     /// Whether nothing is ahead of the present flight.
     is_open: bool,
     bins: Tallies<'a>,
     /// Random numbers of scores: what is scored does not change the walk.
     scoring: Stream,
+    /// Random numbers of second legs of planes, which do not change the walk either.
+    turning: Stream,
     pass: Pass,
 }
 
@@ -375,6 +412,9 @@ impl Block<'_> {
         self.scores.fill(Spectrum::ZERO);
         if !self.run.scored.is_empty() {
             self.scoring = Stream::new(histories.seed, Purpose::Scores, histories.replicate, history);
+        }
+        if self.has_planes {
+            self.turning = Stream::new(histories.seed, Purpose::Planes, histories.replicate, history);
         }
         self.pass.report.emitted += 1;
         match emitter.emit(scene, &mut stream) {
@@ -425,19 +465,41 @@ impl Block<'_> {
         let is_forced = scene.plan().forces_first_collision && walker.order == 0 && self.is_open;
         // A forced flight is told of twice, as what passes and as what collides. One beam to the end is both.
         let is_told = is_forced && end < f64::INFINITY;
-        if is_told || !self.store.on_flight(self.history, walker.order, walker.flags) {
+        if is_told {
+            return;
+        }
+        let is_kept = [
+            self.has_beams && self.store.on_flight(self.history, walker.order, walker.flags),
+            self.has_planes && self.store.on_plane(self.history, walker.order, walker.flags),
+        ];
+        if is_kept == [false; 2] {
             return;
         }
         let weight = if planted(Fault::BeamsArrive) { arrives } else { walker.weight };
         let walker = Walker { weight, ..*walker };
-        let flight = FlightBeams { scene, walker: &walker, end, is_forced, parts: part.of as f64 };
-        let (beams, met) = (&mut self.beams, &mut self.pass.met_beams);
-        let is_short = flight.each(|beam| {
-            *met += 1;
-            if !is_pilot {
-                beams.push(beam);
-            }
-        });
+        let period = self.pass.period;
+        let flight = FlightBeams { scene, walker: &walker, end, is_forced, parts: part.of as f64, period };
+        let mut is_short = true;
+        if is_kept[0] {
+            let (beams, met) = (&mut self.beams, &mut self.pass.met_beams);
+            is_short &= flight.each(|beam| {
+                *met += 1;
+                if !is_pilot {
+                    beams.push(beam);
+                }
+            });
+        }
+        if is_kept[1] && !(planted(Fault::PlanesCollided) && end == f64::INFINITY) {
+            let (planes, met, turning) = (&mut self.planes, &mut self.pass.met_planes, &mut self.turning);
+            // Planes reach beyond cells anyway.
+            is_short &= FlightBeams { period: None, ..flight }.each(|leg| {
+                *met += 1;
+                if !is_pilot {
+                    let start = period.map_or(leg.start, |side| periodic::wrap(leg.start, side));
+                    planes.push(second_leg(scene, Beam { start, ..leg }, turning));
+                }
+            });
+        }
         self.pass.overlong += u64::from(!is_short);
     }
 
@@ -459,7 +521,7 @@ impl Visitor for Block<'_> {
         if !self.run.scored.is_empty() {
             self.bins.visit(walker, &step, &mut self.scoring);
         }
-        if self.has_beams {
+        if self.has_beams || self.has_planes {
             match step {
                 Step::Ahead(hit) => self.is_open = hit.is_none(),
                 Step::Uncollided(end, arrives) => self.store_flight(walker, end, arrives),

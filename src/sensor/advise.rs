@@ -27,7 +27,8 @@ use crate::transport::Progress;
 use std::time::Instant;
 
 /// It asks points.
-const OF_POINTS: RadianceMaps = RadianceMaps { points: true, beams: false };
+const OF_POINTS: RadianceMaps =
+    RadianceMaps { points: true, beams: false, planes: false, direct_beams: false };
 
 /// Balls about each probe.
 const BALLS: usize = 8;

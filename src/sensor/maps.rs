@@ -2,8 +2,8 @@
 
 use super::PhotonForecast;
 use super::photons::{
-    OrderMaps, PhotonReadings, RadianceMaps, Surroundings, check, forecast_of, map_orders, maps, margin_of,
-    max_order, read_bins,
+    OrderMaps, PhotonReadings, RadianceMaps, Surroundings, check, check_orders, forecast_of, map_orders,
+    maps, margin_of, max_order, read_bins,
 };
 use crate::Spectrum;
 use crate::error::{Error, Result};
@@ -72,9 +72,10 @@ fn checked(scene: &Scene, reach: f64, radiance: RadianceMaps) -> Result<f64> {
         }
         check(scene, sensor)?;
     }
-    if radiance.beams {
+    if radiance.beams || radiance.direct_beams {
         check_beams(scene)?;
     }
+    check_orders(scene, scene.sensors(), radiance)?;
     margin_of(scene, scene.sensors(), reach)
 }
 
@@ -111,7 +112,7 @@ impl<'a> SensorMaps<'a> {
         forecast_of(scene, sensors, margin, (settings.photons, 1, settings.seed))
     }
 
-    /// Photons that the maps hold, those beyond the edges of a periodic cell too, and beams.
+    /// Photons that the maps hold, those beyond the edges of a periodic cell too, beams, and planes.
     pub fn stored(&self) -> usize {
         self.maps.stored()
     }

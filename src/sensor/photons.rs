@@ -5,13 +5,14 @@ use super::{Measurement, Source, measurements, room, row_bytes};
 use crate::Spectrum;
 use crate::error::{Error, Result};
 use crate::estimators::boundary::{Boundary, Treatment};
-use crate::estimators::{Estimate, Estimator, Gather};
+use crate::estimators::{Estimate, Estimator, Gather, PlaneEstimator};
 use crate::geometry::Shape;
 use crate::integrators::mapper::{MediumExtent, medium_extents, scene_size};
 use crate::integrators::{March, StepRule, along};
 use crate::math::{Interval, Positive, Ray};
 use crate::medium::Medium;
 use crate::photons::beams::{self, Beam, BeamMap, check_beams};
+use crate::photons::planes::{self, Plane, PlaneMap, check_planes};
 use crate::photons::{
     BUILD_SECONDS, Emitter, Flags, Histories, Ledger, PEAK_BYTES, Part, Pass, Photon, PhotonMap, Run, Scores,
     Storage, periodic, score_bytes,
@@ -183,7 +184,7 @@ pub fn by_given_photons(
                 .iter_mut()
                 .for_each(|photon| photon.position = periodic::wrap(photon.position, cell.side));
         }
-        let stored = Stored { photons: vec![photons], beams: Vec::new(), emitted };
+        let stored = Stored { photons: vec![photons], beams: Vec::new(), planes: Vec::new(), emitted };
         let maps = maps_of(scene, (&sensors, wanted), stored, margin, (settings.seed, replicate))?;
         let mut estimates: Vec<_> = sensors.iter().map(|s| vec![Spectrum::ZERO; bins(s)]).collect();
         let asked = Asked { surroundings: &surroundings, sensors: &sensors, settings };
@@ -201,7 +202,7 @@ pub fn by_given_photons(
 pub fn given_bytes(scene: &Scene, settings: &PhotonSettings, count: u64) -> Result<f64> {
     let (sensors, margin) = prepared_for_maps(scene, settings)?;
     let all = count as f64 * around(scene, margin);
-    let bytes = match RadianceMaps::of([&settings.estimator]).ranges(&sensors).0.len() {
+    let bytes = match RadianceMaps::of([&settings.estimator]).ranges(&sensors).points.len() {
         0 | 1 => PEAK_BYTES * all,
         // All of them may be in each range.
         maps => (size_of::<Photon>() as f64 + PEAK_BYTES * maps as f64) * all,
@@ -220,9 +221,9 @@ fn prepared_for_maps(scene: &Scene, settings: &PhotonSettings) -> Result<(Vec<Se
             names.join(", ")
         )));
     }
-    if settings.estimator.beam_radius.is_some() {
+    if settings.estimator.beam_radius.is_some() || settings.estimator.has_planes {
         return Err(Error::Scene(
-            "photons of a file are points, and no beams; allowed: a radius about points or rays, k nearest photons".into(),
+            "photons of a file are points, and no beams or planes; allowed: a radius about points or rays, k nearest photons".into(),
         ));
     }
     prepared_of(scene, sensors, settings)
@@ -362,10 +363,10 @@ pub(super) fn forecast_of(
     margin: f64,
     (photons, maps, seed): (u64, u64, u64),
 ) -> Result<PhotonForecast> {
-    let (ranges, of_beams) = wanted.ranges(sensors);
+    let ranges = wanted.ranges(sensors);
     let count = photons.div_ceil(64).min(FORECAST);
     let histories = Histories { count, seed, replicate: 0, max_order: max_order(sensors) };
-    let kept = Kept { points: &ranges, beams: &of_beams, copied: Default::default() };
+    let kept = Kept { ranges: &ranges, copied: Default::default() };
     let emitter = Emitter::by_power(scene);
     let run = Run { is_pilot: true, ..Run::new(scene, &emitter, histories) };
     let start = Instant::now();
@@ -373,19 +374,22 @@ pub(super) fn forecast_of(
     // The pilot is one block of histories and runs on one thread.
     let threads = rayon::current_num_threads() as f64;
     let one = start.elapsed().as_secs_f64() / count as f64;
-    let [copied, copied_beams] = kept.copied.map(AtomicU64::into_inner);
+    let [copied, copied_beams, copied_planes] = kept.copied.map(AtomicU64::into_inner);
     let a_history = |number: u64| number as f64 / count as f64 * photons as f64;
     let [met, copied] = [pass.met[1], copied].map(|n| a_history(n) * around(scene, margin));
     // A flight that crosses cells has several beams.
     let [met_beams, flights] = [pass.met_beams, copied_beams].map(a_history);
+    let [met_planes, planes] = [pass.met_planes, copied_planes].map(a_history);
     // Where several ranges of orders have a map each, the photons of all stay until the last one.
-    let of_points = match ranges.len() {
+    let of_points = match ranges.points.len() {
         0 | 1 => PEAK_BYTES * met,
         _ => size_of::<Photon>() as f64 * met + PEAK_BYTES * copied,
     };
-    let copies = if pass.met_beams > 0 && of_beams.len() > 1 { of_beams.len() as f64 } else { 1.0 };
-    let bytes = of_points + beams::PEAK_BYTES * met_beams * copies;
-    let copied = copied + flights.max(met_beams * copies);
+    let copies = |met: u64, ranges: &[Orders]| if met > 0 { ranges.len().max(1) as f64 } else { 1.0 };
+    let of_beams = met_beams * copies(pass.met_beams, &ranges.beams);
+    let of_planes = met_planes * copies(pass.met_planes, &ranges.planes);
+    let bytes = of_points + beams::PEAK_BYTES * of_beams + planes::PEAK_BYTES * of_planes;
+    let copied = copied + flights.max(of_beams) + planes.max(of_planes);
     let seconds = (one * photons as f64 + BUILD_SECONDS * copied) * maps as f64 / threads;
     // The scores of the blocks that are there at a time, those that they are added to, and what the threads' histories add up.
     let (scores, history) = score_bytes(scene, &scored(sensors));
@@ -395,41 +399,74 @@ pub(super) fn forecast_of(
 }
 
 /// What radiance is read from.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct RadianceMaps {
     /// Photons, in balls or about rays.
     pub points: bool,
     /// Their flights.
     pub beams: bool,
+    /// Planes of their flights.
+    pub planes: bool,
+    /// Flights that come straight from lights, beside planes.
+    pub direct_beams: bool,
 }
 
 impl RadianceMaps {
     /// What these estimators ask.
     pub fn of<'a>(estimators: impl IntoIterator<Item = &'a Estimator>) -> Self {
-        let mut wanted = RadianceMaps { points: false, beams: false };
+        let mut wanted = RadianceMaps::default();
         for estimator in estimators {
-            wanted.points |= estimator.beam_radius.is_none();
-            wanted.beams |= estimator.beam_radius.is_some();
+            let (of_beams, of_planes) = (estimator.beam_radius.is_some(), estimator.has_planes);
+            wanted.points |= !of_beams && !of_planes;
+            wanted.beams |= of_beams && !of_planes;
+            wanted.planes |= of_planes;
+            wanted.direct_beams |= of_beams && of_planes;
         }
         wanted
     }
 
-    /// The ranges of orders that need a map of points each, and those that need one of beams.
-    fn ranges(self, sensors: &[Sensor]) -> (Vec<Orders>, Vec<Orders>) {
-        let (mut points, mut beams) = (Vec::new(), Vec::new());
+    /// The ranges of orders that need a map each.
+    fn ranges(self, sensors: &[Sensor]) -> Ranges {
+        let mut all = Ranges::default();
         for sensor in sensors {
             let Some(range) = map_orders(sensor) else { continue };
             let is_radiance = is_radiance(sensor);
-            for (is_needed, ranges) in
-                [(self.points || !is_radiance, &mut points), (self.beams && is_radiance, &mut beams)]
-            {
-                if is_needed && !ranges.contains(&range) {
+            let of_planes = plane_orders(sensor).filter(|_| self.planes && is_radiance);
+            let has_direct = self.direct_beams && is_radiance && range.contains(0);
+            let add = |range: Option<Orders>, ranges: &mut Vec<Orders>| {
+                if let Some(range) = range.filter(|range| !ranges.contains(range)) {
                     ranges.push(range);
                 }
-            }
+            };
+            add((self.points || !is_radiance).then_some(range), &mut all.points);
+            add((self.beams && is_radiance).then_some(range), &mut all.beams);
+            add(has_direct.then_some(DIRECT), &mut all.beams);
+            add(of_planes, &mut all.planes);
         }
-        (points, beams)
+        all
     }
+}
+
+/// The ranges of orders that need a map of points, of beams, and of planes each.
+#[derive(Debug, Default)]
+struct Ranges {
+    points: Vec<Orders>,
+    beams: Vec<Orders>,
+    planes: Vec<Orders>,
+}
+
+/// Photons straight from lights.
+const DIRECT: Orders = Orders { min: 0, max: Some(0) };
+
+/// The orders of the flights whose planes answer a sensor of radiance: scattered twice they are what it asks for. None where it asks
+/// for less.
+fn plane_orders(sensor: &Sensor) -> Option<Orders> {
+    let Orders { min, max } = sensor.orders;
+    let max = match max {
+        Some(max) => Some(max.checked_sub(2)?),
+        None => None,
+    };
+    Some(Orders { min: min.saturating_sub(2), max })
 }
 
 /// Whether a sensor is read along rays.
@@ -439,15 +476,15 @@ fn is_radiance(sensor: &Sensor) -> bool {
 
 /// What a pass keeps: what maps of any range hold.
 struct Kept<'a> {
-    points: &'a [Orders],
-    beams: &'a [Orders],
-    /// Photons and flights that were kept, once a range.
-    copied: [AtomicU64; 2],
+    ranges: &'a Ranges,
+    /// Photons, flights and planes that were kept, once a range.
+    copied: [AtomicU64; 3],
 }
 
 impl Kept<'_> {
     fn holds(&self, which: usize, order: u32) -> bool {
-        let ranges = [self.points, self.beams][which];
+        let Ranges { points, beams, planes } = self.ranges;
+        let ranges = [points, beams, planes][which];
         let holding = ranges.iter().filter(|range| range.contains(order)).count() as u64;
         self.copied[which].fetch_add(holding, Ordering::Relaxed);
         holding > 0
@@ -460,7 +497,15 @@ impl Storage for Kept<'_> {
     }
 
     fn has_beams(&self) -> bool {
-        !self.beams.is_empty()
+        !self.ranges.beams.is_empty()
+    }
+
+    fn has_planes(&self) -> bool {
+        !self.ranges.planes.is_empty()
+    }
+
+    fn on_plane(&self, _history: u64, order: u32, _flags: Flags) -> bool {
+        self.holds(2, order)
     }
 
     fn on_flight(&self, _history: u64, order: u32, _flags: Flags) -> bool {
@@ -472,6 +517,7 @@ impl Storage for Kept<'_> {
 pub(super) struct OrderMaps {
     points: Vec<(Orders, PhotonMap)>,
     beams: Vec<(Orders, BeamMap)>,
+    planes: Vec<(Orders, PlaneMap)>,
 }
 
 /// The map that a sensor asks.
@@ -479,14 +525,16 @@ pub(super) struct OrderMaps {
 pub(super) enum AskedMap<'a> {
     Points(&'a PhotonMap),
     Beams(&'a BeamMap),
+    /// Light scattered twice and more, and once, where a sensor asks for them.
+    Planes(Option<&'a PlaneMap>, Option<&'a BeamMap>),
 }
 
 impl AskedMap<'_> {
-    /// Checks that positions are told apart finely enough for a radius \[L\]: those of beams always are.
+    /// Checks that positions are told apart finely enough for a radius \[L\]: those of beams and planes always are.
     fn check_radius(self, radius: f64) -> Result<()> {
         match self {
             AskedMap::Points(map) => map.check_radius(radius),
-            AskedMap::Beams(_) => Ok(()),
+            AskedMap::Beams(_) | AskedMap::Planes(..) => Ok(()),
         }
     }
 }
@@ -495,6 +543,15 @@ impl OrderMaps {
     /// The map that answers a sensor by an estimator.
     pub(super) fn of(&self, sensor: &Sensor, estimator: &Estimator) -> Option<AskedMap<'_>> {
         let range = map_orders(sensor)?;
+        if estimator.has_planes && is_radiance(sensor) {
+            let of_planes = plane_orders(sensor);
+            let planes = self.planes.iter().find(|(held, _)| Some(*held) == of_planes);
+            let direct = self.beams.iter().find(|(held, _)| range.contains(0) && *held == DIRECT);
+            let direct = direct.filter(|_| estimator.beam_radius.is_some());
+            let is_filled = planes.is_some() == of_planes.is_some() && direct.is_some() == range.contains(0);
+            return is_filled
+                .then(|| AskedMap::Planes(planes.map(|(_, map)| map), direct.map(|(_, map)| map)));
+        }
         if estimator.beam_radius.is_some() && is_radiance(sensor) {
             let own = self.beams.iter().find(|(held, _)| *held == range);
             return own.map(|(_, map)| AskedMap::Beams(map));
@@ -508,10 +565,11 @@ impl OrderMaps {
         own.map(|(_, map)| map)
     }
 
-    /// Photons that they hold, those beyond the edges of a periodic cell too, and beams.
+    /// Photons that they hold, those beyond the edges of a periodic cell too, beams, and planes.
     pub(super) fn stored(&self) -> usize {
         let points: usize = self.points.iter().map(|(_, map)| map.stored()).sum();
-        points + self.beams.iter().map(|(_, map)| map.stored()).sum::<usize>()
+        let planes: usize = self.planes.iter().map(|(_, map)| map.stored()).sum();
+        points + planes + self.beams.iter().map(|(_, map)| map.stored()).sum::<usize>()
     }
 }
 
@@ -543,8 +601,29 @@ fn prepared_of<'a>(
     if settings.estimator.beam_radius.is_some() && sensors.iter().any(is_radiance) {
         check_beams(scene)?;
     }
+    check_orders(scene, &sensors, RadianceMaps::of([&settings.estimator]))?;
     let margin = margin_of(scene, &sensors, settings.estimator.reach())?;
     Ok((sensors, margin))
+}
+
+/// Whether planes can be stored and answer sensors of radiance, where they are asked to.
+///
+/// # Errors
+/// those of [`check_planes`]; `Error::Scene` for light that is scattered once and no beams that bring it
+pub(super) fn check_orders(scene: &Scene, sensors: &[Sensor], wanted: RadianceMaps) -> Result<()> {
+    if !wanted.planes || !sensors.iter().any(is_radiance) {
+        return Ok(());
+    }
+    check_planes(scene)?;
+    let asks_once = |sensor: &&Sensor| is_radiance(sensor) && sensor.orders.contains(1);
+    match sensors.iter().find(asks_once) {
+        Some(sensor) if !wanted.direct_beams => Err(Error::Scene(format!(
+            "sensor {}: planes bring light that is scattered twice and more; allowed: a beam radius beside them, for light that is \
+             scattered once, or orders from 2",
+            sensor.name
+        ))),
+        _ => Ok(()),
+    }
 }
 
 /// The largest order of a collision that any sensor asks for, if there is one.
@@ -562,8 +641,8 @@ pub(super) fn maps(
     margin: f64,
     progress: &dyn Progress,
 ) -> Result<(Pass, OrderMaps)> {
-    let (points, beams) = wanted.ranges(sensors);
-    let kept = Kept { points: &points, beams: &beams, copied: Default::default() };
+    let ranges = wanted.ranges(sensors);
+    let kept = Kept { ranges: &ranges, copied: Default::default() };
     let emitter = Emitter::by_power(scene);
     let scored = scored(sensors);
     let run = Run { part, sensors, scored: &scored, ..Run::new(scene, &emitter, histories) };
@@ -571,6 +650,7 @@ pub(super) fn maps(
     let stored = Stored {
         photons: std::mem::take(&mut pass.media),
         beams: std::mem::take(&mut pass.beams),
+        planes: std::mem::take(&mut pass.planes),
         emitted: histories.count,
     };
     let run = (histories.seed, histories.replicate);
@@ -582,6 +662,7 @@ pub(super) fn maps(
 struct Stored {
     photons: Vec<Vec<Photon>>,
     beams: Vec<Vec<Beam>>,
+    planes: Vec<Vec<Plane>>,
     emitted: u64,
 }
 
@@ -594,16 +675,19 @@ fn maps_of(
     margin: f64,
     (seed, replicate): (u64, u64),
 ) -> Result<OrderMaps> {
-    let Stored { photons, beams, emitted } = stored;
-    let (of_points, of_beams) = wanted.ranges(sensors);
-    let mut maps = OrderMaps { points: Vec::new(), beams: Vec::new() };
+    let Stored { photons, beams, planes, emitted } = stored;
+    let ranges = wanted.ranges(sensors);
+    let mut maps = OrderMaps { points: Vec::new(), beams: Vec::new(), planes: Vec::new() };
     let cell = scene.periodic_cell().map(|periodic_cell| periodic_cell.side);
-    for (range, parts) in by_ranges(of_points, photons, |photon: &Photon| photon.order) {
+    for (range, parts) in by_ranges(ranges.points, photons, |photon: &Photon| photon.order) {
         let map = PhotonMap::periodic(parts, emitted, cell.map(|side| (side, margin)), &NoProgress)?;
         maps.points.push((range, map.of_run(seed, replicate)));
     }
-    for (range, parts) in by_ranges(of_beams, beams, |beam: &Beam| beam.order) {
+    for (range, parts) in by_ranges(ranges.beams, beams, |beam: &Beam| beam.order) {
         maps.beams.push((range, BeamMap::new(parts, emitted, cell)?));
+    }
+    for (range, parts) in by_ranges(ranges.planes, planes, |plane: &Plane| plane.leg.order) {
+        maps.planes.push((range, PlaneMap::new(parts, emitted, cell)?));
     }
     Ok(maps)
 }
@@ -796,7 +880,7 @@ fn fluence_at(
     result: &mut PhotonReadings,
 ) -> Spectrum {
     let scene = around.scene;
-    // Beams answer radiance alone: no sensor of fluence is given any.
+    // Beams and planes answer radiance alone: no sensor of fluence is given any.
     let AskedMap::Points(map) = map else { return Spectrum::grey(f64::NAN) };
     let number = scene.medium_number_at(p);
     let sigma_t = number.map_or(Spectrum::ONE, |number| scene.medium(number).sigma_t(p));
@@ -834,17 +918,25 @@ fn radiance(
             let span = seen(medium, segment.interval);
             let passage = Passage::new(medium, ray, span, stream);
             let (way, passed) = ((ray, span), |t: f64| passage.to(t));
-            let estimate = match (map, estimator.of_rays(), estimator.of_beams()) {
-                (AskedMap::Points(map), Some(of_rays), _) => {
-                    of_rays.radiance(map, way, medium, &boundary, passed)
-                }
-                (AskedMap::Beams(map), _, Some(of_beams)) => {
-                    of_beams.radiance(map, way, (segment.medium, medium), &boundary, passed)
-                }
-                _ => continue,
+            let across = |map: &BeamMap| {
+                let of_beams = estimator.of_beams()?;
+                Some(of_beams.radiance(map, way, (segment.medium, medium), &boundary, passed).value)
             };
+            let value = match map {
+                AskedMap::Points(map) => estimator
+                    .of_rays()
+                    .map(|of_rays| of_rays.radiance(map, way, medium, &boundary, passed).value),
+                AskedMap::Beams(map) => across(map),
+                AskedMap::Planes(planes, direct) => {
+                    let of_planes =
+                        |map| PlaneEstimator.radiance(map, way, (scene, segment.medium), passed).value;
+                    let once = direct.and_then(across);
+                    Some(planes.map_or(Spectrum::ZERO, of_planes) + once.unwrap_or(Spectrum::ZERO))
+                }
+            };
+            let Some(value) = value else { continue };
             result.gathers += 1;
-            sum += before * estimate.value;
+            sum += before * value;
             continue;
         }
         let AskedMap::Points(map) = map else { continue };

@@ -12,6 +12,7 @@ mod infinite;
 mod mean_path;
 mod periodic;
 mod phase;
+mod planes;
 mod radiance;
 mod slab;
 mod sphere;

@@ -36,10 +36,10 @@ const PHOTONS: u64 = 1 << 13;
 const PATHS: u64 = 1 << 16;
 
 /// A place and a direction of travel: depth over thickness, cosine (up is positive), azimuth against that of the beam.
-type View = (f64, f64, f64);
+pub type View = (f64, f64, f64);
 
 /// Leaving through both faces, and inside: up, down and level.
-const VIEWS: [View; 8] = [
+pub const VIEWS: [View; 8] = [
     (0.0, 0.3, 0.0),
     (0.0, 0.9, 0.5 * PI),
     (0.0, 0.3, PI),
@@ -51,7 +51,7 @@ const VIEWS: [View; 8] = [
 ];
 
 /// A view of the slab from one point in the cell: the ray looks against the light.
-fn looking(tau: f64, (part, mu, dphi): View) -> Quantity {
+pub fn looking(tau: f64, (part, mu, dphi): View) -> Quantity {
     let s = ((1.0 - mu) * (1.0 + mu)).sqrt();
     let (sin, cos) = turbid::math::sin_cos(dphi);
     let travel = DVec3::new(s * cos, s * sin, -mu);

@@ -15,6 +15,7 @@ pub mod media;
 pub mod numbers;
 pub mod outputs;
 pub mod phase;
+pub mod planes;
 pub mod point_light;
 pub mod points;
 pub mod progressive;

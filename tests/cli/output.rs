@@ -18,6 +18,7 @@ const RUN: [&str; 17] = [
     "max_radius",
     "ray_radius",
     "beam_radius",
+    "planes",
     "progressive",
     "kernel",
     "boundary",

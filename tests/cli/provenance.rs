@@ -17,7 +17,7 @@ fn tables_say_what_they_were_made_with() {
     let of = |with: &str, more: serde_json::Value| {
         let mut run = serde_json::json!({
             "with": with, "seed": 3, "orders": "0..", "samples": null, "photons": null, "maps": null, "radius": null, "k": null,
-            "max_radius": null, "ray_radius": null, "beam_radius": null, "progressive": null, "kernel": null, "boundary": null, "reject": null, "version": env!("CARGO_PKG_VERSION"),
+            "max_radius": null, "ray_radius": null, "beam_radius": null, "planes": null, "progressive": null, "kernel": null, "boundary": null, "reject": null, "version": env!("CARGO_PKG_VERSION"),
             "revision": revision,
         });
         more.as_object().unwrap().iter().for_each(|(key, value)| run[key] = value.clone());

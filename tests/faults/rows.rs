@@ -1,7 +1,7 @@
 //! One row a fault: where it was seen, what it is here, and which check catches it.
 
 use crate::checks::{
-    beams, cell, color, emitters, flights, fog, glass, ledger, light, media, numbers, outputs, phase,
+    beams, cell, color, emitters, flights, fog, glass, ledger, light, media, numbers, outputs, phase, planes,
     point_light, points, progressive, shading, slab, threads, walls, weights,
 };
 use crate::support::scenes::{area_light, cuboid, rectangle};
@@ -312,6 +312,17 @@ const fn inside(fault: Fault) -> Row {
             "each_map_is_read_within_the_radius_that_is_due",
             |_| progressive::each_map_is_read_within_the_radius_that_is_due(),
         ),
+        Fault::PlanesCollided => ("planes on flights that collided only", "a_laser_scattered_twice", |_| {
+            planes::a_laser_scattered_twice()
+        }),
+        Fault::PlanesUnseen => ("planes that walls and other media do not stop", "one_plane_by_hand", |_| {
+            planes::one_plane_by_hand()
+        }),
+        Fault::DeterminantClamped => {
+            ("the determinant of plane and ray no less than 0.01", "a_plane_end_on_counts_in_full", |_| {
+                planes::a_plane_end_on_counts_in_full()
+            })
+        }
     };
     Row { fault: Planted::Inside(fault), title, check_name, check }
 }
@@ -419,6 +430,9 @@ pub const BY_HAND: &[Row] = &[
     inside(Fault::SineClamped),
     inside(Fault::BeamsArrive),
     inside(Fault::LineHalved),
+    inside(Fault::PlanesCollided),
+    inside(Fault::PlanesUnseen),
+    inside(Fault::DeterminantClamped),
 ];
 
 fn single_scattering() {

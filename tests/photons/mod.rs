@@ -14,6 +14,7 @@ mod march;
 mod metrics;
 mod parted;
 mod passes;
+mod planes;
 mod progressive;
 mod sensor_maps;
 mod statistics;

@@ -28,7 +28,7 @@ fn every_estimator_reads_as_if_alone() {
         replicate: 0,
         reach: 0.5,
         readings: 4,
-        radiance: RadianceMaps { points: true, beams: false },
+        radiance: RadianceMaps { points: true, ..RadianceMaps::default() },
     };
     let maps = SensorMaps::fill(&scene, settings, &NoProgress).unwrap();
     for estimator in estimators() {
@@ -73,7 +73,7 @@ measure = { radiance = { origin = [-2, 0, 0], dir = [1, 0, 0] } }
                 replicate,
                 reach: 0.3,
                 readings,
-                radiance: RadianceMaps { points: true, beams: false },
+                radiance: RadianceMaps { points: true, ..RadianceMaps::default() },
             };
             let maps = SensorMaps::fill(&scene, settings, &NoProgress).unwrap();
             maps.read(&estimator).unwrap().values[0][0][0]

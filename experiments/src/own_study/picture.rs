@@ -144,7 +144,7 @@ impl Picture {
             fill(scene, &settings, &NoProgress)
         };
         match RadianceMaps::of(estimators) {
-            RadianceMaps { points: true, beams: true } => {
+            RadianceMaps { points: true, beams: true, .. } => {
                 Ok(Maps { beams: filled(true)?.beams, ..filled(false)? })
             }
             RadianceMaps { beams, .. } => filled(beams),

@@ -100,6 +100,12 @@ pub struct Measure {
     /// for media that vary and whose extinction differs by channel [L].
     #[arg(long, conflicts_with_all = ["reject", "ray_radius", "photons_from"])]
     beam_radius: Option<f64>,
+    /// Read light that is scattered twice and more from planes of photons' flights, without blur or bias: each flight and a scattering on it
+    /// sweep out a parallelogram. Light that is scattered once comes from beams: --beam-radius, or --orders 2.. to leave it out. The
+    /// variance is infinite in diffuse light, and errors between maps are too small by what few maps have not met. Only for homogeneous
+    /// media of one extinction for all channels.
+    #[arg(long, conflicts_with_all = ["reject", "ray_radius", "photons_from"])]
+    planes: bool,
     /// Shrink radii from map to map, so that the mean over --maps converges to the light itself: as the number of maps to the power
     /// -1/7 of --radius, -1/6 of --ray-radius, -1/5 of --beam-radius, which are those of the first map. The error is that between maps.
     #[arg(long)]
@@ -228,8 +234,16 @@ impl Measure {
         };
         if by(&["--with photons", "--photons-from"]) {
             let maps = if self.photons_from.is_empty() { self.maps } else { self.photons_from.len() as u64 };
-            let Estimator { kernel, gather, treatment, rejection, ray_radius, beam_radius, is_progressive } =
-                self.settings(scene, 1, 1)?.estimator;
+            let Estimator {
+                kernel,
+                gather,
+                treatment,
+                rejection,
+                ray_radius,
+                beam_radius,
+                has_planes,
+                is_progressive,
+            } = self.settings(scene, 1, 1)?.estimator;
             run.maps = Some(maps);
             match gather {
                 Gather::Radius(radius) => run.radius = Some(radius.get()),
@@ -238,6 +252,7 @@ impl Measure {
             run.progressive = is_progressive.then_some(true);
             run.ray_radius = ray_radius.map(Positive::get);
             run.beam_radius = beam_radius.map(Positive::get);
+            run.planes = has_planes.then_some(true);
             run.kernel = Some(kernel.name().to_string());
             run.boundary = Some(treatment.name().replace(' ', "-"));
             run.reject = Some(rejection.name().replace(' ', "-"));
@@ -340,7 +355,8 @@ impl Measure {
                 "--progressive shrinks radii, and takes the k nearest photons as they are; allowed: with --radius, --ray-radius or --beam-radius"
             );
         }
-        let estimator = Estimator { ray_radius, beam_radius, is_progressive: self.progressive, ..estimator };
+        let (has_planes, is_progressive) = (self.planes, self.progressive);
+        let estimator = Estimator { ray_radius, beam_radius, has_planes, is_progressive, ..estimator };
         Ok(PhotonSettings { photons, maps, seed: self.seed, orders: self.orders, estimator })
     }
 

@@ -35,6 +35,7 @@ pub const MEASURE: Table = &[
     ("kernel", READ),
     ("ray_radius", READ),
     ("beam_radius", READ),
+    ("planes", READ),
     ("progressive", READ),
     ("boundary", READ),
     ("reject", READ),

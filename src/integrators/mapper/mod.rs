@@ -158,6 +158,9 @@ impl<'a> Mapper<'a> {
     /// other way round
     pub fn check_radii(&self) -> Result<()> {
         let Maps { global, caustic, volume, beams, .. } = self.maps;
+        if self.settings.volume.has_planes {
+            return Err(Error::Scene("pictures are not read from planes; allowed: beams, or points".into()));
+        }
         let is_of_beams = self.settings.volume.beam_radius.is_some();
         if (is_of_beams && beams.is_none() && volume.is_some())
             || (!is_of_beams && volume.is_none() && beams.is_some())

@@ -8,6 +8,7 @@ use crate::medium::Medium;
 use crate::photons::periodic;
 use crate::scene::{Scene, decay};
 use crate::transport::Walker;
+use glam::DVec2;
 
 /// Periodic cells that one flight may cross, at most: each has a beam of its own.
 pub(in crate::photons) const MOST_CELLS: usize = 100_000;
@@ -43,14 +44,15 @@ pub(in crate::photons) struct FlightBeams<'a> {
     pub is_forced: bool,
     /// The factor on powers.
     pub parts: f64,
+    /// Sides of the periodic cells that beams are cut at, if they are \[L\].
+    pub period: Option<DVec2>,
 }
 
 impl FlightBeams<'_> {
     /// Offers its beams, in order; false where it crosses more than [`MOST_CELLS`] cells, or has no end.
     pub fn each(&self, mut store: impl FnMut(Beam)) -> bool {
-        let FlightBeams { scene, walker, end, is_forced, parts } = *self;
+        let FlightBeams { scene, walker, end, is_forced, parts, period } = *self;
         let kind = if is_forced { BeamKind::Expected } else { BeamKind::Sampled };
-        let period = scene.periodic_cell().map(|cell| cell.side);
         let mut power = walker.weight * parts;
         let mut cells = 0;
         for segment in scene.segments(&walker.ray, end, walker.interior).iter() {

@@ -1,21 +1,21 @@
 //! The kd order of pieces: those that are neighbours in space become neighbours in memory.
 
 /// Pieces below one node of the lowest level.
-pub(super) const BLOCK: usize = 16;
+pub(in crate::photons) const BLOCK: usize = 16;
 
 /// Ranges shorter than this are ordered by one thread; the order itself does not depend on it.
 const SERIAL: usize = 1 << 14;
 
 /// A piece on its way into the tree: its middle in the tree's units, and its number.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Entry {
-    pub(super) middle: [f32; 3],
-    pub(super) index: u32,
+pub(in crate::photons) struct Entry {
+    pub(in crate::photons) middle: [f32; 3],
+    pub(in crate::photons) index: u32,
 }
 
 /// Puts entries in kd order: every range of more than one block is split across the widest axis of its box at the largest
 /// power-of-two number of blocks below its own; where middles tie, by their numbers.
-pub(super) fn kd_order(entries: &mut [Entry]) {
+pub(in crate::photons) fn kd_order(entries: &mut [Entry]) {
     let blocks = entries.len().div_ceil(BLOCK);
     if blocks <= 1 {
         return;
