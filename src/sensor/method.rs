@@ -1,11 +1,11 @@
-//! Who makes a picture: photon maps, paths or light tracing, behind one call.
+//! Who makes a picture: photon maps, paths, bidirectional paths or light tracing, behind one call.
 
 use super::film::{Film, Sample};
 use super::light::{LightCount, extend_by_light};
 use super::render::{Streams, extend};
 use crate::error::Result;
 use crate::integrators::mapper::{Mapper, Report};
-use crate::integrators::path;
+use crate::integrators::{bidirectional, path};
 use crate::rng::Stream;
 use crate::scene::{Camera, Scene};
 use crate::transport::Progress;
@@ -17,6 +17,8 @@ pub enum Method<'a> {
     Photons(Mapper<'a>),
     /// The unbiased path tracer.
     Paths(&'a Scene),
+    /// The unbiased path tracer whose paths are connected to subpaths from the lights.
+    Bidirectional(&'a Scene),
     /// The unbiased light tracer: what the camera sees straight or through filters of light that scatters last on a diffuse
     /// surface or in a medium.
     Light(&'a Scene),
@@ -44,7 +46,7 @@ impl Method<'_> {
     /// A film of n samples has the same bits however many calls brought them, and on any number of threads.
     ///
     /// # Errors
-    /// those of [`extend`], of [`extend_by_light`] and of [`Mapper::check_radii`]
+    /// those of [`extend`], of [`extend_by_light`], of [`Mapper::check_radii`] and of [`bidirectional::check`]
     pub fn extend(
         &self,
         film: &mut Film,
@@ -69,6 +71,15 @@ impl Method<'_> {
                 let interior = scene.interior_at(camera.position());
                 extend(film, camera, samples, streams, progress, |ray, stream: &mut Stream, work| {
                     let (layers, rays) = path::layers(scene, ray, None, interior, stream);
+                    *work += Report { rays, work: stream.work, ..Report::default() };
+                    layers
+                })
+            }
+            Method::Bidirectional(scene) => {
+                bidirectional::check(scene)?;
+                let interior = scene.interior_at(camera.position());
+                extend(film, camera, samples, streams, progress, |ray, stream: &mut Stream, work| {
+                    let (layers, rays) = bidirectional::layers(scene, ray, None, interior, stream);
                     *work += Report { rays, work: stream.work, ..Report::default() };
                     layers
                 })
