@@ -122,11 +122,17 @@ pub enum Fault {
     BeamsArrive,
     /// The kernel of beams is that of half the line.
     LineHalved,
+    /// Weights of connections with subpaths of light do not know next-event estimation.
+    NextEventForgotten,
+    /// A connection forgets the cosine on the side of the light.
+    ConnectionCosineForgotten,
+    /// The density of light behind glass forgets the squared index, where its subpath asks for it.
+    LightIndexForgotten,
 }
 
 impl Fault {
     /// Every fault, in the order of their definition.
-    pub const ALL: [Fault; 57] = [
+    pub const ALL: [Fault; 60] = [
         Fault::AlbedoTwice,
         Fault::AlbedoNever,
         Fault::CosineTwice,
@@ -184,6 +190,9 @@ impl Fault {
         Fault::SineClamped,
         Fault::BeamsArrive,
         Fault::LineHalved,
+        Fault::NextEventForgotten,
+        Fault::ConnectionCosineForgotten,
+        Fault::LightIndexForgotten,
     ];
 }
 
@@ -274,7 +283,7 @@ mod tests {
     #[test]
     fn all_are_named_in_order() {
         assert!(Fault::ALL.iter().enumerate().all(|(i, fault)| *fault as usize == i));
-        assert_eq!(Fault::ALL.len(), Fault::LineHalved as usize + 1);
+        assert_eq!(Fault::ALL.len(), Fault::LightIndexForgotten as usize + 1);
         assert!(Fault::ALL.iter().all(|fault| !planted(*fault)));
     }
 }

@@ -556,28 +556,46 @@ pub fn fluence(
     stream: &mut Stream,
     mut collect: impl FnMut(u32, Spectrum),
 ) -> Rays {
+    let rays = aimed_fluence(scene, position, orders, stream, &mut collect);
+    let start = anywhere(scene, position, stream);
+    let visitor = PathVisitor::new(scene, orders, rays, |order, _, value| collect(order, value));
+    follow(visitor, start, guide, stream)
+}
+
+/// The part of the fluence at a point that directions are chosen for [W/L^2]. Returns the work.
+pub(super) fn aimed_fluence(
+    scene: &Scene,
+    position: DVec3,
+    orders: Orders,
+    stream: &mut Stream,
+    mut collect: impl FnMut(u32, Spectrum),
+) -> Rays {
     let mut rays = Rays::default();
+    if !orders.contains(0) {
+        return rays;
+    }
     let interior = scene.interior_at(position);
-    if orders.contains(0) {
-        for index in 0..scene.lights().len() {
-            if let Some((sample, received)) =
-                next_event(scene, index, (position, None, interior), stream, &mut rays)
-            {
-                let share = sample.pdf_solid_angle.map_or(1.0, |pdf| pdf / (pdf + warp::pdf_sphere()));
-                collect(0, received * share);
-            }
-        }
-        if let Some((dir, pdf)) = emitters::sample(scene, position, stream) {
-            let seen = emitted_along(scene, (Ray::new(position, dir), None, interior), stream, &mut rays);
-            collect(0, seen / (pdf + warp::pdf_sphere()));
+    for index in 0..scene.lights().len() {
+        if let Some((sample, received)) =
+            next_event(scene, index, (position, None, interior), stream, &mut rays)
+        {
+            let share = sample.pdf_solid_angle.map_or(1.0, |pdf| pdf / (pdf + warp::pdf_sphere()));
+            collect(0, received * share);
         }
     }
+    if let Some((dir, pdf)) = emitters::sample(scene, position, stream) {
+        let seen = emitted_along(scene, (Ray::new(position, dir), None, interior), stream, &mut rays);
+        collect(0, seen / (pdf + warp::pdf_sphere()));
+    }
+    rays
+}
+
+/// A path from a point in a uniform direction, weighted for the fluence.
+pub(super) fn anywhere(scene: &Scene, position: DVec3, stream: &mut Stream) -> Walker {
     let dir = warp::square_to_sphere(stream.pair()).normalize();
-    let visitor = PathVisitor::new(scene, orders, rays, |order, _, value| collect(order, value));
-    let start = Walker {
-        interior,
+    Walker {
+        interior: scene.interior_at(position),
         pdf_solid_angle: Some(warp::pdf_sphere()),
         ..Walker::new(Ray::new(position, dir), Spectrum::grey(FOUR_PI))
-    };
-    follow(visitor, start, guide, stream)
+    }
 }

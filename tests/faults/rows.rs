@@ -1,8 +1,8 @@
 //! One row a fault: where it was seen, what it is here, and which check catches it.
 
 use crate::checks::{
-    beams, cell, color, emitters, flights, fog, glass, ledger, light, media, numbers, outputs, phase,
-    point_light, points, shading, slab, threads, walls, weights,
+    beams, cell, color, connected, emitters, flights, fog, glass, ledger, light, media, numbers, outputs,
+    phase, point_light, points, shading, slab, threads, walls, weights,
 };
 use crate::support::scenes::{area_light, cuboid, rectangle};
 use glam::DVec3;
@@ -307,6 +307,21 @@ const fn inside(fault: Fault) -> Row {
         Fault::LineHalved => {
             ("the kernel of beams over half the line", "one_beam_by_hand", |_| beams::one_beam_by_hand())
         }
+        Fault::NextEventForgotten => (
+            "weights of connections without next-event estimation",
+            "a_furnace_of_lamps_is_as_bright_everywhere",
+            |_| connected::a_furnace_of_lamps_is_as_bright_everywhere(),
+        ),
+        Fault::ConnectionCosineForgotten => (
+            "a connection without the cosine on the side of the light",
+            "a_furnace_of_lamps_is_as_bright_everywhere",
+            |_| connected::a_furnace_of_lamps_is_as_bright_everywhere(),
+        ),
+        Fault::LightIndexForgotten => (
+            "the density of light behind glass without the squared index",
+            "a_furnace_of_lamps_is_as_bright_everywhere",
+            |_| connected::a_furnace_of_lamps_is_as_bright_everywhere(),
+        ),
     };
     Row { fault: Planted::Inside(fault), title, check_name, check }
 }
@@ -413,6 +428,9 @@ pub const BY_HAND: &[Row] = &[
     inside(Fault::SineClamped),
     inside(Fault::BeamsArrive),
     inside(Fault::LineHalved),
+    inside(Fault::NextEventForgotten),
+    inside(Fault::ConnectionCosineForgotten),
+    inside(Fault::LightIndexForgotten),
 ];
 
 fn single_scattering() {

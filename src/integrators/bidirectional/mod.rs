@@ -7,10 +7,12 @@
 
 mod light;
 mod sources;
+#[cfg(test)]
+mod tests;
 mod vertex;
 mod weights;
 
-use super::path::{PathVisitor, ROULETTE, next_event};
+use super::path::{PathVisitor, ROULETTE, aimed_fluence, anywhere, next_event};
 use super::{Layer, Layers, Rays};
 use crate::Spectrum;
 use crate::error::{Error, Result};
@@ -21,7 +23,7 @@ use crate::scene::{Orders, Scene, SceneHit, Start, Target};
 use crate::transport::{Roulette, Step, Visitor, Walker, connection, transmittance, walk};
 use glam::DVec3;
 use light::subpath;
-use sources::Sources;
+use sources::{Arriving, Sources};
 use vertex::{Vertex, is_specular};
 
 /// Whether subpaths of light can be connected to paths from the eye.
@@ -51,8 +53,34 @@ pub fn classes(
     stream: &mut Stream,
     collect: impl FnMut(u32, Layer, Spectrum),
 ) -> Rays {
+    let start = Walker { origin_surface, interior, ..Walker::new(ray, Spectrum::ONE) };
+    follow(scene, start, orders, Rays::default(), stream, collect)
+}
+
+/// One sample of the fluence at a point [W/L^2], by order, in a uniform direction and in those that [`super::fluence`] aims at.
+/// Returns the work.
+pub fn fluence(
+    scene: &Scene,
+    position: DVec3,
+    orders: Orders,
+    stream: &mut Stream,
+    mut collect: impl FnMut(u32, Spectrum),
+) -> Rays {
+    let rays = aimed_fluence(scene, position, orders, stream, &mut collect);
+    let start = anywhere(scene, position, stream);
+    follow(scene, start, orders, rays, stream, |order, _, value| collect(order, value))
+}
+
+/// A subpath of light, and a path that is connected to it.
+fn follow(
+    scene: &Scene,
+    start: Walker,
+    orders: Orders,
+    mut rays: Rays,
+    stream: &mut Stream,
+    collect: impl FnMut(u32, Layer, Spectrum),
+) -> Rays {
     let sources = Sources::new(scene);
-    let mut rays = Rays::default();
     // The last scattering is the eye's.
     let light = match orders.max {
         Some(max) if max < 2 => Vec::new(),
@@ -60,8 +88,8 @@ pub fn classes(
     };
     let path = PathVisitor::new(scene, orders, rays, collect).without_joined_above(1);
     let mut visitor = Eye { scene, sources, light, path, last: None, leaving: None, is_specular: false };
-    let start = Walker { origin_surface, interior, ..Walker::new(ray, Spectrum::ONE) };
-    walk(scene, start, Roulette::Below(ROULETTE), orders.max, stream, &mut visitor);
+    let roulette = Roulette::Below(ROULETTE * start.weight.max());
+    walk(scene, start, roulette, orders.max, stream, &mut visitor);
     visitor.path.rays()
 }
 
@@ -125,16 +153,11 @@ impl<'a, F: FnMut(u32, Layer, Spectrum)> Eye<'a, F> {
             else {
                 continue;
             };
-            let (passes, aimed) = match self.is_specular {
-                true => (1.0, 0.0),
-                false => (last.passes(self.scene, leaving, t), pdf_light),
-            };
-            let light = radiance.sum() * passes * self.sources.scale(last.interior, walker.interior);
-            let met = last.pdf(leaving) * passes;
-            let others = last.ways.others(self.sources.pdf(&last, leaving, light), last.turned(leaving));
+            let scale = self.is_specular.then(|| self.sources.scale(last.interior, walker.interior));
+            let arriving = Arriving::met(radiance, pdf_light, t);
+            let [share, _] = self.sources.shares(&last, leaving, &arriving, scale);
             let end = hit.map_or(f64::INFINITY, |found| found.hit.t);
             let transmitted = transmittance(self.scene, &walker.ray, end, walker.interior, stream);
-            let share = met / (met + aimed + others);
             let layer = self.layer(&last);
             self.path.add(walker.order, layer, walker.weight * radiance * transmitted * share);
         }
@@ -164,15 +187,7 @@ impl<'a, F: FnMut(u32, Layer, Spectrum)> Eye<'a, F> {
             if fraction.is_black() {
                 continue;
             }
-            let passes = vertex.passes(scene, sample.dir, sample.distance);
-            let (aimed, met) = match sample.pdf_solid_angle {
-                Some(pdf) => (pdf, vertex.pdf(sample.dir) * passes),
-                None => (1.0, 0.0),
-            };
-            let light = sample.value.sum() * aimed * passes;
-            let others =
-                vertex.ways.others(self.sources.pdf(vertex, sample.dir, light), vertex.turned(sample.dir));
-            let share = aimed / (aimed + met + others);
+            let [_, share] = self.sources.shares(vertex, sample.dir, &Arriving::aimed(&sample), None);
             self.path.add(vertex.order, layer, vertex.weight * fraction * received * share);
         }
     }

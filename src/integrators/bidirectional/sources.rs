@@ -1,11 +1,13 @@
-//! Lights that subpaths start from: those that come from a surface, a point or a direction.
+//! Lights that subpaths start from, those that come from a surface, a point or a direction; and their techniques' shares.
 //!
 //! What fills a volume, or comes from all sides, is met by the eye's subpath, which collects it along whole rays: chance alone finds
 //! it with little variance, or a direction that is chosen for it.
 
 use super::vertex::Vertex;
 use super::weights::Ways;
-use crate::light::Light;
+use crate::Spectrum;
+use crate::faults::{Fault, planted};
+use crate::light::{Light, LightSample};
 use crate::math::Ray;
 use crate::photons::from_light;
 use crate::rng::Stream;
@@ -24,6 +26,19 @@ pub(super) struct Arriving {
     pub distance: f64,
     /// Whether rays meet it.
     pub is_met: bool,
+}
+
+impl Arriving {
+    /// From a light that rays meet, of this radiance.
+    pub fn met(radiance: Spectrum, pdf: f64, distance: f64) -> Self {
+        Arriving { light: radiance.sum(), pdf, distance, is_met: true }
+    }
+
+    /// From a sample of next-event estimation.
+    pub fn aimed(sample: &LightSample) -> Self {
+        let (pdf, is_met) = (sample.pdf_solid_angle.unwrap_or(1.0), sample.pdf_solid_angle.is_some());
+        Arriving { light: sample.value.sum() * pdf, pdf, distance: sample.distance, is_met }
+    }
 }
 
 /// The lights of a scene that subpaths start from.
@@ -69,9 +84,7 @@ impl<'a> Sources<'a> {
         let light = &self.scene.lights()[index];
         let ray = Ray::new(place, dir);
         if light.is_delta() {
-            let sample = light.sample(place, [0.5; 2])?;
-            let distance = sample.distance;
-            return Some(Arriving { light: sample.value.sum(), pdf: 1.0, distance, is_met: false });
+            return light.sample(place, [0.5; 2]).map(|sample| Arriving::aimed(&sample));
         }
         let (radiance, pdf, distance) = match light.background(&ray) {
             Some((radiance, pdf)) => (radiance, pdf, f64::INFINITY),
@@ -81,11 +94,11 @@ impl<'a> Sources<'a> {
                 (radiance, pdf, hit.t)
             }
         };
-        (pdf > 0.0).then(|| Arriving { light: radiance.sum(), pdf, distance, is_met: true })
+        (pdf > 0.0).then(|| Arriving::met(radiance, pdf, distance))
     }
 
-    /// Density of the light that arrives at a vertex along `dir`, straight and but for what is lost on the way.
-    pub fn pdf(&self, vertex: &Vertex, dir: DVec3, light: f64) -> f64 {
+    /// Density of the photons that bring this light to a vertex along `dir`.
+    fn pdf(&self, vertex: &Vertex, dir: DVec3, light: f64) -> f64 {
         vertex.met(dir) * light / self.power()
     }
 
@@ -97,7 +110,8 @@ impl<'a> Sources<'a> {
             let passes = vertex.passes(self.scene, -vertex.from, arriving.distance);
             let beyond = if arriving.is_met { passes } else { 0.0 };
             let pdf = self.pdf(vertex, vertex.from, arriving.light) * passes;
-            return Ways { pdf, connected: arriving.pdf, beyond };
+            let connected = if planted(Fault::NextEventForgotten) { 0.0 } else { arriving.pdf };
+            return Ways { pdf, connected, beyond };
         }
         let light = &self.scene.lights()[index];
         let radiance = match light {
@@ -107,8 +121,25 @@ impl<'a> Sources<'a> {
                 None => return nobody,
             },
         };
-        let scale = self.scale(vertex.interior, start.interior);
+        let is_scaled = !planted(Fault::LightIndexForgotten);
+        let scale = if is_scaled { self.scale(vertex.interior, start.interior) } else { 1.0 };
         Ways { pdf: self.pdf(vertex, vertex.from, radiance * scale), connected: 0.0, beyond: 1.0 }
+    }
+
+    /// Shares of the balance heuristic that the two techniques without a subpath of light have in what arrives at the last vertex of the
+    /// eye's: by meeting the light, and by next-event estimation.
+    ///
+    /// # Arguments
+    /// `dir` in which the eye's subpath leaves; `scale` none where nothing specular lies between, else [`Sources::scale`]
+    pub fn shares(&self, vertex: &Vertex, dir: DVec3, arriving: &Arriving, scale: Option<f64>) -> [f64; 2] {
+        let (passes, aimed, scale) = match scale {
+            None => (vertex.passes(self.scene, dir, arriving.distance), arriving.pdf, 1.0),
+            Some(scale) => (1.0, 0.0, scale),
+        };
+        let met = if arriving.is_met { vertex.pdf(dir) * passes } else { 0.0 };
+        let joined = self.pdf(vertex, dir, arriving.light * passes * scale);
+        let all = met + aimed + vertex.ways.others(joined, vertex.turned(dir));
+        [met / all, aimed / all]
     }
 
     /// What radiance is multiplied by on its way from an interior to another: the squared ratio of their indices.

@@ -2,6 +2,7 @@
 
 use super::weights::Ways;
 use crate::Spectrum;
+use crate::faults::{Fault, planted};
 use crate::geometry::Normals;
 use crate::math::{Ray, cosine_pair, exp};
 use crate::phase::{Phase, PhaseFunction};
@@ -98,7 +99,10 @@ impl<'a> Vertex<'a> {
     pub fn sent(&self, towards: DVec3) -> Spectrum {
         match &self.scatterer {
             Scatterer::Medium { albedo, .. } => *albedo * self.pdf(towards),
-            Scatterer::Surface { fraction, normals } => *fraction * towards.dot(normals.geometric).max(0.0),
+            Scatterer::Surface { fraction, normals } => {
+                let cosine = towards.dot(normals.geometric).max(0.0);
+                *fraction * if planted(Fault::ConnectionCosineForgotten) { cosine.signum() } else { cosine }
+            }
         }
     }
 
