@@ -314,8 +314,8 @@ const fn inside(fault: Fault) -> Row {
         ),
         Fault::ConnectionCosineForgotten => (
             "a connection without the cosine on the side of the light",
-            "a_furnace_of_lamps_is_as_bright_everywhere",
-            |_| connected::a_furnace_of_lamps_is_as_bright_everywhere(),
+            "two_reflections_are_those_of_paths",
+            |_| connected::two_reflections_are_those_of_paths(),
         ),
         Fault::LightIndexForgotten => (
             "the density of light behind glass without the squared index",

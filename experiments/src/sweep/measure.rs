@@ -383,6 +383,22 @@ pub fn paths(scene: &Scene, camera: &Camera, seed: u64, effort: &Effort) -> Resu
     in_batches(on, seed, effort.steps, &clock, &sample)
 }
 
+/// Bidirectional paths.
+///
+/// # Errors
+/// [`Failure`]
+pub fn connected(scene: &Scene, camera: &Camera, seed: u64, effort: &Effort) -> Result<Seen, Failure> {
+    let (clock, quarters) = (Clock::of(effort), Quarters::new(camera));
+    let within = scene.interior_at(camera.position());
+    // Other streams than those of paths, whose light of order 1 would be the same.
+    let seed = seed ^ (1 << 41);
+    let sample = |ray: Ray, stream: &mut Stream| {
+        let (layers, rays) = bidirectional::layers(scene, ray, None, within, stream);
+        (layers, rays.total() as f64 + cost(&stream.work))
+    };
+    in_batches((scene, &quarters), seed, effort.steps, &clock, &sample)
+}
+
 /// As many samples as a pilot says take so many steps.
 pub(super) fn in_batches(
     on: (&Scene, &Quarters),
