@@ -6,7 +6,7 @@
 use crate::gallery::light::is_specular_ahead;
 use cpu_time::ProcessTime;
 use turbid::error::Error;
-use turbid::integrators::{Layer, Layers, light_tracing, path};
+use turbid::integrators::{Layer, Layers, bidirectional, light_tracing, path};
 use turbid::math::Ray;
 use turbid::photons::Emitter;
 use turbid::rng::{Purpose, Stream, Work};
