@@ -1,11 +1,12 @@
 //! Who makes a picture: photon maps, paths, bidirectional paths or light tracing, behind one call.
 
+use super::bidirectional::extend_bidirectionally;
 use super::film::{Film, Sample};
 use super::light::{LightCount, extend_by_light};
 use super::render::{Streams, extend};
 use crate::error::Result;
 use crate::integrators::mapper::{Mapper, Report};
-use crate::integrators::{bidirectional, path};
+use crate::integrators::path;
 use crate::rng::Stream;
 use crate::scene::{Camera, Scene};
 use crate::transport::Progress;
@@ -46,7 +47,7 @@ impl Method<'_> {
     /// A film of n samples has the same bits however many calls brought them, and on any number of threads.
     ///
     /// # Errors
-    /// those of [`extend`], of [`extend_by_light`], of [`Mapper::check_radii`] and of [`bidirectional::check`]
+    /// those of [`extend`], of [`extend_by_light`], of [`Mapper::check_radii`] and of `integrators::bidirectional::check`
     pub fn extend(
         &self,
         film: &mut Film,
@@ -76,13 +77,7 @@ impl Method<'_> {
                 })
             }
             Method::Bidirectional(scene) => {
-                bidirectional::check(scene)?;
-                let interior = scene.interior_at(camera.position());
-                extend(film, camera, samples, streams, progress, |ray, stream: &mut Stream, work| {
-                    let (layers, rays) = bidirectional::layers(scene, ray, None, interior, stream);
-                    *work += Report { rays, work: stream.work, ..Report::default() };
-                    layers
-                })
+                extend_bidirectionally(film, scene, camera, samples, streams, progress)
             }
             Method::Light(scene) => {
                 let LightCount { rays, work } =

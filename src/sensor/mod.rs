@@ -2,6 +2,7 @@
 //! with its variance a pixel and layer.
 
 mod advise;
+mod bidirectional;
 mod compare;
 mod film;
 mod light;

@@ -36,9 +36,9 @@ use turbid::sensor::{Blocks, Film, LIGHT_BYTES, LIGHT_PIXEL_BYTES, Method, Pictu
 /// pixels share, so that the error of one map is seen only by making several (--maps); the variance is then that between
 /// maps. The classic picture is one map and a few samples: `turbid render scene.toml -o out.exr --samples 16`.
 ///
-/// Bidirectional paths (--with bidirectional) are the path tracer's, and each of their scatterings is connected to each of a photon's
-/// that leaves the lights: unbiased too, all layers, and less noisy by far where light that is scattered twice or more comes from
-/// small or hidden lamps, from beams, and through glass. Light scattered once, and lights seen straight, they find as paths do.
+/// Bidirectional paths (--with bidirectional) are those of the path tracer, each of their scatterings connected to each of a photon's that
+/// leaves the lights, and photons are connected to the camera: unbiased, all layers, and less noisy by far where light that is
+/// scattered twice or more comes from small or hidden lamps and from beams, and in caustics that are seen straight.
 ///
 /// Light tracing (--with light) is unbiased too, and a second witness for caustics, which paths find badly or not at all:
 /// photons start from the lights and are connected to the camera at each scattering, so that --samples counts histories a
@@ -207,7 +207,7 @@ impl Render {
         self.memory.check(
             &format!("a picture of {pixels} pixels"),
             self.film_bytes(&camera),
-            if self.with == With::Light { LIGHT_BYTES } else { 0.0 },
+            if matches!(self.with, With::Light | With::Bidirectional) { LIGHT_BYTES } else { 0.0 },
             |part| format!("at most {} pixels, by --width", (pixels as f64 * part) as u64),
         )?;
         if self.with == With::Photons && scene.plan().has_media {
@@ -323,7 +323,8 @@ impl Render {
         let more = u8::from(self.passes > 1) + u8::from(self.compared.is_asked_for());
         let films = pixels * (films + f64::from(more) * FILM_BYTES);
         match self.with {
-            With::Photons | With::Paths | With::Bidirectional => films,
+            With::Photons | With::Paths => films,
+            With::Bidirectional => films + pixels * (LIGHT_PIXEL_BYTES + FILM_BYTES) + LIGHT_BYTES,
             With::Light => films + pixels * LIGHT_PIXEL_BYTES + LIGHT_BYTES,
         }
     }
@@ -411,7 +412,9 @@ impl Render {
         let pixels = film.pixels().len() as u64;
         let mut take = |film: &mut Film, samples: u64| {
             let name = if matches!(method, Method::Light(_)) { "photons" } else { "gathering" };
-            let bar = Bar::stage(name, samples.saturating_mul(pixels));
+            // A photon beside each path.
+            let walks = if matches!(method, Method::Bidirectional(_)) { 2 } else { 1 };
+            let bar = Bar::stage(name, samples.saturating_mul(walks * pixels));
             let work = stages.time("samples", || method.extend(film, camera, samples, streams, &bar));
             bar.finish();
             work

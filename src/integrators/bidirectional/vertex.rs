@@ -13,7 +13,7 @@ use glam::DVec3;
 use std::f64::consts::PI;
 
 /// Squares of distances are no less \[L^2\]: bodies that touch have points in one place.
-const NEAREST: f64 = 1e-60;
+pub(super) const NEAREST: f64 = 1e-60;
 
 /// Optical depths that weights take for the largest: behind it a technique counts as hardly any.
 const DEEPEST: f64 = 200.0;

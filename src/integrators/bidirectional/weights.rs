@@ -3,7 +3,7 @@
 //! A path has the scatterings v_1 ... v_m, from the light to the eye, by media and diffuse surfaces; between two of them is a
 //! flight, which may have been turned by specular surfaces. Technique s >= 2 makes v_1 ... v_(s-1) by a subpath of light, the rest
 //! from the eye, and connects v_(s-1) with v_s, where nothing specular may lie between; s = 1 is next-event estimation from v_1,
-//! s = 0 meets the light by chance. With f_i and b_i the densities with which the flight between v_i and v_(i+1) is chosen from
+//! s = 0 meets the light by chance; in pictures s = m + 1 connects v_m with the camera. With f_i and b_i the densities with which the flight between v_i and v_(i+1) is chosen from
 //! its one end and from its other,
 //!
 //! p_s = e f_1 ... f_(s-2) b_s ... b_(m-1), p_1 = q b_1 ... b_(m-1), p_0 = h b_1 ... b_(m-1),
