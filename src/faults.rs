@@ -130,11 +130,17 @@ pub enum Fault {
     PlanesUnseen,
     /// The determinant of plane and ray is no less than 0.01.
     DeterminantClamped,
+    /// Weights of connections with subpaths of light do not know next-event estimation.
+    NextEventForgotten,
+    /// A connection forgets the cosine on the side of the light.
+    ConnectionCosineForgotten,
+    /// The density of light behind glass forgets the squared index, where its subpath asks for it.
+    LightIndexForgotten,
 }
 
 impl Fault {
     /// Every fault, in the order of their definition.
-    pub const ALL: [Fault; 61] = [
+    pub const ALL: [Fault; 64] = [
         Fault::AlbedoTwice,
         Fault::AlbedoNever,
         Fault::CosineTwice,
@@ -196,6 +202,9 @@ impl Fault {
         Fault::PlanesCollided,
         Fault::PlanesUnseen,
         Fault::DeterminantClamped,
+        Fault::NextEventForgotten,
+        Fault::ConnectionCosineForgotten,
+        Fault::LightIndexForgotten,
     ];
 }
 
@@ -286,7 +295,7 @@ mod tests {
     #[test]
     fn all_are_named_in_order() {
         assert!(Fault::ALL.iter().enumerate().all(|(i, fault)| *fault as usize == i));
-        assert_eq!(Fault::ALL.len(), Fault::DeterminantClamped as usize + 1);
+        assert_eq!(Fault::ALL.len(), Fault::LightIndexForgotten as usize + 1);
         assert!(Fault::ALL.iter().all(|fault| !planted(*fault)));
     }
 }

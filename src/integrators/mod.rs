@@ -1,5 +1,6 @@
 //! Integrators: the path tracer, the photon mapper, light tracing, and the march of a ray through media.
 
+pub mod bidirectional;
 mod emitters;
 mod layers;
 mod light_tracing;

@@ -30,7 +30,7 @@ use glam::DVec3;
 /// Throughput, relative to the start's, below which paths play roulette. Any value gives the same mean; 1/(variance x
 /// time) in a box of fog (`cargo bench --bench fogbox`) is the same from 0.3 to 1 within the noise, and three quarters of
 /// that at 0.1. Lower values waste time, higher ones make variances that are harder to estimate.
-const ROULETTE: f64 = 0.4;
+pub(super) const ROULETTE: f64 = 0.4;
 
 /// The work of paths: rays asked what they meet.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -49,7 +49,7 @@ impl Rays {
 }
 
 /// What reaches a path's origin, split by the caller: called with the order, the class and the contribution.
-struct PathVisitor<'a, F: FnMut(u32, Layer, Spectrum)> {
+pub(super) struct PathVisitor<'a, F: FnMut(u32, Layer, Spectrum)> {
     scene: &'a Scene,
     orders: Orders,
     collect: F,
@@ -62,10 +62,14 @@ struct PathVisitor<'a, F: FnMut(u32, Layer, Spectrum)> {
     end: f64,
     /// The games by which it is split and ended.
     guided: Option<Guided<'a>>,
+    /// Order above which light is left out of lights that do not fill space, if it is.
+    joined_above: Option<u32>,
+    /// Whether caustics of these lights are left out too, what is scattered once behind specular surfaces.
+    are_caustics_joined: bool,
 }
 
 impl<'a, F: FnMut(u32, Layer, Spectrum)> PathVisitor<'a, F> {
-    fn new(scene: &'a Scene, orders: Orders, rays: Rays, collect: F) -> Self {
+    pub(super) fn new(scene: &'a Scene, orders: Orders, rays: Rays, collect: F) -> Self {
         PathVisitor {
             scene,
             orders,
@@ -75,10 +79,48 @@ impl<'a, F: FnMut(u32, Layer, Spectrum)> PathVisitor<'a, F> {
             specular_at: None,
             end: f64::INFINITY,
             guided: None,
+            joined_above: None,
+            are_caustics_joined: false,
         }
     }
 
-    fn add(&mut self, order: u32, layer: Layer, value: Spectrum) {
+    /// The same without the light above an order of lights that do not fill space, and without their caustics, if so.
+    pub(super) fn without_joined_above(self, order: u32, are_caustics_joined: bool) -> Self {
+        PathVisitor { joined_above: Some(order), are_caustics_joined, ..self }
+    }
+
+    /// Whether it collects a light's part in paths of an order.
+    fn has(&self, light: &Light, order: u32) -> bool {
+        self.joined_above.is_none_or(|above| order <= above || light.fills_space())
+    }
+
+    /// Whether it collects light that the ray meets by itself.
+    fn has_met(&self, light: &Light, walker: &Walker) -> bool {
+        let is_caustic = walker.order == 1 && self.specular_at == Some(1);
+        self.has(light, walker.order) && !(self.are_caustics_joined && is_caustic && !light.fills_space())
+    }
+
+    /// Whether an order counts.
+    pub(super) fn contains(&self, order: u32) -> bool {
+        self.orders.contains(order)
+    }
+
+    /// What the path's first scattering was.
+    pub(super) fn first(&self) -> Flags {
+        self.first
+    }
+
+    /// The work so far.
+    pub(super) fn rays(&self) -> Rays {
+        self.rays
+    }
+
+    /// The work so far, to be added to.
+    pub(super) fn rays_mut(&mut self) -> &mut Rays {
+        &mut self.rays
+    }
+
+    pub(super) fn add(&mut self, order: u32, layer: Layer, value: Spectrum) {
         if self.orders.contains(order) && !value.is_black() {
             (self.collect)(order, layer, value);
         }
@@ -104,6 +146,7 @@ impl<'a, F: FnMut(u32, Layer, Spectrum)> PathVisitor<'a, F> {
         let layer = self.layer_ahead(walker);
         if let Some(found) = hit
             && let Target::Light(index) = found.target
+            && self.has_met(&self.scene.lights()[index], walker)
         {
             let seen_along = sampled_along(walker);
             let seen_hit =
@@ -126,6 +169,7 @@ impl<'a, F: FnMut(u32, Layer, Spectrum)> PathVisitor<'a, F> {
                 seen *= pdf / (pdf + source.pdf_solid_angle(&sampled_along(walker)));
             }
             if hit.is_none()
+                && self.has_met(light, walker)
                 && let Some((radiance, pdf_light)) = light.background(&walker.ray)
             {
                 let share = walker.pdf_solid_angle.map_or(1.0, |pdf| pdf / (pdf + pdf_light));
@@ -152,6 +196,9 @@ impl<'a, F: FnMut(u32, Layer, Spectrum)> PathVisitor<'a, F> {
         let layer = self.layer_connected(walker, event);
         for index in 0..self.scene.lights().len() {
             let light = &self.scene.lights()[index];
+            if !self.has(light, walker.order + 1) {
+                continue;
+            }
             let place = (position, origin_surface, walker.interior);
             let found = next_event(self.scene, index, place, stream, &mut self.rays);
             let Some((sample, received)) = found else { continue };
@@ -190,6 +237,9 @@ impl<'a, F: FnMut(u32, Layer, Spectrum)> PathVisitor<'a, F> {
         let end = hit.map_or(f64::INFINITY, |h| h.hit.t);
         let Some(span) = span(scene, ray, end, walker.interior) else { return };
         for &index in &plan.distance_lights {
+            if !self.has(&scene.lights()[index], walker.order + 1) {
+                continue;
+            }
             let Some(distances) = Distances::of(&scene.lights()[index], ray, span) else { continue };
             let Some(t) = distances.sample(stream.unit()) else { continue };
             let segments = scene.segments(ray, end, walker.interior);
@@ -515,28 +565,46 @@ pub fn fluence(
     stream: &mut Stream,
     mut collect: impl FnMut(u32, Spectrum),
 ) -> Rays {
+    let rays = aimed_fluence(scene, position, orders, stream, &mut collect);
+    let start = anywhere(scene, position, stream);
+    let visitor = PathVisitor::new(scene, orders, rays, |order, _, value| collect(order, value));
+    follow(visitor, start, guide, stream)
+}
+
+/// The part of the fluence at a point that directions are chosen for [W/L^2]. Returns the work.
+pub(super) fn aimed_fluence(
+    scene: &Scene,
+    position: DVec3,
+    orders: Orders,
+    stream: &mut Stream,
+    mut collect: impl FnMut(u32, Spectrum),
+) -> Rays {
     let mut rays = Rays::default();
+    if !orders.contains(0) {
+        return rays;
+    }
     let interior = scene.interior_at(position);
-    if orders.contains(0) {
-        for index in 0..scene.lights().len() {
-            if let Some((sample, received)) =
-                next_event(scene, index, (position, None, interior), stream, &mut rays)
-            {
-                let share = sample.pdf_solid_angle.map_or(1.0, |pdf| pdf / (pdf + warp::pdf_sphere()));
-                collect(0, received * share);
-            }
-        }
-        if let Some((dir, pdf)) = emitters::sample(scene, position, stream) {
-            let seen = emitted_along(scene, (Ray::new(position, dir), None, interior), stream, &mut rays);
-            collect(0, seen / (pdf + warp::pdf_sphere()));
+    for index in 0..scene.lights().len() {
+        if let Some((sample, received)) =
+            next_event(scene, index, (position, None, interior), stream, &mut rays)
+        {
+            let share = sample.pdf_solid_angle.map_or(1.0, |pdf| pdf / (pdf + warp::pdf_sphere()));
+            collect(0, received * share);
         }
     }
+    if let Some((dir, pdf)) = emitters::sample(scene, position, stream) {
+        let seen = emitted_along(scene, (Ray::new(position, dir), None, interior), stream, &mut rays);
+        collect(0, seen / (pdf + warp::pdf_sphere()));
+    }
+    rays
+}
+
+/// A path from a point in a uniform direction, weighted for the fluence.
+pub(super) fn anywhere(scene: &Scene, position: DVec3, stream: &mut Stream) -> Walker {
     let dir = warp::square_to_sphere(stream.pair()).normalize();
-    let visitor = PathVisitor::new(scene, orders, rays, |order, _, value| collect(order, value));
-    let start = Walker {
-        interior,
+    Walker {
+        interior: scene.interior_at(position),
         pdf_solid_angle: Some(warp::pdf_sphere()),
         ..Walker::new(Ray::new(position, dir), Spectrum::grey(FOUR_PI))
-    };
-    follow(visitor, start, guide, stream)
+    }
 }

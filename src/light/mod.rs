@@ -64,6 +64,14 @@ impl Light {
         }
     }
 
+    /// Whether it fills a volume or comes from all sides, so that rays collect it on their way: no surface, point or direction.
+    pub fn fills_space(&self) -> bool {
+        match self {
+            Light::Isotropic(_) | Light::VolumeSource(_) | Light::MediumEmission(_) => true,
+            Light::Beam(_) | Light::Area(_) | Light::Point(_) | Light::Spot(_) | Light::Sun(_) => false,
+        }
+    }
+
     /// The body that rays can meet, black but for its light; none for lights without.
     pub fn body(&self) -> Option<&Shape> {
         if let Light::Area(l) = self { Some(l.shape()) } else { None }

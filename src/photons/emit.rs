@@ -270,7 +270,7 @@ fn by_power(scene: &Scene, power: Spectrum, stream: &mut Stream) -> Option<Walke
 }
 
 /// A photon from the light of this index, if one leaves it this time; it carries that light's power \[W\].
-pub(super) fn from_light(scene: &Scene, index: usize, stream: &mut Stream) -> Option<Walker> {
+pub(crate) fn from_light(scene: &Scene, index: usize, stream: &mut Stream) -> Option<Walker> {
     let emission = scene.lights()[index].emit(scene.periodic_cell(), stream);
     start(scene, index, &emission, emission.power, stream)
 }

@@ -17,6 +17,7 @@ pub mod tree;
 
 pub use crate::transport::Flags;
 pub use emit::Emitter;
+pub(crate) use emit::from_light;
 pub use ends::{MOST_EVENTS, check_end};
 pub use map::PhotonMap;
 pub use pass::{Ends, Histories, Ledger, Part, Pass, PassReport, Run, Storage, is_in, is_indirect, shoot};

@@ -47,9 +47,15 @@ impl Scene {
         end: f64,
         towards: Target,
     ) -> Option<Spectrum> {
-        if let Target::Light(index) = towards
-            && self.lights()[index].hides_itself(ray, end)
-        {
+        let is_hidden = match towards {
+            Target::Light(index) => self.lights()[index].hides_itself(ray, end),
+            // As of lights: what is nearer by more than a millionth stands in the way, which rounding is far below.
+            Target::Object(index) => {
+                let start = Start::on(origin_surface, towards);
+                self.objects()[index].shape.blocks(ray, start, end * (1.0 - 1e-6))
+            }
+        };
+        if is_hidden {
             return None;
         }
         self.let_through(ray, origin_surface, end, Some(towards))

@@ -49,7 +49,7 @@ pub fn by_light(
     progress: &dyn Progress,
 ) -> Result<Film> {
     let mut film = Film::new(camera.width(), camera.height());
-    expose(&mut film, scene, camera, (histories, films), streams, progress)?;
+    trace(&mut film, scene, camera, (histories, films), streams, progress)?;
     Ok(film)
 }
 
@@ -73,7 +73,7 @@ pub fn extend_by_light(
         return Err(Error::out_of_range("samples per pixel", all as f64, "at most 4294967295 in all"));
     }
     let pixels = u64::from(film.width()) * u64::from(film.height());
-    expose(film, scene, camera, (pixels, samples), streams, progress)
+    trace(film, scene, camera, (pixels, samples), streams, progress)
 }
 
 /// What some histories brought: each splat with the number of its film.
@@ -99,18 +99,36 @@ impl std::ops::AddAssign for LightCount {
     }
 }
 
-/// Counts so many films of `histories` photons as samples of a film, behind those that it has.
-fn expose(
+fn trace(
     film: &mut Film,
     scene: &Scene,
     camera: &Camera,
-    (histories, films): (u64, u64),
+    size: (u64, u64),
     streams: Streams,
     progress: &dyn Progress,
 ) -> Result<LightCount> {
     check(scene)?;
     check_end(scene)?;
     let emitter = Emitter::by_power(scene);
+    expose(film, camera, size, progress, |history, splat| {
+        let mut stream = Stream::new(streams.seed, Purpose::LightTracing, streams.replicate, history);
+        let rays = light_tracing(scene, camera, &emitter, &mut stream, splat);
+        LightCount { rays, work: stream.work }
+    })
+}
+
+/// Counts so many films of `histories` photons as samples of a film, behind those that it has: `history` follows that of a number, and
+/// hands over what it sends to the camera.
+///
+/// # Errors
+/// `Error::NonFinite`; `Error::Cancelled`
+pub(super) fn expose(
+    film: &mut Film,
+    camera: &Camera,
+    (histories, films): (u64, u64),
+    progress: &dyn Progress,
+    follow: impl Fn(u64, &mut dyn FnMut(Splat)) -> LightCount + Sync,
+) -> Result<LightCount> {
     let first = film.samples() * histories;
     let last = first + films * histories;
     let mut count = LightCount::default();
@@ -121,12 +139,8 @@ fn expose(
         let block = |range: std::ops::Range<u64>| {
             let mut part = Part::default();
             for history in range.start + start..range.end + start {
-                let mut stream = Stream::new(streams.seed, Purpose::LightTracing, streams.replicate, history);
                 let number = history / histories;
-                let rays = light_tracing(scene, camera, &emitter, &mut stream, |splat| {
-                    part.splats.push((number, splat));
-                });
-                part.count += LightCount { rays, work: stream.work };
+                part.count += follow(history, &mut |splat| part.splats.push((number, splat)));
             }
             part
         };

@@ -1,5 +1,6 @@
-//! Who makes a picture: photon maps, paths or light tracing, behind one call.
+//! Who makes a picture: photon maps, paths, bidirectional paths or light tracing, behind one call.
 
+use super::bidirectional::extend_bidirectionally;
 use super::film::{Film, Sample};
 use super::light::{LightCount, extend_by_light};
 use super::render::{Streams, extend};
@@ -17,6 +18,8 @@ pub enum Method<'a> {
     Photons(Mapper<'a>),
     /// The unbiased path tracer.
     Paths(&'a Scene),
+    /// The unbiased path tracer whose paths are connected to subpaths from the lights.
+    Bidirectional(&'a Scene),
     /// The unbiased light tracer: what the camera sees straight or through filters of light that scatters last on a diffuse
     /// surface or in a medium.
     Light(&'a Scene),
@@ -44,7 +47,7 @@ impl Method<'_> {
     /// A film of n samples has the same bits however many calls brought them, and on any number of threads.
     ///
     /// # Errors
-    /// those of [`extend`], of [`extend_by_light`] and of [`Mapper::check_radii`]
+    /// those of [`extend`], of [`extend_by_light`], of [`Mapper::check_radii`] and of `integrators::bidirectional::check`
     pub fn extend(
         &self,
         film: &mut Film,
@@ -72,6 +75,9 @@ impl Method<'_> {
                     *work += Report { rays, work: stream.work, ..Report::default() };
                     layers
                 })
+            }
+            Method::Bidirectional(scene) => {
+                extend_bidirectionally(film, scene, camera, samples, streams, progress)
             }
             Method::Light(scene) => {
                 let LightCount { rays, work } =

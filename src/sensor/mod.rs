@@ -2,6 +2,7 @@
 //! with its variance a pixel and layer.
 
 mod advise;
+mod bidirectional;
 mod compare;
 mod film;
 mod light;
@@ -24,7 +25,10 @@ pub use film::{Film, Pixel, Sample};
 pub use light::{LIGHT_BYTES, LIGHT_PIXEL_BYTES, LightCount, by_light, extend_by_light};
 pub use maps::{MapReading, MapSettings, SensorMaps, usual_reach};
 pub use method::Method;
-pub use paths::{PathSettings, by_guided_paths, by_paths, sample, sample_bin, sample_counted, sample_guided};
+pub use paths::{
+    PathSettings, by_bidirectional_paths, by_guided_paths, by_paths, sample, sample_bin, sample_counted,
+    sample_guided,
+};
 pub use photons::{
     PhotonForecast, PhotonReadings, PhotonSettings, RadianceMaps, by_given_photons, by_photons,
     by_photons_in_passes, forecast, given_bytes, is_answered_by_map,

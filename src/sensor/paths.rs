@@ -1,9 +1,9 @@
-//! Sensors read by the path tracer.
+//! Sensors read by the path tracer, and by the bidirectional one.
 
 use super::{Measurement, Source, measurements, room};
 use crate::Spectrum;
 use crate::error::{Error, Result};
-use crate::integrators::{Rays, direct_flux, fluence, radiance};
+use crate::integrators::{Rays, bidirectional, direct_flux, fluence, radiance};
 use crate::light::PeriodicCell;
 use crate::math::{Frame, Ray, warp};
 use crate::photons::check_end;
@@ -33,7 +33,20 @@ pub struct PathSettings {
 /// `Error::Unreachable` if the scene has path classes that paths cannot sample; `Error::NonFinite`;
 /// `Error::Cancelled`.
 pub fn by_paths(scene: &Scene, settings: &PathSettings, progress: &dyn Progress) -> Result<Vec<Measurement>> {
-    measured(scene, settings, None, progress)
+    measured(scene, settings, Walk::Paths(None), progress)
+}
+
+/// The same by paths that are connected to subpaths from the lights.
+///
+/// # Errors
+/// those of [`by_paths`] and of [`bidirectional::check`]
+pub fn by_bidirectional_paths(
+    scene: &Scene,
+    settings: &PathSettings,
+    progress: &dyn Progress,
+) -> Result<Vec<Measurement>> {
+    bidirectional::check(scene)?;
+    measured(scene, settings, Walk::Bidirectional, progress)
 }
 
 /// The same by paths that weight windows split on their way to the lights, and end elsewhere: where light is found through many mean
@@ -49,13 +62,59 @@ pub fn by_guided_paths(
     let guide = Guide::new(scene).ok_or_else(|| {
         Error::Scene("weight windows need lights in a place or from a direction: isotropic light into a body, and sources in a slab without end, are on all sides".into())
     })?;
-    measured(scene, settings, Some(&guide), progress)
+    measured(scene, settings, Walk::Paths(Some(&guide)), progress)
+}
+
+/// How the light that a sensor reads is found.
+#[derive(Clone, Copy)]
+enum Walk<'a> {
+    /// By paths, split and ended by a guide, if there is one.
+    Paths(Option<&'a Guide>),
+    /// By paths that are connected to subpaths from the lights.
+    Bidirectional,
+}
+
+impl Walk<'_> {
+    /// One sample of the radiance that arrives along a ray, by order, and the work.
+    fn radiance(
+        self,
+        scene: &Scene,
+        ray: Ray,
+        orders: Orders,
+        stream: &mut Stream,
+        mut collect: impl FnMut(u32, Spectrum),
+    ) -> Rays {
+        let interior = scene.interior_at(ray.origin);
+        match self {
+            Walk::Paths(guide) => radiance(scene, (ray, interior), orders, guide, stream, collect),
+            Walk::Bidirectional => {
+                bidirectional::classes(scene, ray, None, interior, orders, stream, |order, _, value| {
+                    collect(order, value)
+                })
+            }
+        }
+    }
+
+    /// One sample of the fluence at a point, by order, and the work.
+    fn fluence(
+        self,
+        scene: &Scene,
+        position: DVec3,
+        orders: Orders,
+        stream: &mut Stream,
+        collect: impl FnMut(u32, Spectrum),
+    ) -> Rays {
+        match self {
+            Walk::Paths(guide) => fluence(scene, position, orders, guide, stream, collect),
+            Walk::Bidirectional => bidirectional::fluence(scene, position, orders, stream, collect),
+        }
+    }
 }
 
 fn measured(
     scene: &Scene,
     settings: &PathSettings,
-    guide: Option<&Guide>,
+    by: Walk,
     progress: &dyn Progress,
 ) -> Result<Vec<Measurement>> {
     check(scene)?;
@@ -63,11 +122,13 @@ fn measured(
     for sensor in scene.sensors() {
         for bin in 0..sensor.binned().map_or(1, Binned::bins) {
             let (moments, tails) = match sensor.binned() {
-                None => read(scene, sensor, index, settings, guide, progress)?,
+                None => moments_of(index, settings, progress, |stream| {
+                    sample_by(scene, &sensor.quantity, sensor.orders.and(&settings.orders), by, stream).0
+                })?,
                 Some(binned) => {
                     let orders = sensor.orders.and(&settings.orders);
                     let draw =
-                        |stream: &mut Stream| sample_bin(scene, (binned, bin), orders, guide, stream).0;
+                        |stream: &mut Stream| sample_bin_by(scene, (binned, bin), orders, by, stream).0;
                     moments_of(index, settings, progress, draw)?
                 }
             };
@@ -172,18 +233,27 @@ pub fn sample_guided(
     guide: Option<&Guide>,
     stream: &mut Stream,
 ) -> (Spectrum, Rays) {
+    sample_by(scene, quantity, orders, Walk::Paths(guide), stream)
+}
+
+fn sample_by(
+    scene: &Scene,
+    quantity: &Quantity,
+    orders: Orders,
+    by: Walk,
+    stream: &mut Stream,
+) -> (Spectrum, Rays) {
     let side = PeriodicCell::side(scene.periodic_cell());
     let mut sum = Spectrum::ZERO;
     let mut rays = Rays::default();
     match quantity {
-        Quantity::Fluence(p) => rays = fluence(scene, *p, orders, guide, stream, |_, value| sum += value),
+        Quantity::Fluence(p) => rays = by.fluence(scene, *p, orders, stream, |_, value| sum += value),
         Quantity::Radiance(ray) => {
-            let interior = scene.interior_at(ray.origin);
-            rays = radiance(scene, (*ray, interior), orders, guide, stream, |_, value| sum += value);
+            rays = by.radiance(scene, *ray, orders, stream, |_, value| sum += value);
         }
         Quantity::Outflow { shape, face } => {
             let (position, normal, area) = shape.sample_boundary(*face, side, stream.triple());
-            sum = flux(scene, (position, normal), orders, guide, stream, &mut rays);
+            sum = flux(scene, (position, normal), orders, by, stream, &mut rays);
             sum = per_power(sum * area, scene.power());
         }
         Quantity::Absorbed(region) => {
@@ -191,14 +261,14 @@ pub fn sample_guided(
             let (position, volume) = scene.regions()[region].shape.sample_inside(side, stream.triple());
             // Where a later region covers this one nothing of it is left to absorb.
             if scene.medium_number_at(position) == Some(region) {
-                rays = fluence(scene, position, orders, guide, stream, |_, value| sum += value);
+                rays = by.fluence(scene, position, orders, stream, |_, value| sum += value);
             }
             sum = sum * scene.regions()[region].medium.sigma_a(position) * volume;
             sum = per_power(sum, scene.power());
         }
         Quantity::Binned(binned) => {
             let bin = stream.index(binned.bins());
-            (sum, rays) = sample_bin(scene, (binned, bin), orders, guide, stream);
+            (sum, rays) = sample_bin_by(scene, (binned, bin), orders, by, stream);
         }
     }
     (sum, rays)
@@ -212,6 +282,16 @@ pub fn sample_bin(
     guide: Option<&Guide>,
     stream: &mut Stream,
 ) -> (Spectrum, Rays) {
+    sample_bin_by(scene, (binned, bin), orders, Walk::Paths(guide), stream)
+}
+
+fn sample_bin_by(
+    scene: &Scene,
+    (binned, bin): (&Binned, usize),
+    orders: Orders,
+    by: Walk,
+    stream: &mut Stream,
+) -> (Spectrum, Rays) {
     let position = binned.point(bin, scene.periodic_cell(), stream.triple());
     let mut sum = Spectrum::ZERO;
     let rays = match binned {
@@ -221,10 +301,10 @@ pub fn sample_bin(
             for (along, sign) in [(normal, 1.0), (-normal, -1.0)] {
                 match (crossing, sign > 0.0) {
                     (Crossing::Net, _) => {
-                        sum += flux(scene, (position, along), orders, guide, stream, &mut rays) * sign
+                        sum += flux(scene, (position, along), orders, by, stream, &mut rays) * sign
                     }
                     (Crossing::Along, true) | (Crossing::Against, false) => {
-                        sum += flux(scene, (position, along), orders, guide, stream, &mut rays);
+                        sum += flux(scene, (position, along), orders, by, stream, &mut rays);
                     }
                     _ => {}
                 }
@@ -232,17 +312,14 @@ pub fn sample_bin(
             rays
         }
         Binned::Radiance { dir, .. } => {
-            let interior = scene.interior_at(position);
-            radiance(scene, (Ray::new(position, *dir), interior), orders, guide, stream, |_, value| {
-                sum += value
-            })
+            by.radiance(scene, Ray::new(position, *dir), orders, stream, |_, value| sum += value)
         }
-        Binned::Fluence { .. } => fluence(scene, position, orders, guide, stream, |_, value| sum += value),
+        Binned::Fluence { .. } => by.fluence(scene, position, orders, stream, |_, value| sum += value),
         Binned::Absorption { .. } => {
             let sigma_a = scene.medium_at(position).map_or(Spectrum::ZERO, |m| m.sigma_a(position));
             match sigma_a.is_black() {
                 true => Rays::default(),
-                false => fluence(scene, position, orders, guide, stream, |_, value| sum += value * sigma_a),
+                false => by.fluence(scene, position, orders, stream, |_, value| sum += value * sigma_a),
             }
         }
     };
@@ -254,14 +331,13 @@ fn flux(
     scene: &Scene,
     (position, normal): (DVec3, DVec3),
     orders: Orders,
-    guide: Option<&Guide>,
+    by: Walk,
     stream: &mut Stream,
     rays: &mut Rays,
 ) -> Spectrum {
     let dir = Frame::new(-normal).to_world(warp::square_to_cosine_hemisphere(stream.pair()));
-    let (ray, interior) = (Ray::new(position, dir), scene.interior_at(position));
     let mut sum = Spectrum::ZERO;
-    let work = radiance(scene, (ray, interior), orders, guide, stream, |_, value| sum += value);
+    let work = by.radiance(scene, Ray::new(position, dir), orders, stream, |_, value| sum += value);
     *rays = Rays { segments: rays.segments + work.segments, shadow: rays.shadow + work.shadow };
     sum *= PI;
     if orders.contains(0) {

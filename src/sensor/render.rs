@@ -58,6 +58,22 @@ pub(super) fn extend_at<S: Into<Sample>, W: Default + AddAssign + Send>(
     progress: &dyn Progress,
     sample: impl Fn(Ray, &mut Stream, &mut W) -> S + Sync,
 ) -> Result<W> {
+    let sample = |_: (u32, u32), ray: Ray, stream: &mut Stream, count: &mut W| sample(ray, stream, count);
+    extend_pixels(film, (camera, place), samples, streams, progress, sample)
+}
+
+/// The same where `sample` is told its pixel of the film.
+///
+/// # Errors
+/// those of [`extend`]
+pub(super) fn extend_pixels<S: Into<Sample>, W: Default + AddAssign + Send>(
+    film: &mut Film,
+    (camera, place): (&Camera, impl Fn(u32, u32) -> (u32, u32) + Sync),
+    samples: u64,
+    streams: Streams,
+    progress: &dyn Progress,
+    sample: impl Fn((u32, u32), Ray, &mut Stream, &mut W) -> S + Sync,
+) -> Result<W> {
     let first = film.samples();
     if first + samples > MAX_SAMPLES {
         return Err(Error::out_of_range(
@@ -80,7 +96,7 @@ pub(super) fn extend_at<S: Into<Sample>, W: Default + AddAssign + Send>(
                     Stream::new(streams.seed, Purpose::Paths, streams.replicate, number << 32 | i);
                 let (column, row) = place(x, y);
                 let ray = camera.sample(column, row, stream.pair());
-                let value: Sample = sample(ray, &mut stream, &mut done.count).into();
+                let value: Sample = sample((x, y), ray, &mut stream, &mut done.count).into();
                 done.non_finite += u64::from(!value.layers.is_finite());
                 pixel.push(&value);
             }

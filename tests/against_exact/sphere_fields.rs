@@ -102,7 +102,7 @@ impl Watcher<BINS> for Leaving {
 
 /// Scattered radiance that leaves at a cosine, per unit of emitted power \[W/(L^2 sr)\]: the whole of it, less the direct
 /// part of the uniform source, (1 - e^-2 a mu) over 4 pi times the volume, or of incident light, e^(-2 a mu)/pi.
-fn scattered(ball: &Sphere, mu: f64) -> (f64, f64) {
+pub fn scattered(ball: &Sphere, mu: f64) -> (f64, f64) {
     let radius = ball.radius();
     let volume = FOUR_PI / 3.0 * radius * radius * radius;
     let chord = 2.0 * radius * mu;

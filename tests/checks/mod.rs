@@ -5,6 +5,7 @@
 pub mod beams;
 pub mod cell;
 pub mod color;
+pub mod connected;
 pub mod emitters;
 pub mod flights;
 pub mod fog;

@@ -169,7 +169,10 @@ fn wrong_options() {
             ["measure", "slab", "--with", "photons"].iter().chain(options).copied().collect();
         refuses_naming(&arguments, words);
     }
-    refuses_naming(&["measure", "slab", "--with", "beams"], &["--with", "allowed: paths, photons, light"]);
+    refuses_naming(
+        &["measure", "slab", "--with", "beams"],
+        &["--with", "allowed: paths, bidirectional, photons, light"],
+    );
     refuses_naming(&["measure", "slab"], &["--with"]);
     refuses_naming(&["measure"], &["SCENE"]);
     refuses_naming(&["render", "slab"], &["--output"]);

@@ -269,7 +269,7 @@ fn light_tracing_refuses() {
     render("fogbox", &["--plan", "full"], &["--plan full", "allowed with --with light: auto"]);
     refuses_naming(
         &["render", "fogbox", "-o", text(&out), "--with", "lights"],
-        &["--with", "allowed: photons, paths, light"],
+        &["--with", "allowed: photons, paths, bidirectional, light"],
     );
     assert!(!out.exists());
 }

@@ -1,8 +1,8 @@
 //! One row a fault: where it was seen, what it is here, and which check catches it.
 
 use crate::checks::{
-    beams, cell, color, emitters, flights, fog, glass, ledger, light, media, numbers, outputs, phase, planes,
-    point_light, points, progressive, shading, slab, threads, walls, weights,
+    beams, cell, color, connected, emitters, flights, fog, glass, ledger, light, media, numbers, outputs,
+    phase, planes, point_light, points, progressive, shading, slab, threads, walls, weights,
 };
 use crate::support::scenes::{area_light, cuboid, rectangle};
 use glam::DVec3;
@@ -323,6 +323,21 @@ const fn inside(fault: Fault) -> Row {
                 planes::a_plane_end_on_counts_in_full()
             })
         }
+        Fault::NextEventForgotten => (
+            "weights of connections without next-event estimation",
+            "a_furnace_of_lamps_is_as_bright_everywhere",
+            |_| connected::a_furnace_of_lamps_is_as_bright_everywhere(),
+        ),
+        Fault::ConnectionCosineForgotten => (
+            "a connection without the cosine on the side of the light",
+            "two_reflections_are_those_of_paths",
+            |_| connected::two_reflections_are_those_of_paths(),
+        ),
+        Fault::LightIndexForgotten => (
+            "the density of light behind glass without the squared index",
+            "a_furnace_of_lamps_is_as_bright_everywhere",
+            |_| connected::a_furnace_of_lamps_is_as_bright_everywhere(),
+        ),
     };
     Row { fault: Planted::Inside(fault), title, check_name, check }
 }
@@ -433,6 +448,9 @@ pub const BY_HAND: &[Row] = &[
     inside(Fault::PlanesCollided),
     inside(Fault::PlanesUnseen),
     inside(Fault::DeterminantClamped),
+    inside(Fault::NextEventForgotten),
+    inside(Fault::ConnectionCosineForgotten),
+    inside(Fault::LightIndexForgotten),
 ];
 
 fn single_scattering() {

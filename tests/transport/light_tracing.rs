@@ -19,7 +19,7 @@ const SIDE: u32 = 8;
 const FILMS: u64 = 64;
 
 /// A box 2 wide, open in front, its walls of different colours, with a light below its ceiling and fog in it.
-fn room() -> Scene {
+pub(super) fn room() -> Scene {
     let (x, y, z) = (DVec3::X * 2.0, DVec3::Y * 2.0, DVec3::Z * 2.0);
     let (low, high) = (DVec3::splat(-1.0), DVec3::splat(1.0));
     let diffuse = |shape, r, g, b| (Shape::Rectangle(shape), lambertian(Spectrum::rgb(r, g, b)));
@@ -99,17 +99,18 @@ fn walls_seen_from_within_fog() {
     compare("walls", &paths, &photons, Layer::Indirect, 1);
 }
 
-/// The light that a ball of glass gathers on the floor, and the fog it makes shine beside it, where nothing specular
-/// stands between it and the eye.
-#[test]
-fn light_through_a_ball_of_glass() {
+/// A floor with a ball of glass above it, below a lamp, in fog of this extinction; and a camera at its side, below the ball's middle: the spot
+/// on the floor is seen below the ball.
+pub(super) fn ball_of_glass(sigma_t: f64) -> (Scene, Camera) {
     let (x, z) = (DVec3::X * 4.0, DVec3::Z * 4.0);
     let floor = Shape::Rectangle(rectangle(DVec3::new(-2.0, 0.0, -2.0), x, z));
     let ball = scenes::sphere(DVec3::new(0.0, 0.7, 0.0), 0.5);
     let light = rectangle(DVec3::new(-0.7, 3.0, -0.7), DVec3::X * 1.4, DVec3::Z * 1.4);
     let glass = homogeneous(Spectrum::ZERO, Spectrum::ZERO, 0.0);
     let object = |shape: Shape, surface: Surface| Object { shape, surface };
+    let fog = cuboid(DVec3::new(-2.0, 0.0, -2.0), DVec3::new(1.5, 2.5, 2.0));
     let scene = Scene::new(SceneParts {
+        regions: (sigma_t > 0.0).then(|| scenes::region(fog, sigma_t, 0.8, 0.3)).into_iter().collect(),
         interiors: vec![Interior::surroundings(), filled("glass", 1.5, glass)],
         objects: vec![
             object(floor, lambertian(Spectrum::rgb(0.8, 0.6, 0.4))),
@@ -119,9 +120,14 @@ fn light_through_a_ball_of_glass() {
         ..SceneParts::default()
     })
     .unwrap();
-    // From the side, below the ball's middle: the spot on the floor is seen below the ball.
     let eye = DVec3::new(2.0, 0.25, 0.0);
-    let camera = camera(eye, DVec3::new(0.0, -0.02, 0.0), 10.0, Filter::Box);
+    (scene, camera(eye, DVec3::new(0.0, -0.02, 0.0), 10.0, Filter::Box))
+}
+
+/// The light that a ball of glass gathers on the floor, where nothing specular stands between it and the eye.
+#[test]
+fn light_through_a_ball_of_glass() {
+    let (scene, camera) = ball_of_glass(0.0);
     let (paths, photons) = (by_paths(&scene, &camera, 64), by_photons(&scene, &camera, 30_000));
     compare("ball", &paths, &photons, Layer::Direct, 0);
     compare("ball", &paths, &photons, Layer::Caustic, 0);

@@ -1,5 +1,6 @@
 //! Walks of light: bits that stay, invariants, extremes, and classes of paths by every method.
 
+mod bidirectional;
 mod bins;
 mod deep;
 mod ends;

@@ -39,8 +39,7 @@ pub const SAMPLING: &str = "sampling";
 
 /// What estimators that differ in the size of their gather share.
 pub fn family(estimator: &Estimator) -> String {
-    let Estimator { kernel, gather, treatment, rejection, ray_radius, beam_radius, .. } =
-        estimator;
+    let Estimator { kernel, gather, treatment, rejection, ray_radius, beam_radius, .. } = estimator;
     let size = match gather {
         Gather::Radius(_) => "fixed radius",
         Gather::Nearest { .. } => "k nearest",

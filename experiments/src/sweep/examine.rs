@@ -3,7 +3,7 @@
 use super::compare::{Check, Test, conserved, sharpness, shrinking, unbiased};
 use super::energy::energy;
 use super::maps::maps;
-use super::measure::{Effort, Failure, Seen, light, paths};
+use super::measure::{Effort, Failure, Seen, connected, light, paths};
 use super::pairs::pair;
 use super::text::SceneText;
 use serde::{Deserialize, Serialize};
@@ -210,6 +210,7 @@ pub fn examine(
 /// Names of comparisons; those of pairs say what was changed.
 const ENERGY: &str = "energy";
 const LIGHT_PATHS: &str = "light - paths";
+const CONNECTED_PATHS: &str = "bidirectional - paths";
 const MAPS_PATHS: &str = "maps - paths";
 const MAPS_LIGHT: &str = "maps - light";
 /// The same again, without directions in which a specular body is seen.
@@ -258,6 +259,11 @@ fn once(
         stage("paths");
         examined.keep("paths", paths(&scene, &camera, seed, effort), None)
     });
+    // Their subpaths of light start where photons do.
+    let by_connected = (has_paths && has_photons && is_wanted(CONNECTED_PATHS)).then(|| {
+        stage("bidirectional");
+        examined.keep("bidirectional", connected(&scene, &camera, seed, effort), None)
+    });
     let by_light = (has_photons && (!has_paths || is_wanted(LIGHT_PATHS))).then(|| {
         stage("light");
         examined.keep("light", light(&scene, &camera, seed, effort), endless)
@@ -270,6 +276,9 @@ fn once(
     let scatters = |layer: Layer| layer != Layer::Emission;
     if let (Some(by_paths), Some(by_light)) = (&by_paths, &by_light) {
         checks.push(unbiased(LIGHT_PATHS, by_light, &by_paths.straight, scatters));
+    }
+    if let (Some(by_paths), Some(Some(by_connected))) = (&by_paths, &by_connected) {
+        checks.push(unbiased(CONNECTED_PATHS, &by_connected.all, &by_paths.all, |_| true));
     }
     let has_media = scene.plan().has_media;
     match (&by_maps, &by_paths, &by_light) {

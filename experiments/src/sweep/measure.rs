@@ -6,7 +6,7 @@
 use crate::gallery::light::is_specular_ahead;
 use cpu_time::ProcessTime;
 use turbid::error::Error;
-use turbid::integrators::{Layer, Layers, light_tracing, path};
+use turbid::integrators::{Layer, Layers, bidirectional, light_tracing, path};
 use turbid::math::Ray;
 use turbid::photons::Emitter;
 use turbid::rng::{Purpose, Stream, Work};
@@ -381,6 +381,22 @@ pub fn paths(scene: &Scene, camera: &Camera, seed: u64, effort: &Effort) -> Resu
     };
     let on = (scene, &quarters);
     in_batches(on, seed, effort.steps, &clock, &sample)
+}
+
+/// Bidirectional paths.
+///
+/// # Errors
+/// [`Failure`]
+pub fn connected(scene: &Scene, camera: &Camera, seed: u64, effort: &Effort) -> Result<Seen, Failure> {
+    let (clock, quarters) = (Clock::of(effort), Quarters::new(camera));
+    let within = scene.interior_at(camera.position());
+    // Other streams than those of paths, whose light of order 1 would be the same.
+    let seed = seed ^ (1 << 41);
+    let sample = |ray: Ray, stream: &mut Stream| {
+        let (layers, rays) = bidirectional::layers(scene, ray, None, within, stream);
+        (layers, rays.total() as f64 + cost(&stream.work))
+    };
+    in_batches((scene, &quarters), seed, effort.steps, &clock, &sample)
 }
 
 /// As many samples as a pilot says take so many steps.

@@ -1,4 +1,4 @@
-//! `turbid measure`: the sensors of a scene, by paths, photons or light tracing.
+//! `turbid measure`: the sensors of a scene, by paths, bidirectional paths, photons or light tracing.
 
 use super::given::{Given, notes as notes_of_given};
 use super::load::Source;
@@ -20,12 +20,12 @@ use turbid::output::{
 use turbid::photons::{Ledger, Photon};
 use turbid::scene::{Binned, Orders, Quantity, Scene, Sensor, Space};
 use turbid::sensor::{
-    Measurement, NoError, PathSettings, PhotonReadings, PhotonSettings, TallySettings, by_given_photons,
-    by_guided_paths, by_paths, by_photons_in_passes, by_tallies, forecast, given_bytes, row_bytes,
-    tally_bytes, usual_reach,
+    Measurement, NoError, PathSettings, PhotonReadings, PhotonSettings, TallySettings,
+    by_bidirectional_paths, by_given_photons, by_guided_paths, by_paths, by_photons_in_passes, by_tallies,
+    forecast, given_bytes, row_bytes, tally_bytes, usual_reach,
 };
 
-/// Measure the sensors of a scene by paths, photons or light tracing.
+/// Measure the sensors of a scene by paths, bidirectional paths, photons or light tracing.
 ///
 /// Prints the columns sensor, quantity, unit, mean, std_error, n. Paths and tallies have n = histories; estimates
 /// from photon maps have n = maps: the standard error is that between independent maps, and one map has none, since all its
@@ -145,6 +145,8 @@ enum With {
     /// The unbiased path tracer.
     #[value(alias = "path")]
     Paths,
+    /// The unbiased path tracer whose paths are connected to subpaths from the lights.
+    Bidirectional,
     /// Photons: tallies and photon maps.
     Photons,
     /// Light tracing: photons that are scored as they pass, none stored.
@@ -179,7 +181,7 @@ impl Measure {
         let array = self.array(&scene)?;
         self.check_files()?;
         let (mut measurements, mut notes) = on_threads(self.threads, || match self.with {
-            With::Paths => self.measure_by_paths(&scene),
+            With::Paths | With::Bidirectional => self.measure_by_paths(&scene),
             With::Photons if !self.photons_from.is_empty() => self.measure_by_given(&scene),
             With::Photons => self.measure_by_photons(&scene),
             With::Light => self.measure_by_light(&scene),
@@ -208,6 +210,7 @@ impl Measure {
     fn method(&self) -> &'static str {
         match self.with {
             With::Paths => "--with paths",
+            With::Bidirectional => "--with bidirectional",
             With::Photons if !self.photons_from.is_empty() => "--photons-from",
             With::Photons => "--with photons",
             With::Light => "--with light",
@@ -226,7 +229,7 @@ impl Measure {
             with: self.method().trim_start_matches("--").trim_start_matches("with ").to_string(),
             seed: self.seed,
             orders,
-            samples: by(&["--with paths"]).then_some(self.samples),
+            samples: by(&["--with paths", "--with bidirectional"]).then_some(self.samples),
             photons: by(&["--with photons", "--with light"]).then_some(self.photons),
             version: env!("CARGO_PKG_VERSION").to_string(),
             revision: revision().map(str::to_string),
@@ -331,7 +334,11 @@ impl Measure {
         self.check_bins(scene, row_bytes(scene))?;
         let bins: u64 = scene.sensors().iter().map(|s| s.binned().map_or(1, Binned::bins) as u64).sum();
         let bar = Bar::new(self.samples.saturating_mul(bins));
-        let read = if self.weight_windows { by_guided_paths } else { by_paths };
+        let read = match self.with {
+            With::Bidirectional => by_bidirectional_paths,
+            _ if self.weight_windows => by_guided_paths,
+            _ => by_paths,
+        };
         let measurements = read(scene, &settings, &bar);
         bar.finish();
         Ok((measurements.with_context(|| self.source.name())?, Vec::new()))

@@ -11,8 +11,9 @@ pub type Table = &'static [(&'static str, &'static [&'static str])];
 const ALL: &[&str] = &[];
 const PATHS: &[&str] = &["--with paths"];
 const PHOTONS: &[&str] = &["--with photons"];
+const UNBIASED: &[&str] = &["--with paths", "--with bidirectional"];
 const SHOT: &[&str] = &["--with photons", "--with light"];
-const WHOLE: &[&str] = &["--with photons", "--with paths"];
+const WHOLE: &[&str] = &["--with photons", "--with paths", "--with bidirectional"];
 const READ: &[&str] = &["--with photons", "--photons-from"];
 
 /// Those of `measure`.
@@ -22,7 +23,7 @@ pub const MEASURE: Table = &[
     ("confined", ALL),
     ("with", ALL),
     ("weight_windows", PATHS),
-    ("samples", PATHS),
+    ("samples", UNBIASED),
     ("photons", SHOT),
     ("maps", PHOTONS),
     ("passes", PHOTONS),
@@ -190,6 +191,7 @@ mod tests {
             MEASURE,
             &[
                 ("--with paths", &["--with", "paths"]),
+                ("--with bidirectional", &["--with", "bidirectional"]),
                 ("--with photons", &["--with", "photons"]),
                 ("--with light", &["--with", "light"]),
                 ("--photons-from", &["--with", "photons", "--photons-from", "a.npy"]),
@@ -200,6 +202,7 @@ mod tests {
             RENDER,
             &[
                 ("--with paths", &["-o", "a.exr", "--with", "paths"]),
+                ("--with bidirectional", &["-o", "a.exr", "--with", "bidirectional"]),
                 ("--with photons", &["-o", "a.exr"]),
                 ("--with light", &["-o", "a.exr", "--with", "light"]),
             ],

@@ -1,4 +1,4 @@
-//! `turbid render`: a picture of a scene, by photons, by paths or by light tracing.
+//! `turbid render`: a picture of a scene, by photons, by paths, by bidirectional paths or by light tracing.
 
 use super::compare::Compared;
 use super::load::Source;
@@ -26,7 +26,7 @@ use turbid::photons::{Part, PhotonMap};
 use turbid::scene::{Camera, Scene};
 use turbid::sensor::{Blocks, Film, LIGHT_BYTES, LIGHT_PIXEL_BYTES, Method, PictureError, Streams};
 
-/// Draw the picture that a scene's camera sees, by photon maps, by paths or by light tracing.
+/// Draw the picture that a scene's camera sees, by photon maps, by paths, by bidirectional paths or by light tracing.
 ///
 /// Writes an OpenEXR file in linear light and a PNG beside it to look at. The EXR has the channels R G B; a layer for each
 /// class of light's path (emission.R, direct.R, caustic.R, indirect.R, single.R, multiple.R and so on); variance.R,
@@ -36,6 +36,10 @@ use turbid::sensor::{Blocks, Film, LIGHT_BYTES, LIGHT_PIXEL_BYTES, Method, Pictu
 /// The path tracer is unbiased, and noisy. Photons are fast, and blurred: they are sent out once into maps, which all
 /// pixels share, so that the error of one map is seen only by making several (--maps); the variance is then that between
 /// maps. The classic picture is one map and a few samples: `turbid render scene.toml -o out.exr --samples 16`.
+///
+/// Bidirectional paths (--with bidirectional) are those of the path tracer, each of their scatterings connected to each of a photon's that
+/// leaves the lights, and photons are connected to the camera: unbiased, all layers, and less noisy by far where light that is
+/// scattered twice or more comes from small or hidden lamps and from beams, and in caustics that are seen straight.
 ///
 /// Light tracing (--with light) is unbiased too, and a second witness for caustics, which paths find badly or not at all:
 /// photons start from the lights and are connected to the camera at each scattering, so that --samples counts histories a
@@ -111,6 +115,8 @@ enum With {
     /// The unbiased path tracer.
     #[value(alias = "path")]
     Paths,
+    /// The unbiased path tracer whose paths are connected to subpaths from the lights.
+    Bidirectional,
     /// The unbiased light tracer: without lights seen directly, without what is seen in mirrors and through glass.
     Light,
 }
@@ -120,6 +126,7 @@ impl With {
         match self {
             With::Photons => "photons",
             With::Paths => "paths",
+            With::Bidirectional => "bidirectional",
             With::Light => "light",
         }
     }
@@ -127,7 +134,7 @@ impl With {
     /// What is in the picture, for those who find the file.
     fn holds(self) -> &'static str {
         match self {
-            With::Photons | With::Paths => "all layers",
+            With::Photons | With::Paths | With::Bidirectional => "all layers",
             With::Light => {
                 "direct, caustic, indirect, single and multiple light that the camera sees straight or through filters; \
                  not the emission layer, and not what is seen in mirrors and through glass"
@@ -174,7 +181,8 @@ impl Render {
             (scene, PlanName::Full) => scene.with_full_plan()?,
         };
         let camera = self.frame.camera(&scene)?;
-        if self.with == With::Paths && !scene.plan().unreachable.is_empty() {
+        let is_by_paths = matches!(self.with, With::Paths | With::Bidirectional);
+        if is_by_paths && !scene.plan().unreachable.is_empty() {
             bail!(
                 "the path tracer cannot sample every path of this scene ({}): use photons, or a light with an extent",
                 scene.plan().unreachable.join("; ")
@@ -210,7 +218,7 @@ impl Render {
         self.memory.check(
             &format!("a picture of {pixels} pixels"),
             self.film_bytes(&camera),
-            if self.with == With::Light { LIGHT_BYTES } else { 0.0 },
+            if matches!(self.with, With::Light | With::Bidirectional) { LIGHT_BYTES } else { 0.0 },
             |part| format!("at most {} pixels, by --width", (pixels as f64 * part) as u64),
         )?;
         if self.with == With::Photons && scene.plan().has_media {
@@ -225,6 +233,10 @@ impl Render {
             }
             With::Paths => self.repeat(&camera, |streams, stages, left, film| {
                 Ok((self.fill(film, stages, left, &Method::Paths(&scene), (&camera, streams))?, None))
+            }),
+            With::Bidirectional => self.repeat(&camera, |streams, stages, left, film| {
+                let method = Method::Bidirectional(&scene);
+                Ok((self.fill(film, stages, left, &method, (&camera, streams))?, None))
             }),
             With::Light => self.repeat(&camera, |streams, stages, left, film| {
                 Ok((self.fill(film, stages, left, &Method::Light(&scene), (&camera, streams))?, None))
@@ -308,7 +320,7 @@ impl Render {
         let reference =
             on_threads(self.threads, || self.compared.reference(scene, camera, &made.film, streams))?;
         let error = match self.with {
-            With::Paths if made.film.samples() >= 2 => PictureError::ByPixel,
+            With::Paths | With::Bidirectional if made.film.samples() >= 2 => PictureError::ByPixel,
             _ if made.repetitions >= 2 => PictureError::ByMap(&made.block_means),
             _ => PictureError::Unknown,
         };
@@ -324,6 +336,7 @@ impl Render {
         let films = pixels * (films + f64::from(more) * FILM_BYTES);
         match self.with {
             With::Photons | With::Paths => films,
+            With::Bidirectional => films + pixels * (LIGHT_PIXEL_BYTES + FILM_BYTES) + LIGHT_BYTES,
             With::Light => films + pixels * LIGHT_PIXEL_BYTES + LIGHT_BYTES,
         }
     }
@@ -488,7 +501,9 @@ impl Render {
         let pixels = film.pixels().len() as u64;
         let mut take = |film: &mut Film, samples: u64| {
             let name = if matches!(method, Method::Light(_)) { "photons" } else { "gathering" };
-            let bar = Bar::stage(name, samples.saturating_mul(pixels));
+            // A photon beside each path.
+            let walks = if matches!(method, Method::Bidirectional(_)) { 2 } else { 1 };
+            let bar = Bar::stage(name, samples.saturating_mul(walks * pixels));
             let work = stages.time("samples", || method.extend(film, camera, samples, streams, &bar));
             bar.finish();
             work
