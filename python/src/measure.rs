@@ -1,4 +1,4 @@
-//! The sensors of a scene, by paths, photons or light tracing.
+//! The sensors of a scene, by paths, bidirectional paths, photons or light tracing.
 
 use crate::arrays::doubles;
 use crate::choices::{chosen, kernel, treatment};
@@ -16,8 +16,8 @@ use turbid::memory;
 use turbid::photons::Ledger;
 use turbid::scene::{Binned, Orders, Scene, Space};
 use turbid::sensor::{
-    Measurement, PathSettings, PhotonSettings, TallySettings, by_guided_paths, by_paths,
-    by_photons_in_passes, by_tallies, forecast, row_bytes, tally_bytes,
+    Measurement, PathSettings, PhotonSettings, TallySettings, by_bidirectional_paths, by_guided_paths,
+    by_paths, by_photons_in_passes, by_tallies, forecast, row_bytes, tally_bytes,
 };
 use turbid::transport::Progress;
 
@@ -25,6 +25,7 @@ use turbid::transport::Progress;
 #[derive(Clone, Copy, PartialEq)]
 enum With {
     Paths,
+    Bidirectional,
     Photons,
     Light,
 }
@@ -42,6 +43,7 @@ struct Options {
     max_radius: Option<f64>,
     ray_radius: Option<f64>,
     beam_radius: Option<f64>,
+    planes: bool,
     progressive: bool,
     kernel: String,
     boundary: String,
@@ -75,7 +77,7 @@ impl Request {
 
     fn read(&self, scene: &Scene, watch: &Watch) -> anyhow::Result<Readings> {
         match self.with {
-            With::Paths => self.by_paths(scene, watch),
+            With::Paths | With::Bidirectional => self.by_paths(scene, watch),
             With::Photons => self.by_photons(scene, watch),
             With::Light => self.by_light(scene, watch),
         }
@@ -87,7 +89,11 @@ impl Request {
         let bins = bins(scene);
         memory::check(|| format!("{bins} bins"), row_bytes(scene))?;
         watch.stage("paths", samples.saturating_mul(bins));
-        let read = if weight_windows { by_guided_paths } else { by_paths };
+        let read = match self.with {
+            With::Bidirectional => by_bidirectional_paths,
+            _ if weight_windows => by_guided_paths,
+            _ => by_paths,
+        };
         Ok(Readings { measurements: read(scene, &settings, watch)?, ledger: None, estimates: None })
     }
 
@@ -101,7 +107,7 @@ impl Request {
     }
 
     fn by_photons(&self, scene: &Scene, watch: &Watch) -> anyhow::Result<Readings> {
-        let Options { photons, maps, passes, k, radius, max_radius, ray_radius, beam_radius, progressive, seed, .. } =
+        let Options { photons, maps, passes, k, radius, max_radius, ray_radius, beam_radius, planes, progressive, seed, .. } =
             self.options;
         if photons < maps {
             return Err(anyhow!("photons is {photons}; allowed: at least one for each of the {maps} maps"));
@@ -118,6 +124,9 @@ impl Request {
         if ray_radius.is_some() && beam_radius.is_some() {
             return Err(anyhow!("ray_radius reads points and beam_radius beams; allowed: one of them"));
         }
+        if planes && ray_radius.is_some() {
+            return Err(anyhow!("ray_radius reads points and planes flights; allowed: one of them"));
+        }
         if progressive && radius.is_none() && ray_radius.is_none() && beam_radius.is_none() {
             return Err(anyhow!(
                 "progressive shrinks radii, and takes the k nearest photons as they are; allowed: with radius, ray_radius or beam_radius"
@@ -129,7 +138,13 @@ impl Request {
             maps,
             seed,
             orders: self.orders(),
-            estimator: Estimator { ray_radius, beam_radius, is_progressive: progressive, ..estimator },
+            estimator: Estimator {
+                ray_radius,
+                beam_radius,
+                has_planes: planes,
+                is_progressive: progressive,
+                ..estimator
+            },
         };
         // Refuses what passes cannot do before anything is counted.
         let forecast = forecast(scene, &settings, passes)?;
@@ -234,8 +249,13 @@ pub fn measure<'py>(
     options: &Bound<'py, PyDict>,
     progress: Option<Py<PyAny>>,
 ) -> PyResult<Bound<'py, PyDict>> {
-    let all =
-        [("paths", With::Paths), ("path", With::Paths), ("photons", With::Photons), ("light", With::Light)];
+    let all = [
+        ("paths", With::Paths),
+        ("path", With::Paths),
+        ("bidirectional", With::Bidirectional),
+        ("photons", With::Photons),
+        ("light", With::Light),
+    ];
     let with = chosen("with_", with, &all)?;
     let options: Options = options.extract()?;
     if options.radius.is_some() && (options.k.is_some() || options.max_radius.is_some()) {

@@ -21,14 +21,15 @@ use turbid::scene::{Camera, Scene};
 use turbid::sensor::{Film, LIGHT_BYTES, LIGHT_PIXEL_BYTES, Method, Pixel, Streams, check_camera};
 use turbid::transport::Progress;
 
-/// Most memory that a pixel takes \[bytes\]: two films of 352, and 14 images of three doubles for Python.
-const PIXEL_BYTES: f64 = 1100.0;
+/// Most memory that a pixel takes \[bytes\]: three films of 352 at most, and 14 images of three doubles for Python.
+const PIXEL_BYTES: f64 = 1450.0;
 
 /// Who makes the picture.
 #[derive(Clone, Copy, PartialEq)]
 enum With {
     Photons,
     Paths,
+    Bidirectional,
     Light,
 }
 
@@ -60,7 +61,7 @@ impl Request {
         if self.samples > u64::from(u32::MAX) {
             bail!("samples is {}; allowed: 1 to 4294967295", self.samples);
         }
-        if self.with == With::Paths && !scene.plan().unreachable.is_empty() {
+        if matches!(self.with, With::Paths | With::Bidirectional) && !scene.plan().unreachable.is_empty() {
             bail!(
                 "the path tracer cannot sample every path of this scene ({}): use photons, or a light with an extent",
                 scene.plan().unreachable.join("; ")
@@ -77,7 +78,8 @@ impl Request {
 
     fn film_bytes(&self, camera: &Camera) -> f64 {
         let pixels = f64::from(camera.width()) * f64::from(camera.height());
-        let light = if self.with == With::Light { pixels * LIGHT_PIXEL_BYTES + LIGHT_BYTES } else { 0.0 };
+        let has_splats = matches!(self.with, With::Light | With::Bidirectional);
+        let light = if has_splats { pixels * LIGHT_PIXEL_BYTES + LIGHT_BYTES } else { 0.0 };
         pixels * PIXEL_BYTES + light
     }
 
@@ -116,6 +118,7 @@ impl Request {
             };
             let film = match self.with {
                 With::Paths => fill(&Method::Paths(scene))?,
+                With::Bidirectional => fill(&Method::Bidirectional(scene))?,
                 With::Light => fill(&Method::Light(scene))?,
                 With::Photons => {
                     let maps = self.maps(scene, camera, streams, watch)?;
@@ -168,8 +171,13 @@ pub fn render<'py>(
     readout: &Bound<'py, PyDict>,
     progress: Option<Py<PyAny>>,
 ) -> PyResult<Bound<'py, PyDict>> {
-    let all =
-        [("photons", With::Photons), ("paths", With::Paths), ("path", With::Paths), ("light", With::Light)];
+    let all = [
+        ("photons", With::Photons),
+        ("paths", With::Paths),
+        ("path", With::Paths),
+        ("bidirectional", With::Bidirectional),
+        ("light", With::Light),
+    ];
     let with = chosen("with_", with, &all)?;
     let readout = readout.extract::<Options>()?.understood()?;
     let given = Given::read(scene, parameters, folder)?;

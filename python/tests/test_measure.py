@@ -36,9 +36,9 @@ def scores(found, albedo, names):
 @pytest.mark.parametrize("with_", ["paths", "light", "photons"])
 def test_fluxes_of_a_slab_are_exact(with_):
     names = ["reflectance", "transmittance", "transmittance_diffuse", "absorptance"]
-    found = turbid.measure("slab", with_, samples=2e5, photons=2e5, seed=11) if with_ != "light" else turbid.measure(
-        {**turbid.scene("slab"), "sensors": turbid.scene("slab")["sensors"][:4]}, with_, photons=2e5, seed=11
-    )
+    much = dict(samples=2e5) if with_ in ("paths", "bidirectional") else dict(photons=2e5)
+    scene = {**turbid.scene("slab"), "sensors": turbid.scene("slab")["sensors"][:4]} if with_ == "light" else "slab"
+    found = turbid.measure(scene, with_, seed=11, **much)
     z = scores(found, 0.9, names)
     assert np.max(np.abs(z)) < NORMAL, z
     # The test of the test: an albedo 0.01 too high would be seen.
@@ -118,7 +118,7 @@ def test_bins_and_colours_as_the_program_writes_them(turbid_program, tmp_path):
     """
     (tmp_path / "fog.toml").write_text(textwrap.dedent(text))
     for with_, program in (("light", "light"), ("photons", "photons"), ("paths", "path")):
-        more = dict(photons=20_000, samples=100, seed=3)
+        more = dict(samples=100, seed=3) if with_ == "paths" else dict(photons=20_000, seed=3)
         much = ["--samples", 100] if with_ == "paths" else ["--photons", 20_000]
         words = [*much, "--seed", 3, "--npy", "bins.npy"]
         done = turbid_program.run("measure", "fog.toml", "--with", program, *words, cwd=tmp_path)
@@ -148,7 +148,7 @@ def test_wrong_settings():
             turbid.measure("slab", **more)
         return str(error.value)
 
-    assert told(with_="magic") == "with_ is 'magic'; allowed: paths, path, photons, light"
+    assert told(with_="magic") == "with_ is 'magic'; allowed: paths, path, bidirectional, photons, light"
     assert told(samples=0).startswith("samples is 0; allowed: whole numbers from 1")
     for wrong in (1.5, -1, "many", True, float("nan"), float("inf"), 1e30, None):
         assert told(samples=wrong).startswith("samples is ")
@@ -161,6 +161,8 @@ def test_wrong_settings():
     assert told(with_="photons", beam_radius=0).startswith("slab: beam_radius is 0; allowed: ")
     assert told(with_="photons", beam_radius=1, ray_radius=1).endswith("allowed: one of them")
     assert "with radius, ray_radius or beam_radius" in told(with_="photons", progressive=True)
+    assert told(with_="paths", radius=1) == "radius says nothing to with_ = 'paths'; allowed: with photons"
+    assert told(with_="light", samples=9) == "samples says nothing to with_ = 'light'; allowed: with paths or path or bidirectional"
     assert told(with_="photons", radius=1, k=3).startswith("radius takes all photons")
     assert told(with_="photons", k=1).startswith("slab: k, max_radius: ")
     assert told(with_="photons", passes=2).startswith("slab: the k nearest photons of a map cannot be found in passes")

@@ -13,6 +13,7 @@ LAYERS = ["emission", "direct", "caustic", "indirect", "single", "multiple"]
     "words, more",
     [
         (["--with", "paths", "--samples", 3], dict(with_="paths", samples=3)),
+        (["--with", "bidirectional", "--samples", 3], dict(with_="bidirectional", samples=3)),
         (["--with", "light", "--samples", 20, "--maps", 2], dict(with_="light", samples=20, maps=2)),
         (["--samples", 2, "--gather-rays", 4, "--seed", 5], dict(samples=2, gather_rays=4, seed=5)),
         (
@@ -57,6 +58,7 @@ def test_wrong_settings():
         return str(error.value)
 
     assert told("slab").startswith("slab: the scene has no [camera]: add one")
+    assert told(with_="paths", gather_rays=0) == "gather_rays says nothing to with_ = 'paths'; allowed: with photons"
     assert told(width=0).startswith("width is 0; allowed: whole numbers from 1 to 16384")
     assert told(samples=2**32, width=8).startswith("fogbox: samples is 4294967296")
     assert told(volume=0).startswith("volume is 0") and told(volume="emit:x").startswith("volume is emit:x")

@@ -5,7 +5,7 @@ Scenes are dicts, TOML text, paths of scene files, or names of built-in scenes (
 runs beside Python: Ctrl-C ends it, and the same seed gives the same numbers on any number of threads.
 
 * :mod:`turbid.exact`: exact values, each with a bound on its error
-* :func:`measure`: the sensors of a scene, by paths, photons or light tracing, each number with its standard error
+* :func:`measure`: the sensors of a scene, by paths, bidirectional paths, photons or light tracing, each number with its standard error
 * :func:`render`: a picture with its layers and variances
 * :func:`photons`: the photons themselves
 * :func:`study`: what error photon maps make in a scene, and which settings reach a target the cheapest
@@ -13,6 +13,7 @@ runs beside Python: Ctrl-C ends it, and the same seed gives the same numbers on 
 
 from __future__ import annotations
 
+import inspect
 import os
 from typing import Any, Mapping, NamedTuple, Optional, Sequence, Union
 
@@ -74,6 +75,33 @@ def _orders(given: Orders) -> tuple[int, Optional[int]]:
             "(both ends included), up to 65534"
         )
     return int(pair[0]), None if pair[1] is None else int(pair[1])
+
+
+_PATHS, _BIDIRECTIONAL = ("paths", "path"), "bidirectional"
+_METHODS = {
+    "measure": dict.fromkeys(("samples",), (*_PATHS, _BIDIRECTIONAL))
+    | dict.fromkeys(("photons",), ("photons", "light"))
+    | dict.fromkeys(
+        "maps passes k radius max_radius ray_radius beam_radius planes progressive kernel boundary".split(), ("photons",)
+    ),
+    "render": dict.fromkeys(
+        "global_ caustic volume importance k caustic_k volume_k radius max_radius ray_radius beam_radius kernel caustic_kernel "
+        "gather_rays near step step_rule adapt jitter boundary edges".split(),
+        ("photons",),
+    ),
+}
+"""Arguments that are for some methods alone."""
+
+
+def _refuse_idle(function: Any, given: Mapping[str, Any]) -> None:
+    """Refuses an argument that is not its default, and that the method ignores."""
+    defaults, with_ = inspect.signature(function).parameters, given["with_"]
+    known = {"photons", "light", *_PATHS, _BIDIRECTIONAL}
+    for name, methods in _METHODS[function.__name__].items():
+        value, default = given[name], defaults[name].default
+        is_given = value is not default and not (isinstance(value, (int, float, str)) and value == default)
+        if is_given and with_ in known and with_ not in methods:
+            raise Error(f"{name} says nothing to with_ = {with_!r}; allowed: with {' or '.join(methods)}")
 
 
 def _folder(folder: Optional[Union[str, "os.PathLike[str]"]]) -> Optional[str]:
@@ -176,6 +204,7 @@ def measure(
     max_radius: Optional[float] = None,
     ray_radius: Optional[float] = None,
     beam_radius: Optional[float] = None,
+    planes: bool = False,
     progressive: bool = False,
     kernel: str = "uniform",
     boundary: str = "clipped",
@@ -190,7 +219,8 @@ def measure(
     Parameters
     ----------
     scene : a dict, TOML text, the path of a scene file, or the name of a built-in scene
-    with_ : "paths" (unbiased), "photons" (tallies and photon maps) or "light" (photons scored as they pass)
+    with_ : "paths" (unbiased), "bidirectional" (unbiased: paths connected to subpaths from the lights), "photons" (tallies and
+        photon maps) or "light" (photons scored as they pass)
     parameters : parameters of a built-in scene, such as ``dict(tau=1, albedo=0.9)`` (see :func:`builtin`), or keys of another
         scene with values in their place, such as ``{"regions.0.albedo": 0.5}``
     folder : where files that the scene names are; that of the scene file, or the current one
@@ -203,6 +233,8 @@ def measure(
     max_radius : the farthest that the k nearest photons are sought [L]; half the cell, or a mean free path
     ray_radius : radius about a whole ray, which is then read at once, for sensors of radiance: the beam radiance estimate [L]
     beam_radius : the same from photons' flights, stored as beams; in place of ``ray_radius`` [L]
+    planes : read light that is scattered twice and more from planes of flights, without blur; light that is scattered once by
+        ``beam_radius``, for sensors of radiance
     progressive : shrink these radii, those of the first map, from map to map, so that the mean over maps converges to the light itself
     kernel : uniform, epanechnikov, biweight, cone or gaussian, as ``turbid measure --help`` lists them
     boundary : what estimates do where a medium ends: none, clipped, reflection, local-linear
@@ -222,6 +254,7 @@ def measure(
     Error
         for a scene or a setting that is not allowed
     """
+    _refuse_idle(measure, locals())
     options = dict(
         samples=_count("samples", samples),
         photons=_count("photons", photons),
@@ -232,6 +265,7 @@ def measure(
         max_radius=_optional_real("max_radius", max_radius),
         ray_radius=_optional_real("ray_radius", ray_radius),
         beam_radius=_optional_real("beam_radius", beam_radius),
+        planes=bool(planes),
         progressive=bool(progressive),
         kernel=kernel,
         boundary=boundary,
@@ -312,7 +346,8 @@ def render(
     Parameters
     ----------
     scene : a dict, TOML text, the path of a scene file, or the name of a built-in scene
-    with_ : "photons" (photon maps), "paths" (unbiased) or "light" (unbiased, without what is seen in mirrors and glass)
+    with_ : "photons" (photon maps), "paths" (unbiased), "bidirectional" (unbiased: paths connected to photons, and photons to the
+        camera) or "light" (unbiased, without what is seen in mirrors and glass)
     parameters, folder, seed, threads, progress : as in :func:`measure`
     width, height : pixels; the other follows if one is given
     samples : samples a pixel of each repetition; by light tracing histories a pixel
@@ -329,6 +364,7 @@ def render(
     step, step_rule, adapt, jitter : the march through media; the longest step is in [L]
     boundary, edges : what estimates do where media and surfaces end
     """
+    _refuse_idle(render, locals())
     readout = dict(
         global_=_amount("global_", global_),
         caustic=_amount("caustic", caustic),
