@@ -107,8 +107,20 @@ impl Request {
     }
 
     fn by_photons(&self, scene: &Scene, watch: &Watch) -> anyhow::Result<Readings> {
-        let Options { photons, maps, passes, k, radius, max_radius, ray_radius, beam_radius, planes, progressive, seed, .. } =
-            self.options;
+        let Options {
+            photons,
+            maps,
+            passes,
+            k,
+            radius,
+            max_radius,
+            ray_radius,
+            beam_radius,
+            planes,
+            progressive,
+            seed,
+            ..
+        } = self.options;
         if photons < maps {
             return Err(anyhow!("photons is {photons}; allowed: at least one for each of the {maps} maps"));
         }
