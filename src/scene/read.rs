@@ -36,24 +36,35 @@ impl SceneFile {
     /// # Errors
     /// `Error::Scene` that names the file
     pub fn check_confined(&self, folder: &Path) -> Result<()> {
+        match self.files()?.into_iter().find(|name| !is_inside(name, folder)) {
+            None => Ok(()),
+            Some(name) => Err(Error::Scene(format!(
+                "file {name:?} is outside of the scene's folder; allowed with --confined: files in it"
+            ))),
+        }
+    }
+
+    /// The files that it names, the values of all keys `file`.
+    ///
+    /// # Errors
+    /// `Error::Scene` if it cannot be written as text
+    pub fn files(&self) -> Result<Vec<String>> {
         let text = self.to_toml().map_err(|error| Error::Scene(error.to_string()))?;
         let table: toml::Table = toml::from_str(&text).map_err(|error| Error::Scene(error.to_string()))?;
-        check_confined(&toml::Value::Table(table), folder)
+        let mut found = Vec::new();
+        add_files(&toml::Value::Table(table), &mut found);
+        Ok(found)
     }
 }
 
-fn check_confined(value: &toml::Value, folder: &Path) -> Result<()> {
+fn add_files(value: &toml::Value, found: &mut Vec<String>) {
     match value {
-        toml::Value::Table(table) => table.iter().try_for_each(|(key, value)| match value {
-            toml::Value::String(name) if key == "file" && !is_inside(name, folder) => {
-                Err(Error::Scene(format!(
-                    "file {name:?} is outside of the scene's folder; allowed with --confined: files in it"
-                )))
-            }
-            other => check_confined(other, folder),
+        toml::Value::Table(table) => table.iter().for_each(|(key, value)| match value {
+            toml::Value::String(name) if key == "file" => found.push(name.clone()),
+            other => add_files(other, found),
         }),
-        toml::Value::Array(values) => values.iter().try_for_each(|value| check_confined(value, folder)),
-        _ => Ok(()),
+        toml::Value::Array(values) => values.iter().for_each(|value| add_files(value, found)),
+        _ => {}
     }
 }
 

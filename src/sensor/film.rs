@@ -197,7 +197,13 @@ impl Film {
         bytes
     }
 
-    /// The film of these bytes; none unless they are as many as its pixels take, every number finite, and all pixels of as many samples.
+    /// How many bytes those of a film take.
+    pub fn byte_count(width: u32, height: u32) -> u64 {
+        u64::from(width) * u64::from(height) * PIXEL_BYTES as u64
+    }
+
+    /// The film of these bytes; none unless they are as many as its pixels take, every number finite, no square negative, and all
+    /// pixels of as many samples, 1 to 4294967295.
     pub fn from_bytes(width: u32, height: u32, bytes: &[u8]) -> Option<Film> {
         let mut film = Film::new(width, height);
         if bytes.len() != film.pixels.len() * PIXEL_BYTES {
@@ -212,9 +218,13 @@ impl Film {
             for spectrum in pixel.mean.iter_mut().chain(&mut pixel.squares) {
                 *spectrum = Spectrum::rgb(number()?, number()?, number()?);
             }
+            if pixel.photons < 0.0 || pixel.squares.iter().any(|square| square.min() < 0.0) {
+                return None;
+            }
         }
         let samples = film.samples();
-        film.pixels.iter().all(|pixel| pixel.n == samples).then_some(film)
+        let is_count = (1..=u64::from(u32::MAX)).contains(&samples);
+        (is_count && film.pixels.iter().all(|pixel| pixel.n == samples)).then_some(film)
     }
 
     /// Independent films of one size as one: means over films, variances between them.

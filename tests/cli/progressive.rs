@@ -1,4 +1,4 @@
-//! `turbid render --progressive`: stopped and gone on with, and what it refuses.
+//! `turbid render --progressive`: stopped and resumed, and what it refuses.
 
 use crate::{Folder, refuses_naming, succeeds, text};
 use std::path::Path;
@@ -23,9 +23,9 @@ fn arguments<'a>(out: &'a Path, more: &[&'a str]) -> Vec<&'a str> {
     [&["render", "fogbox", "-o", text(out)], &SMALL[..], more].concat()
 }
 
-/// Stopped twice and gone on with, on other numbers of threads: the picture of a run that was not.
+/// Stopped twice and resumed, on other numbers of threads: the picture of a run that was not.
 #[test]
-fn a_picture_gone_on_with_is_that_of_one_run() {
+fn a_resumed_picture_is_that_of_one_run() {
     let folder = Folder::new();
     let path = |name: &str| folder.0.path().join(name);
     let (parted, whole, state) = (path("parted.exr"), path("whole.exr"), path("fog.state"));
@@ -49,7 +49,51 @@ fn a_picture_gone_on_with_is_that_of_one_run() {
     assert!(std::fs::read(&fixed).unwrap() != std::fs::read(&whole).unwrap());
 }
 
-/// A limited time makes at least two maps, and goes on from a state.
+/// What the files hold that a scene names counts too.
+#[test]
+fn another_grid_is_another_scene() {
+    let folder = Folder::new();
+    let at = |name: &str| folder.0.path().join(name);
+    let grid = |density: f32| {
+        let mut bytes = b"VOL\x03".to_vec();
+        [1i32, 2, 2, 2, 1].iter().for_each(|n| bytes.extend(n.to_le_bytes()));
+        [0.0f32, 0.0, 0.0, 1.0, 1.0, 1.0].iter().for_each(|x| bytes.extend(x.to_le_bytes()));
+        (0..8).for_each(|_| bytes.extend(density.to_le_bytes()));
+        std::fs::write(at("fog.vol"), bytes).unwrap();
+    };
+    grid(1.0);
+    let scene = folder.file(
+        "scene.toml",
+        r#"
+        [camera]
+        position = [0.5, 0.5, 4.0]
+        look_at = [0.5, 0.5, 0.0]
+        fov = 20.0
+        width = 4
+        height = 4
+        [[regions]]
+        shape = { cuboid = { min = [0.0, 0.0, 0.0], max = [1.0, 1.0, 1.0] } }
+        sigma_t = 1.0
+        albedo = 0.8
+        g = 0.0
+        density = { grid = { file = "fog.vol" } }
+        [[lights]]
+        point = { position = [0.5, 0.5, 2.0], power = 10.0 }
+        "#,
+    );
+    let (out, state) = (at("a.exr"), at("a.state"));
+    let arguments = |maps: &'static str| {
+        let mut all = vec!["render", text(&scene), "-o", text(&out), "--maps", maps, "--state", text(&state)];
+        all.extend(["--progressive", "--volume", "emit:500", "--radius", "0.2", "--quiet"]);
+        all
+    };
+    succeeds(&arguments("2"));
+    succeeds(&arguments("3"));
+    grid(0.5);
+    refuses_naming(&arguments("4"), &["a.state", "digest of the scene's files"]);
+}
+
+/// A limited time makes at least two maps, and resumes.
 #[test]
 fn a_time_is_kept() {
     let folder = Folder::new();
@@ -60,7 +104,7 @@ fn a_time_is_kept() {
 }
 
 #[test]
-fn what_cannot_be_gone_on_with_is_refused_and_left_as_it_is() {
+fn what_cannot_be_resumed_is_refused_and_left_as_it_is() {
     let folder = Folder::new();
     let (out, state) = (folder.0.path().join("a.exr"), folder.0.path().join("a.state"));
     succeeds(&arguments(&out, &["--maps", "2", "--state", text(&state)]));
@@ -68,6 +112,7 @@ fn what_cannot_be_gone_on_with_is_refused_and_left_as_it_is() {
     let (picture, named) = (std::fs::read(&out).unwrap(), text(&state));
     for (more, word) in [
         (&["--kernel", "cone"][..], "mapper settings"),
+        (&["--k", "100"], "first radii"),
         (&["--samples", "3"], "samples"),
         (&["--height", "9"], "size"),
         (&["--radius", "0.2"], "mapper settings"),
@@ -79,6 +124,21 @@ fn what_cannot_be_gone_on_with_is_refused_and_left_as_it_is() {
             all.drain(at..at + 2);
         }
         refuses_naming(&[&all[..], more].concat(), &["a.state", &format!("another {word}")]);
+    }
+    // A count of maps that no run has, and a negative sum of squares.
+    let body = kept.iter().enumerate().filter(|(_, byte)| **byte == b'\n').nth(1).unwrap().0 + 1;
+    let changed = |at: usize, word: [u8; 8]| {
+        let mut bytes = kept.clone();
+        let pixel = (bytes.len() - body) / 64;
+        (0..64).for_each(|n| bytes[body + n * pixel + at..][..8].copy_from_slice(&word));
+        bytes
+    };
+    let last = (kept.len() - body) / 64 - 8;
+    for wrong in
+        [changed(0, u64::MAX.to_le_bytes()), changed(0, [0; 8]), changed(last, (-1f64).to_le_bytes())]
+    {
+        std::fs::write(&state, &wrong).unwrap();
+        refuses_naming(&arguments(&out, &["--maps", "4", "--state", named]), &["a.state", "damaged"]);
     }
     for damaged in [kept[..kept.len() - 8].to_vec(), kept[..30].to_vec(), Vec::new(), b"no\n{}\n".to_vec()] {
         std::fs::write(&state, &damaged).unwrap();
@@ -100,6 +160,7 @@ fn what_has_no_end_or_no_error_is_refused() {
         (&["--maps", "3", "--passes", "2", "--radius", "0.2", "--adapt", "0"], &["--passes is 2"]),
         (&["--maps", "3", "--state", text(&other)], &["lead to one file"]),
         (&["--maps", "3", "--state", text(&folder.0.path().join("no/a"))], &["no/a"]),
+        (&["--maps", "3", "--state", "/dev/zero"], &["/dev/zero", "not a state"]),
         (&["--maps", "3", "--with", "paths"], &["--progressive", "--with photons"]),
     ] {
         refuses_naming(&arguments(&out, more), words);
@@ -110,4 +171,7 @@ fn what_has_no_end_or_no_error_is_refused() {
     );
     refuses_naming(&["measure", "slab", "--with", "photons", "--progressive"], &["--radius"]);
     refuses_naming(&["measure", "slab", "--with", "paths", "--progressive"], &["--progressive"]);
+    let measure = ["measure", "slab", "--with", "photons", "--photons", "100", "--progressive"];
+    refuses_naming(&[&measure[..], &["--radius", "0.3", "--maps", "1"]].concat(), &["--maps is 1"]);
+    refuses_naming(&[&measure[..], &["--ray-radius", "0.3", "--maps", "4"]].concat(), &["with --radius"]);
 }

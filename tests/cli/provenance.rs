@@ -41,7 +41,7 @@ fn tables_say_what_they_were_made_with() {
     );
     let across = [&photons[..], &["--beam-radius", "0.5"]].concat();
     assert_eq!(run_of(&across)["beam_radius"], 0.5);
-    assert_eq!(run_of(&[&across[..], &["--progressive"]].concat())["progressive"], true);
+    assert_eq!(run_of(&[&across[..], &["--radius", "0.5", "--progressive"]].concat())["progressive"], true);
     refuses_naming(
         &[&photons[..], &["--beam-radius", "inf"]].concat(),
         &["--beam-radius is inf; allowed: finite and above 0"],

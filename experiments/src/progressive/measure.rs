@@ -20,7 +20,7 @@ pub fn groups(settings: &Settings) -> Vec<Group> {
 }
 
 /// One question by one schedule, over the maps so far.
-struct Asked {
+struct Reading {
     query: Query,
     schedule: Schedule,
     radii: Vec<f64>,
@@ -40,11 +40,11 @@ fn measure(settings: &Settings, cell: &CellId) -> anyhow::Result<CellOutput> {
         let (first, oracle) = best(settings, query)?;
         for schedule in schedules(query) {
             let radii = radii(query, schedule, maps, first, oracle);
-            all.push(Asked { query, schedule, radii, errors: Vec::new() });
+            all.push(Reading { query, schedule, radii, errors: Vec::new() });
         }
     }
     let side = scene.periodic_cell().map(|cell| cell.side);
-    let largest = all.iter().flat_map(|asked| &asked.radii).fold(0.0, |most: f64, r| most.max(*r));
+    let largest = all.iter().flat_map(|reading| &reading.radii).fold(0.0, |most: f64, r| most.max(*r));
     for map in 0..maps {
         // Cells are below 2^16: no two maps share a number.
         let replicate = cell.stream("progressive") ^ map << 16;
@@ -54,13 +54,13 @@ fn measure(settings: &Settings, cell: &CellId) -> anyhow::Result<CellOutput> {
         output.count("photons emitted", photons);
         let beams = BeamMap::new(std::mem::take(&mut pass.beams), photons, side)?;
         let points = pass.into_map(largest)?;
-        for asked in &mut all {
-            let errors = read(asked.query, &scene, (&points, &beams), asked.radii[map as usize])?;
-            asked.errors.resize(errors.len(), Moments::new());
-            asked.errors.iter_mut().zip(errors).for_each(|(moments, error)| moments.push(error));
+        for reading in &mut all {
+            let errors = read(reading.query, &scene, (&points, &beams), reading.radii[map as usize])?;
+            reading.errors.resize(errors.len(), Moments::new());
+            reading.errors.iter_mut().zip(errors).for_each(|(moments, error)| moments.push(error));
         }
         if stops.contains(&(map + 1)) {
-            all.iter().for_each(|asked| push(&mut output, asked, map + 1));
+            all.iter().for_each(|reading| push(&mut output, reading, map + 1));
         }
     }
     Ok(output)
@@ -86,10 +86,10 @@ fn read(
 }
 
 /// What the means over so many maps say.
-fn push(output: &mut CellOutput, asked: &Asked, maps: u64) {
-    let case = name(asked.query, asked.schedule, maps);
+fn push(output: &mut CellOutput, reading: &Reading, maps: u64) {
+    let case = name(reading.query, reading.schedule, maps);
     let (mut errors, mut squares, mut holds) = (Moments::new(), Moments::new(), Moments::new());
-    for moments in &asked.errors {
+    for moments in &reading.errors {
         errors.push(moments.mean());
         squares.push(moments.mean() * moments.mean());
         if maps >= 2 {

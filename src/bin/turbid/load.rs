@@ -9,6 +9,9 @@ use turbid::output::is_same_file;
 use turbid::photons::check_end;
 use turbid::scene::{Scene, SceneFile, SceneSource};
 
+/// Where a digest begins and what it is multiplied by (Fowler, Noll and Vo, FNV-1a of 64 bits).
+const FNV: (u64, u64) = (0xcbf2_9ce4_8422_2325, 0x0100_0000_01b3);
+
 /// Which scene, and what to change in it.
 #[derive(clap::Args)]
 pub struct Source {
@@ -61,15 +64,41 @@ impl Source {
 
     /// The same with the file that it follows from, every change made.
     pub fn read(&self) -> anyhow::Result<(SceneFile, Scene)> {
+        self.read_from(|_, _| Ok(())).map(|(file, scene, ())| (file, scene))
+    }
+
+    /// The same, and a number that stands for all that is in the files that it names.
+    pub fn read_digested(&self) -> anyhow::Result<(SceneFile, Scene, u64)> {
+        self.read_from(|file, folder| {
+            let mut digest = FNV.0;
+            for name in file.files()? {
+                let bytes = std::fs::read(folder.join(&name)).with_context(|| name.clone())?;
+                for byte in name.bytes().chain(bytes) {
+                    digest = (digest ^ u64::from(byte)).wrapping_mul(FNV.1);
+                }
+            }
+            Ok(digest)
+        })
+    }
+
+    /// The scene, and what `look` finds in its file and folder.
+    fn read_from<T>(
+        &self,
+        look: impl FnOnce(&SceneFile, &Path) -> anyhow::Result<T>,
+    ) -> anyhow::Result<(SceneFile, Scene, T)> {
         if self.scene.extension().is_some_and(|e| e.eq_ignore_ascii_case("xml")) {
             let imported = from_mitsuba(&self.scene, "scene", &[], self.confined)?;
             imported.notes.iter().try_for_each(|text| note(text))?;
             let folder = in_folder(&imported)?;
             let file = self.source()?.changed(&imported.scene.to_toml()?)?;
-            return self.scene_in(file, folder.path());
+            let (file, scene) = self.scene_in(file, folder.path())?;
+            let found = look(&file, folder.path())?;
+            return Ok((file, scene, found));
         }
         let source = self.source()?;
-        self.scene_in(source.resolve()?, &source.folder())
+        let (file, scene) = self.scene_in(source.resolve()?, &source.folder())?;
+        let found = look(&file, &source.folder())?;
+        Ok((file, scene, found))
     }
 
     /// The scene file with every change made.

@@ -14,6 +14,8 @@ pub struct Made {
     pub repetitions: u64,
     /// Samples a pixel of each repetition, or one number for all.
     pub samples: Vec<u64>,
+    /// Samples a pixel of all of them.
+    pub total_samples: u64,
     /// How the first map is read, if there are maps.
     pub first_read: Option<Settings>,
     /// Rays and look-ups.

@@ -356,10 +356,20 @@ impl Measure {
         let estimator = Estimator::new(self.kernel, gather).treated(self.boundary.treatment());
         let estimator = estimator.rejecting(self.reject.rejection());
         let (ray_radius, beam_radius) = (ray_radius(self.ray_radius)?, beam_radius(self.beam_radius)?);
-        let has_radius = self.radius.is_some() || ray_radius.is_some() || beam_radius.is_some();
-        if self.progressive && !has_radius {
+        let is_of_balls = |sensor: &Sensor| {
+            matches!(sensor.quantity, Quantity::Fluence(_) | Quantity::Binned(Binned::Fluence { .. }))
+        };
+        let has_balls = scene.sensors().iter().any(is_of_balls) || (ray_radius, beam_radius) == (None, None);
+        if self.progressive && maps < 2 {
             bail!(
-                "--progressive shrinks radii, and takes the k nearest photons as they are; allowed: with --radius, --ray-radius or --beam-radius"
+                "--maps is {maps}; allowed with --progressive: at least 2, since radii shrink from map to map"
+            );
+        }
+        if self.progressive && has_balls && self.radius.is_none() {
+            bail!(
+                "--progressive shrinks radii, and takes the k nearest photons as they are; allowed: with --radius, or, for sensors of \
+                 radiance alone, --ray-radius or \
+                  --beam-radius"
             );
         }
         let (has_planes, is_progressive) = (self.planes, self.progressive);

@@ -1,12 +1,13 @@
-//! `turbid render --progressive`: as many maps as one likes, radii that shrink from map to map, and a picture that can be gone on with.
+//! `turbid render --progressive`: as many maps as one likes, radii that shrink from map to map, and a picture that can be resumed.
 
 use super::made::{Made, MapsMade, Stages};
 use super::memory::Memory;
 use super::notes::tell_empty;
 use super::picture::{Held, Photons, Readout};
 use super::progress::Bar;
+use super::provenance::mapper_settings;
 use super::shared::note;
-use super::state::State;
+use super::state::{FOUND, State};
 use super::statistics::MAPS;
 use anyhow::bail;
 use cpu_time::ProcessTime;
@@ -28,11 +29,13 @@ use turbid::transport::{NoProgress, Progress};
 pub struct Progressive {
     /// Shrink fixed radii from map to map, so that the mean over maps converges to the light itself, in the memory of one map: as
     /// the number of maps to the power -1/7 in the volume, -1/6 on surfaces and about rays, -1/5 about beams. Takes as many maps
-    /// as --seconds allow, or --maps. Without --radius the first radii are the mean ones of the k nearest photons in a pilot.
+    /// as --seconds allow, or --maps. Without --radius the first radii are those of the k nearest photons in a pilot, where most of
+    /// them are.
     #[arg(long = "progressive", id = "progressive")]
     pub is_asked_for: bool,
-    /// Keep what a progressive picture is the mean of, written every 20 seconds and at the end; where the file is there, go on with it:
-    /// for --seconds more, or until there are --maps. The same bits as a run that was never stopped.
+    /// Keep what a progressive picture is the mean of, written after the first map, every 20 seconds and at the end; where the file is
+    /// there, resume from it: for --seconds more, or until there are --maps. The same bits as a run that was never stopped. A run
+    /// that is killed loses 20 seconds at most; --maps 2 makes a picture of what its state holds.
     #[arg(long, value_name = "FILE", requires = "progressive")]
     pub state: Option<PathBuf>,
 }
@@ -40,7 +43,7 @@ pub struct Progressive {
 /// Samples a pixel of each map, where their number is not given: there are many maps.
 const SAMPLES: u64 = 1;
 
-/// Pixels of the pilot, at most: its radii are means over all of them.
+/// Pixels of the pilot, about: its radii are means over all of them.
 const PILOT_PIXELS: f64 = 4096.0;
 
 /// The map of the pilot, which no picture has.
@@ -48,6 +51,11 @@ const PILOT: u64 = u64::MAX;
 
 /// Time between two writings of the state.
 const EVERY: Duration = Duration::from_secs(20);
+
+/// A radius that a map cannot tell from none.
+#[derive(Debug, thiserror::Error)]
+#[error("{0}")]
+struct TooSmall(turbid::Error);
 
 /// A sequence of maps: what it is made of, and how far it goes.
 pub struct Sequence<'a> {
@@ -113,18 +121,14 @@ impl Sequence<'_> {
     /// Makes the maps, each read once, and the picture that is their mean.
     ///
     /// # Arguments
-    /// `made_from` what the state must have been made from
-    pub fn make(&self, made_from: &serde_json::Value) -> anyhow::Result<Made> {
+    /// `made_from` what the state must have been made from, beside what a pilot finds
+    pub fn make(&self, mut made_from: serde_json::Value) -> anyhow::Result<Made> {
         let start = ProcessTime::now();
         let (width, height) = (self.camera.width(), self.camera.height());
-        let mut state = match self.state {
-            Some(file) if file.exists() => State::read(file, (width, height), made_from)?,
-            _ => State::new(width, height),
-        };
-        let before = state.film.samples();
         let mut made = Made {
             film: Film::new(0, 0),
             repetitions: 0,
+            total_samples: 0,
             samples: Vec::new(),
             first_read: None,
             work: Report::default(),
@@ -135,24 +139,40 @@ impl Sequence<'_> {
         };
         let shared = self.shared(&mut made.stages)?;
         made.first_read = Some(shared.first);
+        let [emitted, radii] = FOUND;
+        made_from[emitted] = serde_json::json!(shared.emitted.histories());
+        made_from[radii] = mapper_settings(&shared.first);
+        let made_from = &made_from;
+        let mut state = match self.state {
+            Some(file) if file.exists() => State::read(file, (width, height), made_from)?,
+            _ => State::new(width, height),
+        };
+        let before = state.film.samples();
         let (bar, mut kept) = (self.bar(before), Instant::now());
         let began = start.elapsed().as_secs_f64();
         let mut spent = began;
         loop {
             let done = state.film.samples();
-            let mine = done - before;
+            let of_this_run = done - before;
             let is_enough = match self.until {
                 Until::Maps(maps) => done >= maps,
                 // As much again as the mean map took.
                 Until::Seconds(seconds) => {
-                    done >= 2 && mine >= 1 && spent + (spent - began) / mine as f64 > seconds
+                    done >= 2 && of_this_run >= 1 && spent + (spent - began) / of_this_run as f64 > seconds
                 }
             };
             if is_enough {
                 break;
             }
             let settings = shared.first.in_map(done);
-            let (film, maps_made) = self.one(&shared, &settings, done, &mut made)?;
+            let (film, maps_made) = match self.one(&shared, &settings, done, &mut made) {
+                // What there is stays.
+                Err(error) if done >= 2 && error.downcast_ref::<TooSmall>().is_some() => {
+                    note(&format!("{error:#}; the picture is that of {done} maps"))?;
+                    break;
+                }
+                made => made?,
+            };
             if self.is_compared {
                 made.block_means.push(Blocks::of(width, height).means(&film));
             }
@@ -170,7 +190,7 @@ impl Sequence<'_> {
                 Until::Seconds(_) => (1e3 * (now - spent)) as u64,
             });
             spent = now;
-            if let Some(file) = self.state.filter(|_| kept.elapsed() > EVERY) {
+            if let Some(file) = self.state.filter(|_| of_this_run == 0 || kept.elapsed() > EVERY) {
                 state.write(file, made_from)?;
                 kept = Instant::now();
             }
@@ -188,6 +208,7 @@ impl Sequence<'_> {
         }
         made.samples = vec![self.samples()];
         made.repetitions = state.film.samples();
+        made.total_samples = made.repetitions.saturating_mul(self.samples());
         made.film = state.film;
         Ok(made)
     }
@@ -210,7 +231,9 @@ impl Sequence<'_> {
         let streams = Streams { seed: self.seed, replicate: number };
         let maps = self.filled(shared, number, &mut made.stages)?;
         let mut film = Film::new(self.camera.width(), self.camera.height());
-        let method = Method::Photons(Mapper::new(self.scene, &maps, settings));
+        let mapper = Mapper::new(self.scene, &maps, settings);
+        mapper.check_radii().map_err(|error| anyhow::Error::new(TooSmall(error)))?;
+        let method = Method::Photons(mapper);
         let read = || method.extend(&mut film, self.camera, self.samples(), streams, &NoProgress);
         made.work += made.stages.time("samples", read)?;
         let mut maps_made = MapsMade { number, settings: Some(*settings), ..MapsMade::default() };
@@ -243,15 +266,16 @@ impl Sequence<'_> {
         let radii = [&mut first.global.1, &mut first.caustic.1, &mut first.volume.gather];
         let mut told = Vec::new();
         for ((gather, gathers), name) in radii.into_iter().zip(piloted).zip(["global", "caustic", "volume"]) {
-            // Where nothing was read there is the farthest that photons would have been taken from.
-            let radius = if gathers.count > 0 { gathers.mean_radius() } else { gather.cap() };
+            // Where nothing was found there is the farthest that photons would have been taken from.
+            let found = gathers.radius_by_density();
+            let radius = found.unwrap_or(gather.cap());
             *gather = Gather::radius(radius)?;
-            if gathers.count > 0 && !(name == "volume" && self.usual.volume.reads_rays()) {
+            if found.is_some() && !(name == "volume" && self.usual.volume.reads_rays()) {
                 told.push(format!("{radius:.3e} L in the {name} map"));
             }
         }
         if !told.is_empty() {
-            note(&format!("first radii, as of the k nearest photons in a pilot: {}", told.join(", ")))?;
+            note(&format!("first radii, those of the k nearest photons in a pilot: {}", told.join(", ")))?;
         }
         Ok(shared)
     }

@@ -68,7 +68,7 @@ pub struct Render {
     #[arg(long, value_parser = parse_count)]
     samples: Option<u64>,
     /// As many samples as this many seconds of processor time allow, maps included. The clock decides: the number taken
-    /// is printed, and --samples with it repeats the picture bit by bit.
+    /// is printed, and --samples with it, or --maps of a progressive picture, repeats it bit by bit.
     #[arg(long)]
     seconds: Option<f64>,
     /// Independent repetitions, with maps of their own if it is by photons; the picture is their mean [default: 1].
@@ -171,7 +171,10 @@ impl Render {
         self.check_passes()?;
         self.check_progressive()?;
         let exposure = self.shown.checked()?;
-        let (file, scene) = self.source.read()?;
+        let (file, scene, files) = match self.progressive.state {
+            Some(_) => self.source.read_digested()?,
+            None => self.source.read().map(|(file, scene)| (file, scene, 0))?,
+        };
         let scene = match (scene, self.plan) {
             (scene, PlanName::Auto) => scene,
             (_, PlanName::Full) if self.with == With::Light => bail!(
@@ -229,7 +232,7 @@ impl Render {
         let mut read = None;
         let made = on_threads(self.threads, || match self.with {
             With::Photons if self.progressive.is_asked_for => {
-                self.sequence(&scene, &scene_text, &camera, usual)
+                self.sequence(&scene, (&scene_text, files), &camera, usual)
             }
             With::Paths => self.repeat(&camera, |streams, stages, left, film| {
                 Ok((self.fill(film, stages, left, &Method::Paths(&scene), (&camera, streams))?, None))
@@ -345,7 +348,7 @@ impl Render {
     fn maps(&self) -> u64 {
         match self.maps {
             Some(maps) => maps,
-            // Some more than one.
+            // At least: the time decides.
             None if self.progressive.is_asked_for => 2,
             None => 1,
         }
@@ -355,7 +358,7 @@ impl Render {
     fn sequence(
         &self,
         scene: &Scene,
-        scene_text: &str,
+        from: (&str, u64),
         camera: &Camera,
         usual: Settings,
     ) -> anyhow::Result<Made> {
@@ -373,7 +376,7 @@ impl Render {
             state: self.progressive.state.as_deref(),
             is_compared: self.compared.is_asked_for(),
         };
-        sequence.make(&self.made_from(scene_text, camera, &sequence))
+        sequence.make(self.made_from(from, camera, &sequence))
     }
 
     /// Refuses what a progressive picture cannot be made with.
@@ -399,7 +402,12 @@ impl Render {
     }
 
     /// What a progressive picture is made from, but for the number of maps.
-    fn made_from(&self, scene_text: &str, camera: &Camera, sequence: &Sequence<'_>) -> serde_json::Value {
+    fn made_from(
+        &self,
+        (scene_text, files): (&str, u64),
+        camera: &Camera,
+        sequence: &Sequence<'_>,
+    ) -> serde_json::Value {
         let maps = self.photons.settings(self.readout.indirect(), self.readout.has_beams(), self.seed, 0);
         serde_json::json!({
             "program": format!("turbid {}", env!("CARGO_PKG_VERSION")),
@@ -411,7 +419,9 @@ impl Render {
             "map settings": map_settings(&maps),
             "mapper settings": mapper_settings(&sequence.usual),
             "radius": self.readout.has_radius(),
+            "revision": revision(),
             "scene": scene_text,
+            "digest of the scene's files": files,
         })
     }
 
@@ -456,6 +466,7 @@ impl Render {
             film: if self.maps() == 1 { Film::new(0, 0) } else { blank() },
             repetitions: self.maps(),
             samples: Vec::new(),
+            total_samples: 0,
             first_read: None,
             work: Report::default(),
             maps: Vec::new(),
@@ -477,6 +488,7 @@ impl Render {
             // A film of passes holds their mean alone.
             let taken = if self.passes == 1 { film.samples() } else { self.samples.unwrap_or(SAMPLES) };
             made.samples.push(taken);
+            made.total_samples += taken;
             if self.maps() == 1 {
                 made.film = film;
             } else {

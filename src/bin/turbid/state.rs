@@ -1,4 +1,4 @@
-//! The file that a progressive picture is gone on with: means and variances of its maps so far, and what they were made from.
+//! The file that a progressive picture is resumed from: means and variances of its maps so far, and what they were made from.
 
 use anyhow::{Context, bail};
 use std::fs;
@@ -8,6 +8,15 @@ use turbid::sensor::Film;
 
 /// How the file begins, up to the end of the line.
 const MAGIC: &str = "turbid progressive 1";
+
+/// The most that the first two lines take: a scene may have thousands of bodies.
+const HEADER_BYTES: u64 = 100_000_000;
+
+/// What a pilot finds, by keys.
+pub const FOUND: [&str; 2] = ["photons emitted", "first radii"];
+
+/// The longest value that is told where two differ.
+const TOLD: usize = 200;
 
 /// The mean of the maps so far.
 pub struct State {
@@ -29,6 +38,15 @@ impl State {
     ) -> anyhow::Result<Self> {
         let named = || format!("--state {}", file.display());
         // A line, a line of JSON, the numbers.
+        let data = fs::metadata(file).with_context(named)?;
+        let most = Film::byte_count(width, height) + HEADER_BYTES;
+        if !data.is_file() || data.len() > most {
+            bail!(
+                "{}: not a state of {width} x {height} pixels, which is a file of at most {most} bytes; allowed: another name, or such \
+                 a file",
+                named()
+            );
+        }
         let bytes = fs::read(file).with_context(named)?;
         let mut parts = bytes.splitn(3, |byte| *byte == b'\n');
         let (magic, header, numbers) = (parts.next(), parts.next(), parts.next());
@@ -42,8 +60,15 @@ impl State {
             anyhow::anyhow!("{}: line 2 is not JSON: the file is damaged; begin anew", named())
         })?;
         if let Some(key) = differing(&header, made_from) {
+            let told = |of: &serde_json::Value| {
+                let told = of.get(key).map_or_else(|| "nothing".to_string(), ToString::to_string);
+                if told.len() > TOLD { String::new() } else { told }
+            };
+            let (was, is) = (told(&header), told(made_from));
+            let both =
+                if was.is_empty() || is.is_empty() { String::new() } else { format!(": {was}, now {is}") };
             bail!(
-                "{}: was made from another {key}; allowed: the same scene, size and settings as before, or another name",
+                "{}: was made from another {key}{both}; allowed: the same scene, size and settings as before, or another name",
                 named()
             );
         }
@@ -70,8 +95,12 @@ impl State {
 /// The first key in which two settings differ.
 fn differing<'a>(a: &'a serde_json::Value, b: &'a serde_json::Value) -> Option<&'a str> {
     let (Some(a), Some(b)) = (a.as_object(), b.as_object()) else { return Some("program") };
-    let mut keys = a.keys().chain(b.keys());
-    keys.find(|key| a.get(*key) != b.get(*key)).map(String::as_str)
+    let differing = |key: &&String| a.get(*key) != b.get(*key);
+    // What follows from others is told last.
+    let is_found = |key: &&String| FOUND.contains(&key.as_str());
+    let mut keys: Vec<&String> = a.keys().chain(b.keys()).filter(differing).collect();
+    keys.sort_by_key(is_found);
+    keys.first().map(|key| key.as_str())
 }
 
 #[cfg(test)]
@@ -85,6 +114,8 @@ mod tests {
         assert_eq!(differing(&a, &a), None);
         assert_eq!(differing(&a, &json!({ "seed": 1, "width": 9 })), Some("width"));
         assert_eq!(differing(&a, &json!({ "seed": 1 })), Some("width"));
+        let b = json!({ "first radii": 2, "seed": 2, "width": 8 });
+        assert_eq!(differing(&b, &a), Some("seed"));
         assert_eq!(differing(&json!(3), &a), Some("program"));
     }
 }

@@ -55,8 +55,7 @@ pub fn print_statistics(made: &Made, exposure: f64) -> anyhow::Result<()> {
         writeln!(text, "map {number:<3} memory   {:.1} MB", report.bytes as f64 / 1e6)?;
     }
     let work = &made.work;
-    let each = if made.samples.len() == 1 { made.repetitions } else { 1 };
-    let total = made.samples.iter().sum::<u64>() * each * pixels;
+    let total = made.total_samples.saturating_mul(pixels);
     if made.is_by_light {
         writeln!(text, "histories      {total} photons, {} flights", work.rays.segments)?;
         writeln!(text, "connections    {} to the camera", work.rays.shadow)?;

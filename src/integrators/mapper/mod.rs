@@ -53,13 +53,22 @@ pub struct Gathers {
     pub underfull_radii: f64,
     /// Photons found.
     pub found: u64,
+    /// Photons found over the radius to the power that they spread in, d, and the same times the radius: their ratio is the mean radius where
+    /// photons are, each look-up weighted by the density that it finds.
+    pub density: [f64; 2],
     /// How many found photons on a surface of which no line found any: taken for dark.
     pub unknown: u64,
 }
 
 impl Gathers {
-    fn add(&mut self, estimate: &Estimate) {
+    /// Counts an estimate from photons that spread in `d` dimensions.
+    fn add(&mut self, estimate: &Estimate, d: i32) {
         self.count += 1;
+        if estimate.found > 0 && estimate.radius > 0.0 {
+            let density = estimate.found as f64 / (0..d).map(|_| estimate.radius).product::<f64>();
+            self.density[0] += density;
+            self.density[1] += density * estimate.radius;
+        }
         self.underfull += u64::from(estimate.underfull);
         self.radii += estimate.radius;
         self.underfull_radii += if estimate.underfull { estimate.radius } else { 0.0 };
@@ -70,6 +79,12 @@ impl Gathers {
         self.count += 1;
         self.radii += radius.get();
         self.found += estimate.found as u64;
+    }
+
+    /// Mean radius where photons are, which few look-ups in their midst weigh more than many far off \[L\]; none where none was found.
+    pub fn radius_by_density(&self) -> Option<f64> {
+        let [density, radii] = self.density;
+        Some(radii / density).filter(|radius| radius.is_finite() && *radius > 0.0)
     }
 
     /// Mean radius \[L\]; 0 of no look-ups.
@@ -85,6 +100,7 @@ impl AddAssign for Gathers {
         self.radii += other.radii;
         self.underfull_radii += other.underfull_radii;
         self.found += other.found;
+        self.density = [0, 1].map(|i| self.density[i] + other.density[i]);
         self.unknown += other.unknown;
     }
 }

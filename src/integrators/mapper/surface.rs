@@ -75,7 +75,7 @@ impl<'w> Diffuse<'w> {
         else {
             let tangent = Tangent { normal: self.normals.geometric, slope, turn: 2.0 * slope };
             let estimate = irradiance(map, self.position, &tangent, kernel, gather);
-            count.add(&estimate);
+            count.add(&estimate, 2);
             return estimate.value;
         };
         // The lines that look for covered surface use up no numbers of the path.
@@ -90,7 +90,7 @@ impl<'w> Diffuse<'w> {
                 estimate = Estimate { underfull: true, ..nearer };
             }
             if estimate.found == 0 {
-                count.add(&estimate);
+                count.add(&estimate, 2);
                 return estimate.value;
             }
             let part = place.part(kernel, estimate.radius, &mut lines);
@@ -100,7 +100,7 @@ impl<'w> Diffuse<'w> {
             attempt += 1;
             gather = gather.within(0.25 * estimate.radius);
         };
-        count.add(&estimate);
+        count.add(&estimate, 2);
         if part.share == 0.0 {
             count.unknown += 1;
             return Spectrum::ZERO;

@@ -46,7 +46,7 @@ impl Mapper<'_> {
         if let Some(map) = self.maps.volume.as_ref().filter(|_| !settings.volume.reads_rays()) {
             let boundary = self.boundary(number);
             let estimate = settings.volume.in_scattered(map, position, -dir, phase, Spectrum::ONE, &boundary);
-            report.volume.add(&estimate);
+            report.volume.add(&estimate, 3);
             let sigma_t = medium.sigma_t(position);
             multiple = estimate.value.over(sigma_t);
         }
