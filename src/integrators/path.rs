@@ -62,10 +62,8 @@ pub(super) struct PathVisitor<'a, F: FnMut(u32, Layer, Spectrum)> {
     end: f64,
     /// The games by which it is split and ended.
     guided: Option<Guided<'a>>,
-    /// Order above which light is left out of lights that do not fill space, if it is.
-    joined_above: Option<u32>,
-    /// Whether caustics of these lights are left out too, what is scattered once behind specular surfaces.
-    are_caustics_joined: bool,
+    /// Orders above which light is left out of lights that do not fill space, if it is: of those that rays meet, and of delta lights.
+    joined_above: Option<[u32; 2]>,
 }
 
 impl<'a, F: FnMut(u32, Layer, Spectrum)> PathVisitor<'a, F> {
@@ -80,24 +78,18 @@ impl<'a, F: FnMut(u32, Layer, Spectrum)> PathVisitor<'a, F> {
             end: f64::INFINITY,
             guided: None,
             joined_above: None,
-            are_caustics_joined: false,
         }
     }
 
-    /// The same without the light above an order of lights that do not fill space, and without their caustics, if so.
-    pub(super) fn without_joined_above(self, order: u32, are_caustics_joined: bool) -> Self {
-        PathVisitor { joined_above: Some(order), are_caustics_joined, ..self }
+    /// The same without the light above these orders of lights that do not fill space: of those that rays meet, and of delta lights.
+    pub(super) fn without_joined_above(self, orders: [u32; 2]) -> Self {
+        PathVisitor { joined_above: Some(orders), ..self }
     }
 
     /// Whether it collects a light's part in paths of an order.
     fn has(&self, light: &Light, order: u32) -> bool {
-        self.joined_above.is_none_or(|above| order <= above || light.fills_space())
-    }
-
-    /// Whether it collects light that the ray meets by itself.
-    fn has_met(&self, light: &Light, walker: &Walker) -> bool {
-        let is_caustic = walker.order == 1 && self.specular_at == Some(1);
-        self.has(light, walker.order) && !(self.are_caustics_joined && is_caustic && !light.fills_space())
+        let is_left = |above: [u32; 2]| order <= above[usize::from(light.is_delta())] || light.fills_space();
+        self.joined_above.is_none_or(is_left)
     }
 
     /// Whether an order counts.
@@ -146,7 +138,7 @@ impl<'a, F: FnMut(u32, Layer, Spectrum)> PathVisitor<'a, F> {
         let layer = self.layer_ahead(walker);
         if let Some(found) = hit
             && let Target::Light(index) = found.target
-            && self.has_met(&self.scene.lights()[index], walker)
+            && self.has(&self.scene.lights()[index], walker.order)
         {
             let seen_along = sampled_along(walker);
             let seen_hit =
@@ -169,7 +161,7 @@ impl<'a, F: FnMut(u32, Layer, Spectrum)> PathVisitor<'a, F> {
                 seen *= pdf / (pdf + source.pdf_solid_angle(&sampled_along(walker)));
             }
             if hit.is_none()
-                && self.has_met(light, walker)
+                && self.has(light, walker.order)
                 && let Some((radiance, pdf_light)) = light.background(&walker.ray)
             {
                 let share = walker.pdf_solid_angle.map_or(1.0, |pdf| pdf / (pdf + pdf_light));

@@ -1,9 +1,10 @@
 //! The bidirectional path tracer: subpaths from the eye and from lights, every vertex of one connected to every vertex of the other.
 //!
 //! It is unbiased as the path tracer is, and finds light that paths find badly: what lamps that are small, or hidden behind glass, throw on
-//! surfaces and into media, once it is scattered again before the eye. What is scattered once alone, and lights seen
-//! straight, are the path tracer's, in its own techniques (in pictures all but caustics, which photons bring to the camera); so is the light that fills volumes or comes from all sides, at every
-//! order ([`PathVisitor`]).
+//! surfaces and into media, once it is scattered again before the eye. In pictures photons are connected to the camera too, and bring
+//! caustics and the first scattering. Lights seen straight are the path tracer's, in its own techniques, and so is, without a camera,
+//! what is scattered once; of delta lights always, but for their caustics. So is the light that fills volumes or comes from all sides, at
+//! every order ([`PathVisitor`]).
 
 mod light;
 mod pinhole;
@@ -92,7 +93,9 @@ fn follow(
         Some(max) if max < 2 => Vec::new(),
         max => subpath(scene, &sources, max.map(|max| max - 1), &mut rays, stream),
     };
-    let path = PathVisitor::new(scene, orders, rays, collect).without_joined_above(1, pinhole.is_some());
+    // Towards a delta light distances on the first ray are chosen too.
+    let above = if pinhole.is_some() { [0, 1] } else { [1, 1] };
+    let path = PathVisitor::new(scene, orders, rays, collect).without_joined_above(above);
     let mut visitor =
         Eye { scene, pinhole, sources, light, path, last: None, leaving: None, is_specular: false };
     let roulette = Roulette::Below(ROULETTE * start.weight.max());
@@ -135,14 +138,14 @@ pub fn seen(
 /// Follows a subpath of light and calls `splat` with what its scatterings send to the camera, weighted against [`seen`]: as
 /// [`super::light_tracing`]. Returns the work.
 ///
-/// Of light that is scattered once only caustics are asked for: the rest the eye's own techniques find well, near lights too.
+/// What delta lights send straight to a scattering that is the only one is left out: the eye's subpath finds it by distances on its rays that
+/// are chosen for these lights.
 pub fn splats(scene: &Scene, pinhole: &Pinhole, stream: &mut Stream, mut splat: impl FnMut(Splat)) -> Rays {
     let (sources, mut rays) = (Sources::new(scene), Rays::default());
     let light = subpath(scene, &sources, None, &mut rays, stream);
-    let is_caustic = light.first().is_some_and(|first| first.ways.connected == 0.0);
     for vertex in &light {
-        let is_by_specular = vertex.order == 1 && is_caustic;
-        if vertex.order == 1 && !is_caustic {
+        let is_by_specular = vertex.order == 1 && vertex.ways.connected == 0.0;
+        if vertex.order == 1 && !is_by_specular && vertex.ways.beyond == 0.0 {
             continue;
         }
         let Some((at, dir, distance)) = pinhole.look(vertex.position) else { continue };
@@ -185,11 +188,15 @@ impl<'a, F: FnMut(u32, Layer, Spectrum)> Eye<'a, F> {
         Layer::of(order, first, is_by_specular)
     }
 
+    /// The first order at which photons that reach the eye, or are connected to its subpath, make what it finds itself.
+    fn first_joined(&self) -> u32 {
+        if self.pinhole.is_some() { 1 } else { 2 }
+    }
+
     /// The lights that the ray meets by itself.
     fn meet(&mut self, walker: &Walker, hit: Option<&SceneHit>, stream: &mut Stream) {
         let (Some(last), Some(leaving)) = (self.last, self.leaving) else { return };
-        let is_joined_caustic = self.pinhole.is_some() && self.is_specular;
-        if last.order < 2 && !is_joined_caustic {
+        if last.order < self.first_joined() {
             return;
         }
         if !self.path.contains(walker.order) {
@@ -228,7 +235,7 @@ impl<'a, F: FnMut(u32, Layer, Spectrum)> Eye<'a, F> {
             (None, _, Some(pinhole)) if !self.is_specular => pinhole.ways(self.scene, &vertex),
             _ => Ways::FIRST,
         };
-        if vertex.order >= 2 && self.path.contains(vertex.order) {
+        if vertex.order >= self.first_joined() && self.path.contains(vertex.order) {
             self.aim(&vertex, stream);
         }
         self.connect(&vertex, stream);
@@ -237,10 +244,13 @@ impl<'a, F: FnMut(u32, Layer, Spectrum)> Eye<'a, F> {
 
     /// Next-event estimation.
     fn aim(&mut self, vertex: &Vertex, stream: &mut Stream) {
-        let (scene, layer) = (self.scene, self.layer(2, vertex, false));
+        let (scene, layer) = (self.scene, self.layer(vertex.order, vertex, false));
         let place = (vertex.position, vertex.body, vertex.interior);
         let numbers: Vec<usize> = self.sources.numbers().collect();
         for index in numbers {
+            if vertex.order == 1 && scene.lights()[index].is_delta() {
+                continue;
+            }
             let found = next_event(scene, index, place, stream, self.path.rays_mut());
             let Some((sample, received)) = found else { continue };
             let fraction = vertex.gathered(sample.dir);
