@@ -110,7 +110,8 @@ fn claims(choices: &[Choice]) -> Vec<Claim> {
             "plug-in from {LARGEST} mfp, caught by its first radius ({}): error over that of the best radius",
             place(choice)
         );
-        claims.push(Claim::at_least("plug-in-caught", &text, Unit::ONE, choice.regret(), SMOOTH));
+        let claim = Claim::at_least("plug-in-caught", &text, Unit::ONE, choice.regret(), SMOOTH);
+        claims.push(claim.chosen_after("the width of the dip was", &[100]));
     }
     for selector in [Selector::Nearest(50), Selector::Fixed] {
         if let Some(choice) = worst(choices, selector, Field::is_smooth) {

@@ -242,7 +242,7 @@ impl Sequence<'_> {
     }
 
     fn filled(&self, shared: &Shared, replicate: u64, stages: &mut Stages) -> anyhow::Result<Maps> {
-        let settings = MapSettings { replicate, ..shared.maps.clone() };
+        let settings = MapSettings { replicate, ..shared.maps };
         let (emitted, importance) = (shared.emitted, shared.importance.as_ref());
         let fill = || fill_part(self.scene, &settings, emitted, importance, Part::WHOLE, &NoProgress);
         Ok(stages.time(MAPS, fill)?)
