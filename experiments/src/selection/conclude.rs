@@ -111,7 +111,7 @@ fn claims(choices: &[Choice]) -> Vec<Claim> {
             place(choice)
         );
         let claim = Claim::at_least("plug-in-caught", &text, Unit::ONE, choice.regret(), SMOOTH);
-        claims.push(claim.chosen_after("the width of the dip was", &[100]));
+        claims.push(claim.chosen_after("width of the dip", &[100]));
     }
     for selector in [Selector::Nearest(50), Selector::Fixed] {
         if let Some(choice) = worst(choices, selector, Field::is_smooth) {
