@@ -50,7 +50,7 @@ impl PlaneMap {
             self.tree.met(ray, span, visit);
             return true;
         };
-        if !(span.end < f64::INFINITY) {
+        if !span.end.is_finite() {
             return false;
         }
         let ends = [ray.at(span.start), ray.at(span.end)];
