@@ -164,8 +164,8 @@ fn determinants_have_their_tail() {
         // pi/8 l0 l1 D/V of each.
         mean.push(found / (40_000.0 * 12.0) * 216.0 / (PI / 8.0));
     }
-    verdict::agrees("pairs found", &mean, (1.0, 0.0), 0.03, 9);
-    for ((excess, most), promise) in excess.iter().zip(most).zip([60.0, 40.0, 15.0]) {
+    verdict::agrees("pairs found", &mean, (1.0, 0.0), 0.08, 9);
+    for ((excess, most), promise) in excess.iter().zip(most).zip([20.0, 10.0, 2.5]) {
         verdict::agrees(&format!("beyond {most}"), excess, (0.0, 0.0), promise, 9);
     }
 }
@@ -273,7 +273,7 @@ fn radiance_in_planes_is_that_of_paths() {
                     &what,
                     found,
                     (expected.mean(), error),
-                    0.25 * expected.mean(),
+                    0.35 * expected.mean(),
                     6,
                 );
             }
