@@ -6,7 +6,7 @@ use std::process::{Command, Stdio};
 
 const COLUMNS: [&str; 6] = ["sensor", "quantity", "unit", "mean", "std_error", "n"];
 /// What follows them as CSV: what the numbers were made with.
-const RUN: [&str; 17] = [
+const RUN: [&str; 18] = [
     "with",
     "seed",
     "orders",

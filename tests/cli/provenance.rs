@@ -47,6 +47,8 @@ fn tables_say_what_they_were_made_with() {
         &["--beam-radius is inf; allowed: finite and above 0"],
     );
     refuses_naming(&[&across[..], &["--ray-radius", "0.5"]].concat(), &["--beam-radius", "--ray-radius"]);
+    assert_eq!(run_of(&[&across[..], &["--planes"]].concat())["planes"], true);
+    refuses_naming(&[&along[..], &["--planes"]].concat(), &["--planes", "--ray-radius"]);
     refuses_naming(&[&photons[..], &["--beam-radius", "1e3"]].concat(), &["beyond the periodic cell"]);
     let folder = Folder::new();
     let npy = folder.0.path().join("a.npy");
