@@ -88,8 +88,9 @@ fn the_examples_of_the_pages_work() {
         let files: Vec<_> = words.iter().map(|word| folder.0.path().join(word)).collect();
         for i in 1..words.len() {
             match words[i - 1] {
-                "-o" | "--ply" | "--npy" | "--photons-from" => words[i] = text(&files[i]),
+                "-o" | "--ply" | "--npy" | "--photons-from" | "--state" => words[i] = text(&files[i]),
                 "--maps" => words[i] = "2",
+                "--seconds" => words[i] = "0.01",
                 "--samples" if is_picture => words[i] = "1",
                 "--photons" | "--samples" => words[i] = "1000",
                 _ => {}
