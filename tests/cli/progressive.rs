@@ -49,6 +49,20 @@ fn a_resumed_picture_is_that_of_one_run() {
     assert!(std::fs::read(&fixed).unwrap() != std::fs::read(&whole).unwrap());
 }
 
+/// Where k is chosen by how full the maps are, another k is told by the radii that follow.
+#[test]
+fn another_k_has_other_first_radii() {
+    let folder = Folder::new();
+    let (out, state) = (folder.0.path().join("a.exr"), folder.0.path().join("a.state"));
+    let full = ["--progressive", "--width", "4", "--global", "emit:80000", "--volume", "emit:2000"];
+    let mut all =
+        vec!["render", "fogbox", "-o", text(&out), "--state", text(&state), "--gather-rays", "0", "--quiet"];
+    all.extend(full);
+    succeeds(&[&all[..], &["--maps", "2"]].concat());
+    refuses_naming(&[&all[..], &["--maps", "3", "--k", "100"]].concat(), &["a.state", "another first radii"]);
+    succeeds(&[&all[..], &["--maps", "3"]].concat());
+}
+
 /// What the files hold that a scene names counts too.
 #[test]
 fn another_grid_is_another_scene() {
@@ -112,7 +126,7 @@ fn what_cannot_be_resumed_is_refused_and_left_as_it_is() {
     let (picture, named) = (std::fs::read(&out).unwrap(), text(&state));
     for (more, word) in [
         (&["--kernel", "cone"][..], "mapper settings"),
-        (&["--k", "100"], "first radii"),
+        (&["--k", "50"], "mapper settings"),
         (&["--samples", "3"], "samples"),
         (&["--height", "9"], "size"),
         (&["--radius", "0.2"], "mapper settings"),

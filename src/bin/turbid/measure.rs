@@ -360,11 +360,6 @@ impl Measure {
             matches!(sensor.quantity, Quantity::Fluence(_) | Quantity::Binned(Binned::Fluence { .. }))
         };
         let has_balls = scene.sensors().iter().any(is_of_balls) || (ray_radius, beam_radius) == (None, None);
-        if self.progressive && maps < 2 {
-            bail!(
-                "--maps is {maps}; allowed with --progressive: at least 2, since radii shrink from map to map"
-            );
-        }
         if self.progressive && has_balls && self.radius.is_none() {
             bail!(
                 "--progressive shrinks radii, and takes the k nearest photons as they are; allowed: with --radius, or, for sensors of \
@@ -378,7 +373,13 @@ impl Measure {
     }
 
     fn measure_by_given(&self, scene: &Scene) -> anyhow::Result<(Vec<Measurement>, Vec<String>)> {
-        let settings = self.settings(scene, 1, self.photons_from.len() as u64)?;
+        let files = self.photons_from.len() as u64;
+        if self.progressive && files < 2 {
+            bail!(
+                "--photons-from names one file; allowed with --progressive: at least 2, since radii shrink from map to map"
+            );
+        }
+        let settings = self.settings(scene, 1, files)?;
         let given = Given::open(&self.photons_from, self.emitted)?;
         let most = given.most();
         let bytes = given_bytes(scene, &settings, most).with_context(|| self.source.name())?;
@@ -399,6 +400,12 @@ impl Measure {
     }
 
     fn measure_by_photons(&self, scene: &Scene) -> anyhow::Result<(Vec<Measurement>, Vec<String>)> {
+        if self.progressive && self.maps < 2 {
+            bail!(
+                "--maps is {}; allowed with --progressive: at least 2, since radii shrink from map to map",
+                self.maps
+            );
+        }
         if self.photons < self.maps {
             bail!("--photons is {}; allowed: at least one for each of the {} maps", self.photons, self.maps);
         }
