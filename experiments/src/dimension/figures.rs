@@ -51,8 +51,8 @@ pub fn dimension(points: &[Point], answers: &[Answer], sizes: &[u64]) -> anyhow:
     let caption = format!(
         "Mean squared error, over the square of the exact value, of light that has not been scattered, in a field that falls as an \
          exponential across the rays: measured (points, 95 % intervals over cells) and predicted before the run (lines). Left: at the \
-         best radius; with ever more photons the slopes are {}. Middle: noise falls with the radius as its powers −3 (a place), −2 (a ray \
-         among points) and −1 (among beams), and the blur grows with its fourth. Right: what the same errors take in time, where a ray asks (lines join the \
+         best radius; with ever more photons the slopes are {}. Middle: noise falls with the radius as its powers −3 (a place among points), −2 (a \
+         place among beams, a ray among points) and −1 (a ray among beams), and the blur grows with its fourth. Right: what the same errors take in time, where a ray asks (lines join the \
          points).",
         slopes.join(", ")
     );
