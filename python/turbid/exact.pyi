@@ -686,6 +686,7 @@ def beams(
 
       point asks points           blur in 3 dimensions, variance ~ 1/r^3
       ray asks points             blur across the ray,  variance ~ 1/r^2       (the beam radiance estimate)
+      point asks beams            blur across the beams, variance ~ 1/r^2      (parallel beams)
       ray asks beams              blur along the common normal, variance ~ E[1/sin theta]/r
 
     bias = coefficient r^2 times the Laplacian in the directions of blur; relative variance in a uniform field
