@@ -1,10 +1,9 @@
 //! The bidirectional path tracer: subpaths from the eye and from lights, every vertex of one connected to every vertex of the other.
 //!
-//! It is unbiased as the path tracer is, and finds light that paths find badly: what lamps that are small, or hidden behind glass, throw on
-//! surfaces and into media, once it is scattered again before the eye. In pictures photons are connected to the camera too, and bring
-//! caustics and the first scattering. Lights seen straight are the path tracer's, in its own techniques, and so is, without a camera,
-//! what is scattered once; of delta lights always, but for their caustics. So is the light that fills volumes or comes from all sides, at
-//! every order ([`PathVisitor`]).
+//! It is unbiased as the path tracer is, and finds light that paths find badly: what lamps that are small, or hidden behind glass,
+//! throw on surfaces and into media, once it is scattered again before the eye. What is scattered once alone, and lights seen
+//! straight, are the path tracer's, in its own techniques (in pictures all but caustics, which photons bring to the camera); so is,
+//! at every order, the light that fills volumes or comes from all sides.
 
 mod light;
 mod pinhole;
