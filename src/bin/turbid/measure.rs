@@ -363,8 +363,7 @@ impl Measure {
         if self.progressive && has_balls && self.radius.is_none() {
             bail!(
                 "--progressive shrinks radii, and takes the k nearest photons as they are; allowed: with --radius, or, for sensors of \
-                 radiance alone, --ray-radius or \
-                  --beam-radius"
+                 radiance alone, --ray-radius or --beam-radius"
             );
         }
         let (has_planes, is_progressive) = (self.planes, self.progressive);

@@ -12,7 +12,7 @@ pub use crossing::Crossing;
 pub use flight::check_beams;
 pub(in crate::photons) use flight::{FlightBeams, MOST_CELLS};
 pub use map::BeamMap;
-pub(in crate::photons) use order::{BLOCK, Entry, kd_order};
+pub(in crate::photons) use order::{Entry, kd_order};
 pub use tree::BeamTree;
 
 /// Most memory that a beam takes on its way into a map \[bytes\]: 80 as a record, twice while records are brought together, and, of

@@ -1,7 +1,7 @@
 //! The kd order of pieces: those that are neighbours in space become neighbours in memory.
 
 /// Pieces below one node of the lowest level.
-pub(in crate::photons) const BLOCK: usize = 16;
+const BLOCK: usize = 16;
 
 /// Ranges shorter than this are ordered by one thread; the order itself does not depend on it.
 const SERIAL: usize = 1 << 14;

@@ -2,10 +2,9 @@
 
 use super::Beam;
 use super::crossing::Crossing;
-use super::order::{BLOCK, Entry, kd_order};
+use super::order::{Entry, kd_order};
 use crate::error::{Error, Result};
 use crate::math::{Interval, Ray};
-use crate::photons::tree::bits;
 use crate::photons::tree::{Boxes, Cylinder, Extent, Units, levels_of};
 use glam::DVec3;
 
@@ -136,20 +135,7 @@ impl BeamTree {
             self.pieces.iter().for_each(ask);
             return;
         };
-        let (mut touched, mut parents) = (vec![0u32], Vec::new());
-        for (height, level) in self.levels.iter().enumerate().rev() {
-            std::mem::swap(&mut touched, &mut parents);
-            touched.clear();
-            for &node in &parents {
-                let first = node as usize * BLOCK;
-                let inside = bits(cylinder.touched(&level[node as usize])).map(|lane| first + lane);
-                if height > 0 {
-                    touched.extend(inside.map(|child| child as u32));
-                } else {
-                    inside.for_each(|place| ask(&self.pieces[place]));
-                }
-            }
-        }
+        cylinder.each_touched(&self.levels, |place| ask(&self.pieces[place]));
     }
 
     /// Number of beams.

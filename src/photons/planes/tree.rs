@@ -3,8 +3,8 @@
 use super::{Plane, PlaneCrossing};
 use crate::error::{Error, Result};
 use crate::math::{Interval, Ray};
-use crate::photons::beams::{BLOCK, Entry, kd_order};
-use crate::photons::tree::{Boxes, Cylinder, Extent, Units, bits, levels_of};
+use crate::photons::beams::{Entry, kd_order};
+use crate::photons::tree::{Boxes, Cylinder, Extent, Units, levels_of};
 use glam::DVec3;
 
 /// Parts of a side, at most: eight pieces a plane on average, then, whatever the sides are.
@@ -121,20 +121,7 @@ impl PlaneTree {
             self.pieces.iter().for_each(ask);
             return;
         };
-        let (mut touched, mut parents) = (vec![0u32], Vec::new());
-        for (height, level) in self.levels.iter().enumerate().rev() {
-            std::mem::swap(&mut touched, &mut parents);
-            touched.clear();
-            for &node in &parents {
-                let first = node as usize * BLOCK;
-                let inside = bits(line.touched(&level[node as usize])).map(|lane| first + lane);
-                if height > 0 {
-                    touched.extend(inside.map(|child| child as u32));
-                } else {
-                    inside.for_each(|place| ask(&self.pieces[place]));
-                }
-            }
-        }
+        line.each_touched(&self.levels, |place| ask(&self.pieces[place]));
     }
 
     /// Number of planes.

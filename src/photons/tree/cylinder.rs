@@ -1,8 +1,9 @@
 //! A stretch of a ray with a radius about it, as boxes are asked about it.
 
-use super::block::Row;
+use super::block::{BLOCK, Row};
 use super::boxes::Boxes;
 use super::units::Units;
+use super::within::bits;
 use crate::math::{Interval, Ray};
 use wide::f32x8;
 
@@ -53,8 +54,26 @@ impl Cylinder {
         f32x8::splat(self.radius * self.radius)
     }
 
+    /// Visits the place of every box of the lowest level, finest first in `levels`, that the cylinder touches with all above it.
+    pub(in crate::photons) fn each_touched(&self, levels: &[Vec<Boxes>], mut visit: impl FnMut(usize)) {
+        let (mut touched, mut parents) = (vec![0u32], Vec::new());
+        for (height, level) in levels.iter().enumerate().rev() {
+            std::mem::swap(&mut touched, &mut parents);
+            touched.clear();
+            for &node in &parents {
+                let first = node as usize * BLOCK;
+                let inside = bits(self.touched(&level[node as usize])).map(|lane| first + lane);
+                if height > 0 {
+                    touched.extend(inside.map(|child| child as u32));
+                } else {
+                    inside.for_each(&mut visit);
+                }
+            }
+        }
+    }
+
     /// The boxes that the ray meets if they are widened by the radius on all sides, a bit each.
-    pub(in crate::photons) fn touched(&self, boxes: &Boxes) -> u32 {
+    pub(super) fn touched(&self, boxes: &Boxes) -> u32 {
         let row = |[lower, upper]: &[Row; 2]| {
             let mut start = f32x8::splat(self.span[0]);
             let mut end = f32x8::splat(self.span[1]);
