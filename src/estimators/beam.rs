@@ -1,7 +1,7 @@
 //! Beams across a ray, and at a place: what a medium scatters towards the near end of a ray, or the fluence, from all flights that come
 //! near.
 
-use super::boundary::{Boundary, Surroundings};
+use super::boundary::{Beside, Boundary, Surroundings};
 use super::{Directional, Estimate, Kernel, RayEstimate};
 use crate::Spectrum;
 use crate::faults::{Fault, planted};
@@ -71,9 +71,10 @@ impl BeamEstimator {
     ) -> RayEstimate {
         let (radius, phase) = (self.radius.get(), medium.phase());
         let (mut sum, mut found, mut rejected) = (Spectrum::ZERO, 0, 0);
+        let beside = Beside::new(boundary, ray, span, BEYOND * radius);
         let is_known = map.near(ray, span, radius, |beam, crossing| {
             let share = match beam.medium as usize == number {
-                true => self.share(boundary, ray, crossing),
+                true => self.share((boundary, &beside), ray, crossing),
                 false => None,
             };
             let Some(share) = share else {
@@ -147,20 +148,22 @@ impl BeamEstimator {
     }
 
     /// What a beam is divided by; none if a body hides it from the ray.
-    fn share(&self, boundary: &Boundary<'_>, ray: &Ray, crossing: &Crossing) -> Option<f64> {
-        let radius = self.radius.get();
-        let foot = ray.at(crossing.along_ray);
-        let is_whole = boundary.medium.is_none_or(|medium| medium.room(foot) >= radius);
-        if boundary.is_clear() && (is_whole || !self.is_clipped) {
+    fn share(
+        &self,
+        (boundary, beside): (&Boundary<'_>, &Beside<'_>),
+        ray: &Ray,
+        crossing: &Crossing,
+    ) -> Option<f64> {
+        let (radius, along) = (self.radius.get(), crossing.along_ray);
+        if boundary.is_clear() && !self.is_clipped || beside.is_clear(along, radius) {
             return Some(1.0);
         }
         let seen = crossing.offset.abs();
-        let reach = if self.is_clipped { radius } else { seen };
-        let about = Surroundings::new(boundary, foot, foot, BEYOND * reach);
-        if !about.sees(foot + crossing.normal * crossing.offset) {
+        let about = beside.at(along, BEYOND * if self.is_clipped { radius } else { seen });
+        if !about.sees(ray.at(along) + crossing.normal * crossing.offset) {
             return None;
         }
-        if !self.is_clipped || (about.is_clear(radius) && is_whole) {
+        if !self.is_clipped || (about.is_clear(radius) && beside.is_whole(along, radius)) {
             return Some(1.0);
         }
         Some(about.line_share(self.kernel, crossing.normal, radius, seen))

@@ -1,6 +1,6 @@
 //! Points along a ray: what a medium scatters towards the near end of a ray, from all photons about the ray at once.
 
-use super::boundary::{Boundary, Surroundings};
+use super::boundary::{Beside, Boundary};
 use super::{Directional, Kernel};
 use crate::Spectrum;
 use crate::math::{Interval, Positive, Ray, cosine_pair};
@@ -69,8 +69,10 @@ impl RayEstimator {
     ) -> RayEstimate {
         let (radius, phase) = (self.radius.get(), medium.phase());
         let (mut sum, mut found, mut rejected) = (Spectrum::ZERO, 0, 0);
+        let beside = Beside::new(boundary, ray, span, BEYOND * radius);
         let is_known = map.along(ray, span, radius, |photon, foot, squared| {
-            let Some(share) = self.share(map, boundary, photon.position, (ray, foot), squared) else {
+            let Some(share) = self.share(map, (boundary, &beside), photon.position, (ray, foot), squared)
+            else {
                 rejected += 1;
                 return;
             };
@@ -90,23 +92,21 @@ impl RayEstimator {
     fn share(
         &self,
         map: &PhotonMap,
-        boundary: &Boundary<'_>,
+        (boundary, beside): (&Boundary<'_>, &Beside<'_>),
         photon: DVec3,
         (ray, foot): (&Ray, f64),
         squared: f64,
     ) -> Option<f64> {
         let radius = self.radius.get();
-        let foot = ray.at(foot);
-        let is_whole = boundary.medium.is_none_or(|medium| medium.room(foot) >= radius);
-        if boundary.is_clear() && (is_whole || !self.is_clipped) {
+        if boundary.is_clear() && !self.is_clipped || boundary.is_only && beside.is_clear(foot, radius) {
             return Some(1.0);
         }
         let reach = if self.is_clipped { radius } else { squared.sqrt() };
-        let about = Surroundings::new(boundary, foot, foot, BEYOND * reach);
+        let about = beside.at(foot, BEYOND * reach);
         if !about.keeps(photon) {
             return None;
         }
-        if !self.is_clipped || (about.is_clear(radius) && is_whole) {
+        if !self.is_clipped || (about.is_clear(radius) && beside.is_whole(foot, radius)) {
             return Some(1.0);
         }
         Some(about.disc_share(self.kernel, ray.dir, radius, map.run(), squared.sqrt()))

@@ -111,6 +111,23 @@ impl Shape {
         }
     }
 
+    /// The planes of all faces, seen from a point inside; none for a shape that is not bounded by planes alone.
+    pub fn faces_about(&self, p: DVec3) -> Option<Vec<Front>> {
+        let face = |normal: DVec3, distance: f64| Front { normal, distance };
+        match self {
+            Shape::Slab(s) => {
+                let bottom = face(DVec3::NEG_Z, s.face(Face::Bottom) - p.z);
+                Some(vec![face(DVec3::Z, p.z - s.top()), bottom])
+            }
+            Shape::Cuboid(c) => {
+                let (low, high) = (p - c.min(), c.max() - p);
+                let pair = |i: usize| [face(DVec3::AXES[i], low[i]), face(-DVec3::AXES[i], high[i])];
+                Some((0..3).flat_map(pair).collect())
+            }
+            Shape::Sphere(_) | Shape::Rectangle(_) | Shape::Mesh(_) | Shape::Revolution(_) => None,
+        }
+    }
+
     /// Whether the surface parts a ball about a point as the whole plane of its front does.
     pub fn parts_ball(&self, p: DVec3, radius: f64) -> bool {
         match self {
@@ -176,6 +193,10 @@ impl Shape {
         match self {
             Shape::Cuboid(c) => Some((c.min(), c.max())),
             Shape::Mesh(m) => Some(m.bounds()),
+            Shape::Rectangle(r) => {
+                let [a, b, c, d] = r.corners();
+                Some((a.min(b).min(c.min(d)), a.max(b).max(c.max(d))))
+            }
             _ => self.bounds().map(|(center, radius)| {
                 let reach = DVec3::splat(radius);
                 (center - reach, center + reach)

@@ -6,12 +6,14 @@
 //! Efficiency is 1/(mean squared error x processor seconds), over pixels and channels. Of path tracers the error is the
 //! spread of independent rounds; that their means are right is tested beside it, on the mean radiance of the picture,
 //! against converged values of an independent renderer. Of the photon mapper (`-- maps`) it is the error against the mean
-//! of all path-traced rounds, split into the spread between maps and the rest, its bias.
+//! of all path-traced rounds, split into the spread between maps and the rest, its bias. `-- lines` reads the volume map in
+//! balls along each ray, about it and by beams.
 //!
 //! The peer renders the same scene if there is a Python that knows it: `python3 -m venv VENV &&
 //! VENV/bin/pip install mitsuba numpy`, then `TURBID_PYTHON=VENV/bin/python` before the command. Its just-in-time
 //! compiled variant runs too if `DRJIT_LIBLLVM_PATH` names an LLVM library that works with it.
 
+mod lines;
 mod maps;
 mod peer;
 mod scenes;
@@ -47,6 +49,9 @@ fn main() -> Result<()> {
     let words: Vec<String> = std::env::args().skip(1).filter(|word| !word.starts_with('-')).collect();
     let (numbers, wanted): (Vec<_>, Vec<_>) = words.into_iter().partition(|word| word.parse::<u64>().is_ok());
     let rounds_wanted = numbers.first().and_then(|n| n.parse().ok()).unwrap_or(ROUNDS as u64).max(2);
+    if wanted.iter().any(|word| word == "lines") {
+        return lines::compare(&mut std::io::stdout().lock(), &scenes::load("iso")?, &scenes::camera()?);
+    }
     let is_wanted = |name: &str| wanted.is_empty() || wanted.iter().any(|word| name.contains(word));
     let mut out = std::io::stdout().lock();
     let mut peers = Vec::new();

@@ -18,6 +18,7 @@
 //! stay where only the medium's own faces are in the ball.
 
 mod accepted;
+mod beside;
 mod images;
 mod moments;
 mod rejection;
@@ -32,6 +33,7 @@ pub use surfaces::Boundary;
 pub use treatment::Treatment;
 
 pub(super) use accepted::accepted;
+pub(super) use beside::Beside;
 pub(super) use rejection::PhotonFilter;
 pub(super) use treatment::Gathered;
 pub(super) use visible::Surroundings;

@@ -14,7 +14,7 @@ pub struct Boundary<'a> {
     /// Surfaces that may part the medium.
     pub(super) bodies: &'a [Shape],
     /// Whether every photon is of this medium.
-    pub(super) is_only: bool,
+    pub(in crate::estimators) is_only: bool,
 }
 
 impl Boundary<'static> {

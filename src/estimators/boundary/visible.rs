@@ -6,12 +6,13 @@
 
 use super::surfaces::Boundary;
 use crate::estimators::Kernel;
+use crate::estimators::disc_share::share_before;
 use crate::geometry::{Front, Shape};
 use crate::math::{Frame, Interval, Ray, sin_cos, warp};
 use crate::photons::PhotonTree;
 use crate::photons::tree::Neighbors;
 use crate::rng::{Purpose, Stream};
-use glam::DVec3;
+use glam::{DVec2, DVec3};
 use std::f64::consts::TAU;
 use std::sync::LazyLock;
 
@@ -72,13 +73,24 @@ impl<'a> Surroundings<'a> {
     /// What is nearer to a point than `reach`; `eye` is the point, or next to it on the side from which a body is seen that
     /// the point lies on.
     pub fn new(boundary: &'a Boundary<'_>, point: DVec3, eye: DVec3, reach: f64) -> Self {
+        let shapes = (boundary.bodies.iter(), boundary.later.iter());
+        Self::among(boundary, shapes, (point, eye), reach)
+    }
+
+    /// The same where only these bodies and regions of the boundary can be that near.
+    pub fn among(
+        boundary: &'a Boundary<'_>,
+        (bodies, later): (impl Iterator<Item = &'a Shape>, impl Iterator<Item = &'a Shape>),
+        (point, eye): (DVec3, DVec3),
+        reach: f64,
+    ) -> Self {
         let near = |shape: &'a Shape| {
             let distance = shape.distance(point, reach);
             (distance < reach).then_some((distance, shape))
         };
         let body = |(distance, shape): (f64, &'a Shape)| Body { shape, distance, front: shape.front(eye) };
-        let bodies: Vec<Body<'a>> = boundary.bodies.iter().filter_map(near).map(body).collect();
-        let mut later: Vec<(f64, &'a Shape)> = boundary.later.iter().filter_map(near).collect();
+        let bodies: Vec<Body<'a>> = bodies.filter_map(near).map(body).collect();
+        let mut later: Vec<(f64, &'a Shape)> = later.filter_map(near).collect();
         // One that holds the point holds the medium too.
         later.retain(|(_, shape)| !shape.contains(point));
         let distances = bodies.iter().map(|body| body.distance).chain(later.iter().map(|(d, _)| *d));
@@ -197,17 +209,45 @@ impl<'a> Surroundings<'a> {
         Stream::new(x, Purpose::Resampling, y, z ^ salt.rotate_left(32))
     }
 
-    /// The part of the disc's kernel across an axis in which photons are kept, as [`Surroundings::share`] of the ball's: by rays in
-    /// directions at equal angles, turned at random by the place and `salt`. At least what one direction brings that sees as far as
-    /// `seen` \[L\], where there is a photon.
+    /// The planes before which everything is kept that is within a radius; none where more than planes parts it.
+    fn planes(&self, radius: f64) -> Option<Vec<Front>> {
+        if !self.later.is_empty() {
+            return None;
+        }
+        let mut planes = match self.medium.filter(|_| self.room < radius) {
+            Some(medium) => medium.faces_about(self.eye)?,
+            None => Vec::new(),
+        };
+        let parts = |body: &&Body| body.shape.parts_ball(self.eye, radius);
+        planes.extend(self.bodies.iter().filter(parts).filter_map(|body| body.front));
+        let is_behind =
+            |body: &Body, front: &Front| body.shape.is_behind(self.eye, front, ON_PLANE * front.distance);
+        let is_in = |body: &Body| planes.iter().any(|front| is_behind(body, front));
+        let is_told = self.bodies.iter().all(|body| body.distance >= radius || is_in(body));
+        is_told.then_some(planes)
+    }
+
+    /// The part of the disc's kernel across an axis in which photons are kept, as [`Surroundings::share`] of the ball's: exact where only
+    /// planes part it, and else by rays in directions at equal angles, turned at random by the place and `salt`. At least what one
+    /// direction brings that sees as far as `seen` \[L\], where there is a photon.
     pub fn disc_share(&self, kernel: Kernel, axis: DVec3, radius: f64, salt: u64, seen: f64) -> f64 {
-        let (axes, turn) = (Frame::new(axis), self.stream(salt).unit());
+        let axes = Frame::new(axis);
+        let least = (kernel.within_disc(seen / radius) / f64::from(ACROSS)).max(f64::MIN_POSITIVE);
+        if let Some(planes) = self.planes(radius) {
+            let line = |front: &Front| {
+                let across = -DVec2::new(front.normal.dot(axes.x), front.normal.dot(axes.y));
+                let away = front.distance / (radius * across.length());
+                (away < 1.0).then(|| (across.normalize(), away.max(0.0)))
+            };
+            let lines: Vec<(DVec2, f64)> = planes.iter().filter_map(line).collect();
+            return share_before(kernel, &lines).max(least);
+        }
+        let turn = self.stream(salt).unit();
         let one = |n: u32| {
             let (sin, cos) = sin_cos(TAU * (f64::from(n) + turn) / f64::from(ACROSS));
             self.along(&|u| kernel.within_disc(u), (axes.x * cos + axes.y * sin).normalize(), radius)
         };
-        let sum: f64 = (0..ACROSS).map(one).sum();
-        (sum.max(kernel.within_disc(seen / radius)) / f64::from(ACROSS)).max(f64::MIN_POSITIVE)
+        ((0..ACROSS).map(one).sum::<f64>() / f64::from(ACROSS)).max(least)
     }
 
     /// The part of the line's kernel along a unit vector, both ways, in which beams are kept: exact. At least as far as `seen` \[L\] to

@@ -3,6 +3,7 @@
 mod beam;
 mod crossing;
 mod flight;
+mod group;
 mod map;
 mod order;
 mod tree;
@@ -16,5 +17,5 @@ pub(in crate::photons) use order::{Entry, kd_order};
 pub use tree::BeamTree;
 
 /// Most memory that a beam takes on its way into a map \[bytes\]: 80 as a record, twice while records are brought together, and, of
-/// three pieces at most, 8 each, 24 of a box, as much packed, 16 of what sorts them and 8 in order.
-pub const PEAK_BYTES: f64 = 400.0;
+/// three pieces at most, 8 each, 28 in groups, 16 of what sorts them, 8 in order, and their part of boxes.
+pub const PEAK_BYTES: f64 = 360.0;

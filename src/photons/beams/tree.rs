@@ -2,11 +2,15 @@
 
 use super::Beam;
 use super::crossing::Crossing;
+use super::group::{GROUP, Group, Stretch};
 use super::order::{Entry, kd_order};
 use crate::error::{Error, Result};
 use crate::math::{Interval, Ray};
-use crate::photons::tree::{Boxes, Cylinder, Extent, Units, levels_of};
+use crate::photons::tree::{Boxes, Cylinder, Extent, Units, bits, levels_of};
 use glam::DVec3;
+
+/// Pieces are longer by this in single precision, in the tree's units, so that those that follow each other leave no gap.
+const MARGIN: f32 = 1e-6;
 
 /// Pieces of a beam, at most.
 const MOST_PIECES: f64 = 65_535.0;
@@ -37,8 +41,9 @@ impl Piece {
 pub struct BeamTree {
     units: Units,
     beams: Vec<Beam>,
-    /// In kd order, sixteen a box of the lowest level.
+    /// In kd order, sixteen a group, each of which has a box of the lowest level.
     pieces: Vec<Piece>,
+    groups: Vec<Group>,
     levels: Vec<Vec<Boxes>>,
 }
 
@@ -85,15 +90,31 @@ impl BeamTree {
             })
             .collect();
         kd_order(&mut entries);
-        let pieces: Vec<Piece> = entries.into_iter().map(|entry| pieces[entry.index as usize]).collect();
-        let extents = pieces.iter().map(|piece| {
+        let mut pieces: Vec<Piece> = entries.into_iter().map(|entry| pieces[entry.index as usize]).collect();
+        let beams = in_order_of(&mut pieces, beams);
+        let stretches = |pieces: &[Piece]| {
+            let stretch = |piece: &Piece| {
+                let beam = &beams[piece.beam as usize];
+                let (from, to) = piece.span(beam.length);
+                let middle = units.relative(beam.at(0.5 * (from + to))).as_vec3();
+                Stretch {
+                    middle,
+                    dir: beam.dir.as_vec3(),
+                    half: units.shrink(0.5 * (to - from)) as f32 + MARGIN,
+                }
+            };
+            Group::new(&pieces.iter().map(stretch).collect::<Vec<_>>())
+        };
+        let groups = pieces.chunks(GROUP).map(stretches).collect();
+        let extent = |piece: &Piece| {
             let beam = &beams[piece.beam as usize];
             let (from, to) = piece.span(beam.length);
             let [a, b] = [from, to].map(|t| units.relative(beam.at(t)).as_vec3());
             Extent { lower: a.min(b).to_array(), upper: a.max(b).to_array() }
-        });
+        };
+        let extents = pieces.chunks(GROUP).filter_map(|group| group.iter().map(extent).reduce(Extent::union));
         let levels = levels_of(extents.collect());
-        Ok(BeamTree { units, beams, pieces, levels })
+        Ok(BeamTree { units, beams, pieces, groups, levels })
     }
 
     /// Visits every beam whose line comes nearest to a ray within `radius` \[L\] of it, both nearest points on the beam and in `span`,
@@ -108,7 +129,13 @@ impl BeamTree {
                 visit(beam, &crossing);
             }
         };
-        self.each_piece(ray, span, radius, &mut ask);
+        let Some(cylinder) = Cylinder::new(&self.units, ray, span, radius) else {
+            self.pieces.iter().for_each(ask);
+            return;
+        };
+        cylinder.each_touched(&self.levels, |group| {
+            bits(self.groups[group].near(&cylinder)).for_each(|lane| ask(&self.pieces[group * GROUP + lane]));
+        });
     }
 
     /// Visits every beam whose point nearest to a place lies on it, its start included and its end not, and within `radius` \[L\] of the
@@ -129,13 +156,15 @@ impl BeamTree {
         self.each_piece(&Ray::new(place, DVec3::Z), span, radius, &mut ask);
     }
 
-    /// Asks every piece whose box comes within `radius` of a stretch of a ray.
+    /// Asks every piece whose group's box comes within `radius` of a stretch of a ray.
     fn each_piece(&self, ray: &Ray, span: Interval, radius: f64, ask: &mut impl FnMut(&Piece)) {
         let Some(cylinder) = Cylinder::new(&self.units, ray, span, radius) else {
             self.pieces.iter().for_each(ask);
             return;
         };
-        cylinder.each_touched(&self.levels, |place| ask(&self.pieces[place]));
+        cylinder.each_touched(&self.levels, |group| {
+            self.pieces[group * GROUP..].iter().take(GROUP).for_each(&mut *ask);
+        });
     }
 
     /// Number of beams.
@@ -148,7 +177,7 @@ impl BeamTree {
         self.beams.is_empty()
     }
 
-    /// Every beam, in the order in which they came.
+    /// Every beam, neighbours near each other.
     pub fn beams(&self) -> &[Beam] {
         &self.beams
     }
@@ -156,8 +185,27 @@ impl BeamTree {
     /// Memory that the beams and the boxes above them occupy \[bytes\].
     pub fn bytes(&self) -> usize {
         let boxes: usize = self.levels.iter().map(Vec::len).sum();
-        size_of_val(&self.beams[..]) + size_of_val(&self.pieces[..]) + boxes * size_of::<Boxes>()
+        size_of_val(&self.beams[..])
+            + size_of_val(&self.pieces[..])
+            + size_of_val(&self.groups[..])
+            + boxes * size_of::<Boxes>()
     }
+}
+
+/// The beams in the order in which pieces of them come first, which are numbered anew.
+fn in_order_of(pieces: &mut [Piece], beams: Vec<Beam>) -> Vec<Beam> {
+    const NONE: u32 = u32::MAX;
+    let mut numbers = vec![NONE; beams.len()];
+    let mut ordered = Vec::with_capacity(beams.len());
+    for piece in pieces {
+        let number = &mut numbers[piece.beam as usize];
+        if *number == NONE {
+            *number = ordered.len() as u32;
+            ordered.push(beams[piece.beam as usize]);
+        }
+        piece.beam = *number;
+    }
+    ordered
 }
 
 /// Pieces of about half the mean length: three a beam at most, on average.
@@ -225,7 +273,13 @@ mod tests {
             // In two parts, the first of them empty now and then.
             let cut = beams.len() / 3;
             let tree = BeamTree::new(vec![beams[..cut].to_vec(), beams[cut..].to_vec()]).unwrap();
-            assert_eq!((tree.len(), tree.beams()), (count, &beams[..]));
+            let keys = |beams: &[Beam]| {
+                let mut keys: Vec<_> =
+                    beams.iter().map(|beam| beam.start.to_array().map(f64::to_bits)).collect();
+                keys.sort_unstable();
+                keys
+            };
+            assert_eq!(keys(tree.beams()), keys(&beams));
             for which in 0..8 {
                 let dir = match which {
                     0..=2 => axis,

@@ -9,4 +9,4 @@ pub(super) const BLOCK: usize = 16;
 pub const ROW: usize = 8;
 
 /// Eight vectors, an array a coordinate.
-pub(super) type Row = [f32x8; 3];
+pub(in crate::photons) type Row = [f32x8; 3];

@@ -86,7 +86,7 @@ impl Extent {
         extent
     }
 
-    fn union(self, other: Extent) -> Extent {
+    pub(in crate::photons) fn union(self, other: Extent) -> Extent {
         let mut union = self;
         for axis in 0..3 {
             if other.lower[axis] < union.lower[axis] {

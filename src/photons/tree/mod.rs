@@ -15,13 +15,14 @@ mod within;
 use super::{Flags, Photon};
 use crate::error::{Error, Result};
 use crate::transport::{NoProgress, Progress};
-use block::{BLOCK, Row};
+use block::BLOCK;
 use glam::{DVec3, Vec3};
 use order::Entry;
 use records::Records;
 use wide::f32x8;
 
 pub use block::ROW;
+pub(in crate::photons) use block::Row;
 pub(in crate::photons) use boxes::{Boxes, Extent, levels_of};
 pub(in crate::photons) use cylinder::Cylinder;
 pub use facing::Tangent;

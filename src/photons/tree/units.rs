@@ -67,7 +67,7 @@ impl Units {
     }
 
     /// A length in units.
-    pub(super) fn shrink(&self, length: f64) -> f64 {
+    pub(in crate::photons) fn shrink(&self, length: f64) -> f64 {
         length * self.scale
     }
 
