@@ -17,7 +17,7 @@ const RULE: [(f64, f64); 8] = [
     (0.980_144_928_248_768_1, 0.050_614_268_145_188_13),
 ];
 
-/// Sines of angles below this are of parallel lines.
+/// Sines of angles below this are of parallel lines; those no farther apart than this coincide.
 const PARALLEL: f64 = 1e-12;
 
 /// The integral over a rectangle of the kernel of radius r about a point of its plane: 1 if the disc is whole, a quarter in
@@ -59,7 +59,7 @@ pub fn share_before(kernel: Kernel, lines: &[(DVec2, f64)]) -> f64 {
             let room = away_of_other - away * cos;
             if sin.abs() < PARALLEL {
                 // Of two that coincide the first one counts.
-                if room < 0.0 || (room == 0.0 && cos > 0.0 && other < index) {
+                if room < -PARALLEL || (room < PARALLEL && cos > 0.0 && other < index) {
                     return 0.0;
                 }
             } else if sin > 0.0 {
