@@ -1,13 +1,14 @@
 //! Beams across a ray, and at a place: what a medium scatters towards the near end of a ray, or the fluence, from all flights that come
 //! near.
 
-use super::boundary::{Boundary, Surroundings};
+use super::boundary::{Boundary, Surroundings, body_part};
+use super::chord::along_chord;
 use super::{Directional, Estimate, Kernel, RayEstimate};
 use crate::Spectrum;
 use crate::faults::{Fault, planted};
 use crate::math::{Interval, Positive, Ray, cosine_pair};
 use crate::medium::Medium;
-use crate::photons::beams::{BeamMap, Crossing};
+use crate::photons::beams::{Beam, BeamMap, Crossing};
 use glam::DVec3;
 
 /// How light that a medium scatters along a ray is estimated from photons' flights: beams across rays, blurred in one dimension.
@@ -144,6 +145,133 @@ impl BeamEstimator {
         let scale = self.kernel.disc_peak() / (radius * radius) / map.emitted() as f64;
         let value = if is_known { sum * scale } else { Spectrum::grey(f64::NAN) };
         Estimate { value, radius, found, underfull: false, coincident: 0, rejected }
+    }
+
+    /// The same as [`BeamEstimator::radiance`] with a blur in two dimensions, across the ray:
+    ///
+    /// L = sum P/N int sigma_s p tau(t) T(s(t)) K_r(rho(t)) dt
+    ///
+    /// along each beam, tau what passes of it, rho its distance from the ray and s its foot there, K_r the kernel on the disc. Its mean is
+    /// that of points along rays ([`super::RayEstimator`]), and its variance falls with r. No term has a singularity: beams that are
+    /// parallel to the ray count as others do.
+    ///
+    /// # Returns
+    /// as [`BeamEstimator::radiance`]
+    ///
+    /// # Limits
+    /// the variance is r^-1 times 8/(3 pi) in place of pi/4 of the blur in one dimension (uniform kernel, isotropic light, long beams)
+    pub fn radiance_in_2d(
+        &self,
+        map: &BeamMap,
+        (ray, span): (&Ray, Interval),
+        (number, medium): (usize, &Medium),
+        boundary: &Boundary<'_>,
+        passed: impl Fn(f64) -> Spectrum,
+    ) -> RayEstimate {
+        let (radius, phase) = (self.radius.get(), medium.phase());
+        let rate = 2.0 * medium.highest_sigma_t().max();
+        let (mut sum, mut found, mut rejected) = (Spectrum::ZERO, 0, 0);
+        let is_known = map.chords_near(ray, span, radius, |beam, chord, here| {
+            let (one_minus_mu, one_plus_mu) = cosine_pair(beam.dir, -ray.dir);
+            let value = phase.value(one_minus_mu, one_plus_mu);
+            let mut counts = false;
+            if beam.medium as usize == number {
+                along_chord(chord, rate, |t, weight| {
+                    let way = (beam.start - here.origin) + beam.dir * t;
+                    let s = way.dot(ray.dir);
+                    let away = way - ray.dir * s;
+                    let Some(share) = self.disc_share(boundary, (ray, s), away, beam) else { return };
+                    counts = true;
+                    let u2 = (away.length_squared() / (radius * radius)).min(1.0);
+                    let place = ray.at(s) + away;
+                    let sigma_s = medium.sigma_t(place) * medium.albedo(place);
+                    let weight = weight * self.kernel.profile(u2) * value / share;
+                    sum += beam.power_at(t, medium) * sigma_s * passed(s) * weight;
+                });
+            }
+            found += usize::from(chord.is_first && counts);
+            rejected += usize::from(chord.is_first && !counts);
+        });
+        let scale = self.kernel.disc_peak() / (radius * radius) / map.emitted() as f64;
+        let value = if is_known { sum * scale } else { Spectrum::grey(f64::NAN) };
+        RayEstimate { value, found, rejected }
+    }
+
+    /// The same as [`BeamEstimator::fluence`] with a blur in three dimensions: the sum of P/N int tau(t) K_r(d(t)) dt along each beam, d
+    /// its distance from the place, K_r the kernel on the ball. Its mean is that of points in balls, and its variance falls with r^2.
+    ///
+    /// # Returns
+    /// as [`BeamEstimator::fluence`]
+    ///
+    /// # Source
+    /// Jarosz, Nowrouzezahrai, Sadeghi and Jensen 2011, beams at a point with a blur in three dimensions
+    pub fn fluence_in_3d(
+        &self,
+        map: &BeamMap,
+        place: DVec3,
+        (number, medium): (usize, &Medium),
+        boundary: &Boundary<'_>,
+    ) -> Estimate {
+        let radius = self.radius.get();
+        let ending = boundary.medium.filter(|medium| medium.room(place) < radius);
+        let is_free = boundary.is_clear() && (ending.is_none() || !self.is_clipped);
+        let about = (!is_free).then(|| Surroundings::new(boundary, place, place, BEYOND * radius));
+        let share = match &about {
+            Some(about) if self.is_clipped && !about.is_clear(radius) => {
+                about.share(self.kernel, radius, map.emitted())
+            }
+            _ => match ending.filter(|_| self.is_clipped) {
+                Some(medium) => body_part(self.kernel, medium, place, radius),
+                None => 1.0,
+            },
+        };
+        let rate = medium.highest_sigma_t().max();
+        let (mut sum, mut found, mut rejected) = (Spectrum::ZERO, 0, 0);
+        let is_known = map.chords_about(place, radius, |beam, chord, here| {
+            let mut counts = false;
+            if beam.medium as usize == number {
+                along_chord(chord, rate, |t, weight| {
+                    let way = (beam.start - here) + beam.dir * t;
+                    if about.as_ref().is_some_and(|about| !about.sees(place + way)) {
+                        return;
+                    }
+                    counts = true;
+                    let u2 = (way.length_squared() / (radius * radius)).min(1.0);
+                    sum += beam.power_at(t, medium) * (weight * self.kernel.profile(u2));
+                });
+            }
+            found += usize::from(chord.is_first && counts);
+            rejected += usize::from(chord.is_first && !counts);
+        });
+        let scale = self.kernel.peak() / (radius * radius * radius) / share / map.emitted() as f64;
+        let value = if is_known { sum * scale } else { Spectrum::grey(f64::NAN) };
+        Estimate { value, radius, found, underfull: false, coincident: 0, rejected }
+    }
+
+    /// What a place of a beam, `away` from its foot on the ray, is divided by; none if a body hides it from there.
+    fn disc_share(
+        &self,
+        boundary: &Boundary<'_>,
+        (ray, foot): (&Ray, f64),
+        away: DVec3,
+        beam: &Beam,
+    ) -> Option<f64> {
+        let radius = self.radius.get();
+        let foot = ray.at(foot);
+        let is_whole = boundary.medium.is_none_or(|medium| medium.room(foot) >= radius);
+        if boundary.is_clear() && (is_whole || !self.is_clipped) {
+            return Some(1.0);
+        }
+        let seen = away.length();
+        let reach = if self.is_clipped { radius } else { seen };
+        let about = Surroundings::new(boundary, foot, foot, BEYOND * reach);
+        if !about.sees(foot + away) {
+            return None;
+        }
+        if !self.is_clipped || (about.is_clear(radius) && is_whole) {
+            return Some(1.0);
+        }
+        Some(about.disc_share(self.kernel, ray.dir, radius, beam.start.x.to_bits(), seen))
     }
 
     /// What a beam is divided by; none if a body hides it from the ray.

@@ -15,7 +15,9 @@
 //! does near the surface of a medium, or a wall ([`boundary`]); it states the bias and variance that it expects.
 
 mod beam;
+mod blur;
 pub mod boundary;
+mod chord;
 mod directional;
 mod disc_share;
 mod estimator;
@@ -28,6 +30,7 @@ mod schedule;
 mod surface;
 
 pub use beam::BeamEstimator;
+pub use blur::{BeamBlur, BeamLength};
 pub use directional::{CosinePairs, Directional};
 pub use disc_share::{cap_share, disc_share};
 pub use estimator::Estimator;

@@ -3,6 +3,7 @@
 mod accepted_surface;
 mod advise;
 mod along_rays;
+mod beam_blur;
 mod beams;
 mod boundary;
 mod estimators;

@@ -32,6 +32,7 @@ pub use surfaces::Boundary;
 pub use treatment::Treatment;
 
 pub(super) use accepted::accepted;
+pub(super) use moments::body_part;
 pub(super) use rejection::PhotonFilter;
 pub(super) use treatment::Gathered;
 pub(super) use visible::Surroundings;

@@ -1,6 +1,7 @@
 //! The tree over beams: pieces of them in kd order, boxes sixteen wide above them.
 
 use super::Beam;
+use super::chord::Chord;
 use super::crossing::Crossing;
 use super::order::{Entry, kd_order};
 use crate::error::{Error, Result};
@@ -124,9 +125,39 @@ impl BeamTree {
                 visit(beam, along, squared);
             }
         };
+        self.each_piece_about(place, radius, &mut ask);
+    }
+
+    /// Visits the parts of every beam that are at most `radius` \[L\] from a ray, with their feet in `span`: a beam that is cut into
+    /// pieces is told of in several parts, which together are all of it that is so near, each once.
+    pub fn chords_near(&self, ray: &Ray, span: Interval, radius: f64, mut visit: impl FnMut(&Beam, &Chord)) {
+        let mut ask = |piece: &Piece| {
+            let beam = &self.beams[piece.beam as usize];
+            let chord = Chord::near_ray(ray, span, radius, (beam.start, beam.dir));
+            if let Some(part) = chord.and_then(|chord| chord.on(piece.span(beam.length), beam.length)) {
+                visit(beam, &part);
+            }
+        };
+        self.each_piece(ray, span, radius, &mut ask);
+    }
+
+    /// The same about a place.
+    pub fn chords_about(&self, place: DVec3, radius: f64, mut visit: impl FnMut(&Beam, &Chord)) {
+        let mut ask = |piece: &Piece| {
+            let beam = &self.beams[piece.beam as usize];
+            let chord = Chord::near_place(place, radius, (beam.start, beam.dir));
+            if let Some(part) = chord.and_then(|chord| chord.on(piece.span(beam.length), beam.length)) {
+                visit(beam, &part);
+            }
+        };
+        self.each_piece_about(place, radius, &mut ask);
+    }
+
+    /// Asks every piece whose box comes within `radius` of a place.
+    fn each_piece_about(&self, place: DVec3, radius: f64, ask: &mut impl FnMut(&Piece)) {
         // The ball about the place lies in it.
         let span = Interval { start: -radius, end: radius };
-        self.each_piece(&Ray::new(place, DVec3::Z), span, radius, &mut ask);
+        self.each_piece(&Ray::new(place, DVec3::Z), span, radius, ask);
     }
 
     /// Asks every piece whose box comes within `radius` of a stretch of a ray.

@@ -72,14 +72,28 @@ impl Cylinder {
         }
     }
 
+    /// The square of another radius, at most its own \[units^2\], in all lanes.
+    pub(super) fn squared_reach(&self, radius: f32) -> f32x8 {
+        let radius = radius + MARGIN as f32;
+        f32x8::splat(radius * radius)
+    }
+
     /// The boxes that the ray meets if they are widened by the radius on all sides, a bit each.
     pub(super) fn touched(&self, boxes: &Boxes) -> u32 {
-        let row = |[lower, upper]: &[Row; 2]| {
+        self.met(boxes, &[f32x8::splat(self.radius); 2])
+    }
+
+    /// The same with a radius for each box, at most its own \[units\].
+    pub(super) fn touched_within(&self, boxes: &Boxes, radii: &[f32x8; 2]) -> u32 {
+        self.met(boxes, &radii.map(|radius| radius + f32x8::splat(MARGIN as f32)))
+    }
+
+    fn met(&self, boxes: &Boxes, radii: &[f32x8; 2]) -> u32 {
+        let row = |[lower, upper]: &[Row; 2], radius: f32x8| {
             let mut start = f32x8::splat(self.span[0]);
             let mut end = f32x8::splat(self.span[1]);
             for axis in 0..3 {
                 let at = f32x8::splat(self.origin[axis]);
-                let radius = f32x8::splat(self.radius);
                 let inverse = f32x8::splat(self.inverse[axis]);
                 let low = (lower[axis] - radius - at) * inverse;
                 let high = (upper[axis] + radius - at) * inverse;
@@ -88,7 +102,7 @@ impl Cylinder {
             }
             start.simd_le(end).to_bitmask()
         };
-        row(&boxes.rows[0]) | row(&boxes.rows[1]) << 8
+        row(&boxes.rows[0], radii[0]) | row(&boxes.rows[1], radii[1]) << 8
     }
 
     /// Squared distances of eight positions from the ray.
