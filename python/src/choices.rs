@@ -2,7 +2,7 @@
 
 use crate::error::refuse;
 use pyo3::PyResult;
-use turbid::estimators::{BeamBlur, BeamLength, Kernel};
+use turbid::estimators::{BeamBlur, BeamLength, Kernel, RayEnds};
 use turbid::estimators::boundary::Treatment;
 use turbid::integrators::StepRule;
 
@@ -39,6 +39,14 @@ pub fn beam_blur(word: &str) -> PyResult<BeamBlur> {
 /// As [`chosen`]
 pub fn beam_length(word: &str) -> PyResult<BeamLength> {
     chosen("beam_length", word, &BeamLength::ALL.map(|length| (length.name(), length)))
+}
+
+/// Where rays that are read at once end.
+///
+/// # Errors
+/// As [`chosen`]
+pub fn ray_ends(word: &str) -> PyResult<RayEnds> {
+    chosen("ray_ends", word, &RayEnds::ALL.map(|ends| (ends.name(), ends)))
 }
 
 /// What estimates do where a medium ends.

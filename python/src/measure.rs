@@ -1,7 +1,7 @@
 //! The sensors of a scene, by paths, bidirectional paths, photons or light tracing.
 
 use crate::arrays::doubles;
-use crate::choices::{beam_blur, beam_length, chosen, kernel, treatment};
+use crate::choices::{beam_blur, beam_length, chosen, kernel, ray_ends, treatment};
 use crate::error::refuse;
 use crate::scene::Given;
 use crate::work::{self, Watch};
@@ -11,7 +11,7 @@ use pyo3::types::{PyDict, PyList};
 use std::num::NonZeroUsize;
 use std::path::PathBuf;
 use turbid::estimators::boundary::Treatment;
-use turbid::estimators::{BeamBlur, BeamLength, Estimator, Gather, Kernel};
+use turbid::estimators::{BeamBlur, BeamLength, RayEnds, Estimator, Gather, Kernel};
 use turbid::math::Positive;
 use turbid::memory;
 use turbid::photons::Ledger;
@@ -48,6 +48,7 @@ struct Options {
     beam_fluence: bool,
     beam_blur: String,
     beam_length: String,
+    ray_ends: String,
     planes: bool,
     progressive: bool,
     kernel: String,
@@ -66,6 +67,7 @@ struct Request {
     treatment: Treatment,
     blur: BeamBlur,
     length: BeamLength,
+    ends: RayEnds,
 }
 
 /// What was measured, and what else there is to say.
@@ -157,6 +159,9 @@ impl Request {
                 "beam_fluence, beam_blur and beam_length say how beams are read; allowed: with beam_radius"
             ));
         }
+        if self.ends == RayEnds::Own && (ray_radius, beam_radius) == (None, None) {
+            return Err(anyhow!("ray_ends is own, of rays that are read at once; allowed: with ray_radius or beam_radius"));
+        }
         if beam_fluence && progressive {
             return Err(anyhow!("beam_fluence shrinks at another rate than rays; allowed: without progressive"));
         }
@@ -181,6 +186,7 @@ impl Request {
                 beam_blur: blur,
                 beam_length: length,
                 has_beam_fluence: beam_fluence,
+                ray_ends: self.ends,
                 has_planes: planes,
                 is_progressive: progressive,
                 ..estimator
@@ -306,7 +312,8 @@ pub fn measure<'py>(
     }
     let (kernel, treatment) = (kernel("kernel", &options.kernel)?, treatment(&options.boundary)?);
     let (blur, length) = (beam_blur(&options.beam_blur)?, beam_length(&options.beam_length)?);
-    let request = Request { with, options, kernel, treatment, blur, length };
+    let ends = ray_ends(&options.ray_ends)?;
+    let request = Request { with, options, kernel, treatment, blur, length, ends };
     let given = Given::read(scene, parameters, folder)?;
     let scene = given.scene()?;
     if scene.sensors().is_empty() {

@@ -82,7 +82,7 @@ _METHODS = {
     "measure": dict.fromkeys(("samples",), (*_PATHS, _BIDIRECTIONAL))
     | dict.fromkeys(("photons",), ("photons", "light"))
     | dict.fromkeys(
-        "maps passes k radius max_radius ray_radius ray_k beam_radius beam_fluence beam_blur beam_length planes progressive kernel boundary".split(), ("photons",)
+        "maps passes k radius max_radius ray_radius ray_k beam_radius beam_fluence beam_blur beam_length ray_ends planes progressive kernel boundary".split(), ("photons",)
     ),
     "render": dict.fromkeys(
         "global_ caustic volume importance k caustic_k volume_k radius max_radius ray_radius ray_k beam_radius beam_blur kernel caustic_kernel "
@@ -208,6 +208,7 @@ def measure(
     beam_fluence: bool = False,
     beam_blur: str = "1d",
     beam_length: str = "sampled",
+    ray_ends: str = "cut",
     planes: bool = False,
     progressive: bool = False,
     kernel: str = "uniform",
@@ -241,6 +242,7 @@ def measure(
     beam_fluence : read sensors of fluence from these beams too, in place of from photons in balls
     beam_blur : dimensions that beams are blurred in: 1d, 2d, or, at places, 3d
     beam_length : sampled, or whole: to the end of homogeneous media, with what passes
+    ray_ends : cut at faces, or own: each photon or beam ends where the parallel ray leaves the medium; in one homogeneous region
     planes : read light that is scattered twice and more from planes of flights, without blur; light that is scattered once by
         ``beam_radius``, for sensors of radiance
     progressive : shrink these radii, those of the first map, from map to map, so that the mean over maps converges to the light itself
@@ -277,6 +279,7 @@ def measure(
         beam_fluence=bool(beam_fluence),
         beam_blur=beam_blur,
         beam_length=beam_length,
+        ray_ends=ray_ends,
         planes=bool(planes),
         progressive=bool(progressive),
         kernel=kernel,

@@ -3,7 +3,7 @@
 
 use super::boundary::{Boundary, Surroundings, body_part};
 use super::chord::along_chord;
-use super::{Directional, Estimate, Kernel, RayEstimate};
+use super::{BeamBlur, Directional, Estimate, Kernel, OwnEnds, RayEstimate};
 use crate::Spectrum;
 use crate::faults::{Fault, planted};
 use crate::math::{Interval, Positive, Ray, cosine_pair};
@@ -70,6 +70,17 @@ impl BeamEstimator {
         boundary: &Boundary<'_>,
         passed: impl Fn(f64) -> Spectrum,
     ) -> RayEstimate {
+        self.across((map, ray, span), (number, medium), boundary, |_, foot| passed(foot))
+    }
+
+    /// The sum over beams that cross near the ray; `passed` by the place and its foot.
+    fn across(
+        &self,
+        (map, ray, span): (&BeamMap, &Ray, Interval),
+        (number, medium): (usize, &Medium),
+        boundary: &Boundary<'_>,
+        passed: impl Fn(DVec3, f64) -> Spectrum,
+    ) -> RayEstimate {
         let (radius, phase) = (self.radius.get(), medium.phase());
         let (mut sum, mut found, mut rejected) = (Spectrum::ZERO, 0, 0);
         let is_known = map.near(ray, span, radius, |beam, crossing| {
@@ -90,7 +101,7 @@ impl BeamEstimator {
             let place = ray.at(crossing.along_ray) + crossing.normal * crossing.offset;
             let sigma_s = medium.sigma_t(place) * medium.albedo(place);
             let power = beam.power_at(crossing.along_beam, medium);
-            sum += power * sigma_s * passed(crossing.along_ray) * weight;
+            sum += power * sigma_s * passed(place, crossing.along_ray) * weight;
         });
         let peak = self.kernel.line_peak() * if planted(Fault::LineHalved) { 2.0 } else { 1.0 };
         let scale = peak / radius / map.emitted() as f64;
@@ -168,6 +179,17 @@ impl BeamEstimator {
         boundary: &Boundary<'_>,
         passed: impl Fn(f64) -> Spectrum,
     ) -> RayEstimate {
+        self.within((map, ray, span), (number, medium), boundary, |_, foot| passed(foot))
+    }
+
+    /// The sum over the chords of beams near the ray; `passed` by the place and its foot.
+    fn within(
+        &self,
+        (map, ray, span): (&BeamMap, &Ray, Interval),
+        (number, medium): (usize, &Medium),
+        boundary: &Boundary<'_>,
+        passed: impl Fn(DVec3, f64) -> Spectrum,
+    ) -> RayEstimate {
         let (radius, phase) = (self.radius.get(), medium.phase());
         let rate = 2.0 * medium.highest_sigma_t().max();
         let (mut sum, mut found, mut rejected) = (Spectrum::ZERO, 0, 0);
@@ -186,7 +208,7 @@ impl BeamEstimator {
                     let place = ray.at(s) + away;
                     let sigma_s = medium.sigma_t(place) * medium.albedo(place);
                     let weight = weight * self.kernel.profile(u2) * value / share;
-                    sum += beam.power_at(t, medium) * sigma_s * passed(s) * weight;
+                    sum += beam.power_at(t, medium) * sigma_s * passed(place, s) * weight;
                 });
             }
             found += usize::from(chord.is_first && counts);
@@ -195,6 +217,25 @@ impl BeamEstimator {
         let scale = self.kernel.disc_peak() / (radius * radius) / map.emitted() as f64;
         let value = if is_known { sum * scale } else { Spectrum::grey(f64::NAN) };
         RayEstimate { value, found, rejected }
+    }
+
+    /// The same where each beam ends for itself ([`OwnEnds`]), blurred in one dimension or in two: the radiance at the ray's origin blurred
+    /// across the ray, of which nothing is lost at faces, whatever the radius, and so not clipped. Not a number of a blur in three.
+    pub fn radiance_of_own_ends(
+        &self,
+        map: &BeamMap,
+        (ray, ends): (&Ray, &OwnEnds<'_>),
+        of: (usize, &Medium),
+        blur: BeamBlur,
+    ) -> RayEstimate {
+        let whole = BeamEstimator { is_clipped: false, ..*self };
+        let way = (map, ray, ends.span());
+        let passed = |place: DVec3, foot: f64| ends.passed(place, foot);
+        match blur {
+            BeamBlur::OneD => whole.across(way, of, &Boundary::UNKNOWN, passed),
+            BeamBlur::TwoD => whole.within(way, of, &Boundary::UNKNOWN, passed),
+            BeamBlur::ThreeD => RayEstimate { value: Spectrum::grey(f64::NAN), found: 0, rejected: 0 },
+        }
     }
 
     /// The same as [`BeamEstimator::fluence`] with a blur in three dimensions: the sum of P/N int tau(t) K_r(d(t)) dt along each beam, d

@@ -4,7 +4,7 @@ use super::boundary::{Boundary, Gathered, PhotonFilter, Rejection, Surroundings,
 use super::point::{ball_sum, for_each_photon, in_scattered_sum};
 use super::{
     BallSum, BeamBlur, BeamEstimator, BeamLength, Codimension, Directional, Estimate, Gather, Kernel,
-    NeighborCount, PlaneEstimator, RayEstimator,
+    NeighborCount, PlaneEstimator, RayEnds, RayEstimator,
 };
 use crate::Spectrum;
 use crate::math::{Positive, cosine_pair};
@@ -37,6 +37,8 @@ pub struct Estimator {
     pub beam_length: BeamLength,
     /// Whether fluence is read from beams too, in place of from photons in balls.
     pub has_beam_fluence: bool,
+    /// Where stretches of rays that are read at once end.
+    pub ray_ends: RayEnds,
     /// Whether light that media scatter twice and more is read from planes of photons' flights ([`PlaneEstimator`]), and from beams only
     /// what is scattered once.
     pub has_planes: bool,
@@ -64,6 +66,7 @@ impl Estimator {
             beam_blur: BeamBlur::default(),
             beam_length: BeamLength::default(),
             has_beam_fluence: false,
+            ray_ends: RayEnds::default(),
             has_planes: false,
             is_progressive: false,
         }
@@ -110,6 +113,11 @@ impl Estimator {
     /// The same with beams of such a length.
     pub fn of_length(self, beam_length: BeamLength) -> Self {
         Estimator { beam_length, ..self }
+    }
+
+    /// The same with stretches of rays that end so.
+    pub fn ending(self, ray_ends: RayEnds) -> Self {
+        Estimator { ray_ends, ..self }
     }
 
     /// The same with fluence at points read from the beams that pass it too, where there are some ([`Estimator::along_beams`]): in W/L^2,
@@ -223,6 +231,7 @@ impl Estimator {
             beam_blur,
             beam_length,
             has_beam_fluence,
+            ray_ends,
             has_planes,
             is_progressive,
         } = self;
@@ -255,6 +264,9 @@ impl Estimator {
         }
         if let (Some((_, along)), None) = (&of_rays, alone) {
             name += &format!(", {along}");
+        }
+        if *ray_ends != RayEnds::default() {
+            name += ", own ends";
         }
         if *has_beam_fluence {
             name += ", fluence by beams";

@@ -1,7 +1,7 @@
 //! Points along a ray: what a medium scatters towards the near end of a ray, from all photons about the ray at once.
 
 use super::boundary::{Boundary, Surroundings};
-use super::{Directional, Kernel};
+use super::{Directional, Kernel, OwnEnds};
 use crate::Spectrum;
 use crate::math::{Interval, Positive, Ray, cosine_pair};
 use crate::medium::Medium;
@@ -70,9 +70,15 @@ impl RayEstimator {
         passed: impl Fn(f64) -> Spectrum,
     ) -> RayEstimate {
         let radius = self.radius.get();
-        self.summed(map, ray, (medium, boundary), passed, |visit| {
-            map.along(ray, span, radius, |photon, foot, squared| visit(photon, radius, foot, squared))
-        })
+        self.summed(
+            map,
+            ray,
+            (medium, boundary),
+            |_, foot| passed(foot),
+            |visit| {
+                map.along(ray, span, radius, |photon, foot, squared| visit(photon, radius, foot, squared))
+            },
+        )
     }
 
     /// The same with a radius for each photon in place of one for all, none of them above it: with r(y) that of a photon at y its mean
@@ -92,7 +98,33 @@ impl RayEstimator {
         boundary: &Boundary<'_>,
         passed: impl Fn(f64) -> Spectrum,
     ) -> RayEstimate {
-        self.summed(map, ray, (medium, boundary), passed, |visit| map.along_by_radii(ray, span, radii, visit))
+        self.summed(
+            map,
+            ray,
+            (medium, boundary),
+            |_, foot| passed(foot),
+            |visit| map.along_by_radii(ray, span, radii, visit),
+        )
+    }
+
+    /// The same where each photon ends for itself ([`OwnEnds`]): the radiance at the ray's origin blurred across the ray, of which nothing
+    /// is lost at faces, whatever the radius, and so not clipped. With one radius for all, or with those of photons.
+    pub fn radiance_of_own_ends(
+        &self,
+        (map, radii): (&PhotonMap, Option<&Radii>),
+        (ray, ends): (&Ray, &OwnEnds<'_>),
+        medium: &Medium,
+    ) -> RayEstimate {
+        let whole = RayEstimator { is_clipped: false, ..*self };
+        let of = (medium, &Boundary::UNKNOWN);
+        let radius = self.radius.get();
+        let passed = |place: DVec3, foot: f64| ends.passed(place, foot);
+        whole.summed(map, ray, of, passed, |visit| match radii {
+            Some(radii) => map.along_by_radii(ray, ends.span(), radii, visit),
+            None => map.along(ray, ends.span(), radius, |photon, foot, squared| {
+                visit(photon, radius, foot, squared)
+            }),
+        })
     }
 
     /// The sum over the photons that `each` tells, with their radius, their foot along the ray and their squared distance from it.
@@ -101,7 +133,7 @@ impl RayEstimator {
         map: &PhotonMap,
         ray: &Ray,
         (medium, boundary): (&Medium, &Boundary<'_>),
-        passed: impl Fn(f64) -> Spectrum,
+        passed: impl Fn(DVec3, f64) -> Spectrum,
         each: impl FnOnce(&mut dyn FnMut(Photon, f64, f64, f64)) -> bool,
     ) -> RayEstimate {
         let phase = medium.phase();
@@ -118,7 +150,10 @@ impl RayEstimator {
             let weight =
                 phase.value(one_minus_mu, one_plus_mu) * self.kernel.profile((squared / area).min(1.0));
             let albedo = medium.albedo(photon.position);
-            sum += Spectrum(photon.power.as_dvec3()) * albedo * passed(foot) * (weight / (area * share));
+            sum += Spectrum(photon.power.as_dvec3())
+                * albedo
+                * passed(photon.position, foot)
+                * (weight / (area * share));
         });
         let scale = self.kernel.disc_peak() / map.emitted() as f64;
         let value = if is_known { sum * scale } else { Spectrum::grey(f64::NAN) };

@@ -53,6 +53,8 @@ pub struct RunInfo {
     pub beam_length: Option<String>,
     /// Whether fluence is read from them too.
     pub beam_fluence: Option<bool>,
+    /// Where rays that are read at once end, if not cut at faces.
+    pub ray_ends: Option<String>,
     /// Whether light scattered twice and more is read from planes of flights.
     pub planes: Option<bool>,
     /// Whether these radii are those of the first map, and shrink from map to map.
@@ -103,7 +105,7 @@ struct Document<'a, T> {
 
 const COLUMNS: [&str; 6] = ["sensor", "quantity", "unit", "mean", "std_error", "n"];
 
-const RUN_COLUMNS: [&str; 22] = [
+const RUN_COLUMNS: [&str; 23] = [
     "with",
     "seed",
     "orders",
@@ -119,6 +121,7 @@ const RUN_COLUMNS: [&str; 22] = [
     "beam_blur",
     "beam_length",
     "beam_fluence",
+    "ray_ends",
     "planes",
     "progressive",
     "kernel",

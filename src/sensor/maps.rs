@@ -2,7 +2,7 @@
 
 use super::PhotonForecast;
 use super::photons::{
-    OrderMaps, PhotonReadings, RadianceMaps, Surroundings, check, check_beams_of, check_blur, check_orders,
+    OrderMaps, PhotonReadings, RadianceMaps, Surroundings, check, check_beams_of, check_orders, check_rays,
     forecast_of, map_orders, maps, margin_of, max_order, read_bins,
 };
 use crate::Spectrum;
@@ -126,7 +126,7 @@ impl<'a> SensorMaps<'a> {
         if cap > self.settings.reach {
             return Err(Error::out_of_range("the reach of an estimator", cap, "at most that of the maps"));
         }
-        check_blur(self.scene.sensors(), estimator)?;
+        check_rays(self.scene, self.scene.sensors(), estimator)?;
         let (sensors, mut booked) = (self.scene.sensors(), PhotonReadings::new());
         let around = Surroundings::of(self.scene, estimator);
         let radii = self.maps.radii(sensors, estimator);

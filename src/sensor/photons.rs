@@ -5,7 +5,9 @@ use super::{Measurement, Source, measurements, room, row_bytes};
 use crate::Spectrum;
 use crate::error::{Error, Result};
 use crate::estimators::boundary::{Boundary, Treatment};
-use crate::estimators::{BeamBlur, BeamLength, Estimate, Estimator, Gather, PlaneEstimator};
+use crate::estimators::{
+    BeamBlur, BeamLength, Estimate, Estimator, Gather, OwnEnds, PlaneEstimator, RayEnds,
+};
 use crate::geometry::Shape;
 use crate::integrators::mapper::{MediumExtent, medium_extents, scene_size};
 use crate::integrators::{March, StepRule, along};
@@ -661,7 +663,7 @@ fn prepared_of<'a>(
     if wanted.asks_beams(&sensors) {
         check_beams_of(scene, wanted)?;
     }
-    check_blur(&sensors, &settings.estimator)?;
+    check_rays(scene, &sensors, &settings.estimator)?;
     check_orders(scene, &sensors, wanted)?;
     let margin = margin_of(scene, &sensors, settings.estimator.reach())?;
     Ok((sensors, margin))
@@ -675,19 +677,40 @@ pub(super) fn check_beams_of(scene: &Scene, wanted: RadianceMaps) -> Result<()> 
     if wanted.whole_beams { check_whole_beams(scene) } else { check_beams(scene) }
 }
 
-/// Whether beams are blurred as sensors of radiance can be read.
+/// Whether beams are blurred, and stretches end, as sensors of radiance can be read.
 ///
 /// # Errors
-/// `Error::Scene` for a ball about a ray
-pub(super) fn check_blur(sensors: &[Sensor], estimator: &Estimator) -> Result<()> {
-    let is_of_balls = estimator.beam_radius.is_some() && estimator.beam_blur == BeamBlur::ThreeD;
-    match sensors.iter().find(|sensor| is_of_balls && is_radiance(sensor)) {
-        Some(sensor) => Err(Error::Scene(format!(
-            "sensor {}: a blur of beams in three dimensions is about places, and rays have none; allowed: 1d, 2d",
-            sensor.name
-        ))),
-        None => Ok(()),
+/// `Error::Scene` for a ball about a ray, and for ends of their own beside planes, or where there is more than one homogeneous region
+pub(super) fn check_rays(scene: &Scene, sensors: &[Sensor], estimator: &Estimator) -> Result<()> {
+    let Some(sensor) = sensors.iter().find(|sensor| is_radiance(sensor)) else { return Ok(()) };
+    let refuse = |why: &str| Err(Error::Scene(format!("sensor {}: {why}", sensor.name)));
+    if estimator.beam_radius.is_some() && estimator.beam_blur == BeamBlur::ThreeD {
+        return refuse(
+            "a blur of beams in three dimensions is about places, and rays have none; allowed: 1d, 2d",
+        );
     }
+    if estimator.ray_ends == RayEnds::Cut {
+        return Ok(());
+    }
+    if estimator.has_planes || !estimator.reads_rays() {
+        return refuse(
+            "ends of their own are those of photons and beams about rays; allowed: a ray radius or a beam radius, no planes",
+        );
+    }
+    let is_alone = scene.regions().len() == 1 && scene.media().len() == 1 && !scene.plan().has_surfaces;
+    let has_lamps = scene.lights().iter().any(|light| light.body().is_some());
+    let is_layer = scene.regions().iter().all(|region| matches!(region.shape, Shape::Slab(_)));
+    if !is_alone
+        || has_lamps
+        || !scene.medium(0).is_homogeneous()
+        || (scene.periodic_cell().is_some() && !is_layer)
+    {
+        return refuse(
+            "rays end for each photon or beam in one homogeneous region with nothing in it, in a periodic cell a slab; allowed \
+             otherwise: ends that are cut",
+        );
+    }
+    Ok(())
 }
 
 /// Whether planes can be stored and answer sensors of radiance, where they are asked to.
@@ -1005,6 +1028,11 @@ fn radiance(
             sum += value
         });
     }
+    if estimator.ray_ends == RayEnds::Own {
+        sum += radiance_of_own_ends(scene, map, ray, estimator);
+        result.gathers += 1;
+        return sum;
+    }
     for segment in scene.segments(ray, end, interior).iter() {
         let medium = scene.medium(segment.medium);
         let boundary = around.boundary(segment.medium);
@@ -1060,6 +1088,24 @@ fn radiance(
         }
     }
     sum
+}
+
+/// What the one medium of a scene scatters along a ray, each photon or beam ending for itself.
+fn radiance_of_own_ends(scene: &Scene, map: AskedMap<'_>, ray: &Ray, estimator: &Estimator) -> Spectrum {
+    let (Some(region), Medium::Homogeneous(even)) = (scene.regions().first(), scene.medium(0)) else {
+        return Spectrum::grey(f64::NAN);
+    };
+    let medium = scene.medium(0);
+    let ends = |radius: Positive| OwnEnds::new(even, &region.shape, ray, radius.get());
+    let value = match (map, estimator.of_rays(), estimator.of_beams()) {
+        (AskedMap::Points(map, radii), Some(of_rays), _) => ends(of_rays.radius)
+            .map(|ends| of_rays.radiance_of_own_ends((map, radii), (ray, &ends), medium).value),
+        (AskedMap::Beams(map), _, Some(of_beams)) => ends(of_beams.radius).map(|ends| {
+            of_beams.radiance_of_own_ends(map, (ray, &ends), (0, medium), estimator.beam_blur).value
+        }),
+        _ => Some(Spectrum::grey(f64::NAN)),
+    };
+    value.unwrap_or(Spectrum::ZERO)
 }
 
 /// The part of a span that is seen: as far as the thinnest channel reaches, where that is known.

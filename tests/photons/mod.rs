@@ -17,6 +17,7 @@ mod parted;
 mod passes;
 mod planes;
 mod progressive;
+mod ray_ends;
 mod sensor_maps;
 mod statistics;
 mod surface_estimates;

@@ -12,7 +12,7 @@ use anyhow::{Context, bail};
 use clap::{ArgMatches, ValueEnum};
 use std::num::NonZeroUsize;
 use std::path::PathBuf;
-use turbid::estimators::{BeamBlur, BeamLength, Estimator, Gather, Kernel};
+use turbid::estimators::{BeamBlur, BeamLength, Estimator, Gather, Kernel, RayEnds};
 use turbid::geometry::Voxels;
 use turbid::math::Positive;
 use turbid::output::{
@@ -116,6 +116,10 @@ pub struct Measure {
     /// How far beams go [default: sampled].
     #[arg(long, value_enum, requires = "beam_radius")]
     beam_length: Option<LengthName>,
+    /// Where rays that are read at once end: own loses nothing at faces, and blurs the picture alone. Only for one homogeneous region
+    /// with nothing in it [default: cut].
+    #[arg(long, value_enum, conflicts_with = "planes")]
+    ray_ends: Option<EndsName>,
     /// Read light that is scattered twice and more from planes of photons' flights, without blur or bias: each flight and a scattering on it
     /// sweep out a parallelogram. Light that is scattered once comes from beams: --beam-radius, or --orders 2.. to leave it out. The
     /// variance is infinite in diffuse light, and errors between maps are too small by what few maps have not met. Only for homogeneous
@@ -176,6 +180,14 @@ enum LengthName {
     /// To the end of each medium, with what passes, while the photon goes on from where it collided: less noise a photon, and more
     /// beams about every ray. Not for media that vary.
     Whole,
+}
+
+#[derive(Clone, Copy, ValueEnum)]
+enum EndsName {
+    /// Square across the ray at the faces of the medium, which --boundary makes up for.
+    Cut,
+    /// For each photon or beam where the parallel ray through it leaves the medium.
+    Own,
 }
 
 /// Orders on the command line.
@@ -273,6 +285,7 @@ impl Measure {
                 beam_blur,
                 beam_length,
                 has_beam_fluence,
+                ray_ends,
                 has_planes,
                 is_progressive,
             } = self.settings(scene, 1, 1)?.estimator;
@@ -281,6 +294,7 @@ impl Measure {
                 Gather::Radius(radius) => run.radius = Some(radius.get()),
                 _ => (run.k, run.max_radius) = (gather.k(), Some(gather.cap())),
             }
+            run.ray_ends = (ray_ends != RayEnds::Cut).then(|| ray_ends.name().to_string());
             run.progressive = is_progressive.then_some(true);
             run.ray_radius = ray_radius.map(Positive::get);
             run.ray_k = ray_k.map(NonZeroUsize::get);
@@ -409,6 +423,16 @@ impl Measure {
             Some(LengthName::Whole) => BeamLength::Whole,
             Some(LengthName::Sampled) | None => BeamLength::Sampled,
         };
+        let ray_ends = match self.ray_ends {
+            Some(EndsName::Own) => RayEnds::Own,
+            Some(EndsName::Cut) | None => RayEnds::Cut,
+        };
+        if ray_ends == RayEnds::Own && (ray_radius, beam_radius) == (None, None) {
+            bail!(
+                "--ray-ends is own, of rays that are read at once; allowed: with --ray-radius or --beam-radius"
+            );
+        }
+        let estimator = Estimator { ray_ends, ..estimator };
         let estimator =
             Estimator { beam_blur, beam_length, has_beam_fluence: self.beam_fluence, ..estimator };
         let estimator = Estimator { ray_radius, ray_k, beam_radius, has_planes, is_progressive, ..estimator };

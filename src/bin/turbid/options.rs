@@ -40,6 +40,7 @@ pub const MEASURE: Table = &[
     ("beam_fluence", READ),
     ("beam_blur", READ),
     ("beam_length", READ),
+    ("ray_ends", READ),
     ("planes", READ),
     ("progressive", READ),
     ("boundary", READ),

@@ -145,7 +145,7 @@ pub struct Mapper<'a> {
     maps: &'a Maps,
     settings: &'a Settings,
     /// The radii of the volume map's photons about rays, where they are to have one each.
-    radii: Option<Radii>,
+    radii: Option<Box<Radii>>,
     /// Bodies that part photons from a point of a medium, where a rule of the laboratory asks for them.
     walls: Vec<Shape>,
     /// Where surfaces end or are covered, if estimates are to be divided by what is left of their discs.
@@ -167,7 +167,7 @@ impl<'a> Mapper<'a> {
         let extents = medium_extents(scene);
         let Estimator { ray_radius, ray_k, .. } = settings.volume;
         let radii = maps.volume.as_ref().zip(ray_radius.zip(ray_k));
-        let radii = radii.map(|(map, (most, k))| map.radii(k.get(), most.get()));
+        let radii = radii.map(|(map, (most, k))| Box::new(map.radii(k.get(), most.get())));
         Mapper { scene, maps, settings, radii, walls, bodies, extents, size: scene_size(scene) }
     }
 
