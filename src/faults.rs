@@ -124,6 +124,8 @@ pub enum Fault {
     LineHalved,
     /// The radii of all progressive sequences shrink as those of balls do.
     ScheduleOfSpace,
+    /// The radius of a photon is that of its sqrt(k) nearest, extrapolated.
+    RadiiExtrapolated,
     /// Planes stand on flights that collided only.
     PlanesCollided,
     /// Nothing stands in the way from a plane's first leg to the ray, and no medium is too deep.
@@ -140,7 +142,7 @@ pub enum Fault {
 
 impl Fault {
     /// Every fault, in the order of their definition.
-    pub const ALL: [Fault; 64] = [
+    pub const ALL: [Fault; 65] = [
         Fault::AlbedoTwice,
         Fault::AlbedoNever,
         Fault::CosineTwice,
@@ -199,6 +201,7 @@ impl Fault {
         Fault::BeamsArrive,
         Fault::LineHalved,
         Fault::ScheduleOfSpace,
+        Fault::RadiiExtrapolated,
         Fault::PlanesCollided,
         Fault::PlanesUnseen,
         Fault::DeterminantClamped,

@@ -2,7 +2,7 @@
 
 use crate::error::refuse;
 use pyo3::PyResult;
-use turbid::estimators::Kernel;
+use turbid::estimators::{BeamBlur, BeamLength, Kernel, RayEnds};
 use turbid::estimators::boundary::Treatment;
 use turbid::integrators::StepRule;
 
@@ -23,6 +23,30 @@ pub fn chosen<T: Copy>(argument: &str, word: &str, choices: &[(&str, T)]) -> PyR
 /// As [`chosen`]
 pub fn kernel(argument: &str, word: &str) -> PyResult<Kernel> {
     chosen(argument, word, &Kernel::ALL.map(|kernel| (kernel.name(), kernel)))
+}
+
+/// In how many dimensions beams are blurred.
+///
+/// # Errors
+/// As [`chosen`]
+pub fn beam_blur(word: &str) -> PyResult<BeamBlur> {
+    chosen("beam_blur", word, &BeamBlur::ALL.map(|blur| (blur.name(), blur)))
+}
+
+/// How far beams go.
+///
+/// # Errors
+/// As [`chosen`]
+pub fn beam_length(word: &str) -> PyResult<BeamLength> {
+    chosen("beam_length", word, &BeamLength::ALL.map(|length| (length.name(), length)))
+}
+
+/// Where rays that are read at once end.
+///
+/// # Errors
+/// As [`chosen`]
+pub fn ray_ends(word: &str) -> PyResult<RayEnds> {
+    chosen("ray_ends", word, &RayEnds::ALL.map(|ends| (ends.name(), ends)))
 }
 
 /// What estimates do where a medium ends.

@@ -1,16 +1,17 @@
 //! The sensors of a scene, by paths, bidirectional paths, photons or light tracing.
 
 use crate::arrays::doubles;
-use crate::choices::{chosen, kernel, treatment};
+use crate::choices::{beam_blur, beam_length, chosen, kernel, ray_ends, treatment};
 use crate::error::refuse;
 use crate::scene::Given;
 use crate::work::{self, Watch};
 use anyhow::{Context, anyhow};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList};
+use std::num::NonZeroUsize;
 use std::path::PathBuf;
 use turbid::estimators::boundary::Treatment;
-use turbid::estimators::{Estimator, Gather, Kernel};
+use turbid::estimators::{BeamBlur, BeamLength, RayEnds, Estimator, Gather, Kernel};
 use turbid::math::Positive;
 use turbid::memory;
 use turbid::photons::Ledger;
@@ -42,7 +43,12 @@ struct Options {
     radius: Option<f64>,
     max_radius: Option<f64>,
     ray_radius: Option<f64>,
+    ray_k: Option<usize>,
     beam_radius: Option<f64>,
+    beam_fluence: bool,
+    beam_blur: String,
+    beam_length: String,
+    ray_ends: String,
     planes: bool,
     progressive: bool,
     kernel: String,
@@ -59,6 +65,9 @@ struct Request {
     options: Options,
     kernel: Kernel,
     treatment: Treatment,
+    blur: BeamBlur,
+    length: BeamLength,
+    ends: RayEnds,
 }
 
 /// What was measured, and what else there is to say.
@@ -115,7 +124,9 @@ impl Request {
             radius,
             max_radius,
             ray_radius,
+            ray_k,
             beam_radius,
+            beam_fluence,
             planes,
             progressive,
             seed,
@@ -136,6 +147,24 @@ impl Request {
         if ray_radius.is_some() && beam_radius.is_some() {
             return Err(anyhow!("ray_radius reads points and beam_radius beams; allowed: one of them"));
         }
+        if ray_k.is_some() && (ray_radius.is_none() || progressive) {
+            return Err(anyhow!(
+                "ray_k is the k nearest photons within ray_radius; allowed: with it, and not progressive, where radii shrink"
+            ));
+        }
+        let (blur, length) = (self.blur, self.length);
+        let is_told = beam_fluence || blur != BeamBlur::default() || length != BeamLength::default();
+        if is_told && beam_radius.is_none() {
+            return Err(anyhow!(
+                "beam_fluence, beam_blur and beam_length say how beams are read; allowed: with beam_radius"
+            ));
+        }
+        if self.ends == RayEnds::Own && (ray_radius, beam_radius) == (None, None) {
+            return Err(anyhow!("ray_ends is own, of rays that are read at once; allowed: with ray_radius or beam_radius"));
+        }
+        if beam_fluence && progressive {
+            return Err(anyhow!("beam_fluence shrinks at another rate than rays; allowed: without progressive"));
+        }
         if planes && ray_radius.is_some() {
             return Err(anyhow!("ray_radius reads points and planes flights; allowed: one of them"));
         }
@@ -152,7 +181,12 @@ impl Request {
             orders: self.orders(),
             estimator: Estimator {
                 ray_radius,
+                ray_k: ray_k.and_then(NonZeroUsize::new),
                 beam_radius,
+                beam_blur: blur,
+                beam_length: length,
+                has_beam_fluence: beam_fluence,
+                ray_ends: self.ends,
                 has_planes: planes,
                 is_progressive: progressive,
                 ..estimator
@@ -277,7 +311,9 @@ pub fn measure<'py>(
         return Err(refuse("weight_windows splits paths; allowed: with_ = 'paths'"));
     }
     let (kernel, treatment) = (kernel("kernel", &options.kernel)?, treatment(&options.boundary)?);
-    let request = Request { with, options, kernel, treatment };
+    let (blur, length) = (beam_blur(&options.beam_blur)?, beam_length(&options.beam_length)?);
+    let ends = ray_ends(&options.ray_ends)?;
+    let request = Request { with, options, kernel, treatment, blur, length, ends };
     let given = Given::read(scene, parameters, folder)?;
     let scene = given.scene()?;
     if scene.sensors().is_empty() {

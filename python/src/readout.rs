@@ -1,12 +1,13 @@
 //! How maps are filled and read where nothing else is asked for: the choices of `turbid render`, number by number, so that the
 //! same seed makes the same picture.
 
-use crate::choices::{chosen, kernel, step_rule, treatment};
+use crate::choices::{beam_blur, chosen, kernel, step_rule, treatment};
 use crate::error::refuse;
 use anyhow::{Context, Result, anyhow};
 use pyo3::prelude::*;
+use std::num::NonZeroUsize;
 use turbid::estimators::boundary::Treatment;
-use turbid::estimators::{Estimator, Gather, Kernel};
+use turbid::estimators::{BeamBlur, Estimator, Gather, Kernel};
 use turbid::integrators::mapper::{LEAST_K, Settings, scene_size};
 use turbid::integrators::{Adaptive, StepRule};
 use turbid::math::Positive;
@@ -32,7 +33,9 @@ pub struct Options {
     radius: Option<f64>,
     max_radius: Option<f64>,
     ray_radius: Option<f64>,
+    ray_k: Option<usize>,
     beam_radius: Option<f64>,
+    beam_blur: String,
     kernel: String,
     caustic_kernel: String,
     gather_rays: u32,
@@ -52,6 +55,7 @@ pub struct Readout {
     options: Options,
     kernels: [Kernel; 2],
     treatment: Treatment,
+    blur: BeamBlur,
     rule: StepRule,
     clips_discs: bool,
     /// Photons of the global, the caustic and the volume map.
@@ -87,6 +91,7 @@ impl Options {
         Ok(Readout {
             kernels: [kernel("kernel", &self.kernel)?, kernel("caustic_kernel", &self.caustic_kernel)?],
             treatment: treatment(&self.boundary)?,
+            blur: beam_blur(&self.beam_blur)?,
             rule: step_rule(&self.step_rule)?,
             clips_discs: chosen("edges", &self.edges, &[("none", false), ("clipped", true)])?,
             amounts: [
@@ -156,11 +161,22 @@ impl Readout {
         let ray_radius = self.options.ray_radius;
         settings.volume.ray_radius =
             ray_radius.map(|radius| Positive::new("ray_radius", radius)).transpose()?;
+        if self.options.ray_k.is_some() && ray_radius.is_none() {
+            return Err(anyhow!("ray_k is the k nearest photons within ray_radius; allowed: with it"));
+        }
+        settings.volume.ray_k = self.options.ray_k.and_then(NonZeroUsize::new);
         let beam_radius = self.options.beam_radius;
         settings.volume.beam_radius =
             beam_radius.map(|radius| Positive::new("beam_radius", radius)).transpose()?;
         if ray_radius.is_some() && beam_radius.is_some() {
             return Err(anyhow!("ray_radius reads points and beam_radius beams; allowed: one of them"));
+        }
+        settings.volume.beam_blur = self.blur;
+        if beam_radius.is_none() && settings.volume.beam_blur != BeamBlur::default() {
+            return Err(anyhow!("beam_blur says how beams are read; allowed: with beam_radius"));
+        }
+        if settings.volume.beam_blur == BeamBlur::ThreeD {
+            return Err(anyhow!("beam_blur is 3d, which is about places; allowed of pictures: 1d, 2d"));
         }
         settings.gather_rays = gather_rays.max(1);
         settings.near = near;

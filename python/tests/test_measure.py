@@ -160,6 +160,10 @@ def test_wrong_settings():
     assert told(with_="photons", ray_radius=0).startswith("slab: ray_radius is 0; allowed: ")
     assert told(with_="photons", beam_radius=0).startswith("slab: beam_radius is 0; allowed: ")
     assert told(with_="photons", beam_radius=1, ray_radius=1).endswith("allowed: one of them")
+    assert told(with_="photons", ray_k=5).endswith("allowed: with it, and not progressive, where radii shrink")
+    assert told(with_="photons", ray_radius=1, ray_k=0).startswith("ray_k is 0; allowed: whole numbers from 1")
+    assert told(with_="photons", beam_blur="4d", beam_radius=1) == "beam_blur is '4d'; allowed: 1d, 2d, 3d"
+    assert told(with_="photons", beam_length="whole").endswith("allowed: with beam_radius")
     assert "with radius, ray_radius or beam_radius" in told(with_="photons", progressive=True)
     assert told(with_="paths", radius=1) == "radius says nothing to with_ = 'paths'; allowed: with photons"
     assert told(with_="light", samples=9) == "samples says nothing to with_ = 'light'; allowed: with paths or path or bidirectional"

@@ -82,10 +82,10 @@ _METHODS = {
     "measure": dict.fromkeys(("samples",), (*_PATHS, _BIDIRECTIONAL))
     | dict.fromkeys(("photons",), ("photons", "light"))
     | dict.fromkeys(
-        "maps passes k radius max_radius ray_radius beam_radius planes progressive kernel boundary".split(), ("photons",)
+        "maps passes k radius max_radius ray_radius ray_k beam_radius beam_fluence beam_blur beam_length ray_ends planes progressive kernel boundary".split(), ("photons",)
     ),
     "render": dict.fromkeys(
-        "global_ caustic volume importance k caustic_k volume_k radius max_radius ray_radius beam_radius kernel caustic_kernel "
+        "global_ caustic volume importance k caustic_k volume_k radius max_radius ray_radius ray_k beam_radius beam_blur kernel caustic_kernel "
         "gather_rays near step step_rule adapt jitter boundary edges".split(),
         ("photons",),
     ),
@@ -203,7 +203,12 @@ def measure(
     radius: Optional[float] = None,
     max_radius: Optional[float] = None,
     ray_radius: Optional[float] = None,
+    ray_k: Optional[int] = None,
     beam_radius: Optional[float] = None,
+    beam_fluence: bool = False,
+    beam_blur: str = "1d",
+    beam_length: str = "sampled",
+    ray_ends: str = "cut",
     planes: bool = False,
     progressive: bool = False,
     kernel: str = "uniform",
@@ -232,7 +237,12 @@ def measure(
     radius : radius within which an estimate takes all photons [L], in place of ``k``
     max_radius : the farthest that the k nearest photons are sought [L]; half the cell, or a mean free path
     ray_radius : radius about a whole ray, which is then read at once, for sensors of radiance: the beam radiance estimate [L]
+    ray_k : the radius of each photon about rays is the distance to its ``ray_k``-th nearest other one, at most ``ray_radius``
     beam_radius : the same from photons' flights, stored as beams; in place of ``ray_radius`` [L]
+    beam_fluence : read sensors of fluence from these beams too, in place of from photons in balls
+    beam_blur : dimensions that beams are blurred in: 1d, 2d, or, at places, 3d
+    beam_length : sampled, or whole: to the end of homogeneous media, with what passes
+    ray_ends : cut at faces, or own: each photon or beam ends where the parallel ray leaves the medium; in one homogeneous region
     planes : read light that is scattered twice and more from planes of flights, without blur; light that is scattered once by
         ``beam_radius``, for sensors of radiance
     progressive : shrink these radii, those of the first map, from map to map, so that the mean over maps converges to the light itself
@@ -264,7 +274,12 @@ def measure(
         radius=_optional_real("radius", radius),
         max_radius=_optional_real("max_radius", max_radius),
         ray_radius=_optional_real("ray_radius", ray_radius),
+        ray_k=_optional_count("ray_k", ray_k, 1, 10**9),
         beam_radius=_optional_real("beam_radius", beam_radius),
+        beam_fluence=bool(beam_fluence),
+        beam_blur=beam_blur,
+        beam_length=beam_length,
+        ray_ends=ray_ends,
         planes=bool(planes),
         progressive=bool(progressive),
         kernel=kernel,
@@ -326,7 +341,9 @@ def render(
     radius: Optional[float] = None,
     max_radius: Optional[float] = None,
     ray_radius: Optional[float] = None,
+    ray_k: Optional[int] = None,
     beam_radius: Optional[float] = None,
+    beam_blur: str = "1d",
     kernel: str = "uniform",
     caustic_kernel: str = "cone",
     gather_rays: int = 64,
@@ -358,7 +375,9 @@ def render(
     radius : radius within which an estimate takes all photons [L], in place of ``k``
     max_radius : the farthest that photons are sought [L]; a tenth of the scene
     ray_radius : radius about a whole ray through media, which is then read at once, in place of a march: the beam radiance estimate [L]
+    ray_k : the radius of each photon about rays is the distance to its ``ray_k``-th nearest other one, at most ``ray_radius``
     beam_radius : the same from photons' flights, stored as beams, which ``volume`` then counts; in place of ``ray_radius`` [L]
+    beam_blur : dimensions that beams are blurred in: 1d or 2d
     gather_rays : rays of a final gathering; 0 reads the global map where the eye looks: fast, and blotchy
     near : rays of a final gathering shorter than this are traced on [L]
     step, step_rule, adapt, jitter : the march through media; the longest step is in [L]
@@ -375,7 +394,9 @@ def render(
         radius=_optional_real("radius", radius),
         max_radius=_optional_real("max_radius", max_radius),
         ray_radius=_optional_real("ray_radius", ray_radius),
+        ray_k=_optional_count("ray_k", ray_k, 1, 10**9),
         beam_radius=_optional_real("beam_radius", beam_radius),
+        beam_blur=beam_blur,
         kernel=kernel,
         caustic_kernel=caustic_kernel,
         gather_rays=_count("gather_rays", gather_rays, 0, 1_000_000),

@@ -1,13 +1,14 @@
 //! Beams across a ray, and at a place: what a medium scatters towards the near end of a ray, or the fluence, from all flights that come
 //! near.
 
-use super::boundary::{Beside, Boundary, Surroundings};
-use super::{Directional, Estimate, Kernel, RayEstimate};
+use super::boundary::{Beside, Boundary, Surroundings, body_part};
+use super::chord::along_chord;
+use super::{BeamBlur, Directional, Estimate, Kernel, OwnEnds, RayEstimate};
 use crate::Spectrum;
 use crate::faults::{Fault, planted};
 use crate::math::{Interval, Positive, Ray, cosine_pair};
 use crate::medium::Medium;
-use crate::photons::beams::{BeamMap, Crossing};
+use crate::photons::beams::{Beam, BeamMap, Crossing};
 use glam::DVec3;
 
 /// How light that a medium scatters along a ray is estimated from photons' flights: beams across rays, blurred in one dimension.
@@ -69,6 +70,17 @@ impl BeamEstimator {
         boundary: &Boundary<'_>,
         passed: impl Fn(f64) -> Spectrum,
     ) -> RayEstimate {
+        self.across((map, ray, span), (number, medium), boundary, |_, foot| passed(foot))
+    }
+
+    /// The sum over beams that cross near the ray; `passed` by the place and its foot.
+    fn across(
+        &self,
+        (map, ray, span): (&BeamMap, &Ray, Interval),
+        (number, medium): (usize, &Medium),
+        boundary: &Boundary<'_>,
+        passed: impl Fn(DVec3, f64) -> Spectrum,
+    ) -> RayEstimate {
         let (radius, phase) = (self.radius.get(), medium.phase());
         let (mut sum, mut found, mut rejected) = (Spectrum::ZERO, 0, 0);
         let beside = Beside::new(boundary, ray, span, BEYOND * radius);
@@ -90,7 +102,7 @@ impl BeamEstimator {
             let place = ray.at(crossing.along_ray) + crossing.normal * crossing.offset;
             let sigma_s = medium.sigma_t(place) * medium.albedo(place);
             let power = beam.power_at(crossing.along_beam, medium);
-            sum += power * sigma_s * passed(crossing.along_ray) * weight;
+            sum += power * sigma_s * passed(place, crossing.along_ray) * weight;
         });
         let peak = self.kernel.line_peak() * if planted(Fault::LineHalved) { 2.0 } else { 1.0 };
         let scale = peak / radius / map.emitted() as f64;
@@ -145,6 +157,163 @@ impl BeamEstimator {
         let scale = self.kernel.disc_peak() / (radius * radius) / map.emitted() as f64;
         let value = if is_known { sum * scale } else { Spectrum::grey(f64::NAN) };
         Estimate { value, radius, found, underfull: false, coincident: 0, rejected }
+    }
+
+    /// The same as [`BeamEstimator::radiance`] with a blur in two dimensions, across the ray:
+    ///
+    /// L = sum P/N int sigma_s p tau(t) T(s(t)) K_r(rho(t)) dt
+    ///
+    /// along each beam, tau what passes of it, rho its distance from the ray and s its foot there, K_r the kernel on the disc. Its mean is
+    /// that of points along rays ([`super::RayEstimator`]), and its variance falls with r. No term has a singularity: beams that are
+    /// parallel to the ray count as others do.
+    ///
+    /// # Returns
+    /// as [`BeamEstimator::radiance`]
+    ///
+    /// # Limits
+    /// the variance is r^-1 times 8/(3 pi) in place of pi/4 of the blur in one dimension (uniform kernel, isotropic light, long beams)
+    pub fn radiance_in_2d(
+        &self,
+        map: &BeamMap,
+        (ray, span): (&Ray, Interval),
+        (number, medium): (usize, &Medium),
+        boundary: &Boundary<'_>,
+        passed: impl Fn(f64) -> Spectrum,
+    ) -> RayEstimate {
+        self.within((map, ray, span), (number, medium), boundary, |_, foot| passed(foot))
+    }
+
+    /// The sum over the chords of beams near the ray; `passed` by the place and its foot.
+    fn within(
+        &self,
+        (map, ray, span): (&BeamMap, &Ray, Interval),
+        (number, medium): (usize, &Medium),
+        boundary: &Boundary<'_>,
+        passed: impl Fn(DVec3, f64) -> Spectrum,
+    ) -> RayEstimate {
+        let (radius, phase) = (self.radius.get(), medium.phase());
+        let rate = 2.0 * medium.highest_sigma_t().max();
+        let beside = Beside::new(boundary, ray, span, BEYOND * radius);
+        let (mut sum, mut found, mut rejected) = (Spectrum::ZERO, 0, 0);
+        let is_known = map.chords_near(ray, span, radius, |beam, chord, here| {
+            let (one_minus_mu, one_plus_mu) = cosine_pair(beam.dir, -ray.dir);
+            let value = phase.value(one_minus_mu, one_plus_mu);
+            let mut counts = false;
+            if beam.medium as usize == number {
+                along_chord(chord, rate, |t, weight| {
+                    let way = (beam.start - here.origin) + beam.dir * t;
+                    let s = way.dot(ray.dir);
+                    let away = way - ray.dir * s;
+                    let Some(share) = self.disc_share((boundary, &beside), (ray, s), away, beam) else {
+                        return;
+                    };
+                    counts = true;
+                    let u2 = (away.length_squared() / (radius * radius)).min(1.0);
+                    let place = ray.at(s) + away;
+                    let sigma_s = medium.sigma_t(place) * medium.albedo(place);
+                    let weight = weight * self.kernel.profile(u2) * value / share;
+                    sum += beam.power_at(t, medium) * sigma_s * passed(place, s) * weight;
+                });
+            }
+            found += usize::from(chord.is_first && counts);
+            rejected += usize::from(chord.is_first && !counts);
+        });
+        let scale = self.kernel.disc_peak() / (radius * radius) / map.emitted() as f64;
+        let value = if is_known { sum * scale } else { Spectrum::grey(f64::NAN) };
+        RayEstimate { value, found, rejected }
+    }
+
+    /// The same where each beam ends for itself ([`OwnEnds`]), blurred in one dimension or in two: the radiance at the ray's origin blurred
+    /// across the ray, of which nothing is lost at faces, whatever the radius, and so not clipped. Not a number of a blur in three.
+    pub fn radiance_of_own_ends(
+        &self,
+        map: &BeamMap,
+        (ray, ends): (&Ray, &OwnEnds<'_>),
+        of: (usize, &Medium),
+        blur: BeamBlur,
+    ) -> RayEstimate {
+        let whole = BeamEstimator { is_clipped: false, ..*self };
+        let way = (map, ray, ends.span());
+        let passed = |place: DVec3, foot: f64| ends.passed(place, foot);
+        match blur {
+            BeamBlur::OneD => whole.across(way, of, &Boundary::UNKNOWN, passed),
+            BeamBlur::TwoD => whole.within(way, of, &Boundary::UNKNOWN, passed),
+            BeamBlur::ThreeD => RayEstimate { value: Spectrum::grey(f64::NAN), found: 0, rejected: 0 },
+        }
+    }
+
+    /// The same as [`BeamEstimator::fluence`] with a blur in three dimensions: the sum of P/N int tau(t) K_r(d(t)) dt along each beam, d
+    /// its distance from the place, K_r the kernel on the ball. Its mean is that of points in balls, and its variance falls with r^2.
+    ///
+    /// # Returns
+    /// as [`BeamEstimator::fluence`]
+    ///
+    /// # Source
+    /// Jarosz, Nowrouzezahrai, Sadeghi and Jensen 2011, beams at a point with a blur in three dimensions
+    pub fn fluence_in_3d(
+        &self,
+        map: &BeamMap,
+        place: DVec3,
+        (number, medium): (usize, &Medium),
+        boundary: &Boundary<'_>,
+    ) -> Estimate {
+        let radius = self.radius.get();
+        let ending = boundary.medium.filter(|medium| medium.room(place) < radius);
+        let is_free = boundary.is_clear() && (ending.is_none() || !self.is_clipped);
+        let about = (!is_free).then(|| Surroundings::new(boundary, place, place, BEYOND * radius));
+        let share = match &about {
+            Some(about) if self.is_clipped && !about.is_clear(radius) => {
+                about.share(self.kernel, radius, map.emitted())
+            }
+            _ => match ending.filter(|_| self.is_clipped) {
+                Some(medium) => body_part(self.kernel, medium, place, radius),
+                None => 1.0,
+            },
+        };
+        let rate = medium.highest_sigma_t().max();
+        let (mut sum, mut found, mut rejected) = (Spectrum::ZERO, 0, 0);
+        let is_known = map.chords_about(place, radius, |beam, chord, here| {
+            let mut counts = false;
+            if beam.medium as usize == number {
+                along_chord(chord, rate, |t, weight| {
+                    let way = (beam.start - here) + beam.dir * t;
+                    if about.as_ref().is_some_and(|about| !about.sees(place + way)) {
+                        return;
+                    }
+                    counts = true;
+                    let u2 = (way.length_squared() / (radius * radius)).min(1.0);
+                    sum += beam.power_at(t, medium) * (weight * self.kernel.profile(u2));
+                });
+            }
+            found += usize::from(chord.is_first && counts);
+            rejected += usize::from(chord.is_first && !counts);
+        });
+        let scale = self.kernel.peak() / (radius * radius * radius) / share / map.emitted() as f64;
+        let value = if is_known { sum * scale } else { Spectrum::grey(f64::NAN) };
+        Estimate { value, radius, found, underfull: false, coincident: 0, rejected }
+    }
+
+    /// What a place of a beam, `away` from its foot on the ray, is divided by; none if a body hides it from there.
+    fn disc_share(
+        &self,
+        (boundary, beside): (&Boundary<'_>, &Beside<'_>),
+        (ray, along): (&Ray, f64),
+        away: DVec3,
+        beam: &Beam,
+    ) -> Option<f64> {
+        let radius = self.radius.get();
+        if boundary.is_clear() && !self.is_clipped || beside.is_clear(along, radius) {
+            return Some(1.0);
+        }
+        let seen = away.length();
+        let about = beside.at(along, BEYOND * if self.is_clipped { radius } else { seen });
+        if !about.sees(ray.at(along) + away) {
+            return None;
+        }
+        if !self.is_clipped || (about.is_clear(radius) && beside.is_whole(along, radius)) {
+            return Some(1.0);
+        }
+        Some(about.disc_share(self.kernel, ray.dir, radius, beam.start.x.to_bits(), seen))
     }
 
     /// What a beam is divided by; none if a body hides it from the ray.

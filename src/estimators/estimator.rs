@@ -3,13 +3,14 @@
 use super::boundary::{Boundary, Gathered, PhotonFilter, Rejection, Surroundings, Treatment, accepted};
 use super::point::{ball_sum, for_each_photon, in_scattered_sum};
 use super::{
-    BallSum, BeamEstimator, Codimension, Directional, Estimate, Gather, Kernel, NeighborCount,
-    PlaneEstimator, RayEstimator,
+    BallSum, BeamBlur, BeamEstimator, BeamLength, Codimension, Directional, Estimate, Gather, Kernel,
+    NeighborCount, PlaneEstimator, RayEnds, RayEstimator,
 };
 use crate::Spectrum;
 use crate::math::{Positive, cosine_pair};
 use crate::photons::{Photon, PhotonMap};
 use glam::DVec3;
+use std::num::NonZeroUsize;
 
 /// How light at a point of a medium is estimated from the photons about it.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -25,9 +26,19 @@ pub struct Estimator {
     /// How near to a ray photons are that whole stretches of it are read from at once ([`RayEstimator`]); none where rays are read
     /// point by point.
     pub ray_radius: Option<Positive>,
+    /// Which of the other photons nearest to a photon sets its radius about rays, at most `ray_radius`; none where all have that one.
+    pub ray_k: Option<NonZeroUsize>,
     /// How near to a ray photons' flights pass that whole stretches of it are read from at once ([`BeamEstimator`]), in place of
     /// photons; none where there are no beams.
     pub beam_radius: Option<Positive>,
+    /// In how many dimensions beams are blurred.
+    pub beam_blur: BeamBlur,
+    /// How far beams go.
+    pub beam_length: BeamLength,
+    /// Whether fluence is read from beams too, in place of from photons in balls.
+    pub has_beam_fluence: bool,
+    /// Where stretches of rays that are read at once end.
+    pub ray_ends: RayEnds,
     /// Whether light that media scatter twice and more is read from planes of photons' flights ([`PlaneEstimator`]), and from beams only
     /// what is scattered once.
     pub has_planes: bool,
@@ -50,7 +61,12 @@ impl Estimator {
             treatment: Treatment::None,
             rejection: Rejection::Off,
             ray_radius: None,
+            ray_k: None,
             beam_radius: None,
+            beam_blur: BeamBlur::default(),
+            beam_length: BeamLength::default(),
+            has_beam_fluence: false,
+            ray_ends: RayEnds::default(),
             has_planes: false,
             is_progressive: false,
         }
@@ -68,12 +84,46 @@ impl Estimator {
 
     /// The same with whole stretches of rays read at once, from photons as near as this \[L\].
     pub fn along_rays(self, radius: Positive) -> Self {
-        Estimator { ray_radius: Some(radius), beam_radius: None, has_planes: false, ..self }
+        Estimator {
+            ray_radius: Some(radius),
+            ray_k: None,
+            beam_radius: None,
+            has_beam_fluence: false,
+            has_planes: false,
+            ..self
+        }
+    }
+
+    /// The same with a radius about rays for each photon: the distance to its k-th nearest other one, no farther than as
+    /// [`Estimator::along_rays`] says.
+    pub fn of_nearest(self, k: NonZeroUsize) -> Self {
+        Estimator { ray_k: Some(k), ..self }
     }
 
     /// The same with whole stretches of rays read at once, from flights of photons that pass as near as this \[L\].
     pub fn along_beams(self, radius: Positive) -> Self {
         Estimator { beam_radius: Some(radius), ray_radius: None, ..self }
+    }
+
+    /// The same with beams blurred in so many dimensions.
+    pub fn blurred(self, beam_blur: BeamBlur) -> Self {
+        Estimator { beam_blur, ..self }
+    }
+
+    /// The same with beams of such a length.
+    pub fn of_length(self, beam_length: BeamLength) -> Self {
+        Estimator { beam_length, ..self }
+    }
+
+    /// The same with stretches of rays that end so.
+    pub fn ending(self, ray_ends: RayEnds) -> Self {
+        Estimator { ray_ends, ..self }
+    }
+
+    /// The same with fluence at points read from the beams that pass it too, where there are some ([`Estimator::along_beams`]): in W/L^2,
+    /// with treatments of boundaries other than none divided by the part of each beam's disc that is in the medium and seen.
+    pub fn with_beam_fluence(self) -> Self {
+        Estimator { has_beam_fluence: self.beam_radius.is_some(), ..self }
     }
 
     /// The same with light that media scatter twice and more read from planes of photons' flights. Light that is scattered once takes
@@ -88,7 +138,8 @@ impl Estimator {
     }
 
     /// What reads the map of this number, the first being 0: where it is progressive with the radii that are due there
-    /// ([`Codimension::shrinkage`]), by the codimension of balls, of rays and of beams; the k nearest photons as in the first.
+    /// ([`Codimension::shrinkage`]), by the codimension of balls, of rays and of beams; the k nearest photons as in the first, about
+    /// a ray too.
     pub fn in_map(self, map: u64) -> Self {
         if !self.is_progressive {
             return self;
@@ -175,13 +226,28 @@ impl Estimator {
             treatment,
             rejection,
             ray_radius,
+            ray_k,
             beam_radius,
+            beam_blur,
+            beam_length,
+            has_beam_fluence,
+            ray_ends,
             has_planes,
             is_progressive,
         } = self;
         let of_rays = match (ray_radius, beam_radius) {
+            (Some(radius), _) if ray_k.is_some() => {
+                let k = ray_k.map_or(0, NonZeroUsize::get);
+                Some((radius, format!("along rays k={k} r<={}", radius.get())))
+            }
             (Some(radius), _) => Some((radius, format!("along rays r={}", radius.get()))),
-            (_, Some(radius)) => Some((radius, format!("beams r={}", radius.get()))),
+            (_, Some(radius)) => {
+                let blur = if *beam_blur == BeamBlur::OneD { "" } else { beam_blur.name() };
+                let length = if *beam_length == BeamLength::Sampled { "" } else { beam_length.name() };
+                let words = ["beams", blur, length].into_iter().filter(|word| !word.is_empty());
+                let words = words.collect::<Vec<_>>().join(" ");
+                Some((radius, format!("{words} r={}", radius.get())))
+            }
             (None, None) => None,
         };
         // One radius for points and rays.
@@ -198,6 +264,12 @@ impl Estimator {
         }
         if let (Some((_, along)), None) = (&of_rays, alone) {
             name += &format!(", {along}");
+        }
+        if *ray_ends != RayEnds::default() {
+            name += ", own ends";
+        }
+        if *has_beam_fluence {
+            name += ", fluence by beams";
         }
         if *has_planes {
             name += ", planes";

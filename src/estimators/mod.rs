@@ -15,9 +15,12 @@
 //! does near the surface of a medium, or a wall ([`boundary`]); it states the bias and variance that it expects.
 
 mod beam;
+mod blur;
 pub mod boundary;
+mod chord;
 mod directional;
 mod disc_share;
+mod ends;
 mod estimator;
 mod gather;
 mod kernel;
@@ -28,8 +31,10 @@ mod schedule;
 mod surface;
 
 pub use beam::BeamEstimator;
+pub use blur::{BeamBlur, BeamLength};
 pub use directional::{CosinePairs, Directional};
 pub use disc_share::{cap_share, disc_share};
+pub use ends::{OwnEnds, RayEnds};
 pub use estimator::Estimator;
 pub use gather::{Gather, NeighborCount};
 pub use kernel::Kernel;

@@ -1,11 +1,12 @@
 //! Points along a ray: what a medium scatters towards the near end of a ray, from all photons about the ray at once.
 
 use super::boundary::{Beside, Boundary};
-use super::{Directional, Kernel};
+use super::{Directional, Kernel, OwnEnds};
 use crate::Spectrum;
 use crate::math::{Interval, Positive, Ray, cosine_pair};
 use crate::medium::Medium;
-use crate::photons::PhotonMap;
+use crate::photons::tree::Radii;
+use crate::photons::{Photon, PhotonMap};
 use glam::DVec3;
 
 /// How light that a medium scatters along a ray is estimated from the photons about the ray: the beam radiance estimate.
@@ -20,12 +21,13 @@ use glam::DVec3;
 /// a uniform source comes out right, whatever the radius.
 ///
 /// # Source
-/// Jarosz, Zwicker and Jensen 2008, "The beam radiance estimate for volumetric photon mapping", with a fixed radius
+/// Jarosz, Zwicker and Jensen 2008, "The beam radiance estimate for volumetric photon mapping"; with a fixed radius, or with theirs
+/// ([`RayEstimator::radiance_by_radii`])
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct RayEstimator {
     /// How photons are weighted by their distance from the ray.
     pub kernel: Kernel,
-    /// Photons farther from the ray than this do not count \[L\].
+    /// Photons farther from the ray than this do not count \[L\]: the radius of all, or the largest that one of them has.
     pub radius: Positive,
     /// Whether what a photon brings is divided by the part of the disc about its foot that is in the medium and seen from there.
     pub is_clipped: bool,
@@ -67,23 +69,94 @@ impl RayEstimator {
         boundary: &Boundary<'_>,
         passed: impl Fn(f64) -> Spectrum,
     ) -> RayEstimate {
-        let (radius, phase) = (self.radius.get(), medium.phase());
+        let radius = self.radius.get();
+        self.summed(
+            map,
+            (ray, span),
+            (medium, boundary),
+            |_, foot| passed(foot),
+            |visit| {
+                map.along(ray, span, radius, |photon, foot, squared| visit(photon, radius, foot, squared))
+            },
+        )
+    }
+
+    /// The same with a radius for each photon in place of one for all, none of them above it: with r(y) that of a photon at y its mean
+    /// is the integral of T over that of K_{r(y)}(y - x) f(y) over y, f the source, and its bias (m2/4) of the Laplacian of r^2 f
+    /// across the ray, which is not r^2 times that of f.
+    ///
+    /// # Limits
+    /// radii of the k nearest are those of the map's own photons, and depend on what they weigh: at few of them the mean is another one
+    ///
+    /// # Source
+    /// Jarosz, Zwicker and Jensen 2008, as published: k nearest photons at each photon
+    pub fn radiance_by_radii(
+        &self,
+        (map, radii): (&PhotonMap, &Radii),
+        (ray, span): (&Ray, Interval),
+        medium: &Medium,
+        boundary: &Boundary<'_>,
+        passed: impl Fn(f64) -> Spectrum,
+    ) -> RayEstimate {
+        self.summed(
+            map,
+            (ray, span),
+            (medium, boundary),
+            |_, foot| passed(foot),
+            |visit| map.along_by_radii(ray, span, radii, visit),
+        )
+    }
+
+    /// The same where each photon ends for itself ([`OwnEnds`]): the radiance at the ray's origin blurred across the ray, of which nothing
+    /// is lost at faces, whatever the radius, and so not clipped. With one radius for all, or with those of photons.
+    pub fn radiance_of_own_ends(
+        &self,
+        (map, radii): (&PhotonMap, Option<&Radii>),
+        (ray, ends): (&Ray, &OwnEnds<'_>),
+        medium: &Medium,
+    ) -> RayEstimate {
+        let whole = RayEstimator { is_clipped: false, ..*self };
+        let of = (medium, &Boundary::UNKNOWN);
+        let radius = self.radius.get();
+        let passed = |place: DVec3, foot: f64| ends.passed(place, foot);
+        whole.summed(map, (ray, ends.span()), of, passed, |visit| match radii {
+            Some(radii) => map.along_by_radii(ray, ends.span(), radii, visit),
+            None => map.along(ray, ends.span(), radius, |photon, foot, squared| {
+                visit(photon, radius, foot, squared)
+            }),
+        })
+    }
+
+    /// The sum over the photons that `each` tells, with their radius, their foot along the ray and their squared distance from it.
+    fn summed(
+        &self,
+        map: &PhotonMap,
+        (ray, span): (&Ray, Interval),
+        (medium, boundary): (&Medium, &Boundary<'_>),
+        passed: impl Fn(DVec3, f64) -> Spectrum,
+        each: impl FnOnce(&mut dyn FnMut(Photon, f64, f64, f64)) -> bool,
+    ) -> RayEstimate {
+        let phase = medium.phase();
         let (mut sum, mut found, mut rejected) = (Spectrum::ZERO, 0, 0);
-        let beside = Beside::new(boundary, ray, span, BEYOND * radius);
-        let is_known = map.along(ray, span, radius, |photon, foot, squared| {
-            let Some(share) = self.share(map, (boundary, &beside), photon.position, (ray, foot), squared)
-            else {
+        let beside = Beside::new(boundary, ray, span, BEYOND * self.radius.get());
+        let is_known = each(&mut |photon, radius, foot, squared| {
+            let place = (photon.position, radius, squared);
+            let Some(share) = self.share(map, (boundary, &beside), place, (ray, foot)) else {
                 rejected += 1;
                 return;
             };
             found += 1;
             let (one_minus_mu, one_plus_mu) = cosine_pair(photon.dir.as_dvec3(), -ray.dir);
-            let weight = phase.value(one_minus_mu, one_plus_mu)
-                * self.kernel.profile((squared / (radius * radius)).min(1.0));
+            let area = radius * radius;
+            let weight =
+                phase.value(one_minus_mu, one_plus_mu) * self.kernel.profile((squared / area).min(1.0));
             let albedo = medium.albedo(photon.position);
-            sum += Spectrum(photon.power.as_dvec3()) * albedo * passed(foot) * (weight / share);
+            sum += Spectrum(photon.power.as_dvec3())
+                * albedo
+                * passed(photon.position, foot)
+                * (weight / (area * share));
         });
-        let scale = self.kernel.disc_peak() / (radius * radius) / map.emitted() as f64;
+        let scale = self.kernel.disc_peak() / map.emitted() as f64;
         let value = if is_known { sum * scale } else { Spectrum::grey(f64::NAN) };
         RayEstimate { value, found, rejected }
     }
@@ -93,11 +166,9 @@ impl RayEstimator {
         &self,
         map: &PhotonMap,
         (boundary, beside): (&Boundary<'_>, &Beside<'_>),
-        photon: DVec3,
+        (photon, radius, squared): (DVec3, f64, f64),
         (ray, foot): (&Ray, f64),
-        squared: f64,
     ) -> Option<f64> {
-        let radius = self.radius.get();
         if boundary.is_clear() && !self.is_clipped || boundary.is_only && beside.is_clear(foot, radius) {
             return Some(1.0);
         }

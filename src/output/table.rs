@@ -43,8 +43,18 @@ pub struct RunInfo {
     pub max_radius: Option<f64>,
     /// Radius about whole rays that are read at once \[L\].
     pub ray_radius: Option<f64>,
+    /// Which nearest photon sets the radius that each has about rays, at most that one.
+    pub ray_k: Option<usize>,
     /// The same about rays across which flights pass, as beams \[L\].
     pub beam_radius: Option<f64>,
+    /// In how many dimensions beams are blurred.
+    pub beam_blur: Option<String>,
+    /// How far they go.
+    pub beam_length: Option<String>,
+    /// Whether fluence is read from them too.
+    pub beam_fluence: Option<bool>,
+    /// Where rays that are read at once end, if not cut at faces.
+    pub ray_ends: Option<String>,
     /// Whether light scattered twice and more is read from planes of flights.
     pub planes: Option<bool>,
     /// Whether these radii are those of the first map, and shrink from map to map.
@@ -95,7 +105,7 @@ struct Document<'a, T> {
 
 const COLUMNS: [&str; 6] = ["sensor", "quantity", "unit", "mean", "std_error", "n"];
 
-const RUN_COLUMNS: [&str; 18] = [
+const RUN_COLUMNS: [&str; 23] = [
     "with",
     "seed",
     "orders",
@@ -106,7 +116,12 @@ const RUN_COLUMNS: [&str; 18] = [
     "k",
     "max_radius",
     "ray_radius",
+    "ray_k",
     "beam_radius",
+    "beam_blur",
+    "beam_length",
+    "beam_fluence",
+    "ray_ends",
     "planes",
     "progressive",
     "kernel",

@@ -1,5 +1,6 @@
 //! A photon map: the photons that one pass stored, and how many that pass emitted.
 
+use super::tree::Radii;
 use super::{Photon, PhotonTree, periodic};
 use crate::error::{Error, Result};
 use crate::math::{Interval, Ray};
@@ -130,20 +131,49 @@ impl PhotonMap {
         radius: f64,
         mut visit: impl FnMut(Photon, f64, f64),
     ) -> bool {
-        let mut part = |ray: &Ray, span: Interval| {
-            let each = |place: usize, foot: f64, squared: f64| visit(self.tree.photon(place), foot, squared);
-            self.tree.along(ray, span, radius, each);
+        let mut each = |place: usize, foot: f64, squared: f64| visit(self.tree.photon(place), foot, squared);
+        self.in_cells((ray, span), radius, |ray, span| self.tree.along(ray, span, radius, &mut each))
+    }
+
+    /// The same of every photon whose own radius reaches the ray, with that radius \[L\] before the other numbers.
+    pub fn along_by_radii(
+        &self,
+        ray: &Ray,
+        span: Interval,
+        radii: &Radii,
+        mut visit: impl FnMut(Photon, f64, f64, f64),
+    ) -> bool {
+        let mut each = |place: usize, foot: f64, squared: f64| {
+            visit(self.tree.photon(place), radii.of(place), foot, squared)
         };
-        match self.period {
-            None => part(ray, span),
-            Some(Period { side, reach }) => {
-                if !(radius <= reach * (1.0 + 1e-9) && span.end < f64::INFINITY) {
-                    return false;
-                }
-                periodic::in_cells(ray, span, side).for_each(|(ray, span)| part(&ray, span));
-            }
+        let largest = radii.largest();
+        self.in_cells((ray, span), largest, |ray, span| self.tree.along_by_radii(ray, span, radii, &mut each))
+    }
+
+    /// Asks the tree along a ray, or along each part of it in a cell; false where there are no copies as far as the radius.
+    fn in_cells(
+        &self,
+        (ray, span): (&Ray, Interval),
+        radius: f64,
+        mut ask: impl FnMut(&Ray, Interval),
+    ) -> bool {
+        let Some(Period { side, reach }) = self.period else {
+            ask(ray, span);
+            return true;
+        };
+        if !(radius <= reach * (1.0 + 1e-9) && span.end < f64::INFINITY) {
+            return false;
         }
+        periodic::in_cells(ray, span, side).for_each(|(ray, span)| ask(&ray, span));
         true
+    }
+
+    /// The distance of each photon to its k-th nearest other one, but at most `most`, which is no farther than a cell's copies reach
+    /// \[L\], and at least what [`PhotonMap::check_radius`] allows: the k nearest of a copy are those of the photon that it stands for.
+    /// By the threads of the current pool.
+    pub fn radii(&self, k: usize, most: f64) -> Radii {
+        let least = self.tree.extent() / MOST_EXTENT;
+        self.tree.radii(k, (least, most), |position| self.place(position, most))
     }
 
     /// Checks that positions are told apart finely enough for balls of a radius \[L\]: at least 10^-6 of

@@ -1,6 +1,6 @@
 //! A pass of histories: emission, walk, photons stored where they collide or meet surfaces, powers tallied where they leave.
 
-use super::beams::{Beam, BeamMap, FlightBeams, MOST_CELLS, check_beams};
+use super::beams::{Beam, BeamMap, FlightBeams, MOST_CELLS, check_beams, check_whole_beams};
 use super::importance::{Branching, Importance};
 use super::planes::{Plane, PlaneMap, check_planes, second_leg};
 use super::tallies::{Scores, Tallies};
@@ -66,6 +66,11 @@ pub trait Storage: Sync {
 
     /// Whether any flights are stored as beams.
     fn has_beams(&self) -> bool {
+        false
+    }
+
+    /// Whether flights are stored as far as they could go, with what passes, in place of as far as they flew.
+    fn has_whole_beams(&self) -> bool {
         false
     }
 
@@ -312,7 +317,9 @@ impl<'a> Run<'a> {
     pub fn pass(&self, store: &dyn Storage, progress: &dyn Progress) -> Result<Pass> {
         self.scene.check_emission()?;
         check_end(self.scene)?;
-        if store.has_beams() {
+        if store.has_beams() && store.has_whole_beams() {
+            check_whole_beams(self.scene)?;
+        } else if store.has_beams() {
             check_beams(self.scene)?;
         }
         if store.has_planes() {
@@ -339,7 +346,7 @@ impl<'a> Run<'a> {
                 planes: Vec::new(),
                 has_beams: store.has_beams(),
                 has_planes: store.has_planes(),
-                is_open: false,
+                ahead: f64::INFINITY,
                 bins: Tallies::new(self.scene, self.scored),
                 scoring: Stream::new(0, Purpose::Scores, 0, 0),
                 turning: Stream::new(0, Purpose::Planes, 0, 0),
@@ -394,8 +401,8 @@ struct Block<'a> {
     planes: Vec<Plane>,
     has_beams: bool,
     has_planes: bool,
-    /// Whether nothing is ahead of the present flight.
-    is_open: bool,
+    /// How far the next surface is ahead of the present flight \[L\].
+    ahead: f64,
     bins: Tallies<'a>,
     /// Random numbers of scores: what is scored does not change the walk.
     scoring: Stream,
@@ -462,7 +469,8 @@ impl Block<'_> {
     /// Stores a flight that is over, `arrives` its power there.
     fn store_flight(&mut self, walker: &Walker, end: f64, arrives: Spectrum) {
         let Run { scene, part, is_pilot, .. } = *self.run;
-        let is_forced = scene.plan().forces_first_collision && walker.order == 0 && self.is_open;
+        let is_forced =
+            scene.plan().forces_first_collision && walker.order == 0 && self.ahead == f64::INFINITY;
         // A forced flight is told of twice, as what passes and as what collides. One beam to the end is both.
         let is_told = is_forced && end < f64::INFINITY;
         if is_told {
@@ -482,7 +490,11 @@ impl Block<'_> {
         let mut is_short = true;
         if is_kept[0] {
             let (beams, met) = (&mut self.beams, &mut self.pass.met_beams);
-            is_short &= flight.each(|beam| {
+            let (end, is_forced) = match self.store.has_whole_beams() {
+                true => (self.ahead, true),
+                false => (end, is_forced),
+            };
+            is_short &= FlightBeams { end, is_forced, ..flight }.each(|beam| {
                 *met += 1;
                 if !is_pilot {
                     beams.push(beam);
@@ -523,7 +535,7 @@ impl Visitor for Block<'_> {
         }
         if self.has_beams || self.has_planes {
             match step {
-                Step::Ahead(hit) => self.is_open = hit.is_none(),
+                Step::Ahead(hit) => self.ahead = hit.map_or(f64::INFINITY, |found| found.hit.t),
                 Step::Uncollided(end, arrives) => self.store_flight(walker, end, arrives),
                 _ => {}
             }

@@ -13,7 +13,9 @@
 //! prior distribution of that standard deviation, and the prediction carries what remains uncertain.
 
 use super::paths::{self, PathSettings};
-use super::photons::{PhotonForecast, RadianceMaps, check, forecast_of, maps, margin, max_order};
+use super::photons::{
+    FluenceMaps, PhotonForecast, RadianceMaps, check, forecast_of, maps, margin, max_order,
+};
 use crate::error::{Error, Result};
 use crate::estimators::boundary::Boundary;
 use crate::estimators::{Estimator, Gather, Kernel};
@@ -27,8 +29,14 @@ use crate::transport::Progress;
 use std::time::Instant;
 
 /// It asks points.
-const OF_POINTS: RadianceMaps =
-    RadianceMaps { points: true, beams: false, planes: false, direct_beams: false };
+const OF_POINTS: RadianceMaps = RadianceMaps {
+    points: true,
+    beams: false,
+    planes: false,
+    direct_beams: false,
+    fluence: FluenceMaps::Points,
+    whole_beams: false,
+};
 
 /// Balls about each probe.
 const BALLS: usize = 8;

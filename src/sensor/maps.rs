@@ -2,13 +2,12 @@
 
 use super::PhotonForecast;
 use super::photons::{
-    OrderMaps, PhotonReadings, RadianceMaps, Surroundings, check, check_orders, forecast_of, map_orders,
-    maps, margin_of, max_order, read_bins,
+    OrderMaps, PhotonReadings, RadianceMaps, Surroundings, check, check_beams_of, check_orders, check_rays,
+    forecast_of, map_orders, maps, margin_of, max_order, read_bins,
 };
 use crate::Spectrum;
 use crate::error::{Error, Result};
 use crate::estimators::Estimator;
-use crate::photons::beams::check_beams;
 use crate::photons::{Histories, Ledger, Part};
 use crate::scene::{Quantity, Scene};
 use crate::transport::Progress;
@@ -72,8 +71,8 @@ fn checked(scene: &Scene, reach: f64, radiance: RadianceMaps) -> Result<f64> {
         }
         check(scene, sensor)?;
     }
-    if radiance.beams || radiance.direct_beams {
-        check_beams(scene)?;
+    if radiance.asks_beams(scene.sensors()) {
+        check_beams_of(scene, radiance)?;
     }
     check_orders(scene, scene.sensors(), radiance)?;
     margin_of(scene, scene.sensors(), reach)
@@ -97,7 +96,7 @@ impl<'a> SensorMaps<'a> {
     /// Whether maps can answer every sensor of a scene by estimators of this reach \[L\].
     ///
     /// # Errors
-    /// `Error::Scene` that names the sensor, or the cell that is too small; those of [`check_beams`]
+    /// `Error::Scene` that names the sensor, or the cell that is too small; those of beams that cannot be stored
     pub fn check(scene: &Scene, reach: f64, radiance: RadianceMaps) -> Result<()> {
         checked(scene, reach, radiance).map(|_| ())
     }
@@ -127,11 +126,13 @@ impl<'a> SensorMaps<'a> {
         if cap > self.settings.reach {
             return Err(Error::out_of_range("the reach of an estimator", cap, "at most that of the maps"));
         }
+        check_rays(self.scene, self.scene.sensors(), estimator)?;
         let (sensors, mut booked) = (self.scene.sensors(), PhotonReadings::new());
         let around = Surroundings::of(self.scene, estimator);
+        let radii = self.maps.radii(sensors, estimator);
         let mut values: Vec<Vec<Spectrum>> = Vec::with_capacity(sensors.len());
         for (number, sensor) in sensors.iter().enumerate() {
-            let Some(map) = self.maps.of(sensor, estimator) else {
+            let Some(map) = self.maps.of(sensor, estimator, &radii) else {
                 return Err(Error::Scene(format!(
                     "sensor {}: the maps were not filled for {}",
                     sensor.name,

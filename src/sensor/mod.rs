@@ -30,7 +30,7 @@ pub use paths::{
     sample_guided,
 };
 pub use photons::{
-    PhotonForecast, PhotonReadings, PhotonSettings, RadianceMaps, by_given_photons, by_photons,
+    FluenceMaps, PhotonForecast, PhotonReadings, PhotonSettings, RadianceMaps, by_given_photons, by_photons,
     by_photons_in_passes, forecast, given_bytes, is_answered_by_map,
 };
 pub use picture_advice::{PictureAdvice, PicturePilot, PicturePilotSettings};

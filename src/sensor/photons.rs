@@ -5,14 +5,17 @@ use super::{Measurement, Source, measurements, room, row_bytes};
 use crate::Spectrum;
 use crate::error::{Error, Result};
 use crate::estimators::boundary::{Boundary, Treatment};
-use crate::estimators::{Estimate, Estimator, Gather, PlaneEstimator};
+use crate::estimators::{
+    BeamBlur, BeamLength, Estimate, Estimator, Gather, OwnEnds, PlaneEstimator, RayEnds,
+};
 use crate::geometry::Shape;
 use crate::integrators::mapper::{MediumExtent, medium_extents, scene_size};
 use crate::integrators::{March, StepRule, along};
 use crate::math::{Interval, Positive, Ray};
 use crate::medium::Medium;
-use crate::photons::beams::{self, Beam, BeamMap, check_beams};
+use crate::photons::beams::{self, Beam, BeamMap, check_beams, check_whole_beams};
 use crate::photons::planes::{self, Plane, PlaneMap, check_planes};
+use crate::photons::tree::Radii;
 use crate::photons::{
     BUILD_SECONDS, Emitter, Flags, Histories, Ledger, PEAK_BYTES, Part, Pass, Photon, PhotonMap, Run, Scores,
     Storage, periodic, score_bytes,
@@ -113,7 +116,9 @@ pub fn by_photons_in_passes(
         let allowed = "at least 1, and at most one a photon";
         return Err(Error::out_of_range("the number of passes", passes as f64, allowed));
     }
-    if passes > 1 && !matches!(settings.estimator.gather, Gather::Radius(_)) {
+    let takes_nearest =
+        !matches!(settings.estimator.gather, Gather::Radius(_)) || settings.estimator.ray_k.is_some();
+    if passes > 1 && takes_nearest {
         return Err(Error::Scene(
             "the k nearest photons of a map cannot be found in passes that hold a part of it each: take a fixed radius, or \
              fewer photons"
@@ -316,8 +321,9 @@ impl Asked<'_> {
     ) -> Result<()> {
         let Asked { surroundings, sensors, settings } = *self;
         let estimator = settings.estimator.in_map(replicate);
+        let radii = maps.radii(sensors, &estimator);
         for (number, (sensor, sums)) in sensors.iter().zip(&mut *estimates).enumerate() {
-            let Some(map) = maps.of(sensor, &estimator) else { continue };
+            let Some(map) = maps.of(sensor, &estimator, &radii) else { continue };
             // Every pass asks at the same places.
             let index = sensors[..number].iter().filter(|s| map_orders(s) == map_orders(sensor)).count();
             let of = (settings.seed, replicate, index);
@@ -366,7 +372,7 @@ pub(super) fn forecast_of(
     let ranges = wanted.ranges(sensors);
     let count = photons.div_ceil(64).min(FORECAST);
     let histories = Histories { count, seed, replicate: 0, max_order: max_order(sensors) };
-    let kept = Kept { ranges: &ranges, copied: Default::default() };
+    let kept = Kept { ranges: &ranges, whole_beams: wanted.whole_beams, copied: Default::default() };
     let emitter = Emitter::by_power(scene);
     let run = Run { is_pilot: true, ..Run::new(scene, &emitter, histories) };
     let start = Instant::now();
@@ -398,7 +404,7 @@ pub(super) fn forecast_of(
     Ok(PhotonForecast { stored: copied, bytes, seconds })
 }
 
-/// What radiance is read from.
+/// What radiance, and fluence, is read from.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct RadianceMaps {
     /// Photons, in balls or about rays.
@@ -409,20 +415,53 @@ pub struct RadianceMaps {
     pub planes: bool,
     /// Flights that come straight from lights, beside planes.
     pub direct_beams: bool,
+    /// What fluence is read from.
+    pub fluence: FluenceMaps,
+    /// Whether flights are stored as far as they could go.
+    pub whole_beams: bool,
+}
+
+/// What fluence is read from.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum FluenceMaps {
+    /// Photons in balls.
+    #[default]
+    Points,
+    /// Flights that pass.
+    Beams,
+    /// Both, by estimators of their own.
+    Both,
 }
 
 impl RadianceMaps {
     /// What these estimators ask.
     pub fn of<'a>(estimators: impl IntoIterator<Item = &'a Estimator>) -> Self {
         let mut wanted = RadianceMaps::default();
+        let mut of_fluence = [false; 2];
         for estimator in estimators {
+            of_fluence[usize::from(estimator.has_beam_fluence)] = true;
+            wanted.whole_beams |= estimator.beam_length == BeamLength::Whole;
             let (of_beams, of_planes) = (estimator.beam_radius.is_some(), estimator.has_planes);
             wanted.points |= !of_beams && !of_planes;
             wanted.beams |= of_beams && !of_planes;
             wanted.planes |= of_planes;
             wanted.direct_beams |= of_beams && of_planes;
         }
+        wanted.fluence = match of_fluence {
+            [_, false] => FluenceMaps::Points,
+            [false, true] => FluenceMaps::Beams,
+            [true, true] => FluenceMaps::Both,
+        };
         wanted
+    }
+
+    /// Whether any sensor is read from beams.
+    pub(super) fn asks_beams(self, sensors: &[Sensor]) -> bool {
+        let asks = |sensor: &Sensor| match is_radiance(sensor) {
+            true => self.beams || self.direct_beams,
+            false => self.fluence != FluenceMaps::Points && map_orders(sensor).is_some(),
+        };
+        sensors.iter().any(asks)
     }
 
     /// The ranges of orders that need a map each.
@@ -438,8 +477,10 @@ impl RadianceMaps {
                     ranges.push(range);
                 }
             };
-            add((self.points || !is_radiance).then_some(range), &mut all.points);
-            add((self.beams && is_radiance).then_some(range), &mut all.beams);
+            let of_points = if is_radiance { self.points } else { self.fluence != FluenceMaps::Beams };
+            let of_beams = if is_radiance { self.beams } else { self.fluence != FluenceMaps::Points };
+            add(of_points.then_some(range), &mut all.points);
+            add(of_beams.then_some(range), &mut all.beams);
             add(has_direct.then_some(DIRECT), &mut all.beams);
             add(of_planes, &mut all.planes);
         }
@@ -477,6 +518,7 @@ fn is_radiance(sensor: &Sensor) -> bool {
 /// What a pass keeps: what maps of any range hold.
 struct Kept<'a> {
     ranges: &'a Ranges,
+    whole_beams: bool,
     /// Photons, flights and planes that were kept, once a range.
     copied: [AtomicU64; 3],
 }
@@ -498,6 +540,10 @@ impl Storage for Kept<'_> {
 
     fn has_beams(&self) -> bool {
         !self.ranges.beams.is_empty()
+    }
+
+    fn has_whole_beams(&self) -> bool {
+        self.whole_beams
     }
 
     fn has_planes(&self) -> bool {
@@ -523,7 +569,8 @@ pub(super) struct OrderMaps {
 /// The map that a sensor asks.
 #[derive(Clone, Copy)]
 pub(super) enum AskedMap<'a> {
-    Points(&'a PhotonMap),
+    /// Photons, with a radius about rays for each, where there is one.
+    Points(&'a PhotonMap, Option<&'a Radii>),
     Beams(&'a BeamMap),
     /// Light scattered twice and more, and once, where a sensor asks for them.
     Planes(Option<&'a PlaneMap>, Option<&'a BeamMap>),
@@ -533,15 +580,28 @@ impl AskedMap<'_> {
     /// Checks that positions are told apart finely enough for a radius \[L\]: those of beams and planes always are.
     fn check_radius(self, radius: f64) -> Result<()> {
         match self {
-            AskedMap::Points(map) => map.check_radius(radius),
+            AskedMap::Points(map, _) => map.check_radius(radius),
             AskedMap::Beams(_) | AskedMap::Planes(..) => Ok(()),
         }
     }
 }
 
 impl OrderMaps {
-    /// The map that answers a sensor by an estimator.
-    pub(super) fn of(&self, sensor: &Sensor, estimator: &Estimator) -> Option<AskedMap<'_>> {
+    /// The radii of the photons about rays, of each range of orders that a sensor of radiance asks, if the estimator has some.
+    pub(super) fn radii(&self, sensors: &[Sensor], estimator: &Estimator) -> Vec<(Orders, Radii)> {
+        let (Some(k), Some(most)) = (estimator.ray_k, estimator.ray_radius) else { return Vec::new() };
+        let asked: Vec<Orders> = sensors.iter().filter(|s| is_radiance(s)).filter_map(map_orders).collect();
+        let asked = self.points.iter().filter(|(range, _)| asked.contains(range));
+        asked.map(|(range, map)| (*range, map.radii(k.get(), most.get()))).collect()
+    }
+
+    /// The map that answers a sensor by an estimator, whose radii are those of [`OrderMaps::radii`].
+    pub(super) fn of<'a>(
+        &'a self,
+        sensor: &Sensor,
+        estimator: &Estimator,
+        radii: &'a [(Orders, Radii)],
+    ) -> Option<AskedMap<'a>> {
         let range = map_orders(sensor)?;
         if estimator.has_planes && is_radiance(sensor) {
             let of_planes = plane_orders(sensor);
@@ -552,11 +612,12 @@ impl OrderMaps {
             return is_filled
                 .then(|| AskedMap::Planes(planes.map(|(_, map)| map), direct.map(|(_, map)| map)));
         }
-        if estimator.beam_radius.is_some() && is_radiance(sensor) {
+        if estimator.beam_radius.is_some() && (is_radiance(sensor) || estimator.has_beam_fluence) {
             let own = self.beams.iter().find(|(held, _)| *held == range);
             return own.map(|(_, map)| AskedMap::Beams(map));
         }
-        self.points_of(sensor).map(AskedMap::Points)
+        let radii = radii.iter().find(|(held, _)| is_radiance(sensor) && *held == range);
+        self.points_of(sensor).map(|map| AskedMap::Points(map, radii.map(|(_, radii)| radii)))
     }
 
     /// The map of photons that answers a sensor.
@@ -598,12 +659,58 @@ fn prepared_of<'a>(
             check_reach(scene, sensor)?;
         }
     }
-    if settings.estimator.beam_radius.is_some() && sensors.iter().any(is_radiance) {
-        check_beams(scene)?;
+    let wanted = RadianceMaps::of([&settings.estimator]);
+    if wanted.asks_beams(&sensors) {
+        check_beams_of(scene, wanted)?;
     }
-    check_orders(scene, &sensors, RadianceMaps::of([&settings.estimator]))?;
+    check_rays(scene, &sensors, &settings.estimator)?;
+    check_orders(scene, &sensors, wanted)?;
     let margin = margin_of(scene, &sensors, settings.estimator.reach())?;
     Ok((sensors, margin))
+}
+
+/// Whether flights can be stored as they are wanted.
+///
+/// # Errors
+/// those of [`check_beams`] and [`check_whole_beams`]
+pub(super) fn check_beams_of(scene: &Scene, wanted: RadianceMaps) -> Result<()> {
+    if wanted.whole_beams { check_whole_beams(scene) } else { check_beams(scene) }
+}
+
+/// Whether beams are blurred, and stretches end, as sensors of radiance can be read.
+///
+/// # Errors
+/// `Error::Scene` for a ball about a ray, and for ends of their own beside planes, or where there is more than one homogeneous region
+pub(super) fn check_rays(scene: &Scene, sensors: &[Sensor], estimator: &Estimator) -> Result<()> {
+    let Some(sensor) = sensors.iter().find(|sensor| is_radiance(sensor)) else { return Ok(()) };
+    let refuse = |why: &str| Err(Error::Scene(format!("sensor {}: {why}", sensor.name)));
+    if estimator.beam_radius.is_some() && estimator.beam_blur == BeamBlur::ThreeD {
+        return refuse(
+            "a blur of beams in three dimensions is about places, and rays have none; allowed: 1d, 2d",
+        );
+    }
+    if estimator.ray_ends == RayEnds::Cut {
+        return Ok(());
+    }
+    if estimator.has_planes || !estimator.reads_rays() {
+        return refuse(
+            "ends of their own are those of photons and beams about rays; allowed: a ray radius or a beam radius, no planes",
+        );
+    }
+    let is_alone = scene.regions().len() == 1 && scene.media().len() == 1 && !scene.plan().has_surfaces;
+    let has_lamps = scene.lights().iter().any(|light| light.body().is_some());
+    let is_layer = scene.regions().iter().all(|region| matches!(region.shape, Shape::Slab(_)));
+    if !is_alone
+        || has_lamps
+        || !scene.medium(0).is_homogeneous()
+        || (scene.periodic_cell().is_some() && !is_layer)
+    {
+        return refuse(
+            "rays end for each photon or beam in one homogeneous region with nothing in it, in a periodic cell a slab; allowed \
+             otherwise: ends that are cut",
+        );
+    }
+    Ok(())
 }
 
 /// Whether planes can be stored and answer sensors of radiance, where they are asked to.
@@ -642,7 +749,7 @@ pub(super) fn maps(
     progress: &dyn Progress,
 ) -> Result<(Pass, OrderMaps)> {
     let ranges = wanted.ranges(sensors);
-    let kept = Kept { ranges: &ranges, copied: Default::default() };
+    let kept = Kept { ranges: &ranges, whole_beams: wanted.whole_beams, copied: Default::default() };
     let emitter = Emitter::by_power(scene);
     let scored = scored(sensors);
     let run = Run { part, sensors, scored: &scored, ..Run::new(scene, &emitter, histories) };
@@ -880,12 +987,23 @@ fn fluence_at(
     result: &mut PhotonReadings,
 ) -> Spectrum {
     let scene = around.scene;
-    // Beams and planes answer radiance alone: no sensor of fluence is given any.
-    let AskedMap::Points(map) = map else { return Spectrum::grey(f64::NAN) };
     let number = scene.medium_number_at(p);
-    let sigma_t = number.map_or(Spectrum::ONE, |number| scene.medium(number).sigma_t(p));
     let boundary = number.map_or(Boundary::UNKNOWN, |number| around.boundary(number));
-    let estimate = estimator.fluence(map, p, sigma_t, &boundary);
+    let estimate = match (map, estimator.of_beams(), number) {
+        (AskedMap::Points(map, _), ..) => {
+            let sigma_t = number.map_or(Spectrum::ONE, |number| scene.medium(number).sigma_t(p));
+            estimator.fluence(map, p, sigma_t, &boundary)
+        }
+        (AskedMap::Beams(map), Some(of_beams), Some(number)) => {
+            let of = (number, scene.medium(number));
+            match estimator.beam_blur {
+                BeamBlur::OneD | BeamBlur::TwoD => of_beams.fluence(map, p, of, &boundary),
+                BeamBlur::ThreeD => of_beams.fluence_in_3d(map, p, of, &boundary),
+            }
+        }
+        // No sensor of fluence is given planes, or a place outside of all media.
+        _ => return Spectrum::grey(f64::NAN),
+    };
     result.book(scene, p, &estimate, estimator.treatment);
     estimate.value
 }
@@ -910,6 +1028,11 @@ fn radiance(
             sum += value
         });
     }
+    if estimator.ray_ends == RayEnds::Own {
+        sum += radiance_of_own_ends(scene, map, ray, estimator);
+        result.gathers += 1;
+        return sum;
+    }
     for segment in scene.segments(ray, end, interior).iter() {
         let medium = scene.medium(segment.medium);
         let boundary = around.boundary(segment.medium);
@@ -919,13 +1042,20 @@ fn radiance(
             let passage = Passage::new(medium, ray, span, stream);
             let (way, passed) = ((ray, span), |t: f64| passage.to(t));
             let across = |map: &BeamMap| {
-                let of_beams = estimator.of_beams()?;
-                Some(of_beams.radiance(map, way, (segment.medium, medium), &boundary, passed).value)
+                let (of_beams, of) = (estimator.of_beams()?, (segment.medium, medium));
+                Some(match estimator.beam_blur {
+                    BeamBlur::OneD => of_beams.radiance(map, way, of, &boundary, passed).value,
+                    BeamBlur::TwoD => of_beams.radiance_in_2d(map, way, of, &boundary, passed).value,
+                    BeamBlur::ThreeD => Spectrum::grey(f64::NAN),
+                })
             };
             let value = match map {
-                AskedMap::Points(map) => estimator
-                    .of_rays()
-                    .map(|of_rays| of_rays.radiance(map, way, medium, &boundary, passed).value),
+                AskedMap::Points(map, radii) => estimator.of_rays().map(|of_rays| match radii {
+                    Some(radii) => {
+                        of_rays.radiance_by_radii((map, radii), way, medium, &boundary, passed).value
+                    }
+                    None => of_rays.radiance(map, way, medium, &boundary, passed).value,
+                }),
                 AskedMap::Beams(map) => across(map),
                 AskedMap::Planes(planes, direct) => {
                     let of_planes =
@@ -939,7 +1069,7 @@ fn radiance(
             sum += before * value;
             continue;
         }
-        let AskedMap::Points(map) = map else { continue };
+        let AskedMap::Points(map, _) = map else { continue };
         let mut source = |p: DVec3| {
             if medium.sigma_t(p).is_black() {
                 return Spectrum::ZERO;
@@ -958,6 +1088,24 @@ fn radiance(
         }
     }
     sum
+}
+
+/// What the one medium of a scene scatters along a ray, each photon or beam ending for itself.
+fn radiance_of_own_ends(scene: &Scene, map: AskedMap<'_>, ray: &Ray, estimator: &Estimator) -> Spectrum {
+    let (Some(region), Medium::Homogeneous(even)) = (scene.regions().first(), scene.medium(0)) else {
+        return Spectrum::grey(f64::NAN);
+    };
+    let medium = scene.medium(0);
+    let ends = |radius: Positive| OwnEnds::new(even, &region.shape, ray, radius.get());
+    let value = match (map, estimator.of_rays(), estimator.of_beams()) {
+        (AskedMap::Points(map, radii), Some(of_rays), _) => ends(of_rays.radius)
+            .map(|ends| of_rays.radiance_of_own_ends((map, radii), (ray, &ends), medium).value),
+        (AskedMap::Beams(map), _, Some(of_beams)) => ends(of_beams.radius).map(|ends| {
+            of_beams.radiance_of_own_ends(map, (ray, &ends), (0, medium), estimator.beam_blur).value
+        }),
+        _ => Some(Spectrum::grey(f64::NAN)),
+    };
+    value.unwrap_or(Spectrum::ZERO)
 }
 
 /// The part of a span that is seen: as far as the thinnest channel reaches, where that is known.

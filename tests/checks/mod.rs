@@ -2,6 +2,7 @@
 //! planted, in the suite of faults.
 #![allow(dead_code, reason = "the faults use a part")]
 
+pub mod along_rays;
 pub mod beams;
 pub mod cell;
 pub mod color;

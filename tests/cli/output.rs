@@ -6,7 +6,7 @@ use std::process::{Command, Stdio};
 
 const COLUMNS: [&str; 6] = ["sensor", "quantity", "unit", "mean", "std_error", "n"];
 /// What follows them as CSV: what the numbers were made with.
-const RUN: [&str; 18] = [
+const RUN: [&str; 23] = [
     "with",
     "seed",
     "orders",
@@ -17,7 +17,12 @@ const RUN: [&str; 18] = [
     "k",
     "max_radius",
     "ray_radius",
+    "ray_k",
     "beam_radius",
+    "beam_blur",
+    "beam_length",
+    "beam_fluence",
+    "ray_ends",
     "planes",
     "progressive",
     "kernel",

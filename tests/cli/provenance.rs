@@ -17,7 +17,7 @@ fn tables_say_what_they_were_made_with() {
     let of = |with: &str, more: serde_json::Value| {
         let mut run = serde_json::json!({
             "with": with, "seed": 3, "orders": "0..", "samples": null, "photons": null, "maps": null, "radius": null, "k": null,
-            "max_radius": null, "ray_radius": null, "beam_radius": null, "planes": null, "progressive": null, "kernel": null, "boundary": null, "reject": null, "version": env!("CARGO_PKG_VERSION"),
+            "max_radius": null, "ray_radius": null, "ray_k": null, "beam_radius": null, "beam_blur": null, "beam_length": null, "beam_fluence": null, "ray_ends": null, "planes": null, "progressive": null, "kernel": null, "boundary": null, "reject": null, "version": env!("CARGO_PKG_VERSION"),
             "revision": revision,
         });
         more.as_object().unwrap().iter().for_each(|(key, value)| run[key] = value.clone());
@@ -39,8 +39,42 @@ fn tables_say_what_they_were_made_with() {
         &[&photons[..], &["--ray-radius", "0"]].concat(),
         &["--ray-radius is 0; allowed: finite and above 0"],
     );
+    let own = [&along[..], &["--ray-k", "20"]].concat();
+    assert_eq!(run_of(&own)["ray_k"], 20);
+    refuses_naming(&[&photons[..], &["--ray-k", "20"]].concat(), &["--ray-radius"]);
+    refuses_naming(&[&along[..], &["--ray-k", "0"]].concat(), &["--ray-k", "from 1 to"]);
+    refuses_naming(&[&own[..], &["--progressive"]].concat(), &["--ray-k", "--progressive"]);
+    refuses_naming(
+        &[&own[..], &["--radius", "0.5", "--passes", "2"]].concat(),
+        &["--passes is 2, and --ray-k takes the k nearest photons", "allowed with it: 1"],
+    );
+    assert_eq!(run_of(&[&along[..], &["--ray-ends", "own"]].concat())["ray_ends"], "own");
+    refuses_naming(&[&photons[..], &["--ray-ends", "own"]].concat(), &["with --ray-radius or --beam-radius"]);
+    refuses_naming(&[&along[..], &["--ray-ends", "soft"]].concat(), &["--ray-ends", "cut, own"]);
     let across = [&photons[..], &["--beam-radius", "0.5"]].concat();
-    assert_eq!(run_of(&across)["beam_radius"], 0.5);
+    let run = run_of(&across);
+    assert_eq!(
+        (&run["beam_radius"], &run["beam_blur"], &run["beam_length"]),
+        (&0.5.into(), &"1d".into(), &"sampled".into())
+    );
+    assert!(run["beam_fluence"].is_null());
+    let places = ["--beam-fluence", "--beam-blur", "3d", "--beam-length", "whole"];
+    let run = run_of(&[&across[..], &places].concat());
+    assert_eq!(
+        (&run["beam_fluence"], &run["beam_blur"], &run["beam_length"]),
+        (&true.into(), &"3d".into(), &"whole".into())
+    );
+    refuses_naming(
+        &["render", "fogbox", "-o", "never.exr", "--beam-radius", "0.1", "--beam-blur", "3d"],
+        &["--beam-blur is 3d, which is about places; allowed of pictures: 1d, 2d"],
+    );
+    refuses_naming(&[&across[..], &["--beam-blur", "4d"]].concat(), &["--beam-blur", "1d, 2d, 3d"]);
+    refuses_naming(&[&photons[..], &["--beam-fluence"]].concat(), &["--beam-radius"]);
+    refuses_naming(&[&photons[..], &["--beam-length", "whole"]].concat(), &["--beam-radius"]);
+    refuses_naming(
+        &[&across[..], &["--beam-fluence", "--progressive"]].concat(),
+        &["--beam-fluence", "--progressive"],
+    );
     assert_eq!(run_of(&[&across[..], &["--radius", "0.5", "--progressive"]].concat())["progressive"], true);
     refuses_naming(
         &[&photons[..], &["--beam-radius", "inf"]].concat(),
@@ -70,6 +104,35 @@ fn tables_say_what_they_were_made_with() {
         "orders": "1", "maps": 1, "radius": 0.25, "kernel": "cone", "boundary": "local-linear", "reject": "behind-plane"
     });
     assert_eq!(run_of(&given), of("photons-from", within));
+}
+
+/// Fluence by beams at places of a slab: uncollided light of a beam along the normal, exact at any radius, in W/L^2 for an irradiance of 1,
+/// by beams of both lengths; blurred in balls it is more, by what the exponential has over a ball of this radius.
+#[test]
+fn fluence_of_beams_is_the_exact_one() {
+    let measure =
+        ["measure", "slab", "--set", "tau=1", "--set", "probes=[0.5]", "--with", "photons", "--orders", "0"];
+    let many =
+        ["--photons", "2e5", "--maps", "50", "--beam-radius", "0.3", "--beam-fluence", "--format", "json"];
+    let radius: f64 = 0.3;
+    let (up, down) = (turbid::math::exp(radius), turbid::math::exp(-radius));
+    let ball = 1.5 * (radius * (up + down) - (up - down)) / (radius * radius * radius);
+    for (blur, factor) in [("1d", 1.0), ("3d", ball)] {
+        for length in ["sampled", "whole"] {
+            let asked = [&measure[..], &many, &["--beam-blur", blur, "--beam-length", length]].concat();
+            let table: serde_json::Value = serde_json::from_str(&succeeds(&asked)).unwrap();
+            let rows = table["rows"].as_array().unwrap();
+            let row = rows.iter().find(|row| row["quantity"] == "fluence").unwrap();
+            let [mean, error] = ["mean", "std_error"].map(|key| row[key].as_f64().unwrap());
+            let exact = turbid::math::exp(-0.5) * factor;
+            // Student's t of 49 freedoms exceeds 5.6 once in a million.
+            assert!(
+                (mean - exact).abs() < 5.6 * error && error < 0.004,
+                "{blur} {length}: {mean} {error} {exact}"
+            );
+            assert_eq!(row["unit"], "W/L^2");
+        }
+    }
 }
 
 /// What a picture's header says, as JSON.

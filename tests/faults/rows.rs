@@ -1,8 +1,8 @@
 //! One row a fault: where it was seen, what it is here, and which check catches it.
 
 use crate::checks::{
-    beams, cell, color, connected, emitters, flights, fog, glass, ledger, light, media, numbers, outputs,
-    phase, planes, point_light, points, progressive, shading, slab, threads, walls, weights,
+    along_rays, beams, cell, color, connected, emitters, flights, fog, glass, ledger, light, media, numbers,
+    outputs, phase, planes, point_light, points, progressive, shading, slab, threads, walls, weights,
 };
 use crate::support::scenes::{area_light, cuboid, rectangle};
 use glam::DVec3;
@@ -312,6 +312,11 @@ const fn inside(fault: Fault) -> Row {
             "each_map_is_read_within_the_radius_that_is_due",
             |_| progressive::each_map_is_read_within_the_radius_that_is_due(),
         ),
+        Fault::RadiiExtrapolated => {
+            ("radii of photons extrapolated from their sqrt(k) nearest", "own_radii_by_hand", |_| {
+                along_rays::own_radii_by_hand()
+            })
+        }
         Fault::PlanesCollided => ("planes on flights that collided only", "a_laser_scattered_twice", |_| {
             planes::a_laser_scattered_twice()
         }),
@@ -414,6 +419,7 @@ pub const ROWS: &[Row] = &[
         point_light::intervals_cover(if wrong { point_light::by_free_flight } else { point_light::by_both })
     }),
     inside(Fault::ScheduleOfSpace),
+    inside(Fault::RadiiExtrapolated),
 ];
 
 /// Changes by hand that no test had noticed, in the order of their own document.

@@ -1,11 +1,17 @@
-//! Points along a ray: sums by hand, copies of a periodic cell, what passes to each place, blur across the ray, walls, and paths.
+//! Points along a ray, with one radius or one each: sums by hand, copies of a periodic cell, what passes to each place, blur across the ray, walls, and paths.
 
 use super::boundary::known;
+use crate::checks::along_rays::{own_radii_by_hand, photon, reading};
 use crate::checks::media::{layered, varying};
+use crate::support::quadrature::integrate;
 use crate::support::run::{paths, sensor};
-use crate::support::scenes::{bounded, cuboid, homogeneous, point_light};
+use crate::support::scenes::{
+    CELL, Incidence, bounded, cuboid, homogeneous, incidence, layer, point_light, region,
+};
 use crate::support::verdict;
 use glam::{DVec2, DVec3, Vec3};
+use std::f64::consts::PI;
+use std::num::NonZeroUsize;
 use turbid::Spectrum;
 use turbid::estimators::boundary::Boundary;
 use turbid::estimators::{Estimator, Gather, Kernel, RayEstimator};
@@ -13,7 +19,7 @@ use turbid::geometry::{Rectangle, Shape};
 use turbid::math::{FOUR_PI, Interval, Positive, Ray, exp, warp};
 use turbid::medium::Medium;
 use turbid::photons::synthetic::{Number, Profile, Synthetic};
-use turbid::photons::{Flags, Photon, PhotonMap};
+use turbid::photons::{Photon, PhotonMap};
 use turbid::rng::{Purpose, Stream};
 use turbid::scene::{Orders, Quantity, Region, Scene, SceneParts};
 use turbid::sensor::{PhotonSettings, by_photons};
@@ -21,12 +27,9 @@ use turbid::stats::Moments;
 use turbid::transport::{NoProgress, Passage};
 use turbid_analytic::beams::Pairing;
 
-fn photon(position: DVec3, dir: Vec3) -> Photon {
-    Photon { position, dir, normal: Vec3::ZERO, power: Vec3::ONE, order: 0, flags: Flags::NONE }
-}
-
-fn reading(kernel: Kernel, radius: f64) -> RayEstimator {
-    RayEstimator { kernel, radius: Positive::new("the radius", radius).unwrap(), is_clipped: false }
+#[test]
+fn own_radii() {
+    own_radii_by_hand();
 }
 
 /// One photon beside a ray, in a homogeneous medium and in one that grows denser along it: products of five factors.
@@ -173,7 +176,7 @@ fn fields_are_blurred_across_the_ray() {
     }
     for ((name, ray, span), moments) in ways.iter().zip(&moments) {
         let along = |t: f64| synthetic.density(ray.at(t));
-        let sharp = crate::support::quadrature::integrate(span.start, span.end, 8, along) / FOUR_PI;
+        let sharp = integrate(span.start, span.end, 8, along) / FOUR_PI;
         let across = rate * (1.0 - ray.dir.x * ray.dir.x).sqrt();
         for (kernel, moments) in Kernel::ALL.into_iter().zip(moments) {
             let blur = Pairing::RayPoints.exponential_mean(known(kernel), across * radius).unwrap();
@@ -303,4 +306,189 @@ fn radiance_along_rays_is_that_of_paths() {
             }
         }
     }
+}
+
+/// The number of photons that are within r of a place of an exponential field, of this density there.
+fn within(density: f64, rate: f64, r: f64) -> f64 {
+    let x = rate * r;
+    4.0 * PI * density * (x * libm::cosh(x) - libm::sinh(x)) / (rate * rate * rate)
+}
+
+/// The chance that a Poisson number is below k.
+fn is_below(k: u32, mean: f64) -> f64 {
+    let mut term = exp(-mean);
+    (0..k).fold(0.0, |sum, i| {
+        let sum = sum + term;
+        term *= mean / f64::from(i + 1);
+        sum
+    })
+}
+
+/// In an exponential field whose photons have radii of their own, across it: the blur is that of the radius at each photon, not of
+/// that at the ray. With R(y) the distance to the k-th of a Poisson process about y, the mean is the integral of f(y) E K_R(y - x)
+/// over the plane across the ray; R does not depend on the photon at y. Sharp, or with the law of the radius at the ray, it is another.
+#[test]
+fn fields_are_blurred_by_the_radius_at_each_photon() {
+    let (rate, count, cap) = (6.0, 6000, 0.2);
+    let synthetic = Synthetic::new(Profile::Exponential { rate }, DVec3::ZERO, DVec3::ONE).unwrap();
+    let even = homogeneous(Spectrum::ONE, Spectrum::ONE, 0.0);
+    // No ball reaches beyond the box.
+    let span = Interval { start: 1.25, end: 1.75 };
+    let rays = [0.3, 0.4, 0.5, 0.6, 0.7].map(|y| Ray::new(DVec3::new(0.5, y, -1.0), DVec3::Z));
+    let specimens = [(Kernel::Uniform, 12), (Kernel::Biweight, 24)];
+    let mut moments = [Moments::new(); 2];
+    for replicate in 0..600 {
+        let map = synthetic.map(Number::Expected(count), 13, replicate).unwrap();
+        for ((kernel, k), moments) in specimens.iter().zip(&mut moments) {
+            let radii = map.radii(*k as usize, cap);
+            let read = |ray: &Ray| {
+                let of = (&map, &radii);
+                let all = |_| Spectrum::ONE;
+                reading(*kernel, cap).radiance_by_radii(of, (ray, span), &even, &Boundary::UNKNOWN, all).value
+                    [0]
+            };
+            moments.push(rays.iter().map(read).sum::<f64>() / rays.len() as f64);
+        }
+    }
+    let middle = synthetic.density(DVec3::splat(0.5));
+    let sharp = middle * span.length() / FOUR_PI;
+    for ((kernel, k), moments) in specimens.into_iter().zip(&moments) {
+        let plane = |u2: f64, r: f64| kernel.disc_peak() * kernel.profile(u2) / (r * r);
+        // The mean kernel at a distance, where radii are those of a density.
+        let mean = |distance: f64, density: f64| {
+            let expected = f64::from(count as u32) * density;
+            let inside = integrate(distance, cap, 2, |r| {
+                let many = within(expected, rate, r);
+                let faster = 4.0 * PI * expected * r * libm::sinh(rate * r) / rate;
+                let last = is_below(k, many) - is_below(k - 1, many);
+                faster * last * plane(distance * distance / (r * r), r)
+            });
+            inside + is_below(k, within(expected, rate, cap)) * plane(distance * distance / (cap * cap), cap)
+        };
+        let blurred = |density_of: &dyn Fn(f64) -> f64| {
+            // Rings of the disc, and angles on them.
+            let ring = |s: f64| {
+                let angle = |phi: f64| {
+                    let x = s * turbid::math::cos(phi);
+                    exp(-rate * x) * mean(s, density_of(x))
+                };
+                2.0 * s * integrate(0.0, PI, 1, angle)
+            };
+            sharp * integrate(0.0, cap, 4, ring)
+        };
+        let expected = blurred(&|x| middle * exp(-rate * x));
+        let what = format!("{kernel:?} k={k}");
+        verdict::agrees(&what, moments, (expected, 1e-5 * expected), 0.036 * expected, 13);
+        let at_the_ray = blurred(&|_| middle);
+        verdict::rejects(&format!("{what}, radius at the ray"), moments, at_the_ray, 13);
+    }
+}
+
+/// Along the normal of a slab the light of a disc is the same all over it, and so is the law of its radii: what leaves it comes out
+/// exactly, whatever the k, under a beam and in a furnace.
+#[test]
+fn slabs_along_their_normal_know_no_radius() {
+    let places = [[0.5, 0.5], [0.2, 0.7], [0.8, 0.3], [0.1, 0.1]];
+    let look = |[x, y]: [f64; 2]| Quantity::Radiance(Ray::new(DVec3::new(x * CELL, y * CELL, 0.0), DVec3::Z));
+    for (how, albedo, expected) in
+        [(Incidence::Beam(1.0), 0.9, 0.066_845_328), (Incidence::Both, 1.0, -turbid::math::exp_m1(-1.0) / PI)]
+    {
+        let scene = Scene::new(SceneParts {
+            lights: vec![incidence(layer(1.0), how)],
+            regions: vec![region(layer(1.0), 1.0, albedo, 0.0)],
+            sensors: places.map(|place| sensor(look(place), Orders::SCATTERED)).to_vec(),
+            cell: Some(DVec2::splat(CELL)),
+            ..SceneParts::default()
+        })
+        .unwrap();
+        let of = |k: usize| {
+            let along = Estimator::new(Kernel::Uniform, Gather::radius(0.1).unwrap())
+                .treated(turbid::estimators::boundary::Treatment::Clipped)
+                .along_rays(Positive::new("the radius", 0.6).unwrap());
+            along.of_nearest(NonZeroUsize::new(k).unwrap())
+        };
+        let estimators = [4, 30].map(of);
+        let measured = crate::checks::beams::means_by_maps(&scene, (4000, 150), 14, &estimators);
+        for (estimator, moments) in estimators.iter().zip(&measured) {
+            let what = format!("{how:?}, {}", estimator.name());
+            verdict::agrees(&what, moments, (expected, 1e-8), 0.13 * expected, 14);
+        }
+    }
+}
+
+/// Near a face the share is that of the photon's own disc: pairs of photons a tenth apart, whose radii are all that, read as with a
+/// fixed radius of a tenth, clipped and not, beside a wall too.
+#[test]
+fn shares_near_walls_are_of_each_radius() {
+    let whole = cuboid(DVec3::ZERO, DVec3::ONE);
+    let even = homogeneous(Spectrum::ONE, Spectrum::ONE, 0.0);
+    let photons: Vec<Photon> = (0..64)
+        .flat_map(|i| {
+            let (row, column) = (i / 8, i % 8);
+            // No other pair is as near.
+            let at = DVec3::new(0.03 + 0.3 * f64::from(row % 4), 0.02, 0.06 + 0.12 * f64::from(column));
+            [at, at + DVec3::Y * 0.1].map(|at| photon(at + DVec3::Y * 0.3 * f64::from(row / 4), Vec3::Z))
+        })
+        .collect();
+    let map = PhotonMap::new(photons, 1).unwrap();
+    let radii = map.radii(1, 0.25);
+    let ray = Ray::new(DVec3::new(0.05, 0.06, 0.0), DVec3::Z);
+    let span = Interval { start: 0.0, end: 1.0 };
+    let wall = Rectangle::new(DVec3::new(0.1, 0.0, 0.0), DVec3::Y, DVec3::Z * 0.5).unwrap();
+    let walls = [Shape::Rectangle(wall)];
+    let known = Boundary::of(&whole).unwrap();
+    for boundary in [known, known.about(&walls)] {
+        for is_clipped in [true, false] {
+            for kernel in Kernel::ALL {
+                let fixed = RayEstimator { is_clipped, ..reading(kernel, 0.1) };
+                let own = RayEstimator { is_clipped, ..reading(kernel, 0.25) };
+                let all = |_| Spectrum::ONE;
+                let expected = fixed.radiance(&map, (&ray, span), &even, &boundary, all);
+                let found = own.radiance_by_radii((&map, &radii), (&ray, span), &even, &boundary, all);
+                assert!(expected.found > 4 && found.found == expected.found, "{kernel:?}");
+                let ratio = found.value[0] / expected.value[0];
+                assert!((ratio - 1.0).abs() < 1e-5, "{kernel:?} {is_clipped}: {ratio}");
+            }
+        }
+    }
+}
+
+/// Copies of a cell have the radii of the photons that they stand for: a ray through the cell's edge reads as one through its middle of
+/// photons that are moved by half a cell.
+#[test]
+fn copies_of_a_cell_have_their_radii() {
+    let side = DVec2::new(2.0, 3.0);
+    let mut stream = Stream::new(18, Purpose::Synthetic, 0, 0);
+    let here: Vec<Photon> =
+        (0..400).map(|_| photon(DVec3::from(stream.triple()) * side.extend(1.0), Vec3::Z)).collect();
+    let half = (0.5 * side).extend(0.0);
+    let moved = here.iter().map(|one| {
+        let position = turbid::photons::periodic::wrap(one.position + half, side);
+        Photon { position, ..*one }
+    });
+    let even = homogeneous(Spectrum::ONE, Spectrum::ONE, 0.0);
+    let of =
+        |photons: Vec<Photon>| PhotonMap::periodic(vec![photons], 1, Some((side, 0.5)), &NoProgress).unwrap();
+    let maps = [of(here.clone()), of(moved.collect())];
+    let mut found = 0;
+    for dir in [DVec3::Z, DVec3::new(0.6, 0.0, 0.8), DVec3::new(0.0, -0.8, 0.6)] {
+        let span = Interval { start: 0.0, end: 1.0 };
+        let read = |(map, origin): (&PhotonMap, DVec3)| {
+            let radii = map.radii(6, 0.5);
+            let ray = Ray::new(origin, dir);
+            reading(Kernel::Cone, 0.5).radiance_by_radii(
+                (map, &radii),
+                (&ray, span),
+                &even,
+                &Boundary::UNKNOWN,
+                |_| Spectrum::ONE,
+            )
+        };
+        let [edge, middle] = [read((&maps[0], DVec3::ZERO)), read((&maps[1], half))];
+        assert_eq!(edge.found, middle.found, "{dir}");
+        assert!((edge.value[0] / middle.value[0] - 1.0).abs() < 1e-4, "{edge:?} {middle:?}");
+        found += edge.found;
+    }
+    assert!(found > 20, "{found}");
+    assert!(maps[0].radii(6, 0.6).largest() <= 0.6);
 }

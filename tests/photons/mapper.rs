@@ -39,6 +39,12 @@ fn along_rays(settings: Settings, radius: f64) -> Settings {
     Settings { volume: settings.volume.along_rays(radius), ..settings }
 }
 
+/// The same with a radius for each photon.
+fn of_nearest(settings: Settings, k: usize) -> Settings {
+    let k = std::num::NonZeroUsize::new(k).unwrap();
+    Settings { volume: settings.volume.of_nearest(k), ..settings }
+}
+
 /// Fog of albedo 1 with the same radiance from all sides is as bright everywhere, at any anisotropy: what is lost on the
 /// way is scattered in. Single scattering alone is not even: places lie farther from the faces than a ball reaches. A constant source of steps of x mean free paths is read as each rule reads it, also where the medium is one that could vary.
 #[test]
@@ -67,6 +73,7 @@ fn a_furnace_of_fog() {
             (marching(x, StepRule::Integrated, false), 1.0),
             (marching(x, StepRule::NearEnd, false), x / -exp_m1(-x)),
             (along_rays(marching(0.7, StepRule::Integrated, true), 0.3), 1.0),
+            (of_nearest(along_rays(marching(0.7, StepRule::Integrated, true), 0.2), 8), 1.0),
             (marching(0.5 * x, StepRule::NearEnd, false), 0.5 * x / -exp_m1(-0.5 * x)),
             (marching(x, StepRule::Middle, false), 0.5 * x / libm::sinh(0.5 * x)),
         ] {

@@ -3,6 +3,7 @@
 mod accepted_surface;
 mod advise;
 mod along_rays;
+mod beam_blur;
 mod beams;
 mod boundary;
 mod estimators;
@@ -16,6 +17,7 @@ mod parted;
 mod passes;
 mod planes;
 mod progressive;
+mod ray_ends;
 mod sensor_maps;
 mod statistics;
 mod surface_estimates;

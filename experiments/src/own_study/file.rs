@@ -4,6 +4,7 @@ use anyhow::{Context, anyhow, bail, ensure};
 use serde::de::Error as _;
 use serde::{Deserialize, Deserializer};
 use std::collections::BTreeMap;
+use std::num::NonZeroUsize;
 use turbid::estimators::boundary::{Rejection, Treatment};
 use turbid::estimators::{Estimator, Gather, Kernel};
 use turbid::input::line_and_column;
@@ -233,6 +234,9 @@ pub struct EstimatorFile {
     /// Radii about whole rays, which are then read at once \[L\]; at points balls of the same radius.
     #[serde(default)]
     ray_radius: Option<OneOrMore<f64>>,
+    /// Which nearest other photon sets the radius of each about rays, at most `ray_radius`.
+    #[serde(default)]
+    ray_k: Option<OneOrMore<Count>>,
     /// The same from flights as beams \[L\].
     #[serde(default)]
     beam_radius: Option<OneOrMore<f64>>,
@@ -320,12 +324,22 @@ impl EstimatorFile {
             self.max_radius.is_none() || self.k.is_some(),
             "max_radius goes with k; a fixed radius is its own"
         );
+        let ks = self.ray_k.iter().flat_map(OneOrMore::list).map(|k| NonZeroUsize::new(k.0 as usize));
+        let own: Vec<NonZeroUsize> = ks.collect::<Option<_>>().context("ray_k is 0; allowed: at least 1")?;
+        ensure!(
+            own.is_empty() || !about_rays.is_empty(),
+            "ray_k goes with ray_radius, which no radius exceeds"
+        );
         let mut all = Vec::new();
         for kernel in words(&self.kernel, Kernel::Uniform.name()) {
             let kernel = named("kernel", &kernel, &Kernel::ALL, Kernel::name)?;
             for &radius in &about_rays {
                 let of_points = Estimator::new(kernel, Gather::Radius(radius)).treated(Treatment::Clipped);
-                all.push(of_points.along_rays(radius));
+                let of_rays = of_points.along_rays(radius);
+                match &own[..] {
+                    [] => all.push(of_rays),
+                    own => all.extend(own.iter().map(|k| of_rays.of_nearest(*k))),
+                }
             }
             for &radius in &across_beams {
                 let of_points = Estimator::new(kernel, Gather::Radius(radius)).treated(Treatment::Clipped);

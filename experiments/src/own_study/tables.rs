@@ -32,13 +32,24 @@ fn parameters(data: &Data, setting: &Setting) -> Vec<String> {
     let [of_rays, of_beams] = [estimator.ray_radius, estimator.beam_radius]
         .map(|radius| radius.map_or_else(String::new, |radius| radius.get().to_string()));
     all.extend([setting.photons.to_string(), estimator.kernel.name().to_string(), radius]);
-    all.extend([of_rays, of_beams, k, cap]);
+    let ray_k = estimator.ray_k.map_or_else(String::new, |k| k.to_string());
+    all.extend([of_rays, ray_k, of_beams, k, cap]);
     all.extend([estimator.treatment.name().to_string(), estimator.rejection.name().to_string()]);
     all
 }
 
-const ESTIMATOR: [&str; 9] =
-    ["photons", "kernel", "radius", "ray_radius", "beam_radius", "k", "max_radius", "treatment", "rejection"];
+const ESTIMATOR: [&str; 10] = [
+    "photons",
+    "kernel",
+    "radius",
+    "ray_radius",
+    "ray_k",
+    "beam_radius",
+    "k",
+    "max_radius",
+    "treatment",
+    "rejection",
+];
 
 /// The names of the columns: axes, settings, and those of the table. An axis that is called as one of the others is `scene.NAME`.
 fn columns(data: &[Data], own: &[&str]) -> Vec<String> {

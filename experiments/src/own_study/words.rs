@@ -39,13 +39,16 @@ pub const SAMPLING: &str = "sampling";
 
 /// What estimators that differ in the size of their gather share.
 pub fn family(estimator: &Estimator) -> String {
-    let Estimator { kernel, gather, treatment, rejection, ray_radius, beam_radius, .. } = estimator;
+    let Estimator { kernel, gather, treatment, rejection, ray_radius, ray_k, beam_radius, .. } = estimator;
     let size = match gather {
         Gather::Radius(_) => "fixed radius",
         Gather::Nearest { .. } => "k nearest",
         Gather::NearestBiased { .. } => "k nearest, biased",
     };
     let mut name = format!("{size}, {}", kernel.name());
+    if ray_k.is_some() {
+        return format!("k nearest of each photon, {}, along rays", kernel.name());
+    }
     if ray_radius.is_some() {
         return name + ", along rays";
     }
@@ -62,12 +65,12 @@ pub fn family(estimator: &Estimator) -> String {
 /// The size of a gather: its radius \[L\], or its k.
 pub fn size(estimator: &Estimator) -> f64 {
     match estimator.gather {
-        Gather::Radius(radius) => radius.get(),
+        Gather::Radius(radius) => estimator.ray_k.map_or(radius.get(), |k| k.get() as f64),
         Gather::Nearest { k, .. } | Gather::NearestBiased { k, .. } => k.get() as f64,
     }
 }
 
 /// Whether the gather's radius is fixed.
 pub fn is_fixed(estimator: &Estimator) -> bool {
-    matches!(estimator.gather, Gather::Radius(_))
+    matches!(estimator.gather, Gather::Radius(_)) && estimator.ray_k.is_none()
 }

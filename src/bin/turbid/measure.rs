@@ -4,14 +4,15 @@ use super::given::{Given, notes as notes_of_given};
 use super::load::Source;
 use super::memory::{Memory, passes_that_fit, rounded_down};
 use super::options;
-use super::picture::{BoundaryName, RejectName, beam_radius, ray_radius};
+use super::picture::{BlurName, BoundaryName, RejectName, beam_radius, ray_k, ray_radius};
 use super::progress::Bar;
 use super::revision::revision;
 use super::shared::{FormatName, kernels, note, on_threads, parse_count, tell_ahead, whole};
 use anyhow::{Context, bail};
 use clap::{ArgMatches, ValueEnum};
+use std::num::NonZeroUsize;
 use std::path::PathBuf;
-use turbid::estimators::{Estimator, Gather, Kernel};
+use turbid::estimators::{BeamBlur, BeamLength, Estimator, Gather, Kernel, RayEnds};
 use turbid::geometry::Voxels;
 use turbid::math::Positive;
 use turbid::output::{
@@ -95,11 +96,30 @@ pub struct Measure {
     /// beside the ray is missing [L].
     #[arg(long, conflicts_with = "reject")]
     ray_radius: Option<f64>,
+    /// Give each photon a radius of its own about rays, the distance to its k-th nearest other photon, at most --ray-radius: the beam
+    /// radiance estimate as it was published, sharp where photons are many. Its blur depends on their density. Not with --progressive
+    /// or --passes.
+    #[arg(long, value_name = "K", requires = "ray_radius", conflicts_with = "progressive", value_parser = whole::<u32>(1..=1_000_000_000))]
+    ray_k: Option<u32>,
     /// Store photons' flights through media as beams, and read rays from all beams that pass within this distance of the ray: less
     /// noise than points where it is below 0.4 mean free paths. Sensors of fluence take photons in the balls of --k or --radius. Not
     /// for media that vary and whose extinction differs by channel [L].
     #[arg(long, conflicts_with_all = ["reject", "ray_radius", "photons_from"])]
     beam_radius: Option<f64>,
+    /// Read sensors of fluence from beams too: from all that pass the place within --beam-radius, in place of from photons in a ball
+    /// [W/L^2]. Not with --progressive, since their radius shrinks at another rate.
+    #[arg(long, requires = "beam_radius", conflicts_with = "progressive")]
+    beam_fluence: bool,
+    /// In how many dimensions beams are blurred [default: 1d].
+    #[arg(long, value_enum, requires = "beam_radius")]
+    beam_blur: Option<BlurName>,
+    /// How far beams go [default: sampled].
+    #[arg(long, value_enum, requires = "beam_radius")]
+    beam_length: Option<LengthName>,
+    /// Where rays that are read at once end: own loses nothing at faces, and blurs the picture alone. Only for one homogeneous region
+    /// with nothing in it [default: cut].
+    #[arg(long, value_enum, conflicts_with = "planes")]
+    ray_ends: Option<EndsName>,
     /// Read light that is scattered twice and more from planes of photons' flights, without blur or bias: each flight and a scattering on it
     /// sweep out a parallelogram. Light that is scattered once comes from beams: --beam-radius, or --orders 2.. to leave it out. The
     /// variance is infinite in diffuse light, and errors between maps are too small by what few maps have not met. Only for homogeneous
@@ -151,6 +171,23 @@ enum With {
     Photons,
     /// Light tracing: photons that are scored as they pass, none stored.
     Light,
+}
+
+#[derive(Clone, Copy, ValueEnum)]
+enum LengthName {
+    /// As far as the photon flew.
+    Sampled,
+    /// To the end of each medium, with what passes, while the photon goes on from where it collided: less noise a photon, and more
+    /// beams about every ray. Not for media that vary.
+    Whole,
+}
+
+#[derive(Clone, Copy, ValueEnum)]
+enum EndsName {
+    /// Square across the ray at the faces of the medium, which --boundary makes up for.
+    Cut,
+    /// For each photon or beam where the parallel ray through it leaves the medium.
+    Own,
 }
 
 /// Orders on the command line.
@@ -243,7 +280,12 @@ impl Measure {
                 treatment,
                 rejection,
                 ray_radius,
+                ray_k,
                 beam_radius,
+                beam_blur,
+                beam_length,
+                has_beam_fluence,
+                ray_ends,
                 has_planes,
                 is_progressive,
             } = self.settings(scene, 1, 1)?.estimator;
@@ -252,9 +294,16 @@ impl Measure {
                 Gather::Radius(radius) => run.radius = Some(radius.get()),
                 _ => (run.k, run.max_radius) = (gather.k(), Some(gather.cap())),
             }
+            run.ray_ends = (ray_ends != RayEnds::Cut).then(|| ray_ends.name().to_string());
             run.progressive = is_progressive.then_some(true);
             run.ray_radius = ray_radius.map(Positive::get);
+            run.ray_k = ray_k.map(NonZeroUsize::get);
             run.beam_radius = beam_radius.map(Positive::get);
+            if beam_radius.is_some() {
+                run.beam_blur = Some(beam_blur.name().to_string());
+                run.beam_length = Some(beam_length.name().to_string());
+                run.beam_fluence = has_beam_fluence.then_some(true);
+            }
             run.planes = has_planes.then_some(true);
             run.kernel = Some(kernel.name().to_string());
             run.boundary = Some(treatment.name().replace(' ', "-"));
@@ -359,7 +408,8 @@ impl Measure {
         let is_of_balls = |sensor: &Sensor| {
             matches!(sensor.quantity, Quantity::Fluence(_) | Quantity::Binned(Binned::Fluence { .. }))
         };
-        let has_balls = scene.sensors().iter().any(is_of_balls) || (ray_radius, beam_radius) == (None, None);
+        let has_balls = !self.beam_fluence && scene.sensors().iter().any(is_of_balls)
+            || (ray_radius, beam_radius) == (None, None);
         if self.progressive && has_balls && self.radius.is_none() {
             bail!(
                 "--progressive shrinks radii, and takes the k nearest photons as they are; allowed: with --radius, or, for sensors of \
@@ -367,7 +417,25 @@ impl Measure {
             );
         }
         let (has_planes, is_progressive) = (self.planes, self.progressive);
-        let estimator = Estimator { ray_radius, beam_radius, has_planes, is_progressive, ..estimator };
+        let ray_k = ray_k(self.ray_k);
+        let beam_blur = self.beam_blur.map_or(BeamBlur::default(), BlurName::blur);
+        let beam_length = match self.beam_length {
+            Some(LengthName::Whole) => BeamLength::Whole,
+            Some(LengthName::Sampled) | None => BeamLength::Sampled,
+        };
+        let ray_ends = match self.ray_ends {
+            Some(EndsName::Own) => RayEnds::Own,
+            Some(EndsName::Cut) | None => RayEnds::Cut,
+        };
+        if ray_ends == RayEnds::Own && (ray_radius, beam_radius) == (None, None) {
+            bail!(
+                "--ray-ends is own, of rays that are read at once; allowed: with --ray-radius or --beam-radius"
+            );
+        }
+        let estimator = Estimator { ray_ends, ..estimator };
+        let estimator =
+            Estimator { beam_blur, beam_length, has_beam_fluence: self.beam_fluence, ..estimator };
+        let estimator = Estimator { ray_radius, ray_k, beam_radius, has_planes, is_progressive, ..estimator };
         Ok(PhotonSettings { photons, maps, seed: self.seed, orders: self.orders, estimator })
     }
 
@@ -413,6 +481,13 @@ impl Measure {
             bail!(
                 "--passes is {}, which needs --radius: the k nearest photons are not known before the last pass; allowed \
                  without it: 1, with fewer --photons",
+                self.passes
+            );
+        }
+        if self.passes > 1 && self.ray_k.is_some() {
+            bail!(
+                "--passes is {}, and --ray-k takes the k nearest photons, which are not known before the last pass; allowed with it: 1, \
+                 with fewer --photons",
                 self.passes
             );
         }

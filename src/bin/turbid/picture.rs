@@ -6,8 +6,9 @@ use super::progress::Bar;
 use super::shared::{kernels, note, parse_count, tell_ahead, whole};
 use anyhow::{Context, anyhow};
 use clap::ValueEnum;
+use std::num::NonZeroUsize;
 use turbid::estimators::boundary::{Rejection, Treatment};
-use turbid::estimators::{Estimator, Gather, Kernel};
+use turbid::estimators::{BeamBlur, Estimator, Gather, Kernel};
 use turbid::integrators::mapper::{LEAST_K, Settings, scene_size};
 use turbid::integrators::{Adaptive, StepRule};
 use turbid::math::Positive;
@@ -258,11 +259,19 @@ pub struct Readout {
     /// is missing [L].
     #[arg(long, conflicts_with = "reject")]
     ray_radius: Option<f64>,
+    /// Give each photon a radius of its own about rays, the distance to its k-th nearest other photon, at most --ray-radius: the beam
+    /// radiance estimate as it was published, sharp where photons are many. Its blur depends on their density. Not with --progressive
+    /// or --passes.
+    #[arg(long, value_name = "K", requires = "ray_radius", conflicts_with = "progressive", value_parser = whole::<u32>(1..=1_000_000_000))]
+    ray_k: Option<u32>,
     /// Store photons' flights through media as beams in place of photons, and read them along whole rays, from all beams that pass
     /// within this distance of the ray, weighted by --kernel: less noise than points where it is below 0.4 mean free paths. --volume
     /// counts beams. Not for media that vary and whose extinction differs by channel [L].
     #[arg(long, conflicts_with_all = ["reject", "ray_radius"])]
     beam_radius: Option<f64>,
+    /// In how many dimensions beams are blurred, 1d or 2d [default: 1d].
+    #[arg(long, value_enum, requires = "beam_radius")]
+    beam_blur: Option<BlurName>,
     /// Rays of a final gathering at each surface that is seen; 0 reads the global map there itself: fast, and blotchy.
     #[arg(long, default_value_t = 64, value_parser = whole::<u32>(0..=1_000_000))]
     gather_rays: u32,
@@ -330,6 +339,30 @@ impl BoundaryName {
 }
 
 #[derive(Clone, Copy, PartialEq, ValueEnum)]
+pub enum BlurName {
+    /// Along the line across a ray and a beam; at a place, where there is no such line, across the beam.
+    #[value(name = "1d")]
+    OneD,
+    /// Across the ray, so that beams along it count too; at a place across the beam.
+    #[value(name = "2d")]
+    TwoD,
+    /// In the ball about a place; not for rays.
+    #[value(name = "3d")]
+    ThreeD,
+}
+
+impl BlurName {
+    /// The blur of this name.
+    pub fn blur(self) -> BeamBlur {
+        match self {
+            BlurName::OneD => BeamBlur::OneD,
+            BlurName::TwoD => BeamBlur::TwoD,
+            BlurName::ThreeD => BeamBlur::ThreeD,
+        }
+    }
+}
+
+#[derive(Clone, Copy, PartialEq, ValueEnum)]
 enum EdgesName {
     /// Nothing: up to half is lost at an edge.
     None,
@@ -369,6 +402,11 @@ pub fn ray_radius(given: Option<f64>) -> anyhow::Result<Option<Positive>> {
     Ok(given.map(|radius| Positive::new("--ray-radius", radius)).transpose()?)
 }
 
+/// The number of --ray-k.
+pub fn ray_k(given: Option<u32>) -> Option<NonZeroUsize> {
+    given.and_then(|k| NonZeroUsize::new(k as usize))
+}
+
 /// The radius of --beam-radius, checked.
 pub fn beam_radius(given: Option<f64>) -> anyhow::Result<Option<Positive>> {
     Ok(given.map(|radius| Positive::new("--beam-radius", radius)).transpose()?)
@@ -386,6 +424,11 @@ impl Readout {
     /// Whether an estimate takes all photons within a radius.
     pub fn has_radius(&self) -> bool {
         self.radius.is_some()
+    }
+
+    /// Whether each photon has a radius of its own about rays.
+    pub fn has_ray_k(&self) -> bool {
+        self.ray_k.is_some()
     }
 
     /// Whether the volume map is of beams.
@@ -437,7 +480,12 @@ impl Readout {
         let volume = Estimator::new(self.kernel, volume);
         settings.volume = volume.treated(self.boundary.treatment()).rejecting(self.reject.rejection());
         settings.volume.ray_radius = ray_radius(self.ray_radius)?;
+        settings.volume.ray_k = ray_k(self.ray_k);
         settings.volume.beam_radius = beam_radius(self.beam_radius)?;
+        settings.volume.beam_blur = self.beam_blur.map_or(BeamBlur::default(), BlurName::blur);
+        if settings.volume.beam_blur == BeamBlur::ThreeD {
+            return Err(anyhow!("--beam-blur is 3d, which is about places; allowed of pictures: 1d, 2d"));
+        }
         settings.gather_rays = self.gather_rays.max(1);
         settings.near = self.near;
         settings.clips_discs = self.edges == EdgesName::Clipped;

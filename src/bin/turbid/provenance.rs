@@ -35,8 +35,12 @@ pub fn mapper_settings(settings: &Settings) -> Value {
     if let Some(radius) = volume.ray_radius {
         of_volume["ray_radius"] = json!(radius.get());
     }
+    if let Some(k) = volume.ray_k {
+        of_volume["ray_k"] = json!(k.get());
+    }
     if let Some(radius) = volume.beam_radius {
         of_volume["beam_radius"] = json!(radius.get());
+        of_volume["beam_blur"] = json!(volume.beam_blur.name());
     }
     json!({
         "global": read(*global),

@@ -435,6 +435,9 @@ impl Render {
             () if !self.readout.has_radius() => refuse(
                 "which needs --radius: the k nearest photons are not known before the last pass; allowed without it: 1",
             ),
+            () if self.readout.has_ray_k() => refuse(
+                "and --ray-k takes the k nearest photons, which are not known before the last pass; allowed with it: 1",
+            ),
             () if self.readout.is_adaptive() => refuse(
                 "which needs --adapt 0: steps that depend on what the maps say would differ from pass to pass; allowed \
                  otherwise: 1",

@@ -34,6 +34,7 @@ pub use treatment::Treatment;
 
 pub(super) use accepted::accepted;
 pub(super) use beside::Beside;
+pub(super) use moments::body_part;
 pub(super) use rejection::PhotonFilter;
 pub(super) use treatment::Gathered;
 pub(super) use visible::Surroundings;

@@ -45,7 +45,7 @@ pub fn body_moments(kernel: Kernel, body: &Shape, point: DVec3, radius: f64) -> 
 pub(super) const LEAST_PART: f64 = 1e-13;
 
 /// M_0 alone, sooner known where one flat face is in the ball; at least [`LEAST_PART`], since it divides.
-pub(super) fn body_part(kernel: Kernel, body: &Shape, point: DVec3, radius: f64) -> f64 {
+pub(in crate::estimators) fn body_part(kernel: Kernel, body: &Shape, point: DVec3, radius: f64) -> f64 {
     let face = |distances: &[f64]| {
         let mut near = distances.iter().filter(|distance| **distance < radius);
         near.next().filter(|_| near.next().is_none()).copied()

@@ -23,13 +23,14 @@ pub use settings::{LEAST_K, Settings, scene_size};
 
 use crate::Spectrum;
 use crate::error::{Error, Result};
-use crate::estimators::{Estimate, RayEstimate};
+use crate::estimators::{BeamBlur, Estimate, Estimator, RayEstimate};
 use crate::geometry::Shape;
 use crate::integrators::path::{Rays, next_event, seen_straight, uncollided};
 use crate::integrators::{Layer, Layers};
 use crate::light::Light;
 use crate::math::{Positive, Ray};
 use crate::photons::maps::Maps;
+use crate::photons::tree::Radii;
 use crate::rng::{Stream, Work};
 use crate::scene::{Scene, SceneHit, Start, Target};
 use crate::transport::{Roulette, Step, Visitor, Walker, emission, transmittance, walk};
@@ -143,6 +144,8 @@ pub struct Mapper<'a> {
     scene: &'a Scene,
     maps: &'a Maps,
     settings: &'a Settings,
+    /// The radii of the volume map's photons about rays, where they are to have one each.
+    radii: Option<Box<Radii>>,
     /// Bodies that part photons from a point of a medium, where a rule of the laboratory asks for them.
     walls: Vec<Shape>,
     /// Where surfaces end or are covered, if estimates are to be divided by what is left of their discs.
@@ -162,7 +165,10 @@ impl<'a> Mapper<'a> {
         };
         let bodies = settings.clips_discs.then(|| Bodies::new(scene));
         let extents = medium_extents(scene);
-        Mapper { scene, maps, settings, walls, bodies, extents, size: scene_size(scene) }
+        let Estimator { ray_radius, ray_k, .. } = settings.volume;
+        let radii = maps.volume.as_ref().zip(ray_radius.zip(ray_k));
+        let radii = radii.map(|(map, (most, k))| Box::new(map.radii(k.get(), most.get())));
+        Mapper { scene, maps, settings, radii, walls, bodies, extents, size: scene_size(scene) }
     }
 
     /// Checks that the maps tell positions apart finely enough for their gathers' radii. Where the k nearest photons lie closer
@@ -178,6 +184,11 @@ impl<'a> Mapper<'a> {
             return Err(Error::Scene("pictures are not read from planes; allowed: beams, or points".into()));
         }
         let is_of_beams = self.settings.volume.beam_radius.is_some();
+        if is_of_beams && self.settings.volume.beam_blur == BeamBlur::ThreeD {
+            return Err(Error::Scene(
+                "rays know no blur of beams in three dimensions; allowed: one, two".into(),
+            ));
+        }
         if (is_of_beams && beams.is_none() && volume.is_some())
             || (!is_of_beams && volume.is_none() && beams.is_some())
         {

@@ -2,6 +2,7 @@
 
 use super::{Eye, Mapper, Report};
 use crate::Spectrum;
+use crate::estimators::BeamBlur;
 use crate::estimators::boundary::Boundary;
 use crate::integrators::march::{self, LEFT, Source};
 use crate::math::{Interval, Ray, cosine_pair};
@@ -128,7 +129,11 @@ impl Eye<'_, '_> {
             let passage = Passage::new(medium, &walker.ray, span, stream);
             let boundary = mapper.extents[number].boundary();
             let way = (&walker.ray, span);
-            let estimate = along.radiance(map, way, medium, &boundary, |t| passage.to(t));
+            let passed = |t: f64| passage.to(t);
+            let estimate = match &mapper.radii {
+                Some(radii) => along.radiance_by_radii((map, radii), way, medium, &boundary, passed),
+                None => along.radiance(map, way, medium, &boundary, passed),
+            };
             self.report.volume.add_along(along.radius, &estimate);
             self.layers.multiple += seen * estimate.value;
         }
@@ -136,7 +141,12 @@ impl Eye<'_, '_> {
             let passage = Passage::new(medium, &walker.ray, span, stream);
             let boundary = mapper.extents[number].boundary();
             let (way, of) = ((&walker.ray, span), (number, medium));
-            let estimate = across.radiance(map, way, of, &boundary, |t| passage.to(t));
+            let passed = |t: f64| passage.to(t);
+            let estimate = match mapper.settings.volume.beam_blur {
+                BeamBlur::OneD => across.radiance(map, way, of, &boundary, passed),
+                // A blur about places is refused where the mapper is checked.
+                BeamBlur::TwoD | BeamBlur::ThreeD => across.radiance_in_2d(map, way, of, &boundary, passed),
+            };
             self.report.volume.add_along(across.radius, &estimate);
             self.layers.multiple += seen * estimate.value;
         }

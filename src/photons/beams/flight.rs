@@ -32,6 +32,19 @@ pub fn check_beams(scene: &Scene) -> Result<()> {
     }
 }
 
+/// Checks that they can be stored as far as they could go.
+///
+/// # Errors
+/// `Error::Scene` where a medium varies: what passes through it is not known in closed form
+pub fn check_whole_beams(scene: &Scene) -> Result<()> {
+    match scene.media().iter().all(Medium::is_homogeneous) {
+        true => Ok(()),
+        false => Err(Error::Scene(
+            "beams that go on to the end of a medium cannot be stored in one that varies; allowed: as far as the sampled flight".into(),
+        )),
+    }
+}
+
 /// A flight that was flown.
 pub(in crate::photons) struct FlightBeams<'a> {
     /// Where.
@@ -40,7 +53,7 @@ pub(in crate::photons) struct FlightBeams<'a> {
     pub walker: &'a Walker,
     /// How far it flew \[L\]; may be infinite.
     pub end: f64,
-    /// Whether its first collision was forced: then it is stored to the end of each medium, with what passes.
+    /// Whether it is stored to the end of each medium, with what passes, as where its first collision was forced.
     pub is_forced: bool,
     /// The factor on powers.
     pub parts: f64,

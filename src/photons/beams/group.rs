@@ -1,6 +1,6 @@
 //! Pieces of beams, sixteen a group, in single precision.
 
-use crate::photons::tree::{Cylinder, Row};
+use crate::photons::tree::{Cylinder, Row, cross, dot};
 use glam::Vec3;
 use wide::f32x8;
 
@@ -42,5 +42,26 @@ impl Group {
     pub fn near(&self, cylinder: &Cylinder) -> u32 {
         let [low, high] = &self.rows;
         cylinder.near_lines(&low.0, &low.1, low.2) | cylinder.near_lines(&high.0, &high.1, high.2) << 8
+    }
+
+    /// Those that may come within a ray's cylinder, a bit each ([`Cylinder::touched_lines`]).
+    #[inline(always)]
+    pub fn touched(&self, cylinder: &Cylinder) -> u32 {
+        let [low, high] = &self.rows;
+        cylinder.touched_lines(&low.0, &low.1, low.2) | cylinder.touched_lines(&high.0, &high.1, high.2) << 8
+    }
+
+    /// Those that may come within a radius of a place in the tree's units, both with room for rounding, a bit each.
+    #[inline(always)]
+    pub fn about(&self, place: Vec3, radius: f32) -> u32 {
+        let at = [f32x8::splat(place.x), f32x8::splat(place.y), f32x8::splat(place.z)];
+        let radius = f32x8::splat(radius);
+        let near = |(middles, dirs, halves): &(Row, Row, f32x8)| {
+            let way = [middles[0] - at[0], middles[1] - at[1], middles[2] - at[2]];
+            let away = cross(&way, dirs);
+            let is_beside = dot(&away, &away).simd_le(radius * radius);
+            (is_beside & dot(&way, dirs).abs().simd_le(*halves + radius)).to_bitmask()
+        };
+        near(&self.rows[0]) | near(&self.rows[1]) << 8
     }
 }

@@ -1,6 +1,6 @@
 //! A map of beams: those that one pass stored, and how many photons that pass emitted.
 
-use super::{Beam, BeamTree, Crossing};
+use super::{Beam, BeamTree, Chord, Crossing};
 use crate::error::{Error, Result};
 use crate::math::{Interval, Ray};
 use crate::photons::periodic;
@@ -38,8 +38,32 @@ impl BeamMap {
         radius: f64,
         mut visit: impl FnMut(&Beam, &Crossing),
     ) -> bool {
+        self.each_ray((ray, span), radius, |ray, span| self.tree.near(ray, span, radius, &mut visit))
+    }
+
+    /// Visits every part of a beam that is near to a ray, as [`BeamTree::chords_near`] has it, with the ray as it is where the beam is;
+    /// for the rest as [`BeamMap::near`].
+    pub fn chords_near(
+        &self,
+        ray: &Ray,
+        span: Interval,
+        radius: f64,
+        mut visit: impl FnMut(&Beam, &Chord, &Ray),
+    ) -> bool {
+        self.each_ray((ray, span), radius, |ray, span| {
+            self.tree.chords_near(ray, span, radius, |beam, chord| visit(beam, chord, ray));
+        })
+    }
+
+    /// Asks the tree along a ray, or along what it is in each cell that it and its surroundings come to.
+    fn each_ray(
+        &self,
+        (ray, span): (&Ray, Interval),
+        radius: f64,
+        mut ask: impl FnMut(&Ray, Interval),
+    ) -> bool {
         let Some(side) = self.side else {
-            self.tree.near(ray, span, radius, visit);
+            ask(ray, span);
             return true;
         };
         if !(radius <= side.min_element() && span.end < f64::INFINITY) {
@@ -54,7 +78,7 @@ impl BeamMap {
             };
             for (i, j) in cells(0).flat_map(|i| cells(1).map(move |j| (i, j))) {
                 let shift = DVec3::new(i as f64 * side.x, j as f64 * side.y, 0.0);
-                self.tree.near(&Ray::new(ray.origin - shift, ray.dir), span, radius, &mut visit);
+                ask(&Ray::new(ray.origin - shift, ray.dir), span);
             }
         }
         true
@@ -63,8 +87,26 @@ impl BeamMap {
     /// Visits every beam that passes a place, as [`BeamTree::about`] has it; in a periodic cell, those of the world that it stands for.
     /// False where such a map cannot tell: the radius is larger than the cell.
     pub fn about(&self, place: DVec3, radius: f64, mut visit: impl FnMut(&Beam, f64, f64)) -> bool {
+        self.each_place(place, radius, |place| self.tree.about(place, radius, &mut visit))
+    }
+
+    /// Visits every part of a beam that is near to a place, as [`BeamTree::chords_about`] has it, with the place as it is where the beam
+    /// is; for the rest as [`BeamMap::about`].
+    pub fn chords_about(
+        &self,
+        place: DVec3,
+        radius: f64,
+        mut visit: impl FnMut(&Beam, &Chord, DVec3),
+    ) -> bool {
+        self.each_place(place, radius, |place| {
+            self.tree.chords_about(place, radius, |beam, chord| visit(beam, chord, place));
+        })
+    }
+
+    /// Asks the tree about a place, or about what it is in each cell that its surroundings come to.
+    fn each_place(&self, place: DVec3, radius: f64, mut ask: impl FnMut(DVec3)) -> bool {
         let Some(side) = self.side else {
-            self.tree.about(place, radius, visit);
+            ask(place);
             return true;
         };
         if radius.is_nan() || radius > side.min_element() {
@@ -78,7 +120,7 @@ impl BeamMap {
         };
         for (i, j) in cells(0).flat_map(|i| cells(1).map(move |j| (i, j))) {
             let shift = DVec3::new(i as f64 * side.x, j as f64 * side.y, 0.0);
-            self.tree.about(place - shift, radius, &mut visit);
+            ask(place - shift);
         }
         true
     }

@@ -1,6 +1,7 @@
 //! Beams: the flights of photons through media, the tree over them, and maps of them.
 
 mod beam;
+mod chord;
 mod crossing;
 mod flight;
 mod group;
@@ -9,9 +10,10 @@ mod order;
 mod tree;
 
 pub use beam::{Beam, BeamKind};
+pub use chord::Chord;
 pub use crossing::Crossing;
-pub use flight::check_beams;
 pub(in crate::photons) use flight::{FlightBeams, MOST_CELLS};
+pub use flight::{check_beams, check_whole_beams};
 pub use map::BeamMap;
 pub(in crate::photons) use order::{Entry, kd_order};
 pub use tree::BeamTree;

@@ -1,6 +1,7 @@
 //! The tree over beams: pieces of them in kd order, boxes sixteen wide above them.
 
 use super::Beam;
+use super::chord::Chord;
 use super::crossing::Crossing;
 use super::group::{GROUP, Group, Stretch};
 use super::order::{Entry, kd_order};
@@ -11,6 +12,9 @@ use glam::DVec3;
 
 /// Pieces are longer by this in single precision, in the tree's units, so that those that follow each other leave no gap.
 const MARGIN: f32 = 1e-6;
+
+/// Room about places for roundings of numbers up to 18 units.
+const ROOM: f32 = 2e-5;
 
 /// Pieces of a beam, at most.
 const MOST_PIECES: f64 = 65_535.0;
@@ -129,13 +133,7 @@ impl BeamTree {
                 visit(beam, &crossing);
             }
         };
-        let Some(cylinder) = Cylinder::new(&self.units, ray, span, radius) else {
-            self.pieces.iter().for_each(ask);
-            return;
-        };
-        cylinder.each_touched(&self.levels, |group| {
-            bits(self.groups[group].near(&cylinder)).for_each(|lane| ask(&self.pieces[group * GROUP + lane]));
-        });
+        self.each_piece((ray, span, radius), &mut ask, |group, cylinder| group.near(cylinder));
     }
 
     /// Visits every beam whose point nearest to a place lies on it, its start included and its end not, and within `radius` \[L\] of the
@@ -151,19 +149,57 @@ impl BeamTree {
                 visit(beam, along, squared);
             }
         };
-        // The ball about the place lies in it.
-        let span = Interval { start: -radius, end: radius };
-        self.each_piece(&Ray::new(place, DVec3::Z), span, radius, &mut ask);
+        self.each_piece_about(place, radius, &mut ask);
     }
 
-    /// Asks every piece whose group's box comes within `radius` of a stretch of a ray.
-    fn each_piece(&self, ray: &Ray, span: Interval, radius: f64, ask: &mut impl FnMut(&Piece)) {
+    /// Visits the parts of every beam that are at most `radius` \[L\] from a ray, with their feet in `span`: a beam that is cut into
+    /// pieces is told of in several parts, which together are all of it that is so near, each once.
+    pub fn chords_near(&self, ray: &Ray, span: Interval, radius: f64, mut visit: impl FnMut(&Beam, &Chord)) {
+        let mut ask = |piece: &Piece| {
+            let beam = &self.beams[piece.beam as usize];
+            let chord = Chord::near_ray(ray, span, radius, (beam.start, beam.dir));
+            if let Some(part) = chord.and_then(|chord| chord.on(piece.span(beam.length), beam.length)) {
+                visit(beam, &part);
+            }
+        };
+        self.each_piece((ray, span, radius), &mut ask, |group, cylinder| group.touched(cylinder));
+    }
+
+    /// The same about a place.
+    pub fn chords_about(&self, place: DVec3, radius: f64, mut visit: impl FnMut(&Beam, &Chord)) {
+        let mut ask = |piece: &Piece| {
+            let beam = &self.beams[piece.beam as usize];
+            let chord = Chord::near_place(place, radius, (beam.start, beam.dir));
+            if let Some(part) = chord.and_then(|chord| chord.on(piece.span(beam.length), beam.length)) {
+                visit(beam, &part);
+            }
+        };
+        self.each_piece_about(place, radius, &mut ask);
+    }
+
+    /// Asks every piece that may come within `radius` of a place.
+    fn each_piece_about(&self, place: DVec3, radius: f64, ask: &mut impl FnMut(&Piece)) {
+        // The ball about the place lies in it.
+        let span = Interval { start: -radius, end: radius };
+        let at = self.units.relative(place).as_vec3();
+        let room = self.units.shrink(radius) as f32 + ROOM;
+        self.each_piece((&Ray::new(place, DVec3::Z), span, radius), ask, |group, _| group.about(at, room));
+    }
+
+    /// Asks every piece that `near` finds in groups whose boxes come within `radius` of a stretch of a ray.
+    fn each_piece(
+        &self,
+        (ray, span, radius): (&Ray, Interval, f64),
+        ask: &mut impl FnMut(&Piece),
+        near: impl Fn(&Group, &Cylinder) -> u32,
+    ) {
         let Some(cylinder) = Cylinder::new(&self.units, ray, span, radius) else {
             self.pieces.iter().for_each(ask);
             return;
         };
         cylinder.each_touched(&self.levels, |group| {
-            self.pieces[group * GROUP..].iter().take(GROUP).for_each(&mut *ask);
+            bits(near(&self.groups[group], &cylinder))
+                .for_each(|lane| ask(&self.pieces[group * GROUP + lane]));
         });
     }
 

@@ -10,3 +10,13 @@ pub const ROW: usize = 8;
 
 /// Eight vectors, an array a coordinate.
 pub(in crate::photons) type Row = [f32x8; 3];
+
+#[inline(always)]
+pub(in crate::photons) fn cross(a: &Row, b: &Row) -> Row {
+    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
+}
+
+#[inline(always)]
+pub(in crate::photons) fn dot(a: &Row, b: &Row) -> f32x8 {
+    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+}

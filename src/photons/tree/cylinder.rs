@@ -1,6 +1,6 @@
 //! A stretch of a ray with a radius about it, as boxes are asked about it.
 
-use super::block::{BLOCK, Row};
+use super::block::{BLOCK, Row, cross, dot};
 use super::boxes::Boxes;
 use super::units::Units;
 use super::within::bits;
@@ -75,14 +75,28 @@ impl Cylinder {
         }
     }
 
+    /// The square of another radius, at most its own \[units^2\], in all lanes.
+    pub(super) fn squared_reach(&self, radius: f32) -> f32x8 {
+        let radius = radius + MARGIN as f32;
+        f32x8::splat(radius * radius)
+    }
+
     /// The boxes that the ray meets if they are widened by the radius on all sides, a bit each.
     pub(super) fn touched(&self, boxes: &Boxes) -> u32 {
-        let row = |[lower, upper]: &[Row; 2]| {
+        self.met(boxes, &[f32x8::splat(self.radius); 2])
+    }
+
+    /// The same with a radius for each box, at most its own \[units\].
+    pub(super) fn touched_within(&self, boxes: &Boxes, radii: &[f32x8; 2]) -> u32 {
+        self.met(boxes, &radii.map(|radius| radius + f32x8::splat(MARGIN as f32)))
+    }
+
+    fn met(&self, boxes: &Boxes, radii: &[f32x8; 2]) -> u32 {
+        let row = |[lower, upper]: &[Row; 2], radius: f32x8| {
             let mut start = f32x8::splat(self.span[0]);
             let mut end = f32x8::splat(self.span[1]);
             for axis in 0..3 {
                 let at = f32x8::splat(self.origin[axis]);
-                let radius = f32x8::splat(self.radius);
                 let inverse = f32x8::splat(self.inverse[axis]);
                 let low = (lower[axis] - radius - at) * inverse;
                 let high = (upper[axis] + radius - at) * inverse;
@@ -91,7 +105,7 @@ impl Cylinder {
             }
             start.simd_le(end).to_bitmask()
         };
-        row(&boxes.rows[0]) | row(&boxes.rows[1]) << 8
+        row(&boxes.rows[0], radii[0]) | row(&boxes.rows[1], radii[1]) << 8
     }
 
     /// Which of eight stretches of lines, each from `half` before its middle to as far behind it, may come nearest to the ray within the
@@ -113,6 +127,19 @@ impl Cylinder {
         (is_beside & is_in & along_line.simd_le(halves * squared + slack)).to_bitmask()
     }
 
+    /// Which of eight stretches of lines may come within the radius of the ray, as [`Cylinder::near_lines`] but anywhere on them.
+    #[inline(always)]
+    pub(in crate::photons) fn touched_lines(&self, middles: &Row, dirs: &Row, halves: f32x8) -> u32 {
+        let (way, dir) = (self.way(middles), self.dir());
+        let across = cross(&dir, dirs);
+        let slack = f32x8::splat(ROUNDED) * (dot(&way, &way).sqrt() + f32x8::splat(2.0));
+        let radius = f32x8::splat(self.radius);
+        let is_beside = dot(&way, &across).abs().simd_le(radius * dot(&across, &across).sqrt() + slack);
+        let (away, reach) = (cross(&way, &dir), radius + halves);
+        let is_near = dot(&away, &away).simd_le(reach * reach) & reach.simd_ge(f32x8::ZERO);
+        (is_beside & is_near).to_bitmask()
+    }
+
     /// Squared distances of eight positions from the ray.
     pub(super) fn squared_distances(&self, positions: &Row) -> f32x8 {
         let across = cross(&self.way(positions), &self.dir());
@@ -129,14 +156,4 @@ impl Cylinder {
     fn dir(&self) -> Row {
         [f32x8::splat(self.dir[0]), f32x8::splat(self.dir[1]), f32x8::splat(self.dir[2])]
     }
-}
-
-#[inline(always)]
-fn cross(a: &Row, b: &Row) -> Row {
-    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
-}
-
-#[inline(always)]
-fn dot(a: &Row, b: &Row) -> f32x8 {
-    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }

@@ -1,0 +1,156 @@
+//! Rays that end for each photon and beam where its own parallel leaves the medium: exact slabs at any radius, rays from inside, behind and
+//! past a ball, and what is refused.
+
+use crate::checks::beams::{across, by_maps, means_by_maps};
+use crate::support::run::{paths, sensor};
+use crate::support::scenes::{
+    CELL, Incidence, bounded, cuboid, homogeneous, incidence, layer, point_light, region, sphere,
+};
+use crate::support::verdict;
+use glam::{DVec2, DVec3};
+use std::f64::consts::PI;
+use std::num::NonZeroUsize;
+use turbid::Spectrum;
+use turbid::estimators::{BeamBlur, BeamLength, Estimator, Gather, Kernel, RayEnds};
+use turbid::math::{Positive, Ray};
+use turbid::scene::{Orders, Quantity, Region, Scene, SceneParts};
+use turbid::sensor::{PhotonSettings, by_photons};
+use turbid::transport::NoProgress;
+
+fn of_points(kernel: Kernel, radius: f64) -> Estimator {
+    let radius = Positive::new("the radius", radius).unwrap();
+    Estimator::new(kernel, Gather::Radius(radius)).along_rays(radius).ending(RayEnds::Own)
+}
+
+fn of_beams(radius: f64, blur: BeamBlur) -> Estimator {
+    across(Kernel::Uniform, radius).blurred(blur).ending(RayEnds::Own)
+}
+
+/// A slab of one mean free path, looked along directions of a cosine, along eight azimuths from places of its own each, at a depth.
+fn slab_of((how, albedo): (Incidence, f64), mu: f64, depth: f64) -> Scene {
+    let looking = |n: u32| {
+        let (sin, cos) = turbid::math::sin_cos(PI / 4.0 * f64::from(n));
+        let across = (1.0 - mu * mu).sqrt();
+        let place = DVec3::new(f64::from(n % 4), f64::from(n / 4) * 2.0, 4.0 * depth / CELL) * CELL / 4.0;
+        let dir = DVec3::new(cos * across, sin * across, mu);
+        sensor(Quantity::Radiance(Ray::new(place, dir.normalize())), Orders::SCATTERED)
+    };
+    Scene::new(SceneParts {
+        lights: vec![incidence(layer(1.0), how)],
+        regions: vec![region(layer(1.0), 1.0, albedo, 0.0)],
+        sensors: (0..8).map(looking).collect(),
+        cell: Some(DVec2::splat(CELL)),
+        ..SceneParts::default()
+    })
+    .unwrap()
+}
+
+/// What leaves a slab aslant: the published exact value, the same for every radius, by points, beams in one dimension and in two, drawn
+/// and long; from the face, and from outside it. Cut, it is another.
+#[test]
+fn radiance_of_a_slab_knows_no_radius() {
+    for (mu, expected, seed) in [(0.5, 0.094_904_494, 51), (0.2, 0.115_644_004, 52)] {
+        for depth in [0.0, -0.3] {
+            let scene = slab_of((Incidence::Beam(1.0), 0.9), mu, depth);
+            let points = [of_points(Kernel::Uniform, 0.1), of_points(Kernel::Biweight, 0.2)];
+            let beams = [(0.1, BeamBlur::OneD), (0.2, BeamBlur::OneD), (0.2, BeamBlur::TwoD)];
+            let beams = beams.map(|(radius, blur)| of_beams(radius, blur));
+            let cut = points[1].ending(RayEnds::Cut);
+            let all: Vec<Estimator> = points.into_iter().chain(beams).chain([cut]).collect();
+            let measured = means_by_maps(&scene, (2500, 120), seed, &all);
+            for (estimator, moments) in all.iter().zip(&measured).take(5) {
+                let what = format!("mu {mu}, depth {depth}, {}", estimator.name());
+                verdict::agrees(&what, moments, (expected, 1e-8), 0.09 * expected, seed);
+            }
+        }
+    }
+    let scene = slab_of((Incidence::Beam(1.0), 0.9), 0.5, 0.0);
+    let specimens = [
+        of_beams(0.2, BeamBlur::OneD).of_length(BeamLength::Whole),
+        of_points(Kernel::Uniform, 0.4).ending(RayEnds::Cut),
+    ];
+    let measured = means_by_maps(&scene, (2500, 200), 53, &specimens);
+    verdict::agrees("long", &measured[0], (0.094_904_494, 1e-8), 0.06 * 0.094_904_494, 53);
+    verdict::rejects("cut", &measured[1], 0.094_904_494, 53);
+}
+
+/// In a furnace, where all is the same everywhere, photons with radii of their own lose nothing at the middle of faces either but what
+/// their radii differ by: a slab along its normal.
+#[test]
+fn own_radii_with_own_ends() {
+    let scene = slab_of((Incidence::Both, 1.0), 1.0, 0.0);
+    let own = of_points(Kernel::Uniform, 0.5).of_nearest(NonZeroUsize::new(10).unwrap());
+    let measured = means_by_maps(&scene, (1500, 100), 54, &[own]);
+    let expected = -turbid::math::exp_m1(-1.0) / PI;
+    verdict::agrees("normal", &measured[0], (expected, 1e-9), 0.08 * expected, 54);
+}
+
+/// Rays that begin in a ball, behind it, and pass it nearer than the radius: from inside what is ahead counts, all of it from in front,
+/// nothing where all is behind, and beside it what the blur brings.
+#[test]
+fn rays_begin_anywhere() {
+    let ball = sphere(DVec3::ZERO, 1.0);
+    let medium = homogeneous(Spectrum::ONE, Spectrum::grey(0.8), 0.4);
+    let light = point_light(DVec3::new(0.2, 0.3, -0.1), Spectrum::ONE);
+    let orders = Orders { min: 2, max: None };
+    let looks = [
+        Ray::new(DVec3::new(0.0, 0.0, -3.0), DVec3::Z),
+        Ray::new(DVec3::new(0.0, -0.1, 0.0), DVec3::Z),
+        Ray::new(DVec3::new(0.0, 0.0, 1.5), DVec3::Z),
+        Ray::new(DVec3::new(1.02, 0.0, -3.0), DVec3::Z),
+        Ray::new(DVec3::new(1.02, 0.0, 3.0), DVec3::Z),
+    ];
+    let regions = vec![Region { shape: ball, medium }];
+    let scene = Scene::new(SceneParts {
+        regions: regions.clone(),
+        lights: vec![light.clone()],
+        sensors: looks.iter().map(|ray| sensor(Quantity::Radiance(*ray), orders)).collect(),
+        ..SceneParts::default()
+    })
+    .unwrap();
+    let plain = bounded(regions, vec![], vec![light]);
+    let estimators = [of_points(Kernel::Epanechnikov, 0.08), of_beams(0.05, BeamBlur::OneD)];
+    for (estimator, measured) in estimators.iter().zip(&by_maps(&scene, (20_000, 100), 55, &estimators)) {
+        for which in 0..2 {
+            let reference = paths(&plain, Quantity::Radiance(looks[which]), orders, 1 << 17, 55)[0];
+            let expected = reference.mean();
+            // The blur of a field that bends by a few per cent over the radius.
+            let error = libm::hypot(reference.std_error(), 0.01 * expected);
+            let what = format!("look {which}, {}", estimator.name());
+            verdict::agrees(&what, &measured[which][0], (expected, error), 0.25 * expected, 55);
+        }
+        for behind in [2, 4] {
+            assert_eq!(measured[behind][0].mean(), 0.0, "{behind}, {}", estimator.name());
+        }
+        let beside = measured[3][0];
+        assert!(beside.mean() > 5.0 * beside.std_error(), "{beside:?}");
+        assert!(beside.mean() < 0.3 * measured[0][0].mean(), "{beside:?}");
+    }
+}
+
+/// In more than one homogeneous region, beside a lamp's body, and where rays are read point by point it is refused, by name.
+#[test]
+fn what_has_no_own_ends_is_refused() {
+    let look = sensor(Quantity::Radiance(Ray::new(DVec3::splat(0.5), DVec3::Z)), Orders::SCATTERED);
+    let of = |regions: Vec<Region>, estimator: Estimator| {
+        let scene = Scene::new(SceneParts {
+            regions,
+            lights: vec![point_light(DVec3::splat(0.4), Spectrum::ONE)],
+            sensors: vec![look.clone()],
+            ..SceneParts::default()
+        })
+        .unwrap();
+        let settings = PhotonSettings { photons: 200, maps: 1, seed: 1, orders: Orders::ALL, estimator };
+        by_photons(&scene, &settings, &NoProgress)
+    };
+    let outer = region(cuboid(DVec3::ZERO, DVec3::ONE), 1.0, 0.5, 0.0);
+    let inner = region(cuboid(DVec3::ZERO, DVec3::splat(0.5)), 2.0, 0.5, 0.0);
+    assert!(of(vec![outer.clone()], of_points(Kernel::Uniform, 0.1)).is_ok());
+    // However large the radius.
+    assert!(of(vec![outer.clone()], of_points(Kernel::Uniform, 1e6)).is_ok());
+    let told = of(vec![outer.clone(), inner], of_points(Kernel::Uniform, 0.1)).unwrap_err().to_string();
+    assert!(told.contains("one homogeneous region with nothing in it"), "{told}");
+    let balls = Estimator::new(Kernel::Uniform, Gather::radius(0.1).unwrap()).ending(RayEnds::Own);
+    let told = of(vec![outer], balls).unwrap_err().to_string();
+    assert!(told.contains("allowed: a ray radius or a beam radius"), "{told}");
+}
