@@ -1,8 +1,8 @@
 //! The cases: who asks, and which radii, levels and numbers of photons the sums have.
 
-use crate::dimension::cases::{DEPTH, Query};
 use crate::harness::Settings;
 use crate::setups::CELL;
+use crate::setups::uncollided::{DEPTH, Query};
 use glam::DVec3;
 use turbid::math::Ray;
 

@@ -7,12 +7,12 @@ use super::cases::{
 use super::figures;
 use super::predict::{best, least, limit};
 use super::results::{Answer, Level, Tail, find, ratio};
-use crate::dimension::cases::Query;
 use crate::harness::{
     Cells, Claim, Estimate, Parameters, Row, Section, Settings, Table, Unit, number, percent_with_error,
     signed, with_error,
 };
 use crate::prediction::{Entry, Prediction, Term};
+use crate::setups::uncollided::Query;
 use turbid::estimators::Kernel;
 
 /// How far a ratio of two variances may lie from the predicted one, relative: the largest that still tells the prices of c = 3, 2 and 1

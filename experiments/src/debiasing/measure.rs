@@ -5,9 +5,8 @@ use super::cases::{
     passes, photons, places, radius, rays, thresholds, work,
 };
 use super::predict::{Expected, best, shares};
-use crate::dimension::cases::{Query, scene};
-use crate::dimension::read::{Uncollided, along_beams, along_points, at_place};
 use crate::harness::{CellId, CellOutput, Group, Settings};
+use crate::setups::uncollided::{Query, Uncollided, along_beams, along_points, at_place, scene};
 use std::collections::BTreeMap;
 use turbid::photons::beams::BeamMap;
 use turbid::photons::{Emitter, Histories, PhotonMap, Run};

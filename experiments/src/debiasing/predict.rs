@@ -3,10 +3,9 @@
 use super::cases::{
     Estimator, FIRST, MEAN_LEVELS, QUERIES, Schedule, constant, difference, photons, radius, work,
 };
-use crate::dimension::cases::Query;
-use crate::dimension::predict::Case;
 use crate::harness::{Settings, Unit};
 use crate::prediction::Prediction;
+use crate::setups::uncollided::{Case, Query};
 
 /// One radius: a photon counts with a chance, and brings as much as any other.
 #[derive(Debug, Clone, Copy, PartialEq)]

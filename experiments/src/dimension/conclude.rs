@@ -1,13 +1,13 @@
 //! What all cells together say.
 
-use super::cases::{BEAMS, POINTS, Query, SHOOTING, name, questions, radii, reading, sizes};
+use super::cases::{BEAMS, POINTS, SHOOTING, name, questions, radii, reading, sizes};
 use super::figures;
-use super::predict::Case;
 use super::results::{Answer, PICTURE, Point, ladder};
 use crate::harness::{
     Cells, Claim, Estimate, Parameters, Row, Section, Settings, Table, Unit, number, signed, with_error,
 };
 use crate::prediction::{Entry, Prediction, Term};
+use crate::setups::uncollided::{Case, Query};
 use crate::theory::{Curve, best_by_halves};
 use turbid::estimators::Kernel;
 use turbid::stats::Moments;

@@ -5,12 +5,11 @@
 //!
 //! The kernel's own dimension sets the blur alone: what is stored and what asks set how the variance falls with the radius.
 
-pub(crate) mod cases;
+mod cases;
 mod conclude;
 mod figures;
 mod measure;
-pub(crate) mod predict;
-pub(crate) mod read;
+mod predict;
 mod results;
 
 use crate::harness::Experiment;

@@ -1,7 +1,6 @@
 //! What the maps say.
 
-use super::cases::Query;
-use super::predict::Case;
+use crate::setups::uncollided::{Case, Query};
 use crate::theory::Curve;
 use turbid::stats::Moments;
 

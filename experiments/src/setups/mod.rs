@@ -5,6 +5,7 @@ mod body;
 mod maps;
 mod setup;
 mod size;
+pub(crate) mod uncollided;
 
 pub use asked::asked;
 pub use body::{Body, CELL, spiral};
