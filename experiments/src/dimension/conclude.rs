@@ -2,6 +2,7 @@
 
 use super::cases::{BEAMS, POINTS, SHOOTING, name, questions, radii, reading, sizes};
 use super::figures;
+use super::media;
 use super::results::{Answer, PICTURE, Point, ladder};
 use crate::harness::{
     Cells, Claim, Estimate, Parameters, Row, Section, Settings, Table, Unit, number, signed, with_error,
@@ -10,7 +11,7 @@ use crate::prediction::{Entry, Prediction, Term};
 use crate::setups::uncollided::{Case, Query};
 use crate::theory::{Curve, best_by_halves};
 use turbid::estimators::Kernel;
-use turbid::stats::Moments;
+use turbid::stats::{Moments, jackknife};
 
 /// Concludes.
 pub fn conclude(settings: &Settings, _: &[Prediction], cells: &Cells) -> anyhow::Result<Section> {
@@ -40,7 +41,8 @@ pub fn conclude(settings: &Settings, _: &[Prediction], cells: &Cells) -> anyhow:
     }
     let answers: Vec<Answer> =
         Query::ALL.into_iter().map(|query| best(&points, (&sizes, &filling), query)).collect();
-    Ok(Section {
+    let mut media = media::conclude(settings, cells)?;
+    let mut section = Section {
         summary: summary(&answers, &sizes),
         claims: claims(&points, &answers, &sizes),
         figures: vec![figures::dimension(&points, &answers, &sizes)?],
@@ -49,7 +51,13 @@ pub fn conclude(settings: &Settings, _: &[Prediction], cells: &Cells) -> anyhow:
         rows: rows(&points, &answers)?,
         budget: points.iter().map(entry).collect(),
         ..Section::default()
-    })
+    };
+    section.summary.append(&mut media.summary);
+    section.figures.append(&mut media.figures);
+    section.tables.append(&mut media.tables);
+    section.notes.append(&mut media.notes);
+    section.rows.append(&mut media.rows);
+    Ok(section)
 }
 
 fn entry(point: &Point) -> Entry {
@@ -107,6 +115,43 @@ fn claims(points: &[Point], answers: &[Answer], sizes: &[u64]) -> Vec<Claim> {
                 that, mean of all sizes";
     let over = over_theory(points, Query::Marched, Query::Places, sizes);
     claims.push(Claim::detected("balls-along-rays-are-rays", text, Unit::ONE, over, 1.0, 0.2));
+    claims.extend(sentences(points, answers, sizes));
+    claims
+}
+
+/// What papers say of points and beams along a ray, where no clock is needed.
+fn sentences(points: &[Point], answers: &[Answer], sizes: &[u64]) -> Vec<Claim> {
+    let mut claims = Vec::new();
+    let find = |query: Query| answers.iter().find(|answer| answer.query == query).map(|answer| &answer.curve);
+    if let (Some(rays), Some(beams)) = (find(Query::Rays), find(Query::Beams)) {
+        // Halves of the same maps, but not at the same radii: taken for independent, the difference is no more certain than it is.
+        let difference =
+            beams.exponent.minus(rays.exponent.value()).with_reference_error(rays.exponent.std_error());
+        let text = "\"beams converge faster than points\": exponent of the mean squared error of beams along a ray less that of points along \
+                    it";
+        claims.push(Claim::at_most("beams-converge-faster", text, Unit::ONE, difference, 0.0));
+    }
+    let Some(&most) = sizes.last() else { return claims };
+    let [rays, beams] = [Query::Rays, Query::Beams].map(|query| ladder(points, query, most));
+    // The mean of the logarithms of radius times variance over variance, which is the same at all radii as long as they are small.
+    let radius = |variances: &[(f64, f64)]| {
+        let logs =
+            rays.iter().zip(variances).map(|(point, (ray, beam))| libm::log(point.radius * ray / beam));
+        libm::exp(logs.sum::<f64>() / variances.len() as f64)
+    };
+    let predicted: Vec<(f64, f64)> =
+        rays.iter().zip(&beams).map(|(ray, beam)| (ray.theory.variance, beam.theory.variance)).collect();
+    let deviations: Vec<[Vec<f64>; 2]> =
+        rays.iter().zip(&beams).map(|(ray, beam)| [ray.deviations(), beam.deviations()]).collect();
+    let cells: Vec<usize> = (0..deviations[0][0].len()).collect();
+    let of_cells = |cells: &[usize]| {
+        let mean = |values: &[f64]| cells.iter().map(|&cell| values[cell]).sum::<f64>();
+        radius(&deviations.iter().map(|[ray, beam]| (mean(ray), mean(beam))).collect::<Vec<_>>())
+    };
+    let found = Estimate::jackknife(&jackknife(&cells, of_cells));
+    let text = "\"points beat beams at large radii\": the radius at which both have the same variance along a ray, light falling across it: 2/pi mean \
+                free paths where it is small (4/pi² = 0.405 under light from all sides)";
+    claims.push(Claim::about("points-beat-beams-from", text, Unit::MFP, found, radius(&predicted), 0.06));
     claims
 }
 

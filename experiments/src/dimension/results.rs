@@ -27,6 +27,16 @@ impl Point {
     pub fn squared(&self) -> Moments {
         self.squares.iter().collect()
     }
+
+    /// Mean squared deviation from the predicted mean, by cell.
+    pub fn deviations(&self) -> Vec<f64> {
+        let blur = self.theory.blur;
+        self.errors
+            .iter()
+            .zip(&self.squares)
+            .map(|(e, square)| square - 2.0 * blur * e + blur * blur)
+            .collect()
+    }
 }
 
 /// One kind of question at the best radius for each size.

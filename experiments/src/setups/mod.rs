@@ -2,6 +2,7 @@
 
 mod asked;
 mod body;
+pub(crate) mod levels;
 mod maps;
 mod setup;
 mod size;
