@@ -175,8 +175,9 @@ fn notes() -> Vec<String> {
          slab would live on that. Against time a radius is best where squared error times time is least: fewer photons are looked at within \
          a small one."
             .to_string(),
-        "The time of a picture is that of its rays for most methods here: with fewer rays planes and beams fall back, whose maps take longer, \
-         and points gain."
+        "Times are those of this program, of which a record is the unit: a photon takes several times as long along a ray as in a ball, most \
+         where faces cut the kernels, since a ball is cut once and along a ray every photon's disc by itself. The time of a picture of 10,000 rays \
+         is mostly theirs: with fewer rays planes and beams fall back, whose maps take longer."
             .to_string(),
     ]
 }

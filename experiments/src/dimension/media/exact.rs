@@ -75,21 +75,56 @@ fn along(
 #[cfg(test)]
 mod tests {
     use super::*;
+    use std::f64::consts::PI;
+    use turbid_analytic::IsotropicSlab;
 
-    /// By paths, which know nothing of fluences: what they find of all scattered light less what they find of once scattered light.
     #[test]
-    fn exact_values_are_positive_and_known_to_a_part_in_a_million() {
+    fn values_are_positive_and_known_to_some_parts_in_a_million() {
         for medium in Medium::ALL {
             let (value, error) = exact(medium).unwrap();
-            assert!(value > 0.0 && error < 1e-6 * value, "{medium:?}: {value} {error}");
+            assert!(value > 0.0 && error < 3e-6 * value, "{medium:?}: {value} {error}");
         }
     }
 
-    /// A thin ball: single scattering of light that has collided once, about the albedo squared times an optical depth squared.
+    /// With what is scattered once and what passes it is all that leaves the ball.
     #[test]
-    fn a_thin_ball_turns_light_twice_as_seldom_as_its_depth_squared() {
-        let (value, _) = exact(Medium::Thin).unwrap();
-        let once = ALBEDO * Medium::Thin.span().end / std::f64::consts::PI;
-        assert!(value < ALBEDO * 0.1 * once && value > 0.2 * ALBEDO * 0.1 * once, "{value} {once}");
+    fn orders_add_up_in_balls() {
+        for medium in [Medium::Thin, Medium::Bounded] {
+            let Body::Sphere { radius } = medium.setup().body else { panic!() };
+            let sphere = Sphere::new(radius, ALBEDO, SphereSource::Incident).unwrap();
+            let (once, _) = along(medium, |ray, s| {
+                Ok((sphere.fluence_direct(ray.at(s).length().min(radius))?.value, 0.0))
+            })
+            .unwrap();
+            let length = medium.span().end;
+            let all = sphere.exit_radiance(0.5 * length / radius).unwrap().value;
+            let sum = exact(medium).unwrap().0 + once + libm::exp(-length) / PI;
+            assert!((sum / all - 1.0).abs() < 1e-7, "{medium:?}: {sum} {all}");
+        }
+    }
+
+    /// Along the faces the source is that of the fluence.
+    #[test]
+    fn along_the_faces_it_is_the_fluence() {
+        let slab = IsotropicSlab::new(8.0, ALBEDO, Incidence::Beam { mu0: 1.0 }).unwrap();
+        let scattered = slab.fluence(INSIDE).unwrap().value - libm::exp(-INSIDE);
+        let once = slab.with(0.0, Incidence::Beam { mu0: 1.0 }).unwrap().fluence(INSIDE).unwrap().value;
+        assert!((once - libm::exp(-INSIDE)).abs() < 1e-12);
+        let expected = ALBEDO / FOUR_PI * scattered * -libm::expm1(-Medium::Thick.span().end);
+        let (value, _) = exact(Medium::Thick).unwrap();
+        assert!((value / expected - 1.0).abs() < 1e-9, "{value} {expected}");
+    }
+
+    /// By adding and doubling, which know nothing of discrete ordinates' modes.
+    #[test]
+    fn behind_a_peaked_slab_by_doubling() {
+        let phase = Phase::henyey_greenstein(PEAK).unwrap();
+        let medium = SlabMedium::new(ALBEDO, &phase).unwrap();
+        let slab = Slab::by_doubling(4.0, &medium, Incidence::Beam { mu0: 1.0 }).unwrap();
+        let all = slab.radiance(4.0, -COSINE, 0.0).unwrap();
+        let once = single_radiance(4.0, ALBEDO, PEAK, 1.0, 4.0, -COSINE, 0.0).unwrap().value;
+        let (value, error) = exact(Medium::Peaked).unwrap();
+        let found = all.value - once;
+        assert!((found - value).abs() < all.error + error + 1e-6 * value, "{found} {value}");
     }
 }

@@ -10,7 +10,7 @@ use crate::harness::{FAMILY_WISE, Table, number};
 /// What papers say, in our words: the new method has the smaller error in the same time.
 const SENTENCES: [(&str, Method, Method); 4] = [
     (
-        "points looked up once along a ray beat a march through balls (Jarosz, Zwicker and Jensen 2008)",
+        "one look-up of the points along a ray beats a march through balls (Jarosz, Zwicker and Jensen 2008)",
         Method::Points,
         Method::Balls,
     ),
@@ -102,6 +102,16 @@ pub fn table(pairs: &[Pair<'_>]) -> Table {
     }
 }
 
+/// Media as a list; none of none.
+fn in_words(media: &[&str]) -> Option<String> {
+    let (last, others) = media.split_last()?;
+    Some(if others.is_empty() {
+        format!("{last} medium")
+    } else {
+        format!("{} and {last} media", others.join(", "))
+    })
+}
+
 /// The sentences in words: in which media each is upheld, rejected and undecided.
 pub fn summary(pairs: &[Pair<'_>]) -> String {
     let of = |&(sentence, new, old): &(&str, Method, Method)| {
@@ -112,7 +122,7 @@ pub fn summary(pairs: &[Pair<'_>]) -> String {
             .collect();
         let said = ["upheld", "rejected", "undecided"].into_iter().filter_map(|word| {
             let media: Vec<&str> = own.iter().filter(|o| o.1 == word).map(|o| o.0).collect();
-            (!media.is_empty()).then(|| format!("{word} in the {} medium", media.join(", ")))
+            in_words(&media).map(|media| format!("{word} in the {media}"))
         });
         let said: Vec<String> = said.collect();
         format!("{sentence}: {}", said.join(", "))
