@@ -179,5 +179,8 @@ fn notes() -> Vec<String> {
          where faces cut the kernels, since a ball is cut once and along a ray every photon's disc by itself. The time of a picture of 10,000 rays \
          is mostly theirs: with fewer rays planes and beams fall back, whose maps take longer."
             .to_string(),
+        "That a radius which shrinks by the right power leads to the exact value is the matter of the experiment `progressive`, and what debiasing \
+         costs at equal photons that of `debiasing`."
+            .to_string(),
     ]
 }

@@ -67,6 +67,7 @@ struct Passes<'a> {
     seed: u64,
     stream: u64,
     made: u64,
+    emitted: u64,
 }
 
 impl Passes<'_> {
@@ -75,6 +76,7 @@ impl Passes<'_> {
         // Cells are below 256, and passes below 2^16: no two of a group share a number.
         let replicate = self.stream ^ self.made << 8;
         self.made += 1;
+        self.emitted += photons;
         let histories = Histories { count: photons, seed: self.seed, replicate, max_order: None };
         Run::new(self.scene, self.emitter, histories).pass(&Twice(stored), &NoProgress)
     }
@@ -173,9 +175,9 @@ fn measure(settings: &Settings, cell: &CellId, medium: Medium, photons: u64) -> 
         seed: settings.seed,
         stream: cell.stream("dimension"),
         made: 0,
+        emitted: 0,
     };
     let mut output = CellOutput::new();
-    output.count("photons emitted", 4 * photons);
     let push = |output: &mut CellOutput, method: Method, radius: Option<f64>, found: Vec<Found>| {
         let case = name(medium, method, photons, radius);
         let looked_at = found.iter().map(|found| found.looked_at as f64).sum::<f64>() / found.len() as f64;
@@ -201,6 +203,7 @@ fn measure(settings: &Settings, cell: &CellId, medium: Medium, photons: u64) -> 
     push(&mut output, Method::Planes, None, values);
     let values = debiased(&mut passes, photons, &mut output)?;
     push(&mut output, Method::Debiased, None, values);
+    output.count("photons emitted", passes.emitted);
     Ok(output)
 }
 
