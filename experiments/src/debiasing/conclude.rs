@@ -1,18 +1,19 @@
 //! What all cells together say.
 
 use super::cases::{
-    Estimator, FIRST, MEAN_LEVELS, ONE, QUERIES, STOPS, Schedule, beyond, constant, difference, photons,
-    radius, thresholds, work,
+    Estimator, FIRST, MEAN_LEVELS, ONE, QUERIES, STOPS, beyond, constant, difference, photons, radius,
+    thresholds, work,
 };
 use super::figures;
 use super::predict::{best, least, limit};
 use super::results::{Answer, Level, Tail, find, ratio};
-use crate::dimension::cases::Query;
 use crate::harness::{
     Cells, Claim, Estimate, Parameters, Row, Section, Settings, Table, Unit, number, percent_with_error,
     signed, with_error,
 };
 use crate::prediction::{Entry, Prediction, Term};
+use crate::setups::levels::Schedule;
+use crate::setups::uncollided::Query;
 use turbid::estimators::Kernel;
 
 /// How far a ratio of two variances may lie from the predicted one, relative: the largest that still tells the prices of c = 3, 2 and 1
@@ -380,7 +381,7 @@ fn notes(settings: &Settings) -> anyhow::Result<Vec<String>> {
     let schedules: Vec<String> = QUERIES
         .iter()
         .map(|&query| {
-            let schedule = Schedule::of(query);
+            let schedule = Schedule::of(query.codimension());
             format!(
                 "{}: {} times as many photons a level, the chance 2^-{} of it, {} replicates an answer",
                 query.title(),
@@ -390,7 +391,7 @@ fn notes(settings: &Settings) -> anyhow::Result<Vec<String>> {
             )
         })
         .collect();
-    let last = Schedule::of(Query::Places).last;
+    let last = Schedule::of(Query::Places.codimension()).last;
     let mut words = Vec::new();
     for query in QUERIES {
         words.push(format!("{} for {}", number(least(query, photons(settings))?), query.title()));

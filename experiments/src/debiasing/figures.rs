@@ -2,8 +2,8 @@
 
 use super::cases::{Estimator, FIRST, QUERIES, STOPS, photons, radius, thresholds, work};
 use super::results::{Answer, Level, Tail, find};
-use crate::dimension::predict::Case;
 use crate::harness::{FigureFiles, Settings, bar, positive_bar};
+use crate::setups::uncollided::Case;
 use turbid::stats::Moments;
 use turbid_figure::{Along, Axis, Dash, Figure, Legend, Line, Panel, Points, Rule, Scale, Width};
 

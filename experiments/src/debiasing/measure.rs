@@ -1,13 +1,13 @@
 //! Measuring one batch of answers.
 
 use super::cases::{
-    BATCH, CELLS, Estimator, FIRST, MEAN_LEVELS, QUERIES, STOPS, Schedule, beyond, constant, difference,
-    passes, photons, places, radius, rays, thresholds, work,
+    BATCH, CELLS, Estimator, FIRST, MEAN_LEVELS, QUERIES, STOPS, beyond, constant, difference, passes,
+    photons, places, radius, rays, thresholds, work,
 };
 use super::predict::{Expected, best, shares};
-use crate::dimension::cases::{Query, scene};
-use crate::dimension::read::{Uncollided, along_beams, along_points, at_place};
 use crate::harness::{CellId, CellOutput, Group, Settings};
+use crate::setups::levels::Schedule;
+use crate::setups::uncollided::{Query, Uncollided, along_beams, along_points, at_place, scene};
 use std::collections::BTreeMap;
 use turbid::photons::beams::BeamMap;
 use turbid::photons::{Emitter, Histories, PhotonMap, Run};
@@ -198,7 +198,7 @@ fn levels(settings: &Settings, cell: &CellId, query: Query) -> anyhow::Result<Ce
 /// Sums whose level is drawn, and the plain estimate of as much work at its best radius.
 fn drawn(settings: &Settings, cell: &CellId, query: Query) -> anyhow::Result<CellOutput> {
     with_passes(settings, cell, query, |passes, output| {
-        let (schedule, work) = (Schedule::of(query), work(settings));
+        let (schedule, work) = (Schedule::of(query.codimension()), work(settings));
         let replicates = schedule.replicates(work);
         let mut levels = Stream::new(passes.seed, Purpose::Synthetic, passes.stream, 0);
         let mut mean = vec![0.0; passes.questions()];

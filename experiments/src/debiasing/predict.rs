@@ -1,12 +1,10 @@
 //! What theory says of every case, before anything is measured.
 
-use super::cases::{
-    Estimator, FIRST, MEAN_LEVELS, QUERIES, Schedule, constant, difference, photons, radius, work,
-};
-use crate::dimension::cases::Query;
-use crate::dimension::predict::Case;
+use super::cases::{Estimator, FIRST, MEAN_LEVELS, QUERIES, constant, difference, photons, radius, work};
 use crate::harness::{Settings, Unit};
 use crate::prediction::Prediction;
+use crate::setups::levels::Schedule;
+use crate::setups::uncollided::{Case, Query};
 
 /// One radius: a photon counts with a chance, and brings as much as any other.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -185,7 +183,7 @@ impl Expected {
                 Ok(Expected { blur, squared: blur * blur + variance })
             }
             Estimator::Drawn => {
-                let schedule = Schedule::of(query);
+                let schedule = Schedule::of(query.codimension());
                 let mut second = Ball::new(query, FIRST)?.variance() / schedule.first as f64;
                 let mut mean = 0.0;
                 for level in 0..=schedule.last {

@@ -2,8 +2,8 @@
 
 use super::cases::{Estimator, beyond, difference, thresholds};
 use super::predict::{Difference, Expected};
-use crate::dimension::cases::Query;
 use crate::harness::{Cells, Estimate, Settings};
+use crate::setups::uncollided::Query;
 use turbid::stats::{Moments, jackknife};
 
 /// One estimator that one kind of question was put to.

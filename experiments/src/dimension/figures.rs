@@ -1,8 +1,9 @@
 //! The figure: mean squared error against photons, against the radius, and against time.
 
-use super::cases::{Query, radii};
+use super::cases::radii;
 use super::results::{Answer, Point, ladder};
 use crate::harness::{FigureFiles, positive_bar};
+use crate::setups::uncollided::Query;
 use turbid::stats::Moments;
 use turbid_figure::{Axis, Dash, Figure, Legend, Line, Panel, Points, Scale, Width};
 

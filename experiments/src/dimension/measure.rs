@@ -1,11 +1,11 @@
 //! Measuring one batch of maps.
 
-use super::cases::{
-    BEAMS, CELLS, POINTS, Query, SHOOTING, middles, name, places, radii, rays, reading, scene, sizes,
-};
-use super::read::{Uncollided, along_beams, along_points, at_place, beams_at_place};
+use super::cases::{BEAMS, CELLS, POINTS, SHOOTING, middles, name, radii, rays, reading, sizes};
 use crate::harness::{CellId, CellOutput, Group, Settings};
 use crate::setups::Maps;
+use crate::setups::uncollided::{
+    Query, Uncollided, along_beams, along_points, at_place, beams_at_place, places, scene,
+};
 use turbid::photons::beams::BeamMap;
 use turbid::photons::{Emitter, Histories, PhotonMap, Run};
 use turbid::scene::Scene;

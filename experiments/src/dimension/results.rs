@@ -1,7 +1,6 @@
 //! What the maps say.
 
-use super::cases::Query;
-use super::predict::Case;
+use crate::setups::uncollided::{Case, Query};
 use crate::theory::Curve;
 use turbid::stats::Moments;
 
@@ -27,6 +26,16 @@ impl Point {
     /// Mean squared error over all cells.
     pub fn squared(&self) -> Moments {
         self.squares.iter().collect()
+    }
+
+    /// Mean squared deviation from the predicted mean, by cell.
+    pub fn deviations(&self) -> Vec<f64> {
+        let blur = self.theory.blur;
+        self.errors
+            .iter()
+            .zip(&self.squares)
+            .map(|(e, square)| square - 2.0 * blur * e + blur * blur)
+            .collect()
     }
 }
 

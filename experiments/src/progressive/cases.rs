@@ -1,9 +1,8 @@
 //! The cases: who asks, by which schedule, after how many maps.
 
-use crate::dimension::cases::{DEPTH, Query};
-use crate::dimension::predict::Case;
 use crate::harness::Settings;
 use crate::setups::CELL;
+use crate::setups::uncollided::{Case, DEPTH, Query};
 use glam::DVec3;
 use turbid::estimators::Codimension;
 use turbid::math::Ray;

@@ -4,11 +4,11 @@ use super::cases::{QUERIES, Schedule, best, name, photons, radii, schedules, sto
 use super::figures;
 use super::predict::Expected;
 use super::results::{Answer, Point, sequence};
-use crate::dimension::cases::Query;
 use crate::harness::{
     Cells, Claim, Estimate, Parameters, Row, Section, Settings, Table, Unit, number, signed, with_error,
 };
 use crate::prediction::{Entry, Prediction, Term};
+use crate::setups::uncollided::Query;
 use crate::theory::{exponent, exponent_of_means};
 use turbid::estimators::Kernel;
 use turbid::stats::{Moments, jackknife};

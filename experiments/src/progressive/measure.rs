@@ -1,9 +1,10 @@
 //! Measuring one sequence of maps.
 
 use super::cases::{CELLS, QUERIES, Schedule, best, maps, name, photons, radii, rays, schedules, stops};
-use crate::dimension::cases::{Query, places, scene};
-use crate::dimension::read::{Uncollided, along_beams, along_points, at_place, beams_at_place};
 use crate::harness::{CellId, CellOutput, Group, Settings};
+use crate::setups::uncollided::{
+    Query, Uncollided, along_beams, along_points, at_place, beams_at_place, places, scene,
+};
 use turbid::photons::beams::BeamMap;
 use turbid::photons::{Emitter, Histories, PhotonMap, Run};
 use turbid::scene::Scene;

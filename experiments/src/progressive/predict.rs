@@ -1,10 +1,9 @@
 //! What theory says of every case, before anything is measured.
 
 use super::cases::{QUERIES, best, name, photons, radii, schedules, stops};
-use crate::dimension::cases::Query;
-use crate::dimension::predict::Case;
 use crate::harness::{Settings, Unit};
 use crate::prediction::Prediction;
+use crate::setups::uncollided::{Case, Query};
 
 /// The predicted error of a mean over maps, relative to the exact value.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -2,8 +2,8 @@
 
 use super::cases::Schedule;
 use super::predict::Expected;
-use crate::dimension::cases::Query;
 use crate::harness::Estimate;
+use crate::setups::uncollided::Query;
 use turbid::stats::Moments;
 
 /// One question by one schedule after so many maps.

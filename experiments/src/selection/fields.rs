@@ -1,7 +1,7 @@
 //! The questions: which field, asked by whom, with the exact law of one photon.
 
 use crate::debiasing::predict::Ball;
-use crate::dimension::cases::{DEPTH, MU0, Query, SPAN, scene as slab};
+use crate::setups::uncollided::{DEPTH, MU0, Query, SPAN, scene as slab};
 use crate::setups::{Body, CELL, asked, region};
 use glam::DVec3;
 use std::f64::consts::PI;

@@ -4,8 +4,8 @@ use super::cases::{CELLS, LARGEST, MAPS, PILOT, Selector, TARGETS, advised, is_a
 use super::fields::{Field, Source, scene, wave, with_sensor};
 use super::predict::Expected;
 use super::select::Question;
-use crate::dimension::read::{Uncollided, along_beams, along_points};
 use crate::harness::{CellId, CellOutput, Group, Settings};
+use crate::setups::uncollided::{Uncollided, along_beams, along_points};
 use std::collections::BTreeMap;
 use turbid::Spectrum;
 use turbid::estimators::boundary::Boundary;

@@ -2,9 +2,11 @@
 
 mod asked;
 mod body;
+pub(crate) mod levels;
 mod maps;
 mod setup;
 mod size;
+pub(crate) mod uncollided;
 
 pub use asked::asked;
 pub use body::{Body, CELL, spiral};

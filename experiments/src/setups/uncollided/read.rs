@@ -1,7 +1,7 @@
 //! What is read of one pass of uncollided light: relative errors at one place or along one ray, by the simulator's estimators with the
 //! uniform kernel.
 
-use super::cases::{ALBEDO, DEPTH, MU0, SPAN};
+use super::field::{ALBEDO, DEPTH, MU0, SPAN};
 use glam::DVec3;
 use turbid::Spectrum;
 use turbid::estimators::boundary::Boundary;
