@@ -12,10 +12,9 @@
 //! beam e^-t, whose bend is a = 1/6 of the fluence per squared mean free path: the bend of each probe has the normal
 //! prior distribution of that standard deviation, and the prediction carries what remains uncertain.
 
+use super::order_maps::{FluenceMaps, RadianceMaps, maps, max_order};
 use super::paths::{self, PathSettings};
-use super::photons::{
-    FluenceMaps, PhotonForecast, RadianceMaps, check, forecast_of, maps, margin, max_order,
-};
+use super::photons::{PhotonForecast, check, forecast_of, margin};
 use crate::error::{Error, Result};
 use crate::estimators::boundary::Boundary;
 use crate::estimators::{Estimator, Gather, Kernel};

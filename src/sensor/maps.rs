@@ -1,10 +1,9 @@
 //! Maps of one pass, read by any number of estimators.
 
 use super::PhotonForecast;
-use super::photons::{
-    OrderMaps, PhotonReadings, RadianceMaps, Surroundings, check, check_beams_of, check_orders, check_rays,
-    forecast_of, map_orders, maps, margin_of, max_order, read_bins,
-};
+use super::from_maps::{PhotonReadings, Surroundings, read_bins};
+use super::order_maps::{OrderMaps, RadianceMaps, map_orders, maps, max_order};
+use super::photons::{check, check_beams_of, check_orders, check_rays, forecast_of, margin_of};
 use crate::Spectrum;
 use crate::error::{Error, Result};
 use crate::estimators::Estimator;

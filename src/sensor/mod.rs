@@ -5,9 +5,11 @@ mod advise;
 mod bidirectional;
 mod compare;
 mod film;
+mod from_maps;
 mod light;
 mod maps;
 mod method;
+mod order_maps;
 mod paths;
 mod photons;
 mod picture_advice;
@@ -22,16 +24,18 @@ pub use compare::{
     BlockMean, BlockTest, Blocks, Comparison, LEVEL, PictureError, VALUES, compare, luminance_errors,
 };
 pub use film::{Film, Pixel, Sample};
+pub use from_maps::PhotonReadings;
 pub use light::{LIGHT_BYTES, LIGHT_PIXEL_BYTES, LightCount, by_light, extend_by_light};
 pub use maps::{MapReading, MapSettings, SensorMaps, usual_reach};
 pub use method::Method;
+pub use order_maps::{FluenceMaps, RadianceMaps};
 pub use paths::{
     PathSettings, by_bidirectional_paths, by_guided_paths, by_paths, sample, sample_bin, sample_counted,
     sample_guided,
 };
 pub use photons::{
-    FluenceMaps, PhotonForecast, PhotonReadings, PhotonSettings, RadianceMaps, by_given_photons, by_photons,
-    by_photons_in_passes, forecast, given_bytes, is_answered_by_map,
+    PhotonForecast, PhotonSettings, by_given_photons, by_photons, by_photons_in_passes, forecast,
+    given_bytes, is_answered_by_map,
 };
 pub use picture_advice::{PictureAdvice, PicturePilot, PicturePilotSettings};
 pub use render::{MAX_SAMPLES, Streams, extend};

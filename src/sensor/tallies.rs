@@ -1,6 +1,6 @@
 //! Sensors read by light tracing: photons are followed and scored as they pass, and none is stored.
 
-use super::photons::{is_tallied, max_order};
+use super::order_maps::{is_tallied, max_order};
 use super::reach::check_reach;
 use super::{Measurement, Source, measurements, room, row_bytes};
 use crate::error::{Error, Result};
