@@ -113,8 +113,8 @@ fn fluence_of_beams_is_the_exact_one() {
     let measure =
         ["measure", "slab", "--set", "tau=1", "--set", "probes=[0.5]", "--with", "photons", "--orders", "0"];
     let many =
-        ["--photons", "2e5", "--maps", "50", "--beam-radius", "0.3", "--beam-fluence", "--format", "json"];
-    let radius: f64 = 0.3;
+        ["--photons", "4e6", "--maps", "50", "--beam-radius", "0.45", "--beam-fluence", "--format", "json"];
+    let radius: f64 = 0.45;
     let (up, down) = (turbid::math::exp(radius), turbid::math::exp(-radius));
     let ball = 1.5 * (radius * (up + down) - (up - down)) / (radius * radius * radius);
     for (blur, factor) in [("1d", 1.0), ("3d", ball)] {
@@ -127,7 +127,7 @@ fn fluence_of_beams_is_the_exact_one() {
             let exact = turbid::math::exp(-0.5) * factor;
             // Student's t of 49 freedoms exceeds 5.6 once in a million.
             assert!(
-                (mean - exact).abs() < 5.6 * error && error < 0.004,
+                (mean - exact).abs() < 5.6 * error && error < 0.003,
                 "{blur} {length}: {mean} {error} {exact}"
             );
             assert_eq!(row["unit"], "W/L^2");

@@ -209,7 +209,7 @@ mod tests {
                 found += seen.len();
             }
         }
-        assert!(found > 3000 && capped > 1000, "{found} {capped}");
+        assert!(found > 3000 && capped > 400, "{found} {capped}");
     }
 
     /// The same radii on one thread and on many.
