@@ -16,7 +16,8 @@ pub struct Pair<'a> {
     pub crossing: Option<(f64, Interval)>,
     /// Part of the samples that cross.
     pub crossed: f64,
-    /// Logarithm of the new one's typical error over the old one's at the longest common time.
+    /// Logarithm of the new one's typical error over the old one's at the longest common time; with none in common, that of the last of one
+    /// over the first of the other, where the sooner one has the smaller error.
     pub ratio: Option<Estimate>,
 }
 
@@ -25,9 +26,12 @@ impl<'a> Pair<'a> {
     pub fn new(new: &'a Curve, old: &'a Curve) -> Self {
         let ((x, found, samples), (x_old, found_old, samples_old)) = (new.lines(), old.lines());
         let both = |y: &[f64], y_old: &[f64]| difference((&x, y), (&x_old, y_old));
+        let apart = |y: &[f64], y_old: &[f64]| across((&x, y), (&x_old, y_old));
+        let gap = apart(&found, &found_old);
         let found = both(&found, &found_old);
-        let sampled: Vec<_> = samples.zip(samples_old).map(|(y, y_old)| both(&y, &y_old)).collect();
-        let crossings: Vec<f64> = sampled.iter().filter_map(|line| last_zero(line)).collect();
+        let sampled: Vec<_> =
+            samples.zip(samples_old).map(|(y, y_old)| (both(&y, &y_old), apart(&y, &y_old))).collect();
+        let crossings: Vec<f64> = sampled.iter().filter_map(|(line, _)| last_zero(line)).collect();
         let crossed = crossings.len() as f64 / sampled.len().max(1) as f64;
         let cells = new.cells().min(old.cells());
         Pair {
@@ -39,10 +43,19 @@ impl<'a> Pair<'a> {
                 (libm::exp(at), Interval::new(libm::exp(low), libm::exp(high)))
             }),
             crossed,
-            ratio: found.last().map(|last| {
-                let spread: Moments = sampled.iter().filter_map(|line| Some(line.last()?.1)).collect();
-                Estimate::resampled(last.1, spread.std_dev(), cells)
-            }),
+            ratio: match found.last() {
+                Some(last) => {
+                    let spread: Moments =
+                        sampled.iter().filter_map(|(line, _)| Some(line.last()?.1)).collect();
+                    Some(Estimate::resampled(last.1, spread.std_dev(), cells))
+                }
+                // The sooner one would only gain with more time.
+                None => gap.filter(|(is_sooner, ratio)| *is_sooner == (*ratio < 0.0)).map(|(_, ratio)| {
+                    let spread: Moments =
+                        sampled.iter().filter_map(|(_, gap)| Some(gap.as_ref()?.1)).collect();
+                    Estimate::resampled(ratio, spread.std_dev(), cells)
+                }),
+            },
         }
     }
 }
@@ -56,6 +69,17 @@ fn difference(first: (&[f64], &[f64]), second: (&[f64], &[f64])) -> Vec<(f64, f6
     corners.retain(|&x| low <= x && x <= high);
     corners.sort_by(f64::total_cmp);
     corners.into_iter().map(|x| (x, at(first, x) - at(second, x))).collect()
+}
+
+/// Of lines that are nowhere both: whether the first one is the sooner, and its value less that of the second where they are nearest.
+fn across(first: (&[f64], &[f64]), second: (&[f64], &[f64])) -> Option<(bool, f64)> {
+    let ends = |x: &[f64]| (x[0], x[x.len() - 1]);
+    let (a, b) = (ends(first.0), ends(second.0));
+    let (start, last) = (|y: &[f64]| y[0], |y: &[f64]| y[y.len() - 1]);
+    if a.1 < b.0 {
+        return Some((true, last(first.1) - start(second.1)));
+    }
+    (b.1 < a.0).then(|| (false, start(first.1) - last(second.1)))
 }
 
 /// Where a line changes its sign last.
@@ -78,5 +102,14 @@ mod tests {
         assert_eq!(last_zero(&found), Some(2.0));
         assert_eq!(last_zero(&found[..2]), None);
         assert!(difference((&x, &falling), (&[5.0, 6.0], &[2.0, 2.0])).is_empty());
+    }
+
+    /// Lines that follow each other are compared where they are nearest.
+    #[test]
+    fn lines_apart_are_compared_at_their_ends() {
+        let (early, late) = ((&[0.0, 1.0][..], &[4.0, 3.0][..]), (&[2.0, 3.0][..], &[3.5, 2.0][..]));
+        assert_eq!(across(early, late), Some((true, -0.5)));
+        assert_eq!(across(late, early), Some((false, 0.5)));
+        assert_eq!(across(early, early), None);
     }
 }

@@ -32,8 +32,8 @@ pub fn media(curves: &[Curve]) -> anyhow::Result<FigureFiles> {
         "Half of all rays are farther off than this, against the CPU time of this machine for a map and the 10,000 rays of a small \
          picture: light scattered twice and more, in four media, at the radius of the least squared error times time (points joined by lines; from \
          left to right each map has more photons than the one before; 95 % intervals over maps). Lower and farther left is better. Planes have \
-         no radius to choose and no blur, and beams the least noise at a radius, but a ray looks at many of them; in the peaked medium \
-         both meet rare large terms, of flights nearly along the ray. The least error in the longest time that all have: {}.",
+         no radius to choose and no blur, and beams the least noise at a radius, but each of them takes longer to read than a photon in a ball; in the \
+         peaked medium both meet rare large terms, of flights nearly along the ray. The least error in the longest time that all have: {}.",
         ahead.join("; ")
     );
     FigureFiles::draw("media", &caption, &figure)
