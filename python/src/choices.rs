@@ -2,8 +2,8 @@
 
 use crate::error::refuse;
 use pyo3::PyResult;
-use turbid::estimators::{BeamBlur, BeamLength, Kernel, RayEnds};
 use turbid::estimators::boundary::Treatment;
+use turbid::estimators::{BeamBlur, BeamLength, Kernel, RayEnds};
 use turbid::integrators::StepRule;
 
 /// The choice of this name.

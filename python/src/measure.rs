@@ -11,7 +11,7 @@ use pyo3::types::{PyDict, PyList};
 use std::num::NonZeroUsize;
 use std::path::PathBuf;
 use turbid::estimators::boundary::Treatment;
-use turbid::estimators::{BeamBlur, BeamLength, RayEnds, Estimator, Gather, Kernel};
+use turbid::estimators::{BeamBlur, BeamLength, Estimator, Gather, Kernel, RayEnds};
 use turbid::math::Positive;
 use turbid::memory;
 use turbid::photons::Ledger;
@@ -160,10 +160,14 @@ impl Request {
             ));
         }
         if self.ends == RayEnds::Own && (ray_radius, beam_radius) == (None, None) {
-            return Err(anyhow!("ray_ends is own, of rays that are read at once; allowed: with ray_radius or beam_radius"));
+            return Err(anyhow!(
+                "ray_ends is own, of rays that are read at once; allowed: with ray_radius or beam_radius"
+            ));
         }
         if beam_fluence && progressive {
-            return Err(anyhow!("beam_fluence shrinks at another rate than rays; allowed: without progressive"));
+            return Err(anyhow!(
+                "beam_fluence shrinks at another rate than rays; allowed: without progressive"
+            ));
         }
         if planes && ray_radius.is_some() {
             return Err(anyhow!("ray_radius reads points and planes flights; allowed: one of them"));
