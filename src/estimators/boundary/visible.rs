@@ -6,7 +6,7 @@
 
 use super::surfaces::Boundary;
 use crate::estimators::Kernel;
-use crate::estimators::disc_share::share_before;
+use crate::estimators::disc_share::{share_before, share_in_circle};
 use crate::geometry::{Front, Shape};
 use crate::math::{Frame, Interval, Ray, sin_cos, warp};
 use crate::photons::PhotonTree;
@@ -228,11 +228,18 @@ impl<'a> Surroundings<'a> {
     }
 
     /// The part of the disc's kernel across an axis in which photons are kept, as [`Surroundings::share`] of the ball's: exact where only
-    /// planes part it, and else by rays in directions at equal angles, turned at random by the place and `salt`. At least what one
+    /// planes or the medium's own sphere part it, and else by rays in directions at equal angles, turned at random by the place and `salt`. At least what one
     /// direction brings that sees as far as `seen` \[L\], where there is a photon.
     pub fn disc_share(&self, kernel: Kernel, axis: DVec3, radius: f64, salt: u64, seen: f64) -> f64 {
         let axes = Frame::new(axis);
         let least = (kernel.within_disc(seen / radius) / f64::from(ACROSS)).max(f64::MIN_POSITIVE);
+        if let (Some(Shape::Sphere(ball)), true) = (self.medium, self.is_clear(radius)) {
+            let way = self.eye - ball.center();
+            let height = way.dot(axis);
+            let circle = ((ball.radius() - height) * (ball.radius() + height)).max(0.0).sqrt();
+            let away = (way - axis * height).length();
+            return share_in_circle(kernel, circle / radius, away / radius).max(least);
+        }
         if let Some(planes) = self.planes(radius) {
             let line = |front: &Front| {
                 let across = -DVec2::new(front.normal.dot(axes.x), front.normal.dot(axes.y));
