@@ -121,7 +121,8 @@ impl BeamEstimator {
     /// not a number in a periodic cell that is smaller than the radius
     ///
     /// # Limits
-    /// a disc that is not clipped loses what lies beyond faces and behind bodies; the part of it that is left is found by 32 directions
+    /// a disc that is not clipped loses what lies beyond faces and behind bodies; the part of it that is left is exact where planes or a sphere bound it,
+    /// and else found by 32 directions
     ///
     /// # Source
     /// Jarosz, Nowrouzezahrai, Sadeghi and Jensen 2011, beams at a point with a blur in two dimensions
@@ -131,6 +132,34 @@ impl BeamEstimator {
         place: DVec3,
         (number, medium): (usize, &Medium),
         boundary: &Boundary<'_>,
+    ) -> Estimate {
+        self.at_place(map, place, (number, medium), boundary, |_| 1.0)
+    }
+
+    /// Radiance that collisions at a place scatter into a direction of travel `wo`, over the albedo and the collision coefficient
+    /// [W/(L^2 sr)]: as [`BeamEstimator::fluence`], each beam with the phase function.
+    pub fn in_scattered(
+        &self,
+        map: &BeamMap,
+        (place, wo): (DVec3, DVec3),
+        (number, medium): (usize, &Medium),
+        boundary: &Boundary<'_>,
+    ) -> Estimate {
+        let phase = medium.phase();
+        self.at_place(map, place, (number, medium), boundary, |dir| {
+            let (one_minus_mu, one_plus_mu) = cosine_pair(dir, wo);
+            phase.value(one_minus_mu, one_plus_mu)
+        })
+    }
+
+    /// The sum over the beams about a place, each with a weight of its direction.
+    fn at_place(
+        &self,
+        map: &BeamMap,
+        place: DVec3,
+        (number, medium): (usize, &Medium),
+        boundary: &Boundary<'_>,
+        of: impl Fn(DVec3) -> f64,
     ) -> Estimate {
         let radius = self.radius.get();
         let is_whole = boundary.medium.is_none_or(|medium| medium.room(place) >= radius);
@@ -152,7 +181,7 @@ impl BeamEstimator {
                 _ => 1.0,
             };
             let weight = self.kernel.profile((squared / (radius * radius)).min(1.0)) / share;
-            sum += beam.power_at(along, medium) * weight;
+            sum += beam.power_at(along, medium) * (weight * of(beam.dir));
         });
         let scale = self.kernel.disc_peak() / (radius * radius) / map.emitted() as f64;
         let value = if is_known { sum * scale } else { Spectrum::grey(f64::NAN) };
@@ -263,7 +292,7 @@ impl BeamEstimator {
         let about = (!is_free).then(|| Surroundings::new(boundary, place, place, BEYOND * radius));
         let share = match &about {
             Some(about) if self.is_clipped && !about.is_clear(radius) => {
-                about.share(self.kernel, radius, map.emitted())
+                about.share(self.kernel, radius, map.salt())
             }
             _ => match ending.filter(|_| self.is_clipped) {
                 Some(medium) => body_part(self.kernel, medium, place, radius),

@@ -86,7 +86,8 @@ impl RayEstimator {
     /// across the ray, which is not r^2 times that of f.
     ///
     /// # Limits
-    /// radii of the k nearest are those of the map's own photons, and depend on what they weigh: at few of them the mean is another one
+    /// radii of the k nearest are those of the map's own photons, and depend on what they weigh: at few of them the mean is another one;
+    /// beside a face they grow, since half of the neighbours is missing, and a uniform source comes out too dark within a radius of it
     ///
     /// # Source
     /// Jarosz, Zwicker and Jensen 2008, as published: k nearest photons at each photon

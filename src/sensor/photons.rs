@@ -374,10 +374,14 @@ pub(super) fn check_beams_of(scene: &Scene, wanted: RadianceMaps) -> Result<()> 
     if wanted.whole_beams { check_whole_beams(scene) } else { check_beams(scene) }
 }
 
+/// The least part across a periodic slab of a direction of rays with ends of their own.
+const LEAST_ACROSS: f64 = 0.01;
+
 /// Whether beams are blurred, and stretches end, as sensors of radiance can be read.
 ///
 /// # Errors
-/// `Error::Scene` for a ball about a ray, and for ends of their own beside planes, or where there is more than one homogeneous region
+/// `Error::Scene` for a ball about a ray, and for ends of their own beside planes, where there is more than one homogeneous region, or of rays
+/// along the faces of a periodic slab
 pub(super) fn check_rays(scene: &Scene, sensors: &[Sensor], estimator: &Estimator) -> Result<()> {
     let Some(sensor) = sensors.iter().find(|sensor| is_radiance(sensor)) else { return Ok(()) };
     let refuse = |why: &str| Err(Error::Scene(format!("sensor {}: {why}", sensor.name)));
@@ -407,7 +411,19 @@ pub(super) fn check_rays(scene: &Scene, sensors: &[Sensor], estimator: &Estimato
              otherwise: ends that are cut",
         );
     }
-    Ok(())
+    let along_faces = |sensor: &&Sensor| match &sensor.quantity {
+        Quantity::Radiance(ray) => ray.dir.z.abs() < LEAST_ACROSS,
+        Quantity::Binned(Binned::Radiance { dir, .. }) => dir.z.abs() < LEAST_ACROSS,
+        _ => false,
+    };
+    match sensors.iter().find(along_faces) {
+        Some(sensor) if scene.periodic_cell().is_some() => Err(Error::Scene(format!(
+            "sensor {}: rays with ends of their own that run along the faces of a periodic slab pass cells without end; allowed: directions \
+             whose z is {LEAST_ACROSS} or more of either sign, ends that are cut",
+            sensor.name
+        ))),
+        _ => Ok(()),
+    }
 }
 
 /// Whether planes can be stored and answer sensors of radiance, where they are asked to.

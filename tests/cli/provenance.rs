@@ -68,6 +68,24 @@ fn tables_say_what_they_were_made_with() {
         &["render", "fogbox", "-o", "never.exr", "--beam-radius", "0.1", "--beam-blur", "3d"],
         &["--beam-blur is 3d, which is about places; allowed of pictures: 1d, 2d"],
     );
+    // What would be ignored is refused, also where what it depends on is kept away by another flag.
+    for (given, ignored) in [
+        (&along, &["--beam-fluence"][..]),
+        (&along, &["--beam-blur", "2d"]),
+        (&along, &["--beam-length", "whole"]),
+        (&across, &["--ray-k", "20"]),
+    ] {
+        refuses_naming(&[&given[..], ignored].concat(), &[ignored[0]]);
+    }
+    refuses_naming(&[&photons[..], &["--orders", "2..", "--planes", "--ray-k", "20"]].concat(), &["--ray-k"]);
+    refuses_naming(
+        &["render", "fogbox", "-o", "never.exr", "--beam-radius", "0.1", "--ray-k", "5"],
+        &["--ray-k"],
+    );
+    refuses_naming(
+        &[&photons[..], &["--beam-radius", "1e-170"]].concat(),
+        &["--beam-radius is", "allowed: from 1e-30 to 1e30"],
+    );
     refuses_naming(&[&across[..], &["--beam-blur", "4d"]].concat(), &["--beam-blur", "1d, 2d, 3d"]);
     refuses_naming(&[&photons[..], &["--beam-fluence"]].concat(), &["--beam-radius"]);
     refuses_naming(&[&photons[..], &["--beam-length", "whole"]].concat(), &["--beam-radius"]);

@@ -11,6 +11,7 @@ use glam::DVec3;
 use turbid::Spectrum;
 use turbid::geometry::Shape;
 use turbid::integrators::mapper::Settings;
+use turbid::math::Positive;
 use turbid::medium::{Density, Grid, Heterogeneous};
 use turbid::photons::maps::Indirect;
 use turbid::scene::{Object, Scene};
@@ -76,6 +77,28 @@ fn gathered_across_water() {
         has_water: true,
     };
     layers_are_those_of_paths(&room, Indirect::Gathered, &settings(4), 4000, 9);
+}
+
+/// Rays of the gathering that collide read photons or beams about the collision, where those of the camera read them along the way.
+#[test]
+fn gathered_beside_rays_that_are_read_at_once() {
+    let room = Room {
+        floor: lambertian(Spectrum::grey(0.6)),
+        sigma_t: Spectrum::grey(0.8),
+        albedo: Spectrum::grey(0.9),
+        g: 0.4,
+        is_colored: false,
+        has_glass: false,
+        has_water: false,
+    };
+    let radius = Positive::new("the radius", 0.1).unwrap();
+    let standard = settings(4);
+    for (volume, seed) in
+        [(standard.volume.along_rays(radius), 41), (standard.volume.along_beams(radius), 42)]
+    {
+        let settings = Settings { volume, ..standard.clone() };
+        layers_are_those_of_paths(&room, Indirect::Gathered, &settings, 4000, seed);
+    }
 }
 
 #[test]

@@ -99,7 +99,7 @@ pub struct Measure {
     /// Give each photon a radius of its own about rays, the distance to its k-th nearest other photon, at most --ray-radius: the beam
     /// radiance estimate as it was published, sharp where photons are many. Its blur depends on their density. Not with --progressive
     /// or --passes.
-    #[arg(long, value_name = "K", requires = "ray_radius", conflicts_with = "progressive", value_parser = whole::<u32>(1..=1_000_000_000))]
+    #[arg(long, value_name = "K", requires = "ray_radius", conflicts_with_all = ["progressive", "reject", "beam_radius", "planes"], value_parser = whole::<u32>(1..=1_000_000_000))]
     ray_k: Option<u32>,
     /// Store photons' flights through media as beams, and read rays from all beams that pass within this distance of the ray: less
     /// noise than points where it is below 0.4 mean free paths. Sensors of fluence take photons in the balls of --k or --radius. Not
@@ -108,13 +108,13 @@ pub struct Measure {
     beam_radius: Option<f64>,
     /// Read sensors of fluence from beams too: from all that pass the place within --beam-radius, in place of from photons in a ball
     /// [W/L^2]. Not with --progressive, since their radius shrinks at another rate.
-    #[arg(long, requires = "beam_radius", conflicts_with = "progressive")]
+    #[arg(long, requires = "beam_radius", conflicts_with_all = ["progressive", "reject", "ray_radius", "photons_from"])]
     beam_fluence: bool,
     /// In how many dimensions beams are blurred [default: 1d].
-    #[arg(long, value_enum, requires = "beam_radius")]
+    #[arg(long, value_enum, requires = "beam_radius", conflicts_with_all = ["reject", "ray_radius", "photons_from"])]
     beam_blur: Option<BlurName>,
     /// How far beams go [default: sampled].
-    #[arg(long, value_enum, requires = "beam_radius")]
+    #[arg(long, value_enum, requires = "beam_radius", conflicts_with_all = ["reject", "ray_radius", "photons_from"])]
     beam_length: Option<LengthName>,
     /// Where rays that are read at once end: own loses nothing at faces, and blurs the picture alone. Only for one homogeneous region
     /// with nothing in it [default: cut].

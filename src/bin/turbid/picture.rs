@@ -4,7 +4,7 @@ use super::made::Filled;
 use super::memory::{Memory, passes_that_fit, rounded_down};
 use super::progress::Bar;
 use super::shared::{kernels, note, parse_count, tell_ahead, whole};
-use anyhow::{Context, anyhow};
+use anyhow::{Context, anyhow, bail};
 use clap::ValueEnum;
 use std::num::NonZeroUsize;
 use turbid::estimators::boundary::{Rejection, Treatment};
@@ -262,7 +262,7 @@ pub struct Readout {
     /// Give each photon a radius of its own about rays, the distance to its k-th nearest other photon, at most --ray-radius: the beam
     /// radiance estimate as it was published, sharp where photons are many. Its blur depends on their density. Not with --progressive
     /// or --passes.
-    #[arg(long, value_name = "K", requires = "ray_radius", conflicts_with = "progressive", value_parser = whole::<u32>(1..=1_000_000_000))]
+    #[arg(long, value_name = "K", requires = "ray_radius", conflicts_with_all = ["progressive", "reject", "beam_radius"], value_parser = whole::<u32>(1..=1_000_000_000))]
     ray_k: Option<u32>,
     /// Store photons' flights through media as beams in place of photons, and read them along whole rays, from all beams that pass
     /// within this distance of the ray, weighted by --kernel: less noise than points where it is below 0.4 mean free paths. --volume
@@ -270,7 +270,7 @@ pub struct Readout {
     #[arg(long, conflicts_with_all = ["reject", "ray_radius"])]
     beam_radius: Option<f64>,
     /// In how many dimensions beams are blurred, 1d or 2d [default: 1d].
-    #[arg(long, value_enum, requires = "beam_radius")]
+    #[arg(long, value_enum, requires = "beam_radius", conflicts_with_all = ["reject", "ray_radius"])]
     beam_blur: Option<BlurName>,
     /// Rays of a final gathering at each surface that is seen; 0 reads the global map there itself: fast, and blotchy.
     #[arg(long, default_value_t = 64, value_parser = whole::<u32>(0..=1_000_000))]
@@ -397,9 +397,22 @@ impl RejectName {
     }
 }
 
+/// Radii that squares are taken of \[L\]: what scenes hold.
+const RADII: [f64; 2] = [1e-30, 1e30];
+
+/// A radius about rays or beams, checked.
+fn radius(flag: &'static str, given: Option<f64>) -> anyhow::Result<Option<Positive>> {
+    let Some(radius) = given else { return Ok(None) };
+    let checked = Positive::new(flag, radius)?;
+    if !(RADII[0] <= radius && radius <= RADII[1]) {
+        bail!("{flag} is {radius}; allowed: from {:e} to {:e}", RADII[0], RADII[1]);
+    }
+    Ok(Some(checked))
+}
+
 /// The radius of --ray-radius, checked.
 pub fn ray_radius(given: Option<f64>) -> anyhow::Result<Option<Positive>> {
-    Ok(given.map(|radius| Positive::new("--ray-radius", radius)).transpose()?)
+    radius("--ray-radius", given)
 }
 
 /// The number of --ray-k.
@@ -409,7 +422,7 @@ pub fn ray_k(given: Option<u32>) -> Option<NonZeroUsize> {
 
 /// The radius of --beam-radius, checked.
 pub fn beam_radius(given: Option<f64>) -> anyhow::Result<Option<Positive>> {
-    Ok(given.map(|radius| Positive::new("--beam-radius", radius)).transpose()?)
+    radius("--beam-radius", given)
 }
 
 /// Change of direct light above which a step of the march is halved.

@@ -28,6 +28,10 @@ const MOST: u32 = 16 * DIRECTIONS;
 /// Bodies lie in or behind a plane if they reach no farther out of it than this part of the point's distance: what rounding
 /// of a scene's numbers leaves. They hide no larger part of the kernel then.
 const ON_PLANE: f64 = 1e-6;
+/// Sines of angles below this are those of a plane along a disc.
+const ALONG: f64 = 1e-9;
+/// The farthest that a point lies from the middle of a circle, in parts of its radius.
+const INSIDE: f64 = 1.0 - 1e-12;
 /// Turns of this angle spread points evenly about an axis \[rad\]: pi (3 - sqrt 5).
 const GOLDEN_ANGLE: f64 = 2.399_963_229_728_653;
 
@@ -237,14 +241,17 @@ impl<'a> Surroundings<'a> {
             let way = self.eye - ball.center();
             let height = way.dot(axis);
             let circle = ((ball.radius() - height) * (ball.radius() + height)).max(0.0).sqrt();
-            let away = (way - axis * height).length();
+            // Rounding may put the centre just outside.
+            let away = (way - axis * height).length().min(circle * INSIDE);
             return share_in_circle(kernel, circle / radius, away / radius).max(least);
         }
         if let Some(planes) = self.planes(radius) {
             let line = |front: &Front| {
                 let across = -DVec2::new(front.normal.dot(axes.x), front.normal.dot(axes.y));
-                let away = front.distance / (radius * across.length());
-                (away < 1.0).then(|| (across.normalize(), away.max(0.0)))
+                // Of a plane along the disc's own, rounding may put the centre just behind it.
+                let sine = across.length();
+                let away = front.distance.max(0.0) / (radius * sine);
+                (sine > ALONG && away < 1.0).then(|| (across / sine, away))
             };
             let lines: Vec<(DVec2, f64)> = planes.iter().filter_map(line).collect();
             return share_before(kernel, &lines).max(least);

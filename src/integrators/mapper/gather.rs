@@ -108,7 +108,7 @@ impl Visitor for GatherRay<'_, '_, '_> {
         match step {
             Step::Ahead(_) if walker.order == 0 => self.report.rays.segments += 1,
             Step::Collision(Arrival { walker, position }, number) => {
-                let scattered = self.mapper.scattered(walker, position, number, self.report, stream);
+                let scattered = self.mapper.scattered_at_point(walker, position, number, self.report, stream);
                 self.found += self.weight * walker.weight * (scattered.single + scattered.multiple);
             }
             Step::Surface(Arrival { walker, .. }, found) => {

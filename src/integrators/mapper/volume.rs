@@ -24,8 +24,38 @@ pub(super) struct Scattered {
 }
 
 impl Mapper<'_> {
-    /// What a medium scatters at a point against the direction of a walker, over sigma_t [W/(L^2 sr)].
-    pub(super) fn scattered(
+    /// What a medium scatters at a point against the direction of a walker, over sigma_t [W/(L^2 sr)]; light scattered twice and more from
+    /// the photons or beams about the point, even where rays of the camera are read as a whole.
+    pub(super) fn scattered_at_point(
+        &self,
+        walker: &Walker,
+        position: DVec3,
+        number: usize,
+        report: &mut Report,
+        stream: &mut Stream,
+    ) -> Scattered {
+        let scattered = self.scattered(walker, position, number, report, stream);
+        let volume = &self.settings.volume;
+        if !volume.reads_rays() {
+            return scattered;
+        }
+        let (medium, wo) = (self.scene.medium(number), -walker.ray.dir);
+        let boundary = self.boundary(number);
+        let mut multiple = Spectrum::ZERO;
+        if let (Some(across), Some(map)) = (volume.of_beams(), &self.maps.beams) {
+            let estimate = across.in_scattered(map, (position, wo), (number, medium), &boundary);
+            report.volume.add(&estimate, 2);
+            multiple = estimate.value;
+        } else if let Some(map) = &self.maps.volume {
+            let estimate = volume.in_scattered(map, position, wo, medium.phase(), Spectrum::ONE, &boundary);
+            report.volume.add(&estimate, 3);
+            multiple = estimate.value.over(medium.sigma_t(position));
+        }
+        Scattered { multiple: medium.albedo(position) * multiple, ..scattered }
+    }
+
+    /// The same, light scattered twice and more only where rays are read point by point.
+    fn scattered(
         &self,
         walker: &Walker,
         position: DVec3,

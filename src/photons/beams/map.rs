@@ -29,6 +29,14 @@ impl BeamMap {
         Ok(BeamMap { tree: BeamTree::new(parts)?, emitted, side })
     }
 
+    /// Bits of one of its beams, which are other ones in other maps; 0 of none.
+    pub fn salt(&self) -> u64 {
+        self.tree
+            .beams()
+            .first()
+            .map_or(0, |beam| beam.start.x.to_bits() ^ beam.dir.y.to_bits().rotate_left(17))
+    }
+
     /// Visits every beam that comes near to a ray, as [`BeamTree::near`] has it; in a periodic cell, those of the world that it
     /// stands for. False where such a map cannot tell: the radius is larger than the cell, or the stretch has no end.
     pub fn near(
