@@ -86,17 +86,18 @@ fn gathered_beside_rays_that_are_read_at_once() {
         floor: lambertian(Spectrum::grey(0.6)),
         sigma_t: Spectrum::grey(0.8),
         albedo: Spectrum::grey(0.9),
-        g: 0.4,
+        g: 0.0,
         is_colored: false,
         has_glass: false,
         has_water: false,
     };
-    let radius = Positive::new("the radius", 0.1).unwrap();
+    // Wide enough that no few photons next to the eye make the spread.
+    let radius = Positive::new("the radius", 0.2).unwrap();
     let standard = settings(4);
     for (volume, seed) in
         [(standard.volume.along_rays(radius), 41), (standard.volume.along_beams(radius), 42)]
     {
-        let settings = Settings { volume, ..standard.clone() };
+        let settings = Settings { volume, ..standard };
         layers_are_those_of_paths(&room, Indirect::Gathered, &settings, 4000, seed);
     }
 }

@@ -36,7 +36,7 @@ fn ways() -> Result<Vec<Way>> {
     let standard = Settings::for_size(2.0, 100)?;
     let way = |name: String, volume: Estimator| Way {
         name,
-        settings: Settings { volume, ..standard.clone() },
+        settings: Settings { volume, ..standard },
         rounds: Vec::new(),
     };
     let mut ways = Vec::new();
