@@ -398,14 +398,14 @@ impl RejectName {
 }
 
 /// Radii that squares are taken of \[L\]: what scenes hold.
-const RADII: [f64; 2] = [1e-30, 1e30];
+const RADII: std::ops::RangeInclusive<f64> = 1e-30..=1e30;
 
 /// A radius about rays or beams, checked.
 fn radius(flag: &'static str, given: Option<f64>) -> anyhow::Result<Option<Positive>> {
     let Some(radius) = given else { return Ok(None) };
     let checked = Positive::new(flag, radius)?;
-    if !(RADII[0] <= radius && radius <= RADII[1]) {
-        bail!("{flag} is {radius}; allowed: from {:e} to {:e}", RADII[0], RADII[1]);
+    if !RADII.contains(&radius) {
+        bail!("{flag} is {radius}; allowed: from {:e} to {:e}", RADII.start(), RADII.end());
     }
     Ok(Some(checked))
 }
