@@ -83,10 +83,10 @@ impl BeamEstimator {
     ) -> RayEstimate {
         let (radius, phase) = (self.radius.get(), medium.phase());
         let (mut sum, mut found, mut rejected) = (Spectrum::ZERO, 0, 0);
-        let beside = Beside::new(boundary, ray, span, BEYOND * radius);
+        let beside = Beside::new(boundary, ray, span, radius);
         let is_known = map.near(ray, span, radius, |beam, crossing| {
             let share = match beam.medium as usize == number {
-                true => self.share((boundary, &beside), ray, crossing),
+                true => self.line_share(&beside, ray, crossing),
                 false => None,
             };
             let Some(share) = share else {
@@ -121,8 +121,8 @@ impl BeamEstimator {
     /// not a number in a periodic cell that is smaller than the radius
     ///
     /// # Limits
-    /// a disc that is not clipped loses what lies beyond faces and behind bodies; the part of it that is left is exact where planes or a sphere bound it,
-    /// and else found by 32 directions
+    /// a disc that is not clipped loses what lies beyond faces and behind bodies; the part of it that is left is exact where planes bound it, by a
+    /// rule in a sphere, and else found by 32 directions
     ///
     /// # Source
     /// Jarosz, Nowrouzezahrai, Sadeghi and Jensen 2011, beams at a point with a blur in two dimensions
@@ -222,7 +222,7 @@ impl BeamEstimator {
     ) -> RayEstimate {
         let (radius, phase) = (self.radius.get(), medium.phase());
         let rate = 2.0 * medium.highest_sigma_t().max();
-        let beside = Beside::new(boundary, ray, span, BEYOND * radius);
+        let beside = Beside::new(boundary, ray, span, radius);
         let (mut sum, mut found, mut rejected) = (Spectrum::ZERO, 0, 0);
         let is_known = map.chords_near(ray, span, radius, |beam, chord, here| {
             let (one_minus_mu, one_plus_mu) = cosine_pair(beam.dir, -ray.dir);
@@ -233,7 +233,7 @@ impl BeamEstimator {
                     let way = (beam.start - here.origin) + beam.dir * t;
                     let s = way.dot(ray.dir);
                     let away = way - ray.dir * s;
-                    let Some(share) = self.disc_share((boundary, &beside), (ray, s), away, beam) else {
+                    let Some(share) = self.disc_share(&beside, (ray, s), away, beam) else {
                         return;
                     };
                     counts = true;
@@ -325,45 +325,28 @@ impl BeamEstimator {
     /// What a place of a beam, `away` from its foot on the ray, is divided by; none if a body hides it from there.
     fn disc_share(
         &self,
-        (boundary, beside): (&Boundary<'_>, &Beside<'_>),
+        beside: &Beside<'_>,
         (ray, along): (&Ray, f64),
         away: DVec3,
         beam: &Beam,
     ) -> Option<f64> {
-        let radius = self.radius.get();
-        if boundary.is_clear() && !self.is_clipped || beside.is_clear(along, radius) {
-            return Some(1.0);
-        }
-        let seen = away.length();
-        let about = beside.at(along, BEYOND * if self.is_clipped { radius } else { seen });
-        if !about.sees(ray.at(along) + away) {
-            return None;
-        }
-        if !self.is_clipped || (about.is_clear(radius) && beside.is_whole(along, radius)) {
-            return Some(1.0);
-        }
-        Some(about.disc_share(self.kernel, ray.dir, radius, beam.start.x.to_bits(), seen))
+        let (radius, seen) = (self.radius.get(), away.length());
+        beside.divisor(
+            (along, radius, seen),
+            (self.is_clipped, true),
+            |about| about.sees(ray.at(along) + away),
+            |about| about.disc_share(self.kernel, ray.dir, radius, beam.start.x.to_bits(), seen),
+        )
     }
 
     /// What a beam is divided by; none if a body hides it from the ray.
-    fn share(
-        &self,
-        (boundary, beside): (&Boundary<'_>, &Beside<'_>),
-        ray: &Ray,
-        crossing: &Crossing,
-    ) -> Option<f64> {
-        let (radius, along) = (self.radius.get(), crossing.along_ray);
-        if boundary.is_clear() && !self.is_clipped || beside.is_clear(along, radius) {
-            return Some(1.0);
-        }
-        let seen = crossing.offset.abs();
-        let about = beside.at(along, BEYOND * if self.is_clipped { radius } else { seen });
-        if !about.sees(ray.at(along) + crossing.normal * crossing.offset) {
-            return None;
-        }
-        if !self.is_clipped || (about.is_clear(radius) && beside.is_whole(along, radius)) {
-            return Some(1.0);
-        }
-        Some(about.line_share(self.kernel, crossing.normal, radius, seen))
+    fn line_share(&self, beside: &Beside<'_>, ray: &Ray, crossing: &Crossing) -> Option<f64> {
+        let (radius, along, seen) = (self.radius.get(), crossing.along_ray, crossing.offset.abs());
+        beside.divisor(
+            (along, radius, seen),
+            (self.is_clipped, true),
+            |about| about.sees(ray.at(along) + crossing.normal * crossing.offset),
+            |about| about.line_share(self.kernel, crossing.normal, radius, seen),
+        )
     }
 }

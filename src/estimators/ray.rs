@@ -44,9 +44,6 @@ pub struct RayEstimate {
     pub rejected: usize,
 }
 
-/// Bodies are looked for a little beyond a photon, so that rounding leaves none out.
-const BEYOND: f64 = 1.001;
-
 impl RayEstimator {
     /// Radiance at the near end of a stretch of a ray [W/(L^2 sr)], scattered by a medium once more: photons of every order
     /// bring light of the next one.
@@ -139,7 +136,7 @@ impl RayEstimator {
     ) -> RayEstimate {
         let phase = medium.phase();
         let (mut sum, mut found, mut rejected) = (Spectrum::ZERO, 0, 0);
-        let beside = Beside::new(boundary, ray, span, BEYOND * self.radius.get());
+        let beside = Beside::new(boundary, ray, span, self.radius.get());
         let is_known = each(&mut |photon, radius, foot, squared| {
             let place = (photon.position, radius, squared);
             let Some(share) = self.share(map, (boundary, &beside), place, (ray, foot)) else {
@@ -170,17 +167,12 @@ impl RayEstimator {
         (photon, radius, squared): (DVec3, f64, f64),
         (ray, foot): (&Ray, f64),
     ) -> Option<f64> {
-        if boundary.is_clear() && !self.is_clipped || boundary.is_only && beside.is_clear(foot, radius) {
-            return Some(1.0);
-        }
-        let reach = if self.is_clipped { radius } else { squared.sqrt() };
-        let about = beside.at(foot, BEYOND * reach);
-        if !about.keeps(photon) {
-            return None;
-        }
-        if !self.is_clipped || (about.is_clear(radius) && beside.is_whole(foot, radius)) {
-            return Some(1.0);
-        }
-        Some(about.disc_share(self.kernel, ray.dir, radius, map.run(), squared.sqrt()))
+        let seen = squared.sqrt();
+        beside.divisor(
+            (foot, radius, seen),
+            (self.is_clipped, boundary.is_only),
+            |about| about.keeps(photon),
+            |about| about.disc_share(self.kernel, ray.dir, radius, map.run(), seen),
+        )
     }
 }

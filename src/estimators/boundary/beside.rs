@@ -6,6 +6,9 @@ use crate::geometry::{Cuboid, Shape};
 use crate::math::{Interval, Ray};
 use glam::DVec3;
 
+/// Bodies are looked for a little beyond a radius, so that rounding leaves none out.
+const BEYOND: f64 = 1.001;
+
 /// The bodies and regions that come within a distance of a stretch of a ray, each with the part of the line where it may.
 pub(in crate::estimators) struct Beside<'a> {
     boundary: &'a Boundary<'a>,
@@ -15,27 +18,49 @@ pub(in crate::estimators) struct Beside<'a> {
 }
 
 impl<'a> Beside<'a> {
-    /// What is nearer than `reach` \[L\] to the stretch.
-    pub fn new(boundary: &'a Boundary<'_>, ray: &'a Ray, span: Interval, reach: f64) -> Self {
+    /// What is nearer to the stretch than a radius \[L\].
+    pub fn new(boundary: &'a Boundary<'_>, ray: &'a Ray, span: Interval, radius: f64) -> Self {
+        let reach = BEYOND * radius;
         let near = |shape: &'a Shape| Some((about(shape, ray, reach)?.intersection(span)?, shape));
         let bodies = boundary.bodies.iter().filter_map(near).collect();
         let later = boundary.later.iter().filter_map(near).collect();
         Beside { boundary, ray, bodies, later }
     }
 
+    /// What a photon or beam is divided by that is found within a radius of the place at a distance along the ray, `seen` \[L\] away from it:
+    /// 1 where everything about it counts or nothing is clipped, else what `share` says of what stands there. None where it is not
+    /// kept. `is_owned` where it is sure to be of the medium.
+    pub fn divisor(
+        &self,
+        (along, radius, seen): (f64, f64, f64),
+        (is_clipped, is_owned): (bool, bool),
+        keeps: impl FnOnce(&Surroundings<'_>) -> bool,
+        share: impl FnOnce(&Surroundings<'_>) -> f64,
+    ) -> Option<f64> {
+        if self.boundary.is_clear() && !is_clipped || is_owned && self.is_clear(along, radius) {
+            return Some(1.0);
+        }
+        let about = self.at(along, BEYOND * if is_clipped { radius } else { seen });
+        if !keeps(&about) {
+            return None;
+        }
+        let is_whole = !is_clipped || (about.is_clear(radius) && self.is_whole(along, radius));
+        Some(if is_whole { 1.0 } else { share(&about) })
+    }
+
     /// Whether everything within a radius of the place at a distance along the ray is of the medium and seen, as far as boxes tell.
-    pub fn is_clear(&self, along: f64, radius: f64) -> bool {
+    fn is_clear(&self, along: f64, radius: f64) -> bool {
         let is_far = |near: &[(Interval, &Shape)]| near.iter().all(|(part, _)| !holds(part, along));
         self.is_whole(along, radius) && is_far(&self.bodies) && is_far(&self.later)
     }
 
     /// Whether the medium's own faces are no nearer than a radius to the place at a distance along the ray.
-    pub fn is_whole(&self, along: f64, radius: f64) -> bool {
+    fn is_whole(&self, along: f64, radius: f64) -> bool {
         self.boundary.medium.is_none_or(|medium| medium.room(self.ray.at(along)) >= radius)
     }
 
     /// What is nearer than `reach` \[L\], at most that which all was looked for, to the place at a distance along the ray.
-    pub fn at(&self, along: f64, reach: f64) -> Surroundings<'a> {
+    fn at(&self, along: f64, reach: f64) -> Surroundings<'a> {
         let at_hand = move |near: &(Interval, &'a Shape)| holds(&near.0, along).then_some(near.1);
         let place = self.ray.at(along);
         let shapes = (self.bodies.iter().filter_map(at_hand), self.later.iter().filter_map(at_hand));

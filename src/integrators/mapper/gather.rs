@@ -108,8 +108,9 @@ impl Visitor for GatherRay<'_, '_, '_> {
         match step {
             Step::Ahead(_) if walker.order == 0 => self.report.rays.segments += 1,
             Step::Collision(Arrival { walker, position }, number) => {
-                let scattered = self.mapper.scattered_at_point(walker, position, number, self.report, stream);
-                self.found += self.weight * walker.weight * (scattered.single + scattered.multiple);
+                let single = self.mapper.single(walker, position, number, self.report, stream);
+                let multiple = self.mapper.multiple(walker, position, number, self.report);
+                self.found += self.weight * walker.weight * (single + multiple);
             }
             Step::Surface(Arrival { walker, .. }, found) => {
                 if let Some(diffuse) = Diffuse::met(self.mapper, walker, found) {

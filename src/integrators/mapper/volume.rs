@@ -12,59 +12,18 @@ use crate::scene::Target;
 use crate::transport::{Passage, Walker, connection, transmittance};
 use glam::DVec3;
 
-/// Radiance that collisions scatter into a direction, over the collisions: times sigma_t it is the source of the
-/// transfer equation.
-#[derive(Clone, Copy)]
-pub(super) struct Scattered {
-    /// Of light that comes straight from the lights.
-    pub single: Spectrum,
-    /// Of all other light, per collision coefficient: the volume map counts collisions, so that this is to be divided by
-    /// sigma_t.
-    pub multiple: Spectrum,
-}
-
 impl Mapper<'_> {
-    /// What a medium scatters at a point against the direction of a walker, over sigma_t [W/(L^2 sr)]; light scattered twice and more from
-    /// the photons or beams about the point, even where rays of the camera are read as a whole.
-    pub(super) fn scattered_at_point(
+    /// Light that comes straight from the lights and is scattered at a point against the direction of a walker, over sigma_t
+    /// [W/(L^2 sr)]: times sigma_t it is the source of the transfer equation.
+    pub(super) fn single(
         &self,
         walker: &Walker,
         position: DVec3,
         number: usize,
         report: &mut Report,
         stream: &mut Stream,
-    ) -> Scattered {
-        let scattered = self.scattered(walker, position, number, report, stream);
-        let volume = &self.settings.volume;
-        if !volume.reads_rays() {
-            return scattered;
-        }
-        let (medium, wo) = (self.scene.medium(number), -walker.ray.dir);
-        let boundary = self.boundary(number);
-        let mut multiple = Spectrum::ZERO;
-        if let (Some(across), Some(map)) = (volume.of_beams(), &self.maps.beams) {
-            let estimate = across.in_scattered(map, (position, wo), (number, medium), &boundary);
-            report.volume.add(&estimate, 2);
-            multiple = estimate.value;
-        } else if let Some(map) = &self.maps.volume {
-            let estimate = volume.in_scattered(map, position, wo, medium.phase(), Spectrum::ONE, &boundary);
-            report.volume.add(&estimate, 3);
-            multiple = estimate.value.over(medium.sigma_t(position));
-        }
-        Scattered { multiple: medium.albedo(position) * multiple, ..scattered }
-    }
-
-    /// The same, light scattered twice and more only where rays are read point by point.
-    fn scattered(
-        &self,
-        walker: &Walker,
-        position: DVec3,
-        number: usize,
-        report: &mut Report,
-        stream: &mut Stream,
-    ) -> Scattered {
-        let (scene, settings) = (self.scene, self.settings);
-        let medium = scene.medium(number);
+    ) -> Spectrum {
+        let medium = self.scene.medium(number);
         let (phase, dir) = (medium.phase(), walker.ray.dir);
         let here = Walker { ray: Ray::new(position, dir), origin_surface: None, ..*walker };
         let value = |towards: DVec3| {
@@ -72,17 +31,32 @@ impl Mapper<'_> {
             phase.eval(one_minus_mu, one_plus_mu)
         };
         let blind = |stream: &mut Stream| Some(phase.scatter(dir, stream.pair()));
-        let single = self.direct(&here, None, report, stream, value, blind);
-        let mut multiple = Spectrum::ZERO;
-        if let Some(map) = self.maps.volume.as_ref().filter(|_| !settings.volume.reads_rays()) {
-            let boundary = self.boundary(number);
-            let estimate = settings.volume.in_scattered(map, position, -dir, phase, Spectrum::ONE, &boundary);
+        medium.albedo(position) * self.direct(&here, None, report, stream, value, blind)
+    }
+
+    /// The same of all other light, from the photons or beams about the point.
+    pub(super) fn multiple(
+        &self,
+        walker: &Walker,
+        position: DVec3,
+        number: usize,
+        report: &mut Report,
+    ) -> Spectrum {
+        let (medium, wo, volume) = (self.scene.medium(number), -walker.ray.dir, &self.settings.volume);
+        let boundary = self.boundary(number);
+        let scattered = if let (Some(across), Some(map)) = (volume.of_beams(), &self.maps.beams) {
+            let estimate = across.in_scattered(map, (position, wo), (number, medium), &boundary);
+            report.volume.add(&estimate, 2);
+            estimate.value
+        } else if let Some(map) = &self.maps.volume {
+            let estimate = volume.in_scattered(map, position, wo, medium.phase(), Spectrum::ONE, &boundary);
             report.volume.add(&estimate, 3);
-            let sigma_t = medium.sigma_t(position);
-            multiple = estimate.value.over(sigma_t);
-        }
-        let albedo = medium.albedo(position);
-        Scattered { single: albedo * single, multiple: albedo * multiple }
+            // The volume map counts collisions.
+            estimate.value.over(medium.sigma_t(position))
+        } else {
+            Spectrum::ZERO
+        };
+        medium.albedo(position) * scattered
     }
 
     /// What estimates are told of what is about a medium.
@@ -198,15 +172,19 @@ impl Source for Fog<'_, '_, '_> {
         let mapper = self.eye.mapper;
         self.eye.report.steps += 1;
         let sigma_t = mapper.scene.medium(self.number).sigma_t(place);
-        let scattered = if sigma_t.is_black() && !mapper.scene.plan().is_full {
-            Scattered { single: Spectrum::ZERO, multiple: Spectrum::ZERO }
-        } else {
-            mapper.scattered(self.walker, place, self.number, &mut self.eye.report, stream)
-        };
+        let (mut single, mut multiple) = (Spectrum::ZERO, Spectrum::ZERO);
+        if !sigma_t.is_black() || mapper.scene.plan().is_full {
+            let report = &mut self.eye.report;
+            single = mapper.single(self.walker, place, self.number, report, stream);
+            // Of rays that are read as a whole it is there already.
+            if !mapper.settings.volume.reads_rays() {
+                multiple = mapper.multiple(self.walker, place, self.number, report);
+            }
+        }
         let weight = seen * sigma_t * weight;
-        self.eye.layers.single += weight * scattered.single;
-        self.eye.layers.multiple += weight * scattered.multiple;
-        scattered.multiple.max()
+        self.eye.layers.single += weight * single;
+        self.eye.layers.multiple += weight * multiple;
+        multiple.max()
     }
 
     fn probed(&mut self, place: DVec3, stream: &mut Stream) -> Spectrum {
