@@ -37,6 +37,8 @@ pub enum Purpose {
     Mixture,
     /// Second legs of photons' planes, beside their walk.
     Planes,
+    /// What photons' beams carry through media that vary, beside their walk.
+    Beams,
 }
 
 /// Work that a scene may or may not require, counted where it is done.

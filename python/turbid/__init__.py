@@ -241,7 +241,7 @@ def measure(
     beam_radius : the same from photons' flights, stored as beams; in place of ``ray_radius`` [L]
     beam_fluence : read sensors of fluence from these beams too, in place of from photons in balls
     beam_blur : dimensions that beams are blurred in: 1d, 2d, or, at places, 3d
-    beam_length : sampled, or whole: to the end of homogeneous media, with what passes
+    beam_length : sampled, or whole: to the end of each medium, with what passes
     ray_ends : cut at faces, or own: each photon or beam ends where the parallel ray leaves the medium; in one homogeneous region
     planes : read light that is scattered twice and more from planes of flights, without blur; light that is scattered once by
         ``beam_radius``, for sensors of radiance

@@ -33,8 +33,8 @@ pub enum BeamLength {
     /// As far as the flight that was sampled.
     #[default]
     Sampled,
-    /// To the end of the medium, with what passes, while the walk goes on from the sampled collision: less variance a photon, and more
-    /// beams about every ray, in variance times beams never less.
+    /// To the end of the medium, with what passes (in closed form where it is homogeneous, tracked elsewhere), while the walk goes on from
+    /// the sampled collision: less variance a photon, and more beams about every ray, in variance times beams never less.
     Whole,
 }
 

@@ -1,6 +1,6 @@
 //! A pass of histories: emission, walk, photons stored where they collide or meet surfaces, powers tallied where they leave.
 
-use super::beams::{Beam, BeamMap, FlightBeams, MOST_CELLS, check_beams, check_whole_beams};
+use super::beams::{Beam, BeamMap, FlightBeams, MOST_CELLS};
 use super::importance::{Branching, Importance};
 use super::planes::{Plane, PlaneMap, check_planes, second_leg};
 use super::tallies::{Scores, Tallies};
@@ -312,16 +312,11 @@ impl<'a> Run<'a> {
     /// Runs its part of the histories: the same bits on any number of threads, and those of all parts are those of the whole.
     ///
     /// # Errors
-    /// `Error::Cancelled`, or `Error::NonFinite` if a contribution was not finite; those of [`check_end`]; where beams are stored,
-    /// those of [`check_beams`], where planes are, those of [`check_planes`], and `Error::Scene` for a flight that has no end, or crosses too many periodic cells.
+    /// `Error::Cancelled`, or `Error::NonFinite` if a contribution was not finite; those of [`check_end`]; where planes are stored,
+    /// those of [`check_planes`], where beams or planes are, `Error::Scene` for a flight that has no end, or crosses too many periodic cells.
     pub fn pass(&self, store: &dyn Storage, progress: &dyn Progress) -> Result<Pass> {
         self.scene.check_emission()?;
         check_end(self.scene)?;
-        if store.has_beams() && store.has_whole_beams() {
-            check_whole_beams(self.scene)?;
-        } else if store.has_beams() {
-            check_beams(self.scene)?;
-        }
         if store.has_planes() {
             check_planes(self.scene)?;
         }
@@ -349,6 +344,7 @@ impl<'a> Run<'a> {
                 ahead: f64::INFINITY,
                 bins: Tallies::new(self.scene, self.scored),
                 scoring: Stream::new(0, Purpose::Scores, 0, 0),
+                tracking: Stream::new(0, Purpose::Beams, 0, 0),
                 turning: Stream::new(0, Purpose::Planes, 0, 0),
                 pass: empty(),
             };
@@ -406,7 +402,8 @@ struct Block<'a> {
     bins: Tallies<'a>,
     /// Random numbers of scores: what is scored does not change the walk.
     scoring: Stream,
-    /// Random numbers of second legs of planes, which do not change the walk either.
+    /// Random numbers of what beams carry, and of second legs of planes, which do not change the walk either.
+    tracking: Stream,
     turning: Stream,
     pass: Pass,
 }
@@ -419,6 +416,9 @@ impl Block<'_> {
         self.scores.fill(Spectrum::ZERO);
         if !self.run.scored.is_empty() {
             self.scoring = Stream::new(histories.seed, Purpose::Scores, histories.replicate, history);
+        }
+        if self.has_beams {
+            self.tracking = Stream::new(histories.seed, Purpose::Beams, histories.replicate, history);
         }
         if self.has_planes {
             self.turning = Stream::new(histories.seed, Purpose::Planes, histories.replicate, history);
@@ -486,7 +486,8 @@ impl Block<'_> {
         let weight = if planted(Fault::BeamsArrive) { arrives } else { walker.weight };
         let walker = Walker { weight, ..*walker };
         let period = self.pass.period;
-        let flight = FlightBeams { scene, walker: &walker, end, is_forced, parts: part.of as f64, period };
+        let (ahead, parts) = (self.ahead, part.of as f64);
+        let flight = FlightBeams { scene, walker: &walker, end, ahead, is_forced, parts, period };
         let mut is_short = true;
         if is_kept[0] {
             let (beams, met) = (&mut self.beams, &mut self.pass.met_beams);
@@ -494,7 +495,7 @@ impl Block<'_> {
                 true => (self.ahead, true),
                 false => (end, is_forced),
             };
-            is_short &= FlightBeams { end, is_forced, ..flight }.each(|beam| {
+            is_short &= FlightBeams { end, is_forced, ..flight }.each(&mut self.tracking, |beam| {
                 *met += 1;
                 if !is_pilot {
                     beams.push(beam);
@@ -504,7 +505,7 @@ impl Block<'_> {
         if is_kept[1] && !(planted(Fault::PlanesCollided) && end == f64::INFINITY) {
             let (planes, met, turning) = (&mut self.planes, &mut self.pass.met_planes, &mut self.turning);
             // Planes reach beyond cells anyway.
-            is_short &= FlightBeams { period: None, ..flight }.each(|leg| {
+            is_short &= FlightBeams { period: None, ..flight }.each(&mut self.tracking, |leg| {
                 *met += 1;
                 if !is_pilot {
                     let start = period.map_or(leg.start, |side| periodic::wrap(leg.start, side));

@@ -3,7 +3,7 @@
 use super::PhotonForecast;
 use super::from_maps::{PhotonReadings, Surroundings, read_bins};
 use super::order_maps::{OrderMaps, RadianceMaps, map_orders, maps, max_order};
-use super::photons::{check, check_beams_of, check_orders, check_rays, forecast_of, margin_of};
+use super::photons::{check, check_orders, check_rays, forecast_of, margin_of};
 use crate::Spectrum;
 use crate::error::{Error, Result};
 use crate::estimators::Estimator;
@@ -69,9 +69,6 @@ fn checked(scene: &Scene, reach: f64, radiance: RadianceMaps) -> Result<f64> {
             )));
         }
         check(scene, sensor)?;
-    }
-    if radiance.asks_beams(scene.sensors()) {
-        check_beams_of(scene, radiance)?;
     }
     check_orders(scene, scene.sensors(), radiance)?;
     margin_of(scene, scene.sensors(), reach)

@@ -61,15 +61,6 @@ impl RadianceMaps {
         wanted
     }
 
-    /// Whether any sensor is read from beams.
-    pub(super) fn asks_beams(self, sensors: &[Sensor]) -> bool {
-        let asks = |sensor: &Sensor| match is_radiance(sensor) {
-            true => self.beams || self.direct_beams,
-            false => self.fluence != FluenceMaps::Points && map_orders(sensor).is_some(),
-        };
-        sensors.iter().any(asks)
-    }
-
     /// The ranges of orders that need a map each.
     pub(super) fn ranges(self, sensors: &[Sensor]) -> Ranges {
         let mut all = Ranges::default();

@@ -11,7 +11,7 @@ use crate::Spectrum;
 use crate::error::{Error, Result};
 use crate::estimators::{BeamBlur, Estimator, Gather, RayEnds};
 use crate::geometry::Shape;
-use crate::photons::beams::{self, check_beams, check_whole_beams};
+use crate::photons::beams;
 use crate::photons::planes::{self, check_planes};
 use crate::photons::{
     BUILD_SECONDS, Emitter, Histories, PEAK_BYTES, Part, Photon, Run, Scores, periodic, score_bytes,
@@ -356,22 +356,10 @@ fn prepared_of<'a>(
             check_reach(scene, sensor)?;
         }
     }
-    let wanted = RadianceMaps::of([&settings.estimator]);
-    if wanted.asks_beams(&sensors) {
-        check_beams_of(scene, wanted)?;
-    }
     check_rays(scene, &sensors, &settings.estimator)?;
-    check_orders(scene, &sensors, wanted)?;
+    check_orders(scene, &sensors, RadianceMaps::of([&settings.estimator]))?;
     let margin = margin_of(scene, &sensors, settings.estimator.reach())?;
     Ok((sensors, margin))
-}
-
-/// Whether flights can be stored as they are wanted.
-///
-/// # Errors
-/// those of [`check_beams`] and [`check_whole_beams`]
-pub(super) fn check_beams_of(scene: &Scene, wanted: RadianceMaps) -> Result<()> {
-    if wanted.whole_beams { check_whole_beams(scene) } else { check_beams(scene) }
 }
 
 /// The least part across a periodic slab of a direction of rays with ends of their own.

@@ -44,7 +44,7 @@ pub fn free_flight(
         return Flight::Uncollided(weight);
     }
     if scene.plan().has_heterogeneous {
-        return flight_by_stretch(scene, ray, end, interior, weight, stream);
+        return flight_by_stretch(scene, ray, end, interior, weight, stream, &mut |_, _, _| ());
     }
     let is_grey = scene.plan().has_grey_extinction;
     stream.work.channel_flights += u64::from(!is_grey);
@@ -97,23 +97,32 @@ pub fn free_flight(
 /// The flight of media of which some are heterogeneous: stretch by stretch, since each forgets what was before it.
 ///
 /// Homogeneous ones in closed form, with the balance heuristic over channels; others by delta tracking. Both keep the
-/// summed weight, and each channel's expectation given the weights that come in.
-fn flight_by_stretch(
+/// summed weight, and each channel's expectation given the weights that come in. `passed` is told every part of the flight, with the
+/// number of its medium and the weight at its near end: in homogeneous media the weight all along it follows from that, in others it
+/// stays.
+pub(crate) fn flight_by_stretch(
     scene: &Scene,
     ray: &Ray,
     end: f64,
     interior: usize,
     weight: Spectrum,
     stream: &mut Stream,
+    passed: &mut impl FnMut(usize, Interval, Spectrum),
 ) -> Flight {
     let mut weight = weight;
     for segment in scene.segments(ray, end, interior).iter() {
+        let passed = &mut |part: Interval, weight: Spectrum| passed(segment.medium, part, weight);
         let stretch = match scene.medium(segment.medium) {
-            Medium::Homogeneous(medium) => closed(medium, segment.interval, weight, stream),
+            Medium::Homogeneous(medium) => {
+                let stretch = closed(medium, segment.interval, weight, stream);
+                let end = if let End::Collision(t, _) = stretch { t } else { segment.interval.end };
+                passed(Interval { end, ..segment.interval }, weight);
+                stretch
+            }
             Medium::Heterogeneous(medium) => {
                 let by_channel = scene.plan().is_full || !medium.matter().sigma_t().is_grey();
                 stream.work.channel_flights += u64::from(by_channel);
-                track::delta(medium, ray, segment.interval, weight, by_channel, stream)
+                track::delta(medium, ray, segment.interval, weight, by_channel, stream, passed)
             }
         };
         match stretch {

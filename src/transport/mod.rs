@@ -17,9 +17,11 @@ pub use blocks::{BLOCK, NoProgress, Progress, blocks_at_once, in_parallel, run_b
 pub use emission::{collected, emission};
 pub use equal_angles::{Distances, EqualAngles, span};
 pub use flags::Flags;
+pub(crate) use flight::flight_by_stretch;
 pub use flight::{Flight, free_flight};
 pub use guide::{Guide, Guided, window};
 pub use roulette::Roulette;
+pub(crate) use track::steps;
 pub use transmittance::{Passage, connection, segment_transmittance, transmittance};
 pub use visitor::{Arrival, Step, Visitor, Walker};
 pub use walk::{LONG, walk};

@@ -85,6 +85,7 @@ fn tentative<T>(
 /// With weights w_c, and q_c the share of the majorant that channel c has at a tentative collision, it is real with
 /// p = sum w_c q_c / sum w_c; then w_c becomes w_c q_c/p, else w_c (1-q_c)/(1-p). Each channel is unbiased, and the
 /// summed weight stays as it is. With equal channels the weights do not change, and need not be kept `by_channel`.
+/// `passed` is told every part of the flight, and the weights on it.
 ///
 /// # Source
 /// Woodcock et al. 1965; Miller, Georgiev and Jarosz 2019
@@ -95,14 +96,16 @@ pub(super) fn delta(
     weight: Spectrum,
     by_channel: bool,
     stream: &mut Stream,
+    passed: &mut impl FnMut(Interval, Spectrum),
 ) -> End {
     let sigma_t = medium.matter().sigma_t();
     let scale = sigma_t.max();
     if scale == 0.0 {
+        passed(part, weight);
         return End::Uncollided(weight);
     }
     let ratio = sigma_t / scale;
-    let mut weight = weight;
+    let (mut weight, mut start) = (weight, part.start);
     let collision = tentative(
         (medium, ray, part),
         stream,
@@ -113,16 +116,22 @@ pub(super) fn delta(
             let is_real = u < bound.low * share;
             let density = if is_real { bound.low } else { density_at(medium, ray, t, bound.high, stream) };
             if is_real || u < density * share {
+                passed(Interval { start, end: t }, weight);
                 return Some(End::Collision(t, if by_channel { weight * ratio / share } else { weight }));
             }
             if by_channel && !planted(Fault::NullWeightForgotten) {
+                passed(Interval { start, end: t }, weight);
+                start = t;
                 let q = density / bound.high;
                 weight *= ratio.map(|r| (1.0 - r * q) / (1.0 - share * q));
             }
             None
         },
     );
-    collision.unwrap_or(End::Uncollided(weight))
+    collision.unwrap_or_else(|| {
+        passed(Interval { start, ..part }, weight);
+        End::Uncollided(weight)
+    })
 }
 
 /// The density at a distance: never above its bound, which rounding at a face between cells could break.
@@ -179,25 +188,60 @@ pub(super) fn ratio(medium: &Heterogeneous, ray: &Ray, part: Interval, stream: &
 
 /// What passes from the near end of a stretch to each place of it: a step function, unbiased at every place. Its steps are where
 /// they begin \[L\], and what passes from there on.
-pub(super) fn steps(
+///
+/// With `controls` it is that of what is above the lower bounds, which they are told of.
+pub(crate) fn steps(
     medium: &Heterogeneous,
     ray: &Ray,
     part: Interval,
+    mut controls: Option<&mut Controls>,
     stream: &mut Stream,
 ) -> Vec<(f64, Spectrum)> {
     let sigma_t = medium.matter().sigma_t();
     let scale = sigma_t.max();
+    if scale == 0.0 {
+        return Vec::new();
+    }
     let shares = sigma_t / scale;
+    let has_controls = controls.is_some();
+    let low = |bound: &Bound| if has_controls { bound.low } else { 0.0 };
     let (mut steps, mut passed) = (Vec::new(), Spectrum::ONE);
-    let rate = |bound: &Bound| if scale > 0.0 { bound.high * scale } else { 0.0 };
+    let rate = |bound: &Bound| {
+        if let Some(controls) = &mut controls {
+            controls.push(bound);
+        }
+        (bound.high - low(bound)) * scale
+    };
     tentative((medium, ray, part), stream, rate, |t, bound, stream| {
-        let q = density_at(medium, ray, t, bound.high, stream) / bound.high;
+        let density = density_at(medium, ray, t, bound.high, stream).max(low(bound));
+        let q = (density - low(bound)) / (bound.high - low(bound));
         passed *= shares.map(|s| 1.0 - s * q);
         passed *= outlives(passed.max(), stream);
         steps.push((t, passed));
         passed.is_black().then_some(())
     });
     steps
+}
+
+/// Lower bounds of a density along a stretch, in order.
+#[derive(Debug, Default)]
+pub(crate) struct Controls(Vec<(Interval, f64, f64)>);
+
+impl Controls {
+    fn push(&mut self, bound: &Bound) {
+        if bound.low > 0.0 {
+            self.0.push((bound.interval, self.to(bound.interval.start), bound.low));
+        }
+    }
+
+    /// Their integral to a distance \[L\].
+    pub fn to(&self, t: f64) -> f64 {
+        let behind = self.0.partition_point(|(interval, ..)| interval.start < t);
+        behind.checked_sub(1).map_or(0.0, |last| {
+            let (interval, before, low) = self.0[last];
+            before + low * (t.min(interval.end) - interval.start)
+        })
+    }
 }
 
 /// What a stretch emits towards the near end of the ray [W/(L^2 sr)], and its transmittance: both unbiased.

@@ -1,6 +1,6 @@
 //! Transmittance: the fraction of light that passes a stretch of media without a collision.
 
-use super::track;
+use super::track::{self, Controls};
 use crate::Spectrum;
 use crate::math::{Interval, Ray};
 use crate::medium::Medium;
@@ -72,33 +72,36 @@ fn across(
 pub struct Passage<'a> {
     way: (&'a Medium, &'a Ray, f64),
     /// None where the optical depth has a closed form.
-    steps: Option<Vec<(f64, Spectrum)>>,
+    tracked: Option<(Controls, Vec<(f64, Spectrum)>)>,
 }
 
 impl<'a> Passage<'a> {
     /// The passage through a stretch: exact where the optical depth has a closed form, else unbiased at every place, by one tracking of
     /// the stretch.
     pub fn new(medium: &'a Medium, ray: &'a Ray, part: Interval, stream: &mut Stream) -> Self {
-        let steps = match medium {
+        let tracked = match medium {
             Medium::Homogeneous(_) => None,
             Medium::Heterogeneous(varying) => match varying.optical_depth(ray, part) {
                 Some(_) => None,
                 None => {
                     stream.work.transmittances += 1;
-                    Some(track::steps(varying, ray, part, stream))
+                    let mut controls = Controls::default();
+                    let steps = track::steps(varying, ray, part, Some(&mut controls), stream);
+                    Some((controls, steps))
                 }
             },
         };
-        Passage { way: (medium, ray, part.start), steps }
+        Passage { way: (medium, ray, part.start), tracked }
     }
 
     /// The fraction of light that passes from the near end to a distance `t` along the ray \[1\].
     pub fn to(&self, t: f64) -> Spectrum {
         let (medium, ray, start) = self.way;
-        match &self.steps {
-            Some(steps) => {
+        match &self.tracked {
+            Some((controls, steps)) => {
                 let behind = steps.partition_point(|(from, _)| *from < t);
-                behind.checked_sub(1).map_or(Spectrum::ONE, |last| steps[last].1)
+                let tracked = behind.checked_sub(1).map_or(Spectrum::ONE, |last| steps[last].1);
+                decay(medium.matter().depth(controls.to(t))) * tracked
             }
             // A closed form of the whole is one of each part.
             None => decay(medium.integrated_depth(ray, Interval { start, end: t })),

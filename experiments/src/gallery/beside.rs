@@ -8,6 +8,7 @@ use super::cache::Cache;
 use super::compare::{FEWEST, Replicate, compare, errors, rms_of_one, spread};
 use super::keep::CachedRender;
 use super::light::ByLight;
+use super::lines::Stored;
 use super::look::look;
 use super::predict::{Radii, Spreads, predicted, radius};
 use super::recipe::readout;
@@ -38,6 +39,8 @@ pub(super) const FIRST: (u64, u64) = (1000, 2000);
 pub struct RivalPictures {
     /// The picture without photon maps in the same time that has the smaller error, and how it was made.
     pub equal: (ByLight, CachedRender),
+    /// The picture with its medium read along whole rays in the same time.
+    pub lines: Vec<(Stored, CachedRender)>,
     /// The reference, its samples per pixel and its CPU seconds.
     pub reference: Replicate,
     /// Samples a pixel of the reference, and its CPU seconds.
@@ -63,13 +66,22 @@ pub fn beside(large: &Cache, small: &Cache, ours: &CachedRender) -> anyhow::Resu
         .enumerate()
         .map(|(n, method)| Ok((method, large.rival(&format!("equal-{n}"), method, ours.facts.seconds)?)))
         .collect::<anyhow::Result<Vec<(ByLight, CachedRender)>>>()?;
+    let stored: &[Stored] = if picture.lines.is_some() { &Stored::ALL } else { &[] };
+    let lines = stored
+        .iter()
+        .zip(picture.lines.iter().cycle())
+        .map(|(stored, lines)| Ok((*stored, large.lines((lines, *stored), &ours.facts)?)))
+        .collect::<anyhow::Result<Vec<(Stored, CachedRender)>>>()?;
     // Before anything that is compared is made.
     let (prediction, mut seconds) = predict(small, ours)?;
     let masked: Vec<bool> = prediction.iter().map(|&e| e > LIMIT).collect();
     let share = masked.iter().filter(|&&is_masked| is_masked).count() as f64 / masked.len() as f64;
     say(&format!("{}: blur and edges may matter in {:.1} % of the pixels", picture.name, 100.0 * share));
-    let shown: Vec<&CachedRender> =
-        [ours].into_iter().chain(raced.iter().map(|(_, render)| render)).collect();
+    let shown: Vec<&CachedRender> = [ours]
+        .into_iter()
+        .chain(raced.iter().map(|(_, render)| render))
+        .chain(lines.iter().map(|(_, render)| render))
+        .collect();
     let most = shown.iter().map(|render| render.facts.samples).max().unwrap_or(0);
     let samples = enough(chosen(large, &masked)?, most, picture.reference);
     say(&format!("{}: {COMPARED} passes of {samples} samples per pixel for the reference", picture.name));
@@ -83,16 +95,20 @@ pub fn beside(large: &Cache, small: &Cache, ours: &CachedRender) -> anyhow::Resu
         .collect::<anyhow::Result<Vec<Replicate>>>()?;
     let comparison = compare(small.studio.grid(), &again, &reference.passes, &prediction, LIMIT);
     let found = errors(small.studio.grid(), &again, &reference.passes);
-    seconds += reference.seconds + raced.iter().map(|(_, render)| render.facts.seconds).sum::<f64>();
+    seconds += reference.seconds + shown[1..].iter().map(|render| render.facts.seconds).sum::<f64>();
     let rms = reference.rms[0];
-    let mut raced: Vec<_> = raced.into_iter().zip(&reference.rms[1..]).collect();
+    let (of_rivals, of_lines) = reference.rms[1..].split_at(raced.len());
+    let along: Vec<(&str, Interval)> =
+        lines.iter().zip(of_lines).map(|((stored, _), rms)| (stored.name(), *rms)).collect();
+    let mut raced: Vec<_> = raced.into_iter().zip(of_rivals).collect();
     raced.sort_by(|(_, a), (_, b)| (a.low + a.high).total_cmp(&(b.low + b.high)));
     let errors: Vec<(&str, Interval)> =
         raced.iter().map(|((method, _), rms)| (method.name(), **rms)).collect();
-    let compared = Compared::new(&comparison, &found, again.len(), rms, &errors);
+    let compared = Compared::new(&comparison, &found, again.len(), rms, &errors, &along);
     let (equal, _) = raced.swap_remove(0);
     Ok(RivalPictures {
         equal,
+        lines,
         reference: reference.shown,
         cost: (samples * COMPARED, reference.seconds),
         masked,

@@ -1,7 +1,8 @@
 //! Cached renders of a picture, each kept in a file as soon as it is made: an interrupted run goes on where it stopped.
 
-use super::keep::CachedRender;
+use super::keep::{CachedRender, RenderRecord};
 use super::light::ByLight;
+use super::lines::{Lines, Stored};
 use super::settings::Settings;
 use super::studio::Studio;
 use crate::harness::{duration, say};
@@ -48,6 +49,14 @@ impl Cache<'_> {
         let s = self.studio;
         let words = format!("{} in {seconds} s", s.unbiased_words(by_light, 0, 0));
         self.get(file, &words, 0, |bar| Ok(s.unbiased_for(by_light, seconds, 0, bar)?.without_layers()))
+    }
+
+    /// The picture with its medium read along whole rays, in as many CPU seconds as `ours` took.
+    pub fn lines(&self, of: (&Lines, Stored), ours: &RenderRecord) -> anyhow::Result<CachedRender> {
+        let s = self.studio;
+        self.get(of.1.kind(), &s.words_of_lines(of, ours.seconds), 0, |bar| {
+            Ok(s.lines_for(of, ours.radii, ours.seconds, bar)?.without_layers())
+        })
     }
 
     /// A pass of the reference.

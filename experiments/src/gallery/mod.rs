@@ -12,6 +12,7 @@ pub mod develop;
 mod dots;
 pub mod keep;
 pub mod light;
+pub mod lines;
 pub mod look;
 mod page;
 pub mod pictures;

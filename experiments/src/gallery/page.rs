@@ -84,8 +84,13 @@ for (const box of document.querySelectorAll('.compare')) {
 const LARGE: f64 = 720.0;
 
 /// The renders of a picture that are compared by eye: the kind of its plate, and its button.
-const RENDERS: [(&str, &str); 3] =
-    [("photons", "Photon map"), ("rival", "Rival, equal time"), ("reference", "Reference")];
+const RENDERS: [(&str, &str); 5] = [
+    ("photons", "Photon map"),
+    ("rays", "Along rays, equal time"),
+    ("beams", "Beams, equal time"),
+    ("rival", "Rival, equal time"),
+    ("reference", "Reference"),
+];
 
 /// The page of all pictures that are there.
 pub fn page(shown: &[PageEntry], settings: &Settings) -> Markup {
@@ -139,6 +144,12 @@ fn method(settings: &Settings) -> Markup {
             "Paths from the eye and light tracing, photons connected to the camera from where they scatter, race for "
             "the place of the rival wherever the scene permits both; the one with the smaller error is shown. In light tracing too, paths find lamps "
             "and what is seen by mirrors and through glass."
+        }
+        p {
+            "Of some pictures the light in the medium was read along whole rays as well, from points within a radius of the ray and from "
+            "photons' flights, stored as beams: in the same CPU time as the picture of 1998 took, as the mean over maps one after the other, "
+            "each of its own photons, with radii that shrink. Light that comes straight from a lamp and is scattered once is found by shadow "
+            "rays there too. The cognac only absorbs: there is nothing along its rays to be read."
         }
         p.soft {
             "How the verdict is found: what blur and edges do to each pixel is predicted from two other replicates, with up to 8 times as "
@@ -308,6 +319,11 @@ fn errors(c: &Compared) -> Markup {
             (c.rival) " " (between(c.equal_rms))
             @for (name, rms) in &c.beaten { "; beaten: " (name) " " (between(*rms)) }
         } }
+        @if !c.along.is_empty() {
+            tr { th { "along whole rays, at equal time" } td {
+                @for (n, (name, rms)) in c.along.iter().enumerate() { @if n > 0 { "; " } (name) " " (between(*rms)) }
+            } }
+        }
         tr { th { "bias" } td {
             "of the picture's mean " (between(c.bias)) "; of a block of 16 by 16, root mean square, what remains with any number of maps: "
             (between(c.systematic)) " (" (c.replicates) " sets of maps)"

@@ -1,6 +1,7 @@
 //! The pictures: scenes, numbers of photons, and what the originals cost.
 
 use super::light::ByLight;
+use super::lines::Lines;
 use turbid::integrators::Layer;
 use turbid::photons::maps::Amount;
 
@@ -51,6 +52,8 @@ pub struct Picture {
     pub reference: u64,
     /// What of the reference is found by light tracing.
     pub by_light: ByLight,
+    /// How it is made of light read along whole rays, beside the picture; none where no medium scatters, or nothing is asked.
+    pub lines: Option<Lines>,
 }
 
 /// Of a map that the scene does not need, or that nothing in the picture reads.
@@ -77,6 +80,7 @@ pub const ALL: &[Picture] = &[
         beside: Beside::Maps,
         reference: 10,
         by_light: ByLight::NOTHING,
+        lines: None,
     },
     Picture {
         name: "cognac",
@@ -96,6 +100,7 @@ pub const ALL: &[Picture] = &[
         beside: Beside::Maps,
         reference: 10,
         by_light: ByLight::CAUSTICS,
+        lines: None,
     },
     Picture {
         name: "cloud",
@@ -115,6 +120,7 @@ pub const ALL: &[Picture] = &[
         beside: Beside::Single,
         reference: 12,
         by_light: ByLight::NOTHING,
+        lines: None,
     },
     Picture {
         name: "cornell-fog",
@@ -137,6 +143,11 @@ pub const ALL: &[Picture] = &[
         beside: Beside::Maps,
         reference: 12,
         by_light: ByLight::NOTHING,
+        lines: Some(Lines {
+            parts: 1,
+            points: (Amount::Stored(65_000), 0.1),
+            beams: (Amount::Stored(5000), 0.1),
+        }),
     },
     Picture {
         name: "cornell-anisotropic",
@@ -160,6 +171,7 @@ pub const ALL: &[Picture] = &[
         beside: Beside::Maps,
         reference: 24,
         by_light: ByLight::NOTHING,
+        lines: None,
     },
     Picture {
         name: "cornell-smoke",
@@ -182,6 +194,7 @@ pub const ALL: &[Picture] = &[
         beside: Beside::Maps,
         reference: 12,
         by_light: ByLight::NOTHING,
+        lines: None,
     },
     Picture {
         name: "dusty-room",
@@ -201,6 +214,11 @@ pub const ALL: &[Picture] = &[
         beside: Beside::Maps,
         reference: 48,
         by_light: ByLight::NOTHING,
+        lines: Some(Lines {
+            parts: 1,
+            points: (Amount::Stored(80_000), 0.15),
+            beams: (Amount::Stored(5000), 0.1),
+        }),
     },
     Picture {
         name: "sunbeams",
@@ -223,6 +241,11 @@ pub const ALL: &[Picture] = &[
             layers: &[Layer::Direct, Layer::Caustic, Layer::Indirect, Layer::Single, Layer::Multiple],
             permille: 500,
         },
+        lines: Some(Lines {
+            parts: 4,
+            points: (Amount::Stored(300_000), 0.03),
+            beams: (Amount::Stored(30_000), 0.03),
+        }),
     },
     Picture {
         name: "pool",
@@ -242,6 +265,7 @@ pub const ALL: &[Picture] = &[
         beside: Beside::Maps,
         reference: 20,
         by_light: ByLight::NOTHING,
+        lines: None,
     },
 ];
 

@@ -44,7 +44,18 @@ pub fn plates(
         format!("{method}, {} samples per pixel, {} of CPU time", facts.samples, duration(facts.seconds))
     };
     plate("photons", told("Photon maps", &ours.facts), &exposed(&ours.total))?;
-    if let Some(RivalPictures { equal, reference, cost, masked, .. }) = others {
+    if let Some(RivalPictures { equal, lines, reference, cost, masked, .. }) = others {
+        for (stored, render) in lines {
+            let facts = &render.facts;
+            let caption = format!(
+                "The light in the medium by {}: the mean over {} maps of {} each, {} of CPU time",
+                stored.name(),
+                facts.samples,
+                facts.stored[2],
+                duration(facts.seconds)
+            );
+            plate(stored.kind(), caption, &exposed(&render.total))?;
+        }
         let (method, equal) = equal;
         let caption = told(&format!("The rival in the same time, {}", method.name()), &equal.facts);
         plate("rival", caption, &exposed(&equal.total))?;

@@ -35,6 +35,9 @@ pub struct Compared {
     /// The others, with their errors, 95 per cent.
     #[serde(default)]
     pub beaten: Vec<(String, [f64; 2])>,
+    /// The picture with its medium read along whole rays, in the same time: from what, and its error, 95 per cent.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub along: Vec<(String, [f64; 2])>,
     /// The verdict in words.
     pub verdict: String,
     /// Blocks and channels compared, and how many differ.
@@ -55,15 +58,18 @@ fn paths() -> String {
 impl Compared {
     /// The numbers of a comparison.
     ///
-    /// # Arguments   `raced` methods without photon maps and their errors, the smallest first; at least one
+    /// # Arguments   `raced` methods without photon maps and their errors, the smallest first; at least one. `along` whole rays, likewise
     pub fn new(
         comparison: &Comparison,
         errors: &Errors,
         replicates: usize,
         rms: Interval,
         raced: &[(&str, Interval)],
+        along: &[(&str, Interval)],
     ) -> Self {
         let pair = |i: Interval| [i.low, i.high];
+        let named =
+            |all: &[(&str, Interval)]| all.iter().map(|(name, rms)| (name.to_string(), pair(*rms))).collect();
         let agreement = comparison.agreement();
         let differ = if let Agreement::Differ(n) = agreement { n } else { 0 };
         let verdict = match agreement {
@@ -78,7 +84,8 @@ impl Compared {
             bias: pair(errors.bias),
             equal_rms: pair(raced[0].1),
             rival: raced[0].0.to_string(),
-            beaten: raced[1..].iter().map(|(name, rms)| (name.to_string(), pair(*rms))).collect(),
+            beaten: named(&raced[1..]),
+            along: named(along),
             verdict,
             blocks: (comparison.blocks.len(), differ),
             masked: comparison.masked,

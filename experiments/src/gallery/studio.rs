@@ -73,7 +73,7 @@ impl<'a> Studio<'a> {
         samples * self.grid().pixels() as u64
     }
 
-    fn words(&self, method: &str, samples: u64, replicate: u64) -> String {
+    pub(super) fn words(&self, method: &str, samples: u64, replicate: u64) -> String {
         let Grid { width, height } = self.grid();
         format!(
             "{} {}, {method}, {width} x {height}, {samples} samples, seed {}, replicate {replicate}",
@@ -179,7 +179,7 @@ impl<'a> Studio<'a> {
         }
     }
 
-    fn streams(&self, replicate: u64) -> Streams {
+    pub(super) fn streams(&self, replicate: u64) -> Streams {
         Streams { seed: self.seed, replicate }
     }
 

@@ -9,10 +9,10 @@ use glam::{DVec3, Vec3};
 /// What a beam's length is, and with it what its power does along it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum BeamKind {
-    /// The way that a sampled flight flew: what passes is in the length. The power is the same all along it, but where extinction
-    /// differs by channel: there the sum over the channels is.
+    /// The way that a sampled flight flew: what passes is in the length. The power is the same all along it, but in a homogeneous medium
+    /// whose extinction differs by channel: there the sum over the channels is. In one that varies it may be a part of a flight.
     Sampled,
-    /// All the way to the end of the medium: the power falls with what passes.
+    /// All the way to the end of a homogeneous medium: the power falls with what passes.
     Expected,
 }
 
@@ -48,7 +48,6 @@ impl Beam {
         let power = Spectrum(self.power.as_dvec3());
         match (self.kind, medium) {
             (BeamKind::Sampled, Medium::Homogeneous(even)) => sampled(power, even.sigma_t(), t),
-            // Of those that vary only grey ones have beams.
             (BeamKind::Sampled, Medium::Heterogeneous(_)) => power,
             (BeamKind::Expected, _) => power * decay(medium.matter().depth(t)),
         }

@@ -2,12 +2,12 @@
 
 use super::beam::{Beam, BeamKind, sampled};
 use crate::Spectrum;
-use crate::error::{Error, Result};
-use crate::math::Interval;
-use crate::medium::Medium;
+use crate::math::{Interval, Ray};
+use crate::medium::{Heterogeneous, Medium};
 use crate::photons::periodic;
+use crate::rng::Stream;
 use crate::scene::{Scene, decay};
-use crate::transport::Walker;
+use crate::transport::{Walker, flight_by_stretch, steps};
 use glam::DVec2;
 
 /// Periodic cells that one flight may cross, at most: each has a beam of its own.
@@ -15,35 +15,6 @@ pub(in crate::photons) const MOST_CELLS: usize = 100_000;
 
 /// An optical depth whose exponential is 0.
 const OPAQUE: f64 = 746.0;
-
-/// Checks that flights through a scene's media can be stored as beams.
-///
-/// # Errors
-/// `Error::Scene` where a medium varies and its extinction differs by channel: what a flight carries at a place of it depends on
-/// what it met
-pub fn check_beams(scene: &Scene) -> Result<()> {
-    match scene.media().iter().all(|medium| medium.is_homogeneous() || medium.has_grey_extinction()) {
-        true => Ok(()),
-        false => Err(Error::Scene(
-            "beams cannot be stored in a medium that varies and whose extinction differs by channel; allowed: points along rays \
-             (a ray radius), or points in balls"
-                .into(),
-        )),
-    }
-}
-
-/// Checks that they can be stored as far as they could go.
-///
-/// # Errors
-/// `Error::Scene` where a medium varies: what passes through it is not known in closed form
-pub fn check_whole_beams(scene: &Scene) -> Result<()> {
-    match scene.media().iter().all(Medium::is_homogeneous) {
-        true => Ok(()),
-        false => Err(Error::Scene(
-            "beams that go on to the end of a medium cannot be stored in one that varies; allowed: as far as the sampled flight".into(),
-        )),
-    }
-}
 
 /// A flight that was flown.
 pub(in crate::photons) struct FlightBeams<'a> {
@@ -53,6 +24,8 @@ pub(in crate::photons) struct FlightBeams<'a> {
     pub walker: &'a Walker,
     /// How far it flew \[L\]; may be infinite.
     pub end: f64,
+    /// How far the next surface is ahead \[L\]; may be infinite.
+    pub ahead: f64,
     /// Whether it is stored to the end of each medium, with what passes, as where its first collision was forced.
     pub is_forced: bool,
     /// The factor on powers.
@@ -63,49 +36,104 @@ pub(in crate::photons) struct FlightBeams<'a> {
 
 impl FlightBeams<'_> {
     /// Offers its beams, in order; false where it crosses more than [`MOST_CELLS`] cells, or has no end.
-    pub fn each(&self, mut store: impl FnMut(Beam)) -> bool {
-        let FlightBeams { scene, walker, end, is_forced, parts, period } = *self;
-        let kind = if is_forced { BeamKind::Expected } else { BeamKind::Sampled };
+    ///
+    /// What a flight carries through a medium that varies, where extinction differs by channel, depends on what it met, which nobody
+    /// kept: the beams are those of the same photon flown once more. What would go on to the end of a medium that varies is tracked:
+    /// a step function, unbiased at every place.
+    pub fn each(&self, tracking: &mut Stream, store: impl FnMut(Beam)) -> bool {
+        let FlightBeams { scene, walker, parts, .. } = *self;
+        let mut stretches = Stretches { flight: self, store, cells: 0, is_short: true };
         let mut power = walker.weight * parts;
-        let mut cells = 0;
-        for segment in scene.segments(&walker.ray, end, walker.interior).iter() {
-            let medium = scene.medium(segment.medium);
-            let span = seen(medium, segment.interval);
-            if is_scattering(medium) && power.sum() > 0.0 {
-                if span.end == f64::INFINITY {
-                    return false;
+        let forgets = |medium: &Medium| !medium.is_homogeneous() && !medium.has_grey_extinction();
+        if !self.is_forced && scene.media().iter().any(forgets) {
+            let passed = &mut |medium, span, power| stretches.add((medium, BeamKind::Sampled), span, power);
+            flight_by_stretch(scene, &walker.ray, self.ahead, walker.interior, power, tracking, passed);
+            return stretches.is_short;
+        }
+        for segment in scene.segments(&walker.ray, self.end, walker.interior).iter() {
+            let (number, span) = (segment.medium, segment.interval);
+            let medium = scene.medium(number);
+            power = match medium {
+                Medium::Heterogeneous(varying) if self.is_forced => {
+                    stretches.track((number, varying), span, power, tracking)
                 }
-                let mut one = |ray: &crate::math::Ray, part: Interval| {
-                    let here = behind(power, kind, medium, part.start - span.start);
-                    if part.length() > 0.0 {
-                        store(Beam {
-                            start: ray.at(part.start),
-                            dir: ray.dir,
-                            length: part.length(),
-                            power: here.0.as_vec3(),
-                            medium: segment.medium as u32,
-                            order: u16::try_from(walker.order).unwrap_or(u16::MAX),
-                            flags: walker.flags,
-                            kind,
-                        });
+                _ => {
+                    let kind = if self.is_forced { BeamKind::Expected } else { BeamKind::Sampled };
+                    stretches.add((number, kind), span, power);
+                    behind(power, kind, medium, span.length())
+                }
+            };
+        }
+        stretches.is_short
+    }
+}
+
+/// The beams of a flight, one after the other.
+struct Stretches<'a, S> {
+    flight: &'a FlightBeams<'a>,
+    store: S,
+    cells: usize,
+    /// No more than [`MOST_CELLS`] cells so far, and no stretch without an end.
+    is_short: bool,
+}
+
+impl<S: FnMut(Beam)> Stretches<'_, S> {
+    /// Offers a stretch of a medium that begins with a power.
+    fn add(&mut self, (number, kind): (usize, BeamKind), span: Interval, power: Spectrum) {
+        let FlightBeams { scene, walker, period, .. } = *self.flight;
+        let medium = scene.medium(number);
+        if !self.is_short || !is_scattering(medium) || power.sum() == 0.0 {
+            return;
+        }
+        let span = seen(medium, span);
+        if span.end == f64::INFINITY {
+            self.is_short = false;
+            return;
+        }
+        let mut one = |ray: &Ray, part: Interval| {
+            if part.length() > 0.0 {
+                (self.store)(Beam {
+                    start: ray.at(part.start),
+                    dir: ray.dir,
+                    length: part.length(),
+                    power: behind(power, kind, medium, part.start - span.start).0.as_vec3(),
+                    medium: number as u32,
+                    order: u16::try_from(walker.order).unwrap_or(u16::MAX),
+                    flags: walker.flags,
+                    kind,
+                });
+            }
+        };
+        match period {
+            None => one(&walker.ray, span),
+            Some(side) => {
+                for (ray, part) in periodic::in_cells(&walker.ray, span, side) {
+                    self.cells += 1;
+                    self.is_short &= self.cells <= MOST_CELLS;
+                    if !self.is_short {
+                        return;
                     }
-                };
-                match period {
-                    None => one(&walker.ray, span),
-                    Some(side) => {
-                        for (ray, part) in periodic::in_cells(&walker.ray, span, side) {
-                            cells += 1;
-                            if cells > MOST_CELLS {
-                                return false;
-                            }
-                            one(&ray, part);
-                        }
-                    }
+                    one(&ray, part);
                 }
             }
-            power = behind(power, kind, medium, segment.interval.length());
         }
-        true
+    }
+
+    /// Offers what passes each part of a stretch of a medium that varies; what passes all of it.
+    fn track(
+        &mut self,
+        (number, medium): (usize, &Heterogeneous),
+        span: Interval,
+        power: Spectrum,
+        tracking: &mut Stream,
+    ) -> Spectrum {
+        let (mut start, mut passed) = (span.start, Spectrum::ONE);
+        for (at, then) in steps(medium, &self.flight.walker.ray, span, None, tracking) {
+            self.add((number, BeamKind::Sampled), Interval { start, end: at }, power * passed);
+            (start, passed) = (at, then);
+        }
+        self.add((number, BeamKind::Sampled), Interval { start, ..span }, power * passed);
+        power * passed
     }
 }
 

@@ -13,7 +13,6 @@ pub use beam::{Beam, BeamKind};
 pub use chord::Chord;
 pub use crossing::Crossing;
 pub(in crate::photons) use flight::{FlightBeams, MOST_CELLS};
-pub use flight::{check_beams, check_whole_beams};
 pub use map::BeamMap;
 pub(in crate::photons) use order::{Entry, kd_order};
 pub use tree::BeamTree;

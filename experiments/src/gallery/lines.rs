@@ -1,0 +1,186 @@
+//! The same picture with the volume map read along whole rays, from points and from beams: maps one after the other, each of its own
+//! photons, with radii that shrink, until as much time has passed as the picture of 1998 took.
+
+use super::keep::{CachedRender, FORMAT, RenderRecord};
+use super::pictures::Picture;
+use super::recipe;
+use super::studio::Studio;
+use cpu_time::ProcessTime;
+use turbid::estimators::Gather;
+use turbid::integrators::mapper::{self, Mapper};
+use turbid::math::Positive;
+use turbid::photons::maps::{self, Amount, MapSettings};
+use turbid::sensor::{Film, Method};
+use turbid::transport::{NoProgress, Progress};
+
+/// What a map of them takes.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Lines {
+    /// The picture's photons on surfaces over those of each map.
+    pub parts: u64,
+    /// Points in the medium, and the radius about rays in the first map \[L\].
+    pub points: (Amount, f64),
+    /// Beams in the medium, and that radius.
+    pub beams: (Amount, f64),
+}
+
+/// What is stored of light in a medium.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Stored {
+    /// Collisions.
+    Points,
+    /// Flights.
+    Beams,
+}
+
+impl Stored {
+    /// Both.
+    pub const ALL: [Stored; 2] = [Stored::Points, Stored::Beams];
+
+    /// Their name on the page.
+    pub fn name(self) -> &'static str {
+        match self {
+            Stored::Points => "points along rays",
+            Stored::Beams => "photon beams",
+        }
+    }
+
+    /// Name of the plate and of its file.
+    pub fn kind(self) -> &'static str {
+        match self {
+            Stored::Points => "rays",
+            Stored::Beams => "beams",
+        }
+    }
+
+    /// Number of the first of its maps: no random numbers are those of another picture.
+    fn first(self) -> u64 {
+        match self {
+            Stored::Points => 3000,
+            Stored::Beams => 3_000_000,
+        }
+    }
+
+    fn of(self, lines: &Lines) -> (Amount, f64) {
+        match self {
+            Stored::Points => lines.points,
+            Stored::Beams => lines.beams,
+        }
+    }
+}
+
+/// What is stored in the map of this number, and how the first is read.
+fn settings(
+    picture: &Picture,
+    (lines, stored): (&Lines, Stored),
+    radii: [f64; 3],
+    seed: u64,
+    map: u64,
+) -> turbid::Result<(MapSettings, mapper::Settings)> {
+    let usual = recipe::maps(picture, 1, seed, stored.first() + map);
+    let part = |amount: Amount| match amount {
+        Amount::Emitted(n) => Amount::Emitted(n.div_ceil(lines.parts)),
+        Amount::Stored(n) => Amount::Stored(n.div_ceil(lines.parts)),
+    };
+    let (volume, radius) = stored.of(lines);
+    let (global, caustic) = (part(usual.global), part(usual.caustic));
+    let maps = MapSettings { global, caustic, volume, has_beams: stored == Stored::Beams, ..usual };
+    let mut read = recipe::readout(picture, 1)?;
+    let gathers = [&mut read.global.1, &mut read.caustic.1, &mut read.volume.gather];
+    for (gather, radius) in gathers.into_iter().zip(radii) {
+        if radius > 0.0 {
+            *gather = Gather::radius(radius)?;
+        }
+    }
+    let radius = Positive::new("the radius about rays", radius)?;
+    read.volume = match stored {
+        Stored::Points => read.volume.along_rays(radius),
+        Stored::Beams => read.volume.along_beams(radius),
+    };
+    read.volume = read.volume.progressive();
+    Ok((maps, read.in_map(map)))
+}
+
+impl Studio<'_> {
+    /// What a render from lines will be called.
+    pub fn words_of_lines(&self, (lines, stored): (&Lines, Stored), seconds: f64) -> String {
+        self.words(&format!("{} of {lines:?} in {seconds} s", stored.name()), 1, 0)
+    }
+
+    /// A picture from as many maps as that many CPU seconds allow, a sample a pixel from each; at least two.
+    ///
+    /// # Arguments   `radii` of the first map's estimates on surfaces, of caustics and in the volume, 0 where there are none \[L\]
+    pub fn lines_for(
+        &self,
+        of: (&Lines, Stored),
+        radii: [f64; 3],
+        seconds: f64,
+        progress: &dyn Progress,
+    ) -> anyhow::Result<CachedRender> {
+        let start = ProcessTime::now();
+        let (width, height) = (self.camera.width(), self.camera.height());
+        let mut film = Film::new(width, height);
+        let mut facts = RenderRecord {
+            format: FORMAT,
+            words: self.words_of_lines(of, seconds),
+            program: self.program.clone(),
+            seconds: 0.0,
+            map_seconds: 0.0,
+            samples: 0,
+            emitted: [0; 2],
+            stored: [0; 3],
+            radii: [0.0; 3],
+            estimates: None,
+        };
+        loop {
+            let (maps, read) = settings(self.picture, of, radii, self.seed, facts.samples)?;
+            let began = start.elapsed().as_secs_f64();
+            let filled = maps::fill(&self.scene, &maps, &NoProgress)?;
+            facts.map_seconds += start.elapsed().as_secs_f64() - began;
+            let mapper = Mapper::new(&self.scene, &filled, &read);
+            mapper.check_radii()?;
+            let mut one = Film::new(width, height);
+            let method = Method::Photons(mapper);
+            method.extend(&mut one, &self.camera, 1, self.streams(maps.replicate), progress)?;
+            film.push_film(&one);
+            facts.samples += 1;
+            let in_medium = filled.volume.as_ref().map_or(0, |map| map.stored() as u64)
+                + filled.beams.as_ref().map_or(0, |map| map.stored() as u64);
+            let on_surfaces = [&filled.global, &filled.caustic]
+                .map(|map| map.as_ref().map_or(0, |map| map.stored() as u64));
+            facts.stored = [on_surfaces[0], on_surfaces[1], in_medium];
+            facts.emitted = [filled.report.main.emitted, filled.report.caustic.emitted];
+            facts.seconds = start.elapsed().as_secs_f64();
+            // As much again as the mean map took.
+            if facts.samples >= 2 && facts.seconds * (1.0 + 1.0 / facts.samples as f64) > seconds {
+                break;
+            }
+        }
+        Ok(CachedRender::new(facts, film.pixels().iter().map(|p| p.layers()).collect()))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::gallery::pictures::ALL;
+
+    /// Where light is read along rays there is a medium that scatters it, every map has its own photons, and radii shrink.
+    #[test]
+    fn maps_follow_each_other() {
+        let with_lines: Vec<_> = ALL.iter().filter_map(|p| Some((p, p.lines?))).collect();
+        assert!(with_lines.len() > 1);
+        for (picture, lines) in with_lines {
+            for stored in Stored::ALL {
+                let of = |map| settings(picture, (&lines, stored), [0.1, 0.0, 0.2], 1, map).unwrap();
+                let ((maps, first), (others, later)) = (of(0), of(5));
+                assert_eq!((maps.has_beams, maps.replicate + 5), (stored == Stored::Beams, others.replicate));
+                let radius =
+                    |s: &mapper::Settings| s.volume.ray_radius.or(s.volume.beam_radius).unwrap().get();
+                assert!(radius(&later) < radius(&first) && first.volume.reads_rays(), "{}", picture.name);
+                assert!(later.global.1.cap() < first.global.1.cap());
+                assert_eq!(later.caustic, first.caustic, "nothing is found about no radius");
+            }
+        }
+    }
+}
