@@ -221,6 +221,75 @@ fn a_picture_by_layer() {
     }
 }
 
+/// Rays and places of an exact slab by points along rays, and by beams of every blur, length and end, and by planes: all right, each with its
+/// own words in the table.
+#[test]
+fn every_way_of_reading_rays_is_an_estimator() {
+    let (folder, _file) = written(
+        "\
+scene = 'slab'
+photons = [2e4]
+maps = 64
+[measure]
+probes = [[2.0, 2.0, 0.5]]
+rays = [{ origin = [1.0, 1.0, -0.5], dir = [0.6, 0, 0.8] }]
+[[estimators]]
+ray_radius = 0.1
+ray_ends = ['cut', 'own']
+[[estimators]]
+beam_radius = 0.1
+beam_blur = ['1d', '2d']
+beam_length = 'whole'
+ray_ends = ['cut', 'own']
+[[estimators]]
+beam_radius = 0.12
+beam_length = 'whole'
+beam_fluence = true
+[[estimators]]
+beam_radius = 0.1
+beam_length = 'whole'
+planes = true
+",
+    );
+    study(folder.path(), &["mine.toml", "--out", "out"]).assert().success();
+    let all = rows(&folder.path().join("out/results.csv"));
+    let mut words = std::collections::BTreeSet::new();
+    for row in all.iter().filter(|row| row["place"] != "all") {
+        let number = |key: &str| row[key].parse::<f64>().unwrap();
+        let (bias, error) = (number("bias"), number("bias_error"));
+        // A ball of 0.1 or a strip of 0.1 mean free paths blurs by less than a per cent.
+        assert!(error < 0.1 && bias.abs() < 5.0 * error + 0.01, "{row:?}");
+        let keys =
+            ["ray_radius", "beam_radius", "beam_blur", "beam_length", "beam_fluence", "planes", "ray_ends"];
+        words.insert(keys.map(|key| row[key].clone()).join(","));
+    }
+    let expected = [
+        ",0.1,1d,whole,false,false,cut",
+        ",0.1,1d,whole,false,false,own",
+        ",0.1,1d,whole,false,true,cut",
+        ",0.1,2d,whole,false,false,cut",
+        ",0.1,2d,whole,false,false,own",
+        ",0.12,1d,whole,true,false,cut",
+        "0.1,,,,,,cut",
+        "0.1,,,,,,own",
+    ];
+    assert_eq!(words.into_iter().collect::<Vec<_>>(), expected);
+    for (change, told) in [
+        (
+            ("beam_radius = 0.12\nbeam_length = 'whole'", "beam_radius = 0.12"),
+            "some beams are sampled and some whole",
+        ),
+        (("beam_blur = ['1d', '2d']", "beam_blur = '4d'"), "beam_blur is \"4d\"; allowed: 1d, 2d, 3d"),
+        (("beam_blur = ['1d', '2d']", "beam_blur = '3d'"), "rays have none; allowed: 1d, 2d"),
+        (("beam_radius = 0.12\n", "radius = 0.12\n"), "say how beams are read; allowed: with beam_radius"),
+    ] {
+        let text = std::fs::read_to_string(folder.path().join("mine.toml")).unwrap();
+        std::fs::write(folder.path().join("bad.toml"), text.replace(change.0, change.1)).unwrap();
+        let said = refused(folder.path(), &["bad.toml", "--out", "bad"]);
+        assert!(said.contains(told), "{said}");
+    }
+}
+
 /// Halves of two maps, whose spread the reference's own error hides, tell no error: that is said, nothing else is missing.
 #[test]
 fn too_few_maps_for_an_error_are_said_to_be_too_few() {

@@ -89,12 +89,25 @@ impl<'a> SensorMaps<'a> {
         Ok(SensorMaps { scene, maps, settings, ledger: pass.report.ledger })
     }
 
-    /// Whether maps can answer every sensor of a scene by estimators of this reach \[L\].
+    /// Whether maps of one pass can answer every sensor of a scene by each of these estimators.
     ///
     /// # Errors
-    /// `Error::Scene` that names the sensor, or the cell that is too small; those of beams that cannot be stored
-    pub fn check(scene: &Scene, reach: f64, radiance: RadianceMaps) -> Result<()> {
-        checked(scene, reach, radiance).map(|_| ())
+    /// `Error::Scene` that names the sensor, the cell that is too small, what planes cannot be stored of, or beams of two lengths
+    pub fn check(scene: &Scene, estimators: &[Estimator]) -> Result<()> {
+        let mut lengths = estimators.iter().filter(|e| e.beam_radius.is_some()).map(|e| e.beam_length);
+        let first = lengths.next();
+        if lengths.any(|length| Some(length) != first) {
+            return Err(Error::Scene(
+                "some beams are sampled and some whole, and one pass stores either; allowed: one beam_length"
+                    .into(),
+            ));
+        }
+        for estimator in estimators {
+            check_rays(scene, scene.sensors(), estimator)?;
+            check_orders(scene, scene.sensors(), RadianceMaps::of([estimator]))?;
+        }
+        let reach = estimators.iter().map(Estimator::reach).fold(0.0, f64::max);
+        checked(scene, reach, RadianceMaps::of(estimators)).map(|_| ())
     }
 
     /// What filling maps of so many photons will take, by a pilot.

@@ -1,15 +1,16 @@
 //! Beams: sums by hand, and light scattered once in slabs in channels of their own.
 
 use crate::support::run::sensor;
-use crate::support::scenes::{CELL, Incidence, homogeneous, incidence, layer};
+use crate::support::scenes::{CELL, Incidence, homogeneous, incidence, layer, region};
 use crate::support::verdict;
 use glam::{DVec2, DVec3, Vec3};
+use std::f64::consts::FRAC_PI_4;
 use turbid::Spectrum;
 use turbid::estimators::boundary::Boundary;
 use turbid::estimators::{BeamEstimator, Estimator, Gather, Kernel};
-use turbid::math::{FOUR_PI, Interval, Positive, Ray, cos, exp, exp_m1, sin};
-use turbid::photons::Flags;
+use turbid::math::{FOUR_PI, Interval, Positive, Ray, cos, exp, exp_m1, sin, sin_cos};
 use turbid::photons::beams::{Beam, BeamKind, BeamMap};
+use turbid::photons::{Emitter, Flags, Histories, Pass, Photon, Run, Storage};
 use turbid::scene::{Orders, Quantity, Region, Scene, SceneParts};
 use turbid::sensor::{MapSettings, RadianceMaps, SensorMaps};
 use turbid::stats::Moments;
@@ -147,6 +148,56 @@ pub fn by_maps(
         }
     });
     all
+}
+
+/// A slab of one mean free path, looked into under a cosine `mu` along eight azimuths, from places of its own each at a depth.
+pub fn looked_into((how, albedo): (Incidence, f64), (mu, depth): (f64, f64)) -> Scene {
+    let looking = |n: u32| {
+        let (sin, cos) = sin_cos(FRAC_PI_4 * f64::from(n));
+        let across = (1.0 - mu * mu).max(0.0).sqrt();
+        let place = DVec3::new(f64::from(n % 4), f64::from(n / 4) * 2.0, 4.0 * depth / CELL) * CELL / 4.0;
+        let dir = DVec3::new(cos * across, sin * across, mu);
+        sensor(Quantity::Radiance(Ray::new(place, dir.normalize())), Orders::SCATTERED)
+    };
+    Scene::new(SceneParts {
+        lights: vec![incidence(layer(1.0), how)],
+        regions: vec![region(layer(1.0), 1.0, albedo, 0.0)],
+        sensors: (0..8).map(looking).collect(),
+        cell: Some(DVec2::splat(CELL)),
+        ..SceneParts::default()
+    })
+    .unwrap()
+}
+
+/// Photons and their flights, whole or as they were sampled.
+pub struct Flights {
+    pub is_whole: bool,
+}
+
+impl Storage for Flights {
+    fn in_medium(&self, _history: u64, _photon: &Photon) -> bool {
+        true
+    }
+
+    fn has_beams(&self) -> bool {
+        true
+    }
+
+    fn has_whole_beams(&self) -> bool {
+        self.is_whole
+    }
+
+    fn on_flight(&self, _history: u64, _order: u32, _flags: Flags) -> bool {
+        true
+    }
+}
+
+impl Flights {
+    /// A pass that stores them.
+    pub fn pass(self, scene: &Scene, count: u64, seed: u64) -> Pass {
+        let histories = Histories { count, seed, replicate: 0, max_order: None };
+        Run::new(scene, &Emitter::by_power(scene), histories).pass(&self, &NoProgress).unwrap()
+    }
 }
 
 /// Moments of the mean of all sensors by every estimator, over maps.

@@ -1,7 +1,7 @@
 //! Beams blurred in two and three dimensions, long beams, and beams at places: sums by hand, chords one by one, exact slabs, furnaces,
 //! variance as predicted.
 
-use crate::checks::beams::{across, beam, by_maps, map, means_by_maps, reading};
+use crate::checks::beams::{Flights, across, beam, by_maps, looked_into, map, means_by_maps, reading};
 use crate::checks::media::{layered, varying};
 use crate::checks::slab::{exact, referee};
 use crate::support::run::sensor;
@@ -15,8 +15,8 @@ use turbid::Spectrum;
 use turbid::estimators::boundary::{Boundary, Treatment};
 use turbid::estimators::{BeamBlur, BeamEstimator, BeamLength, Estimator, Kernel};
 use turbid::math::{FOUR_PI, Interval, Positive, Ray, cos, exp, exp_m1, sin, warp};
+use turbid::photons::Photon;
 use turbid::photons::beams::{Beam, BeamKind, BeamMap};
-use turbid::photons::{Emitter, Flags, Histories, Photon, Run, Storage};
 use turbid::rng::{Purpose, Stream};
 use turbid::scene::{Orders, Quantity, Region, Scene, SceneParts};
 use turbid::sensor::{PhotonSettings, by_photons};
@@ -248,25 +248,6 @@ fn chords_are_those_found_one_by_one() {
     assert!(met > 2000, "{met}");
 }
 
-/// A slab of one mean free path, looked into under a cosine along eight azimuths, from places of its own each.
-fn slab_of(albedo: f64, how: Incidence, mu: f64) -> Scene {
-    let looking = |n: u32| {
-        let (sin, cos) = turbid::math::sin_cos(PI / 4.0 * f64::from(n));
-        let across = (1.0 - mu * mu).max(0.0).sqrt();
-        let dir = DVec3::new(cos * across, sin * across, mu);
-        let place = DVec3::new(f64::from(n % 4), f64::from(n / 4) * 2.0, 0.0) * CELL / 4.0;
-        sensor(Quantity::Radiance(Ray::new(place, dir.normalize())), Orders::SCATTERED)
-    };
-    Scene::new(SceneParts {
-        lights: vec![incidence(layer(1.0), how)],
-        regions: vec![region(layer(1.0), 1.0, albedo, 0.0)],
-        sensors: (0..8).map(looking).collect(),
-        cell: Some(DVec2::splat(CELL)),
-        ..SceneParts::default()
-    })
-    .unwrap()
-}
-
 /// Beams of both lengths, read in one and in two dimensions.
 fn of_length(radius: f64, blur: BeamBlur, length: BeamLength) -> Estimator {
     across(Kernel::Uniform, radius).blurred(blur).of_length(length)
@@ -276,7 +257,7 @@ fn of_length(radius: f64, blur: BeamBlur, length: BeamLength) -> Estimator {
 /// with less variance from the same photons.
 #[test]
 fn radiance_of_a_slab_by_every_blur_and_length() {
-    let scene = slab_of(0.9, Incidence::Beam(1.0), 0.5);
+    let scene = looked_into((Incidence::Beam(1.0), 0.9), (0.5, 0.0));
     let cases = [
         (0.1, BeamBlur::OneD, 0.093_460_6),
         (0.2, BeamBlur::OneD, 0.091_948_3),
@@ -299,7 +280,7 @@ fn radiance_of_a_slab_by_every_blur_and_length() {
 /// Along a beam that falls into a slab: in one dimension light scattered once is not found, in two nothing is lost, at any radius.
 #[test]
 fn looking_along_the_light() {
-    let scene = slab_of(0.9, Incidence::Beam(1.0), 1.0);
+    let scene = looked_into((Incidence::Beam(1.0), 0.9), (1.0, 0.0));
     for (length, seed) in BeamLength::ALL.into_iter().zip([36, 37]) {
         let estimators = [
             of_length(0.1, BeamBlur::TwoD, length),
@@ -318,7 +299,7 @@ fn looking_along_the_light() {
 /// A furnace, clipped: right at any radius in two dimensions too, by beams of both lengths.
 #[test]
 fn a_furnace_by_every_blur_and_length() {
-    let scene = slab_of(1.0, Incidence::Both, 0.5);
+    let scene = looked_into((Incidence::Both, 1.0), (0.5, 0.0));
     let expected = 0.864_664_717 / PI;
     for (length, seed) in BeamLength::ALL.into_iter().zip([38, 39]) {
         let specimens = [
@@ -400,27 +381,6 @@ fn long_beams_in_three_channels() {
     }
 }
 
-/// Keeps photons and flights, as far as they could go.
-struct WholeFlights;
-
-impl Storage for WholeFlights {
-    fn in_medium(&self, _history: u64, _photon: &Photon) -> bool {
-        true
-    }
-
-    fn has_beams(&self) -> bool {
-        true
-    }
-
-    fn has_whole_beams(&self) -> bool {
-        true
-    }
-
-    fn on_flight(&self, _history: u64, _order: u32, _flags: Flags) -> bool {
-        true
-    }
-}
-
 /// In a ball every flight is stored to the surface, with the power that it leaves with, and the walk goes on from where it was: the
 /// photons are those of a pass that stores no beams. A blur in a ball is refused of rays.
 #[test]
@@ -429,9 +389,7 @@ fn flights_are_stored_to_the_end_of_the_medium() {
     let medium = homogeneous(Spectrum::ONE, Spectrum::grey(0.8), 0.3);
     let light = point_light(DVec3::new(0.3, 0.1, 0.0), Spectrum::ONE);
     let scene = bounded(vec![Region { shape: ball, medium }], vec![], vec![light.clone()]);
-    let histories = Histories { count: 2000, seed: 4, replicate: 0, max_order: None };
-    let emitter = Emitter::by_power(&scene);
-    let pass = Run::new(&scene, &emitter, histories).pass(&WholeFlights, &NoProgress).unwrap();
+    let pass = Flights { is_whole: true }.pass(&scene, 2000, 4);
     let alone = crate::support::run::pass(&scene, &[], 2000, 4, |_| true);
     assert_eq!(pass.media, alone.media);
     let mut photons = pass.photons().peekable();

@@ -3,15 +3,13 @@
 
 use super::boundary::known;
 use crate::checks::beams::{
-    a_laser_end_on_counts_in_full, a_line_counts_once, across, beam, by_maps,
-    light_scattered_once_in_three_channels, map, means_by_maps, one_beam_by_hand, reading,
+    Flights, a_laser_end_on_counts_in_full, a_line_counts_once, across, beam, by_maps,
+    light_scattered_once_in_three_channels, looked_into, map, means_by_maps, one_beam_by_hand, reading,
 };
 use crate::checks::ledger::{Room, layers_are_those_of_paths, mirror, settings};
 use crate::checks::media::{layered, varying};
 use crate::support::run::{paths, sensor};
-use crate::support::scenes::{
-    CELL, Incidence, bounded, cuboid, homogeneous, incidence, layer, point_light, region,
-};
+use crate::support::scenes::{Incidence, bounded, cuboid, homogeneous, point_light, region};
 use crate::support::verdict;
 use glam::{DVec2, DVec3};
 use std::f64::consts::{FRAC_PI_2, FRAC_PI_3, FRAC_PI_4, PI};
@@ -25,8 +23,6 @@ use turbid::math::{FOUR_PI, Interval, Positive, Ray, exp, warp};
 use turbid::medium::Medium;
 use turbid::photons::beams::{Beam, BeamKind, BeamMap};
 use turbid::photons::maps::{Indirect, fill};
-use turbid::photons::{Emitter, Pass};
-use turbid::photons::{Flags, Histories, Photon, Run, Storage};
 use turbid::rng::{Purpose, Stream};
 use turbid::scene::{Orders, Quantity, Region, Scene, SceneParts};
 use turbid::sensor::{PhotonSettings, by_given_photons, by_photons};
@@ -52,38 +48,6 @@ fn kernels_of_the_line() {
 #[test]
 fn scattered_once() {
     light_scattered_once_in_three_channels();
-}
-
-/// Photons and their flights, whole or as they were sampled.
-struct Both {
-    is_whole: bool,
-}
-
-impl Storage for Both {
-    fn in_medium(&self, _history: u64, _photon: &Photon) -> bool {
-        true
-    }
-
-    fn has_beams(&self) -> bool {
-        true
-    }
-
-    fn has_whole_beams(&self) -> bool {
-        self.is_whole
-    }
-
-    fn on_flight(&self, _history: u64, _order: u32, _flags: Flags) -> bool {
-        true
-    }
-}
-
-fn pass_of(scene: &Scene, count: u64, seed: u64, is_whole: bool) -> Pass {
-    let histories = Histories { count, seed, replicate: 0, max_order: None };
-    Run::new(scene, &Emitter::by_power(scene), histories).pass(&Both { is_whole }, &NoProgress).unwrap()
-}
-
-fn pass(scene: &Scene, count: u64, seed: u64) -> Pass {
-    pass_of(scene, count, seed, false)
 }
 
 /// A laser through a medium that varies, behind an even one, in three channels of different extinction: what its unscattered beams carry
@@ -115,7 +79,7 @@ fn beams_carry_what_passes_a_medium_that_varies() {
     for is_whole in [false, true] {
         let mut found = vec![[Moments::new(); 3]; depths.len()];
         for seed in 0..200 {
-            let pass = pass_of(&scene, 2000, seed, is_whole);
+            let pass = Flights { is_whole }.pass(&scene, 2000, seed);
             if seed == 0 {
                 let alone = crate::support::run::pass(&scene, &[], 2000, 0, |_| true);
                 assert_eq!(pass.media, alone.media);
@@ -153,7 +117,7 @@ fn flights_are_stored_whole() {
         vec![],
         vec![light],
     );
-    let pass = pass(&scene, 2000, 4);
+    let pass = Flights { is_whole: false }.pass(&scene, 2000, 4);
     let alone = crate::support::run::pass(&scene, &[], 2000, 4, |_| true);
     assert_eq!(pass.media, alone.media);
     assert!(alone.beams.iter().all(Vec::is_empty) && alone.met_beams == 0);
@@ -187,7 +151,7 @@ fn flights_are_cut_at_media() {
         bounded(regions.collect(), vec![], vec![point_light(DVec3::new(0.0, 0.0, 0.7), Spectrum::ONE)]);
     let mut ratios = [Moments::new(), Moments::new()];
     for seed in 0..100 {
-        let pass = pass(&scene, 1000, seed);
+        let pass = Flights { is_whole: false }.pass(&scene, 1000, seed);
         let inside = |p: DVec3| p.abs().max_element() < 0.5 && p.z < 0.0;
         let mut lengths = [0.0; 2];
         for beam in pass.beams.iter().flatten() {
@@ -241,28 +205,10 @@ fn forced_flights_are_stored_to_their_ends() {
     }
 }
 
-/// A slab of one mean free path, looked into under a cosine of 0.5 along eight azimuths, from places of its own each.
-fn slab_of(albedo: f64, how: Incidence, orders: Orders) -> Scene {
-    let looking = |n: u32| {
-        let (sin, cos) = turbid::math::sin_cos(PI / 4.0 * f64::from(n));
-        let dir = DVec3::new(cos * 0.75f64.sqrt(), sin * 0.75f64.sqrt(), 0.5);
-        let place = DVec3::new(f64::from(n % 4), f64::from(n / 4) * 2.0, 0.0) * CELL / 4.0;
-        sensor(Quantity::Radiance(Ray::new(place, dir.normalize())), orders)
-    };
-    Scene::new(SceneParts {
-        lights: vec![incidence(layer(1.0), how)],
-        regions: vec![region(layer(1.0), 1.0, albedo, 0.0)],
-        sensors: (0..8).map(looking).collect(),
-        cell: Some(DVec2::splat(CELL)),
-        ..SceneParts::default()
-    })
-    .unwrap()
-}
-
 /// What leaves a slab of one mean free path aslant, albedo 0.9, cut square at its faces: published numbers by quadrature.
 #[test]
 fn radiance_of_a_slab() {
-    let scene = slab_of(0.9, Incidence::Beam(1.0), Orders::SCATTERED);
+    let scene = looked_into((Incidence::Beam(1.0), 0.9), (0.5, 0.0));
     let estimators = [0.1, 0.2].map(|radius| across(Kernel::Uniform, radius));
     let measured = means_by_maps(&scene, (3000, 300), 5, &estimators);
     for ((estimator, moments), expected) in estimators.iter().zip(&measured).zip([0.093_460_6, 0.091_948_3]) {
@@ -276,7 +222,7 @@ fn radiance_of_a_slab() {
 /// lose at its faces what is predicted.
 #[test]
 fn a_furnace_of_one_mean_free_path() {
-    let scene = slab_of(1.0, Incidence::Both, Orders::SCATTERED);
+    let scene = looked_into((Incidence::Both, 1.0), (0.5, 0.0));
     let square = [0.1, 0.2].map(|radius| across(Kernel::Uniform, radius));
     let clipped = [(Kernel::Uniform, 0.2), (Kernel::Cone, 0.6), (Kernel::Gaussian, 1.2)];
     let clipped = clipped.map(|(kernel, radius)| across(kernel, radius).treated(Treatment::Clipped));

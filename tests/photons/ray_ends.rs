@@ -1,13 +1,11 @@
 //! Rays that end for each photon and beam where its own parallel leaves the medium: exact slabs at any radius, rays from inside, behind and
 //! past a ball, and what is refused.
 
-use crate::checks::beams::{across, by_maps, means_by_maps};
+use crate::checks::beams::{across, by_maps, looked_into, means_by_maps};
 use crate::support::run::{paths, sensor};
-use crate::support::scenes::{
-    CELL, Incidence, bounded, cuboid, homogeneous, incidence, layer, point_light, region, sphere,
-};
+use crate::support::scenes::{Incidence, bounded, cuboid, homogeneous, point_light, region, sphere};
 use crate::support::verdict;
-use glam::{DVec2, DVec3};
+use glam::DVec3;
 use std::f64::consts::PI;
 use std::num::NonZeroUsize;
 use turbid::Spectrum;
@@ -26,32 +24,13 @@ fn of_beams(radius: f64, blur: BeamBlur) -> Estimator {
     across(Kernel::Uniform, radius).blurred(blur).ending(RayEnds::Own)
 }
 
-/// A slab of one mean free path, looked along directions of a cosine, along eight azimuths from places of its own each, at a depth.
-fn slab_of((how, albedo): (Incidence, f64), mu: f64, depth: f64) -> Scene {
-    let looking = |n: u32| {
-        let (sin, cos) = turbid::math::sin_cos(PI / 4.0 * f64::from(n));
-        let across = (1.0 - mu * mu).sqrt();
-        let place = DVec3::new(f64::from(n % 4), f64::from(n / 4) * 2.0, 4.0 * depth / CELL) * CELL / 4.0;
-        let dir = DVec3::new(cos * across, sin * across, mu);
-        sensor(Quantity::Radiance(Ray::new(place, dir.normalize())), Orders::SCATTERED)
-    };
-    Scene::new(SceneParts {
-        lights: vec![incidence(layer(1.0), how)],
-        regions: vec![region(layer(1.0), 1.0, albedo, 0.0)],
-        sensors: (0..8).map(looking).collect(),
-        cell: Some(DVec2::splat(CELL)),
-        ..SceneParts::default()
-    })
-    .unwrap()
-}
-
 /// What leaves a slab aslant: the published exact value, the same for every radius, by points, beams in one dimension and in two, drawn
 /// and long; from the face, and from outside it. Cut, it is another.
 #[test]
 fn radiance_of_a_slab_knows_no_radius() {
     for (mu, expected, seed) in [(0.5, 0.094_904_494, 51), (0.2, 0.115_644_004, 52)] {
         for depth in [0.0, -0.3] {
-            let scene = slab_of((Incidence::Beam(1.0), 0.9), mu, depth);
+            let scene = looked_into((Incidence::Beam(1.0), 0.9), (mu, depth));
             let points = [of_points(Kernel::Uniform, 0.1), of_points(Kernel::Biweight, 0.2)];
             let beams = [(0.1, BeamBlur::OneD), (0.2, BeamBlur::OneD), (0.2, BeamBlur::TwoD)];
             let beams = beams.map(|(radius, blur)| of_beams(radius, blur));
@@ -64,7 +43,7 @@ fn radiance_of_a_slab_knows_no_radius() {
             }
         }
     }
-    let scene = slab_of((Incidence::Beam(1.0), 0.9), 0.5, 0.0);
+    let scene = looked_into((Incidence::Beam(1.0), 0.9), (0.5, 0.0));
     let specimens = [
         of_beams(0.2, BeamBlur::OneD).of_length(BeamLength::Whole),
         of_points(Kernel::Uniform, 0.4).ending(RayEnds::Cut),
@@ -78,7 +57,7 @@ fn radiance_of_a_slab_knows_no_radius() {
 /// their radii differ by: a slab along its normal.
 #[test]
 fn own_radii_with_own_ends() {
-    let scene = slab_of((Incidence::Both, 1.0), 1.0, 0.0);
+    let scene = looked_into((Incidence::Both, 1.0), (1.0, 0.0));
     let own = of_points(Kernel::Uniform, 0.5).of_nearest(NonZeroUsize::new(10).unwrap());
     let measured = means_by_maps(&scene, (1500, 100), 54, &[own]);
     let expected = -turbid::math::exp_m1(-1.0) / PI;

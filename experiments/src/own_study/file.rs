@@ -6,7 +6,7 @@ use serde::{Deserialize, Deserializer};
 use std::collections::BTreeMap;
 use std::num::NonZeroUsize;
 use turbid::estimators::boundary::{Rejection, Treatment};
-use turbid::estimators::{Estimator, Gather, Kernel};
+use turbid::estimators::{BeamBlur, BeamLength, Estimator, Gather, Kernel, RayEnds};
 use turbid::input::line_and_column;
 use turbid::math::Positive;
 use turbid::scene::toml_message;
@@ -240,6 +240,21 @@ pub struct EstimatorFile {
     /// The same from flights as beams \[L\].
     #[serde(default)]
     beam_radius: Option<OneOrMore<f64>>,
+    /// Dimensions that beams are blurred in, by name; 1d if absent.
+    #[serde(default)]
+    beam_blur: Option<OneOrMore<String>>,
+    /// How far beams go, by name, the same for all of a study; sampled if absent.
+    #[serde(default)]
+    beam_length: Option<String>,
+    /// Whether sensors of fluence are read from these beams too, in place of from photons in balls.
+    #[serde(default)]
+    beam_fluence: bool,
+    /// Where rays that are read at once end, by name; cut if absent.
+    #[serde(default)]
+    ray_ends: Option<OneOrMore<String>>,
+    /// Whether light that is scattered twice and more is read from planes of flights, beside these beams.
+    #[serde(default)]
+    planes: bool,
     /// Numbers of nearest photons.
     #[serde(default)]
     k: Option<OneOrMore<Count>>,
@@ -330,20 +345,47 @@ impl EstimatorFile {
             own.is_empty() || !about_rays.is_empty(),
             "ray_k goes with ray_radius, which no radius exceeds"
         );
+        let is_of_beams =
+            self.beam_blur.is_some() || self.beam_length.is_some() || self.beam_fluence || self.planes;
+        ensure!(
+            !is_of_beams || !across_beams.is_empty(),
+            "beam_blur, beam_length, beam_fluence and planes say how beams are read; allowed: with beam_radius"
+        );
+        ensure!(
+            self.ray_ends.is_none() || !(about_rays.is_empty() && across_beams.is_empty()),
+            "ray_ends says where rays end that are read at once; allowed: with ray_radius or beam_radius"
+        );
+        let of_ends = |word: &String| named("ray_ends", word, &RayEnds::ALL, RayEnds::name);
+        let ends: Vec<RayEnds> =
+            words(&self.ray_ends, RayEnds::Cut.name()).iter().map(of_ends).collect::<anyhow::Result<_>>()?;
+        let of_blur = |word: &String| named("beam_blur", word, &BeamBlur::ALL, BeamBlur::name);
+        let blurs: Vec<BeamBlur> = words(&self.beam_blur, BeamBlur::OneD.name())
+            .iter()
+            .map(of_blur)
+            .collect::<anyhow::Result<_>>()?;
+        let length = self.beam_length.as_deref().unwrap_or(BeamLength::Sampled.name());
+        let length = named("beam_length", length, &BeamLength::ALL, BeamLength::name)?;
         let mut all = Vec::new();
         for kernel in words(&self.kernel, Kernel::Uniform.name()) {
             let kernel = named("kernel", &kernel, &Kernel::ALL, Kernel::name)?;
             for &radius in &about_rays {
                 let of_points = Estimator::new(kernel, Gather::Radius(radius)).treated(Treatment::Clipped);
-                let of_rays = of_points.along_rays(radius);
-                match &own[..] {
-                    [] => all.push(of_rays),
-                    own => all.extend(own.iter().map(|k| of_rays.of_nearest(*k))),
+                for &ends in &ends {
+                    let of_rays = of_points.along_rays(radius).ending(ends);
+                    match &own[..] {
+                        [] => all.push(of_rays),
+                        own => all.extend(own.iter().map(|k| of_rays.of_nearest(*k))),
+                    }
                 }
             }
             for &radius in &across_beams {
                 let of_points = Estimator::new(kernel, Gather::Radius(radius)).treated(Treatment::Clipped);
-                all.push(of_points.along_beams(radius));
+                let of_beams = of_points.along_beams(radius).of_length(length);
+                let of_beams =
+                    Estimator { has_beam_fluence: self.beam_fluence, has_planes: self.planes, ..of_beams };
+                for &blur in &blurs {
+                    all.extend(ends.iter().map(|ends| of_beams.blurred(blur).ending(*ends)));
+                }
             }
             for treatment in words(&self.treatment, Treatment::Clipped.name()) {
                 let treatment = named("treatment", &treatment, &Treatment::ALL, |t| t.name())?;

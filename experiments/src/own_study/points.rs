@@ -8,12 +8,12 @@ use crate::setups::asked;
 use anyhow::{Context, bail, ensure};
 use std::collections::BTreeSet;
 use std::path::Path;
-use turbid::estimators::Estimator;
+use turbid::estimators::{BeamBlur, BeamLength, Estimator, RayEnds};
 use turbid::integrators::mapper::scene_size;
 use turbid::output::one_line;
 use turbid::photons::check_end;
 use turbid::scene::{BUILTIN, Binned, Quantity, QuantityFile, Scene, SceneFile, SceneSource, SensorFile};
-use turbid::sensor::{RadianceMaps, SensorMaps, usual_reach};
+use turbid::sensor::{SensorMaps, usual_reach};
 
 /// One scene of a study.
 #[derive(Clone)]
@@ -110,6 +110,16 @@ fn point(study: &StudyFile, folder: &Path, number: usize) -> anyhow::Result<Poin
         check_end(&scene).with_context(|| source.name())?;
         let picture = Picture::new(&scene, picture).context("measure")?;
         let (places, estimators) = (picture.places(), study.estimators(0.1 * scene_size(&scene))?);
+        let is_of_sensors = |e: &&Estimator| {
+            let is_of_places = e.has_beam_fluence || e.beam_blur == BeamBlur::ThreeD;
+            is_of_places || e.has_planes || e.beam_length == BeamLength::Whole || e.ray_ends == RayEnds::Own
+        };
+        if let Some(estimator) = estimators.iter().find(is_of_sensors) {
+            bail!(
+                "picture: {} is of sensors alone; allowed in pictures: beam_radius with beam_blur, ray_radius with ray_k, radius, k",
+                estimator.name()
+            );
+        }
         ensure!(
             places.len() <= MOST_PLACES,
             "more than {MOST_PLACES} numbers in a scene; allowed: that many"
@@ -126,8 +136,7 @@ fn point(study: &StudyFile, folder: &Path, number: usize) -> anyhow::Result<Poin
     check_end(&scene).with_context(|| source.name())?;
     let places = places(&scene).context("measure")?;
     let estimators = study.estimators(usual_reach(&scene))?;
-    let radiance = RadianceMaps::of(&estimators);
-    SensorMaps::check(&scene, reach(&estimators), radiance).with_context(|| source.name())?;
+    SensorMaps::check(&scene, &estimators).with_context(|| source.name())?;
     Ok(Point { label: label(&values), values, scene, picture: None, places, estimators, left_out })
 }
 

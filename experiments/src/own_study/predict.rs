@@ -86,7 +86,11 @@ impl InBody {
         let (Quantity::Fluence(p), Gather::Radius(radius)) = (&sensor.quantity, estimator.gather) else {
             return None;
         };
-        if estimator.rejection != Rejection::Off || sensor.orders != turbid::scene::Orders::ALL {
+        // Beams about a place are not in its ball.
+        if estimator.rejection != Rejection::Off
+            || estimator.has_beam_fluence
+            || sensor.orders != turbid::scene::Orders::ALL
+        {
             return None;
         }
         let treatment = match estimator.treatment {

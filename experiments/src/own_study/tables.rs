@@ -33,18 +33,34 @@ fn parameters(data: &Data, setting: &Setting) -> Vec<String> {
         .map(|radius| radius.map_or_else(String::new, |radius| radius.get().to_string()));
     all.extend([setting.photons.to_string(), estimator.kernel.name().to_string(), radius]);
     let ray_k = estimator.ray_k.map_or_else(String::new, |k| k.to_string());
-    all.extend([of_rays, ray_k, of_beams, k, cap]);
+    let of_beam = |word: &str| estimator.beam_radius.map_or_else(String::new, |_| word.to_string());
+    let [fluence, planes] = [estimator.has_beam_fluence, estimator.has_planes]
+        .map(|is| of_beam(if is { "true" } else { "false" }));
+    let ends = if estimator.reads_rays() { estimator.ray_ends.name() } else { "" };
+    all.extend([
+        of_rays,
+        ray_k,
+        of_beams,
+        of_beam(estimator.beam_blur.name()),
+        of_beam(estimator.beam_length.name()),
+    ]);
+    all.extend([fluence, planes, ends.to_string(), k, cap]);
     all.extend([estimator.treatment.name().to_string(), estimator.rejection.name().to_string()]);
     all
 }
 
-const ESTIMATOR: [&str; 10] = [
+const ESTIMATOR: [&str; 15] = [
     "photons",
     "kernel",
     "radius",
     "ray_radius",
     "ray_k",
     "beam_radius",
+    "beam_blur",
+    "beam_length",
+    "beam_fluence",
+    "planes",
+    "ray_ends",
     "k",
     "max_radius",
     "treatment",

@@ -1,7 +1,7 @@
 //! Names of cases, as cells, predictions and results share them.
 
 use super::points::Point;
-use turbid::estimators::{Estimator, Gather};
+use turbid::estimators::{BeamBlur, BeamLength, Estimator, Gather, RayEnds};
 
 /// Name of the experiment, in files and in random streams.
 pub const NAME: &str = "own";
@@ -39,21 +39,28 @@ pub const SAMPLING: &str = "sampling";
 
 /// What estimators that differ in the size of their gather share.
 pub fn family(estimator: &Estimator) -> String {
-    let Estimator { kernel, gather, treatment, rejection, ray_radius, ray_k, beam_radius, .. } = estimator;
+    let Estimator { kernel, gather, treatment, rejection, .. } = estimator;
     let size = match gather {
         Gather::Radius(_) => "fixed radius",
         Gather::Nearest { .. } => "k nearest",
         Gather::NearestBiased { .. } => "k nearest, biased",
     };
+    let size = if estimator.ray_k.is_some() { "k nearest of each photon" } else { size };
     let mut name = format!("{size}, {}", kernel.name());
-    if ray_k.is_some() {
-        return format!("k nearest of each photon, {}, along rays", kernel.name());
-    }
-    if ray_radius.is_some() {
-        return name + ", along rays";
-    }
-    if beam_radius.is_some() {
-        return name + ", beams";
+    if estimator.reads_rays() {
+        name += if estimator.ray_radius.is_some() { ", along rays" } else { ", beams" };
+        if estimator.beam_blur != BeamBlur::OneD {
+            name += &format!(" blurred in {}", estimator.beam_blur.name());
+        }
+        for (is_told, what) in [
+            (estimator.beam_length == BeamLength::Whole, ", whole"),
+            (estimator.has_beam_fluence, ", at places too"),
+            (estimator.has_planes, ", with planes"),
+            (estimator.ray_ends == RayEnds::Own, ", ends of their own"),
+        ] {
+            name += if is_told { what } else { "" };
+        }
+        return name;
     }
     name += &format!(", {}", treatment.name());
     if *rejection != turbid::estimators::boundary::Rejection::Off {
