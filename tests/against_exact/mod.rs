@@ -7,7 +7,7 @@ mod emitting_sphere;
 mod equiangular;
 mod furnace;
 mod glass;
-mod henyey_greenstein;
+pub mod henyey_greenstein;
 mod infinite;
 mod mean_path;
 mod periodic;

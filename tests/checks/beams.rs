@@ -151,7 +151,7 @@ pub fn by_maps(
 }
 
 /// A slab of one mean free path, looked into under a cosine `mu` along eight azimuths, from places of its own each at a depth.
-pub fn looked_into((how, albedo): (Incidence, f64), (mu, depth): (f64, f64)) -> Scene {
+pub fn looked_into((how, albedo, g): (Incidence, f64, f64), (mu, depth): (f64, f64)) -> Scene {
     let looking = |n: u32| {
         let (sin, cos) = sin_cos(FRAC_PI_4 * f64::from(n));
         let across = (1.0 - mu * mu).max(0.0).sqrt();
@@ -161,7 +161,7 @@ pub fn looked_into((how, albedo): (Incidence, f64), (mu, depth): (f64, f64)) -> 
     };
     Scene::new(SceneParts {
         lights: vec![incidence(layer(1.0), how)],
-        regions: vec![region(layer(1.0), 1.0, albedo, 0.0)],
+        regions: vec![region(layer(1.0), 1.0, albedo, g)],
         sensors: (0..8).map(looking).collect(),
         cell: Some(DVec2::splat(CELL)),
         ..SceneParts::default()

@@ -257,7 +257,7 @@ fn of_length(radius: f64, blur: BeamBlur, length: BeamLength) -> Estimator {
 /// with less variance from the same photons.
 #[test]
 fn radiance_of_a_slab_by_every_blur_and_length() {
-    let scene = looked_into((Incidence::Beam(1.0), 0.9), (0.5, 0.0));
+    let scene = looked_into((Incidence::Beam(1.0), 0.9, 0.0), (0.5, 0.0));
     let cases = [
         (0.1, BeamBlur::OneD, 0.093_460_6),
         (0.2, BeamBlur::OneD, 0.091_948_3),
@@ -280,7 +280,7 @@ fn radiance_of_a_slab_by_every_blur_and_length() {
 /// Along a beam that falls into a slab: in one dimension light scattered once is not found, in two nothing is lost, at any radius.
 #[test]
 fn looking_along_the_light() {
-    let scene = looked_into((Incidence::Beam(1.0), 0.9), (1.0, 0.0));
+    let scene = looked_into((Incidence::Beam(1.0), 0.9, 0.0), (1.0, 0.0));
     for (length, seed) in BeamLength::ALL.into_iter().zip([36, 37]) {
         let estimators = [
             of_length(0.1, BeamBlur::TwoD, length),
@@ -299,7 +299,7 @@ fn looking_along_the_light() {
 /// A furnace, clipped: right at any radius in two dimensions too, by beams of both lengths.
 #[test]
 fn a_furnace_by_every_blur_and_length() {
-    let scene = looked_into((Incidence::Both, 1.0), (0.5, 0.0));
+    let scene = looked_into((Incidence::Both, 1.0, 0.0), (0.5, 0.0));
     let expected = 0.864_664_717 / PI;
     for (length, seed) in BeamLength::ALL.into_iter().zip([38, 39]) {
         let specimens = [

@@ -208,7 +208,7 @@ fn forced_flights_are_stored_to_their_ends() {
 /// What leaves a slab of one mean free path aslant, albedo 0.9, cut square at its faces: published numbers by quadrature.
 #[test]
 fn radiance_of_a_slab() {
-    let scene = looked_into((Incidence::Beam(1.0), 0.9), (0.5, 0.0));
+    let scene = looked_into((Incidence::Beam(1.0), 0.9, 0.0), (0.5, 0.0));
     let estimators = [0.1, 0.2].map(|radius| across(Kernel::Uniform, radius));
     let measured = means_by_maps(&scene, (3000, 300), 5, &estimators);
     for ((estimator, moments), expected) in estimators.iter().zip(&measured).zip([0.093_460_6, 0.091_948_3]) {
@@ -222,7 +222,7 @@ fn radiance_of_a_slab() {
 /// lose at its faces what is predicted.
 #[test]
 fn a_furnace_of_one_mean_free_path() {
-    let scene = looked_into((Incidence::Both, 1.0), (0.5, 0.0));
+    let scene = looked_into((Incidence::Both, 1.0, 0.0), (0.5, 0.0));
     let square = [0.1, 0.2].map(|radius| across(Kernel::Uniform, radius));
     let clipped = [(Kernel::Uniform, 0.2), (Kernel::Cone, 0.6), (Kernel::Gaussian, 1.2)];
     let clipped = clipped.map(|(kernel, radius)| across(kernel, radius).treated(Treatment::Clipped));

@@ -1,7 +1,9 @@
 //! Rays that end for each photon and beam where its own parallel leaves the medium: exact slabs at any radius, rays from inside, behind and
 //! past a ball, and what is refused.
 
+use crate::against_exact::henyey_greenstein::{medium, referee};
 use crate::checks::beams::{across, by_maps, looked_into, means_by_maps};
+use crate::checks::slab::exact;
 use crate::support::run::{paths, sensor};
 use crate::support::scenes::{Incidence, bounded, cuboid, homogeneous, point_light, region, sphere};
 use crate::support::verdict;
@@ -30,7 +32,7 @@ fn of_beams(radius: f64, blur: BeamBlur) -> Estimator {
 fn radiance_of_a_slab_knows_no_radius() {
     for (mu, expected, seed) in [(0.5, 0.094_904_494, 51), (0.2, 0.115_644_004, 52)] {
         for depth in [0.0, -0.3] {
-            let scene = looked_into((Incidence::Beam(1.0), 0.9), (mu, depth));
+            let scene = looked_into((Incidence::Beam(1.0), 0.9, 0.0), (mu, depth));
             let points = [of_points(Kernel::Uniform, 0.1), of_points(Kernel::Biweight, 0.2)];
             let beams = [(0.1, BeamBlur::OneD), (0.2, BeamBlur::OneD), (0.2, BeamBlur::TwoD)];
             let beams = beams.map(|(radius, blur)| of_beams(radius, blur));
@@ -43,7 +45,7 @@ fn radiance_of_a_slab_knows_no_radius() {
             }
         }
     }
-    let scene = looked_into((Incidence::Beam(1.0), 0.9), (0.5, 0.0));
+    let scene = looked_into((Incidence::Beam(1.0), 0.9, 0.0), (0.5, 0.0));
     let specimens = [
         of_beams(0.2, BeamBlur::OneD).of_length(BeamLength::Whole),
         of_points(Kernel::Uniform, 0.4).ending(RayEnds::Cut),
@@ -53,11 +55,28 @@ fn radiance_of_a_slab_knows_no_radius() {
     verdict::rejects("cut", &measured[1], 0.094_904_494, 53);
 }
 
+/// What leaves a slab of peaked scattering on the side that the peak points to, under diffuse light: the exact value at any radius.
+#[test]
+fn peaked_slabs_know_no_radius() {
+    for (g, mu, depth) in [(0.95, -0.5, 1.0), (-0.95, 0.5, 0.0)] {
+        let scene = looked_into((Incidence::Diffuse, 0.9, g), (mu, depth));
+        let expected =
+            exact(referee(&medium(0.9, g), 1.0, Incidence::Diffuse).radiance(depth, mu, 0.0).unwrap());
+        let all =
+            [of_points(Kernel::Uniform, 0.3), of_beams(0.2, BeamBlur::OneD), of_beams(0.2, BeamBlur::TwoD)];
+        let measured = means_by_maps(&scene, (2500, 200), 55, &all);
+        for (estimator, moments) in all.iter().zip(&measured) {
+            let what = format!("g {g}, {}", estimator.name());
+            verdict::agrees(&what, moments, expected, 0.1 * expected.0, 55);
+        }
+    }
+}
+
 /// In a furnace, where all is the same everywhere, photons with radii of their own lose nothing at the middle of faces either but what
 /// their radii differ by: a slab along its normal.
 #[test]
 fn own_radii_with_own_ends() {
-    let scene = looked_into((Incidence::Both, 1.0), (1.0, 0.0));
+    let scene = looked_into((Incidence::Both, 1.0, 0.0), (1.0, 0.0));
     let own = of_points(Kernel::Uniform, 0.5).of_nearest(NonZeroUsize::new(10).unwrap());
     let measured = means_by_maps(&scene, (1500, 100), 54, &[own]);
     let expected = -turbid::math::exp_m1(-1.0) / PI;
