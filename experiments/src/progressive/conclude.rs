@@ -83,7 +83,7 @@ fn answer(points: &[Point], query: Query) -> Answer {
         exponent: exponent_of_means(&x, &joined, &vec![0.0; x.len()]),
         theory: exponent(&x, &theory),
         over: over.collect(),
-        coverage: (Estimate::mean(&last.coverage.iter().collect::<Moments>()), last.theory.coverage()),
+        coverage: (last.held(), last.theory.coverage()),
     }
 }
 
@@ -151,8 +151,7 @@ fn rows(points: &[Point], answers: &[Answer], photons: u64) -> anyhow::Result<Ve
         let squared = Row::measured(&case, "squared error", Unit::ONE, &point.squared())?;
         rows.push(squared.reference(point.theory.squared(), 1e-12).with(asked));
         if !point.coverage.is_empty() {
-            let held: Moments = point.coverage.iter().collect();
-            let row = Row::measured(&case, "coverage", Unit::ONE, &held)?;
+            let row = Row::estimated(&case, "coverage", Unit::ONE, &point.held())?;
             rows.push(row.predicted(point.theory.coverage()).with(asked));
         }
     }
@@ -167,7 +166,7 @@ fn table(points: &[Point]) -> Table {
     for query in QUERIES {
         for schedule in schedules(query) {
             let Some(last) = sequence(points, query, schedule).last().copied() else { continue };
-            let (squared, held): (Moments, Moments) = (last.squared(), last.coverage.iter().collect());
+            let (squared, held) = (last.squared(), last.held());
             rows.push(vec![
                 query.title().to_string(),
                 schedule.title().to_string(),
@@ -175,7 +174,7 @@ fn table(points: &[Point]) -> Table {
                 with_error(squared.mean(), squared.std_error()),
                 number(last.theory.squared()),
                 number(last.theory.blur / last.theory.variance.sqrt()),
-                with_error(held.mean(), held.std_error()),
+                with_error(held.value(), held.std_error()),
                 format!("{:.3}", last.theory.coverage()),
             ]);
         }

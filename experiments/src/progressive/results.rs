@@ -4,7 +4,7 @@ use super::cases::Schedule;
 use super::predict::Expected;
 use crate::harness::Estimate;
 use crate::setups::uncollided::Query;
-use turbid::stats::Moments;
+use turbid::stats::{Moments, poisson_interval};
 
 /// One question by one schedule after so many maps.
 pub struct Point {
@@ -31,6 +31,17 @@ impl Point {
     pub fn squared(&self) -> Moments {
         self.squares.iter().collect()
     }
+
+    /// The part of the intervals that hold the exact value, over cells. Where all cells say the same, as after many maps whose blur stays,
+    /// its error is that of a bound, never 0.
+    pub fn held(&self) -> Estimate {
+        let held: Moments = self.coverage.iter().collect();
+        if held.std_error() > 0.0 {
+            return Estimate::mean(&held);
+        }
+        let error = poisson_interval(0, 0.95).high / held.n().max(1) as f64;
+        Estimate::resampled(held.mean(), error, held.n())
+    }
 }
 
 /// One kind of question.
@@ -50,4 +61,25 @@ pub struct Answer {
 /// The points of a question and schedule, in the order of the number of maps.
 pub fn sequence(points: &[Point], query: Query, schedule: Schedule) -> Vec<&Point> {
     points.iter().filter(|p| p.query == query && p.schedule == schedule).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Intervals of which none holds in any of 256 cells, and of which a few do.
+    #[test]
+    fn a_part_of_none_has_an_error() {
+        let radii = [0.1, 0.1];
+        let theory = Expected::after(Query::Places, 1000, &radii).unwrap();
+        let of = |coverage: Vec<f64>| {
+            let (query, schedule) = (Query::Places, Schedule::Constant);
+            let (errors, squares) = (Vec::new(), Vec::new());
+            Point { query, schedule, maps: 2, radius: radii[0], theory, errors, squares, coverage }.held()
+        };
+        let none = of(vec![0.0; 256]);
+        assert!(none.value() == 0.0 && (0.01..0.015).contains(&none.std_error()));
+        let few = of((0..256).map(|n| f64::from(u8::from(n < 4))).collect());
+        assert!((few.value() - 4.0 / 256.0).abs() < 1e-15 && (0.007..0.009).contains(&few.std_error()));
+    }
 }
