@@ -228,7 +228,7 @@ fn every_way_of_reading_rays_is_an_estimator() {
     let (folder, _file) = written(
         "\
 scene = 'slab'
-photons = [2e4]
+photons = [5e3]
 maps = 64
 [measure]
 probes = [[2.0, 2.0, 0.5]]

@@ -63,11 +63,11 @@ fn peaked_slabs_know_no_radius() {
         let scene = looked_into((Incidence::Diffuse, 0.9, g), (mu, depth));
         let expected =
             exact(referee(&medium(0.9, g), 1.0, Incidence::Diffuse).radiance(depth, mu, 0.0).unwrap());
-        let all = [of_points(Kernel::Uniform, 0.3), of_points(Kernel::Biweight, 0.2)];
+        let all = [of_points(Kernel::Uniform, 0.3), of_points(Kernel::Biweight, 0.5)];
         let measured = means_by_maps(&scene, (10_000, 200), 55, &all);
         for (estimator, moments) in all.iter().zip(&measured) {
             let what = format!("g {g}, {}", estimator.name());
-            verdict::agrees(&what, moments, expected, 0.12 * expected.0, 55);
+            verdict::agrees(&what, moments, expected, 0.15 * expected.0, 55);
         }
     }
 }
